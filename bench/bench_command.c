@@ -17,6 +17,8 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
       {"scenes", CLI_TEXT, &job->scenes_text, "LIST", "scenes, or all; files are IN [all, or the files alone]"},
       {"methods", CLI_TEXT, &job->methods_text, "LIST",
        "conic, ray, affine, point, disc, auto, nearest, or all [conic]"},
+      {"profiles", CLI_TEXT, &job->profiles_text, "LIST",
+       "of Gaussian scenes: those of conic render, or all [gsplat-1.6,exact]"},
       {"isa", CLI_TEXT, &job->isa_text, "LIST", "auto, scalar, sse2, avx2, avx512, neon, or all [auto]"},
       {"threads", CLI_TEXT, &job->threads_text, "LIST", "numbers of threads; 0: all that there are [1,0]"},
       {"size", CLI_SIZE, job->size, "WxH", "pixels [1024x1024]", 1, 65535},

@@ -1,6 +1,6 @@
 /* What conic verify and conic explain do of Gaussian scenes that are composited by a profile. */
-#ifndef CLI_GAUSSIAN_COMMANDS_H
-#define CLI_GAUSSIAN_COMMANDS_H
+#ifndef CONIC_GAUSSIAN_COMMANDS_H
+#define CONIC_GAUSSIAN_COMMANDS_H
 
 #include "cli/render/render_job.h"
 #include "conic/gaussian_judge.h"

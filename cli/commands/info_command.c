@@ -136,7 +136,9 @@ static void report_cameras(cli_json *json, const conic_cameras *cameras) {
     cli_json_count(json, "index", i);
     if (*cameras->names[i])
       cli_json_text(json, "name", cameras->names[i]);
+    cli_json_object(json, "camera");
     cli_camera_write(json, &cameras->cameras[i]);
+    cli_json_close(json);
     cli_json_close(json);
   }
   cli_json_close(json);

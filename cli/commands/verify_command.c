@@ -267,7 +267,7 @@ static int verify(cli_session *session, verify_job *job) {
 }
 
 /* Which planes can be judged. */
-static int check_planes(verify_job *job) {
+static int check_judged_planes(verify_job *job) {
   const unsigned composited = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL |
                               1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_ID |
                               (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT));
@@ -299,7 +299,7 @@ static int run(cli_session *session, int argc, char **argv) {
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   if (exit_code == CLI_DONE)
-    exit_code = check_planes(&job);
+    exit_code = check_judged_planes(&job);
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, NULL, 0);
   if (exit_code == CLI_DONE)

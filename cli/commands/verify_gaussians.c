@@ -119,7 +119,7 @@ static conic_status draw_composited(cli_session *session, cli_render_job *scene,
   return status;
 }
 
-static int tell_verdict(cli_session *session, const gaussian_report *r) {
+static int tell_judgement(cli_session *session, const gaussian_report *r) {
   int exit_code = CLI_DONE;
   cli_json_file *file;
   cli_json *json = cli_json_open(session, &file, &exit_code);
@@ -157,5 +157,5 @@ int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_
                                   &r.judging, image, NULL, &r.verdict);
   r.oracle_ms = 1e3 * (cli_seconds() - start);
   r.n_pixels = (size_t)image->width * (size_t)image->height;
-  return status == CONIC_OK ? tell_verdict(session, &r) : cli_exit_of(status);
+  return status == CONIC_OK ? tell_judgement(session, &r) : cli_exit_of(status);
 }

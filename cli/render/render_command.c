@@ -60,7 +60,8 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   name_attribute(image, "conicEpsilon", NULL, s->epsilon);
   name_attribute(image, "conicNear", NULL, s->near_z);
   name_attribute(image, "conicCutoff", NULL, (double)job->options.kernel.cutoff);
-  name_attribute(image, "conicPrefilter", NULL, (double)job->options.prefilter);
+  name_attribute(image, "conicPrefilter", NULL,
+                 job->abilities & CONIC_SOURCE_COMPOSITES ? job->gaussians.prefilter : (double)job->options.prefilter);
   name_attribute(image, "conicExposure", NULL, job->options.exposure);
   name_attribute(image, "conicSamples", NULL, (double)job->view.samples);
   name_attribute(image, "conicFx", NULL, camera->fx);

@@ -45,6 +45,9 @@ typedef struct cli_render_job {
   conic_camera camera;
   conic_framing framing;
   int is_up_given, is_elevation_given;
+  int projection; /* of the framed camera: a conic_camera_kind */
+  double eye[3];  /* --eye: where it stands */
+  int is_eye_given;
   int is_plain; /* --plain: nothing is chosen by what looks best */
   int is_background_given;
   cli_backdrop backdrop;                       /* --background with two colours */

@@ -5,6 +5,7 @@
 
 #include "cli/render/frames.h"
 #include "cli/render/light_options.h"
+#include "cli/render/projection.h"
 #include "cli/render/views.h"
 #include "core/files/file.h"
 
@@ -131,14 +132,18 @@ conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *ca
   }
   if (!job->is_up_given)
     memcpy(framing.up, conic_source_measure(job->source)->up, sizeof framing.up);
-  if (!job->is_plain && !job->is_elevation_given)
+  if (!job->is_elevation_given && (job->is_eye_given || job->projection == CONIC_CAMERA_EQUIRECTANGULAR))
+    framing.elevation_deg = 0.0; /* of who stands in it */
+  else if (!job->is_plain && !job->is_elevation_given)
     framing.elevation_deg = elevation_for(conic_source_measure(job->source), framing.up);
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
-  if (job->is_plain || job->deadline > 0.0) /* to find the outline takes time */
-    return conic_source_frame(job->source, &framing, camera);
-  double near_z;
+  double near_z = HUGE_VAL;
   conic_status status =
-      conic_source_fit(job->source, &framing, job->options.kernel.cutoff, job->n_frames, camera, &near_z);
+      job->is_plain || job->deadline > 0.0 /* to find the outline takes time */
+          ? conic_source_frame(job->source, &framing, camera)
+          : conic_source_fit(job->source, &framing, job->options.kernel.cutoff, job->n_frames, camera, &near_z);
+  if (status == CONIC_OK)
+    cli_project(job, &framing, camera);
   /* Strays, which are not framed, are no reason to cut off what is. */
   if (status == CONIC_OK && job->near_z.value < 0.0 && near_z < job->options.near_z)
     job->options.near_z = near_z;

@@ -5,6 +5,7 @@
 #include "cli/color_options.h"
 #include "cli/render/backdrop.h"
 #include "cli/render/light_options.h"
+#include "cli/render/projection.h"
 #include "cli/render/scene_options.h"
 #include "cli/render/views.h"
 
@@ -112,6 +113,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .is_given = &raw.is_framing_given},
       {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6,
        .is_given = &raw.is_framing_given},
+      {"projection", CLI_CHOICE, &job->projection, "HOW",
+       "perspective, or of a Gaussian scene by --profile exact: orthographic, fisheye or panorama [perspective]",
+       .choices = cli_projection_words, .is_given = &raw.is_framing_given},
+      {"eye", CLI_PARSED, job->eye, "X,Y,Z",
+       "the place from which the camera looks [where it sees all of the scene; a panorama's: the scene's middle]",
+       .parse = cli_parse_eye, .is_given = &job->is_eye_given},
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [the file's, or by its shape]",
        .parse = cli_parse_up, .is_given = &job->is_up_given},
       {"as", CLI_CHOICE, &raw.as, "WHAT",
@@ -140,7 +147,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque splats [exact]",
        .choices = words.profiles, .is_given = &raw.is_profile_given},
       {"ignore-center", CLI_FLAG, &ignores_center, NULL,
-       "of --profile inria-2023: take the picture's centre for the camera's, as that program does"},
+       "of --profile inria-2023 and 2dgs-2024: take the picture's centre for the camera's, as these do"},
       {"quality", CLI_CHOICE, &raw.quality, "HOW",
        "draft (conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and --samples go first "
        "[good]",
@@ -148,8 +155,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]",
        .parse = cli_parse_kernel},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
-      {"prefilter", CLI_NUMBER, &raw.prefilter, "V", "variance of the low-pass in square pixels; 0: none [1]", 0,
-       10000},
+      {"prefilter", CLI_NUMBER, &raw.prefilter, "V",
+       "variance of the low-pass in square pixels; 0: none [1; 0 of Gaussian scenes]", 0, 10000,
+       .is_given = &raw.is_prefilter_given},
       {"epsilon", CLI_PARSED, &job->epsilon, "E",
        "depth tolerance along the ray, also in spacings (2x), or auto [auto]", .parse = cli_parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
@@ -203,6 +211,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   if (!job->is_patch)
     o->method = (conic_method)method;
   job->gaussians.profile = (conic_gaussian_profile)profile;
+  job->gaussians.prefilter = raw.is_prefilter_given ? raw.prefilter : 0.0;
   job->gaussians.ignores_center = (uint32_t)ignores_center;
   if (profile < CONIC_N_GAUSSIAN_PROFILES &&
       (raw.is_profile_given || ((job->is_for_looking || job->may_composite) && !job->is_plain)))
@@ -226,7 +235,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
     view->width = raw.size[0];
     view->height = raw.size[1];
     memcpy(job->camera_size, raw.size, sizeof raw.size);
-  }
-  raw.is_framing_given |= job->is_elevation_given;
+  } else if (job->projection == CONIC_CAMERA_EQUIRECTANGULAR)
+    view->height = view->width / 2;
+  raw.is_framing_given |= job->is_elevation_given || job->is_eye_given;
   return cli_scene_check(session, &raw, job);
 }

@@ -67,8 +67,18 @@ conic_status conic_view_pinhole_check(conic_context *context, const char *who, c
   conic_status status = conic_view_camera_check(context, who, c);
   if (status != CONIC_OK || (c->kind == CONIC_CAMERA_PERSPECTIVE && c->lens == CONIC_LENS_NONE))
     return status;
-  return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera is %s%s, and this draws pinholes alone", who,
-                    conic_camera_kind_name((conic_camera_kind)c->kind), c->lens ? " with a lens that distorts" : "");
+  return conic_fail(
+      context, CONIC_ERROR_ARGUMENT,
+      "%s: the camera is %s%s, and this takes pinholes alone; render draws Gaussians by it, with --profile exact", who,
+      conic_camera_kind_name((conic_camera_kind)c->kind), c->lens ? " with a lens that distorts" : "");
+}
+
+conic_status conic_view_ray_check(conic_context *context, const char *who, const conic_camera *c) {
+  conic_status status = conic_view_camera_check(context, who, c);
+  if (status == CONIC_OK && c->lens &&
+      (c->kind == CONIC_CAMERA_ORTHOGRAPHIC || c->kind == CONIC_CAMERA_EQUIRECTANGULAR))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: an orthographic or equirectangular camera has no lens", who);
+  return status;
 }
 
 conic_status conic_view_arguments_take(conic_context *context, const char *who, const conic_camera *camera,

@@ -19,6 +19,9 @@ conic_status conic_view_camera_check(conic_context *context, const char *who, co
 /* The same, and that it is a pinhole without a lens that distorts. */
 conic_status conic_view_pinhole_check(conic_context *context, const char *who, const conic_camera *camera);
 
+/* The same, and that a ray goes through its pixels (core/image/camera_rays.h). */
+conic_status conic_view_ray_check(conic_context *context, const char *who, const conic_camera *camera);
+
 /* Copies what the caller gave (conic_options_take) to `own`. Errors: ARGUMENT: one is null, the options were not
  * initialised, or the camera is none to look through. */
 conic_status conic_view_arguments_take(conic_context *context, const char *who, const conic_camera *camera,

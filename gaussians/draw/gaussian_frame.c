@@ -11,6 +11,7 @@
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
 #include "gaussians/draw/gaussian_device.h"
+#include "gaussians/draw/view_rays.h"
 
 enum { SET_UP_RUN = 2048 };
 
@@ -22,10 +23,13 @@ typedef struct frame {
   conic_gaussian_view view;
   conic_gaussian_kernels kernels;
   conic_gaussian_statistics statistics;
-  int has_rays;
+  conic_gaussian_shape shape;
+  conic_view_rays view_rays; /* of CONIC_SHAPE_SIGHT */
   /* By footprint: as they were set up, those of each run of the scene from its place on. */
   conic_gaussian_footprint *footprints;
   conic_gaussian_ray *rays;
+  conic_gaussian_filter *filters;
+  conic_gaussian_sight *sights;
   float (*normals)[3], *keys;
   size_t *n_of_run, *n_skipped_of_run, n_runs, n;
   conic_radix_item *order;
@@ -38,11 +42,14 @@ static void set_up_run(void *data, size_t i_run, int i_thread) {
   size_t begin = i_run * SET_UP_RUN, to = begin;
   size_t end = begin + SET_UP_RUN < f->set->count ? begin + SET_UP_RUN : f->set->count;
   conic_gaussian_ray unused;
+  conic_gaussian_filter unused_filter;
+  conic_gaussian_sight unused_sight;
   (void)i_thread;
   for (size_t i = begin; i < end; i++) {
     conic_gaussian_fate fate =
-        conic_gaussian_set_up(&f->view, f->set, i, &f->footprints[to], &f->keys[to],
-                              f->has_rays ? &f->rays[to] : &unused, f->normals ? f->normals[to] : NULL);
+        conic_gaussian_set_up(&f->view, f->set, i, &f->footprints[to], &f->keys[to], f->rays ? &f->rays[to] : &unused,
+                              f->filters ? &f->filters[to] : &unused_filter, f->sights ? &f->sights[to] : &unused_sight,
+                              f->normals ? f->normals[to] : NULL);
     f->n_skipped_of_run[i_run] += fate == CONIC_GAUSSIAN_SKIPPED;
     to += fate == CONIC_GAUSSIAN_DRAWN;
   }
@@ -58,8 +65,12 @@ static conic_status set_up_all(frame *f) {
   is_done &= (f->n_of_run = conic_memory_allocate_zeroed(f->context, f->n_runs, sizeof *f->n_of_run)) != NULL;
   is_done &=
       (f->n_skipped_of_run = conic_memory_allocate_zeroed(f->context, f->n_runs, sizeof *f->n_skipped_of_run)) != NULL;
-  if (f->has_rays)
+  if (f->shape == CONIC_SHAPE_SIGHT)
+    is_done &= (f->sights = conic_memory_allocate(f->context, count, sizeof *f->sights)) != NULL;
+  else if (f->shape != CONIC_SHAPE_ELLIPSE)
     is_done &= (f->rays = conic_memory_allocate(f->context, count, sizeof *f->rays)) != NULL;
+  if (f->shape == CONIC_SHAPE_FILTERED)
+    is_done &= (f->filters = conic_memory_allocate(f->context, count, sizeof *f->filters)) != NULL;
   if (f->planes->normal)
     is_done &= (f->normals = conic_memory_allocate(f->context, count, sizeof *f->normals)) != NULL;
   if (!is_done)
@@ -113,12 +124,16 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
   conic_gaussian_list list = {.rules = f->view.rules,
                               .footprints = f->footprints,
                               .rays = f->rays,
+                              .filters = f->filters,
+                              .sights = f->sights,
+                              .tile_rays = f->view.rays ? &f->view.rays->tiles[i_tile] : NULL,
+                              .is_parallel = f->view.is_parallel,
                               .normals = (const float(*)[3])f->normals,
                               .wants_all = wants_all(f->planes),
                               .entries = f->bins.entries + f->bins.tile_begin[i_tile],
                               .n = f->bins.tile_begin[i_tile + 1] - f->bins.tile_begin[i_tile],
                               .room = f->rooms ? f->rooms[i_thread] : NULL};
-  f->kernels.composite[f->view.rules->shape](&list, &tile);
+  f->kernels.composite[f->shape](&list, &tile);
   conic_gaussian_tile_end(&target, &tile);
 }
 
@@ -161,18 +176,22 @@ static conic_status composite_on_device(const frame *f) {
 }
 
 static void release_frame(frame *f) {
-  void *const all[] = {f->footprints, f->keys, f->rays, f->normals, f->n_of_run, f->n_skipped_of_run, f->order};
+  void *const all[] = {f->footprints,       f->keys, f->rays, f->filters, f->sights, f->normals, f->n_of_run,
+                       f->n_skipped_of_run, f->order};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     conic_memory_release(f->context, all[i]);
   for (int i = 0; f->rooms && i < conic_context_threads(f->context); i++)
     conic_memory_release(f->context, f->rooms[i]);
   conic_memory_release(f->context, f->rooms);
   conic_gaussian_bins_release(f->context, &f->bins);
+  conic_view_rays_release(f->context, &f->view_rays);
 }
 
 static conic_status draw_scene(frame *f) {
   double begin = conic_seconds_now(), now;
-  conic_status status = set_up_all(f);
+  conic_status status = f->view.rays ? conic_view_rays_make(f->context, f->view.camera, &f->view_rays) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = set_up_all(f);
   f->statistics.seconds_setup = (now = conic_seconds_now()) - begin;
   if (status == CONIC_OK)
     status = order_footprints(f);
@@ -216,6 +235,30 @@ static void look_through(const conic_camera *camera, conic_gaussian_view *view) 
   view->center_px[1] = view->rules->takes_middle ? 0.5 * camera->height : camera->cy;
 }
 
+/* Whether rays are affine on the screen. */
+static int is_affine(const conic_camera *camera) {
+  return camera->kind == CONIC_CAMERA_ORTHOGRAPHIC || (camera->kind == CONIC_CAMERA_PERSPECTIVE && !camera->lens);
+}
+
+static conic_status check_sight(conic_context *context, const conic_camera *camera,
+                               const conic_gaussian_options *options) {
+  int takes_all = options->profile == CONIC_PROFILE_EXACT;
+  double h = options->prefilter;
+  conic_status status = (takes_all ? conic_view_ray_check : conic_view_pinhole_check)(context, "gaussians", camera);
+  if (status == CONIC_OK && (!(h >= 0.0 && h <= 1e4) || (h > 0.0 && !takes_all)))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "gaussians: the prefilter is out of range (0 to 10000), or of another profile than exact, which "
+                      "has its own");
+  if (status == CONIC_OK && h > 0.0 && !is_affine(camera))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "gaussians: the prefilter is of pinholes and orthographic cameras");
+  if (status == CONIC_OK && options->device && (h > 0.0 || !is_affine(camera)))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "gaussians: a device draws neither a prefilter nor other cameras than pinholes and orthographic "
+                      "ones");
+  return status;
+}
+
 conic_status conic_gaussians_render(conic_context *context, const conic_gaussians *gaussians,
                                     const conic_camera *camera, const conic_gaussian_options *options,
                                     conic_gaussian_planes *planes, conic_gaussian_statistics *statistics) {
@@ -227,14 +270,17 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "gaussians: an argument is null, or there is no such profile, or the planes are not of the "
                       "camera's size");
-  conic_status status = conic_view_pinhole_check(context, "gaussians", camera);
+  conic_status status = check_sight(context, camera, &own);
   if (status == CONIC_OK)
     status = check_center(context, &own, camera);
   if (status != CONIC_OK || (status = conic_isa_choose(context, own.isa, &isa)) != CONIC_OK)
     return status;
   frame f = {.context = context, .set = gaussians, .options = &own, .planes = planes};
   f.view.rules = conic_gaussian_rules_of(own.profile);
-  f.has_rays = f.view.rules->shape != CONIC_SHAPE_ELLIPSE;
+  f.view.prefilter = own.prefilter;
+  f.view.is_parallel = camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
+  f.view.rays = is_affine(camera) ? NULL : &f.view_rays;
+  f.shape = f.view.rays ? CONIC_SHAPE_SIGHT : own.prefilter > 0.0 ? CONIC_SHAPE_FILTERED : f.view.rules->shape;
   f.statistics.gaussians_in = gaussians->count;
   f.statistics.isa = isa;
   f.statistics.device_units = own.device ? (uint64_t)own.device->n_units : 0;

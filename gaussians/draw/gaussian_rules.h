@@ -2,13 +2,20 @@
 #ifndef CONIC_GAUSSIAN_RULES_H
 #define CONIC_GAUSSIAN_RULES_H
 
+#ifdef CONIC_ON_DEVICE
+#include "conic/image.h"
+#else
 #include "conic/gaussian_render.h"
+#endif
 
 /* How a Gaussian meets a pixel. */
 typedef enum conic_gaussian_shape {
-  CONIC_SHAPE_ELLIPSE = 0, /* an ellipse on the screen, by the Jacobian of the projection at the mean */
-  CONIC_SHAPE_RAY = 1,     /* along the pixel's ray */
-  CONIC_SHAPE_DISC = 2     /* where the ray meets the plane of a 2D Gaussian, or a dot on the screen */
+  CONIC_SHAPE_ELLIPSE = 0,  /* an ellipse on the screen, by the Jacobian of the projection at the mean */
+  CONIC_SHAPE_RAY = 1,      /* along the pixel's ray */
+  CONIC_SHAPE_DISC = 2,     /* where the ray meets the plane of a 2D Gaussian, or a dot on the screen */
+  CONIC_SHAPE_FILTERED = 3, /* along the ray under the pixel's filter: of profiles of CONIC_SHAPE_RAY, as is the next */
+  CONIC_SHAPE_SIGHT = 4,    /* along the ray of a camera whose rays are not affine on the screen */
+  CONIC_N_SHAPES
 } conic_gaussian_shape;
 
 typedef enum conic_gaussian_coverage {
@@ -39,7 +46,9 @@ typedef struct conic_gaussian_rules {
   float disc_near; /* of the place on the disc; 0: no such border, and depths are those of means */
 } conic_gaussian_rules;
 
+#ifndef CONIC_ON_DEVICE
 /* Null for a number that is no profile. */
 const conic_gaussian_rules *conic_gaussian_rules_of(conic_gaussian_profile profile);
+#endif
 
 #endif

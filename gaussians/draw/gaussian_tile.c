@@ -139,11 +139,44 @@ static void composite_discs(const conic_gaussian_list *list, conic_gaussian_tile
 }
 
 #ifndef CONIC_ON_DEVICE
+#include "gaussians/draw/ray_meetings.h"
+
+static void composite_meetings(const conic_gaussian_list *list, conic_gaussian_tile *tile, int is_filtered) {
+  hit *hits = list->room;
+  for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
+    int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
+    size_t n = 0;
+    for (size_t i = 0; i < list->n; i++) {
+      if (!covers_pixel(&list->footprints[list->entries[i]], x, y))
+        continue;
+      conic_ray_meeting m = is_filtered ? conic_meet_filtered(list, list->entries[i], x, y)
+                                        : conic_meet_sight(list, list->entries[i], at);
+      float alpha = m.opacity * conic_exp_negative(-m.half_q);
+      alpha = alpha < list->rules->alpha_most ? alpha : list->rules->alpha_most;
+      if (m.z > 0.0f && m.half_q >= 0.0f && alpha >= list->rules->alpha_least)
+        hits[n++] = (hit){m.z, alpha, list->entries[i]};
+    }
+    sort_hits(hits, n);
+    for (size_t i = 0; i < n && composite_one(list, hits[i].footprint, hits[i].z, hits[i].alpha, tile, at); i++)
+      ;
+  }
+}
+
+static void composite_filtered(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  composite_meetings(list, tile, 1);
+}
+
+static void composite_sights(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  composite_meetings(list, tile, 0);
+}
+
 CONIC_DEFINE_KERNELS(conic_gaussian_kernels)
 
 void conic_gaussian_kernels_scalar(conic_gaussian_kernels *kernels) {
   kernels->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses;
   kernels->composite[CONIC_SHAPE_RAY] = composite_rays;
   kernels->composite[CONIC_SHAPE_DISC] = composite_discs;
+  kernels->composite[CONIC_SHAPE_FILTERED] = composite_filtered;
+  kernels->composite[CONIC_SHAPE_SIGHT] = composite_sights;
 }
 #endif

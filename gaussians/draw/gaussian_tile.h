@@ -41,6 +41,13 @@ typedef struct conic_gaussian_tile {
 
 enum { CONIC_GAUSSIAN_ROOM = 320 };
 
+#ifndef CONIC_ON_DEVICE
+/* The directions of a tile's rays, each the sum of two floats; NaN where there is none. */
+typedef struct conic_sight_rays {
+  float high[3][CONIC_GAUSSIAN_TILE_PIXELS], low[3][CONIC_GAUSSIAN_TILE_PIXELS];
+} conic_sight_rays;
+#endif
+
 /* What is composited in a tile: the footprints that the entries name, in their order. */
 typedef struct conic_gaussian_list {
   const conic_gaussian_rules *rules;
@@ -50,14 +57,20 @@ typedef struct conic_gaussian_list {
   int wants_all;                               /* else T and rgb alone */
   const CONIC_STORED uint32_t *entries;
   size_t n;
-  CONIC_STORED void
-      *room; /* of CONIC_SHAPE_RAY: CONIC_GAUSSIAN_ROOM bytes for each entry and 16 more; aligned to 64 bytes */
+  CONIC_STORED void *room; /* of what is ordered along rays: CONIC_GAUSSIAN_ROOM bytes for each entry and 16 more;
+                              aligned to 64 bytes */
+#ifndef CONIC_ON_DEVICE
+  const conic_gaussian_filter *filters; /* by footprint; of CONIC_SHAPE_FILTERED */
+  const conic_gaussian_sight *sights;   /* by footprint; of CONIC_SHAPE_SIGHT */
+  const conic_sight_rays *tile_rays;     /* of CONIC_SHAPE_SIGHT */
+  int is_parallel;                      /* rays are */
+#endif
 } conic_gaussian_list;
 
 #ifndef CONIC_ON_DEVICE /* where no pointer is to a function */
 /* One slot a shape: composites the list in the tile, whose sums and T's begin. */
 typedef struct conic_gaussian_kernels {
-  void (*composite[3])(const conic_gaussian_list *list, conic_gaussian_tile *tile);
+  void (*composite[CONIC_N_SHAPES])(const conic_gaussian_list *list, conic_gaussian_tile *tile);
 } conic_gaussian_kernels;
 
 CONIC_DECLARE_KERNELS(conic_gaussian_kernels);

@@ -126,5 +126,7 @@ CONIC_FILL_KERNELS(conic_gaussian_kernels) {
   kernels->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses_in_lanes;
   kernels->composite[CONIC_SHAPE_RAY] = composite_rays_in_lanes;
   kernels->composite[CONIC_SHAPE_DISC] = composite_discs_in_lanes;
+  kernels->composite[CONIC_SHAPE_FILTERED] = composite_filtered_in_lanes;
+  kernels->composite[CONIC_SHAPE_SIGHT] = composite_sights_in_lanes;
 }
 #endif

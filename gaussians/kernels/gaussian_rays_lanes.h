@@ -16,9 +16,13 @@ CONIC_INLINE void add_planes_of_footprint(const conic_gaussian_list *list, uint3
     to->normal[k] = list->normals ? lanes_of(list->normals[footprint][k]) : lanes_of(0.0f);
 }
 
+#ifdef CONIC_ON_DEVICE
 typedef struct meeting_lanes {
   lanes half_q, z;
 } meeting_lanes;
+#else
+#include "gaussians/kernels/ray_meetings_lanes.h"
+#endif
 
 CONIC_INLINE meeting_lanes meet_lanes(const CONIC_STORED conic_gaussian_ray *r, lanes dx, lanes dy) {
   lanes g[3], c[3];
@@ -34,6 +38,16 @@ CONIC_INLINE meeting_lanes meet_lanes(const CONIC_STORED conic_gaussian_ray *r, 
 
 #ifndef CONIC_ON_DEVICE /* which has opencl/gaussian_rays.cl */
 #include "gaussians/kernels/gaussian_order_lanes.h"
+
+CONIC_INLINE meeting_lanes meet_by_shape(const conic_gaussian_list *list, uint32_t footprint, const record *r,
+                                         size_t pixel, conic_gaussian_shape shape) {
+  const places at = places_at(pixel);
+  if (shape == CONIC_SHAPE_FILTERED)
+    return meet_filtered_lanes(list, footprint, at.column + r->x, at.row + r->y);
+  if (shape == CONIC_SHAPE_SIGHT)
+    return meet_sight_lanes(list, footprint, pixel);
+  return meet_lanes(&list->rays[footprint], at.column + r->x, at.row + r->y);
+}
 
 /* What a Gaussian looks like wherever it meets a ray. */
 typedef struct look {
@@ -64,7 +78,8 @@ static meetings meetings_in_room(const conic_gaussian_list *list) {
 }
 
 /* Where the vector's rays meet the Gaussians of its block; returns how many they do. */
-CONIC_INLINE size_t meet_all(const scene *s, meetings *to, size_t n_listed, places at) {
+CONIC_INLINE size_t meet_all(const scene *s, meetings *to, size_t n_listed, size_t pixel, conic_gaussian_shape shape) {
+  const places at = places_at(pixel);
   const conic_gaussian_list *list = s->list;
   size_t n = 0;
   to->nearest = lanes_of(__builtin_inff());
@@ -72,8 +87,9 @@ CONIC_INLINE size_t meet_all(const scene *s, meetings *to, size_t n_listed, plac
   for (size_t i = 0; i < n_listed; i++) {
     const record *r = &to->records[to->listed[i]];
     const uint32_t footprint = list->entries[to->listed[i]];
-    const meeting_lanes m = meet_lanes(&list->rays[footprint], at.column + r->x, at.row + r->y);
-    lanes alpha = lanes_alpha(s, r, m.half_q);
+    const meeting_lanes m = meet_by_shape(list, footprint, r, pixel, shape);
+    lanes alpha = shape == CONIC_SHAPE_FILTERED ? lanes_min(m.opacity * lanes_exp_negative(-m.half_q), s->most)
+                                                : lanes_alpha(s, r, m.half_q);
     lanes_mask covered = within_box(r, at) & lanes_less(lanes_of(0.0f), m.z) &
                          lanes_at_least(m.half_q, lanes_of(0.0f)) & lanes_at_least(alpha, s->least);
     if (!lanes_any(covered))
@@ -106,8 +122,9 @@ CONIC_INLINE response response_in_order(const scene *s, const meetings *m, index
   return to;
 }
 
-CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t n_listed, size_t pixel, int wants_all) {
-  const size_t n = meet_all(s, m, n_listed, places_at(pixel));
+CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t n_listed, size_t pixel,
+                                           conic_gaussian_shape shape, int wants_all) {
+  const size_t n = meet_all(s, m, n_listed, pixel, shape);
   const uint32_t numbers = sort_by_depth(m->z, m->alpha, n, m->nearest, m->farthest, m->keys);
   pixels p = take_pixels(s->tile, ~0u, pixel, wants_all);
   for (size_t i = 0; i < n; i++) {
@@ -123,7 +140,7 @@ CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t n
 }
 
 CONIC_INLINE void composite_rays_block_by_block(const conic_gaussian_list *list, conic_gaussian_tile *tile,
-                                                int wants_all) {
+                                                conic_gaussian_shape shape, int wants_all) {
   const scene s = scene_of(list, tile);
   meetings m = meetings_in_room(list);
   for (size_t i = 0; i < list->n; i++) {
@@ -136,15 +153,23 @@ CONIC_INLINE void composite_rays_block_by_block(const conic_gaussian_list *list,
     size_t n_listed = list_block(m.blocks, list->n, block, m.listed);
     for (size_t part = 0; part < CONIC_PARTS; part++)
       composite_rays_in_vector(&s, &m, n_listed, (size_t)block * CONIC_GAUSSIAN_BLOCK_PIXELS + part * CONIC_LANES,
-                               wants_all);
+                               shape, wants_all);
   }
 }
 
 static void composite_rays_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
   if (list->wants_all)
-    composite_rays_block_by_block(list, tile, 1);
+    composite_rays_block_by_block(list, tile, CONIC_SHAPE_RAY, 1);
   else
-    composite_rays_block_by_block(list, tile, 0);
+    composite_rays_block_by_block(list, tile, CONIC_SHAPE_RAY, 0);
+}
+
+static void composite_filtered_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  composite_rays_block_by_block(list, tile, CONIC_SHAPE_FILTERED, list->wants_all);
+}
+
+static void composite_sights_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  composite_rays_block_by_block(list, tile, CONIC_SHAPE_SIGHT, list->wants_all);
 }
 
 #endif

@@ -40,13 +40,14 @@ typedef struct conic_gaussian_device conic_gaussian_device;
 typedef struct conic_gaussian_options {
   size_t size; /* sizeof(conic_gaussian_options), set by the init function */
   conic_gaussian_profile profile;
-  float background[3];     /* behind the Gaussians: colour · T is added to R, G, B */
-  conic_isa isa;           /* as the context has it */
-  uint32_t ignores_center; /* inria-2023 draws a camera whose centre is not the picture's as if it were: else refused */
+  float background[3];           /* behind the Gaussians: colour · T is added to R, G, B */
+  conic_isa isa;                 /* as the context has it */
+  uint32_t ignores_center;       /* where the profile does, and would else refuse a camera that is not centred */
   conic_gaussian_device *device; /* composites in the place of the processor; null: none. No bit depends on it. */
+  double prefilter; /* of `exact`: the variance of the filter on the screen, h, in square pixels, 0 to 10000 */
 } conic_gaussian_options;
 
-/* Exact, black. */
+/* Exact, black, no filter. */
 CONIC_API void conic_gaussian_options_init_sized(conic_gaussian_options *options, size_t size);
 #define conic_gaussian_options_init(options) conic_gaussian_options_init_sized(options, sizeof *(options))
 

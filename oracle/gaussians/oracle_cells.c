@@ -28,7 +28,7 @@ typedef struct cell_worker {
 } cell_worker;
 
 typedef struct cell_job {
-  const oracle_bounding *b;
+  const oracle_bound_request *b;
   int edge;                    /* of a cell, in pixels of the picture */
   size_t across, n_cells;      /* cells */
   size_t *begin, *pixel_begin; /* of each cell's Gaussians, and of its pixels */
@@ -37,7 +37,7 @@ typedef struct cell_job {
   cell_worker *workers;
 } cell_job;
 
-static void box_of_reach(const oracle_bounding *b, const oracle_uncertain *g, cell_box *box) {
+static void box_of_reach(const oracle_bound_request *b, const oracle_uncertain *g, cell_box *box) {
   const double size[2] = {b->width * b->samples, b->height * b->samples};
   for (int axis = 0; axis < 2; axis++) {
     double least = ceil(oracle_max(oracle_max(g->reach[0][axis], g->wide[0][axis]) - 0.5, 0.0));
@@ -63,7 +63,7 @@ static void box_gaussians(void *data, size_t i_run, int i_thread) {
   }
 }
 
-static size_t pixel_asked(const oracle_bounding *b, size_t i) {
+static size_t pixel_asked(const oracle_bound_request *b, size_t i) {
   return b->pixels ? b->pixels[i] : i;
 }
 
@@ -101,7 +101,7 @@ static size_t places_of_counts(size_t *counts, size_t n) {
 }
 
 static conic_status sort_pixels(cell_job *j) {
-  const oracle_bounding *b = j->b;
+  const oracle_bound_request *b = j->b;
   j->across = ((size_t)b->width + (size_t)j->edge - 1) / (size_t)j->edge;
   j->n_cells = j->across * (((size_t)b->height + (size_t)j->edge - 1) / (size_t)j->edge);
   j->begin = conic_memory_allocate_zeroed(b->context, j->n_cells + 1, sizeof *j->begin);
@@ -122,7 +122,7 @@ static conic_status sort_pixels(cell_job *j) {
 }
 
 static conic_status sort_into_cells(cell_job *j) {
-  const oracle_bounding *b = j->b;
+  const oracle_bound_request *b = j->b;
   const size_t n = b->doubting.set->count;
   j->boxes = conic_memory_allocate(b->context, n, sizeof *j->boxes);
   if (!j->boxes)
@@ -142,18 +142,18 @@ static conic_status sort_into_cells(cell_job *j) {
   return CONIC_OK;
 }
 
-static int compare_keys(double a, double b, uint32_t i, uint32_t j) {
+static int compare_in_order(double a, double b, uint32_t i, uint32_t j) {
   return a != b ? (a > b ? 1 : -1) : (i > j) - (i < j);
 }
 
 static int compare_uncertain(const void *a, const void *b) {
   const oracle_uncertain *const *x = a, *const *y = b;
-  return compare_keys((double)(float)(*x)->key.v, (double)(float)(*y)->key.v, (*x)->index, (*y)->index);
+  return compare_in_order((double)(float)(*x)->key.v, (double)(float)(*y)->key.v, (*x)->index, (*y)->index);
 }
 
 static int compare_meetings(const void *a, const void *b) {
   const oracle_meeting *x = a, *y = b;
-  return compare_keys(x->key, y->key, x->g->index, y->g->index);
+  return compare_in_order(x->key, y->key, x->g->index, y->g->index);
 }
 
 static void release_worker(conic_context *context, cell_worker *w) {
@@ -162,7 +162,7 @@ static void release_worker(conic_context *context, cell_worker *w) {
     conic_memory_release(context, all[k]);
 }
 
-static conic_status make_room_in_worker(const oracle_bounding *b, cell_worker *w, size_t n) {
+static conic_status make_room_in_worker(const oracle_bound_request *b, cell_worker *w, size_t n) {
   if (n <= w->room)
     return CONIC_OK;
   release_worker(b->context, w);
@@ -181,7 +181,7 @@ static int may_reach(const oracle_uncertain *g, double x, double y) {
 }
 
 /* Those of a cell that may cover a place, in their order. */
-static size_t gather_meetings(const oracle_bounding *b, cell_worker *w, size_t n, double x, double y) {
+static size_t gather_meetings(const oracle_bound_request *b, cell_worker *w, size_t n, double x, double y) {
   const int is_sorted = b->doubting.view->rules->form != ORACLE_FORM_RAY;
   double T = 1.0, latest = -INFINITY;
   size_t n_meetings = 0;
@@ -225,7 +225,7 @@ static int is_middle_sample(int samples, int x, int y) {
   return x == (samples - 1) / 2 && y == (samples - 1) / 2;
 }
 
-static void add_sample(conic_gaussian_bound *sum, const conic_gaussian_bound *b, double share, int is_middle) {
+static void add_sample_bound(conic_gaussian_bound *sum, const conic_gaussian_bound *b, double share, int is_middle) {
   double *const to[] = {sum->value, sum->low, sum->high, sum->least, sum->most};
   const double *const from[] = {b->value, b->low, b->high, b->least, b->most};
   for (int k = 0; k < 5; k++)
@@ -249,7 +249,7 @@ static void add_sample(conic_gaussian_bound *sum, const conic_gaussian_bound *b,
   sum->n_last = b->n_last;
 }
 
-static void bound_one_pixel(const oracle_bounding *b, cell_worker *w, size_t n, size_t pixel,
+static void bound_one_pixel(const oracle_bound_request *b, cell_worker *w, size_t n, size_t pixel,
                             conic_gaussian_bound *bound) {
   const int x = (int)(pixel % (size_t)b->width) * b->samples, y = (int)(pixel / (size_t)b->width) * b->samples;
   memset(bound, 0, sizeof *bound);
@@ -261,13 +261,13 @@ static void bound_one_pixel(const oracle_bounding *b, cell_worker *w, size_t n, 
       if (b->samples == 1)
         *bound = sample;
       else
-        add_sample(bound, &sample, 1.0 / b->samples / b->samples, is_middle_sample(b->samples, column, row));
+        add_sample_bound(bound, &sample, 1.0 / b->samples / b->samples, is_middle_sample(b->samples, column, row));
     }
 }
 
 static void bound_cell(void *data, size_t cell, int i_thread) {
   const cell_job *j = data;
-  const oracle_bounding *b = j->b;
+  const oracle_bound_request *b = j->b;
   cell_worker *w = &j->workers[i_thread];
   if (j->pixel_begin[cell] == j->pixel_begin[cell + 1] || w->has_failed)
     return;
@@ -293,11 +293,11 @@ static void release_cells(cell_job *j) {
     conic_memory_release(context, all[k]);
 }
 
-static int edge_for(const oracle_bounding *b) {
+static int edge_for(const oracle_bound_request *b) {
   return CELL_EDGE / b->samples > 1 ? CELL_EDGE / b->samples : 1;
 }
 
-conic_status conic_oracle_bound_all(const oracle_bounding *b) {
+conic_status conic_oracle_bound_all(const oracle_bound_request *b) {
   const int threads = conic_context_threads(b->context);
   cell_job j = {.b = b, .edge = edge_for(b)};
   conic_status status = sort_pixels(&j);
@@ -314,7 +314,7 @@ conic_status conic_oracle_bound_all(const oracle_bounding *b) {
   return status;
 }
 
-conic_status conic_oracle_meet_all(const oracle_bounding *b, double x, double y, oracle_uncertain **gaussians,
+conic_status conic_oracle_meet_all(const oracle_bound_request *b, double x, double y, oracle_uncertain **gaussians,
                                    oracle_meeting **meetings, size_t *n) {
   size_t room = 0, n_here = 0;
   conic_status status = CONIC_OK;

@@ -7,7 +7,7 @@
 /* Takes what a pixel may be: the i-th of those asked for. No two calls at a time have the same thread. */
 typedef void oracle_bound_taker(void *data, size_t i, size_t pixel, const conic_gaussian_bound *bound, int i_thread);
 
-typedef struct oracle_bounding {
+typedef struct oracle_bound_request {
   conic_context *context;
   oracle_doubting doubting; /* whose camera is that of the samples */
   const float *background;  /* 3 */
@@ -17,14 +17,14 @@ typedef struct oracle_bounding {
   size_t n_pixels;
   oracle_bound_taker *take;
   void *data;
-} oracle_bounding;
+} oracle_bound_request;
 
 /* Reports progress as "verify". Errors: MEMORY, CANCELLED. */
-conic_status conic_oracle_bound_all(const oracle_bounding *bounding);
+conic_status conic_oracle_bound_all(const oracle_bound_request *bounding);
 
 /* Those Gaussians that may reach a place of the screen, in their order there. On success the caller releases
  * *gaussians, which *meetings refer to, and *meetings. Errors: MEMORY, CANCELLED. */
-conic_status conic_oracle_meet_all(const oracle_bounding *bounding, double x, double y, oracle_uncertain **gaussians,
-                                   oracle_meeting **meetings, size_t *n);
+conic_status conic_oracle_meet_all(const oracle_bound_request *bounding, double x, double y,
+                                   oracle_uncertain **gaussians, oracle_meeting **meetings, size_t *n);
 
 #endif

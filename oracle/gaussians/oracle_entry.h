@@ -10,7 +10,7 @@ typedef struct oracle_entry {
   conic_float_model model;
   conic_camera fine; /* the camera of the samples */
   oracle_gaussian_view view;
-  oracle_bounding bounding;
+  oracle_bound_request bounding;
 } oracle_entry;
 
 /* Checks the arguments, and fills in all but the pixels and who takes their bounds. Errors: ARGUMENT. */

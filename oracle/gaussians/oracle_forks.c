@@ -68,7 +68,7 @@ static range add_ranges(range a, range b) {
 }
 
 /* The numbers that a Gaussian's weight multiplies. */
-static void values_of(const oracle_meeting *m, range values[N_SUMS]) {
+static void values_at_meeting(const oracle_meeting *m, range values[N_SUMS]) {
   const oracle_uncertain *g = m->g;
   for (int c = 0; c < 3; c++) {
     values[SUM_RGB + c] = range_of(bounded_low(g->color[c]), g->color[c].v, bounded_high(g->color[c]));
@@ -179,7 +179,7 @@ static double least_of_group(const fork_job *j, size_t i, double T) {
   return T * (1.0 - 1e-5);
 }
 
-static int is_alone(const fork_job *j, size_t i) {
+static int stands_alone(const fork_job *j, size_t i) {
   return j->meetings[i].is_cut && (i + 1 == j->n || j->meetings[i + 1].is_cut);
 }
 
@@ -191,17 +191,17 @@ static void composite_meeting(const fork_job *j, size_t i, int is_sure, int does
   range weight = multiply_ranges(alpha, before), after = multiply_ranges(before, rest), values[N_SUMS];
   int counts = is_sure && !s->may_have_ended;
   after.low = oracle_max(after.low, 0.0);
-  values_of(m, values);
+  values_at_meeting(m, values);
   if (!is_sure)
     after.high = before.high;
   if (!counts)
     weight.low = 0.0;
   range early = before, late = after;
-  if (!is_alone(j, i)) {
+  if (!stands_alone(j, i)) {
     early.high = s->group_T;
     late.low = least_of_group(j, i, before.low);
   }
-  take_median(j, m, early, late, counts && is_alone(j, i), does, s);
+  take_median(j, m, early, late, counts && stands_alone(j, i), does, s);
   for (int k = 0; k < N_SUMS; k++)
     s->sums[k] = add_ranges(s->sums[k], multiply_ranges(weight, values[k]));
   s->weight = add_ranges(s->weight, weight);
@@ -229,8 +229,8 @@ static void add_slack(const fork_job *j, size_t i, fork_state *s) {
       continue;
     m->noted |= 1u << CONIC_DOUBT_ORDER;
     double both = s->group_T * before->alpha[1] * m->alpha[1] * (1.0 + 1e-6);
-    values_of(m, own);
-    values_of(before, other);
+    values_at_meeting(m, own);
+    values_at_meeting(before, other);
     for (int n = 0; n < N_SUMS; n++)
       s->slack[n] += both * oracle_max(own[n].high - other[n].low, other[n].high - own[n].low);
     j->steps[k].weight[0] *= 1.0 - m->alpha[1];
@@ -254,7 +254,7 @@ static outcomes foresee(const fork_job *j, size_t i, const fork_state *s) {
   o.ends = stop > 0.0 && (after.low < stop || (at && after.low == stop));
   o.goes = !(stop > 0.0) || !(after.high < stop || (at && after.high == stop));
   o.ended = !o.skipped && stop > 0.0 && (after.v < stop || (at && after.v == stop));
-  if (!is_alone(j, i) && stop > 0.0) { /* another of those in whatever order may come here, with a greater T */
+  if (!stands_alone(j, i) && stop > 0.0) { /* another of those in whatever order may come here, with a greater T */
     after.high = s->group_T * (1.0 - m->alpha[0]) * (1.0 + 1e-6);
     o.goes = !(after.high < stop);
     o.ends |= least_of_group(j, i, s->T.low) <= stop;
@@ -266,7 +266,7 @@ static outcomes foresee(const fork_job *j, size_t i, const fork_state *s) {
 static void merge_outcomes(const fork_job *j, size_t i, outcomes o, fork_state *s) {
   if (o.ends) {
     s->ended.low = oracle_min(s->ended.low, s->T.low);
-    s->ended.high = oracle_max(s->ended.high, oracle_max(s->T.high, is_alone(j, i) ? 0.0 : s->group_T));
+    s->ended.high = oracle_max(s->ended.high, oracle_max(s->T.high, stands_alone(j, i) ? 0.0 : s->group_T));
     s->may_have_ended = 1;
   }
   s->has_ended |= o.ended;
@@ -308,13 +308,13 @@ static void follow(const fork_job *j, size_t i, fork_state s) {
     int n = o.skips + o.ends + o.goes;
     double weight = m->alpha[1] * s.T.high;
     m->noted |= m->doubts;
-    if (o.ends && (o.goes || !is_alone(j, i)))
+    if (o.ends && (o.goes || !stands_alone(j, i)))
       m->noted |= 1u << CONIC_DOUBT_END;
-    if (o.ends && n == 1 && is_alone(j, i)) {
+    if (o.ends && n == 1 && stands_alone(j, i)) {
       s.has_ended = 1;
       break;
     }
-    int is_followed = n > 1 && is_alone(j, i) && !s.may_have_ended && s.n_forks + n - 1 <= MOST_FORKS &&
+    int is_followed = n > 1 && stands_alone(j, i) && !s.may_have_ended && s.n_forks + n - 1 <= MOST_FORKS &&
                       (weight > negligible_weight || o.ends);
     if (n > 1 && !is_followed && weight > negligible_weight)
       j->bound->is_wide |= s.n_forks + n - 1 > MOST_FORKS;

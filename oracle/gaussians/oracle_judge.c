@@ -88,7 +88,7 @@ static judged_range range_in_plane(const judge_job *j, const conic_gaussian_boun
   }
 }
 
-static double measure_of(conic_plane plane, double expected) {
+static double unit_of_plane(conic_plane plane, double expected) {
   if (plane == CONIC_PLANE_Z || plane == CONIC_PLANE_MEDIAN_Z)
     return expected != 0.0 ? fabs(expected) : 1.0;
   return oracle_max(1.0, fabs(expected));
@@ -101,7 +101,7 @@ static void note_class(judge_pixel *p, conic_gaussian_class class) {
 static void judge_value(const judge_job *j, const conic_gaussian_bound *b, conic_plane plane, int channel, double found,
                         judge_pixel *p) {
   const judged_range r = range_in_plane(j, b, plane, channel);
-  const double scale = measure_of(plane, r.v), nothing = 1e-37; /* what underflow may leave */
+  const double scale = unit_of_plane(plane, r.v), nothing = 1e-37; /* what underflow may leave */
   double off = fabs(found - r.v) / scale, outside = 0.0;
   if (!(found >= r.least - nothing))
     outside = r.least - found;
@@ -164,7 +164,7 @@ static double severity_of(const conic_oracle_fault *f) {
   if (f->plane == CONIC_PLANE_ID || f->plane == CONIC_PLANE_LAST)
     return 1e-30;
   double out = f->found < f->low ? f->low - f->found : f->found > f->high ? f->found - f->high : INFINITY;
-  return out / measure_of((conic_plane)f->plane, 0.5 * (f->low + f->high));
+  return out / unit_of_plane((conic_plane)f->plane, 0.5 * (f->low + f->high));
 }
 
 static int is_worse(const conic_oracle_fault *a, const conic_oracle_fault *b) {
@@ -241,7 +241,7 @@ static const unsigned judged_planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE
                                       (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT));
 
 static conic_status judge_all(oracle_entry *e, judge_job *j, conic_gaussian_verdict *verdict) {
-  oracle_bounding *b = &e->bounding;
+  oracle_bound_request *b = &e->bounding;
   const size_t whole = b->n_pixels, threads = (size_t)conic_context_threads(b->context);
   uint32_t *pixels = NULL;
   if (j->judging->n_pixels && j->judging->n_pixels < whole) {

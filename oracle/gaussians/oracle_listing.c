@@ -18,6 +18,8 @@ conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *g
       (model && !conic_options_take(&e->model, model)) || !conic_oracle_gaussian_rules(e->options.profile) ||
       samples < 1 || samples > CONIC_MAX_SAMPLES)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: no such options, profile, floats or samples");
+  if (e->options.prefilter != 0.0)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: a picture under a prefilter is not judged");
   if (conic_view_pinhole_check(context, "judge", camera) != CONIC_OK)
     return CONIC_ERROR_ARGUMENT;
   if ((long)camera->width * samples > 65535 || (long)camera->height * samples > 65535)
@@ -31,7 +33,7 @@ conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *g
   e->fine.cy *= samples;
   conic_oracle_gaussian_look(&e->fine, e->options.profile, &e->view);
   const oracle_gaussian_rules *rules = e->view.rules;
-  e->bounding = (oracle_bounding){
+  e->bounding = (oracle_bound_request){
       .context = context,
       .doubting = {&e->view,
                    &e->model,
@@ -81,7 +83,7 @@ static void fill_entry(const oracle_doubting *d, const oracle_meeting *m, listin
 }
 
 /* The bound of those that may cover, whose notes go back to all. */
-static conic_status bound_meetings(const oracle_bounding *b, oracle_meeting *meetings, size_t n,
+static conic_status bound_meetings(const oracle_bound_request *b, oracle_meeting *meetings, size_t n,
                                    conic_gaussian_bound *bound) {
   oracle_meeting *those = conic_memory_allocate(b->context, n, sizeof *those);
   size_t *from = conic_memory_allocate(b->context, n, sizeof *from), n_those = 0;

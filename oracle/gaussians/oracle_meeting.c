@@ -34,7 +34,7 @@ static bounded affine_on_screen(const bounded f[3], const double at[2]) {
 }
 
 /* What of a bounded number is known where it may also be infinite. */
-static void take_range(bounded a, double *v, double range[2]) {
+static void take_bounded(bounded a, double *v, double range[2]) {
   *v = a.v;
   range[0] = a.off < INFINITY ? a.v - a.off : -INFINITY;
   range[1] = a.off < INFINITY ? a.v + a.off : INFINITY;
@@ -51,8 +51,8 @@ static void meet_along_ray(const oracle_uncertain *g, const double at[2], oracle
   e = affine_on_screen(g->e, at);
   bounded squares = bounded_dot(along, along, unit), distance = bounded_dot(across, across, unit);
   bounded inverse = bounded_divide(bounded_of(1.0), squares, unit);
-  take_range(bounded_scale(0.5, bounded_multiply(distance, inverse, unit), unit), &m->half_q_v, m->half_q);
-  take_range(bounded_multiply(e, inverse, unit), &m->z_v, m->z);
+  take_bounded(bounded_scale(0.5, bounded_multiply(distance, inverse, unit), unit), &m->half_q_v, m->half_q);
+  take_bounded(bounded_multiply(e, inverse, unit), &m->z_v, m->z);
   m->half_q[0] = oracle_max(m->half_q[0], 0.0); /* squares */
   if (!(squares.v > 0.0)) {
     m->half_q_v = -1.0;
@@ -72,8 +72,8 @@ static void meet_disc_in_float(const oracle_uncertain *g, double x, double y, or
   bounded u = bounded_divide(p[0], p[2], unit), v = bounded_divide(p[1], p[2], unit);
   bounded q = bounded_add(bounded_multiply(u, u, unit), bounded_multiply(v, v, unit), unit);
   const bounded place[3] = {u, v, bounded_of(1.0)};
-  take_range(bounded_scale(0.5, q, unit), &m->half_q_v, m->half_q);
-  take_range(bounded_dot(place, g->rows[2], unit), &m->z_v, m->z);
+  take_bounded(bounded_scale(0.5, q, unit), &m->half_q_v, m->half_q);
+  take_bounded(bounded_dot(place, g->rows[2], unit), &m->z_v, m->z);
   m->half_q[0] = oracle_max(m->half_q[0], 0.0);
 }
 
@@ -104,8 +104,8 @@ static void find_alpha(const oracle_doubting *d, const oracle_uncertain *g, orac
 }
 
 /* One question that admits a Gaussian: the double run's answer, and whether floats may say yes, or no. */
-static void ask(oracle_meeting *m, conic_gaussian_doubt doubt, conic_gaussian_part part, int is_so, int may_be,
-                int may_not_be) {
+static void ask_whether(oracle_meeting *m, conic_gaussian_doubt doubt, conic_gaussian_part part, int is_so, int may_be,
+                        int may_not_be) {
   if (!is_so && m->covers) {
     m->covers = 0;
     m->part = part;
@@ -115,7 +115,7 @@ static void ask(oracle_meeting *m, conic_gaussian_doubt doubt, conic_gaussian_pa
     m->doubts |= 1u << doubt;
 }
 
-static int is_within(const double box[2][2], double x, double y) {
+static int is_in_area(const double box[2][2], double x, double y) {
   return x >= box[0][0] && x < box[1][0] && y >= box[0][1] && y < box[1][1];
 }
 
@@ -123,20 +123,20 @@ static void ask_all(const oracle_doubting *d, double x, double y, oracle_meeting
   const oracle_gaussian_rules *rules = d->view->rules;
   const oracle_limits *limits = &d->limits;
   const oracle_uncertain *g = m->g;
-  int sure = is_within(g->sure, x, y), wide = is_within(g->wide, x, y);
-  ask(m, CONIC_DOUBT_NEAR, CONIC_PART_NEAR, g->is_here, 1, (g->doubts >> CONIC_DOUBT_NEAR & 1) != 0);
-  ask(m, CONIC_DOUBT_EDGE, CONIC_PART_OUTSIDE, sure, wide, !sure);
+  int sure = is_in_area(g->sure, x, y), wide = is_in_area(g->wide, x, y);
+  ask_whether(m, CONIC_DOUBT_NEAR, CONIC_PART_NEAR, g->is_here, 1, (g->doubts >> CONIC_DOUBT_NEAR & 1) != 0);
+  ask_whether(m, CONIC_DOUBT_EDGE, CONIC_PART_OUTSIDE, sure, wide, !sure);
   if (limits->half_cutoff > 0.0)
-    ask(m, CONIC_DOUBT_EDGE, CONIC_PART_OUTSIDE, m->half_q_v <= limits->half_cutoff,
-        m->half_q[0] <= limits->half_cutoff, m->half_q[1] > limits->half_cutoff);
+    ask_whether(m, CONIC_DOUBT_EDGE, CONIC_PART_OUTSIDE, m->half_q_v <= limits->half_cutoff,
+                m->half_q[0] <= limits->half_cutoff, m->half_q[1] > limits->half_cutoff);
   if (rules->form == ORACLE_FORM_RAY)
-    ask(m, CONIC_DOUBT_NEAR, CONIC_PART_NEAR, m->z_v > 0.0, m->z[1] > 0.0, !(m->z[0] > 0.0));
+    ask_whether(m, CONIC_DOUBT_NEAR, CONIC_PART_NEAR, m->z_v > 0.0, m->z[1] > 0.0, !(m->z[0] > 0.0));
   if (limits->disc_near > 0.0)
-    ask(m, CONIC_DOUBT_NEAR, CONIC_PART_NEAR, m->z_v >= limits->disc_near, m->z[1] >= limits->disc_near,
-        !(m->z[0] >= limits->disc_near));
-  ask(m, CONIC_DOUBT_SIGN, CONIC_PART_FAINT, m->half_q_v >= 0.0, m->half_q[1] >= 0.0, !(m->half_q[0] >= 0.0));
-  ask(m, CONIC_DOUBT_LEAST, CONIC_PART_FAINT, m->alpha_v >= limits->alpha_least, m->alpha[1] >= limits->alpha_least,
-      !(m->alpha[0] >= limits->alpha_least));
+    ask_whether(m, CONIC_DOUBT_NEAR, CONIC_PART_NEAR, m->z_v >= limits->disc_near, m->z[1] >= limits->disc_near,
+                !(m->z[0] >= limits->disc_near));
+  ask_whether(m, CONIC_DOUBT_SIGN, CONIC_PART_FAINT, m->half_q_v >= 0.0, m->half_q[1] >= 0.0, !(m->half_q[0] >= 0.0));
+  ask_whether(m, CONIC_DOUBT_LEAST, CONIC_PART_FAINT, m->alpha_v >= limits->alpha_least,
+              m->alpha[1] >= limits->alpha_least, !(m->alpha[0] >= limits->alpha_least));
 }
 
 /* Where it is composited, floats have seen it pass. */
@@ -165,7 +165,7 @@ void conic_oracle_uncertain_meet(const oracle_doubting *d, const oracle_uncertai
   if (rules->form == ORACLE_FORM_DISC)
     take_dot(at, m);
   if (rules->form == ORACLE_FORM_ELLIPSE || (rules->form == ORACLE_FORM_DISC && !(d->limits.disc_near > 0.0)))
-    take_range(g->z, &m->z_v, m->z);
+    take_bounded(g->z, &m->z_v, m->z);
   find_alpha(d, g, m);
   ask_all(d, x, y, m);
   if (m->may_cover)

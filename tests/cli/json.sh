@@ -70,11 +70,17 @@ declare -A wanted=(
     unstable_by_reason.cutoff unstable_by_reason.visibility ms.render ms.oracle pass"
   [explain]="method pixel? planes.rgba planes.weight planes.id threshold counts.visible counts.hidden contributions"
   [explain-hybrid]="method pixel? planes.rgba planes.cluster threshold contributions blended? triangles?"
+  [verify-gaussians]="against profile planes.rgba.max_abs planes.rgba.widest planes.last.max_abs judged_pixels
+    covered_pixels classes.equal classes.rounded classes.explained classes.wrong doubtful_pixels
+    doubtful_by_reason.order explained_by_reason.order wide_pixels wrong_pixels ms.render ms.oracle pass"
+  [explain-gaussians]="profile pixel planes.rgba planes.last bounds.rgb.low bounds.T.high end doubts doubt
+    counts.composited contributions"
   [chart]="scenes methods points seconds"
   [bench]="lines wrong_pictures peak_rss_bytes machine?"
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
   [info-octree]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound?"
   [info-gaussians]="kind gaussians sh_degree 2d antialiased bytes? bounds.min bounds.max sound?"
+  [info-cameras]="kind format views"
   [convert]="kind_in kind_out gaussians sh_degree_in sh_degree_out reordered lossless? lost? differences.position
     differences.scale differences.rotation_deg differences.opacity differences.color differences.harmonics pictures.views?
     pictures.psnr? pictures.greatest? bytes?"
@@ -133,6 +139,10 @@ write verify-wrong verify verify thinner.ply --size 160x120 --pixels 500 --image
 write make-one make make plane -n 1 -o one.ply
 write verify-exact verify verify one.ply --size 12x9 --against exact
 write explain explain explain one.ply --size 64x48 --pixel 30,20
+printf '\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200' > two.splat
+write verify-gaussians verify_gaussians verify two.splat --profile exact --size 40x40
+write verify-gaussians-samples verify_gaussians verify two.splat --profile inria-2023 --size 20x20 --samples 2
+write explain-gaussians explain_gaussians explain two.splat --profile exact --size 40x40 --pixel 20,20
 write explain-splat explain explain one.ply --size 64x48 --splat 0
 write explain-octree explain explain knot.cot --size 64x48 --error 1 --splat 9 --pixel 32,24
 write explain-leaf explain explain knot.cot --size 2048x2048 --error 0.5 --splat 9
@@ -151,6 +161,14 @@ write info-hybrid info_hybrid info tent.chy --check
 # Two Gaussians, as .splat has them.
 row='\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200'
 printf "$row$row" > two.splat
+mkdir model
+printf '1 RADIAL_FISHEYE 9 8 7 4 4 .1 .2\n' > model/cameras.txt
+printf '1 1 0 0 0 0 0 0 1 one.png\n\n' > model/images.txt
+printf '[{"img_name": "one", "width": 9, "height": 8, "position": [0, 0, 0], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  "fx": 7, "fy": 7}]' > cameras.json
+write info-cameras info_cameras info model
+write info-camera info_cameras info cameras.json --check
+write render-view render render knot.ply --camera cameras.json -o knot.exr --frames 0 --view all
 write convert convert convert two.splat -o two.compressed.ply --measure 2
 write info-gaussians info_gaussians info two.compressed.ply --check
 write chart-gaussians chart chart two.compressed.ply -o chart --quick --pixels 100

@@ -40,8 +40,8 @@ grep -q 'no such device' err || fail "a device that is not there: $(cat err)"
 same() { # WHAT, RENDER'S ARGUMENTS …: the CPU's picture and the device's
   local what=$1
   shift
-  run 0 render "$@" -o cpu.pfm --aov all --json cpu.json
-  run 0 render "$@" -o device.pfm --aov all --json device.json --device opencl
+  run 0 render --aov all "$@" -o cpu.pfm --json cpu.json
+  run 0 render --aov all "$@" -o device.pfm --json device.json --device opencl
   for file in cpu*.pfm; do
     cmp -s "$file" "${file/cpu/device}" || fail "$what: $file differs"
   done
@@ -77,8 +77,10 @@ scene=two.splat
 [[ ! -f $data/gaussians/biker.spz ]] || scene=$data/gaussians/biker.spz
 mv cache other-cache
 for profile in exact gsplat-1.6 2dgs-2024; do
-  same "Gaussians, $profile" "$scene" --profile $profile --size 90x70 --samples 2
+  same "Gaussians, $profile" "$scene" --profile $profile --size 90x70 --samples 2 \
+    --aov rgba,Z,N,count,id,T,medianZ,inverseZ,last
 done
+run 0 verify two.splat --profile gsplat-1.6 --size 40x40 --device opencl
 [[ $(cd cache/conic && echo *) =~ ^gaussian_tiles-[0-9a-f]*.bin$ ]] || fail "Gaussians built $(ls cache/conic)"
 rm -r cache && mv other-cache cache
 
