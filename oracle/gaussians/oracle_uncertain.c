@@ -58,7 +58,7 @@ static int bound_axes(const oracle_doubting *d, size_t i, bounded_frame *f) {
   }
   if (!(squares > 0.0) || !oracle_is_finite(squares))
     return 0;
-  bound_rotation(q, d->view->rules->is_inria, f->unit, f->world);
+  bound_rotation(q, d->view->rules->is_inria && fabs(squares - 1.0) < 0x1p-20, f->unit, f->world);
   for (int k = 0; k < 3; k++) {
     f->scale[k] = d->set->scale[k] ? (double)d->set->scale[k][i] : 0.0;
     if (!(f->scale[k] >= 0.0) || !oracle_is_finite(f->scale[k]))

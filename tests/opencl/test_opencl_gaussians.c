@@ -42,8 +42,11 @@ static conic_gaussian_planes spoiled_planes(const conic_camera *camera) {
   return p;
 }
 
-static void compare_ways(const desk *d, const conic_gaussians *scene, const conic_camera *camera, int profile,
+static void compare_ways(const desk *d, const conic_gaussians *scene, const conic_camera *given, int profile,
                          int n_ways, const char *what) {
+  conic_camera centered = *given, *camera = &centered;
+  if (profile == CONIC_PROFILE_INRIA_2023 || profile == CONIC_PROFILE_2DGS_2024) /* which draw no other */
+    centered.cx = 0.5 * given->width;
   conic_gaussian_planes p = picture_planes(camera);
   conic_gaussian_options options;
   conic_gaussian_statistics s, of_device;

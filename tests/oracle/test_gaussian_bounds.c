@@ -50,6 +50,7 @@ static conic_gaussian_verdict judge_image(conic_context *context, const conic_ga
   conic_gaussian_verdict verdict;
   conic_gaussian_options_init(&options);
   options.profile = (conic_gaussian_profile)profile;
+  options.ignores_center = 1;
   CHECK_OK(conic_gaussian_judge(context, scene, camera, &options, NULL, image, NULL, &verdict));
   return verdict;
 }
@@ -68,8 +69,11 @@ static void tell_verdict(const char *scene, int profile, const conic_gaussian_ve
 
 /* The renderer's picture lies within the bounds, and the double run's. */
 static void judge_renderer(conic_context *context, const char *name, const conic_gaussians *scene,
-                           const conic_camera *camera) {
+                           const conic_camera *given) {
   for (int profile = 0; profile < CONIC_N_GAUSSIAN_PROFILES; profile++) {
+    conic_camera own = *given, *camera = &own;
+    if (profile == CONIC_PROFILE_INRIA_2023 || profile == CONIC_PROFILE_2DGS_2024) /* which take the middle */
+      own.cx = 0.5 * own.width;
     conic_gaussian_planes p = picture_draw(context, scene, camera, (conic_gaussian_profile)profile, CONIC_ISA_AUTO);
     conic_image image = image_of(context, &p);
     conic_gaussian_verdict verdict = judge_image(context, scene, camera, profile, &image);
@@ -77,6 +81,37 @@ static void judge_renderer(conic_context *context, const char *name, const conic
     CHECK(verdict.pass && verdict.judged_pixels == (size_t)camera->width * (size_t)camera->height);
     conic_image_release(context, &image);
     picture_release(&p);
+  }
+}
+
+/* What breaks others: at the eye, behind it, tiny, huge, needles, plates, NaN, no rotation, equal depths. */
+static void test_hostile(conic_context *context) {
+  for (uint64_t seed = 1; seed <= 3; seed++) {
+    conic_gaussians scene = gaussians_random(context, 60, 1, 0);
+    const conic_camera camera = camera_from(seed == 1 ? 4.0 : 1.5, 40, 30);
+    uint64_t state = seed;
+    for (size_t i = 0; i < scene.count; i++) {
+      for (int k = 0; k < 3; k++)
+        scene.scale[k][i] = (float)exp(-9.0 + 9.0 * random_unit(&state));
+      scene.opacity[i] = i % 3 == 0 ? 1.0f : (float)random_unit(&state);
+      if (i % 6 == 1)
+        scene.position[2][i] = scene.position[2][i - 1];
+    }
+    scene.scale[0][0] = scene.scale[1][0] = scene.scale[2][0] = 1e-9f;
+    scene.scale[0][1] = scene.scale[1][1] = scene.scale[2][1] = 1e9f;
+    scene.opacity[1] = 0.1f;
+    scene.scale[2][2] = 0.0f;
+    scene.scale[1][3] = -1.0f;
+    scene.position[1][4] = NAN;
+    for (int k = 0; k < 4; k++)
+      scene.rotation[k][5] = 0.0f;
+    scene.position[0][6] = scene.position[1][6] = 0.0f;
+    scene.position[2][6] = -(float)camera.cam_from_world[2][3]; /* at the eye */
+    scene.position[2][7] = -10.0f;
+    for (int k = 0; k < 4; k++)
+      scene.rotation[k][8] *= 3.0f;
+    judge_renderer(context, "hostile", &scene, &camera);
+    conic_gaussians_release(context, &scene);
   }
 }
 
@@ -372,6 +407,7 @@ static void test_double_run(conic_context *context) {
 int main(void) {
   conic_context *context = check_context(2);
   test_renderer(context);
+  test_hostile(context);
   test_random_floats(context);
   test_doubts(context);
   test_mistakes(context);

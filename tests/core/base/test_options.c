@@ -229,6 +229,7 @@ static void test_other_structs_keep_their_size(void) {
   } structs[] = {
 #define PINNED(type, bytes) {#type, sizeof(type), bytes}
       PINNED(conic_camera, 264),
+      PINNED(conic_cameras, 88),
       PINNED(conic_splats, 288),
       PINNED(conic_triangles, 296),
       PINNED(conic_material, 56),
