@@ -36,6 +36,8 @@ void cli_bench_scene_release(cli_session *session, cli_bench_scene *scene);
 int cli_bench_scene_check(const char *name, int *is_gaussian);
 /* What can be asked for, for the help. */
 void cli_bench_scene_list(void);
+/* A view of a file of cameras, whatever the size of its pictures; null: its only one. */
+conic_status cli_bench_camera_read(cli_session *session, const char *path, const char *view, conic_camera *camera);
 /* The camera that it is seen by, brought to the size. */
 conic_status cli_bench_scene_camera(const cli_bench_scene *scene, int width, int height, conic_camera *camera);
 
@@ -126,6 +128,10 @@ conic_status cli_bench_measure(cli_session *worker, cli_bench_scene *scene, cons
 /* --- Gaussians (bench/bench_gaussians.c) --- */
 
 int cli_bench_is_gaussian_file(const char *path);
+
+/* As conic render frames the file. */
+conic_status cli_bench_gaussians_frame(conic_context *context, const char *path, int width, int height,
+                                       conic_camera *camera);
 
 /* What cli_bench_scene_open does for them, and its end. */
 conic_status cli_bench_gaussians_read(cli_session *session, const char *path, const cli_bench_look *look,

@@ -5,7 +5,6 @@
 
 #include "bench/bench.h"
 #include "conic/gaussian_render.h"
-#include "core/base/message.h"
 #include "gaussians/draw/gaussian_footprint.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "gaussians/scene/made_gaussians.h"
@@ -22,8 +21,9 @@ int cli_bench_is_gaussian_file(const char *path) {
   return is_one;
 }
 
-/* As conic render frames it, by the source's outline of the scene. */
-static conic_status frame_gaussians(conic_context *context, const char *path, conic_camera *camera) {
+/* By the source's outline of the scene. */
+conic_status cli_bench_gaussians_frame(conic_context *context, const char *path, int width, int height,
+                                       conic_camera *camera) {
   conic_gaussian_options gaussian_options;
   conic_source_options options;
   conic_source *source;
@@ -32,7 +32,8 @@ static conic_status frame_gaussians(conic_context *context, const char *path, co
   conic_source_options_init(&options);
   options.gaussians = &gaussian_options;
   conic_framing_init(&framing);
-  framing.width = framing.height = 1024;
+  framing.width = width;
+  framing.height = height;
   conic_status status = conic_source_open(context, &path, 1, &options, &source);
   if (status != CONIC_OK)
     return status;
@@ -45,8 +46,9 @@ conic_status cli_bench_gaussians_read(cli_session *session, const char *path, co
                                       cli_bench_scene *scene) {
   conic_context *context = session->context;
   scene->is_gaussian = scene->has_camera = 1;
-  conic_status status = look->camera_path ? conic_camera_read(context, look->camera_path, &scene->camera)
-                                          : frame_gaussians(context, path, &scene->camera);
+  conic_status status = look->camera_path
+                            ? cli_bench_camera_read(session, look->camera_path, look->view, &scene->camera)
+                            : cli_bench_gaussians_frame(context, path, 1024, 1024, &scene->camera);
   return status == CONIC_OK ? conic_gaussians_read(context, path, NULL, &scene->gaussians) : status;
 }
 

@@ -195,9 +195,8 @@ static conic_status make_analytic(cli_session *session, const wish *w, conic_spl
   return status;
 }
 
-/* One of the file's, whatever the size of its pictures. */
-static conic_status read_bench_camera(cli_session *session, const cli_bench_look *look, conic_camera *camera) {
-  const cli_views_wish wanted = {.path = look->camera_path, .view = look->view};
+conic_status cli_bench_camera_read(cli_session *session, const char *path, const char *view, conic_camera *camera) {
+  const cli_views_wish wanted = {.path = path, .view = view};
   conic_cameras cameras;
   size_t i_view;
   conic_status status = cli_views_read(session, &wanted, &cameras, &i_view);
@@ -225,7 +224,7 @@ static conic_status read_bench_file(cli_session *session, const char *path, cons
     return CONIC_ERROR_ARGUMENT;
   }
   if (look->camera_path)
-    status = read_bench_camera(session, look, &scene->camera);
+    status = cli_bench_camera_read(session, look->camera_path, look->view, &scene->camera);
   return status == CONIC_OK ? conic_source_open(session->context, &path, 1, &options, &scene->source) : status;
 }
 

@@ -439,6 +439,7 @@ static int run_chart(cli_session *session, int argc, char **argv) {
       {"only", CLI_CHOICE, &job->only, "CHART", "methods or representations [both]", .choices = only_words},
       {"mesh", CLI_TEXT, &job->mesh.path, "MESH", "whose representations are charted [a generated terrain]"},
       {"camera", CLI_TEXT, &job->gaussians.camera_path, "FILE", "of the Gaussian SCENE [framed as by conic render]"},
+      {"view", CLI_TEXT, &job->gaussians.view, "VIEW", "which of its cameras: a name or an index"},
       {"size", CLI_SIZE, job->gaussians.size, "WxH", "of the SCENE's pictures, without a camera [640x640]", 1, 65535},
       {"pixels", CLI_INT, &job->gaussians.most_pixels, "N",
        "of the SCENE: where to find the truth, which is slow, at most [1000]", 1, 1 << 24},

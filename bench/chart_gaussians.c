@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "bench/bench.h"
 #include "conic/gaussian_oracle.h"
 #include "core/base/message.h"
 
@@ -11,7 +12,8 @@ const char *const cli_truth_names[CLI_N_TRUTHS] = {"overlap", "volume"};
 static const conic_gaussian_question questions[CLI_N_TRUTHS] = {CONIC_GAUSSIAN_OVERLAP, CONIC_GAUSSIAN_VOLUME};
 
 typedef struct gaussian_chart_job {
-  conic_context *context;
+  cli_session *session;
+  conic_context *context; /* the session's */
   cli_gaussian_chart *chart;
   conic_gaussians gaussians;
   conic_camera camera, sparse; /* the second sees the centre of every step-th pixel of the first */
@@ -19,29 +21,6 @@ typedef struct gaussian_chart_job {
   float *rgb;
   uint32_t *count;
 } gaussian_chart_job;
-
-/* The source knows what to frame; the oracle needs the Gaussians themselves. */
-static conic_status find_camera(const gaussian_chart_job *job, conic_camera *camera) {
-  const cli_gaussian_chart *chart = job->chart;
-  conic_gaussian_options gaussian_options;
-  conic_source_options options;
-  conic_source *source;
-  conic_framing framing;
-  if (chart->camera_path)
-    return conic_camera_read(job->context, chart->camera_path, camera);
-  conic_gaussian_options_init(&gaussian_options);
-  conic_source_options_init(&options);
-  options.gaussians = &gaussian_options;
-  conic_framing_init(&framing);
-  framing.width = chart->size[0];
-  framing.height = chart->size[1];
-  conic_status status = conic_source_open(job->context, &chart->path, 1, &options, &source);
-  if (status != CONIC_OK)
-    return status;
-  status = conic_source_frame(source, &framing, camera);
-  conic_source_close(source);
-  return status;
-}
 
 /* Of an odd step, the middle of so many pixels is the centre of one. */
 static void thin_out(gaussian_chart_job *job) {
@@ -68,7 +47,10 @@ static conic_status open_chart(gaussian_chart_job *job) {
   if (!conic_gaussians_is_file(job->context, chart->path))
     return conic_fail(job->context, CONIC_ERROR_INPUT, "%s: is no Gaussian scene, and nothing else is charted",
                       chart->path);
-  conic_status status = find_camera(job, &job->camera);
+  conic_status status =
+      chart->camera_path
+          ? cli_bench_camera_read(job->session, chart->camera_path, chart->view, &job->camera)
+          : cli_bench_gaussians_frame(job->context, chart->path, chart->size[0], chart->size[1], &job->camera);
   if (status == CONIC_OK)
     status = conic_gaussians_read(job->context, chart->path, NULL, &job->gaussians);
   if (status != CONIC_OK)
@@ -166,7 +148,7 @@ static void find_profile_fronts(cli_gaussian_chart *chart) {
 }
 
 conic_status cli_gaussian_chart_measure(cli_session *session, cli_gaussian_chart *chart) {
-  gaussian_chart_job job = {.context = session->context, .chart = chart};
+  gaussian_chart_job job = {.session = session, .context = session->context, .chart = chart};
   conic_status status = open_chart(&job);
   if (status == CONIC_OK)
     status = find_truths(&job);

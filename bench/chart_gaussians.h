@@ -25,7 +25,7 @@ typedef struct cli_profile_point {
 
 typedef struct cli_gaussian_chart {
   /* What is asked for. */
-  const char *path, *camera_path; /* null: framed as by conic render */
+  const char *path, *camera_path, *view; /* without a camera it is framed as by conic render */
   int size[2], most_pixels, is_quick;
 
   /* What came of it. */

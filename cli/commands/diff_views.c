@@ -201,15 +201,15 @@ static int is_numbered(const cli_diff_list *list) {
   return n == list->n;
 }
 
-/* Frames with frames of the same number; or with the pictures that stand at their numbers' places, counted from 1. */
+/* Frames with frames of the same number; or, as --view all numbers views, with the pictures at these places, from 0. */
 static int match_by_number(cli_diff_views *views) {
   int is_a = is_numbered(&views->lists[0]), is_b = is_numbered(&views->lists[1]);
   const cli_diff_list *numbered = &views->lists[is_a ? 0 : 1], *other = &views->lists[is_a ? 1 : 0];
   if (is_a && is_b)
     return match_by_key(views, compare_numbers);
   for (size_t i = 0; (is_a || is_b) && i < numbered->n; i++) {
-    size_t place = (size_t)numbered->files[i].number - 1;
-    if (numbered->files[i].number < 1 || place >= other->n || views->has_view[is_a ? 1 : 0][place])
+    size_t place = (size_t)numbered->files[i].number;
+    if (place >= other->n || views->has_view[is_a ? 1 : 0][place])
       continue;
     if (is_a)
       add_view(views, i, place);

@@ -42,7 +42,7 @@ conic_status conic_gaussians_to_splats(conic_context *context, const conic_gauss
   return CONIC_OK;
 }
 
-static conic_status read_packed_scene(conic_context *context, const char *path, conic_model *model) {
+static conic_status read_scene_as_splats(conic_context *context, const char *path, conic_model *model) {
   conic_gaussians_read_options reading;
   conic_gaussians scene;
   conic_gaussians_read_options_init(&reading);
@@ -64,5 +64,5 @@ conic_status conic_gaussians_read_model(conic_context *context, const char *path
   memset(model, 0, sizeof *model);
   if (options && options->field && !options->field_is_optional)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the Gaussians have no '%s'", path, options->field);
-  return read_packed_scene(context, path, model);
+  return read_scene_as_splats(context, path, model);
 }

@@ -32,8 +32,8 @@ CONIC_INLINE meeting_lanes meet_lanes(const CONIC_STORED conic_gaussian_ray *r, 
   }
   lanes squares = g[0] * g[0] + g[1] * g[1] + g[2] * g[2], one_over = 1.0f / squares;
   lanes half_q = 0.5f * ((c[0] * c[0] + c[1] * c[1] + c[2] * c[2]) * one_over);
-  return (meeting_lanes){lanes_select(lanes_less(lanes_of(0.0f), squares), half_q, lanes_of(-1.0f)),
-                         (r->e[0] + r->e[1] * dx + r->e[2] * dy) * one_over};
+  return (meeting_lanes){.half_q = lanes_select(lanes_less(lanes_of(0.0f), squares), half_q, lanes_of(-1.0f)),
+                         .z = (r->e[0] + r->e[1] * dx + r->e[2] * dy) * one_over};
 }
 
 #ifndef CONIC_ON_DEVICE /* which has opencl/gaussian_rays.cl */

@@ -46,8 +46,8 @@ CONIC_INLINE meeting_lanes meet_sight_lanes(const conic_gaussian_list *list, uin
   }
   lanes squares = lanes_dot_of_self(g), one_over = 1.0f / squares;
   lanes half_q = 0.5f * (lanes_dot_of_self(c) * one_over);
-  return (meeting_lanes){lanes_select(lanes_less(lanes_of(0.0f), squares), half_q, lanes_of(-1.0f)),
-                         (r->e[0] + r->e[1] * d[0] + r->e[2] * d[1] + r->e[3] * d[2]) * one_over};
+  return (meeting_lanes){.half_q = lanes_select(lanes_less(lanes_of(0.0f), squares), half_q, lanes_of(-1.0f)),
+                         .z = (r->e[0] + r->e[1] * d[0] + r->e[2] * d[1] + r->e[3] * d[2]) * one_over};
 }
 
 #endif

@@ -52,6 +52,8 @@ run 2 explain sphere.ply --camera colmap --view all --pixel 1,1
 says 'it takes one view'
 run 2 render sphere.ply --camera colmap --view wide -o a.pfm
 says 'a lens that distorts'
+run 0 render one.ply --profile exact --camera colmap --view wide -o a.pfm # which draws by any lens
+rm a.pfm
 run 0 explain sphere.ply --camera colmap --view 1 --pixel 16,12 --json explained.json
 run 0 verify sphere.ply --camera transforms.json --view two --pixels 50
 run 0 render sphere.ply --camera transforms.json --view two -o two.pfm --json two.json

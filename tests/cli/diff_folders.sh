@@ -84,9 +84,10 @@ has 'matched by number'
 run 1 diff F G --max-abs 0
 has '^only in G: old.3.pfm$'
 for i in 007 010 100; do flat "P/IMG_$i.pfm" $half; done
-run 1 diff P F # a number's place: there is no eleventh picture
-has '^matched by number: P/IMG_007.pfm is F/new.0001.pfm'
-has '^only in P: IMG_100.pfm$'
+run 1 diff P F # a number's place, from 0: there is no twelfth picture
+has '^matched by number: P/IMG_010.pfm is F/new.0001.pfm'
+has '^only in P: IMG_007.pfm$'
+has '^only in F: new.00011.pfm$'
 for i in 7 8 9; do flat "Q/view$i.pfm" $half; done
 run 0 diff P Q
 has '^matched by order: P/IMG_007.pfm is Q/view7.pfm'

@@ -1,7 +1,8 @@
 /* Files of cameras in every format that is told by its content. What is read can be looked through, and found by its
  * name. */
-#include "core/image/view_arguments.h"
 #include "tests/fuzz/fuzz.h"
+
+#include "core/image/view_arguments.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
   conic_cameras cameras;

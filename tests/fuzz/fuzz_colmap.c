@@ -1,6 +1,7 @@
 /* Both files of a model of COLMAP, one behind the other. */
-#include "core/image/view_arguments.h"
 #include "tests/fuzz/fuzz.h"
+
+#include "core/image/view_arguments.h"
 #include "tests/support/camera_files.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {

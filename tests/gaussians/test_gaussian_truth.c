@@ -104,7 +104,7 @@ static conic_gaussian_reference truth_of(conic_context *context, const conic_gau
 static const double one[1][6] = {{4.0, 0.3, 0.7, 0.8, 0.3, 0.1}};
 
 /* A ball hides o^…: by overlap the opacity of `exact`, by volume 1 − (1 − o)^(e^(−q/2)), o in the middle of both. */
-static void test_one(conic_context *context) {
+static void test_one_ball(conic_context *context) {
   conic_gaussians scene = make_balls(context, 1, one);
   const double o = (double)scene.opacity[0], s = (double)scene.scale[0][0];
   for (int question = CONIC_GAUSSIAN_OVERLAP; question <= CONIC_GAUSSIAN_VOLUME; question++) {
@@ -184,7 +184,7 @@ int main(void) {
   conic_context *context = check_context(1);
   test_harmonics();
   test_harmonics_in_picture(context);
-  test_one(context);
+  test_one_ball(context);
   test_two(context);
   conic_context_destroy(context);
   return check_result();

@@ -142,6 +142,23 @@ static void check_stack(const desk *d) {
   conic_gaussians_release(d->context, &scene);
 }
 
+/* Rays side by side, too; what devices do not draw, they refuse. */
+static void check_cameras(const desk *d) {
+  conic_camera camera = camera_of(40, 30);
+  conic_gaussians scene = gaussians_random(d->context, 300, 1, 0);
+  conic_gaussian_planes p = picture_planes(&camera);
+  conic_gaussian_options options;
+  conic_gaussian_options_init(&options);
+  options.device = &device_in_way(d, &ways[0])->gaussian_device;
+  options.prefilter = 0.3;
+  CHECK(conic_gaussians_render(d->context, &scene, &camera, &options, &p, NULL) == CONIC_ERROR_ARGUMENT);
+  camera.kind = CONIC_CAMERA_ORTHOGRAPHIC;
+  camera.fx = camera.fy = 10.0;
+  compare_ways(d, &scene, &camera, CONIC_PROFILE_EXACT, N_WAYS, "orthographic");
+  picture_release(&p);
+  conic_gaussians_release(d->context, &scene);
+}
+
 /* Planes that are not wanted are not touched, and change nothing of others. */
 static void check_single_planes(const desk *d) {
   const conic_camera camera = camera_of(35, 20);
@@ -214,6 +231,7 @@ static void check_all(const desk *d, const char *path) {
   check_gaussian_sizes(d);
   check_specials(d);
   check_stack(d);
+  check_cameras(d);
   check_single_planes(d);
   check_small_memory(d);
   check_renderers(d->context);

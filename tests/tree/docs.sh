@@ -7,7 +7,7 @@ source_folder=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-most_words=44500 # 42,500 before there were cameras of others and profiles that can be judged
+most_words=45000 # 42,500 before there were cameras of others and profiles that can be judged
 
 # Prints every breach in the tree FOLDER.
 breaches() {

@@ -353,7 +353,7 @@ static void test_transforms(void) {
   c = read_frame_of("\"w\": 64, \"h\": 48, \"fl_x\": 50, \"is_fisheye\": true", "");
   CHECK(c.kind == CONIC_CAMERA_FISHEYE && c.lens == CONIC_LENS_NONE);
   c = read_frame_of("\"w\": 64, \"h\": 32, \"fl_x\": 32, \"camera_model\": \"EQUIRECTANGULAR\"", "");
-  CHECK(c.kind == CONIC_CAMERA_EQUIRECTANGULAR && fabs(c.fx * 3.14159265358979323846 - 32.0) < 1e-13);
+  CHECK(c.kind == CONIC_CAMERA_EQUIRECTANGULAR && fabs(c.fx * 3.14159265358979323846 - 32.0) < 1e-13 && c.fy == c.fx);
   /* half of 64 over the tangent of 45 degrees */
   c = read_frame_of("\"w\": 64, \"h\": 48, \"camera_angle_x\": 1.5707963267948966", "");
   CHECK(fabs(c.fx - 32.0) < 1e-13 && c.fy == c.fx && c.cx == 32.0 && c.cy == 24.0);
@@ -369,10 +369,11 @@ static void test_no_size(void) {
   conic_cameras_options_init(&options);
   files_check_failed("no size", read_text_as("t.json", text, &cameras), "t.json: ", "--size", (const char *)NULL);
   const char *path = files_write("t.json", text);
-  options.width = options.height = 100;
+  options.width = 100;
+  options.height = 80;
   CHECK_OK(conic_cameras_read(context, path, &options, &cameras));
-  CHECK(cameras.count == 1 && cameras.cameras[0].width == 100 && fabs(cameras.cameras[0].fx - 50.0) < 1e-13 &&
-        fabs(cameras.cameras[0].fy - 50.0) < 1e-13);
+  CHECK(cameras.count == 1 && cameras.cameras[0].width == 100 && cameras.cameras[0].height == 80 &&
+        fabs(cameras.cameras[0].fx - 50.0) < 1e-13 && fabs(cameras.cameras[0].fy - 50.0) < 1e-13);
   conic_cameras_release(context, &cameras);
   const char *picture = files_write_bytes("r_0.png", png, sizeof png);
   CHECK_OK(conic_cameras_read(context, path, NULL, &cameras));
@@ -401,13 +402,13 @@ static void test_numpy(void) {
   conic_cameras cameras;
   conic_camera wanted = camera_example();
   float narrow[32];
-  double turned[16];
+  double turned[24];
   static const uint16_t sizes[2] = {64, 10};
   static const uint8_t heights[1] = {48};
   for (int i = 0; i < 32; i++)
     narrow[i] = (float)camera_npz_matrix[i % 16];
-  for (int i = 0; i < 16; i++)
-    turned[i] = camera_npz_matrix[i % 4 * 4 + i / 4];
+  for (int i = 0; i < 24; i++) /* two of three rows, the first index running fastest */
+    turned[i] = camera_npz_matrix[i / 2 % 3 * 4 + i / 6] + (i % 2 && i >= 18);
   const camera_part two[] = {{"viewmats.npy", camera_npy("<f4", "False", "(2, 4, 4)", narrow, sizeof narrow)},
                              {"Ks.npy", camera_npy("<f8", "False", "(3, 3)", camera_npz_k, sizeof camera_npz_k)},
                              {"width.npy", camera_npy("<u2", "False", "(2,)", sizes, sizeof sizes)},
@@ -416,11 +417,14 @@ static void test_numpy(void) {
   CHECK(cameras.count == 2 && is_same_camera(&cameras.cameras[0], &wanted) && cameras.cameras[1].width == 10);
   conic_cameras_release(context, &cameras);
   static const double k[4] = {50.5, 50, 31, 24.5};
-  const camera_part fortran[] = {{"viewmat.npy", camera_npy("<f8", "True", "(4, 4)", turned, sizeof turned)},
+  const camera_part fortran[] = {{"viewmat.npy", camera_npy("<f8", "True", "(2, 3, 4)", turned, sizeof turned)},
                                  {"K.npy", camera_npy("<f8", "False", "(4,)", k, sizeof k)}};
   CHECK_OK(read_npz(fortran, 2, 64, &cameras));
   wanted.height = 64;
-  CHECK(cameras.count == 1 && is_same_camera(&cameras.cameras[0], &wanted));
+  CHECK(cameras.count == 2 && is_same_camera(&cameras.cameras[0], &wanted));
+  for (int i = 0; i < 3; i++)
+    wanted.cam_from_world[i][3] += 1.0;
+  CHECK(cameras.count == 2 && is_same_camera(&cameras.cameras[1], &wanted));
   conic_cameras_release(context, &cameras);
   files_check_failed("no size", read_npz(fortran, 2, 0, &cameras), "c.npz: ", "--size", (const char *)NULL);
   files_check_failed("no K", read_npz(two, 1, 64, &cameras), "no Ks.npy", (const char *)NULL);
