@@ -40,7 +40,7 @@ static judged_range rounded_range(judged_range r) {
 }
 
 static judged_range range_of_alpha(const conic_gaussian_bound *b, int is_opaque) {
-  const judged_range T = range_at(b, CONIC_BOUND_T);
+  const judged_range T = rounded_range(range_at(b, CONIC_BOUND_T)); /* a mean is rounded before it is subtracted */
   if (is_opaque)
     return (judged_range){1.0, 1.0, 1.0, 1.0, 1.0};
   return rounded_range((judged_range){1.0 - T.v, 1.0 - T.high, 1.0 - T.low, 1.0 - T.most, 1.0 - T.least});

@@ -19,6 +19,7 @@ for profile in exact inria-2023 gsplat-1.5 gsplat-1.5-aa gsplat-1.6 gsplat-1.6-a
   has '^pass$'
   has '^judged    1600 of 1600 pixels: .* 0 wrong$'
   has '^medianZ  *max '
+  run 0 verify two.splat --profile $profile --size 20x20 --samples 2
 done
 run 0 render two.splat --profile gsplat-1.6 --size 40x40 --aov rgba,Z,N,count,id,T,medianZ,inverseZ,last -o a.exr
 run 0 verify two.splat --profile gsplat-1.6 --size 40x40 --image a.exr
