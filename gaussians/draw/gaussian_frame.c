@@ -241,7 +241,7 @@ static int is_affine(const conic_camera *camera) {
 }
 
 static conic_status check_sight(conic_context *context, const conic_camera *camera,
-                               const conic_gaussian_options *options) {
+                                const conic_gaussian_options *options) {
   int takes_all = options->profile == CONIC_PROFILE_EXACT;
   double h = options->prefilter;
   conic_status status = (takes_all ? conic_view_ray_check : conic_view_pinhole_check)(context, "gaussians", camera);

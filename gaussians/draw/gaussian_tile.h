@@ -62,7 +62,7 @@ typedef struct conic_gaussian_list {
 #ifndef CONIC_ON_DEVICE
   const conic_gaussian_filter *filters; /* by footprint; of CONIC_SHAPE_FILTERED */
   const conic_gaussian_sight *sights;   /* by footprint; of CONIC_SHAPE_SIGHT */
-  const conic_sight_rays *tile_rays;     /* of CONIC_SHAPE_SIGHT */
+  const conic_sight_rays *tile_rays;    /* of CONIC_SHAPE_SIGHT */
   int is_parallel;                      /* rays are */
 #endif
 } conic_gaussian_list;
