@@ -25,12 +25,19 @@ typedef struct frame {
   /* By footprint: as they were set up, those of each run of the scene from its place on. */
   conic_gaussian_footprint *footprints;
   conic_gaussian_ray *rays;
-  float (*normals)[3], *keys;
+  float (*normals)[3];
+  uint32_t *keys;
   size_t *n_of_run, *n_skipped_of_run, n_runs, n;
   conic_radix_item *order;
   conic_gaussian_bins bins;
   void **rooms; /* by thread */
 } frame;
+
+/* Keys are depths over 0, or of a mean behind the eye below: ordered as their bits are, once those below are turned. */
+static uint32_t key_of(float key) {
+  uint32_t bits = conic_bits_of_float(key);
+  return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
 
 static void set_up_run(void *data, size_t i_run, int i_thread) {
   frame *f = data;
@@ -39,9 +46,11 @@ static void set_up_run(void *data, size_t i_run, int i_thread) {
   conic_gaussian_ray unused;
   (void)i_thread;
   for (size_t i = begin; i < end; i++) {
+    float key = 0.0f;
     conic_gaussian_fate fate =
-        conic_gaussian_set_up(&f->view, f->set, i, &f->footprints[to], &f->keys[to],
-                              f->has_rays ? &f->rays[to] : &unused, f->normals ? f->normals[to] : NULL);
+        conic_gaussian_set_up(&f->view, f->set, i, &f->footprints[to], &key, f->has_rays ? &f->rays[to] : &unused,
+                              f->normals ? f->normals[to] : NULL);
+    f->keys[to] = key_of(key);
     f->n_skipped_of_run[i_run] += fate == CONIC_GAUSSIAN_SKIPPED;
     to += fate == CONIC_GAUSSIAN_DRAWN;
   }
@@ -73,20 +82,15 @@ static conic_status set_up_all(frame *f) {
   return status;
 }
 
-/* Keys are depths over 0, or of a mean behind the eye below: ordered as their bits are, once those below are turned. */
-static uint64_t key_of(float key) {
-  uint32_t bits = conic_bits_of_float(key);
-  return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
-}
-
 static conic_status order_footprints(frame *f) {
   f->order = conic_memory_allocate(f->context, f->n, sizeof *f->order);
   if (!f->order)
     return CONIC_ERROR_MEMORY;
+  const int is_by_ray = f->view.rules->shape == CONIC_SHAPE_RAY;
   size_t n = 0;
   for (size_t run = 0; run < f->n_runs; run++)
     for (size_t i = run * SET_UP_RUN; i < run * SET_UP_RUN + f->n_of_run[run]; i++)
-      f->order[n++] = (conic_radix_item){key_of(f->keys[i]), (uint32_t)i};
+      f->order[n++] = (conic_radix_item){is_by_ray ? key_of(f->footprints[i].z) : f->keys[i], (uint32_t)i};
   return conic_radix_sort(f->context, f->order, n, 32);
 }
 
@@ -140,6 +144,7 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
                               .footprints = f->footprints,
                               .rays = f->rays,
                               .normals = (const float(*)[3])f->normals,
+                              .keys = f->keys,
                               .wants_all = to->z || to->median_z || to->inverse_z || to->normal || to->count ||
                                            to->id || to->last,
                               .entries = f->bins.entries + f->bins.tile_begin[i_tile],

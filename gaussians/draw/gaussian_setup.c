@@ -296,7 +296,8 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
   if (fate != CONIC_GAUSSIAN_DRAWN)
     return fate;
   f->opacity = (float)p.opacity;
-  f->z = (float)z;
+  if (rules->shape != CONIC_SHAPE_RAY)
+    f->z = (float)z;
   *key = (float)(rules->orders_by_distance ? conic_length(p.mean) : z);
   f->index = (uint32_t)i;
   if (normal)

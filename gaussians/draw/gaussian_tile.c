@@ -45,12 +45,21 @@ typedef struct hit {
   uint32_t footprint;
 } hit;
 
-/* Insertion: the list is nearly in order. What is equally far stays in the order of the list. */
-static void sort_hits(hit *hits, size_t n) {
+/* Of Gaussians at one depth the order is that of their keys, then that of the scene. */
+static int is_behind(const conic_gaussian_list *list, const hit *a, const hit *b) {
+  const uint32_t *keys = list->keys;
+  if (a->z != b->z)
+    return a->z > b->z;
+  return keys[a->footprint] != keys[b->footprint] ? keys[a->footprint] > keys[b->footprint]
+                                                  : a->footprint > b->footprint;
+}
+
+/* Insertion: the list is nearly in order. */
+static void sort_hits(const conic_gaussian_list *list, hit *hits, size_t n) {
   for (size_t i = 1; i < n; i++) {
     hit moved = hits[i];
     size_t at = i;
-    for (; at > 0 && hits[at - 1].z > moved.z; at--)
+    for (; at > 0 && is_behind(list, &hits[at - 1], &moved); at--)
       hits[at] = hits[at - 1];
     hits[at] = moved;
   }
@@ -116,7 +125,7 @@ static void composite_rays(const conic_gaussian_list *list, conic_gaussian_tile 
       if (m.z > 0.0f && m.half_q >= 0.0f && alpha >= list->rules->alpha_least)
         hits[n++] = (hit){m.z, alpha, list->entries[i]};
     }
-    sort_hits(hits, n);
+    sort_hits(list, hits, n);
     for (size_t i = 0; i < n && composite_one(list, hits[i].footprint, hits[i].z, hits[i].alpha, tile, at); i++)
       ;
   }

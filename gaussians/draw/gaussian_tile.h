@@ -33,12 +33,14 @@ typedef struct conic_gaussian_tile {
 
 enum { CONIC_GAUSSIAN_ROOM = 320 };
 
-/* What is composited in a tile: the footprints that the entries name, in their order. */
+/* What is composited in a tile: the footprints that the entries name. They come in the order of the profile, but those
+ * of CONIC_SHAPE_RAY in that of their z. */
 typedef struct conic_gaussian_list {
   const conic_gaussian_rules *rules;
   const conic_gaussian_footprint *footprints;
   const conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
   const float (*normals)[3];      /* by footprint; null: not wanted */
+  const uint32_t *keys;           /* by footprint: the profile's order, as a number */
   int wants_all;                  /* else T and rgb alone */
   const uint32_t *entries;
   size_t n;
