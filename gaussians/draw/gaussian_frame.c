@@ -1,4 +1,5 @@
 /* A picture of Gaussians: set up, put in order, binned, composited. */
+#include <stddef.h>
 #include <string.h>
 
 #include "core/base/clock.h"
@@ -94,50 +95,58 @@ static conic_status order_footprints(frame *f) {
   return conic_radix_sort(f->context, f->order, n, 32);
 }
 
+static int wants_all(const conic_gaussian_planes *to) {
+  return to->z || to->median_z || to->inverse_z || to->normal || to->count || to->id || to->last;
+}
+
 static void begin_compositing(const frame *f, size_t i_tile, conic_gaussian_tile *tile) {
-  memset(tile, 0, sizeof *tile);
-  for (size_t i = 0; i < CONIC_GAUSSIAN_TILE_PIXELS; i++) {
+  memset(tile, 0, wants_all(f->planes) ? sizeof *tile : offsetof(conic_gaussian_tile, sum));
+  for (size_t i = 0; i < CONIC_GAUSSIAN_TILE_PIXELS; i++)
     tile->T[i] = 1.0f;
+  for (size_t i = 0; i < CONIC_GAUSSIAN_TILE_PIXELS && wants_all(f->planes); i++)
     tile->id[i] = tile->last[i] = CONIC_NO_ID;
-  }
   tile->x = (int)(i_tile % f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE;
   tile->y = (int)(i_tile / f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE;
 }
 
-static void put_number(float *plane, size_t pixel, float value) {
-  if (plane)
-    plane[pixel] = value;
-}
-
-static void put_word(uint32_t *plane, size_t pixel, uint32_t value) {
-  if (plane)
-    plane[pixel] = value;
+/* Writes one of `n_channels` numbers of four bytes, at each pixel of the tile that is in the picture. */
+static void put_channel(const frame *f, const conic_gaussian_tile *tile, void *plane, size_t n_channels, size_t channel,
+                        const void *numbers) {
+  const int width = f->planes->width, height = f->planes->height;
+  const int columns = width - tile->x < CONIC_GAUSSIAN_TILE ? width - tile->x : CONIC_GAUSSIAN_TILE;
+  const uint32_t *from = numbers;
+  for (int row = 0; plane && row < CONIC_GAUSSIAN_TILE && tile->y + row < height; row++) {
+    uint32_t *to = (uint32_t *)plane + ((size_t)(tile->y + row) * (size_t)width + (size_t)tile->x) * n_channels;
+    for (int column = 0; column < columns; column++)
+      to[(size_t)column * n_channels + channel] = from[conic_gaussian_pixel(column, row)];
+  }
 }
 
 static void end_compositing(const frame *f, const conic_gaussian_tile *tile) {
-  conic_gaussian_planes *to = f->planes;
-  for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
-    int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
-    size_t pixel = (size_t)y * (size_t)to->width + (size_t)x;
-    if (x >= to->width || y >= to->height)
-      continue;
-    put_number(to->transparency, pixel, tile->T[at]);
-    put_number(to->z, pixel, tile->sum[at] > 0.0f ? tile->sum_of_z[at] / tile->sum[at] : 0.0f);
-    put_number(to->median_z, pixel, tile->median_z[at]);
-    put_number(to->inverse_z, pixel, tile->inverse_z[at]);
-    put_word(to->count, pixel, tile->count[at]);
-    put_word(to->id, pixel, tile->id[at]);
-    put_word(to->last, pixel, tile->last[at]);
-    for (int c = 0; c < 3; c++) {
-      put_number(to->rgb, 3 * pixel + (size_t)c, tile->rgb[c][at] + tile->T[at] * f->options->background[c]);
-      put_number(to->normal, 3 * pixel + (size_t)c, tile->normal[c][at]);
-    }
+  const conic_gaussian_planes *to = f->planes;
+  float numbers[CONIC_GAUSSIAN_TILE_PIXELS];
+  put_channel(f, tile, to->transparency, 1, 0, tile->T);
+  for (size_t c = 0; c < 3; c++) {
+    for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++)
+      numbers[at] = tile->rgb[c][at] + tile->T[at] * f->options->background[c];
+    put_channel(f, tile, to->rgb, 3, c, numbers);
   }
+  if (!wants_all(to))
+    return;
+  for (size_t c = 0; c < 3; c++)
+    put_channel(f, tile, to->normal, 3, c, tile->normal[c]);
+  for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++)
+    numbers[at] = tile->sum[at] > 0.0f ? tile->sum_of_z[at] / tile->sum[at] : 0.0f;
+  put_channel(f, tile, to->z, 1, 0, numbers);
+  put_channel(f, tile, to->median_z, 1, 0, tile->median_z);
+  put_channel(f, tile, to->inverse_z, 1, 0, tile->inverse_z);
+  put_channel(f, tile, to->count, 1, 0, tile->count);
+  put_channel(f, tile, to->id, 1, 0, tile->id);
+  put_channel(f, tile, to->last, 1, 0, tile->last);
 }
 
 static void composite_tile(void *data, size_t i_tile, int i_thread) {
   frame *f = data;
-  const conic_gaussian_planes *to = f->planes;
   conic_gaussian_tile tile;
   begin_compositing(f, i_tile, &tile);
   conic_gaussian_list list = {.rules = f->view.rules,
@@ -145,8 +154,7 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
                               .rays = f->rays,
                               .normals = (const float(*)[3])f->normals,
                               .keys = f->keys,
-                              .wants_all = to->z || to->median_z || to->inverse_z || to->normal || to->count ||
-                                           to->id || to->last,
+                              .wants_all = wants_all(f->planes),
                               .entries = f->bins.entries + f->bins.tile_begin[i_tile],
                               .n = f->bins.tile_begin[i_tile + 1] - f->bins.tile_begin[i_tile],
                               .room = f->rooms ? f->rooms[i_thread] : NULL};

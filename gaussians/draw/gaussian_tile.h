@@ -19,7 +19,11 @@ static inline int conic_gaussian_row(size_t pixel) {
   return (int)(pixel / (4 * CONIC_GAUSSIAN_BLOCK_PIXELS) * 4 + pixel % 4);
 }
 
-/* Pixels beside the picture are there, too. */
+static inline size_t conic_gaussian_pixel(int column, int row) {
+  return (size_t)((row / 4 * 4 + column / 4) * CONIC_GAUSSIAN_BLOCK_PIXELS + column % 4 * 4 + row % 4);
+}
+
+/* Pixels beside the picture are there, too. What follows rgb is for planes beside colour. */
 typedef struct conic_gaussian_tile {
   float T[CONIC_GAUSSIAN_TILE_PIXELS];
   float rgb[3][CONIC_GAUSSIAN_TILE_PIXELS];

@@ -82,17 +82,6 @@ static void sort_rows(lanes_row *keys, size_t n) {
     merge_runs(keys, n, length);
 }
 
-/* Whether keys that are not of different depths lie side by side. */
-static int has_equals(const lanes_row *keys, size_t n, uint32_t numbers) {
-  for (size_t i = 1; i < n; i++) {
-    lanes key = lanes_load(keys[i]);
-    index_lanes both = lanes_to_bits(key) ^ lanes_to_bits(lanes_load(keys[i - 1]));
-    if (lanes_any(lanes_less(key, lanes_of(__builtin_inff())) & lanes_not(lanes_has_bits(both, ~numbers))))
-      return 1;
-  }
-  return 0;
-}
-
 /* Keys of depths: the higher bits of how far z's bits are from the nearest's, and a number below. As floats over 0 they
  * are in the order of z, and of the numbers where the bits that are left out would tell; infinity: none. */
 typedef struct depth_keys {

@@ -17,7 +17,7 @@ CONIC_INLINE void add_planes_of_footprint(const conic_gaussian_list *list, uint3
     to->normal[k] = list->normals ? lanes_of(list->normals[footprint][k]) : lanes_of(0.0f);
 }
 
-enum { BATCH = 256 }; /* entries that are taken at a time */
+enum { BATCH = 256, AHEAD = 6 }; /* entries that are taken at a time; how far memory is asked for */
 
 typedef struct meeting_lanes {
   lanes half_q, z;
@@ -82,6 +82,11 @@ CONIC_INLINE void meet_listed(const scene *s, meetings *m, size_t first, const u
                               places at) {
   const conic_gaussian_list *list = s->list;
   for (size_t i = 0; i < n_listed; i++) {
+    if (i + AHEAD < n_listed) { /* a ray takes two lines of the cache */
+      const char *next = (const char *)&list->rays[list->entries[first + listed[i + AHEAD]]];
+      __builtin_prefetch(next);
+      __builtin_prefetch(next + sizeof *list->rays - 1);
+    }
     const record *r = &m->records[first + listed[i]];
     const uint32_t footprint = list->entries[first + listed[i]];
     const meeting_lanes met = meet_lanes(&list->rays[footprint], at.column + r->x, at.row + r->y);
@@ -110,8 +115,8 @@ static int is_behind(const conic_gaussian_list *list, const meetings *m, uint32_
   return list->keys[first] != list->keys[second] ? list->keys[first] > list->keys[second] : first > second;
 }
 
-/* Puts in order what the keys could not tell apart. */
-static void mend_order(const conic_gaussian_list *list, meetings *m, size_t n) {
+/* The same ray by ray, where depths are equal. */
+static void mend_equals(const conic_gaussian_list *list, meetings *m, size_t n) {
   for (size_t lane = 0; lane < CONIC_LANES; lane++)
     for (size_t i = 1; i < n && m->keys[i][lane] < __builtin_inff(); i++) {
       const float key = m->keys[i][lane];
@@ -124,6 +129,43 @@ static void mend_order(const conic_gaussian_list *list, meetings *m, size_t n) {
       }
       m->keys[at][lane] = key;
     }
+}
+
+/* Puts in order what lies side by side and has keys that cannot tell; returns whether anything did not. Tells where
+ * depths are equal, too. */
+CONIC_INLINE int swap_neighbours(meetings *m, size_t n, int *has_equals) {
+  int has_swapped = 0;
+  lanes second = lanes_load(m->keys[0]);
+  for (size_t i = 1; i < n; i++) {
+    lanes first = second;
+    second = lanes_load(m->keys[i]);
+    index_lanes both = lanes_to_bits(first) ^ lanes_to_bits(second);
+    lanes_mask is_unclear =
+        lanes_less(second, lanes_of(__builtin_inff())) & lanes_not(lanes_has_bits(both, ~m->by.numbers));
+    if (!lanes_any(is_unclear))
+      continue;
+    lanes z_first = lanes_gather(m->z[0], at_pixels(lanes_to_bits(first) & m->by.numbers));
+    lanes z_second = lanes_gather(
+        m->z[0], at_pixels(lanes_select_indices(is_unclear, lanes_to_bits(second) & m->by.numbers, (index_lanes){0})));
+    lanes_mask is_wrong = is_unclear & lanes_less(z_second, z_first);
+    *has_equals |= lanes_any(is_unclear & lanes_not(is_wrong) & lanes_not(lanes_less(z_first, z_second)));
+    lanes_store(m->keys[i - 1], lanes_select(is_wrong, second, first));
+    second = lanes_select(is_wrong, first, second);
+    lanes_store(m->keys[i], second);
+    has_swapped |= lanes_any(is_wrong);
+  }
+  return has_swapped;
+}
+
+/* Puts in order what the keys could not tell apart. */
+CONIC_INLINE void mend_order(const conic_gaussian_list *list, meetings *m, size_t n) {
+  int has_equals = 0;
+  if (n == 0)
+    return;
+  while (swap_neighbours(m, n, &has_equals))
+    ;
+  if (has_equals)
+    mend_equals(list, m, n);
 }
 
 /* Sorts what waits, and from `first` on what has come. */
@@ -144,8 +186,7 @@ CONIC_INLINE void sort_meetings(const scene *s, meetings *m, size_t first) {
     lanes_store(m->keys[m->n_waiting++], lanes_select(is_there, key, lanes_of(__builtin_inff())));
   }
   sort_rows(m->keys, n);
-  if (has_equals(m->keys, n, m->by.numbers))
-    mend_order(s->list, m, n);
+  mend_order(s->list, m, n);
 }
 
 CONIC_INLINE response response_in_order(const scene *s, const meetings *m, index_lanes which, int wants_all) {
