@@ -12,6 +12,7 @@
 /* How files are looked at; what is made has a way of its own. */
 typedef struct cli_bench_look {
   const char *camera_path; /* null: framed; its size is not taken */
+  const char *view;        /* of it; null: the only one */
   int culls_back;
 } cli_bench_look;
 
@@ -22,14 +23,17 @@ typedef struct cli_bench_scene {
   int is_framed, has_camera;  /* a file's camera; neither: the built-in one */
   conic_camera camera;        /* of has_camera */
   int cull_back;
+  int is_gaussian; /* there are these in place of the source */
+  conic_gaussians gaussians;
+  conic_gaussian_planes composited;
 } cli_bench_scene;
 
 /* Makes the scene of a name, or, where there is a look at it, reads the file of that name. Released by
  * cli_bench_scene_release, also after a failure. Returns the exit code, after a message. */
 int cli_bench_scene_open(cli_session *session, const char *name, const cli_bench_look *look, cli_bench_scene *scene);
-void cli_bench_scene_release(cli_bench_scene *scene);
-/* Whether a scene of that name can be made: CLI_DONE, or CLI_USAGE after a message. */
-int cli_bench_scene_check(const char *name);
+void cli_bench_scene_release(cli_session *session, cli_bench_scene *scene);
+/* Whether a scene of that name can be made: CLI_DONE, or CLI_USAGE after a message; and whether it is of Gaussians. */
+int cli_bench_scene_check(const char *name, int *is_gaussian);
 /* What can be asked for, for the help. */
 void cli_bench_scene_list(void);
 /* The camera that it is seen by, brought to the size. */
@@ -46,6 +50,13 @@ typedef struct cli_bench_method {
 
 enum { CLI_BENCH_N_METHODS = 7 };
 extern const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS];
+
+/* After the methods come the profiles of Gaussian scenes. */
+static inline const char *cli_bench_method_name(int i_method) {
+  return i_method < CLI_BENCH_N_METHODS
+             ? cli_bench_methods[i_method].name
+             : conic_gaussian_profile_name((conic_gaussian_profile)(i_method - CLI_BENCH_N_METHODS));
+}
 
 /* --- what a stage must at least do (bench/bench_work.c) --- */
 
@@ -70,7 +81,7 @@ typedef struct cli_bench_line {
   /* What is measured. */
   char name[96]; /* "sphere-1M/conic/avx512/2": what --compare finds it by */
   char scene_name[32];
-  int i_scene, i_method;
+  int i_scene, i_method; /* of a Gaussian scene the profile's number past the methods' */
   conic_isa isa;
   cli_device *device; /* null: this machine's processor */
   int threads, width, height;
@@ -99,7 +110,7 @@ int cli_bench_difference(const conic_image *a, const conic_image *b);
 double cli_bench_median(double *values, size_t n, double quartiles[2]);
 
 /* Draws the reference of the line's scene, method and size by plain C. */
-conic_status cli_bench_refer(cli_session *session, const cli_bench_scene *scene, const cli_bench_line *line,
+conic_status cli_bench_refer(cli_session *session, cli_bench_scene *scene, const cli_bench_line *line,
                              conic_image *reference);
 
 /* Measures the line with the worker's threads: one first frame, then warm ones until there are `most`, or at least
@@ -109,8 +120,28 @@ typedef struct cli_bench_patience {
   double seconds;
 } cli_bench_patience;
 
-conic_status cli_bench_measure(cli_session *worker, const cli_bench_scene *scene, const cli_bench_patience *patience,
+conic_status cli_bench_measure(cli_session *worker, cli_bench_scene *scene, const cli_bench_patience *patience,
                                int counter, cli_bench_pictures *pictures, cli_bench_line *line);
+
+/* --- Gaussians (bench/bench_gaussians.c) --- */
+
+int cli_bench_is_gaussian_file(const char *path);
+
+/* What cli_bench_scene_open does for them, and its end. */
+conic_status cli_bench_gaussians_read(cli_session *session, const char *path, const cli_bench_look *look,
+                                      cli_bench_scene *scene);
+conic_status cli_bench_gaussians_make(cli_session *session, size_t count, cli_bench_scene *scene);
+void cli_bench_gaussians_release(cli_session *session, cli_bench_scene *scene);
+
+/* Draws a frame of the line, Z, count and id if the image has them; and, which is no part of the frame, puts its
+ * colours into the image, clears what no Gaussians have, and counts pairs of a Gaussian and a pixel as fragments. */
+conic_status cli_bench_gaussians_draw(conic_context *context, cli_bench_scene *scene, const conic_camera *camera,
+                                      const cli_bench_line *line, const conic_image *image,
+                                      conic_render_statistics *statistics);
+void cli_bench_gaussians_show(const cli_bench_scene *scene, conic_image *image, conic_render_statistics *statistics);
+
+/* The line's work, by its statistics. */
+void cli_bench_gaussians_work(const cli_bench_scene *scene, cli_bench_line *line);
 
 /* --- cycles (bench/bench_cycles.c) --- */
 

@@ -7,6 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
+#include "cli/render/views.h"
 
 static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job) {
   static const char *const cull_words[] = {"none", "back", NULL};
@@ -16,10 +17,13 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
       {"scenes", CLI_TEXT, &job->scenes_text, "LIST", "scenes, or all; files are IN [all, or the files alone]"},
       {"methods", CLI_TEXT, &job->methods_text, "LIST",
        "conic, ray, affine, point, disc, auto, nearest, or all [conic]"},
+      {"profiles", CLI_TEXT, &job->profiles_text, "LIST",
+       "of Gaussian scenes: those of conic render, or all [gsplat-1.6,exact]"},
       {"isa", CLI_TEXT, &job->isa_text, "LIST", "auto, scalar, sse2, avx2, avx512, neon, or all [auto]"},
       {"threads", CLI_TEXT, &job->threads_text, "LIST", "numbers of threads; 0: all that there are [1,0]"},
       {"size", CLI_SIZE, job->size, "WxH", "pixels [1024x1024]", 1, 65535},
-      {"camera", CLI_TEXT, &job->look.camera_path, "FILE", "camera of the files, in JSON [framed as by conic render]"},
+      {"camera", CLI_TEXT, &job->look.camera_path, "FILE", "camera of the files, as of conic render [framed]"},
+      {"view", CLI_TEXT, &job->look.view, "VIEW", "of --camera: an index from 0, or a name [the only one]"},
       {"cull", CLI_CHOICE, &job->look.culls_back, "WHAT", "of the files: none, or back [none]", .choices = cull_words},
       {"device", CLI_TEXT, &job->device.name, "NAME", "each scene and method on opencl or opencl:P.D too [cpu]"},
       {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL, "also a device that does not round correctly"},
@@ -42,6 +46,8 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
     exit_code = cli_device_check(session, &job->device);
   if (exit_code == CLI_DONE && job->look.camera_path && !job->n_files)
     exit_code = cli_usage("bench: --camera is for files; what is made has a camera of its own");
+  if (exit_code == CLI_DONE && job->look.view && (!job->look.camera_path || cli_views_are_all(job->look.view)))
+    exit_code = cli_usage("bench: --view is one of a file of cameras; give --camera, too");
   if (exit_code == CLI_DONE && job->is_curve && (job->scenes_text || job->n_files || job->is_floor))
     exit_code = cli_usage("bench: --curve has scenes of its own");
   if (exit_code == CLI_DONE && job->is_kernels &&

@@ -46,6 +46,8 @@ void cli_bench_print_floor(const cli_bench_line *line, const cli_bench_machine *
     const cli_bench_work *work = &line->work[i];
     double least = cli_bench_floor_ms(work, machine), ms = cli_bench_stage_ms(&line->statistics.ms, i);
     floor_ms += least;
+    if (least == 0.0 && ms == 0.0) /* a stage that these do not have */
+      continue;
     printf("| %s | %.1f | %.1f | %.0f | %.2f | %.2f | %.2f | %.2f | %.1f |\n", cli_bench_stages[i],
            1e-6 * work->read_bytes, 1e-6 * work->written_bytes, 1e-6 * work->operations, memory_ms(work, machine),
            compute_ms(work, machine), least, ms, ms / least);

@@ -58,6 +58,8 @@ static void note_difference(const conic_image *reference, const conic_image *dra
 static conic_render_options options_of_frame(const cli_bench_scene *scene, const cli_bench_line *line) {
   conic_render_options options;
   conic_render_options_init(&options);
+  if (scene->is_gaussian)
+    return options;
   options.method = cli_bench_methods[line->i_method].method;
   options.passes = cli_bench_methods[line->i_method].passes;
   options.cull_back = scene->cull_back;
@@ -77,7 +79,9 @@ static conic_image with_planes(const conic_image *image, unsigned planes) {
 
 /* What a line's frames are drawn with, and the times that they took. */
 typedef struct bench {
-  const cli_bench_scene *scene;
+  conic_context *context;
+  cli_bench_scene *scene;
+  const cli_bench_line *line;
   conic_renderer *renderer;
   conic_camera camera;
   conic_render_options options;
@@ -87,10 +91,18 @@ typedef struct bench {
   double *ms[CLI_BENCH_N_STAGES + 1], *cycles;
 } bench;
 
+static conic_status draw_one(const bench *b, conic_image *image, conic_render_statistics *statistics) {
+  return b->scene->is_gaussian
+             ? cli_bench_gaussians_draw(b->context, b->scene, &b->camera, b->line, image, statistics)
+             : conic_render(b->renderer, b->scene->splats, &b->camera, &b->options, image, statistics);
+}
+
 static conic_status draw_timed(bench *b, conic_render_statistics *statistics) {
   double cycles = cli_bench_cycles_read(b->counter);
-  conic_status status = conic_render(b->renderer, b->scene->splats, &b->camera, &b->options, &b->timed, statistics);
+  conic_status status = draw_one(b, &b->timed, statistics);
   b->cycles[b->n] = cli_bench_cycles_read(b->counter) - cycles;
+  if (status == CONIC_OK && b->scene->is_gaussian)
+    cli_bench_gaussians_show(b->scene, &b->timed, statistics);
   return status;
 }
 
@@ -135,18 +147,36 @@ static conic_status draw_frames(bench *b, const cli_bench_patience *patience, cl
   note_difference(&pictures->reference, &b->timed, line);
   take_medians(b, line);
   conic_render_statistics statistics;
-  status = conic_render(b->renderer, b->scene->splats, &b->camera, &b->options, &pictures->drawn, &statistics);
+  status = draw_one(b, &pictures->drawn, &statistics);
+  if (status == CONIC_OK && b->scene->is_gaussian) {
+    cli_bench_gaussians_show(b->scene, &pictures->drawn, &statistics);
+    line->statistics.fragments = statistics.fragments;
+  }
   note_difference(&pictures->reference, &pictures->drawn, line);
   return status;
 }
 
-conic_status cli_bench_refer(cli_session *session, const cli_bench_scene *scene, const cli_bench_line *line,
+/* The same by plain C. */
+static conic_status refer_to_gaussians(conic_context *context, cli_bench_scene *scene, const conic_camera *camera,
+                                       const cli_bench_line *line, conic_image *reference) {
+  cli_bench_line plain = *line;
+  conic_render_statistics statistics;
+  plain.isa = CONIC_ISA_SCALAR;
+  conic_status status = cli_bench_gaussians_draw(context, scene, camera, &plain, reference, &statistics);
+  if (status == CONIC_OK)
+    cli_bench_gaussians_show(scene, reference, &statistics);
+  return status;
+}
+
+conic_status cli_bench_refer(cli_session *session, cli_bench_scene *scene, const cli_bench_line *line,
                              conic_image *reference) {
   conic_renderer *renderer = NULL;
   conic_camera camera;
   conic_render_options options = options_of_frame(scene, line);
   options.isa = CONIC_ISA_SCALAR;
   conic_status status = cli_bench_scene_camera(scene, line->width, line->height, &camera);
+  if (status == CONIC_OK && scene->is_gaussian)
+    return refer_to_gaussians(session->context, scene, &camera, line, reference);
   if (status == CONIC_OK)
     status = conic_renderer_create(session->context, &renderer);
   if (status == CONIC_OK)
@@ -155,10 +185,14 @@ conic_status cli_bench_refer(cli_session *session, const cli_bench_scene *scene,
   return status;
 }
 
-conic_status cli_bench_measure(cli_session *worker, const cli_bench_scene *scene, const cli_bench_patience *patience,
+conic_status cli_bench_measure(cli_session *worker, cli_bench_scene *scene, const cli_bench_patience *patience,
                                int counter, cli_bench_pictures *pictures, cli_bench_line *line) {
   size_t most = (size_t)patience->most + 1;
-  bench b = {.scene = scene, .counter = counter, .options = options_of_frame(scene, line)};
+  bench b = {.context = worker->context,
+             .scene = scene,
+             .line = line,
+             .counter = counter,
+             .options = options_of_frame(scene, line)};
   line->i_wrong_plane = -1;
   b.timed = with_planes(&pictures->drawn, pictures->timed_planes);
   b.cycles = calloc(most * (CLI_BENCH_N_STAGES + 2), sizeof *b.cycles);
@@ -173,7 +207,10 @@ conic_status cli_bench_measure(cli_session *worker, const cli_bench_scene *scene
   if (status == CONIC_OK)
     status = draw_frames(&b, patience, pictures, line);
   if (status == CONIC_OK) {
-    cli_bench_work_of(&line->statistics, scene->splats, &b.timed, b.options.passes, line->work);
+    if (scene->is_gaussian)
+      cli_bench_gaussians_work(scene, line);
+    else
+      cli_bench_work_of(&line->statistics, scene->splats, &b.timed, b.options.passes, line->work);
     for (int plane = 0; plane < CONIC_N_PLANES; plane++)
       line->hash[plane] = conic_image_hash(&pictures->drawn, (conic_plane)plane);
   }

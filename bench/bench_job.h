@@ -8,7 +8,7 @@ enum { CLI_BENCH_MOST_SCENES = 64, CLI_BENCH_MOST_THREADS = 8 };
 
 typedef struct cli_bench_job {
   /* What was asked for; texts are null where nothing was. */
-  const char *scenes_text, *methods_text, *isa_text, *threads_text, *old_path;
+  const char *scenes_text, *methods_text, *profiles_text, *isa_text, *threads_text, *old_path;
   const char **files;
   int n_files;
   cli_bench_look look; /* at the files */
@@ -19,8 +19,9 @@ typedef struct cli_bench_job {
   /* What it means (bench/bench_plan.c). */
   char scene_names[CLI_BENCH_MOST_SCENES][32];
   const char *scenes[CLI_BENCH_MOST_SCENES]; /* names, or the paths of files */
-  int is_file[CLI_BENCH_MOST_SCENES], n_scenes;
+  int is_file[CLI_BENCH_MOST_SCENES], is_gaussian[CLI_BENCH_MOST_SCENES], n_scenes;
   int methods[CLI_BENCH_N_METHODS], n_methods;
+  int profiles[CONIC_N_GAUSSIAN_PROFILES], n_profiles; /* numbers past the methods' */
   conic_isa isas[CONIC_N_ISAS];
   int n_isas;
   int threads[CLI_BENCH_MOST_THREADS], n_threads;

@@ -9,7 +9,8 @@
 #include "core/base/nearest_word.h"
 #include "core/lanes/instruction_sets.h"
 
-static const char default_scenes[] = "sphere-100k,sphere-1M,sphere-4M,gyroid-1M,mixed,subpixel,needles,huge";
+static const char default_scenes[] = "sphere-100k,sphere-1M,sphere-4M,gyroid-1M,mixed,subpixel,needles,huge,"
+                                     "gaussians-1M";
 static const char quick_scenes[] = "sphere-100k,sphere-1M,mixed";
 /* The scene on which, where nothing was asked for, all methods and instruction sets are measured. */
 static const char main_scene[] = "sphere-1M";
@@ -38,11 +39,11 @@ static int for_words(cli_bench_job *job, const char *option, const char *text, t
 static int take_scene(cli_bench_job *job, const char *word) {
   if (strcmp(word, "all") == 0)
     return for_words(job, "scenes", default_scenes, take_scene);
-  int exit_code = cli_bench_scene_check(word);
-  if (exit_code != CLI_DONE)
-    return exit_code;
   if (job->n_scenes == CLI_BENCH_MOST_SCENES)
     return cli_usage("bench: over %d scenes", CLI_BENCH_MOST_SCENES);
+  int exit_code = cli_bench_scene_check(word, &job->is_gaussian[job->n_scenes]);
+  if (exit_code != CLI_DONE)
+    return exit_code;
   char *name = job->scene_names[job->n_scenes];
   snprintf(name, sizeof job->scene_names[0], "%s", word);
   job->scenes[job->n_scenes++] = name;
@@ -53,6 +54,7 @@ static int take_file(cli_bench_job *job, const char *path) {
   if (job->n_scenes == CLI_BENCH_MOST_SCENES)
     return cli_usage("bench: over %d scenes", CLI_BENCH_MOST_SCENES);
   job->is_file[job->n_scenes] = 1;
+  job->is_gaussian[job->n_scenes] = cli_bench_is_gaussian_file(path);
   job->scenes[job->n_scenes++] = path;
   return CLI_DONE;
 }
@@ -78,6 +80,30 @@ static int take_method(cli_bench_job *job, const char *word) {
   return nearest
              ? cli_usage("bench: unknown method %s; did you mean %s?", word, nearest)
              : cli_usage("bench: unknown method %s; there are conic, ray, affine, point, disc, auto, nearest", word);
+}
+
+static void add_profile(cli_bench_job *job, int profile) {
+  for (int i = 0; i < job->n_profiles; i++)
+    if (job->profiles[i] == CLI_BENCH_N_METHODS + profile)
+      return;
+  job->profiles[job->n_profiles++] = CLI_BENCH_N_METHODS + profile;
+}
+
+static int take_profile(cli_bench_job *job, const char *word) {
+  const char *nearest = NULL;
+  int is_known = strcmp(word, "all") == 0;
+  for (int i = 0; i < CONIC_N_GAUSSIAN_PROFILES; i++) {
+    const char *name = conic_gaussian_profile_name((conic_gaussian_profile)i);
+    int is_it = strcmp(word, name) == 0;
+    if (is_it || strcmp(word, "all") == 0)
+      add_profile(job, i);
+    is_known |= is_it;
+    nearest = conic_nearer_word(word, nearest, name);
+  }
+  if (is_known)
+    return CLI_DONE;
+  return nearest ? cli_usage("bench: unknown profile %s; did you mean %s?", word, nearest)
+                 : cli_usage("bench: unknown profile %s; see conic help render", word);
 }
 
 static void add_isa(cli_bench_job *job, conic_isa isa) {
@@ -148,15 +174,16 @@ static int append_device_line(cli_bench_job *job, int i_scene, int i_method, con
   return exit_code;
 }
 
-/* A scene with every combination of the lists. */
+/* A scene with every combination of the lists. Devices do not draw Gaussians. */
 static int append_scene(cli_bench_job *job, int i_scene, const int size[2]) {
+  const int is_gaussian = job->is_gaussian[i_scene], *methods = is_gaussian ? job->profiles : job->methods;
   int exit_code = CLI_DONE;
-  for (int m = 0; m < job->n_methods; m++) {
+  for (int m = 0; m < (is_gaussian ? job->n_profiles : job->n_methods); m++) {
     for (int i = 0; i < job->n_isas; i++)
       for (int t = 0; t < job->n_threads && exit_code == CLI_DONE; t++)
-        exit_code = append_line(job, i_scene, job->methods[m], job->isas[i], job->threads[t], size);
-    if (exit_code == CLI_DONE && strcmp(job->device.name, "cpu") != 0)
-      exit_code = append_device_line(job, i_scene, job->methods[m], size);
+        exit_code = append_line(job, i_scene, methods[m], job->isas[i], job->threads[t], size);
+    if (exit_code == CLI_DONE && !is_gaussian && strcmp(job->device.name, "cpu") != 0)
+      exit_code = append_device_line(job, i_scene, methods[m], size);
   }
   return exit_code;
 }
@@ -211,6 +238,8 @@ static int take_lists(cli_bench_job *job) {
     exit_code = for_words(job, "scenes", scenes, take_scene);
   if (exit_code == CLI_DONE)
     exit_code = for_words(job, "methods", job->methods_text ? job->methods_text : "conic", take_method);
+  if (exit_code == CLI_DONE)
+    exit_code = for_words(job, "profiles", job->profiles_text ? job->profiles_text : "gsplat-1.6,exact", take_profile);
   if (exit_code == CLI_DONE)
     exit_code = for_words(job, "isa", job->isa_text ? job->isa_text : "auto", take_isa);
   if (exit_code == CLI_DONE)

@@ -56,7 +56,7 @@ void cli_bench_print_curve(const cli_bench_line *lines, int n_lines) {
 static void report_counts(cli_json *json, const cli_bench_line *line) {
   const conic_render_statistics *s = &line->statistics;
   cli_json_text(json, "scene", line->scene_name);
-  cli_json_text(json, "method", cli_bench_methods[line->i_method].name);
+  cli_json_text(json, "method", cli_bench_method_name(line->i_method));
   cli_json_text(json, "isa", s->isa);
   cli_json_count(json, "threads", (uint64_t)line->threads);
   cli_json_count(json, "width", (uint64_t)line->width);

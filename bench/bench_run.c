@@ -61,7 +61,7 @@ static int turn_to(bench_run *r, const cli_bench_line *line) {
   int is_new_scene = r->i_scene != line->i_scene;
   int is_new_size = r->width != line->width || r->height != line->height;
   if (is_new_scene) {
-    cli_bench_scene_release(&r->scene);
+    cli_bench_scene_release(r->session, &r->scene);
     r->i_scene = -1;
     int i = line->i_scene;
     const cli_bench_look *look = r->job->is_file[i] ? &r->job->look : NULL;
@@ -85,7 +85,7 @@ static void name_line(const bench_run *r, cli_bench_line *line) {
     snprintf(size, sizeof size, "@%dx%d", line->width, line->height);
   snprintf(line->scene_name, sizeof line->scene_name, "%s", r->scene.name);
   snprintf(line->name, sizeof line->name, "%.31s%.15s/%.15s/%.15s/%d", r->scene.name, size,
-           cli_bench_methods[line->i_method].name, line->device ? line->device->name : conic_isa_name(line->isa),
+           cli_bench_method_name(line->i_method), line->device ? line->device->name : conic_isa_name(line->isa),
            line->threads);
 }
 
@@ -165,7 +165,7 @@ int cli_bench_run(cli_session *session, cli_bench_job *job) {
   if (exit_code == CLI_DONE)
     exit_code = measure_lines(r, prints);
   close_pictures(r);
-  cli_bench_scene_release(&r->scene);
+  cli_bench_scene_release(r->session, &r->scene);
   for (int i = 0; i < r->n_workers; i++)
     cli_session_close(&r->workers[i]);
   cli_bench_cycles_close(r->counter);

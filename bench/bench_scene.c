@@ -4,6 +4,7 @@
 
 #include "bench/bench.h"
 #include "cli/arguments.h"
+#include "cli/render/views.h"
 #include "core/base/nearest_word.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"
@@ -106,12 +107,20 @@ static conic_status make_mix(cli_session *session, const mix *m, size_t count, c
 
 /* What a name asks for: a mix or an analytic scene, and how many splats. */
 typedef struct wish {
-  const mix *mix; /* null: analytic */
+  const mix *mix;  /* null: analytic */
+  int is_gaussian; /* neither */
   conic_scene_type type;
   unsigned long long count;
 } wish;
 
+static const char gaussians_name[] = "gaussians";
+
 static int find_base(const char *base, size_t length, wish *w) {
+  memset(w, 0, sizeof *w);
+  w->count = 1000000;
+  w->is_gaussian = strlen(gaussians_name) == length && strncmp(gaussians_name, base, length) == 0;
+  if (w->is_gaussian)
+    return 1;
   for (int i = 0; i < N_MIXES; i++)
     if (strlen(mixes[i].name) == length && strncmp(mixes[i].name, base, length) == 0) {
       w->mix = &mixes[i];
@@ -121,9 +130,7 @@ static int find_base(const char *base, size_t length, wish *w) {
   for (int i = 0; i < CONIC_N_SCENES; i++)
     if (strlen(conic_scene_name((conic_scene_type)i)) == length &&
         strncmp(conic_scene_name((conic_scene_type)i), base, length) == 0) {
-      w->mix = NULL;
       w->type = (conic_scene_type)i;
-      w->count = 1000000;
       return 1;
     }
   return 0;
@@ -131,8 +138,8 @@ static int find_base(const char *base, size_t length, wish *w) {
 
 static int refuse_scene(const char *name, size_t length) {
   char base[32];
-  const char *nearest = NULL;
   snprintf(base, sizeof base, "%.*s", (int)length, name);
+  const char *nearest = conic_nearer_word(base, NULL, gaussians_name);
   for (int i = 0; i < N_MIXES; i++)
     nearest = conic_nearer_word(base, nearest, mixes[i].name);
   for (int i = 0; i < CONIC_N_SCENES; i++)
@@ -154,9 +161,11 @@ static int understand(const char *name, wish *w) {
   return CLI_DONE;
 }
 
-int cli_bench_scene_check(const char *name) {
+int cli_bench_scene_check(const char *name, int *is_gaussian) {
   wish w;
-  return understand(name, &w);
+  int exit_code = understand(name, &w);
+  *is_gaussian = exit_code == CLI_DONE && w.is_gaussian;
+  return exit_code;
 }
 
 void cli_bench_scene_list(void) {
@@ -165,6 +174,7 @@ void cli_bench_scene_list(void) {
     printf("  %-10s %s\n", conic_scene_name((conic_scene_type)i), conic_scene_summary((conic_scene_type)i));
   for (int i = 0; i < N_MIXES; i++)
     printf("  %-10s splats all over a ball: %s\n", mixes[i].name, mixes[i].summary);
+  printf("  %-10s 3D Gaussians of degree 3, like a scene trained from photographs\n", gaussians_name);
 }
 
 /* --- opening --- */
@@ -185,12 +195,26 @@ static conic_status make_analytic(cli_session *session, const wish *w, conic_spl
   return status;
 }
 
+/* One of the file's, whatever the size of its pictures. */
+static conic_status read_bench_camera(cli_session *session, const cli_bench_look *look, conic_camera *camera) {
+  const cli_views_wish wanted = {.path = look->camera_path, .view = look->view};
+  conic_cameras cameras;
+  size_t i_view;
+  conic_status status = cli_views_read(session, &wanted, &cameras, &i_view);
+  if (status == CONIC_OK)
+    *camera = cameras.cameras[i_view];
+  conic_cameras_release(session->context, &cameras);
+  return status;
+}
+
 static conic_status read_bench_file(cli_session *session, const char *path, const cli_bench_look *look,
                                     cli_bench_scene *scene) {
   conic_source_options options;
   conic_source_options_init(&options);
   const char *slash = strrchr(path, '/');
   snprintf(scene->name, sizeof scene->name, "%.31s", slash ? slash + 1 : path);
+  if (cli_bench_is_gaussian_file(path))
+    return cli_bench_gaussians_read(session, path, look, scene);
   options.is_whole = 1;
   scene->cull_back = look->culls_back;
   scene->is_framed = !look->camera_path;
@@ -201,13 +225,15 @@ static conic_status read_bench_file(cli_session *session, const char *path, cons
     return CONIC_ERROR_ARGUMENT;
   }
   if (look->camera_path)
-    status = conic_camera_read(session->context, look->camera_path, &scene->camera);
+    status = read_bench_camera(session, look, &scene->camera);
   return status == CONIC_OK ? conic_source_open(session->context, &path, 1, &options, &scene->source) : status;
 }
 
 static conic_status make(cli_session *session, const wish *w, const char *name, cli_bench_scene *scene) {
   conic_splats splats = {0};
   snprintf(scene->name, sizeof scene->name, "%s", name);
+  if (w->is_gaussian)
+    return cli_bench_gaussians_make(session, (size_t)w->count, scene);
   scene->cull_back = !w->mix && w->type == CONIC_SCENE_SPHERE;
   conic_status status =
       w->mix ? make_mix(session, w->mix, (size_t)w->count, &splats) : make_analytic(session, w, &splats);
@@ -224,12 +250,13 @@ int cli_bench_scene_open(cli_session *session, const char *name, const cli_bench
   if (exit_code != CLI_DONE)
     return exit_code;
   conic_status status = look ? read_bench_file(session, name, look, scene) : make(session, &w, name, scene);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && !scene->is_gaussian)
     scene->splats = conic_source_chosen(scene->source)->drawing.splats;
   return cli_exit_of(status);
 }
 
-void cli_bench_scene_release(cli_bench_scene *scene) {
+void cli_bench_scene_release(cli_session *session, cli_bench_scene *scene) {
+  cli_bench_gaussians_release(session, scene);
   conic_source_close(scene->source);
   scene->source = NULL;
 }
@@ -266,6 +293,9 @@ conic_status cli_bench_scene_camera(const cli_bench_scene *scene, int width, int
     *camera = scene->camera;
   else
     build_in(camera);
+  for (int row = 0; row < 3 && scene->is_gaussian && !scene->has_camera; row++)
+    for (int axis = 1; axis < 3; axis++) /* what is made has y down */
+      camera->cam_from_world[row][axis] = -camera->cam_from_world[row][axis];
   resize(camera, width, height);
   return CONIC_OK;
 }

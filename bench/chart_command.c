@@ -1,4 +1,5 @@
-/* conic chart: every method and kernel on every scene, and every representation of a mesh: its error over its time. */
+/* conic chart: every method and kernel on every scene, every representation of a mesh, or every profile of a Gaussian
+ * scene: its error over its time. */
 #include "bench/chart.h"
 
 #include <errno.h>
@@ -7,6 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "bench/chart_gaussians.h"
 #include "bench/chart_mesh.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
@@ -40,6 +42,7 @@ typedef struct chart_job {
   const char *folder;
   int is_quick, only; /* -1: both */
   cli_mesh_chart mesh;
+  cli_gaussian_chart gaussians; /* with a path, it is all that is charted */
   conic_renderer *renderer;
   int size, repeat; /* of the pictures, and frames that are timed */
   cli_chart_point points[N_POINTS];
@@ -326,6 +329,11 @@ static conic_status write_tables(const chart_job *job) {
   return status == CONIC_OK && job->only != ONLY_REPRESENTATIONS ? write_table(job) : status;
 }
 
+static void warn_of_plots(const chart_job *job) {
+  fprintf(stderr, "conic: warning: %s: no picture, as there is no gnuplot here or it failed; the table is there\n",
+          job->folder);
+}
+
 static int draw_charts(const chart_job *job) {
   int is_drawn = 1;
   conic_status status = CONIC_OK;
@@ -340,16 +348,18 @@ static int draw_charts(const chart_job *job) {
   if (is_drawn && job->only != ONLY_REPRESENTATIONS)
     is_drawn = cli_chart_plot(job->folder, "chart.gp");
   if (!is_drawn)
-    fprintf(stderr, "conic: warning: %s: no picture, as there is no gnuplot here or it failed; the table is there\n",
-            job->folder);
+    warn_of_plots(job);
   return CLI_DONE;
+}
+
+static int is_told(const cli_session *session) {
+  return !session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0);
 }
 
 static int write_all(const chart_job *job) {
   conic_status status = write_tables(job);
   int exit_code = status == CONIC_OK ? draw_charts(job) : cli_exit_of(status);
-  if (exit_code != CLI_DONE || job->session->is_quiet ||
-      (job->session->json_path && strcmp(job->session->json_path, "-") == 0))
+  if (exit_code != CLI_DONE || !is_told(job->session))
     return exit_code;
   if (job->only != ONLY_REPRESENTATIONS)
     print_fronts(job);
@@ -364,10 +374,12 @@ static int write_statistics(const chart_job *job, double seconds) {
   cli_json *json = cli_json_open(job->session, &file, &exit_code);
   if (!json)
     return exit_code;
-  cli_json_count(json, "scenes", CLI_N_CHART_SCENES);
-  cli_json_count(json, "methods", CONIC_N_METHODS);
+  cli_json_count(json, "scenes", job->gaussians.path ? 1 : CLI_N_CHART_SCENES);
+  cli_json_count(json, "methods", job->gaussians.path ? 0 : CONIC_N_METHODS);
   cli_json_count(json, "points", (uint64_t)job->n_points);
   cli_json_count(json, "representation_points", (uint64_t)job->mesh.n_sizes * CLI_N_CHART_MODELS);
+  if (job->gaussians.path)
+    cli_gaussian_chart_report(json, &job->gaussians);
   cli_json_number(json, "seconds", seconds);
   cli_json_count(json, "threads", (uint64_t)conic_context_threads(job->session->context));
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
@@ -381,6 +393,24 @@ static int make_folder(const char *path) {
   return cli_error(CLI_RESOURCE, "%s: cannot make the folder: %s", path, strerror(errno));
 }
 
+static int chart_gaussians(chart_job *job) {
+  conic_status status = cli_gaussian_chart_measure(job->session, &job->gaussians);
+  if (status == CONIC_OK)
+    status = cli_gaussian_chart_write(job->session, job->folder, &job->gaussians);
+  if (status != CONIC_OK)
+    return cli_exit_of(status);
+  if (!cli_chart_plot(job->folder, "profiles.gp"))
+    warn_of_plots(job);
+  if (is_told(job->session))
+    cli_gaussian_chart_print(&job->gaussians);
+  return CLI_DONE;
+}
+
+static int chart_methods(chart_job *job) {
+  conic_status status = measure_all(job);
+  return status == CONIC_OK ? write_all(job) : cli_exit_of(status);
+}
+
 static int chart(chart_job *job) {
   double start = cli_seconds();
   job->session->draws_many_frames = 1;
@@ -390,8 +420,7 @@ static int chart(chart_job *job) {
   exit_code = make_folder(job->folder);
   if (exit_code != CLI_DONE)
     return exit_code;
-  conic_status status = measure_all(job);
-  exit_code = status == CONIC_OK ? write_all(job) : cli_exit_of(status);
+  exit_code = job->gaussians.path ? chart_gaussians(job) : chart_methods(job);
   return exit_code == CLI_DONE ? write_statistics(job, cli_seconds() - start) : exit_code;
 }
 
@@ -403,23 +432,33 @@ static int run_chart(cli_session *session, int argc, char **argv) {
     return cli_error(CLI_RESOURCE, "chart: out of memory");
   job->session = session;
   job->only = -1;
+  job->gaussians.most_pixels = 1000;
   const cli_option options[] = {
       {"o", CLI_TEXT, &job->folder, "DIR", "the folder of the chart"},
       {"quick", CLI_FLAG, &job->is_quick, NULL, "a small chart in seconds, to try it"},
       {"only", CLI_CHOICE, &job->only, "CHART", "methods or representations [both]", .choices = only_words},
       {"mesh", CLI_TEXT, &job->mesh.path, "MESH", "whose representations are charted [a generated terrain]"},
+      {"camera", CLI_TEXT, &job->gaussians.camera_path, "FILE", "of the Gaussian SCENE [framed as by conic render]"},
+      {"size", CLI_SIZE, job->gaussians.size, "WxH", "of the SCENE's pictures, without a camera [640x640]", 1, 65535},
+      {"pixels", CLI_INT, &job->gaussians.most_pixels, "N",
+       "of the SCENE: where to find the truth, which is slow, at most [1000]", 1, 1 << 24},
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
-  if (exit_code == CLI_DONE && n_positional > 0)
-    exit_code = cli_usage("chart: %s is too much; see conic help chart", positional[0]);
+  job->gaussians.path = exit_code == CLI_DONE && n_positional ? positional[0] : NULL;
+  if (exit_code == CLI_DONE && n_positional > 1)
+    exit_code = cli_usage("chart: %s is too much; see conic help chart", positional[1]);
+  else if (exit_code == CLI_DONE && n_positional && (job->only >= 0 || job->mesh.path))
+    exit_code = cli_usage("chart: of a Gaussian scene there is one chart, without --only and --mesh");
   else if (exit_code == CLI_DONE && !job->folder)
     exit_code = cli_usage("chart: no folder; give one with -o DIR");
   else if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, NULL, 0);
   job->size = job->is_quick ? 96 : 640;
   job->repeat = job->is_quick ? 2 : 15;
-  job->mesh.is_quick = job->is_quick;
+  job->mesh.is_quick = job->gaussians.is_quick = job->is_quick;
+  for (int i = 0; i < 2; i++)
+    job->gaussians.size[i] = job->gaussians.size[i] ? job->gaussians.size[i] : job->size;
   if (exit_code == CLI_DONE && job->folder)
     exit_code = chart(job);
   free(job);
@@ -428,7 +467,8 @@ static int run_chart(cli_session *session, int argc, char **argv) {
 
 const cli_command cli_chart = {
     .name = "chart",
-    .summary = "charts error over time: of every method and kernel, and of every representation of a mesh",
-    .usage = "conic chart -o DIR [--only methods|representations] [--mesh MESH] [--quick]",
+    .summary =
+        "charts error over time: of methods and kernels, of what draws a mesh, or of a Gaussian scene's profiles",
+    .usage = "conic chart [SCENE] -o DIR [--only methods|representations] [--mesh MESH] [--quick]",
     .run = run_chart,
 };

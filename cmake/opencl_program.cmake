@@ -3,8 +3,8 @@
 set(conic_opencl_sources ${PROJECT_SOURCE_DIR}/opencl/opencl_device.c ${PROJECT_SOURCE_DIR}/opencl/program.c
   ${PROJECT_SOURCE_DIR}/opencl/cache.c ${PROJECT_SOURCE_DIR}/opencl/queue.c ${PROJECT_SOURCE_DIR}/opencl/frame.c
   ${PROJECT_SOURCE_DIR}/opencl/frame_setup.c ${PROJECT_SOURCE_DIR}/opencl/frame_tiles.c ${PROJECT_SOURCE_DIR}/opencl/frame_triangles.c
-  ${PROJECT_SOURCE_DIR}/opencl/host_setup.c ${PROJECT_SOURCE_DIR}/opencl/opencl_renderer.c)
-foreach(program setup raster triangles)
+  ${PROJECT_SOURCE_DIR}/opencl/frame_gaussians.c ${PROJECT_SOURCE_DIR}/opencl/host_setup.c ${PROJECT_SOURCE_DIR}/opencl/opencl_renderer.c)
+foreach(program setup raster triangles gaussian_tiles gaussian_pixels)
   set(text ${CMAKE_BINARY_DIR}/opencl/${program}.cl)
   set(source ${CMAKE_BINARY_DIR}/opencl/${program}_text.c)
   add_custom_command(OUTPUT ${text} DEPFILE ${text}.d

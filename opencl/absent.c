@@ -32,3 +32,8 @@ conic_status conic_opencl_renderer_create(conic_context *context, const conic_op
   *renderer = NULL;
   return refuse(context);
 }
+
+conic_gaussian_device *conic_opencl_gaussian_device(conic_renderer *renderer) {
+  (void)renderer;
+  return NULL;
+}

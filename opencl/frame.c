@@ -90,20 +90,37 @@ static size_t plane_bytes(const conic_image *image, int plane) {
          (size_t)conic_plane_describe((conic_plane)plane)->n_channels;
 }
 
-/* A CPU's device draws into the image itself, another into memory of its own. */
-static conic_status open_planes(const conic_frame *f) {
+conic_status conic_frame_open_plane(const conic_frame *f, int buffer, void *plane, size_t bytes) {
   conic_opencl *opencl = f->opencl;
+  if (!plane)
+    conic_queue_release(&opencl->buffers[buffer]);
+  else if (opencl->device.is_cpu)
+    return conic_queue_wrap(&opencl->queue, &opencl->buffers[buffer], CL_MEM_READ_WRITE, plane, bytes);
+  else
+    return conic_queue_room(&opencl->queue, &opencl->buffers[buffer], bytes);
+  return CONIC_OK;
+}
+
+conic_status conic_frame_close_plane(const conic_frame *f, int buffer, void *plane, size_t bytes) {
+  conic_opencl *opencl = f->opencl;
+  cl_mem memory = opencl->buffers[buffer].memory;
+  cl_int answer;
+  if (!plane)
+    return CONIC_OK;
+  if (!opencl->device.is_cpu)
+    return conic_queue_read(&opencl->queue, &opencl->buffers[buffer], 0, plane, bytes);
+  void *mapped =
+      clEnqueueMapBuffer(opencl->queue.queue, memory, CL_TRUE, CL_MAP_READ, 0, bytes, 0, NULL, NULL, &answer);
+  if (mapped)
+    clEnqueueUnmapMemObject(opencl->queue.queue, memory, mapped, 0, NULL, NULL);
+  return conic_opencl_check(opencl->context, answer, "clEnqueueMapBuffer");
+}
+
+static conic_status open_planes(const conic_frame *f) {
   conic_status status = CONIC_OK;
-  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES && status == CONIC_OK; plane++) {
-    conic_buffer *buffer = &opencl->buffers[CONIC_BUFFER_PLANES + plane];
-    size_t bytes = plane_bytes(f->image, plane);
-    if (!f->image->planes[plane]) {
-      conic_queue_release(buffer);
-    } else if (opencl->device.is_cpu) {
-      status = conic_queue_wrap(&opencl->queue, buffer, CL_MEM_READ_WRITE, f->image->planes[plane], bytes);
-    } else
-      status = conic_queue_room(&opencl->queue, buffer, bytes);
-  }
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES && status == CONIC_OK; plane++)
+    status =
+        conic_frame_open_plane(f, CONIC_BUFFER_PLANES + plane, f->image->planes[plane], plane_bytes(f->image, plane));
   return status;
 }
 
@@ -149,28 +166,11 @@ conic_status conic_frame_begin(conic_frame *f) {
 /* --- after the parts --- */
 
 conic_status conic_frame_end(conic_frame *f, uint64_t *n_covered) {
-  conic_opencl *opencl = f->opencl;
   conic_status status = CONIC_OK;
-  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES && status == CONIC_OK; plane++) {
-    cl_mem memory = opencl->buffers[CONIC_BUFFER_PLANES + plane].memory;
-    size_t bytes = plane_bytes(f->image, plane);
-    if (!f->image->planes[plane])
-      continue;
-    if (!opencl->device.is_cpu) {
-      status = conic_queue_read(&opencl->queue, &opencl->buffers[CONIC_BUFFER_PLANES + plane], 0,
-                                f->image->planes[plane], bytes);
-      continue;
-    }
-    cl_int answer;
-    void *mapped =
-        clEnqueueMapBuffer(opencl->queue.queue, memory, CL_TRUE, CL_MAP_READ, 0, bytes, 0, NULL, NULL, &answer);
-    status = conic_opencl_check(opencl->context, answer, "clEnqueueMapBuffer");
-    if (mapped)
-      clEnqueueUnmapMemObject(opencl->queue.queue, memory, mapped, 0, NULL, NULL);
-  }
-  if (status == CONIC_OK)
-    status = conic_frame_add_tiles(f, CONIC_BUFFER_N_COVERED, n_covered);
-  return status;
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES && status == CONIC_OK; plane++)
+    status =
+        conic_frame_close_plane(f, CONIC_BUFFER_PLANES + plane, f->image->planes[plane], plane_bytes(f->image, plane));
+  return status == CONIC_OK ? conic_frame_add_tiles(f, CONIC_BUFFER_N_COVERED, n_covered) : status;
 }
 
 conic_status conic_frame_close(conic_frame *f) {
@@ -306,7 +306,9 @@ conic_status conic_frame_draw(conic_backend *backend, const conic_view *view, co
   conic_frame f = {.opencl = opencl, .view = view, .splats = splats, .triangles = triangles, .image = image};
   memset(opencl->queue.ms, 0, sizeof opencl->queue.ms);
   set_finish(finish, &f.constants);
-  conic_status status = triangles ? conic_frame_set_up_triangles(&f, finish->options->isa) : CONIC_OK;
+  conic_status status = conic_opencl_need_splats(opencl);
+  if (status == CONIC_OK && triangles)
+    status = conic_frame_set_up_triangles(&f, finish->options->isa);
   if (status == CONIC_OK)
     status = draw_parts(&f);
   if (status == CONIC_OK)

@@ -61,6 +61,10 @@ conic_status conic_frame_room(const conic_frame *frame, int buffer, size_t count
 conic_status conic_frame_copy(const conic_frame *frame, int buffer, const void *from, size_t bytes);
 /* The same of what a kernel only reads: a CPU's device reads it where it is. No bytes: the buffer is absent. */
 conic_status conic_frame_give(const conic_frame *frame, int buffer, const void *from, size_t bytes);
+/* A picture's plane (null: it is not wanted, and the buffer absent): a CPU's device draws into it itself, another into
+ * memory of its own, from which closing brings it. */
+conic_status conic_frame_open_plane(const conic_frame *frame, int buffer, void *plane, size_t bytes);
+conic_status conic_frame_close_plane(const conic_frame *frame, int buffer, void *plane, size_t bytes);
 /* Runs a kernel over a row of work-items; one is a group on a CPU and by tiles, where each has much to do. */
 conic_status conic_frame_run(const conic_frame *frame, conic_stage stage, conic_kernel_name kernel,
                              const conic_argument *arguments, int n_arguments, size_t n_items);

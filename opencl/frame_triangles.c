@@ -19,7 +19,7 @@ typedef struct host_array {
   size_t bytes;
 } host_array;
 
-enum { N_ARRAYS = CONIC_N_BUFFER_NAMES - CONIC_BUFFER_TRIANGLE_RECORDS };
+enum { N_ARRAYS = CONIC_BUFFER_GAUSSIAN_PICTURE - CONIC_BUFFER_TRIANGLE_RECORDS };
 
 static void list_columns(float *const *columns, int n_columns, size_t n, int buffer, host_array *arrays) {
   for (int i = 0; i < n_columns; i++)
@@ -252,7 +252,7 @@ conic_status conic_frame_add_triangles(conic_frame *f) {
                               CONIC_BUFFER_THRESHOLDS, CONIC_BUFFER_SUMS};
   conic_argument arguments[N_ARRAYS + 3 + 5 + CONIC_FRAME_PLANE_ARGUMENTS];
   int n = take_arguments(f, before, sizeof before / sizeof before[0], arguments);
-  for (int buffer = CONIC_BUFFER_TRIANGLE_PIECES; buffer < CONIC_N_BUFFER_NAMES; buffer++)
+  for (int buffer = CONIC_BUFFER_TRIANGLE_PIECES; buffer < CONIC_BUFFER_GAUSSIAN_PICTURE; buffer++)
     arguments[n++] = conic_frame_argument(f, buffer);
   n += take_arguments(f, after, sizeof after / sizeof after[0], arguments + n);
   n += conic_frame_planes(f, arguments + n);

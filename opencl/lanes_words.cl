@@ -26,8 +26,11 @@ typedef int16 lanes_mask;
 #define indices_of_ints(value) as_uint16((int_lanes)(value))
 #define lanes_columns() ((int_lanes)(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3))
 #define lanes_rows() ((int_lanes)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3))
+#define lanes_ascending(first) ((index_lanes)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) + (uint)(first))
 #define lanes_load(from) vload16(0, from)
 #define lanes_store(to, value) vstore16(value, 0, to)
+#define lanes_load_indices(from) vload16(0, from)
+#define lanes_store_indices(to, value) vstore16(value, 0, to)
 #define lanes_sqrt(value) sqrt((lanes)(value))
 #define lanes_absolute(value) fabs((lanes)(value))
 
@@ -89,6 +92,30 @@ CONIC_INLINE int lanes_any(lanes_mask mask) {
   long2 c = as_long2(b);
   return (c.x | c.y) != 0;
 }
+
+/* Bit l for lane l. */
+CONIC_INLINE uint lanes_bits(lanes_mask mask) {
+  int16 bits = mask & (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
+  int8 a = bits.lo | bits.hi;
+  int4 b = a.lo | a.hi;
+  int2 c = b.lo | b.hi;
+  return (uint)(c.x | c.y);
+}
+
+CONIC_INLINE lanes_mask lanes_mask_of(uint bits) {
+  return (bits & (index_lanes)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768)) != 0u;
+}
+
+CONIC_INLINE size_t lanes_append(uint *to, lanes_mask mask, index_lanes value) {
+  size_t n = 0;
+  for (int lane = 0; lane < CONIC_LANES; lane++) {
+    to[n] = ((const uint *)&value)[lane];
+    n += ((const int *)&mask)[lane] != 0;
+  }
+  return n;
+}
+
+#define __builtin_prefetch(pointer) CONIC_FETCH_AHEAD(pointer)
 
 CONIC_INLINE uint lanes_count(lanes_mask mask) {
   int8 a = mask.lo + mask.hi;

@@ -11,10 +11,10 @@
 static const char *kernel_name(const conic_opencl *opencl, int kernel) {
   static const char *const names[] = {"project", "lanes_project", "scan_sums",    "scan_tops", "scan_places",
                                       "compact", "count_tiles",   "place_chunks", "fill_tiles"};
-  static const char *const of_tiles[] = {"lanes_visibility", "lanes_accumulate", "lanes_nearest", "lanes_triangles",
-                                         "lanes_add_triangles"};
-  static const char *const of_pixels[] = {"gather_visibility", "gather_accumulate", "gather_nearest",
-                                          "gather_triangles", "gather_add_triangles"};
+  static const char *const of_tiles[] = {"lanes_visibility", "lanes_accumulate",    "lanes_nearest",
+                                         "lanes_triangles",  "lanes_add_triangles", "tiles_composite"};
+  static const char *const of_pixels[] = {"gather_visibility", "gather_accumulate",    "gather_nearest",
+                                          "gather_triangles",  "gather_add_triangles", "pixels_composite"};
   if (kernel < CONIC_KERNEL_VISIBILITY)
     return names[kernel];
   int i = kernel - CONIC_KERNEL_VISIBILITY;
@@ -66,19 +66,25 @@ static conic_status open_device(conic_opencl *opencl, const conic_opencl_options
     status = keep_folder(opencl, options->cache_folder);
   if (status != CONIC_OK)
     return status;
+  opencl->gaussian_device.n_units = device->n_compute_units;
   opencl->projects_on_host = options->projects_on_host || !device->has_double;
   opencl->part_splats = options->part_splats;
   opencl->work = options->work;
   if (opencl->work == CONIC_OPENCL_WORK_AUTO)
     opencl->work = device->is_cpu ? CONIC_OPENCL_WORK_TILES : CONIC_OPENCL_WORK_PIXELS;
   opencl->tile = 1 << tile_bits_of(opencl);
-  status = conic_queue_open(context, platform, opencl->id, &opencl->queue);
-  if (status == CONIC_OK && !opencl->projects_on_host)
+  return conic_queue_open(context, platform, opencl->id, &opencl->queue);
+}
+
+conic_status conic_opencl_need_splats(conic_opencl *opencl) {
+  conic_status status = CONIC_OK;
+  if (!opencl->projects_on_host && !opencl->kernels[CONIC_KERNEL_SCAN_SUMS - 1])
     status =
         make_program(opencl, &conic_opencl_setup_text, CONIC_KERNEL_PROJECT, CONIC_KERNEL_SCAN_SUMS, &opencl->setup);
-  return status == CONIC_OK ? make_program(opencl, &conic_opencl_raster_text, CONIC_KERNEL_SCAN_SUMS,
-                                           CONIC_KERNEL_TRIANGLES, &opencl->raster)
-                            : status;
+  if (status == CONIC_OK && !opencl->kernels[CONIC_KERNEL_TRIANGLES - 1])
+    status = make_program(opencl, &conic_opencl_raster_text, CONIC_KERNEL_SCAN_SUMS, CONIC_KERNEL_TRIANGLES,
+                          &opencl->raster);
+  return status;
 }
 
 conic_status conic_opencl_need_triangles(conic_opencl *opencl) {
@@ -89,8 +95,16 @@ conic_status conic_opencl_need_triangles(conic_opencl *opencl) {
     return conic_fail(opencl->context, CONIC_ERROR_UNSUPPORTED,
                       "opencl:%d.%d: %s has no double precision, which triangles need", device->i_platform,
                       device->i_device, device->name);
-  return make_program(opencl, &conic_opencl_triangles_text, CONIC_KERNEL_TRIANGLES, CONIC_N_KERNEL_NAMES,
+  return make_program(opencl, &conic_opencl_triangles_text, CONIC_KERNEL_TRIANGLES, CONIC_KERNEL_GAUSSIANS,
                       &opencl->triangles);
+}
+
+conic_status conic_opencl_need_gaussians(conic_opencl *opencl) {
+  const conic_opencl_text *text =
+      opencl->work == CONIC_OPENCL_WORK_TILES ? &conic_opencl_gaussian_tiles_text : &conic_opencl_gaussian_pixels_text;
+  if (opencl->kernels[CONIC_KERNEL_GAUSSIANS])
+    return CONIC_OK;
+  return make_program(opencl, text, CONIC_KERNEL_GAUSSIANS, CONIC_N_KERNEL_NAMES, &opencl->gaussians);
 }
 
 static void destroy_backend(conic_backend *backend) {
@@ -104,6 +118,7 @@ conic_status conic_opencl_open(conic_context *context, const conic_opencl_option
   (*opened)->context = context;
   (*opened)->backend.draw = conic_frame_draw;
   (*opened)->backend.destroy = destroy_backend;
+  (*opened)->gaussian_device.composite = conic_opencl_composite;
   conic_status status = open_device(*opened, options);
   if (status != CONIC_OK) {
     conic_opencl_close(*opened);
@@ -126,6 +141,8 @@ void conic_opencl_close(conic_opencl *opencl) {
     clReleaseProgram(opencl->raster);
   if (opencl->triangles)
     clReleaseProgram(opencl->triangles);
+  if (opencl->gaussians)
+    clReleaseProgram(opencl->gaussians);
   conic_queue_close(&opencl->queue);
   conic_memory_release(opencl->context, opencl->cache_folder);
   conic_memory_release(opencl->context, opencl);
@@ -151,4 +168,9 @@ conic_status conic_opencl_renderer_create(conic_context *context, const conic_op
   if (device)
     *device = opencl->device;
   return CONIC_OK;
+}
+
+conic_gaussian_device *conic_opencl_gaussian_device(conic_renderer *renderer) {
+  conic_backend *backend = conic_renderer_backend(renderer);
+  return backend && backend->draw == conic_frame_draw ? &((conic_opencl *)backend)->gaussian_device : NULL;
 }

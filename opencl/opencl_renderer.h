@@ -2,11 +2,12 @@
 #ifndef CONIC_OPENCL_RENDERER_H
 #define CONIC_OPENCL_RENDERER_H
 
+#include "gaussians/draw/gaussian_device.h"
 #include "opencl/queue.h"
 #include "raster/frame/backend.h"
 
-/* Those of setup.cl, of raster.cl and of triangles.cl; of VISIBILITY and what follows, the kind that suits the device.
- */
+/* Those of setup.cl, of raster.cl, of triangles.cl and of gaussians.cl; of VISIBILITY and what follows, the kind that
+ * suits the device. */
 typedef enum conic_kernel_name {
   CONIC_KERNEL_PROJECT,
   CONIC_KERNEL_PROJECT_LANES,
@@ -22,6 +23,7 @@ typedef enum conic_kernel_name {
   CONIC_KERNEL_NEAREST,
   CONIC_KERNEL_TRIANGLES,
   CONIC_KERNEL_ADD_TRIANGLES,
+  CONIC_KERNEL_GAUSSIANS,
   CONIC_N_KERNEL_NAMES
 } conic_kernel_name;
 
@@ -71,11 +73,21 @@ typedef enum conic_buffer_name {
   CONIC_BUFFER_TRIANGLE_COLORS = CONIC_BUFFER_TRIANGLE_POSITIONS + 3,
   CONIC_BUFFER_TRIANGLE_NORMALS = CONIC_BUFFER_TRIANGLE_COLORS + 3,
   CONIC_BUFFER_TRIANGLE_COORDINATES = CONIC_BUFFER_TRIANGLE_NORMALS + 3,
-  CONIC_N_BUFFER_NAMES = CONIC_BUFFER_TRIANGLE_COORDINATES + 2
+  /* Of a picture of Gaussians: */
+  CONIC_BUFFER_GAUSSIAN_PICTURE = CONIC_BUFFER_TRIANGLE_COORDINATES + 2,
+  CONIC_BUFFER_GAUSSIAN_TILE_BEGIN,
+  CONIC_BUFFER_GAUSSIAN_ENTRIES,
+  CONIC_BUFFER_GAUSSIAN_FOOTPRINTS,
+  CONIC_BUFFER_GAUSSIAN_RAYS,
+  CONIC_BUFFER_GAUSSIAN_NORMALS,
+  CONIC_BUFFER_GAUSSIAN_ROOM,
+  CONIC_BUFFER_GAUSSIAN_PLANES, /* nine, as conic_gaussian_planes has them */
+  CONIC_N_BUFFER_NAMES = CONIC_BUFFER_GAUSSIAN_PLANES + 9
 } conic_buffer_name;
 
 typedef struct conic_opencl {
   conic_backend backend; /* first: what the renderer has */
+  conic_gaussian_device gaussian_device;
   conic_context *context;
   conic_opencl_device device;
   conic_opencl_work work; /* tiles or pixels */
@@ -86,18 +98,24 @@ typedef struct conic_opencl {
   conic_queue queue;
   cl_device_id id;
   char *cache_folder; /* null: built programs are kept nowhere */
-  cl_program setup, raster, triangles;
+  cl_program setup, raster, triangles, gaussians;
   cl_kernel kernels[CONIC_N_KERNEL_NAMES];
   conic_buffer buffers[CONIC_N_BUFFER_NAMES];
 } conic_opencl;
 
-/* Opens the device that the options ask for and builds its programs. On success the caller ends *opened with
- * conic_opencl_close. Errors: as conic_opencl_renderer_create. */
+/* Opens the device that the options ask for. On success the caller ends *opened with conic_opencl_close. Errors: as
+ * conic_opencl_renderer_create. */
 conic_status conic_opencl_open(conic_context *context, const conic_opencl_options *options, conic_opencl **opened);
 void conic_opencl_close(conic_opencl *opencl);
 
-/* Builds what triangles need, if nobody needed it before. Errors: UNSUPPORTED (also where the device has no double
- * precision), MEMORY. */
+/* Builds what splats need, if nobody needed it before. Errors: UNSUPPORTED, MEMORY. */
+conic_status conic_opencl_need_splats(conic_opencl *opencl);
+/* Likewise of triangles. Errors: UNSUPPORTED (also where the device has no double precision), MEMORY. */
 conic_status conic_opencl_need_triangles(conic_opencl *opencl);
+/* Likewise of Gaussians, which need no double precision. */
+conic_status conic_opencl_need_gaussians(conic_opencl *opencl);
+
+/* The slot of the Gaussians' device. */
+conic_status conic_opencl_composite(conic_gaussian_device *device, const conic_gaussian_composition *composition);
 
 #endif

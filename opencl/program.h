@@ -11,7 +11,8 @@ typedef struct conic_opencl_text {
   size_t n_bytes;
 } conic_opencl_text;
 
-extern const conic_opencl_text conic_opencl_setup_text, conic_opencl_raster_text, conic_opencl_triangles_text;
+extern const conic_opencl_text conic_opencl_setup_text, conic_opencl_raster_text, conic_opencl_triangles_text,
+    conic_opencl_gaussian_tiles_text, conic_opencl_gaussian_pixels_text;
 
 /* Builds the text for the device, with tiles of that size. Where `cache_folder` is not null, the result is kept there,
  * under a name that is a hash of the text, the device and its driver, and taken from there next time; a cache that

@@ -3,6 +3,8 @@
 #ifndef CONIC_SHARED_H
 #define CONIC_SHARED_H
 
+#define CONIC_ON_DEVICE
+
 #pragma OPENCL FP_CONTRACT OFF
 
 /* Words of OpenCL C: */

@@ -27,12 +27,10 @@ static uint64_t mix(uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/* The picture's pixels, row after row, in n runs of equal length but for one: one pixel of each. */
-static void choose_pixels(conic_reference *r) {
-  uint64_t whole = (uint64_t)r->width * (uint64_t)r->height;
-  for (size_t i = 0; i < r->n_pixels; i++) {
-    uint64_t begin = whole * i / r->n_pixels, end = whole * (i + 1) / r->n_pixels;
-    r->pixels[i] = (uint32_t)(begin + mix(i) % (end - begin));
+void conic_oracle_choose_pixels(uint64_t whole, size_t n, uint32_t *pixels) {
+  for (size_t i = 0; i < n; i++) {
+    uint64_t begin = whole * i / n, end = whole * (i + 1) / n;
+    pixels[i] = (uint32_t)(begin + mix(i) % (end - begin));
   }
 }
 
@@ -51,7 +49,7 @@ static conic_status allocate(conic_context *context, size_t n_pixels, conic_refe
     r->pixels = conic_memory_allocate(context, r->n_pixels, sizeof *r->pixels);
     if (!r->pixels)
       return CONIC_ERROR_MEMORY;
-    choose_pixels(r);
+    conic_oracle_choose_pixels(whole, r->n_pixels, r->pixels);
   }
   return r->unstable ? CONIC_OK : CONIC_ERROR_MEMORY;
 }

@@ -48,17 +48,20 @@ static ray_parameters find_parameters(const oracle_view *view, const oracle_shap
 }
 
 /* The kernel's or its profile's value at q, of an ellipse at an offset from its centre. */
-static double ellipse_response(const oracle_view *view, const oracle_shape *shape, const double offset[2], double q) {
+static double ellipse_response(const oracle_view *view, const oracle_shape *shape, const double offset[2], double q,
+                               double *doubt) {
   double greater = oracle_greater_eigenvalue(shape->variance), pull[2], h = view->prefilter;
   const double share[2] = {h / greater, oracle_min(h * greater / oracle_determinant(shape->variance), 1.0)};
   oracle_apply(shape->inverse, offset, pull);
   double here = oracle_form(shape->inverse, offset), of_filter = h * (pull[0] * pull[0] + pull[1] * pull[1]);
   double n = of_filter - share[0] * here, m = share[1] * here - of_filter;
-  return conic_oracle_response(view, share, conic_oracle_direction(view, share, n, m, here), q);
+  double across = here > 0.0 ? n * here / (n + m + share[1] / 4096.0 * here) : 0.0;
+  return conic_oracle_response(view, share, conic_oracle_direction(view, share, n, m, here), across, q, doubt);
 }
 
 /* The same of a ray at the splat parameter u, by what the filter is at the place that its pixels are counted from. */
-static double ray_response(const oracle_view *view, const oracle_shape *shape, const double u[2], double q) {
+static double ray_response(const oracle_view *view, const oracle_shape *shape, const double u[2], double q,
+                           double *doubt) {
   ray_parameters at = find_parameters(view, shape, shape->center[0], shape->center[1]);
   oracle_symmetric filter = {at.spread.xx - 1.0, at.spread.xy, at.spread.yy - 1.0};
   double greater = at.iz > 0.0 ? oracle_greater_eigenvalue(filter) : 0.0;
@@ -67,7 +70,9 @@ static double ray_response(const oracle_view *view, const oracle_shape *shape, c
   double squared = u[0] * u[0] + u[1] * u[1], form = oracle_form(filter, u);
   double n = (1.0 + lesser) * (form - lesser * squared), m = (1.0 + greater) * (greater * squared - form);
   double direction = greater > 0.0 ? conic_oracle_direction(view, share, n, m, squared) : 0.0;
-  return conic_oracle_response(view, share, direction, q);
+  double apart = (greater - lesser + greater / 4096.0) * (1.0 + greater);
+  double across = apart > 0.0 ? (form - lesser * squared) / apart : 0.0;
+  return conic_oracle_response(view, share, direction, across, q, doubt);
 }
 
 static double gradient_length(const oracle_shape *shape) {
@@ -87,7 +92,7 @@ static void evaluate_ray(const oracle_view *view, const oracle_shape *shape, dou
   values[ORACLE_MARGIN_RIGHT] = shape->box[1][0] - x;
   values[ORACLE_MARGIN_TOP] = y - shape->box[0][1];
   values[ORACLE_MARGIN_BOTTOM] = shape->box[1][1] - y;
-  values[ORACLE_WEIGHT] = ray_response(view, shape, at.u, q) / sqrt(oracle_determinant(at.spread));
+  values[ORACLE_WEIGHT] = ray_response(view, shape, at.u, q, NULL) / sqrt(oracle_determinant(at.spread));
   values[ORACLE_IZ] = clamp_to(shape->range, at.iz);
   values[ORACLE_IZ_PLANE] = at.iz;
 }
@@ -145,7 +150,7 @@ static void evaluate_laplace(const oracle_view *view, const oracle_shape *shape,
   values[ORACLE_MARGIN_RIGHT] = shape->box[1][0] - x;
   values[ORACLE_MARGIN_TOP] = y - shape->box[0][1];
   values[ORACLE_MARGIN_BOTTOM] = shape->box[1][1] - y;
-  values[ORACLE_WEIGHT] = ray_response(view, shape, u, q) / sqrt(determinant);
+  values[ORACLE_WEIGHT] = ray_response(view, shape, u, q, NULL) / sqrt(determinant);
   values[ORACLE_IZ] = clamp_to(shape->range, at.iz);
   values[ORACLE_IZ_PLANE] = here.iz;
 }
@@ -189,7 +194,7 @@ void conic_oracle_evaluate(const oracle_view *view, const oracle_shape *shape, d
   for (int i = 0; i < ORACLE_N_MARGINS; i++)
     values[i] = 1.0;
   values[ORACLE_MARGIN_Q] = view->support - q;
-  values[ORACLE_WEIGHT] = shape->amplitude * ellipse_response(view, shape, offset, q);
+  values[ORACLE_WEIGHT] = shape->amplitude * ellipse_response(view, shape, offset, q, NULL);
   values[ORACLE_IZ] =
       clamp_to(shape->range, shape->center_iz + shape->slope[0] * offset[0] + shape->slope[1] * offset[1]);
   values[ORACLE_IZ_PLANE] = shape->center_iz + shape->gradient[0] * offset[0] + shape->gradient[1] * offset[1];
@@ -243,17 +248,19 @@ static void round_ray(const oracle_view *view, const oracle_shape *shape, double
 }
 
 /* What the weight at a place would be, but for its amplitude, if q were another. */
-static double response_at(const oracle_view *view, const oracle_shape *shape, double x, double y, double q) {
+static double response_at(const oracle_view *view, const oracle_shape *shape, double x, double y, double q,
+                          double *doubt) {
   double offset[2] = {x - shape->center[0], y - shape->center[1]}, pull[2] = {0.0, 0.0};
+  *doubt = 0.0;
   if (!view->profile)
     return conic_oracle_kernel(&view->kernel, q);
   if (shape->formula != ORACLE_RAY && shape->formula != ORACLE_LAPLACE)
-    return ellipse_response(view, shape, offset, q);
+    return ellipse_response(view, shape, offset, q, doubt);
   ray_parameters at =
       shape->formula == ORACLE_LAPLACE ? find_pulled(view, shape, x, y, pull) : find_parameters(view, shape, x, y);
   for (int i = 0; i < 2; i++)
     at.u[i] += at.jacobian[i][0] * pull[0] + at.jacobian[i][1] * pull[1];
-  return ray_response(view, shape, at.u, q);
+  return ray_response(view, shape, at.u, q, doubt);
 }
 
 void conic_oracle_rounding(const oracle_view *view, const oracle_shape *shape, double x, double y,
@@ -274,8 +281,9 @@ void conic_oracle_rounding(const oracle_view *view, const oracle_shape *shape, d
     round_ellipse(shape, offset, values, errors);
   }
   /* What is wrong in q is wrong in the kernel's value. */
-  double q = view->support - values[ORACLE_MARGIN_Q], here = response_at(view, shape, x, y, q);
-  double change = here - response_at(view, shape, x, y, q + errors[ORACLE_MARGIN_Q]);
+  double q = view->support - values[ORACLE_MARGIN_Q], doubt, other_doubt,
+         here = response_at(view, shape, x, y, q, &doubt);
+  double change = here - response_at(view, shape, x, y, q + errors[ORACLE_MARGIN_Q], &other_doubt);
   if (here > 0.0)
-    errors[ORACLE_WEIGHT] += values[ORACLE_WEIGHT] * fabs(change / here);
+    errors[ORACLE_WEIGHT] += values[ORACLE_WEIGHT] * (fabs(change / here) + doubt / here);
 }

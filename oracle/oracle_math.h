@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /* eˣ; relative error under 1e-15, 0 below -700 and infinite above 709. */
 double conic_oracle_exp(double x);
@@ -16,6 +17,9 @@ int conic_oracle_invert(const double matrix[3][3], double inverse[3][3]);
 
 /* The value of rank `rank` (from 0) among `values`, which are reordered. */
 double conic_oracle_select(double *values, size_t n, size_t rank);
+
+/* Of a picture's pixels, row after row, in n runs of equal length but for one: one pixel of each, always the same. */
+void conic_oracle_choose_pixels(uint64_t whole, size_t n, uint32_t *pixels);
 
 static inline double oracle_min(double a, double b) {
   return a < b ? a : b;

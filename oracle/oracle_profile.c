@@ -3,6 +3,7 @@
 #include "core/base/memory.h"
 
 enum { LEVELS = 15, RADII = 16, NODES = 5, PARTS = 40, KNOWN = 256, NORMALS = 225 };
+enum { STEPS = 16, PLACES = 9, TERMS = 16 };
 
 static const double node_directions[NODES] = {0.0, 0.15, 0.5, 0.85, 1.0};
 
@@ -10,6 +11,7 @@ static const double node_directions[NODES] = {0.0, 0.15, 0.5, 0.85, 1.0};
  * second. */
 struct oracle_profile {
   double nodes[LEVELS][LEVELS][RADII][NODES];
+  double smooth[STEPS][STEPS][TERMS]; /* for either order of two shares, the polynomial's coefficients */
   double narrowing;
 };
 
@@ -108,18 +110,89 @@ static void blur_all_round(workshop *w, double blur) {
     w->known[i] = blur_even(w, row_places, rows, w->reach * i / KNOWN, blur);
 }
 
-static double node(const workshop *w, const double share[2], double narrowing, double radius, double direction) {
-  double support = w->view->support, bend = bend_of(w->view, share), peak = 1.0;
-  double q = w->view->kernel.type == CONIC_KERNEL_BOX ? support * (1.0 - radius * radius) : support * radius * radius;
-  double across = direction * bend / (direction * bend + (1.0 - direction));
+/* The convolution at q, of which a share is across, over that of a Gaussian. */
+static double convolve(const workshop *w, const double share[2], double q, double across) {
   double x = sqrt(q * (1.0 - across) / (1.0 - share[0])), y = sqrt(q * across / (1.0 - share[1]));
   double more = share[1] / (1.0 - share[1]) - share[0] / (1.0 - share[0]), places[PARTS + 1], values[PARTS + 1];
-  for (int i = 0; i < 2; i++)
-    peak *= sqrt((1.0 - share[i]) / (1.0 + narrowing * share[i]));
+  double peak = sqrt(1.0 - share[0]) * sqrt(1.0 - share[1]);
   if (share[0] == share[1])
     return round_kernel(w, sqrt(x * x + y * y)) / peak;
   cut_exactly(w, x, places, values);
   return blur_even(w, places, values, y, sqrt(more)) / peak;
+}
+
+static double node(const workshop *w, const double share[2], double narrowing, double radius, double direction) {
+  double support = w->view->support, bend = bend_of(w->view, share);
+  double q = w->view->kernel.type == CONIC_KERNEL_BOX ? support * (1.0 - radius * radius) : support * radius * radius;
+  double across = direction * bend / (direction * bend + (1.0 - direction));
+  return convolve(w, share, q, across) * sqrt((1.0 + narrowing * share[0]) * (1.0 + narrowing * share[1]));
+}
+
+/* The q over the support that it is fitted at. */
+static double smooth_place(int i) {
+  double part = i / (PLACES - 1.0);
+  return part * part * (3.0 - 2.0 * part);
+}
+
+/* The terms of the smooth polynomial, 7, 4, 3 and 2 of each power of what is across; q is over the support. */
+static void smooth_terms(double q, double across, double terms[TERMS]) {
+  static const int n_powers[] = {7, 4, 3, 2};
+  double factor = 1.0;
+  for (int j = 0, at = 0; j < 4; j++, factor *= across) {
+    double power = factor;
+    for (int i = 0; i < n_powers[j]; i++, power *= 2.0 * q - 1.0)
+      terms[at++] = power;
+  }
+}
+
+/* Solves the normal equations by elimination. */
+static void solve_normal(double matrix[TERMS][TERMS], double right[TERMS]) {
+  for (int pivot = 0; pivot < TERMS; pivot++)
+    for (int row = pivot + 1; row < TERMS; row++) {
+      double factor = matrix[row][pivot] / matrix[pivot][pivot];
+      for (int column = pivot; column < TERMS; column++)
+        matrix[row][column] -= factor * matrix[pivot][column];
+      right[row] -= factor * right[pivot];
+    }
+  for (int row = TERMS - 1; row >= 0; row--) {
+    for (int column = row + 1; column < TERMS; column++)
+      right[row] -= matrix[row][column] * right[column];
+    right[row] /= matrix[row][row];
+  }
+}
+
+/* By least squares over nine q and the directions of the nodes; of turned ones, the shares change places. */
+static void fit_smooth(const double values[PLACES][NODES], int is_turned, double coefficients[TERMS]) {
+  double matrix[TERMS][TERMS] = {{0.0}}, terms[TERMS];
+  for (int i = 0; i < TERMS; i++)
+    coefficients[i] = 0.0;
+  for (int i = 0; i < PLACES * NODES; i++) {
+    int place = i / NODES, direction = i % NODES;
+    smooth_terms(smooth_place(place), smooth_place(place) * node_directions[direction], terms);
+    for (int row = 0; row < TERMS; row++) {
+      coefficients[row] += terms[row] * values[place][is_turned ? NODES - 1 - direction : direction];
+      for (int column = 0; column < TERMS; column++)
+        matrix[row][column] += terms[row] * terms[column];
+    }
+  }
+  solve_normal(matrix, coefficients);
+}
+
+static void make_smooth(workshop *w, struct oracle_profile *profile) {
+  const double nearly_all = 1.0 - 1.0 / 65536.0;
+  double values[PLACES][NODES];
+  for (int low = 0; low < STEPS; low++)
+    for (int high = low; high < STEPS; high++) {
+      const double share[2] = {oracle_min((low + 1.0) / STEPS, nearly_all),
+                               oracle_min((high + 1.0) / STEPS, nearly_all)};
+      if (high == low)
+        blur_all_round(w, sqrt(share[0] / (1.0 - share[0])));
+      for (int i = 0; i < PLACES; i++)
+        for (int j = 0; j < NODES; j++)
+          values[i][j] = convolve(w, share, smooth_place(i) * w->view->support, node_directions[j]);
+      fit_smooth((const double(*)[NODES])values, 0, profile->smooth[low][high]);
+      fit_smooth((const double(*)[NODES])values, 1, profile->smooth[high][low]);
+    }
 }
 
 static double narrowing_of(const workshop *w) {
@@ -156,6 +229,7 @@ conic_status conic_oracle_profile_create(conic_context *context, oracle_view *vi
             node(&w, share, profile->narrowing, (i / NODES) / (RADII - 1.0), node_directions[i % NODES]);
       }
   }
+  make_smooth(&w, profile);
   view->profile = profile;
   return CONIC_OK;
 }
@@ -184,10 +258,26 @@ double conic_oracle_direction(const oracle_view *view, const double share[2], do
   return d > 0.0 ? oracle_min(oracle_max(n / d, 0.0), 1.0) : 0.0;
 }
 
-double conic_oracle_response(const oracle_view *view, const double share[2], double direction, double q) {
+static double smooth_response(const oracle_view *view, const double share[2], double across, double q) {
+  double terms[TERMS], sum = 0.0, part[2];
+  int level[2];
+  smooth_terms(q / view->support, oracle_min(across, q) / view->support, terms);
+  for (int i = 0; i < 2; i++) {
+    double place = oracle_max(oracle_min(share[i], 1.0) * STEPS - 1.0, 0.0);
+    level[i] = (int)oracle_min(place, STEPS - 2.0);
+    part[i] = place - level[i];
+  }
+  for (int corner = 0; corner < 4; corner++) {
+    int a = corner & 1, b = corner >> 1;
+    double factor = (a ? part[0] : 1.0 - part[0]) * (b ? part[1] : 1.0 - part[1]);
+    for (int i = 0; i < TERMS; i++)
+      sum += factor * view->profile->smooth[level[0] + a][level[1] + b][i] * terms[i];
+  }
+  return sum;
+}
+
+static double steep_response(const oracle_view *view, const double share[2], double direction, double q) {
   const struct oracle_profile *p = view->profile;
-  if (!p)
-    return conic_oracle_kernel(&view->kernel, q);
   double part = oracle_min(oracle_max(q / view->support, 0.0), 1.0), level_part[2], sum = 0.0, peak = 1.0;
   double place = (RADII - 1) * sqrt(view->kernel.type == CONIC_KERNEL_BOX ? 1.0 - part : part);
   int i_radius = (int)oracle_min(place, RADII - 2.0), level[2];
@@ -205,4 +295,16 @@ double conic_oracle_response(const oracle_view *view, const double share[2], dou
     sum += factor * along_direction(p, level[0] + a, level[1] + b, i_radius + c, direction);
   }
   return sum / sqrt(peak);
+}
+
+double conic_oracle_response(const oracle_view *view, const double share[2], double direction, double across, double q,
+                             double *doubt) {
+  const double place = share[0] * STEPS;
+  if (doubt)
+    *doubt = 0.0;
+  if (!view->profile)
+    return conic_oracle_kernel(&view->kernel, q);
+  if (doubt && fabs(place - 1.0) < 1e-5)
+    *doubt = fabs(smooth_response(view, share, across, q) - steep_response(view, share, direction, q));
+  return place >= 1.0 ? smooth_response(view, share, across, q) : steep_response(view, share, direction, q);
 }

@@ -132,7 +132,7 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   reading.columns = options->columns;
   reading.keeps_faces = options->as == CONIC_AS_MESH || options->as == CONIC_AS_AUTO;
   conic_coloring_read(options->coloring, &reading);
-  conic_status status = conic_model_read(context, path, &reading, &model);
+  conic_status status = conic_gaussians_read_model(context, path, &reading, &model);
   if (status != CONIC_OK)
     return status;
   double start = conic_seconds_now();

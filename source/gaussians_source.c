@@ -1,6 +1,7 @@
 /* Gaussian scenes: drawn by themselves, composited by alpha. */
 #include <string.h>
 
+#include "conic/opencl.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
@@ -76,6 +77,10 @@ static conic_status open_gaussians(conic_source *source, const char *const *path
   up_of_frame(g->gaussians.frame, scale->up);
   scale->up_basis = CONIC_UP_KIND;
   return outline_means(g);
+}
+
+const conic_gaussians *conic_source_gaussians(const conic_source *source) {
+  return source->kind == &conic_source_kind_gaussians ? &((const gaussians_source *)source)->gaussians : NULL;
 }
 
 static void close_gaussians(conic_source *source) {
@@ -205,9 +210,9 @@ static void tell_drawing(const gaussians_source *g, uint64_t n_covered, conic_re
   statistics->splats_culled = s->gaussians_culled;
   statistics->splats_skipped = s->gaussians_skipped;
   statistics->pixels_covered = n_covered;
-  statistics->threads = conic_context_threads(g->base.context);
+  statistics->threads = s->device_units ? (int)s->device_units : conic_context_threads(g->base.context);
   statistics->tile = s->tile;
-  statistics->isa = conic_isa_name(s->isa);
+  statistics->isa = s->device_units ? "opencl" : conic_isa_name(s->isa);
   statistics->ms.setup = 1e3 * s->seconds_setup;
   statistics->ms.bin = 1e3 * (s->seconds_sort + s->seconds_bin);
   statistics->ms.accumulate = 1e3 * s->seconds_composite;
@@ -220,7 +225,6 @@ static conic_status draw_gaussians(conic_source *source, conic_renderer *rendere
   gaussians_source *g = (gaussians_source *)source;
   const int n = view->samples;
   fine_picture fine = {.camera = *camera, .samples = n, .is_opaque = render->has_background};
-  (void)renderer;
   if ((long)camera->width * n > 65535 || (long)camera->height * n > 65535)
     return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: so many samples make more than 65535 a side",
                       source->name);
@@ -231,6 +235,7 @@ static conic_status draw_gaussians(conic_source *source, conic_renderer *rendere
   fine.camera.cx *= n;
   fine.camera.cy *= n;
   g->options.isa = render->isa;
+  g->options.device = renderer ? conic_opencl_gaussian_device(renderer) : NULL;
   for (int c = 0; c < 3; c++)
     g->options.background[c] = render->has_background ? render->background[c] : 0.0f;
   conic_status status = allocate_planes(source->context, image, &fine);

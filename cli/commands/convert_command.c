@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
+#include "cli/commands/convert_measure.h"
 #include "cli/outputs.h"
 
 typedef struct convert_job {
@@ -21,6 +22,7 @@ typedef struct convert_job {
   int is_checked, is_lossless;
   conic_gaussians_differences differences;
   char losses[400];
+  cli_convert_pictures pictures;
 } convert_job;
 
 enum { READ, WORK, WRITE, CHECK };
@@ -119,6 +121,8 @@ static int convert_scene(void *cookie) {
   start = cli_build_end_stage(&job->base.stages[WRITE], start);
   if (status == CONIC_OK && strcmp(job->base.output, "-") != 0)
     status = read_again(job);
+  if (job->is_checked && job->pictures.n_views > 0)
+    status = cli_convert_measure(context, job->base.output, &job->scene, &job->written, &job->pictures);
   cli_build_end_stage(&job->base.stages[CHECK], start);
   return cli_exit_of(status);
 }
@@ -127,6 +131,15 @@ static void tell_losses(const void *cookie) {
   const convert_job *job = cookie;
   if (job->is_checked && !job->is_lossless)
     cli_note(job->base.session, "%s: not all of it is as it was: %s", job->base.output, job->losses);
+  const cli_convert_pictures *pictures = &job->pictures;
+  const char *sides = pictures->n_views == 1 ? "side" : "sides";
+  if (!job->is_checked || pictures->n_views == 0)
+    return;
+  if (pictures->greatest > 0.0)
+    cli_note(job->base.session, "%s: its pictures from %d %s have a PSNR of %.1f dB, and differ by up to %.3f",
+             job->base.output, pictures->n_views, sides, pictures->psnr, pictures->greatest);
+  else
+    cli_note(job->base.session, "%s: its pictures from %d %s are the same", job->base.output, pictures->n_views, sides);
 }
 
 static uint64_t bytes_written(const char *path) {
@@ -158,6 +171,13 @@ static void report_conversion(cli_json *json, const void *cookie) {
     cli_json_number(json, "color", job->differences.color);
     cli_json_number(json, "harmonics", job->differences.harmonics);
     cli_json_close(json);
+    if (job->pictures.n_views > 0) {
+      cli_json_object(json, "pictures");
+      cli_json_count(json, "views", (uint64_t)job->pictures.n_views);
+      cli_json_number(json, "psnr", job->pictures.psnr);
+      cli_json_number(json, "greatest", job->pictures.greatest);
+      cli_json_close(json);
+    }
     cli_json_count(json, "bytes", bytes_written(job->base.output));
   }
   cli_build_report_seconds(json, &job->base, "gaussians_per_s",
@@ -178,6 +198,8 @@ static int check_paths(convert_job *job, const char *const *inputs, int n_inputs
   job->base.input = inputs[0];
   if (!job->base.output)
     return cli_usage("convert: no output given (-o OUT)");
+  if (job->pictures.n_views > 0 && strcmp(job->base.output, "-") == 0)
+    return cli_usage("convert: --measure looks at the output, so it is to be a file");
   if (job->to)
     job->write.kind = (conic_gaussian_kind)(job->to - 1);
   else if (!conic_gaussians_find_kind(job->base.output, &job->write.kind))
@@ -205,6 +227,8 @@ static int run_convert(cli_session *session, int argc, char **argv) {
       {"from-frame", CLI_TEXT, &job.from_frame, "XYZ", "where they point in the input [the format's habit]"},
       {"keep-order", CLI_FLAG, &job.keeps_order, NULL, "do not bring neighbours together, whatever that costs"},
       {"sh-bits", CLI_INT, &job.sh_bits, "N", "of .spz: bits of each number of the harmonics, 1 to 8 [8]", 1, 8},
+      {"measure", CLI_INT, &job.pictures.n_views, "N", "draw both scenes from N sides, and say how pictures differ", 1,
+       360},
       {"spz-version", CLI_INT, &job.write.spz_version, "V", "of .spz: 3 for readers of before 2026 [4]", 3, 4},
   };
   int exit_code = cli_parse(session, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);

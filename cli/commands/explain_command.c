@@ -4,6 +4,7 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/commands/gaussian_commands.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/render/render_job.h"
@@ -357,8 +358,11 @@ static int explain(cli_session *session, explain_job *job) {
   conic_status status = cli_scene_begin(session, &job->scene);
   if (status == CONIC_OK)
     status = cli_scene_open(session, &job->scene);
-  exit_code = status == CONIC_OK ? answer(session, job) : cli_exit_of(status);
-  cli_scene_release(&job->scene);
+  if (status == CONIC_OK && cli_is_composited(&job->scene))
+    exit_code = cli_explain_composited(session, &job->scene, job->pixel[0], job->pixel[1]);
+  else
+    exit_code = status == CONIC_OK ? answer(session, job) : cli_exit_of(status);
+  cli_scene_release(session, &job->scene);
   return exit_code;
 }
 
@@ -368,6 +372,8 @@ static int check(cli_session *session, explain_job *job) {
     return cli_usage("explain: nothing is asked; give --pixel X,Y, --splat I or --dump-projection FILE");
   if (job->scene.view.samples > 1)
     return cli_usage("explain: it explains pixels, not --samples");
+  if (cli_is_composited(&job->scene) && (job->is_splat_given || job->dump_path))
+    return cli_usage("explain: --splat and --dump-projection are of splats; give --profile surface, too");
   if (!session->json_path && (job->is_pixel_given || job->is_splat_given))
     session->json_path = "-";
   int exit_code = cli_check_outputs(session, &job->dump_path, 1);
@@ -377,6 +383,7 @@ static int check(cli_session *session, explain_job *job) {
 static int run(cli_session *session, int argc, char **argv) {
   explain_job job = {.splat = 0};
   cli_scene_defaults(&job.scene);
+  job.scene.may_composite = 1;
   const cli_option own[] = {
       {"pixel", CLI_PARSED, job.pixel, "X,Y", "every splat in reach of this pixel, from 0,0 at the upper left",
        .parse = parse_pixel, .is_given = &job.is_pixel_given},

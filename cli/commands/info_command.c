@@ -7,6 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
+#include "cli/render/views.h"
 #include "cli/source_facts.h"
 #include "core/files/file.h"
 
@@ -15,7 +16,9 @@ typedef struct info_job {
   int is_check;
   int has_bytes;
   uint64_t bytes;
-  conic_facts *facts; /* null: it is an image */
+  int is_cameras, size[2]; /* --cameras, or they are all that the file has; --size of their pictures */
+  conic_facts *facts;      /* null: it is an image, or cameras */
+  conic_cameras cameras;
   conic_image image;
   size_t n_wrong_samples;
 } info_job;
@@ -23,12 +26,14 @@ typedef struct info_job {
 static int parse(cli_session *session, int argc, char **argv, info_job *job) {
   const cli_option options[] = {
       {"check", CLI_FLAG, &job->is_check, NULL, "also look for what cannot be drawn"},
+      {"cameras", CLI_FLAG, &job->is_cameras, NULL, "of a glTF, the cameras in it, as of files of cameras alone"},
+      {"size", CLI_SIZE, job->size, "WxH", "of cameras: pixels [the file's]", 1, 65535},
   };
   const char *positional[64] = {NULL};
   int n_positional = 0;
   if (argc > (int)(sizeof positional / sizeof *positional))
     return cli_usage("info: too many arguments");
-  int exit_code = cli_parse(session, options, 1, argc, argv, positional, &n_positional);
+  int exit_code = cli_parse(session, options, 3, argc, argv, positional, &n_positional);
   if (exit_code != CLI_DONE)
     return exit_code;
   if (n_positional != 1)
@@ -65,8 +70,19 @@ static void check_image(info_job *job) {
   }
 }
 
+static conic_status read_cameras(cli_session *session, info_job *job) {
+  conic_cameras_options options;
+  conic_cameras_options_init(&options);
+  options.width = job->size[0];
+  options.height = job->size[1];
+  return conic_cameras_read(session->context, job->path, &options, &job->cameras);
+}
+
 static conic_status read_file(cli_session *session, info_job *job) {
   find_size(job);
+  job->is_cameras |= conic_cameras_is_file(session->context, job->path);
+  if (job->is_cameras)
+    return read_cameras(session, job);
   if (!is_exr(job->path))
     return conic_source_inspect(session->context, job->path, job->is_check, &job->facts);
   conic_status status = conic_image_read(session->context, job->path, &job->image);
@@ -100,8 +116,36 @@ static double bytes_per_point(const info_job *job) {
   return 0.0;
 }
 
+static void print_cameras(const conic_cameras *cameras) {
+  printf("format     %s\nviews      %zu\n", conic_camera_file_name((conic_camera_file)cameras->kind), cameras->count);
+  for (size_t i = 0; i < cameras->count; i++) {
+    const conic_camera *c = &cameras->cameras[i];
+    printf("  %-4zu %s%s%dx%d  focal %.6g %.6g  centre %.6g %.6g", i, cameras->names[i], *cameras->names[i] ? "  " : "",
+           c->width, c->height, c->fx, c->fy, c->cx, c->cy);
+    if (c->kind != CONIC_CAMERA_PERSPECTIVE || c->lens != CONIC_LENS_NONE)
+      printf("  %s, lens %s", conic_camera_kind_name((conic_camera_kind)c->kind), conic_lens_name((conic_lens)c->lens));
+    putchar('\n');
+  }
+}
+
+static void report_cameras(cli_json *json, const conic_cameras *cameras) {
+  cli_json_text(json, "format", conic_camera_file_name((conic_camera_file)cameras->kind));
+  cli_json_array(json, "views");
+  for (size_t i = 0; i < cameras->count; i++) {
+    cli_json_object(json, NULL);
+    cli_json_count(json, "index", i);
+    if (*cameras->names[i])
+      cli_json_text(json, "name", cameras->names[i]);
+    cli_json_object(json, "camera");
+    cli_camera_write(json, &cameras->cameras[i]);
+    cli_json_close(json);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}
+
 static const char *kind_of(const info_job *job) {
-  return job->facts ? conic_facts_at(job->facts, 0)->text : "exr";
+  return job->is_cameras ? "cameras" : job->facts ? conic_facts_at(job->facts, 0)->text : "exr";
 }
 
 static int print_text(const info_job *job) {
@@ -115,6 +159,8 @@ static int print_text(const info_job *job) {
     putchar('\n');
   if (job->facts)
     cli_facts_print(job->facts);
+  else if (job->is_cameras)
+    print_cameras(&job->cameras);
   else
     print_image(job);
   if (fflush(stdout) != 0 || ferror(stdout))
@@ -145,6 +191,8 @@ static int report(cli_session *session, const info_job *job) {
     cli_json_number(json, "bytes_per_point", bytes_per_point(job));
   if (job->facts)
     cli_facts_report(json, job->facts, 1);
+  else if (job->is_cameras)
+    report_cameras(json, &job->cameras);
   else
     report_image(json, job);
   if (job->is_check)
@@ -167,10 +215,11 @@ static int run(cli_session *session, int argc, char **argv) {
     if (exit_code == CLI_DONE)
       exit_code = report(session, &job);
     conic_facts_destroy(job.facts);
+    conic_cameras_release(session->context, &job.cameras);
     conic_image_release(session->context, &job.image);
   }
   return exit_code < 0 ? CLI_DONE : exit_code;
 }
 
 const cli_command cli_info = {"info", "says what a file holds, and whether it is sound",
-                              "conic info FILE [--check] [--json -]", run};
+                              "conic info FILE [--check] [--cameras] [--json -]", run};

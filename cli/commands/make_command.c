@@ -1,10 +1,13 @@
-/* conic make: samples an analytic scene into splats, batch by batch, so that memory does not grow with their number. */
+/* conic make: samples an analytic scene into splats, batch by batch, so that memory does not grow with their number; or
+ * makes a scene of Gaussians, all at once. */
 #include <string.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
+#include "cli/outputs.h"
 #include "core/base/message.h"
 #include "core/base/nearest_word.h"
+#include "gaussians/scene/made_gaussians.h"
 
 /* Splats that are in memory at a time. */
 #define BATCH ((size_t)1 << 20)
@@ -14,27 +17,32 @@ typedef struct make_job {
   conic_scene_options scene;
   conic_write_options write;
   unsigned long long count, seed;
-  int is_ascii;
+  int is_ascii, is_gaussians, sh_degree, has_sh_degree;
 } make_job;
 
 enum { READ, WORK, WRITE };
+
+static const char gaussians_name[] = "gaussians";
 
 /* "plane, sphere, …", for messages. */
 static void list_names(char *names, size_t room) {
   size_t used = 0;
   names[0] = '\0';
   for (int i = 0; i < CONIC_N_SCENES && used < room; i++)
-    used += (size_t)snprintf(names + used, room - used, "%s%s", i ? ", " : "", conic_scene_name((conic_scene_type)i));
+    used += (size_t)snprintf(names + used, room - used, "%s, ", conic_scene_name((conic_scene_type)i));
+  if (used < room)
+    snprintf(names + used, room - used, "%s", gaussians_name);
 }
 
 static void print_scenes(void) {
   puts("\nscenes:");
   for (int i = 0; i < CONIC_N_SCENES; i++)
     printf("  %-10s %s\n", conic_scene_name((conic_scene_type)i), conic_scene_summary((conic_scene_type)i));
+  printf("  %-10s %s\n", gaussians_name, "3D Gaussians, like a scene trained from photographs");
 }
 
 static int find_scene(const char *name, conic_scene_type *type) {
-  const char *nearest = NULL;
+  const char *nearest = conic_nearer_word(name, NULL, gaussians_name);
   char names[256];
   for (int i = 0; i < CONIC_N_SCENES; i++) {
     const char *candidate = conic_scene_name((conic_scene_type)i);
@@ -50,6 +58,19 @@ static int find_scene(const char *name, conic_scene_type *type) {
   return cli_usage("make: unknown scene %s; there are %s", name, names);
 }
 
+static int check_gaussians(const make_job *job) {
+  conic_gaussian_kind kind;
+  const conic_scene_options *scene = &job->scene;
+  if (!job->base.output)
+    return cli_usage("make: where to? It needs -o OUT.ply, or another format of Gaussians");
+  if (!conic_gaussians_find_kind(job->base.output, &kind))
+    return cli_usage("%s: no format of Gaussians has this ending", job->base.output);
+  if (job->is_ascii || scene->jitter != 0.0 || scene->noise != 0.0 || scene->offset[0] != 0.0 ||
+      scene->offset[1] != 0.0 || scene->offset[2] != 0.0)
+    return cli_usage("make: --ascii, --jitter, --noise and --far are not for Gaussians");
+  return cli_check_outputs(job->base.session, &job->base.output, 1);
+}
+
 static int check_arguments(const char *const *scenes, int n_scenes, make_job *job) {
   char names[256];
   if (n_scenes == 0) {
@@ -58,6 +79,11 @@ static int check_arguments(const char *const *scenes, int n_scenes, make_job *jo
   }
   if (n_scenes > 1)
     return cli_usage("make: one scene at a time: what is %s?", scenes[1]);
+  job->is_gaussians = strcmp(scenes[0], gaussians_name) == 0;
+  if (job->is_gaussians)
+    return check_gaussians(job);
+  if (job->has_sh_degree)
+    return cli_usage("make: --degree is for Gaussians");
   int exit_code = find_scene(scenes[0], &job->scene.type);
   if (exit_code == CLI_DONE && !job->base.output)
     exit_code = cli_usage("make: where to? It needs -o OUT.ply");
@@ -69,6 +95,7 @@ static int parse_scene(int argc, char **argv, make_job *job) {
   conic_scene_options_init(scene);
   conic_write_options_init(&job->write);
   job->count = scene->count;
+  job->sh_degree = 3;
   const cli_option options[] = {
       {"o", CLI_TEXT, &job->base.output, "OUT.ply", "where to; - is standard output"},
       {"n", CLI_COUNT, &job->count, "COUNT", "splats: 100000, 10k, 2M, 1e6 [100k]", 1, 4294967294.0},
@@ -76,6 +103,8 @@ static int parse_scene(int argc, char **argv, make_job *job) {
       {"jitter", CLI_NUMBER, &scene->jitter, "J", "move each splat in its plane by up to J spacings [0]", 0, 1e6},
       {"noise", CLI_NUMBER, &scene->noise, "N", "move each along its normal by a Gaussian of N spacings [0]", 0, 1e6},
       {"far", CLI_VECTOR, scene->offset, "X,Y,Z", "move the scene away; writes doubles [0,0,0]"},
+      {"degree", CLI_INT, &job->sh_degree, "D", "of Gaussians' harmonics [3]", 0, CONIC_MAX_SH_DEGREE,
+       .is_given = &job->has_sh_degree},
       {"ascii", CLI_FLAG, &job->is_ascii, NULL, "write text instead of binary"},
   };
   const char *scenes[64];
@@ -123,8 +152,28 @@ static conic_status append_all(make_job *job, conic_scene *scene, conic_splats *
   return status;
 }
 
+static conic_status make_gaussians(make_job *job) {
+  conic_context *context = job->base.session->context;
+  conic_gaussians gaussians = {0};
+  conic_gaussians_write_options options;
+  conic_gaussians_write_options_init(&options);
+  double start = cli_seconds();
+  conic_status status = conic_gaussians_make(context, job->scene.count, job->sh_degree, job->seed, &gaussians);
+  start = cli_build_end_stage(&job->base.stages[WORK], start);
+  conic_gaussians_find_kind(job->base.output, &options.kind);
+  if (status == CONIC_OK) /* files have the frame of their kind */
+    status = conic_gaussians_turn(context, &gaussians, conic_gaussian_kind_frame(options.kind));
+  if (status == CONIC_OK)
+    status = conic_gaussians_write(context, job->base.output, &gaussians, &options);
+  cli_build_end_stage(&job->base.stages[WRITE], start);
+  conic_gaussians_release(context, &gaussians);
+  return status;
+}
+
 static int make_scene(void *cookie) {
   make_job *job = cookie;
+  if (job->is_gaussians)
+    return cli_exit_of(make_gaussians(job));
   conic_context *context = job->base.session->context;
   const unsigned fields = conic_scene_fields(job->scene.type);
   size_t count = job->scene.count;
@@ -149,7 +198,7 @@ static int make_scene(void *cookie) {
 static void report_scene(cli_json *json, const void *cookie) {
   const make_job *job = cookie;
   const conic_repairs none = {0}; /* what is made is sound; the keys are those of every command that builds */
-  cli_json_text(json, "scene", conic_scene_name(job->scene.type));
+  cli_json_text(json, "scene", job->is_gaussians ? gaussians_name : conic_scene_name(job->scene.type));
   cli_json_count(json, "points_in", job->scene.count);
   cli_json_count(json, "points_out", job->scene.count);
   cli_build_report_seconds(json, &job->base, "points_per_s", (double)job->scene.count / job->base.stages[WORK].seconds);
@@ -160,7 +209,8 @@ static void report_scene(cli_json *json, const void *cookie) {
 
 static void tell_scene(const void *cookie) {
   const make_job *job = cookie;
-  conic_log(job->base.session->context, CONIC_LOG_INFO, "%s: %zu splats", job->base.output, job->scene.count);
+  conic_log(job->base.session->context, CONIC_LOG_INFO, job->is_gaussians ? "%s: %zu Gaussians" : "%s: %zu splats",
+            job->base.output, job->scene.count);
 }
 
 static int run_make(cli_session *session, int argc, char **argv) {
@@ -169,5 +219,5 @@ static int run_make(cli_session *session, int argc, char **argv) {
   return cli_build_run(&job, &steps, parse_scene(argc, argv, &job));
 }
 
-const cli_command cli_make = {"make", "samples an analytic scene into splats",
+const cli_command cli_make = {"make", "samples an analytic scene into splats, or makes one of Gaussians",
                               "conic make SCENE -o OUT.ply [-n COUNT] [options]", run_make};

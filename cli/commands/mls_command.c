@@ -57,7 +57,7 @@ static conic_status read_points(mls_job *job) {
   conic_read_options options;
   conic_read_options_init(&options);
   options.columns = job->base.columns;
-  conic_status status = conic_model_read(context, job->base.input, &options, &job->model);
+  conic_status status = conic_gaussians_read_model(context, job->base.input, &options, &job->model);
   start = cli_build_end_stage(&job->base.stages[READ], start);
   if (status != CONIC_OK)
     return status;

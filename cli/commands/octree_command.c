@@ -33,7 +33,7 @@ static conic_status build_from_model(octree_job *job) {
   cli_coloring_read(&job->coloring, &read_options);
   double start = cli_seconds();
   read_options.columns = job->base.columns;
-  conic_status status = conic_model_read(context, job->base.input, &read_options, &model);
+  conic_status status = conic_gaussians_read_model(context, job->base.input, &read_options, &model);
   start = cli_build_end_stage(&stages[READ], start);
   if (status != CONIC_OK)
     return status;

@@ -79,7 +79,7 @@ static int read_model(prepare_job *job) {
   options.cutoff = job->estimate.cutoff;
   cli_coloring_read(&job->coloring, &options);
   options.columns = job->base.columns;
-  conic_status status = conic_model_read(job->base.session->context, job->base.input, &options, &job->model);
+  conic_status status = conic_gaussians_read_model(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
   cli_build_hint_faces(&job->base, &job->model);
   if (status == CONIC_OK)

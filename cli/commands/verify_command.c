@@ -4,6 +4,7 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/commands/gaussian_commands.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/render/render_job.h"
@@ -252,13 +253,34 @@ static int verify(cli_session *session, verify_job *job) {
     status = conic_image_read(session->context, job->image_path, &job->image);
   if (status == CONIC_OK)
     status = cli_scene_open(session, &job->scene);
-  if (status == CONIC_OK)
-    status = compare(session, job);
-  exit_code = status == CONIC_OK ? finish(session, job) : cli_exit_of(status);
+  if (status == CONIC_OK && cli_is_composited(&job->scene))
+    exit_code = cli_verify_composited(session, &job->scene, (size_t)job->n_pixels, job->image_path, &job->image);
+  else {
+    if (status == CONIC_OK)
+      status = compare(session, job);
+    exit_code = status == CONIC_OK ? finish(session, job) : cli_exit_of(status);
+  }
   conic_reference_release(session->context, &job->reference);
   conic_image_release(session->context, &job->image);
-  cli_scene_release(&job->scene);
+  cli_scene_release(session, &job->scene);
   return exit_code;
+}
+
+/* Which planes can be judged. */
+static int check_judged_planes(verify_job *job) {
+  const unsigned composited = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL |
+                              1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_ID |
+                              (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT));
+  int is_composited = cli_is_composited(&job->scene);
+  if (is_composited && !job->scene.is_aov_given)
+    job->scene.planes = composited;
+  if (is_composited && job->scene.planes & ~composited)
+    return cli_usage("verify: of a Gaussian scene, it judges rgba, Z, N, count, id, T, medianZ, inverseZ and last");
+  if (is_composited && job->question == CONIC_ORACLE_EXACT)
+    return cli_usage("verify: a Gaussian scene is judged by its profile, and --against exact is of splats");
+  if (!is_composited && job->scene.planes & ~CONIC_DRAWN_PLANES)
+    return cli_usage("verify: the planes cluster and P are made of id and Z; the oracle knows what is drawn");
+  return CLI_DONE;
 }
 
 static int run(cli_session *session, int argc, char **argv) {
@@ -266,6 +288,7 @@ static int run(cli_session *session, int argc, char **argv) {
   verify_job job = {.question = CONIC_ORACLE_METHOD};
   cli_scene_defaults(&job.scene);
   job.scene.planes = CONIC_DRAWN_PLANES;
+  job.scene.may_composite = 1;
   const cli_option own[] = {
       {"against", CLI_CHOICE, &job.question, "WHAT",
        "method: its own formula in double precision; exact: the kernel itself, projected and filtered [method]",
@@ -275,8 +298,8 @@ static int run(cli_session *session, int argc, char **argv) {
        .minimum = 1, .maximum = 4294836225.0},
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
-  if (exit_code == CLI_DONE && job.scene.planes & ~CONIC_DRAWN_PLANES)
-    exit_code = cli_usage("verify: the planes cluster and P are made of id and Z; the oracle knows what is drawn");
+  if (exit_code == CLI_DONE)
+    exit_code = check_judged_planes(&job);
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, NULL, 0);
   if (exit_code == CLI_DONE)

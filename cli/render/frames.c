@@ -4,17 +4,18 @@
 #include <string.h>
 
 #include "cli/outputs.h"
+#include "cli/render/views.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 
-enum { MOST_FRAMES = 9999 };
+enum { MOST_FRAMES = 9999, MOST_VIEWS = 9999999 };
 
-/* A number of a frame at `*text`, and past it; 0 where there is none. */
+/* A number of a frame at `*text`, and past it; -1 where there is none. */
 static int take_frame_number(const char **text) {
   char *end;
-  long n = **text >= '0' && **text <= '9' ? strtol(*text, &end, 10) : 0;
-  if (n < 1 || n > MOST_FRAMES)
-    return 0;
+  long n = **text >= '0' && **text <= '9' ? strtol(*text, &end, 10) : -1;
+  if (n < 0 || n > MOST_VIEWS)
+    return -1;
   *text = end;
   return (int)n;
 }
@@ -23,18 +24,22 @@ int cli_parse_turntable(const char *text, void *value) {
   cli_render_job *job = value;
   job->is_turntable = 1;
   job->n_frames = take_frame_number(&text);
-  return job->n_frames > 0 && *text == '\0';
+  return job->n_frames > 0 && job->n_frames <= MOST_FRAMES && *text == '\0';
 }
 
 int cli_parse_frames(const char *text, void *value) {
   int numbers[3] = {0, 0, 1}, n = 0;
   do
     numbers[n] = take_frame_number(&text);
-  while (numbers[n++] && n < 3 && *text == ':' && *++text);
+  while (numbers[n++] >= 0 && n < 3 && *text == ':' && *++text);
   if (n == 1)
     numbers[1] = numbers[0];
-  *(cli_frames *)value = (cli_frames){numbers[0], numbers[1], numbers[2]};
-  return *text == '\0' && text[-1] != ':' && numbers[0] && numbers[0] <= numbers[1] && numbers[2];
+  *(cli_frames *)value = (cli_frames){numbers[0], numbers[1], numbers[2], 1};
+  return *text == '\0' && text[-1] != ':' && numbers[0] >= 0 && numbers[0] <= numbers[1] && numbers[2] > 0;
+}
+
+int cli_frames_are_many(const cli_render_job *job) {
+  return job->is_turntable || job->is_every_view;
 }
 
 int cli_frames_count(const cli_render_job *job) {
@@ -61,20 +66,26 @@ static const char *find_pattern(const char *path, size_t *length, int *width) {
 
 char *cli_frame_name(const cli_render_job *job, const char *path, int i_frame) {
   const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.'), *end = path + strlen(path);
-  size_t length = 0, room = strlen(path) + 32;
-  int width = 4;
+  char stem[1024] = "";
+  if (job->is_every_view)
+    cli_view_stem(&job->cameras, (size_t)i_frame, stem, sizeof stem);
+  size_t length = 0, room = strlen(path) + strlen(stem) + 32;
+  int width = 4, number = i_frame + !job->is_every_view;
   char *name = malloc(room);
   if (!name)
     return NULL;
-  int is_numbered = job->is_turntable && strcmp(path, "-") != 0; /* there one comes after the other */
+  int is_numbered = cli_frames_are_many(job) && strcmp(path, "-") != 0; /* there one comes after the other */
   const char *pattern = is_numbered ? find_pattern(path, &length, &width) : NULL;
+  const char *place = is_numbered && job->is_every_view ? strstr(path, "%s") : NULL;
   if (!is_numbered)
     snprintf(name, room, "%s", path);
   else if (pattern)
-    snprintf(name, room, "%.*s%0*d%s", (int)(pattern - path), path, width, i_frame + 1, pattern + length);
+    snprintf(name, room, "%.*s%0*d%s", (int)(pattern - path), path, width, number, pattern + length);
+  else if (place)
+    snprintf(name, room, "%.*s%s%s", (int)(place - path), path, stem, place + 2);
   else {
     const char *ending = dot && (!slash || dot > slash) ? dot : end;
-    snprintf(name, room, "%.*s.%04d%s", (int)(ending - path), path, i_frame + 1, ending);
+    snprintf(name, room, "%.*s.%04d%s", (int)(ending - path), path, number, ending);
   }
   return name;
 }
@@ -106,17 +117,52 @@ static int check_files(const cli_session *session, const cli_render_job *job, co
   return answer;
 }
 
+static int compare_frame_names(const void *a, const void *b) {
+  return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+/* Names of views may be the same but for their folders. */
+static int check_view_names(const cli_session *session, const cli_render_job *job, const char *path) {
+  int n = cli_frames_count(job), answer = CLI_DONE;
+  char **names = calloc((size_t)n, sizeof *names);
+  for (int i = 0; i < n && answer == CLI_DONE; i++)
+    if (!names || !(names[i] = cli_frame_name(job, path, job->frames.first - 1 + i * job->frames.step)))
+      answer = cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
+  if (answer == CLI_DONE)
+    qsort(names, (size_t)n, sizeof *names, compare_frame_names);
+  for (int i = 1; i < n && answer == CLI_DONE; i++)
+    if (strcmp(names[i - 1], names[i]) == 0)
+      answer = cli_usage("%s: two views would be written to %s; number them, as by %%04d", session->command, names[i]);
+  for (int i = 0; names && i < n; i++)
+    free(names[i]);
+  free(names);
+  return answer;
+}
+
+/* Which there are, by numbers from 1. */
+static int check_frame_numbers(const cli_session *session, cli_render_job *job) {
+  cli_frames *frames = &job->frames;
+  int from = job->is_every_view ? 0 : 1; /* as users count */
+  if (frames->is_given && !cli_frames_are_many(job))
+    return cli_usage("%s: --frames chooses of a turntable's frames or of all views; give --turntable or --view all, "
+                     "too",
+                     session->command);
+  if (frames->is_given && (frames->first < from || frames->last >= from + job->n_frames))
+    return cli_usage("%s: --frames asks for %s %d, and there are %d to %d", session->command,
+                     job->is_every_view ? "view" : "frame", frames->first < from ? frames->first : frames->last, from,
+                     from + job->n_frames - 1);
+  *frames = frames->is_given ? (cli_frames){frames->first + 1 - from, frames->last + 1 - from, frames->step, 1}
+                             : (cli_frames){1, job->n_frames, 1, 0};
+  return CLI_DONE;
+}
+
 int cli_frames_check(const cli_session *session, cli_render_job *job, const char *const *paths, int n_paths) {
-  int answer = CLI_DONE, is_given = job->frames.first > 0;
-  if (is_given && !job->is_turntable)
-    return cli_usage("%s: --frames chooses of a turntable's frames; give --turntable, too", session->command);
-  if (is_given && job->frames.last > job->n_frames)
-    return cli_usage("%s: --frames asks for frame %d, and --turntable has %d", session->command, job->frames.last,
-                     job->n_frames);
-  if (!is_given)
-    job->frames = (cli_frames){1, job->n_frames, 1};
-  for (int i = 0; i < n_paths && answer == CLI_DONE && job->is_turntable; i++)
+  int answer = check_frame_numbers(session, job);
+  for (int i = 0; i < n_paths && answer == CLI_DONE && cli_frames_are_many(job); i++)
     answer = check_pattern(paths[i]);
+  for (int i = 0; i < n_paths && answer == CLI_DONE && job->is_every_view; i++)
+    if (paths[i] && strstr(paths[i], "%s"))
+      answer = check_view_names(session, job, paths[i]);
   if (answer == CLI_DONE)
     answer = check_files(session, job, paths, n_paths, job->frames.first - 1);
   return answer == CLI_DONE ? check_files(session, job, paths, n_paths, job->frames.last - 1) : answer;

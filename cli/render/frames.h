@@ -1,4 +1,5 @@
-/* The frames of a turntable: which are drawn, what their files are called, and where their cameras stand. */
+/* The frames of a turntable, or the views of a file: which are drawn, what their files are called, and where the
+ * cameras stand. */
 #ifndef CONIC_FRAMES_H
 #define CONIC_FRAMES_H
 
@@ -13,11 +14,15 @@ int cli_parse_frames(const char *text, void *frames);
  * after a message. */
 int cli_frames_check(const cli_session *session, cli_render_job *job, const char *const *paths, int n_paths);
 
+/* Whether there are several, with numbers in the names of their files. */
+int cli_frames_are_many(const cli_render_job *job);
+
 /* How many are drawn. */
 int cli_frames_count(const cli_render_job *job);
 
 /* The name of a frame's file, from 0, which the caller frees; null without memory. In a turntable "name.exr" becomes
- * "name.0001.exr", and "name_%03d.exr" becomes "name_001.exr". */
+ * "name.0001.exr", and "name_%03d.exr" becomes "name_001.exr"; views are
+ * counted from 0, and of these "%s.exr" is the view's own name. */
 char *cli_frame_name(const cli_render_job *job, const char *path, int i_frame);
 
 /* Turns a camera about the source's centre and what points up, as far as frame `i_frame` of the turntable. */

@@ -98,6 +98,10 @@ static void find_up(const cli_render_job *job, double up[3]) {
     up[i] = job->camera_path && !job->is_up_given ? -job->camera.cam_from_world[1][i] : scene[i];
 }
 
+void cli_lights_turn(cli_render_job *job) {
+  find_up(job, job->options.lighting.up);
+}
+
 void cli_lights_settle(cli_render_job *job) {
   conic_lighting *lighting = &job->options.lighting;
   if (!job->is_light_given)
@@ -113,7 +117,7 @@ void cli_lights_settle(cli_render_job *job) {
     lighting->ground[i] = job->is_studio ? studio_ground[i] : plain_sky;
   }
   lighting->is_given = 1;
-  find_up(job, lighting->up);
+  cli_lights_turn(job);
 }
 
 void cli_report_color(cli_json *json, const char *key, const float color[3]) {

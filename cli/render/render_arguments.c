@@ -48,20 +48,31 @@ static int check_streaming(const cli_render_job *job, int is_given) {
   return CLI_DONE;
 }
 
+/* Everything that a frame writes; null: nothing. */
+enum { N_PATHS = CLI_MAX_OUTPUTS + 5 };
+static void list_frame_paths(const cli_render_job *job, const char *paths[N_PATHS]) {
+  const char *const beside[] = {job->deep_path, job->overdraw_path, job->clusters_path, job->legend_path,
+                                job->boxes_path};
+  memset(paths, 0, N_PATHS * sizeof *paths);
+  memcpy(paths, job->outputs, (size_t)job->n_outputs * sizeof *paths);
+  memcpy(paths + CLI_MAX_OUTPUTS, beside, sizeof beside);
+}
+
+int cli_render_views_check(const cli_session *session, cli_render_job *job) {
+  const char *paths[N_PATHS];
+  list_frame_paths(job, paths);
+  return job->is_every_view ? cli_frames_check(session, job, paths, N_PATHS) : CLI_DONE;
+}
+
 /* What render's own options mean. */
 static int check_outputs(const cli_session *session, cli_render_job *job, int is_streaming_given) {
-  const char *paths[CLI_MAX_OUTPUTS + 5];
+  const char *paths[N_PATHS];
   int answer = CLI_DONE;
   if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path && !job->boxes_path &&
       !job->progressive_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
-    answer = check_output(job, paths[i] = job->outputs[i]);
-  paths[job->n_outputs] = job->deep_path;
-  paths[job->n_outputs + 1] = job->overdraw_path;
-  paths[job->n_outputs + 2] = job->clusters_path;
-  paths[job->n_outputs + 3] = job->legend_path;
-  paths[job->n_outputs + 4] = job->boxes_path;
+    answer = check_output(job, job->outputs[i]);
   if (answer == CLI_DONE && job->deep_path)
     answer = check_deep(job);
   if (answer == CLI_DONE && job->overdraw_path)
@@ -83,7 +94,10 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
     answer = cli_mattes_check(job);
   if (answer == CLI_DONE)
     answer = cli_planes_check(session, job);
-  return answer == CLI_DONE ? cli_frames_check(session, job, paths, job->n_outputs + 5) : answer;
+  if (answer != CLI_DONE || job->is_every_view) /* how many these are is still to be read */
+    return answer;
+  list_frame_paths(job, paths);
+  return cli_frames_check(session, job, paths, N_PATHS);
 }
 
 int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
@@ -118,8 +132,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name in Nuke or Blender"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says",
        .parse = cli_parse_turntable},
-      {"frames", CLI_PARSED, &job->frames, "A:B:STEP", "of the turntable's frames 1 to N, A to B in steps of STEP",
-       .parse = cli_parse_frames},
+      {"frames", CLI_PARSED, &job->frames, "A:B:STEP",
+       "of the turntable's frames 1 to N, or of all views from 0, A to B in steps of STEP", .parse = cli_parse_frames},
       {"boxes", CLI_TEXT, &job->boxes_path, "OUT.png",
        "of a .cot, the nodes of one level in false colours, with their boxes"},
       {"box-level", CLI_INT, &job->box_level, "N", "of --boxes: the root is 0 [the deepest of at most 64 nodes]", 0,

@@ -5,6 +5,7 @@
 #include "cli/command.h"
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
+#include "conic/gaussian_judge.h"
 #include "core/base/message.h"
 
 static int compare_frames(const void *a, const void *b) {
@@ -59,7 +60,8 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   name_attribute(image, "conicEpsilon", NULL, s->epsilon);
   name_attribute(image, "conicNear", NULL, s->near_z);
   name_attribute(image, "conicCutoff", NULL, (double)job->options.kernel.cutoff);
-  name_attribute(image, "conicPrefilter", NULL, (double)job->options.prefilter);
+  name_attribute(image, "conicPrefilter", NULL,
+                 job->abilities & CONIC_SOURCE_COMPOSITES ? job->gaussians.prefilter : (double)job->options.prefilter);
   name_attribute(image, "conicExposure", NULL, job->options.exposure);
   name_attribute(image, "conicSamples", NULL, (double)job->view.samples);
   name_attribute(image, "conicFx", NULL, camera->fx);
@@ -191,6 +193,18 @@ static void warn_of_error(cli_session *session, cli_render_job *job) {
   job->is_error_warned = 1;
 }
 
+/* The plane doubt is not the renderer's, but the oracle's about what it may have drawn. */
+static conic_status find_doubts(cli_session *session, const cli_render_job *job, const conic_camera *camera,
+                                conic_image *image) {
+  conic_gaussian_judging judging;
+  if (!image->planes[CONIC_PLANE_DOUBT])
+    return CONIC_OK;
+  conic_gaussian_judging_init(&judging);
+  judging.samples = job->view.samples;
+  return conic_gaussian_find_doubts(session->context, conic_source_gaussians(job->source), camera, &job->gaussians,
+                                    &judging, image);
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
@@ -200,6 +214,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   job->camera_ms += 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)
     status = cli_choose_exposure(session, job, &camera);
+  if (conic_image_planes(image) && (image->width != camera.width || image->height != camera.height))
+    conic_image_release(session->context, image);
   if (status == CONIC_OK && !conic_image_planes(image))
     status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
@@ -210,6 +226,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   for (int i = 0; i < job->repeat; i++)
     job->frames_ms += repeats[i].ms.frame;
   status = conic_image_locate(session->context, &camera, job->view.samples, image);
+  if (status == CONIC_OK)
+    status = find_doubts(session, job, &camera, image);
   if (status != CONIC_OK)
     return status;
   take_medians(job, repeats, (size_t)job->repeat);
@@ -247,8 +265,8 @@ static int render_scene(cli_session *session, cli_render_job *job) {
   conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
   conic_status status = repeats ? CONIC_OK : CONIC_ERROR_MEMORY;
   for (int i = 0, n = cli_frames_count(job); i < n && status == CONIC_OK; i++) {
-    if (job->is_turntable)
-      cli_session_part(session, "frame", i + 1, n);
+    if (cli_frames_are_many(job))
+      cli_session_part(session, job->is_turntable ? "frame" : "view", i + 1, n);
     status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, &image, repeats);
   }
   if (status == CONIC_OK) {
@@ -281,18 +299,20 @@ static int run(cli_session *session, int argc, char **argv) {
   enum { MANY = 16 };
   job.start_seconds = start;
   if (exit_code == CLI_DONE) {
-    session->draws_many_frames = (double)job.repeat * cli_frames_count(&job) >= MANY;
+    session->draws_many_frames = job.is_every_view || (double)job.repeat * cli_frames_count(&job) >= MANY;
     exit_code = cli_session_open(session);
   }
   if (exit_code == CLI_DONE) {
     conic_status status = check_formats(session, &job);
     if (status == CONIC_OK)
       status = cli_scene_begin(session, &job);
+    if (status == CONIC_OK && cli_render_views_check(session, &job) != CLI_DONE)
+      status = CONIC_ERROR_ARGUMENT;
     job.begun_seconds = cli_seconds();
     if (status == CONIC_OK)
       status = cli_scene_open(session, &job);
     exit_code = status == CONIC_OK ? render_scene(session, &job) : cli_exit_of(status);
-    cli_scene_release(&job);
+    cli_scene_release(session, &job);
   }
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;

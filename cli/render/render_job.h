@@ -15,9 +15,9 @@ typedef struct cli_backdrop {
   float top[3], bottom[3];
 } cli_backdrop;
 
-/* Of a turntable, the frames that are drawn: numbers from 1, as in the names of their files. */
+/* Of a turntable or of all views, those that are drawn: numbers from 1. */
 typedef struct cli_frames {
-  int first, last, step;
+  int first, last, step, is_given;
 } cli_frames;
 
 typedef struct cli_render_job {
@@ -37,14 +37,22 @@ typedef struct cli_render_job {
   int has_mattes;               /* --cryptomatte */
   const char *progressive_path; /* --progressive; null: none */
   const char *camera_path;      /* null: framed */
-  conic_camera camera;          /* the file's */
+  const char *view_name;        /* --view; null: the file's only one */
+  int camera_size[2];           /* that the file's cameras are brought to; 0: the file's */
+  int is_every_view;            /* --view all: each is a frame */
+  conic_cameras cameras;        /* the file's */
+  size_t i_view;                /* of these, the one that is drawn, or was last: */
+  conic_camera camera;
   conic_framing framing;
   int is_up_given, is_elevation_given;
+  int projection; /* of the framed camera: a conic_camera_kind */
+  double eye[3];  /* --eye: where it stands */
+  int is_eye_given;
   int is_plain; /* --plain: nothing is chosen by what looks best */
   int is_background_given;
   cli_backdrop backdrop;                       /* --background with two colours */
   int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/light_options.h) */
-  int n_frames;                                /* of a turntable; 1 without */
+  int n_frames;                                /* of a turntable, or views; else 1 */
   int is_turntable;
   cli_frames frames;
   int is_warned;       /* that a picture is empty */
@@ -68,10 +76,11 @@ typedef struct cli_render_job {
   /* What is drawn. */
   conic_source_options opening;
   conic_gaussian_options gaussians; /* the opening's, unless they are drawn as splats */
-  conic_patches_options patches; /* the opening's, as is the next */
+  conic_patches_options patches;    /* the opening's, as is the next */
   conic_layers_access access;
   conic_coloring_options coloring; /* the opening's, if it has one; `by` null: not given */
   int is_for_looking;              /* the command makes pictures, several samples a pixel unless said otherwise */
+  int may_composite;               /* or asks about such pictures: Gaussian scenes stay what they are */
   int may_stream;                  /* the command draws without having to know what */
   unsigned abilities;              /* what the source can do, bits of conic_source_ability; known before it is open */
   conic_source_view view;
@@ -109,7 +118,9 @@ const char *cli_method_name(const cli_render_job *job);
 conic_status cli_scene_begin(cli_session *session, cli_render_job *job);
 /* Opens the source, and fills in the options what it knows. */
 conic_status cli_scene_open(cli_session *session, cli_render_job *job);
-void cli_scene_release(cli_render_job *job);
+void cli_scene_release(cli_session *session, cli_render_job *job);
+/* --view all: sees to it that the views that are asked for can be drawn and written, once they are known. */
+int cli_render_views_check(const cli_session *session, cli_render_job *job);
 /* The camera of a frame. */
 conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *camera);
 

@@ -4,6 +4,7 @@
 #include "cli/color_options.h"
 #include "cli/render/frames.h"
 #include "cli/render/light_options.h"
+#include "cli/render/views.h"
 #include "cli/source_facts.h"
 #include "cli/tell.h"
 #include "core/base/message.h"
@@ -125,7 +126,6 @@ static void report_camera(cli_json *json, const cli_render_job *job) {
   static const char *const bases[] = {
       [CONIC_UP_HABIT] = "habit", [CONIC_UP_KIND] = "kind", [CONIC_UP_FLAT] = "flat",
       [CONIC_UP_OPEN] = "open",   [CONIC_UP_BASE] = "base", [CONIC_UP_FACING] = "facing"};
-  const conic_camera *camera = &job->last_camera;
   if (!job->camera_path) {
     const conic_source_scale *scale = conic_source_measure(job->source);
     cli_json_array(json, "up");
@@ -135,20 +135,14 @@ static void report_camera(cli_json *json, const cli_render_job *job) {
     cli_json_text(json, "up_basis", job->is_up_given ? "given" : bases[scale->up_basis]);
   }
   cli_json_object(json, "camera");
-  cli_json_count(json, "width", (uint64_t)camera->width);
-  cli_json_count(json, "height", (uint64_t)camera->height);
-  cli_json_number(json, "fx", camera->fx);
-  cli_json_number(json, "fy", camera->fy);
-  cli_json_number(json, "cx", camera->cx);
-  cli_json_number(json, "cy", camera->cy);
-  cli_json_array(json, "world_to_camera");
-  for (int row = 0; row < 4; row++) {
-    cli_json_array(json, NULL);
-    for (int column = 0; column < 4; column++)
-      cli_json_number(json, NULL, row < 3 ? camera->cam_from_world[row][column] : column == 3 ? 1.0 : 0.0);
-    cli_json_close(json);
-  }
+  cli_camera_write(json, &job->last_camera);
   cli_json_close(json);
+  if (!job->camera_path)
+    return;
+  cli_json_object(json, "view");
+  cli_json_count(json, "index", job->i_view);
+  if (*job->cameras.names[job->i_view])
+    cli_json_text(json, "name", job->cameras.names[job->i_view]);
   cli_json_close(json);
 }
 

@@ -5,6 +5,8 @@
 
 #include "cli/render/frames.h"
 #include "cli/render/light_options.h"
+#include "cli/render/projection.h"
+#include "cli/render/views.h"
 #include "core/files/file.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
@@ -13,6 +15,17 @@ int cli_lod_is_wanted(const cli_render_job *job) {
 
 const char *cli_method_name(const cli_render_job *job) {
   return job->is_patch ? "patch" : conic_method_name(job->options.method);
+}
+
+static conic_status read_views(cli_session *session, cli_render_job *job) {
+  const cli_views_wish wish = {job->camera_path, job->view_name, job->camera_size[0], job->camera_size[1]};
+  conic_status status = cli_views_read(session, &wish, &job->cameras, &job->i_view);
+  if (status != CONIC_OK)
+    return status;
+  job->camera = job->cameras.cameras[job->i_view];
+  if (job->is_every_view)
+    job->n_frames = (int)job->cameras.count;
+  return CONIC_OK;
 }
 
 conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
@@ -26,7 +39,7 @@ conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
   }
   conic_status status = cli_device_open(session, &job->device, &job->renderer);
   if (status == CONIC_OK && job->camera_path)
-    status = conic_camera_read(session->context, job->camera_path, &job->camera);
+    status = read_views(session, job);
   return status;
 }
 
@@ -84,7 +97,8 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   return status;
 }
 
-void cli_scene_release(cli_render_job *job) {
+void cli_scene_release(cli_session *session, cli_render_job *job) {
+  conic_cameras_release(session->context, &job->cameras);
   conic_renderer_destroy(job->renderer);
   conic_source_close(job->source);
 }
@@ -105,6 +119,12 @@ static double elevation_for(const conic_source_scale *scale, const double up[3])
 
 conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *camera) {
   conic_framing framing = job->framing;
+  if (job->is_every_view) {
+    job->i_view = (size_t)i_frame;
+    *camera = job->camera = job->cameras.cameras[i_frame];
+    cli_lights_turn(job);
+    return CONIC_OK;
+  }
   if (job->camera_path) {
     *camera = job->camera;
     cli_frame_orbit(job, i_frame, camera);
@@ -112,14 +132,18 @@ conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *ca
   }
   if (!job->is_up_given)
     memcpy(framing.up, conic_source_measure(job->source)->up, sizeof framing.up);
-  if (!job->is_plain && !job->is_elevation_given)
+  if (!job->is_elevation_given && (job->is_eye_given || job->projection == CONIC_CAMERA_EQUIRECTANGULAR))
+    framing.elevation_deg = 0.0; /* of who stands in it */
+  else if (!job->is_plain && !job->is_elevation_given)
     framing.elevation_deg = elevation_for(conic_source_measure(job->source), framing.up);
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
-  if (job->is_plain || job->deadline > 0.0) /* to find the outline takes time */
-    return conic_source_frame(job->source, &framing, camera);
-  double near_z;
+  double near_z = HUGE_VAL;
   conic_status status =
-      conic_source_fit(job->source, &framing, job->options.kernel.cutoff, job->n_frames, camera, &near_z);
+      job->is_plain || job->deadline > 0.0 /* to find the outline takes time */
+          ? conic_source_frame(job->source, &framing, camera)
+          : conic_source_fit(job->source, &framing, job->options.kernel.cutoff, job->n_frames, camera, &near_z);
+  if (status == CONIC_OK)
+    cli_project(job, &framing, camera);
   /* Strays, which are not framed, are no reason to cut off what is. */
   if (status == CONIC_OK && job->near_z.value < 0.0 && near_z < job->options.near_z)
     job->options.near_z = near_z;

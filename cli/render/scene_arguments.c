@@ -5,7 +5,9 @@
 #include "cli/color_options.h"
 #include "cli/render/backdrop.h"
 #include "cli/render/light_options.h"
+#include "cli/render/projection.h"
 #include "cli/render/scene_options.h"
+#include "cli/render/views.h"
 
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const as_words[] = {"auto", "points", "mesh", "hybrid", NULL};
@@ -92,11 +94,16 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
                          .prefilter = (double)job->options.prefilter};
   conic_render_options *o = &job->options;
   conic_framing *view = &job->framing;
-  int method = (int)o->method, shading = (int)o->shading, profile = 0;
+  int method = (int)o->method, shading = (int)o->shading, profile = 0, ignores_center = 0;
   const library_words words = find_words();
   const cli_option table[] = {
-      {"size", CLI_SIZE, raw.size, "WxH", "pixels [1024x1024]", 1, 65535, .is_given = &raw.is_size_given},
-      {"camera", CLI_TEXT, &job->camera_path, "FILE", "a pinhole camera in JSON, in place of the framing"},
+      {"size", CLI_SIZE, raw.size, "WxH",
+       "pixels; a file's cameras are scaled to it, each axis by itself [1024x1024, or the file's]", 1, 65535,
+       .is_given = &raw.is_size_given},
+      {"camera", CLI_TEXT, &job->camera_path, "FILE", CLI_CAMERA_HELP},
+      {"view", CLI_TEXT, &job->view_name, "VIEW",
+       "of --camera: an index from 0, the name of an image with or without its folder and ending, or all [the only "
+       "one]"},
       {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG", "the camera's place around the scene [30]", -1e6, 1e6,
        .is_given = &raw.is_framing_given},
       {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG",
@@ -106,6 +113,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .is_given = &raw.is_framing_given},
       {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6,
        .is_given = &raw.is_framing_given},
+      {"projection", CLI_CHOICE, &job->projection, "HOW",
+       "perspective, or of a Gaussian scene by --profile exact: orthographic, fisheye or panorama [perspective]",
+       .choices = cli_projection_words, .is_given = &raw.is_framing_given},
+      {"eye", CLI_PARSED, job->eye, "X,Y,Z",
+       "the place from which the camera looks [where it sees all of the scene; a panorama's: the scene's middle]",
+       .parse = cli_parse_eye, .is_given = &job->is_eye_given},
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [the file's, or by its shape]",
        .parse = cli_parse_up, .is_given = &job->is_up_given},
       {"as", CLI_CHOICE, &raw.as, "WHAT",
@@ -133,6 +146,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5, gsplat-1.5-aa, "
        "gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque splats [exact]",
        .choices = words.profiles, .is_given = &raw.is_profile_given},
+      {"ignore-center", CLI_FLAG, &ignores_center, NULL,
+       "of --profile inria-2023 and 2dgs-2024: take the picture's centre for the camera's, as these do"},
       {"quality", CLI_CHOICE, &raw.quality, "HOW",
        "draft (conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and --samples go first "
        "[good]",
@@ -140,8 +155,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]",
        .parse = cli_parse_kernel},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
-      {"prefilter", CLI_NUMBER, &raw.prefilter, "V", "variance of the low-pass in square pixels; 0: none [1]", 0,
-       10000},
+      {"prefilter", CLI_NUMBER, &raw.prefilter, "V",
+       "variance of the low-pass in square pixels; 0: none [1; 0 of Gaussian scenes]", 0, 10000,
+       .is_given = &raw.is_prefilter_given},
       {"epsilon", CLI_PARSED, &job->epsilon, "E",
        "depth tolerance along the ray, also in spacings (2x), or auto [auto]", .parse = cli_parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
@@ -167,7 +183,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = cli_parse_exposure},
       {"aov", CLI_PARSED, &job->planes, "LIST",
        "planes: rgba,Z,N,albedo,weight,count,id or all; P, places in the world; cluster of hybrids; T, medianZ, "
-       "inverseZ, last of "
+       "inverseZ, last, doubt of "
        "Gaussian scenes [rgba,Z]",
        .parse = cli_parse_planes, .is_given = &job->is_aov_given},
       {"degree", CLI_INT, &job->patches.surface.degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1,
@@ -195,7 +211,10 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   if (!job->is_patch)
     o->method = (conic_method)method;
   job->gaussians.profile = (conic_gaussian_profile)profile;
-  if (profile < CONIC_N_GAUSSIAN_PROFILES && (raw.is_profile_given || (job->is_for_looking && !job->is_plain)))
+  job->gaussians.prefilter = raw.is_prefilter_given ? raw.prefilter : 0.0;
+  job->gaussians.ignores_center = (uint32_t)ignores_center;
+  if (profile < CONIC_N_GAUSSIAN_PROFILES &&
+      (raw.is_profile_given || ((job->is_for_looking || job->may_composite) && !job->is_plain)))
     job->opening.gaussians = &job->gaussians;
   o->shading = (conic_shading)shading;
   o->kernel.cutoff = (float)raw.cutoff;
@@ -215,7 +234,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   if (raw.is_size_given) {
     view->width = raw.size[0];
     view->height = raw.size[1];
-  }
-  raw.is_framing_given |= job->is_elevation_given;
+    memcpy(job->camera_size, raw.size, sizeof raw.size);
+  } else if (job->projection == CONIC_CAMERA_EQUIRECTANGULAR)
+    view->height = view->width / 2;
+  raw.is_framing_given |= job->is_elevation_given || job->is_eye_given;
   return cli_scene_check(session, &raw, job);
 }

@@ -4,7 +4,9 @@
 
 #include "cli/color_options.h"
 #include "cli/outputs.h"
+#include "cli/render/projection.h"
 #include "cli/render/scene_options.h"
+#include "cli/render/views.h"
 
 /* Colours that are made of something need all of it at once. */
 static int check_colors(const cli_session *session, cli_render_job *job, int as) {
@@ -35,18 +37,25 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
   if (job->boxes_path && job->abilities != CONIC_SOURCE_CHOOSES)
     return cli_usage("%s: --boxes shows the nodes of a single .cot (conic octree makes one), not with --color-by",
                      command);
+  int is_exact = job->abilities & CONIC_SOURCE_COMPOSITES && job->gaussians.profile == CONIC_PROFILE_EXACT;
+  if (job->projection != CONIC_CAMERA_PERSPECTIVE && !is_exact)
+    return cli_usage("%s: --projection %s is of Gaussian scenes by --profile exact; all else is drawn in perspective",
+                     command, cli_projection_words[job->projection]);
+  if (job->projection != CONIC_CAMERA_PERSPECTIVE && job->projection != CONIC_CAMERA_ORTHOGRAPHIC &&
+      job->gaussians.prefilter > 0.0)
+    return cli_usage("%s: --prefilter is of perspective and orthographic pictures of Gaussian scenes", command);
   if (is_hybrid)
     return job->n_inputs == 1 ? CLI_DONE : cli_usage("%s: a hybrid is drawn by itself, and made of one mesh", command);
-  if (job->abilities & CONIC_SOURCE_COMPOSITES && strcmp(job->device.name, "cpu") != 0)
-    return cli_usage("%s: Gaussian scenes are drawn by the processor; --profile surface draws one by --device",
-                     command);
   if (job->abilities & CONIC_SOURCE_COMPOSITES && (job->deep_path || job->has_mattes || job->is_exposure_automatic))
     return cli_usage("%s: --deep, --cryptomatte and --exposure auto are of splats; give --profile surface, too",
                      command);
-  if (job->abilities & CONIC_SOURCE_COMPOSITES && !job->is_for_looking)
+  if (job->abilities & CONIC_SOURCE_COMPOSITES && job->gaussians.prefilter > 0.0 &&
+      job->gaussians.profile != CONIC_PROFILE_EXACT)
+    return cli_usage("%s: --prefilter is of splats and of --profile exact; the others have what they have", command);
+  if (job->abilities & CONIC_SOURCE_COMPOSITES && !job->is_for_looking && !job->may_composite)
     return cli_usage("%s: it takes splats apart; give --profile surface, or none", command);
   if (job->planes & CONIC_GAUSSIAN_PLANES && !(job->abilities & CONIC_SOURCE_COMPOSITES))
-    return cli_usage("%s: the planes T, medianZ, inverseZ and last are of Gaussian scenes", command);
+    return cli_usage("%s: the planes T, medianZ, inverseZ, last and doubt are of Gaussian scenes", command);
   if (job->view.only_kind >= 0 || job->clusters_path || job->planes & 1u << CONIC_PLANE_CLUSTER)
     return cli_usage("%s: --only, --clusters and the plane cluster are of hybrids: a .chy, or --as hybrid", command);
   if (job->abilities & CONIC_SOURCE_STREAMS && cli_lod_is_wanted(job) && !job->may_stream)
@@ -64,10 +73,17 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
   const char *command = session->command;
   if (job->n_inputs == 0)
     return cli_usage("%s: no input; see conic help %s", command, command);
-  if (job->camera_path && words->is_size_given)
-    return cli_usage("%s: --size is the camera file's; give one of both", command);
+  if (job->view_name && !job->camera_path)
+    return cli_usage("%s: --view is of a file of cameras; give --camera, too", command);
+  if (cli_views_are_all(job->view_name) && !job->is_for_looking)
+    return cli_usage("%s: it takes one view; conic render draws all", command);
+  if (cli_views_are_all(job->view_name) && (job->is_turntable || job->progressive_path))
+    return cli_usage("%s: --view all draws every view once: not with --turntable or --progressive", command);
+  job->is_every_view = cli_views_are_all(job->view_name);
   if (job->camera_path && words->is_framing_given)
-    return cli_usage("%s: --azimuth, --elevation, --fov and --zoom frame the scene; --camera does it itself", command);
+    return cli_usage(
+        "%s: --azimuth, --elevation, --fov, --zoom, --projection and --eye frame the scene; --camera does it itself",
+        command);
   if (job->opening.texture_path && words->as == CONIC_AS_POINTS)
     return cli_usage("%s: --texture lies on triangles; give --as mesh or hybrid, too", command);
   if ((job->opening.is_smooth || words->is_crease_given) && words->as != CONIC_AS_MESH && words->as != CONIC_AS_AUTO)

@@ -8,6 +8,16 @@
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 
+const char *conic_camera_kind_name(conic_camera_kind kind) {
+  static const char *const names[CONIC_N_CAMERA_KINDS] = {"perspective", "fisheye", "orthographic", "equirectangular"};
+  return (unsigned)kind < CONIC_N_CAMERA_KINDS ? names[kind] : NULL;
+}
+
+const char *conic_lens_name(conic_lens lens) {
+  static const char *const names[CONIC_N_LENSES] = {"none", "radial", "opencv", "thin-prism", "fov"};
+  return (unsigned)lens < CONIC_N_LENSES ? names[lens] : NULL;
+}
+
 void conic_framing_init_sized(conic_framing *framing, size_t size) {
   static const conic_framing own = {.size = sizeof own,
                                     .width = 1024,

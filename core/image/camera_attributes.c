@@ -41,9 +41,11 @@ void conic_image_describe_camera(conic_image *image, const conic_camera *camera)
     to_ndc[3][i] = z;
   }
   add_matrix(image, "worldToCamera", (const double(*)[4])to_camera);
-  add_matrix(image, "worldToNDC", (const double(*)[4])to_ndc);
-  append(image, "screenWindowCenter", CONIC_ATTRIBUTE_FLOAT_PAIR, center, 2);
-  append(image, "screenWindowWidth", CONIC_ATTRIBUTE_FLOAT, &window_width, 1);
+  if (!camera->kind && !camera->lens) { /* what no matrix and no window says is left out */
+    add_matrix(image, "worldToNDC", (const double(*)[4])to_ndc);
+    append(image, "screenWindowCenter", CONIC_ATTRIBUTE_FLOAT_PAIR, center, 2);
+    append(image, "screenWindowWidth", CONIC_ATTRIBUTE_FLOAT, &window_width, 1);
+  }
   append(image, "pixelAspectRatio", CONIC_ATTRIBUTE_FLOAT, &aspect, 1);
   append(image, "chromaticities", CONIC_ATTRIBUTE_CHROMATICITIES, rec_709, 8);
 }

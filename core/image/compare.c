@@ -89,10 +89,10 @@ static double psnr_of(double mean_square) {
 
 static conic_status compare_colors(conic_context *context, const conic_image *a, const conic_image *b,
                                    conic_difference *difference) {
-  double sum_of_squares;
+  conic_color_difference found;
   if (!a->planes[CONIC_PLANE_RGBA] || !b->planes[CONIC_PLANE_RGBA])
     return CONIC_OK;
-  conic_status status = conic_compare_color(context, a, b, &sum_of_squares, &difference->ssim);
+  conic_status status = conic_compare_color(context, a, b, &found);
   if (status != CONIC_OK)
     return status;
   status = conic_compare_flip(context, a, b, NULL, &difference->flip);
@@ -100,18 +100,15 @@ static conic_status compare_colors(conic_context *context, const conic_image *a,
     return status;
   difference->over_code = conic_compare_codes(a, b);
   difference->has_color = 1;
-  difference->psnr = psnr_of(sum_of_squares / (3.0 * (double)conic_image_pixels(a)));
+  difference->is_display = a->is_display;
+  difference->psnr = psnr_of(found.sum_of_squares / (3.0 * (double)conic_image_pixels(a)));
+  difference->ssim = found.ssim;
+  difference->ssim_padded = found.ssim_padded;
   return CONIC_OK;
 }
 
-conic_status conic_image_compare(conic_context *context, const conic_image *a, const conic_image *b,
+static conic_status compare_pair(conic_context *context, const conic_image *a, const conic_image *b,
                                  conic_difference *difference) {
-  if (!a || !b || !difference || a->width < 1 || a->height < 1 || b->width < 1 || b->height < 1)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "compare: an image is missing or empty");
-  memset(difference, 0, sizeof *difference);
-  difference->same_size = a->width == b->width && a->height == b->height;
-  if (!difference->same_size)
-    return CONIC_OK;
   unsigned char *differs = conic_memory_allocate_zeroed(context, conic_image_pixels(a), 1);
   if (!differs)
     return CONIC_ERROR_MEMORY;
@@ -124,5 +121,21 @@ conic_status conic_image_compare(conic_context *context, const conic_image *a, c
   conic_status status = compare_colors(context, a, b, difference);
   if (status == CONIC_OK)
     status = conic_largest_hole(context, a, b, &difference->largest_hole);
+  return status;
+}
+
+conic_status conic_image_compare(conic_context *context, const conic_image *a, const conic_image *b,
+                                 conic_difference *difference) {
+  if (!a || !b || !difference || a->width < 1 || a->height < 1 || b->width < 1 || b->height < 1)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "compare: an image is missing or empty");
+  memset(difference, 0, sizeof *difference);
+  difference->same_size = a->width == b->width && a->height == b->height;
+  if (!difference->same_size)
+    return CONIC_OK;
+  conic_image_pair pair;
+  conic_status status = conic_pair_begin(context, a, b, &pair);
+  if (status == CONIC_OK)
+    status = compare_pair(context, &pair.a, &pair.b, difference);
+  conic_pair_end(context, &pair);
   return status;
 }

@@ -34,25 +34,44 @@ static inline size_t conic_compared_channels(const conic_image *a, const conic_i
   return (size_t)conic_plane_describe((conic_plane)plane)->n_channels - (size_t)is_without_alpha;
 }
 
-/* A colour as a screen shows it, 0 to 1; NaN is -1, which no colour is. */
-static inline double conic_screen_value(float linear) {
-  if (!(linear > 0.0f))
-    return linear <= 0.0f ? 0.0 : -1.0;
-  return linear >= 1.0f ? 1.0 : conic_srgb_encode((double)linear);
+/* A colour, linear or a display value, as a screen shows it, 0 to 1; NaN is -1, which no colour is. */
+static inline double conic_screen_value(float value, int is_display) {
+  if (!(value > 0.0f))
+    return value <= 0.0f ? 0.0 : -1.0;
+  if (value >= 1.0f)
+    return 1.0;
+  return is_display ? (double)value : conic_srgb_encode((double)value);
 }
+
+/* Two images whose colours are of one kind: where only one's are display values, the other one's are encoded in a copy.
+ * The other planes are the images' own. */
+typedef struct conic_image_pair {
+  conic_image a, b;
+  float *copy; /* null: none was needed */
+} conic_image_pair;
+
+/* Ended by conic_pair_end, also after a failure. Errors: MEMORY. */
+conic_status conic_pair_begin(conic_context *context, const conic_image *a, const conic_image *b,
+                              conic_image_pair *pair);
+void conic_pair_end(conic_context *context, conic_image_pair *pair);
+
+/* What is compared of two images of one kind of colour and one size. */
+typedef struct conic_color_difference {
+  double sum_of_squares;    /* of R, G and B */
+  double ssim, ssim_padded; /* their means */
+} conic_color_difference;
 
 static inline void conic_add_weighted(double *restrict sum, const double *restrict values, double weight, size_t n) {
   for (size_t i = 0; i < n; i++)
     sum[i] += weight * values[i];
 }
 
-/* Sum of the squared differences and mean structural similarity of R, G, B. Both images have rgba and one size. Errors:
- * MEMORY. */
+/* Both images have rgba of one kind, and one size. Errors: MEMORY. */
 conic_status conic_compare_color(conic_context *context, const conic_image *a, const conic_image *b,
-                                 double *sum_of_squares, double *ssim);
+                                 conic_color_difference *difference);
 
-/* The mean of ꟻLIP over the pixels, and its value at each into `map`, which may be null. Both images have rgba and one
- * size. Errors: MEMORY. */
+/* The mean of ꟻLIP over the pixels, and its value at each into `map`, which may be null. Both images have rgba of one
+ * kind, and one size. Errors: MEMORY. */
 conic_status conic_compare_flip(conic_context *context, const conic_image *a, const conic_image *b, float *map,
                                 double *mean);
 
@@ -60,11 +79,16 @@ conic_status conic_compare_flip(conic_context *context, const conic_image *a, co
  * a float; both images have them and one size. */
 double conic_compare_p999(const conic_image *a, const conic_image *b, unsigned planes);
 
-/* Pixels where R, G or B, sRGB-encoded, differ by more than 8-bit rounding: 1.001/255. Both images have rgba and one
- * size. */
+/* Pixels where R, G or B, as a screen shows them, differ by more than 8-bit rounding: 1.001/255. Both images have rgba
+ * of one kind, and one size. */
 size_t conic_compare_codes(const conic_image *a, const conic_image *b);
 
 /* Pixels of the largest 4-connected set covered in `a` and not in `b`. Errors: MEMORY. */
 conic_status conic_largest_hole(conic_context *context, const conic_image *a, const conic_image *b, size_t *n_pixels);
+
+/* A picture of rgba with fewer pixels, each the mean over the part of `image` that it covers, of the numbers as they
+ * are. Allocated; `width` and `height` are at most the image's. Errors: ARGUMENT (there is no rgba), MEMORY. */
+conic_status conic_image_reduce(conic_context *context, const conic_image *image, int width, int height,
+                                conic_image *reduced);
 
 #endif

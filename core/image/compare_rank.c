@@ -56,12 +56,14 @@ double conic_compare_p999(const conic_image *a, const conic_image *b, unsigned p
 
 size_t conic_compare_codes(const conic_image *a, const conic_image *b) {
   const float *a_pixel = a->planes[CONIC_PLANE_RGBA], *b_pixel = b->planes[CONIC_PLANE_RGBA];
+  int is_display = a->is_display != 0;
   size_t n_over = 0;
   for (size_t i = 0; i < conic_image_pixels(a); i++, a_pixel += 4, b_pixel += 4) {
     int is_over = 0;
     for (int c = 0; c < 3 && !is_over; c++)
-      is_over = !conic_same_bits(a_pixel[c], b_pixel[c]) &&
-                fabs(conic_screen_value(a_pixel[c]) - conic_screen_value(b_pixel[c])) > 1.001 / 255.0;
+      is_over =
+          !conic_same_bits(a_pixel[c], b_pixel[c]) &&
+          fabs(conic_screen_value(a_pixel[c], is_display) - conic_screen_value(b_pixel[c], is_display)) > 1.001 / 255.0;
     n_over += (size_t)is_over;
   }
   return n_over;

@@ -194,6 +194,8 @@ static void load_row(const conic_image *image, ptrdiff_t x_begin, ptrdiff_t y, s
   for (size_t i = 0; i < n; i++) {
     const float *pixel = row + 4 * clamp_to(x_begin + (ptrdiff_t)i, (size_t)image->width);
     double rgb[3] = {unit((double)pixel[0]), unit((double)pixel[1]), unit((double)pixel[2])}, xyz[3];
+    for (int c = 0; image->is_display && c < 3; c++)
+      rgb[c] = conic_srgb_decode(rgb[c]);
     xyz_of(rgb, xyz);
     tile->opponent[0][i] = 116.0 * xyz[1] - 16.0;
     tile->opponent[1][i] = 500.0 * (xyz[0] - xyz[1]);

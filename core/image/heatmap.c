@@ -61,11 +61,16 @@ static conic_status begin_heatmap(conic_context *context, const conic_image *a, 
 
 conic_status conic_image_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
                                  conic_image *heatmap) {
+  conic_image_pair pair = {.copy = NULL};
   conic_status status = begin_heatmap(context, a, b, heatmap);
-  if (status != CONIC_OK)
+  if (status == CONIC_OK)
+    status = conic_pair_begin(context, a, b, &pair);
+  if (status != CONIC_OK) {
+    conic_image_release(context, heatmap);
     return status;
+  }
   size_t n_channels = conic_compared_channels(a, b, CONIC_PLANE_RGBA);
-  const float *a_rgba = a->planes[CONIC_PLANE_RGBA], *b_rgba = b->planes[CONIC_PLANE_RGBA];
+  const float *a_rgba = pair.a.planes[CONIC_PLANE_RGBA], *b_rgba = pair.b.planes[CONIC_PLANE_RGBA];
   float *pixel = heatmap->planes[CONIC_PLANE_RGBA];
   for (size_t i = 0; i < conic_image_pixels(a); i++, pixel += 4) {
     double difference = pixel_difference(a_rgba + 4 * i, b_rgba + 4 * i, n_channels);
@@ -73,17 +78,23 @@ conic_status conic_image_heatmap(conic_context *context, const conic_image *a, c
       paint(scale_position(difference, DARKEST_EXPONENT), pixel);
     pixel[3] = 1.0f;
   }
+  conic_pair_end(context, &pair);
   return CONIC_OK;
 }
 
 conic_status conic_image_flip_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
                                       conic_image *heatmap) {
   double mean;
+  conic_image_pair pair;
   conic_status status = begin_heatmap(context, a, b, heatmap);
   if (status != CONIC_OK)
     return status;
   float *map = conic_memory_allocate(context, conic_image_pixels(a), sizeof *map);
-  status = map ? conic_compare_flip(context, a, b, map, &mean) : CONIC_ERROR_MEMORY;
+  status = map ? conic_pair_begin(context, a, b, &pair) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = conic_compare_flip(context, &pair.a, &pair.b, map, &mean);
+  if (map)
+    conic_pair_end(context, &pair);
   float *pixel = heatmap->planes[CONIC_PLANE_RGBA];
   for (size_t i = 0; status == CONIC_OK && i < conic_image_pixels(a); i++, pixel += 4) {
     if (map[i] < 0.25f) /* black to blue */

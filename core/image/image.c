@@ -36,6 +36,7 @@ static const conic_plane_description descriptions[CONIC_N_PLANES] = {
     [CONIC_PLANE_MEDIAN_Z] = {"medianZ", 1, 0, {"medianZ"}},
     [CONIC_PLANE_INVERSE_Z] = {"inverseZ", 1, 0, {"inverseZ"}},
     [CONIC_PLANE_LAST] = {"last", 1, 1, {"last"}},
+    [CONIC_PLANE_DOUBT] = {"doubt", 1, 1, {"doubt"}},
 };
 
 const conic_plane_description *conic_plane_describe(conic_plane plane) {

@@ -2,13 +2,23 @@
 #include "conic/image.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "core/image/camera_rays.h"
 
 typedef struct positions {
   const conic_camera *camera;
+  conic_camera_rays rays;
   double offset; /* of the sample that Z is of, from the pixel's centre */
   const float *z;
   float *to;
 } positions;
+
+/* For cameras that are no pinholes. */
+static void locate_on_ray(const positions *work, double x_px, double y_px, double z, double there[3]) {
+  double origin[3], direction[3];
+  conic_camera_ray(&work->rays, x_px, y_px, origin, direction);
+  for (int axis = 0; axis < 3; axis++)
+    there[axis] = origin[axis] + z * direction[axis];
+}
 
 static void locate_row(void *data, size_t y, int i_thread) {
   const positions *work = data;
@@ -17,8 +27,10 @@ static void locate_row(void *data, size_t y, int i_thread) {
   (void)i_thread;
   for (size_t x = 0; x < width; x++) {
     const double z = (double)work->z[y * width + x];
-    const double there[3] = {z * (((double)x + 0.5 + work->offset - camera->cx) / camera->fx),
-                             z * (((double)y + 0.5 + work->offset - camera->cy) / camera->fy), z};
+    double there[3] = {z * (((double)x + 0.5 + work->offset - camera->cx) / camera->fx),
+                       z * (((double)y + 0.5 + work->offset - camera->cy) / camera->fy), z};
+    if (camera->kind || camera->lens)
+      locate_on_ray(work, (double)x + 0.5 + work->offset, (double)y + 0.5 + work->offset, z, there);
     for (int axis = 0; axis < 3; axis++) {
       double sum = 0.0;
       for (int row = 0; row < 3; row++)
@@ -34,6 +46,7 @@ conic_status conic_image_locate(conic_context *context, const conic_camera *came
   if (!image->planes[CONIC_PLANE_Z] || image->width != camera->width || image->height != camera->height || samples < 1)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: places come of the plane Z and its camera");
   positions work = {.camera = camera, .z = image->planes[CONIC_PLANE_Z], .to = image->planes[CONIC_PLANE_POSITION]};
+  conic_camera_rays_init(camera, &work.rays);
   work.offset = samples % 2 ? 0.0 : -0.5 / samples;
   conic_parallel_for(context, (size_t)image->height, locate_row, &work);
   return CONIC_OK;

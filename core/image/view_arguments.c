@@ -1,6 +1,7 @@
 #include "core/image/view_arguments.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "core/base/message.h"
 #include "core/base/options.h"
@@ -33,32 +34,51 @@ const char *conic_rotation_fault(const double rows[3][4]) {
   return determinant > 0.0 ? NULL : "mirrors";
 }
 
-conic_status conic_view_camera_check(conic_context *context, const char *who, const conic_camera *c) {
+static const char *find_number_fault(const conic_camera *c) {
   if (!conic_is_zero(c->reserved, sizeof c->reserved))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's reserved words are not zero", who);
+    return "the camera's reserved words are not zero";
   if (c->kind >= CONIC_N_CAMERA_KINDS || c->lens >= CONIC_N_LENSES)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: there is no such kind of camera, or no such lens", who);
+    return "there is no such kind of camera, or no such lens";
   for (int i = 0; i < 8; i++)
     if (!(fabs(c->distortion[i]) < 1e12))
-      return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's distortion is out of range", who);
+      return "the camera's distortion is out of range";
   if (c->width < 1 || c->width > 65535 || c->height < 1 || c->height > 65535)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's picture is 1 to 65535 pixels wide and high",
-                      who);
+    return "the camera's picture is 1 to 65535 pixels wide and high";
   if (!(c->fx > 0.0 && c->fx < 1e12 && c->fy > 0.0 && c->fy < 1e12 && fabs(c->cx) < 1e12 && fabs(c->cy) < 1e12))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's focal lengths or centre are out of range", who);
-  const char *fault = conic_rotation_fault(c->cam_from_world);
-  for (int i = 0; i < 3 && !fault; i++)
-    fault = fabs(c->cam_from_world[i][3]) < 1e30 ? NULL : "has a translation that is out of range";
-  return fault ? conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's cam_from_world %s", who, fault) : CONIC_OK;
+    return "the camera's focal lengths or centre are out of range";
+  return NULL;
+}
+
+int conic_camera_is_wrong(const conic_camera *c, char wrong[CONIC_CAMERA_FAULT_ROOM]) {
+  const char *number = find_number_fault(c), *matrix = number ? NULL : conic_rotation_fault(c->cam_from_world);
+  for (int i = 0; i < 3 && !number && !matrix; i++)
+    matrix = fabs(c->cam_from_world[i][3]) < 1e30 ? NULL : "has a translation that is out of range";
+  snprintf(wrong, CONIC_CAMERA_FAULT_ROOM, "%s%s", number ? number : "the camera's cam_from_world ",
+           matrix ? matrix : "");
+  return number || matrix;
+}
+
+conic_status conic_view_camera_check(conic_context *context, const char *who, const conic_camera *c) {
+  char wrong[CONIC_CAMERA_FAULT_ROOM];
+  return conic_camera_is_wrong(c, wrong) ? conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: %s", who, wrong) : CONIC_OK;
 }
 
 conic_status conic_view_pinhole_check(conic_context *context, const char *who, const conic_camera *c) {
-  static const char *const kinds[] = {"perspective", "fisheye", "orthographic", "equirectangular"};
   conic_status status = conic_view_camera_check(context, who, c);
   if (status != CONIC_OK || (c->kind == CONIC_CAMERA_PERSPECTIVE && c->lens == CONIC_LENS_NONE))
     return status;
-  return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera is %s%s, and this draws pinholes alone", who,
-                    kinds[c->kind], c->lens ? " with a lens that distorts" : "");
+  return conic_fail(
+      context, CONIC_ERROR_ARGUMENT,
+      "%s: the camera is %s%s, and this takes pinholes alone; render draws Gaussians by it, with --profile exact", who,
+      conic_camera_kind_name((conic_camera_kind)c->kind), c->lens ? " with a lens that distorts" : "");
+}
+
+conic_status conic_view_ray_check(conic_context *context, const char *who, const conic_camera *c) {
+  conic_status status = conic_view_camera_check(context, who, c);
+  if (status == CONIC_OK && c->lens &&
+      (c->kind == CONIC_CAMERA_ORTHOGRAPHIC || c->kind == CONIC_CAMERA_EQUIRECTANGULAR))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: an orthographic or equirectangular camera has no lens", who);
+  return status;
 }
 
 conic_status conic_view_arguments_take(conic_context *context, const char *who, const conic_camera *camera,

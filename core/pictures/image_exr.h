@@ -2,7 +2,8 @@
  * cannot decompress the file (before version 3.2 DWAA and DWAB), conic_exr_read leaves it to OpenImageIO.
  *
  * Written: one part of scanlines, the channels of conic_plane_describe in alphabetical order, FLOAT (or HALF) and UINT,
- * and the attributes. Read: the first part, scanlines or tiles, any compression; the data window is the picture. */
+ * the attributes, and colorInteropID where colours are display values. Read: the first part, scanlines or tiles, any
+ * compression; the data window is the picture. */
 #ifndef CONIC_IMAGE_EXR_H
 #define CONIC_IMAGE_EXR_H
 

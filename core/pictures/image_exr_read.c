@@ -223,6 +223,13 @@ static void read_attributes(exr_reader *reader) {
   }
 }
 
+/* Whether the header says that the colours are display values. */
+static int says_display(const exr_reader *reader) {
+  const exr_attribute_t *space;
+  return exr_get_attribute_by_name(reader->file, 0, CONIC_EXR_COLOR_SPACE, &space) == EXR_ERR_SUCCESS &&
+         space->type == EXR_ATTR_STRING && space->string->str && strcmp(space->string->str, CONIC_EXR_DISPLAY) == 0;
+}
+
 /* The file is open and its header parsed. */
 static conic_status read_part(conic_context *context, exr_reader *reader) {
   unsigned planes = 0;
@@ -253,6 +260,7 @@ static conic_status read_part(conic_context *context, exr_reader *reader) {
   }
   conic_channels_complete(reader->image, has_alpha, reader->is_luminance);
   read_attributes(reader);
+  reader->image->is_display = (uint64_t)says_display(reader);
   return CONIC_OK;
 }
 
@@ -272,8 +280,10 @@ conic_status conic_exr_read(conic_context *context, const char *path, conic_imag
                                                   : conic_exr_fail(&reader.stream, result, "read", CONIC_ERROR_INPUT);
   if (reader.is_for_others) {
     status = conic_foreign_read(context, path, image);
-    if (status == CONIC_OK)
+    if (status == CONIC_OK) {
       read_attributes(&reader);
+      image->is_display = (uint64_t)says_display(&reader);
+    }
   }
   if (result == EXR_ERR_SUCCESS)
     exr_finish(&reader.file);

@@ -12,6 +12,10 @@
 
 #include "conic/image.h"
 
+/* The attribute that names a colour space, and the name of the one in which colours are display values. */
+#define CONIC_EXR_COLOR_SPACE "colorInteropID"
+#define CONIC_EXR_DISPLAY "srgb_rec709_display"
+
 typedef struct conic_exr_stream {
   conic_context *context;
   const char *path;

@@ -78,6 +78,13 @@ static exr_result_t describe_mattes(exr_context_t file, const conic_image *image
   return result;
 }
 
+/* By the attribute of OpenEXR 3.4 that names a colour space; linear colours have their chromaticities. */
+static exr_result_t describe_display(exr_context_t file, const conic_image *image) {
+  if (!image->is_display || !image->planes[CONIC_PLANE_RGBA])
+    return EXR_ERR_SUCCESS;
+  return exr_attr_set_string(file, 0, CONIC_EXR_COLOR_SPACE, CONIC_EXR_DISPLAY);
+}
+
 static exr_result_t write_header(exr_context_t file, const exr_writer *writer) {
   const conic_image *image = writer->image;
   exr_compression_t compression = compression_of(writer->options);
@@ -95,6 +102,8 @@ static exr_result_t write_header(exr_context_t file, const exr_writer *writer) {
     result = conic_exr_add_attributes(file, image);
   if (result == EXR_ERR_SUCCESS && conic_image_planes(image) & CONIC_MATTE_PLANES)
     result = describe_mattes(file, image);
+  if (result == EXR_ERR_SUCCESS)
+    result = describe_display(file, image);
   if (result == EXR_ERR_SUCCESS)
     result = exr_write_header(file);
   return result;

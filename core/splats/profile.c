@@ -6,8 +6,12 @@
 #include "core/base/gaussian.h"
 #include "core/base/memory.h"
 #include "core/base/threads.h"
+#include "core/splats/smooth_fit.h"
 
 enum { LEVELS = CONIC_PROFILE_LEVELS, TERMS = CONIC_PROFILE_TERMS, RADII = CONIC_PROFILE_RADII };
+enum { SMOOTH = CONIC_PROFILE_SMOOTH_LEVELS };
+/* Lesser shares of levels from here on are smooth. */
+enum { STEEP = 10 };
 /* Parts of a line that is blurred, an even number; and of the radius at which a blurred kernel is known. */
 enum { PARTS = 40, N_KNOWN = 256 };
 /* The normal distribution is known at so many places, up to 7. */
@@ -146,11 +150,21 @@ static double filter_of(double t) {
   return t / (1.0 - t);
 }
 
-/* The profile at a radius and the nodes of the direction, the axis 0 with the lesser share. */
+/* What the filter makes of the kernel at q, of which a part is across; the axis 0 has the lesser share. */
+static double filter_kernel(const round_kernel *k, const double share[2], double q, double across) {
+  double more = filter_of(share[1]) - filter_of(share[0]), places[PARTS + 1], values[PARTS + 1];
+  double x = sqrt(q * (1.0 - across) / (1.0 - share[0])), y = sqrt(q * across / (1.0 - share[1]));
+  double r = sqrt(x * x + y * y);
+  if (!(more > 0.0))
+    return r < k->reach || k->blur == 0.0 ? round_value(k, r) : 0.0;
+  cut_line(k, x, places, values);
+  return x < k->reach ? blur_line(k->normal, places, values, y, sqrt(more)) : 0.0;
+}
+
+/* The profile at a radius and the nodes of the direction. */
 static void find_nodes(const round_kernel *k, const conic_profile *profile, const double share[2], int i_radius,
                        double nodes[TERMS]) {
-  double more = filter_of(share[1]) - filter_of(share[0]), peak = 1.0;
-  double radius = (double)i_radius / (double)(RADII - 1), bend = 1.0;
+  double radius = (double)i_radius / (double)(RADII - 1), bend = 1.0, peak = 1.0;
   double support = (double)conic_kernel_support(k->kernel);
   double q = profile->is_bent ? support * (1.0 - radius * radius) : support * (radius * radius);
   for (int i = 0; i < 2; i++)
@@ -159,17 +173,14 @@ static void find_nodes(const round_kernel *k, const conic_profile *profile, cons
   if (profile->is_bent)
     bend = sqrt((share[0] + (double)CONIC_PROFILE_BEND) / (share[1] + (double)CONIC_PROFILE_BEND));
   for (int i = 0; i < TERMS; i++) {
-    double across = directions[i] * bend / (directions[i] * bend + (1.0 - directions[i])), places[PARTS + 1],
-           values[PARTS + 1];
-    double x = sqrt(q * (1.0 - across) / (1.0 - share[0])), y = sqrt(q * across / (1.0 - share[1]));
-    double r = sqrt(x * x + y * y);
-    if (more > 0.0) {
-      cut_line(k, x, places, values);
-      nodes[i] = x < k->reach ? blur_line(k->normal, places, values, y, sqrt(more)) / peak : 0.0;
-    } else {
-      nodes[i] = r < k->reach || k->blur == 0.0 ? round_value(k, r) / peak : 0.0;
-    }
+    double across = directions[i] * bend / (directions[i] * bend + (1.0 - directions[i]));
+    nodes[i] = filter_kernel(k, share, q, across) / peak;
   }
+}
+
+/* What conic_profile_smooth_level makes a whole number of; all but all, where it is all. */
+static double smooth_share(int level) {
+  return level < SMOOTH - 1 ? (double)(level + 1) / (double)SMOOTH : 1.0 - 0x1p-16;
 }
 
 /* Newton's divided differences, multiplied out. */
@@ -208,23 +219,22 @@ static conic_profile reading(const conic_kernel *kernel, const float *table) {
   return (conic_profile){0.0f, by_q, narrowing, 0, table};
 }
 
-/* The rows of the table in which the lesser share has one level, and the columns. */
-static void fill_level(void *data, size_t i_level, int i_thread) {
-  profile_table *table = data;
-  const conic_kernel *kernel = &table->kernel;
-  int low = (int)i_level;
-  (void)i_thread;
-  const conic_profile profile = reading(kernel, NULL);
-  normal_table normal;
-  round_kernel plain = {.kernel = kernel, .normal = &normal, .end = end_of_kernel(kernel)}, blurred;
+static void begin_kernel(const conic_kernel *kernel, const normal_table *normal, double share, round_kernel *blurred) {
+  round_kernel plain = {.kernel = kernel, .normal = normal, .end = end_of_kernel(kernel)};
   plain.reach = plain.end;
-  fill_normal(&normal);
-  blurred = plain;
-  if (low > 0) {
-    blurred.blur = sqrt(filter_of(share_of_level(low)));
-    blurred.reach = plain.end + 5.0 * blurred.blur;
-    blur_round(&plain, &blurred);
+  *blurred = plain;
+  if (share > 0.0) {
+    blurred->blur = sqrt(filter_of(share));
+    blurred->reach = plain.end + 5.0 * blurred->blur;
+    blur_round(&plain, blurred);
   }
+}
+
+/* The rows of the table in which the lesser share has one level, and the columns. */
+static void fill_steep(profile_table *table, const normal_table *normal, int low) {
+  const conic_profile profile = reading(&table->kernel, NULL);
+  round_kernel blurred;
+  begin_kernel(&table->kernel, normal, share_of_level(low), &blurred);
   for (int high = low; high < LEVELS; high++)
     for (int i = 0; i < RADII; i++) {
       double share[2] = {share_of_level(low), share_of_level(high)}, nodes[TERMS];
@@ -232,6 +242,38 @@ static void fill_level(void *data, size_t i_level, int i_thread) {
       write_polynomial(nodes, 0, i, table->values + (low * LEVELS + high) * CONIC_PROFILE_SLICE);
       write_polynomial(nodes, 1, i, table->values + (high * LEVELS + low) * CONIC_PROFILE_SLICE);
     }
+}
+
+/* Likewise of what is smooth. */
+static void fill_smooth(profile_table *table, const normal_table *normal, int low) {
+  const double support = (double)conic_kernel_support(&table->kernel);
+  conic_smooth_fit fit;
+  round_kernel blurred;
+  conic_smooth_fit_begin(directions, &fit);
+  begin_kernel(&table->kernel, normal, smooth_share(low), &blurred);
+  for (int high = low; high < SMOOTH; high++) {
+    const double share[2] = {smooth_share(low), smooth_share(high)};
+    double peak = sqrt((1.0 - share[0]) * (1.0 - share[1])), values[CONIC_SMOOTH_NODES], turned[CONIC_SMOOTH_NODES];
+    for (int i = 0; i < CONIC_SMOOTH_NODES; i++) {
+      int place = i / TERMS, direction = i % TERMS;
+      values[i] = filter_kernel(&blurred, share, support * conic_smooth_place(place), directions[direction]) / peak;
+      turned[place * TERMS + TERMS - 1 - direction] = values[i];
+    }
+    float *smooth = table->values + CONIC_PROFILE_STEEP;
+    conic_smooth_fit_solve(&fit, values, support, smooth + (low * SMOOTH + high) * CONIC_PROFILE_SMOOTH_TERMS);
+    conic_smooth_fit_solve(&fit, turned, support, smooth + (high * SMOOTH + low) * CONIC_PROFILE_SMOOTH_TERMS);
+  }
+}
+
+static void fill_level(void *data, size_t i_level, int i_thread) {
+  profile_table *table = data;
+  normal_table normal;
+  (void)i_thread;
+  fill_normal(&normal);
+  if (i_level < SMOOTH)
+    fill_smooth(table, &normal, (int)i_level);
+  else
+    fill_steep(table, &normal, (int)i_level - SMOOTH);
 }
 
 static int is_same_kernel(const conic_kernel *a, const conic_kernel *b) {
@@ -252,7 +294,8 @@ conic_status conic_profile_make(conic_context *context, const conic_kernel *kern
   if (!table)
     return CONIC_ERROR_MEMORY;
   table->kernel = *kernel;
-  conic_parallel_for(context, LEVELS, fill_level, table);
+  memset(table->values, 0, sizeof table->values); /* some are never read */
+  conic_parallel_for(context, SMOOTH + STEEP, fill_level, table);
   do
     table->lasting.next = first;
   while (!atomic_compare_exchange_weak(&context->lasting, &first, &table->lasting));

@@ -20,7 +20,15 @@
  * in the direction, each at so many radii. */
 enum { CONIC_PROFILE_LEVELS = 15, CONIC_PROFILE_TERMS = 5, CONIC_PROFILE_RADII = 16 };
 enum { CONIC_PROFILE_SLICE = CONIC_PROFILE_TERMS * CONIC_PROFILE_RADII };
-enum { CONIC_PROFILE_FLOATS = CONIC_PROFILE_LEVELS * CONIC_PROFILE_LEVELS * CONIC_PROFILE_SLICE };
+enum { CONIC_PROFILE_STEEP = CONIC_PROFILE_LEVELS * CONIC_PROFILE_LEVELS * CONIC_PROFILE_SLICE };
+
+/* Behind them, for what has a share of 1/16 or more along both axes and so is smooth: for each two shares i/16 a
+ * polynomial in q and its part across, of 7, 4, 3 and 2 terms. */
+enum { CONIC_PROFILE_SMOOTH_LEVELS = 16, CONIC_PROFILE_SMOOTH_TERMS = 16 };
+enum {
+  CONIC_PROFILE_FLOATS =
+      CONIC_PROFILE_STEEP + CONIC_PROFILE_SMOOTH_LEVELS * CONIC_PROFILE_SMOOTH_LEVELS * CONIC_PROFILE_SMOOTH_TERMS
+};
 
 #define CONIC_PROFILE_PLACES 16384.0f
 #define CONIC_PROFILE_ROUND 0x1p-12f     /* of what is nearly round, no rounding is to choose the direction */
@@ -40,11 +48,12 @@ conic_status conic_profile_make(conic_context *context, const conic_kernel *kern
 
 /* One splat's part in it. */
 typedef struct conic_aim {
+  int is_smooth;
   float n_xx, n_xy, n_yy; /* two quadratic forms, whose ratio is the direction: 0 along the splat's longer axis, … */
-  float d_xx, d_xy, d_yy; /* … 1 across it */
+  float d_xx, d_xy, d_yy; /* … 1 across it; of what is smooth, one alone: q's part across */
   int level[2];
   float part[2]; /* of the way to the next level */
-  float peak;    /* what the table is over */
+  float peak;    /* what the table is over; likewise not of what is smooth */
 } conic_aim;
 
 /* The share of the prefilter as a level; what is no number counts as all. */
@@ -61,6 +70,14 @@ static inline void conic_profile_level(float share, int *level, float *part) {
   *part -= 1.0f;
 }
 
+/* A share of 1/16 or more; what is no number counts as all. */
+static inline void conic_profile_smooth_level(float share, int *level, float *part) {
+  float place = (share < 1.0f ? share : 1.0f) * (float)CONIC_PROFILE_SMOOTH_LEVELS - 1.0f;
+  place = place < CONIC_PROFILE_LAST ? place : CONIC_PROFILE_LAST;
+  *level = (int)place;
+  *part = place - (float)*level;
+}
+
 /* Of the symmetric matrix of the shares, in coordinates in which q is x² + y²; or, with is_ray, of h·JJᵀ, in those of
  * the splat's plane. */
 static inline conic_aim conic_aim_of(const conic_profile *profile, float xx, float xy, float yy, float determinant,
@@ -70,6 +87,16 @@ static inline conic_aim conic_aim_of(const conic_profile *profile, float xx, flo
   float high = 0.5f * ((xx + yy) + spread), low = high > 0.0f ? determinant / high : 0.0f;
   float by_low = is_ray ? 1.0f + low : 1.0f, by_high = is_ray ? 1.0f + high : 1.0f;
   float share[2] = {is_ray ? low / by_low : low, is_ray ? high / by_high : high};
+  aim.is_smooth = !(share[0] < 1.0f / (float)CONIC_PROFILE_SMOOTH_LEVELS);
+  if (aim.is_smooth) {
+    float scale = 1.0f / ((spread + CONIC_PROFILE_ROUND * high) * by_high);
+    aim.n_xx = scale * (xx - low);
+    aim.n_xy = scale * (2.0f * xy);
+    aim.n_yy = scale * (yy - low);
+    for (int i = 0; i < 2; i++)
+      conic_profile_smooth_level(share[i], &aim.level[i], &aim.part[i]);
+    return aim;
+  }
   float bend = profile->is_bent ? sqrtf((share[0] + CONIC_PROFILE_BEND) / (share[1] + CONIC_PROFILE_BEND)) : 1.0f;
   by_high *= bend;
   aim.n_xx = by_low * (xx - low);
@@ -96,8 +123,32 @@ static inline float conic_profile_entry(const conic_profile *profile, const coni
   return a + aim->part[0] * (b - a);
 }
 
+/* Of what is smooth, a coefficient between the levels. */
+static inline float conic_profile_coefficient(const conic_profile *profile, const conic_aim *aim, int i) {
+  CONIC_FAR const float *low =
+      profile->table + CONIC_PROFILE_STEEP +
+      (aim->level[0] * CONIC_PROFILE_SMOOTH_LEVELS + aim->level[1]) * CONIC_PROFILE_SMOOTH_TERMS + i;
+  CONIC_FAR const float *high = low + CONIC_PROFILE_SMOOTH_LEVELS * CONIC_PROFILE_SMOOTH_TERMS;
+  float a = low[0] + aim->part[1] * (low[CONIC_PROFILE_SMOOTH_TERMS] - low[0]);
+  float b = high[0] + aim->part[1] * (high[CONIC_PROFILE_SMOOTH_TERMS] - high[0]);
+  return a + aim->part[0] * (b - a);
+}
+
+static inline float conic_profile_smooth_at(const conic_profile *profile, const conic_aim *aim, float q, float x,
+                                            float y) {
+  float c[CONIC_PROFILE_SMOOTH_TERMS], across = (aim->n_xx * x + aim->n_xy * y) * x + aim->n_yy * (y * y);
+  across = across < q ? across : q;
+  for (int i = 0; i < CONIC_PROFILE_SMOOTH_TERMS; i++)
+    c[i] = conic_profile_coefficient(profile, aim, i);
+  float q2 = q * q, first = (c[0] + c[1] * q) + q2 * ((c[2] + c[3] * q) + q2 * ((c[4] + c[5] * q) + q2 * c[6]));
+  float second = (c[7] + c[8] * q) + q2 * (c[9] + c[10] * q), third = (c[11] + c[12] * q) + q2 * c[13];
+  return (first + across * second) + (across * across) * (third + across * (c[14] + c[15] * q));
+}
+
 /* The profile at (x, y), where q is below the support. */
 static inline float conic_profile_at(const conic_profile *profile, const conic_aim *aim, float q, float x, float y) {
+  if (aim->is_smooth)
+    return conic_profile_smooth_at(profile, aim, q, x, y);
   float n = (aim->n_xx * x + aim->n_xy * y) * x + aim->n_yy * (y * y);
   float d = (aim->d_xx * x + aim->d_xy * y) * x + aim->d_yy * (y * y);
   float w = n / (d > 0x1p-100f ? d : 0x1p-100f);

@@ -1,8 +1,7 @@
-/* A Gaussian set up for one picture: what its pixels need of it. */
+/* A Gaussian set up for one picture: what its pixels need of it. C and OpenCL C share the records. */
 #ifndef CONIC_GAUSSIAN_FOOTPRINT_H
 #define CONIC_GAUSSIAN_FOOTPRINT_H
 
-#include "conic/gaussians.h"
 #include "gaussians/draw/gaussian_rules.h"
 
 typedef struct conic_gaussian_footprint {
@@ -21,10 +20,29 @@ typedef struct conic_gaussian_ray {
   float g[3][3], c[3][3], e[3]; /* at the reference pixel's centre, and by how much they grow in x and in y */
 } conic_gaussian_ray;
 
+#ifndef CONIC_ON_DEVICE
+/* What a filter adds to a ray. With X = x − both·Δy, Y = y + both·Δx, t = z²/|g|², of an orthographic camera 1/|g|²,
+ * |S| = 1 + t·(|X|² + |Y|²) + (t·area)²·|g|², and |S|·q gains t·((turn₀ − turn₂·Δy)² + (turn₁ + turn₂·Δx)²). */
+typedef struct conic_gaussian_filter {
+  float x[3], y[3], both[3], turn[3], area;
+} conic_gaussian_filter;
+
+/* Along rays that are not affine on the screen. With the pixel's direction less `high` and `low`, g, c and e of it are
+ * at₀ + at₁·Δx + at₂·Δy + at₃·Δz. */
+typedef struct conic_gaussian_sight {
+  float high[3], low[3]; /* a direction of the camera's rays, near the mean's: their sum */
+  float g[3][4], c[3][4], e[4];
+} conic_gaussian_sight;
+
+typedef struct conic_view_rays conic_view_rays;
+
 typedef struct conic_gaussian_view {
   const conic_gaussian_rules *rules;
   const conic_camera *camera;
   double eye[3], center_px[2];
+  double prefilter;            /* px²; of CONIC_SHAPE_RAY */
+  int is_parallel;             /* orthographic */
+  const conic_view_rays *rays; /* of the pixels, where they are not affine on the screen; else null */
 } conic_gaussian_view;
 
 typedef enum conic_gaussian_fate {
@@ -33,10 +51,11 @@ typedef enum conic_gaussian_fate {
   CONIC_GAUSSIAN_SKIPPED = 2 /* a number is not finite, or a scale is negative */
 } conic_gaussian_fate;
 
-/* Sets up Gaussian i. `key` is what Gaussians are ordered by. `ray` is filled for the shapes that have one; `normal`
- * may be null. */
+/* Sets up Gaussian i. `key` is what Gaussians are ordered by. `ray` is filled for the shapes that have one, `filter`
+ * where the view has one, `sight` in place of both where the view has rays; `normal` may be null. */
 conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
                                           conic_gaussian_footprint *footprint, float *key, conic_gaussian_ray *ray,
-                                          float normal[3]);
+                                          conic_gaussian_filter *filter, conic_gaussian_sight *sight, float normal[3]);
+#endif
 
 #endif

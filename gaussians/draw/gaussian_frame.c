@@ -1,5 +1,5 @@
 /* A picture of Gaussians: set up, put in order, binned, composited. */
-#include <stddef.h>
+#include <math.h>
 #include <string.h>
 
 #include "core/base/clock.h"
@@ -10,7 +10,8 @@
 #include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
-#include "gaussians/draw/gaussian_bins.h"
+#include "gaussians/draw/gaussian_device.h"
+#include "gaussians/draw/view_rays.h"
 
 enum { SET_UP_RUN = 2048 };
 
@@ -22,36 +23,33 @@ typedef struct frame {
   conic_gaussian_view view;
   conic_gaussian_kernels kernels;
   conic_gaussian_statistics statistics;
-  int has_rays;
+  conic_gaussian_shape shape;
+  conic_view_rays view_rays; /* of CONIC_SHAPE_SIGHT */
   /* By footprint: as they were set up, those of each run of the scene from its place on. */
   conic_gaussian_footprint *footprints;
   conic_gaussian_ray *rays;
-  float (*normals)[3];
-  uint32_t *keys;
+  conic_gaussian_filter *filters;
+  conic_gaussian_sight *sights;
+  float (*normals)[3], *keys;
   size_t *n_of_run, *n_skipped_of_run, n_runs, n;
   conic_radix_item *order;
   conic_gaussian_bins bins;
   void **rooms; /* by thread */
 } frame;
 
-/* Keys are depths over 0, or of a mean behind the eye below: ordered as their bits are, once those below are turned. */
-static uint32_t key_of(float key) {
-  uint32_t bits = conic_bits_of_float(key);
-  return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
-}
-
 static void set_up_run(void *data, size_t i_run, int i_thread) {
   frame *f = data;
   size_t begin = i_run * SET_UP_RUN, to = begin;
   size_t end = begin + SET_UP_RUN < f->set->count ? begin + SET_UP_RUN : f->set->count;
   conic_gaussian_ray unused;
+  conic_gaussian_filter unused_filter;
+  conic_gaussian_sight unused_sight;
   (void)i_thread;
   for (size_t i = begin; i < end; i++) {
-    float key = 0.0f;
     conic_gaussian_fate fate =
-        conic_gaussian_set_up(&f->view, f->set, i, &f->footprints[to], &key, f->has_rays ? &f->rays[to] : &unused,
+        conic_gaussian_set_up(&f->view, f->set, i, &f->footprints[to], &f->keys[to], f->rays ? &f->rays[to] : &unused,
+                              f->filters ? &f->filters[to] : &unused_filter, f->sights ? &f->sights[to] : &unused_sight,
                               f->normals ? f->normals[to] : NULL);
-    f->keys[to] = key_of(key);
     f->n_skipped_of_run[i_run] += fate == CONIC_GAUSSIAN_SKIPPED;
     to += fate == CONIC_GAUSSIAN_DRAWN;
   }
@@ -67,8 +65,12 @@ static conic_status set_up_all(frame *f) {
   is_done &= (f->n_of_run = conic_memory_allocate_zeroed(f->context, f->n_runs, sizeof *f->n_of_run)) != NULL;
   is_done &=
       (f->n_skipped_of_run = conic_memory_allocate_zeroed(f->context, f->n_runs, sizeof *f->n_skipped_of_run)) != NULL;
-  if (f->has_rays)
+  if (f->shape == CONIC_SHAPE_SIGHT)
+    is_done &= (f->sights = conic_memory_allocate(f->context, count, sizeof *f->sights)) != NULL;
+  else if (f->shape != CONIC_SHAPE_ELLIPSE)
     is_done &= (f->rays = conic_memory_allocate(f->context, count, sizeof *f->rays)) != NULL;
+  if (f->shape == CONIC_SHAPE_FILTERED)
+    is_done &= (f->filters = conic_memory_allocate(f->context, count, sizeof *f->filters)) != NULL;
   if (f->planes->normal)
     is_done &= (f->normals = conic_memory_allocate(f->context, count, sizeof *f->normals)) != NULL;
   if (!is_done)
@@ -83,83 +85,56 @@ static conic_status set_up_all(frame *f) {
   return status;
 }
 
+/* Keys are depths over 0, or of a mean behind the eye below: ordered as their bits are, once those below are turned. */
+static uint64_t key_of(float key) {
+  uint32_t bits = conic_bits_of_float(key);
+  return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
+
 static conic_status order_footprints(frame *f) {
   f->order = conic_memory_allocate(f->context, f->n, sizeof *f->order);
   if (!f->order)
     return CONIC_ERROR_MEMORY;
-  const int is_by_ray = f->view.rules->shape == CONIC_SHAPE_RAY;
   size_t n = 0;
   for (size_t run = 0; run < f->n_runs; run++)
     for (size_t i = run * SET_UP_RUN; i < run * SET_UP_RUN + f->n_of_run[run]; i++)
-      f->order[n++] = (conic_radix_item){is_by_ray ? key_of(f->footprints[i].z) : f->keys[i], (uint32_t)i};
+      f->order[n++] = (conic_radix_item){key_of(f->keys[i]), (uint32_t)i};
   return conic_radix_sort(f->context, f->order, n, 32);
 }
 
-static int wants_all(const conic_gaussian_planes *to) {
-  return to->z || to->median_z || to->inverse_z || to->normal || to->count || to->id || to->last;
+static conic_gaussian_target target_of(const frame *f) {
+  const conic_gaussian_planes *p = f->planes;
+  const float *background = f->options->background;
+  return (conic_gaussian_target){p->width,    p->height,       {background[0], background[1], background[2]},
+                                 p->rgb,      p->transparency, p->z,
+                                 p->median_z, p->inverse_z,    p->normal,
+                                 p->count,    p->id,           p->last};
 }
 
-static void begin_compositing(const frame *f, size_t i_tile, conic_gaussian_tile *tile) {
-  memset(tile, 0, wants_all(f->planes) ? sizeof *tile : offsetof(conic_gaussian_tile, sum));
-  for (size_t i = 0; i < CONIC_GAUSSIAN_TILE_PIXELS; i++)
-    tile->T[i] = 1.0f;
-  for (size_t i = 0; i < CONIC_GAUSSIAN_TILE_PIXELS && wants_all(f->planes); i++)
-    tile->id[i] = tile->last[i] = CONIC_NO_ID;
-  tile->x = (int)(i_tile % f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE;
-  tile->y = (int)(i_tile / f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE;
-}
-
-/* Writes one of `n_channels` numbers of four bytes, at each pixel of the tile that is in the picture. */
-static void put_channel(const frame *f, const conic_gaussian_tile *tile, void *plane, size_t n_channels, size_t channel,
-                        const void *numbers) {
-  const int width = f->planes->width, height = f->planes->height;
-  const int columns = width - tile->x < CONIC_GAUSSIAN_TILE ? width - tile->x : CONIC_GAUSSIAN_TILE;
-  const uint32_t *from = numbers;
-  for (int row = 0; plane && row < CONIC_GAUSSIAN_TILE && tile->y + row < height; row++) {
-    uint32_t *to = (uint32_t *)plane + ((size_t)(tile->y + row) * (size_t)width + (size_t)tile->x) * n_channels;
-    for (int column = 0; column < columns; column++)
-      to[(size_t)column * n_channels + channel] = from[conic_gaussian_pixel(column, row)];
-  }
-}
-
-static void end_compositing(const frame *f, const conic_gaussian_tile *tile) {
-  const conic_gaussian_planes *to = f->planes;
-  float numbers[CONIC_GAUSSIAN_TILE_PIXELS];
-  put_channel(f, tile, to->transparency, 1, 0, tile->T);
-  for (size_t c = 0; c < 3; c++) {
-    for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++)
-      numbers[at] = tile->rgb[c][at] + tile->T[at] * f->options->background[c];
-    put_channel(f, tile, to->rgb, 3, c, numbers);
-  }
-  if (!wants_all(to))
-    return;
-  for (size_t c = 0; c < 3; c++)
-    put_channel(f, tile, to->normal, 3, c, tile->normal[c]);
-  for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++)
-    numbers[at] = tile->sum[at] > 0.0f ? tile->sum_of_z[at] / tile->sum[at] : 0.0f;
-  put_channel(f, tile, to->z, 1, 0, numbers);
-  put_channel(f, tile, to->median_z, 1, 0, tile->median_z);
-  put_channel(f, tile, to->inverse_z, 1, 0, tile->inverse_z);
-  put_channel(f, tile, to->count, 1, 0, tile->count);
-  put_channel(f, tile, to->id, 1, 0, tile->id);
-  put_channel(f, tile, to->last, 1, 0, tile->last);
+static int wants_all(const conic_gaussian_planes *p) {
+  return p->z || p->median_z || p->inverse_z || p->normal || p->count || p->id || p->last;
 }
 
 static void composite_tile(void *data, size_t i_tile, int i_thread) {
   frame *f = data;
+  const conic_gaussian_target target = target_of(f);
   conic_gaussian_tile tile;
-  begin_compositing(f, i_tile, &tile);
+  conic_gaussian_tile_begin(&tile, (int)(i_tile % f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE,
+                            (int)(i_tile / f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE);
   conic_gaussian_list list = {.rules = f->view.rules,
                               .footprints = f->footprints,
                               .rays = f->rays,
+                              .filters = f->filters,
+                              .sights = f->sights,
+                              .tile_rays = f->view.rays ? &f->view.rays->tiles[i_tile] : NULL,
+                              .is_parallel = f->view.is_parallel,
                               .normals = (const float(*)[3])f->normals,
-                              .keys = f->keys,
                               .wants_all = wants_all(f->planes),
                               .entries = f->bins.entries + f->bins.tile_begin[i_tile],
                               .n = f->bins.tile_begin[i_tile + 1] - f->bins.tile_begin[i_tile],
                               .room = f->rooms ? f->rooms[i_thread] : NULL};
-  f->kernels.composite[f->view.rules->shape](&list, &tile);
-  end_compositing(f, &tile);
+  f->kernels.composite[f->shape](&list, &tile);
+  conic_gaussian_tile_end(&target, &tile);
 }
 
 /* Room for the longest list. */
@@ -181,19 +156,42 @@ static conic_status make_rooms(frame *f) {
   return CONIC_OK;
 }
 
+static conic_status composite_here(frame *f) {
+  conic_status status = make_rooms(f);
+  return status == CONIC_OK ? conic_parallel_told(f->context, "composite", 0.5, 1.0, f->bins.n_tiles, composite_tile, f)
+                            : status;
+}
+
+static conic_status composite_on_device(const frame *f) {
+  const conic_gaussian_composition composition = {.rules = f->view.rules,
+                                                  .n_drawn = f->n,
+                                                  .n = f->set->count,
+                                                  .footprints = f->footprints,
+                                                  .rays = f->rays,
+                                                  .normals = (const float(*)[3])f->normals,
+                                                  .wants_all = wants_all(f->planes),
+                                                  .bins = &f->bins,
+                                                  .target = target_of(f)};
+  return f->options->device->composite(f->options->device, &composition);
+}
+
 static void release_frame(frame *f) {
-  void *const all[] = {f->footprints, f->keys, f->rays, f->normals, f->n_of_run, f->n_skipped_of_run, f->order};
+  void *const all[] = {f->footprints,       f->keys, f->rays, f->filters, f->sights, f->normals, f->n_of_run,
+                       f->n_skipped_of_run, f->order};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     conic_memory_release(f->context, all[i]);
   for (int i = 0; f->rooms && i < conic_context_threads(f->context); i++)
     conic_memory_release(f->context, f->rooms[i]);
   conic_memory_release(f->context, f->rooms);
   conic_gaussian_bins_release(f->context, &f->bins);
+  conic_view_rays_release(f->context, &f->view_rays);
 }
 
 static conic_status draw_scene(frame *f) {
   double begin = conic_seconds_now(), now;
-  conic_status status = set_up_all(f);
+  conic_status status = f->view.rays ? conic_view_rays_make(f->context, f->view.camera, &f->view_rays) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = set_up_all(f);
   f->statistics.seconds_setup = (now = conic_seconds_now()) - begin;
   if (status == CONIC_OK)
     status = order_footprints(f);
@@ -204,14 +202,26 @@ static conic_status draw_scene(frame *f) {
                                       &f->bins);
   f->statistics.seconds_bin = conic_seconds_now() - now;
   now = conic_seconds_now();
-  if (status == CONIC_OK)
-    status = make_rooms(f);
   if (status == CONIC_OK) {
     f->statistics.entries = f->bins.tile_begin[f->bins.n_tiles];
-    status = conic_parallel_told(f->context, "composite", 0.5, 1.0, f->bins.n_tiles, composite_tile, f);
+    status = f->options->device ? composite_on_device(f) : composite_here(f);
   }
   f->statistics.seconds_composite = conic_seconds_now() - now;
   return status;
+}
+
+/* What knows of no centre but the picture's would draw another one's picture somewhere else. */
+static conic_status check_center(conic_context *context, const conic_gaussian_options *options,
+                                 const conic_camera *camera) {
+  static const double slack_px = 1e-6; /* of a scaled camera */
+  double across = camera->cx - 0.5 * camera->width, down = camera->cy - 0.5 * camera->height;
+  if (!conic_gaussian_rules_of(options->profile)->takes_middle || options->ignores_center ||
+      (fabs(across) <= slack_px && fabs(down) <= slack_px))
+    return CONIC_OK;
+  return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                    "gaussians: %s ignores the camera's centre, which is %g, %g pixels off the picture's; "
+                    "--ignore-center draws it all the same",
+                    conic_gaussian_profile_name(options->profile), across, down);
 }
 
 static void look_through(const conic_camera *camera, conic_gaussian_view *view) {
@@ -225,6 +235,30 @@ static void look_through(const conic_camera *camera, conic_gaussian_view *view) 
   view->center_px[1] = view->rules->takes_middle ? 0.5 * camera->height : camera->cy;
 }
 
+/* Whether rays are affine on the screen. */
+static int is_affine(const conic_camera *camera) {
+  return camera->kind == CONIC_CAMERA_ORTHOGRAPHIC || (camera->kind == CONIC_CAMERA_PERSPECTIVE && !camera->lens);
+}
+
+static conic_status check_sight(conic_context *context, const conic_camera *camera,
+                                const conic_gaussian_options *options) {
+  int takes_all = options->profile == CONIC_PROFILE_EXACT;
+  double h = options->prefilter;
+  conic_status status = (takes_all ? conic_view_ray_check : conic_view_pinhole_check)(context, "gaussians", camera);
+  if (status == CONIC_OK && (!(h >= 0.0 && h <= 1e4) || (h > 0.0 && !takes_all)))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "gaussians: the prefilter is out of range (0 to 10000), or of another profile than exact, which "
+                      "has its own");
+  if (status == CONIC_OK && h > 0.0 && !is_affine(camera))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "gaussians: the prefilter is of pinholes and orthographic cameras");
+  if (status == CONIC_OK && options->device && (h > 0.0 || !is_affine(camera)))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "gaussians: a device draws neither a prefilter nor other cameras than pinholes and orthographic "
+                      "ones");
+  return status;
+}
+
 conic_status conic_gaussians_render(conic_context *context, const conic_gaussians *gaussians,
                                     const conic_camera *camera, const conic_gaussian_options *options,
                                     conic_gaussian_planes *planes, conic_gaussian_statistics *statistics) {
@@ -236,14 +270,20 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "gaussians: an argument is null, or there is no such profile, or the planes are not of the "
                       "camera's size");
-  conic_status status = conic_view_pinhole_check(context, "gaussians", camera);
+  conic_status status = check_sight(context, camera, &own);
+  if (status == CONIC_OK)
+    status = check_center(context, &own, camera);
   if (status != CONIC_OK || (status = conic_isa_choose(context, own.isa, &isa)) != CONIC_OK)
     return status;
   frame f = {.context = context, .set = gaussians, .options = &own, .planes = planes};
   f.view.rules = conic_gaussian_rules_of(own.profile);
-  f.has_rays = f.view.rules->shape != CONIC_SHAPE_ELLIPSE;
+  f.view.prefilter = own.prefilter;
+  f.view.is_parallel = camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
+  f.view.rays = is_affine(camera) ? NULL : &f.view_rays;
+  f.shape = f.view.rays ? CONIC_SHAPE_SIGHT : own.prefilter > 0.0 ? CONIC_SHAPE_FILTERED : f.view.rules->shape;
   f.statistics.gaussians_in = gaussians->count;
   f.statistics.isa = isa;
+  f.statistics.device_units = own.device ? (uint64_t)own.device->n_units : 0;
   f.statistics.tile = CONIC_GAUSSIAN_TILE;
   conic_gaussian_kernels_init(&f.kernels, isa);
   look_through(camera, &f.view);

@@ -22,6 +22,7 @@ int conic_gaussian_limit_box(const conic_gaussian_view *view, const double least
 int conic_gaussian_project(const conic_gaussian_view *view, conic_gaussian_placed *p, double reach, double least[2],
                            double most[2]) {
   const double focal[2] = {view->camera->fx, view->camera->fy};
+  const double growth_px = view->prefilter > 0.0 ? sqrt(reach * view->prefilter) : CONIC_GAUSSIAN_SLACK_PX;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       double sum = 0.0;
@@ -33,15 +34,18 @@ int conic_gaussian_project(const conic_gaussian_view *view, conic_gaussian_place
   if (depth < 0.0 && p->mean[2] < 0.0)
     return 0;
   for (int axis = 0; axis < 2; axis++) {
-    least[axis] = -1e9;
-    most[axis] = 1e9;
+    double half = sqrt(reach * p->variance[axis][axis]), c = view->center_px[axis];
+    least[axis] = view->is_parallel ? focal[axis] * (p->mean[axis] - half) + c - growth_px : -1e9;
+    most[axis] = view->is_parallel ? focal[axis] * (p->mean[axis] + half) + c + growth_px : 1e9;
+  }
+  for (int axis = 0; axis < 2 && !view->is_parallel; axis++) {
     double a = reach * p->variance[axis][axis] - p->mean[axis] * p->mean[axis];
     double b = reach * p->variance[axis][2] - p->mean[axis] * p->mean[2], root = b * b - a * depth;
     if (!(depth < -1e-9 * p->mean[2] * p->mean[2]) || !(root >= 0.0))
       continue;
     double middle = b / depth, half = sqrt(root) / -depth * (1.0 + 1e-9), c = view->center_px[axis];
-    least[axis] = conic_limited(focal[axis] * (middle - half) + c - CONIC_GAUSSIAN_SLACK_PX, -1e9, 1e9);
-    most[axis] = conic_limited(focal[axis] * (middle + half) + c + CONIC_GAUSSIAN_SLACK_PX, -1e9, 1e9);
+    least[axis] = conic_limited(focal[axis] * (middle - half) + c - growth_px, -1e9, 1e9);
+    most[axis] = conic_limited(focal[axis] * (middle + half) + c + growth_px, -1e9, 1e9);
   }
   return 1;
 }

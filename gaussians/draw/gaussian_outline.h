@@ -19,8 +19,8 @@ typedef struct conic_gaussian_placed {
   int is_flat;
 } conic_gaussian_placed;
 
-/* The box of the ellipsoid at q = reach. All of the screen where it comes up to the plane of the eye. Returns 0 where
- * it lies behind that. */
+/* The box of the ellipsoid at q = reach, grown by what the view's filter adds. All of the screen where it comes up to
+ * the plane of the eye. Returns 0 where it lies behind that. */
 int conic_gaussian_project(const conic_gaussian_view *view, conic_gaussian_placed *p, double reach, double least[2],
                            double most[2]);
 

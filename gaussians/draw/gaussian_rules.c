@@ -25,7 +25,7 @@ static const conic_gaussian_rules all_rules[CONIC_N_GAUSSIAN_PROFILES] = {
     [CONIC_PROFILE_KHR_2026] = {.alpha_most = 1.0f,
                                 .compensation_least = -1.0,
                                 .slope_margin = -1.0,
-                                .greatest_q = 9.0,
+                                .greatest_half_q = 4.5f,
                                 .orders_by_distance = 1,
                                 .has_float_eye = 1},
 };

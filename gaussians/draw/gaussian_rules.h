@@ -2,13 +2,20 @@
 #ifndef CONIC_GAUSSIAN_RULES_H
 #define CONIC_GAUSSIAN_RULES_H
 
+#ifdef CONIC_ON_DEVICE
+#include "conic/image.h"
+#else
 #include "conic/gaussian_render.h"
+#endif
 
 /* How a Gaussian meets a pixel. */
 typedef enum conic_gaussian_shape {
-  CONIC_SHAPE_ELLIPSE = 0, /* an ellipse on the screen, by the Jacobian of the projection at the mean */
-  CONIC_SHAPE_RAY = 1,     /* along the pixel's ray */
-  CONIC_SHAPE_DISC = 2     /* where the ray meets the plane of a 2D Gaussian, or a dot on the screen */
+  CONIC_SHAPE_ELLIPSE = 0,  /* an ellipse on the screen, by the Jacobian of the projection at the mean */
+  CONIC_SHAPE_RAY = 1,      /* along the pixel's ray */
+  CONIC_SHAPE_DISC = 2,     /* where the ray meets the plane of a 2D Gaussian, or a dot on the screen */
+  CONIC_SHAPE_FILTERED = 3, /* along the ray under the pixel's filter: of profiles of CONIC_SHAPE_RAY, as is the next */
+  CONIC_SHAPE_SIGHT = 4,    /* along the ray of a camera whose rays are not affine on the screen */
+  CONIC_N_SHAPES
 } conic_gaussian_shape;
 
 typedef enum conic_gaussian_coverage {
@@ -29,8 +36,8 @@ typedef struct conic_gaussian_rules {
   double compensation_least; /* the opacity is multiplied by √max(this, det/det′); negative: it is not */
   double slope_margin;       /* x/z and y/z of the Jacobian are clamped so far beyond the picture, as a share of half
                                 its width; negative: not */
-  double greatest_q;         /* beyond which nothing is; 0: no such border */
-  int takes_rotation_as_is;  /* quaternions of another length than 1 scale */
+  float greatest_half_q;     /* beyond which nothing is; 0: no such border */
+  int takes_rotation_as_is;  /* quaternions that are of length 1 but for roundings */
   int takes_middle;          /* the middle of the picture in place of the principal point */
   int orders_by_distance;
   int has_float_eye;
@@ -39,7 +46,9 @@ typedef struct conic_gaussian_rules {
   float disc_near; /* of the place on the disc; 0: no such border, and depths are those of means */
 } conic_gaussian_rules;
 
+#ifndef CONIC_ON_DEVICE
 /* Null for a number that is no profile. */
 const conic_gaussian_rules *conic_gaussian_rules_of(conic_gaussian_profile profile);
+#endif
 
 #endif

@@ -6,6 +6,13 @@
 #include "core/base/vectors.h"
 #include "gaussians/draw/gaussian_outline.h"
 #include "gaussians/draw/harmonic_color.h"
+#include "gaussians/draw/view_rays.h"
+
+/* Whose squares add up to 1 but for this, a quaternion was made a unit one in floats. */
+static const double unit_slack = 0x1p-20;
+
+/* How much more q is taken than the formula says: more than the roundings. */
+static const double reach_slack = 1e-3;
 
 static int is_number(double v) {
   return v - v == 0.0;
@@ -27,7 +34,8 @@ static double read_shape(const conic_gaussians *set, size_t i, double q[4], coni
 }
 
 static void place_axes(const conic_gaussian_view *view, const double q[4], double squares, conic_gaussian_placed *p) {
-  double one_over = view->rules->takes_rotation_as_is ? 1.0 : 1.0 / sqrt(squares);
+  int is_as_it_is = view->rules->takes_rotation_as_is && squares - 1.0 < unit_slack && 1.0 - squares < unit_slack;
+  double one_over = is_as_it_is ? 1.0 : 1.0 / sqrt(squares);
   double w = q[0] * one_over, x = q[1] * one_over, y = q[2] * one_over, z = q[3] * one_over;
   const double rows[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
                              {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
@@ -70,11 +78,11 @@ static void take_reference(const conic_gaussian_view *view, double x, double y, 
 
 /* Twice the logarithm of how much the opacity is above the least alpha: beyond this q nothing is. 0: nowhere. */
 static double reach_of(const conic_gaussian_rules *rules, double opacity) {
-  if (rules->greatest_q > 0.0)
-    return rules->greatest_q;
+  if (rules->greatest_half_q > 0.0f)
+    return 2.0 * (double)rules->greatest_half_q;
   if (!(opacity >= (double)rules->alpha_least))
     return 0.0;
-  return 2.0 * conic_logarithm(opacity / (double)rules->alpha_least) + 1e-3;
+  return 2.0 * conic_logarithm(opacity / (double)rules->alpha_least) + reach_slack;
 }
 
 /* Half of it, with room for roundings. Where the exponential ends at e⁻⁸⁰, it never falls below what is composited. */
@@ -106,15 +114,14 @@ static double round_up(double value) {
 
 /* Whether a Gaussian is so far beside the picture that its ellipse cannot come to it, nor its ellipsoid, which is
  * before the eye: taken for a ball of its largest scale, a tenth larger than it is, and opaque. */
-static int is_far_beside(const conic_gaussian_view *view, const conic_gaussian_placed *p, double squares) {
+static int is_far_beside(const conic_gaussian_view *view, const conic_gaussian_placed *p) {
   const conic_gaussian_rules *rules = view->rules;
   const double focal[2] = {view->camera->fx, view->camera->fy}, z = p->mean[2];
   const double size[2] = {view->camera->width, view->camera->height}, most_reach = 11.2;
   double scale = p->scale[0] > p->scale[1] ? p->scale[0] : p->scale[1];
   scale = 1.1 * (scale > p->scale[2] ? scale : p->scale[2]);
-  if (rules->shape == CONIC_SHAPE_DISC || !(p->opacity <= 1.0) || !(z > 0.0) ||
-      (rules->shape == CONIC_SHAPE_RAY && !(z > 6.0 * scale)) ||
-      (rules->takes_rotation_as_is && !(squares > 0.99 && squares < 1.01)))
+  if (view->rays || view->is_parallel || view->prefilter > 0.0 || rules->shape == CONIC_SHAPE_DISC ||
+      !(p->opacity <= 1.0) || !(z > 0.0) || (rules->shape == CONIC_SHAPE_RAY && !(z > 6.0 * scale)))
     return 0;
   for (int axis = 0; axis < 2; axis++) {
     const double slope = p->mean[axis] / z, place = focal[axis] * slope + view->center_px[axis];
@@ -171,29 +178,70 @@ static conic_gaussian_fate set_up_ellipse(const conic_gaussian_view *view, conic
   return reach > 0.0 && conic_gaussian_limit_box(view, least, most, f) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
 }
 
-/* g, c and e at a place of the screen, and their gradients. In the frame where the Gaussian is a unit ball, times its
- * third scale where it is flat, so that nothing is divided by zero. */
-static int find_ray(const conic_gaussian_view *view, const conic_gaussian_placed *p, const conic_gaussian_footprint *f,
-                    conic_gaussian_ray *ray, double *unit) {
+/* The rays of pixels: origin and direction at the reference pixel's centre, and by how much they grow in x and in y. */
+static void find_steps(const conic_gaussian_view *view, const conic_gaussian_footprint *f, double origin[3][3],
+                       double direction[3][3]) {
   const conic_camera *camera = view->camera;
   const double steps[3][3] = {{((double)f->x + 0.5 - view->center_px[0]) / camera->fx,
                                ((double)f->y + 0.5 - view->center_px[1]) / camera->fy, 1.0},
                               {1.0 / camera->fx, 0.0, 0.0},
                               {0.0, 1.0 / camera->fy, 0.0}};
-  double g[3][3], c[3][3], e[3], m[3], one_over[3], unit_of = 0.0;
+  memset(origin, 0, sizeof steps);
+  memcpy(direction, steps, sizeof steps);
+  if (view->is_parallel) {
+    memcpy(origin, steps, sizeof steps);
+    memset(direction, 0, sizeof steps);
+    direction[0][2] = 1.0;
+    origin[0][2] = 0.0;
+  }
+}
+
+/* docs/reference/gaussians.md, Filter; g and m before a flat Gaussian's are cut down, all over `unit_of`. */
+static void find_filter(const conic_gaussian_view *view, const double g[3][3], const double m[3][3], int is_flat,
+                        double unit_of, conic_gaussian_filter *filter) {
+  const double(*moves)[3] = view->is_parallel ? m : g, factor = sqrt(view->prefilter) / unit_of;
+  double x[3], y[3], both[3], area[3];
+  conic_cross(g[0], moves[1], x);
+  conic_cross(g[0], moves[2], y);
+  conic_cross(moves[1], moves[2], area);
+  for (int k = 0; k < 3; k++) {
+    int is_left = !is_flat || k < 2;
+    both[k] = view->is_parallel ? 0.0 : area[k];
+    filter->x[k] = is_left ? (float)(factor * x[k]) : 0.0f;
+    filter->y[k] = is_left ? (float)(factor * y[k]) : 0.0f;
+    filter->both[k] = is_left ? (float)(factor * both[k]) : 0.0f;
+  }
+  filter->turn[0] = (float)(factor * conic_dot(m[0], x));
+  filter->turn[1] = (float)(factor * conic_dot(m[0], y));
+  filter->turn[2] = (float)(factor * (view->is_parallel ? -conic_dot(m[2], x) : conic_dot(m[0], both)));
+  filter->area = (float)(view->prefilter * (conic_dot(g[0], area) / unit_of));
+}
+
+/* g, c and e at a place of the screen, and their gradients. In the frame where the Gaussian is a unit ball, times its
+ * third scale where it is flat, so that nothing is divided by zero. */
+static int find_ray(const conic_gaussian_view *view, const conic_gaussian_placed *p, const conic_gaussian_footprint *f,
+                    conic_gaussian_ray *ray, conic_gaussian_filter *filter, double *unit) {
+  double g[3][3], whole[3][3], c[3][3], e[3], m[3][3], one_over[3], unit_of = 0.0, origin[3][3], direction[3][3];
+  const double *const mean = p->mean;
+  find_steps(view, f, origin, direction);
+  const double from_origin[3] = {mean[0] - origin[0][0], mean[1] - origin[0][1], mean[2] - origin[0][2]};
   for (int k = 0; k < 3; k++) {
     one_over[k] = p->is_flat && k == 2 ? 1.0 : 1.0 / p->scale[k];
-    m[k] = conic_dot(p->unit[k], p->mean) * one_over[k];
-    for (int step = 0; step < 3; step++)
-      g[step][k] = conic_dot(p->unit[k], steps[step]) * one_over[k];
+    for (int step = 0; step < 3; step++) {
+      g[step][k] = conic_dot(p->unit[k], direction[step]) * one_over[k];
+      m[step][k] = -(conic_dot(p->unit[k], origin[step]) * one_over[k]);
+    }
+    m[0][k] = conic_dot(p->unit[k], from_origin) * one_over[k];
   }
+  memcpy(whole, g, sizeof g);
   for (int step = 0; step < 3; step++) {
-    conic_cross(g[step], m, c[step]);
+    double *own_g = g[view->is_parallel ? 0 : step], *own_m = m[view->is_parallel ? step : 0];
+    conic_cross(whole[view->is_parallel ? 0 : step], own_m, c[step]);
     if (p->is_flat) {
       c[step][2] = 0.0;
-      g[step][0] = g[step][1] = 0.0;
+      own_g[0] = own_g[1] = 0.0;
     }
-    e[step] = p->is_flat ? g[step][2] * m[2] : conic_dot(g[step], m);
+    e[step] = p->is_flat ? own_g[2] * own_m[2] : conic_dot(own_g, own_m);
   }
   unit_of = conic_length(g[0]);
   for (int step = 1; step < 3; step++) /* of a plane seen from its edge, g may be zero here */
@@ -208,29 +256,88 @@ static int find_ray(const conic_gaussian_view *view, const conic_gaussian_placed
     }
     ray->e[step] = (float)(e[step] / unit_of / unit_of);
   }
+  if (view->prefilter > 0.0)
+    find_filter(view, (const double(*)[3])whole, (const double(*)[3])m, p->is_flat, unit_of, filter);
   return is_number((double)(ray->c[0][0] + ray->c[0][1] + ray->c[0][2] + ray->e[0]));
 }
 
 static void take_mean(const conic_gaussian_view *view, const conic_gaussian_placed *p, conic_gaussian_footprint *f) {
   double x = view->center_px[0], y = view->center_px[1];
-  if (p->mean[2] > 0.0) {
+  if (view->is_parallel) {
+    x += view->camera->fx * p->mean[0];
+    y += view->camera->fy * p->mean[1];
+  } else if (p->mean[2] > 0.0) {
     x += view->camera->fx * (p->mean[0] / p->mean[2]);
     y += view->camera->fy * (p->mean[1] / p->mean[2]);
   }
   take_reference(view, x, y, f);
 }
 
+/* An outline is known of rays through an eye without a filter alone. */
+static int find_ray_outline(const conic_gaussian_view *view, const conic_gaussian_placed *p, double reach,
+                            const conic_gaussian_ray *ray, double unit_of, conic_gaussian_footprint *f) {
+  f->half_reach = half_reach_of(reach);
+  return view->is_parallel || view->prefilter > 0.0 || conic_gaussian_find_outline(view, p, reach, ray, unit_of, f);
+}
+
 static conic_gaussian_fate set_up_ray(const conic_gaussian_view *view, conic_gaussian_placed *p,
-                                      conic_gaussian_footprint *f, conic_gaussian_ray *ray) {
+                                      conic_gaussian_footprint *f, conic_gaussian_ray *ray,
+                                      conic_gaussian_filter *filter) {
   double least[2], most[2], unit_of, reach = reach_of(view->rules, p->opacity);
+  reach -= view->prefilter > 0.0 ? reach_slack : 0.0; /* a filter's box is a rule */
   if (!(reach > 0.0) || !conic_gaussian_project(view, p, reach, least, most) ||
       !conic_gaussian_limit_box(view, least, most, f))
     return CONIC_GAUSSIAN_CULLED;
   take_mean(view, p, f);
-  f->half_reach = half_reach_of(reach);
-  return find_ray(view, p, f, ray, &unit_of) && conic_gaussian_find_outline(view, p, reach, ray, unit_of, f)
+  return find_ray(view, p, f, ray, filter, &unit_of) && find_ray_outline(view, p, reach, ray, unit_of, f)
              ? CONIC_GAUSSIAN_DRAWN
              : CONIC_GAUSSIAN_CULLED;
+}
+
+/* g and c about a direction, and their derivatives by directions; e of these. */
+static int find_sight(const conic_gaussian_view *view, const conic_gaussian_placed *p, conic_gaussian_sight *sight) {
+  double directions[4][3] = {{0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  double g[4][3], c[4][3], e[4], m[3], one_over[3], unit_of = 0.0;
+  conic_view_rays_towards(view->camera, p->mean, directions[0]);
+  for (int k = 0; k < 3; k++) {
+    one_over[k] = p->is_flat && k == 2 ? 1.0 : 1.0 / p->scale[k];
+    m[k] = conic_dot(p->unit[k], p->mean) * one_over[k];
+    sight->high[k] = (float)directions[0][k];
+    sight->low[k] = (float)(directions[0][k] - (double)sight->high[k]);
+  }
+  for (int i = 0; i < 4; i++) {
+    for (int k = 0; k < 3; k++)
+      g[i][k] = conic_dot(p->unit[k], directions[i]) * one_over[k];
+    conic_cross(g[i], m, c[i]);
+    if (p->is_flat)
+      c[i][2] = g[i][0] = g[i][1] = 0.0;
+    e[i] = conic_dot(g[i], m);
+    unit_of = unit_of > conic_length(g[i]) ? unit_of : conic_length(g[i]);
+  }
+  if (!(unit_of > 0.0) || !is_number(unit_of))
+    return 0;
+  for (int i = 0; i < 4; i++) {
+    for (int k = 0; k < 3; k++) {
+      sight->g[k][i] = (float)(g[i][k] / unit_of);
+      sight->c[k][i] = (float)(c[i][k] / unit_of);
+    }
+    sight->e[i] = (float)(e[i] / unit_of / unit_of);
+  }
+  return is_number((double)(sight->c[0][1] + sight->c[1][2] + sight->c[2][3] + sight->e[0]));
+}
+
+static conic_gaussian_fate set_up_sight(const conic_gaussian_view *view, const conic_gaussian_placed *p,
+                                        conic_gaussian_footprint *f, conic_gaussian_sight *sight) {
+  double reach = reach_of(view->rules, p->opacity), longest = 0.0;
+  for (int k = 0; k < 3; k++)
+    longest = p->scale[k] > longest ? p->scale[k] : longest;
+  if (!(reach > 0.0) || !conic_view_rays_box(view->rays, p->mean, sqrt(reach) * longest, f->box))
+    return CONIC_GAUSSIAN_CULLED;
+  f->x = f->box[0][0];
+  f->y = f->box[0][1];
+  f->dx = f->dy = 0.0f;
+  f->half_reach = INFINITY;
+  return find_sight(view, p, sight) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
 }
 
 /* The centre of the box of the outline at the profile's cutoff, and half the box's size. */
@@ -286,22 +393,21 @@ static conic_gaussian_fate set_up_disc(const conic_gaussian_view *view, conic_ga
     return CONIC_GAUSSIAN_CULLED;
   take_reference(view, place[0], place[1], f);
   f->half_reach = half_reach_of(reach);
-  return find_ray(view, p, f, ray, &unit_of) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
+  return find_ray(view, p, f, ray, NULL, &unit_of) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
 }
 
 static void choose_normal(const conic_gaussian_view *view, const conic_gaussian_placed *p, float normal[3]) {
   int axis = 2;
   for (int k = 1; k >= 0 && !p->is_flat; k--)
     axis = p->scale[k] < p->scale[axis] ? k : axis;
-  double side = conic_dot(p->unit[axis], p->mean) > 0.0 ? -1.0 : 1.0;
-  (void)view;
+  double side = (view->is_parallel ? p->unit[axis][2] : conic_dot(p->unit[axis], p->mean)) > 0.0 ? -1.0 : 1.0;
   for (int row = 0; row < 3; row++)
     normal[row] = (float)(side * p->world[row][axis]);
 }
 
 conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
                                           conic_gaussian_footprint *f, float *key, conic_gaussian_ray *ray,
-                                          float normal[3]) {
+                                          conic_gaussian_filter *filter, conic_gaussian_sight *sight, float normal[3]) {
   const conic_gaussian_rules *rules = view->rules;
   conic_gaussian_placed p;
   double from_eye[3], q[4], squares;
@@ -311,7 +417,7 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
   if (rules->shape != CONIC_SHAPE_RAY &&
       (z < rules->near_z || (rules->is_beyond_near && z == rules->near_z) || z <= 0.0))
     return CONIC_GAUSSIAN_CULLED;
-  if (is_far_beside(view, &p, squares))
+  if (is_far_beside(view, &p))
     return CONIC_GAUSSIAN_CULLED;
   place_axes(view, q, squares, &p);
   if (rules->shape == CONIC_SHAPE_RAY && !p.is_flat && p.scale[2] == 0.0)
@@ -320,18 +426,22 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
     return CONIC_GAUSSIAN_CULLED;
   if (p.is_flat)
     p.scale[2] = 0.0;
-  f->form[0] = f->form[1] = f->form[2] = 0.0f;
-  conic_gaussian_fate fate = rules->shape == CONIC_SHAPE_ELLIPSE ? set_up_ellipse(view, &p, f)
-                             : rules->shape == CONIC_SHAPE_RAY   ? set_up_ray(view, &p, f, ray)
-                                                                 : set_up_disc(view, &p, f, ray);
+  f->form[0] = f->form[1] = f->form[2] = f->z = 0.0f;
+  conic_gaussian_fate fate = view->rays                            ? set_up_sight(view, &p, f, sight)
+                             : rules->shape == CONIC_SHAPE_ELLIPSE ? set_up_ellipse(view, &p, f)
+                             : rules->shape == CONIC_SHAPE_RAY     ? set_up_ray(view, &p, f, ray, filter)
+                                                                   : set_up_disc(view, &p, f, ray);
   if (fate != CONIC_GAUSSIAN_DRAWN)
     return fate;
+  int is_by_distance = view->rays && view->camera->kind != CONIC_CAMERA_PERSPECTIVE;
   f->opacity = (float)p.opacity;
   if (rules->shape != CONIC_SHAPE_RAY)
     f->z = (float)z;
-  *key = (float)(rules->orders_by_distance ? conic_length(p.mean) : z);
+  *key = (float)(rules->orders_by_distance || is_by_distance ? conic_length(p.mean) : z);
   f->index = (uint32_t)i;
   if (normal)
     choose_normal(view, &p, normal);
+  if (view->is_parallel) /* from an eye that is infinitely far */
+    memcpy(from_eye, view->camera->cam_from_world[2], sizeof from_eye);
   return conic_harmonic_color(gaussians, i, from_eye, f->color) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_SKIPPED;
 }

@@ -1,9 +1,7 @@
-/* Compositing in plain C: the reference of what lanes do. */
+/* Compositing in plain C: the reference of what lanes do. OpenCL C shares this text, with a pixel as the tile. */
 #include "gaussians/draw/gaussian_tile.h"
 
 #include "core/splats/kernel.h"
-
-CONIC_DEFINE_KERNELS(conic_gaussian_kernels)
 
 static void composite_planes(const conic_gaussian_list *list, uint32_t i_footprint, float z, float w, float before,
                              float after, conic_gaussian_tile *tile, size_t at) {
@@ -26,7 +24,7 @@ static void composite_planes(const conic_gaussian_list *list, uint32_t i_footpri
 /* Returns 0 where compositing has ended at the pixel. */
 static int composite_one(const conic_gaussian_list *list, uint32_t i_footprint, float z, float alpha,
                          conic_gaussian_tile *tile, size_t at) {
-  const conic_gaussian_footprint *f = &list->footprints[i_footprint];
+  const CONIC_STORED conic_gaussian_footprint *f = &list->footprints[i_footprint];
   const conic_gaussian_rules *rules = list->rules;
   float before = tile->T[at], after = before * (1.0f - alpha), w = alpha * before;
   if (after < rules->stop || (rules->is_beyond_stop && after == rules->stop))
@@ -45,47 +43,38 @@ typedef struct hit {
   uint32_t footprint;
 } hit;
 
-/* Of Gaussians at one depth the order is that of their keys, then that of the scene. */
-static int is_behind(const conic_gaussian_list *list, const hit *a, const hit *b) {
-  const uint32_t *keys = list->keys;
-  if (a->z != b->z)
-    return a->z > b->z;
-  return keys[a->footprint] != keys[b->footprint] ? keys[a->footprint] > keys[b->footprint]
-                                                  : a->footprint > b->footprint;
-}
-
-/* Insertion: the list is nearly in order. */
-static void sort_hits(const conic_gaussian_list *list, hit *hits, size_t n) {
+/* Insertion: the list is nearly in order. What is equally far stays in the order of the list. */
+static void sort_hits(CONIC_STORED hit *hits, size_t n) {
   for (size_t i = 1; i < n; i++) {
     hit moved = hits[i];
     size_t at = i;
-    for (; at > 0 && is_behind(list, &hits[at - 1], &moved); at--)
+    for (; at > 0 && hits[at - 1].z > moved.z; at--)
       hits[at] = hits[at - 1];
     hits[at] = moved;
   }
 }
 
-static float alpha_of(const conic_gaussian_rules *rules, const conic_gaussian_footprint *f, float half_q) {
+static float alpha_of(const conic_gaussian_rules *rules, const CONIC_STORED conic_gaussian_footprint *f, float half_q) {
   float alpha = f->opacity * conic_exp_negative(-half_q);
   return alpha < rules->alpha_most ? alpha : rules->alpha_most;
 }
 
-static int covers_pixel(const conic_gaussian_footprint *f, int x, int y) {
+static int covers_pixel(const CONIC_STORED conic_gaussian_footprint *f, int x, int y) {
   return x >= f->box[0][0] && x <= f->box[1][0] && y >= f->box[0][1] && y <= f->box[1][1];
 }
 
 static void composite_ellipses(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
   const conic_gaussian_rules *rules = list->rules;
-  const float greatest = (float)(0.5 * rules->greatest_q);
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
     int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
     for (size_t i = 0; i < list->n; i++) {
-      const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
+      const CONIC_STORED conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
       float dx = (float)(x - f->x) + f->dx, dy = (float)(y - f->y) + f->dy;
       float half_q = 0.5f * (f->form[0] * dx * dx + f->form[2] * dy * dy) + f->form[1] * dx * dy;
       float alpha = alpha_of(rules, f, half_q);
-      if (covers_pixel(f, x, y) && half_q >= 0.0f && (!(greatest > 0.0f) || greatest >= half_q) &&
-          alpha >= rules->alpha_least && !composite_one(list, list->entries[i], f->z, alpha, tile, at))
+      if (covers_pixel(f, x, y) && half_q >= 0.0f &&
+          (!(rules->greatest_half_q > 0.0f) || rules->greatest_half_q >= half_q) && alpha >= rules->alpha_least &&
+          !composite_one(list, list->entries[i], f->z, alpha, tile, at))
         break;
     }
   }
@@ -100,7 +89,8 @@ static float affine(float at_reference, float by_x, float by_y, float dx, float 
 }
 
 /* The order of operations here is that of docs/reference/gaussians.md. */
-static meeting meet_ray(const conic_gaussian_footprint *f, const conic_gaussian_ray *r, int x, int y) {
+static meeting meet_ray(const CONIC_STORED conic_gaussian_footprint *f, const CONIC_STORED conic_gaussian_ray *r, int x,
+                        int y) {
   float dx = (float)(x - f->x), dy = (float)(y - f->y), g[3], c[3];
   for (int k = 0; k < 3; k++) {
     g[k] = affine(r->g[0][k], r->g[1][k], r->g[2][k], dx, dy);
@@ -112,12 +102,12 @@ static meeting meet_ray(const conic_gaussian_footprint *f, const conic_gaussian_
 }
 
 static void composite_rays(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  hit *hits = list->room;
+  CONIC_STORED hit *hits = list->room;
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
     int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
     size_t n = 0;
     for (size_t i = 0; i < list->n; i++) {
-      const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
+      const CONIC_STORED conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
       if (!covers_pixel(f, x, y))
         continue;
       meeting m = meet_ray(f, &list->rays[list->entries[i]], x, y);
@@ -125,7 +115,7 @@ static void composite_rays(const conic_gaussian_list *list, conic_gaussian_tile 
       if (m.z > 0.0f && m.half_q >= 0.0f && alpha >= list->rules->alpha_least)
         hits[n++] = (hit){m.z, alpha, list->entries[i]};
     }
-    sort_hits(list, hits, n);
+    sort_hits(hits, n);
     for (size_t i = 0; i < n && composite_one(list, hits[i].footprint, hits[i].z, hits[i].alpha, tile, at); i++)
       ;
   }
@@ -136,7 +126,7 @@ static void composite_discs(const conic_gaussian_list *list, conic_gaussian_tile
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
     int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
     for (size_t i = 0; i < list->n; i++) {
-      const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
+      const CONIC_STORED conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
       meeting m = meet_ray(f, &list->rays[list->entries[i]], x, y);
       float dx = (float)(x - f->x) + f->dx, dy = (float)(y - f->y) + f->dy, dot = dx * dx + dy * dy;
       float half_q = m.half_q < dot ? m.half_q : dot, alpha = alpha_of(rules, f, half_q);
@@ -148,8 +138,45 @@ static void composite_discs(const conic_gaussian_list *list, conic_gaussian_tile
   }
 }
 
+#ifndef CONIC_ON_DEVICE
+#include "gaussians/draw/ray_meetings.h"
+
+static void composite_meetings(const conic_gaussian_list *list, conic_gaussian_tile *tile, int is_filtered) {
+  hit *hits = list->room;
+  for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
+    int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
+    size_t n = 0;
+    for (size_t i = 0; i < list->n; i++) {
+      if (!covers_pixel(&list->footprints[list->entries[i]], x, y))
+        continue;
+      conic_ray_meeting m = is_filtered ? conic_meet_filtered(list, list->entries[i], x, y)
+                                        : conic_meet_sight(list, list->entries[i], at);
+      float alpha = m.opacity * conic_exp_negative(-m.half_q);
+      alpha = alpha < list->rules->alpha_most ? alpha : list->rules->alpha_most;
+      if (m.z > 0.0f && m.half_q >= 0.0f && alpha >= list->rules->alpha_least)
+        hits[n++] = (hit){m.z, alpha, list->entries[i]};
+    }
+    sort_hits(hits, n);
+    for (size_t i = 0; i < n && composite_one(list, hits[i].footprint, hits[i].z, hits[i].alpha, tile, at); i++)
+      ;
+  }
+}
+
+static void composite_filtered(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  composite_meetings(list, tile, 1);
+}
+
+static void composite_sights(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  composite_meetings(list, tile, 0);
+}
+
+CONIC_DEFINE_KERNELS(conic_gaussian_kernels)
+
 void conic_gaussian_kernels_scalar(conic_gaussian_kernels *kernels) {
   kernels->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses;
   kernels->composite[CONIC_SHAPE_RAY] = composite_rays;
   kernels->composite[CONIC_SHAPE_DISC] = composite_discs;
+  kernels->composite[CONIC_SHAPE_FILTERED] = composite_filtered;
+  kernels->composite[CONIC_SHAPE_SIGHT] = composite_sights;
 }
+#endif

@@ -7,7 +7,15 @@
 #include "core/lanes/instruction_sets.h"
 #include "gaussians/draw/gaussian_footprint.h"
 
-enum { CONIC_GAUSSIAN_TILE = 16, CONIC_GAUSSIAN_TILE_PIXELS = CONIC_GAUSSIAN_TILE * CONIC_GAUSSIAN_TILE };
+enum { CONIC_GAUSSIAN_TILE = 16 };
+#ifndef CONIC_GAUSSIAN_TILE_PIXELS /* 1 where a device has a work-item for each */
+#define CONIC_GAUSSIAN_TILE_PIXELS (CONIC_GAUSSIAN_TILE * CONIC_GAUSSIAN_TILE)
+#endif
+
+/* Where a frame's records lie: in a memory of its own on a device. */
+#ifndef CONIC_STORED
+#define CONIC_STORED
+#endif
 
 enum { CONIC_GAUSSIAN_BLOCK = 4, CONIC_GAUSSIAN_BLOCKS = 16, CONIC_GAUSSIAN_BLOCK_PIXELS = 16 };
 
@@ -19,11 +27,7 @@ static inline int conic_gaussian_row(size_t pixel) {
   return (int)(pixel / (4 * CONIC_GAUSSIAN_BLOCK_PIXELS) * 4 + pixel % 4);
 }
 
-static inline size_t conic_gaussian_pixel(int column, int row) {
-  return (size_t)((row / 4 * 4 + column / 4) * CONIC_GAUSSIAN_BLOCK_PIXELS + column % 4 * 4 + row % 4);
-}
-
-/* Pixels beside the picture are there, too. What follows rgb is for planes beside colour. */
+/* Pixels beside the picture are there, too. */
 typedef struct conic_gaussian_tile {
   float T[CONIC_GAUSSIAN_TILE_PIXELS];
   float rgb[3][CONIC_GAUSSIAN_TILE_PIXELS];
@@ -37,25 +41,39 @@ typedef struct conic_gaussian_tile {
 
 enum { CONIC_GAUSSIAN_ROOM = 320 };
 
-/* What is composited in a tile: the footprints that the entries name. They come in the order of the profile, but those
- * of CONIC_SHAPE_RAY in that of their z. */
+#ifndef CONIC_ON_DEVICE
+/* The directions of a tile's rays, each the sum of two floats; NaN where there is none. */
+typedef struct conic_sight_rays {
+  float high[3][CONIC_GAUSSIAN_TILE_PIXELS], low[3][CONIC_GAUSSIAN_TILE_PIXELS];
+} conic_sight_rays;
+#endif
+
+/* What is composited in a tile: the footprints that the entries name, in their order. */
 typedef struct conic_gaussian_list {
   const conic_gaussian_rules *rules;
-  const conic_gaussian_footprint *footprints;
-  const conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
-  const float (*normals)[3];      /* by footprint; null: not wanted */
-  const uint32_t *keys;           /* by footprint: the profile's order, as a number */
-  int wants_all;                  /* else T and rgb alone */
-  const uint32_t *entries;
+  const CONIC_STORED conic_gaussian_footprint *footprints;
+  const CONIC_STORED conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
+  const CONIC_STORED float (*normals)[3];      /* by footprint; null: not wanted */
+  int wants_all;                               /* else T and rgb alone */
+  const CONIC_STORED uint32_t *entries;
   size_t n;
-  void *room; /* of CONIC_SHAPE_RAY: CONIC_GAUSSIAN_ROOM bytes for each entry and 16 more; aligned to 64 bytes */
+  CONIC_STORED void *room; /* of what is ordered along rays: CONIC_GAUSSIAN_ROOM bytes for each entry and 16 more;
+                              aligned to 64 bytes */
+#ifndef CONIC_ON_DEVICE
+  const conic_gaussian_filter *filters; /* by footprint; of CONIC_SHAPE_FILTERED */
+  const conic_gaussian_sight *sights;   /* by footprint; of CONIC_SHAPE_SIGHT */
+  const conic_sight_rays *tile_rays;    /* of CONIC_SHAPE_SIGHT */
+  int is_parallel;                      /* rays are */
+#endif
 } conic_gaussian_list;
 
+#ifndef CONIC_ON_DEVICE /* where no pointer is to a function */
 /* One slot a shape: composites the list in the tile, whose sums and T's begin. */
 typedef struct conic_gaussian_kernels {
-  void (*composite[3])(const conic_gaussian_list *list, conic_gaussian_tile *tile);
+  void (*composite[CONIC_N_SHAPES])(const conic_gaussian_list *list, conic_gaussian_tile *tile);
 } conic_gaussian_kernels;
 
 CONIC_DECLARE_KERNELS(conic_gaussian_kernels);
+#endif
 
 #endif

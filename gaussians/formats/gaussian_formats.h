@@ -9,6 +9,9 @@
 #include "core/formats/ply_header.h"
 #include "gaussians/scene/gaussian_set.h"
 
+/* Whether a file is a Gaussian scene other than a .ply whose vertices have the numbers as columns. */
+int conic_gaussians_is_packed(conic_context *context, const char *path);
+
 /* --- reading: on failure *gaussians is for the caller to release --- */
 
 /* Whether a PLY's vertices are Gaussians, plain or in PlayCanvas's chunks. */

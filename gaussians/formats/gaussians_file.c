@@ -137,11 +137,15 @@ static int begins_as_ply(const unsigned char *bytes, size_t n) {
   return n >= 4 && memcmp(bytes, "ply", 3) == 0 && (bytes[3] == '\n' || bytes[3] == '\r' || bytes[3] == ' ');
 }
 
+static int is_compressed_ply(const unsigned char *bytes, size_t n) {
+  size_t n_head = n < 65536 ? n : 65536;
+  return begins_as_ply(bytes, n) && has_text(bytes, n_head, " packed_position") &&
+         has_text(bytes, n_head, "element chunk");
+}
+
 static int is_gaussian_ply(const unsigned char *bytes, size_t n) {
   static const char *const names[] = {" scale_0", " scale_1", " rot_0", " rot_3", " f_dc_2", " opacity"};
   size_t n_head = n < 65536 ? n : 65536;
-  if (has_text(bytes, n_head, " packed_position") && has_text(bytes, n_head, "element chunk"))
-    return 1;
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (!has_text(bytes, n_head, names[i]))
       return 0;
@@ -205,18 +209,33 @@ static const char *resolve_folder(const char *path, char room[4096]) {
   return n > 0 && n < 4096 && conic_file_is_there(room) ? room : path;
 }
 
-int conic_gaussians_is_file(conic_context *context, const char *path) {
+/* Whether it is a scene, and one whose vertices are columns of a PLY. */
+static int look_for_scene(conic_context *context, const char *path, int *is_plain_ply) {
   char room[4096];
   conic_mapping file;
   conic_gaussian_kind kind;
   const char *resolved = resolve_folder(path, room);
+  *is_plain_ply = 0;
   if (strcmp(path, "-") == 0 || !conic_file_is_there(resolved) ||
       conic_mapping_open(context, resolved, &file) != CONIC_OK)
     return 0;
-  int is_one = begins_as_ply(file.bytes, file.n_bytes) ? is_gaussian_ply(file.bytes, file.n_bytes)
-                                                       : find_scene_kind(resolved, file.bytes, file.n_bytes, &kind);
+  int is_one = is_compressed_ply(file.bytes, file.n_bytes);
+  if (!is_one && begins_as_ply(file.bytes, file.n_bytes))
+    is_one = *is_plain_ply = is_gaussian_ply(file.bytes, file.n_bytes);
+  else if (!is_one)
+    is_one = find_scene_kind(resolved, file.bytes, file.n_bytes, &kind);
   conic_mapping_close(context, &file);
   return is_one;
+}
+
+int conic_gaussians_is_file(conic_context *context, const char *path) {
+  int is_plain_ply;
+  return look_for_scene(context, path, &is_plain_ply);
+}
+
+int conic_gaussians_is_packed(conic_context *context, const char *path) {
+  int is_plain_ply;
+  return look_for_scene(context, path, &is_plain_ply) && !is_plain_ply;
 }
 
 /* --- reading --- */

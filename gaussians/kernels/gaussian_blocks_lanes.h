@@ -12,7 +12,7 @@ typedef struct record {
   float first[2], last[2]; /* of its box, from the tile's first pixel */
 } record;
 
-CONIC_INLINE record record_of(const conic_gaussian_tile *tile, const conic_gaussian_footprint *f) {
+CONIC_INLINE record record_of(const conic_gaussian_tile *tile, const CONIC_STORED conic_gaussian_footprint *f) {
   return (record){(float)(tile->x - f->x),
                   (float)(tile->y - f->y),
                   f->dx,
@@ -41,7 +41,7 @@ CONIC_INLINE lanes_mask within_box(const record *r, places at) {
 }
 
 /* The blocks that a box meets, as bits. */
-CONIC_INLINE unsigned blocks_of_box(const conic_gaussian_tile *tile, const conic_gaussian_footprint *f) {
+CONIC_INLINE unsigned blocks_of_box(const conic_gaussian_tile *tile, const CONIC_STORED conic_gaussian_footprint *f) {
   int first_column = (int)f->box[0][0] - tile->x, last_column = (int)f->box[1][0] - tile->x;
   int first_row = (int)f->box[0][1] - tile->y, last_row = (int)f->box[1][1] - tile->y;
   unsigned columns = 0xfu, rows = 0xffffu;
@@ -76,7 +76,8 @@ CONIC_INLINE unsigned blocks_of_ellipse(const record *r, float half_reach) {
 }
 
 /* Entry i's footprint; asks for one of those that follow, since they lie all over the memory. */
-CONIC_INLINE const conic_gaussian_footprint *footprint_of_entry(const conic_gaussian_list *list, size_t i) {
+CONIC_INLINE const CONIC_STORED conic_gaussian_footprint *footprint_of_entry(const conic_gaussian_list *list,
+                                                                             size_t i) {
   enum { AHEAD = 8 };
   if (i + AHEAD < list->n)
     __builtin_prefetch(&list->footprints[list->entries[i + AHEAD]]);

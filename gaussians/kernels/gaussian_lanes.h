@@ -1,5 +1,5 @@
 /* Compositing in lanes: block by block, in each the Gaussians of the list that may cover it, its pixels in registers.
- * Includes what fills the table. */
+ * Includes what fills the table. C and OpenCL C share this text, and what it includes. */
 #include "gaussians/kernels/gaussian_rays_lanes.h"
 
 typedef struct batch {
@@ -14,7 +14,7 @@ typedef struct batch {
 static void take_batch(const conic_gaussian_list *list, const conic_gaussian_tile *tile, size_t first, batch *b) {
   b->n = 0;
   for (size_t i = first; i < list->n && i < first + BATCH; i++) {
-    const conic_gaussian_footprint *f = footprint_of_entry(list, i);
+    const CONIC_STORED conic_gaussian_footprint *f = footprint_of_entry(list, i);
     record *r = &b->records[b->n];
     *r = record_of(tile, f);
     b->blocks[b->n] = blocks_of_box(tile, f) & blocks_of_ellipse(r, f->half_reach);
@@ -30,7 +30,7 @@ CONIC_INLINE lanes half_q_of_ellipse(const record *r, places at) {
 }
 
 /* The lesser of the plane's and the dot's. */
-CONIC_INLINE meeting_lanes meet_disc(const record *r, const conic_gaussian_ray *ray, places at) {
+CONIC_INLINE meeting_lanes meet_disc(const record *r, const CONIC_STORED conic_gaussian_ray *ray, places at) {
   lanes x = at.column + r->x, y = at.row + r->y, dx = x + r->dx, dy = y + r->dy;
   meeting_lanes m = meet_lanes(ray, x, y);
   m.half_q = lanes_min(m.half_q, dx * dx + dy * dy);
@@ -119,8 +119,12 @@ static void composite_discs_in_lanes(const conic_gaussian_list *list, conic_gaus
     composite_in_order(list, tile, CONIC_SHAPE_DISC, 0);
 }
 
+#ifndef CONIC_ON_DEVICE
 CONIC_FILL_KERNELS(conic_gaussian_kernels) {
   kernels->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses_in_lanes;
   kernels->composite[CONIC_SHAPE_RAY] = composite_rays_in_lanes;
   kernels->composite[CONIC_SHAPE_DISC] = composite_discs_in_lanes;
+  kernels->composite[CONIC_SHAPE_FILTERED] = composite_filtered_in_lanes;
+  kernels->composite[CONIC_SHAPE_SIGHT] = composite_sights_in_lanes;
 }
+#endif

@@ -20,9 +20,9 @@ CONIC_INLINE scene scene_of(const conic_gaussian_list *list, conic_gaussian_tile
                  lanes_of(rules->alpha_most),
                  lanes_of(rules->alpha_least),
                  lanes_of(rules->stop),
-                 lanes_of((float)(0.5 * rules->greatest_q)),
+                 lanes_of(rules->greatest_half_q),
                  rules->is_beyond_stop,
-                 rules->greatest_q > 0.0};
+                 rules->greatest_half_q > 0.0f};
 }
 
 typedef struct pixels {
@@ -108,6 +108,7 @@ CONIC_INLINE void composite_lanes(const scene *s, const response *r, pixels *p, 
   p->T = lanes_select(goes, after, p->T);
 }
 
+#ifndef CONIC_ON_DEVICE
 /* A number of each lane's own record, at `at` from the base. */
 CONIC_INLINE lanes lanes_gather(const float *base, index_lanes at) {
 #if defined(__AVX512F__)
@@ -121,5 +122,6 @@ CONIC_INLINE lanes lanes_gather(const float *base, index_lanes at) {
   return value;
 #endif
 }
+#endif
 
 #endif

@@ -4,7 +4,6 @@
 #define CONIC_GAUSSIAN_RAYS_LANES_H
 
 #include "gaussians/kernels/gaussian_blocks_lanes.h"
-#include "gaussians/kernels/gaussian_order_lanes.h"
 #include "gaussians/kernels/gaussian_pixels_lanes.h"
 
 CONIC_INLINE lanes lanes_alpha(const scene *s, const record *r, lanes half_q) {
@@ -17,13 +16,17 @@ CONIC_INLINE void add_planes_of_footprint(const conic_gaussian_list *list, uint3
     to->normal[k] = list->normals ? lanes_of(list->normals[footprint][k]) : lanes_of(0.0f);
 }
 
-enum { BATCH = 256, AHEAD = 6 }; /* entries that are taken at a time; how far memory is asked for */
+enum { BATCH = 256, RAYS_AHEAD = 6 }; /* entries that are taken at a time; how far memory is asked for */
 
+#ifdef CONIC_ON_DEVICE
 typedef struct meeting_lanes {
   lanes half_q, z;
 } meeting_lanes;
+#else
+#include "gaussians/kernels/ray_meetings_lanes.h"
+#endif
 
-CONIC_INLINE meeting_lanes meet_lanes(const conic_gaussian_ray *r, lanes dx, lanes dy) {
+CONIC_INLINE meeting_lanes meet_lanes(const CONIC_STORED conic_gaussian_ray *r, lanes dx, lanes dy) {
   lanes g[3], c[3];
   for (int k = 0; k < 3; k++) {
     g[k] = r->g[0][k] + r->g[1][k] * dx + r->g[2][k] * dy;
@@ -33,6 +36,19 @@ CONIC_INLINE meeting_lanes meet_lanes(const conic_gaussian_ray *r, lanes dx, lan
   lanes half_q = 0.5f * ((c[0] * c[0] + c[1] * c[1] + c[2] * c[2]) * one_over);
   return (meeting_lanes){lanes_select(lanes_less(lanes_of(0.0f), squares), half_q, lanes_of(-1.0f)),
                          (r->e[0] + r->e[1] * dx + r->e[2] * dy) * one_over};
+}
+
+#ifndef CONIC_ON_DEVICE /* which has opencl/gaussian_rays.cl */
+#include "gaussians/kernels/gaussian_order_lanes.h"
+
+CONIC_INLINE meeting_lanes meet_by_shape(const conic_gaussian_list *list, uint32_t footprint, const record *r,
+                                         size_t pixel, conic_gaussian_shape shape) {
+  const places at = places_at(pixel);
+  if (shape == CONIC_SHAPE_FILTERED)
+    return meet_filtered_lanes(list, footprint, at.column + r->x, at.row + r->y);
+  if (shape == CONIC_SHAPE_SIGHT)
+    return meet_sight_lanes(list, footprint, pixel);
+  return meet_lanes(&list->rays[footprint], at.column + r->x, at.row + r->y);
 }
 
 /* What a Gaussian looks like wherever it meets a ray. */
@@ -45,6 +61,7 @@ typedef struct look {
 typedef struct meetings {
   record *records;
   uint32_t *blocks;
+  float *bounds;           /* of each batch: no z that follows it is below */
   size_t n_taken;          /* entries that have a record */
   look *looks;             /* of the Gaussians that meet a ray of the vector, */
   lanes_row *z, *alpha;    /* where they do; alpha 0: not that ray */
@@ -62,6 +79,7 @@ static meetings meetings_in_room(const conic_gaussian_list *list) {
   m.keys = m.alpha + n;
   m.looks = (look *)(void *)(m.keys + n);
   m.blocks = (uint32_t *)(void *)(m.looks + n);
+  m.bounds = (float *)(void *)(m.blocks + n);
   return m;
 }
 
@@ -79,18 +97,20 @@ static void take_records(const conic_gaussian_list *list, const conic_gaussian_t
 
 /* Where the vector's rays meet the Gaussians of entries that are listed, counted from `first`. */
 CONIC_INLINE void meet_listed(const scene *s, meetings *m, size_t first, const uint32_t *listed, size_t n_listed,
-                              places at) {
+                              size_t pixel, conic_gaussian_shape shape) {
+  const places at = places_at(pixel);
   const conic_gaussian_list *list = s->list;
   for (size_t i = 0; i < n_listed; i++) {
-    if (i + AHEAD < n_listed) { /* a ray takes two lines of the cache */
-      const char *next = (const char *)&list->rays[list->entries[first + listed[i + AHEAD]]];
+    const record *r = &m->records[first + listed[i]];
+    const uint32_t footprint = list->entries[first + listed[i]];
+    if (shape == CONIC_SHAPE_RAY && i + RAYS_AHEAD < n_listed) { /* a ray takes two lines of the cache */
+      const char *next = (const char *)&list->rays[list->entries[first + listed[i + RAYS_AHEAD]]];
       __builtin_prefetch(next);
       __builtin_prefetch(next + sizeof *list->rays - 1);
     }
-    const record *r = &m->records[first + listed[i]];
-    const uint32_t footprint = list->entries[first + listed[i]];
-    const meeting_lanes met = meet_lanes(&list->rays[footprint], at.column + r->x, at.row + r->y);
-    lanes alpha = lanes_alpha(s, r, met.half_q);
+    const meeting_lanes met = meet_by_shape(list, footprint, r, pixel, shape);
+    lanes alpha = shape == CONIC_SHAPE_FILTERED ? lanes_min(met.opacity * lanes_exp_negative(-met.half_q), s->most)
+                                                : lanes_alpha(s, r, met.half_q);
     lanes_mask covered = within_box(r, at) & lanes_less(lanes_of(0.0f), met.z) &
                          lanes_at_least(met.half_q, lanes_of(0.0f)) & lanes_at_least(alpha, s->least);
     if (!lanes_any(covered))
@@ -107,23 +127,20 @@ CONIC_INLINE index_lanes at_pixels(index_lanes which) {
   return which * (uint32_t)CONIC_LANES + lanes_ascending(0);
 }
 
-/* Of Gaussians at one depth the order is that of their keys, then that of the scene. */
-static int is_behind(const conic_gaussian_list *list, const meetings *m, uint32_t a, uint32_t b, size_t lane) {
-  const uint32_t first = m->looks[a].footprint, second = m->looks[b].footprint;
-  if (m->z[a][lane] != m->z[b][lane])
-    return m->z[a][lane] > m->z[b][lane];
-  return list->keys[first] != list->keys[second] ? list->keys[first] > list->keys[second] : first > second;
+/* Of Gaussians at one depth the order is that of the list. */
+static int is_behind(const meetings *m, uint32_t a, uint32_t b, size_t lane) {
+  return m->z[a][lane] > m->z[b][lane] || (m->z[a][lane] == m->z[b][lane] && a > b);
 }
 
 /* The same ray by ray, where depths are equal. */
-static void mend_equals(const conic_gaussian_list *list, meetings *m, size_t n) {
+static void mend_equals(meetings *m, size_t n) {
   for (size_t lane = 0; lane < CONIC_LANES; lane++)
     for (size_t i = 1; i < n && m->keys[i][lane] < __builtin_inff(); i++) {
       const float key = m->keys[i][lane];
       const uint32_t which = conic_bits_of_float(key) & m->by.numbers;
       size_t at = i;
       for (; at > 0; at--) {
-        if (!is_behind(list, m, conic_bits_of_float(m->keys[at - 1][lane]) & m->by.numbers, which, lane))
+        if (!is_behind(m, conic_bits_of_float(m->keys[at - 1][lane]) & m->by.numbers, which, lane))
           break;
         m->keys[at][lane] = m->keys[at - 1][lane];
       }
@@ -158,18 +175,18 @@ CONIC_INLINE int swap_neighbours(meetings *m, size_t n, int *has_equals) {
 }
 
 /* Puts in order what the keys could not tell apart. */
-CONIC_INLINE void mend_order(const conic_gaussian_list *list, meetings *m, size_t n) {
+CONIC_INLINE void mend_order(meetings *m, size_t n) {
   int has_equals = 0;
   if (n == 0)
     return;
   while (swap_neighbours(m, n, &has_equals))
     ;
   if (has_equals)
-    mend_equals(list, m, n);
+    mend_equals(m, n);
 }
 
 /* Sorts what waits, and from `first` on what has come. */
-CONIC_INLINE void sort_meetings(const scene *s, meetings *m, size_t first) {
+CONIC_INLINE void sort_meetings(meetings *m, size_t first) {
   const depth_keys before = m->by;
   size_t n = m->n_waiting + (m->n - first);
   m->by = keys_between(m->nearest, m->farthest, m->n);
@@ -186,7 +203,7 @@ CONIC_INLINE void sort_meetings(const scene *s, meetings *m, size_t first) {
     lanes_store(m->keys[m->n_waiting++], lanes_select(is_there, key, lanes_of(__builtin_inff())));
   }
   sort_rows(m->keys, n);
-  mend_order(s->list, m, n);
+  mend_order(m, n);
 }
 
 CONIC_INLINE response response_in_order(const scene *s, const meetings *m, index_lanes which, int wants_all) {
@@ -231,8 +248,21 @@ CONIC_INLINE void composite_before(const scene *s, meetings *m, float bound, pix
   m->nearest = m->n_waiting > 0 ? lanes_of(border) : infinity;
 }
 
-/* Batch by batch: no Gaussian that follows is nearer than the next says. */
-CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t pixel, int wants_all) {
+static void find_bounds(const conic_gaussian_list *list, conic_gaussian_shape shape, const meetings *m) {
+  float bound = __builtin_inff();
+  for (size_t i = list->n; i-- > 0;) {
+    if (i % BATCH == BATCH - 1 || i == list->n - 1)
+      m->bounds[i / BATCH] = bound;
+    if (i >= RAYS_AHEAD)
+      __builtin_prefetch(&list->footprints[list->entries[i - RAYS_AHEAD]]);
+    const float z = shape == CONIC_SHAPE_RAY ? list->footprints[list->entries[i]].z : 0.0f;
+    bound = z < bound ? z : bound;
+  }
+}
+
+/* Batch by batch, as far as nothing nearer can follow. */
+CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t pixel, conic_gaussian_shape shape,
+                                           int wants_all) {
   const conic_gaussian_list *list = s->list;
   const int block = (int)(pixel / CONIC_GAUSSIAN_BLOCK_PIXELS);
   pixels p = take_pixels(s->tile, ~0u, pixel, wants_all);
@@ -240,30 +270,44 @@ CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t p
   m->n = m->n_waiting = 0;
   m->nearest = lanes_of(__builtin_inff());
   m->farthest = lanes_of(0.0f);
+  size_t n_sorted = 0;
   for (size_t first = 0; first < list->n && lanes_any(p.goes_on); first += BATCH) {
-    const size_t end = first + BATCH < list->n ? first + BATCH : list->n, n_before = m->n;
-    const float bound = end < list->n ? list->footprints[list->entries[end]].z : __builtin_inff();
+    const size_t end = first + BATCH < list->n ? first + BATCH : list->n;
+    const float bound = m->bounds[first / BATCH];
     take_records(list, s->tile, end, m);
-    meet_listed(s, m, first, listed, list_block(m->blocks + first, end - first, block, listed), places_at(pixel));
-    sort_meetings(s, m, n_before);
+    meet_listed(s, m, first, listed, list_block(m->blocks + first, end - first, block, listed), pixel, shape);
+    if (!(bound > 0.0f))
+      continue;
+    sort_meetings(m, n_sorted);
     composite_before(s, m, bound, &p, wants_all);
+    n_sorted = m->n;
   }
   put_pixels(s->tile, &p, pixel, wants_all);
 }
 
 CONIC_INLINE void composite_rays_block_by_block(const conic_gaussian_list *list, conic_gaussian_tile *tile,
-                                                int wants_all) {
+                                                conic_gaussian_shape shape, int wants_all) {
   const scene s = scene_of(list, tile);
   meetings m = meetings_in_room(list);
+  find_bounds(list, shape, &m);
   for (size_t pixel = 0; pixel < CONIC_GAUSSIAN_TILE_PIXELS; pixel += CONIC_LANES)
-    composite_rays_in_vector(&s, &m, pixel, wants_all);
+    composite_rays_in_vector(&s, &m, pixel, shape, wants_all);
 }
 
 static void composite_rays_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
   if (list->wants_all)
-    composite_rays_block_by_block(list, tile, 1);
+    composite_rays_block_by_block(list, tile, CONIC_SHAPE_RAY, 1);
   else
-    composite_rays_block_by_block(list, tile, 0);
+    composite_rays_block_by_block(list, tile, CONIC_SHAPE_RAY, 0);
 }
 
+static void composite_filtered_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  composite_rays_block_by_block(list, tile, CONIC_SHAPE_FILTERED, list->wants_all);
+}
+
+static void composite_sights_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  composite_rays_block_by_block(list, tile, CONIC_SHAPE_SIGHT, list->wants_all);
+}
+
+#endif
 #endif

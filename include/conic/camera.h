@@ -34,6 +34,11 @@ typedef enum conic_lens {
   CONIC_N_LENSES
 } conic_lens;
 
+/* "perspective", "fisheye", "orthographic", "equirectangular"; and "none", "radial", "opencv", "thin-prism", "fov";
+ * null for a number that is none of them. */
+CONIC_API const char *conic_camera_kind_name(conic_camera_kind kind);
+CONIC_API const char *conic_lens_name(conic_lens lens);
+
 typedef struct conic_camera {
   int width, height;           /* pixels, 1 to 65535 each */
   double fx, fy;               /* focal lengths in pixels */
@@ -64,8 +69,9 @@ CONIC_API void conic_framing_init_sized(conic_framing *framing, size_t size);
 CONIC_API conic_status conic_camera_frame(conic_context *context, const conic_framing *framing, const double minimum[3],
                                           const double maximum[3], conic_camera *camera);
 
-/* Reads a camera from JSON: width, height, fx, fy, cx, cy, world_to_camera (4 × 4, rows). Other keys are ignored.
- * Errors: INPUT, MEMORY; *camera is then as it was. */
+/* Reads the camera of a file that has one, of any kind that conic_cameras_read reads. conic's own is JSON: width,
+ * height, fx, fy, cx, cy, world_to_camera (4 × 4, rows), and kind, lens and distortion where it is no pinhole; other
+ * keys are ignored. Errors: INPUT, MEMORY, UNSUPPORTED; *camera is then as it was. */
 CONIC_API conic_status conic_camera_read(conic_context *context, const char *path, conic_camera *camera);
 
 #ifdef __cplusplus

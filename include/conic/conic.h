@@ -18,10 +18,12 @@
 #define CONIC_CONIC_H
 
 #include "conic/camera.h"
+#include "conic/cameras.h"
 #include "conic/coloring.h"
 #include "conic/context.h"
 #include "conic/contributions.h"
 #include "conic/export.h"
+#include "conic/gaussian_judge.h"
 #include "conic/gaussian_oracle.h"
 #include "conic/gaussian_render.h"
 #include "conic/gaussians.h"

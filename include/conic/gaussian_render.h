@@ -9,6 +9,7 @@
 #include "conic/context.h"
 #include "conic/gaussians.h"
 #include "conic/image.h"
+#include "conic/isa.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -33,15 +34,20 @@ typedef enum conic_gaussian_profile {
 /* "exact", "inria-2023" …; null for a number that is no profile. */
 CONIC_API const char *conic_gaussian_profile_name(conic_gaussian_profile profile);
 
+/* Another device that composites: conic_opencl_gaussian_device of conic/opencl.h. */
+typedef struct conic_gaussian_device conic_gaussian_device;
+
 typedef struct conic_gaussian_options {
   size_t size; /* sizeof(conic_gaussian_options), set by the init function */
   conic_gaussian_profile profile;
-  float background[3]; /* behind the Gaussians: colour · T is added to R, G, B */
-  conic_isa isa;       /* as the context has it */
-  uint32_t reserved;
+  float background[3];           /* behind the Gaussians: colour · T is added to R, G, B */
+  conic_isa isa;                 /* as the context has it */
+  uint32_t ignores_center;       /* where the profile does, and would else refuse a camera that is not centred */
+  conic_gaussian_device *device; /* composites in the place of the processor; null: none. No bit depends on it. */
+  double prefilter; /* of `exact`: the variance of the filter on the screen, h, in square pixels, 0 to 10000 */
 } conic_gaussian_options;
 
-/* Exact, black. */
+/* Exact, black, no filter. */
 CONIC_API void conic_gaussian_options_init_sized(conic_gaussian_options *options, size_t size);
 #define conic_gaussian_options_init(options) conic_gaussian_options_init_sized(options, sizeof *(options))
 
@@ -64,13 +70,15 @@ typedef struct conic_gaussian_statistics {
   size_t gaussians_in, gaussians_skipped, gaussians_culled, gaussians_drawn; /* skipped: a number is not finite */
   size_t entries;                                                            /* of tiles' lists */
   double seconds_setup, seconds_sort, seconds_bin, seconds_composite;
-  conic_isa isa; /* what the hot loops used */
-  int tile;      /* edge in pixels */
-  uint64_t reserved[8];
+  conic_isa isa;         /* what the hot loops used */
+  int tile;              /* edge in pixels */
+  uint64_t device_units; /* that compute, of the device that composited; 0: the processor did */
+  uint64_t reserved[7];
 } conic_gaussian_statistics;
 
 /* Draws into the planes that are there. The same bits for any number of threads and every instruction set. Null options
- * are the defaults; statistics may be null. Errors: ARGUMENT, MEMORY, CANCELLED, UNSUPPORTED (the instruction set). */
+ * are the defaults; statistics may be null. Errors: ARGUMENT, MEMORY, CANCELLED, UNSUPPORTED (the instruction set, or
+ * the device cannot). */
 CONIC_API conic_status conic_gaussians_render(conic_context *context, const conic_gaussians *gaussians,
                                               const conic_camera *camera, const conic_gaussian_options *options,
                                               conic_gaussian_planes *planes, conic_gaussian_statistics *statistics);

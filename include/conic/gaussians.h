@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "conic/context.h"
+#include "conic/model.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -95,6 +96,17 @@ CONIC_API int conic_gaussians_is_file(conic_context *context, const char *path);
  * UNSUPPORTED (zlib, zstd or libwebp is not there). */
 CONIC_API conic_status conic_gaussians_read(conic_context *context, const char *path,
                                             const conic_gaussians_read_options *options, conic_gaussians *gaussians);
+
+/* The Gaussians as splats, as conic_model_read makes them of a .ply: ellipses along the two longer axes (of a 2D
+ * Gaussian, its own), with the opacity and the colour of degree 0, which is linear. On success the caller owns *splats;
+ * on failure it is empty. Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_gaussians_to_splats(conic_context *context, const conic_gaussians *gaussians,
+                                                 conic_splats *splats);
+
+/* conic_model_read, which also takes Gaussian scenes of all formats, as splats; up is that of their frame. Errors: as
+ * conic_model_read and conic_gaussians_read. */
+CONIC_API conic_status conic_gaussians_read_model(conic_context *context, const char *path,
+                                                  const conic_read_options *options, conic_model *model);
 
 typedef struct conic_gaussians_write_options {
   size_t size;              /* sizeof(conic_gaussians_write_options), set by the init function */

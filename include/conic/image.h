@@ -34,7 +34,9 @@ typedef enum conic_plane {
   CONIC_PLANE_MEDIAN_Z = 13,     /* 1 float: z of the Gaussian with which T comes to ½; 0 where it does not */
   CONIC_PLANE_INVERSE_Z = 14,    /* 1 float: Σ w/z; 0 where nothing is */
   CONIC_PLANE_LAST = 15,         /* 1 uint32: the last Gaussian composited, 0xFFFFFFFF where nothing is */
-  CONIC_N_PLANES = 16
+  CONIC_PLANE_DOUBT = 16,        /* 1 uint32: how many decisions rounding may take either way;
+                                    conic_gaussian_find_doubts' */
+  CONIC_N_PLANES = 17
 } conic_plane;
 
 /* The planes that drawing fills: the first ones; and as bits. */
@@ -42,13 +44,13 @@ typedef enum conic_plane {
 #define CONIC_DRAWN_PLANES ((1u << CONIC_PLANE_CLUSTER) - 1u)
 
 /* Those that only Gaussian scenes have. */
-#define CONIC_GAUSSIAN_PLANES (15u << CONIC_PLANE_TRANSPARENCY)
+#define CONIC_GAUSSIAN_PLANES (31u << CONIC_PLANE_TRANSPARENCY)
 
 /* The planes of a Cryptomatte, as bits. */
 #define CONIC_MATTE_PLANES (7u << CONIC_PLANE_MATTE_0)
 
 /* Room for planes in structs, so that a later version may have more. */
-#define CONIC_MAX_PLANES 16
+#define CONIC_MAX_PLANES 24
 
 #define CONIC_NO_ID 0xFFFFFFFFu
 
@@ -184,10 +186,17 @@ typedef struct conic_difference {
   size_t largest_hole;     /* pixels of the largest 4-connected set covered in the first and not in the second */
   conic_plane_difference planes[CONIC_MAX_PLANES];
   uint64_t lacks_alpha; /* of rgba only R, G and B are compared: at least one of the images has no A */
-  uint64_t reserved[7];
+  double ssim_padded;   /* ssim over the windows about all pixels, with zeros past the edges */
+  uint64_t is_display;  /* rgba were compared as display values: at least one of the images has them */
+  uint64_t reserved[5];
 } conic_difference;
 
-/* Compares `b` with the reference `a`. Errors: ARGUMENT, MEMORY. */
+/* Turns linear rgba into display values: R, G and B are divided by A, sRGB-encoded, and multiplied by A. An image that
+ * has display values, or no rgba, stays as it is. */
+CONIC_API void conic_image_encode(conic_image *image);
+
+/* Compares `b` with the reference `a`; where one of them has display values, the other one's are compared with these.
+ * Errors: ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_image_compare(conic_context *context, const conic_image *a, const conic_image *b,
                                            conic_difference *difference);
 

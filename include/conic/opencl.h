@@ -6,6 +6,7 @@
 
 #include <stdint.h>
 
+#include "conic/gaussian_render.h"
 #include "conic/render.h"
 
 #ifdef __cplusplus
@@ -43,19 +44,24 @@ typedef struct conic_opencl_options {
   const char *cache_folder; /* where built programs are kept; null: nowhere */
   conic_opencl_work work;
   int projects_on_host; /* as where a device has no double precision */
-  size_t part_splats;   /* no more splats are on the device at a time; 0: as many as its memory holds */
+  size_t part_splats;   /* no more splats, or entries of Gaussians in tiles' lists, are on the device at a time, but
+                           for a tile's; 0: as many as its memory holds */
 } conic_opencl_options;
 
 /* The first device that will do and rounds correctly, no cache, work as it chooses, projection on the device. */
 CONIC_API void conic_opencl_options_init_sized(conic_opencl_options *options, size_t size);
 #define conic_opencl_options_init(options) conic_opencl_options_init_sized(options, sizeof *(options))
 
-/* A renderer that draws on the device, splats and triangles. On success the caller owns *renderer, which must
+/* A renderer that draws on the device, splats and triangles; the first picture of either builds the programs that it
+ * needs. On success the caller owns *renderer, which must
  * not outlive the context, and *device (which may be null) says what draws. Errors: ARGUMENT (a name that is none),
- * UNSUPPORTED (no such device, it does not round correctly, it cannot build the programs, this build has no OpenCL),
- * MEMORY. */
+ * UNSUPPORTED (no such device, it does not round correctly, this build has no OpenCL), MEMORY. */
 CONIC_API conic_status conic_opencl_renderer_create(conic_context *context, const conic_opencl_options *options,
                                                     conic_opencl_device *device, conic_renderer **renderer);
+
+/* What composites Gaussians on the renderer's device, for conic_gaussian_options. It is the renderer's, and draws for
+ * one caller at a time as that does. Null where the renderer draws on the processor. */
+CONIC_API conic_gaussian_device *conic_opencl_gaussian_device(conic_renderer *renderer);
 
 #ifdef __cplusplus
 }

@@ -91,6 +91,9 @@ CONIC_API conic_status conic_source_of_drawing(conic_context *context, conic_spl
 /* The octree that a source draws from; null where it is none. */
 CONIC_API const conic_octree *conic_source_octree(const conic_source *source);
 
+/* The Gaussians that a source composites; null where it does not. */
+CONIC_API const conic_gaussians *conic_source_gaussians(const conic_source *source);
+
 CONIC_API conic_status conic_source_of_octree(conic_context *context, conic_octree *octree, conic_source **source);
 CONIC_API conic_status conic_source_of_hybrid(conic_context *context, conic_hybrid *hybrid, conic_source **source);
 

@@ -6,6 +6,7 @@
 #include "oracle/oracle_math.h"
 
 #define LEAST_ALPHA (1.0 / 255.0)
+#define UNIT_SLACK (1.0 / 1048576.0)
 #define AS_GSPLAT .near_z = 0.01, .alpha_least = LEAST_ALPHA, .stop = 1e-4, .stop_is_left_out = 1
 
 const oracle_gaussian_rules *conic_oracle_gaussian_rules(conic_gaussian_profile profile) {
@@ -55,7 +56,7 @@ static int turn_axes(const oracle_gaussian_view *view, const conic_gaussians *se
     q[k] = (double)set->rotation[k][i];
     length += q[k] * q[k];
   }
-  length = view->rules->is_inria ? 1.0 : sqrt(length);
+  length = view->rules->is_inria && fabs(length - 1.0) < UNIT_SLACK ? 1.0 : sqrt(length);
   for (int k = 0; k < 4; k++)
     q[k] /= length;
   rotation_of_quaternion(q, world);
@@ -79,7 +80,8 @@ static void pick_normal(const oracle_gaussian_view *view, const double world[3][
   if (view->rules->form != ORACLE_FORM_DISC && !g->is_flat)
     for (int k = 1; k >= 0; k--)
       axis = g->scale[k] < g->scale[axis] ? k : axis;
-  double side = oracle_dot(g->unit[axis], g->mean) > 0.0 ? -1.0 : 1.0;
+  int is_parallel = view->camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
+  double side = (is_parallel ? g->unit[axis][2] : oracle_dot(g->unit[axis], g->mean)) > 0.0 ? -1.0 : 1.0;
   for (int row = 0; row < 3; row++)
     g->normal[row] = side * world[row][axis];
 }
@@ -197,7 +199,8 @@ static void color_towards_eye(const oracle_gaussian_view *view, const conic_gaus
   for (size_t k = 0; k < n; k++)
     sh[k] = set->sh ? (double)set->sh[i * n + k] : number_of_half(set->sh_half[i * n + k]);
   for (int axis = 0; axis < 3; axis++)
-    direction[axis] = mean[axis] - view->eye[axis];
+    direction[axis] = view->camera->kind == CONIC_CAMERA_ORTHOGRAPHIC ? view->camera->cam_from_world[2][axis]
+                                                                      : mean[axis] - view->eye[axis];
   double length = oracle_length(direction);
   for (int axis = 0; axis < 3; axis++)
     direction[axis] = length > 0.0 ? direction[axis] / length : 0.0;
@@ -228,12 +231,17 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
     return;
   pick_normal(view, world, g);
   color_towards_eye(view, set, mean, i, g);
-  g->key = (float)(rules->is_by_distance ? oracle_length(g->mean) : g->mean[2]);
+  g->key = (float)(rules->is_by_distance || view->camera->kind == CONIC_CAMERA_FISHEYE ||
+                           view->camera->kind == CONIC_CAMERA_EQUIRECTANGULAR
+                       ? oracle_length(g->mean)
+                       : g->mean[2]);
   g->is_drawn = oracle_is_finite(g->color[0] + g->color[1] + g->color[2]);
   if (rules->form == ORACLE_FORM_ELLIPSE)
     g->is_drawn &= place_ellipse(view, g);
   if (rules->form == ORACLE_FORM_DISC)
     g->is_drawn &= place_disc(view, g);
+  if (view->prefilter > 0.0)
+    g->is_drawn &= conic_oracle_gaussian_box(view, g);
 }
 
 /* In the Gaussian's own frame, where it is a unit ball, the ray goes through z·d − m. Of a flat one, where the ray
@@ -241,11 +249,19 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
 int conic_oracle_gaussian_along(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
                                 double *q, double *z, double *width) {
   const conic_camera *camera = view->camera;
-  const double ray[3] = {(x - camera->cx) / camera->fx, (y - camera->cy) / camera->fy, 1.0};
-  double d[3], m[3], cross[3];
+  double origin[3], ray[3], d[3], m[3], cross[3];
+  if (view->rays) {
+    const oracle_ray *known = &view->rays[(size_t)y * (size_t)camera->width + (size_t)x];
+    memcpy(origin, known->origin, sizeof origin);
+    memcpy(ray, known->direction, sizeof ray);
+    if (!known->is_there)
+      return 0;
+  } else
+    conic_oracle_pixel_ray(camera, x, y, origin, ray);
+  const double to_mean[3] = {g->mean[0] - origin[0], g->mean[1] - origin[1], g->mean[2] - origin[2]};
   for (int axis = 0; axis < 3; axis++) {
     d[axis] = oracle_dot(g->unit[axis], ray);
-    m[axis] = oracle_dot(g->unit[axis], g->mean);
+    m[axis] = oracle_dot(g->unit[axis], to_mean);
   }
   if (g->is_flat || g->scale[2] == 0.0) {
     *z = m[2] / d[2];
@@ -288,11 +304,14 @@ static double disc_form(const oracle_gaussian_view *view, const oracle_gaussian 
 double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
                                    double *z) {
   const oracle_gaussian_rules *rules = view->rules;
-  double q, width;
+  double q, width, share = 1.0;
   if (x < g->box_px[0][0] || x >= g->box_px[1][0] || y < g->box_px[0][1] || y >= g->box_px[1][1])
     return 0.0;
   *z = g->mean[2];
-  if (rules->form == ORACLE_FORM_RAY) {
+  if (view->prefilter > 0.0) {
+    if (!conic_oracle_gaussian_filtered(view, g, x, y, &q, z, &share))
+      return 0.0;
+  } else if (rules->form == ORACLE_FORM_RAY) {
     if (!conic_oracle_gaussian_along(view, g, x, y, &q, z, &width))
       return 0.0;
   } else if (rules->form == ORACLE_FORM_DISC) {
@@ -303,6 +322,6 @@ double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracl
   }
   if (!(q >= 0.0) || (rules->cutoff > 0.0 && q > rules->cutoff))
     return 0.0;
-  double alpha = oracle_min(rules->alpha_most, g->opacity * conic_oracle_exp(-0.5 * q));
+  double alpha = oracle_min(rules->alpha_most, g->opacity * share * conic_oracle_exp(-0.5 * q));
   return alpha >= rules->alpha_least ? alpha : 0.0;
 }

@@ -28,11 +28,18 @@ typedef struct oracle_gaussian_rules {
 
 const oracle_gaussian_rules *conic_oracle_gaussian_rules(conic_gaussian_profile profile);
 
+typedef struct oracle_ray {
+  double origin[3], direction[3];
+  int is_there;
+} oracle_ray;
+
 typedef struct oracle_gaussian_view {
   const conic_camera *camera;
   const oracle_gaussian_rules *rules;
   double eye[3];       /* from which colours are seen */
   double center_px[2]; /* the principal point, as the profile has it */
+  double prefilter;    /* px²; of ORACLE_FORM_RAY */
+  oracle_ray *rays;    /* of the pixels' centres, where it takes long to find them; else null */
 } oracle_gaussian_view;
 
 typedef struct oracle_gaussian {
@@ -49,6 +56,9 @@ typedef struct oracle_gaussian {
   double box_px[2][2];         /* no pixel outside is covered: minimum, maximum */
 } oracle_gaussian;
 
+/* Looks through a camera as the profile does; the view refers to it. */
+void conic_oracle_gaussian_look(const conic_camera *camera, conic_gaussian_profile profile, oracle_gaussian_view *view);
+
 /* Sets up Gaussian i; is_drawn is 0 where the profile leaves it out everywhere. */
 void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
                                  oracle_gaussian *g);
@@ -61,6 +71,21 @@ double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracl
 int conic_oracle_gaussian_along(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
                                 double *q, double *z, double *width);
 
+/* The ray through a place of the screen, in pixels, in camera space: origin + z·direction, which is of length 1 where
+ * the camera is neither perspective nor orthographic. 0 where there is none. */
+int conic_oracle_pixel_ray(const conic_camera *camera, double x, double y, double origin[3], double direction[3]);
+
+/* Those of a row's pixels. */
+void conic_oracle_ray_row(const conic_camera *camera, size_t row, oracle_ray *rays);
+
+/* The same under the filter: the filtered q, and by which share of itself the opacity remains. */
+int conic_oracle_gaussian_filtered(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
+                                   double *q, double *z, double *share);
+/* Under the filter, the pixels that are looked at; 0: none. */
+int conic_oracle_gaussian_box(const oracle_gaussian_view *view, oracle_gaussian *g);
+
+/* The real harmonics up to a degree, of a direction of unit length: (degree + 1)² numbers. */
+void conic_oracle_harmonic_values(int degree, const double direction[3], double *y);
 /* The colour seen along a direction (of unit length): max(0, ½ + Σ sh·Y). `sh` has (degree + 1)² × 3 numbers. */
 void conic_oracle_harmonics(const double *sh, int degree, const double direction[3], double color[3]);
 

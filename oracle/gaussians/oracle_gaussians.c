@@ -120,8 +120,9 @@ static double optical_depth(const job *j, const oracle_gaussian *g, double q, do
   double response = conic_oracle_exp(-0.5 * q);
   if (j->question == CONIC_GAUSSIAN_OVERLAP)
     return -conic_oracle_log(1.0 - oracle_min(g->opacity * response, 0.99));
-  double slope[2] = {(x - camera->cx) / camera->fx, (y - camera->cy) / camera->fy};
-  double length = sqrt(slope[0] * slope[0] + slope[1] * slope[1] + 1.0);
+  double origin[3], ray[3];
+  conic_oracle_pixel_ray(camera, x, y, origin, ray);
+  double length = oracle_length(ray);
   double radius = conic_oracle_exp(conic_oracle_log(g->scale[0] * g->scale[1] * g->scale[2]) / 3.0);
   return -conic_oracle_log(1.0 - oracle_min(g->opacity, 1.0 - 1e-12)) * width * length / radius * response;
 }
@@ -166,6 +167,12 @@ static void draw_row_again(void *data, size_t row, int i_thread) {
   }
 }
 
+static void find_rays_of_row(void *data, size_t row, int i_thread) {
+  const job *j = data;
+  (void)i_thread;
+  conic_oracle_ray_row(j->view.camera, row, j->view.rays + row * (size_t)j->view.camera->width);
+}
+
 static conic_status allocate_job(job *j, int width, int height) {
   conic_gaussian_reference *r = j->reference;
   const size_t n = (size_t)width * (size_t)height, threads = (size_t)conic_context_threads(j->context);
@@ -201,18 +208,24 @@ static void release_job(job *j) {
     conic_memory_release(j->context, j->workers[k].clouds);
     conic_memory_release(j->context, j->workers[k].places);
   }
+  conic_memory_release(j->context, j->view.rays);
   conic_memory_release(j->context, j->workers);
   conic_memory_release(j->context, j->gaussians);
 }
 
 /* The eye is −RᵀT; a profile that is named after a program has it in floats, as those programs do. */
-static void eye_of_profile(const conic_camera *camera, oracle_gaussian_view *view) {
+void conic_oracle_gaussian_look(const conic_camera *camera, conic_gaussian_profile profile,
+                                oracle_gaussian_view *view) {
+  view->camera = camera;
+  view->rules = conic_oracle_gaussian_rules(profile);
   for (int axis = 0; axis < 3; axis++) {
     double eye = 0.0;
     for (int row = 0; row < 3; row++)
       eye -= camera->cam_from_world[row][axis] * camera->cam_from_world[row][3];
     view->eye[axis] = view->rules->form == ORACLE_FORM_RAY ? eye : (double)(float)eye;
   }
+  view->center_px[0] = view->rules->is_inria ? 0.5 * camera->width : camera->cx;
+  view->center_px[1] = view->rules->is_inria ? 0.5 * camera->height : camera->cy;
 }
 
 static conic_status draw_gaussians_again(job *j) {
@@ -220,9 +233,13 @@ static conic_status draw_gaussians_again(job *j) {
   conic_status status = allocate_job(j, camera->width, camera->height);
   if (status != CONIC_OK)
     return status;
-  eye_of_profile(camera, &j->view);
-  j->view.center_px[0] = j->view.rules->is_inria ? 0.5 * camera->width : camera->cx;
-  j->view.center_px[1] = j->view.rules->is_inria ? 0.5 * camera->height : camera->cy;
+  if (camera->lens || camera->kind == CONIC_CAMERA_FISHEYE || camera->kind == CONIC_CAMERA_EQUIRECTANGULAR) {
+    j->view.rays =
+        conic_memory_allocate(j->context, (size_t)camera->width * (size_t)camera->height, sizeof *j->view.rays);
+    if (!j->view.rays)
+      return CONIC_ERROR_MEMORY;
+    conic_parallel_for(j->context, (size_t)camera->height, find_rays_of_row, j);
+  }
   status = conic_parallel_told(j->context, "verify", 0.0, 0.05, (j->set->count + SET_UP_RUN - 1) / SET_UP_RUN,
                                place_gaussians, j);
   if (status != CONIC_OK)
@@ -243,11 +260,18 @@ conic_status conic_gaussian_oracle_render(conic_context *context, const conic_ga
   if ((options && !conic_options_take(&own, options)) || (unsigned)question > CONIC_GAUSSIAN_VOLUME ||
       !conic_oracle_gaussian_rules(own.profile))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "oracle: no such options, profile or question");
-  if (conic_view_pinhole_check(context, "oracle", camera) != CONIC_OK)
+  if (!(own.prefilter >= 0.0 && own.prefilter <= 1e4) || (own.prefilter > 0.0 && own.profile != CONIC_PROFILE_EXACT))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "oracle: a prefilter of 0 to 10000 is of the profile exact");
+  int is_affine =
+      !camera->lens && (camera->kind == CONIC_CAMERA_PERSPECTIVE || camera->kind == CONIC_CAMERA_ORTHOGRAPHIC);
+  if (own.prefilter > 0.0 && !is_affine)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "oracle: the prefilter is of pinholes and orthographic cameras");
+  int takes_all = own.profile == CONIC_PROFILE_EXACT || question != CONIC_GAUSSIAN_PROFILE;
+  if ((takes_all ? conic_view_ray_check : conic_view_pinhole_check)(context, "oracle", camera) != CONIC_OK)
     return CONIC_ERROR_ARGUMENT;
   job j = {.context = context, .set = gaussians, .options = &own, .question = question, .reference = reference};
-  j.view.camera = camera;
-  j.view.rules = conic_oracle_gaussian_rules(question == CONIC_GAUSSIAN_PROFILE ? own.profile : CONIC_PROFILE_EXACT);
+  conic_oracle_gaussian_look(camera, question == CONIC_GAUSSIAN_PROFILE ? own.profile : CONIC_PROFILE_EXACT, &j.view);
+  j.view.prefilter = question == CONIC_GAUSSIAN_PROFILE ? own.prefilter : 0.0;
   conic_status status = draw_gaussians_again(&j);
   release_job(&j);
   if (status != CONIC_OK)

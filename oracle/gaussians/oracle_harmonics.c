@@ -26,21 +26,28 @@ static double legendre(int l, int m, double z) {
   return here;
 }
 
-void conic_oracle_harmonics(const double *sh, int degree, const double direction[3], double color[3]) {
+void conic_oracle_harmonic_values(int degree, const double direction[3], double *y) {
   double cosine[5] = {1.0}, sine[5] = {0.0}; /* of (x + iy)^m */
   for (int m = 1; m <= degree; m++) {
     cosine[m] = direction[0] * cosine[m - 1] - direction[1] * sine[m - 1];
     sine[m] = direction[0] * sine[m - 1] + direction[1] * cosine[m - 1];
   }
-  for (int channel = 0; channel < 3; channel++)
-    color[channel] = 0.0;
   for (int l = 0; l <= degree; l++)
     for (int m = -l; m <= l; m++) {
       int order = m < 0 ? -m : m;
-      double y = norm_of(l, order) * legendre(l, order, direction[2]) * (m < 0 ? sine[order] : cosine[order]);
-      for (int channel = 0; channel < 3; channel++)
-        color[channel] += (order & 1 ? -y : y) * sh[(l * l + l + m) * 3 + channel];
+      double value = norm_of(l, order) * legendre(l, order, direction[2]) * (m < 0 ? sine[order] : cosine[order]);
+      y[l * l + l + m] = order & 1 ? -value : value;
     }
-  for (int channel = 0; channel < 3; channel++)
+}
+
+void conic_oracle_harmonics(const double *sh, int degree, const double direction[3], double color[3]) {
+  double y[(CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)];
+  const int n = (degree + 1) * (degree + 1);
+  conic_oracle_harmonic_values(degree, direction, y);
+  for (int channel = 0; channel < 3; channel++) {
+    color[channel] = 0.0;
+    for (int k = 0; k < n; k++)
+      color[channel] += y[k] * sh[3 * k + channel];
     color[channel] = oracle_max(color[channel] + 0.5, 0.0);
+  }
 }

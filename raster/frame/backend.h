@@ -19,5 +19,7 @@ struct conic_backend {
 
 /* Gives the renderer a backend, which it owns from then on. */
 void conic_renderer_take(conic_renderer *renderer, conic_backend *backend);
+/* Null: none. */
+conic_backend *conic_renderer_backend(const conic_renderer *renderer);
 
 #endif

@@ -78,6 +78,10 @@ void conic_renderer_take(conic_renderer *renderer, conic_backend *backend) {
   renderer->backend = backend;
 }
 
+conic_backend *conic_renderer_backend(const conic_renderer *renderer) {
+  return renderer->backend;
+}
+
 /* conic_keep_room for what fills up from its beginning. */
 static void *dense_room(conic_renderer *renderer, conic_kept_memory *memory, size_t count, size_t size) {
   size_t before = memory->bytes;

@@ -17,17 +17,24 @@ typedef struct fragments {
   lanes scale;
 } fragments;
 
-/* How a splat is evaluated: by its ellipse alone, of which wide ones hide otherwise; or whatever it is, without the
- * kernel, or with its profile in the scale. */
-typedef enum splat_kind { SPLAT_USUAL = 0, SPLAT_WIDE = 1, SPLAT_SPECIAL = 2, SPLAT_PROFILED = 3 } splat_kind;
+/* How a splat is evaluated: by its ellipse alone, of which wide ones hide otherwise, and smooth ones have a polynomial
+ * in place of the kernel; or whatever it is, without the kernel, or with its profile in the scale. */
+typedef enum splat_kind {
+  SPLAT_USUAL = 0,
+  SPLAT_WIDE = 1,
+  SPLAT_SMOOTH = 2,
+  SPLAT_SPECIAL = 3,
+  SPLAT_PROFILED = 4
+} splat_kind;
 
 /* What of a splat's evaluation does not depend on the column, each in all lanes of a register: to fetch it anew for
  * every block would be most of what the loops read. */
 typedef struct splat_rows {
   lanes dy, q_offset, q_rest, iz_offset, plane_offset;
   lanes x, dx0, s1, iz_dx, plane_dx, iz_far, iz_near;
-  lanes minor;         /* s3·dy */
-  profile_slice slice; /* of what is profiled */
+  lanes minor;               /* s3·dy */
+  profile_slice slice;       /* of what is profiled */
+  const smooth_part *smooth; /* of what is smooth */
 } splat_rows;
 
 CONIC_INLINE splat_rows begin_rows(const conic_footprint *footprint, lanes y) {
@@ -58,16 +65,18 @@ CONIC_INLINE void begin_profile(const conic_view *view, const conic_footprint *f
 }
 
 /* The same operations, lane by lane, as conic_row_q, conic_row_iz and the plane's depth of coverage.h. */
-CONIC_INLINE void ellipse_fragments(const conic_view *view, const splat_rows *rows, float support,
-                                    const profile_slice *slice, lanes dx, fragments *f) {
+CONIC_INLINE void ellipse_fragments(const conic_view *view, const splat_rows *rows, float support, splat_kind kind,
+                                    lanes dx, fragments *f) {
   lanes major = rows->s1 * dx + rows->q_offset;
   f->q = major * major + rows->q_rest;
   f->covered = lanes_less(f->q, lanes_of(support));
   f->iz = lanes_min(lanes_max(rows->iz_offset + rows->iz_dx * dx, rows->iz_far), rows->iz_near);
   f->plane_iz = rows->plane_offset + rows->plane_dx * dx;
   f->scale = lanes_of(1.0f);
-  if (slice && lanes_any(f->covered))
-    f->scale = profile_lanes(&view->profile, slice, f->q, major, rows->minor);
+  if (kind == SPLAT_SMOOTH)
+    f->scale = smooth_lanes(rows->smooth, f->q, major, rows->minor);
+  else if (kind == SPLAT_PROFILED && lanes_any(f->covered))
+    f->scale = profile_lanes(&view->profile, &rows->slice, f->q, major, rows->minor);
 }
 
 /* The plane's inverse depth, and where that and the box let a ray cover pixels. */
@@ -152,7 +161,7 @@ CONIC_INLINE void fragments_at(const conic_view *view, float support, const coni
   else if (kind >= SPLAT_SPECIAL && footprint->s3 == 0.0f)
     ray_fragments(view, footprint, &rays[i_ray], slice, dx, rows->dy, f);
   else
-    ellipse_fragments(view, rows, support, slice, dx, f);
+    ellipse_fragments(view, rows, support, kind, dx, f);
   if (kind >= SPLAT_SPECIAL && conic_is_clipped(footprint))
     f->covered &= clip_keeps(&clips[i_clip], dx, rows->dy);
 }

@@ -80,6 +80,8 @@ CONIC_INLINE void empty_blocks(conic_band *band) {
   }
 }
 
+#include "raster/kernels/smooth_body.h"
+
 /* The state of the first pass along a band, a copy of its own like `sources`. */
 typedef struct pass {
   conic_kept *kept;
@@ -139,7 +141,7 @@ CONIC_INLINE lanes hiding_iz(pass *p, const passing *splat, lanes iz, uint32_t p
 CONIC_INLINE unsigned pass_part(lanes hides, const fragments *f, conic_kept *kept, size_t place, size_t at,
                                 splat_kind kind) {
   lanes_store(kept->threshold + at, lanes_max(lanes_keep(f->covered, hides), lanes_load(kept->threshold + at)));
-  lanes_store(kept->fragments[place].q + at, f->q);
+  lanes_store(kept->fragments[place].q + at, kind == SPLAT_SMOOTH || kind == SPLAT_PROFILED ? f->scale : f->q);
   lanes_store(kept->fragments[place].seen_iz + at,
               lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
   if (kind >= SPLAT_SPECIAL)
@@ -168,12 +170,13 @@ CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const
 
 /* One splat in the blocks that its word names. Two are done in any case, the second perhaps beside the band: most small
  * splats have one or two, and which, no branch can foresee. */
-CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, splat_kind kind) {
+CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, splat_kind kind,
+                             const smooth_part *smooth) {
   const uint32_t i_footprint = from->indices[i], word = from->words[i];
   const uint32_t first = conic_word_first(word), last = conic_word_last(word);
   const conic_footprint *footprint = &from->footprints[i_footprint];
-  const passing splat = {footprint, i, i_footprint, lanes_of(footprint->nearness),
-                         begin_splat(from, footprint, s->y, kind)};
+  passing splat = {footprint, i, i_footprint, lanes_of(footprint->nearness), begin_splat(from, footprint, s->y, kind)};
+  splat.rows.smooth = smooth;
   pass_block(p, from, s, &splat, first, kind);
   pass_block(p, from, s, &splat, last > first ? first + 1 : CONIC_NO_BLOCK, kind);
   for (uint32_t block = first + 2; block <= last; block++)
@@ -267,7 +270,34 @@ static __attribute__((noinline)) void pass_ray_in_crowd(pass *p, const sources *
       pass_block(p, from, s, &splat, block, SPLAT_SPECIAL);
 }
 
-CONIC_INLINE void visibility_with(conic_band *band, int is_profiled) {
+CONIC_INLINE void end_pass(const pass *p, int has_special, conic_band *band) {
+  memcpy(band->n_kept, p->n_kept, sizeof band->n_kept);
+  memcpy(band->not_kept, p->not_kept, sizeof band->not_kept);
+  band->has_special = has_special;
+  band->n_fragments += p->n_fragments;
+}
+
+CONIC_OUTLINE void visibility_profiled(conic_band *band) {
+  const sources from = sources_of(band);
+  pass p;
+  sites s;
+  smooth_group group;
+  find_sites(band, &s);
+  begin_pass(band, &p);
+  for (size_t i = 0; i < from.n; i++) {
+    const size_t lane = i % CONIC_LANES;
+    prefetch_splat(&from, i);
+    if (lane == 0)
+      find_smooth(&from, i, &group);
+    if (__builtin_expect(group.is_smooth >> lane & 1, 1))
+      pass_splat(&p, &from, &s, i, SPLAT_SMOOTH, &group.parts[lane]);
+    else
+      pass_splat(&p, &from, &s, i, SPLAT_PROFILED, NULL);
+  }
+  end_pass(&p, 0, band);
+}
+
+static void visibility(conic_band *band) {
   enum { LOOK_EVERY = 32 };
   const sources from = sources_of(band);
   const int is_crowd = from.n > CONIC_KEPT_SPLATS;
@@ -275,6 +305,10 @@ CONIC_INLINE void visibility_with(conic_band *band, int is_profiled) {
   pass p;
   int has_special = 0;
   sites s;
+  if (band->view->profile.table) {
+    visibility_profiled(band);
+    return;
+  }
   find_sites(band, &s);
   begin_pass(band, &p);
   for (size_t i = 0; i < from.n; i++) {
@@ -285,38 +319,22 @@ CONIC_INLINE void visibility_with(conic_band *band, int is_profiled) {
       look_at_crowd(band, p.not_kept, &c);
     /* Neither is 0 or below: in one comparison. */
     const float lesser = footprint->s3 < footprint->nearness ? footprint->s3 : footprint->nearness;
-    if (!is_profiled && __builtin_expect(lesser > 0.0f, 1)) {
-      pass_splat(&p, &from, &s, i, SPLAT_USUAL);
+    if (__builtin_expect(lesser > 0.0f, 1)) {
+      pass_splat(&p, &from, &s, i, SPLAT_USUAL, NULL);
       continue;
     }
-    if (is_profiled)
-      pass_splat(&p, &from, &s, i, SPLAT_PROFILED);
-    else if (is_ellipse)
-      pass_splat(&p, &from, &s, i, SPLAT_WIDE);
+    if (is_ellipse)
+      pass_splat(&p, &from, &s, i, SPLAT_WIDE, NULL);
     else {
       prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
       if (is_crowd && is_plain_ray(footprint))
         pass_ray_in_crowd(&p, &from, &s, band, &c, i);
       else
-        pass_splat(&p, &from, &s, i, SPLAT_SPECIAL);
+        pass_splat(&p, &from, &s, i, SPLAT_SPECIAL, NULL);
       has_special = 1;
     }
   }
-  memcpy(band->n_kept, p.n_kept, sizeof band->n_kept);
-  memcpy(band->not_kept, p.not_kept, sizeof band->not_kept);
-  band->has_special = has_special;
-  band->n_fragments += p.n_fragments;
-}
-
-CONIC_OUTLINE void visibility_profiled(conic_band *band) {
-  visibility_with(band, 1);
-}
-
-static void visibility(conic_band *band) {
-  if (band->view->profile.table)
-    visibility_profiled(band);
-  else
-    visibility_with(band, 0);
+  end_pass(&p, has_special, band);
 }
 
 /* The sums of one part, in registers. */
@@ -362,7 +380,9 @@ CONIC_INLINE void blend_kept(const sources *from, const conic_kept *kept, size_t
     if (!lanes_any(visible))
       continue;
     lanes scale = lanes_of(1.0f), q = lanes_load(kept->fragments[i].q + at);
-    if (kind == KERNEL_PROFILE || (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f)))
+    if (kind == KERNEL_PROFILE)
+      scale = q;
+    else if (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f))
       scale = lanes_load(kept->scale[i] + at);
     const conic_projected_surface *surface = &from->surfaces[i_footprint];
     blend(surface, i_footprint, weigh(from->view, surface->amplitude, q, scale, visible, kind), to);

@@ -58,7 +58,7 @@ static unsigned pass_block(const conic_band *band, uint32_t i_footprint, int blo
   for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
     conic_fragment fragment = {0, 0, 0, 0};
     int is_covered = fragment_of(band, i_footprint, block, l, &fragment);
-    kept->fragments[place].q[l] = fragment.q;
+    kept->fragments[place].q[l] = band->view->profile.table ? fragment.scale : fragment.q;
     kept->fragments[place].seen_iz[l] = is_covered ? conic_seen_iz(&fragment) : -1.0f;
     kept->scale[place][l] = fragment.scale;
     if (!is_covered)

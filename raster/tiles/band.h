@@ -66,7 +66,7 @@ static inline uint32_t conic_word_last_row(uint32_t word) {
 #define CONIC_KEPT_SPLATS 512
 
 typedef struct conic_kept_fragments {
-  float q[CONIC_BLOCK_PIXELS];
+  float q[CONIC_BLOCK_PIXELS];       /* with a profile, the fragment's scale in its place */
   float seen_iz[CONIC_BLOCK_PIXELS]; /* max of the splat's and its plane's; -1 where not covered */
 } conic_kept_fragments;
 
@@ -75,7 +75,8 @@ typedef struct conic_kept {
   _Alignas(64) float threshold[CONIC_BLOCK_PIXELS]; /* max of what covers it hides by, at least 0 */
   uint32_t footprint[CONIC_KEPT_SPLATS + 16];
   conic_kept_fragments fragments[CONIC_KEPT_SPLATS + 1];
-  float scale[CONIC_KEPT_SPLATS + 1][CONIC_BLOCK_PIXELS]; /* of special ones: all but ellipses without clip lines */
+  float scale[CONIC_KEPT_SPLATS + 1]
+             [CONIC_BLOCK_PIXELS]; /* without a profile, of special ones: all but ellipses without clip lines */
 } conic_kept;
 
 /* The sums over a block's visible splats, 0 where there is none. Splats are named by their footprint. */

@@ -87,7 +87,7 @@ PATH=$PWD/empty "$conic" chart -o poor --quick --only methods > out 2> err || fa
 [[ ! -e poor/representations.csv ]] || fail "not the methods alone"
 
 run 2 chart
-run 2 chart more -o small
+run 2 chart more other -o small
 run 3 chart -o small --quick --mesh missing.obj
 run 4 chart -o missing/folder --quick
 [[ $failures -eq 0 ]]

@@ -70,7 +70,7 @@ static void test_planted(cli_session *session, const char *scene_name, int i_met
   CHECK(line.statistics.fragments > 1000 && line.statistics.splats_drawn > 0);
   conic_image_release(session->context, &pictures.reference);
   conic_image_release(session->context, &pictures.drawn);
-  cli_bench_scene_release(&scene);
+  cli_bench_scene_release(session, &scene);
 }
 
 /* The model: set-up reads all splats, resolving writes all pixels, twice the fragments are twice the operations. */
@@ -93,6 +93,23 @@ static void test_work(void) {
   CHECK(work[2].operations > 2.0 * twice[2].operations);
 }
 
+/* Of Gaussians, set-up reads all, and harmonics only of those that are drawn; pairs are what compositing is made of. */
+static void test_gaussian_work(cli_session *session) {
+  cli_bench_scene scene;
+  cli_bench_line line = line_of(CLI_BENCH_N_METHODS + CONIC_PROFILE_GSPLAT_1_6, 90);
+  CHECK(cli_bench_scene_open(session, "gaussians-100", NULL, &scene) == CLI_DONE);
+  CHECK(scene.is_gaussian && scene.gaussians.count == 100);
+  line.statistics = (conic_render_statistics){.splats_in = 1000, .splats_drawn = 100, .fragments = 1000000};
+  cli_bench_gaussians_work(&scene, &line);
+  CHECK(line.work[0].read_bytes == 44.0 * 1000.0 + 192.0 * 100.0);
+  double operations = line.work[3].operations;
+  line.i_method = CLI_BENCH_N_METHODS + CONIC_PROFILE_EXACT;
+  cli_bench_gaussians_work(&scene, &line);
+  CHECK(operations > 30e6 && line.work[3].operations > 1.5 * operations);
+  CHECK(strcmp(cli_bench_method_name(line.i_method), "exact") == 0 && strcmp(cli_bench_method_name(1), "ray") == 0);
+  cli_bench_scene_release(session, &scene);
+}
+
 /* Memory or vectors, whichever holds up longer. */
 static void test_floor(void) {
   const cli_bench_machine machine = {1, 2e9, 1e9, 1e9, 4e9};
@@ -113,7 +130,10 @@ int main(void) {
   test_planted(&session, "needles-300", 0);
   test_planted(&session, "subpixel-3k", 0);
   test_planted(&session, "huge-5", 0);
+  test_planted(&session, "gaussians-500", CLI_BENCH_N_METHODS + CONIC_PROFILE_GSPLAT_1_6);
+  test_planted(&session, "gaussians-500", CLI_BENCH_N_METHODS + CONIC_PROFILE_EXACT);
   test_work();
+  test_gaussian_work(&session);
   test_floor();
   cli_session_close(&session);
   return check_result();

@@ -64,18 +64,26 @@ declare -A wanted=(
   [render-layers]="$render methods.conic error_px layers.clouds layers.places_coarser layers.clouds_missing"
   [diff]="identical max_abs rmse p999 psnr ssim flip over_code differing_pixels largest_hole planes.rgba.max_abs
     planes.rgba.rmse"
+  [diff-folders]="identical matched_by views_past_limits mean.psnr mean.ssim mean.flip views only_in_a only_in_b"
   [verify]="against method planes.rgba.max_abs planes.rgba.p999 planes.id.max_abs bound.rgba bound.Z judged_pixels
     compared_pixels unstable_pixels covered_pixels undecided_ids unbounded_pixels unbounded_limit wrong_pixels
     unstable_by_reason.cutoff unstable_by_reason.visibility ms.render ms.oracle pass"
   [explain]="method pixel? planes.rgba planes.weight planes.id threshold counts.visible counts.hidden contributions"
   [explain-hybrid]="method pixel? planes.rgba planes.cluster threshold contributions blended? triangles?"
+  [verify-gaussians]="against profile planes.rgba.max_abs planes.rgba.widest planes.last.max_abs judged_pixels
+    covered_pixels classes.equal classes.rounded classes.explained classes.wrong doubtful_pixels
+    doubtful_by_reason.order explained_by_reason.order wide_pixels wrong_pixels ms.render ms.oracle pass"
+  [explain-gaussians]="profile pixel planes.rgba planes.last bounds.rgb.low bounds.T.high end doubts doubt
+    counts.composited contributions"
   [chart]="scenes methods points seconds"
   [bench]="lines wrong_pictures peak_rss_bytes machine?"
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
   [info-octree]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound?"
   [info-gaussians]="kind gaussians sh_degree 2d antialiased bytes? bounds.min bounds.max sound?"
+  [info-cameras]="kind format views"
   [convert]="kind_in kind_out gaussians sh_degree_in sh_degree_out reordered lossless? lost? differences.position
-    differences.scale differences.rotation_deg differences.opacity differences.color differences.harmonics bytes?"
+    differences.scale differences.rotation_deg differences.opacity differences.color differences.harmonics pictures.views?
+    pictures.psnr? pictures.greatest? bytes?"
   [info-hybrid]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound?"
   [info-layers]="kind points clouds levels bytes bytes_per_point bits_per_sample bits.position bits.normal bits.colour
     bits.index bounds.min bounds.max sound?"
@@ -119,6 +127,11 @@ write octree-colored octree octree colored.ply -o colored.cot --color-by height
 write hybrid-colored hybrid hybrid tent.obj -o colored.chy --color-by height
 write diff diff diff knot.exr lod.exr
 write diff-sizes diff diff knot.exr triangle.exr
+mkdir first second
+cp knot.exr first/a.exr
+cp lod.exr second/a.exr
+cp knot.exr first/b.exr
+write diff-folders diff_folders diff first second
 write verify verify verify thinner.ply --size 160x120
 write verify-samples verify verify thinner.ply --size 40x30 --samples 2
 write render-prefiltered render render thinner.ply --size 160x120 --prefilter 1.01 -o prefiltered.exr
@@ -126,6 +139,10 @@ write verify-wrong verify verify thinner.ply --size 160x120 --pixels 500 --image
 write make-one make make plane -n 1 -o one.ply
 write verify-exact verify verify one.ply --size 12x9 --against exact
 write explain explain explain one.ply --size 64x48 --pixel 30,20
+printf '\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200' > two.splat
+write verify-gaussians verify_gaussians verify two.splat --profile exact --size 40x40
+write verify-gaussians-samples verify_gaussians verify two.splat --profile inria-2023 --size 20x20 --samples 2
+write explain-gaussians explain_gaussians explain two.splat --profile exact --size 40x40 --pixel 20,20
 write explain-splat explain explain one.ply --size 64x48 --splat 0
 write explain-octree explain explain knot.cot --size 64x48 --error 1 --splat 9 --pixel 32,24
 write explain-leaf explain explain knot.cot --size 2048x2048 --error 0.5 --splat 9
@@ -144,8 +161,17 @@ write info-hybrid info_hybrid info tent.chy --check
 # Two Gaussians, as .splat has them.
 row='\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200'
 printf "$row$row" > two.splat
-write convert convert convert two.splat -o two.compressed.ply
+mkdir model
+printf '1 RADIAL_FISHEYE 9 8 7 4 4 .1 .2\n' > model/cameras.txt
+printf '1 1 0 0 0 0 0 0 1 one.png\n\n' > model/images.txt
+printf '[{"img_name": "one", "width": 9, "height": 8, "position": [0, 0, 0], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  "fx": 7, "fy": 7}]' > cameras.json
+write info-cameras info_cameras info model
+write info-camera info_cameras info cameras.json --check
+write render-view render render knot.ply --camera cameras.json -o knot.exr --frames 0 --view all
+write convert convert convert two.splat -o two.compressed.ply --measure 2
 write info-gaussians info_gaussians info two.compressed.ply --check
+write chart-gaussians chart chart two.compressed.ply -o chart --quick --pixels 100
 write render-gaussians render render two.compressed.ply --profile gsplat-1.6 --size 64x64 -o two.exr --aov all
 write devices devices devices
 # What no run above writes, or not on every machine.

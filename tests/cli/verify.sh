@@ -109,7 +109,7 @@ fi
 run 2 verify
 run 2 verify knot.ply --against nothing
 run 2 verify knot.ply -o out.exr
-run 2 verify knot.ply --camera camera.json --size 10x10
+run 2 verify knot.ply --camera camera.json --zoom 2
 run 3 verify absent.ply
 run 3 verify knot.ply --image absent.exr --size 20x20
 run 4 verify knot.ply --size 20x20 --json missing/v.json

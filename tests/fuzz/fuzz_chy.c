@@ -29,7 +29,8 @@ static void use(fuzz_input *input, conic_hybrid *hybrid) {
     render.cull_back = i & 1;
     FUZZ_CHECK(conic_hybrid_select(hybrid, &camera, &render, &view, &selection) == CONIC_OK);
     FUZZ_CHECK(conic_triangles_check(input->context, &selection.triangles, "selection") == CONIC_OK);
-    FUZZ_CHECK(selection.n_clusters[0] + selection.n_clusters[1] + selection.n_culled == info.n_clusters);
+    FUZZ_CHECK(selection.n_clusters[0] + selection.n_clusters[1] + selection.n_joined + selection.n_culled ==
+               info.n_clusters);
   }
   conic_hybrid_selection_release(input->context, &selection);
 }

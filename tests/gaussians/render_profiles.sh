@@ -33,12 +33,18 @@ for profile in inria-2023 gsplat-1.5 gsplat-1.5-aa gsplat-1.6 gsplat-1.6-aa 2dgs
   done
 done
 run 1 diff exact.exr gsplat-1.6.exr
-for what in "--deep d.exr" "--cryptomatte" "--exposure auto" "--device opencl" "--error 1"; do
+# exact takes a filter, and no other profile does.
+run 0 render two.ply --profile exact --prefilter 1 --size 40x40 --aov rgba,T,Z,N,count,id,last,medianZ,inverseZ -o a.exr
+run 1 diff exact.exr a.exr
+run 0 render two.ply --profile exact --prefilter 0 --size 40x40 --aov rgba,T,Z,N,count,id,last,medianZ,inverseZ -o a.exr
+run 0 diff exact.exr a.exr
+run 2 render two.ply --profile gsplat-1.6 --prefilter 1 --size 40x40 -o a.exr
+for what in "--deep d.exr" "--cryptomatte" "--exposure auto" "--error 1"; do
   # shellcheck disable=SC2086
   run_as_typed 2 render two.ply --size 40x40 -o a.exr $what
 done
 run_as_typed 0 verify two.ply --size 40x40
-run_as_typed 2 verify two.ply --size 40x40 --profile exact
+run_as_typed 0 verify two.ply --size 40x40 --profile exact
 run_as_typed 0 render two.ply --size 40x40 -o a.png --overdraw o.png --samples 3 --background 1,0,0
 run 2 render two.ply --profile gsplat-9 --size 40x40 -o a.exr
 run 2 render two.ply --size 40x40 --aov T -o a.exr

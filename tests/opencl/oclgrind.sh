@@ -9,7 +9,7 @@ command -v oclgrind > /dev/null || { echo "skipped: oclgrind is not installed"; 
 # Its optimiser makes intrinsics that it does not know itself, and its check for uninitialised reads misreports `freeze`.
 answer=0
 : > "$log"
-for test in images triangles; do
+for test in images triangles gaussians; do
   oclgrind --data-races --build-options -cl-opt-disable "$build/bin/test_opencl_$test" "$root" small >> "$log" 2>&1 || answer=$?
 done
 grep -v -E 'log: opencl:[0-9.]+: .* may be off by|warnings? generated|^wild: ' "$log" > "$log.findings" || true

@@ -40,8 +40,8 @@ grep -q 'no such device' err || fail "a device that is not there: $(cat err)"
 same() { # WHAT, RENDER'S ARGUMENTS …: the CPU's picture and the device's
   local what=$1
   shift
-  run 0 render "$@" -o cpu.pfm --aov all --json cpu.json
-  run 0 render "$@" -o device.pfm --aov all --json device.json --device opencl
+  run 0 render --aov all "$@" -o cpu.pfm --json cpu.json
+  run 0 render --aov all "$@" -o device.pfm --json device.json --device opencl
   for file in cpu*.pfm; do
     cmp -s "$file" "${file/cpu/device}" || fail "$what: $file differs"
   done
@@ -69,6 +69,20 @@ if [[ -f $data/lion.ply ]]; then
 else
   echo "lion is left out: $data/lion.ply is not there"
 fi
+
+# Gaussian scenes, whose program is the only one that they need.
+row='\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200'
+printf "$row$row" > two.splat
+scene=two.splat
+[[ ! -f $data/gaussians/biker.spz ]] || scene=$data/gaussians/biker.spz
+mv cache other-cache
+for profile in exact gsplat-1.6 2dgs-2024; do
+  same "Gaussians, $profile" "$scene" --profile $profile --size 90x70 --samples 2 \
+    --aov rgba,Z,N,count,id,T,medianZ,inverseZ,last
+done
+run 0 verify two.splat --profile gsplat-1.6 --size 40x40 --device opencl
+[[ $(cd cache/conic && echo *) =~ ^gaussian_tiles-[0-9a-f]*.bin$ ]] || fail "Gaussians built $(ls cache/conic)"
+rm -r cache && mv other-cache cache
 
 # Meshes as triangles, whose program nobody needed before.
 [[ -z $(ls cache/conic/triangles-*.bin 2> /dev/null) ]] || fail "the triangles' program was built for splats"

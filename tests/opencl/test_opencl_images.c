@@ -64,13 +64,13 @@ static void compare(fixture *f, int n_ways, const char *scene) {
   conic_image_release(f->context, &image);
 }
 
-/* Every method with every kernel; the rest of the options as it comes. */
-static void check_hostile(fixture *f, double share_of_specials, double decades) {
+/* Every second pair of a method and a kernel, from the first on; the rest of the options as it comes. */
+static void check_hostile(fixture *f, int first, double share_of_specials, double decades) {
   uint64_t state = 7;
-  for (int number = 0; number < CONIC_N_METHODS * N_KERNELS; number++)
+  for (int number = first; number < CONIC_N_METHODS * N_KERNELS; number += 2)
     for (int passes = 1; passes <= 3; passes += 2) {
       fill(f, &state, decades, share_of_specials);
-      if (number % 2)
+      if (number / 2 % 2)
         opencl_add_clips(f, &state);
       choose(f, number);
       f->options.passes = passes;
@@ -159,8 +159,8 @@ static void check_planes_and_samples(fixture *f) {
 
 static void check_all(fixture *f) {
   fixture_camera(f, 230, 170, 160.0);
-  check_hostile(f, 0.0, 1.5);
-  check_hostile(f, 0.01, 3.0);
+  check_hostile(f, 0, 0.0, 1.5);
+  check_hostile(f, 1, 0.01, 3.0);
   check_scene(f, CONIC_SCENE_KNOT, 20000, 2.2, "knot");
   check_scene(f, CONIC_SCENE_TORUS, 6000, 1.2, "torus"); /* from inside the tube */
   check_odd_cases(f);

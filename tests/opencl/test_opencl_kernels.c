@@ -246,6 +246,7 @@ static void check_scan(conic_context *context, uint64_t *state) {
   conic_opencl *opencl;
   conic_opencl_options_init(&options);
   CHECK_OK(conic_opencl_open(context, &options, &opencl));
+  CHECK_OK(conic_opencl_need_splats(opencl));
   for (size_t s = 0; opencl && s < sizeof sizes / sizeof sizes[0]; s++) {
     static uint32_t numbers[5000];
     static uint64_t places[5001];

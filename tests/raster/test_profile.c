@@ -20,6 +20,9 @@ static const kind kinds[] = {{"hat", {CONIC_KERNEL_HAT, 1.5f, 0, 0, 0}, 0.01},
                              {"hat, cutoff 3", {CONIC_KERNEL_HAT, 3.0f, 0, 0, 0}, 0.02},
                              {"box", {CONIC_KERNEL_BOX, 1.5f, 0, 0, 0}, 0.03}};
 
+/* Splats that are narrower have polynomials, which are nearer. */
+static const double smooth_px = 3.8, smooth_bound = 0.01;
+
 static double kernel_at(const conic_kernel *kernel, double r) {
   double end = kernel->type == CONIC_KERNEL_CONFETTI ? (double)kernel->b : (double)kernel->cutoff, part = r / end;
   if (!(part < 1.0))
@@ -107,10 +110,10 @@ static void test_against_convolution(fixture *f, const kind *k) {
     for (size_t j = 0; j < sizeof cosines / sizeof *cosines; j++) {
       f->options.method = methods[(i + j) % 4];
       draw_splat(f, sigmas[i], cosines[j]);
-      double error = error_of(f, k, sigmas[i], cosines[j]);
-      if (!(error <= k->bound))
+      double error = error_of(f, k, sigmas[i], cosines[j]), bound = sigmas[i] < smooth_px ? smooth_bound : k->bound;
+      if (!(error <= bound))
         printf("%s, σ %g px, cosine %g: %.4f of the peak\n", k->name, sigmas[i], cosines[j], error);
-      CHECK(error <= k->bound);
+      CHECK(error <= bound);
       worst = error > worst ? error : worst;
     }
   printf("%s: at most %.4f of the peak\n", k->name, worst);

@@ -3,6 +3,7 @@
 #define CONIC_SEEDS_H
 
 #include "core/assimp/assimp_bridge.h"
+#include "tests/support/camera_files.h"
 #include "tests/support/files.h"
 #include "tests/support/gaussian_fixture.h"
 #include "tests/support/las_file.h"
@@ -10,7 +11,7 @@
 #include "tests/support/png_file.h"
 
 typedef struct seed {
-  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, pcd, xyz, camera, pfm, exr, png,
+  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, pcd, xyz, camera, colmap, pfm, exr, png,
                          cot, lpc, chy, gaussians */
   char name[32];      /* of the file */
   unsigned char *bytes;
@@ -18,7 +19,7 @@ typedef struct seed {
   int may_be_cut; /* what is left of it may be sound */
 } seed;
 
-enum { SEEDS_ROOM = 96 };
+enum { SEEDS_ROOM = 108 };
 
 typedef struct seed_set {
   seed seeds[SEEDS_ROOM];
@@ -165,6 +166,31 @@ static inline void seeds_all_text(seed_set *set) {
       set, "camera", "json",
       "{\"width\": 64, \"height\": 48, \"fx\": 50.5, \"fy\": 5e1, \"cx\": 32, \"cy\": 24, \"more\": [true, null,\n"
       "{\"a\\u0041\": \"b\\n\"}],\n\"world_to_camera\": [[1,0,0,0],[0,1,0,0],[0,0,1,-3.5],[0,0,0,1]]}\n");
+}
+
+/* One camera in every format. */
+static inline void seeds_all_cameras(seed_set *set) {
+  camera_bytes first = {.n = 0}, second = {.n = 0}, npz = camera_npz_example(), joined;
+  seeds_text(set, "camera", "json", CAMERA_TRANSFORMS);
+  seeds_text(set, "camera", "json",
+             "{\"camera_angle_x\": 0.7, \"camera_model\": \"OPENCV_FISHEYE\", \"k1\": 0.1, \"w\": 64, \"h\": 48,\n"
+             "\"frames\": [{\"transform_matrix\": " CAMERA_MATRIX "}, {\"file_path\": \"b\\u0007\", \"h\": 9,\n"
+             "\"transform_matrix\": " CAMERA_MATRIX "}]}");
+  seeds_text(set, "camera", "json", CAMERA_LIST);
+  seeds_text(set, "camera", "gltf", CAMERA_GLTF);
+  seeds_text(set, "camera", "json",
+             "{\"kind\": \"fisheye\", \"lens\": \"fov\", \"distortion\": [0.9], \"width\": 64, \"height\": 48,\n"
+             "\"fx\": 50, \"fy\": 50, \"cx\": 32, \"cy\": 24, "
+             "\"world_to_camera\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}");
+  seeds_add(set, "camera", "npz", 1, npz.bytes, npz.n);
+  camera_colmap_binary(6, (const double[]){50, 49, 31, 24, .1, .2, .3, .4, .5, .6, .7, .8}, 12, &first, &second);
+  joined = camera_join_colmap('b', &first, &second);
+  seeds_add(set, "colmap", "bin", 0, joined.bytes, joined.n);
+  first.n = second.n = 0;
+  camera_put_text(&first, CAMERA_COLMAP_CAMERAS "2 FOV 10 20 5 5 1 2 .9\n");
+  camera_put_text(&second, CAMERA_COLMAP_IMAGES "8 1 0 0 0 0 0 0 2 two.png\n\n");
+  joined = camera_join_colmap('t', &first, &second);
+  seeds_add(set, "colmap", "txt", 1, joined.bytes, joined.n);
 }
 
 /* Three points in each of the ways of storing them. */
@@ -427,6 +453,7 @@ static inline seed_set *seeds_make(conic_context *context) {
     exit(1);
   seeds_all_ply(set);
   seeds_all_text(set);
+  seeds_all_cameras(set);
   seeds_all_las(set);
   seeds_all_pcd(set);
   seeds_all_png(set);

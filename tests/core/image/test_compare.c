@@ -98,6 +98,8 @@ static void test_psnr_range(conic_context *context) {
 }
 
 static double encoded_at(const conic_image *image, int x, int y, int c) {
+  if (x < 0 || x >= image->width || y < 0 || y >= image->height)
+    return 0.0;
   return conic_srgb_encode((double)((float *)image->planes[0])[4 * (y * image->width + x) + c]);
 }
 
@@ -128,7 +130,7 @@ static void test_ssim_by_definition(conic_context *context) {
   const int width = 19, height = 14;
   conic_image a = flat_image(context, width, height, 0.0f), b = flat_image(context, width, height, 0.0f);
   uint64_t state = 3;
-  double sum = 0.0;
+  double sum = 0.0, padded = 0.0;
   for (int i = 0; i < width * height * 4; i++) {
     if (i % 4 == 3)
       continue;
@@ -136,12 +138,16 @@ static void test_ssim_by_definition(conic_context *context) {
     ((float *)b.planes[0])[i] = 0.5f * ((float *)a.planes[0])[i] + (float)(next_random(&state) >> 9) / 16777216.0f;
   }
   for (int c = 0; c < 3; c++)
-    for (int y = 0; y + 11 <= height; y++)
-      for (int x = 0; x + 11 <= width; x++)
-        sum += plain_window(&a, &b, x, y, c);
+    for (int y = -5; y + 6 <= height; y++)
+      for (int x = -5; x + 6 <= width; x++) {
+        double window = plain_window(&a, &b, x, y, c);
+        padded += window;
+        sum += x >= 0 && y >= 0 && x + 11 <= width && y + 11 <= height ? window : 0.0;
+      }
   double expected = sum / (3 * (width - 10) * (height - 10));
   CHECK(expected > 0.1 && expected < 0.95);
   CHECK_NEAR(compare(context, &a, &b).ssim, expected, 1e-12);
+  CHECK_NEAR(compare(context, &a, &b).ssim_padded, padded / (3 * width * height), 1e-12);
   conic_image_release(context, &a);
   conic_image_release(context, &b);
 }
@@ -203,7 +209,7 @@ static conic_image text_image(conic_context *context, conic_plane plane, const c
   for (int i = 0; i < width * height; i++)
     if (plane == CONIC_PLANE_ID || plane == CONIC_PLANE_CLUSTER || plane == CONIC_PLANE_LAST)
       ((uint32_t *)image.planes[plane])[i] = text[i] == '#' ? 0 : CONIC_NO_ID;
-    else if (plane == CONIC_PLANE_COUNT)
+    else if (plane == CONIC_PLANE_COUNT || plane == CONIC_PLANE_DOUBT)
       ((uint32_t *)image.planes[plane])[i] = text[i] == '#';
     else if (plane == CONIC_PLANE_TRANSPARENCY)
       ((float *)image.planes[plane])[i] = text[i] == '#' ? 0.5f : 1.0f;

@@ -116,16 +116,19 @@ static void test_attributes(conic_context *context) {
   size_t n_bytes;
   for (int i = 0; i < 16; i++)
     matrix.values[i] = i / 3.0;
-  image.n_attributes = 4;
+  image.n_attributes = 5;
   image.attributes[0] = text_attribute("conicMethod", "conic \xc3\xa9");
   image.attributes[1] = number;
   image.attributes[2] = matrix;
   image.attributes[3] = text_attribute(long_name, "");
+  image.attributes[4] = text_attribute("colorInteropID", "srgb_rec709_display"); /* as from a file that was read */
+  image.is_display = 1;
   CHECK_OK(conic_image_write(context, in_folder("a.exr"), &image));
   unsigned char *bytes = read_bytes(in_folder("a.exr"), &n_bytes);
   CHECK(has_attribute(bytes, n_bytes, "conicMethod", "string", "conic \xc3\xa9", 8));
   CHECK(has_attribute(bytes, n_bytes, "conicEpsilon", "double", number.values, 8));
   CHECK(has_attribute(bytes, n_bytes, "worldToCamera", "m44d", matrix.values, 128));
+  CHECK(has_attribute(bytes, n_bytes, "colorInteropID", "string", "srgb_rec709_display", 19));
   free(bytes);
   CHECK_OK(conic_image_read(context, in_folder("a.exr"), &back));
   for (int i = 0; i < image.n_attributes; i++) {
@@ -134,6 +137,7 @@ static void test_attributes(conic_context *context) {
       is_found |= memcmp(&image.attributes[i], &back.attributes[k], sizeof image.attributes[i]) == 0;
     CHECK(is_found);
   }
+  CHECK(back.is_display);
   conic_image_release(context, &back);
   empty_test_folder();
   image.attributes[0] = text_attribute("channels", "a name that the format needs itself");

@@ -1,14 +1,17 @@
+/* conic's own JSON of one camera. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "conic/camera.h"
+#include "core/cameras/camera_list.h"
 #include "core/files/json_read.h"
 #include "core/image/view_arguments.h"
 
-typedef enum camera_key { WIDTH, HEIGHT, FX, FY, CX, CY, MATRIX, N_KEYS } camera_key;
+/* The last three may be missing. */
+typedef enum camera_key { WIDTH, HEIGHT, FX, FY, CX, CY, MATRIX, KIND, LENS, DISTORTION, N_KEYS } camera_key;
 
-static const char *const key_names[N_KEYS] = {"width", "height", "fx", "fy", "cx", "cy", "world_to_camera"};
+static const char *const key_names[N_KEYS] = {"width", "height",          "fx",   "fy",   "cx",
+                                              "cy",    "world_to_camera", "kind", "lens", "distortion"};
 
 static conic_status read_size(conic_json *json, int *size) {
   double value;
@@ -77,6 +80,34 @@ static conic_status read_matrix(conic_json *json, double cam_from_world[3][4]) {
   return check_matrix(json, rows);
 }
 
+static conic_status read_kind(conic_json *json, uint32_t *kind) {
+  char text[32];
+  conic_status status = conic_json_text(json, text, sizeof text);
+  for (uint32_t i = 0; i < CONIC_N_CAMERA_KINDS && status == CONIC_OK; i++)
+    if (strcmp(text, conic_camera_kind_name((conic_camera_kind)i)) == 0) {
+      *kind = i;
+      return CONIC_OK;
+    }
+  return conic_json_wrong(json, "a camera's kind is perspective, fisheye, orthographic or equirectangular");
+}
+
+static conic_status read_own_lens(conic_json *json, uint32_t *lens) {
+  char text[32];
+  conic_status status = conic_json_text(json, text, sizeof text);
+  for (uint32_t i = 0; i < CONIC_N_LENSES && status == CONIC_OK; i++)
+    if (strcmp(text, conic_lens_name((conic_lens)i)) == 0) {
+      *lens = i;
+      return CONIC_OK;
+    }
+  return conic_json_wrong(json, "a camera's lens is none, radial, opencv, thin-prism or fov");
+}
+
+static conic_status read_distortion(conic_json *json, double distortion[8]) {
+  size_t n;
+  conic_status status = conic_json_numbers(json, distortion, 8, &n);
+  return status == CONIC_OK && n > 8 ? conic_json_wrong(json, "a distortion has at most 8 numbers") : status;
+}
+
 static conic_status read_value(conic_json *json, camera_key key, conic_camera *camera) {
   switch (key) {
   case WIDTH:
@@ -93,6 +124,12 @@ static conic_status read_value(conic_json *json, camera_key key, conic_camera *c
     return read_bounded(json, largest_pixel_value, &camera->cy);
   case MATRIX:
     return read_matrix(json, camera->cam_from_world);
+  case KIND:
+    return read_kind(json, &camera->kind);
+  case LENS:
+    return read_own_lens(json, &camera->lens);
+  case DISTORTION:
+    return read_distortion(json, camera->distortion);
   case N_KEYS:
     break;
   }
@@ -112,7 +149,7 @@ static conic_status read_camera(conic_json *json, conic_camera *camera) {
     read_value(json, (camera_key)i_key, camera);
   }
   conic_json_end(json);
-  for (int i = 0; i < N_KEYS; i++)
+  for (int i = 0; i < KIND; i++)
     if (!is_given[i]) {
       snprintf(missing, sizeof missing, "the camera lacks %s", key_names[i]);
       return conic_json_wrong(json, missing);
@@ -120,16 +157,16 @@ static conic_status read_camera(conic_json *json, conic_camera *camera) {
   return json->status;
 }
 
-conic_status conic_camera_read(conic_context *context, const char *path, conic_camera *camera) {
+conic_status conic_camera_json_read(conic_camera_list *list, const unsigned char *bytes, size_t n_bytes) {
   conic_json json;
   conic_camera found;
   memset(&found, 0, sizeof found);
-  conic_status status = conic_json_open(context, path, &json);
+  list->cameras->kind = CONIC_CAMERA_FILE_CONIC;
+  conic_status status = conic_json_take(list->context, list->name, bytes, n_bytes, &json);
   if (status != CONIC_OK)
     return status;
   status = read_camera(&json, &found);
+  list->line = json.line;
   conic_json_close(&json);
-  if (status == CONIC_OK)
-    *camera = found;
-  return status;
+  return status == CONIC_OK ? conic_camera_list_add(list, &found, "", 0) : status;
 }

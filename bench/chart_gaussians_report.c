@@ -1,0 +1,97 @@
+/* The chart of a Gaussian scene as a table, as JSON, and as a script for gnuplot. */
+#include <math.h>
+
+#include "bench/chart_gaussians.h"
+
+static void write_profiles(FILE *to, const cli_gaussian_chart *chart) {
+  fputs("profile,ms,ms_setup,ms_sort,ms_bin,ms_composite,drawn,entries,pairs", to);
+  for (int i = 0; i < chart->n_truths; i++)
+    fprintf(to, ",%s_max,%s_rmse,%s_psnr,%s_front", cli_truth_names[i], cli_truth_names[i], cli_truth_names[i],
+            cli_truth_names[i]);
+  fputs("\n", to);
+  for (int k = 0; k < chart->n_points; k++) {
+    const cli_profile_point *p = &chart->points[k];
+    const conic_gaussian_statistics *s = &p->statistics;
+    fprintf(to, "%s,%.4f,%.4f,%.4f,%.4f,%.4f,%zu,%zu,%zu", conic_gaussian_profile_name(p->profile), p->ms,
+            1e3 * s->seconds_setup, 1e3 * s->seconds_sort, 1e3 * s->seconds_bin, 1e3 * s->seconds_composite,
+            s->gaussians_drawn, s->entries, p->pairs);
+    for (int i = 0; i < chart->n_truths; i++)
+      fprintf(to, ",%.6g,%.6g,%.3f,%d", p->errors[i].max, p->errors[i].rmse, p->errors[i].psnr, p->errors[i].is_front);
+    fputs("\n", to);
+  }
+}
+
+static void write_plots(FILE *to, const cli_gaussian_chart *chart) {
+  for (int is_png = 0; is_png < 2; is_png++) {
+    fprintf(to, "set terminal %s size %d,600 font '%s'\nset output 'profiles.%s'\n",
+            is_png ? "pngcairo" : "svg enhanced", 700 * chart->n_truths, is_png ? "Sans,10" : "Sans,12",
+            is_png ? "png" : "svg");
+    fprintf(to, "set multiplot layout 1,%d title '%zu Gaussians, %d pixels compared'\n", chart->n_truths,
+            chart->n_gaussians, chart->n_pixels);
+    for (int i = 0; i < chart->n_truths; i++)
+      fprintf(to,
+              "set title 'against the truth by %s'\nplot 'profiles.csv' using 'ms':'%s_rmse' with points pt 7 lc rgb "
+              "'#1b6ca8', '' using 'ms':'%s_rmse':'profile' with labels offset 0,0.8 font ',9'\n",
+              cli_truth_names[i], cli_truth_names[i], cli_truth_names[i]);
+    fputs("unset multiplot\nset output\n", to);
+  }
+}
+
+conic_status cli_gaussian_chart_write(cli_session *session, const char *folder, const cli_gaussian_chart *chart) {
+  conic_output *output;
+  conic_status status = cli_chart_open(session, folder, "profiles.csv", &output);
+  if (status != CONIC_OK)
+    return status;
+  write_profiles(conic_output_stream(output), chart);
+  status = conic_output_commit(output);
+  if (status == CONIC_OK)
+    status = cli_chart_open(session, folder, "profiles.gp", &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *to = conic_output_stream(output);
+  fputs("set datafile separator ','\nset datafile columnheaders\nset logscale xy\nset grid lc rgb '#dddddd' lt 1\n"
+        "set offsets graph 0.15, graph 0.15, graph 0.1, graph 0.1\nset format y '%g'\n"
+        "set border lc rgb '#666666'\nset xlabel 'ms a frame'\nset ylabel 'RMSE'\nunset key\n",
+        to);
+  write_plots(to, chart);
+  return conic_output_commit(output);
+}
+
+void cli_gaussian_chart_print(const cli_gaussian_chart *chart) {
+  printf("%zu Gaussians, %d pixels compared\n%-14s %9s %10s", chart->n_gaussians, chart->n_pixels, "profile", "ms",
+         "M pairs");
+  for (int i = 0; i < chart->n_truths; i++)
+    printf("  %s: %-9s %-9s %-7s", cli_truth_names[i], "max", "rmse", "psnr");
+  puts("");
+  for (int k = 0; k < chart->n_points; k++) {
+    const cli_profile_point *p = &chart->points[k];
+    printf("%-14s %9.2f %10.3f", conic_gaussian_profile_name(p->profile), p->ms, 1e-6 * (double)p->pairs);
+    for (int i = 0; i < chart->n_truths; i++)
+      printf("  %*s  %-9.3g %-9.3g %6.2f%s", (int)sizeof "overlap" - 1 - (i == 1), "", p->errors[i].max,
+             p->errors[i].rmse, p->errors[i].psnr, p->errors[i].is_front ? "*" : " ");
+    puts("");
+  }
+  puts("* best for its time");
+}
+
+void cli_gaussian_chart_report(cli_json *json, const cli_gaussian_chart *chart) {
+  cli_json_count(json, "truth_pixels", (uint64_t)chart->n_pixels);
+  cli_json_array(json, "profiles");
+  for (int k = 0; k < chart->n_points; k++) {
+    const cli_profile_point *p = &chart->points[k];
+    cli_json_object(json, NULL);
+    cli_json_text(json, "profile", conic_gaussian_profile_name(p->profile));
+    cli_json_number(json, "ms", p->ms);
+    cli_json_count(json, "pairs", p->pairs);
+    for (int i = 0; i < chart->n_truths; i++) {
+      cli_json_object(json, cli_truth_names[i]);
+      cli_json_number(json, "max", p->errors[i].max);
+      cli_json_number(json, "rmse", p->errors[i].rmse);
+      cli_json_number(json, "psnr", p->errors[i].psnr);
+      cli_json_number(json, "quadrature", chart->quadrature[i]);
+      cli_json_close(json);
+    }
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}

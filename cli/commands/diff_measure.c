@@ -1,0 +1,144 @@
+/* What conic diff measures of two files, and what it says of that. */
+#include <math.h>
+
+#include "cli/commands/diff_job.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/image/compare.h"
+
+int cli_diff_has_values(const conic_difference *difference) {
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (difference->planes[i].compared && !conic_plane_describe((conic_plane)i)->is_uint)
+      return 1;
+  return 0;
+}
+
+int cli_diff_is_past(const cli_diff_limits *limits, const conic_difference *difference) {
+  int asks_color = limits->has_min_psnr || limits->has_min_ssim || limits->has_max_flip;
+  if (!limits->has_max_abs && !asks_color)
+    return !difference->identical;
+  if (!difference->same_size || (asks_color && !difference->has_color))
+    return 1;
+  if (limits->has_max_abs && (!cli_diff_has_values(difference) || !(difference->max_abs <= limits->max_abs)))
+    return 1;
+  return (limits->has_min_psnr && !(difference->psnr >= limits->min_psnr)) ||
+         (limits->has_min_ssim && !(difference->ssim >= limits->min_ssim)) ||
+         (limits->has_max_flip && !(difference->flip <= limits->max_flip));
+}
+
+/* NaN becomes null. */
+static void report_count(cli_json *json, const char *key, int is_known, size_t count) {
+  if (is_known)
+    cli_json_count(json, key, count);
+  else
+    cli_json_number(json, key, NAN);
+}
+
+void cli_diff_report(cli_json *json, const conic_difference *difference) {
+  int has_values = cli_diff_has_values(difference), has_color = difference->has_color;
+  cli_json_bool(json, "identical", difference->identical);
+  cli_json_number(json, "max_abs", has_values ? difference->max_abs : NAN);
+  cli_json_number(json, "rmse", has_values ? difference->rmse : NAN);
+  cli_json_number(json, "p999", has_values ? difference->p999 : NAN);
+  cli_json_number(json, "psnr", has_color ? difference->psnr : NAN);
+  cli_json_number(json, "ssim", has_color ? difference->ssim : NAN);
+  cli_json_number(json, "ssim_padded", has_color ? difference->ssim_padded : NAN);
+  cli_json_number(json, "flip", has_color ? difference->flip : NAN);
+  report_count(json, "over_code", has_color, difference->over_code);
+  report_count(json, "differing_pixels", difference->same_size, difference->differing_pixels);
+  report_count(json, "largest_hole", difference->same_size, difference->largest_hole);
+  if (!has_color)
+    return;
+  cli_json_text(json, "color_channels", difference->lacks_alpha ? "RGB" : "RGBA");
+  cli_json_bool(json, "display_values", difference->is_display != 0);
+}
+
+/* Files of floats hold what was written into them, and all others hold codes for a screen. */
+static void set_display(const cli_diff_job *job, int i, const char *path, conic_image *image) {
+  static const char *const float_endings[] = {"exr", "pfm", "hdr"};
+  int is_asked = job->display == CLI_DISPLAY_BOTH || job->display == (i ? CLI_DISPLAY_B : CLI_DISPLAY_A);
+  if (job->display == CLI_DISPLAY_NONE)
+    image->is_display = 0;
+  for (int k = 0; is_asked && k < 3; k++)
+    if (conic_file_has_ending(path, float_endings[k]))
+      image->is_display = 1;
+  if (is_asked)
+    conic_image_encode(image);
+}
+
+/* Whether a picture of the size of `small` is what `large` looks like with fewer pixels, to a rounding of the sides. */
+static int is_smaller(const conic_image *small, const conic_image *large) {
+  long long across = (long long)large->width * small->height, down = (long long)small->width * large->height;
+  long long off = across > down ? across - down : down - across;
+  return small->width <= large->width && small->height <= large->height && (off < large->width || off < large->height);
+}
+
+/* --reduce: of display values, as photographs are scaled where they are photographs no more. */
+static conic_status reduce_larger(const cli_diff_job *job, const char *const paths[2], conic_image images[2]) {
+  conic_context *context = job->session->context;
+  conic_image reduced, *large = &images[0], *small = &images[1];
+  if (images[0].width < images[1].width)
+    large = &images[1], small = &images[0];
+  if (!is_smaller(small, large) || !large->planes[CONIC_PLANE_RGBA])
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %d × %d pixels cannot be reduced to %d × %d of %s",
+                      paths[large - images], large->width, large->height, small->width, small->height,
+                      paths[small - images]);
+  conic_image_encode(large);
+  conic_status status = conic_image_reduce(context, large, small->width, small->height, &reduced);
+  if (status != CONIC_OK)
+    return status;
+  conic_image_release(context, large);
+  *large = reduced;
+  return CONIC_OK;
+}
+
+static conic_status fit_sizes(const cli_diff_job *job, const char *const paths[2], int needs_size,
+                              conic_image images[2]) {
+  if (images[0].width == images[1].width && images[0].height == images[1].height)
+    return CONIC_OK;
+  if (job->reduces)
+    return reduce_larger(job, paths, images);
+  if (needs_size)
+    return conic_fail(job->session->context, CONIC_ERROR_INPUT, "%s: %d × %d pixels, but %d × %d in %s; see --reduce",
+                      paths[1], images[1].width, images[1].height, images[0].width, images[0].height, paths[0]);
+  return CONIC_OK;
+}
+
+static conic_status write_heatmap(const cli_diff_job *job, const char *path, const conic_image images[2],
+                                  const conic_difference *difference) {
+  conic_context *context = job->session->context;
+  conic_image heatmap;
+  if (!path)
+    return CONIC_OK;
+  if (!difference->same_size) {
+    conic_log(context, CONIC_LOG_WARNING, "%s: not written: the images differ in size", path);
+    return CONIC_OK;
+  }
+  if (!difference->has_color)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: not written: not both images have colour", path);
+  conic_status status = job->is_flip_map ? conic_image_flip_heatmap(context, &images[0], &images[1], &heatmap)
+                                         : conic_image_heatmap(context, &images[0], &images[1], &heatmap);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_image_write(context, path, &heatmap);
+  conic_image_release(context, &heatmap);
+  return status;
+}
+
+conic_status cli_diff_measure(const cli_diff_job *job, const char *const paths[2], const char *heatmap_path,
+                              int needs_size, conic_image images[2], conic_difference *difference) {
+  conic_context *context = job->session->context;
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < 2 && status == CONIC_OK; i++) {
+    status = conic_image_read(context, paths[i], &images[i]);
+    if (status == CONIC_OK)
+      set_display(job, i, paths[i], &images[i]);
+  }
+  if (status == CONIC_OK)
+    status = fit_sizes(job, paths, needs_size, images);
+  if (status == CONIC_OK)
+    status = conic_image_compare(context, &images[0], &images[1], difference);
+  if (status == CONIC_OK)
+    status = write_heatmap(job, heatmap_path, images, difference);
+  return status;
+}

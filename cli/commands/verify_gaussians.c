@@ -1,0 +1,161 @@
+/* conic verify of a Gaussian scene: a picture held against the bounds of what floats may make of its profile. */
+#include <string.h>
+
+#include "cli/commands/gaussian_commands.h"
+#include "conic/source.h"
+
+typedef struct gaussian_report {
+  const cli_render_job *scene;
+  conic_gaussian_verdict verdict;
+  conic_gaussian_judging judging;
+  double render_ms, oracle_ms;
+  size_t n_pixels; /* of the picture */
+} gaussian_report;
+
+int cli_is_composited(const cli_render_job *scene) {
+  return (scene->abilities & CONIC_SOURCE_COMPOSITES) != 0;
+}
+
+conic_gaussian_options cli_gaussian_options(const cli_render_job *scene) {
+  conic_gaussian_options options = scene->gaussians;
+  for (int c = 0; c < 3; c++)
+    options.background[c] = scene->options.has_background ? scene->options.background[c] : 0.0f;
+  return options;
+}
+
+static const char *profile_of(const cli_render_job *scene) {
+  return conic_gaussian_profile_name(scene->gaussians.profile);
+}
+
+static void write_by_doubt(cli_json *json, const char *key, const size_t *counts) {
+  cli_json_object(json, key);
+  for (int k = 0; k < CONIC_N_GAUSSIAN_DOUBTS; k++)
+    cli_json_count(json, conic_gaussian_doubt_name((conic_gaussian_doubt)k), counts[k]);
+  cli_json_close(json);
+}
+
+static void write_fault(cli_json *json, const char *key, const conic_oracle_fault *fault) {
+  cli_json_object(json, key);
+  cli_json_count(json, "x", (uint64_t)fault->x);
+  cli_json_count(json, "y", (uint64_t)fault->y);
+  cli_json_text(json, "plane", conic_plane_describe((conic_plane)fault->plane)->name);
+  cli_json_count(json, "channel", (uint64_t)fault->channel);
+  cli_json_number(json, "found", fault->found);
+  cli_json_number(json, "low", fault->low);
+  cli_json_number(json, "high", fault->high);
+  cli_json_close(json);
+}
+
+static void write_verdict(cli_json *json, const gaussian_report *r) {
+  const conic_gaussian_verdict *v = &r->verdict;
+  cli_json_text(json, "against", "profile");
+  cli_json_text(json, "profile", profile_of(r->scene));
+  if (r->judging.samples > 1)
+    cli_json_count(json, "samples", (uint64_t)r->judging.samples);
+  cli_json_object(json, "planes");
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (v->planes[i].is_compared) {
+      cli_json_object(json, conic_plane_describe((conic_plane)i)->name);
+      cli_json_number(json, "max_abs", v->planes[i].max_abs);
+      cli_json_number(json, "widest", v->planes[i].bound);
+      cli_json_close(json);
+    }
+  cli_json_close(json);
+  cli_json_count(json, "judged_pixels", v->judged_pixels);
+  cli_json_count(json, "covered_pixels", v->covered_pixels);
+  cli_json_object(json, "classes");
+  for (int k = 0; k < CONIC_N_GAUSSIAN_CLASSES; k++)
+    cli_json_count(json, conic_gaussian_class_name((conic_gaussian_class)k), v->pixels[k]);
+  cli_json_close(json);
+  cli_json_count(json, "doubtful_pixels", v->doubtful_pixels);
+  write_by_doubt(json, "doubtful_by_reason", v->doubtful);
+  write_by_doubt(json, "explained_by_reason", v->explained_by);
+  cli_json_count(json, "wide_pixels", v->wide_pixels);
+  cli_json_count(json, "wrong_pixels", v->pixels[CONIC_PIXEL_WRONG]);
+  if (v->n_worst)
+    write_fault(json, "worst", &v->worst[0]);
+  cli_json_object(json, "ms");
+  cli_json_number(json, "render", r->render_ms);
+  cli_json_number(json, "oracle", r->oracle_ms);
+  cli_json_close(json);
+  cli_json_bool(json, "pass", v->pass);
+}
+
+static void print_verdict(const gaussian_report *r) {
+  const conic_gaussian_verdict *v = &r->verdict;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (v->planes[i].is_compared)
+      printf("%-9s max %-11.4g widest range %.3g\n", conic_plane_describe((conic_plane)i)->name, v->planes[i].max_abs,
+             v->planes[i].bound);
+  printf("judged    %zu of %zu pixels", v->judged_pixels, r->n_pixels);
+  for (int k = 0; k < CONIC_N_GAUSSIAN_CLASSES; k++)
+    printf("%s %zu %s", k ? "," : ":", v->pixels[k], conic_gaussian_class_name((conic_gaussian_class)k));
+  printf("\ndoubtful  %zu of %zu covered pixels", v->doubtful_pixels, v->covered_pixels);
+  const char *separator = ": ";
+  for (int k = 0; k < CONIC_N_GAUSSIAN_DOUBTS; k++)
+    if (v->doubtful[k]) {
+      printf("%s%s %zu", separator, conic_gaussian_doubt_name((conic_gaussian_doubt)k), v->doubtful[k]);
+      separator = ", ";
+    }
+  putchar('\n');
+  if (v->wide_pixels)
+    printf("wide      %zu pixels have more decisions in doubt than are followed both ways\n", v->wide_pixels);
+  for (int k = 0; k < v->n_worst; k++)
+    printf("worst     pixel %d,%d: %s[%d] is %.9g; it may be %.9g to %.9g\n", v->worst[k].x, v->worst[k].y,
+           conic_plane_describe((conic_plane)v->worst[k].plane)->name, v->worst[k].channel, v->worst[k].found,
+           v->worst[k].low, v->worst[k].high);
+  puts(v->pass ? "pass" : "FAILED");
+}
+
+/* The picture that is judged, where none is given. */
+static conic_status draw_composited(cli_session *session, cli_render_job *scene, const conic_camera *camera,
+                                    conic_image *image, double *ms) {
+  double start = cli_seconds();
+  conic_status status = conic_image_allocate(session->context, camera->width, camera->height, scene->planes, image);
+  if (status == CONIC_OK)
+    status = conic_source_draw(scene->source, scene->renderer, camera, &scene->options, &scene->view, image,
+                               &scene->statistics);
+  *ms = 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+static int tell_judgement(cli_session *session, const gaussian_report *r) {
+  int exit_code = CLI_DONE;
+  cli_json_file *file;
+  cli_json *json = cli_json_open(session, &file, &exit_code);
+  if (json) {
+    write_verdict(json, r);
+    exit_code = cli_json_finish(file);
+  }
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  if (!session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0))
+    print_verdict(r);
+  return r->verdict.pass ? CLI_DONE : CLI_DIFFERENT;
+}
+
+int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_pixels, const char *image_path,
+                          conic_image *image) {
+  gaussian_report r = {.scene = scene};
+  conic_camera camera;
+  const conic_gaussian_options options = cli_gaussian_options(scene);
+  conic_gaussian_judging_init(&r.judging);
+  r.judging.n_pixels = n_pixels;
+  r.judging.samples = scene->view.samples;
+  r.judging.is_opaque = scene->options.has_background;
+  conic_status status = cli_scene_camera(scene, 0, &camera);
+  if (status == CONIC_OK && !image_path)
+    status = draw_composited(session, scene, &camera, image, &r.render_ms);
+  if (status == CONIC_OK && (image->width != camera.width || image->height != camera.height)) {
+    cli_error(CLI_INPUT, "%s: it has %d x %d pixels, and the picture to compare with %d x %d", image_path, image->width,
+              image->height, camera.width, camera.height);
+    status = CONIC_ERROR_INPUT;
+  }
+  double start = cli_seconds();
+  if (status == CONIC_OK)
+    status = conic_gaussian_judge(session->context, conic_source_gaussians(scene->source), &camera, &options,
+                                  &r.judging, image, NULL, &r.verdict);
+  r.oracle_ms = 1e3 * (cli_seconds() - start);
+  r.n_pixels = (size_t)image->width * (size_t)image->height;
+  return status == CONIC_OK ? tell_judgement(session, &r) : cli_exit_of(status);
+}

@@ -1,0 +1,115 @@
+#include "core/cameras/numpy_array.h"
+
+#include <string.h>
+
+#include "core/base/message.h"
+#include "core/base/real.h"
+#include "core/files/file_fields.h"
+
+typedef struct npy_text {
+  const char *text;
+  size_t n;
+} npy_text;
+
+/* What follows 'key': in the header, past blanks; empty where it is not there. */
+static npy_text find_npy_value(npy_text header, const char *key) {
+  size_t n_key = strlen(key);
+  for (size_t i = 0; i + n_key <= header.n; i++)
+    if (memcmp(header.text + i, key, n_key) == 0) {
+      i += n_key;
+      while (i < header.n && (header.text[i] == ' ' || header.text[i] == ':'))
+        i++;
+      return (npy_text){header.text + i, header.n - i};
+    }
+  return (npy_text){header.text, 0};
+}
+
+static int npy_begins(npy_text text, const char *with) {
+  size_t n = strlen(with);
+  return text.n >= n && memcmp(text.text, with, n) == 0;
+}
+
+/* '<f4', '<f8', '|u1' … */
+static int take_npy_type(npy_text header, conic_numpy_array *array) {
+  npy_text value = find_npy_value(header, "'descr'");
+  if (value.n < 5 || value.text[0] != '\'' || value.text[4] != '\'')
+    return 0;
+  array->type = value.text[2];
+  array->n_type_bytes = value.text[3] - '0';
+  int n = array->n_type_bytes, is_byte = value.text[1] == '|' && n == 1, is_little = value.text[1] == '<';
+  return (is_byte || is_little) &&
+         (array->type == 'f' ? n == 4 || n == 8
+                             : (array->type == 'i' || array->type == 'u') && (n == 1 || n == 2 || n == 4 || n == 8));
+}
+
+/* (), (3,), (3, 4, 4) … */
+static int take_npy_shape(npy_text header, conic_numpy_array *array) {
+  npy_text value = find_npy_value(header, "'shape'");
+  size_t i = 1;
+  if (!npy_begins(value, "("))
+    return 0;
+  while (i < value.n && value.text[i] != ')') {
+    size_t n = 0, start = i;
+    for (; i < value.n && value.text[i] >= '0' && value.text[i] <= '9' && n < (size_t)1 << 40; i++)
+      n = n * 10 + (size_t)(value.text[i] - '0');
+    if (i == start || (i < value.n && value.text[i] >= '0' && value.text[i] <= '9') ||
+        array->n_axes == CONIC_NUMPY_MOST_AXES)
+      return 0;
+    array->shape[array->n_axes++] = n;
+    while (i < value.n && (value.text[i] == ',' || value.text[i] == ' '))
+      i++;
+  }
+  return i < value.n;
+}
+
+conic_status conic_numpy_array_open(conic_context *context, const char *file, const char *name,
+                                    const unsigned char *bytes, size_t n_bytes, conic_numpy_array *array) {
+  memset(array, 0, sizeof *array);
+  int n_length = n_bytes >= 12 && bytes[6] == 1 ? 2 : 4;
+  size_t start = 8 + (size_t)n_length;
+  if (n_bytes < 12 || memcmp(bytes, "\x93NUMPY", 6) != 0 || bytes[6] < 1 || bytes[6] > 3)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is no NumPy array (at byte 0)", file, name);
+  size_t n_header = (size_t)conic_file_get(bytes + 8, (size_t)n_length);
+  if (n_header > n_bytes - start)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s ends too early (at byte 0)", file, name);
+  npy_text header = {(const char *)bytes + start, n_header};
+  if (!take_npy_type(header, array))
+    return conic_fail(
+        context, CONIC_ERROR_INPUT,
+        "%s: %s is not of numbers that are read: little-endian float32, float64 or whole numbers (at byte 0)", file,
+        name);
+  npy_text order = find_npy_value(header, "'fortran_order'");
+  array->is_fortran = npy_begins(order, "True");
+  if ((!array->is_fortran && !npy_begins(order, "False")) || !take_npy_shape(header, array))
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s has no shape that is understood (at byte 0)", file, name);
+  double n = array->n_type_bytes;
+  for (int axis = 0; axis < array->n_axes; axis++)
+    n *= (double)array->shape[axis];
+  if (n != (double)(n_bytes - start - n_header))
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is not as long as its shape says (at byte 0)", file, name);
+  array->bytes = bytes + start + n_header;
+  return CONIC_OK;
+}
+
+double conic_numpy_array_at(const conic_numpy_array *array, size_t i) {
+  size_t n_bytes = (size_t)array->n_type_bytes, at = i;
+  if (array->is_fortran) {
+    size_t step = 1, places[CONIC_NUMPY_MOST_AXES];
+    for (int axis = array->n_axes; axis-- > 0; i /= array->shape[axis])
+      places[axis] = i % array->shape[axis];
+    at = 0;
+    for (int axis = 0; axis < array->n_axes; step *= array->shape[axis++])
+      at += places[axis] * step;
+  }
+  uint64_t bits = conic_file_get(array->bytes + at * n_bytes, n_bytes);
+  if (array->type == 'f' && n_bytes == 8)
+    return conic_double_of_bits(bits);
+  if (array->type == 'f') {
+    float value;
+    uint32_t low = (uint32_t)bits;
+    memcpy(&value, &low, sizeof value);
+    return (double)value;
+  }
+  int shift = 64 - 8 * (int)n_bytes;
+  return array->type == 'u' ? (double)bits : (double)((int64_t)(bits << shift) >> shift);
+}

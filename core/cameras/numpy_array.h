@@ -1,0 +1,23 @@
+/* Arrays of numbers as NumPy writes them: .npy, by itself or in an .npz. */
+#ifndef CONIC_NUMPY_ARRAY_H
+#define CONIC_NUMPY_ARRAY_H
+
+#include "conic/context.h"
+
+enum { CONIC_NUMPY_MOST_AXES = 4 };
+
+typedef struct conic_numpy_array {
+  const unsigned char *bytes; /* of the first number */
+  char type;                  /* 'f', 'i' or 'u' */
+  int n_type_bytes, is_fortran, n_axes;
+  size_t shape[CONIC_NUMPY_MOST_AXES];
+} conic_numpy_array;
+
+/* Understands a whole .npy, which must outlive *array. Errors: INPUT, as "FILE: NAME: what is wrong". */
+conic_status conic_numpy_array_open(conic_context *context, const char *file, const char *name,
+                                    const unsigned char *bytes, size_t n_bytes, conic_numpy_array *array);
+
+/* A number by its place in the order of C, whatever the file's is; it must be there. */
+double conic_numpy_array_at(const conic_numpy_array *array, size_t i);
+
+#endif

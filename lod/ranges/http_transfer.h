@@ -1,0 +1,96 @@
+/* A request for a part of a file on a web server: sent, and looked at as it is answered. */
+#ifndef CONIC_HTTP_TRANSFER_H
+#define CONIC_HTTP_TRANSFER_H
+
+#ifdef CONIC_HAVE_CURL
+
+#include <curl/curl.h>
+
+#include "lod/ranges/http_response.h"
+#include "lod/ranges/ranges_backend.h"
+
+enum {
+  CONIC_HTTP_PROBE_BYTES = 1 << 16, /* the first request's: it says how large the file is, and holds its beginning */
+  CONIC_HTTP_CONNECTIONS = 16       /* at most */
+};
+
+/* What arrived, shared by the answers that lie in it. */
+typedef struct conic_http_body {
+  unsigned char *bytes;
+  size_t n, room;
+  int n_holders;
+} conic_http_body;
+
+/* Why a request failed, and what comes of it: `conic_http_fates` says. */
+typedef enum conic_http_fault {
+  CONIC_HTTP_SILENCE, /* the server is not there, slow or busy, or ends early: there may be more in a while */
+  CONIC_HTTP_WRONG,   /* what it sends is not what was asked for */
+  CONIC_HTTP_LASTING, /* nor will it ever be */
+  CONIC_HTTP_BOUND    /* it is more than there is memory for */
+} conic_http_fault;
+
+typedef struct conic_http_transfer {
+  struct conic_http_ranges *owner;
+  CURL *easy;
+  int is_busy;
+  int is_probe, is_whole; /* it began as the first request; the server sends the whole file */
+  uint64_t offset;
+  size_t n_expected;
+  conic_http_body *body;
+  conic_queued_range *parts;
+  size_t n_parts, parts_room;
+  conic_http_response response;
+  double window_s;        /* when it was last looked at whether it stalls, */
+  size_t window_n;        /* and what it had then */
+  conic_http_fault fault; /* of its failure, which the reason describes: empty, where there is none yet */
+  char reason[CURL_ERROR_SIZE];
+  char words[CURL_ERROR_SIZE]; /* libcurl's own */
+} conic_http_transfer;
+
+/* An answer that waits to be fetched. */
+typedef struct conic_http_ready {
+  conic_range_answer answer;
+  char reason[CURL_ERROR_SIZE];
+} conic_http_ready;
+
+typedef struct conic_http_ranges {
+  conic_ranges base;
+  conic_ranges_options options;
+  char *url;
+  CURLM *multi;
+  int is_global; /* curl_global_init was called */
+  conic_http_transfer transfers[CONIC_HTTP_CONNECTIONS];
+  conic_http_body *head; /* the file's beginning, or all of it */
+  char tag[CONIC_HTTP_TAG];
+  conic_http_ready *ready;
+  size_t first_ready, n_ready, ready_room; /* those from first_ready on wait */
+  int n_failures;                          /* of requests, since one succeeded */
+  int is_dead;                             /* the server is given up, until nothing is asked for any more */
+  conic_http_fault fault;                  /* of which it died */
+  char reason[CURL_ERROR_SIZE];            /* of the last answer, or of the server's end */
+} conic_http_ranges;
+
+/* By fault. */
+extern const struct conic_http_fate {
+  conic_status status;
+  int most_repeats; /* of the request, if the options do not say less */
+} conic_http_fates[];
+
+/* 0: libcurl cannot. */
+int conic_http_transfer_set_up(conic_http_ranges *http, conic_http_transfer *t);
+
+/* Sends the transfer's request. On failure nothing is under way. */
+conic_status conic_http_transfer_begin(conic_http_transfer *t);
+void conic_http_transfer_end(conic_http_transfer *t);
+
+/* Whether hardly anything came for long. libcurl's own look at it takes some seconds more. */
+int conic_http_transfer_is_stalled(conic_http_transfer *t);
+
+/* Whether the transfer brought what it should. If not, its reason says why. */
+int conic_http_transfer_is_complete(conic_http_transfer *t, CURLcode code);
+
+/* Gives up one hold of what arrived, and it with the last. */
+void conic_http_let_go(conic_http_ranges *http, conic_http_body *held);
+
+#endif
+#endif

@@ -1,0 +1,30 @@
+/* Bounds of many pixels: Gaussians are binned by what they may reach, and each cell of pixels looks at its own. */
+#ifndef CONIC_ORACLE_CELLS_H
+#define CONIC_ORACLE_CELLS_H
+
+#include "oracle/gaussians/oracle_uncertain.h"
+
+/* Takes what a pixel may be: the i-th of those asked for. No two calls at a time have the same thread. */
+typedef void oracle_bound_taker(void *data, size_t i, size_t pixel, const conic_gaussian_bound *bound, int i_thread);
+
+typedef struct oracle_bound_request {
+  conic_context *context;
+  oracle_doubting doubting; /* whose camera is that of the samples */
+  const float *background;  /* 3 */
+  int samples;              /* N × N a pixel */
+  int width, height;        /* in pixels */
+  const uint32_t *pixels;   /* null: all */
+  size_t n_pixels;
+  oracle_bound_taker *take;
+  void *data;
+} oracle_bound_request;
+
+/* Reports progress as "verify". Errors: MEMORY, CANCELLED. */
+conic_status conic_oracle_bound_all(const oracle_bound_request *bounding);
+
+/* Those Gaussians that may reach a place of the screen, in their order there. On success the caller releases
+ * *gaussians, which *meetings refer to, and *meetings. Errors: MEMORY, CANCELLED. */
+conic_status conic_oracle_meet_all(const oracle_bound_request *bounding, double x, double y,
+                                   oracle_uncertain **gaussians, oracle_meeting **meetings, size_t *n);
+
+#endif

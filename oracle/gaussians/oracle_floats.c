@@ -1,0 +1,47 @@
+/* What is known of others' floats, and the names of doubts. */
+#include "conic/gaussian_judge.h"
+#include "core/base/options.h"
+
+/* Four times what a step rounds: orders of operations differ, and a few steps are one here. */
+#define IN_DOUBLE (4.0 * 0x1p-53)
+#define IN_FLOAT (4.0 * 0x1p-24)
+
+/* A ulp is at most 2⁻²³ of a number. Conic's eˣ is within 1.1 of them (tests/core/splats/test_kernel.c). */
+static const conic_float_model models[CONIC_N_FLOAT_KINDS] = {
+    [CONIC_FLOATS_OWN] = {.setup_roundoff = IN_DOUBLE, .exp_relative = 1.1 * 0x1p-23, .n_form_roundings = 4},
+    [CONIC_FLOATS_STRICT] = {.is_setup_in_float = 1,
+                             .setup_roundoff = IN_FLOAT,
+                             .exp_relative = 2.0 * 0x1p-23,
+                             .n_form_roundings = 6},
+    [CONIC_FLOATS_FAST] = {.is_setup_in_float = 1,
+                           .setup_roundoff = IN_FLOAT,
+                           .exp_relative = 0x1p-21,
+                           .exp_by_argument = 0x1p-23,
+                           .n_form_roundings = 6},
+};
+
+void conic_float_model_init_sized(conic_float_model *model, conic_float_kind kind, size_t size) {
+  conic_float_model own = models[(unsigned)kind < CONIC_N_FLOAT_KINDS ? kind : CONIC_FLOATS_OWN];
+  own.size = sizeof own;
+  conic_options_give(model, size, &own);
+}
+
+void conic_gaussian_judging_init_sized(conic_gaussian_judging *judging, size_t size) {
+  static const conic_gaussian_judging own = {.size = sizeof own, .samples = 1};
+  conic_options_give(judging, size, &own);
+}
+
+const char *conic_gaussian_doubt_name(conic_gaussian_doubt doubt) {
+  static const char *const names[CONIC_N_GAUSSIAN_DOUBTS] = {"least", "sign", "edge", "near", "order", "end", "most"};
+  return (unsigned)doubt < CONIC_N_GAUSSIAN_DOUBTS ? names[doubt] : NULL;
+}
+
+const char *conic_gaussian_class_name(conic_gaussian_class number) {
+  static const char *const names[CONIC_N_GAUSSIAN_CLASSES] = {"equal", "rounded", "explained", "wrong"};
+  return (unsigned)number < CONIC_N_GAUSSIAN_CLASSES ? names[number] : NULL;
+}
+
+const char *conic_gaussian_part_name(conic_gaussian_part part) {
+  static const char *const names[CONIC_N_GAUSSIAN_PARTS] = {"composited", "hidden", "faint", "outside", "near"};
+  return (unsigned)part < CONIC_N_GAUSSIAN_PARTS ? names[part] : NULL;
+}

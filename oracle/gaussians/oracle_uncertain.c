@@ -1,0 +1,519 @@
+/* The set-up of a Gaussian with bounds of what roundings do to it.
+ *
+ * Conic's own floats come of a set-up in double, each result rounded once. Of another program all of it is taken to be
+ * in float. Its covariance may come of products in space, Σ = R·S·Sᵀ·Rᵀ and J·V·Σ·Vᵀ·Jᵀ, in whatever order: these are
+ * polynomials, and any order of evaluating one errs by at most the number of roundings of a term, times the unit, times
+ * the sum of its terms' absolute values. */
+#include <float.h>
+#include <string.h>
+
+#include "oracle/gaussians/oracle_uncertain.h"
+
+/* Of any term of the covariance: some 44, of which a step of the set-up counts as four: quaternions 12, rotations 6,
+ * scales 2, view and Jacobian 12, sums 12. */
+static const double n_covariance_roundings = 11.0;
+
+/* How much more than the formula says the reach is, in pixels. */
+static const double reach_margin_px = 1.0;
+
+/* What set-up has of a Gaussian in camera space. */
+typedef struct bounded_frame {
+  double unit;                                       /* roundoff of a step */
+  bounded mean[3], world[3][3], axis[3], axes[3][3]; /* world: the directions as columns; axes: with their scales */
+  bounded direction[3][3];                           /* in camera space */
+  double largest[3][3];                              /* of axes, with all terms of one sign */
+  double scale[3];
+  int is_flat;
+} bounded_frame;
+
+static bounded square_of(bounded a, double unit) {
+  return bounded_multiply(a, a, unit);
+}
+
+static void bound_rotation(const double quaternion[4], int is_as_it_is, double unit, bounded r[3][3]) {
+  bounded q[4], squares = bounded_of(0.0);
+  for (int k = 0; k < 4; k++) {
+    q[k] = bounded_of(quaternion[k]);
+    squares = bounded_add(squares, square_of(q[k], unit), unit);
+  }
+  bounded length = bounded_root(squares, unit);
+  for (int k = 0; k < 4 && !is_as_it_is; k++)
+    q[k] = bounded_divide(q[k], length, unit);
+  const bounded w = q[0], *v = q + 1;
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    bounded along = bounded_add(square_of(v[j], unit), square_of(v[k], unit), unit);
+    bounded both = bounded_multiply(v[i], v[j], unit), turned = bounded_multiply(w, v[k], unit);
+    r[i][i] = bounded_subtract(bounded_of(1.0), bounded_scale(2.0, along, unit), unit);
+    r[i][j] = bounded_scale(2.0, bounded_subtract(both, turned, unit), unit);
+    r[j][i] = bounded_scale(2.0, bounded_add(both, turned, unit), unit);
+  }
+}
+
+static int bound_axes(const oracle_doubting *d, size_t i, bounded_frame *f) {
+  double q[4], squares = 0.0;
+  for (int k = 0; k < 4; k++) {
+    q[k] = (double)d->set->rotation[k][i];
+    squares += q[k] * q[k];
+  }
+  if (!(squares > 0.0) || !oracle_is_finite(squares))
+    return 0;
+  bound_rotation(q, d->view->rules->is_inria && fabs(squares - 1.0) < 0x1p-20, f->unit, f->world);
+  for (int k = 0; k < 3; k++) {
+    f->scale[k] = d->set->scale[k] ? (double)d->set->scale[k][i] : 0.0;
+    if (!(f->scale[k] >= 0.0) || !oracle_is_finite(f->scale[k]))
+      return 0;
+    f->scale[k] = f->is_flat && k == 2 ? 0.0 : f->scale[k];
+    for (int row = 0; row < 3; row++) {
+      bounded view[3], column[3];
+      f->largest[k][row] = 0.0;
+      for (int j = 0; j < 3; j++) {
+        view[j] = bounded_of(d->view->camera->cam_from_world[row][j]);
+        column[j] = f->world[j][k];
+        f->largest[k][row] += fabs(view[j].v) * f->scale[k];
+      }
+      f->direction[k][row] = bounded_dot(view, column, f->unit);
+      f->axes[k][row] = bounded_scale(f->scale[k], f->direction[k][row], f->unit);
+    }
+  }
+  return 1;
+}
+
+static int bound_mean(const oracle_doubting *d, size_t i, bounded_frame *f) {
+  bounded mean[3];
+  for (int axis = 0; axis < 3; axis++)
+    mean[axis] = bounded_rounded(bounded_of(d->set->origin[axis] + (double)d->set->position[axis][i]), f->unit);
+  for (int row = 0; row < 3; row++) {
+    const double *camera = d->view->camera->cam_from_world[row];
+    const bounded view[3] = {bounded_of(camera[0]), bounded_of(camera[1]), bounded_of(camera[2])};
+    f->mean[row] = bounded_add(bounded_dot(view, mean, f->unit), bounded_of(camera[3]), f->unit);
+    for (int axis = 0; axis < 3; axis++) /* in another order */
+      f->mean[row].off += f->unit * (fabs(camera[axis] * mean[axis].v) + fabs(camera[3]));
+    if (!bounded_is_finite(f->mean[row]))
+      return 0;
+  }
+  return 1;
+}
+
+/* The shortest axis, towards the eye; both signs where its side is in doubt. */
+static void bound_normal(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
+  int axis = 2;
+  for (int k = 1; k >= 0 && !f->is_flat && d->view->rules->form != ORACLE_FORM_DISC; k--)
+    axis = f->scale[k] < f->scale[axis] ? k : axis;
+  bounded side = bounded_dot(f->direction[axis], f->mean, f->unit);
+  for (int row = 0; row < 3; row++) {
+    bounded n = bounded_rounded(f->world[row][axis], ORACLE_FLOAT_UNIT);
+    g->normal[row] = side.v > 0.0 ? (bounded){-n.v, n.off} : n;
+    if (fabs(side.v) <= side.off)
+      g->normal[row].off += 2.0 * fabs(n.v);
+  }
+}
+
+static bounded bounded_clamp(bounded a, double low, double high, double unit) {
+  a.v = oracle_min(oracle_max(a.v, low), high);
+  return (bounded){a.v, a.off + unit * 4.0 * oracle_max(fabs(low), fabs(high))};
+}
+
+/* The pixel that offsets are counted from, and the rest. A place in double may be a pixel further by its last bit. */
+static void bound_offset(const oracle_doubting *d, double unit, oracle_uncertain *g) {
+  const double size[2] = {d->view->camera->width, d->view->camera->height};
+  for (int axis = 0; axis < 2; axis++) {
+    double at = oracle_min(oracle_max(g->place[axis].v, -size[axis]), 2.0 * size[axis]);
+    g->pixel[axis] = (at < 0.0 ? ceil(at) : floor(at)) + 0.5;
+    g->offset[axis] = (bounded){g->pixel[axis] - g->place[axis].v, g->place[axis].off};
+    double rounded = d->model->is_setup_in_float ? fabs(g->place[axis].v) + fabs(g->pixel[axis]) : 0.0;
+    g->offset[axis].off += unit * rounded + ORACLE_FLOAT_UNIT * oracle_max(fabs(g->offset[axis].v), 1.0);
+  }
+}
+
+/* Pixels from tile `first` to before tile `behind`, of 16 pixels, with the least and greatest that each may be. */
+static void admit_tiles(const oracle_doubting *d, int axis, const double first[2], const double behind[2],
+                        oracle_uncertain *g) {
+  const double size = axis ? d->view->camera->height : d->view->camera->width, most = ceil(size / 16.0);
+  double tiles[4] = {first[0], first[1], behind[0], behind[1]};
+  for (int k = 0; k < 4; k++)
+    tiles[k] = 16.0 * oracle_min(oracle_max(floor(tiles[k] / 16.0), 0.0), most);
+  g->wide[0][axis] = tiles[0];
+  g->sure[0][axis] = tiles[1];
+  g->sure[1][axis] = tiles[2];
+  g->wide[1][axis] = tiles[3];
+}
+
+static void admit_square(const oracle_doubting *d, bounded radius, oracle_uncertain *g) {
+  double least = ceil(bounded_low(radius)), most = ceil(bounded_high(radius));
+  for (int axis = 0; axis < 2; axis++) {
+    double low = bounded_low(g->place[axis]) - 0.5, high = bounded_high(g->place[axis]) - 0.5;
+    double ulp = d->model->is_setup_in_float ? 2e-7 * (fabs(low) + most + 16.0) : 1e-13 * (fabs(low) + most);
+    const double first[2] = {low - most - ulp, high - least + ulp};
+    const double behind[2] = {low + least + 15.0 - ulp, high + most + 15.0 + ulp};
+    admit_tiles(d, axis, first, behind, g);
+  }
+}
+
+static void admit_box(const oracle_doubting *d, const bounded extent[2], oracle_uncertain *g) {
+  for (int axis = 0; axis < 2; axis++) {
+    bounded radius = bounded_scale(d->view->rules->disc_extent, extent[axis], d->model->setup_roundoff);
+    double least = ceil(bounded_low(radius)), most = ceil(bounded_high(radius));
+    double low = bounded_low(g->place[axis]), high = bounded_high(g->place[axis]);
+    double ulp = d->model->is_setup_in_float ? 2e-7 * (fabs(low) + most + 16.0) : 2e-9;
+    const double first[2] = {low - most - ulp, high - least + ulp};
+    const double behind[2] = {low + least + 16.0 - ulp, high + most + 16.0 + ulp};
+    admit_tiles(d, axis, first, behind, g);
+    double size = axis ? d->view->camera->height : d->view->camera->width; /* beside the picture, it is culled */
+    if (high + most + ulp <= 0.0 || low - most - ulp >= size)
+      g->wide[1][axis] = -INFINITY;
+    if (low + least - ulp <= 0.0 || high - least + ulp >= size)
+      g->sure[1][axis] = -INFINITY;
+  }
+}
+
+/* q beyond which α is below its least, amply. Below 0: everywhere. */
+static double reach_in_q(const oracle_doubting *d, bounded opacity) {
+  double most = bounded_high(opacity);
+  if (d->limits.half_cutoff > 0.0)
+    return 2.0 * d->limits.half_cutoff + 0.01;
+  if (!oracle_is_finite(most)) /* no file has it */
+    most = 1e30;
+  return most * 1.001 >= d->limits.alpha_least ? 2.0 * conic_oracle_log(most * 1.001 / d->limits.alpha_least) + 0.01
+                                               : -1.0;
+}
+
+static void reach_everywhere(oracle_uncertain *g) {
+  for (int axis = 0; axis < 2; axis++) {
+    g->reach[0][axis] = -INFINITY;
+    g->reach[1][axis] = INFINITY;
+  }
+}
+
+/* Of a form that may be anything, too: that is in doubt at every pixel. */
+static void reach_of_ellipse(const bounded variance[2], double q, oracle_uncertain *g) {
+  for (int axis = 0; axis < 2; axis++) {
+    double half = sqrt(q * bounded_high(variance[axis])) + reach_margin_px;
+    half += half * 1e-3 + g->place[axis].off;
+    g->reach[0][axis] = g->place[axis].v - half;
+    g->reach[1][axis] = g->place[axis].v + half;
+  }
+  if (!bounded_is_finite(g->form[0]) || !bounded_is_finite(g->form[1]) || !bounded_is_finite(g->form[2]))
+    reach_everywhere(g);
+}
+
+/* What another program's order of forming the covariance adds: xx, xy, yy. */
+static void loosen_covariance(const bounded_frame *f, const double gain[2], const double slope[2],
+                              bounded covariance[3]) {
+  double squares[3] = {0.0, 0.0, 0.0};
+  for (int k = 0; k < 3; k++) {
+    double x = gain[0] * (f->largest[k][0] + slope[0] * f->largest[k][2]);
+    double y = gain[1] * (f->largest[k][1] + slope[1] * f->largest[k][2]);
+    squares[0] += x * x;
+    squares[1] += x * y;
+    squares[2] += y * y;
+  }
+  for (int k = 0; k < 3; k++)
+    covariance[k].off += n_covariance_roundings * f->unit * squares[k];
+}
+
+static bounded determinant_in_float(const bounded c[3], double unit) {
+  return bounded_subtract(bounded_multiply(c[0], c[2], unit), bounded_multiply(c[1], c[1], unit), unit);
+}
+
+/* The rows of J·V·R·S, and what of them another order needs. */
+static void bound_rows(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g, bounded rows[2][3],
+                       double gain[2], double size_of_slope[2]) {
+  const oracle_gaussian_rules *rules = d->view->rules;
+  const conic_camera *camera = d->view->camera;
+  const double focal[2] = {camera->fx, camera->fy}, size[2] = {camera->width, camera->height};
+  for (int axis = 0; axis < 2; axis++) {
+    bounded slope = bounded_divide(f->mean[axis], f->mean[2], f->unit);
+    double half = 0.5 * size[axis] / focal[axis], c = d->view->center_px[axis];
+    g->place[axis] = bounded_add(bounded_scale(focal[axis], slope, f->unit), bounded_of(c), f->unit);
+    if (d->model->is_setup_in_float && rules->is_inria) /* by way of a projection, and 1/(w + 1e-7) */
+      g->place[axis].off += fabs(focal[axis] * slope.v) * 1e-7 / f->mean[2].v + 4.0 * f->unit * size[axis];
+    if (rules->is_inria)
+      slope = bounded_clamp(slope, -1.3 * half, 1.3 * half, f->unit);
+    else if (rules->dilation > 0.0)
+      slope =
+          bounded_clamp(slope, -(c / focal[axis] + 0.3 * half), (size[axis] - c) / focal[axis] + 0.3 * half, f->unit);
+    bounded ratio = bounded_divide(bounded_of(focal[axis]), f->mean[2], f->unit);
+    for (int k = 0; k < 3; k++) {
+      bounded turned = bounded_multiply(slope, f->axes[k][2], f->unit);
+      rows[axis][k] = bounded_multiply(ratio, bounded_subtract(f->axes[k][axis], turned, f->unit), f->unit);
+    }
+    gain[axis] = fabs(ratio.v) + ratio.off;
+    size_of_slope[axis] = fabs(slope.v) + slope.off;
+  }
+}
+
+static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
+  const oracle_gaussian_rules *rules = d->view->rules;
+  const double unit = f->unit, h = rules->dilation;
+  bounded rows[2][3], area[3];
+  double gain[2], slope[2];
+  bound_rows(d, f, g, rows, gain, slope);
+  bounded c[3] = {bounded_dot(rows[0], rows[0], unit), bounded_dot(rows[0], rows[1], unit),
+                  bounded_dot(rows[1], rows[1], unit)};
+  bounded_cross(rows[0], rows[1], unit, area);
+  bounded bare = bounded_dot(area, area, unit), trace = bounded_add(c[0], c[2], unit);
+  bounded wide = bounded_add(bounded_add(bare, bounded_scale(h, trace, unit), unit), bounded_of(h * h), unit);
+  if (d->model->is_setup_in_float) {
+    loosen_covariance(f, gain, slope, c);
+    bare.off += determinant_in_float(c, unit).off;
+  }
+  c[0] = bounded_add(c[0], bounded_of(h), unit);
+  c[2] = bounded_add(c[2], bounded_of(h), unit);
+  if (d->model->is_setup_in_float)
+    wide.off += determinant_in_float(c, unit).off;
+  if (!(bounded_high(wide) > 1e-40) || !oracle_is_finite(wide.v)) /* but for underflow, it is 0 */
+    return 0;
+  if (rules->compensation_least >= 0.0) {
+    bounded ratio = bounded_divide(bare, wide, unit);
+    ratio.v = oracle_max(ratio.v, rules->compensation_least);
+    ratio.off = oracle_min(ratio.off, 2.0); /* it is between 0 and 1 */
+    g->opacity = bounded_multiply(g->opacity, bounded_root(ratio, unit), unit);
+  }
+  g->form[0] = bounded_rounded(bounded_divide(c[2], wide, unit), ORACLE_FLOAT_UNIT);
+  g->form[1] = bounded_rounded(bounded_divide((bounded){-c[1].v, c[1].off}, wide, unit), ORACLE_FLOAT_UNIT);
+  g->form[2] = bounded_rounded(bounded_divide(c[0], wide, unit), ORACLE_FLOAT_UNIT);
+  if (rules->is_inria) {
+    bounded mean = bounded_scale(0.5, bounded_add(c[0], c[2], unit), unit);
+    bounded apart = bounded_subtract(square_of(mean, unit), wide, unit);
+    apart.v = oracle_max(apart.v, 0.1);
+    bounded root = bounded_root(bounded_add(mean, bounded_root(apart, unit), unit), unit);
+    admit_square(d, bounded_scale(3.0, root, unit), g);
+  }
+  const bounded variance[2] = {c[0], c[2]};
+  double q = reach_in_q(d, g->opacity);
+  reach_of_ellipse(variance, q, g);
+  bound_offset(d, unit, g);
+  return q >= 0.0;
+}
+
+/* Where planes through the eye touch the ellipsoid of q: (p_a − s·p_z)² = q·Σ(A_ka − s·A_kz)², solved for s. */
+static void reach_of_ellipsoid(const oracle_doubting *d, const bounded_frame *f, double q, oracle_uncertain *g) {
+  const double focal[2] = {d->view->camera->fx, d->view->camera->fy}, z = f->mean[2].v;
+  reach_everywhere(g);
+  double along = z * z;
+  for (int k = 0; k < 3; k++)
+    along -= q * f->axes[k][2].v * f->axes[k][2].v * (1.0 + 1e-6);
+  if (!(along > 1e-6 * z * z) || !(z > 0.0))
+    return;
+  for (int axis = 0; axis < 2; axis++) {
+    double across = f->mean[axis].v * f->mean[axis].v, mixed = f->mean[axis].v * z;
+    for (int k = 0; k < 3; k++) {
+      across -= q * f->axes[k][axis].v * f->axes[k][axis].v;
+      mixed -= q * f->axes[k][axis].v * f->axes[k][2].v;
+    }
+    double root = sqrt(oracle_max(mixed * mixed - along * across, 0.0)) * (1.0 + 1e-3);
+    double margin = reach_margin_px + 1e-6 * focal[axis] * fabs(mixed) / along;
+    g->reach[0][axis] = focal[axis] * (mixed - root) / along + d->view->center_px[axis] - margin;
+    g->reach[1][axis] = focal[axis] * (mixed + root) / along + d->view->center_px[axis] + margin;
+  }
+}
+
+/* g, c and e of docs/reference/gaussians.md about the pixel that the Gaussian has as its own. */
+static int bound_ray(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
+  const conic_camera *camera = d->view->camera;
+  const double unit = f->unit;
+  const double steps[3][3] = {
+      {(g->pixel[0] - d->view->center_px[0]) / camera->fx, (g->pixel[1] - d->view->center_px[1]) / camera->fy, 1.0},
+      {1.0 / camera->fx, 0.0, 0.0},
+      {0.0, 1.0 / camera->fy, 0.0}};
+  bounded m[3];
+  double longest = 0.0;
+  for (int k = 0; k < 3; k++) {
+    bounded inverse = bounded_of(f->is_flat && k == 2 ? 1.0 : 1.0 / f->scale[k]);
+    m[k] = bounded_multiply(bounded_dot(f->direction[k], f->mean, unit), inverse, unit);
+    for (int step = 0; step < 3; step++) {
+      bounded ray[3];
+      for (int row = 0; row < 3; row++)
+        ray[row] = bounded_rounded(bounded_of(steps[step][row]), unit);
+      g->g[step][k] = bounded_multiply(bounded_dot(f->direction[k], ray, unit), inverse, unit);
+    }
+  }
+  for (int step = 0; step < 3; step++) {
+    bounded_cross(g->g[step], m, unit, g->c[step]);
+    if (f->is_flat)
+      g->c[step][2] = g->g[step][0] = g->g[step][1] = bounded_of(0.0);
+    g->e[step] = f->is_flat ? bounded_multiply(g->g[step][2], m[2], unit) : bounded_dot(g->g[step], m, unit);
+    double length = 0.0;
+    for (int k = 0; k < 3; k++)
+      length += g->g[step][k].v * g->g[step][k].v;
+    longest = oracle_max(longest, sqrt(length));
+  }
+  if (!(longest > 0.0) || !oracle_is_finite(longest))
+    return 0;
+  for (int step = 0; step < 3; step++) {
+    for (int k = 0; k < 3; k++) {
+      g->g[step][k] = bounded_rounded(bounded_scale(1.0 / longest, g->g[step][k], unit), ORACLE_FLOAT_UNIT);
+      g->c[step][k] = bounded_rounded(bounded_scale(1.0 / longest, g->c[step][k], unit), ORACLE_FLOAT_UNIT);
+    }
+    g->e[step] = bounded_scale(1.0 / longest, bounded_scale(1.0 / longest, g->e[step], unit), unit);
+    g->e[step] = bounded_rounded(g->e[step], ORACLE_FLOAT_UNIT);
+  }
+  double sum = g->c[0][0].v + g->c[0][1].v + g->c[0][2].v + g->e[0].v; /* floats may overflow */
+  return sum - sum == 0.0 && fabs(sum) <= FLT_MAX;
+}
+
+static int place_ray(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
+  const conic_camera *camera = d->view->camera;
+  const double focal[2] = {camera->fx, camera->fy};
+  for (int axis = 0; axis < 2; axis++) {
+    g->place[axis] = bounded_of(d->view->center_px[axis]);
+    if (bounded_low(f->mean[2]) > 0.0)
+      g->place[axis] =
+          bounded_add(g->place[axis],
+                      bounded_scale(focal[axis], bounded_divide(f->mean[axis], f->mean[2], f->unit), f->unit), f->unit);
+  }
+  bound_offset(d, f->unit, g);
+  double q = reach_in_q(d, g->opacity);
+  reach_of_ellipsoid(d, f, q, g);
+  return q >= 0.0 && bound_ray(d, f, g);
+}
+
+/* The box of the outline at the profile's cutoff: its centre and half its size. */
+static int bound_disc_box(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g, bounded extent[2]) {
+  const oracle_gaussian_rules *rules = d->view->rules;
+  const double focal[2] = {d->view->camera->fx, d->view->camera->fy}, unit = f->unit;
+  const double sign[3] = {rules->disc_cutoff * rules->disc_cutoff, rules->disc_cutoff * rules->disc_cutoff, -1.0};
+  bounded weight = bounded_of(0.0);
+  for (int k = 0; k < 3; k++) {
+    const bounded *column = k < 2 ? f->axes[k] : f->mean;
+    for (int axis = 0; axis < 2; axis++)
+      g->rows[axis][k] = bounded_add(bounded_scale(focal[axis], column[axis], unit),
+                                     bounded_scale(d->view->center_px[axis], column[2], unit), unit);
+    g->rows[2][k] = column[2];
+    weight = bounded_add(weight, bounded_scale(sign[k], square_of(g->rows[2][k], unit), unit), unit);
+  }
+  if (weight.v == 0.0 || !oracle_is_finite(weight.v))
+    return 0;
+  for (int axis = 0; axis < 2; axis++) {
+    bounded place = bounded_of(0.0), square = bounded_of(0.0);
+    for (int k = 0; k < 3; k++) {
+      bounded both = bounded_multiply(g->rows[axis][k], g->rows[2][k], unit);
+      place = bounded_add(place, bounded_scale(sign[k], both, unit), unit);
+      square = bounded_add(square, bounded_scale(sign[k], square_of(g->rows[axis][k], unit), unit), unit);
+    }
+    g->place[axis] = bounded_divide(place, weight, unit);
+    bounded apart = bounded_subtract(square_of(g->place[axis], unit), bounded_divide(square, weight, unit), unit);
+    apart.v = oracle_max(apart.v, 1e-4);
+    extent[axis] = bounded_root(apart, unit);
+  }
+  return oracle_is_finite(g->place[0].v) && oracle_is_finite(g->place[1].v);
+}
+
+static int bound_disc(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
+  const oracle_gaussian_rules *rules = d->view->rules;
+  bounded extent[2];
+  double q = reach_in_q(d, g->opacity);
+  if (!(q >= 0.0) || !bound_disc_box(d, f, g, extent))
+    return 0;
+  if (rules->is_inria) {
+    bounded radius = extent[0].v > extent[1].v ? extent[0] : extent[1];
+    radius.off = oracle_max(extent[0].off, extent[1].off);
+    radius.v = oracle_max(radius.v, 3.0 * 0.707106);
+    admit_square(d, radius, g);
+  } else
+    admit_box(d, extent, g);
+  reach_of_ellipsoid(d, f, q, g);
+  for (int axis = 0; axis < 2; axis++) { /* or the dot, whose variance is ½ px² */
+    double half = sqrt(0.5 * q) + reach_margin_px + g->place[axis].off;
+    g->reach[0][axis] = oracle_min(g->reach[0][axis], g->place[axis].v - half);
+    g->reach[1][axis] = oracle_max(g->reach[1][axis], g->place[axis].v + half);
+  }
+  bound_offset(d, f->unit, g);
+  return bound_ray(d, f, g);
+}
+
+/* Whether the mean is beyond near: the double run's answer, and whether it is in doubt. 0: nowhere. */
+static int pass_near(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
+  const oracle_gaussian_rules *rules = d->view->rules;
+  const bounded z = f->mean[2];
+  g->is_here = 1;
+  if (rules->form == ORACLE_FORM_RAY)
+    return 1;
+  double off = z.off + f->unit * fabs(rules->near_z);
+  if (rules->near_is_left_out ? z.v <= rules->near_z : z.v < rules->near_z || z.v <= 0.0)
+    g->is_here = 0;
+  if (fabs(z.v - rules->near_z) <= off && off > 0.0)
+    g->doubts |= 1u << CONIC_DOUBT_NEAR;
+  return (g->is_here || g->doubts) && bounded_high(z) > 0.0;
+}
+
+int conic_oracle_uncertain_place(const oracle_doubting *d, size_t i, oracle_uncertain *g) {
+  const oracle_gaussian_rules *rules = d->view->rules;
+  bounded_frame f = {.unit = d->model->setup_roundoff};
+  memset(g, 0, sizeof *g);
+  g->index = (uint32_t)i;
+  for (int axis = 0; axis < 2; axis++) {
+    g->sure[0][axis] = g->wide[0][axis] = -INFINITY;
+    g->sure[1][axis] = g->wide[1][axis] = INFINITY;
+  }
+  double opacity = (double)d->set->opacity[i];
+  g->opacity = bounded_of(opacity);
+  f.is_flat = !d->set->scale[2] || rules->form == ORACLE_FORM_DISC ||
+              (rules->form == ORACLE_FORM_RAY && !(d->set->scale[2][i] != 0.0f));
+  if (!oracle_is_finite(opacity) || !bound_mean(d, i, &f) || !bound_axes(d, i, &f) || !pass_near(d, &f, g))
+    return 0;
+  if (rules->form != ORACLE_FORM_ELLIPSE && !(f.scale[0] > 0.0 && f.scale[1] > 0.0))
+    return 0;
+  int is_drawn = rules->form == ORACLE_FORM_ELLIPSE ? bound_ellipse(d, &f, g)
+                 : rules->form == ORACLE_FORM_RAY   ? place_ray(d, &f, g)
+                                                    : bound_disc(d, &f, g);
+  g->opacity = bounded_rounded(g->opacity, ORACLE_FLOAT_UNIT);
+  g->z = bounded_rounded(f.mean[2], ORACLE_FLOAT_UNIT);
+  g->key = rules->is_by_distance ? bounded_root(bounded_dot(f.mean, f.mean, f.unit), f.unit) : f.mean[2];
+  bound_normal(d, &f, g);
+  return is_drawn;
+}
+
+static double sh_number(const conic_gaussians *set, size_t at) {
+  if (set->sh)
+    return (double)set->sh[at];
+  uint16_t half = set->sh_half[at];
+  int exponent = half >> 10 & 31;
+  double size = exponent ? 1024.0 + (half & 1023) : half & 1023;
+  for (int k = exponent ? exponent : 1; k < 25; k++)
+    size *= 0.5;
+  for (int k = 25; k < exponent; k++)
+    size *= 2.0;
+  return exponent == 31 ? INFINITY : half & 0x8000 ? -size : size;
+}
+
+/* max(0, ½ + Σ sh·Y): each Y is rounded, each product, and each sum. In float the direction is off, too: by the
+ * addition theorem, Y of degree l grows by at most √(l·(l + 1)·(2l + 1)/4π) along the sphere; twice that covers what a
+ * direction that is not quite of unit length does. */
+int conic_oracle_uncertain_color(const oracle_doubting *d, oracle_uncertain *g) {
+  const conic_gaussians *set = d->set;
+  const int degree = set->sh_degree;
+  const size_t n = (size_t)(degree + 1) * (size_t)(degree + 1), i = g->index;
+  double direction[3], y[(CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)], length, far = 0.0;
+  double sum[3] = {0.5, 0.5, 0.5}, size[3] = {0.5, 0.5, 0.5}, turned[3] = {0.0, 0.0, 0.0};
+  for (int axis = 0; axis < 3; axis++) {
+    double mean = set->origin[axis] + (double)set->position[axis][i];
+    direction[axis] = mean - d->view->eye[axis];
+    far += fabs(mean) + fabs(d->view->eye[axis]);
+  }
+  length = oracle_length(direction);
+  for (int axis = 0; axis < 3; axis++)
+    direction[axis] = length > 0.0 ? direction[axis] / length : 0.0;
+  double off = d->model->setup_roundoff * (length > 0.0 ? 2.0 * far / length + 6.0 : 0.0);
+  conic_oracle_harmonic_values(degree, direction, y);
+  for (size_t k = 0; k < n; k++) {
+    int l = k < 1 ? 0 : k < 4 ? 1 : k < 9 ? 2 : k < 16 ? 3 : 4;
+    for (size_t c = 0; c < 3; c++) {
+      double coefficient = sh_number(set, (i * n + k) * 3 + c);
+      sum[c] += y[k] * coefficient;
+      size[c] += fabs(y[k] * coefficient);
+      turned[c] += 2.0 * off * sqrt(l * (l + 1) * (2 * l + 1) / 12.566) * fabs(coefficient);
+      turned[c] += 8.0 * d->model->setup_roundoff * sqrt((2 * l + 1) / 12.566) * fabs(coefficient);
+    }
+  }
+  for (int c = 0; c < 3; c++) {
+    g->color[c] = (bounded){sum[c], turned[c] + ((double)n + 3.0) * ORACLE_FLOAT_UNIT * size[c]};
+    if (!bounded_is_finite(g->color[c]))
+      return 0;
+    double high = oracle_max(bounded_high(g->color[c]), 0.0), low = oracle_max(bounded_low(g->color[c]), 0.0);
+    g->color[c].v = oracle_max(sum[c], 0.0);
+    g->color[c].off = oracle_max(high - g->color[c].v, g->color[c].v - low);
+  }
+  return 1;
+}

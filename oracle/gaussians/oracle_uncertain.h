@@ -1,0 +1,63 @@
+/* A Gaussian as floats may have it: what they are given at a pixel, and what may come of it there. */
+#ifndef CONIC_ORACLE_UNCERTAIN_H
+#define CONIC_ORACLE_UNCERTAIN_H
+
+#include "conic/gaussian_judge.h"
+#include "oracle/gaussians/oracle_bounded.h"
+#include "oracle/gaussians/oracle_gaussian.h"
+
+/* The profile's limits as the floats that everybody has of them. */
+typedef struct oracle_limits {
+  double alpha_least, alpha_most, stop, half_cutoff, disc_near;
+} oracle_limits;
+
+typedef struct oracle_doubting {
+  const oracle_gaussian_view *view;
+  const conic_float_model *model;
+  const conic_gaussians *set;
+  oracle_limits limits;
+} oracle_doubting;
+
+typedef struct oracle_uncertain {
+  uint32_t index;
+  unsigned doubts; /* CONIC_DOUBT_NEAR: it may be left out everywhere */
+  int is_here;     /* as the double run has it */
+  bounded key, z, opacity, color[3], normal[3];
+  double pixel[2];             /* the centre of the pixel that offsets are counted from */
+  bounded place[2], offset[2]; /* on the screen; from there to that pixel */
+  bounded form[3];
+  bounded g[3][3], c[3][3], e[3]; /* of rays: at that pixel, and how they grow in x and in y */
+  bounded rows[3][3];             /* of a disc: from its plane to the screen */
+  double reach[2][2];             /* beyond it on the screen α is below its least for sure: minimum, maximum */
+  double sure[2][2], wide[2][2];  /* pixels' centres that the rules of coverage admit: for sure, perhaps */
+} oracle_uncertain;
+
+/* Sets up Gaussian i but for its colour. Returns 0 where it is drawn nowhere, whatever rounding does. */
+int conic_oracle_uncertain_place(const oracle_doubting *d, size_t i, oracle_uncertain *g);
+/* Its colour; 0 where that is no number. */
+int conic_oracle_uncertain_color(const oracle_doubting *d, oracle_uncertain *g);
+
+/* What may come of it at a pixel. */
+typedef struct oracle_meeting oracle_meeting;
+
+struct oracle_meeting {
+  const oracle_uncertain *g;
+  double key, key_low, key_high;    /* floats */
+  double half_q[2], alpha[2], z[2]; /* least and greatest */
+  double half_q_v, alpha_v, z_v;    /* in double */
+  unsigned doubts;
+  int covers, may_cover;    /* in double; for floats */
+  conic_gaussian_part part; /* what keeps it out */
+  /* Filled in when it is composited: */
+  unsigned noted;                      /* all that is in doubt about it there */
+  int is_cut;                          /* what stands before it comes before it and all behind */
+  const oracle_meeting *latest_before; /* of those that stand before it */
+};
+
+void conic_oracle_uncertain_meet(const oracle_doubting *d, const oracle_uncertain *g, double x, double y,
+                                 oracle_meeting *meeting);
+
+/* Whether a comes before b whatever rounding does. */
+int conic_oracle_is_before(const oracle_meeting *a, const oracle_meeting *b);
+
+#endif
