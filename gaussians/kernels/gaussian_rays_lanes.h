@@ -276,7 +276,7 @@ CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t p
     const float bound = m->bounds[first / BATCH];
     take_records(list, s->tile, end, m);
     meet_listed(s, m, first, listed, list_block(m->blocks + first, end - first, block, listed), pixel, shape);
-    if (!(bound > 0.0f))
+    if (end < list->n && !lanes_any(p.goes_on & lanes_less(m->nearest, lanes_of(bound))))
       continue;
     sort_meetings(m, n_sorted);
     composite_before(s, m, bound, &p, wants_all);
