@@ -6,10 +6,22 @@
 
 #include "core/base/gaussian.h"
 
+/* v = m·2^e, m in [½, 1), exact. */
+static double split_number(double v, int *exponent) {
+  uint64_t bits;
+  if (v < 0x1p-1022)
+    return frexp(v, exponent);
+  memcpy(&bits, &v, sizeof bits);
+  *exponent = (int)(bits >> 52) - 1022;
+  bits = (bits & UINT64_C(0xfffffffffffff)) | UINT64_C(1022) << 52;
+  memcpy(&v, &bits, sizeof v);
+  return v;
+}
+
 /* By the series of artanh((m − 1)/(m + 1)) with v = m·2^e. */
 double conic_logarithm(double v) {
   int exponent;
-  double m = frexp(v, &exponent); /* exact; in [½, 1) */
+  double m = split_number(v, &exponent);
   if (m < 0.70710678118654752) {
     m *= 2.0;
     exponent--;

@@ -9,7 +9,7 @@ typedef struct conic_gaussian_footprint {
   float dx, dy;     /* from the place on the screen to that pixel's centre */
   float form[3];    /* of an ellipse: q = form₀·Δx² + 2·form₁·Δx·Δy + form₂·Δy²; of other shapes 0 */
   float half_reach; /* nothing is composited where half of that q is more */
-  float opacity, z; /* z of the mean */
+  float opacity, z; /* z of the mean; of a ray, what no z along it is below */
   float color[3];
   uint32_t index;     /* in the scene */
   uint16_t box[2][2]; /* the pixels that it may cover, first and last in x and y */

@@ -83,6 +83,13 @@ static certainty find_certainty(const conic_gaussian_placed *p, double reach, co
   return is;
 }
 
+/* What z along a ray is not below, as floats have it, 0 being always so. */
+static float nearest_in_floats(const conic_gaussian_placed *p, double reach, const certainty *is) {
+  double nearest = p->mean[2] - sqrt(reach * p->variance[2][2]);
+  nearest = nearest * (1.0 - 1.2 * is->of_q) - 1.2 * is->of_e / (is->least_g * is->least_g);
+  return nearest > 0.0 ? (float)(nearest * (1.0 - 1e-6)) : 0.0f;
+}
+
 /* The planes through the eye that touch the ellipsoid and are upright, or level, have it on one side: what is before
  * the eye is on that side on the screen, too. That holds only of an ellipsoid without the eye, so far from it that what
  * is behind the eye is so in floats. */
@@ -129,12 +136,14 @@ static int shrink_box(const conic_gaussian_view *view, const conic_gaussian_plac
 int conic_gaussian_find_outline(const conic_gaussian_view *view, const conic_gaussian_placed *p, double reach,
                                 const conic_gaussian_ray *ray, double unit_of, conic_gaussian_footprint *f) {
   const double focal[2] = {view->camera->fx, view->camera->fy}, *mean = p->mean;
+  f->z = 0.0f;
   if (p->is_flat || !((double)f->half_reach < 100.0))
     return 1;
   const certainty is = find_certainty(p, reach, ray, unit_of, f);
   if (!(is.of_q < 0.1))
     return 1;
   const double wide = reach * (1.001 + 2.0 * is.of_q), depth = mean[2] * mean[2] - wide * p->variance[2][2];
+  f->z = nearest_in_floats(p, wide, &is);
   if (!(depth > 1e-3 * mean[2] * mean[2]))
     return shrink_box(view, p, wide, &is, unit_of, f);
   double slope[2], form[3], n = 1.0;

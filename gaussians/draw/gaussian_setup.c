@@ -18,14 +18,22 @@ static int is_number(double v) {
   return v - v == 0.0;
 }
 
-static int place_axes(const conic_gaussian_view *view, const conic_gaussians *set, size_t i, conic_gaussian_placed *p) {
-  double q[4], squares = 0.0;
+/* What it reads of the rotation and the scales. Returns 0 where they are none; else |q|². */
+static double read_shape(const conic_gaussians *set, size_t i, double q[4], conic_gaussian_placed *p) {
+  double squares = 0.0;
   for (int k = 0; k < 4; k++) {
     q[k] = (double)set->rotation[k][i];
     squares += q[k] * q[k];
   }
-  if (!(squares > 0.0) || !is_number(squares))
-    return 0;
+  for (int axis = 0; axis < 3; axis++) {
+    p->scale[axis] = set->scale[axis] ? (double)set->scale[axis][i] : 0.0;
+    if (!(p->scale[axis] >= 0.0) || !is_number(p->scale[axis]))
+      return 0.0;
+  }
+  return squares > 0.0 && is_number(squares) ? squares : 0.0;
+}
+
+static void place_axes(const conic_gaussian_view *view, const double q[4], double squares, conic_gaussian_placed *p) {
   int is_as_it_is = view->rules->takes_rotation_as_is && squares - 1.0 < unit_slack && 1.0 - squares < unit_slack;
   double one_over = is_as_it_is ? 1.0 : 1.0 / sqrt(squares);
   double w = q[0] * one_over, x = q[1] * one_over, y = q[2] * one_over, z = q[3] * one_over;
@@ -33,16 +41,11 @@ static int place_axes(const conic_gaussian_view *view, const conic_gaussians *se
                              {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
                              {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)}};
   memcpy(p->world, rows, sizeof rows);
-  for (int axis = 0; axis < 3; axis++) {
-    p->scale[axis] = set->scale[axis] ? (double)set->scale[axis][i] : 0.0;
-    if (!(p->scale[axis] >= 0.0) || !is_number(p->scale[axis]))
-      return 0;
+  for (int axis = 0; axis < 3; axis++)
     for (int row = 0; row < 3; row++) {
       const double *camera = view->camera->cam_from_world[row];
       p->unit[axis][row] = camera[0] * rows[0][axis] + camera[1] * rows[1][axis] + camera[2] * rows[2][axis];
     }
-  }
-  return 1;
 }
 
 /* Returns 0 where a number is not finite. */
@@ -107,6 +110,30 @@ static void cover_square(const conic_gaussian_view *view, const double place[2],
 static double round_up(double value) {
   double whole = (double)(int64_t)conic_limited(value, -1e15, 1e15);
   return whole + (whole < value);
+}
+
+/* Whether a Gaussian is so far beside the picture that its ellipse cannot come to it, nor its ellipsoid, which is
+ * before the eye: taken for a ball of its largest scale, a tenth larger than it is, and opaque. */
+static int is_far_beside(const conic_gaussian_view *view, const conic_gaussian_placed *p) {
+  const conic_gaussian_rules *rules = view->rules;
+  const double focal[2] = {view->camera->fx, view->camera->fy}, z = p->mean[2];
+  const double size[2] = {view->camera->width, view->camera->height}, most_reach = 11.2;
+  double scale = p->scale[0] > p->scale[1] ? p->scale[0] : p->scale[1];
+  scale = 1.1 * (scale > p->scale[2] ? scale : p->scale[2]);
+  if (view->rays || view->is_parallel || view->prefilter > 0.0 || rules->shape == CONIC_SHAPE_DISC ||
+      !(p->opacity <= 1.0) || !(z > 0.0) || (rules->shape == CONIC_SHAPE_RAY && !(z > 6.0 * scale)))
+    return 0;
+  for (int axis = 0; axis < 2; axis++) {
+    const double slope = p->mean[axis] / z, place = focal[axis] * slope + view->center_px[axis];
+    const double beside = (place < 0.0 ? -place : place - size[axis]) - 1.0, spread = focal[axis] * scale / z;
+    /* of a ball before the eye the outline reaches farther outwards, at z = 4·scale and 3.35 scales by less than this
+     */
+    const double farther = rules->shape == CONIC_SHAPE_RAY ? 8.0 : 1.0;
+    if (beside > 0.0 &&
+        beside * beside > farther * most_reach * (spread * spread * (1.0 + slope * slope) + rules->dilation))
+      return 1;
+  }
+  return 0;
 }
 
 static conic_gaussian_fate set_up_ellipse(const conic_gaussian_view *view, conic_gaussian_placed *p,
@@ -383,20 +410,23 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
                                           conic_gaussian_filter *filter, conic_gaussian_sight *sight, float normal[3]) {
   const conic_gaussian_rules *rules = view->rules;
   conic_gaussian_placed p;
-  double from_eye[3];
-  if (!place_in_camera(view, gaussians, i, &p, from_eye) || !place_axes(view, gaussians, i, &p))
+  double from_eye[3], q[4], squares;
+  if (!place_in_camera(view, gaussians, i, &p, from_eye) || !((squares = read_shape(gaussians, i, q, &p)) > 0.0))
     return CONIC_GAUSSIAN_SKIPPED;
   double z = p.mean[2];
   if (rules->shape != CONIC_SHAPE_RAY &&
       (z < rules->near_z || (rules->is_beyond_near && z == rules->near_z) || z <= 0.0))
     return CONIC_GAUSSIAN_CULLED;
+  if (is_far_beside(view, &p))
+    return CONIC_GAUSSIAN_CULLED;
+  place_axes(view, q, squares, &p);
   if (rules->shape == CONIC_SHAPE_RAY && !p.is_flat && p.scale[2] == 0.0)
     p.is_flat = 1;
   if (rules->shape != CONIC_SHAPE_ELLIPSE && !(p.scale[0] > 0.0 && p.scale[1] > 0.0))
     return CONIC_GAUSSIAN_CULLED;
   if (p.is_flat)
     p.scale[2] = 0.0;
-  f->form[0] = f->form[1] = f->form[2] = 0.0f;
+  f->form[0] = f->form[1] = f->form[2] = f->z = 0.0f;
   conic_gaussian_fate fate = view->rays                            ? set_up_sight(view, &p, f, sight)
                              : rules->shape == CONIC_SHAPE_ELLIPSE ? set_up_ellipse(view, &p, f)
                              : rules->shape == CONIC_SHAPE_RAY     ? set_up_ray(view, &p, f, ray, filter)
@@ -405,7 +435,8 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
     return fate;
   int is_by_distance = view->rays && view->camera->kind != CONIC_CAMERA_PERSPECTIVE;
   f->opacity = (float)p.opacity;
-  f->z = (float)z;
+  if (rules->shape != CONIC_SHAPE_RAY)
+    f->z = (float)z;
   *key = (float)(rules->orders_by_distance || is_by_distance ? conic_length(p.mean) : z);
   f->index = (uint32_t)i;
   if (normal)

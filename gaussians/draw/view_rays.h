@@ -13,7 +13,7 @@ typedef struct conic_view_cone {
 struct conic_view_rays {
   const conic_camera *camera;
   int n_tiles[2], n_blocks[2];
-  conic_sight_rays *tiles;          /* by tile */
+  conic_sight_rays *tiles;         /* by tile */
   conic_view_cone *cones, *blocks; /* of tiles, and of CONIC_RAY_BLOCK × CONIC_RAY_BLOCK of them */
 };
 

@@ -2,8 +2,6 @@
  * Includes what fills the table. C and OpenCL C share this text, and what it includes. */
 #include "gaussians/kernels/gaussian_rays_lanes.h"
 
-enum { BATCH = 256 }; /* entries that are cut up by blocks at a time */
-
 typedef struct batch {
   record records[BATCH];
   uint32_t blocks[BATCH]; /* that each may cover, as bits */

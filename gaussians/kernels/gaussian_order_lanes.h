@@ -3,6 +3,7 @@
 #ifndef CONIC_GAUSSIAN_ORDER_LANES_H
 #define CONIC_GAUSSIAN_ORDER_LANES_H
 
+#include "core/base/real.h"
 #include "core/lanes/lanes.h"
 
 enum { CONIC_SORTED_TOGETHER = 16 }; /* in registers */
@@ -71,71 +72,60 @@ static void merge_runs(lanes_row *keys, size_t n, size_t length) {
     merge_together(keys + i);
 }
 
+/* Sorts n rows; up to CONIC_SORTED_TOGETHER - 1 behind them are used. */
 static void sort_rows(lanes_row *keys, size_t n) {
+  for (; n % CONIC_SORTED_TOGETHER != 0; n++)
+    lanes_store(keys[n], lanes_of(__builtin_inff()));
   for (size_t i = 0; i < n; i += CONIC_SORTED_TOGETHER)
     sort_together(keys + i);
   for (size_t length = CONIC_SORTED_TOGETHER; length < n; length *= 2)
     merge_runs(keys, n, length);
 }
 
-/* Whether keys that are not of different depths lie side by side. */
-static int has_equals(const lanes_row *keys, size_t n, uint32_t numbers) {
-  for (size_t i = 1; i < n; i++) {
-    lanes key = lanes_load(keys[i]);
-    index_lanes both = lanes_to_bits(key) ^ lanes_to_bits(lanes_load(keys[i - 1]));
-    if (lanes_any(lanes_less(key, lanes_of(__builtin_inff())) & lanes_not(lanes_has_bits(both, ~numbers))))
-      return 1;
+/* Keys of depths: the higher bits of how far z's bits are from the nearest's, and a number below. As floats over 0 they
+ * are in the order of z, and of the numbers where the bits that are left out would tell; infinity: none. */
+typedef struct depth_keys {
+  uint32_t nearest, shift, n_bits, numbers;
+} depth_keys;
+
+enum { KEY_BITS = 30 };
+
+/* For depths between, and numbers below n. */
+CONIC_INLINE depth_keys keys_between(lanes nearest, lanes farthest, size_t n) {
+  float nearest_of[CONIC_LANES], farthest_of[CONIC_LANES], least = __builtin_inff(), most = 0.0f;
+  uint32_t range;
+  depth_keys by = {0};
+  lanes_store(nearest_of, nearest);
+  lanes_store(farthest_of, farthest);
+  for (int lane = 0; lane < CONIC_LANES; lane++) {
+    least = nearest_of[lane] < least ? nearest_of[lane] : least;
+    most = farthest_of[lane] > most ? farthest_of[lane] : most;
   }
-  return 0;
+  by.nearest = conic_bits_of_float(least);
+  range = most > least ? conic_bits_of_float(most) - by.nearest : 0;
+  while (n >> by.n_bits)
+    by.n_bits++;
+  while (range >> by.shift >> (KEY_BITS - by.n_bits))
+    by.shift++;
+  by.numbers = (1u << by.n_bits) - 1;
+  return by;
 }
 
-/* Puts in order what the keys could not tell apart. */
-static void mend_order(const lanes_row *z, lanes_row *keys, size_t n, uint32_t numbers) {
-  for (size_t lane = 0; lane < CONIC_LANES; lane++)
-    for (size_t i = 1; i < n && keys[i][lane] < __builtin_inff(); i++) {
-      const float key = keys[i][lane];
-      uint32_t bits, bits_before;
-      size_t at = i;
-      memcpy(&bits, &key, sizeof bits);
-      for (; at > 0; at--) {
-        memcpy(&bits_before, &keys[at - 1][lane], sizeof bits_before);
-        if (!(z[bits_before & numbers][lane] > z[bits & numbers][lane]))
-          break;
-        keys[at][lane] = keys[at - 1][lane];
-      }
-      keys[at][lane] = key;
-    }
+CONIC_INLINE lanes key_of_depth(const depth_keys *by, lanes z, index_lanes number) {
+  return lanes_of_bits(((lanes_to_bits(z) - by->nearest) >> by->shift << by->n_bits) + number);
 }
 
-/* Sorts, at each ray, those of n Gaussians that have an alpha there, by z, of equal ones by their numbers: in keys'
- * bits that the result has come their numbers, nearest first, and then infinities. A key is the higher bits of z's
- * distance from the nearest, as whole numbers, and the number below; as floats over 0 they are in the same order. */
-CONIC_INLINE uint32_t sort_by_depth(const lanes_row *z, const lanes_row *alpha, size_t n, lanes nearest, lanes farthest,
-                                    lanes_row *keys) {
-  enum { KEY_BITS = 30 };
-  const size_t n_rows = (n + CONIC_SORTED_TOGETHER - 1) / CONIC_SORTED_TOGETHER * CONIC_SORTED_TOGETHER;
-  const lanes_mask has_some = lanes_at_least(farthest, nearest);
-  const index_lanes range =
-      lanes_select_indices(has_some, lanes_to_bits(farthest) - lanes_to_bits(nearest), lanes_of_index(0));
-  uint32_t widest = 0, shift = 0, n_bits = 0;
-  for (int lane = 0; lane < CONIC_LANES; lane++)
-    widest |= range[lane];
-  while (n >> n_bits)
-    n_bits++;
-  while (widest >> shift >> (KEY_BITS - n_bits))
-    shift++;
-  for (size_t i = 0; i < n; i++) {
-    index_lanes distance = (lanes_to_bits(lanes_load(z[i])) - lanes_to_bits(nearest)) >> shift;
-    lanes key = lanes_of_bits((distance << n_bits) + (uint32_t)i);
-    lanes_mask is_there = lanes_less(lanes_of(0.0f), lanes_load(alpha[i]));
-    lanes_store(keys[i], lanes_select(is_there, key, lanes_of(__builtin_inff())));
-  }
-  for (size_t i = n; i < n_rows; i++)
-    lanes_store(keys[i], lanes_of(__builtin_inff()));
-  sort_rows(keys, n_rows);
-  if (shift > 0 && has_equals(keys, n, (1u << n_bits) - 1))
-    mend_order(z, keys, n, (1u << n_bits) - 1);
-  return (1u << n_bits) - 1;
+/* z, or somewhat less, so that keys tell which depths are not less; not below the nearest. */
+CONIC_INLINE float key_border(const depth_keys *by, float z) {
+  uint32_t bits = conic_bits_of_float(z);
+  bits = bits > by->nearest ? (bits - by->nearest) >> by->shift << by->shift : 0;
+  return conic_float_of_bits(by->nearest + bits);
+}
+
+/* What no key of a depth that is not below such a border is below. */
+CONIC_INLINE float least_key_at(const depth_keys *by, float border) {
+  uint32_t bits = (conic_bits_of_float(border) - by->nearest) >> by->shift;
+  return bits >> (KEY_BITS - by->n_bits) ? __builtin_inff() : conic_float_of_bits(bits << by->n_bits);
 }
 
 #endif

@@ -1,0 +1,104 @@
+/* Long lists of Gaussians in few tiles: what lanes leave out, put off or sort otherwise, they draw as plain C does. */
+#include "tests/support/gaussian_picture.h"
+
+enum { SIDE = 34 };
+
+static conic_context *crowd_context(void) {
+  conic_context_options options;
+  conic_context *context;
+  conic_context_options_init(&options); /* silent where an instruction set is not here */
+  options.threads = 2;
+  if (conic_context_create(&options, &context) != CONIC_OK)
+    exit(1);
+  return context;
+}
+
+static conic_camera camera_before(double distance) {
+  return (conic_camera){.width = SIDE,
+                        .height = SIDE,
+                        .fx = SIDE,
+                        .fy = SIDE,
+                        .cx = 0.5 * SIDE,
+                        .cy = 0.5 * SIDE,
+                        .cam_from_world = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, distance}}};
+}
+
+static void compare_instruction_sets(conic_context *context, const conic_gaussians *scene, double distance) {
+  const conic_camera camera = camera_before(distance);
+  for (int profile = 0; profile < CONIC_N_GAUSSIAN_PROFILES; profile++) {
+    conic_gaussian_profile name = (conic_gaussian_profile)profile;
+    conic_gaussian_planes plain = picture_draw(context, scene, &camera, name, CONIC_ISA_SCALAR);
+    for (int isa = CONIC_ISA_SSE2; isa < CONIC_N_ISAS; isa++) {
+      conic_gaussian_planes planes = picture_planes(&camera);
+      conic_gaussian_options options;
+      conic_gaussian_options_init(&options);
+      options.profile = name;
+      options.isa = (conic_isa)isa;
+      if (conic_gaussians_render(context, scene, &camera, &options, &planes, NULL) == CONIC_OK)
+        CHECK(picture_is_same(&plain, &planes));
+      picture_release(&planes);
+    }
+    picture_release(&plain);
+  }
+}
+
+/* So faint that many lie one behind the other in each pixel, in batches; every fourth as another one but for colour. */
+static void test_faint(conic_context *context) {
+  enum { N = 900 };
+  conic_gaussians scene = gaussians_random(context, N, 0, 0);
+  for (size_t i = 0; i < N; i++) {
+    scene.opacity[i] *= 0.05f;
+    for (int k = 0; k < 4 && i % 4 == 3; k++) {
+      scene.rotation[k][i] = scene.rotation[k][i - 1];
+      if (k < 3) {
+        scene.position[k][i] = scene.position[k][i - 1];
+        scene.scale[k][i] = scene.scale[k][i - 1];
+      }
+    }
+  }
+  compare_instruction_sets(context, &scene, 5.0);
+  conic_gaussians_release(context, &scene);
+}
+
+/* The eye among needles, sheets, dots and what is wider than the scene, some of them with a sky behind. */
+static void test_shapes(conic_context *context) {
+  enum { N = 400 };
+  static const float extremes[] = {1e-4f, 3.0f, 1e-3f, 20.0f, 1e-6f, 0.02f, 0.0f};
+  conic_gaussians scene = gaussians_random(context, N, 0, 0);
+  for (size_t i = 0; i < N; i++) {
+    scene.scale[i % 3][i] = extremes[i % (sizeof extremes / sizeof *extremes)];
+    if (i % 11 == 0)
+      scene.opacity[i] = i % 2 ? 1.0f : 1e37f; /* beyond what the exponential can make faint */
+    if (i % 13 == 0)
+      scene.position[2][i] = 1e3f;
+  }
+  compare_instruction_sets(context, &scene, 0.5);
+  compare_instruction_sets(context, &scene, 6.0);
+  conic_gaussians_release(context, &scene);
+}
+
+/* khr-2026 never ends, so that what lies behind opaque ones counts, too. */
+static void test_endless(conic_context *context) {
+  enum { N = 150 };
+  conic_gaussians scene = gaussians_random(context, N, 0, 0);
+  const conic_camera camera = camera_before(5.0);
+  for (size_t i = 0; i < N; i++) {
+    scene.opacity[i] = 1.0f;
+    for (int k = 0; k < 3; k++)
+      scene.scale[k][i] = 1e7f;
+  }
+  conic_gaussian_planes p = picture_draw(context, &scene, &camera, CONIC_PROFILE_KHR_2026, CONIC_ISA_AUTO);
+  for (size_t i = 0; i < SIDE * SIDE; i++)
+    CHECK(p.transparency[i] == 0.0f && p.count[i] == N);
+  picture_release(&p);
+  conic_gaussians_release(context, &scene);
+}
+
+int main(void) {
+  conic_context *context = crowd_context();
+  test_faint(context);
+  test_shapes(context);
+  test_endless(context);
+  conic_context_destroy(context);
+  return check_result();
+}
