@@ -106,8 +106,8 @@ static int check_diff(const cli_diff_job *job, int is_folders) {
     if (strcmp(job->paths[i], "-") == 0)
       return cli_usage("diff: an image cannot come from standard input");
     if (cli_diff_is_many(job->paths[i]) != is_folders)
-      return cli_usage("diff: %s is a folder or a pattern, and %s is neither", job->paths[is_folders ? 1 - i : i],
-                       job->paths[is_folders ? i : 1 - i]);
+      return cli_error(CLI_INPUT, "%s: this is a directory or a pattern, and %s is neither",
+                       job->paths[is_folders ? 1 - i : i], job->paths[is_folders ? i : 1 - i]);
   }
   if (!is_folders && (job->csv_path || job->match || job->is_subset))
     return cli_usage("diff: --csv, --match and --subset are for two folders");

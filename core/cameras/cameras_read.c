@@ -7,6 +7,7 @@
 #include "core/base/options.h"
 #include "core/cameras/camera_list.h"
 #include "core/files/file.h"
+#include "core/files/input.h"
 #include "core/files/mapping.h"
 
 enum { PATH_ROOM = 4096 };
@@ -136,16 +137,7 @@ static int is_npz(const unsigned char *bytes, size_t n_bytes) {
          memcmp(bytes + 30 + n_name - 4, ".npy", 4) == 0;
 }
 
-/* Without the mark of UTF-8 at the start. */
-static void skip_utf8_mark(const unsigned char **bytes, size_t *n_bytes) {
-  if (*n_bytes >= 3 && memcmp(*bytes, "\xef\xbb\xbf", 3) == 0) {
-    *bytes += 3;
-    *n_bytes -= 3;
-  }
-}
-
 static int kind_of_content(const unsigned char *bytes, size_t n_bytes) {
-  skip_utf8_mark(&bytes, &n_bytes);
   if (n_bytes >= 4 && memcmp(bytes, "glTF", 4) == 0)
     return CONIC_CAMERA_FILE_GLTF;
   return is_npz(bytes, n_bytes) ? CONIC_CAMERA_FILE_NUMPY : kind_of_json(bytes, n_bytes);
@@ -171,9 +163,13 @@ static conic_status read_colmap_paths(conic_camera_list *list, const colmap_path
 
 /* What is no kind that is known is read as conic's own, which says what it lacks. */
 static conic_status read_camera_bytes(conic_camera_list *list, const unsigned char *bytes, size_t n_bytes) {
-  int kind = kind_of_content(bytes, n_bytes);
-  skip_utf8_mark(&bytes, &n_bytes);
-  switch (kind) {
+  size_t n_mark = 0;
+  conic_status status = conic_text_byte_order_mark(list->context, list->name, bytes, n_bytes, &n_mark);
+  if (status != CONIC_OK)
+    return status;
+  bytes += n_mark;
+  n_bytes -= n_mark;
+  switch (kind_of_content(bytes, n_bytes)) {
   case CONIC_CAMERA_FILE_TRANSFORMS:
     return conic_camera_transforms_read(list, bytes, n_bytes);
   case CONIC_CAMERA_FILE_LIST:
@@ -198,7 +194,7 @@ static conic_status read_camera_path(conic_camera_list *list, const char *path) 
     path = list->name = list->path = inside;
   else if (is_directory)
     return conic_fail(list->context, CONIC_ERROR_INPUT,
-                      "%s: the folder holds no cameras: neither COLMAP's cameras and images, also in sparse/0, nor "
+                      "%s: the directory holds no cameras: neither COLMAP's cameras and images, also in sparse/0, nor "
                       "transforms.json or cameras.json",
                       path);
   if (is_colmap_file(path) && conic_file_is_there(path))

@@ -128,19 +128,24 @@ static int is_utf16(const unsigned char *c, size_t n) {
   return 0;
 }
 
-conic_status conic_input_skip_mark(conic_input *input) {
-  conic_status status = conic_input_fill(input, 8);
-  size_t n = conic_input_available(input);
-  const unsigned char *bytes = conic_input_bytes(input);
-  if (status != CONIC_OK)
-    return status;
-  if (is_utf16(bytes, n))
-    return conic_fail(input->context, CONIC_ERROR_INPUT,
+conic_status conic_text_byte_order_mark(conic_context *context, const char *name, const unsigned char *bytes, size_t n_bytes,
+                             size_t *n_mark) {
+  if (is_utf16(bytes, n_bytes))
+    return conic_fail(context, CONIC_ERROR_INPUT,
                       "%s: this is UTF-16 text: save it as UTF-8 (iconv -f UTF-16 -t UTF-8 FILE > out) (at byte 0)",
-                      input->name);
-  if (n >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0)
-    input->next += 3;
+                      name);
+  *n_mark = n_bytes >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
   return CONIC_OK;
+}
+
+conic_status conic_input_skip_mark(conic_input *input) {
+  size_t n_mark = 0;
+  conic_status status = conic_input_fill(input, 8);
+  if (status == CONIC_OK)
+    status =
+        conic_text_byte_order_mark(input->context, input->name, conic_input_bytes(input), conic_input_available(input), &n_mark);
+  input->next += n_mark;
+  return status;
 }
 
 conic_status conic_input_line(conic_input *input, const char **text, size_t *length) {

@@ -53,6 +53,10 @@ uint64_t conic_input_remaining_bytes(const conic_input *input);
 /* Passes over `count` bytes, or to the end where there are fewer; *skipped says how many. Errors: as fill. */
 conic_status conic_input_skip(conic_input *input, uint64_t count, uint64_t *skipped);
 
+/* How long the byte-order mark of UTF-8 is at the start of text: 0 or 3. Errors: INPUT (UTF-16). */
+conic_status conic_text_byte_order_mark(conic_context *context, const char *name, const unsigned char *bytes, size_t n_bytes,
+                             size_t *n_mark);
+
 /* Of text at its start: passes over the byte-order mark of UTF-8. Errors: as fill, and INPUT (UTF-16). */
 conic_status conic_input_skip_mark(conic_input *input);
 

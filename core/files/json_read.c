@@ -63,7 +63,7 @@ conic_status conic_json_take(conic_context *context, const char *name, const voi
   json->name = name;
   json->line = 1;
   if (n_bytes == 0)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: there is no JSON (line 1)", name);
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file is empty (line 1)", name);
   json->text = conic_memory_allocate(context, n_bytes, 1);
   if (!json->text)
     return CONIC_ERROR_MEMORY;

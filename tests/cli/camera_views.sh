@@ -121,7 +121,7 @@ cmp -s a.pfm again.pfm || fail "the camera of the JSON is another one"
 # What is missing, and what is no camera
 mkdir empty
 run 3 render sphere.ply --camera empty -o a.pfm
-says 'the folder holds no cameras'
+says 'the directory holds no cameras'
 run 3 render sphere.ply --camera sphere.ply -o a.pfm
 
 # Packed archives, as numpy writes them

@@ -106,9 +106,9 @@ run 3 diff S T --reduce
 grep -q 'S/a.pfm: 24 × 12 pixels cannot be reduced to 12 × 12' err || fail "$(cat err)"
 
 # What is asked for in vain
-run 2 diff A B/a.pfm
+run 3 diff A B/a.pfm
 run 3 diff A/a.pfm nowhere
-run 2 diff A nowhere
+run 3 diff A nowhere
 run 2 diff A/a.pfm B/a.pfm --subset
 run 3 diff A 'none*.png'
 run 3 diff B/folder.pfm A
