@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
+#include "cli/commands/verify_fault.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/render/render_job.h"
@@ -107,18 +108,6 @@ static void report_planes(cli_json *json, const verify_job *job) {
   cli_json_close(json);
 }
 
-static void report_worst(cli_json *json, const conic_oracle_fault *worst) {
-  cli_json_object(json, "worst");
-  cli_json_count(json, "x", (uint64_t)worst->x);
-  cli_json_count(json, "y", (uint64_t)worst->y);
-  cli_json_text(json, "plane", conic_plane_describe((conic_plane)worst->plane)->name);
-  cli_json_count(json, "channel", (uint64_t)worst->channel);
-  cli_json_number(json, "found", worst->found);
-  cli_json_number(json, "low", worst->low);
-  cli_json_number(json, "high", worst->high);
-  cli_json_close(json);
-}
-
 static void report_pixels(cli_json *json, const verify_job *job) {
   const conic_oracle_verdict *verdict = &job->verdict;
   const conic_reference *reference = &job->reference;
@@ -139,7 +128,7 @@ static void report_pixels(cli_json *json, const verify_job *job) {
   cli_json_close(json);
   cli_json_count(json, "wrong_pixels", verdict->wrong_pixels);
   if (verdict->wrong_pixels)
-    report_worst(json, &verdict->worst);
+    cli_report_fault(json, "worst", &verdict->worst);
 }
 
 static void report_weights(cli_json *json, const conic_weight_error *error) {

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "cli/commands/gaussian_commands.h"
+#include "cli/commands/verify_fault.h"
 #include "conic/source.h"
 
 typedef struct gaussian_report {
@@ -34,18 +35,6 @@ static void write_by_doubt(cli_json *json, const char *key, const size_t *counts
   cli_json_close(json);
 }
 
-static void write_fault(cli_json *json, const char *key, const conic_oracle_fault *fault) {
-  cli_json_object(json, key);
-  cli_json_count(json, "x", (uint64_t)fault->x);
-  cli_json_count(json, "y", (uint64_t)fault->y);
-  cli_json_text(json, "plane", conic_plane_describe((conic_plane)fault->plane)->name);
-  cli_json_count(json, "channel", (uint64_t)fault->channel);
-  cli_json_number(json, "found", fault->found);
-  cli_json_number(json, "low", fault->low);
-  cli_json_number(json, "high", fault->high);
-  cli_json_close(json);
-}
-
 static void write_verdict(cli_json *json, const gaussian_report *r) {
   const conic_gaussian_verdict *v = &r->verdict;
   cli_json_text(json, "against", "profile");
@@ -73,7 +62,7 @@ static void write_verdict(cli_json *json, const gaussian_report *r) {
   cli_json_count(json, "wide_pixels", v->wide_pixels);
   cli_json_count(json, "wrong_pixels", v->pixels[CONIC_PIXEL_WRONG]);
   if (v->n_worst)
-    write_fault(json, "worst", &v->worst[0]);
+    cli_report_fault(json, "worst", &v->worst[0]);
   cli_json_object(json, "ms");
   cli_json_number(json, "render", r->render_ms);
   cli_json_number(json, "oracle", r->oracle_ms);
