@@ -94,8 +94,8 @@ static void check_small(fixture *f) {
   for (int number = 0; number < CONIC_N_METHODS; number++) {
     fill(f, &state, 1.5, 0.01);
     opencl_add_clips(f, &state);
-    f->splats.count = 150;
-    f->splats.n_clips = 50;
+    f->splats.count = 80;
+    f->splats.n_clips = 30;
     choose(f, number + CONIC_N_METHODS * (number % N_KERNELS));
     f->options.passes = number % 3 ? 3 : 1;
     f->options.light[2] = -1.0;
