@@ -109,11 +109,12 @@ CONIC_INLINE void composite_lanes(const scene *s, const response *r, pixels *p, 
 }
 
 #ifndef CONIC_ON_DEVICE
-/* A number of each lane's own record, at `at` from the base. */
+/* A number of each lane's own record, at `at` from the base. Without optimisation gcc's intrinsics are macros that it
+ * warns of. */
 CONIC_INLINE lanes lanes_gather(const float *base, index_lanes at) {
-#if defined(__AVX512F__)
+#if defined(__AVX512F__) && defined(__OPTIMIZE__)
   return (lanes)_mm512_i32gather_ps((__m512i)at, base, 4);
-#elif defined(__AVX2__)
+#elif defined(__AVX2__) && defined(__OPTIMIZE__)
   return (lanes)_mm256_i32gather_ps(base, (__m256i)at, 4);
 #else
   lanes value;
