@@ -156,4 +156,38 @@ static inline conic_status camera_read_joined(conic_context *context, const char
   return status;
 }
 
+/* Of a folder with both files, named so. */
+static inline conic_status camera_read_colmap(conic_context *context, const char *ending, const void *cameras_bytes,
+                                              size_t n_cameras, const void *images, size_t n_images,
+                                              conic_cameras *cameras) {
+  char name[2][32];
+  snprintf(name[0], sizeof name[0], "cameras.%s", ending);
+  snprintf(name[1], sizeof name[1], "images.%s", ending);
+  const char *first = files_write_bytes(name[0], cameras_bytes, n_cameras);
+  const char *second = files_write_bytes(name[1], images, n_images);
+  conic_status status = conic_cameras_read(context, files_folder, NULL, cameras);
+  CHECK(unlink(first) == 0 && unlink(second) == 0);
+  return status;
+}
+
+static inline conic_status camera_read_colmap_text(conic_context *context, const char *cameras_text, const char *images,
+                                                   conic_cameras *cameras) {
+  return camera_read_colmap(context, "txt", cameras_text, strlen(cameras_text), images, strlen(images), cameras);
+}
+
+static inline int camera_is_same(const conic_camera *a, const conic_camera *b) {
+  return memcmp(a, b, sizeof *a) == 0;
+}
+
+/* The one camera, which is released. */
+static inline void camera_check_read(conic_context *context, conic_cameras *cameras, conic_camera_file kind,
+                                     const char *name, const conic_camera *wanted) {
+  CHECK(cameras->count == 1 && cameras->kind == (uint32_t)kind);
+  if (cameras->count == 1) {
+    CHECK(camera_is_same(cameras->cameras, wanted));
+    CHECK(strcmp(cameras->names[0], name) == 0);
+  }
+  conic_cameras_release(context, cameras);
+}
+
 #endif

@@ -18,35 +18,6 @@ static conic_status read_text_as(const char *name, const char *text, conic_camer
   return read_bytes_as(name, text, strlen(text), cameras);
 }
 
-static conic_status read_colmap(const char *ending, const void *cameras_bytes, size_t n_cameras, const void *images,
-                                size_t n_images, conic_cameras *cameras) {
-  char name[2][32];
-  snprintf(name[0], sizeof name[0], "cameras.%s", ending);
-  snprintf(name[1], sizeof name[1], "images.%s", ending);
-  const char *first = files_write_bytes(name[0], cameras_bytes, n_cameras);
-  const char *second = files_write_bytes(name[1], images, n_images);
-  conic_status status = conic_cameras_read(context, files_folder, NULL, cameras);
-  CHECK(unlink(first) == 0 && unlink(second) == 0);
-  return status;
-}
-
-static conic_status read_colmap_text(const char *cameras_text, const char *images, conic_cameras *cameras) {
-  return read_colmap("txt", cameras_text, strlen(cameras_text), images, strlen(images), cameras);
-}
-
-static int is_same_camera(const conic_camera *a, const conic_camera *b) {
-  return memcmp(a, b, sizeof *a) == 0;
-}
-
-static void check_read(conic_cameras *cameras, conic_camera_file kind, const char *name, const conic_camera *wanted) {
-  CHECK(cameras->count == 1 && cameras->kind == (uint32_t)kind);
-  if (cameras->count == 1) {
-    CHECK(is_same_camera(cameras->cameras, wanted));
-    CHECK(strcmp(cameras->names[0], name) == 0);
-  }
-  conic_cameras_release(context, cameras);
-}
-
 /* --- one camera --- */
 
 static void test_doors(void) {
@@ -54,29 +25,29 @@ static void test_doors(void) {
   conic_camera wanted = camera_example();
   camera_bytes first, second, archive = camera_npz_example();
   CHECK_OK(read_text_as("camera.json", CAMERA_JSON, &cameras));
-  check_read(&cameras, CONIC_CAMERA_FILE_CONIC, "", &wanted);
-  CHECK_OK(read_colmap_text(CAMERA_COLMAP_CAMERAS, CAMERA_COLMAP_IMAGES, &cameras));
-  check_read(&cameras, CONIC_CAMERA_FILE_COLMAP, "a/one.jpg", &wanted);
+  camera_check_read(context, &cameras, CONIC_CAMERA_FILE_CONIC, "", &wanted);
+  CHECK_OK(camera_read_colmap_text(context, CAMERA_COLMAP_CAMERAS, CAMERA_COLMAP_IMAGES, &cameras));
+  camera_check_read(context, &cameras, CONIC_CAMERA_FILE_COLMAP, "a/one.jpg", &wanted);
   camera_colmap_binary(1, (const double[]){50.5, 50, 31, 24.5}, 4, &first, &second);
-  CHECK_OK(read_colmap("bin", first.bytes, first.n, second.bytes, second.n, &cameras));
-  check_read(&cameras, CONIC_CAMERA_FILE_COLMAP, "a/one.jpg", &wanted);
+  CHECK_OK(camera_read_colmap(context, "bin", first.bytes, first.n, second.bytes, second.n, &cameras));
+  camera_check_read(context, &cameras, CONIC_CAMERA_FILE_COLMAP, "a/one.jpg", &wanted);
   CHECK_OK(read_text_as("transforms.json", CAMERA_TRANSFORMS, &cameras));
-  check_read(&cameras, CONIC_CAMERA_FILE_TRANSFORMS, "a/one.jpg", &wanted);
+  camera_check_read(context, &cameras, CONIC_CAMERA_FILE_TRANSFORMS, "a/one.jpg", &wanted);
   CHECK_OK(read_text_as("bom.json", "\xef\xbb\xbf" CAMERA_TRANSFORMS, &cameras));
-  check_read(&cameras, CONIC_CAMERA_FILE_TRANSFORMS, "a/one.jpg", &wanted);
+  camera_check_read(context, &cameras, CONIC_CAMERA_FILE_TRANSFORMS, "a/one.jpg", &wanted);
   CHECK_OK(read_bytes_as("any name", archive.bytes, archive.n, &cameras));
-  check_read(&cameras, CONIC_CAMERA_FILE_NUMPY, "", &wanted);
+  camera_check_read(context, &cameras, CONIC_CAMERA_FILE_NUMPY, "", &wanted);
   wanted.cx = 32.0;
   wanted.cy = 24.0;
   CHECK_OK(read_text_as("cameras.json", CAMERA_LIST, &cameras));
-  check_read(&cameras, CONIC_CAMERA_FILE_LIST, "one", &wanted);
+  camera_check_read(context, &cameras, CONIC_CAMERA_FILE_LIST, "one", &wanted);
 }
 
 /* Of a rotation that is no permutation, each door is within rounding of the quaternion's. */
 static void test_turned(void) {
   conic_cameras colmap, transforms;
   char text[1024];
-  CHECK_OK(read_colmap_text(CAMERA_COLMAP_CAMERAS, "1 .1 -.7 .2 .4 1 2 3 1 b c.png\n\n", &colmap));
+  CHECK_OK(camera_read_colmap_text(context, CAMERA_COLMAP_CAMERAS, "1 .1 -.7 .2 .4 1 2 3 1 b c.png\n\n", &colmap));
   if (colmap.count != 1)
     return;
   const double(*m)[4] = colmap.cameras[0].cam_from_world;
@@ -109,217 +80,6 @@ static void test_turned(void) {
     CHECK(fabs(transforms.cameras[0].cam_from_world[i / 4][i % 4] - m[i / 4][i % 4]) < 2e-15);
   conic_cameras_release(context, &colmap);
   conic_cameras_release(context, &transforms);
-}
-
-/* --- COLMAP --- */
-
-static void test_models(void) {
-  static const struct {
-    const char *name;
-    uint64_t number;
-    const char *text;
-    double parameters[12];
-    size_t n;
-    double fy, cy;
-    uint32_t kind, lens;
-    double distortion[8];
-  } models[] = {
-      {"SIMPLE_PINHOLE", 0, "50 31 24", {50, 31, 24}, 3, 50, 24, CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_NONE, {0}},
-      {"PINHOLE", 1, "50 49 31 24", {50, 49, 31, 24}, 4, 49, 24, CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_NONE, {0}},
-      {"SIMPLE_RADIAL",
-       2,
-       "50 31 24 .1",
-       {50, 31, 24, .1},
-       4,
-       50,
-       24,
-       CONIC_CAMERA_PERSPECTIVE,
-       CONIC_LENS_RADIAL,
-       {.1}},
-      {"RADIAL",
-       3,
-       "50 31 24 .1 .2",
-       {50, 31, 24, .1, .2},
-       5,
-       50,
-       24,
-       CONIC_CAMERA_PERSPECTIVE,
-       CONIC_LENS_RADIAL,
-       {.1, .2}},
-      {"OPENCV",
-       4,
-       "50 49 31 24 .1 .2 .3 .4",
-       {50, 49, 31, 24, .1, .2, .3, .4},
-       8,
-       49,
-       24,
-       CONIC_CAMERA_PERSPECTIVE,
-       CONIC_LENS_OPENCV,
-       {.1, .2, .3, .4}},
-      {"OPENCV",
-       4,
-       "50 49 31 24 0 0 0 -0",
-       {50, 49, 31, 24},
-       8,
-       49,
-       24,
-       CONIC_CAMERA_PERSPECTIVE,
-       CONIC_LENS_NONE,
-       {0}},
-      {"OPENCV_FISHEYE",
-       5,
-       "50 49 31 24 .1 .2 .3 .4",
-       {50, 49, 31, 24, .1, .2, .3, .4},
-       8,
-       49,
-       24,
-       CONIC_CAMERA_FISHEYE,
-       CONIC_LENS_RADIAL,
-       {.1, .2, .3, .4}},
-      {"FULL_OPENCV",
-       6,
-       "50 49 31 24 1 2 3 4 5 6 7 8",
-       {50, 49, 31, 24, 1, 2, 3, 4, 5, 6, 7, 8},
-       12,
-       49,
-       24,
-       CONIC_CAMERA_PERSPECTIVE,
-       CONIC_LENS_OPENCV,
-       {1, 2, 3, 4, 5, 6, 7, 8}},
-      {"FOV", 7, "50 49 31 24 .9", {50, 49, 31, 24, .9}, 5, 49, 24, CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_FOV, {.9}},
-      {"SIMPLE_RADIAL_FISHEYE",
-       8,
-       "50 31 24 .1",
-       {50, 31, 24, .1},
-       4,
-       50,
-       24,
-       CONIC_CAMERA_FISHEYE,
-       CONIC_LENS_RADIAL,
-       {.1}},
-      {"RADIAL_FISHEYE",
-       9,
-       "50 31 24 .1 .2",
-       {50, 31, 24, .1, .2},
-       5,
-       50,
-       24,
-       CONIC_CAMERA_FISHEYE,
-       CONIC_LENS_RADIAL,
-       {.1, .2}},
-      {"THIN_PRISM_FISHEYE",
-       10,
-       "50 49 31 24 1 2 3 4 5 6 7 8",
-       {50, 49, 31, 24, 1, 2, 3, 4, 5, 6, 7, 8},
-       12,
-       49,
-       24,
-       CONIC_CAMERA_FISHEYE,
-       CONIC_LENS_THIN_PRISM,
-       {1, 2, 3, 4, 5, 6, 7, 8}},
-      {"SIMPLE_FISHEYE", 14, "50 31 24", {50, 31, 24}, 3, 50, 24, CONIC_CAMERA_FISHEYE, CONIC_LENS_NONE, {0}},
-      {"FISHEYE", 15, "50 49 31 24", {50, 49, 31, 24}, 4, 49, 24, CONIC_CAMERA_FISHEYE, CONIC_LENS_NONE, {0}},
-  };
-  for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
-    conic_cameras cameras;
-    camera_bytes first, second;
-    char line[256];
-    conic_camera wanted = camera_example();
-    wanted.fx = 50;
-    wanted.fy = models[i].fy;
-    wanted.cy = models[i].cy;
-    wanted.kind = models[i].kind;
-    wanted.lens = models[i].lens;
-    memcpy(wanted.distortion, models[i].distortion, sizeof wanted.distortion);
-    snprintf(line, sizeof line, "1 %s 64 48 %s\r\n", models[i].name, models[i].text);
-    CHECK_OK(read_colmap_text(line, CAMERA_COLMAP_IMAGES, &cameras));
-    check_read(&cameras, CONIC_CAMERA_FILE_COLMAP, "a/one.jpg", &wanted);
-    camera_colmap_binary(models[i].number, models[i].parameters, models[i].n, &first, &second);
-    CHECK_OK(read_colmap("bin", first.bytes, first.n, second.bytes, second.n, &cameras));
-    check_read(&cameras, CONIC_CAMERA_FILE_COLMAP, "a/one.jpg", &wanted);
-  }
-}
-
-/* All around, whatever its parameters. */
-static void test_panorama(void) {
-  conic_cameras cameras;
-  CHECK_OK(read_colmap_text("1 EQUIRECTANGULAR 64 32 64 32\n", CAMERA_COLMAP_IMAGES, &cameras));
-  if (cameras.count == 1) {
-    const conic_camera *c = cameras.cameras;
-    CHECK(c->kind == CONIC_CAMERA_EQUIRECTANGULAR && c->cx == 32.0 && c->cy == 16.0);
-    CHECK(fabs(c->fx * 3.14159265358979323846 - 32.0) < 1e-13 && fabs(c->fy * 3.14159265358979323846 - 32.0) < 1e-13);
-  }
-  conic_cameras_release(context, &cameras);
-}
-
-static void test_colmap_order(void) {
-  static const char *const names[] = {"a.png", "a10.png", "a9.png", "b.png"};
-  conic_cameras cameras;
-  CHECK_OK(read_colmap_text("2 SIMPLE_PINHOLE 10 20 5 1 2\n\n# more\n1 SIMPLE_PINHOLE 30 40 6 1 2\n",
-                            "1 1 0 0 0 0 0 0 2 b.png\n\n3 1 0 0 0 0 0 0 1 a9.png\n1 2 3\n\n"
-                            "4 1 0 0 0 0 0 0 2 a10.png\n\n2 1 0 0 0 0 0 0 1 a.png",
-                            &cameras));
-  CHECK(cameras.count == 4);
-  for (size_t i = 0; i < cameras.count; i++) {
-    CHECK(strcmp(cameras.names[i], names[i]) == 0);
-    CHECK(cameras.cameras[i].width == (i % 2 ? 10 : 30));
-  }
-  conic_cameras_release(context, &cameras);
-}
-
-static void move_colmap(const char *below) {
-  char folder[160], from[200], to[200];
-  snprintf(folder, sizeof folder, "%s/%s", files_folder, below);
-  for (char *c = folder + strlen(files_folder) + 1;; c++) /* folder by folder */
-    if (*c == '/' || *c == 0) {
-      char end = *c;
-      *c = 0;
-      mkdir(folder, 0777);
-      *c = end;
-      if (!end)
-        break;
-    }
-  for (int i = 0; i < 2; i++) {
-    snprintf(from, sizeof from, "%s/%s.txt", files_folder, i ? "images" : "cameras");
-    snprintf(to, sizeof to, "%s/%s.txt", folder, i ? "images" : "cameras");
-    CHECK(rename(from, to) == 0);
-  }
-}
-
-static void test_folders(void) {
-  static const char *const folders[] = {"sparse/0", "sparse", "colmap/sparse/0"};
-  conic_cameras cameras;
-  for (size_t i = 0; i < 3; i++) {
-    char file[64];
-    files_write("cameras.txt", CAMERA_COLMAP_CAMERAS);
-    files_write("images.txt", CAMERA_COLMAP_IMAGES);
-    move_colmap(folders[i]);
-    CHECK(conic_cameras_is_file(context, files_folder));
-    CHECK_OK(conic_cameras_read(context, files_folder, NULL, &cameras));
-    CHECK(cameras.count == 1 && cameras.kind == CONIC_CAMERA_FILE_COLMAP);
-    conic_cameras_release(context, &cameras);
-    snprintf(file, sizeof file, "%s/images.txt", folders[i]);
-    CHECK_OK(conic_cameras_read(context, files_path(file), NULL, &cameras));
-    CHECK(cameras.count == 1 && cameras.kind == CONIC_CAMERA_FILE_COLMAP);
-    conic_cameras_release(context, &cameras);
-    unlink(files_path(file));
-    files_check_failed("one file", conic_cameras_read(context, files_folder, NULL, &cameras), "holds no cameras",
-                       (const char *)NULL);
-    snprintf(file, sizeof file, "%s/cameras.txt", folders[i]);
-    files_check_failed("one file", conic_cameras_read(context, files_path(file), NULL, &cameras), "side by side",
-                       (const char *)NULL);
-    unlink(files_path(file));
-  }
-  rmdir(files_path("sparse/0"));
-  rmdir(files_path("sparse"));
-  rmdir(files_path("colmap/sparse/0"));
-  rmdir(files_path("colmap/sparse"));
-  rmdir(files_path("colmap"));
-  files_write("cameras.json", CAMERA_LIST);
-  CHECK_OK(conic_cameras_read(context, files_folder, NULL, &cameras));
-  CHECK(cameras.count == 1 && cameras.kind == CONIC_CAMERA_FILE_LIST);
-  conic_cameras_release(context, &cameras);
-  unlink(files_path("cameras.json"));
 }
 
 /* --- transforms.json --- */
@@ -414,17 +174,17 @@ static void test_numpy(void) {
                              {"width.npy", camera_npy("<u2", "False", "(2,)", sizes, sizeof sizes)},
                              {"height.npy", camera_npy("|u1", "False", "(1,)", heights, sizeof heights)}};
   CHECK_OK(read_npz(two, 4, 0, &cameras));
-  CHECK(cameras.count == 2 && is_same_camera(&cameras.cameras[0], &wanted) && cameras.cameras[1].width == 10);
+  CHECK(cameras.count == 2 && camera_is_same(&cameras.cameras[0], &wanted) && cameras.cameras[1].width == 10);
   conic_cameras_release(context, &cameras);
   static const double k[4] = {50.5, 50, 31, 24.5};
   const camera_part fortran[] = {{"viewmat.npy", camera_npy("<f8", "True", "(2, 3, 4)", turned, sizeof turned)},
                                  {"K.npy", camera_npy("<f8", "False", "(4,)", k, sizeof k)}};
   CHECK_OK(read_npz(fortran, 2, 64, &cameras));
   wanted.height = 64;
-  CHECK(cameras.count == 2 && is_same_camera(&cameras.cameras[0], &wanted));
+  CHECK(cameras.count == 2 && camera_is_same(&cameras.cameras[0], &wanted));
   for (int i = 0; i < 3; i++)
     wanted.cam_from_world[i][3] += 1.0;
-  CHECK(cameras.count == 2 && is_same_camera(&cameras.cameras[1], &wanted));
+  CHECK(cameras.count == 2 && camera_is_same(&cameras.cameras[1], &wanted));
   conic_cameras_release(context, &cameras);
   files_check_failed("no size", read_npz(fortran, 2, 0, &cameras), "c.npz: ", "--size", (const char *)NULL);
   files_check_failed("no K", read_npz(two, 1, 64, &cameras), "no Ks.npy", (const char *)NULL);
@@ -488,10 +248,11 @@ static void check_found(const conic_cameras *cameras, const char *name, size_t w
 static void test_find(void) {
   conic_cameras cameras;
   size_t i_camera;
-  CHECK_OK(read_colmap_text("1 SIMPLE_PINHOLE 10 20 5 1 2\n",
-                            "1 1 0 0 0 0 0 0 1 a/0002.png\n\n2 1 0 0 0 0 0 0 1 a/x.png\n\n3 1 0 0 0 0 0 0 1 b/x.jpg\n\n"
-                            "4 1 0 0 0 0 0 0 1 c/77.jpg\n\n",
-                            &cameras));
+  CHECK_OK(camera_read_colmap_text(
+      context, "1 SIMPLE_PINHOLE 10 20 5 1 2\n",
+      "1 1 0 0 0 0 0 0 1 a/0002.png\n\n2 1 0 0 0 0 0 0 1 a/x.png\n\n3 1 0 0 0 0 0 0 1 b/x.jpg\n\n"
+      "4 1 0 0 0 0 0 0 1 c/77.jpg\n\n",
+      &cameras));
   check_found(&cameras, "0", 0);
   check_found(&cameras, "2", 2);
   check_found(&cameras, "0002", 0); /* a name, as its zeros tell */
@@ -510,7 +271,7 @@ static void test_find(void) {
 static void test_resize(void) {
   conic_camera camera = camera_example(), same = camera;
   conic_camera_resize(&camera, 64, 48);
-  CHECK(is_same_camera(&camera, &same));
+  CHECK(camera_is_same(&camera, &same));
   conic_camera_resize(&camera, 32, 96);
   CHECK(camera.fx == 25.25 && camera.cx == 15.5 && camera.fy == 100.0 && camera.cy == 49.0);
 }
@@ -555,38 +316,6 @@ static void test_wrong_json(void) {
                    "focal lengths");
 }
 
-static void check_colmap_fails(const char *cameras_text, const char *images, const char *what, const char *where) {
-  conic_cameras cameras;
-  files_check_failed(cameras_text, read_colmap_text(cameras_text, images, &cameras), what, where, (const char *)NULL);
-}
-
-static void test_wrong_colmap(void) {
-  static const char sound[] = CAMERA_COLMAP_CAMERAS;
-  camera_bytes first, second;
-  conic_cameras cameras;
-  check_colmap_fails("1 PINHOLE 64 48 50 50 31\n", "", "not the numbers of a camera that is PINHOLE", "line 1");
-  check_colmap_fails("\n1 PINHOLE 64 48 50 50 31 24 1\n", "", "not the numbers", "line 2");
-  check_colmap_fails("1 PINHOLE 64 48.5 50 50 31 24\n", "", "1 to 65535", "line 1");
-  check_colmap_fails("1 RAD_TAN_THIN_PRISM_FISHEYE 64 48 50\n", "", "RAD_TAN_THIN_PRISM_FISHEYE", "line 1");
-  check_colmap_fails("1 EUCM 64 48 50\n", "", "is not read: EUCM", "line 1");
-  check_colmap_fails("1 WHAT 64 48 50\n", "", "none that is known", "line 1");
-  check_colmap_fails("x PINHOLE 64 48 50\n", "", "begins with its number", "line 1");
-  check_colmap_fails(sound, "", "no images", "images.txt");
-  check_colmap_fails(sound, "1 1 0 0 0 0 0 0\n", "an image is", "line 1");
-  check_colmap_fails(sound, "1 1 0 0 0 0 0 0 9 a\n", "images.txt: an image's camera is not there", "line 1");
-  check_colmap_fails(sound, "1 0 0 0 0 0 0 0 1 a\n", "no rotation", "line 1");
-  camera_colmap_binary(1, (const double[]){50.5, 50, 31, 24.5}, 4, &first, &second);
-  for (size_t n = 0; n < first.n; n++)
-    files_check_failed("cut cameras", read_colmap("bin", first.bytes, n, second.bytes, second.n, &cameras),
-                       "cameras.bin: the file ends too early", (const char *)NULL);
-  for (size_t n = 0; n < second.n; n++)
-    files_check_failed("cut images", read_colmap("bin", first.bytes, first.n, second.bytes, n, &cameras),
-                       "images.bin: ", (const char *)NULL);
-  memset(first.bytes + 12, 0xff, 4);
-  files_check_failed("a model", read_colmap("bin", first.bytes, first.n, second.bytes, second.n, &cameras),
-                     "none that is known", (const char *)NULL);
-}
-
 static void test_kinds(void) {
   static const struct {
     const char *name, *text;
@@ -617,7 +346,7 @@ static void test_own_lens(void) {
                         "\"height\": 48, \"fx\": 50.5, \"fy\": 50, \"cx\": 31, \"cy\": 24.5, "
                         "\"world_to_camera\": [[0,0,1,0.5],[1,0,0,-2],[0,1,0,3],[0,0,0,1]]}",
                         &cameras));
-  check_read(&cameras, CONIC_CAMERA_FILE_CONIC, "", &wanted);
+  camera_check_read(context, &cameras, CONIC_CAMERA_FILE_CONIC, "", &wanted);
   check_text_fails("{\"kind\": \"wide\"}", "kind is perspective");
   check_text_fails("{\"lens\": \"wide\"}", "lens is none");
   check_text_fails("{\"distortion\": [1,2,3,4,5,6,7,8,9]}", "at most 8");
@@ -627,10 +356,6 @@ int main(void) {
   context = files_context();
   test_doors();
   test_turned();
-  test_models();
-  test_panorama();
-  test_colmap_order();
-  test_folders();
   test_transforms();
   test_no_size();
   test_numpy();
@@ -641,7 +366,6 @@ int main(void) {
   test_find();
   test_resize();
   test_wrong_json();
-  test_wrong_colmap();
   test_own_lens();
   files_end(context);
   return check_result();
