@@ -154,7 +154,7 @@ static int check_judge(cli_session *session, cli_judge_job *job) {
   return exit_code == CLI_DONE ? cli_scene_inputs_stay(session, &job->scene, outputs, 2) : exit_code;
 }
 
-static int run(cli_session *session, int argc, char **argv) {
+static int run_judge(cli_session *session, int argc, char **argv) {
   static const char *const floats[] = {"own", "strict", "fast", NULL}, *const transfers[] = {"linear", "srgb", NULL},
                            *const roundings[] = {"either", "nearest", "down", NULL};
   cli_judge_job job = {.floats = CONIC_FLOATS_FAST, .argc = argc, .argv = argv};
@@ -200,5 +200,5 @@ const cli_command cli_judge = {
     .summary = "says whether a picture that somebody drew is right, and where not",
     .usage = "conic judge SCENE --camera C [--view V] --picture P [--profile NAME | --method M] [--json FILE] "
              "[--report F.html] [--map F.png] [--max-wrong N] [camera and render options]",
-    .run = run,
+    .run = run_judge,
 };
