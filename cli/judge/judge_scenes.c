@@ -55,8 +55,8 @@ conic_status cli_judge_splats(cli_session *session, cli_judge_job *job) {
   judging.greatest = greatest_in(job);
   conic_status status = conic_source_choose(job->scene.source, &job->camera, &job->scene.options, &job->scene.view);
   if (status == CONIC_OK)
-    status = cli_reference_draw(session, &job->scene, &job->camera, CONIC_ORACLE_METHOD, (size_t)job->n_pixels, 1,
-                                &reference);
+    status = cli_reference_draw(session, &job->scene, &job->camera, CONIC_ORACLE_METHOD, (conic_float_kind)job->floats,
+                                (size_t)job->n_pixels, 1, &reference);
   if (status == CONIC_OK)
     status = conic_oracle_judge(session->context, &reference, &judging, &job->picture.image, job->classes, &judgement);
   if (status == CONIC_OK) {
