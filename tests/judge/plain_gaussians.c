@@ -14,6 +14,12 @@ typedef struct plain_footprint {
   float reach[2][2];       /* beyond it α is below its least: minimum, maximum */
 } plain_footprint;
 
+/* What a pixel sees of a Gaussian. */
+typedef struct plain_hit {
+  const plain_footprint *g;
+  float alpha, before, z; /* before: T there */
+} plain_hit;
+
 /* What does not change from Gaussian to Gaussian. */
 typedef struct plain_frame {
   const plain_scene *scene;
@@ -22,6 +28,7 @@ typedef struct plain_frame {
   plain_floats floats;
   plain_profile profile; /* spoilt by the faults */
   float center[2], eye[3];
+  plain_hit *hits; /* room for those of a pixel */
 } plain_frame;
 
 #define THIRD_OF_A_PIXEL 0.3f
@@ -425,15 +432,14 @@ static int plain_compare(const void *a, const void *b) {
   return (x->index > y->index) - (x->index < y->index);
 }
 
-/* Front to back, as far as there is light. */
-static void plain_composite(plain_frame *v, const plain_footprint *all, const uint32_t *list, size_t n, int column,
-                            int row, plain_picture *picture) {
+/* Which Gaussians a pixel sees, front to back, as far as there is light. Returns how many, and the rest of the light.
+ */
+static size_t plain_meet(plain_frame *v, const plain_footprint *all, const uint32_t *list, size_t n, float x, float y,
+                         float *rest) {
   plain_floats *f = &v->floats;
-  const plain_manner *manner = &v->settings->manner;
-  const float half = plain_has(v->settings->faults, PLAIN_HALF_PIXEL) ? 0.0f : 0.5f;
-  const float x = (float)column + half, y = (float)row + half, stop = v->profile.stop;
-  const size_t at = (size_t)row * (size_t)picture->width + (size_t)column;
-  float T = 1.0f, color[3] = {0.0f, 0.0f, 0.0f}, weights = 0.0f, depths = 0.0f, z, count = 0.0f;
+  const float stop = v->profile.stop;
+  float T = 1.0f, z;
+  size_t n_hits = 0;
   for (size_t i = 0; i < n; i++) {
     const plain_footprint *g = &all[list[i]];
     if (x < g->reach[0][0] || x > g->reach[1][0] || y < g->reach[0][1] || y > g->reach[1][1])
@@ -441,16 +447,44 @@ static void plain_composite(plain_frame *v, const plain_footprint *all, const ui
     const float alpha = plain_alpha(v, g, x, y, &z);
     if (!(alpha >= 0.0f))
       continue;
-    const float next = manner->subtracts_weights ? plain_mad(f, -alpha, T, T) : T * (1.0f - alpha), weight = alpha * T;
+    const float next = v->settings->manner.subtracts_weights ? plain_mad(f, -alpha, T, T) : T * (1.0f - alpha);
     if (next < stop || (v->profile.stops_at && next == stop))
       break;
-    for (int c = 0; c < 3; c++)
-      color[c] = f->is_shuffled && plain_chance(f, 2) ? plain_mad(f, g->color[c] * alpha, T, color[c])
-                                                      : plain_mad(f, g->color[c], weight, color[c]);
-    depths = plain_mad(f, z, weight, depths);
-    weights += weight;
-    count += 1.0f;
+    v->hits[n_hits++] = (plain_hit){g, alpha, T, z};
     T = next;
+  }
+  *rest = T;
+  return n_hits;
+}
+
+static void plain_shuffle(plain_floats *f, plain_hit *hits, size_t n) {
+  for (size_t i = n; i > 1; i--) {
+    const size_t other = plain_chance(f, (uint32_t)i);
+    const plain_hit kept = hits[i - 1];
+    hits[i - 1] = hits[other];
+    hits[other] = kept;
+  }
+}
+
+static void plain_composite(plain_frame *v, const plain_footprint *all, const uint32_t *list, size_t n, int column,
+                            int row, plain_picture *picture) {
+  plain_floats *f = &v->floats;
+  const plain_manner *manner = &v->settings->manner;
+  const float half = plain_has(v->settings->faults, PLAIN_HALF_PIXEL) ? 0.0f : 0.5f;
+  const size_t at = (size_t)row * (size_t)picture->width + (size_t)column;
+  float T, color[3] = {0.0f, 0.0f, 0.0f}, weights = 0.0f, depths = 0.0f;
+  const size_t n_hits = plain_meet(v, all, list, n, (float)column + half, (float)row + half, &T);
+  if (manner->sums_in_any_order)
+    plain_shuffle(f, v->hits, n_hits);
+  for (size_t i = 0; i < n_hits; i++) {
+    const plain_hit *hit = &v->hits[i];
+    const float weight = hit->alpha * hit->before;
+    for (int c = 0; c < 3; c++)
+      color[c] = f->is_shuffled && plain_chance(f, 2)
+                     ? plain_mad(f, hit->g->color[c] * hit->alpha, hit->before, color[c])
+                     : plain_mad(f, hit->g->color[c], weight, color[c]);
+    depths = plain_mad(f, hit->z, weight, depths);
+    weights += weight;
   }
   const float alpha = manner->sums_weights ? weights : 1.0f - T;
   const float all_weights = manner->divides_by_alpha ? alpha : weights;
@@ -461,7 +495,7 @@ static void plain_composite(plain_frame *v, const plain_footprint *all, const ui
   picture->T[at] = T;
   picture->alpha[at] = alpha;
   picture->z[at] = all_weights > 0.0f ? plain_divide(f, depths, all_weights) : 0.0f;
-  picture->count[at] = count;
+  picture->count[at] = (float)n_hits;
 }
 
 /* The tiles that a footprint may reach: first and behind the last, by axis. */
@@ -515,7 +549,8 @@ void plain_gaussians_draw(const plain_scene *scene, const plain_camera *camera, 
   const int across = (camera->width + TILE - 1) / TILE, down = (camera->height + TILE - 1) / TILE;
   uint32_t *lists;
   size_t n = 0;
-  if (!all)
+  v.hits = calloc(scene->count + 1, sizeof *v.hits);
+  if (!all || !v.hits)
     plain_give_up("memory", "there is not enough");
   for (size_t i = 0; i < scene->count; i++)
     n += plain_place(&v, i, &all[n]) != 0;
@@ -530,5 +565,6 @@ void plain_gaussians_draw(const plain_scene *scene, const plain_camera *camera, 
   plain_picture_spoil(picture, settings->faults);
   free(begin);
   free(lists);
+  free(v.hits);
   free(all);
 }

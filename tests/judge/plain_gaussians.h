@@ -28,6 +28,7 @@ const plain_profile *plain_profile_find(const char *name);
 /* How a program came to be written: what the papers leave open. */
 typedef struct plain_manner {
   int projects_covariance; /* 0: J·(W·Σ·Wᵀ)·Jᵀ; 1: (J·W)·Σ·(J·W)ᵀ; 2: by the rows of J·W·R·S, without Σ */
+  int sums_in_any_order;   /* as atomic additions do; else front to back */
   int sums_weights;        /* alpha is Σ w, and not 1 − T */
   int divides_by_alpha;    /* the depth is Σ wz / (1 − T), and not / Σ w */
   int subtracts_weights;   /* T′ is T − αT, and not T·(1 − α) */

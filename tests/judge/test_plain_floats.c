@@ -76,13 +76,15 @@ static void look_by_chance(plain_evaluation *e, double distance, const double at
 }
 
 /* Manners of scenes: like trained ones, needles, crowds that hide each other, at the near plane, in pairs of one depth
- * and opacities at the limits, far from the origin, small on the screen. */
-enum { TRAINED, NEEDLES, CROWD, NEAR, PAIRS, FAR, SMALL, N_MANNERS };
+ * and opacities at the limits, far from the origin, small on the screen, opaque ones behind faint ones, each of which
+ * fills the picture. */
+enum { TRAINED, NEEDLES, CROWD, NEAR, PAIRS, FAR, SMALL, WALLS, N_MANNERS };
 
 static void scatter(plain_evaluation *e, int manner, const double at[3]) {
   static const float limits[6] = {1.0f, 0.99f, 0.999f, 1.0f / 255.0f, 0.5f, 0.0f};
   conic_gaussians *s = &e->scene;
-  const double reach = manner == NEAR ? 0.3 : 1.2, fine = manner == SMALL ? -6.0 : manner == CROWD ? -2.5 : -3.5;
+  static const double sizes[N_MANNERS] = {-3.5, -3.5, -2.5, -3.5, -3.5, -3.5, -6.0, 2.0};
+  const double reach = manner == NEAR ? 0.3 : 1.2, fine = sizes[manner];
   for (size_t i = 0; i < s->count; i++) {
     double q[4], size = between(e, fine - 1.5, fine + 1.5);
     turn_by_chance(e, q);
@@ -98,6 +100,8 @@ static void scatter(plain_evaluation *e, int manner, const double at[3]) {
     if (manner == PAIRS && i % 2)
       for (int k = 0; k < 3; k++)
         s->position[k][i] = s->position[k][i - 1];
+    if (manner == WALLS)
+      s->opacity[i] = (float)(plain_chance(&e->chance, 3) ? between(e, 0.0, 0.7) : 1.0);
     if (manner == PAIRS && i % 3)
       s->opacity[i] = limits[plain_chance(&e->chance, 6)];
     for (size_t k = 0, n = (size_t)((s->sh_degree + 1) * (s->sh_degree + 1)) * 3; k < n; k++)
@@ -108,6 +112,7 @@ static void scatter(plain_evaluation *e, int manner, const double at[3]) {
 static void choose_manner(plain_evaluation *e) {
   plain_manner *m = &e->settings.manner;
   m->projects_covariance = (int)plain_chance(&e->chance, 3);
+  m->sums_in_any_order = (int)plain_chance(&e->chance, 2);
   m->sums_weights = (int)plain_chance(&e->chance, 2);
   m->divides_by_alpha = (int)plain_chance(&e->chance, 2);
   m->subtracts_weights = plain_chance(&e->chance, 4) == 0;
@@ -204,12 +209,12 @@ static void tell_violation(conic_context *context, const plain_evaluation *e, co
   const plain_settings *s = &e->settings;
   if (n_told++ >= MOST_TOLD)
     return;
-  printf("evaluation %llu: %s, floats %d (fused %d, shuffled %d, fast %d, exp %d), covariance %d, alpha %d, depth %d, "
-         "T %d, form %d, rotation %d: %zu wrong\n",
+  printf("evaluation %llu: %s, floats %d (fused %d, shuffled %d, fast %d, exp %d), covariance %d, sums %d, alpha %d, "
+         "depth %d, T %d, form %d, rotation %d: %zu wrong\n",
          (unsigned long long)e->seed, s->profile->name, (int)e->kind, s->floats.fused, s->floats.is_shuffled,
-         s->floats.is_fast, (int)s->floats.exp, s->manner.projects_covariance, s->manner.sums_weights,
-         s->manner.divides_by_alpha, s->manner.subtracts_weights, s->manner.divides_form, s->manner.normalises_rotation,
-         v->pixels[CONIC_PIXEL_WRONG]);
+         s->floats.is_fast, (int)s->floats.exp, s->manner.projects_covariance, s->manner.sums_in_any_order,
+         s->manner.sums_weights, s->manner.divides_by_alpha, s->manner.subtracts_weights, s->manner.divides_form,
+         s->manner.normalises_rotation, v->pixels[CONIC_PIXEL_WRONG]);
   for (int k = 0; k < v->n_worst && k < 2; k++)
     printf("  pixel %d,%d %s[%d]: %.9g not in %.9g to %.9g\n", v->worst[k].x, v->worst[k].y,
            conic_plane_describe((conic_plane)v->worst[k].plane)->name, v->worst[k].channel, v->worst[k].found,
