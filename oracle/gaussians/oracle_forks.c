@@ -6,7 +6,10 @@
  *
  * An order in doubt needs no paths: exchanging two neighbours i and j leaves T, and changes a sum Σ w·v by exactly
  * T·αᵢ·αⱼ·(vᵢ − vⱼ). Any order comes of exchanging pairs, each at most once, so all of them lie within the sum of these
- * (`slack`), T being that before the first of them. */
+ * (`slack`), T being that before the first of them.
+ *
+ * Others may add up in any order, which errs no more than this one: of n weights, the k-th has n − k roundings by sums
+ * here and two by each T before it, and any order rounds it at most n − 1 times. */
 #include <string.h>
 
 #include "oracle/gaussians/oracle_forks.h"
