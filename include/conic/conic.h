@@ -22,6 +22,7 @@
 #include "conic/coloring.h"
 #include "conic/context.h"
 #include "conic/contributions.h"
+#include "conic/diagnosis.h"
 #include "conic/export.h"
 #include "conic/gaussian_judge.h"
 #include "conic/gaussian_oracle.h"
