@@ -23,6 +23,7 @@
 #include "conic/context.h"
 #include "conic/contributions.h"
 #include "conic/export.h"
+#include "conic/gaussian_gradient.h"
 #include "conic/gaussian_judge.h"
 #include "conic/gaussian_oracle.h"
 #include "conic/gaussian_render.h"
