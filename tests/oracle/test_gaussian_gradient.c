@@ -529,6 +529,8 @@ static void test_gradient_doubts(conic_context *context) {
   CHECK(g.doubt[4] == 1u << CONIC_DOUBT_COLOR && g.doubt[5] == 0);
   CHECK(g.n_doubtful == 1 && g.doubtful[CONIC_DOUBT_COLOR] == 1 && g.doubtful[CONIC_DOUBT_ORDER] == 0);
   conic_gaussian_gradient_release(context, &g);
+  scene.position[0][3] = scene.position[0][2];
+  scene.position[1][3] = scene.position[1][2];
   scene.position[2][3] = nextafterf(scene.position[2][2], 0.0f);
   g = gradient_of(context, &scene, &camera, &options, &f, 0);
   CHECK(g.doubt[2] == 1u << CONIC_DOUBT_ORDER && g.doubt[3] == 1u << CONIC_DOUBT_ORDER && g.n_doubtful == 3);
