@@ -24,6 +24,7 @@
 #include "conic/contributions.h"
 #include "conic/diagnosis.h"
 #include "conic/export.h"
+#include "conic/gaussian_gradient.h"
 #include "conic/gaussian_judge.h"
 #include "conic/gaussian_oracle.h"
 #include "conic/gaussian_render.h"
