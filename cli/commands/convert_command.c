@@ -242,4 +242,7 @@ const cli_command cli_convert = {
     .summary = "writes a Gaussian scene in another format, and says what is lost",
     .usage = "conic convert SCENE -o SCENE [--sh-degree N] [--frame XYZ]",
     .run = run_convert,
+    .description = "Reads and writes scenes of 3D Gaussian splatting, and reports what the other format cannot hold.",
+    .examples = {{"make a trained scene small, and see what that costs",
+                  "conic convert point_cloud.ply -o scene.spz --measure 4"}},
 };

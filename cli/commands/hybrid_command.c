@@ -161,4 +161,8 @@ const cli_command cli_hybrid = {
     .summary = "makes of a mesh patches of triangles where it is flat, and of surfels where it is not",
     .usage = "conic hybrid MESH -o OUT.chy [--phase1 COST] [--phase2 COST] [--texture FILE]",
     .run = run_hybrid,
+    .description = "Cuts a mesh into patches. Where many small triangles bend, splats (here called surfels) draw them "
+                   "faster than triangles do; where the mesh is flat, its triangles stay.",
+    .examples = {{"build and draw", "conic hybrid statue.obj -o statue.chy\n"
+                                    "conic render statue.chy -o statue.png"}},
 };

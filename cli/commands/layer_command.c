@@ -236,8 +236,8 @@ static int run_layer(cli_session *session, int argc, char **argv) {
        0.25, 5},
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that raw points' normals are estimated from, 6 to 64 [20]", 6, 64},
-      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
       CLI_COLUMNS(&job.base.columns),
+      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &job.n_inputs);
@@ -250,4 +250,8 @@ const cli_command cli_layer = {
     .summary = "builds a layered point cloud: samples of any number, for pictures in bounded memory",
     .usage = "conic layer IN… -o OUT.lpc [--cloud-size M] [--memory MIB] [--quantum Q]",
     .run = run_layer,
+    .description =
+        "Writes the samples in small clouds, coarse ones first. conic render reads only those that a picture "
+        "shows, from a file or from a web server.",
+    .examples = {{"join scans that do not fit into memory", "conic layer scans/*.ply -o all.lpc --memory 4096"}},
 };

@@ -34,12 +34,13 @@ static void list_names(char *names, size_t room) {
     snprintf(names + used, room - used, "%s", gaussians_name);
 }
 
-static void print_scenes(void) {
-  puts("\nscenes:");
-  for (int i = 0; i < CONIC_N_SCENES; i++)
-    printf("  %-10s %s\n", conic_scene_name((conic_scene_type)i), conic_scene_summary((conic_scene_type)i));
-  printf("  %-10s %s\n", gaussians_name, "3D Gaussians, like a scene trained from photographs");
+static const char *scene_word(int i, const char **about) {
+  *about = i < CONIC_N_SCENES ? conic_scene_summary((conic_scene_type)i)
+                              : "3D Gaussians, like a scene trained from photographs";
+  return i < CONIC_N_SCENES ? conic_scene_name((conic_scene_type)i) : i == CONIC_N_SCENES ? gaussians_name : NULL;
 }
+
+static const cli_words scene_words = {"scenes", NULL, scene_word};
 
 static int find_scene(const char *name, conic_scene_type *type) {
   const char *nearest = conic_nearer_word(name, NULL, gaussians_name);
@@ -113,8 +114,6 @@ static int parse_scene(int argc, char **argv, make_job *job) {
     return cli_usage("make: too many arguments");
   int exit_code =
       cli_parse(job->base.session, options, (int)(sizeof options / sizeof *options), argc, argv, scenes, &n_scenes);
-  if (exit_code < 0)
-    print_scenes();
   if (exit_code == CLI_DONE)
     exit_code = check_arguments(scenes, n_scenes, job);
   scene->count = (size_t)job->count;
@@ -219,5 +218,14 @@ static int run_make(cli_session *session, int argc, char **argv) {
   return cli_build_run(&job, &steps, parse_scene(argc, argv, &job));
 }
 
-const cli_command cli_make = {"make", "samples an analytic scene into splats, or makes one of Gaussians",
-                              "conic make SCENE -o OUT.ply [-n COUNT] [options]", run_make};
+const cli_command cli_make = {
+    .name = "make",
+    .summary = "samples an analytic scene into splats, or makes one of Gaussians",
+    .usage = "conic make SCENE -o OUT.ply [-n COUNT] [options]",
+    .run = run_make,
+    .description = "Samples a scene that is known by its formula. The same options always give the same file, byte for "
+                   "byte. Splats are written as they come, so that there can be any number of them.",
+    .words = &scene_words,
+    .examples = {{"make a scan of a knot, which can be looked at from all sides", "conic make knot -o scan.ply"},
+                 {"make noise as a scanner does", "conic make sphere -n 1M --noise 0.5 -o noisy.ply"}},
+};

@@ -99,7 +99,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   const cli_option table[] = {
       {"size", CLI_SIZE, raw.size, "WxH",
        "pixels; a file's cameras are scaled to it, each axis by itself [1024x1024, or the file's]", 1, 65535,
-       .is_given = &raw.is_size_given},
+       .is_given = &raw.is_size_given, .group = "camera"},
       {"camera", CLI_TEXT, &job->camera_path, "FILE", CLI_CAMERA_HELP},
       {"view", CLI_TEXT, &job->view_name, "VIEW",
        "of --camera: an index from 0, the name of an image with or without its folder and ending, or all [the only "
@@ -123,7 +123,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = cli_parse_up, .is_given = &job->is_up_given},
       {"as", CLI_CHOICE, &raw.as, "WHAT",
        "what a mesh is drawn as: auto (triangles), points (splats of the vertices), mesh or hybrid (both) [auto]",
-       .choices = as_words, .is_given = &raw.is_as_given},
+       .choices = as_words, .is_given = &raw.is_as_given, .group = "meshes"},
       {"texture", CLI_TEXT, &job->opening.texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
       CLI_TEXTURE_BOUND(session),
       {"smooth", CLI_FLAG, &job->opening.is_smooth, NULL,
@@ -133,7 +133,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .is_given = &raw.is_crease_given},
       CLI_COLOR_OPTIONS(&job->coloring),
       {"error", CLI_NUMBER, &job->view.error_px, "PX",
-       "of a .cot, .lpc or hybrid, no more than keeps the error on the screen below this; 0: all [0]", 0, 65536},
+       "of a .cot, .lpc or hybrid, no more than keeps the error on the screen below this; 0: all [0]", 0, 65536,
+       .group = "levels of detail"},
       {"budget", CLI_COUNT, &job->budget, "N",
        "of a .cot, .lpc or hybrid, the N primitives or fewer whose error is the least", 1, 4294967294.0},
       {"only", CLI_CHOICE, &job->view.only_kind, "KIND", "of a hybrid, draw every patch as triangles or as surfels",
@@ -141,7 +142,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"method", CLI_CHOICE, &method, "NAME",
        "how a splat is projected and weighed: point, disc, affine, conic, ray, auto; patch: as part of a smooth "
        "surface [auto]",
-       .choices = words.methods, .is_given = &raw.is_method_given},
+       .choices = words.methods, .is_given = &raw.is_method_given, .group = "how splats are drawn"},
       {"profile", CLI_CHOICE, &profile, "NAME",
        "how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5, gsplat-1.5-aa, "
        "gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque splats [exact]",
@@ -167,7 +168,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .choices = cull_words},
       {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]",
        .parse = cli_parse_near},
-      {"shade", CLI_CHOICE, &shading, "HOW", "none (albedo), lambert or phong [phong]", .choices = words.shadings},
+      {"shade", CLI_CHOICE, &shading, "HOW", "none (albedo), lambert or phong [phong]", .choices = words.shadings,
+       .group = "light and background"},
       {"light", CLI_PARSED, job, "LIGHT",
        "X,Y,Z, towards a light that stands in the scene; camera:X,Y,Z, one that moves with the camera (right, up, "
        "towards you); head, at your eye; each with :R,G,B behind it or without; studio; none. Up to 8 [studio]",
@@ -185,15 +187,16 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "planes: rgba,Z,N,albedo,weight,count,id or all; P, places in the world; cluster of hybrids; T, medianZ, "
        "inverseZ, last, doubt of "
        "Gaussian scenes [rgba,Z]",
-       .parse = cli_parse_planes, .is_given = &job->is_aov_given},
+       .parse = cli_parse_planes, .is_given = &job->is_aov_given, .group = "planes"},
       {"degree", CLI_INT, &job->patches.surface.degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1,
-       CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given},
+       CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given, .group = "method patch"},
       {"h", CLI_PARSED, &raw.h, "H", "patch: what is smaller is smoothed away; also in spacings (2x) [local]",
        .parse = cli_parse_length, .is_given = &raw.is_patch_given, .dashes = "--"},
       {"k", CLI_INT, &job->opening.n_neighbours, "K",
-       "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
+       "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64, .group = "raw points"},
       CLI_COLUMNS(&job->opening.columns),
-      {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels, 8, 16, 32 or 64; changes no bit [64]", 8, 64},
+      {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels, 8, 16, 32 or 64; changes no bit [64]", 8, 64,
+       .group = "what draws"},
       {"device", CLI_TEXT, &job->device.name, "NAME",
        "what draws: cpu, opencl (the first device) or opencl:P.D; changes no bit [cpu]"},
       {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL,
