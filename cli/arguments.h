@@ -66,7 +66,8 @@ int cli_parse_length(const char *text, void *length);
 #define CLI_COLUMNS(to)                                                                                                \
   {                                                                                                                    \
     "columns", CLI_PARSED, to, "NAMES",                                                                                \
-        "of text: what its columns are, as x,y,z,intensity,-,r,g,b [as its header says]", .parse = cli_parse_columns   \
+        "what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]",                        \
+        .parse = cli_parse_columns                                                                                     \
   }
 int cli_parse_columns(const char *text, void *columns);
 

@@ -14,8 +14,8 @@ extern const char *const cli_color_words[], *const cli_ramp_words[]; /* for comp
    CLI_TEXT,                                                                                                           \
    &(coloring)->by,                                                                                                    \
    "WHAT",                                                                                                             \
-   "rgb, intensity, height, classification, normal, or a field of the file by its name; auto: rgb, or else "           \
-   "intensity [auto]",                                                                                                 \
+   "what the points' colours are made of: rgb, intensity, height, classification, normal, or a value in the file "     \
+   "by its name; auto: rgb, or else intensity [auto]",                                                                 \
    .choices = cli_color_words,                                                                                         \
    .group = "colours made of values"},                                                                                 \
       {"ramp",                                                                                                         \
@@ -26,7 +26,7 @@ extern const char *const cli_color_words[], *const cli_ramp_words[]; /* for comp
        .choices = cli_ramp_words},                                                                                     \
   {                                                                                                                    \
     "color-range", CLI_PARSED, (coloring), "A,B",                                                                      \
-        "the values that the ends of the ramp mean [the 2nd and 98th percentile]", .parse = cli_parse_color_range      \
+        "the values at the two ends of the ramp [the 2nd and 98th percentile]", .parse = cli_parse_color_range         \
   }
 
 /* "A,B" into a conic_coloring_options. */

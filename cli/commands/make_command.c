@@ -98,14 +98,17 @@ static int parse_scene(int argc, char **argv, make_job *job) {
   job->count = scene->count;
   job->sh_degree = 3;
   const cli_option options[] = {
-      {"o", CLI_TEXT, &job->base.output, "OUT.ply", "where to; - is standard output"},
-      {"n", CLI_COUNT, &job->count, "COUNT", "splats: 100000, 10k, 2M, 1e6 [100k]", 1, 4294967294.0},
-      {"seed", CLI_COUNT, &job->seed, "S", "of the jitter, the noise and the terrain's shape [0]"},
+      {"o", CLI_TEXT, &job->base.output, "OUT.ply", "the file to write; - is standard output"},
+      {"n", CLI_COUNT, &job->count, "COUNT", "how many splats: 100000, 10k, 2M, 1e6 [100k]", 1, 4294967294.0},
+      {"seed", CLI_COUNT, &job->seed, "S",
+       "the number that the jitter, the noise and the terrain's shape are drawn from [0]"},
       {"jitter", CLI_NUMBER, &scene->jitter, "J", "move each splat in its plane by up to J spacings [0]", 0, 1e6},
-      {"noise", CLI_NUMBER, &scene->noise, "N", "move each along its normal by a Gaussian of N spacings [0]", 0, 1e6},
-      {"far", CLI_VECTOR, scene->offset, "X,Y,Z", "move the scene away; writes doubles [0,0,0]"},
-      {"degree", CLI_INT, &job->sh_degree, "D", "of Gaussians' harmonics [3]", 0, CONIC_MAX_SH_DEGREE,
-       .is_given = &job->has_sh_degree},
+      {"noise", CLI_NUMBER, &scene->noise, "N",
+       "move each along its normal by chance, by N spacings in the mean square [0]", 0, 1e6},
+      {"far", CLI_VECTOR, scene->offset, "X,Y,Z",
+       "move the scene away from the origin; positions then are doubles [0,0,0]"},
+      {"degree", CLI_INT, &job->sh_degree, "D", "of gaussians: the degree of their spherical harmonics, 0 to 4 [3]", 0,
+       CONIC_MAX_SH_DEGREE, .is_given = &job->has_sh_degree},
       {"ascii", CLI_FLAG, &job->is_ascii, NULL, "write text instead of binary"},
   };
   const char *scenes[64];

@@ -106,8 +106,7 @@ static int run_octree(cli_session *session, int argc, char **argv) {
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.cot", "the file to write"},
       {"quantize", CLI_FLAG, &job.options.quantize, NULL, "round the splats: about half the size; the error is stated"},
-      {"cutoff", CLI_NUMBER, &job.cutoff, "F", "standard deviations at which a splat ends; that of the pictures [1.5]",
-       0.25, 5},
+      {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
       CLI_COLUMNS(&job.base.columns),

@@ -160,8 +160,8 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
       CLI_IN_PLACE(job.base),
-      {"k", CLI_INT, &job.estimate.n_neighbours, "K", "neighbours that a point's ellipse comes from, 6 to 64 [20]", 6,
-       64},
+      {"k", CLI_INT, &job.estimate.n_neighbours, "K", "how many neighbours a point's ellipse comes from, 6 to 64 [20]",
+       6, 64},
       {"ellipse", CLI_PARSED, &job.estimate.ellipse, "RULE",
        "what a point's ellipse goes around: its voronoi cell, or bounding all K neighbours, as Confetti has it "
        "[voronoi]",
@@ -170,10 +170,11 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
        "creases sharper than ANGLE degrees become sharp, by clip lines [none]", 0, 90},
       {"count", CLI_COUNT, &job.count, "N", "keep N of the points, chosen at random, and fit the sizes to them", 1,
        4294967294.0, .is_given = &job.has_count},
-      {"seed", CLI_COUNT, &job.seed, "S", "which choice; a smaller count is a part of a larger one [0]"},
+      {"seed", CLI_COUNT, &job.seed, "S",
+       "which points --count chooses; those of a smaller count are among those of a larger one [0]"},
       CLI_COLUMNS(&job.base.columns),
       {"plain", CLI_FLAG, &job.is_plain, NULL,
-       "no dots: every point becomes an ellipse, where there is no surface, too"},
+       "every point becomes an ellipse; else those that lie on no surface become round dots"},
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
   };
   int parsed = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply");

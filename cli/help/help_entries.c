@@ -58,16 +58,24 @@ int cli_help_next(const cli_option_table *table, int *i, cli_help_entry *entry) 
   return 1;
 }
 
+/* Whether a text has a number, by itself. */
+static int names_number(const char *text, double number) {
+  char digits[32];
+  size_t length = (size_t)snprintf(digits, sizeof digits, "%.10g", number);
+  for (const char *at = strstr(text, digits); at; at = strstr(at + 1, digits))
+    if ((at == text || !strchr("0123456789.", at[-1])) && (!at[length] || !strchr("0123456789", at[length])))
+      return 1;
+  return 0;
+}
+
 void cli_help_limits(const cli_help_entry *entry, char *words, size_t room) {
   const cli_option *option = entry->option;
   const double most = 1e6; /* what is beyond is no limit that anybody would meet */
-  char both[64];
   words[0] = '\0';
-  snprintf(both, sizeof both, "%.10g to %.10g", option->minimum, option->maximum);
-  if ((option->minimum == 0.0 && option->maximum == 0.0) || strstr(entry->text, both) || strstr(entry->fallback, both))
+  if (option->minimum == option->maximum || fabs(option->minimum) >= most || fabs(option->maximum) >= most)
     return;
-  if (fabs(option->minimum) < most && fabs(option->maximum) < most)
-    snprintf(words, room, "%s", both);
+  if (!names_number(entry->text, option->minimum) || !names_number(entry->text, option->maximum))
+    snprintf(words, room, "%.10g to %.10g", option->minimum, option->maximum);
 }
 
 int cli_help_hides_words(const cli_help_entry *entry) {
