@@ -50,7 +50,9 @@ conic_status cli_kept_context(cli_kept *kept, const conic_context_options *optio
   if (kept->context && !is_same_context(&kept->options, options))
     drop_all(kept);
   if (kept->context) { /* messages and progress are this run's */
+    kept->context->options.log = options->log;
     kept->context->options.log_cookie = options->log_cookie;
+    kept->context->options.progress = options->progress;
     kept->context->options.progress_cookie = options->progress_cookie;
     *context = kept->context;
     return CONIC_OK;
