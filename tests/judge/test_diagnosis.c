@@ -237,8 +237,9 @@ static void campaign(conic_context *context, int argc, char **argv) {
   for (int k = 0; k < CONIC_N_GAUSSIAN_PROFILES; k++)
     if (strcmp(conic_gaussian_profile_name((conic_gaussian_profile)k), argv[4]) == 0)
       w.profile = (conic_gaussian_profile)k;
-  CHECK_OK(conic_gaussians_read(context, argv[2], NULL, &w.scene));
-  CHECK_OK(conic_camera_read(context, argv[3], &w.camera));
+  if (conic_gaussians_read(context, argv[2], NULL, &w.scene) != CONIC_OK ||
+      conic_camera_read(context, argv[3], &w.camera) != CONIC_OK)
+    exit(1);
   open_world(&w);
   const int is_8_bit = argc > 5 && strcmp(argv[5], "8-bit") == 0;
   const int has_pairs = argc > 5 && strcmp(argv[5], "pairs") == 0, step = argc > 6 ? atoi(argv[6]) : 1;
