@@ -7,21 +7,13 @@
 
 #include "tests/judge/plain_gaussians.h"
 
-static unsigned plain_fault_of(const char *name) {
-  for (int k = 0; k < PLAIN_N_FAULTS; k++)
-    if (strcmp(plain_fault_names[k], name) == 0)
-      return 1u << k;
-  plain_give_up(name, "is no fault");
-  return 0;
-}
-
 static void plain_take_option(const char *name, const char *value, plain_settings *s, const char **out) {
   if (strcmp(name, "-o") == 0)
     *out = value;
   else if (strcmp(name, "--profile") == 0)
     s->profile = plain_profile_find(value);
   else if (strcmp(name, "--fault") == 0)
-    s->faults |= plain_fault_of(value);
+    s->faults |= 1u << plain_fault_find(value);
   else if (strcmp(name, "--floats") == 0)
     s->floats = plain_floats_by_chance(strtoull(value, NULL, 10), 1);
   else if (strcmp(name, "--background") != 0 ||

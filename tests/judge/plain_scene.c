@@ -40,6 +40,14 @@ void plain_give_up(const char *path, const char *what) {
   exit(1);
 }
 
+plain_fault plain_fault_find(const char *name) {
+  for (int k = 0; k < PLAIN_N_FAULTS; k++)
+    if (strcmp(plain_fault_names[k], name) == 0)
+      return (plain_fault)k;
+  plain_give_up(name, "is no fault");
+  return PLAIN_N_FAULTS;
+}
+
 static void *plain_calloc(size_t n, size_t size) {
   void *all = calloc(n ? n : 1, size);
   if (!all)

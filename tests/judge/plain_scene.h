@@ -42,6 +42,9 @@ typedef enum plain_fault {
 
 extern const char *const plain_fault_names[PLAIN_N_FAULTS];
 
+/* The fault of a name; ends the program where there is none. */
+plain_fault plain_fault_find(const char *name);
+
 static inline int plain_has(unsigned faults, plain_fault fault) {
   return faults >> fault & 1;
 }
