@@ -217,6 +217,15 @@ static int stands_alone(const fork_job *j, size_t i) {
   return j->meetings[i].is_cut && (i + 1 == j->n || j->meetings[i + 1].is_cut);
 }
 
+/* A profile that never ends may be drawn by blending, whose target holds A: what is added to it is rounded twice, and
+ * the sum as a number up to 1, however little T is. */
+static range keep_as_cover(const fork_job *j, range after, double alpha) {
+  double off = ORACLE_FLOAT_UNIT * (1.0 + 2.0 * alpha);
+  if (!j->d->model->is_setup_in_float || j->d->limits.stop > 0.0)
+    return after;
+  return range_of(after.low - off, after.v, oracle_min(after.high + off, 1.0));
+}
+
 /* Adds the Gaussian, where it is not sure to be there, perhaps; `does`: the double run does. */
 static void composite_meeting(const fork_job *j, size_t i, int is_sure, int does, fork_state *s) {
   const oracle_meeting *m = &j->meetings[i];
@@ -224,6 +233,7 @@ static void composite_meeting(const fork_job *j, size_t i, int is_sure, int does
   range rest = rest_of_light(j, alpha);
   range weight = multiply_ranges(alpha, before), after = multiply_ranges(before, rest), values[N_SUMS];
   int counts = is_sure && !s->may_have_ended;
+  after = keep_as_cover(j, after, alpha.high);
   after.low = oracle_max(after.low, 0.0);
   values_at_meeting(m, values);
   if (!is_sure)
