@@ -74,7 +74,7 @@ const plain_profile *plain_profile_find(const char *name) {
   return NULL;
 }
 
-static void plain_spoil_profile(unsigned faults, int reading, plain_profile *p) {
+static void plain_spoil_profile(unsigned faults, plain_profile *p) {
   if (plain_has(faults, PLAIN_DILATION_0))
     p->dilation = 0.0f;
   if (plain_has(faults, PLAIN_DILATION_0_1))
@@ -86,14 +86,14 @@ static void plain_spoil_profile(unsigned faults, int reading, plain_profile *p) 
   if (plain_has(faults, PLAIN_ORDER_DISTANCE))
     p->is_by_distance = 1;
   if (plain_has(faults, PLAIN_NEAR))
-    p->near = reading ? 1.0f : p->near < 0.1f ? 0.2f : 0.01f;
-  if (plain_has(faults, PLAIN_EXTENT_3_SIGMA) && !reading)
+    p->near = faults & PLAIN_OTHERWISE ? 1.0f : p->near < 0.1f ? 0.2f : 0.01f;
+  if (plain_has(faults, PLAIN_EXTENT_3_SIGMA) && !(faults & PLAIN_OTHERWISE))
     p->cutoff = 9.0f;
 }
 
 static plain_frame plain_look(const plain_scene *scene, const plain_camera *camera, const plain_settings *settings) {
   plain_frame v = {scene, camera, settings, settings->floats, *settings->profile, {camera->cx, camera->cy}, {0.0f}};
-  plain_spoil_profile(settings->faults, settings->reading, &v.profile);
+  plain_spoil_profile(settings->faults, &v.profile);
   if (v.profile.is_inria || plain_has(settings->faults, PLAIN_CENTRE_IGNORED)) {
     v.center[0] = 0.5f * (float)camera->width;
     v.center[1] = 0.5f * (float)camera->height;
@@ -382,7 +382,8 @@ static int plain_place(plain_frame *v, size_t i, plain_footprint *g) {
   plain_color(v, i, g->color);
   if (!(v->profile.is_disc ? plain_place_disc(v, r, scale, p, g) : plain_place_ellipse(v, r, scale, p, g)))
     return 0;
-  if (v->profile.is_inria || (plain_has(v->settings->faults, PLAIN_EXTENT_3_SIGMA) && v->settings->reading == 1))
+  if (v->profile.is_inria ||
+      (plain_has(v->settings->faults, PLAIN_EXTENT_3_SIGMA) && v->settings->faults & PLAIN_OTHERWISE))
     plain_cut_to_tiles(v, g);
   return 1;
 }
@@ -420,7 +421,7 @@ static float plain_alpha(plain_frame *v, const plain_footprint *g, float x, floa
     return -1.0f;
   float falloff = plain_exponential(f, -half_q);
   if (plain_has(v->settings->faults, PLAIN_FALLOFF_RENORMALISED)) { /* so that it is 0 at √8 σ, or at 3 */
-    const float end = v->settings->reading ? 0.011108997f : 0.018315639f;
+    const float end = v->settings->faults & PLAIN_OTHERWISE ? 0.011108997f : 0.018315639f;
     falloff = (falloff - end) / (1.0f - end);
   }
   const float alpha = fminf(v->profile.most_alpha, g->opacity * falloff);
@@ -473,7 +474,7 @@ static void plain_composite(plain_frame *v, const plain_footprint *all, const ui
   plain_floats *f = &v->floats;
   const plain_manner *manner = &v->settings->manner;
   const int is_off = plain_has(v->settings->faults, PLAIN_HALF_PIXEL);
-  const float half = !is_off ? 0.5f : v->settings->reading ? 1.0f : 0.0f;
+  const float half = !is_off ? 0.5f : v->settings->faults & PLAIN_OTHERWISE ? 1.0f : 0.0f;
   const size_t at = (size_t)row * (size_t)picture->width + (size_t)column;
   float T, color[3] = {0.0f, 0.0f, 0.0f}, weights = 0.0f, depths = 0.0f;
   const size_t n_hits = plain_meet(v, all, list, n, (float)column + half, (float)row + half, &T);
@@ -565,7 +566,7 @@ void plain_gaussians_draw(const plain_scene *scene, const plain_camera *camera, 
       const size_t tile = (size_t)(y / TILE) * (size_t)across + (size_t)(x / TILE);
       plain_composite(&v, all, lists + begin[tile], begin[tile + 1] - begin[tile], x, y, picture);
     }
-  plain_picture_spoil(picture, settings->faults, settings->reading);
+  plain_picture_spoil(picture, settings->faults);
   free(begin);
   free(lists);
   free(v.hits);
