@@ -107,6 +107,8 @@ static conic_status put_map(cli_session *session, const cli_judge_job *job) {
 static conic_status show_maps(cli_session *session, cli_judge_job *job) {
   double at = cli_seconds();
   conic_status status = job->map_path ? put_map(session, job) : CONIC_OK;
+  if (status == CONIC_OK && job->report_path)
+    status = cli_judge_report(session, job);
   pass_stage(job, CLI_JUDGE_SHOW, at);
   return status;
 }
