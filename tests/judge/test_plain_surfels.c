@@ -120,7 +120,7 @@ static void tell_wrong_surfels(uint64_t seed, const plain_surfel_settings *s, co
            j->worst[k].low, j->worst[k].high);
 }
 
-static void judge_plain_picture(fixture *f, uint64_t seed, const plain_surfel_settings *settings,
+static void judge_plain_picture(fixture *f, uint64_t seed, const plain_surfel_settings *settings, conic_float_kind kind,
                                 const plain_picture *picture, surfel_tally *tally) {
   const size_t n = (size_t)SIDE * SIDE;
   conic_reference reference;
@@ -135,7 +135,11 @@ static void judge_plain_picture(fixture *f, uint64_t seed, const plain_surfel_se
     ((uint32_t *)image.planes[CONIC_PLANE_COUNT])[i] = (uint32_t)picture->count[i];
   }
   memcpy(image.planes[CONIC_PLANE_Z], picture->z, n * sizeof(float));
-  CHECK_OK(conic_oracle_render(f->context, &f->splats, &f->camera, &f->options, CONIC_ORACLE_METHOD, &reference));
+  conic_oracle_asking asking;
+  conic_oracle_asking_init(&asking);
+  asking.floats = kind;
+  const conic_drawing drawing = {.splats = &f->splats};
+  CHECK_OK(conic_oracle_render_asked(f->context, &drawing, &f->camera, &f->options, &asking, &reference));
   CHECK_OK(conic_oracle_judge(f->context, &reference, NULL, &image, NULL, &judgement));
   tally->evaluations++;
   tally->violated += judgement.pixels[CONIC_PIXEL_WRONG] > 0;
@@ -153,7 +157,8 @@ static void evaluate_surfels(fixture *f, uint64_t seed, surfel_tally tallies[2])
   plain_surfel_settings settings = {.cutoff = 1.5f};
   settings.is_affine = (int)plain_chance(&chance, 2);
   settings.prefilter = plain_chance(&chance, 4) ? 1.0f : 0.25f;
-  settings.floats = plain_floats_by_chance(seed * 7919 + 1, 1);
+  const int is_fast = (int)plain_chance(&chance, 2);
+  settings.floats = plain_floats_by_chance(seed * 7919 + 1, is_fast);
   scatter_discs(f, &chance);
   f->options.method = settings.is_affine ? CONIC_METHOD_AFFINE : CONIC_METHOD_CONIC;
   f->options.prefilter = settings.prefilter;
@@ -161,7 +166,8 @@ static void evaluate_surfels(fixture *f, uint64_t seed, surfel_tally tallies[2])
   const plain_camera camera = plain_camera_like(&f->camera);
   plain_picture picture = plain_picture_allocate(SIDE, SIDE);
   CHECK(plain_surfels_draw(&surfels, &camera, &settings, &picture) == 0);
-  judge_plain_picture(f, seed, &settings, &picture, &tallies[settings.is_affine]);
+  judge_plain_picture(f, seed, &settings, is_fast ? CONIC_FLOATS_FAST : CONIC_FLOATS_STRICT, &picture,
+                      &tallies[settings.is_affine]);
   plain_picture_release(&picture);
   plain_surfels_release(&surfels);
 }
