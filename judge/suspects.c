@@ -116,12 +116,19 @@ static const conic_suspect of_surfels[] = {
     {"no-normalisation", OF_ALPHA, CONIC_ALPHA_WEIGHTED, 0.0},
     {"no-normalisation", OF_ALPHA, CONIC_ALPHA_WEIGHTED_LIMITED, 0.0},
     {"back-faces", OF_FACING, 0, 0.0},
-    {"near", OF_NEAR, 0, 0.001},
     {"near", OF_NEAR, 0, 0.01},
     {"near", OF_NEAR, 0, 0.1},
     {"near", OF_NEAR, 0, 0.2},
     {"near", OF_NEAR, 0, 0.5},
     {"near", OF_NEAR, 0, 1.0},
+    {"near", OF_NEAR, 0, 2.0},
+    {"near", OF_NEAR, 1, 10.0},
+    {"near", OF_NEAR, 1, 100.0},
+    {"near", OF_NEAR, 1, 1e3},
+    {"near", OF_NEAR, 1, 2e3},
+    {"near", OF_NEAR, 1, 5e3},
+    {"near", OF_NEAR, 1, 1e4},
+    {"near", OF_NEAR, 1, 1.5e4},
 };
 
 static const conic_suspect of_all[] = {
@@ -192,7 +199,9 @@ static void plant_extent(conic_planted *p, conic_planted_extent extent) {
   }
 }
 
-static void plant_near(conic_planted *p, double value) {
+/* `how`: of surfels, times what is right. */
+static void plant_near(conic_planted *p, int how, double factor) {
+  const double value = how ? factor * p->options.near_z : factor;
   p->rules.near_z = p->least_z = p->options.near_z = value;
   p->rules.disc_near = p->rules.disc_near > 0.0f ? (float)(value > 0.0 ? value : 1e-6) : 0.0f;
 }
@@ -285,7 +294,7 @@ void conic_suspect_plant(const conic_suspect *s, conic_planted *p) {
     p->is_reversed = s->how;
     break;
   case OF_NEAR:
-    plant_near(p, s->value);
+    plant_near(p, s->how, s->value);
     break;
   case OF_SHIFT:
     p->shift_px[0] = 0.5f * (float)s->how;

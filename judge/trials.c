@@ -71,7 +71,7 @@ static conic_status try_planted(trial_run *r, trial *tried) {
   if (status != CONIC_OK)
     return status;
   memcpy(r->finished, r->drawn, r->t->samples->n * sizeof *r->finished);
-  conic_planted_finish(&planted, r->t->samples, r->finished);
+  conic_planted_finish(&planted, r->t->samples->n, r->finished);
   const double distance =
       conic_diagnosis_distance(r->t->samples, (const conic_channels *)r->finished, (const conic_channels *)r->ours);
   tried->left = r->whole > 0.0 ? distance / r->whole : distance;
