@@ -12,6 +12,7 @@
 #include "core/image/image_common.h"
 #include "core/pictures/image_exr.h"
 #include "core/pictures/image_foreign.h"
+#include "core/pictures/image_numpy.h"
 #include "core/pictures/image_pfm.h"
 #include "core/pictures/image_png.h"
 
@@ -111,6 +112,7 @@ conic_status conic_image_write(conic_context *context, const char *path, const c
 
 conic_status conic_image_read(conic_context *context, const char *path, conic_image *image) {
   unsigned char start[4] = {0};
+  unsigned most_code;
   if (!path || !image)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: no file name, or no place for the image");
   memset(image, 0, sizeof *image);
@@ -138,5 +140,7 @@ conic_status conic_image_read(conic_context *context, const char *path, conic_im
     return conic_pfm_read(context, path, image);
   if (n == 4 && memcmp(start, "\x89PNG", 4) == 0)
     return conic_png_read(context, path, image);
+  if (n == 4 && (memcmp(start, "\x93NUM", 4) == 0 || memcmp(start, "PK\3\4", 4) == 0))
+    return conic_numpy_image_read(context, path, image, &most_code);
   return conic_foreign_read(context, path, image);
 }

@@ -37,6 +37,7 @@
 #include "conic/opencl.h"
 #include "conic/oracle.h"
 #include "conic/patches.h"
+#include "conic/picture.h"
 #include "conic/render.h"
 #include "conic/scene.h"
 #include "conic/source.h"
