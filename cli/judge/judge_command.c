@@ -6,6 +6,7 @@
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_reference.h"
 #include "cli/judge/judge_job.h"
+#include "cli/judge/suite_judge.h"
 #include "cli/outputs.h"
 
 static const unsigned gaussian_planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL |
@@ -159,6 +160,8 @@ static int run_judge(cli_session *session, int argc, char **argv) {
                            *const roundings[] = {"either", "nearest", "down", NULL};
   cli_judge_job job = {.floats = CONIC_FLOATS_FAST, .argc = argc, .argv = argv};
   int rounding = CONIC_CODES_EITHER;
+  if (cli_suite_has_option(argc, argv))
+    return cli_suite_run(session, argc, argv);
   conic_picture_options_init(&job.reading);
   cli_scene_defaults(&job.scene);
   job.scene.may_composite = 1;
@@ -199,6 +202,7 @@ const cli_command cli_judge = {
     .name = "judge",
     .summary = "says whether a picture that somebody drew is right, and where not",
     .usage = "conic judge SCENE --camera C [--view V] --picture P [--profile NAME | --method M] [--json FILE] "
-             "[--report F.html] [--map F.png] [--max-wrong N] [camera and render options]",
+             "[--report F.html] [--map F.png] [--max-wrong N] [camera and render options]\n"
+             "       conic judge --suite FOLDER --pictures FOLDER [--profile NAMES] [--junit FILE] [--help]",
     .run = run_judge,
 };
