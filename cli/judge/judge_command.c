@@ -112,7 +112,7 @@ static conic_status show_maps(cli_session *session, cli_judge_job *job) {
   return status;
 }
 
-static int tell_verdict(cli_session *session, const cli_judge_job *job) {
+static int tell_judged(cli_session *session, const cli_judge_job *job) {
   int exit_code = cli_judge_write_json(session, job);
   if (exit_code != CLI_DONE)
     return exit_code;
@@ -130,7 +130,7 @@ static int judge_scene(cli_session *session, cli_judge_job *job) {
     status = find_out(session, job);
   if (status == CONIC_OK)
     status = show_maps(session, job);
-  exit_code = status == CONIC_OK ? tell_verdict(session, job) : cli_exit_of(status);
+  exit_code = status == CONIC_OK ? tell_judged(session, job) : cli_exit_of(status);
   free(job->classes);
   conic_image_release(session->context, &job->ours);
   conic_picture_release(session->context, &job->picture);

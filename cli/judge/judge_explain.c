@@ -7,7 +7,7 @@
 #include "conic/source.h"
 
 /* Keeps the heaviest. */
-static void put_part(cli_judge_worst *w, const cli_judge_part *part) {
+static void keep_part(cli_judge_worst *w, const cli_judge_part *part) {
   int at = w->n_parts;
   while (at > 0 && part->weight > w->parts[at - 1].weight)
     at--;
@@ -39,13 +39,13 @@ static conic_status explain_gaussian_pixel(cli_session *session, cli_judge_job *
     if (e->part != CONIC_PART_COMPOSITED && !e->doubts)
       continue;
     w->n_blended += e->part == CONIC_PART_COMPOSITED;
-    put_part(w, &(cli_judge_part){"gaussian",
-                                  e->index,
-                                  e->weight,
-                                  e->alpha,
-                                  e->z,
-                                  {e->color[0], e->color[1], e->color[2]},
-                                  first_doubt(e->doubts)});
+    keep_part(w, &(cli_judge_part){"gaussian",
+                                   e->index,
+                                   e->weight,
+                                   e->alpha,
+                                   e->z,
+                                   {e->color[0], e->color[1], e->color[2]},
+                                   first_doubt(e->doubts)});
   }
   conic_gaussian_listing_release(session->context, &listing);
   return CONIC_OK;
@@ -77,11 +77,11 @@ static conic_status explain_splat_pixel(conic_contributions *contributions, cli_
       return status;
     weight += (double)list[i].weight;
     w->n_blended++;
-    put_part(w, &(cli_judge_part){.kind = "splat",
-                                  .index = list[i].splat,
-                                  .weight = (double)list[i].weight,
-                                  .depth = (double)list[i].depth,
-                                  .color = {(double)p.color[0], (double)p.color[1], (double)p.color[2]}});
+    keep_part(w, &(cli_judge_part){.kind = "splat",
+                                   .index = list[i].splat,
+                                   .weight = (double)list[i].weight,
+                                   .depth = (double)list[i].depth,
+                                   .color = {(double)p.color[0], (double)p.color[1], (double)p.color[2]}});
   }
   for (size_t i = 0; status == CONIC_OK && i < n_triangles; i++) {
     if (triangles[i].verdict != CONIC_CONTRIBUTION_VISIBLE)
@@ -89,11 +89,11 @@ static conic_status explain_splat_pixel(conic_contributions *contributions, cli_
     const float *color = triangles[i].color;
     weight += 1.0;
     w->n_blended++;
-    put_part(w, &(cli_judge_part){.kind = "triangle",
-                                  .index = triangles[i].triangle,
-                                  .weight = 1.0,
-                                  .depth = (double)triangles[i].depth,
-                                  .color = {(double)color[0], (double)color[1], (double)color[2]}});
+    keep_part(w, &(cli_judge_part){.kind = "triangle",
+                                   .index = triangles[i].triangle,
+                                   .weight = 1.0,
+                                   .depth = (double)triangles[i].depth,
+                                   .color = {(double)color[0], (double)color[1], (double)color[2]}});
   }
   for (int k = 0; k < w->n_parts; k++)
     w->parts[k].weight /= weight;

@@ -143,8 +143,8 @@ static conic_status put_numpy_name(const conic_zip *zip, const numpy_name *about
   return status;
 }
 
-static conic_status read_npz(conic_context *context, const char *path, const conic_mapping *file, conic_image *image,
-                             unsigned *most_code) {
+static conic_status read_named_arrays(conic_context *context, const char *path, const conic_mapping *file,
+                                      conic_image *image, unsigned *most_code) {
   static const char *const colors[] = {"rgba", "rgb", "image", "colors", "render", "renders"};
   static const char *const alphas[] = {"A", "alpha", "alphas"};
   conic_zip zip;
@@ -184,7 +184,7 @@ conic_status conic_numpy_image_read(conic_context *context, const char *path, co
   if (status != CONIC_OK)
     return status;
   if (file.n_bytes >= 2 && memcmp(file.bytes, "PK", 2) == 0)
-    status = read_npz(context, path, &file, image, most_code);
+    status = read_named_arrays(context, path, &file, image, most_code);
   else {
     status = conic_numpy_array_open(context, path, "the array", file.bytes, file.n_bytes, &array);
     if (status == CONIC_OK)

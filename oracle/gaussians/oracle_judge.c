@@ -41,10 +41,15 @@ static judged_range rounded_range(judged_range r) {
   return r;
 }
 
-static judged_range range_of_alpha(const conic_gaussian_bound *b, int is_opaque) {
-  const judged_range T = rounded_range(range_at(b, CONIC_BOUND_T)); /* a mean is rounded before it is subtracted */
-  if (is_opaque)
+/* Of others, 1 − T or Σ w: that differs by a rounding a product, and two a sum. */
+static judged_range range_of_alpha(const judge_job *j, const conic_gaussian_bound *b) {
+  judged_range T = rounded_range(range_at(b, CONIC_BOUND_T)); /* a mean is rounded before it is subtracted */
+  if (j->judging->is_opaque)
     return (judged_range){1.0, 1.0, 1.0, 1.0, 1.0};
+  if (j->judging->model && j->judging->model->is_setup_in_float) {
+    double off = 3.0 * ORACLE_FLOAT_UNIT * b->most[CONIC_BOUND_COUNT];
+    T = (judged_range){T.v, T.low - off, T.high + off, T.least - off, T.most + off};
+  }
   return rounded_range((judged_range){1.0 - T.v, 1.0 - T.high, 1.0 - T.low, 1.0 - T.most, 1.0 - T.least});
 }
 
@@ -73,8 +78,7 @@ static judged_range range_of_normal(const conic_gaussian_bound *b, int c) {
 static judged_range range_in_plane(const judge_job *j, const conic_gaussian_bound *b, conic_plane plane, int channel) {
   switch (plane) {
   case CONIC_PLANE_RGBA:
-    return channel == 3 ? range_of_alpha(b, j->judging->is_opaque)
-                        : rounded_range(range_at(b, CONIC_BOUND_RGB + channel));
+    return channel == 3 ? range_of_alpha(j, b) : rounded_range(range_at(b, CONIC_BOUND_RGB + channel));
   case CONIC_PLANE_Z:
     return range_at(b, CONIC_BOUND_Z);
   case CONIC_PLANE_NORMAL:
