@@ -160,6 +160,7 @@ static int run_judge(cli_session *session, int argc, char **argv) {
                            *const roundings[] = {"either", "nearest", "down", NULL};
   cli_judge_job job = {.floats = CONIC_FLOATS_FAST, .argc = argc, .argv = argv};
   int rounding = CONIC_CODES_EITHER;
+  suite_run suite = {.most_level = 0}; /* not here: its options are for the help */
   if (cli_suite_has_option(argc, argv))
     return cli_suite_run(session, argc, argv);
   conic_picture_options_init(&job.reading);
@@ -187,9 +188,12 @@ static int run_judge(cli_session *session, int argc, char **argv) {
       {"straight", CLI_FLAG, &job.reading.is_straight, NULL,
        "colours are not multiplied by alpha; of a PNG they never are"},
       {"time", CLI_FLAG, &job.shows_times, NULL, "print what each stage took"},
+      CLI_SUITE_OPTIONS(suite),
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   job.reading.rounding = (conic_code_rounding)rounding;
+  if (exit_code == CLI_DONE && (suite.judging.pictures || suite.junit_path || suite.most_level))
+    exit_code = cli_usage("judge: --pictures, --level and --junit are of suites; give --suite FOLDER, too");
   if (exit_code == CLI_DONE)
     exit_code = check_judge(session, &job);
   if (exit_code == CLI_DONE)
@@ -203,6 +207,11 @@ const cli_command cli_judge = {
     .summary = "says whether a picture that somebody drew is right, and where not",
     .usage = "conic judge SCENE --camera C [--view V] --picture P [--profile NAME | --method M] [--json FILE] "
              "[--report F.html] [--map F.png] [--max-wrong N] [camera and render options]\n"
-             "       conic judge --suite FOLDER --pictures FOLDER [--profile NAMES] [--junit FILE] [--help]",
+             "       conic judge --suite FOLDER --pictures FOLDER [--profile NAMES] [--junit FILE]",
     .run = run_judge,
+    .description = "Holds a picture against bounds of what floats may make of the scene, or all pictures of a suite.",
+    .examples = {{"judge a renderer's picture of a scene",
+                  "conic judge scene.ply --camera transforms.json --view 0 --picture mine.exr --profile gsplat-1.6"},
+                 {"judge the pictures of a suite, for a CI system",
+                  "conic judge --suite suite --pictures mine --profile gsplat-1.6 --junit report.xml"}},
 };

@@ -119,15 +119,11 @@ int cli_suite_run(cli_session *session, int argc, char **argv) {
   int n_positional, rounding = CONIC_CODES_EITHER;
   conic_picture_options_init(&run.judging.reading);
   const cli_option options[] = {
-      {"suite", CLI_TEXT, &run.judging.suite, "FOLDER", "what conic conformance wrote"},
-      {"pictures", CLI_TEXT, &run.judging.pictures, "FOLDER",
-       "where CASE.exr, .pfm, .npy, .npz or .png are, planes beside them"},
+      CLI_SUITE_OPTIONS(run),
       {"profile", CLI_TEXT, &profiles, "NAMES", "only the cases of these profiles, with commas between [all]",
        .is_given = &run.is_profile_given},
-      {"level", CLI_INT, &run.most_level, "N", "only cases up to this level [all]", 1, 99},
       {"max-wrong", CLI_COUNT, &run.judging.max_wrong, "N", "so many pixels of a case may be wrong [0]", 0,
        4294836225.0},
-      {"junit", CLI_TEXT, &run.junit_path, "FILE", "the cases as JUnit's XML, as CI systems take it"},
       {"codes", CLI_CHOICE, &rounding, "HOW", "codes were rounded to the nearest, down, or either [either]",
        .choices = roundings},
       {"clipped", CLI_FLAG, &run.judging.reading.is_clipped, NULL,
