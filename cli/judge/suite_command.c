@@ -17,7 +17,7 @@ int cli_suite_has_option(int argc, char **argv) {
   return 0;
 }
 
-static int is_chosen(const suite_run *run, const suite_entry *entry) {
+static int is_chosen_case(const suite_run *run, const suite_entry *entry) {
   for (int p = 0; p < CONIC_N_GAUSSIAN_PROFILES; p++)
     if (strcmp(entry->profile, conic_gaussian_profile_name((conic_gaussian_profile)p)) == 0)
       return run->profiles >> p & 1 && entry->level <= run->most_level;
@@ -72,7 +72,7 @@ static conic_status judge_cases(suite_run *run) {
   if (!run->verdicts)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; status == CONIC_OK && i < run->manifest.n_cases; i++)
-    if (is_chosen(run, &run->manifest.cases[i]))
+    if (is_chosen_case(run, &run->manifest.cases[i]))
       status = cli_suite_judge_case(context, &run->judging, &run->manifest.cases[i], &run->verdicts[run->n++]);
   if (status == CONIC_OK && run->n == 0) {
     cli_error(CLI_INPUT, "%s: the suite has no case of these profiles and levels", run->judging.suite);

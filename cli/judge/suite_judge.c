@@ -41,7 +41,7 @@ static conic_status read_expected(conic_context *context, const char *folder, co
 }
 
 /* What the picture's number stands for: 0 where it has none. */
-static int find_number(const conic_picture *picture, size_t pixel, int channel, double *from, double *to) {
+static int find_suite_number(const conic_picture *picture, size_t pixel, int channel, double *from, double *to) {
   const int plane = channel == 4 ? CONIC_PLANE_Z : CONIC_PLANE_RGBA;
   const size_t at = channel == 4 ? pixel : 4 * pixel + (size_t)channel;
   const float *values = picture->image.planes[plane], *greatest = picture->greatest.planes[plane];
@@ -68,7 +68,7 @@ static conic_pixel_class judge_suite_pixel(const conic_picture *picture, const s
   for (int c = 0; c < SUITE_CHANNELS; c++) {
     double from, to;
     float ends[SUITE_RANGES];
-    if (!find_number(picture, pixel, c, &from, &to))
+    if (!find_suite_number(picture, pixel, c, &from, &to))
       continue;
     for (int range = 0; range < SUITE_RANGES; range++)
       ends[range] = expected->numbers[cli_suite_at(expected, range, pixel) + (size_t)c];
@@ -109,7 +109,7 @@ static void judge_suite_picture(const conic_picture *picture, const suite_planes
 }
 
 /* Finds the case's picture; 0 where there is none. */
-static int find_picture(const suite_judging *judging, suite_verdict *verdict, char *path, size_t room) {
+static int find_suite_picture(const suite_judging *judging, suite_verdict *verdict, char *path, size_t room) {
   static const char *const endings[] = {"exr", "pfm", "npy", "npz", "png"};
   for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
     int n = snprintf(path, room, "%s/%s.%s", judging->pictures, verdict->entry->name, endings[i]);
@@ -129,7 +129,7 @@ conic_status cli_suite_judge_case(conic_context *context, const suite_judging *j
   double start = cli_seconds();
   *verdict = (suite_verdict){.entry = entry, .outcome = SUITE_IS_MISSING};
   conic_status status = read_expected(context, judging->suite, entry, &expected);
-  if (status == CONIC_OK && !find_picture(judging, verdict, path, sizeof path))
+  if (status == CONIC_OK && !find_suite_picture(judging, verdict, path, sizeof path))
     snprintf(verdict->message, sizeof verdict->message, "there is no picture of it");
   else if (status == CONIC_OK) {
     verdict->outcome = SUITE_IS_WRONG;

@@ -181,7 +181,7 @@ write render-gaussians render render two.compressed.ply --profile gsplat-1.6 --s
 write devices devices devices
 write conformance conformance conformance suite --profile 2dgs-gsplat
 mkdir drawn
-run 0 render suite/scenes/disc.ply --camera suite/cameras/disc.json --profile exact -o drawn/L1-disc-2dgs-gsplat.pfm
+run 0 render suite/scenes/disc.ply --profile 2dgs-gsplat --size 36x20 -o drawn/L1-disc-2dgs-gsplat.pfm
 write suite-wrong judge_suite judge --suite suite --pictures drawn
 run 0 help --format json
 cp out runs/help.json
