@@ -394,4 +394,7 @@ const cli_command cli_conformance = {
     .summary = "writes a suite of cases by which any Gaussian renderer can be judged",
     .usage = "conic conformance OUT/ [--profile NAME[,NAME]] [--floats fast|strict]",
     .run = run_conformance,
+    .description = "Writes scenes, cameras, and what pictures of them may be, from one Gaussian to thousands, for "
+                   "profiles of several renderers. The README.md that it writes says how to go on.",
+    .examples = {{"write the cases of one renderer", "conic conformance suite --profile gsplat-1.6"}},
 };
