@@ -8,6 +8,8 @@
 
 enum cli_exit { CLI_DONE = 0, CLI_DIFFERENT = 1, CLI_USAGE = 2, CLI_INPUT = 3, CLI_RESOURCE = 4 };
 
+struct cli_option_table;
+
 typedef struct cli_session {
   const char *command; /* the sub-command's name */
   int threads;         /* --threads; 0: all */
@@ -26,10 +28,16 @@ typedef struct cli_session {
   const char
       *replaced_path;     /* --in-place: the only input that may be written over; null: none may. Set before opening */
   conic_context *context; /* made by cli_session_open */
+  /* How cli_parse answers --help; null: as text. `help` is its own. */
+  void (*show_help)(struct cli_session *session, const struct cli_option_table *table);
+  void *help;
+  struct cli_host *host; /* cli/host.h: what runs the command within itself; null: a shell */
 } cli_session;
 
 /* Makes the context. Returns CLI_DONE or, after an error message, the exit code. */
 int cli_session_open(cli_session *session);
+/* From now on what this thread prints for people is said to the session's host, if it has one; null: no longer. */
+void cli_session_host(cli_session *session);
 /* Ends the context; fine where it was never made. */
 void cli_session_close(cli_session *session);
 

@@ -68,7 +68,7 @@ int cli_render_views_check(const cli_session *session, cli_render_job *job) {
 static int check_outputs(const cli_session *session, cli_render_job *job, int is_streaming_given) {
   const char *paths[N_PATHS];
   int answer = CLI_DONE;
-  if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path && !job->boxes_path &&
+  if (!session->host && job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path && !job->boxes_path &&
       !job->progressive_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
@@ -113,7 +113,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT",
        "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; may be repeated",
-       .parse = parse_output, .may_repeat = 1},
+       .parse = parse_output, .may_repeat = 1, .group = "output"},
       {"format", CLI_TEXT, &job->writing.format, "NAME",
        "the kind of what goes to standard output or to a name without an ending: png, exr, pfm … [png]"},
       {"exr", CLI_CHOICE, &job->writing.is_half, "TYPE",
@@ -123,7 +123,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"deep", CLI_TEXT, &job->deep_path, "OUT.exr",
        "every splat and triangle of every pixel, as a deep image: colour, depth, id, weight"},
       {"overdraw", CLI_TEXT, &job->overdraw_path, "OUT.png",
-       "how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64"},
+       "how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64",
+       .group = "pictures of how it was drawn"},
       {"overdraw-colors", CLI_CHOICE, &job->is_overdraw_confetti, "NAME",
        "of --overdraw: log, or confetti: blue 1, green 8, red 16 [log]", .choices = overdraw_words},
       {"legend", CLI_FLAG, &job->has_legend, NULL, "what the colours mean, in the picture's lower right corner"},
@@ -131,30 +132,34 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"cryptomatte", CLI_FLAG, &job->has_mattes, NULL,
        "into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name in Nuke or Blender"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says",
-       .parse = cli_parse_turntable},
+       .parse = cli_parse_turntable, .group = "several pictures"},
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP",
-       "of the turntable's frames 1 to N, or of all views from 0, A to B in steps of STEP", .parse = cli_parse_frames},
+       "only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from 0 [all]",
+       .parse = cli_parse_frames},
       {"boxes", CLI_TEXT, &job->boxes_path, "OUT.png",
-       "of a .cot, the nodes of one level in false colours, with their boxes"},
-      {"box-level", CLI_INT, &job->box_level, "N", "of --boxes: the root is 0 [the deepest of at most 64 nodes]", 0,
-       127},
-      {"clusters", CLI_TEXT, &job->clusters_path, "OUT.png", "the patches of a hybrid in false colours"},
+       "of a .cot, the nodes of one level in false colours, with their boxes",
+       .group = "pictures of what it was drawn from"},
+      {"box-level", CLI_INT, &job->box_level, "N",
+       "the level that --boxes shows; 0 is the root [the deepest of at most 64 nodes]", 0, 127},
+      {"clusters", CLI_TEXT, &job->clusters_path, "OUT.png", "of a .chy, each patch in a colour of its own"},
       {"progressive", CLI_TEXT, &job->progressive_path, "DIR",
-       "of an .lpc, also a picture of each level: DIR/0001.exr …"},
+       "of an .lpc, also a picture after each level that has been read: DIR/0001.exr …",
+       .group = "layered point clouds (.lpc)"},
       {"deadline", CLI_NUMBER, &job->deadline, "S",
        "of an .lpc, no more is read after so many seconds; what is missing is drawn coarser", 0.001, 1e6},
       {"tolerate", CLI_FLAG, &job->view.tolerates_damage, NULL,
        "of an .lpc, what is damaged or does not come is drawn coarser, with a warning",
        .is_given = &is_streaming_given},
-      {"memory", CLI_INT, &memory_mib, "MiB", "of an .lpc, what clouds and splats may take [512]", 1, 1 << 20,
-       .is_given = &is_streaming_given},
+      {"memory", CLI_INT, &memory_mib, "MiB", "of an .lpc, what its clouds and splats may take in memory [512]", 1,
+       1 << 20, .is_given = &is_streaming_given},
       {"occlusion", CLI_CHOICE, &occlusion, "HOW",
-       "of an .lpc, leave out what is hidden: auto, on or off; changes no bit [auto]", .choices = occlusion_words,
-       .is_given = &is_streaming_given},
+       "of an .lpc, do not read what is hidden behind the rest: auto, on or off; changes no bit of the picture [auto]",
+       .choices = occlusion_words, .is_given = &is_streaming_given},
       {"timeout", CLI_NUMBER, &job->access.stall_seconds, "S",
        "of a URL, a server that is silent for so long is asked again, up to 4 times [15]", 1, 3600,
        .is_given = &is_streaming_given},
-      {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
+      {"repeat", CLI_INT, &job->repeat, "N", "draw N times and report the median of the times [1]", 1, 100000,
+       .group = "measuring"},
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
   job->writing.compression = (conic_compression)compression;
