@@ -31,7 +31,8 @@ typedef struct cli_command {
 } cli_command;
 
 extern const cli_command cli_make, cli_prepare, cli_octree, cli_layer, cli_mls, cli_hybrid, cli_render, cli_diff,
-    cli_info, cli_verify, cli_explain, cli_chart, cli_bench, cli_devices, cli_convert;
+    cli_info, cli_verify, cli_judge, cli_explain, cli_gradient, cli_conformance, cli_chart, cli_bench, cli_devices,
+    cli_convert;
 
 /* The command of that name, or null. */
 const cli_command *cli_find_command(const char *name);

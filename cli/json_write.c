@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/host_keeps.h"
 #include "cli/session.h"
 #include "core/files/file.h"
 
@@ -142,7 +143,8 @@ void cli_json_hash(cli_json *json, const char *key, uint64_t value) {
 }
 
 struct cli_json_file {
-  conic_output *output;
+  conic_output *output; /* null: of a host's run, */
+  FILE *memory;         /* which gets it as text */
   cli_json json;
 };
 
@@ -155,13 +157,18 @@ cli_json *cli_json_open(cli_session *session, cli_json_file **file, int *exit_co
     *exit_code = cli_error(CLI_RESOURCE, "%s: out of memory", session->json_path);
     return NULL;
   }
-  conic_status status = conic_output_open(session->context, session->json_path, &made->output);
-  if (status != CONIC_OK) {
+  conic_status status = CONIC_OK;
+  memset(made, 0, sizeof *made);
+  if (session->host)
+    made->memory = cli_host_open_json(session->host);
+  else
+    status = conic_output_open(session->context, session->json_path, &made->output);
+  if (status != CONIC_OK || (session->host && !made->memory)) {
     free(made);
-    *exit_code = cli_exit_of(status);
+    *exit_code = status == CONIC_OK ? cli_error(CLI_RESOURCE, "out of memory") : cli_exit_of(status);
     return NULL;
   }
-  cli_json_begin(&made->json, conic_output_stream(made->output));
+  cli_json_begin(&made->json, made->memory ? made->memory : conic_output_stream(made->output));
   *file = made;
   return &made->json;
 }
@@ -169,8 +176,12 @@ cli_json *cli_json_open(cli_session *session, cli_json_file **file, int *exit_co
 int cli_json_finish(cli_json_file *file) {
   if (!file)
     return CLI_DONE;
-  cli_json_end(&file->json); /* what it says of the stream, commit finds again */
-  conic_status status = conic_output_commit(file->output);
+  int is_whole = cli_json_end(&file->json); /* what it says of a file's stream, commit finds again */
+  conic_status status = CONIC_OK;
+  if (file->memory)
+    status = fclose(file->memory) == 0 && is_whole ? CONIC_OK : CONIC_ERROR_MEMORY;
+  else
+    status = conic_output_commit(file->output);
   free(file);
   return cli_exit_of(status);
 }

@@ -11,6 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/host.h"
+#include "cli/host_keeps.h"
 #include "cli/stopper.h"
 #include "core/base/clock.h"
 #include "core/files/guard.h"
@@ -26,6 +28,18 @@ static atomic_int has_failed;
 static atomic_llong interrupted_at_ms;
 static atomic_int first_signal;
 static atomic_int pipe_is_closed; /* what is written to a pipe has no reader any more */
+
+/* Of the run that this thread is in; null: the program's own. */
+static _Thread_local cli_host *thread_host;
+
+void cli_session_host(cli_session *session) {
+  thread_host = session ? session->host : NULL;
+}
+
+static void say_to_host(const cli_host *host, conic_log_level level, const char *message) {
+  if (host->say)
+    host->say(host->cookie, (int)level, message);
+}
 
 double cli_seconds(void) {
   return conic_seconds_now();
@@ -54,48 +68,63 @@ static void erase_bar(void) {
 }
 
 /* One line, whatever the names in it hold. */
-static void print_message(const char *label, const char *format, va_list arguments) {
+static void print_message(conic_log_level level, const char *format, va_list arguments) {
+  static const char *const labels[] = {"error: ", "warning: ", ""};
   char message[2048];
   vsnprintf(message, sizeof message, format, arguments);
   for (char *c = message; *c; c++)
     if ((unsigned char)*c < 0x20 || *c == 0x7F)
       *c = '?';
+  if (thread_host) {
+    say_to_host(thread_host, level, message);
+    return;
+  }
   pthread_mutex_lock(&screen);
   erase_bar();
-  fprintf(stderr, "conic: %s%s\n", label, message);
+  fprintf(stderr, "conic: %s%s\n", labels[level], message);
   pthread_mutex_unlock(&screen);
+}
+
+/* What a host is to know of a failure that is told here first. */
+static void note_failure(int exit_code) {
+  if (thread_host && thread_host->status == CONIC_OK)
+    thread_host->status = (int)(exit_code == CLI_USAGE   ? CONIC_ERROR_ARGUMENT
+                                : exit_code == CLI_INPUT ? CONIC_ERROR_INPUT
+                                                         : CONIC_ERROR_UNSUPPORTED);
 }
 
 int cli_usage(const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  print_message("error: ", format, arguments);
+  print_message(CONIC_LOG_ERROR, format, arguments);
   va_end(arguments);
+  note_failure(CLI_USAGE);
   return CLI_USAGE;
 }
 
 int cli_error(int exit_code, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  print_message("error: ", format, arguments);
+  print_message(CONIC_LOG_ERROR, format, arguments);
   va_end(arguments);
+  note_failure(exit_code);
   return exit_code;
 }
 
 void cli_note(const cli_session *session, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  if (!session->is_quiet)
-    print_message("", format, arguments);
+  if (!session->is_quiet || session->host)
+    print_message(CONIC_LOG_INFO, format, arguments);
   va_end(arguments);
 }
 
 void cli_warn(const cli_session *session, const char *format, ...) {
   va_list arguments;
-  if (session->is_quiet)
+  if (session->is_quiet && !session->host)
     return;
   va_start(arguments, format);
-  print_message("warning: ", format, arguments);
+  print_message(CONIC_LOG_WARNING, format, arguments);
   va_end(arguments);
 }
 
@@ -109,6 +138,8 @@ int cli_exit_after_signals(int exit_code) {
 }
 
 int cli_exit_of(conic_status status) {
+  if (thread_host && status != CONIC_OK && thread_host->status == CONIC_OK)
+    thread_host->status = (int)status;
   switch (status) {
   case CONIC_OK:
     return CLI_DONE;
@@ -192,6 +223,10 @@ static int can_draw_bar(void) {
 
 static int on_progress(void *cookie, const char *task, double fraction) {
   cli_session *session = cookie;
+  const cli_host *host = session->host;
+  if (host)
+    return host->progress && host->progress(host->cookie, session->part ? session->part : task,
+                                            session->part ? share_of_parts(session, fraction) : fraction);
   if (session->has_bar) {
     pthread_mutex_lock(&screen);
     show_progress(session, task, fraction);
@@ -202,6 +237,10 @@ static int on_progress(void *cookie, const char *task, double fraction) {
 
 static void on_log(void *cookie, conic_log_level level, const char *message) {
   cli_session *session = cookie;
+  if (session->host) {
+    say_to_host(session->host, level, message);
+    return;
+  }
   if ((level == CONIC_LOG_WARNING && session->is_quiet) || (level == CONIC_LOG_INFO && !session->is_verbose))
     return;
   if (level == CONIC_LOG_ERROR && atomic_exchange(&has_failed, 1) && !session->is_verbose)
@@ -251,6 +290,20 @@ static void catch_signal(int signal_number, void (*handler)(int)) {
   sigaction(signal_number, &action, NULL);
 }
 
+/* A host's runs leave the process as it is: its signals, its terminal. */
+static int open_hosted(cli_session *session, const conic_context_options *options) {
+  cli_host *host = session->host;
+  conic_status status = cli_kept_context(host->kept, options, &session->context);
+  if (status != CONIC_OK) {
+    host->status = (int)status;
+    return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
+  }
+  conic_guard_inputs(session->context, session->replaced_path);
+  for (size_t i = 0; i < host->n_loans && status == CONIC_OK; i++)
+    status = conic_lend(session->context, host->loans[i].name, host->loans[i].what);
+  return cli_exit_of(status);
+}
+
 int cli_session_open(cli_session *session) {
   conic_context_options options;
   conic_context_options_init(&options);
@@ -263,6 +316,8 @@ int cli_session_open(cli_session *session) {
   options.isa = session->isa;
   if (session->max_texture_mib)
     options.max_texture_bytes = (size_t)session->max_texture_mib << 20;
+  if (session->host)
+    return open_hosted(session, &options);
   conic_status status = conic_context_create(&options, &session->context);
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
@@ -278,6 +333,11 @@ int cli_session_open(cli_session *session) {
 }
 
 void cli_session_close(cli_session *session) {
+  if (session->host) {
+    cli_kept_leave(session->host->kept, session->context);
+    session->context = NULL;
+    return;
+  }
   erase_bar();
   cli_stopper_end();
   conic_context_destroy(session->context);

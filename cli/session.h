@@ -31,10 +31,13 @@ typedef struct cli_session {
   /* How cli_parse answers --help; null: as text. `help` is its own. */
   void (*show_help)(struct cli_session *session, const struct cli_option_table *table);
   void *help;
+  struct cli_host *host; /* cli/host.h: what runs the command within itself; null: a shell */
 } cli_session;
 
 /* Makes the context. Returns CLI_DONE or, after an error message, the exit code. */
 int cli_session_open(cli_session *session);
+/* From now on what this thread prints for people is said to the session's host, if it has one; null: no longer. */
+void cli_session_host(cli_session *session);
 /* Ends the context; fine where it was never made. */
 void cli_session_close(cli_session *session);
 

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "core/base/loan.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/estimate/estimate.h"
@@ -14,6 +15,8 @@
 typedef struct drawing_source {
   conic_source base;
   conic_splats splats;
+  int is_lent;      /* the splats are a caller's, */
+  float *unstrided; /* but for arrays with strides, of which this holds copies */
   conic_triangles triangles;
   conic_repairs repairs; /* of all inputs */
   size_t *ends;          /* of each input, the splats of it and those before it; then likewise the triangles */
@@ -238,6 +241,26 @@ static conic_status measure_drawing(drawing_source *d) {
   return status;
 }
 
+/* What is lent and needs no repair is drawn where it lies. */
+static conic_status borrow_splats(drawing_source *d, const char *path, const conic_source_options *options) {
+  conic_context *context = d->base.context;
+  const conic_splats *lent = conic_loan_find(context, path, "splats");
+  if (!lent || (options->coloring && (conic_coloring_is_asked(options) || !lent->color[0])))
+    return CONIC_OK;
+  conic_status status = conic_splats_enter(context, path, lent, &d->splats, &d->unstrided);
+  if (status != CONIC_OK)
+    return status;
+  d->is_lent = conic_splats_need_no_repair(context, &d->splats);
+  if (d->is_lent) {
+    d->ends[0] = d->splats.count;
+    return CONIC_OK;
+  }
+  conic_memory_release(context, d->unstrided);
+  d->unstrided = NULL;
+  memset(&d->splats, 0, sizeof d->splats);
+  return CONIC_OK;
+}
+
 static conic_status open_drawing(conic_source *source, const char *const *paths, size_t n_paths,
                                  const conic_source_options *options) {
   drawing_source *d = (drawing_source *)source;
@@ -248,7 +271,9 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
   if (!d->ends)
     return CONIC_ERROR_MEMORY;
   d->n_inputs = n_paths;
-  for (size_t i = 0; i < n_paths && status == CONIC_OK; i++) {
+  if (n_paths == 1)
+    status = borrow_splats(d, paths[0], options);
+  for (size_t i = 0; i < n_paths && status == CONIC_OK && !d->is_lent; i++) {
     double own[3] = {0.0, 0.0, 0.0};
     status = read_into_drawing(d, paths[i], options, own);
     d->ends[i] = d->splats.count;
@@ -298,7 +323,9 @@ static void close_drawing(conic_source *source) {
     conic_memory_release(source->context, d->facing.tangent_u[axis]);
     conic_memory_release(source->context, d->facing.tangent_v[axis]);
   }
-  conic_splats_release(source->context, &d->splats);
+  if (!d->is_lent)
+    conic_splats_release(source->context, &d->splats);
+  conic_memory_release(source->context, d->unstrided);
   conic_triangles_release(source->context, &d->triangles);
   conic_memory_release(source->context, d->ends);
 }

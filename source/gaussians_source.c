@@ -2,14 +2,17 @@
 #include <string.h>
 
 #include "conic/opencl.h"
+#include "core/base/loan.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
+#include "gaussians/scene/gaussian_set.h"
 #include "source/source_kind.h"
 
 typedef struct gaussians_source {
   conic_source base;
   conic_gaussians gaussians;
+  int is_lent; /* and not the source's to release */
   conic_gaussian_options options;
   conic_gaussian_statistics drawn;
 } gaussians_source;
@@ -67,7 +70,12 @@ static conic_status open_gaussians(conic_source *source, const char *const *path
   conic_source_scale *scale = &source->scale;
   (void)n_paths;
   g->options = *options->gaussians;
-  conic_status status = conic_gaussians_read(source->context, paths[0], NULL, &g->gaussians);
+  const conic_gaussians *lent = conic_loan_find(source->context, paths[0], "gaussians");
+  conic_status status = lent ? conic_gaussians_check(source->context, lent, paths[0])
+                             : conic_gaussians_read(source->context, paths[0], NULL, &g->gaussians);
+  g->is_lent = lent && status == CONIC_OK;
+  if (g->is_lent)
+    g->gaussians = *lent;
   if (status != CONIC_OK)
     return status;
   if (conic_gaussians_bounds(&g->gaussians, scale->minimum, scale->maximum) == 0)
@@ -84,7 +92,9 @@ const conic_gaussians *conic_source_gaussians(const conic_source *source) {
 }
 
 static void close_gaussians(conic_source *source) {
-  conic_gaussians_release(source->context, &((gaussians_source *)source)->gaussians);
+  gaussians_source *g = (gaussians_source *)source;
+  if (!g->is_lent)
+    conic_gaussians_release(source->context, &g->gaussians);
 }
 
 /* The picture with several samples a pixel. */

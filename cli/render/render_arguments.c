@@ -68,7 +68,7 @@ int cli_render_views_check(const cli_session *session, cli_render_job *job) {
 static int check_outputs(const cli_session *session, cli_render_job *job, int is_streaming_given) {
   const char *paths[N_PATHS];
   int answer = CLI_DONE;
-  if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path && !job->boxes_path &&
+  if (!session->host && job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path && !job->boxes_path &&
       !job->progressive_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)

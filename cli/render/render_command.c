@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/host_keeps.h"
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
 #include "conic/gaussian_judge.h"
@@ -214,10 +215,10 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   job->camera_ms += 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)
     status = cli_choose_exposure(session, job, &camera);
-  if (conic_image_planes(image) && (image->width != camera.width || image->height != camera.height))
-    conic_image_release(session->context, image);
+  if (session->host || image->width != camera.width || image->height != camera.height)
+    cli_host_release_image(session, image);
   if (status == CONIC_OK && !conic_image_planes(image))
-    status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
+    status = cli_host_allocate_image(session, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
     status = job->progressive_path ? cli_render_levels(session, job, &camera, image, &repeats[i])
                                    : cli_render_picture(job, &camera, image, &repeats[i]);
@@ -247,13 +248,17 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     status = write_clusters(session, job, image, i_frame);
   if (status == CONIC_OK)
     status = write_boxes(session, job, &camera, image, i_frame);
-  return status == CONIC_OK ? write_deep(session, job, &camera, image, i_frame) : status;
+  if (status == CONIC_OK)
+    status = write_deep(session, job, &camera, image, i_frame);
+  if (status == CONIC_OK)
+    cli_host_take(session, i_frame, job->cameras.count ? job->cameras.names[job->i_view] : "", image, &camera);
+  return status;
 }
 
 /* Only where they are reported: it takes a while. */
 static void hash_image(const cli_session *session, cli_render_job *job, const conic_image *image) {
   double start = cli_seconds();
-  for (int i = 0; i < CONIC_N_PLANES && session->json_path; i++)
+  for (int i = 0; i < CONIC_N_PLANES && session->json_path && !session->host; i++) /* a host has the planes */
     job->hashes[i] = conic_image_hash(image, (conic_plane)i);
   job->hash_ms = 1e3 * (cli_seconds() - start);
 }
@@ -276,7 +281,7 @@ static int render_scene(cli_session *session, cli_render_job *job) {
     exit_code = cli_render_report(session, job, &image);
   } else
     exit_code = cli_exit_of(status);
-  conic_image_release(session->context, &image);
+  cli_host_release_image(session, &image);
   conic_cryptomatte_manifest_release(session->context, &job->manifest);
   free(repeats);
   return exit_code;

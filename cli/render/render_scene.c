@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/host_keeps.h"
 #include "cli/render/frames.h"
 #include "cli/render/light_options.h"
 #include "cli/render/projection.h"
@@ -37,7 +38,9 @@ conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
     cli_error(CLI_INPUT, "%s: cannot read: %s", texture_path, errno ? strerror(errno) : "it is no regular file");
     return CONIC_ERROR_INPUT;
   }
-  conic_status status = cli_device_open(session, &job->device, &job->renderer);
+  conic_status status = cli_kept_renderer(session, &job->device, &job->renderer)
+                            ? CONIC_OK
+                            : cli_device_open(session, &job->device, &job->renderer);
   if (status == CONIC_OK && job->camera_path)
     status = read_views(session, job);
   return status;
@@ -82,8 +85,12 @@ static conic_status stand_upright(cli_session *session, cli_render_job *job) {
 
 conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   cli_deadline_open(job);
-  conic_status status =
-      conic_source_open(session->context, job->inputs, (size_t)job->n_inputs, &job->opening, &job->source);
+  job->source = cli_kept_source(session);
+  conic_status status = job->source ? CONIC_OK
+                                    : conic_source_open(session->context, job->inputs, (size_t)job->n_inputs,
+                                                        &job->opening, &job->source);
+  if (status == CONIC_OK)
+    cli_keep_source(session, job->source);
   if (status == CONIC_OK)
     status = resolve_lengths(session, job);
   if (status == CONIC_OK)
@@ -99,8 +106,9 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
 
 void cli_scene_release(cli_session *session, cli_render_job *job) {
   conic_cameras_release(session->context, &job->cameras);
-  conic_renderer_destroy(job->renderer);
-  conic_source_close(job->source);
+  cli_keep_renderer(session, &job->device, job->renderer);
+  if (!cli_source_is_kept(session, job->source))
+    conic_source_close(job->source);
 }
 
 /* What lies flat shows more of itself from higher up. */

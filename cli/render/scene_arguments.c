@@ -230,6 +230,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   if (answer != CLI_DONE)
     return answer;
   choose_quality(&raw, job, &method);
+  job->is_samples_given = raw.is_samples_given || raw.is_quality_given;
   job->is_patch = method == CONIC_N_METHODS;
   if (!job->is_patch)
     o->method = (conic_method)method;

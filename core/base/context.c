@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/base/loan.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
@@ -68,6 +69,7 @@ void conic_context_destroy(conic_context *context) {
   if (!context)
     return;
   conic_pool_destroy(context, context->pool);
+  conic_take_back_loans(context);
   conic_memory_release(context, context->inputs);
   for (conic_lasting *block = context->lasting, *next; block; block = next) {
     next = block->next;

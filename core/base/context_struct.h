@@ -23,6 +23,12 @@ typedef struct conic_lasting {
   struct conic_lasting *next;
 } conic_lasting;
 
+/* conic/loan.h */
+typedef struct conic_loan {
+  char *name;
+  const void *what;
+} conic_loan;
+
 struct conic_context {
   conic_context_options options; /* allocate, release and threads are set */
   conic_pool *pool;
@@ -35,6 +41,8 @@ struct conic_context {
   conic_file_identity replaceable;
   pthread_mutex_t outputs_lock;
   struct conic_output *outputs; /* core/files/file.h: those with temporary files */
+  conic_loan *loans;
+  size_t n_loans, loans_room;
 };
 
 /* Starts the threads beside the calling one; fewer where the system gives fewer, and counts them. Errors: MEMORY. */

@@ -3,6 +3,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "core/base/loan.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/cameras/camera_list.h"
@@ -223,7 +224,10 @@ conic_status conic_cameras_read(conic_context *context, const char *path, const 
       own->height < 0 || own->height > 65535 || !own->width != !own->height)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the options of its cameras make no sense", path);
   cameras->path = conic_camera_text(context, list.name, strlen(list.name));
-  conic_status status = cameras->path ? read_camera_path(&list, path) : CONIC_ERROR_MEMORY;
+  const conic_camera *lent = conic_loan_find(context, path, "camera");
+  conic_status status = !cameras->path ? CONIC_ERROR_MEMORY
+                        : lent         ? conic_camera_list_add(&list, lent, "", 0)
+                                       : read_camera_path(&list, path);
   if (status != CONIC_OK)
     conic_cameras_release(context, cameras);
   return status;

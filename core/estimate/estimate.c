@@ -6,6 +6,7 @@
 #include "core/splats/degrees.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -302,6 +303,38 @@ static conic_status estimate_sharp_points(conic_context *context, const conic_es
   if (status == CONIC_OK)
     model->points = copy.points;
   return status;
+}
+
+/* A set, and what has been found in it. */
+typedef struct sound_search {
+  const conic_splats *splats;
+  atomic_int is_unsound;
+} sound_search;
+
+static void look_for_unsound(void *data, size_t begin, size_t end) {
+  sound_search *search = data;
+  const conic_splats *s = search->splats;
+  int n_bad = 0;
+  for (size_t i = begin; i < end; i++) {
+    float sum = 0.0f; /* stays that, or becomes NaN */
+    for (int axis = 0; axis < 3; axis++)
+      sum += s->position[axis][i] * 0.0f + s->tangent_u[axis][i] * 0.0f + s->tangent_v[axis][i] * 0.0f;
+    int has_u = s->tangent_u[0][i] != 0.0f || s->tangent_u[1][i] != 0.0f || s->tangent_u[2][i] != 0.0f;
+    int has_v = s->tangent_v[0][i] != 0.0f || s->tangent_v[1][i] != 0.0f || s->tangent_v[2][i] != 0.0f;
+    n_bad += sum != 0.0f || !has_u || !has_v;
+  }
+  for (int c = 0; c < 3 && s->color[0]; c++)
+    for (size_t i = begin; i < end; i++)
+      n_bad += !conic_is_finite(s->color[c][i]);
+  if (n_bad)
+    atomic_store(&search->is_unsound, 1);
+}
+
+int conic_splats_need_no_repair(conic_context *context, const conic_splats *splats) {
+  sound_search search = {.splats = splats};
+  return splats->count > 0 && splats->tangent_u[0] && splats->n_clips == 0 &&
+         conic_slots_for(context, splats->count, look_for_unsound, &search, 0.0, 0.0) == CONIC_OK &&
+         !atomic_load(&search.is_unsound);
 }
 
 conic_status conic_model_to_splats(conic_context *context, const conic_estimate_options *given, conic_model *model,

@@ -35,6 +35,9 @@ typedef struct conic_estimate {
 #define CONIC_OUTLINE_BLEND 1.4
 #define CONIC_OUTLINE_RATIO 0.2 /* the least ratio of minor to major axis */
 
+/* Whether conic_model_to_splats, without faces or features, would leave a set as it is, whatever its options. */
+int conic_splats_need_no_repair(conic_context *context, const conic_splats *splats);
+
 /* The unit vector along vector i of three arrays; 0 where there is none. */
 int conic_unit_vector(float *const arrays[3], size_t i, double unit[3]);
 

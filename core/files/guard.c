@@ -17,6 +17,7 @@ static conic_file_identity identify(const struct stat *found) {
 void conic_guard_inputs(conic_context *context, const char *replaceable) {
   struct stat found;
   context->guards_inputs = 1;
+  context->n_inputs = 0;
   memset(&context->replaceable, 0, sizeof context->replaceable);
   if (replaceable && stat(replaceable, &found) == 0)
     context->replaceable = identify(&found);

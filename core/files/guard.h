@@ -6,7 +6,7 @@
 
 #include "conic/context.h"
 
-/* From now on what is opened for reading is noted, and opening it for writing fails; but for what `replaceable`, which
+/* From now on, as if nothing had been read before, what is opened for reading is noted, and opening it for writing fails; but for what `replaceable`, which
  * may be null, is now the name of. */
 void conic_guard_inputs(conic_context *context, const char *replaceable);
 

@@ -11,6 +11,7 @@
 #include "core/files/input.h"
 #include "core/formats/file_kinds.h"
 #include "core/formats/las.h"
+#include "core/formats/model_loan.h"
 #include "core/formats/obj.h"
 #include "core/formats/pcd.h"
 #include "core/formats/ply_read.h"
@@ -164,6 +165,12 @@ conic_status conic_model_read(conic_context *context, const char *path, const co
   conic_input input;
   memset(model, 0, sizeof *model);
   conic_status status = conic_read_options_check(context, path, options, &settings);
+  if (status == CONIC_OK && conic_model_is_lent(context, path)) {
+    status = conic_model_copy_lent(context, path, &settings, model);
+    if (status != CONIC_OK)
+      conic_model_release(context, model);
+    return status;
+  }
   if (status == CONIC_OK)
     status = conic_input_open(context, path, &input);
   if (status != CONIC_OK)

@@ -3,6 +3,7 @@
 
 #include "core/assimp/assimp_kinds.h"
 #include "core/base/memory.h"
+#include "core/formats/model_loan.h"
 #include "core/formats/model_read.h"
 #include "core/formats/raw_colors.h"
 
@@ -73,12 +74,24 @@ static conic_status pass_twice(streaming *s, conic_input *input, const char *pat
   return status;
 }
 
+static conic_status stream_lent(streaming *s, const char *name) {
+  conic_model model;
+  memset(&model, 0, sizeof model);
+  conic_status status = conic_model_copy_lent(s->context, name, s->options, &model);
+  if (status == CONIC_OK)
+    status = s->receive(s->cookie, &model.points);
+  conic_model_release(s->context, &model);
+  return status;
+}
+
 conic_status conic_model_stream(conic_context *context, const char *path, const conic_read_options *options,
                                 conic_batch_receiver *receive, void *cookie) {
   conic_read_options settings;
   conic_input input;
   streaming s = {.context = context, .options = &settings, .receive = receive, .cookie = cookie};
   conic_status status = conic_read_options_check(context, path, options, &settings);
+  if (status == CONIC_OK && conic_model_is_lent(context, path))
+    return stream_lent(&s, path);
   if (status == CONIC_OK)
     status = conic_input_open(context, path, &input);
   if (status != CONIC_OK)

@@ -6,12 +6,14 @@
 #include <sys/stat.h>
 
 #include "conic/image.h"
+#include "core/base/loan.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/files/guard.h"
 #include "core/image/image_common.h"
 #include "core/pictures/image_exr.h"
 #include "core/pictures/image_foreign.h"
+#include "core/pictures/image_numpy.h"
 #include "core/pictures/image_pfm.h"
 #include "core/pictures/image_png.h"
 
@@ -109,11 +111,33 @@ conic_status conic_image_write(conic_context *context, const char *path, const c
   return conic_image_write_as(context, path, image, NULL);
 }
 
+static conic_status copy_lent(conic_context *context, const char *name, const conic_image *lent, conic_image *image) {
+  unsigned planes = conic_image_planes(lent);
+  if (!planes)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the image has no planes", name);
+  conic_status status = conic_image_allocate(context, lent->width, lent->height, planes, image);
+  if (status != CONIC_OK)
+    return status;
+  conic_image copy = *lent;
+  memcpy(copy.planes, image->planes, sizeof copy.planes);
+  copy.manifest = NULL;
+  size_t n_pixels = (size_t)lent->width * (size_t)lent->height;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (copy.planes[i])
+      memcpy(copy.planes[i], lent->planes[i], n_pixels * 4 * (size_t)conic_plane_describe((conic_plane)i)->n_channels);
+  *image = copy;
+  return CONIC_OK;
+}
+
 conic_status conic_image_read(conic_context *context, const char *path, conic_image *image) {
   unsigned char start[4] = {0};
+  unsigned most_code;
   if (!path || !image)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: no file name, or no place for the image");
   memset(image, 0, sizeof *image);
+  const conic_image *lent = conic_loan_find(context, path, "image");
+  if (lent)
+    return copy_lent(context, path, lent, image);
   struct stat found;
   if (stat(path, &found) == 0 && !S_ISREG(found.st_mode)) /* which might not end, or never begin */
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: it is %s", path,
@@ -138,5 +162,7 @@ conic_status conic_image_read(conic_context *context, const char *path, conic_im
     return conic_pfm_read(context, path, image);
   if (n == 4 && memcmp(start, "\x89PNG", 4) == 0)
     return conic_png_read(context, path, image);
+  if (n == 4 && (memcmp(start, "\x93NUM", 4) == 0 || memcmp(start, "PK\3\4", 4) == 0))
+    return conic_numpy_image_read(context, path, image, &most_code);
   return conic_foreign_read(context, path, image);
 }

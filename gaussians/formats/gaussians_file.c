@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "core/base/loan.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
@@ -12,6 +13,7 @@
 #include "core/files/inflate.h"
 #include "core/files/zip.h"
 #include "gaussians/formats/gaussian_formats.h"
+#include "gaussians/formats/gaussians_loan.h"
 
 typedef struct kind_facts {
   const char *name, *ending, *frame;
@@ -230,11 +232,15 @@ static int look_for_scene(conic_context *context, const char *path, int *is_plai
 
 int conic_gaussians_is_file(conic_context *context, const char *path) {
   int is_plain_ply;
+  if (conic_loan_is_named(path, "gaussians"))
+    return 1;
   return look_for_scene(context, path, &is_plain_ply);
 }
 
 int conic_gaussians_is_packed(conic_context *context, const char *path) {
   int is_plain_ply;
+  if (conic_loan_is_named(path, "gaussians"))
+    return 1;
   return look_for_scene(context, path, &is_plain_ply) && !is_plain_ply;
 }
 
@@ -323,6 +329,9 @@ conic_status conic_gaussians_read(conic_context *context, const char *path, cons
   conic_gaussians_read_options_init(&own);
   if ((options && !conic_options_take(&own, options)) || own.most_sh_degree < 0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the reader's options have no meaning", path);
+  const conic_gaussians *lent = conic_loan_find(context, path, "gaussians");
+  if (lent)
+    return conic_gaussians_copy_lent(context, path, lent, &own, gaussians);
   conic_status status = conic_input_open(context, resolved, &input);
   if (status != CONIC_OK)
     return status;

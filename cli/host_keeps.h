@@ -1,0 +1,34 @@
+/* What a command of a host's does otherwise than one of a shell's: where its pictures and its JSON go, and what it
+ * keeps. Without a host each of these does what the program does, or nothing. */
+#ifndef CONIC_HOST_KEEPS_H
+#define CONIC_HOST_KEEPS_H
+
+#include "cli/device_option.h"
+#include "cli/host.h"
+#include "cli/session.h"
+
+/* The stream into the host's JSON, to be closed; null without memory. */
+FILE *cli_host_open_json(cli_host *host);
+
+/* conic_image_allocate and conic_image_release; of a host, of its arrays. */
+conic_status cli_host_allocate_image(cli_session *session, int width, int height, unsigned planes, conic_image *image);
+void cli_host_release_image(cli_session *session, conic_image *image);
+/* Hands a frame over. */
+void cli_host_take(const cli_session *session, int i_frame, const char *view, const conic_image *image,
+                   const conic_camera *camera);
+
+/* A context of these options: the kept one where it has the same, else a new one. */
+conic_status cli_kept_context(cli_kept *kept, const conic_context_options *options, conic_context **context);
+/* Ends a context that is not kept; of one that is, takes back the loans. */
+void cli_kept_leave(cli_kept *kept, conic_context *context);
+
+/* The kept source of the host's key, or null; keeps one, which stays what it is for this run; whether one is. */
+conic_source *cli_kept_source(const cli_session *session);
+void cli_keep_source(const cli_session *session, conic_source *source);
+int cli_source_is_kept(const cli_session *session, const conic_source *source);
+
+/* Whether a renderer of that device is kept, which this run then has; keeps one, or destroys it. */
+int cli_kept_renderer(const cli_session *session, cli_device *device, conic_renderer **renderer);
+void cli_keep_renderer(const cli_session *session, const cli_device *device, conic_renderer *renderer);
+
+#endif

@@ -1,0 +1,19 @@
+# The library with the program's commands in it (cli/host.h), for Python: what `pip install ./python` puts into a wheel,
+# with the modules beside it.
+add_library(conic_hosted SHARED $<TARGET_OBJECTS:conic_objects> $<TARGET_OBJECTS:conic_cli_objects>)
+set_target_properties(conic_hosted PROPERTIES OUTPUT_NAME conic-hosted
+  LIBRARY_OUTPUT_DIRECTORY ${conic_library_folder} LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/hosted.map)
+target_link_libraries(conic_hosted PRIVATE ${conic_libraries})
+target_link_options(conic_hosted PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/hosted.map)
+if(CONIC_SANITIZE)
+  target_link_options(conic_hosted PRIVATE -fsanitize=${CONIC_SANITIZE})
+endif()
+if(conic_modules)
+  add_dependencies(conic_hosted ${conic_modules})
+endif()
+if(SKBUILD)
+  install(TARGETS conic_hosted LIBRARY DESTINATION conic/library COMPONENT python)
+  foreach(module ${conic_modules})
+    install(TARGETS ${module} LIBRARY DESTINATION conic/library/conic COMPONENT python)
+  endforeach()
+endif()

@@ -1,0 +1,30 @@
+/* Loans: what lies in a program's memory, under a name that functions take in place of a file's. So arrays can be drawn
+ * as a source, judged or built upon like whatever is read from a disk. */
+#ifndef CONIC_LOAN_H
+#define CONIC_LOAN_H
+
+#include "conic/context.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* From now on `name`, which is copied, stands for `what`, which the context reads and never changes; it is to stay
+ * until it is taken back. The name begins with what it stands for:
+ *   memory:splats:     a conic_splats, which conic_model_read and conic_model_stream take; strides are allowed
+ *   memory:triangles:  a conic_triangles of one normal and one texture coordinate a vertex, and without materials;
+ *                      likewise, but for strides
+ *   memory:gaussians:  a conic_gaussians, which conic_gaussians_read takes
+ *   memory:image:      a conic_image, which conic_image_read takes
+ *   memory:camera:     a conic_camera, which conic_cameras_read takes
+ * Readers copy what they take; drawing a source of one set of splats or of Gaussians does not, where its arrays lie
+ * side by side. Errors: ARGUMENT (another name, or a set that is not whole), MEMORY. */
+CONIC_API conic_status conic_lend(conic_context *context, const char *name, const void *what);
+
+/* Takes back all that was lent. Sources that were opened of it are to be closed before. */
+CONIC_API void conic_take_back_loans(conic_context *context);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

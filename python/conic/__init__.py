@@ -1,0 +1,26 @@
+"""conic: a software rasteriser for surface splatting, and a judge of Gaussian renderers.
+
+    import conic
+    picture = conic.render(conic.open("scan.ply"), size=(640, 480))
+    picture["rgba"], picture["Z"], picture.statistics["hash"]["rgba"]
+
+Functions are the program's commands, and their keywords the commands' options; pictures are the program's to the bit.
+"""
+
+from ._camera import Camera, list_cameras
+from ._commands import (command, convert, devices, diff, explain, gradient, hybrid, info, judge, layers, make, mls,
+                        octree, prepare, render, verify)
+from ._library import features, release, version
+from ._picture import Picture
+from ._scene import Gaussians, Mesh, Scene, Splats, open
+from .errors import (ArgumentError, Cancelled, ConicWarning, Error, InputError, OutOfMemoryError, OutputError,
+                     UnsupportedError)
+
+__version__ = version()
+
+__all__ = [
+    "ArgumentError", "Camera", "Cancelled", "ConicWarning", "Error", "Gaussians", "InputError", "Mesh",
+    "OutOfMemoryError", "OutputError", "Picture", "Scene", "Splats", "UnsupportedError", "command", "convert",
+    "devices", "diff", "explain", "features", "gradient", "hybrid", "info", "judge", "layers", "list_cameras", "make",
+    "mls", "octree", "open", "prepare", "release", "render", "verify", "version"
+]

@@ -1,0 +1,337 @@
+"""The program's commands as functions. Options have the program's names, with _ for -; None is the program's default.
+
+`size=(640, 480)`, `eye=(1, 2, 3)`, `light=["studio", "camera:1,1,2"]`, `smooth=True`, `epsilon="2x"`: numbers, words,
+sequences of numbers, and True for what is a flag; where a word is Python's own, with a _ behind it (`as_="mesh"`)."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import tempfile
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
+
+import numpy
+
+from . import _layouts as layouts
+from ._arrays import as_numpy
+from ._camera import Camera, PathLike
+from ._library import Frames, Kept, kept_of_thread, run
+from ._picture import Picture, encode_png
+from ._scene import AnyScene, Scene, _InMemory
+from .errors import ArgumentError
+
+Loans = List[Tuple[str, ctypes.Structure]]
+AnyCamera = Union[Camera, PathLike]
+Options = Any
+
+# What may differ between pictures of one source that is open.
+_OF_THE_VIEW = {"size", "camera", "view", "azimuth", "elevation", "fov", "zoom", "eye", "samples", "aov", "o", "frames",
+                "turntable", "repeat", "format", "exr", "compression"}
+_REPEATED = {"light", "o"}
+
+
+def _value(name: str, value: Any) -> str:
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
+    if isinstance(value, (bool, int, numpy.integer)):
+        return str(int(value))
+    if isinstance(value, (float, numpy.floating)):
+        return repr(float(value))
+    parts = list(as_numpy(value, name)) if not isinstance(value, (list, tuple)) else value
+    if name == "size" and len(parts) == 2:
+        return f"{int(parts[0])}x{int(parts[1])}"
+    return ",".join(_value(name, part) for part in parts)
+
+
+class _Call:
+    """The arguments of a run, and what it is lent."""
+
+    def __init__(self, command: str) -> None:
+        self.words: List[str] = [command, "--quiet"]
+        self.key: List[str] = [command]
+        self.inputs: List[str] = []
+        self.loans: Loans = []
+        self.scene: Optional[Scene] = None
+        self._folder: Optional[tempfile.TemporaryDirectory] = None
+
+    def lend(self, kind: str, struct: ctypes.Structure) -> str:
+        name = f"memory:{kind}:{len(self.loans) + 1}"
+        self.loans.append((name, struct))
+        return name
+
+    def add(self, name: str, value: Any) -> None:
+        """An option; nothing for None and False."""
+        name = {"output": "o", "planes": "aov"}.get(name, name).rstrip("_").replace("_", "-")
+        if value is None or value is False:
+            return
+        is_list = name in _REPEATED and isinstance(value, (list, tuple)) and not all(
+            isinstance(part, (int, float)) for part in value)
+        for part in value if is_list else [value]:
+            dashed = f"--{name}" if len(name) > 1 or name == "h" else f"-{name}"
+            words = [dashed] if part is True else [f"{dashed}={_value(name, part)}"] if dashed[1] == "-" else [
+                dashed, _value(name, part)]
+            if name == "o" and words[-1] == "-":
+                raise ArgumentError("output: pictures are returned; - is for a shell")
+            self.words += words
+            if name not in _OF_THE_VIEW:
+                self.key += words
+
+    def options(self, options: Dict[str, Any]) -> None:
+        for name, value in options.items():
+            if name in ("json", "quiet", "verbose", "help"):
+                raise ArgumentError(f"{name}: that is for a shell; statistics are returned")
+            self.add(name, value)
+
+    def input(self, scene: Any) -> None:
+        """A scene, or several of them as one."""
+        if isinstance(scene, Scene):
+            self.scene = scene
+            self.inputs += scene.paths
+        elif isinstance(scene, _InMemory):
+            self.inputs.append(self.lend(scene._kind, scene._struct))
+        elif isinstance(scene, (str, os.PathLike)):
+            self.inputs.append(os.fspath(scene))
+        elif isinstance(scene, (list, tuple)) and scene:
+            for part in scene:
+                self.input(part)
+        else:
+            raise ArgumentError(f"a scene is a path, or of conic.open, Splats, Mesh or Gaussians; not {type(scene)}")
+
+    def camera(self, camera: Optional[AnyCamera]) -> None:
+        if isinstance(camera, Camera):
+            self.words.append("--camera=" + self.lend("camera", camera._struct))
+        elif camera is not None:
+            self.words.append(f"--camera={os.fspath(camera)}")
+
+    def picture(self, picture: Any, *, is_display: bool = False) -> str:
+        """The name of a picture: of a file, or of arrays, which are lent; bytes go through a PNG."""
+        if isinstance(picture, (str, os.PathLike)):
+            return os.fspath(picture)
+        if isinstance(picture, dict):
+            picture = picture if isinstance(picture, Picture) else Picture(
+                {name: as_numpy(plane, name) for name, plane in picture.items() if name != "statistics"})
+            return self.lend("image", picture.image())
+        pixels = as_numpy(picture, "picture")
+        while pixels.ndim > 3 and pixels.shape[0] == 1:
+            pixels = pixels[0]
+        if pixels.ndim != 3 or pixels.shape[2] not in (3, 4):
+            raise ArgumentError(f"picture: its shape is {pixels.shape}, and (H, W, 3) or (H, W, 4) is needed")
+        if pixels.dtype == numpy.uint8:
+            self._folder = self._folder or tempfile.TemporaryDirectory()
+            path = os.path.join(self._folder.name, f"picture{len(os.listdir(self._folder.name))}.png")
+            with open(path, "wb") as file:
+                file.write(encode_png(numpy.ascontiguousarray(pixels)))
+            return path
+        rgba = numpy.ones(pixels.shape[:2] + (4,), numpy.float32)
+        rgba[..., :pixels.shape[2]] = pixels
+        image = Picture({"rgba": rgba}).image()
+        image.lacks_alpha, image.is_display = int(pixels.shape[2] == 3), int(is_display)
+        return self.lend("image", image)
+
+    def run(self, *, progress: Any = None, frames: Optional[Frames] = None, keeps: bool = False,
+            threads: Optional[int] = None) -> Tuple[int, Dict[str, Any]]:
+        if threads:
+            self.words.append(f"--threads={int(threads)}")
+        kept: Optional[Kept] = None
+        key = None
+        if keeps and self.scene and len(self.inputs) == len(self.scene.paths):
+            kept, key = self.scene._kept, json.dumps(self.key)
+        elif keeps:
+            kept = kept_of_thread()
+        try:
+            return run([*self.words, "--", *self.inputs], loans=self.loans, progress=progress, frames=frames, kept=kept,
+                       source_key=key)
+        finally:
+            if self._folder:
+                self._folder.cleanup()
+
+
+def render(scene: AnyScene, camera: Optional[AnyCamera] = None, *, planes: Optional[Sequence[str]] = None,
+           output: Union[None, PathLike, Sequence[PathLike]] = None, progress: Any = None,
+           threads: Optional[int] = None, view: Union[None, int, str] = None, size: Optional[Sequence[int]] = None,
+           profile: Optional[str] = None, method: Optional[str] = None, quality: Optional[str] = None,
+           samples: Optional[int] = None, as_: Optional[str] = None, shade: Optional[str] = None,
+           background: Any = None, exposure: Any = None, azimuth: Optional[float] = None,
+           elevation: Optional[float] = None, turntable: Optional[int] = None, **options: Options) -> Any:
+    """Draws a scene; with the same options, the bits are those of `conic render`.
+
+    `scene`: what :func:`open` gives, :class:`Splats`, :class:`Mesh`, :class:`Gaussians`, a path, or a list of these.
+    `camera`: a :class:`Camera`, or a file of cameras, of which `view` names one; without, all of the scene is framed.
+    `planes`: of "rgba", "Z", "N", "albedo", "weight", "count", "id", "P", of Gaussian scenes "T", "medianZ",
+    "inverseZ", "last", "doubt" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`: files to write,
+    besides. `progress`: True, a function of a task's name and the share of it that is done, or a tqdm bar. All
+    other options of `conic help render` are taken by their names.
+
+    Returns a :class:`Picture`: a dict of arrays by plane, (H, W, 4) for rgba and (H, W) for Z, and "statistics"; for
+    `view="all"` and `turntable=N` a list of them."""
+    call = _Call("render")
+    call.input(scene)
+    call.camera(camera)
+    call.options({**dict(output=output, view=view, size=size, profile=profile, method=method, quality=quality,
+                         samples=samples, as_=as_, shade=shade, background=background, exposure=exposure,
+                         azimuth=azimuth, elevation=elevation, turntable=turntable), **options})
+    if planes is not None:
+        call.add("aov", planes if isinstance(planes, str) else ",".join(planes))
+    frames = Frames(lambda arrays, name, image, drawn_by: Picture(arrays, image, Camera(drawn_by, name)))
+    _, statistics = call.run(progress=progress, frames=frames, keeps=True, threads=threads)
+    asked = None if planes is None else set((planes if isinstance(planes, str) else ",".join(planes)).split(","))
+    for picture in frames.pictures:
+        for name in picture.planes:
+            if asked is not None and name not in asked and "all" not in asked:
+                del picture[name]  # drawn for what else was asked for
+        from ._picture import Hashes
+        picture["statistics"] = {**statistics, "hash": Hashes(picture)}
+    is_many = view == "all" or turntable is not None
+    return frames.pictures if is_many else frames.pictures[0]
+
+
+def verify(scene: AnyScene, camera: Optional[AnyCamera] = None, *, image: Any = None, progress: Any = None,
+           threads: Optional[int] = None, **options: Options) -> Dict[str, Any]:
+    """Holds a picture against the double-precision oracle: conic's own, or `image`, a file or arrays, of whatever
+    renderer. `against="exact"` asks whether the method is right, and not only its arithmetic. See "pass"."""
+    call = _Call("verify")
+    call.input(scene)
+    call.camera(camera)
+    if image is not None:
+        call.add("image", call.picture(image, is_display=True))
+    call.options(options)
+    return call.run(progress=progress, threads=threads)[1]
+
+
+def judge(scene: AnyScene, camera: AnyCamera, picture: Any, *, progress: Any = None, threads: Optional[int] = None,
+          **options: Options) -> Dict[str, Any]:
+    """Whether another renderer's picture is what its profile, or its method, makes of the scene.
+
+    `picture`: a file, an array (H, W, 3 or 4) of floats or bytes, or a dict of planes. `report` and `map` name files
+    to write, `max_wrong` how many pixels may be wrong (0). The answer has "verdict" ("right" or "wrong"), "pixels"
+    by class, and a "diagnosis"."""
+    call = _Call("judge")
+    call.input(scene)
+    call.camera(camera)
+    call.add("picture", call.picture(picture, is_display=True))
+    call.options(options)
+    return call.run(progress=progress, threads=threads)[1]
+
+
+def explain(scene: AnyScene, camera: Optional[AnyCamera] = None, pixel: Optional[Sequence[int]] = None, *,
+            progress: Any = None, threads: Optional[int] = None, **options: Options) -> Dict[str, Any]:
+    """Why a pixel (x, y) is as it is: everything that contributes to it; or where `splat=I` lies."""
+    call = _Call("explain")
+    call.input(scene)
+    call.camera(camera)
+    call.options({**options, "pixel": pixel})
+    return call.run(progress=progress, threads=threads)[1]
+
+
+def diff(a: Any, b: Any, *, progress: Any = None, threads: Optional[int] = None, **options: Options) -> Dict[str, Any]:
+    """How two pictures differ: files, folders, arrays or :class:`Picture`. "identical", "max_abs", "psnr", "ssim",
+    "flip" …; where limits are given, "pass"."""
+    call = _Call("diff")
+    call.inputs = [call.picture(a), call.picture(b)]
+    call.options(options)
+    return call.run(progress=progress, threads=threads)[1]
+
+
+def info(path: PathLike, *, check: bool = False, **options: Options) -> Dict[str, Any]:
+    """What a file holds; with `check`, also what of it cannot be drawn."""
+    call = _Call("info")
+    call.input(path)
+    call.options({"check": check, **options})
+    return call.run()[1]
+
+
+def devices() -> Dict[str, Any]:
+    """The OpenCL devices of this machine, for `device=` of :func:`render`."""
+    return run(["devices", "--quiet"])[1]
+
+
+def command(name: str, *arguments: str, progress: Any = None, **options: Options) -> Dict[str, Any]:
+    """Any command of the program with its arguments as the shell has them, as one for which there is no function."""
+    call = _Call(name)
+    call.inputs = [os.fspath(argument) for argument in arguments]
+    call.options(options)
+    return call.run(progress=progress)[1]
+
+
+# --- what makes files ---
+
+
+def _build(call: _Call, output: Optional[PathLike], ending: str, options: Dict[str, Any], progress: Any,
+           threads: Optional[int]) -> Scene:
+    """Without an output the file is temporary, and goes with the scene."""
+    folder = None if output is not None or options.get("in_place") else tempfile.mkdtemp(prefix="conic-")
+    path = os.path.join(folder, f"scene.{ending}") if folder else output
+    scene = Scene([path] if path is not None else call.inputs[-1:], folder=folder)  # which removes it after a failure
+    call.add("o", path)
+    call.options(options)
+    scene.statistics = call.run(progress=progress, threads=threads)[1]
+    return scene
+
+
+def make(name: str, output: Optional[PathLike] = None, *, progress: Any = None, threads: Optional[int] = None,
+         **options: Options) -> Scene:
+    """Samples an analytic scene ("sphere", "knot", "terrain" … "gaussians") into `n` splats."""
+    call = _Call("make")
+    call.inputs = [name]
+    return _build(call, output, "ply", options, progress, threads)
+
+
+def prepare(scene: AnyScene, output: Optional[PathLike] = None, *, progress: Any = None,
+            threads: Optional[int] = None, **options: Options) -> Scene:
+    """Points or a mesh become splats: normals, sizes, thinning (`count`), sharp edges (`features`)."""
+    call = _Call("prepare")
+    call.input(scene)
+    return _build(call, output, "ply", options, progress, threads)
+
+
+def octree(scene: AnyScene, output: Optional[PathLike] = None, *, progress: Any = None,
+           threads: Optional[int] = None, **options: Options) -> Scene:
+    """Builds an octree (.cot), of which `error=` and `budget=` of :func:`render` choose."""
+    call = _Call("octree")
+    call.input(scene)
+    return _build(call, output, "cot", options, progress, threads)
+
+
+def layers(scene: AnyScene, output: Optional[PathLike] = None, *, progress: Any = None,
+           threads: Optional[int] = None, **options: Options) -> Scene:
+    """Builds a layered point cloud (.lpc) of one or more files, out of core."""
+    call = _Call("layer")
+    call.input(scene)
+    return _build(call, output, "lpc", options, progress, threads)
+
+
+def mls(what: str, scene: AnyScene, output: Optional[PathLike] = None, *, progress: Any = None,
+        threads: Optional[int] = None, **options: Options) -> Scene:
+    """Cleans ("project"), thins ("thin") or densifies ("densify") points by the surface that they mean."""
+    call = _Call("mls")
+    call.inputs = [what]
+    call.input(scene)
+    return _build(call, output, "ply", options, progress, threads)
+
+
+def hybrid(mesh: AnyScene, output: Optional[PathLike] = None, *, progress: Any = None,
+           threads: Optional[int] = None, **options: Options) -> Scene:
+    """Builds a hybrid model (.chy) of a mesh: triangles where it is flat, surfels where it is detailed."""
+    call = _Call("hybrid")
+    call.input(mesh)
+    return _build(call, output, "chy", options, progress, threads)
+
+
+def convert(scene: AnyScene, output: PathLike, *, progress: Any = None, threads: Optional[int] = None,
+            **options: Options) -> Scene:
+    """Writes a Gaussian scene in another format, which the output's ending says."""
+    call = _Call("convert")
+    call.input(scene)
+    return _build(call, output, "ply", options, progress, threads)
+
+
+def gradient(scene: AnyScene, camera: AnyCamera, weights: Any, output: Optional[PathLike] = None, *,
+             progress: Any = None, threads: Optional[int] = None, **options: Options) -> Scene:
+    """How the sum of a picture's pixels times `weights`, a file or an array (H, W, 3 or 4), changes with every number
+    of a Gaussian scene, in double precision: a PLY of what the gradients are."""
+    call = _Call("gradient")
+    call.input(scene)
+    call.camera(camera)
+    call.add("weights", call.picture(weights, is_display=True))
+    return _build(call, output, "ply", options, progress, threads)
