@@ -201,4 +201,10 @@ const cli_command cli_judge = {
     .usage = "conic judge SCENE --camera C [--view V] --picture P [--profile NAME | --method M] [--json FILE] "
              "[--report F.html] [--map F.png] [--max-wrong N] [camera and render options]",
     .run = run_judge,
+    .description = "Takes a picture that any renderer drew of the scene, bounds what each pixel can be at most and at "
+                   "least, and says of every pixel whether it is equal, within rounding, explained by a decision that "
+                   "may go either way, or wrong; and, where it is wrong, which fault explains it.",
+    .examples = {{"judge a picture that gsplat 1.6 has drawn, and write a report",
+                  "conic judge scene.ply --camera sparse/0 --view 0 --picture theirs.npy --profile gsplat-1.6 "
+                  "--report report.html"}},
 };
