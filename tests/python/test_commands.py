@@ -131,7 +131,7 @@ class Commands(unittest.TestCase):
         self.assertGreater(said["psnr"], 5)
 
     def test_questions(self):
-        drawn = conic.render(self.splats, size=(40, 30))
+        drawn = conic.render(self.splats, conic.Camera.look_at((1, 2, 3), width=40, height=30))
         self.assertTrue(conic.verify(self.splats, drawn.camera, pixels=50)["pass"])
         self.assertTrue(conic.verify(self.splats.splats(), drawn.camera, image=drawn, samples=2, pixels=50)["pass"])
         spoiled = conic.Picture({"rgba": drawn["rgba"] * 0.9}, camera=drawn.camera)
