@@ -34,8 +34,8 @@ int cli_bench_scene_open(cli_session *session, const char *name, const cli_bench
 void cli_bench_scene_release(cli_session *session, cli_bench_scene *scene);
 /* Whether a scene of that name can be made: CLI_DONE, or CLI_USAGE after a message; and whether it is of Gaussians. */
 int cli_bench_scene_check(const char *name, int *is_gaussian);
-/* What can be asked for, for the help. */
-void cli_bench_scene_list(void);
+/* What can be asked for, for the help: the i-th name, and what it is; null past the last. */
+const char *cli_bench_scene_at(int i, const char **about);
 /* A view of a file of cameras, whatever the size of its pictures; null: its only one. */
 conic_status cli_bench_camera_read(cli_session *session, const char *path, const char *view, conic_camera *camera);
 /* The camera that it is seen by, brought to the size. */

@@ -40,8 +40,6 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
     return cli_error(CLI_RESOURCE, "bench: out of memory");
   int exit_code =
       cli_parse(session, options, (int)(sizeof options / sizeof *options), argc, argv, job->files, &job->n_files);
-  if (exit_code < 0)
-    cli_bench_scene_list();
   if (exit_code == CLI_DONE)
     exit_code = cli_device_check(session, &job->device);
   if (exit_code == CLI_DONE && job->look.camera_path && !job->n_files)
@@ -149,5 +147,18 @@ static int run_bench(cli_session *session, int argc, char **argv) {
   return exit_code < 0 ? CLI_DONE : exit_code;
 }
 
-const cli_command cli_bench = {"bench", "measures stages, methods and instruction sets", "conic bench [IN…] [options]",
-                               run_bench};
+static const cli_words bench_words = {"scenes, each also with a number of splats (sphere-4M)", "scenes",
+                                      cli_bench_scene_at};
+
+const cli_command cli_bench = {
+    .name = "bench",
+    .summary = "measures stages, methods and instruction sets",
+    .usage = "conic bench [IN…] [options]",
+    .run = run_bench,
+    .description = "Draws scenes that it makes, and files, again and again, and prints a table of medians: "
+                   "milliseconds of each stage, splats a second, memory. Run it on a machine that does nothing else.",
+    .words = &bench_words,
+    .examples = {{"measure a scene of four million splats by three methods",
+                  "conic bench --scenes sphere-4M --methods conic,ray,affine"},
+                 {"compare with an earlier run", "conic bench --quick --compare before.json"}},
+};

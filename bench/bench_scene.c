@@ -25,10 +25,10 @@ typedef struct mix {
 } mix;
 
 static const mix mixes[] = {
-    {"mixed", "outlines of 1 to 100 pixels", 50000, 1.0, 100.0, 0.2},
-    {"subpixel", "outlines of 0.01 to 1 pixel", 1000000, 0.01, 1.0, 0.2},
-    {"needles", "20 to 200 pixels long, a thousandth as wide", 100000, 20.0, 200.0, 0.001},
-    {"huge", "outlines of 200 to 2000 pixels", 300, 200.0, 2000.0, 0.2},
+    {"mixed", "splats all over a ball: outlines of 1 to 100 pixels", 50000, 1.0, 100.0, 0.2},
+    {"subpixel", "splats all over a ball: outlines of 0.01 to 1 pixel", 1000000, 0.01, 1.0, 0.2},
+    {"needles", "splats all over a ball: 20 to 200 pixels long, a thousandth as wide", 100000, 20.0, 200.0, 0.001},
+    {"huge", "splats all over a ball: outlines of 200 to 2000 pixels", 300, 200.0, 2000.0, 0.2},
 };
 
 enum { N_MIXES = sizeof mixes / sizeof mixes[0] };
@@ -168,13 +168,14 @@ int cli_bench_scene_check(const char *name, int *is_gaussian) {
   return exit_code;
 }
 
-void cli_bench_scene_list(void) {
-  puts("\nscenes, each also with a number of splats (sphere-4M):");
-  for (int i = 0; i < CONIC_N_SCENES; i++)
-    printf("  %-10s %s\n", conic_scene_name((conic_scene_type)i), conic_scene_summary((conic_scene_type)i));
-  for (int i = 0; i < N_MIXES; i++)
-    printf("  %-10s splats all over a ball: %s\n", mixes[i].name, mixes[i].summary);
-  printf("  %-10s 3D Gaussians of degree 3, like a scene trained from photographs\n", gaussians_name);
+const char *cli_bench_scene_at(int i, const char **about) {
+  if (i < CONIC_N_SCENES) {
+    *about = conic_scene_summary((conic_scene_type)i);
+    return conic_scene_name((conic_scene_type)i);
+  }
+  i -= CONIC_N_SCENES;
+  *about = i < N_MIXES ? mixes[i].summary : "3D Gaussians of degree 3, like a scene trained from photographs";
+  return i < N_MIXES ? mixes[i].name : i == N_MIXES ? gaussians_name : NULL;
 }
 
 /* --- opening --- */

@@ -472,4 +472,7 @@ const cli_command cli_chart = {
         "charts error over time: of methods and kernels, of what draws a mesh, or of a Gaussian scene's profiles",
     .usage = "conic chart [SCENE] -o DIR [--only methods|representations] [--mesh MESH] [--quick]",
     .run = run_chart,
+    .description = "Draws the same scenes in every way, measures time and error, and writes charts and tables into a "
+                   "folder.",
+    .examples = {{"try it", "conic chart --quick -o chart"}},
 };

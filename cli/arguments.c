@@ -19,17 +19,17 @@ static void list_common(cli_session *session, int *is_help, cli_option common[N_
        .value = &session->threads,
        .argument = "N",
        .maximum = 1024,
-       .help = "threads that compute; the results never depend on it [0: all]"},
+       .help = "how many threads compute; the results never depend on it [0: all]"},
       {.name = "json",
        .type = CLI_TEXT,
        .value = &session->json_path,
        .argument = "FILE",
-       .help = "write the run's statistics; - is standard output"},
-      {.name = "quiet", .type = CLI_FLAG, .value = &session->is_quiet, .help = "or -q: no progress bar, no warnings"},
+       .help = "write statistics of the run as JSON; - is standard output"},
+      {.name = "quiet", .type = CLI_FLAG, .value = &session->is_quiet, .help = "no progress bar, no warnings"},
       {.name = "q", .type = CLI_FLAG, .value = &session->is_quiet},
-      {.name = "verbose", .type = CLI_FLAG, .value = &session->is_verbose, .help = "or -v: say more on standard error"},
+      {.name = "verbose", .type = CLI_FLAG, .value = &session->is_verbose, .help = "say more on standard error"},
       {.name = "v", .type = CLI_FLAG, .value = &session->is_verbose},
-      {.name = "help", .type = CLI_FLAG, .value = is_help, .help = "or -h: this text"},
+      {.name = "help", .type = CLI_FLAG, .value = is_help, .help = "this text"},
       {.name = "h", .type = CLI_FLAG, .value = is_help},
   };
   memcpy(common, list, sizeof list);
@@ -135,25 +135,25 @@ static int is_within_limits(const cli_option *option, double value) {
   return (option->minimum == 0.0 && option->maximum == 0.0) || (value >= option->minimum && value <= option->maximum);
 }
 
-static const char *dashes(const cli_option *option) {
+const char *cli_dashes(const cli_option *option) {
   return option->dashes ? option->dashes : option->name[1] ? "--" : "-";
 }
 
 static int refuse_range(const cli_session *session, const cli_option *option, const char *text) {
-  return cli_usage("%s: %s%s: %s is not between %.10g and %.10g", session->command, dashes(option), option->name, text,
-                   option->minimum, option->maximum);
+  return cli_usage("%s: %s%s: %s is not between %.10g and %.10g", session->command, cli_dashes(option), option->name,
+                   text, option->minimum, option->maximum);
 }
 
 static int refuse_text(const cli_session *session, const cli_option *option, const char *text) {
   char words[512] = "";
   size_t used = 0;
-  for (int i = 0; option->choices && option->choices[i] && used < sizeof words; i++)
+  for (int i = 0; option->type == CLI_CHOICE && option->choices[i] && used < sizeof words; i++)
     used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", i ? ", " : "", option->choices[i]);
   if (!used)
-    return cli_usage("%s: %s%s: \"%s\" is not understood; it takes %s: %s", session->command, dashes(option),
+    return cli_usage("%s: %s%s: \"%s\" is not understood; it takes %s: %s", session->command, cli_dashes(option),
                      option->name, text, option->argument, option->help);
-  return cli_usage("%s: %s%s: \"%s\" is not understood; it takes %s", session->command, dashes(option), option->name,
-                   text, words);
+  return cli_usage("%s: %s%s: \"%s\" is not understood; it takes %s", session->command, cli_dashes(option),
+                   option->name, text, words);
 }
 
 /* Reads one value; CLI_DONE or CLI_USAGE after a message. */
@@ -217,7 +217,7 @@ static const cli_option *find_option(const option_set *set, const char *name, si
       const cli_option *option = &set->tables[table][i];
       *value = &set->values[table][i];
       if (strlen(option->name) == length && strncmp(option->name, name, length) == 0 &&
-          is_long == (dashes(option)[1] == '-'))
+          is_long == (cli_dashes(option)[1] == '-'))
         return option;
     }
   return NULL;
@@ -227,7 +227,7 @@ static const cli_option *find_option(const option_set *set, const char *name, si
 static void warn_of_repeated(const cli_session *session, const cli_option *option, const char *former,
                              const char *value) {
   if (former && !option->may_repeat && strcmp(former, value) != 0)
-    cli_warn(session, "%s: %s%s %s holds, and not %s, which was given before it", session->command, dashes(option),
+    cli_warn(session, "%s: %s%s %s holds, and not %s, which was given before it", session->command, cli_dashes(option),
              option->name, value, former);
 }
 
@@ -259,10 +259,11 @@ static int parse_option(const cli_session *session, const option_set *set, int a
   if (name[length])
     value = name + length + is_long; /* behind the equals sign, or a short option's rest */
   if (option->type == CLI_FLAG)
-    return value ? cli_usage("%s: %s%s takes no value", session->command, dashes(option), option->name)
+    return value ? cli_usage("%s: %s%s takes no value", session->command, cli_dashes(option), option->name)
                  : store_value(session, option, NULL);
   if (!value && (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0))
-    return cli_usage("%s: %s%s needs a value: %s", session->command, dashes(option), option->name, option->argument);
+    return cli_usage("%s: %s%s needs a value: %s", session->command, cli_dashes(option), option->name,
+                     option->argument);
   if (!value)
     value = argv[++*i];
   warn_of_repeated(session, option, *former, value);
@@ -278,13 +279,6 @@ static int asks_for(int argc, char **argv, const char *name, const char *letter)
   return 0;
 }
 
-static void print_help(const cli_session *session, const cli_option *options, int n_options) {
-  const cli_command *command = cli_find_command(session->command);
-  if (command)
-    printf("%s\n\nusage: %s\n\n", command->summary, command->usage);
-  cli_print_options(stdout, options, n_options);
-}
-
 int cli_parse(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
               const char **positional, int *n_positional) {
   int is_help = 0, exit_code = CLI_DONE, is_over = 0;
@@ -292,7 +286,8 @@ int cli_parse(cli_session *session, const cli_option *options, int n_options, in
   list_common(session, &is_help, common);
   *n_positional = 0;
   if (asks_for(argc, argv, "--help", "-h")) {
-    print_help(session, options, n_options);
+    const cli_option_table table = {options, common, n_options, N_COMMON};
+    (session->show_help ? session->show_help : cli_help_text)(session, &table);
     return -1;
   }
   session->is_quiet = asks_for(argc, argv, "--quiet", "-q"); /* about the other arguments, too */
@@ -310,59 +305,4 @@ int cli_parse(cli_session *session, const cli_option *options, int n_options, in
       exit_code = parse_option(session, &set, argc, argv, &i);
   }
   return exit_code;
-}
-
-/* Columns on the screen, one a character. */
-static int text_width(const char *text) {
-  int width = 0;
-  for (; *text; text++)
-    width += ((unsigned char)*text & 0xC0) != 0x80;
-  return width;
-}
-
-enum { HELP_COLUMN = 28, LAST_COLUMN = 100 };
-
-/* The words from HELP_COLUMN on, where the first line already is, in as many lines as they need. */
-static void print_words(FILE *to, const char *words) {
-  int column = HELP_COLUMN;
-  while (*words) {
-    int length = (int)strcspn(words, " ");
-    char word[128];
-    snprintf(word, sizeof word, "%.*s", length, words);
-    int width = text_width(word);
-    if (column > HELP_COLUMN && column + 1 + width > LAST_COLUMN) {
-      fprintf(to, "\n%*s", HELP_COLUMN, "");
-      column = HELP_COLUMN;
-    }
-    column += fprintf(to, "%s%s", column > HELP_COLUMN ? " " : "", word) - (int)strlen(word) + width;
-    words += length + (words[length] == ' ');
-  }
-  fputc('\n', to);
-}
-
-static void print_option(FILE *to, const cli_option *option) {
-  const char *argument = option->argument ? option->argument : "";
-  int width = fprintf(to, "  %s%s%s%s", dashes(option), option->name, *argument ? " " : "", argument);
-  width += text_width(argument) - (int)strlen(argument);
-  if (width > HELP_COLUMN - 2)
-    fprintf(to, "\n%*s", HELP_COLUMN, "");
-  else
-    fprintf(to, "%*s", HELP_COLUMN - width, "");
-  print_words(to, option->help);
-}
-
-void cli_print_options(FILE *to, const cli_option *options, int n_options) {
-  cli_session session = {0};
-  int is_help;
-  cli_option common[N_COMMON];
-  list_common(&session, &is_help, common);
-  if (n_options)
-    fputs("options:\n", to);
-  for (int i = 0; i < n_options; i++)
-    if (options[i].help)
-      print_option(to, &options[i]);
-  fprintf(to, "%soptions of every command:\n", n_options ? "\n" : "");
-  for (int i = 0; i < N_COMMON; i++)
-    if (common[i].help)
-      print_option(to, &common[i]);
 }

@@ -20,19 +20,29 @@ typedef struct cli_option {
   const char *name; /* without the dashes; one letter means a short option, unless `dashes` says more */
   cli_option_type type;
   void *value;
-  const char *argument;                        /* what the help calls the value: "FILE", "N"; null for flags */
-  const char *help;                            /* one line; the default in brackets at its end */
-  double minimum, maximum;                     /* both 0: no limits */
-  const char *const *choices;                  /* null-terminated */
+  const char *argument;       /* what the help calls the value: "FILE", "N"; null for flags */
+  const char *help;           /* one line; the default in brackets at its end. Null: another name of the option above */
+  double minimum, maximum;    /* both 0: no limits */
+  const char *const *choices; /* null-terminated; but of CLI_CHOICE, what completion offers */
   int (*parse)(const char *text, void *value); /* 0: not understood */
   int *is_given;                               /* set to 1 when the option is given; may be null */
   const char *dashes;                          /* null: one before a name of one letter, else two */
   int may_repeat;                              /* `parse` takes every value; else the last one holds */
+  const char *group;                           /* heads this option and those below, up to the next; null: goes on */
 } cli_option;
+
+/* The options that a command understands: its own, and those of every command. */
+typedef struct cli_option_table {
+  const cli_option *own, *common;
+  int n_own, n_common;
+} cli_option_table;
+
+/* What stands before an option's name. */
+const char *cli_dashes(const cli_option *option);
 
 /* Reads arguments into the options' values, and what is no option into positional[0 … *n_positional); --threads,
  * --json, --quiet, --verbose (and --help), and -q -v -h, are understood for every command. Returns CLI_DONE, or
- * CLI_USAGE after a message; -1 when help was asked for and printed. `positional` has room for argc. */
+ * CLI_USAGE after a message; -1 when help was asked for and given (cli/help/help.h). `positional` has room for argc. */
 int cli_parse(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
               const char **positional, int *n_positional);
 
@@ -56,7 +66,8 @@ int cli_parse_length(const char *text, void *length);
 #define CLI_COLUMNS(to)                                                                                                \
   {                                                                                                                    \
     "columns", CLI_PARSED, to, "NAMES",                                                                                \
-        "of text: what its columns are, as x,y,z,intensity,-,r,g,b [as its header says]", .parse = cli_parse_columns   \
+        "what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]",                        \
+        .parse = cli_parse_columns                                                                                     \
   }
 int cli_parse_columns(const char *text, void *columns);
 
@@ -68,8 +79,5 @@ int cli_parse_number(const char *text, double *number);
 
 /* Parses "X,Y,Z" whole; 0 where it is not. */
 int cli_parse_vector(const char *text, double vector[3]);
-
-/* Prints an aligned list of the options, and of those that every command understands. */
-void cli_print_options(FILE *to, const cli_option *options, int n_options);
 
 #endif

@@ -5,6 +5,9 @@
 
 #include "core/base/nearest_word.h"
 
+const char *const cli_color_words[] = {"auto", "rgb", "intensity", "height", "classification", "normal", NULL};
+const char *const cli_ramp_words[] = {"sequential", "grey", "heat", "diverging", "terrain", "classes", NULL};
+
 int cli_parse_color_range(const char *text, void *value) {
   conic_coloring_options *coloring = value;
   char *end;

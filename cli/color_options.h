@@ -6,16 +6,27 @@
 #include "cli/json_write.h"
 #include "conic/coloring.h"
 
+extern const char *const cli_color_words[], *const cli_ramp_words[]; /* for completion */
+
 /* Rows of a command's table, into a conic_coloring_options whose `by` is null before. */
 #define CLI_COLOR_OPTIONS(coloring)                                                                                    \
-  {"color-by", CLI_TEXT, &(coloring)->by, "WHAT",                                                                      \
-   "rgb, intensity, height, classification, normal, or a field of the file by its name; auto: rgb, or else "           \
-   "intensity [auto]"},                                                                                                \
-      {"ramp", CLI_TEXT, &(coloring)->ramp, "NAME",                                                                    \
-       "the colours of --color-by: sequential, grey, heat, diverging, terrain or classes [what suits]"},               \
+  {"color-by",                                                                                                         \
+   CLI_TEXT,                                                                                                           \
+   &(coloring)->by,                                                                                                    \
+   "WHAT",                                                                                                             \
+   "what the points' colours are made of: rgb, intensity, height, classification, normal, or a value in the file "     \
+   "by its name; auto: rgb, or else intensity [auto]",                                                                 \
+   .choices = cli_color_words,                                                                                         \
+   .group = "colours made of values"},                                                                                 \
+      {"ramp",                                                                                                         \
+       CLI_TEXT,                                                                                                       \
+       &(coloring)->ramp,                                                                                              \
+       "NAME",                                                                                                         \
+       "the colours of --color-by: sequential, grey, heat, diverging, terrain or classes [what suits]",                \
+       .choices = cli_ramp_words},                                                                                     \
   {                                                                                                                    \
     "color-range", CLI_PARSED, (coloring), "A,B",                                                                      \
-        "the values that the ends of the ramp mean [the 2nd and 98th percentile]", .parse = cli_parse_color_range      \
+        "the values at the two ends of the ramp [the 2nd and 98th percentile]", .parse = cli_parse_color_range         \
   }
 
 /* "A,B" into a conic_coloring_options. */

@@ -5,9 +5,10 @@
 #include "cli/command.h"
 #include "core/base/nearest_word.h"
 
-static const cli_command *const commands[] = {&cli_make,   &cli_prepare, &cli_octree, &cli_layer, &cli_mls,
-                                              &cli_hybrid, &cli_convert, &cli_render, &cli_diff,  &cli_info,
-                                              &cli_verify, &cli_explain, &cli_chart,  &cli_bench, &cli_devices};
+static const cli_command *const commands[] = {&cli_make,   &cli_prepare, &cli_octree,  &cli_layer,    &cli_mls,
+                                              &cli_hybrid, &cli_convert, &cli_render,  &cli_diff,     &cli_info,
+                                              &cli_verify, &cli_judge,   &cli_explain, &cli_gradient, &cli_conformance,
+                                              &cli_chart,  &cli_bench,   &cli_devices};
 
 enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -18,7 +19,11 @@ const cli_command *cli_find_command(const char *name) {
   return NULL;
 }
 
-static int refuse_command(const char *name) {
+const cli_command *cli_command_at(int i) {
+  return i < N_COMMANDS ? commands[i] : NULL;
+}
+
+int cli_refuse_command(const char *name) {
   int is_option = name[0] == '-';
   const char *kind = is_option ? "option" : "command";
   const char *nearest = conic_nearer_word(name, NULL, is_option ? "--version" : "help");
@@ -29,41 +34,6 @@ static int refuse_command(const char *name) {
   if (nearest)
     return cli_usage("unknown %s %s; did you mean %s?", kind, name, nearest);
   return cli_usage("unknown %s %s; see conic help", kind, name);
-}
-
-static void print_usage(FILE *to) {
-  fputs("conic draws point-sampled surfaces as splats.\n\n"
-        "usage: conic COMMAND [arguments]\n"
-        "       conic help [COMMAND]\n"
-        "       conic --version, -V\n\n"
-        "commands:\n",
-        to);
-  for (int i = 0; i < N_COMMANDS; i++)
-    fprintf(to, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
-}
-
-static int help(int argc, char **argv) {
-  if (argc < 2 || strcmp(argv[1], "help") == 0 || argv[1][0] == '-') {
-    print_usage(stdout);
-    fputs("\nreads: " CLI_READABLE "\n"
-          "\nexit codes:\n"
-          "  0  done\n"
-          "  1  compared and different\n"
-          "  2  wrong usage\n"
-          "  3  an input that cannot be used\n"
-          "  4  a resource failed: memory, disk, what this build or machine lacks\n"
-          "  128 and a signal's number: stopped by it; 130 by Ctrl-C\n"
-          "\nThe guide begins with docs/guide/first-picture.md beside conic's source.\n",
-          stdout);
-    return CLI_DONE;
-  }
-  const cli_command *command = cli_find_command(argv[1]);
-  if (!command)
-    return refuse_command(argv[1]);
-  char ask[] = "--help";
-  char *arguments[] = {argv[1], ask, NULL};
-  cli_session session = {.command = command->name};
-  return command->run(&session, 2, arguments);
 }
 
 static void print_features(const char *label, int available) {
@@ -86,7 +56,7 @@ static int print_version(void) {
 static int run_command(int argc, char **argv) {
   const cli_command *command = cli_find_command(argv[0]);
   if (!command)
-    return refuse_command(argv[0]);
+    return cli_refuse_command(argv[0]);
   cli_session session = {.command = command->name};
   int exit_code = command->run(&session, argc, argv);
   cli_session_close(&session);
@@ -95,11 +65,11 @@ static int run_command(int argc, char **argv) {
 
 static int run(int argc, char **argv) {
   if (argc < 2) {
-    print_usage(stderr);
+    cli_help_usage(stderr);
     return CLI_USAGE;
   }
   if (strcmp(argv[1], "help") == 0 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)
-    return help(argc - 1, argv + 1);
+    return cli_help(argc - 1, argv + 1);
   if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0)
     return print_version();
   return run_command(argc - 1, argv + 1);

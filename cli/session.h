@@ -8,6 +8,8 @@
 
 enum cli_exit { CLI_DONE = 0, CLI_DIFFERENT = 1, CLI_USAGE = 2, CLI_INPUT = 3, CLI_RESOURCE = 4 };
 
+struct cli_option_table;
+
 typedef struct cli_session {
   const char *command; /* the sub-command's name */
   int threads;         /* --threads; 0: all */
@@ -26,7 +28,10 @@ typedef struct cli_session {
   const char
       *replaced_path;     /* --in-place: the only input that may be written over; null: none may. Set before opening */
   conic_context *context; /* made by cli_session_open */
-  struct cli_host *host;  /* cli/host.h: what runs the command within itself; null: a shell */
+  /* How cli_parse answers --help; null: as text. `help` is its own. */
+  void (*show_help)(struct cli_session *session, const struct cli_option_table *table);
+  void *help;
+  struct cli_host *host; /* cli/host.h: what runs the command within itself; null: a shell */
 } cli_session;
 
 /* Makes the context. Returns CLI_DONE or, after an error message, the exit code. */

@@ -3,6 +3,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
+#include "oracle/oracle_evidence.h"
 #include "oracle/oracle_pixel.h"
 
 static const double bounds[CONIC_N_PLANES] = {
@@ -29,23 +31,18 @@ static const int places[CONIC_N_DRAWN_PLANES] = {
 typedef struct errors {
   double planes[CONIC_N_DRAWN_PLANES], severity; /* the greatest of them in bounds */
   conic_oracle_fault fault;                      /* where that is, but for the place */
+  int is_equal; /* all values are the floats next to those that they are compared with */
 } errors;
 
 /* A pixel of the reference, and what is noted of its doubts. */
 typedef struct judged {
   const conic_reference *reference;
-  const conic_image *image;
-  size_t i, at; /* in the reference, in the image */
+  const conic_image *image, *greatest; /* the second: oracle_evidence_at's */
+  size_t i, at;                        /* in the reference, in the image */
   const conic_alternative *alternatives;
   const conic_admissible_id *ids;
   size_t n_alternatives, n_ids;
 } judged;
-
-static double sample(const conic_image *image, conic_plane plane, int is_uint, size_t at) {
-  if (is_uint)
-    return (double)((const uint32_t *)image->planes[plane])[at];
-  return (double)((const float *)image->planes[plane])[at];
-}
 
 /* What a difference in a plane is measured by. */
 static double scale_of(const conic_reference *reference, conic_plane plane, double expected) {
@@ -70,14 +67,13 @@ static int is_admissible(const judged *j, double id) {
 }
 
 /* How far a value is outside of what it may be. */
-static double find_excess(const judged *j, conic_plane plane, int channel, const conic_oracle_fault *value) {
-  double found = value->found, expected = found < value->low ? value->low : value->high;
+static double find_excess(const judged *j, conic_plane plane, int channel, oracle_evidence found, double low,
+                          double high) {
   int is_alpha = plane == CONIC_PLANE_RGBA && channel == 3;
-  if (found >= value->low && found <= value->high)
+  double outside = oracle_evidence_outside(found, low, high), expected = found.high < low ? low : high;
+  if (outside == 0.0 || (plane == CONIC_PLANE_ID && is_admissible(j, found.low)))
     return 0.0;
-  if (plane == CONIC_PLANE_ID && is_admissible(j, found))
-    return 0.0;
-  double excess = fabs(found - expected) / (is_alpha ? 1.0 : scale_of(j->reference, plane, expected));
+  double excess = outside / (is_alpha ? 1.0 : scale_of(j->reference, plane, expected));
   return excess == excess ? excess : INFINITY;
 }
 
@@ -88,27 +84,36 @@ static void judge_channel(const judged *j, conic_plane plane, int channel, const
   size_t n = (size_t)about->n_channels, c = (size_t)channel;
   double expected = j->reference->planes[plane][n * j->i + c];
   conic_oracle_fault value = {.plane = (int)plane, .channel = channel, .low = expected, .high = expected};
-  value.found = sample(j->image, plane, about->is_uint, n * j->at + c);
+  oracle_evidence found = oracle_evidence_at(j->image, j->greatest, plane, about->is_uint, n * j->at + c);
   if (alternative && plane != CONIC_PLANE_ID) {
     value.low = alternative->low[places[plane] + channel];
     value.high = alternative->high[places[plane] + channel];
   }
-  double excess = find_excess(j, plane, channel, &value), severity = 0.0;
-  if (j->n_alternatives && plane == CONIC_PLANE_ID && !is_admissible(j, value.found))
+  value.found = oracle_evidence_next(found, value.low, value.high);
+  double excess = find_excess(j, plane, channel, found, value.low, value.high), severity = 0.0;
+  if (j->n_alternatives && plane == CONIC_PLANE_ID && !is_admissible(j, found.low))
     excess = oracle_max(excess, 1.0);
   if (excess > 0.0) /* what has to be exact is wrong by no more than just wrong */
     severity = bounds[plane] > 0.0 ? excess / bounds[plane] : 1.0 + 1e-9;
   e->planes[plane] = oracle_max(e->planes[plane], excess);
+  e->is_equal &= oracle_evidence_is_equal(found, expected);
   if (severity > e->severity) {
     e->severity = severity;
     e->fault = value;
   }
 }
 
+/* A picture without alpha is read with 1 there. */
+static int n_judged_channels(const conic_image *image, int plane) {
+  int n = conic_plane_describe((conic_plane)plane)->n_channels;
+  return plane == CONIC_PLANE_RGBA && image->lacks_alpha ? n - 1 : n;
+}
+
 static void judge_planes(const judged *j, const conic_alternative *alternative, errors *e) {
   memset(e, 0, sizeof *e);
+  e->is_equal = 1;
   for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++) /* the others are names, given after drawing */
-    for (int c = 0; j->image->planes[plane] && c < conic_plane_describe((conic_plane)plane)->n_channels; c++)
+    for (int c = 0; j->image->planes[plane] && c < n_judged_channels(j->image, plane); c++)
       judge_channel(j, (conic_plane)plane, c, alternative, e);
 }
 
@@ -138,34 +143,82 @@ static void go_on(judged *j, size_t i) {
     j->n_ids++;
 }
 
-static void note_wrong_pixel(const judged *j, const errors *e, double *worst, conic_oracle_verdict *verdict) {
+/* What of a judgement is filled in besides the verdict; null members are not wanted. */
+typedef struct compare_notes {
+  conic_oracle_judgement *judgement;
+  oracle_worst *worst;
+  uint8_t *classes;
+} compare_notes;
+
+static int is_outside(const errors *e, const conic_oracle_verdict *verdict) {
   int is_wrong = 0;
-  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++) {
-    verdict->planes[plane].max_abs = oracle_max(verdict->planes[plane].max_abs, e->planes[plane]);
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
     is_wrong |= e->planes[plane] > verdict->planes[plane].bound;
-  }
-  verdict->wrong_pixels += (size_t)is_wrong;
-  if (!is_wrong || !(e->severity > *worst))
+  return is_wrong;
+}
+
+static void note_wrong_pixel(const judged *j, errors *e, double *worst, oracle_worst *list,
+                             conic_oracle_verdict *verdict) {
+  e->fault.x = (int)(j->at % (size_t)j->image->width);
+  e->fault.y = (int)(j->at / (size_t)j->image->width);
+  if (list)
+    conic_oracle_worst_put(list, &e->fault, e->severity);
+  if (!(e->severity > *worst))
     return;
   *worst = e->severity;
   verdict->worst = e->fault;
-  verdict->worst.x = (int)(j->at % (size_t)j->image->width);
-  verdict->worst.y = (int)(j->at / (size_t)j->image->width);
+}
+
+/* The class of a pixel that is not wrong. What fits the reference's own values and its id is no more than rounded, and
+ * so is what only precision has put in doubt. */
+static conic_pixel_class class_of_pixel(const judged *j, const conic_oracle_verdict *verdict, unsigned *reasons) {
+  judged alone = *j;
+  errors own;
+  *reasons = j->reference->unstable[j->i];
+  alone.n_alternatives = alone.n_ids = 0;
+  judge_planes(&alone, NULL, &own);
+  if (own.is_equal)
+    return CONIC_PIXEL_EQUAL;
+  if (!is_outside(&own, verdict) || *reasons == 1u << CONIC_UNSTABLE_PRECISION)
+    return CONIC_PIXEL_ROUNDED;
+  if (!*reasons) /* another id as near */
+    *reasons = 1u << CONIC_UNSTABLE_DEPTH_TIE;
+  return CONIC_PIXEL_EXPLAINED;
+}
+
+static void note_pixel_class(const judged *j, int is_wrong, const conic_oracle_verdict *verdict,
+                             const compare_notes *notes) {
+  unsigned reasons = 0;
+  conic_pixel_class class = is_wrong ? CONIC_PIXEL_WRONG : class_of_pixel(j, verdict, &reasons);
+  notes->judgement->pixels[class]++;
+  for (int k = 0; k < CONIC_N_UNSTABLE_REASONS && class == CONIC_PIXEL_EXPLAINED; k++)
+    notes->judgement->explained_by[k] += reasons >> k & 1;
+  if (notes->classes)
+    notes->classes[j->at] = (uint8_t) class;
 }
 
 /* `stable` has room for the errors of the covered, stable pixels, plane by plane. */
-static void compare_pixels(const conic_reference *reference, const conic_image *image, double *stable, size_t room,
+static void compare_pixels(judged j, double *stable, size_t room, const compare_notes *notes,
                            conic_oracle_verdict *verdict) {
-  judged j = {.reference = reference, .image = image, .alternatives = reference->alternatives, .ids = reference->ids};
+  const conic_reference *reference = j.reference;
   double worst = 0.0;
   size_t n_stable = 0;
+  j.alternatives = reference->alternatives;
+  j.ids = reference->ids;
   for (size_t i = 0; i < reference->n_pixels; i++) {
     errors e;
     go_on(&j, i);
     if (reference->unstable[i] && !j.n_alternatives)
       continue;
     compare_pixel(&j, &e);
-    note_wrong_pixel(&j, &e, &worst, verdict);
+    int is_wrong = is_outside(&e, verdict);
+    for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
+      verdict->planes[plane].max_abs = oracle_max(verdict->planes[plane].max_abs, e.planes[plane]);
+    verdict->wrong_pixels += (size_t)is_wrong;
+    if (is_wrong)
+      note_wrong_pixel(&j, &e, &worst, notes->worst, verdict);
+    if (notes->judgement)
+      note_pixel_class(&j, is_wrong, verdict, notes);
     if (!reference->unstable[i] && reference->planes[CONIC_PLANE_COUNT][i] > 0.0) {
       for (size_t plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
         stable[plane * room + n_stable] = e.planes[plane];
@@ -177,9 +230,10 @@ static void compare_pixels(const conic_reference *reference, const conic_image *
         conic_oracle_select(stable + plane * room, n_stable, (size_t)(0.999 * (double)(n_stable - 1)));
 }
 
-conic_status conic_oracle_compare(conic_context *context, const conic_reference *reference, const conic_image *image,
-                                  conic_oracle_verdict *verdict) {
-  memset(verdict, 0, sizeof *verdict);
+static conic_status compare_images(conic_context *context, const judged *j, const compare_notes *notes,
+                                   conic_oracle_verdict *verdict) {
+  const conic_reference *reference = j->reference;
+  const conic_image *image = j->image;
   if (image->width != reference->width || image->height != reference->height)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "an image of %d x %d and a reference of %d x %d are not comparable", image->width, image->height,
@@ -196,11 +250,39 @@ conic_status conic_oracle_compare(conic_context *context, const conic_reference 
     verdict->planes[i].is_compared = image->planes[i] != NULL;
     verdict->planes[i].bound = is_exact ? NAN : bounds[i];
   }
-  compare_pixels(reference, image, stable, reference->covered_pixels, verdict);
+  compare_pixels(*j, stable, reference->covered_pixels, notes, verdict);
   verdict->pass = is_exact || (!verdict->wrong_pixels &&
                                (double)reference->unbounded_pixels <= unbounded_limit * (double)reference->n_pixels);
   conic_memory_release(context, stable);
   return CONIC_OK;
+}
+
+conic_status conic_oracle_compare(conic_context *context, const conic_reference *reference, const conic_image *image,
+                                  conic_oracle_verdict *verdict) {
+  const compare_notes nothing = {.judgement = NULL};
+  const judged j = {.reference = reference, .image = image};
+  memset(verdict, 0, sizeof *verdict);
+  return compare_images(context, &j, &nothing, verdict);
+}
+
+conic_status conic_oracle_judge(conic_context *context, const conic_reference *reference,
+                                const conic_oracle_judging *judging, const conic_image *image, uint8_t *classes,
+                                conic_oracle_judgement *judgement) {
+  conic_oracle_judging own;
+  oracle_worst worst = {.n = 0};
+  const compare_notes notes = {judgement, &worst, classes};
+  memset(judgement, 0, sizeof *judgement);
+  conic_oracle_judging_init(&own);
+  if (judging && !conic_options_take(&own, judging))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: no such options");
+  if (reference->question != CONIC_ORACLE_METHOD || !conic_oracle_evidence_fits(image, own.greatest))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "judge: it is asked about the method, with the greatest values of all planes");
+  const judged j = {.reference = reference, .image = image, .greatest = own.greatest};
+  conic_status status = compare_images(context, &j, &notes, &judgement->verdict);
+  memcpy(judgement->worst, worst.faults, sizeof judgement->worst);
+  judgement->n_worst = worst.n;
+  return status;
 }
 
 double conic_reference_width(const conic_reference *reference, conic_plane plane) {

@@ -15,8 +15,8 @@ typedef struct cli_coloring {
 #define CLI_BUILD_COLOR_OPTIONS(coloring)                                                                              \
   CLI_COLOR_OPTIONS(&(coloring)->options), {                                                                           \
     "up", CLI_PARSED, (coloring)->options.up, "DIR",                                                                   \
-        "what --color-by height means: x, y, z, -x … or X,Y,Z [y; z for LAS]", .parse = cli_parse_up,                  \
-                                                                               .is_given = &(coloring)->is_up_given    \
+        "which way is up for --color-by height: x, y, z, -x … or X,Y,Z [y; z for LAS]",                                \
+        .parse = cli_parse_up, .is_given = &(coloring)->is_up_given                                                    \
   }
 
 void cli_coloring_init(cli_coloring *coloring);

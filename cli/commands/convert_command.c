@@ -220,12 +220,14 @@ static int run_convert(cli_session *session, int argc, char **argv) {
   conic_gaussians_write_options_init(&job.write);
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT", "the file to write: .ply .compressed.ply .splat .spz .sog .gltf .glb"},
-      {"to", CLI_CHOICE, &job.to, "KIND", "the format, where the name does not say it [auto]", .choices = kind_names},
+      {"to", CLI_CHOICE, &job.to, "KIND", "the format, where the name does not say it [as the name says]",
+       .choices = kind_names},
       {"sh-degree", CLI_INT, &job.write.most_sh_degree, "N", "keep harmonics up to this degree [4]", 0, 4},
       {"frame", CLI_TEXT, &job.frame, "XYZ",
        "where x, y, z shall point, as rdf: right, down, forward; or keep [the format's habit]"},
       {"from-frame", CLI_TEXT, &job.from_frame, "XYZ", "where they point in the input [the format's habit]"},
-      {"keep-order", CLI_FLAG, &job.keeps_order, NULL, "do not bring neighbours together, whatever that costs"},
+      {"keep-order", CLI_FLAG, &job.keeps_order, NULL,
+       "keep the order of the Gaussians; else neighbours are brought together, which packs better"},
       {"sh-bits", CLI_INT, &job.sh_bits, "N", "of .spz: bits of each number of the harmonics, 1 to 8 [8]", 1, 8},
       {"measure", CLI_INT, &job.pictures.n_views, "N", "draw both scenes from N sides, and say how pictures differ", 1,
        360},
@@ -242,4 +244,7 @@ const cli_command cli_convert = {
     .summary = "writes a Gaussian scene in another format, and says what is lost",
     .usage = "conic convert SCENE -o SCENE [--sh-degree N] [--frame XYZ]",
     .run = run_convert,
+    .description = "Reads and writes scenes of 3D Gaussian splatting, and reports what the other format cannot hold.",
+    .examples = {{"make a trained scene small, and see what that costs",
+                  "conic convert point_cloud.ply -o scene.spz --measure 4"}},
 };

@@ -75,5 +75,10 @@ static int run_devices(cli_session *session, int argc, char **argv) {
   return exit_code < 0 ? CLI_DONE : exit_code;
 }
 
-const cli_command cli_devices = {"devices", "lists the OpenCL devices that can draw", "conic devices [--json FILE]",
-                                 run_devices};
+const cli_command cli_devices = {
+    .name = "devices",
+    .summary = "lists the OpenCL devices that can draw",
+    .usage = "conic devices [--json FILE]",
+    .run = run_devices,
+    .description = "Lists the devices that --device takes, and whether they round as they must for the same picture.",
+};

@@ -164,4 +164,8 @@ const cli_command cli_diff = {
     .summary = "compares two images, or two folders of them",
     .usage = "conic diff A B [--heatmap H.png] [--max-abs X] [--min-psnr DB] [--display WHICH] [--reduce] …",
     .run = run_diff,
+    .description = "Measures how two pictures of the same size differ: the largest difference, PSNR, SSIM and FLIP. It "
+                   "ends with 1 where a limit is passed or, without limits, where they are not identical.",
+    .examples = {{"let two pictures differ by a little", "conic diff a.exr b.exr --max-abs 0.001"},
+                 {"compare the views of two renderers", "conic diff theirs ours --min-psnr 40 --csv table.csv"}},
 };

@@ -405,4 +405,8 @@ const cli_command cli_explain = {
     .summary = "says why a pixel is as it is, splat by splat",
     .usage = "conic explain IN… --pixel X,Y [--splat I] [--dump-projection FILE] [camera and render options]",
     .run = run,
+    .description = "Lists what a pixel is made of, from front to back: each splat's place, depth, weight and colour, "
+                   "and why it counts or does not.",
+    .examples = {{"ask about a pixel of the picture that conic render draws",
+                  "conic explain scan.ply --size 640x480 --pixel 320,240"}},
 };

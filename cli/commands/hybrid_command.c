@@ -142,8 +142,7 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
        "blue (blue noise, ellipses) or box (three grids, circles: for comparison) [blue]", .choices = sampling_words},
       {"texture", CLI_TEXT, &job.texture, "FILE", "the picture on the mesh [its materials']"},
       CLI_TEXTURE_BOUND(session),
-      {"cutoff", CLI_NUMBER, &cutoff, "F", "standard deviations at which a surfel ends; that of the pictures [1.5]",
-       0.25, 5},
+      {"cutoff", CLI_NUMBER, &cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
       {"single", CLI_FLAG, &job.options.has_single_levels, NULL,
        "without the simpler levels that --error chooses from"},
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
@@ -161,4 +160,8 @@ const cli_command cli_hybrid = {
     .summary = "makes of a mesh patches of triangles where it is flat, and of surfels where it is not",
     .usage = "conic hybrid MESH -o OUT.chy [--phase1 COST] [--phase2 COST] [--texture FILE]",
     .run = run_hybrid,
+    .description = "Cuts a mesh into patches. Where many small triangles bend, splats (here called surfels) draw them "
+                   "faster than triangles do; where the mesh is flat, its triangles stay.",
+    .examples = {{"build and draw", "conic hybrid statue.obj -o statue.chy\n"
+                                    "conic render statue.chy -o statue.png"}},
 };

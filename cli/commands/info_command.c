@@ -221,5 +221,13 @@ static int run(cli_session *session, int argc, char **argv) {
   return exit_code < 0 ? CLI_DONE : exit_code;
 }
 
-const cli_command cli_info = {"info", "says what a file holds, and whether it is sound",
-                              "conic info FILE [--check] [--cameras] [--json -]", run};
+const cli_command cli_info = {
+    .name = "info",
+    .summary = "says what a file holds, and whether it is sound",
+    .usage = "conic info FILE [--check] [--cameras] [--json -]",
+    .run = run,
+    .description =
+        "Reads whatever conic reads: points, meshes, Gaussian scenes, pictures in EXR, files of cameras. With "
+        "--check it also says whether all of it can be drawn.",
+    .examples = {{"look for what cannot be drawn", "conic info scan.ply --check"}},
+};

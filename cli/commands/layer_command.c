@@ -226,18 +226,17 @@ static int run_layer(cli_session *session, int argc, char **argv) {
   cli_coloring_init(&job.coloring);
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.lpc", "the file to write"},
-      {"cloud-size", CLI_INT, &job.cloud_size, "M", "samples that a cloud has about, 64 to 32768 [2048]", 64, 32768},
+      {"cloud-size", CLI_INT, &job.cloud_size, "M", "about how many samples a cloud has, 64 to 32768 [2048]", 64,
+       32768},
       {"memory", CLI_NUMBER, &job.memory_mib, "MIB",
-       "what building may take; what does not fit goes to files beside the output [1024]", 64, 1e9},
+       "what building may take in memory; what does not fit goes to files beside the output [1024]", 64, 1e9},
       {"quantum", CLI_PARSED, &job.quantum, "Q",
-       "steps that positions are rounded to, world units or, with x, sampling distances [0.5x]",
-       .parse = cli_parse_length},
-      {"cutoff", CLI_NUMBER, &job.cutoff, "F", "standard deviations at which a splat ends; that of the pictures [1.5]",
-       0.25, 5},
+       "the steps that positions are rounded to: a length, also in spacings (2x) [0.5x]", .parse = cli_parse_length},
+      {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that raw points' normals are estimated from, 6 to 64 [20]", 6, 64},
-      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
       CLI_COLUMNS(&job.base.columns),
+      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &job.n_inputs);
@@ -250,4 +249,8 @@ const cli_command cli_layer = {
     .summary = "builds a layered point cloud: samples of any number, for pictures in bounded memory",
     .usage = "conic layer IN… -o OUT.lpc [--cloud-size M] [--memory MIB] [--quantum Q]",
     .run = run_layer,
+    .description =
+        "Writes the samples in small clouds, coarse ones first. conic render reads only those that a picture "
+        "shows, from a file or from a web server.",
+    .examples = {{"join scans that do not fit into memory", "conic layer scans/*.ply -o all.lpc --memory 4096"}},
 };

@@ -34,12 +34,13 @@ static void list_names(char *names, size_t room) {
     snprintf(names + used, room - used, "%s", gaussians_name);
 }
 
-static void print_scenes(void) {
-  puts("\nscenes:");
-  for (int i = 0; i < CONIC_N_SCENES; i++)
-    printf("  %-10s %s\n", conic_scene_name((conic_scene_type)i), conic_scene_summary((conic_scene_type)i));
-  printf("  %-10s %s\n", gaussians_name, "3D Gaussians, like a scene trained from photographs");
+static const char *scene_word(int i, const char **about) {
+  *about = i < CONIC_N_SCENES ? conic_scene_summary((conic_scene_type)i)
+                              : "3D Gaussians, like a scene trained from photographs";
+  return i < CONIC_N_SCENES ? conic_scene_name((conic_scene_type)i) : i == CONIC_N_SCENES ? gaussians_name : NULL;
 }
+
+static const cli_words scene_words = {"scenes", NULL, scene_word};
 
 static int find_scene(const char *name, conic_scene_type *type) {
   const char *nearest = conic_nearer_word(name, NULL, gaussians_name);
@@ -97,14 +98,17 @@ static int parse_scene(int argc, char **argv, make_job *job) {
   job->count = scene->count;
   job->sh_degree = 3;
   const cli_option options[] = {
-      {"o", CLI_TEXT, &job->base.output, "OUT.ply", "where to; - is standard output"},
-      {"n", CLI_COUNT, &job->count, "COUNT", "splats: 100000, 10k, 2M, 1e6 [100k]", 1, 4294967294.0},
-      {"seed", CLI_COUNT, &job->seed, "S", "of the jitter, the noise and the terrain's shape [0]"},
+      {"o", CLI_TEXT, &job->base.output, "OUT.ply", "the file to write; - is standard output"},
+      {"n", CLI_COUNT, &job->count, "COUNT", "how many splats: 100000, 10k, 2M, 1e6 [100k]", 1, 4294967294.0},
+      {"seed", CLI_COUNT, &job->seed, "S",
+       "the number that the jitter, the noise and the terrain's shape are drawn from [0]"},
       {"jitter", CLI_NUMBER, &scene->jitter, "J", "move each splat in its plane by up to J spacings [0]", 0, 1e6},
-      {"noise", CLI_NUMBER, &scene->noise, "N", "move each along its normal by a Gaussian of N spacings [0]", 0, 1e6},
-      {"far", CLI_VECTOR, scene->offset, "X,Y,Z", "move the scene away; writes doubles [0,0,0]"},
-      {"degree", CLI_INT, &job->sh_degree, "D", "of Gaussians' harmonics [3]", 0, CONIC_MAX_SH_DEGREE,
-       .is_given = &job->has_sh_degree},
+      {"noise", CLI_NUMBER, &scene->noise, "N",
+       "move each along its normal by chance, by N spacings in the mean square [0]", 0, 1e6},
+      {"far", CLI_VECTOR, scene->offset, "X,Y,Z",
+       "move the scene away from the origin; positions then are doubles [0,0,0]"},
+      {"degree", CLI_INT, &job->sh_degree, "D", "of gaussians: the degree of their spherical harmonics, 0 to 4 [3]", 0,
+       CONIC_MAX_SH_DEGREE, .is_given = &job->has_sh_degree},
       {"ascii", CLI_FLAG, &job->is_ascii, NULL, "write text instead of binary"},
   };
   const char *scenes[64];
@@ -113,8 +117,6 @@ static int parse_scene(int argc, char **argv, make_job *job) {
     return cli_usage("make: too many arguments");
   int exit_code =
       cli_parse(job->base.session, options, (int)(sizeof options / sizeof *options), argc, argv, scenes, &n_scenes);
-  if (exit_code < 0)
-    print_scenes();
   if (exit_code == CLI_DONE)
     exit_code = check_arguments(scenes, n_scenes, job);
   scene->count = (size_t)job->count;
@@ -219,5 +221,14 @@ static int run_make(cli_session *session, int argc, char **argv) {
   return cli_build_run(&job, &steps, parse_scene(argc, argv, &job));
 }
 
-const cli_command cli_make = {"make", "samples an analytic scene into splats, or makes one of Gaussians",
-                              "conic make SCENE -o OUT.ply [-n COUNT] [options]", run_make};
+const cli_command cli_make = {
+    .name = "make",
+    .summary = "samples an analytic scene into splats, or makes one of Gaussians",
+    .usage = "conic make SCENE -o OUT.ply [-n COUNT] [options]",
+    .run = run_make,
+    .description = "Samples a scene that is known by its formula. The same options always give the same file, byte for "
+                   "byte. Splats are written as they come, so that there can be any number of them.",
+    .words = &scene_words,
+    .examples = {{"make a scan of a knot, which can be looked at from all sides", "conic make knot -o scan.ply"},
+                 {"make noise as a scanner does", "conic make sphere -n 1M --noise 0.5 -o noisy.ply"}},
+};

@@ -356,10 +356,25 @@ static int run_mls(cli_session *session, int argc, char **argv) {
   return cli_build_run(&job, &steps, exit_code == CLI_DONE ? check_job(&job, positional, n_positional) : exit_code);
 }
 
+static const char *action_word(int i, const char **about) {
+  static const char *const texts[] = {"moves each point onto the surface", "leaves out points", "adds points"};
+  *about = i < N_MLS_ACTIONS ? texts[i] : NULL;
+  return action_names[i];
+}
+
+static const cli_words mls_words = {"what is done", NULL, action_word};
+
 const cli_command cli_mls = {
     .name = "mls",
     .summary = "point-set surfaces: smooths, thins or densifies points",
     .usage = "conic mls project|thin|densify IN -o OUT.ply [--type mls|apss] [--h H] [--degree D]\n"
-             "                 [--count N] [--max-error E] [--spacing S] [--hole R]",
+             "          [--count N] [--max-error E] [--spacing S] [--hole R]",
     .run = run_mls,
+    .description = "Fits a surface to the points and moves them onto it (project), leaves out those that it needs not "
+                   "(thin), or adds points where it has too few (densify). Lengths are in the units of the file or, "
+                   "with an x behind them (2x), multiples of the typical distance between neighbouring points.",
+    .words = &mls_words,
+    .examples = {{"remove noise", "conic mls project scan.ply -o clean.ply"},
+                 {"keep as few points as stay within 1 mm of the surface, in a file in metres",
+                  "conic mls thin scan.ply --max-error 0.001 -o thin.ply"}},
 };

@@ -106,12 +106,11 @@ static int run_octree(cli_session *session, int argc, char **argv) {
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.cot", "the file to write"},
       {"quantize", CLI_FLAG, &job.options.quantize, NULL, "round the splats: about half the size; the error is stated"},
-      {"cutoff", CLI_NUMBER, &job.cutoff, "F", "standard deviations at which a splat ends; that of the pictures [1.5]",
-       0.25, 5},
+      {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
-      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
       CLI_COLUMNS(&job.base.columns),
+      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
   };
   int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot");
   job.options.cutoff = job.estimate.cutoff = (float)job.cutoff;
@@ -125,4 +124,10 @@ const cli_command cli_octree = {
     .summary = "builds a point-octree: splats in several resolutions, for --error and --budget",
     .usage = "conic octree IN -o OUT.cot [--quantize] [--cutoff F]",
     .run = run_octree,
+    .description =
+        "Writes the splats and means of them, level by level, so that conic render --error or --budget draws "
+        "no more than a picture needs.",
+    .examples = {{"build and draw with an error of half a pixel at most",
+                  "conic octree scan.ply -o scan.cot\n"
+                  "conic render scan.cot --error 0.5 -o scan.png"}},
 };

@@ -160,8 +160,8 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
       CLI_IN_PLACE(job.base),
-      {"k", CLI_INT, &job.estimate.n_neighbours, "K", "neighbours that a point's ellipse comes from, 6 to 64 [20]", 6,
-       64},
+      {"k", CLI_INT, &job.estimate.n_neighbours, "K", "how many neighbours a point's ellipse comes from, 6 to 64 [20]",
+       6, 64},
       {"ellipse", CLI_PARSED, &job.estimate.ellipse, "RULE",
        "what a point's ellipse goes around: its voronoi cell, or bounding all K neighbours, as Confetti has it "
        "[voronoi]",
@@ -170,11 +170,12 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
        "creases sharper than ANGLE degrees become sharp, by clip lines [none]", 0, 90},
       {"count", CLI_COUNT, &job.count, "N", "keep N of the points, chosen at random, and fit the sizes to them", 1,
        4294967294.0, .is_given = &job.has_count},
-      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
-      {"seed", CLI_COUNT, &job.seed, "S", "which choice; a smaller count is a part of a larger one [0]"},
+      {"seed", CLI_COUNT, &job.seed, "S",
+       "which points --count chooses; those of a smaller count are among those of a larger one [0]"},
       CLI_COLUMNS(&job.base.columns),
       {"plain", CLI_FLAG, &job.is_plain, NULL,
-       "no dots: every point becomes an ellipse, where there is no surface, too"},
+       "every point becomes an ellipse; else those that lie on no surface become round dots"},
+      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
   };
   int parsed = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply");
   return cli_build_run(&job, &steps, parsed == CLI_DONE ? cli_coloring_check(session, &job.coloring) : parsed);
@@ -185,4 +186,8 @@ const cli_command cli_prepare = {
     .summary = "turns points or a mesh into splats: normals, sizes, thinning",
     .usage = "conic prepare IN -o OUT.ply [-k K] [--ellipse RULE] [--features ANGLE] [--count N --seed S] [--plain]",
     .run = run_prepare,
+    .description = "Reads raw points, or the vertices of a mesh, and writes the splats that conic render would make of "
+                   "them. Each point gets an ellipse of the size and the direction that its neighbours mean.",
+    .examples = {{"keep 100,000 points of a scan", "conic prepare scan.las --count 100k -o small.ply"},
+                 {"colour points by their height", "conic prepare scan.las --color-by height -o coloured.ply"}},
 };

@@ -6,6 +6,7 @@
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_fault.h"
+#include "cli/commands/verify_reference.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/render/render_job.h"
@@ -37,30 +38,6 @@ static conic_status get_image(cli_session *session, verify_job *job, const conic
   return status;
 }
 
-/* An image of another size is an input that can't be used, and is told before the oracle has worked. */
-static conic_status check_size(const verify_job *job, const conic_camera *camera) {
-  if (job->image.width == camera->width && job->image.height == camera->height)
-    return CONIC_OK;
-  cli_error(CLI_INPUT, "%s: it has %d x %d pixels, and the picture to compare with %d x %d", job->image_path,
-            job->image.width, job->image.height, camera->width, camera->height);
-  return CONIC_ERROR_INPUT;
-}
-
-/* A picture from a file has the names of what was chosen, where the oracle counts. */
-static void name_reference(verify_job *job) {
-  const conic_source_choice *choice = conic_source_chosen(job->scene.source);
-  const uint32_t *names = choice->ids;
-  size_t n_names = choice->drawing.splats->count;
-  conic_reference *r = &job->reference;
-  double *ids = r->planes[CONIC_PLANE_ID];
-  for (size_t i = 0; names && i < r->n_pixels; i++)
-    if (ids[i] < (double)n_names)
-      ids[i] = (double)names[(size_t)ids[i]];
-  for (size_t i = 0; names && i < r->n_ids; i++)
-    if (r->ids[i].id < n_names)
-      r->ids[i].id = names[r->ids[i].id];
-}
-
 static conic_status compare(cli_session *session, verify_job *job) {
   const conic_source_choice *choice = conic_source_chosen(job->scene.source);
   conic_camera camera;
@@ -70,19 +47,12 @@ static conic_status compare(cli_session *session, verify_job *job) {
   if (status == CONIC_OK)
     status = get_image(session, job, &choice->drawing, &camera);
   if (status == CONIC_OK)
-    status = check_size(job, &camera);
-  conic_render_options options = job->scene.options;
-  const conic_splats *splats = choice->drawing.splats;
-  if (choice->is_all && !(splats && splats->dot))
-    options.splat_length = 0.0; /* the oracle sees all splats as they are kept, and measures them by itself */
+    status = cli_reference_check_size(job->image_path, &job->image, &camera);
   double start = cli_seconds();
   if (status == CONIC_OK)
-    status = conic_oracle_render_pixels(session->context, &choice->drawing, &camera, &options,
-                                        (conic_oracle_question)job->question, job->scene.view.samples,
-                                        (size_t)job->n_pixels, &job->reference);
+    status = cli_reference_draw(session, &job->scene, &camera, (conic_oracle_question)job->question,
+                                (size_t)job->n_pixels, job->image_path != NULL, &job->reference);
   job->oracle_ms = 1e3 * (cli_seconds() - start);
-  if (status == CONIC_OK && job->image_path)
-    name_reference(job);
   if (status == CONIC_OK)
     status = conic_oracle_compare(session->context, &job->reference, &job->image, &job->verdict);
   return status;
@@ -304,4 +274,8 @@ const cli_command cli_verify = {
     .summary = "measures pictures against a slow, exact reference",
     .usage = "conic verify IN… [--against method|exact] [--image FILE] [--pixels N] [camera and render options]",
     .run = run,
+    .description = "Draws a scene, or takes a picture of it, and computes the same pixels in double precision, slowly "
+                   "and by other code. It ends with 1 where they differ by more than rounding explains.",
+    .examples = {{"is this picture right?", "conic verify scene.ply --size 640x480"},
+                 {"how far is the method from the truth?", "conic verify scene.ply --method affine --against exact"}},
 };

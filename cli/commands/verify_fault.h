@@ -7,5 +7,7 @@
 
 /* Writes it as an object under `key`, or, where that is null, as an item. */
 void cli_report_fault(cli_json *json, const char *key, const conic_oracle_fault *fault);
+/* The same into an object that is open. */
+void cli_fault_members(cli_json *json, const conic_oracle_fault *fault);
 
 #endif

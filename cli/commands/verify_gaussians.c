@@ -3,6 +3,7 @@
 
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_fault.h"
+#include "cli/commands/verify_reference.h"
 #include "conic/source.h"
 
 typedef struct gaussian_report {
@@ -135,11 +136,8 @@ int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_
   conic_status status = cli_scene_camera(scene, 0, &camera);
   if (status == CONIC_OK && !image_path)
     status = draw_composited(session, scene, &camera, image, &r.render_ms);
-  if (status == CONIC_OK && (image->width != camera.width || image->height != camera.height)) {
-    cli_error(CLI_INPUT, "%s: it has %d x %d pixels, and the picture to compare with %d x %d", image_path, image->width,
-              image->height, camera.width, camera.height);
-    status = CONIC_ERROR_INPUT;
-  }
+  if (status == CONIC_OK)
+    status = cli_reference_check_size(image_path, image, &camera);
   double start = cli_seconds();
   if (status == CONIC_OK)
     status = conic_gaussian_judge(session->context, conic_source_gaussians(scene->source), &camera, &options,

@@ -323,8 +323,21 @@ static int run(cli_session *session, int argc, char **argv) {
   return exit_code < 0 ? CLI_DONE : exit_code;
 }
 
-const cli_command cli_render = {"render", "draws splats, points or meshes into pictures",
-                                "conic render IN… -o OUT [options]\n"
-                                "       IN: " CLI_READABLE " or its http:// URL;\n"
-                                "       - is standard input",
-                                run};
+const cli_command cli_render = {
+    .name = "render",
+    .summary = "draws splats, points or meshes into pictures",
+    .usage = "conic render IN… -o OUT [options]",
+    .run = run,
+    .description =
+        "Draws one or more inputs as one scene into a picture. It reads " CLI_READABLE ", the http:// URL of an .lpc, "
+        "and Gaussian scenes in .ply, .splat, .spz and .sog; - is standard input. What a file does not say (normals, "
+        "sizes of points, what points up, the camera) is estimated. The ending of OUT says what is written. Lengths "
+        "are in the units of the file or, with an x behind them (2x), multiples of the typical distance between "
+        "neighbouring points.",
+    .examples = {{"draw a scan, seen from the right and from above",
+                  "conic render scan.ply --azimuth 60 --elevation 40 -o scan.png"},
+                 {"write depth and normals beside the colour", "conic render scan.ply --aov rgba,Z,N -o scan.exr"},
+                 {"draw a Gaussian scene from the cameras of a COLMAP folder, as gsplat 1.6 does",
+                  "conic render scene.spz --profile gsplat-1.6 --camera sparse/0 --view all -o views/%s.exr"},
+                 {"draw 36 pictures around the scene", "conic render scan.ply --turntable 36 -o turn_%04d.png"}},
+};

@@ -59,7 +59,7 @@ typedef struct cli_render_job {
   int is_error_warned; /* that --error is not kept */
   int repeat;
   unsigned planes; /* bits 1 << conic_plane */
-  int is_aov_given;
+  int is_aov_given, is_samples_given;
   unsigned asked_planes;        /* of these, what --aov names */
   unsigned unwritten_planes;    /* drawn for what else is written */
   conic_image_options writing;  /* how pictures are written */

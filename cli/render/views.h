@@ -12,8 +12,9 @@ typedef struct cli_views_wish {
 } cli_views_wish;
 
 #define CLI_CAMERA_HELP                                                                                                \
-  "cameras of COLMAP (a folder), transforms.json, cameras.json, .npz of viewmats and Ks, glTF or conic's JSON, in "    \
-  "place of the framing; --size then scales them"
+  "cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json, .npz of "        \
+  "viewmats "                                                                                                          \
+  "and Ks, glTF, or conic's JSON"
 
 /* Whether every view is meant. */
 int cli_views_are_all(const char *view);

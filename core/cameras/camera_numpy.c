@@ -4,7 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/cameras/camera_list.h"
-#include "core/cameras/numpy_array.h"
+#include "core/files/numpy_array.h"
 #include "core/files/zip.h"
 
 typedef enum npz_part { VIEW_MATRICES, INTRINSICS, WIDTHS, HEIGHTS, N_PARTS } npz_part;

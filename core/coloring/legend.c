@@ -20,6 +20,7 @@ typedef struct legend_row {
 
 typedef struct legend {
   const conic_coloring *coloring;
+  const char *title;
   int has_bar, n_rows;
   legend_row rows[MOST_ROWS];
   int width, height; /* in units */
@@ -104,21 +105,27 @@ static int legend_text_width(const char *text) {
   return (int)strlen(text) * CONIC_GLYPH_STEP - 1;
 }
 
+/* How large it is, once its rows are known. */
+static void size_legend(legend *l) {
+  int indent = l->has_bar ? BAR_WIDTH + TICK + 2 : SWATCH + 3, widest = legend_text_width(l->title);
+  for (int i = 0; i < l->n_rows; i++)
+    widest =
+        indent + legend_text_width(l->rows[i].text) > widest ? indent + legend_text_width(l->rows[i].text) : widest;
+  l->width = widest + 2 * MARGIN;
+  l->height = 2 * MARGIN + TITLE + (l->has_bar ? BAR_HEIGHT : l->n_rows * ROW - (ROW - SWATCH));
+}
+
 static void lay_out_legend(const conic_coloring *coloring, legend *l) {
   memset(l, 0, sizeof *l);
   l->coloring = coloring;
+  l->title = coloring->field;
   if (!coloring->ramp)
     list_axes(l);
   else if (strcmp(coloring->ramp, conic_ramp_name(CONIC_RAMP_CLASSES)) == 0)
     list_class_rows(l);
   else
     list_ticks(l);
-  int indent = l->has_bar ? BAR_WIDTH + TICK + 2 : SWATCH + 3, widest = legend_text_width(coloring->field);
-  for (int i = 0; i < l->n_rows; i++)
-    widest =
-        indent + legend_text_width(l->rows[i].text) > widest ? indent + legend_text_width(l->rows[i].text) : widest;
-  l->width = widest + 2 * MARGIN;
-  l->height = 2 * MARGIN + TITLE + (l->has_bar ? BAR_HEIGHT : l->n_rows * ROW - (ROW - SWATCH));
+  size_legend(l);
 }
 
 /* --- drawing it --- */
@@ -169,7 +176,7 @@ static void draw_ramp_bar(const canvas *to, const conic_coloring *coloring) {
 static void draw_legend_into(const legend *l, const canvas *to, float alpha) {
   int first = MARGIN + TITLE;
   draw_box(to, 0, 0, l->width, l->height, paper, alpha);
-  draw_text(to, MARGIN, MARGIN, l->coloring->field);
+  draw_text(to, MARGIN, MARGIN, l->title);
   if (l->has_bar)
     draw_ramp_bar(to, l->coloring);
   for (int i = 0; i < l->n_rows; i++) {
@@ -198,12 +205,27 @@ void conic_legend_draw(const conic_coloring *coloring, conic_image *image) {
   draw_legend_into(&l, &to, 0.8f);
 }
 
-conic_status conic_legend_make(conic_context *context, const conic_coloring *coloring, conic_image *image) {
+static conic_status draw_legend_alone(conic_context *context, const legend *l, conic_image *image) {
   enum { UNIT = 2 };
+  conic_status status = conic_image_allocate(context, l->width * UNIT, l->height * UNIT, 1u << CONIC_PLANE_RGBA, image);
+  if (status == CONIC_OK)
+    draw_legend_into(l, &(canvas){.image = image, .unit = UNIT}, 1.0f);
+  return status;
+}
+
+conic_status conic_legend_make(conic_context *context, const conic_coloring *coloring, conic_image *image) {
   legend l;
   lay_out_legend(coloring, &l);
-  conic_status status = conic_image_allocate(context, l.width * UNIT, l.height * UNIT, 1u << CONIC_PLANE_RGBA, image);
-  if (status == CONIC_OK)
-    draw_legend_into(&l, &(canvas){.image = image, .unit = UNIT}, 1.0f);
-  return status;
+  return draw_legend_alone(context, &l, image);
+}
+
+conic_status conic_legend_make_list(conic_context *context, const char *title, const char *const *names,
+                                    const float (*colors)[3], int n, conic_image *image) {
+  legend l;
+  memset(&l, 0, sizeof l);
+  l.title = title;
+  for (int i = 0; i < n && i < MOST_ROWS; i++)
+    memcpy(add_legend_row(&l, names[i])->color, colors[i], sizeof colors[i]);
+  size_legend(&l);
+  return draw_legend_alone(context, &l, image);
 }

@@ -21,8 +21,8 @@ static void store_number(unsigned char *p, uint32_t value, int n_bytes) {
     p[i] = (unsigned char)(value >> 8 * i);
 }
 
-/* The sum of ZIP and PNG: a remainder by the polynomial 0x04c11db7, its bits reversed. */
-static uint32_t find_sum(const unsigned char *bytes, size_t n) {
+/* A remainder by the polynomial 0x04c11db7, its bits reversed. */
+uint32_t conic_zip_sum(const unsigned char *bytes, size_t n) {
   uint32_t table[256], sum = 0xffffffff;
   for (uint32_t i = 0; i < 256; i++) {
     table[i] = i;
@@ -98,7 +98,7 @@ static conic_status unpack_file(const conic_zip *zip, size_t entry_at, size_t pa
     memcpy(to, zip->bytes + packed, n_bytes < n_packed ? n_bytes : n_packed);
   else
     n = conic_inflate(CONIC_DEFLATE_BARE, zip->bytes + packed, n_packed, to, n_bytes, NULL);
-  return n == n_bytes && find_sum(to, n_bytes) == load(entry + 16, 4)
+  return n == n_bytes && conic_zip_sum(to, n_bytes) == load(entry + 16, 4)
              ? CONIC_OK
              : zip_wrong(zip, "a file in it is not what its sum says", packed);
 }
@@ -162,7 +162,7 @@ int conic_zip_add(conic_zip_writer *writer, const char *name, const unsigned cha
   if (i == CONIC_ZIP_MOST_FILES || n_bytes > 0xfffff000)
     return 0;
   snprintf(writer->files[i].name, sizeof writer->files[i].name, "%s", name);
-  writer->files[i].sum = find_sum(bytes, n_bytes);
+  writer->files[i].sum = conic_zip_sum(bytes, n_bytes);
   writer->files[i].n_bytes = (uint32_t)n_bytes;
   writer->files[i].offset = writer->offset;
   writer->n_files++;

@@ -26,6 +26,9 @@ int conic_zip_has(const conic_zip *zip, const char *file);
 conic_status conic_zip_read(const conic_zip *zip, const char *file, size_t most_bytes, unsigned char **contents,
                             size_t *n_contents);
 
+/* The sum of ZIP, gzip and PNG. */
+uint32_t conic_zip_sum(const unsigned char *bytes, size_t n);
+
 enum { CONIC_ZIP_MOST_FILES = 16 };
 
 /* An archive that is being written to a stream from its start; begins as {.to = stream}. */

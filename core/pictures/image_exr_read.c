@@ -26,6 +26,7 @@ typedef struct exr_reader {
   int tile_width, tile_height, n_across; /* tiles */
   size_t n_chunks;
   conic_image *image;
+  unsigned half_planes;
   exr_decode_pipeline_t *pipelines; /* one a thread */
   atomic_int result;
   atomic_ullong failed_bytes; /* what the chunk that could not be decoded is unpacked to */
@@ -43,7 +44,10 @@ static int has_channel(const exr_attr_chlist_t *channels, const char *name) {
 static conic_status choose_planes(conic_context *context, exr_reader *reader, unsigned *planes, int *has_alpha) {
   const exr_attr_chlist_t *channels;
   const char *path = reader->stream.path;
+  exr_compression_t compression = EXR_COMPRESSION_NONE;
   exr_result_t result = exr_get_channels(reader->file, 0, &channels);
+  if (result == EXR_ERR_SUCCESS)
+    result = exr_get_compression(reader->file, 0, &compression);
   if (result != EXR_ERR_SUCCESS)
     return conic_exr_fail(&reader->stream, result, "read", CONIC_ERROR_INPUT);
   reader->is_luminance = has_channel(channels, "Y") && !has_channel(channels, "R") && !has_channel(channels, "G") &&
@@ -61,6 +65,8 @@ static conic_status choose_planes(conic_context *context, exr_reader *reader, un
       return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read: channel %s is subsampled", path,
                         channel->name.str);
     *planes |= 1u << target.plane;
+    if (channel->pixel_type == EXR_PIXEL_HALF || compression == EXR_COMPRESSION_PXR24)
+      reader->half_planes |= 1u << target.plane;
   }
   if (!*planes)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: has no channel that conic knows", path);
@@ -260,6 +266,7 @@ static conic_status read_part(conic_context *context, exr_reader *reader) {
   }
   conic_channels_complete(reader->image, has_alpha, reader->is_luminance);
   read_attributes(reader);
+  reader->image->half_planes = reader->half_planes;
   reader->image->is_display = (uint64_t)says_display(reader);
   return CONIC_OK;
 }

@@ -13,6 +13,7 @@
 #include "core/image/image_common.h"
 #include "core/pictures/image_exr.h"
 #include "core/pictures/image_foreign.h"
+#include "core/pictures/image_numpy.h"
 #include "core/pictures/image_pfm.h"
 #include "core/pictures/image_png.h"
 
@@ -130,6 +131,7 @@ static conic_status copy_lent(conic_context *context, const char *name, const co
 
 conic_status conic_image_read(conic_context *context, const char *path, conic_image *image) {
   unsigned char start[4] = {0};
+  unsigned most_code;
   if (!path || !image)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: no file name, or no place for the image");
   memset(image, 0, sizeof *image);
@@ -160,5 +162,7 @@ conic_status conic_image_read(conic_context *context, const char *path, conic_im
     return conic_pfm_read(context, path, image);
   if (n == 4 && memcmp(start, "\x89PNG", 4) == 0)
     return conic_png_read(context, path, image);
+  if (n == 4 && (memcmp(start, "\x93NUM", 4) == 0 || memcmp(start, "PK\3\4", 4) == 0))
+    return conic_numpy_image_read(context, path, image, &most_code);
   return conic_foreign_read(context, path, image);
 }

@@ -1,5 +1,6 @@
 #include "core/pictures/image_png.h"
 
+#include "core/base/message.h"
 #include "core/pictures/image_foreign.h"
 
 #if CONIC_HAVE_PNG
@@ -9,7 +10,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 #include "core/pictures/image_samples.h"
@@ -30,6 +30,7 @@ typedef struct png_work {
   int width, height;
   conic_samples_layout layout;
   unsigned char *samples;
+  int is_raw;        /* codes are read as they are */
   char message[100]; /* libpng's */
   conic_status status;
 } png_work;
@@ -106,11 +107,12 @@ conic_status conic_png_check(conic_context *context, const char *path, unsigned 
 }
 
 conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image) {
-  png_work work = {.context = context,
-                   .path = path,
-                   .width = image->width,
-                   .height = image->height,
-                   .layout = {.n_channels = 4, .sample_bytes = 1, .is_straight = 1, .is_display = image->is_display != 0}};
+  png_work work = {
+      .context = context,
+      .path = path,
+      .width = image->width,
+      .height = image->height,
+      .layout = {.n_channels = 4, .sample_bytes = 1, .is_straight = 1, .is_display = image->is_display != 0}};
   conic_status status = conic_png_check(context, path, conic_image_planes(image));
   if (status != CONIC_OK)
     return status;
@@ -155,7 +157,8 @@ static int decode_header(png_work *work) {
   work->height = (int)png_get_image_height(work->png, work->info);
   work->layout.n_channels = png_get_channels(work->png, work->info);
   work->layout.sample_bytes = png_get_bit_depth(work->png, work->info) / 8;
-  work->layout.is_straight = 1;
+  work->layout.is_straight = !work->is_raw;
+  work->layout.is_display = work->is_raw;
   return 1;
 }
 
@@ -197,8 +200,11 @@ static conic_status read_samples(png_work *work, conic_image *image) {
   return CONIC_OK;
 }
 
-conic_status conic_png_read(conic_context *context, const char *path, conic_image *image) {
-  png_work work = {.context = context, .path = path, .file = fopen(path, "rb")};
+static conic_status open_and_read(png_work *in, conic_image *image) {
+  png_work work = *in;
+  conic_context *context = work.context;
+  const char *path = work.path;
+  work.file = fopen(path, "rb");
   if (!work.file)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
   work.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &work, keep_error, keep_quiet);
@@ -208,6 +214,19 @@ conic_status conic_png_read(conic_context *context, const char *path, conic_imag
   png_destroy_read_struct(&work.png, &work.info, NULL);
   conic_memory_release(context, work.samples);
   fclose(work.file);
+  in->layout = work.layout;
+  return status;
+}
+
+conic_status conic_png_read(conic_context *context, const char *path, conic_image *image) {
+  png_work work = {.context = context, .path = path};
+  return open_and_read(&work, image);
+}
+
+conic_status conic_png_read_codes(conic_context *context, const char *path, conic_image *image, unsigned *most_code) {
+  png_work work = {.context = context, .path = path, .is_raw = 1};
+  conic_status status = open_and_read(&work, image);
+  *most_code = work.layout.sample_bytes == 2 ? 65535 : 255;
   return status;
 }
 
@@ -223,6 +242,13 @@ conic_status conic_png_write(conic_context *context, const char *path, const con
 
 conic_status conic_png_read(conic_context *context, const char *path, conic_image *image) {
   return conic_foreign_read(context, path, image);
+}
+
+conic_status conic_png_read_codes(conic_context *context, const char *path, conic_image *image, unsigned *most_code) {
+  (void)image;
+  (void)most_code;
+  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: the codes of a PNG need libpng, which this build lacks",
+                    path);
 }
 
 #endif

@@ -16,4 +16,7 @@ conic_status conic_png_write(conic_context *context, const char *path, const con
 /* Errors: INPUT, UNSUPPORTED, MEMORY. */
 conic_status conic_png_read(conic_context *context, const char *path, conic_image *image);
 
+/* The same of the codes as they are, each divided by *most_code, the greatest that there may be: 255 or 65535. */
+conic_status conic_png_read_codes(conic_context *context, const char *path, conic_image *image, unsigned *most_code);
+
 #endif

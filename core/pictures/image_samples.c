@@ -89,10 +89,10 @@ static float decode_sample(const conversion *work, size_t i, int is_color) {
     return ((const float *)work->samples)[i];
   if (work->layout.sample_bytes == 2) {
     double value = ((const uint16_t *)work->samples)[i] / 65535.0;
-    return (float)(is_color ? conic_srgb_decode(value) : value);
+    return (float)(is_color && !work->layout.is_display ? conic_srgb_decode(value) : value);
   }
   uint8_t code = ((const uint8_t *)work->samples)[i];
-  return is_color ? work->tables.decoded[code] : (float)(code / 255.0);
+  return is_color && !work->layout.is_display ? work->tables.decoded[code] : (float)(code / 255.0);
 }
 
 static void decode_row(void *data, size_t y, int i_thread) {

@@ -34,7 +34,8 @@ static double read_shape(const conic_gaussians *set, size_t i, double q[4], coni
 }
 
 static void place_axes(const conic_gaussian_view *view, const double q[4], double squares, conic_gaussian_placed *p) {
-  int is_as_it_is = view->rules->takes_rotation_as_is && squares - 1.0 < unit_slack && 1.0 - squares < unit_slack;
+  const int as_is = view->rules->takes_rotation_as_is;
+  int is_as_it_is = as_is > 1 || (as_is && squares - 1.0 < unit_slack && 1.0 - squares < unit_slack);
   double one_over = is_as_it_is ? 1.0 : 1.0 / sqrt(squares);
   double w = q[0] * one_over, x = q[1] * one_over, y = q[2] * one_over, z = q[3] * one_over;
   const double rows[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},

@@ -64,6 +64,9 @@ conic_status conic_compressed_ply_write(const conic_gaussian_writer *writer);
 conic_status conic_splat_file_write(const conic_gaussian_writer *writer);
 conic_status conic_spz_write(const conic_gaussian_writer *writer);
 conic_status conic_sog_write(const conic_gaussian_writer *writer);
+
+/* What an .spz of version 3 packs as gzip, in a block that the caller releases, on failure too. Errors: as above. */
+conic_status conic_spz_make_block(const conic_gaussian_writer *writer, unsigned char **block, size_t *n_block);
 conic_status conic_gaussian_gltf_write(const conic_gaussian_writer *writer);
 
 /* Errors: IO. */

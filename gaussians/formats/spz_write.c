@@ -144,24 +144,25 @@ static conic_status put_streams(const conic_gaussian_writer *writer, const unsig
   return status;
 }
 
-conic_status conic_spz_write(const conic_gaussian_writer *writer) {
+conic_status conic_spz_make_block(const conic_gaussian_writer *writer, unsigned char **block, size_t *n_block) {
   const conic_gaussians *gaussians = writer->gaussians;
   uint32_t version = (uint32_t)writer->options->spz_version;
   conic_spz_layout layout = conic_spz_find_layout(version, writer->sh_degree);
   int fraction_bits = find_fraction_bits(gaussians);
-  size_t n_block = CONIC_SPZ_GZIP_HEADER + layout.all_bytes * gaussians->count;
+  *n_block = CONIC_SPZ_GZIP_HEADER + layout.all_bytes * gaussians->count;
+  *block = NULL;
   if (fraction_bits < 0)
     return conic_fail(writer->context, CONIC_ERROR_INPUT, "%s: an .spz holds coordinates up to 8388607, and not these",
                       writer->path);
-  unsigned char *block = conic_memory_allocate(writer->context, n_block, 1), *at[CONIC_SPZ_STREAMS];
-  if (!block)
+  unsigned char *made = *block = conic_memory_allocate(writer->context, *n_block, 1), *at[CONIC_SPZ_STREAMS];
+  if (!made)
     return CONIC_ERROR_MEMORY;
-  memcpy(block, "NGSP", 4);
-  conic_store_32(block + 4, version);
-  conic_store_32(block + 8, (uint32_t)gaussians->count);
-  conic_store_32(block + 12, (uint32_t)writer->sh_degree | (uint32_t)fraction_bits << 8 |
-                                 (gaussians->is_antialiased ? CONIC_SPZ_ANTIALIASED << 16 : 0));
-  at[0] = block + CONIC_SPZ_GZIP_HEADER;
+  memcpy(made, "NGSP", 4);
+  conic_store_32(made + 4, version);
+  conic_store_32(made + 8, (uint32_t)gaussians->count);
+  conic_store_32(made + 12, (uint32_t)writer->sh_degree | (uint32_t)fraction_bits << 8 |
+                                (gaussians->is_antialiased ? CONIC_SPZ_ANTIALIASED << 16 : 0));
+  at[0] = made + CONIC_SPZ_GZIP_HEADER;
   for (int i = 1; i < CONIC_SPZ_STREAMS; i++)
     at[i] = at[i - 1] + layout.bytes[i - 1] * gaussians->count;
   conic_status status = CONIC_OK;
@@ -169,8 +170,18 @@ conic_status conic_spz_write(const conic_gaussian_writer *writer) {
     encode_one(writer, i, fraction_bits, at);
     status = conic_gaussian_writer_tell(writer, i);
   }
+  return status;
+}
+
+conic_status conic_spz_write(const conic_gaussian_writer *writer) {
+  unsigned char *block;
+  size_t n_block;
+  int version = writer->options->spz_version;
+  conic_spz_layout layout = conic_spz_find_layout((uint32_t)version, writer->sh_degree);
+  conic_status status = conic_spz_make_block(writer, &block, &n_block);
   if (status == CONIC_OK)
-    status = version == 4 ? put_streams(writer, block, &layout, at[0]) : put_gzip(writer, block, n_block);
+    status = version == 4 ? put_streams(writer, block, &layout, block + CONIC_SPZ_GZIP_HEADER)
+                          : put_gzip(writer, block, n_block);
   conic_memory_release(writer->context, block);
   return status;
 }

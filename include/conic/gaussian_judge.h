@@ -83,14 +83,9 @@ CONIC_API conic_status conic_gaussian_bound_pixels(conic_context *context, const
                                                    const conic_float_model *model, const uint32_t *pixels, size_t n,
                                                    conic_gaussian_bound *bounds);
 
-typedef enum conic_gaussian_class {
-  CONIC_PIXEL_EQUAL = 0,     /* all values are the floats next to those in double */
-  CONIC_PIXEL_ROUNDED = 1,   /* within the bounds of rounding */
-  CONIC_PIXEL_EXPLAINED = 2, /* decisions in doubt went the other way */
-  CONIC_PIXEL_WRONG = 3
-} conic_gaussian_class;
+typedef conic_pixel_class conic_gaussian_class;
 
-#define CONIC_N_GAUSSIAN_CLASSES 4
+#define CONIC_N_GAUSSIAN_CLASSES CONIC_N_PIXEL_CLASSES
 
 /* "equal", "rounded" …; null for a number that is none. */
 CONIC_API const char *conic_gaussian_class_name(conic_gaussian_class number);
@@ -101,13 +96,13 @@ typedef struct conic_gaussian_judging {
   size_t n_pixels;                /* so many are judged, spread evenly; 0: all */
   int samples;                    /* the picture has N × N a pixel */
   int is_opaque;                  /* and A = 1, since a background is behind */
+  const conic_image *greatest;    /* null, or the greatest that the image's values, then the least, stand for: a plane
+                                     for each of the image's (conic/picture.h) */
 } conic_gaussian_judging;
 
 /* All pixels, conic's own floats, one sample. */
 CONIC_API void conic_gaussian_judging_init_sized(conic_gaussian_judging *judging, size_t size);
 #define conic_gaussian_judging_init(judging) conic_gaussian_judging_init_sized(judging, sizeof *(judging))
-
-#define CONIC_MAX_FAULTS 8
 
 typedef struct conic_gaussian_verdict {
   conic_oracle_plane_verdict planes[CONIC_MAX_PLANES]; /* max_abs from the double's value, relative for Z and above 1;

@@ -161,6 +161,46 @@ typedef struct conic_oracle_verdict {
 CONIC_API conic_status conic_oracle_compare(conic_context *context, const conic_reference *reference,
                                             const conic_image *image, conic_oracle_verdict *verdict);
 
+/* What a picture's pixel is found to be. */
+typedef enum conic_pixel_class {
+  CONIC_PIXEL_EQUAL = 0,     /* all values are the floats next to those in double */
+  CONIC_PIXEL_ROUNDED = 1,   /* within the bounds of rounding */
+  CONIC_PIXEL_EXPLAINED = 2, /* decisions in doubt went the other way */
+  CONIC_PIXEL_WRONG = 3
+} conic_pixel_class;
+
+#define CONIC_N_PIXEL_CLASSES 4
+
+/* "equal", "rounded" …; null for a number that is none. */
+CONIC_API const char *conic_pixel_class_name(conic_pixel_class number);
+
+#define CONIC_MAX_FAULTS 8
+
+typedef struct conic_oracle_judging {
+  size_t size;                 /* sizeof(conic_oracle_judging), set by the init function */
+  const conic_image *greatest; /* null, or the greatest that the image's values, then the least, stand for: a plane for
+                                  each of the image's (conic/picture.h) */
+} conic_oracle_judging;
+
+/* The values are exact. */
+CONIC_API void conic_oracle_judging_init_sized(conic_oracle_judging *judging, size_t size);
+#define conic_oracle_judging_init(judging) conic_oracle_judging_init_sized(judging, sizeof *(judging))
+
+typedef struct conic_oracle_judgement {
+  conic_oracle_verdict verdict;
+  size_t pixels[CONIC_N_PIXEL_CLASSES];            /* by class */
+  size_t explained_by[CONIC_MAX_UNSTABLE_REASONS]; /* of those that are explained; a pixel may have several */
+  conic_oracle_fault worst[CONIC_MAX_FAULTS];      /* the wrong pixels that are farthest off, the worst first */
+  int n_worst;
+  uint64_t reserved[4];
+} conic_oracle_judgement;
+
+/* Judges an image as conic_oracle_compare does, by the reference of the method's question. `classes`, of the picture's
+ * size, takes each judged pixel's class, and may be null. Null `judging` is the default. Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_oracle_judge(conic_context *context, const conic_reference *reference,
+                                          const conic_oracle_judging *judging, const conic_image *image,
+                                          uint8_t *classes, conic_oracle_judgement *judgement);
+
 /* One splat, alone and without hand-overs, given in camera space: its centre and axes. */
 typedef struct conic_oracle_splat {
   double center[3], tangent_u[3], tangent_v[3];

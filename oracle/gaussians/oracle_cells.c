@@ -63,6 +63,10 @@ static void box_gaussians(void *data, size_t i_run, int i_thread) {
   }
 }
 
+static const char *task_of(const oracle_bound_request *b) {
+  return b->task ? b->task : "verify";
+}
+
 static size_t pixel_asked(const oracle_bound_request *b, size_t i) {
   return b->pixels ? b->pixels[i] : i;
 }
@@ -128,7 +132,7 @@ static conic_status sort_into_cells(cell_job *j) {
   if (!j->boxes)
     return CONIC_ERROR_MEMORY;
   conic_status status =
-      conic_parallel_told(b->context, "verify", 0.0, 0.1, (n + PLACE_RUN - 1) / PLACE_RUN, box_gaussians, j);
+      conic_parallel_told(b->context, task_of(b), 0.0, 0.1, (n + PLACE_RUN - 1) / PLACE_RUN, box_gaussians, j);
   if (status != CONIC_OK)
     return status;
   put_gaussians(j, j->begin, NULL);
@@ -249,7 +253,7 @@ static void add_sample_bound(conic_gaussian_bound *sum, const conic_gaussian_bou
   sum->n_last = b->n_last;
 }
 
-static void bound_one_pixel(const oracle_bound_request *b, cell_worker *w, size_t n, size_t pixel,
+static void bound_one_pixel(const oracle_bound_request *b, cell_worker *w, size_t n, size_t pixel, int i_thread,
                             conic_gaussian_bound *bound) {
   const int x = (int)(pixel % (size_t)b->width) * b->samples, y = (int)(pixel / (size_t)b->width) * b->samples;
   memset(bound, 0, sizeof *bound);
@@ -258,6 +262,8 @@ static void bound_one_pixel(const oracle_bound_request *b, cell_worker *w, size_
       conic_gaussian_bound sample;
       size_t n_meetings = gather_meetings(b, w, n, x + column + 0.5, y + row + 0.5);
       conic_oracle_composite(&b->doubting, w->meetings, n_meetings, b->background, w->steps, &sample);
+      if (b->note)
+        b->note(b->data, w->meetings, n_meetings, i_thread);
       if (b->samples == 1)
         *bound = sample;
       else
@@ -279,7 +285,7 @@ static void bound_cell(void *data, size_t cell, int i_thread) {
   for (size_t k = j->pixel_begin[cell]; k < j->pixel_begin[cell + 1]; k++) {
     conic_gaussian_bound bound;
     size_t pixel = pixel_asked(b, j->pixels[k]);
-    bound_one_pixel(b, w, n, pixel, &bound);
+    bound_one_pixel(b, w, n, pixel, i_thread, &bound);
     b->take(b->data, j->pixels[k], pixel, &bound, i_thread);
   }
 }
@@ -306,7 +312,7 @@ conic_status conic_oracle_bound_all(const oracle_bound_request *b) {
   if (status == CONIC_OK && !(j.workers = conic_memory_allocate_zeroed(b->context, (size_t)threads, sizeof *j.workers)))
     status = CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
-    status = conic_parallel_told(b->context, "verify", 0.1, 1.0, j.n_cells, bound_cell, &j);
+    status = conic_parallel_told(b->context, task_of(b), 0.1, 1.0, j.n_cells, bound_cell, &j);
   for (int k = 0; j.workers && k < threads; k++)
     if (j.workers[k].has_failed && status == CONIC_OK)
       status = CONIC_ERROR_MEMORY;

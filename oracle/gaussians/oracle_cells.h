@@ -7,6 +7,9 @@
 /* Takes what a pixel may be: the i-th of those asked for. No two calls at a time have the same thread. */
 typedef void oracle_bound_taker(void *data, size_t i, size_t pixel, const conic_gaussian_bound *bound, int i_thread);
 
+/* Takes what may cover it, in its order, with what is noted of each. */
+typedef void oracle_meeting_taker(void *data, const oracle_meeting *meetings, size_t n, int i_thread);
+
 typedef struct oracle_bound_request {
   conic_context *context;
   oracle_doubting doubting; /* whose camera is that of the samples */
@@ -16,10 +19,12 @@ typedef struct oracle_bound_request {
   const uint32_t *pixels;   /* null: all */
   size_t n_pixels;
   oracle_bound_taker *take;
+  oracle_meeting_taker *note; /* null: nobody asks */
   void *data;
+  const char *task; /* as which progress is reported; null: "verify" */
 } oracle_bound_request;
 
-/* Reports progress as "verify". Errors: MEMORY, CANCELLED. */
+/* Errors: MEMORY, CANCELLED. */
 conic_status conic_oracle_bound_all(const oracle_bound_request *bounding);
 
 /* Those Gaussians that may reach a place of the screen, in their order there. On success the caller releases

@@ -37,8 +37,7 @@ const char *conic_gaussian_doubt_name(conic_gaussian_doubt doubt) {
 }
 
 const char *conic_gaussian_class_name(conic_gaussian_class number) {
-  static const char *const names[CONIC_N_GAUSSIAN_CLASSES] = {"equal", "rounded", "explained", "wrong"};
-  return (unsigned)number < CONIC_N_GAUSSIAN_CLASSES ? names[number] : NULL;
+  return conic_pixel_class_name(number);
 }
 
 const char *conic_gaussian_part_name(conic_gaussian_part part) {

@@ -6,7 +6,10 @@
  *
  * An order in doubt needs no paths: exchanging two neighbours i and j leaves T, and changes a sum Σ w·v by exactly
  * T·αᵢ·αⱼ·(vᵢ − vⱼ). Any order comes of exchanging pairs, each at most once, so all of them lie within the sum of these
- * (`slack`), T being that before the first of them. */
+ * (`slack`), T being that before the first of them.
+ *
+ * Others may add up in any order, which errs no more than this one: of n weights, the k-th has n − k roundings by sums
+ * here and two by each T before it, and any order rounds it at most n − 1 times. */
 #include <string.h>
 
 #include "oracle/gaussians/oracle_forks.h"
@@ -53,8 +56,14 @@ static range round_range(range a) {
   return a;
 }
 
+/* Nothing times what may be infinite is nothing. */
+static double end_of_product(double a, double b) {
+  return a == 0.0 || b == 0.0 ? 0.0 : a * b;
+}
+
 static range multiply_ranges(range a, range b) {
-  double p[4] = {a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high};
+  double p[4] = {end_of_product(a.low, b.low), end_of_product(a.low, b.high), end_of_product(a.high, b.low),
+                 end_of_product(a.high, b.high)};
   range result = {a.v * b.v, p[0], p[0]};
   for (int k = 1; k < 4; k++) {
     result.low = oracle_min(result.low, p[k]);
@@ -65,6 +74,16 @@ static range multiply_ranges(range a, range b) {
 
 static range add_ranges(range a, range b) {
   return round_range((range){a.v + b.v, a.low + b.low, a.high + b.high});
+}
+
+/* The share of the light that a Gaussian leaves, by which T grows. Others may subtract α·T, rounded, from T. */
+static range rest_of_light(const fork_job *j, range alpha) {
+  range rest = round_range(range_of(1.0 - alpha.high, 1.0 - alpha.v, 1.0 - alpha.low));
+  if (j->d->model->is_setup_in_float) {
+    rest.low -= ORACLE_FLOAT_UNIT * alpha.high;
+    rest.high += ORACLE_FLOAT_UNIT * alpha.high;
+  }
+  return rest;
 }
 
 /* The numbers that a Gaussian's weight multiplies. */
@@ -122,17 +141,30 @@ static void admit_channel(const fork_job *j, const fork_state *s, int channel, r
   b->most[channel] = oracle_max(b->most[channel], value.high + slack);
 }
 
+/* What Σ w·z is divided by: Σ w, or by others also 1 − T, which is off from that by all roundings on the way. */
+static range divisor_of_depth(const fork_job *j, const fork_state *s, double *rounded) {
+  range by = s->weight;
+  *rounded = (2.0 * s->count[1] + 1.0) * ORACLE_FLOAT_UNIT;
+  if (!j->d->model->is_setup_in_float)
+    return by;
+  range rest = round_range(range_of(1.0 - s->T.high, 1.0 - s->T.v, 1.0 - s->T.low));
+  double least = oracle_max(rest.low, j->d->limits.alpha_least * (1.0 - 1e-6)); /* where anything is composited */
+  *rounded += least > 0.0 ? (3.0 * s->count[1] + 2.0) * ORACLE_FLOAT_UNIT / least : INFINITY;
+  return range_of(oracle_min(by.low, rest.low), by.v, oracle_max(by.high, rest.high));
+}
+
 /* Σ w·z / Σ w lies between the least and the greatest z, but for a rounding a product and two a sum. */
-static range mean_depth(const fork_state *s, double slack) {
+static range mean_depth(const fork_job *j, const fork_state *s, double slack) {
   if (!(s->count[1] > 0.0))
     return range_of(0.0, 0.0, 0.0);
-  const double rounded = (2.0 * s->count[1] + 1.0) * ORACLE_FLOAT_UNIT;
-  range z = {s->weight.v > 0.0 ? s->sums[SUM_Z].v / s->weight.v : 0.0, s->nearest_z * (1.0 - rounded),
+  double rounded;
+  const range by = divisor_of_depth(j, s, &rounded);
+  range z = {s->weight.v > 0.0 ? s->sums[SUM_Z].v / s->weight.v : 0.0, oracle_max(s->nearest_z * (1.0 - rounded), 0.0),
              s->farthest_z * (1.0 + rounded)};
-  if (s->weight.low > 0.0) {
-    z.low = oracle_max(
-        z.low, oracle_min((s->sums[SUM_Z].low - slack) / s->weight.high, (s->sums[SUM_Z].low - slack) / s->weight.low));
-    z.high = oracle_min(z.high, (s->sums[SUM_Z].high + slack) / s->weight.low);
+  if (by.low > 0.0) {
+    z.low =
+        oracle_max(z.low, oracle_min((s->sums[SUM_Z].low - slack) / by.high, (s->sums[SUM_Z].low - slack) / by.low));
+    z.high = oracle_min(z.high, (s->sums[SUM_Z].high + slack) / by.low);
   }
   z = round_range(z);
   if (!(s->count[0] > 0.0))
@@ -144,7 +176,7 @@ static void end_path(const fork_job *j, const fork_state *at) {
   fork_state with = *at, *s = &with;
   s->T.low = oracle_min(s->T.low, s->ended.low);
   s->T.high = oracle_max(s->T.high, s->ended.high);
-  range z = mean_depth(s, 0.0), loose_z = mean_depth(s, s->slack[SUM_Z]);
+  range z = mean_depth(j, s, 0.0), loose_z = mean_depth(j, s, s->slack[SUM_Z]);
   for (int c = 0; c < 3; c++) {
     double behind = (double)j->background[c];
     range light = multiply_ranges(s->T, range_of(behind, behind, behind));
@@ -152,7 +184,9 @@ static void end_path(const fork_job *j, const fork_state *at) {
     admit_channel(j, s, CONIC_BOUND_NORMAL + c, s->sums[SUM_NORMAL + c], s->slack[SUM_NORMAL + c]);
   }
   admit_channel(j, s, CONIC_BOUND_T, s->T, 0.0);
-  admit_channel(j, s, CONIC_BOUND_Z, z, oracle_max(z.low - loose_z.low, loose_z.high - z.high));
+  double slack = oracle_max(loose_z.low < z.low ? z.low - loose_z.low : 0.0, /* which may be infinite */
+                            loose_z.high > z.high ? loose_z.high - z.high : 0.0);
+  admit_channel(j, s, CONIC_BOUND_Z, z, slack);
   admit_channel(j, s, CONIC_BOUND_MEDIAN_Z, s->median, 0.0);
   admit_channel(j, s, CONIC_BOUND_INVERSE_Z, s->sums[SUM_INVERSE_Z], s->slack[SUM_INVERSE_Z]);
   admit_channel(j, s, CONIC_BOUND_COUNT, range_of(s->count[0], s->count_v, s->count[1]), 0.0);
@@ -183,13 +217,23 @@ static int stands_alone(const fork_job *j, size_t i) {
   return j->meetings[i].is_cut && (i + 1 == j->n || j->meetings[i + 1].is_cut);
 }
 
+/* A profile that never ends may be drawn by blending, whose target holds A: what is added to it is rounded twice, and
+ * the sum as a number up to 1, however little T is. */
+static range keep_as_cover(const fork_job *j, range after, double alpha) {
+  double off = ORACLE_FLOAT_UNIT * (1.0 + 2.0 * alpha);
+  if (!j->d->model->is_setup_in_float || j->d->limits.stop > 0.0)
+    return after;
+  return range_of(after.low - off, after.v, oracle_min(after.high + off, 1.0));
+}
+
 /* Adds the Gaussian, where it is not sure to be there, perhaps; `does`: the double run does. */
 static void composite_meeting(const fork_job *j, size_t i, int is_sure, int does, fork_state *s) {
   const oracle_meeting *m = &j->meetings[i];
   const range alpha = range_of(m->alpha[0], does ? m->alpha_v : 0.0, m->alpha[1]), before = s->T;
-  range rest = round_range(range_of(1.0 - alpha.high, 1.0 - alpha.v, 1.0 - alpha.low));
+  range rest = rest_of_light(j, alpha);
   range weight = multiply_ranges(alpha, before), after = multiply_ranges(before, rest), values[N_SUMS];
   int counts = is_sure && !s->may_have_ended;
+  after = keep_as_cover(j, after, alpha.high);
   after.low = oracle_max(after.low, 0.0);
   values_at_meeting(m, values);
   if (!is_sure)
@@ -248,7 +292,7 @@ static outcomes foresee(const fork_job *j, size_t i, const fork_state *s) {
   const oracle_meeting *m = &j->meetings[i];
   const double stop = j->d->limits.stop;
   const int at = j->d->view->rules->stop_is_left_out;
-  range rest = round_range(range_of(1.0 - m->alpha[1], 1.0 - m->alpha_v, 1.0 - m->alpha[0]));
+  range rest = rest_of_light(j, range_of(m->alpha[0], m->alpha_v, m->alpha[1]));
   range after = multiply_ranges(s->T, rest);
   outcomes o = {.skips = (m->doubts & ~(1u << CONIC_DOUBT_MOST)) != 0, .skipped = !m->covers || s->has_ended};
   o.ends = stop > 0.0 && (after.low < stop || (at && after.low == stop));

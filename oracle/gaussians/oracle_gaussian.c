@@ -40,7 +40,7 @@ const oracle_gaussian_rules *conic_oracle_gaussian_rules(conic_gaussian_profile 
   return (unsigned)profile < CONIC_N_GAUSSIAN_PROFILES ? &rules[profile] : NULL;
 }
 
-static void rotation_of_quaternion(const double q[4], double r[3][3]) {
+void conic_oracle_rotation(const double q[4], double r[3][3]) {
   double w = q[0], x = q[1], y = q[2], z = q[3];
   double rows[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
                        {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
@@ -48,18 +48,24 @@ static void rotation_of_quaternion(const double q[4], double r[3][3]) {
   memcpy(r, rows, sizeof rows);
 }
 
-/* The axes in the world and in camera space. Returns 0 where there are none. */
-static int turn_axes(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i, double world[3][3],
-                     oracle_gaussian *g) {
-  double q[4], length = 0.0;
+double conic_oracle_quaternion(const oracle_gaussian_rules *rules, const conic_gaussians *set, size_t i, double q[4]) {
+  double length = 0.0;
   for (int k = 0; k < 4; k++) {
     q[k] = (double)set->rotation[k][i];
     length += q[k] * q[k];
   }
-  length = view->rules->is_inria && fabs(length - 1.0) < UNIT_SLACK ? 1.0 : sqrt(length);
+  length = rules->is_inria && fabs(length - 1.0) < UNIT_SLACK ? 1.0 : sqrt(length);
   for (int k = 0; k < 4; k++)
     q[k] /= length;
-  rotation_of_quaternion(q, world);
+  return length;
+}
+
+/* The axes in the world and in camera space. Returns 0 where there are none. */
+static int turn_axes(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i, double world[3][3],
+                     oracle_gaussian *g) {
+  double q[4];
+  conic_oracle_quaternion(view->rules, set, i, q);
+  conic_oracle_rotation(q, world);
   int is_good = 1;
   for (int axis = 0; axis < 3; axis++) {
     g->scale[axis] = set->scale[axis] ? (double)set->scale[axis][i] : 0.0;
@@ -192,12 +198,16 @@ static double number_of_half(uint16_t half) {
   return half & 0x8000 ? -size : size;
 }
 
-static void color_towards_eye(const oracle_gaussian_view *view, const conic_gaussians *set, const double mean[3],
-                              size_t i, oracle_gaussian *g) {
+void conic_oracle_harmonics_of(const conic_gaussians *set, size_t i, double *sh) {
   const size_t n = (size_t)(set->sh_degree + 1) * (size_t)(set->sh_degree + 1) * 3;
-  double sh[(CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1) * 3], direction[3];
   for (size_t k = 0; k < n; k++)
     sh[k] = set->sh ? (double)set->sh[i * n + k] : number_of_half(set->sh_half[i * n + k]);
+}
+
+static void color_towards_eye(const oracle_gaussian_view *view, const conic_gaussians *set, const double mean[3],
+                              size_t i, oracle_gaussian *g) {
+  double sh[(CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1) * 3], direction[3];
+  conic_oracle_harmonics_of(set, i, sh);
   for (int axis = 0; axis < 3; axis++)
     direction[axis] = view->camera->kind == CONIC_CAMERA_ORTHOGRAPHIC ? view->camera->cam_from_world[2][axis]
                                                                       : mean[axis] - view->eye[axis];

@@ -63,6 +63,14 @@ void conic_oracle_gaussian_look(const conic_camera *camera, conic_gaussian_profi
 void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
                                  oracle_gaussian *g);
 
+/* Its quaternion as the profile takes it; returns the length that it was divided by. */
+double conic_oracle_quaternion(const oracle_gaussian_rules *rules, const conic_gaussians *gaussians, size_t i,
+                               double q[4]);
+/* The rotation of a quaternion of unit length. */
+void conic_oracle_rotation(const double q[4], double r[3][3]);
+/* Its harmonics' (degree + 1)² × 3 numbers. */
+void conic_oracle_harmonics_of(const conic_gaussians *gaussians, size_t i, double *sh);
+
 /* Its opacity at a place of the screen and the depth there; 0 where the profile leaves it out. */
 double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
                                    double *z);
@@ -86,6 +94,8 @@ int conic_oracle_gaussian_box(const oracle_gaussian_view *view, oracle_gaussian 
 
 /* The real harmonics up to a degree, of a direction of unit length: (degree + 1)² numbers. */
 void conic_oracle_harmonic_values(int degree, const double direction[3], double *y);
+/* How they change with x, y and z of the direction, as the polynomials that they are: by 3 numbers each. */
+void conic_oracle_harmonic_slopes(int degree, const double direction[3], double (*slopes)[3]);
 /* The colour seen along a direction (of unit length): max(0, ½ + Σ sh·Y). `sh` has (degree + 1)² × 3 numbers. */
 void conic_oracle_harmonics(const double *sh, int degree, const double direction[3], double color[3]);
 

@@ -15,7 +15,7 @@ static double norm_of(int l, int m) {
 
 /* d^m/dz^m of Legendre's polynomial of degree l. */
 static double legendre(int l, int m, double z) {
-  double before = 0.0, here = 1.0;
+  double before = 0.0, here = m <= l ? 1.0 : 0.0;
   for (int k = 1; k < 2 * m; k += 2)
     here *= k;
   for (int k = m + 1; k <= l; k++) {
@@ -26,17 +26,39 @@ static double legendre(int l, int m, double z) {
   return here;
 }
 
-void conic_oracle_harmonic_values(int degree, const double direction[3], double *y) {
-  double cosine[5] = {1.0}, sine[5] = {0.0}; /* of (x + iy)^m */
+/* The real and the imaginary part of (x + iy)^m. */
+static void powers_about_z(int degree, const double direction[3], double cosine[5], double sine[5]) {
+  cosine[0] = 1.0;
+  sine[0] = 0.0;
   for (int m = 1; m <= degree; m++) {
     cosine[m] = direction[0] * cosine[m - 1] - direction[1] * sine[m - 1];
     sine[m] = direction[0] * sine[m - 1] + direction[1] * cosine[m - 1];
   }
+}
+
+void conic_oracle_harmonic_values(int degree, const double direction[3], double *y) {
+  double cosine[5], sine[5];
+  powers_about_z(degree, direction, cosine, sine);
   for (int l = 0; l <= degree; l++)
     for (int m = -l; m <= l; m++) {
       int order = m < 0 ? -m : m;
       double value = norm_of(l, order) * legendre(l, order, direction[2]) * (m < 0 ? sine[order] : cosine[order]);
       y[l * l + l + m] = order & 1 ? -value : value;
+    }
+}
+
+void conic_oracle_harmonic_slopes(int degree, const double direction[3], double (*slopes)[3]) {
+  double cosine[5], sine[5];
+  powers_about_z(degree, direction, cosine, sine);
+  for (int l = 0; l <= degree; l++)
+    for (int m = -l; m <= l; m++) {
+      const int order = m < 0 ? -m : m;
+      const double *about = m < 0 ? sine : cosine, norm = (order & 1 ? -1.0 : 1.0) * norm_of(l, order);
+      const double along = norm * legendre(l, order, direction[2]);
+      double *slope = slopes[l * l + l + m];
+      slope[0] = order ? along * order * about[order - 1] : 0.0;
+      slope[1] = order ? along * order * (m < 0 ? cosine[order - 1] : -sine[order - 1]) : 0.0;
+      slope[2] = norm * legendre(l, order + 1, direction[2]) * about[order];
     }
 }
 

@@ -6,6 +6,7 @@
 #include "core/base/options.h"
 #include "core/base/threads.h"
 #include "oracle/gaussians/oracle_entry.h"
+#include "oracle/oracle_evidence.h"
 
 /* Where the picture's values may lie. */
 typedef struct judged_range {
@@ -15,7 +16,8 @@ typedef struct judged_range {
 typedef struct judge_job {
   const conic_image *image;
   const conic_gaussian_judging *judging;
-  conic_gaussian_verdict *verdicts; /* by thread */
+  conic_gaussian_verdict *verdicts; /* by thread, as is the next */
+  oracle_worst *worst;
   uint8_t *classes;
 } judge_job;
 
@@ -39,10 +41,15 @@ static judged_range rounded_range(judged_range r) {
   return r;
 }
 
-static judged_range range_of_alpha(const conic_gaussian_bound *b, int is_opaque) {
-  const judged_range T = rounded_range(range_at(b, CONIC_BOUND_T)); /* a mean is rounded before it is subtracted */
-  if (is_opaque)
+/* Of others, 1 − T or Σ w: that differs by a rounding a product, and two a sum. */
+static judged_range range_of_alpha(const judge_job *j, const conic_gaussian_bound *b) {
+  judged_range T = rounded_range(range_at(b, CONIC_BOUND_T)); /* a mean is rounded before it is subtracted */
+  if (j->judging->is_opaque)
     return (judged_range){1.0, 1.0, 1.0, 1.0, 1.0};
+  if (j->judging->model && j->judging->model->is_setup_in_float) {
+    double off = 3.0 * ORACLE_FLOAT_UNIT * b->most[CONIC_BOUND_COUNT];
+    T = (judged_range){T.v, T.low - off, T.high + off, T.least - off, T.most + off};
+  }
   return rounded_range((judged_range){1.0 - T.v, 1.0 - T.high, 1.0 - T.low, 1.0 - T.most, 1.0 - T.least});
 }
 
@@ -71,8 +78,7 @@ static judged_range range_of_normal(const conic_gaussian_bound *b, int c) {
 static judged_range range_in_plane(const judge_job *j, const conic_gaussian_bound *b, conic_plane plane, int channel) {
   switch (plane) {
   case CONIC_PLANE_RGBA:
-    return channel == 3 ? range_of_alpha(b, j->judging->is_opaque)
-                        : rounded_range(range_at(b, CONIC_BOUND_RGB + channel));
+    return channel == 3 ? range_of_alpha(j, b) : rounded_range(range_at(b, CONIC_BOUND_RGB + channel));
   case CONIC_PLANE_Z:
     return range_at(b, CONIC_BOUND_Z);
   case CONIC_PLANE_NORMAL:
@@ -98,30 +104,30 @@ static void note_class(judge_pixel *p, conic_gaussian_class class) {
   p->class = class > p->class ? class : p->class;
 }
 
-static void judge_value(const judge_job *j, const conic_gaussian_bound *b, conic_plane plane, int channel, double found,
-                        judge_pixel *p) {
+static void judge_value(const judge_job *j, const conic_gaussian_bound *b, conic_plane plane, int channel,
+                        oracle_evidence found, judge_pixel *p) {
   const judged_range r = range_in_plane(j, b, plane, channel);
   const double scale = unit_of_plane(plane, r.v), nothing = 1e-37; /* what underflow may leave */
-  double off = fabs(found - r.v) / scale, outside = 0.0;
-  if (!(found >= r.least - nothing))
-    outside = r.least - found;
-  else if (!(found <= r.most + nothing))
-    outside = found - r.most;
-  p->severity[plane] = oracle_max(p->severity[plane], off == off ? off : INFINITY);
+  const double off = oracle_evidence_outside(found, r.v, r.v) / scale;
+  const double outside = oracle_evidence_outside(found, r.least - nothing, r.most + nothing) / scale;
+  p->severity[plane] = oracle_max(p->severity[plane], off);
   p->width[plane] = oracle_max(p->width[plane], (r.most - r.least) / scale);
-  int is_rounded = found >= r.low - nothing && found <= r.high + nothing;
-  if (outside != 0.0) {
-    note_class(p, CONIC_PIXEL_WRONG);
-    outside = outside == outside ? outside / scale : INFINITY;
-    if (outside > p->worst) {
-      p->worst = outside;
-      p->fault =
-          (conic_oracle_fault){.plane = (int)plane, .channel = channel, .found = found, .low = r.least, .high = r.most};
-    }
-  } else
-    note_class(p, (float)found == (float)r.v ? CONIC_PIXEL_EQUAL
-                  : is_rounded               ? CONIC_PIXEL_ROUNDED
-                                             : CONIC_PIXEL_EXPLAINED);
+  if (outside == 0.0) {
+    int is_rounded = oracle_evidence_outside(found, r.low - nothing, r.high + nothing) == 0.0;
+    note_class(p, oracle_evidence_is_equal(found, r.v) ? CONIC_PIXEL_EQUAL
+                  : is_rounded                         ? CONIC_PIXEL_ROUNDED
+                                                       : CONIC_PIXEL_EXPLAINED);
+    return;
+  }
+  note_class(p, CONIC_PIXEL_WRONG);
+  if (outside > p->worst) {
+    p->worst = outside;
+    p->fault = (conic_oracle_fault){.plane = (int)plane,
+                                    .channel = channel,
+                                    .found = oracle_evidence_next(found, r.least, r.most),
+                                    .low = r.least,
+                                    .high = r.most};
+  }
 }
 
 static void judge_name(conic_plane plane, const uint32_t *ids, int n, uint32_t found, judge_pixel *p) {
@@ -146,46 +152,16 @@ static void judge_planes_at(const judge_job *j, const conic_gaussian_bound *b, s
     const conic_plane_description *about = conic_plane_describe(planes[k]);
     for (int c = 0; image->planes[planes[k]] && c < about->n_channels; c++) {
       size_t at = pixel * (size_t)about->n_channels + (size_t)c;
-      const void *plane = image->planes[planes[k]];
-      double found = about->is_uint ? (double)((const uint32_t *)plane)[at] : (double)((const float *)plane)[at];
       if (planes[k] == CONIC_PLANE_RGBA && c == 3 && image->lacks_alpha)
         continue;
-      judge_value(j, b, planes[k], c, found, p);
+      judge_value(j, b, planes[k], c, oracle_evidence_at(image, j->judging->greatest, planes[k], about->is_uint, at),
+                  p);
     }
   }
   if (image->planes[CONIC_PLANE_ID])
     judge_name(CONIC_PLANE_ID, b->id, b->n_id, ((const uint32_t *)image->planes[CONIC_PLANE_ID])[pixel], p);
   if (image->planes[CONIC_PLANE_LAST])
     judge_name(CONIC_PLANE_LAST, b->last, b->n_last, ((const uint32_t *)image->planes[CONIC_PLANE_LAST])[pixel], p);
-}
-
-/* How far off a fault is, by the measure of its plane. */
-static double severity_of(const conic_oracle_fault *f) {
-  if (f->plane == CONIC_PLANE_ID || f->plane == CONIC_PLANE_LAST)
-    return 1e-30;
-  double out = f->found < f->low ? f->low - f->found : f->found > f->high ? f->found - f->high : INFINITY;
-  return out / unit_of_plane((conic_plane)f->plane, 0.5 * (f->low + f->high));
-}
-
-static int is_worse(const conic_oracle_fault *a, const conic_oracle_fault *b) {
-  double x = severity_of(a), y = severity_of(b);
-  if (x != y)
-    return x > y;
-  return a->y != b->y ? a->y < b->y : a->x < b->x;
-}
-
-/* In their order, the worst first. */
-static void put_fault(conic_gaussian_verdict *v, const conic_oracle_fault *fault) {
-  int at = v->n_worst;
-  while (at > 0 && is_worse(fault, &v->worst[at - 1]))
-    at--;
-  if (at == CONIC_MAX_FAULTS)
-    return;
-  if (v->n_worst < CONIC_MAX_FAULTS)
-    v->n_worst++;
-  for (int k = v->n_worst - 1; k > at; k--)
-    v->worst[k] = v->worst[k - 1];
-  v->worst[at] = *fault;
 }
 
 static void judge_bound(void *data, size_t i, size_t pixel, const conic_gaussian_bound *b, int i_thread) {
@@ -213,7 +189,7 @@ static void judge_bound(void *data, size_t i, size_t pixel, const conic_gaussian
     return;
   p.fault.x = (int)(pixel % (size_t)j->image->width);
   p.fault.y = (int)(pixel / (size_t)j->image->width);
-  put_fault(v, &p.fault);
+  conic_oracle_worst_put(&j->worst[i_thread], &p.fault, p.worst);
 }
 
 static void add_verdict(conic_gaussian_verdict *to, const conic_gaussian_verdict *v) {
@@ -231,8 +207,11 @@ static void add_verdict(conic_gaussian_verdict *to, const conic_gaussian_verdict
     to->planes[plane].max_abs = oracle_max(to->planes[plane].max_abs, v->planes[plane].max_abs);
     to->planes[plane].bound = oracle_max(to->planes[plane].bound, v->planes[plane].bound);
   }
-  for (int k = 0; k < v->n_worst; k++)
-    put_fault(to, &v->worst[k]);
+}
+
+static void add_worst(oracle_worst *to, const oracle_worst *w) {
+  for (int k = 0; k < w->n; k++)
+    conic_oracle_worst_put(to, &w->faults[k], w->severity[k]);
 }
 
 /* The planes that Gaussian scenes have, but for what the renderer does not draw. */
@@ -254,13 +233,20 @@ static conic_status judge_all(oracle_entry *e, judge_job *j, conic_gaussian_verd
   b->take = judge_bound;
   b->data = j;
   j->verdicts = conic_memory_allocate_zeroed(b->context, threads, sizeof *j->verdicts);
-  conic_status status = j->verdicts ? conic_oracle_bound_all(b) : CONIC_ERROR_MEMORY;
-  for (size_t k = 0; j->verdicts && k < threads; k++)
+  j->worst = conic_memory_allocate_zeroed(b->context, threads, sizeof *j->worst);
+  conic_status status = j->verdicts && j->worst ? conic_oracle_bound_all(b) : CONIC_ERROR_MEMORY;
+  oracle_worst worst = {.n = 0};
+  for (size_t k = 0; status == CONIC_OK && k < threads; k++) {
     add_verdict(verdict, &j->verdicts[k]);
+    add_worst(&worst, &j->worst[k]);
+  }
+  memcpy(verdict->worst, worst.faults, sizeof verdict->worst);
+  verdict->n_worst = worst.n;
   for (int plane = 0; plane < CONIC_N_PLANES; plane++)
     verdict->planes[plane].is_compared = j->image->planes[plane] && judged_planes >> plane & 1;
   verdict->pass = verdict->pixels[CONIC_PIXEL_WRONG] == 0;
   conic_memory_release(b->context, j->verdicts);
+  conic_memory_release(b->context, j->worst);
   conic_memory_release(b->context, pixels);
   return status;
 }
@@ -273,6 +259,8 @@ static conic_status take_judging(conic_context *context, const conic_gaussian_ju
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: no such options");
   if (!image || !camera || image->width != camera->width || image->height != camera->height)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: the image is not of the camera's size");
+  if (!conic_oracle_evidence_fits(image, own->greatest))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: the greatest values lack a plane of the image");
   return CONIC_OK;
 }
 

@@ -17,6 +17,7 @@
 #include "raster/tiles/lights.h"
 #include "raster/view/method.h"
 #include "raster/view/part.h"
+#include "raster/view/slips.h"
 #include "raster/view/ticks.h"
 
 struct conic_renderer {
@@ -25,6 +26,7 @@ struct conic_renderer {
   conic_kept_memory footprints, surfaces, rays, clips, chunks, chunk_begin, tile_begin, tile_counts, entries, sorters,
       scratch, times, lengths;
   conic_triangle_frame triangles;
+  unsigned slips; /* raster/view/slips.h */
 };
 
 /* One frame on its way through the stages. */
@@ -298,6 +300,10 @@ static void note_settings(const frame *f, const conic_render_options *options, c
   statistics->epsilon = statistics->epsilon_is_fixed ? options->epsilon : (double)CONIC_EPSILON_C;
 }
 
+void conic_renderer_slip(conic_renderer *renderer, unsigned slips) {
+  renderer->slips = slips;
+}
+
 double conic_default_near(const conic_splats *splats) {
   double low[3], high[3];
   conic_splats_bounds(splats, low, high);
@@ -383,6 +389,9 @@ static conic_status render(frame *f, const conic_whole_drawing *drawing, const c
   status = conic_whole_drawing_scale(context, drawing, &scaled);
   if (status == CONIC_OK)
     status = conic_view_init(context, f->splats, camera, options, scaled.near_z, scaled.splat_length, &f->view);
+  f->view.slips = renderer->slips;
+  if (f->view.slips)
+    f->kernels.project.project = conic_project_range;
   if (status == CONIC_OK)
     status = prepare_finish(f, camera, options);
   if (status == CONIC_OK)

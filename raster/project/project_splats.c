@@ -5,6 +5,7 @@
 
 #include "core/base/vectors.h"
 #include "raster/view/method.h"
+#include "raster/view/slips.h"
 
 /* A splat in camera space, divided by p_z: x and y then are on the image plane at distance 1. */
 typedef struct tangents {
@@ -384,6 +385,25 @@ static int is_wide(const splat_setup *s) {
   return !(change <= CONIC_NARROW_CHANGE) || conic_is_laplace(footprint);
 }
 
+/* Takes back what lowers the weights of what the prefilter widens; of a ray, as much as at its centre. */
+static void slip_amplitude(const splat_setup *s, const float tu[3], const float tv[3], conic_outcome outcome) {
+  const conic_view *view = s->view;
+  const double h = (double)view->prefilter, iz = s->inverse_z, focal[2] = {view->fx, view->fy};
+  double u[2], v[2];
+  if (outcome == CONIC_DRAWN_VARIANCE)
+    s->footprint->amplitude = 1.0f;
+  if (outcome != CONIC_DRAWN_RAY)
+    return;
+  for (int axis = 0; axis < 2; axis++) {
+    u[axis] = focal[axis] * iz * ((double)tu[axis] - s->p[axis] * iz * (double)tu[2]);
+    v[axis] = focal[axis] * iz * ((double)tv[axis] - s->p[axis] * iz * (double)tv[2]);
+  }
+  double area = u[0] * v[1] - u[1] * v[0], square = area * area;
+  if (square > 0.0)
+    s->footprint->amplitude =
+        (float)sqrt((square + h * (u[0] * u[0] + u[1] * u[1] + v[0] * v[0] + v[1] * v[1]) + h * h) / square);
+}
+
 /* ε-offset along the ray, and the opacity. */
 static void set_weighing(const splat_setup *s, float longer) {
   const conic_view *view = s->view;
@@ -395,6 +415,9 @@ static void set_weighing(const splat_setup *s, float longer) {
     s->footprint->nearness = distance > 0.0f ? 1.0f / (1.0f + epsilon / distance) : 0.0f;
     if (epsilon > 0.0f && epsilon < HUGE_VALF && is_wide(s))
       s->footprint->nearness = -epsilon;
+    if (view->slips & CONIC_SLIP_EPSILON && s->p[2] > 0.0)
+      s->footprint->nearness =
+          is_wide(s) ? s->footprint->nearness * (distance / (float)s->p[2]) : 1.0f / (1.0f + epsilon / (float)s->p[2]);
   }
   if (s->splats->opacity)
     s->footprint->amplitude *= s->splats->opacity[s->i];
@@ -453,6 +476,8 @@ static conic_outcome project_splat(splat_setup *s) {
     return outcome;
   if (!world_normal(s->splats, s->i, normal, &longer) || !is_in_range(s->splats, s->i))
     return CONIC_SKIPPED;
+  if (view->slips & CONIC_SLIP_AMPLITUDE)
+    slip_amplitude(s, tu, tv, outcome);
   if (outcome == CONIC_DRAWN_SEGMENT)
     s->footprint->amplitude = 0.0f;
   set_weighing(s, longer);

@@ -34,6 +34,7 @@ typedef struct conic_view {
   float epsilon_cap;     /* … at most this; with a fixed ε the scale is infinite */
   int needs_nearness;    /* footprints have theirs, else 0, since nothing blends; */
   int needs_slope;       /* likewise plane_dx and plane_dy of what is no ray */
+  unsigned slips;        /* raster/view/slips.h: only plain C makes them */
   conic_profile profile; /* of the kernel under the prefilter; last, since it has a pointer */
 } conic_view;
 

@@ -48,6 +48,6 @@ grep -q opaque err && fail "what is opaque is warned of"
 
 # A value that is not understood: what the option is for stands beside it
 run_as_typed 2 render said.obj -o said.pfm --tile many
-grep -q 'it takes N: tile edge in pixels' err || fail "$(cat err)"
+grep -q 'it takes N: the edge, in pixels' err || fail "$(cat err)"
 
 [[ $failures -eq 0 ]]

@@ -35,7 +35,7 @@ for command in make prepare render diff verify info explain chart bench; do
   run 0 help $command
   [[ -s out && ! -s err ]] || fail "conic help $command belongs on standard output"
   grep -q "^usage: conic $command" out || fail "conic help $command shows no usage"
-  grep -qe "^  --quiet " out || fail "conic help $command shows no common options"
+  grep -qe "^  --quiet, -q " out || fail "conic help $command shows no common options"
   cp out help_command
   run 0 $command --help
   cmp -s out help_command || fail "conic $command --help is not conic help $command"

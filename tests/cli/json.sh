@@ -75,6 +75,7 @@ declare -A wanted=(
     doubtful_by_reason.order explained_by_reason.order wide_pixels wrong_pixels ms.render ms.oracle pass"
   [explain-gaussians]="profile pixel planes.rgba planes.last bounds.rgb.low bounds.T.high end doubts doubt
     counts.composited contributions"
+  [help]="version commands"
   [chart]="scenes methods points seconds"
   [bench]="lines wrong_pictures peak_rss_bytes machine?"
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
@@ -176,6 +177,9 @@ write info-gaussians info_gaussians info two.compressed.ply --check
 write chart-gaussians chart chart two.compressed.ply -o chart --quick --pixels 100
 write render-gaussians render render two.compressed.ply --profile gsplat-1.6 --size 64x64 -o two.exr --aov all
 write devices devices devices
+run 0 help --format json
+cp out runs/help.json
+echo help > runs/help.definition
 # What no run above writes, or not on every machine.
 unseen="device.name device.platform device.version device.driver device.is_cpu device.has_double
   device.rounds_correctly device.compute_units device.memory_bytes"

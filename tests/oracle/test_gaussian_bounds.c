@@ -266,6 +266,10 @@ static int has_doubt(const conic_gaussian_bound *b, conic_gaussian_doubt doubt) 
   return b->kinds >> doubt & 1;
 }
 
+static double width_of_T(const conic_gaussian_bound *b) {
+  return b->most[CONIC_BOUND_T] - b->least[CONIC_BOUND_T];
+}
+
 /* Each decision is in doubt where it is made at its edge, and not beside it. */
 static void test_doubts(conic_context *context) {
   static const float at[2] = {4.0f, 4.0f}, apart[2] = {4.0f, 4.01f}, near[1] = {0.2f}, off_near[1] = {0.2001f};
@@ -290,6 +294,13 @@ static void test_doubts(conic_context *context) {
   CHECK(has_doubt(&b, CONIC_DOUBT_END) && has_doubt(&b, CONIC_DOUBT_MOST) && b.n_last == 2);
   b = bound_on_axis(context, exact, CONIC_FLOATS_OWN, 2, apart, less, 0);
   CHECK(!has_doubt(&b, CONIC_DOUBT_END) && b.most[CONIC_BOUND_COUNT] == 2.0);
+  CHECK(width_of_T(&b) < 1e-7);
+  b = bound_on_axis(context, gsplat, CONIC_FLOATS_STRICT, 2, apart, less, 0);
+  CHECK(width_of_T(&b) < 1e-7);
+  b = bound_on_axis(context, CONIC_PROFILE_KHR_2026, CONIC_FLOATS_STRICT, 2, apart, less, 0); /* blended: 1 − A */
+  CHECK(width_of_T(&b) > 4.0 * 0x1p-24 && width_of_T(&b) < 1e-6);
+  b = bound_on_axis(context, CONIC_PROFILE_KHR_2026, CONIC_FLOATS_OWN, 2, apart, less, 0);
+  CHECK(width_of_T(&b) < 1e-7);
   b = bound_on_axis(context, CONIC_PROFILE_INRIA_2023, CONIC_FLOATS_STRICT, 1, near, half, 0);
   CHECK(has_doubt(&b, CONIC_DOUBT_NEAR) && b.least[CONIC_BOUND_COUNT] == 0.0 && b.most[CONIC_BOUND_COUNT] == 1.0);
   b = bound_on_axis(context, CONIC_PROFILE_INRIA_2023, CONIC_FLOATS_STRICT, 1, off_near, half, 0);

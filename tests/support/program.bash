@@ -16,7 +16,7 @@ fail() {
 # is tested by default_picture.sh. run EXIT_CODE ARGUMENTS …
 run() {
   case ${2-} in
-    render | explain | verify) run_as_typed "$1" "$2" --plain "${@:3}" ;;
+    render | explain | verify | judge) run_as_typed "$1" "$2" --plain "${@:3}" ;;
     *) run_as_typed "$@" ;;
   esac
 }

@@ -220,6 +220,8 @@ static inline void random_meet(random_floats *f, int is_ray, const random_gaussi
   *z = g->z;
 }
 
+enum { MOST_RANDOM_GAUSSIANS = 64 };
+
 typedef struct random_hit {
   double key, z, alpha;
   size_t index;
@@ -234,25 +236,27 @@ static inline int random_compare(const void *a, const void *b) {
 
 static inline void random_composite(random_floats *f, const random_hit *hits, size_t n, const random_gaussian *all,
                                     double stop, int is_left_out, random_pixel *pixel) {
-  double T = 1.0, sum = 0.0, sum_z = 0.0;
+  double T = 1.0, sum = 0.0, sum_z = 0.0, weights[MOST_RANDOM_GAUSSIANS];
   *pixel = (random_pixel){.T = 1.0};
   for (size_t i = 0; i < n; i++) {
-    double after = rp(f, T * rp(f, 1.0 - hits[i].alpha)), w = rp(f, hits[i].alpha * T);
+    double after = rp(f, T * rp(f, 1.0 - hits[i].alpha));
     if (stop > 0.0 && (after < stop || (is_left_out && after == stop)))
       break;
+    weights[pixel->count++] = rp(f, hits[i].alpha * T);
+    T = after;
+  }
+  for (int k = 0; k < pixel->count; k++) {
+    const int i = f->is_setup_in_float && !f->is_fused ? pixel->count - 1 - k : k; /* others may sum from the back */
+    const double w = weights[i];
     for (int c = 0; c < 3; c++)
       pixel->rgb[c] = rp(f, pixel->rgb[c] + r_product(f, w * all[hits[i].index].color[c]));
     sum = rp(f, sum + w);
     sum_z = rp(f, sum_z + r_product(f, w * hits[i].z));
     pixel->inverse_z = rp(f, pixel->inverse_z + rp(f, w / hits[i].z));
-    pixel->count++;
-    T = after;
   }
   pixel->T = T;
   pixel->z = sum > 0.0 ? rp(f, sum_z / sum) : 0.0;
 }
-
-enum { MOST_RANDOM_GAUSSIANS = 64 };
 
 /* Draws a pixel's centre (x, y) of the profiles exact, gsplat-1.6, gsplat-1.6-aa and khr-2026. */
 static inline random_pixel random_draw(random_floats *f, const conic_gaussians *set, const conic_camera *camera,

@@ -10,17 +10,18 @@ my %may_include = (
   core => [qw(conic)],
   raster => [qw(conic core)],
   oracle => [qw(conic core)],
+  judge => [qw(conic core raster oracle gaussians)],
   lod => [qw(conic core raster)],
   surface => [qw(conic core)],
   gaussians => [qw(conic core)],
   source => [qw(conic core raster lod surface gaussians)],
   opencl => [qw(conic core raster lod gaussians)],
-  cli => [qw(conic core raster lod surface gaussians source opencl)],
+  cli => [qw(conic core raster lod surface gaussians judge source opencl)],
   bench => [qw(conic core raster lod surface gaussians source opencl cli tests)],
   examples => [qw(conic)],
-  tests => [qw(conic core raster oracle lod surface gaussians source opencl cli bench)],
+  tests => [qw(conic core raster oracle lod surface gaussians judge source opencl cli bench)],
 );
-my @library = qw(include core raster oracle lod surface gaussians source opencl);
+my @library = qw(include core raster oracle lod surface gaussians judge source opencl);
 my %is_folder = map { s{.*/}{}r => 1 } keys %may_include;
 
 # Rooms that still include each other in a circle. A circle that is gone must leave the list.

@@ -36,6 +36,12 @@ static void init_floats(void *o, size_t size) {
 static void init_judging(void *o, size_t size) {
   conic_gaussian_judging_init_sized(o, size);
 }
+static void init_oracle_judging(void *o, size_t size) {
+  conic_oracle_judging_init_sized(o, size);
+}
+static void init_picture(void *o, size_t size) {
+  conic_picture_options_init_sized(o, size);
+}
 static void init_gaussians_read(void *o, size_t size) {
   conic_gaussians_read_options_init_sized(o, size);
 }
@@ -122,6 +128,8 @@ static const struct {
            {init_write, sizeof(conic_write_options)},
            {init_floats, sizeof(conic_float_model)},
            {init_judging, sizeof(conic_gaussian_judging)},
+           {init_oracle_judging, sizeof(conic_oracle_judging)},
+           {init_picture, sizeof(conic_picture_options)},
            {init_estimate, sizeof(conic_estimate_options)},
            {init_scene, sizeof(conic_scene_options)},
            {init_render, sizeof(conic_render_options)},

@@ -1,4 +1,4 @@
-#include "core/cameras/numpy_array.h"
+#include "core/files/numpy_array.h"
 
 #include <string.h>
 
@@ -38,7 +38,7 @@ static int take_npy_type(npy_text header, conic_numpy_array *array) {
   array->n_type_bytes = value.text[3] - '0';
   int n = array->n_type_bytes, is_byte = value.text[1] == '|' && n == 1, is_little = value.text[1] == '<';
   return (is_byte || is_little) &&
-         (array->type == 'f' ? n == 4 || n == 8
+         (array->type == 'f' ? n == 2 || n == 4 || n == 8
                              : (array->type == 'i' || array->type == 'u') && (n == 1 || n == 2 || n == 4 || n == 8));
 }
 
@@ -74,10 +74,9 @@ conic_status conic_numpy_array_open(conic_context *context, const char *file, co
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s ends too early (at byte 0)", file, name);
   npy_text header = {(const char *)bytes + start, n_header};
   if (!take_npy_type(header, array))
-    return conic_fail(
-        context, CONIC_ERROR_INPUT,
-        "%s: %s is not of numbers that are read: little-endian float32, float64 or whole numbers (at byte 0)", file,
-        name);
+    return conic_fail(context, CONIC_ERROR_INPUT,
+                      "%s: %s is not of numbers that are read: little-endian floats or whole numbers (at byte 0)", file,
+                      name);
   npy_text order = find_npy_value(header, "'fortran_order'");
   array->is_fortran = npy_begins(order, "True");
   if ((!array->is_fortran && !npy_begins(order, "False")) || !take_npy_shape(header, array))
@@ -89,6 +88,15 @@ conic_status conic_numpy_array_open(conic_context *context, const char *file, co
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is not as long as its shape says (at byte 0)", file, name);
   array->bytes = bytes + start + n_header;
   return CONIC_OK;
+}
+
+/* A half float: 5 bits of exponent, 10 of fraction. */
+static double double_of_half(uint32_t bits) {
+  int exponent = (int)(bits >> 10 & 31);
+  double sign = bits & 0x8000u ? -1.0 : 1.0, part = (double)(bits & 1023u);
+  if (exponent == 31)
+    return (double)conic_float_of_bits((bits & 0x8000u) << 16 | 0x7f800000u | (bits & 1023u) << 13);
+  return exponent ? sign * (1024.0 + part) * conic_power_of_two(exponent - 25) : sign * part * 0x1p-24;
 }
 
 double conic_numpy_array_at(const conic_numpy_array *array, size_t i) {
@@ -104,12 +112,8 @@ double conic_numpy_array_at(const conic_numpy_array *array, size_t i) {
   uint64_t bits = conic_file_get(array->bytes + at * n_bytes, n_bytes);
   if (array->type == 'f' && n_bytes == 8)
     return conic_double_of_bits(bits);
-  if (array->type == 'f') {
-    float value;
-    uint32_t low = (uint32_t)bits;
-    memcpy(&value, &low, sizeof value);
-    return (double)value;
-  }
+  if (array->type == 'f')
+    return n_bytes == 2 ? double_of_half((uint32_t)bits) : (double)conic_float_of_bits((uint32_t)bits);
   int shift = 64 - 8 * (int)n_bytes;
   return array->type == 'u' ? (double)bits : (double)((int64_t)(bits << shift) >> shift);
 }

@@ -4,7 +4,7 @@
 
 #include "conic/context.h"
 
-enum { CONIC_NUMPY_MOST_AXES = 4 };
+enum { CONIC_NUMPY_MOST_AXES = 5 };
 
 typedef struct conic_numpy_array {
   const unsigned char *bytes; /* of the first number */

@@ -1,0 +1,212 @@
+/* conic gradient: the derivative of a Gaussian scene's picture, by everything that the scene and the camera consist of.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/commands/gaussian_commands.h"
+#include "cli/json_write.h"
+#include "cli/outputs.h"
+#include "conic/gaussian_gradient.h"
+#include "conic/source.h"
+
+typedef struct gradient_job {
+  cli_render_job scene;
+  const char *weights_path, *output;
+  int is_raw, leaves_doubts, floats;
+  conic_gaussian_weights weights;
+  conic_gaussian_gradient gradient;
+  double ms;
+} gradient_job;
+
+static void write_camera_gradient(cli_json *json, const conic_gaussian_gradient *g) {
+  cli_json_object(json, "camera");
+  cli_json_array(json, "world_to_camera");
+  for (int row = 0; row < 4; row++) {
+    cli_json_array(json, NULL);
+    for (int k = 0; k < 4; k++)
+      cli_json_number(json, NULL, row < 3 ? g->cam_from_world[row][k] : 0.0);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+  cli_json_number(json, "fx", g->fx);
+  cli_json_number(json, "fy", g->fy);
+  cli_json_number(json, "cx", g->cx);
+  cli_json_number(json, "cy", g->cy);
+  cli_json_close(json);
+}
+
+/* The largest number of a group of parameters. */
+static double greatest_of(const double *const *columns, int n_columns, size_t n) {
+  double greatest = 0.0;
+  for (int k = 0; k < n_columns; k++)
+    for (size_t i = 0; columns[k] && i < n; i++) {
+      double size = columns[k][i] < 0.0 ? -columns[k][i] : columns[k][i];
+      greatest = size > greatest ? size : greatest;
+    }
+  return greatest;
+}
+
+static void write_greatest(cli_json *json, const conic_gaussian_gradient *g) {
+  const double *const means[] = {g->mean[0], g->mean[1], g->mean[2]}, *const sh = g->sh, *const opacity = g->opacity;
+  const double *const scales[] = {g->scale[0], g->scale[1], g->scale[2]}, *const places[] = {g->place[0], g->place[1]};
+  const double *const turns[] = {g->rotation[0], g->rotation[1], g->rotation[2], g->rotation[3]};
+  const size_t n_sh = 3 * (size_t)(g->sh_degree + 1) * (size_t)(g->sh_degree + 1);
+  cli_json_object(json, "greatest");
+  cli_json_number(json, "mean", greatest_of(means, 3, g->count));
+  cli_json_number(json, "scale", greatest_of(scales, 3, g->count));
+  cli_json_number(json, "rotation", greatest_of(turns, 4, g->count));
+  cli_json_number(json, "opacity", greatest_of(&opacity, 1, g->count));
+  cli_json_number(json, "sh", greatest_of(&sh, 1, g->count * n_sh));
+  cli_json_number(json, "place", greatest_of(places, 2, g->count));
+  cli_json_close(json);
+}
+
+static int report_gradient(cli_session *session, const gradient_job *job) {
+  const conic_gaussian_gradient *g = &job->gradient;
+  int exit_code = CLI_DONE;
+  cli_json_file *file;
+  cli_json *json = cli_json_open(session, &file, &exit_code);
+  if (!json)
+    return exit_code;
+  cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.gaussians.profile));
+  cli_json_text(json, "parameters", g->is_raw ? "raw" : "activated");
+  cli_json_count(json, "width", (uint64_t)job->weights.width);
+  cli_json_count(json, "height", (uint64_t)job->weights.height);
+  cli_json_count(json, "gaussians", g->count);
+  cli_json_count(json, "shown", g->n_shown);
+  cli_json_number(json, "loss", g->loss);
+  write_camera_gradient(json, g);
+  write_greatest(json, g);
+  if (!job->leaves_doubts) {
+    cli_json_count(json, "doubtful", g->n_doubtful);
+    cli_json_object(json, "doubtful_by_reason");
+    for (int k = 0; k < CONIC_N_GRADIENT_DOUBTS; k++)
+      cli_json_count(json, conic_gradient_doubt_name(k), g->doubtful[k]);
+    cli_json_close(json);
+  }
+  cli_json_object(json, "ms");
+  cli_json_number(json, "gradient", job->ms);
+  cli_json_close(json);
+  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  return cli_json_finish(file);
+}
+
+static void tell_gradient(const cli_session *session, const gradient_job *job) {
+  const conic_gaussian_gradient *g = &job->gradient;
+  if (session->is_quiet || (session->json_path && strcmp(session->json_path, "-") == 0) ||
+      (job->output && strcmp(job->output, "-") == 0))
+    return;
+  printf("L = %.9g; %zu of %zu Gaussians are shown", g->loss, g->n_shown, g->count);
+  if (!job->leaves_doubts)
+    printf(", %zu with a decision in doubt", g->n_doubtful);
+  printf(" (%.0f ms)\n", job->ms);
+}
+
+/* Weights of another size are an input that can't be used. */
+static conic_status check_weight_size(const gradient_job *job, const conic_camera *camera) {
+  if (job->weights.width == camera->width && job->weights.height == camera->height)
+    return CONIC_OK;
+  cli_error(CLI_INPUT, "%s: it has %d x %d pixels, and the picture %d x %d", job->weights_path, job->weights.width,
+            job->weights.height, camera->width, camera->height);
+  return CONIC_ERROR_INPUT;
+}
+
+static conic_status differentiate(cli_session *session, gradient_job *job) {
+  const conic_gaussian_options options = cli_gaussian_options(&job->scene);
+  conic_camera camera;
+  conic_gradient_options how;
+  conic_float_model model;
+  conic_status status = cli_scene_camera(&job->scene, 0, &camera);
+  if (status == CONIC_OK)
+    status = check_weight_size(job, &camera);
+  conic_gradient_options_init(&how);
+  conic_float_model_init(&model, (conic_float_kind)job->floats);
+  how.model = &model;
+  how.is_raw = job->is_raw != 0;
+  how.leaves_doubts = job->leaves_doubts != 0;
+  double start = cli_seconds();
+  if (status == CONIC_OK)
+    status = conic_gaussian_gradient_find(session->context, conic_source_gaussians(job->scene.source), &camera,
+                                          &options, &job->weights, &how, &job->gradient);
+  job->ms = 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK && job->output)
+    status = conic_gaussian_gradient_write(session->context, job->output, &job->gradient);
+  return status;
+}
+
+static int find_gradient(cli_session *session, gradient_job *job) {
+  int exit_code = cli_session_open(session);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  conic_status status = cli_scene_begin(session, &job->scene);
+  if (status == CONIC_OK)
+    status = conic_gaussian_weights_read(session->context, job->weights_path, &job->weights);
+  if (status == CONIC_OK)
+    status = cli_scene_open(session, &job->scene);
+  if (status == CONIC_OK)
+    status = differentiate(session, job);
+  exit_code = cli_exit_of(status);
+  if (exit_code == CLI_DONE)
+    exit_code = report_gradient(session, job);
+  if (exit_code == CLI_DONE)
+    tell_gradient(session, job);
+  conic_gaussian_gradient_release(session->context, &job->gradient);
+  conic_gaussian_weights_release(session->context, &job->weights);
+  cli_scene_release(session, &job->scene);
+  return exit_code;
+}
+
+static int check_gradient(cli_session *session, const gradient_job *job) {
+  const char *const outputs[] = {job->output};
+  const cli_render_job *scene = &job->scene;
+  if (!job->weights_path)
+    return cli_usage("gradient: no weights given (--weights W.exr)");
+  if (!job->output && !session->json_path)
+    return cli_usage("gradient: nothing to write; give -o G.ply or --json FILE");
+  if (!cli_is_composited(scene))
+    return cli_usage("gradient: it is of Gaussian scenes by a profile; surfels have none yet");
+  if (!conic_gradient_has_profile(scene->gaussians.profile))
+    return cli_usage("gradient: the profile %s has none yet", conic_gaussian_profile_name(scene->gaussians.profile));
+  if (scene->gaussians.prefilter != 0.0)
+    return cli_usage("gradient: a picture under --prefilter has none yet");
+  if (scene->view.samples > 1)
+    return cli_usage("gradient: it is of one sample a pixel");
+  int exit_code = cli_check_outputs(session, outputs, 1);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_ending(job->output, "ply");
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_inputs_stay(session, &job->weights_path, 1, outputs, 1);
+  return exit_code == CLI_DONE ? cli_scene_inputs_stay(session, scene, outputs, 1) : exit_code;
+}
+
+static int run_gradient(cli_session *session, int argc, char **argv) {
+  static const char *const floats[] = {"own", "strict", "fast", NULL};
+  gradient_job job = {.floats = CONIC_FLOATS_STRICT};
+  cli_scene_defaults(&job.scene);
+  job.scene.may_composite = 1;
+  const cli_option own[] = {
+      {"weights", CLI_TEXT, &job.weights_path, "FILE",
+       "W of L = sum W C: a picture with R, G, B and, where they count, A and Z, or an .npy (height, width, 3 to 5)"},
+      {"o", CLI_TEXT, &job.output, "G.ply", "the derivative by each Gaussian's parameters, and its doubts"},
+      {"raw", CLI_FLAG, &job.is_raw, NULL, "by what files store: the logarithms of scales and the opacity's logit"},
+      {"floats", CLI_CHOICE, &job.floats, "WHOSE",
+       "whose roundings may put a decision in doubt: own, strict or fast (a GPU's) [strict]", .choices = floats},
+      {"no-doubts", CLI_FLAG, &job.leaves_doubts, NULL, "do not look for decisions in doubt, which is faster"},
+  };
+  int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
+  if (exit_code == CLI_DONE)
+    exit_code = check_gradient(session, &job);
+  if (exit_code == CLI_DONE)
+    exit_code = find_gradient(session, &job);
+  free(job.scene.inputs);
+  return exit_code < 0 ? CLI_DONE : exit_code;
+}
+
+const cli_command cli_gradient = {
+    .name = "gradient",
+    .summary = "differentiates a Gaussian scene's picture, in double precision",
+    .usage = "conic gradient SCENE --camera C --weights W.exr -o G.ply [--raw] [camera and render options]",
+    .run = run_gradient,
+};

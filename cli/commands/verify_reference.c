@@ -1,0 +1,37 @@
+#include "cli/commands/verify_reference.h"
+
+conic_status cli_reference_check_size(const char *path, const conic_image *image, const conic_camera *camera) {
+  if (image->width == camera->width && image->height == camera->height)
+    return CONIC_OK;
+  cli_error(CLI_INPUT, "%s: it has %d x %d pixels, and the picture to compare with %d x %d", path, image->width,
+            image->height, camera->width, camera->height);
+  return CONIC_ERROR_INPUT;
+}
+
+/* A picture from a file has the names of what was chosen, where the oracle counts. */
+static void name_reference(const conic_source_choice *choice, conic_reference *r) {
+  const uint32_t *names = choice->ids;
+  size_t n_names = choice->drawing.splats->count;
+  double *ids = r->planes[CONIC_PLANE_ID];
+  for (size_t i = 0; names && i < r->n_pixels; i++)
+    if (ids[i] < (double)n_names)
+      ids[i] = (double)names[(size_t)ids[i]];
+  for (size_t i = 0; names && i < r->n_ids; i++)
+    if (r->ids[i].id < n_names)
+      r->ids[i].id = names[r->ids[i].id];
+}
+
+conic_status cli_reference_draw(cli_session *session, const cli_render_job *scene, const conic_camera *camera,
+                                conic_oracle_question question, size_t n_pixels, int is_from_file,
+                                conic_reference *reference) {
+  const conic_source_choice *choice = conic_source_chosen(scene->source);
+  const conic_splats *splats = choice->drawing.splats;
+  conic_render_options options = scene->options;
+  if (choice->is_all && !(splats && splats->dot))
+    options.splat_length = 0.0; /* the oracle sees all splats as they are kept, and measures them by itself */
+  conic_status status = conic_oracle_render_pixels(session->context, &choice->drawing, camera, &options, question,
+                                                   scene->view.samples, n_pixels, reference);
+  if (status == CONIC_OK && is_from_file)
+    name_reference(choice, reference);
+  return status;
+}

@@ -1,0 +1,60 @@
+/* The table of options as JSON, for programs that are to know them all. */
+#include "cli/help/help.h"
+#include "cli/json_write.h"
+
+static void write_name(cli_json *json, const char *key, const cli_option *option) {
+  char name[64];
+  if (option)
+    snprintf(name, sizeof name, "%s%s", cli_dashes(option), option->name);
+  cli_json_text(json, key, option ? name : NULL);
+}
+
+static void write_option(cli_json *json, const char *group, const cli_help_entry *entry) {
+  static const char *const types[] = {"flag",   "integer", "count", "number", "text",
+                                      "choice", "vector",  "size",  "parsed"};
+  const cli_option *option = entry->option;
+  int is_limited = option->minimum != 0.0 || option->maximum != 0.0;
+  cli_json_object(json, NULL);
+  write_name(json, "name", option);
+  write_name(json, "alias", entry->alias);
+  cli_json_text(json, "group", group);
+  cli_json_text(json, "type", types[option->type]);
+  cli_json_text(json, "argument", option->argument);
+  cli_json_text(json, "text", entry->text);
+  cli_json_text(json, "default", entry->fallback[0] ? entry->fallback : NULL);
+  if (is_limited) {
+    cli_json_number(json, "minimum", option->minimum);
+    cli_json_number(json, "maximum", option->maximum);
+  }
+  if (option->choices) {
+    cli_json_array(json, "words");
+    for (int i = 0; option->choices[i]; i++)
+      cli_json_text(json, NULL, option->choices[i]);
+    cli_json_close(json);
+  }
+  cli_json_bool(json, "repeatable", option->may_repeat);
+  cli_json_close(json);
+}
+
+void cli_help_json(cli_session *session, const cli_option_table *table) {
+  const cli_command *command = cli_find_command(session->command);
+  cli_json *json = session->help;
+  cli_help_entry entry;
+  const char *group = NULL;
+  cli_json_object(json, NULL);
+  cli_json_text(json, "name", command->name);
+  cli_json_text(json, "summary", command->summary);
+  cli_json_text(json, "usage", command->usage);
+  cli_json_text(json, "description", command->description);
+  cli_json_array(json, "options");
+  for (int i = 0; cli_help_next(table, &i, &entry);) {
+    group = entry.group ? entry.group : group;
+    write_option(json, group, &entry);
+  }
+  cli_json_close(json);
+  cli_json_array(json, "examples");
+  for (int i = 0; i < 4 && command->examples[i].command; i++)
+    cli_json_text(json, NULL, command->examples[i].command);
+  cli_json_close(json);
+  cli_json_close(json);
+}

@@ -1,0 +1,397 @@
+/* conic conformance: writes a suite by which any renderer of Gaussian scenes can be judged (docs/reference/
+ * conformance.md). */
+#include <dirent.h>
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/command.h"
+#include "cli/commands/build_steps.h"
+#include "cli/judge/suite_files.h"
+#include "cli/judge/suite_planes.h"
+#include "cli/judge/suite_profiles.h"
+#include "cli/judge/suite_readme.h"
+#include "cli/outputs.h"
+#include "conic/version.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+
+enum { MOST_CASES = 256 };
+
+typedef struct suite_case {
+  const suite_scene *scene;
+  conic_gaussian_profile profile;
+  size_t n_doubtful; /* pixels */
+} suite_case;
+
+typedef struct conformance_job {
+  cli_build base;
+  suite_files *files;
+  const char *profile_list;
+  unsigned profiles; /* as bits */
+  int floats;        /* 0: fast, 1: strict */
+  int n_cases;
+  suite_case cases[MOST_CASES];
+  struct { /* of each scene of the table */
+    size_t n_gaussians;
+    int sh_degree;
+  } about[64];
+} conformance_job;
+
+enum { STAGE_SCENES, STAGE_BOUNDS, STAGE_WRITE };
+
+static const char *const float_names[] = {"fast", "strict", NULL};
+
+static conic_float_model model_of_job(const conformance_job *job) {
+  conic_float_model model;
+  conic_float_model_init(&model, job->floats ? CONIC_FLOATS_STRICT : CONIC_FLOATS_FAST);
+  return model;
+}
+
+static void name_case(const suite_case *one, char name[SUITE_PATH_ROOM]) {
+  snprintf(name, SUITE_PATH_ROOM, "L%d-%s-%s", one->scene->level, one->scene->name,
+           conic_gaussian_profile_name(one->profile));
+}
+
+/* --- the cases --- */
+
+static conic_status write_case_planes(conformance_job *job, const suite_case *one, const suite_planes *planes) {
+  suite_files *files = job->files;
+  char name[SUITE_PATH_ROOM], path[2 * SUITE_PATH_ROOM], full[4096];
+  name_case(one, name);
+  snprintf(path, sizeof path, "expected/%s.exr", name);
+  conic_status status = cli_suite_join(files->context, files->folder, path, full, sizeof full);
+  if (status == CONIC_OK)
+    status = cli_suite_write_exr(files->context, full, planes);
+  if (status == CONIC_OK)
+    status = cli_suite_add_file(files, path);
+  snprintf(path, sizeof path, "expected/%s.npy", name);
+  if (status == CONIC_OK)
+    status = cli_suite_join(files->context, files->folder, path, full, sizeof full);
+  if (status == CONIC_OK)
+    status = cli_suite_write_npy(files->context, full, planes);
+  return status == CONIC_OK ? cli_suite_add_file(files, path) : status;
+}
+
+static conic_status make_case(conformance_job *job, const conic_gaussians *gaussians, suite_case *one) {
+  conic_context *context = job->files->context;
+  const conic_float_model model = model_of_job(job);
+  const size_t n_pixels = (size_t)one->scene->width * (size_t)one->scene->height;
+  conic_gaussian_options options;
+  conic_camera camera;
+  suite_planes planes = {.width = one->scene->width, .height = one->scene->height};
+  const float *behind = one->scene->background;
+  conic_gaussian_options_init(&options);
+  options.profile = one->profile;
+  memcpy(options.background, behind, sizeof options.background);
+  cli_suite_camera(one->scene, &camera);
+  double start = cli_seconds();
+  conic_gaussian_bound *bounds = conic_memory_allocate(context, n_pixels, sizeof *bounds);
+  conic_status status =
+      bounds ? conic_gaussian_bound_pixels(context, gaussians, &camera, &options, &model, NULL, n_pixels, bounds)
+             : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; status == CONIC_OK && i < n_pixels; i++)
+    one->n_doubtful += bounds[i].doubts > 0;
+  if (status == CONIC_OK)
+    status = cli_suite_take_bounds(context, bounds, behind[0] + behind[1] + behind[2] > 0.0f, &planes);
+  job->base.stages[STAGE_BOUNDS].seconds += cli_seconds() - start;
+  start = cli_seconds();
+  if (status == CONIC_OK)
+    status = write_case_planes(job, one, &planes);
+  job->base.stages[STAGE_WRITE].seconds += cli_seconds() - start;
+  conic_memory_release(context, planes.numbers);
+  conic_memory_release(context, bounds);
+  return status;
+}
+
+static conic_status make_suite_scene(conformance_job *job, int i_scene) {
+  const suite_scene *scene = &cli_suite_scenes[i_scene];
+  conic_gaussians gaussians;
+  double start = cli_seconds();
+  conic_status status = cli_suite_write_camera(job->files, scene);
+  if (status == CONIC_OK)
+    status = cli_suite_write_scene(job->files, scene, &gaussians);
+  job->base.stages[STAGE_SCENES].seconds += cli_seconds() - start;
+  if (status != CONIC_OK)
+    return status;
+  job->about[i_scene].n_gaussians = gaussians.count;
+  job->about[i_scene].sh_degree = gaussians.sh_degree;
+  for (int p = 0; status == CONIC_OK && p < CONIC_N_GAUSSIAN_PROFILES; p++)
+    if (scene->profiles & job->profiles & 1u << p) {
+      suite_case *one = &job->cases[job->n_cases++];
+      *one = (suite_case){scene, (conic_gaussian_profile)p, 0};
+      status = make_case(job, &gaussians, one);
+    }
+  conic_gaussians_release(job->files->context, &gaussians);
+  return status;
+}
+
+/* --- what describes them --- */
+
+static void describe_floats(cli_json *json, const conformance_job *job) {
+  const conic_float_model model = model_of_job(job);
+  cli_json_object(json, "floats");
+  cli_json_text(json, "name", float_names[job->floats]);
+  cli_json_number(json, "exp_relative", model.exp_relative);
+  cli_json_number(json, "exp_by_argument", model.exp_by_argument);
+  cli_json_number(json, "setup_roundoff", model.setup_roundoff);
+  cli_json_count(json, "form_roundings", (uint64_t)model.n_form_roundings);
+  cli_json_close(json);
+}
+
+static void describe_words(cli_json *json, const char *key, const char *const *words, int n) {
+  cli_json_array(json, key);
+  for (int i = 0; i < n; i++)
+    cli_json_text(json, NULL, words[i]);
+  cli_json_close(json);
+}
+
+static void describe_path(cli_json *json, const char *key, const char *folder, const char *name, const char *ending) {
+  char path[2 * SUITE_PATH_ROOM];
+  snprintf(path, sizeof path, "%s/%s%s", folder, name, ending);
+  cli_json_text(json, key, path);
+}
+
+static void describe_scene(cli_json *json, const conformance_job *job, int i_scene) {
+  const suite_scene *scene = &cli_suite_scenes[i_scene];
+  cli_json_object(json, NULL);
+  cli_json_text(json, "name", scene->name);
+  cli_json_count(json, "level", (uint64_t)scene->level);
+  cli_json_text(json, "about", scene->about);
+  cli_json_count(json, "gaussians", job->about[i_scene].n_gaussians);
+  cli_json_count(json, "sh_degree", (uint64_t)job->about[i_scene].sh_degree);
+  cli_json_object(json, "files");
+  describe_path(json, "ply", "scenes", scene->name, ".ply");
+  if (scene->formats & SUITE_SPZ)
+    describe_path(json, "spz", "scenes", scene->name, ".spz");
+  if (scene->formats & SUITE_GLB)
+    describe_path(json, "glb", "scenes", scene->name, ".glb");
+  cli_json_close(json);
+  cli_json_count(json, "width", (uint64_t)scene->width);
+  cli_json_count(json, "height", (uint64_t)scene->height);
+  cli_json_object(json, "camera");
+  describe_path(json, "conic", "cameras", scene->name, ".json");
+  describe_path(json, "colmap", "cameras", scene->name, "");
+  describe_path(json, "transforms", "cameras", scene->name, ".transforms.json");
+  cli_json_close(json);
+  cli_json_array(json, "background");
+  for (int c = 0; c < 3; c++)
+    cli_json_number(json, NULL, (double)scene->background[c]);
+  cli_json_close(json);
+  cli_json_close(json);
+}
+
+static void describe_cases(cli_json *json, const conformance_job *job) {
+  char name[SUITE_PATH_ROOM];
+  cli_json_array(json, "cases");
+  for (int i = 0; i < job->n_cases; i++) {
+    const suite_case *one = &job->cases[i];
+    name_case(one, name);
+    cli_json_object(json, NULL);
+    cli_json_text(json, "name", name);
+    cli_json_count(json, "level", (uint64_t)one->scene->level);
+    cli_json_text(json, "scene", one->scene->name);
+    cli_json_text(json, "profile", conic_gaussian_profile_name(one->profile));
+    describe_path(json, "exr", "expected", name, ".exr");
+    describe_path(json, "npy", "expected", name, ".npy");
+    cli_json_count(json, "doubtful_pixels", one->n_doubtful);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}
+
+static void describe_levels(cli_json *json, const conformance_job *job) {
+  cli_json_array(json, "levels");
+  for (int level = 1; level <= SUITE_LEVELS; level++) {
+    uint64_t n = 0;
+    for (int i = 0; i < job->n_cases; i++)
+      n += job->cases[i].scene->level == level;
+    cli_json_object(json, NULL);
+    cli_json_count(json, "level", (uint64_t)level);
+    cli_json_text(json, "about", cli_suite_level_about(level));
+    cli_json_count(json, "cases", n);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}
+
+static void describe_suite(cli_json *json, const conformance_job *job) {
+  cli_json_text(json, "format", "conic-conformance");
+  cli_json_count(json, "version", 1);
+  cli_json_text(json, "conic", conic_version());
+  describe_floats(json, job);
+  describe_words(json, "channels", cli_suite_channel_names, SUITE_CHANNELS);
+  describe_words(json, "ranges", cli_suite_range_names, SUITE_RANGES);
+  describe_levels(json, job);
+  cli_json_array(json, "scenes");
+  for (int i = 0; i < cli_n_suite_scenes; i++)
+    if (cli_suite_scenes[i].profiles & job->profiles)
+      describe_scene(json, job, i);
+  cli_json_close(json);
+  describe_cases(json, job);
+  cli_json_array(json, "files");
+  for (int i = 0; i < job->files->n; i++) {
+    cli_json_object(json, NULL);
+    cli_json_text(json, "path", job->files->files[i].path);
+    cli_json_count(json, "bytes", job->files->files[i].bytes);
+    cli_json_text(json, "sha256", job->files->files[i].sha256);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}
+
+/* Last, so that a folder with a manifest is a whole suite. */
+static conic_status write_suite_manifest(const conformance_job *job) {
+  char full[4096];
+  cli_json json;
+  conic_output *output;
+  conic_status status = cli_suite_join(job->files->context, job->files->folder, "manifest.json", full, sizeof full);
+  if (status == CONIC_OK)
+    status = conic_output_open(job->files->context, full, &output);
+  if (status != CONIC_OK)
+    return status;
+  cli_json_begin(&json, conic_output_stream(output));
+  describe_suite(&json, job);
+  cli_json_end(&json);
+  return conic_output_commit(output);
+}
+
+/* A line a case, for runners that would rather not read JSON. */
+static conic_status write_case_list(const conformance_job *job) {
+  char name[SUITE_PATH_ROOM], line[8 * SUITE_PATH_ROOM];
+  size_t n = 0, room = (size_t)job->n_cases * sizeof line + 1;
+  char *text = conic_memory_allocate(job->files->context, room, 1);
+  if (!text)
+    return CONIC_ERROR_MEMORY;
+  text[0] = '\0';
+  for (int i = 0; i < job->n_cases; i++) {
+    const suite_scene *scene = job->cases[i].scene;
+    name_case(&job->cases[i], name);
+    n += (size_t)snprintf(text + n, room - n, "%s\tscenes/%s.ply\tcameras/%s.json\t%s\t%.9g,%.9g,%.9g\n", name,
+                          scene->name, scene->name, conic_gaussian_profile_name(job->cases[i].profile),
+                          (double)scene->background[0], (double)scene->background[1], (double)scene->background[2]);
+  }
+  conic_status status = cli_suite_write_text(job->files, "cases.tsv", text);
+  conic_memory_release(job->files->context, text);
+  return status;
+}
+
+/* --- the command --- */
+
+/* Nothing but an earlier suite is written over. */
+static int check_suite_folder(const char *folder) {
+  char manifest[4096];
+  struct stat found;
+  const struct dirent *entry;
+  int is_empty = 1;
+  if (stat(folder, &found) != 0)
+    return CLI_DONE;
+  DIR *entries = opendir(folder);
+  if (!entries)
+    return cli_error(CLI_RESOURCE, "%s: cannot write: %s", folder, strerror(errno));
+  while ((entry = readdir(entries)))
+    is_empty &= strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0;
+  closedir(entries);
+  snprintf(manifest, sizeof manifest, "%s/manifest.json", folder);
+  if (is_empty || stat(manifest, &found) == 0)
+    return CLI_DONE;
+  return cli_usage("conformance: %s: the folder is neither empty nor an earlier suite; give another name", folder);
+}
+
+/* A folder without a manifest is no suite, until the new one stands there. */
+static conic_status make_suite_folders(suite_files *files) {
+  char full[4096];
+  conic_status status = cli_suite_make_folder(files, "");
+  if (status == CONIC_OK)
+    status = cli_suite_join(files->context, files->folder, "manifest.json", full, sizeof full);
+  if (status == CONIC_OK && remove(full) != 0 && errno != ENOENT)
+    status = conic_fail(files->context, CONIC_ERROR_IO, "%s: cannot write: %s", full, strerror(errno));
+  static const char *const folders[] = {"scenes", "cameras", "expected"};
+  for (int i = 0; status == CONIC_OK && i < 3; i++)
+    status = cli_suite_make_folder(files, folders[i]);
+  return status;
+}
+
+static int make_suite(void *cookie) {
+  conformance_job *job = cookie;
+  job->files = conic_memory_allocate_zeroed(job->base.session->context, 1, sizeof *job->files);
+  if (!job->files)
+    return CLI_RESOURCE;
+  job->files->context = job->base.session->context;
+  job->files->folder = job->base.output;
+  conic_status status = make_suite_folders(job->files);
+  for (int i = 0; status == CONIC_OK && i < cli_n_suite_scenes; i++) {
+    cli_session_part(job->base.session, "scenes", i + 1, cli_n_suite_scenes);
+    if (cli_suite_scenes[i].profiles & job->profiles)
+      status = make_suite_scene(job, i);
+  }
+  if (status == CONIC_OK)
+    status = cli_suite_write_text(job->files, "README.md", cli_suite_readme);
+  if (status == CONIC_OK)
+    status = write_case_list(job);
+  if (status == CONIC_OK)
+    status = write_suite_manifest(job);
+  return cli_exit_of(status);
+}
+
+static uint64_t count_bytes(const conformance_job *job) {
+  uint64_t bytes = 0;
+  for (int i = 0; i < job->files->n; i++)
+    bytes += job->files->files[i].bytes;
+  return bytes;
+}
+
+static void tell_suite(const void *cookie) {
+  const conformance_job *job = cookie;
+  cli_note(job->base.session, "%s: %d cases in %d files of %.1f MB; its README.md says how to use them",
+           job->base.output, job->n_cases, job->files->n + 1, 1e-6 * (double)count_bytes(job));
+}
+
+static void report_suite(cli_json *json, const void *cookie) {
+  const conformance_job *job = cookie;
+  cli_json_text(json, "floats", float_names[job->floats]);
+  cli_json_count(json, "cases", (uint64_t)job->n_cases);
+  cli_json_count(json, "files", (uint64_t)job->files->n + 1);
+  cli_json_count(json, "bytes", count_bytes(job));
+  describe_levels(json, job);
+  cli_build_report_seconds(json, &job->base, "cases_per_s", (double)job->n_cases / job->base.total_seconds);
+  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+}
+
+static void release_suite(void *cookie) {
+  conformance_job *job = cookie;
+  conic_memory_release(job->base.session->context, job->files);
+}
+
+static int run_conformance(cli_session *session, int argc, char **argv) {
+  static const cli_build_steps steps = {make_suite, tell_suite, report_suite, release_suite};
+  conformance_job job = {.base = {session, .stages = {{"scenes"}, {"bounds"}, {"write"}}}};
+  const char *positional[argc];
+  int n_positional;
+  const cli_option options[] = {
+      {"profile", CLI_TEXT, &job.profile_list, "NAMES", "only these profiles, with commas between [all]"},
+      {"floats", CLI_CHOICE, &job.floats, "KIND",
+       "what renderers may round: fast: as a GPU's fast mathematics; strict: e^x to 2 ulp [fast]",
+       .choices = float_names},
+  };
+  int exit_code = cli_parse(session, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);
+  if (exit_code == CLI_DONE && n_positional != 1)
+    exit_code = cli_usage("conformance: %s; see conic help conformance",
+                          n_positional ? "one folder at a time" : "no folder given");
+  if (exit_code == CLI_DONE) {
+    job.base.output = positional[0];
+    job.profiles = cli_suite_find_profiles("conformance", job.profile_list);
+    exit_code = job.profiles ? check_suite_folder(job.base.output) : CLI_USAGE;
+  }
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(session, NULL, 0);
+  return cli_build_run(&job, &steps, exit_code);
+}
+
+const cli_command cli_conformance = {
+    .name = "conformance",
+    .summary = "writes a suite of cases by which any Gaussian renderer can be judged",
+    .usage = "conic conformance OUT/ [--profile NAME[,NAME]] [--floats fast|strict]",
+    .run = run_conformance,
+};

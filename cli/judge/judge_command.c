@@ -1,0 +1,204 @@
+/* conic judge: whether a picture that somebody drew is right, pixel by pixel, and if not, where and why. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/commands/gaussian_commands.h"
+#include "cli/commands/verify_reference.h"
+#include "cli/judge/judge_job.h"
+#include "cli/outputs.h"
+
+static const unsigned gaussian_planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL |
+                                        1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_ID |
+                                        (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT));
+
+static unsigned judged_planes(const cli_judge_job *job) {
+  unsigned planes = cli_is_composited(&job->scene) ? gaussian_planes : CONIC_DRAWN_PLANES;
+  return job->scene.is_aov_given ? planes & job->scene.planes : planes;
+}
+
+/* Conic's own EXRs say how many samples a pixel has. */
+static void take_samples_of_picture(cli_judge_job *job) {
+  const conic_image *image = &job->picture.image;
+  for (int i = 0; i < image->n_attributes && !job->scene.is_samples_given; i++) {
+    const conic_attribute *a = &image->attributes[i];
+    if (strcmp(a->name, "conicSamples") == 0 && a->type == CONIC_ATTRIBUTE_DOUBLE && a->values[0] >= 1.0 &&
+        a->values[0] <= CONIC_MAX_SAMPLES)
+      job->scene.view.samples = (int)a->values[0];
+  }
+}
+
+static conic_status take_picture_in(cli_session *session, cli_judge_job *job) {
+  const unsigned planes = judged_planes(job);
+  conic_status status = conic_picture_read(session->context, job->picture_path, planes, &job->reading, &job->picture);
+  conic_image *const both[] = {&job->picture.image, &job->picture.greatest};
+  for (int k = 0; k < 2 && status == CONIC_OK; k++)
+    for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+      if (!(planes >> plane & 1)) {
+        conic_image alone = {.width = 1, .height = 1, .planes[0] = both[k]->planes[plane]};
+        conic_image_release(session->context, &alone);
+        both[k]->planes[plane] = NULL;
+      }
+  if (status == CONIC_OK && !conic_image_planes(&job->picture.image)) {
+    cli_error(CLI_INPUT, "%s: it has no plane that is judged", job->picture_path);
+    return CONIC_ERROR_INPUT;
+  }
+  take_samples_of_picture(job);
+  return status;
+}
+
+/* What the times of the stages are taken with. */
+static double pass_stage(cli_judge_job *job, int stage, double start) {
+  double now = cli_seconds();
+  job->seconds[stage] += now - start;
+  return now;
+}
+
+static conic_status make_ready(cli_session *session, cli_judge_job *job) {
+  double at = cli_seconds();
+  conic_status status = cli_scene_begin(session, &job->scene);
+  if (status == CONIC_OK)
+    status = take_picture_in(session, job);
+  if (status == CONIC_OK && job->scene.camera_path) /* before the scene is read */
+    status = cli_reference_check_size(job->picture_path, &job->picture.image, &job->scene.camera);
+  at = pass_stage(job, CLI_JUDGE_READ, at);
+  if (status == CONIC_OK)
+    status = cli_scene_open(session, &job->scene);
+  if (status == CONIC_OK)
+    status = cli_scene_camera(&job->scene, 0, &job->camera);
+  if (status == CONIC_OK)
+    status = cli_reference_check_size(job->picture_path, &job->picture.image, &job->camera);
+  pass_stage(job, CLI_JUDGE_OPEN, at);
+  if (status != CONIC_OK)
+    return status;
+  job->found.n_whole = (size_t)job->camera.width * (size_t)job->camera.height;
+  job->classes = malloc(job->found.n_whole);
+  if (!job->classes) {
+    cli_error(CLI_RESOURCE, "judge: out of memory");
+    return CONIC_ERROR_MEMORY;
+  }
+  memset(job->classes, CONIC_N_PIXEL_CLASSES, job->found.n_whole);
+  return CONIC_OK;
+}
+
+static conic_status find_out(cli_session *session, cli_judge_job *job) {
+  double at = cli_seconds();
+  conic_status status =
+      cli_is_composited(&job->scene) ? cli_judge_gaussians(session, job) : cli_judge_splats(session, job);
+  at = pass_stage(job, CLI_JUDGE_JUDGE, at);
+  if (status == CONIC_OK && job->found.n_worst)
+    status = cli_judge_explain(session, job);
+  at = pass_stage(job, CLI_JUDGE_EXPLAIN, at);
+  if (status == CONIC_OK && !cli_judge_is_right(job))
+    status = cli_judge_diagnose(session, job);
+  pass_stage(job, CLI_JUDGE_DIAGNOSE, at);
+  return status;
+}
+
+static conic_status put_map(cli_session *session, const cli_judge_job *job) {
+  conic_image map;
+  conic_status status = cli_judge_map(session, job, &map);
+  if (status == CONIC_OK)
+    status = conic_image_write(session->context, job->map_path, &map);
+  conic_image_release(session->context, &map);
+  return status;
+}
+
+static conic_status show_maps(cli_session *session, cli_judge_job *job) {
+  double at = cli_seconds();
+  conic_status status = job->map_path ? put_map(session, job) : CONIC_OK;
+  pass_stage(job, CLI_JUDGE_SHOW, at);
+  return status;
+}
+
+static int tell_judged(cli_session *session, const cli_judge_job *job) {
+  int exit_code = cli_judge_write_json(session, job);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  if (!session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0))
+    cli_judge_print(job);
+  return cli_judge_is_right(job) ? CLI_DONE : CLI_DIFFERENT;
+}
+
+static int judge_scene(cli_session *session, cli_judge_job *job) {
+  int exit_code = cli_session_open(session);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  conic_status status = make_ready(session, job);
+  if (status == CONIC_OK)
+    status = find_out(session, job);
+  if (status == CONIC_OK)
+    status = show_maps(session, job);
+  exit_code = status == CONIC_OK ? tell_judged(session, job) : cli_exit_of(status);
+  free(job->classes);
+  conic_image_release(session->context, &job->ours);
+  conic_picture_release(session->context, &job->picture);
+  cli_scene_release(session, &job->scene);
+  return exit_code;
+}
+
+static int check_judge(cli_session *session, cli_judge_job *job) {
+  const char *const outputs[] = {job->map_path, job->report_path};
+  if (!job->picture_path)
+    return cli_usage("judge: no picture; give --picture FILE");
+  if (job->scene.is_aov_given && !judged_planes(job))
+    return cli_usage("judge: none of these planes is judged of such a scene");
+  if (!job->is_transfer_given) /* of Gaussians, pictures hold display values */
+    job->transfer = !cli_is_composited(&job->scene);
+  job->reading.is_srgb = job->transfer;
+  int exit_code = cli_check_ending(job->report_path, "html");
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(session, outputs, 2);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_inputs_stay(session, &job->picture_path, 1, outputs, 2);
+  return exit_code == CLI_DONE ? cli_scene_inputs_stay(session, &job->scene, outputs, 2) : exit_code;
+}
+
+static int run_judge(cli_session *session, int argc, char **argv) {
+  static const char *const floats[] = {"own", "strict", "fast", NULL}, *const transfers[] = {"linear", "srgb", NULL},
+                           *const roundings[] = {"either", "nearest", "down", NULL};
+  cli_judge_job job = {.floats = CONIC_FLOATS_FAST, .argc = argc, .argv = argv};
+  int rounding = CONIC_CODES_EITHER;
+  conic_picture_options_init(&job.reading);
+  cli_scene_defaults(&job.scene);
+  job.scene.may_composite = 1;
+  const cli_option own[] = {
+      {"picture", CLI_TEXT, &job.picture_path, "FILE",
+       "what is judged: EXR, PFM or NPY (with planes beside it, P.Z.npy …), NPZ, or PNG"},
+      {"floats", CLI_CHOICE, &job.floats, "KIND",
+       "of what drew it: own (conic's), strict (all in float, in any order), or fast (and a GPU's fast exponential) "
+       "[fast]",
+       .choices = floats},
+      {"max-wrong", CLI_COUNT, &job.max_wrong, "N", "so many pixels may be wrong [0]", 0, 4294836225.0},
+      {"pixels", CLI_COUNT, &job.n_pixels, "N", "judge this many pixels, spread evenly; always the same ones [all]",
+       .minimum = 1, .maximum = 4294836225.0},
+      {"map", CLI_TEXT, &job.map_path, "FILE", "the class of every pixel in false colours, with a legend"},
+      {"report", CLI_TEXT, &job.report_path, "FILE.html", "a page with all that was found, pictures and all"},
+      {"transfer", CLI_CHOICE, &job.transfer, "HOW",
+       "codes of 8 or 16 bits: linear (code / 255) or srgb (decoded) [linear of Gaussian scenes, else srgb]",
+       .choices = transfers, .is_given = &job.is_transfer_given},
+      {"codes", CLI_CHOICE, &rounding, "HOW", "codes were rounded to the nearest, down, or either [either]",
+       .choices = roundings},
+      {"clipped", CLI_FLAG, &job.reading.is_clipped, NULL,
+       "colours of 0 and 1 stand for what is beyond, in floats, too"},
+      {"straight", CLI_FLAG, &job.reading.is_straight, NULL,
+       "colours are not multiplied by alpha; of a PNG they never are"},
+      {"time", CLI_FLAG, &job.shows_times, NULL, "print what each stage took"},
+  };
+  int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
+  job.reading.rounding = (conic_code_rounding)rounding;
+  if (exit_code == CLI_DONE)
+    exit_code = check_judge(session, &job);
+  if (exit_code == CLI_DONE)
+    exit_code = judge_scene(session, &job);
+  free(job.scene.inputs);
+  return exit_code < 0 ? CLI_DONE : exit_code;
+}
+
+const cli_command cli_judge = {
+    .name = "judge",
+    .summary = "says whether a picture that somebody drew is right, and where not",
+    .usage = "conic judge SCENE --camera C [--view V] --picture P [--profile NAME | --method M] [--json FILE] "
+             "[--report F.html] [--map F.png] [--max-wrong N] [camera and render options]",
+    .run = run_judge,
+};

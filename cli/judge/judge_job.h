@@ -1,0 +1,113 @@
+/* One `conic judge`: what was asked for, and what came of it. */
+#ifndef CONIC_JUDGE_JOB_H
+#define CONIC_JUDGE_JOB_H
+
+#include "cli/render/render_job.h"
+#include "conic/gaussian_judge.h"
+#include "conic/picture.h"
+
+enum { CLI_JUDGE_MOST_REASONS = CONIC_MAX_UNSTABLE_REASONS, CLI_JUDGE_MOST_PARTS = 4, CLI_JUDGE_MOST_FAULTS = 8 };
+
+/* The stages whose times are told. */
+enum {
+  CLI_JUDGE_READ,
+  CLI_JUDGE_OPEN,
+  CLI_JUDGE_JUDGE,
+  CLI_JUDGE_EXPLAIN,
+  CLI_JUDGE_DIAGNOSE,
+  CLI_JUDGE_SHOW,
+  CLI_JUDGE_N_STAGES
+};
+
+/* A contribution to a pixel that is wrong. */
+typedef struct cli_judge_part {
+  const char *kind; /* "gaussian", "splat" or "triangle" */
+  uint32_t index;
+  double weight; /* its share of the pixel */
+  double alpha;  /* of a Gaussian */
+  double depth, color[3];
+  const char *doubt; /* what is in doubt about it; null: nothing */
+} cli_judge_part;
+
+/* A wrong pixel, and what matters there, the heaviest first. */
+typedef struct cli_judge_worst {
+  conic_oracle_fault fault;
+  cli_judge_part parts[CLI_JUDGE_MOST_PARTS];
+  int n_parts;
+  size_t n_blended;
+} cli_judge_worst;
+
+/* A fault that would explain the wrong pixels, and the share of the difference that it takes away. */
+typedef struct cli_judge_fault {
+  char name[64];
+  double share;
+} cli_judge_fault;
+
+/* What was found, of either kind of scene. */
+typedef struct cli_judgement {
+  size_t pixels[CONIC_N_PIXEL_CLASSES], judged, covered, doubtful, n_whole;
+  const char *reasons[CLI_JUDGE_MOST_REASONS]; /* null past the last */
+  size_t explained_by[CLI_JUDGE_MOST_REASONS];
+  conic_oracle_plane_verdict planes[CONIC_MAX_PLANES];
+  cli_judge_worst worst[CONIC_MAX_FAULTS];
+  int n_worst;
+  cli_judge_fault faults[CLI_JUDGE_MOST_FAULTS];
+  int n_faults;
+} cli_judgement;
+
+typedef struct cli_judge_job {
+  /* What was asked for. */
+  cli_render_job scene;
+  const char *picture_path, *map_path, *report_path; /* null: none */
+  unsigned long long n_pixels, max_wrong;            /* n_pixels 0: all */
+  int floats;                                        /* a conic_float_kind */
+  int transfer, is_transfer_given;                   /* 0 linear, 1 srgb */
+  int shows_times;
+  conic_picture_options reading;
+  int argc; /* the command line, for the report */
+  char **argv;
+
+  /* What came of it. */
+  conic_picture picture;
+  conic_camera camera;
+  uint8_t *classes; /* of each pixel; of one that was not judged CONIC_N_PIXEL_CLASSES */
+  cli_judgement found;
+  conic_image ours; /* what conic draws, where it is shown */
+  double seconds[CLI_JUDGE_N_STAGES];
+} cli_judge_job;
+
+/* Whether no more pixels are wrong than may be. */
+int cli_judge_is_right(const cli_judge_job *job);
+/* "stage", for --time and --json. */
+const char *cli_judge_stage_name(int stage);
+
+/* The picture held against a Gaussian scene's profile, or against what a method makes of splats and triangles. The
+ * scene is open and its camera known. */
+conic_status cli_judge_gaussians(cli_session *session, cli_judge_job *job);
+conic_status cli_judge_splats(cli_session *session, cli_judge_job *job);
+
+/* Says of the worst pixels what they are made of. */
+conic_status cli_judge_explain(cli_session *session, cli_judge_job *job);
+
+/* Looks for the fault that explains the wrong pixels best: job->found.faults. Called where there are any. */
+conic_status cli_judge_diagnose(cli_session *session, cli_judge_job *job);
+
+/* Draws what conic makes of it: job->ours. */
+conic_status cli_judge_draw(cli_session *session, cli_judge_job *job);
+
+/* The classes in false colours, with a legend; the caller releases *map. */
+conic_status cli_judge_map(cli_session *session, const cli_judge_job *job, conic_image *map);
+
+/* Writes the page. */
+conic_status cli_judge_report(cli_session *session, cli_judge_job *job);
+
+/* The verdict for people, and as the session's JSON. The second returns an exit code. */
+void cli_judge_print(const cli_judge_job *job);
+int cli_judge_write_json(cli_session *session, const cli_judge_job *job);
+
+/* A fault's value: "R", "Z", "N.x" …; and what it is and may be, in one line. */
+const char *cli_judge_channel_name(const conic_oracle_fault *fault);
+void cli_judge_describe(const cli_judge_job *job, const conic_oracle_fault *fault, char *text, size_t room);
+void cli_judge_describe_part(const cli_judge_part *part, char *text, size_t room);
+
+#endif

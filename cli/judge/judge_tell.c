@@ -1,0 +1,201 @@
+/* The verdict, for people and as JSON. */
+#include <string.h>
+
+#include "cli/commands/gaussian_commands.h"
+#include "cli/commands/verify_fault.h"
+#include "cli/judge/judge_job.h"
+
+/* As JSON has them, in the order of conic_pixel_class. */
+static const char *const class_keys[CONIC_N_PIXEL_CLASSES] = {"equal", "rounding", "explained", "wrong"};
+
+int cli_judge_is_right(const cli_judge_job *job) {
+  return job->found.pixels[CONIC_PIXEL_WRONG] <= job->max_wrong;
+}
+
+const char *cli_judge_stage_name(int stage) {
+  static const char *const names[CLI_JUDGE_N_STAGES] = {"read", "open", "judge", "explain", "diagnose", "show"};
+  return names[stage];
+}
+
+const char *cli_judge_channel_name(const conic_oracle_fault *fault) {
+  return conic_plane_describe((conic_plane)fault->plane)->channels[fault->channel];
+}
+
+/* Where ids are named, "nothing" is one, too. */
+static void spell_value(const conic_oracle_fault *fault, double value, char text[32]) {
+  int is_name = fault->plane == CONIC_PLANE_ID || fault->plane == CONIC_PLANE_LAST;
+  if (is_name && value == (double)CONIC_NO_ID)
+    snprintf(text, 32, "nothing");
+  else
+    snprintf(text, 32, "%.9g", value);
+}
+
+void cli_judge_describe(const cli_judge_job *job, const conic_oracle_fault *fault, char *text, size_t room) {
+  char found[32], low[32], high[32];
+  const char *bound = "";
+  spell_value(fault, fault->found, found);
+  spell_value(fault, fault->low, low);
+  spell_value(fault, fault->high, high);
+  if (job->picture.most_code && fault->plane == CONIC_PLANE_RGBA && fault->found == fault->found)
+    bound = fault->found < fault->low ? " at most" : " at least";
+  if (fault->high > fault->low)
+    snprintf(text, room, "%s is%s %s; it may be %s to %s", cli_judge_channel_name(fault), bound, found, low, high);
+  else
+    snprintf(text, room, "%s is%s %s; it may be %s", cli_judge_channel_name(fault), bound, found, low);
+}
+
+void cli_judge_describe_part(const cli_judge_part *p, char *text, size_t room) {
+  int n = snprintf(text, room, "%s %lu: weight %.4g", p->kind, (unsigned long)p->index, p->weight);
+  if (p->alpha > 0.0 && n < (int)room)
+    n += snprintf(text + n, room - (size_t)n, ", alpha %.6g", p->alpha);
+  if (n < (int)room)
+    n += snprintf(text + n, room - (size_t)n, ", depth %.5g, colour %.3g %.3g %.3g", p->depth, p->color[0], p->color[1],
+                  p->color[2]);
+  if (p->doubt && n < (int)room)
+    snprintf(text + n, room - (size_t)n, ", in doubt: %s", p->doubt);
+}
+
+static void print_worst(const cli_judge_job *job) {
+  char text[256];
+  for (int k = 0; k < job->found.n_worst; k++) {
+    const cli_judge_worst *w = &job->found.worst[k];
+    cli_judge_describe(job, &w->fault, text, sizeof text);
+    printf("worst     pixel %d,%d: %s\n", w->fault.x, w->fault.y, text);
+    for (int i = 0; i < w->n_parts; i++) {
+      cli_judge_describe_part(&w->parts[i], text, sizeof text);
+      printf("          %s\n", text);
+    }
+    if (w->n_blended > (size_t)w->n_parts)
+      printf("          and %zu more\n", w->n_blended - (size_t)w->n_parts);
+  }
+}
+
+static void print_explained(const cli_judgement *found) {
+  const char *separator = "explained by ";
+  for (int k = 0; k < CLI_JUDGE_MOST_REASONS && found->reasons[k]; k++)
+    if (found->explained_by[k]) {
+      printf("%s%s %zu", separator, found->reasons[k], found->explained_by[k]);
+      separator = ", ";
+    }
+  if (*separator == ',')
+    putchar('\n');
+}
+
+void cli_judge_print(const cli_judge_job *job) {
+  const cli_judgement *found = &job->found;
+  printf("%s: %zu of %zu judged pixels are wrong", cli_judge_is_right(job) ? "right" : "WRONG",
+         found->pixels[CONIC_PIXEL_WRONG], found->judged);
+  if (found->judged < found->n_whole)
+    printf(" (the picture has %zu)", found->n_whole);
+  printf("\n%zu equal, %zu within rounding, %zu explained, %zu wrong\n", found->pixels[CONIC_PIXEL_EQUAL],
+         found->pixels[CONIC_PIXEL_ROUNDED], found->pixels[CONIC_PIXEL_EXPLAINED], found->pixels[CONIC_PIXEL_WRONG]);
+  print_explained(found);
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (found->planes[i].is_compared)
+      printf("%-9s max %.4g\n", conic_plane_describe((conic_plane)i)->name, found->planes[i].max_abs);
+  if (job->picture.is_alpha_dropped)
+    puts("alpha is full everywhere, and is not judged");
+  print_worst(job);
+  for (int k = 0; k < found->n_faults; k++)
+    printf("%s %s takes away %.0f %% of the difference\n", k ? "         " : "diagnosis", found->faults[k].name,
+           100.0 * found->faults[k].share);
+  for (int k = 0; k < CLI_JUDGE_N_STAGES && job->shows_times; k++)
+    printf("%-9s %.2f s\n", cli_judge_stage_name(k), job->seconds[k]);
+}
+
+static void write_picture(cli_json *json, const cli_judge_job *job) {
+  cli_json_object(json, "picture");
+  cli_json_count(json, "width", (uint64_t)job->camera.width);
+  cli_json_count(json, "height", (uint64_t)job->camera.height);
+  cli_json_count(json, "bits", job->picture.most_code == 255 ? 8 : job->picture.most_code ? 16 : 32);
+  cli_json_bool(json, "has_alpha", !job->picture.image.lacks_alpha);
+  cli_json_close(json);
+  cli_json_object(json, "planes");
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (job->found.planes[i].is_compared) {
+      cli_json_object(json, conic_plane_describe((conic_plane)i)->name);
+      cli_json_number(json, "max_abs", job->found.planes[i].max_abs);
+      cli_json_close(json);
+    }
+  cli_json_close(json);
+}
+
+static void write_part(cli_json *json, const cli_judge_part *p) {
+  cli_json_object(json, NULL);
+  cli_json_count(json, p->kind, p->index);
+  cli_json_number(json, "weight", p->weight);
+  if (p->alpha > 0.0)
+    cli_json_number(json, "alpha", p->alpha);
+  cli_json_number(json, "depth", p->depth);
+  cli_json_array(json, "color");
+  for (int c = 0; c < 3; c++)
+    cli_json_number(json, NULL, p->color[c]);
+  cli_json_close(json);
+  if (p->doubt)
+    cli_json_text(json, "doubt", p->doubt);
+  cli_json_close(json);
+}
+
+static void write_worst(cli_json *json, const cli_judgement *found) {
+  cli_json_array(json, "worst");
+  for (int k = 0; k < found->n_worst; k++) {
+    const cli_judge_worst *w = &found->worst[k];
+    cli_json_object(json, NULL);
+    cli_fault_members(json, &w->fault);
+    cli_json_count(json, "blended", w->n_blended);
+    cli_json_array(json, "contributions");
+    for (int i = 0; i < w->n_parts; i++)
+      write_part(json, &w->parts[i]);
+    cli_json_close(json);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}
+
+static void write_diagnosis(cli_json *json, const cli_judgement *found) {
+  cli_json_array(json, "diagnosis");
+  for (int k = 0; k < found->n_faults; k++) {
+    cli_json_object(json, NULL);
+    cli_json_text(json, "name", found->faults[k].name);
+    cli_json_number(json, "share", found->faults[k].share);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}
+
+int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
+  static const char *const floats[CONIC_N_FLOAT_KINDS] = {"own", "strict", "fast"};
+  const cli_judgement *found = &job->found;
+  int exit_code = CLI_DONE;
+  cli_json_file *file;
+  cli_json *json = cli_json_open(session, &file, &exit_code);
+  if (!json)
+    return exit_code;
+  cli_json_text(json, "verdict", cli_judge_is_right(job) ? "right" : "wrong");
+  cli_json_object(json, "pixels");
+  for (int k = 0; k < CONIC_N_PIXEL_CLASSES; k++)
+    cli_json_count(json, class_keys[k], found->pixels[k]);
+  cli_json_close(json);
+  cli_json_count(json, "max_wrong", job->max_wrong);
+  cli_json_count(json, "judged_pixels", found->judged);
+  cli_json_count(json, "covered_pixels", found->covered);
+  cli_json_count(json, "doubtful_pixels", found->doubtful);
+  cli_json_object(json, "explained_by");
+  for (int k = 0; k < CLI_JUDGE_MOST_REASONS && found->reasons[k]; k++)
+    cli_json_count(json, found->reasons[k], found->explained_by[k]);
+  cli_json_close(json);
+  if (cli_is_composited(&job->scene))
+    cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.gaussians.profile));
+  else
+    cli_json_text(json, "method", cli_method_name(&job->scene));
+  cli_json_text(json, "floats", floats[job->floats]);
+  cli_json_count(json, "samples", (uint64_t)job->scene.view.samples);
+  write_picture(json, job);
+  write_worst(json, found);
+  write_diagnosis(json, found);
+  cli_json_object(json, "seconds");
+  for (int k = 0; k < CLI_JUDGE_N_STAGES; k++)
+    cli_json_number(json, cli_judge_stage_name(k), job->seconds[k]);
+  cli_json_close(json);
+  return cli_json_finish(file);
+}

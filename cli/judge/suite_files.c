@@ -1,0 +1,274 @@
+#include "cli/judge/suite_files.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/files/zip.h"
+#include "gaussians/formats/gaussian_formats.h"
+#include "gaussians/scene/activation.h"
+
+conic_status cli_suite_join(conic_context *context, const char *folder, const char *path, char *full, size_t room) {
+  const char *slash = folder[0] && folder[strlen(folder) - 1] == '/' ? "" : "/";
+  int n = snprintf(full, room, "%s%s%s", folder, path[0] ? slash : "", path);
+  return n > 0 && (size_t)n < room ? CONIC_OK
+                                   : conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the name is too long", folder);
+}
+
+conic_status cli_suite_make_folder(suite_files *suite, const char *path) {
+  char full[4096];
+  struct stat found;
+  conic_status status = cli_suite_join(suite->context, suite->folder, path, full, sizeof full);
+  if (status != CONIC_OK || mkdir(full, 0777) == 0 ||
+      (errno == EEXIST && stat(full, &found) == 0 && S_ISDIR(found.st_mode)))
+    return status;
+  return conic_fail(suite->context, CONIC_ERROR_IO, "%s: cannot make the folder: %s", full, strerror(errno));
+}
+
+conic_status cli_suite_add_file(suite_files *suite, const char *path) {
+  char full[4096];
+  unsigned char bytes[8192];
+  size_t n = 0;
+  conic_sha256 sum;
+  suite_file *file = &suite->files[suite->n];
+  conic_status status = cli_suite_join(suite->context, suite->folder, path, full, sizeof full);
+  if (status == CONIC_OK && suite->n == SUITE_MOST_FILES)
+    status = conic_fail(suite->context, CONIC_ERROR_ARGUMENT, "%s: too many files", full);
+  FILE *from = status == CONIC_OK ? fopen(full, "rb") : NULL;
+  if (status == CONIC_OK && !from)
+    status = conic_fail(suite->context, CONIC_ERROR_IO, "%s: cannot read it again: %s", full, strerror(errno));
+  if (!from)
+    return status;
+  snprintf(file->path, sizeof file->path, "%s", path);
+  file->bytes = 0;
+  conic_sha256_begin(&sum);
+  while ((n = fread(bytes, 1, sizeof bytes, from)) > 0) {
+    conic_sha256_add(&sum, bytes, n);
+    file->bytes += n;
+  }
+  conic_sha256_end(&sum, file->sha256);
+  if (ferror(from))
+    status = conic_fail(suite->context, CONIC_ERROR_IO, "%s: cannot read it again", full);
+  fclose(from);
+  suite->n++;
+  return status;
+}
+
+/* Opens a file of the suite. */
+static conic_status open_suite_file(suite_files *suite, const char *path, conic_output **output) {
+  char full[4096];
+  conic_status status = cli_suite_join(suite->context, suite->folder, path, full, sizeof full);
+  return status == CONIC_OK ? conic_output_open(suite->context, full, output) : status;
+}
+
+static conic_status end_suite_file(suite_files *suite, const char *path, conic_output *output) {
+  conic_status status = conic_output_commit(output);
+  return status == CONIC_OK ? cli_suite_add_file(suite, path) : status;
+}
+
+conic_status cli_suite_write_text(suite_files *suite, const char *path, const char *text) {
+  conic_output *output;
+  conic_status status = open_suite_file(suite, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  fputs(text, conic_output_stream(output));
+  return end_suite_file(suite, path, output);
+}
+
+/* --- scenes --- */
+
+static float to_steps(double value, double steps, double offset, double most) {
+  double code = floor((value - offset) * steps + 0.5);
+  code = code < 0.0 ? 0.0 : code > most ? most : code;
+  return (float)(code / steps + offset);
+}
+
+/* Of a unit quaternion the three smaller components become codes of 9 bits, and the largest follows. */
+static void settle_rotation(conic_gaussians *set, size_t i) {
+  double q[4], sum = 0.0;
+  int largest = 0;
+  conic_gaussians_unit_rotation(set, i, q);
+  for (int k = 1; k < 4; k++)
+    largest = fabs(q[k]) > fabs(q[largest]) ? k : largest;
+  for (int k = 0; k < 4; k++) {
+    const double root_half = 0.70710678118654752;
+    q[k] = (q[largest] < 0.0) != (q[k] < 0.0) ? -fabs(q[k]) : fabs(q[k]);
+    if (k == largest)
+      continue;
+    q[k] = (q[k] < 0.0 ? -1.0 : 1.0) * root_half * floor(fabs(q[k]) / root_half * 511.0 + 0.5) / 511.0;
+    sum += q[k] * q[k];
+  }
+  q[largest] = sqrt(1.0 - sum);
+  for (int k = 0; k < 4; k++)
+    set->rotation[k][i] = (float)q[k];
+}
+
+/* Moves what a scene of degree 0 holds to the nearest that an .spz can hold, so that both files mean the same. */
+static void settle_for_spz(conic_gaussians *set) {
+  for (size_t i = 0; i < set->count; i++) {
+    settle_rotation(set, i);
+    set->opacity[i] = to_steps((double)set->opacity[i], 255.0, 0.0, 255.0);
+    for (int axis = 0; axis < 3; axis++) {
+      float log_scale = to_steps((double)conic_gaussians_log_scale(set, axis, i), 16.0, -10.0, 255.0);
+      set->position[axis][i] = to_steps((double)set->position[axis][i], 4096.0, -2048.0, 16777215.0);
+      set->scale[axis][i] = conic_scale_of_log(log_scale);
+      float *color = &set->sh[3 * i + (size_t)axis];
+      *color = to_steps((double)*color, 0.15 * 255.0, -0.5 / 0.15, 255.0);
+    }
+  }
+}
+
+/* As gzip that is stored, since what zlib makes of it differs from version to version. */
+static void put_stored_gzip(FILE *to, const unsigned char *bytes, size_t n) {
+  static const unsigned char head[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};
+  unsigned char tail[8];
+  fwrite(head, 1, sizeof head, to);
+  for (size_t at = 0; at < n;) {
+    size_t here = n - at < 65535 ? n - at : 65535;
+    const unsigned char block[5] = {at + here == n, (unsigned char)here, (unsigned char)(here >> 8),
+                                    (unsigned char)~here, (unsigned char)(~here >> 8)};
+    fwrite(block, 1, sizeof block, to);
+    fwrite(bytes + at, 1, here, to);
+    at += here;
+  }
+  conic_store_32(tail, conic_zip_sum(bytes, n));
+  conic_store_32(tail + 4, (uint32_t)n);
+  fwrite(tail, 1, sizeof tail, to);
+}
+
+static conic_status write_stored_spz(suite_files *suite, const char *path, const conic_gaussians *gaussians) {
+  conic_gaussians_write_options options;
+  unsigned char *block = NULL;
+  size_t n = 0;
+  conic_output *output;
+  conic_status status = open_suite_file(suite, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  conic_gaussians_write_options_init(&options);
+  options.kind = CONIC_GAUSSIANS_SPZ;
+  options.spz_version = 3;
+  const conic_gaussian_writer writer = {suite->context, path,     conic_output_stream(output),
+                                        gaussians,      &options, gaussians->sh_degree};
+  status = conic_spz_make_block(&writer, &block, &n);
+  if (status == CONIC_OK)
+    put_stored_gzip(conic_output_stream(output), block, n);
+  conic_memory_release(suite->context, block);
+  status = conic_output_end(output, status);
+  return status == CONIC_OK ? cli_suite_add_file(suite, path) : status;
+}
+
+static conic_status write_of_kind(suite_files *suite, const char *path, const conic_gaussians *gaussians,
+                                  conic_gaussian_kind kind) {
+  char full[4096];
+  conic_gaussians_write_options options;
+  conic_gaussians_write_options_init(&options);
+  options.kind = kind;
+  conic_status status = cli_suite_join(suite->context, suite->folder, path, full, sizeof full);
+  if (status == CONIC_OK)
+    status = conic_gaussians_write(suite->context, full, gaussians, &options);
+  return status == CONIC_OK ? cli_suite_add_file(suite, path) : status;
+}
+
+conic_status cli_suite_write_scene(suite_files *suite, const suite_scene *scene, conic_gaussians *gaussians) {
+  char path[SUITE_PATH_ROOM], full[4096];
+  conic_gaussians made;
+  conic_status status = scene->make(suite->context, &made);
+  if (status == CONIC_OK && scene->formats & SUITE_SPZ)
+    settle_for_spz(&made);
+  snprintf(path, sizeof path, "scenes/%s.ply", scene->name);
+  if (status == CONIC_OK)
+    status = write_of_kind(suite, path, &made, CONIC_GAUSSIANS_PLY);
+  conic_gaussians_release(suite->context, &made);
+  if (status == CONIC_OK)
+    status = cli_suite_join(suite->context, suite->folder, path, full, sizeof full);
+  if (status == CONIC_OK)
+    status = conic_gaussians_read(suite->context, full, NULL, gaussians);
+  if (status != CONIC_OK)
+    return status;
+  snprintf(path, sizeof path, "scenes/%s.spz", scene->name);
+  if (scene->formats & SUITE_SPZ)
+    status = write_stored_spz(suite, path, gaussians);
+  snprintf(path, sizeof path, "scenes/%s.glb", scene->name);
+  if (status == CONIC_OK && scene->formats & SUITE_GLB)
+    status = write_of_kind(suite, path, gaussians, CONIC_GAUSSIANS_GLB);
+  if (status != CONIC_OK)
+    conic_gaussians_release(suite->context, gaussians);
+  return status;
+}
+
+/* --- cameras --- */
+
+static conic_status write_own_camera(suite_files *suite, const suite_scene *scene, const conic_camera *camera) {
+  char path[SUITE_PATH_ROOM];
+  conic_output *output;
+  snprintf(path, sizeof path, "cameras/%s.json", scene->name);
+  conic_status status = open_suite_file(suite, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *to = conic_output_stream(output);
+  fprintf(to, "{\n  \"width\": %d,\n  \"height\": %d,\n  \"fx\": %.17g,\n  \"fy\": %.17g,\n", camera->width,
+          camera->height, camera->fx, camera->fy);
+  fprintf(to, "  \"cx\": %.17g,\n  \"cy\": %.17g,\n  \"world_to_camera\": [\n", camera->cx, camera->cy);
+  for (int i = 0; i < 3; i++)
+    fprintf(to, "    [%.17g, %.17g, %.17g, %.17g],\n", camera->cam_from_world[i][0], camera->cam_from_world[i][1],
+            camera->cam_from_world[i][2], camera->cam_from_world[i][3]);
+  fputs("    [0, 0, 0, 1]\n  ]\n}\n", to);
+  return end_suite_file(suite, path, output);
+}
+
+/* The columns of the camera's turn that point up and backwards, as OpenGL has them, are the negated ones of y and z. */
+static conic_status write_transforms(suite_files *suite, const suite_scene *scene, const conic_camera *camera) {
+  char path[SUITE_PATH_ROOM];
+  conic_output *output;
+  snprintf(path, sizeof path, "cameras/%s.transforms.json", scene->name);
+  conic_status status = open_suite_file(suite, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *to = conic_output_stream(output);
+  fprintf(to, "{\n  \"camera_model\": \"PINHOLE\",\n  \"w\": %d,\n  \"h\": %d,\n  \"fl_x\": %.17g,\n", camera->width,
+          camera->height, camera->fx);
+  fprintf(to, "  \"fl_y\": %.17g,\n  \"cx\": %.17g,\n  \"cy\": %.17g,\n  \"frames\": [\n    {\n", camera->fy,
+          camera->cx, camera->cy);
+  fprintf(to, "      \"file_path\": \"%s.png\",\n      \"transform_matrix\": [\n", scene->name);
+  for (int i = 0; i < 3; i++)
+    fprintf(to, "        [%.17g, %.17g, %.17g, %.17g],\n", camera->cam_from_world[0][i],
+            0.0 - camera->cam_from_world[1][i], 0.0 - camera->cam_from_world[2][i], scene->eye[i]);
+  fputs("        [0, 0, 0, 1]\n      ]\n    }\n  ]\n}\n", to);
+  return end_suite_file(suite, path, output);
+}
+
+static conic_status write_colmap(suite_files *suite, const suite_scene *scene, const conic_camera *camera) {
+  char path[SUITE_PATH_ROOM], text[1024];
+  const double *q = scene->rotation;
+  const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  snprintf(path, sizeof path, "cameras/%s", scene->name);
+  conic_status status = cli_suite_make_folder(suite, path);
+  snprintf(path, sizeof path, "cameras/%s/cameras.txt", scene->name);
+  snprintf(text, sizeof text, "# CAMERA_ID MODEL WIDTH HEIGHT FX FY CX CY\n1 PINHOLE %d %d %.17g %.17g %.17g %.17g\n",
+           camera->width, camera->height, camera->fx, camera->fy, camera->cx, camera->cy);
+  if (status == CONIC_OK)
+    status = cli_suite_write_text(suite, path, text);
+  snprintf(path, sizeof path, "cameras/%s/images.txt", scene->name);
+  snprintf(text, sizeof text,
+           "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, and a line of points\n"
+           "1 %.17g %.17g %.17g %.17g %.17g %.17g %.17g 1 %s.png\n\n",
+           q[0] / length, q[1] / length, q[2] / length, q[3] / length, camera->cam_from_world[0][3],
+           camera->cam_from_world[1][3], camera->cam_from_world[2][3], scene->name);
+  if (status == CONIC_OK)
+    status = cli_suite_write_text(suite, path, text);
+  snprintf(path, sizeof path, "cameras/%s/points3D.txt", scene->name);
+  return status == CONIC_OK ? cli_suite_write_text(suite, path, "# there are no points\n") : status;
+}
+
+conic_status cli_suite_write_camera(suite_files *suite, const suite_scene *scene) {
+  conic_camera camera;
+  cli_suite_camera(scene, &camera);
+  conic_status status = write_own_camera(suite, scene, &camera);
+  if (status == CONIC_OK)
+    status = write_transforms(suite, scene, &camera);
+  return status == CONIC_OK ? write_colmap(suite, scene, &camera) : status;
+}

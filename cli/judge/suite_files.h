@@ -1,0 +1,40 @@
+/* The files of a suite: what is written, and the list of all with sizes and hashes. */
+#ifndef CONIC_SUITE_FILES_H
+#define CONIC_SUITE_FILES_H
+
+#include "cli/judge/suite_scenes.h"
+#include "core/files/sha256.h"
+
+enum { SUITE_PATH_ROOM = 96, SUITE_MOST_FILES = 1024 };
+
+typedef struct suite_file {
+  char path[SUITE_PATH_ROOM]; /* within the suite */
+  uint64_t bytes;
+  char sha256[CONIC_SHA256_ROOM];
+} suite_file;
+
+typedef struct suite_files {
+  conic_context *context;
+  const char *folder;
+  int n;
+  suite_file files[SUITE_MOST_FILES];
+} suite_files;
+
+/* FOLDER/PATH into `room`. Errors: ARGUMENT (it is too long). */
+conic_status cli_suite_join(conic_context *context, const char *folder, const char *path, char *full, size_t room);
+
+/* Makes a folder, which may be there. Errors: IO. */
+conic_status cli_suite_make_folder(suite_files *suite, const char *path);
+
+/* Adds a file that was written to the list, by what stands on the disk. Errors: IO. */
+conic_status cli_suite_add_file(suite_files *suite, const char *path);
+
+/* Writes a text, and adds it. Errors: as conic_output_open and _end. */
+conic_status cli_suite_write_text(suite_files *suite, const char *path, const char *text);
+
+/* Writes a scene in all its formats to scenes/, its camera in all conventions to cameras/, and adds them; *gaussians
+ * are what the .ply holds, and then the caller's. Errors: as conic_gaussians_write and conic_gaussians_read. */
+conic_status cli_suite_write_scene(suite_files *suite, const suite_scene *scene, conic_gaussians *gaussians);
+conic_status cli_suite_write_camera(suite_files *suite, const suite_scene *scene);
+
+#endif

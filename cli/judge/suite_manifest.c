@@ -1,0 +1,264 @@
+#include "cli/judge/suite_manifest.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+
+enum { SUITE_MOST_LEVELS = 99, SUITE_MOST_ENTRIES = 4096 };
+
+/* A scene of the manifest, or a file. */
+typedef struct manifest_scene {
+  char name[SUITE_WORD_ROOM], ply[2 * SUITE_NAME_ROOM], camera[2 * SUITE_NAME_ROOM];
+  int width, height;
+} manifest_scene;
+
+typedef struct manifest_file {
+  char path[2 * SUITE_NAME_ROOM], sha256[CONIC_SHA256_ROOM];
+  uint64_t bytes;
+} manifest_file;
+
+typedef struct manifest_reader {
+  conic_json json;
+  suite_manifest *manifest;
+  manifest_scene *scenes;
+  manifest_file *files;
+  size_t n_scenes, n_files, case_room, scene_room, file_room;
+  int has_format;
+} manifest_reader;
+
+/* Whether a text is made of such names, with slashes between where it may be a path. */
+static int is_plain_path(const char *text, int may_have_folders) {
+  int is_start = 1;
+  for (const char *c = text; *c; c++) {
+    int is_word = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9');
+    int is_slash = may_have_folders && *c == '/' && !is_start;
+    if (!is_word && !is_slash && (is_start || !strchr("-_.", *c)))
+      return 0;
+    is_start = *c == '/';
+  }
+  return !is_start;
+}
+
+/* A text that fits, and is plain. */
+static conic_status read_plain(conic_json *json, char *text, size_t room, int may_have_folders) {
+  const char *raw;
+  size_t length;
+  conic_status status = conic_json_raw_text(json, &raw, &length);
+  if (status != CONIC_OK)
+    return status;
+  if (length >= room)
+    return conic_json_wrong(json, "a name is too long");
+  memcpy(text, raw, length);
+  text[length] = '\0';
+  return strlen(text) == length && is_plain_path(text, may_have_folders)
+             ? CONIC_OK
+             : conic_json_wrong(json, "a name has other signs than letters, digits, points, hyphens and underscores");
+}
+
+static conic_status read_whole(conic_json *json, double most, double *value) {
+  conic_status status = conic_json_number(json, value);
+  if (status == CONIC_OK && !(*value >= 1.0 && *value <= most && *value == (double)(uint64_t)*value))
+    return conic_json_wrong(json, "a number is not whole, or too large");
+  return status;
+}
+
+static void read_count(conic_json *json, double most, int *count) {
+  double value;
+  if (read_whole(json, most, &value) == CONIC_OK)
+    *count = (int)value;
+}
+
+static int is_key(const char *key, const char *name) {
+  return strcmp(key, name) == 0;
+}
+
+/* The member `wanted` of the object that comes next, as a path. */
+static void read_member_path(conic_json *json, const char *wanted, char *path, size_t room) {
+  char key[CONIC_JSON_KEY_ROOM];
+  conic_json_begin_object(json);
+  while (conic_json_next_member(json, key))
+    if (is_key(key, wanted))
+      read_plain(json, path, room, 1);
+    else
+      conic_json_skip(json);
+}
+
+static void read_scene_entry(manifest_reader *r, manifest_scene *scene) {
+  char key[CONIC_JSON_KEY_ROOM];
+  conic_json *json = &r->json;
+  conic_json_begin_object(json);
+  while (conic_json_next_member(json, key))
+    if (is_key(key, "name"))
+      read_plain(json, scene->name, sizeof scene->name, 0);
+    else if (is_key(key, "files"))
+      read_member_path(json, "ply", scene->ply, sizeof scene->ply);
+    else if (is_key(key, "camera"))
+      read_member_path(json, "conic", scene->camera, sizeof scene->camera);
+    else if (is_key(key, "width"))
+      read_count(json, 65535.0, &scene->width);
+    else if (is_key(key, "height"))
+      read_count(json, 65535.0, &scene->height);
+    else
+      conic_json_skip(json);
+  if (!scene->name[0] || !scene->ply[0] || !scene->camera[0] || !scene->width || !scene->height)
+    conic_json_wrong(json, "a scene lacks its name, its files.ply, its camera.conic, its width or its height");
+}
+
+static void read_case_entry(manifest_reader *r, suite_entry *one) {
+  char key[CONIC_JSON_KEY_ROOM];
+  conic_json *json = &r->json;
+  conic_json_begin_object(json);
+  while (conic_json_next_member(json, key))
+    if (is_key(key, "name"))
+      read_plain(json, one->name, sizeof one->name, 0);
+    else if (is_key(key, "scene"))
+      read_plain(json, one->scene, sizeof one->scene, 0);
+    else if (is_key(key, "profile"))
+      read_plain(json, one->profile, sizeof one->profile, 0);
+    else if (is_key(key, "npy"))
+      read_plain(json, one->npy, sizeof one->npy, 1);
+    else if (is_key(key, "level"))
+      read_count(json, SUITE_MOST_LEVELS, &one->level);
+    else
+      conic_json_skip(json);
+  if (!one->name[0] || !one->scene[0] || !one->profile[0] || !one->npy[0] || !one->level)
+    conic_json_wrong(json, "a case lacks its name, its scene, its profile, its npy or its level");
+}
+
+static void read_file_entry(manifest_reader *r, manifest_file *file) {
+  char key[CONIC_JSON_KEY_ROOM];
+  conic_json *json = &r->json;
+  double value = 0.0;
+  conic_json_begin_object(json);
+  while (conic_json_next_member(json, key))
+    if (is_key(key, "path"))
+      read_plain(json, file->path, sizeof file->path, 1);
+    else if (is_key(key, "sha256"))
+      read_plain(json, file->sha256, sizeof file->sha256, 0);
+    else if (is_key(key, "bytes")) {
+      if (read_whole(json, 0x1p40, &value) == CONIC_OK)
+        file->bytes = (uint64_t)value;
+    } else
+      conic_json_skip(json);
+  if (!file->path[0] || !file->bytes || strlen(file->sha256) != CONIC_SHA256_ROOM - 1)
+    conic_json_wrong(json, "a file lacks its path, its bytes or its sha256");
+}
+
+/* Room for one more, which is zero; null after a failure. */
+static void *add_entry(manifest_reader *r, void *array, size_t *n, size_t *room, size_t size) {
+  void **entries = array;
+  if (*n == SUITE_MOST_ENTRIES)
+    conic_json_wrong(&r->json, "there are more than 4096 scenes, cases or files");
+  if (r->json.status == CONIC_OK)
+    r->json.status = conic_memory_reserve(r->json.context, array, *n, *n + 1, room, size);
+  return r->json.status == CONIC_OK ? memset((char *)*entries + (*n)++ * size, 0, size) : NULL;
+}
+
+static void read_entries(manifest_reader *r, const char *key) {
+  conic_json *json = &r->json;
+  suite_manifest *manifest = r->manifest;
+  conic_json_begin_array(json);
+  while (conic_json_next_item(json)) {
+    if (is_key(key, "scenes")) {
+      manifest_scene *scene = add_entry(r, &r->scenes, &r->n_scenes, &r->scene_room, sizeof *scene);
+      if (scene)
+        read_scene_entry(r, scene);
+    } else if (is_key(key, "cases")) {
+      suite_entry *one = add_entry(r, &manifest->cases, &manifest->n_cases, &r->case_room, sizeof *one);
+      if (one)
+        read_case_entry(r, one);
+    } else {
+      manifest_file *file = add_entry(r, &r->files, &r->n_files, &r->file_room, sizeof *file);
+      if (file)
+        read_file_entry(r, file);
+    }
+  }
+}
+
+static void read_floats(manifest_reader *r) {
+  char key[CONIC_JSON_KEY_ROOM];
+  conic_json_begin_object(&r->json);
+  while (conic_json_next_member(&r->json, key))
+    if (is_key(key, "name"))
+      read_plain(&r->json, r->manifest->floats, sizeof r->manifest->floats, 0);
+    else
+      conic_json_skip(&r->json);
+}
+
+static void read_members(manifest_reader *r) {
+  char key[CONIC_JSON_KEY_ROOM], format[SUITE_WORD_ROOM];
+  conic_json *json = &r->json;
+  double version = 0.0;
+  conic_json_begin_object(json);
+  while (conic_json_next_member(json, key))
+    if (is_key(key, "format")) {
+      if (conic_json_text(json, format, sizeof format) == CONIC_OK)
+        r->has_format = is_key(format, "conic-conformance");
+    } else if (is_key(key, "version")) {
+      if (conic_json_number(json, &version) == CONIC_OK && version != 1.0)
+        conic_json_wrong(json, "the suite is of a version that this conic does not know");
+    } else if (is_key(key, "floats"))
+      read_floats(r);
+    else if (is_key(key, "scenes") || is_key(key, "cases") || is_key(key, "files"))
+      read_entries(r, key);
+    else
+      conic_json_skip(json);
+  conic_json_end(json);
+  if (!r->has_format || version != 1.0)
+    conic_json_wrong(json, "it is no manifest of a suite: its format is not conic-conformance, or it has no version");
+}
+
+static int has_scene(manifest_reader *r, suite_entry *one) {
+  for (size_t i = 0; i < r->n_scenes; i++) {
+    const manifest_scene *scene = &r->scenes[i];
+    if (strcmp(scene->name, one->scene) != 0)
+      continue;
+    memcpy(one->ply, scene->ply, sizeof one->ply);
+    memcpy(one->camera, scene->camera, sizeof one->camera);
+    one->width = scene->width;
+    one->height = scene->height;
+    return 1;
+  }
+  return 0;
+}
+
+static int has_file(const manifest_reader *r, suite_entry *one) {
+  for (size_t i = 0; i < r->n_files; i++)
+    if (strcmp(r->files[i].path, one->npy) == 0) {
+      memcpy(one->sha256, r->files[i].sha256, sizeof one->sha256);
+      one->bytes = r->files[i].bytes;
+      return 1;
+    }
+  return 0;
+}
+
+static void join_entries(manifest_reader *r) {
+  suite_manifest *manifest = r->manifest;
+  if (r->json.status == CONIC_OK && manifest->n_cases == 0)
+    conic_json_wrong(&r->json, "there are no cases");
+  for (size_t i = 0; r->json.status == CONIC_OK && i < manifest->n_cases; i++)
+    if (!has_scene(r, &manifest->cases[i]) || !has_file(r, &manifest->cases[i]))
+      conic_json_wrong(&r->json, "a case is of a scene that is not there, or its npy is not among the files");
+}
+
+conic_status cli_suite_read_manifest(conic_context *context, const char *path, suite_manifest *manifest) {
+  manifest_reader r = {.manifest = manifest};
+  memset(manifest, 0, sizeof *manifest);
+  conic_status status = conic_json_open(context, path, &r.json);
+  if (status != CONIC_OK)
+    return status;
+  read_members(&r);
+  join_entries(&r);
+  status = r.json.status;
+  conic_json_close(&r.json);
+  conic_memory_release(context, r.scenes);
+  conic_memory_release(context, r.files);
+  if (status != CONIC_OK)
+    cli_suite_release_manifest(context, manifest);
+  return status;
+}
+
+void cli_suite_release_manifest(conic_context *context, suite_manifest *manifest) {
+  conic_memory_release(context, manifest->cases);
+  memset(manifest, 0, sizeof *manifest);
+}

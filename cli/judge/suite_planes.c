@@ -1,0 +1,216 @@
+#include "cli/judge/suite_planes.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/real.h"
+#include "core/cameras/numpy_array.h"
+#include "core/files/file.h"
+
+const char *const cli_suite_channel_names[SUITE_CHANNELS] = {"R", "G", "B", "A", "Z"};
+const char *const cli_suite_range_names[SUITE_RANGES] = {"value", "low", "high", "least", "most"};
+
+/* What underflow may leave of a number. */
+static const double nothing = 1e-37, float_unit = 0x1p-24;
+
+typedef struct channel_range {
+  double of[SUITE_RANGES];
+} channel_range;
+
+static channel_range range_of_bound(const conic_gaussian_bound *b, int i) {
+  return (channel_range){{b->value[i], b->low[i], b->high[i], b->least[i], b->most[i]}};
+}
+
+/* Of a number that is rounded to float once more, as it is written or put over the background. */
+static channel_range range_once_more(channel_range r) {
+  for (int k = SUITE_LOW; k < SUITE_RANGES; k++)
+    r.of[k] += (k == SUITE_LOW || k == SUITE_LEAST ? -1.0 : 1.0) * float_unit * fabs(r.of[k]);
+  return r;
+}
+
+static channel_range range_of_channel(const conic_gaussian_bound *b, int channel) {
+  if (channel == 4)
+    return range_of_bound(b, CONIC_BOUND_Z);
+  if (channel < 3)
+    return range_once_more(range_of_bound(b, CONIC_BOUND_RGB + channel));
+  channel_range T = range_once_more(range_of_bound(b, CONIC_BOUND_T));
+  return range_once_more((channel_range){{1.0 - T.of[SUITE_VALUE], 1.0 - T.of[SUITE_HIGH], 1.0 - T.of[SUITE_LOW],
+                                          1.0 - T.of[SUITE_MOST], 1.0 - T.of[SUITE_LEAST]}});
+}
+
+/* Ends of ranges to the float beyond them; an end that could not be computed is none. */
+static float rounded_outwards(double value, int range) {
+  if (range == SUITE_VALUE)
+    return (float)value;
+  int is_low = range == SUITE_LOW || range == SUITE_LEAST;
+  double end = is_low ? value - nothing : value + nothing;
+  if (end != end)
+    return is_low ? -INFINITY : INFINITY;
+  float rounded = (float)end;
+  if (is_low ? (double)rounded > end : (double)rounded < end)
+    rounded = nextafterf(rounded, is_low ? -INFINITY : INFINITY);
+  return rounded;
+}
+
+static conic_status allocate_numbers(conic_context *context, suite_planes *planes) {
+  planes->numbers = conic_memory_allocate(context, cli_suite_at(planes, SUITE_RANGES, 0), sizeof(float));
+  return planes->numbers ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+conic_status cli_suite_take_bounds(conic_context *context, const conic_gaussian_bound *bounds, int has_background,
+                                   suite_planes *planes) {
+  const size_t n_pixels = (size_t)planes->width * (size_t)planes->height;
+  if (allocate_numbers(context, planes) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n_pixels; i++)
+    for (int c = 0; c < SUITE_CHANNELS; c++) {
+      channel_range r = range_of_channel(&bounds[i], c);
+      if (c == 3 && has_background)
+        r.of[SUITE_HIGH] = r.of[SUITE_MOST] = 1.0;
+      for (int k = 0; k < SUITE_RANGES; k++)
+        planes->numbers[cli_suite_at(planes, k, i) + (size_t)c] = rounded_outwards(r.of[k], k);
+    }
+  return CONIC_OK;
+}
+
+/* --- files: little-endian, whatever the machine is --- */
+
+static void put_number(FILE *to, uint64_t value, int n_bytes) {
+  for (int i = 0; i < n_bytes; i++)
+    fputc((int)(value >> 8 * i & 255), to);
+}
+
+static void put_bits(FILE *to, float value) {
+  put_number(to, conic_bits_of_float(value), 4);
+}
+
+/* The head of an attribute whose value has so many bytes. */
+static void put_attribute_head(FILE *to, const char *name, const char *type, size_t n_bytes) {
+  fwrite(name, 1, strlen(name) + 1, to);
+  fwrite(type, 1, strlen(type) + 1, to);
+  put_number(to, n_bytes, 4);
+}
+
+/* Where the k-th channel of an EXR comes from: they stand in the order of their names' bytes. */
+static void find_exr_channel(int k, int *range, int *channel, char name[16]) {
+  static const int ranges[SUITE_RANGES] = {SUITE_VALUE, SUITE_HIGH, SUITE_LEAST, SUITE_LOW, SUITE_MOST};
+  static const int channels[SUITE_CHANNELS] = {3, 2, 1, 0, 4};
+  *range = ranges[k / SUITE_CHANNELS];
+  *channel = channels[k % SUITE_CHANNELS];
+  snprintf(name, 16, "%s%s%s", *range == SUITE_VALUE ? "" : cli_suite_range_names[*range],
+           *range == SUITE_VALUE ? "" : ".", cli_suite_channel_names[*channel]);
+}
+
+enum { EXR_CHANNELS = SUITE_RANGES * SUITE_CHANNELS };
+
+static void put_exr_channels(FILE *to) {
+  char name[16];
+  int range, channel;
+  size_t n = 1;
+  for (int k = 0; k < EXR_CHANNELS; k++) {
+    find_exr_channel(k, &range, &channel, name);
+    n += strlen(name) + 1 + 16;
+  }
+  put_attribute_head(to, "channels", "chlist", n);
+  for (int k = 0; k < EXR_CHANNELS; k++) {
+    find_exr_channel(k, &range, &channel, name);
+    fwrite(name, 1, strlen(name) + 1, to);
+    put_number(to, 2, 4); /* floats */
+    put_number(to, 0, 4);
+    put_number(to, 1, 4); /* every pixel has one, in x and in y */
+    put_number(to, 1, 4);
+  }
+  fputc(0, to);
+}
+
+static void put_exr_head(FILE *to, const suite_planes *planes) {
+  static const char *const windows[2] = {"dataWindow", "displayWindow"};
+  put_number(to, 20000630, 4);
+  put_number(to, 2, 4);
+  put_exr_channels(to);
+  put_attribute_head(to, "compression", "compression", 1);
+  fputc(0, to);
+  for (int i = 0; i < 2; i++) {
+    put_attribute_head(to, windows[i], "box2i", 16);
+    put_number(to, 0, 8);
+    put_number(to, (uint64_t)planes->width - 1, 4);
+    put_number(to, (uint64_t)planes->height - 1, 4);
+  }
+  put_attribute_head(to, "lineOrder", "lineOrder", 1);
+  fputc(0, to);
+  put_attribute_head(to, "pixelAspectRatio", "float", 4);
+  put_bits(to, 1.0f);
+  put_attribute_head(to, "screenWindowCenter", "v2f", 8);
+  put_number(to, 0, 8);
+  put_attribute_head(to, "screenWindowWidth", "float", 4);
+  put_bits(to, 1.0f);
+  fputc(0, to);
+}
+
+static void put_exr_row(FILE *to, const suite_planes *planes, int y, size_t n_row) {
+  char name[16];
+  int range, channel;
+  put_number(to, (uint64_t)y, 4);
+  put_number(to, n_row, 4);
+  for (int k = 0; k < EXR_CHANNELS; k++) {
+    find_exr_channel(k, &range, &channel, name);
+    for (int x = 0; x < planes->width; x++) {
+      size_t pixel = (size_t)y * (size_t)planes->width + (size_t)x;
+      put_bits(to, planes->numbers[cli_suite_at(planes, range, pixel) + (size_t)channel]);
+    }
+  }
+}
+
+conic_status cli_suite_write_exr(conic_context *context, const char *path, const suite_planes *planes) {
+  conic_output *output;
+  const size_t n_row = (size_t)planes->width * EXR_CHANNELS * sizeof(float);
+  conic_status status = conic_output_open(context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *to = conic_output_stream(output);
+  put_exr_head(to, planes);
+  uint64_t offset = (uint64_t)ftell(to) + 8 * (uint64_t)planes->height;
+  for (int y = 0; y < planes->height; y++)
+    put_number(to, offset + (uint64_t)y * (n_row + 8), 8);
+  for (int y = 0; y < planes->height; y++)
+    put_exr_row(to, planes, y, n_row);
+  return conic_output_commit(output);
+}
+
+conic_status cli_suite_write_npy(conic_context *context, const char *path, const suite_planes *planes) {
+  char head[118]; /* with the ten bytes before it, a multiple of 64 */
+  conic_output *output;
+  conic_status status = conic_output_open(context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *to = conic_output_stream(output);
+  int n = snprintf(head, sizeof head, "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d, %d, %d), }",
+                   SUITE_RANGES, planes->height, planes->width, SUITE_CHANNELS);
+  memset(head + n, ' ', sizeof head - (size_t)n);
+  head[sizeof head - 1] = '\n';
+  fwrite("\x93NUMPY\x01\x00", 1, 8, to);
+  put_number(to, sizeof head, 2);
+  fwrite(head, 1, sizeof head, to);
+  for (size_t i = 0; i < cli_suite_at(planes, SUITE_RANGES, 0); i++)
+    put_bits(to, planes->numbers[i]);
+  return conic_output_commit(output);
+}
+
+conic_status cli_suite_take_npy(conic_context *context, const char *path, const unsigned char *bytes, size_t n_bytes,
+                                suite_planes *planes) {
+  conic_numpy_array array;
+  conic_status status = conic_numpy_array_open(context, path, "the array", bytes, n_bytes, &array);
+  int width = planes->width, height = planes->height;
+  if (status == CONIC_OK &&
+      !(array.type == 'f' && array.n_axes == 4 && array.shape[0] == SUITE_RANGES && array.shape[1] == (size_t)height &&
+        array.shape[2] == (size_t)width && array.shape[3] == SUITE_CHANNELS))
+    status = conic_fail(context, CONIC_ERROR_INPUT, "%s: the array is not of %d x %d x %d x %d floats", path,
+                        SUITE_RANGES, height, width, SUITE_CHANNELS);
+  if (status == CONIC_OK)
+    status = allocate_numbers(context, planes);
+  for (size_t i = 0; status == CONIC_OK && i < cli_suite_at(planes, SUITE_RANGES, 0); i++)
+    planes->numbers[i] = (float)conic_numpy_array_at(&array, i);
+  return status;
+}

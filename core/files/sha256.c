@@ -1,0 +1,77 @@
+#include "core/files/sha256.h"
+
+#include <string.h>
+
+/* The first 32 bits of the fractions of the cube roots of the first 64 primes. */
+static const uint32_t round_constants[64] = {
+    0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
+    0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
+    0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
+    0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147, 0x06ca6351, 0x14292967,
+    0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
+    0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070,
+    0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
+    0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
+
+static uint32_t turned_right(uint32_t x, int n) {
+  return x >> n | x << (32 - n);
+}
+
+static void mix_block(conic_sha256 *sum) {
+  uint32_t w[64], s[8];
+  for (int i = 0; i < 16; i++)
+    w[i] = (uint32_t)sum->block[4 * i] << 24 | (uint32_t)sum->block[4 * i + 1] << 16 |
+           (uint32_t)sum->block[4 * i + 2] << 8 | sum->block[4 * i + 3];
+  for (int i = 16; i < 64; i++) {
+    uint32_t a = w[i - 15], b = w[i - 2];
+    w[i] = w[i - 16] + (turned_right(a, 7) ^ turned_right(a, 18) ^ a >> 3) + w[i - 7] +
+           (turned_right(b, 17) ^ turned_right(b, 19) ^ b >> 10);
+  }
+  memcpy(s, sum->state, sizeof s);
+  for (int i = 0; i < 64; i++) {
+    uint32_t t = s[7] + (turned_right(s[4], 6) ^ turned_right(s[4], 11) ^ turned_right(s[4], 25)) +
+                 ((s[4] & s[5]) ^ (~s[4] & s[6])) + round_constants[i] + w[i];
+    uint32_t u = (turned_right(s[0], 2) ^ turned_right(s[0], 13) ^ turned_right(s[0], 22)) +
+                 ((s[0] & s[1]) ^ (s[0] & s[2]) ^ (s[1] & s[2]));
+    memmove(s + 1, s, 7 * sizeof *s);
+    s[4] += t;
+    s[0] = t + u;
+  }
+  for (int i = 0; i < 8; i++)
+    sum->state[i] += s[i];
+}
+
+void conic_sha256_begin(conic_sha256 *sum) {
+  /* Those of the square roots of the first 8. */
+  static const uint32_t first[8] = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
+                                    0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+  memcpy(sum->state, first, sizeof first);
+  sum->n_bytes = 0;
+}
+
+void conic_sha256_add(conic_sha256 *sum, const void *bytes, size_t n) {
+  const unsigned char *from = bytes;
+  while (n > 0) {
+    size_t at = sum->n_bytes % 64, here = n < 64 - at ? n : 64 - at;
+    memcpy(sum->block + at, from, here);
+    from += here;
+    n -= here;
+    sum->n_bytes += here;
+    if (at + here == 64)
+      mix_block(sum);
+  }
+}
+
+void conic_sha256_end(conic_sha256 *sum, char text[CONIC_SHA256_ROOM]) {
+  static const char digits[] = "0123456789abcdef";
+  static const unsigned char padding[64] = {0x80};
+  const uint64_t n_bits = 8 * sum->n_bytes;
+  unsigned char length[8];
+  for (int i = 0; i < 8; i++)
+    length[i] = (unsigned char)(n_bits >> (56 - 8 * i));
+  conic_sha256_add(sum, padding, 1 + (119 - sum->n_bytes % 64) % 64);
+  conic_sha256_add(sum, length, sizeof length);
+  for (int i = 0; i < 64; i++)
+    text[i] = digits[sum->state[i / 8] >> (28 - 4 * (i % 8)) & 15];
+  text[64] = '\0';
+}

@@ -1,0 +1,21 @@
+/* SHA-256 (FIPS 180-4), by which others can check a file. */
+#ifndef CONIC_SHA256_H
+#define CONIC_SHA256_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { CONIC_SHA256_ROOM = 65 };
+
+typedef struct conic_sha256 {
+  uint32_t state[8];
+  uint64_t n_bytes;
+  unsigned char block[64];
+} conic_sha256;
+
+void conic_sha256_begin(conic_sha256 *sum);
+void conic_sha256_add(conic_sha256 *sum, const void *bytes, size_t n);
+/* As 64 hex digits. */
+void conic_sha256_end(conic_sha256 *sum, char text[CONIC_SHA256_ROOM]);
+
+#endif

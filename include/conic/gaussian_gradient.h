@@ -1,0 +1,94 @@
+/* The derivative of a picture of a Gaussian scene, in double precision: what the backward pass of a differentiable
+ * renderer should have been. docs/reference/gradient.md says what of, and how it is found.
+ *
+ * Of weights W for the numbers of each pixel, L = Σ W·C is a number, and this is its gradient. Decisions (which
+ * Gaussians a pixel shows, and in which order) are those of the double run, and do not change. */
+#ifndef CONIC_GAUSSIAN_GRADIENT_H
+#define CONIC_GAUSSIAN_GRADIENT_H
+
+#include "conic/gaussian_judge.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* W: of width × height pixels, row by row from the top. Null: 0. */
+typedef struct conic_gaussian_weights {
+  int width, height;
+  double *rgb;   /* 3 a pixel: of the display values over the background */
+  double *alpha; /* of A = 1 − T */
+  double *z;     /* of Z = Σ w·z / Σ w */
+  uint64_t reserved[4];
+} conic_gaussian_weights;
+
+/* Reads weights: the channels R, G, B, A and Z of a picture, as conic_image_read takes it, or a NumPy array (.npy) of
+ * the shape (height, width, n), n being 3 (R, G, B), 4 (and A) or 5 (and Z). What is not there is 0. On success the
+ * caller owns *weights; on failure it is empty. Errors: INPUT (also a number that is not finite), MEMORY, UNSUPPORTED.
+ */
+CONIC_API conic_status conic_gaussian_weights_read(conic_context *context, const char *path,
+                                                   conic_gaussian_weights *weights);
+CONIC_API void conic_gaussian_weights_release(conic_context *context, conic_gaussian_weights *weights);
+
+/* What makes a derivative doubtful: the decisions of conic_gaussian_doubt, and clamps beyond which it is 0. */
+enum {
+  CONIC_DOUBT_COLOR = CONIC_N_GAUSSIAN_DOUBTS, /* a channel, which is 0 at least */
+  CONIC_DOUBT_SLOPE,                           /* x/z or y/z of the Jacobian */
+  CONIC_DOUBT_COMPENSATION,                    /* the least share of the opacity */
+  CONIC_N_GRADIENT_DOUBTS
+};
+
+/* "least", "sign" … "color", "slope", "compensation"; null for a number that is none. */
+CONIC_API const char *conic_gradient_doubt_name(int doubt);
+
+typedef struct conic_gradient_options {
+  size_t size;                    /* sizeof(conic_gradient_options), set by the init function */
+  const conic_float_model *model; /* whose roundings decisions may be in doubt by; null: those of strict floats */
+  uint32_t is_raw;                /* with respect to ln s and logit o */
+  uint32_t leaves_doubts;         /* they are not looked for */
+} conic_gradient_options;
+
+/* Strict floats, activated values, doubts are found. */
+CONIC_API void conic_gradient_options_init_sized(conic_gradient_options *options, size_t size);
+#define conic_gradient_options_init(options) conic_gradient_options_init_sized(options, sizeof *(options))
+
+/* Arrays of one number a Gaussian, and the harmonics as conic_gaussians has them. */
+typedef struct conic_gaussian_gradient {
+  size_t count;
+  int sh_degree, is_raw;
+  double *mean[3];     /* by the mean in the world */
+  double *scale[3];    /* scale[2] is null of a set of 2D Gaussians */
+  double *rotation[4]; /* by w, x, y, z as they are given; they are divided by their length, which is differentiated */
+  double *opacity, *sh;
+  double *place[2];            /* by the centre on the screen, in pixels; of `exact` 0 */
+  uint32_t *doubt;             /* bits 1 << CONIC_DOUBT_…: what is in doubt of this Gaussian, where W is not 0 */
+  double cam_from_world[3][4]; /* by the camera's matrix, each number by itself; the eye is −R⁻¹t */
+  double fx, fy, cx, cy;       /* cx and cy are 0 of profiles that ignore them */
+  double loss;                 /* L */
+  size_t n_shown, n_doubtful;  /* Gaussians composited where W is not 0; those with a doubt */
+  size_t doubtful[16];         /* by CONIC_DOUBT_… */
+  uint64_t reserved[8];
+} conic_gaussian_gradient;
+
+/* Finds the gradient for the profile and the background of `options` (null: the defaults). The same bits for any
+ * number of threads. On success the caller owns *gradient; on failure it is empty. Null `how` is the defaults. Reports
+ * progress as "gradient" and "doubts". Errors: ARGUMENT (also weights of another size than the camera's), MEMORY,
+ * CANCELLED, UNSUPPORTED (the profiles of 2D Gaussians). */
+CONIC_API conic_status conic_gaussian_gradient_find(conic_context *context, const conic_gaussians *gaussians,
+                                                    const conic_camera *camera, const conic_gaussian_options *options,
+                                                    const conic_gaussian_weights *weights,
+                                                    const conic_gradient_options *how,
+                                                    conic_gaussian_gradient *gradient);
+CONIC_API void conic_gaussian_gradient_release(conic_context *context, conic_gaussian_gradient *gradient);
+
+/* Whether gradients of the profile are found. */
+CONIC_API int conic_gradient_has_profile(conic_gaussian_profile profile);
+
+/* Writes a .ply of doubles, whose properties are those of the scenes of 3D Gaussian splatting, then place_x, place_y
+ * and doubt. The file appears under its name only when it is whole. Errors: MEMORY, IO. */
+CONIC_API conic_status conic_gaussian_gradient_write(conic_context *context, const char *path,
+                                                     const conic_gaussian_gradient *gradient);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

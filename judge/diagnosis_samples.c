@@ -1,0 +1,244 @@
+#include "judge/diagnosis_samples.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/color.h"
+#include "core/base/memory.h"
+#include "core/base/power.h"
+
+static const struct {
+  conic_plane plane;
+  int channel;
+} channel_of_plane[] = {{CONIC_PLANE_RGBA, 0},
+                        {CONIC_PLANE_TRANSPARENCY, CONIC_CHANNEL_T},
+                        {CONIC_PLANE_WEIGHT, CONIC_CHANNEL_WEIGHT},
+                        {CONIC_PLANE_ALBEDO, CONIC_CHANNEL_ALBEDO},
+                        {CONIC_PLANE_NORMAL, CONIC_CHANNEL_NORMAL},
+                        {CONIC_PLANE_Z, CONIC_CHANNEL_Z},
+                        {CONIC_PLANE_MEDIAN_Z, CONIC_CHANNEL_MEDIAN_Z},
+                        {CONIC_PLANE_INVERSE_Z, CONIC_CHANNEL_INVERSE_Z},
+                        {CONIC_PLANE_COUNT, CONIC_CHANNEL_COUNT}};
+
+void conic_channels_of_image(const conic_image *image, size_t pixel, conic_channels channels) {
+  memset(channels, 0, sizeof(conic_channels));
+  for (size_t i = 0; i < sizeof channel_of_plane / sizeof *channel_of_plane; i++) {
+    const conic_plane_description *about = conic_plane_describe(channel_of_plane[i].plane);
+    const void *plane = image->planes[channel_of_plane[i].plane];
+    for (int c = 0; plane && c < about->n_channels; c++) {
+      size_t at = pixel * (size_t)about->n_channels + (size_t)c;
+      channels[channel_of_plane[i].channel + c] =
+          about->is_uint ? (float)((const uint32_t *)plane)[at] : ((const float *)plane)[at];
+    }
+  }
+}
+
+static unsigned find_channels(const conic_image *image) {
+  unsigned channels = 0;
+  for (size_t i = 0; i < sizeof channel_of_plane / sizeof *channel_of_plane; i++) {
+    const conic_plane plane = channel_of_plane[i].plane;
+    unsigned n = (unsigned)conic_plane_describe(plane)->n_channels;
+    n -= plane == CONIC_PLANE_RGBA && image->lacks_alpha;
+    if (image->planes[plane])
+      channels |= ((1u << n) - 1u) << channel_of_plane[i].channel;
+  }
+  return channels;
+}
+
+static size_t cell_of(const conic_image *image, size_t pixel) {
+  size_t width = (size_t)image->width, across = (width + CONIC_CELL - 1) / CONIC_CELL;
+  return pixel / width / CONIC_CELL * across + pixel % width / CONIC_CELL;
+}
+
+/* Cells of wrong pixels that are as far apart in the order of all wrong ones. */
+static void choose_cells(const conic_image *image, const uint8_t *classes, size_t n_wrong, size_t most_cells,
+                         uint8_t *is_chosen, conic_diagnosis_samples *s) {
+  const size_t n = (size_t)image->width * (size_t)image->height;
+  const size_t across = ((size_t)image->width + CONIC_CELL - 1) / CONIC_CELL;
+  size_t i_wrong = 0, step = n_wrong / most_cells + 1;
+  for (size_t pixel = 0; pixel < n; pixel++) {
+    if (classes[pixel] != CONIC_PIXEL_WRONG || i_wrong++ % step != step / 2)
+      continue;
+    size_t cell = cell_of(image, pixel);
+    if (!is_chosen[cell] && s->n_cells < most_cells) {
+      is_chosen[cell] = 1;
+      s->cells[s->n_cells++] =
+          (conic_sample_cell){.x = (int)(cell % across) * CONIC_CELL, .y = (int)(cell / across) * CONIC_CELL};
+    }
+  }
+}
+
+static void take_cell(const conic_image *image, const uint8_t *classes, conic_sample_cell *cell,
+                      conic_diagnosis_samples *s) {
+  cell->first = s->n;
+  for (int y = cell->y; y < cell->y + CONIC_CELL && y < image->height; y++)
+    for (int x = cell->x; x < cell->x + CONIC_CELL && x < image->width; x++) {
+      size_t pixel = (size_t)y * (size_t)image->width + (size_t)x;
+      if (classes[pixel] > CONIC_PIXEL_WRONG)
+        continue;
+      s->places[s->n][0] = (uint16_t)x;
+      s->places[s->n][1] = (uint16_t)y;
+      s->is_wrong[s->n] = classes[pixel] == CONIC_PIXEL_WRONG;
+      conic_channels_of_image(image, pixel, s->theirs[s->n++]);
+    }
+  cell->n = s->n - cell->first;
+}
+
+static float colour_as_told(int is_encoded, float value) {
+  return is_encoded ? (float)conic_srgb_encode((double)value) : value;
+}
+
+/* Whether all colours are multiples of 1/most. */
+static int are_codes(const conic_diagnosis_samples *s, double most, int is_encoded) {
+  int is_any = 0;
+  for (size_t i = 0; i < s->n; i++)
+    for (int c = 0; c < 3; c++) {
+      const double code = most * (double)colour_as_told(is_encoded, s->theirs[i][c]);
+      if (!(fabs(code - floor(code + 0.5)) < 0.004) || code < 0.0 || code > most + 0.5)
+        return 0;
+      is_any |= code > 0.5 && code < most - 0.5;
+    }
+  return is_any;
+}
+
+static void find_step(conic_diagnosis_samples *s) {
+  for (double most = 255.0; most <= 65535.0; most *= 257.0)
+    for (int is_encoded = 0; is_encoded < 2; is_encoded++) {
+      if (!are_codes(s, most, is_encoded))
+        continue;
+      s->step = (float)(1.0 / most);
+      s->is_encoded = is_encoded;
+      for (size_t i = 0; i < s->n; i++)
+        for (int c = 0; c < 3; c++)
+          s->theirs[i][c] = colour_as_told(is_encoded, s->theirs[i][c]);
+      return;
+    }
+}
+
+conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_image *image, const uint8_t *classes,
+                                            size_t most_cells, conic_diagnosis_samples *s) {
+  const size_t n = (size_t)image->width * (size_t)image->height;
+  size_t n_wrong = 0;
+  memset(s, 0, sizeof *s);
+  s->context = context;
+  s->width = image->width;
+  s->height = image->height;
+  for (size_t pixel = 0; pixel < n; pixel++)
+    n_wrong += classes[pixel] == CONIC_PIXEL_WRONG;
+  if (!n_wrong)
+    return CONIC_OK;
+  uint8_t *is_chosen = conic_memory_allocate_zeroed(context, cell_of(image, n - 1) + 1, 1);
+  if (!is_chosen)
+    return CONIC_ERROR_MEMORY;
+  most_cells = most_cells < CONIC_MOST_CELLS ? most_cells : CONIC_MOST_CELLS;
+  choose_cells(image, classes, n_wrong, most_cells, is_chosen, s);
+  conic_memory_release(context, is_chosen);
+  const size_t room = s->n_cells * CONIC_CELL * CONIC_CELL;
+  s->places = conic_memory_allocate(context, room, sizeof *s->places);
+  s->is_wrong = conic_memory_allocate(context, room, 1);
+  s->theirs = conic_memory_allocate(context, room, sizeof *s->theirs);
+  if (!s->places || !s->is_wrong || !s->theirs)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < s->n_cells; i++)
+    take_cell(image, classes, &s->cells[i], s);
+  s->channels = find_channels(image);
+  if (image->planes[CONIC_PLANE_RGBA])
+    find_step(s);
+  return CONIC_OK;
+}
+
+void conic_diagnosis_samples_release(conic_diagnosis_samples *s) {
+  if (!s->context)
+    return;
+  conic_memory_release(s->context, s->places);
+  conic_memory_release(s->context, s->is_wrong);
+  conic_memory_release(s->context, s->theirs);
+  memset(s, 0, sizeof *s);
+}
+
+/* At most 1. What is no number in the picture says nothing. */
+static double channel_distance(const conic_diagnosis_samples *s, int channel, float theirs, float value) {
+  double d = fabs((double)theirs - (double)value), scale = 1.0;
+  if (!(theirs - theirs == 0.0f))
+    return 0.0;
+  if (channel <= CONIC_CHANNEL_A)
+    d = d > 0.5 * (double)s->step ? d - 0.5 * (double)s->step : 0.0;
+  if (channel >= CONIC_CHANNEL_Z)
+    scale = fmax(fabs((double)theirs), fabs((double)value));
+  return d < scale ? d / scale : d > 0.0 || d != d ? 1.0 : 0.0;
+}
+
+static double pixel_distance(const conic_diagnosis_samples *s, size_t i, const conic_channels values) {
+  double sum = 0.0;
+  for (int channel = 0; channel < CONIC_N_COMPARED_CHANNELS; channel++)
+    if (s->channels >> channel & 1)
+      sum += channel_distance(s, channel, s->theirs[i][channel], values[channel]);
+  return sum;
+}
+
+double conic_diagnosis_distance(const conic_diagnosis_samples *s, const conic_channels *values,
+                                const conic_channels *ours) {
+  static const double far = 1e-2; /* a decision that went the other way */
+  double sum = 0.0;
+  for (size_t i = 0; i < s->n; i++)
+    if (s->is_wrong[i] || !ours || pixel_distance(s, i, ours[i]) < far)
+      sum += pixel_distance(s, i, values[i]);
+  return sum;
+}
+
+static double transferred(conic_planted_transfer transfer, double v) {
+  const double above = v > 0.0 ? v : 0.0;
+  switch (transfer) {
+  case CONIC_TRANSFER_DECODED:
+    return conic_srgb_decode(v);
+  case CONIC_TRANSFER_DECODED_BY_POWER:
+    return conic_power(above, 2.2);
+  case CONIC_TRANSFER_DECODED_TWICE:
+    return conic_srgb_decode(conic_srgb_decode(v));
+  case CONIC_TRANSFER_ENCODED:
+    return conic_srgb_encode(v);
+  case CONIC_TRANSFER_ENCODED_BY_POWER:
+    return conic_power(above, 1.0 / 2.2);
+  case CONIC_TRANSFER_ENCODED_TWICE:
+    return conic_srgb_encode(conic_srgb_encode(v));
+  default:
+    return v;
+  }
+}
+
+float conic_planted_transferred(conic_planted_transfer transfer, float value) {
+  return (float)transferred(transfer, (double)value);
+}
+
+static float alpha_factor(conic_planted_alpha alpha, const conic_channels v) {
+  const float a = 1.0f - v[CONIC_CHANNEL_T], w = v[CONIC_CHANNEL_WEIGHT];
+  switch (alpha) {
+  case CONIC_ALPHA_MULTIPLIED:
+    return a;
+  case CONIC_ALPHA_DIVIDED:
+    return a > 0.0f ? 1.0f / a : 1.0f;
+  case CONIC_ALPHA_WEIGHTED:
+    return w;
+  case CONIC_ALPHA_WEIGHTED_LIMITED:
+    return w < 1.0f ? w : 1.0f;
+  default:
+    return 1.0f;
+  }
+}
+
+void conic_planted_finish(const conic_planted *p, const conic_diagnosis_samples *s, conic_channels *values) {
+  const int is_weighted = p->alpha >= CONIC_ALPHA_WEIGHTED;
+  for (size_t i = 0; i < s->n; i++) {
+    float *v = values[i], factor = alpha_factor(p->alpha, v), gloss = is_weighted ? 1.0f : factor;
+    const float T = v[CONIC_CHANNEL_T];
+    for (int c = 0; c < 3; c++) {
+      v[c] = (factor * v[c] + gloss * v[CONIC_CHANNEL_GLOSS + c]) + T * p->behind[c];
+      v[CONIC_CHANNEL_ALBEDO + c] *= is_weighted ? factor : 1.0f;
+      if (p->transfer)
+        v[c] = conic_planted_transferred(p->transfer, v[c]);
+      if (s->step > 0.0f)
+        v[c] = colour_as_told(s->is_encoded, v[c] > 0.0f ? (v[c] < 1.0f ? v[c] : 1.0f) : 0.0f);
+    }
+    v[CONIC_CHANNEL_A] = p->is_opaque ? 1.0f : 1.0f - T;
+  }
+}

@@ -1,0 +1,66 @@
+/* The pixels by which explanations are compared: wrong ones, and right ones beside them. */
+#ifndef CONIC_DIAGNOSIS_SAMPLES_H
+#define CONIC_DIAGNOSIS_SAMPLES_H
+
+#include "conic/gaussian_judge.h"
+#include "judge/planted.h"
+
+/* What of a pixel is compared. */
+enum {
+  CONIC_CHANNEL_A = 3,
+  CONIC_CHANNEL_T = 4,
+  CONIC_CHANNEL_WEIGHT = 5,
+  CONIC_CHANNEL_ALBEDO = 6, /* 3 */
+  CONIC_CHANNEL_NORMAL = 9, /* 3 */
+  CONIC_CHANNEL_Z = 12,     /* this and the next by their ratio */
+  CONIC_CHANNEL_MEDIAN_Z = 13,
+  CONIC_CHANNEL_INVERSE_Z = 14,
+  CONIC_CHANNEL_COUNT = 15,
+  CONIC_N_COMPARED_CHANNELS = 16,
+  CONIC_CHANNEL_GLOSS = 16, /* 3: highlights, which are in no channel of colour until the picture is finished */
+  CONIC_N_CHANNELS = 20
+};
+
+typedef float conic_channels[CONIC_N_CHANNELS];
+
+enum { CONIC_CELL = 8, CONIC_MOST_CELLS = 96 };
+
+/* Samples first … first + n lie in the cell whose first pixel is (x, y). */
+typedef struct conic_sample_cell {
+  size_t first, n;
+  int x, y;
+} conic_sample_cell;
+
+typedef struct conic_diagnosis_samples {
+  conic_context *context;
+  int width, height;
+  size_t n, n_cells;
+  uint16_t (*places)[2];
+  uint8_t *is_wrong;
+  conic_channels *theirs;
+  unsigned channels; /* that the picture has, as bits */
+  float step;        /* of colours that are codes of 8 or 16 bits; 0: of floats */
+  int is_encoded;    /* those are of sRGB, as `theirs` then is, and linear in the picture */
+  conic_sample_cell cells[CONIC_MOST_CELLS];
+} conic_diagnosis_samples;
+
+/* Chooses at most `most_cells` cells, where pixels are wrong. Without wrong ones, none. On failure *samples is to be
+ * released, too. Errors: MEMORY. */
+conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_image *image, const uint8_t *classes,
+                                            size_t most_cells, conic_diagnosis_samples *samples);
+void conic_diagnosis_samples_release(conic_diagnosis_samples *samples);
+
+/* The channels of an image at a pixel; those that it lacks are 0. */
+void conic_channels_of_image(const conic_image *image, size_t pixel, conic_channels channels);
+
+/* The sum of the differences, each of at most 1. What is right, and yet far from `ours` (null: nothing is), is left
+ * out. */
+double conic_diagnosis_distance(const conic_diagnosis_samples *samples, const conic_channels *values,
+                                const conic_channels *ours);
+
+float conic_planted_transferred(conic_planted_transfer transfer, float value);
+
+/* What is done to the finished picture at the samples. */
+void conic_planted_finish(const conic_planted *planted, const conic_diagnosis_samples *samples, conic_channels *values);
+
+#endif

@@ -1,0 +1,232 @@
+#include "judge/planted_composite.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/splats/kernel.h"
+#include "gaussians/draw/ray_meetings.h"
+#include "gaussians/draw/view_rays.h"
+
+/* A fine pixel while Gaussians are composited. */
+typedef struct composite_sums {
+  float T, color[3], weight, z, median_z, inverse_z, normal[3], count;
+} composite_sums;
+
+void conic_planted_place(const conic_planted_frame *frame, const uint16_t place[2], int box[2][2]) {
+  const int size[2] = {frame->planted->camera.width, frame->planted->camera.height};
+  for (int axis = 0; axis < 2; axis++) {
+    box[0][axis] = frame->samples * place[axis];
+    box[1][axis] = box[0][axis] + frame->samples - 1;
+    if (frame->planted->mirrors[axis]) {
+      int last = size[axis] - 1 - box[0][axis];
+      box[0][axis] = size[axis] - 1 - box[1][axis];
+      box[1][axis] = last;
+    }
+  }
+}
+
+/* Where a pixel of a tile of 16 × 16 stands in its order (gaussians/draw/gaussian_tile.h). */
+static size_t place_in_tile(int x, int y) {
+  return (size_t)(((y >> 2 & 3) * 4 + (x >> 2 & 3)) * 16 + (x & 3) * 4 + (y & 3));
+}
+
+static conic_ray_meeting meet_plain_ray(const conic_kept_gaussian *k, int x, int y) {
+  const conic_gaussian_ray *r = &k->ray;
+  float dx = (float)(x - k->footprint.x), dy = (float)(y - k->footprint.y), g[3], c[3];
+  for (int i = 0; i < 3; i++) {
+    g[i] = r->g[0][i] + r->g[1][i] * dx + r->g[2][i] * dy;
+    c[i] = r->c[0][i] + r->c[1][i] * dx + r->c[2][i] * dy;
+  }
+  float squares = conic_square_of(g), one_over = 1.0f / squares;
+  return (conic_ray_meeting){squares > 0.0f ? 0.5f * (conic_square_of(c) * one_over) : -1.0f,
+                             (r->e[0] + r->e[1] * dx + r->e[2] * dy) * one_over, k->footprint.opacity};
+}
+
+/* Whether a pixel lies within 3 standard deviations, as others' programs cut them off. */
+static int is_in_extent(conic_planted_extent extent, const conic_gaussian_footprint *f, float dx, float dy) {
+  const float determinant = f->form[0] * f->form[2] - f->form[1] * f->form[1];
+  float xx = f->form[2] / determinant, yy = f->form[0] / determinant, half = 0.5f * (xx + yy);
+  float apart = half * half - 1.0f / determinant, longest = half + sqrtf(apart > 0.1f ? apart : 0.1f);
+  int is_box = extent == CONIC_EXTENT_BOX || extent == CONIC_EXTENT_WHOLE_BOX;
+  float x = 3.0f * sqrtf(is_box ? xx : longest), y = 3.0f * sqrtf(is_box ? yy : longest);
+  if (extent == CONIC_EXTENT_WHOLE_BOX || extent == CONIC_EXTENT_WHOLE_SQUARE || extent == CONIC_EXTENT_WHOLE_CIRCLE) {
+    x = ceilf(x);
+    y = ceilf(y);
+  }
+  if (extent == CONIC_EXTENT_CIRCLE || extent == CONIC_EXTENT_WHOLE_CIRCLE)
+    return dx * dx + dy * dy <= x * x;
+  return fabsf(dx) <= x && fabsf(dy) <= y;
+}
+
+/* Half of q, the depth and the opacity there. */
+static conic_ray_meeting meet_kept(const conic_planted_frame *frame, const conic_kept_gaussian *k, int x, int y) {
+  const conic_gaussian_footprint *f = &k->footprint;
+  const float dx = (float)(x - f->x) + f->dx, dy = (float)(y - f->y) + f->dy;
+  conic_gaussian_list list = {.footprints = f, .rays = &k->ray, .filters = &k->filter, .sights = &k->sight};
+  conic_ray_meeting m = {-1.0f, f->z, f->opacity};
+  list.is_parallel = frame->view->is_parallel;
+  switch (frame->shape) {
+  case CONIC_SHAPE_ELLIPSE:
+    m.half_q = 0.5f * (f->form[0] * dx * dx + f->form[2] * dy * dy) + f->form[1] * dx * dy;
+    break;
+  case CONIC_SHAPE_RAY:
+    m = meet_plain_ray(k, x, y);
+    break;
+  case CONIC_SHAPE_DISC:
+    m = meet_plain_ray(k, x, y);
+    m.half_q = m.half_q < dx * dx + dy * dy ? m.half_q : dx * dx + dy * dy;
+    break;
+  case CONIC_SHAPE_FILTERED:
+    return conic_meet_filtered(&list, 0, x, y);
+  default:
+    list.tile_rays =
+        &frame->view->rays->tiles[(size_t)(y / CONIC_GAUSSIAN_TILE) * (size_t)frame->view->rays->n_tiles[0] +
+                                  (size_t)(x / CONIC_GAUSSIAN_TILE)];
+    return conic_meet_sight(&list, 0, place_in_tile(x, y));
+  }
+  if (frame->planted->extent >= CONIC_EXTENT_BOX && frame->planted->extent <= CONIC_EXTENT_WHOLE_CIRCLE &&
+      !is_in_extent(frame->planted->extent, f, dx, dy))
+    m.half_q = -1.0f;
+  return m;
+}
+
+/* Returns α, or a number below 0 where nothing is composited. */
+static float planted_alpha(const conic_planted_frame *frame, const conic_ray_meeting *m) {
+  const conic_planted *p = frame->planted;
+  const conic_gaussian_rules *rules = &p->rules;
+  const int is_ray = rules->shape == CONIC_SHAPE_RAY;
+  float value = conic_exp_negative(-m->half_q), most = rules->greatest_half_q;
+  if (!(m->half_q >= 0.0f) || (is_ray && !(m->z > 0.0f)) || (most > 0.0f && m->half_q > most) ||
+      (p->extent == CONIC_EXTENT_ELLIPSE && m->half_q > 4.5f) ||
+      (rules->shape == CONIC_SHAPE_DISC && rules->disc_near > 0.0f && m->z < rules->disc_near))
+    return -1.0f;
+  if (p->falloff_end > 0.0f) {
+    const float end = conic_exp_negative(-p->falloff_end);
+    value = m->half_q < p->falloff_end ? (value - end) / (1.0f - end) : 0.0f;
+  }
+  float alpha = m->opacity * value;
+  alpha = alpha < rules->alpha_most ? alpha : rules->alpha_most;
+  return alpha >= rules->alpha_least ? alpha : -1.0f;
+}
+
+/* Returns 0 where compositing has ended. */
+static int composite_kept(const conic_gaussian_rules *rules, const conic_kept_gaussian *k, float z, float alpha,
+                          composite_sums *s) {
+  const float before = s->T, after = before * (1.0f - alpha), w = alpha * before;
+  if (after < rules->stop || (rules->is_beyond_stop && after == rules->stop))
+    return 0;
+  for (int c = 0; c < 3; c++) {
+    s->color[c] += w * k->footprint.color[c];
+    s->normal[c] += w * k->normal[c];
+  }
+  s->T = after;
+  s->weight += w;
+  s->z += w * z;
+  s->inverse_z += w / z;
+  s->count += 1.0f;
+  if (before > 0.5f && (rules->has_late_median || !(after > 0.5f)))
+    s->median_z = z;
+  return 1;
+}
+
+/* By z, of equal ones in their order: Shell's sort, since a wrong scene may be in no order at all. */
+static void sort_planted_hits(conic_planted_hit *hits, size_t n) {
+  size_t gap = 1;
+  while (gap < n / 3)
+    gap = 3 * gap + 1;
+  for (; gap > 0; gap /= 3)
+    for (size_t i = gap; i < n; i++) {
+      conic_planted_hit moved = hits[i];
+      size_t at = i;
+      for (; at >= gap &&
+             (hits[at - gap].z > moved.z || (hits[at - gap].z == moved.z && hits[at - gap].kept > moved.kept));
+           at -= gap)
+        hits[at] = hits[at - gap];
+      hits[at] = moved;
+    }
+}
+
+static int covers_fine(const conic_planted_frame *frame, uint32_t k, int x, int y) {
+  const uint16_t(*box)[2] = frame->boxes[k];
+  return x >= box[0][0] && x <= box[1][0] && y >= box[0][1] && y <= box[1][1];
+}
+
+static void composite_fine(const conic_planted_frame *frame, const conic_composite_scratch *scratch, size_t n_listed,
+                           int x, int y, composite_sums *s) {
+  const conic_gaussian_rules *rules = &frame->planted->rules;
+  const int is_by_ray = rules->shape == CONIC_SHAPE_RAY && frame->planted->order == CONIC_ORDER_OWN;
+  size_t n_hits = 0;
+  *s = (composite_sums){.T = 1.0f};
+  for (size_t i = 0; i < n_listed; i++) {
+    uint32_t at = scratch->listed[i];
+    if (!covers_fine(frame, at, x, y))
+      continue;
+    const conic_kept_gaussian *k = frame->kept[at];
+    const conic_ray_meeting m = meet_kept(frame, k, x, y);
+    const float alpha = planted_alpha(frame, &m);
+    const float z = rules->shape == CONIC_SHAPE_DISC && !(rules->disc_near > 0.0f) ? k->footprint.z : m.z;
+    if (alpha < 0.0f)
+      continue;
+    if (is_by_ray)
+      scratch->hits[n_hits++] = (conic_planted_hit){frame->planted->is_reversed ? -z : z, alpha, at};
+    else if (!composite_kept(rules, k, z, alpha, s))
+      return;
+  }
+  sort_planted_hits(scratch->hits, n_hits);
+  for (size_t i = 0; i < n_hits; i++)
+    if (!composite_kept(rules, frame->kept[scratch->hits[i].kept], fabsf(scratch->hits[i].z), scratch->hits[i].alpha,
+                        s))
+      return;
+}
+
+/* What the middle sample of a pixel gives; of an even number the one before. */
+static void put_single_values(const composite_sums *s, conic_channels v) {
+  v[CONIC_CHANNEL_Z] = s->weight > 0.0f ? s->z / s->weight : 0.0f;
+  v[CONIC_CHANNEL_MEDIAN_Z] = s->median_z;
+  v[CONIC_CHANNEL_INVERSE_Z] = s->inverse_z;
+  float length = sqrtf(conic_square_of(s->normal));
+  for (int c = 0; c < 3; c++)
+    v[CONIC_CHANNEL_NORMAL + c] = length > 0.0f ? s->normal[c] / length : 0.0f;
+}
+
+static void composite_sample(const conic_planted_frame *frame, const conic_composite_scratch *scratch, size_t n_listed,
+                             const uint16_t place[2], conic_channels v) {
+  const int n = frame->samples, middle = (n - 1) / 2;
+  const float share = 1.0f / (float)(n * n);
+  int box[2][2];
+  conic_planted_place(frame, place, box);
+  memset(v, 0, sizeof(conic_channels));
+  for (int y = box[0][1]; y <= box[1][1]; y++)
+    for (int x = box[0][0]; x <= box[1][0]; x++) {
+      composite_sums s;
+      composite_fine(frame, scratch, n_listed, x, y, &s);
+      for (int c = 0; c < 3; c++)
+        v[c] += share * s.color[c];
+      v[CONIC_CHANNEL_T] += share * s.T;
+      v[CONIC_CHANNEL_WEIGHT] += share * s.weight;
+      v[CONIC_CHANNEL_COUNT] = s.count > v[CONIC_CHANNEL_COUNT] ? s.count : v[CONIC_CHANNEL_COUNT];
+      if (x - box[0][0] == middle && y - box[0][1] == middle)
+        put_single_values(&s, v);
+    }
+}
+
+void conic_planted_composite(const conic_planted_frame *frame, const conic_diagnosis_samples *at,
+                             const conic_sample_cell *cell, conic_composite_scratch *scratch, conic_channels *values) {
+  int least[2] = {65535 * 16, 65535 * 16}, most[2] = {-1, -1};
+  size_t n_listed = 0;
+  for (size_t i = cell->first; i < cell->first + cell->n; i++) {
+    int box[2][2];
+    conic_planted_place(frame, at->places[i], box);
+    for (int axis = 0; axis < 2; axis++) {
+      least[axis] = box[0][axis] < least[axis] ? box[0][axis] : least[axis];
+      most[axis] = box[1][axis] > most[axis] ? box[1][axis] : most[axis];
+    }
+  }
+  for (uint32_t k = 0; k < frame->n; k++) {
+    const uint16_t(*box)[2] = frame->boxes[k];
+    if (box[0][0] <= most[0] && box[1][0] >= least[0] && box[0][1] <= most[1] && box[1][1] >= least[1])
+      scratch->listed[n_listed++] = k;
+  }
+  for (size_t i = cell->first; i < cell->first + cell->n; i++)
+    composite_sample(frame, scratch, n_listed, at->places[i], values[i]);
+}

@@ -1,0 +1,265 @@
+#include "judge/planted_gaussians.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/radix.h"
+#include "core/base/real.h"
+#include "core/base/threads.h"
+#include "core/base/vectors.h"
+#include "core/splats/kernel.h"
+#include "gaussians/draw/ray_meetings.h"
+#include "gaussians/draw/view_rays.h"
+#include "judge/planted_composite.h"
+#include "judge/planted_set.h"
+
+enum { GRID_SHIFT = 4, RUN_TASKS = 64 };
+
+/* Gaussians that a thread has set up and that may reach a sample. */
+typedef struct kept_room {
+  conic_kept_gaussian *kept;
+  size_t n, room;
+  int is_full; /* memory */
+  conic_planted_run *run;
+} kept_room;
+
+typedef struct planted_job {
+  conic_context *context;
+  const conic_gaussians *set;
+  const conic_planted *planted;
+  const conic_diagnosis_samples *at;
+  conic_channels *values;
+  conic_planted_frame frame;
+  conic_gaussian_view view;
+  conic_view_rays rays;
+  uint32_t *grid; /* how many blocks of 16 × 16 with samples there are above and to the left */
+  size_t grid_width, grid_height;
+  kept_room *rooms; /* a thread */
+  conic_kept_gaussian *all;
+  conic_composite_scratch *scratch; /* a thread */
+} planted_job;
+
+static conic_status make_sample_grid(planted_job *j) {
+  const conic_camera *camera = &j->planted->camera;
+  const conic_diagnosis_samples *s = j->at;
+  j->grid_width = ((size_t)camera->width >> GRID_SHIFT) + 2;
+  j->grid_height = ((size_t)camera->height >> GRID_SHIFT) + 2;
+  const size_t w = j->grid_width;
+  j->grid = conic_memory_allocate_zeroed(j->context, w * j->grid_height, sizeof *j->grid);
+  if (!j->grid)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < s->n; i++) {
+    int box[2][2];
+    conic_planted_place(&j->frame, s->places[i], box);
+    for (int y = box[0][1] >> GRID_SHIFT; y <= box[1][1] >> GRID_SHIFT; y++)
+      for (int x = box[0][0] >> GRID_SHIFT; x <= box[1][0] >> GRID_SHIFT; x++)
+        j->grid[((size_t)y + 1) * w + (size_t)x + 1] = 1;
+  }
+  for (size_t y = 1; y < j->grid_height; y++)
+    for (size_t x = 1; x < w; x++)
+      j->grid[y * w + x] += j->grid[(y - 1) * w + x] + j->grid[y * w + x - 1] - j->grid[(y - 1) * w + x - 1];
+  return CONIC_OK;
+}
+
+static int meets_sample(const planted_job *j, const conic_gaussian_footprint *f) {
+  const size_t w = j->grid_width;
+  const size_t x0 = f->box[0][0] >> GRID_SHIFT, y0 = f->box[0][1] >> GRID_SHIFT;
+  const size_t x1 = ((size_t)f->box[1][0] >> GRID_SHIFT) + 1, y1 = ((size_t)f->box[1][1] >> GRID_SHIFT) + 1;
+  return j->grid[y1 * w + x1] + j->grid[y0 * w + x0] - j->grid[y0 * w + x1] - j->grid[y1 * w + x0] != 0;
+}
+
+static double depth_of_mean(const planted_job *j, const conic_gaussians *set, size_t i) {
+  const double *row = j->planted->camera.cam_from_world[2];
+  double z = row[3];
+  for (int axis = 0; axis < 3; axis++)
+    z += row[axis] * (set->origin[axis] + (double)set->position[axis][i]);
+  return z;
+}
+
+static double distance_of_mean(const planted_job *j, const conic_gaussians *set, size_t i) {
+  double from_eye[3];
+  for (int axis = 0; axis < 3; axis++)
+    from_eye[axis] = set->origin[axis] + (double)set->position[axis][i] - j->view.eye[axis];
+  return conic_length(from_eye);
+}
+
+/* What is composited first has the least. */
+static uint64_t order_key(const planted_job *j, const conic_gaussians *set, size_t i, float own) {
+  const conic_planted *p = j->planted;
+  float key = p->order == CONIC_ORDER_Z          ? (float)depth_of_mean(j, set, i)
+              : p->order == CONIC_ORDER_DISTANCE ? (float)distance_of_mean(j, set, i)
+              : p->order == CONIC_ORDER_FILE     ? 0.0f
+                                                 : own;
+  uint32_t bits = conic_bits_of_float(key);
+  bits = bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+  return p->is_reversed ? (uint32_t)~bits : bits;
+}
+
+/* Spread over the plane so that it is as heavy as any other. */
+static void give_unit_volume(conic_gaussian_footprint *f) {
+  float determinant = f->form[0] * f->form[2] - f->form[1] * f->form[1];
+  f->opacity *= sqrtf(determinant) * 0.15915494f;
+}
+
+static void keep_one(planted_job *j, const conic_gaussians *run, size_t i, size_t first, kept_room *room) {
+  const conic_planted *p = j->planted;
+  float key;
+  if (room->n == room->room && conic_memory_reserve(j->context, &room->kept, room->n, room->n + 1, &room->room,
+                                                    sizeof *room->kept) != CONIC_OK) {
+    room->is_full = 1;
+    return;
+  }
+  conic_kept_gaussian *k = &room->kept[room->n];
+  if (p->rules.shape == CONIC_SHAPE_RAY && p->least_z > 0.0 && depth_of_mean(j, run, i) < p->least_z)
+    return;
+  conic_gaussian_fate fate =
+      conic_gaussian_set_up(&j->view, run, i, &k->footprint, &key, &k->ray, &k->filter, &k->sight, k->normal);
+  if (fate != CONIC_GAUSSIAN_DRAWN || !meets_sample(j, &k->footprint))
+    return;
+  if (p->has_unit_volume)
+    give_unit_volume(&k->footprint);
+  for (int c = 0; c < 3 && p->own_transfer; c++)
+    k->footprint.color[c] = conic_planted_transferred(p->own_transfer, k->footprint.color[c]);
+  const uint32_t index = (uint32_t)(first + i);
+  k->key = order_key(j, run, i, key) << 32 | (p->is_reversed ? ~index : index);
+  room->n++;
+}
+
+static void keep_run(void *data, size_t i_run, int i_thread) {
+  planted_job *j = data;
+  kept_room *room = &j->rooms[i_thread];
+  const size_t first = i_run * CONIC_PLANTED_RUN, left = j->set->count - first;
+  const size_t n = left < CONIC_PLANTED_RUN ? left : CONIC_PLANTED_RUN;
+  const conic_gaussians run = conic_planted_read(j->planted, j->set, first, n, room->run);
+  for (size_t i = 0; i < n && !room->is_full; i++)
+    keep_one(j, &run, i, first, room);
+}
+
+static conic_status keep_all(planted_job *j) {
+  const size_t threads = (size_t)conic_context_threads(j->context);
+  j->rooms = conic_memory_allocate_zeroed(j->context, threads, sizeof *j->rooms);
+  if (!j->rooms)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < threads; i++)
+    if (!(j->rooms[i].run = conic_memory_allocate(j->context, 1, sizeof *j->rooms[i].run)))
+      return CONIC_ERROR_MEMORY;
+  conic_parallel_for(j->context, (j->set->count + CONIC_PLANTED_RUN - 1) / CONIC_PLANTED_RUN, keep_run, j);
+  for (size_t i = 0; i < threads; i++) {
+    if (j->rooms[i].is_full)
+      return CONIC_ERROR_MEMORY;
+    j->frame.n += j->rooms[i].n;
+  }
+  return CONIC_OK;
+}
+
+/* In the order of compositing, whichever thread set them up. */
+static conic_status order_kept(planted_job *j) {
+  const size_t n = j->frame.n;
+  conic_radix_item *items = conic_memory_allocate(j->context, n, sizeof *items);
+  conic_kept_gaussian **ordered = conic_memory_allocate(j->context, n, sizeof *ordered);
+  uint16_t(*boxes)[2][2] = conic_memory_allocate(j->context, n, sizeof *boxes);
+  j->frame.kept = (const conic_kept_gaussian *const *)ordered;
+  j->frame.boxes = (const uint16_t(*)[2][2])boxes;
+  conic_status status = items && ordered && boxes ? CONIC_OK : CONIC_ERROR_MEMORY;
+  size_t at = 0;
+  for (int i = 0; status == CONIC_OK && i < conic_context_threads(j->context); i++)
+    for (size_t k = 0; k < j->rooms[i].n; k++) {
+      ordered[at] = &j->rooms[i].kept[k];
+      items[at] = (conic_radix_item){j->rooms[i].kept[k].key, (uint32_t)at};
+      at++;
+    }
+  if (status == CONIC_OK)
+    status = conic_radix_sort(j->context, items, n, 64);
+  conic_kept_gaussian **unordered = conic_memory_allocate(j->context, n, sizeof *unordered);
+  status = status == CONIC_OK && !unordered ? CONIC_ERROR_MEMORY : status;
+  if (status == CONIC_OK) {
+    memcpy(unordered, ordered, n * sizeof *ordered);
+    for (size_t k = 0; k < n; k++) {
+      ordered[k] = unordered[items[k].value];
+      memcpy(boxes[k], ordered[k]->footprint.box, sizeof boxes[k]);
+    }
+  }
+  conic_memory_release(j->context, unordered);
+  conic_memory_release(j->context, items);
+  return status;
+}
+
+static void composite_cell(void *data, size_t i_cell, int i_thread) {
+  planted_job *j = data;
+  conic_planted_composite(&j->frame, j->at, &j->at->cells[i_cell], &j->scratch[i_thread], j->values);
+}
+
+static conic_status composite_cells(planted_job *j) {
+  const size_t threads = (size_t)conic_context_threads(j->context);
+  j->scratch = conic_memory_allocate_zeroed(j->context, threads, sizeof *j->scratch);
+  if (!j->scratch)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < threads; i++) {
+    j->scratch[i].listed = conic_memory_allocate(j->context, j->frame.n, sizeof *j->scratch[i].listed);
+    j->scratch[i].hits = conic_memory_allocate(j->context, j->frame.n, sizeof *j->scratch[i].hits);
+    if (!j->scratch[i].listed || !j->scratch[i].hits)
+      return CONIC_ERROR_MEMORY;
+  }
+  conic_parallel_for(j->context, j->at->n_cells, composite_cell, j);
+  return CONIC_OK;
+}
+
+static void release_planted(planted_job *j) {
+  for (int i = 0; i < conic_context_threads(j->context); i++) {
+    if (j->rooms) {
+      conic_memory_release(j->context, j->rooms[i].kept);
+      conic_memory_release(j->context, j->rooms[i].run);
+    }
+    if (j->scratch) {
+      conic_memory_release(j->context, j->scratch[i].listed);
+      conic_memory_release(j->context, j->scratch[i].hits);
+    }
+  }
+  conic_memory_release(j->context, j->rooms);
+  conic_memory_release(j->context, j->scratch);
+  conic_memory_release(j->context, j->grid);
+  conic_memory_release(j->context, (void *)j->frame.kept);
+  conic_memory_release(j->context, (void *)j->frame.boxes);
+  conic_view_rays_release(j->context, &j->rays);
+}
+
+/* As conic_gaussians_render does. */
+static void look(planted_job *j, int is_affine) {
+  const conic_planted *p = j->planted;
+  const double(*rows)[4] = p->camera.cam_from_world;
+  j->view = (conic_gaussian_view){.rules = &p->rules,
+                                  .camera = &p->camera,
+                                  .center_px = {p->camera.cx, p->camera.cy},
+                                  .prefilter = p->prefilter,
+                                  .is_parallel = p->camera.kind == CONIC_CAMERA_ORTHOGRAPHIC,
+                                  .rays = is_affine ? NULL : &j->rays};
+  for (int axis = 0; axis < 3; axis++) {
+    double eye = -(rows[0][axis] * rows[0][3] + rows[1][axis] * rows[1][3] + rows[2][axis] * rows[2][3]);
+    j->view.eye[axis] = p->rules.has_float_eye ? (double)(float)eye : eye;
+  }
+  j->frame.view = &j->view;
+  j->frame.shape = !is_affine ? CONIC_SHAPE_SIGHT : p->prefilter > 0.0 ? CONIC_SHAPE_FILTERED : p->rules.shape;
+}
+
+conic_status conic_planted_gaussians_draw(conic_context *context, const conic_gaussians *gaussians,
+                                          const conic_planted *planted, int samples, const conic_diagnosis_samples *at,
+                                          conic_channels *values) {
+  const conic_camera *camera = &planted->camera;
+  const int is_affine =
+      camera->kind == CONIC_CAMERA_ORTHOGRAPHIC || (camera->kind == CONIC_CAMERA_PERSPECTIVE && !camera->lens);
+  planted_job j = {.context = context, .set = gaussians, .planted = planted, .at = at, .values = values};
+  j.frame = (conic_planted_frame){.planted = planted, .samples = samples};
+  look(&j, is_affine);
+  conic_status status = is_affine ? CONIC_OK : conic_view_rays_make(context, camera, &j.rays);
+  if (status == CONIC_OK)
+    status = make_sample_grid(&j);
+  if (status == CONIC_OK)
+    status = keep_all(&j);
+  if (status == CONIC_OK)
+    status = order_kept(&j);
+  if (status == CONIC_OK)
+    status = composite_cells(&j);
+  release_planted(&j);
+  return status;
+}

@@ -1,0 +1,388 @@
+/* The mistakes that are looked for, each in all its likely readings. */
+#include <math.h>
+#include <string.h>
+
+#include "judge/planted.h"
+
+enum {
+  OF_PROFILE,
+  OF_DILATION,
+  OF_ALPHA_MOST,
+  OF_FALLOFF,
+  OF_EXTENT,
+  OF_ORDER,
+  OF_NEAR,
+  OF_DEGREE,
+  OF_HARMONICS,
+  OF_ROTATION,
+  OF_RAW_ROTATION,
+  OF_SCALE,
+  OF_OPACITY,
+  OF_SHIFT,
+  OF_CAMERA_MIRROR,
+  OF_CENTER,
+  OF_FOCAL,
+  OF_OWN_TRANSFER,
+  OF_METHOD,
+  OF_SLIP,
+  OF_AXES,
+  OF_FACING,
+  OF_MIRROR,
+  OF_ALPHA,
+  OF_BACKGROUND,
+  OF_TRANSFER
+};
+
+/* `how` of a shift: in x, then in y, in half pixels plus 1. */
+enum { SHIFT_NONE = 1, SHIFT_Y = 3 };
+
+static const conic_suspect of_gaussians[] = {
+    {"dilation-0", OF_DILATION, 0, 0.0},
+    {"dilation-0.1", OF_DILATION, 0, 0.1},
+    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_ELLIPSE, 0.0},
+    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_BOX, 0.0},
+    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_WHOLE_BOX, 0.0},
+    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_SQUARE, 0.0},
+    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_WHOLE_SQUARE, 0.0},
+    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_CIRCLE, 0.0},
+    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_WHOLE_CIRCLE, 0.0},
+    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_TILES, 0.0},
+    {"extent-exact", OF_EXTENT, CONIC_EXTENT_EXACT, 0.0},
+    {"alpha-max-0.999", OF_ALPHA_MOST, 0, 0.999},
+    {"alpha-max-0.99", OF_ALPHA_MOST, 0, 0.99},
+    {"falloff-renormalised", OF_FALLOFF, 0, 4.0},
+    {"falloff-renormalised", OF_FALLOFF, 0, 4.5},
+    {"falloff-renormalised", OF_FALLOFF, 0, 5.5412635}, /* ln 255 */
+    {"falloff-renormalised", OF_FALLOFF, 0, 2.0},
+    {"falloff-renormalised", OF_FALLOFF, 1, 0.0},
+    {"order-distance", OF_ORDER, 0, CONIC_ORDER_DISTANCE},
+    {"order-distance", OF_ORDER, 1, CONIC_ORDER_DISTANCE},
+    {"order-file", OF_ORDER, 0, CONIC_ORDER_FILE},
+    {"order-file", OF_ORDER, 1, CONIC_ORDER_FILE},
+    {"order-z", OF_ORDER, 0, CONIC_ORDER_Z},
+    {"order-reversed", OF_ORDER, 1, CONIC_ORDER_OWN},
+    {"near", OF_NEAR, 0, 0.0},
+    {"near", OF_NEAR, 0, 0.001},
+    {"near", OF_NEAR, 0, 0.01},
+    {"near", OF_NEAR, 0, 0.05},
+    {"near", OF_NEAR, 0, 0.1},
+    {"near", OF_NEAR, 0, 0.2},
+    {"near", OF_NEAR, 0, 0.25},
+    {"near", OF_NEAR, 0, 0.3},
+    {"near", OF_NEAR, 0, 0.4},
+    {"near", OF_NEAR, 0, 0.5},
+    {"near", OF_NEAR, 0, 0.75},
+    {"near", OF_NEAR, 0, 1.0},
+    {"near", OF_NEAR, 0, 1.5},
+    {"near", OF_NEAR, 0, 2.0},
+    {"near", OF_NEAR, 0, 2.5},
+    {"near", OF_NEAR, 0, 3.0},
+    {"near", OF_NEAR, 0, 4.0},
+    {"near", OF_NEAR, 0, 5.0},
+    {"near", OF_NEAR, 0, 10.0},
+    {"sh-degree-0", OF_DEGREE, 0, 0.0},
+    {"sh-degree-1", OF_DEGREE, 1, 0.0},
+    {"sh-degree-2", OF_DEGREE, 2, 0.0},
+    {"f-rest-interleaved", OF_HARMONICS, CONIC_READING_RAW, 0.0},
+    {"f-rest-interleaved", OF_HARMONICS, CONIC_READING_TWICE, 0.0},
+    {"quaternion-xyzw", OF_ROTATION, CONIC_READING_RAW, 0.0},
+    {"quaternion-xyzw", OF_ROTATION, CONIC_READING_TWICE, 0.0},
+    {"quaternion-conjugate", OF_ROTATION, CONIC_READING_CONJUGATE, 0.0},
+    {"quaternion-not-normalised", OF_RAW_ROTATION, 0, 0.0},
+    {"quaternion-not-normalised", OF_RAW_ROTATION, CONIC_READING_LENGTH_SQUARED, 0.0},
+    {"scale-linear", OF_SCALE, CONIC_READING_RAW, 0.0},
+    {"scale-linear", OF_SCALE, CONIC_READING_RAW_LIMITED, 0.0},
+    {"scale-linear", OF_SCALE, CONIC_READING_TWICE, 0.0},
+    {"opacity-linear", OF_OPACITY, CONIC_READING_RAW, 0.0},
+    {"opacity-linear", OF_OPACITY, CONIC_READING_RAW_LIMITED, 0.0},
+    {"opacity-linear", OF_OPACITY, CONIC_READING_TWICE, 0.0},
+    {"srgb-decoded", OF_OWN_TRANSFER, CONIC_TRANSFER_DECODED, 0.0},
+    {"srgb-encoded", OF_OWN_TRANSFER, CONIC_TRANSFER_ENCODED, 0.0},
+};
+
+static const conic_suspect of_surfels[] = {
+    {"affine", OF_METHOD, 0, CONIC_METHOD_AFFINE},
+    {"no-amplitude", OF_SLIP, CONIC_SLIP_AMPLITUDE, 0.0},
+    {"epsilon-in-z", OF_SLIP, CONIC_SLIP_EPSILON, 0.0},
+    {"radius-as-sigma", OF_AXES, 1, 0.0},
+    {"radius-as-sigma", OF_AXES, -1, 0.0},
+    {"no-normalisation", OF_ALPHA, CONIC_ALPHA_WEIGHTED, 0.0},
+    {"no-normalisation", OF_ALPHA, CONIC_ALPHA_WEIGHTED_LIMITED, 0.0},
+    {"back-faces", OF_FACING, 0, 0.0},
+    {"near", OF_NEAR, 0, 0.001},
+    {"near", OF_NEAR, 0, 0.01},
+    {"near", OF_NEAR, 0, 0.1},
+    {"near", OF_NEAR, 0, 0.2},
+    {"near", OF_NEAR, 0, 0.5},
+    {"near", OF_NEAR, 0, 1.0},
+};
+
+static const conic_suspect of_all[] = {
+    {"half-pixel", OF_SHIFT, 0, 0},
+    {"half-pixel", OF_SHIFT, 2, 2},
+    {"half-pixel", OF_SHIFT, 0, 2},
+    {"half-pixel", OF_SHIFT, 2, 0},
+    {"half-pixel", OF_SHIFT, 0, 1},
+    {"half-pixel", OF_SHIFT, 2, 1},
+    {"half-pixel", OF_SHIFT, 1, 0},
+    {"half-pixel", OF_SHIFT, 1, 2},
+    {"mirrored-x", OF_MIRROR, 0, 0.0},
+    {"mirrored-x", OF_CAMERA_MIRROR, 0, 0.0},
+    {"mirrored-y", OF_MIRROR, 1, 0.0},
+    {"mirrored-y", OF_CAMERA_MIRROR, 1, 0.0},
+    {"centre-ignored", OF_CENTER, 3, 0.0},
+    {"centre-ignored", OF_CENTER, 1, 0.0},
+    {"centre-ignored", OF_CENTER, 2, 0.0},
+    {"field-of-view", OF_FOCAL, 0, 0.0},
+    {"field-of-view", OF_FOCAL, 1, 0.0},
+    {"field-of-view", OF_FOCAL, 2, 0.0},
+    {"field-of-view", OF_FOCAL, 3, 0.0},
+    {"srgb-decoded", OF_TRANSFER, CONIC_TRANSFER_DECODED, 0.0},
+    {"srgb-decoded", OF_TRANSFER, CONIC_TRANSFER_DECODED_BY_POWER, 0.0},
+    {"srgb-decoded", OF_TRANSFER, CONIC_TRANSFER_DECODED_TWICE, 0.0},
+    {"srgb-encoded", OF_TRANSFER, CONIC_TRANSFER_ENCODED, 0.0},
+    {"srgb-encoded", OF_TRANSFER, CONIC_TRANSFER_ENCODED_BY_POWER, 0.0},
+    {"srgb-encoded", OF_TRANSFER, CONIC_TRANSFER_ENCODED_TWICE, 0.0},
+    {"premultiplied", OF_ALPHA, CONIC_ALPHA_MULTIPLIED, 0.0},
+    {"premultiplied", OF_ALPHA, CONIC_ALPHA_DIVIDED, 0.0},
+    {"background-white", OF_BACKGROUND, 1, 1.0},
+    {"background-white", OF_BACKGROUND, 0, 1.0},
+    {"background-black", OF_BACKGROUND, 1, 0.0},
+    {"background-black", OF_BACKGROUND, 0, 0.0},
+};
+
+static void change_focal(conic_camera *camera, int how) {
+  const double fx = camera->fx, fy = camera->fy, width = camera->width, height = camera->height;
+  camera->fx = how == 1 ? fy : how == 2 ? fy * width / height : fx; /* one angle for both, in pixels or of sides */
+  camera->fy = how == 0 ? fx : how == 3 ? fx * height / width : fy;
+}
+
+static void plant_profile(conic_planted *p, conic_gaussian_profile profile) {
+  p->profile = profile;
+  p->rules = *conic_gaussian_rules_of(profile);
+  p->prefilter = profile == CONIC_PROFILE_EXACT ? p->prefilter : 0.0;
+  if (p->rules.takes_middle) {
+    p->camera.cx = 0.5 * p->camera.width;
+    p->camera.cy = 0.5 * p->camera.height;
+  }
+}
+
+static void plant_dilation(conic_planted *p, double value) {
+  if (p->rules.shape == CONIC_SHAPE_RAY)
+    p->prefilter = value;
+  else
+    p->rules.dilation = value;
+}
+
+static void plant_extent(conic_planted *p, conic_planted_extent extent) {
+  p->extent = extent;
+  if (extent == CONIC_EXTENT_TILES)
+    p->rules.coverage = CONIC_COVERAGE_TILES;
+  if (extent == CONIC_EXTENT_EXACT) {
+    p->rules.coverage = CONIC_COVERAGE_ALPHA;
+    p->rules.greatest_half_q = 0.0f;
+    p->rules.alpha_least = 1.0f / 255.0f;
+  }
+}
+
+static void plant_near(conic_planted *p, double value) {
+  p->rules.near_z = p->least_z = p->options.near_z = value;
+  p->rules.disc_near = p->rules.disc_near > 0.0f ? (float)(value > 0.0 ? value : 1e-6) : 0.0f;
+}
+
+static void plant_in_camera(conic_camera *camera, const conic_suspect *s) {
+  if (s->kind == OF_SHIFT) {
+    camera->cx += 0.5 * (s->how - 1);
+    camera->cy += 0.5 * (s->value - 1.0);
+  } else if (s->kind == OF_CAMERA_MIRROR) {
+    for (int k = 0; k < 4; k++)
+      camera->cam_from_world[s->how][k] = -camera->cam_from_world[s->how][k];
+  } else if (s->kind == OF_CENTER) {
+    camera->cx = s->how & 1 ? 0.5 * camera->width : camera->cx;
+    camera->cy = s->how & 2 ? 0.5 * camera->height : camera->cy;
+  } else
+    change_focal(camera, s->how);
+}
+
+static void plant_in_scene(const conic_suspect *s, conic_planted *p) {
+  switch (s->kind) {
+  case OF_DEGREE:
+    p->most_degree = s->how;
+    break;
+  case OF_HARMONICS:
+    p->harmonics = (conic_planted_reading)s->how;
+    break;
+  case OF_ROTATION:
+    p->rotation = (conic_planted_reading)s->how;
+    break;
+  case OF_RAW_ROTATION:
+    p->rules.takes_rotation_as_is = s->how ? p->rules.takes_rotation_as_is : 2;
+    p->scale = s->how ? (conic_planted_reading)s->how : p->scale;
+    break;
+  case OF_SCALE:
+    p->scale = (conic_planted_reading)s->how;
+    break;
+  case OF_OPACITY:
+    p->opacity = (conic_planted_reading)s->how;
+    break;
+  case OF_OWN_TRANSFER:
+    p->own_transfer = (conic_planted_transfer)s->how;
+    break;
+  case OF_METHOD:
+    p->options.method = (conic_method)s->value;
+    break;
+  case OF_SLIP:
+    p->slips |= (unsigned)s->how;
+    break;
+  case OF_AXES:
+    p->axes = s->how > 0 ? (double)p->options.kernel.cutoff : 1.0 / (double)p->options.kernel.cutoff;
+    break;
+  default:
+    p->options.cull_back = !p->options.cull_back;
+  }
+}
+
+static void plant_in_picture(const conic_suspect *s, conic_planted *p) {
+  if (s->kind == OF_MIRROR)
+    p->mirrors[s->how] = 1;
+  else if (s->kind == OF_ALPHA)
+    p->alpha = (conic_planted_alpha)s->how;
+  else if (s->kind == OF_TRANSFER)
+    p->transfer = (conic_planted_transfer)s->how;
+  else {
+    p->behind[0] = p->behind[1] = p->behind[2] = (float)s->value;
+    p->is_opaque |= s->how;
+  }
+}
+
+void conic_suspect_plant(const conic_suspect *s, conic_planted *p) {
+  switch (s->kind) {
+  case OF_PROFILE:
+    plant_profile(p, (conic_gaussian_profile)s->how);
+    break;
+  case OF_DILATION:
+    plant_dilation(p, s->value);
+    break;
+  case OF_ALPHA_MOST:
+    p->rules.alpha_most = (float)s->value;
+    break;
+  case OF_FALLOFF:
+    p->falloff_end = (float)s->value;
+    p->has_unit_volume = s->how;
+    break;
+  case OF_EXTENT:
+    plant_extent(p, (conic_planted_extent)s->how);
+    break;
+  case OF_ORDER:
+    p->order = (conic_planted_order)s->value;
+    p->is_reversed = s->how;
+    break;
+  case OF_NEAR:
+    plant_near(p, s->value);
+    break;
+  case OF_SHIFT:
+  case OF_CAMERA_MIRROR:
+  case OF_CENTER:
+  case OF_FOCAL:
+    plant_in_camera(&p->camera, s);
+    break;
+  case OF_MIRROR:
+  case OF_ALPHA:
+  case OF_BACKGROUND:
+  case OF_TRANSFER:
+    plant_in_picture(s, p);
+    break;
+  default:
+    plant_in_scene(s, p);
+  }
+}
+
+int conic_suspect_rank(const conic_suspect *suspect) {
+  return suspect->kind;
+}
+
+int conic_suspect_is_finish(const conic_suspect *suspect) {
+  return suspect->kind >= OF_ALPHA;
+}
+
+int conic_suspect_is_profile(const conic_suspect *suspect) {
+  return suspect->kind == OF_PROFILE;
+}
+
+static int has_other_center(const conic_camera *c, int how) {
+  int across = fabs(c->cx - 0.5 * c->width) > 1e-6, down = fabs(c->cy - 0.5 * c->height) > 1e-6;
+  return how == 3 ? across || down : across && down && how; /* alone only where both would be moved */
+}
+
+static int changes_focal(const conic_camera *camera, int how) {
+  conic_camera other = *camera;
+  change_focal(&other, how);
+  return fabs(other.fx - camera->fx) > 1e-9 * camera->fx || fabs(other.fy - camera->fy) > 1e-9 * camera->fy;
+}
+
+/* Whether the rules are such that the mistake would be one. */
+static int is_mistake(const conic_planted *right, const conic_suspect *s) {
+  const conic_gaussian_rules *rules = &right->rules;
+  const int is_ray = rules->shape == CONIC_SHAPE_RAY, is_ellipse = rules->shape == CONIC_SHAPE_ELLIPSE;
+  switch (s->kind) {
+  case OF_DILATION:
+    return rules->shape != CONIC_SHAPE_DISC && (is_ray ? right->prefilter : rules->dilation) != s->value &&
+           (is_ellipse || right->prefilter > 0.0);
+  case OF_ALPHA_MOST:
+    return rules->alpha_most != (float)s->value;
+  case OF_EXTENT:
+    if (s->how == CONIC_EXTENT_EXACT)
+      return rules->coverage != CONIC_COVERAGE_ALPHA || rules->greatest_half_q > 0.0f;
+    return s->how == CONIC_EXTENT_ELLIPSE ? !(rules->greatest_half_q > 0.0f)
+           : s->how == CONIC_EXTENT_TILES ? is_ellipse && rules->coverage != CONIC_COVERAGE_TILES
+                                          : is_ellipse;
+  case OF_ORDER:
+    return s->value == CONIC_ORDER_Z          ? is_ray || rules->orders_by_distance
+           : s->value == CONIC_ORDER_DISTANCE ? s->how || !rules->orders_by_distance
+                                              : 1;
+  case OF_FALLOFF:
+    return !s->how || is_ellipse;
+  case OF_DEGREE:
+  case OF_HARMONICS:
+    return right->most_degree > (s->kind == OF_DEGREE ? s->how : 0);
+  case OF_NEAR:
+    return rules->near_z != s->value;
+  case OF_CENTER:
+    return has_other_center(&right->camera, s->how);
+  case OF_FOCAL:
+    return changes_focal(&right->camera, s->how);
+  case OF_METHOD:
+    return right->options.method != (conic_method)s->value;
+  case OF_SLIP:
+    return s->how == CONIC_SLIP_AMPLITUDE ? right->options.prefilter > 0.0f : right->options.passes != 1;
+  case OF_BACKGROUND:
+    return right->behind[0] != (float)s->value || right->behind[1] != (float)s->value ||
+           right->behind[2] != (float)s->value;
+  default:
+    return 1;
+  }
+}
+
+static int add_suspects(const conic_planted *right, const conic_suspect *from, size_t n, conic_suspect *suspects) {
+  int n_added = 0;
+  for (size_t i = 0; i < n; i++)
+    if (is_mistake(right, &from[i]))
+      suspects[n_added++] = from[i];
+  return n_added;
+}
+
+int conic_suspects_of_gaussians(const conic_planted *right, conic_suspect suspects[CONIC_MOST_SUSPECTS]) {
+  const int is_pinhole = right->camera.kind == CONIC_CAMERA_PERSPECTIVE && !right->camera.lens;
+  int n = add_suspects(right, of_gaussians, sizeof of_gaussians / sizeof *of_gaussians, suspects);
+  n += add_suspects(right, of_all, sizeof of_all / sizeof *of_all, suspects + n);
+  for (int profile = 0; is_pinhole && profile < CONIC_N_GAUSSIAN_PROFILES; profile++)
+    if (profile != (int)right->profile)
+      suspects[n++] =
+          (conic_suspect){conic_gaussian_profile_name((conic_gaussian_profile)profile), OF_PROFILE, profile, 0.0};
+  return n;
+}
+
+int conic_suspects_of_surfels(const conic_planted *right, conic_suspect suspects[CONIC_MOST_SUSPECTS]) {
+  int n = add_suspects(right, of_surfels, sizeof of_surfels / sizeof *of_surfels, suspects);
+  return n + add_suspects(right, of_all, sizeof of_all / sizeof *of_all, suspects + n);
+}

@@ -1,0 +1,206 @@
+#include "judge/trials.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+
+/* What takes less than half of the difference away says nothing. */
+static const double least_share = 0.5;
+/* What leaves less than this is not looked for a second one. */
+static const double little_left = 0.02;
+/* A second mistake has to take this much of what the first leaves. */
+static const double second_share = 0.6;
+
+enum { MOST_FIRST = 8, MOST_REMEMBERED = 64 };
+
+typedef struct trial {
+  int first, second; /* suspects; second below 0: none */
+  double left;       /* share of the difference */
+} trial;
+
+typedef struct trial_run {
+  conic_trials *t;
+  conic_channels *ours, *drawn, *finished;
+  double whole;      /* difference of what is right from the picture */
+  int drawn_suspect; /* that `drawn` has alone; -1: none, it is right; -2: nothing yet */
+  size_t n_done, n_planned;
+  double from, to; /* of progress */
+} trial_run;
+
+static conic_status draw_planted(trial_run *r, const conic_planted *planted, int suspect) {
+  if (suspect >= -1 && r->drawn_suspect == suspect)
+    return CONIC_OK;
+  r->drawn_suspect = -2;
+  conic_status status = r->t->draw(r->t->world, planted, r->t->samples, r->drawn);
+  if (status == CONIC_OK)
+    r->drawn_suspect = suspect;
+  return status;
+}
+
+static conic_status tell_trial(trial_run *r) {
+  double done = r->n_planned ? (double)r->n_done / (double)r->n_planned : 1.0;
+  r->n_done++;
+  return conic_progress(r->t->context, "diagnose", r->from + (r->to - r->from) * (done < 1.0 ? done : 1.0));
+}
+
+/* What is drawn anew is that of the parts that are none of the finished picture. */
+static conic_status try_planted(trial_run *r, trial *tried) {
+  const conic_suspect *a = tried->first >= 0 ? &r->t->suspects[tried->first] : NULL;
+  const conic_suspect *b = tried->second >= 0 ? &r->t->suspects[tried->second] : NULL;
+  conic_planted planted = *r->t->right;
+  int drawn = -1;
+  if (a && b && conic_suspect_rank(b) < conic_suspect_rank(a)) {
+    const conic_suspect *other = a;
+    a = b;
+    b = other;
+  }
+  if (a)
+    conic_suspect_plant(a, &planted);
+  if (b)
+    conic_suspect_plant(b, &planted);
+  if (a && !conic_suspect_is_finish(a))
+    drawn = (int)(a - r->t->suspects);
+  if (b && !conic_suspect_is_finish(b))
+    drawn = -3; /* both */
+  conic_status status = tell_trial(r);
+  if (status == CONIC_OK)
+    status = draw_planted(r, &planted, drawn);
+  if (status != CONIC_OK)
+    return status;
+  memcpy(r->finished, r->drawn, r->t->samples->n * sizeof *r->finished);
+  conic_planted_finish(&planted, r->t->samples, r->finished);
+  const double distance =
+      conic_diagnosis_distance(r->t->samples, (const conic_channels *)r->finished, (const conic_channels *)r->ours);
+  tried->left = r->whole > 0.0 ? distance / r->whole : distance;
+  return CONIC_OK;
+}
+
+static int is_same_name(const conic_trials *t, int a, int b) {
+  return a >= 0 && b >= 0 && strcmp(t->suspects[a].name, t->suspects[b].name) == 0;
+}
+
+/* Keeps the best reading of each name, the best first; of equal ones the first that was tried. */
+static void remember_trial(const conic_trials *t, const trial *new, trial *best, int *n, int most) {
+  for (int i = 0; i < *n; i++)
+    if (is_same_name(t, best[i].first, new->first)) {
+      if (!(new->left < best[i].left))
+        return;
+      memmove(best + i, best + i + 1, (size_t)(*n - i - 1) * sizeof *best);
+      --*n;
+      break;
+    }
+  int at = *n;
+  while (at > 0 && new->left < best[at - 1].left)
+    at--;
+  if (at >= most)
+    return;
+  *n += *n < most;
+  memmove(best + at + 1, best + at, (size_t)(*n - 1 - at) * sizeof *best);
+  best[at] = *new;
+}
+
+static conic_status try_all_alone(trial_run *r, trial *best, int *n) {
+  conic_status status = CONIC_OK;
+  /* Those of the finished picture first, while what is right is drawn. */
+  for (int pass = 0; pass < 2; pass++)
+    for (int i = 0; i < r->t->n_suspects && status == CONIC_OK; i++) {
+      trial new = {.first = i, .second = -1};
+      if (conic_suspect_is_finish(&r->t->suspects[i]) == pass)
+        continue;
+      status = try_planted(r, &new);
+      if (status == CONIC_OK)
+        remember_trial(r->t, &new, best, n, MOST_REMEMBERED);
+    }
+  return status;
+}
+
+/* All others beside each of the best; those of the finished picture first, while the first one is drawn. */
+static conic_status try_all_pairs(trial_run *r, const trial *best, int n, trial *pair) {
+  conic_status status = CONIC_OK;
+  const int n_first = n < MOST_FIRST ? n : MOST_FIRST;
+  r->n_planned = r->n_done + (size_t)(n_first * r->t->n_suspects);
+  for (int first = 0; first < n_first; first++)
+    for (int pass = 0; pass < 2; pass++)
+      for (int i = 0; i < r->t->n_suspects && status == CONIC_OK; i++) {
+        trial new = {.first = best[first].first, .second = i};
+        if (is_same_name(r->t, new.first, i) || conic_suspect_is_finish(&r->t->suspects[i]) == pass ||
+            (conic_suspect_is_profile(&r->t->suspects[i]) && conic_suspect_is_profile(&r->t->suspects[new.first])))
+          continue;
+        status = try_planted(r, &new);
+        if (status == CONIC_OK && new.left < pair->left)
+          *pair = new;
+      }
+  return status;
+}
+
+/* Mistakes before profiles where they explain the same. */
+static void settle_ties(const conic_trials *t, trial *best, int n) {
+  for (int i = 1; i < n; i++)
+    for (int at = i; at > 0; at--) {
+      const trial *a = &best[at - 1], *b = &best[at];
+      int is_tie = b->left - a->left <= 1e-5 + 0.1 * a->left;
+      if (!is_tie || !conic_suspect_is_profile(&t->suspects[a->first]) ||
+          conic_suspect_is_profile(&t->suspects[b->first]))
+        break;
+      const trial moved = best[at];
+      best[at] = best[at - 1];
+      best[at - 1] = moved;
+    }
+}
+
+static void put_diagnosis(const conic_trials *t, int first, int second, double left, conic_diagnosis *found, int room,
+                          int *n_found) {
+  if (*n_found < room)
+    found[(*n_found)++] = (conic_diagnosis){
+        .name = t->suspects[first].name, .with = second >= 0 ? t->suspects[second].name : NULL, .share = 1.0 - left};
+}
+
+static conic_status explain_picture(trial_run *r, conic_diagnosis *found, int room, int *n_found) {
+  trial best[MOST_REMEMBERED + 1], pair = {.left = 1.0};
+  int n = 0;
+  r->n_planned = (size_t)r->t->n_suspects;
+  r->to = 0.3;
+  conic_status status = try_all_alone(r, best, &n);
+  if (status != CONIC_OK || !n)
+    return status;
+  settle_ties(r->t, best, n);
+  r->from = 0.3;
+  r->to = 1.0;
+  r->n_done = 0;
+  if (best[0].left > little_left)
+    status = try_all_pairs(r, best, n, &pair);
+  if (status != CONIC_OK)
+    return status;
+  if (pair.left < 1.0 - least_share && pair.left < (1.0 - second_share) * best[0].left) {
+    put_diagnosis(r->t, pair.first, pair.second, pair.left, found, room, n_found);
+    put_diagnosis(r->t, pair.second, pair.first, pair.left, found, room, n_found);
+    return CONIC_OK;
+  }
+  for (int i = 0; i < n && best[i].left <= 1.0 - least_share && best[i].left <= 2.0 * best[0].left + little_left; i++)
+    put_diagnosis(r->t, best[i].first, -1, best[i].left, found, room, n_found);
+  return CONIC_OK;
+}
+
+conic_status conic_trials_run(conic_trials *t, conic_diagnosis *found, int room, int *n_found) {
+  const size_t n = t->samples->n;
+  trial_run r = {.t = t, .drawn_suspect = -2};
+  r.drawn = conic_memory_allocate(t->context, n, sizeof *r.drawn);
+  r.finished = conic_memory_allocate(t->context, n, sizeof *r.finished);
+  conic_channels *ours = conic_memory_allocate(t->context, n, sizeof *ours);
+  conic_status status = r.drawn && r.finished && ours ? CONIC_OK : CONIC_ERROR_MEMORY;
+  trial right = {.first = -1, .second = -1};
+  if (status == CONIC_OK)
+    status = try_planted(&r, &right);
+  if (status == CONIC_OK) {
+    memcpy(ours, r.finished, n * sizeof *ours);
+    r.ours = ours;
+    r.whole = conic_diagnosis_distance(t->samples, (const conic_channels *)ours, (const conic_channels *)ours);
+    if (r.whole > 0.0)
+      status = explain_picture(&r, found, room, n_found);
+  }
+  conic_memory_release(t->context, r.drawn);
+  conic_memory_release(t->context, r.finished);
+  conic_memory_release(t->context, ours);
+  return status == CONIC_OK ? conic_progress(t->context, "diagnose", 1.0) : status;
+}

@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# conic conformance: the same bytes whatever the threads, a manifest that names what is there, and folders that stay.
+set -uo pipefail
+
+source "$1/tests/support/program.bash"
+
+run 0 conformance one --profile gsplat-1.6,2dgs-gsplat --threads 1 --json -
+grep -q '"cases": 23' out || fail "not 23 cases: $(head -c 300 out)"
+run 0 conformance several/ --profile 2dgs-gsplat,gsplat-1.6 --threads 3
+diff -r one several > out || fail "other bytes with other threads: $(head -3 out)"
+
+# Whatever the manifest lists is there, with that size and hash; and nothing else is.
+sed -n 's/^ *"path": "\(.*\)",$/\1/p' one/manifest.json > paths
+sed -n 's/^ *"sha256": "\(.*\)"$/\1/p' one/manifest.json | paste -d ' ' - paths | sed 's/ /  /' > sums
+(cd one && sha256sum --quiet --strict -c ../sums) || fail "hashes"
+(cd one && find . -type f ! -name manifest.json | sed 's/^\.\///' | sort) | diff - <(sort paths) > out ||
+  fail "the list of files: $(head -3 out)"
+[[ $(wc -l < one/cases.tsv) == 23 ]] || fail "the list of cases"
+
+# The same scene and camera in every format.
+run 0 info one/scenes/ellipse.spz
+run 0 convert one/scenes/ellipse.spz --from-frame rdf --frame rdf -o back.ply --json -
+run 0 info one/cameras/ellipse
+for name in off-center harmonics; do
+  for camera in one/cameras/$name one/cameras/$name.transforms.json; do
+    for which in one/cameras/$name.json "$camera"; do
+      run 0 render one/scenes/$name.ply --profile gsplat-1.6 --camera "$which" --aov rgba -o p.pfm
+      mv p.pfm "$(basename "$which").pfm"
+    done
+    run 0 diff $name.json.pfm "$(basename "$camera").pfm" --max-abs 1e-6
+  done
+done
+run 0 render one/scenes/ellipse.ply --profile gsplat-1.6 --camera one/cameras/ellipse.json --aov rgba -o ply.pfm
+for format in spz glb; do
+  run 0 render one/scenes/ellipse.$format --profile gsplat-1.6 --camera one/cameras/ellipse.json --aov rgba -o b.pfm
+  run 0 diff ply.pfm b.pfm --max-abs 1e-6
+done
+if "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
+  run 0 info one/expected/L3-room-gsplat-1.6.exr
+  grep -q 'rgba, Z' out || fail "an EXR of other planes: $(cat out)"
+fi
+
+# What a folder holds that is no suite stays; an earlier suite is replaced.
+mkdir mine && touch mine/precious
+run 2 conformance mine --profile khr-2026
+[[ $(ls mine) == precious ]] || fail "a folder of somebody else was written to"
+run 0 conformance one --profile 2dgs-gsplat
+[[ $(wc -l < one/cases.tsv) == 4 ]] || fail "the earlier suite was not replaced"
+run 2 conformance
+run 2 conformance a b
+run 2 conformance other --profile gsplat-1.7
+grep -q 'did you mean gsplat-1.5' err || fail "no hint: $(cat err)"
+run 4 conformance nowhere/at/all
+
+[[ $failures -eq 0 ]]

@@ -1,0 +1,27 @@
+/* SHA-256 of texts whose sums are known, whatever the pieces that they come in. */
+#include "core/files/sha256.h"
+#include "tests/support/check.h"
+
+static void check_text(const char *text, size_t n_piece, const char *expected) {
+  char found[CONIC_SHA256_ROOM];
+  conic_sha256 sum;
+  size_t n = strlen(text);
+  conic_sha256_begin(&sum);
+  for (size_t at = 0; at < n; at += n_piece)
+    conic_sha256_add(&sum, text + at, n - at < n_piece ? n - at : n_piece);
+  conic_sha256_end(&sum, found);
+  CHECK(strcmp(found, expected) == 0);
+}
+
+int main(void) {
+  static const char two_blocks[] = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
+  for (size_t n_piece = 1; n_piece < 70; n_piece += 3) {
+    check_text("", n_piece, "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    check_text("abc", n_piece, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    check_text(two_blocks, n_piece, "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  }
+  for (size_t n_piece = 1; n_piece < 70; n_piece += 7) /* the padding fills a block of its own */
+    check_text("aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa", n_piece,
+               "ffe054fe7ae0cb6dc65c3af9b61d5209f439851db43d0ba5997337df154668eb");
+  return check_result();
+}
