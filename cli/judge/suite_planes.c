@@ -6,7 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/real.h"
-#include "core/cameras/numpy_array.h"
+#include "core/files/numpy_array.h"
 #include "core/files/file.h"
 
 const char *const cli_suite_channel_names[SUITE_CHANNELS] = {"R", "G", "B", "A", "Z"};
