@@ -190,7 +190,7 @@ static void settle_ties(const conic_trials *t, trial *best, int n) {
     }
 }
 
-static void put_diagnosis(const conic_trials *t, int first, int second, double left, conic_diagnosis *found, int room,
+static void add_diagnosis(const conic_trials *t, int first, int second, double left, conic_diagnosis *found, int room,
                           int *n_found) {
   if (*n_found < room)
     found[(*n_found)++] = (conic_diagnosis){
@@ -229,12 +229,12 @@ static conic_status explain_picture(trial_run *r, conic_diagnosis *found, int ro
   if (pair.left < 1.0 - least_share && pair.left < (1.0 - second_share) * best[0].left) {
     const int is_turned = alone_of(r->t, best, n, pair.second) < alone_of(r->t, best, n, pair.first);
     const int first = is_turned ? pair.second : pair.first, second = is_turned ? pair.first : pair.second;
-    put_diagnosis(r->t, first, second, pair.left, found, room, n_found);
-    put_diagnosis(r->t, second, first, pair.left, found, room, n_found);
+    add_diagnosis(r->t, first, second, pair.left, found, room, n_found);
+    add_diagnosis(r->t, second, first, pair.left, found, room, n_found);
     return CONIC_OK;
   }
   for (int i = 0; i < n && best[i].left <= 1.0 - least_share && best[i].left <= 2.0 * best[0].left + little_left; i++)
-    put_diagnosis(r->t, best[i].first, -1, best[i].left, found, room, n_found);
+    add_diagnosis(r->t, best[i].first, -1, best[i].left, found, room, n_found);
   return CONIC_OK;
 }
 
