@@ -53,8 +53,8 @@ static void turn_by_chance(plain_evaluation *e, double q[4]) {
 }
 
 /* Manners of scenes: like trained ones, needles, crowds that hide each other, at the near plane, in pairs of one depth
- * and opacities at the limits, far from the origin, small on the screen, opaque ones behind faint ones, each of which
- * fills the picture, and a window far beside the middle of a large picture. */
+ * and opacities at the limits, far from the origin, small on the screen, a few that fill the picture, opaque and faint,
+ * and a window far beside the middle of a large picture. */
 enum { TRAINED, NEEDLES, CROWD, NEAR, PAIRS, FAR, SMALL, WALLS, WINDOW, N_MANNERS };
 
 static void look_by_chance(plain_evaluation *e, int manner, double distance, const double at[3]) {
@@ -123,7 +123,7 @@ static void choose_manner(plain_evaluation *e) {
   m->sums_in_any_order = (int)plain_chance(&e->chance, 2);
   m->sums_weights = (int)plain_chance(&e->chance, 2);
   m->divides_by_alpha = (int)plain_chance(&e->chance, 2);
-  m->subtracts_weights = plain_chance(&e->chance, 4) == 0;
+  m->subtracts_weights = (int)plain_chance(&e->chance, 2);
   m->divides_form = (int)plain_chance(&e->chance, 2);
   m->normalises_rotation = (int)plain_chance(&e->chance, 3);
 }
@@ -137,7 +137,10 @@ static void choose_all(conic_context *context, plain_evaluation *e) {
     at[k] = between(e, -50.0, 50.0);
   look_by_chance(e, manner, manner == NEAR ? 0.2 : between(e, 0.5, 4.0), at);
   int is_disc = e->profile == CONIC_PROFILE_2DGS_2024 || e->profile == CONIC_PROFILE_2DGS_GSPLAT;
-  CHECK_OK(conic_gaussians_allocate(context, manner == CROWD ? 60 : 4 + plain_chance(&e->chance, 30),
+  CHECK_OK(conic_gaussians_allocate(context,
+                                    manner == CROWD   ? 60
+                                    : manner == WALLS ? 2 + plain_chance(&e->chance, 2)
+                                                      : 4 + plain_chance(&e->chance, 30),
                                     (int)plain_chance(&e->chance, 4), is_disc ? CONIC_GAUSSIANS_2D : 0, &e->scene));
   scatter(e, manner, at);
   e->settings.profile = plain_profile_find(conic_gaussian_profile_name(e->profile));
@@ -267,7 +270,7 @@ static void evaluate(conic_context *context, uint64_t seed, plain_tally tallies[
 }
 
 int main(int argc, char **argv) {
-  const uint64_t n = argc > 2 ? strtoull(argv[2], NULL, 10) : 500, first = argc > 3 ? strtoull(argv[3], NULL, 10) : 1;
+  const uint64_t n = argc > 2 ? strtoull(argv[2], NULL, 10) : 1200, first = argc > 3 ? strtoull(argv[3], NULL, 10) : 1;
   static plain_tally tallies[2][N_PROFILES];
   size_t n_violated = 0;
   conic_context *context = check_context(1);
