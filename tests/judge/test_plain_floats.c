@@ -8,11 +8,12 @@
 #include "tests/judge/plain_gaussians.h"
 #include "tests/support/check.h"
 
-enum { SIDE = 16, N_PROFILES = 8, MOST_TOLD = 40 };
+enum { SIDE = 16, N_PROFILES = 9, MOST_TOLD = 40 };
 
 static const conic_gaussian_profile profiles[N_PROFILES] = {
-    CONIC_PROFILE_INRIA_2023,    CONIC_PROFILE_GSPLAT_1_5, CONIC_PROFILE_GSPLAT_1_5_AA, CONIC_PROFILE_GSPLAT_1_6,
-    CONIC_PROFILE_GSPLAT_1_6_AA, CONIC_PROFILE_KHR_2026,   CONIC_PROFILE_2DGS_2024,     CONIC_PROFILE_2DGS_GSPLAT};
+    CONIC_PROFILE_INRIA_2023, CONIC_PROFILE_GSPLAT_1_5,    CONIC_PROFILE_GSPLAT_1_5_AA,
+    CONIC_PROFILE_GSPLAT_1_6, CONIC_PROFILE_GSPLAT_1_6_AA, CONIC_PROFILE_KHR_2026,
+    CONIC_PROFILE_2DGS_2024,  CONIC_PROFILE_2DGS_GSPLAT,   CONIC_PROFILE_EXACT};
 
 /* What the evaluations of a profile came to. */
 typedef struct plain_tally {
