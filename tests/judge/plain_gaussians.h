@@ -39,7 +39,6 @@ typedef struct plain_manner {
 typedef struct plain_settings {
   const plain_profile *profile;
   unsigned faults;
-  int reading; /* of faults that different programs have in different ways: 0, 1, 2 */
   float background[3];
   plain_manner manner;
   plain_floats floats;

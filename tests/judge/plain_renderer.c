@@ -1,10 +1,10 @@
 /* A renderer of Gaussian scenes that has nothing of conic: what another author's program is to the judge.
  *
- * plain_renderer SCENE.ply CAMERA.json [--profile NAME] [--fault NAME]… [--reading N] [--background R,G,B]
+ * plain_renderer SCENE.ply CAMERA.json [--profile NAME] [--fault NAME]… [--otherwise 1] [--background R,G,B]
  *                [--floats SEED] -o OUT
  * plain_renderer --make SCENE.ply CAMERA.json SEED
  *
- * OUT.pfm or OUT.npy. --reading 1 plants the faults as other programs have them. With --floats, the arithmetic fuses,
+ * OUT.pfm or OUT.npy. --otherwise 1 plants the faults as other programs have them. With --floats, the arithmetic fuses,
  * orders and approximates by chance. */
 #include <string.h>
 
@@ -17,8 +17,8 @@ static void plain_take_option(const char *name, const char *value, plain_setting
     s->profile = plain_profile_find(value);
   else if (strcmp(name, "--fault") == 0)
     s->faults |= 1u << plain_fault_find(value);
-  else if (strcmp(name, "--reading") == 0)
-    s->reading = (int)strtol(value, NULL, 10);
+  else if (strcmp(name, "--otherwise") == 0)
+    s->faults |= strcmp(value, "1") == 0 ? PLAIN_OTHERWISE : 0;
   else if (strcmp(name, "--floats") == 0)
     s->floats = plain_floats_by_chance(strtoull(value, NULL, 10), 1);
   else if (strcmp(name, "--background") != 0 ||
@@ -37,7 +37,7 @@ int main(int argc, char **argv) {
     plain_take_option(argv[k], argv[k + 1], &settings, &out);
   if (argc < 5 || !out || !settings.profile)
     plain_give_up("plain_renderer", "SCENE.ply CAMERA.json [--profile NAME] [--fault NAME]… -o OUT");
-  plain_scene scene = plain_scene_read(argv[1], settings.faults, settings.reading);
+  plain_scene scene = plain_scene_read(argv[1], settings.faults);
   plain_camera camera = plain_camera_read(argv[2]);
   plain_picture picture = plain_picture_allocate(camera.width, camera.height);
   plain_gaussians_draw(&scene, &camera, &settings, &picture);

@@ -40,6 +40,10 @@ typedef enum plain_fault {
   PLAIN_N_FAULTS
 } plain_fault;
 
+/* Beside them: as other programs have them, where there are several ways: scales and opacities that are limited to what
+ * makes sense, sRGB as a power of 2.2, colours divided by alpha, … */
+#define PLAIN_OTHERWISE (1u << 31)
+
 extern const char *const plain_fault_names[PLAIN_N_FAULTS];
 
 /* The fault of a name; ends the program where there is none. */
@@ -84,8 +88,7 @@ plain_table plain_table_read(const char *path);
 /* A column's number; −1: there is none. */
 int plain_table_find(const plain_table *table, const char *name);
 
-/* The other readings: scales and opacities are limited to what makes sense. */
-plain_scene plain_scene_read(const char *path, unsigned faults, int reading);
+plain_scene plain_scene_read(const char *path, unsigned faults);
 void plain_scene_release(plain_scene *scene);
 plain_camera plain_camera_read(const char *path);
 
@@ -94,9 +97,8 @@ void plain_random_write(unsigned long long seed, size_t n, const char *scene, co
 
 plain_picture plain_picture_allocate(int width, int height);
 void plain_picture_release(plain_picture *picture);
-/* Faults of what is done with a finished picture: mirrored, sRGB, multiplied by alpha. Where several are usual,
- * `reading` says which: of sRGB its own curve or a power of 2.2, multiplied by alpha or divided. */
-void plain_picture_spoil(plain_picture *picture, unsigned faults, int reading);
+/* Faults of what is done with a finished picture: mirrored, sRGB, multiplied by alpha. */
+void plain_picture_spoil(plain_picture *picture, unsigned faults);
 /* By the ending: OUT.pfm and OUT.T.pfm, OUT.Z.pfm; or OUT.npy (H, W, 4) and OUT.Z.npy. */
 void plain_picture_write(const plain_picture *picture, const char *path);
 

@@ -336,7 +336,7 @@ size_t plain_surfels_draw(const plain_surfels *surfels, const plain_camera *came
       plain_gather(&v, &all[i], is_front, &to, picture);
   }
   plain_resolve(&v, &to, picture);
-  plain_picture_spoil(picture, settings->faults, 0);
+  plain_picture_spoil(picture, settings->faults);
   free(to.front);
   free(to.sums);
   free(to.heaviest);
