@@ -108,6 +108,8 @@ static conic_status put_map(cli_session *session, const cli_judge_job *job) {
 static conic_status show_maps(cli_session *session, cli_judge_job *job) {
   double at = cli_seconds();
   conic_status status = job->map_path ? put_map(session, job) : CONIC_OK;
+  if (status == CONIC_OK && job->report_path)
+    status = cli_judge_report(session, job);
   pass_stage(job, CLI_JUDGE_SHOW, at);
   return status;
 }
@@ -209,9 +211,13 @@ const cli_command cli_judge = {
              "[--report F.html] [--map F.png] [--max-wrong N] [camera and render options]\n"
              "       conic judge --suite FOLDER --pictures FOLDER [--profile NAMES] [--junit FILE]",
     .run = run_judge,
-    .description = "Holds a picture against bounds of what floats may make of the scene, or all pictures of a suite.",
-    .examples = {{"judge a renderer's picture of a scene",
-                  "conic judge scene.ply --camera transforms.json --view 0 --picture mine.exr --profile gsplat-1.6"},
+    .description = "Takes a picture that any renderer drew of the scene, bounds what each pixel can be at most and at "
+                   "least, and says of every pixel whether it is equal, within rounding, explained by a decision that "
+                   "may go either way, or wrong; and, where it is wrong, which fault explains it. --suite judges the "
+                   "pictures of a whole suite, which conic conformance writes.",
+    .examples = {{"judge a picture that gsplat 1.6 has drawn, and write a report",
+                  "conic judge scene.ply --camera sparse/0 --view 0 --picture theirs.npy --profile gsplat-1.6 "
+                  "--report report.html"},
                  {"judge the pictures of a suite, for a CI system",
                   "conic judge --suite suite --pictures mine --profile gsplat-1.6 --junit report.xml"}},
 };

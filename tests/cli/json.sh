@@ -76,6 +76,8 @@ declare -A wanted=(
   [explain-gaussians]="profile pixel planes.rgba planes.last bounds.rgb.low bounds.T.high end doubts doubt
     counts.composited contributions"
   [help]="version commands"
+  [gradient]="profile parameters width height gaussians shown loss camera.world_to_camera camera.fx greatest.mean
+    doubtful? doubtful_by_reason.least? ms.gradient"
   [chart]="scenes methods points seconds"
   [bench]="lines wrong_pictures peak_rss_bytes machine?"
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
@@ -148,6 +150,7 @@ write verify-gaussians-samples verify_gaussians verify two.splat --profile inria
 run 0 render two.splat --profile gsplat-1.6 --size 40x40 -o two.exr
 write verify-gaussians-wrong verify_gaussians verify two.splat --profile khr-2026 --size 40x40 --image two.exr
 write explain-gaussians explain_gaussians explain two.splat --profile exact --size 40x40 --pixel 20,20
+write gradient gradient gradient two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr
 write explain-splat explain explain one.ply --size 64x48 --splat 0
 write explain-octree explain explain knot.cot --size 64x48 --error 1 --splat 9 --pixel 32,24
 write explain-leaf explain explain knot.cot --size 2048x2048 --error 0.5 --splat 9
