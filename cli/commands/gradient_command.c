@@ -209,4 +209,8 @@ const cli_command cli_gradient = {
     .summary = "differentiates a Gaussian scene's picture, in double precision",
     .usage = "conic gradient SCENE --camera C --weights W.exr -o G.ply [--raw] [camera and render options]",
     .run = run_gradient,
+    .description = "Computes the derivatives of a weighted sum of a picture's pixels by every parameter of every "
+                   "Gaussian, slowly and in double precision, as a reference for those that train.",
+    .examples = {{"differentiate what the weights in an EXR ask for",
+                  "conic gradient scene.ply --camera camera.json --weights W.exr -o G.ply"}},
 };

@@ -87,6 +87,8 @@ declare -A wanted=(
   [convert]="kind_in kind_out gaussians sh_degree_in sh_degree_out reordered lossless? lost? differences.position
     differences.scale differences.rotation_deg differences.opacity differences.color differences.harmonics pictures.views?
     pictures.psnr? pictures.greatest? bytes?"
+  [conformance]="floats cases files bytes levels seconds.scenes seconds.bounds seconds.write seconds.total"
+  [suite-wrong]="verdict total.cases total.right total.wrong total.missing levels cases extra_pictures"
   [info-hybrid]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound?"
   [info-layers]="kind points clouds levels bytes bytes_per_point bits_per_sample bits.position bits.normal bits.colour
     bits.index bounds.min bounds.max sound?"
@@ -180,6 +182,10 @@ write info-gaussians info_gaussians info two.compressed.ply --check
 write chart-gaussians chart chart two.compressed.ply -o chart --quick --pixels 100
 write render-gaussians render render two.compressed.ply --profile gsplat-1.6 --size 64x64 -o two.exr --aov all
 write devices devices devices
+write conformance conformance conformance suite --profile 2dgs-gsplat
+mkdir drawn
+run 0 render suite/scenes/disc.ply --profile 2dgs-gsplat --size 36x20 -o drawn/L1-disc-2dgs-gsplat.pfm
+write suite-wrong judge_suite judge --suite suite --pictures drawn
 run 0 help --format json
 cp out runs/help.json
 echo help > runs/help.definition
