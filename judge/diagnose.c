@@ -68,10 +68,11 @@ static size_t cells_of(int samples) {
   return n > 8 ? n : 8;
 }
 
-static conic_status run_trials(conic_trials *trials, const conic_image *image, const conic_image *greatest, const uint8_t *classes, int n_fine,
-                               conic_diagnosis *found, int room, int *n_found) {
+static conic_status run_trials(conic_trials *trials, const conic_image *image, const conic_image *greatest,
+                               const uint8_t *classes, int n_fine, conic_diagnosis *found, int room, int *n_found) {
   conic_diagnosis_samples samples;
-  conic_status status = conic_diagnosis_samples_choose(trials->context, image, greatest, classes, cells_of(n_fine), &samples);
+  conic_status status =
+      conic_diagnosis_samples_choose(trials->context, image, greatest, classes, cells_of(n_fine), &samples);
   trials->samples = &samples;
   if (status == CONIC_OK && samples.n)
     status = conic_trials_run(trials, found, room, n_found);
@@ -108,7 +109,7 @@ conic_status conic_drawing_diagnose(conic_context *context, const conic_drawing 
                                     const conic_oracle_judging *judging, const conic_image *image,
                                     const uint8_t *classes, conic_diagnosis *found, int room, int *n_found) {
   conic_planted_drawing world;
-  conic_planted right = {.axes = 1.0};
+  conic_planted right = {.axes = 1.0, .is_of_surfels = 1};
   conic_oracle_judging how;
   conic_render_options_init(&right.options);
   conic_oracle_judging_init(&how);

@@ -76,6 +76,7 @@ typedef struct conic_planted {
   conic_planted_reading harmonics, rotation, scale, opacity;
   conic_planted_transfer own_transfer; /* of each Gaussian's own colour */
   /* Of surfels: */
+  int is_of_surfels;
   conic_render_options options;
   unsigned slips;
   double axes;

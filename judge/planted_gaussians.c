@@ -69,12 +69,14 @@ static int meets_sample(const planted_job *j, const conic_gaussian_footprint *f)
   return j->grid[y1 * w + x1] + j->grid[y0 * w + x0] - j->grid[y0 * w + x1] - j->grid[y1 * w + x0] != 0;
 }
 
-/* A pixel more on each side; where tiles are covered, these are the same. */
+/* A pixel more on each side, but beyond no border of the tiles that are covered. */
 static void grow_box(const conic_planted *p, conic_gaussian_footprint *f) {
-  const int size[2] = {p->camera.width, p->camera.height};
-  for (int axis = 0; axis < 2 && p->rules.coverage == CONIC_COVERAGE_ALPHA; axis++) {
-    f->box[0][axis] = (uint16_t)(f->box[0][axis] - (f->box[0][axis] > 0));
-    f->box[1][axis] = (uint16_t)(f->box[1][axis] + (f->box[1][axis] < size[axis] - 1));
+  const int size[2] = {p->camera.width, p->camera.height}, tile = CONIC_GAUSSIAN_TILE;
+  const int is_tiled = p->rules.coverage != CONIC_COVERAGE_ALPHA;
+  for (int axis = 0; axis < 2; axis++) {
+    const int first = f->box[0][axis], last = f->box[1][axis];
+    f->box[0][axis] = (uint16_t)(first - (is_tiled ? first % tile != 0 : first > 0));
+    f->box[1][axis] = (uint16_t)(last + (last < size[axis] - 1 && !(is_tiled && (last + 1) % tile == 0)));
   }
 }
 

@@ -206,13 +206,22 @@ static void plant_near(conic_planted *p, int how, double factor) {
   p->rules.disc_near = p->rules.disc_near > 0.0f ? (float)(value > 0.0 ? value : 1e-6) : 0.0f;
 }
 
+/* About the principal point. The renderer of surfels takes no camera that mirrors, but its picture can be turned. */
+static void plant_mirror(conic_planted *p, int axis) {
+  conic_camera *camera = &p->camera;
+  for (int k = 0; k < 4 && !p->is_of_surfels; k++)
+    camera->cam_from_world[axis][k] = -camera->cam_from_world[axis][k];
+  if (!p->is_of_surfels)
+    return;
+  p->mirrors[axis] = !p->mirrors[axis];
+  camera->cx = axis == 0 ? camera->width - camera->cx : camera->cx;
+  camera->cy = axis == 1 ? camera->height - camera->cy : camera->cy;
+}
+
 static void plant_in_camera(conic_camera *camera, const conic_suspect *s) {
   if (s->kind == OF_CENTER_SHIFT) {
     camera->cx += 0.5 * s->how;
     camera->cy += 0.5 * s->value;
-  } else if (s->kind == OF_CAMERA_MIRROR) {
-    for (int k = 0; k < 4; k++)
-      camera->cam_from_world[s->how][k] = -camera->cam_from_world[s->how][k];
   } else if (s->kind == OF_CENTER) {
     camera->cx = s->how & 1 ? 0.5 * camera->width : camera->cx;
     camera->cy = s->how & 2 ? 0.5 * camera->height : camera->cy;
@@ -300,8 +309,10 @@ void conic_suspect_plant(const conic_suspect *s, conic_planted *p) {
     p->shift_px[0] = 0.5f * (float)s->how;
     p->shift_px[1] = 0.5f * (float)s->value;
     break;
-  case OF_CENTER_SHIFT:
   case OF_CAMERA_MIRROR:
+    plant_mirror(p, s->how);
+    break;
+  case OF_CENTER_SHIFT:
   case OF_CENTER:
   case OF_FOCAL:
     plant_in_camera(&p->camera, s);

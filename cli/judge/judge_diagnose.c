@@ -21,8 +21,8 @@ static conic_status diagnose_splats(cli_session *session, cli_judge_job *job, co
   conic_oracle_judging_init(&judging);
   judging.greatest = greatest;
   return conic_drawing_diagnose(session->context, &choice->drawing, &job->camera, &job->scene.options,
-                                job->scene.view.samples, &judging, &job->picture.image, job->classes,
-                                job->found.faults, CLI_JUDGE_MOST_FAULTS, &job->found.n_faults);
+                                job->scene.view.samples, &judging, &job->picture.image, job->classes, job->found.faults,
+                                CLI_JUDGE_MOST_FAULTS, &job->found.n_faults);
 }
 
 conic_status cli_judge_diagnose(cli_session *session, cli_judge_job *job) {

@@ -176,6 +176,7 @@ static void write_diagnosis(cli_json *json, const cli_judgement *found) {
 int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
   static const char *const floats[CONIC_N_FLOAT_KINDS] = {"own", "strict", "fast"};
   const cli_judgement *found = &job->found;
+  double total = 0.0;
   int exit_code = CLI_DONE;
   cli_json_file *file;
   cli_json *json = cli_json_open(session, &file, &exit_code);
@@ -206,6 +207,9 @@ int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
   cli_json_object(json, "seconds");
   for (int k = 0; k < CLI_JUDGE_N_STAGES; k++)
     cli_json_number(json, cli_judge_stage_name(k), job->seconds[k]);
+  for (int k = 0; k < CLI_JUDGE_N_STAGES; k++)
+    total += job->seconds[k];
+  cli_json_number(json, "total", total);
   cli_json_close(json);
   return cli_json_finish(file);
 }

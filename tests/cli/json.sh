@@ -73,6 +73,9 @@ declare -A wanted=(
   [verify-gaussians]="against profile planes.rgba.max_abs planes.rgba.widest planes.last.max_abs judged_pixels
     covered_pixels classes.equal classes.rounded classes.explained classes.wrong doubtful_pixels
     doubtful_by_reason.order explained_by_reason.order wide_pixels wrong_pixels ms.render ms.oracle pass"
+  [judge-wrong]="verdict pixels.equal pixels.rounding pixels.explained pixels.wrong diagnosis explained_by worst
+    profile? judged_pixels planes.rgba.max_abs? seconds.judge"
+  [judge-splats-wrong]="verdict pixels.wrong method? explained_by.cutoff? worst"
   [explain-gaussians]="profile pixel planes.rgba planes.last bounds.rgb.low bounds.T.high end doubts doubt
     counts.composited contributions"
   [help]="version commands"
@@ -149,6 +152,11 @@ write verify-gaussians verify_gaussians verify two.splat --profile exact --size 
 write verify-gaussians-samples verify_gaussians verify two.splat --profile inria-2023 --size 20x20 --samples 2
 run 0 render two.splat --profile gsplat-1.6 --size 40x40 -o two.exr
 write verify-gaussians-wrong verify_gaussians verify two.splat --profile khr-2026 --size 40x40 --image two.exr
+write judge-wrong judge judge two.splat --profile khr-2026 --size 40x40 --picture two.exr
+write judge-splats-wrong judge judge thinner.ply --size 160x120 --picture prefiltered.exr
+write judge-mesh-wrong judge judge triangle.obj --as mesh --size 256x256 --picture triangle.exr --shade none
+cat two.splat two.splat > copies.splat
+write judge-copies-wrong judge judge copies.splat --profile gsplat-1.6 --size 40x40 --picture two.exr
 write explain-gaussians explain_gaussians explain two.splat --profile exact --size 40x40 --pixel 20,20
 write gradient gradient gradient two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr
 write explain-splat explain explain one.ply --size 64x48 --splat 0
