@@ -2,7 +2,8 @@
  *
  * Roundings: an error of first order is carried from what the pixel sees of each Gaussian to α, from there to T and to
  * the light from behind, and from these to every term. Other programs find T of each Gaussian from what is left in the
- * end by dividing, so that all errors of 1 − α of the pixel count twice.
+ * end by dividing, so that all errors of 1 − α of the pixel count twice. Errors of different Gaussians are independent,
+ * and add in squares; those of different pixels may not be, and add up.
  *
  * Decisions in doubt: each is followed the other way by itself, and what that changes is added up. */
 #include <stdlib.h>
@@ -99,6 +100,10 @@ static void bound_terms(const pixel_bound *p, const oracle_met *m, double rho, d
   }
 }
 
+static double length_of_errors(const double e[4]) {
+  return sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]);
+}
+
 /* The light behind, without regard to sign, and its error, go from back to front with the rest. */
 static void bound_roundings(const pixel_bound *p, const oracle_met *met, const double *rho, size_t n, double behind) {
   const double *w = p->pixel.weights;
@@ -119,11 +124,13 @@ static void bound_roundings(const pixel_bound *p, const oracle_met *met, const d
       own += share * 2.0 * fabs(m->z);
       own_error += share * (off->z + fabs(m->z) * (4.0 * p->tau + 8.0 * UNIT));
     }
-    const double left = oracle_max(1.0 - m->alpha, UNIT);
-    const double divided = 2.0 * p->tau + (double)(n - i + 4) * UNIT + (rho[i] * m->alpha + UNIT) / left;
-    const double off_alpha = m->before * (own * (2.0 * p->tau + 4.0 * UNIT) + own_error + error + size * divided);
+    const double divided = 2.0 * p->tau + (rho[i] * m->alpha + UNIT) / oracle_max(1.0 - m->alpha, UNIT);
+    const double parts[4] = {own * (2.0 * p->tau + 4.0 * UNIT), own_error, error, size * (divided + 4.0 * UNIT)};
+    const double off_alpha = m->before * length_of_errors(parts);
     bound_terms(p, m, rho[i], m->before * (m->by_weight - behind), off_alpha);
-    error = m->alpha * (own * rho[i] + own_error) + (1.0 - m->alpha) * error + m->alpha * rho[i] * size;
+    const double carried[4] = {m->alpha * own * rho[i], m->alpha * own_error, (1.0 - m->alpha) * error,
+                               m->alpha * rho[i] * size};
+    error = length_of_errors(carried);
     size = m->alpha * own + (1.0 - m->alpha) * size;
     behind = m->alpha * m->by_weight + (1.0 - m->alpha) * behind;
   }
@@ -248,7 +255,8 @@ static void meet_all_that_may(pixel_bound *p, size_t n, size_t x, size_t y) {
     T *= 1.0 - b->met.alpha;
     if (T < 0.5 * stop)
       continue;
-    p->tau += (b->rho * b->met.alpha + 2.0 * UNIT) / oracle_max(1.0 - b->met.alpha, UNIT);
+    const double own = (b->rho * b->met.alpha + 2.0 * UNIT) / oracle_max(1.0 - b->met.alpha, UNIT);
+    p->tau = sqrt(p->tau * p->tau + own * own);
   }
   qsort(p->v->all, p->n_all, sizeof *p->v->all, compare_bounded);
 }

@@ -11,9 +11,9 @@
 
 enum { RUN = 256, N_FIXED = 11, MOST_NUMBERS = N_FIXED + 3 * (CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1) };
 
-/* Roundings of any term of the chain, counted like those of the covariance (oracle_uncertain.c), which is
- * differentiated once and formed again. */
-static const double n_chain_roundings = 96.0;
+/* What the set-up in float, and the chain back, are off by, in units of the sum of their terms' sizes. Roundings of 0.4
+ * units' deviation, fifty of a term, are within 13 units at 4.7 standard deviations; few of them are of whole terms. */
+static const double n_setup_units = 8.0, n_chain_units = 16.0;
 /* A sum of n terms in whatever order is off by √n units of the terms' sizes, 8 times at most: roundings are as good as
  * independent. */
 static const double n_sum_deviations = 8.0;
@@ -120,7 +120,7 @@ static void bound_numbers(const oracle_gradient_job *j, size_t i, size_t n, doub
       slack[at] += crossed * fabs(number_in_parameters(&p, at)) * b->slack[k];
     }
   }
-  const double share = n_chain_roundings * ORACLE_FLOAT_UNIT + 8.0 * share_of_form(j, i);
+  const double share = n_chain_units * ORACLE_FLOAT_UNIT + 2.0 * share_of_form(j, i);
   conic_oracle_gradient_sizes(&j->view, j->set, i, sizes, &p);
   for (size_t at = 0; at < n; at++)
     bound[at] += share * number_in_parameters(&p, at);
@@ -249,25 +249,63 @@ static conic_status judge_all_gaussians(gradient_judge_job *job, conic_gradient_
 /* --- the entry --- */
 
 typedef struct offs_job {
-  const oracle_doubting *d;
+  const oracle_doubting *d, *in_double; /* of the model; and as if set up in double */
   oracle_shown_off *offs;
 } offs_job;
+
+/* What forming covariances in space does to those on the screen, a unit of the terms' sizes each, and to their inverse;
+ * and the means. The bounds of oracle_uncertain.c hold whatever each rounding does, which is a thousand times as much
+ * as a sum over pixels ever meets. */
+static void add_setup_in_float(const oracle_doubting *d, size_t i, const oracle_uncertain *g, oracle_shown_off *to) {
+  const conic_camera *camera = d->view->camera;
+  const double unit = n_setup_units * ORACLE_FLOAT_UNIT, size = camera->width + camera->height;
+  oracle_gaussian placed;
+  row_sizes s;
+  memset(&s, 0, sizeof s);
+  conic_oracle_gaussian_place(d->view, d->set, i, &placed);
+  conic_oracle_row_sizes(d->view, &placed, &s);
+  const double x = sqrt(oracle_dot(s.rows[0], s.rows[0]) + d->view->rules->dilation);
+  const double y = sqrt(oracle_dot(s.rows[1], s.rows[1]) + d->view->rules->dilation);
+  const double a = fabs(placed.form[0]) * x + fabs(placed.form[1]) * y;
+  const double b = fabs(placed.form[1]) * x + fabs(placed.form[2]) * y;
+  to->form[0] += unit * a * a;
+  to->form[1] += unit * a * b;
+  to->form[2] += unit * b * b;
+  double far = fabs(camera->cam_from_world[2][3]);
+  for (int axis = 0; axis < 3; axis++)
+    far += fabs(camera->cam_from_world[2][axis] * (d->set->origin[axis] + (double)d->set->position[axis][i]));
+  to->z += unit * far;
+  to->key += unit * (d->view->rules->is_by_distance ? oracle_length(placed.mean) + far : far);
+  for (int axis = 0; axis < 2; axis++)
+    to->place[axis] += unit * (fabs(placed.place_px[axis]) + size) * (1.0 + far / oracle_max(placed.mean[2], 1e-30));
+  const double least = d->view->rules->compensation_least, o = fabs((double)d->set->opacity[i]);
+  const double after = 1.0 / (placed.form[0] * placed.form[2] - placed.form[1] * placed.form[1]);
+  if (least >= 0.0 && o > 0.0) { /* a share of the square root of a difference */
+    const double share = fabs(g->opacity.v) / o, off = unit * x * x * y * y / after;
+    to->opacity += o * (share > 0.0 ? oracle_min(off / share, sqrt(off)) : sqrt(off));
+  }
+}
 
 static void find_offs(void *data, size_t i_run, int i_thread) {
   const offs_job *job = data;
   (void)i_thread;
   for (size_t i = i_run * RUN; i < (i_run + 1) * RUN && i < job->d->set->count; i++) {
-    oracle_uncertain g;
+    oracle_uncertain g, colored;
     oracle_shown_off *to = &job->offs[i];
-    if (!conic_oracle_uncertain_place(job->d, i, &g) || !conic_oracle_uncertain_color(job->d, &g))
+    if (!conic_oracle_uncertain_place(job->in_double, i, &g))
+      continue;
+    colored = g;
+    if (!conic_oracle_uncertain_color(job->d, &colored))
       continue;
     *to = (oracle_shown_off){.opacity = g.opacity.off, .z = g.z.off, .key = g.key.off};
     for (int k = 0; k < 3; k++) {
       to->form[k] = g.form[k].off;
-      to->color[k] = g.color[k].off;
+      to->color[k] = colored.color[k].off;
     }
     to->place[0] = g.offset[0].off;
     to->place[1] = g.offset[1].off;
+    if (job->d->model->is_setup_in_float)
+      add_setup_in_float(job->d, i, &g, to);
   }
 }
 
@@ -278,7 +316,11 @@ static conic_status prepare_judging(oracle_gradient_job *j, oracle_entry *e) {
   g->is_open_pixel = conic_memory_allocate_zeroed(j->context, e->bounding.n_pixels, 1);
   if (!g->offs || !g->is_open_pixel)
     return CONIC_ERROR_MEMORY;
-  offs_job offs = {&e->bounding.doubting, g->offs};
+  conic_float_model own;
+  oracle_doubting in_double = e->bounding.doubting;
+  conic_float_model_init(&own, CONIC_FLOATS_OWN);
+  in_double.model = &own;
+  offs_job offs = {&e->bounding.doubting, &in_double, g->offs};
   conic_parallel_for(j->context, (n + RUN - 1) / RUN, find_offs, &offs);
   return conic_oracle_gradient_doubts(j, e);
 }

@@ -6,12 +6,7 @@
 #include "oracle/gaussians/oracle_bounded.h"
 #include "oracle/gaussians/oracle_gradient_judge.h"
 
-/* Rows of J·V·R·S with all terms of one sign, and what of them the derivative needs. */
-typedef struct row_sizes {
-  double focal[2], slope[2], rows[2][3], by_rows[2][3], by_mean[3];
-} row_sizes;
-
-static void size_rows(const oracle_gaussian_view *view, const oracle_gaussian *g, row_sizes *s) {
+void conic_oracle_row_sizes(const oracle_gaussian_view *view, const oracle_gaussian *g, row_sizes *s) {
   s->focal[0] = view->camera->fx;
   s->focal[1] = view->camera->fy;
   for (int axis = 0; axis < 2; axis++) {
@@ -117,7 +112,7 @@ void conic_oracle_gradient_sizes(const oracle_gaussian_view *view, const conic_g
   memset(&s, 0, sizeof s);
   conic_oracle_gaussian_place(view, set, i, &g);
   const double length = conic_oracle_quaternion(view->rules, set, i, q);
-  size_rows(view, &g, &s);
+  conic_oracle_row_sizes(view, &g, &s);
   to->opacity = size_compensation(view, &g, (double)set->opacity[i], sums[BY_OPACITY], &s);
   size_form(&g, sums, &s);
   size_space(&g, sums, &s, by_axes);
