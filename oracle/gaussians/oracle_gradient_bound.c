@@ -2,8 +2,8 @@
  *
  * Roundings: an error of first order is carried from what the pixel sees of each Gaussian to α, from there to T and to
  * the light from behind, and from these to every term. Other programs find T of each Gaussian from what is left in the
- * end by dividing, so that all errors of 1 − α of the pixel count twice. Errors of different Gaussians are independent,
- * and add in squares; those of different pixels may not be, and add up.
+ * end, by dividing by the 1 − α that they have multiplied by, so that only roundings come anew. Errors of different
+ * Gaussians are independent, and add in squares; those of different pixels may not be, and add up.
  *
  * Decisions in doubt: each is followed the other way by itself, and what that changes is added up. */
 #include <stdlib.h>
@@ -19,16 +19,22 @@
 
 enum { MOST_VARIANTS = 24 };
 
-/* A Gaussian at the pixel, and by which share of itself α may be off. */
+/* By which share of themselves α, and T before and after, may be off. */
+typedef struct met_error {
+  double rho, tau, tau_after;
+} met_error;
+
+/* A Gaussian that may cover the pixel. */
 typedef struct bounded_met {
   oracle_met met;
-  double rho;
+  met_error error;
   int covers;
 } bounded_met;
 
 typedef struct gradient_variants {
   bounded_met *all;
   oracle_met *list;
+  met_error *errors;                                    /* of the list */
   double (*base)[N_BY_ELLIPSE], (*other)[N_BY_ELLIPSE]; /* by entry of the cell */
 } gradient_variants;
 
@@ -39,7 +45,7 @@ typedef struct pixel_bound {
   oracle_gradient_pixel pixel;
   oracle_sum_bound *bounds;
   size_t n_all; /* of v->all */
-  double tau;   /* by which share of itself any T may be off */
+  double tau;   /* by which share of itself T may be off in the end */
   int n_variants;
 } pixel_bound;
 
@@ -60,18 +66,19 @@ static double share_of_alpha(const pixel_bound *p, const oracle_shown *s, const 
 }
 
 /* One term each, and how far it may be off; by_alpha: dL/dα, and its error. */
-static void bound_terms(const pixel_bound *p, const oracle_met *m, double rho, double by_alpha, double off_alpha) {
+static void bound_terms(const pixel_bound *p, const oracle_met *m, const met_error *of, double by_alpha,
+                        double off_alpha) {
   const oracle_shown *s = p->w->shown[m->entry];
   const oracle_shown_off *off = &p->j->judging->offs[s->index];
   oracle_sum_bound *b = &p->bounds[m->entry];
-  const double w = m->alpha * m->before, *weights = p->pixel.weights, u = 4.0 * UNIT;
+  const double w = m->alpha * m->before, *weights = p->pixel.weights, u = 4.0 * UNIT, rho = of->rho;
   double term[N_BY_ELLIPSE] = {0.0}, error[N_BY_ELLIPSE] = {0.0};
   for (int c = 0; c < 3; c++) {
     term[BY_COLOR + c] = weights[c] * w;
-    error[BY_COLOR + c] = fabs(weights[c] * w) * (2.0 * p->tau + rho + u);
+    error[BY_COLOR + c] = fabs(weights[c] * w) * (of->tau + rho + u);
   }
   term[BY_Z] = m->by_z;
-  error[BY_Z] = fabs(m->by_z) * (4.0 * p->tau + rho + u);
+  error[BY_Z] = fabs(m->by_z) * (of->tau + p->tau + rho + u);
   if (!m->is_most) {
     const double d[2] = {s->place[0] - p->pixel.x, s->place[1] - p->pixel.y};
     const double by_q = -0.5 * m->alpha * by_alpha;
@@ -105,13 +112,14 @@ static double length_of_errors(const double e[4]) {
 }
 
 /* The light behind, without regard to sign, and its error, go from back to front with the rest. */
-static void bound_roundings(const pixel_bound *p, const oracle_met *met, const double *rho, size_t n, double behind) {
+static void bound_roundings(const pixel_bound *p, size_t n, double behind) {
   const double *w = p->pixel.weights;
   double size = fabs(w[3]), error = 0.0;
   for (int c = 0; c < 3; c++)
     size += fabs(w[c] * (double)p->pixel.background[c]);
   for (size_t i = n; i-- > 0;) {
-    const oracle_met *m = &met[i];
+    const oracle_met *m = &p->v->list[i];
+    const met_error *of = &p->v->errors[i];
     const oracle_shown *s = p->w->shown[m->entry];
     const oracle_shown_off *off = &p->j->judging->offs[s->index];
     double own = 0.0, own_error = fabs(m->by_weight) * 4.0 * UNIT;
@@ -122,14 +130,13 @@ static void bound_roundings(const pixel_bound *p, const oracle_met *met, const d
     if (m->by_z != 0.0) { /* (z − Z)/A */
       double share = fabs(m->by_z) / (m->alpha * m->before);
       own += share * 2.0 * fabs(m->z);
-      own_error += share * (off->z + fabs(m->z) * (4.0 * p->tau + 8.0 * UNIT));
+      own_error += share * (off->z + fabs(m->z) * (2.0 * p->tau + 8.0 * UNIT));
     }
-    const double divided = 2.0 * p->tau + (rho[i] * m->alpha + UNIT) / oracle_max(1.0 - m->alpha, UNIT);
-    const double parts[4] = {own * (2.0 * p->tau + 4.0 * UNIT), own_error, error, size * (divided + 4.0 * UNIT)};
-    const double off_alpha = m->before * length_of_errors(parts);
-    bound_terms(p, m, rho[i], m->before * (m->by_weight - behind), off_alpha);
-    const double carried[4] = {m->alpha * own * rho[i], m->alpha * own_error, (1.0 - m->alpha) * error,
-                               m->alpha * rho[i] * size};
+    const double apart = fabs(m->by_weight - behind), left = oracle_max(1.0 - m->alpha, UNIT);
+    const double rounded = (2.0 * (double)(n - i) + 4.0 + 2.0 / left) * UNIT;
+    const double parts[4] = {apart * of->tau, own_error, error, (own + size) * rounded};
+    bound_terms(p, m, of, m->before * (m->by_weight - behind), m->before * length_of_errors(parts));
+    const double carried[4] = {m->alpha * apart * of->rho, m->alpha * own_error, (1.0 - m->alpha) * error, 0.0};
     error = length_of_errors(carried);
     size = m->alpha * own + (1.0 - m->alpha) * size;
     behind = m->alpha * m->by_weight + (1.0 - m->alpha) * behind;
@@ -165,12 +172,14 @@ static void admit_variant(pixel_bound *p, size_t n, int goes_on) {
   }
 }
 
-/* The list of those that cover, but for one that is asked about. */
+/* The list of those that cover, but for one that is asked about, of which it is the other way round. */
 static size_t list_covering(const pixel_bound *p, size_t asked) {
   size_t n = 0;
   for (size_t i = 0; i < p->n_all; i++)
-    if (p->v->all[i].covers != (i == asked))
+    if (p->v->all[i].covers != (i == asked)) {
+      p->v->errors[n] = p->v->all[i].error;
       p->v->list[n++] = p->v->all[i].met;
+    }
   return n;
 }
 
@@ -178,10 +187,10 @@ static void follow_least_and_most(pixel_bound *p, size_t i) {
   const oracle_gaussian_rules *rules = p->j->view.rules;
   const bounded_met *b = &p->v->all[i];
   const oracle_shown *s = p->w->shown[b->met.entry];
-  const double alpha = s->opacity * b->met.response, off = b->rho * alpha + UNIT * rules->alpha_least;
+  const double alpha = s->opacity * b->met.response, off = b->error.rho * alpha + UNIT * rules->alpha_least;
   if (rules->alpha_least > 0.0 && fabs(alpha - rules->alpha_least) <= off)
     admit_variant(p, list_covering(p, i), 0);
-  if (fabs(alpha - rules->alpha_most) > b->rho * alpha + UNIT || !b->covers)
+  if (fabs(alpha - rules->alpha_most) > b->error.rho * alpha + UNIT || !b->covers)
     return;
   size_t n = list_covering(p, (size_t)-1);
   for (size_t k = 0; k < n; k++)
@@ -217,7 +226,7 @@ static void follow_end(pixel_bound *p, size_t n) {
   double T = 1.0;
   for (size_t i = 0; i < n_covering && rules->stop > 0.0; i++) {
     T *= 1.0 - p->v->list[i].alpha;
-    if (fabs(T - rules->stop) <= T * (p->tau + 4.0 * UNIT)) {
+    if (fabs(T - rules->stop) <= T * (p->v->errors[i].tau_after + 4.0 * UNIT)) {
       admit_variant(p, i < n ? i : i + 1, 1);
       list_covering(p, (size_t)-1);
     }
@@ -246,17 +255,17 @@ static void meet_all_that_may(pixel_bound *p, size_t n, size_t x, size_t y) {
       continue;
     b->met.entry = (uint32_t)i;
     b->covers = how == ORACLE_COVERS;
-    b->rho = share_of_alpha(p, s, &b->met);
-    if (!b->covers && b->rho * b->met.alpha + b->met.alpha < p->j->view.rules->alpha_least * (1.0 - UNIT))
+    b->error = (met_error){share_of_alpha(p, s, &b->met), p->tau, p->tau};
+    if (!b->covers && b->error.rho * b->met.alpha + b->met.alpha < p->j->view.rules->alpha_least * (1.0 - UNIT))
       continue;
     p->n_all++;
     if (!b->covers)
       continue;
     T *= 1.0 - b->met.alpha;
-    if (T < 0.5 * stop)
-      continue;
-    const double own = (b->rho * b->met.alpha + 2.0 * UNIT) / oracle_max(1.0 - b->met.alpha, UNIT);
-    p->tau = sqrt(p->tau * p->tau + own * own);
+    const double own = (b->error.rho * b->met.alpha + 2.0 * UNIT) / oracle_max(1.0 - b->met.alpha, UNIT);
+    b->error.tau_after = sqrt(p->tau * p->tau + own * own);
+    if (T >= 0.5 * stop)
+      p->tau = b->error.tau_after;
   }
   qsort(p->v->all, p->n_all, sizeof *p->v->all, compare_bounded);
 }
@@ -270,14 +279,10 @@ void conic_oracle_bound_pixel_gradient(const oracle_gradient_job *j, const gradi
     return;
   meet_all_that_may(&p, n, x, y);
   size_t n_met = list_covering(&p, (size_t)-1);
-  double behind, *rho = p.v->other[0]; /* which nothing else needs yet, and is longer */
-  const size_t n_covering = n_met;
-  run_variant(&p, n_covering, 0, p.v->base);
+  double behind;
+  run_variant(&p, n_met, 0, p.v->base);
   conic_oracle_gradient_forth(&j->view, &p.pixel, w->shown, p.v->list, &n_met, &behind);
-  for (size_t i = 0, k = 0; i < p.n_all && k < n_met; i++)
-    if (p.v->all[i].covers)
-      rho[k++] = p.v->all[i].rho;
-  bound_roundings(&p, p.v->list, rho, n_met, behind);
+  bound_roundings(&p, n_met, behind);
   follow_end(&p, n_met);
   for (size_t i = 0; i < p.n_all; i++)
     follow_least_and_most(&p, i);
@@ -308,9 +313,10 @@ conic_status conic_oracle_judging_room(oracle_gradient_job *j) {
     gradient_variants *v = &g->of_threads[k];
     v->all = conic_memory_allocate(j->context, n, sizeof *v->all);
     v->list = conic_memory_allocate(j->context, n, sizeof *v->list);
+    v->errors = conic_memory_allocate(j->context, n, sizeof *v->errors);
     v->base = conic_memory_allocate(j->context, n, sizeof *v->base);
     v->other = conic_memory_allocate(j->context, n, sizeof *v->other);
-    is_done = v->all && v->list && v->base && v->other;
+    is_done = v->all && v->list && v->errors && v->base && v->other;
   }
   return is_done ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
@@ -320,6 +326,7 @@ void conic_oracle_judging_end(oracle_gradient_job *j) {
   for (int k = 0; g->of_threads && k < conic_context_threads(j->context); k++) {
     conic_memory_release(j->context, g->of_threads[k].all);
     conic_memory_release(j->context, g->of_threads[k].list);
+    conic_memory_release(j->context, g->of_threads[k].errors);
     conic_memory_release(j->context, g->of_threads[k].base);
     conic_memory_release(j->context, g->of_threads[k].other);
   }
