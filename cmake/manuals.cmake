@@ -1,5 +1,5 @@
 # Manual pages and completion: the program writes them from its own tables, and scripts/library-manual from the headers.
-set(manuals ${CMAKE_BINARY_DIR}/manuals)
+set(manuals ${PROJECT_BINARY_DIR}/manuals)
 set(conic_manuals "")
 
 if(CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR)

@@ -8,11 +8,13 @@ set_source_files_properties(core/base/module.c PROPERTIES # which asks where it 
 macro(conic_add_module name library)
   add_library(conic_${name} MODULE ${ARGN})
   set_target_properties(conic_${name} PROPERTIES PREFIX "" OUTPUT_NAME conic-${name} SUFFIX .so
-    LIBRARY_OUTPUT_DIRECTORY ${conic_library_folder}/conic LINK_DEPENDS ${CMAKE_BINARY_DIR}/exports.map)
+    LIBRARY_OUTPUT_DIRECTORY ${conic_library_folder}/conic LINK_DEPENDS ${PROJECT_BINARY_DIR}/exports.map)
   target_link_libraries(conic_${name} PRIVATE conic_flags ${library})
   # The C++ library's templates would otherwise be exported.
-  target_link_options(conic_${name} PRIVATE LINKER:--version-script=${CMAKE_BINARY_DIR}/exports.map)
-  install(TARGETS conic_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/conic)
+  target_link_options(conic_${name} PRIVATE LINKER:--version-script=${PROJECT_BINARY_DIR}/exports.map)
+  if(CONIC_INSTALL)
+    install(TARGETS conic_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/conic COMPONENT library)
+  endif()
   list(APPEND conic_modules conic_${name})
   string(TOUPPER ${name} upper_name)
   target_compile_definitions(conic_objects PRIVATE CONIC_HAVE_${upper_name}=1)

@@ -5,10 +5,10 @@ set(conic_opencl_sources ${PROJECT_SOURCE_DIR}/opencl/opencl_device.c ${PROJECT_
   ${PROJECT_SOURCE_DIR}/opencl/frame_setup.c ${PROJECT_SOURCE_DIR}/opencl/frame_tiles.c ${PROJECT_SOURCE_DIR}/opencl/frame_triangles.c
   ${PROJECT_SOURCE_DIR}/opencl/frame_gaussians.c ${PROJECT_SOURCE_DIR}/opencl/host_setup.c ${PROJECT_SOURCE_DIR}/opencl/opencl_renderer.c)
 foreach(program setup raster triangles gaussian_tiles gaussian_pixels)
-  set(text ${CMAKE_BINARY_DIR}/opencl/${program}.cl)
-  set(source ${CMAKE_BINARY_DIR}/opencl/${program}_text.c)
+  set(text ${PROJECT_BINARY_DIR}/opencl/${program}.cl)
+  set(source ${PROJECT_BINARY_DIR}/opencl/${program}_text.c)
   add_custom_command(OUTPUT ${text} DEPFILE ${text}.d
-    COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_BINARY_DIR}/opencl
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/opencl
     COMMAND ${CMAKE_C_COMPILER} -x c -E -P -nostdinc -undef -I${PROJECT_SOURCE_DIR}/opencl/c_library
       -I${PROJECT_SOURCE_DIR} -I${PROJECT_SOURCE_DIR}/include -MD -MF ${text}.d -MT ${text}
       -o ${text} ${PROJECT_SOURCE_DIR}/opencl/${program}.cl

@@ -68,10 +68,11 @@ static size_t cells_of(int samples) {
   return n > 8 ? n : 8;
 }
 
-static conic_status run_trials(conic_trials *trials, const conic_image *image, const uint8_t *classes, int n_fine,
-                               conic_diagnosis *found, int room, int *n_found) {
+static conic_status run_trials(conic_trials *trials, const conic_image *image, const conic_image *greatest,
+                               const uint8_t *classes, int n_fine, conic_diagnosis *found, int room, int *n_found) {
   conic_diagnosis_samples samples;
-  conic_status status = conic_diagnosis_samples_choose(trials->context, image, classes, cells_of(n_fine), &samples);
+  conic_status status =
+      conic_diagnosis_samples_choose(trials->context, image, greatest, classes, cells_of(n_fine), &samples);
   trials->samples = &samples;
   if (status == CONIC_OK && samples.n)
     status = conic_trials_run(trials, found, room, n_found);
@@ -100,17 +101,21 @@ conic_status conic_gaussian_diagnose(conic_context *context, const conic_gaussia
   const conic_planted right = right_gaussians(gaussians, camera, &own, &how);
   conic_trials trials = {.context = context, .right = &right, .draw = draw_gaussian_world, .world = &world};
   trials.n_suspects = conic_suspects_of_gaussians(&right, trials.suspects);
-  return run_trials(&trials, image, classes, how.samples, found, room, n_found);
+  return run_trials(&trials, image, how.greatest, classes, how.samples, found, room, n_found);
 }
 
 conic_status conic_drawing_diagnose(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
-                                    const conic_render_options *options, int samples, const conic_image *image,
+                                    const conic_render_options *options, int samples,
+                                    const conic_oracle_judging *judging, const conic_image *image,
                                     const uint8_t *classes, conic_diagnosis *found, int room, int *n_found) {
   conic_planted_drawing world;
-  conic_planted right = {.axes = 1.0, .is_opaque = 0};
+  conic_planted right = {.axes = 1.0, .is_of_surfels = 1};
+  conic_oracle_judging how;
   conic_render_options_init(&right.options);
+  conic_oracle_judging_init(&how);
   *n_found = 0;
-  if (!drawing || (options && !conic_options_take(&right.options, options)))
+  if (!drawing || (options && !conic_options_take(&right.options, options)) ||
+      (judging && !conic_options_take(&how, judging)))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "diagnose: an argument is null");
   conic_status status = check_arguments(context, camera, image, classes, found, room, samples);
   if (status != CONIC_OK)
@@ -120,7 +125,7 @@ conic_status conic_drawing_diagnose(conic_context *context, const conic_drawing 
   conic_trials trials = {.context = context, .right = &right, .draw = conic_planted_drawing_draw, .world = &world};
   trials.n_suspects = conic_suspects_of_surfels(&right, trials.suspects);
   if (status == CONIC_OK)
-    status = run_trials(&trials, image, classes, 1, found, room, n_found);
+    status = run_trials(&trials, image, how.greatest, classes, 1, found, room, n_found);
   conic_planted_drawing_end(&world);
   return status;
 }

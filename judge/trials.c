@@ -1,5 +1,6 @@
 #include "judge/trials.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -7,8 +8,9 @@
 
 /* What takes less than half of the difference away says nothing. */
 static const double least_share = 0.5;
-/* What leaves less than this is not looked for a second one. */
-static const double little_left = 0.02;
+/* What leaves less than this is explained, and what leaves less than the next is, but for something small: what is
+ * tried beside others is tried beside it alone. */
+static const double least_left = 1e-4, little_left = 0.02;
 /* A second mistake has to take this much of what the first leaves. */
 static const double second_share = 0.6;
 
@@ -69,7 +71,7 @@ static conic_status try_planted(trial_run *r, trial *tried) {
   if (status != CONIC_OK)
     return status;
   memcpy(r->finished, r->drawn, r->t->samples->n * sizeof *r->finished);
-  conic_planted_finish(&planted, r->t->samples, r->finished);
+  conic_planted_finish(&planted, r->t->samples->n, r->finished);
   const double distance =
       conic_diagnosis_distance(r->t->samples, (const conic_channels *)r->finished, (const conic_channels *)r->ours);
   tried->left = r->whole > 0.0 ? distance / r->whole : distance;
@@ -118,7 +120,7 @@ static conic_status try_all_alone(trial_run *r, trial *best, int *n) {
 /* All others beside each of the best; those of the finished picture first, while the first one is drawn. */
 static conic_status try_all_pairs(trial_run *r, const trial *best, int n, trial *pair) {
   conic_status status = CONIC_OK;
-  const int n_first = n < MOST_FIRST ? n : MOST_FIRST;
+  const int most = best[0].left > little_left ? MOST_FIRST : 1, n_first = n < most ? n : most;
   r->n_planned = r->n_done + (size_t)(n_first * r->t->n_suspects);
   for (int first = 0; first < n_first; first++)
     for (int pass = 0; pass < 2; pass++)
@@ -156,6 +158,14 @@ static void put_diagnosis(const conic_trials *t, int first, int second, double l
         .name = t->suspects[first].name, .with = second >= 0 ? t->suspects[second].name : NULL, .share = 1.0 - left};
 }
 
+/* What a mistake of that name leaves alone. */
+static double alone_of(const conic_trials *t, const trial *best, int n, int suspect) {
+  for (int i = 0; i < n; i++)
+    if (is_same_name(t, best[i].first, suspect))
+      return best[i].left;
+  return INFINITY;
+}
+
 static conic_status explain_picture(trial_run *r, conic_diagnosis *found, int room, int *n_found) {
   trial best[MOST_REMEMBERED + 1], pair = {.left = 1.0};
   int n = 0;
@@ -168,13 +178,15 @@ static conic_status explain_picture(trial_run *r, conic_diagnosis *found, int ro
   r->from = 0.3;
   r->to = 1.0;
   r->n_done = 0;
-  if (best[0].left > little_left)
+  if (best[0].left > least_left)
     status = try_all_pairs(r, best, n, &pair);
   if (status != CONIC_OK)
     return status;
   if (pair.left < 1.0 - least_share && pair.left < (1.0 - second_share) * best[0].left) {
-    put_diagnosis(r->t, pair.first, pair.second, pair.left, found, room, n_found);
-    put_diagnosis(r->t, pair.second, pair.first, pair.left, found, room, n_found);
+    const int is_turned = alone_of(r->t, best, n, pair.second) < alone_of(r->t, best, n, pair.first);
+    const int first = is_turned ? pair.second : pair.first, second = is_turned ? pair.first : pair.second;
+    put_diagnosis(r->t, first, second, pair.left, found, room, n_found);
+    put_diagnosis(r->t, second, first, pair.left, found, room, n_found);
     return CONIC_OK;
   }
   for (int i = 0; i < n && best[i].left <= 1.0 - least_share && best[i].left <= 2.0 * best[0].left + little_left; i++)

@@ -394,4 +394,7 @@ const cli_command cli_conformance = {
     .summary = "writes a suite of cases by which any Gaussian renderer can be judged",
     .usage = "conic conformance OUT/ [--profile NAME[,NAME]] [--floats fast|strict]",
     .run = run_conformance,
+    .description = "Writes small scenes, their cameras, and what each pixel may be, into a folder. Draw them with your "
+                   "renderer, and let conic judge --suite compare.",
+    .examples = {{"write the cases of one profile", "conic conformance suite/ --profile gsplat-1.6"}},
 };

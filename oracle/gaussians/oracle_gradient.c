@@ -47,7 +47,7 @@ static void put_shown(const oracle_gradient_job *j, const shown_rank *ranks, siz
   }
 }
 
-static conic_status fill_cells(oracle_gradient_job *j, const shown_rank *ranks, size_t n) {
+static conic_status fill_shown_cells(oracle_gradient_job *j, const shown_rank *ranks, size_t n) {
   const size_t n_cells = j->across * j->down;
   size_t *places = j->begin, sum = 0;
   put_shown(j, ranks, n, places, NULL);
@@ -87,7 +87,7 @@ static conic_status sort_shown(oracle_gradient_job *j) {
       ranks[n_shown++] = (shown_rank){j->shown[i].key, (uint32_t)i};
   if (status == CONIC_OK) {
     qsort(ranks, n_shown, sizeof *ranks, compare_ranks);
-    status = fill_cells(j, ranks, n_shown);
+    status = fill_shown_cells(j, ranks, n_shown);
   }
   conic_memory_release(j->context, ranks);
   return status;

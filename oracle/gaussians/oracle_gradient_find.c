@@ -165,7 +165,8 @@ static conic_status find_all_doubts(oracle_gradient_job *j, oracle_entry *e) {
 
 /* --- the entry --- */
 
-static conic_status check_weights(conic_context *context, const conic_gaussian_weights *w, const conic_camera *camera) {
+static conic_status check_gradient_weights(conic_context *context, const conic_gaussian_weights *w,
+                                           const conic_camera *camera) {
   if (!w || w->width != camera->width || w->height != camera->height)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "gradient: the weights are not of the camera's size");
   const size_t n = (size_t)w->width * (size_t)w->height;
@@ -177,7 +178,7 @@ static conic_status check_weights(conic_context *context, const conic_gaussian_w
   return CONIC_OK;
 }
 
-static void find_eye(const conic_camera *camera, oracle_eye *eye) {
+static void find_gradient_eye(const conic_camera *camera, oracle_eye *eye) {
   double rotation[3][3];
   for (int row = 0; row < 3; row++)
     memcpy(rotation[row], camera->cam_from_world[row], sizeof rotation[row]);
@@ -187,7 +188,7 @@ static void find_eye(const conic_camera *camera, oracle_eye *eye) {
       eye->place[axis] -= eye->inverse[axis][row] * camera->cam_from_world[row][3];
 }
 
-static conic_status find_gradient(oracle_gradient_job *j, oracle_entry *e) {
+static conic_status run_gradient_job(oracle_gradient_job *j, oracle_entry *e) {
   conic_status status = conic_oracle_differentiate(j);
   if (status == CONIC_OK && j->model)
     status = find_all_doubts(j, e);
@@ -208,7 +209,7 @@ conic_status conic_gaussian_gradient_find(conic_context *context, const conic_ga
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "gradient: no such options");
   conic_status status = conic_oracle_enter(context, set, camera, options, own.model ? own.model : &strict, 1, &e);
   if (status == CONIC_OK)
-    status = check_weights(context, weights, camera);
+    status = check_gradient_weights(context, weights, camera);
   if (status == CONIC_OK && !conic_gradient_has_profile(e.options.profile))
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "gradient: the profile %s has none yet",
                       conic_gaussian_profile_name(e.options.profile));
@@ -224,8 +225,8 @@ conic_status conic_gaussian_gradient_find(conic_context *context, const conic_ga
                            .background = e.options.background,
                            .view = e.view,
                            .gradient = gradient};
-  find_eye(camera, &j.eye);
-  status = find_gradient(&j, &e);
+  find_gradient_eye(camera, &j.eye);
+  status = run_gradient_job(&j, &e);
   conic_oracle_gradient_end(&j);
   if (status != CONIC_OK)
     conic_gaussian_gradient_release(context, gradient);

@@ -100,7 +100,8 @@ static void ray_in_ball(const oracle_gaussian_view *view, const oracle_shown *sh
     g[k] = oracle_dot(shown->ball[k], ray);
 }
 
-static double meet_ray(const oracle_gaussian_view *view, const oracle_shown *shown, double x, double y, double *z) {
+static double meet_shown_ray(const oracle_gaussian_view *view, const oracle_shown *shown, double x, double y,
+                             double *z) {
   const double *m = shown->middle;
   double ray[3], g[3], cross[3];
   ray_in_ball(view, shown, x, y, ray, g);
@@ -121,7 +122,7 @@ int conic_oracle_meet_shown(const oracle_gaussian_view *view, const oracle_shown
   double q;
   met->z = shown->z;
   if (rules->form == ORACLE_FORM_RAY) {
-    q = meet_ray(view, shown, x, y, &met->z);
+    q = meet_shown_ray(view, shown, x, y, &met->z);
     if (!(met->z > 0.0) || !oracle_is_finite(met->z))
       return 0;
   } else {

@@ -260,7 +260,7 @@ static void read_back(const gl_job *job, plain_picture *p) {
   }
   free(color);
   free(depth);
-  plain_picture_spoil(p, job->order->faults);
+  plain_picture_spoil(p, job->order->faults, 0);
 }
 
 void gl_draw(const gl_order *order, const plain_scene *scene, const plain_camera *camera, plain_picture *picture) {

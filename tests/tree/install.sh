@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs into an empty folder, moves that, and builds the examples against it: by find_package (shared and
-# static) and by pkg-config. Each program must draw a picture that is not black, and all the same one.
+# Installs into an empty folder, moves that, and builds the installed examples against it: by find_package (shared and
+# static) and by pkg-config. Each program must draw a picture that is not black, and all the same one. What was installed
+# is complete and can be taken away; another project takes conic in as a part of it.
 set -euo pipefail
 
 source_folder=$1
@@ -29,6 +30,13 @@ readelf -d "$library_folder/libconic.so" | grep -q "SONAME.*\[libconic\.so\.$int
 symbols=$(nm -D --defined-only --with-symbol-versions "$library_folder/libconic.so" | awk '$2 != "A" {print $3}')
 [[ -n $symbols ]] && ! grep -vq "@@CONIC_$interface_version\$" <<< "$symbols" || { echo "symbols without a version"; exit 1; }
 
+# Packages are of this version.
+version=$(sed -nE 's/^#define CONIC_VERSION_(MAJOR|MINOR|PATCH) //p' "$source_folder/include/conic/version.h" | paste -sd.)
+grep -q "^conic ($version-" <(head -n 1 "$source_folder/debian/changelog") || { echo "debian/changelog is not of $version"; exit 1; }
+for recipe in conda/recipe.yaml nix/default.nix; do
+  grep -q "version.*\"$version\"" "$source_folder/packaging/$recipe" || { echo "packaging/$recipe is not of $version"; exit 1; }
+done
+
 module=$library_folder/conic/conic-openimageio.so # where OpenImageIO was there to build it
 
 not_black() { # PFM: some byte behind the header is not zero
@@ -42,27 +50,30 @@ if not_black "$work/black.pfm" || ! not_black "$work/grey.pfm"; then
   exit 1
 fi
 
-mkdir "$work/project"
-cat > "$work/project/CMakeLists.txt" << END
+# What is installed beside the libraries, and where whatever names folders of this machine is none of it.
+examples=$(dirname "$(find "$work/prefix" -name minimal.c)")
+for file in share/man/man1/conic.1 share/man/man1/conic-render.1 share/man/man3/conic_render.3 \
+  share/bash-completion/completions/conic share/zsh/site-functions/_conic share/fish/vendor_completions.d/conic.fish; do
+  [[ -s $work/prefix/$file ]] || { echo "$file is not installed"; exit 1; }
+done
+if grep -rE '(^|[^{}a-z])/(usr|tmp|home|work|lib)/' "$library_folder"/pkgconfig "$library_folder"/cmake; then
+  echo "packages for CMake and pkg-config name folders of this machine"
+  exit 1
+fi
+
+mkdir "$work/static_project"
+cat > "$work/static_project/CMakeLists.txt" << END
 cmake_minimum_required(VERSION 3.25)
 project(minimal LANGUAGES C)
-find_package(conic 0.4 REQUIRED)
-add_executable(shared "$source_folder/examples/minimal.c")
-target_link_libraries(shared conic::conic m)
-add_executable(any_file "$source_folder/examples/any_file.c")
-target_link_libraries(any_file conic::conic)
-option(STATIC "" OFF)
-if(STATIC)
-  find_package(conic 0.4 REQUIRED COMPONENTS static)
-  add_executable(static "$source_folder/examples/minimal.c")
-  target_link_libraries(static conic::static)
-endif()
+find_package(conic $interface_version REQUIRED COMPONENTS static)
+add_executable(static "$source_folder/examples/minimal.c")
+target_link_libraries(static conic::static)
 END
 
-build_package() { # NAME, CMake settings …
-  local name=$1
-  shift
-  cmake -S "$work/project" -B "$work/$name" -G "$(setting CMAKE_GENERATOR)" -DCMAKE_PREFIX_PATH="$work/prefix" \
+build_package() { # SOURCE_FOLDER, NAME, CMake settings …
+  local source=$1 name=$2
+  shift 2
+  cmake -S "$source" -B "$work/$name" -G "$(setting CMAKE_GENERATOR)" -DCMAKE_PREFIX_PATH="$work/prefix" \
     -DCMAKE_C_COMPILER="$(setting CMAKE_C_COMPILER)" "$@" > "$work/$name.log" 2>&1 &&
     cmake --build "$work/$name" >> "$work/$name.log" 2>&1 && return
   cat "$work/$name.log"
@@ -74,8 +85,8 @@ draw() { # PROGRAM
   [[ ! -e $module ]] || "$1" "$1.tif" || { echo "$1 does not find $module"; exit 1; }
 }
 
-build_package by_package
-draw "$work/by_package/shared"
+build_package "$examples" by_package
+draw "$work/by_package/minimal"
 
 # Whatever file there is, the other example draws.
 "$work/prefix/bin/conic" make plane -n 100 -o "$work/plane.ply"
@@ -90,16 +101,24 @@ for file in "${files[@]}"; do
   not_black "$file.pfm" || { echo "any_file draws $file black"; exit 1; }
 done
 
-build_package by_package_static -DSTATIC=ON
+build_package "$work/static_project" by_package_static
 draw "$work/by_package_static/static"
-cmp "$work/by_package/shared.pfm" "$work/by_package_static/static.pfm"
+cmp "$work/by_package/minimal.pfm" "$work/by_package_static/static.pfm"
 
 if command -v pkg-config > /dev/null; then
   export PKG_CONFIG_PATH=$library_folder/pkgconfig
   # shellcheck disable=SC2046 # its answer is several words
   "$(setting CMAKE_C_COMPILER)" -std=c11 "$source_folder/examples/minimal.c" -o "$work/by_pkg_config" $(pkg-config --cflags --libs conic) -lm
   draw "$work/by_pkg_config"
-  cmp "$work/by_package/shared.pfm" "$work/by_pkg_config.pfm"
+  cmp "$work/by_package/minimal.pfm" "$work/by_pkg_config.pfm"
+  # The static library alone, without the shared one to fall back on.
+  mkdir "$work/static_only"
+  ln -s "$library_folder/libconic.a" "$work/static_only"
+  read -ra words < <(pkg-config --static --cflags --libs conic)
+  "$(setting CMAKE_C_COMPILER)" -std=c11 "$source_folder/examples/minimal.c" -o "$work/by_static_pkg_config" -L"$work/static_only" "${words[@]}"
+  ! ldd "$work/by_static_pkg_config" | grep -q libconic || { echo "pkg-config --static links the shared library"; exit 1; }
+  draw "$work/by_static_pkg_config"
+  cmp "$work/by_package/minimal.pfm" "$work/by_static_pkg_config.pfm"
 else
   echo "no pkg-config here: that way was not tried"
 fi
@@ -129,3 +148,31 @@ if [[ -e $module ]]; then
   refuses_tiff conic-openimageio.so
   "$program" render --plain "$work/plane.ply" --size 16x16 -o "$work/plane.pfm" # all else is as before
 fi
+
+# Another project takes conic in: it gets the library, and neither an installation nor a build type that it did not ask for.
+mkdir "$work/parent"
+cat > "$work/parent/CMakeLists.txt" << END
+cmake_minimum_required(VERSION 3.25)
+project(parent LANGUAGES C)
+include(FetchContent)
+FetchContent_Declare(conic SOURCE_DIR "$source_folder")
+FetchContent_MakeAvailable(conic)
+add_executable(any_file "$source_folder/examples/any_file.c")
+target_link_libraries(any_file conic::conic)
+if(CMAKE_BUILD_TYPE OR TARGET uninstall OR NOT TARGET conic::static)
+  message(FATAL_ERROR "conic does what is not its to do, or lacks its libraries")
+endif()
+END
+cmake -S "$work/parent" -B "$work/parent/build" -G "$(setting CMAKE_GENERATOR)" -DCMAKE_C_COMPILER="$(setting CMAKE_C_COMPILER)" \
+  -DCONIC_WITH_OPENIMAGEIO=OFF -DCONIC_WITH_ASSIMP=OFF > "$work/parent.log" 2>&1 || { cat "$work/parent.log"; exit 1; }
+cmake --install "$work/parent/build" --prefix "$work/parent/prefix" > /dev/null
+[[ -z $(find "$work/parent/prefix" -type f 2> /dev/null) ]] || { echo "a part of another project installs itself"; exit 1; }
+
+# Uninstalling takes all of it away; the manifest is that of an installation without DESTDIR.
+cmake -DMANIFEST="$work/manifest" -P "$source_folder/cmake/uninstall.cmake" 2> /dev/null && { echo "uninstalls without a manifest"; exit 1; }
+mkdir "$work/prefix/share/doc/conic/mine"
+touch "$work/prefix/share/doc/conic/mine/notes"
+(cd "$work/prefix" && find "$work/prefix" ! -type d ! -name notes) > "$work/manifest"
+cmake -DMANIFEST="$work/manifest" -P "$source_folder/cmake/uninstall.cmake"
+[[ $(find "$work/prefix" ! -type d) == "$work/prefix/share/doc/conic/mine/notes" ]] || { echo "uninstalling leaves: $(find "$work/prefix" ! -type d | head)"; exit 1; }
+[[ ! -e $work/prefix/include/conic ]] || { echo "uninstalling leaves include/conic"; exit 1; }
