@@ -56,7 +56,7 @@ static void plant_in_profile(gl_job *job) {
 }
 
 /* Floats a Gaussian: mean 3, scale 3, quaternion w x y z, opacity, harmonics. */
-static size_t stride_of(const plain_scene *scene) {
+static size_t floats_between(const plain_scene *scene) {
   return 11 + 3 * (size_t)((scene->sh_degree + 1) * (scene->sh_degree + 1));
 }
 
@@ -77,7 +77,7 @@ static void write_constants(const gl_job *job, char *text) {
   text[0] = '\0';
   define(text, "CLAMP %d", p->clamp);
   define(text, "SH_DEGREE %d", has(job, PLAIN_SH_DEGREE_0) ? 0 : job->scene->sh_degree);
-  define(text, "STRIDE %zu", stride_of(job->scene));
+  define(text, "STRIDE %zu", floats_between(job->scene));
   define(text, "IS_SEEN(z) (%s)", p->is_seen);
   define(text, "HAS_ENDED(T) (%s)", p->has_ended);
   define(text, "KEY(p) %s", p->is_by_distance ? "length(p)" : "p.z");
@@ -128,7 +128,7 @@ static void set_camera(GLuint program, const gl_job *job) {
 }
 
 static GLuint upload_scene(const plain_scene *scene) {
-  const size_t stride = stride_of(scene);
+  const size_t stride = floats_between(scene);
   float *rows = gl_allocate(scene->count * stride, sizeof *rows);
   for (size_t i = 0; i < scene->count; i++) {
     float *row = rows + i * stride;
