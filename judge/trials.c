@@ -10,11 +10,11 @@
 static const double least_share = 0.5;
 /* What leaves less than this is explained, and what leaves less than the next is, but for something small: what is
  * tried beside others is tried beside it alone. */
-static const double least_left = 1e-4, little_left = 0.02;
+static const double least_left = 2e-5, little_left = 0.02;
 /* A second mistake has to take this much of what the first leaves. */
 static const double second_share = 0.6;
 
-enum { MOST_FIRST = 8, MOST_REMEMBERED = 64, NARROWINGS = 4, NARROWER = 9 };
+enum { MOST_FIRST = 8, MOST_REMEMBERED = 64, NARROWINGS = 4, NARROWER = 9, MOST_TURNS = 4 };
 
 typedef struct trial {
   int first, second; /* suspects; second below 0: none */
@@ -156,22 +156,38 @@ static conic_status narrow_value(trial_run *r, trial *best, int *n, int which) {
   return CONIC_OK;
 }
 
-/* All others beside each of the best; those of the finished picture first, while the first one is drawn. */
+/* All others beside one of them; those of the finished picture first, while that one is drawn. */
+static conic_status try_beside(trial_run *r, int first, trial *pair) {
+  conic_status status = CONIC_OK;
+  for (int pass = 0; pass < 2; pass++)
+    for (int i = 0; i < r->t->n_suspects && status == CONIC_OK; i++) {
+      trial new = {.first = first, .second = i};
+      if (is_same_name(r->t, first, i) || conic_suspect_is_finish(&r->t->suspects[i]) == pass ||
+          (conic_suspect_is_profile(&r->t->suspects[i]) && conic_suspect_is_profile(&r->t->suspects[first])))
+        continue;
+      status = try_planted(r, &new);
+      if (status == CONIC_OK && new.left < pair->left)
+        *pair = new;
+    }
+  return status;
+}
+
+/* Beside each of the best; then beside each of the two that were found, as long as that finds better ones: a mistake
+ * that explains nothing alone may be one of two. */
 static conic_status try_all_pairs(trial_run *r, const trial *best, int n, trial *pair) {
   conic_status status = CONIC_OK;
   const int most = best[0].left > little_left ? MOST_FIRST : 1, n_first = n < most ? n : most;
-  r->n_planned = r->n_done + (size_t)(n_first * r->t->n_suspects);
-  for (int first = 0; first < n_first && pair->left > least_left; first++)
-    for (int pass = 0; pass < 2; pass++)
-      for (int i = 0; i < r->t->n_suspects && status == CONIC_OK; i++) {
-        trial new = {.first = best[first].first, .second = i};
-        if (is_same_name(r->t, new.first, i) || conic_suspect_is_finish(&r->t->suspects[i]) == pass ||
-            (conic_suspect_is_profile(&r->t->suspects[i]) && conic_suspect_is_profile(&r->t->suspects[new.first])))
-          continue;
-        status = try_planted(r, &new);
-        if (status == CONIC_OK && new.left < pair->left)
-          *pair = new;
-      }
+  r->n_planned = r->n_done + (size_t)((n_first + 2) * r->t->n_suspects);
+  for (int i = 0; i < n_first && pair->left > least_left && status == CONIC_OK; i++)
+    status = try_beside(r, best[i].first, pair);
+  for (int turn = 0; turn < MOST_TURNS && n_first > 1 && pair->left > least_left && status == CONIC_OK; turn++) {
+    const trial before = *pair;
+    status = try_beside(r, before.second, pair);
+    if (status == CONIC_OK && pair->left == before.left)
+      status = try_beside(r, before.first, pair);
+    if (pair->left == before.left)
+      break;
+  }
   return status;
 }
 
@@ -206,7 +222,7 @@ static double alone_of(const conic_trials *t, const trial *best, int n, int susp
 }
 
 static conic_status explain_picture(trial_run *r, conic_diagnosis *found, int room, int *n_found) {
-  trial best[MOST_REMEMBERED + 1], pair = {.left = 1.0};
+  trial best[MOST_REMEMBERED + 1], pair = {.first = -1, .left = INFINITY};
   int n = 0;
   r->n_planned = (size_t)r->t->n_suspects;
   r->to = 0.3;
@@ -226,7 +242,7 @@ static conic_status explain_picture(trial_run *r, conic_diagnosis *found, int ro
     status = try_all_pairs(r, best, n, &pair);
   if (status != CONIC_OK)
     return status;
-  if (pair.left < 1.0 - least_share && pair.left < (1.0 - second_share) * best[0].left) {
+  if (pair.first >= 0 && pair.left < 1.0 - least_share && pair.left < (1.0 - second_share) * best[0].left) {
     const int is_turned = alone_of(r->t, best, n, pair.second) < alone_of(r->t, best, n, pair.first);
     const int first = is_turned ? pair.second : pair.first, second = is_turned ? pair.first : pair.second;
     add_diagnosis(r->t, first, second, pair.left, found, room, n_found);
