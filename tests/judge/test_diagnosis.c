@@ -181,7 +181,8 @@ static void make_world(conic_context *context, uint64_t seed, conic_gaussian_pro
     for (int k = 0; k < 4; k++)
       made.rotation[k][i] *= 0.6f + 0.1f * (float)(i % 9);
     for (int k = 0; k < 3; k++)
-      made.scale[k][i] *= 2.0f;
+      made.scale[k][i] *= i % 4 ? 2.0f : 5.0f;
+    made.opacity[i] = i % 4 ? made.opacity[i] : 0.9999f;
   }
   w->camera = made_camera(16, profile != CONIC_PROFILE_INRIA_2023 && profile != CONIC_PROFILE_2DGS_2024);
   for (size_t i = 0; i < 3; i++) { /* 0.1 before the eye */
@@ -226,7 +227,7 @@ static void test_pair(diagnosed_world *w) {
 }
 
 static void test_made(conic_context *context) {
-  static const conic_gaussian_profile profiles[] = {CONIC_PROFILE_GSPLAT_1_6, CONIC_PROFILE_INRIA_2023,
+  static const conic_gaussian_profile profiles[] = {CONIC_PROFILE_GSPLAT_1_5, CONIC_PROFILE_INRIA_2023,
                                                     CONIC_PROFILE_2DGS_GSPLAT};
   char path[160];
   snprintf(path, sizeof path, "%s", files_path("scene.ply"));
