@@ -18,8 +18,8 @@ static conic_status allocate_surfels(conic_context *context, size_t n, conic_spl
 }
 
 /* A sheet of 7 × 5 from `from` on, a step along `along` and one along `down`; splats reach over their neighbours. */
-static void put_sheet(conic_splats *splats, size_t first, const double from[3], const double along[3],
-                      const double down[3]) {
+static void put_surfel_sheet(conic_splats *splats, size_t first, const double from[3], const double along[3],
+                             const double down[3]) {
   for (size_t i = 0; i < 35; i++) {
     double center[3], u[3], v[3];
     for (int axis = 0; axis < 3; axis++) {
@@ -43,7 +43,7 @@ conic_status cli_suite_sheet(conic_context *context, conic_splats *splats) {
   static const double from[3] = {-1.5, -0.9, -0.3}, along[3] = {0.5, 0.03, 0.1}, down[3] = {0.02, 0.42, 0.05};
   conic_status status = allocate_surfels(context, 35, splats);
   if (status == CONIC_OK)
-    put_sheet(splats, 0, from, along, down);
+    put_surfel_sheet(splats, 0, from, along, down);
   return status;
 }
 
@@ -54,8 +54,8 @@ conic_status cli_suite_corner(conic_context *context, conic_splats *splats) {
                       other_down[3] = {0.03, 0.4, 0.0};
   conic_status status = allocate_surfels(context, 70, splats);
   if (status == CONIC_OK) {
-    put_sheet(splats, 0, from, along, down);
-    put_sheet(splats, 35, other_from, other_along, other_down);
+    put_surfel_sheet(splats, 0, from, along, down);
+    put_surfel_sheet(splats, 35, other_from, other_along, other_down);
   }
   return status;
 }
@@ -65,6 +65,6 @@ conic_status cli_suite_steep(conic_context *context, conic_splats *splats) {
   static const double from[3] = {-1.2, 0.35, -3.2}, along[3] = {0.4, 0.0, 0.0}, down[3] = {0.0, 0.01, 0.8};
   conic_status status = allocate_surfels(context, 35, splats);
   if (status == CONIC_OK)
-    put_sheet(splats, 0, from, along, down);
+    put_surfel_sheet(splats, 0, from, along, down);
   return status;
 }
