@@ -145,11 +145,13 @@ class _Call:
         if isinstance(picture, (str, os.PathLike, Picture)):
             return self.picture(picture)
         if isinstance(picture, dict):
+            planes = {name: _whole(plane, name) for name, plane in picture.items() if name != "statistics"}
             path = self._temporary("npz")
-            numpy.savez(path, **{name: _whole(plane, name) for name, plane in picture.items() if name != "statistics"})
+            numpy.savez(path, **planes)
             return path
+        pixels = numpy.ascontiguousarray(_pixels(picture, channels))
         path = self._temporary("npy")
-        numpy.save(path, numpy.ascontiguousarray(_pixels(picture, channels)))
+        numpy.save(path, pixels)
         return path
 
     def _temporary(self, ending: str) -> str:

@@ -1,12 +1,12 @@
 /* What is lent under a name is read and drawn as a file of the same numbers is. */
-#include "core/base/loan.h"
+#include "core/base/loan_find.h"
 
 #include <string.h>
 
 #include "conic/conic.h"
 #include "tests/support/check.h"
 
-static void check_names(conic_context *context) {
+static void check_lent_names(conic_context *context) {
   conic_camera camera = {.width = 4, .height = 3, .fx = 2.0, .fy = 2.0};
   CHECK(conic_lend(context, "camera", &camera) == CONIC_ERROR_ARGUMENT);
   CHECK(conic_lend(context, "memory:sphere:1", &camera) == CONIC_ERROR_ARGUMENT);
@@ -20,7 +20,7 @@ static void check_names(conic_context *context) {
   CHECK(!conic_loan_find(context, "memory:camera:1", "camera"));
 }
 
-static void check_cameras(conic_context *context) {
+static void check_lent_cameras(conic_context *context) {
   conic_camera camera = {.width = 4, .height = 3, .fx = 2.0, .fy = 3.0, .cx = 2.0, .cy = 1.5}, found;
   for (int i = 0; i < 3; i++)
     camera.cam_from_world[i][i] = 1.0;
@@ -39,7 +39,7 @@ static void check_cameras(conic_context *context) {
   conic_take_back_loans(context);
 }
 
-static void check_images(conic_context *context) {
+static void check_lent_images(conic_context *context) {
   conic_image image, found;
   CHECK(conic_image_allocate(context, 3, 2, 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_ID, &image) == CONIC_OK);
   for (uint32_t i = 0; i < 6; i++)
@@ -84,7 +84,7 @@ static conic_status add_batch(void *cookie, const conic_splats *batch) {
   return CONIC_OK;
 }
 
-static void check_splats(conic_context *context) {
+static void check_lent_splats(conic_context *context) {
   conic_splats splats = make_rows();
   conic_model model;
   size_t n = 0;
@@ -109,7 +109,7 @@ static void check_splats(conic_context *context) {
 }
 
 /* Of what is drawn where it lies, and of what has to be put right before. */
-static uint64_t draw(conic_context *context, const conic_splats *splats, int is_borrowed) {
+static uint64_t draw_lent(conic_context *context, const conic_splats *splats, int is_borrowed) {
   const char *const name = "memory:splats:drawn";
   conic_source *source;
   conic_renderer *renderer;
@@ -138,17 +138,17 @@ static void check_drawing(conic_context *context) {
   conic_splats strided = make_rows(), close = {.origin = {10.0, 0.0, 0.0}};
   strided.scalar = NULL;
   CHECK(conic_splats_append(context, &close, &strided) == CONIC_OK);
-  uint64_t hash = draw(context, &close, 1);
-  CHECK(hash != 0 && draw(context, &strided, 0) == hash);
+  uint64_t hash = draw_lent(context, &close, 1);
+  CHECK(hash != 0 && draw_lent(context, &strided, 0) == hash);
   float before = close.tangent_u[0][2];
   close.tangent_u[0][2] = 0.0f; /* no axis */
-  CHECK(draw(context, &close, 0) != hash);
+  CHECK(draw_lent(context, &close, 0) != hash);
   close.tangent_u[0][2] = before;
-  CHECK(draw(context, &close, 1) == hash);
+  CHECK(draw_lent(context, &close, 1) == hash);
   conic_splats_release(context, &close);
 }
 
-static void check_triangles(conic_context *context) {
+static void check_lent_triangles(conic_context *context) {
   float x[] = {0.0f, 1.0f, 0.0f}, y[] = {0.0f, 0.0f, 1.0f}, z[] = {0.0f, 0.0f, 0.0f}, u[] = {0.0f, 0.5f, 1.0f};
   uint32_t corners[][3] = {{0, 1, 2}};
   conic_triangles mesh = {.count = 1, .corners = corners, .n_vertices = 3, .position = {x, y, z}}, found;
@@ -164,7 +164,7 @@ static void check_triangles(conic_context *context) {
   conic_take_back_loans(context);
 }
 
-static void check_gaussians(conic_context *context) {
+static void check_lent_gaussians(conic_context *context) {
   float numbers[11] = {1.0f, 2.0f, 3.0f, 0.1f, 0.2f, 0.3f, 1.0f, 0.0f, 0.0f, 0.0f, 0.5f}, sh[12];
   conic_gaussians set = {.count = 1, .opacity = &numbers[10], .sh_degree = 1, .sh = sh, .frame = "rub"}, found;
   for (int i = 0; i < 12; i++)
@@ -195,13 +195,13 @@ static void check_gaussians(conic_context *context) {
 int main(void) {
   conic_context *context;
   CHECK(conic_context_create(NULL, &context) == CONIC_OK);
-  check_names(context);
-  check_cameras(context);
-  check_images(context);
-  check_splats(context);
+  check_lent_names(context);
+  check_lent_cameras(context);
+  check_lent_images(context);
+  check_lent_splats(context);
   check_drawing(context);
-  check_triangles(context);
-  check_gaussians(context);
+  check_lent_triangles(context);
+  check_lent_gaussians(context);
   conic_camera camera = {.width = 1};
   CHECK(conic_lend(context, "memory:camera:left", &camera) == CONIC_OK); /* goes with the context */
   conic_context_destroy(context);
