@@ -16,7 +16,7 @@ static const conic_camera camera = {.width = SIDE,
                                     .cy = 20.0,
                                     .cam_from_world = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 4}}};
 
-static conic_gaussian_options options_of(conic_gaussian_profile profile) {
+static conic_gaussian_options gradient_test_options(conic_gaussian_profile profile) {
   conic_gaussian_options options;
   conic_gaussian_options_init(&options);
   options.profile = profile;
@@ -25,7 +25,7 @@ static conic_gaussian_options options_of(conic_gaussian_profile profile) {
 
 static conic_gaussian_gradient own_gradient(conic_context *context, const conic_gaussians *scene,
                                             conic_gaussian_profile profile, int is_raw) {
-  const conic_gaussian_options options = options_of(profile);
+  const conic_gaussian_options options = gradient_test_options(profile);
   conic_gradient_options how;
   conic_gaussian_gradient g;
   conic_gradient_options_init(&how);
@@ -38,7 +38,7 @@ static conic_gaussian_gradient own_gradient(conic_context *context, const conic_
 static conic_gradient_verdict judged(conic_context *context, const conic_gaussians *scene,
                                      conic_gaussian_profile profile, int is_raw, const conic_gaussian_gradient *theirs,
                                      uint8_t *classes) {
-  const conic_gaussian_options options = options_of(profile);
+  const conic_gaussian_options options = gradient_test_options(profile);
   conic_gradient_options how;
   conic_gradient_verdict v;
   conic_gradient_options_init(&how);
@@ -48,7 +48,7 @@ static conic_gradient_verdict judged(conic_context *context, const conic_gaussia
 }
 
 /* Equal; a little off; much off, one number at a time, and named. */
-static void test_classes(conic_context *context, conic_gaussian_profile profile, int is_raw) {
+static void test_gradient_classes(conic_context *context, conic_gaussian_profile profile, int is_raw) {
   uint8_t classes[N_GAUSSIANS];
   conic_gaussians scene = gaussians_random(context, N_GAUSSIANS, 1, 0);
   conic_gaussian_gradient g = own_gradient(context, &scene, profile, is_raw);
@@ -104,7 +104,7 @@ static void test_explained(conic_context *context, int is_order) {
   scene.opacity[0] = least * (1.0f + 0x1p-23f);
   if (is_order)
     scene.position[2][1] = 0x1p-24f;
-  const conic_gaussian_options options = options_of(profile);
+  const conic_gaussian_options options = gradient_test_options(profile);
   conic_gaussian_gradient g;
   CHECK_OK(conic_gaussian_gradient_find(context, &scene, &centered, &options, &weights, NULL, &g));
   scene.opacity[0] = is_order ? scene.opacity[0] : least * (1.0f - 0x1p-22f);
@@ -164,10 +164,10 @@ static void test_judge_refusals(conic_context *context) {
   conic_gaussians scene = gaussians_random(context, 20, 1, 0), fewer = gaussians_random(context, 19, 1, 0);
   conic_gaussian_gradient g = own_gradient(context, &scene, CONIC_PROFILE_GSPLAT_1_6, 0);
   conic_gradient_verdict v;
-  conic_gaussian_options options = options_of(CONIC_PROFILE_EXACT);
+  conic_gaussian_options options = gradient_test_options(CONIC_PROFILE_EXACT);
   CHECK(conic_gaussian_gradient_judge(context, &scene, &camera, &options, &weights, NULL, &g, NULL, &v) ==
         CONIC_ERROR_UNSUPPORTED);
-  options = options_of(CONIC_PROFILE_GSPLAT_1_6);
+  options = gradient_test_options(CONIC_PROFILE_GSPLAT_1_6);
   CHECK(conic_gaussian_gradient_judge(context, &fewer, &camera, &options, &weights, NULL, &g, NULL, &v) ==
         CONIC_ERROR_ARGUMENT);
   g.sh_degree = 0;
@@ -188,8 +188,8 @@ int main(void) {
     weight_numbers[i] = 2.0 * random_unit(&state) - 1.0;
   for (int i = 0; i < SIDE * SIDE; i++)
     alpha_numbers[i] = 2.0 * random_unit(&state) - 1.0;
-  test_classes(context, CONIC_PROFILE_GSPLAT_1_6_AA, 0);
-  test_classes(context, CONIC_PROFILE_INRIA_2023, 1);
+  test_gradient_classes(context, CONIC_PROFILE_GSPLAT_1_6_AA, 0);
+  test_gradient_classes(context, CONIC_PROFILE_INRIA_2023, 1);
   test_explained(context, 0);
   test_explained(context, 1);
   test_gradient_files(context);
