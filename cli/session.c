@@ -87,10 +87,8 @@ static void print_message(conic_log_level level, const char *format, va_list arg
 
 /* What a host is to know of a failure that is told here first. */
 static void note_failure(int exit_code) {
-  if (thread_host && thread_host->status == CONIC_OK)
-    thread_host->status = (int)(exit_code == CLI_USAGE   ? CONIC_ERROR_ARGUMENT
-                                : exit_code == CLI_INPUT ? CONIC_ERROR_INPUT
-                                                         : CONIC_ERROR_UNSUPPORTED);
+  if (thread_host && thread_host->status == CONIC_OK && exit_code != CLI_RESOURCE) /* of which there are several */
+    thread_host->status = (int)(exit_code == CLI_USAGE ? CONIC_ERROR_ARGUMENT : CONIC_ERROR_INPUT);
 }
 
 int cli_usage(const char *format, ...) {

@@ -22,7 +22,7 @@ static conic_status draw_gaussian_world(void *data, const conic_planted *planted
 }
 
 /* The camera of `samples` × `samples` samples a pixel. */
-static conic_camera camera_of_samples(const conic_camera *camera, int samples) {
+static conic_camera fine_camera_of(const conic_camera *camera, int samples) {
   conic_camera fine = *camera;
   const double n = samples;
   fine.width *= samples;
@@ -42,7 +42,7 @@ static conic_planted right_gaussians(const conic_gaussians *gaussians, const con
                          .most_degree = gaussians->sh_degree,
                          .is_opaque = judging->is_opaque,
                          .axes = 1.0};
-  right.camera = camera_of_samples(camera, judging->samples);
+  right.camera = fine_camera_of(camera, judging->samples);
   if (right.rules.takes_middle) {
     right.camera.cx = 0.5 * right.camera.width;
     right.camera.cy = 0.5 * right.camera.height;
@@ -51,7 +51,7 @@ static conic_planted right_gaussians(const conic_gaussians *gaussians, const con
   return right;
 }
 
-static conic_status check_arguments(conic_context *context, const conic_camera *camera, const conic_image *image,
+static conic_status check_diagnosis(conic_context *context, const conic_camera *camera, const conic_image *image,
                                     const uint8_t *classes, const conic_diagnosis *found, int room, int samples) {
   if (!camera || !image || !classes || !found || room < 0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "diagnose: an argument is null");
@@ -68,10 +68,11 @@ static size_t cells_of(int samples) {
   return n > 8 ? n : 8;
 }
 
-static conic_status run_trials(conic_trials *trials, const conic_image *image, const uint8_t *classes, int n_fine,
-                               conic_diagnosis *found, int room, int *n_found) {
+static conic_status run_trials(conic_trials *trials, const conic_image *image, const conic_image *greatest,
+                               const uint8_t *classes, int n_fine, conic_diagnosis *found, int room, int *n_found) {
   conic_diagnosis_samples samples;
-  conic_status status = conic_diagnosis_samples_choose(trials->context, image, classes, cells_of(n_fine), &samples);
+  conic_status status =
+      conic_diagnosis_samples_choose(trials->context, image, greatest, classes, cells_of(n_fine), &samples);
   trials->samples = &samples;
   if (status == CONIC_OK && samples.n)
     status = conic_trials_run(trials, found, room, n_found);
@@ -93,26 +94,30 @@ conic_status conic_gaussian_diagnose(conic_context *context, const conic_gaussia
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "diagnose: an argument is null, or there is no such profile");
   conic_status status = conic_gaussians_check(context, gaussians, "diagnose");
   if (status == CONIC_OK)
-    status = check_arguments(context, camera, image, classes, found, room, how.samples);
+    status = check_diagnosis(context, camera, image, classes, found, room, how.samples);
   if (status != CONIC_OK)
     return status;
   gaussian_world world = {context, gaussians, how.samples};
   const conic_planted right = right_gaussians(gaussians, camera, &own, &how);
   conic_trials trials = {.context = context, .right = &right, .draw = draw_gaussian_world, .world = &world};
   trials.n_suspects = conic_suspects_of_gaussians(&right, trials.suspects);
-  return run_trials(&trials, image, classes, how.samples, found, room, n_found);
+  return run_trials(&trials, image, how.greatest, classes, how.samples, found, room, n_found);
 }
 
 conic_status conic_drawing_diagnose(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
-                                    const conic_render_options *options, int samples, const conic_image *image,
+                                    const conic_render_options *options, int samples,
+                                    const conic_oracle_judging *judging, const conic_image *image,
                                     const uint8_t *classes, conic_diagnosis *found, int room, int *n_found) {
   conic_planted_drawing world;
-  conic_planted right = {.axes = 1.0, .is_opaque = 0};
+  conic_planted right = {.axes = 1.0, .is_of_surfels = 1};
+  conic_oracle_judging how;
   conic_render_options_init(&right.options);
+  conic_oracle_judging_init(&how);
   *n_found = 0;
-  if (!drawing || (options && !conic_options_take(&right.options, options)))
+  if (!drawing || (options && !conic_options_take(&right.options, options)) ||
+      (judging && !conic_options_take(&how, judging)))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "diagnose: an argument is null");
-  conic_status status = check_arguments(context, camera, image, classes, found, room, samples);
+  conic_status status = check_diagnosis(context, camera, image, classes, found, room, samples);
   if (status != CONIC_OK)
     return status;
   right.camera = *camera;
@@ -120,7 +125,7 @@ conic_status conic_drawing_diagnose(conic_context *context, const conic_drawing 
   conic_trials trials = {.context = context, .right = &right, .draw = conic_planted_drawing_draw, .world = &world};
   trials.n_suspects = conic_suspects_of_surfels(&right, trials.suspects);
   if (status == CONIC_OK)
-    status = run_trials(&trials, image, classes, 1, found, room, n_found);
+    status = run_trials(&trials, image, how.greatest, classes, 1, found, room, n_found);
   conic_planted_drawing_end(&world);
   return status;
 }

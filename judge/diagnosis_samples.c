@@ -45,7 +45,7 @@ static unsigned find_channels(const conic_image *image) {
   return channels;
 }
 
-static size_t cell_of(const conic_image *image, size_t pixel) {
+static size_t cell_of_sample(const conic_image *image, size_t pixel) {
   size_t width = (size_t)image->width, across = (width + CONIC_CELL - 1) / CONIC_CELL;
   return pixel / width / CONIC_CELL * across + pixel % width / CONIC_CELL;
 }
@@ -59,7 +59,7 @@ static void choose_cells(const conic_image *image, const uint8_t *classes, size_
   for (size_t pixel = 0; pixel < n; pixel++) {
     if (classes[pixel] != CONIC_PIXEL_WRONG || i_wrong++ % step != step / 2)
       continue;
-    size_t cell = cell_of(image, pixel);
+    size_t cell = cell_of_sample(image, pixel);
     if (!is_chosen[cell] && s->n_cells < most_cells) {
       is_chosen[cell] = 1;
       s->cells[s->n_cells++] =
@@ -68,8 +68,8 @@ static void choose_cells(const conic_image *image, const uint8_t *classes, size_
   }
 }
 
-static void take_cell(const conic_image *image, const uint8_t *classes, conic_sample_cell *cell,
-                      conic_diagnosis_samples *s) {
+static void take_cell(const conic_image *image, const conic_image *greatest, const uint8_t *classes,
+                      conic_sample_cell *cell, conic_diagnosis_samples *s) {
   cell->first = s->n;
   for (int y = cell->y; y < cell->y + CONIC_CELL && y < image->height; y++)
     for (int x = cell->x; x < cell->x + CONIC_CELL && x < image->width; x++) {
@@ -79,44 +79,15 @@ static void take_cell(const conic_image *image, const uint8_t *classes, conic_sa
       s->places[s->n][0] = (uint16_t)x;
       s->places[s->n][1] = (uint16_t)y;
       s->is_wrong[s->n] = classes[pixel] == CONIC_PIXEL_WRONG;
-      conic_channels_of_image(image, pixel, s->theirs[s->n++]);
+      conic_channels_of_image(image, pixel, s->low[s->n]);
+      conic_channels_of_image(greatest ? greatest : image, pixel, s->high[s->n++]);
     }
   cell->n = s->n - cell->first;
 }
 
-static float colour_as_told(int is_encoded, float value) {
-  return is_encoded ? (float)conic_srgb_encode((double)value) : value;
-}
-
-/* Whether all colours are multiples of 1/most. */
-static int are_codes(const conic_diagnosis_samples *s, double most, int is_encoded) {
-  int is_any = 0;
-  for (size_t i = 0; i < s->n; i++)
-    for (int c = 0; c < 3; c++) {
-      const double code = most * (double)colour_as_told(is_encoded, s->theirs[i][c]);
-      if (!(fabs(code - floor(code + 0.5)) < 0.004) || code < 0.0 || code > most + 0.5)
-        return 0;
-      is_any |= code > 0.5 && code < most - 0.5;
-    }
-  return is_any;
-}
-
-static void find_step(conic_diagnosis_samples *s) {
-  for (double most = 255.0; most <= 65535.0; most *= 257.0)
-    for (int is_encoded = 0; is_encoded < 2; is_encoded++) {
-      if (!are_codes(s, most, is_encoded))
-        continue;
-      s->step = (float)(1.0 / most);
-      s->is_encoded = is_encoded;
-      for (size_t i = 0; i < s->n; i++)
-        for (int c = 0; c < 3; c++)
-          s->theirs[i][c] = colour_as_told(is_encoded, s->theirs[i][c]);
-      return;
-    }
-}
-
-conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_image *image, const uint8_t *classes,
-                                            size_t most_cells, conic_diagnosis_samples *s) {
+conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_image *image,
+                                            const conic_image *greatest, const uint8_t *classes, size_t most_cells,
+                                            conic_diagnosis_samples *s) {
   const size_t n = (size_t)image->width * (size_t)image->height;
   size_t n_wrong = 0;
   memset(s, 0, sizeof *s);
@@ -127,7 +98,7 @@ conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_
     n_wrong += classes[pixel] == CONIC_PIXEL_WRONG;
   if (!n_wrong)
     return CONIC_OK;
-  uint8_t *is_chosen = conic_memory_allocate_zeroed(context, cell_of(image, n - 1) + 1, 1);
+  uint8_t *is_chosen = conic_memory_allocate_zeroed(context, cell_of_sample(image, n - 1) + 1, 1);
   if (!is_chosen)
     return CONIC_ERROR_MEMORY;
   most_cells = most_cells < CONIC_MOST_CELLS ? most_cells : CONIC_MOST_CELLS;
@@ -136,14 +107,13 @@ conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_
   const size_t room = s->n_cells * CONIC_CELL * CONIC_CELL;
   s->places = conic_memory_allocate(context, room, sizeof *s->places);
   s->is_wrong = conic_memory_allocate(context, room, 1);
-  s->theirs = conic_memory_allocate(context, room, sizeof *s->theirs);
-  if (!s->places || !s->is_wrong || !s->theirs)
+  s->low = conic_memory_allocate(context, room, sizeof *s->low);
+  s->high = conic_memory_allocate(context, room, sizeof *s->high);
+  if (!s->places || !s->is_wrong || !s->low || !s->high)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < s->n_cells; i++)
-    take_cell(image, classes, &s->cells[i], s);
+    take_cell(image, greatest, classes, &s->cells[i], s);
   s->channels = find_channels(image);
-  if (image->planes[CONIC_PLANE_RGBA])
-    find_step(s);
   return CONIC_OK;
 }
 
@@ -152,27 +122,30 @@ void conic_diagnosis_samples_release(conic_diagnosis_samples *s) {
     return;
   conic_memory_release(s->context, s->places);
   conic_memory_release(s->context, s->is_wrong);
-  conic_memory_release(s->context, s->theirs);
+  conic_memory_release(s->context, s->low);
+  conic_memory_release(s->context, s->high);
   memset(s, 0, sizeof *s);
 }
 
 /* At most 1. What is no number in the picture says nothing. */
-static double channel_distance(const conic_diagnosis_samples *s, int channel, float theirs, float value) {
-  double d = fabs((double)theirs - (double)value), scale = 1.0;
-  if (!(theirs - theirs == 0.0f))
+static double channel_distance(int channel, float low, float high, float value) {
+  double scale = 1.0, d = 0.0;
+  if (low != low || high != high)
     return 0.0;
-  if (channel <= CONIC_CHANNEL_A)
-    d = d > 0.5 * (double)s->step ? d - 0.5 * (double)s->step : 0.0;
+  if (!(value >= low))
+    d = (double)low - (double)value;
+  else if (value > high)
+    d = (double)value - (double)high;
   if (channel >= CONIC_CHANNEL_Z)
-    scale = fmax(fabs((double)theirs), fabs((double)value));
-  return d < scale ? d / scale : d > 0.0 || d != d ? 1.0 : 0.0;
+    scale = fmax(fabs((double)(d > 0.0 && value > high ? high : low)), fabs((double)value));
+  return d < scale ? d / scale : d == 0.0 ? 0.0 : 1.0;
 }
 
 static double pixel_distance(const conic_diagnosis_samples *s, size_t i, const conic_channels values) {
   double sum = 0.0;
   for (int channel = 0; channel < CONIC_N_COMPARED_CHANNELS; channel++)
     if (s->channels >> channel & 1)
-      sum += channel_distance(s, channel, s->theirs[i][channel], values[channel]);
+      sum += channel_distance(channel, s->low[i][channel], s->high[i][channel], values[channel]);
   return sum;
 }
 
@@ -226,18 +199,16 @@ static float alpha_factor(conic_planted_alpha alpha, const conic_channels v) {
   }
 }
 
-void conic_planted_finish(const conic_planted *p, const conic_diagnosis_samples *s, conic_channels *values) {
+void conic_planted_finish(const conic_planted *p, size_t n, conic_channels *values) {
   const int is_weighted = p->alpha >= CONIC_ALPHA_WEIGHTED;
-  for (size_t i = 0; i < s->n; i++) {
+  for (size_t i = 0; i < n; i++) {
     float *v = values[i], factor = alpha_factor(p->alpha, v), gloss = is_weighted ? 1.0f : factor;
     const float T = v[CONIC_CHANNEL_T];
     for (int c = 0; c < 3; c++) {
-      v[c] = (factor * v[c] + gloss * v[CONIC_CHANNEL_GLOSS + c]) + T * p->behind[c];
+      v[c] = factor * (v[c] + T * p->behind[c]) + gloss * v[CONIC_CHANNEL_GLOSS + c];
       v[CONIC_CHANNEL_ALBEDO + c] *= is_weighted ? factor : 1.0f;
       if (p->transfer)
         v[c] = conic_planted_transferred(p->transfer, v[c]);
-      if (s->step > 0.0f)
-        v[c] = colour_as_told(s->is_encoded, v[c] > 0.0f ? (v[c] < 1.0f ? v[c] : 1.0f) : 0.0f);
     }
     v[CONIC_CHANNEL_A] = p->is_opaque ? 1.0f : 1.0f - T;
   }

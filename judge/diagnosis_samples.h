@@ -37,17 +37,16 @@ typedef struct conic_diagnosis_samples {
   size_t n, n_cells;
   uint16_t (*places)[2];
   uint8_t *is_wrong;
-  conic_channels *theirs;
-  unsigned channels; /* that the picture has, as bits */
-  float step;        /* of colours that are codes of 8 or 16 bits; 0: of floats */
-  int is_encoded;    /* those are of sRGB, as `theirs` then is, and linear in the picture */
+  conic_channels *low, *high; /* what the picture's values stand for */
+  unsigned channels;          /* that the picture has, as bits */
   conic_sample_cell cells[CONIC_MOST_CELLS];
 } conic_diagnosis_samples;
 
-/* Chooses at most `most_cells` cells, where pixels are wrong. Without wrong ones, none. On failure *samples is to be
- * released, too. Errors: MEMORY. */
-conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_image *image, const uint8_t *classes,
-                                            size_t most_cells, conic_diagnosis_samples *samples);
+/* Chooses at most `most_cells` cells, where pixels are wrong. Without wrong ones, none. `greatest` may be null, as in
+ * conic_gaussian_judging. On failure *samples is to be released, too. Errors: MEMORY. */
+conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_image *image,
+                                            const conic_image *greatest, const uint8_t *classes, size_t most_cells,
+                                            conic_diagnosis_samples *samples);
 void conic_diagnosis_samples_release(conic_diagnosis_samples *samples);
 
 /* The channels of an image at a pixel; those that it lacks are 0. */
@@ -61,6 +60,6 @@ double conic_diagnosis_distance(const conic_diagnosis_samples *samples, const co
 float conic_planted_transferred(conic_planted_transfer transfer, float value);
 
 /* What is done to the finished picture at the samples. */
-void conic_planted_finish(const conic_planted *planted, const conic_diagnosis_samples *samples, conic_channels *values);
+void conic_planted_finish(const conic_planted *planted, size_t n, conic_channels *values);
 
 #endif

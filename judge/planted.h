@@ -70,11 +70,13 @@ typedef struct conic_planted {
   conic_planted_extent extent;
   float falloff_end; /* half of the q at which the falloff is 0; 0: none is */
   int has_unit_volume;
-  double least_z; /* means that are nearer are left out */
+  double least_z;    /* means that are nearer are left out */
+  float shift_px[2]; /* of the places on the screen from where the camera sees them */
   int most_degree;
   conic_planted_reading harmonics, rotation, scale, opacity;
   conic_planted_transfer own_transfer; /* of each Gaussian's own colour */
   /* Of surfels: */
+  int is_of_surfels;
   conic_render_options options;
   unsigned slips;
   double axes;
@@ -107,5 +109,7 @@ int conic_suspect_rank(const conic_suspect *suspect);
 /* Whether it is one of the finished picture, for which nothing is drawn anew. */
 int conic_suspect_is_finish(const conic_suspect *suspect);
 int conic_suspect_is_profile(const conic_suspect *suspect);
+/* Whether its value may be any: those that are listed are some. */
+int conic_suspect_is_any(const conic_suspect *suspect);
 
 #endif

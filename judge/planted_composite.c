@@ -30,9 +30,9 @@ static size_t place_in_tile(int x, int y) {
   return (size_t)(((y >> 2 & 3) * 4 + (x >> 2 & 3)) * 16 + (x & 3) * 4 + (y & 3));
 }
 
-static conic_ray_meeting meet_plain_ray(const conic_kept_gaussian *k, int x, int y) {
+static conic_ray_meeting meet_plain_ray(const conic_kept_gaussian *k, float dx, float dy) {
   const conic_gaussian_ray *r = &k->ray;
-  float dx = (float)(x - k->footprint.x), dy = (float)(y - k->footprint.y), g[3], c[3];
+  float g[3], c[3];
   for (int i = 0; i < 3; i++) {
     g[i] = r->g[0][i] + r->g[1][i] * dx + r->g[2][i] * dy;
     c[i] = r->c[0][i] + r->c[1][i] * dx + r->c[2][i] * dy;
@@ -61,7 +61,9 @@ static int is_in_extent(conic_planted_extent extent, const conic_gaussian_footpr
 /* Half of q, the depth and the opacity there. */
 static conic_ray_meeting meet_kept(const conic_planted_frame *frame, const conic_kept_gaussian *k, int x, int y) {
   const conic_gaussian_footprint *f = &k->footprint;
-  const float dx = (float)(x - f->x) + f->dx, dy = (float)(y - f->y) + f->dy;
+  const float across = (float)(x - f->x) - frame->planted->shift_px[0];
+  const float down = (float)(y - f->y) - frame->planted->shift_px[1];
+  const float dx = across + f->dx, dy = down + f->dy;
   conic_gaussian_list list = {.footprints = f, .rays = &k->ray, .filters = &k->filter, .sights = &k->sight};
   conic_ray_meeting m = {-1.0f, f->z, f->opacity};
   list.is_parallel = frame->view->is_parallel;
@@ -70,10 +72,10 @@ static conic_ray_meeting meet_kept(const conic_planted_frame *frame, const conic
     m.half_q = 0.5f * (f->form[0] * dx * dx + f->form[2] * dy * dy) + f->form[1] * dx * dy;
     break;
   case CONIC_SHAPE_RAY:
-    m = meet_plain_ray(k, x, y);
+    m = meet_plain_ray(k, across, down);
     break;
   case CONIC_SHAPE_DISC:
-    m = meet_plain_ray(k, x, y);
+    m = meet_plain_ray(k, across, down);
     m.half_q = m.half_q < dx * dx + dy * dy ? m.half_q : dx * dx + dy * dy;
     break;
   case CONIC_SHAPE_FILTERED:

@@ -69,6 +69,17 @@ static int meets_sample(const planted_job *j, const conic_gaussian_footprint *f)
   return j->grid[y1 * w + x1] + j->grid[y0 * w + x0] - j->grid[y0 * w + x1] - j->grid[y1 * w + x0] != 0;
 }
 
+/* A pixel more on each side, but beyond no border of the tiles that are covered. */
+static void grow_box(const conic_planted *p, conic_gaussian_footprint *f) {
+  const int size[2] = {p->camera.width, p->camera.height}, tile = CONIC_GAUSSIAN_TILE;
+  const int is_tiled = p->rules.coverage != CONIC_COVERAGE_ALPHA;
+  for (int axis = 0; axis < 2; axis++) {
+    const int first = f->box[0][axis], last = f->box[1][axis];
+    f->box[0][axis] = (uint16_t)(first - (is_tiled ? first % tile != 0 : first > 0));
+    f->box[1][axis] = (uint16_t)(last + (last < size[axis] - 1 && !(is_tiled && (last + 1) % tile == 0)));
+  }
+}
+
 static double depth_of_mean(const planted_job *j, const conic_gaussians *set, size_t i) {
   const double *row = j->planted->camera.cam_from_world[2];
   double z = row[3];
@@ -85,7 +96,7 @@ static double distance_of_mean(const planted_job *j, const conic_gaussians *set,
 }
 
 /* What is composited first has the least. */
-static uint64_t order_key(const planted_job *j, const conic_gaussians *set, size_t i, float own) {
+static uint64_t planted_key(const planted_job *j, const conic_gaussians *set, size_t i, float own) {
   const conic_planted *p = j->planted;
   float key = p->order == CONIC_ORDER_Z          ? (float)depth_of_mean(j, set, i)
               : p->order == CONIC_ORDER_DISTANCE ? (float)distance_of_mean(j, set, i)
@@ -115,6 +126,8 @@ static void keep_one(planted_job *j, const conic_gaussians *run, size_t i, size_
     return;
   conic_gaussian_fate fate =
       conic_gaussian_set_up(&j->view, run, i, &k->footprint, &key, &k->ray, &k->filter, &k->sight, k->normal);
+  if (fate == CONIC_GAUSSIAN_DRAWN && (p->shift_px[0] != 0.0f || p->shift_px[1] != 0.0f))
+    grow_box(p, &k->footprint);
   if (fate != CONIC_GAUSSIAN_DRAWN || !meets_sample(j, &k->footprint))
     return;
   if (p->has_unit_volume)
@@ -122,7 +135,7 @@ static void keep_one(planted_job *j, const conic_gaussians *run, size_t i, size_
   for (int c = 0; c < 3 && p->own_transfer; c++)
     k->footprint.color[c] = conic_planted_transferred(p->own_transfer, k->footprint.color[c]);
   const uint32_t index = (uint32_t)(first + i);
-  k->key = order_key(j, run, i, key) << 32 | (p->is_reversed ? ~index : index);
+  k->key = planted_key(j, run, i, key) << 32 | (p->is_reversed ? ~index : index);
   room->n++;
 }
 

@@ -18,6 +18,8 @@ conic_status conic_planted_drawing_begin(conic_context *context, const conic_dra
   for (int c = 0; c < 3 && right->options.has_background; c++)
     right->behind[c] = white * right->options.background[c];
   right->options.has_background = 0;
+  if (!(right->options.near_z > 0.0))
+    right->options.near_z = conic_drawing_near(drawing);
   conic_status status = conic_renderer_create(context, &w->renderer);
   if (status == CONIC_OK)
     status = conic_image_allocate(context, image->width, image->height, planes, &w->image);

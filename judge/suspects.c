@@ -18,7 +18,8 @@ enum {
   OF_RAW_ROTATION,
   OF_SCALE,
   OF_OPACITY,
-  OF_SHIFT,
+  OF_SHIFT, /* in pixels; of the camera's principal point, */
+  OF_CENTER_SHIFT,
   OF_CAMERA_MIRROR,
   OF_CENTER,
   OF_FOCAL,
@@ -33,10 +34,16 @@ enum {
   OF_TRANSFER
 };
 
-/* `how` of a shift: in x, then in y, in half pixels plus 1. */
-enum { SHIFT_NONE = 1, SHIFT_Y = 3 };
-
+/* A shift's `how` and value are half pixels in x and in y. */
 static const conic_suspect of_gaussians[] = {
+    {"half-pixel", OF_SHIFT, -1, -1.0},
+    {"half-pixel", OF_SHIFT, 1, 1.0},
+    {"half-pixel", OF_SHIFT, -1, 1.0},
+    {"half-pixel", OF_SHIFT, 1, -1.0},
+    {"half-pixel", OF_SHIFT, -1, 0.0},
+    {"half-pixel", OF_SHIFT, 1, 0.0},
+    {"half-pixel", OF_SHIFT, 0, -1.0},
+    {"half-pixel", OF_SHIFT, 0, 1.0},
     {"dilation-0", OF_DILATION, 0, 0.0},
     {"dilation-0.1", OF_DILATION, 0, 0.1},
     {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_ELLIPSE, 0.0},
@@ -109,23 +116,30 @@ static const conic_suspect of_surfels[] = {
     {"no-normalisation", OF_ALPHA, CONIC_ALPHA_WEIGHTED, 0.0},
     {"no-normalisation", OF_ALPHA, CONIC_ALPHA_WEIGHTED_LIMITED, 0.0},
     {"back-faces", OF_FACING, 0, 0.0},
-    {"near", OF_NEAR, 0, 0.001},
     {"near", OF_NEAR, 0, 0.01},
     {"near", OF_NEAR, 0, 0.1},
     {"near", OF_NEAR, 0, 0.2},
     {"near", OF_NEAR, 0, 0.5},
     {"near", OF_NEAR, 0, 1.0},
+    {"near", OF_NEAR, 0, 2.0},
+    {"near", OF_NEAR, 1, 10.0},
+    {"near", OF_NEAR, 1, 100.0},
+    {"near", OF_NEAR, 1, 1e3},
+    {"near", OF_NEAR, 1, 2e3},
+    {"near", OF_NEAR, 1, 5e3},
+    {"near", OF_NEAR, 1, 1e4},
+    {"near", OF_NEAR, 1, 1.5e4},
 };
 
 static const conic_suspect of_all[] = {
-    {"half-pixel", OF_SHIFT, 0, 0},
-    {"half-pixel", OF_SHIFT, 2, 2},
-    {"half-pixel", OF_SHIFT, 0, 2},
-    {"half-pixel", OF_SHIFT, 2, 0},
-    {"half-pixel", OF_SHIFT, 0, 1},
-    {"half-pixel", OF_SHIFT, 2, 1},
-    {"half-pixel", OF_SHIFT, 1, 0},
-    {"half-pixel", OF_SHIFT, 1, 2},
+    {"half-pixel", OF_CENTER_SHIFT, -1, -1.0},
+    {"half-pixel", OF_CENTER_SHIFT, 1, 1.0},
+    {"half-pixel", OF_CENTER_SHIFT, -1, 1.0},
+    {"half-pixel", OF_CENTER_SHIFT, 1, -1.0},
+    {"half-pixel", OF_CENTER_SHIFT, -1, 0.0},
+    {"half-pixel", OF_CENTER_SHIFT, 1, 0.0},
+    {"half-pixel", OF_CENTER_SHIFT, 0, -1.0},
+    {"half-pixel", OF_CENTER_SHIFT, 0, 1.0},
     {"mirrored-x", OF_MIRROR, 0, 0.0},
     {"mirrored-x", OF_CAMERA_MIRROR, 0, 0.0},
     {"mirrored-y", OF_MIRROR, 1, 0.0},
@@ -185,18 +199,29 @@ static void plant_extent(conic_planted *p, conic_planted_extent extent) {
   }
 }
 
-static void plant_near(conic_planted *p, double value) {
+/* `how`: of surfels, times what is right. */
+static void plant_near(conic_planted *p, int how, double factor) {
+  const double value = how ? factor * p->options.near_z : factor;
   p->rules.near_z = p->least_z = p->options.near_z = value;
   p->rules.disc_near = p->rules.disc_near > 0.0f ? (float)(value > 0.0 ? value : 1e-6) : 0.0f;
 }
 
+/* About the principal point. The renderer of surfels takes no camera that mirrors, but its picture can be turned. */
+static void plant_mirror(conic_planted *p, int axis) {
+  conic_camera *camera = &p->camera;
+  for (int k = 0; k < 4 && !p->is_of_surfels; k++)
+    camera->cam_from_world[axis][k] = -camera->cam_from_world[axis][k];
+  if (!p->is_of_surfels)
+    return;
+  p->mirrors[axis] = !p->mirrors[axis];
+  camera->cx = axis == 0 ? camera->width - camera->cx : camera->cx;
+  camera->cy = axis == 1 ? camera->height - camera->cy : camera->cy;
+}
+
 static void plant_in_camera(conic_camera *camera, const conic_suspect *s) {
-  if (s->kind == OF_SHIFT) {
-    camera->cx += 0.5 * (s->how - 1);
-    camera->cy += 0.5 * (s->value - 1.0);
-  } else if (s->kind == OF_CAMERA_MIRROR) {
-    for (int k = 0; k < 4; k++)
-      camera->cam_from_world[s->how][k] = -camera->cam_from_world[s->how][k];
+  if (s->kind == OF_CENTER_SHIFT) {
+    camera->cx += 0.5 * s->how;
+    camera->cy += 0.5 * s->value;
   } else if (s->kind == OF_CENTER) {
     camera->cx = s->how & 1 ? 0.5 * camera->width : camera->cx;
     camera->cy = s->how & 2 ? 0.5 * camera->height : camera->cy;
@@ -278,10 +303,16 @@ void conic_suspect_plant(const conic_suspect *s, conic_planted *p) {
     p->is_reversed = s->how;
     break;
   case OF_NEAR:
-    plant_near(p, s->value);
+    plant_near(p, s->how, s->value);
     break;
   case OF_SHIFT:
+    p->shift_px[0] = 0.5f * (float)s->how;
+    p->shift_px[1] = 0.5f * (float)s->value;
+    break;
   case OF_CAMERA_MIRROR:
+    plant_mirror(p, s->how);
+    break;
+  case OF_CENTER_SHIFT:
   case OF_CENTER:
   case OF_FOCAL:
     plant_in_camera(&p->camera, s);
@@ -303,6 +334,10 @@ int conic_suspect_rank(const conic_suspect *suspect) {
 
 int conic_suspect_is_finish(const conic_suspect *suspect) {
   return suspect->kind >= OF_ALPHA;
+}
+
+int conic_suspect_is_any(const conic_suspect *suspect) {
+  return suspect->kind == OF_NEAR;
 }
 
 int conic_suspect_is_profile(const conic_suspect *suspect) {

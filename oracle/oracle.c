@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/image/view_arguments.h"
 #include "core/splats/columns.h"
 #include "oracle/oracle_blocks.h"
@@ -90,7 +91,8 @@ static conic_status answer_drawing(conic_context *context, const conic_drawing *
   reference->white = conic_oracle_exp(settled->exposure * 0.69314718055994530942);
   conic_status status = allocate(context, request->n_pixels, reference);
   if (status == CONIC_OK)
-    status = conic_oracle_scene_create(context, drawing->splats, &fine, settled, request->is_brute, &scene);
+    status =
+        conic_oracle_scene_create(context, drawing->splats, &fine, settled, request->floats, request->is_brute, &scene);
   if (status == CONIC_OK) {
     status = conic_oracle_mesh_create(context, drawing, &scene, settled, &mesh);
     if (status == CONIC_OK) {
@@ -132,7 +134,24 @@ conic_status conic_oracle_render_pixels(conic_context *context, const conic_draw
                                         const conic_camera *camera, const conic_render_options *options,
                                         conic_oracle_question question, int samples, size_t n_pixels,
                                         conic_reference *reference) {
-  const oracle_request request = {question, samples, n_pixels, 0};
+  const oracle_request request = {question, samples, n_pixels, 0, CONIC_FLOATS_OWN};
+  return conic_oracle_draw(context, drawing, camera, options, &request, reference);
+}
+
+void conic_oracle_asking_init_sized(conic_oracle_asking *asking, size_t size) {
+  static const conic_oracle_asking own = {.size = sizeof own, .samples = 1};
+  conic_options_give(asking, size, &own);
+}
+
+conic_status conic_oracle_render_asked(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
+                                       const conic_render_options *options, const conic_oracle_asking *asking,
+                                       conic_reference *reference) {
+  conic_oracle_asking own;
+  memset(reference, 0, sizeof *reference);
+  conic_oracle_asking_init(&own);
+  if ((asking && !conic_options_take(&own, asking)) || (unsigned)own.floats >= CONIC_N_FLOAT_KINDS)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the oracle: no such options or floats");
+  const oracle_request request = {own.question, own.samples, own.n_pixels, 0, own.floats};
   return conic_oracle_draw(context, drawing, camera, options, &request, reference);
 }
 

@@ -1,8 +1,25 @@
 /* Which formula draws a splat: "Which splats" and "Which formula, in this order" of docs/reference/picture.md. */
 #include "oracle/oracle_splat.h"
 
-oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_options *options, double near_z) {
+/* Of another program nothing is known but that it computes in floats. It projects centres in them, through sums of four
+ * products whose factors are rounded, too, and has places on the screen as floats; its axes come of sums of three, and
+ * what it does at a pixel may take three times as many roundings as conic's. */
+oracle_floats conic_oracle_floats(conic_float_kind kind) {
+  const double own = ORACLE_ROUNDINGS * ORACLE_UNIT;
+  if (kind == CONIC_FLOATS_OWN)
+    return (oracle_floats){.unit = own, .axis = ORACLE_UNIT};
+  return (oracle_floats){.unit = 3.0 * own,
+                         .axis = 4.0 * ORACLE_UNIT,
+                         .centre = 5.0 * ORACLE_UNIT,
+                         .place = 3.0 * ORACLE_UNIT,
+                         .kernel = kind == CONIC_FLOATS_FAST ? 0x1p-20 : 0x1p-22,
+                         .is_setup_in_float = 1};
+}
+
+oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_options *options, double near_z,
+                              conic_float_kind floats) {
   oracle_view view = {*camera, near_z, options->kernel};
+  view.floats = conic_oracle_floats(floats);
   view.cutoff = (double)options->kernel.cutoff;
   double limit = view.cutoff;
   if (options->kernel.type == CONIC_KERNEL_CONFETTI)

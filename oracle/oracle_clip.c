@@ -124,7 +124,9 @@ void conic_oracle_clip(const oracle_view *view, const oracle_placed *s, const co
   double hand = oracle_dot(normal, s->p), longer = oracle_max(oracle_length(s->tu), oracle_length(s->tv));
   clip->is_unsure = !(fabs(hand) > 1e-13 * oracle_length(normal) * (extent + oracle_length(s->p)));
   double nearest = oracle_max(view->near_z, s->p[2] - 2.0 * view->cutoff * longer);
-  clip->position_error = 1e-9 + 1e-15 * extent * oracle_max(camera->fx, camera->fy) / nearest;
+  double roundoff = oracle_max(1e-15, view->floats.centre);
+  clip->position_error = 1e-9 + roundoff * extent * oracle_max(camera->fx, camera->fy) / nearest +
+                         view->floats.place * (camera->width + camera->height);
   for (int i = 0; i < given->n_lines && i < 2; i++) {
     if (!is_line(given->lines[i]))
       continue;

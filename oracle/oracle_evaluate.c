@@ -201,9 +201,8 @@ void conic_oracle_evaluate(const oracle_view *view, const oracle_shape *shape, d
 }
 
 /* V is held to a few roundings of its own entries, and so are the pixel's offset and what is summed from them. */
-static void round_ellipse(const oracle_shape *shape, const double offset[2], const double values[ORACLE_N_VALUES],
-                          double errors[ORACLE_N_VALUES]) {
-  const double unit = ORACLE_ROUNDINGS * ORACLE_UNIT;
+static void round_ellipse(const oracle_shape *shape, double unit, const double offset[2],
+                          const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES]) {
   double pull[2];
   oracle_apply(shape->inverse, offset, pull);
   double spread = fabs(pull[0]) * sqrt(shape->variance.xx) + fabs(pull[1]) * sqrt(shape->variance.yy);
@@ -217,7 +216,7 @@ static void round_ellipse(const oracle_shape *shape, const double offset[2], con
 /* U, V and iz are sums over the offset from the splat's place, each rounded; J and S follow from them. */
 static void round_ray(const oracle_view *view, const oracle_shape *shape, double x, double y,
                       const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES]) {
-  const double unit = ORACLE_ROUNDINGS * ORACLE_UNIT;
+  const double unit = view->floats.unit;
   const double(*rows)[3] = shape->from_screen;
   double moved[2] = {0.0, 0.0};
   ray_parameters at =
@@ -278,7 +277,7 @@ void conic_oracle_rounding(const oracle_view *view, const oracle_shape *shape, d
     errors[ORACLE_IZ] = errors[ORACLE_IZ_PLANE] = ORACLE_UNIT * shape->center_iz;
   } else {
     double offset[2] = {x - shape->center[0], y - shape->center[1]};
-    round_ellipse(shape, offset, values, errors);
+    round_ellipse(shape, view->floats.unit, offset, values, errors);
   }
   /* What is wrong in q is wrong in the kernel's value. */
   double q = view->support - values[ORACLE_MARGIN_Q], doubt, other_doubt,
@@ -286,4 +285,5 @@ void conic_oracle_rounding(const oracle_view *view, const oracle_shape *shape, d
   double change = here - response_at(view, shape, x, y, q + errors[ORACLE_MARGIN_Q], &other_doubt);
   if (here > 0.0)
     errors[ORACLE_WEIGHT] += values[ORACLE_WEIGHT] * (fabs(change / here) + doubt / here);
+  errors[ORACLE_WEIGHT] += values[ORACLE_WEIGHT] * view->floats.kernel;
 }

@@ -4,6 +4,8 @@
 /* Segments are set up in double precision, as are rays that reach near: nothing disturbs those. Nor does a point know
  * of its axes. */
 static int is_set_up_in_float(const oracle_view *view, const oracle_splat *splat) {
+  if (view->floats.is_setup_in_float)
+    return 1;
   switch (splat->formula) {
   case ORACLE_CONIC:
   case ORACLE_AFFINE:
@@ -21,9 +23,9 @@ void conic_oracle_candidate(const oracle_view *view, const oracle_splat *splat, 
   candidate->splat = splat;
   candidate->is_drawn =
       splat->formula != ORACLE_NOT_DRAWN && conic_oracle_shape(view, &splat->placed, splat->formula, &candidate->shape);
-  candidate->n_disturbed = is_set_up_in_float(view, splat) ? ORACLE_N_INPUTS : 0;
+  candidate->n_disturbed = is_set_up_in_float(view, splat) ? conic_oracle_n_inputs(view) : 0;
   for (int i = 0; i < candidate->n_disturbed; i++) {
-    oracle_placed moved = conic_oracle_disturb(&splat->placed, i);
+    oracle_placed moved = conic_oracle_disturb(view, &splat->placed, i);
     candidate->is_disturbed[i] =
         candidate->is_drawn && conic_oracle_shape(view, &moved, splat->formula, &candidate->disturbed[i]);
     if (candidate->is_disturbed[i] && candidate->shape.change < INFINITY)
@@ -76,8 +78,8 @@ static double behind_here(const oracle_splat *splat, double iz, double ray_lengt
 
 /* The lesser of both depths, moved back. */
 static oracle_interval find_hiding(const oracle_splat *splat, const oracle_shape *shape, oracle_interval iz,
-                                   double ray_length) {
-  const double slack = ORACLE_ROUNDINGS * ORACLE_UNIT, excess = shape->change - ORACLE_NARROW_CHANGE;
+                                   double ray_length, double slack) {
+  const double excess = shape->change - ORACLE_NARROW_CHANGE;
   oracle_interval all = {splat->behind * iz.low, splat->behind * iz.value, splat->behind * iz.high};
   oracle_interval here = {behind_here(splat, iz.low, ray_length), behind_here(splat, iz.value, ray_length),
                           behind_here(splat, iz.high, ray_length)};
@@ -93,8 +95,7 @@ static oracle_interval find_hiding(const oracle_splat *splat, const oracle_shape
 
 /* The greater of both depths is what a splat is seen by, the lesser, moved back, what it hides by. */
 static void set_depths(const oracle_splat *splat, const oracle_shape *shape, const double values[ORACLE_N_VALUES],
-                       const double errors[ORACLE_N_VALUES], oracle_fragment *fragment) {
-  const double slack = ORACLE_ROUNDINGS * ORACLE_UNIT;
+                       const double errors[ORACLE_N_VALUES], double slack, oracle_fragment *fragment) {
   oracle_interval iz = around(values[ORACLE_IZ], errors[ORACLE_IZ]);
   oracle_interval plane = around(values[ORACLE_IZ_PLANE], errors[ORACLE_IZ_PLANE]);
   iz.low = oracle_max(iz.low, shape->range[0] * (1.0 - slack));
@@ -104,7 +105,7 @@ static void set_depths(const oracle_splat *splat, const oracle_shape *shape, con
   fragment->seen.high = oracle_max(iz.high, plane.high);
   const oracle_interval lesser = {oracle_min(iz.low, plane.low), oracle_min(iz.value, plane.value),
                                   oracle_min(iz.high, plane.high)};
-  fragment->hides = find_hiding(splat, shape, lesser, values[ORACLE_RAY_LENGTH]);
+  fragment->hides = find_hiding(splat, shape, lesser, values[ORACLE_RAY_LENGTH], slack);
   fragment->iz = iz.value;
   fragment->iz_error = oracle_max(iz.value - iz.low, iz.high - iz.value);
   double clamped = oracle_min(oracle_max(plane.value, shape->range[0]), shape->range[1]);
@@ -123,8 +124,8 @@ static void set_weight(const oracle_splat *splat, double weight, double error, d
 }
 
 /* What weight, iz and z may be of the formula itself. No splat weighs four times its opacity. */
-static void set_ranges(const oracle_splat *splat, const oracle_shape *shape, oracle_fragment *f) {
-  const double slack = ORACLE_ROUNDINGS * ORACLE_UNIT, floor_weight = 0x1p-60;
+static void set_ranges(const oracle_splat *splat, const oracle_shape *shape, double slack, oracle_fragment *f) {
+  const double floor_weight = 0x1p-60;
   double most = oracle_max(4.0 * splat->opacity, floor_weight);
   f->weights = around(f->weight, f->weight_error);
   f->weights.low = oracle_min(oracle_max(f->weights.low, floor_weight), most);
@@ -158,9 +159,12 @@ static int look_at_formula(const oracle_view *view, const oracle_candidate *cand
   if (!fragment->covers && !fragment->doubt)
     return 0;
   fragment->may_miss = fragment->doubt != 0;
-  set_depths(candidate->splat, &candidate->shape, fragment->values, errors, fragment);
+  /* A range in depth is that of the disc, which is off by what its centre is. */
+  const double slack =
+      view->floats.unit + candidate->splat->placed.p_error[2] / oracle_max(fabs(candidate->splat->placed.p[2]), 1e-300);
+  set_depths(candidate->splat, &candidate->shape, fragment->values, errors, slack, fragment);
   set_weight(candidate->splat, fragment->values[ORACLE_WEIGHT], errors[ORACLE_WEIGHT], spread, fragment);
-  set_ranges(candidate->splat, &candidate->shape, fragment);
+  set_ranges(candidate->splat, &candidate->shape, slack, fragment);
   return 1;
 }
 

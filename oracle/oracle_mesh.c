@@ -88,12 +88,16 @@ static double snap(double px, int *is_unsure) {
 static int add_seen_piece(const oracle_mesh *mesh, const oracle_view *view, const corner *const corners[3],
                           oracle_triangle *t) {
   const conic_camera *c = &view->camera;
-  t->is_unsure = 0;
+  t->is_unsure = view->floats.is_setup_in_float;
+  t->depth_error = 0.0;
   for (int k = 0; k < 3; k++) {
     const double *p = corners[k]->p;
     t->iz[k] = 1.0 / p[2];
     t->x[k] = snap(oracle_min(oracle_max(c->fx * p[0] * t->iz[k] + c->cx, -GUARD), GUARD), &t->is_unsure);
     t->y[k] = snap(oracle_min(oracle_max(c->fy * p[1] * t->iz[k] + c->cy, -GUARD), GUARD), &t->is_unsure);
+    double origin = fabs(c->cam_from_world[0][3]) + fabs(c->cam_from_world[1][3]) + fabs(c->cam_from_world[2][3]);
+    double terms = 2.0 * (oracle_length(p) + origin); /* of the sums that its place is, at most */
+    t->depth_error = oracle_max(t->depth_error, view->floats.centre * terms * t->iz[k]);
     memcpy(t->at[k], corners[k]->at, sizeof t->at[k]);
     if (!(t->iz[k] >= 1e-30 && t->iz[k] <= 1e30))
       return 0;

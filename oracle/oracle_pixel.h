@@ -102,6 +102,7 @@ typedef struct oracle_request {
   int samples;
   size_t n_pixels;
   int is_brute;
+  conic_float_kind floats;
 } oracle_request;
 conic_status conic_oracle_draw(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
                                const conic_render_options *options, const oracle_request *request,

@@ -24,7 +24,7 @@ conic_status conic_oracle_probe(conic_context *context, const conic_oracle_splat
   conic_status status = conic_view_arguments_take(context, "the oracle", camera, given, &options);
   if (status != CONIC_OK)
     return status;
-  oracle_view view = conic_oracle_view(camera, &options, options.near_z);
+  oracle_view view = conic_oracle_view(camera, &options, options.near_z, CONIC_FLOATS_OWN);
   oracle_placed placed;
   double answers[ORACLE_N_QUESTIONS];
   int is_so[ORACLE_N_QUESTIONS];

@@ -9,13 +9,31 @@
 
 /* An axis is turned into camera space and sheared in single precision, so that each of its components may be off by a
  * rounding of the whole. */
-oracle_placed conic_oracle_disturb(const oracle_placed *placed, int i) {
+oracle_placed conic_oracle_disturb(const oracle_view *view, const oracle_placed *placed, int i) {
   oracle_placed disturbed = *placed;
   if (i < 3)
-    disturbed.tu[i] += ORACLE_UNIT * oracle_length(placed->tu);
+    disturbed.tu[i] += view->floats.axis * oracle_length(placed->tu);
+  else if (i < 6)
+    disturbed.tv[i - 3] += view->floats.axis * oracle_length(placed->tv);
   else
-    disturbed.tv[i - 3] += ORACLE_UNIT * oracle_length(placed->tv);
+    disturbed.p[i - 6] += placed->p_error[i - 6];
   return disturbed;
+}
+
+int conic_oracle_n_inputs(const oracle_view *view) {
+  return view->floats.is_setup_in_float ? ORACLE_N_INPUTS : 6;
+}
+
+/* A place on the screen that is off is a centre that is. */
+static void bound_centre(const oracle_view *view, const double world[3], oracle_placed *placed) {
+  const conic_camera *c = &view->camera;
+  const double px[3] = {(double)c->width / c->fx, (double)c->height / c->fy, 0.0};
+  for (int i = 0; i < 3; i++) {
+    double terms = fabs(c->cam_from_world[i][3]);
+    for (int k = 0; k < 3; k++)
+      terms += fabs(c->cam_from_world[i][k] * world[k]);
+    placed->p_error[i] = view->floats.centre * terms + view->floats.place * px[i] * fabs(placed->p[2]);
+  }
 }
 
 static void read_axis(float *const components[3], size_t i, double axis[3]) {
@@ -92,7 +110,7 @@ static conic_status median_length(conic_context *context, const conic_splats *sp
 /* How far off an answer may be in single precision: what the rounded inputs make of it, and its own roundings. */
 static void answer_errors(const oracle_view *view, const oracle_placed *placed,
                           const double answers[ORACLE_N_QUESTIONS], double errors[ORACLE_N_QUESTIONS]) {
-  const double unit = ORACLE_ROUNDINGS * ORACLE_UNIT;
+  const double unit = view->floats.unit;
   double reach = view->cutoff * (fabs(placed->tu[2]) + fabs(placed->tv[2]));
   for (int i = 0; i < ORACLE_N_QUESTIONS; i++)
     errors[i] = 0.0;
@@ -106,9 +124,9 @@ static void answer_errors(const oracle_view *view, const oracle_placed *placed,
     double sigma = oracle_max(view->thin_px - answers[ORACLE_IS_THIN], 0.5 * view->thin_px);
     errors[ORACLE_IS_THIN] = unit * oracle_greater_eigenvalue(shape.variance) / sigma;
   }
-  for (int i = 0; i < ORACLE_N_INPUTS; i++) {
+  for (int i = 0; i < conic_oracle_n_inputs(view); i++) {
     double disturbed[ORACLE_N_QUESTIONS];
-    oracle_placed moved = conic_oracle_disturb(placed, i);
+    oracle_placed moved = conic_oracle_disturb(view, placed, i);
     conic_oracle_ask(view, &moved, disturbed);
     for (int j = 0; j < ORACLE_N_QUESTIONS; j++)
       errors[j] += fabs(disturbed[j] - answers[j]);
@@ -218,6 +236,7 @@ static int stand(const oracle_scene *scene, size_t i, oracle_placed *world, orac
     splat->placed.p[c] += camera->cam_from_world[c][3];
   rotate_to_camera(camera, world->tu, splat->placed.tu);
   rotate_to_camera(camera, world->tv, splat->placed.tv);
+  bound_centre(&scene->view, world->p, &splat->placed);
   return 1;
 }
 
@@ -300,9 +319,11 @@ static void find_reaches(void *data, size_t i_item, int i_thread) {
 }
 
 conic_status conic_oracle_scene_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                                       const conic_render_options *options, int is_brute, oracle_scene *scene) {
+                                       const conic_render_options *options, conic_float_kind floats, int is_brute,
+                                       oracle_scene *scene) {
   scene->longest = options->splat_length; /* of all splats, where these are some that were chosen of them */
-  scene->view = conic_oracle_view(camera, options, options->near_z > 0.0 ? options->near_z : default_near(splats));
+  scene->view =
+      conic_oracle_view(camera, options, options->near_z > 0.0 ? options->near_z : default_near(splats), floats);
   scene->splats = splats;
   scene->options = options;
   scene->is_brute = is_brute;

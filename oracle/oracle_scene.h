@@ -9,7 +9,7 @@
 #include "oracle/oracle_clip.h"
 #include "oracle/oracle_splat.h"
 
-enum { ORACLE_N_INPUTS = 6, ORACLE_MAX_OTHERS = 3 };
+enum { ORACLE_N_INPUTS = 9, ORACLE_MAX_OTHERS = 3 };
 
 typedef struct oracle_splat {
   oracle_placed placed;
@@ -45,14 +45,17 @@ typedef struct oracle_scene {
 /* Looks through the splats. With is_brute nothing is left out anywhere, which is for tests. The scene refers to splats
  * and options. Errors: MEMORY, CANCELLED. */
 conic_status conic_oracle_scene_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                                       const conic_render_options *options, int is_brute, oracle_scene *scene);
+                                       const conic_render_options *options, conic_float_kind floats, int is_brute,
+                                       oracle_scene *scene);
 void conic_oracle_scene_release(conic_context *context, oracle_scene *scene);
 
 /* Splat i of the input; 0 where it can't show. */
 int conic_oracle_scene_place(const oracle_scene *scene, size_t i, oracle_splat *splat);
 
-/* The splat with one of its inputs as far off as single precision may put it: the components of the axes, that is. The
- * centre is projected in double precision (docs/reference/picture.md, Numbers). */
-oracle_placed conic_oracle_disturb(const oracle_placed *placed, int i);
+/* How many inputs single precision puts off: the components of the axes, and, where the centre is not projected in
+ * double precision (docs/reference/picture.md, Numbers), its own. */
+int conic_oracle_n_inputs(const oracle_view *view);
+/* The splat with one of them as far off as may be. */
+oracle_placed conic_oracle_disturb(const oracle_view *view, const oracle_placed *placed, int i);
 
 #endif

@@ -256,7 +256,7 @@ int conic_oracle_shape(const oracle_view *view, const oracle_placed *s, oracle_f
   else
     is_set = 0;
   shape->change = is_set ? greatest_change(view, s, shape) : INFINITY;
-  shape->change_error = 2.0 * ORACLE_ROUNDINGS * ORACLE_UNIT * ORACLE_NARROW_CHANGE;
+  shape->change_error = 2.0 * view->floats.unit * ORACLE_NARROW_CHANGE;
   double sum = shape->amplitude + shape->center[0] + shape->center[1] + shape->inverse.xx + shape->inverse.yy;
   for (int i = 0; i < 2; i++)
     sum += shape->box[0][i] + shape->box[1][i];

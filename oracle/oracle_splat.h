@@ -13,6 +13,17 @@
  * deviation is 0.4 units on average over all numbers, so these are 4.7 standard deviations. */
 #define ORACLE_ROUNDINGS 5.0
 
+/* What the floats of a renderer may do. */
+typedef struct oracle_floats {
+  double unit;         /* of a sum or product at a pixel: what ORACLE_ROUNDINGS of ORACLE_UNIT are to conic's own */
+  double axis, centre; /* of the length of an axis, and of the terms that a centre's component is the sum of */
+  double place;        /* of the picture's size, of a place on the screen */
+  double kernel;       /* of the kernel's value, besides */
+  int is_setup_in_float;
+} oracle_floats;
+
+oracle_floats conic_oracle_floats(conic_float_kind kind);
+
 /* What all splats share. */
 typedef struct oracle_view {
   conic_camera camera;
@@ -26,6 +37,7 @@ typedef struct oracle_view {
   int method;
   int cull_back;
   const struct oracle_profile *profile; /* null: the kernel is taken as it is */
+  oracle_floats floats;
 } oracle_view;
 
 /* The error of a weight from which on `auto` draws by ray, and the bound's factor: docs/reference/picture.md, Auto. */
@@ -35,11 +47,13 @@ typedef struct oracle_view {
 #define ORACLE_AUTO_CHANGE 1e-2
 
 /* A view of the options; `near_z` is taken as given. */
-oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_options *options, double near_z);
+oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_options *options, double near_z,
+                              conic_float_kind floats);
 
 /* A splat in camera space. */
 typedef struct oracle_placed {
   double p[3], tu[3], tv[3];
+  double p_error[3]; /* of p in floats, where it is computed in them */
 } oracle_placed;
 
 typedef enum oracle_formula {

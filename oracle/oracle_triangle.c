@@ -52,7 +52,7 @@ static coverage cover(const oracle_triangle *t, double x, double y, sample *s) {
   s->iz = oracle_min(oracle_max(s->iz, least), greatest);
   /* Single precision rounds corners, a block's value and its gradient, no more than three pixels from there. */
   s->iz_error = ORACLE_ROUNDINGS * ORACLE_UNIT * (greatest + 3.0 * steepness * (greatest - least)) +
-                step * 0.02 * steepness * (greatest - least);
+                step * 0.02 * steepness * (greatest - least) + t->depth_error * greatest;
   return s->is_inside || found == MAY_COVER ? found : MISSES;
 }
 

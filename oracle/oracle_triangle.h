@@ -13,7 +13,9 @@ typedef struct oracle_triangle {
   double at[3][2]; /* the corners' weights of the triangle's second and third */
   double box[2][2];
   uint32_t index;
-  int is_unsure; /* a corner is so near the middle between two places that rounding may put it at either */
+  int is_unsure;      /* a corner is so near the middle between two places that rounding may put it at either;
+                         of who computes places in float, so is every one */
+  double depth_error; /* of iz, a share of it: of who computes depths in float */
 } oracle_triangle;
 
 typedef struct oracle_mesh {

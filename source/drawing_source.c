@@ -2,12 +2,13 @@
 #include <string.h>
 
 #include "core/base/clock.h"
-#include "core/base/loan.h"
+#include "core/base/loan_find.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/estimate/estimate.h"
 #include "core/splats/columns.h"
 #include "core/splats/degrees.h"
+#include "core/splats/near.h"
 #include "core/splats/repairs_log.h"
 #include "source/mesh_input.h"
 #include "source/source_kind.h"
@@ -229,7 +230,7 @@ static conic_status measure_drawing(drawing_source *d) {
   choice->drawing = (conic_drawing){&d->splats, &d->triangles};
   choice->is_all = 1;
   conic_drawing_bounds(&choice->drawing, scale->minimum, scale->maximum);
-  scale->near_z = conic_drawing_near(&choice->drawing);
+  scale->near_z = conic_near_of_box(scale->minimum, scale->maximum);
   scale->n_splats = d->splats.count;
   scale->n_triangles = d->triangles.count;
   scale->has_colors = d->splats.color[0] || d->triangles.color[0] || d->triangles.n_materials;

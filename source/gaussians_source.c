@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "conic/opencl.h"
-#include "core/base/loan.h"
+#include "core/base/loan_find.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"

@@ -38,7 +38,7 @@ static void write_camera_gradient(cli_json *json, const conic_gaussian_gradient 
 }
 
 /* The largest number of a group of parameters. */
-static double greatest_of(const double *const *columns, int n_columns, size_t n) {
+static double greatest_in_columns(const double *const *columns, int n_columns, size_t n) {
   double greatest = 0.0;
   for (int k = 0; k < n_columns; k++)
     for (size_t i = 0; columns[k] && i < n; i++) {
@@ -54,12 +54,12 @@ static void write_greatest(cli_json *json, const conic_gaussian_gradient *g) {
   const double *const turns[] = {g->rotation[0], g->rotation[1], g->rotation[2], g->rotation[3]};
   const size_t n_sh = 3 * (size_t)(g->sh_degree + 1) * (size_t)(g->sh_degree + 1);
   cli_json_object(json, "greatest");
-  cli_json_number(json, "mean", greatest_of(means, 3, g->count));
-  cli_json_number(json, "scale", greatest_of(scales, 3, g->count));
-  cli_json_number(json, "rotation", greatest_of(turns, 4, g->count));
-  cli_json_number(json, "opacity", greatest_of(&opacity, 1, g->count));
-  cli_json_number(json, "sh", greatest_of(&sh, 1, g->count * n_sh));
-  cli_json_number(json, "place", greatest_of(places, 2, g->count));
+  cli_json_number(json, "mean", greatest_in_columns(means, 3, g->count));
+  cli_json_number(json, "scale", greatest_in_columns(scales, 3, g->count));
+  cli_json_number(json, "rotation", greatest_in_columns(turns, 4, g->count));
+  cli_json_number(json, "opacity", greatest_in_columns(&opacity, 1, g->count));
+  cli_json_number(json, "sh", greatest_in_columns(&sh, 1, g->count * n_sh));
+  cli_json_number(json, "place", greatest_in_columns(places, 2, g->count));
   cli_json_close(json);
 }
 
@@ -136,7 +136,7 @@ static conic_status differentiate(cli_session *session, gradient_job *job) {
   return status;
 }
 
-static int find_gradient(cli_session *session, gradient_job *job) {
+static int produce_gradient(cli_session *session, gradient_job *job) {
   int exit_code = cli_session_open(session);
   if (exit_code != CLI_DONE)
     return exit_code;
@@ -199,7 +199,7 @@ static int run_gradient(cli_session *session, int argc, char **argv) {
   if (exit_code == CLI_DONE)
     exit_code = check_gradient(session, &job);
   if (exit_code == CLI_DONE)
-    exit_code = find_gradient(session, &job);
+    exit_code = produce_gradient(session, &job);
   free(job.scene.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;
 }

@@ -50,7 +50,7 @@ static conic_status compare(cli_session *session, verify_job *job) {
     status = cli_reference_check_size(job->image_path, &job->image, &camera);
   double start = cli_seconds();
   if (status == CONIC_OK)
-    status = cli_reference_draw(session, &job->scene, &camera, (conic_oracle_question)job->question,
+    status = cli_reference_draw(session, &job->scene, &camera, (conic_oracle_question)job->question, CONIC_FLOATS_OWN,
                                 (size_t)job->n_pixels, job->image_path != NULL, &job->reference);
   job->oracle_ms = 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)

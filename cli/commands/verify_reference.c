@@ -22,15 +22,21 @@ static void name_reference(const conic_source_choice *choice, conic_reference *r
 }
 
 conic_status cli_reference_draw(cli_session *session, const cli_render_job *scene, const conic_camera *camera,
-                                conic_oracle_question question, size_t n_pixels, int is_from_file,
-                                conic_reference *reference) {
+                                conic_oracle_question question, conic_float_kind floats, size_t n_pixels,
+                                int is_from_file, conic_reference *reference) {
   const conic_source_choice *choice = conic_source_chosen(scene->source);
   const conic_splats *splats = choice->drawing.splats;
   conic_render_options options = scene->options;
   if (choice->is_all && !(splats && splats->dot))
     options.splat_length = 0.0; /* the oracle sees all splats as they are kept, and measures them by itself */
-  conic_status status = conic_oracle_render_pixels(session->context, &choice->drawing, camera, &options, question,
-                                                   scene->view.samples, n_pixels, reference);
+  conic_oracle_asking asking;
+  conic_oracle_asking_init(&asking);
+  asking.question = question;
+  asking.samples = scene->view.samples;
+  asking.n_pixels = n_pixels;
+  asking.floats = floats;
+  conic_status status =
+      conic_oracle_render_asked(session->context, &choice->drawing, camera, &options, &asking, reference);
   if (status == CONIC_OK && is_from_file)
     name_reference(choice, reference);
   return status;

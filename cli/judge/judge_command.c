@@ -5,7 +5,9 @@
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_reference.h"
+#include "cli/judge/judge_gradients.h"
 #include "cli/judge/judge_job.h"
+#include "cli/judge/suite_judge.h"
 #include "cli/outputs.h"
 
 static const unsigned gaussian_planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL |
@@ -107,6 +109,8 @@ static conic_status put_map(cli_session *session, const cli_judge_job *job) {
 static conic_status show_maps(cli_session *session, cli_judge_job *job) {
   double at = cli_seconds();
   conic_status status = job->map_path ? put_map(session, job) : CONIC_OK;
+  if (status == CONIC_OK && job->report_path)
+    status = cli_judge_report(session, job);
   pass_stage(job, CLI_JUDGE_SHOW, at);
   return status;
 }
@@ -159,6 +163,12 @@ static int run_judge(cli_session *session, int argc, char **argv) {
                            *const roundings[] = {"either", "nearest", "down", NULL};
   cli_judge_job job = {.floats = CONIC_FLOATS_FAST, .argc = argc, .argv = argv};
   int rounding = CONIC_CODES_EITHER;
+  suite_run suite = {.most_level = 0}; /* not here: its options are for the help */
+  if (cli_suite_has_option(argc, argv))
+    return cli_suite_run(session, argc, argv);
+  cli_gradient_files gradients = {NULL}; /* nor here */
+  if (cli_gradients_has_option(argc, argv))
+    return cli_gradients_run(session, argc, argv);
   conic_picture_options_init(&job.reading);
   cli_scene_defaults(&job.scene);
   job.scene.may_composite = 1;
@@ -184,9 +194,15 @@ static int run_judge(cli_session *session, int argc, char **argv) {
       {"straight", CLI_FLAG, &job.reading.is_straight, NULL,
        "colours are not multiplied by alpha; of a PNG they never are"},
       {"time", CLI_FLAG, &job.shows_times, NULL, "print what each stage took"},
+      CLI_SUITE_OPTIONS(suite),
+      CLI_GRADIENT_OPTIONS(gradients),
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   job.reading.rounding = (conic_code_rounding)rounding;
+  if (exit_code == CLI_DONE && (suite.judging.pictures || suite.junit_path || suite.most_level))
+    exit_code = cli_usage("judge: --pictures, --level and --junit are of suites; give --suite FOLDER, too");
+  if (exit_code == CLI_DONE && (gradients.weights || gradients.is_raw))
+    exit_code = cli_usage("judge: --weights and --raw are of derivatives; give --gradients FILE, too");
   if (exit_code == CLI_DONE)
     exit_code = check_judge(session, &job);
   if (exit_code == CLI_DONE)
@@ -199,12 +215,17 @@ const cli_command cli_judge = {
     .name = "judge",
     .summary = "says whether a picture that somebody drew is right, and where not",
     .usage = "conic judge SCENE --camera C [--view V] --picture P [--profile NAME | --method M] [--json FILE] "
-             "[--report F.html] [--map F.png] [--max-wrong N] [camera and render options]",
+             "[--report F.html] [--map F.png] [--max-wrong N] [camera and render options]\n"
+             "       conic judge SCENE --camera C --weights W.exr --gradients G.ply --profile NAME [--raw]\n"
+             "       conic judge --suite FOLDER --pictures FOLDER [--profile NAMES] [--junit FILE]",
     .run = run_judge,
     .description = "Takes a picture that any renderer drew of the scene, bounds what each pixel can be at most and at "
                    "least, and says of every pixel whether it is equal, within rounding, explained by a decision that "
-                   "may go either way, or wrong; and, where it is wrong, which fault explains it.",
+                   "may go either way, or wrong; and, where it is wrong, which fault explains it. --suite judges the "
+                   "pictures of a whole suite, which conic conformance writes.",
     .examples = {{"judge a picture that gsplat 1.6 has drawn, and write a report",
                   "conic judge scene.ply --camera sparse/0 --view 0 --picture theirs.npy --profile gsplat-1.6 "
-                  "--report report.html"}},
+                  "--report report.html"},
+                 {"judge the pictures of a suite, for a CI system",
+                  "conic judge --suite suite --pictures mine --profile gsplat-1.6 --junit report.xml"}},
 };

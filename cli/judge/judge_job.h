@@ -3,7 +3,7 @@
 #define CONIC_JUDGE_JOB_H
 
 #include "cli/render/render_job.h"
-#include "conic/gaussian_judge.h"
+#include "conic/diagnosis.h"
 #include "conic/picture.h"
 
 enum { CLI_JUDGE_MOST_REASONS = CONIC_MAX_UNSTABLE_REASONS, CLI_JUDGE_MOST_PARTS = 4, CLI_JUDGE_MOST_FAULTS = 8 };
@@ -37,12 +37,6 @@ typedef struct cli_judge_worst {
   size_t n_blended;
 } cli_judge_worst;
 
-/* A fault that would explain the wrong pixels, and the share of the difference that it takes away. */
-typedef struct cli_judge_fault {
-  char name[64];
-  double share;
-} cli_judge_fault;
-
 /* What was found, of either kind of scene. */
 typedef struct cli_judgement {
   size_t pixels[CONIC_N_PIXEL_CLASSES], judged, covered, doubtful, n_whole;
@@ -51,7 +45,7 @@ typedef struct cli_judgement {
   conic_oracle_plane_verdict planes[CONIC_MAX_PLANES];
   cli_judge_worst worst[CONIC_MAX_FAULTS];
   int n_worst;
-  cli_judge_fault faults[CLI_JUDGE_MOST_FAULTS];
+  conic_diagnosis faults[CLI_JUDGE_MOST_FAULTS]; /* that would explain the wrong pixels, the best first */
   int n_faults;
 } cli_judgement;
 

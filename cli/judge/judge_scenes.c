@@ -12,7 +12,7 @@ static void take_worst(const conic_oracle_fault *faults, int n, cli_judgement *f
     found->worst[k].fault = faults[k];
 }
 
-static const conic_image *greatest_of(const cli_judge_job *job) {
+static const conic_image *greatest_in(const cli_judge_job *job) {
   return job->picture.greatest.width ? &job->picture.greatest : NULL;
 }
 
@@ -28,7 +28,7 @@ conic_status cli_judge_gaussians(cli_session *session, cli_judge_job *job) {
   judging.n_pixels = (size_t)job->n_pixels;
   judging.samples = job->scene.view.samples;
   judging.is_opaque = job->scene.options.has_background;
-  judging.greatest = greatest_of(job);
+  judging.greatest = greatest_in(job);
   conic_status status = conic_gaussian_judge(session->context, conic_source_gaussians(job->scene.source), &job->camera,
                                              &options, &judging, &job->picture.image, job->classes, &verdict);
   if (status != CONIC_OK)
@@ -52,11 +52,11 @@ conic_status cli_judge_splats(cli_session *session, cli_judge_job *job) {
   conic_oracle_judgement judgement;
   conic_reference reference = {.width = 0};
   conic_oracle_judging_init(&judging);
-  judging.greatest = greatest_of(job);
+  judging.greatest = greatest_in(job);
   conic_status status = conic_source_choose(job->scene.source, &job->camera, &job->scene.options, &job->scene.view);
   if (status == CONIC_OK)
-    status = cli_reference_draw(session, &job->scene, &job->camera, CONIC_ORACLE_METHOD, (size_t)job->n_pixels, 1,
-                                &reference);
+    status = cli_reference_draw(session, &job->scene, &job->camera, CONIC_ORACLE_METHOD, (conic_float_kind)job->floats,
+                                (size_t)job->n_pixels, 1, &reference);
   if (status == CONIC_OK)
     status = conic_oracle_judge(session->context, &reference, &judging, &job->picture.image, job->classes, &judgement);
   if (status == CONIC_OK) {

@@ -81,6 +81,13 @@ static void print_explained(const cli_judgement *found) {
     putchar('\n');
 }
 
+static void print_diagnosis(int k, const conic_diagnosis *d) {
+  const char *meaning = conic_diagnosis_meaning(d->name);
+  printf("%s %s%s%s %s away %.4g %% of the difference: %s\n", k ? "         " : "diagnosis", d->name,
+         d->with ? " with " : "", d->with ? d->with : "", d->with ? "take" : "takes", 100.0 * d->share,
+         meaning ? meaning : "");
+}
+
 void cli_judge_print(const cli_judge_job *job) {
   const cli_judgement *found = &job->found;
   printf("%s: %zu of %zu judged pixels are wrong", cli_judge_is_right(job) ? "right" : "WRONG",
@@ -97,8 +104,9 @@ void cli_judge_print(const cli_judge_job *job) {
     puts("alpha is full everywhere, and is not judged");
   print_worst(job);
   for (int k = 0; k < found->n_faults; k++)
-    printf("%s %s takes away %.0f %% of the difference\n", k ? "         " : "diagnosis", found->faults[k].name,
-           100.0 * found->faults[k].share);
+    print_diagnosis(k, &found->faults[k]);
+  if (!found->n_faults && !cli_judge_is_right(job))
+    puts("diagnosis no known mistake explains the wrong pixels");
   for (int k = 0; k < CLI_JUDGE_N_STAGES && job->shows_times; k++)
     printf("%-9s %.2f s\n", cli_judge_stage_name(k), job->seconds[k]);
 }
@@ -157,6 +165,8 @@ static void write_diagnosis(cli_json *json, const cli_judgement *found) {
   for (int k = 0; k < found->n_faults; k++) {
     cli_json_object(json, NULL);
     cli_json_text(json, "name", found->faults[k].name);
+    if (found->faults[k].with)
+      cli_json_text(json, "with", found->faults[k].with);
     cli_json_number(json, "share", found->faults[k].share);
     cli_json_close(json);
   }
@@ -166,6 +176,7 @@ static void write_diagnosis(cli_json *json, const cli_judgement *found) {
 int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
   static const char *const floats[CONIC_N_FLOAT_KINDS] = {"own", "strict", "fast"};
   const cli_judgement *found = &job->found;
+  double total = 0.0;
   int exit_code = CLI_DONE;
   cli_json_file *file;
   cli_json *json = cli_json_open(session, &file, &exit_code);
@@ -196,6 +207,9 @@ int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
   cli_json_object(json, "seconds");
   for (int k = 0; k < CLI_JUDGE_N_STAGES; k++)
     cli_json_number(json, cli_judge_stage_name(k), job->seconds[k]);
+  for (int k = 0; k < CLI_JUDGE_N_STAGES; k++)
+    total += job->seconds[k];
+  cli_json_number(json, "total", total);
   cli_json_close(json);
   return cli_json_finish(file);
 }

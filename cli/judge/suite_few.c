@@ -90,6 +90,9 @@ conic_status cli_suite_overlap(conic_context *context, conic_gaussians *gaussian
       {.mean = {-0.3, 0.1, -0.5}, ROUND(0.4), .opacity = 0.6, .color = {0.1, 0.9, 0.1}},
       {.mean = {0.0, -0.2, 1.5}, ROUND(0.9), .opacity = 0.95, .color = {0.1, 0.2, 0.9}},
       {.mean = {0.1, 0.3, 0.0}, ROUND(0.3), .opacity = 0.8, .color = {0.9, 0.9, 0.2}},
+      /* Of these two, the first is nearer by z and farther by distance. */
+      {.mean = {-1.9, 0.0, 0.0}, ROUND(0.4), .opacity = 0.7, .color = {0.9, 0.5, 0.1}},
+      {.mean = {-1.3, 0.1, 0.15}, ROUND(0.4), .opacity = 0.7, .color = {0.1, 0.5, 0.9}},
   };
   return put_few(context, few, COUNT(few), 0, 0, gaussians);
 }

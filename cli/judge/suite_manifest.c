@@ -55,16 +55,16 @@ static conic_status read_plain(conic_json *json, char *text, size_t room, int ma
              : conic_json_wrong(json, "a name has other signs than letters, digits, points, hyphens and underscores");
 }
 
-static conic_status read_whole(conic_json *json, double most, double *value) {
+static conic_status read_manifest_whole(conic_json *json, double most, double *value) {
   conic_status status = conic_json_number(json, value);
   if (status == CONIC_OK && !(*value >= 1.0 && *value <= most && *value == (double)(uint64_t)*value))
     return conic_json_wrong(json, "a number is not whole, or too large");
   return status;
 }
 
-static void read_count(conic_json *json, double most, int *count) {
+static void read_manifest_count(conic_json *json, double most, int *count) {
   double value;
-  if (read_whole(json, most, &value) == CONIC_OK)
+  if (read_manifest_whole(json, most, &value) == CONIC_OK)
     *count = (int)value;
 }
 
@@ -95,9 +95,9 @@ static void read_scene_entry(manifest_reader *r, manifest_scene *scene) {
     else if (is_key(key, "camera"))
       read_member_path(json, "conic", scene->camera, sizeof scene->camera);
     else if (is_key(key, "width"))
-      read_count(json, 65535.0, &scene->width);
+      read_manifest_count(json, 65535.0, &scene->width);
     else if (is_key(key, "height"))
-      read_count(json, 65535.0, &scene->height);
+      read_manifest_count(json, 65535.0, &scene->height);
     else
       conic_json_skip(json);
   if (!scene->name[0] || !scene->ply[0] || !scene->camera[0] || !scene->width || !scene->height)
@@ -118,7 +118,7 @@ static void read_case_entry(manifest_reader *r, suite_entry *one) {
     else if (is_key(key, "npy"))
       read_plain(json, one->npy, sizeof one->npy, 1);
     else if (is_key(key, "level"))
-      read_count(json, SUITE_MOST_LEVELS, &one->level);
+      read_manifest_count(json, SUITE_MOST_LEVELS, &one->level);
     else
       conic_json_skip(json);
   if (!one->name[0] || !one->scene[0] || !one->profile[0] || !one->npy[0] || !one->level)
@@ -136,7 +136,7 @@ static void read_file_entry(manifest_reader *r, manifest_file *file) {
     else if (is_key(key, "sha256"))
       read_plain(json, file->sha256, sizeof file->sha256, 0);
     else if (is_key(key, "bytes")) {
-      if (read_whole(json, 0x1p40, &value) == CONIC_OK)
+      if (read_manifest_whole(json, 0x1p40, &value) == CONIC_OK)
         file->bytes = (uint64_t)value;
     } else
       conic_json_skip(json);

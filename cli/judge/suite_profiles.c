@@ -5,7 +5,7 @@
 #include "cli/session.h"
 #include "core/base/nearest_word.h"
 
-static unsigned find_profile(const char *command, const char *name) {
+static unsigned find_suite_profile(const char *command, const char *name) {
   const char *nearest = NULL;
   for (int i = 0; i < CONIC_N_GAUSSIAN_PROFILES; i++) {
     const char *known = conic_gaussian_profile_name((conic_gaussian_profile)i);
@@ -25,7 +25,7 @@ unsigned cli_suite_find_profiles(const char *command, const char *list) {
     return (1u << CONIC_N_GAUSSIAN_PROFILES) - 1;
   for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
     snprintf(name, sizeof name, "%.*s", (int)strcspn(at, ","), at);
-    unsigned one = find_profile(command, name);
+    unsigned one = find_suite_profile(command, name);
     if (!one)
       return 0;
     found |= one;

@@ -69,11 +69,12 @@ static int parse_all(cli_session *session, const cli_option *own, int n_own, con
   return answer;
 }
 
-/* Whether what is drawn is to be looked at: not to be measured or taken apart, nor too large to have several samples.
- */
+/* Whether what is drawn is to be looked at: not to be measured, taken apart or compared with what a profile's own
+ * program draws, nor too large to have several samples. */
 static int is_picture(const cli_scene_words *raw, const cli_render_job *job) {
   int size = raw->size[0] > raw->size[1] ? raw->size[0] : raw->size[1];
-  return job->is_for_looking && job->repeat == 1 && !job->deep_path && size <= 65535 / 2;
+  return job->is_for_looking && job->repeat == 1 && !job->deep_path && size <= 65535 / 2 &&
+         !(raw->is_profile_given && raw->profile < CONIC_N_GAUSSIAN_PROFILES);
 }
 
 /* What the quality stands for, where it is not said otherwise. */
@@ -94,7 +95,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
                          .prefilter = (double)job->options.prefilter};
   conic_render_options *o = &job->options;
   conic_framing *view = &job->framing;
-  int method = (int)o->method, shading = (int)o->shading, profile = 0, ignores_center = 0;
+  int method = (int)o->method, shading = (int)o->shading, ignores_center = 0;
   const library_words words = find_words();
   const cli_option table[] = {
       {"size", CLI_SIZE, raw.size, "WxH",
@@ -147,7 +148,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where that is "
        "exact enough, else ray; patch: as part of a smooth surface through the points [auto]",
        .choices = words.methods, .is_given = &raw.is_method_given, .group = "how splats are drawn"},
-      {"profile", CLI_CHOICE, &profile, "NAME",
+      {"profile", CLI_CHOICE, &raw.profile, "NAME",
        "how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5, gsplat-1.5-aa, "
        "gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque splats [exact]",
        .choices = words.profiles, .is_given = &raw.is_profile_given},
@@ -173,8 +174,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = cli_parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend the splats of a surface; 1: the nearest splat wins [3]", 1, 3},
       {"samples", CLI_INT, &job->view.samples, "N",
-       "average N x N samples in each pixel, which makes silhouettes soft [2]", 1, CONIC_MAX_SAMPLES,
-       .is_given = &raw.is_samples_given},
+       "average N x N samples in each pixel, which makes silhouettes soft [2; 1 with --profile, --repeat or --deep]", 1,
+       CONIC_MAX_SAMPLES, .is_given = &raw.is_samples_given},
       {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "back: leave out what faces away; or none [none]",
        .choices = cull_words},
       {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]",
@@ -234,10 +235,10 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   job->is_patch = method == CONIC_N_METHODS;
   if (!job->is_patch)
     o->method = (conic_method)method;
-  job->gaussians.profile = (conic_gaussian_profile)profile;
+  job->gaussians.profile = (conic_gaussian_profile)raw.profile;
   job->gaussians.prefilter = raw.is_prefilter_given ? raw.prefilter : 0.0;
   job->gaussians.ignores_center = (uint32_t)ignores_center;
-  if (profile < CONIC_N_GAUSSIAN_PROFILES &&
+  if (raw.profile < CONIC_N_GAUSSIAN_PROFILES &&
       (raw.is_profile_given || ((job->is_for_looking || job->may_composite) && !job->is_plain)))
     job->opening.gaussians = &job->gaussians;
   o->shading = (conic_shading)shading;

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "core/base/loan.h"
+#include "core/base/loan_find.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"

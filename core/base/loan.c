@@ -1,4 +1,4 @@
-#include "core/base/loan.h"
+#include "core/base/loan_find.h"
 
 #include <string.h>
 

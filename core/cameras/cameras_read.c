@@ -3,7 +3,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "core/base/loan.h"
+#include "core/base/loan_find.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/cameras/camera_list.h"

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "conic/triangles.h"
-#include "core/base/loan.h"
+#include "core/base/loan_find.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/splats/columns.h"
@@ -42,7 +42,7 @@ static conic_splats vertices_of(const conic_triangles *mesh) {
 }
 
 /* A texture coordinate a vertex. */
-static conic_status keep_coordinates(conic_context *context, const conic_triangles *mesh, conic_model *model) {
+static conic_status keep_lent_coordinates(conic_context *context, const conic_triangles *mesh, conic_model *model) {
   conic_status status = conic_faces_create(context, &model->faces);
   for (size_t i = 0; i < mesh->count && status == CONIC_OK; i++)
     status = conic_faces_add(context, model->faces, NULL, NULL);
@@ -74,7 +74,7 @@ static conic_status copy_lent_triangles(conic_context *context, const char *name
     return CONIC_ERROR_MEMORY;
   memcpy(model->triangles, lent->corners, lent->count * sizeof *model->triangles);
   model->n_triangles = lent->count;
-  return options->keeps_faces ? keep_coordinates(context, lent, model) : CONIC_OK;
+  return options->keeps_faces ? keep_lent_coordinates(context, lent, model) : CONIC_OK;
 }
 
 conic_status conic_model_copy_lent(conic_context *context, const char *name, const conic_read_options *options,

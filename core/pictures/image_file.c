@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 
 #include "conic/image.h"
-#include "core/base/loan.h"
+#include "core/base/loan_find.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/files/guard.h"

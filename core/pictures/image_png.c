@@ -87,6 +87,12 @@ static int encode(png_work *work) {
 
 static conic_status write_samples(png_work *work) {
   conic_output *output;
+  if (work->file) {
+    int is_done = encode(work);
+    return work->status != CONIC_OK || is_done
+               ? work->status
+               : conic_fail(work->context, CONIC_ERROR_MEMORY, "%s: cannot write: %s", work->path, work->message);
+  }
   conic_status status = conic_output_open(work->context, work->path, &output);
   if (status != CONIC_OK)
     return status;
@@ -106,10 +112,11 @@ conic_status conic_png_check(conic_context *context, const char *path, unsigned 
   return CONIC_OK;
 }
 
-conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image) {
+static conic_status encode_image(conic_context *context, const char *path, FILE *stream, const conic_image *image) {
   png_work work = {
       .context = context,
       .path = path,
+      .file = stream,
       .width = image->width,
       .height = image->height,
       .layout = {.n_channels = 4, .sample_bytes = 1, .is_straight = 1, .is_display = image->is_display != 0}};
@@ -128,6 +135,14 @@ conic_status conic_png_write(conic_context *context, const char *path, const con
   png_destroy_write_struct(&work.png, &work.info);
   conic_memory_release(context, work.samples);
   return status;
+}
+
+conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image) {
+  return encode_image(context, path, NULL, image);
+}
+
+conic_status conic_png_write_to(conic_context *context, FILE *stream, const conic_image *image) {
+  return encode_image(context, "a picture", stream, image);
 }
 
 /* --- reading --- */
@@ -242,6 +257,12 @@ conic_status conic_png_write(conic_context *context, const char *path, const con
 
 conic_status conic_png_read(conic_context *context, const char *path, conic_image *image) {
   return conic_foreign_read(context, path, image);
+}
+
+conic_status conic_png_write_to(conic_context *context, FILE *stream, const conic_image *image) {
+  (void)stream;
+  (void)image;
+  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "pictures in a page need libpng, which this build lacks");
 }
 
 conic_status conic_png_read_codes(conic_context *context, const char *path, conic_image *image, unsigned *most_code) {

@@ -5,6 +5,8 @@
 #ifndef CONIC_IMAGE_PNG_H
 #define CONIC_IMAGE_PNG_H
 
+#include <stdio.h>
+
 #include "conic/image.h"
 
 /* Whether this build writes PNG, and these planes (bits) have what it holds. Errors: ARGUMENT, UNSUPPORTED, MEMORY. */
@@ -12,6 +14,9 @@ conic_status conic_png_check(conic_context *context, const char *path, unsigned 
 
 /* Errors: ARGUMENT (no rgba), UNSUPPORTED, MEMORY, IO. */
 conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image);
+
+/* The same to a stream, which the caller looks at for errors of writing. Errors: ARGUMENT, UNSUPPORTED, MEMORY. */
+conic_status conic_png_write_to(conic_context *context, FILE *stream, const conic_image *image);
 
 /* Errors: INPUT, UNSUPPORTED, MEMORY. */
 conic_status conic_png_read(conic_context *context, const char *path, conic_image *image);

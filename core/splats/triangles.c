@@ -1,12 +1,12 @@
 #include "conic/triangles.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"
+#include "core/splats/near.h"
 #include "core/splats/splats_gather.h"
 
 static conic_status allocate_floats(conic_context *context, size_t count, float **arrays, int n) {
@@ -120,11 +120,9 @@ size_t conic_drawing_bounds(const conic_drawing *drawing, double minimum[3], dou
 }
 
 double conic_drawing_near(const conic_drawing *drawing) {
-  double low[3], high[3], diagonal_squared = 0.0;
+  double low[3], high[3];
   conic_drawing_bounds(drawing, low, high);
-  for (int i = 0; i < 3; i++)
-    diagonal_squared += (high[i] - low[i]) * (high[i] - low[i]);
-  return diagonal_squared > 0.0 ? 1e-4 * sqrt(diagonal_squared) : 1e-4;
+  return conic_near_of_box(low, high);
 }
 
 /* The normal of a face, its length twice its area; differences of floats, formed in double. */

@@ -218,21 +218,38 @@ static void find_filter(const conic_gaussian_view *view, const double g[3][3], c
   filter->area = (float)(view->prefilter * (conic_dot(g[0], area) / unit_of));
 }
 
+/* What tells how far along each axis a place is: of unit axes these themselves, but of what quaternions of any length
+ * make of a disc those at right angles to the other two. */
+static void find_inverse_axes(const conic_gaussian_view *view, const conic_gaussian_placed *p, double inverse[3][3]) {
+  memcpy(inverse, p->unit, sizeof p->unit);
+  if (view->rules->takes_rotation_as_is <= 1 || !p->is_flat)
+    return;
+  conic_cross(p->unit[1], p->unit[2], inverse[0]);
+  const double volume = conic_dot(p->unit[0], inverse[0]);
+  for (int k = 0; k < 3; k++) {
+    conic_cross(p->unit[(k + 1) % 3], p->unit[(k + 2) % 3], inverse[k]);
+    for (int row = 0; row < 3; row++)
+      inverse[k][row] /= volume;
+  }
+}
+
 /* g, c and e at a place of the screen, and their gradients. In the frame where the Gaussian is a unit ball, times its
  * third scale where it is flat, so that nothing is divided by zero. */
 static int find_ray(const conic_gaussian_view *view, const conic_gaussian_placed *p, const conic_gaussian_footprint *f,
                     conic_gaussian_ray *ray, conic_gaussian_filter *filter, double *unit) {
   double g[3][3], whole[3][3], c[3][3], e[3], m[3][3], one_over[3], unit_of = 0.0, origin[3][3], direction[3][3];
+  double unit_axes[3][3];
   const double *const mean = p->mean;
   find_steps(view, f, origin, direction);
+  find_inverse_axes(view, p, unit_axes);
   const double from_origin[3] = {mean[0] - origin[0][0], mean[1] - origin[0][1], mean[2] - origin[0][2]};
   for (int k = 0; k < 3; k++) {
     one_over[k] = p->is_flat && k == 2 ? 1.0 : 1.0 / p->scale[k];
     for (int step = 0; step < 3; step++) {
-      g[step][k] = conic_dot(p->unit[k], direction[step]) * one_over[k];
-      m[step][k] = -(conic_dot(p->unit[k], origin[step]) * one_over[k]);
+      g[step][k] = conic_dot(unit_axes[k], direction[step]) * one_over[k];
+      m[step][k] = -(conic_dot(unit_axes[k], origin[step]) * one_over[k]);
     }
-    m[0][k] = conic_dot(p->unit[k], from_origin) * one_over[k];
+    m[0][k] = conic_dot(unit_axes[k], from_origin) * one_over[k];
   }
   memcpy(whole, g, sizeof g);
   for (int step = 0; step < 3; step++) {

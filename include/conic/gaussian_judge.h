@@ -11,15 +11,6 @@
 extern "C" {
 #endif
 
-/* What is known of the floats of the program that drew. */
-typedef enum conic_float_kind {
-  CONIC_FLOATS_OWN = 0,    /* conic's: set up in double, rounded to float, then as gaussians.md writes it */
-  CONIC_FLOATS_STRICT = 1, /* all in float, in whatever order, products fused or not, eˣ to 2 ulp */
-  CONIC_FLOATS_FAST = 2    /* the same with an eˣ of a GPU's fast mathematics */
-} conic_float_kind;
-
-#define CONIC_N_FLOAT_KINDS 3
-
 typedef struct conic_float_model {
   size_t size;            /* sizeof(conic_float_model), set by the init function */
   int is_setup_in_float;  /* and covariances are formed in space, where they cancel */

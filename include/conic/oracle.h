@@ -124,6 +124,32 @@ CONIC_API conic_status conic_oracle_render_pixels(conic_context *context, const 
                                                   conic_oracle_question question, int samples, size_t n_pixels,
                                                   conic_reference *reference);
 
+/* What is known of the floats of the program that drew. */
+typedef enum conic_float_kind {
+  CONIC_FLOATS_OWN = 0,    /* conic's: set up in double, rounded to float, then as picture.md or gaussians.md has it */
+  CONIC_FLOATS_STRICT = 1, /* all in float, in whatever order, products fused or not, eˣ to 2 ulp */
+  CONIC_FLOATS_FAST = 2    /* the same with an eˣ of a GPU's fast mathematics */
+} conic_float_kind;
+
+#define CONIC_N_FLOAT_KINDS 3
+
+typedef struct conic_oracle_asking {
+  size_t size; /* sizeof(conic_oracle_asking), set by the init function */
+  conic_oracle_question question;
+  int samples;             /* N × N a pixel */
+  size_t n_pixels;         /* 0: all */
+  conic_float_kind floats; /* of the renderer whose picture is to be compared */
+} conic_oracle_asking;
+
+/* The method's question, one sample, all pixels, conic's own floats. */
+CONIC_API void conic_oracle_asking_init_sized(conic_oracle_asking *asking, size_t size);
+#define conic_oracle_asking_init(asking) conic_oracle_asking_init_sized(asking, sizeof *(asking))
+
+/* The same of what is asked; null is the default. */
+CONIC_API conic_status conic_oracle_render_asked(conic_context *context, const conic_drawing *drawing,
+                                                 const conic_camera *camera, const conic_render_options *options,
+                                                 const conic_oracle_asking *asking, conic_reference *reference);
+
 /* The widest range of a channel of the plane among the alternatives, by the measure of conic_oracle_plane_verdict; 0
  * where there are none, and for id. */
 CONIC_API double conic_reference_width(const conic_reference *reference, conic_plane plane);

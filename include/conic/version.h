@@ -9,10 +9,10 @@ extern "C" {
 #endif
 
 #define CONIC_VERSION_MAJOR 0
-#define CONIC_VERSION_MINOR 4
+#define CONIC_VERSION_MINOR 5
 #define CONIC_VERSION_PATCH 0
 
-/* "0.4.0"; static. */
+/* "0.5.0"; static. */
 CONIC_API const char *conic_version(void);
 
 /* A library that conic can use, and whether it does here: it was there when conic was built, and, for OpenImageIO

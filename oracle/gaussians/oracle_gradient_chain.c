@@ -18,7 +18,7 @@ typedef struct space_gradient {
   double mean[3], unit[3][3], scale[3], opacity, focal[2], center[2];
 } space_gradient;
 
-static void add_scaled(double to[3], double factor, const double from[3]) {
+static void add_multiple(double to[3], double factor, const double from[3]) {
   for (int k = 0; k < 3; k++)
     to[k] += factor * from[k];
 }
@@ -62,9 +62,9 @@ static void step_ellipse(const oracle_gaussian_view *view, const oracle_gaussian
 static void add_area(const ellipse_steps *s, double by_area, double rows[2][3]) {
   double along[3];
   oracle_cross(s->rows[1], s->area, along);
-  add_scaled(rows[0], 2.0 * by_area, along);
+  add_multiple(rows[0], 2.0 * by_area, along);
   oracle_cross(s->area, s->rows[0], along);
-  add_scaled(rows[1], 2.0 * by_area, along);
+  add_multiple(rows[1], 2.0 * by_area, along);
 }
 
 /* The opacity is multiplied by √max(least, before/after). */
@@ -85,7 +85,7 @@ static void compensate_back(const oracle_gaussian_view *view, const ellipse_step
   double by_ratio = 0.5 * by_opacity * opacity / share, by_after = -by_ratio * ratio / s->after;
   add_area(s, by_ratio / s->after + by_after, rows);
   for (int axis = 0; axis < 2; axis++)
-    add_scaled(rows[axis], 2.0 * d * by_after, s->rows[axis]);
+    add_multiple(rows[axis], 2.0 * d * by_after, s->rows[axis]);
 }
 
 /* The form is the inverse of the covariance: by the latter, it is −form·(…)·form. */
@@ -102,7 +102,7 @@ static void invert_back(const oracle_gaussian *g, const ellipse_steps *s, const 
     }
   for (int i = 0; i < 2; i++) /* of a·a, a·b and b·b */
     for (int j = 0; j < 2; j++)
-      add_scaled(rows[i], c[i][j] + c[j][i], s->rows[j]);
+      add_multiple(rows[i], c[i][j] + c[j][i], s->rows[j]);
 }
 
 /* Row a of J·V·R·S is f/z·(A_a − slope·A_z), A its axes. */
@@ -118,7 +118,7 @@ static void project_back(const oracle_gaussian *g, const ellipse_steps *s, const
       by_axis[2] = -by_axis[axis] * s->slope[axis];
       by_slope -= by_axis[axis] * g->axes[k][2];
       to->scale[k] += oracle_dot(by_axis, g->unit[k]);
-      add_scaled(to->unit[k], g->scale[k], by_axis);
+      add_multiple(to->unit[k], g->scale[k], by_axis);
     }
     to->focal[axis] += own / f + by_slope * s->by_focal[axis] + by_place * g->mean[axis] / z;
     to->center[axis] += by_place + by_slope * s->by_center[axis];
@@ -154,8 +154,8 @@ static void ray_back(const oracle_gaussian_view *view, const oracle_gaussian *g,
     double by_row[3];
     for (int axis = 0; axis < 3; axis++)
       by_row[axis] = by_ray[axis] + by_middle * g->mean[axis];
-    add_scaled(to->mean, by_middle / scale, g->unit[k]);
-    add_scaled(to->unit[k], 1.0 / scale, by_row);
+    add_multiple(to->mean, by_middle / scale, g->unit[k]);
+    add_multiple(to->unit[k], 1.0 / scale, by_row);
     if (!(is_flat && k == 2))
       to->scale[k] -= oracle_dot(by_row, g->unit[k]) / scale / scale;
     for (int axis = 0; axis < 2; axis++) {
@@ -237,7 +237,7 @@ static void color_back(const oracle_gaussian_view *view, const oracle_eye *eye, 
   for (int k = 0; k < n; k++)
     for (int c = 0; c < 3; c++) {
       to->sh[3 * k + c] = by[c] * y[k];
-      add_scaled(by_direction, by[c] * sh[3 * k + c], slopes[k]);
+      add_multiple(by_direction, by[c] * sh[3 * k + c], slopes[k]);
     }
   if (!(length > 0.0))
     return;
@@ -250,7 +250,7 @@ static void color_back(const oracle_gaussian_view *view, const oracle_eye *eye, 
     double turned = 0.0;
     for (int axis = 0; axis < 3; axis++)
       turned += eye->inverse[axis][row] * by_direction[axis];
-    add_scaled(camera->cam_from_world[row], turned, eye->place);
+    add_multiple(camera->cam_from_world[row], turned, eye->place);
     camera->cam_from_world[row][3] += turned;
   }
 }

@@ -6,10 +6,10 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/real.h"
-#include "core/files/numpy_array.h"
 #include "core/files/file.h"
 #include "core/files/file_fields.h"
 #include "core/files/mapping.h"
+#include "core/files/numpy_array.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 
 /* --- weights --- */

@@ -185,16 +185,16 @@ static void reach_everywhere(oracle_uncertain *g) {
   }
 }
 
-/* Of a form that may be anything, too: that is in doubt at every pixel. */
+/* Of a form that may be anything, q may be, too, however far away. But every program looks at a box alone, or at the
+ * tiles of 16 pixels that it meets, and the variances are known. */
 static void reach_of_ellipse(const bounded variance[2], double q, oracle_uncertain *g) {
+  const int is_known = bounded_is_finite(g->form[0]) && bounded_is_finite(g->form[1]) && bounded_is_finite(g->form[2]);
   for (int axis = 0; axis < 2; axis++) {
     double half = sqrt(q * bounded_high(variance[axis])) + reach_margin_px;
-    half += half * 1e-3 + g->place[axis].off;
+    half += half * 1e-3 + g->place[axis].off + (is_known ? 0.0 : 16.0);
     g->reach[0][axis] = g->place[axis].v - half;
     g->reach[1][axis] = g->place[axis].v + half;
   }
-  if (!bounded_is_finite(g->form[0]) || !bounded_is_finite(g->form[1]) || !bounded_is_finite(g->form[2]))
-    reach_everywhere(g);
 }
 
 /* What another program's order of forming the covariance adds: xx, xy, yy. */

@@ -3,7 +3,7 @@
 
 pkgs.stdenv.mkDerivation {
   pname = "conic";
-  version = "0.4.0";
+  version = "0.5.0";
   src = pkgs.lib.cleanSource ../..;
 
   nativeBuildInputs = with pkgs; [ cmake ninja perl pkg-config ];

@@ -13,11 +13,11 @@ def as_numpy(array: Any, name: str) -> numpy.ndarray:
     """A view of an array of NumPy, torch, jax, … through `__array_interface__` or DLPack."""
     if isinstance(array, numpy.ndarray):
         return array
-    if hasattr(array, "detach"):  # torch: what gradients go through is not handed out otherwise
-        array = array.detach()
     device = str(getattr(array, "device", "cpu"))
     if device.startswith(("cuda", "mps", "xpu", "xla")):
         raise ArgumentError(f"{name}: the array is on {device}; hand over its .cpu()")
+    if hasattr(array, "detach"):  # torch: what gradients go through is not handed out otherwise
+        array = array.detach()
     if not hasattr(array, "__array_interface__") and not hasattr(array, "__array__") and hasattr(array, "__dlpack__"):
         return numpy.from_dlpack(array)
     return numpy.asarray(array)

@@ -44,6 +44,22 @@ def _value(name: str, value: Any) -> str:
     return ",".join(_value(name, part) for part in parts)
 
 
+def _whole(array: Any, name: str) -> numpy.ndarray:
+    """Without leading dimensions of length 1, as renderers of batches have them."""
+    found = as_numpy(array, name)
+    while found.ndim > 2 and found.shape[0] == 1:
+        found = found[0]
+    return found
+
+
+def _pixels(array: Any, channels: Tuple[int, ...]) -> numpy.ndarray:
+    found = _whole(array, "picture")
+    if found.ndim != 3 or found.shape[2] not in channels:
+        raise ArgumentError(f"picture: its shape is {found.shape}, and (H, W, {' or '.join(map(str, channels))}) is "
+                            "needed")
+    return found
+
+
 class _Call:
     """The arguments of a run, and what it is lent."""
 
@@ -112,14 +128,9 @@ class _Call:
             picture = picture if isinstance(picture, Picture) else Picture(
                 {name: as_numpy(plane, name) for name, plane in picture.items() if name != "statistics"})
             return self.lend("image", picture.image())
-        pixels = as_numpy(picture, "picture")
-        while pixels.ndim > 3 and pixels.shape[0] == 1:
-            pixels = pixels[0]
-        if pixels.ndim != 3 or pixels.shape[2] not in (3, 4):
-            raise ArgumentError(f"picture: its shape is {pixels.shape}, and (H, W, 3) or (H, W, 4) is needed")
+        pixels = _pixels(picture, (3, 4))
         if pixels.dtype == numpy.uint8:
-            self._folder = self._folder or tempfile.TemporaryDirectory()
-            path = os.path.join(self._folder.name, f"picture{len(os.listdir(self._folder.name))}.png")
+            path = self._temporary("png")
             with open(path, "wb") as file:
                 file.write(encode_png(numpy.ascontiguousarray(pixels)))
             return path
@@ -128,6 +139,24 @@ class _Call:
         image = Picture({"rgba": rgba}).image()
         image.lacks_alpha, image.is_display = int(pixels.shape[2] == 3), int(is_display)
         return self.lend("image", image)
+
+    def evidence(self, picture: Any, channels: Tuple[int, ...] = (3, 4)) -> str:
+        """The same of a picture that is judged: codes stay codes, and nothing is added to what there is."""
+        if isinstance(picture, (str, os.PathLike, Picture)):
+            return self.picture(picture)
+        if isinstance(picture, dict):
+            planes = {name: _whole(plane, name) for name, plane in picture.items() if name != "statistics"}
+            path = self._temporary("npz")
+            numpy.savez(path, **planes)
+            return path
+        pixels = numpy.ascontiguousarray(_pixels(picture, channels))
+        path = self._temporary("npy")
+        numpy.save(path, pixels)
+        return path
+
+    def _temporary(self, ending: str) -> str:
+        self._folder = self._folder or tempfile.TemporaryDirectory(prefix="conic-")
+        return os.path.join(self._folder.name, f"picture{len(os.listdir(self._folder.name))}.{ending}")
 
     def run(self, *, progress: Any = None, frames: Optional[Frames] = None, keeps: bool = False,
             threads: Optional[int] = None) -> Tuple[int, Dict[str, Any]]:
@@ -209,7 +238,7 @@ def judge(scene: AnyScene, camera: AnyCamera, picture: Any, *, progress: Any = N
     call = _Call("judge")
     call.input(scene)
     call.camera(camera)
-    call.add("picture", call.picture(picture, is_display=True))
+    call.add("picture", call.evidence(picture))
     call.options(options)
     return call.run(progress=progress, threads=threads)[1]
 
@@ -244,6 +273,15 @@ def info(path: PathLike, *, check: bool = False, **options: Options) -> Dict[str
 def devices() -> Dict[str, Any]:
     """The OpenCL devices of this machine, for `device=` of :func:`render`."""
     return run(["devices", "--quiet"])[1]
+
+
+def conformance(folder: PathLike, *, progress: Any = None, threads: Optional[int] = None,
+                **options: Options) -> Dict[str, Any]:
+    """Writes a suite of cases by which any Gaussian renderer can be judged."""
+    call = _Call("conformance")
+    call.inputs = [os.fspath(folder)]
+    call.options(options)
+    return call.run(progress=progress, threads=threads)[1]
 
 
 def command(name: str, *arguments: str, progress: Any = None, **options: Options) -> Dict[str, Any]:
@@ -333,5 +371,5 @@ def gradient(scene: AnyScene, camera: AnyCamera, weights: Any, output: Optional[
     call = _Call("gradient")
     call.input(scene)
     call.camera(camera)
-    call.add("weights", call.picture(weights, is_display=True))
+    call.add("weights", call.evidence(weights, (3, 4, 5)))
     return _build(call, output, "ply", options, progress, threads)

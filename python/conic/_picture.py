@@ -6,7 +6,7 @@ import ctypes
 import os
 import struct
 import zlib
-from typing import Any, Dict, Iterator, List, Optional
+from typing import Any, Dict, List, Optional
 
 import numpy
 
@@ -18,54 +18,39 @@ from .errors import ArgumentError
 
 class Hashes(Dict[str, str]):
     """The planes' hashes by name, 16 hexadecimal digits each, as the program's JSON has them. Each is found when it
-    is asked for first."""
+    is asked for first, since that takes as long as drawing a small picture."""
 
     def __init__(self, picture: "Picture") -> None:
-        super().__init__()
+        super().__init__(dict.fromkeys(picture.planes, ""))
         self._picture = picture
 
-    def __missing__(self, name: str) -> str:
-        if name not in self._picture or name not in PLANE_BY_NAME:
-            raise KeyError(name)
-        self[name] = self._picture.hash(name)
-        return super().__getitem__(name)
+    def __getitem__(self, name: str) -> str:
+        found = super().__getitem__(name)
+        if not found:
+            found = self._picture.hash(name)
+            self[name] = found
+        return found
 
-    def _find_all(self) -> "Hashes":
-        for name in self._picture.planes:
-            self[name]  # pylint: disable=pointless-statement
-        return self
+    def _found(self) -> Dict[str, str]:
+        return {name: self[name] for name in self}
 
     def get(self, name: str, default: Any = None) -> Any:
         return self[name] if name in self else default
 
-    def __contains__(self, name: object) -> bool:
-        return name in self._picture.planes
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._picture.planes)
-
-    def __len__(self) -> int:
-        return len(self._picture.planes)
-
-    def keys(self) -> Any:
-        return dict.fromkeys(self._picture.planes).keys()
-
     def items(self) -> Any:
-        self._find_all()
-        return super().items()
+        return self._found().items()
 
     def values(self) -> Any:
-        self._find_all()
-        return super().values()
+        return self._found().values()
 
     def __eq__(self, other: object) -> bool:
-        return dict(self.items()) == other
+        return self._found() == (other._found() if isinstance(other, Hashes) else other)
 
     def __ne__(self, other: object) -> bool:
         return not self == other
 
     def __repr__(self) -> str:
-        return repr(dict(self.items()))
+        return repr(self._found())
 
 
 class Picture(Dict[str, Any]):

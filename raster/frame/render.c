@@ -1,6 +1,5 @@
 #include "conic/render.h"
 
-#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -9,6 +8,7 @@
 #include "core/base/kept_memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "core/splats/near.h"
 #include "raster/frame/backend.h"
 #include "raster/frame/drawing.h"
 #include "raster/frame/tile.h"
@@ -305,11 +305,9 @@ void conic_renderer_slip(conic_renderer *renderer, unsigned slips) {
 }
 
 double conic_default_near(const conic_splats *splats) {
-  double low[3], high[3], diagonal_squared = 0.0;
+  double low[3], high[3];
   conic_splats_bounds(splats, low, high);
-  for (int i = 0; i < 3; i++)
-    diagonal_squared += (high[i] - low[i]) * (high[i] - low[i]);
-  return diagonal_squared > 0.0 ? 1e-4 * sqrt(diagonal_squared) : 1e-4;
+  return conic_near_of_box(low, high);
 }
 
 static conic_status prepare_finish(frame *f, const conic_camera *camera, const conic_render_options *options) {

@@ -415,9 +415,8 @@ static void set_weighing(const splat_setup *s, float longer) {
     s->footprint->nearness = distance > 0.0f ? 1.0f / (1.0f + epsilon / distance) : 0.0f;
     if (epsilon > 0.0f && epsilon < HUGE_VALF && is_wide(s))
       s->footprint->nearness = -epsilon;
-    if (view->slips & CONIC_SLIP_EPSILON && s->p[2] > 0.0)
-      s->footprint->nearness =
-          is_wide(s) ? s->footprint->nearness * (distance / (float)s->p[2]) : 1.0f / (1.0f + epsilon / (float)s->p[2]);
+    if (view->slips & CONIC_SLIP_EPSILON && epsilon > 0.0f && epsilon < HUGE_VALF && s->p[2] > 0.0)
+      s->footprint->nearness = -epsilon * (distance / (float)s->p[2]); /* rays are about as long as the centre's */
   }
   if (s->splats->opacity)
     s->footprint->amplitude *= s->splats->opacity[s->i];

@@ -17,6 +17,40 @@ sed -n 's/^ *"sha256": "\(.*\)"$/\1/p' one/manifest.json | paste -d ' ' - paths 
   fail "the list of files: $(head -3 out)"
 [[ $(wc -l < one/cases.tsv) == 23 ]] || fail "the list of cases"
 
+# The manifest is as its schema says; and a manifest that is not would be seen.
+python=
+for candidate in python3 /usr/bin/python3; do
+  "$candidate" -c 'import jsonschema; jsonschema.Draft202012Validator' 2> /dev/null && python=$candidate && break
+done
+if [[ -n $python ]]; then
+  "$python" - "$1/docs/reference/conformance.schema.json" one/manifest.json << 'END' || fail "the manifest"
+import copy, json, sys
+import jsonschema
+schema, manifest = (json.load(open(path)) for path in sys.argv[1:])
+jsonschema.Draft202012Validator.check_schema(schema)
+check = jsonschema.Draft202012Validator(schema)
+check.validate(manifest)
+def places(value):
+    if isinstance(value, dict):
+        yield value
+    for item in value.values() if isinstance(value, dict) else value[:1] if isinstance(value, list) else ():
+        yield from places(item)
+optional = {"spz", "glb"}
+for i, place in enumerate(places(manifest)):
+    for key in place:
+        if key in optional:
+            continue
+        spoiled = copy.deepcopy(manifest)
+        del list(places(spoiled))[i][key]
+        assert not check.is_valid(spoiled), key
+    spoiled = copy.deepcopy(manifest)
+    list(places(spoiled))[i]["other"] = 1
+    assert not check.is_valid(spoiled), place
+END
+else
+  echo "not held against its schema: python3-jsonschema is not installed"
+fi
+
 # The same scene and camera in every format.
 run 0 info one/scenes/ellipse.spz
 run 0 convert one/scenes/ellipse.spz --from-frame rdf --frame rdf -o back.ply --json -

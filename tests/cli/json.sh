@@ -73,9 +73,14 @@ declare -A wanted=(
   [verify-gaussians]="against profile planes.rgba.max_abs planes.rgba.widest planes.last.max_abs judged_pixels
     covered_pixels classes.equal classes.rounded classes.explained classes.wrong doubtful_pixels
     doubtful_by_reason.order explained_by_reason.order wide_pixels wrong_pixels ms.render ms.oracle pass"
+  [judge-wrong]="verdict pixels.equal pixels.rounding pixels.explained pixels.wrong diagnosis explained_by worst
+    profile? judged_pixels planes.rgba.max_abs? seconds.judge"
+  [judge-splats-wrong]="verdict pixels.wrong method? explained_by.cutoff? worst"
   [explain-gaussians]="profile pixel planes.rgba planes.last bounds.rgb.low bounds.T.high end doubts doubt
     counts.composited contributions"
   [help]="version commands"
+  [gradient]="profile parameters width height gaussians shown loss camera.world_to_camera camera.fx greatest.mean
+    doubtful? doubtful_by_reason.least? ms.gradient"
   [chart]="scenes methods points seconds"
   [bench]="lines wrong_pictures peak_rss_bytes machine?"
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
@@ -85,6 +90,8 @@ declare -A wanted=(
   [convert]="kind_in kind_out gaussians sh_degree_in sh_degree_out reordered lossless? lost? differences.position
     differences.scale differences.rotation_deg differences.opacity differences.color differences.harmonics pictures.views?
     pictures.psnr? pictures.greatest? bytes?"
+  [conformance]="floats cases files bytes levels seconds.scenes seconds.bounds seconds.write seconds.total"
+  [suite-wrong]="verdict total.cases total.right total.wrong total.missing levels cases extra_pictures"
   [info-hybrid]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound?"
   [info-layers]="kind points clouds levels bytes bytes_per_point bits_per_sample bits.position bits.normal bits.colour
     bits.index bounds.min bounds.max sound?"
@@ -145,7 +152,13 @@ write verify-gaussians verify_gaussians verify two.splat --profile exact --size 
 write verify-gaussians-samples verify_gaussians verify two.splat --profile inria-2023 --size 20x20 --samples 2
 run 0 render two.splat --profile gsplat-1.6 --size 40x40 -o two.exr
 write verify-gaussians-wrong verify_gaussians verify two.splat --profile khr-2026 --size 40x40 --image two.exr
+write judge-wrong judge judge two.splat --profile khr-2026 --size 40x40 --picture two.exr
+write judge-splats-wrong judge judge thinner.ply --size 160x120 --picture prefiltered.exr
+write judge-mesh-wrong judge judge triangle.obj --as mesh --size 256x256 --picture triangle.exr --shade none
+cat two.splat two.splat > copies.splat
+write judge-copies-wrong judge judge copies.splat --profile gsplat-1.6 --size 40x40 --picture two.exr
 write explain-gaussians explain_gaussians explain two.splat --profile exact --size 40x40 --pixel 20,20
+write gradient gradient gradient two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr
 write explain-splat explain explain one.ply --size 64x48 --splat 0
 write explain-octree explain explain knot.cot --size 64x48 --error 1 --splat 9 --pixel 32,24
 write explain-leaf explain explain knot.cot --size 2048x2048 --error 0.5 --splat 9
@@ -177,6 +190,10 @@ write info-gaussians info_gaussians info two.compressed.ply --check
 write chart-gaussians chart chart two.compressed.ply -o chart --quick --pixels 100
 write render-gaussians render render two.compressed.ply --profile gsplat-1.6 --size 64x64 -o two.exr --aov all
 write devices devices devices
+write conformance conformance conformance suite --profile 2dgs-gsplat
+mkdir drawn
+run 0 render suite/scenes/disc.ply --profile 2dgs-gsplat --size 36x20 -o drawn/L1-disc-2dgs-gsplat.pfm
+write suite-wrong judge_suite judge --suite suite --pictures drawn
 run 0 help --format json
 cp out runs/help.json
 echo help > runs/help.definition

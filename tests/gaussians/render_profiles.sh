@@ -33,6 +33,12 @@ for profile in inria-2023 gsplat-1.5 gsplat-1.5-aa gsplat-1.6 gsplat-1.6-aa 2dgs
   done
 done
 run 1 diff exact.exr gsplat-1.6.exr
+# What is named is drawn as its program draws it, a sample a pixel; what is looked at has several.
+for pair in ':2' '--profile gsplat-1.6:1' '--profile exact:1' '--profile gsplat-1.6 --quality good:2' '--profile surface:2'; do
+  # shellcheck disable=SC2086
+  run_as_typed 0 render two.ply --size 40x40 -o a.exr --json - ${pair%:*}
+  grep -q "\"samples\": ${pair#*:}," out || fail "${pair%:*}: $(grep samples out)"
+done
 # exact takes a filter, and no other profile does.
 run 0 render two.ply --profile exact --prefilter 1 --size 40x40 --aov rgba,T,Z,N,count,id,last,medianZ,inverseZ -o a.exr
 run 1 diff exact.exr a.exr

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What conic draws in the profiles of gsplat, beside what gsplat's own code for torch draws of real scenes: within 1e-5,
-# but where the decisions of a pixel are nearer than roundings. CONIC_GSPLAT names folders that hold a gsplat, with a
+# but where the decisions of a pixel are nearer than roundings. And its derivatives, beside those of torch's automatic
+# differentiation of that code, in double: within 1e-9. CONIC_GSPLAT names folders that hold a gsplat, with a
 # colon between; without it, it is the installed one.
 set -uo pipefail
 
@@ -24,8 +25,11 @@ if [[ -z $python || -z $folders || ! -e $data/biker.spz ]]; then
   exit 77
 fi
 IFS=: read -ra folders <<< "$folders"
+export PYTHONDONTWRITEBYTECODE=1
 for folder in "${folders[@]}"; do
-  "$python" "$1/tests/gaussians/torch_pictures.py" "$conic" "$folder" "$data" > table || fail "$folder: $(cat table)"
-  cat table
+  for what in pictures gradients; do
+    "$python" "$1/tests/gaussians/torch_$what.py" "$conic" "$folder" "$data" > table || fail "$folder: $(cat table)"
+    cat table
+  done
 done
 [[ $failures -eq 0 ]]

@@ -1,8 +1,11 @@
 /* A renderer of Gaussian scenes that has nothing of conic: what another author's program is to the judge.
  *
- * plain_renderer SCENE.ply CAMERA.json [--profile NAME] [--fault NAME]… [--background R,G,B] [--floats SEED] -o OUT
+ * plain_renderer SCENE.ply CAMERA.json [--profile NAME] [--fault NAME]… [--otherwise 1] [--background R,G,B]
+ *                [--floats SEED] -o OUT
+ * plain_renderer --make SCENE.ply CAMERA.json SEED
  *
- * OUT.pfm or OUT.npy. With --floats, the arithmetic fuses, orders and approximates by chance. */
+ * OUT.pfm or OUT.npy. --otherwise 1 plants the faults as other programs have them. With --floats, the arithmetic fuses,
+ * orders and approximates by chance. */
 #include <string.h>
 
 #include "tests/judge/plain_gaussians.h"
@@ -14,6 +17,8 @@ static void plain_take_option(const char *name, const char *value, plain_setting
     s->profile = plain_profile_find(value);
   else if (strcmp(name, "--fault") == 0)
     s->faults |= 1u << plain_fault_find(value);
+  else if (strcmp(name, "--otherwise") == 0)
+    s->faults |= strcmp(value, "1") == 0 ? PLAIN_OTHERWISE : 0;
   else if (strcmp(name, "--floats") == 0)
     s->floats = plain_floats_by_chance(strtoull(value, NULL, 10), 1);
   else if (strcmp(name, "--background") != 0 ||
@@ -24,6 +29,10 @@ static void plain_take_option(const char *name, const char *value, plain_setting
 int main(int argc, char **argv) {
   plain_settings settings = {.profile = plain_profile_find("gsplat-1.6")};
   const char *out = NULL;
+  if (argc == 5 && strcmp(argv[1], "--make") == 0) {
+    plain_random_write(strtoull(argv[4], NULL, 10), 150, argv[2], argv[3]);
+    return 0;
+  }
   for (int k = 3; k + 1 < argc; k += 2)
     plain_take_option(argv[k], argv[k + 1], &settings, &out);
   if (argc < 5 || !out || !settings.profile)

@@ -170,12 +170,12 @@ plain_scene plain_scene_read(const char *path, unsigned faults) {
   s.sh = plain_calloc(s.count * (size_t)((s.sh_degree + 1) * (s.sh_degree + 1)), 3 * sizeof *s.sh);
   for (size_t i = 0; i < s.count; i++) {
     for (size_t k = 0; k < 3; k++) {
-      float stored = plain_cell(&t, i, scale[k]);
+      float stored = plain_cell(&t, i, scale[k]), raw = faults & PLAIN_OTHERWISE ? expf(expf(stored)) : stored;
       s.mean[3 * i + k] = plain_cell(&t, i, place[k]);
-      s.scale[3 * i + k] = scale[k] < 0 ? 0.0f : plain_has(faults, PLAIN_SCALE_LINEAR) ? stored : expf(stored);
+      s.scale[3 * i + k] = scale[k] < 0 ? 0.0f : plain_has(faults, PLAIN_SCALE_LINEAR) ? raw : expf(stored);
     }
-    float logit = plain_cell(&t, i, opacity);
-    s.opacity[i] = plain_has(faults, PLAIN_OPACITY_LINEAR) ? logit : 1.0f / (1.0f + expf(-logit));
+    float logit = plain_cell(&t, i, opacity), raw = faults & PLAIN_OTHERWISE ? fminf(fmaxf(logit, 0.0f), 1.0f) : logit;
+    s.opacity[i] = plain_has(faults, PLAIN_OPACITY_LINEAR) ? raw : 1.0f / (1.0f + expf(-logit));
     plain_take_rotation(&t, i, faults, rotation, s.rotation + 4 * i);
     plain_take_harmonics(&t, i, faults, dc, rest, &s);
   }
@@ -269,23 +269,28 @@ static void plain_mirror(plain_picture *p, int is_upside_down) {
   plain_mirror_plane(p->count, p->width, p->height, 1, is_upside_down);
 }
 
-static float plain_decode(float v) {
+static float plain_decode(float v, int is_power) {
+  if (is_power)
+    return powf(v, 2.2f);
   return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
 }
 
-static float plain_encode(float v) {
+static float plain_encode(float v, int is_power) {
+  if (is_power)
+    return powf(v, 1.0f / 2.2f);
   return v <= 0.0031308f ? 12.92f * v : 1.055f * powf(v, 1.0f / 2.4f) - 0.055f;
 }
 
 void plain_picture_spoil(plain_picture *p, unsigned faults) {
+  const int is_other = (faults & PLAIN_OTHERWISE) != 0;
   const size_t n = (size_t)p->width * (size_t)p->height;
   for (size_t i = 0; i < 3 * n; i++) {
     if (plain_has(faults, PLAIN_PREMULTIPLIED))
-      p->rgb[i] *= p->alpha[i / 3];
+      p->rgb[i] = !is_other ? p->rgb[i] * p->alpha[i / 3] : p->alpha[i / 3] > 0.0f ? p->rgb[i] / p->alpha[i / 3] : 0.0f;
     if (plain_has(faults, PLAIN_SRGB_DECODED))
-      p->rgb[i] = plain_decode(p->rgb[i]);
+      p->rgb[i] = plain_decode(p->rgb[i], is_other);
     if (plain_has(faults, PLAIN_SRGB_ENCODED))
-      p->rgb[i] = plain_encode(p->rgb[i]);
+      p->rgb[i] = plain_encode(p->rgb[i], is_other);
   }
   if (plain_has(faults, PLAIN_MIRRORED_X))
     plain_mirror(p, 0);

@@ -40,6 +40,10 @@ typedef enum plain_fault {
   PLAIN_N_FAULTS
 } plain_fault;
 
+/* Beside them: as other programs have them, where there are several ways: scales that are undone twice, opacities
+ * limited to 0 to 1, sRGB as a power of 2.2, colours divided by alpha, … */
+#define PLAIN_OTHERWISE (1u << 31)
+
 extern const char *const plain_fault_names[PLAIN_N_FAULTS];
 
 /* The fault of a name; ends the program where there is none. */
@@ -87,6 +91,9 @@ int plain_table_find(const plain_table *table, const char *name);
 plain_scene plain_scene_read(const char *path, unsigned faults);
 void plain_scene_release(plain_scene *scene);
 plain_camera plain_camera_read(const char *path);
+
+/* Writes a scene of n Gaussians and a camera before it. */
+void plain_random_write(unsigned long long seed, size_t n, const char *scene, const char *camera);
 
 plain_picture plain_picture_allocate(int width, int height);
 void plain_picture_release(plain_picture *picture);

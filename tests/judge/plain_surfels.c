@@ -256,7 +256,7 @@ static float plain_hidden_below(plain_stage *v, const plain_ellipse *e, const pl
   plain_floats *f = &v->floats;
   float share = plain_divide(f, e->epsilon, e->distance);
   if (plain_has(v->settings->faults, PLAIN_EPSILON_IN_Z))
-    share = e->epsilon * sight->farther;
+    share = e->epsilon * plain_greater(sight->farther, 0.0f);
   else if (e->is_wide) {
     const float ray[3] = {((float)column + 0.5f - v->center[0]) / v->camera->fx,
                           ((float)row + 0.5f - v->center[1]) / v->camera->fy, 1.0f};

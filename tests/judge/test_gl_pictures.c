@@ -59,8 +59,8 @@ static void write_files(gl_test *t) {
   CHECK_OK(conic_camera_read(t->context, t->path[1], &t->camera));
 }
 
-static conic_gaussian_verdict judge_picture(gl_test *t, const char *profile, conic_float_kind kind,
-                                            const plain_picture *p) {
+/* GLSL promises an eˣ to 3 + 2|x| ulp; llvmpipe's is off by up to 9.6 ulp, which is more than strict floats may be. */
+static conic_gaussian_verdict judge_picture(gl_test *t, const char *profile, const plain_picture *p) {
   const unsigned planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_TRANSPARENCY;
   conic_image image;
   conic_gaussian_options options;
@@ -72,7 +72,7 @@ static conic_gaussian_verdict judge_picture(gl_test *t, const char *profile, con
   for (int k = 0; k < CONIC_N_GAUSSIAN_PROFILES; k++)
     if (strcmp(conic_gaussian_profile_name((conic_gaussian_profile)k), profile) == 0)
       options.profile = (conic_gaussian_profile)k;
-  conic_float_model_init(&model, kind);
+  conic_float_model_init(&model, CONIC_FLOATS_FAST);
   conic_gaussian_judging_init(&judging);
   judging.model = &model;
   CHECK_OK(conic_image_allocate(t->context, p->width, p->height, planes, &image));
@@ -107,24 +107,22 @@ static int can_have(const char *profile, int fault) {
   }
 }
 
-/* Draws with a fault, or with none (−1). llvmpipe keeps the stricter bounds, though GLSL promises less. */
+/* Draws with a fault, or with none (−1). */
 static void judge_fault(gl_test *t, const char *profile, int fault) {
   const gl_order order = {t->folder, profile, fault < 0 ? 0 : 1u << fault, {0.0f, 0.0f, 0.0f}};
   plain_scene scene = plain_scene_read(t->path[0], order.faults);
   plain_camera camera = plain_camera_read(t->path[1]);
   plain_picture picture = plain_picture_allocate(camera.width, camera.height);
   gl_draw(&order, &scene, &camera, &picture);
-  for (int kind = fault < 0 ? CONIC_FLOATS_STRICT : CONIC_FLOATS_FAST; kind <= CONIC_FLOATS_FAST; kind++) {
-    const conic_gaussian_verdict v = judge_picture(t, profile, (conic_float_kind)kind, &picture);
-    printf("%-14s %-24s floats %d: wrong %zu of %zu", profile, fault < 0 ? "right" : plain_fault_names[fault], kind,
-           v.pixels[CONIC_PIXEL_WRONG], v.judged_pixels);
-    if (v.n_worst)
-      printf(", worst %d,%d %s[%d]: %.9g not in %.9g to %.9g", v.worst[0].x, v.worst[0].y,
-             conic_plane_describe((conic_plane)v.worst[0].plane)->name, v.worst[0].channel, v.worst[0].found,
-             v.worst[0].low, v.worst[0].high);
-    printf("\n");
-    CHECK(v.pass == (fault < 0) && v.covered_pixels > WIDTH * HEIGHT / 2);
-  }
+  const conic_gaussian_verdict v = judge_picture(t, profile, &picture);
+  printf("%-14s %-24s wrong %zu of %zu", profile, fault < 0 ? "right" : plain_fault_names[fault],
+         v.pixels[CONIC_PIXEL_WRONG], v.judged_pixels);
+  if (v.n_worst)
+    printf(", worst %d,%d %s[%d]: %.9g not in %.9g to %.9g", v.worst[0].x, v.worst[0].y,
+           conic_plane_describe((conic_plane)v.worst[0].plane)->name, v.worst[0].channel, v.worst[0].found,
+           v.worst[0].low, v.worst[0].high);
+  printf("\n");
+  CHECK(v.pass == (fault < 0) && v.covered_pixels > WIDTH * HEIGHT / 2);
   plain_picture_release(&picture);
   plain_scene_release(&scene);
 }

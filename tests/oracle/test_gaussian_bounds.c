@@ -311,6 +311,33 @@ static void test_doubts(conic_context *context) {
   CHECK(b.kinds == 0 && b.most[CONIC_BOUND_COUNT] == 0.0);
 }
 
+/* A needle that floats may make anything of is in doubt about it, not wherever its line leads to. */
+static void test_needle(conic_context *context) {
+  const conic_camera camera = {.width = 129,
+                               .height = 129,
+                               .fx = 32.0,
+                               .fy = 32.0,
+                               .cx = 64.5,
+                               .cy = 64.5,
+                               .cam_from_world = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+  const uint32_t pixels[2] = {65 * 129 + 65, 124 * 129 + 124};
+  const float z = 4.0f, opacity = 0.5f;
+  conic_gaussians scene = on_the_axis(context, 1, &z, &opacity);
+  conic_gaussian_bound bounds[2];
+  conic_gaussian_options options;
+  conic_float_model model;
+  scene.scale[1][0] = scene.scale[2][0] = 1e-7f;
+  scene.rotation[0][0] = 0.92388f;
+  scene.rotation[3][0] = 0.38268f;
+  conic_gaussian_options_init(&options);
+  options.profile = CONIC_PROFILE_KHR_2026; /* which has no dilation */
+  conic_float_model_init(&model, CONIC_FLOATS_STRICT);
+  CHECK_OK(conic_gaussian_bound_pixels(context, &scene, &camera, &options, &model, pixels, 2, bounds));
+  CHECK(bounds[0].kinds != 0 && bounds[0].least[CONIC_BOUND_COUNT] == 0.0);
+  CHECK(bounds[1].kinds == 0 && bounds[1].most[CONIC_BOUND_COUNT] == 0.0);
+  conic_gaussians_release(context, &scene);
+}
+
 /* Mistakes are wrong, however small, and the worst is named; some of the pixels are always the same ones. */
 static void test_mistakes(conic_context *context) {
   conic_gaussians scene = gaussians_random(context, 300, 1, 0);
@@ -421,6 +448,7 @@ int main(void) {
   test_hostile(context);
   test_random_floats(context);
   test_doubts(context);
+  test_needle(context);
   test_mistakes(context);
   test_listing(context);
   test_double_run(context);

@@ -79,15 +79,15 @@ typedef struct seen {
   double precision[3][3], mean[3];                /* in camera space */
 } seen;
 
-static double length_of(const double q[4]) {
+static double quaternion_length(const double q[4]) {
   return sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
 }
 
-static void spread_of(const frozen *f, int i_gaussian, const double *g, const double *c, double power,
-                      double spread[3][3]) {
+static void covariance_by_turning(const frozen *f, int i_gaussian, const double *g, const double *c, double power,
+                                  double spread[3][3]) {
   double q[4], r[3][3], turned[3][3];
   for (int k = 0; k < 4; k++)
-    q[k] = g[TURN + k] / length_of(g + TURN) * f->length[i_gaussian];
+    q[k] = g[TURN + k] / quaternion_length(g + TURN) * f->length[i_gaussian];
   for (int column = 0; column < 3; column++) { /* q e q*, e a unit vector */
     double e[3] = {0.0, 0.0, 0.0}, t[3];
     e[column] = 1.0;
@@ -107,7 +107,7 @@ static void spread_of(const frozen *f, int i_gaussian, const double *g, const do
     }
 }
 
-static double slope_at(const frozen *f, const double *c, int axis, int side, double inside) {
+static double clamped_slope(const frozen *f, const double *c, int axis, int side, double inside) {
   const double size = axis ? HEIGHT : WIDTH, focal = c[12 + axis], center = c[14 + axis];
   if (side == 0)
     return inside;
@@ -141,18 +141,18 @@ static void see_color(frozen *f, const double *g, const double *c, int i, int is
 static void see_ellipse(frozen *f, const double *g, const double *c, int i, int is_first, seen *s) {
   const double z = s->mean[2], h = dilation_of(f);
   double spread[3][3], jacobian[2][3], cov[2][2] = {{h, 0.0}, {0.0, h}};
-  spread_of(f, i, g, c, 2.0, spread);
+  covariance_by_turning(f, i, g, c, 2.0, spread);
   for (int axis = 0; axis < 2; axis++) {
     const double slope = s->mean[axis] / z,
                  center = f->profile == CONIC_PROFILE_INRIA_2023 ? 0.5 * (axis ? HEIGHT : WIDTH) : c[14 + axis];
     s->place[axis] = c[12 + axis] * slope + center;
     if (is_first && h > 0.0)
-      f->slope_side[i][axis] = slope > slope_at(f, c, axis, 1, 0.0)    ? 1
-                               : slope < slope_at(f, c, axis, -1, 0.0) ? -1
-                                                                       : 0;
+      f->slope_side[i][axis] = slope > clamped_slope(f, c, axis, 1, 0.0)    ? 1
+                               : slope < clamped_slope(f, c, axis, -1, 0.0) ? -1
+                                                                            : 0;
     for (int k = 0; k < 3; k++)
       jacobian[axis][k] = k == axis ? c[12 + axis] / z : 0.0;
-    jacobian[axis][2] = -c[12 + axis] / z * slope_at(f, c, axis, f->slope_side[i][axis], slope);
+    jacobian[axis][2] = -c[12 + axis] / z * clamped_slope(f, c, axis, f->slope_side[i][axis], slope);
   }
   for (int a = 0; a < 2; a++)
     for (int b = 0; b < 2; b++)
@@ -177,12 +177,12 @@ static void see_gaussian(frozen *f, const double *p, int i, int is_first, seen *
   for (int k = 0; k < 3; k++)
     s->mean[k] = c[4 * k] * g[0] + c[4 * k + 1] * g[1] + c[4 * k + 2] * g[2] + c[4 * k + 3];
   if (is_first) /* inria's program takes what is nearly a unit as it is */
-    f->length[i] = f->profile == CONIC_PROFILE_INRIA_2023 ? length_of(g + TURN) : 1.0;
+    f->length[i] = f->profile == CONIC_PROFILE_INRIA_2023 ? quaternion_length(g + TURN) : 1.0;
   s->opacity = g[OPACITY];
   s->z = s->mean[2];
   see_color(f, g, c, i, is_first, s);
   if (f->profile == CONIC_PROFILE_EXACT)
-    spread_of(f, i, g, c, -2.0, s->precision);
+    covariance_by_turning(f, i, g, c, -2.0, s->precision);
   else
     see_ellipse(f, g, c, i, is_first, s);
 }
@@ -201,7 +201,7 @@ static double along_ray(const seen *s, const double *c, double x, double y, doub
   return mm - dm * dm / dd;
 }
 
-static double alpha_of(const frozen *f, const seen *s, const double *c, int pixel, int k, double *z) {
+static double frozen_alpha(const frozen *f, const seen *s, const double *c, int pixel, int k, double *z) {
   static const double most[CONIC_N_GAUSSIAN_PROFILES] = {0.99, 0.99, 0.999, 0.999, 0.99, 0.99, 0.99, 0.99, 1.0};
   const double x = pixel % WIDTH + 0.5, y = pixel / WIDTH + 0.5, dx = x - s->place[0], dy = y - s->place[1];
   double q;
@@ -223,7 +223,7 @@ static double loss_of(frozen *f, const double *p, int is_first) {
     double T = 1.0, sum = 0.0, sum_of_z = 0.0, rgb[3] = {0.0, 0.0, 0.0}, z;
     for (int k = 0; k < f->n[pixel]; k++) {
       const seen *s = &all[f->order[pixel][k]];
-      double alpha = alpha_of(f, s, p + CAMERA_AT, pixel, k, &z);
+      double alpha = frozen_alpha(f, s, p + CAMERA_AT, pixel, k, &z);
       for (int c = 0; c < 3; c++)
         rgb[c] += alpha * T * s->color[c];
       sum += alpha * T;
@@ -345,7 +345,7 @@ static conic_gaussian_gradient gradient_of(conic_context *context, const conic_g
 }
 
 /* Central differences of two steps, freed of their second order. */
-static double difference_at(frozen *f, double *p, size_t at) {
+static double central_difference(frozen *f, double *p, size_t at) {
   const double kept = p[at], h = 4e-4;
   double slopes[2];
   for (int k = 0; k < 2; k++) {
@@ -361,7 +361,7 @@ static double difference_at(frozen *f, double *p, size_t at) {
 
 static const char *const kinds[] = {"mean", "scale", "rotation", "opacity", "sh", "camera"};
 
-static int kind_of(size_t at) {
+static int parameter_kind(size_t at) {
   const size_t k = at % ROW;
   return at >= CAMERA_AT ? 5 : k < SCALE ? 0 : k < TURN ? 1 : k < OPACITY ? 2 : k < SH ? 3 : 4;
 }
@@ -370,12 +370,12 @@ static void compare_differences(frozen *f, double *p, const conic_gaussian_gradi
   double greatest[6] = {0.0}, worst[6] = {0.0};
   for (size_t at = 0; at < N_NUMBERS; at++)
     if (at >= CAMERA_AT || at % ROW < SH + conic_harmonics_of_degree(f->degree))
-      greatest[kind_of(at)] = fmax(greatest[kind_of(at)], fabs(gradient_number(g, at)));
+      greatest[parameter_kind(at)] = fmax(greatest[parameter_kind(at)], fabs(gradient_number(g, at)));
   for (size_t at = 0; at < N_NUMBERS; at++) {
     if (at < CAMERA_AT && at % ROW >= SH + conic_harmonics_of_degree(f->degree))
       continue;
-    const int kind = kind_of(at);
-    const double own = gradient_number(g, at), other = difference_at(f, p, at);
+    const int kind = parameter_kind(at);
+    const double own = gradient_number(g, at), other = central_difference(f, p, at);
     const double off = fabs(own - other) / (fabs(own) + 1e-3 * greatest[kind]);
     worst[kind] = fmax(worst[kind], off);
     if (!(off <= 1e-6)) {
@@ -441,7 +441,7 @@ static int is_same_gradient(const conic_gaussian_gradient *a, const conic_gaussi
 }
 
 /* One set of bits, and L that of the oracle's picture, whose Gaussians are in thousands and cells many. */
-static void test_threads(conic_gaussian_profile profile) {
+static void test_gradient_threads(conic_gaussian_profile profile) {
   enum { SIDE = 75 };
   static double rgb[3 * SIDE * SIDE];
   conic_gaussian_gradient gradients[3];
@@ -543,7 +543,7 @@ static void test_gradient_doubts(conic_context *context) {
   conic_gaussians_release(context, &scene);
 }
 
-static void test_refusals(conic_context *context) {
+static void test_gradient_refusals(conic_context *context) {
   double rgb[3 * N_PIXELS] = {0.0};
   conic_gaussian_weights weights = {.width = WIDTH, .height = HEIGHT, .rgb = rgb};
   conic_camera camera = tilted_camera();
@@ -576,11 +576,11 @@ static void test_refusals(conic_context *context) {
 int main(void) {
   conic_context *context = check_context(2);
   int degree = 0;
-  test_threads(CONIC_PROFILE_GSPLAT_1_6_AA);
-  test_threads(CONIC_PROFILE_EXACT);
+  test_gradient_threads(CONIC_PROFILE_GSPLAT_1_6_AA);
+  test_gradient_threads(CONIC_PROFILE_EXACT);
   test_raw(context);
   test_gradient_doubts(context);
-  test_refusals(context);
+  test_gradient_refusals(context);
   for (int profile = 0; profile < CONIC_N_GAUSSIAN_PROFILES; profile++)
     if (conic_gradient_has_profile((conic_gaussian_profile)profile))
       for (int k = 0; k < 2; k++)

@@ -93,7 +93,7 @@ static void test_choice(void) {
   conic_render_options options;
   conic_render_options_init(&options);
   options.method = CONIC_METHOD_CONIC;
-  oracle_view view = conic_oracle_view(&camera, &options, 0.01);
+  oracle_view view = conic_oracle_view(&camera, &options, 0.01, CONIC_FLOATS_OWN);
   for (int i = 0; i < 2; i++) {
     conic_oracle_splat s = tilted(sigmas[i]);
     oracle_placed placed;

@@ -398,7 +398,7 @@ static void test_reach(fixture *f) {
   fill_cloud(f, 20000, 0.0, 0.2, 1.0);
   for (int method = 0; method < CONIC_N_METHODS; method++) {
     f->options.method = (conic_method)method;
-    CHECK_OK(conic_oracle_scene_create(f->context, &f->splats, &f->camera, &f->options, 0, &scene));
+    CHECK_OK(conic_oracle_scene_create(f->context, &f->splats, &f->camera, &f->options, CONIC_FLOATS_OWN, 0, &scene));
     for (size_t i = 0; i < f->splats.count; i++) {
       oracle_splat splat;
       if (!conic_oracle_scene_place(&scene, i, &splat))

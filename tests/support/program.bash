@@ -15,8 +15,9 @@ fail() {
 # Runs conic; its output is then in `out` and `err`. Commands that draw do so --plain: what looks best may change, and
 # is tested by default_picture.sh. run EXIT_CODE ARGUMENTS …
 run() {
-  case ${2-} in
-    render | explain | verify | judge) run_as_typed "$1" "$2" --plain "${@:3}" ;;
+  case "${2-} ${3-}" in
+    'judge --suite') run_as_typed "$@" ;;
+    'render '* | 'explain '* | 'verify '* | 'judge '*) run_as_typed "$1" "$2" --plain "${@:3}" ;;
     *) run_as_typed "$@" ;;
   esac
 }

@@ -39,6 +39,12 @@ static void init_judging(void *o, size_t size) {
 static void init_oracle_judging(void *o, size_t size) {
   conic_oracle_judging_init_sized(o, size);
 }
+static void init_asking(void *o, size_t size) {
+  conic_oracle_asking_init_sized(o, size);
+}
+static void init_gradient(void *o, size_t size) {
+  conic_gradient_options_init_sized(o, size);
+}
 static void init_picture(void *o, size_t size) {
   conic_picture_options_init_sized(o, size);
 }
@@ -129,6 +135,8 @@ static const struct {
            {init_floats, sizeof(conic_float_model)},
            {init_judging, sizeof(conic_gaussian_judging)},
            {init_oracle_judging, sizeof(conic_oracle_judging)},
+           {init_asking, sizeof(conic_oracle_asking)},
+           {init_gradient, sizeof(conic_gradient_options)},
            {init_picture, sizeof(conic_picture_options)},
            {init_estimate, sizeof(conic_estimate_options)},
            {init_scene, sizeof(conic_scene_options)},

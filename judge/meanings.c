@@ -1,0 +1,56 @@
+/* What the names of mistakes stand for; docs/reference/diagnosis.md says more. */
+#include <string.h>
+
+#include "conic/diagnosis.h"
+
+static const struct {
+  const char *name, *meaning;
+} meanings[] = {
+    {"dilation-0", "Ellipses are not widened on the screen."},
+    {"dilation-0.1", "Ellipses are widened by 0.1 square pixels."},
+    {"extent-3-sigma", "Gaussians end 3 standard deviations from their centres."},
+    {"extent-exact", "Gaussians do not end where the profile ends them."},
+    {"alpha-max-0.999", "Alpha is 0.999 at most."},
+    {"alpha-max-0.99", "Alpha is 0.99 at most."},
+    {"falloff-renormalised", "The falloff is scaled so that it is 0 where it ends."},
+    {"order-distance", "Gaussians are sorted by their distance from the eye."},
+    {"order-file", "Gaussians are composited in the order of the file."},
+    {"order-z", "Gaussians are sorted by the depth of their means."},
+    {"order-reversed", "Gaussians are sorted the wrong way round."},
+    {"near", "The near plane is elsewhere."},
+    {"sh-degree-0", "Only the harmonic of degree 0 is used."},
+    {"sh-degree-1", "Harmonics above degree 1 are left out."},
+    {"sh-degree-2", "Harmonics above degree 2 are left out."},
+    {"f-rest-interleaved", "Harmonics above degree 0 are read in the wrong order of channels and coefficients."},
+    {"quaternion-xyzw", "Quaternions are read in the wrong order: x, y, z, w for w, x, y, z, or the reverse."},
+    {"quaternion-conjugate", "Gaussians are turned the wrong way round."},
+    {"quaternion-not-normalised", "Quaternions are not brought to length 1."},
+    {"scale-linear", "The exponential of the scales is missing, or is taken twice."},
+    {"opacity-linear", "The sigmoid of the opacities is missing, or is taken twice."},
+    {"half-pixel", "Pixel centres are half a pixel off."},
+    {"mirrored-x", "Left and right are exchanged."},
+    {"mirrored-y", "The picture stands on its head."},
+    {"centre-ignored", "The camera's principal point is taken to be the picture's middle."},
+    {"field-of-view", "One focal length or one angle of view is used for both axes."},
+    {"srgb-decoded", "Colours are decoded from sRGB once too often."},
+    {"srgb-encoded", "Colours are encoded to sRGB once too often."},
+    {"premultiplied", "Colours are multiplied by alpha once too often, or divided by it."},
+    {"background-white", "The background is white."},
+    {"background-black", "The background is black."},
+    {"affine", "Splats are projected by the Jacobian at their centres."},
+    {"no-amplitude", "What the filter widens is not made fainter for it."},
+    {"epsilon-in-z", "The depth tolerance is taken along the camera's axis, and not along the ray."},
+    {"radius-as-sigma", "Radii are taken for standard deviations, or the reverse."},
+    {"no-normalisation", "Colours are not divided by the sum of the weights."},
+    {"back-faces", "What faces away is left out, or is drawn where it should not be."},
+};
+
+const char *conic_diagnosis_meaning(const char *name) {
+  for (size_t i = 0; name && i < sizeof meanings / sizeof *meanings; i++)
+    if (strcmp(meanings[i].name, name) == 0)
+      return meanings[i].meaning;
+  for (int profile = 0; name && profile < CONIC_N_GAUSSIAN_PROFILES; profile++)
+    if (strcmp(conic_gaussian_profile_name((conic_gaussian_profile)profile), name) == 0)
+      return "It is a picture of another profile.";
+  return NULL;
+}

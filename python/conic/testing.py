@@ -1,0 +1,59 @@
+"""For tests of other renderers: the judge in one line.
+
+    from conic.testing import assert_matches
+    assert_matches(conic.Gaussians(means, quats, scales, opacities, sh), camera, picture, profile="gsplat-1.6")
+
+With pytest, what a failure leaves behind stands in its report: see `pytest --help`, --conic-reports."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from typing import Any, Dict, List, Optional
+
+from ._commands import AnyCamera, Options, judge
+from ._scene import AnyScene
+
+__all__ = ["PictureMismatch", "assert_matches", "describe"]
+
+
+class PictureMismatch(AssertionError):
+    """A picture is not what it should be; `verdict` says why, and `files` are the report and the map."""
+
+    def __init__(self, message: str, verdict: Dict[str, Any], files: List[str]) -> None:
+        super().__init__(message)
+        self.verdict = verdict
+        self.files = files
+
+
+def describe(verdict: Dict[str, Any]) -> str:
+    """What :func:`conic.judge` has found, in a few lines."""
+    pixels = verdict["pixels"]
+    lines = [f"the picture is {verdict['verdict']}: " + ", ".join(f"{n} {name}" for name, n in pixels.items())]
+    for fault in verdict.get("diagnosis", [])[:3]:
+        lines.append(f"  {fault['share']:6.1%} explained by {fault['name']}")
+    for worst in verdict.get("worst", [])[:3]:
+        place = f"pixel {worst['x']},{worst['y']}" if "x" in worst else f"pixel {worst.get('pixel')}"
+        found, low, high = (worst.get(key) for key in ("found", "low", "high"))
+        what = worst.get("channel", worst.get("plane", ""))
+        lines.append(f"  {place}: {what} is {found}; it may be {low} to {high}")
+    return "\n".join(lines)
+
+
+def assert_matches(scene: AnyScene, camera: AnyCamera, picture: Any, *, profile: Optional[str] = None,
+                   max_wrong: int = 0, reports: Optional[str] = None, **options: Options) -> Dict[str, Any]:
+    """Fails unless the picture is what the profile (or, of surfels, the method) makes of the scene, but for what
+    floats may do to it. Arguments are those of :func:`conic.judge`, whose answer is returned.
+
+    A failure's message has the verdict and the diagnosis, and names the report (HTML) and the map (PNG), which stand
+    in `reports`, or else in a new folder of the system's for temporary files."""
+    words = {"profile": profile, "max_wrong": max_wrong, **options}
+    verdict = judge(scene, camera, picture, **words)
+    if verdict["verdict"] == "right":
+        return verdict
+    folder = reports or tempfile.mkdtemp(prefix="conic-report-")
+    os.makedirs(folder, exist_ok=True)
+    files = [os.path.join(folder, name) for name in ("report.html", "map.png")]
+    judge(scene, camera, picture, **{**words, "report": files[0], "map": files[1]})
+    files = [path for path in files if os.path.exists(path)]
+    raise PictureMismatch("\n".join([describe(verdict), *(f"  see {path}" for path in files)]), verdict, files)

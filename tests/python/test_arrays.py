@@ -1,0 +1,154 @@
+"""Arrays are drawn as the same numbers in a file are."""
+
+import os
+import tempfile
+import unittest
+
+import numpy
+
+import conic
+from drawn_by_program import hashes
+
+SIZE = (96, 72)
+WORDS = ("--size", "96x72")
+
+
+def write_ply(path, names, types, columns, faces=None):
+    table = numpy.zeros(len(columns[0]), [(name, kind) for name, kind in zip(names, types)])
+    for name, column in zip(names, columns):
+        table[name] = column
+    ply = {"<f4": "float", "<f8": "double", "u1": "uchar"}
+    with open(path, "wb") as file:
+        lines = ["ply", "format binary_little_endian 1.0", f"element vertex {len(table)}"]
+        lines += [f"property {ply[kind]} {name}" for name, kind in zip(names, types)]
+        if faces is not None:
+            lines += [f"element face {len(faces)}", "property list uchar uint vertex_indices"]
+        file.write(("\n".join(lines + ["end_header", ""])).encode())
+        file.write(table.tobytes())
+        if faces is not None:
+            rows = numpy.zeros(len(faces), [("n", "u1"), ("corners", "<u4", 3)])
+            rows["n"], rows["corners"] = 3, faces
+            file.write(rows.tobytes())
+
+
+class Arrays(unittest.TestCase):
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def assert_same(self, picture, wanted):
+        self.assertEqual(dict(picture.statistics["hash"].items()), wanted)
+
+    def test_splats_of_all_shapes(self):
+        scene = conic.make("knot", n=3000)
+        wanted = hashes(scene.path, *WORDS)
+        read = scene.splats()
+        parts = {name: getattr(read, name) for name in ("position", "tangent_u", "tangent_v", "color")}
+        rows = conic.Splats(**{name: numpy.ascontiguousarray(part) for name, part in parts.items()})
+        backwards = conic.Splats(**{name: part[::-1].copy()[::-1] for name, part in parts.items()})
+        whole = numpy.concatenate(list(parts.values()), axis=1).astype(numpy.float32)
+        self.assertTrue(whole.flags.c_contiguous)
+        views = conic.Splats(whole[:, 0:3], whole[:, 3:6], whole[:, 6:9], whole[:, 9:12])
+        doubles = conic.Splats(*(part.astype(numpy.float64) for part in parts.values()))
+        for splats in (read, rows, backwards, views, doubles):
+            self.assert_same(conic.render(splats, size=SIZE), wanted)
+
+    def test_no_copy_is_made(self):
+        position = numpy.zeros((5, 3), numpy.float32)
+        splats = conic.Splats(position)
+        self.assertEqual(splats._struct.position[1], position.ctypes.data + 4)
+        self.assertEqual(splats._struct.strides.position, 12)
+        columns = [numpy.arange(5, dtype=numpy.float32) for _ in range(3)]
+        self.assertEqual(list(conic.Splats(tuple(columns))._struct.position), [c.ctypes.data for c in columns])
+
+    def test_array_libraries(self):
+
+        class OnlyDlpack:  # as an array of jax or cupy
+            def __init__(self, array):
+                self.array = array
+
+            def __dlpack__(self, **words):
+                return self.array.__dlpack__(**words)
+
+            def __dlpack_device__(self):
+                return self.array.__dlpack_device__()
+
+        class Tensor(OnlyDlpack):  # as one of torch that gradients go through
+            device = "cpu"
+
+            def detach(self):
+                return OnlyDlpack(self.array)
+
+        array = numpy.arange(12, dtype=numpy.float32).reshape(4, 3)
+        for kind in (OnlyDlpack, Tensor):
+            self.assertEqual(conic.Splats(kind(array))._struct.position[0], array.ctypes.data)
+        on_device = Tensor(array)
+        on_device.device = "cuda:0"
+        with self.assertRaisesRegex(conic.ArgumentError, r"cuda:0.*\.cpu"):
+            conic.Splats(on_device)
+
+    def test_points_become_splats(self):
+        generator = numpy.random.default_rng(1)
+        places = generator.normal(size=(800, 3))
+        places = (places / numpy.linalg.norm(places, axis=1)[:, None]).astype(numpy.float32)
+        write_ply(self.path("points.ply"), "xyz", ["<f4"] * 3, places.T)
+        self.assert_same(conic.render(conic.Splats(places), size=SIZE), hashes(self.path("points.ply"), *WORDS))
+
+    def test_far_doubles_and_broken_axes(self):
+        scene = conic.make("sphere", n=2000).splats()
+        place = scene.position.astype(numpy.float64) + [4e6, 5e6, 100.0]
+        u, v = scene.tangent_u.copy(), scene.tangent_v.copy()
+        u[10] = 0.0
+        v[20, 1] = numpy.nan
+        place[30, 2] = numpy.inf
+        names = ["x", "y", "z", "tu_x", "tu_y", "tu_z", "tv_x", "tv_y", "tv_z"]
+        write_ply(self.path("far.ply"), names, ["<f8"] * 3 + ["<f4"] * 6, [*place.T, *u.T, *v.T])
+        wanted = hashes(self.path("far.ply"), *WORDS)
+        for strided in (True, False):
+            axes = (u, v) if strided else (tuple(u.T.copy()), tuple(v.T.copy()))
+            self.assert_same(conic.render(conic.Splats(place, *axes), size=SIZE), wanted)
+
+    def test_gaussians(self):
+        made = conic.make("gaussians", n=400, seed=3)
+        arrays = made.gaussians()
+        again = conic.Gaussians(arrays.means, arrays.quats, arrays.scales, arrays.opacities[:, None], arrays.sh,
+                                frame=arrays.frame)
+        for words in ((), ("--profile", "gsplat-1.6"), ("--profile", "surface")):
+            profile = words[1] if words else None
+            wanted = hashes(made.path, *WORDS, *words)
+            if profile != "surface":
+                self.assert_same(conic.render(arrays, size=SIZE, profile=profile), wanted)
+            self.assert_same(conic.render(again, size=SIZE, profile=profile), wanted) if profile != "surface" else None
+            self.assert_same(conic.render(made, size=SIZE, profile=profile), wanted)
+        self.assertEqual(conic.render(arrays, size=SIZE, profile="surface")["rgba"].shape, (72, 96, 4))
+        with self.assertRaisesRegex(conic.ArgumentError, "sh: its shape"):
+            conic.Gaussians(arrays.means, arrays.quats, arrays.scales, arrays.opacities, arrays.sh[:, :5])
+
+    def test_meshes(self):
+        corners = numpy.float32([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        faces = numpy.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6],
+                             [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])
+        colors = (corners * 0.25 + 0.5).astype(numpy.float32)
+        write_ply(self.path("cube.ply"), ["x", "y", "z", "red", "green", "blue"], ["<f4"] * 6,
+                  [*corners.T, *colors.T], faces)
+        for words in ((), ("--as", "points"), ("--as", "hybrid"), ("--smooth",)):
+            options = {"as_": words[1]} if len(words) > 1 else {"smooth": bool(words)}
+            with self.subTest(words=words):
+                picture = conic.render(conic.Mesh(corners, faces, colors), size=SIZE, **options)
+                self.assert_same(picture, hashes(self.path("cube.ply"), *WORDS, *words))
+        with self.assertRaisesRegex(conic.ArgumentError, "faces: an index"):
+            conic.Mesh(corners, faces + 1)
+
+    def test_shapes_that_do_not_fit(self):
+        for arguments in ((numpy.zeros((3, 2)),), (numpy.zeros((3, 3)), numpy.zeros((3, 3))),
+                          (numpy.zeros((3, 3)), None, None, numpy.zeros((4, 3))), (numpy.array(["a"] * 3),)):
+            with self.assertRaises(conic.ArgumentError):
+                conic.Splats(*arguments)
+
+
+if __name__ == "__main__":
+    unittest.main()
