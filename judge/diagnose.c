@@ -22,7 +22,7 @@ static conic_status draw_gaussian_world(void *data, const conic_planted *planted
 }
 
 /* The camera of `samples` × `samples` samples a pixel. */
-static conic_camera camera_of_samples(const conic_camera *camera, int samples) {
+static conic_camera fine_camera_of(const conic_camera *camera, int samples) {
   conic_camera fine = *camera;
   const double n = samples;
   fine.width *= samples;
@@ -42,7 +42,7 @@ static conic_planted right_gaussians(const conic_gaussians *gaussians, const con
                          .most_degree = gaussians->sh_degree,
                          .is_opaque = judging->is_opaque,
                          .axes = 1.0};
-  right.camera = camera_of_samples(camera, judging->samples);
+  right.camera = fine_camera_of(camera, judging->samples);
   if (right.rules.takes_middle) {
     right.camera.cx = 0.5 * right.camera.width;
     right.camera.cy = 0.5 * right.camera.height;
@@ -51,7 +51,7 @@ static conic_planted right_gaussians(const conic_gaussians *gaussians, const con
   return right;
 }
 
-static conic_status check_arguments(conic_context *context, const conic_camera *camera, const conic_image *image,
+static conic_status check_diagnosis(conic_context *context, const conic_camera *camera, const conic_image *image,
                                     const uint8_t *classes, const conic_diagnosis *found, int room, int samples) {
   if (!camera || !image || !classes || !found || room < 0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "diagnose: an argument is null");
@@ -94,7 +94,7 @@ conic_status conic_gaussian_diagnose(conic_context *context, const conic_gaussia
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "diagnose: an argument is null, or there is no such profile");
   conic_status status = conic_gaussians_check(context, gaussians, "diagnose");
   if (status == CONIC_OK)
-    status = check_arguments(context, camera, image, classes, found, room, how.samples);
+    status = check_diagnosis(context, camera, image, classes, found, room, how.samples);
   if (status != CONIC_OK)
     return status;
   gaussian_world world = {context, gaussians, how.samples};
@@ -117,7 +117,7 @@ conic_status conic_drawing_diagnose(conic_context *context, const conic_drawing 
   if (!drawing || (options && !conic_options_take(&right.options, options)) ||
       (judging && !conic_options_take(&how, judging)))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "diagnose: an argument is null");
-  conic_status status = check_arguments(context, camera, image, classes, found, room, samples);
+  conic_status status = check_diagnosis(context, camera, image, classes, found, room, samples);
   if (status != CONIC_OK)
     return status;
   right.camera = *camera;

@@ -45,7 +45,7 @@ static unsigned find_channels(const conic_image *image) {
   return channels;
 }
 
-static size_t cell_of(const conic_image *image, size_t pixel) {
+static size_t cell_of_sample(const conic_image *image, size_t pixel) {
   size_t width = (size_t)image->width, across = (width + CONIC_CELL - 1) / CONIC_CELL;
   return pixel / width / CONIC_CELL * across + pixel % width / CONIC_CELL;
 }
@@ -59,7 +59,7 @@ static void choose_cells(const conic_image *image, const uint8_t *classes, size_
   for (size_t pixel = 0; pixel < n; pixel++) {
     if (classes[pixel] != CONIC_PIXEL_WRONG || i_wrong++ % step != step / 2)
       continue;
-    size_t cell = cell_of(image, pixel);
+    size_t cell = cell_of_sample(image, pixel);
     if (!is_chosen[cell] && s->n_cells < most_cells) {
       is_chosen[cell] = 1;
       s->cells[s->n_cells++] =
@@ -98,7 +98,7 @@ conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_
     n_wrong += classes[pixel] == CONIC_PIXEL_WRONG;
   if (!n_wrong)
     return CONIC_OK;
-  uint8_t *is_chosen = conic_memory_allocate_zeroed(context, cell_of(image, n - 1) + 1, 1);
+  uint8_t *is_chosen = conic_memory_allocate_zeroed(context, cell_of_sample(image, n - 1) + 1, 1);
   if (!is_chosen)
     return CONIC_ERROR_MEMORY;
   most_cells = most_cells < CONIC_MOST_CELLS ? most_cells : CONIC_MOST_CELLS;

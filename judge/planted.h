@@ -109,5 +109,7 @@ int conic_suspect_rank(const conic_suspect *suspect);
 /* Whether it is one of the finished picture, for which nothing is drawn anew. */
 int conic_suspect_is_finish(const conic_suspect *suspect);
 int conic_suspect_is_profile(const conic_suspect *suspect);
+/* Whether its value may be any: those that are listed are some. */
+int conic_suspect_is_any(const conic_suspect *suspect);
 
 #endif

@@ -96,7 +96,7 @@ static double distance_of_mean(const planted_job *j, const conic_gaussians *set,
 }
 
 /* What is composited first has the least. */
-static uint64_t order_key(const planted_job *j, const conic_gaussians *set, size_t i, float own) {
+static uint64_t planted_key(const planted_job *j, const conic_gaussians *set, size_t i, float own) {
   const conic_planted *p = j->planted;
   float key = p->order == CONIC_ORDER_Z          ? (float)depth_of_mean(j, set, i)
               : p->order == CONIC_ORDER_DISTANCE ? (float)distance_of_mean(j, set, i)
@@ -135,7 +135,7 @@ static void keep_one(planted_job *j, const conic_gaussians *run, size_t i, size_
   for (int c = 0; c < 3 && p->own_transfer; c++)
     k->footprint.color[c] = conic_planted_transferred(p->own_transfer, k->footprint.color[c]);
   const uint32_t index = (uint32_t)(first + i);
-  k->key = order_key(j, run, i, key) << 32 | (p->is_reversed ? ~index : index);
+  k->key = planted_key(j, run, i, key) << 32 | (p->is_reversed ? ~index : index);
   room->n++;
 }
 

@@ -5,7 +5,7 @@
 #include "gaussians/scene/activation.h"
 #include "gaussians/scene/half.h"
 
-static float read_scale(conic_planted_reading reading, const conic_gaussians *from, int axis, size_t i) {
+static float planted_scale(conic_planted_reading reading, const conic_gaussians *from, int axis, size_t i) {
   float scale = from->scale[axis][i], raw;
   switch (reading) {
   case CONIC_READING_RAW: /* its square is all that is seen */
@@ -25,7 +25,7 @@ static float read_scale(conic_planted_reading reading, const conic_gaussians *fr
   }
 }
 
-static float read_opacity(conic_planted_reading reading, const conic_gaussians *from, size_t i) {
+static float planted_opacity(conic_planted_reading reading, const conic_gaussians *from, size_t i) {
   float raw;
   switch (reading) {
   case CONIC_READING_RAW:
@@ -48,8 +48,8 @@ static size_t place_of_harmonic(conic_planted_reading reading, size_t n, size_t 
   return reading == CONIC_READING_TWICE ? raw : 3 * k + c;
 }
 
-static void read_harmonics(const conic_planted *p, const conic_gaussians *from, size_t first, conic_gaussians *to,
-                           float *sh) {
+static void plant_harmonics(const conic_planted *p, const conic_gaussians *from, size_t first, conic_gaussians *to,
+                            float *sh) {
   const size_t n_from = conic_harmonics_of_degree(from->sh_degree), n_to = conic_harmonics_of_degree(to->sh_degree);
   float room[CONIC_MOST_HARMONICS];
   for (size_t i = 0; i < to->count; i++) {
@@ -77,7 +77,7 @@ conic_gaussians conic_planted_read(const conic_planted *p, const conic_gaussians
     to.position[k] = from->position[k] + first;
     to.scale[k] = from->scale[k] ? from->scale[k] + first : NULL;
     for (size_t i = 0; p->scale && to.scale[k] && i < n; i++)
-      room->scale[k][i] = read_scale(p->scale, from, k, first + i);
+      room->scale[k][i] = planted_scale(p->scale, from, k, first + i);
     if (p->scale && to.scale[k])
       to.scale[k] = room->scale[k];
   }
@@ -88,12 +88,12 @@ conic_gaussians conic_planted_read(const conic_planted *p, const conic_gaussians
   if (p->rotation == CONIC_READING_CONJUGATE)
     to.rotation[0] = room->w;
   for (size_t i = 0; p->opacity && i < n; i++)
-    room->opacity[i] = read_opacity(p->opacity, from, first + i);
+    room->opacity[i] = planted_opacity(p->opacity, from, first + i);
   to.opacity = p->opacity ? room->opacity : from->opacity + first;
   to.sh = from->sh ? from->sh + first * n_harmonics : NULL;
   to.sh_half = from->sh_half ? from->sh_half + first * n_harmonics : NULL;
   to.sh_degree = p->most_degree < from->sh_degree ? p->most_degree : from->sh_degree;
   if (p->harmonics || to.sh_degree < from->sh_degree)
-    read_harmonics(p, from, first, &to, room->sh);
+    plant_harmonics(p, from, first, &to, room->sh);
   return to;
 }

@@ -336,6 +336,10 @@ int conic_suspect_is_finish(const conic_suspect *suspect) {
   return suspect->kind >= OF_ALPHA;
 }
 
+int conic_suspect_is_any(const conic_suspect *suspect) {
+  return suspect->kind == OF_NEAR;
+}
+
 int conic_suspect_is_profile(const conic_suspect *suspect) {
   return suspect->kind == OF_PROFILE;
 }

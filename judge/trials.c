@@ -14,7 +14,7 @@ static const double least_left = 1e-4, little_left = 0.02;
 /* A second mistake has to take this much of what the first leaves. */
 static const double second_share = 0.6;
 
-enum { MOST_FIRST = 8, MOST_REMEMBERED = 64 };
+enum { MOST_FIRST = 8, MOST_REMEMBERED = 64, NARROWINGS = 4, NARROWER = 9 };
 
 typedef struct trial {
   int first, second; /* suspects; second below 0: none */
@@ -117,12 +117,51 @@ static conic_status try_all_alone(trial_run *r, trial *best, int *n) {
   return status;
 }
 
+/* Tries a value between those that are listed. */
+static conic_status try_value(trial_run *r, const conic_suspect *like, double value, trial *new) {
+  conic_trials *t = r->t;
+  t->suspects[t->n_suspects] = *like;
+  t->suspects[t->n_suspects].value = value;
+  *new = (trial){.first = t->n_suspects++, .second = -1};
+  return try_planted(r, new);
+}
+
+/* Narrows the value of a mistake that may have any, about the best of those that were tried. */
+static conic_status narrow_value(trial_run *r, trial *best, int *n, int which) {
+  const conic_suspect found = r->t->suspects[best[which].first];
+  double low = 0.0, high = 4.0 * found.value, at = found.value;
+  trial nearest = best[which];
+  for (int i = 0; i < r->t->n_suspects; i++) {
+    const conic_suspect *s = &r->t->suspects[i];
+    int is_like = strcmp(s->name, found.name) == 0 && s->kind == found.kind && s->how == found.how;
+    low = is_like && s->value < found.value && s->value > low ? s->value : low;
+    high = is_like && s->value > found.value && s->value < high ? s->value : high;
+  }
+  for (int round = 0; round < NARROWINGS; round++) {
+    const double from = low, step = (high - low) / (NARROWER + 1);
+    for (int i = 1; i <= NARROWER && r->t->n_suspects < CONIC_MOST_SUSPECTS; i++) {
+      trial new;
+      conic_status status = try_value(r, &found, from + step * i, &new);
+      if (status != CONIC_OK)
+        return status;
+      if (new.left < nearest.left) {
+        nearest = new;
+        at = from + step * i;
+      }
+    }
+    low = at - step > low ? at - step : low;
+    high = at + step < high ? at + step : high;
+  }
+  remember_trial(r->t, &nearest, best, n, MOST_REMEMBERED);
+  return CONIC_OK;
+}
+
 /* All others beside each of the best; those of the finished picture first, while the first one is drawn. */
 static conic_status try_all_pairs(trial_run *r, const trial *best, int n, trial *pair) {
   conic_status status = CONIC_OK;
   const int most = best[0].left > little_left ? MOST_FIRST : 1, n_first = n < most ? n : most;
   r->n_planned = r->n_done + (size_t)(n_first * r->t->n_suspects);
-  for (int first = 0; first < n_first; first++)
+  for (int first = 0; first < n_first && pair->left > least_left; first++)
     for (int pass = 0; pass < 2; pass++)
       for (int i = 0; i < r->t->n_suspects && status == CONIC_OK; i++) {
         trial new = {.first = best[first].first, .second = i};
@@ -151,7 +190,7 @@ static void settle_ties(const conic_trials *t, trial *best, int n) {
     }
 }
 
-static void put_diagnosis(const conic_trials *t, int first, int second, double left, conic_diagnosis *found, int room,
+static void add_diagnosis(const conic_trials *t, int first, int second, double left, conic_diagnosis *found, int room,
                           int *n_found) {
   if (*n_found < room)
     found[(*n_found)++] = (conic_diagnosis){
@@ -174,6 +213,11 @@ static conic_status explain_picture(trial_run *r, conic_diagnosis *found, int ro
   conic_status status = try_all_alone(r, best, &n);
   if (status != CONIC_OK || !n)
     return status;
+  for (int i = 0; i < 3 && i < n && status == CONIC_OK; i++)
+    if (conic_suspect_is_any(&r->t->suspects[best[i].first]) && best[i].left > least_left && best[i].left < 1.0)
+      status = narrow_value(r, best, &n, i);
+  if (status != CONIC_OK)
+    return status;
   settle_ties(r->t, best, n);
   r->from = 0.3;
   r->to = 1.0;
@@ -185,12 +229,12 @@ static conic_status explain_picture(trial_run *r, conic_diagnosis *found, int ro
   if (pair.left < 1.0 - least_share && pair.left < (1.0 - second_share) * best[0].left) {
     const int is_turned = alone_of(r->t, best, n, pair.second) < alone_of(r->t, best, n, pair.first);
     const int first = is_turned ? pair.second : pair.first, second = is_turned ? pair.first : pair.second;
-    put_diagnosis(r->t, first, second, pair.left, found, room, n_found);
-    put_diagnosis(r->t, second, first, pair.left, found, room, n_found);
+    add_diagnosis(r->t, first, second, pair.left, found, room, n_found);
+    add_diagnosis(r->t, second, first, pair.left, found, room, n_found);
     return CONIC_OK;
   }
   for (int i = 0; i < n && best[i].left <= 1.0 - least_share && best[i].left <= 2.0 * best[0].left + little_left; i++)
-    put_diagnosis(r->t, best[i].first, -1, best[i].left, found, room, n_found);
+    add_diagnosis(r->t, best[i].first, -1, best[i].left, found, room, n_found);
   return CONIC_OK;
 }
 

@@ -142,8 +142,8 @@ static int run_diff(cli_session *session, int argc, char **argv) {
       {"display", CLI_CHOICE, &job.display, "WHICH",
        "whose colours are display values: none, a, b or both [auto: as an EXR says]", .choices = display_words},
       {"reduce", CLI_FLAG, &job.reduces, NULL, "bring the larger picture to the size of the other one"},
-      {"match", CLI_CHOICE, &job.match, "HOW", "pictures of folders by name, number or order [auto]",
-       .choices = match_words},
+      {"match", CLI_CHOICE, &job.match, "HOW",
+       "how pictures of two folders find each other: by name, number or order [auto]", .choices = match_words},
       {"subset", CLI_FLAG, &job.is_subset, NULL, "of folders: B need not have all the pictures of A"},
       {"csv", CLI_TEXT, &job.csv_path, "FILE", "of folders: write the table into a file"},
   };

@@ -37,22 +37,31 @@ static void part_help(const char *help, cli_help_entry *entry) {
            open ? open + 1 : "");
 }
 
+/* Whether a command has an option of its own in place of a common one (conic bench --threads). */
+static int is_replaced(const cli_option_table *table, const cli_option *common) {
+  for (int i = 0; i < table->n_own; i++)
+    if (strcmp(table->own[i].name, common->name) == 0)
+      return 1;
+  return 0;
+}
+
 int cli_help_next(const cli_option_table *table, int *i, cli_help_entry *entry) {
   int n_all = table->n_own + table->n_common;
   const cli_option *option = NULL;
-  while (*i < n_all && (!option || !option->help)) {
+  entry->group = *i == 0 ? "options" : NULL;
+  for (; *i < n_all && !option; ++*i) {
     int is_common = *i >= table->n_own;
-    option = is_common ? &table->common[*i - table->n_own] : &table->own[*i];
-    entry->group = *i == table->n_own          ? "options of every command"
-                   : *i == 0 && !option->group ? "options"
-                                               : option->group;
-    ++*i;
+    const cli_option *row = is_common ? &table->common[*i - table->n_own] : &table->own[*i];
+    if (row->group || *i == table->n_own)
+      entry->group = row->group ? row->group : "options of every command";
+    if (row->help && !(is_common && is_replaced(table, row)))
+      option = row;
   }
-  if (!option || !option->help)
+  if (!option)
     return 0;
-  int n_left = *i < table->n_own ? table->n_own - *i : *i > table->n_own ? n_all - *i : 0;
+  int is_last = *i == table->n_own || *i == n_all;
   entry->option = option;
-  entry->alias = n_left && !option[1].help ? option + 1 : NULL;
+  entry->alias = !is_last && !option[1].help ? option + 1 : NULL;
   entry->kind = kind_of_value(option);
   part_help(option->help, entry);
   return 1;

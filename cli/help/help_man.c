@@ -68,7 +68,7 @@ static void put_words(const char *text, int marks_values) {
   }
 }
 
-static void put_text(const char *text, int marks_values) {
+static void put_paragraph(const char *text, int marks_values) {
   put_words(text, marks_values);
   putchar('\n');
 }
@@ -116,7 +116,7 @@ static void put_usage(const char *usage) {
     fputs(".SY \"conic ", stdout);
     put_roff(rest, n_name);
     puts("\"");
-    put_text(rest + n_name, 1);
+    put_paragraph(rest + n_name, 1);
     puts(".YS");
     usage += length + (end != NULL);
   }
@@ -150,13 +150,13 @@ static void put_option(const cli_help_entry *entry) {
   cli_help_limits(entry, limits, sizeof limits);
   if (limits[0]) {
     snprintf(line, sizeof line, "From %s.", limits);
-    put_text(line, 0);
+    put_paragraph(line, 0);
   }
   if (option->may_repeat && !strstr(entry->text, "repeated"))
-    put_text("It may be repeated.", 0);
+    put_paragraph("It may be repeated.", 0);
   if (entry->fallback[0]) {
     snprintf(line, sizeof line, "Default: %s.", entry->fallback);
-    put_text(line, 0);
+    put_paragraph(line, 0);
   }
 }
 
@@ -172,7 +172,7 @@ void cli_help_man(cli_session *session, const cli_option_table *table) {
   cli_help_entry entry;
   const char *about;
   put_title(command->name);
-  put_text(command->summary, 0);
+  put_paragraph(command->summary, 0);
   put_usage(command->usage);
   puts(".SH DESCRIPTION");
   put_sentence(command->description ? command->description : command->summary, ".");
@@ -201,24 +201,26 @@ void cli_help_man(cli_session *session, const cli_option_table *table) {
 void cli_help_man_program(void) {
   const char *meaning;
   put_title(NULL);
-  put_text("draws surfaces that are given as points, meshes or Gaussians", 0);
+  put_paragraph("draws surfaces that are given as points, meshes or Gaussians", 0);
   put_usage("conic COMMAND [arguments]\nconic help [--format FORMAT] [COMMAND]\nconic --version");
   puts(".SH DESCRIPTION");
-  put_text("conic draws laser scans, splats, meshes and Gaussian scenes into pictures, on the processor and without a "
-           "display. A picture has the same bits on every machine. conic also builds what it draws fast from, compares "
-           "pictures, and says why a pixel is as it is.",
-           0);
+  put_paragraph(
+      "conic draws laser scans, splats, meshes and Gaussian scenes into pictures, on the processor and without a "
+      "display. A picture has the same bits on every machine. conic also builds what it draws fast from, compares "
+      "pictures, and says why a pixel is as it is.",
+      0);
   puts(".PP");
-  put_text("conic reads " CLI_READABLE " and Gaussian scenes in .ply, .splat, .spz and .sog. A long option takes its "
-           "value as --name value or --name=value; -- ends the options.",
-           0);
+  put_paragraph("conic reads " CLI_READABLE
+                " and Gaussian scenes in .ply, .splat, .spz and .sog. A long option takes its "
+                "value as --name value or --name=value; -- ends the options.",
+                0);
   puts(".SH COMMANDS");
   for (int i = 0; cli_command_at(i); i++) {
     printf(".TP\n.BR conic\\-%s (1)\n", cli_command_at(i)->name);
     put_sentence(cli_command_at(i)->summary, ".");
   }
   puts(".TP\n.B conic help");
-  put_text(
+  put_paragraph(
       "prints the options of a command. --format says in which form: text, man, bash, zsh or fish (completion), or "
       "json.",
       0);

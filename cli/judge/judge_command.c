@@ -5,6 +5,7 @@
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_reference.h"
+#include "cli/judge/judge_gradients.h"
 #include "cli/judge/judge_job.h"
 #include "cli/judge/suite_judge.h"
 #include "cli/outputs.h"
@@ -165,6 +166,9 @@ static int run_judge(cli_session *session, int argc, char **argv) {
   suite_run suite = {.most_level = 0}; /* not here: its options are for the help */
   if (cli_suite_has_option(argc, argv))
     return cli_suite_run(session, argc, argv);
+  cli_gradient_files gradients = {NULL}; /* nor here */
+  if (cli_gradients_has_option(argc, argv))
+    return cli_gradients_run(session, argc, argv);
   conic_picture_options_init(&job.reading);
   cli_scene_defaults(&job.scene);
   job.scene.may_composite = 1;
@@ -191,11 +195,14 @@ static int run_judge(cli_session *session, int argc, char **argv) {
        "colours are not multiplied by alpha; of a PNG they never are"},
       {"time", CLI_FLAG, &job.shows_times, NULL, "print what each stage took"},
       CLI_SUITE_OPTIONS(suite),
+      CLI_GRADIENT_OPTIONS(gradients),
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   job.reading.rounding = (conic_code_rounding)rounding;
   if (exit_code == CLI_DONE && (suite.judging.pictures || suite.junit_path || suite.most_level))
     exit_code = cli_usage("judge: --pictures, --level and --junit are of suites; give --suite FOLDER, too");
+  if (exit_code == CLI_DONE && (gradients.weights || gradients.is_raw))
+    exit_code = cli_usage("judge: --weights and --raw are of derivatives; give --gradients FILE, too");
   if (exit_code == CLI_DONE)
     exit_code = check_judge(session, &job);
   if (exit_code == CLI_DONE)
@@ -209,6 +216,7 @@ const cli_command cli_judge = {
     .summary = "says whether a picture that somebody drew is right, and where not",
     .usage = "conic judge SCENE --camera C [--view V] --picture P [--profile NAME | --method M] [--json FILE] "
              "[--report F.html] [--map F.png] [--max-wrong N] [camera and render options]\n"
+             "       conic judge SCENE --camera C --weights W.exr --gradients G.ply --profile NAME [--raw]\n"
              "       conic judge --suite FOLDER --pictures FOLDER [--profile NAMES] [--junit FILE]",
     .run = run_judge,
     .description = "Takes a picture that any renderer drew of the scene, bounds what each pixel can be at most and at "

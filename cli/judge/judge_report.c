@@ -156,7 +156,7 @@ static void put_head(const cli_page *page, const cli_judge_job *job) {
   fputs(".</p>\n", page->to);
 }
 
-static void put_row(const cli_page *page, const char *name, size_t n, size_t of, const char *meaning) {
+static void put_class_row(const cli_page *page, const char *name, size_t n, size_t of, const char *meaning) {
   fprintf(page->to, "<tr><td>%s</td><td class=n>%zu</td><td class=n>%.4g %%</td><td>%s</td></tr>\n", name, n,
           of ? 100.0 * (double)n / (double)of : 0.0, meaning);
 }
@@ -165,11 +165,11 @@ static void put_counts(const cli_page *page, const cli_judge_job *job) {
   const cli_judgement *found = &job->found;
   const size_t *n = found->pixels;
   fputs("<h2>Pixels</h2>\n<table>\n", page->to);
-  put_row(page, "equal", n[CONIC_PIXEL_EQUAL], found->judged, "the floats next to the values in double precision");
-  put_row(page, "rounding", n[CONIC_PIXEL_ROUNDED], found->judged, "within what the roundings of floats may do");
-  put_row(page, "explained", n[CONIC_PIXEL_EXPLAINED], found->judged,
+  put_class_row(page, "equal", n[CONIC_PIXEL_EQUAL], found->judged, "the floats next to the values in double precision");
+  put_class_row(page, "rounding", n[CONIC_PIXEL_ROUNDED], found->judged, "within what the roundings of floats may do");
+  put_class_row(page, "explained", n[CONIC_PIXEL_EXPLAINED], found->judged,
           "a decision that rounding may take either way went the other way");
-  put_row(page, "wrong", n[CONIC_PIXEL_WRONG], found->judged, "no correct renderer of floats gives that");
+  put_class_row(page, "wrong", n[CONIC_PIXEL_WRONG], found->judged, "no correct renderer of floats gives that");
   fputs("</table>\n", page->to);
   if (n[CONIC_PIXEL_EXPLAINED]) {
     fputs("<p>Explained by", page->to);

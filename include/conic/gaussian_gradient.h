@@ -51,6 +51,20 @@ typedef struct conic_gradient_options {
 CONIC_API void conic_gradient_options_init_sized(conic_gradient_options *options, size_t size);
 #define conic_gradient_options_init(options) conic_gradient_options_init_sized(options, sizeof *(options))
 
+/* Kinds of parameters. */
+typedef enum conic_gradient_kind {
+  CONIC_GRADIENT_MEAN = 0,
+  CONIC_GRADIENT_SCALE = 1,
+  CONIC_GRADIENT_ROTATION = 2,
+  CONIC_GRADIENT_OPACITY = 3,
+  CONIC_GRADIENT_SH = 4
+} conic_gradient_kind;
+
+#define CONIC_N_GRADIENT_KINDS 5
+
+/* "mean", "scale", "rotation", "opacity", "sh"; null for a number that is none. */
+CONIC_API const char *conic_gradient_kind_name(conic_gradient_kind kind);
+
 /* Arrays of one number a Gaussian, and the harmonics as conic_gaussians has them. */
 typedef struct conic_gaussian_gradient {
   size_t count;
@@ -66,7 +80,8 @@ typedef struct conic_gaussian_gradient {
   double loss;                 /* L */
   size_t n_shown, n_doubtful;  /* Gaussians composited where W is not 0; those with a doubt */
   size_t doubtful[16];         /* by CONIC_DOUBT_… */
-  uint64_t reserved[8];
+  uint64_t lacks;              /* of a file: bits 1 << conic_gradient_kind of what is not there, and 0 here */
+  uint64_t reserved[7];
 } conic_gaussian_gradient;
 
 /* Finds the gradient for the profile and the background of `options` (null: the defaults). The same bits for any
@@ -87,6 +102,41 @@ CONIC_API int conic_gradient_has_profile(conic_gaussian_profile profile);
  * and doubt. The file appears under its name only when it is whole. Errors: MEMORY, IO. */
 CONIC_API conic_status conic_gaussian_gradient_write(conic_context *context, const char *path,
                                                      const conic_gaussian_gradient *gradient);
+
+/* Reads somebody's gradient: a .ply with these properties, or an .npz with arrays of as many rows as there are
+ * Gaussians, by the names means, quats (w, x, y, z), scales, opacities, and sh of (n, harmonics, 3). On success the
+ * caller owns *gradient; on failure it is empty. Errors: INPUT, MEMORY, CANCELLED, UNSUPPORTED. */
+CONIC_API conic_status conic_gaussian_gradient_read(conic_context *context, const char *path,
+                                                    conic_gaussian_gradient *gradient);
+
+/* A number that is wrong, the farthest off of its Gaussian. */
+typedef struct conic_gradient_fault {
+  size_t gaussian;
+  int kind, number; /* number: of that kind, as x, y, z; of the harmonics as conic_gaussians has them */
+  double found, value, low, high;
+} conic_gradient_fault;
+
+typedef struct conic_gradient_verdict {
+  size_t gaussians[4];                           /* by conic_gaussian_class */
+  size_t wrong[CONIC_N_GRADIENT_KINDS];          /* Gaussians with a wrong number of a kind */
+  double greatest[CONIC_N_GRADIENT_KINDS];       /* of the right numbers */
+  double max_abs[CONIC_N_GRADIENT_KINDS];        /* of the differences; infinite where one is no number */
+  double share_of_bound[CONIC_N_GRADIENT_KINDS]; /* the greatest share of what roundings may do that was met, of what
+                                                    is within that */
+  conic_gradient_fault worst[CONIC_MAX_FAULTS];  /* the Gaussians that are farthest off, the worst first */
+  int n_worst, pass;                             /* pass: none is wrong */
+  uint64_t reserved[6];
+} conic_gradient_verdict;
+
+/* Judges somebody's gradient, number by number, as floats of `how->model` (null: those of a GPU's fast mathematics) may
+ * have it: docs/reference/gradient.md. `classes` takes a class for each Gaussian, the worst of its numbers', and may be
+ * null. Errors: as conic_gaussian_gradient_find; ARGUMENT also where the counts differ; UNSUPPORTED of `exact`. */
+CONIC_API conic_status conic_gaussian_gradient_judge(conic_context *context, const conic_gaussians *gaussians,
+                                                     const conic_camera *camera, const conic_gaussian_options *options,
+                                                     const conic_gaussian_weights *weights,
+                                                     const conic_gradient_options *how,
+                                                     const conic_gaussian_gradient *theirs, uint8_t *classes,
+                                                     conic_gradient_verdict *verdict);
 
 #ifdef __cplusplus
 }

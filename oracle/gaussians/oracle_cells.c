@@ -263,7 +263,7 @@ static void bound_one_pixel(const oracle_bound_request *b, cell_worker *w, size_
       size_t n_meetings = gather_meetings(b, w, n, x + column + 0.5, y + row + 0.5);
       conic_oracle_composite(&b->doubting, w->meetings, n_meetings, b->background, w->steps, &sample);
       if (b->note)
-        b->note(b->data, w->meetings, n_meetings, i_thread);
+        b->note(b->data, pixel, w->meetings, n_meetings, i_thread);
       if (b->samples == 1)
         *bound = sample;
       else

@@ -8,7 +8,7 @@
 typedef void oracle_bound_taker(void *data, size_t i, size_t pixel, const conic_gaussian_bound *bound, int i_thread);
 
 /* Takes what may cover it, in its order, with what is noted of each. */
-typedef void oracle_meeting_taker(void *data, const oracle_meeting *meetings, size_t n, int i_thread);
+typedef void oracle_meeting_taker(void *data, size_t pixel, const oracle_meeting *meetings, size_t n, int i_thread);
 
 typedef struct oracle_bound_request {
   conic_context *context;

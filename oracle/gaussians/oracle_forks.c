@@ -79,10 +79,9 @@ static range add_ranges(range a, range b) {
 /* The share of the light that a Gaussian leaves, by which T grows. Others may subtract α·T, rounded, from T. */
 static range rest_of_light(const fork_job *j, range alpha) {
   range rest = round_range(range_of(1.0 - alpha.high, 1.0 - alpha.v, 1.0 - alpha.low));
-  if (j->d->model->is_setup_in_float) {
-    rest.low -= ORACLE_FLOAT_UNIT * alpha.high;
-    rest.high += ORACLE_FLOAT_UNIT * alpha.high;
-  }
+  double product = j->d->model->is_setup_in_float ? ORACLE_FLOAT_UNIT * alpha.high : 0.0;
+  rest.low -= product;
+  rest.high += product;
   return rest;
 }
 

@@ -117,7 +117,7 @@ static size_t meet_all_shown(const oracle_gradient_job *j, gradient_worker *w, s
   for (size_t i = 0; i < n; i++) {
     const oracle_shown *s = w->shown[i];
     if (x < s->first[0] || x > s->last[0] || y < s->first[1] || y > s->last[1] ||
-        !conic_oracle_meet_shown(&j->view, s, (double)x + 0.5, (double)y + 0.5, &w->met[n_met]))
+        conic_oracle_meet_shown(&j->view, s, (double)x + 0.5, (double)y + 0.5, &w->met[n_met]) != ORACLE_COVERS)
       continue;
     w->met[n_met].entry = (uint32_t)i;
     T *= 1.0 - w->met[n_met++].alpha;
@@ -155,12 +155,17 @@ static void differentiate_cell(void *data, size_t column, int i_thread) {
   const size_t width = (size_t)j->view.camera->width, height = (size_t)j->view.camera->height;
   memset(j->sums + at, 0, n * sizeof *j->sums);
   memset(j->is_touched + at, 0, n);
+  if (j->judging)
+    memset(j->judging->bounds + at, 0, n * sizeof *j->judging->bounds);
   j->losses[column] = 0.0;
   for (size_t i = 0; i < n; i++)
     w->shown[i] = &j->shown[j->entries[begin + i]];
   for (size_t y = j->band * EDGE; y < (j->band + 1) * EDGE && y < height; y++)
-    for (size_t x = column * EDGE; x < (column + 1) * EDGE && x < width; x++)
+    for (size_t x = column * EDGE; x < (column + 1) * EDGE && x < width; x++) {
       j->losses[column] += differentiate_pixel(j, w, n, x, y, j->sums + at, j->is_touched + at);
+      if (j->judging)
+        conic_oracle_bound_pixel_gradient(j, w, n, x, y, i_thread, j->judging->bounds + at);
+    }
 }
 
 /* Adds what a row of cells came to. */
@@ -171,6 +176,8 @@ static void add_band(oracle_gradient_job *j) {
     for (int k = 0; k < N_BY_SCREEN && j->is_touched[i]; k++)
       j->totals[index][k] += j->sums[i][k];
     j->is_shown[index] |= j->is_touched[i];
+    if (j->judging)
+      conic_oracle_add_gradient_bound(&j->judging->totals[index], &j->judging->bounds[i]);
   }
   for (size_t column = 0; column < j->across; column++)
     j->gradient->loss += j->losses[column];
@@ -190,6 +197,8 @@ static conic_status make_gradient_room(oracle_gradient_job *j) {
     w->met = conic_memory_allocate(j->context, j->most_entries + 1, sizeof *w->met);
     is_done = w->shown && w->met;
   }
+  if (is_done && j->judging)
+    return conic_oracle_judging_room(j);
   return is_done ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 

@@ -44,7 +44,9 @@ typedef struct oracle_met {
   double by_weight, by_z; /* dL/dw, dL/dz */
 } oracle_met;
 
-/* Whether it covers the place, and how. */
+/* Whether it covers the place, and how: ORACLE_COVERS, or ORACLE_NEARLY where α is below its least by a hundredth of
+ * that at most; else 0. */
+enum { ORACLE_COVERS = 1, ORACLE_NEARLY = 2 };
 int conic_oracle_meet_shown(const oracle_gaussian_view *view, const oracle_shown *shown, double x, double y,
                             oracle_met *met);
 
@@ -54,6 +56,7 @@ enum { N_WEIGHTS = 5 };
 typedef struct oracle_gradient_pixel {
   double x, y, weights[N_WEIGHTS];
   const float *background;
+  int goes_on; /* all are composited, whatever T is */
 } oracle_gradient_pixel;
 
 /* Composites what stands in its order, as far as it goes: fills in `before`, by_weight and by_z, and sets *n to how

@@ -24,6 +24,11 @@ void conic_gradient_options_init_sized(conic_gradient_options *options, size_t s
   conic_options_give(options, size, &own);
 }
 
+const char *conic_gradient_kind_name(conic_gradient_kind kind) {
+  static const char *const names[CONIC_N_GRADIENT_KINDS] = {"mean", "scale", "rotation", "opacity", "sh"};
+  return (unsigned)kind < CONIC_N_GRADIENT_KINDS ? names[kind] : NULL;
+}
+
 int conic_gradient_has_profile(conic_gaussian_profile profile) {
   const oracle_gaussian_rules *rules = conic_oracle_gaussian_rules(profile);
   return rules && rules->form != ORACLE_FORM_DISC;
@@ -92,7 +97,7 @@ static void chain_run(void *data, size_t i_run, int i_thread) {
   }
 }
 
-static conic_status chain_all(oracle_gradient_job *j) {
+conic_status conic_oracle_gradient_chain_all(oracle_gradient_job *j) {
   conic_gaussian_gradient *g = j->gradient;
   const size_t n_runs = (j->set->count + CHAIN_RUN - 1) / CHAIN_RUN;
   j->cameras = conic_memory_allocate_zeroed(j->context, n_runs, sizeof *j->cameras);
@@ -119,10 +124,13 @@ static conic_status chain_all(oracle_gradient_job *j) {
 /* --- doubts --- */
 
 /* An order in doubt is told of the later one, and is of both. */
-static void note_doubts(void *data, const oracle_meeting *meetings, size_t n, int i_thread) {
+static void note_doubts(void *data, size_t pixel, const oracle_meeting *meetings, size_t n, int i_thread) {
   const oracle_gradient_job *j = data;
   uint16_t *doubts = j->doubts + (size_t)i_thread * j->set->count;
+  const unsigned open = 1u << CONIC_DOUBT_EDGE | 1u << CONIC_DOUBT_NEAR | 1u << CONIC_DOUBT_SIGN;
   for (size_t i = 0; i < n; i++) {
+    if (j->judging && meetings[i].noted & open)
+      j->judging->is_open_pixel[pixel] = 1;
     doubts[meetings[i].g->index] |= (uint16_t)meetings[i].noted;
     for (size_t k = i; meetings[i].noted >> CONIC_DOUBT_ORDER & 1 && k > 0 && !meetings[k].is_cut; k--)
       if (!conic_oracle_is_before(&meetings[k - 1], &meetings[i]))
@@ -139,7 +147,7 @@ static void pass_bound(void *data, size_t i, size_t pixel, const conic_gaussian_
 }
 
 /* Of all pixels that have a weight. */
-static conic_status find_all_doubts(oracle_gradient_job *j, oracle_entry *e) {
+conic_status conic_oracle_gradient_doubts(oracle_gradient_job *j, oracle_entry *e) {
   const size_t n = e->bounding.n_pixels, threads = (size_t)conic_context_threads(j->context);
   uint32_t *pixels = conic_memory_allocate(j->context, n, sizeof *pixels);
   double weights[N_WEIGHTS];
@@ -191,41 +199,54 @@ static void find_gradient_eye(const conic_camera *camera, oracle_eye *eye) {
 static conic_status run_gradient_job(oracle_gradient_job *j, oracle_entry *e) {
   conic_status status = conic_oracle_differentiate(j);
   if (status == CONIC_OK && j->model)
-    status = find_all_doubts(j, e);
-  return status == CONIC_OK ? chain_all(j) : status;
+    status = conic_oracle_gradient_doubts(j, e);
+  return status == CONIC_OK ? conic_oracle_gradient_chain_all(j) : status;
+}
+
+conic_status conic_oracle_gradient_begin(conic_context *context, const conic_gaussians *set, const conic_camera *camera,
+                                         const conic_gaussian_options *options, const conic_gaussian_weights *weights,
+                                         const conic_gradient_options *how, conic_float_kind kind,
+                                         conic_gaussian_gradient *gradient, oracle_entry *e, oracle_gradient_job *j) {
+  conic_gradient_options own;
+  conic_float_model model;
+  memset(j, 0, sizeof *j);
+  memset(gradient, 0, sizeof *gradient);
+  conic_gradient_options_init(&own);
+  conic_float_model_init(&model, kind);
+  if (how && !conic_options_take(&own, how))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "gradient: no such options");
+  conic_status status = conic_oracle_enter(context, set, camera, options, own.model ? own.model : &model, 1, e);
+  if (status == CONIC_OK)
+    status = check_gradient_weights(context, weights, camera);
+  if (status == CONIC_OK && !conic_gradient_has_profile(e->options.profile))
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "gradient: the profile %s has none yet",
+                      conic_gaussian_profile_name(e->options.profile));
+  if (status == CONIC_OK)
+    status = conic_oracle_gradient_room(context, set->count, set->sh_degree, set->scale[2] != NULL, gradient);
+  if (status != CONIC_OK)
+    return status;
+  gradient->is_raw = own.is_raw != 0;
+  *j = (oracle_gradient_job){.context = context,
+                             .set = set,
+                             .weights = weights,
+                             .model = own.leaves_doubts ? NULL : &e->model,
+                             .background = e->options.background,
+                             .view = e->view,
+                             .gradient = gradient};
+  find_gradient_eye(camera, &j->eye);
+  return CONIC_OK;
 }
 
 conic_status conic_gaussian_gradient_find(conic_context *context, const conic_gaussians *set,
                                           const conic_camera *camera, const conic_gaussian_options *options,
                                           const conic_gaussian_weights *weights, const conic_gradient_options *how,
                                           conic_gaussian_gradient *gradient) {
-  conic_gradient_options own;
-  conic_float_model strict;
   oracle_entry e;
-  memset(gradient, 0, sizeof *gradient);
-  conic_gradient_options_init(&own);
-  conic_float_model_init(&strict, CONIC_FLOATS_STRICT);
-  if (how && !conic_options_take(&own, how))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "gradient: no such options");
-  conic_status status = conic_oracle_enter(context, set, camera, options, own.model ? own.model : &strict, 1, &e);
-  if (status == CONIC_OK)
-    status = check_gradient_weights(context, weights, camera);
-  if (status == CONIC_OK && !conic_gradient_has_profile(e.options.profile))
-    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "gradient: the profile %s has none yet",
-                      conic_gaussian_profile_name(e.options.profile));
-  if (status == CONIC_OK)
-    status = conic_oracle_gradient_room(context, set->count, set->sh_degree, set->scale[2] != NULL, gradient);
+  oracle_gradient_job j;
+  conic_status status =
+      conic_oracle_gradient_begin(context, set, camera, options, weights, how, CONIC_FLOATS_STRICT, gradient, &e, &j);
   if (status != CONIC_OK)
     return status;
-  gradient->is_raw = own.is_raw != 0;
-  oracle_gradient_job j = {.context = context,
-                           .set = set,
-                           .weights = weights,
-                           .model = own.leaves_doubts ? NULL : &e.model,
-                           .background = e.options.background,
-                           .view = e.view,
-                           .gradient = gradient};
-  find_gradient_eye(camera, &j.eye);
   status = run_gradient_job(&j, &e);
   conic_oracle_gradient_end(&j);
   if (status != CONIC_OK)

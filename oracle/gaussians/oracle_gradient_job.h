@@ -2,6 +2,7 @@
 #ifndef CONIC_ORACLE_GRADIENT_JOB_H
 #define CONIC_ORACLE_GRADIENT_JOB_H
 
+#include "oracle/gaussians/oracle_entry.h"
 #include "oracle/gaussians/oracle_gradient.h"
 
 /* What a thread keeps from cell to cell. */
@@ -10,7 +11,30 @@ typedef struct gradient_worker {
   oracle_met *met;
 } gradient_worker;
 
-typedef struct oracle_gradient_job {
+typedef struct oracle_gradient_job oracle_gradient_job;
+
+/* What of a sum over pixels is not certain. */
+typedef struct oracle_sum_bound {
+  double off[N_BY_ELLIPSE];   /* by the roundings of its terms */
+  double size[N_BY_ELLIPSE];  /* of the terms, without regard to sign */
+  double slack[N_BY_ELLIPSE]; /* by decisions in doubt */
+  uint32_t n, is_open;        /* pixels; whether a decision is in doubt whose other answer is not followed */
+} oracle_sum_bound;
+
+/* How far off floats may have what a pixel sees of a Gaussian. */
+typedef struct oracle_shown_off {
+  double place[2], form[3], opacity, color[3], z, key;
+} oracle_shown_off;
+
+typedef struct oracle_gradient_judging {
+  const conic_float_model *model;
+  oracle_shown_off *offs;               /* of each Gaussian */
+  oracle_sum_bound *bounds, *totals;    /* of each entry of the band; of each Gaussian */
+  char *is_open_pixel;                  /* of each pixel */
+  struct gradient_variants *of_threads; /* by thread */
+} oracle_gradient_judging;
+
+struct oracle_gradient_job {
   conic_context *context;
   const conic_gaussians *set;
   const conic_gaussian_weights *weights;
@@ -32,13 +56,34 @@ typedef struct oracle_gradient_job {
   double *losses;                /* of its cells */
   double (*totals)[N_BY_SCREEN]; /* of each Gaussian */
   char *is_shown;
-  oracle_camera_gradient *cameras; /* of each run of Gaussians */
-  uint16_t *doubts;                /* of each Gaussian, by each thread */
-} oracle_gradient_job;
+  oracle_camera_gradient *cameras;  /* of each run of Gaussians */
+  uint16_t *doubts;                 /* of each Gaussian, by each thread */
+  oracle_gradient_judging *judging; /* null: nothing is judged */
+};
 
 /* Fills in the totals, is_shown and the loss. Errors: MEMORY, CANCELLED. */
 conic_status conic_oracle_differentiate(oracle_gradient_job *job);
 void conic_oracle_gradient_end(oracle_gradient_job *job);
+
+/* What the functions of conic/gaussian_gradient.h make of their arguments: a job with the gradient's room, which the
+ * caller runs, and ends whatever comes of it. Its parts refer to *entry. Errors: ARGUMENT, MEMORY, UNSUPPORTED. */
+conic_status conic_oracle_gradient_begin(conic_context *context, const conic_gaussians *gaussians,
+                                         const conic_camera *camera, const conic_gaussian_options *options,
+                                         const conic_gaussian_weights *weights, const conic_gradient_options *how,
+                                         conic_float_kind kind, conic_gaussian_gradient *gradient, oracle_entry *entry,
+                                         oracle_gradient_job *job);
+/* Decisions in doubt, and the pixels where some of them are (null: not asked). Errors: MEMORY, CANCELLED. */
+conic_status conic_oracle_gradient_doubts(oracle_gradient_job *job, oracle_entry *entry);
+/* From the totals to the gradient. Errors: MEMORY. */
+conic_status conic_oracle_gradient_chain_all(oracle_gradient_job *job);
+
+/* What conic_oracle_differentiate does besides where somebody judges: room; a pixel's bounds, of the n Gaussians of its
+ * cell; and summing up. Errors: MEMORY. */
+conic_status conic_oracle_judging_room(oracle_gradient_job *job);
+void conic_oracle_judging_end(oracle_gradient_job *job);
+void conic_oracle_bound_pixel_gradient(const oracle_gradient_job *job, const gradient_worker *worker, size_t n,
+                                       size_t x, size_t y, int i_thread, oracle_sum_bound *bounds);
+void conic_oracle_add_gradient_bound(oracle_sum_bound *to, const oracle_sum_bound *from);
 
 /* A gradient of zeros. Errors: MEMORY. */
 conic_status conic_oracle_gradient_room(conic_context *context, size_t n, int sh_degree, int has_third_scale,

@@ -73,8 +73,8 @@ int conic_oracle_show(const oracle_gaussian_view *view, const conic_gaussians *s
   conic_oracle_gaussian_place(view, set, i, &g);
   *shown = (oracle_shown){.index = (uint32_t)i, .key = g.key, .opacity = g.opacity, .z = g.mean[2]};
   shown->most_q = rules->cutoff > 0.0 ? rules->cutoff : -1.0;
-  if (rules->alpha_least > 0.0 && g.opacity >= rules->alpha_least)
-    shown->most_q = 2.0 * conic_oracle_log(g.opacity / rules->alpha_least) + 1e-9;
+  if (rules->alpha_least > 0.0 && g.opacity >= 0.99 * rules->alpha_least)
+    shown->most_q = 2.0 * conic_oracle_log(g.opacity / rules->alpha_least) + 0.03;
   if (!g.is_drawn || !(shown->most_q >= 0.0))
     return 0;
   memcpy(shown->color, g.color, sizeof shown->color);
@@ -137,7 +137,7 @@ int conic_oracle_meet_shown(const oracle_gaussian_view *view, const oracle_shown
   met->alpha = met->is_most ? rules->alpha_most : alpha;
   met->index = shown->index;
   met->key = rules->form == ORACLE_FORM_RAY ? (float)met->z : shown->key;
-  return met->alpha >= rules->alpha_least;
+  return met->alpha >= rules->alpha_least ? ORACLE_COVERS : met->alpha >= 0.99 * rules->alpha_least ? ORACLE_NEARLY : 0;
 }
 
 double conic_oracle_gradient_forth(const oracle_gaussian_view *view, const oracle_gradient_pixel *pixel,
@@ -149,7 +149,7 @@ double conic_oracle_gradient_forth(const oracle_gaussian_view *view, const oracl
   for (; n_met < *n; n_met++) {
     oracle_met *m = &met[n_met];
     const double rest = T * (1.0 - m->alpha);
-    if (rest < rules->stop || (rules->stop_is_left_out && rest == rules->stop))
+    if (!pixel->goes_on && (rest < rules->stop || (rules->stop_is_left_out && rest == rules->stop)))
       break;
     m->before = T;
     sum += m->alpha * T;

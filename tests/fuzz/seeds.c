@@ -1,5 +1,6 @@
 /* Writes the seeds of every fuzz target: FOLDER/TARGET/NAME. */
 #include "tests/support/seeds.h"
+#include "tests/support/suite_example.h"
 
 static void write_seed(const char *folder, const seed *from) {
   char path[4096];
@@ -35,6 +36,7 @@ int main(int argc, char **argv) {
   seed_set *set = seeds_make(context);
   seeds_all_assimp(set);
   seeds_all_records(set);
+  seeds_text(set, "suite", "json", SUITE_EXAMPLE);
   for (int i = 0; i < set->n; i++)
     write_seed(argv[1], &set->seeds[i]);
   for (int i = 0; i < set->n; i++)

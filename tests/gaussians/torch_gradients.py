@@ -7,6 +7,7 @@ in the folder GSPLAT. CONIC is the program. torch_pictures.py says what of gspla
 
 import json
 import os
+import subprocess
 import sys
 
 import numpy as np
@@ -21,7 +22,7 @@ LEAST = 1.0 / 255.0
 def eye_of(view):
     """As profiles have it: -R^T t rounded to float; by automatic differentiation, the inverse's."""
     inverse = torch.inverse(view)[:3, 3]
-    rounded = (-view[:3, :3].T @ view[:3, 3]).float().double()
+    rounded = (-view[:3, :3].T @ view[:3, 3]).float().to(view.dtype)
     return inverse + (rounded - inverse).detach()
 
 
@@ -44,7 +45,7 @@ def pairs_of(means2d, radii, form, opacities, depths, side, most):
     return torch.cat(ids), torch.cat(pixels)
 
 
-def differentiate(gsplat, scene, camera, kind, weights):
+def differentiate(gsplat, scene, camera, kind, weights, precision=torch.float64):
     """dL/d(…) as conic names them."""
     _, three, _ = gsplat
     side = camera["side"]
@@ -52,7 +53,7 @@ def differentiate(gsplat, scene, camera, kind, weights):
     view[:3, :3], view[:3, 3] = camera["rotation"], camera["translation"]
     leaves = {"K": np.array([[camera["f"][0], 0, camera["c"][0]], [0, camera["f"][1], camera["c"][1]], [0, 0, 1]]),
               "view": view, **scene}
-    leaves = {name: torch.from_numpy(np.ascontiguousarray(value).astype(np.float64)).requires_grad_()
+    leaves = {name: torch.from_numpy(np.ascontiguousarray(value).astype(np.float64)).to(precision).requires_grad_()
               for name, value in leaves.items()}
     degree = int(round(leaves["sh"].shape[1] ** 0.5)) - 1
     colors = torch.clamp_min(
@@ -71,7 +72,7 @@ def differentiate(gsplat, scene, camera, kind, weights):
     is_there = alphas.detach() > 0
     z = torch.where(is_there, sums[..., 3] / torch.where(is_there, alphas, torch.ones_like(alphas)),
                     torch.zeros_like(alphas))
-    W = torch.from_numpy(weights)
+    W = torch.from_numpy(weights).to(precision)
     loss = (W[..., :3] * sums[..., :3]).sum() + (W[..., 3] * alphas).sum() + (W[..., 4] * z).sum()
     means2d.retain_grad()
     loss.backward()
@@ -137,9 +138,30 @@ def compare(name, conic, gsplat, scene, path, camera):
             apart["raw " + what] = (abs(raw[what] - expected) / (1e-3 * abs(expected).max() + abs(expected))).max()
         over = {what: value for what, value in apart.items() if not value <= BOUND}
         n_wrong += len(over)
+        n_wrong += judge_floats(conic, gsplat, scene, path, camera, kind, profile, weights)
         print(f"{name}, {camera['side']}², {profile}, {n_pairs} pairs: " +
               ", ".join(f"{what} {value:.1e}" for what, value in apart.items()) + (f"; WRONG: {over}" if over else ""))
     return n_wrong
+
+
+def judge_floats(conic, gsplat, scene, path, camera, kind, profile, weights):
+    """The same in floats, as conic judge --gradients has it; 1 where that calls it wrong, or a mistake in it right."""
+    made = differentiate(gsplat, scene, camera, kind, weights, torch.float32)[1]
+    made = {name: made[key] for name, key in (("means", "mean"), ("scales", "scale"), ("quats", "rotation"),
+                                              ("opacities", "opacity"), ("sh", "sh"))}
+    np.savez("floats.npz", **made)
+    words = [conic, "judge", path, "--profile", profile, "--camera", "camera.json", "--weights", "weights.npy"]
+    right = subprocess.run([*words, "--gradients", "floats.npz", "--json", "judged.json"], capture_output=True, text=True)
+    print(right.stdout + right.stderr, end="")
+    for key in made:
+        i = np.unravel_index(abs(made[key]).argmax(), made[key].shape)
+        made[key][i] *= 1.01
+    np.savez("wrong.npz", **made)
+    wrong = subprocess.run([*words, "--gradients", "wrong.npz", "--json", "wrong.json"], capture_output=True)
+    with open("wrong.json") as file:
+        found = [about["wrong"] for about in json.load(file)["kinds"].values()]
+    print(f"  one number of a kind off by 1 %: wrong Gaussians {found}")
+    return int(right.returncode != 0) + int(wrong.returncode != 1)
 
 
 def main():

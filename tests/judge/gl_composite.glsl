@@ -12,12 +12,13 @@ layout(std430, binding = 2) readonly buffer list_block {
 layout(std430, binding = 3) readonly buffer tile_block {
   int tiles[]; // where the tile's part of the list begins; the next one's is its end
 };
+uniform float alpha_least, alpha_most, pixel_centre, least_power;
 uniform int tiles_across;
 layout(location = 0) out vec4 color_out;
 layout(location = 1) out vec4 depth_out;
 
 void main() {
-  vec2 pixel = floor(gl_FragCoord.xy) + PIXEL_CENTRE;
+  vec2 pixel = floor(gl_FragCoord.xy) + pixel_centre;
   int tile = int(gl_FragCoord.y) / 16 * tiles_across + int(gl_FragCoord.x) / 16, end = tiles[tile + 1];
   vec4 sum = vec4(0.0);
   float T = 1.0;
@@ -25,10 +26,10 @@ void main() {
     splat s = splats[list[i]];
     vec2 d = s.place - pixel;
     float power = -0.5 * (s.form.x * d.x * d.x + s.form.z * d.y * d.y) - s.form.y * d.x * d.y;
-    if (power > 0.0 || power < LEAST_POWER)
+    if (power > 0.0 || power < least_power)
       continue;
-    float alpha = min(ALPHA_MOST, s.form.w * FALLOFF(power));
-    if (alpha < ALPHA_LEAST)
+    float alpha = min(alpha_most, s.form.w * FALLOFF(power));
+    if (alpha < alpha_least)
       continue;
     float next = T * (1.0 - alpha);
     if (HAS_ENDED(next))

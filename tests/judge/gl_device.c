@@ -62,7 +62,7 @@ static void attach_shader(GLuint program, GLenum kind, const char *folder, const
   free(text);
 }
 
-static GLuint link_program(GLuint program) {
+static void link_program(GLuint program) {
   char words[4096] = "";
   GLint is_right;
   glLinkProgram(program);
@@ -70,21 +70,47 @@ static GLuint link_program(GLuint program) {
   glGetProgramInfoLog(program, sizeof words, NULL, words);
   if (!is_right)
     plain_give_up("program", words);
+}
+
+/* Compiling takes longer than a small picture. */
+static GLuint find_program(const char *constants, const char *name, int *is_new) {
+  enum { MOST = 64, ROOM = 2048 };
+  static char keys[MOST][ROOM];
+  static GLuint programs[MOST];
+  char key[ROOM];
+  int i = 0;
+  snprintf(key, sizeof key, "%s\n%s", name, constants);
+  while (i + 1 < MOST && programs[i] && strcmp(keys[i], key) != 0)
+    i++;
+  *is_new = !programs[i] || strcmp(keys[i], key) != 0;
+  if (*is_new) {
+    snprintf(keys[i], sizeof keys[i], "%s", key);
+    programs[i] = glCreateProgram();
+  }
+  return programs[i];
+}
+
+GLuint gl_compute_program(const char *folder, const char *constants, const char *name) {
+  int is_new;
+  GLuint program = find_program(constants, name, &is_new);
+  if (is_new) {
+    attach_shader(program, GL_COMPUTE_SHADER, folder, constants, name);
+    link_program(program);
+  }
   glUseProgram(program);
   return program;
 }
 
-GLuint gl_compute_program(const char *folder, const char *constants, const char *name) {
-  GLuint program = glCreateProgram();
-  attach_shader(program, GL_COMPUTE_SHADER, folder, constants, name);
-  return link_program(program);
-}
-
 GLuint gl_drawing_program(const char *folder, const char *constants, const char *vertex, const char *fragment) {
-  GLuint program = glCreateProgram();
-  attach_shader(program, GL_VERTEX_SHADER, folder, constants, vertex);
-  attach_shader(program, GL_FRAGMENT_SHADER, folder, constants, fragment);
-  return link_program(program);
+  int is_new;
+  GLuint program = find_program(constants, fragment, &is_new);
+  if (is_new) {
+    attach_shader(program, GL_VERTEX_SHADER, folder, constants, vertex);
+    attach_shader(program, GL_FRAGMENT_SHADER, folder, constants, fragment);
+    link_program(program);
+  }
+  glUseProgram(program);
+  return program;
 }
 
 GLuint gl_buffer(GLuint binding, size_t bytes, const void *data) {

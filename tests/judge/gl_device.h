@@ -11,8 +11,8 @@
  * why. */
 int gl_open(const char **reason);
 
-/* A program of the shaders FOLDER/NAME.glsl, each after a line of its version and the constants. Ends the process, with
- * the compiler's words, where one is not right. */
+/* Makes current a program of the shaders FOLDER/NAME.glsl, each after its version and the constants. Programs are kept
+ * for who asks for the same again. Ends the process, with the compiler's words, where one is not right. */
 GLuint gl_compute_program(const char *folder, const char *constants, const char *name);
 GLuint gl_drawing_program(const char *folder, const char *constants, const char *vertex, const char *fragment);
 

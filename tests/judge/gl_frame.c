@@ -10,19 +10,19 @@ enum { CONSTANTS_ROOM = 4096 };
 
 /* What distinguishes the profiles. */
 typedef struct gl_profile {
-  const char *name, *is_seen, *has_ended, *compensation;
+  const char *name, *is_seen, *has_ended, *compensation; /* in GLSL */
   int clamp; /* 1: as inria's, with its tiles and centre; 2: as gsplat's; 0: none, and quads are blended */
-  double dilation, alpha_most, alpha_least;
+  float near_z, dilation, alpha_most;
   int is_by_distance;
 } gl_profile;
 
 static const gl_profile profiles[] = {
-    {"inria-2023", "z > 0.2", "T < 0.0001", NULL, 1, 0.3, 0.99, 1.0 / 255.0, 0},
-    {"gsplat-1.5", "z >= 0.01", "T <= 0.0001", NULL, 2, 0.3, 0.999, 1.0 / 255.0, 0},
-    {"gsplat-1.5-aa", "z >= 0.01", "T <= 0.0001", "0.0", 2, 0.3, 0.999, 1.0 / 255.0, 0},
-    {"gsplat-1.6", "z >= 0.01", "T <= 0.0001", NULL, 2, 0.3, 0.99, 1.0 / 255.0, 0},
-    {"gsplat-1.6-aa", "z >= 0.01", "T <= 0.0001", "0.000025", 2, 0.3, 0.99, 1.0 / 255.0, 0},
-    {"khr-2026", "z > 0.0", "false", NULL, 0, 0.0, 1.0, 0.0, 1},
+    {"inria-2023", "z > near_z", "T < 0.0001", NULL, 1, 0.2f, 0.3f, 0.99f, 0},
+    {"gsplat-1.5", "z >= near_z", "T <= 0.0001", NULL, 2, 0.01f, 0.3f, 0.999f, 0},
+    {"gsplat-1.5-aa", "z >= near_z", "T <= 0.0001", "0.0", 2, 0.01f, 0.3f, 0.999f, 0},
+    {"gsplat-1.6", "z >= near_z", "T <= 0.0001", NULL, 2, 0.01f, 0.3f, 0.99f, 0},
+    {"gsplat-1.6-aa", "z >= near_z", "T <= 0.0001", "0.000025", 2, 0.01f, 0.3f, 0.99f, 0},
+    {"khr-2026", "z > near_z", "false", NULL, 0, 0.0f, 0.0f, 1.0f, 1},
 };
 enum { N_PROFILES = sizeof profiles / sizeof *profiles };
 
@@ -46,17 +46,17 @@ static int has(const gl_job *job, plain_fault fault) {
 static void plant_in_profile(gl_job *job) {
   gl_profile *profile = &job->profile;
   if (has(job, PLAIN_DILATION_0) || has(job, PLAIN_DILATION_0_1))
-    profile->dilation = has(job, PLAIN_DILATION_0) ? 0.0 : 0.1;
+    profile->dilation = has(job, PLAIN_DILATION_0) ? 0.0f : 0.1f;
   if (has(job, PLAIN_ALPHA_MAX_0_999) || has(job, PLAIN_ALPHA_MAX_0_99))
-    profile->alpha_most = has(job, PLAIN_ALPHA_MAX_0_99) ? 0.99 : 0.999;
+    profile->alpha_most = has(job, PLAIN_ALPHA_MAX_0_99) ? 0.99f : 0.999f;
   if (has(job, PLAIN_NEAR))
-    profile->is_seen = profile->clamp == 1 ? "z > 0.01" : "z > 0.2";
+    profile->near_z = profile->clamp == 1 ? 0.01f : 0.2f;
   if (has(job, PLAIN_ORDER_DISTANCE))
     profile->is_by_distance = 1;
 }
 
 /* Floats a Gaussian: mean 3, scale 3, quaternion w x y z, opacity, harmonics. */
-static size_t stride_of(const plain_scene *scene) {
+static size_t floats_between(const plain_scene *scene) {
   return 11 + 3 * (size_t)((scene->sh_degree + 1) * (scene->sh_degree + 1));
 }
 
@@ -70,27 +70,37 @@ static void define(char *text, const char *format, ...) {
   va_end(arguments);
 }
 
-/* What profiles and faults are to the shaders. */
+/* What profiles and faults are to the shaders: text, */
 static void write_constants(const gl_job *job, char *text) {
   const gl_profile *p = &job->profile;
-  const int is_half_off = has(job, PLAIN_HALF_PIXEL), is_other_falloff = has(job, PLAIN_FALLOFF_RENORMALISED);
-  const int ends_at_3 = has(job, PLAIN_EXTENT_3_SIGMA) || p->clamp == 0;
+  const int is_other_falloff = has(job, PLAIN_FALLOFF_RENORMALISED);
   text[0] = '\0';
   define(text, "CLAMP %d", p->clamp);
-  define(text, "DILATION %#.9g", p->dilation);
-  define(text, "ALPHA_MOST %#.9g", p->alpha_most);
-  define(text, "ALPHA_LEAST %#.9g", p->alpha_least);
   define(text, "SH_DEGREE %d", has(job, PLAIN_SH_DEGREE_0) ? 0 : job->scene->sh_degree);
-  define(text, "STRIDE %zu", stride_of(job->scene));
+  define(text, "STRIDE %zu", floats_between(job->scene));
   define(text, "IS_SEEN(z) (%s)", p->is_seen);
   define(text, "HAS_ENDED(T) (%s)", p->has_ended);
   define(text, "KEY(p) %s", p->is_by_distance ? "length(p)" : "p.z");
-  define(text, "PIXEL_CENTRE %s", (p->clamp == 1) != is_half_off ? "0.0" : "0.5");
-  define(text, "LEAST_POWER %s", is_other_falloff ? "-4.0" : ends_at_3 ? "-4.5" : "-1e30");
   define(text, "FALLOFF(x) %s", is_other_falloff ? "((exp(x) - exp(-4.0)) / (1.0 - exp(-4.0)))" : "exp(x)");
   define(text, "QUATERNION(q) %s", has(job, PLAIN_QUATERNION_NOT_NORMALISED) ? "q" : "normalize(q)");
   if (p->compensation)
     define(text, "COMPENSATION %s", p->compensation);
+}
+
+static void set_number(GLuint program, const char *name, float value) {
+  glUniform1f(glGetUniformLocation(program, name), value); /* which does nothing where there is no such name */
+}
+
+/* and numbers. */
+static void set_profile(GLuint program, const gl_job *job) {
+  const gl_profile *p = &job->profile;
+  const int ends_at_3 = has(job, PLAIN_EXTENT_3_SIGMA) || p->clamp == 0;
+  set_number(program, "near_z", p->near_z);
+  set_number(program, "dilation", p->dilation);
+  set_number(program, "alpha_most", p->alpha_most);
+  set_number(program, "alpha_least", p->clamp ? 1.0f / 255.0f : 0.0f);
+  set_number(program, "pixel_centre", (p->clamp == 1) != has(job, PLAIN_HALF_PIXEL) ? 0.0f : 0.5f);
+  set_number(program, "least_power", has(job, PLAIN_FALLOFF_RENORMALISED) ? -4.0f : ends_at_3 ? -4.5f : -1e30f);
 }
 
 /* The matrix by columns, the eye as −Rᵀ·t. */
@@ -118,7 +128,7 @@ static void set_camera(GLuint program, const gl_job *job) {
 }
 
 static GLuint upload_scene(const plain_scene *scene) {
-  const size_t stride = stride_of(scene);
+  const size_t stride = floats_between(scene);
   float *rows = gl_allocate(scene->count * stride, sizeof *rows);
   for (size_t i = 0; i < scene->count; i++) {
     float *row = rows + i * stride;
@@ -141,9 +151,9 @@ static gl_splat *set_up(gl_job *job, const char *constants) {
   job->buffers[0] = upload_scene(job->scene);
   job->buffers[1] = gl_buffer(1, bytes, NULL);
   set_camera(program, job);
+  set_profile(program, job);
   glDispatchCompute((GLuint)(job->scene->count + 63) / 64, 1, 1);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
-  glDeleteProgram(program);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, job->buffers[1]);
   glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)bytes, splats);
   return splats;
@@ -216,8 +226,8 @@ static void draw_tiles(gl_job *job, const char *constants, const gl_splat *splat
   bin_splats(job, splats, order, n, n_tiles);
   GLuint program = gl_drawing_program(job->order->folder, constants, "gl_whole_vertex", "gl_composite");
   glUniform1i(glGetUniformLocation(program, "tiles_across"), n_tiles[0]);
+  set_profile(program, job);
   glDrawArrays(GL_TRIANGLES, 0, 3);
-  glDeleteProgram(program);
 }
 
 /* Front to back: what is there already is over what comes. */
@@ -225,11 +235,11 @@ static void draw_quads(gl_job *job, const char *constants, const int *order, siz
   job->buffers[2] = gl_buffer(2, n * sizeof *order, order);
   GLuint program = gl_drawing_program(job->order->folder, constants, "gl_quad_vertex", "gl_quad_fragment");
   glUniform2f(glGetUniformLocation(program, "size"), (GLfloat)job->camera->width, (GLfloat)job->camera->height);
+  set_profile(program, job);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)n);
   glDisable(GL_BLEND);
-  glDeleteProgram(program);
 }
 
 static const gl_profile *find_profile(const char *name) {
@@ -260,7 +270,7 @@ static void read_back(const gl_job *job, plain_picture *p) {
   }
   free(color);
   free(depth);
-  plain_picture_spoil(p, job->order->faults, 0);
+  plain_picture_spoil(p, job->order->faults);
 }
 
 void gl_draw(const gl_order *order, const plain_scene *scene, const plain_camera *camera, plain_picture *picture) {

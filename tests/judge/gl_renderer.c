@@ -9,7 +9,7 @@
 #include "tests/judge/gl_frame.h"
 
 static void draw_file(const gl_order *order, const char *scene_path, const char *camera_path, const char *out) {
-  plain_scene scene = plain_scene_read(scene_path, order->faults, 0);
+  plain_scene scene = plain_scene_read(scene_path, order->faults);
   plain_camera camera = plain_camera_read(camera_path);
   plain_picture picture = plain_picture_allocate(camera.width, camera.height);
   gl_draw(order, &scene, &camera, &picture);

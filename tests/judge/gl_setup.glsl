@@ -16,6 +16,7 @@ layout(std430, binding = 1) writeonly buffer splat_block {
 uniform mat3 turn; // from the world to the camera
 uniform vec3 shift, eye;
 uniform vec2 focal, centre, size;
+uniform float near_z, dilation, alpha_least;
 uniform int count;
 
 const int first_sh = 11;
@@ -86,9 +87,9 @@ vec2 extent_of(vec3 c, float determinant, float opacity) {
   float middle = 0.5 * (c.x + c.z);
   return vec2(ceil(3.0 * sqrt(middle + sqrt(max(0.1, middle * middle - determinant)))));
 #elif CLAMP == 2
-  if (opacity < ALPHA_LEAST)
+  if (opacity < alpha_least)
     return vec2(0.0);
-  return ceil(min(3.33, sqrt(2.0 * log(opacity / ALPHA_LEAST))) * sqrt(c.xz)) + 1.0;
+  return ceil(min(3.33, sqrt(2.0 * log(opacity / alpha_least))) * sqrt(c.xz)) + 1.0;
 #else
   return 3.0 * sqrt(c.xz) + 1.0;
 #endif
@@ -103,7 +104,7 @@ void main() {
   if (IS_SEEN(p.z)) {
     vec3 c = covariance(at, p);
     float bare = c.x * c.z - c.y * c.y;
-    c.xz += DILATION;
+    c.xz += dilation;
     float determinant = c.x * c.z - c.y * c.y, opacity = scene[at + 10];
 #ifdef COMPENSATION
     opacity *= sqrt(max(COMPENSATION, bare / determinant));

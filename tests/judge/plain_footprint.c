@@ -34,6 +34,7 @@ static const plain_profile plain_profiles[] = {
      .most_alpha = 0.99f,
      .dilation = THIRD_OF_A_PIXEL,
      .least_compensation = 2.5e-5f},
+    {.name = "exact", .is_ray = 1, .near = -INFINITY, .most_alpha = 0.99f, .least_alpha = LEAST_ALPHA, .stop = 1e-4f},
     {.name = "khr-2026", .most_alpha = 1.0f, .least_compensation = -1.0f, .cutoff = 9.0f, .is_by_distance = 1},
     {.name = "2dgs-2024", AS_INRIA, .is_disc = 1, .disc_cutoff = 3.0f, .disc_near = 0.2f},
     {.name = "2dgs-gsplat", AS_GSPLAT, .most_alpha = 0.99f, .is_disc = 1, .disc_cutoff = 1.0f},
@@ -59,7 +60,7 @@ static void plain_spoil_profile(unsigned faults, plain_profile *p) {
     p->is_by_distance = 1;
   if (plain_has(faults, PLAIN_NEAR))
     p->near = faults & PLAIN_OTHERWISE ? 1.0f : p->near < 0.1f ? 0.2f : 0.01f;
-  if (plain_has(faults, PLAIN_EXTENT_3_SIGMA) && !(faults & PLAIN_OTHERWISE))
+  if (plain_has(faults, PLAIN_EXTENT_3_SIGMA) && (p->is_disc || p->is_ray || !(faults & PLAIN_OTHERWISE)))
     p->cutoff = 9.0f;
 }
 
@@ -322,6 +323,28 @@ static int plain_place_disc(plain_frame *v, const float r[3][3], const float sca
   return 1;
 }
 
+/* Into the frame where the Gaussian is a unit ball. Any pixel may see it: this is for small scenes. */
+static int plain_place_ball(plain_frame *v, const float r[3][3], const float scale[3], const float p[3],
+                            plain_footprint *g) {
+  plain_floats *f = &v->floats;
+  for (int k = 0; k < 3; k++) {
+    const float column[3] = {r[0][k], r[1][k], r[2][k]};
+    const float over = plain_divide(f, 1.0f, scale[k]);
+    float axis[3];
+    for (int row = 0; row < 3; row++)
+      axis[row] = plain_dot(f, v->camera->view[row], column);
+    for (int row = 0; row < 3; row++)
+      g->rows[k][row] = axis[row] * over;
+    g->ball[k] = v->settings->manner.divides_form ? plain_divide(f, plain_dot(f, axis, p), scale[k])
+                                                  : plain_dot(f, g->rows[k], p);
+  }
+  for (int axis = 0; axis < 2; axis++) {
+    g->reach[0][axis] = -INFINITY;
+    g->reach[1][axis] = INFINITY;
+  }
+  return 1;
+}
+
 /* The tiles of the square ±radius, cut off towards zero, as integers. */
 static void plain_cut_to_tiles(const plain_frame *v, plain_footprint *g) {
   for (int axis = 0; axis < 2; axis++) {
@@ -347,10 +370,12 @@ int plain_place(plain_frame *v, size_t i, plain_footprint *g) {
   g->key = v->profile.is_by_distance ? plain_root(f, plain_dot(f, p, p)) : p[2];
   plain_rotation(v, s->rotation + 4 * i, r);
   plain_color(v, i, g->color);
-  if (!(v->profile.is_disc ? plain_place_disc(v, r, scale, p, g) : plain_place_ellipse(v, r, scale, p, g)))
+  if (!(v->profile.is_ray    ? plain_place_ball(v, r, scale, p, g)
+        : v->profile.is_disc ? plain_place_disc(v, r, scale, p, g)
+                             : plain_place_ellipse(v, r, scale, p, g)))
     return 0;
-  if (v->profile.is_inria ||
-      (plain_has(v->settings->faults, PLAIN_EXTENT_3_SIGMA) && v->settings->faults & PLAIN_OTHERWISE))
+  const int is_cut = plain_has(v->settings->faults, PLAIN_EXTENT_3_SIGMA) && !(v->profile.cutoff > 0.0f);
+  if (v->profile.is_inria || is_cut)
     plain_cut_to_tiles(v, g);
   return 1;
 }

@@ -11,9 +11,10 @@ typedef struct plain_footprint {
   uint32_t index;
   float key, z, opacity, color[3];
   float place[2], form[3]; /* of an ellipse: the inverse of its covariance on the screen, a, b, c */
-  float rows[3][3];        /* of a disc: from its plane to the screen */
-  float radius;            /* of the square that tiles are found by */
-  float reach[2][2];       /* beyond it α is below its least: minimum, maximum */
+  float rows[3][3];  /* of a disc: from its plane to the screen; of a ray: to where the Gaussian is a unit ball, */
+  float ball[3];     /* and that ball's place */
+  float radius;      /* of the square that tiles are found by */
+  float reach[2][2]; /* beyond it α is below its least: minimum, maximum */
 } plain_footprint;
 
 /* What a pixel sees of a Gaussian. */

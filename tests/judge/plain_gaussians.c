@@ -1,36 +1,64 @@
 /* A Gaussian at a pixel, and the pixels: what is in reach, front to back. */
 #include "tests/judge/plain_footprint.h"
 
+static void plain_cross(plain_floats *f, const float a[3], const float b[3], float product[3]) {
+  for (int i = 0; i < 3; i++)
+    product[i] = plain_mad(f, a[(i + 1) % 3], b[(i + 2) % 3], -(a[(i + 2) % 3] * b[(i + 1) % 3]));
+}
+
+/* Half of q, below 0 where there is none, and the depth there. Of an ellipse: */
+static float plain_meet_ellipse(plain_frame *v, const plain_footprint *g, float x, float y) {
+  plain_floats *f = &v->floats;
+  const float dx = g->place[0] - x, dy = g->place[1] - y;
+  const float along[2] = {plain_product(f, g->form[0], dx, dx), plain_product(f, g->form[2], dy, dy)};
+  if (f->is_shuffled && plain_chance(f, 2))
+    return plain_sum(f, 0.5f * along[0], 0.5f * along[1], plain_product(f, g->form[1], dx, dy));
+  return plain_mad(f, g->form[1] * dx, dy, 0.5f * (along[0] + along[1]));
+}
+
+/* Of a disc, or of the dot that stands for it where it is smaller than a pixel. */
+static float plain_meet_disc(plain_frame *v, const plain_footprint *g, float x, float y, float *z) {
+  plain_floats *f = &v->floats;
+  const float dx = g->place[0] - x, dy = g->place[1] - y;
+  float k[3], l[3], p[3];
+  for (int i = 0; i < 3; i++) {
+    k[i] = plain_mad(f, x, g->rows[2][i], -g->rows[0][i]);
+    l[i] = plain_mad(f, y, g->rows[2][i], -g->rows[1][i]);
+  }
+  plain_cross(f, k, l, p);
+  if (p[2] == 0.0f)
+    return -1.0f;
+  const float u = plain_divide(f, p[0], p[2]), w = plain_divide(f, p[1], p[2]);
+  const float hit[3] = {u, w, 1.0f};
+  if (v->profile.disc_near > 0.0f)
+    *z = plain_dot(f, hit, g->rows[2]);
+  if (*z < v->profile.disc_near)
+    return -1.0f;
+  return fminf(0.5f * plain_mad(f, u, u, w * w), plain_mad(f, dx, dx, dy * dy));
+}
+
+/* Where the ray is nearest to the unit ball's centre. */
+static float plain_meet_ball(plain_frame *v, const plain_footprint *g, float x, float y, float *z) {
+  plain_floats *f = &v->floats;
+  const float ray[3] = {plain_divide(f, x - v->center[0], v->camera->fx),
+                        plain_divide(f, y - v->center[1], v->camera->fy), 1.0f};
+  float along[3], across[3];
+  for (int k = 0; k < 3; k++)
+    along[k] = plain_dot(f, g->rows[k], ray);
+  plain_cross(f, along, g->ball, across);
+  const float over = plain_divide(f, 1.0f, plain_dot(f, along, along));
+  *z = plain_dot(f, along, g->ball) * over;
+  return *z > 0.0f ? 0.5f * (plain_dot(f, across, across) * over) : -1.0f;
+}
+
 /* α at a pixel, and the depth there; below 0 where it is left out. */
 static float plain_alpha(plain_frame *v, const plain_footprint *g, float x, float y, float *z) {
   plain_floats *f = &v->floats;
-  const float dx = g->place[0] - x, dy = g->place[1] - y;
-  float half_q;
   *z = g->z;
-  if (v->profile.is_disc) {
-    float k[3], l[3], p[3];
-    for (int i = 0; i < 3; i++) {
-      k[i] = plain_mad(f, x, g->rows[2][i], -g->rows[0][i]);
-      l[i] = plain_mad(f, y, g->rows[2][i], -g->rows[1][i]);
-    }
-    for (int i = 0; i < 3; i++)
-      p[i] = plain_mad(f, k[(i + 1) % 3], l[(i + 2) % 3], -(k[(i + 2) % 3] * l[(i + 1) % 3]));
-    if (p[2] == 0.0f)
-      return -1.0f;
-    const float u = plain_divide(f, p[0], p[2]), w = plain_divide(f, p[1], p[2]);
-    const float hit[3] = {u, w, 1.0f};
-    half_q = fminf(0.5f * plain_mad(f, u, u, w * w), plain_mad(f, dx, dx, dy * dy));
-    if (v->profile.disc_near > 0.0f)
-      *z = plain_dot(f, hit, g->rows[2]);
-    if (*z < v->profile.disc_near)
-      return -1.0f;
-  } else {
-    const float along[3] = {plain_product(f, g->form[0], dx, dx), plain_product(f, g->form[2], dy, dy), 0.0f};
-    half_q = plain_mad(f, g->form[1] * dx, dy, 0.5f * (along[0] + along[1]));
-    if (f->is_shuffled && plain_chance(f, 2))
-      half_q = plain_sum(f, 0.5f * along[0], 0.5f * along[1], plain_product(f, g->form[1], dx, dy));
-  }
-  if (half_q < 0.0f || (v->profile.cutoff > 0.0f && half_q > 0.5f * v->profile.cutoff))
+  const float half_q = v->profile.is_ray    ? plain_meet_ball(v, g, x, y, z)
+                       : v->profile.is_disc ? plain_meet_disc(v, g, x, y, z)
+                                            : plain_meet_ellipse(v, g, x, y);
+  if (!(half_q >= 0.0f) || (v->profile.cutoff > 0.0f && half_q > 0.5f * v->profile.cutoff))
     return -1.0f;
   float falloff = plain_exponential(f, -half_q);
   if (plain_has(v->settings->faults, PLAIN_FALLOFF_RENORMALISED)) { /* so that it is 0 at √8 σ, or at 3 */
@@ -48,29 +76,46 @@ static int plain_compare(const void *a, const void *b) {
   return (x->index > y->index) - (x->index < y->index);
 }
 
-/* Which Gaussians a pixel sees, front to back, as far as there is light. Returns how many, and the rest of the light.
- */
-static size_t plain_meet(plain_frame *v, const plain_footprint *all, const uint32_t *list, size_t n, float x, float y,
-                         float *rest) {
-  plain_floats *f = &v->floats;
-  const float stop = v->profile.stop;
-  float T = 1.0f, z;
+static int plain_compare_hits(const void *a, const void *b) {
+  const plain_hit *x = a, *y = b;
+  if (x->z != y->z)
+    return x->z > y->z ? 1 : -1;
+  return (x->g->index > y->g->index) - (x->g->index < y->g->index);
+}
+
+/* Which Gaussians have a pixel in their reach. */
+static size_t plain_meet(plain_frame *v, const plain_footprint *all, const uint32_t *list, size_t n, float x, float y) {
+  const unsigned orders = 1u << PLAIN_ORDER_FILE | 1u << PLAIN_ORDER_DISTANCE;
   size_t n_hits = 0;
+  float z;
   for (size_t i = 0; i < n; i++) {
     const plain_footprint *g = &all[list[i]];
     if (x < g->reach[0][0] || x > g->reach[1][0] || y < g->reach[0][1] || y > g->reach[1][1])
       continue;
     const float alpha = plain_alpha(v, g, x, y, &z);
-    if (!(alpha >= 0.0f))
-      continue;
-    const float next = v->settings->manner.subtracts_weights ? plain_mad(f, -alpha, T, T) : T * (1.0f - alpha);
+    if (alpha >= 0.0f)
+      v->hits[n_hits++] = (plain_hit){g, alpha, 1.0f, z};
+  }
+  if (v->profile.is_ray && !(v->settings->faults & orders))
+    qsort(v->hits, n_hits, sizeof *v->hits, plain_compare_hits);
+  return n_hits;
+}
+
+/* The light that comes to each, front to back. Returns how many are seen, and the rest of the light. */
+static size_t plain_let_through(plain_frame *v, size_t n_hits, float *rest) {
+  const float stop = v->profile.stop;
+  float T = 1.0f;
+  size_t n = 0;
+  for (; n < n_hits; n++) {
+    const float alpha = v->hits[n].alpha;
+    const float next = v->settings->manner.subtracts_weights ? plain_mad(&v->floats, -alpha, T, T) : T * (1.0f - alpha);
     if (next < stop || (v->profile.stops_at && next == stop))
       break;
-    v->hits[n_hits++] = (plain_hit){g, alpha, T, z};
+    v->hits[n].before = T;
     T = next;
   }
   *rest = T;
-  return n_hits;
+  return n;
 }
 
 static void plain_shuffle(plain_floats *f, plain_hit *hits, size_t n) {
@@ -90,7 +135,8 @@ static void plain_composite(plain_frame *v, const plain_footprint *all, const ui
   const float half = !is_off ? 0.5f : v->settings->faults & PLAIN_OTHERWISE ? 1.0f : 0.0f;
   const size_t at = (size_t)row * (size_t)picture->width + (size_t)column;
   float T, color[3] = {0.0f, 0.0f, 0.0f}, weights = 0.0f, depths = 0.0f;
-  const size_t n_hits = plain_meet(v, all, list, n, (float)column + half, (float)row + half, &T);
+  const size_t n_met = plain_meet(v, all, list, n, (float)column + half, (float)row + half);
+  const size_t n_hits = plain_let_through(v, n_met, &T);
   if (manner->sums_in_any_order)
     plain_shuffle(f, v->hits, n_hits);
   for (size_t i = 0; i < n_hits; i++) {

@@ -8,6 +8,7 @@
 
 typedef struct plain_profile {
   const char *name;
+  int is_ray;               /* the greatest response along each pixel's ray, in the order of where it is */
   int is_disc;              /* a 2D Gaussian where the ray meets it; else an ellipse by the Jacobian */
   float near;               /* means up to there are left out, */
   int near_is_in;           /* but not at near itself */

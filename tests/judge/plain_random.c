@@ -67,7 +67,7 @@ void plain_random_write(unsigned long long seed, size_t n, const char *scene, co
   const double turn = 0.1 * (double)plain_between(&chance, -1.0, 1.0), c = cos(turn), s = sin(turn);
   fprintf(
       file,
-      "{\"width\": 96, \"height\": 80, \"fx\": 84.5, \"fy\": 83.25, \"cx\": 44.75, \"cy\": 43.5, \"world_to_camera\": "
+      "{\"width\": 64, \"height\": 56, \"fx\": 56.5, \"fy\": 57.25, \"cx\": 29.75, \"cy\": 30.5, \"world_to_camera\": "
       "[[%.17g, 0, %.17g, 0], [0, 1, 0, 0], [%.17g, 0, %.17g, 0.03125], [0, 0, 0, 1]]}\n",
       c, s, -s, c);
   if (fclose(file) != 0)

@@ -170,7 +170,7 @@ plain_scene plain_scene_read(const char *path, unsigned faults) {
   s.sh = plain_calloc(s.count * (size_t)((s.sh_degree + 1) * (s.sh_degree + 1)), 3 * sizeof *s.sh);
   for (size_t i = 0; i < s.count; i++) {
     for (size_t k = 0; k < 3; k++) {
-      float stored = plain_cell(&t, i, scale[k]), raw = faults & PLAIN_OTHERWISE ? fmaxf(stored, 1e-6f) : stored;
+      float stored = plain_cell(&t, i, scale[k]), raw = faults & PLAIN_OTHERWISE ? expf(expf(stored)) : stored;
       s.mean[3 * i + k] = plain_cell(&t, i, place[k]);
       s.scale[3 * i + k] = scale[k] < 0 ? 0.0f : plain_has(faults, PLAIN_SCALE_LINEAR) ? raw : expf(stored);
     }

@@ -40,8 +40,8 @@ typedef enum plain_fault {
   PLAIN_N_FAULTS
 } plain_fault;
 
-/* Beside them: as other programs have them, where there are several ways: scales and opacities that are limited to what
- * makes sense, sRGB as a power of 2.2, colours divided by alpha, … */
+/* Beside them: as other programs have them, where there are several ways: scales that are undone twice, opacities
+ * limited to 0 to 1, sRGB as a power of 2.2, colours divided by alpha, … */
 #define PLAIN_OTHERWISE (1u << 31)
 
 extern const char *const plain_fault_names[PLAIN_N_FAULTS];

@@ -20,6 +20,7 @@ typedef struct diagnosed_world {
   plain_camera plain_camera;
   const char *scene_path;
   conic_gaussian_profile profile;
+  float near; /* of the renderer; 0: the profile's */
   int tells;
 } diagnosed_world;
 
@@ -85,7 +86,9 @@ static diagnosed_picture diagnose(const diagnosed_world *w, unsigned faults, int
   diagnosed_picture p = {.n_found = 0};
   const unsigned reading = 1u << PLAIN_F_REST_INTERLEAVED | 1u << PLAIN_QUATERNION_XYZW | 1u << PLAIN_SCALE_LINEAR |
                            1u << PLAIN_OPACITY_LINEAR | 1u << PLAIN_QUATERNION_NOT_NORMALISED;
-  plain_settings settings = {.profile = plain_profile_find(conic_gaussian_profile_name(w->profile)), .faults = faults};
+  plain_profile profile = *plain_profile_find(conic_gaussian_profile_name(w->profile));
+  const plain_settings settings = {.profile = &profile, .faults = faults};
+  profile.near = w->near > 0.0f ? w->near : profile.near;
   plain_scene scene = faults & reading ? plain_scene_read(w->scene_path, faults) : w->plain;
   plain_picture picture = plain_picture_allocate(w->camera.width, w->camera.height);
   plain_gaussians_draw(&scene, &w->plain_camera, &settings, &picture);
@@ -203,6 +206,25 @@ static int is_of_gaussians(plain_fault fault) {
   return fault < PLAIN_AFFINE;
 }
 
+/* A near plane that nobody lists. */
+static void test_any_near(diagnosed_world *w) {
+  w->near = 2.87f;
+  const diagnosed_picture p = diagnose(w, 0, 0);
+  if (w->tells)
+    tell_diagnosis("any near", "", &p);
+  CHECK(p.n_wrong > 0 && p.n_found > 0 && strcmp(p.found[0].name, "near") == 0 && p.found[0].share > 0.99);
+  w->near = 0.0f;
+}
+
+static void test_pair(diagnosed_world *w) {
+  const diagnosed_picture p = diagnose(w, 1u << PLAIN_HALF_PIXEL | 1u << PLAIN_SRGB_DECODED, 0);
+  CHECK(p.n_found == 2 && strcmp(p.found[0].with, p.found[1].name) == 0 &&
+        strcmp(p.found[1].with, p.found[0].name) == 0);
+  CHECK(p.found[0].share > 0.99 && p.found[0].share == p.found[1].share);
+  CHECK(strcmp(p.found[0].name, "half-pixel") == 0 || strcmp(p.found[1].name, "half-pixel") == 0);
+  CHECK(strcmp(p.found[0].name, "srgb-decoded") == 0 || strcmp(p.found[1].name, "srgb-decoded") == 0);
+}
+
 static void test_made(conic_context *context) {
   static const conic_gaussian_profile profiles[] = {CONIC_PROFILE_GSPLAT_1_6, CONIC_PROFILE_INRIA_2023,
                                                     CONIC_PROFILE_2DGS_GSPLAT};
@@ -220,6 +242,8 @@ static void test_made(conic_context *context) {
     printf("%s: %zu of %zu mistakes are seen, %zu not named\n", conic_gaussian_profile_name(profiles[k]), n_seen,
            n_tried, n_tried - n_named);
     CHECK(n_named == n_tried);
+    test_any_near(&w);
+    test_pair(&w);
     close_world(&w);
     remove(path);
   }

@@ -8,11 +8,12 @@
 #include "tests/judge/plain_gaussians.h"
 #include "tests/support/check.h"
 
-enum { SIDE = 16, N_PROFILES = 8, MOST_TOLD = 40 };
+enum { SIDE = 16, N_PROFILES = 9, MOST_TOLD = 40 };
 
 static const conic_gaussian_profile profiles[N_PROFILES] = {
-    CONIC_PROFILE_INRIA_2023,    CONIC_PROFILE_GSPLAT_1_5, CONIC_PROFILE_GSPLAT_1_5_AA, CONIC_PROFILE_GSPLAT_1_6,
-    CONIC_PROFILE_GSPLAT_1_6_AA, CONIC_PROFILE_KHR_2026,   CONIC_PROFILE_2DGS_2024,     CONIC_PROFILE_2DGS_GSPLAT};
+    CONIC_PROFILE_INRIA_2023, CONIC_PROFILE_GSPLAT_1_5,    CONIC_PROFILE_GSPLAT_1_5_AA,
+    CONIC_PROFILE_GSPLAT_1_6, CONIC_PROFILE_GSPLAT_1_6_AA, CONIC_PROFILE_KHR_2026,
+    CONIC_PROFILE_2DGS_2024,  CONIC_PROFILE_2DGS_GSPLAT,   CONIC_PROFILE_EXACT};
 
 /* What the evaluations of a profile came to. */
 typedef struct plain_tally {
@@ -52,7 +53,12 @@ static void turn_by_chance(plain_evaluation *e, double q[4]) {
     q[k] /= sqrt(length);
 }
 
-static void look_by_chance(plain_evaluation *e, double distance, const double at[3]) {
+/* Manners of scenes: like trained ones, needles, crowds that hide each other, at the near plane, in pairs of one depth
+ * and opacities at the limits, far from the origin, small on the screen, a few that fill the picture, opaque and faint,
+ * and a window far beside the middle of a large picture. */
+enum { TRAINED, NEEDLES, CROWD, NEAR, PAIRS, FAR, SMALL, WALLS, WINDOW, N_MANNERS };
+
+static void look_by_chance(plain_evaluation *e, int manner, double distance, const double at[3]) {
   double q[4], r[3][3];
   turn_by_chance(e, q);
   const double w = q[0], x = q[1], y = q[2], z = q[3];
@@ -66,8 +72,16 @@ static void look_by_chance(plain_evaluation *e, double distance, const double at
       plain_chance(&e->chance, 2) && e->profile != CONIC_PROFILE_INRIA_2023 && e->profile != CONIC_PROFILE_2DGS_2024;
   e->camera.cx = SIDE * (is_off ? between(e, 0.3, 0.7) : 0.5);
   e->camera.cy = SIDE * (is_off ? between(e, 0.3, 0.7) : 0.5);
+  double right = 0.0, down = 0.0;
+  if (is_off && manner == WINDOW) {
+    e->camera.fx = e->camera.fy = 1500.0;
+    e->camera.cx = between(e, -1900.0, 1900.0);
+    e->camera.cy = between(e, -1000.0, 1000.0);
+    right = distance * (0.5 * SIDE - e->camera.cx) / e->camera.fx;
+    down = distance * (0.5 * SIDE - e->camera.cy) / e->camera.fy;
+  }
   for (int row = 0; row < 3; row++) {
-    e->camera.cam_from_world[row][3] = row == 2 ? distance : 0.0;
+    e->camera.cam_from_world[row][3] = row == 0 ? right : row == 1 ? down : distance;
     for (int axis = 0; axis < 3; axis++) {
       e->camera.cam_from_world[row][axis] = r[row][axis];
       e->camera.cam_from_world[row][3] -= r[row][axis] * at[axis];
@@ -75,16 +89,11 @@ static void look_by_chance(plain_evaluation *e, double distance, const double at
   }
 }
 
-/* Manners of scenes: like trained ones, needles, crowds that hide each other, at the near plane, in pairs of one depth
- * and opacities at the limits, far from the origin, small on the screen, opaque ones behind faint ones, each of which
- * fills the picture. */
-enum { TRAINED, NEEDLES, CROWD, NEAR, PAIRS, FAR, SMALL, WALLS, N_MANNERS };
-
 static void scatter(plain_evaluation *e, int manner, const double at[3]) {
   static const float limits[6] = {1.0f, 0.99f, 0.999f, 1.0f / 255.0f, 0.5f, 0.0f};
   conic_gaussians *s = &e->scene;
-  static const double sizes[N_MANNERS] = {-3.5, -3.5, -2.5, -3.5, -3.5, -3.5, -6.0, 2.0};
-  const double reach = manner == NEAR ? 0.3 : 1.2, fine = sizes[manner];
+  static const double sizes[N_MANNERS] = {-3.5, -3.5, -2.5, -3.5, -3.5, -3.5, -6.0, 2.0, -6.0};
+  const double reach = manner == NEAR ? 0.3 : manner == WINDOW ? 0.03 : 1.2, fine = sizes[manner];
   for (size_t i = 0; i < s->count; i++) {
     double q[4], size = between(e, fine - 1.5, fine + 1.5);
     turn_by_chance(e, q);
@@ -115,7 +124,7 @@ static void choose_manner(plain_evaluation *e) {
   m->sums_in_any_order = (int)plain_chance(&e->chance, 2);
   m->sums_weights = (int)plain_chance(&e->chance, 2);
   m->divides_by_alpha = (int)plain_chance(&e->chance, 2);
-  m->subtracts_weights = plain_chance(&e->chance, 4) == 0;
+  m->subtracts_weights = (int)plain_chance(&e->chance, 2);
   m->divides_form = (int)plain_chance(&e->chance, 2);
   m->normalises_rotation = (int)plain_chance(&e->chance, 3);
 }
@@ -127,9 +136,12 @@ static void choose_all(conic_context *context, plain_evaluation *e) {
   e->kind = plain_chance(&e->chance, 2) ? CONIC_FLOATS_FAST : CONIC_FLOATS_STRICT;
   for (int k = 0; k < 3 && manner == FAR; k++)
     at[k] = between(e, -50.0, 50.0);
-  look_by_chance(e, manner == NEAR ? 0.2 : between(e, 0.5, 4.0), at);
+  look_by_chance(e, manner, manner == NEAR ? 0.2 : between(e, 0.5, 4.0), at);
   int is_disc = e->profile == CONIC_PROFILE_2DGS_2024 || e->profile == CONIC_PROFILE_2DGS_GSPLAT;
-  CHECK_OK(conic_gaussians_allocate(context, manner == CROWD ? 60 : 4 + plain_chance(&e->chance, 30),
+  CHECK_OK(conic_gaussians_allocate(context,
+                                    manner == CROWD   ? 60
+                                    : manner == WALLS ? 2 + plain_chance(&e->chance, 2)
+                                                      : 4 + plain_chance(&e->chance, 30),
                                     (int)plain_chance(&e->chance, 4), is_disc ? CONIC_GAUSSIANS_2D : 0, &e->scene));
   scatter(e, manner, at);
   e->settings.profile = plain_profile_find(conic_gaussian_profile_name(e->profile));
@@ -259,7 +271,7 @@ static void evaluate(conic_context *context, uint64_t seed, plain_tally tallies[
 }
 
 int main(int argc, char **argv) {
-  const uint64_t n = argc > 2 ? strtoull(argv[2], NULL, 10) : 500, first = argc > 3 ? strtoull(argv[3], NULL, 10) : 1;
+  const uint64_t n = argc > 2 ? strtoull(argv[2], NULL, 10) : 1200, first = argc > 3 ? strtoull(argv[3], NULL, 10) : 1;
   static plain_tally tallies[2][N_PROFILES];
   size_t n_violated = 0;
   conic_context *context = check_context(1);

@@ -67,6 +67,15 @@ static void test_classes(fixture *f) {
     }
   judge_with(f, NULL, CONIC_FLOATS_OWN, &f->image, NULL, &j);
   CHECK(wrong_of(&j) == 0 && !j.judgement.verdict.planes[CONIC_PLANE_RGBA].is_compared);
+  fixture_render(f);
+  rgba = f->image.planes[CONIC_PLANE_RGBA];
+  for (size_t i = 0; i < SIZE * SIZE; i++)
+    rgba[4 * i + 3] = 1.0f;
+  judge_with(f, NULL, CONIC_FLOATS_OWN, &f->image, NULL, &j);
+  CHECK(wrong_of(&j) > 1000);
+  f->image.lacks_alpha = 1;
+  judge_with(f, NULL, CONIC_FLOATS_OWN, &f->image, NULL, &j);
+  CHECK(wrong_of(&j) == 0);
 }
 
 /* The picture's colours as codes, and what they stand for. */
@@ -78,13 +87,16 @@ static void make_codes(fixture *f, unsigned most, double add, conic_picture *pic
   CHECK_OK(conic_image_allocate(f->context, SIZE, SIZE, 1u, &codes));
   const float *from = f->image.planes[CONIC_PLANE_RGBA];
   for (size_t i = 0; i < 4 * SIZE * SIZE; i++)
-    ((float *)codes.planes[0])[i] = (float)(floor((double)from[i] * most + add) / most);
+    ((float *)codes.planes[0])[i] = (float)(fmin(floor((double)from[i] * most + add), most) / most);
   CHECK_OK(conic_picture_take(f->context, &codes, most, &options, picture));
 }
 
 static void test_codes(fixture *f) {
   judging j;
   open_scene(f, 0.0);
+  for (int c = 0; c < 3; c++) /* some are cut off */
+    for (size_t i = 0; i < f->splats.count; i++)
+      f->splats.color[c][i] *= 1.5f;
   fixture_render(f);
   for (unsigned most = 255; most <= 65535; most += 65280)
     for (int is_nearest = 0; is_nearest < 2; is_nearest++) {

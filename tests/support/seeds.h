@@ -232,6 +232,23 @@ static inline void seeds_all_las(seed_set *set) {
   free(described.bytes);
 }
 
+/* Pictures as NumPy's arrays: alone, and some under the names of planes. */
+static inline void seeds_all_numpy(seed_set *set) {
+  static const float floats[24] = {0.5f, 1.0f, 0.25f, -1.0f};
+  static const uint16_t words[24] = {0x3c00, 0x0001, 0x7c00, 0xfbff};
+  static const uint8_t codes[24] = {0, 255, 17};
+  const camera_bytes alone = camera_npy("<f4", "False", "(2, 4, 3)", floats, sizeof floats);
+  const camera_bytes first = camera_npy("<f2", "True", "(1, 4, 3, 2)", words, sizeof words);
+  const camera_part parts[] = {{"rgb.npy", camera_npy("|u1", "False", "(2, 4, 3)", codes, sizeof codes)},
+                               {"A.npy", camera_npy("|u1", "False", "(2, 4)", codes, 8)},
+                               {"Z.npy", camera_npy("<f4", "False", "(2, 4, 1)", floats, 32)},
+                               {"id.npy", camera_npy("<u2", "False", "(2, 4)", words, 16)}};
+  const camera_bytes several = camera_npz(parts, 4);
+  seeds_add(set, "numpy", "npy", 1, alone.bytes, alone.n);
+  seeds_add(set, "numpy", "npy", 1, first.bytes, first.n);
+  seeds_add(set, "numpy", "npz", 1, several.bytes, several.n);
+}
+
 /* Pictures are written by the library into the tests' folder, and removed there. */
 static inline void seeds_picture(seed_set *set, conic_context *context, const char *target, unsigned planes) {
   conic_image image;
@@ -464,6 +481,7 @@ static inline seed_set *seeds_make(conic_context *context) {
   seeds_hybrid(set, context, 1);
   seeds_layers(set, context, 1, 0);
   seeds_layers(set, context, 300, CONIC_SPLATS_COLORS);
+  seeds_all_numpy(set);
   seeds_picture(set, context, "pfm", 1u << CONIC_PLANE_RGBA);
   seeds_picture(set, context, "pfm", 1u << CONIC_PLANE_Z);
   seeds_picture(set, context, "exr", 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z);

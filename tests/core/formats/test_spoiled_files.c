@@ -56,7 +56,7 @@ static conic_context *open_context(void) {
 }
 
 static int is_picture(const char *target) {
-  static const char *const pictures[] = {"pfm", "exr", "png", "tif", "jpg"};
+  static const char *const pictures[] = {"pfm", "exr", "png", "tif", "jpg", "numpy"};
   for (size_t i = 0; i < sizeof pictures / sizeof *pictures; i++)
     if (strcmp(target, pictures[i]) == 0)
       return 1;

@@ -1,0 +1,204 @@
+#include "cli/judge/judge_gradients.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/commands/gaussian_commands.h"
+#include "cli/json_write.h"
+#include "cli/outputs.h"
+#include "conic/gaussian_gradient.h"
+#include "conic/source.h"
+
+typedef struct gradients_job {
+  cli_render_job scene;
+  cli_gradient_files files;
+  unsigned long long max_wrong;
+  int floats;
+  conic_gaussian_weights weights;
+  conic_gaussian_gradient theirs;
+  conic_gradient_verdict verdict;
+  double ms;
+} gradients_job;
+
+static const char *const gradient_classes[CONIC_N_GAUSSIAN_CLASSES] = {"equal", "rounding", "explained", "wrong"};
+
+int cli_gradients_has_option(int argc, char **argv) {
+  for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+    if (strcmp(argv[i], "--gradients") == 0 || strncmp(argv[i], "--gradients=", 12) == 0)
+      return 1;
+  return 0;
+}
+
+static int is_gradient_right(const gradients_job *job) {
+  return job->verdict.gaussians[CONIC_PIXEL_WRONG] <= job->max_wrong;
+}
+
+static void write_gradient_worst(cli_json *json, const conic_gradient_verdict *v) {
+  cli_json_array(json, "worst");
+  for (int k = 0; k < v->n_worst; k++) {
+    const conic_gradient_fault *f = &v->worst[k];
+    cli_json_object(json, NULL);
+    cli_json_count(json, "gaussian", f->gaussian);
+    cli_json_text(json, "kind", conic_gradient_kind_name((conic_gradient_kind)f->kind));
+    cli_json_count(json, "number", (uint64_t)f->number);
+    cli_json_number(json, "found", f->found);
+    cli_json_number(json, "value", f->value);
+    cli_json_number(json, "low", f->low);
+    cli_json_number(json, "high", f->high);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}
+
+static int write_gradient_verdict(cli_session *session, const gradients_job *job) {
+  const conic_gradient_verdict *v = &job->verdict;
+  int exit_code = CLI_DONE;
+  cli_json_file *file;
+  cli_json *json = cli_json_open(session, &file, &exit_code);
+  if (!json)
+    return exit_code;
+  cli_json_text(json, "verdict", is_gradient_right(job) ? "right" : "wrong");
+  cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.gaussians.profile));
+  cli_json_text(json, "parameters", job->files.is_raw ? "raw" : "activated");
+  cli_json_object(json, "gaussians");
+  for (int k = 0; k < CONIC_N_GAUSSIAN_CLASSES; k++)
+    cli_json_count(json, gradient_classes[k], v->gaussians[k]);
+  cli_json_close(json);
+  cli_json_object(json, "kinds");
+  for (int k = 0; k < CONIC_N_GRADIENT_KINDS; k++) {
+    if (job->theirs.lacks >> k & 1)
+      continue;
+    cli_json_object(json, conic_gradient_kind_name((conic_gradient_kind)k));
+    cli_json_count(json, "wrong", v->wrong[k]);
+    cli_json_number(json, "greatest", v->greatest[k]);
+    cli_json_number(json, "max_abs", v->max_abs[k]);
+    cli_json_number(json, "share_of_bound", v->share_of_bound[k]);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+  write_gradient_worst(json, v);
+  cli_json_object(json, "ms");
+  cli_json_number(json, "judge", job->ms);
+  cli_json_close(json);
+  return cli_json_finish(file);
+}
+
+static void print_gradient_verdict(const gradients_job *job) {
+  const conic_gradient_verdict *v = &job->verdict;
+  for (int k = 0; k < CONIC_N_GRADIENT_KINDS; k++)
+    if (!(job->theirs.lacks >> k & 1))
+      printf("%-9s max %-11.4g of %-11.4g %zu wrong\n", conic_gradient_kind_name((conic_gradient_kind)k), v->max_abs[k],
+             v->greatest[k], v->wrong[k]);
+  printf("Gaussians ");
+  for (int k = 0; k < CONIC_N_GAUSSIAN_CLASSES; k++)
+    printf("%s%zu %s", k ? ", " : "", v->gaussians[k], gradient_classes[k]);
+  putchar('\n');
+  for (int k = 0; k < v->n_worst; k++)
+    printf("worst     Gaussian %zu: %s[%d] is %.9g; it may be %.9g to %.9g\n", v->worst[k].gaussian,
+           conic_gradient_kind_name((conic_gradient_kind)v->worst[k].kind), v->worst[k].number, v->worst[k].found,
+           v->worst[k].low, v->worst[k].high);
+  puts(is_gradient_right(job) ? "right" : "WRONG");
+}
+
+/* What does not fit the scene is an input that can't be used. */
+static conic_status check_gradient_files(const gradients_job *job, const conic_camera *camera,
+                                         const conic_gaussians *scene) {
+  const cli_gradient_files *files = &job->files;
+  if (job->weights.width != camera->width || job->weights.height != camera->height)
+    cli_error(CLI_INPUT, "%s: it has %d x %d pixels, and the picture %d x %d", files->weights, job->weights.width,
+              job->weights.height, camera->width, camera->height);
+  else if (job->theirs.count != scene->count)
+    cli_error(CLI_INPUT, "%s: it is of %zu Gaussians, and the scene has %zu", files->gradients, job->theirs.count,
+              scene->count);
+  else if (!(job->theirs.lacks >> CONIC_GRADIENT_SH & 1) && job->theirs.sh_degree < scene->sh_degree)
+    cli_error(CLI_INPUT, "%s: its harmonics are of degree %d, and the scene's of %d", files->gradients,
+              job->theirs.sh_degree, scene->sh_degree);
+  else
+    return CONIC_OK;
+  return CONIC_ERROR_INPUT;
+}
+
+static conic_status judge_gradient(cli_session *session, gradients_job *job) {
+  const conic_gaussian_options options = cli_gaussian_options(&job->scene);
+  const conic_gaussians *scene = conic_source_gaussians(job->scene.source);
+  conic_camera camera;
+  conic_gradient_options how;
+  conic_float_model model;
+  conic_gradient_options_init(&how);
+  conic_float_model_init(&model, (conic_float_kind)job->floats);
+  how.model = &model;
+  how.is_raw = job->files.is_raw != 0;
+  conic_status status = cli_scene_camera(&job->scene, 0, &camera);
+  if (status == CONIC_OK)
+    status = check_gradient_files(job, &camera, scene);
+  const double start = cli_seconds();
+  if (status == CONIC_OK)
+    status = conic_gaussian_gradient_judge(session->context, scene, &camera, &options, &job->weights, &how,
+                                           &job->theirs, NULL, &job->verdict);
+  job->ms = 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+static int judge_gradient_files(cli_session *session, gradients_job *job) {
+  int exit_code = cli_session_open(session);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  conic_status status = cli_scene_begin(session, &job->scene);
+  if (status == CONIC_OK)
+    status = conic_gaussian_weights_read(session->context, job->files.weights, &job->weights);
+  if (status == CONIC_OK)
+    status = conic_gaussian_gradient_read(session->context, job->files.gradients, &job->theirs);
+  if (status == CONIC_OK)
+    status = cli_scene_open(session, &job->scene);
+  if (status == CONIC_OK)
+    status = judge_gradient(session, job);
+  exit_code = cli_exit_of(status);
+  if (exit_code == CLI_DONE)
+    exit_code = write_gradient_verdict(session, job);
+  if (exit_code == CLI_DONE) {
+    if (!session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0))
+      print_gradient_verdict(job);
+    exit_code = is_gradient_right(job) ? CLI_DONE : CLI_DIFFERENT;
+  }
+  conic_gaussian_gradient_release(session->context, &job->theirs);
+  conic_gaussian_weights_release(session->context, &job->weights);
+  cli_scene_release(session, &job->scene);
+  return exit_code;
+}
+
+static int check_gradient_judging(cli_session *session, const gradients_job *job) {
+  const char *const inputs[] = {job->files.gradients, job->files.weights};
+  const cli_render_job *scene = &job->scene;
+  const conic_gaussian_profile profile = scene->gaussians.profile;
+  if (!job->files.weights)
+    return cli_usage("judge: --gradients needs --weights W.exr");
+  if (!cli_is_composited(scene) || !conic_gradient_has_profile(profile) || profile == CONIC_PROFILE_EXACT)
+    return cli_usage("judge: --gradients is of Gaussian scenes by the profiles inria-2023, gsplat-1.5, gsplat-1.6 "
+                     "(and -aa) and khr-2026; give --profile");
+  if (scene->view.samples > 1 || scene->gaussians.prefilter != 0.0)
+    return cli_usage("judge: --gradients is of one sample a pixel, without a prefilter");
+  int exit_code = cli_check_outputs(session, NULL, 0);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_inputs_stay(session, inputs, 2, NULL, 0);
+  return exit_code == CLI_DONE ? cli_scene_inputs_stay(session, scene, NULL, 0) : exit_code;
+}
+
+int cli_gradients_run(cli_session *session, int argc, char **argv) {
+  static const char *const floats[] = {"own", "strict", "fast", NULL};
+  gradients_job job = {.floats = CONIC_FLOATS_FAST};
+  cli_scene_defaults(&job.scene);
+  job.scene.may_composite = 1;
+  const cli_option own[] = {
+      CLI_GRADIENT_OPTIONS(job.files),
+      {"floats", CLI_CHOICE, &job.floats, "KIND", "of what found it: own, strict or fast [fast]", .choices = floats},
+      {"max-wrong", CLI_COUNT, &job.max_wrong, "N", "so many Gaussians may be wrong [0]", 0, 4294836225.0},
+  };
+  int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
+  if (exit_code == CLI_DONE)
+    exit_code = check_gradient_judging(session, &job);
+  if (exit_code == CLI_DONE)
+    exit_code = judge_gradient_files(session, &job);
+  free(job.scene.inputs);
+  return exit_code < 0 ? CLI_DONE : exit_code;
+}
