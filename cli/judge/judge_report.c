@@ -168,10 +168,11 @@ static void put_counts(const cli_page *page, const cli_judge_job *job) {
   const cli_judgement *found = &job->found;
   const size_t *n = found->pixels;
   fputs("<h2>Pixels</h2>\n<table>\n", page->to);
-  put_class_row(page, "equal", n[CONIC_PIXEL_EQUAL], found->judged, "the floats next to the values in double precision");
+  put_class_row(page, "equal", n[CONIC_PIXEL_EQUAL], found->judged,
+                "the floats next to the values in double precision");
   put_class_row(page, "rounding", n[CONIC_PIXEL_ROUNDED], found->judged, "within what the roundings of floats may do");
   put_class_row(page, "explained", n[CONIC_PIXEL_EXPLAINED], found->judged,
-          "a decision that rounding may take either way went the other way");
+                "a decision that rounding may take either way went the other way");
   put_class_row(page, "wrong", n[CONIC_PIXEL_WRONG], found->judged, "no correct renderer of floats gives that");
   fputs("</table>\n", page->to);
   if (n[CONIC_PIXEL_EXPLAINED]) {
