@@ -195,6 +195,22 @@ static conic_status try_beside(trial_run *r, int first, trial *pair) {
   return status;
 }
 
+/* Two of the finished picture, for which nothing is drawn but what is right. */
+static conic_status try_finishes(trial_run *r, trial *pair) {
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < r->t->n_suspects; i++)
+    for (int k = 0; k < i && status == CONIC_OK; k++) {
+      trial new = {.first = k, .second = i};
+      if (is_same_name(r->t, i, k) || !conic_suspect_is_finish(&r->t->suspects[i]) ||
+          !conic_suspect_is_finish(&r->t->suspects[k]))
+        continue;
+      status = try_planted(r, &new);
+      if (status == CONIC_OK && is_better_pair(r->t, &new, pair))
+        *pair = new;
+    }
+  return status;
+}
+
 /* Beside each of the best; then beside each of the two that were found, as long as that finds better ones: a mistake
  * that explains nothing alone may be one of two. */
 static conic_status try_all_pairs(trial_run *r, const trial_list *list, trial *pair) {
@@ -205,6 +221,8 @@ static conic_status try_all_pairs(trial_run *r, const trial_list *list, trial *p
   while (n_first < list->n && (!is_alone || is_same_name(r->t, best[0].first, best[n_first].first)))
     n_first++;
   r->n_planned = r->n_done + (size_t)((n_first + 2) * r->t->n_suspects);
+  if (!is_alone)
+    status = try_finishes(r, pair);
   for (int i = 0; i < n_first && (pair->left > least_left || has_profile(r->t, pair)) && status == CONIC_OK; i++)
     status = try_beside(r, best[i].first, pair);
   for (int turn = 0; turn < MOST_TURNS && !is_alone && pair->left > least_left && status == CONIC_OK; turn++) {
