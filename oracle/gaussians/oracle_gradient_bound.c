@@ -111,12 +111,27 @@ static double length_of_errors(const double e[4]) {
   return sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]);
 }
 
+/* Z, and how far the depths are from it in the mean: so much it moves where weights do. */
+static double spread_of_depths(const pixel_bound *p, size_t n, double *z) {
+  double sum = 0.0, apart = 0.0;
+  *z = 0.0;
+  for (size_t i = 0; i < n; i++) {
+    sum += p->v->list[i].alpha * p->v->list[i].before;
+    *z += p->v->list[i].alpha * p->v->list[i].before * p->v->list[i].z;
+  }
+  *z = sum > 0.0 ? *z / sum : 0.0;
+  for (size_t i = 0; i < n; i++)
+    apart += p->v->list[i].alpha * p->v->list[i].before * fabs(p->v->list[i].z - *z);
+  return sum > 0.0 ? apart / sum : 0.0;
+}
+
 /* The light behind, without regard to sign, and its error, go from back to front with the rest. */
 static void bound_roundings(const pixel_bound *p, size_t n, double behind) {
   const double *w = p->pixel.weights;
   double size = fabs(w[3]), error = 0.0;
   for (int c = 0; c < 3; c++)
     size += fabs(w[c] * (double)p->pixel.background[c]);
+  double z, spread = spread_of_depths(p, n, &z);
   for (size_t i = n; i-- > 0;) {
     const oracle_met *m = &p->v->list[i];
     const met_error *of = &p->v->errors[i];
@@ -130,7 +145,7 @@ static void bound_roundings(const pixel_bound *p, size_t n, double behind) {
     if (m->by_z != 0.0) { /* (z − Z)/A */
       double share = fabs(m->by_z) / (m->alpha * m->before);
       own += share * 2.0 * fabs(m->z);
-      own_error += share * (off->z + fabs(m->z) * (2.0 * p->tau + 8.0 * UNIT));
+      own_error += share * (off->z + fabs(m->z) * ((double)n + 8.0) * UNIT + 2.0 * p->tau * (spread + fabs(m->z - z)));
     }
     const double apart = fabs(m->by_weight - behind), left = oracle_max(1.0 - m->alpha, UNIT);
     const double rounded = (2.0 * (double)(n - i) + 4.0 + 2.0 / left) * UNIT;

@@ -61,7 +61,7 @@ static gradient_target find_gradient_target(conic_gaussian_gradient *g, const ch
 
 static conic_status read_gradient_rows(conic_ply_source *source, const conic_ply_property *properties,
                                        const gradient_target *targets, size_t n) {
-  conic_status status = conic_ply_begin_element(source, source->element);
+  conic_status status = CONIC_OK;
   for (size_t i = 0; i < n && status == CONIC_OK; i++) {
     status = conic_ply_begin_row(source);
     for (size_t k = 0; k < source->element->n_properties && status == CONIC_OK; k++) {
@@ -98,27 +98,24 @@ static conic_status read_gradient_ply(conic_context *context, conic_input *input
   const conic_ply_element *rows = conic_ply_find_element(header, "vertex");
   uint64_t lacks = 0;
   const int degree = rows ? find_gradient_kinds(header, rows, &lacks) : 0;
-  const uint64_t left = rows ? conic_input_remaining_bytes(input) : 0;
   if (!rows || rows != header->elements || rows->has_lists || degree < 0 ||
       lacks == (1u << CONIC_N_GRADIENT_KINDS) - 1u)
     return conic_fail(context, CONIC_ERROR_INPUT,
                       "%s: a gradient begins with the element vertex, of x, f_dc_0, opacity, scale_0, rot_0 … (line 1)",
                       input->name);
-  if (rows->count > left / (rows->least_row_bytes ? rows->least_row_bytes : 1))
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file ends before its %llu rows do (at byte %llu)",
-                      input->name, (unsigned long long)rows->count, (unsigned long long)conic_input_offset(input));
-  conic_status status = conic_oracle_gradient_room(context, (size_t)rows->count, degree, 1, g);
-  gradient_target *targets = conic_memory_allocate(context, rows->n_properties, sizeof *targets);
-  if (status != CONIC_OK || !targets) {
-    conic_memory_release(context, targets);
-    return CONIC_ERROR_MEMORY;
-  }
-  const conic_ply_property *properties = header->properties + rows->first_property;
   conic_ply_source source = {.input = input, .format = header->format, .element = rows};
+  conic_status status = conic_ply_begin_element(&source, rows); /* which knows whether so many rows can follow */
+  if (status == CONIC_OK)
+    status = conic_oracle_gradient_room(context, (size_t)rows->count, degree, 1, g);
+  gradient_target *targets = conic_memory_allocate(context, rows->n_properties, sizeof *targets);
+  if (status == CONIC_OK && !targets)
+    status = CONIC_ERROR_MEMORY;
+  const conic_ply_property *properties = header->properties + rows->first_property;
   g->lacks = lacks;
-  for (size_t k = 0; k < rows->n_properties; k++)
+  for (size_t k = 0; k < rows->n_properties && status == CONIC_OK; k++)
     targets[k] = find_gradient_target(g, properties[k].name);
-  status = read_gradient_rows(&source, properties, targets, g->count);
+  if (status == CONIC_OK)
+    status = read_gradient_rows(&source, properties, targets, g->count);
   conic_memory_release(context, targets);
   return status;
 }

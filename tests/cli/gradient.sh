@@ -48,6 +48,34 @@ run 3 gradient three.splat --profile khr-2026 --size 1x1 --weights bad.npy -o g.
 printf '\0\0\0\0\0\0\370\177' | dd of=w.npy bs=1 seek=128 conv=notrunc status=none
 run 3 gradient three.splat --profile khr-2026 --size 1x1 --weights w.npy -o g.ply
 
+# Judged: what conic finds is right; the same of another profile, or of other parameters, is wrong.
+at="--size 40x30 --weights w.pfm"
+# shellcheck disable=SC2086 # words
+{
+  run 0 gradient three.ply --profile gsplat-1.6 $at -o g.ply --no-doubts --quiet
+  run 0 judge three.ply --profile gsplat-1.6 $at --gradients g.ply --json judged.json
+  has '^Gaussians 3 equal, 0 rounding, 0 explained, 0 wrong$'
+  has '^right$'
+  grep -q '"verdict": "right"' judged.json || fail "JSON gives no verdict: $(cat judged.json)"
+  run 1 judge three.ply --profile khr-2026 $at --gradients g.ply
+  has '^worst     Gaussian [0-2]: [a-z]*\[[0-9]*\] is '
+  has '^WRONG$'
+  run 0 judge three.ply --profile khr-2026 $at --gradients g.ply --max-wrong 3 --quiet
+  [[ ! -s out ]] || fail "--quiet prints"
+  run 1 judge three.ply --profile gsplat-1.6 $at --gradients g.ply --raw
+  run 0 gradient three.ply --profile gsplat-1.6 $at -o g.ply --no-doubts --raw --quiet
+  run 0 judge three.ply --profile gsplat-1.6 $at --gradients g.ply --raw --floats own --json -
+  has '"parameters": "raw"'
+  run 2 judge three.ply --profile exact $at --gradients g.ply
+  run 2 judge three.ply --profile gsplat-1.6 --size 40x30 --gradients g.ply
+  run 2 judge three.ply --profile gsplat-1.6 $at --picture w.pfm
+  run 2 judge three.ply --profile gsplat-1.6 $at --gradients g.ply --json g.ply
+  run 3 judge three.ply --profile gsplat-1.6 $at --gradients three.splat
+  run 3 judge three.ply --profile gsplat-1.6 --size 41x30 --weights w.pfm --gradients g.ply
+  run 0 make plane -n 4 -o plane.ply
+  run 3 judge three.ply --profile gsplat-1.6 $at --gradients plane.ply
+}
+
 # What is refused.
 rm -f g.ply
 run 2 gradient three.splat --profile exact --size 40x30 -o g.ply

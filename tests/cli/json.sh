@@ -81,6 +81,8 @@ declare -A wanted=(
   [help]="version commands"
   [gradient]="profile parameters width height gaussians shown loss camera.world_to_camera camera.fx greatest.mean
     doubtful? doubtful_by_reason.least? ms.gradient"
+  [judge-gradients]="verdict profile parameters gaussians.equal gaussians.rounding gaussians.explained gaussians.wrong
+    kinds.mean.wrong? kinds.sh.max_abs? worst ms.judge"
   [chart]="scenes methods points seconds"
   [bench]="lines wrong_pictures peak_rss_bytes machine?"
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
@@ -159,6 +161,11 @@ cat two.splat two.splat > copies.splat
 write judge-copies-wrong judge judge copies.splat --profile gsplat-1.6 --size 40x40 --picture two.exr
 write explain-gaussians explain_gaussians explain two.splat --profile exact --size 40x40 --pixel 20,20
 write gradient gradient gradient two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr
+run 0 gradient two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr -o two-g.ply --quiet
+write judge-gradients judge_gradients judge two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr \
+  --gradients two-g.ply
+write judge-gradients-wrong judge_gradients judge two.splat --profile gsplat-1.6-aa --size 40x40 --weights two.exr \
+  --gradients two-g.ply
 write explain-splat explain explain one.ply --size 64x48 --splat 0
 write explain-octree explain explain knot.cot --size 64x48 --error 1 --splat 9 --pixel 32,24
 write explain-leaf explain explain knot.cot --size 2048x2048 --error 0.5 --splat 9

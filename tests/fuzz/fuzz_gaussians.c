@@ -1,5 +1,5 @@
 /* Gaussian scenes in every format that is told by its content. What is read can be turned, ordered, compared with
- * itself and written again. */
+ * itself and written again. The same bytes are read as a gradient and as weights, too. */
 #include "tests/fuzz/fuzz.h"
 
 static void use(const fuzz_input *input, conic_gaussians *scene) {
@@ -21,6 +21,18 @@ static void use(const fuzz_input *input, conic_gaussians *scene) {
   }
 }
 
+/* Whatever these are, they are read whole or refused with a message, as scenes are. */
+static void read_otherwise(const fuzz_input *input) {
+  conic_gaussian_gradient gradient;
+  conic_gaussian_weights weights;
+  if (conic_gaussian_gradient_read(input->context, input->path, &gradient) == CONIC_OK)
+    FUZZ_CHECK(gradient.sh_degree >= 0 && gradient.sh_degree <= CONIC_MAX_SH_DEGREE && gradient.lacks < 31);
+  conic_gaussian_gradient_release(input->context, &gradient);
+  if (conic_gaussian_weights_read(input->context, input->path, &weights) == CONIC_OK)
+    FUZZ_CHECK(weights.width > 0 && weights.height > 0);
+  conic_gaussian_weights_release(input->context, &weights);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
   conic_gaussians scene;
   conic_gaussians_read_options options;
@@ -30,6 +42,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
   options.half_harmonics = n_bytes % 4 / 2;
   conic_status status = conic_gaussians_read(input.context, input.path, &options, &scene);
   int n_messages = fuzz_n_messages;
+  read_otherwise(&input);
   if (status == CONIC_OK && scene.count < 4096)
     use(&input, &scene);
   fuzz_n_messages = n_messages;
