@@ -8,6 +8,9 @@ target_link_options(conic_hosted PRIVATE LINKER:--version-script=${PROJECT_SOURC
 if(CONIC_SANITIZE)
   target_link_options(conic_hosted PRIVATE -fsanitize=${CONIC_SANITIZE})
 endif()
+if(NOT PROJECT_IS_TOP_LEVEL) # whoever takes conic in asks for it by name
+  set_target_properties(conic_hosted PROPERTIES EXCLUDE_FROM_ALL ON)
+endif()
 if(conic_modules)
   add_dependencies(conic_hosted ${conic_modules})
 endif()

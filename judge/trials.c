@@ -10,11 +10,11 @@
 static const double least_share = 0.5;
 /* What leaves less than this is explained, and what leaves less than the next is, but for something small: what is
  * tried beside others is tried beside it alone. */
-static const double least_left = 1e-4, little_left = 0.02;
+static const double least_left = 2e-5, little_left = 0.02;
 /* A second mistake has to take this much of what the first leaves. */
 static const double second_share = 0.6;
 
-enum { MOST_FIRST = 8, MOST_REMEMBERED = 64, NARROWINGS = 4, NARROWER = 9 };
+enum { MOST_FIRST = 8, MOST_REMEMBERED = 64, NARROWINGS = 4, NARROWER = 9, MOST_TURNS = 4 };
 
 typedef struct trial {
   int first, second; /* suspects; second below 0: none */
@@ -82,27 +82,35 @@ static int is_same_name(const conic_trials *t, int a, int b) {
   return a >= 0 && b >= 0 && strcmp(t->suspects[a].name, t->suspects[b].name) == 0;
 }
 
-/* Keeps the best reading of each name, the best first; of equal ones the first that was tried. */
-static void remember_trial(const conic_trials *t, const trial *new, trial *best, int *n, int most) {
-  for (int i = 0; i < *n; i++)
-    if (is_same_name(t, best[i].first, new->first)) {
-      if (!(new->left < best[i].left))
-        return;
-      memmove(best + i, best + i + 1, (size_t)(*n - i - 1) * sizeof *best);
-      --*n;
-      break;
+/* Trials, the best first. */
+typedef struct trial_list {
+  int n, most, a_name; /* so many readings of a name are kept */
+  trial trials[MOST_REMEMBERED + 1];
+} trial_list;
+
+/* Of equal ones the first that was tried stays first. */
+static void remember_trial(const conic_trials *t, const trial *new, trial_list *list) {
+  trial *trials = list->trials;
+  int n_alike = 0, worst = -1, at = list->n;
+  for (int i = 0; i < list->n; i++)
+    if (is_same_name(t, trials[i].first, new->first)) {
+      n_alike++;
+      worst = i;
     }
-  int at = *n;
-  while (at > 0 && new->left < best[at - 1].left)
+  if (n_alike == list->a_name) {
+    if (!(new->left < trials[worst].left))
+      return;
+    memmove(trials + worst, trials + worst + 1, (size_t)(list->n - worst - 1) * sizeof *trials);
+    at = --list->n;
+  }
+  while (at > 0 && new->left < trials[at - 1].left)
     at--;
-  if (at >= most)
-    return;
-  *n += *n < most;
-  memmove(best + at + 1, best + at, (size_t)(*n - 1 - at) * sizeof *best);
-  best[at] = *new;
+  memmove(trials + at + 1, trials + at, (size_t)(list->n - at) * sizeof *trials);
+  trials[at] = *new;
+  list->n += list->n < list->most;
 }
 
-static conic_status try_all_alone(trial_run *r, trial *best, int *n) {
+static conic_status try_all_alone(trial_run *r, trial_list *best, trial_list *first) {
   conic_status status = CONIC_OK;
   /* Those of the finished picture first, while what is right is drawn. */
   for (int pass = 0; pass < 2; pass++)
@@ -111,8 +119,10 @@ static conic_status try_all_alone(trial_run *r, trial *best, int *n) {
       if (conic_suspect_is_finish(&r->t->suspects[i]) == pass)
         continue;
       status = try_planted(r, &new);
-      if (status == CONIC_OK)
-        remember_trial(r->t, &new, best, n, MOST_REMEMBERED);
+      if (status != CONIC_OK)
+        return status;
+      remember_trial(r->t, &new, best);
+      remember_trial(r->t, &new, first);
     }
   return status;
 }
@@ -127,10 +137,10 @@ static conic_status try_value(trial_run *r, const conic_suspect *like, double va
 }
 
 /* Narrows the value of a mistake that may have any, about the best of those that were tried. */
-static conic_status narrow_value(trial_run *r, trial *best, int *n, int which) {
-  const conic_suspect found = r->t->suspects[best[which].first];
+static conic_status narrow_value(trial_run *r, trial_list *best, trial_list *first, int which) {
+  const conic_suspect found = r->t->suspects[best->trials[which].first];
   double low = 0.0, high = 4.0 * found.value, at = found.value;
-  trial nearest = best[which];
+  trial nearest = best->trials[which];
   for (int i = 0; i < r->t->n_suspects; i++) {
     const conic_suspect *s = &r->t->suspects[i];
     int is_like = strcmp(s->name, found.name) == 0 && s->kind == found.kind && s->how == found.how;
@@ -152,32 +162,54 @@ static conic_status narrow_value(trial_run *r, trial *best, int *n, int which) {
     low = at - step > low ? at - step : low;
     high = at + step < high ? at + step : high;
   }
-  remember_trial(r->t, &nearest, best, n, MOST_REMEMBERED);
+  remember_trial(r->t, &nearest, best);
+  remember_trial(r->t, &nearest, first);
   return CONIC_OK;
 }
 
-/* All others beside each of the best; those of the finished picture first, while the first one is drawn. */
-static conic_status try_all_pairs(trial_run *r, const trial *best, int n, trial *pair) {
+/* All others beside one of them; those of the finished picture first, while that one is drawn. */
+static conic_status try_beside(trial_run *r, int first, trial *pair) {
   conic_status status = CONIC_OK;
-  const int most = best[0].left > little_left ? MOST_FIRST : 1, n_first = n < most ? n : most;
-  r->n_planned = r->n_done + (size_t)(n_first * r->t->n_suspects);
-  for (int first = 0; first < n_first && pair->left > least_left; first++)
-    for (int pass = 0; pass < 2; pass++)
-      for (int i = 0; i < r->t->n_suspects && status == CONIC_OK; i++) {
-        trial new = {.first = best[first].first, .second = i};
-        if (is_same_name(r->t, new.first, i) || conic_suspect_is_finish(&r->t->suspects[i]) == pass ||
-            (conic_suspect_is_profile(&r->t->suspects[i]) && conic_suspect_is_profile(&r->t->suspects[new.first])))
-          continue;
-        status = try_planted(r, &new);
-        if (status == CONIC_OK && new.left < pair->left)
-          *pair = new;
-      }
+  for (int pass = 0; pass < 2; pass++)
+    for (int i = 0; i < r->t->n_suspects && status == CONIC_OK; i++) {
+      trial new = {.first = first, .second = i};
+      if (is_same_name(r->t, first, i) || conic_suspect_is_finish(&r->t->suspects[i]) == pass ||
+          (conic_suspect_is_profile(&r->t->suspects[i]) && conic_suspect_is_profile(&r->t->suspects[first])))
+        continue;
+      status = try_planted(r, &new);
+      if (status == CONIC_OK && new.left < pair->left)
+        *pair = new;
+    }
+  return status;
+}
+
+/* Beside each of the best; then beside each of the two that were found, as long as that finds better ones: a mistake
+ * that explains nothing alone may be one of two. */
+static conic_status try_all_pairs(trial_run *r, const trial_list *list, trial *pair) {
+  conic_status status = CONIC_OK;
+  const trial *best = list->trials;
+  const int is_alone = best[0].left <= little_left;
+  int n_first = 0;
+  while (n_first < list->n && (!is_alone || is_same_name(r->t, best[0].first, best[n_first].first)))
+    n_first++;
+  r->n_planned = r->n_done + (size_t)((n_first + 2) * r->t->n_suspects);
+  for (int i = 0; i < n_first && pair->left > least_left && status == CONIC_OK; i++)
+    status = try_beside(r, best[i].first, pair);
+  for (int turn = 0; turn < MOST_TURNS && !is_alone && pair->left > least_left && status == CONIC_OK; turn++) {
+    const trial before = *pair;
+    status = try_beside(r, before.second, pair);
+    if (status == CONIC_OK && pair->left == before.left)
+      status = try_beside(r, before.first, pair);
+    if (pair->left == before.left)
+      break;
+  }
   return status;
 }
 
 /* Mistakes before profiles where they explain the same. */
-static void settle_ties(const conic_trials *t, trial *best, int n) {
-  for (int i = 1; i < n; i++)
+static void settle_ties(const conic_trials *t, trial_list *list) {
+  trial *best = list->trials;
+  for (int i = 1; i < list->n; i++)
     for (int at = i; at > 0; at--) {
       const trial *a = &best[at - 1], *b = &best[at];
       int is_tie = b->left - a->left <= 1e-5 + 0.1 * a->left;
@@ -198,44 +230,52 @@ static void add_diagnosis(const conic_trials *t, int first, int second, double l
 }
 
 /* What a mistake of that name leaves alone. */
-static double alone_of(const conic_trials *t, const trial *best, int n, int suspect) {
-  for (int i = 0; i < n; i++)
-    if (is_same_name(t, best[i].first, suspect))
-      return best[i].left;
+static double alone_of(const conic_trials *t, const trial_list *best, int suspect) {
+  for (int i = 0; i < best->n; i++)
+    if (is_same_name(t, best->trials[i].first, suspect))
+      return best->trials[i].left;
   return INFINITY;
 }
 
+static void tell_explanations(const conic_trials *t, const trial_list *list, const trial *pair, conic_diagnosis *found,
+                              int room, int *n_found) {
+  const trial *best = list->trials;
+  if (pair->first >= 0 && pair->left < 1.0 - least_share && pair->left < (1.0 - second_share) * best[0].left) {
+    const int is_turned = alone_of(t, list, pair->second) < alone_of(t, list, pair->first);
+    const int first = is_turned ? pair->second : pair->first, second = is_turned ? pair->first : pair->second;
+    add_diagnosis(t, first, second, pair->left, found, room, n_found);
+    add_diagnosis(t, second, first, pair->left, found, room, n_found);
+    return;
+  }
+  for (int i = 0; i < list->n && best[i].left <= 1.0 - least_share && best[i].left <= 2.0 * best[0].left + little_left;
+       i++)
+    add_diagnosis(t, best[i].first, -1, best[i].left, found, room, n_found);
+}
+
 static conic_status explain_picture(trial_run *r, conic_diagnosis *found, int room, int *n_found) {
-  trial best[MOST_REMEMBERED + 1], pair = {.left = 1.0};
-  int n = 0;
+  trial_list best = {.most = MOST_REMEMBERED, .a_name = 1}, first = {.most = MOST_FIRST, .a_name = 2};
+  trial pair = {.first = -1, .left = INFINITY};
   r->n_planned = (size_t)r->t->n_suspects;
   r->to = 0.3;
-  conic_status status = try_all_alone(r, best, &n);
-  if (status != CONIC_OK || !n)
+  conic_status status = try_all_alone(r, &best, &first);
+  if (status != CONIC_OK || !best.n)
     return status;
-  for (int i = 0; i < 3 && i < n && status == CONIC_OK; i++)
-    if (conic_suspect_is_any(&r->t->suspects[best[i].first]) && best[i].left > least_left && best[i].left < 1.0)
-      status = narrow_value(r, best, &n, i);
+  for (int i = 0; i < 3 && i < best.n && status == CONIC_OK; i++) {
+    const trial *tried = &best.trials[i];
+    if (conic_suspect_is_any(&r->t->suspects[tried->first]) && tried->left > least_left && tried->left < 1.0)
+      status = narrow_value(r, &best, &first, i);
+  }
   if (status != CONIC_OK)
     return status;
-  settle_ties(r->t, best, n);
+  settle_ties(r->t, &best);
   r->from = 0.3;
   r->to = 1.0;
   r->n_done = 0;
-  if (best[0].left > least_left)
-    status = try_all_pairs(r, best, n, &pair);
-  if (status != CONIC_OK)
-    return status;
-  if (pair.left < 1.0 - least_share && pair.left < (1.0 - second_share) * best[0].left) {
-    const int is_turned = alone_of(r->t, best, n, pair.second) < alone_of(r->t, best, n, pair.first);
-    const int first = is_turned ? pair.second : pair.first, second = is_turned ? pair.first : pair.second;
-    add_diagnosis(r->t, first, second, pair.left, found, room, n_found);
-    add_diagnosis(r->t, second, first, pair.left, found, room, n_found);
-    return CONIC_OK;
-  }
-  for (int i = 0; i < n && best[i].left <= 1.0 - least_share && best[i].left <= 2.0 * best[0].left + little_left; i++)
-    add_diagnosis(r->t, best[i].first, -1, best[i].left, found, room, n_found);
-  return CONIC_OK;
+  if (best.trials[0].left > least_left)
+    status = try_all_pairs(r, &first, &pair);
+  if (status == CONIC_OK)
+    tell_explanations(r->t, &best, &pair, found, room, n_found);
+  return status;
 }
 
 conic_status conic_trials_run(conic_trials *t, conic_diagnosis *found, int room, int *n_found) {

@@ -21,7 +21,7 @@ enum { MOST_CASES = 256 };
 
 typedef struct suite_case {
   const suite_scene *scene;
-  conic_gaussian_profile profile;
+  int profile;       /* one of the suite's */
   size_t n_doubtful; /* pixels */
 } suite_case;
 
@@ -34,7 +34,7 @@ typedef struct conformance_job {
   int n_cases;
   suite_case cases[MOST_CASES];
   struct { /* of each scene of the table */
-    size_t n_gaussians;
+    size_t n_records;
     int sh_degree;
   } about[64];
 } conformance_job;
@@ -51,7 +51,7 @@ static conic_float_model model_of_job(const conformance_job *job) {
 
 static void name_case(const suite_case *one, char name[SUITE_PATH_ROOM]) {
   snprintf(name, SUITE_PATH_ROOM, "L%d-%s-%s", one->scene->level, one->scene->name,
-           conic_gaussian_profile_name(one->profile));
+           cli_suite_profile_name(one->profile));
 }
 
 /* --- the cases --- */
@@ -74,19 +74,18 @@ static conic_status write_case_planes(conformance_job *job, const suite_case *on
   return status == CONIC_OK ? cli_suite_add_file(files, path) : status;
 }
 
-static conic_status make_case(conformance_job *job, const conic_gaussians *gaussians, suite_case *one) {
+static conic_status bound_gaussians(conformance_job *job, const conic_gaussians *gaussians, suite_case *one,
+                                    suite_planes *planes) {
   conic_context *context = job->files->context;
   const conic_float_model model = model_of_job(job);
-  const size_t n_pixels = (size_t)one->scene->width * (size_t)one->scene->height;
+  const size_t n_pixels = (size_t)planes->width * (size_t)planes->height;
+  const float *behind = one->scene->background;
   conic_gaussian_options options;
   conic_camera camera;
-  suite_planes planes = {.width = one->scene->width, .height = one->scene->height};
-  const float *behind = one->scene->background;
   conic_gaussian_options_init(&options);
-  options.profile = one->profile;
+  options.profile = (conic_gaussian_profile)one->profile;
   memcpy(options.background, behind, sizeof options.background);
   cli_suite_camera(one->scene, &camera);
-  double start = cli_seconds();
   conic_gaussian_bound *bounds = conic_memory_allocate(context, n_pixels, sizeof *bounds);
   conic_status status =
       bounds ? conic_gaussian_bound_pixels(context, gaussians, &camera, &options, &model, NULL, n_pixels, bounds)
@@ -94,36 +93,67 @@ static conic_status make_case(conformance_job *job, const conic_gaussians *gauss
   for (size_t i = 0; status == CONIC_OK && i < n_pixels; i++)
     one->n_doubtful += bounds[i].doubts > 0;
   if (status == CONIC_OK)
-    status = cli_suite_take_bounds(context, bounds, behind[0] + behind[1] + behind[2] > 0.0f, &planes);
+    status = cli_suite_take_bounds(context, bounds, behind[0] + behind[1] + behind[2] > 0.0f, planes);
+  conic_memory_release(context, bounds);
+  return status;
+}
+
+static conic_status bound_splats(conformance_job *job, const conic_splats *splats, suite_case *one,
+                                 suite_planes *planes) {
+  const conic_drawing drawing = {.splats = splats};
+  conic_render_options options;
+  conic_oracle_asking asking;
+  conic_reference reference;
+  conic_camera camera;
+  conic_render_options_init(&options);
+  options.method = CONIC_METHOD_CONIC;
+  options.shading = CONIC_SHADE_NONE;
+  conic_oracle_asking_init(&asking);
+  asking.floats = job->floats ? CONIC_FLOATS_STRICT : CONIC_FLOATS_FAST;
+  cli_suite_camera(one->scene, &camera);
+  conic_status status =
+      conic_oracle_render_asked(job->files->context, &drawing, &camera, &options, &asking, &reference);
+  if (status != CONIC_OK)
+    return status;
+  one->n_doubtful = reference.unstable_pixels;
+  status = cli_suite_take_reference(job->files->context, &reference, planes);
+  conic_reference_release(job->files->context, &reference);
+  return status;
+}
+
+static conic_status make_case(conformance_job *job, const suite_content *content, suite_case *one) {
+  suite_planes planes = {.width = one->scene->width, .height = one->scene->height};
+  double start = cli_seconds();
+  conic_status status = one->profile == SUITE_SURFACE ? bound_splats(job, &content->model.points, one, &planes)
+                                                      : bound_gaussians(job, &content->gaussians, one, &planes);
   job->base.stages[STAGE_BOUNDS].seconds += cli_seconds() - start;
   start = cli_seconds();
   if (status == CONIC_OK)
     status = write_case_planes(job, one, &planes);
   job->base.stages[STAGE_WRITE].seconds += cli_seconds() - start;
-  conic_memory_release(context, planes.numbers);
-  conic_memory_release(context, bounds);
+  conic_memory_release(job->files->context, planes.numbers);
   return status;
 }
 
 static conic_status make_suite_scene(conformance_job *job, int i_scene) {
   const suite_scene *scene = &cli_suite_scenes[i_scene];
-  conic_gaussians gaussians;
+  suite_content content;
   double start = cli_seconds();
   conic_status status = cli_suite_write_camera(job->files, scene);
   if (status == CONIC_OK)
-    status = cli_suite_write_scene(job->files, scene, &gaussians);
+    status = cli_suite_write_scene(job->files, scene, &content);
   job->base.stages[STAGE_SCENES].seconds += cli_seconds() - start;
   if (status != CONIC_OK)
     return status;
-  job->about[i_scene].n_gaussians = gaussians.count;
-  job->about[i_scene].sh_degree = gaussians.sh_degree;
-  for (int p = 0; status == CONIC_OK && p < CONIC_N_GAUSSIAN_PROFILES; p++)
+  job->about[i_scene].n_records = scene->make ? content.gaussians.count : content.model.points.count;
+  job->about[i_scene].sh_degree = content.gaussians.sh_degree;
+  for (int p = 0; status == CONIC_OK && p < SUITE_PROFILES; p++)
     if (scene->profiles & job->profiles & 1u << p) {
       suite_case *one = &job->cases[job->n_cases++];
-      *one = (suite_case){scene, (conic_gaussian_profile)p, 0};
-      status = make_case(job, &gaussians, one);
+      *one = (suite_case){scene, p, 0};
+      status = make_case(job, &content, one);
     }
-  conic_gaussians_release(job->files->context, &gaussians);
+  cli_suite_release_content(job->files->context, &content);
   return status;
 }
 
@@ -159,7 +189,7 @@ static void describe_scene(cli_json *json, const conformance_job *job, int i_sce
   cli_json_text(json, "name", scene->name);
   cli_json_count(json, "level", (uint64_t)scene->level);
   cli_json_text(json, "about", scene->about);
-  cli_json_count(json, "gaussians", job->about[i_scene].n_gaussians);
+  cli_json_count(json, "records", job->about[i_scene].n_records);
   cli_json_count(json, "sh_degree", (uint64_t)job->about[i_scene].sh_degree);
   cli_json_object(json, "files");
   describe_path(json, "ply", "scenes", scene->name, ".ply");
@@ -192,7 +222,7 @@ static void describe_cases(cli_json *json, const conformance_job *job) {
     cli_json_text(json, "name", name);
     cli_json_count(json, "level", (uint64_t)one->scene->level);
     cli_json_text(json, "scene", one->scene->name);
-    cli_json_text(json, "profile", conic_gaussian_profile_name(one->profile));
+    cli_json_text(json, "profile", cli_suite_profile_name(one->profile));
     describe_path(json, "exr", "expected", name, ".exr");
     describe_path(json, "npy", "expected", name, ".npy");
     cli_json_count(json, "doubtful_pixels", one->n_doubtful);
@@ -269,7 +299,7 @@ static conic_status write_case_list(const conformance_job *job) {
     const suite_scene *scene = job->cases[i].scene;
     name_case(&job->cases[i], name);
     n += (size_t)snprintf(text + n, room - n, "%s\tscenes/%s.ply\tcameras/%s.json\t%s\t%.9g,%.9g,%.9g\n", name,
-                          scene->name, scene->name, conic_gaussian_profile_name(job->cases[i].profile),
+                          scene->name, scene->name, cli_suite_profile_name(job->cases[i].profile),
                           (double)scene->background[0], (double)scene->background[1], (double)scene->background[2]);
   }
   conic_status status = cli_suite_write_text(job->files, "cases.tsv", text);

@@ -43,10 +43,8 @@ static conic_status put_png(const cli_page *page, const conic_image *image) {
   return status;
 }
 
-conic_status cli_page_picture(const cli_page *page, const conic_image *image, int zoom, int most_px,
-                              const char *caption) {
-  int width = image->width * zoom;
-  width = most_px && width > most_px ? most_px : width;
+conic_status cli_page_picture(const cli_page *page, const conic_image *image, int screen_px, const char *caption) {
+  int width = image->width < screen_px ? screen_px / image->width * image->width : screen_px;
   fprintf(page->to, "<figure><img width=\"%d\" alt=\"", width);
   cli_page_text(page, caption);
   fputs("\" src=\"data:image/png;base64,", page->to);

@@ -12,9 +12,8 @@ typedef struct cli_page {
 /* Text with what HTML takes for its own in words. */
 void cli_page_text(const cli_page *page, const char *text);
 
-/* <figure> of an rgba image, as it is sRGB-encoded, `zoom` times as large as it is; at most `most_px` of the screen
- * across where that is above 0. */
-conic_status cli_page_picture(const cli_page *page, const conic_image *image, int zoom, int most_px,
-                              const char *caption);
+/* <figure> of an rgba image, as it is sRGB-encoded, so many pixels of the screen across; small ones a whole number of
+ * times as large as they are. */
+conic_status cli_page_picture(const cli_page *page, const conic_image *image, int screen_px, const char *caption);
 
 #endif

@@ -88,17 +88,17 @@ typedef struct report_pictures {
 
 static conic_status put_crops(const cli_page *page, const cli_judge_job *job, const report_pictures *pictures,
                               const cli_judge_worst *w) {
-  const conic_image *const from[] = {&job->ours, &pictures->theirs, &pictures->map};
-  static const char *const names[] = {"conic", "the picture", "classes"};
+  const conic_image *const from[] = {&job->ours, &pictures->theirs, &pictures->difference, &pictures->map};
+  static const char *const names[] = {"conic", "the picture", "difference", "classes"};
   conic_status status = CONIC_OK;
-  fputs("<div class=row>\n", page->to);
-  for (int k = 0; k < 3 && status == CONIC_OK; k++) {
+  fputs("<div class=\"row crops\">\n", page->to);
+  for (int k = 0; k < 4 && status == CONIC_OK; k++) {
     conic_image part;
     if (!from[k]->planes[CONIC_PLANE_RGBA])
       continue;
     status = cut_out(page->session, from[k], w->fault.x, w->fault.y, CROP, &part);
     if (status == CONIC_OK)
-      status = cli_page_picture(page, &part, CROP_ZOOM, 0, names[k]);
+      status = cli_page_picture(page, &part, CROP * CROP_ZOOM, names[k]);
     conic_image_release(page->session->context, &part);
   }
   fputs("</div>\n", page->to);
@@ -139,7 +139,10 @@ static void put_head(const cli_page *page, const cli_judge_job *job) {
         "body{font:15px/1.45 system-ui,sans-serif;max-width:62rem;margin:2rem auto;padding:0 1rem;color:#222;"
         "background:#fff}\n"
         "h1{font-size:1.5rem} h2{font-size:1.15rem;margin-top:2rem} h3{font-size:1rem;margin-bottom:.2rem}\n"
-        ".row{display:flex;flex-wrap:wrap;gap:1rem} figure{margin:0} figcaption{color:#555;font-size:.85rem}\n"
+        ".crops figure{position:relative} .crops figure::after{content:\"\";position:absolute;left:95px;top:95px;"
+        "width:12px;height:12px;border:1px solid #fff;outline:1px solid #000}\n"
+        ".row{display:flex;flex-wrap:wrap;gap:1rem} figure{margin:0;max-width:460px} "
+        "figcaption{color:#555;font-size:.85rem}\n"
         "img{image-rendering:pixelated;background:#000;display:block;max-width:100%}\n"
         "table{border-collapse:collapse} td,th{padding:.15rem .8rem .15rem 0;text-align:left;vertical-align:top}\n"
         "td.n{text-align:right;font-variant-numeric:tabular-nums} code{background:#f2f2f2;padding:.1rem .3rem;"
@@ -165,10 +168,11 @@ static void put_counts(const cli_page *page, const cli_judge_job *job) {
   const cli_judgement *found = &job->found;
   const size_t *n = found->pixels;
   fputs("<h2>Pixels</h2>\n<table>\n", page->to);
-  put_class_row(page, "equal", n[CONIC_PIXEL_EQUAL], found->judged, "the floats next to the values in double precision");
+  put_class_row(page, "equal", n[CONIC_PIXEL_EQUAL], found->judged,
+                "the floats next to the values in double precision");
   put_class_row(page, "rounding", n[CONIC_PIXEL_ROUNDED], found->judged, "within what the roundings of floats may do");
   put_class_row(page, "explained", n[CONIC_PIXEL_EXPLAINED], found->judged,
-          "a decision that rounding may take either way went the other way");
+                "a decision that rounding may take either way went the other way");
   put_class_row(page, "wrong", n[CONIC_PIXEL_WRONG], found->judged, "no correct renderer of floats gives that");
   fputs("</table>\n", page->to);
   if (n[CONIC_PIXEL_EXPLAINED]) {
@@ -209,11 +213,14 @@ static void put_diagnosis(const cli_page *page, const cli_judge_job *job) {
   if (!job->found.n_faults)
     fputs("<p>No fault that is known explains the difference.</p>\n", page->to);
   else
-    fputs("<table><tr><th>fault</th><th>takes away of the difference</th></tr>\n", page->to);
+    fputs("<p>What takes away most of the difference, if the renderer is taken to do it:</p>\n<table>\n", page->to);
   for (int k = 0; k < job->found.n_faults; k++) {
-    fputs("<tr><td>", page->to);
-    cli_page_text(page, job->found.faults[k].name);
-    fprintf(page->to, "</td><td class=n>%.0f %%</td></tr>\n", 100.0 * job->found.faults[k].share);
+    const conic_diagnosis *d = &job->found.faults[k];
+    const char *meaning = conic_diagnosis_meaning(d->name);
+    fprintf(page->to, "<tr><td><b>%s%s%s</b></td><td class=n>%.4g %%</td><td>", d->name, d->with ? " with " : "",
+            d->with ? d->with : "", 100.0 * d->share);
+    cli_page_text(page, meaning ? meaning : "");
+    fputs("</td></tr>\n", page->to);
   }
   if (job->found.n_faults)
     fputs("</table>\n", page->to);
@@ -239,15 +246,15 @@ static conic_status put_pictures(const cli_page *page, const cli_judge_job *job,
   conic_status status = CONIC_OK;
   fputs("<h2>Pictures</h2>\n<div class=row>\n", page->to);
   if (pictures->theirs.width) {
-    status = cli_page_picture(page, &job->ours, 1, PICTURE_PX, "what conic draws");
+    status = cli_page_picture(page, &job->ours, PICTURE_PX, "what conic draws");
     if (status == CONIC_OK)
-      status = cli_page_picture(page, &pictures->theirs, 1, PICTURE_PX, "the picture");
+      status = cli_page_picture(page, &pictures->theirs, PICTURE_PX, "the picture");
     if (status == CONIC_OK)
-      status = cli_page_picture(page, &pictures->difference, 1, PICTURE_PX,
+      status = cli_page_picture(page, &pictures->difference, PICTURE_PX,
                                 "their difference: black where equal, then blue, red, yellow, white by its logarithm");
   }
   if (status == CONIC_OK)
-    status = cli_page_picture(page, &pictures->map, 1, PICTURE_PX, "the class of every pixel");
+    status = cli_page_picture(page, &pictures->map, PICTURE_PX, "the class of every pixel");
   fputs("</div>\n", page->to);
   return status;
 }

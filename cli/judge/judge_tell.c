@@ -8,6 +8,8 @@
 /* As JSON has them, in the order of conic_pixel_class. */
 static const char *const class_keys[CONIC_N_PIXEL_CLASSES] = {"equal", "rounding", "explained", "wrong"};
 
+static const char *const float_words[CONIC_N_FLOAT_KINDS] = {"own", "strict", "fast"};
+
 int cli_judge_is_right(const cli_judge_job *job) {
   return job->found.pixels[CONIC_PIXEL_WRONG] <= job->max_wrong;
 }
@@ -55,9 +57,12 @@ void cli_judge_describe_part(const cli_judge_part *p, char *text, size_t room) {
     snprintf(text + n, room - (size_t)n, ", in doubt: %s", p->doubt);
 }
 
+/* Of the worst pixels; JSON and the report have them all. */
+enum { MOST_PRINTED = 4 };
+
 static void print_worst(const cli_judge_job *job) {
   char text[256];
-  for (int k = 0; k < job->found.n_worst; k++) {
+  for (int k = 0; k < job->found.n_worst && k < MOST_PRINTED; k++) {
     const cli_judge_worst *w = &job->found.worst[k];
     cli_judge_describe(job, &w->fault, text, sizeof text);
     printf("worst     pixel %d,%d: %s\n", w->fault.x, w->fault.y, text);
@@ -90,10 +95,14 @@ static void print_diagnosis(int k, const conic_diagnosis *d) {
 
 void cli_judge_print(const cli_judge_job *job) {
   const cli_judgement *found = &job->found;
+  int is_composited = cli_is_composited(&job->scene);
   printf("%s: %zu of %zu judged pixels are wrong", cli_judge_is_right(job) ? "right" : "WRONG",
          found->pixels[CONIC_PIXEL_WRONG], found->judged);
   if (found->judged < found->n_whole)
     printf(" (the picture has %zu)", found->n_whole);
+  printf("\nby %s %s, %s floats, %d x %d samples a pixel", is_composited ? "the profile" : "the method",
+         is_composited ? conic_gaussian_profile_name(job->scene.gaussians.profile) : cli_method_name(&job->scene),
+         float_words[job->floats], job->scene.view.samples, job->scene.view.samples);
   printf("\n%zu equal, %zu within rounding, %zu explained, %zu wrong\n", found->pixels[CONIC_PIXEL_EQUAL],
          found->pixels[CONIC_PIXEL_ROUNDED], found->pixels[CONIC_PIXEL_EXPLAINED], found->pixels[CONIC_PIXEL_WRONG]);
   print_explained(found);
@@ -102,11 +111,11 @@ void cli_judge_print(const cli_judge_job *job) {
       printf("%-9s max %.4g\n", conic_plane_describe((conic_plane)i)->name, found->planes[i].max_abs);
   if (job->picture.is_alpha_dropped)
     puts("alpha is full everywhere, and is not judged");
-  print_worst(job);
   for (int k = 0; k < found->n_faults; k++)
     print_diagnosis(k, &found->faults[k]);
   if (!found->n_faults && !cli_judge_is_right(job))
     puts("diagnosis no known mistake explains the wrong pixels");
+  print_worst(job);
   for (int k = 0; k < CLI_JUDGE_N_STAGES && job->shows_times; k++)
     printf("%-9s %.2f s\n", cli_judge_stage_name(k), job->seconds[k]);
 }
@@ -174,7 +183,6 @@ static void write_diagnosis(cli_json *json, const cli_judgement *found) {
 }
 
 int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
-  static const char *const floats[CONIC_N_FLOAT_KINDS] = {"own", "strict", "fast"};
   const cli_judgement *found = &job->found;
   double total = 0.0;
   int exit_code = CLI_DONE;
@@ -199,7 +207,7 @@ int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
     cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.gaussians.profile));
   else
     cli_json_text(json, "method", cli_method_name(&job->scene));
-  cli_json_text(json, "floats", floats[job->floats]);
+  cli_json_text(json, "floats", float_words[job->floats]);
   cli_json_count(json, "samples", (uint64_t)job->scene.view.samples);
   write_picture(json, job);
   write_worst(json, found);

@@ -7,6 +7,7 @@
 #include "cli/judge/suite_files.h"
 #include "cli/judge/suite_judge.h"
 #include "cli/judge/suite_profiles.h"
+#include "cli/judge/suite_scenes.h"
 #include "cli/outputs.h"
 #include "core/base/memory.h"
 
@@ -18,8 +19,8 @@ int cli_suite_has_option(int argc, char **argv) {
 }
 
 static int is_chosen_case(const suite_run *run, const suite_entry *entry) {
-  for (int p = 0; p < CONIC_N_GAUSSIAN_PROFILES; p++)
-    if (strcmp(entry->profile, conic_gaussian_profile_name((conic_gaussian_profile)p)) == 0)
+  for (int p = 0; p < SUITE_PROFILES; p++)
+    if (strcmp(entry->profile, cli_suite_profile_name(p)) == 0)
       return run->profiles >> p & 1 && entry->level <= run->most_level;
   return !run->is_profile_given && entry->level <= run->most_level;
 }

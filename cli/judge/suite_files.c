@@ -173,30 +173,52 @@ static conic_status write_of_kind(suite_files *suite, const char *path, const co
   return status == CONIC_OK ? cli_suite_add_file(suite, path) : status;
 }
 
-conic_status cli_suite_write_scene(suite_files *suite, const suite_scene *scene, conic_gaussians *gaussians) {
-  char path[SUITE_PATH_ROOM], full[4096];
+void cli_suite_release_content(conic_context *context, suite_content *content) {
+  conic_gaussians_release(context, &content->gaussians);
+  conic_model_release(context, &content->model);
+}
+
+/* The .ply, and what it holds. */
+static conic_status write_gaussian_scene(suite_files *suite, const suite_scene *scene, const char *path,
+                                         const char *full, suite_content *content) {
   conic_gaussians made;
   conic_status status = scene->make(suite->context, &made);
   if (status == CONIC_OK && scene->formats & SUITE_SPZ)
     settle_for_spz(&made);
-  snprintf(path, sizeof path, "scenes/%s.ply", scene->name);
   if (status == CONIC_OK)
     status = write_of_kind(suite, path, &made, CONIC_GAUSSIANS_PLY);
   conic_gaussians_release(suite->context, &made);
+  return status == CONIC_OK ? conic_gaussians_read(suite->context, full, NULL, &content->gaussians) : status;
+}
+
+static conic_status write_splat_scene(suite_files *suite, const suite_scene *scene, const char *path, const char *full,
+                                      suite_content *content) {
+  conic_splats made;
+  conic_status status = scene->make_splats(suite->context, &made);
   if (status == CONIC_OK)
-    status = cli_suite_join(suite->context, suite->folder, path, full, sizeof full);
+    status = conic_splats_write(suite->context, full, &made, NULL);
+  conic_splats_release(suite->context, &made);
   if (status == CONIC_OK)
-    status = conic_gaussians_read(suite->context, full, NULL, gaussians);
-  if (status != CONIC_OK)
-    return status;
+    status = cli_suite_add_file(suite, path);
+  return status == CONIC_OK ? conic_model_read(suite->context, full, NULL, &content->model) : status;
+}
+
+conic_status cli_suite_write_scene(suite_files *suite, const suite_scene *scene, suite_content *content) {
+  char path[SUITE_PATH_ROOM], full[4096];
+  memset(content, 0, sizeof *content);
+  snprintf(path, sizeof path, "scenes/%s.ply", scene->name);
+  conic_status status = cli_suite_join(suite->context, suite->folder, path, full, sizeof full);
+  if (status == CONIC_OK)
+    status = scene->make ? write_gaussian_scene(suite, scene, path, full, content)
+                         : write_splat_scene(suite, scene, path, full, content);
   snprintf(path, sizeof path, "scenes/%s.spz", scene->name);
-  if (scene->formats & SUITE_SPZ)
-    status = write_stored_spz(suite, path, gaussians);
+  if (status == CONIC_OK && scene->formats & SUITE_SPZ)
+    status = write_stored_spz(suite, path, &content->gaussians);
   snprintf(path, sizeof path, "scenes/%s.glb", scene->name);
   if (status == CONIC_OK && scene->formats & SUITE_GLB)
-    status = write_of_kind(suite, path, gaussians, CONIC_GAUSSIANS_GLB);
+    status = write_of_kind(suite, path, &content->gaussians, CONIC_GAUSSIANS_GLB);
   if (status != CONIC_OK)
-    conic_gaussians_release(suite->context, gaussians);
+    cli_suite_release_content(suite->context, content);
   return status;
 }
 

@@ -3,6 +3,7 @@
 #define CONIC_SUITE_FILES_H
 
 #include "cli/judge/suite_scenes.h"
+#include "conic/model.h"
 #include "core/files/sha256.h"
 
 enum { SUITE_PATH_ROOM = 96, SUITE_MOST_FILES = 1024 };
@@ -32,9 +33,17 @@ conic_status cli_suite_add_file(suite_files *suite, const char *path);
 /* Writes a text, and adds it. Errors: as conic_output_open and _end. */
 conic_status cli_suite_write_text(suite_files *suite, const char *path, const char *text);
 
-/* Writes a scene in all its formats to scenes/, its camera in all conventions to cameras/, and adds them; *gaussians
- * are what the .ply holds, and then the caller's. Errors: as conic_gaussians_write and conic_gaussians_read. */
-conic_status cli_suite_write_scene(suite_files *suite, const suite_scene *scene, conic_gaussians *gaussians);
+/* What a scene's .ply holds: one of them. */
+typedef struct suite_content {
+  conic_gaussians gaussians;
+  conic_model model; /* surface splats */
+} suite_content;
+
+void cli_suite_release_content(conic_context *context, suite_content *content);
+
+/* Writes a scene in all its formats to scenes/, its camera in all conventions to cameras/, and adds them. On success
+ * the caller releases *content. Errors: as conic_gaussians_write, conic_splats_write, and what reads them. */
+conic_status cli_suite_write_scene(suite_files *suite, const suite_scene *scene, suite_content *content);
 conic_status cli_suite_write_camera(suite_files *suite, const suite_scene *scene);
 
 #endif

@@ -98,6 +98,50 @@ conic_status cli_suite_take_bounds(conic_context *context, const conic_gaussian_
   return CONIC_OK;
 }
 
+/* Of surface splats, what docs/reference/oracle.md lets floats be off by. */
+static const double surface_color_bound = 1e-4, surface_depth_bound = 1e-5;
+
+static void widen_surface_range(channel_range *r, int channel) {
+  for (int k = SUITE_LOW; k < SUITE_RANGES; k++) {
+    const double size = fabs(r->of[k]);
+    double spread = channel == 4 ? surface_depth_bound * size : surface_color_bound * (size > 1.0 ? size : 1.0);
+    r->of[k] += k == SUITE_LOW || k == SUITE_LEAST ? -spread : spread;
+  }
+}
+
+/* Where there are alternatives, the least and the most of all of them. */
+static channel_range range_of_surface(const conic_reference *reference, size_t pixel, int channel,
+                                      const conic_alternative *alternatives, size_t n) {
+  const double value = channel == 4 ? reference->planes[CONIC_PLANE_Z][pixel]
+                                    : reference->planes[CONIC_PLANE_RGBA][4 * pixel + (size_t)channel];
+  channel_range r = {{value, value, value, value, value}};
+  for (size_t i = 0; i < n; i++) {
+    r.of[SUITE_LEAST] = fmin(r.of[SUITE_LEAST], alternatives[i].low[channel]);
+    r.of[SUITE_MOST] = fmax(r.of[SUITE_MOST], alternatives[i].high[channel]);
+  }
+  widen_surface_range(&r, channel);
+  return r;
+}
+
+conic_status cli_suite_take_reference(conic_context *context, const conic_reference *reference, suite_planes *planes) {
+  const size_t n_pixels = (size_t)planes->width * (size_t)planes->height;
+  size_t at = 0;
+  if (allocate_numbers(context, planes) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n_pixels; i++) {
+    size_t n = 0;
+    while (at + n < reference->n_alternatives && reference->alternatives[at + n].pixel == i)
+      n++;
+    for (int c = 0; c < SUITE_CHANNELS; c++) {
+      const channel_range r = range_of_surface(reference, i, c, reference->alternatives + at, n);
+      for (int k = 0; k < SUITE_RANGES; k++)
+        planes->numbers[cli_suite_at(planes, k, i) + (size_t)c] = rounded_outwards(r.of[k], k);
+    }
+    at += n;
+  }
+  return CONIC_OK;
+}
+
 /* --- files: little-endian, whatever the machine is --- */
 
 static void put_number(FILE *to, uint64_t value, int n_bytes) {

@@ -5,6 +5,7 @@
 #define CONIC_SUITE_PLANES_H
 
 #include "conic/gaussian_judge.h"
+#include "conic/oracle.h"
 
 /* R, G, B over the background, A = 1 − T, Z. */
 enum { SUITE_CHANNELS = 5 };
@@ -31,6 +32,9 @@ static inline size_t cli_suite_at(const suite_planes *planes, int range, size_t 
  * caller releases planes->numbers. Errors: MEMORY. */
 conic_status cli_suite_take_bounds(conic_context *context, const conic_gaussian_bound *bounds, int has_background,
                                    suite_planes *planes);
+
+/* The same of surface splats, of the oracle's answer by the method. Errors: MEMORY. */
+conic_status cli_suite_take_reference(conic_context *context, const conic_reference *reference, suite_planes *planes);
 
 /* Writes them, uncompressed, so that no library's version has a part in it. The EXR's channels are R, G, B, A and Z,
  * and those of the other ranges LOW.R …, as by cli_suite_range_names. Errors: as conic_output_open and _end. */

@@ -2,13 +2,14 @@
 
 #include <string.h>
 
+#include "cli/judge/suite_scenes.h"
 #include "cli/session.h"
 #include "core/base/nearest_word.h"
 
 static unsigned find_suite_profile(const char *command, const char *name) {
   const char *nearest = NULL;
-  for (int i = 0; i < CONIC_N_GAUSSIAN_PROFILES; i++) {
-    const char *known = conic_gaussian_profile_name((conic_gaussian_profile)i);
+  for (int i = 0; i < SUITE_PROFILES; i++) {
+    const char *known = cli_suite_profile_name(i);
     if (strcmp(name, known) == 0)
       return 1u << i;
     nearest = conic_nearer_word(name, nearest, known);
@@ -22,7 +23,7 @@ unsigned cli_suite_find_profiles(const char *command, const char *list) {
   char name[64];
   unsigned found = 0;
   if (!list)
-    return (1u << CONIC_N_GAUSSIAN_PROFILES) - 1;
+    return (1u << SUITE_PROFILES) - 1;
   for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
     snprintf(name, sizeof name, "%.*s", (int)strcspn(at, ","), at);
     unsigned one = find_suite_profile(command, name);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/judge/suite_few.h"
+#include "cli/judge/suite_surfels.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "gaussians/scene/made_gaussians.h"
 
@@ -103,16 +104,31 @@ const suite_scene cli_suite_scenes[] = {
      .make = cli_suite_aside},
     {"edge-on", "2D Gaussians seen from the edge, and nearly", 5, SMALL, AHEAD, .profiles = DISCS,
      .make = cli_suite_edge_on},
+
+    {"splat", "one surface splat, tilted", 6, SMALL, AHEAD, .profiles = 1u << SUITE_SURFACE,
+     .make_splats = cli_suite_splat},
+    {"sheet", "splats of one surface, which are blended and normalised", 6, SMALL, AHEAD,
+     .profiles = 1u << SUITE_SURFACE, .make_splats = cli_suite_sheet},
+    {"corner", "two surfaces: which splats hide, and which are blended", 6, SMALL, AHEAD,
+     .profiles = 1u << SUITE_SURFACE, .make_splats = cli_suite_corner},
+    {"steep", "a floor seen from near, where perspective is strong within a splat", 6, SMALL, AHEAD,
+     .profiles = 1u << SUITE_SURFACE, .make_splats = cli_suite_steep},
 };
 
 const int cli_n_suite_scenes = sizeof cli_suite_scenes / sizeof *cli_suite_scenes;
 
 const char *cli_suite_level_about(int level) {
-  static const char *const about[SUITE_LEVELS] = {
-      "one Gaussian: its shape and colour", "a few: overlap, order, opacity, camera, background",
-      "hundreds, as they are trained", "thousands, and extreme sizes and places",
-      "adversarial: decisions on the edge, ties, broken records"};
+  static const char *const about[SUITE_LEVELS] = {"one Gaussian: its shape and colour",
+                                                  "a few: overlap, order, opacity, camera, background",
+                                                  "hundreds, as they are trained",
+                                                  "thousands, and extreme sizes and places",
+                                                  "adversarial: decisions on the edge, ties, broken records",
+                                                  "surface splats, opaque, by the method conic"};
   return about[level - 1];
+}
+
+const char *cli_suite_profile_name(int profile) {
+  return profile == SUITE_SURFACE ? "surface" : conic_gaussian_profile_name((conic_gaussian_profile)profile);
 }
 
 void cli_suite_camera(const suite_scene *scene, conic_camera *camera) {

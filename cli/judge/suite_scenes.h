@@ -3,8 +3,14 @@
 #define CONIC_SUITE_SCENES_H
 
 #include "conic/gaussian_render.h"
+#include "conic/splats.h"
 
-enum { SUITE_LEVELS = 5 };
+enum { SUITE_LEVELS = 6 };
+
+/* The profiles, as numbers of conic_gaussian_profile, and after them "surface": surface splats by the method conic. */
+enum { SUITE_SURFACE = CONIC_N_GAUSSIAN_PROFILES, SUITE_PROFILES };
+
+const char *cli_suite_profile_name(int profile);
 
 /* The formats of a scene besides .ply, as bits. */
 enum { SUITE_SPZ = 1, SUITE_GLB = 2 };
@@ -17,9 +23,10 @@ typedef struct suite_scene {
   double rotation[4];         /* camera from world, a quaternion w, x, y, z of any length */
   double eye[3];              /* in the world */
   float background[3];
-  unsigned profiles; /* bits 1 << conic_gaussian_profile */
+  unsigned profiles; /* bits 1 << profile */
   unsigned formats;
   conic_status (*make)(conic_context *context, conic_gaussians *gaussians);
+  conic_status (*make_splats)(conic_context *context, conic_splats *splats); /* of the profile surface; else null */
 } suite_scene;
 
 extern const suite_scene cli_suite_scenes[];

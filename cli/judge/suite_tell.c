@@ -87,8 +87,10 @@ static void print_advice(const suite_run *run) {
     if (v->outcome != SUITE_IS_WRONG || !v->pixels[CONIC_PIXEL_WRONG])
       continue;
     const suite_entry *e = v->entry;
-    printf("to see why: conic judge %s/%s --camera %s/%s --profile %s --picture %s/%s.%s\n", run->judging.suite, e->ply,
-           run->judging.suite, e->camera, e->profile, run->judging.pictures, e->name, v->ending);
+    int is_surface = strcmp(e->profile, cli_suite_profile_name(SUITE_SURFACE)) == 0;
+    printf("to see why: conic judge %s/%s --camera %s/%s %s %s --picture %s/%s.%s\n", run->judging.suite, e->ply,
+           run->judging.suite, e->camera, is_surface ? "--plain --method" : "--profile",
+           is_surface ? "conic" : e->profile, run->judging.pictures, e->name, v->ending);
     return;
   }
 }

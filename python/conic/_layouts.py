@@ -3,7 +3,7 @@
 tests/python/layouts.sh holds every one against the headers, member by member."""
 
 import ctypes
-from ctypes import (CFUNCTYPE, POINTER, c_char, c_char_p, c_double, c_float, c_int, c_size_t, c_uint16, c_uint32,
+from ctypes import (CFUNCTYPE, POINTER, c_char, c_char_p, c_double, c_float, c_int, c_size_t, c_uint32,
                     c_uint64, c_void_p)
 
 MAX_PLANES = 24
@@ -159,7 +159,8 @@ class Image(ctypes.Structure):
         ("lacks_alpha", c_uint64),
         ("is_display", c_uint64),
         ("manifest", c_char_p),
-        ("reserved", c_uint64 * 5),
+        ("half_planes", c_uint64),
+        ("reserved", c_uint64 * 4),
     ]
 
 

@@ -99,7 +99,7 @@ def version() -> str:
 
 def features() -> dict[str, bool]:
     """The libraries that conic can use, and whether it does here."""
-    found = {}
+    found: dict[str, bool] = {}
     for i in itertools.count():
         feature = library.conic_feature_at(i)
         if not feature:

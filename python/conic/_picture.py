@@ -117,7 +117,7 @@ class Picture(Dict[str, Any]):
         if self.is_display:
             return _codes(color)
         if backdrop:
-            top, bottom = numpy.float32([0.08, 0.088, 0.1]), numpy.float32([0.022, 0.023, 0.025])
+            top, bottom = numpy.array([0.08, 0.088, 0.1], "f4"), numpy.array([0.022, 0.023, 0.025], "f4")
             part = ((numpy.arange(rgba.shape[0], dtype=numpy.float32) + 0.5) / rgba.shape[0])[:, None, None]
             color = color + (top + (bottom - top) * part) * (1.0 - alpha)
         linear = numpy.clip(numpy.nan_to_num(color), 0.0, 1.0)

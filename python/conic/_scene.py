@@ -72,7 +72,7 @@ class Splats(_InMemory):
 
     def __getattr__(self, name: str) -> Any:
         """`position`, `color` … as (N, 3) or (N,) arrays, or None."""
-        if name.startswith("_") or name not in [field for field, _ in layouts.Strides._fields_]:
+        if name.startswith("_") or name not in [field[0] for field in layouts.Strides._fields_]:
             raise AttributeError(name)
         member = getattr(self._struct, name)
         places = [member] if name in ("opacity", "dot", "scalar") else list(member)
@@ -268,7 +268,7 @@ class Scene:
             check(library.conic_gaussians_read_model(made, os.fsencode(self.path), None, ctypes.byref(read)))
             try:
                 points, arrays = read.points, {}
-                for name, _ in layouts.Strides._fields_:
+                for name in [field[0] for field in layouts.Strides._fields_]:
                     member = getattr(points, name)
                     places = [member] if name in ("opacity", "dot", "scalar") else list(member)
                     if places[0]:
@@ -292,8 +292,9 @@ class Scene:
         self.close()
 
     def __del__(self) -> None:
-        if getattr(self, "_folder", None):
-            shutil.rmtree(self._folder, ignore_errors=True)
+        folder = getattr(self, "_folder", None)
+        if folder:
+            shutil.rmtree(folder, ignore_errors=True)
 
     def __repr__(self) -> str:
         return f"<conic.Scene {', '.join(self.paths)}>"

@@ -35,7 +35,7 @@ def describe(verdict: Dict[str, Any]) -> str:
     for worst in verdict.get("worst", [])[:3]:
         place = f"pixel {worst['x']},{worst['y']}" if "x" in worst else f"pixel {worst.get('pixel')}"
         found, low, high = (worst.get(key) for key in ("found", "low", "high"))
-        what = worst.get("channel", worst.get("plane", ""))
+        what = f"{worst.get('plane')}[{worst.get('channel')}]"
         lines.append(f"  {place}: {what} is {found}; it may be {low} to {high}")
     return "\n".join(lines)
 

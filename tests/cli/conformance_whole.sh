@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The whole suite: no larger than 30 MB, and what conic draws of it is right, case by case.
+# The whole suite: no larger than 30 MB, and what conic draws of it is right, case by case; so is what the tests' own
+# renderers draw, which share nothing with conic and fuse, order and approximate by chance.
 set -uo pipefail
 
 source "$1/tests/support/program.bash"
@@ -11,5 +12,23 @@ CONIC=$conic "$1/examples/conformance/run-conic" suite pictures || fail "run-con
 run 0 judge --suite suite --pictures pictures
 cat out
 grep -q "^right: $(wc -l < suite/cases.tsv) of " out || fail "not all cases are judged"
+
+# They leave no broken records out, and do not draw splats next to the eye.
+rm -rf pictures
+mkdir pictures
+while IFS=$'\t' read -r name scene camera profile background; do
+  case $profile in
+    exact) continue ;;
+    surface) renderer=("$3/tests/plain_splats") ;;
+    *) renderer=("$3/tests/plain_renderer" --profile "$profile" --background "$background") ;;
+  esac
+  "${renderer[0]}" "suite/$scene" "suite/$camera" "${renderer[@]:1}" --floats 7 -o "pictures/$name.npy" ||
+    fail "$name is not drawn"
+done < suite/cases.tsv
+profiles=$(cut -f 4 suite/cases.tsv | sort -u | grep -v '^exact$' | paste -sd ,)
+run 1 judge --suite suite --pictures pictures --profile "$profiles"
+cat out
+[[ $(grep -c '^wrong    L5-broken-\|^wrong    L6-steep-' out) -eq $(grep -c '^wrong ' out) ]] || fail "the plain renderers"
+grep -q '^missing' out && fail "pictures are missing"
 
 [[ $failures -eq 0 ]]

@@ -3,7 +3,7 @@
 #include "tests/support/files.h"
 #include "tests/support/suite_example.h"
 
-static void check_sound(conic_context *context) {
+static void read_sound_manifest(conic_context *context) {
   suite_manifest manifest;
   const char *path = files_write("manifest.json", SUITE_EXAMPLE);
   CHECK_OK(cli_suite_read_manifest(context, path, &manifest));
@@ -51,7 +51,7 @@ static void check_spoiled(conic_context *context) {
 }
 
 /* The example with one text in the place of another. */
-static void check_refused(conic_context *context, const char *from, const char *to) {
+static void refuse_manifest(conic_context *context, const char *from, const char *to) {
   char text[sizeof SUITE_EXAMPLE + 256];
   const char *at = strstr(SUITE_EXAMPLE, from);
   CHECK(at != NULL);
@@ -64,20 +64,20 @@ static void check_refused(conic_context *context, const char *from, const char *
 
 int main(void) {
   conic_context *context = files_context();
-  check_sound(context);
+  read_sound_manifest(context);
   check_spoiled(context);
-  check_refused(context, "\"version\": 1", "\"version\": 2");
-  check_refused(context, "\"level\": 1", "\"level\": 1.5");
-  check_refused(context, "\"level\": 1", "\"level\": 100");
-  check_refused(context, "\"width\": 36", "\"width\": 65536");
-  check_refused(context, "\"name\": \"L1-a-p\"", "\"name\": \"L1/a\"");
-  check_refused(context, "\"name\": \"L1-a-p\"", "\"name\": \".a\"");
-  check_refused(context, "\"ply\": \"s/a.ply\"", "\"ply\": \"s/../a.ply\"");
-  check_refused(context, "\"ply\": \"s/a.ply\"", "\"ply\": \"/s/a.ply\"");
-  check_refused(context, "\"ply\": \"s/a.ply\"", "\"ply\": \"s//a.ply\"");
-  check_refused(context, "\"scene\": \"a\"", "\"scene\": \"b\"");
-  check_refused(context, "\"path\": \"e/a.npy\"", "\"path\": \"e/b.npy\"");
-  check_refused(context, "\"sha256\": \"00", "\"sha256\": \"");
+  refuse_manifest(context, "\"version\": 1", "\"version\": 2");
+  refuse_manifest(context, "\"level\": 1", "\"level\": 1.5");
+  refuse_manifest(context, "\"level\": 1", "\"level\": 100");
+  refuse_manifest(context, "\"width\": 36", "\"width\": 65536");
+  refuse_manifest(context, "\"name\": \"L1-a-p\"", "\"name\": \"L1/a\"");
+  refuse_manifest(context, "\"name\": \"L1-a-p\"", "\"name\": \".a\"");
+  refuse_manifest(context, "\"ply\": \"s/a.ply\"", "\"ply\": \"s/../a.ply\"");
+  refuse_manifest(context, "\"ply\": \"s/a.ply\"", "\"ply\": \"/s/a.ply\"");
+  refuse_manifest(context, "\"ply\": \"s/a.ply\"", "\"ply\": \"s//a.ply\"");
+  refuse_manifest(context, "\"scene\": \"a\"", "\"scene\": \"b\"");
+  refuse_manifest(context, "\"path\": \"e/a.npy\"", "\"path\": \"e/b.npy\"");
+  refuse_manifest(context, "\"sha256\": \"00", "\"sha256\": \"");
   files_end(context);
   return check_result();
 }

@@ -260,10 +260,8 @@ static void read_back(const gl_job *job, plain_picture *p) {
   glReadPixels(0, 0, p->width, p->height, GL_RGBA, GL_FLOAT, depth);
   for (size_t i = 0; i < n; i++) {
     const float A = color[4 * i + 3], T = job->profile.clamp ? depth[4 * i + 1] : 1.0f - A;
-    for (size_t c = 0; c < 3; c++) {
-      float behind = has(job, PLAIN_BACKGROUND_WHITE) ? 1.0f : job->order->background[c];
-      p->rgb[3 * i + c] = color[4 * i + c] + T * behind;
-    }
+    for (size_t c = 0; c < 3; c++)
+      p->rgb[3 * i + c] = color[4 * i + c] + (has(job, PLAIN_BACKGROUND_WHITE) ? T : 0.0f);
     p->alpha[i] = A;
     p->T[i] = T;
     p->z[i] = A > 0.0f ? depth[4 * i] / A : 0.0f;

@@ -10,11 +10,10 @@ typedef struct gl_order {
   const char *folder; /* of the shaders */
   const char *profile;
   unsigned faults; /* the scene was read with the same */
-  float background[3];
 } gl_order;
 
-/* Draws on what gl_open opened. `picture` has the camera's size; its count is left alone. Ends the process, with a
- * message, where it cannot. */
+/* Over black, on what gl_open opened. `picture` has the camera's size; its count is left alone. Ends the process, with
+ * a message, where it cannot. */
 void gl_draw(const gl_order *order, const plain_scene *scene, const plain_camera *camera, plain_picture *picture);
 
 #endif

@@ -1,6 +1,6 @@
 /* A renderer of Gaussian scenes with OpenGL, for the tests; 77 where there is no OpenGL.
  *
- * gl_renderer SHADERS SCENE.ply CAMERA.json -o OUT [--profile NAME] [--background R,G,B] [--fault NAME]…
+ * gl_renderer SHADERS SCENE.ply CAMERA.json -o OUT [--profile NAME] [--fault NAME]…
  *
  * OUT.pfm or OUT.npy. With each --fault, one more picture is drawn, OUT.NAME.pfm or OUT.NAME.npy. */
 #include <string.h>
@@ -27,19 +27,17 @@ static void name_out(const char *out, const char *name, char *path, size_t room)
 
 int main(int n, char **words) {
   gl_order order = {.profile = "gsplat-1.6"};
-  const char *reason, *out = NULL;
+  const char *reason, *out = "";
   char path[4096];
   for (int i = 4; i + 1 < n; i += 2) {
     if (strcmp(words[i], "-o") == 0)
       out = words[i + 1];
     else if (strcmp(words[i], "--profile") == 0)
       order.profile = words[i + 1];
-    else if (strcmp(words[i], "--fault") != 0 &&
-             (strcmp(words[i], "--background") != 0 ||
-              sscanf(words[i + 1], "%f,%f,%f", order.background, order.background + 1, order.background + 2) != 3))
+    else if (strcmp(words[i], "--fault") != 0)
       plain_give_up(words[i], "is no option");
   }
-  if (n < 4 || !out)
+  if (n < 4 || !out[0])
     plain_give_up("gl_renderer", "SHADERS SCENE.ply CAMERA.json -o OUT [--profile NAME] [--fault NAME]…");
   if (!gl_open(&reason)) {
     printf("skipped: %s\n", reason);

@@ -1,7 +1,7 @@
-/* Each mistake that the tests' own renderer can make is named first, and a picture without one is never accused.
+/* Each mistake that the tests' own renderers can make is named first, and a picture without one is never accused.
  *
- * test_diagnosis SOURCE: made scenes. test_diagnosis SOURCE SCENE CAMERA.json PROFILE [pairs [STEP]]: a campaign over
- * a scene of any format, of single mistakes or of each STEP-th pair (scripts/judge-campaign). */
+ * As a campaign (scripts/judge-campaign): test_diagnosis SOURCE scenes COUNT FIRST [FILE.ply], made scenes by chance;
+ * test_diagnosis SOURCE SCENE.ply CAMERA.json PROFILE [8-bit | pairs [STEP]], all mistakes or each STEP-th pair. */
 #include <time.h>
 
 #include "conic/diagnosis.h"
@@ -181,7 +181,8 @@ static void make_world(conic_context *context, uint64_t seed, conic_gaussian_pro
     for (int k = 0; k < 4; k++)
       made.rotation[k][i] *= 0.6f + 0.1f * (float)(i % 9);
     for (int k = 0; k < 3; k++)
-      made.scale[k][i] *= 2.0f;
+      made.scale[k][i] *= i % 4 ? 2.0f : 5.0f;
+    made.opacity[i] = i % 4 ? made.opacity[i] : 0.9999f;
   }
   w->camera = made_camera(16, profile != CONIC_PROFILE_INRIA_2023 && profile != CONIC_PROFILE_2DGS_2024);
   for (size_t i = 0; i < 3; i++) { /* 0.1 before the eye */
@@ -226,7 +227,7 @@ static void test_pair(diagnosed_world *w) {
 }
 
 static void test_made(conic_context *context) {
-  static const conic_gaussian_profile profiles[] = {CONIC_PROFILE_GSPLAT_1_6, CONIC_PROFILE_INRIA_2023,
+  static const conic_gaussian_profile profiles[] = {CONIC_PROFILE_GSPLAT_1_5, CONIC_PROFILE_INRIA_2023,
                                                     CONIC_PROFILE_2DGS_GSPLAT};
   char path[160];
   snprintf(path, sizeof path, "%s", files_path("scene.ply"));
@@ -339,43 +340,99 @@ static void test_surfels(conic_context *context) {
   conic_splats_release(context, &w.splats);
 }
 
-static void campaign(conic_context *context, int argc, char **argv) {
-  diagnosed_world w = {.context = context, .scene_path = argv[2], .tells = 1};
-  size_t n_seen = 0, n_named = 0, n_tried = 0;
+/* How often what was planted was found. */
+typedef struct diagnosis_tally {
+  size_t tried, seen, named, accused;
+} diagnosis_tally;
+
+static int names_both(const diagnosed_picture *p, int a, int b) {
+  int is_a = 0, is_b = 0;
+  for (int k = 0; k < p->n_found && k < 2; k++) {
+    is_a |= strcmp(p->found[k].name, plain_fault_names[a]) == 0;
+    is_b |= strcmp(p->found[k].name, plain_fault_names[b]) == 0;
+  }
+  return is_a && is_b;
+}
+
+static void try_pair(const diagnosed_world *w, int a, int b, diagnosis_tally *tally) {
+  const diagnosed_picture pair = diagnose(w, 1u << a | 1u << b, 0);
+  /* Only where each is seen beside the other: the picture is that of neither alone. */
+  const diagnosed_picture one = diagnose(w, 1u << a, 0), other = diagnose(w, 1u << b, 0);
+  const int is_seen = one.n_wrong > 0 && other.n_wrong > 0, is_named = names_both(&pair, a, b);
+  tally->tried++;
+  tally->seen += (size_t)is_seen;
+  tally->named += (size_t)(is_seen && is_named);
+  if (w->tells && is_seen && !is_named)
+    tell_diagnosis(plain_fault_names[a], plain_fault_names[b], &pair);
+}
+
+/* A made scene a seed: right, with a mistake by chance, and with two. */
+static void try_scenes(conic_context *context, const char *path, uint64_t n, uint64_t first) {
+  static const conic_gaussian_profile profiles[] = {CONIC_PROFILE_GSPLAT_1_5,    CONIC_PROFILE_GSPLAT_1_6,
+                                                    CONIC_PROFILE_INRIA_2023,    CONIC_PROFILE_KHR_2026,
+                                                    CONIC_PROFILE_GSPLAT_1_6_AA, CONIC_PROFILE_2DGS_GSPLAT};
+  diagnosis_tally right = {0}, alone = {0}, pairs = {0};
+  for (uint64_t seed = first; seed < first + n; seed++) {
+    diagnosed_world w;
+    plain_floats chance = {.state = seed * 7919};
+    make_world(context, seed, profiles[seed % 6], path, &w);
+    const diagnosed_picture none = diagnose(&w, 0, 0);
+    const int a = (int)plain_chance(&chance, PLAIN_AFFINE), b = (int)plain_chance(&chance, PLAIN_AFFINE);
+    right.tried++;
+    right.seen += none.n_wrong > 0;
+    right.accused += none.n_found > 0;
+    w.tells = 1;
+    const size_t before = alone.seen;
+    const int is_named = try_fault(&w, (plain_fault)a, 0, &alone.seen);
+    alone.tried++;
+    alone.named += (size_t)(is_named && alone.seen > before);
+    if (a != b)
+      try_pair(&w, a, b, &pairs);
+    close_world(&w);
+    remove(path);
+  }
+  printf("right: %zu scenes, %zu with wrong pixels, %zu accused\n", right.tried, right.seen, right.accused);
+  printf("one mistake: %zu planted, %zu seen, %zu named first\n", alone.tried, alone.seen, alone.named);
+  printf("two: %zu planted, %zu both seen, %zu both named\n", pairs.tried, pairs.seen, pairs.named);
+}
+
+static int find_profile(const char *name) {
   for (int k = 0; k < CONIC_N_GAUSSIAN_PROFILES; k++)
-    if (strcmp(conic_gaussian_profile_name((conic_gaussian_profile)k), argv[4]) == 0)
-      w.profile = (conic_gaussian_profile)k;
+    if (strcmp(conic_gaussian_profile_name((conic_gaussian_profile)k), name) == 0)
+      return k;
+  return 0;
+}
+
+static void campaign(conic_context *context, int argc, char **argv) {
+  const int is_8_bit = argc > 5 && strcmp(argv[5], "8-bit") == 0;
+  const int has_pairs = argc > 5 && strcmp(argv[5], "pairs") == 0, step = argc > 6 ? atoi(argv[6]) : 1;
+  diagnosed_world w = {.context = context, .scene_path = argv[2], .tells = 1};
+  diagnosis_tally tally = {0};
+  w.profile = (conic_gaussian_profile)find_profile(argv[4]);
   if (conic_gaussians_read(context, argv[2], NULL, &w.scene) != CONIC_OK ||
       conic_camera_read(context, argv[3], &w.camera) != CONIC_OK)
     exit(1);
   open_world(&w);
-  const int is_8_bit = argc > 5 && strcmp(argv[5], "8-bit") == 0;
-  const int has_pairs = argc > 5 && strcmp(argv[5], "pairs") == 0, step = argc > 6 ? atoi(argv[6]) : 1;
-  for (plain_fault fault = 0; is_of_gaussians(fault) && !has_pairs; fault++, n_tried++)
-    n_named += (size_t)try_fault(&w, fault, is_8_bit, &n_seen);
-  for (int pair = 0; has_pairs && pair < PLAIN_AFFINE * PLAIN_AFFINE; pair += step) {
-    const int a = pair / PLAIN_AFFINE, b = pair % PLAIN_AFFINE;
-    if (a >= b)
-      continue;
-    const diagnosed_picture p = diagnose(&w, 1u << a | 1u << b, 0);
-    int is_a = 0, is_b = 0;
-    for (int k = 0; k < p.n_found && k < 2; k++) {
-      is_a |= strcmp(p.found[k].name, plain_fault_names[a]) == 0;
-      is_b |= strcmp(p.found[k].name, plain_fault_names[b]) == 0;
-    }
-    n_tried++;
-    n_seen += is_a || is_b;
-    n_named += is_a && is_b;
-    tell_diagnosis(plain_fault_names[a], plain_fault_names[b], &p);
+  for (plain_fault fault = 0; is_of_gaussians(fault) && !has_pairs; fault++, tally.tried++) {
+    const size_t before = tally.seen;
+    const int is_named = try_fault(&w, fault, is_8_bit, &tally.seen);
+    tally.named += (size_t)(is_named && tally.seen > before);
   }
-  printf("%zu tried, %zu seen, %zu named%s\n", n_tried, n_seen, n_named, has_pairs ? " both" : " first or invisible");
+  for (int pair = 0; has_pairs && pair < PLAIN_AFFINE * PLAIN_AFFINE; pair += step)
+    if (pair / PLAIN_AFFINE < pair % PLAIN_AFFINE)
+      try_pair(&w, pair / PLAIN_AFFINE, pair % PLAIN_AFFINE, &tally);
+  printf("%zu planted, %zu seen, %zu named\n", tally.tried, tally.seen, tally.named);
   close_world(&w);
 }
 
 int main(int argc, char **argv) {
   if (argc > 4) {
     conic_context *context = check_context(2);
-    campaign(context, argc, argv);
+    if (strcmp(argv[2], "scenes") == 0)
+      try_scenes(context, argc > 5 ? argv[5] : "/tmp/conic-campaign.ply", strtoull(argv[3], NULL, 10),
+                 strtoull(argv[4], NULL, 10));
+    else
+      campaign(context, argc, argv);
     conic_context_destroy(context);
   } else {
     conic_context *context = files_context();

@@ -109,7 +109,7 @@ static int can_have(const char *profile, int fault) {
 
 /* Draws with a fault, or with none (−1). */
 static void judge_fault(gl_test *t, const char *profile, int fault) {
-  const gl_order order = {t->folder, profile, fault < 0 ? 0 : 1u << fault, {0.0f, 0.0f, 0.0f}};
+  const gl_order order = {t->folder, profile, fault < 0 ? 0 : 1u << fault};
   plain_scene scene = plain_scene_read(t->path[0], order.faults);
   plain_camera camera = plain_camera_read(t->path[1]);
   plain_picture picture = plain_picture_allocate(camera.width, camera.height);
