@@ -7,6 +7,8 @@ target_link_libraries(conic_hosted PRIVATE ${conic_libraries})
 target_link_options(conic_hosted PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/hosted.map)
 if(CONIC_SANITIZE)
   target_link_options(conic_hosted PRIVATE -fsanitize=${CONIC_SANITIZE})
+else() # what is missing is to be said by the linker, and not by who imports it
+  target_link_options(conic_hosted PRIVATE LINKER:--no-undefined)
 endif()
 if(NOT PROJECT_IS_TOP_LEVEL) # whoever takes conic in asks for it by name
   set_target_properties(conic_hosted PROPERTIES EXCLUDE_FROM_ALL ON)
