@@ -1,7 +1,7 @@
 # cpack -G DEB or TGZ in the build's folder makes one package of all that is installed. debian/ makes Debian's own.
 if(PROJECT_IS_TOP_LEVEL)
   set(CPACK_PACKAGE_VENDOR "The conic authors")
-  set(CPACK_PACKAGE_CONTACT "The conic authors <conic@localhost>")
+  set(CPACK_PACKAGE_CONTACT "The conic authors <maintainers@example.org>")
   set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
   set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
   set(CPACK_GENERATOR TGZ)

@@ -6,13 +6,10 @@
 #include "gaussians/scene/half.h"
 
 static float planted_scale(conic_planted_reading reading, const conic_gaussians *from, int axis, size_t i) {
-  float scale = from->scale[axis][i], raw;
+  float scale = from->scale[axis][i];
   switch (reading) {
   case CONIC_READING_RAW: /* its square is all that is seen */
     return fabsf(conic_gaussians_log_scale(from, axis, i));
-  case CONIC_READING_RAW_LIMITED:
-    raw = conic_gaussians_log_scale(from, axis, i);
-    return raw > 0.0f ? raw : 1e-6f;
   case CONIC_READING_TWICE:
     return conic_scale_of_log(scale);
   case CONIC_READING_LENGTH_SQUARED:

@@ -98,7 +98,6 @@ static const conic_suspect of_gaussians[] = {
     {"quaternion-not-normalised", OF_RAW_ROTATION, 0, 0.0},
     {"quaternion-not-normalised", OF_RAW_ROTATION, CONIC_READING_LENGTH_SQUARED, 0.0},
     {"scale-linear", OF_SCALE, CONIC_READING_RAW, 0.0},
-    {"scale-linear", OF_SCALE, CONIC_READING_RAW_LIMITED, 0.0},
     {"scale-linear", OF_SCALE, CONIC_READING_TWICE, 0.0},
     {"opacity-linear", OF_OPACITY, CONIC_READING_RAW, 0.0},
     {"opacity-linear", OF_OPACITY, CONIC_READING_RAW_LIMITED, 0.0},

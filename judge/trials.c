@@ -167,6 +167,18 @@ static conic_status narrow_value(trial_run *r, trial_list *best, trial_list *fir
   return CONIC_OK;
 }
 
+static int has_profile(const conic_trials *t, const trial *pair) {
+  return pair->first >= 0 &&
+         (conic_suspect_is_profile(&t->suspects[pair->first]) || conic_suspect_is_profile(&t->suspects[pair->second]));
+}
+
+/* Two mistakes before a profile where they explain the same. */
+static int is_better_pair(const conic_trials *t, const trial *new, const trial *old) {
+  const double slack = old->first >= 0 ? 1e-5 + 0.1 * old->left : 0.0;
+  const int gained = has_profile(t, old) - has_profile(t, new);
+  return new->left < (gained > 0 ? old->left + slack : gained < 0 ? old->left - slack : old->left);
+}
+
 /* All others beside one of them; those of the finished picture first, while that one is drawn. */
 static conic_status try_beside(trial_run *r, int first, trial *pair) {
   conic_status status = CONIC_OK;
@@ -177,7 +189,23 @@ static conic_status try_beside(trial_run *r, int first, trial *pair) {
           (conic_suspect_is_profile(&r->t->suspects[i]) && conic_suspect_is_profile(&r->t->suspects[first])))
         continue;
       status = try_planted(r, &new);
-      if (status == CONIC_OK && new.left < pair->left)
+      if (status == CONIC_OK && is_better_pair(r->t, &new, pair))
+        *pair = new;
+    }
+  return status;
+}
+
+/* Two of the finished picture, for which nothing is drawn but what is right. */
+static conic_status try_finishes(trial_run *r, trial *pair) {
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < r->t->n_suspects; i++)
+    for (int k = 0; k < i && status == CONIC_OK; k++) {
+      trial new = {.first = k, .second = i};
+      if (is_same_name(r->t, i, k) || !conic_suspect_is_finish(&r->t->suspects[i]) ||
+          !conic_suspect_is_finish(&r->t->suspects[k]))
+        continue;
+      status = try_planted(r, &new);
+      if (status == CONIC_OK && is_better_pair(r->t, &new, pair))
         *pair = new;
     }
   return status;
@@ -193,7 +221,9 @@ static conic_status try_all_pairs(trial_run *r, const trial_list *list, trial *p
   while (n_first < list->n && (!is_alone || is_same_name(r->t, best[0].first, best[n_first].first)))
     n_first++;
   r->n_planned = r->n_done + (size_t)((n_first + 2) * r->t->n_suspects);
-  for (int i = 0; i < n_first && pair->left > least_left && status == CONIC_OK; i++)
+  if (!is_alone)
+    status = try_finishes(r, pair);
+  for (int i = 0; i < n_first && (pair->left > least_left || has_profile(r->t, pair)) && status == CONIC_OK; i++)
     status = try_beside(r, best[i].first, pair);
   for (int turn = 0; turn < MOST_TURNS && !is_alone && pair->left > least_left && status == CONIC_OK; turn++) {
     const trial before = *pair;

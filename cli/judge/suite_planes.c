@@ -30,37 +30,19 @@ static channel_range range_once_more(channel_range r) {
   return r;
 }
 
-/* What Σ w and a T that is made of as many factors may be apart by: each Gaussian leaves a rounding of T, of 1 − α, of
- * w and of the sum. */
-static double sum_of_roundings(const conic_gaussian_bound *b) {
-  return (4.0 * b->most[CONIC_BOUND_COUNT] + 2.0) * float_unit;
-}
-
-/* 1 − T or Σ w. */
+/* 1 − T, or Σ w, in which each Gaussian leaves a rounding of T, of 1 − α, of w and of the sum. */
 static channel_range range_of_opacity(const conic_gaussian_bound *b) {
   const channel_range T = range_once_more(range_of_bound(b, CONIC_BOUND_T));
-  const double spread = b->most[CONIC_BOUND_COUNT] > 0.0 ? sum_of_roundings(b) : 0.0;
+  const double spread = 4.0 * float_unit * b->most[CONIC_BOUND_COUNT];
   return range_once_more(
       (channel_range){{1.0 - T.of[SUITE_VALUE], 1.0 - T.of[SUITE_HIGH] - spread, 1.0 - T.of[SUITE_LOW] + spread,
                        1.0 - T.of[SUITE_MOST] - spread, 1.0 - T.of[SUITE_LEAST] + spread}});
 }
 
-/* Σ w·z, over either of the two; where that may be nothing, a depth has no bounds. */
-static channel_range range_of_depth(const conic_gaussian_bound *b) {
-  channel_range r = range_of_bound(b, CONIC_BOUND_Z);
-  for (int k = SUITE_LOW; k < SUITE_RANGES; k++) {
-    const double opacity = 1.0 - (k < SUITE_LEAST ? b->high[CONIC_BOUND_T] : b->most[CONIC_BOUND_T]);
-    const double share = opacity > sum_of_roundings(b) ? sum_of_roundings(b) / opacity : INFINITY;
-    if (r.of[k] != 0.0)
-      r.of[k] += (k == SUITE_LOW || k == SUITE_LEAST ? -1.0 : 1.0) * share * fabs(r.of[k]);
-  }
-  return r;
-}
-
 static channel_range range_of_channel(const conic_gaussian_bound *b, int channel) {
   return channel < 3    ? range_once_more(range_of_bound(b, CONIC_BOUND_RGB + channel))
          : channel == 3 ? range_of_opacity(b)
-                        : range_of_depth(b);
+                        : range_of_bound(b, CONIC_BOUND_Z);
 }
 
 /* Ends of ranges to the float beyond them; an end that could not be computed is none. */

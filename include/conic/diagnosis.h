@@ -22,7 +22,8 @@ typedef struct conic_diagnosis {
 /* Looks at the wrong pixels of a picture, as conic_gaussian_judge found them by the same arguments: `classes` has the
  * picture's size, what is above CONIC_PIXEL_WRONG was not judged. `found` takes at most `room` explanations, the best
  * first, and *n_found how many there are: none where no pixel is wrong, or where nothing explains the picture. Of two
- * that explain it together, each is there once, one after the other. Reports progress as "diagnose". Errors: ARGUMENT, MEMORY, CANCELLED. */
+ * that explain it together, each is there once, one after the other. Reports progress as "diagnose". Errors: ARGUMENT,
+ * MEMORY, CANCELLED. */
 CONIC_API conic_status conic_gaussian_diagnose(conic_context *context, const conic_gaussians *gaussians,
                                                const conic_camera *camera, const conic_gaussian_options *options,
                                                const conic_gaussian_judging *judging, const conic_image *image,

@@ -162,8 +162,9 @@ CONIC_API conic_status conic_image_check_output_as(conic_context *context, const
                                                    const conic_image_options *options);
 CONIC_API conic_status conic_image_check_output(conic_context *context, const char *path, unsigned planes);
 
-/* Reads an image; channels map to planes by name (EXR), else to rgba, decoded to linear. On success the caller owns
- * *image. Errors: INPUT (also where it is no regular file), UNSUPPORTED, MEMORY. */
+/* Reads an image; channels (EXR) and arrays (.npz) map to planes by name, else to rgba, decoded to linear but for
+ * NumPy's bytes and words. On success the caller owns *image. Errors: INPUT (also where it is no regular file),
+ * UNSUPPORTED, MEMORY. */
 CONIC_API conic_status conic_image_read(conic_context *context, const char *path, conic_image *image);
 
 /* How two images differ. See docs/reference/diff.md for the definitions. */

@@ -1,5 +1,4 @@
 /* Gradients of other programs: .ply with the properties of scenes, and .npz. */
-#include <stdio.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -33,14 +32,15 @@ typedef struct gradient_target {
   size_t stride;
 } gradient_target;
 
-/* A digit behind a name's start; -1: the name is another. */
+/* The number behind a name's start, of two digits at most; -1: the name is another. */
 static int number_behind(const char *name, const char *start) {
-  int number, n_read = 0;
   const size_t length = strlen(start);
-  return strncmp(name, start, length) == 0 && sscanf(name + length, "%2d%n", &number, &n_read) == 1 &&
-                 name[length + (size_t)n_read] == '\0' && number >= 0
-             ? number
-             : -1;
+  int number = 0, n_digits = 0;
+  if (strncmp(name, start, length) != 0)
+    return -1;
+  for (name += length; *name >= '0' && *name <= '9' && n_digits < 3; name++, n_digits++)
+    number = 10 * number + (*name - '0');
+  return *name == '\0' && n_digits >= 1 && n_digits <= 2 ? number : -1;
 }
 
 static gradient_target find_gradient_target(conic_gaussian_gradient *g, const char *name) {

@@ -63,7 +63,8 @@ for command in table["commands"]:
 # What belongs to other programs, where docs speak of them.
 others = set(
     """--build --install --prefix --test-dir --preset --parallel --label-exclude --output-on-failure --version --static
-    --cflags --libs --format --fix --check --list --break --all --help""".split()
+    --cflags --libs --format --fix --check --list --break --all --help
+    --manylinux""".split()
 )
 
 
@@ -99,7 +100,7 @@ for page in [source / "README.md", *sorted((source / "docs").rglob("*.md"))]:
         code = re.sub(r"\s+", " ", code)
         if code.startswith("conic "):
             check_call(where, code.split(" | ")[0])
-        elif not re.match(r"(cmake|ctest|oiiotool|scripts/|apt|pip|mpirun|pkg-config|git|bench/)", code):
+        elif not re.match(r"(cmake|ctest|oiiotool|pytest|python|scripts/|apt|pip|mpirun|pkg-config|git|bench/)", code):
             for word in re.findall(r"(?<![\w-])--[a-z][a-z0-9-]*", code):
                 n_named += 1
                 check(word in every_option | others, f"{where}: no command has {word}")

@@ -12,6 +12,7 @@ seeds=${CONIC_JUDGE_SEEDS-}
 faults=(dilation-0 dilation-0.1 extent-3-sigma alpha-max-0.999 alpha-max-0.99 falloff-renormalised order-distance
   order-file sh-degree-0 f-rest-interleaved quaternion-xyzw quaternion-not-normalised scale-linear opacity-linear
   half-pixel mirrored-x mirrored-y centre-ignored srgb-decoded srgb-encoded premultiplied background-white near)
+codes_of_faults=${seeds:+0 }1 # a mistake need not show in every scene
 declare -A n_planted n_named
 n_pairs=0 n_pairs_named=0
 
@@ -34,22 +35,26 @@ can_be_together() { # FAULT FAULT
   [[ $1 != "$2" ]]
 }
 
-# Draws with these faults and judges; leaves the names in `named`, the best first:
-# draw EXIT_CODE PROFILE OTHERWISE FAULT …
+# Draws with these faults and judges; leaves the exit code in `code`, and the names in `named`, the best first:
+# draw EXIT_CODES PROFILE OTHERWISE FAULT …
 draw() {
-  local wanted=$1 profile=$2 planted=(--otherwise "$3") fault
+  local profile=$2 planted=(--otherwise "$3") fault
   for fault in "${@:4}"; do
     planted+=(--fault "$fault")
   done
   "$plain" scene.ply camera.json --profile "$profile" "${planted[@]}" -o drawn.npy || fail "${planted[*]}: no picture"
-  run "$wanted" judge scene.ply --camera camera.json --ignore-center --profile "$profile" --picture drawn.npy --json -
+  "$conic" judge scene.ply --camera camera.json --ignore-center --profile "$profile" --picture drawn.npy --json - \
+    > out 2> err < /dev/null
+  code=$?
+  [[ " $1 " == *" $code "* ]] || fail "$profile ${planted[*]}: exit code $code instead of $1: $(head -c 300 err)"
   named=$(python3 -c 'import json; print(*[d["name"] for d in json.load(open("out"))["diagnosis"]])' 2> /dev/null)
 }
 
 # Right without a mistake; else the fault is the first that is named.
 plant_one() { # PROFILE OTHERWISE FAULT
   is_no_mistake "$1" "$3" && return
-  draw 1 "$1" "$2" "$3"
+  draw "$codes_of_faults" "$1" "$2" "$3"
+  [[ $code -ne 0 ]] || return
   n_planted[$3]=$((${n_planted[$3]-0} + 1))
   if [[ ${named%% *} == "$3" ]]; then
     n_named[$3]=$((${n_named[$3]-0} + 1))
@@ -61,7 +66,8 @@ plant_one() { # PROFILE OTHERWISE FAULT
 plant_two() { # PROFILE FAULT FAULT
   local first second
   is_no_mistake "$1" "$2" || is_no_mistake "$1" "$3" && return
-  draw 1 "$1" 0 "$2" "$3"
+  draw "$codes_of_faults" "$1" 0 "$2" "$3"
+  [[ $code -ne 0 ]] || return
   read -r first second _ <<< "$named"
   ((n_pairs++))
   if [[ " $2 $3 " == *" $first "* && " $2 $3 " == *" $second "* && $first != "$second" ]]; then
