@@ -95,7 +95,8 @@ static const conic_suspect of_gaussians[] = {
     {"quaternion-xyzw", OF_ROTATION, CONIC_READING_RAW, 0.0},
     {"quaternion-xyzw", OF_ROTATION, CONIC_READING_TWICE, 0.0},
     {"quaternion-conjugate", OF_ROTATION, CONIC_READING_CONJUGATE, 0.0},
-    {"quaternion-not-normalised", OF_RAW_ROTATION, 0, 0.0},
+    {"quaternion-not-normalised", OF_RAW_ROTATION, 0, 2.0},
+    {"quaternion-not-normalised", OF_RAW_ROTATION, 0, 3.0},
     {"quaternion-not-normalised", OF_RAW_ROTATION, CONIC_READING_LENGTH_SQUARED, 0.0},
     {"scale-linear", OF_SCALE, CONIC_READING_RAW, 0.0},
     {"scale-linear", OF_SCALE, CONIC_READING_TWICE, 0.0},
@@ -240,7 +241,7 @@ static void plant_in_scene(const conic_suspect *s, conic_planted *p) {
     p->rotation = (conic_planted_reading)s->how;
     break;
   case OF_RAW_ROTATION:
-    p->rules.takes_rotation_as_is = s->how ? p->rules.takes_rotation_as_is : 2;
+    p->rules.takes_rotation_as_is = s->how ? p->rules.takes_rotation_as_is : (int)s->value;
     p->scale = s->how ? (conic_planted_reading)s->how : p->scale;
     break;
   case OF_SCALE:

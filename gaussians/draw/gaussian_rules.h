@@ -37,7 +37,8 @@ typedef struct conic_gaussian_rules {
   double slope_margin;       /* x/z and y/z of the Jacobian are clamped so far beyond the picture, as a share of half
                                 its width; negative: not */
   float greatest_half_q;     /* beyond which nothing is; 0: no such border */
-  int takes_rotation_as_is;  /* quaternions that are of length 1 but for roundings; 2: of any length */
+  int takes_rotation_as_is;  /* quaternions that are of length 1 but for roundings; 2: of any length; 3: and along
+                                rays by the inverse of what they make, not by its transpose */
   int takes_middle;          /* the middle of the picture in place of the principal point */
   int orders_by_distance;
   int has_float_eye;

@@ -222,7 +222,8 @@ static void find_filter(const conic_gaussian_view *view, const double g[3][3], c
  * make of a disc those at right angles to the other two. */
 static void find_inverse_axes(const conic_gaussian_view *view, const conic_gaussian_placed *p, double inverse[3][3]) {
   memcpy(inverse, p->unit, sizeof p->unit);
-  if (view->rules->takes_rotation_as_is <= 1 || !p->is_flat)
+  const int as_is = view->rules->takes_rotation_as_is;
+  if (as_is <= 1 || (as_is == 2 && !p->is_flat))
     return;
   conic_cross(p->unit[1], p->unit[2], inverse[0]);
   const double volume = conic_dot(p->unit[0], inverse[0]);
@@ -291,11 +292,17 @@ static void take_mean(const conic_gaussian_view *view, const conic_gaussian_plac
   take_reference(view, x, y, f);
 }
 
+/* Whether it lies within what its axes say: not where they are neither of unit length nor inverted. */
+static int lies_within_axes(const conic_gaussian_view *view, const conic_gaussian_placed *p) {
+  return view->rules->takes_rotation_as_is != 2 || p->is_flat;
+}
+
 /* An outline is known of rays through an eye without a filter alone. */
 static int find_ray_outline(const conic_gaussian_view *view, const conic_gaussian_placed *p, double reach,
                             const conic_gaussian_ray *ray, double unit_of, conic_gaussian_footprint *f) {
   f->half_reach = half_reach_of(reach);
-  return view->is_parallel || view->prefilter > 0.0 || conic_gaussian_find_outline(view, p, reach, ray, unit_of, f);
+  return view->is_parallel || view->prefilter > 0.0 || !lies_within_axes(view, p) ||
+         conic_gaussian_find_outline(view, p, reach, ray, unit_of, f);
 }
 
 static conic_gaussian_fate set_up_ray(const conic_gaussian_view *view, conic_gaussian_placed *p,
@@ -303,8 +310,13 @@ static conic_gaussian_fate set_up_ray(const conic_gaussian_view *view, conic_gau
                                       conic_gaussian_filter *filter) {
   double least[2], most[2], unit_of, reach = reach_of(view->rules, p->opacity);
   reach -= view->prefilter > 0.0 ? reach_slack : 0.0; /* a filter's box is a rule */
-  if (!(reach > 0.0) || !conic_gaussian_project(view, p, reach, least, most) ||
-      !conic_gaussian_limit_box(view, least, most, f))
+  if (!(reach > 0.0) || !conic_gaussian_project(view, p, reach, least, most))
+    return CONIC_GAUSSIAN_CULLED;
+  for (int axis = 0; axis < 2 && !lies_within_axes(view, p); axis++) {
+    least[axis] = 0.0;
+    most[axis] = axis ? view->camera->height : view->camera->width;
+  }
+  if (!conic_gaussian_limit_box(view, least, most, f))
     return CONIC_GAUSSIAN_CULLED;
   take_mean(view, p, f);
   return find_ray(view, p, f, ray, filter, &unit_of) && find_ray_outline(view, p, reach, ray, unit_of, f)

@@ -1,8 +1,9 @@
 /* Front to back with bounds. What one path has is a range for each sum; each sum is rounded at each step.
  *
  * A decision in doubt (is the Gaussian composited, does compositing end before it) is followed both ways, up to
- * MOST_FORKS times on a path. From then on, and where it matters too little to be worth a path, both ways are one
- * range: the weight may be nothing, and T may stay.
+ * MOST_FORKS times on a path; where more Gaussians than that are in doubt, which no paths tell apart, up to FEW_FORKS
+ * times. From then on, and where it matters too little to be worth a path, both ways are one range: the weight may be
+ * nothing, and T may stay.
  *
  * An order in doubt needs no paths: exchanging two neighbours i and j leaves T, and changes a sum Σ w·v by exactly
  * T·αᵢ·αⱼ·(vᵢ − vⱼ). Any order comes of exchanging pairs, each at most once, so all of them lie within the sum of these
@@ -14,7 +15,7 @@
 
 #include "oracle/gaussians/oracle_forks.h"
 
-enum { MOST_FORKS = 8, N_SUMS = 8 };
+enum { MOST_FORKS = 8, FEW_FORKS = 2, N_SUMS = 8 };
 
 /* Weight below which a decision is not followed both ways. */
 static const double negligible_weight = 1e-7;
@@ -40,6 +41,7 @@ typedef struct fork_job {
   const oracle_doubting *d;
   oracle_meeting *meetings;
   size_t n;
+  int most_forks;
   const float *background;
   oracle_step *steps;
   conic_gaussian_bound *bound;
@@ -357,10 +359,10 @@ static void follow(const fork_job *j, size_t i, fork_state s) {
       s.has_ended = 1;
       break;
     }
-    int is_followed = n > 1 && stands_alone(j, i) && !s.may_have_ended && s.n_forks + n - 1 <= MOST_FORKS &&
+    int is_followed = n > 1 && stands_alone(j, i) && !s.may_have_ended && s.n_forks + n - 1 <= j->most_forks &&
                       (weight > negligible_weight || o.ends);
     if (n > 1 && !is_followed && weight > negligible_weight)
-      j->bound->is_wide |= s.n_forks + n - 1 > MOST_FORKS;
+      j->bound->is_wide |= s.n_forks + n - 1 > j->most_forks;
     if (!is_followed)
       merge_outcomes(j, i, o, &s);
     else if (!fork_outcomes(j, i, o, &s))
@@ -386,6 +388,13 @@ static void cut_groups(oracle_meeting *meetings, size_t n) {
   }
 }
 
+static int count_doubtful(const oracle_meeting *meetings, size_t n) {
+  int n_doubtful = 0;
+  for (size_t i = 0; i < n; i++)
+    n_doubtful += (meetings[i].doubts & ~(1u << CONIC_DOUBT_MOST)) != 0 && meetings[i].alpha[1] > negligible_weight;
+  return n_doubtful;
+}
+
 void conic_oracle_composite(const oracle_doubting *d, oracle_meeting *meetings, size_t n, const float background[3],
                             oracle_step *steps, conic_gaussian_bound *bound) {
   fork_job j = {.d = d, .meetings = meetings, .n = n, .background = background, .steps = steps, .bound = bound};
@@ -396,6 +405,7 @@ void conic_oracle_composite(const oracle_doubting *d, oracle_meeting *meetings, 
     bound->most[c] = -INFINITY;
   }
   cut_groups(meetings, n);
+  j.most_forks = count_doubtful(meetings, n) > MOST_FORKS ? FEW_FORKS : MOST_FORKS;
   follow(&j, 0, s);
   for (size_t i = 0; i < n; i++) {
     bound->kinds |= meetings[i].noted;

@@ -155,6 +155,12 @@ write verify-gaussians-samples verify_gaussians verify two.splat --profile inria
 run 0 render two.splat --profile gsplat-1.6 --size 40x40 -o two.exr
 write verify-gaussians-wrong verify_gaussians verify two.splat --profile khr-2026 --size 40x40 --image two.exr
 write judge-wrong judge judge two.splat --profile khr-2026 --size 40x40 --picture two.exr
+camera='"width": 40, "height": 40, "fx": 40, "fy": 40, "world_to_camera": [[1,0,0,0],[0,-1,0,0],[0,0,-1,4],[0,0,0,1]]'
+echo "{$camera, \"cx\": 20, \"cy\": 20}" > middle.json
+echo "{$camera, \"cx\": 20.5, \"cy\": 20.5}" > off.json
+run 0 make gaussians -n 60 -o many.ply
+run 0 render many.ply --camera off.json --profile gsplat-1.6 --background 1,1,1 -o off.exr
+write judge-two-wrong judge judge many.ply --camera middle.json --profile gsplat-1.6 --picture off.exr
 write judge-splats-wrong judge judge thinner.ply --size 160x120 --picture prefiltered.exr
 write judge-mesh-wrong judge judge triangle.obj --as mesh --size 256x256 --picture triangle.exr --shade none
 cat two.splat two.splat > copies.splat

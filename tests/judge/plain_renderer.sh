@@ -101,6 +101,7 @@ if [[ -z $seeds ]]; then # test_diagnosis plants all of them
   done
   faults=(dilation-0.1 order-file f-rest-interleaved quaternion-xyzw opacity-linear half-pixel mirrored-y premultiplied)
   go_through 1 gsplat-1.6
+  plant_one exact 0 quaternion-not-normalised # along rays there are two ways to do that
   plant_two gsplat-1.6 dilation-0 mirrored-y
 fi
 for seed in $seeds; do
