@@ -91,7 +91,7 @@ static conic_status find_out(cli_session *session, cli_judge_job *job) {
   if (status == CONIC_OK && job->found.n_worst)
     status = cli_judge_explain(session, job);
   at = pass_stage(job, CLI_JUDGE_EXPLAIN, at);
-  if (status == CONIC_OK && !cli_judge_is_right(job))
+  if (status == CONIC_OK && !cli_judge_is_right(job) && !job->skips_diagnosis)
     status = cli_judge_diagnose(session, job);
   pass_stage(job, CLI_JUDGE_DIAGNOSE, at);
   return status;
@@ -193,6 +193,8 @@ static int run_judge(cli_session *session, int argc, char **argv) {
        "colours of 0 and 1 stand for what is beyond, in floats, too"},
       {"straight", CLI_FLAG, &job.reading.is_straight, NULL,
        "colours are not multiplied by alpha; of a PNG they never are"},
+      {"no-diagnosis", CLI_FLAG, &job.skips_diagnosis, NULL,
+       "don't look for the mistake that explains wrong pixels, which may take longer than judging them"},
       {"time", CLI_FLAG, &job.shows_times, NULL, "print what each stage took"},
       CLI_SUITE_OPTIONS(suite),
       CLI_GRADIENT_OPTIONS(gradients),

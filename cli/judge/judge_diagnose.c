@@ -25,7 +25,20 @@ static conic_status diagnose_splats(cli_session *session, cli_judge_job *job, co
                                 CLI_JUDGE_MOST_FAULTS, &job->found.n_faults);
 }
 
+static int is_blank(const conic_image *image) {
+  const float *rgba = image->planes[CONIC_PLANE_RGBA];
+  const size_t n = (size_t)image->width * (size_t)image->height;
+  for (size_t i = 1; rgba && i < n; i++)
+    for (size_t c = 0; c < 3; c++)
+      if (rgba[4 * i + c] != rgba[c])
+        return 0;
+  return rgba != NULL;
+}
+
 conic_status cli_judge_diagnose(cli_session *session, cli_judge_job *job) {
+  job->found.is_blank = is_blank(&job->picture.image);
+  if (job->found.is_blank)
+    return CONIC_OK;
   const conic_image *greatest = job->picture.greatest.width ? &job->picture.greatest : NULL;
   return cli_is_composited(&job->scene) ? diagnose_gaussians(session, job, greatest)
                                         : diagnose_splats(session, job, greatest);

@@ -40,6 +40,7 @@ typedef struct cli_judge_worst {
 /* What was found, of either kind of scene. */
 typedef struct cli_judgement {
   size_t pixels[CONIC_N_PIXEL_CLASSES], judged, covered, doubtful, n_whole;
+  size_t vague; /* of a Gaussian scene: pixels whose colours may be anything within more than 1/255 */
   const char *reasons[CLI_JUDGE_MOST_REASONS]; /* null past the last */
   size_t explained_by[CLI_JUDGE_MOST_REASONS];
   conic_oracle_plane_verdict planes[CONIC_MAX_PLANES];
@@ -47,6 +48,7 @@ typedef struct cli_judgement {
   int n_worst;
   conic_diagnosis faults[CLI_JUDGE_MOST_FAULTS]; /* that would explain the wrong pixels, the best first */
   int n_faults;
+  int is_blank; /* the picture's colours are one everywhere, which has many causes and is not diagnosed */
 } cli_judgement;
 
 typedef struct cli_judge_job {
@@ -56,7 +58,7 @@ typedef struct cli_judge_job {
   unsigned long long n_pixels, max_wrong;            /* n_pixels 0: all */
   int floats;                                        /* a conic_float_kind */
   int transfer, is_transfer_given;                   /* 0 linear, 1 srgb */
-  int shows_times;
+  int shows_times, skips_diagnosis;
   conic_picture_options reading;
   int argc; /* the command line, for the report */
   char **argv;

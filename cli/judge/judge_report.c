@@ -185,6 +185,8 @@ static void put_counts(const cli_page *page, const cli_judge_job *job) {
       }
     fputs(".</p>\n", page->to);
   }
+  if (found->vague)
+    fprintf(page->to, "<p>%zu pixels may be anything within more than 1/255.</p>\n", found->vague);
   fputs(
       "<p>The scene is drawn once more in double precision, and every step carries a bound of what the roundings of "
       "floats, a fast exponential and fused products may do to it. Where a bound reaches across a decision, such as a "

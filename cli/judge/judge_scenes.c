@@ -42,6 +42,7 @@ conic_status cli_judge_gaussians(cli_session *session, cli_judge_job *job) {
   found->judged = verdict.judged_pixels;
   found->covered = verdict.covered_pixels;
   found->doubtful = verdict.doubtful_pixels;
+  found->vague = (size_t)verdict.vague_pixels;
   take_worst(verdict.worst, verdict.n_worst, found);
   return CONIC_OK;
 }

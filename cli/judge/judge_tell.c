@@ -106,6 +106,10 @@ void cli_judge_print(const cli_judge_job *job) {
   printf("\n%zu equal, %zu within rounding, %zu explained, %zu wrong\n", found->pixels[CONIC_PIXEL_EQUAL],
          found->pixels[CONIC_PIXEL_ROUNDED], found->pixels[CONIC_PIXEL_EXPLAINED], found->pixels[CONIC_PIXEL_WRONG]);
   print_explained(found);
+  if (found->vague)
+    printf("vague     %zu pixels may be anything within more than 1/255; --floats strict or own bounds them more "
+           "tightly\n",
+           found->vague);
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (found->planes[i].is_compared)
       printf("%-9s max %.4g\n", conic_plane_describe((conic_plane)i)->name, found->planes[i].max_abs);
@@ -113,7 +117,9 @@ void cli_judge_print(const cli_judge_job *job) {
     puts("alpha is full everywhere, and is not judged");
   for (int k = 0; k < found->n_faults; k++)
     print_diagnosis(k, &found->faults[k]);
-  if (!found->n_faults && !cli_judge_is_right(job))
+  if (found->is_blank)
+    puts("diagnosis the picture is blank: does its camera look at the scene, along z?");
+  else if (!found->n_faults && !cli_judge_is_right(job) && !job->skips_diagnosis)
     puts("diagnosis no known mistake explains the wrong pixels");
   print_worst(job);
   for (int k = 0; k < CLI_JUDGE_N_STAGES && job->shows_times; k++)
@@ -199,6 +205,8 @@ int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
   cli_json_count(json, "judged_pixels", found->judged);
   cli_json_count(json, "covered_pixels", found->covered);
   cli_json_count(json, "doubtful_pixels", found->doubtful);
+  if (cli_is_composited(&job->scene))
+    cli_json_count(json, "vague_pixels", found->vague);
   cli_json_object(json, "explained_by");
   for (int k = 0; k < CLI_JUDGE_MOST_REASONS && found->reasons[k]; k++)
     cli_json_count(json, found->reasons[k], found->explained_by[k]);

@@ -105,8 +105,9 @@ typedef struct conic_gaussian_verdict {
   size_t explained_by[CONIC_N_GAUSSIAN_DOUBTS]; /* of those that are explained */
   conic_oracle_fault worst[CONIC_MAX_FAULTS];   /* the wrong pixels that are farthest off, the worst first */
   int n_worst;
-  int pass; /* none is wrong */
-  uint64_t reserved[4];
+  int pass;              /* none is wrong */
+  uint64_t vague_pixels; /* a colour may be anything within more than 1/255: what is off by less is not seen there */
+  uint64_t reserved[3];
 } conic_gaussian_verdict;
 
 /* Judges those planes of the picture that Gaussian scenes have. `classes`, of the picture's size, takes each judged

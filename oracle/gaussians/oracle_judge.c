@@ -173,6 +173,7 @@ static void judge_bound(void *data, size_t i, size_t pixel, const conic_gaussian
   v->judged_pixels++;
   v->covered_pixels += b->value[CONIC_BOUND_COUNT] > 0.0;
   v->wide_pixels += b->is_wide != 0;
+  v->vague_pixels += p.width[CONIC_PLANE_RGBA] > 1.0 / 255.0;
   v->doubtful_pixels += b->doubts > 0;
   v->pixels[p.class]++;
   for (int k = 0; k < CONIC_N_GAUSSIAN_DOUBTS; k++) {
@@ -196,6 +197,7 @@ static void add_verdict(conic_gaussian_verdict *to, const conic_gaussian_verdict
   to->judged_pixels += v->judged_pixels;
   to->covered_pixels += v->covered_pixels;
   to->wide_pixels += v->wide_pixels;
+  to->vague_pixels += v->vague_pixels;
   to->doubtful_pixels += v->doubtful_pixels;
   for (int k = 0; k < CONIC_N_GAUSSIAN_CLASSES; k++)
     to->pixels[k] += v->pixels[k];

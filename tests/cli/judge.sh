@@ -40,6 +40,20 @@ has '^judge .* s$'
 run 0 judge two.splat --profile khr-2026 --size 32x24 --picture a.exr --quiet
 [[ ! -s out ]] || fail "--quiet prints"
 
+# A blank picture is no clue; who stands in a Gaussian is told how little can be seen wrong; and not all want a diagnosis.
+camera='"width": 32, "height": 24, "fx": 30, "fy": 30, "cx": 16, "cy": 12, "world_to_camera": [[1,0,0,0],[0,-1,0,0],[0,0,-1'
+echo "{$camera,2],[0,0,0,1]]}" > before.json
+echo "{$camera,0.2],[0,0,0,1]]}" > inside.json
+run 0 make gaussians -n 60 -o many.ply
+{ printf 'PF\n32 24\n-1.0\n' && head -c 9216 /dev/zero; } > blank.pfm
+run 1 judge many.ply --camera before.json --profile gsplat-1.6 --picture blank.pfm
+has '^diagnosis the picture is blank'
+run 1 judge many.ply --camera before.json --profile gsplat-1.6 --picture blank.pfm --no-diagnosis
+if grep -q '^diagnosis' out; then fail "--no-diagnosis diagnoses"; fi
+run 0 render many.ply --camera inside.json --profile gsplat-1.6 -o inside.exr
+run 0 judge many.ply --camera inside.json --profile gsplat-1.6 --picture inside.exr
+has '^vague     [1-9]'
+
 # Splats by every method, a mesh and a hybrid; conic's own files say how many samples they have.
 run 0 make knot -n 1500 -o knot.ply
 printf 'v -1 -1 0\nv 1 -1 0\nv 1 1 .5\nv -1 1 .2\nv 0 0 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n' > tent.obj
