@@ -216,7 +216,7 @@ static conic_status try_finishes(trial_run *r, trial *pair) {
 static conic_status try_all_pairs(trial_run *r, const trial_list *list, trial *pair) {
   conic_status status = CONIC_OK;
   const trial *best = list->trials;
-  const int is_alone = best[0].left <= little_left;
+  const int is_alone = best[0].left <= little_left && !conic_suspect_is_profile(&r->t->suspects[best[0].first]);
   int n_first = 0;
   while (n_first < list->n && (!is_alone || is_same_name(r->t, best[0].first, best[n_first].first)))
     n_first++;

@@ -103,6 +103,7 @@ if [[ -z $seeds ]]; then # test_diagnosis plants all of them
   go_through 1 gsplat-1.6
   plant_one exact 0 quaternion-not-normalised # along rays there are two ways to do that
   plant_two gsplat-1.6 dilation-0 mirrored-y
+  plant_two gsplat-1.6 dilation-0 order-distance # nearly khr-2026
 fi
 for seed in $seeds; do
   go_through "$seed" "${all_profiles[@]}"
