@@ -6,7 +6,7 @@
 
 #include "bench/bench.h"
 
-#if defined(__linux__)
+#if defined(__linux__) && __has_include(<linux/perf_event.h>)
 
 #include <linux/perf_event.h>
 #include <sys/syscall.h>

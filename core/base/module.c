@@ -20,12 +20,19 @@ static const char address_here;
 /* The file that this code was linked into. What the dynamic linker calls the program is the word that it was started
  * with, which may be no path at all. */
 static int find_own_file(char path[PATH_MAX]) {
+  const char *name = NULL;
   Dl_info about;
+#if defined(__GLIBC__)
   struct link_map *map = NULL;
   if (!dladdr1(&address_here, &about, (void **)&map, RTLD_DL_LINKMAP) || !map)
     return 0;
-  if (map->l_name && *map->l_name)
-    return snprintf(path, PATH_MAX, "%s", map->l_name) < PATH_MAX;
+  name = map->l_name;
+#else
+  if (dladdr(&address_here, &about) && about.dli_fname && strchr(about.dli_fname, '/'))
+    name = about.dli_fname;
+#endif
+  if (name && *name)
+    return snprintf(path, PATH_MAX, "%s", name) < PATH_MAX;
   ssize_t n = readlink("/proc/self/exe", path, PATH_MAX - 1);
   if (n < 1 || n >= PATH_MAX - 1)
     return 0;
