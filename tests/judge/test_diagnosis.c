@@ -6,6 +6,7 @@
 
 #include "conic/diagnosis.h"
 #include "gaussians/scene/made_gaussians.h"
+#include "tests/judge/plain_conic.h"
 #include "tests/judge/plain_gaussians.h"
 #include "tests/judge/plain_surfels.h"
 #include "tests/support/check.h"
@@ -32,29 +33,7 @@ typedef struct diagnosed_picture {
   double seconds;
 } diagnosed_picture;
 
-static plain_camera as_plain_camera(const conic_camera *from) {
-  plain_camera c = {from->width,     from->height,    (float)from->fx, (float)from->fy,
-                    (float)from->cx, (float)from->cy, {{0.0f}}};
-  for (int row = 0; row < 3; row++)
-    for (int k = 0; k < 4; k++)
-      c.view[row][k] = (float)from->cam_from_world[row][k];
-  return c;
-}
-
-static conic_image as_image(conic_context *context, const plain_picture *p) {
-  const size_t n = (size_t)p->width * (size_t)p->height;
-  conic_image image;
-  CHECK_OK(conic_image_allocate(context, p->width, p->height,
-                                1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_TRANSPARENCY, &image));
-  for (size_t i = 0; i < n; i++) {
-    float *rgba = (float *)image.planes[CONIC_PLANE_RGBA] + 4 * i;
-    memcpy(rgba, p->rgb + 3 * i, 3 * sizeof *rgba);
-    rgba[3] = p->alpha[i];
-  }
-  memcpy(image.planes[CONIC_PLANE_Z], p->z, n * sizeof(float));
-  memcpy(image.planes[CONIC_PLANE_TRANSPARENCY], p->T, n * sizeof(float));
-  return image;
-}
+static const unsigned diagnosed = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_TRANSPARENCY;
 
 static double cpu_seconds(void) {
   struct timespec now;
@@ -92,7 +71,7 @@ static diagnosed_picture diagnose(const diagnosed_world *w, unsigned faults, int
   plain_scene scene = faults & reading ? plain_scene_read(w->scene_path, faults) : w->plain;
   plain_picture picture = plain_picture_allocate(w->camera.width, w->camera.height);
   plain_gaussians_draw(&scene, &w->plain_camera, &settings, &picture);
-  conic_image image = as_image(w->context, &picture);
+  conic_image image = image_of_plain(w->context, &picture, diagnosed);
   conic_image greatest = {.width = 0};
   if (is_8_bit)
     greatest = quantise(w->context, &image);
@@ -152,7 +131,7 @@ static int try_fault(const diagnosed_world *w, plain_fault fault, int is_8_bit, 
 
 static void open_world(diagnosed_world *w) {
   w->plain = plain_scene_read(w->scene_path, 0);
-  w->plain_camera = as_plain_camera(&w->camera);
+  w->plain_camera = plain_camera_of(&w->camera);
 }
 
 static void close_world(diagnosed_world *w) {
@@ -284,7 +263,7 @@ typedef struct diagnosed_surfels {
 
 static diagnosed_picture diagnose_surfels(const diagnosed_surfels *w, unsigned faults) {
   diagnosed_picture p = {.n_found = 0};
-  const plain_camera camera = as_plain_camera(&w->camera);
+  const plain_camera camera = plain_camera_of(&w->camera);
   const plain_surfel_settings settings = {.cutoff = 1.5f, .prefilter = 1.0f, .faults = faults};
   const conic_drawing drawing = {.splats = &w->splats};
   plain_surfels plain = w->plain;
@@ -298,7 +277,7 @@ static diagnosed_picture diagnose_surfels(const diagnosed_surfels *w, unsigned f
   if (plain_has(faults, PLAIN_RADIUS_AS_SIGMA))
     for (size_t i = 0; i < 6 * plain.count; i++)
       plain.axes[i / (3 * plain.count)][i % (3 * plain.count)] /= 1.5f;
-  conic_image image = as_image(w->context, &picture);
+  conic_image image = image_of_plain(w->context, &picture, diagnosed);
   const size_t n = (size_t)image.width * (size_t)image.height;
   uint8_t *classes = malloc(n);
   CHECK_OK(

@@ -5,6 +5,7 @@
  * test_plain_floats SOURCE [COUNT [FIRST]]: a campaign of so many evaluations, from this one on (scripts/plain-floats).
  */
 #include "conic/gaussian_judge.h"
+#include "tests/judge/plain_conic.h"
 #include "tests/judge/plain_gaussians.h"
 #include "tests/support/check.h"
 
@@ -174,31 +175,8 @@ static plain_scene plain_copy(plain_evaluation *e) {
   return s;
 }
 
-static plain_camera plain_camera_of(const conic_camera *from) {
-  plain_camera c = {from->width,     from->height,    (float)from->fx, (float)from->fy,
-                    (float)from->cx, (float)from->cy, {{0.0f}}};
-  for (int row = 0; row < 3; row++)
-    for (int k = 0; k < 4; k++)
-      c.view[row][k] = (float)from->cam_from_world[row][k];
-  return c;
-}
-
-static conic_image image_of_plain(conic_context *context, const plain_picture *p) {
-  const size_t n = (size_t)p->width * (size_t)p->height;
-  conic_image image;
-  CHECK_OK(conic_image_allocate(
-      context, p->width, p->height,
-      1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_TRANSPARENCY, &image));
-  for (size_t i = 0; i < n; i++) {
-    float *rgba = (float *)image.planes[CONIC_PLANE_RGBA] + 4 * i;
-    memcpy(rgba, p->rgb + 3 * i, 3 * sizeof *rgba);
-    rgba[3] = p->alpha[i];
-    ((uint32_t *)image.planes[CONIC_PLANE_COUNT])[i] = (uint32_t)p->count[i];
-  }
-  memcpy(image.planes[CONIC_PLANE_Z], p->z, n * sizeof(float));
-  memcpy(image.planes[CONIC_PLANE_TRANSPARENCY], p->T, n * sizeof(float));
-  return image;
-}
+static const unsigned judged =
+    1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_TRANSPARENCY;
 
 /* What the bounds have of the pixel that is farthest off. */
 static void tell_pixel(conic_context *context, const plain_evaluation *e, const conic_gaussian_options *options,
@@ -241,7 +219,7 @@ static void evaluate(conic_context *context, uint64_t seed, plain_tally tallies[
   const plain_camera camera = plain_camera_of(&e.camera);
   plain_picture picture = plain_picture_allocate(SIDE, SIDE);
   plain_gaussians_draw(&scene, &camera, &e.settings, &picture);
-  conic_image image = image_of_plain(context, &picture);
+  conic_image image = image_of_plain(context, &picture, judged);
   conic_gaussian_options options;
   conic_gaussian_judging judging;
   conic_gaussian_verdict v;

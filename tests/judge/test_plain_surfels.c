@@ -3,6 +3,7 @@
  * approximates by chance.
  *
  * test_plain_surfels SOURCE [COUNT [FIRST]]: a campaign of so many evaluations, from this one on. */
+#include "tests/judge/plain_conic.h"
 #include "tests/judge/plain_surfels.h"
 #include "tests/support/fixture.h"
 
@@ -98,15 +99,6 @@ static plain_surfels plain_surfels_of(const conic_splats *s) {
   return p;
 }
 
-static plain_camera plain_camera_like(const conic_camera *from) {
-  plain_camera c = {from->width,     from->height,    (float)from->fx, (float)from->fy,
-                    (float)from->cx, (float)from->cy, {{0.0f}}};
-  for (int row = 0; row < 3; row++)
-    for (int k = 0; k < 4; k++)
-      c.view[row][k] = (float)from->cam_from_world[row][k];
-  return c;
-}
-
 static void tell_wrong_surfels(uint64_t seed, const plain_surfel_settings *s, const conic_oracle_judgement *j) {
   static size_t n_told;
   if (n_told++ >= MOST_TOLD)
@@ -122,19 +114,10 @@ static void tell_wrong_surfels(uint64_t seed, const plain_surfel_settings *s, co
 
 static void judge_plain_picture(fixture *f, uint64_t seed, const plain_surfel_settings *settings, conic_float_kind kind,
                                 const plain_picture *picture, surfel_tally *tally) {
-  const size_t n = (size_t)SIDE * SIDE;
   conic_reference reference;
   conic_oracle_judgement judgement;
-  conic_image image;
-  CHECK_OK(conic_image_allocate(f->context, SIDE, SIDE,
-                                1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_COUNT, &image));
-  for (size_t i = 0; i < n; i++) {
-    float *rgba = (float *)image.planes[CONIC_PLANE_RGBA] + 4 * i;
-    memcpy(rgba, picture->rgb + 3 * i, 3 * sizeof *rgba);
-    rgba[3] = picture->alpha[i];
-    ((uint32_t *)image.planes[CONIC_PLANE_COUNT])[i] = (uint32_t)picture->count[i];
-  }
-  memcpy(image.planes[CONIC_PLANE_Z], picture->z, n * sizeof(float));
+  conic_image image =
+      image_of_plain(f->context, picture, 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_COUNT);
   conic_oracle_asking asking;
   conic_oracle_asking_init(&asking);
   asking.floats = kind;
@@ -163,7 +146,7 @@ static void evaluate_surfels(fixture *f, uint64_t seed, surfel_tally tallies[2])
   f->options.method = settings.is_affine ? CONIC_METHOD_AFFINE : CONIC_METHOD_CONIC;
   f->options.prefilter = settings.prefilter;
   plain_surfels surfels = plain_surfels_of(&f->splats);
-  const plain_camera camera = plain_camera_like(&f->camera);
+  const plain_camera camera = plain_camera_of(&f->camera);
   plain_picture picture = plain_picture_allocate(SIDE, SIDE);
   CHECK(plain_surfels_draw(&surfels, &camera, &settings, &picture) == 0);
   judge_plain_picture(f, seed, &settings, is_fast ? CONIC_FLOATS_FAST : CONIC_FLOATS_STRICT, &picture,
