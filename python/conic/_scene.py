@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import shutil
-from typing import Any, Dict, List, Optional, Sequence, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy
 
@@ -28,6 +28,17 @@ class _InMemory:
     def _keep(self, columns: List[numpy.ndarray]) -> List[int]:
         self._arrays += columns
         return [column.ctypes.data for column in columns]
+
+    def _lend(self, struct: ctypes.Structure, name: str, found: Tuple[List[numpy.ndarray], int]) -> int:
+        """Puts columns and their stride into the struct, and returns their length."""
+        columns, stride = found
+        places = self._keep(columns)
+        if len(columns) == 1:
+            setattr(struct, name, places[0])
+        else:
+            getattr(struct, name)[:] = places
+        setattr(struct.strides, name, 0 if stride == 4 else stride)
+        return len(columns[0])
 
 
 class Splats(_InMemory):
@@ -56,14 +67,7 @@ class Splats(_InMemory):
                                ("scalar", scalar, 1)):
             if array is None:
                 continue
-            columns, stride = columns_of(array, n, count, name)
-            count = len(columns[0])
-            places = self._keep(columns)
-            if n == 1:
-                setattr(struct, name, places[0])
-            else:
-                getattr(struct, name)[:] = places
-            setattr(struct.strides, name, 0 if stride == 4 else stride)
+            count = self._lend(struct, name, columns_of(array, n, count, name))
         struct.count = count or 0
         self._struct = struct
 
@@ -110,14 +114,8 @@ class Mesh(_InMemory):
                                ("texture_coordinate", texture_coordinate, 2), ("scalar", scalar, 1)):
             if array is None:
                 continue
-            columns, stride = columns_of(array, n, count, "vertices" if name == "position" else name)
-            count = len(columns[0])
-            places = self._keep(columns)
-            if n == 1:
-                setattr(struct, name, places[0])
-            else:
-                getattr(struct, name)[:] = places
-            setattr(struct.strides, name, 0 if stride == 4 else stride)
+            count = self._lend(struct, name,
+                               columns_of(array, n, count, "vertices" if name == "position" else name))
         corners = as_numpy(faces, "faces")
         if corners.ndim != 2 or corners.shape[1] != 3 or corners.dtype.kind not in "iu":
             raise ArgumentError(f"faces: whole numbers of the shape (M, 3) are needed, not {corners.dtype} "
