@@ -8,6 +8,7 @@
 #include "core/base/nearest_word.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"
+#include "core/files/file.h"
 
 /* The camera of the rates that are quoted: the unit sphere from a little above, some 900 pixels across. */
 static const double focal_px = 1406.708438760767; /* for 1024 pixels */
@@ -211,8 +212,7 @@ static conic_status read_bench_file(cli_session *session, const char *path, cons
                                     cli_bench_scene *scene) {
   conic_source_options options;
   conic_source_options_init(&options);
-  const char *slash = strrchr(path, '/');
-  snprintf(scene->name, sizeof scene->name, "%.31s", slash ? slash + 1 : path);
+  snprintf(scene->name, sizeof scene->name, "%.31s", conic_file_name(path));
   if (cli_bench_is_gaussian_file(path))
     return cli_bench_gaussians_read(session, path, look, scene);
   options.is_whole = 1;

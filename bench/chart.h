@@ -39,10 +39,6 @@ void cli_chart_write_error(FILE *to, const cli_chart_error *error);
 /* Opens FOLDER/NAME. Errors: those of conic_output_open. */
 conic_status cli_chart_open(const cli_session *session, const char *folder, const char *name, conic_output **output);
 
-/* Runs gnuplot on FOLDER/SCRIPT, which draws the tables there: SVG and PNG. Returns 0 where there is no gnuplot or it
- * failed. */
-int cli_chart_plot(const char *folder, const char *script);
-
 /* FOLDER/chart.gp; the points are those of chart.csv. */
 conic_status cli_chart_write_script(cli_session *session, const char *folder, const cli_chart_point *points,
                                     int n_points);

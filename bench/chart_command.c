@@ -6,7 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "bench/chart_gaussians.h"
 #include "bench/chart_mesh.h"
@@ -14,6 +13,8 @@
 #include "cli/command.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
+#include "cli/shell.h"
+#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 
@@ -344,9 +345,9 @@ static int draw_charts(const chart_job *job) {
   if (status != CONIC_OK)
     return cli_exit_of(status);
   if (job->only != ONLY_METHODS)
-    is_drawn = cli_chart_plot(job->folder, "representations.gp");
+    is_drawn = cli_shell_run(job->folder, "gnuplot", "representations.gp");
   if (is_drawn && job->only != ONLY_REPRESENTATIONS)
-    is_drawn = cli_chart_plot(job->folder, "chart.gp");
+    is_drawn = cli_shell_run(job->folder, "gnuplot", "chart.gp");
   if (!is_drawn)
     warn_of_plots(job);
   return CLI_DONE;
@@ -387,8 +388,8 @@ static int write_statistics(const chart_job *job, double seconds) {
 }
 
 static int make_folder(const char *path) {
-  struct stat found;
-  if (mkdir(path, 0777) == 0 || (errno == EEXIST && stat(path, &found) == 0 && S_ISDIR(found.st_mode)))
+  conic_disk_entry found;
+  if (conic_disk_make_folder(path) || (errno == EEXIST && conic_disk_look(path, &found) && found.is_folder))
     return CLI_DONE;
   return cli_error(CLI_RESOURCE, "%s: cannot make the folder: %s", path, strerror(errno));
 }
@@ -399,7 +400,7 @@ static int chart_gaussians(chart_job *job) {
     status = cli_gaussian_chart_write(job->session, job->folder, &job->gaussians);
   if (status != CONIC_OK)
     return cli_exit_of(status);
-  if (!cli_chart_plot(job->folder, "profiles.gp"))
+  if (!cli_shell_run(job->folder, "gnuplot", "profiles.gp"))
     warn_of_plots(job);
   if (is_told(job->session))
     cli_gaussian_chart_print(&job->gaussians);

@@ -42,7 +42,7 @@ conic_status cli_mesh_chart_write(cli_session *session, const char *folder, cons
 /* What is best for its time at each size, and where the others become cheaper than triangles. */
 void cli_mesh_chart_print(const cli_mesh_chart *chart);
 
-/* FOLDER/representations.gp, for cli_chart_plot. */
+/* FOLDER/representations.gp, for gnuplot. */
 conic_status cli_mesh_chart_write_script(cli_session *session, const char *folder, const cli_mesh_chart *chart);
 
 #endif

@@ -2,8 +2,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "bench/chart.h"
 
@@ -119,19 +117,4 @@ conic_status cli_chart_write_script(cli_session *session, const char *folder, co
       fputs("unset multiplot\nset output\n", to);
     }
   return conic_output_commit(output);
-}
-
-int cli_chart_plot(const char *folder, const char *script) {
-  int status;
-  pid_t child = fork();
-  if (child < 0)
-    return 0;
-  if (child == 0) {
-    if (chdir(folder) == 0)
-      execlp("gnuplot", "gnuplot", script, (char *)NULL);
-    _exit(127);
-  }
-  while (waitpid(child, &status, 0) < 0)
-    ;
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }

@@ -3,10 +3,10 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/command.h"
 #include "core/base/nearest_word.h"
+#include "core/files/disk.h"
 #include "core/formats/text_columns.h"
 
 enum { N_COMMON = 8 };
@@ -240,7 +240,8 @@ static int refuse_option(const cli_session *session, const option_set *set, cons
     for (int i = 0; i < set->counts[table]; i++)
       if (set->tables[table][i].name[1])
         nearest = conic_nearer_word(name, nearest, set->tables[table][i].name);
-  if (access(argument, F_OK) == 0)
+  conic_disk_entry entry;
+  if (conic_disk_look(argument, &entry))
     return cli_usage("%s: unknown option %s; the file of that name is ./%s", session->command, argument, argument);
   if (nearest)
     return cli_usage("%s: unknown option %s; did you mean --%s?", session->command, argument, nearest);

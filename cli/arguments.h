@@ -71,6 +71,13 @@ int cli_parse_length(const char *text, void *length);
   }
 int cli_parse_columns(const char *text, void *columns);
 
+/* Which points are wanted: the option --where, into a const char *. */
+#define CLI_WHERE(to)                                                                                                  \
+  {                                                                                                                    \
+    "where", CLI_TEXT, to, "WHAT",                                                                                     \
+        "which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)' [all]"  \
+  }
+
 /* Parses a count as CLI_COUNT does: 100000, 10k, 2M, 1e6; 0 where it is none. */
 int cli_parse_count(const char *text, unsigned long long *value);
 

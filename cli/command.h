@@ -5,7 +5,7 @@
 #include "cli/session.h"
 
 /* Whatever a scene is read from. */
-#define CLI_READABLE "PLY, XYZ, PTS, CSV, LAS, PCD, OBJ, STL, OFF, glTF, GLB, 3MF, DAE, FBX, .cot, .chy, .lpc"
+#define CLI_READABLE "PLY, XYZ, PTS, CSV, LAS, LAZ, PCD, E57, PTX, OBJ, STL, OFF, glTF, GLB, 3MF, DAE, FBX, .cot, .chy, .lpc"
 
 /* Words that a command takes as an argument, or as an option's value. */
 typedef struct cli_words {
@@ -30,9 +30,9 @@ typedef struct cli_command {
   cli_example examples[4];
 } cli_command;
 
-extern const cli_command cli_make, cli_prepare, cli_octree, cli_layer, cli_mls, cli_hybrid, cli_render, cli_diff,
-    cli_info, cli_verify, cli_judge, cli_explain, cli_gradient, cli_conformance, cli_chart, cli_bench, cli_devices,
-    cli_convert;
+extern const cli_command cli_make, cli_prepare, cli_octree, cli_layer, cli_merge, cli_cut, cli_mls, cli_hybrid,
+    cli_render, cli_diff, cli_info, cli_verify, cli_judge, cli_explain, cli_gradient, cli_conformance, cli_chart,
+    cli_bench, cli_devices, cli_convert;
 
 /* The command of that name, or null. */
 const cli_command *cli_find_command(const char *name);

@@ -28,8 +28,8 @@ typedef struct cli_host {
   int (*progress)(void *cookie, const char *task, double fraction);
   /* A line of a conic_log_level. */
   void (*say)(void *cookie, int level, const char *line);
-  /* Asks for zeroed arrays for the planes of a frame; not 0: there is no memory. Null: render has no picture to hand
-   * over, and needs outputs. */
+  /* Asks for arrays for the planes of a frame, with anything in them; not 0: there is no memory. Null: render has no
+   * picture to hand over, and needs outputs. */
   int (*lay_out)(void *cookie, int width, int height, unsigned planes, void **arrays);
   /* The frame is drawn. The arrays are the caller's, all else is the run's. */
   void (*take)(void *cookie, int i_frame, const char *view, const conic_image *image, const conic_camera *camera);

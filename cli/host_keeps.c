@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/shell.h"
 #include "core/base/context_struct.h"
 
 struct cli_kept {
@@ -130,7 +131,11 @@ void cli_keep_renderer(const cli_session *session, const cli_device *device, con
 
 FILE *cli_host_open_json(cli_host *host) {
   cli_host_release(host);
-  return open_memstream(&host->json, &host->json_bytes);
+  return cli_shell_open_memory(&host->json, &host->json_bytes);
+}
+
+int cli_host_close_json(cli_host *host, FILE *json) {
+  return cli_shell_close_memory(json, &host->json, &host->json_bytes);
 }
 
 void cli_host_release(cli_host *host) {

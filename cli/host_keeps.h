@@ -7,8 +7,10 @@
 #include "cli/host.h"
 #include "cli/session.h"
 
-/* The stream into the host's JSON, to be closed; null without memory. */
+/* The stream into the host's JSON; null without memory. */
 FILE *cli_host_open_json(cli_host *host);
+/* Closes it; 0 where all is there. */
+int cli_host_close_json(cli_host *host, FILE *json);
 
 /* conic_image_allocate and conic_image_release; of a host, of its arrays. */
 conic_status cli_host_allocate_image(cli_session *session, int width, int height, unsigned planes, conic_image *image);

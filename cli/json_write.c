@@ -144,7 +144,8 @@ void cli_json_hash(cli_json *json, const char *key, uint64_t value) {
 
 struct cli_json_file {
   conic_output *output; /* null: of a host's run, */
-  FILE *memory;         /* which gets it as text */
+  cli_host *host;       /* null: a file */
+  FILE *memory;         /* the host's, which gets it as text */
   cli_json json;
 };
 
@@ -160,7 +161,7 @@ cli_json *cli_json_open(cli_session *session, cli_json_file **file, int *exit_co
   conic_status status = CONIC_OK;
   memset(made, 0, sizeof *made);
   if (session->host)
-    made->memory = cli_host_open_json(session->host);
+    made->memory = cli_host_open_json(made->host = session->host);
   else
     status = conic_output_open(session->context, session->json_path, &made->output);
   if (status != CONIC_OK || (session->host && !made->memory)) {
@@ -179,7 +180,7 @@ int cli_json_finish(cli_json_file *file) {
   int is_whole = cli_json_end(&file->json); /* what it says of a file's stream, commit finds again */
   conic_status status = CONIC_OK;
   if (file->memory)
-    status = fclose(file->memory) == 0 && is_whole ? CONIC_OK : CONIC_ERROR_MEMORY;
+    status = cli_host_close_json(file->host, file->memory) == 0 && is_whole ? CONIC_OK : CONIC_ERROR_MEMORY;
   else
     status = conic_output_commit(file->output);
   free(file);

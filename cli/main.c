@@ -3,12 +3,13 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/shell.h"
 #include "core/base/nearest_word.h"
 
-static const cli_command *const commands[] = {&cli_make,   &cli_prepare, &cli_octree,  &cli_layer,    &cli_mls,
-                                              &cli_hybrid, &cli_convert, &cli_render,  &cli_diff,     &cli_info,
-                                              &cli_verify, &cli_judge,   &cli_explain, &cli_gradient, &cli_conformance,
-                                              &cli_chart,  &cli_bench,   &cli_devices};
+static const cli_command *const commands[] = {&cli_make,     &cli_prepare,     &cli_octree, &cli_layer,   &cli_merge,
+                                              &cli_cut,      &cli_mls,         &cli_hybrid, &cli_convert, &cli_render,
+                                              &cli_diff,     &cli_info,        &cli_verify, &cli_judge,   &cli_explain,
+                                              &cli_gradient, &cli_conformance, &cli_chart,  &cli_bench,   &cli_devices};
 
 enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -76,7 +77,8 @@ static int run(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-  int exit_code = run(argc, argv);
+  char **arguments = cli_shell_begin(&argc, argv);
+  int exit_code = arguments ? run(argc, arguments) : cli_error(CLI_RESOURCE, "out of memory");
   errno = 0;
   if ((fflush(stdout) != 0 || ferror(stdout)) && exit_code < CLI_USAGE)
     exit_code =

@@ -3,26 +3,25 @@
 #include <errno.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include "core/files/disk.h"
 #include "core/files/file.h"
 
 /* Whether there is a folder that PATH can be written in; devices and pipes stand where they are. */
 static int check_folder(const char *path) {
   char folder[4096];
-  struct stat found;
-  if (strcmp(path, "-") == 0 || (stat(path, &found) == 0 && !S_ISREG(found.st_mode) && !S_ISDIR(found.st_mode)))
+  conic_disk_entry found;
+  if (strcmp(path, "-") == 0 || (conic_disk_look(path, &found) && !found.is_file && !found.is_folder))
     return CLI_DONE;
-  if (stat(path, &found) == 0 && S_ISDIR(found.st_mode))
+  if (conic_disk_look(path, &found) && found.is_folder)
     return cli_error(CLI_RESOURCE, "%s: cannot write: it is a directory", path);
   char target[4096];
-  const char *real = conic_file_follow(path, target, sizeof target) ? target : path, *slash = strrchr(real, '/');
-  int n = slash ? slash == real ? 1 : (int)(slash - real) : 0;
+  const char *real = conic_file_follow(path, target, sizeof target) ? target : path;
+  int n = (int)(conic_file_name(real) - real);
   if (n >= (int)sizeof folder)
     return CLI_DONE; /* whoever opens it will say so */
   snprintf(folder, sizeof folder, "%.*s", n, real);
-  if (access(n ? folder : ".", W_OK | X_OK) != 0)
+  if (!conic_disk_can_write_in(n ? folder : "."))
     return cli_error(CLI_RESOURCE, "%s: cannot write: %s", path, strerror(errno));
   return CLI_DONE;
 }
@@ -38,28 +37,28 @@ static int check_folders(const cli_session *session, const char *const *paths, i
   return exit_code;
 }
 
-static int find_folder(const char *path, struct stat *found) {
+static int find_folder(const char *path, conic_disk_entry *found) {
   char folder[4096];
   int n = (int)(conic_file_name(path) - path);
   if (n >= (int)sizeof folder)
     return 0;
   snprintf(folder, sizeof folder, "%.*s", n, path);
-  return stat(n ? folder : ".", found) == 0;
+  return conic_disk_look(n ? folder : ".", found);
 }
 
-static int is_one(const struct stat *first, const struct stat *second) {
-  return first->st_dev == second->st_dev && first->st_ino == second->st_ino;
+static int is_one(const conic_disk_entry *first, const conic_disk_entry *second) {
+  return first->device == second->device && first->number == second->number;
 }
 
 /* Whether two names are those of one file, be it there or not; devices can be written to twice. */
 static int is_same_file(const char *first, const char *second) {
-  struct stat a, b;
+  conic_disk_entry a, b;
   char first_target[4096], second_target[4096];
   if (strcmp(first, "-") == 0 || strcmp(second, "-") == 0 || strcmp(first, second) == 0)
     return strcmp(first, second) == 0 && strncmp(first, "/dev/", 5) != 0;
-  int is_first = stat(first, &a) == 0, is_second = stat(second, &b) == 0;
+  int is_first = conic_disk_look(first, &a), is_second = conic_disk_look(second, &b);
   if (is_first || is_second)
-    return is_first && is_second && S_ISREG(a.st_mode) && is_one(&a, &b);
+    return is_first && is_second && a.is_file && is_one(&a, &b);
   return conic_file_follow(first, first_target, sizeof first_target) &&
          conic_file_follow(second, second_target, sizeof second_target) &&
          strcmp(conic_file_name(first_target), conic_file_name(second_target)) == 0 && find_folder(first_target, &a) &&
@@ -96,11 +95,11 @@ int cli_check_ending(const char *path, const char *ending) {
   static const char *const known[] = {"ply", "obj",  "las", "laz",  "xyz", "pts",  "cot", "lpc", "chy", "stl",
                                       "off", "gltf", "glb", "3mf",  "dae", "fbx",  "3ds", "x3d", "dxf", "amf",
                                       "exr", "png",  "jpg", "jpeg", "tif", "tiff", "pfm", "hdr", "json"};
-  const char *slash = path ? strrchr(path, '/') : NULL, *dot = path ? strrchr(slash ? slash : path, '.') : NULL;
-  if (!dot || strcasecmp(dot + 1, ending) == 0)
+  const char *own = path ? conic_file_ending(path) : "";
+  if (!*own || strcasecmp(own, ending) == 0)
     return CLI_DONE;
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
-    if (strcasecmp(dot + 1, known[i]) == 0)
+    if (strcasecmp(own, known[i]) == 0)
       return cli_usage("%s: what is written is no .%s; give the name the ending .%s", path, known[i], ending);
   return CLI_DONE;
 }

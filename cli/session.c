@@ -6,13 +6,10 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/ioctl.h>
-#include <sys/resource.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "cli/host.h"
 #include "cli/host_keeps.h"
+#include "cli/shell.h"
 #include "cli/stopper.h"
 #include "core/base/clock.h"
 #include "core/files/guard.h"
@@ -27,7 +24,7 @@ static atomic_int has_failed;
 /* When the first signal came, by the monotonic clock; 0: none has. Threads may handle signals at the same time. */
 static atomic_llong interrupted_at_ms;
 static atomic_int first_signal;
-static atomic_int pipe_is_closed; /* what is written to a pipe has no reader any more */
+static atomic_int closed_pipe_signal; /* what is written to a pipe has no reader any more */
 
 /* Of the run that this thread is in; null: the program's own. */
 static _Thread_local cli_host *thread_host;
@@ -45,20 +42,8 @@ double cli_seconds(void) {
   return conic_seconds_now();
 }
 
-/* The kernel's own mark of this program: getrusage also counts what the shell that started it held. */
 unsigned long long cli_peak_rss_bytes(void) {
-  unsigned long long kibibytes = 0;
-  char line[256];
-  FILE *file = fopen("/proc/self/status", "r");
-  while (file && !kibibytes && fgets(line, sizeof line, file))
-    if (strncmp(line, "VmHWM:", 6) == 0)
-      kibibytes = strtoull(line + 6, NULL, 10);
-  if (file)
-    fclose(file);
-  struct rusage usage;
-  if (!kibibytes && getrusage(RUSAGE_SELF, &usage) == 0)
-    kibibytes = (unsigned long long)usage.ru_maxrss;
-  return kibibytes * 1024;
+  return cli_shell_peak_bytes();
 }
 
 static void erase_bar(void) {
@@ -132,7 +117,8 @@ int cli_exit_after_signals(int exit_code) {
     return exit_code;
   if (atomic_load(&first_signal))
     return 128 + atomic_load(&first_signal);
-  return exit_code == CLI_RESOURCE && atomic_load(&pipe_is_closed) ? 128 + SIGPIPE : exit_code;
+  return exit_code == CLI_RESOURCE && atomic_load(&closed_pipe_signal) ? 128 + atomic_load(&closed_pipe_signal)
+                                                                       : exit_code;
 }
 
 int cli_exit_of(conic_status status) {
@@ -155,9 +141,7 @@ int cli_exit_of(conic_status status) {
 }
 
 static int bar_cells(void) {
-  struct winsize window;
-  int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col ? window.ws_col : 80;
-  int cells = columns - 42;
+  int cells = cli_shell_columns() - 42;
   return cells < 0 ? 0 : cells > 40 ? 40 : cells;
 }
 
@@ -213,12 +197,6 @@ static void show_progress(cli_session *session, const char *task, double fractio
     draw_bar(session, fraction, now);
 }
 
-/* A terminal that moves its cursor where it is told to. */
-static int can_draw_bar(void) {
-  const char *kind = getenv("TERM");
-  return isatty(STDERR_FILENO) && kind && *kind && strcmp(kind, "dumb") != 0;
-}
-
 static int on_progress(void *cookie, const char *task, double fraction) {
   cli_session *session = cookie;
   const cli_host *host = session->host;
@@ -256,9 +234,7 @@ static const long long one_wish_ms = 250;
 
 /* The first signal asks the work to stop, so that it removes what it has half written; a later one ends it at once. */
 static void on_interrupt(int signal_number) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  long long now_ms = (long long)now.tv_sec * 1000 + now.tv_nsec / 1000000 + 1, first_ms = 0;
+  long long now_ms = (long long)(1e3 * conic_seconds_now()) + 1, first_ms = 0;
   int none = 0;
   atomic_compare_exchange_strong(&first_signal, &none, signal_number);
   if (atomic_compare_exchange_strong(&interrupted_at_ms, &first_ms, now_ms)) {
@@ -273,19 +249,7 @@ static void on_interrupt(int signal_number) {
 
 /* The write fails, after which is cleaned up as after any other failure. */
 static void on_closed_pipe(int signal_number) {
-  (void)signal_number;
-  atomic_store(&pipe_is_closed, 1);
-}
-
-/* A signal that whoever started the program has turned off stays off. What waits, say for a pipe, is woken. */
-static void catch_signal(int signal_number, void (*handler)(int)) {
-  struct sigaction action;
-  if (sigaction(signal_number, NULL, &action) != 0 || action.sa_handler == SIG_IGN)
-    return;
-  memset(&action, 0, sizeof action);
-  action.sa_handler = handler;
-  sigemptyset(&action.sa_mask);
-  sigaction(signal_number, &action, NULL);
+  atomic_store(&closed_pipe_signal, signal_number);
 }
 
 /* A host's runs leave the process as it is: its signals, its terminal. */
@@ -320,13 +284,9 @@ int cli_session_open(cli_session *session) {
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
   conic_guard_inputs(session->context, session->replaced_path);
-  session->has_bar = !session->is_quiet && can_draw_bar();
+  session->has_bar = !session->is_quiet && cli_shell_has_cursor();
   cli_stopper_begin(session->context, session->command);
-  const int wishes[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
-  for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++)
-    catch_signal(wishes[i], on_interrupt);
-  catch_signal(SIGPIPE, on_closed_pipe);
-  signal(SIGXFSZ, SIG_IGN); /* a file that may not grow further is a failed write, after which is cleaned up */
+  cli_shell_catch(on_interrupt, on_closed_pipe);
   return CLI_DONE;
 }
 

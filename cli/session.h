@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "conic/conic.h"
+#include "core/base/message.h"
 
 enum cli_exit { CLI_DONE = 0, CLI_DIFFERENT = 1, CLI_USAGE = 2, CLI_INPUT = 3, CLI_RESOURCE = 4 };
 
@@ -49,14 +50,14 @@ void cli_session_part(cli_session *session, const char *name, int i_part, int n_
 int cli_exit_of(conic_status status);
 
 /* Prints "conic: error: …" and returns CLI_USAGE. */
-int cli_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
+int cli_usage(const char *format, ...) CONIC_AS_PRINTF(1, 2);
 /* Prints "conic: error: …" and returns `exit_code`. */
-int cli_error(int exit_code, const char *format, ...) __attribute__((format(printf, 2, 3)));
+int cli_error(int exit_code, const char *format, ...) CONIC_AS_PRINTF(2, 3);
 
 /* Prints "conic: …", unless the run is quiet: what was chosen for the user, who may want it otherwise. */
-void cli_note(const cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void cli_note(const cli_session *session, const char *format, ...) CONIC_AS_PRINTF(2, 3);
 /* Prints "conic: warning: …" unless the session is quiet. */
-void cli_warn(const cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void cli_warn(const cli_session *session, const char *format, ...) CONIC_AS_PRINTF(2, 3);
 
 /* The exit code of the program where a command's is `exit_code`: 128 and the signal's number where one has stopped it.
  */

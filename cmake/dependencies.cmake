@@ -22,7 +22,7 @@ else()
   set(ZLIB_FOUND FALSE)
 endif()
 
-if(CONIC_WITH_OPENIMAGEIO)
+if(CONIC_WITH_OPENIMAGEIO AND NOT WIN32) # where no module is loaded, as in core/base/module_windows.c
   if(NOT CMAKE_CXX_COMPILER)
     unset(CMAKE_CXX_COMPILER CACHE) # one may have been installed since the last look
   endif()
@@ -37,7 +37,7 @@ if(CONIC_WITH_OPENIMAGEIO)
   endif()
 endif()
 
-if(CONIC_WITH_ASSIMP)
+if(CONIC_WITH_ASSIMP AND NOT WIN32)
   find_package(assimp 5 CONFIG QUIET)
 endif()
 
@@ -69,6 +69,24 @@ else()
   set(WEBP_FOUND FALSE)
 endif()
 
+if(CONIC_WITH_BROTLI) # likewise
+  find_library(BROTLI_LIBRARY brotlidec)
+  find_library(BROTLI_COMMON_LIBRARY brotlicommon)
+  find_path(BROTLI_INCLUDE_FOLDER brotli/decode.h)
+  mark_as_advanced(BROTLI_LIBRARY BROTLI_COMMON_LIBRARY BROTLI_INCLUDE_FOLDER)
+endif()
+if(CONIC_WITH_BROTLI AND BROTLI_LIBRARY AND BROTLI_COMMON_LIBRARY AND BROTLI_INCLUDE_FOLDER)
+  set(BROTLI_FOUND TRUE)
+else()
+  set(BROTLI_FOUND FALSE)
+endif()
+
+if(CONIC_WITH_XML)
+  find_package(LibXml2 QUIET)
+else()
+  set(LIBXML2_FOUND FALSE)
+endif()
+
 if(CONIC_WITH_CURL)
   find_package(CURL 7.66 QUIET)
 else()
@@ -84,11 +102,13 @@ set(found_opencl ${OpenCL_FOUND})
 set(found_curl ${CURL_FOUND})
 set(found_zstd ${ZSTD_FOUND})
 set(found_webp ${WEBP_FOUND})
+set(found_brotli ${BROTLI_FOUND})
+set(found_xml ${LIBXML2_FOUND})
 foreach(dependency "openexr:OpenEXR (EXR images)" "png:libpng (PNG images)"
         "zlib:zlib (compressed deep images, Gaussian scenes in .spz)"
         "openimageio:OpenImageIO (TIFF, JPEG … images, and PNG without libpng)"
         "assimp:Assimp (STL, OFF, glTF, 3MF, DAE, FBX … meshes)" "opencl:OpenCL (other devices)"
-        "zstd:zstd (layered point clouds, Gaussian scenes in .spz)" "webp:libwebp (Gaussian scenes in .sog)" "curl:CURL (layered clouds from web servers)")
+        "zstd:zstd (layered point clouds, Gaussian scenes in .spz)" "webp:libwebp (Gaussian scenes in .sog)" "xml:libxml2 (scans in .e57)" "brotli:libbrotlidec (points of Potree 2)" "curl:CURL (layered clouds from web servers)")
   string(REGEX MATCH "^([a-z]+):(.*)$" matched ${dependency})
   set(description "${CMAKE_MATCH_2}")
   if(found_${CMAKE_MATCH_1})

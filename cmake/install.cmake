@@ -13,7 +13,7 @@ install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT develop
 # Two sets, since only who links the static library needs its dependencies found again.
 foreach(kind ${conic_kinds})
   install(TARGETS conic_${kind} EXPORT conic-${kind} COMPONENT development
-    LIBRARY COMPONENT library NAMELINK_COMPONENT development)
+    LIBRARY COMPONENT library NAMELINK_COMPONENT development RUNTIME COMPONENT library)
   install(EXPORT conic-${kind} NAMESPACE conic:: DESTINATION ${package_folder} COMPONENT development)
 endforeach()
 if(TARGET OpenEXR::OpenEXRCore)
@@ -39,7 +39,10 @@ install(FILES ${PROJECT_BINARY_DIR}/package/conic-config.cmake ${PROJECT_BINARY_
 
 # For pkg-config --static: the private libraries by their names, with the folders of those that the linker would not find.
 # Requires.private would make who links the shared library install their packages.
-set(private_libraries "-pthread -ldl -lm")
+set(private_libraries "-pthread -lm")
+foreach(library ${CMAKE_DL_LIBS})
+  string(APPEND private_libraries " -l${library}")
+endforeach()
 macro(conic_link_privately file)
   get_filename_component(folder ${file} DIRECTORY)
   get_filename_component(name ${file} NAME)
@@ -65,8 +68,15 @@ endforeach()
 if(ZSTD_FOUND)
   conic_link_privately(${ZSTD_LIBRARY})
 endif()
+if(LIBXML2_FOUND)
+  conic_link_privately(${LIBXML2_LIBRARY})
+endif()
 if(WEBP_FOUND)
   conic_link_privately(${WEBP_LIBRARY})
+endif()
+if(BROTLI_FOUND)
+  conic_link_privately(${BROTLI_LIBRARY})
+  conic_link_privately(${BROTLI_COMMON_LIBRARY})
 endif()
 if(conic_modules)
   string(APPEND private_libraries " -Wl,-rpath,\${libdir}/conic")

@@ -1,17 +1,21 @@
-# Modules, loaded when they are needed. They lie where core/base/module.c looks: in a folder beside libconic, in the
+# Modules, loaded when they are needed. They lie where core/base/module_posix.c looks: in a folder beside libconic, in the
 # build as in an installation. conic_add_module(NAME LIBRARY SOURCE …) makes
 # conic-NAME.so.
 set(conic_modules "")
-set_source_files_properties(core/base/module.c PROPERTIES # which asks where it is: no question of POSIX's
-  COMPILE_DEFINITIONS "_GNU_SOURCE;CONIC_MODULES_FROM_PROGRAM=\"${libraries_from_programs}/conic\"")
+include(CheckSymbolExists)
+set(CMAKE_REQUIRED_DEFINITIONS -D_GNU_SOURCE)
+check_symbol_exists(dladdr1 dlfcn.h CONIC_HAVE_DLADDR1)
+unset(CMAKE_REQUIRED_DEFINITIONS)
+set_source_files_properties(core/base/module_posix.c PROPERTIES COMPILE_DEFINITIONS # it asks where it is: not POSIX's
+  "_GNU_SOURCE;CONIC_HAVE_DLADDR1=$<BOOL:${CONIC_HAVE_DLADDR1}>;CONIC_MODULES_FROM_PROGRAM=\"${libraries_from_programs}/conic\"")
 
 macro(conic_add_module name library)
   add_library(conic_${name} MODULE ${ARGN})
   set_target_properties(conic_${name} PROPERTIES PREFIX "" OUTPUT_NAME conic-${name} SUFFIX .so
-    LIBRARY_OUTPUT_DIRECTORY ${conic_library_folder}/conic LINK_DEPENDS ${PROJECT_BINARY_DIR}/exports.map)
+    LIBRARY_OUTPUT_DIRECTORY ${conic_library_folder}/conic)
   target_link_libraries(conic_${name} PRIVATE conic_flags ${library})
   # The C++ library's templates would otherwise be exported.
-  target_link_options(conic_${name} PRIVATE LINKER:--version-script=${PROJECT_BINARY_DIR}/exports.map)
+  conic_limit_exports(conic_${name} ${PROJECT_BINARY_DIR}/exports.map)
   if(CONIC_INSTALL)
     install(TARGETS conic_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/conic COMPONENT library)
   endif()

@@ -30,6 +30,12 @@ const char *conic_version(void) {
 #ifndef CONIC_HAVE_CURL
 #define CONIC_HAVE_CURL 0
 #endif
+#ifndef CONIC_HAVE_BROTLI
+#define CONIC_HAVE_BROTLI 0
+#endif
+#ifndef CONIC_HAVE_XML
+#define CONIC_HAVE_XML 0
+#endif
 #ifndef CONIC_HAVE_WEBP
 #define CONIC_HAVE_WEBP 0
 #endif
@@ -44,6 +50,8 @@ static const conic_feature features[] = {
     {"Assimp", 1},
     {"zlib", CONIC_HAVE_ZLIB},
     {"libwebp", CONIC_HAVE_WEBP},
+    {"Brotli", CONIC_HAVE_BROTLI},
+    {"libxml2", CONIC_HAVE_XML},
 };
 static const conic_feature without_openimageio = {"OpenImageIO", 0}, without_assimp = {"Assimp", 0};
 enum { I_OPENIMAGEIO = 1, I_ASSIMP = 6 };

@@ -136,6 +136,7 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   reading.columns = options->columns;
   reading.keeps_faces = options->as == CONIC_AS_MESH || options->as == CONIC_AS_AUTO;
   conic_coloring_read(options->coloring, &reading);
+  reading.where = options->where;
   conic_status status = conic_gaussians_read_model(context, path, &reading, &model);
   if (status != CONIC_OK)
     return status;
@@ -143,7 +144,9 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   memcpy(up, model.up, sizeof model.up);
   if (conic_splats_bounds(&model.points, low, high) == 0)
     status = conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,
-                        model.points.count ? "no point is finite" : "it holds no points");
+                        model.points.count ? "no point is finite"
+                        : options->where   ? "no point passes --where"
+                                           : "it holds no points");
   else if (options->as == CONIC_AS_AUTO)
     status = take_as_fits(d, path, options, &model);
   else if (reading.keeps_faces && model.n_triangles)
@@ -165,8 +168,12 @@ static conic_status read_into_drawing(drawing_source *d, const char *path, const
   conic_read_options reading;
   conic_read_options_init(&reading);
   conic_coloring_read(options->coloring, &reading);
-  if (reading.field && !reading.field_is_optional)
+  int keeps_values = special == &conic_source_kind_layers;
+  if (reading.field && !reading.field_is_optional && !keeps_values)
     return conic_coloring_refuse(d->base.context, path, options);
+  if (options->where && !keeps_values)
+    return conic_fail(d->base.context, CONIC_ERROR_INPUT, "%s: points are chosen of files of points and of .lpc alone",
+                      path);
   conic_status status = conic_source_open_kind(d->base.context, special, &path, 1, options, &part);
   if (status != CONIC_OK)
     return status;

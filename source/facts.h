@@ -3,6 +3,7 @@
 #define CONIC_FACTS_H
 
 #include "conic/source.h"
+#include "core/base/message.h"
 
 #define CONIC_COUNT(name, value) ((conic_fact){.type = CONIC_FACT_COUNT, .key = (name), .count = (uint64_t)(value)})
 #define CONIC_NUMBER(name, value) ((conic_fact){.type = CONIC_FACT_NUMBER, .key = (name), .number = (double)(value)})
@@ -17,8 +18,7 @@
 #define CONIC_LINE(label, ...) conic_fact_text(CONIC_FACT_LINE, label, __VA_ARGS__)
 
 /* A fact of a type with text. */
-conic_fact conic_fact_text(conic_fact_type type, const char *key, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+conic_fact conic_fact_text(conic_fact_type type, const char *key, const char *format, ...) CONIC_AS_PRINTF(3, 4);
 
 enum { CONIC_MOST_FACTS = 640 };
 

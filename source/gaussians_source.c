@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
+#include "core/image/image_common.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "source/source_kind.h"
 
@@ -212,6 +213,17 @@ static uint64_t reduce_samples(const fine_picture *fine, const conic_image *imag
   return n_covered;
 }
 
+/* What compositing does not make is 0, whatever was in the caller's arrays. */
+static void clear_other_planes(const conic_image *image) {
+  const unsigned made = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_TRANSPARENCY | 1u << CONIC_PLANE_Z |
+                        1u << CONIC_PLANE_MEDIAN_Z | 1u << CONIC_PLANE_INVERSE_Z | 1u << CONIC_PLANE_ID |
+                        1u << CONIC_PLANE_LAST | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_COUNT;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (image->planes[i] && !(made >> i & 1))
+      memset(image->planes[i], 0,
+             conic_image_pixels(image) * (size_t)conic_plane_describe((conic_plane)i)->n_channels * 4);
+}
+
 static void tell_drawing(const gaussians_source *g, uint64_t n_covered, conic_render_statistics *statistics) {
   const conic_gaussian_statistics *s = &g->drawn;
   memset(statistics, 0, sizeof *statistics);
@@ -252,6 +264,7 @@ static conic_status draw_gaussians(conic_source *source, conic_renderer *rendere
   if (status == CONIC_OK)
     status = conic_gaussians_render(source->context, &g->gaussians, &fine.camera, &g->options, &fine.planes, &g->drawn);
   if (status == CONIC_OK) {
+    clear_other_planes(image);
     uint64_t n_covered = reduce_samples(&fine, image);
     image->is_display = !g->gaussians.is_linear;
     if (statistics)

@@ -4,6 +4,8 @@
 
 #include "conic/layers.h"
 #include "conic/layers_draw.h"
+#include "lod/hierarchies/hierarchy.h"
+#include "lod/layers/format/layers_read.h"
 #include "source/source_kind.h"
 
 typedef struct layers_source {
@@ -15,7 +17,12 @@ typedef struct layers_source {
 } layers_source;
 
 static int is_layers_file(const char *path) {
-  return conic_layers_is_url(path) || conic_layers_is_file(path);
+  return conic_layers_is_url(path) || conic_layers_is_file(path) || conic_layers_is_hierarchy(path);
+}
+
+static const char *name_layers_file(const char *path) {
+  const char *name = conic_hierarchy_name_of(path);
+  return name ? name : "lpc";
 }
 
 static int takes_layers(const char *path, const conic_source_options *options) {
@@ -29,6 +36,12 @@ static conic_status open_layers(conic_source *source, const char *const *paths, 
   conic_layers_scale found;
   (void)n_paths;
   conic_status status = conic_layers_open(source->context, paths[0], options->access, &l->layers);
+  if (status != CONIC_OK)
+    return status;
+  if (status != CONIC_OK)
+    return status;
+  if (options->coloring || options->where)
+    status = conic_layers_choose(l->layers, options->coloring, options->where, &source->coloring);
   if (status != CONIC_OK)
     return status;
   conic_layers_measure(l->layers, options->cutoff, &found);
@@ -77,15 +90,72 @@ static void tell_layers_rest(const conic_source *source, conic_facts *facts) {
                   CONIC_COUNT("clouds_damaged", d->n_clouds_damaged), CONIC_COUNT("places", d->n_places),
                   CONIC_COUNT("places_hidden", d->n_places_hidden), CONIC_COUNT("places_grazing", d->n_places_grazing),
                   CONIC_COUNT("places_coarser", d->n_places_coarser), CONIC_NUMBER("coarser_px", d->missing_error_px),
-                  CONIC_COUNT("splats_hidden", d->n_splats_left), CONIC_COUNT("levels", d->n_levels),
-                  CONIC_COUNT("bands", d->n_bands), CONIC_COUNT("bytes_received", d->n_bytes_received));
+                  CONIC_COUNT("splats_hidden", d->n_splats_left), CONIC_COUNT("splats_turned", d->n_splats_turned),
+                  CONIC_COUNT("levels", d->n_levels), CONIC_COUNT("bands", d->n_bands),
+                  CONIC_COUNT("bytes_received", d->n_bytes_received));
   if (source->view.most_levels > 0) /* one after each level */
     CONIC_ADD_FACTS(facts, CONIC_COUNT("pictures", source->view.most_levels));
   CONIC_ADD_FACTS(facts, CONIC_END);
 }
 
+/* Of another kind's hierarchy, or one on a web server: what opening it finds out. */
+static conic_status tell_hierarchy(conic_source *source, conic_facts *facts) {
+  conic_layers *layers;
+  conic_layers_scale found;
+  conic_status status = conic_layers_open(source->context, source->name, NULL, &layers);
+  if (status != CONIC_OK)
+    return status;
+  conic_layers_measure(layers, 1.5f, &found);
+  CONIC_ADD_FACTS(facts, CONIC_COUNT("points", found.n_samples), CONIC_TRUTH("colors", found.has_colors),
+                  CONIC_NUMBER("spacing", found.spacing), CONIC_NUMBER("near", found.near_z),
+                  CONIC_LINE("points", "%" PRIu64 "%s", found.n_samples, found.has_colors ? ", with colours" : ""),
+                  CONIC_LINE("spacing", "about %.4g", found.spacing));
+  conic_facts_add_bounds(facts, found.minimum, found.maximum);
+  conic_layers_close(layers);
+  return CONIC_OK;
+}
+
+static conic_status tell_hierarchy_defects(conic_source *source, conic_facts *facts) {
+  conic_layers *layers;
+  uint64_t n_damaged = 0;
+  conic_status status = conic_layers_open(source->context, source->name, NULL, &layers);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_layers_count_damaged(layers, &n_damaged);
+  conic_layers_close(layers);
+  if (status == CONIC_OK)
+    CONIC_ADD_FACTS(facts, CONIC_DEFECT("clouds", n_damaged, "nodes or pages that are damaged"));
+  return status;
+}
+
+/* What --color-by and --where take. */
+static conic_status tell_layers_values(conic_source *source, conic_facts *facts) {
+  conic_layers_file file;
+  int n_told = 0;
+  conic_status status = conic_layers_file_open(source->context, source->name, &file);
+  if (status != CONIC_OK)
+    return status;
+  for (uint32_t i = 0; i < file.header.schema.n; i++) {
+    const conic_layers_attribute *value = &file.header.schema.list[i];
+    if (value->kind != CONIC_LAYERS_VALUE)
+      continue;
+    if (n_told++ == 0)
+      CONIC_ADD_FACTS(facts, CONIC_ARRAY("values"));
+    CONIC_ADD_FACTS(facts, CONIC_OBJECT(NULL), conic_fact_text(CONIC_FACT_TEXT, "name", "%s", value->name),
+                    conic_fact_text(CONIC_FACT_TEXT, "type", "%s", conic_layers_number_name(value->type)),
+                    CONIC_NUMBER("minimum", value->low), CONIC_NUMBER("maximum", value->high), CONIC_END,
+                    CONIC_LINE(n_told == 1 ? "values" : "", "%s: %.7g to %.7g", value->name, value->low, value->high));
+  }
+  if (n_told)
+    CONIC_ADD_FACTS(facts, CONIC_END);
+  conic_layers_file_close(&file);
+  return CONIC_OK;
+}
+
 static conic_status tell_layers_file(conic_source *source, conic_facts *facts) {
   conic_layers_info info;
+  if (!conic_layers_is_file(source->name))
+    return tell_hierarchy(source, facts);
   conic_status status = conic_layers_describe(source->context, source->name, &info);
   if (status != CONIC_OK)
     return status;
@@ -96,9 +166,10 @@ static conic_status tell_layers_file(conic_source *source, conic_facts *facts) {
                   CONIC_TRUTH("oriented", !info.is_unoriented), CONIC_NUMBER("bits_per_sample", bits),
                   CONIC_OBJECT("bits"), CONIC_NUMBER("position", info.bits_position),
                   CONIC_NUMBER("normal", info.bits_normal), CONIC_NUMBER("colour", info.bits_color),
-                  CONIC_NUMBER("index", info.bits_index), CONIC_END, CONIC_NUMBER("spacing", info.spacing),
-                  CONIC_NUMBER("quantum", info.quantum), CONIC_NUMBER("position_error", info.position_error),
-                  CONIC_NUMBER("splat_radius", info.splat_radius), CONIC_NUMBER("near", info.near_z),
+                  CONIC_NUMBER("index", info.bits_index), CONIC_NUMBER("more", info.bits_more), CONIC_END,
+                  CONIC_NUMBER("spacing", info.spacing), CONIC_NUMBER("quantum", info.quantum),
+                  CONIC_NUMBER("position_error", info.position_error), CONIC_NUMBER("splat_radius", info.splat_radius),
+                  CONIC_NUMBER("near", info.near_z),
                   CONIC_LINE("samples", "%" PRIu64 "%s%s", info.n_samples, info.has_colors ? ", with colours" : "",
                              info.is_unoriented ? ", normals without a side" : ""),
                   CONIC_LINE("clouds", "%" PRIu64 " in %d levels, %u samples asked for, %u in the largest",
@@ -107,13 +178,16 @@ static conic_status tell_layers_file(conic_source *source, conic_facts *facts) {
                              info.quantum, info.position_error),
                   CONIC_LINE("outline", "%.4g, the median at full resolution", info.splat_radius));
   conic_facts_add_bounds(facts, info.minimum, info.maximum);
-  CONIC_ADD_FACTS(facts, CONIC_LINE("bits", "%.2f a sample: position %.2f, normal %.2f, colour %.2f, index %.2f", bits,
-                                    info.bits_position, info.bits_normal, info.bits_color, info.bits_index));
-  return CONIC_OK;
+  CONIC_ADD_FACTS(
+      facts, CONIC_LINE("bits", "%.2f a sample: position %.2f, normal %.2f, colour %.2f, index %.2f, more %.2f", bits,
+                        info.bits_position, info.bits_normal, info.bits_color, info.bits_index, info.bits_more));
+  return tell_layers_values(source, facts);
 }
 
 static conic_status tell_layers_defects(conic_source *source, conic_facts *facts) {
   conic_layers_defects broken;
+  if (!conic_layers_is_file(source->name))
+    return tell_hierarchy_defects(source, facts);
   conic_status status = conic_layers_check(source->context, source->name, &broken);
   if (status == CONIC_OK)
     CONIC_ADD_FACTS(facts, CONIC_DEFECT("clouds", broken.clouds, "clouds that are damaged"),
@@ -146,6 +220,7 @@ const conic_source_kind conic_source_kind_layers = {
     .tell_rest = tell_layers_rest,
     .is_file = is_layers_file,
     .name = "lpc",
+    .name_file = name_layers_file,
     .tell_file = tell_layers_file,
     .tell_defects = tell_layers_defects,
     .take_splats = take_layers_splats,

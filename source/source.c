@@ -13,9 +13,9 @@
 #include "source/source_kind.h"
 
 /* Every kind, in the order in which they are asked; the last takes whatever is left. */
-static const conic_source_kind *const kinds[] = {&conic_source_kind_gaussians, &conic_source_kind_layers, &conic_source_kind_hybrid,
-                                                 &conic_source_kind_patches, &conic_source_kind_octree,
-                                                 &conic_source_kind_drawing};
+static const conic_source_kind *const kinds[] = {&conic_source_kind_gaussians, &conic_source_kind_layers,
+                                                 &conic_source_kind_hybrid,    &conic_source_kind_patches,
+                                                 &conic_source_kind_octree,    &conic_source_kind_drawing};
 enum { N_KINDS = sizeof kinds / sizeof kinds[0] };
 
 void conic_source_options_init_sized(conic_source_options *options, size_t size) {
@@ -106,9 +106,16 @@ conic_status conic_source_open(conic_context *context, const char *const *paths,
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "source: no input, or the options were not initialised");
   const conic_source_kind *kind = find_kind(paths, n_paths, &own);
   if (kind->company == CONIC_SOURCE_ALONE && n_paths != 1)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid, and a Gaussian scene, is drawn by itself", paths[0]);
-  if (conic_coloring_is_asked(&own) && (kind == &conic_source_kind_octree || kind == &conic_source_kind_layers))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid, and a Gaussian scene, is drawn by itself",
+                      paths[0]);
+  if (conic_coloring_is_asked(&own) &&
+      (kind == &conic_source_kind_octree ||
+       (kind == &conic_source_kind_layers &&
+        (strcmp(own.coloring->by, "height") == 0 || strcmp(own.coloring->by, "normal") == 0))))
     return conic_coloring_refuse(context, paths[0], &own);
+  if (own.where && kind != &conic_source_kind_layers && kind != &conic_source_kind_drawing)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: points are chosen of files of points and of .lpc alone",
+                      paths[0]);
   return conic_source_open_kind(context, kind, paths, n_paths, &own, source);
 }
 
@@ -267,7 +274,8 @@ static conic_status inspect_as(conic_context *context, const conic_source_kind *
   conic_status status = conic_source_create(context, kind, path, &source);
   if (status != CONIC_OK)
     return status;
-  CONIC_ADD_FACTS(facts, conic_fact_text(CONIC_FACT_TEXT, "kind", "%s", kind->name));
+  CONIC_ADD_FACTS(facts,
+                  conic_fact_text(CONIC_FACT_TEXT, "kind", "%s", kind->name_file ? kind->name_file(path) : kind->name));
   status = kind->tell_file(source, facts);
   if (status == CONIC_OK && is_checked) {
     CONIC_ADD_FACTS(facts, CONIC_OBJECT("defects"));

@@ -44,7 +44,8 @@ typedef struct conic_source_kind {
 
   /* Whether a file begins like the kind's; the next three are null only where this is. */
   int (*is_file)(const char *path);
-  const char *name; /* of the kind of file */
+  const char *name;
+  const char *(*name_file)(const char *path); /* where a file's own kind has another */ /* of the kind of file */
   /* What the file that a source was created for holds, which it may open; and then the object "defects". */
   conic_status (*tell_file)(conic_source *source, conic_facts *facts);
   conic_status (*tell_defects)(conic_source *source, conic_facts *facts);

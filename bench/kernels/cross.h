@@ -3,6 +3,7 @@
 #ifndef CONIC_CROSS_H
 #define CONIC_CROSS_H
 
+#include <stdint.h>
 #include <time.h>
 
 #include "bench/kernels/cross_all.h"
@@ -40,7 +41,8 @@ enum { CROSS_GUARD = 256, CROSS_PATTERN = 0xa5, CROSS_MOST_ARENAS = 32 };
 /* Memory between two guard bands. */
 typedef struct cross_arena {
   const char *name;
-  unsigned char *memory, *inside;
+  unsigned char *memory, *inside; /* of 64 bytes each */
+  void *held;                     /* what free takes */
   size_t bytes;
   size_t compared; /* what of it has to be the same */
 } cross_arena;
@@ -72,9 +74,8 @@ static inline void *cross_calloc(size_t bytes) {
 static inline void *cross_room(cross_desk *desk, const char *name, size_t bytes) {
   cross_arena *a = &desk->arenas[desk->n_arenas++];
   size_t whole = (bytes + 2 * CROSS_GUARD + 63) / 64 * 64;
-  *a = (cross_arena){.name = name, .memory = aligned_alloc(64, whole), .bytes = bytes, .compared = bytes};
-  if (!a->memory)
-    exit(1);
+  *a = (cross_arena){.name = name, .held = cross_calloc(whole + 64), .bytes = bytes, .compared = bytes};
+  a->memory = (unsigned char *)a->held + (64 - (uintptr_t)a->held % 64);
   a->inside = a->memory + CROSS_GUARD;
   memset(a->memory, CROSS_PATTERN, whole);
   memset(a->inside, 0, bytes);
@@ -89,7 +90,7 @@ static inline void cross_close(cross_desk *desk) {
     for (size_t k = 0; k < CROSS_GUARD; k++)
       n_written += (a->memory[k] != CROSS_PATTERN) + (a->inside[a->bytes + k] != CROSS_PATTERN);
     CHECK(n_written == 0);
-    free(a->memory);
+    free(a->held);
   }
   free(desk);
 }

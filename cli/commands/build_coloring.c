@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "cli/commands/points_input.h"
 #include "core/base/memory.h"
 #include "core/coloring/coloring_stream.h"
 #include "core/files/file.h"
@@ -47,6 +48,12 @@ static conic_status see_batch(void *cookie, const conic_splats *batch) {
   return CONIC_OK;
 }
 
+/* Heights are in z. */
+static int is_survey(const char *path) {
+  return conic_file_begins_with(path, "LASF", 4) || conic_file_begins_with(path, "ASTM-E57", 8) ||
+         conic_file_has_ending(path, "ptx") || cli_points_are_hierarchy(path);
+}
+
 conic_status cli_coloring_find_range(cli_session *session, cli_coloring *coloring, const char *const *inputs,
                                      int n_inputs, const conic_read_options *reading) {
   conic_coloring_options *options = &coloring->options;
@@ -55,7 +62,7 @@ conic_status cli_coloring_find_range(cli_session *session, cli_coloring *colorin
   if (!options->by)
     return CONIC_OK;
   for (int i = 0; i < n_inputs; i++)
-    n_surveys += conic_file_begins_with(inputs[i], "LASF", 4);
+    n_surveys += is_survey(inputs[i]);
   use_up(coloring, (const double[3]){0.0, n_surveys == n_inputs ? 0.0 : 1.0, n_surveys == n_inputs ? 1.0 : 0.0});
   if (!conic_coloring_needs_range(options))
     return CONIC_OK;
@@ -63,7 +70,7 @@ conic_status cli_coloring_find_range(cli_session *session, cli_coloring *colorin
   if (!search.sample)
     return CONIC_ERROR_MEMORY;
   for (int i = 0; i < n_inputs && status == CONIC_OK; i++)
-    status = conic_model_stream(session->context, inputs[i], reading, see_batch, &search);
+    status = cli_points_stream(session->context, inputs[i], reading, see_batch, &search);
   conic_value_sample_limits(search.sample, &options->minimum, &options->maximum);
   options->has_range = options->minimum < options->maximum;
   conic_memory_release(session->context, search.sample);

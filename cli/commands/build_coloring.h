@@ -15,7 +15,7 @@ typedef struct cli_coloring {
 #define CLI_BUILD_COLOR_OPTIONS(coloring)                                                                              \
   CLI_COLOR_OPTIONS(&(coloring)->options), {                                                                           \
     "up", CLI_PARSED, (coloring)->options.up, "DIR",                                                                   \
-        "which way is up for --color-by height: x, y, z, -x … or X,Y,Z [y; z for LAS]",                                \
+        "which way is up for --color-by height: x, y, z, -x … or X,Y,Z [y; z for surveys]",                            \
         .parse = cli_parse_up, .is_given = &(coloring)->is_up_given                                                    \
   }
 

@@ -11,6 +11,7 @@ typedef struct cli_build {
   cli_session *session;
   const char *input, *output;
   const char *columns; /* of an input that is text, or null */
+  const char *where;   /* which points of it are wanted; null: all */
   int is_in_place;     /* the output is the input */
   cli_stage stages[6]; /* in the order in which they are told; their number is that of the names */
   double total_seconds;

@@ -1,12 +1,12 @@
 /* conic convert: a Gaussian scene in, the same in another format out, and what of it was lost. */
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/commands/convert_measure.h"
 #include "cli/outputs.h"
+#include "core/files/disk.h"
 
 typedef struct convert_job {
   cli_build base;
@@ -143,8 +143,8 @@ static void tell_losses(const void *cookie) {
 }
 
 static uint64_t bytes_written(const char *path) {
-  struct stat found;
-  return stat(path, &found) == 0 && S_ISREG(found.st_mode) ? (uint64_t)found.st_size : 0;
+  conic_disk_entry found;
+  return conic_disk_look(path, &found) && found.is_file ? found.n_bytes : 0;
 }
 
 static void report_conversion(cli_json *json, const void *cookie) {

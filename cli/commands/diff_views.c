@@ -1,19 +1,18 @@
 #include "cli/commands/diff_views.h"
 
-#include <dirent.h>
 #include <errno.h>
-#include <glob.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "cli/shell.h"
+#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
 
 int cli_diff_is_many(const char *path) {
-  struct stat found;
-  if (stat(path, &found) == 0)
-    return S_ISDIR(found.st_mode);
+  conic_disk_entry found;
+  if (conic_disk_look(path, &found))
+    return found.is_folder;
   return strpbrk(path, "*?[") != NULL;
 }
 
@@ -88,14 +87,14 @@ static int no_room(void) {
 
 /* Adds a file, which from now on is an input; other things that have names are none. */
 static int add_file(const cli_diff_job *job, cli_diff_list *list, const char *folder, const char *name) {
-  struct stat found;
+  conic_disk_entry found;
   size_t room = strlen(folder) + strlen(name) + 2;
   cli_diff_file file = {.path = malloc(room)};
   if (!file.path)
     return no_room();
-  int is_inside = *folder && folder[strlen(folder) - 1] != '/';
+  int is_inside = *folder && !conic_disk_is_separator(folder[strlen(folder) - 1]);
   snprintf(file.path, room, "%s%s%s", folder, is_inside ? "/" : "", name);
-  if (stat(file.path, &found) != 0 || !S_ISREG(found.st_mode)) {
+  if (!conic_disk_look(file.path, &found) || !found.is_file) {
     free(file.path);
     return CLI_DONE;
   }
@@ -117,31 +116,37 @@ static int add_file(const cli_diff_job *job, cli_diff_list *list, const char *fo
 }
 
 static int list_folder(const cli_diff_job *job, const char *folder, cli_diff_list *list) {
-  DIR *listing = opendir(folder);
+  conic_disk_folder listing;
   int exit_code = CLI_DONE;
-  if (!listing)
+  if (!conic_disk_open_folder(folder, &listing))
     return cli_error(CLI_INPUT, "%s: cannot read: %s", folder, strerror(errno));
-  for (struct dirent *entry; exit_code == CLI_DONE && (entry = readdir(listing));)
-    if (entry->d_name[0] != '.' && picture_ending(entry->d_name, (int)strlen(entry->d_name)))
-      exit_code = add_file(job, list, folder, entry->d_name);
-  closedir(listing);
+  for (const char *entry; exit_code == CLI_DONE && (entry = conic_disk_next_name(&listing));)
+    if (entry[0] != '.' && picture_ending(entry, (int)strlen(entry)))
+      exit_code = add_file(job, list, folder, entry);
+  conic_disk_close_folder(&listing);
   return exit_code;
+}
+
+typedef struct matched_list {
+  const cli_diff_job *job;
+  cli_diff_list *list;
+  int exit_code;
+} matched_list;
+
+static int add_matched(void *cookie, const char *path) {
+  matched_list *matched = cookie;
+  matched->exit_code = add_file(matched->job, matched->list, "", path);
+  return matched->exit_code == CLI_DONE;
 }
 
 static int list_pattern(const cli_diff_job *job, const char *pattern, cli_diff_list *list) {
-  glob_t found = {.gl_pathc = 0};
-  int exit_code = CLI_DONE, result = glob(pattern, GLOB_NOSORT, NULL, &found);
-  if (result == GLOB_NOSPACE)
-    exit_code = no_room();
-  for (size_t i = 0; result == 0 && i < found.gl_pathc && exit_code == CLI_DONE; i++)
-    exit_code = add_file(job, list, "", found.gl_pathv[i]);
-  globfree(&found);
-  return exit_code;
+  matched_list matched = {job, list, CLI_DONE};
+  return cli_shell_match(pattern, add_matched, &matched) ? matched.exit_code : no_room();
 }
 
 static int list_pictures(const cli_diff_job *job, const char *path, cli_diff_list *list) {
-  struct stat found;
-  int is_folder = stat(path, &found) == 0 && S_ISDIR(found.st_mode);
+  conic_disk_entry found;
+  int is_folder = conic_disk_look(path, &found) && found.is_folder;
   int exit_code = is_folder ? list_folder(job, path, list) : list_pattern(job, path, list);
   if (exit_code == CLI_DONE && list->n == 0)
     return cli_error(CLI_INPUT, is_folder ? "%s: there is no picture in it" : "%s: no file has such a name", path);

@@ -2,13 +2,13 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
 #include "cli/render/views.h"
 #include "cli/source_facts.h"
+#include "core/files/disk.h"
 #include "core/files/file.h"
 
 typedef struct info_job {
@@ -51,11 +51,11 @@ static int is_exr(const char *path) {
 }
 
 static void find_size(info_job *job) {
-  struct stat found;
-  if (strcmp(job->path, "-") == 0 || stat(job->path, &found) != 0 || !S_ISREG(found.st_mode))
+  conic_disk_entry found;
+  if (strcmp(job->path, "-") == 0 || !conic_disk_look(job->path, &found) || !found.is_file)
     return;
   job->has_bytes = 1;
-  job->bytes = (uint64_t)found.st_size;
+  job->bytes = found.n_bytes;
 }
 
 static void check_image(info_job *job) {

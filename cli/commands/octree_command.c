@@ -33,6 +33,7 @@ static conic_status build_from_model(octree_job *job) {
   cli_coloring_read(&job->coloring, &read_options);
   double start = cli_seconds();
   read_options.columns = job->base.columns;
+  read_options.where = job->base.where;
   conic_status status = conic_gaussians_read_model(context, job->base.input, &read_options, &model);
   start = cli_build_end_stage(&stages[READ], start);
   if (status != CONIC_OK)
@@ -110,6 +111,7 @@ static int run_octree(cli_session *session, int argc, char **argv) {
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
       CLI_COLUMNS(&job.base.columns),
+      CLI_WHERE(&job.base.where),
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
   };
   int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot");

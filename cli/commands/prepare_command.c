@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
+#include "cli/commands/points_input.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
@@ -79,7 +80,8 @@ static int read_model(prepare_job *job) {
   options.cutoff = job->estimate.cutoff;
   cli_coloring_read(&job->coloring, &options);
   options.columns = job->base.columns;
-  conic_status status = conic_gaussians_read_model(job->base.session->context, job->base.input, &options, &job->model);
+  options.where = job->base.where;
+  conic_status status = cli_points_read(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
   cli_build_hint_faces(&job->base, &job->model);
   if (status == CONIC_OK)
@@ -173,6 +175,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
       {"seed", CLI_COUNT, &job.seed, "S",
        "which points --count chooses; those of a smaller count are among those of a larger one [0]"},
       CLI_COLUMNS(&job.base.columns),
+      CLI_WHERE(&job.base.where),
       {"plain", CLI_FLAG, &job.is_plain, NULL,
        "every point becomes an ellipse; else those that lie on no surface become round dots"},
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),

@@ -1,9 +1,7 @@
 /* conic conformance: writes a suite by which any renderer of Gaussian scenes can be judged (docs/reference/
  * conformance.md). */
-#include <dirent.h>
 #include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
@@ -15,6 +13,7 @@
 #include "conic/version.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/files/disk.h"
 #include "core/files/file.h"
 
 enum { MOST_CASES = 256 };
@@ -312,19 +311,18 @@ static conic_status write_case_list(const conformance_job *job) {
 /* Nothing but an earlier suite is written over. */
 static int check_suite_folder(const char *folder) {
   char manifest[4096];
-  struct stat found;
-  const struct dirent *entry;
+  conic_disk_entry found;
+  conic_disk_folder entries;
   int is_empty = 1;
-  if (stat(folder, &found) != 0)
+  if (!conic_disk_look(folder, &found))
     return CLI_DONE;
-  DIR *entries = opendir(folder);
-  if (!entries)
+  if (!conic_disk_open_folder(folder, &entries))
     return cli_error(CLI_RESOURCE, "%s: cannot write: %s", folder, strerror(errno));
-  while ((entry = readdir(entries)))
-    is_empty &= strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0;
-  closedir(entries);
+  for (const char *entry; (entry = conic_disk_next_name(&entries));)
+    is_empty &= strcmp(entry, ".") == 0 || strcmp(entry, "..") == 0;
+  conic_disk_close_folder(&entries);
   snprintf(manifest, sizeof manifest, "%s/manifest.json", folder);
-  if (is_empty || stat(manifest, &found) == 0)
+  if (is_empty || conic_disk_look(manifest, &found))
     return CLI_DONE;
   return cli_usage("conformance: %s: the folder is neither empty nor an earlier suite; give another name", folder);
 }
@@ -335,7 +333,7 @@ static conic_status make_suite_folders(suite_files *files) {
   conic_status status = cli_suite_make_folder(files, "");
   if (status == CONIC_OK)
     status = cli_suite_join(files->context, files->folder, "manifest.json", full, sizeof full);
-  if (status == CONIC_OK && remove(full) != 0 && errno != ENOENT)
+  if (status == CONIC_OK && !conic_disk_remove(full) && errno != ENOENT)
     status = conic_fail(files->context, CONIC_ERROR_IO, "%s: cannot write: %s", full, strerror(errno));
   static const char *const folders[] = {"scenes", "cameras", "expected"};
   for (int i = 0; status == CONIC_OK && i < 3; i++)

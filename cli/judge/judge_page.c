@@ -1,6 +1,7 @@
 #include "cli/judge/judge_page.h"
 
 #include "core/base/message.h"
+#include "core/files/disk.h"
 #include "core/pictures/image_png.h"
 
 void cli_page_text(const cli_page *page, const char *text) {
@@ -30,7 +31,7 @@ static void put_base64(FILE *from, FILE *to) {
 }
 
 static conic_status put_png(const cli_page *page, const conic_image *image) {
-  FILE *between = tmpfile();
+  FILE *between = conic_disk_open_nameless();
   if (!between)
     return conic_fail(page->session->context, CONIC_ERROR_IO, "a temporary file for a picture cannot be written");
   conic_status status = conic_png_write_to(page->session->context, between, image);

@@ -1,5 +1,4 @@
 /* conic judge --suite: the pictures of a whole suite. */
-#include <dirent.h>
 #include <errno.h>
 #include <string.h>
 
@@ -10,6 +9,7 @@
 #include "cli/judge/suite_scenes.h"
 #include "cli/outputs.h"
 #include "core/base/memory.h"
+#include "core/files/disk.h"
 
 int cli_suite_has_option(int argc, char **argv) {
   for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
@@ -37,21 +37,20 @@ static int is_of_case(const suite_run *run, const char *name) {
 
 /* A picture that is no case's is a name that was mistyped, or an old one. */
 static void find_extra_pictures(suite_run *run) {
-  const struct dirent *entry;
-  DIR *entries = opendir(run->judging.pictures);
-  while (entries && (entry = readdir(entries))) {
-    const char *dot = strrchr(entry->d_name, '.');
+  conic_disk_folder entries;
+  conic_disk_open_folder(run->judging.pictures, &entries);
+  for (const char *entry; (entry = conic_disk_next_name(&entries));) {
+    const char *dot = strrchr(entry, '.');
     if (!dot || !(strcmp(dot, ".exr") == 0 || strcmp(dot, ".pfm") == 0 || strcmp(dot, ".npy") == 0 ||
                   strcmp(dot, ".npz") == 0 || strcmp(dot, ".png") == 0))
       continue;
-    if (is_of_case(run, entry->d_name))
+    if (is_of_case(run, entry))
       continue;
     if (run->n_extra < 3)
-      snprintf(run->extra[run->n_extra], sizeof run->extra[0], "%.90s", entry->d_name);
+      snprintf(run->extra[run->n_extra], sizeof run->extra[0], "%.90s", entry);
     run->n_extra++;
   }
-  if (entries)
-    closedir(entries);
+  conic_disk_close_folder(&entries);
 }
 
 static void note_extra_pictures(const suite_run *run) {
@@ -97,10 +96,10 @@ static int tell_suite_run(suite_run *run) {
 }
 
 static int judge_suite(suite_run *run) {
-  DIR *pictures = opendir(run->judging.pictures);
-  if (!pictures)
+  conic_disk_folder pictures;
+  if (!conic_disk_open_folder(run->judging.pictures, &pictures))
     return cli_error(CLI_INPUT, "%s: cannot be read: %s", run->judging.pictures, strerror(errno));
-  closedir(pictures);
+  conic_disk_close_folder(&pictures);
   int exit_code = cli_session_open(run->session);
   if (exit_code != CLI_DONE)
     return exit_code;

@@ -3,17 +3,17 @@
 #include <errno.h>
 #include <math.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/zip.h"
 #include "gaussians/formats/gaussian_formats.h"
 #include "gaussians/scene/activation.h"
 
 conic_status cli_suite_join(conic_context *context, const char *folder, const char *path, char *full, size_t room) {
-  const char *slash = folder[0] && folder[strlen(folder) - 1] == '/' ? "" : "/";
+  const char *slash = folder[0] && conic_disk_is_separator(folder[strlen(folder) - 1]) ? "" : "/";
   int n = snprintf(full, room, "%s%s%s", folder, path[0] ? slash : "", path);
   return n > 0 && (size_t)n < room ? CONIC_OK
                                    : conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the name is too long", folder);
@@ -21,10 +21,10 @@ conic_status cli_suite_join(conic_context *context, const char *folder, const ch
 
 conic_status cli_suite_make_folder(suite_files *suite, const char *path) {
   char full[4096];
-  struct stat found;
+  conic_disk_entry found;
   conic_status status = cli_suite_join(suite->context, suite->folder, path, full, sizeof full);
-  if (status != CONIC_OK || mkdir(full, 0777) == 0 ||
-      (errno == EEXIST && stat(full, &found) == 0 && S_ISDIR(found.st_mode)))
+  if (status != CONIC_OK || conic_disk_make_folder(full) ||
+      (errno == EEXIST && conic_disk_look(full, &found) && found.is_folder))
     return status;
   return conic_fail(suite->context, CONIC_ERROR_IO, "%s: cannot make the folder: %s", full, strerror(errno));
 }
@@ -38,7 +38,7 @@ conic_status cli_suite_add_file(suite_files *suite, const char *path) {
   conic_status status = cli_suite_join(suite->context, suite->folder, path, full, sizeof full);
   if (status == CONIC_OK && suite->n == SUITE_MOST_FILES)
     status = conic_fail(suite->context, CONIC_ERROR_ARGUMENT, "%s: too many files", full);
-  FILE *from = status == CONIC_OK ? fopen(full, "rb") : NULL;
+  FILE *from = status == CONIC_OK ? conic_disk_open_stream(full, "rb") : NULL;
   if (status == CONIC_OK && !from)
     status = conic_fail(suite->context, CONIC_ERROR_IO, "%s: cannot read it again: %s", full, strerror(errno));
   if (!from)

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/real.h"
@@ -127,8 +128,9 @@ conic_status cli_suite_take_reference(conic_context *context, const conic_refere
 /* --- files: little-endian, whatever the machine is --- */
 
 static void put_number(FILE *to, uint64_t value, int n_bytes) {
-  for (int i = 0; i < n_bytes; i++)
-    fputc((int)(value >> 8 * i & 255), to);
+  unsigned char bytes[8];
+  conic_store_64(bytes, value);
+  fwrite(bytes, 1, (size_t)n_bytes, to);
 }
 
 static void put_bits(FILE *to, float value) {

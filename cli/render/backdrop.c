@@ -5,6 +5,7 @@
 
 #include "cli/render/light_options.h"
 #include "core/base/color.h"
+#include "core/files/file.h"
 
 /* Chosen by eye: darker than what is lit, so that plaster stands out, and lighter than the shades of scans. */
 static const cli_backdrop studio = {.is_given = 1, .top = {0.08f, 0.088f, 0.1f}, .bottom = {0.022f, 0.023f, 0.025f}};
@@ -56,8 +57,7 @@ static int uses_studio(const cli_render_job *job) {
 /* Not what others compose: EXR, TIFF, PFM and the like. */
 static int is_to_look_at(const cli_render_job *job, const char *path) {
   static const char *const endings[] = {"png", "jpg", "jpeg", "webp", "gif", "bmp", "ppm"};
-  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-  const char *ending = dot && dot[1] ? dot + 1 : job->writing.format ? job->writing.format : "png";
+  const char *own = conic_file_ending(path), *ending = *own ? own : job->writing.format ? job->writing.format : "png";
   for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
     if (strcasecmp(ending, endings[i]) == 0)
       return 1;

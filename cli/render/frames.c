@@ -7,6 +7,7 @@
 #include "cli/render/views.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
+#include "core/files/file.h"
 
 enum { MOST_FRAMES = 9999, MOST_VIEWS = 9999999 };
 
@@ -65,7 +66,7 @@ static const char *find_pattern(const char *path, size_t *length, int *width) {
 }
 
 char *cli_frame_name(const cli_render_job *job, const char *path, int i_frame) {
-  const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.'), *end = path + strlen(path);
+  const char *base = conic_file_name(path), *dot = strrchr(base, '.'), *end = path + strlen(path);
   char stem[1024] = "";
   if (job->is_every_view)
     cli_view_stem(&job->cameras, (size_t)i_frame, stem, sizeof stem);
@@ -84,7 +85,7 @@ char *cli_frame_name(const cli_render_job *job, const char *path, int i_frame) {
   else if (place)
     snprintf(name, room, "%.*s%s%s", (int)(place - path), path, stem, place + 2);
   else {
-    const char *ending = dot && (!slash || dot > slash) ? dot : end;
+    const char *ending = dot ? dot : end;
     snprintf(name, room, "%.*s.%04d%s", (int)(ending - path), path, number, ending);
   }
   return name;

@@ -6,19 +6,15 @@
 
 #include "cli/render/render_job.h"
 #include "core/base/color.h"
+#include "core/files/file.h"
 
 enum { RGBA = 1u << CONIC_PLANE_RGBA, LOOKED_AT = RGBA | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO };
 
 /* What files of a kind can show of an image. */
 typedef enum file_holds { HOLDS_RGBA, HOLDS_LOOKS, HOLDS_ONE, HOLDS_ALL } file_holds;
 
-static const char *kind_named_by(const char *path) {
-  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-  return dot ? dot + 1 : path + strlen(path);
-}
-
 static file_holds holds(const cli_render_job *job, const char *path) {
-  const char *ending = kind_named_by(path);
+  const char *ending = conic_file_ending(path);
   if (!*ending)
     ending = job->writing.format ? job->writing.format : "png";
   if (strcasecmp(ending, "exr") == 0)
@@ -121,7 +117,7 @@ conic_status cli_planes_write(cli_session *session, const cli_render_job *job, c
   conic_image kept = *drawn;
   const conic_image *image = &kept;
   conic_status status = CONIC_OK;
-  const char *ending = kind_named_by(path);
+  const char *ending = conic_file_ending(path);
   size_t n_room = strlen(path) + 32;
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (job->unwritten_planes >> i & 1)

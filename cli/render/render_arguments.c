@@ -1,9 +1,10 @@
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/render/frames.h"
+#include "cli/shell.h"
+#include "core/files/file.h"
 
 static const char *const overdraw_words[] = {"log", "confetti", NULL};
 static const char *const exr_words[] = {"float", "half", NULL};
@@ -19,10 +20,9 @@ static int parse_output(const char *text, void *value) {
 
 /* Refused now, and not after the work. */
 static int check_output(const cli_render_job *job, const char *path) {
-  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-  if (strcmp(path, "-") == 0 && isatty(STDOUT_FILENO))
+  if (strcmp(path, "-") == 0 && cli_shell_is_terminal(stdout))
     return cli_usage("render: a picture is not for a terminal; redirect standard output, or name a file");
-  if (strcmp(path, "-") != 0 && !job->writing.format && (!dot || !dot[1]))
+  if (strcmp(path, "-") != 0 && !job->writing.format && !*conic_file_ending(path))
     return cli_usage("%s: the name needs an ending, such as .exr", path);
   return CLI_DONE;
 }
@@ -68,8 +68,8 @@ int cli_render_views_check(const cli_session *session, cli_render_job *job) {
 static int check_outputs(const cli_session *session, cli_render_job *job, int is_streaming_given) {
   const char *paths[N_PATHS];
   int answer = CLI_DONE;
-  if (!session->host && job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path && !job->boxes_path &&
-      !job->progressive_path)
+  if (!session->host && job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path &&
+      !job->boxes_path && !job->progressive_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
     answer = check_output(job, job->outputs[i]);

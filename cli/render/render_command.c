@@ -171,7 +171,8 @@ static void warn_of_empty(cli_session *session, cli_render_job *job) {
               "%s: the picture is empty: %llu cannot be drawn, all else is out of sight", job->inputs[0],
               (unsigned long long)skipped);
   else
-    conic_log(session->context, CONIC_LOG_WARNING, "%s: the picture is empty: all is out of sight", job->inputs[0]);
+    conic_log(session->context, CONIC_LOG_WARNING, "%s: the picture is empty: all is out of sight%s", job->inputs[0],
+              job->opening.where ? ", or left out by --where" : "");
 }
 
 /* The finest that a hybrid has of one kind may not be as fine as it was asked to be; surfels alone, of which nothing

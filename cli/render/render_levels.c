@@ -1,9 +1,9 @@
 /* conic render --progressive, --deadline: picture after picture as a source comes in, and within a time. */
 #include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "cli/render/backdrop.h"
+#include "core/files/disk.h"
 
 /* The deadline counts from the start of the program's work, not of this picture. */
 static double seconds_left(const cli_render_job *job) {
@@ -37,7 +37,7 @@ static conic_status write_progress(cli_session *session, const cli_render_job *j
 }
 
 static conic_status make_folder(const char *path) {
-  if (mkdir(path, 0777) == 0 || errno == EEXIST)
+  if (conic_disk_make_folder(path) || errno == EEXIST)
     return CONIC_OK;
   cli_error(CLI_RESOURCE, "%s: cannot write: %s", path, strerror(errno));
   return CONIC_ERROR_IO;

@@ -5,6 +5,7 @@
 #include "cli/render/render_job.h"
 #include "core/base/memory.h"
 #include "core/base/threads.h"
+#include "core/files/file.h"
 #include "raster/frame/samples.h"
 
 enum { MOST_SAMPLES = CONIC_MAX_SAMPLES * CONIC_MAX_SAMPLES };
@@ -28,7 +29,7 @@ typedef struct matte_pass {
 
 /* The file's name without its folder and ending. */
 static const char *base_of(const char *path, size_t *length) {
-  const char *slash = strrchr(path, '/'), *base = slash && slash[1] ? slash + 1 : path, *dot = strrchr(base, '.');
+  const char *name = conic_file_name(path), *base = *name ? name : path, *dot = strrchr(base, '.');
   *length = dot && dot != base ? (size_t)(dot - base) : strlen(base);
   return base;
 }

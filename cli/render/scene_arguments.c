@@ -135,6 +135,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "triangles without normals look smooth over edges up to this angle, in degrees; 0: every face is flat [30]", 0,
        90, .is_given = &raw.is_crease_given},
       CLI_COLOR_OPTIONS(&job->coloring),
+      CLI_WHERE(&job->opening.where),
       {"error", CLI_NUMBER, &job->view.error_px, "PX",
        "of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all "
        "[0]",

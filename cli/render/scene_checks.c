@@ -1,12 +1,20 @@
 /* Which options of a scene go together. */
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/color_options.h"
 #include "cli/outputs.h"
 #include "cli/render/projection.h"
 #include "cli/render/scene_options.h"
 #include "cli/render/views.h"
+#include "conic/layers_draw.h"
+#include "core/files/disk.h"
+
+/* A layered cloud knows what its values mean without all of them. */
+static int is_colored_by_value(const cli_render_job *job) {
+  const char *by = job->coloring.by;
+  return strcmp(by, "height") != 0 && strcmp(by, "normal") != 0 && job->n_inputs == 1 &&
+         (conic_layers_is_url(job->inputs[0]) || conic_layers_is_file(job->inputs[0]));
+}
 
 /* Colours that are made of something need all of it at once. */
 static int check_colors(const cli_session *session, cli_render_job *job, int as) {
@@ -14,7 +22,7 @@ static int check_colors(const cli_session *session, cli_render_job *job, int as)
   if (!job->coloring.by)
     return answer;
   job->opening.coloring = &job->coloring;
-  job->opening.is_whole = cli_color_is_asked(&job->coloring);
+  job->opening.is_whole = cli_color_is_asked(&job->coloring) && !is_colored_by_value(job);
   if (job->is_up_given)
     memcpy(job->coloring.up, job->framing.up, sizeof job->coloring.up);
   if (answer == CLI_DONE && job->opening.is_whole && cli_lod_is_wanted(job) && as != CONIC_AS_HYBRID)
@@ -60,7 +68,8 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
     return cli_usage("%s: --only, --clusters and the plane cluster are of hybrids: a .chy, or --as hybrid", command);
   if (job->abilities & CONIC_SOURCE_STREAMS && cli_lod_is_wanted(job) && !job->may_stream)
     return cli_usage("%s: of an .lpc it takes all; --error and --budget choose of one in conic render", command);
-  int may_choose = job->abilities & CONIC_SOURCE_CHOOSES || (job->n_inputs == 1 && access(job->inputs[0], R_OK) != 0);
+  int may_choose =
+      job->abilities & CONIC_SOURCE_CHOOSES || (job->n_inputs == 1 && !conic_disk_can_read(job->inputs[0]));
   if (cli_lod_is_wanted(job) && !may_choose)
     return cli_usage(
         "%s: --error and --budget need a single .cot, .lpc or .chy as input (conic octree, conic layer and "

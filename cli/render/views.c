@@ -1,5 +1,7 @@
 #include "cli/render/views.h"
 
+#include "core/files/file.h"
+
 #include <string.h>
 
 int cli_views_are_all(const char *view) {
@@ -36,8 +38,7 @@ conic_status cli_views_read(cli_session *session, const cli_views_wish *wish, co
 }
 
 void cli_view_stem(const conic_cameras *cameras, size_t i_view, char *stem, size_t room) {
-  const char *name = cameras->names[i_view], *slash = strrchr(name, '/'), *base = slash ? slash + 1 : name;
-  const char *dot = strrchr(base, '.');
+  const char *base = conic_file_name(cameras->names[i_view]), *dot = strrchr(base, '.');
   int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
   if (*base)
     snprintf(stem, room, "%.*s", length, base);

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/files/file.h"
 
 /* How a file of a kind begins, and what it has besides within the first bytes; empty: nothing more. */
@@ -44,10 +45,7 @@ static int is_off(const char *bytes, size_t n) {
 }
 
 static uint64_t number_at(const char *bytes, size_t at) {
-  uint64_t number = 0;
-  for (size_t i = 4; i-- > 0;)
-    number = number << 8 | (unsigned char)bytes[at + i];
-  return number;
+  return conic_load_32(bytes + at);
 }
 
 /* Whether the faces that are there have normals, of length 1 or 0, and places within reach. */
@@ -55,6 +53,7 @@ static int has_stl_faces(const char *bytes, size_t n) {
   for (size_t at = 84; at + 50 <= n; at += 50) {
     float values[12];
     memcpy(values, bytes + at, sizeof values);
+    conic_turn_words(values, 12, sizeof *values);
     float square = values[0] * values[0] + values[1] * values[1] + values[2] * values[2];
     if (!(square == 0.0f || (square > 0.99f && square < 1.01f)))
       return 0;

@@ -46,28 +46,8 @@ int conic_assimp_is_there(void) {
 /* A file in memory. */
 typedef struct whole_file {
   unsigned char *bytes;
-  size_t n_bytes, room;
+  size_t n_bytes;
 } whole_file;
-
-static conic_status read_into_memory(conic_input *input, whole_file *file) {
-  uint64_t remaining = conic_input_remaining_bytes(input);
-  conic_status status = CONIC_OK;
-  if (remaining != UINT64_MAX && remaining <= most_bytes)
-    status = conic_memory_reserve(input->context, &file->bytes, 0, (size_t)remaining, &file->room, 1);
-  for (size_t n = 1; status == CONIC_OK && n > 0;) {
-    status = conic_input_fill(input, 1);
-    n = conic_input_available(input);
-    if (status == CONIC_OK && file->n_bytes + n > most_bytes)
-      return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: files of this kind are read up to 2 GiB", input->name);
-    if (status == CONIC_OK)
-      status = conic_memory_reserve(input->context, &file->bytes, file->n_bytes, file->n_bytes + n, &file->room, 1);
-    if (status == CONIC_OK && n > 0)
-      memcpy(file->bytes + file->n_bytes, conic_input_bytes(input), n);
-    input->next += status == CONIC_OK ? n : 0;
-    file->n_bytes += status == CONIC_OK ? n : 0;
-  }
-  return status;
-}
 
 typedef struct assimp_reader {
   const conic_input *input;
@@ -174,15 +154,14 @@ static conic_status start_process(const conic_input *input, const conic_assimp_b
                                   conic_model_kind kind, const conic_read_options *options, const whole_file *file,
                                   conic_assimp_process *process) {
   char made[16];
-  const char *ending = conic_model_kind_name(kind), *slash = strrchr(input->name, '/');
-  const char *name = slash ? slash + 1 : input->name;
+  const char *ending = conic_model_kind_name(kind), *name = conic_file_name(input->name);
   snprintf(made, sizeof made, "model.%s", ending);
   conic_assimp_request request = {.name = conic_file_has_ending(name, ending) ? name : made,
                                   .ending = ending,
                                   .bytes = file->bytes,
                                   .n_bytes = file->n_bytes,
                                   .folder = input->name,
-                                  .folder_length = slash ? (size_t)(slash + 1 - input->name) : 0,
+                                  .folder_length = (size_t)(name - input->name),
                                   .keeps_faces = options->keeps_faces};
   warn_if_cut(input, kind, file);
   return conic_assimp_process_start(input->context, input->name, bridge, request, process);
@@ -191,13 +170,13 @@ static conic_status start_process(const conic_input *input, const conic_assimp_b
 conic_status conic_assimp_read(conic_input *input, conic_model_kind kind, const conic_read_options *options,
                                conic_model *model) {
   char message[CONIC_MODULE_MESSAGE] = "";
-  whole_file file = {NULL, 0, 0};
+  whole_file file = {NULL, 0};
   conic_assimp_process process = {.descriptor = -1};
   const conic_assimp_bridge_functions *bridge = load_bridge(message);
   if (!bridge)
     return conic_fail(input->context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read %s: %s", input->name,
                       conic_model_kind_name(kind), message);
-  conic_status status = read_into_memory(input, &file);
+  conic_status status = conic_input_take_rest(input, most_bytes, &file.bytes, &file.n_bytes);
   if (status == CONIC_OK)
     status = start_process(input, bridge, kind, options, &file, &process);
   conic_memory_release(input->context, file.bytes); /* the process has its own */

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "core/base/loan_find.h"
+#include "core/base/machine.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
@@ -27,11 +27,6 @@ void conic_context_options_init_sized(conic_context_options *options, size_t siz
   conic_options_give(options, size, &own);
 }
 
-static int machine_threads(void) {
-  long n = sysconf(_SC_NPROCESSORS_ONLN);
-  return n < 1 ? 1 : n > CONIC_MAX_THREADS ? CONIC_MAX_THREADS : (int)n;
-}
-
 conic_status conic_context_create(const conic_context_options *options, conic_context **context) {
   conic_context_options settings;
   if (!context)
@@ -47,8 +42,10 @@ conic_status conic_context_create(const conic_context_options *options, conic_co
     settings.allocate = default_allocate;
     settings.release = default_release;
   }
-  if (!settings.threads)
-    settings.threads = machine_threads();
+  if (!settings.threads) {
+    int n = conic_machine_threads();
+    settings.threads = n < CONIC_MAX_THREADS ? n : CONIC_MAX_THREADS;
+  }
   conic_context *made = settings.allocate(settings.allocator_cookie, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
@@ -141,6 +138,11 @@ void conic_memory_release(conic_context *context, void *pointer) {
   void *raw;
   memcpy(&raw, (char *)pointer - sizeof raw, sizeof raw);
   context->options.release(context->options.allocator_cookie, raw);
+}
+
+void conic_memory_prefer_large_pages(const conic_context *context, void *pointer, size_t bytes) {
+  if (context->options.large_pages)
+    conic_memory_advise_large_pages(pointer, bytes);
 }
 
 /* A message is one line. Names and words out of files may hold what ends lines, or what terminals obey. */

@@ -2,16 +2,23 @@
 #ifndef CONIC_MESSAGE_H
 #define CONIC_MESSAGE_H
 
+#include <stdio.h>
+
 #include "conic/context.h"
+
+/* Functions whose arguments are printf's. MinGW has two of those, and ours is the standard's. */
+#if defined(__MINGW_PRINTF_FORMAT)
+#define CONIC_AS_PRINTF(format_at, first_at) __attribute__((format(__MINGW_PRINTF_FORMAT, format_at, first_at)))
+#else
+#define CONIC_AS_PRINTF(format_at, first_at) __attribute__((format(printf, format_at, first_at)))
+#endif
 
 /* Logs the formatted line as an error and returns `status`: `return conic_fail(context, CONIC_ERROR_INPUT, "%s: …",
  * …);` Understands %s %d %u %zu %lld %llu %g as printf does. */
-conic_status conic_fail(conic_context *context, conic_status status, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+conic_status conic_fail(conic_context *context, conic_status status, const char *format, ...) CONIC_AS_PRINTF(3, 4);
 
 /* Logs at another level. */
-void conic_log(conic_context *context, conic_log_level level, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+void conic_log(conic_context *context, conic_log_level level, const char *format, ...) CONIC_AS_PRINTF(3, 4);
 
 /* Reports progress of `task` from the calling thread; returns CONIC_ERROR_CANCELLED when the callback asks to stop. */
 conic_status conic_progress(conic_context *context, const char *task, double fraction);

@@ -1,12 +1,12 @@
 /* The cameras of a glTF: those at its nodes. */
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/cameras/camera_list.h"
-#include "core/files/file_fields.h"
 #include "core/files/json_read.h"
 
 enum { MOST_NODE_DEPTH = 64, DEFAULT_HEIGHT = 1024, NO_NODE = -1 };
@@ -269,7 +269,7 @@ static conic_status open_gltf_json(gltf_camera_reader *reader, const unsigned ch
   size_t from = 0, n = n_bytes;
   if (n_bytes >= 4 && memcmp(bytes, "glTF", 4) == 0) {
     from = 20;
-    n = n_bytes < 20 ? 0 : (size_t)conic_file_get(bytes + 12, 4);
+    n = n_bytes < 20 ? 0 : (size_t)conic_load_32(bytes + 12);
     if (n_bytes < 20 || n > n_bytes - 20 || memcmp(bytes + 16, "JSON", 4) != 0)
       return gltf_camera_wrong(reader, "the GLB does not begin with its JSON (at byte 12)");
   }

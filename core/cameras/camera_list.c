@@ -3,10 +3,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/vectors.h"
+#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
 #include "core/image/view_arguments.h"
@@ -140,14 +142,15 @@ int conic_camera_pixels(double value) {
   return value >= 1.0 && value <= 65535.0 && value == (double)(int)value ? (int)value : 0;
 }
 
-/* Of four bytes, the highest first; 0 where that is more than a picture has. */
+/* 0 where it is more than a picture has. */
 static int load_png_side(const unsigned char bytes[4]) {
-  return bytes[0] == 0 && bytes[1] == 0 ? bytes[2] << 8 | bytes[3] : 0;
+  uint32_t side = conic_load_big_32(bytes);
+  return side < 65536 ? (int)side : 0;
 }
 
 static int find_picture_size(const char *path, int *width, int *height) {
   unsigned char start[24];
-  FILE *file = conic_file_begins_with(path, "\x89PNG\r\n\x1a\n", 8) ? fopen(path, "rb") : NULL;
+  FILE *file = conic_file_begins_with(path, "\x89PNG\r\n\x1a\n", 8) ? conic_disk_open_stream(path, "rb") : NULL;
   int is_read = file && fread(start, 1, sizeof start, file) == sizeof start;
   if (file)
     fclose(file);
@@ -160,8 +163,8 @@ static int find_picture_size(const char *path, int *width, int *height) {
 
 conic_status conic_camera_list_size(conic_camera_list *list, const char *picture, int *width, int *height) {
   static const char *const endings[] = {"", ".png", ".jpg", ".jpeg", ".webp", ".JPG", ".PNG"};
-  const char *slash = list->path ? strrchr(list->path, '/') : NULL;
-  int n_folder = slash && picture && *picture != '/' ? (int)(slash + 1 - list->path) : 0;
+  int is_beside = list->path && picture && !conic_disk_is_absolute(picture);
+  int n_folder = is_beside ? (int)(conic_file_name(list->path) - list->path) : 0;
   char path[4096];
   *width = *height = 0;
   for (size_t i = 0; *width == 0 && list->path && picture && *picture && i < sizeof endings / sizeof *endings; i++) {
@@ -185,8 +188,7 @@ conic_status conic_camera_list_size(conic_camera_list *list, const char *picture
 /* --- finding one --- */
 
 static size_t view_base(const char *name) {
-  const char *slash = strrchr(name, '/');
-  return slash ? (size_t)(slash + 1 - name) : 0;
+  return (size_t)(conic_file_name(name) - name);
 }
 
 static int is_called(const char *name, const char *wanted, int how) {

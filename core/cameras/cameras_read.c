@@ -1,12 +1,13 @@
 /* Which kind of camera file it is, and where in a folder it lies. */
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/loan_find.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/cameras/camera_list.h"
+#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/input.h"
 #include "core/files/mapping.h"
@@ -16,8 +17,8 @@ enum { PATH_ROOM = 4096 };
 /* --- folders --- */
 
 static int is_folder(const char *path) {
-  struct stat found;
-  return stat(path, &found) == 0 && S_ISDIR(found.st_mode);
+  conic_disk_entry found;
+  return conic_disk_look(path, &found) && found.is_folder;
 }
 
 /* FOLDER/name, where that is a file. */
@@ -133,7 +134,7 @@ static int kind_of_json(const unsigned char *bytes, size_t n_bytes) {
 
 /* An archive whose first file is an array. */
 static int is_npz(const unsigned char *bytes, size_t n_bytes) {
-  size_t n_name = n_bytes > 30 ? bytes[26] | (size_t)bytes[27] << 8 : 0;
+  size_t n_name = n_bytes > 30 ? conic_load_16(bytes + 26) : 0;
   return n_name > 4 && n_name <= n_bytes - 30 && memcmp(bytes, "PK\3\4", 4) == 0 &&
          memcmp(bytes + 30 + n_name - 4, ".npy", 4) == 0;
 }

@@ -2,11 +2,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/trigonometry.h"
 #include "core/cameras/camera_list.h"
-#include "core/files/file_fields.h"
 #include "core/files/number.h"
 
 enum { MOST_PARAMETERS = 16, WORDS_OF_IMAGE = 9 };
@@ -141,13 +141,13 @@ static const unsigned char *take_colmap_bytes(colmap_reader *reader, uint64_t n,
 
 static uint64_t take_colmap_word(colmap_reader *reader, size_t n_bytes, conic_status *status) {
   const unsigned char *bytes = take_colmap_bytes(reader, n_bytes, status);
-  return bytes ? conic_file_get(bytes, n_bytes) : 0;
+  return bytes ? conic_load_bits(bytes, n_bytes) : 0;
 }
 
 static void take_numbers(colmap_reader *reader, double *numbers, int n, conic_status *status) {
   const unsigned char *bytes = take_colmap_bytes(reader, (uint64_t)n * 8, status);
-  if (bytes)
-    memcpy(numbers, bytes, (size_t)n * 8);
+  for (int i = 0; bytes && i < n; i++)
+    numbers[i] = conic_load_double(bytes + 8 * (size_t)i);
 }
 
 static conic_status read_binary_cameras(colmap_reader *reader) {

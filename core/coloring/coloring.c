@@ -11,7 +11,7 @@
 #include "core/base/vectors.h"
 #include "core/coloring/color_ramp.h"
 #include "core/coloring/coloring_stream.h"
-#include "core/formats/point_fields.h"
+#include "core/splats/point_fields.h"
 #include "core/splats/columns.h"
 
 static const char *const ramp_names[CONIC_N_RAMPS] = {"sequential", "grey", "heat", "diverging", "terrain", "classes"};
@@ -298,6 +298,24 @@ static conic_status check_options(conic_context *context, const conic_coloring_o
 static void drop_scalars(conic_context *context, float **scalar) {
   conic_memory_release(context, *scalar);
   *scalar = NULL;
+}
+
+conic_status conic_coloring_of_range(conic_context *context, const conic_coloring_options *options, const char *field,
+                                     const double typical[2], double least, double greatest, conic_coloring *coloring) {
+  conic_coloring_options own;
+  painting p = {.coloring = coloring};
+  memset(coloring, 0, sizeof *coloring);
+  conic_status status = check_options(context, options, &own);
+  if (status != CONIC_OK)
+    return status;
+  name_coloring(&p, BY_VALUE, field, own.ramp);
+  int is_of_classes = is_that_word(coloring->ramp, ramp_names[CONIC_RAMP_CLASSES]);
+  coloring->minimum = is_of_classes ? least : own.has_range ? own.minimum : typical[0];
+  coloring->maximum = is_of_classes ? greatest : own.has_range ? own.maximum : typical[1];
+  for (unsigned i = 0; i < 256 && is_of_classes; i++)
+    if ((double)i >= least && (double)i <= greatest)
+      coloring->classes[i / 32] |= 1u << i % 32;
+  return CONIC_OK;
 }
 
 int conic_coloring_needs_range(const conic_coloring_options *options) {

@@ -117,6 +117,8 @@ static conic_status estimate_in(conic_context *context, conic_estimate *estimate
   conic_status status = find_neighbours(context, neighbourhood);
   if (status == CONIC_OK && is_any_guessed)
     status = conic_normals_guess(context, neighbourhood, 0.45, 0.5);
+  if (status == CONIC_OK && is_any_guessed && estimate->model->points.sight[0])
+    conic_normals_turn_to_sights(neighbourhood, estimate->model->points.sight);
   if (status == CONIC_OK && is_any_guessed)
     status = conic_normals_orient(context, neighbourhood);
   if (status == CONIC_OK && estimate->dot)
@@ -311,28 +313,50 @@ typedef struct sound_search {
   atomic_int is_unsound;
 } sound_search;
 
+/* Two floats at once, as the bits that they are: this is done for every picture of a caller's arrays. */
+static uint64_t two_floats(const float *column, size_t i) {
+  uint64_t bits;
+  memcpy(&bits, column + i, sizeof bits);
+  return bits & UINT64_C(0x7FFFFFFF7FFFFFFF); /* without their signs */
+}
+
+/* The uppermost bit of each half says whether that float is infinite or NaN. */
+static uint64_t two_not_finite(uint64_t two) {
+  return two + UINT64_C(0x0080000000800000);
+}
+
+/* Likewise whether it is zero. */
+static uint64_t two_zeros(uint64_t two) {
+  return ~(two + UINT64_C(0x7FFFFFFF7FFFFFFF));
+}
+
+static inline uint64_t two_unsound_axes(float *const axes[3], size_t i) {
+  uint64_t x = two_floats(axes[0], i), y = two_floats(axes[1], i), z = two_floats(axes[2], i);
+  return two_not_finite(x) | two_not_finite(y) | two_not_finite(z) | two_zeros(x | y | z);
+}
+
+static inline uint64_t two_unsound_points(float *const columns[3], size_t i) {
+  return two_not_finite(two_floats(columns[0], i)) | two_not_finite(two_floats(columns[1], i)) |
+         two_not_finite(two_floats(columns[2], i));
+}
+
 static void look_for_unsound(void *data, size_t begin, size_t end) {
   sound_search *search = data;
   const conic_splats *s = search->splats;
-  int n_bad = 0;
-  for (size_t i = begin; i < end; i++) {
-    float sum = 0.0f; /* stays that, or becomes NaN */
-    for (int axis = 0; axis < 3; axis++)
-      sum += s->position[axis][i] * 0.0f + s->tangent_u[axis][i] * 0.0f + s->tangent_v[axis][i] * 0.0f;
-    int has_u = s->tangent_u[0][i] != 0.0f || s->tangent_u[1][i] != 0.0f || s->tangent_u[2][i] != 0.0f;
-    int has_v = s->tangent_v[0][i] != 0.0f || s->tangent_v[1][i] != 0.0f || s->tangent_v[2][i] != 0.0f;
-    n_bad += sum != 0.0f || !has_u || !has_v;
+  float *const *colors = s->color[0] ? s->color : s->position;
+  uint64_t found = 0;
+  for (size_t at = begin; at < end; at += 2) {
+    size_t i = at + 1 < end ? at : end - 2; /* of an odd number the last but one is looked at twice */
+    found |= two_unsound_axes(s->tangent_u, i) | two_unsound_axes(s->tangent_v, i) |
+             two_unsound_points(s->position, i) | two_unsound_points(colors, i);
   }
-  for (int c = 0; c < 3 && s->color[0]; c++)
-    for (size_t i = begin; i < end; i++)
-      n_bad += !conic_is_finite(s->color[c][i]);
-  if (n_bad)
+  if (found & UINT64_C(0x8000000080000000))
     atomic_store(&search->is_unsound, 1);
 }
 
 int conic_splats_need_no_repair(conic_context *context, const conic_splats *splats) {
   sound_search search = {.splats = splats};
-  return splats->count > 0 && splats->tangent_u[0] && splats->n_clips == 0 &&
+  return splats->count > 1 && splats->tangent_u[0] && splats->n_clips == 0 &&
          conic_slots_for(context, splats->count, look_for_unsound, &search, 0.0, 0.0) == CONIC_OK &&
          !atomic_load(&search.is_unsound);
 }

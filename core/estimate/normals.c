@@ -6,6 +6,7 @@
 #include "core/base/eigen.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/vectors.h"
 #include "core/estimate/covariance.h"
 
 static void guess_normal(conic_neighbourhood *neighbourhood, size_t slot) {
@@ -140,6 +141,25 @@ static conic_status join_links(conic_context *context, linking *l, const uint64_
 static void turn(conic_neighbourhood *neighbourhood, size_t slot) {
   for (int axis = 0; axis < 3; axis++)
     neighbourhood->normals[slot][axis] = -neighbourhood->normals[slot][axis];
+}
+
+/* Seen flatter than this, a plane may lean either way. */
+static const double least_facing = 0.2;
+
+void conic_normals_turn_to_sights(conic_neighbourhood *neighbourhood, float *const sight[3]) {
+  for (size_t i = 0; i < neighbourhood->tree.n_points; i++) {
+    double towards[3] = {(double)sight[0][i], (double)sight[1][i], (double)sight[2][i]}, cosine = 0.0;
+    size_t slot = neighbourhood->tree.slot_of_point[i];
+    if (slot == CONIC_NO_SLOT || !(neighbourhood->flags[slot] & CONIC_SLOT_GUESSED) || !conic_normalize(towards))
+      continue;
+    for (int axis = 0; axis < 3; axis++)
+      cosine += towards[axis] * (double)neighbourhood->normals[slot][axis];
+    if (!(fabs(cosine) >= least_facing))
+      continue;
+    if (cosine < 0.0)
+      turn(neighbourhood, slot);
+    neighbourhood->flags[slot] &= (uint8_t)~CONIC_SLOT_GUESSED;
+  }
 }
 
 /* What hangs together, at its root: the middle, and how much its normals point away from there. */

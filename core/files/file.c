@@ -1,19 +1,17 @@
 #include "core/files/file.h"
 
-#include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "core/base/context_struct.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/files/disk.h"
 #include "core/files/guard.h"
+#include "core/files/scratch.h"
 
 struct conic_output {
   conic_context *context;
@@ -41,21 +39,29 @@ static void release_output(conic_output *output) {
 }
 
 const char *conic_file_name(const char *path) {
-  const char *slash = strrchr(path, '/');
-  return slash ? slash + 1 : path;
+  const char *name = path;
+  for (const char *c = path; *c; c++)
+    if (conic_disk_is_separator(*c))
+      name = c + 1;
+  return name;
+}
+
+const char *conic_file_ending(const char *path) {
+  const char *dot = strrchr(conic_file_name(path), '.');
+  return dot ? dot + 1 : "";
 }
 
 int conic_file_follow(const char *path, char *target, size_t room) {
   char link[4096];
   int n = snprintf(target, room, "%s", path);
   for (int steps = 0; n >= 0 && (size_t)n < room && steps < 40; steps++) {
-    ssize_t length = readlink(target, link, sizeof link);
-    if (length < 0 || length == (ssize_t)sizeof link)
-      return 1; /* no link */
-    size_t folder = link[0] == '/' ? 0 : (size_t)(conic_file_name(target) - target);
-    n = (int)(folder + (size_t)length);
+    size_t length = conic_disk_read_link(target, link, sizeof link);
+    if (!length)
+      return 1;
+    size_t folder = conic_disk_is_absolute(link) ? 0 : (size_t)(conic_file_name(target) - target);
+    n = (int)(folder + length);
     if ((size_t)n < room) {
-      memcpy(target + folder, link, (size_t)length);
+      memcpy(target + folder, link, length);
       target[n] = '\0';
     }
   }
@@ -95,7 +101,7 @@ static char *temporary_name(conic_context *context, const char *path, int attemp
 static int begin_temporary(conic_output *output) {
   conic_context *context = output->context;
   pthread_mutex_lock(&context->outputs_lock); /* whoever gives up keeps it for good */
-  int descriptor = open(output->temporary_path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666), error = errno;
+  int descriptor = conic_disk_create(output->temporary_path), error = errno;
   if (descriptor >= 0) {
     output->next = context->outputs;
     context->outputs = output;
@@ -109,9 +115,9 @@ static int begin_temporary(conic_output *output) {
 static int end_temporary(conic_output *output, int is_wanted) {
   conic_context *context = output->context;
   pthread_mutex_lock(&context->outputs_lock);
-  int is_renamed = is_wanted && rename(output->temporary_path, output->target) == 0, error = errno;
+  int is_renamed = is_wanted && conic_disk_rename(output->temporary_path, output->target), error = errno;
   if (!is_renamed)
-    unlink(output->temporary_path);
+    conic_disk_remove(output->temporary_path);
   conic_output **at = &context->outputs;
   while (*at != output)
     at = &(*at)->next;
@@ -124,7 +130,7 @@ static int end_temporary(conic_output *output, int is_wanted) {
 void conic_outputs_give_up(conic_context *context) {
   pthread_mutex_lock(&context->outputs_lock);
   for (conic_output *output = context->outputs; output; output = output->next)
-    unlink(output->temporary_path);
+    conic_disk_remove(output->temporary_path);
 }
 
 static conic_status open_temporary(conic_output *output) {
@@ -149,33 +155,33 @@ static conic_status open_temporary(conic_output *output) {
 }
 
 /* A file that is there, or a device or a pipe, which is written as it is. */
-static conic_status open_existing(conic_output *output, const struct stat *existing) {
+static conic_status open_existing(conic_output *output, const conic_disk_entry *existing) {
   conic_status status = conic_guard_check(output->context, output->path, existing);
   if (status != CONIC_OK)
     return status;
-  if (S_ISDIR(existing->st_mode))
+  if (existing->is_folder)
     return conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: it is a directory", output->path);
-  if (S_ISREG(existing->st_mode)) {
+  if (existing->is_file) {
     status = open_temporary(output);
-    if (status == CONIC_OK && fchmod(fileno(output->stream), existing->st_mode & 0777) != 0)
-      errno = 0; /* there are disks without modes */
+    if (status == CONIC_OK)
+      conic_disk_permit(fileno(output->stream), existing->permissions);
     return status;
   }
-  output->stream = fopen(output->path, "wb");
+  output->stream = conic_disk_open_stream(output->path, "wb");
   return output->stream
              ? CONIC_OK
              : conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: %s", output->path, strerror(errno));
 }
 
 static conic_status open_target(conic_output *output) {
-  struct stat existing;
+  conic_disk_entry existing;
   char target[4096];
   if (strcmp(output->path, "-") == 0) {
     output->stream = stdout;
     return CONIC_OK;
   }
-  int is_there = stat(output->path, &existing) == 0;
-  if (is_there && !S_ISREG(existing.st_mode))
+  int is_there = conic_disk_look(output->path, &existing);
+  if (is_there && !existing.is_file)
     return open_existing(output, &existing);
   if (!conic_file_follow(output->path, target, sizeof target))
     return conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: the name is too long, or links to itself",
@@ -237,45 +243,50 @@ conic_status conic_output_end(conic_output *output, conic_status status) {
   return status;
 }
 
-/* Whether "NAME" is ".STEM.PID-N.EXT" of a process that is no more. */
+/* Whether "NAME" is ".STEM.PID-N.EXT" of a process that is no more, or a scratch file that kept its name. */
 static int is_left_over(const char *name, const char *stem, size_t n_stem, const char *ending) {
   char *end;
+  if (strncmp(name, CONIC_SCRATCH_START, strlen(CONIC_SCRATCH_START)) == 0)
+    return 1;
   if (name[0] != '.' || strncmp(name + 1, stem, n_stem) != 0 || name[1 + n_stem] != '.')
     return 0;
   long process = strtol(name + n_stem + 2, &end, 10);
   if (process <= 0 || *end != '-')
     return 0;
   long attempt = strtol(end + 1, &end, 10);
-  return attempt >= 0 && strcmp(end, ending) == 0 && kill((pid_t)process, 0) != 0 && errno == ESRCH;
+  return attempt >= 0 && strcmp(end, ending) == 0 && conic_disk_is_writer_gone(process);
 }
 
-static void remove_if_old(int folder, const char *name) {
-  struct stat found;
-  time_t now = time(NULL);
-  if (fstatat(folder, name, &found, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(found.st_mode) && now - found.st_mtime > 60)
-    unlinkat(folder, name, 0);
+static void remove_if_old(const char *path) {
+  conic_disk_entry found;
+  char link[4096];
+  if (conic_disk_look(path, &found) && found.is_file && !conic_disk_read_link(path, link, sizeof link) &&
+      (int64_t)time(NULL) - found.modified_seconds > 60)
+    conic_disk_remove(path);
 }
 
 void conic_output_sweep(conic_context *context, const char *path) {
-  const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+  const char *name = conic_file_name(path);
   const name_parts parts = split_name(name);
-  char *folder = conic_memory_allocate(context, (size_t)(name - path) + 2, 1);
-  if (!folder)
+  conic_disk_folder folder;
+  const int n_folder = (int)(name - path);
+  const size_t room = (size_t)n_folder + LONGEST_NAME + 2;
+  char *found = conic_memory_allocate(context, room, 1);
+  if (!found)
     return;
-  memcpy(folder, slash ? path : ".", slash ? (size_t)(name - path) : 1);
-  folder[slash ? name - path : 1] = '\0';
-  DIR *listing = opendir(folder);
-  for (struct dirent *entry; listing && (entry = readdir(listing));)
-    if (is_left_over(entry->d_name, parts.stem, (size_t)parts.n_stem, parts.ending))
-      remove_if_old(dirfd(listing), entry->d_name);
-  if (listing)
-    closedir(listing);
-  conic_memory_release(context, folder);
+  snprintf(found, room, "%.*s", n_folder ? n_folder : 1, n_folder ? path : ".");
+  conic_disk_open_folder(found, &folder);
+  for (const char *entry; (entry = conic_disk_next_name(&folder));)
+    if (is_left_over(entry, parts.stem, (size_t)parts.n_stem, parts.ending) &&
+        snprintf(found, room, "%.*s%s", n_folder, path, entry) < (int)room)
+      remove_if_old(found);
+  conic_disk_close_folder(&folder);
+  conic_memory_release(context, found);
 }
 
 int conic_file_is_there(const char *path) {
-  struct stat about;
-  return stat(path, &about) == 0 && S_ISREG(about.st_mode) && access(path, R_OK) == 0;
+  conic_disk_entry about;
+  return conic_disk_look(path, &about) && about.is_file && conic_disk_can_read(path);
 }
 
 int conic_file_has_ending(const char *path, const char *ending) {
@@ -288,12 +299,16 @@ int conic_file_has_ending(const char *path, const char *ending) {
   return 1;
 }
 
-int conic_file_begins_with(const char *path, const void *bytes, size_t n_bytes) {
-  unsigned char head[16];
-  FILE *file = strcmp(path, "-") != 0 && conic_file_is_there(path) ? fopen(path, "rb") : NULL;
+size_t conic_file_read_head(const char *path, void *head, size_t n_bytes) {
+  FILE *file = strcmp(path, "-") != 0 && conic_file_is_there(path) ? conic_disk_open_stream(path, "rb") : NULL;
   if (!file)
     return 0;
   size_t n = fread(head, 1, n_bytes, file);
   fclose(file);
-  return n == n_bytes && memcmp(head, bytes, n_bytes) == 0;
+  return n;
+}
+
+int conic_file_begins_with(const char *path, const void *bytes, size_t n_bytes) {
+  unsigned char head[16];
+  return conic_file_read_head(path, head, n_bytes) == n_bytes && memcmp(head, bytes, n_bytes) == 0;
 }

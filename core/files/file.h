@@ -30,19 +30,23 @@ void conic_output_abandon(conic_output *output);
 void conic_outputs_give_up(conic_context *context);
 
 /* Removes what programs that were killed have left beside PATH of their outputs to it: hidden files named after
- * processes that are no more, untouched for a minute, since others may write to the same disk from elsewhere. For
- * outputs that are too large to be left lying about. */
+ * processes that are no more, and scratch files that kept their names, untouched for a minute, since others may write to
+ * the same disk from elsewhere. For outputs that are too large to be left lying about. */
 void conic_output_sweep(conic_context *context, const char *path);
 
 /* What PATH is in the end, past symbolic links, be it there or not; 0 where the room is too small or links go round. */
 int conic_file_follow(const char *path, char *target, size_t room);
 
-/* What follows the last slash. */
+/* What follows the last slash; and of that what follows its last dot, empty where there is none. */
 const char *conic_file_name(const char *path);
+const char *conic_file_ending(const char *path);
 
 /* Whether PATH is a file that can be read: no folder, device or pipe, which a name in somebody else's file should not
  * lead to. */
 int conic_file_is_there(const char *path);
+
+/* The first bytes of such a file, as many as there are up to n_bytes; 0 where there is none. */
+size_t conic_file_read_head(const char *path, void *head, size_t n_bytes);
 
 /* Whether such a file begins with these bytes, 16 at most. */
 int conic_file_begins_with(const char *path, const void *bytes, size_t n_bytes);

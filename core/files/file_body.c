@@ -1,15 +1,18 @@
 #include "core/files/file_body.h"
 
 #include <stdio.h>
+#include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
 #include "core/files/file.h"
 
-enum { ALIGNMENT = 64, MOST_AT_ONCE = 1 << 24 };
+/* What is turned around on its way is so by pieces, of whole records. */
+enum { ALIGNMENT = 64, PIECE = 4096, MOST_AT_ONCE = CONIC_IS_BIG_ENDIAN ? PIECE : 1 << 24 };
 
-void conic_file_add_array(conic_file_layout *layout, size_t n_bytes) {
-  layout->arrays[layout->n++] = (conic_file_array){layout->n_bytes, n_bytes};
+void conic_file_add_array(conic_file_layout *layout, size_t n_bytes, conic_file_record record) {
+  layout->arrays[layout->n++] = (conic_file_array){layout->n_bytes, n_bytes, record};
   layout->n_bytes = (layout->n_bytes + n_bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
 }
 
@@ -19,30 +22,76 @@ void conic_file_list_arrays(const conic_file_layout *layout, const unsigned char
     arrays[i] = bytes + layout->arrays[i].offset;
 }
 
+/* Whole records, between a file's order and the machine's. */
+static void turn_records(conic_file_record record, unsigned char *bytes, size_t n_bytes) {
+  if (record[1] == 0) {
+    conic_turn_words(bytes, n_bytes / (size_t)(*record - '0'), (size_t)(*record - '0'));
+    return;
+  }
+  for (const unsigned char *end = bytes + n_bytes; CONIC_IS_BIG_ENDIAN && bytes < end;)
+    for (const char *member = record; *member; bytes += *member++ - '0')
+      conic_turn_words(bytes, 1, (size_t)(*member - '0'));
+}
+
+/* A piece of an array as it stands in the file, itself or a copy. */
+static const unsigned char *as_in_file(const conic_file_array *array, const unsigned char *bytes, size_t n_bytes,
+                                       unsigned char piece[PIECE]) {
+  if (!CONIC_IS_BIG_ENDIAN || strcmp(array->record, "1") == 0)
+    return bytes;
+  memcpy(piece, bytes, n_bytes);
+  turn_records(array->record, piece, n_bytes);
+  return piece;
+}
+
 typedef struct sum_job {
   const conic_file_layout *layout;
   const void *const *arrays;
+  int is_file; /* the arrays are as they stand in the file */
   uint64_t sums[CONIC_FILE_MOST_ARRAYS];
 } sum_job;
 
 static void sum_task(void *data, size_t i, int i_thread) {
   sum_job *job = data;
+  const conic_file_array *array = &job->layout->arrays[i];
+  const unsigned char *bytes = job->arrays[i];
   (void)i_thread;
-  job->sums[i] = conic_checksum(job->arrays[i], job->layout->arrays[i].n_bytes);
+  if (job->is_file || !CONIC_IS_BIG_ENDIAN) {
+    job->sums[i] = conic_checksum(bytes, array->n_bytes);
+    return;
+  }
+  unsigned char piece[PIECE];
+  conic_checksumming part;
+  conic_checksum_begin(&part);
+  for (size_t at = 0, n; at < array->n_bytes; at += n) {
+    n = array->n_bytes - at < PIECE ? array->n_bytes - at : PIECE;
+    conic_checksum_add(&part, as_in_file(array, bytes + at, n, piece), n);
+  }
+  job->sums[i] = conic_checksum_end(&part);
+}
+
+static uint64_t sum_all(conic_context *context, sum_job *job) {
+  unsigned char bytes[8 * CONIC_FILE_MOST_ARRAYS];
+  size_t n = (size_t)job->layout->n;
+  if (context)
+    conic_parallel_for(context, n, sum_task, job);
+  for (size_t i = 0; i < n; i++) {
+    if (!context)
+      sum_task(job, i, 0);
+    conic_store_64(bytes + 8 * i, job->sums[i]);
+  }
+  return conic_checksum(bytes, 8 * n);
 }
 
 uint64_t conic_file_sum_arrays(conic_context *context, const conic_file_layout *layout, const void *const *arrays) {
   sum_job job = {.layout = layout, .arrays = arrays};
-  unsigned char bytes[8 * CONIC_FILE_MOST_ARRAYS];
-  size_t n = (size_t)layout->n;
-  if (context)
-    conic_parallel_for(context, n, sum_task, &job);
-  for (size_t i = 0; i < n; i++) {
-    if (!context)
-      sum_task(&job, i, 0);
-    conic_file_put(bytes + 8 * i, 8, job.sums[i]);
-  }
-  return conic_checksum(bytes, 8 * n);
+  return sum_all(context, &job);
+}
+
+uint64_t conic_file_sum_bytes(conic_context *context, const conic_file_layout *layout, const unsigned char *bytes) {
+  const void *arrays[CONIC_FILE_MOST_ARRAYS];
+  sum_job job = {.layout = layout, .arrays = arrays, .is_file = 1};
+  conic_file_list_arrays(layout, bytes, arrays);
+  return sum_all(context, &job);
 }
 
 /* Where what follows the array begins. */
@@ -53,11 +102,12 @@ static size_t end_of_array(const conic_file_layout *layout, int i) {
 static conic_status write_array(conic_context *context, const conic_file_layout *layout, int i,
                                 const unsigned char *bytes, FILE *stream) {
   static const unsigned char zeros[ALIGNMENT];
+  unsigned char piece[PIECE];
   size_t begin = layout->arrays[i].offset, n_bytes = layout->arrays[i].n_bytes;
   conic_status status = CONIC_OK;
   for (size_t at = 0, n; at < n_bytes && status == CONIC_OK && !ferror(stream); at += n) {
     n = n_bytes - at < MOST_AT_ONCE ? n_bytes - at : MOST_AT_ONCE;
-    fwrite(bytes + at, 1, n, stream);
+    fwrite(as_in_file(&layout->arrays[i], bytes + at, n, piece), 1, n, stream);
     status = conic_progress(context, "write", (double)(begin + at + n) / (double)layout->n_bytes);
   }
   fwrite(zeros, 1, end_of_array(layout, i) - begin - n_bytes, stream);
@@ -80,9 +130,8 @@ conic_status conic_file_write_arrays(conic_context *context, const char *path, c
   return conic_output_end(output, status);
 }
 
-conic_status conic_file_check_arrays(conic_context *context, const char *path, const conic_mapping *file,
-                                     const conic_file_layout *layout, uint64_t sum) {
-  const void *arrays[CONIC_FILE_MOST_ARRAYS];
+conic_status conic_file_take_arrays(conic_context *context, const char *path, conic_mapping *file,
+                                    const conic_file_layout *layout, uint64_t sum) {
   if (file->n_bytes != layout->n_bytes)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: has %zu bytes where its header tells of %zu (at byte %zu)", path,
                       file->n_bytes, layout->n_bytes,
@@ -91,9 +140,10 @@ conic_status conic_file_check_arrays(conic_context *context, const char *path, c
     for (size_t at = layout->arrays[i].offset + layout->arrays[i].n_bytes; at < end_of_array(layout, i); at++)
       if (file->bytes[at])
         return conic_fail(context, CONIC_ERROR_INPUT, "%s: is damaged (at byte %zu)", path, at);
-  conic_file_list_arrays(layout, file->bytes, arrays);
-  if (conic_file_sum_arrays(context, layout, arrays) != sum)
+  if (conic_file_sum_bytes(context, layout, file->bytes) != sum)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: is damaged: its sum is not that of its header (at byte %d)",
                       path, CONIC_FILE_HEADER_BYTES);
+  for (int i = 0; CONIC_IS_BIG_ENDIAN && i < layout->n; i++)
+    turn_records(layout->arrays[i].record, file->bytes + layout->arrays[i].offset, layout->arrays[i].n_bytes);
   return CONIC_OK;
 }

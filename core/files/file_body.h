@@ -8,8 +8,13 @@
 
 enum { CONIC_FILE_MOST_ARRAYS = 40 };
 
+/* What an array's records are made of: the bytes of each member, "4" for floats, "1" for bytes, "422444444" … Several
+ * members together are a power of two. */
+typedef const char *conic_file_record;
+
 typedef struct conic_file_array {
   size_t offset, n_bytes;
+  conic_file_record record;
 } conic_file_array;
 
 /* Where everything is. Begins as {.n_bytes = CONIC_FILE_HEADER_BYTES}. */
@@ -19,21 +24,25 @@ typedef struct conic_file_layout {
   size_t n_bytes; /* of the whole file */
 } conic_file_layout;
 
-void conic_file_add_array(conic_file_layout *layout, size_t n_bytes);
+void conic_file_add_array(conic_file_layout *layout, size_t n_bytes, conic_file_record record);
 
 /* Where the arrays are in the bytes of a whole file. */
 void conic_file_list_arrays(const conic_file_layout *layout, const unsigned char *bytes,
                             const void *arrays[CONIC_FILE_MOST_ARRAYS]);
 
-/* The sum over the arrays' sums; without a context, on this thread. */
+/* The sum over the sums of arrays in memory. */
 uint64_t conic_file_sum_arrays(conic_context *context, const conic_file_layout *layout, const void *const *arrays);
+/* Over those in the bytes of a whole file; without a context, on this thread. */
+uint64_t conic_file_sum_bytes(conic_context *context, const conic_file_layout *layout, const unsigned char *bytes);
 
 /* Writes a file of header and arrays. Errors: MEMORY, IO, CANCELLED. */
 conic_status conic_file_write_arrays(conic_context *context, const char *path, const conic_file_kind *kind,
                                      const void *numbers, const conic_file_layout *layout, const void *const *arrays);
 
-/* Whether the file is as long as its layout tells, has nothing between its arrays, and has that sum. Errors: INPUT. */
-conic_status conic_file_check_arrays(conic_context *context, const char *path, const conic_mapping *file,
-                                     const conic_file_layout *layout, uint64_t sum);
+/* Whether the file is as long as its layout tells, has nothing between its arrays, and has that sum. Then its arrays
+ * can be used as they lie: where files are the other way round than memory, the mapping, which is private, is turned
+ * around. Errors: INPUT. */
+conic_status conic_file_take_arrays(conic_context *context, const char *path, conic_mapping *file,
+                                    const conic_file_layout *layout, uint64_t sum);
 
 #endif

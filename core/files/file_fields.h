@@ -8,20 +8,16 @@
 
 /* A member by its place in memory. */
 typedef struct conic_file_field {
-  size_t offset, n_bytes;
+  size_t offset, n_bytes, word_bytes; /* which are turned around as one; an array is several */
 } conic_file_field;
 
 #define CONIC_FILE_FIELD(type, member)                                                                                 \
-  { offsetof(type, member), sizeof(((type *)0)->member) }
+  { offsetof(type, member), sizeof(((type *)0)->member), __alignof__(((type *)0)->member) }
 
 /* The bytes that so many fields take in a file. */
 size_t conic_file_fields_bytes(const conic_file_field *fields, size_t n);
 
 void conic_file_fields_write(const conic_file_field *fields, size_t n, const void *from, unsigned char *bytes);
 void conic_file_fields_read(const conic_file_field *fields, size_t n, const unsigned char *bytes, void *to);
-
-/* A number of up to eight bytes. */
-void conic_file_put(unsigned char *to, size_t n_bytes, uint64_t bits);
-uint64_t conic_file_get(const unsigned char *from, size_t n_bytes);
 
 #endif

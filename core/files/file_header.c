@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
 
@@ -21,7 +22,7 @@ void conic_file_make_header(const conic_file_kind *kind, const void *numbers,
 void conic_file_mend_header(const conic_file_kind *kind, const void *numbers, unsigned char *bytes) {
   if (numbers)
     conic_file_fields_write(kind->fields, kind->n_fields, numbers, bytes + sizeof kind->magic);
-  conic_file_put(bytes + AT_SUM, 8, conic_checksum(bytes, AT_SUM));
+  conic_store_64(bytes + AT_SUM, conic_checksum(bytes, AT_SUM));
 }
 
 static conic_status read_file_header(conic_context *context, const char *path, const conic_file_kind *kind,
@@ -30,11 +31,11 @@ static conic_status read_file_header(conic_context *context, const char *path, c
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: no %s file (at byte 0)", path, kind->ending);
   if (n_bytes < CONIC_FILE_HEADER_BYTES)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: ends within its header (at byte %zu)", path, n_bytes);
-  uint32_t version = (uint32_t)conic_file_get(bytes + sizeof kind->magic, 4);
+  uint32_t version = conic_load_32(bytes + sizeof kind->magic);
   if (version != kind->version)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of the format is not known (at byte 8)", path,
                       (unsigned)version);
-  if (conic_file_get(bytes + AT_SUM, 8) != conic_checksum(bytes, AT_SUM))
+  if (conic_load_64(bytes + AT_SUM) != conic_checksum(bytes, AT_SUM))
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header is damaged (at byte %d)", path, AT_SUM);
   conic_file_fields_read(kind->fields, kind->n_fields, bytes + sizeof kind->magic, numbers);
   const char *wrong = kind->fault(numbers);

@@ -6,33 +6,32 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 
-static int is_file(const conic_file_identity *known, const struct stat *found) {
-  return known->is_there && known->device == (uint64_t)found->st_dev && known->number == (uint64_t)found->st_ino;
+static int is_file(const conic_file_identity *known, const conic_disk_entry *found) {
+  return known->is_there && known->device == found->device && known->number == found->number;
 }
 
-static conic_file_identity identify(const struct stat *found) {
-  return (conic_file_identity){1, (uint64_t)found->st_dev, (uint64_t)found->st_ino};
+static conic_file_identity identify(const conic_disk_entry *found) {
+  return (conic_file_identity){1, found->device, found->number};
 }
 
 void conic_guard_inputs(conic_context *context, const char *replaceable) {
-  struct stat found;
+  conic_disk_entry found;
   context->guards_inputs = 1;
   context->n_inputs = 0;
   memset(&context->replaceable, 0, sizeof context->replaceable);
-  if (replaceable && stat(replaceable, &found) == 0)
+  if (replaceable && conic_disk_look(replaceable, &found))
     context->replaceable = identify(&found);
 }
 
-static int is_noted(const conic_context *context, const struct stat *found) {
+static int is_noted(const conic_context *context, const conic_disk_entry *found) {
   for (size_t i = 0; i < context->n_inputs; i++)
     if (is_file(&context->inputs[i], found))
       return 1;
   return 0;
 }
 
-conic_status conic_guard_note(conic_context *context, const struct stat *read) {
-  if (!context->guards_inputs || !S_ISREG(read->st_mode) || is_noted(context, read) ||
-      is_file(&context->replaceable, read))
+conic_status conic_guard_note(conic_context *context, const conic_disk_entry *read) {
+  if (!context->guards_inputs || !read->is_file || is_noted(context, read) || is_file(&context->replaceable, read))
     return CONIC_OK;
   conic_status status = conic_memory_reserve(context, &context->inputs, context->n_inputs, context->n_inputs + 1,
                                              &context->inputs_room, sizeof *context->inputs);
@@ -42,11 +41,11 @@ conic_status conic_guard_note(conic_context *context, const struct stat *read) {
 }
 
 conic_status conic_guard_note_path(conic_context *context, const char *path) {
-  struct stat found;
-  return stat(path, &found) == 0 ? conic_guard_note(context, &found) : CONIC_OK;
+  conic_disk_entry found;
+  return conic_disk_look(path, &found) ? conic_guard_note(context, &found) : CONIC_OK;
 }
 
-conic_status conic_guard_check(conic_context *context, const char *path, const struct stat *existing) {
+conic_status conic_guard_check(conic_context *context, const char *path, const conic_disk_entry *existing) {
   if (!is_noted(context, existing))
     return CONIC_OK;
   return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s is an input, and would be written over", path);

@@ -1,33 +1,34 @@
 #include "core/files/input.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/files/disk.h"
+#include "core/files/file.h"
 #include "core/files/guard.h"
 
 /* Progress is reported this often: a few times a second on a fast disk. */
 static const uint64_t report_bytes = 64u << 20;
 
 static conic_status check_kind(conic_input *input) {
-  struct stat found;
-  if (fstat(input->descriptor, &found) != 0)
+  conic_disk_entry found;
+  if (!conic_disk_look_at(input->descriptor, &found))
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: %s", input->name, strerror(errno));
-  if (S_ISDIR(found.st_mode))
+  if (found.is_folder)
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: it is a directory", input->name);
   conic_status status = conic_guard_note(input->context, &found);
   if (status != CONIC_OK)
     return status;
-  if (S_ISREG(found.st_mode)) { /* standard input may be a file that was read in part */
-    off_t start = lseek(input->descriptor, 0, SEEK_CUR);
-    input->has_size = start >= 0 && found.st_size >= start;
-    input->size_bytes = input->has_size ? (uint64_t)(found.st_size - start) : 0;
+  if (found.is_file) { /* standard input may be a file that was read in part */
+    int64_t start = conic_disk_position(input->descriptor);
+    input->has_size = start >= 0 && found.n_bytes >= (uint64_t)start;
+    input->start_bytes = input->has_size ? (uint64_t)start : 0;
+    input->size_bytes = input->has_size ? found.n_bytes - (uint64_t)start : 0;
   }
   return CONIC_OK;
 }
@@ -38,7 +39,7 @@ conic_status conic_input_open(conic_context *context, const char *path, conic_in
   input->context = context;
   input->name = is_standard ? "standard input" : path;
   input->line = 1;
-  input->descriptor = is_standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
+  input->descriptor = is_standard ? STDIN_FILENO : conic_disk_open(path);
   if (input->descriptor < 0)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
   conic_status status = check_kind(input);
@@ -76,7 +77,7 @@ conic_status conic_input_fill(conic_input *input, size_t count) {
   input->window_offset += input->next;
   input->next = 0;
   while (input->filled < count && !input->is_at_end) {
-    ssize_t n = read(input->descriptor, input->window + input->filled, CONIC_INPUT_WINDOW - input->filled);
+    ptrdiff_t n = conic_disk_read(input->descriptor, input->window + input->filled, CONIC_INPUT_WINDOW - input->filled);
     if (n < 0 && errno == EINTR) { /* whoever waits for a pipe may have been told to stop */
       conic_status status = conic_progress(input->context, "read", 0.0);
       if (status != CONIC_OK)
@@ -90,6 +91,21 @@ conic_status conic_input_fill(conic_input *input, size_t count) {
     input->is_at_end = n == 0;
   }
   return report_progress(input);
+}
+
+conic_status conic_input_read_at(const conic_input *input, uint64_t offset, void *bytes, size_t n, size_t *n_read) {
+  for (*n_read = 0; *n_read < n;) {
+    uint64_t at = offset + *n_read;
+    ptrdiff_t n_now =
+        conic_disk_read_at(input->descriptor, (char *)bytes + *n_read, n - *n_read, input->start_bytes + at);
+    if (n_now < 0 && errno != EINTR)
+      return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: %s (at byte %llu)", input->name,
+                        strerror(errno), (unsigned long long)at);
+    if (n_now == 0)
+      break;
+    *n_read += n_now > 0 ? (size_t)n_now : 0;
+  }
+  return CONIC_OK;
 }
 
 uint64_t conic_input_remaining_bytes(const conic_input *input) {
@@ -128,8 +144,8 @@ static int is_utf16(const unsigned char *c, size_t n) {
   return 0;
 }
 
-conic_status conic_text_byte_order_mark(conic_context *context, const char *name, const unsigned char *bytes, size_t n_bytes,
-                             size_t *n_mark) {
+conic_status conic_text_byte_order_mark(conic_context *context, const char *name, const unsigned char *bytes,
+                                        size_t n_bytes, size_t *n_mark) {
   if (is_utf16(bytes, n_bytes))
     return conic_fail(context, CONIC_ERROR_INPUT,
                       "%s: this is UTF-16 text: save it as UTF-8 (iconv -f UTF-16 -t UTF-8 FILE > out) (at byte 0)",
@@ -138,12 +154,35 @@ conic_status conic_text_byte_order_mark(conic_context *context, const char *name
   return CONIC_OK;
 }
 
+conic_status conic_input_take_rest(conic_input *input, uint64_t most, unsigned char **bytes, size_t *n_bytes) {
+  uint64_t remaining = conic_input_remaining_bytes(input);
+  size_t room = 0;
+  conic_status status = CONIC_OK;
+  *n_bytes = 0;
+  if (remaining != UINT64_MAX && remaining <= most)
+    status = conic_memory_reserve(input->context, bytes, 0, (size_t)remaining, &room, 1);
+  for (size_t n = 1; status == CONIC_OK && n > 0;) {
+    status = conic_input_fill(input, 1);
+    n = conic_input_available(input);
+    if (status == CONIC_OK && *n_bytes + n > most)
+      return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: files of this kind are read up to %llu MiB",
+                        input->name, (unsigned long long)(most >> 20) + 1);
+    if (status == CONIC_OK)
+      status = conic_memory_reserve(input->context, bytes, *n_bytes, *n_bytes + n, &room, 1);
+    if (status == CONIC_OK && n > 0)
+      memcpy(*bytes + *n_bytes, conic_input_bytes(input), n);
+    input->next += status == CONIC_OK ? n : 0;
+    *n_bytes += status == CONIC_OK ? n : 0;
+  }
+  return status;
+}
+
 conic_status conic_input_skip_mark(conic_input *input) {
   size_t n_mark = 0;
   conic_status status = conic_input_fill(input, 8);
   if (status == CONIC_OK)
-    status =
-        conic_text_byte_order_mark(input->context, input->name, conic_input_bytes(input), conic_input_available(input), &n_mark);
+    status = conic_text_byte_order_mark(input->context, input->name, conic_input_bytes(input),
+                                        conic_input_available(input), &n_mark);
   input->next += n_mark;
   return status;
 }
@@ -219,8 +258,7 @@ conic_status conic_input_wrong(const conic_input *input, const char *format, ...
 }
 
 size_t conic_input_beside(const conic_input *input, const char *file, size_t length, char *path, size_t room) {
-  const char *slash = strrchr(input->name, '/');
-  int folder = slash && file[0] != '/' ? (int)(slash + 1 - input->name) : 0;
+  int folder = conic_disk_is_absolute(file) ? 0 : (int)(conic_file_name(input->name) - input->name);
   int n = snprintf(path, room, "%.*s%.*s", folder, input->name, (int)length, file);
   return n > 0 && (size_t)n < room ? (size_t)n : 0;
 }

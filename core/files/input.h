@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "conic/context.h"
+#include "core/base/message.h"
 
 /* No more bytes than this can be asked for at once. */
 enum { CONIC_INPUT_WINDOW = 256 * 1024, CONIC_INPUT_LONGEST_WORD = 4096, CONIC_INPUT_LONGEST_LINE = 65536 };
@@ -16,6 +17,7 @@ typedef struct conic_input {
   int descriptor;
   int has_size;          /* size_bytes is known: no pipe or terminal */
   uint64_t size_bytes;   /* from the first byte read */
+  uint64_t start_bytes;  /* which stands so far in the file */
   unsigned char *window; /* the bytes from `next` to before `filled` are there */
   size_t next, filled;
   uint64_t window_offset;  /* of window[0] in the file */
@@ -42,6 +44,14 @@ static inline const unsigned char *conic_input_bytes(const conic_input *input) {
   return input->window + input->next;
 }
 
+/* Takes the rest of the file into memory, no more than `most` bytes; the caller releases *bytes, on failure too, which
+ * begins null. Errors: as fill, and INPUT (there are more), MEMORY. */
+conic_status conic_input_take_rest(conic_input *input, uint64_t most, unsigned char **bytes, size_t *n_bytes);
+
+/* Copies n bytes from an offset of a file that has_size, wherever the next byte is; fewer are there where the file ends.
+ * Errors: INPUT (reading failed). */
+conic_status conic_input_read_at(const conic_input *input, uint64_t offset, void *bytes, size_t n, size_t *n_read);
+
 /* The offset of the next byte. */
 static inline uint64_t conic_input_offset(const conic_input *input) {
   return input->window_offset + input->next;
@@ -54,8 +64,8 @@ uint64_t conic_input_remaining_bytes(const conic_input *input);
 conic_status conic_input_skip(conic_input *input, uint64_t count, uint64_t *skipped);
 
 /* How long the byte-order mark of UTF-8 is at the start of text: 0 or 3. Errors: INPUT (UTF-16). */
-conic_status conic_text_byte_order_mark(conic_context *context, const char *name, const unsigned char *bytes, size_t n_bytes,
-                             size_t *n_mark);
+conic_status conic_text_byte_order_mark(conic_context *context, const char *name, const unsigned char *bytes,
+                                        size_t n_bytes, size_t *n_mark);
 
 /* Of text at its start: passes over the byte-order mark of UTF-8. Errors: as fill, and INPUT (UTF-16). */
 conic_status conic_input_skip_mark(conic_input *input);
@@ -70,7 +80,7 @@ conic_status conic_input_line(conic_input *input, const char **text, size_t *len
 conic_status conic_input_word(conic_input *input, const char **word, size_t *length);
 
 /* Logs "FILE: what is wrong (line N)" of the line that is being read, and returns INPUT. */
-conic_status conic_input_wrong(const conic_input *input, const char *format, ...) __attribute__((format(printf, 2, 3)));
+conic_status conic_input_wrong(const conic_input *input, const char *format, ...) CONIC_AS_PRINTF(2, 3);
 
 /* "FOLDER/file" beside the file that is read, or `file` itself where that begins at the root; 0 where the room is too
  * small, else the length. */

@@ -79,7 +79,9 @@ void conic_json_close(conic_json *json) {
 }
 
 conic_status conic_json_wrong(conic_json *json, const char *what) {
-  if (json->status == CONIC_OK)
+  if (json->status == CONIC_OK && json->is_silent)
+    json->status = CONIC_ERROR_INPUT;
+  else if (json->status == CONIC_OK)
     json->status = conic_fail(json->context, CONIC_ERROR_INPUT, "%s: %s (line %llu)", json->name, what,
                               (unsigned long long)json->line);
   return json->status;

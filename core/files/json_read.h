@@ -19,6 +19,7 @@ typedef struct conic_json {
   int depth;
   int is_first[CONIC_JSON_DEPTH]; /* nothing has been read of the object or array at that depth */
   conic_status status;
+  int is_silent; /* for a caller that says itself what is wrong; 0 at first */
 } conic_json;
 
 /* Reads the whole file, of at most 16 MiB ("-" is standard input); `path` must outlive *json. On success the caller

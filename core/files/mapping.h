@@ -3,6 +3,7 @@
 #define CONIC_MAPPING_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "conic/context.h"
 
@@ -18,5 +19,15 @@ void conic_mapping_close(conic_context *context, conic_mapping *mapping);
 
 /* 64 bits that change with any word of the bytes, at the speed of memory. */
 unsigned long long conic_checksum(const unsigned char *bytes, size_t n_bytes);
+
+/* The same of bytes that come in pieces. */
+typedef struct conic_checksumming {
+  uint64_t n_bytes, lanes[4];
+  unsigned char rest[32];
+} conic_checksumming;
+
+void conic_checksum_begin(conic_checksumming *sum);
+void conic_checksum_add(conic_checksumming *sum, const unsigned char *bytes, size_t n_bytes);
+unsigned long long conic_checksum_end(const conic_checksumming *sum);
 
 #endif

@@ -2,9 +2,8 @@
 
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/message.h"
-#include "core/base/real.h"
-#include "core/files/file_fields.h"
 
 typedef struct npy_text {
   const char *text;
@@ -69,7 +68,7 @@ conic_status conic_numpy_array_open(conic_context *context, const char *file, co
   size_t start = 8 + (size_t)n_length;
   if (n_bytes < 12 || memcmp(bytes, "\x93NUMPY", 6) != 0 || bytes[6] < 1 || bytes[6] > 3)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is no NumPy array (at byte 0)", file, name);
-  size_t n_header = (size_t)conic_file_get(bytes + 8, (size_t)n_length);
+  size_t n_header = (size_t)conic_load_bits(bytes + 8, (size_t)n_length);
   if (n_header > n_bytes - start)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s ends too early (at byte 0)", file, name);
   npy_text header = {(const char *)bytes + start, n_header};
@@ -109,7 +108,7 @@ double conic_numpy_array_at(const conic_numpy_array *array, size_t i) {
     for (int axis = 0; axis < array->n_axes; step *= array->shape[axis++])
       at += places[axis] * step;
   }
-  uint64_t bits = conic_file_get(array->bytes + at * n_bytes, n_bytes);
+  uint64_t bits = conic_load_bits(array->bytes + at * n_bytes, n_bytes);
   if (array->type == 'f' && n_bytes == 8)
     return conic_double_of_bits(bits);
   if (array->type == 'f')

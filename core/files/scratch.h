@@ -7,6 +7,9 @@
 
 #include "conic/context.h"
 
+/* Where files must have a name, they have one that begins so, for a moment. */
+#define CONIC_SCRATCH_START ".conic-spool-"
+
 typedef struct conic_scratch {
   conic_context *context;
   const char *path; /* beside which it lies, on the disk that has to hold the result; for messages too */

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "core/base/byte_order.h"
+
 /* The first 32 bits of the fractions of the cube roots of the first 64 primes. */
 static const uint32_t round_constants[64] = {
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
@@ -20,8 +22,7 @@ static uint32_t turned_right(uint32_t x, int n) {
 static void mix_block(conic_sha256 *sum) {
   uint32_t w[64], s[8];
   for (int i = 0; i < 16; i++)
-    w[i] = (uint32_t)sum->block[4 * i] << 24 | (uint32_t)sum->block[4 * i + 1] << 16 |
-           (uint32_t)sum->block[4 * i + 2] << 8 | sum->block[4 * i + 3];
+    w[i] = conic_load_big_32(sum->block + 4 * i);
   for (int i = 16; i < 64; i++) {
     uint32_t a = w[i - 15], b = w[i - 2];
     w[i] = w[i - 16] + (turned_right(a, 7) ^ turned_right(a, 18) ^ a >> 3) + w[i - 7] +
@@ -67,8 +68,7 @@ void conic_sha256_end(conic_sha256 *sum, char text[CONIC_SHA256_ROOM]) {
   static const unsigned char padding[64] = {0x80};
   const uint64_t n_bits = 8 * sum->n_bytes;
   unsigned char length[8];
-  for (int i = 0; i < 8; i++)
-    length[i] = (unsigned char)(n_bits >> (56 - 8 * i));
+  conic_store_big_64(length, n_bits);
   conic_sha256_add(sum, padding, 1 + (119 - sum->n_bytes % 64) % 64);
   conic_sha256_add(sum, length, sizeof length);
   for (int i = 0; i < 64; i++)

@@ -12,23 +12,23 @@ void conic_spool_begin(conic_context *context, const char *path, size_t memory_b
   spool->most_held = memory_bytes;
 }
 
-static void release_slabs(conic_spool *spool) {
-  for (size_t i = 0; i < spool->n_slabs; i++)
-    conic_memory_release(spool->context, spool->held[i]);
-  conic_memory_release(spool->context, spool->held);
-  spool->held = NULL;
-  spool->n_slabs = spool->slab_room = spool->n_held = 0;
+/* All but so many. */
+static void release_slabs(conic_spool *spool, size_t n_kept) {
+  while (spool->n_slabs > n_kept)
+    conic_memory_release(spool->context, spool->held[--spool->n_slabs]);
+  spool->n_held = 0;
 }
 
 void conic_spool_end(conic_spool *spool) {
   if (!spool->context)
     return;
   conic_scratch_close(&spool->file);
-  release_slabs(spool);
+  release_slabs(spool, 0);
+  conic_memory_release(spool->context, spool->held);
   memset(spool, 0, sizeof *spool);
 }
 
-static conic_status write_all(conic_spool *spool, const void *bytes, size_t n_bytes) {
+static conic_status write_to_file(conic_spool *spool, const void *bytes, size_t n_bytes) {
   conic_status status = CONIC_OK;
   if (spool->file.descriptor < 0)
     status = conic_scratch_open(spool->context, spool->path, &spool->file);
@@ -38,15 +38,15 @@ static conic_status write_all(conic_spool *spool, const void *bytes, size_t n_by
   return status;
 }
 
-/* Writes to the file what is held and gives its memory back. */
+/* Writes to the file what is held and gives its memory back, but for a slab. */
 static conic_status flush(conic_spool *spool) {
   conic_status status = CONIC_OK;
   for (size_t i = 0, left = spool->n_held; left > 0 && status == CONIC_OK; i++) {
     size_t n = left < CONIC_SPOOL_SLAB ? left : CONIC_SPOOL_SLAB;
-    status = write_all(spool, spool->held[i], n);
+    status = write_to_file(spool, spool->held[i], n);
     left -= n;
   }
-  release_slabs(spool);
+  release_slabs(spool, 1);
   return status;
 }
 
@@ -76,13 +76,23 @@ static conic_status hold(conic_spool *spool, const unsigned char *bytes, size_t 
   return CONIC_OK;
 }
 
+/* Once there is a file, no more than a slab is held: so few bytes are not written one by one. */
+static int fits(const conic_spool *spool, size_t n_bytes) {
+  size_t most = spool->most_held;
+  if (spool->file_bytes && most > CONIC_SPOOL_SLAB)
+    most = CONIC_SPOOL_SLAB;
+  return n_bytes <= most && spool->n_held <= most - n_bytes;
+}
+
 conic_status conic_spool_append(conic_spool *spool, const void *bytes, size_t n_bytes) {
   if (n_bytes == 0)
     return CONIC_OK;
-  if (spool->file_bytes == 0 && n_bytes <= spool->most_held && spool->n_held <= spool->most_held - n_bytes)
+  if (fits(spool, n_bytes))
     return hold(spool, bytes, n_bytes);
   conic_status status = spool->n_held ? flush(spool) : CONIC_OK;
-  return status == CONIC_OK ? write_all(spool, bytes, n_bytes) : status;
+  if (status != CONIC_OK)
+    return status;
+  return spool->file_bytes && fits(spool, n_bytes) ? hold(spool, bytes, n_bytes) : write_to_file(spool, bytes, n_bytes);
 }
 
 conic_status conic_spool_read(const conic_spool *spool, uint64_t offset, void *bytes, size_t n_bytes) {

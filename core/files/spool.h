@@ -1,4 +1,4 @@
-/* Bytes that are put aside and read again: in memory up to a bound, beyond it in a file. */
+/* Bytes that are put aside and read again: in memory up to a bound, beyond it in a file, but for the last. */
 #ifndef CONIC_SPOOL_H
 #define CONIC_SPOOL_H
 
@@ -8,7 +8,7 @@
 #include "conic/context.h"
 #include "core/files/scratch.h"
 
-enum { CONIC_SPOOL_SLAB = 1 << 20 };
+enum { CONIC_SPOOL_SLAB = 1 << 18 };
 
 typedef struct conic_spool {
   conic_context *context;

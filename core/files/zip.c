@@ -2,24 +2,13 @@
 
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/inflate.h"
 
 /* Bytes of the records, without the names and what follows these. */
 enum { END = 22, ENTRY = 46, LOCAL = 30, STORED = 0, DEFLATED = 8 };
-
-static uint32_t load(const unsigned char *p, int n_bytes) {
-  uint32_t value = 0;
-  while (n_bytes-- > 0)
-    value = value << 8 | p[n_bytes];
-  return value;
-}
-
-static void store_number(unsigned char *p, uint32_t value, int n_bytes) {
-  for (int i = 0; i < n_bytes; i++)
-    p[i] = (unsigned char)(value >> 8 * i);
-}
 
 /* A remainder by the polynomial 0x04c11db7, its bits reversed. */
 uint32_t conic_zip_sum(const unsigned char *bytes, size_t n) {
@@ -47,9 +36,9 @@ conic_status conic_zip_open(conic_context *context, const char *name, const unsi
     at--;
   if (n_bytes < END || memcmp(bytes + at, "PK\5\6", 4) != 0)
     return zip_wrong(zip, "its list of files is not there", n_bytes);
-  size_t n_directory = load(bytes + at + 12, 4);
-  zip->n_entries = load(bytes + at + 10, 2);
-  zip->directory = load(bytes + at + 16, 4);
+  size_t n_directory = conic_load_32(bytes + at + 12);
+  zip->n_entries = conic_load_16(bytes + at + 10);
+  zip->directory = conic_load_32(bytes + at + 16);
   if (n_directory > at || zip->directory > at - n_directory)
     return zip_wrong(zip, "its list of files is not where it should be", at);
   return CONIC_OK;
@@ -65,7 +54,7 @@ static int find_entry(const conic_zip *zip, const char *file, size_t *found) {
     if (zip->n_bytes - at < ENTRY || memcmp(zip->bytes + at, "PK\1\2", 4) != 0)
       return 0;
     const unsigned char *entry = zip->bytes + at, *name = entry + ENTRY;
-    size_t n_name = load(entry + 28, 2), n_rest = n_name + load(entry + 30, 2) + load(entry + 32, 2);
+    size_t n_name = conic_load_16(entry + 28), n_rest = n_name + conic_load_16(entry + 30) + conic_load_16(entry + 32);
     if (zip->n_bytes - at - ENTRY < n_rest)
       return 0;
     if (n_name >= n_file && memcmp(name + n_name - n_file, file, n_file) == 0 &&
@@ -86,19 +75,19 @@ int conic_zip_has(const conic_zip *zip, const char *file) {
 static size_t find_packed(const conic_zip *zip, size_t local, size_t n_packed) {
   if (local > zip->n_bytes || zip->n_bytes - local < LOCAL || memcmp(zip->bytes + local, "PK\3\4", 4) != 0)
     return none;
-  size_t at = local + LOCAL + load(zip->bytes + local + 26, 2) + load(zip->bytes + local + 28, 2);
+  size_t at = local + LOCAL + conic_load_16(zip->bytes + local + 26) + conic_load_16(zip->bytes + local + 28);
   return at <= zip->n_bytes && zip->n_bytes - at >= n_packed ? at : none;
 }
 
 static conic_status unpack_file(const conic_zip *zip, size_t entry_at, size_t packed, unsigned char *to,
                                 size_t n_bytes) {
   const unsigned char *entry = zip->bytes + entry_at;
-  size_t n_packed = load(entry + 20, 4), n = n_packed;
-  if (load(entry + 10, 2) == STORED)
+  size_t n_packed = conic_load_32(entry + 20), n = n_packed;
+  if (conic_load_16(entry + 10) == STORED)
     memcpy(to, zip->bytes + packed, n_bytes < n_packed ? n_bytes : n_packed);
   else
     n = conic_inflate(CONIC_DEFLATE_BARE, zip->bytes + packed, n_packed, to, n_bytes, NULL);
-  return n == n_bytes && conic_zip_sum(to, n_bytes) == load(entry + 16, 4)
+  return n == n_bytes && conic_zip_sum(to, n_bytes) == conic_load_32(entry + 16)
              ? CONIC_OK
              : zip_wrong(zip, "a file in it is not what its sum says", packed);
 }
@@ -114,9 +103,9 @@ conic_status conic_zip_read(const conic_zip *zip, const char *file, size_t most_
     return conic_fail(zip->context, CONIC_ERROR_INPUT, "%s: the ZIP archive has no file %s (at byte %zu)", zip->name,
                       file, zip->directory);
   const unsigned char *entry = zip->bytes + at;
-  size_t method = load(entry + 10, 2), n_packed = load(entry + 20, 4), n_bytes = load(entry + 24, 4);
-  size_t packed = find_packed(zip, load(entry + 42, 4), n_packed);
-  if (load(entry + 8, 2) & 1 || (method != STORED && method != DEFLATED))
+  size_t method = conic_load_16(entry + 10), n_packed = conic_load_32(entry + 20), n_bytes = conic_load_32(entry + 24);
+  size_t packed = find_packed(zip, conic_load_32(entry + 42), n_packed);
+  if (conic_load_16(entry + 8) & 1 || (method != STORED && method != DEFLATED))
     return zip_wrong(zip, "a file in it is encrypted, or packed in a way that is not known", at);
   if (method == DEFLATED && !conic_inflate_is_there())
     return conic_fail(zip->context, CONIC_ERROR_UNSUPPORTED, "%s: its files are deflated: this build lacks zlib",
@@ -140,12 +129,12 @@ conic_status conic_zip_read(const conic_zip *zip, const char *file, size_t most_
 /* What both records say of a file, from "version needed" on. */
 static void put_facts(const conic_zip_writer *writer, int i, unsigned char facts[26]) {
   memset(facts, 0, 26);
-  store_number(facts, 10, 2);
-  store_number(facts + 8, 0x21, 2); /* the first day that can be said */
-  store_number(facts + 10, writer->files[i].sum, 4);
-  store_number(facts + 14, writer->files[i].n_bytes, 4);
-  store_number(facts + 18, writer->files[i].n_bytes, 4);
-  store_number(facts + 22, (uint32_t)strlen(writer->files[i].name), 2);
+  conic_store_bits(facts, 2, 10);
+  conic_store_bits(facts + 8, 2, 0x21); /* the first day that can be said */
+  conic_store_32(facts + 10, writer->files[i].sum);
+  conic_store_32(facts + 14, writer->files[i].n_bytes);
+  conic_store_32(facts + 18, writer->files[i].n_bytes);
+  conic_store_bits(facts + 22, 2, (uint32_t)strlen(writer->files[i].name));
 }
 
 static void put_record(conic_zip_writer *writer, const void *bytes, size_t n_bytes) {
@@ -178,16 +167,16 @@ int conic_zip_end(conic_zip_writer *writer) {
   uint32_t directory = writer->offset;
   for (int i = 0; i < writer->n_files; i++) {
     unsigned char entry[ENTRY] = "PK\1\2";
-    store_number(entry + 4, 10, 2);
+    conic_store_bits(entry + 4, 2, 10);
     put_facts(writer, i, entry + 6);
-    store_number(entry + 42, writer->files[i].offset, 4);
+    conic_store_32(entry + 42, writer->files[i].offset);
     put_record(writer, entry, sizeof entry);
     put_record(writer, writer->files[i].name, strlen(writer->files[i].name));
   }
-  store_number(end + 8, (uint32_t)writer->n_files, 2);
-  store_number(end + 10, (uint32_t)writer->n_files, 2);
-  store_number(end + 12, writer->offset - directory, 4);
-  store_number(end + 16, directory, 4);
+  conic_store_bits(end + 8, 2, (uint32_t)writer->n_files);
+  conic_store_bits(end + 10, 2, (uint32_t)writer->n_files);
+  conic_store_32(end + 12, writer->offset - directory);
+  conic_store_32(end + 16, directory);
   put_record(writer, end, sizeof end);
   return !writer->is_failed;
 }

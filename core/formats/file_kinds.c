@@ -5,7 +5,7 @@
 #include "core/files/file.h"
 
 const char conic_readable_kinds[] =
-    "conic reads PLY, OBJ, LAS, PCD, text with a point a line (XYZ, PTS, CSV, TXT, "
+    "conic reads PLY, OBJ, LAS, LAZ, PCD, E57, PTX, text with a point a line (XYZ, PTS, CSV, TXT, "
     "ASC), STL, OFF, glTF, 3MF, DAE, FBX, 3DS, X3D, DXF, AMF, and its own .cot, .lpc and .chy";
 
 #define MESH_REMEDY "save it as OBJ or PLY (Blender, MeshLab, or: assimp export FILE out.obj)"
@@ -20,7 +20,6 @@ static const conic_foreign_kind kinds[] = {
     {"a point-octree", "conic render and conic info take it, by its path", NULL, BYTES("CONICOT\n"), 0},
     {"a layered point cloud", "conic render and conic info take it, by its path", NULL, BYTES("CONICLP\n"), 0},
     {"a hybrid model", "conic render and conic info take it, by its path", NULL, BYTES("CONICHY\n"), 0},
-    {"an E57 scan", SCAN_REMEDY, "e57", BYTES("ASTM-E57"), 0},
     {"an OpenEXR image", PICTURE_REMEDY, "exr", BYTES("\x76\x2f\x31\x01"), 0},
     {"a PNG image", PICTURE_REMEDY, "png", BYTES("\x89PNG"), 0},
     {"a JPEG image", PICTURE_REMEDY, "jpg jpeg", BYTES("\xff\xd8\xff"), 0},
@@ -51,7 +50,6 @@ static const conic_foreign_kind kinds[] = {
     {"a cloud of Gaussians (SPLAT)", GAUSSIANS_REMEDY, "splat", NULL, 0, 0},
     {"a cloud of Gaussians (KSPLAT)", "save it as PLY (with SuperSplat or gsbox)", "ksplat", NULL, 0, 0},
     {"a compressed cloud of Gaussians (SOG)", GAUSSIANS_REMEDY, "sog", NULL, 0, 0},
-    {"a PTX scan", SCAN_REMEDY, "ptx", NULL, 0, 0},
     {"a scan in a maker's own format", "export E57 or LAS from the maker's program, and save that as PLY or LAS",
      "fls rcs rcp zfs rdbx rxp ptg lgs", NULL, 0, 0},
     {"a Git LFS pointer, not the file itself", "fetch the file (git lfs pull)", NULL, BYTES("version https://git-lfs"),

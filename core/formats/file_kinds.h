@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 typedef struct conic_foreign_kind {
-  const char *name;    /* "an E57 scan" */
+  const char *name;    /* "an HDF5 file" */
   const char *remedy;  /* what to do about it, as a request */
   const char *endings; /* "fls rcs": a name that ends so is such a file if no bytes say otherwise; null: none */
   const char *bytes;   /* how such a file begins, from byte `at` on; null: any way */

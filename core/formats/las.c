@@ -3,14 +3,15 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/message.h"
 #include "core/base/real.h"
-#include "core/files/file_fields.h"
 #include "core/formats/las_fields.h"
 #include "core/formats/ply_source.h"
-#include "core/formats/point_fields.h"
-#include "core/formats/raw_colors.h"
+#include "core/laz/laz_read.h"
 #include "core/splats/builder.h"
+#include "core/splats/point_fields.h"
+#include "core/splats/raw_colors.h"
 
 /* Where the fields of the public header stand. */
 enum {
@@ -43,6 +44,8 @@ typedef struct las_reader {
   conic_input *input;
   int is_again; /* the file has been read before, and its faults have been told */
   unsigned char header[HEADER_BYTES_1_4];
+  unsigned format;
+  int is_packed; /* LAZ */
   size_t point_bytes;
   uint64_t n_points, points_offset;
   int color; /* as in `formats` */
@@ -51,7 +54,6 @@ typedef struct las_reader {
   conic_builder builder;
   double block[3][BLOCK];
   conic_las_fields fields;
-  int field; /* of these, which one the points' scalars are; −1: none */
 } las_reader;
 
 static conic_status wrong_las(const las_reader *reader, const char *what, uint64_t at) {
@@ -60,7 +62,7 @@ static conic_status wrong_las(const las_reader *reader, const char *what, uint64
 }
 
 static uint64_t unsigned_at(const las_reader *reader, int at, size_t n_bytes) {
-  return conic_file_get(reader->header + at, n_bytes);
+  return conic_load_bits(reader->header + at, n_bytes);
 }
 
 static void warn(const las_reader *reader, const char *what) {
@@ -79,9 +81,9 @@ static conic_status read_las_header(las_reader *reader) {
   if (available < LEAST_HEADER_BYTES)
     return wrong_las(reader, "the file ends within the header", available);
   unsigned major = reader->header[AT_MAJOR], minor = reader->header[AT_MINOR];
-  if (major != 1 || minor > 4)
+  if (major != 1 || minor > 5)
     return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                      "%s: version %u.%u of LAS; 1.0 to 1.4 are read (at byte %d)", reader->input->name, major, minor,
+                      "%s: version %u.%u of LAS; 1.0 to 1.5 are read (at byte %d)", reader->input->name, major, minor,
                       AT_MAJOR);
   uint64_t n_bytes = unsigned_at(reader, AT_HEADER_BYTES, 2);
   if (n_bytes < LEAST_HEADER_BYTES)
@@ -91,22 +93,11 @@ static conic_status read_las_header(las_reader *reader) {
   return CONIC_OK;
 }
 
-#define UNPACK "unpack them first (laszip -i FILE -o out.las, or: pdal translate FILE out.las)"
-
-/* The first record of a COPC says so. */
-static int is_copc(const las_reader *reader) {
-  return conic_input_available(reader->input) >= HEADER_BYTES_1_4 + 6 &&
-         memcmp(conic_input_bytes(reader->input) + HEADER_BYTES_1_4 + 2, "copc", 4) == 0;
-}
-
 static conic_status check_format(las_reader *reader) {
-  unsigned format = reader->header[AT_FORMAT];
+  unsigned format = reader->header[AT_FORMAT] & 0x3fu;
+  reader->is_packed = (reader->header[AT_FORMAT] & 0xC0u) != 0;
+  reader->format = format;
   reader->point_bytes = (size_t)unsigned_at(reader, AT_POINT_BYTES, 2);
-  if (format & 0xC0u)
-    return wrong_las(reader,
-                     is_copc(reader) ? "this is a COPC, whose points are compressed: " UNPACK
-                                     : "the points are compressed (LAZ): " UNPACK,
-                     AT_FORMAT);
   if (format >= N_FORMATS)
     return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: point format %u; 0 to 10 are read (at byte %d)",
                       reader->input->name, format, AT_FORMAT);
@@ -119,8 +110,8 @@ static conic_status check_format(las_reader *reader) {
 static conic_status read_scale(las_reader *reader) {
   for (int axis = 0; axis < 3; axis++) {
     int at_scale = AT_SCALE + 8 * axis, at_offset = AT_OFFSET + 8 * axis;
-    memcpy(&reader->scale[axis], reader->header + at_scale, sizeof(double));
-    memcpy(&reader->offset[axis], reader->header + at_offset, sizeof(double));
+    reader->scale[axis] = conic_load_double(reader->header + at_scale);
+    reader->offset[axis] = conic_load_double(reader->header + at_offset);
     if (!(reader->scale[axis] - reader->scale[axis] == 0.0) || reader->scale[axis] == 0.0)
       return wrong_las(reader, "a scale is zero or not finite", (uint64_t)at_scale);
     if (!(reader->offset[axis] - reader->offset[axis] == 0.0))
@@ -153,7 +144,7 @@ static void count_points(las_reader *reader, uint64_t remaining) {
 static conic_status check_sizes(las_reader *reader) {
   uint64_t header_bytes = unsigned_at(reader, AT_HEADER_BYTES, 2), n_records = unsigned_at(reader, AT_N_RECORDS, 4);
   uint64_t remaining = conic_input_remaining_bytes(reader->input);
-  int has_64 = reader->header[AT_MINOR] == 4 && unsigned_at(reader, AT_N_POINTS_64, 8) > 0;
+  int has_64 = reader->header[AT_MINOR] >= 4 && unsigned_at(reader, AT_N_POINTS_64, 8) > 0;
   int count_at = has_64 ? AT_N_POINTS_64 : AT_N_POINTS_32;
   reader->points_offset = unsigned_at(reader, AT_POINTS, 4);
   reader->n_points = unsigned_at(reader, count_at, has_64 ? 8 : 4);
@@ -163,11 +154,12 @@ static conic_status check_sizes(las_reader *reader) {
     return wrong_las(reader, "the points begin past the end of the file", AT_POINTS);
   if (n_records > (reader->points_offset - header_bytes) / RECORD_HEADER_BYTES)
     warn(reader, "more variable-length records are declared than fit before the points; they are passed over");
-  if (reader->input->has_size)
+  if (reader->input->has_size && !reader->is_packed)
     count_points(reader, remaining);
   if (reader->n_points > CONIC_MAX_POINTS)
     return wrong_las(reader, "too many points", (uint64_t)count_at);
-  if (reader->input->has_size && reader->n_points == 0 && unsigned_at(reader, count_at, has_64 ? 8 : 4) > 0)
+  if (reader->input->has_size && !reader->is_packed && reader->n_points == 0 &&
+      unsigned_at(reader, count_at, has_64 ? 8 : 4) > 0)
     return wrong_las(reader, "the file ends within the first point", reader->points_offset);
   return CONIC_OK;
 }
@@ -182,7 +174,7 @@ static conic_status skip_to(las_reader *reader, uint64_t offset) {
 
 /* Past the header and its records, which name fields. */
 static conic_status skip_to_points(las_reader *reader, const conic_read_options *options) {
-  unsigned format = reader->header[AT_FORMAT];
+  unsigned format = reader->format;
   uint64_t n_records = unsigned_at(reader, AT_N_RECORDS, 4);
   conic_las_fields *fields = &reader->fields;
   conic_las_fields_of_format(format, fields);
@@ -195,21 +187,20 @@ static conic_status skip_to_points(las_reader *reader, const conic_read_options 
   for (size_t i = 0; status == CONIC_OK && i < fields->n; i++)
     status = conic_fields_add(&reader->builder, fields->list[i].name, strlen(fields->list[i].name),
                               conic_las_field_type(&fields->list[i]));
-  return status == CONIC_OK ? conic_fields_choose(&reader->builder, reader->input->name, options, &reader->field)
+  return status == CONIC_OK ? conic_fields_choose(&reader->builder, reader->input->name, options)
                             : status;
 }
 
 /* Three integers of each of n points, as doubles, into the reader's block. */
-static void convert(las_reader *reader, size_t at, size_t step, conic_ply_type type, size_t n) {
+static void convert(las_reader *reader, const unsigned char *records, size_t step, conic_ply_type type, size_t n) {
   for (size_t i = 0; i < 3; i++)
-    conic_ply_convert(conic_input_bytes(reader->input) + at + i * step, reader->point_bytes, n, type,
-                      CONIC_PLY_LITTLE_ENDIAN, reader->block[i]);
+    conic_ply_convert(records + i * step, reader->point_bytes, n, type, CONIC_PLY_LITTLE_ENDIAN, reader->block[i]);
 }
 
 /* Differences of the integers are exact, and rounded once. */
-static void store_records(las_reader *reader, size_t n) {
+static void store_records(las_reader *reader, const unsigned char *records, size_t n) {
   conic_splats *points = &reader->builder.model->points;
-  convert(reader, 0, 4, CONIC_PLY_INT32, n);
+  convert(reader, records, 4, CONIC_PLY_INT32, n);
   for (int axis = 0; axis < 3; axis++) {
     if (conic_builder_points(&reader->builder) == 0) {
       reader->first[axis] = reader->block[axis][0];
@@ -220,24 +211,39 @@ static void store_records(las_reader *reader, size_t n) {
           (float)((reader->block[axis][i] - reader->first[axis]) * reader->scale[axis]);
   }
   if (reader->color)
-    convert(reader, (size_t)reader->color, 2, CONIC_PLY_UINT16, n);
+    convert(reader, records + reader->color, 2, CONIC_PLY_UINT16, n);
   for (int channel = 0; channel < 3 && reader->color; channel++)
     for (size_t i = 0; i < n; i++)
       points->color[channel][points->count + i] = (float)reader->block[channel][i];
-  if (reader->field >= 0)
-    conic_las_field_convert(&reader->fields.list[reader->field], conic_input_bytes(reader->input), reader->point_bytes,
-                            n, reader->block[0]);
-  for (size_t i = 0; i < n && reader->field >= 0; i++)
-    points->scalar[points->count + i] = (float)reader->block[0][i];
+  for (size_t k = 0; k < conic_builder_columns(&reader->builder); k++) {
+    int field = conic_builder_column_field(&reader->builder, k);
+    if (field >= 0)
+      conic_las_field_convert(&reader->fields.list[field], records, reader->point_bytes, n,
+                              conic_builder_column(&reader->builder, k));
+  }
   points->count += n;
 }
 
-static conic_status read_points(las_reader *reader) {
+/* Adds records, a block of them at a time. */
+static conic_status take_las_records(void *cookie, const unsigned char *records, size_t n) {
+  las_reader *reader = cookie;
+  conic_status status = CONIC_OK;
+  while (n > 0 && status == CONIC_OK) {
+    size_t n_now = n < BLOCK ? n : BLOCK;
+    status = conic_builder_reserve_points(&reader->builder, reader->builder.model->points.count + n_now);
+    if (status == CONIC_OK) {
+      store_records(reader, records, n_now);
+      status = conic_builder_deliver(&reader->builder, 0);
+    }
+    records += n_now * reader->point_bytes;
+    n -= n_now;
+  }
+  return status;
+}
+
+static conic_status read_plain_las(las_reader *reader) {
   conic_input *input = reader->input;
   conic_status status = CONIC_OK;
-  const conic_splats *points = &reader->builder.model->points;
-  if (input->has_size && !reader->builder.delivery)
-    status = conic_builder_reserve_points_exactly(&reader->builder, (size_t)reader->n_points);
   while (status == CONIC_OK && conic_builder_points(&reader->builder) < reader->n_points) {
     uint64_t left = reader->n_points - conic_builder_points(&reader->builder);
     status = conic_input_fill(input, reader->point_bytes);
@@ -248,16 +254,44 @@ static conic_status read_points(las_reader *reader) {
       warn(reader, "the file ends before all of its points");
       break;
     }
-    n = n < BLOCK ? n : BLOCK;
     n = n < left ? n : (size_t)left;
-    status = conic_builder_reserve_points(&reader->builder, points->count + n);
-    if (status == CONIC_OK) {
-      store_records(reader, n);
-      status = conic_builder_deliver(&reader->builder, 0);
-    }
+    status = take_las_records(reader, conic_input_bytes(input), n);
     input->next += n * reader->point_bytes;
   }
-  return status == CONIC_OK ? conic_builder_deliver(&reader->builder, 1) : status;
+  return status;
+}
+
+/* Only the layers are unpacked that hold what is wanted. */
+static conic_status read_packed_las(las_reader *reader) {
+  const conic_las_fields *fields = &reader->fields;
+  conic_input *input = reader->input;
+  conic_laz_format packing;
+  unsigned wanted = CONIC_LAZ_Z | CONIC_LAZ_COLORS;
+  if (fields->n_packing == 0)
+    return wrong_las(reader, "the points are compressed, and no record says how", AT_FORMAT);
+  for (size_t k = 0; k < conic_builder_columns(&reader->builder); k++) {
+    int field = conic_builder_column_field(&reader->builder, k);
+    wanted |= field >= 0 ? conic_las_field_layer(reader->format, &fields->list[field]) : 0;
+  }
+  conic_status status = conic_laz_format_read(input->context, input->name, fields->packing, fields->n_packing,
+                                              reader->format, reader->point_bytes, &packing);
+  return status == CONIC_OK
+             ? conic_laz_read(input, &packing, reader->n_points, wanted, reader->is_again, take_las_records, reader)
+             : status;
+}
+
+/* Room for all at once, where the file's size bears out their number. What is packed may be far less: then room grows
+ * with what is there. */
+static conic_status read_points(las_reader *reader) {
+  conic_builder *builder = &reader->builder;
+  uint64_t n_sure = reader->is_packed ? reader->input->size_bytes / 2 : reader->n_points;
+  conic_status status = CONIC_OK;
+  if (reader->input->has_size && !builder->delivery)
+    status =
+        conic_builder_reserve_points_exactly(builder, (size_t)(reader->n_points < n_sure ? reader->n_points : n_sure));
+  if (status == CONIC_OK)
+    status = reader->is_packed ? read_packed_las(reader) : read_plain_las(reader);
+  return status;
 }
 
 conic_status conic_las_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
@@ -279,5 +313,5 @@ conic_status conic_las_read(conic_input *input, const conic_read_options *option
     status = read_points(&reader);
   if (status == CONIC_OK && !delivery)
     status = conic_raw_colors_decode(input->context, &model->points, 0);
-  return status;
+  return status == CONIC_OK ? conic_builder_deliver(&reader.builder, 1) : status;
 }

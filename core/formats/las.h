@@ -1,8 +1,8 @@
-/* The LAS reader: versions 1.0 to 1.4, uncompressed, point formats 0 to 10.
+/* The LAS reader: versions 1.0 to 1.5, point formats 0 to 10, as they are or packed (LAZ: core/laz).
  *
  * Positions are the file's integers times its scale; what the first point and the offset give in double is the origin,
  * so that map coordinates lose nothing. Colours are meant to have 16 bits, yet many programs store 8-bit codes: the
- * values of the whole file tell (core/formats/raw_colors.h). Of everything else that a point has one field can be read
+ * values of the whole file tell (core/splats/raw_colors.h). Of everything else that a point has one field can be read
  * (core/formats/las_fields.h); other variable-length records and whatever follows the points are passed over. Counts of
  * points and records that are off are told, and what is there is read. */
 #ifndef CONIC_LAS_H

@@ -1,25 +1,30 @@
 /* What the points of a LAS file have by name: the fields of their format, and the "extra bytes" that a record of the
- * file describes (LAS 1.4, table 24). */
+ * file describes (LAS 1.4, table 24); and the record that says how they are packed. */
 #ifndef CONIC_LAS_FIELDS_H
 #define CONIC_LAS_FIELDS_H
 
 #include "core/files/input.h"
 #include "core/formats/ply_source.h"
 
-enum { CONIC_LAS_MOST_FIELDS = 64 };
+enum { CONIC_LAS_MOST_FIELDS = 128, CONIC_LAS_NAME_ROOM = 40, CONIC_LAS_PACKING_BYTES = 70 };
+
+typedef enum conic_las_integer_64 { CONIC_LAS_NO_64, CONIC_LAS_UNSIGNED_64, CONIC_LAS_SIGNED_64 } conic_las_integer_64;
 
 /* Where a field stands in a point: a number, or some of its bits, times a scale and after an offset. */
 typedef struct conic_las_field {
-  char name[33];
+  char name[CONIC_LAS_NAME_ROOM];
   size_t at;
   conic_ply_type type;
-  unsigned shift, mask; /* mask 0: all of it */
+  conic_las_integer_64 integer_64; /* or one of 64 bits, which as a double may lose its last digits */
+  unsigned shift, mask;            /* mask 0: all of it */
   double scale, offset;
 } conic_las_field;
 
 typedef struct conic_las_fields {
   size_t n;
   conic_las_field list[CONIC_LAS_MOST_FIELDS];
+  unsigned char packing[CONIC_LAS_PACKING_BYTES]; /* LASzip's record: core/laz/laz.h */
+  size_t n_packing;                               /* 0: there is none */
 } conic_las_fields;
 
 /* The fields of a point format, 0 to 10. */
@@ -35,7 +40,10 @@ conic_status conic_las_fields_read(conic_input *input, uint64_t n_records, uint6
 void conic_las_field_convert(const conic_las_field *field, const unsigned char *bytes, size_t point_bytes, size_t n,
                              double *values);
 
-/* "uint8" …, as the field is stored. */
+/* "uint8" …, as the field is stored; where it is scaled, what its values are: "double". */
 const char *conic_las_field_type(const conic_las_field *field);
+
+/* What must be unpacked for a field of points in layers, formats 6 to 10: a bit of core/laz/laz.h. */
+unsigned conic_las_field_layer(unsigned format, const conic_las_field *field);
 
 #endif

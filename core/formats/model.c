@@ -15,8 +15,10 @@
 #include "core/formats/obj.h"
 #include "core/formats/pcd.h"
 #include "core/formats/ply_read.h"
-#include "core/formats/point_fields.h"
+#include "core/splats/point_fields.h"
 #include "core/formats/xyz.h"
+#include "core/scans/e57.h"
+#include "core/scans/ptx.h"
 #include "core/splats/faces.h"
 
 void conic_read_options_init_sized(conic_read_options *options, size_t size) {
@@ -27,7 +29,7 @@ void conic_read_options_init_sized(conic_read_options *options, size_t size) {
 const char *conic_model_kind_name(conic_model_kind kind) {
   static const char *const names[] = {
       [CONIC_MODEL_PLY] = "ply", [CONIC_MODEL_OBJ] = "obj", [CONIC_MODEL_XYZ] = "xyz", [CONIC_MODEL_LAS] = "las",
-      [CONIC_MODEL_PCD] = "pcd", [CONIC_MODEL_STL] = "stl", [CONIC_MODEL_OFF] = "off", [CONIC_MODEL_GLTF] = "gltf",
+      [CONIC_MODEL_PCD] = "pcd", [CONIC_MODEL_E57] = "e57", [CONIC_MODEL_PTX] = "ptx", [CONIC_MODEL_STL] = "stl", [CONIC_MODEL_OFF] = "off", [CONIC_MODEL_GLTF] = "gltf",
       [CONIC_MODEL_GLB] = "glb", [CONIC_MODEL_3MF] = "3mf", [CONIC_MODEL_DAE] = "dae", [CONIC_MODEL_FBX] = "fbx",
       [CONIC_MODEL_3DS] = "3ds", [CONIC_MODEL_X3D] = "x3d", [CONIC_MODEL_DXF] = "dxf", [CONIC_MODEL_AMF] = "amf"};
   return (int)kind >= 0 && (size_t)kind < sizeof names / sizeof *names ? names[kind] : NULL;
@@ -92,6 +94,10 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
     *kind = CONIC_MODEL_PLY;
   else if (n >= 4 && memcmp(bytes, "LASF", 4) == 0)
     *kind = CONIC_MODEL_LAS;
+  else if (conic_e57_is(bytes, n))
+    *kind = CONIC_MODEL_E57;
+  else if (conic_ptx_is_likely(bytes, n))
+    *kind = CONIC_MODEL_PTX;
   else if (conic_pcd_is_likely(bytes, n) || conic_file_has_ending(path, "pcd"))
     *kind = CONIC_MODEL_PCD;
   else if (conic_file_has_ending(path, "ply"))
@@ -139,6 +145,14 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     break;
   case CONIC_MODEL_PCD:
     status = conic_pcd_read(input, options, delivery, model);
+    break;
+  case CONIC_MODEL_E57:
+    status = conic_e57_read(input, options, delivery, model);
+    model->up[2] = 1.0;
+    break;
+  case CONIC_MODEL_PTX:
+    status = conic_ptx_read(input, options, delivery, model);
+    model->up[2] = 1.0;
     break;
   default:
     status = conic_assimp_read(input, kind, options, model);

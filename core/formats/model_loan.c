@@ -18,6 +18,8 @@ static conic_status copy_lent_splats(conic_context *context, const char *name, c
   conic_status status = conic_splats_check(context, name, lent);
   if (status == CONIC_OK && options->field && !options->field_is_optional && !lent->scalar)
     status = conic_fail(context, CONIC_ERROR_INPUT, "%s: the points have no '%s'", name, options->field);
+  if (status == CONIC_OK && (options->keep || options->where))
+    status = conic_fail(context, CONIC_ERROR_INPUT, "%s: the points have no values by name", name);
   conic_splats wanted = *lent;
   if (!options->field)
     wanted.scalar = NULL;

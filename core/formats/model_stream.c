@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "core/formats/model_loan.h"
 #include "core/formats/model_read.h"
-#include "core/formats/raw_colors.h"
+#include "core/splats/raw_colors.h"
 
 /* Points in memory at a time. */
 enum { BATCH = 1 << 16 };
@@ -41,7 +41,7 @@ static conic_status decode_batch(void *cookie, const conic_splats *batch) {
 
 /* Reads on from where the input stands, handing batches to `receive`. */
 static conic_status pass(streaming *s, conic_input *input, conic_batch_receiver *receive, void *cookie) {
-  conic_delivery delivery = {.receive = receive, .cookie = cookie, .batch = BATCH, .is_again = receive == decode_batch};
+  conic_delivery delivery = {.receive = receive, .cookie = cookie, .batch = BATCH, .is_survey = receive == see_colors, .is_again = receive == decode_batch};
   conic_model model;
   conic_status status = conic_model_read_kind(input, s->kind, s->options, &delivery, &model);
   conic_model_release(s->context, &model);
@@ -60,9 +60,10 @@ static conic_status read_whole_stream(streaming *s, conic_input *input) {
 /* A first pass finds what the colours are fractions of, a second hands over. */
 static conic_status pass_twice(streaming *s, conic_input *input, const char *path) {
   conic_input again;
+  int may_be_fractions = s->kind == CONIC_MODEL_XYZ || s->kind == CONIC_MODEL_PCD;
   conic_status status = pass(s, input, see_colors, s);
   if (status == CONIC_OK)
-    status = conic_raw_colors_scale(s->context, &s->range, s->kind != CONIC_MODEL_LAS, &s->scale);
+    status = conic_raw_colors_scale(s->context, &s->range, may_be_fractions, &s->scale);
   if (status == CONIC_OK)
     status = conic_input_open(s->context, path, &again);
   if (status != CONIC_OK)

@@ -3,23 +3,24 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/files/file_fields.h"
 #include "core/files/lzf.h"
 #include "core/files/number.h"
 #include "core/formats/pcd_header.h"
 #include "core/formats/ply_source.h"
-#include "core/formats/point_fields.h"
-#include "core/formats/raw_colors.h"
+#include "core/splats/point_fields.h"
+#include "core/splats/raw_colors.h"
 
-enum { BLOCK = 256, PACKED = CONIC_TEXT_N_MEANINGS, SCALAR, N_SLOTS };
+enum { BLOCK = 256, PACKED = CONIC_TEXT_N_MEANINGS, VALUES, N_SLOTS = VALUES + CONIC_MOST_POINT_VALUES };
 
 typedef struct pcd_reader {
   conic_input *input;
   conic_builder builder;
   conic_pcd_header header;
-  int field_of[N_SLOTS]; /* by meaning, the packed colour, and the scalar; -1: none */
+  int field_of[N_SLOTS]; /* by meaning, the packed colour, and values that are asked for; -1: none */
+  int n_slots;
   int has_origin, is_origin_set;
   int is_again;
   double block[N_SLOTS][BLOCK];
@@ -47,11 +48,10 @@ static conic_status choose_fields(pcd_reader *reader) {
 }
 
 /* Every field of one number is listed, but for the padding, which has no name. */
-static conic_status choose_scalar(pcd_reader *reader, const conic_read_options *options) {
+static conic_status choose_values(pcd_reader *reader, const conic_read_options *options) {
   const conic_pcd_header *header = &reader->header;
   size_t listed[CONIC_TEXT_MOST_COLUMNS], n = 0;
   conic_status status = CONIC_OK;
-  int chosen;
   for (size_t i = 0; status == CONIC_OK && i < header->names.n; i++) {
     const char *name = header->names.name[i];
     if (!header->fields[i].is_known || strcmp(name, "_") == 0)
@@ -60,9 +60,12 @@ static conic_status choose_scalar(pcd_reader *reader, const conic_read_options *
     status = conic_fields_add(&reader->builder, name, strlen(name), conic_ply_type_name(header->fields[i].type));
   }
   if (status == CONIC_OK)
-    status = conic_fields_choose(&reader->builder, reader->input->name, options, &chosen);
-  if (status == CONIC_OK && chosen >= 0)
-    reader->field_of[SCALAR] = (int)listed[chosen];
+    status = conic_fields_choose(&reader->builder, reader->input->name, options);
+  reader->n_slots = VALUES + (int)conic_builder_columns(&reader->builder);
+  for (int slot = VALUES; status == CONIC_OK && slot < reader->n_slots; slot++) {
+    int field = conic_builder_column_field(&reader->builder, (size_t)(slot - VALUES));
+    reader->field_of[slot] = field >= 0 ? (int)listed[field] : -1;
+  }
   return status;
 }
 
@@ -104,8 +107,10 @@ static conic_status append_rows(pcd_reader *reader, size_t n) {
       if (reader->header.names.has_normals)
         points->normal[axis][points->count + i] = (float)reader->block[CONIC_TEXT_NORMAL + axis][i];
     }
-  for (size_t i = 0; i < n && points->scalar; i++)
-    points->scalar[points->count + i] = (float)reader->block[SCALAR][i];
+  for (int slot = VALUES; slot < reader->n_slots; slot++)
+    if (reader->field_of[slot] >= 0)
+      memcpy(conic_builder_column(&reader->builder, (size_t)(slot - VALUES)), reader->block[slot],
+             n * sizeof **reader->block);
   if (reader->header.i_packed >= 0)
     unpack_colors(reader, n, points);
   points->count += n;
@@ -135,7 +140,7 @@ static conic_status read_text_row(pcd_reader *reader, conic_text_word line, size
     const char *first = c;
     while (c < end && !strchr(" \t\r", *c))
       c++;
-    for (int slot = 0; slot < N_SLOTS; slot++)
+    for (int slot = 0; slot < reader->n_slots; slot++)
       if (reader->field_of[slot] >= 0 && header->fields[reader->field_of[slot]].i_value == n)
         words[slot] = (conic_text_word){first, (size_t)(c - first)};
     while (c < end && strchr(" \t\r", *c))
@@ -144,12 +149,12 @@ static conic_status read_text_row(pcd_reader *reader, conic_text_word line, size
   if (n != header->row_values)
     return conic_input_wrong(reader->input, "a point has %zu values, where the header tells of %zu", n,
                              header->row_values);
-  for (int slot = 0; slot < N_SLOTS; slot++) {
+  for (int slot = 0; slot < reader->n_slots; slot++) {
     double *value = &reader->block[slot][i_row];
     if (reader->field_of[slot] < 0)
       continue;
     int is_number = conic_number_parse(words[slot].text, words[slot].length, value) == words[slot].length;
-    if (slot == SCALAR && !is_number)
+    if (slot >= VALUES && !is_number)
       *value = (double)NAN; /* nobody would mind, had it not been asked for */
     else if (!is_number)
       return conic_input_wrong(reader->input, "a value is not a number");
@@ -184,7 +189,7 @@ static conic_status read_text_rows(pcd_reader *reader) {
 /* n points into the block, whose rows begin at `bytes`; where `n_all` is not 0, all values of a field stand together,
  * and these are those of so many points from `first` on. */
 static void convert_points(pcd_reader *reader, const unsigned char *bytes, size_t n_all, size_t first, size_t n) {
-  for (int slot = 0; slot < N_SLOTS; slot++) {
+  for (int slot = 0; slot < reader->n_slots; slot++) {
     if (reader->field_of[slot] < 0)
       continue;
     const conic_pcd_field *field = &reader->header.fields[reader->field_of[slot]];
@@ -259,8 +264,8 @@ static conic_status read_compressed(pcd_reader *reader) {
   conic_status status = conic_input_fill(input, 8);
   if (status != CONIC_OK || conic_input_available(input) < 8)
     return status == CONIC_OK ? wrong_bytes(reader, "the file ends before its data") : status;
-  uint64_t n_packed = conic_file_get(conic_input_bytes(input), 4);
-  uint64_t n_bytes = conic_file_get(conic_input_bytes(input) + 4, 4);
+  uint64_t n_packed = conic_load_32(conic_input_bytes(input));
+  uint64_t n_bytes = conic_load_32(conic_input_bytes(input) + 4);
   if (n_bytes % reader->header.row_bytes != 0)
     return wrong_bytes(reader, "the data are no whole number of points");
   if (n_bytes > conic_lzf_most_bytes(n_packed))
@@ -303,7 +308,7 @@ static conic_status read_points(pcd_reader *reader, const conic_read_options *op
   if (status == CONIC_OK)
     status = choose_fields(reader);
   if (status == CONIC_OK)
-    status = choose_scalar(reader, options);
+    status = choose_values(reader, options);
   if (status == CONIC_OK)
     status = reader->header.data == CONIC_PCD_ASCII    ? read_text_rows(reader)
              : reader->header.data == CONIC_PCD_BINARY ? read_binary_rows(reader)

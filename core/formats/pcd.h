@@ -2,7 +2,7 @@
  *
  * Positions are kept as they stand in single precision, else in double from the first finite one as the origin, as
  * those of text always are. A colour is packed (rgb, rgba) or three fields; its scale is told by the largest value of
- * the whole file (core/formats/raw_colors.h). The viewpoint is passed over. A file with fewer points than it declares
+ * the whole file (core/splats/raw_colors.h). The viewpoint is passed over. A file with fewer points than it declares
  * is read as far as it goes, which is told. */
 #ifndef CONIC_PCD_H
 #define CONIC_PCD_H

@@ -6,7 +6,7 @@
 #include "core/base/gaussian.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
-#include "core/formats/point_fields.h"
+#include "core/splats/point_fields.h"
 #include "core/splats/ellipse.h"
 
 /* What properties are called, those of consecutive columns in their order. Where a file has several names of one
@@ -138,7 +138,6 @@ conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *h
                                    const conic_ply_element *vertices, float cutoff, int keeps_coordinates,
                                    conic_ply_layout *layout) {
   memset(layout, 0, sizeof *layout);
-  layout->field_column = -1;
   find_columns(header, vertices, layout);
   if (!has_columns(layout, CONIC_PLY_X, 3)) {
     int is_packed = conic_ply_find_property(header, vertices, "packed_position") >= 0;
@@ -176,25 +175,31 @@ static int column_of(const conic_ply_layout *layout, int i_property) {
   return column;
 }
 
-conic_status conic_ply_layout_choose_field(conic_input *input, const conic_ply_header *header,
+conic_status conic_ply_layout_choose_fields(conic_input *input, const conic_ply_header *header,
                                            const conic_ply_element *vertices, const conic_read_options *options,
                                            conic_builder *builder, conic_ply_layout *layout) {
   const conic_ply_property *properties = header->properties + vertices->first_property;
   conic_status status = CONIC_OK;
-  int chosen;
   for (size_t i = 0; i < vertices->n_properties && status == CONIC_OK; i++)
     if (!properties[i].is_list)
       status = conic_fields_add(builder, properties[i].name, strlen(properties[i].name),
                                 conic_ply_type_name(properties[i].type));
   if (status == CONIC_OK)
-    status = conic_fields_choose(builder, input->name, options, &chosen);
-  if (status != CONIC_OK || chosen < 0)
-    return status;
-  int i_property = conic_ply_find_property(header, vertices, builder->model->fields[chosen].name);
-  layout->field_column = column_of(layout, i_property);
-  if (layout->field_column == CONIC_PLY_FIELD)
-    set_column(header, vertices, CONIC_PLY_FIELD, i_property, layout);
-  return CONIC_OK;
+    status = conic_fields_choose(builder, input->name, options);
+  layout->n_values = status == CONIC_OK ? (int)conic_builder_columns(builder) : 0;
+  for (int k = 0; k < layout->n_values; k++) {
+    int field = conic_builder_column_field(builder, (size_t)k);
+    layout->value_column[k] = -1;
+    if (field < 0)
+      continue;
+    int i_property = conic_ply_find_property(header, vertices, builder->model->fields[field].name);
+    layout->value_column[k] = column_of(layout, i_property);
+    if (layout->value_column[k] == CONIC_PLY_FIELD) {
+      layout->value_column[k] += k;
+      set_column(header, vertices, CONIC_PLY_FIELD + k, i_property, layout);
+    }
+  }
+  return status;
 }
 
 static void find_origin(conic_ply_layout *layout, const conic_ply_block block, size_t n, conic_splats *points) {
@@ -299,6 +304,7 @@ void conic_ply_layout_convert(conic_ply_layout *layout, const conic_ply_block bl
     store_opacities(layout, block[CONIC_PLY_OPACITY], n, points->opacity + first);
   for (size_t i = 0; points->dot && i < n; i++)
     points->dot[first + i] = block[CONIC_PLY_DOT][i] != 0.0 ? 1.0f : 0.0f;
-  if (layout->field_column >= 0)
-    store_column(block[layout->field_column], n, 0.0, points->scalar + first);
+  for (int k = 0; k < layout->n_values; k++)
+    if (layout->value_column[k] >= 0)
+      memcpy(points->values->value[k] + first, block[layout->value_column[k]], n * sizeof **block);
 }

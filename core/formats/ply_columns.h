@@ -20,8 +20,8 @@ typedef enum conic_ply_column {
   CONIC_PLY_HARMONIC = 24,
   CONIC_PLY_COORDINATE = 27, /* of a texture: two */
   CONIC_PLY_DOT = 29,
-  CONIC_PLY_FIELD = 30, /* that is asked for */
-  CONIC_PLY_N_COLUMNS = 31
+  CONIC_PLY_FIELD = 30, /* those that are asked for */
+  CONIC_PLY_N_COLUMNS = CONIC_PLY_FIELD + CONIC_MOST_POINT_VALUES
 } conic_ply_column;
 
 /* Rows that are converted at a time, column by column. */
@@ -48,7 +48,9 @@ typedef struct conic_ply_layout {
   int n_scales;        /* of GAUSSIANS: 2 or 3 */
   int has_harmonics, has_origin_positions;
   int is_origin_set;
-  int field_column;     /* where the field is read, its own or that of a property which means more; -1: none */
+  int n_values;         /* that are asked for, and for each: */
+  int value_column[CONIC_MOST_POINT_VALUES]; /* where it is read, its own or that of a property which means more; −1:
+                                                nowhere */
   int clip_property[2]; /* the lists of clip lines, by conic_clip_operator; -1: none */
   float cutoff;
   float srgb[256]; /* linear values of 8-bit codes */
@@ -60,9 +62,8 @@ conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *h
                                    const conic_ply_element *vertices, float cutoff, int keeps_coordinates,
                                    conic_ply_layout *layout);
 
-/* Lists the vertices' properties as fields, and finds the one that is asked for. Errors: INPUT (it is not there),
- * MEMORY. */
-conic_status conic_ply_layout_choose_field(conic_input *input, const conic_ply_header *header,
+/* Lists the vertices' properties as fields, and finds those that are asked for. Errors: as conic_fields_choose. */
+conic_status conic_ply_layout_choose_fields(conic_input *input, const conic_ply_header *header,
                                            const conic_ply_element *vertices, const conic_read_options *options,
                                            conic_builder *builder, conic_ply_layout *layout);
 

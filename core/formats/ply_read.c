@@ -210,7 +210,7 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
     status = conic_builder_begin(input->context, model, reader->layout.fields, delivery, &builder);
   }
   if (status == CONIC_OK)
-    status = conic_ply_layout_choose_field(input, header, vertices, options, &builder, &reader->layout);
+    status = conic_ply_layout_choose_fields(input, header, vertices, options, &builder, &reader->layout);
   if (status == CONIC_OK && keeps_coordinates &&
       (reader->layout.has_coordinates || conic_ply_has_texture_corners(header)))
     status = conic_ply_begin_textures(input, header, model);

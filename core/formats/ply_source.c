@@ -2,8 +2,8 @@
 
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/message.h"
-#include "core/base/real.h"
 #include "core/files/number.h"
 
 conic_status conic_ply_wrong(const conic_ply_source *source, const char *what) {
@@ -178,31 +178,25 @@ conic_status conic_ply_skip_element(conic_ply_source *source, const conic_ply_he
 }
 
 static uint16_t load_16(const unsigned char *p, int is_big) {
-  return (uint16_t)(is_big ? p[0] << 8 | p[1] : p[1] << 8 | p[0]);
+  return is_big ? conic_load_big_16(p) : conic_load_16(p);
 }
 
 static uint32_t load_32(const unsigned char *p, int is_big) {
-  uint32_t a = p[0], b = p[1], c = p[2], d = p[3];
-  return is_big ? a << 24 | b << 16 | c << 8 | d : d << 24 | c << 16 | b << 8 | a;
+  return is_big ? conic_load_big_32(p) : conic_load_32(p);
 }
 
 static uint64_t load_64(const unsigned char *p, int is_big) {
-  uint64_t first = load_32(p, is_big), second = load_32(p + 4, is_big);
-  return is_big ? first << 32 | second : second << 32 | first;
+  return is_big ? conic_load_big_64(p) : conic_load_64(p);
 }
 
 static void convert_floats(const unsigned char *bytes, size_t stride, size_t n, int is_big, double *values) {
-  for (size_t i = 0; i < n; i++) {
-    uint32_t bits = load_32(bytes + i * stride, is_big);
-    values[i] = (double)conic_float_of_bits(bits);
-  }
+  for (size_t i = 0; i < n; i++)
+    values[i] = (double)conic_float_of_bits(load_32(bytes + i * stride, is_big));
 }
 
 static void convert_doubles(const unsigned char *bytes, size_t stride, size_t n, int is_big, double *values) {
-  for (size_t i = 0; i < n; i++) {
-    uint64_t bits = load_64(bytes + i * stride, is_big);
-    memcpy(values + i, &bits, sizeof *values);
-  }
+  for (size_t i = 0; i < n; i++)
+    values[i] = conic_double_of_bits(load_64(bytes + i * stride, is_big));
 }
 
 static void convert_integers(const unsigned char *bytes, size_t stride, size_t n, conic_ply_type type, int is_big,

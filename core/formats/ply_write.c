@@ -3,6 +3,7 @@
 
 #include "conic/model.h"
 #include "conic/version.h"
+#include "core/base/byte_order.h"
 #include "core/base/color.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
@@ -153,35 +154,34 @@ static void begin_rows(conic_splats_writer *writer, const conic_splats *first) {
   writer->has_header = 1;
 }
 
-static void put_bytes(row_cursor *row, const void *value, size_t n_bytes) {
-  memcpy(row->next, value, n_bytes);
-  row->next += n_bytes;
-}
-
 static void put_text_end(row_cursor *row, size_t length) {
   row->next += length;
   *row->next++ = ' ';
 }
 
 static void put_float(row_cursor *row, float value) {
-  if (row->encoding == CONIC_PLY_ASCII)
+  if (row->encoding == CONIC_PLY_ASCII) {
     put_text_end(row, conic_number_print_float(row->next, value));
-  else
-    put_bytes(row, &value, sizeof value);
+    return;
+  }
+  conic_store_float(row->next, value);
+  row->next += sizeof value;
 }
 
 static void put_double(row_cursor *row, double value) {
-  if (row->encoding == CONIC_PLY_ASCII)
+  if (row->encoding == CONIC_PLY_ASCII) {
     put_text_end(row, conic_number_print(row->next, value));
-  else
-    put_bytes(row, &value, sizeof value);
+    return;
+  }
+  conic_store_double(row->next, value);
+  row->next += sizeof value;
 }
 
 static void put_byte(row_cursor *row, uint8_t value) {
   if (row->encoding == CONIC_PLY_ASCII)
     put_text_end(row, conic_number_print_float(row->next, (float)value));
   else
-    put_bytes(row, &value, sizeof value);
+    *row->next++ = (char)value;
 }
 
 static void put_vector(row_cursor *row, float *const vector[3], size_t i) {

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "core/base/message.h"
-#include "core/formats/point_fields.h"
-#include "core/formats/raw_colors.h"
+#include "core/splats/point_fields.h"
+#include "core/splats/raw_colors.h"
 #include "core/formats/xyz_heading.h"
 
 typedef struct xyz_reader {
@@ -14,7 +14,7 @@ typedef struct xyz_reader {
   conic_builder builder;
   conic_xyz_heading heading;
   int is_origin_set;
-  int field;                /* the column that scalars come from; −1: none */
+  unsigned char is_asked[CONIC_TEXT_MOST_COLUMNS]; /* columns that values come from */
   uint64_t n_odd, odd_line; /* lines that have other values than the header says, and the first of them */
 } xyz_reader;
 
@@ -25,7 +25,8 @@ static void find_origin(xyz_reader *reader, const double *p) {
   reader->is_origin_set = 1;
 }
 
-static conic_status append_point(xyz_reader *reader, const double values[CONIC_TEXT_N_MEANINGS], double scalar) {
+static conic_status append_point(xyz_reader *reader, const double values[CONIC_TEXT_N_MEANINGS],
+                                 const double numbers[CONIC_TEXT_MOST_COLUMNS]) {
   conic_splats *points = &reader->builder.model->points;
   if (conic_builder_points(&reader->builder) >= CONIC_MAX_POINTS)
     return conic_input_wrong(reader->input, "too many points");
@@ -40,8 +41,11 @@ static conic_status append_point(xyz_reader *reader, const double values[CONIC_T
     if (points->normal[axis])
       points->normal[axis][points->count] = (float)values[CONIC_TEXT_NORMAL + axis];
   }
-  if (points->scalar)
-    points->scalar[points->count] = (float)scalar;
+  for (size_t k = 0; k < conic_builder_columns(&reader->builder); k++) {
+    int field = conic_builder_column_field(&reader->builder, k);
+    if (field >= 0)
+      *conic_builder_column(&reader->builder, k) = numbers[field];
+  }
   points->count++;
   return conic_builder_deliver(&reader->builder, 0);
 }
@@ -64,7 +68,7 @@ static conic_status take_odd_line(xyz_reader *reader, size_t n) {
 static conic_status read_row(xyz_reader *reader, conic_text_word line) {
   const conic_text_columns *columns = &reader->heading.columns;
   conic_text_word words[CONIC_TEXT_MOST_COLUMNS];
-  double values[CONIC_TEXT_N_MEANINGS] = {0.0}, scalar = NAN;
+  double values[CONIC_TEXT_N_MEANINGS] = {0.0}, numbers[CONIC_TEXT_MOST_COLUMNS];
   size_t n = conic_xyz_split(&reader->heading, line, words);
   if (is_next_count(reader, n))
     return conic_xyz_take_count(reader->input, words[0], &reader->heading);
@@ -74,7 +78,8 @@ static conic_status read_row(xyz_reader *reader, conic_text_word line) {
     int meaning = columns->meaning[i];
     double value;
     int may_be_anything = meaning < 0 && reader->heading.names != CONIC_XYZ_UNNAMED;
-    if (may_be_anything && (int)i != reader->field)
+    numbers[i] = NAN;
+    if (may_be_anything && !reader->is_asked[i])
       continue;
     if (!conic_text_number(&reader->heading.dialect, words[i], &value)) {
       if (may_be_anything)
@@ -83,10 +88,9 @@ static conic_status read_row(xyz_reader *reader, conic_text_word line) {
     }
     if (meaning >= 0)
       values[meaning] = value;
-    if ((int)i == reader->field)
-      scalar = value;
+    numbers[i] = value;
   }
-  return append_point(reader, values, scalar);
+  return append_point(reader, values, numbers);
 }
 
 /* Every column is a field, and one without a name goes by its number, from 1. */
@@ -101,8 +105,12 @@ static conic_status choose_field(xyz_reader *reader, const conic_read_options *o
       name = number;
     status = conic_fields_add(&reader->builder, name, strlen(name), "text");
   }
-  return status == CONIC_OK ? conic_fields_choose(&reader->builder, reader->input->name, options, &reader->field)
-                            : status;
+  if (status == CONIC_OK)
+    status = conic_fields_choose(&reader->builder, reader->input->name, options);
+  for (size_t k = 0; k < conic_builder_columns(&reader->builder); k++)
+    if (conic_builder_column_field(&reader->builder, k) >= 0)
+      reader->is_asked[conic_builder_column_field(&reader->builder, k)] = 1;
+  return status;
 }
 
 static conic_status read_rows(xyz_reader *reader) {

@@ -4,7 +4,7 @@
  * What the lines before the first point say (names of columns, the number of points) and the first 256 points tell the
  * dialect (core/formats/text_dialect.h) and the columns (core/formats/text_columns.h); then line by line is read. A
  * colour is sRGB-encoded; the largest value of the whole file tells whether it is a fraction of 1, a code of 8 bits or
- * one of 16 (core/formats/raw_colors.h). Positions are kept in double, from the first finite one as the origin. */
+ * one of 16 (core/splats/raw_colors.h). Positions are kept in double, from the first finite one as the origin. */
 #ifndef CONIC_XYZ_H
 #define CONIC_XYZ_H
 

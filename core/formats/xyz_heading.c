@@ -71,9 +71,8 @@ conic_status conic_xyz_take_count(const conic_input *input, conic_text_word word
 
 /* Two counts are columns and rows, which no other kind begins with. */
 static conic_status take_first_count(const conic_input *input, conic_text_word word, conic_xyz_heading *heading) {
-  const conic_foreign_kind *ptx = conic_foreign_kind_find("a.ptx", "", 0, 0);
-  if (heading->has_count && ptx)
-    return conic_input_wrong(input, "this is %s: %s; %s", ptx->name, ptx->remedy, conic_readable_kinds);
+  if (heading->has_count)
+    return conic_input_wrong(input, "two counts begin a PTX scan, but the head of one does not go on after them");
   return conic_xyz_take_count(input, word, heading);
 }
 

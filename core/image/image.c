@@ -2,11 +2,12 @@
 
 #include <limits.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/context_struct.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/files/disk.h"
 #include "core/image/image_common.h"
 #include "core/image/texture_levels.h"
 
@@ -45,21 +46,21 @@ const conic_plane_description *conic_plane_describe(conic_plane plane) {
 
 conic_status conic_image_check_size(conic_context *context, const char *path, int width, int height,
                                     size_t pixel_bytes) {
-  struct stat found;
+  conic_disk_entry found;
   uint64_t image_bytes = (uint64_t)width * (uint64_t)height * pixel_bytes;
   if (context->reads_texture && conic_texture_check_room(context, path, width, height) != CONIC_OK)
     return CONIC_ERROR_INPUT;
-  if (stat(path, &found) != 0 || !S_ISREG(found.st_mode) || image_bytes >> 16 <= (uint64_t)found.st_size)
+  if (!conic_disk_look(path, &found) || !found.is_file || image_bytes >> 16 <= found.n_bytes)
     return CONIC_OK;
   return conic_fail(context, CONIC_ERROR_INPUT, "%s: %d × %d pixels cannot be in a file of %lld bytes (at byte %lld)",
-                    path, width, height, (long long)found.st_size, (long long)found.st_size);
+                    path, width, height, (long long)found.n_bytes, (long long)found.n_bytes);
 }
 
 int conic_image_most_mib(conic_context *context, const char *path) {
-  struct stat found;
+  conic_disk_entry found;
   uint64_t most = INT_MAX;
-  if (stat(path, &found) == 0 && found.st_size >= 0)
-    most = 1 + ((uint64_t)found.st_size >> 4);
+  if (conic_disk_look(path, &found))
+    most = 1 + (found.n_bytes >> 4);
   if (context->reads_texture && context->options.max_texture_bytes)
     most = most <= context->options.max_texture_bytes >> 20 ? most : 1 + (context->options.max_texture_bytes >> 20);
   return most < INT_MAX ? (int)most : INT_MAX;
@@ -107,19 +108,22 @@ void conic_image_release(conic_context *context, conic_image *image) {
   memset(image, 0, sizeof *image);
 }
 
-uint64_t conic_hash_bytes(const void *bytes, size_t n_bytes) {
-  const uint8_t *byte = bytes;
+/* By words whose bytes may stand the other way round in memory: the last bits of a byte's place are turned. */
+static uint64_t hash_words(const uint8_t *byte, size_t n_bytes, size_t turned) {
   uint64_t hash = UINT64_C(0xcbf29ce484222325);
   for (size_t i = 0; i < n_bytes; i++)
-    hash = (hash ^ byte[i]) * UINT64_C(0x100000001b3);
+    hash = (hash ^ byte[i ^ turned]) * UINT64_C(0x100000001b3);
   return hash;
 }
 
-/* The bytes in memory are little-endian on every machine that conic is built for; the build refuses others
- * (core/files/file_fields.c). */
+uint64_t conic_hash_bytes(const void *bytes, size_t n_bytes) {
+  return hash_words(bytes, n_bytes, 0);
+}
+
 uint64_t conic_image_hash(const conic_image *image, conic_plane plane) {
   const conic_plane_description *description = conic_plane_describe(plane);
   if (!description || !image->planes[plane])
     return 0;
-  return conic_hash_bytes(image->planes[plane], conic_image_pixels(image) * (size_t)description->n_channels * 4);
+  return hash_words(image->planes[plane], conic_image_pixels(image) * (size_t)description->n_channels * 4,
+                    CONIC_IS_BIG_ENDIAN ? 3 : 0);
 }

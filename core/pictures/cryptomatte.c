@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/memory.h"
 
 enum { N_LAYERS = 3, DEPTH = 2 * N_LAYERS };
@@ -18,15 +19,10 @@ static uint32_t stir(uint32_t word) {
 uint32_t conic_cryptomatte_hash(const char *text) {
   const unsigned char *bytes = (const unsigned char *)text;
   size_t n = strlen(text), rest = n % 4;
-  uint32_t hash = 0, word = 0;
-  for (size_t i = 0; i + 4 <= n; i += 4) {
-    word = bytes[i] | (uint32_t)bytes[i + 1] << 8 | (uint32_t)bytes[i + 2] << 16 | (uint32_t)bytes[i + 3] << 24;
-    hash = turn_left(hash ^ stir(word), 13) * 5 + 0xe6546b64u;
-  }
-  word = 0;
-  for (size_t i = 0; i < rest; i++)
-    word |= (uint32_t)bytes[n - rest + i] << 8 * i;
-  hash ^= stir(word); /* which of nothing is nothing */
+  uint32_t hash = 0;
+  for (size_t i = 0; i + 4 <= n; i += 4)
+    hash = turn_left(hash ^ stir(conic_load_32(bytes + i)), 13) * 5 + 0xe6546b64u;
+  hash ^= stir((uint32_t)conic_load_bits(bytes + n - rest, rest)); /* which of nothing is nothing */
   hash ^= (uint32_t)n;
   hash = (hash ^ hash >> 16) * 0x85ebca6bu;
   hash = (hash ^ hash >> 13) * 0xc2b2ae35u;

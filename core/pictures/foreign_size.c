@@ -2,15 +2,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/byte_order.h"
+#include "core/files/disk.h"
 #include "core/pictures/image_foreign.h"
-
-static int big(const unsigned char *bytes) {
-  return bytes[0] << 8 | bytes[1];
-}
-
-static int little(const unsigned char *bytes) {
-  return bytes[1] << 8 | bytes[0];
-}
 
 /* Segment after segment up to the frame's header: markers C0 to CF but for C4 (tables), C8 and CC. */
 static int find_jpeg_size(FILE *file, int *width, int *height) {
@@ -21,14 +15,14 @@ static int find_jpeg_size(FILE *file, int *width, int *height) {
     if (segment[0] != 0xff)
       return 0;
     if (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc) {
-      *height = big(segment + 5);
-      *width = big(segment + 7);
+      *height = conic_load_big_16(segment + 5);
+      *width = conic_load_big_16(segment + 7);
       return 1;
     }
     if (marker == 0xff) /* a byte that fills */
       at++;
     else
-      at += 2 + (marker == 0x01 || (marker >= 0xd0 && marker <= 0xd8) ? 0 : big(segment + 2));
+      at += 2 + (marker == 0x01 || (marker >= 0xd0 && marker <= 0xd8) ? 0 : conic_load_big_16(segment + 2));
   }
   return 0;
 }
@@ -37,14 +31,14 @@ static int find_jpeg_size(FILE *file, int *width, int *height) {
 static int find_webp_size(const unsigned char *start, int *width, int *height) {
   const unsigned char *chunk = start + 12, *data = chunk + 8;
   if (memcmp(chunk, "VP8 ", 4) == 0) {
-    *width = little(data + 6) & 0x3fff;
-    *height = little(data + 8) & 0x3fff;
+    *width = conic_load_16(data + 6) & 0x3fff;
+    *height = conic_load_16(data + 8) & 0x3fff;
   } else if (memcmp(chunk, "VP8L", 4) == 0) {
-    *width = 1 + (little(data + 1) & 0x3fff);
+    *width = 1 + (conic_load_16(data + 1) & 0x3fff);
     *height = 1 + (data[2] >> 6 | data[3] << 2 | (data[4] & 0x0f) << 10);
   } else if (memcmp(chunk, "VP8X", 4) == 0) {
-    *width = 1 + (little(data + 4) | data[6] << 16);
-    *height = 1 + (little(data + 7) | data[9] << 16);
+    *width = 1 + (int)conic_load_bits(data + 4, 3);
+    *height = 1 + (int)conic_load_bits(data + 7, 3);
   } else
     return 0;
   return 1;
@@ -53,11 +47,11 @@ static int find_webp_size(const unsigned char *start, int *width, int *height) {
 int conic_foreign_size(const char *path, int *width, int *height) {
   unsigned char start[30] = {0};
   int is_found = 0;
-  FILE *file = fopen(path, "rb");
+  FILE *file = conic_disk_open_stream(path, "rb");
   size_t n = file ? fread(start, 1, sizeof start, file) : 0;
   if (n >= 10 && memcmp(start, "GIF8", 4) == 0) {
-    *width = little(start + 6);
-    *height = little(start + 8);
+    *width = conic_load_16(start + 6);
+    *height = conic_load_16(start + 8);
     is_found = 1;
   } else if (n >= 10 && memcmp(start, "\xff\xd8\xff", 3) == 0)
     is_found = find_jpeg_size(file, width, height);

@@ -3,6 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/pictures/image_exr_deep.h"
@@ -86,11 +87,12 @@ conic_status conic_deep_pack(conic_context *context, const conic_deep_line *line
     return CONIC_ERROR_MEMORY;
   for (int x = 0; x < width; x++) {
     end += (int32_t)line->counts[x];
-    memcpy(packed->ends + 4 * (size_t)x, &end, 4);
+    conic_store_32(packed->ends + 4 * (size_t)x, (uint32_t)end);
   }
   for (size_t c = 0; c < N_CHANNELS; c++)
     for (size_t i = 0; i < line->n_samples; i++)
       memcpy(packed->samples + 4 * (c * line->n_samples + i), (const char *)&line->samples[i] + channels[c], 4);
+  conic_turn_words(packed->samples, N_CHANNELS * line->n_samples, 4);
   return compress_bytes(context, packed, packed->ends, &packed->n_ends) &&
                  compress_bytes(context, packed, packed->samples, &packed->n_samples)
              ? CONIC_OK

@@ -1,6 +1,7 @@
 #include "core/pictures/image_exr.h"
 
 #include "core/base/message.h"
+#include "core/files/disk.h"
 #include "core/pictures/image_foreign.h"
 
 #if CONIC_HAVE_OPENEXR
@@ -275,7 +276,7 @@ conic_status conic_exr_read(conic_context *context, const char *path, conic_imag
   exr_context_initializer_t settings;
   exr_reader reader;
   memset(&reader, 0, sizeof reader);
-  FILE *file = fopen(path, "rb");
+  FILE *file = conic_disk_open_stream(path, "rb");
   if (!file)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
   conic_exr_stream_init(&reader.stream, context, path, file, &settings);

@@ -1,11 +1,10 @@
 #if CONIC_HAVE_OPENEXR
 
 #include "core/pictures/image_exr_stream.h"
+#include "core/files/disk.h"
 
 #include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "core/base/message.h"
 #include "core/image/image_common.h"
@@ -51,7 +50,7 @@ static int64_t read_bytes(exr_const_context_t file, void *data, void *bytes, uin
   (void)file;
   (void)report;
   while (n < n_bytes) {
-    ssize_t got = pread(fileno(stream->file), (char *)bytes + n, (size_t)(n_bytes - n), (off_t)(offset + n));
+    ptrdiff_t got = conic_disk_read_at(fileno(stream->file), (char *)bytes + n, (size_t)(n_bytes - n), offset + n);
     if (got < 0 && errno == EINTR)
       continue;
     if (got < 0)
@@ -65,9 +64,9 @@ static int64_t read_bytes(exr_const_context_t file, void *data, void *bytes, uin
 
 static int64_t size_of_file(exr_const_context_t file, void *data) {
   conic_exr_stream *stream = data;
-  struct stat status;
+  conic_disk_entry entry;
   (void)file;
-  return fstat(fileno(stream->file), &status) == 0 && S_ISREG(status.st_mode) ? (int64_t)status.st_size : -1;
+  return conic_disk_look_at(fileno(stream->file), &entry) && entry.is_file ? (int64_t)entry.n_bytes : -1;
 }
 
 void conic_exr_stream_init(conic_exr_stream *stream, conic_context *context, const char *path, FILE *file,

@@ -9,6 +9,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/threads.h"
+#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/pictures/cryptomatte.h"
 #include "core/pictures/image_channels.h"
@@ -198,7 +199,7 @@ static conic_status write_stream(conic_context *context, const char *path, FILE 
 static conic_status write_by_way(conic_context *context, const char *path, FILE *to, const conic_image *image,
                                  const conic_image_options *options) {
   char bytes[1 << 14];
-  FILE *spool = tmpfile();
+  FILE *spool = conic_disk_open_nameless();
   if (!spool)
     return conic_fail(context, CONIC_ERROR_IO, "%s: cannot write: no temporary file: %s", path, strerror(errno));
   conic_status status = write_stream(context, path, spool, image, options);

@@ -3,12 +3,13 @@
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 
 #include "conic/image.h"
 #include "core/base/loan_find.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/files/disk.h"
+#include "core/files/file.h"
 #include "core/files/guard.h"
 #include "core/image/image_common.h"
 #include "core/pictures/image_exr.h"
@@ -27,13 +28,6 @@ const char *conic_compression_name(conic_compression compression) {
   return (int)compression >= 0 && compression < CONIC_N_COMPRESSIONS ? names[compression] : NULL;
 }
 
-/* The part of PATH's name after its last dot; empty where there is none. */
-static const char *ending_of(const char *path) {
-  const char *slash = strrchr(path, '/');
-  const char *dot = strrchr(slash ? slash : path, '.');
-  return dot ? dot + 1 : "";
-}
-
 static conic_status check_image(conic_context *context, const char *path, const conic_image *image) {
   if (!image || image->width < 1 || image->height < 1 || image->width > CONIC_IMAGE_MAX_SIZE ||
       image->height > CONIC_IMAGE_MAX_SIZE || image->n_attributes < 0 || image->n_attributes > CONIC_MAX_ATTRIBUTES)
@@ -48,7 +42,7 @@ static conic_status find_format(conic_context *context, const char *path, const 
                                 const char **format) {
   if (!path || !*path)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: no file name to write to");
-  *format = ending_of(path);
+  *format = conic_file_ending(path);
   if (!**format && options->format)
     *format = options->format;
   else if (strcmp(path, "-") == 0)
@@ -138,14 +132,14 @@ conic_status conic_image_read(conic_context *context, const char *path, conic_im
   const conic_image *lent = conic_loan_find(context, path, "image");
   if (lent)
     return copy_lent(context, path, lent, image);
-  struct stat found;
-  if (stat(path, &found) == 0 && !S_ISREG(found.st_mode)) /* which might not end, or never begin */
+  conic_disk_entry found;
+  if (conic_disk_look(path, &found) && !found.is_file) /* which might not end, or never begin */
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: it is %s", path,
-                      S_ISDIR(found.st_mode) ? "a directory" : "no regular file");
-  FILE *file = fopen(path, "rb");
+                      found.is_folder ? "a directory" : "no regular file");
+  FILE *file = conic_disk_open_stream(path, "rb");
   if (!file)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
-  conic_status status = fstat(fileno(file), &found) == 0 ? conic_guard_note(context, &found) : CONIC_OK;
+  conic_status status = conic_disk_look_at(fileno(file), &found) ? conic_guard_note(context, &found) : CONIC_OK;
   errno = 0;
   size_t n = fread(start, 1, sizeof start, file);
   int error = ferror(file) ? errno : 0;

@@ -4,9 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/base/real.h"
+#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 
@@ -36,6 +37,7 @@ static conic_status write_rows(conic_context *context, FILE *stream, const conic
   for (int y = image->height - 1; y >= 0; y--) {
     for (size_t x = 0; x < width; x++)
       take_pixel(image->planes[plane], description, (size_t)y * width + x, row + x * n_written);
+    conic_turn_words(row, n_row, sizeof *row);
     if (fwrite(row, sizeof *row, n_row, stream) != n_row)
       break; /* the stream remembers, and commit says so */
   }
@@ -131,13 +133,6 @@ static int parse_scale_sign(const char *word) {
   return *word || !n_digits || is_zero ? 0 : sign;
 }
 
-static float swap_bytes(float value) {
-  uint32_t bits = conic_bits_of_float(value);
-  bits = bits >> 24 | (bits >> 8 & 0xff00u) | (bits << 8 & 0xff0000u) | bits << 24;
-  memcpy(&value, &bits, sizeof value);
-  return value;
-}
-
 static conic_status read_rows(conic_context *context, const char *path, FILE *file, int is_grey, int is_big,
                               conic_image *image) {
   size_t width = (size_t)image->width, n_channels = is_grey ? 1 : 3;
@@ -155,8 +150,8 @@ static conic_status read_rows(conic_context *context, const char *path, FILE *fi
     float *rgba = (float *)image->planes[CONIC_PLANE_RGBA] + (size_t)y * width * 4;
     for (size_t x = 0; x < width; x++) {
       for (size_t c = 0; c < 3; c++) {
-        float value = row[x * n_channels + (is_grey ? 0 : c)];
-        rgba[x * 4 + c] = is_big ? swap_bytes(value) : value;
+        const float *value = &row[x * n_channels + (is_grey ? 0 : c)];
+        rgba[x * 4 + c] = is_big ? conic_float_of_bits(conic_load_big_32(value)) : conic_load_float(value);
       }
       rgba[x * 4 + 3] = 1.0f;
     }
@@ -203,7 +198,7 @@ static conic_status read_pfm(conic_context *context, const char *path, FILE *fil
 }
 
 conic_status conic_pfm_read(conic_context *context, const char *path, conic_image *image) {
-  FILE *file = fopen(path, "rb");
+  FILE *file = conic_disk_open_stream(path, "rb");
   if (!file)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
   conic_status status = read_pfm(context, path, file, image);

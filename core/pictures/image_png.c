@@ -1,6 +1,8 @@
 #include "core/pictures/image_png.h"
 
+#include "core/base/byte_order.h"
 #include "core/base/message.h"
+#include "core/files/disk.h"
 #include "core/pictures/image_foreign.h"
 
 #if CONIC_HAVE_PNG
@@ -165,7 +167,8 @@ static int decode_header(png_work *work) {
   png_set_read_fn(work->png, work, read_png);
   png_read_info(work->png, work->info);
   png_set_expand(work->png);
-  png_set_swap(work->png); /* samples of 16 bits */
+  if (!CONIC_IS_BIG_ENDIAN)
+    png_set_swap(work->png); /* samples of 16 bits */
   png_set_interlace_handling(work->png);
   png_read_update_info(work->png, work->info);
   work->width = (int)png_get_image_width(work->png, work->info);
@@ -219,7 +222,7 @@ static conic_status open_and_read(png_work *in, conic_image *image) {
   png_work work = *in;
   conic_context *context = work.context;
   const char *path = work.path;
-  work.file = fopen(path, "rb");
+  work.file = conic_disk_open_stream(path, "rb");
   if (!work.file)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
   work.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &work, keep_error, keep_quiet);

@@ -19,18 +19,35 @@ conic_status conic_builder_begin(conic_context *context, conic_model *model, uns
   return conic_splats_allocate(context, 0, fields, &model->points);
 }
 
+/* Of points that stay, what was read only to choose and to colour them goes. */
+static void settle_values(conic_builder *builder) {
+  conic_splats *points = &builder->model->points;
+  conic_point_values_settle(points);
+  if (points->values->n > 0)
+    return;
+  conic_point_values_destroy(builder->context, points->values);
+  points->values = NULL;
+}
+
 conic_status conic_builder_deliver(conic_builder *builder, int is_last) {
   conic_splats *points = &builder->model->points;
-  if (!builder->delivery || points->count < (is_last ? 1 : builder->delivery->batch))
+  const conic_delivery *delivery = builder->delivery;
+  if (!delivery && is_last && points->values)
+    settle_values(builder);
+  if (!delivery || points->count < (is_last ? 1 : delivery->batch))
     return CONIC_OK;
-  conic_status status = builder->delivery->receive(builder->delivery->cookie, points);
   builder->n_delivered += points->count;
+  if (points->values && !delivery->is_survey)
+    conic_point_values_settle(points);
+  conic_status status = points->count > 0 ? delivery->receive(delivery->cookie, points) : CONIC_OK;
   points->count = points->n_clips = 0;
   return status;
 }
 
 static conic_status move_points(conic_builder *builder, size_t capacity, unsigned fields) {
   conic_status status = conic_splats_resize(builder->context, &builder->model->points, capacity, fields);
+  if (status == CONIC_OK && builder->model->points.values)
+    status = conic_point_values_reserve(builder->context, builder->model->points.values, capacity);
   if (status == CONIC_OK)
     builder->point_capacity = capacity;
   return status;

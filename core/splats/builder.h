@@ -3,13 +3,15 @@
 #define CONIC_BUILDER_H
 
 #include "conic/model.h"
+#include "core/splats/point_values.h"
 
-/* Where a file's points go that are not kept: see conic_model_stream. XYZ, LAS and PCD deliver colours as they stand in
- * the file. */
+/* Where a file's points go that are not kept: see conic_model_stream. All kinds of points but PLY deliver
+ * colours as they stand in the file. */
 typedef struct conic_delivery {
   conic_batch_receiver *receive;
   void *cookie;
   size_t batch; /* points that are handed over at a time */
+  int is_survey; /* all points are looked at, wanted or not */
   int is_again; /* the file has been read before: what can be told of it has been */
 } conic_delivery;
 
@@ -31,7 +33,7 @@ conic_status conic_builder_begin(conic_context *context, conic_model *model, uns
                                  const conic_delivery *delivery, conic_builder *builder);
 
 /* Hands the points over, where they are not kept and are enough for a batch, or all the same if `is_last`; then there
- * are none. Errors: the receiver's. */
+ * are none. Those that are not wanted are left out before, or, of points that are kept, at the last. Errors: the receiver's. */
 conic_status conic_builder_deliver(conic_builder *builder, int is_last);
 
 /* Points that have been built, delivered or not. */
@@ -48,6 +50,18 @@ conic_status conic_builder_reserve_points_exactly(conic_builder *builder, size_t
 /* Puts the next point there, which the caller counts. Where the first finite one lies far out, as in map coordinates,
  * which have digits that a float has not, it becomes the origin. */
 void conic_builder_store_position(conic_builder *builder, const double position[3]);
+
+/* What the reader has to fill, where values are asked for: so many columns, of each the field, and its place for the
+ * next point. A field below 0 is not the reader's. */
+static inline size_t conic_builder_columns(const conic_builder *builder) {
+  return builder->model->points.values ? builder->model->points.values->n_columns : 0;
+}
+static inline int conic_builder_column_field(const conic_builder *builder, size_t column) {
+  return builder->model->points.values->source[column];
+}
+static inline double *conic_builder_column(const conic_builder *builder, size_t column) {
+  return builder->model->points.values->value[column] + builder->model->points.count;
+}
 
 /* Gives the points another optional array (clip lines are none), filled with white, 1 or zero for those that there are.
  * Errors: MEMORY. */

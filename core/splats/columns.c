@@ -24,7 +24,8 @@ void conic_splats_list_columns(conic_splats *s, conic_column columns[CONIC_SPLAT
   columns += list_components(columns, s->color, 3, &s->strides.color, s->count, CONIC_SPLATS_COLORS);
   columns += list_components(columns, &s->opacity, 1, &s->strides.opacity, s->count, CONIC_SPLATS_OPACITIES);
   columns += list_components(columns, &s->dot, 1, &s->strides.dot, s->count, CONIC_SPLATS_DOTS);
-  list_components(columns, &s->scalar, 1, &s->strides.scalar, s->count, CONIC_SPLATS_SCALARS);
+  columns += list_components(columns, &s->scalar, 1, &s->strides.scalar, s->count, CONIC_SPLATS_SCALARS);
+  list_components(columns, s->sight, 3, &s->strides.sight, s->count, CONIC_SPLATS_SIGHTS);
 }
 
 static void list_triangles_columns(conic_triangles *t, conic_column columns[TRIANGLES_COLUMNS]) {

@@ -5,7 +5,7 @@
 
 #include "conic/triangles.h"
 
-enum { CONIC_SPLATS_COLUMNS = 18 };
+enum { CONIC_SPLATS_COLUMNS = 21 };
 
 typedef struct conic_column {
   float **floats; /* in the set; null where the array is absent */
@@ -14,7 +14,7 @@ typedef struct conic_column {
   unsigned field; /* of conic_splats_field; 0: the position */
 } conic_column;
 
-/* Position, both axes, normal, colour (three each), opacity, dot and scalar. */
+/* Position, both axes, normal, colour (three each), opacity, dot, scalar and sight (three). */
 void conic_splats_list_columns(conic_splats *splats, conic_column columns[CONIC_SPLATS_COLUMNS]);
 
 static inline float conic_column_at(const float *floats, size_t stride, size_t i) {

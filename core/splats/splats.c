@@ -5,12 +5,13 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/splats/point_values.h"
 #include "core/splats/clip.h"
 #include "core/splats/columns.h"
 #include "core/splats/splats_gather.h"
 
-/* What an absent array means: white and opaque; zero axes and normals, which are repaired later; no dot and no scalar.
- */
+/* What an absent array means: white and opaque; zero axes and normals, which are repaired later; no dot, no scalar
+ * and no sight. */
 static float absent_value(const conic_column *column) {
   if (column->field == CONIC_SPLATS_SCALARS)
     return NAN;
@@ -48,7 +49,8 @@ unsigned conic_splats_fields(const conic_splats *splats) {
          (splats->color[0] ? (unsigned)CONIC_SPLATS_COLORS : 0u) |
          (splats->opacity ? (unsigned)CONIC_SPLATS_OPACITIES : 0u) |
          (splats->clips ? (unsigned)CONIC_SPLATS_CLIPS : 0u) | (splats->dot ? (unsigned)CONIC_SPLATS_DOTS : 0u) |
-         (splats->scalar ? (unsigned)CONIC_SPLATS_SCALARS : 0u);
+         (splats->scalar ? (unsigned)CONIC_SPLATS_SCALARS : 0u) |
+         (splats->sight[0] ? (unsigned)CONIC_SPLATS_SIGHTS : 0u);
 }
 
 void conic_splats_release(conic_context *context, conic_splats *splats) {
@@ -57,6 +59,7 @@ void conic_splats_release(conic_context *context, conic_splats *splats) {
   for (int i = 0; i < CONIC_SPLATS_COLUMNS; i++)
     conic_memory_release(context, *columns[i].floats);
   conic_memory_release(context, splats->clips);
+  conic_point_values_destroy(context, splats->values);
   memset(splats, 0, sizeof *splats);
 }
 
@@ -138,7 +141,9 @@ conic_status conic_splats_resize(conic_context *context, conic_splats *splats, s
   larger.count = splats->count;
   larger.n_clips = splats->n_clips;
   larger.clips = splats->clips;
+  larger.values = splats->values;
   splats->clips = NULL;
+  splats->values = NULL;
   conic_splats_release(context, splats);
   *splats = larger;
   return CONIC_OK;

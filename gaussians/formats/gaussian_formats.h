@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 
+#include "core/base/byte_order.h"
 #include "core/files/input.h"
 #include "core/files/mapping.h"
 #include "core/formats/ply_header.h"
@@ -73,29 +74,6 @@ conic_status conic_gaussian_gltf_write(const conic_gaussian_writer *writer);
 conic_status conic_gaussian_writer_put(const conic_gaussian_writer *writer, const void *bytes, size_t n_bytes);
 /* Told now and then how much of the Gaussians is written. Errors: CANCELLED. */
 conic_status conic_gaussian_writer_tell(const conic_gaussian_writer *writer, size_t i);
-
-/* --- numbers in little-endian files --- */
-
-static inline uint32_t conic_load_32(const unsigned char *p) {
-  return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
-}
-
-static inline uint64_t conic_load_64(const unsigned char *p) {
-  return conic_load_32(p) | (uint64_t)conic_load_32(p + 4) << 32;
-}
-
-static inline float conic_load_float(const unsigned char *p) {
-  return conic_float_of_bits(conic_load_32(p));
-}
-
-static inline void conic_store_32(unsigned char *p, uint32_t value) {
-  for (int i = 0; i < 4; i++)
-    p[i] = (unsigned char)(value >> 8 * i);
-}
-
-static inline void conic_store_float(unsigned char *p, float value) {
-  conic_store_32(p, conic_bits_of_float(value));
-}
 
 /* A value from 0 to 1 as a number of 0 to `most`, rounded to nearest; NaN is 0. */
 static inline uint32_t conic_code_of_share(double share, uint32_t most) {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/files/file.h"
 #include "gaussians/formats/gaussian_gltf.h"
 
 conic_status conic_gltf_wrong(const conic_gltf_reader *reader, const char *what) {
@@ -67,8 +68,8 @@ static conic_status decode_base64(const conic_gltf_reader *reader, const char *t
 
 static conic_status open_beside(const conic_gltf_reader *reader, const char *name, size_t length,
                                 conic_gltf_buffer *buffer) {
-  const char *path = reader->file->path, *slash = path ? strrchr(path, '/') : NULL;
-  int n_folder = slash ? (int)(slash + 1 - path) : 0;
+  const char *path = reader->file->path;
+  int n_folder = path ? (int)(conic_file_name(path) - path) : 0;
   char beside[4096];
   int n = snprintf(beside, sizeof beside, "%.*s%.*s", n_folder, path ? path : "", (int)length, name);
   if (!path || length > 4000 || n < 0 || (size_t)n >= sizeof beside || memchr(name, ':', length))

@@ -63,7 +63,7 @@ static float gltf_number_at(const gltf_numbers *numbers, size_t i, int component
     value = p[component] - (numbers->type == INT8 && p[component] & 0x80 ? 256 : 0);
     most = numbers->type == INT8 ? 127.0 : 255.0;
   } else {
-    int bits = p[2 * component] | p[2 * component + 1] << 8;
+    int bits = conic_load_16(p + 2 * component);
     value = bits - (numbers->type == INT16 && bits & 0x8000 ? 65536 : 0);
     most = numbers->type == INT16 ? 32767.0 : 65535.0;
   }

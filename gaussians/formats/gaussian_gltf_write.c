@@ -108,7 +108,7 @@ typedef struct json_text {
   size_t n;
 } json_text;
 
-__attribute__((format(printf, 2, 3))) static void add_json(json_text *json, const char *format, ...) {
+CONIC_AS_PRINTF(2, 3) static void add_json(json_text *json, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   json->n += (size_t)vsnprintf(json->text + json->n, JSON_ROOM - json->n, format, arguments);

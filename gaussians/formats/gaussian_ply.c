@@ -375,13 +375,11 @@ static unsigned char *put_gaussian(const conic_gaussians *gaussians, size_t i, i
   const float *sh = conic_gaussians_harmonics(gaussians, i, room);
   for (int axis = 0; axis < 3; axis++) {
     double mean = conic_gaussians_mean(gaussians, axis, i);
-    uint64_t bits = conic_bits_of_double(mean);
     if (!is_wide) {
       to = put_value(to, (float)mean);
       continue;
     }
-    conic_store_32(to, (uint32_t)bits);
-    conic_store_32(to + 4, (uint32_t)(bits >> 32));
+    conic_store_double(to, mean);
     to += 8;
   }
   for (int k = 0; k < 3; k++)

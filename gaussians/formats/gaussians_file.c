@@ -2,13 +2,13 @@
 #include <errno.h>
 #include <math.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "core/base/loan_find.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/real.h"
+#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/inflate.h"
 #include "core/files/zip.h"
@@ -204,8 +204,8 @@ static int find_scene_kind(const char *path, const unsigned char *bytes, size_t 
 
 /* The file of a folder that says what the others are. */
 static const char *resolve_folder(const char *path, char room[4096]) {
-  struct stat about;
-  if (strcmp(path, "-") == 0 || stat(path, &about) != 0 || !S_ISDIR(about.st_mode))
+  conic_disk_entry about;
+  if (strcmp(path, "-") == 0 || !conic_disk_look(path, &about) || !about.is_folder)
     return path;
   int n = snprintf(room, 4096, "%s/meta.json", path);
   return n > 0 && n < 4096 && conic_file_is_there(room) ? room : path;

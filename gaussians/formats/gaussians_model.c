@@ -64,5 +64,7 @@ conic_status conic_gaussians_read_model(conic_context *context, const char *path
   memset(model, 0, sizeof *model);
   if (options && options->field && !options->field_is_optional)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the Gaussians have no '%s'", path, options->field);
+  if (options && (options->where || options->keep))
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the Gaussians have no values by name", path);
   return read_scene_as_splats(context, path, model);
 }

@@ -6,6 +6,7 @@
 #include "core/base/gaussian.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/files/file.h"
 #include "core/files/json_read.h"
 #include "core/files/zip.h"
 #include "gaussians/formats/gaussian_formats.h"
@@ -128,14 +129,15 @@ static conic_status read_meta(sog_reader *reader) {
 /* --- the pictures --- */
 
 static conic_status open_file(const sog_reader *reader, const char *name, conic_mapping *file) {
-  const char *path = reader->file->path, *slash = path ? strrchr(path, '/') : NULL;
+  const char *path = reader->file->path;
   char beside[4096];
   memset(file, 0, sizeof *file);
-  if (name[0] == 0 || strchr(name, '/'))
+  if (name[0] == 0 || strpbrk(name, "/\\"))
     return sog_wrong(reader, "meta.json does not name all of its pictures, or elsewhere");
   if (reader->is_zip)
     return conic_zip_read(&reader->zip, name, MOST_FILE, &file->bytes, &file->n_bytes);
-  int n = snprintf(beside, sizeof beside, "%.*s%s", slash ? (int)(slash + 1 - path) : 0, path ? path : "", name);
+  int n =
+      snprintf(beside, sizeof beside, "%.*s%s", path ? (int)(conic_file_name(path) - path) : 0, path ? path : "", name);
   if (!path || n < 0 || (size_t)n >= sizeof beside)
     return sog_wrong(reader, "the pictures that belong to it cannot be looked for");
   return conic_mapping_open(reader->file->context, beside, file);
@@ -215,7 +217,7 @@ static void decode_rotation(const unsigned char *pixel, conic_gaussians *gaussia
 static void decode_harmonics(const sog_reader *reader, const float *values, conic_gaussians *gaussians, size_t i) {
   size_t n_of_file = ((size_t)reader->bands + 1) * ((size_t)reader->bands + 1) - 1;
   size_t n = conic_harmonics_of_degree(gaussians->sh_degree) / 3 - 1;
-  size_t label = reader->planes[LABELS][4 * i] | (size_t)reader->planes[LABELS][4 * i + 1] << 8;
+  size_t label = conic_load_16(reader->planes[LABELS] + 4 * i);
   int is_one = (double)label < reader->n_labels;
   size_t at = is_one ? 4 * (label / A_ROW * reader->sizes[CENTROIDS][0] + label % A_ROW * n_of_file) : 0;
   for (size_t k = 0; k < 3 * n; k++)

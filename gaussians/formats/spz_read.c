@@ -139,10 +139,10 @@ static void decode_spz_means(const spz_header *header, const unsigned char *from
   for (size_t i = 0; i < gaussians->count; i++)
     for (int axis = 0; axis < 3; axis++)
       if (header->version == 1) {
-        gaussians->position[axis][i] = conic_float_of_half((uint16_t)(from[0] | from[1] << 8));
+        gaussians->position[axis][i] = conic_float_of_half(conic_load_16(from));
         from += 2;
       } else {
-        int32_t fixed = from[0] | from[1] << 8 | from[2] << 16;
+        int32_t fixed = (int32_t)conic_load_bits(from, 3);
         gaussians->position[axis][i] = (float)(fixed - ((fixed & 0x800000) << 1)) * unit;
         from += 3;
       }

@@ -122,10 +122,8 @@ static conic_status put_streams(const conic_gaussian_writer *writer, const unsig
     size_t n_this = conic_zstd_pack_whole(zstd, streams, n_stream, packed + n_packed);
     if (n_this == 0)
       status = CONIC_ERROR_MEMORY;
-    for (int k = 0; k < 8; k++) {
-      table[16 * n_streams + k] = (unsigned char)((uint64_t)n_this >> 8 * k);
-      table[16 * n_streams + 8 + k] = (unsigned char)((uint64_t)n_stream >> 8 * k);
-    }
+    conic_store_64(table + 16 * n_streams, n_this);
+    conic_store_64(table + 16 * n_streams + 8, n_stream);
     n_streams++;
     streams += n_stream;
     n_packed += n_this;

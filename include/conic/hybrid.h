@@ -65,12 +65,11 @@ CONIC_API conic_status conic_hybrid_build(conic_context *context, conic_triangle
 /* Null is allowed. */
 CONIC_API void conic_hybrid_destroy(conic_hybrid *hybrid);
 
-/* Writes a .chy (docs/reference/format-chy.md). Errors: MEMORY, IO, UNSUPPORTED (a big-endian machine), CANCELLED. */
+/* Writes a .chy (docs/reference/format-chy.md). Errors: MEMORY, IO, CANCELLED. */
 CONIC_API conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path);
 
 /* Maps the file into memory and checks all of it: sums, sizes, structure. On success the caller owns *hybrid, which
- * must not outlive the context. The file must not be changed while it is in use. Errors: INPUT, IO, MEMORY,
- * UNSUPPORTED (a big-endian machine). */
+ * must not outlive the context. The file must not be changed while it is in use. Errors: INPUT, IO, MEMORY. */
 CONIC_API conic_status conic_hybrid_read(conic_context *context, const char *path, conic_hybrid **hybrid);
 
 /* Whether a file that can be read begins like a .chy. */

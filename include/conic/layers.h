@@ -19,7 +19,12 @@ typedef struct conic_layers_options {
   uint64_t memory_bytes; /* what building may take, temporary files aside; the file does not depend on it */
   double quantum;        /* step of the positions; a length, or with the next flag in sampling distances */
   int quantum_in_spacings;
-  float cutoff; /* F_g of the kernel that will draw */
+  float cutoff;  /* F_g of the kernel that will draw */
+  int keeps_all; /* ellipses, opacities, dots and clip lines are kept, finely */
+  /* What goes on with a file that there is (conic_layers_continue): steps, whose length is `quantum` then, count from
+   * this corner or, where samples lie below it, from one that is whole steps away; and normals have no side. */
+  int has_corner, is_unoriented;
+  double corner[3];
 } conic_layers_options;
 
 /* Clouds of 2048 samples, 1 GiB, half a sampling distance, cutoff 1.5. */
@@ -41,13 +46,14 @@ typedef struct conic_layers_statistics {
 } conic_layers_statistics;
 
 /* Starts to build PATH, which appears under its name only when it is whole. Temporary files have no name, lie in the
- * folder of PATH and take up to 50 bytes a sample. On success the caller owns *builder and ends it with finish or
+ * folder of PATH and take up to 60 bytes a sample. On success the caller owns *builder and ends it with finish or
  * abandon. Null `options` are the defaults. Errors: ARGUMENT, MEMORY, IO, UNSUPPORTED (built without zstd). */
 CONIC_API conic_status conic_layers_builder_open(conic_context *context, const char *path,
                                                  const conic_layers_options *options, conic_layers_builder **builder);
 /* Hands over a batch, of any size; it is copied. All batches have colours or none has. A sample is a position, a normal
  * (the batch's, or t_u × t_v) and a size, the outline's, of which those without axes get one from their neighbours.
- * Opacities and clip lines are not kept. Errors: ARGUMENT, MEMORY, IO, CANCELLED. */
+ * With `keeps_all` it is an ellipse with its opacity and clip lines. Values that the batch has by name are kept, those
+ * of the first one. Errors: ARGUMENT, MEMORY, IO, CANCELLED. */
 CONIC_API conic_status conic_layers_builder_append(conic_layers_builder *builder, const conic_splats *batch);
 /* Builds and writes the file, and releases the builder, on failure too. The file depends on the samples in their order
  * and on cloud_size and quantum alone: not on threads or memory. `statistics` may be null. Errors: INPUT (nothing to
@@ -58,6 +64,10 @@ CONIC_API void conic_layers_builder_abandon(conic_layers_builder *builder);
 
 /* Whether a file that can be read begins like a .lpc. */
 CONIC_API int conic_layers_is_file(const char *path);
+
+/* Whether a file that can be read is the first of another kind's hierarchy of points, which conic_layers_open opens too:
+ * a COPC, an ept.json, or the metadata.json of Potree 2. */
+CONIC_API int conic_layers_is_hierarchy(const char *path);
 
 typedef struct conic_layers_info {
   uint64_t n_samples, n_clouds, n_bytes;
@@ -71,7 +81,8 @@ typedef struct conic_layers_info {
   double near_z;                 /* as conic_default_near of what it was built from */
   /* Bits a sample. */
   double bits_position, bits_normal, bits_color, bits_index;
-  uint64_t reserved[8];
+  double bits_more; /* sizes, opacities, clip lines and values */
+  uint64_t reserved[7];
 } conic_layers_info;
 
 /* Reads and checks header and index. Errors: INPUT, MEMORY. */

@@ -7,9 +7,11 @@
 #include <stdint.h>
 
 #include "conic/camera.h"
+#include "conic/coloring.h"
 #include "conic/context.h"
 #include "conic/image.h"
 #include "conic/layers.h"
+#include "conic/model.h"
 #include "conic/render.h"
 #include "conic/splats.h"
 
@@ -22,9 +24,9 @@ typedef struct conic_layers conic_layers;
 
 /* How a file is read. All but the first and the last are of URLs alone. */
 typedef struct conic_layers_access {
-  size_t size;            /* sizeof(conic_layers_access), set by the init function */
-  uint64_t memory_bytes;  /* what clouds, read and gathered, may take along with what is drawn of them; index, image and
-                             the least that one row of tiles needs come on top */
+  size_t size;           /* sizeof(conic_layers_access), set by the init function */
+  uint64_t memory_bytes; /* what drawing may take: a program of 20 MiB, index, image, clouds, and what is drawn of them;
+                            at least a quarter is for the last two, and what one tile needs comes on top */
   double connect_seconds; /* a server that is not reached within these is asked again */
   double stall_seconds;   /* so is one that sends under 1 KiB/s for so long */
   int n_retries;          /* so often, with growing pauses, before a cloud is given up */
@@ -48,6 +50,18 @@ CONIC_API conic_status conic_layers_open(conic_context *context, const char *nam
                                          conic_layers **layers);
 /* Null is allowed. */
 CONIC_API void conic_layers_close(conic_layers *layers);
+
+/* Makes colours of a value that the samples have by name, and leaves out those that `where` does not pass (as
+ * conic_read_options has it); either may be null. By "auto" the intensity makes the colours of samples that have none.
+ * Of the colours *done, which may be null, says what they mean. To be called before anything is drawn; clouds that are
+ * in the cache are dropped. With a filter, what is drawn of a coarse place is what passes of its samples: each is
+ * within the error of itself at full resolution, but there may be more that passes than is seen. Errors: ARGUMENT,
+ * INPUT (the samples have no such value), MEMORY. */
+CONIC_API conic_status conic_layers_choose(conic_layers *layers, const conic_coloring_options *coloring,
+                                           const char *where, conic_coloring *done);
+
+/* "lpc", "copc", "ept" or "potree". */
+CONIC_API const char *conic_layers_kind_name(const conic_layers *layers);
 
 /* What a picture depends on as a whole. */
 typedef struct conic_layers_scale {
@@ -73,7 +87,8 @@ typedef enum conic_occlusion {
 typedef struct conic_layers_draw_options {
   size_t size;               /* sizeof(conic_layers_draw_options), set by the init function */
   double error_px;           /* the greatest error on the screen; 0: full resolution */
-  uint64_t budget;           /* or, where not 0: the least error that this many splats can give */
+  uint64_t budget;           /* or, where not 0: the least error that this many splats can give; where the coarsest
+                                cloud has more, so many of it, evenly */
   int most_levels;           /* no cloud below so many levels is drawn; 0: all */
   conic_occlusion occlusion; /* leave out what is hidden; changes no bit of the image */
   int samples;               /* N × N a pixel, as conic_render_samples */
@@ -88,7 +103,7 @@ CONIC_API void conic_layers_draw_options_init_sized(conic_layers_draw_options *o
 
 /* What a picture took. Places are what was chosen: cells of space, each with the samples that all clouds have there. */
 typedef struct conic_layers_drawn {
-  double error_px;           /* asked for, or what the budget came to */
+  double error_px;           /* asked for, or what the budget came to; infinite: below the coarsest cloud */
   double missing_error_px;   /* the greatest error of a place that is coarser than asked for; 0: none is */
   uint64_t n_places;         /* in sight */
   uint64_t n_places_hidden;  /* of these, wholly hidden: nothing of them was drawn */
@@ -104,15 +119,15 @@ typedef struct conic_layers_drawn {
   int n_bands;               /* the picture was drawn in so many */
   int n_levels;              /* of the deepest cloud drawn, plus 1 */
   uint64_t n_clouds_damaged; /* of those missing, what came and was wrong */
-  uint64_t reserved[7];
+  uint64_t n_splats_turned;  /* of the places, facing away and culled before they were drawn */
+  uint64_t reserved[6];
 } conic_layers_drawn;
 
 /* Draws into the planes that `image` has, as conic_render does; `id` is the number of the sample in the file (modulo
  * 2³²). near_z and splat_length, where 0 in `render`, are the file's. The picture depends on file, camera and options
  * alone: not on memory, cache, order of arrival, occlusion, or where the file lies; with may_be_coarser, on what there
- * is in time, too. `statistics` and `drawn` may be null. Errors: ARGUMENT (a budget below the coarsest cloud, too),
- * INPUT (damaged; a server that answers wrongly), IO (network), UNSUPPORTED (bands on another device), MEMORY,
- * CANCELLED. */
+ * is in time, too. `statistics` and `drawn` may be null. Errors: ARGUMENT, INPUT (damaged; a server that answers
+ * wrongly), IO (network), UNSUPPORTED (bands on another device), MEMORY, CANCELLED. */
 CONIC_API conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, const conic_camera *camera,
                                          const conic_render_options *render, const conic_layers_draw_options *options,
                                          conic_image *image, conic_render_statistics *statistics,
@@ -121,6 +136,36 @@ CONIC_API conic_status conic_layers_draw(conic_layers *layers, conic_renderer *r
 /* All samples at full resolution, with axes for `cutoff`, in the order of the file. The caller releases *splats.
  * Errors: as conic_layers_draw. */
 CONIC_API conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splats *splats);
+
+/* Of a hierarchy of another kind than .lpc (conic_layers_is_hierarchy), all points as they are there, node by node:
+ * with positions and, where it has them, colours. Errors: INPUT, IO, MEMORY, UNSUPPORTED (a .lpc), CANCELLED, the
+ * receiver's. */
+CONIC_API conic_status conic_layers_stream(conic_layers *layers, conic_batch_receiver *receive, void *cookie);
+
+/* Reads all of such a hierarchy, and counts the nodes and pages that are damaged; 0 of a .lpc. Errors: IO, MEMORY,
+ * CANCELLED. */
+CONIC_API conic_status conic_layers_count_damaged(conic_layers *layers, uint64_t *n_damaged);
+
+/* Which samples are read, and how finely: places that lie outside of the box are left out, but of those at its borders
+ * there are samples outside of it. Where a place's error is no greater than the one asked for, it is read no finer. */
+typedef struct conic_layers_region {
+  size_t size;            /* sizeof(conic_layers_region), set by the init function */
+  double low[3], high[3]; /* in world units; infinite: no bound */
+  double error;           /* in world units; 0: full resolution */
+} conic_layers_region;
+
+/* No bounds, and full resolution. */
+CONIC_API void conic_layers_region_init_sized(conic_layers_region *part, size_t size);
+#define conic_layers_region_init(part) conic_layers_region_init_sized(part, sizeof *(part))
+
+/* The samples of a part, with axes for `cutoff`, batch by batch, each place's after those of the places before it. A
+ * null `part` is all of it. Errors: ARGUMENT, as conic_layers_draw, and the receiver's. */
+CONIC_API conic_status conic_layers_read_samples(conic_layers *layers, float cutoff, const conic_layers_region *part,
+                                                 conic_batch_receiver *receive, void *cookie);
+
+/* Sets `options` so that what is built of these samples and others has a grid on which these stay where they are, and
+ * keeps as much of each. Errors: UNSUPPORTED (it has values by name, which cannot be handed on). */
+CONIC_API conic_status conic_layers_continue(const conic_layers *layers, conic_layers_options *options);
 
 #ifdef __cplusplus
 }

@@ -19,6 +19,8 @@ typedef enum conic_model_kind {
   CONIC_MODEL_XYZ = 2, /* text, a point a line: XYZ, PTS, CSV */
   CONIC_MODEL_LAS = 3,
   CONIC_MODEL_PCD = 4,
+  CONIC_MODEL_E57 = 5,
+  CONIC_MODEL_PTX = 6,
 
   /* Those of Assimp, where it is there */
   CONIC_MODEL_STL = 16,
@@ -73,13 +75,22 @@ typedef struct conic_read_options {
    * null: none. Upper and lower case, "_", "-" and blanks do not matter, nor does "scalar_" before it. */
   const char *field;
   int field_is_optional; /* a file that has it not is read without */
+
+  /* Which values are kept besides, "intensity, gps_time" or "all", for a layered cloud (conic_layers_builder_append);
+   * null: none. */
+  const char *keep;
+
+  /* Which points are wanted, by their values: "classification = 2, 9 and not intensity < 100"
+   * (docs/reference/formats.md, Choosing points); null: all. Files with faces, and those whose points have no values,
+   * are refused. */
+  const char *where;
 } conic_read_options;
 
 /* Cutoff 1.5, points alone, columns as the file has them. */
 CONIC_API void conic_read_options_init_sized(conic_read_options *options, size_t size);
 #define conic_read_options_init(options) conic_read_options_init_sized(options, sizeof *(options))
 
-/* Reads a model: PLY, OBJ, LAS, PCD, text with a point a line, and what Assimp reads (docs/reference/formats.md); "-"
+/* Reads a model: PLY, OBJ, LAS, PCD, E57, PTX, text with a point a line, and what Assimp reads (docs/reference/formats.md); "-"
  * is standard input. The format is told by the content first, then by the name's ending. Integer colours of a PLY and
  * all colours of the others are decoded from sRGB, float colours of a PLY are taken as linear. Positions that a float
  * cannot hold (double or 32-bit integer in a PLY, map coordinates in an OBJ, all of text and LAS) are kept from the
@@ -96,7 +107,7 @@ typedef conic_status conic_batch_receiver(void *cookie, const conic_splats *batc
 
 /* Reads the points of a file as conic_model_read does, faces aside, and hands them over in their order, a batch at a
  * time, so that memory does not grow with their number. What cannot be read so is read whole, and is one batch: OBJ
- * and Assimp's, and text, LAS and PCD where the file is a pipe, for how colours are meant is known only at its end. All
+ * and Assimp's, and text, LAS, PCD, E57 and PTX where the file is a pipe, for how colours are meant is known only at its end. All
  * batches have the same optional arrays and origin. Errors: as conic_model_read, and the receiver's. */
 CONIC_API conic_status conic_model_stream(conic_context *context, const char *path, const conic_read_options *options,
                                           conic_batch_receiver *receive, void *cookie);

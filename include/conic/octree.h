@@ -39,7 +39,7 @@ CONIC_API conic_status conic_octree_build(conic_context *context, conic_splats *
 CONIC_API void conic_octree_destroy(conic_octree *octree);
 
 /* Writes a .cot file (docs/reference/format-cot.md), which appears under its name only when it is whole. Errors:
- * MEMORY, IO, UNSUPPORTED (a big-endian machine). */
+ * MEMORY, IO. */
 CONIC_API conic_status conic_octree_write(conic_octree *octree, const char *path);
 
 /* Maps the file into memory and checks all of it: sums, sizes, structure. On success the caller owns *octree, which

@@ -62,11 +62,12 @@ typedef struct conic_source_options {
   int finds_dots;       /* raw points about which there is no surface become dots, which face each picture's camera */
 
   /* What colours are made of; null: they are as the files have them. Heights and normals are of what is drawn whole;
-   * of a .cot or .lpc, with is_whole. */
+   * of a .cot, with is_whole; of a .lpc, the values that it keeps. */
   const conic_coloring_options *coloring;
   const char *columns; /* of conic_read_options: what the columns of text are; null: its header says */
   double crease_deg;   /* above 0: triangles of a file without normals are round over edges up to this angle */
   const conic_gaussian_options *gaussians; /* how Gaussian scenes are composited; null: they are splats like others */
+  const char *where; /* which points are wanted, as conic_read_options has it, of files of points and .lpc; null: all */
 } conic_source_options;
 
 /* Splats, cutoff 1.5, 20 neighbours, no dots, flat faces. */

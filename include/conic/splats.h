@@ -37,7 +37,7 @@ typedef struct conic_clip {
  * array of count × 3 floats at p, the components are p, p + 1, p + 2 and the stride is 3 × sizeof(float); in an array
  * of structs it is the struct's size. Multiples of sizeof(float). */
 typedef struct conic_splats_strides {
-  size_t position, tangent_u, tangent_v, normal, color, opacity, dot, scalar;
+  size_t position, tangent_u, tangent_v, normal, color, opacity, dot, scalar, sight;
 } conic_splats_strides;
 
 /* May be filled by hand with pointers to the caller's own arrays (then never pass it to conic_splats_release), or
@@ -82,7 +82,15 @@ typedef struct conic_splats {
   /* One more value a splat, such as a scan's intensity, of which colours can be made (conic/coloring.h); optional, and
    * of no matter to the picture. NaN where a splat has none. */
   float *scalar;
-  uint64_t reserved[4];
+
+  /* From each point towards the scanner that saw it, of any length; optional. A normal that has to be guessed gets the
+   * sign that turns it there; nothing else looks at this, and zero says nothing. */
+  float *sight[3];
+
+  /* What the points of a file that was read have by name, where that was asked for (conic_read_options.keep); else
+   * null. The library's own; functions that make a set of another leave it out. */
+  struct conic_point_values *values;
+  uint64_t reserved[3];
 } conic_splats;
 
 /* The optional arrays of a set, as bits. */
@@ -93,7 +101,8 @@ typedef enum conic_splats_field {
   CONIC_SPLATS_OPACITIES = 8,
   CONIC_SPLATS_CLIPS = 16,
   CONIC_SPLATS_DOTS = 32,
-  CONIC_SPLATS_SCALARS = 64
+  CONIC_SPLATS_SCALARS = 64,
+  CONIC_SPLATS_SIGHTS = 128
 } conic_splats_field;
 
 /* Allocates a set of `count` splats with the optional arrays of `fields` (bits of conic_splats_field), contents

@@ -9,16 +9,17 @@ extern "C" {
 #endif
 
 #define CONIC_VERSION_MAJOR 0
-#define CONIC_VERSION_MINOR 5
+#define CONIC_VERSION_MINOR 6
 #define CONIC_VERSION_PATCH 0
 
-/* "0.5.0"; static. */
+/* "0.6.0"; static. */
 CONIC_API const char *conic_version(void);
 
 /* A library that conic can use, and whether it does here: it was there when conic was built, and, for OpenImageIO
  * and Assimp, so is the module that leads to it. */
 typedef struct conic_feature {
-  const char *name; /* "OpenEXR", "OpenImageIO", "OpenCL", "zstd", "CURL", "libpng", "Assimp", "zlib", "libwebp" */
+  const char *name; /* "OpenEXR", "OpenImageIO", "OpenCL", "zstd", "CURL", "libpng", "Assimp", "zlib", "libwebp",
+                       "libxml2" */
   int available;
 } conic_feature;
 

@@ -88,7 +88,7 @@ static conic_status read_hybrid_file(conic_hybrid *hybrid, const char *path) {
   if (status != CONIC_OK)
     return status;
   conic_file_layout l = conic_chy_lay_out(&h);
-  status = conic_file_check_arrays(hybrid->context, path, &hybrid->mapping, &l, h.body_sum);
+  status = conic_file_take_arrays(hybrid->context, path, &hybrid->mapping, &l, h.body_sum);
   if (status != CONIC_OK)
     return status;
   conic_chy_attach(&h, hybrid->mapping.bytes, hybrid);
@@ -120,14 +120,11 @@ int conic_hybrid_is_file(const char *path) {
 void conic_hybrid_mend(unsigned char *bytes, size_t n_bytes) {
   conic_chy_header h;
   conic_file_layout l = {0};
-  const void *arrays[CONIC_FILE_MOST_ARRAYS];
   conic_file_fields_read(fields, kind.n_fields, bytes + sizeof kind.magic, &h);
   if (!fault_of_header(&h))
     l = conic_chy_lay_out(&h);
   int is_whole = l.n_bytes == n_bytes;
-  if (is_whole) {
-    conic_file_list_arrays(&l, bytes, arrays);
-    h.body_sum = conic_file_sum_arrays(NULL, &l, arrays);
-  }
+  if (is_whole)
+    h.body_sum = conic_file_sum_bytes(NULL, &l, bytes);
   conic_file_mend_header(&kind, is_whole ? &h : NULL, bytes);
 }

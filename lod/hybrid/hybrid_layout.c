@@ -6,7 +6,7 @@
 #include "core/base/memory.h"
 #include "core/image/texture_levels.h"
 
-/* The records are in the file as they are in memory. */
+/* The records are in the file as they are in memory, but for the order of the bytes within their members. */
 _Static_assert(sizeof(conic_hybrid_level) == 48, "levels of 48 bytes");
 _Static_assert(sizeof(conic_cluster_slot) == 8, "slots of 8 bytes");
 _Static_assert(sizeof(conic_cluster_border) == 16, "borders of 16 bytes");
@@ -39,7 +39,7 @@ conic_file_layout conic_chy_lay_out(const conic_chy_header *h) {
   sizes[CONIC_CHY_SLOTS] = (size_t)h->n_slots * sizeof(conic_cluster_slot);
   sizes[CONIC_CHY_BORDERS] = (size_t)h->n_borders * sizeof(conic_cluster_border);
   for (int i = 0; i < CONIC_CHY_N_ARRAYS; i++)
-    conic_file_add_array(&l, sizes[i]);
+    conic_file_add_array(&l, sizes[i], i == CONIC_CHY_TEXELS ? "1" : i == CONIC_CHY_MATERIAL_LIST ? "4444448" : "4");
   return l;
 }
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/base/real.h"
+#include "core/base/byte_order.h"
 #include "core/base/threads.h"
 #include "core/splats/ellipse.h"
 
@@ -32,21 +32,6 @@ typedef struct leaf_box {
   float low[3], step[3];
 } leaf_box;
 
-static void put_float(unsigned char *to, float value) {
-  uint32_t bits = conic_bits_of_float(value);
-  for (int i = 0; i < 4; i++)
-    to[i] = (unsigned char)(bits >> 8 * i);
-}
-
-static float get_float(const unsigned char *from) {
-  uint32_t bits = 0;
-  float value;
-  for (int i = 0; i < 4; i++)
-    bits |= (uint32_t)from[i] << 8 * i;
-  memcpy(&value, &bits, sizeof value);
-  return value;
-}
-
 static leaf_box find_leaf_box(const conic_splats *leaves, size_t begin, size_t end) {
   leaf_box box;
   for (int axis = 0; axis < 3; axis++) {
@@ -69,8 +54,7 @@ static void encode_position(const leaf_box *box, const conic_splats *leaves, siz
     double steps = box->step[axis] > 0.0f ? floor(from_low / (double)box->step[axis] + 0.5) : 0.0;
     bits |= (uint64_t)(steps < POSITION_STEPS ? steps : POSITION_STEPS) << POSITION_BITS * axis;
   }
-  for (int byte = 0; byte < 5; byte++)
-    code[AT_POSITION + byte] = (unsigned char)(bits >> 8 * byte);
+  conic_store_bits(code + AT_POSITION, 5, bits);
 }
 
 static void encode_axes(const conic_code_scale *scale, const conic_splats *leaves, size_t i, unsigned char *code) {
@@ -95,8 +79,7 @@ static void encode_axes(const conic_code_scale *scale, const conic_splats *leave
   uint16_t length = conic_code_length(scale, scale->length, longer);
   int ratio = (int)ceil(shorter / longer * 255.0);
   code[AT_DIRECTION] = conic_code_direction(x, y);
-  code[AT_LENGTH] = (unsigned char)length;
-  code[AT_LENGTH + 1] = (unsigned char)(length >> 8);
+  conic_store_bits(code + AT_LENGTH, 2, length);
   code[AT_RATIO] = (unsigned char)(ratio < 1 ? 1 : ratio > 255 ? 255 : ratio);
 }
 
@@ -112,13 +95,11 @@ static void decode_leaf(const conic_code_scale *scale, const leaf_box *box, cons
                         conic_splats *leaves, size_t i) {
   double normal[3], u[3], v[3], direction[2];
   const unsigned char *rest = code + AT_REST;
-  uint64_t bits = 0;
-  for (int byte = 0; byte < 5; byte++)
-    bits |= (uint64_t)code[AT_POSITION + byte] << 8 * byte;
+  uint64_t bits = conic_load_bits(code + AT_POSITION, 5);
   conic_code_normal_of(code + AT_NORMAL, normal);
   conic_tangent_basis(normal, u, v);
   conic_code_direction_of(code[AT_DIRECTION], direction);
-  double longer = conic_code_length_of(scale, scale->length, (uint16_t)(code[AT_LENGTH] | code[AT_LENGTH + 1] << 8));
+  double longer = conic_code_length_of(scale, scale->length, conic_load_16(code + AT_LENGTH));
   double shorter = longer * (double)code[AT_RATIO] / 255.0;
   for (int axis = 0; axis < 3; axis++) {
     double steps = (double)(bits >> POSITION_BITS * axis & POSITION_STEPS);
@@ -150,13 +131,13 @@ static void code_block(const leaf_job *job, size_t i_block) {
   if (job->is_encoding) {
     box = find_leaf_box(leaves, begin, end);
     for (int axis = 0; axis < 3; axis++) {
-      put_float(head + (size_t)axis * 4, box.low[axis]);
-      put_float(head + 12 + (size_t)axis * 4, box.step[axis]);
+      conic_store_float(head + (size_t)axis * 4, box.low[axis]);
+      conic_store_float(head + 12 + (size_t)axis * 4, box.step[axis]);
     }
   } else {
     for (int axis = 0; axis < 3; axis++) {
-      box.low[axis] = get_float(head + (size_t)axis * 4);
-      box.step[axis] = get_float(head + 12 + (size_t)axis * 4);
+      box.low[axis] = conic_load_float(head + (size_t)axis * 4);
+      box.step[axis] = conic_load_float(head + 12 + (size_t)axis * 4);
     }
   }
   for (size_t i = begin; i < end; i++, code += n_bytes) {

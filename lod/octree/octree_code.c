@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/color.h"
 #include "core/base/real.h"
 #include "core/splats/ellipse.h"
@@ -175,15 +176,12 @@ void conic_code_place(const conic_code_scale *scale, const double mean[3], const
     bits |= (uint32_t)(steps + 256) << 9 * axis;
   }
   bits |= (uint32_t)exponent << 27;
-  for (int i = 0; i < 4; i++)
-    code[AT_PLACE + i] = (uint8_t)(bits >> 8 * i);
+  conic_store_32(code + AT_PLACE, bits);
 }
 
 static void decode_place(const conic_code_scale *scale, const double first[3], const uint8_t *code,
                          double position[3]) {
-  uint32_t bits = 0;
-  for (int i = 0; i < 4; i++)
-    bits |= (uint32_t)code[AT_PLACE + i] << 8 * i;
+  uint32_t bits = conic_load_32(code + AT_PLACE);
   double unit = scale->length * conic_power_of_two(-(int)(bits >> 27) - 8);
   for (int axis = 0; axis < 3; axis++) /* as a float, as it will be drawn */
     position[axis] = (double)(float)(first[axis] + unit * (double)((int)(bits >> 9 * axis & 511) - 256));
@@ -229,8 +227,7 @@ void conic_code_extent(const conic_code_scale *scale, double *reach, double *rad
   double wanted = *reach * widest > *radius ? *reach : *radius / widest * (1.0 + 1e-12);
   uint16_t steps = conic_code_length(scale, longest, wanted);
   *reach = conic_code_length_of(scale, longest, steps);
-  code[AT_REACH] = (uint8_t)steps;
-  code[AT_REACH + 1] = (uint8_t)(steps >> 8);
+  conic_store_bits(code + AT_REACH, 2, steps);
   int widening = 0;
   while (widening < 255 && *reach * scale->widening[widening] < *radius)
     widening++;
@@ -281,8 +278,7 @@ int conic_code_n_inner(const uint8_t *code) {
 }
 
 static double reach_of_code(const conic_code_scale *scale, const uint8_t *code) {
-  return conic_code_length_of(scale, scale->length * scale->cutoff,
-                              (uint16_t)(code[AT_REACH] | code[AT_REACH + 1] << 8));
+  return conic_code_length_of(scale, scale->length * scale->cutoff, conic_load_16(code + AT_REACH));
 }
 
 void conic_code_sphere(const conic_code_scale *scale, const double first[3], const uint8_t *code, float center[3],

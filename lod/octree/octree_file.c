@@ -69,23 +69,25 @@ enum { ARRAY_CODES = 0, ARRAY_INDEX = 1, ARRAY_LEAVES = 2 };
 /* Where everything is follows from the header alone; its counts are below 2³¹. */
 static conic_file_layout lay_out_file(const header *h) {
   conic_file_layout l = {.n_bytes = CONIC_FILE_HEADER_BYTES};
-  int is_quantized = (h->flags & FLAG_QUANTIZED) != 0;
-  conic_file_add_array(&l, (size_t)h->n_nodes * CONIC_NODE_BYTES);
-  conic_file_add_array(&l, (size_t)(is_quantized ? h->n_leaves : h->n_points) * sizeof(uint32_t));
+  int is_quantized = (h->flags & FLAG_QUANTIZED) != 0, has_codes = (h->flags & FLAG_COLOR_CODES) != 0;
+  conic_file_add_array(&l, (size_t)h->n_nodes * CONIC_NODE_BYTES, "1");
+  conic_file_add_array(&l, (size_t)(is_quantized ? h->n_leaves : h->n_points) * sizeof(uint32_t), "4");
   if (is_quantized) {
-    conic_file_add_array(&l, conic_leaf_codes_bytes((size_t)h->n_leaves, (h->flags & FLAG_COLORS) != 0,
-                                                    (h->flags & FLAG_OPACITIES) != 0));
+    conic_file_add_array(
+        &l,
+        conic_leaf_codes_bytes((size_t)h->n_leaves, (h->flags & FLAG_COLORS) != 0, (h->flags & FLAG_OPACITIES) != 0),
+        "1");
   } else {
     size_t n_points = (size_t)h->n_points;
     for (int i = 0; i < 9; i++)
-      conic_file_add_array(&l, n_points * sizeof(float));
+      conic_file_add_array(&l, n_points * sizeof(float), "4");
     for (int i = 0; i < 3 && (h->flags & FLAG_COLORS); i++)
-      conic_file_add_array(&l, n_points * (h->flags & FLAG_COLOR_CODES ? 1 : sizeof(float)));
+      conic_file_add_array(&l, n_points * (has_codes ? 1 : sizeof(float)), has_codes ? "1" : "4");
     if (h->flags & FLAG_OPACITIES)
-      conic_file_add_array(&l, n_points * sizeof(float));
+      conic_file_add_array(&l, n_points * sizeof(float), "4");
   }
   if (h->n_clips)
-    conic_file_add_array(&l, (size_t)h->n_clips * sizeof(conic_clip));
+    conic_file_add_array(&l, (size_t)h->n_clips * sizeof(conic_clip), "422444444");
   return l;
 }
 
@@ -179,15 +181,12 @@ conic_status conic_octree_write(conic_octree *octree, const char *path) {
 void conic_octree_mend(unsigned char *bytes, size_t n_bytes) {
   header h;
   conic_file_layout l = {0};
-  const void *arrays[CONIC_FILE_MOST_ARRAYS];
   conic_file_fields_read(fields, kind.n_fields, bytes + sizeof kind.magic, &h);
   if (h.n_points <= UINT32_MAX / 2 && h.n_leaves <= h.n_points && h.n_nodes <= h.n_leaves && h.n_clips <= h.n_points)
     l = lay_out_file(&h);
   int is_whole = l.n > 0 && l.n_bytes == n_bytes;
-  if (is_whole) {
-    conic_file_list_arrays(&l, bytes, arrays);
-    h.body_sum = conic_file_sum_arrays(NULL, &l, arrays);
-  }
+  if (is_whole)
+    h.body_sum = conic_file_sum_bytes(NULL, &l, bytes);
   conic_file_mend_header(&kind, is_whole ? &h : NULL, bytes);
 }
 
@@ -300,7 +299,7 @@ static conic_status read_octree_file(conic_octree *octree, const char *path) {
   if (status != CONIC_OK)
     return status;
   conic_file_layout l = lay_out_file(&h);
-  status = conic_file_check_arrays(octree->context, path, &octree->mapping, &l, h.body_sum);
+  status = conic_file_take_arrays(octree->context, path, &octree->mapping, &l, h.body_sum);
   if (status != CONIC_OK)
     return status;
   octree->n_points = (size_t)h.n_points;

@@ -69,12 +69,26 @@ static int refuse_status(conic_http_transfer *t, int status) {
   return 0;
 }
 
+/* All of a file beside the first. */
+static int accept_beside(conic_http_transfer *t) {
+  if (t->response.status != 200)
+    return refuse_status(t, t->response.status);
+  if (t->response.has_length && t->response.length > t->n_expected)
+    return refuse_answer(t, CONIC_HTTP_WRONG, "the file is larger than what it is to hold can be");
+  t->is_whole = 1;
+  if (t->response.has_length)
+    t->n_expected = (size_t)t->response.length;
+  return 1;
+}
+
 /* Whether the response that begins is what was asked for. */
 static int accept_response(conic_http_transfer *t) {
   const conic_http_response *r = &t->response;
   conic_http_ranges *http = t->owner;
   if (r->is_packed)
     return refuse_answer(t, CONIC_HTTP_WRONG, "the server sends the file compressed, which nobody asked for");
+  if (t->is_beside)
+    return accept_beside(t);
   if (t->is_probe && r->status == 200)
     return accept_whole(t);
   if (r->status == 200)
@@ -114,8 +128,8 @@ static size_t on_body(char *data, size_t one, size_t n, void *cookie) {
   if (t->body->n == 0 && !accept_response(t))
     return 0;
   if (n > t->n_expected - t->body->n) {
-    refuse_answer(t, t->is_whole ? CONIC_HTTP_BOUND : CONIC_HTTP_WRONG,
-                  t->is_whole && !t->response.has_length
+    refuse_answer(t, t->is_whole && !t->is_beside ? CONIC_HTTP_BOUND : CONIC_HTTP_WRONG,
+                  t->is_whole && !t->is_beside && !t->response.has_length
                       ? "the server sends no ranges, and the whole file is over the memory bound"
                       : "the server sends more than was asked for");
     return 0;
@@ -170,7 +184,8 @@ conic_status conic_http_transfer_begin(conic_http_transfer *t) {
   t->is_whole = 0;
   snprintf(range, sizeof range, "%llu-%llu", (unsigned long long)t->offset,
            (unsigned long long)(t->offset + t->n_expected - 1));
-  if (curl_easy_setopt(t->easy, CURLOPT_RANGE, range) != CURLE_OK ||
+  if (curl_easy_setopt(t->easy, CURLOPT_RANGE, t->is_beside ? NULL : range) != CURLE_OK ||
+      curl_easy_setopt(t->easy, CURLOPT_URL, t->is_beside ? t->own_url : http->url) != CURLE_OK ||
       curl_multi_add_handle(http->multi, t->easy) != CURLM_OK) {
     conic_http_let_go(http, t->body);
     t->body = NULL;

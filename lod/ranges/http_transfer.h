@@ -5,6 +5,8 @@
 #ifdef CONIC_HAVE_CURL
 
 #include <curl/curl.h>
+#include <pthread.h>
+#include <stdatomic.h>
 
 #include "lod/ranges/http_response.h"
 #include "lod/ranges/ranges_backend.h"
@@ -34,6 +36,8 @@ typedef struct conic_http_transfer {
   CURL *easy;
   int is_busy;
   int is_probe, is_whole; /* it began as the first request; the server sends the whole file */
+  int is_beside;          /* it is for the whole of another file, of n_expected bytes at most, */
+  char *own_url;          /* which is this one */
   uint64_t offset;
   size_t n_expected;
   conic_http_body *body;
@@ -64,6 +68,8 @@ typedef struct conic_http_ranges {
   char tag[CONIC_HTTP_TAG];
   conic_http_ready *ready;
   size_t first_ready, n_ready, ready_room; /* those from first_ready on wait */
+  pthread_t pump;                          /* that lets them come while the caller does something else, */
+  atomic_int is_to_halt;                   /* until it is told */
   int n_failures;                          /* of requests, since one succeeded */
   int is_dead;                             /* the server is given up, until nothing is asked for any more */
   conic_http_fault fault;                  /* of which it died */

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/clock.h"
+#include "core/base/memory.h"
 #include "core/base/message.h"
 #include "lod/ranges/ranges_backend.h"
 
@@ -29,9 +31,22 @@ conic_status conic_ranges_open(conic_context *context, const char *name, const c
   return conic_ranges_open_file(context, name, ranges);
 }
 
+static void halt_ranges(conic_ranges *ranges) {
+  if (ranges->is_going_on)
+    ranges->backend->halt(ranges);
+  ranges->is_going_on = 0;
+}
+
+void conic_ranges_go_on(conic_ranges *ranges) {
+  halt_ranges(ranges);
+  if (ranges->n_pending > 0 && ranges->backend->go_on)
+    ranges->is_going_on = ranges->backend->go_on(ranges);
+}
+
 void conic_ranges_close(conic_ranges *ranges) {
   if (!ranges)
     return;
+  halt_ranges(ranges);
   conic_range_queue_release(ranges->context, &ranges->queue);
   ranges->backend->close(ranges);
 }
@@ -44,8 +59,14 @@ uint64_t conic_ranges_received(const conic_ranges *ranges) {
   return ranges->n_received;
 }
 
+int conic_ranges_holds(const conic_ranges *ranges, const conic_range *range) {
+  return range->n_bytes > 0 &&
+         (range->file[0] || (range->offset <= ranges->size && range->n_bytes <= ranges->size - range->offset));
+}
+
 conic_status conic_ranges_request(conic_ranges *ranges, const conic_range *range) {
-  if (range->n_bytes == 0 || range->offset > ranges->size || range->n_bytes > ranges->size - range->offset)
+  halt_ranges(ranges);
+  if (!conic_ranges_holds(ranges, range))
     return conic_fail(ranges->context, CONIC_ERROR_ARGUMENT, "a range of %zu bytes at byte %llu is not in the file",
                       range->n_bytes, (unsigned long long)range->offset);
   conic_queued_range item = {.range = *range};
@@ -55,6 +76,7 @@ conic_status conic_ranges_request(conic_ranges *ranges, const conic_range *range
 }
 
 int conic_ranges_next(conic_ranges *ranges, double wait_seconds, conic_range_answer *answer) {
+  halt_ranges(ranges);
   memset(answer, 0, sizeof *answer);
   if (ranges->n_pending == 0 || !ranges->backend->next(ranges, wait_seconds, answer))
     return 0;
@@ -63,11 +85,13 @@ int conic_ranges_next(conic_ranges *ranges, double wait_seconds, conic_range_ans
 }
 
 void conic_ranges_release(conic_ranges *ranges, conic_range_answer *answer) {
+  halt_ranges(ranges);
   ranges->backend->release(ranges, answer);
   memset(answer, 0, sizeof *answer);
 }
 
 void conic_ranges_cancel(conic_ranges *ranges) {
+  halt_ranges(ranges);
   ranges->queue.n = 0;
   ranges->n_pending = 0;
   ranges->backend->cancel(ranges);
@@ -75,4 +99,57 @@ void conic_ranges_cancel(conic_ranges *ranges) {
 
 size_t conic_ranges_pending(const conic_ranges *ranges) {
   return ranges->n_pending;
+}
+
+static conic_status wait_for_answer(conic_ranges *ranges, const char *name, double until_s,
+                                    conic_range_answer *answer) {
+  while (!conic_ranges_next(ranges, 0.1, answer)) {
+    if (ranges->n_pending == 0)
+      return CONIC_ERROR_MEMORY;
+    conic_status status = conic_progress(ranges->context, "fetch", 0.0);
+    if (status == CONIC_OK && conic_seconds_now() > until_s)
+      status = conic_fail(ranges->context, CONIC_ERROR_IO, "%s: not even the index came in time", name);
+    if (status != CONIC_OK)
+      return status;
+  }
+  return CONIC_OK;
+}
+
+conic_status conic_ranges_read(conic_ranges *ranges, const char *name, const conic_range *range, double until_s,
+                               unsigned char **bytes, size_t *n_bytes) {
+  conic_range_answer answer;
+  *bytes = NULL;
+  *n_bytes = 0;
+  conic_status status = conic_ranges_request(ranges, range);
+  if (status == CONIC_OK)
+    status = wait_for_answer(ranges, name, until_s, &answer);
+  if (status != CONIC_OK) {
+    conic_ranges_cancel(ranges);
+    return status;
+  }
+  if (answer.status != CONIC_OK)
+    return conic_fail(ranges->context, answer.status, "%s: cannot read%s%s: %s (at byte %llu)", name,
+                      range->file[0] ? " " : "", range->file, answer.reason, (unsigned long long)range->offset);
+  *bytes = conic_memory_allocate(ranges->context, answer.n_bytes, 1);
+  if (*bytes)
+    memcpy(*bytes, answer.bytes, answer.n_bytes);
+  *n_bytes = answer.n_bytes;
+  conic_ranges_release(ranges, &answer);
+  return *bytes ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+conic_status conic_ranges_name_beside(conic_context *context, const char *name, const char *file, char **beside) {
+  size_t is_url = (size_t)conic_ranges_is_url(name), path = is_url ? strcspn(name, "?#") : strlen(name), stem = path;
+  const char *query = is_url && name[path] == '?' ? name + path : "";
+  while (stem > 0 && name[stem - 1] != '/')
+    stem--;
+  size_t n_file = strlen(file), n_query = strcspn(query, "#");
+  *beside = conic_memory_allocate(context, stem + n_file + n_query + 1, 1);
+  if (!*beside)
+    return CONIC_ERROR_MEMORY;
+  memcpy(*beside, name, stem);
+  memcpy(*beside + stem, file, n_file);
+  memcpy(*beside + stem + n_file, query, n_query);
+  (*beside)[stem + n_file + n_query] = '\0';
+  return CONIC_OK;
 }

@@ -1,8 +1,8 @@
 /* Bytes of a file, asked for by ranges and handed over as they come: from a memory map, or from a web server
  * (HTTP/1.1 range requests). Both answer in the same way, so that nothing above knows where a file lies.
  *
- * Nothing happens between the calls: transfers go on within conic_ranges_next, several at a time. One thread at a time.
- */
+ * Nothing happens between the calls: transfers go on within conic_ranges_next, several at a time, and after
+ * conic_ranges_go_on. One thread at a time. */
 #ifndef CONIC_RANGES_H
 #define CONIC_RANGES_H
 
@@ -43,21 +43,28 @@ uint64_t conic_ranges_size(const conic_ranges *ranges);
 /* Bytes that came over the network. */
 uint64_t conic_ranges_received(const conic_ranges *ranges);
 
+enum { CONIC_RANGE_FILE = 56 };
+
 typedef struct conic_range {
   uint64_t offset;
   size_t n_bytes;
   uint64_t
       priority; /* the lowest is asked for first; neighbours in this order that lie together are asked for as one */
   uint32_t id;  /* the caller's */
+  char file[CONIC_RANGE_FILE]; /* empty: the file that was opened; else a name beside it: all of that file is asked for,
+                                  which has n_bytes at most */
 } conic_range;
 
-/* Asks for a range, which must lie within the file. Errors: ARGUMENT, MEMORY. */
+/* Whether a range lies within the file, or is of another. */
+int conic_ranges_holds(const conic_ranges *ranges, const conic_range *range);
+
+/* Asks for a range, which must lie within the file, or for the whole of a file beside it. Errors: ARGUMENT, MEMORY. */
 conic_status conic_ranges_request(conic_ranges *ranges, const conic_range *range);
 
 typedef struct conic_range_answer {
   uint32_t id;
   conic_status status;        /* CONIC_OK; given up: IO, what did not come; INPUT, what came and was wrong */
-  const unsigned char *bytes; /* as many as were asked for */
+  const unsigned char *bytes; /* as many as were asked for, or all of the file */
   size_t n_bytes;
   const char *reason; /* where given up: why, in a few words; until the next call */
   void *held;         /* private */
@@ -69,10 +76,22 @@ int conic_ranges_next(conic_ranges *ranges, double wait_seconds, conic_range_ans
 /* Gives an answer's bytes back, before the ranges are closed. */
 void conic_ranges_release(conic_ranges *ranges, conic_range_answer *answer);
 
+/* Lets what was asked for come while the caller does something else, until any other function is called. */
+void conic_ranges_go_on(conic_ranges *ranges);
+
 /* Forgets all that was asked for and not yet answered. */
 void conic_ranges_cancel(conic_ranges *ranges);
 
 /* How many ranges were asked for and not yet answered. */
 size_t conic_ranges_pending(const conic_ranges *ranges);
+
+/* Asks for a range and waits for it, until `until_s` by conic_seconds_now; nothing else may be pending. `name` is for
+ * messages. The caller releases *bytes, which are 0 or more. Errors: INPUT, IO, MEMORY, CANCELLED. */
+conic_status conic_ranges_read(conic_ranges *ranges, const char *name, const conic_range *range, double until_s,
+                               unsigned char **bytes, size_t *n_bytes);
+
+/* The name of a file beside another, which may be a URL, or of one in its place where `name` ends with a slash. The
+ * caller releases *beside. Errors: MEMORY. */
+conic_status conic_ranges_name_beside(conic_context *context, const char *name, const char *file, char **beside);
 
 #endif

@@ -9,6 +9,8 @@ typedef struct conic_ranges_backend {
   int (*next)(conic_ranges *ranges, double wait_seconds, conic_range_answer *answer);
   void (*release)(conic_ranges *ranges, conic_range_answer *answer);
   void (*cancel)(conic_ranges *ranges); /* what is under way; the queue is empty already */
+  int (*go_on)(conic_ranges *ranges);   /* starts what conic_ranges_go_on does: 1, or 0; null: nothing */
+  void (*halt)(conic_ranges *ranges);   /* and ends it */
   void (*close)(conic_ranges *ranges);  /* releases all but the queue, the struct itself included */
 } conic_ranges_backend;
 
@@ -17,6 +19,7 @@ struct conic_ranges {
   const conic_ranges_backend *backend;
   uint64_t size, n_received;
   size_t n_pending; /* asked for, not answered */
+  int is_going_on;
   conic_range_queue queue;
 };
 

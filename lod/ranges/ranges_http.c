@@ -43,7 +43,7 @@ static int answer_from(conic_http_ranges *http, conic_http_body *from, uint64_t 
     return 0;
   ready->answer.id = range->id;
   ready->answer.bytes = from->bytes + (range->offset - body_offset);
-  ready->answer.n_bytes = range->n_bytes;
+  ready->answer.n_bytes = range->file[0] ? from->n : range->n_bytes;
   ready->answer.held = from;
   from->n_holders++;
   return 1;
@@ -95,6 +95,16 @@ static void finish_transfer(conic_http_transfer *t, CURLcode code) {
   conic_http_transfer_end(t);
 }
 
+/* The one part that is a file of its own. Whether it can be asked for. */
+static int name_part(conic_http_ranges *http, conic_http_transfer *t) {
+  const conic_range *range = &t->parts[0].range;
+  conic_memory_release(http->base.context, t->own_url);
+  t->is_beside = 1;
+  t->offset = 0;
+  t->n_expected = range->n_bytes;
+  return conic_ranges_name_beside(http->base.context, http->url, range->file, &t->own_url) == CONIC_OK;
+}
+
 /* Takes the next range and those behind it that lie next to it: 1, or 0 where none is to be had now. */
 static int gather_parts(conic_http_ranges *http, conic_http_transfer *t, double *wait_s) {
   conic_queued_range item;
@@ -102,7 +112,7 @@ static int gather_parts(conic_http_ranges *http, conic_http_transfer *t, double 
   uint64_t last = 0;
   while (conic_range_queue_pop(&http->base.queue, conic_seconds_now(), &item, wait_s)) {
     uint64_t range_end = item.range.offset + item.range.n_bytes;
-    if (range_end <= http->head->n) {
+    if (!item.range.file[0] && range_end <= http->head->n) {
       if (!answer_from(http, http->head, 0, &item.range))
         http->base.n_pending--;
       continue;
@@ -115,10 +125,18 @@ static int gather_parts(conic_http_ranges *http, conic_http_transfer *t, double 
     if (t->n_parts == 0)
       t->offset = item.range.offset;
     t->parts[t->n_parts++] = item;
+    if (item.range.file[0]) {
+      if (name_part(http, t))
+        return 1;
+      give_up(http, &item.range, CONIC_HTTP_BOUND, "out of memory");
+      t->n_parts = 0;
+      break;
+    }
+    t->is_beside = 0;
     last = range_end > last ? range_end : last;
     const conic_queued_range *next = conic_range_queue_first(&http->base.queue);
-    if (!next || next->not_before_s > 0.0 || next->range.offset < t->offset || next->range.offset > last + GAP_BYTES ||
-        next->range.offset + next->range.n_bytes - t->offset > JOINED_BYTES)
+    if (!next || next->range.file[0] || next->not_before_s > 0.0 || next->range.offset < t->offset ||
+        next->range.offset > last + GAP_BYTES || next->range.offset + next->range.n_bytes - t->offset > JOINED_BYTES)
       break;
   }
   t->n_expected = (size_t)(last - t->offset);
@@ -226,6 +244,7 @@ static void close_url(conic_ranges *ranges) {
     if (http->transfers[i].easy)
       curl_easy_cleanup(http->transfers[i].easy);
     conic_memory_release(context, http->transfers[i].parts);
+    conic_memory_release(context, http->transfers[i].own_url);
   }
   if (http->multi)
     curl_multi_cleanup(http->multi);
@@ -237,7 +256,34 @@ static void close_url(conic_ranges *ranges) {
   conic_memory_release(context, http);
 }
 
-static const conic_ranges_backend backend = {next, release_answer, cancel, close_url};
+static void *pump_transfers(void *data) {
+  conic_http_ranges *http = data;
+  double wait_s;
+  while (!atomic_load(&http->is_to_halt) && !http->is_dead && !is_idle(http)) {
+    send_requests(http, &wait_s);
+    take_finished(http);
+    if (!is_idle(http))
+      curl_multi_poll(http->multi, NULL, 0, 20, NULL);
+  }
+  return NULL;
+}
+
+static int start_pump(conic_ranges *ranges) {
+  conic_http_ranges *http = (conic_http_ranges *)ranges;
+  atomic_store(&http->is_to_halt, 0);
+  return pthread_create(&http->pump, NULL, pump_transfers, http) == 0;
+}
+
+static void halt(conic_ranges *ranges) {
+  conic_http_ranges *http = (conic_http_ranges *)ranges;
+  atomic_store(&http->is_to_halt, 1);
+#if LIBCURL_VERSION_NUM >= 0x074400
+  curl_multi_wakeup(http->multi);
+#endif
+  pthread_join(http->pump, NULL);
+}
+
+static const conic_ranges_backend backend = {next, release_answer, cancel, start_pump, halt, close_url};
 
 /* Whether opening may go on; waits a little for what comes. */
 static conic_status go_on_opening(conic_http_ranges *http, int wait_ms) {

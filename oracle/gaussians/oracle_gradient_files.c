@@ -3,11 +3,11 @@
 
 #include "conic/image.h"
 #include "conic/version.h"
+#include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/real.h"
 #include "core/files/file.h"
-#include "core/files/file_fields.h"
 #include "core/files/mapping.h"
 #include "core/files/numpy_array.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
@@ -175,8 +175,8 @@ conic_status conic_gaussian_gradient_write(conic_context *context, const char *p
     unsigned char bytes[8 * MOST_ROW + 4];
     const size_t n = list_row(gradient, i, row);
     for (size_t k = 0; k < n; k++)
-      conic_file_put(bytes + 8 * k, 8, conic_bits_of_double(row[k]));
-    conic_file_put(bytes + 8 * n, 4, gradient->doubt[i]);
+      conic_store_double(bytes + 8 * k, row[k]);
+    conic_store_32(bytes + 8 * n, gradient->doubt[i]);
     fwrite(bytes, 8 * n + 4, 1, to);
     if (i % 65536 == 0)
       status = conic_progress(context, "write", (double)i / (double)gradient->count);

@@ -3,15 +3,17 @@
 
 pkgs.stdenv.mkDerivation {
   pname = "conic";
-  version = "0.5.0";
+  version = "0.6.0";
   src = pkgs.lib.cleanSource ../..;
 
   nativeBuildInputs = with pkgs; [ cmake ninja perl pkg-config ];
   buildInputs = with pkgs; [
     assimp
+    brotli
     curl
     libpng
     libwebp
+    libxml2
     ocl-icd
     opencl-headers
     openexr

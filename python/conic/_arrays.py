@@ -11,8 +11,10 @@ from .errors import ArgumentError
 
 def as_numpy(array: Any, name: str) -> numpy.ndarray:
     """A view of an array of NumPy, torch, jax, … through `__array_interface__` or DLPack."""
+    if isinstance(array, numpy.ma.MaskedArray):
+        raise ArgumentError(f"{name}: the array has a mask; hand over its .filled(numpy.nan)")
     if isinstance(array, numpy.ndarray):
-        return array
+        return numpy.asarray(array)
     device = str(getattr(array, "device", "cpu"))
     if device.startswith(("cuda", "mps", "xpu", "xla")):
         raise ArgumentError(f"{name}: the array is on {device}; hand over its .cpu()")
@@ -20,7 +22,12 @@ def as_numpy(array: Any, name: str) -> numpy.ndarray:
         array = array.detach()
     if not hasattr(array, "__array_interface__") and not hasattr(array, "__array__") and hasattr(array, "__dlpack__"):
         return numpy.from_dlpack(array)
-    return numpy.asarray(array)
+    try:
+        return numpy.asarray(array)
+    except ValueError:
+        raise ArgumentError(f"{name}: its rows are not equally long") from None
+    except (TypeError, RuntimeError, BufferError) as failure:
+        raise ArgumentError(f"{name}: {str(failure).splitlines()[0]}") from None
 
 
 def as_floats(array: Any, name: str) -> numpy.ndarray:
@@ -28,6 +35,9 @@ def as_floats(array: Any, name: str) -> numpy.ndarray:
     found = as_numpy(array, name)
     if found.dtype.kind not in "fiub":
         raise ArgumentError(f"{name}: numbers are needed, not {found.dtype}")
+    if name == "color" and found.dtype == numpy.uint8:
+        raise ArgumentError("color: linear floats from 0 to 1 are needed, not bytes; of sRGB's, "
+                            "((c / 255 + 0.055) / 1.055)**2.4 makes them")
     return found.astype(numpy.float32, copy=False)
 
 
@@ -36,13 +46,19 @@ def _is_steppable(column: numpy.ndarray) -> bool:
     return column.size < 2 or (step > 0 and step % 4 == 0)
 
 
+def _is_components(array: Any, n: int) -> bool:
+    """Whether it is a sequence of n arrays, one for each component; n rows of n numbers are rows."""
+    if not isinstance(array, (tuple, list)) or len(array) != n or any(numpy.ndim(part) != 1 for part in array):
+        return False
+    return any(len(part) != n for part in array)
+
+
 def columns_of(array: Any, n: int, count: Optional[int], name: str) -> Tuple[List[numpy.ndarray], int]:
     """The n components of an array of (count, n) numbers, and the bytes from one number to the next.
 
     A sequence of n arrays is taken as the components themselves. Copied is only what cannot be stepped through: what
     is no float32, or runs backwards, or whose components are not equally far apart."""
-    if n > 1 and isinstance(array, (tuple, list)) and len(array) == n and numpy.ndim(array[0]) == 1 and not (
-            numpy.shape(array) == (n, n)):
+    if n > 1 and _is_components(array, n):
         columns = [as_floats(part, name) for part in array]
     else:
         whole = as_floats(array, name)
@@ -69,12 +85,12 @@ def side_by_side(array: Any, n: int, count: Optional[int], name: str) -> List[nu
 
 def split_origin(position: Any, name: str) -> Tuple[Any, Sequence[float]]:
     """Positions of doubles that floats cannot hold, as floats from the first finite one; others as they are."""
-    if isinstance(position, (tuple, list)):
+    if _is_components(position, 3):
         parts = [as_numpy(part, name) for part in position]
-        if parts and parts[0].ndim == 1 and len(parts) == 3 and any(part.dtype == numpy.float64 for part in parts):
-            position = numpy.stack(parts, axis=1) if numpy.shape(position) != (3, 3) else numpy.asarray(position)
-        else:
+        lengths = {len(part) for part in parts}
+        if len(lengths) > 1 or not any(part.dtype == numpy.float64 for part in parts):
             return position, (0.0, 0.0, 0.0)
+        position = numpy.stack(parts, axis=1)
     whole = as_numpy(position, name)
     if whole.dtype != numpy.float64 or whole.ndim != 2:
         return whole, (0.0, 0.0, 0.0)
@@ -84,3 +100,11 @@ def split_origin(position: Any, name: str) -> Tuple[Any, Sequence[float]]:
         finite = numpy.flatnonzero(numpy.isfinite(whole).all(axis=1))
         origin = whole[finite[0]] if len(finite) else numpy.zeros(3)
         return (whole - origin).astype(numpy.float32), tuple(float(part) for part in origin)
+
+
+def add_origin(origin: Any, first: Sequence[float]) -> List[float]:
+    """What is added to positions that are counted from the first one, whose origin is another."""
+    place = as_numpy(origin, "origin")
+    if place.shape != (3,) or place.dtype.kind not in "fiu":
+        raise ArgumentError("origin: three numbers are needed")
+    return [float(a) + float(b) for a, b in zip(place, first)]

@@ -18,6 +18,12 @@ from .errors import ArgumentError
 PathLike = Union[str, "os.PathLike[str]"]
 
 
+def _whole(value: Any, name: str) -> int:
+    if isinstance(value, (bool, str)) or not 1 <= value <= 65535 or value != int(value):
+        raise ArgumentError(f"camera: {name}: {value} is no whole number from 1 to 65535")
+    return int(value)
+
+
 class Camera:
     """Where a picture is taken from, and how.
 
@@ -34,13 +40,14 @@ class Camera:
         Leading dimensions of length 1 are fine."""
         view = numpy.asarray(as_numpy(viewmat, "viewmat"), dtype=numpy.float64)
         inner = numpy.asarray(as_numpy(K, "K"), dtype=numpy.float64)
-        view, inner = view.reshape(view.shape[-2:]), inner.reshape(inner.shape[-2:])
+        view, inner = (matrix[(0,) * (matrix.ndim - 2)] if set(matrix.shape[:-2]) <= {1} else matrix
+                       for matrix in (view, inner))
         if view.shape not in ((4, 4), (3, 4)) or inner.shape != (3, 3):
             raise ArgumentError(f"camera: viewmat is {view.shape} and K {inner.shape}; 4 × 4 and 3 × 3 are needed")
         if inner[0, 1] != 0.0 or inner[1, 0] != 0.0:
             raise ArgumentError("camera: K has a skew, which no camera of conic's has")
         struct = layouts.Camera()
-        struct.width, struct.height = int(width), int(height)
+        struct.width, struct.height = _whole(width, "width"), _whole(height, "height")
         struct.fx, struct.fy, struct.cx, struct.cy = inner[0, 0], inner[1, 1], inner[0, 2], inner[1, 2]
         for row in range(3):
             struct.cam_from_world[row][:] = view[row].tolist()
@@ -53,7 +60,10 @@ class Camera:
         """A pinhole at `eye` that has `target` in its middle; `fov` degrees across the shorter side."""
         if not 0.0 < fov < 180.0:
             raise ArgumentError(f"camera: a field of view of {fov} degrees cannot be")
-        place, aim, above = (numpy.asarray(v, dtype=numpy.float64) for v in (eye, target, up))
+        place, aim, above = (as_numpy(v, name) for v, name in ((eye, "eye"), (target, "target"), (up, "up")))
+        if any(v.shape != (3,) or v.dtype.kind not in "fiu" for v in (place, aim, above)):
+            raise ArgumentError("camera: eye, target and up are three numbers each")
+        place, aim, above = (v.astype(numpy.float64) for v in (place, aim, above))
         forward = aim - place
         right = numpy.cross(forward, above)
         if not numpy.linalg.norm(right) > 0.0:
@@ -124,10 +134,10 @@ class Camera:
     def resized(self, width: int, height: int) -> "Camera":
         """The same view in another size; each axis grows by itself."""
         made = Camera(self._struct, self.name)
-        across, down = width / self.width, height / self.height
         s = made._struct
+        s.width, s.height = _whole(width, "width"), _whole(height, "height")
+        across, down = s.width / self.width, s.height / self.height
         s.fx, s.cx, s.fy, s.cy = s.fx * across, s.cx * across, s.fy * down, s.cy * down
-        s.width, s.height = int(width), int(height)
         return made
 
     def as_dict(self) -> Dict[str, Any]:

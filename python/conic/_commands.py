@@ -17,7 +17,7 @@ from . import _layouts as layouts
 from ._arrays import as_numpy
 from ._camera import Camera, PathLike
 from ._library import Frames, Kept, kept_of_thread, run
-from ._picture import Picture, encode_png
+from ._picture import Hashes, Picture, encode_png
 from ._scene import AnyScene, Scene, _InMemory
 from .errors import ArgumentError
 
@@ -38,9 +38,12 @@ def _value(name: str, value: Any) -> str:
         return str(int(value))
     if isinstance(value, (float, numpy.floating)):
         return repr(float(value))
-    parts = list(as_numpy(value, name)) if not isinstance(value, (list, tuple)) else value
+    parts = as_numpy(value, name).tolist() if not isinstance(value, (list, tuple)) else value
+    if not isinstance(parts, (list, tuple)):  # of an array without dimensions
+        return _value(name, parts)
     if name == "size" and len(parts) == 2:
-        return f"{int(parts[0])}x{int(parts[1])}"
+        return "x".join(_value(name, int(part) if isinstance(part, float) and part.is_integer() else part)
+                        for part in parts)
     return ",".join(_value(name, part) for part in parts)
 
 
@@ -70,6 +73,7 @@ class _Call:
         self.loans: Loans = []
         self.scene: Optional[Scene] = None
         self._folder: Optional[tempfile.TemporaryDirectory] = None
+        self._files: List[str] = []  # in it
 
     def lend(self, kind: str, struct: ctypes.Structure) -> str:
         name = f"memory:{kind}:{len(self.loans) + 1}"
@@ -117,8 +121,10 @@ class _Call:
     def camera(self, camera: Optional[AnyCamera]) -> None:
         if isinstance(camera, Camera):
             self.words.append("--camera=" + self.lend("camera", camera._struct))
-        elif camera is not None:
+        elif isinstance(camera, (str, os.PathLike)):
             self.words.append(f"--camera={os.fspath(camera)}")
+        elif camera is not None:
+            raise ArgumentError(f"camera: a Camera or a file of cameras is needed, not {type(camera)}")
 
     def picture(self, picture: Any, *, is_display: bool = False) -> str:
         """The name of a picture: of a file, or of arrays, which are lent; bytes go through a PNG."""
@@ -146,8 +152,10 @@ class _Call:
             return self.picture(picture)
         if isinstance(picture, dict):
             planes = {name: _whole(plane, name) for name, plane in picture.items() if name != "statistics"}
+            if not planes:
+                raise ArgumentError("picture: the dict is empty")
             path = self._temporary("npz")
-            numpy.savez(path, **planes)
+            numpy.savez(path, **planes)  # type: ignore[arg-type]
             return path
         pixels = numpy.ascontiguousarray(_pixels(picture, channels))
         path = self._temporary("npy")
@@ -156,7 +164,8 @@ class _Call:
 
     def _temporary(self, ending: str) -> str:
         self._folder = self._folder or tempfile.TemporaryDirectory(prefix="conic-")
-        return os.path.join(self._folder.name, f"picture{len(os.listdir(self._folder.name))}.{ending}")
+        self._files.append(os.path.join(self._folder.name, f"picture{len(self._files)}.{ending}"))
+        return self._files[-1]
 
     def run(self, *, progress: Any = None, frames: Optional[Frames] = None, keeps: bool = False,
             threads: Optional[int] = None) -> Tuple[int, Dict[str, Any]]:
@@ -170,7 +179,7 @@ class _Call:
             kept = kept_of_thread()
         try:
             return run([*self.words, "--", *self.inputs], loans=self.loans, progress=progress, frames=frames, kept=kept,
-                       source_key=key)
+                       source_key=key, files=self._files)
         finally:
             if self._folder:
                 self._folder.cleanup()
@@ -209,7 +218,6 @@ def render(scene: AnyScene, camera: Optional[AnyCamera] = None, *, planes: Optio
         for name in picture.planes:
             if asked is not None and name not in asked and "all" not in asked:
                 del picture[name]  # drawn for what else was asked for
-        from ._picture import Hashes
         picture["statistics"] = {**statistics, "hash": Hashes(picture)}
     is_many = view == "all" or turntable is not None
     return frames.pictures if is_many else frames.pictures[0]
@@ -298,6 +306,8 @@ def command(name: str, *arguments: str, progress: Any = None, **options: Options
 def _build(call: _Call, output: Optional[PathLike], ending: str, options: Dict[str, Any], progress: Any,
            threads: Optional[int]) -> Scene:
     """Without an output the file is temporary, and goes with the scene."""
+    if options.get("in_place") and call.loans:
+        raise ArgumentError("in_place: arrays are not changed; the scene that is returned has others")
     folder = None if output is not None or options.get("in_place") else tempfile.mkdtemp(prefix="conic-")
     path = os.path.join(folder, f"scene.{ending}") if folder else output
     scene = Scene([path] if path is not None else call.inputs[-1:], folder=folder)  # which removes it after a failure

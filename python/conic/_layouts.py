@@ -16,7 +16,7 @@ Triple = Column * 3
 class Strides(ctypes.Structure):
     C_NAME = "conic_splats_strides"
     _fields_ = [(name, c_size_t) for name in
-                ("position", "tangent_u", "tangent_v", "normal", "color", "opacity", "dot", "scalar")]
+                ("position", "tangent_u", "tangent_v", "normal", "color", "opacity", "dot", "scalar", "sight")]
 
 
 class Splats(ctypes.Structure):
@@ -35,7 +35,9 @@ class Splats(ctypes.Structure):
         ("strides", Strides),
         ("dot", Column),
         ("scalar", Column),
-        ("reserved", c_uint64 * 4),
+        ("sight", Triple),
+        ("values", c_uint64),
+        ("reserved", c_uint64 * 3),
     ]
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Callable, Iterator, List, Optional, Sequence, Tuple
 
 from . import _layouts as layouts
+from ._shelf import Shelf
 from .errors import Cancelled, ConicWarning, Error, error_of
 
 _LOG_ERROR, _LOG_WARNING = 0, 1
@@ -24,7 +25,7 @@ _log = logging.getLogger("conic")
 def _find() -> str:
     """The library of the wheel; or, for who works on conic, the one that CONIC_LIBRARY names."""
     named = os.environ.get("CONIC_LIBRARY")
-    beside = Path(__file__).parent / "library" / "libconic-hosted.so"
+    beside = Path(__file__).parent / "library" / f"libconic-hosted.{'dll' if os.name == 'nt' else 'so'}"
     return named or str(beside)
 
 
@@ -111,15 +112,23 @@ def features() -> dict[str, bool]:
 # --- messages ---
 
 
-class _Ear:
-    """What a call says: the first error, and warnings."""
+_CLASSES = {"splats": "Splats", "triangles": "Mesh", "gaussians": "Gaussians", "image": "Picture", "camera": "Camera"}
 
-    def __init__(self) -> None:
+
+class _Ear:
+    """What a call says: the first error, and warnings. Arrays have the names of their classes in it."""
+
+    def __init__(self, lent: Sequence[str] = (), files: Sequence[str] = ()) -> None:
+        self._names = {name: "conic." + _CLASSES[name.split(":")[1]] for name in sorted(lent, key=len, reverse=True)}
+        self._names.update(dict.fromkeys(files, "picture"))  # which are temporary
         self.error: Optional[str] = None
         self.warnings: List[str] = []
 
     def hear(self, _cookie: Any, level: int, line: bytes) -> None:
         text = line.decode(errors="replace")
+        for name, spoken in self._names.items():
+            if name in text:
+                text = text.replace(name, spoken).replace(" (at byte 0)", "")
         if level == _LOG_ERROR:
             if self.error is None:
                 self.error = text
@@ -205,6 +214,7 @@ class Kept:
 class _PerThread(threading.local):
     def __init__(self) -> None:
         self.kept = Kept()
+        self.shelf = Shelf()
 
 
 _per_thread = _PerThread()
@@ -215,9 +225,15 @@ def kept_of_thread() -> Kept:
     return _per_thread.kept
 
 
+def shelf_of_thread() -> Shelf:
+    """The arrays of this thread's earlier pictures."""
+    return _per_thread.shelf
+
+
 def release() -> None:
     """Gives back the memory that this thread keeps between pictures."""
     _per_thread.kept.drop()
+    _per_thread.shelf.clear()
 
 
 # --- progress ---
@@ -313,18 +329,17 @@ class Frames:
         self.pictures: List[Any] = []
         self.failure: Optional[BaseException] = None
         self._make = make
+        self._shelf = shelf_of_thread()
         self._arrays: dict[str, Any] = {}
 
     def lay_out(self, _cookie: Any, width: int, height: int, planes: int, places: Any) -> int:
-        import numpy
-
         try:
             self._arrays = {}
             for plane in PLANES:
                 if not planes >> plane.number & 1:
                     continue
                 shape = (height, width) if plane.channels == 1 else (height, width, plane.channels)
-                array = numpy.zeros(shape, plane.dtype)
+                array = self._shelf.take(plane.name, shape, plane.dtype)
                 places[plane.number] = array.ctypes.data
                 self._arrays[plane.name] = array
             return 0
@@ -343,9 +358,9 @@ class Frames:
 
 def run(arguments: Sequence[str], *, loans: Sequence[Tuple[str, ctypes.Structure]] = (), progress: Any = None,
         frames: Optional[Frames] = None, kept: Optional[Kept] = None,
-        source_key: Optional[str] = None) -> Tuple[int, dict[str, Any]]:
+        source_key: Optional[str] = None, files: Sequence[str] = ()) -> Tuple[int, dict[str, Any]]:
     """Runs a command of the program; its exit code (0 or 1), and its JSON. The GIL is released meanwhile."""
-    ear, watch = _Ear(), _Watch(progress)
+    ear, watch = _Ear([name for name, _ in loans], files), _Watch(progress)
     host = layouts.Host()
     host.progress = layouts.ProgressFunction(watch.progress)
     host.say = layouts.LogFunction(ear.hear)

@@ -22,12 +22,13 @@ class Hashes(Dict[str, str]):
 
     def __init__(self, picture: "Picture") -> None:
         super().__init__(dict.fromkeys(picture.planes, ""))
-        self._picture = picture
+        # Not the picture itself, which holds these: its memory would stay until Python looks for cycles.
+        self._drawn = Picture({name: picture[name] for name in picture.planes})
 
     def __getitem__(self, name: str) -> str:
         found = super().__getitem__(name)
         if not found:
-            found = self._picture.hash(name)
+            found = self._drawn.hash(name)
             self[name] = found
         return found
 
@@ -66,6 +67,9 @@ class Picture(Dict[str, Any]):
             self._header.n_attributes = image.n_attributes
             self._header.attributes = image.attributes
             self._header.is_display = image.is_display
+
+    def __reduce__(self) -> Any:
+        return _picture_again, (dict(self), bytes(self._header), self.camera)
 
     @property
     def planes(self) -> List[str]:
@@ -129,6 +133,11 @@ class Picture(Dict[str, Any]):
     def __repr__(self) -> str:
         shapes = ", ".join(f"{name} {self[name].shape}" for name in self.planes)
         return f"<conic.Picture {shapes}>"
+
+
+def _picture_again(planes: Dict[str, Any], header: bytes, camera: Optional[Camera]) -> Picture:
+    """A picture that was pickled."""
+    return Picture(planes, layouts.Image.from_buffer_copy(header), camera)
 
 
 def _codes(values: numpy.ndarray) -> numpy.ndarray:

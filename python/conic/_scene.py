@@ -10,7 +10,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 import numpy
 
 from . import _layouts as layouts
-from ._arrays import as_floats, as_numpy, columns_of, side_by_side, split_origin
+from ._arrays import add_origin, as_floats, as_numpy, columns_of, side_by_side, split_origin
 from ._camera import PathLike
 from ._library import Kept, context, library, run
 from .errors import ArgumentError
@@ -45,7 +45,8 @@ class Splats(_InMemory):
     """Ellipses in space, or raw points where there are no axes.
 
     `position` (N, 3); `tangent_u` and `tangent_v` (N, 3), orthogonal, one standard deviation long, in world units;
-    `color` (N, 3), linear; `normal` (N, 3), looked at where there are no axes; `opacity`, `dot` and `scalar` (N,).
+    `color` (N, 3), linear; `normal` (N, 3), looked at where there are no axes; `opacity`, `dot` and `scalar` (N,);
+    `sight` (N, 3), from a point towards the scanner that saw it, which guessed normals turn to.
     Any array library's float32 arrays are read where they are, with their strides, or (N,) arrays for each component;
     only other types, and arrays that run backwards, are copied. Positions of doubles that floats cannot hold are kept
     from the first one. `origin` is added to all positions."""
@@ -53,18 +54,18 @@ class Splats(_InMemory):
     _kind = "splats"
 
     def __init__(self, position: Any, tangent_u: Any = None, tangent_v: Any = None, color: Any = None, *,
-                 normal: Any = None, opacity: Any = None, dot: Any = None, scalar: Any = None,
+                 normal: Any = None, opacity: Any = None, dot: Any = None, scalar: Any = None, sight: Any = None,
                  origin: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
         super().__init__()
         if (tangent_u is None) != (tangent_v is None):
             raise ArgumentError("splats: tangent_u and tangent_v go together")
         struct = layouts.Splats()
         position, first = split_origin(position, "position")
-        struct.origin[:] = [float(a) + float(b) for a, b in zip(origin, first)]
+        struct.origin[:] = add_origin(origin, first)
         count: Optional[int] = None
         for name, array, n in (("position", position, 3), ("tangent_u", tangent_u, 3), ("tangent_v", tangent_v, 3),
                                ("color", color, 3), ("normal", normal, 3), ("opacity", opacity, 1), ("dot", dot, 1),
-                               ("scalar", scalar, 1)):
+                               ("scalar", scalar, 1), ("sight", sight, 3)):
             if array is None:
                 continue
             count = self._lend(struct, name, columns_of(array, n, count, name))
@@ -108,7 +109,7 @@ class Mesh(_InMemory):
         super().__init__()
         struct = layouts.Triangles()
         vertices, first = split_origin(vertices, "vertices")
-        struct.origin[:] = [float(a) + float(b) for a, b in zip(origin, first)]
+        struct.origin[:] = add_origin(origin, first)
         count: Optional[int] = None
         for name, array, n in (("position", vertices, 3), ("color", color, 3), ("normal", normal, 3),
                                ("texture_coordinate", texture_coordinate, 2), ("scalar", scalar, 1)):
@@ -117,11 +118,13 @@ class Mesh(_InMemory):
             count = self._lend(struct, name,
                                columns_of(array, n, count, "vertices" if name == "position" else name))
         corners = as_numpy(faces, "faces")
+        if corners.size == 0:
+            corners = numpy.zeros((0, 3), numpy.uint32)
         if corners.ndim != 2 or corners.shape[1] != 3 or corners.dtype.kind not in "iu":
             raise ArgumentError(f"faces: whole numbers of the shape (M, 3) are needed, not {corners.dtype} "
                                 f"{corners.shape}")
         if corners.size and not 0 <= corners.min() <= corners.max() < (count or 0):
-            raise ArgumentError(f"faces: an index is not below the number of vertices, {count}")
+            raise ArgumentError(f"faces: an index is not from 0 to {(count or 0) - 1}, the last vertex")
         corners = numpy.ascontiguousarray(corners, numpy.uint32)
         self._arrays.append(corners)
         struct.count, struct.n_vertices, struct.corners = len(corners), count or 0, corners.ctypes.data
@@ -134,6 +137,9 @@ class Mesh(_InMemory):
 
     def __repr__(self) -> str:
         return f"<conic.Mesh {len(self)} triangles, {self._struct.n_vertices} vertices>"
+
+
+_AXES = {"r": "x", "l": "x", "u": "y", "d": "y", "f": "z", "b": "z"}
 
 
 class Gaussians(_InMemory):
@@ -153,10 +159,10 @@ class Gaussians(_InMemory):
         super().__init__()
         struct = layouts.Gaussians()
         means, first = split_origin(means, "means")
-        struct.origin[:] = [float(a) + float(b) for a, b in zip(origin, first)]
+        struct.origin[:] = add_origin(origin, first)
         position = side_by_side(means, 3, None, "means")
         count = len(position[0])
-        n_scales = len(scales) if isinstance(scales, tuple) else numpy.shape(scales)[-1]
+        n_scales = len(scales) if isinstance(scales, tuple) else (0, *numpy.shape(scales))[-1]
         if n_scales not in (2, 3):
             raise ArgumentError(f"scales: its shape is {numpy.shape(scales)}, and (N, 3) or (N, 2) is needed")
         struct.position[:] = self._keep(position)
@@ -164,14 +170,17 @@ class Gaussians(_InMemory):
         struct.scale[:] = (self._keep(side_by_side(scales, n_scales, count, "scales")) + [None])[:3]
         struct.opacity = self._keep(side_by_side(opacities, 1, count, "opacities"))[0]
         harmonics = as_floats(sh, "sh")
-        if harmonics.ndim == 2:
-            harmonics = harmonics.reshape(len(harmonics), -1, 3)
+        if harmonics.ndim == 2 and harmonics.shape[1] % 3 == 0:
+            harmonics = harmonics.reshape(len(harmonics), harmonics.shape[1] // 3, 3)
         degree = {1: 0, 4: 1, 9: 2, 16: 3, 25: 4}.get(harmonics.shape[1] if harmonics.ndim == 3 else 0)
-        if harmonics.shape[0] != count or harmonics.shape[-1] != 3 or degree is None:
+        if degree is None or harmonics.shape[0] != count or harmonics.shape[2] != 3:
             raise ArgumentError(f"sh: its shape is {numpy.shape(sh)}, and ({count}, K, 3) with K = 1, 4, 9, 16 or 25 "
                                 "is needed")
         struct.sh = self._keep([numpy.ascontiguousarray(harmonics)])[0]
         struct.count, struct.sh_degree = count, degree
+        if not isinstance(frame, str) or sorted(_AXES.get(letter, "") for letter in frame) != ["x", "y", "z"]:
+            raise ArgumentError(f"frame: {frame!r} is not understood; three letters say where x, y and z point: "
+                                "r or l, u or d, f or b")
         struct.frame = frame.encode()
         struct.is_antialiased, struct.is_linear = int(antialiased), int(linear)
         self._struct = struct

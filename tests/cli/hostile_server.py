@@ -14,7 +14,7 @@ import tempfile
 import threading
 import time
 
-CONIC = os.path.abspath(sys.argv[1])
+CONIC = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else "conic"
 FILE = b""
 DEADLINE, LONG_DEADLINE = 1.0, 30.0  # a busy machine must not make late what is wrong
 TAG = '"one"'
@@ -27,15 +27,17 @@ LATE, WRONG, GOOD, EITHER = "late", "wrong", "good", "either"
 class Answer:
     """One request, and the ways to answer it."""
 
-    def __init__(self, case, link, first, last):
-        self.case, self.link, self.first, self.last = case, link, first, last
-        self.body = FILE[first:last + 1]
+    def __init__(self, case, link, path, file, first, last, is_whole):
+        self.case, self.link, self.path, self.file = case, link, path, file
+        self.first, self.last, self.is_whole = first, last, is_whole  # no range was asked for
+        self.body = file[first:last + 1]
 
     def send(self, data):
         self.link.sendall(data if isinstance(data, bytes) else data.encode())
 
-    def head(self, status="206 Partial Content", version="1.1", length=None, tag=TAG, span=None, more=""):
-        span = span or f"bytes {self.first}-{self.last}/{len(FILE)}"
+    def head(self, status=None, version="1.1", length=None, tag=TAG, span=None, more=""):
+        status = status or ("200 OK" if self.is_whole else "206 Partial Content")
+        span = span or ("none" if self.is_whole else f"bytes {self.first}-{self.last}/{len(self.file)}")
         lines = [f"HTTP/{version} {status}"]
         lines += [f"Content-Length: {len(self.body) if length is None else length}"] if length != "" else []
         lines += [f"Content-Range: {span}"] if span != "none" else []
@@ -208,14 +210,14 @@ def continue_endless(a):
 
 
 def range_shifted(a):
-    a.send(a.head(span=f"bytes {a.first + 1}-{a.last + 1}/{len(FILE)}"))
+    a.send(a.head(span=f"bytes {a.first + 1}-{a.last + 1}/{len(a.file)}"))
     a.send(a.body)
     return True
 
 
 def range_part(a):
     a.body = a.body[:len(a.body) // 2]
-    a.send(a.head(span=f"bytes {a.first}-{a.first + len(a.body) - 1}/{len(FILE)}"))
+    a.send(a.head(span=f"bytes {a.first}-{a.first + len(a.body) - 1}/{len(a.file)}"))
     a.send(a.body)
     return True
 
@@ -240,7 +242,7 @@ def range_multipart(a):
 
 
 def size_other(a):
-    a.send(a.head(span=f"bytes {a.first}-{a.last}/{len(FILE) + 1}"))
+    a.send(a.head(span=f"bytes {a.first}-{a.last}/{len(a.file) + 1}"))
     a.send(a.body)
     return True
 
@@ -276,14 +278,14 @@ def status(number):
 
 
 def whole(a):
-    a.send(f"HTTP/1.1 200 OK\r\nContent-Length: {len(FILE)}\r\n\r\n")
-    a.send(FILE)
+    a.send(f"HTTP/1.1 200 OK\r\nContent-Length: {len(a.file)}\r\n\r\n")
+    a.send(a.file)
     return True
 
 
 def whole_other(a):
-    a.send(f"HTTP/1.1 200 OK\r\nContent-Length: {len(FILE)}\r\n\r\n")
-    a.send(b"\0" * len(FILE))
+    a.send(f"HTTP/1.1 200 OK\r\nContent-Length: {len(a.file)}\r\n\r\n")
+    a.send(b"\0" * len(a.file))
     return True
 
 
@@ -293,7 +295,7 @@ def whole_endless(a):
 
 
 def redirect_loop(a):
-    a.send(f"HTTP/1.1 302 Found\r\nLocation: {a.case.path}?again\r\nContent-Length: 0\r\n\r\n")
+    a.send(f"HTTP/1.1 302 Found\r\nLocation: {a.path}?again\r\nContent-Length: 0\r\n\r\n")
     return True
 
 
@@ -366,8 +368,8 @@ def bytewise(a):
 
 
 def redirected(a):
-    if a.case.n_requests % 2:
-        a.send(f"HTTP/1.1 307 There\r\nLocation: {a.case.path}?there\r\nContent-Length: 0\r\n\r\n")
+    if not a.is_query:
+        a.send(f"HTTP/1.1 307 There\r\nLocation: {a.path}?there\r\nContent-Length: 0\r\n\r\n")
         return True
     return a.good()
 
@@ -401,6 +403,7 @@ class Case:
     def __init__(self, name, kind, answer, stage, n_bad, options):
         self.name, self.kind, self.answer, self.stage, self.n_bad = name, kind, answer, stage, n_bad
         self.options, self.n_requests, self.n_flips, self.path = options, 0, 0, ""
+        self.files = {}
         self.lock = threading.Lock()
 
     def serve(self, answer):
@@ -436,10 +439,17 @@ class Server:
                         received += more
                     request, received = received.split(b"\r\n\r\n", 1)
                     words = request.decode().split("\r\n")
-                    path = words[0].split(" ")[1].split("?")[0]
-                    span = next(w for w in words if w.lower().startswith("range:")).split("=")[1].split("-")
-                    case = self.cases[path]
-                    answer = Answer(case, link, int(span[0]), min(int(span[1]), len(FILE) - 1))
+                    path, *query = words[0].split(" ")[1].split("?")
+                    span = next((w.split("=")[1].split("-") for w in words if w.lower().startswith("range:")), None)
+                    _, number, name = path.split("/", 2)
+                    case = self.cases[number]
+                    file = case.files.get(name)
+                    if file is None:
+                        link.sendall(b"HTTP/1.1 404 No\r\nContent-Length: 0\r\n\r\n")
+                        continue
+                    first, last = (int(span[0]), int(span[1])) if span else (0, len(file) - 1)
+                    answer = Answer(case, link, path, file, first, min(last, len(file) - 1), span is None)
+                    answer.is_query = bool(query)
                     if not case.serve(answer):
                         return
         except OSError:
@@ -544,8 +554,8 @@ def main():
         _, _, _, good = picture("knot.lpc", "good", folder, [])
         server, cases, n_wrong, counts, slowest = Server(), list_cases(), 0, {}, 0.0
         for i, case in enumerate(cases):
-            case.path = f"/{i}/knot.lpc"
-            server.cases[case.path] = case
+            case.path, case.files = f"/{i}/knot.lpc", {"knot.lpc": FILE}
+            server.cases[str(i)] = case
         with concurrent.futures.ThreadPoolExecutor(6) as pool:
             urls = [f"http://127.0.0.1:{server.port}{case.path}" for case in cases]
             runs = pool.map(lambda i: picture(urls[i], i, folder, cases[i].options), range(len(cases)))
@@ -561,4 +571,5 @@ def main():
         sys.exit(1 if n_wrong else 0)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -50,6 +50,8 @@ declare -A wanted=(
   [octree]="$builder bytes_per_point inner_nodes levels"
   [hybrid]="triangles surfels clusters seconds.read seconds.work seconds.write seconds.total peak_rss_bytes skipped.nan"
   [layer]="$builder clouds levels bytes bits_per_sample spacing quantum"
+  [cut]=$builder
+  [merge]="$builder clouds levels bytes bits_per_sample spacing quantum"
   [mls-project]="$builder type plane weight h outcomes.done outcomes.too_few moved.rms moved.max"
   [mls-thin]="$builder error hausdorff to_thinned.max from_thinned.max"
   [mls-densify]=$builder
@@ -95,6 +97,7 @@ declare -A wanted=(
   [conformance]="floats cases files bytes levels seconds.scenes seconds.bounds seconds.write seconds.total"
   [suite-wrong]="verdict total.cases total.right total.wrong total.missing levels cases extra_pictures"
   [info-hybrid]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound?"
+  [info-kept]="kind values?"
   [info-layers]="kind points clouds levels bytes bytes_per_point bits_per_sample bits.position bits.normal bits.colour
     bits.index bounds.min bounds.max sound?"
 )
@@ -210,17 +213,23 @@ write suite-wrong judge_suite judge --suite suite --pictures drawn
 run 0 help --format json
 cp out runs/help.json
 echo help > runs/help.definition
+"$python" "$1/tests/cli/hierarchies_make.py" octrees 500
+write info-hierarchy info_hierarchy info octrees/ept/ept.json --check
 # What no run above writes, or not on every machine.
 unseen="device.name device.platform device.version device.driver device.is_cpu device.has_double
   device.rounds_correctly device.compute_units device.memory_bytes"
 if [[ $has_zstd -eq 1 ]]; then
   write layer layer layer knot.ply -o knot.lpc
+  write cut cut cut knot.lpc --box -9,-9,9,9 -o cut.lpc
   write layer-colored layer layer knot.ply -o colored.lpc --color-by x
+  write merge layer merge knot.lpc colored.lpc -o merged.lpc
+  write layer-kept layer layer knot.ply -o kept.lpc --keep x
+  write info-kept info_layers info kept.lpc
   write render-layers render_layers render knot.lpc -o layers.exr --error 4 --size 512x512
   write render-progressive render_layers render knot.lpc -o layers.exr --error 4 --size 64x64 --progressive pictures
   write info-layers info_layers info knot.lpc --check
 else
-  unset "wanted[layer]" "wanted[render-layers]" "wanted[info-layers]"
+  unset "wanted[layer]" "wanted[cut]" "wanted[merge]" "wanted[render-layers]" "wanted[info-layers]" "wanted[info-kept]"
   unseen+=" layer.* layers_drawn.* info_layers.* render.layers"
 fi
 

@@ -65,7 +65,8 @@ run 2 render knot.ply -o x.pfm --deadline 1
 run 2 render knot.ply -o x.pfm --tolerate
 run 2 render knot.lpc -o x.pfm --deep x.exr
 run 2 render knot.lpc -o x.pfm --error 1 --budget 5000
-run 2 render knot.lpc -o x.pfm --budget 1
+run 0 render knot.lpc -o budget.pfm $picture --budget 1 --json budget.json
+[[ $(value splats_in budget.json) -le 1 ]] || fail "--budget 1 draws more"
 run 4 render knot.lpc --progressive /nowhere/x
 head -c 30000 knot.lpc > cut.lpc
 run 3 render cut.lpc -o x.pfm

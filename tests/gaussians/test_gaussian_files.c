@@ -1,4 +1,5 @@
 /* Files of Gaussians: small ones of which every number is known, and every format's round trip. */
+#include "core/base/byte_order.h"
 #include "core/base/gaussian.h"
 #include "gaussians/scene/activation.h"
 #include "tests/support/gaussian_fixture.h"
@@ -113,8 +114,10 @@ static void test_compressed(conic_context *context) {
   const uint32_t packed[4] = {1023u << 11 | 682u, 2u << 30 | 512u << 20 | 512u << 10 | 1023u, 2047u << 21,
                               255u << 24 | 51u << 8 | 128u};
   const unsigned char harmonics[9] = {0, 128, 255, 64, 64, 64, 192, 192, 192};
-  memcpy(bytes + n, bounds, sizeof bounds); /* both are little-endian where tests run */
-  memcpy(bytes + n + 48, packed, 16);
+  for (size_t i = 0; i < 12; i++)
+    conic_store_float(bytes + n + 4 * i, bounds[i]);
+  for (size_t i = 0; i < 4; i++)
+    conic_store_32(bytes + n + 48 + 4 * i, packed[i]);
   memcpy(bytes + n + 64, harmonics, 9);
   conic_gaussians scene = read_again(context, files_write_bytes("c.ply", bytes, n + 73), 0);
   CHECK(scene.kind == CONIC_GAUSSIANS_COMPRESSED_PLY && scene.is_antialiased && scene.sh_degree == 1);

@@ -112,6 +112,20 @@ class Arrays(unittest.TestCase):
             axes = (u, v) if strided else (tuple(u.T.copy()), tuple(v.T.copy()))
             self.assert_same(conic.render(conic.Splats(place, *axes), size=SIZE), wanted)
 
+    def test_one_unsound_number(self):
+        scene = conic.make("sphere", n=501).splats()
+        names = ("position", "tangent_u", "tangent_v", "color")
+        columns = "x y z tu_x tu_y tu_z tv_x tv_y tv_z red green blue".split()
+        for at in (0, 499, 500):
+            for name, value in (("position", numpy.nan), ("tangent_u", numpy.inf), ("tangent_u", 0.0),
+                                ("tangent_v", -0.0), ("color", numpy.nan)):
+                with self.subTest(at=at, name=name, value=value):
+                    parts = {part: getattr(scene, part).copy() for part in names}
+                    parts[name][at] = value
+                    write_ply(self.path("one.ply"), columns, ["<f4"] * 12, numpy.concatenate([*parts.values()], 1).T)
+                    alone = conic.Splats(**{part: tuple(array.T.copy()) for part, array in parts.items()})
+                    self.assert_same(conic.render(alone, size=SIZE), hashes(self.path("one.ply"), *WORDS))
+
     def test_gaussians(self):
         made = conic.make("gaussians", n=400, seed=3)
         arrays = made.gaussians()
@@ -142,6 +156,39 @@ class Arrays(unittest.TestCase):
                 self.assert_same(picture, hashes(self.path("cube.ply"), *WORDS, *words))
         with self.assertRaisesRegex(conic.ArgumentError, "faces: an index"):
             conic.Mesh(corners, faces + 1)
+
+    def test_rows_of_far_doubles(self):
+        place = [[4000000.25 + i, 5e6, 0.0625 * i] for i in range(5)]
+        for position in (place, tuple(numpy.array(place).T), numpy.asmatrix(place)):
+            splats = conic.Splats(position)
+            self.assertTrue(numpy.array_equal(splats.position.astype("f8") + splats.origin, place))
+
+    def test_messages_name_what_was_lent(self):
+        with self.assertRaisesRegex(conic.InputError, r"^conic\.Splats: cannot be drawn: it holds no points$"):
+            conic.render(conic.Splats(numpy.zeros((0, 3))), size=SIZE)
+        mirrored = conic.Camera.from_K(numpy.diag([-1.0, 1, 1, 1]), numpy.diag([50.0, 50, 1]), *SIZE)
+        with self.assertRaisesRegex(conic.InputError, r"^conic\.Camera: the camera's cam_from_world mirrors$"):
+            conic.render(conic.Splats(numpy.eye(3)), mirrored)
+
+    def test_what_cannot_be_meant(self):
+        points, ones = numpy.eye(3) + numpy.arange(3)[:, None], numpy.ones((3, 3))
+        for call in (lambda: conic.Splats(([1.0, 2.0], [1.0], [1.0, 2.0])), lambda: conic.Splats([[1, 2, 3], [1, 2]]),
+                     lambda: conic.Splats(points, origin=(1, 2)), lambda: conic.Splats(points, origin="abc"),
+                     lambda: conic.Splats(numpy.ma.masked_greater(points, 1.0)),
+                     lambda: conic.Splats(points, color=numpy.zeros((3, 3), numpy.uint8)),
+                     lambda: conic.Gaussians(points, numpy.ones((3, 4)), 0.1, ones[0], ones),
+                     lambda: conic.Gaussians(points, numpy.ones((3, 4)), ones, ones[0], numpy.ones((3, 5))),
+                     lambda: conic.Gaussians(points, numpy.ones((3, 4)), ones, ones[0], ones, frame="xyz"),
+                     lambda: conic.Camera.look_at((0, 3)), lambda: conic.Camera.look_at("abc"),
+                     lambda: conic.Camera.look_at((0, 0, 3), width=0),
+                     lambda: conic.Camera.look_at((0, 0, 3), width=48.5),
+                     lambda: conic.Camera.from_K(numpy.stack([numpy.eye(4)] * 2), numpy.eye(3), 8, 8),
+                     lambda: conic.render(conic.Splats(points), (0, 0, 3)),
+                     lambda: conic.prepare(conic.Splats(points), in_place=True),
+                     lambda: conic.render(conic.Splats(points), size=(48.5, 36)),
+                     lambda: conic.render(conic.Splats(points), size=("a", 36))):
+            with self.assertRaises(conic.ArgumentError):
+                call()
 
     def test_shapes_that_do_not_fit(self):
         for arguments in ((numpy.zeros((3, 2)),), (numpy.zeros((3, 3)), numpy.zeros((3, 3))),

@@ -32,6 +32,10 @@ class Judge(unittest.TestCase):
             self.assertEqual((said["verdict"], said["pixels"]["wrong"]), ("right", 0))
         with self.assertRaisesRegex(conic.ArgumentError, "shape"):
             conic.judge(self.scene, self.camera, colors[..., 0], profile=PROFILE)
+        with self.assertRaisesRegex(conic.InputError, "^picture: it has 40 x 20 pixels"):
+            conic.judge(self.scene, self.camera, colors[:20], profile=PROFILE)
+        with self.assertRaisesRegex(conic.ArgumentError, "empty"):
+            conic.judge(self.scene, self.camera, {}, profile=PROFILE)
 
     def test_wrong_pixels(self):
         spoiled = self.drawn["rgba"].copy()

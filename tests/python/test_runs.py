@@ -1,17 +1,21 @@
 """Failures, progress, Ctrl-C, threads, and memory."""
 
+import copy
 import gc
 import os
+import pickle
 import resource
 import signal
 import tempfile
 import threading
 import unittest
 import warnings
+import weakref
 
 import numpy
 
 import conic
+from conic._shelf import Shelf
 
 SIZE = (64, 48)
 
@@ -161,6 +165,54 @@ class Runs(unittest.TestCase):
         conic.release()
         conic.render(self.splats, size=SIZE)
         self.assertTrue(numpy.array_equal(picture["rgba"], held))
+
+    def test_pictures_are_pickled(self):
+        picture = conic.render(self.splats, size=SIZE)
+        for again in (pickle.loads(pickle.dumps(picture)), copy.deepcopy(picture)):
+            self.assertEqual(again.statistics["hash"], self.wanted)
+            self.assertEqual((again.hash(), again.camera, again.is_display),
+                             (self.wanted["rgba"], picture.camera, picture.is_display))
+            self.assertFalse(numpy.shares_memory(again["rgba"], picture["rgba"]))
+
+    def test_shelf(self):
+        shelf = Shelf()
+        array = shelf.take("Z", (4, 6), "float32")
+        array[...] = 7.0
+        del array
+        part = shelf.take("Z", (4, 6), "float32")[1:]
+        self.assertTrue((part == 7.0).all())  # the same memory
+        held = memoryview(shelf.take("Z", (4, 6), "float32"))
+        for _ in range(3):
+            other = shelf.take("Z", (4, 6), "float32")
+            self.assertFalse(numpy.shares_memory(other, part) or numpy.shares_memory(other, held))
+        self.assertEqual(shelf.take("Z", (2, 2), "uint32").dtype, numpy.uint32)
+
+    def test_nothing_shows_of_earlier_pictures(self):
+        options = {"size": (97, 61), "planes": "all"}
+        gaussians = conic.make("gaussians", n=200)
+        for scene in (self.splats, self.scene, gaussians):
+            for samples in (1, 2):
+                conic.release()
+                first = conic.render(scene, samples=samples, **options)
+                wanted, held = dict(first.statistics["hash"].items()), first["Z"][3]
+                row = held.copy()
+                for name in first.planes:
+                    if name != "Z":
+                        first[name].view(numpy.uint8)[...] = 0xA5  # must not show in a later picture
+                del first
+                for _ in range(3):
+                    again = conic.render(scene, samples=samples, **options)
+                    self.assertEqual(dict(again.statistics["hash"].items()), wanted)
+                self.assertTrue(numpy.array_equal(held, row))
+
+    def test_pictures_go_at_once(self):
+        gc.disable()
+        self.addCleanup(gc.enable)
+        picture = conic.render(self.splats, size=SIZE)
+        gone, hashes = weakref.ref(picture), picture.statistics["hash"]
+        del picture
+        self.assertIsNone(gone())
+        self.assertEqual(hashes, self.wanted)
 
 
 if __name__ == "__main__":

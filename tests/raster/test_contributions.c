@@ -202,10 +202,9 @@ static void test_memory(fixture *f, const char *folder) {
 
 int main(void) {
   static const conic_method methods[] = {CONIC_METHOD_CONIC, CONIC_METHOD_RAY, CONIC_METHOD_AFFINE};
-  char folder[] = "/tmp/conic-test-XXXXXX";
+  char folder[FOLDER_ROOM];
   fixture f = fixture_open(3);
-  if (!mkdtemp(folder))
-    return 1;
+  folder_make(folder);
   for (int scene = 0; scene < N_SCENES; scene++)
     for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++) {
       size_t counts[4] = {0};

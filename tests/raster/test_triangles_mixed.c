@@ -269,9 +269,8 @@ static void check_splats_alone(void) {
 }
 
 int main(void) {
-  char folder[] = "/tmp/conic-test-XXXXXX";
-  if (!mkdtemp(folder))
-    return 1;
+  char folder[FOLDER_ROOM];
+  folder_make(folder);
   check_seam();
   check_order();
   check_identity();

@@ -2,6 +2,7 @@
 #ifndef CONIC_CAMERA_FILES_H
 #define CONIC_CAMERA_FILES_H
 
+#include "core/base/byte_order.h"
 #include "core/cameras/camera_list.h"
 #include "core/files/zip.h"
 #include "tests/support/files.h"
@@ -19,11 +20,14 @@ static inline void camera_put(camera_bytes *to, const void *bytes, size_t n) {
 }
 
 static inline void camera_put_word(camera_bytes *to, uint64_t value, size_t n_bytes) {
-  camera_put(to, &value, n_bytes);
+  unsigned char bytes[8];
+  conic_store_64(bytes, value);
+  camera_put(to, bytes, n_bytes);
 }
 
 static inline void camera_put_numbers(camera_bytes *to, const double *numbers, size_t n) {
-  camera_put(to, numbers, n * sizeof *numbers);
+  for (size_t i = 0; i < n; i++)
+    camera_put_word(to, conic_bits_of_double(numbers[i]), 8);
 }
 
 static inline void camera_put_text(camera_bytes *to, const char *text) {
@@ -95,6 +99,8 @@ static inline camera_bytes camera_npy(const char *type, const char *order, const
   camera_put_word(&made, 118, 2);
   camera_put(&made, header, 118);
   camera_put(&made, numbers, n_bytes);
+  if (*type == '<')
+    conic_turn_words(made.bytes + made.n - n_bytes, n_bytes / (size_t)(type[2] - '0'), (size_t)(type[2] - '0'));
   return made;
 }
 
@@ -146,7 +152,7 @@ static inline conic_status camera_read_joined(conic_context *context, const char
   uint32_t n_first = 0;
   memset(cameras, 0, sizeof *cameras);
   if (n >= 5)
-    memcpy(&n_first, bytes, sizeof n_first);
+    n_first = conic_load_32(bytes);
   size_t n_files = n >= 5 ? n - 5 : 0, split = n_first < n_files ? n_first : n_files;
   const unsigned char *files = bytes + (n - n_files);
   const conic_colmap_file first = {name, files, split}, second = {name, files + split, n_files - split};

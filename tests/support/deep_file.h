@@ -2,6 +2,7 @@
 #ifndef CONIC_DEEP_FILE_H
 #define CONIC_DEEP_FILE_H
 
+#include "core/base/byte_order.h"
 #include "tests/support/fixture.h"
 #include "tests/support/image_fixture.h"
 #if CONIC_HAVE_ZLIB
@@ -17,10 +18,10 @@ static inline size_t deep_skip_header(const unsigned char *bytes, size_t n_bytes
     int32_t size;
     at += strlen(name) + 1;
     at += strlen((const char *)bytes + at) + 1;
-    memcpy(&size, bytes + at, 4);
+    size = (int32_t)conic_load_32(bytes + at);
     at += 4;
     if (strcmp(name, "maxSamplesPerPixel") == 0)
-      memcpy(most, bytes + at, 4);
+      *most = (int32_t)conic_load_32(bytes + at);
     at += (size_t)size;
   }
   return at + 1;
@@ -110,11 +111,9 @@ static inline void deep_check_sums(const fixture *f, size_t n_splats, deep_sampl
  * channels stand in the order of their names: A, B, G, R, Z, id, weight. */
 static inline void deep_check_line(const fixture *f, size_t n_splats, const unsigned char *chunk, int y,
                                    deep_counts *counts) {
-  int32_t line, begin = 0;
-  uint64_t sizes[3];
+  int32_t line = (int32_t)conic_load_32(chunk), begin = 0;
+  uint64_t sizes[3] = {conic_load_64(chunk + 4), conic_load_64(chunk + 12), conic_load_64(chunk + 20)};
   size_t width = (size_t)f->camera.width;
-  memcpy(&line, chunk, 4);
-  memcpy(sizes, chunk + 4, sizeof sizes);
   CHECK(line == y && sizes[0] <= 4 * width && sizes[1] <= sizes[2] && sizes[2] % 28 == 0);
   unsigned char *ends = deep_unpack(chunk + 28, sizes[0], 4 * width);
   unsigned char *values = deep_unpack(chunk + 28 + sizes[0], sizes[1], sizes[2]);
@@ -124,11 +123,10 @@ static inline void deep_check_line(const fixture *f, size_t n_splats, const unsi
     void *const to[7] = {&samples[i].rgba[3], &samples[i].rgba[2], &samples[i].rgba[1], &samples[i].rgba[0],
                          &samples[i].depth,   &samples[i].id,      &samples[i].weight};
     for (size_t c = 0; c < 7; c++)
-      memcpy(to[c], values + 4 * (c * n + i), 4);
+      memcpy(to[c], &(uint32_t){conic_load_32(values + 4 * (c * n + i))}, 4);
   }
   for (int x = 0; samples && x < f->camera.width; x++) {
-    int32_t end;
-    memcpy(&end, ends + 4 * x, 4);
+    int32_t end = (int32_t)conic_load_32(ends + 4 * x);
     CHECK(begin <= end && (size_t)end <= n);
     deep_check_flat(f, samples + begin, (size_t)(end - begin), x, y);
     deep_check_sums(f, n_splats, samples + begin, (size_t)(end - begin), x, y, counts);
@@ -173,8 +171,7 @@ static inline int deep_check(const fixture *f, const conic_drawing *drawing, con
   size_t table = deep_skip_header(bytes[0], n_bytes[0], &most_said),
          n_splats = drawing->splats ? drawing->splats->count : 0;
   for (int y = 0; y < f->camera.height; y++) {
-    uint64_t place;
-    memcpy(&place, bytes[0] + table + 8 * (size_t)y, 8);
+    uint64_t place = conic_load_64(bytes[0] + table + 8 * (size_t)y);
     CHECK(place < n_bytes[0]);
     if (place < n_bytes[0])
       deep_check_line(f, n_splats, bytes[0] + place, y, counts);

@@ -7,8 +7,9 @@
 #include <unistd.h>
 
 #include "tests/support/check.h"
+#include "tests/support/folder.h"
 
-static char files_folder[64];
+static char files_folder[FOLDER_ROOM];
 static char files_message[1024], files_warning[1024]; /* the last ones */
 static int files_warnings;                            /* how many there were */
 
@@ -28,15 +29,15 @@ static inline conic_context *files_context(void) {
   conic_context_options_init(&options);
   options.log = files_log;
   options.threads = 1;
-  snprintf(files_folder, sizeof files_folder, "/tmp/conic-test-XXXXXX");
-  if (!mkdtemp(files_folder) || conic_context_create(&options, &context) != CONIC_OK)
+  folder_make(files_folder);
+  if (conic_context_create(&options, &context) != CONIC_OK)
     exit(1);
   return context;
 }
 
 /* The path of NAME in the temporary folder. Four may be in use at a time. */
 static inline const char *files_path(const char *name) {
-  static char paths[4][160];
+  static char paths[4][FOLDER_ROOM + 96];
   static int i_path;
   char *path = paths[i_path++ & 3];
   snprintf(path, sizeof paths[0], "%s/%s", files_folder, name);

@@ -25,6 +25,7 @@ typedef struct http_server {
   atomic_int n_requests, n_connections, n_busy, is_stopping;
   atomic_char is_mended[HTTP_MENDED]; /* a place that was wrong once */
   atomic_int n_good;                  /* so many answers are good before it misbehaves */
+  atomic_llong link_free_us;          /* of a link: when it has sent what it was given so far */
 } http_server;
 
 typedef struct http_connection {
@@ -148,6 +149,31 @@ static inline int http_answer_wrongly(http_server *server, int socket, const htt
   return is_sent;
 }
 
+static inline long long http_now_us(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (long long)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+/* Over a link that all connections share: 20 ms and 100 Mbit/s. */
+static inline int http_answer_by_link(http_server *server, int socket, const http_request *r) {
+  enum { PIECE = 12500 }; /* a millisecond's */
+  size_t n = r->last - r->first + 1;
+  http_pause(20);
+  int is_open = http_head(server, socket, r, n, 0, "a");
+  for (size_t at = 0; at < n && is_open; at += PIECE) {
+    size_t piece = n - at < PIECE ? n - at : PIECE;
+    long long free_us = atomic_load(&server->link_free_us), now_us = http_now_us(), sent_us;
+    do
+      sent_us = (free_us > now_us ? free_us : now_us) + (long long)piece * 8 / 100;
+    while (!atomic_compare_exchange_weak(&server->link_free_us, &free_us, sent_us));
+    while (http_now_us() < sent_us)
+      http_pause(1);
+    is_open = http_send(socket, server->bytes + r->first + at, piece);
+  }
+  return is_open;
+}
+
 /* Every way but the good one. 1 where the connection goes on. */
 static inline int http_misbehave(http_server *server, int socket, const http_request *r, int i_request) {
   const char *mode = r->mode;
@@ -235,6 +261,8 @@ static inline void *http_serve(void *cookie) {
     int i_request = atomic_fetch_add(&server->n_requests, 1);
     if (strcmp(r.mode, "whole") == 0 || strcmp(r.mode, "unlengthy") == 0)
       is_open = http_answer_whole(server, connection.socket, r.mode[0] == 'w');
+    else if (strcmp(r.mode, "link") == 0)
+      is_open = http_answer_by_link(server, connection.socket, &r);
     else if (strcmp(r.mode, "endless") == 0)
       is_open = http_say(connection.socket, "HTTP/1.1 200 OK\r\nConnection: close\r\n\r\n") &&
                 http_repeat(server, connection.socket, "for ever and ever and ever and ever and ever and ever", 0);

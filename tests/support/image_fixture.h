@@ -7,17 +7,14 @@
 #include <unistd.h>
 
 #include "tests/support/check.h"
+#include "tests/support/folder.h"
 
 #define EVERY_PLANE ((1u << CONIC_N_PLANES) - 1u)
 
-static char test_folder[64];
+static char test_folder[FOLDER_ROOM];
 
 static inline void open_test_folder(void) {
-  snprintf(test_folder, sizeof test_folder, "/tmp/conic-test-XXXXXX");
-  if (!mkdtemp(test_folder)) {
-    perror(test_folder);
-    exit(1);
-  }
+  folder_make(test_folder);
 }
 
 /* The path of a file in the folder; two of them live at a time. */

@@ -2,6 +2,7 @@
 #ifndef CONIC_LAYERS_FIXTURE_H
 #define CONIC_LAYERS_FIXTURE_H
 
+#include "core/base/memory.h"
 #include "lod/layers/format/layers_decode.h"
 #include "lod/layers/format/layers_read.h"
 #include "tests/support/files.h"
@@ -32,8 +33,8 @@ static inline conic_status layers_build(conic_context *context, const conic_spla
     conic_splats batch = *splats;
     size_t left = splats->count - first;
     batch.count = left < 700 ? left : 700;
-    float **arrays[] = {batch.position, batch.tangent_u, batch.tangent_v, batch.normal, batch.color};
-    for (int i = 0; i < 15; i++)
+    float **arrays[] = {batch.position, batch.tangent_u, batch.tangent_v, batch.normal, batch.color, batch.sight};
+    for (int i = 0; i < 18; i++)
       if (arrays[i / 3][i % 3])
         arrays[i / 3][i % 3] += first;
     status = conic_layers_builder_append(builder, &batch);
@@ -47,7 +48,7 @@ static inline conic_status layers_build(conic_context *context, const conic_spla
 /* A file's clouds, one after the other. */
 typedef struct layers_sample {
   uint64_t key;
-  float position[3], normal[3], color[3];
+  float position[3], normal[3], color[3], outline;
   uint32_t cloud;
 } layers_sample;
 
@@ -61,25 +62,25 @@ static inline void layers_read(conic_context *context, const char *path, layers_
   conic_layers_decoder *decoder;
   memset(all, 0, sizeof *all);
   if (conic_layers_file_open(context, path, &all->view) != CONIC_OK ||
-      conic_layers_decoder_create(context, &all->view.header, &decoder) != CONIC_OK)
+      conic_layers_decoder_create(context, &all->view.header, NULL, &decoder) != CONIC_OK)
     exit(1);
   all->samples = calloc((size_t)all->view.header.n_samples, sizeof *all->samples);
   for (uint32_t i = 0; i < all->view.header.n_clouds && all->samples; i++) {
     const conic_layers_entry *entry = &all->view.entries[i];
-    void *block = aligned_alloc(64, conic_layers_cloud_bytes(&all->view.header, entry) + 64);
+    void *block = conic_memory_allocate(context, conic_layers_cloud_bytes(&all->view.header, entry, NULL) + 64, 1);
     conic_layers_cloud cloud;
-    conic_layers_cloud_place(&all->view.header, entry, block, &cloud);
+    conic_layers_cloud_place(&all->view.header, entry, NULL, block, &cloud);
     CHECK(!conic_layers_decode(decoder, entry, all->view.mapping.bytes + entry->offset, &cloud));
     for (size_t k = 0; k < cloud.count; k++) {
       layers_sample *to = &all->samples[all->n++];
-      *to = (layers_sample){.key = cloud.keys[k], .cloud = i};
+      *to = (layers_sample){.key = cloud.keys[k], .cloud = i, .outline = cloud.outline ? cloud.outline[k] : 0.0f};
       for (int axis = 0; axis < 3; axis++) {
         to->position[axis] = cloud.position[axis][k];
         to->normal[axis] = cloud.normal[axis][k];
         to->color[axis] = cloud.color[0] ? cloud.color[axis][k] : 1.0f;
       }
     }
-    free(block);
+    conic_memory_release(context, block);
   }
   conic_layers_decoder_destroy(decoder);
 }

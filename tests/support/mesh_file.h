@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/base/message.h"
 #include "tests/support/png_file.h"
 
 static const float mesh_corners[4][3] = {{0, 0, 0}, {3, 0, 0}, {0, 2, 0}, {0, 0, 1}};
@@ -26,7 +27,7 @@ static inline void mesh_put(mesh_file *file, const void *bytes, size_t n) {
   file->n += n;
 }
 
-static inline void mesh_text(mesh_file *file, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static inline void mesh_text(mesh_file *file, const char *format, ...) CONIC_AS_PRINTF(2, 3);
 static inline void mesh_text(mesh_file *file, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);

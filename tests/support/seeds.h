@@ -6,20 +6,23 @@
 #include "tests/support/camera_files.h"
 #include "tests/support/files.h"
 #include "tests/support/gaussian_fixture.h"
+#include "tests/support/hierarchy_parts.h"
+#include "tests/support/e57_example.h"
 #include "tests/support/las_file.h"
+#include "tests/support/laz_examples.h"
 #include "tests/support/mesh_file.h"
 #include "tests/support/png_file.h"
 
 typedef struct seed {
   const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, pcd, xyz, camera, colmap, pfm, exr, png,
-                         cot, lpc, chy, gaussians */
+                         cot, lpc, chy, gaussians, copc, ept, potree */
   char name[32];      /* of the file */
   unsigned char *bytes;
   size_t n_bytes;
   int may_be_cut; /* what is left of it may be sound */
 } seed;
 
-enum { SEEDS_ROOM = 108 };
+enum { SEEDS_ROOM = 128 };
 
 typedef struct seed_set {
   seed seeds[SEEDS_ROOM];
@@ -230,6 +233,21 @@ static inline void seeds_all_las(seed_set *set) {
   las_describe_extra(&described, 2);
   seeds_add(set, "las", "las", 1, described.bytes, described.n_bytes);
   free(described.bytes);
+  static const size_t packed_formats[] = {3, 5, 7, 10};
+  for (size_t i = 0; i < sizeof packed_formats / sizeof *packed_formats; i++) {
+    las_file packed = laz_example_file(&laz_examples[packed_formats[i]]);
+    seeds_add(set, "las", "laz", 1, packed.bytes, packed.n_bytes);
+    free(packed.bytes);
+  }
+}
+
+static inline void seeds_all_scans(seed_set *set) {
+  e57_test_file file;
+  e57_make(&file);
+  seeds_add(set, "e57", "e57", 0, file.bytes, file.n_bytes);
+  seeds_text(set, "ptx", "ptx",
+             "2\n1\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n9 2 3 1\n4 5 6 0.25 255 0 51\n"
+             "0 0 0 0.5 0 0 0\n1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 0 0 1 9 9 9\n");
 }
 
 /* Pictures as NumPy's arrays: alone, and some under the names of planes. */
@@ -384,6 +402,14 @@ static inline void seeds_layers(seed_set *set, conic_context *context, size_t n,
   seeds_add(set, "lpc", "lpc", 0, bytes, n_bytes);
 }
 
+/* Hierarchies of other kinds, those of several files joined. */
+static inline void seeds_all_hierarchies(seed_set *set) {
+  unsigned char bytes[4096];
+  seeds_add(set, "copc", "laz", 0, bytes, hierarchy_copc_example(bytes));
+  seeds_add(set, "ept", "ept", 0, bytes, hierarchy_ept_example(bytes));
+  seeds_add(set, "potree", "potree", 0, bytes, hierarchy_potree_example(bytes));
+}
+
 /* Every kind of PNG that libpng turns into another; none where this build leaves them to another library. */
 static inline void seeds_all_png(seed_set *set) {
   static const png_kind kinds[] = {{5, 4, PNG_COLOR_ALPHA, 8, 0, 0, 2},
@@ -472,6 +498,7 @@ static inline seed_set *seeds_make(conic_context *context) {
   seeds_all_text(set);
   seeds_all_cameras(set);
   seeds_all_las(set);
+  seeds_all_scans(set);
   seeds_all_pcd(set);
   seeds_all_png(set);
   seeds_all_gaussians(set, context);

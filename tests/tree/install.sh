@@ -61,6 +61,28 @@ if grep -rE '(^|[^{}a-z])/(usr|tmp|home|work|lib)/' "$library_folder"/pkgconfig 
   exit 1
 fi
 
+# What docs/guide/library.md says of versions that are asked for.
+version_file=$(find "$work/prefix" -name conic-config-version.cmake)
+takes() { # VERSION
+  cat > "$work/asked.cmake" << END
+string(REPLACE "." ";" parts "$1.0.0")
+list(GET parts 0 PACKAGE_FIND_VERSION_MAJOR)
+list(GET parts 1 PACKAGE_FIND_VERSION_MINOR)
+set(PACKAGE_FIND_VERSION $1)
+include("$version_file")
+if(PACKAGE_VERSION_UNSUITABLE OR NOT PACKAGE_VERSION_COMPATIBLE)
+  message(FATAL_ERROR "not taken")
+endif()
+END
+  cmake -P "$work/asked.cmake" 2> /dev/null
+}
+for asked in "$interface_version" "$version"; do
+  takes "$asked" || { echo "$asked is asked for, and $version is not taken"; exit 1; }
+done
+for asked in 0.2 0.2.0 "${version%.*}.99" "${interface_version%.*}.$((${interface_version#*.} + 1))" 9.0; do
+  ! takes "$asked" || { echo "$asked is asked for, and $version is taken"; exit 1; }
+done
+
 mkdir "$work/static_project"
 cat > "$work/static_project/CMakeLists.txt" << END
 cmake_minimum_required(VERSION 3.25)

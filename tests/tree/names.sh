@@ -59,6 +59,12 @@ put core/a_body.h 'int two(int one);'
 put core/b.c 'struct one {' '  int one;' '};' 'int two(int one) {' '  return one;' '}' 'static int three(void) { return two(1); }'
 put tests/c.c 'struct one {' '  int one;' '};' 'static int three(void) { return two(1); }'
 expect peace
+put core/a_posix.c 'int four(void) { return 1; }'
+put core/a_windows.c 'int four(void) { return 2; }'
+expect peace
+put core/a_posix.c 'int five(void) { return 1; }'
+put core/b_windows.c 'int five(void) { return 2; }'
+expect breach
 
 perl "$names" "$source_folder" "$most_repeated"
 [[ $n_blind -eq 0 ]]

@@ -1,26 +1,23 @@
 /* The bounds of a node: what its samples cover, where they lie, and which way they face. */
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/real.h"
+#include "core/base/threads.h"
 #include "core/base/vectors.h"
-#include "lod/layers/build/layers_branch.h"
+#include "lod/layers/build/layers_part.h"
+#include "lod/layers/build/layers_waiting.h"
+#include "lod/layers/format/layers_axes.h"
 #include "lod/layers/format/layers_key.h"
+#include "lod/layers/format/layers_split.h"
 
-enum { N_PROBES = 32, N_NEAREST = 8, LEAST_TO_TELL = 32 };
+enum { SOME_KEYS = 512, N_PROBES = 32, N_NEAREST = 8, LEAST_TO_TELL = 32 };
 
 /* The outline of samples without one, over the sampling distance: as far as a Gaussian of that standard deviation goes.
  */
 static const double outline_over_spacing = 1.5;
-
-/* A leaf's samples are drawn alike. One that is many times larger than most is not let to blow up the others, as the
- * automatic ε does it (docs/reference/picture.md). */
-static const double most_over_median = 4.0;
-
-static double size_of(uint16_t code) {
-  return (double)conic_float_of_bits((uint32_t)code << 16);
-}
 
 static void steps_of(uint64_t key, double steps[3]) {
   for (int axis = 0; axis < 3; axis++)
@@ -80,21 +77,41 @@ static conic_status find_spacing(const conic_layers_plan *plan, const conic_laye
   return CONIC_OK;
 }
 
-/* The largest outline that samples have of their own, in steps; 0 where none has one. */
-static double outline_given(const conic_layers_plan *plan, const conic_layers_branch *leaf) {
-  double some[N_PROBES], largest = 0.0;
-  size_t n = 0;
+/* A circle of this outline where the sample has no ellipse. */
+static void fill_axes(const conic_layers_plan *plan, conic_layers_sample *sample, unsigned char *at, float outline) {
+  conic_layers_axes axes;
+  float normal[3];
+  memcpy(&axes, at, sizeof axes);
+  if (axes.length[0] > 0.0f)
+    return;
+  conic_layers_normal_of(sample->normal, normal);
+  conic_layers_code_fine_normal(normal, axes.normal);
+  axes.length[0] = axes.length[1] = conic_layers_axis_length(outline / plan->cutoff);
+  memcpy(at, &axes, sizeof axes);
+}
+
+/* Gives the samples that have no size this one, and all the size that they will be read with. */
+static void settle_outlines(const conic_layers_plan *plan, conic_layers_branch *leaf, double outline) {
+  const conic_layers_schema *schema = plan->schema;
+  int axes = conic_layers_schema_find(schema, CONIC_LAYERS_AXES);
+  int size = conic_layers_schema_find(schema, CONIC_LAYERS_SIZE);
+  double low = HUGE_VAL, high = 0.0;
   for (size_t i = 0; i < leaf->n_drawn; i++) {
-    double size = size_of(leaf->samples[i].size);
-    largest = size > largest ? size : largest;
+    conic_layers_sample *sample = conic_layers_sample_in(leaf->samples, leaf->stride, i);
+    if (!sample->size)
+      sample->size = conic_layers_code_size((float)outline);
+    if (axes >= 0) {
+      unsigned char *at = conic_layers_value_in(schema, leaf->samples, i, (uint32_t)axes);
+      fill_axes(plan, sample, at, conic_layers_size_of(sample->size));
+      sample->size = conic_layers_size_of_axes(plan->cutoff, at);
+    } else if (size >= 0)
+      sample->size = conic_layers_size_as_read(&schema->list[size], sample->size);
+    double own = (double)conic_layers_size_of(sample->size);
+    low = own < low ? own : low;
+    high = own > high ? own : high;
   }
-  for (size_t i = 0; i < N_PROBES; i++) {
-    double size = size_of(leaf->samples[(2 * i + 1) * leaf->n_drawn / (2 * (size_t)N_PROBES)].size);
-    if (size > 0.0)
-      some[n++] = size;
-  }
-  double most = n ? most_over_median * middle_of(some, n) : largest;
-  return (largest < most ? largest : most) / plan->quantum;
+  leaf->outline_low = low / plan->quantum;
+  leaf->outline_high = high / plan->quantum;
 }
 
 static void find_branch_box(conic_layers_branch *branch) {
@@ -135,7 +152,7 @@ static void find_axis(conic_layers_branch *branch) {
   double sum[3] = {0.0, 0.0, 0.0};
   for (size_t i = 0; i < branch->n_drawn; i++) {
     float normal[3];
-    conic_layers_normal_of(branch->samples[i].normal, normal);
+    conic_layers_normal_of(conic_layers_drawn_at(branch, i)->normal, normal);
     for (int axis = 0; axis < 3; axis++)
       sum[axis] += (double)normal[axis];
   }
@@ -153,23 +170,46 @@ static double cosine_of_sum(double a, double b) {
   return a * b - sqrt((1.0 - a * a) * (1.0 - b * b));
 }
 
+/* The normal with which a sample is drawn. */
+static void drawn_normal(const conic_layers_plan *plan, const conic_layers_branch *leaf, size_t i, int axes,
+                         float normal[3]) {
+  conic_layers_axes ellipse;
+  if (axes < 0) {
+    conic_layers_normal_of(conic_layers_drawn_at(leaf, i)->normal, normal);
+    return;
+  }
+  memcpy(&ellipse, conic_layers_value_at(plan->schema, leaf->samples, i, (uint32_t)axes), sizeof ellipse);
+  conic_layers_fine_normal_of(ellipse.normal, normal);
+}
+
+/* Dots turn to whoever looks: nothing bounds their normals. */
+static double cone_of_leaf(const conic_layers_plan *plan, const conic_layers_branch *leaf) {
+  int axes = conic_layers_schema_find(plan->schema, CONIC_LAYERS_AXES);
+  int dot = conic_layers_schema_find(plan->schema, CONIC_LAYERS_DOT);
+  double cone = 1.0;
+  for (size_t i = 0; i < leaf->n_drawn; i++) {
+    float normal[3];
+    drawn_normal(plan, leaf, i, axes, normal);
+    const double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
+    double cosine = conic_dot(n, leaf->axis);
+    cone = cosine < cone ? cosine : cone;
+    if (dot >= 0 && *conic_layers_value_at(plan->schema, leaf->samples, i, (uint32_t)dot))
+      return -1.0;
+  }
+  return cone;
+}
+
 conic_status conic_layers_bound_leaf(const conic_layers_plan *plan, conic_layers_branch *leaf) {
-  double spacing, given = outline_given(plan, leaf);
+  double spacing;
   conic_status status = find_spacing(plan, leaf, &spacing);
   leaf->area = spacing * spacing * (double)leaf->n_drawn;
-  leaf->radius = given > 0.0 ? given : outline_over_spacing * spacing;
-  leaf->outline_low = leaf->outline_high = leaf->radius;
+  settle_outlines(plan, leaf, outline_over_spacing * spacing * plan->quantum);
+  leaf->radius = leaf->outline_high;
+  leaf->growth = 1.0;
   find_branch_box(leaf);
   find_sphere(leaf);
   find_axis(leaf);
-  leaf->cone = 1.0;
-  for (size_t i = 0; i < leaf->n_drawn; i++) {
-    float normal[3];
-    conic_layers_normal_of(leaf->samples[i].normal, normal);
-    const double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
-    double cosine = conic_dot(n, leaf->axis);
-    leaf->cone = cosine < leaf->cone ? cosine : leaf->cone;
-  }
+  leaf->cone = cone_of_leaf(plan, leaf);
   return status;
 }
 
@@ -187,12 +227,124 @@ static void visit_below(const conic_layers_branch *branch, uint64_t n_place, vis
 
 typedef struct bounding {
   conic_layers_branch *node;
-  conic_thinner *thinner;
+  const conic_thinner *thinner;
+  size_t n_below;
+  const conic_layers_branch **below;
+  float *sizes;             /* own outlines of the node's samples */
+  conic_layers_disc *discs; /* the node's samples as they are drawn, in the order in which they were chosen */
+  double quantum;           /* a step of the grid, as they have it */
+  int is_cut;               /* full resolution may draw less of a sample than its outline */
+  _Atomic uint64_t most;    /* the bits of a number that is not negative, which have its order */
+  atomic_int status;
 } bounding;
 
-static void reach_out(void *data, const conic_layers_branch *below) {
+static void count_below(void *data, const conic_layers_branch *below) {
+  (void)below;
+  ((bounding *)data)->n_below++;
+}
+
+static void list_below(void *data, const conic_layers_branch *below) {
   bounding *b = data;
-  b->node->covering = conic_thinner_reach(b->thinner, below->keys, below->n_drawn, below->covering, b->node->covering);
+  b->below[b->n_below++] = below;
+}
+
+static double most_so_far(bounding *b) {
+  uint64_t bits = atomic_load_explicit(&b->most, memory_order_relaxed);
+  double most;
+  memcpy(&most, &bits, sizeof most);
+  return most;
+}
+
+static void raise_most(bounding *b, double value) {
+  uint64_t before = atomic_load_explicit(&b->most, memory_order_relaxed), after;
+  memcpy(&after, &value, sizeof after);
+  while (before < after && !atomic_compare_exchange_weak(&b->most, &before, after))
+    continue;
+}
+
+typedef double measure_keys(const bounding *b, const conic_layers_branch *below, const uint64_t *keys, size_t n,
+                            double most);
+
+static double measure_below_reach(const bounding *b, const conic_layers_branch *below, const uint64_t *keys, size_t n,
+                                  double most) {
+  return conic_thinner_reach(b->thinner, keys, n, below->covering, most);
+}
+
+/* Whatever lies below has a sample within the covering radius whose outline, times the growth, is no smaller than any
+ * of its own. */
+static double measure_below_growth(const bounding *b, const conic_layers_branch *below, const uint64_t *keys, size_t n,
+                                   double most) {
+  return conic_thinner_growth(b->thinner, keys, n, b->node->covering - below->covering,
+                              below->outline_high * b->quantum, b->sizes, most);
+}
+
+static void measure_below(bounding *b, size_t i_item, measure_keys *measure) {
+  const conic_layers_branch *below = b->below[i_item];
+  uint64_t keys[SOME_KEYS];
+  double most = most_so_far(b);
+  for (size_t first = 0, n; first < below->n_drawn; first += n) {
+    n = below->n_drawn - first < SOME_KEYS ? below->n_drawn - first : SOME_KEYS;
+    conic_status status = conic_layers_fetch_keys(below, first, n, keys);
+    if (status != CONIC_OK) {
+      atomic_store(&b->status, (int)status);
+      return;
+    }
+    most = measure(b, below, keys, n, most);
+  }
+  raise_most(b, most);
+}
+
+static void reach_out(void *data, size_t i_item, int i_thread) {
+  (void)i_thread;
+  measure_below(data, i_item, measure_below_reach);
+}
+
+static void grow_out(void *data, size_t i_item, int i_thread) {
+  (void)i_thread;
+  measure_below(data, i_item, measure_below_growth);
+}
+
+/* With what a sample is drawn where the node is the finest, in steps. */
+static double outline_in(const conic_layers_branch *node, double own) {
+  double grown = node->reach + node->growth * own;
+  return node->is_leaf ? own : grown < node->radius ? grown : node->radius;
+}
+
+static conic_layers_disc disc_in(const conic_layers_branch *node, uint64_t key, const conic_layers_facet *facet,
+                                 double quantum) {
+  conic_layers_disc disc;
+  double at[3];
+  steps_of(key, at);
+  for (int axis = 0; axis < 3; axis++)
+    disc.center[axis] = (float)at[axis];
+  conic_layers_normal_of(facet->normal, disc.normal);
+  disc.radius = (float)outline_in(node, (double)conic_layers_size_of(facet->size) / quantum);
+  return disc;
+}
+
+static void part_from(void *data, size_t i_item, int i_thread) {
+  bounding *b = data;
+  const conic_layers_branch *below = b->below[i_item];
+  const conic_layers_standing standing = {b->thinner, b->discs};
+  uint64_t keys[SOME_KEYS];
+  conic_layers_facet facets[SOME_KEYS];
+  conic_layers_disc discs[SOME_KEYS];
+  double most = most_so_far(b);
+  (void)i_thread;
+  for (size_t first = 0, n; first < below->n_drawn; first += n) {
+    n = below->n_drawn - first < SOME_KEYS ? below->n_drawn - first : SOME_KEYS;
+    conic_status status = conic_layers_fetch_keys(below, first, n, keys);
+    if (status == CONIC_OK)
+      status = conic_layers_fetch_facets(below, first, n, facets);
+    if (status != CONIC_OK) {
+      atomic_store(&b->status, (int)status);
+      return;
+    }
+    for (size_t i = 0; i < n; i++)
+      discs[i] = disc_in(below, keys[i], &facets[i], b->quantum);
+    most = conic_layers_part(&standing, discs, n, below->part, most);
+  }
+  raise_most(b, most);
 }
 
 static void widen_cone(void *data, const conic_layers_branch *below) {
@@ -201,21 +353,85 @@ static void widen_cone(void *data, const conic_layers_branch *below) {
   b->node->cone = cosine < b->node->cone ? cosine : b->node->cone;
 }
 
+/* The most that any node below comes to, and `least`. */
+static double find_most(conic_context *context, int is_alone, bounding *b, conic_task *task, double least) {
+  atomic_store(&b->most, 0);
+  raise_most(b, least);
+  if (is_alone)
+    conic_parallel_for(context, b->n_below, task, b);
+  for (size_t i = 0; i < b->n_below && !is_alone; i++)
+    task(b, i, 0);
+  return most_so_far(b);
+}
+
 static double larger(double a, double b) {
   return a > b ? a : b;
 }
 
-void conic_layers_bound_node(conic_thinner *thinner, conic_layers_branch *node) {
+/* With what each sample is drawn, and how far that is past what full resolution draws of it. */
+static void find_past(const bounding *b) {
+  conic_layers_branch *node = b->node;
+  node->past = 0.0;
+  for (size_t i = 0; i < node->n_drawn; i++) {
+    double own = (double)b->sizes[i] / b->quantum;
+    node->past = larger(node->past, outline_in(node, own) - (b->is_cut ? 0.0 : own));
+  }
+}
+
+/* How far what full resolution draws is from what is drawn, and the other way round. */
+static conic_status find_part(conic_context *context, int is_alone, bounding *b) {
+  conic_layers_branch *node = b->node;
+  uint32_t *ranks = conic_memory_allocate(context, node->n_drawn, sizeof *ranks);
+  b->discs = conic_memory_allocate(context, node->n_drawn, sizeof *b->discs);
+  conic_status status = ranks && b->discs ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    size_t n = conic_thinner_ranks(b->thinner, ranks);
+    for (size_t i = 0; i < n; i++)
+      b->discs[i] = disc_in(node, node->keys[ranks[i]], &node->facets[ranks[i]], b->quantum);
+    node->part = find_most(context, is_alone, b, part_from, node->past);
+    status = (conic_status)atomic_load(&b->status);
+  }
+  conic_memory_release(context, b->discs);
+  conic_memory_release(context, ranks);
+  return status;
+}
+
+static conic_status find_outlines(conic_context *context, int is_alone, bounding *b) {
+  conic_layers_branch *node = b->node;
+  const conic_layers_branch *first = node->children[0], *second = node->children[1];
+  visit_below(node, node->n_place, count_below, b);
+  b->below = conic_memory_allocate(context, b->n_below, sizeof(void *));
+  b->sizes = conic_memory_allocate(context, node->n_drawn, sizeof *b->sizes);
+  conic_status status = b->below && b->sizes ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    b->n_below = 0;
+    visit_below(node, node->n_place, list_below, b);
+    for (size_t i = 0; i < node->n_drawn; i++)
+      b->sizes[i] = conic_layers_size_of(conic_layers_drawn_at(node, i)->size);
+    node->reach = node->covering = find_most(context, is_alone, b, reach_out, 0.0);
+    node->radius = larger(node->covering + node->outline_high, larger(first->radius, second->radius));
+    node->growth = find_most(context, is_alone, b, grow_out, 1.0) * (1.0 + 1e-6);
+    find_past(b);
+    status = (conic_status)atomic_load(&b->status);
+    if (status == CONIC_OK)
+      status = find_part(context, is_alone, b);
+  }
+  conic_memory_release(context, (void *)b->below);
+  conic_memory_release(context, b->sizes);
+  return status;
+}
+
+conic_status conic_layers_bound_node(const conic_layers_plan *plan, const conic_thinner *thinner, int is_alone,
+                                     conic_layers_branch *node) {
   const conic_layers_branch *a = node->children[0], *b = node->children[1];
-  bounding bounds = {node, thinner};
-  node->covering = 0.0;
-  visit_below(node, node->n_place, reach_out, &bounds);
+  bounding bounds = {.node = node, .thinner = thinner, .quantum = plan->quantum};
+  bounds.is_cut = conic_layers_schema_find(plan->schema, CONIC_LAYERS_AXES) >= 0;
+  atomic_init(&bounds.most, 0);
+  atomic_init(&bounds.status, CONIC_OK);
   node->area = a->area + b->area;
   node->outline_low = a->outline_low < b->outline_low ? a->outline_low : b->outline_low;
   node->outline_high = larger(a->outline_high, b->outline_high);
-  node->radius =
-      larger(node->covering + node->outline_high, outline_over_spacing * sqrt(node->area / (double)node->n_drawn));
-  node->radius = larger(node->radius, larger(a->radius, b->radius));
+  conic_status status = find_outlines(plan->context, is_alone, &bounds);
   for (int axis = 0; axis < 3; axis++) {
     node->low[axis] = a->low[axis] < b->low[axis] ? a->low[axis] : b->low[axis];
     node->high[axis] = larger(a->high[axis], b->high[axis]);
@@ -224,21 +440,12 @@ void conic_layers_bound_node(conic_thinner *thinner, conic_layers_branch *node) 
   find_axis(node);
   node->cone = 1.0;
   visit_below(node, node->n_place, widen_cone, &bounds);
+  return status;
 }
 
 /* Not below the value, with room for the rounding of whoever uses it. */
 static float rounded_up(double value) {
   return nextafterf((float)(value * (1.0 + 1e-6)), HUGE_VALF);
-}
-
-/* Between what is drawn and what full resolution draws, in steps. A drawn disc reaches past its own sample's there by
- * no more than the difference of the outlines. What is drawn there lies no farther from the disc of a sample within the
- * covering radius than that, and what the two discs part by that are turned against each other. */
-static double error_of_branch(const conic_layers_branch *branch) {
-  double half_turn = branch->cone < 0.0 ? 1.0 : sqrt(1.0 - branch->cone * branch->cone); /* sine of half the cone */
-  double past = branch->radius - branch->outline_low;
-  double off = branch->covering + (half_turn < 0.5 ? 2.0 * half_turn : 1.0) * branch->outline_high;
-  return branch->is_leaf ? 0.0 : larger(past, off);
 }
 
 void conic_layers_describe_branch(const conic_layers_plan *plan, const conic_layers_branch *branch,
@@ -254,7 +461,9 @@ void conic_layers_describe_branch(const conic_layers_plan *plan, const conic_lay
   entry->spacing = (float)(sqrt(branch->area / (double)branch->n_drawn) * q);
   entry->covering = rounded_up((branch->covering + 2.0 * rounding) * q);
   entry->radius = rounded_up(branch->radius * q);
-  entry->error = rounded_up((error_of_branch(branch) + 0.8660254037844387 + rounding) * q);
+  entry->growth = branch->is_leaf ? 1.0f : rounded_up(branch->growth);
+  entry->reach = branch->is_leaf ? 0.0f : rounded_up((branch->reach + 2.0 * rounding) * q);
+  entry->error = branch->is_leaf ? 0.0f : rounded_up((branch->part + rounding) * q);
   entry->sphere = rounded_up((branch->sphere + branch->radius) * q);
   double slack = 2.0 * rounding * q;
   for (int axis = 0; axis < 3; axis++) {

@@ -12,29 +12,47 @@ static inline int conic_layers_is_far_below(uint64_t n_place, uint64_t n_place_b
   return n_place_below <= n_place / CONIC_LAYERS_FRACTION;
 }
 
+typedef struct conic_layers_waiting conic_layers_waiting;
+
+/* What of a sample makes its disc, beside its key. */
+typedef struct conic_layers_facet {
+  uint8_t normal[2];
+  uint16_t size;
+} conic_layers_facet;
+
 struct conic_layers_branch {
   conic_layers_branch *children[2]; /* as far down as bounds look */
-  uint32_t nodes[2];                /* theirs, once they are on the shelf */
   int is_leaf;
   uint64_t first_key, last_key, n_place;
-  size_t n_drawn;
-  conic_layers_sample *samples;     /* those drawn, until its cloud is packed */
-  uint64_t *keys;                   /* of these */
+  size_t n_drawn, stride;
+  conic_layers_waiting *waiting;
+  unsigned char *samples;     /* those drawn, until the parent has chosen; null: put away */
+  uint64_t *keys;             /* of these; null: put away */
+  conic_layers_facet *facets; /* likewise */
+  uint64_t samples_at, keys_at, facets_at;
   double area;                      /* of the surface: of each sample the square of the spacing about it */
   double distance;                  /* between the chosen, as conic_thinner_choose has it; 0: a leaf */
   double covering;                  /* these three in steps of the grid */
   double outline_low, outline_high; /* of the leaves' outlines */
-  double radius;                    /* with which it is drawn */
-  double low[3], high[3];           /* box of its place's samples, in steps */
-  double center[3], sphere;         /* of these, in steps */
+  double radius;                    /* the greatest with which any is drawn */
+  double growth, reach, past; /* with what each is: conic_layers_outline; and how far that is past its own at most */
+  double part;                /* how far what full resolution draws is from what is drawn, in steps */
+  double low[3], high[3];     /* box of its place's samples, in steps */
+  double center[3], sphere;   /* of these, in steps */
   double axis[3], cone;
 };
+
+static inline const conic_layers_sample *conic_layers_drawn_at(const conic_layers_branch *branch, size_t i) {
+  return conic_layers_sample_at(branch->samples, branch->stride, i);
+}
 
 /* Of a leaf, from all samples in its place. Errors: MEMORY. */
 conic_status conic_layers_bound_leaf(const conic_layers_plan *plan, conic_layers_branch *leaf);
 
-/* Of a node whose samples have been chosen, the grid of the thinner holding them. */
-void conic_layers_bound_node(conic_thinner *thinner, conic_layers_branch *node);
+/* Of a node whose samples have been chosen, the grid of the thinner holding them. `is_alone`: on all threads; not from
+ * inside a task. Errors: MEMORY, IO. */
+conic_status conic_layers_bound_node(const conic_layers_plan *plan, const conic_thinner *thinner, int is_alone,
+                                     conic_layers_branch *node);
 
 /* The entry's part that follows from it, all lengths rounded up. */
 void conic_layers_describe_branch(const conic_layers_plan *plan, const conic_layers_branch *branch,

@@ -7,102 +7,145 @@
 #include "core/base/message.h"
 #include "lod/layers/format/layers_key.h"
 
-/* So many bits of the keys part the samples at a time. */
-enum { SPLIT_BITS = 12, N_SPLIT = 1 << SPLIT_BITS };
+/* So many bits of the keys part the samples at a time, fewer where there is little memory for open blocks. */
+enum { MOST_SPLIT_BITS = 12, LEAST_SPLIT_BITS = 4, LEAST_BLOCK = 32, MOST_BLOCK = 1024 };
 
-static void release_bucket(conic_context *context, conic_layers_bucket *bucket) {
-  conic_memory_release(context, bucket->blocks);
-  conic_memory_release(context, bucket->open);
-  memset(bucket, 0, sizeof *bucket);
-}
+#define NO_BLOCK UINT64_MAX
 
 void conic_layers_buckets_end(conic_layers_buckets *buckets) {
   if (!buckets->context)
     return;
-  for (size_t i = 0; i < buckets->n; i++)
-    release_bucket(buckets->context, &buckets->buckets[i]);
   conic_memory_release(buckets->context, buckets->buckets);
   conic_spool_end(&buckets->spool);
   memset(buckets, 0, sizeof *buckets);
 }
 
-/* Puts the open block away. */
-static conic_status close_block(conic_layers_buckets *all, conic_layers_bucket *bucket) {
-  if (bucket->n_open == 0)
-    return CONIC_OK;
-  if (conic_memory_reserve(all->context, &bucket->blocks, bucket->n_blocks, bucket->n_blocks + 1, &bucket->block_room,
-                           sizeof *bucket->blocks) != CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  bucket->blocks[bucket->n_blocks++] = conic_spool_bytes(&all->spool);
-  size_t n_bytes = bucket->n_open * sizeof *bucket->open;
-  bucket->n_open = 0;
-  return conic_spool_append(&all->spool, bucket->open, n_bytes);
+/* A block begins with where the one before it is. */
+static size_t block_bytes(const conic_layers_buckets *all, size_t n_samples) {
+  return sizeof(uint64_t) + n_samples * all->sample_bytes;
 }
 
-static conic_status add_sample(conic_layers_buckets *all, conic_layers_bucket *bucket,
-                               const conic_layers_sample *sample) {
-  if (!bucket->open) {
-    bucket->open = conic_memory_allocate(all->context, all->block_samples, sizeof *bucket->open);
-    if (!bucket->open)
-      return CONIC_ERROR_MEMORY;
-  }
-  bucket->open[bucket->n_open++] = *sample;
-  bucket->count++;
-  return bucket->n_open == all->block_samples ? close_block(all, bucket) : CONIC_OK;
-}
-
-/* The cells that a cell's keys are parted into. */
+/* The cells that a cell's samples are parted into: each a bucket with a block that is being filled. */
 typedef struct split {
+  conic_layers_buckets *all;
+  unsigned n_most_bits, n_bits;
   uint64_t key;
-  unsigned n_bits; /* below the cells' own */
-  conic_layers_bucket cells[N_SPLIT];
+  unsigned shift;  /* bits of the key below the cells' own */
+  uint64_t n_rank; /* of so many that coincide; 0: they do not */
+  uint8_t is_reversed;
+  conic_layers_bucket *cells;
+  unsigned char *open; /* blocks */
 } split;
 
-static void begin_split(uint64_t key, unsigned n_bits, split *parts) {
-  memset(parts, 0, sizeof *parts);
-  parts->key = key;
-  parts->n_bits = n_bits > SPLIT_BITS ? n_bits - SPLIT_BITS : 0;
+static conic_status create_split(conic_layers_buckets *all, size_t memory_bytes, split *parts) {
+  size_t n_samples = memory_bytes / all->sample_bytes, n_bits = MOST_SPLIT_BITS;
+  while (n_bits > LEAST_SPLIT_BITS && n_samples >> n_bits < LEAST_BLOCK)
+    n_bits--;
+  size_t block = n_samples >> n_bits, n_cells = (size_t)1 << n_bits;
+  all->block_samples = block < LEAST_BLOCK ? LEAST_BLOCK : block > MOST_BLOCK ? MOST_BLOCK : block;
+  *parts = (split){.all = all, .n_most_bits = (unsigned)n_bits};
+  parts->cells = conic_memory_allocate(all->context, n_cells, sizeof *parts->cells);
+  parts->open = conic_memory_allocate(all->context, n_cells, block_bytes(all, all->block_samples));
+  return parts->cells && parts->open ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-static conic_status add_to_split(conic_layers_buckets *all, split *parts, const conic_layers_sample *sample) {
-  return add_sample(all, &parts->cells[(sample->key - parts->key) >> parts->n_bits], sample);
+static void release_split(split *parts) {
+  conic_memory_release(parts->all->context, parts->cells);
+  conic_memory_release(parts->all->context, parts->open);
+}
+
+static void clear_cells(split *parts) {
+  for (size_t i = 0; i < (size_t)1 << parts->n_bits; i++)
+    parts->cells[i] = (conic_layers_bucket){.key = parts->key + ((uint64_t)i << parts->shift),
+                                            .last_block = NO_BLOCK,
+                                            .n_bits = (uint8_t)parts->shift,
+                                            .is_reversed = parts->is_reversed};
+}
+
+/* Of all samples, or of a bucket's, so that cells hold few more than `most`, or a fraction of it. */
+static void begin_split(split *parts, uint64_t key, unsigned n_key_bits, uint64_t count, uint64_t most) {
+  unsigned n = parts->n_most_bits;
+  while (n > 1 && count >> (n - 3) < most && n > 3)
+    n--;
+  parts->n_bits = n < n_key_bits ? n : n_key_bits;
+  parts->key = key;
+  parts->shift = n_key_bits - parts->n_bits;
+  parts->n_rank = 0;
+  clear_cells(parts);
+}
+
+/* Of a bucket whose samples coincide: into halves of halves, as the tree parts them. */
+static void begin_halving(split *parts, const conic_layers_bucket *bucket, uint64_t most) {
+  parts->n_bits = 1;
+  while (parts->n_bits < parts->n_most_bits && bucket->count >> parts->n_bits > most)
+    parts->n_bits++;
+  parts->key = bucket->key;
+  parts->shift = 0;
+  parts->n_rank = bucket->count;
+  clear_cells(parts);
+  for (size_t i = 0; i < (size_t)1 << parts->n_bits; i++)
+    parts->cells[i].key = bucket->key;
+}
+
+static size_t cell_of_rank(const split *parts, uint64_t rank) {
+  size_t cell = 0;
+  uint64_t n = parts->n_rank;
+  for (unsigned i = 0; i < parts->n_bits; i++) {
+    uint64_t half = n / 2;
+    int is_second = rank >= half;
+    cell = 2 * cell + (size_t)is_second;
+    rank -= is_second ? half : 0;
+    n = is_second ? n - half : half;
+  }
+  return cell;
+}
+
+static unsigned char *open_block(const split *parts, size_t cell) {
+  return parts->open + cell * block_bytes(parts->all, parts->all->block_samples);
+}
+
+/* Puts the first samples of the open block away. */
+static conic_status close_block(split *parts, size_t i_cell, size_t n_samples) {
+  conic_layers_bucket *cell = &parts->cells[i_cell];
+  unsigned char *block = open_block(parts, i_cell);
+  memcpy(block, &cell->last_block, sizeof cell->last_block);
+  cell->last_block = conic_spool_bytes(&parts->all->spool);
+  return conic_spool_append(&parts->all->spool, block, block_bytes(parts->all, n_samples));
+}
+
+static conic_status add_to_cell(split *parts, size_t i_cell, const conic_layers_sample *sample) {
+  conic_layers_bucket *cell = &parts->cells[i_cell];
+  size_t n_open = (size_t)(cell->count++ % parts->all->block_samples), n_bytes = parts->all->sample_bytes;
+  memcpy(open_block(parts, i_cell) + sizeof(uint64_t) + n_open * n_bytes, sample, n_bytes);
+  return n_open + 1 == parts->all->block_samples ? close_block(parts, i_cell, n_open + 1) : CONIC_OK;
+}
+
+static size_t cell_of_key(const split *parts, uint64_t key) {
+  return (size_t)((key - parts->key) >> parts->shift);
 }
 
 /* Puts what is left in open blocks away and hands the buckets that hold any over, in place of number `at`, which is
  * dropped; or at the end. */
-static conic_status end_split(conic_layers_buckets *all, split *parts, size_t at) {
+static conic_status end_split(split *parts, size_t at) {
+  conic_layers_buckets *all = parts->all;
   conic_status status = CONIC_OK;
-  size_t n_new = 0, n_dropped = at < all->n;
-  for (size_t i = 0; i < N_SPLIT && status == CONIC_OK; i++) {
-    conic_layers_bucket *cell = &parts->cells[i];
-    cell->key = parts->key + ((uint64_t)i << parts->n_bits);
-    cell->n_bits = parts->n_bits;
-    status = close_block(all, cell);
-    conic_memory_release(all->context, cell->open);
-    cell->open = NULL;
-    n_new += cell->count > 0;
+  size_t n_cells = (size_t)1 << parts->n_bits, n_new = 0, n_dropped = at < all->n;
+  for (size_t i = 0; i < n_cells && status == CONIC_OK; i++) {
+    size_t n_open = (size_t)(parts->cells[i].count % all->block_samples);
+    status = n_open ? close_block(parts, i, n_open) : CONIC_OK;
+    n_new += parts->cells[i].count > 0;
   }
   if (status == CONIC_OK)
     status =
         conic_memory_reserve(all->context, &all->buckets, all->n, all->n + n_new, &all->room, sizeof *all->buckets);
   if (status != CONIC_OK)
     return status;
-  if (n_dropped)
-    release_bucket(all->context, &all->buckets[at]);
   memmove(all->buckets + at + n_new, all->buckets + at + n_dropped, (all->n - at - n_dropped) * sizeof *all->buckets);
-  for (size_t i = 0, k = at; i < N_SPLIT; i++)
-    if (parts->cells[i].count > 0) {
+  for (size_t i = 0, k = at; i < n_cells; i++)
+    if (parts->cells[i].count > 0)
       all->buckets[k++] = parts->cells[i];
-      memset(&parts->cells[i], 0, sizeof parts->cells[i]);
-    }
   all->n += n_new - n_dropped;
   return CONIC_OK;
-}
-
-static void abandon_split(conic_context *context, split *parts) {
-  for (size_t i = 0; i < N_SPLIT; i++)
-    release_bucket(context, &parts->cells[i]);
-  conic_memory_release(context, parts);
 }
 
 /* From world units to steps of the grid. */
@@ -114,7 +157,7 @@ typedef struct gridding {
 static void place_sample(const gridding *grid, const conic_layers_block *block, const conic_layers_raw *raw,
                          conic_layers_sample *sample) {
   uint32_t steps[3];
-  sample->bare = raw->is_bare ? 64 : 0;
+  sample->bare = raw->is_bare;
   for (int axis = 0; axis < 3; axis++) {
     double place = ((block->origin[axis] - grid->origin[axis]) + (double)raw->position[axis]) / grid->quantum;
     double step = floor(place);
@@ -126,130 +169,194 @@ static void place_sample(const gridding *grid, const conic_layers_block *block, 
   sample->key = conic_layers_key(steps[0], steps[1], steps[2]);
 }
 
-static conic_status fill_first(const conic_layers_intake *intake, const gridding *grid, conic_layers_raw *raws,
-                               split *parts, conic_layers_buckets *all) {
-  uint64_t offset = 0, n_done = 0;
-  conic_layers_block block;
-  int is_there = 1;
-  conic_status status = conic_layers_intake_read(intake, &offset, &block, raws, &is_there);
-  while (status == CONIC_OK && is_there) {
-    for (size_t i = 0; i < block.count && status == CONIC_OK; i++) {
-      const conic_layers_raw *raw = &raws[i];
-      conic_layers_sample sample = {.normal = {raw->normal[0], raw->normal[1]},
+static conic_status split_block(const conic_layers_intake *intake, const gridding *grid,
+                                const conic_layers_block *block, const unsigned char *raws, conic_layers_sample *sample,
+                                split *parts) {
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < block->count && status == CONIC_OK; i++) {
+    const conic_layers_raw *raw = conic_layers_raw_at(raws, intake->raw_bytes, i);
+    *sample = (conic_layers_sample){.normal = {raw->normal[0], raw->normal[1]},
                                     .size = raw->size,
                                     .color = {raw->color[0], raw->color[1], raw->color[2]}};
-      place_sample(grid, &block, raw, &sample);
-      status = add_to_split(all, parts, &sample);
-    }
-    n_done += block.count;
-    if (status == CONIC_OK)
-      status = conic_progress(intake->context, "sort", (double)n_done / (double)intake->n_samples);
-    if (status == CONIC_OK)
-      status = conic_layers_intake_read(intake, &offset, &block, raws, &is_there);
+    memcpy(sample + 1, raw + 1, intake->extra_bytes);
+    place_sample(grid, block, raw, sample);
+    status = add_to_cell(parts, cell_of_key(parts, sample->key), sample);
   }
   return status;
 }
 
-/* How many samples the bucket's block i holds. */
-static size_t block_count(const conic_layers_buckets *all, const conic_layers_bucket *bucket, size_t i) {
-  uint64_t left = bucket->count - (uint64_t)i * all->block_samples;
-  return left < all->block_samples ? (size_t)left : all->block_samples;
-}
-
-static conic_status refine(conic_layers_buckets *all, size_t at, conic_layers_sample *samples, split *parts) {
-  const conic_layers_bucket bucket = all->buckets[at];
-  conic_status status = CONIC_OK;
-  begin_split(bucket.key, bucket.n_bits, parts);
-  for (size_t i = 0; i < bucket.n_blocks && status == CONIC_OK; i++) {
-    size_t n = block_count(all, &bucket, i);
-    status = conic_spool_read(&all->spool, bucket.blocks[i], samples, n * sizeof *samples);
-    for (size_t k = 0; k < n && status == CONIC_OK; k++)
-      status = add_to_split(all, parts, &samples[k]);
+static conic_status split_all(const conic_layers_intake *intake, const gridding *grid, split *parts) {
+  conic_context *context = intake->context;
+  uint64_t offset = 0, n_done = 0;
+  conic_layers_block block;
+  int is_there = 1;
+  unsigned char *raws = conic_memory_allocate(context, CONIC_LAYERS_BLOCK, intake->raw_bytes);
+  conic_layers_sample *sample = conic_memory_allocate_zeroed(context, 1, parts->all->sample_bytes);
+  conic_status status = raws && sample ? CONIC_OK : CONIC_ERROR_MEMORY;
+  while (status == CONIC_OK) {
+    status = conic_layers_intake_read(intake, &offset, &block, raws, &is_there);
+    if (status != CONIC_OK || !is_there)
+      break;
+    status = split_block(intake, grid, &block, raws, sample, parts);
+    n_done += block.count;
+    if (status == CONIC_OK)
+      status = conic_progress(context, "sort", (double)n_done / (double)intake->n_samples);
   }
-  return status == CONIC_OK ? end_split(all, parts, at) : status;
+  conic_memory_release(context, raws);
+  conic_memory_release(context, sample);
+  return status;
 }
 
-static conic_status refine_all(conic_layers_buckets *all, uint64_t most, split *parts) {
+typedef conic_status take_block(void *data, const unsigned char *samples, size_t n);
+
+/* Hands over the bucket's blocks, the last one first; `block` has room for one. */
+static conic_status read_chain(const conic_layers_buckets *all, const conic_layers_bucket *bucket, unsigned char *block,
+                               take_block *take, void *data) {
+  uint64_t at = bucket->last_block, left = bucket->count;
   conic_status status = CONIC_OK;
-  conic_layers_sample *samples = conic_memory_allocate(all->context, all->block_samples, sizeof *samples);
-  if (!samples)
+  while (left > 0 && status == CONIC_OK) {
+    size_t n = (size_t)(left % all->block_samples);
+    n = n ? n : all->block_samples;
+    status = conic_spool_read(&all->spool, at, block, block_bytes(all, n));
+    if (status == CONIC_OK)
+      status = take(data, block + sizeof at, n);
+    memcpy(&at, block, sizeof at);
+    left -= n;
+  }
+  return status;
+}
+
+typedef struct refining {
+  split *parts;
+  uint64_t n_done; /* samples, of those that coincide */
+} refining;
+
+/* From the last on: so each refining turns their order around. */
+static conic_status refine_block(void *data, const unsigned char *samples, size_t n) {
+  refining *r = data;
+  split *parts = r->parts;
+  conic_status status = CONIC_OK;
+  for (size_t i = n; i > 0 && status == CONIC_OK; i--) {
+    const conic_layers_sample *sample = conic_layers_sample_at(samples, parts->all->sample_bytes, i - 1);
+    uint64_t rank = r->n_done++;
+    size_t cell = parts->n_rank == 0 ? cell_of_key(parts, sample->key)
+                                     : cell_of_rank(parts, parts->is_reversed ? parts->n_rank - 1 - rank : rank);
+    status = add_to_cell(parts, cell, sample);
+  }
+  return status;
+}
+
+static conic_status refine(split *parts, size_t at, uint64_t most, unsigned char *block) {
+  const conic_layers_bucket bucket = parts->all->buckets[at];
+  refining r = {.parts = parts};
+  parts->is_reversed = !bucket.is_reversed;
+  if (bucket.n_bits)
+    begin_split(parts, bucket.key, bucket.n_bits, bucket.count, most);
+  else
+    begin_halving(parts, &bucket, most);
+  conic_status status = read_chain(parts->all, &bucket, block, refine_block, &r);
+  return status == CONIC_OK ? end_split(parts, at) : status;
+}
+
+static conic_status refine_all(split *parts, uint64_t most) {
+  conic_layers_buckets *all = parts->all;
+  conic_status status = CONIC_OK;
+  unsigned char *block = conic_memory_allocate(all->context, block_bytes(all, all->block_samples), 1);
+  if (!block)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < all->n && status == CONIC_OK;)
-    if (all->buckets[i].count > most && all->buckets[i].n_bits > 0)
-      status = refine(all, i, samples, parts);
+    if (all->buckets[i].count > most)
+      status = refine(parts, i, most, block);
     else
       i++;
-  conic_memory_release(all->context, samples);
+  conic_memory_release(all->context, block);
   return status;
 }
 
 conic_status conic_layers_buckets_fill(const conic_layers_intake *intake, const conic_layers_plan *plan,
                                        const double origin[3], size_t memory_bytes, uint64_t most,
                                        conic_layers_buckets *buckets) {
-  conic_context *context = intake->context;
   gridding grid = {.quantum = plan->quantum, .last = (double)((UINT64_C(1) << plan->bits) - 1)};
+  size_t open_bytes = memory_bytes / 4;
+  split parts;
   memcpy(grid.origin, origin, sizeof grid.origin);
   memset(buckets, 0, sizeof *buckets);
-  buckets->context = context;
-  size_t block = memory_bytes / 8 / N_SPLIT / sizeof(conic_layers_sample); /* open blocks take an eighth */
-  buckets->block_samples = block < 64 ? 64 : block > 1024 ? 1024 : block;
-  conic_spool_begin(context, intake->spool.path, memory_bytes - memory_bytes / 8, &buckets->spool);
-  split *parts = conic_memory_allocate(context, 1, sizeof *parts);
-  if (!parts)
-    return CONIC_ERROR_MEMORY;
-  begin_split(0, 3 * plan->bits, parts);
-  conic_layers_raw *raws = conic_memory_allocate(context, CONIC_LAYERS_BLOCK, sizeof *raws);
-  conic_status status = raws ? fill_first(intake, &grid, raws, parts, buckets) : CONIC_ERROR_MEMORY;
-  conic_memory_release(context, raws);
+  buckets->context = intake->context;
+  buckets->sample_bytes = plan->sample_bytes;
+  conic_spool_begin(intake->context, intake->spool.path, memory_bytes - open_bytes, &buckets->spool);
+  conic_status status = create_split(buckets, open_bytes, &parts);
+  if (status == CONIC_OK) {
+    begin_split(&parts, 0, 3 * plan->bits, intake->n_samples, most);
+    status = split_all(intake, &grid, &parts);
+  }
   if (status == CONIC_OK)
-    status = end_split(buckets, parts, 0);
+    status = end_split(&parts, 0);
   if (status == CONIC_OK)
-    status = refine_all(buckets, most, parts);
-  abandon_split(context, parts);
+    status = refine_all(&parts, most);
+  release_split(&parts);
   return status;
 }
 
 enum { DIGIT_BITS = 11, N_DIGITS = 1 << DIGIT_BITS };
 
 /* Stable, by so many bits of the key from `shift` on. */
-static void sort_by_digit(const conic_layers_sample *from, size_t n, unsigned shift, conic_layers_sample *to) {
+static void sort_records_by_digit(const unsigned char *from, size_t stride, size_t n, unsigned shift,
+                                  unsigned char *to) {
   size_t starts[N_DIGITS + 1] = {0};
   for (size_t i = 0; i < n; i++)
-    starts[(from[i].key >> shift & (N_DIGITS - 1)) + 1]++;
+    starts[(conic_layers_sample_at(from, stride, i)->key >> shift & (N_DIGITS - 1)) + 1]++;
   for (size_t i = 1; i < N_DIGITS; i++)
     starts[i] += starts[i - 1];
   for (size_t i = 0; i < n; i++)
-    to[starts[from[i].key >> shift & (N_DIGITS - 1)]++] = from[i];
+    memcpy(to + starts[conic_layers_sample_at(from, stride, i)->key >> shift & (N_DIGITS - 1)]++ * stride,
+           from + i * stride, stride);
 }
 
-static void sort(conic_layers_sample *samples, size_t n, conic_layers_sample *scratch) {
+/* Returns which of the two arrays has them in order. */
+static unsigned char *sort_records(unsigned char *samples, size_t stride, size_t n, unsigned char *scratch) {
   uint64_t differing = 0;
-  conic_layers_sample *from = samples, *to = scratch;
+  unsigned char *from = samples, *to = scratch;
   for (size_t i = 1; i < n; i++)
-    differing |= samples[i].key ^ samples[0].key;
+    differing |= conic_layers_sample_at(samples, stride, i)->key ^ conic_layers_sample_at(samples, stride, 0)->key;
   for (unsigned shift = 0; shift < 64 && differing >> shift; shift += DIGIT_BITS) {
-    sort_by_digit(from, n, shift, to);
-    conic_layers_sample *held = from;
+    sort_records_by_digit(from, stride, n, shift, to);
+    unsigned char *held = from;
     from = to;
     to = held;
   }
-  if (from != samples)
-    memcpy(samples, from, n * sizeof *samples);
+  return from;
+}
+
+typedef struct bucket_copy {
+  unsigned char *next; /* where the next goes, or before this */
+  size_t stride;
+  int is_reversed;
+} bucket_copy;
+
+static conic_status copy_block(void *data, const unsigned char *samples, size_t n) {
+  bucket_copy *c = data;
+  if (!c->is_reversed) {
+    c->next -= n * c->stride;
+    memcpy(c->next, samples, n * c->stride);
+  }
+  for (size_t i = n; c->is_reversed && i > 0; i--, c->next += c->stride)
+    memcpy(c->next, samples + (i - 1) * c->stride, c->stride);
+  return CONIC_OK;
 }
 
 conic_status conic_layers_buckets_load(const conic_layers_buckets *buckets, size_t first, size_t end,
-                                       conic_layers_sample *samples, conic_layers_sample *scratch) {
-  size_t n = 0;
-  for (size_t i = first; i < end; i++) {
+                                       unsigned char *samples, unsigned char *scratch, unsigned char **sorted) {
+  size_t n = 0, stride = buckets->sample_bytes;
+  unsigned char *block = conic_memory_allocate(buckets->context, block_bytes(buckets, buckets->block_samples), 1);
+  conic_status status = block ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (size_t i = first; i < end && status == CONIC_OK; i++) {
     const conic_layers_bucket *bucket = &buckets->buckets[i];
-    for (size_t k = 0; k < bucket->n_blocks; k++) {
-      size_t count = block_count(buckets, bucket, k);
-      conic_status status = conic_spool_read(&buckets->spool, bucket->blocks[k], samples + n, count * sizeof *samples);
-      if (status != CONIC_OK)
-        return status;
-      n += count;
-    }
+    size_t n_after = n + (size_t)bucket->count;
+    bucket_copy c = {samples + (bucket->is_reversed ? n : n_after) * stride, stride, bucket->is_reversed};
+    status = read_chain(buckets, bucket, block, copy_block, &c);
+    n = n_after;
   }
-  sort(samples, n, scratch);
-  return CONIC_OK;
+  conic_memory_release(buckets->context, block);
+  *sorted = status == CONIC_OK ? sort_records(samples, stride, n, scratch) : NULL;
+  return status;
 }

@@ -5,35 +5,33 @@
 #include "lod/layers/build/layers_intake.h"
 #include "lod/layers/build/layers_tree.h"
 
-/* The samples of a cell of the grid. */
+/* The samples of a cell of the grid, or of those that coincide a part. */
 typedef struct conic_layers_bucket {
-  uint64_t key;    /* the cell's first */
-  unsigned n_bits; /* of a key, below those that the cell's have in common */
+  uint64_t key; /* the cell's first */
   uint64_t count;
-  uint64_t *blocks; /* where they are in the spool, in the order in which they came */
-  size_t n_blocks, block_room;
-  conic_layers_sample *open; /* the block that is being filled, or null */
-  size_t n_open;
+  uint64_t last_block; /* where it is in the spool; each says where the one before it is */
+  uint8_t n_bits;      /* of a key, below those that the cell's have in common */
+  uint8_t is_reversed; /* the last that came are the first in it */
 } conic_layers_bucket;
 
 typedef struct conic_layers_buckets {
   conic_context *context;
   conic_spool spool;
-  size_t block_samples;
+  size_t block_samples, sample_bytes;
   size_t n, room;
   conic_layers_bucket *buckets; /* ascending by key; none is empty */
 } conic_layers_buckets;
 
-/* Gives every sample of the intake its key on the grid and sorts them, until no bucket holds more than `most`, but for
- * those that lie in one cell of the grid. Errors: MEMORY, IO, CANCELLED. */
+/* Gives every sample of the intake its key on the grid and sorts them, until no bucket holds more than `most`. Samples
+ * that coincide are halved as often as it takes. Errors: MEMORY, IO, CANCELLED. */
 conic_status conic_layers_buckets_fill(const conic_layers_intake *intake, const conic_layers_plan *plan,
                                        const double origin[3], size_t memory_bytes, uint64_t most,
                                        conic_layers_buckets *buckets);
 void conic_layers_buckets_end(conic_layers_buckets *buckets);
 
 /* Copies the samples of some buckets in a row, and sorts them by key, those of one key as they came; both arrays have
- * room for all of them, and the sorted ones are in the first. Several threads may do so. Errors: IO. */
+ * room for all of them, and the sorted ones are in *sorted, either. Several threads may do so. Errors: MEMORY, IO. */
 conic_status conic_layers_buckets_load(const conic_layers_buckets *buckets, size_t first, size_t end,
-                                       conic_layers_sample *samples, conic_layers_sample *scratch);
+                                       unsigned char *samples, unsigned char *scratch, unsigned char **sorted);
 
 #endif

@@ -39,25 +39,50 @@ void conic_layers_options_init_sized(conic_layers_options *options, size_t size)
   conic_options_give(options, size, &own);
 }
 
-static int is_sound(const conic_layers_options *options) {
+static int are_options_sound(const conic_layers_options *options) {
   return options->cloud_size >= LEAST_CLOUD && options->cloud_size <= MOST_CLOUD && options->quantum > 0.0 &&
          options->quantum < 1e15 && options->cutoff > 0.0f && options->cutoff < 1e3f;
 }
 
-/* Of the memory that building may take: what comes in, its rough order, one chunk a thread with room to sort it, and
- * the packed clouds. Not all of it is taken at the same time; the rest is for what grows with the number of chunks. */
-static size_t share(const conic_layers_builder *builder, double part) {
-  double bytes = part * (double)builder->options.memory_bytes;
-  return bytes < 1e15 ? (size_t)bytes : (size_t)1e15;
+/* What the program itself takes, its libraries and what reads the samples; and what building takes at least. */
+static const uint64_t own_bytes = UINT64_C(12) << 20, least_bytes = UINT64_C(4) << 20;
+
+static size_t usable_bytes(const conic_layers_builder *builder) {
+  uint64_t bytes = builder->options.memory_bytes;
+  bytes = bytes > own_bytes + least_bytes ? bytes - own_bytes : least_bytes;
+  return bytes < SIZE_MAX / 2 ? (size_t)bytes : SIZE_MAX / 2;
 }
 
-static uint64_t most_in_chunk(const conic_layers_builder *builder) {
-  uint64_t n_threads = (uint64_t)conic_context_threads(builder->context);
-  uint64_t fitting = share(builder, 0.25) / (2 * sizeof(conic_layers_sample) * n_threads);
-  uint64_t even = builder->intake.n_samples / (8 * n_threads); /* so that no thread is left with a large one */
-  uint64_t least = conic_layers_most_in_leaf(&builder->plan), most = fitting < even ? fitting : even;
-  least *= builder->plan.is_unoriented ? CONIC_LAYERS_PATCH_LEAVES : 1;
-  return most > least ? most : least;
+/* Of the memory that building may take, in eighths. First there is what comes in; then its rough order, two thirds of
+ * which stay while it grows; then the workers, each with a chunk and room to sort it, branches that wait, and nodes. */
+static size_t eighths_of_memory(const conic_layers_builder *builder, size_t n_eighths) {
+  return usable_bytes(builder) / 8 * n_eighths;
+}
+
+/* How many samples are one chunk at least: a leaf is not parted, nor is what normals are found in. */
+static uint64_t least_in_chunk(const conic_layers_plan *plan) {
+  return conic_layers_most_in_leaf(plan) * (plan->has_bare ? (uint64_t)CONIC_LAYERS_PATCH_LEAVES : 1);
+}
+
+/* A sample of a chunk, its copy for sorting, and keys of the nodes below; and where normals are found, their grid. */
+static size_t bytes_in_chunk(const conic_layers_plan *plan) {
+  return 2 * plan->sample_bytes + 2 * sizeof(uint64_t) + (plan->has_bare ? 28 : 0);
+}
+
+/* As many workers as there are threads, if there is memory for them; and the larger chunks the more there is. */
+static conic_layers_growth plan_growth(const conic_layers_builder *builder) {
+  const conic_layers_plan *plan = &builder->plan;
+  uint64_t n_threads = (uint64_t)conic_context_threads(builder->context), least = least_in_chunk(plan);
+  uint64_t bytes = eighths_of_memory(builder, 5), worker = conic_layers_worker_bytes(plan),
+           sample = bytes_in_chunk(plan);
+  uint64_t n_workers = bytes / (worker + least * sample);
+  n_workers = n_workers < n_threads ? n_workers : n_threads;
+  n_workers = n_workers ? n_workers : 1;
+  uint64_t left = bytes / n_workers > worker ? bytes / n_workers - worker : 0;
+  return (conic_layers_growth){.n_workers = (int)n_workers,
+                               .most = left / sample > least ? left / sample : least,
+                               .waiting_bytes = eighths_of_memory(builder, 1),
+                               .node_bytes = eighths_of_memory(builder, 1) / 2};
 }
 
 conic_status conic_layers_builder_open(conic_context *context, const char *path, const conic_layers_options *options,
@@ -66,7 +91,7 @@ conic_status conic_layers_builder_open(conic_context *context, const char *path,
   *builder = NULL;
   conic_layers_options own;
   conic_layers_options_init(&own);
-  if ((options && !conic_options_take(&own, options)) || !is_sound(&own))
+  if ((options && !conic_options_take(&own, options)) || !are_options_sound(&own))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the options of a layered point cloud have no meaning", path);
   conic_status status = conic_zstd_create(context, &zstd); /* told before hours of work, not after */
   if (status != CONIC_OK)
@@ -84,7 +109,8 @@ conic_status conic_layers_builder_open(conic_context *context, const char *path,
   if (status == CONIC_OK) {
     memcpy(made->path, path, n_path);
     conic_output_sweep(context, path);
-    status = conic_layers_intake_begin(context, made->path, share(made, 0.35), made->options.cutoff, &made->intake);
+    status = conic_layers_intake_begin(context, made->path, eighths_of_memory(made, 3), made->options.cutoff,
+                                       made->options.keeps_all, &made->intake);
   }
   if (status == CONIC_OK)
     *builder = made;
@@ -145,6 +171,30 @@ static void lay_grid(conic_layers_builder *builder, double quantum) {
   }
 }
 
+/* The grid of a file that there is, and as many whole steps more below it as the box takes. */
+static conic_status continue_grid(conic_layers_builder *builder) {
+  const conic_layers_options *options = &builder->options;
+  conic_layers_header *header = &builder->header;
+  double n_most = 2.0;
+  header->quantum = options->quantum;
+  for (int axis = 0; axis < 3; axis++) {
+    header->low[axis] = builder->intake.low[axis];
+    header->high[axis] = builder->intake.high[axis];
+    double n_below = ceil((options->corner[axis] - header->low[axis]) / header->quantum);
+    header->origin[axis] = options->corner[axis] - (n_below > 0.0 ? n_below * header->quantum : 0.0);
+    double n_steps = floor((header->high[axis] - header->origin[axis]) / header->quantum) + 1.0;
+    n_most = n_steps > n_most ? n_steps : n_most;
+  }
+  if (!(n_most <= (double)(UINT64_C(1) << CONIC_LAYERS_MOST_BITS)))
+    return conic_fail(
+        builder->context, CONIC_ERROR_INPUT,
+        "%s: not written: with what is added, there are too many steps of %g: build it anew with larger ones",
+        builder->path, header->quantum);
+  for (header->bits = 1; (double)(UINT64_C(1) << header->bits) < n_most;)
+    header->bits++;
+  return CONIC_OK;
+}
+
 /* As conic_default_near, of the box. */
 static double near_of(const conic_layers_header *header) {
   double diagonal2 = 0.0;
@@ -159,26 +209,37 @@ static conic_status make_plan(conic_layers_builder *builder) {
   conic_status status = conic_layers_intake_spacing(&builder->intake, &header->spacing);
   if (status != CONIC_OK)
     return status;
+  int is_unoriented = builder->options.is_unoriented || intake->n_unseen > 0;
   double unit = builder->options.quantum_in_spacings ? header->spacing : 1.0;
-  lay_grid(builder, builder->options.quantum * unit);
+  if (builder->options.has_corner)
+    status = continue_grid(builder);
+  else
+    lay_grid(builder, builder->options.quantum * unit);
+  if (status != CONIC_OK)
+    return status;
   if (!(header->spacing > 0.0)) /* all coincide: something that can be seen */
     header->spacing = header->quantum;
+  conic_layers_payload_settle(&builder->intake.payload, header->spacing);
+  header->schema = intake->payload.schema;
   header->version = CONIC_LAYERS_VERSION;
-  header->flags = (intake->has_colors ? CONIC_LAYERS_COLORS : 0u) | (intake->n_bare ? CONIC_LAYERS_UNORIENTED : 0u);
+  header->flags = (intake->has_colors ? CONIC_LAYERS_COLORS : 0u) | (is_unoriented ? CONIC_LAYERS_UNORIENTED : 0u);
   header->cloud_size = builder->options.cloud_size;
   header->near_z = near_of(header);
   builder->plan = (conic_layers_plan){.context = builder->context,
                                       .bits = header->bits,
                                       .cloud_size = header->cloud_size,
                                       .n_samples = intake->n_samples,
+                                      .sample_bytes = header->schema.sample_bytes,
                                       .quantum = header->quantum,
                                       .spacing = header->spacing,
-                                      .has_colors = intake->has_colors,
-                                      .is_unoriented = intake->n_bare > 0};
+                                      .schema = &header->schema,
+                                      .cutoff = builder->options.cutoff,
+                                      .is_unoriented = is_unoriented,
+                                      .has_bare = intake->n_bare > 0};
   return CONIC_OK;
 }
 
-static conic_status check_samples(const conic_layers_builder *builder) {
+static conic_status refuse_nothing(const conic_layers_builder *builder) {
   const conic_layers_intake *intake = &builder->intake;
   if (intake->n_samples == 0)
     return conic_fail(builder->context, CONIC_ERROR_INPUT, "%s: not written: there is no sample that can be drawn",
@@ -190,18 +251,18 @@ static conic_status check_samples(const conic_layers_builder *builder) {
 }
 
 static conic_status build_layers(conic_layers_builder *builder) {
-  uint64_t most = 0;
-  conic_status status = check_samples(builder);
+  conic_layers_growth growth;
+  conic_status status = refuse_nothing(builder);
   if (status == CONIC_OK)
     status = make_plan(builder);
   if (status == CONIC_OK) {
-    most = most_in_chunk(builder);
-    status = conic_layers_buckets_fill(&builder->intake, &builder->plan, builder->header.origin, share(builder, 0.35),
-                                       most, &builder->buckets);
+    growth = plan_growth(builder);
+    status = conic_layers_buckets_fill(&builder->intake, &builder->plan, builder->header.origin,
+                                       eighths_of_memory(builder, 3) / 2, growth.most, &builder->buckets);
   }
   conic_layers_intake_end(&builder->intake);
   if (status == CONIC_OK)
-    status = conic_layers_forest_grow(&builder->plan, &builder->buckets, most, share(builder, 0.1), &builder->forest);
+    status = conic_layers_forest_grow(&builder->plan, &builder->buckets, &growth, &builder->forest);
   conic_layers_buckets_end(&builder->buckets);
   return status;
 }

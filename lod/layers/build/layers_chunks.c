@@ -1,51 +1,88 @@
 #include "lod/layers/build/layers_chunks.h"
 
+#include <stdatomic.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "lod/layers/build/layers_branch.h"
+#include "lod/layers/build/layers_waiting.h"
+#include "lod/layers/format/layers_axes.h"
 
-/* Buckets in a row whose samples are one cell's, and what has grown of them. */
+/* A part holds no more samples than this, so that progress is seen; and no more than the fraction of all of them that
+ * keeps all threads busy. */
+enum { MOST_IN_PART = 1 << 19, PARTS_A_THREAD = 8 };
+
+/* Buckets in a row whose samples are one cell's, and how often what has grown of them and what waits before it are
+ * joined then: trees come as a sum in reverse Polish notation does. */
 typedef struct chunk {
   size_t first, end;
   uint64_t n_samples;
-  conic_layers_shelf shelf;
-  conic_layers_branch *branch;
-  conic_status status;
+  unsigned n_joins; /* within its part */
 } chunk;
+
+/* Chunks in a row that one worker grows and joins to one tree. */
+typedef struct layers_part {
+  size_t first, end;
+  uint64_t n_samples;
+  unsigned n_joins; /* with other parts */
+  conic_layers_branch *branch;
+  conic_layers_entry *nodes;
+  size_t n_nodes;
+  conic_status status;
+} layers_part;
+
+/* Branches that wait to be joined. */
+typedef struct stack {
+  conic_layers_branch **branches;
+  size_t n, room;
+} stack;
+
+/* What one thread at a time works with. */
+typedef struct hand {
+  conic_layers_worker *worker;
+  conic_layers_shelf shelf;
+  unsigned char *samples, *scratch; /* of a chunk */
+  stack waiting;
+} hand;
 
 typedef struct growing {
   const conic_layers_plan *plan;
   const conic_layers_buckets *buckets;
+  const conic_layers_growth *growth;
   conic_layers_forest *forest;
-  uint64_t most;
-  size_t n_chunks, chunk_room;
+  conic_layers_waiting waiting;
+  uint64_t most_in_part;
+  size_t n_chunks, chunk_room, n_parts, part_room;
   chunk *chunks;
-  size_t first_chunk; /* of those that grow now */
-  int n_workers;
-  conic_layers_worker **workers; /* one a thread */
+  layers_part *parts;
+  hand *hands;
+  stack crown;
+  size_t end_part; /* of those that grow now */
+  atomic_size_t next_part;
+  atomic_int is_stopped;
+  uint64_t n_grown;
 } growing;
 
 void conic_layers_forest_end(conic_layers_forest *forest) {
-  if (forest->shelf.context)
-    conic_layers_shelf_release(&forest->shelf);
-  conic_spool_end(&forest->spool);
+  conic_spool_end(&forest->nodes);
+  conic_pile_end(&forest->clouds);
 }
 
 static conic_status add_chunk(growing *g, size_t first, size_t end, uint64_t n_samples) {
-  conic_context *context = g->plan->context;
-  if (conic_memory_reserve(context, &g->chunks, g->n_chunks, g->n_chunks + 1, &g->chunk_room, sizeof *g->chunks) !=
-      CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  g->chunks[g->n_chunks++] = (chunk){.first = first, .end = end, .n_samples = n_samples, .shelf = {.context = context}};
-  return CONIC_OK;
+  conic_status status = conic_memory_reserve(g->plan->context, &g->chunks, g->n_chunks, g->n_chunks + 1, &g->chunk_room,
+                                             sizeof *g->chunks);
+  if (status == CONIC_OK)
+    g->chunks[g->n_chunks++] = (chunk){.first = first, .end = end, .n_samples = n_samples};
+  return status;
 }
 
-/* The first of some buckets in a row that is past the middle of the place they share. */
+/* The first of some buckets in a row that is past the middle of the place they share; of those that coincide, the first
+ * of the second half. */
 static size_t split_buckets(const conic_layers_bucket *buckets, size_t first, size_t end) {
   uint64_t differing = buckets[first].key ^ buckets[end - 1].key;
+  if (!differing)
+    return first + (end - first) / 2;
   uint64_t bit = UINT64_C(1) << (63 - __builtin_clzll(differing));
   size_t at = first;
   while (!(buckets[at].key & bit))
@@ -53,171 +90,257 @@ static size_t split_buckets(const conic_layers_bucket *buckets, size_t first, si
   return at;
 }
 
-/* The largest places of the tree that hold no more samples than a chunk may; a leaf is never parted. */
-static conic_status part(growing *g, size_t first, size_t end) {
+static uint64_t samples_in_buckets(const growing *g, size_t first, size_t end) {
   uint64_t n_samples = 0;
   for (size_t i = first; i < end; i++)
     n_samples += g->buckets->buckets[i].count;
-  if (n_samples <= g->most || end - first == 1)
+  return n_samples;
+}
+
+/* The largest places of the tree that hold no more samples than a chunk may; a leaf is never parted. */
+static conic_status list_chunks(growing *g, size_t first, size_t end) {
+  uint64_t n_samples = samples_in_buckets(g, first, end);
+  if (n_samples <= g->growth->most || end - first == 1)
     return add_chunk(g, first, end, n_samples);
   size_t middle = split_buckets(g->buckets->buckets, first, end);
-  conic_status status = part(g, first, middle);
-  return status == CONIC_OK ? part(g, middle, end) : status;
-}
-
-static conic_status grow_chunk(growing *g, chunk *c, conic_layers_worker *worker) {
-  conic_context *context = g->plan->context;
-  conic_layers_sample *samples = conic_memory_allocate(context, (size_t)c->n_samples, sizeof *samples);
-  conic_layers_sample *scratch = conic_memory_allocate(context, (size_t)c->n_samples, sizeof *scratch);
-  conic_status status = samples && scratch ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status = list_chunks(g, first, middle);
   if (status == CONIC_OK)
-    status = conic_layers_buckets_load(g->buckets, c->first, c->end, samples, scratch);
-  conic_memory_release(context, scratch);
+    status = list_chunks(g, middle, end);
   if (status == CONIC_OK)
-    status = conic_layers_grow(worker, samples, (size_t)c->n_samples, &c->shelf, &c->branch);
-  conic_memory_release(context, samples);
+    g->chunks[g->n_chunks - 1].n_joins++;
   return status;
 }
 
-static void grow_task(void *data, size_t i_item, int i_thread) {
-  growing *g = data;
-  chunk *c = &g->chunks[g->first_chunk + i_item];
-  c->status = grow_chunk(g, c, g->workers[i_thread]);
-}
-
-/* Moves a chunk's nodes behind those that there are, and its bytes to the spool. */
-static conic_status collect_chunk(growing *g, chunk *c) {
-  conic_layers_shelf *all = &g->forest->shelf;
-  uint32_t n_before = (uint32_t)all->n_nodes;
-  uint64_t offset = conic_spool_bytes(&g->forest->spool);
-  size_t n = all->n_nodes + c->shelf.n_nodes;
-  if (conic_memory_reserve(all->context, &all->nodes, all->n_nodes, n, &all->node_room, sizeof *all->nodes) != CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < c->shelf.n_nodes; i++) {
-    conic_layers_node node = c->shelf.nodes[i];
-    node.entry.offset += offset;
-    for (int k = 0; k < 2; k++)
-      node.children[k] += node.children[k] != CONIC_LAYERS_NO_NODE ? n_before : 0;
-    all->nodes[all->n_nodes++] = node;
+static conic_status list_parts(growing *g, size_t first, size_t end) {
+  uint64_t n_samples = samples_in_buckets(g, first, end);
+  if (n_samples > g->most_in_part && end - first > 1) {
+    size_t middle = split_buckets(g->buckets->buckets, first, end);
+    conic_status status = list_parts(g, first, middle);
+    if (status == CONIC_OK)
+      status = list_parts(g, middle, end);
+    if (status == CONIC_OK)
+      g->parts[g->n_parts - 1].n_joins++;
+    return status;
   }
-  for (int i = 0; i < CONIC_LAYERS_PARTS; i++)
-    all->part_bytes[i] += c->shelf.part_bytes[i];
-  conic_status status = conic_spool_append(&g->forest->spool, c->shelf.bytes, c->shelf.n_bytes);
-  conic_layers_shelf_release(&c->shelf);
-  for (int k = 0; k < 2 && c->branch; k++)
-    c->branch->nodes[k] += c->branch->nodes[k] != CONIC_LAYERS_NO_NODE ? n_before : 0;
+  size_t first_chunk = g->n_chunks;
+  conic_status status =
+      conic_memory_reserve(g->plan->context, &g->parts, g->n_parts, g->n_parts + 1, &g->part_room, sizeof *g->parts);
+  if (status == CONIC_OK)
+    status = list_chunks(g, first, end);
+  if (status == CONIC_OK)
+    g->parts[g->n_parts++] = (layers_part){.first = first_chunk, .end = g->n_chunks, .n_samples = n_samples};
   return status;
 }
 
-/* Some chunks at a time, so that progress is seen and memory does not grow with what waits to be collected. */
-static conic_status grow_chunks(growing *g) {
-  conic_context *context = g->plan->context;
-  uint64_t n_done = 0, n_all = 0;
+/* Adds a branch, which the stack takes over, and joins it as often as it is due. */
+static conic_status push_branch(growing *g, const hand *with, stack *s, conic_layers_branch *branch, unsigned n_joins,
+                                int is_alone, conic_layers_shelf *shelf) {
+  conic_status status = conic_memory_reserve(g->plan->context, &s->branches, s->n, s->n + 1, &s->room, sizeof(void *));
+  if (status != CONIC_OK) {
+    conic_layers_branch_destroy(branch);
+    return status;
+  }
+  s->branches[s->n++] = branch;
+  status = conic_layers_put_away(s->branches, s->n);
+  for (; n_joins > 0 && status == CONIC_OK; n_joins--) {
+    s->n -= 2;
+    status = conic_layers_join(with->worker, &s->branches[s->n], is_alone, shelf, &branch);
+    if (status != CONIC_OK)
+      break;
+    s->branches[s->n++] = branch;
+    status = conic_layers_put_away(s->branches, s->n);
+  }
+  return status;
+}
+
+static conic_status grow_chunk(growing *g, const chunk *c, hand *h) {
+  conic_layers_branch *branch;
+  unsigned char *sorted;
+  conic_status status = conic_layers_buckets_load(g->buckets, c->first, c->end, h->samples, h->scratch, &sorted);
+  if (status == CONIC_OK)
+    status = conic_layers_grow(h->worker, sorted, (size_t)c->n_samples, &h->shelf, &branch);
+  return status == CONIC_OK ? push_branch(g, h, &h->waiting, branch, c->n_joins, 0, &h->shelf) : status;
+}
+
+static conic_status grow_part(growing *g, layers_part *p, hand *h) {
   conic_status status = CONIC_OK;
-  for (size_t i = 0; i < g->n_chunks; i++)
-    n_all += g->chunks[i].n_samples;
-  for (size_t first = 0, n; first < g->n_chunks && status == CONIC_OK; first += n) {
-    n = g->n_chunks - first < 4 * (size_t)g->n_workers ? g->n_chunks - first : 4 * (size_t)g->n_workers;
-    g->first_chunk = first;
-    uint64_t n_now = 0;
-    for (size_t i = first; i < first + n; i++)
-      n_now += g->chunks[i].n_samples;
-    status = conic_parallel_told(context, "build", (double)n_done / (double)n_all,
-                                 (double)(n_done + n_now) / (double)n_all, n, grow_task, g);
-    n_done += n_now;
-    for (size_t i = first; i < first + n && status == CONIC_OK; i++) {
-      status = g->chunks[i].status;
-      if (status == CONIC_OK)
-        status = collect_chunk(g, &g->chunks[i]);
-    }
-  }
-  return status == CONIC_OK ? conic_progress(context, "build", 1.0) : status;
-}
-
-/* The first of some chunks in a row that is past the middle of the place they share. */
-static size_t split_chunks(const growing *g, size_t first, size_t end) {
-  uint64_t differing = g->chunks[first].branch->first_key ^ g->chunks[end - 1].branch->last_key;
-  uint64_t bit = UINT64_C(1) << (63 - __builtin_clzll(differing));
-  size_t at = first;
-  while (!(g->chunks[at].branch->first_key & bit))
-    at++;
-  return at;
-}
-
-static conic_status join_chunks(growing *g, size_t first, size_t end, conic_layers_branch **branch) {
-  conic_layers_branch *children[2] = {NULL, NULL};
-  *branch = NULL;
-  if (end - first == 1) {
-    *branch = g->chunks[first].branch;
-    g->chunks[first].branch = NULL;
-    return CONIC_OK;
-  }
-  size_t middle = split_chunks(g, first, end);
-  conic_status status = join_chunks(g, first, middle, &children[0]);
+  for (size_t i = p->first; i < p->end && status == CONIC_OK; i++)
+    status = grow_chunk(g, &g->chunks[i], h);
   if (status == CONIC_OK)
-    status = join_chunks(g, middle, end, &children[1]);
-  if (status == CONIC_OK)
-    return conic_layers_join(g->workers[0], children, &g->forest->shelf, branch);
-  conic_layers_branch_destroy(g->plan->context, children[0]);
-  conic_layers_branch_destroy(g->plan->context, children[1]);
-  return status;
-}
-
-/* The nodes above the chunks, and the root's own cloud. */
-static conic_status grow_crown(growing *g) {
-  conic_layers_shelf *all = &g->forest->shelf;
-  conic_layers_branch *root;
-  size_t n_before = all->n_nodes;
-  uint64_t offset = conic_spool_bytes(&g->forest->spool);
-  conic_status status = join_chunks(g, 0, g->n_chunks, &root);
-  if (status == CONIC_OK)
-    status = conic_layers_finish_root(g->workers[0], root, all);
-  conic_layers_branch_destroy(g->plan->context, root);
+    status = conic_layers_shelf_flush(&h->shelf);
   if (status != CONIC_OK)
     return status;
-  for (size_t i = n_before; i < all->n_nodes; i++)
-    all->nodes[i].entry.offset += offset;
-  g->forest->root = (uint32_t)all->n_nodes - 1;
-  return conic_spool_append(&g->forest->spool, all->bytes, all->n_bytes);
+  p->branch = h->waiting.branches[--h->waiting.n];
+  p->n_nodes = h->shelf.n_nodes;
+  p->nodes = conic_memory_allocate(g->plan->context, p->n_nodes, sizeof *p->nodes);
+  if (!p->nodes)
+    return CONIC_ERROR_MEMORY;
+  if (p->n_nodes > 0)
+    memcpy(p->nodes, h->shelf.nodes, p->n_nodes * sizeof *p->nodes);
+  h->shelf.n_nodes = h->shelf.n_put = 0;
+  return CONIC_OK;
 }
 
-static conic_status create_workers(growing *g) {
+/* Of the parts that grow now, one after the other. The calling thread tells of the progress before each of its own. */
+static void grow_parts(void *data, size_t i_hand, int i_thread) {
+  growing *g = data;
+  for (;;) {
+    size_t i = atomic_fetch_add(&g->next_part, 1);
+    if (i >= g->end_part || atomic_load(&g->is_stopped))
+      return;
+    layers_part *p = &g->parts[i];
+    p->status = CONIC_OK;
+    if (i_thread == 0)
+      p->status = conic_progress(g->plan->context, "build", (double)g->n_grown / (double)g->plan->n_samples);
+    if (p->status == CONIC_OK)
+      p->status = grow_part(g, p, &g->hands[i_hand]);
+    if (p->status != CONIC_OK)
+      atomic_store(&g->is_stopped, 1);
+  }
+}
+
+static conic_status put_nodes(growing *g, const conic_layers_entry *nodes, size_t n) {
+  return conic_spool_append(&g->forest->nodes, nodes, n * sizeof *nodes);
+}
+
+/* Joins a part that has grown to those before it. */
+static conic_status collect_part(growing *g, layers_part *p) {
+  hand *h = &g->hands[0];
+  conic_layers_branch *branch = p->branch;
+  conic_status status = put_nodes(g, p->nodes, p->n_nodes);
+  conic_memory_release(g->plan->context, p->nodes);
+  p->nodes = NULL;
+  if (status != CONIC_OK)
+    return status;
+  p->branch = NULL;
+  g->n_grown += p->n_samples;
+  status = push_branch(g, h, &g->crown, branch, p->n_joins, 1, &h->shelf);
+  if (status == CONIC_OK)
+    status = conic_layers_shelf_flush(&h->shelf);
+  if (status == CONIC_OK)
+    status = put_nodes(g, h->shelf.nodes, h->shelf.n_nodes);
+  h->shelf.n_nodes = h->shelf.n_put = 0;
+  return status;
+}
+
+/* Some parts at a time, so that memory does not grow with what waits to be collected. */
+static conic_status grow_all(growing *g) {
+  conic_status status = CONIC_OK;
+  size_t n_hands = (size_t)g->growth->n_workers, n_now = 4 * n_hands;
+  for (size_t first = 0; first < g->n_parts && status == CONIC_OK; first = g->end_part) {
+    g->end_part = g->n_parts - first < n_now ? g->n_parts : first + n_now;
+    atomic_store(&g->next_part, first);
+    conic_parallel_for(g->plan->context, n_hands, grow_parts, g);
+    for (size_t i = first; i < g->end_part && atomic_load(&g->is_stopped) && status == CONIC_OK; i++)
+      status = g->parts[i].status;
+    for (size_t i = first; i < g->end_part && status == CONIC_OK; i++)
+      status = collect_part(g, &g->parts[i]);
+  }
+  return status == CONIC_OK ? conic_progress(g->plan->context, "build", 1.0) : status;
+}
+
+/* The lower median of all samples' outlines. */
+static double median_outline(const growing *g) {
+  uint64_t before = 0;
+  uint16_t code = 0;
+  for (uint32_t i = 0; i < CONIC_LAYERS_OUTLINES && before <= (g->plan->n_samples - 1) / 2; i++) {
+    code = (uint16_t)i;
+    for (int k = 0; k < g->growth->n_workers; k++)
+      before += conic_layers_worker_outlines(g->hands[k].worker)[i];
+  }
+  return (double)conic_layers_size_of(code);
+}
+
+/* The root's own cloud. */
+static conic_status finish_root(growing *g) {
+  hand *h = &g->hands[0];
+  conic_status status = conic_layers_finish_root(h->worker, g->crown.branches[0], &h->shelf);
+  if (status == CONIC_OK)
+    status = conic_layers_shelf_flush(&h->shelf);
+  for (int i = 0; i < g->growth->n_workers; i++)
+    for (int k = 0; k < CONIC_LAYERS_MOST_ATTRIBUTES; k++)
+      g->forest->part_bytes[k] += g->hands[i].shelf.part_bytes[k];
+  return status == CONIC_OK ? put_nodes(g, h->shelf.nodes, h->shelf.n_nodes) : status;
+}
+
+static conic_status create_hands(growing *g) {
   conic_context *context = g->plan->context;
   conic_status status = CONIC_OK;
-  g->n_workers = conic_context_threads(context);
-  g->workers = conic_memory_allocate_zeroed(context, (size_t)g->n_workers, sizeof(void *));
-  if (!g->workers)
+  uint64_t most = 0;
+  for (size_t i = 0; i < g->n_chunks; i++)
+    most = g->chunks[i].n_samples > most ? g->chunks[i].n_samples : most;
+  g->hands = conic_memory_allocate_zeroed(context, (size_t)g->growth->n_workers, sizeof *g->hands);
+  if (!g->hands)
     return CONIC_ERROR_MEMORY;
-  for (int i = 0; i < g->n_workers && status == CONIC_OK; i++)
-    status = conic_layers_worker_create(g->plan, &g->workers[i]);
+  for (int i = 0; i < g->growth->n_workers && status == CONIC_OK; i++) {
+    hand *h = &g->hands[i];
+    h->shelf = (conic_layers_shelf){.context = context, .clouds = &g->forest->clouds};
+    status = conic_layers_worker_create(g->plan, &g->waiting, &h->worker);
+    h->samples = conic_memory_allocate(context, (size_t)most, g->plan->sample_bytes);
+    h->scratch = conic_memory_allocate(context, (size_t)most, g->plan->sample_bytes);
+    if (!h->samples || !h->scratch)
+      status = CONIC_ERROR_MEMORY;
+  }
   return status;
+}
+
+static void release_stack(conic_context *context, stack *s) {
+  for (size_t i = 0; i < s->n; i++)
+    conic_layers_branch_destroy(s->branches[i]);
+  conic_memory_release(context, s->branches);
 }
 
 static void release_growing(growing *g) {
   conic_context *context = g->plan->context;
-  for (size_t i = 0; i < g->n_chunks; i++) {
-    conic_layers_shelf_release(&g->chunks[i].shelf);
-    conic_layers_branch_destroy(context, g->chunks[i].branch);
+  for (size_t i = 0; i < g->n_parts; i++) {
+    conic_layers_branch_destroy(g->parts[i].branch);
+    conic_memory_release(context, g->parts[i].nodes);
   }
-  for (int i = 0; i < g->n_workers && g->workers; i++)
-    conic_layers_worker_destroy(g->workers[i]);
-  conic_memory_release(context, g->workers);
+  for (int i = 0; i < g->growth->n_workers && g->hands; i++) {
+    hand *h = &g->hands[i];
+    release_stack(context, &h->waiting);
+    conic_layers_worker_destroy(h->worker);
+    conic_layers_shelf_release(&h->shelf);
+    conic_memory_release(context, h->samples);
+    conic_memory_release(context, h->scratch);
+  }
+  release_stack(context, &g->crown);
+  conic_memory_release(context, g->hands);
+  conic_memory_release(context, g->parts);
   conic_memory_release(context, g->chunks);
+  conic_layers_waiting_end(&g->waiting);
 }
 
-conic_status conic_layers_forest_grow(const conic_layers_plan *plan, const conic_layers_buckets *buckets, uint64_t most,
-                                      size_t memory_bytes, conic_layers_forest *forest) {
-  growing g = {.plan = plan, .buckets = buckets, .forest = forest, .most = most};
+/* Chunks and parts, of all buckets. */
+static conic_status list_all_parts(growing *g) {
+  uint64_t even = g->plan->n_samples / (PARTS_A_THREAD * (uint64_t)g->growth->n_workers);
+  g->most_in_part = even < MOST_IN_PART ? even : MOST_IN_PART;
+  g->most_in_part = g->most_in_part > g->growth->most ? g->most_in_part : g->growth->most;
+  return list_parts(g, 0, g->buckets->n);
+}
+
+conic_status conic_layers_forest_grow(const conic_layers_plan *plan, const conic_layers_buckets *buckets,
+                                      const conic_layers_growth *growth, conic_layers_forest *forest) {
+  growing *g = conic_memory_allocate_zeroed(plan->context, 1, sizeof *g);
   memset(forest, 0, sizeof *forest);
-  forest->shelf.context = plan->context;
-  conic_spool_begin(plan->context, buckets->spool.path, memory_bytes, &forest->spool);
-  conic_status status = create_workers(&g);
+  if (!g)
+    return CONIC_ERROR_MEMORY;
+  *g = (growing){.plan = plan, .buckets = buckets, .growth = growth, .forest = forest};
+  conic_spool_begin(plan->context, buckets->spool.path, growth->node_bytes, &forest->nodes);
+  conic_status status = conic_pile_begin(plan->context, buckets->spool.path, &forest->clouds);
   if (status == CONIC_OK)
-    status = part(&g, 0, buckets->n);
+    status = conic_layers_waiting_begin(plan->context, buckets->spool.path, growth->waiting_bytes, &g->waiting);
   if (status == CONIC_OK)
-    status = grow_chunks(&g);
+    status = list_all_parts(g);
   if (status == CONIC_OK)
-    status = grow_crown(&g);
-  release_growing(&g);
+    status = create_hands(g);
+  if (status == CONIC_OK)
+    status = grow_all(g);
+  if (status == CONIC_OK)
+    status = finish_root(g);
+  if (status == CONIC_OK)
+    forest->outline = median_outline(g);
+  release_growing(g);
+  conic_memory_release(plan->context, g);
   return status;
 }

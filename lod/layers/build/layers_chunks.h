@@ -1,21 +1,30 @@
-/* From buckets to the whole tree: what fits into memory grows by itself, on all threads; then the pieces are joined. */
+/* From buckets to the whole tree: parts grow by themselves, on all threads, each chunk by chunk of what fits into
+ * memory; then the parts are joined. */
 #ifndef CONIC_LAYERS_CHUNKS_H
 #define CONIC_LAYERS_CHUNKS_H
 
 #include "lod/layers/build/layers_buckets.h"
 #include "lod/layers/build/layers_tree.h"
 
-/* All nodes, their clouds' bytes put aside. */
+/* All nodes, in the order of a shelf, and their clouds' bytes. */
 typedef struct conic_layers_forest {
-  conic_layers_shelf shelf; /* its bytes are those that the spool has not yet */
-  conic_spool spool;
-  uint32_t root; /* the last node */
+  conic_spool nodes; /* conic_layers_entry each; the last is the root */
+  conic_pile clouds;
+  uint64_t part_bytes[CONIC_LAYERS_MOST_ATTRIBUTES];
+  double outline; /* the lower median over all samples at full resolution */
 } conic_layers_forest;
 
-/* Chunks of up to `most` samples, not below a leaf's, grow at a time, one on each thread. Errors: MEMORY, IO,
- * UNSUPPORTED, CANCELLED. */
-conic_status conic_layers_forest_grow(const conic_layers_plan *plan, const conic_layers_buckets *buckets, uint64_t most,
-                                      size_t memory_bytes, conic_layers_forest *forest);
+/* What growing may take. */
+typedef struct conic_layers_growth {
+  int n_workers;        /* at a time */
+  uint64_t most;        /* samples of a chunk, where a leaf has no more */
+  size_t waiting_bytes; /* of branches that wait, beyond which they go to a file */
+  size_t node_bytes;    /* likewise nodes */
+} conic_layers_growth;
+
+/* Errors: MEMORY, IO, UNSUPPORTED, CANCELLED. */
+conic_status conic_layers_forest_grow(const conic_layers_plan *plan, const conic_layers_buckets *buckets,
+                                      const conic_layers_growth *growth, conic_layers_forest *forest);
 void conic_layers_forest_end(conic_layers_forest *forest);
 
 #endif

@@ -9,10 +9,11 @@
 #include "core/base/vectors.h"
 
 conic_status conic_layers_intake_begin(conic_context *context, const char *path, size_t memory_bytes, float cutoff,
-                                       conic_layers_intake *intake) {
+                                       int is_full, conic_layers_intake *intake) {
   memset(intake, 0, sizeof *intake);
   intake->context = context;
   intake->cutoff = cutoff;
+  intake->is_full = is_full;
   intake->stride = 1;
   for (int axis = 0; axis < 3; axis++) {
     intake->low[axis] = HUGE_VAL;
@@ -20,14 +21,26 @@ conic_status conic_layers_intake_begin(conic_context *context, const char *path,
   }
   conic_code_scale_init(1.0, 1.0, 1.0f, &intake->scale);
   conic_spool_begin(context, path, memory_bytes, &intake->spool);
-  intake->pending = conic_memory_allocate(context, CONIC_LAYERS_BLOCK, sizeof *intake->pending);
-  return intake->pending ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return CONIC_OK;
+}
+
+/* The first batch says what all samples have. */
+static conic_status begin_samples(conic_layers_intake *intake, const conic_splats *batch) {
+  conic_status status =
+      conic_layers_payload_begin(intake->context, batch, intake->is_full, intake->cutoff, &intake->payload);
+  intake->extra_bytes = intake->payload.schema.extra_bytes;
+  intake->raw_bytes = (sizeof(conic_layers_raw) + intake->extra_bytes + 7) / 8 * 8;
+  intake->pending = conic_memory_allocate(intake->context, CONIC_LAYERS_BLOCK, intake->raw_bytes);
+  intake->has_started = 1;
+  intake->has_colors = batch->color[0] != NULL;
+  return status == CONIC_OK && !intake->pending ? CONIC_ERROR_MEMORY : status;
 }
 
 void conic_layers_intake_end(conic_layers_intake *intake) {
   if (!intake->context)
     return;
   conic_spool_end(&intake->spool);
+  conic_layers_payload_end(&intake->payload);
   conic_memory_release(intake->context, intake->pending);
   intake->pending = NULL;
 }
@@ -47,16 +60,8 @@ static int is_direction(const float v[3]) {
   return length2 > 1e-60 && length2 < 1e60;
 }
 
-/* The upper half of a float's bits, not rounded down. */
-static uint16_t size_code(float size) {
-  if (!(size > 0.0f && size < 1e30f))
-    return 0;
-  uint32_t bits = conic_bits_of_float(size) + 0xffff;
-  return (uint16_t)(bits >> 16 ? bits >> 16 : 1);
-}
-
 /* The normal and the outline of a splat with axes; whether it has them. */
-static int take_axes(const conic_layers_intake *intake, const conic_splats *batch, size_t i, conic_layers_raw *raw) {
+static int take_axes(conic_layers_intake *intake, const conic_splats *batch, size_t i, conic_layers_raw *raw) {
   float u[3], v[3];
   vector_at(batch->tangent_u, i, u);
   vector_at(batch->tangent_v, i, v);
@@ -71,13 +76,19 @@ static int take_axes(const conic_layers_intake *intake, const conic_splats *batc
   if (!is_direction(normal))
     return 0;
   conic_layers_code_normal(normal, raw->normal);
-  raw->size = size_code((float)(longer * (double)intake->cutoff));
+  float outline = (float)(longer * (double)intake->cutoff);
+  raw->size = conic_layers_code_size(outline);
+  if (raw->size && !intake->is_full) {
+    intake->payload.shortest = outline < intake->payload.shortest ? outline : intake->payload.shortest;
+    intake->payload.longest = outline > intake->payload.longest ? outline : intake->payload.longest;
+  }
   return 1;
 }
 
-static int take_normal(const conic_splats *batch, size_t i, conic_layers_raw *raw) {
+/* The direction of a normal, or of a sight; 0 where it has none. */
+static int take_direction(float *const direction[3], size_t i, conic_layers_raw *raw) {
   float normal[3];
-  vector_at(batch->normal, i, normal);
+  vector_at(direction, i, normal);
   if (!is_finite(normal) || !is_direction(normal))
     return 0;
   conic_layers_code_normal(normal, raw->normal);
@@ -111,7 +122,7 @@ static void remember_some(conic_layers_intake *intake, const double position[3])
 /* One sample into `raw`; whether it can be used. */
 static int take_sample(conic_layers_intake *intake, const conic_splats *batch, size_t i, conic_layers_raw *raw) {
   double position[3];
-  memset(raw, 0, sizeof *raw);
+  memset(raw, 0, intake->raw_bytes);
   vector_at(batch->position, i, raw->position);
   for (int axis = 0; axis < 3; axis++)
     position[axis] = batch->origin[axis] + (double)raw->position[axis];
@@ -125,11 +136,14 @@ static int take_sample(conic_layers_intake *intake, const conic_splats *batch, s
   }
   int has_normal = batch->tangent_u[0] && take_axes(intake, batch, i, raw);
   if (!has_normal && batch->normal[0])
-    has_normal = take_normal(batch, i, raw);
-  raw->is_bare = !has_normal;
+    has_normal = take_direction(batch->normal, i, raw);
+  int is_seen = !has_normal && batch->sight[0] && take_direction(batch->sight, i, raw);
+  raw->is_bare = has_normal ? 0 : is_seen ? CONIC_LAYERS_SEEN : CONIC_LAYERS_BARE;
   intake->n_bare += !has_normal;
+  intake->n_unseen += !has_normal && !is_seen;
   if (batch->color[0])
     take_color(intake, batch, i, raw);
+  conic_layers_payload_take(&intake->payload, batch, i, raw + 1);
   remember_some(intake, position);
   intake->n_samples++;
   return 1;
@@ -140,18 +154,21 @@ conic_status conic_layers_intake_append(conic_layers_intake *intake, const conic
   if (intake->has_started && has_colors != intake->has_colors)
     return conic_fail(intake->context, CONIC_ERROR_ARGUMENT, "%s: some samples have colours, others have none",
                       intake->spool.path);
-  intake->has_started |= batch->count > 0;
-  intake->has_colors = has_colors;
+  conic_status begun = !intake->has_started && batch->count > 0 ? begin_samples(intake, batch) : CONIC_OK;
+  if (begun != CONIC_OK)
+    return begun;
+  conic_layers_payload_turn_to(&intake->payload, batch);
   for (size_t first = 0; first < batch->count; first += CONIC_LAYERS_BLOCK) {
     size_t left = batch->count - first, end = first + (left < CONIC_LAYERS_BLOCK ? left : CONIC_LAYERS_BLOCK);
     conic_layers_block block = {.count = 0};
     memcpy(block.origin, batch->origin, sizeof block.origin);
     for (size_t i = first; i < end; i++)
-      block.count += (uint64_t)take_sample(intake, batch, i, &intake->pending[block.count]);
+      block.count += (uint64_t)take_sample(
+          intake, batch, i, (conic_layers_raw *)(void *)(intake->pending + (size_t)block.count * intake->raw_bytes));
     intake->n_in += end - first;
     conic_status status = conic_spool_append(&intake->spool, &block, sizeof block);
     if (status == CONIC_OK)
-      status = conic_spool_append(&intake->spool, intake->pending, (size_t)block.count * sizeof *intake->pending);
+      status = conic_spool_append(&intake->spool, intake->pending, (size_t)block.count * intake->raw_bytes);
     if (status != CONIC_OK)
       return status;
   }
@@ -159,14 +176,14 @@ conic_status conic_layers_intake_append(conic_layers_intake *intake, const conic
 }
 
 conic_status conic_layers_intake_read(const conic_layers_intake *intake, uint64_t *offset, conic_layers_block *block,
-                                      conic_layers_raw *samples, int *is_there) {
+                                      unsigned char *samples, int *is_there) {
   *is_there = *offset < conic_spool_bytes(&intake->spool);
   if (!*is_there)
     return CONIC_OK;
   conic_status status = conic_spool_read(&intake->spool, *offset, block, sizeof *block);
   *offset += sizeof *block;
   if (status == CONIC_OK)
-    status = conic_spool_read(&intake->spool, *offset, samples, (size_t)block->count * sizeof *samples);
-  *offset += block->count * sizeof *samples;
+    status = conic_spool_read(&intake->spool, *offset, samples, (size_t)block->count * intake->raw_bytes);
+  *offset += block->count * intake->raw_bytes;
   return status;
 }

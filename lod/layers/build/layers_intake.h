@@ -4,17 +4,22 @@
 
 #include "conic/splats.h"
 #include "core/files/spool.h"
+#include "lod/layers/build/layers_payload.h"
 #include "lod/layers/format/layers_code.h"
 #include "lod/octree/octree_code.h"
 
-/* A sample before its place on the grid is known. */
+/* A sample before its place on the grid is known; in a row, its own bytes follow each. */
 typedef struct conic_layers_raw {
   float position[3]; /* from the origin of its block */
   uint8_t normal[2];
   uint16_t size;
   uint8_t color[3];
-  uint8_t is_bare;
+  uint8_t is_bare; /* CONIC_LAYERS_BARE, or _SEEN where `normal` leads to the scanner; else 0 */
 } conic_layers_raw;
+
+static inline const conic_layers_raw *conic_layers_raw_at(const unsigned char *raws, size_t stride, size_t i) {
+  return (const conic_layers_raw *)(const void *)(raws + i * stride);
+}
 
 enum { CONIC_LAYERS_BLOCK = 32768, CONIC_LAYERS_SOME = 8192 };
 
@@ -29,18 +34,21 @@ typedef struct conic_layers_intake {
   conic_spool spool;
   conic_code_scale scale; /* for the colours' codes */
   float cutoff;
-  conic_layers_raw *pending; /* a block's */
+  int is_full;
+  conic_layers_payload payload;
+  size_t extra_bytes, raw_bytes; /* that follow each sample, and how far samples are apart */
+  unsigned char *pending;        /* a block's */
   int has_started, has_colors;
-  uint64_t n_in, n_samples, n_nan, n_bare, n_bright;
+  uint64_t n_in, n_samples, n_nan, n_bare, n_unseen, n_bright;
   double low[3], high[3];            /* of the finite positions, in world units */
   double some[CONIC_LAYERS_SOME][3]; /* of every stride-th sample, the position */
   uint64_t stride;
   size_t n_some;
 } conic_layers_intake;
 
-/* `path`: where the result goes; it must outlive the intake. Errors: MEMORY. */
+/* `path`: where the result goes; it must outlive the intake. `is_full`: all that splats have is kept. */
 conic_status conic_layers_intake_begin(conic_context *context, const char *path, size_t memory_bytes, float cutoff,
-                                       conic_layers_intake *intake);
+                                       int is_full, conic_layers_intake *intake);
 void conic_layers_intake_end(conic_layers_intake *intake);
 
 /* Errors: ARGUMENT, MEMORY, IO, CANCELLED. */
@@ -49,7 +57,7 @@ conic_status conic_layers_intake_append(conic_layers_intake *intake, const conic
 /* Reads the block at *offset, moves that on, and says whether there was one; `samples` has room for a block. Errors:
  * IO. */
 conic_status conic_layers_intake_read(const conic_layers_intake *intake, uint64_t *offset, conic_layers_block *block,
-                                      conic_layers_raw *samples, int *is_there);
+                                      unsigned char *samples, int *is_there);
 
 /* The median sampling distance: √(area a sample), from the eight nearest to some. 0 where there are no two apart.
  * Errors: MEMORY, IO, CANCELLED. */

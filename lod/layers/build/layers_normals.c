@@ -5,6 +5,10 @@
 
 #include "core/base/eigen.h"
 #include "core/base/memory.h"
+#include "core/base/trigonometry.h"
+#include "core/estimate/estimate.h"
+#include "core/estimate/voronoi_cell.h"
+#include "lod/layers/format/layers_axes.h"
 #include "lod/layers/format/layers_key.h"
 
 /* A plane through fewer is no plane; more than that many, the nearest first, say nothing new. */
@@ -12,6 +16,9 @@ enum { LEAST_NEIGHBOURS = 8, MOST_NEIGHBOURS = 24, MOST_WIDENINGS = 4 };
 
 /* Neighbours are looked for so far away at first, in sampling distances. */
 static const double first_reach = 2.5;
+
+/* A sample's part of the plane reaches no farther, in distances of its neighbours. */
+static const double most_spacings = 1.5;
 
 #define NO_SAMPLE UINT32_MAX
 
@@ -120,39 +127,80 @@ static int fit_plane(const sample_grid *g, const neighbours *found, float normal
 }
 
 /* Places within the patch, in steps; a bare sample says where in its step it is. */
-static void place_samples(const conic_layers_sample *samples, size_t n, float (*at)[3]) {
+static void place_samples(const unsigned char *samples, size_t stride, size_t n, float (*at)[3]) {
   uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX};
   for (size_t i = 0; i < n; i++)
     for (int axis = 0; axis < 3; axis++) {
-      uint32_t step = conic_layers_step(samples[i].key, axis);
+      uint32_t step = conic_layers_step(conic_layers_sample_at(samples, stride, i)->key, axis);
       low[axis] = step < low[axis] ? step : low[axis];
     }
-  for (size_t i = 0; i < n; i++)
+  for (size_t i = 0; i < n; i++) {
+    const conic_layers_sample *sample = conic_layers_sample_at(samples, stride, i);
     for (int axis = 0; axis < 3; axis++) {
-      float within = samples[i].bare ? 0.25f * (float)(samples[i].bare >> 2 * axis & 3) + 0.125f : 0.5f;
-      at[i][axis] = (float)(conic_layers_step(samples[i].key, axis) - low[axis]) + within;
+      float within = sample->bare ? 0.25f * (float)(sample->bare >> 2 * axis & 3) + 0.125f : 0.5f;
+      at[i][axis] = (float)(conic_layers_step(sample->key, axis) - low[axis]) + within;
     }
+  }
+}
+
+/* How far the part of the plane reaches that is nearer to sample i than to its neighbours, with the overlap that other
+ * outlines have; no farther than in core/estimate, as at a border. In steps. */
+static double outline_among(const sample_grid *g, const neighbours *found, uint32_t i, const float normal[3]) {
+  conic_voronoi_cell cell;
+  float u[3], v[3];
+  double farthest2 = (double)found->distance2[found->n - 1];
+  double spacing = sqrt(CONIC_PI * farthest2 / (double)found->n);
+  conic_layers_frame(normal, u, v);
+  conic_voronoi_cell_begin(&cell, most_spacings * spacing);
+  for (int k = 0; k < found->n && 0.25 * (double)found->distance2[k] < cell.greatest2; k++) {
+    double x = 0.0, y = 0.0;
+    for (int axis = 0; axis < 3; axis++) {
+      double d = (double)g->at[found->sample[k]][axis] - (double)g->at[i][axis];
+      x += d * (double)u[axis];
+      y += d * (double)v[axis];
+    }
+    if (4.0 * (x * x + y * y) > (double)found->distance2[k] && found->sample[k] != i)
+      conic_voronoi_cell_cut(&cell, x, y);
+  }
+  return CONIC_OUTLINE_COVER * sqrt(cell.greatest2);
+}
+
+/* Where a sample was seen from: a normal that looks away is turned, and one that was not found is that direction. */
+static void turn_to_sight(const conic_layers_sample *sample, int is_found, float normal[3]) {
+  float sight[3], along = 0.0f;
+  if ((sample->bare & CONIC_LAYERS_SEEN) != CONIC_LAYERS_SEEN)
+    return;
+  conic_layers_normal_of(sample->normal, sight);
+  for (int axis = 0; axis < 3; axis++)
+    along += normal[axis] * sight[axis];
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = !is_found ? sight[axis] : along < 0.0f ? -normal[axis] : normal[axis];
 }
 
 /* One pass over those that still have none; returns how many are left. */
-static size_t pass(const sample_grid *g, conic_layers_sample *samples, int is_last) {
+static size_t pass(const sample_grid *g, const conic_layers_plan *plan, unsigned char *samples, int is_last) {
   size_t n_left = 0;
-  for (size_t i = 0; i < g->n; i++) {
+  for (uint32_t i = 0; i < g->n; i++) {
     neighbours found;
     float normal[3] = {0.0f, 0.0f, 1.0f};
-    if (!samples[i].bare)
+    conic_layers_sample *sample = conic_layers_sample_in(samples, plan->sample_bytes, i);
+    if (!sample->bare)
       continue;
     find_neighbours(g, g->at[i], &found);
-    if ((found.n >= LEAST_NEIGHBOURS && fit_plane(g, &found, normal)) || is_last) {
-      conic_layers_code_normal(normal, samples[i].normal);
-      samples[i].bare = 0;
+    int is_found = found.n >= LEAST_NEIGHBOURS && fit_plane(g, &found, normal);
+    if (is_found || is_last) {
+      turn_to_sight(sample, is_found, normal);
+      if (is_found && sample->size == 0)
+        sample->size = conic_layers_code_size((float)(outline_among(g, &found, i, normal) * plan->quantum));
+      conic_layers_code_normal(normal, sample->normal);
+      sample->bare = 0;
     } else
       n_left++;
   }
   return n_left;
 }
 
-conic_status conic_layers_find_normals(const conic_layers_plan *plan, conic_layers_sample *samples, size_t n) {
+conic_status conic_layers_find_normals(const conic_layers_plan *plan, unsigned char *samples, size_t n) {
   conic_context *context = plan->context;
   sample_grid g = {.n = n, .n_chains = 64};
   while (g.n_chains < n)
@@ -164,10 +212,10 @@ conic_status conic_layers_find_normals(const conic_layers_plan *plan, conic_laye
   if (status == CONIC_OK) {
     double reach = first_reach * plan->spacing / plan->quantum;
     size_t n_left = n;
-    place_samples(samples, n, g.at);
+    place_samples(samples, plan->sample_bytes, n, g.at);
     for (int i = 0; i < MOST_WIDENINGS && n_left > 0; i++, reach *= 2.0) {
       fill_grid(&g, reach > 1.0 ? (float)reach : 1.0f);
-      n_left = pass(&g, samples, i == MOST_WIDENINGS - 1);
+      n_left = pass(&g, plan, samples, i == MOST_WIDENINGS - 1);
     }
   }
   conic_memory_release(context, g.at);

@@ -9,6 +9,6 @@ enum { CONIC_LAYERS_PATCH_LEAVES = 16 };
 
 /* Gives the bare ones of n samples, ascending by key, the direction in which their neighbours among these spread least.
  * It has no side: the upper one is taken. Errors: MEMORY. */
-conic_status conic_layers_find_normals(const conic_layers_plan *plan, conic_layers_sample *samples, size_t n);
+conic_status conic_layers_find_normals(const conic_layers_plan *plan, unsigned char *samples, size_t n);
 
 #endif

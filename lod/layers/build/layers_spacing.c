@@ -89,7 +89,7 @@ static void look_at_sample(spacing_search *s, const double position[3]) {
   }
 }
 
-static conic_status look_at_all(const conic_layers_intake *intake, conic_layers_raw *samples, spacing_search *s) {
+static conic_status look_at_all(const conic_layers_intake *intake, unsigned char *samples, spacing_search *s) {
   uint64_t offset = 0, n_done = 0;
   conic_layers_block block;
   int is_there = 1;
@@ -98,7 +98,8 @@ static conic_status look_at_all(const conic_layers_intake *intake, conic_layers_
     for (size_t i = 0; i < block.count; i++) {
       double position[3];
       for (int axis = 0; axis < 3; axis++)
-        position[axis] = block.origin[axis] + (double)samples[i].position[axis];
+        position[axis] =
+            block.origin[axis] + (double)conic_layers_raw_at(samples, intake->raw_bytes, i)->position[axis];
       look_at_sample(s, position);
     }
     n_done += block.count;
@@ -145,7 +146,7 @@ conic_status conic_layers_intake_spacing(conic_layers_intake *intake, double *sp
     return status; /* the few are all */
   double edge = 6.0 * *spacing, guess = *spacing;
   spacing_search *s = conic_memory_allocate(intake->context, 1, sizeof *s);
-  conic_layers_raw *samples = conic_memory_allocate(intake->context, CONIC_LAYERS_BLOCK, sizeof *samples);
+  unsigned char *samples = conic_memory_allocate(intake->context, CONIC_LAYERS_BLOCK, intake->raw_bytes);
   status = s && samples ? CONIC_OK : CONIC_ERROR_MEMORY;
   *spacing = 0.0;
   for (int i = 0; i < MOST_PASSES && status == CONIC_OK && !(*spacing > 0.0); i++, edge *= 3.0) {

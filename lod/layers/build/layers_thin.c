@@ -33,18 +33,29 @@ struct conic_thinner {
   size_t n_ordered;
   size_t n_chosen;
   uint32_t *chosen;    /* which, and */
+  uint32_t *rank;      /* of a point that is chosen, how many before it are */
   chosen_point *links; /* where */
   size_t n_cells;      /* a power of two, over twice the chosen */
   cell *cells;
   float edge, cells_a_step;
-  point last; /* the last chosen point that was found near */
 };
 
-conic_status conic_thinner_create(conic_context *context, size_t most_points, conic_thinner **thinner) {
+/* A power of two, at least twice as many. */
+static size_t cells_for(size_t n_points) {
   size_t n_cells = 64;
-  *thinner = NULL;
-  while (n_cells < 2 * most_points)
+  while (n_cells < 2 * n_points)
     n_cells *= 2;
+  return n_cells;
+}
+
+size_t conic_thinner_bytes(size_t most_points) {
+  return most_points * (sizeof(point) + 3 * sizeof(uint32_t) + sizeof(chosen_point)) +
+         cells_for(most_points) * sizeof(cell);
+}
+
+conic_status conic_thinner_create(conic_context *context, size_t most_points, conic_thinner **thinner) {
+  size_t n_cells = cells_for(most_points);
+  *thinner = NULL;
   conic_thinner *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
@@ -52,9 +63,10 @@ conic_status conic_thinner_create(conic_context *context, size_t most_points, co
   made->points = conic_memory_allocate(context, most_points, sizeof *made->points);
   made->order = conic_memory_allocate(context, most_points, sizeof *made->order);
   made->chosen = conic_memory_allocate(context, most_points, sizeof *made->chosen);
+  made->rank = conic_memory_allocate(context, most_points, sizeof *made->rank);
   made->links = conic_memory_allocate(context, most_points, sizeof *made->links);
   made->cells = conic_memory_allocate(context, n_cells, sizeof *made->cells);
-  if (made->points && made->order && made->chosen && made->links && made->cells) {
+  if (made->points && made->order && made->chosen && made->rank && made->links && made->cells) {
     *thinner = made;
     return CONIC_OK;
   }
@@ -68,6 +80,7 @@ void conic_thinner_destroy(conic_context *context, conic_thinner *thinner) {
   conic_memory_release(context, thinner->points);
   conic_memory_release(context, thinner->order);
   conic_memory_release(context, thinner->chosen);
+  conic_memory_release(context, thinner->rank);
   conic_memory_release(context, thinner->links);
   conic_memory_release(context, thinner->cells);
   conic_memory_release(context, thinner);
@@ -105,14 +118,11 @@ void conic_thinner_load(conic_thinner *thinner, const uint64_t *keys, size_t str
 /* Cells are twice the distance wide and a hair, so that what is within the distance of a point lies in the eight cells
  * whose common corner is nearest to it. */
 static void clear(conic_thinner *thinner, double distance, size_t n_points) {
-  size_t n_cells = 64;
-  while (n_cells < 2 * n_points)
-    n_cells *= 2;
-  thinner->n_cells = n_cells;
+  thinner->n_cells = cells_for(n_points);
   thinner->n_chosen = 0;
   thinner->edge = (float)((distance > 1.0 ? 2.0 * distance : 2.0) * (1.0 + 1e-4));
   thinner->cells_a_step = 1.0f / thinner->edge;
-  memset(thinner->cells, 0xff, n_cells * sizeof *thinner->cells);
+  memset(thinner->cells, 0xff, thinner->n_cells * sizeof *thinner->cells);
 }
 
 static uint64_t place_of_cell(int32_t x, int32_t y, int32_t z) {
@@ -132,9 +142,10 @@ static float squared_distance(point a, point b) {
   return x * x + y * y + z * z;
 }
 
-/* The least squared distance to a point of the cell, if it is below `nearest2`; else that. The first that is not above
- * `enough2` will do. */
-static float look_into(conic_thinner *thinner, uint64_t place, point at, float enough2, float nearest2) {
+/* The least squared distance to a point of the cell, *nearest, if it is below `nearest2`; else that. The first that is
+ * not above `enough2` will do. */
+static float look_into(const conic_thinner *thinner, uint64_t place, point at, float enough2, float nearest2,
+                       point *nearest) {
   const cell *found = find_cell(thinner, place);
   if (found->place == NO_PLACE)
     return nearest2;
@@ -142,7 +153,7 @@ static float look_into(conic_thinner *thinner, uint64_t place, point at, float e
     float distance2 = squared_distance(at, thinner->links[i].at);
     if (distance2 < nearest2) {
       nearest2 = distance2;
-      thinner->last = thinner->links[i].at;
+      *nearest = thinner->links[i].at;
     }
   }
   return nearest2;
@@ -165,14 +176,14 @@ static octant octant_of(const conic_thinner *thinner, point at) {
 
 /* The square of the distance to the nearest chosen point, if that is within half a cell; else some value that is more.
  * Stops at what is near enough. */
-static float nearest_within_cells(conic_thinner *thinner, point at, float enough2) {
+static float nearest_within_cells(const conic_thinner *thinner, point at, float enough2, point *nearest) {
   float nearest2 = HUGE_VALF;
   octant o = octant_of(thinner, at);
   for (int i = 0; i < 8 && !(nearest2 <= enough2); i++)
     nearest2 = look_into(thinner,
                          place_of_cell(o.cell[0] + (i & 1 ? o.side[0] : 0), o.cell[1] + (i & 2 ? o.side[1] : 0),
                                        o.cell[2] + (i & 4 ? o.side[2] : 0)),
-                         at, enough2, nearest2);
+                         at, enough2, nearest2, nearest);
   return nearest2;
 }
 
@@ -191,10 +202,11 @@ static void insert(conic_thinner *thinner, uint32_t i_point) {
 static size_t throw_darts(conic_thinner *thinner, double distance, size_t most) {
   float below2 = (float)(distance * distance);
   float enough2 = nextafterf(below2, 0.0f); /* nearer than the distance */
+  point nearest;
   clear(thinner, distance, most + 1 < thinner->n ? most + 1 : thinner->n);
   for (size_t i = 0; i < thinner->n && thinner->n_chosen <= most; i++) {
     uint32_t i_point = thinner->order[i];
-    if (!(nearest_within_cells(thinner, thinner->points[i_point], enough2) < below2))
+    if (!(nearest_within_cells(thinner, thinner->points[i_point], enough2, &nearest) < below2))
       insert(thinner, i_point);
   }
   return thinner->n_chosen;
@@ -244,6 +256,9 @@ size_t conic_thinner_choose(conic_thinner *thinner, size_t target, size_t most, 
   memset(is_chosen, 0, thinner->n);
   for (size_t i = 0; i < n; i++)
     is_chosen[thinner->chosen[i]] = 1;
+  for (size_t i = 0, k = 0; i < thinner->n; i++)
+    if (is_chosen[i])
+      thinner->rank[i] = (uint32_t)k++;
   *distance = best;
   return n;
 }
@@ -258,16 +273,16 @@ static float nearest_of_all(const conic_thinner *thinner, point at) {
   return nearest2;
 }
 
-double conic_thinner_reach(conic_thinner *thinner, const uint64_t *keys, size_t n, double beyond, double reach) {
-  thinner->last = thinner->links[0].at;
+double conic_thinner_reach(const conic_thinner *thinner, const uint64_t *keys, size_t n, double beyond, double reach) {
+  point last = thinner->links[0].at; /* that was near; points that follow each other lie together */
   float half_edge = 0.5f * thinner->edge, near2 = half_edge * half_edge * (1.0f - 1e-4f);
   for (size_t i = 0; i < n; i++) {
     point at = point_of(keys[i]);
-    double enough = reach - beyond;
+    double enough = (reach - beyond) * (1.0 - 1e-6); /* surely so, rounded as it may be */
     float enough2 = enough > 0.0 ? (float)(enough * enough) : 0.0f;
-    if (squared_distance(at, thinner->last) <= enough2) /* points that follow each other lie together */
+    if (squared_distance(at, last) <= enough2)
       continue;
-    float nearest2 = nearest_within_cells(thinner, at, enough2);
+    float nearest2 = nearest_within_cells(thinner, at, enough2, &last);
     if (nearest2 <= enough2)
       continue;
     if (nearest2 > near2)
@@ -276,4 +291,70 @@ double conic_thinner_reach(conic_thinner *thinner, const uint64_t *keys, size_t 
     reach = found > reach ? found : reach;
   }
   return reach;
+}
+
+/* The largest size of a chosen point within the distance, of those in the cells about; 0: none is there. Stops at one
+ * that is large enough. */
+static float largest_near(const conic_thinner *thinner, point at, float within2, const float *sizes, float enough) {
+  octant o = octant_of(thinner, at);
+  float largest = 0.0f;
+  for (int i = 0; i < 8; i++) {
+    const cell *found =
+        find_cell(thinner, place_of_cell(o.cell[0] + (i & 1 ? o.side[0] : 0), o.cell[1] + (i & 2 ? o.side[1] : 0),
+                                         o.cell[2] + (i & 4 ? o.side[2] : 0)));
+    for (uint32_t k = found->place == NO_PLACE ? NO_POINT : found->first; k != NO_POINT; k = thinner->links[k].next) {
+      float size = sizes[thinner->rank[thinner->chosen[k]]];
+      if (size > largest && squared_distance(at, thinner->links[k].at) <= within2) {
+        largest = size;
+        if (largest >= enough)
+          return largest;
+      }
+    }
+  }
+  return largest;
+}
+
+/* Past the near cells all are looked at: that is seldom. */
+static float largest_of_all(const conic_thinner *thinner, point at, float within2, const float *sizes) {
+  float largest = 0.0f;
+  for (size_t k = 0; k < thinner->n_chosen; k++)
+    if (sizes[thinner->rank[thinner->chosen[k]]] > largest && squared_distance(at, thinner->links[k].at) <= within2)
+      largest = sizes[thinner->rank[thinner->chosen[k]]];
+  return largest;
+}
+
+double conic_thinner_growth(const conic_thinner *thinner, const uint64_t *keys, size_t n, double within, double size,
+                            const float *sizes, double growth) {
+  float within2 = (float)(within * within * (1.0 + 1e-5));
+  for (size_t i = 0; i < n; i++) {
+    point at = point_of(keys[i]);
+    float enough = (float)(size / growth), largest = largest_near(thinner, at, within2, sizes, enough);
+    if (!(largest > 0.0f))
+      largest = largest_of_all(thinner, at, within2, sizes);
+    if (largest > 0.0f && largest < enough)
+      growth = size / (double)largest;
+  }
+  return growth;
+}
+
+size_t conic_thinner_beside(const conic_thinner *thinner, const float at[3], int is_wide, uint32_t *list, size_t most) {
+  octant o = octant_of(thinner, (point){at[0], at[1], at[2]});
+  size_t n = 0;
+  for (int i = 0; i < (is_wide ? 27 : 8); i++) {
+    const int near[3] = {i & 1 ? o.side[0] : 0, i & 2 ? o.side[1] : 0, i & 4 ? o.side[2] : 0};
+    const int all[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+    const int *step = is_wide ? all : near;
+    const cell *found =
+        find_cell(thinner, place_of_cell(o.cell[0] + step[0], o.cell[1] + step[1], o.cell[2] + step[2]));
+    for (uint32_t k = found->place == NO_PLACE ? NO_POINT : found->first; k != NO_POINT && n < most;
+         k = thinner->links[k].next)
+      list[n++] = k;
+  }
+  return n;
+}
+
+size_t conic_thinner_ranks(const conic_thinner *thinner, uint32_t *ranks) {
+  for (size_t i = 0; i < thinner->n_chosen; i++)
+    ranks[i] = thinner->rank[thinner->chosen[i]];
+  return thinner->n_chosen;
 }

@@ -16,6 +16,9 @@ typedef struct conic_thinner conic_thinner;
 conic_status conic_thinner_create(conic_context *context, size_t most_points, conic_thinner **thinner);
 void conic_thinner_destroy(conic_context *context, conic_thinner *thinner);
 
+/* What that takes. */
+size_t conic_thinner_bytes(size_t most_points);
+
 /* Makes the n points with these keys the ones that are chosen from; in the order in which they are given later. */
 void conic_thinner_load(conic_thinner *thinner, const uint64_t *keys, size_t stride_bytes, size_t n);
 
@@ -24,7 +27,21 @@ void conic_thinner_load(conic_thinner *thinner, const uint64_t *keys, size_t str
 size_t conic_thinner_choose(conic_thinner *thinner, size_t target, size_t most, double *distance, uint8_t *is_chosen);
 
 /* How far the n points of these keys are at most from a chosen one, `beyond` added to each; `reach` where that is more.
- */
-double conic_thinner_reach(conic_thinner *thinner, const uint64_t *keys, size_t n, double beyond, double reach);
+ * The greatest of several is the same in whichever order they come; several threads may ask. */
+double conic_thinner_reach(const conic_thinner *thinner, const uint64_t *keys, size_t n, double beyond, double reach);
+
+/* The n points of these keys stand for something that is `size` large. Returns the least factor, not below `growth`, by
+ * which one of the chosen points `within` the distance of each has to grow to be as large; sizes[i] is that of the i-th
+ * chosen point in the order of the loaded ones. Order and threads do not matter here either. */
+double conic_thinner_growth(const conic_thinner *thinner, const uint64_t *keys, size_t n, double within, double size,
+                            const float *sizes, double growth);
+
+/* Chosen points about a place, by their numbers in the order in which they were chosen, up to `most`: all within the
+ * distance of it, or, `is_wide`, all within twice that. Returns how many. */
+size_t conic_thinner_beside(const conic_thinner *thinner, const float at[3], int is_wide, uint32_t *list, size_t most);
+
+/* Of the chosen points, in the order in which they were, which each is in the order of the loaded ones. Returns how
+ * many there are. */
+size_t conic_thinner_ranks(const conic_thinner *thinner, uint32_t *ranks);
 
 #endif

@@ -14,6 +14,9 @@ typedef struct conic_layers_band_drawing {
   int samples;
   conic_image *image;
   conic_layers_set *set;
+  void (*is_gathered)(void *data); /* called where nothing more will be read; null: nothing */
+  void *data;
+  uint64_t *n_turned; /* set: samples that face away and were left out */
 } conic_layers_band_drawing;
 
 /* Draws the cut's places that are not hidden, in as many bands as memory asks for. *statistics become those of the

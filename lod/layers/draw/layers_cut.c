@@ -7,12 +7,13 @@
 #include "core/base/message.h"
 #include "core/base/real.h"
 
-/* A walk down the tree: what is yet to be looked at. Each level adds one node at most. */
+/* A walk down the tree: what is yet to be looked at. Each level adds one node at most, of an octree seven. */
+enum { MOST_OPEN = 7 * CONIC_HIERARCHY_LEVELS + 2 };
 typedef struct tree_walk {
   const conic_layers *layers;
   const conic_layers_view *view;
   const conic_layers_wish *wish;
-  uint32_t open[CONIC_LAYERS_MOST_LEVELS + 2];
+  uint32_t open[MOST_OPEN > CONIC_LAYERS_MOST_LEVELS + 2 ? MOST_OPEN : CONIC_LAYERS_MOST_LEVELS + 2];
   int n_open;
 } tree_walk;
 
@@ -25,7 +26,10 @@ static verdict judge_node(const tree_walk *w, const conic_layers_entry *entry, c
     return VERDICT_FINE;
   if (w->wish->most_levels && entry->level + 1 >= w->wish->most_levels)
     return VERDICT_STUCK;
-  return !is_in || (is_in[entry->child] && is_in[entry->child + 1]) ? VERDICT_REFINE : VERDICT_STUCK;
+  for (uint32_t i = 0; is_in && i < conic_layers_children(w->layers); i++)
+    if (!is_in[entry->child + i])
+      return VERDICT_STUCK;
+  return VERDICT_REFINE;
 }
 
 static void begin_walk(tree_walk *w) {
@@ -43,8 +47,8 @@ static int next_place(tree_walk *w, uint32_t *node, conic_layers_sight *sight, v
     *why = judge_node(w, entry, sight);
     if (*why != VERDICT_REFINE)
       return 1;
-    w->open[w->n_open++] = entry->child + 1;
-    w->open[w->n_open++] = entry->child;
+    for (uint32_t i = conic_layers_children(w->layers); i-- > 0;)
+      w->open[w->n_open++] = entry->child + i;
   }
   return 0;
 }
@@ -57,6 +61,17 @@ static conic_status add_place(const conic_layers *layers, conic_layers_cut *cut,
   return CONIC_OK;
 }
 
+static conic_status find_turned(const conic_layers *layers, const conic_layers_view *view, conic_layers_cut *cut) {
+  if (!view->cull_back || !layers->facings)
+    return CONIC_OK;
+  if (conic_memory_reserve(layers->context, &cut->turned, 0, cut->n, &cut->turned_room, sizeof *cut->turned) !=
+      CONIC_OK)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < cut->n; i++)
+    conic_layers_find_turned(layers->facings, view, &layers->entries[cut->places[i].node], &cut->turned[i]);
+  return CONIC_OK;
+}
+
 conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layers_view *view,
                                    const conic_layers_wish *wish, conic_layers_cut *cut) {
   tree_walk w = {.layers = layers, .view = view, .wish = wish};
@@ -65,6 +80,7 @@ conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layer
   cut->n = 0;
   cut->n_splats = cut->n_coarser = 0;
   cut->coarser_px = 0.0;
+  cut->n_root = wish->n_root;
   memset(&place, 0, sizeof place);
   begin_walk(&w);
   while (next_place(&w, &place.node, &place.sight, &why)) {
@@ -77,11 +93,12 @@ conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layer
     cut->n_coarser++;
     cut->coarser_px = place.sight.error_px > cut->coarser_px ? place.sight.error_px : cut->coarser_px;
   }
-  return CONIC_OK;
+  return find_turned(layers, view, cut);
 }
 
 void conic_layers_cut_release(conic_context *context, conic_layers_cut *cut) {
   conic_memory_release(context, cut->places);
+  conic_memory_release(context, cut->turned);
   memset(cut, 0, sizeof *cut);
 }
 
@@ -100,17 +117,16 @@ static uint64_t count_cut(const conic_layers *layers, const conic_layers_view *v
 }
 
 /* Doubles that are not negative order like their bits. */
-conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
-                                     uint64_t budget, double *error_px) {
+uint64_t conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
+                                 uint64_t budget, double *error_px) {
   conic_layers_wish wish = {.error_px = 0.0, .most_levels = most_levels};
   uint64_t low = 0, high = conic_bits_of_double(HUGE_VAL);
   *error_px = 0.0;
   if (count_cut(layers, view, &wish, budget) <= budget)
-    return CONIC_OK;
-  wish.error_px = HUGE_VAL;
+    return 0;
+  wish.error_px = *error_px = HUGE_VAL;
   if (count_cut(layers, view, &wish, budget) > budget)
-    return conic_fail(layers->context, CONIC_ERROR_ARGUMENT, "%s: the coarsest level alone has %u splats", layers->name,
-                      layers->entries[0].n_drawn);
+    return budget;
   while (high - low > 1) {
     uint64_t middle = low + (high - low) / 2;
     wish.error_px = conic_double_of_bits(middle);
@@ -120,7 +136,7 @@ conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_lay
       low = middle;
   }
   *error_px = conic_double_of_bits(high);
-  return CONIC_OK;
+  return 0;
 }
 
 size_t conic_layers_needed(const conic_layers *layers, const conic_layers_cut *cut, conic_place_state last,

@@ -2,6 +2,7 @@
 #ifndef CONIC_LAYERS_CUT_H
 #define CONIC_LAYERS_CUT_H
 
+#include "lod/layers/draw/layers_facing.h"
 #include "lod/layers/draw/layers_scene.h"
 #include "lod/layers/draw/layers_view.h"
 
@@ -22,16 +23,19 @@ typedef struct conic_layers_place {
 /* Places in the order of their keys. Zero before the first use; the memory is kept. */
 typedef struct conic_layers_cut {
   conic_layers_place *places;
-  size_t n, room;
+  conic_layers_turned *turned; /* a place: what of it faces away and is to be culled; null: nothing is */
+  size_t n, room, turned_room;
   uint64_t n_splats;  /* of all places together */
   uint64_t n_coarser; /* places that were to be finer */
   double coarser_px;  /* the greatest error among them */
+  uint64_t n_root;    /* of the root, the only place, so many samples are drawn; 0: all of them */
 } conic_layers_cut;
 
 typedef struct conic_layers_wish {
   double error_px;
   int most_levels;            /* 0: all */
   const unsigned char *is_in; /* a cloud: it can be drawn of; null: all can */
+  uint64_t n_root;            /* as in a cut */
 } conic_layers_wish;
 
 /* From the root down: of what is in sight, the first node whose error is at most the one asked for, or below which
@@ -39,9 +43,10 @@ typedef struct conic_layers_wish {
 conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layers_view *view,
                                    const conic_layers_wish *wish, conic_layers_cut *cut);
 
-/* The least error for which the cut has no more than `budget` splats. Errors: ARGUMENT (fewer than the root has). */
-conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
-                                     uint64_t budget, double *error_px);
+/* The least error for which the cut has no more than `budget` splats; infinite where the root alone has more, of which
+ * so many are to be drawn then. Returns how many: 0 for all of the cut's. */
+uint64_t conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
+                                 uint64_t budget, double *error_px);
 
 void conic_layers_cut_release(conic_context *context, conic_layers_cut *cut);
 

@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/threads.h"
+#include "lod/layers/draw/layers_octree.h"
 
 /* Pieces are small: so many make a task. */
 enum { PIECES_A_TASK = 16 };
@@ -24,20 +25,38 @@ struct gather {
 void conic_layers_set_release(conic_context *context, conic_layers_set *set) {
   conic_memory_release(context, set->arrays);
   conic_memory_release(context, set->ids);
+  conic_memory_release(context, set->lines);
+  conic_memory_release(context, set->splats.clips);
   conic_memory_release(context, set->pieces);
   memset(set, 0, sizeof *set);
 }
 
+/* Which optional arrays the splats have. */
+static int splats_have(const conic_layers *layers, conic_layers_kind kind) {
+  return conic_layers_schema_find(&layers->header.schema, kind) >= 0;
+}
+
+static int splats_have_colors(const conic_layers *layers) {
+  return splats_have(layers, CONIC_LAYERS_COLOR) || layers->choice.colored_by >= 0;
+}
+
 static size_t n_arrays(const conic_layers *layers) {
-  return layers->header.flags & CONIC_LAYERS_COLORS ? 12 : 9;
+  return 9u + (splats_have_colors(layers) ? 3u : 0u) + (splats_have(layers, CONIC_LAYERS_OPACITY) ? 1u : 0u) +
+         (splats_have(layers, CONIC_LAYERS_DOT) ? 1u : 0u);
 }
 
 /* Points the splats' arrays into the block. */
 static void place_arrays(const conic_layers *layers, conic_layers_set *set) {
   float *next = set->arrays;
   float **all[] = {set->splats.position, set->splats.tangent_u, set->splats.tangent_v, set->splats.color};
-  for (size_t i = 0; i < n_arrays(layers); i++, next += set->room)
+  for (size_t i = 0; i < (splats_have_colors(layers) ? 12 : 9); i++, next += set->room)
     all[i / 3][i % 3] = next;
+  if (splats_have(layers, CONIC_LAYERS_OPACITY)) {
+    set->splats.opacity = next;
+    next += set->room;
+  }
+  if (splats_have(layers, CONIC_LAYERS_DOT))
+    set->splats.dot = next;
 }
 
 /* Room for `count` splats, of which `used` are kept. */
@@ -46,6 +65,11 @@ static conic_status make_room_for_splats(const conic_layers *layers, conic_layer
   if (count <= set->room)
     return CONIC_OK;
   size_t room = (count + 15) / 16 * 16;
+  if (!used) { /* so that there are never both */
+    conic_memory_release(context, set->arrays);
+    set->arrays = NULL;
+    set->room = 0;
+  }
   float *arrays = conic_memory_allocate(context, room * n_arrays(layers), sizeof *arrays);
   if (!arrays)
     return CONIC_ERROR_MEMORY;
@@ -54,6 +78,8 @@ static conic_status make_room_for_splats(const conic_layers *layers, conic_layer
   conic_memory_release(context, set->arrays);
   set->arrays = arrays;
   conic_status status = conic_memory_grow(context, &set->ids, used, room, sizeof *set->ids);
+  if (status == CONIC_OK && splats_have(layers, CONIC_LAYERS_CLIP))
+    status = conic_memory_grow(context, &set->lines, used, room, sizeof *set->lines);
   if (status != CONIC_OK)
     set->room = 0; /* nothing is kept of it */
   else
@@ -118,7 +144,9 @@ typedef struct sieve {
   const conic_layers_cloud *cloud;
   const conic_layers_place *place;
   const conic_layers_view *view;
-  const conic_window *window; /* null: all of the place is in it */
+  const conic_window *window;        /* null: all of the place is in it */
+  const conic_layers_turned *turned; /* null: nothing of it faces away */
+  uint64_t n_of;                     /* not 0: so many of the cloud's are chosen, evenly in the order of their keys */
   double radius;
 } sieve;
 
@@ -134,18 +162,30 @@ static const conic_layers_cloud *cloud_of(const conic_layers *layers, const coni
 
 static sieve begin_sieve(const gather *g, const conic_layers_piece *piece, const conic_layers_cloud *cloud) {
   const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
+  const conic_layers_turned *turned = g->asked->cut->turned ? &g->asked->cut->turned[piece->i_place] : NULL;
   const conic_window *window = g->asked->window;
   return (sieve){.cloud = cloud,
                  .place = place,
                  .view = g->asked->view,
+                 .n_of = g->asked->cut->n_root < cloud->count ? g->asked->cut->n_root : 0,
                  .window = window && is_window_within(&place->sight.pixels, window) ? NULL : window,
+                 .turned = turned && turned->is_any && cloud->facing ? turned : NULL,
                  .radius = (double)g->layers->entries[place->node].radius};
 }
 
-/* Whether a splat of a place that is hidden otherwise may be seen: its plane is near the eye. */
+static inline int is_turned(const sieve *s, size_t i) {
+  return s->turned && conic_layers_is_turned(s->turned, s->cloud->facing[i]);
+}
+
+/* Whether a splat is one of those asked for and passes the filter; and, of a place that is hidden otherwise, may be
+ * seen: its plane is near the eye. */
 static inline int is_chosen(const sieve *s, size_t i) {
   double along = 0.0;
-  if (s->place->state != CONIC_PLACE_GRAZING)
+  if (s->n_of && i * s->n_of / s->cloud->count == (i + 1) * s->n_of / s->cloud->count)
+    return 0;
+  if (s->cloud->is_left_out && s->cloud->is_left_out[i])
+    return 0;
+  if (s->place->state != CONIC_PLACE_GRAZING || (s->cloud->dot && s->cloud->dot[i] != 0.0f))
     return 1;
   for (int axis = 0; axis < 3; axis++)
     along += (double)s->cloud->normal[axis][i] * ((double)s->cloud->position[axis][i] - s->view->from.eye[axis]);
@@ -172,26 +212,55 @@ static void count_piece(const gather *g, conic_layers_piece *piece) {
   piece->end = (uint32_t)end;
   sieve s = begin_sieve(g, piece, cloud);
   piece->n_chosen = piece->n_kept = piece->end - piece->first;
-  if (place->state != CONIC_PLACE_GRAZING && !s.window)
+  piece->n_turned = 0;
+  if (place->state != CONIC_PLACE_GRAZING && !s.window && !s.turned && !s.n_of && !cloud->is_left_out)
     return;
   piece->n_chosen = piece->n_kept = 0;
   for (size_t i = first; i < end; i++)
-    if (is_chosen(&s, i)) {
+    if (is_chosen(&s, i) && is_turned(&s, i))
+      piece->n_turned++;
+    else if (is_chosen(&s, i)) {
       piece->n_chosen++;
       piece->n_kept += (uint32_t)is_in_window(&s, i);
     }
 }
 
 /* A piece's samples and their places in the set. */
-typedef struct copying {
-  const float *restrict position[3], *restrict normal[3], *restrict color[3];
+typedef struct splat_copying {
+  const conic_layers_cloud *cloud;
+  const conic_layers_entry *entry; /* the place's */
+  float cutoff;
+  const float *restrict position[3], *restrict normal[3], *restrict color[3], *restrict outline;
   float *restrict to_position[3], *restrict to_u[3], *restrict to_v[3], *restrict to_color[3];
+  float *restrict to_opacity, *restrict to_dot;
+  conic_layers_lines *to_lines;
   uint32_t *restrict to_id;
-} copying;
+  float most;        /* no outline is larger */
+  const double *eye; /* from the origin; null: nobody looks */
+  const conic_layers *layers;
+  const uint64_t *keys;
+  uint32_t i_cloud;
+} splat_copying;
 
-static copying begin_copy(const gather *g, const conic_layers_cloud *cloud, size_t from, size_t at) {
+static splat_copying begin_copy(const gather *g, const conic_layers_piece *piece) {
   const conic_splats *to = &g->set->splats;
-  copying c = {.to_id = g->set->ids + at};
+  const conic_layers_cloud *cloud = cloud_of(g->layers, piece);
+  uint32_t node = g->asked->cut->places[piece->i_place].node;
+  size_t from = piece->first, at = piece->at;
+  int is_from_above = g->layers->octree && piece->cloud != node;
+  splat_copying c = {.cloud = cloud,
+                     .entry = &g->layers->entries[node],
+                     .cutoff = g->asked->cutoff,
+                     .outline = cloud->outline ? cloud->outline + from : NULL,
+                     .to_opacity = to->opacity ? to->opacity + at : NULL,
+                     .to_dot = to->dot ? to->dot + at : NULL,
+                     .to_lines = cloud->lines ? g->set->lines + at : NULL,
+                     .to_id = g->set->ids + at,
+                     .most = is_from_above ? conic_layers_octree_outline(g->layers, node) : INFINITY,
+                     .eye = g->asked->view ? g->asked->view->from.eye : NULL,
+                     .layers = g->layers,
+                     .keys = cloud->keys + from,
+                     .i_cloud = piece->cloud};
   for (int axis = 0; axis < 3; axis++) {
     c.position[axis] = cloud->position[axis] + from;
     c.normal[axis] = cloud->normal[axis] + from;
@@ -204,9 +273,26 @@ static copying begin_copy(const gather *g, const conic_layers_cloud *cloud, size
   return c;
 }
 
-/* A circle's axes, for a unit normal anywhere: one rule for each half of the sphere, and nothing cancels in its own. */
-static inline void set_axes(const copying *c, size_t i, size_t k, float sigma) {
-  float nx = c->normal[0][i], ny = c->normal[1][i], nz = c->normal[2][i];
+/* The unit normal of a sample that has none: as above it, or else to the eye, or up. */
+static void guess_normal_of(const splat_copying *c, size_t i, float normal[3]) {
+  double to[3] = {0.0, 0.0, 1.0}, length = 0.0;
+  if (c->layers->octree && conic_layers_octree_guess(c->layers, c->i_cloud, c->keys[i], normal))
+    return;
+  for (int axis = 0; axis < 3; axis++) {
+    to[axis] = c->eye ? c->eye[axis] - (double)c->position[axis][i] : to[axis];
+    length += to[axis] * to[axis];
+  }
+  length = sqrt(length);
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = length > 0.0 ? (float)(to[axis] / length) : axis == 2 ? 1.0f : 0.0f;
+}
+
+/* A circle's axes, for a unit normal anywhere: as conic_layers_frame has them. */
+static inline void set_axes(const splat_copying *c, size_t i, size_t k, float sigma) {
+  float normal[3] = {c->normal[0][i], c->normal[1][i], c->normal[2][i]};
+  if (normal[0] == 0.0f && normal[1] == 0.0f && normal[2] == 0.0f)
+    guess_normal_of(c, i, normal);
+  float nx = normal[0], ny = normal[1], nz = normal[2];
   float sign = nz >= 0.0f ? 1.0f : -1.0f, a = -1.0f / (sign + nz), b = nx * ny * a;
   c->to_u[0][k] = (1.0f + sign * (nx * nx) * a) * sigma;
   c->to_u[1][k] = sign * b * sigma;
@@ -216,45 +302,74 @@ static inline void set_axes(const copying *c, size_t i, size_t k, float sigma) {
   c->to_v[2][k] = -ny * sigma;
 }
 
-static void copy_all(const copying *c, size_t n, float sigma, uint32_t first_id) {
+static inline float drawn_sigma(const splat_copying *c, size_t i) {
+  float outline = conic_layers_outline(c->entry, c->outline ? c->outline[i] : 0.0f);
+  return (outline < c->most ? outline : c->most) / c->cutoff;
+}
+
+/* What else a splat has. At full resolution it is drawn as it came, in coarser places as a circle without lines. */
+static void copy_payload(const splat_copying *c, size_t i_cloud, size_t k) {
+  const conic_layers_cloud *cloud = c->cloud;
+  int is_full = c->entry->child == 0;
+  for (int axis = 0; axis < 3 && is_full; axis++) {
+    c->to_u[axis][k] = cloud->axis[axis][i_cloud];
+    c->to_v[axis][k] = cloud->axis[3 + axis][i_cloud];
+  }
+  if (c->to_opacity)
+    c->to_opacity[k] = cloud->opacity[i_cloud];
+  if (c->to_dot)
+    c->to_dot[k] = cloud->dot[i_cloud];
+  if (c->to_lines) {
+    c->to_lines[k] = cloud->lines[i_cloud];
+    c->to_lines[k].kind = is_full ? c->to_lines[k].kind : 0;
+  }
+}
+
+static void copy_all(const splat_copying *c, size_t n, uint32_t first_id) {
   for (int axis = 0; axis < 3; axis++) {
     memcpy(c->to_position[axis], c->position[axis], n * sizeof(float));
     if (c->to_color[axis])
       memcpy(c->to_color[axis], c->color[axis], n * sizeof(float));
   }
-  const copying local = *c;
+  const splat_copying local = *c;
   for (size_t i = 0; i < n; i++)
-    set_axes(&local, i, i, sigma);
+    set_axes(&local, i, i, drawn_sigma(&local, i));
   for (size_t i = 0; i < n; i++)
     local.to_id[i] = first_id + (uint32_t)i;
 }
 
-static void copy_one(const copying *c, size_t i, size_t k, float sigma, uint32_t id) {
+static void copy_one(const splat_copying *c, size_t i, size_t k, uint32_t id) {
   for (int axis = 0; axis < 3; axis++) {
     c->to_position[axis][k] = c->position[axis][i];
     if (c->to_color[axis] && c->color[axis])
       c->to_color[axis][k] = c->color[axis][i];
   }
-  set_axes(c, i, k, sigma);
+  set_axes(c, i, k, drawn_sigma(c, i));
   c->to_id[k] = id;
 }
 
 static void fill_piece(const gather *g, conic_layers_piece *piece) {
   conic_layers *layers = g->layers;
-  const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
   const conic_layers_cloud *cloud = cloud_of(layers, piece);
   uint32_t first_id = (uint32_t)(layers->first_sample[piece->cloud] + piece->first);
-  float sigma = layers->entries[place->node].radius / g->asked->cutoff;
   size_t n = piece->end - piece->first, k = 0;
-  copying c = begin_copy(g, cloud, piece->first, piece->at);
+  if (piece->n_kept == 0)
+    return;
+  splat_copying c = begin_copy(g, piece);
   if (piece->n_kept == n) {
-    copy_all(&c, n, sigma, first_id);
+    copy_all(&c, n, first_id);
+    for (size_t i = 0; i < n && cloud->axis[0]; i++)
+      copy_payload(&c, piece->first + i, i);
     return;
   }
   sieve s = begin_sieve(g, piece, cloud);
   for (size_t i = 0; i < n && k < piece->n_kept; i++)
-    if (is_chosen(&s, piece->first + i) && is_in_window(&s, piece->first + i))
-      copy_one(&c, i, k++, sigma, first_id + (uint32_t)i);
+    if (!is_turned(&s, piece->first + i) && is_chosen(&s, piece->first + i) && is_in_window(&s, piece->first + i)) {
+      copy_one(&c, i, k, first_id + (uint32_t)i);
+      if (cloud->axis[0])
+        copy_payload(&c, piece->first + i, k);
+      k++;
+    }
 }
 
 static void piece_task(void *data, size_t i_task, int i_thread) {
@@ -280,7 +395,7 @@ static size_t place_pieces(gather *g) {
     const conic_layers_piece *before = i > g->first ? &g->set->pieces[i - 1] : NULL;
     if (before && before->cloud == piece->cloud &&
         is_same_place(&entries[places[before->i_place].node], &entries[places[piece->i_place].node])) {
-      piece->n_chosen = piece->n_kept = 0;
+      piece->n_chosen = piece->n_kept = piece->n_turned = 0;
     }
     piece->at = at;
     at += piece->n_kept;
@@ -292,12 +407,39 @@ static size_t place_pieces(gather *g) {
 static conic_status take_pieces(gather *g) {
   for_pieces(g, count_piece);
   size_t count = place_pieces(g), used = g->set->splats.count;
+  g->set->is_cut_short = g->asked->most && count > g->asked->most;
+  if (g->set->is_cut_short)
+    return CONIC_OK;
   size_t wanted = count > g->set->room && used ? count + count / 4 : count;
   conic_status status = make_room_for_splats(g->layers, g->set, used, wanted);
   if (status != CONIC_OK)
     return status;
   for_pieces(g, fill_piece);
   g->set->splats.count = count;
+  return CONIC_OK;
+}
+
+/* The records of clip lines, now that all splats are there. */
+static conic_status list_lines(const conic_layers *layers, conic_layers_set *set) {
+  conic_splats *splats = &set->splats;
+  size_t n = 0;
+  splats->n_clips = 0;
+  for (size_t i = 0; i < splats->count && set->lines; i++)
+    n += set->lines[i].kind > 0;
+  if (n > set->clips_room) {
+    set->clips_room = 0;
+    if (conic_memory_grow(layers->context, &splats->clips, 0, n, sizeof *splats->clips) != CONIC_OK)
+      return CONIC_ERROR_MEMORY;
+    set->clips_room = n;
+  }
+  for (size_t i = 0; i < splats->count && n; i++) {
+    conic_clip *clip = &splats->clips[splats->n_clips];
+    if (set->lines[i].kind == 0)
+      continue;
+    conic_layers_lines_of(&set->lines[i], clip);
+    clip->splat = (uint32_t)i;
+    splats->n_clips++;
+  }
   return CONIC_OK;
 }
 
@@ -313,7 +455,7 @@ static size_t list_clouds(const gather *g, uint32_t *clouds) {
 static conic_status take_clouds(gather *g, uint32_t *clouds, size_t n) {
   conic_layers *layers = g->layers;
   conic_status status = CONIC_OK;
-  for (size_t done = 0; done < n && status == CONIC_OK;) {
+  for (size_t done = 0; done < n && status == CONIC_OK && !g->set->is_cut_short;) {
     conic_layers_loading loading = {.clouds = clouds + done, .until_s = g->asked->until_s};
     loading.n = conic_layers_store_fit(layers, clouds + done, n - done, conic_layers_cache_bytes(layers) / 2);
     status = conic_layers_store_load(layers, &loading);
@@ -345,11 +487,12 @@ static size_t expect(const gather *g) {
 
 conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gathering *gathering, conic_layers_set *set) {
   gather g = {.layers = layers, .asked = gathering, .set = set};
-  set->splats.count = 0;
+  set->splats.count = set->splats.n_clips = 0;
+  set->is_cut_short = 0;
   memcpy(set->splats.origin, layers->header.origin, sizeof set->splats.origin);
   conic_status status = list_pieces(&g);
   if (status == CONIC_OK)
-    status = make_room_for_splats(layers, set, 0, expect(&g) + 1);
+    status = make_room_for_splats(layers, set, 0, gathering->most ? gathering->most : expect(&g) + 1);
   if (status != CONIC_OK || set->n_pieces == 0)
     return status;
   uint32_t *clouds = conic_memory_allocate(layers->context, set->n_pieces, sizeof *clouds);
@@ -357,5 +500,8 @@ conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gather
     return CONIC_ERROR_MEMORY;
   status = take_clouds(&g, clouds, list_clouds(&g, clouds));
   conic_memory_release(layers->context, clouds);
-  return status;
+  if (status == CONIC_OK && set->splats.dot && gathering->camera)
+    status = conic_splats_face(layers->context, &set->splats, gathering->camera, set->splats.tangent_u,
+                               set->splats.tangent_v);
+  return status == CONIC_OK ? list_lines(layers, set) : status;
 }

@@ -10,17 +10,21 @@ typedef struct conic_layers_piece {
   uint32_t first, end; /* its samples, */
   uint32_t n_chosen;   /* of which so many are to be drawn, */
   uint32_t n_kept;     /* and so many may meet the window, */
+  uint32_t n_turned;   /* while so many face away, and are culled, */
   size_t at;           /* from here on in the set */
 } conic_layers_piece;
 
 /* Splats to draw. Zero before the first use; the memory is kept from set to set. */
 struct conic_layers_set {
   conic_splats splats;
-  uint32_t *ids; /* number of each in the file */
-  size_t room;   /* of both */
+  uint32_t *ids;             /* number of each in the file */
+  conic_layers_lines *lines; /* of each, where the file has some */
+  size_t room;               /* of all three */
+  size_t clips_room;
   void *arrays;
   conic_layers_piece *pieces; /* in the order of the file */
   size_t n_pieces, pieces_room;
+  int is_cut_short; /* there were more splats than asked for at most */
 };
 typedef struct conic_layers_set conic_layers_set;
 
@@ -34,7 +38,9 @@ typedef struct conic_layers_gathering {
   const conic_layers_view *view;
   const conic_window *window; /* only what may meet it is gathered; null: all */
   float cutoff;
-  double until_s; /* by conic_seconds_now; infinite: clouds are waited for */
+  const conic_camera *camera; /* that dots are turned to; null: they are left as they are */
+  double until_s;             /* by conic_seconds_now; infinite: clouds are waited for */
+  size_t most;                /* splats; where there are more, gathering ends; 0: any number */
 } conic_layers_gathering;
 
 /* Fills the set with what is to be drawn of the places that are shown or grazing; those hidden give nothing. Clouds are

@@ -95,6 +95,7 @@ static conic_status draw_chosen(hiding *h, size_t n_chosen, uint32_t *spare) {
   conic_layers_gathering gathering = {
       .cut = h->cut, .chosen = h->chosen, .n_chosen = n_chosen, .view = h->view, .until_s = h->until_s};
   gathering.cutoff = h->render->kernel.cutoff;
+  gathering.camera = h->camera;
   sort_ascending(h->chosen, spare, n_chosen);
   conic_status status = conic_layers_gather(h->layers, &gathering, h->set);
   if (status == CONIC_OK)

@@ -8,6 +8,7 @@
 #include "core/base/options.h"
 #include "core/files/mapping.h"
 #include "lod/layers/draw/layers_gather.h"
+#include "lod/layers/draw/layers_octree.h"
 
 /* The index is asked for in pieces, so that memory grows with what comes and not with what is claimed. */
 enum { PIECE_BYTES = 1 << 22 };
@@ -25,6 +26,14 @@ void conic_layers_access_init_sized(conic_layers_access *access, size_t size) {
   own.pause_seconds = ranges.pause_seconds;
   own.n_connections = ranges.n_connections;
   conic_options_give(access, size, &own);
+}
+
+int conic_layers_is_hierarchy(const char *path) {
+  return conic_hierarchy_is_file(path);
+}
+
+const char *conic_layers_kind_name(const conic_layers *layers) {
+  return layers->octree ? layers->octree->hierarchy->kind->name : "lpc";
 }
 
 int conic_layers_is_url(const char *name) {
@@ -76,16 +85,20 @@ static conic_status read_bytes(conic_layers *layers, uint64_t offset, uint64_t n
   return status;
 }
 
+void conic_layers_ranges_options(const conic_layers *layers, conic_ranges_options *options) {
+  conic_ranges_options_init(options);
+  options->connect_seconds = layers->access.connect_seconds;
+  options->stall_seconds = layers->access.stall_seconds;
+  options->n_retries = layers->access.n_retries;
+  options->pause_seconds = layers->access.pause_seconds;
+  options->n_connections = layers->access.n_connections;
+  options->most_whole_bytes = layers->access.memory_bytes / 2;
+  options->until_s = layers->until_s;
+}
+
 static conic_status open_ranges(conic_layers *layers) {
   conic_ranges_options options;
-  conic_ranges_options_init(&options);
-  options.connect_seconds = layers->access.connect_seconds;
-  options.stall_seconds = layers->access.stall_seconds;
-  options.n_retries = layers->access.n_retries;
-  options.pause_seconds = layers->access.pause_seconds;
-  options.n_connections = layers->access.n_connections;
-  options.most_whole_bytes = layers->access.memory_bytes / 2;
-  options.until_s = layers->until_s;
+  conic_layers_ranges_options(layers, &options);
   return conic_ranges_open(layers->context, layers->name, &options, &layers->ranges);
 }
 
@@ -99,7 +112,7 @@ typedef struct layers_start {
 
 static conic_status read_start(conic_layers *layers, layers_start *start) {
   conic_layers_header *header = &layers->header;
-  conic_status status = open_ranges(layers);
+  conic_status status = layers->ranges ? CONIC_OK : open_ranges(layers);
   if (status != CONIC_OK)
     return status;
   uint64_t size = conic_ranges_size(layers->ranges);
@@ -127,7 +140,7 @@ static void drop_start(conic_layers *layers, layers_start *start) {
 }
 
 static conic_status take_index(conic_layers *layers, const unsigned char *bytes) {
-  const conic_layers_header *header = &layers->header;
+  conic_layers_header *header = &layers->header;
   layers->entries = conic_memory_allocate(layers->context, header->n_clouds, sizeof *layers->entries);
   layers->first_sample = conic_memory_allocate(layers->context, header->n_clouds, sizeof *layers->first_sample);
   if (!layers->entries || !layers->first_sample)
@@ -165,6 +178,22 @@ static conic_status read_header_and_index(conic_layers *layers) {
   return status;
 }
 
+/* What the first bytes say that the file is: another's hierarchy, or a .lpc. */
+static conic_status open_kind(conic_layers *layers) {
+  unsigned char head[CONIC_HIERARCHY_HEAD_BYTES];
+  conic_status status = open_ranges(layers);
+  if (status != CONIC_OK)
+    return status;
+  uint64_t size = conic_ranges_size(layers->ranges);
+  size_t n = size < sizeof head ? (size_t)size : sizeof head;
+  if (n > 0)
+    status = read_piece(layers, 0, head, n);
+  if (status != CONIC_OK)
+    return status;
+  const conic_hierarchy_kind *kind = conic_hierarchy_kind_of(layers->name, head, n);
+  return kind ? conic_layers_octree_open(layers, kind) : read_header_and_index(layers);
+}
+
 conic_status conic_layers_open(conic_context *context, const char *name, const conic_layers_access *access,
                                conic_layers **layers) {
   *layers = NULL;
@@ -176,6 +205,7 @@ conic_status conic_layers_open(conic_context *context, const char *name, const c
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
+  made->choice.colored_by = -1;
   made->access = own;
   made->until_s = own.seconds > 0.0 ? conic_seconds_now() + own.seconds : HUGE_VAL;
   made->is_remote = conic_ranges_is_url(name);
@@ -183,7 +213,7 @@ conic_status conic_layers_open(conic_context *context, const char *name, const c
   conic_status status = made->name ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     memcpy(made->name, name, strlen(name) + 1);
-    status = read_header_and_index(made);
+    status = open_kind(made);
   }
   if (status == CONIC_OK)
     status = conic_layers_store_open(made);
@@ -200,11 +230,16 @@ void conic_layers_close(conic_layers *layers) {
     return;
   conic_context *context = layers->context;
   conic_layers_store_close(layers);
-  conic_ranges_close(layers->ranges);
+  conic_filter_destroy(context, layers->choice.filter);
+  if (layers->octree)
+    conic_layers_octree_close(layers);
+  else
+    conic_ranges_close(layers->ranges);
   conic_renderer_destroy(layers->hider);
   if (layers->set)
     conic_layers_set_release(context, layers->set);
   conic_memory_release(context, layers->set);
+  conic_memory_release(context, layers->facings);
   conic_memory_release(context, layers->entries);
   conic_memory_release(context, layers->first_sample);
   conic_memory_release(context, layers->name);

@@ -3,6 +3,8 @@
 #define CONIC_LAYERS_SCENE_H
 
 #include "conic/layers_draw.h"
+#include "core/splats/raw_colors.h"
+#include "lod/hierarchies/hierarchy.h"
 #include "lod/layers/draw/layers_store.h"
 #include "lod/layers/format/layers_format.h"
 #include "lod/ranges/ranges.h"
@@ -13,23 +15,51 @@ struct conic_layers {
   conic_layers_access access;
   double until_s; /* by conic_seconds_now, opening ends */
   int is_remote;
-  conic_ranges *ranges;
+  conic_ranges *ranges;               /* of the clouds */
+  struct conic_layers_octree *octree; /* null: a .lpc */
   uint64_t n_told; /* bytes received that a picture's statistics have told of */
   conic_layers_header header;
   conic_layers_entry *entries;
   uint64_t *first_sample; /* number of each cloud's first, in the order of the file */
+  conic_layers_choice choice;
   conic_layers_store store;
-  conic_renderer *hider;        /* draws how deep things hide, for other devices that do not; made when needed */
-  struct conic_layers_set *set; /* what is gathered to be drawn; likewise */
+  uint64_t picture_bytes;   /* what the image that is being drawn takes */
+  conic_renderer *hider;    /* draws how deep things hide, for other devices that do not; made when needed */
+  conic_camera last_camera; /* of the picture before; width 0: there was none */
+  struct conic_layers_facings *facings; /* likewise */
+  struct conic_layers_set *set;         /* what is gathered to be drawn; likewise */
 };
 
-/* Shares of the memory that a picture may take: for the cache, and for what is gathered and drawn of it at a time. */
+/* How its files are read. */
+void conic_layers_ranges_options(const conic_layers *layers, conic_ranges_options *options);
+
+/* How many children a node has that has any; they follow each other. */
+static inline uint32_t conic_layers_children(const conic_layers *layers) {
+  return layers->octree ? 8 : 2;
+}
+
+/* Whether a cloud is in memory, or empty. */
+static inline int conic_layers_has_cloud(const conic_layers *layers, uint32_t cloud) {
+  return layers->store.slots[cloud].block || layers->entries[cloud].n_samples == 0;
+}
+
+/* What is left of the memory that a picture may take, once the program, the index and the image have theirs; a quarter
+ * of all of it at least. */
+static inline uint64_t conic_layers_free_bytes(const conic_layers *layers) {
+  const uint64_t own_bytes = UINT64_C(20) << 20, all = layers->access.memory_bytes;
+  uint64_t cloud_bytes = sizeof(conic_layers_entry) + sizeof(conic_layers_slot) + 96; /* with its place and pieces */
+  uint64_t taken = own_bytes + layers->header.n_clouds * cloud_bytes + layers->picture_bytes;
+  return all > taken + all / 4 ? all - taken : all / 4;
+}
+
+/* Shares of that: for the cache, and for what is gathered and drawn of it at a time. The rest is for what memory that
+ * is taken and given back leaves unused. */
 static inline uint64_t conic_layers_cache_bytes(const conic_layers *layers) {
-  return layers->access.memory_bytes / 8 * 3;
+  return conic_layers_free_bytes(layers) / 8 * 3;
 }
 
 static inline uint64_t conic_layers_drawing_bytes(const conic_layers *layers) {
-  return layers->access.memory_bytes / 8 * 3;
+  return conic_layers_free_bytes(layers) / 8 * 3;
 }
 
 #endif

@@ -6,10 +6,10 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "lod/layers/draw/layers_scene.h"
+#include "lod/layers/draw/layers_octree.h"
 
 /* So many answers are decoded together. */
-enum { DECODED_TOGETHER = 64 };
+enum { DECODED_TOGETHER = 64, BLOCK_STEP = 1 << 14 };
 
 /* A cloud on its way into memory. */
 typedef struct arrival {
@@ -31,12 +31,14 @@ conic_status conic_layers_store_open(conic_layers *layers) {
   size_t n_threads = (size_t)conic_context_threads(context);
   store->newest = store->oldest = CONIC_NO_CLOUD;
   store->slots = conic_memory_allocate_zeroed(context, layers->header.n_clouds, sizeof *store->slots);
+  if (layers->octree)
+    return store->slots ? CONIC_OK : CONIC_ERROR_MEMORY;
   store->decoders = conic_memory_allocate_zeroed(context, n_threads, sizeof(void *));
   if (!store->slots || !store->decoders)
     return CONIC_ERROR_MEMORY;
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < n_threads && status == CONIC_OK; i++)
-    status = conic_layers_decoder_create(context, &layers->header, &store->decoders[i]);
+    status = conic_layers_decoder_create(context, &layers->header, &layers->choice, &store->decoders[i]);
   return status;
 }
 
@@ -52,8 +54,10 @@ void conic_layers_store_close(conic_layers *layers) {
   memset(store, 0, sizeof *store);
 }
 
+/* Of few sizes, so that what one cloud leaves another can take. */
 static size_t bytes_of(const conic_layers *layers, uint32_t cloud) {
-  return conic_layers_cloud_bytes(&layers->header, &layers->entries[cloud]);
+  size_t n_bytes = conic_layers_cloud_bytes(&layers->header, &layers->entries[cloud], &layers->choice);
+  return (n_bytes + (BLOCK_STEP - 1)) / BLOCK_STEP * BLOCK_STEP;
 }
 
 static void unlink_slot(conic_layers_store *store, uint32_t cloud) {
@@ -101,31 +105,45 @@ static void pin(conic_layers_store *store, uint32_t cloud) {
   link_newest(store, cloud);
 }
 
-static conic_status request(conic_layers *layers, uint32_t cloud) {
+static conic_range range_of_cloud(const conic_layers *layers, uint32_t cloud) {
   const conic_layers_entry *entry = &layers->entries[cloud];
   conic_range range = {.offset = entry->offset, .n_bytes = entry->n_bytes, .priority = cloud, .id = cloud};
+  if (layers->octree)
+    conic_layers_octree_locate(layers, cloud, &range);
+  return range;
+}
+
+static conic_status request(conic_layers *layers, uint32_t cloud) {
+  conic_range range = range_of_cloud(layers, cloud);
   return conic_ranges_request(layers->ranges, &range);
 }
 
 static void decode_task(void *data, size_t i_item, int i_thread) {
   arrivals *a = data;
   arrival *one = &a->all[i_item];
-  if (one->block)
+  if (one->block && a->layers->octree)
+    one->wrong =
+        conic_layers_octree_decode(a->layers, one->answer.id, one->answer.bytes, one->answer.n_bytes, &one->cloud);
+  else if (one->block)
     one->wrong = conic_layers_decode(a->layers->store.decoders[i_thread], &a->layers->entries[one->answer.id],
                                      one->answer.bytes, &one->cloud);
 }
 
-static void keep_cloud(conic_layers *layers, arrival *one) {
+static conic_status keep_cloud(conic_layers *layers, arrival *one) {
   conic_layers_store *store = &layers->store;
   conic_layers_slot *slot = &store->slots[one->answer.id];
   slot->block = one->block;
   slot->cloud = one->cloud;
   slot->is_doubted = 0;
   link_newest(store, one->answer.id);
-  slot->n_pins++;
+  slot->n_pins += slot->is_wanted;
+  store->n_ahead += slot->is_asked;
+  store->n_asked -= slot->is_asked;
+  slot->is_asked = slot->is_wanted = 0;
   store->n_bytes += bytes_of(layers, one->answer.id);
   store->n_read++;
   one->block = NULL;
+  return layers->octree ? conic_layers_octree_keep(layers, one->answer.id, &slot->cloud) : CONIC_OK;
 }
 
 /* What becomes of a cloud that did not arrive as it should: asked for once again, missed, or an error. */
@@ -133,12 +151,17 @@ static conic_status take_failure(conic_layers *layers, const arrival *one, conic
   uint32_t cloud = one->answer.id;
   conic_layers_slot *slot = &layers->store.slots[cloud];
   unsigned long long offset = layers->entries[cloud].offset;
+  layers->store.n_asked -= slot->is_asked;
+  slot->is_asked = 0;
+  if (!slot->is_wanted) /* whoever wants it will ask again */
+    return CONIC_OK;
   if (one->wrong && layers->is_remote && !slot->is_doubted && layers->access.n_retries > 0) {
     slot->is_doubted = 1;
     return request(layers, cloud);
   }
   conic_status status = one->wrong ? CONIC_ERROR_INPUT : one->answer.status;
   const char *reason = one->wrong ? one->wrong : one->answer.reason;
+  slot->is_wanted = 0;
   loading->n_missing++;
   loading->n_damaged += status == CONIC_ERROR_INPUT;
   if (status == CONIC_ERROR_INPUT ? !loading->tolerates_damage : !loading->may_miss)
@@ -148,6 +171,16 @@ static conic_status take_failure(conic_layers *layers, const arrival *one, conic
     conic_log(layers->context, CONIC_LOG_WARNING, "%s: cloud %u: %s (at byte %llu); what is damaged is drawn coarser",
               layers->name, cloud, reason, offset);
   return CONIC_OK;
+}
+
+/* A .lpc's index was checked; another hierarchy may point anywhere. */
+static conic_status ask_for_cloud(conic_layers *layers, uint32_t cloud, conic_layers_loading *loading) {
+  const conic_range range = range_of_cloud(layers, cloud);
+  if (conic_ranges_holds(layers->ranges, &range))
+    return conic_ranges_request(layers->ranges, &range);
+  const arrival lost = {
+      .answer = {.id = cloud, .status = CONIC_ERROR_INPUT, .reason = "its bytes lie outside the file"}};
+  return take_failure(layers, &lost, loading);
 }
 
 /* Fetches what has come by now, or within the wait. */
@@ -165,16 +198,23 @@ static void collect_clouds(conic_layers *layers, double wait_s, arrivals *a) {
 }
 
 static conic_status allocate_blocks(conic_layers *layers, arrivals *a) {
+  size_t n_new = 0;
   for (size_t i = 0; i < a->n; i++) {
     arrival *one = &a->all[i];
     if (one->answer.status != CONIC_OK)
       continue;
     size_t n_bytes = bytes_of(layers, one->answer.id);
-    make_room_for_bytes(layers, n_bytes);
+    if (layers->entries[one->answer.id].n_samples / CONIC_HIERARCHY_POINTS_A_BYTE > one->answer.n_bytes) {
+      one->wrong = "its bytes are too few for so many points";
+      continue;
+    }
+    n_new += n_bytes;
+    make_room_for_bytes(layers, n_new);
     one->block = conic_memory_allocate(layers->context, n_bytes, 1);
     if (!one->block)
       return CONIC_ERROR_MEMORY;
-    conic_layers_cloud_place(&layers->header, &layers->entries[one->answer.id], one->block, &one->cloud);
+    conic_layers_cloud_place(&layers->header, &layers->entries[one->answer.id], &layers->choice, one->block,
+                             &one->cloud);
   }
   return CONIC_OK;
 }
@@ -186,7 +226,7 @@ static conic_status take_arrivals(conic_layers *layers, arrivals *a, conic_layer
   for (size_t i = 0; i < a->n; i++) {
     arrival *one = &a->all[i];
     if (status == CONIC_OK && one->block && !one->wrong)
-      keep_cloud(layers, one);
+      status = keep_cloud(layers, one);
     else if (status == CONIC_OK)
       status = take_failure(layers, one, loading);
     conic_memory_release(layers->context, one->block);
@@ -211,25 +251,75 @@ static conic_status take_all(conic_layers *layers, size_t n_asked, conic_layers_
     if (status != CONIC_OK)
       return status;
   }
-  loading->n_missing += conic_ranges_pending(layers->ranges);
+  for (size_t i = 0; i < loading->n; i++)
+    loading->n_missing += layers->store.slots[loading->clouds[i]].is_wanted;
   return CONIC_OK;
 }
 
-conic_status conic_layers_store_load(conic_layers *layers, conic_layers_loading *loading) {
+/* Ends what is under way. */
+static void forget_asked(conic_layers *layers) {
+  conic_ranges_cancel(layers->ranges);
+  for (uint32_t i = 0; i < layers->header.n_clouds && layers->store.n_asked > 0; i++) {
+    layers->store.n_asked -= layers->store.slots[i].is_asked;
+    layers->store.slots[i].is_asked = 0;
+  }
+}
+
+/* Takes what was asked for ahead and has come; where little of the rest is wanted now, gives that up. */
+static conic_status take_ahead(conic_layers *layers, const conic_layers_loading *loading) {
+  conic_layers_loading none = {.until_s = 0.0};
+  arrivals a = {.layers = layers};
   conic_status status = CONIC_OK;
-  size_t n_asked = 0;
+  uint64_t n_wanted = 0;
+  do {
+    collect_clouds(layers, 0.0, &a);
+    status = take_arrivals(layers, &a, &none);
+  } while (a.n > 0 && status == CONIC_OK);
+  for (size_t i = 0; i < loading->n; i++)
+    n_wanted += layers->store.slots[loading->clouds[i]].is_asked;
+  if (2 * n_wanted < layers->store.n_asked)
+    forget_asked(layers);
+  return status;
+}
+
+conic_status conic_layers_store_ask_ahead(conic_layers *layers, const uint32_t *clouds, size_t n) {
+  conic_layers_store *store = &layers->store;
+  size_t n_fit = conic_layers_store_fit(layers, clouds, n, conic_layers_cache_bytes(layers));
+  conic_status status = CONIC_OK;
+  if (layers->octree) /* whose pages come in between */
+    return CONIC_OK;
+  for (size_t i = 0; i < n_fit && status == CONIC_OK; i++) {
+    conic_layers_slot *slot = &store->slots[clouds[i]];
+    if (slot->block) { /* is to stay */
+      unlink_slot(store, clouds[i]);
+      link_newest(store, clouds[i]);
+    } else if (!slot->is_asked) {
+      status = request(layers, clouds[i]);
+      slot->is_asked = status == CONIC_OK;
+      store->n_asked += slot->is_asked;
+    }
+  }
+  conic_ranges_go_on(layers->ranges);
+  return status;
+}
+
+conic_status conic_layers_store_load(conic_layers *layers, conic_layers_loading *loading) {
+  conic_status status = layers->store.n_asked > 0 ? take_ahead(layers, loading) : CONIC_OK;
   loading->n_missing = loading->n_damaged = 0;
   for (size_t i = 0; i < loading->n; i++)
     if (layers->store.slots[loading->clouds[i]].block)
       pin(&layers->store, loading->clouds[i]);
   for (size_t i = 0; i < loading->n && status == CONIC_OK; i++)
-    if (!layers->store.slots[loading->clouds[i]].block) {
-      status = request(layers, loading->clouds[i]);
-      n_asked++;
+    if (!conic_layers_has_cloud(layers, loading->clouds[i])) {
+      layers->store.slots[loading->clouds[i]].is_wanted = 1;
+      if (!layers->store.slots[loading->clouds[i]].is_asked)
+        status = ask_for_cloud(layers, loading->clouds[i], loading);
     }
   if (status == CONIC_OK)
-    status = take_all(layers, n_asked, loading);
-  conic_ranges_cancel(layers->ranges);
+    status = take_all(layers, conic_ranges_pending(layers->ranges), loading);
+  for (size_t i = 0; i < loading->n; i++)
+    layers->store.slots[loading->clouds[i]].is_wanted = 0;
+  forget_asked(layers);
   if (status == CONIC_OK && loading->n_missing && !loading->may_miss)
     status = conic_fail(layers->context, CONIC_ERROR_MEMORY, "%s: clouds are missing", layers->name);
   if (status != CONIC_OK)
@@ -253,4 +343,19 @@ size_t conic_layers_store_fit(const conic_layers *layers, const uint32_t *clouds
       return i ? i : 1;
   }
   return n;
+}
+
+void conic_layers_store_renumber(conic_layers *layers, const uint32_t *becomes, conic_layers_slot *slots) {
+  conic_layers_store *store = &layers->store;
+  uint32_t *const ends[] = {&store->newest, &store->oldest};
+  for (uint32_t i = store->oldest; i != CONIC_NO_CLOUD; i = store->slots[i].newer) {
+    conic_layers_slot *slot = &slots[becomes[i]];
+    *slot = store->slots[i];
+    slot->newer = slot->newer == CONIC_NO_CLOUD ? CONIC_NO_CLOUD : becomes[slot->newer];
+    slot->older = slot->older == CONIC_NO_CLOUD ? CONIC_NO_CLOUD : becomes[slot->older];
+  }
+  for (int i = 0; i < 2; i++)
+    *ends[i] = *ends[i] == CONIC_NO_CLOUD ? CONIC_NO_CLOUD : becomes[*ends[i]];
+  conic_memory_release(layers->context, store->slots);
+  store->slots = slots;
 }

@@ -11,6 +11,8 @@ typedef struct conic_layers_slot {
   uint32_t newer, older; /* neighbours by last use: clouds, or CONIC_NO_CLOUD */
   uint16_t n_pins;       /* it must stay */
   uint8_t is_doubted;    /* its bytes were wrong once */
+  uint8_t is_asked;      /* ahead of need, and not yet there */
+  uint8_t is_wanted;     /* now */
 } conic_layers_slot;
 
 #define CONIC_NO_CLOUD UINT32_MAX
@@ -20,6 +22,8 @@ typedef struct conic_layers_store {
   uint32_t newest, oldest;
   uint64_t n_bytes;                /* of all blocks */
   uint64_t n_read;                 /* clouds decoded so far */
+  uint64_t n_asked;                /* ahead of need, and not yet there */
+  uint64_t n_ahead;                /* clouds that came so far after they had been asked for ahead */
   conic_layers_decoder **decoders; /* a thread; null until it is first needed */
 } conic_layers_store;
 
@@ -41,6 +45,14 @@ typedef struct conic_layers_loading {
  * (damaged), IO, MEMORY, CANCELLED. */
 conic_status conic_layers_store_load(conic_layers *layers, conic_layers_loading *loading);
 void conic_layers_store_unpin(conic_layers *layers, const conic_layers_loading *loading);
+
+/* Clouds get other numbers: the i-th becomes[i], in `slots`, which are zeroed, and are the store's then. Nothing is
+ * held. */
+void conic_layers_store_renumber(conic_layers *layers, const uint32_t *becomes, conic_layers_slot *slots);
+
+/* Asks for clouds that will be wanted, ascending, as many as the cache holds, and lets them come while the caller
+ * draws. Errors: MEMORY. */
+conic_status conic_layers_store_ask_ahead(conic_layers *layers, const uint32_t *clouds, size_t n);
 
 /* How many of the first clouds of a list may be in memory together, within so many bytes; at least 1. */
 size_t conic_layers_store_fit(const conic_layers *layers, const uint32_t *clouds, size_t n, uint64_t n_bytes);

@@ -104,6 +104,15 @@ static int is_turned_away(const conic_layers_view *view, const conic_layers_entr
   return cone_angles(view, entry, cosine, sine) && cosine[0] > 0.0 && cosine[0] > sine[1];
 }
 
+/* |X|/z of what is seen within the window, at most: a displacement by e there moves its projection by no more than
+ * f·e·|X|/z². */
+static double longest_ray(const conic_layers_view *view, const conic_window *window) {
+  double left = view->cx - (double)window->x_begin, right = (double)window->x_end - view->cx;
+  double above = view->cy - (double)window->y_begin, below = (double)window->y_end - view->cy;
+  double x = (left > right ? left : right) / view->fx, y = (above > below ? above : below) / view->fy;
+  return sqrt(1.0 + x * x + y * y);
+}
+
 int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *entry, conic_layers_sight *sight) {
   double p[3];
   conic_viewpoint_move_floats(&view->from, entry->center, p);
@@ -120,9 +129,10 @@ int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *e
     sight->pixels.y_end = view->height;
     return 1;
   }
-  sight->error_px = most_px(view, (double)entry->error, distance + radius, front);
   sight->near_iz = (1.0 + slack) / front;
-  return set_pixels(view, entry, p, radius, sight);
+  int is_in_sight = set_pixels(view, entry, p, radius, sight);
+  sight->error_px = view->greatest_focal * (double)entry->error * longest_ray(view, &sight->pixels) / front;
+  return is_in_sight;
 }
 
 static void narrow_range(double middle, double reach, int *begin, int *end) {

@@ -1,22 +1,47 @@
-/* All of a layered point cloud as splats, for what needs every one of them. */
+/* All of a layered point cloud as splats, for what needs every one of them: at once, or place by place. */
 #include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/options.h"
 #include "lod/layers/draw/layers_gather.h"
+#include "lod/layers/draw/layers_octree.h"
 
-/* The leaves are the finest of the cut, in the order of their keys. */
-static conic_status list_leaves(const conic_layers *layers, conic_layers_cut *cut, uint32_t *chosen) {
-  uint32_t open[CONIC_LAYERS_MOST_LEVELS + 2] = {0};
+void conic_layers_region_init_sized(conic_layers_region *part, size_t size) {
+  static const conic_layers_region own = {
+      .size = sizeof own, .low = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, .high = {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
+  conic_options_give(part, size, &own);
+}
+
+/* Whether a node's sphere reaches into the part's box. */
+static int meets_part(const conic_layers *layers, const conic_layers_entry *entry, const conic_layers_region *part) {
+  double distance2 = 0.0, reach = (double)entry->sphere;
+  for (int axis = 0; axis < 3; axis++) {
+    double at = layers->header.origin[axis] + (double)entry->center[axis];
+    double beyond = at < part->low[axis] ? part->low[axis] - at : at > part->high[axis] ? at - part->high[axis] : 0.0;
+    distance2 += beyond * beyond;
+  }
+  return distance2 <= reach * reach;
+}
+
+/* The part's leaves, or what is fine enough above them, in the order of their keys. */
+static conic_status list_finest(const conic_layers *layers, const conic_layers_region *part, conic_layers_cut *cut,
+                                uint32_t *chosen) {
+  uint32_t open[CONIC_LAYERS_MOST_LEVELS + 7 * CONIC_HIERARCHY_LEVELS] = {0};
   int n_open = 1;
   cut->places = conic_memory_allocate_zeroed(layers->context, layers->header.n_clouds, sizeof *cut->places);
   if (!cut->places)
     return CONIC_ERROR_MEMORY;
   while (n_open > 0) {
-    uint32_t node = open[--n_open], child = layers->entries[node].child;
+    const uint32_t node = open[--n_open];
+    const conic_layers_entry *entry = &layers->entries[node];
+    uint32_t child = (double)entry->error <= part->error ? 0 : entry->child;
+    if (!meets_part(layers, entry, part))
+      continue;
     if (child) {
-      open[n_open++] = child + 1;
-      open[n_open++] = child;
+      for (uint32_t i = conic_layers_children(layers); i-- > 0;)
+        open[n_open++] = child + i;
       continue;
     }
     chosen[cut->n] = (uint32_t)cut->n;
@@ -25,13 +50,38 @@ static conic_status list_leaves(const conic_layers *layers, conic_layers_cut *cu
   return CONIC_OK;
 }
 
+/* Of an octree, all pages. */
+static conic_status expand_all(conic_layers *layers) {
+  conic_layers_expansion all = {.until_s = HUGE_VAL};
+  return layers->octree ? conic_layers_octree_expand(layers, NULL, &all) : CONIC_OK;
+}
+
+/* And the sizes of all nodes. */
+static conic_status prepare_all(conic_layers *layers) {
+  conic_status status = expand_all(layers);
+  if (!layers->octree)
+    return status;
+  unsigned char *needed = conic_memory_allocate(layers->context, layers->header.n_clouds, 1);
+  if (status == CONIC_OK && needed) {
+    memset(needed, 1, layers->header.n_clouds);
+    status = conic_layers_octree_measure(layers, needed);
+  }
+  conic_memory_release(layers->context, needed);
+  return needed ? status : CONIC_ERROR_MEMORY;
+}
+
 conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splats *splats) {
   conic_context *context = layers->context;
   conic_layers_cut cut = {0};
   conic_layers_set set = {0};
+  conic_layers_region all;
+  conic_layers_region_init(&all);
   memset(splats, 0, sizeof *splats);
+  conic_status status = prepare_all(layers);
+  if (status != CONIC_OK)
+    return status;
   uint32_t *chosen = conic_memory_allocate(context, layers->header.n_clouds, sizeof *chosen);
-  conic_status status = chosen ? list_leaves(layers, &cut, chosen) : CONIC_ERROR_MEMORY;
+  status = chosen ? list_finest(layers, &all, &cut, chosen) : CONIC_ERROR_MEMORY;
   conic_layers_gathering gathering = {
       .cut = &cut, .chosen = chosen, .n_chosen = cut.n, .cutoff = cutoff, .until_s = HUGE_VAL};
   if (status == CONIC_OK)
@@ -43,4 +93,79 @@ conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splat
   conic_layers_cut_release(context, &cut);
   conic_layers_set_release(context, &set);
   return status;
+}
+
+/* So many leaves' samples are handed over together. */
+enum { LEAVES_A_BATCH = 16 };
+
+/* What tells how large the samples of an octree's places are. */
+static conic_status measure_cut(conic_layers *layers, const conic_layers_cut *cut) {
+  if (!layers->octree)
+    return CONIC_OK;
+  unsigned char *needed = conic_memory_allocate(layers->context, layers->header.n_clouds, 1);
+  if (!needed)
+    return CONIC_ERROR_MEMORY;
+  conic_layers_needed(layers, cut, CONIC_PLACE_SHOWN, needed);
+  conic_status status = conic_layers_octree_measure(layers, needed);
+  conic_memory_release(layers->context, needed);
+  return status;
+}
+
+static conic_status read_cut(conic_layers *layers, float cutoff, const conic_layers_cut *cut, const uint32_t *chosen,
+                             conic_batch_receiver *receive, void *cookie) {
+  conic_layers_set set = {0};
+  conic_status status = CONIC_OK;
+  for (size_t first = 0; first < cut->n && status == CONIC_OK; first += LEAVES_A_BATCH) {
+    size_t left = cut->n - first;
+    conic_layers_gathering gathering = {.cut = cut,
+                                        .chosen = chosen + first,
+                                        .n_chosen = left < LEAVES_A_BATCH ? left : LEAVES_A_BATCH,
+                                        .cutoff = cutoff,
+                                        .until_s = HUGE_VAL};
+    status = conic_layers_gather(layers, &gathering, &set);
+    if (status == CONIC_OK && set.splats.count > 0)
+      status = receive(cookie, &set.splats);
+    if (status == CONIC_OK)
+      status = conic_progress(layers->context, "read", (double)first / (double)cut->n);
+  }
+  conic_layers_set_release(layers->context, &set);
+  return status;
+}
+
+conic_status conic_layers_read_samples(conic_layers *layers, float cutoff, const conic_layers_region *given,
+                                       conic_batch_receiver *receive, void *cookie) {
+  conic_context *context = layers->context;
+  conic_layers_cut cut = {0};
+  conic_layers_region part;
+  conic_layers_region_init(&part);
+  if (given && (!conic_options_take(&part, given) || !(part.error >= 0.0)))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a part of it that has no meaning", layers->name);
+  conic_status status = expand_all(layers);
+  if (status != CONIC_OK)
+    return status;
+  uint32_t *chosen = conic_memory_allocate(context, layers->header.n_clouds, sizeof *chosen);
+  status = chosen ? list_finest(layers, &part, &cut, chosen) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = measure_cut(layers, &cut);
+  if (status == CONIC_OK)
+    status = read_cut(layers, cutoff, &cut, chosen, receive, cookie);
+  conic_memory_release(context, chosen);
+  conic_layers_cut_release(context, &cut);
+  return status;
+}
+
+conic_status conic_layers_continue(const conic_layers *layers, conic_layers_options *options) {
+  const conic_layers_header *header = &layers->header;
+  if (conic_layers_schema_find(&header->schema, CONIC_LAYERS_VALUE) >= 0)
+    return conic_fail(layers->context, CONIC_ERROR_UNSUPPORTED,
+                      "%s: its samples have values by name, which are not handed on: build it again with --keep",
+                      layers->name);
+  options->cloud_size = header->cloud_size;
+  options->quantum = header->quantum;
+  options->quantum_in_spacings = 0;
+  options->has_corner = 1;
+  memcpy(options->corner, header->origin, sizeof options->corner);
+  options->is_unoriented |= (header->flags & CONIC_LAYERS_UNORIENTED) != 0;
+  options->keeps_all |= conic_layers_schema_find(&header->schema, CONIC_LAYERS_AXES) >= 0;
+  return CONIC_OK;
 }

@@ -140,10 +140,10 @@ static void append_inherited(const layers_checking *c, const stage *above, stage
 /* Decodes the node's cloud behind what the stage has; says what is wrong with it, or null. */
 static conic_status append_own(layers_checking *c, stage *s, const char **wrong) {
   conic_layers_cloud cloud;
-  void *block = conic_memory_allocate(c->context, conic_layers_cloud_bytes(&c->file->header, s->entry), 1);
+  void *block = conic_memory_allocate(c->context, conic_layers_cloud_bytes(&c->file->header, s->entry, NULL), 1);
   if (!block)
     return CONIC_ERROR_MEMORY;
-  conic_layers_cloud_place(&c->file->header, s->entry, block, &cloud);
+  conic_layers_cloud_place(&c->file->header, s->entry, NULL, block, &cloud);
   *wrong = conic_layers_decode(c->decoder, s->entry, c->file->mapping.bytes + s->entry->offset, &cloud);
   if (!*wrong)
     append_cloud(&cloud, s);
@@ -226,7 +226,7 @@ conic_status conic_layers_check(conic_context *context, const char *path, conic_
   if (status != CONIC_OK)
     return status;
   layers_checking *c = conic_memory_allocate_zeroed(context, 1, sizeof *c);
-  status = c ? conic_layers_decoder_create(context, &file.header, &c->decoder) : CONIC_ERROR_MEMORY;
+  status = c ? conic_layers_decoder_create(context, &file.header, NULL, &c->decoder) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     c->context = context;
     c->file = &file;

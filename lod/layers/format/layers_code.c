@@ -1,63 +1,67 @@
 #include "lod/layers/format/layers_code.h"
 
-#include <math.h>
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "lod/layers/format/layers_key.h"
+#include "lod/layers/format/layers_split.h"
 
-/* Each stream is packed by itself: what is alike lies together. */
+/* The first two streams are the keys'. */
 enum {
   STREAM_CLASSES = 0, /* of each key's difference to the one before: how many bits it has */
-  STREAM_BITS = 1,    /* those bits, but for the first, which is set */
-  STREAM_NORMALS = 2, /* two: differences to the sample before */
-  STREAM_COLORS = 4,  /* three: green, and what red and blue differ by, likewise */
-  MOST_STREAMS = 7
+  STREAM_BITS = 1     /* those bits, but for the first, which is set */
 };
 
 /* A stream's size in the cloud's first bytes, with this bit where it is packed. */
-enum { SIZE_BYTES = 4 };
+enum { SIZE_BYTES = 4, MOST_STREAMS = CONIC_LAYERS_MOST_ATTRIBUTES * CONIC_LAYERS_MOST_STREAMS };
 static const uint32_t is_packed_bit = UINT32_C(1) << 31;
-
-static const int part_of_stream[MOST_STREAMS] = {CONIC_LAYERS_POSITION, CONIC_LAYERS_POSITION, CONIC_LAYERS_NORMAL,
-                                                 CONIC_LAYERS_NORMAL,   CONIC_LAYERS_COLOR,    CONIC_LAYERS_COLOR,
-                                                 CONIC_LAYERS_COLOR};
 
 struct conic_layers_coder {
   conic_context *context;
   conic_zstd *zstd;
   size_t most_samples;
-  int n_streams;
-  unsigned char *streams[MOST_STREAMS];
+  conic_layers_schema schema;
+  unsigned char *streams[MOST_STREAMS]; /* null: of an attribute that is not known, or not wanted */
   size_t n_bytes[MOST_STREAMS];
   unsigned char *packed;
 };
 
-/* A key has 63 bits at most; reading them goes on for some bytes past the end. */
-static size_t bits_room(size_t n_samples) {
-  return 8 * n_samples + 16;
+/* A key has 63 bits at most, a sample up to two clip lines; reading bits goes on for some bytes past the end. */
+static size_t stream_room(const conic_layers_coder *coder, uint32_t i_attribute) {
+  conic_layers_kind kind = (conic_layers_kind)coder->schema.list[i_attribute].kind;
+  return (kind == CONIC_LAYERS_POSITION ? 8 : kind == CONIC_LAYERS_CLIP ? 2 : 1) * coder->most_samples + 16;
 }
 
-conic_status conic_layers_coder_create(conic_context *context, size_t most_samples, int has_colors,
-                                       conic_layers_coder **coder) {
+static conic_status make_streams(conic_layers_coder *coder, const unsigned char *is_wanted) {
+  size_t packed_room = (size_t)coder->schema.n_streams * SIZE_BYTES;
+  for (uint32_t i = 0, k = 0; i < coder->schema.n; i++) {
+    size_t room = stream_room(coder, i);
+    for (uint32_t end = k + coder->schema.list[i].n_streams; k < end; k++) {
+      if (coder->schema.list[i].kind >= CONIC_LAYERS_KINDS || (is_wanted && !is_wanted[i]))
+        continue;
+      coder->streams[k] = conic_memory_allocate(coder->context, room, 1);
+      if (!coder->streams[k])
+        return CONIC_ERROR_MEMORY;
+      packed_room += conic_zstd_bound(room);
+    }
+  }
+  coder->packed = is_wanted ? NULL : conic_memory_allocate(coder->context, packed_room, 1);
+  return coder->packed || is_wanted ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+conic_status conic_layers_coder_create(conic_context *context, size_t most_samples, const conic_layers_schema *schema,
+                                       const unsigned char *is_wanted, conic_layers_coder **coder) {
   *coder = NULL;
   conic_layers_coder *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
   made->most_samples = most_samples;
-  made->n_streams = has_colors ? MOST_STREAMS : STREAM_COLORS;
+  made->schema = *schema;
   conic_status status = conic_zstd_create(context, &made->zstd);
-  for (int i = 0; i < made->n_streams && status == CONIC_OK; i++) {
-    made->streams[i] =
-        conic_memory_allocate(context, i == STREAM_BITS ? bits_room(most_samples) : most_samples + 16, 1);
-    status = made->streams[i] ? CONIC_OK : CONIC_ERROR_MEMORY;
-  }
-  if (status == CONIC_OK) {
-    size_t room = (MOST_STREAMS - 1) * conic_zstd_bound(most_samples) + conic_zstd_bound(bits_room(most_samples));
-    made->packed = conic_memory_allocate(context, room + (size_t)MOST_STREAMS * SIZE_BYTES, 1);
-    status = made->packed ? CONIC_OK : CONIC_ERROR_MEMORY;
-  }
+  if (status == CONIC_OK)
+    status = make_streams(made, is_wanted);
   if (status == CONIC_OK)
     *coder = made;
   else
@@ -79,15 +83,15 @@ static unsigned n_bits_of(uint64_t value) {
   return value ? 64 - (unsigned)__builtin_clzll(value) : 0;
 }
 
-static void split_keys(conic_layers_coder *coder, const conic_layers_sample *samples, size_t n, uint64_t first_key) {
+static void split_keys(conic_layers_coder *coder, const unsigned char *samples, size_t n, uint64_t first_key) {
   unsigned char *classes = coder->streams[STREAM_CLASSES], *bits = coder->streams[STREAM_BITS];
   uint64_t before = first_key, held = 0;
   unsigned n_held = 0;
   size_t at = 0;
   for (size_t i = 0; i < n; i++) {
-    uint64_t difference = samples[i].key - before;
+    uint64_t key = conic_layers_sample_at(samples, coder->schema.sample_bytes, i)->key, difference = key - before;
     unsigned n_bits = n_bits_of(difference);
-    before = samples[i].key;
+    before = key;
     classes[i] = (unsigned char)n_bits;
     for (unsigned left = n_bits ? n_bits - 1 : 0; left;) { /* at most 32 at a time, so that `held` has room */
       unsigned some = left < 32 ? left : 32;
@@ -105,72 +109,36 @@ static void split_keys(conic_layers_coder *coder, const conic_layers_sample *sam
   coder->n_bytes[STREAM_BITS] = at;
 }
 
-static void split_attributes(conic_layers_coder *coder, const conic_layers_sample *samples, size_t n) {
-  static const conic_layers_sample zero;
-  const conic_layers_sample *before = &zero;
-  unsigned char *const *streams = coder->streams;
-  for (size_t i = 0; i < n; i++) {
-    const conic_layers_sample *sample = &samples[i];
-    streams[STREAM_NORMALS][i] = (unsigned char)(sample->normal[0] - before->normal[0]);
-    streams[STREAM_NORMALS + 1][i] = (unsigned char)(sample->normal[1] - before->normal[1]);
-    if (coder->n_streams > STREAM_COLORS) {
-      int green = sample->color[1] - before->color[1];
-      streams[STREAM_COLORS][i] = (unsigned char)green;
-      streams[STREAM_COLORS + 1][i] = (unsigned char)(sample->color[0] - before->color[0] - green);
-      streams[STREAM_COLORS + 2][i] = (unsigned char)(sample->color[2] - before->color[2] - green);
-    }
-    before = sample;
-  }
-  for (int i = STREAM_NORMALS; i < coder->n_streams; i++)
-    coder->n_bytes[i] = n;
-}
-
-static void put_size(unsigned char *to, uint32_t size) {
-  for (int i = 0; i < SIZE_BYTES; i++)
-    to[i] = (unsigned char)(size >> 8 * i);
-}
-
-static uint32_t get_size(const unsigned char *from) {
-  uint32_t size = 0;
-  for (int i = 0; i < SIZE_BYTES; i++)
-    size |= (uint32_t)from[i] << 8 * i;
+static size_t pack_layer_stream(conic_layers_coder *coder, uint32_t i, size_t at) {
+  size_t packed = conic_zstd_pack(coder->zstd, coder->streams[i], coder->n_bytes[i], coder->packed + at);
+  size_t size = packed ? packed : coder->n_bytes[i];
+  if (!packed)
+    memcpy(coder->packed + at, coder->streams[i], size);
+  conic_store_32(coder->packed + (size_t)i * SIZE_BYTES, (uint32_t)size | (packed ? is_packed_bit : 0));
   return size;
 }
 
-size_t conic_layers_encode(conic_layers_coder *coder, const conic_layers_sample *samples, size_t n, uint64_t first_key,
-                           const unsigned char **bytes, uint64_t part_bytes[CONIC_LAYERS_PARTS]) {
-  size_t at = (size_t)coder->n_streams * SIZE_BYTES;
+size_t conic_layers_encode(conic_layers_coder *coder, const unsigned char *samples, size_t n, uint64_t first_key,
+                           const unsigned char **bytes, uint64_t attribute_bytes[CONIC_LAYERS_MOST_ATTRIBUTES]) {
+  const conic_layers_schema *schema = &coder->schema;
+  size_t at = (size_t)schema->n_streams * SIZE_BYTES;
   split_keys(coder, samples, n, first_key);
-  split_attributes(coder, samples, n);
-  for (int i = 0; i < coder->n_streams; i++) {
-    size_t packed = conic_zstd_pack(coder->zstd, coder->streams[i], coder->n_bytes[i], coder->packed + at);
-    size_t size = packed ? packed : coder->n_bytes[i];
-    if (!packed)
-      memcpy(coder->packed + at, coder->streams[i], size);
-    put_size(coder->packed + (size_t)i * SIZE_BYTES, (uint32_t)size | (packed ? is_packed_bit : 0));
-    part_bytes[part_of_stream[i]] += size + SIZE_BYTES;
-    at += size;
+  for (uint32_t i = 0, k = 0; i < schema->n; i++) {
+    uint32_t end = k + schema->list[i].n_streams;
+    if (i > 0)
+      conic_layers_split(schema, i, samples, n, &coder->streams[k], &coder->n_bytes[k]);
+    for (; k < end; k++) {
+      size_t size = pack_layer_stream(coder, k, at);
+      attribute_bytes[i] += size + SIZE_BYTES;
+      at += size;
+    }
   }
   *bytes = coder->packed;
   return at;
 }
 
-/* Where each stream's bytes are; whether they take all the cloud's. */
-static int find_streams(const conic_layers_coder *coder, const unsigned char *bytes, size_t n_bytes,
-                        const unsigned char *from[MOST_STREAMS], uint32_t sizes[MOST_STREAMS]) {
-  size_t at = (size_t)coder->n_streams * SIZE_BYTES;
-  for (int i = 0; i < coder->n_streams && at <= n_bytes; i++) {
-    sizes[i] = get_size(bytes + (size_t)i * SIZE_BYTES);
-    from[i] = bytes + at;
-    size_t size = sizes[i] & ~is_packed_bit;
-    if (size > n_bytes - at)
-      return 0;
-    at += size;
-  }
-  return at == n_bytes;
-}
-
-static int unpack_stream(conic_layers_coder *coder, int i, const unsigned char *from, uint32_t size, size_t n_bytes) {
+static int unpack_stream(conic_layers_coder *coder, uint32_t i, const unsigned char *from, uint32_t size,
+                         size_t n_bytes) {
   size_t n_packed = size & ~is_packed_bit;
   if (size & is_packed_bit)
     return conic_zstd_unpack(coder->zstd, from, n_packed, coder->streams[i], n_bytes);
@@ -192,16 +160,14 @@ static size_t count_bits(const unsigned char *classes, size_t n) {
 
 /* 64 bits from any bit on; eight bytes behind them may be read too. */
 static uint64_t bits_at(const unsigned char *bytes, size_t at) {
-  uint64_t word = 0;
   unsigned shift = (unsigned)(at & 7);
   bytes += at >> 3;
-  for (int i = 0; i < 8; i++)
-    word |= (uint64_t)bytes[i] << 8 * i;
+  uint64_t word = conic_load_64(bytes);
   return shift ? word >> shift | (uint64_t)bytes[8] << (64 - shift) : word;
 }
 
 static const char *join_keys(const conic_layers_coder *coder, size_t n, uint64_t first_key, uint64_t last_key,
-                             conic_layers_sample *samples) {
+                             unsigned char *samples) {
   const unsigned char *classes = coder->streams[STREAM_CLASSES], *bits = coder->streams[STREAM_BITS];
   uint64_t key = first_key;
   size_t at = 0;
@@ -214,77 +180,60 @@ static const char *join_keys(const conic_layers_coder *coder, size_t n, uint64_t
       key += difference;
       at += n_bits - 1;
     }
-    samples[i].key = key;
+    conic_layers_sample_in(samples, coder->schema.sample_bytes, i)->key = key;
   }
   return NULL;
 }
 
-static void join_attributes(const conic_layers_coder *coder, size_t n, conic_layers_sample *samples) {
-  unsigned char *const *streams = coder->streams;
-  uint8_t x = 0, y = 0, red = 0, green = 0, blue = 0;
-  for (size_t i = 0; i < n; i++) {
-    samples[i].normal[0] = x = (uint8_t)(x + streams[STREAM_NORMALS][i]);
-    samples[i].normal[1] = y = (uint8_t)(y + streams[STREAM_NORMALS + 1][i]);
-    if (coder->n_streams > STREAM_COLORS) {
-      uint8_t difference = streams[STREAM_COLORS][i];
-      samples[i].color[0] = red = (uint8_t)(red + streams[STREAM_COLORS + 1][i] + difference);
-      samples[i].color[1] = green = (uint8_t)(green + difference);
-      samples[i].color[2] = blue = (uint8_t)(blue + streams[STREAM_COLORS + 2][i] + difference);
-    }
+/* The sum of the streams' sizes from the first up to one; SIZE_MAX where they are more than the cloud's bytes. */
+static size_t skip_streams(const conic_layers_coder *coder, const unsigned char *bytes, size_t n_bytes) {
+  size_t at = (size_t)coder->schema.n_streams * SIZE_BYTES;
+  if (n_bytes < at)
+    return SIZE_MAX;
+  for (uint32_t i = 0; i < coder->schema.n_streams; i++) {
+    size_t size = conic_load_32(bytes + (size_t)i * SIZE_BYTES) & ~is_packed_bit;
+    if (size > n_bytes - at)
+      return SIZE_MAX;
+    at += size;
   }
+  return at;
+}
+
+/* How long stream k of attribute i is, now that those before it are there. SIZE_MAX: they make no sense. */
+static size_t expected_bytes(const conic_layers_coder *coder, uint32_t i, uint32_t k, uint32_t first, size_t n) {
+  if (i == 0)
+    return k == STREAM_BITS ? count_bits(coder->streams[STREAM_CLASSES], n) : n;
+  return coder->schema.list[i].kind == CONIC_LAYERS_CLIP && k > first
+             ? conic_layers_count_lines(coder->streams[first], n)
+             : n;
 }
 
 const char *conic_layers_unpack(conic_layers_coder *coder, const unsigned char *bytes, size_t n_bytes, size_t n,
-                                uint64_t first_key, uint64_t last_key, conic_layers_sample *samples) {
-  const unsigned char *from[MOST_STREAMS];
-  uint32_t sizes[MOST_STREAMS];
+                                uint64_t first_key, uint64_t last_key, unsigned char *samples) {
+  const conic_layers_schema *schema = &coder->schema;
+  const char *wrong = NULL;
   if (n > coder->most_samples)
     return "it has more samples than the largest";
-  if (n_bytes < (size_t)coder->n_streams * SIZE_BYTES || !find_streams(coder, bytes, n_bytes, from, sizes))
+  if (skip_streams(coder, bytes, n_bytes) != n_bytes)
     return "its streams are not as long as its bytes";
-  for (int i = 0; i < coder->n_streams; i++) {
-    size_t n_expected = i == STREAM_BITS ? count_bits(coder->streams[STREAM_CLASSES], n) : n;
-    if (n_expected == SIZE_MAX || !unpack_stream(coder, i, from[i], sizes[i], n_expected))
-      return "a stream cannot be unpacked";
-    if (i == STREAM_BITS)
-      memset(coder->streams[i] + n_expected, 0, 16);
+  memset(samples, 0, n * schema->sample_bytes);
+  size_t at = (size_t)schema->n_streams * SIZE_BYTES;
+  for (uint32_t i = 0, k = 0; i < schema->n && !wrong; i++) {
+    uint32_t first = k;
+    int is_passed_over = !coder->streams[first];
+    for (uint32_t end = k + schema->list[i].n_streams; k < end; k++) {
+      uint32_t size = conic_load_32(bytes + (size_t)k * SIZE_BYTES);
+      size_t n_expected = is_passed_over ? 0 : expected_bytes(coder, i, k, first, n);
+      if (!is_passed_over && (n_expected == SIZE_MAX || !unpack_stream(coder, k, bytes + at, size, n_expected)))
+        return "a stream cannot be unpacked";
+      if (k == STREAM_BITS)
+        memset(coder->streams[k] + n_expected, 0, 16);
+      at += size & ~is_packed_bit;
+    }
+    if (i == 0)
+      wrong = join_keys(coder, n, first_key, last_key, samples);
+    else if (!is_passed_over)
+      wrong = conic_layers_unite(schema, i, n, (const unsigned char *const *)&coder->streams[first], samples);
   }
-  const char *wrong = join_keys(coder, n, first_key, last_key, samples);
-  if (!wrong)
-    join_attributes(coder, n, samples);
   return wrong;
-}
-
-/* Codes 0 to 254 are −1 to 1, so that the axes are exact. */
-enum { NORMAL_HALF = 127 };
-
-static int round_to_int(float value) {
-  return (int)floorf(value + 0.5f);
-}
-
-void conic_layers_code_normal(const float normal[3], uint8_t code[2]) {
-  float sum = fabsf(normal[0]) + fabsf(normal[1]) + fabsf(normal[2]);
-  float x = normal[0] / sum, y = normal[1] / sum;
-  if (normal[2] < 0.0f) { /* the lower half is folded out */
-    float folded = (1.0f - fabsf(y)) * (x < 0.0f ? -1.0f : 1.0f);
-    y = (1.0f - fabsf(x)) * (y < 0.0f ? -1.0f : 1.0f);
-    x = folded;
-  }
-  code[0] = (uint8_t)round_to_int((x + 1.0f) * (float)NORMAL_HALF);
-  code[1] = (uint8_t)round_to_int((y + 1.0f) * (float)NORMAL_HALF);
-}
-
-void conic_layers_normal_of(const uint8_t code[2], float normal[3]) {
-  float x = ((float)code[0] - (float)NORMAL_HALF) / (float)NORMAL_HALF;
-  float y = ((float)code[1] - (float)NORMAL_HALF) / (float)NORMAL_HALF;
-  float z = 1.0f - fabsf(x) - fabsf(y);
-  if (z < 0.0f) {
-    float folded = (1.0f - fabsf(y)) * (x < 0.0f ? -1.0f : 1.0f);
-    y = (1.0f - fabsf(x)) * (y < 0.0f ? -1.0f : 1.0f);
-    x = folded;
-  }
-  float length = sqrtf(x * x + y * y + z * z);
-  normal[0] = x / length;
-  normal[1] = y / length;
-  normal[2] = z / length;
 }

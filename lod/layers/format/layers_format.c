@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "conic/layers.h"
+#include "core/base/byte_order.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
 #include "core/files/file_fields.h"
@@ -24,17 +25,26 @@ static const conic_file_field header_fields[] = {
     IN_HEADER(quantum),      IN_HEADER(low),        IN_HEADER(high),           IN_HEADER(spacing),
     IN_HEADER(splat_radius), IN_HEADER(near_z),     IN_HEADER(position_bytes), IN_HEADER(normal_bytes),
     IN_HEADER(color_bytes),  IN_HEADER(file_bytes), IN_HEADER(index_sum),      IN_HEADER(most_samples),
-    IN_HEADER(most_bytes)};
+    IN_HEADER(most_bytes),   IN_HEADER(schema.n)};
 
 static const conic_file_field entry_fields[] = {
     IN_ENTRY(key),       IN_ENTRY(offset),  IN_ENTRY(sum),      IN_ENTRY(n_place), IN_ENTRY(n_bytes),
     IN_ENTRY(n_samples), IN_ENTRY(parent),  IN_ENTRY(child),    IN_ENTRY(n_drawn), IN_ENTRY(level),
     IN_ENTRY(depth),     IN_ENTRY(spacing), IN_ENTRY(covering), IN_ENTRY(radius),  IN_ENTRY(error),
-    IN_ENTRY(center),    IN_ENTRY(sphere),  IN_ENTRY(axis),     IN_ENTRY(cone)};
+    IN_ENTRY(center),    IN_ENTRY(sphere),  IN_ENTRY(axis),     IN_ENTRY(cone),    IN_ENTRY(growth),
+    IN_ENTRY(reach)};
+
+#define IN_ATTRIBUTE(member) CONIC_FILE_FIELD(conic_layers_attribute, member)
+
+static const conic_file_field attribute_fields[] = {
+    IN_ATTRIBUTE(name),   IN_ATTRIBUTE(kind), IN_ATTRIBUTE(n_streams), IN_ATTRIBUTE(type),  IN_ATTRIBUTE(flags),
+    IN_ATTRIBUTE(scale),  IN_ATTRIBUTE(offset), IN_ATTRIBUTE(low),     IN_ATTRIBUTE(high),  IN_ATTRIBUTE(typical), IN_ATTRIBUTE(error),
+    IN_ATTRIBUTE(n_bytes)};
 
 enum {
   N_HEADER_FIELDS = sizeof header_fields / sizeof *header_fields,
-  N_ENTRY_FIELDS = sizeof entry_fields / sizeof *entry_fields
+  N_ENTRY_FIELDS = sizeof entry_fields / sizeof *entry_fields,
+  N_ATTRIBUTE_FIELDS = sizeof attribute_fields / sizeof *attribute_fields
 };
 
 static int is_finite_within(double value, double limit) {
@@ -43,7 +53,11 @@ static int is_finite_within(double value, double limit) {
 
 /* What is wrong with the counts, or null. Each is bounded so that no sum or product of them overflows. */
 static const char *check_counts(const conic_layers_header *header) {
-  uint64_t index_bytes = (uint64_t)header->n_clouds * CONIC_LAYERS_ENTRY_BYTES;
+  uint64_t index_bytes = conic_layers_index_bytes(header);
+  if (header->version == 1 ? header->schema.n != 0 : header->schema.n < 2)
+    return "the number of attributes is out of range";
+  if (header->schema.n > CONIC_LAYERS_MOST_ATTRIBUTES)
+    return "more attributes than can be read";
   if (header->flags & ~(uint32_t)CONIC_LAYERS_ALL_FLAGS)
     return "unknown flags";
   if (header->n_clouds == 0 || header->n_samples == 0)
@@ -87,7 +101,7 @@ static int is_zero(const unsigned char *bytes, size_t n) {
 }
 
 int conic_layers_header_is_whole(const unsigned char *bytes) {
-  return conic_file_get(bytes + AT_HEADER_SUM, 8) == conic_checksum(bytes, AT_HEADER_SUM);
+  return conic_load_64(bytes + AT_HEADER_SUM) == conic_checksum(bytes, AT_HEADER_SUM);
 }
 
 conic_status conic_layers_read_header(conic_context *context, const char *name, const unsigned char *bytes,
@@ -97,9 +111,10 @@ conic_status conic_layers_read_header(conic_context *context, const char *name, 
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: no layered point cloud (at byte 0)", name);
   if (n_bytes < CONIC_LAYERS_HEADER_BYTES)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file ends within the header (at byte %zu)", name, n_bytes);
+  memset(header, 0, sizeof *header);
   conic_file_fields_read(header_fields, N_HEADER_FIELDS, bytes + sizeof magic, header);
-  if (header->version != CONIC_LAYERS_VERSION)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of .lpc; this program reads version %d (at byte 8)",
+  if (header->version == 0 || header->version > CONIC_LAYERS_VERSION)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of .lpc; this program reads 1 to %d (at byte 8)",
                       name, header->version, CONIC_LAYERS_VERSION);
   if (!conic_layers_header_is_whole(bytes))
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header is damaged: its sum is another (at byte %d)", name,
@@ -117,11 +132,12 @@ void conic_layers_write_header(const conic_layers_header *header, unsigned char 
   memset(bytes, 0, CONIC_LAYERS_HEADER_BYTES);
   memcpy(bytes, magic, sizeof magic);
   conic_file_fields_write(header_fields, N_HEADER_FIELDS, header, bytes + sizeof magic);
-  conic_file_put(bytes + AT_HEADER_SUM, 8, conic_checksum(bytes, AT_HEADER_SUM));
+  conic_store_64(bytes + AT_HEADER_SUM, conic_checksum(bytes, AT_HEADER_SUM));
 }
 
 uint64_t conic_layers_index_bytes(const conic_layers_header *header) {
-  return (uint64_t)header->n_clouds * CONIC_LAYERS_ENTRY_BYTES;
+  return (uint64_t)header->schema.n * CONIC_LAYERS_ATTRIBUTE_BYTES +
+         (uint64_t)header->n_clouds * CONIC_LAYERS_ENTRY_BYTES;
 }
 
 int conic_layers_is_file(const char *path) {
@@ -130,7 +146,8 @@ int conic_layers_is_file(const char *path) {
 
 /* The numbers that one entry states, each by itself. */
 static const char *check_entry(const conic_layers_header *header, const conic_layers_entry *entry) {
-  const float lengths[] = {entry->spacing, entry->covering, entry->radius, entry->error, entry->sphere};
+  const float lengths[] = {entry->spacing, entry->covering, entry->radius, entry->error,
+                           entry->sphere,  entry->growth,   entry->reach};
   uint64_t n_keys_bits = 3 * (uint64_t)header->bits;
   if (entry->depth > n_keys_bits || entry->level >= header->n_levels)
     return "its depth or level is out of range";
@@ -213,32 +230,85 @@ static const char *check_tree(const conic_layers_header *header, const conic_lay
   return offset == header->file_bytes ? NULL : "the file should end elsewhere";
 }
 
-conic_status conic_layers_read_index(conic_context *context, const char *name, const conic_layers_header *header,
+/* The table of a version 1: positions, normals, and colours where there are some. */
+static void assume_attributes(const conic_layers_header *header, conic_layers_schema *schema) {
+  conic_layers_schema_add(schema, CONIC_LAYERS_POSITION, "position", 0)->n_bytes = header->position_bytes;
+  conic_layers_schema_add(schema, CONIC_LAYERS_NORMAL, "normal", 0)->n_bytes = header->normal_bytes;
+  if (header->flags & CONIC_LAYERS_COLORS)
+    conic_layers_schema_add(schema, CONIC_LAYERS_COLOR, "color", 0)->n_bytes = header->color_bytes;
+}
+
+static conic_status read_attribute_table(conic_context *context, const char *name, conic_layers_header *header,
+                               const unsigned char *bytes) {
+  conic_layers_schema *schema = &header->schema;
+  for (uint32_t i = 0; i < schema->n; i++)
+    conic_file_fields_read(attribute_fields, N_ATTRIBUTE_FIELDS, bytes + (size_t)i * CONIC_LAYERS_ATTRIBUTE_BYTES,
+                           &schema->list[i]);
+  if (header->version == 1)
+    assume_attributes(header, schema);
+  const char *wrong = conic_layers_schema_lay_out(schema);
+  int has_colors = conic_layers_schema_find(schema, CONIC_LAYERS_COLOR) >= 0;
+  if (!wrong && has_colors != ((header->flags & CONIC_LAYERS_COLORS) != 0))
+    wrong = "it has colours, or has none, other than the header says";
+  return wrong ? conic_fail(context, CONIC_ERROR_INPUT, "%s: the table of attributes is wrong: %s (at byte %d)", name,
+                            wrong, CONIC_LAYERS_HEADER_BYTES)
+               : CONIC_OK;
+}
+
+/* An entry of version 1 has one outline for all samples. */
+static int read_entry(const conic_layers_header *header, const unsigned char *bytes, conic_layers_entry *entry) {
+  size_t used = conic_file_fields_bytes(entry_fields, N_ENTRY_FIELDS);
+  conic_file_fields_read(entry_fields, N_ENTRY_FIELDS, bytes, entry);
+  int is_zeroed = is_zero(bytes + used, CONIC_LAYERS_ENTRY_BYTES - used);
+  if (header->version == 1) {
+    is_zeroed = is_zero(bytes + used - 8, CONIC_LAYERS_ENTRY_BYTES - used + 8);
+    entry->growth = 0.0f;
+    entry->reach = entry->radius;
+  }
+  return is_zeroed;
+}
+
+conic_status conic_layers_read_index(conic_context *context, const char *name, conic_layers_header *header,
                                      const unsigned char *bytes, conic_layers_entry *entries) {
   size_t n_bytes = (size_t)conic_layers_index_bytes(header);
-  size_t used = conic_file_fields_bytes(entry_fields, N_ENTRY_FIELDS);
+  size_t first = conic_layers_table_bytes(header);
   uint32_t at = 0;
   if (conic_checksum(bytes, n_bytes) != header->index_sum)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the index is damaged: its sum is another (at byte %d)", name,
                       CONIC_LAYERS_HEADER_BYTES);
   for (uint32_t i = 0; i < header->n_clouds; i++) {
-    const unsigned char *from = bytes + (size_t)i * CONIC_LAYERS_ENTRY_BYTES;
-    conic_file_fields_read(entry_fields, N_ENTRY_FIELDS, from, &entries[i]);
-    if (!is_zero(from + used, CONIC_LAYERS_ENTRY_BYTES - used))
+    const unsigned char *from = bytes + first + (size_t)i * CONIC_LAYERS_ENTRY_BYTES;
+    if (!read_entry(header, from, &entries[i]))
       return conic_fail(context, CONIC_ERROR_INPUT, "%s: cloud %u: bytes that should be zero are not (at byte %llu)",
                         name, i, (unsigned long long)(from - bytes) + CONIC_LAYERS_HEADER_BYTES);
   }
   const char *wrong = check_tree(header, entries, &at);
   if (wrong)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cloud %u: %s (at byte %llu)", name, at, wrong,
-                      (unsigned long long)at * CONIC_LAYERS_ENTRY_BYTES + CONIC_LAYERS_HEADER_BYTES);
-  return CONIC_OK;
+                      (unsigned long long)at * CONIC_LAYERS_ENTRY_BYTES + CONIC_LAYERS_HEADER_BYTES + first);
+  return read_attribute_table(context, name, header, bytes);
+}
+
+size_t conic_layers_table_bytes(const conic_layers_header *header) {
+  return (size_t)header->schema.n * CONIC_LAYERS_ATTRIBUTE_BYTES;
+}
+
+void conic_layers_write_table(const conic_layers_header *header, unsigned char *bytes) {
+  for (uint32_t i = 0; i < header->schema.n; i++)
+    conic_file_fields_write(attribute_fields, N_ATTRIBUTE_FIELDS, &header->schema.list[i],
+                            bytes + (size_t)i * CONIC_LAYERS_ATTRIBUTE_BYTES);
+}
+
+void conic_layers_write_entries(const conic_layers_entry *entries, size_t n, unsigned char *bytes) {
+  memset(bytes, 0, n * CONIC_LAYERS_ENTRY_BYTES);
+  for (size_t i = 0; i < n; i++)
+    conic_file_fields_write(entry_fields, N_ENTRY_FIELDS, &entries[i], bytes + i * CONIC_LAYERS_ENTRY_BYTES);
 }
 
 void conic_layers_write_index(conic_layers_header *header, const conic_layers_entry *entries, unsigned char *bytes) {
-  memset(bytes, 0, (size_t)conic_layers_index_bytes(header));
-  for (uint32_t i = 0; i < header->n_clouds; i++)
-    conic_file_fields_write(entry_fields, N_ENTRY_FIELDS, &entries[i], bytes + (size_t)i * CONIC_LAYERS_ENTRY_BYTES);
+  size_t first = conic_layers_table_bytes(header);
+  conic_layers_write_table(header, bytes);
+  conic_layers_write_entries(entries, header->n_clouds, bytes + first);
   header->index_sum = conic_checksum(bytes, (size_t)conic_layers_index_bytes(header));
 }
 
@@ -248,19 +318,21 @@ double conic_layers_position_error(const conic_layers_header *header) {
 
 void conic_layers_mend(unsigned char *bytes, size_t n_bytes) {
   conic_layers_header header;
+  memset(&header, 0, sizeof header);
   if (n_bytes < CONIC_LAYERS_HEADER_BYTES)
     return;
   conic_file_fields_read(header_fields, N_HEADER_FIELDS, bytes + sizeof magic, &header);
   size_t index_bytes = (size_t)conic_layers_index_bytes(&header), offset_at = 8, sum_at = 16, size_at = 32;
+  size_t first = CONIC_LAYERS_HEADER_BYTES + (size_t)header.schema.n * CONIC_LAYERS_ATTRIBUTE_BYTES;
   if (index_bytes > n_bytes - CONIC_LAYERS_HEADER_BYTES)
     return;
   for (uint32_t i = 0; i < header.n_clouds; i++) {
-    unsigned char *entry = bytes + CONIC_LAYERS_HEADER_BYTES + (size_t)i * CONIC_LAYERS_ENTRY_BYTES;
-    uint64_t offset = conic_file_get(entry + offset_at, 8), n = conic_file_get(entry + size_at, 4);
+    unsigned char *entry = bytes + first + (size_t)i * CONIC_LAYERS_ENTRY_BYTES;
+    uint64_t offset = conic_load_64(entry + offset_at), n = conic_load_32(entry + size_at);
     if (offset <= n_bytes && n <= n_bytes - offset)
-      conic_file_put(entry + sum_at, 8, conic_checksum(bytes + offset, (size_t)n));
+      conic_store_64(entry + sum_at, conic_checksum(bytes + offset, (size_t)n));
   }
   header.index_sum = conic_checksum(bytes + CONIC_LAYERS_HEADER_BYTES, index_bytes);
   conic_file_fields_write(header_fields, N_HEADER_FIELDS, &header, bytes + sizeof magic);
-  conic_file_put(bytes + AT_HEADER_SUM, 8, conic_checksum(bytes, AT_HEADER_SUM));
+  conic_store_64(bytes + AT_HEADER_SUM, conic_checksum(bytes, AT_HEADER_SUM));
 }

@@ -7,13 +7,22 @@
 #include <stdint.h>
 
 #include "conic/context.h"
+#include "lod/layers/format/layers_schema.h"
 
-enum { CONIC_LAYERS_VERSION = 1, CONIC_LAYERS_HEADER_BYTES = 256, CONIC_LAYERS_ENTRY_BYTES = 112 };
+enum {
+  CONIC_LAYERS_VERSION = 2, /* that is written; 1 is read too */
+  CONIC_LAYERS_HEADER_BYTES = 256,
+  CONIC_LAYERS_ENTRY_BYTES = 112
+};
 
 /* What a reader believes of a file: more is refused. */
 enum { CONIC_LAYERS_MOST_SAMPLES = 1 << 17, CONIC_LAYERS_MOST_LEVELS = 128, CONIC_LAYERS_MOST_BITS = 21 };
 
-enum { CONIC_LAYERS_COLORS = 1, CONIC_LAYERS_UNORIENTED = 2, CONIC_LAYERS_ALL_FLAGS = 3 };
+enum {
+  CONIC_LAYERS_COLORS = 1,
+  CONIC_LAYERS_UNORIENTED = 2,
+  CONIC_LAYERS_ALL_FLAGS = 3
+};
 
 typedef struct conic_layers_header {
   uint32_t version, flags;
@@ -32,6 +41,7 @@ typedef struct conic_layers_header {
   uint64_t index_sum;    /* conic_checksum of the index */
   uint32_t most_samples; /* of the largest cloud */
   uint32_t most_bytes;   /* of the largest cloud, compressed */
+  conic_layers_schema schema;
 } conic_layers_header;
 
 /* A cloud, and the node of the tree whose it is. Clouds are numbered in the order of the file: by level, then by key.
@@ -53,11 +63,13 @@ typedef struct conic_layers_entry {
   uint16_t depth;   /* bits of the key that all of its place share, 0 to 3B */
   float spacing;    /* mean distance between neighbours in T: LPC Eq. 2, with the place's own sampling distance */
   float covering;   /* every sample of its place is at most so far from one of T */
-  float radius;     /* outline with which T is drawn, when it is the finest: no hole that is none of all samples */
+  float radius;     /* no outline with which T is drawn, when it is the finest, is larger */
   float error;      /* nothing then drawn, and nothing that full resolution draws, is farther from the other */
   float center[3], sphere; /* holds every sample of its place with its outline, at this and every finer level; from the
                               origin */
   float axis[3], cone;     /* unit; the least cosine of a normal of its place to it; -1: no bound */
+  float growth, reach; /* a sample of T is drawn with min(radius, reach + growth × its own outline): there is no hole
+                          that is none of all samples */
 } conic_layers_entry;
 
 /* Whether a header of CONIC_LAYERS_HEADER_BYTES is as it was written, by its sum. */
@@ -68,21 +80,32 @@ int conic_layers_header_is_whole(const unsigned char *bytes);
 conic_status conic_layers_read_header(conic_context *context, const char *name, const unsigned char *bytes,
                                       size_t n_bytes, conic_layers_header *header);
 
-/* The index lies behind the header: n_clouds × CONIC_LAYERS_ENTRY_BYTES. */
+/* The index lies behind the header: the table of attributes, then n_clouds × CONIC_LAYERS_ENTRY_BYTES. */
 uint64_t conic_layers_index_bytes(const conic_layers_header *header);
 
 /* Bytes to index: checks the sum, every range, and that the entries are a tree in the file's order; `entries` has room
- * for n_clouds. Errors: INPUT, MEMORY. */
-conic_status conic_layers_read_index(conic_context *context, const char *name, const conic_layers_header *header,
+ * for n_clouds. Fills in the header's schema. Errors: INPUT, MEMORY. */
+conic_status conic_layers_read_index(conic_context *context, const char *name, conic_layers_header *header,
                                      const unsigned char *bytes, conic_layers_entry *entries);
 
-/* The other way. Fills in the sums of index and header. */
+/* The table of attributes, in bytes. */
+size_t conic_layers_table_bytes(const conic_layers_header *header);
+void conic_layers_write_table(const conic_layers_header *header, unsigned char *bytes);
+
+/* The other way. Fills in the sums of index and header; the entries alone have none. */
+void conic_layers_write_entries(const conic_layers_entry *entries, size_t n, unsigned char *bytes);
 void conic_layers_write_index(conic_layers_header *header, const conic_layers_entry *entries, unsigned char *bytes);
 void conic_layers_write_header(const conic_layers_header *header, unsigned char bytes[CONIC_LAYERS_HEADER_BYTES]);
 
 /* Makes the sums in a file's bytes right, where its header tells of an index and clouds that are all there: for tests
  * and fuzzing, which would else see no further than the sums. */
 void conic_layers_mend(unsigned char *bytes, size_t n_bytes);
+
+/* With what outline a sample whose own is `outline` is drawn where the node is the finest. */
+static inline float conic_layers_outline(const conic_layers_entry *entry, float outline) {
+  float grown = entry->reach + entry->growth * outline;
+  return grown < entry->radius ? grown : entry->radius;
+}
 
 /* The last key of a node's place. */
 static inline uint64_t conic_layers_last_key(const conic_layers_header *header, const conic_layers_entry *entry) {

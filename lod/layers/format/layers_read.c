@@ -66,6 +66,11 @@ static void describe_header(const conic_layers_header *header, conic_layers_info
   info->bits_position = bits_a_sample(header->position_bytes, header);
   info->bits_normal = bits_a_sample(header->normal_bytes, header);
   info->bits_color = bits_a_sample(header->color_bytes, header);
+  uint64_t n_more = 0;
+  for (uint32_t i = 0; i < header->schema.n; i++)
+    n_more += header->schema.list[i].n_bytes;
+  n_more -= header->position_bytes + header->normal_bytes + header->color_bytes;
+  info->bits_more = bits_a_sample(n_more, header);
   info->bits_index = bits_a_sample(CONIC_LAYERS_HEADER_BYTES + conic_layers_index_bytes(header), header);
 }
 

@@ -166,7 +166,7 @@ static void move_colmap(const char *below) {
     if (*c == '/' || *c == 0) {
       char end = *c;
       *c = 0;
-      mkdir(folder, 0777);
+      conic_disk_make_folder(folder);
       *c = end;
       if (!end)
         break;

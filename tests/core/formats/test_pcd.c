@@ -1,6 +1,7 @@
 /* The PCD reader against hand-made files of every way of storing points. */
 #include <math.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/color.h"
 #include "core/files/lzf.h"
 #include "tests/support/files.h"
@@ -22,6 +23,11 @@ static pcd_file begin(const char *header) {
 static void put(pcd_file *file, const void *value, size_t n_bytes) {
   memcpy(file->bytes + file->n, value, n_bytes);
   file->n += n_bytes;
+}
+
+static void put_words(pcd_file *file, const void *words, size_t n) {
+  put(file, words, 4 * n);
+  conic_turn_words(file->bytes + file->n - 4 * n, n, 4);
 }
 
 static conic_status read_file(const pcd_file *file, size_t n_bytes, conic_model *model) {
@@ -76,10 +82,10 @@ enum { BOTH = CONIC_SPLATS_COLORS | CONIC_SPLATS_NORMALS };
 static void test_binary(void) {
   pcd_file file = begin(HEADER("3", "binary"));
   for (size_t i = 0; i < 3; i++) {
-    put(&file, places[i], 12);
+    put_words(&file, places[i], 3);
     put(&file, "\x11\x22\1\2\3", 5);
-    put(&file, &colors[i], 4);
-    put(&file, normals[i], 12);
+    put_words(&file, &colors[i], 1);
+    put_words(&file, normals[i], 3);
   }
   conic_model model = read_points(&file, 3, BOTH);
   check_three(&model);
@@ -98,13 +104,14 @@ static void test_compressed(void) {
   size_t n = 0, start = file.n;
   for (size_t axis = 0; axis < 3; axis++)
     for (size_t i = 0; i < 3; i++, n += 4)
-      memcpy(data + n, &places[i][axis], 4);
+      conic_store_float(data + n, places[i][axis]);
   memset(data + n, 0x55, 6 + 9); /* intensities and histograms */
-  memcpy(data + n + 15, colors, 12);
+  for (size_t i = 0; i < 3; i++)
+    conic_store_32(data + n + 15 + 4 * i, colors[i]);
   n += 15 + 12;
   for (size_t axis = 0; axis < 3; axis++)
     for (size_t i = 0; i < 3; i++, n += 4)
-      memcpy(data + n, &normals[i][axis], 4);
+      conic_store_float(data + n, normals[i][axis]);
   CHECK(n == sizeof data);
   put(&file, "\0\0\0\0\x63\0\0\0", 8);
   put(&file, "\x1f", 1); /* 32 bytes */

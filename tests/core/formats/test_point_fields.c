@@ -1,5 +1,6 @@
 /* The values that points have by name: which a file lists, and what asking for one gives. */
-#include "core/formats/point_fields.h"
+#include "core/base/byte_order.h"
+#include "core/splats/point_fields.h"
 #include "tests/support/files.h"
 #include "tests/support/las_file.h"
 
@@ -85,7 +86,7 @@ static void test_extra_bytes(void) {
   size_t described_at = las_describe_extra(&file, POINTS);
   las_put(&file, file.points_offset + file.point_bytes + 30, 7, 2);
   for (size_t i = 0; i < POINTS; i++)
-    memcpy(file.bytes + file.points_offset + i * file.point_bytes + 32, &speeds[i], 4);
+    conic_store_float(file.bytes + file.points_offset + i * file.point_bytes + 32, speeds[i]);
   const char *path = files_write_bytes("extra.las", file.bytes, file.n_bytes);
   check_values(path, "height?above", heights, 2);
   check_values(path, "speed", speeds, 2);
@@ -167,8 +168,8 @@ static void test_pcd(void) {
                    "VERSION .7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\n"
                    "COUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA binary\n");
   memset(binary + n, 0, 32);
-  memcpy(binary + n + 12, &curvatures[0], 4);
-  memcpy(binary + n + 28, &curvatures[1], 4);
+  conic_store_float(binary + n + 12, curvatures[0]);
+  conic_store_float(binary + n + 28, curvatures[1]);
   path = files_write_bytes("b.pcd", binary, (size_t)n + 32);
   check_values(path, "Intensity", curvatures, 2);
   CHECK(unlink(path) == 0);

@@ -160,7 +160,7 @@ static int check(conic_context *context, const seed *from, const unsigned char *
   files_message[0] = 0;
   conic_status status = read_target(context, from->target, path);
   CHECK(status == CONIC_OK || status == CONIC_ERROR_INPUT ||
-        (status == CONIC_ERROR_UNSUPPORTED && strcmp(from->target, "exr") == 0));
+        (status == CONIC_ERROR_UNSUPPORTED && (strcmp(from->target, "exr") == 0 || strcmp(from->target, "e57") == 0)));
   CHECK(n_messages == (status != CONIC_OK));
   CHECK(memory.alive_bytes == before);
   CHECK(memory.peak_bytes - before <= memory_bound(from->target, n_bytes));
@@ -207,9 +207,11 @@ static void test_replaced(conic_context *context, const seed *from) {
     exit(1);
   size_t step = 1 + from->n_bytes / N_PLACES;
   for (size_t i = 0; i < from->n_bytes; i += step) {
-    memcpy(bytes, from->bytes, from->n_bytes);
     for (size_t k = 0; k < sizeof values; k++) {
+      memcpy(bytes, from->bytes, from->n_bytes);
       bytes[i] = values[k];
+      if (strcmp(from->target, "e57") == 0) /* past the sums, which test_e57.c is about */
+        conic_e57_mend(bytes, from->n_bytes);
       check(context, from, bytes, from->n_bytes);
     }
   }

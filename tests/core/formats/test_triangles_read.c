@@ -1,4 +1,5 @@
 /* From files to triangles: corners' normals and texture coordinates, materials, strips; sets that are joined. */
+#include "core/base/byte_order.h"
 #include "tests/support/files.h"
 
 static conic_context *context;
@@ -55,7 +56,8 @@ static void test_materials(void) {
   char pfm[64 + 2 * 2 * 12];
   const float texels[12] = {0, 0, 0, 1, 1, 1, 0.5f, 0.25f, 0.125f, 1, 0, 0};
   int n = snprintf(pfm, sizeof pfm, "PF\n2 2\n-1.0\n");
-  memcpy(pfm + n, texels, sizeof texels);
+  for (int i = 0; i < 12; i++)
+    conic_store_float(pfm + n + 4 * i, texels[i]);
   char picture[160], library[160];
   snprintf(picture, sizeof picture, "%s", files_write_bytes("t.pfm", pfm, (size_t)n + sizeof texels));
   snprintf(library, sizeof library, "%s",
@@ -167,7 +169,8 @@ static void test_ply_pictures(void) {
   char pfm[64 + 4 * 12], picture[160], header[900];
   const float texels[12] = {0, 0, 0, 1, 1, 1, 0.5f, 0.25f, 0.125f, 1, 0, 0};
   int n = snprintf(pfm, sizeof pfm, "PF\n2 2\n-1.0\n");
-  memcpy(pfm + n, texels, sizeof texels);
+  for (int i = 0; i < 12; i++)
+    conic_store_float(pfm + n + 4 * i, texels[i]);
   snprintf(picture, sizeof picture, "%s", files_write_bytes("a b.pfm", pfm, (size_t)n + sizeof texels));
   static const char body[] = "0 0 0 0.25 0.5\n1 0 0 0.75 0.125\n1 1 0 0 1\n0 1 0 -3 2\n"
                              "4 0 1 2 3 1 0\n3 3 2 1 7 0\n3 0 1 2 0 0\n";

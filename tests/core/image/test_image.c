@@ -1,28 +1,18 @@
 /* Images: their planes, hashes, PFM files, and what happens when a file cannot be written or read. */
+#if !defined(_WIN32)
 #include <signal.h>
 #include <sys/resource.h>
+#endif
 
+#include "core/base/byte_order.h"
 #include "core/image/image_common.h"
 #include "tests/support/image_fixture.h"
 
 static void test_descriptions(void) {
-  static const char *const names[] = {"rgba",
-                                      "Z",
-                                      "N",
-                                      "albedo",
-                                      "weight",
-                                      "count",
-                                      "id",
-                                      "cluster",
-                                      "P",
-                                      "CryptoObject00",
-                                      "CryptoObject01",
-                                      "CryptoObject02",
-                                      "T",
-                                      "medianZ",
-                                      "inverseZ",
-                                      "last",
-                                      "doubt"};
+  static const char *const names[] = {
+      "rgba", "Z",       "N",        "albedo",         "weight",         "count",
+      "id",   "cluster", "P",        "CryptoObject00", "CryptoObject01", "CryptoObject02",
+      "T",    "medianZ", "inverseZ", "last",           "doubt"};
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
     CHECK(plane && strcmp(plane->name, names[i]) == 0);
@@ -69,7 +59,7 @@ static void test_hash(conic_context *context) {
   CHECK(conic_hash_bytes("", 0) == UINT64_C(0xcbf29ce484222325));
   CHECK(conic_hash_bytes("foobar", 6) == UINT64_C(0x85944171f73967e8));
   CHECK_OK(conic_image_allocate(context, 1, 1, 1u << CONIC_PLANE_COUNT, &image));
-  memcpy(image.planes[CONIC_PLANE_COUNT], "foob", 4);
+  *(uint32_t *)image.planes[CONIC_PLANE_COUNT] = conic_load_32("foob");
   CHECK(conic_image_hash(&image, CONIC_PLANE_COUNT) == UINT64_C(0xdd120e790c2512af));
   CHECK(conic_image_hash(&image, CONIC_PLANE_ID) == 0);
   CHECK(conic_image_hash(&image, CONIC_N_PLANES) == 0);
@@ -149,6 +139,7 @@ static void test_pfm_planes(conic_context *context) {
   unsigned char *bytes = read_bytes(in_folder("a.pfm"), &n_bytes);
   CHECK(n_bytes == 24 && memcmp(bytes, "Pf\n1 3\n-1.0\n", 12) == 0);
   memcpy(samples, bytes + 12, sizeof samples);
+  conic_turn_words(samples, 3, 4);
   CHECK(samples[0] == 7.0f && samples[1] == -1.0f && samples[2] == 16777216.0f);
   free(bytes);
   ids[0]++;
@@ -159,6 +150,7 @@ static void test_pfm_planes(conic_context *context) {
   image = random_image(context, 2, 1, 1u << CONIC_PLANE_NORMAL);
   CHECK_OK(conic_image_write(context, in_folder("a.pfm"), &image));
   bytes = read_bytes(in_folder("a.pfm"), &n_bytes);
+  conic_turn_words(bytes + 12, 6, 4);
   CHECK(n_bytes == 36 && memcmp(bytes, "PF\n", 3) == 0 &&
         memcmp(bytes + 12, image.planes[CONIC_PLANE_NORMAL], 24) == 0);
   free(bytes);
@@ -183,6 +175,7 @@ static void test_pfm_round_trip(conic_context *context) {
   const char header[] = "Pf\n5 3\n-1.0\n";
   const size_t n_header = sizeof header - 1;
   CHECK(n_bytes == n_header + 60 && memcmp(bytes, header, n_header) == 0);
+  conic_turn_words(bytes + n_header, 15, 4);
   if (n_bytes == n_header + 60)
     CHECK(memcmp(bytes + n_header, (float *)depth.planes[CONIC_PLANE_Z] + 10, 20) == 0); /* the bottom row first */
   free(bytes);
@@ -214,6 +207,8 @@ static void test_wrong_arguments(conic_context *context) {
   conic_image_release(context, &image);
   conic_image_release(context, &normals);
 }
+
+#if !defined(_WIN32)
 
 /* The endings that this build writes. */
 static int writable_endings(const char *endings[8]) {
@@ -256,6 +251,14 @@ static void test_write_failures(conic_context *context) {
   }
   conic_image_release(context, &image);
 }
+
+#else
+
+static void test_write_failures(conic_context *context) {
+  (void)context; /* no disk can be made to look full */
+}
+
+#endif
 
 /* A file that stood there before stays as it was when writing fails, and is replaced when it does not. */
 static void test_replacing(conic_context *context) {

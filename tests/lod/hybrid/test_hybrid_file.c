@@ -1,6 +1,6 @@
 /* .chy files: what is written is read, to the bit, and draws the same picture; what was spoiled is refused, also where
  * its sums were made right again, or can be used; what was built is sound. */
-#include "core/files/file_fields.h"
+#include "core/base/byte_order.h"
 #include "lod/hybrid/hybrid_layout.h"
 #include "tests/support/files.h"
 #include "tests/support/hybrid_fixture.h"
@@ -153,7 +153,7 @@ static void add_hill(seed_set *set, conic_context *context) {
 static size_t place_to_change(uint64_t *state, const unsigned char *bytes, size_t n_bytes) {
   size_t from = 8;
   if (random_unit(state) < 0.5) {
-    conic_chy_header h = {.n_slots = conic_file_get(bytes + 160, 8), .n_borders = conic_file_get(bytes + 168, 8)};
+    conic_chy_header h = {.n_slots = conic_load_64(bytes + 160), .n_borders = conic_load_64(bytes + 168)};
     size_t n_chains =
         (size_t)h.n_slots * sizeof(conic_cluster_slot) + (size_t)h.n_borders * sizeof(conic_cluster_border);
     from = n_chains < n_bytes - 8 ? n_bytes - n_chains - 8 : 8;

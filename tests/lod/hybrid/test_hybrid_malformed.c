@@ -2,7 +2,7 @@
  * what is wrong; what only contradicts itself is read, and found by the check. */
 #include <stddef.h>
 
-#include "core/files/file_fields.h"
+#include "core/base/byte_order.h"
 #include "lod/hybrid/hybrid_layout.h"
 #include "tests/support/files.h"
 #include "tests/support/hybrid_fixture.h"
@@ -50,7 +50,7 @@ static size_t offset_of(const conic_hybrid *hybrid, const void *array) {
   return (size_t)((const unsigned char *)array - (const unsigned char *)hybrid->mapping.bytes);
 }
 
-static void find_arrays(const conic_hybrid *h, sound_file *sound) {
+static void find_arrays(const conic_hybrid *h, const char *path, sound_file *sound) {
   *sound = (sound_file){.n_bytes = (size_t)conic_hybrid_file_bytes(h),
                         .nodes = offset_of(h, h->nodes),
                         .clusters = offset_of(h, h->clusters),
@@ -71,7 +71,10 @@ static void find_arrays(const conic_hybrid *h, sound_file *sound) {
   sound->bytes = malloc(sound->n_bytes);
   if (!sound->bytes)
     exit(1);
-  memcpy(sound->bytes, h->mapping.bytes, sound->n_bytes);
+  FILE *file = fopen(path, "rb");
+  CHECK(file && fread(sound->bytes, 1, sound->n_bytes, file) == sound->n_bytes);
+  if (file)
+    fclose(file);
 }
 
 static sound_file make_sound(conic_context *context) {
@@ -90,7 +93,7 @@ static sound_file make_sound(conic_context *context) {
   CHECK_OK(conic_hybrid_read(context, made, &hybrid));
   CHECK(hybrid->n_nodes >= 3 && hybrid->material && hybrid->n_materials == 3 && hybrid->n_texels == 12);
   CHECK(hybrid->clusters[0].n_levels >= 2 && hybrid->n_surfels > 0);
-  find_arrays(hybrid, &sound);
+  find_arrays(hybrid, made, &sound);
   conic_hybrid_destroy(hybrid);
   CHECK(unlink(made) == 0 && unlink(path) == 0);
   CHECK(unlink(files_path("mesh.mtl")) == 0 && unlink(files_path("mesh.pfm")) == 0);
@@ -130,15 +133,14 @@ static void check_edit(conic_context *context, const sound_file *sound, size_t a
 
 static void check_u32(conic_context *context, const sound_file *sound, size_t at, size_t value, const char *wrong) {
   char wanted[200];
-  uint32_t bits = (uint32_t)value;
+  unsigned char bits[4];
+  conic_store_32(bits, (uint32_t)value);
   snprintf(wanted, sizeof wanted, "has %s (at byte %d)", wrong, CONIC_FILE_HEADER_BYTES);
-  check_edit(context, sound, at, &bits, sizeof bits, 1, wanted);
+  check_edit(context, sound, at, bits, sizeof bits, 1, wanted);
 }
 
 static void check_f32(conic_context *context, const sound_file *sound, size_t at, float value, const char *wrong) {
-  uint32_t bits;
-  memcpy(&bits, &value, sizeof bits);
-  check_u32(context, sound, at, bits, wrong);
+  check_u32(context, sound, at, conic_bits_of_float(value), wrong);
 }
 
 /* Where things are in the header: docs/reference/format-chy.md. */
@@ -191,8 +193,13 @@ static void test_header(conic_context *context, const sound_file *sound) {
       {HIGH, &low, 4, box},
       {HIGH + 8, &not_a_number, 4, box},
   };
-  for (size_t i = 0; i < sizeof edits / sizeof *edits; i++)
-    check_edit(context, sound, edits[i].at, edits[i].value, edits[i].n, 1, edits[i].wanted);
+  for (size_t i = 0; i < sizeof edits / sizeof *edits; i++) {
+    unsigned char value[8];
+    memcpy(value, edits[i].value, edits[i].n);
+    if (edits[i].n % 4 == 0)
+      conic_turn_words(value, 1, edits[i].n);
+    check_edit(context, sound, edits[i].at, value, edits[i].n, 1, edits[i].wanted);
+  }
 }
 
 /* Sums that are not right, bytes that should be 0, and sizes. */
@@ -231,7 +238,7 @@ static void test_damage(conic_context *context, const sound_file *sound) {
 #define MATERIAL(i, member) RECORD(material_list, i, conic_chy_material, member)
 
 static uint32_t u32_at(const sound_file *sound, size_t at) {
-  return (uint32_t)conic_file_get(sound->bytes + at, 4);
+  return conic_load_32(sound->bytes + at);
 }
 
 static void test_levels(conic_context *context, const sound_file *sound) {
@@ -325,7 +332,8 @@ static void test_nodes(conic_context *context, const sound_file *sound) {
   uint32_t i = 1;                                     /* a node that ends where its first child's first child begins */
   while (i + 2 < sound->n_nodes && u32_at(sound, NODE(i + 1, next)) == i + 2)
     i++;
-  const uint32_t end_and_next[2] = {u32_at(sound, NODE(i + 1, end)), i + 2};
+  uint32_t end_and_next[2] = {u32_at(sound, NODE(i + 1, end)), i + 2};
+  conic_turn_words(end_and_next, 2, 4);
   check_edit(context, sound, NODE(i, end), end_and_next, sizeof end_and_next, 1,
              "has nodes that are not within each other (at byte 256)");
 }
@@ -352,7 +360,7 @@ static void check_defect(conic_context *context, const sound_file *sound, size_t
   if (!bytes)
     exit(1);
   memcpy(bytes, sound->bytes, sound->n_bytes);
-  memcpy(bytes + at, &value, sizeof value);
+  conic_store_float(bytes + at, value);
   conic_hybrid_mend(bytes, sound->n_bytes);
   const char *path = files_write_bytes("odd.chy", bytes, sound->n_bytes);
   CHECK_OK(conic_hybrid_read(context, path, &hybrid));

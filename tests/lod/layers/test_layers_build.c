@@ -137,7 +137,7 @@ static void check_node(const layers_all *all, uint32_t i_node) {
   CHECK(entry->child || n_place == n_drawn);
   CHECK(!entry->child || (entry->radius >= entry->covering && entry->radius >= all->view.entries[entry->child].radius &&
                           entry->radius >= all->view.entries[entry->child + 1].radius));
-  CHECK(entry->error >= (float)(0.866 * all->view.header.quantum));
+  CHECK(entry->child ? entry->error > 0.0f : entry->error == 0.0f);
   free(place);
   free(drawn);
 }
@@ -178,14 +178,14 @@ static void test_scene(conic_context *context, conic_scene_type type, size_t n, 
     CHECK(info.minimum[axis] == low[axis] && info.maximum[axis] == high[axis]);
   CHECK_OK(conic_splats_length(context, &splats, &length));
   CHECK_OK(conic_splats_spacing(context, &splats, &spacing));
-  CHECK_NEAR(info.splat_radius / (1.5 * length), 1.0, 0.02);
+  CHECK_NEAR(info.splat_radius / (1.5 * length), 1.0, 0.035);
   CHECK_NEAR(info.spacing / spacing, 1.0, 0.02);
   CHECK_NEAR(info.quantum / (quantum * spacing), 1.0, 0.02);
   CHECK_NEAR(info.near_z / conic_default_near(&splats), 1.0, 1e-12);
   CHECK(info.n_samples == n && info.n_clouds == statistics.n_clouds && info.n_bytes == statistics.n_bytes);
   CHECK(statistics.n_in == n && statistics.n_samples == n && info.has_colors && !info.is_unoriented);
   CHECK(info.most_samples <= 3 * 64);
-  double bits = info.bits_position + info.bits_normal + info.bits_color + info.bits_index;
+  double bits = info.bits_position + info.bits_normal + info.bits_color + info.bits_index + info.bits_more;
   CHECK_NEAR(bits, 8.0 * (double)info.n_bytes / (double)n, 1e-9);
   layers_release(&all);
   conic_splats_release(context, &splats);
@@ -361,6 +361,73 @@ static void test_bare(void) {
   free(first);
 }
 
+/* A sphere that was scanned from its middle: all normals look there, and the file says that they have a side. */
+static void test_seen_points(conic_context *context) {
+  const char *path = files_path("seen.lpc");
+  conic_layers_options options = options_for(64, 0.5);
+  conic_splats splats, points;
+  layers_all all;
+  size_t n_inwards = 0;
+  layers_scene(context, CONIC_SCENE_SPHERE, 5000, 0.0, &splats);
+  points = (conic_splats){.count = splats.count};
+  memcpy(points.position, splats.position, sizeof points.position);
+  for (int axis = 0; axis < 3; axis++) {
+    points.sight[axis] = splats.tangent_u[axis];
+    for (size_t i = 0; i < splats.count; i++)
+      points.sight[axis][i] = -points.position[axis][i];
+  }
+  CHECK_OK(layers_build(context, &points, path, &options, NULL));
+  layers_read(context, path, &all);
+  CHECK(all.view.header.flags == 0);
+  for (size_t k = 0; k < all.n; k++) {
+    double along = 0.0;
+    for (int axis = 0; axis < 3; axis++)
+      along +=
+          (all.view.header.origin[axis] + (double)all.samples[k].position[axis]) * (double)all.samples[k].normal[axis];
+    n_inwards += along < 0.0;
+  }
+  CHECK(all.n == points.count && n_inwards == all.n);
+  layers_release(&all);
+  conic_splats_release(context, &splats);
+  CHECK(unlink(path) == 0);
+}
+
+/* Points anywhere on a square, clumped as chance has it: their outlines leave no hole, and are no larger for it than
+ * twice what a lattice needs on average. */
+static void test_random_square(conic_context *context) {
+  enum { N = 3000, PROBES = 60 };
+  const char *path = files_path("square.lpc");
+  conic_layers_options options = options_for(64, 0.5);
+  conic_splats points;
+  layers_all all;
+  uint64_t state = 5;
+  double sum = 0.0;
+  int n_holes = 0;
+  CHECK_OK(conic_splats_allocate(context, N, 0, &points));
+  for (size_t i = 0; i < N; i++)
+    for (int axis = 0; axis < 3; axis++)
+      points.position[axis][i] = axis < 2 ? (float)random_unit(&state) : 0.0f;
+  CHECK_OK(layers_build(context, &points, path, &options, NULL));
+  layers_read(context, path, &all);
+  for (int probe = 0; probe < PROBES * PROBES; probe++) {
+    double x = 0.1 + 0.8 * (probe % PROBES) / PROBES, y = 0.1 + 0.8 * (int)(probe / PROBES) / PROBES;
+    int is_covered = 0;
+    for (size_t k = 0; k < all.n && !is_covered; k++) {
+      double dx = all.view.header.origin[0] + (double)all.samples[k].position[0] - x;
+      double dy = all.view.header.origin[1] + (double)all.samples[k].position[1] - y;
+      is_covered = dx * dx + dy * dy <= (double)(all.samples[k].outline * all.samples[k].outline);
+    }
+    n_holes += !is_covered;
+  }
+  for (size_t k = 0; k < all.n; k++)
+    sum += (double)all.samples[k].outline;
+  CHECK(all.n == N && n_holes == 0);
+  CHECK(sum / N < 2.0 / sqrt(2.0 * N));
+  layers_release(&all);
+  conic_splats_release(context, &points);
+  CHECK(unlink(path) == 0);
+}
+
 /* One disc that is much larger than the others does not make them as large. */
 static void test_sizes(conic_context *context) {
   const char *path = files_path("sizes.lpc");
@@ -374,7 +441,7 @@ static void test_sizes(conic_context *context) {
     splats.tangent_v[axis][7] *= 50.0f;
   CHECK_OK(layers_build(context, &splats, path, &options, NULL));
   CHECK_OK(conic_layers_describe(context, path, &after));
-  CHECK(after.splat_radius > 3.9 * before.splat_radius && after.splat_radius < 4.1 * before.splat_radius);
+  CHECK(after.splat_radius == before.splat_radius);
   conic_splats_release(context, &splats);
   CHECK(unlink(path) == 0);
 }
@@ -424,6 +491,8 @@ int main(void) {
   test_shape(context, in_a_volume, 5000, 5000);
   test_shape(context, half_unusable, 2000, 1000);
   test_bare();
+  test_seen_points(context);
+  test_random_square(context);
   test_sizes(context);
   test_refused(context);
   files_end(context);

@@ -16,11 +16,14 @@ static void expect_same(layers_frame *a, layers_frame *b, const char *what) {
   check_failures++;
 }
 
-/* Error 0 is the picture of all samples, ids included. */
-static void check_whole(void) {
+/* Error 0 is the picture of all samples, ids included; of those that face away, most are not even looked at one by one.
+ */
+static void check_whole(int cull_back) {
   layers_frame frame = layers_open(2, path, NULL);
   fixture *f = &frame.f;
   conic_image whole;
+  f->options.cull_back = cull_back;
+  frame.draw.occlusion = CONIC_OCCLUSION_OFF;
   CHECK_OK(layers_draw(&frame));
   CHECK_OK(conic_layers_splats(frame.layers, f->options.kernel.cutoff, &f->splats));
   CHECK(f->splats.count == (size_t)LAYERS_SHELLS * LAYERS_SHELL_SPLATS && frame.drawn.n_places_coarser == 0);
@@ -31,6 +34,9 @@ static void check_whole(void) {
   f->options.splat_length = scale.splat_length;
   CHECK_OK(conic_render(f->renderer, &f->splats, &f->camera, &f->options, &whole, NULL));
   CHECK(layers_same_picture(&whole, &f->image));
+  uint64_t n_turned = frame.drawn.n_splats_turned;
+  CHECK(cull_back ? n_turned > 0 && f->statistics.splats_in < f->splats.count * 3 / 5 : n_turned == 0);
+  CHECK(cull_back || f->statistics.splats_in == f->splats.count);
   conic_image_release(f->context, &whole);
   layers_close(&frame);
 }
@@ -62,7 +68,8 @@ static void check_occlusion(void) {
     off.draw.error_px = on.draw.error_px;
     expect_same(&on, &off, conic_method_name(o->method));
     CHECK(off.drawn.n_splats_left == 0 && off.drawn.n_places_hidden + off.drawn.n_places_grazing == 0);
-    CHECK(on.drawn.n_splats_left + on.f.statistics.splats_in == off.f.statistics.splats_in);
+    CHECK(on.drawn.n_splats_left + on.f.statistics.splats_in + on.drawn.n_splats_turned ==
+          off.f.statistics.splats_in + off.drawn.n_splats_turned);
     CHECK(on.f.statistics.fragments <= off.f.statistics.fragments);
     n_left += on.drawn.n_splats_left;
     n_places_left += on.drawn.n_places_hidden;
@@ -144,8 +151,15 @@ static void check_choice(void) {
     CHECK(layers_same_picture(&frame.f.image, &other.f.image));
     layers_close(&other);
   }
-  frame.draw.budget = 1;
-  CHECK(layers_draw(&frame) == CONIC_ERROR_ARGUMENT);
+  for (uint64_t budget = 1; budget < 70; budget += 17) { /* fewer than the coarsest cloud has */
+    layers_frame other = layers_open(7, path, NULL);
+    frame.draw.budget = other.draw.budget = budget;
+    CHECK_OK(layers_draw(&frame));
+    CHECK_OK(layers_draw(&other));
+    CHECK(frame.f.statistics.splats_in == (budget < 69 ? budget : 69));
+    CHECK(layers_same_picture(&frame.f.image, &other.f.image));
+    layers_close(&other);
+  }
   frame.draw.budget = 0;
   for (int level = 1; level < 5; level++) {
     frame.draw.most_levels = level;
@@ -212,7 +226,8 @@ int main(void) {
   snprintf(name, sizeof name, "%s", files_path("shells.lpc"));
   path = name;
   layers_build(context, path, 64);
-  check_whole();
+  check_whole(0);
+  check_whole(1);
   check_occlusion();
   check_memory();
   check_cache_and_threads();

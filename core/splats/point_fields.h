@@ -11,12 +11,11 @@ int conic_field_is(const char *name, const char *other);
 /* Adds a field to the model's list; `type` is static. Errors: MEMORY. */
 conic_status conic_fields_add(conic_builder *builder, const char *name, size_t length, const char *type);
 
-/* Which of the listed fields the options ask for; −1: they ask for none, or it may be absent. A field that is found
- * gives the points scalars. Errors: INPUT (it is not there), MEMORY. */
-conic_status conic_fields_choose(conic_builder *builder, const char *file, const conic_read_options *options,
-                                 int *chosen);
+/* Which of the listed fields the options ask for: the reader is to fill their columns (core/splats/builder.h). Errors:
+ * ARGUMENT (`where` makes no sense), INPUT (a field is not there), MEMORY. */
+conic_status conic_fields_choose(conic_builder *builder, const char *file, const conic_read_options *options);
 
-/* Of a file whose reader lists none: refuses a wanted field. Errors: INPUT. */
+/* Of a file whose reader lists none: refuses wanted fields; and points chosen of one with faces. Errors: INPUT. */
 conic_status conic_fields_check(conic_context *context, const char *file, const conic_read_options *options,
                                 const conic_model *model);
 

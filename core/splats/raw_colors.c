@@ -1,4 +1,4 @@
-#include "core/formats/raw_colors.h"
+#include "core/splats/raw_colors.h"
 
 #include "core/base/color.h"
 #include "core/base/memory.h"

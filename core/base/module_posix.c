@@ -5,7 +5,9 @@
 
 #include <dlfcn.h>
 #include <limits.h>
+#if CONIC_HAVE_DLADDR1
 #include <link.h>
+#endif
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -22,7 +24,7 @@ static const char address_here;
 static int find_own_file(char path[PATH_MAX]) {
   const char *name = NULL;
   Dl_info about;
-#if defined(__GLIBC__)
+#if CONIC_HAVE_DLADDR1
   struct link_map *map = NULL;
   if (!dladdr1(&address_here, &about, (void **)&map, RTLD_DL_LINKMAP) || !map)
     return 0;

@@ -1,8 +1,15 @@
+#include <limits.h>
 #include <stdint.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
-#include "core/base/context_struct.h"
+#include "core/base/machine.h"
 #include "core/base/memory.h"
+
+int conic_machine_threads(void) {
+  long n = sysconf(_SC_NPROCESSORS_ONLN);
+  return n < 1 ? 1 : n > INT_MAX ? INT_MAX : (int)n;
+}
 
 void conic_memory_advise_large_pages(void *pointer, size_t bytes) {
 #if defined(MADV_HUGEPAGE)
@@ -14,9 +21,4 @@ void conic_memory_advise_large_pages(void *pointer, size_t bytes) {
   (void)pointer;
   (void)bytes;
 #endif
-}
-
-void conic_memory_prefer_large_pages(const conic_context *context, void *pointer, size_t bytes) {
-  if (context->options.large_pages)
-    conic_memory_advise_large_pages(pointer, bytes);
 }

@@ -1,0 +1,63 @@
+#include "cli/commands/points_input.h"
+
+#include <string.h>
+
+#include "conic/layers_draw.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+
+/* A COPC on disk is a LAZ too, of which more can be read. */
+int cli_points_are_hierarchy(const char *path) {
+  return conic_layers_is_url(path) || (conic_file_has_ending(path, "json") && conic_layers_is_hierarchy(path));
+}
+
+/* Only places and colours come from a hierarchy, so what asks for more would be passed over in silence. */
+static conic_status stream_hierarchy(conic_context *context, const char *path, const conic_read_options *options,
+                                     conic_batch_receiver *receive, void *cookie) {
+  conic_layers *layers;
+  const char *asked = options->where ? "--where" : options->keep ? "--keep" : options->field ? "--color-by" : NULL;
+  if (asked && !(options->field && options->field_is_optional && !options->where && !options->keep))
+    return conic_fail(context, CONIC_ERROR_INPUT,
+                      "%s: only places and colours are read of it, without values by name: not with %s", path, asked);
+  conic_status status = conic_layers_open(context, path, NULL, &layers);
+  if (status == CONIC_OK)
+    status = conic_layers_stream(layers, receive, cookie);
+  conic_layers_close(layers);
+  return status;
+}
+
+conic_status cli_points_stream(conic_context *context, const char *path, const conic_read_options *options,
+                               conic_batch_receiver *receive, void *cookie) {
+  return cli_points_are_hierarchy(path) ? stream_hierarchy(context, path, options, receive, cookie)
+                                        : conic_model_stream(context, path, options, receive, cookie);
+}
+
+typedef struct collecting {
+  conic_context *context;
+  conic_model *model;
+  int has_begun;
+} collecting;
+
+static conic_status collect(void *cookie, const conic_splats *batch) {
+  collecting *c = cookie;
+  if (!c->has_begun) {
+    conic_status status = conic_splats_allocate(c->context, 0, conic_splats_fields(batch), &c->model->points);
+    if (status != CONIC_OK)
+      return status;
+    memcpy(c->model->points.origin, batch->origin, sizeof batch->origin);
+    c->has_begun = 1;
+  }
+  return conic_splats_append(c->context, &c->model->points, batch);
+}
+
+conic_status cli_points_read(conic_context *context, const char *path, const conic_read_options *options,
+                             conic_model *model) {
+  collecting c = {.context = context, .model = model};
+  if (!cli_points_are_hierarchy(path))
+    return conic_gaussians_read_model(context, path, options, model);
+  memset(model, 0, sizeof *model);
+  conic_status status = stream_hierarchy(context, path, options, collect, &c);
+  if (status != CONIC_OK)
+    conic_model_release(context, model);
+  return status;
+}

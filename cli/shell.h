@@ -1,0 +1,36 @@
+/* What surrounds the program, where systems differ: its arguments, signals and terminal, names by patterns, other
+ * programs. shell_posix.c and shell_windows.c. */
+#ifndef CONIC_SHELL_H
+#define CONIC_SHELL_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+/* Before anything else: arguments in UTF-8, standard streams of bytes. Null without memory. */
+char **cli_shell_begin(int *argc, char **argv);
+
+/* Wishes to stop go to `on_wish`, and that nobody reads what is written to a pipe to `on_closed_pipe`, with a signal's
+ * number: but what whoever started the program has turned off stays off. Handlers may be called on a thread of their
+ * own. */
+void cli_shell_catch(void (*on_wish)(int signal_number), void (*on_closed_pipe)(int signal_number));
+
+/* Whether a standard stream is a terminal, and one that moves its cursor where it is told to; how wide it is. */
+int cli_shell_is_terminal(FILE *stream);
+int cli_shell_has_cursor(void);
+int cli_shell_columns(void);
+
+/* The most memory that this process has held, as the system counts it. */
+unsigned long long cli_shell_peak_bytes(void);
+
+/* Every name that a pattern with *, ? and [ … ] is of, until `take` returns 0. Returns 0 without memory. */
+int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *path), void *cookie);
+
+/* Runs a program in a folder and waits for its end; whether it was there and content. */
+int cli_shell_run(const char *folder, const char *program, const char *argument);
+
+/* A stream into memory, which is malloc's, and has a zero behind its *n_bytes, once it is closed; null on failure.
+ * Closing it returns 0 where all is there. */
+FILE *cli_shell_open_memory(char **bytes, size_t *n_bytes);
+int cli_shell_close_memory(FILE *stream, char **bytes, size_t *n_bytes);
+
+#endif

@@ -1,0 +1,102 @@
+#include <glob.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cli/shell.h"
+
+char **cli_shell_begin(int *argc, char **argv) {
+  (void)argc;
+  return argv;
+}
+
+/* What waits, say for a pipe, is woken. */
+static void catch_signal(int signal_number, void (*handler)(int)) {
+  struct sigaction action;
+  if (sigaction(signal_number, NULL, &action) != 0 || action.sa_handler == SIG_IGN)
+    return;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = handler;
+  sigemptyset(&action.sa_mask);
+  sigaction(signal_number, &action, NULL);
+}
+
+void cli_shell_catch(void (*on_wish)(int signal_number), void (*on_closed_pipe)(int signal_number)) {
+  const int wishes[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
+  for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++)
+    catch_signal(wishes[i], on_wish);
+  catch_signal(SIGPIPE, on_closed_pipe);
+  signal(SIGXFSZ, SIG_IGN); /* a file that may not grow further is a failed write, after which is cleaned up */
+}
+
+int cli_shell_is_terminal(FILE *stream) {
+  return isatty(fileno(stream));
+}
+
+int cli_shell_has_cursor(void) {
+  const char *kind = getenv("TERM");
+  return isatty(STDERR_FILENO) && kind && *kind && strcmp(kind, "dumb") != 0;
+}
+
+int cli_shell_columns(void) {
+  struct winsize window;
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col ? window.ws_col : 80;
+}
+
+/* The kernel's own mark of this program: getrusage also counts what the shell that started it held. */
+unsigned long long cli_shell_peak_bytes(void) {
+  unsigned long long kibibytes = 0;
+  char line[256];
+  FILE *file = fopen("/proc/self/status", "r");
+  while (file && !kibibytes && fgets(line, sizeof line, file))
+    if (strncmp(line, "VmHWM:", 6) == 0)
+      kibibytes = strtoull(line + 6, NULL, 10);
+  if (file)
+    fclose(file);
+  struct rusage usage;
+  if (!kibibytes && getrusage(RUSAGE_SELF, &usage) == 0)
+#if defined(__APPLE__)
+    kibibytes = (unsigned long long)usage.ru_maxrss / 1024; /* there in bytes */
+#else
+    kibibytes = (unsigned long long)usage.ru_maxrss;
+#endif
+  return kibibytes * 1024;
+}
+
+int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *path), void *cookie) {
+  glob_t found = {.gl_pathc = 0};
+  int result = glob(pattern, GLOB_NOSORT, NULL, &found);
+  for (size_t i = 0; result == 0 && i < found.gl_pathc; i++)
+    if (!take(cookie, found.gl_pathv[i]))
+      break;
+  globfree(&found);
+  return result != GLOB_NOSPACE;
+}
+
+int cli_shell_run(const char *folder, const char *program, const char *argument) {
+  int status;
+  pid_t child = fork();
+  if (child < 0)
+    return 0;
+  if (child == 0) {
+    if (chdir(folder) == 0)
+      execlp(program, program, argument, (char *)NULL);
+    _exit(127);
+  }
+  while (waitpid(child, &status, 0) < 0)
+    ;
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+FILE *cli_shell_open_memory(char **bytes, size_t *n_bytes) {
+  return open_memstream(bytes, n_bytes);
+}
+
+int cli_shell_close_memory(FILE *stream, char **bytes, size_t *n_bytes) {
+  (void)bytes, (void)n_bytes;
+  return fclose(stream);
+}

@@ -1,0 +1,15 @@
+#include <windows.h>
+
+#include "core/base/machine.h"
+#include "core/base/memory.h"
+
+int conic_machine_threads(void) {
+  DWORD n = GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
+  return n < 1 ? 1 : (int)n;
+}
+
+/* Which would need a right of the user's, and memory that is never paged out. */
+void conic_memory_advise_large_pages(void *pointer, size_t bytes) {
+  (void)pointer;
+  (void)bytes;
+}

@@ -1,0 +1,15 @@
+/* No library that is loaded when it is needed has been tried on Windows. */
+#include "core/base/module.h"
+
+#include <stdio.h>
+
+const void *conic_module_load(const char *name, const char *symbol, char message[CONIC_MODULE_MESSAGE]) {
+  (void)symbol;
+  snprintf(message, CONIC_MODULE_MESSAGE, "%s is not loaded on Windows", name);
+  return NULL;
+}
+
+int conic_module_is_there(const char *name) {
+  (void)name;
+  return 0;
+}

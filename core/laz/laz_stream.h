@@ -1,0 +1,134 @@
+/* Symbols, bits and integers out of arithmetically coded bytes.
+ *
+ * `value` is below `length` always, whatever the bytes are, so that every symbol is one of its model's. What is missing
+ * at the end reads as zeros and is noted. */
+#ifndef CONIC_LAZ_STREAM_H
+#define CONIC_LAZ_STREAM_H
+
+#include "core/base/byte_order.h"
+#include "core/laz/laz_models.h"
+
+typedef struct conic_laz_stream {
+  const unsigned char *next, *end;
+  uint32_t value, length;
+  int is_spoiled;
+  conic_laz_arena *arena; /* of models that begin */
+} conic_laz_stream;
+
+void conic_laz_stream_begin(conic_laz_stream *stream, conic_laz_arena *arena, const unsigned char *bytes,
+                            size_t n_bytes);
+
+/* Shifts `n_bits` in, byte by byte up to the end. */
+void conic_laz_refill_at_end(conic_laz_stream *stream, unsigned n_bits);
+
+/* Brings the length back to 2^24 or more, by whole bytes. It is not zero. */
+static inline void conic_laz_refill(conic_laz_stream *stream) {
+  unsigned n_bits = (unsigned)__builtin_clz(stream->length) & 24u;
+  if (stream->end - stream->next < 4) {
+    conic_laz_refill_at_end(stream, n_bits);
+    return;
+  }
+  const unsigned char *b = stream->next;
+  uint32_t ahead = conic_load_big_32(b);
+  stream->value = stream->value << n_bits | ahead >> 1 >> (31 - n_bits);
+  stream->length <<= n_bits;
+  stream->next += n_bits >> 3;
+}
+
+/* Makes what was found, between x and y, the interval, and counts. */
+static inline void conic_laz_settle(conic_laz_stream *stream, conic_laz_model *model, unsigned symbol, uint32_t x,
+                                    uint32_t y) {
+  stream->value -= x;
+  stream->length = y - x;
+  conic_laz_refill(stream);
+  model->count[symbol]++;
+  if (--model->until_update == 0)
+    conic_laz_model_update(model);
+}
+
+/* A symbol of a model of n, which begins by it where it has not; n is the same at every call. */
+static inline unsigned conic_laz_symbol(conic_laz_stream *stream, conic_laz_model *model, unsigned n) {
+  unsigned symbol = 0;
+  if (!model->bound && !conic_laz_model_begin(model, stream->arena, n))
+    return 0;
+  uint32_t unit = stream->length >> CONIC_LAZ_PROBABILITY_BITS, x = 0, y = stream->length;
+  const uint16_t *bound = model->bound;
+  if (n <= CONIC_LAZ_SMALL_MODEL) {
+    for (unsigned end = n, middle = n >> 1; middle != symbol; middle = (symbol + end) >> 1) {
+      uint32_t product = unit * bound[middle];
+      int is_below = product > stream->value;
+      end = is_below ? middle : end;
+      y = is_below ? product : y;
+      symbol = is_below ? symbol : middle;
+      x = is_below ? x : product;
+    }
+  } else {
+    uint32_t place = stream->value / unit;
+    symbol = (unsigned)model->table[place >> conic_laz_table_shift(n)] << (n > 256);
+    while (bound[symbol + 1] <= place)
+      symbol++;
+    x = unit * bound[symbol];
+    y = symbol + 1 < n ? unit * bound[symbol + 1] : y;
+  }
+  conic_laz_settle(stream, model, symbol, x, y);
+  return symbol;
+}
+
+static inline unsigned conic_laz_bit(conic_laz_stream *stream, conic_laz_bit_model *model) {
+  if (!model->total)
+    conic_laz_bit_model_begin(model);
+  uint32_t x = model->probability * (stream->length >> CONIC_LAZ_BIT_PROBABILITY_BITS);
+  uint32_t bit = stream->value >= x, above = 0u - bit;
+  stream->value -= x & above;
+  stream->length = (x & ~above) + ((stream->length - x) & above);
+  model->zeros += !bit;
+  conic_laz_refill(stream);
+  if (--model->until_update == 0)
+    conic_laz_bit_model_update(model);
+  return bit;
+}
+
+/* 1 to 19 bits that no model describes. */
+static inline uint32_t conic_laz_few_bits(conic_laz_stream *stream, unsigned n_bits) {
+  stream->length >>= n_bits;
+  uint32_t bits = stream->value / stream->length;
+  stream->value -= bits * stream->length;
+  conic_laz_refill(stream);
+  stream->is_spoiled |= (int)(bits >> n_bits != 0);
+  return bits & ((1u << n_bits) - 1);
+}
+
+/* 1 to 32 bits, the lower 16 of more than 19 first. */
+static inline uint32_t conic_laz_bits(conic_laz_stream *stream, unsigned n_bits) {
+  if (n_bits <= 19)
+    return conic_laz_few_bits(stream, n_bits);
+  uint32_t low = conic_laz_few_bits(stream, 16);
+  return conic_laz_few_bits(stream, n_bits - 16) << 16 | low;
+}
+
+/* What an integer is off its prediction: the number k of bits by a model of its context, then the bits, the highest
+ * eight by a model of that k. */
+enum { CONIC_LAZ_MOST_CONTEXTS = 22 };
+
+typedef struct conic_laz_integer {
+  unsigned k; /* of the last one */
+  conic_laz_model n_bits[CONIC_LAZ_MOST_CONTEXTS];
+  conic_laz_bit_model one;
+  conic_laz_model high[33];
+} conic_laz_integer;
+
+int32_t conic_laz_off(conic_laz_stream *stream, conic_laz_integer *integer, unsigned context, unsigned n_bits);
+
+/* An integer of 32 bits that was predicted. */
+static inline int32_t conic_laz_integer_32(conic_laz_stream *stream, conic_laz_integer *integer, int32_t predicted,
+                                           unsigned context) {
+  return (int32_t)((uint32_t)predicted + (uint32_t)conic_laz_off(stream, integer, context, 32));
+}
+
+/* One of 16, which goes around. */
+static inline uint32_t conic_laz_integer_16(conic_laz_stream *stream, conic_laz_integer *integer, uint32_t predicted,
+                                            unsigned context) {
+  return (predicted + (uint32_t)conic_laz_off(stream, integer, context, 16)) & 0xffffu;
+}
+
+#endif

@@ -1,0 +1,71 @@
+#include "core/splats/point_values.h"
+
+#include "core/base/memory.h"
+#include "core/splats/columns.h"
+
+conic_status conic_point_values_reserve(conic_context *context, conic_point_values *values, size_t room) {
+  for (size_t k = 0; k < values->n_columns && room > values->room; k++)
+    if (conic_memory_grow(context, &values->value[k], values->room, room, sizeof **values->value) != CONIC_OK)
+      return CONIC_ERROR_MEMORY;
+  values->room = room > values->room ? room : values->room;
+  return CONIC_OK;
+}
+
+void conic_point_values_destroy(conic_context *context, conic_point_values *values) {
+  if (!values)
+    return;
+  for (size_t k = 0; k < values->n_columns; k++)
+    conic_memory_release(context, values->value[k]);
+  conic_filter_destroy(context, values->filter);
+  conic_memory_release(context, values);
+}
+
+static void fill_place_columns(conic_splats *points, conic_point_values *values) {
+  for (size_t k = 0; k < values->n_columns; k++) {
+    int axis = -1 - values->source[k];
+    for (size_t i = 0; i < points->count && axis >= 0; i++)
+      values->value[k][i] = points->origin[axis] + (double)points->position[axis][i];
+  }
+}
+
+/* The record of point i, which is still there and now number `kept`. */
+static void keep_point_clips(conic_splats *points, size_t i, size_t kept, size_t *next, size_t *n_clips) {
+  while (*next < points->n_clips && points->clips[*next].splat < i)
+    ++*next;
+  if (*next < points->n_clips && points->clips[*next].splat == i) {
+    points->clips[*n_clips] = points->clips[*next];
+    points->clips[(*n_clips)++].splat = (uint32_t)kept;
+  }
+}
+
+static void leave_points_out(conic_splats *points, conic_point_values *values) {
+  conic_column columns[CONIC_SPLATS_COLUMNS];
+  size_t kept = 0, next_clip = 0, n_clips = 0;
+  conic_splats_list_columns(points, columns);
+  for (size_t i = 0; i < points->count; i++) {
+    double asked[CONIC_FILTER_MOST_NAMES];
+    for (size_t k = 0; k < conic_filter_names(values->filter); k++)
+      asked[k] = values->value[values->filtered_by[k]][i];
+    if (!conic_filter_passes(values->filter, asked))
+      continue;
+    keep_point_clips(points, i, kept, &next_clip, &n_clips);
+    for (int k = 0; k < CONIC_SPLATS_COLUMNS; k++)
+      if (*columns[k].floats)
+        (*columns[k].floats)[kept] = (*columns[k].floats)[i];
+    for (size_t k = 0; k < values->n_columns; k++)
+      values->value[k][kept] = values->value[k][i];
+    kept++;
+  }
+  points->count = kept;
+  points->n_clips = n_clips;
+}
+
+void conic_point_values_settle(conic_splats *points) {
+  conic_point_values *values = points->values;
+  fill_place_columns(points, values);
+  for (size_t i = 0; i < points->count && values->scalar >= 0 && points->scalar; i++)
+    points->scalar[i] = (float)values->value[values->scalar][i];
+  if (values->filter)
+    leave_points_out(points, values);
+  values->count = points->count;
+}

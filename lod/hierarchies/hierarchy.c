@@ -1,0 +1,146 @@
+#include "lod/hierarchies/hierarchy.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/real.h"
+#include "core/files/file.h"
+#include "lod/layers/format/layers_key.h"
+
+static const conic_hierarchy_kind *const kinds[] = {&conic_hierarchy_kind_copc, &conic_hierarchy_kind_ept,
+                                                    &conic_hierarchy_kind_potree};
+enum { N_KINDS = sizeof kinds / sizeof *kinds };
+
+/* No coordinate is farther out, and no length is greater. */
+static const double farthest = 1e15;
+
+const conic_hierarchy_kind *conic_hierarchy_kind_of(const char *name, const unsigned char *head, size_t n_head) {
+  for (int i = 0; i < N_KINDS; i++)
+    if (kinds[i]->is_one(name, head, n_head))
+      return kinds[i];
+  return NULL;
+}
+
+const char *conic_hierarchy_name_of(const char *path) {
+  unsigned char head[CONIC_HIERARCHY_HEAD_BYTES];
+  size_t n = conic_file_read_head(path, head, sizeof head);
+  const conic_hierarchy_kind *kind = n > 0 ? conic_hierarchy_kind_of(path, head, n) : NULL;
+  return kind ? kind->name : NULL;
+}
+
+int conic_hierarchy_is_file(const char *path) {
+  return conic_hierarchy_name_of(path) != NULL;
+}
+
+conic_status conic_hierarchy_open(conic_context *context, const conic_hierarchy_kind *kind, const char *name,
+                                  conic_ranges *ranges, const conic_ranges_options *access,
+                                  conic_hierarchy **hierarchy) {
+  conic_hierarchy *h = *hierarchy = conic_memory_allocate_zeroed(context, 1, sizeof *h);
+  if (!h) {
+    conic_ranges_close(ranges);
+    return CONIC_ERROR_MEMORY;
+  }
+  h->context = context;
+  h->kind = kind;
+  h->name = name;
+  h->ranges = h->pages = ranges;
+  h->access = *access;
+  conic_status status = kind->open(h);
+  const char *wrong = status == CONIC_OK ? conic_hierarchy_check(h) : NULL;
+  if (wrong)
+    status = conic_hierarchy_wrong(h, wrong);
+  if (status == CONIC_OK)
+    return CONIC_OK;
+  conic_hierarchy_close(h);
+  *hierarchy = NULL;
+  return status;
+}
+
+void conic_hierarchy_close(conic_hierarchy *hierarchy) {
+  if (!hierarchy)
+    return;
+  conic_context *context = hierarchy->context;
+  if (hierarchy->pages != hierarchy->ranges)
+    conic_ranges_close(hierarchy->pages);
+  conic_ranges_close(hierarchy->ranges);
+  conic_memory_release(context, hierarchy->nodes);
+  conic_memory_release(context, hierarchy->own);
+  conic_memory_release(context, hierarchy);
+}
+
+conic_status conic_hierarchy_wrong(const conic_hierarchy *hierarchy, const char *what) {
+  return conic_fail(hierarchy->context, CONIC_ERROR_INPUT, "%s: %s", hierarchy->name, what);
+}
+
+conic_status conic_hierarchy_read(const conic_hierarchy *hierarchy, uint64_t offset, size_t n_bytes,
+                                  unsigned char **bytes) {
+  uint64_t size = conic_ranges_size(hierarchy->ranges);
+  size_t n_read;
+  *bytes = NULL;
+  if (n_bytes == 0 || offset > size || n_bytes > size - offset)
+    return conic_fail(hierarchy->context, CONIC_ERROR_INPUT, "%s: the file ends too early (at byte %llu)",
+                      hierarchy->name, (unsigned long long)size);
+  const conic_range range = {.offset = offset, .n_bytes = n_bytes};
+  return conic_ranges_read(hierarchy->ranges, hierarchy->name, &range, hierarchy->access.until_s, bytes, &n_read);
+}
+
+const char *conic_hierarchy_add(conic_hierarchy *hierarchy, const conic_hierarchy_node *node) {
+  if (node->level > CONIC_HIERARCHY_LEVELS)
+    return "a node is too deep";
+  if (node->n_points > CONIC_HIERARCHY_NODE_POINTS)
+    return "a node has too many points";
+  if (hierarchy->n_nodes >= UINT32_MAX / 16)
+    return "there are too many nodes";
+  if (node->n_bytes > UINT32_MAX || (node->is_page && node->n_bytes > CONIC_HIERARCHY_PAGE_BYTES))
+    return "a node or page has too many bytes";
+  if (conic_memory_reserve(hierarchy->context, &hierarchy->nodes, hierarchy->n_nodes, hierarchy->n_nodes + 1,
+                           &hierarchy->nodes_room, sizeof *hierarchy->nodes) != CONIC_OK)
+    return "there is no memory for it";
+  hierarchy->nodes[hierarchy->n_nodes++] = *node;
+  return NULL;
+}
+
+int conic_hierarchy_key(uint32_t level, const uint32_t cell[3], uint64_t *key) {
+  if (level > CONIC_HIERARCHY_LEVELS)
+    return 0;
+  for (int axis = 0; axis < 3; axis++)
+    if (cell[axis] >> level)
+      return 0;
+  *key = conic_layers_key(cell[0], cell[1], cell[2]) << 3 * (CONIC_HIERARCHY_LEVELS - level);
+  return 1;
+}
+
+void conic_hierarchy_cell(const conic_hierarchy_node *node, uint32_t cell[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    cell[axis] = conic_layers_step(node->key >> 3 * (CONIC_HIERARCHY_LEVELS - node->level), axis);
+}
+
+const char *conic_hierarchy_take_records(const conic_hierarchy *hierarchy, const unsigned char *records, size_t n_bytes,
+                                         conic_hierarchy_points *points) {
+  if (n_bytes != points->n * hierarchy->layout.n_bytes)
+    return "it has another size than its points";
+  conic_point_layout_take(&hierarchy->layout, records, points);
+  return NULL;
+}
+
+static int is_from_to(double value, double least, double most) {
+  return value >= least && value <= most; /* false where it is no number */
+}
+
+const char *conic_hierarchy_check(const conic_hierarchy *h) {
+  for (int axis = 0; axis < 3; axis++) {
+    if (!is_from_to(h->low[axis], -farthest, farthest) || !is_from_to(h->edge[axis], 0.0, farthest) ||
+        !(h->edge[axis] > 0.0))
+      return "the root's cell is out of range";
+    if (!is_from_to(h->box_low[axis], -farthest, farthest) ||
+        !is_from_to(h->box_high[axis], h->box_low[axis], farthest))
+      return "the box is out of range";
+    if (!conic_is_finite(h->layout.scale[axis]) || h->layout.scale[axis] == 0.0 ||
+        !conic_is_finite(h->layout.offset[axis]))
+      return "a scale or offset is out of range";
+  }
+  if (!(h->spacing > 0.0) || !is_from_to(h->spacing, 0.0, farthest))
+    return "the spacing is out of range";
+  return h->n_points == 0 ? "it holds no point" : NULL;
+}

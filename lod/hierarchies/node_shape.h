@@ -1,0 +1,23 @@
+/* What the points of a node that come without normals and sizes are given, by their neighbours in the node. */
+#ifndef CONIC_NODE_SHAPE_H
+#define CONIC_NODE_SHAPE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+typedef struct conic_node_shape {
+  const uint64_t *keys; /* 63-bit Morton codes, ascending */
+  const float *position[3];
+  size_t n;
+  double step;      /* of the keys, in the positions' units: no axis has a shorter one */
+  float *normal[3]; /* set: the direction of least spread, turned upwards; zero where the neighbours are in no plane */
+  float *spacing;   /* set: the distance of neighbours there, √(area a point); 0: there are none */
+} conic_node_shape;
+
+/* One thread. Fills in normals and spacings; *median becomes the lower median of the spacings above 0, or 0. The same
+ * points give the same bits everywhere. Errors: MEMORY. */
+conic_status conic_node_shape_find(conic_context *context, const conic_node_shape *shape, float *median);
+
+#endif

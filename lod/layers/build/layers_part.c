@@ -1,0 +1,105 @@
+#include "lod/layers/build/layers_part.h"
+
+#include <math.h>
+
+enum { MOST_BESIDE = 256, N_CORNERS = 16 };
+
+/* A disc that is held against those that stand about it. */
+typedef struct parting {
+  const conic_layers_standing *standing;
+  const conic_layers_disc *disc;
+  uint32_t beside[MOST_BESIDE]; /* where there are more, those left out could only be nearer */
+  size_t n_beside;
+} parting;
+
+/* All of the disc is no farther than this from one that stands: by how high it lies above that, how much it is turned
+ * against it, or may be, and how far it reaches past it. */
+static float part_from_one(const parting *p, uint32_t i_standing, int is_turn_known) {
+  const conic_layers_disc *disc = p->disc, *s = &p->standing->discs[i_standing];
+  float height = 0.0f, way2 = 0.0f, turn = 1.0f;
+  for (int axis = 0; axis < 3; axis++) {
+    float way = disc->center[axis] - s->center[axis];
+    height += way * s->normal[axis];
+    way2 += way * way;
+  }
+  if (is_turn_known) {
+    const float *n = disc->normal;
+    float cosine = n[0] * s->normal[0] + n[1] * s->normal[1] + n[2] * s->normal[2], sine2 = 1.0f - cosine * cosine;
+    turn = sine2 > 0.0f ? sqrtf(sine2) : 0.0f;
+  }
+  float past = sqrtf(way2) + disc->radius - s->radius;
+  return fabsf(height) + disc->radius * turn + (past > 0.0f ? past : 0.0f);
+}
+
+/* From the discs beside, of a place; or no more than `enough`. */
+static float part_from_nearest(const parting *p, const float at[3], float enough) {
+  float nearest2 = HUGE_VALF, enough2 = enough > 0.0f ? enough * enough : 0.0f;
+  for (size_t i = 0; i < p->n_beside && !(nearest2 <= enough2); i++) {
+    const conic_layers_disc *s = &p->standing->discs[p->beside[i]];
+    float height = 0.0f, way2 = 0.0f;
+    for (int axis = 0; axis < 3; axis++) {
+      float way = at[axis] - s->center[axis];
+      height += way * s->normal[axis];
+      way2 += way * way;
+    }
+    float along2 = way2 - height * height, past = along2 > 0.0f ? sqrtf(along2) - s->radius : 0.0f;
+    float part2 = height * height + (past > 0.0f ? past * past : 0.0f);
+    nearest2 = part2 < nearest2 ? part2 : nearest2;
+  }
+  return sqrtf(nearest2);
+}
+
+/* The farthest of the disc's middle and the corners of a polygon around it. */
+static float part_of_places(const parting *p, float enough) {
+  static const float corners[4][2] = {
+      {1.0f, 0.19891237f}, {0.84775907f, 0.56645450f}, {0.56645450f, 0.84775907f}, {0.19891237f, 1.0f}};
+  const float *n = p->disc->normal, radius = p->disc->radius;
+  float sign = n[2] >= 0.0f ? 1.0f : -1.0f, a = -1.0f / (sign + n[2]), b = n[0] * n[1] * a;
+  const float u[3] = {1.0f + sign * (n[0] * n[0]) * a, sign * b, -sign * n[0]};
+  const float v[3] = {b, sign + n[1] * n[1] * a, -n[1]};
+  float farthest = part_from_nearest(p, p->disc->center, enough);
+  for (int i = 0; i < N_CORNERS; i++) {
+    float x = corners[i % 4][0] * (i & 4 ? -radius : radius), y = corners[i % 4][1] * (i & 8 ? -radius : radius), at[3];
+    for (int axis = 0; axis < 3; axis++)
+      at[axis] = p->disc->center[axis] + x * u[axis] + y * v[axis];
+    float part = part_from_nearest(p, at, enough);
+    farthest = part > farthest ? part : farthest;
+  }
+  return farthest;
+}
+
+/* How far the disc is from those that stand; `enough`, or less, where it is no more than that. *last is one that may
+ * do, and then the one that did. */
+static float part_of_disc(parting *p, float enough, uint32_t *last) {
+  float least = part_from_one(p, *last, 1);
+  if (least <= enough)
+    return least;
+  for (int is_wide = 0; is_wide < 2; is_wide++) {
+    p->n_beside = conic_thinner_beside(p->standing->thinner, p->disc->center, is_wide, p->beside, MOST_BESIDE);
+    for (size_t i = 0; i < p->n_beside; i++) {
+      float part = part_from_one(p, p->beside[i], 1);
+      if (part <= enough) {
+        *last = p->beside[i];
+        return part;
+      }
+      least = part < least ? part : least;
+    }
+  }
+  float measured = p->n_beside ? part_of_places(p, enough) : least;
+  return measured < least ? measured : least;
+}
+
+double conic_layers_part(const conic_layers_standing *standing, const conic_layers_disc *discs, size_t n, double beyond,
+                         double part) {
+  parting p = {.standing = standing};
+  uint32_t last = 0;
+  for (size_t i = 0; i < n; i++) {
+    float enough = (float)(part - beyond);
+    p.disc = &discs[i];
+    if (part_from_one(&p, last, 0) <= enough)
+      continue;
+    double found = (double)part_of_disc(&p, enough, &last) + beyond;
+    part = found > part ? found : part;
+  }
+  return part;
+}

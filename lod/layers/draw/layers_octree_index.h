@@ -1,0 +1,18 @@
+/* From a hierarchy's nodes to the entries that drawing knows, and reading its pages. */
+#ifndef CONIC_LAYERS_OCTREE_INDEX_H
+#define CONIC_LAYERS_OCTREE_INDEX_H
+
+#include "lod/layers/draw/layers_octree.h"
+
+/* A point may lie outside its cell by so large a share of it. */
+#define CONIC_OCTREE_SLACK 0.03125
+
+/* Makes the entries anew, of all nodes that are known. Nothing is held of the cache. Errors: INPUT (they are no tree),
+ * MEMORY. */
+conic_status conic_layers_octree_index(conic_layers *layers);
+
+/* Reads the pages of these entries, which the nodes that they tell of replace. Errors: as expansion. */
+conic_status conic_layers_octree_read_pages(conic_layers *layers, const uint32_t *entries, size_t n,
+                                            conic_layers_expansion *expansion);
+
+#endif

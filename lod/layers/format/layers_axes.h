@@ -1,0 +1,34 @@
+/* Directions and ellipses as few bits, and back. Only + - x / and roots: the same bits everywhere. */
+#ifndef CONIC_LAYERS_AXES_H
+#define CONIC_LAYERS_AXES_H
+
+#include "conic/splats.h"
+#include "lod/layers/format/layers_schema.h"
+
+/* A normal of any length but zero as two codes of the octahedron, and the unit normal that they give. */
+void conic_layers_code_normal(const float normal[3], uint8_t code[2]);
+void conic_layers_normal_of(const uint8_t code[2], float normal[3]);
+
+/* Likewise of half 32767. */
+void conic_layers_code_fine_normal(const float normal[3], uint16_t code[2]);
+void conic_layers_fine_normal_of(const uint16_t code[2], float normal[3]);
+
+/* Two unit vectors that make a frame with a unit normal anywhere: one rule for each half of the sphere, and nothing
+ * cancels in its own. */
+void conic_layers_frame(const float normal[3], float u[3], float v[3]);
+
+/* Both axes as lengths, normal and turn; 0 where they span no plane. The second becomes orthogonal to the first. */
+int conic_layers_code_axes(const float u[3], const float v[3], conic_layers_axes *axes);
+
+/* Unit vectors along both axes. */
+void conic_layers_axes_of(const conic_layers_axes *axes, float u[3], float v[3], float normal[3]);
+
+/* A size as the upper half of a float's bits, not rounded down; 0: it is none. And back. */
+uint16_t conic_layers_code_size(float size);
+float conic_layers_size_of(uint16_t code);
+
+/* Clip lines, in units of the axes, as codes and back; the record's index is the caller's. */
+void conic_layers_code_lines(const conic_clip *clip, conic_layers_lines *lines);
+int conic_layers_lines_of(const conic_layers_lines *lines, conic_clip *clip);
+
+#endif

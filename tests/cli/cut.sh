@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# conic cut: boxes, polygons and conditions against what awk makes of the same points; layered clouds against files of
+# points.
+set -uo pipefail
+# shellcheck source=tests/support/program.bash
+source "$1/tests/support/program.bash"
+
+points_in() { # FILE
+  run 0 info "$1" --json info.json
+  sed -nE 's/^ *"points": ([0-9]+),?$/\1/p' info.json
+}
+
+same() { # WHAT GOT WANTED
+  [[ $2 == "$3" && $3 -gt 0 ]] || fail "$1: $2 points, not $3"
+}
+
+# A sheet of 40 × 40 points with a class each, far out as maps are.
+awk 'BEGIN { print "x,y,z,class"; for (i = 0; i < 1600; i++) printf "%.2f,%.2f,%d,%d\n", 600000.25 + i % 40, 800000.25 + int(i / 40), i % 7, i % 3 }' > sheet.csv
+printf '600005 800005\n600030 800005\n600015 800035\n\n# a hole\n600014,800010\n600018,800010\n600016,800016\n' > triangle.txt
+
+run 0 cut sheet.csv --box 600010,800010,600020.25,800030 -o box.ply
+same box "$(points_in box.ply)" "$(awk -F, 'NR > 1 && $1 >= 600010 && $1 <= 600020.25 && $2 >= 800010 && $2 <= 800030' sheet.csv | wc -l)"
+run 0 cut sheet.csv --box 600010,800010,2,600020,800030,4 -o heights.ply
+same heights "$(points_in heights.ply)" "$(awk -F, 'NR > 1 && $1 >= 600010 && $1 <= 600020 && $2 >= 800010 && $2 <= 800030 && $3 >= 2 && $3 <= 4' sheet.csv | wc -l)"
+run 0 cut sheet.csv --polygon triangle.txt --where 'class = 1' -o triangle.ply
+same polygon "$(points_in triangle.ply)" "$(awk -F, '
+  function is_in(x, y, a, b, c, d, e, f) { # on one side of all three sides
+    return (c - a) * (y - b) - (d - b) * (x - a) > 0 && (e - c) * (y - d) - (f - d) * (x - c) > 0 && (a - e) * (y - f) - (b - f) * (x - e) > 0 }
+  NR > 1 && $4 == 1 && is_in($1, $2, 600005, 800005, 600030, 800005, 600015, 800035) &&
+    !is_in($1, $2, 600014, 800010, 600018, 800010, 600016, 800016)' sheet.csv | wc -l)"
+
+run 2 cut sheet.csv
+run 2 cut sheet.csv --box 1,2,3 -o never.ply
+run 2 cut sheet.csv --box 2,2,1,1 -o never.ply
+run 2 cut sheet.csv --error 2 -o never.ply
+run 2 cut - -o never.ply
+run 3 cut sheet.csv --box 0,0,1,1 -o never.ply
+printf '1 2\n3 4\n' > line.txt
+run 3 cut sheet.csv --polygon line.txt -o never.ply
+[[ ! -e never.ply ]] || fail "a file was written in spite of an error"
+
+"$conic" --version | grep '^In this build:' | grep -q zstd || exit $((failures > 0))
+
+# Of a layered cloud no more is read than meets the box, and what is cut stays where it was.
+run 0 make knot -n 60k -o knot.ply
+run 0 layer knot.ply -o knot.lpc
+run 0 cut knot.lpc --box 0,-9,-9,9,9,9 -o half.lpc --json half.json
+run 0 cut knot.lpc --box 0,-9,-9,9,9,9 -o half.ply
+run 0 info half.lpc --check
+same "a layered half" "$(points_in half.lpc)" "$(points_in half.ply)"
+n_read=$(sed -nE 's/^ *"points_in": ([0-9]+),?$/\1/p' half.json)
+[[ $n_read -lt 60000 && $n_read -ge $(points_in half.ply) ]] || fail "all of it was read: $n_read"
+run 0 cut knot.lpc --error 0.2 -o coarse.ply
+[[ $(points_in coarse.ply) -lt 40000 ]] || fail "--error reads all"
+[[ $failures -eq 0 ]]
