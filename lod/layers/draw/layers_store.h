@@ -6,8 +6,7 @@
 #include "lod/layers/format/layers_decode.h"
 
 typedef struct conic_layers_slot {
-  void *block; /* null: the cloud is not in memory */
-  conic_layers_cloud cloud;
+  conic_layers_cloud *cloud; /* with its arrays in one block; null: it is not in memory */
   uint32_t newer, older; /* neighbours by last use: clouds, or CONIC_NO_CLOUD */
   uint16_t n_pins;       /* it must stay */
   uint8_t is_doubted;    /* its bytes were wrong once */
