@@ -68,7 +68,7 @@ void conic_renderer_give_back(conic_renderer *renderer) {
   conic_kept_memory *all[] = {
       &renderer->footprints,  &renderer->surfaces,   &renderer->rays,        &renderer->clips,   &renderer->chunks,
       &renderer->chunk_begin, &renderer->tile_begin, &renderer->tile_counts, &renderer->entries, &renderer->sorters,
-      &renderer->scratch,     &renderer->times,      &renderer->lengths,    &renderer->others};
+      &renderer->scratch,     &renderer->times,      &renderer->lengths,     &renderer->others};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     conic_memory_release(renderer->context, all[i]->pointer);
     *all[i] = (conic_kept_memory){NULL, 0};

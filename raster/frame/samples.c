@@ -24,7 +24,7 @@ typedef struct reduction {
   const conic_image *fine;
   conic_image *image;
   size_t first_column, first_row; /* of the image, where the fine picture begins */
-  size_t samples;   /* N */
+  size_t samples;                 /* N */
 } reduction;
 
 /* The fine picture's pixel k of an image's pixel: its first is `corner`. */
@@ -34,7 +34,8 @@ static size_t fine_at(const reduction *r, size_t corner, size_t k) {
 
 /* Of a row of the image's pixels. */
 static inline void take_means(const reduction *r, conic_plane plane, size_t n_channels, size_t corner, size_t at) {
-  size_t samples = r->samples, width = (size_t)r->fine->width / samples, row_floats = n_channels * (size_t)r->fine->width;
+  size_t samples = r->samples, width = (size_t)r->fine->width / samples,
+         row_floats = n_channels * (size_t)r->fine->width;
   const float *fine = (const float *)r->fine->planes[plane] + n_channels * corner;
   float *to = (float *)r->image->planes[plane] + n_channels * at;
   double n = (double)(samples * samples);
@@ -195,8 +196,7 @@ static conic_status count_whole(conic_context *context, const conic_whole_drawin
   conic_view view;
   conic_status status = conic_samples_count(context, drawing->splats, camera, options, s);
   if (status == CONIC_OK)
-    status =
-        conic_view_init(context, drawing->splats, camera, options, options->near_z, options->splat_length, &view);
+    status = conic_view_init(context, drawing->splats, camera, options, options->near_z, options->splat_length, &view);
   return status == CONIC_OK ? conic_whole_drawing_count(context, drawing, &view, camera, options->isa, s) : status;
 }
 
@@ -263,8 +263,8 @@ static conic_status draw_bands(conic_context *context, conic_renderer *renderer,
   return status;
 }
 
-void conic_samples_reduce(conic_context *context, const conic_image *fine, int samples, int first_column,
-                          int first_row, conic_image *image) {
+void conic_samples_reduce(conic_context *context, const conic_image *fine, int samples, int first_column, int first_row,
+                          conic_image *image) {
   reduction r = {.fine = fine,
                  .image = image,
                  .first_column = (size_t)first_column,

@@ -11,9 +11,9 @@
 typedef struct bands {
   const conic_layers_band_drawing *d;
   conic_render_options render;
-  uint32_t *chosen; /* all places */
-  size_t most;      /* splats at a time */
-  double n_expected; /* splats of all places */
+  uint32_t *chosen;     /* all places */
+  size_t most;          /* splats at a time */
+  double n_expected;    /* splats of all places */
   uint64_t block_bytes; /* of what is put aside and not yet written */
   uint64_t pixel_bytes;
   conic_camera fine; /* of the picture of samples */
@@ -26,7 +26,7 @@ typedef struct bands {
   conic_image pixels;        /* the window's; with one sample a pixel, the whole image */
   unsigned char *is_counted; /* a splat of the set */
   size_t counted_room;
-  uint64_t n_chosen; /* splats that were put aside */
+  uint64_t n_chosen;              /* splats that were put aside */
   conic_render_statistics counts; /* where the picture has several bands: of the splats */
   conic_render_statistics *sum;
 } bands;
@@ -234,9 +234,8 @@ static conic_status begin_window(bands *b, const conic_window *window) {
       conic_samples_camera(d->camera, samples, b->band_begin / samples, (band_end - b->band_begin) / samples);
   b->window = samples > 1 ? *window : (conic_window){0, b->fine.width, 0, b->fine.height};
   if (samples > 1)
-    return conic_samples_allocate(d->layers->context, window->x_end - window->x_begin,
-                                  window->y_end - window->y_begin, conic_image_planes(d->image) & CONIC_DRAWN_PLANES,
-                                  &b->pixels);
+    return conic_samples_allocate(d->layers->context, window->x_end - window->x_begin, window->y_end - window->y_begin,
+                                  conic_image_planes(d->image) & CONIC_DRAWN_PLANES, &b->pixels);
   b->pixels = *d->image;
   return CONIC_OK;
 }

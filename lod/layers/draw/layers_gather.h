@@ -38,8 +38,8 @@ typedef struct conic_layers_gathering {
   size_t n_chosen;
   const conic_layers_view *view;
   float cutoff;
-  const conic_camera *camera; /* that dots are turned to; null: they are left as they are */
-  double until_s;             /* by conic_seconds_now; infinite: clouds are waited for */
+  const conic_camera *camera;         /* that dots are turned to; null: they are left as they are */
+  double until_s;                     /* by conic_seconds_now; infinite: clouds are waited for */
   conic_layers_set_receiver *receive; /* null: all is gathered at once; else it is handed over part by part, with the
                                          pieces that it came of; clip lines are not listed yet */
   void *cookie;

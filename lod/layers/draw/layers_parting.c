@@ -96,8 +96,7 @@ static int is_small(const window_plan *p, const cell_range *c) {
   conic_window pixels = pixels_of_cells(p->w, c);
   double width = (double)(pixels.x_end - pixels.x_begin), height = (double)(pixels.y_end - pixels.y_begin);
   double growth = (1.0 + 2.0 * p->asked->margin_px / width) * (1.0 + 2.0 * p->asked->margin_px / height);
-  return growth * sum_of(p, c) <= p->asked->most &&
-         (p->asked->samples == 1 || width * height <= p->asked->most_pixels);
+  return growth * sum_of(p, c) <= p->asked->most && (p->asked->samples == 1 || width * height <= p->asked->most_pixels);
 }
 
 /* Halves the longer side, so that each half has as many splats, about. */

@@ -11,8 +11,8 @@ typedef struct conic_layers_parting {
   const conic_layers_cut *cut;
   int width, height, band_rows, samples;
   double most_pixels; /* of a window with more than one sample a pixel, where a cell has no more */
-  double most;      /* splats that may meet a window, if each place's are spread evenly */
-  double margin_px; /* how far from its middle a splat is taken to reach */
+  double most;        /* splats that may meet a window, if each place's are spread evenly */
+  double margin_px;   /* how far from its middle a splat is taken to reach */
 } conic_layers_parting;
 
 /* Windows have whole cells. Zero before the first use. */

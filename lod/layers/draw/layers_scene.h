@@ -17,7 +17,7 @@ struct conic_layers {
   int is_remote;
   conic_ranges *ranges;               /* of the clouds */
   struct conic_layers_octree *octree; /* null: a .lpc */
-  uint64_t n_told; /* bytes received that a picture's statistics have told of */
+  uint64_t n_told;                    /* bytes received that a picture's statistics have told of */
   conic_layers_header header;
   conic_layers_entry *entries;
   uint64_t *first_sample; /* number of each cloud's first, in the order of the file */

@@ -40,7 +40,10 @@ static unsigned char *open_block(const conic_layers_spill *spill, size_t i_windo
 
 /* In the system's folder for what is large and short-lived. */
 static conic_status name_file(conic_layers_spill *spill) {
-  const char *folder = getenv("TMPDIR");
+  const char *const names[] = {"TMPDIR", "TEMP"};
+  const char *folder = NULL;
+  for (size_t i = 0; i < sizeof names / sizeof *names && !(folder && *folder); i++)
+    folder = getenv(names[i]);
   folder = folder && *folder ? folder : "/var/tmp";
   size_t room = strlen(folder) + sizeof "/clouds";
   spill->path = conic_memory_allocate(spill->layers->context, room, 1);
@@ -121,8 +124,7 @@ static inline cell_visit cells_of_box(const conic_layers_windows *w, const conic
 static inline uint32_t window_at(const conic_layers_windows *w, const cell_visit *v, int x, int y) {
   size_t at = (size_t)y * (size_t)w->n_columns + (size_t)x;
   uint32_t i = w->window_of[at];
-  if ((x > v->x_begin && w->window_of[at - 1] == i) ||
-      (y > v->y_begin && w->window_of[at - (size_t)w->n_columns] == i))
+  if ((x > v->x_begin && w->window_of[at - 1] == i) || (y > v->y_begin && w->window_of[at - (size_t)w->n_columns] == i))
     return UINT32_MAX;
   return i;
 }

@@ -18,7 +18,7 @@ enum { HEAD_BYTES = (sizeof(conic_layers_cloud) + 63) / 64 * 64 };
 typedef struct arrival {
   conic_range_answer answer;
   conic_layers_cloud *cloud; /* null: none */
-  const char *wrong; /* with its bytes; null: nothing */
+  const char *wrong;         /* with its bytes; null: nothing */
 } arrival;
 
 typedef struct arrivals {
