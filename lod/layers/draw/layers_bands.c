@@ -277,6 +277,7 @@ static conic_status draw_windows(bands *b, conic_render_statistics *statistics, 
   memset(statistics, 0, sizeof *statistics);
   b->sum = statistics;
   b->render = *d->render;
+  conic_renderer_give_back(d->renderer); /* which putting aside takes in its place */
   conic_layers_view_init(&d->layers->header, &b->fine, d->render, d->render->near_z, &b->view);
   conic_status status = plan_windows(b);
   if (status == CONIC_OK)

@@ -28,7 +28,7 @@ struct conic_layers_set {
 typedef struct conic_layers_set conic_layers_set;
 
 /* Bytes that drawing takes for a splat of a set, the set's own and room to grow included. */
-enum { CONIC_LAYERS_SPLAT_BYTES = 208 };
+enum { CONIC_LAYERS_SPLAT_BYTES = 176 };
 
 typedef conic_status conic_layers_set_receiver(void *cookie, conic_layers_set *set);
 

@@ -60,7 +60,7 @@ static inline uint64_t conic_layers_cache_bytes(const conic_layers *layers) {
 }
 
 static inline uint64_t conic_layers_drawing_bytes(const conic_layers *layers) {
-  return conic_layers_free_bytes(layers) / 2;
+  return conic_layers_free_bytes(layers) / 8 * 5;
 }
 
 #endif
