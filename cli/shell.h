@@ -22,6 +22,9 @@ int cli_shell_columns(void);
 /* The most memory that this process has held, as the system counts it. */
 unsigned long long cli_shell_peak_bytes(void);
 
+/* From now on, what is released of more than 128 KiB goes back to the system at once, where it would else be kept. */
+void cli_shell_give_back_memory(void);
+
 /* Every name that a pattern with *, ? and [ … ] is of, until `take` returns 0. Returns 0 without memory. */
 int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *path), void *cookie);
 

@@ -7,6 +7,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
 #include "cli/shell.h"
 
 char **cli_shell_begin(int *argc, char **argv) {
@@ -65,6 +69,12 @@ unsigned long long cli_shell_peak_bytes(void) {
     kibibytes = (unsigned long long)usage.ru_maxrss;
 #endif
   return kibibytes * 1024;
+}
+
+void cli_shell_give_back_memory(void) {
+#if defined(__GLIBC__)
+  (void)mallopt(M_MMAP_THRESHOLD, 128 << 10);
+#endif
 }
 
 int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *path), void *cookie) {

@@ -109,7 +109,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   for (int i = 0; i < CONIC_N_COMPRESSIONS; i++)
     compression_words[i] = conic_compression_name((conic_compression)i);
   int compression = 0;
-  int memory_mib = 512, occlusion = CONIC_OCCLUSION_AUTO, is_streaming_given = 0;
+  enum { USUAL_MIB = 512 };
+  int memory_mib = USUAL_MIB, occlusion = CONIC_OCCLUSION_AUTO, is_streaming_given = 0;
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT",
        "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; may be repeated",
@@ -165,6 +166,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   job->writing.compression = (conic_compression)compression;
   job->asked_planes = job->is_aov_given ? job->planes : 0;
   job->access.memory_bytes = (uint64_t)memory_mib << 20;
+  if (memory_mib < USUAL_MIB && !session->host)
+    cli_shell_give_back_memory();
   job->access.connect_seconds = job->access.stall_seconds;
   job->view.occlusion = (conic_occlusion)occlusion;
   job->view.may_be_coarser = job->progressive_path || job->deadline > 0.0 || job->view.tolerates_damage;

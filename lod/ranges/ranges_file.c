@@ -8,7 +8,7 @@
 
 /* Pages that were read count as this process's memory until they are given back; the system keeps them all the same,
  * while it has room. */
-enum { RETURN_BYTES = 16 << 20 };
+enum { RETURN_BYTES = 1 << 20 };
 
 typedef struct file_ranges {
   conic_ranges base;

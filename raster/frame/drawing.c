@@ -59,7 +59,7 @@ conic_status conic_whole_drawing_count(conic_context *context, const conic_whole
 void conic_chunk_add(const conic_chunk *chunk, conic_chunk *sum) {
   sum->n_culled += chunk->n_culled;
   sum->n_skipped += chunk->n_skipped;
-  sum->n_drawn += chunk->n_drawn;
+  sum->n_drawn += chunk->n_drawn + chunk->n_elsewhere;
   sum->n_fallback += chunk->n_fallback;
   sum->n_rays += chunk->n_rays;
   sum->n_laplaces += chunk->n_laplaces;

@@ -12,6 +12,7 @@
 #include "raster/frame/backend.h"
 #include "raster/frame/drawing.h"
 #include "raster/frame/tile.h"
+#include "raster/frame/windowed.h"
 #include "raster/project/clip_lines.h"
 #include "raster/tiles/bins.h"
 #include "raster/tiles/lights.h"
@@ -24,7 +25,7 @@ struct conic_renderer {
   conic_context *context;
   conic_backend *backend; /* null: the loops here */
   conic_kept_memory footprints, surfaces, rays, clips, chunks, chunk_begin, tile_begin, tile_counts, entries, sorters,
-      scratch, times, lengths;
+      scratch, times, lengths, others;
   conic_triangle_frame triangles;
   unsigned slips; /* raster/view/slips.h */
 };
@@ -41,7 +42,9 @@ typedef struct frame {
   conic_isa isa;
   conic_raster_kernels kernels;
   conic_image *image;
-  conic_window window;     /* the pixels that are drawn: whole tiles */
+  conic_part part;         /* the pixels that are drawn */
+  int is_part;             /* they are not the whole picture */
+  conic_chunk *others;     /* a thread: what is not counted */
   float *hiding;           /* in the place of an image; else null */
   char *sorters, *scratch; /* of chunks and of tiles, a thread */
   size_t sorter_bytes, scratch_bytes;
@@ -61,15 +64,21 @@ conic_status conic_renderer_create(conic_context *context, conic_renderer **rend
   return CONIC_OK;
 }
 
-void conic_renderer_destroy(conic_renderer *renderer) {
-  if (!renderer)
-    return;
+void conic_renderer_give_back(conic_renderer *renderer) {
   conic_kept_memory *all[] = {
       &renderer->footprints,  &renderer->surfaces,   &renderer->rays,        &renderer->clips,   &renderer->chunks,
       &renderer->chunk_begin, &renderer->tile_begin, &renderer->tile_counts, &renderer->entries, &renderer->sorters,
-      &renderer->scratch,     &renderer->times,      &renderer->lengths};
-  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+      &renderer->scratch,     &renderer->times,      &renderer->lengths,     &renderer->others};
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     conic_memory_release(renderer->context, all[i]->pointer);
+    *all[i] = (conic_kept_memory){NULL, 0};
+  }
+}
+
+void conic_renderer_destroy(conic_renderer *renderer) {
+  if (!renderer)
+    return;
+  conic_renderer_give_back(renderer);
   if (renderer->backend)
     renderer->backend->destroy(renderer->backend);
   conic_triangle_frame_release(renderer->context, &renderer->triangles);
@@ -154,11 +163,12 @@ static conic_status plan_tiles(frame *f, int tile) {
   f->bins.tile = tile;
   f->bins.tile_bits = __builtin_ctz((unsigned)tile);
   f->bins.by_pixels = f->finish.options->passes == 1 && !f->hiding;
-  f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
-  f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
+  f->bins.n_tiles_x = (f->part.window.x_end - f->part.window.x_begin + tile - 1) / tile;
+  f->bins.n_tiles_y = (f->part.window.y_end - f->part.window.y_begin + tile - 1) / tile;
   f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;
   f->times = conic_keep_room(context, &renderer->times, n_threads, sizeof *f->times);
-  if (!f->times)
+  f->others = conic_keep_room(context, &renderer->others, n_threads, sizeof *f->others);
+  if (!f->times || !f->others)
     return CONIC_ERROR_MEMORY;
   memset(f->times, 0, n_threads * sizeof *f->times);
   return CONIC_OK;
@@ -169,12 +179,18 @@ static void project_task(void *data, size_t i_chunk, int i_thread) {
   conic_sorter sorter;
   size_t n = f->splats->count, begin = i_chunk * f->projected.chunk_size, end = begin + f->projected.chunk_size;
   uint64_t start = conic_ticks();
+  end = end < n ? end : n;
   conic_sorter_place(&f->bins, f->projected.chunk_size, f->splats->n_clips > 0, f->projected.rays,
                      f->sorters + (size_t)i_thread * f->sorter_bytes, &sorter);
   sorter.chunk.first_ray = begin;
-  f->kernels.project.project(&f->view, f->splats, begin, end < n ? end : n, &sorter.projected, &sorter.chunk);
+  f->kernels.project.project(&f->view, f->splats, begin, end, &sorter.projected, &sorter.chunk);
   if (sorter.projected.clips)
     conic_clip_chunk(&f->view, f->splats, begin, &sorter.projected, &sorter.chunk);
+  if (f->part.is_counted)
+    conic_chunk_count_others(&f->view, f->splats, begin, end, f->part.is_counted, &sorter.projected, &sorter.chunk,
+                             &f->others[i_thread]);
+  if (f->is_part)
+    conic_chunk_keep_window(&f->part.window, &sorter.projected, &sorter.chunk);
   uint64_t projected = conic_ticks();
   conic_bins_sort(&f->bins, &f->kernels.bins, &sorter, i_chunk, &f->projected);
   f->times[i_thread].setup += projected - start;
@@ -186,10 +202,13 @@ static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *
   tile->view = &f->view;
   tile->projected = &f->projected;
   tile->n_references = bins->length[i_tile];
-  tile->x_begin = (int)(i_tile % (size_t)bins->n_tiles_x) * bins->tile;
-  tile->y_begin = (int)(i_tile / (size_t)bins->n_tiles_x) * bins->tile;
-  tile->x_end = tile->x_begin + bins->tile < f->view.width ? tile->x_begin + bins->tile : f->view.width;
-  tile->y_end = tile->y_begin + bins->tile < f->view.height ? tile->y_begin + bins->tile : f->view.height;
+  const conic_window *window = &f->part.window;
+  tile->x_begin = window->x_begin + (int)(i_tile % (size_t)bins->n_tiles_x) * bins->tile;
+  tile->y_begin = window->y_begin + (int)(i_tile / (size_t)bins->n_tiles_x) * bins->tile;
+  tile->x_end = tile->x_begin + bins->tile < window->x_end ? tile->x_begin + bins->tile : window->x_end;
+  tile->y_end = tile->y_begin + bins->tile < window->y_end ? tile->y_begin + bins->tile : window->y_end;
+  tile->first_column = f->part.first_column;
+  tile->first_row = f->part.first_row;
   tile->keeps_indices = f->image && (f->image->planes[CONIC_PLANE_COUNT] || f->image->planes[CONIC_PLANE_ID]);
   tile->hiding = f->hiding;
   conic_tile_place_scratch(tile, f->scratch + (size_t)i_thread * f->scratch_bytes);
@@ -206,12 +225,6 @@ static void report_progress(frame *f) {
     atomic_store(&f->is_cancelled, 1);
 }
 
-static int is_in_window(const frame *f, size_t i_tile) {
-  int x = (int)(i_tile % (size_t)f->bins.n_tiles_x) * f->bins.tile;
-  int y = (int)(i_tile / (size_t)f->bins.n_tiles_x) * f->bins.tile;
-  return x >= f->window.x_begin && x < f->window.x_end && y >= f->window.y_begin && y < f->window.y_end;
-}
-
 static void add_ticks(const conic_stage_ticks *ticks, conic_stage_ticks *sum) {
   sum->setup += ticks->setup;
   sum->sort += ticks->sort;
@@ -224,7 +237,7 @@ static void add_ticks(const conic_stage_ticks *ticks, conic_stage_ticks *sum) {
 static void tile_task(void *data, size_t i_tile, int i_thread) {
   frame *f = data;
   f->n_fragments[i_tile] = f->n_covered[i_tile] = 0;
-  if (!is_in_window(f, i_tile) || atomic_load(&f->is_cancelled))
+  if (atomic_load(&f->is_cancelled))
     return;
   if (i_thread == 0)
     report_progress(f);
@@ -249,6 +262,7 @@ static conic_status project_and_sort(frame *f) {
   for (;;) {
     atomic_store(&bins->n_used, 0);
     atomic_store(&bins->n_records, 0);
+    memset(f->others, 0, (size_t)conic_context_threads(context) * sizeof *f->others);
     conic_parallel_for(context, f->projected.n_chunks, project_task, f);
     size_t n_used = atomic_load(&bins->n_used);
     if (n_used <= bins->n_room)
@@ -279,8 +293,23 @@ static void share_out(const frame *f, double chunks_ms, double tiles_ms, conic_r
   ms->resolve = (double)sum.resolve * tiles_scale;
 }
 
+/* Takes out what another part counts. */
+static void take_out_others(const frame *f, conic_method method, conic_render_statistics *statistics) {
+  conic_render_statistics others = {.splats_in = 0};
+  conic_chunks_count(f->others, (size_t)conic_context_threads(f->renderer->context), method, &others);
+  statistics->splats_culled -= others.splats_culled;
+  statistics->splats_drawn -= others.splats_drawn;
+  statistics->splats_skipped -= others.splats_skipped;
+  statistics->splats_fallback -= others.splats_fallback;
+  statistics->splats_by_laplace -= others.splats_by_laplace;
+  for (int i = 0; i < CONIC_N_METHODS; i++)
+    statistics->splats_by_method[i] -= others.splats_by_method[i];
+}
+
 static void count_up(const frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
   conic_chunks_count(f->projected.chunks, f->projected.n_chunks, options->method, statistics);
+  if (f->part.is_counted)
+    take_out_others(f, options->method, statistics);
   for (size_t i = 0; i < f->bins.n_tiles; i++) {
     statistics->fragments += f->n_fragments[i];
     statistics->pixels_covered += f->n_covered[i];
@@ -410,14 +439,14 @@ static conic_status render(frame *f, const conic_whole_drawing *drawing, const c
   return CONIC_OK;
 }
 
-static conic_window whole_of(const conic_camera *camera) {
-  return (conic_window){0, camera->width, 0, camera->height};
+static conic_part whole_of(const conic_camera *camera) {
+  return (conic_part){.window = {0, camera->width, 0, camera->height}};
 }
 
 conic_status conic_render_whole(conic_renderer *renderer, const conic_whole_drawing *drawing,
                                 const conic_camera *camera, const conic_render_options *options, conic_image *image,
                                 conic_render_statistics *statistics) {
-  frame f = {.renderer = renderer, .splats = drawing->splats, .image = image, .window = whole_of(camera)};
+  frame f = {.renderer = renderer, .splats = drawing->splats, .image = image, .part = whole_of(camera)};
   return render(&f, drawing, camera, options, statistics);
 }
 
@@ -438,14 +467,14 @@ static conic_status check_part(const conic_renderer *renderer) {
   return CONIC_OK;
 }
 
-conic_status conic_render_window(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
-                                 const conic_render_options *options, const conic_window *window, conic_image *image,
-                                 conic_render_statistics *statistics) {
+conic_status conic_render_part(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                               const conic_render_options *options, const conic_part *part, conic_image *image,
+                               conic_render_statistics *statistics) {
   const conic_whole_drawing alone = {.splats = splats};
   conic_status status = check_part(renderer);
   if (status != CONIC_OK)
     return status;
-  frame f = {.renderer = renderer, .splats = splats, .image = image, .window = *window};
+  frame f = {.renderer = renderer, .splats = splats, .image = image, .part = *part, .is_part = 1};
   return render(&f, &alone, camera, options, statistics);
 }
 
@@ -455,7 +484,7 @@ conic_status conic_render_hiding(conic_renderer *renderer, const conic_splats *s
   conic_status status = check_part(renderer);
   if (status != CONIC_OK)
     return status;
-  frame f = {.renderer = renderer, .splats = splats, .window = whole_of(camera)};
+  frame f = {.renderer = renderer, .splats = splats, .part = whole_of(camera)};
   f.hiding = hiding;
   return render(&f, &alone, camera, options, NULL);
 }

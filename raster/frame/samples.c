@@ -23,8 +23,8 @@ enum { COUNTED_TOGETHER = 1 << 14 };
 typedef struct reduction {
   const conic_image *fine;
   conic_image *image;
-  size_t first_row; /* of the image, where the fine band begins */
-  size_t samples;   /* N */
+  size_t first_column, first_row; /* of the image, where the fine picture begins */
+  size_t samples;                 /* N */
 } reduction;
 
 /* The fine picture's pixel k of an image's pixel: its first is `corner`. */
@@ -34,7 +34,8 @@ static size_t fine_at(const reduction *r, size_t corner, size_t k) {
 
 /* Of a row of the image's pixels. */
 static inline void take_means(const reduction *r, conic_plane plane, size_t n_channels, size_t corner, size_t at) {
-  size_t width = (size_t)r->image->width, samples = r->samples, row_floats = n_channels * (size_t)r->fine->width;
+  size_t samples = r->samples, width = (size_t)r->fine->width / samples,
+         row_floats = n_channels * (size_t)r->fine->width;
   const float *fine = (const float *)r->fine->planes[plane] + n_channels * corner;
   float *to = (float *)r->image->planes[plane] + n_channels * at;
   double n = (double)(samples * samples);
@@ -98,9 +99,10 @@ static void take_central(const reduction *r, conic_plane plane, size_t corner, s
 static void reduce_row(void *data, size_t i_row, int i_thread) {
   const reduction *r = data;
   void *const *planes = r->image->planes;
-  size_t width = (size_t)r->image->width;
+  size_t width = (size_t)r->fine->width / r->samples;
   (void)i_thread;
-  size_t first_corner = i_row * (size_t)r->fine->width * r->samples, first = (r->first_row + i_row) * width;
+  size_t first_corner = i_row * (size_t)r->fine->width * r->samples;
+  size_t first = (r->first_row + i_row) * (size_t)r->image->width + r->first_column;
   if (planes[CONIC_PLANE_RGBA])
     take_means(r, CONIC_PLANE_RGBA, 4, first_corner, first);
   if (planes[CONIC_PLANE_ALBEDO])
@@ -120,8 +122,7 @@ static void reduce_row(void *data, size_t i_row, int i_thread) {
   }
 }
 
-/* The camera of `n_rows` rows of the picture, as the fine picture sees them. */
-static conic_camera fine_camera(const conic_camera *camera, int samples, int first_row, int n_rows) {
+conic_camera conic_samples_camera(const conic_camera *camera, int samples, int first_row, int n_rows) {
   conic_camera fine = *camera;
   double n = (double)samples;
   fine.width = samples * camera->width;
@@ -172,9 +173,8 @@ static void count_splats(void *data, size_t i_item, int i_thread) {
   }
 }
 
-static conic_status count_whole(conic_context *context, const conic_whole_drawing *drawing, const conic_camera *camera,
-                                const conic_render_options *options, conic_render_statistics *s) {
-  const conic_splats *splats = drawing->splats;
+conic_status conic_samples_count(conic_context *context, const conic_splats *splats, const conic_camera *camera,
+                                 const conic_render_options *options, conic_render_statistics *statistics) {
   census c = {.splats = splats};
   size_t n_tasks = (splats->count + COUNTED_TOGETHER - 1) / COUNTED_TOGETHER;
   conic_status status =
@@ -186,14 +186,21 @@ static conic_status count_whole(conic_context *context, const conic_whole_drawin
     return CONIC_ERROR_MEMORY;
   status = conic_parallel_told(context, "render", 1.0, 1.0, n_tasks, count_splats, &c);
   if (status == CONIC_OK)
-    conic_chunks_count(c.chunks, n_tasks, options->method, s);
+    conic_chunks_count(c.chunks, n_tasks, options->method, statistics);
   conic_memory_release(context, c.chunks);
-  return status == CONIC_OK ? conic_whole_drawing_count(context, drawing, &c.view, camera, options->isa, s) : status;
+  return status;
 }
 
-/* The planes of the fine picture, which the renderer fills whole: unlike conic_image_allocate's they are not cleared,
- * for at this size that is a large part of a frame. */
-static conic_status allocate_fine(conic_context *context, int width, int height, unsigned planes, conic_image *fine) {
+static conic_status count_whole(conic_context *context, const conic_whole_drawing *drawing, const conic_camera *camera,
+                                const conic_render_options *options, conic_render_statistics *s) {
+  conic_view view;
+  conic_status status = conic_samples_count(context, drawing->splats, camera, options, s);
+  if (status == CONIC_OK)
+    status = conic_view_init(context, drawing->splats, camera, options, options->near_z, options->splat_length, &view);
+  return status == CONIC_OK ? conic_whole_drawing_count(context, drawing, &view, camera, options->isa, s) : status;
+}
+
+conic_status conic_samples_allocate(conic_context *context, int width, int height, unsigned planes, conic_image *fine) {
   memset(fine, 0, sizeof *fine);
   fine->width = width;
   fine->height = height;
@@ -211,8 +218,8 @@ static conic_status allocate_fine(conic_context *context, int width, int height,
   return CONIC_OK;
 }
 
-/* Rows of the picture in a band; one sample a pixel is drawn at once. */
-static int band_rows(const conic_camera *camera, int samples) {
+/* One sample a pixel is drawn at once. */
+int conic_samples_band_rows(const conic_camera *camera, int samples) {
   size_t n = BAND_PIXELS / ((size_t)camera->width * (size_t)samples * (size_t)samples);
   return n < 1 ? 1 : samples > 1 && n < (size_t)camera->height ? (int)n : camera->height;
 }
@@ -243,30 +250,39 @@ static conic_status draw_bands(conic_context *context, conic_renderer *renderer,
                                const conic_camera *camera, const conic_render_options *options, int samples,
                                unsigned planes, const band_taker *taker, conic_render_statistics *sum) {
   conic_image fine_image;
-  int rows = band_rows(camera, samples);
-  conic_status status = allocate_fine(context, samples * camera->width, samples * rows, planes, &fine_image);
+  int rows = conic_samples_band_rows(camera, samples);
+  conic_status status = conic_samples_allocate(context, samples * camera->width, samples * rows, planes, &fine_image);
   if (status != CONIC_OK)
     return status;
   for (int y = 0; y < camera->height && status == CONIC_OK; y += rows) {
     int n_rows = camera->height - y < rows ? camera->height - y : rows;
-    conic_camera fine = fine_camera(camera, samples, y, n_rows);
+    conic_camera fine = conic_samples_camera(camera, samples, y, n_rows);
     status = draw_band(renderer, drawing, &fine, options, &fine_image, taker, y, sum);
   }
   conic_image_release(context, &fine_image);
   return status;
 }
 
+void conic_samples_reduce(conic_context *context, const conic_image *fine, int samples, int first_column, int first_row,
+                          conic_image *image) {
+  reduction r = {.fine = fine,
+                 .image = image,
+                 .first_column = (size_t)first_column,
+                 .first_row = (size_t)first_row,
+                 .samples = (size_t)samples};
+  conic_parallel_for(context, (size_t)(fine->height / samples), reduce_row, &r);
+}
+
 /* What makes a picture of the bands. */
 typedef struct reducer {
   conic_context *context;
-  reduction reduction;
+  conic_image *image;
+  int samples;
 } reducer;
 
 static conic_status reduce_band(void *cookie, conic_image *fine, int first_row) {
-  reducer *r = cookie;
-  r->reduction.fine = fine;
-  r->reduction.first_row = (size_t)first_row;
-  conic_parallel_for(r->context, (size_t)fine->height / r->reduction.samples, reduce_row, &r->reduction);
+  const reducer *r = cookie;
+  conic_samples_reduce(r->context, fine, r->samples, 0, first_row, r->image);
   return CONIC_OK;
 }
 
@@ -276,15 +292,15 @@ static conic_status render_samples(conic_context *context, conic_renderer *rende
   conic_render_statistics sum;
   double start = conic_seconds_now();
   conic_render_options same = *options;
-  reducer r = {context, {.image = image, .samples = (size_t)samples}};
+  reducer r = {context, image, samples};
   const band_taker taker = {reduce_band, &r};
   conic_status status = conic_whole_drawing_scale(context, drawing, &same);
   memset(&sum, 0, sizeof sum);
   if (status == CONIC_OK)
     status = draw_bands(context, renderer, drawing, camera, &same, samples,
                         conic_image_planes(image) & CONIC_DRAWN_PLANES, &taker, &sum);
-  if (status == CONIC_OK && band_rows(camera, samples) < camera->height) {
-    conic_camera whole = fine_camera(camera, samples, 0, camera->height);
+  if (status == CONIC_OK && conic_samples_band_rows(camera, samples) < camera->height) {
+    conic_camera whole = conic_samples_camera(camera, samples, 0, camera->height);
     status = count_whole(context, drawing, &whole, &same, &sum);
   }
   sum.ms.frame = 1e3 * (conic_seconds_now() - start);

@@ -15,4 +15,22 @@ conic_status conic_render_bands(conic_context *context, conic_renderer *renderer
                                 const conic_camera *camera, const conic_render_options *given, int samples,
                                 unsigned planes, conic_samples_receiver *receive, void *cookie);
 
+/* For who draws the fine picture in parts. The bits of a band's rows depend on where it begins: so many of the
+ * picture's rows are a band, and this camera sees `n_rows` of them. */
+int conic_samples_band_rows(const conic_camera *camera, int samples);
+conic_camera conic_samples_camera(const conic_camera *camera, int samples, int first_row, int n_rows);
+
+/* Makes the image's pixels, from those on, of the samples that `fine` has. */
+void conic_samples_reduce(conic_context *context, const conic_image *fine, int samples, int first_column, int first_row,
+                          conic_image *image);
+
+/* What becomes of the splats in a picture, without drawing it; near_z and splat_length are given. Errors: MEMORY,
+ * CANCELLED. */
+conic_status conic_samples_count(conic_context *context, const conic_splats *splats, const conic_camera *camera,
+                                 const conic_render_options *options, conic_render_statistics *statistics);
+
+/* The planes of a fine picture, which the renderer fills whole: unlike conic_image_allocate's they are not cleared, for
+ * at this size that is a large part of a frame. Errors: MEMORY. */
+conic_status conic_samples_allocate(conic_context *context, int width, int height, unsigned planes, conic_image *fine);
+
 #endif

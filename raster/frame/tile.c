@@ -138,6 +138,8 @@ void conic_tile_draw(conic_tile *tile, const conic_raster_kernels *kernels, cons
                      .keeps_indices = tile->keeps_indices,
                      .x = tile->x_begin,
                      .y = tile->y_begin,
+                     .first_column = tile->first_column,
+                     .first_row = tile->first_row,
                      .n_rows = (tile->y_end - tile->y_begin + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE,
                      .entries = tile->scratch.entries,
                      .n_entries = tile->n_references,

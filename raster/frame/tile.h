@@ -22,7 +22,8 @@ typedef struct conic_tile {
   const conic_view *view;
   const conic_projected *projected;
   size_t n_references;
-  int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
+  int x_begin, x_end, y_begin, y_end; /* its pixels of the picture */
+  int first_column, first_row;        /* of the picture, where the image begins */
   int keeps_indices;                  /* the image wants counts or ids */
   float *hiding;                      /* not null: no picture is drawn, but this raised (raster/view/part.h) */
   conic_tile_scratch scratch;

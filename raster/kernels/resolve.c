@@ -15,9 +15,10 @@ static unsigned resolve_pixel(const conic_band *band, const conic_finish *finish
                               int block, int l, conic_image *image) {
   conic_finished_pixel pixel;
   int x = band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, y = band->y + l % CONIC_BLOCK_EDGE;
-  size_t at = (size_t)y * (size_t)image->width + (size_t)x;
+  int column = x - band->first_column, row = y - band->first_row;
+  size_t at = (size_t)row * (size_t)image->width + (size_t)column;
   float weight = 0.0f, z = 0.0f;
-  if (x >= image->width || y >= image->height)
+  if (column >= image->width || row >= image->height)
     return 0;
   unsigned is_covered = !conic_block_is_empty(band, block) && band->sums[block].weight[l] > 0.0f;
   if (is_covered) {
@@ -62,15 +63,12 @@ static void resolve_block_indices(const conic_band *band, int block, int l, size
 void conic_band_resolve_indices(const conic_band *band, conic_image *image) {
   if (!image->planes[CONIC_PLANE_COUNT] && !image->planes[CONIC_PLANE_ID])
     return;
-  int y_end = band->y + CONIC_BLOCK_EDGE < image->height ? band->y + CONIC_BLOCK_EDGE : image->height;
-  int x_end = band->x + band->n_blocks * CONIC_BLOCK_EDGE;
-  for (int y = band->y; y < y_end; y++)
-    for (int x = band->x; x < x_end && x < image->width; x++) {
-      int column = x - band->x;
-      resolve_block_indices(band, column / CONIC_BLOCK_EDGE,
-                            column % CONIC_BLOCK_EDGE * CONIC_BLOCK_EDGE + (y - band->y),
-                            (size_t)y * (size_t)image->width + (size_t)x, image);
-    }
+  int x = band->x - band->first_column, y = band->y - band->first_row;
+  int n_columns = band->n_blocks * CONIC_BLOCK_EDGE;
+  for (int row = 0; row < CONIC_BLOCK_EDGE && y + row < image->height; row++)
+    for (int column = 0; column < n_columns && x + column < image->width; column++)
+      resolve_block_indices(band, column / CONIC_BLOCK_EDGE, column % CONIC_BLOCK_EDGE * CONIC_BLOCK_EDGE + row,
+                            (size_t)(y + row) * (size_t)image->width + (size_t)(x + column), image);
 }
 
 void conic_band_resolve(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, conic_image *image) {

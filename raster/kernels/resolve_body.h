@@ -129,10 +129,11 @@ CONIC_INLINE void resolve_part(conic_band *band, int block, int part, const coni
 CONIC_INLINE void store_rows(const conic_band *band, const float *rows, size_t stride, conic_plane plane,
                              size_t n_channels, conic_image *image) {
   float *to = image->planes[plane];
-  int x_end = band->x + band->n_blocks * CONIC_BLOCK_EDGE;
-  size_t n_columns = (size_t)((x_end < image->width ? x_end : image->width) - band->x);
-  for (int row = 0; to && row < CONIC_BLOCK_EDGE && band->y + row < image->height; row++) {
-    size_t at = (size_t)(band->y + row) * (size_t)image->width + (size_t)band->x;
+  int x = band->x - band->first_column, y = band->y - band->first_row;
+  int x_end = x + band->n_blocks * CONIC_BLOCK_EDGE;
+  size_t n_columns = (size_t)((x_end < image->width ? x_end : image->width) - x);
+  for (int row = 0; to && row < CONIC_BLOCK_EDGE && y + row < image->height; row++) {
+    size_t at = (size_t)(y + row) * (size_t)image->width + (size_t)x;
     lanes_stream_row(to + at * n_channels, rows + (size_t)row * stride, n_columns * n_channels);
   }
 }

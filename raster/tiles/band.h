@@ -119,7 +119,8 @@ typedef struct conic_band {
   const conic_projected *projected;
   const uint32_t *indices, *words; /* footprints whose boxes meet the band, in file order */
   size_t n;
-  int x, y, n_blocks;              /* its first pixel in the image */
+  int x, y, n_blocks;              /* its first pixel in the picture */
+  int first_column, first_row;     /* of the picture, where the image begins */
   const conic_tile_rays *rays;     /* its tile's */
   int keeps_indices;               /* the image wants counts or ids */
   int has_special;                 /* visibility has met rays or clip lines */

@@ -5,7 +5,7 @@
 
 #include "conic/render.h"
 
-/* Pixels from begin to before end. Both are multiples of the tile, or the picture's ends. */
+/* Pixels from begin to before end. */
 typedef struct conic_window {
   int x_begin, x_end, y_begin, y_end;
 } conic_window;
@@ -13,18 +13,30 @@ typedef struct conic_window {
 /* Whether the renderer draws parts: the processor does, other devices do not. */
 int conic_renderer_has_parts(const conic_renderer *renderer);
 
-/* Draws the window of the picture that conic_render would draw, and leaves all around it alone: for pictures of more
+/* Gives back the memory that is kept from picture to picture. */
+void conic_renderer_give_back(conic_renderer *renderer);
+
+/* Windows begin at multiples of so many pixels, and end there or where the picture ends. */
+enum { CONIC_WINDOW_STEP = 8 };
+
+typedef struct conic_part {
+  conic_window window;
+  int first_column, first_row;     /* of the picture, where the image begins: it need hold no more than the window */
+  const unsigned char *is_counted; /* a splat: 0 where another part counts it; null: all are counted */
+} conic_part;
+
+/* Draws the part of the picture that conic_render would draw, and leaves all around it alone: for pictures of more
  * splats than memory holds, of which each window is given those that may meet it, in their order. Of `statistics`,
- * fragments and pixels are the window's, all else the splats'. near_z and, with an automatic ε, splat_length have to be
- * given in the options, for no window knows the scene. Errors: as conic_render; UNSUPPORTED on another device than the
- * processor. */
-conic_status conic_render_window(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
-                                 const conic_render_options *options, const conic_window *window, conic_image *image,
-                                 conic_render_statistics *statistics);
+ * fragments and pixels are the window's, all else those of the splats that are counted, in the whole picture. near_z
+ * and, with an automatic ε, splat_length have to be given in the options, for no window knows the scene. Errors: as
+ * conic_render; UNSUPPORTED on another device than the processor. */
+conic_status conic_render_part(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                               const conic_render_options *options, const conic_part *part, conic_image *image,
+                               conic_render_statistics *statistics);
 
 /* Raises hiding[y·width + x] to the inverse depth that the splats hide all beyond of at that pixel: the greatest
  * s_k·min(iz_k, iz_plane,k) of docs/reference/picture.md. No splat whose iz and iz_plane stay below it there is visible
- * in a picture that these splats are part of, nor hides, nor is the nearest. Errors: as conic_render_window. */
+ * in a picture that these splats are part of, nor hides, nor is the nearest. Errors: as conic_render_part. */
 conic_status conic_render_hiding(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
                                  const conic_render_options *options, float *hiding);
 

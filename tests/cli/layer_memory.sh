@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# conic layer in little memory, conic layer --append and conic merge: what the command line promises.
+# conic layer and conic render in little memory, conic layer --append and conic merge: what the command line promises.
 set -uo pipefail
 # shellcheck source=tests/support/program.bash
 source "$1/tests/support/program.bash"
@@ -27,6 +27,20 @@ for mib in 16 32; do
   if ! grep -qa '__[at]san_init' "$conic"; then
     awk -v peak="$(value peak_rss_bytes small.json)" -v mib=$mib 'BEGIN { exit !(peak <= 1.1 * mib * 1048576) }' ||
       fail "over $mib MiB: $(value peak_rss_bytes small.json) bytes"
+  fi
+done
+
+# So it is by drawing, which reads every cloud once.
+for samples in 1 2; do
+  run 0 render gyroid.lpc --size 300x300 --samples $samples --occlusion off --threads 2 -o large.png
+  run 0 render gyroid.lpc --size 300x300 --samples $samples --occlusion off --threads 2 --memory 28 -o small.png \
+    --json small.json
+  cmp -s large.png small.png || fail "memory changes the picture of $samples samples"
+  n_read=$(value clouds_read small.json)
+  [[ $(value bands small.json) -gt 1 && $n_read -le $(value clouds small.json) ]] || fail "clouds are read twice: $n_read"
+  if ! grep -qa '__[at]san_init' "$conic"; then
+    awk -v peak="$(value peak_rss_bytes small.json)" 'BEGIN { exit !(peak <= 1.1 * 28 * 1048576) }' ||
+      fail "over 28 MiB: $(value peak_rss_bytes small.json) bytes"
   fi
 done
 

@@ -4,221 +4,60 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
-#include "raster/project/projected.h"
-#include "raster/view/method.h"
+#include "lod/layers/draw/layers_spill.h"
+#include "raster/frame/samples.h"
 #include "raster/view/part.h"
 
 typedef struct bands {
   const conic_layers_band_drawing *d;
-  uint32_t *chosen; /* places that may meet the window */
-  size_t n_chosen;
-  double most;                 /* splats at a time */
-  double excess;               /* how many there were in the last window, over how many were expected */
-  conic_render_options render; /* with tiles that are small enough for a window of one */
+  conic_render_options render;
+  uint32_t *chosen;     /* all places */
+  size_t most;          /* splats at a time */
+  double n_expected;    /* splats of all places */
+  uint64_t block_bytes; /* of what is put aside and not yet written */
+  uint64_t pixel_bytes;
+  conic_camera fine; /* of the picture of samples */
+  conic_layers_view view;
+  conic_layers_windows windows;
+  conic_layers_spill spill;
+  conic_window window;       /* that is drawn, whole or in parts */
+  int band_begin;            /* the first row of its band, */
+  conic_camera band_camera;  /* whose camera this is */
+  conic_image pixels;        /* the window's; with one sample a pixel, the whole image */
+  unsigned char *is_counted; /* a splat of the set */
+  size_t counted_room;
+  uint64_t n_chosen;              /* splats that were put aside */
+  conic_render_statistics counts; /* where the picture has several bands: of the splats */
+  conic_render_statistics *sum;
 } bands;
 
-/* How many splats a place gives, about: of a grazing one few. */
-static uint64_t place_weight(const bands *b, const conic_layers_place *place) {
-  uint64_t n = b->d->layers->entries[place->node].n_drawn;
-  return place->state == CONIC_PLACE_SHOWN ? n : place->state == CONIC_PLACE_GRAZING ? n / 16 + 1 : 0;
-}
-
-/* How much of a place's extent lies between begin and end. */
-static double share_of(int place_begin, int place_end, int begin, int end) {
-  int from = place_begin > begin ? place_begin : begin, to = place_end < end ? place_end : end;
-  return from < to ? (double)(to - from) / (double)(place_end - place_begin) : 0.0;
-}
-
-/* How many of a place's splats are in a window, if they are spread evenly over its pixels. */
-static double splats_in(const bands *b, const conic_layers_place *place, const conic_window *window) {
-  const conic_window *pixels = &place->sight.pixels;
-  double share = share_of(pixels->x_begin, pixels->x_end, window->x_begin, window->x_end);
-  if (place->state == CONIC_PLACE_HIDDEN || share == 0.0)
-    return 0.0;
-  share *= share_of(pixels->y_begin, pixels->y_end, window->y_begin, window->y_end);
-  return share * (double)place_weight(b, place);
-}
-
-static double expect_splats(const bands *b, const conic_window *window) {
-  double n = 0.0;
-  for (size_t i = 0; i < b->d->cut->n; i++)
-    n += splats_in(b, &b->d->cut->places[i], window);
-  return n * b->excess;
-}
-
-/* Shortens the window, from its far end along an axis, to as many tiles as there is memory for, at least one. */
-static void shorten(bands *b, conic_window *window, int is_along_x) {
-  int begin = is_along_x ? window->x_begin : window->y_begin, *end = is_along_x ? &window->x_end : &window->y_end;
-  int whole = *end;
-  double n = 0.0;
-  for (*end = begin; *end < whole;) {
-    conic_window next = *window;
-    *(is_along_x ? &next.x_begin : &next.y_begin) = *end;
-    int next_end = *end + b->render.tile < whole ? *end + b->render.tile : whole;
-    *(is_along_x ? &next.x_end : &next.y_end) = next_end;
-    n += expect_splats(b, &next);
-    if (*end > begin && n > b->most)
-      return;
-    *end = next_end;
-  }
-}
-
-/* Makes tiles smaller where one of the row that begins the window holds more than there is memory for, if the row is as
- * uneven as most are. */
-static void fit_tiles(bands *b, const conic_window *window) {
-  enum { LEAST_TILE = 8, UNEVEN = 3 };
-  for (; b->render.tile > LEAST_TILE; b->render.tile /= 2) {
-    conic_window row = *window;
-    row.y_end = row.y_begin + b->render.tile < window->y_end ? row.y_begin + b->render.tile : window->y_end;
-    if (UNEVEN * expect_splats(b, &row) * b->render.tile <= b->most * (row.x_end - row.x_begin))
-      return;
-  }
-}
-
-/* The next window after one that was drawn, from left to right and then downwards: whole rows of tiles where there is
- * memory for them, else a part of one row. 0 after the last. */
-static int next_window(bands *b, conic_window *window) {
-  int width = b->d->camera->width, height = b->d->camera->height;
-  if (window->x_end < width) {
-    window->x_begin = window->x_end;
-    window->x_end = width;
-  } else {
-    *window = (conic_window){0, width, window->y_end, height};
-    if (window->y_begin < height) {
-      fit_tiles(b, window);
-      shorten(b, window, 0);
-    }
-  }
-  if (window->y_begin >= height)
-    return 0;
-  if (expect_splats(b, window) > b->most)
-    shorten(b, window, 1);
-  return 1;
-}
-
-static conic_status gather_band(bands *b, const conic_window *window, int is_whole, size_t most) {
+static conic_layers_gathering all_places(const bands *b) {
   const conic_layers_band_drawing *d = b->d;
-  b->n_chosen = 0;
-  for (size_t i = 0; i < d->cut->n; i++)
-    if (splats_in(b, &d->cut->places[i], window) > 0.0)
-      b->chosen[b->n_chosen++] = (uint32_t)i;
-  conic_layers_gathering gathering = {.cut = d->cut,
-                                      .chosen = b->chosen,
-                                      .n_chosen = b->n_chosen,
-                                      .view = d->view,
-                                      .window = is_whole ? NULL : window,
-                                      .cutoff = d->render->kernel.cutoff,
-                                      .camera = d->camera,
-                                      .until_s = HUGE_VAL,
-                                      .most = most};
-  return conic_layers_gather(d->layers, &gathering, d->set);
+  return (conic_layers_gathering){.cut = d->cut,
+                                  .chosen = b->chosen,
+                                  .n_chosen = d->cut->n,
+                                  .view = d->view,
+                                  .cutoff = d->render->kernel.cutoff,
+                                  .camera = d->camera,
+                                  .until_s = HUGE_VAL};
 }
 
 /* Numbers in the set become numbers in the file. */
-static void rename_window(const conic_layers_band_drawing *d, const conic_window *window) {
-  uint32_t *ids = d->image->planes[CONIC_PLANE_ID];
-  for (int y = window->y_begin; ids && y < window->y_end; y++)
-    for (int x = window->x_begin; x < window->x_end; x++) {
-      uint32_t *id = &ids[(size_t)y * (size_t)d->image->width + (size_t)x];
-      *id = *id < d->set->splats.count ? d->set->ids[*id] : *id;
+static void rename_window(const bands *b, const conic_window *window, const conic_window *image_window,
+                          conic_image *image) {
+  const conic_layers_set *set = b->d->set;
+  uint32_t *ids = image->planes[CONIC_PLANE_ID];
+  int x_begin = window->x_begin - image_window->x_begin, x_end = window->x_end - image_window->x_begin;
+  for (int y = window->y_begin - image_window->y_begin; ids && y < window->y_end - image_window->y_begin; y++)
+    for (int x = x_begin; x < x_end; x++) {
+      uint32_t *id = &ids[(size_t)y * (size_t)image->width + (size_t)x];
+      *id = *id < set->splats.count ? set->ids[*id] : *id;
     }
 }
 
-/* Splats that an earlier band has counted already. */
-typedef struct recount {
-  const bands *b;
-  conic_view view;
-  const conic_window *window;
-  conic_chunk *chunks; /* a thread */
-} recount;
-
-/* Whether the window is the first that these pixels meet. */
-static int is_first_window(const conic_window *pixels, const conic_window *window) {
-  return pixels->y_begin >= window->y_begin && pixels->x_begin >= window->x_begin;
-}
-
-static void recount_piece(void *data, size_t i_piece, int i_thread) {
-  recount *r = data;
-  const conic_layers_band_drawing *d = r->b->d;
-  const conic_layers_piece *piece = &d->set->pieces[i_piece];
-  const conic_layers_place *place = &d->cut->places[piece->i_place];
-  const conic_splats *splats = &d->set->splats;
-  conic_chunk *sum = &r->chunks[i_thread];
-  conic_footprint footprint;
-  conic_box box;
-  conic_projected_surface surface;
-  conic_ray ray;
-  conic_projected at = {.footprints = &footprint, .boxes = &box, .surfaces = &surface, .rays = &ray};
-  if (is_first_window(&place->sight.pixels, r->window))
-    return;
-  for (size_t i = 0; i < piece->n_kept; i++) {
-    size_t k = piece->at + i;
-    const float position[3] = {splats->position[0][k], splats->position[1][k], splats->position[2][k]};
-    conic_window pixels = place->sight.pixels;
-    conic_layers_narrow(d->view, position, (double)d->layers->entries[place->node].radius, &pixels);
-    if (is_first_window(&pixels, r->window))
-      continue;
-    conic_chunk one = {.n_drawn = 0};
-    conic_project_one(&r->view, splats, k, &at, &one);
-    sum->n_drawn += one.n_drawn;
-    sum->n_rays += one.n_rays;
-    sum->n_laplaces += one.n_laplaces;
-    sum->n_skipped += one.n_skipped;
-    sum->n_fallback += one.n_fallback;
-  }
-}
-
-static void take_from(const recount *r, int n_threads, conic_method method, conic_render_statistics *band) {
-  conic_render_statistics twice;
-  uint64_t n_rays = 0;
-  memset(&twice, 0, sizeof twice);
-  for (int i = 0; i < n_threads; i++) {
-    twice.splats_drawn += r->chunks[i].n_drawn;
-    twice.splats_skipped += r->chunks[i].n_skipped;
-    twice.splats_fallback += r->chunks[i].n_fallback;
-    n_rays += r->chunks[i].n_rays;
-    twice.splats_by_laplace += r->chunks[i].n_laplaces;
-  }
-  conic_method_count(method, n_rays, &twice);
-  band->splats_drawn -= twice.splats_drawn;
-  band->splats_skipped -= twice.splats_skipped;
-  band->splats_fallback -= twice.splats_fallback;
-  band->splats_by_laplace -= twice.splats_by_laplace;
-  for (int i = 0; i < CONIC_N_METHODS; i++)
-    band->splats_by_method[i] -= twice.splats_by_method[i];
-}
-
-/* Takes out of a band's counts what belongs to an earlier one. */
-static conic_status count_once(const bands *b, const conic_window *window, conic_render_statistics *band) {
-  const conic_layers_band_drawing *d = b->d;
-  conic_context *context = d->layers->context;
-  recount r = {.b = b, .window = window};
-  conic_status status = conic_view_init(context, &d->set->splats, d->camera, d->render, d->render->near_z,
-                                        d->render->splat_length, &r.view);
-  if (status != CONIC_OK)
-    return status;
-  r.chunks = conic_memory_allocate_zeroed(context, (size_t)conic_context_threads(context), sizeof *r.chunks);
-  if (!r.chunks)
-    return CONIC_ERROR_MEMORY;
-  conic_parallel_for(context, d->set->n_pieces, recount_piece, &r);
-  take_from(&r, conic_context_threads(context), d->render->method, band);
-  band->splats_in = 0;
-  for (size_t i = 0; i < d->set->n_pieces; i++)
-    if (is_first_window(&d->cut->places[d->set->pieces[i].i_place].sight.pixels, window)) {
-      band->splats_in += d->set->pieces[i].n_chosen;
-      *d->n_turned += d->set->pieces[i].n_turned;
-    }
-  conic_memory_release(context, r.chunks);
-  return CONIC_OK;
-}
-
-static void add_band(const conic_render_statistics *band, conic_render_statistics *sum) {
+static void add_counts(const conic_render_statistics *part, conic_render_statistics *sum) {
   conic_render_statistics before = *sum;
-  *sum = *band;
-  sum->splats_in += before.splats_in;
-  sum->splats_culled += before.splats_culled;
+  *sum = *part;
   sum->splats_skipped += before.splats_skipped;
   sum->splats_drawn += before.splats_drawn;
   sum->splats_fallback += before.splats_fallback;
@@ -235,93 +74,262 @@ static void add_band(const conic_render_statistics *band, conic_render_statistic
   sum->ms.frame += before.ms.frame;
 }
 
-/* Half the window, in whole tiles. */
-static void halve_window(const bands *b, conic_window *window) {
-  int n_rows = (window->y_end - window->y_begin + b->render.tile - 1) / b->render.tile;
-  int n_columns = (window->x_end - window->x_begin + b->render.tile - 1) / b->render.tile;
-  if (n_rows > 1)
-    window->y_end = window->y_begin + n_rows / 2 * b->render.tile;
-  else if (n_columns > 1)
-    window->x_end = window->x_begin + n_columns / 2 * b->render.tile;
-}
+/* --- at once --- */
 
-/* Windows are chosen by estimates; where there is more in one than there is memory for, a part of it does. */
-static conic_status gather_window(bands *b, conic_window *window) {
-  const conic_layers_set *set = b->d->set;
-  size_t most = (size_t)(b->most + 0.25 * b->most);
-  for (;;) {
-    double expected = expect_splats(b, window) / b->excess;
-    int is_least =
-        window->y_end - window->y_begin <= b->render.tile && window->x_end - window->x_begin <= b->render.tile;
-    conic_status status = gather_band(b, window, 0, is_least ? 0 : most);
-    if (status != CONIC_OK || !set->is_cut_short) {
-      b->excess = expected > 0.0 ? 0.5 * (b->excess + (double)set->splats.count / expected) : b->excess;
-      b->excess = b->excess > 0.25 ? b->excess : 0.25;
-      return status;
-    }
-    b->excess *= 1.5;
-    halve_window(b, window);
-  }
-}
-
-static conic_status draw_window(bands *b, conic_window *window, conic_render_statistics *sum) {
+static conic_status draw_whole(bands *b, conic_render_statistics *statistics) {
   const conic_layers_band_drawing *d = b->d;
-  conic_render_statistics band;
-  conic_status status = gather_window(b, window);
-  if (status == CONIC_OK)
-    status = conic_render_window(d->renderer, &d->set->splats, d->camera, &b->render, window, d->image, &band);
-  if (status == CONIC_OK)
-    status = count_once(b, window, &band);
-  if (status != CONIC_OK)
-    return status;
-  rename_window(d, window);
-  add_band(&band, sum);
-  return CONIC_OK;
-}
-
-static conic_status draw_whole(bands *b, const conic_window *whole, conic_render_statistics *statistics) {
-  const conic_layers_band_drawing *d = b->d;
-  conic_status status = gather_band(b, whole, 1, 0);
+  const conic_window whole = {0, d->camera->width, 0, d->camera->height};
+  conic_layers_gathering gathering = all_places(b);
+  conic_status status = conic_layers_gather(d->layers, &gathering, d->set);
+  *d->n_turned += d->set->n_turned;
   if (status == CONIC_OK && d->is_gathered)
     d->is_gathered(d->data);
   if (status == CONIC_OK)
     status = conic_render_samples(d->layers->context, d->renderer, &d->set->splats, d->camera, d->render, d->samples,
                                   d->image, statistics);
   if (status == CONIC_OK)
-    rename_window(d, whole);
-  for (size_t i = 0; i < d->set->n_pieces; i++)
-    *d->n_turned += d->set->pieces[i].n_turned;
+    rename_window(b, &whole, &whole, d->image);
   return status;
 }
 
-static conic_status draw_all_windows(bands *b, conic_render_statistics *statistics, int *n_bands) {
+/* --- in windows --- */
+
+static int has_several_bands(const bands *b) {
+  return b->windows.band_rows < b->windows.height;
+}
+
+/* Cuts the picture into windows, whose samples take an eighth of what there is for drawing. */
+static conic_status plan_windows(bands *b) {
+  enum { GOOD_BLOCK = 64 }; /* splats, that are written together */
   const conic_layers_band_drawing *d = b->d;
-  const conic_window whole = {0, d->camera->width, 0, d->camera->height};
-  conic_window window = {0, d->camera->width, 0, 0};
-  conic_status status = CONIC_OK;
-  *n_bands = 1;
-  if (expect_splats(b, &whole) <= b->most) /* all lies within it: this is no estimate, but of grazing places */
-    return draw_whole(b, &whole, statistics);
-  if (d->samples > 1)
-    return conic_fail(
-        d->layers->context, CONIC_ERROR_MEMORY,
-        "%s: the picture needs more splats than memory is given; only with 1 sample a pixel is it drawn in windows",
-        d->layers->name);
-  memset(statistics, 0, sizeof *statistics);
-  for (*n_bands = 0; status == CONIC_OK && next_window(b, &window); ++*n_bands)
-    status = draw_window(b, &window, statistics);
-  statistics->splats_culled = statistics->splats_in - statistics->splats_drawn - statistics->splats_skipped;
+  double most_windows = (double)b->block_bytes / (double)(GOOD_BLOCK * conic_layers_spill_bytes(d->layers));
+  double in_window = 1.5 * b->n_expected / most_windows;
+  conic_layers_parting parting = {.layers = d->layers,
+                                  .cut = d->cut,
+                                  .width = b->fine.width,
+                                  .height = b->fine.height,
+                                  .band_rows = d->samples * conic_samples_band_rows(d->camera, d->samples),
+                                  .samples = d->samples,
+                                  .most_pixels = (double)(conic_layers_drawing_bytes(d->layers) / 8 / b->pixel_bytes),
+                                  .most = in_window > 0.9 * (double)b->most ? in_window : 0.9 * (double)b->most,
+                                  .margin_px = b->view.growth_px + 1.0};
+  return conic_layers_windows_plan(&parting, &b->windows);
+}
+
+static conic_status take_part(void *cookie, conic_layers_set *set) {
+  bands *b = cookie;
+  conic_render_statistics counts = {.splats_in = 0};
+  conic_status status = conic_layers_spill_take(&b->spill);
+  if (status != CONIC_OK || !has_several_bands(b))
+    return status;
+  status = conic_samples_count(b->d->layers->context, &set->splats, &b->fine, b->d->render, &counts);
+  add_counts(&counts, &b->counts);
   return status;
+}
+
+static conic_status put_all_aside(bands *b) {
+  const conic_layers_band_drawing *d = b->d;
+  conic_layers_gathering gathering = all_places(b);
+  gathering.receive = take_part;
+  gathering.cookie = b;
+  gathering.most = b->most;
+  b->spill.layers = d->layers;
+  b->spill.cut = d->cut;
+  b->spill.view = &b->view;
+  b->spill.samples = d->samples;
+  b->spill.windows = &b->windows;
+  b->spill.set = d->set;
+  size_t block_count = (size_t)b->block_bytes / (b->windows.n_windows * conic_layers_spill_bytes(d->layers));
+  conic_status status = conic_layers_spill_begin(block_count, &b->spill);
+  if (status == CONIC_OK)
+    status = conic_layers_gather(d->layers, &gathering, d->set);
+  b->n_chosen = d->set->n_chosen;
+  *d->n_turned += d->set->n_turned;
+  return status == CONIC_OK ? conic_layers_spill_close(&b->spill) : status;
+}
+
+/* Each splat is counted in the window that has the first of its pixels. */
+static conic_status choose_counted(bands *b, const conic_window *window) {
+  const conic_layers_set *set = b->d->set;
+  size_t n = set->splats.count;
+  if (n > b->counted_room) {
+    b->counted_room = 0;
+    if (conic_memory_grow(b->d->layers->context, &b->is_counted, 0, set->room, 1) != CONIC_OK)
+      return CONIC_ERROR_MEMORY;
+    b->counted_room = set->room;
+  }
+  for (size_t i = 0; i < n; i++)
+    b->is_counted[i] = !has_several_bands(b) && b->spill.boxes[i].x_begin >= window->x_begin &&
+                       b->spill.boxes[i].y_begin >= window->y_begin;
+  return CONIC_OK;
+}
+
+static conic_status draw_window(bands *b, const conic_window *window) {
+  const conic_layers_band_drawing *d = b->d;
+  conic_render_statistics drawn;
+  conic_part part = {.window = *window};
+  conic_status status = choose_counted(b, window);
+  if (status != CONIC_OK)
+    return status;
+  part.is_counted = b->is_counted;
+  part.first_column = b->window.x_begin;
+  part.first_row = b->window.y_begin - b->band_begin;
+  part.window.y_begin -= b->band_begin;
+  part.window.y_end -= b->band_begin;
+  status = conic_render_part(d->renderer, &d->set->splats, &b->band_camera, &b->render, &part, &b->pixels, &drawn);
+  if (status != CONIC_OK)
+    return status;
+  rename_window(b, window, &b->window, &b->pixels);
+  add_counts(&drawn, b->sum);
+  return CONIC_OK;
+}
+
+/* Half the window, in whole steps, along its longer side. 0 where it is one step wide and high. */
+static int halve_window(conic_window *first, conic_window *second) {
+  int width = first->x_end - first->x_begin, height = first->y_end - first->y_begin;
+  int is_along_x = width >= height, half = (is_along_x ? width : height) / 2;
+  half = (half + CONIC_WINDOW_STEP - 1) / CONIC_WINDOW_STEP * CONIC_WINDOW_STEP;
+  if (half >= (is_along_x ? width : height))
+    return 0;
+  *second = *first;
+  if (is_along_x)
+    first->x_end = second->x_begin = first->x_begin + half;
+  else
+    first->y_end = second->y_begin = first->y_begin + half;
+  return 1;
+}
+
+/* Windows are planned by estimates: one with more than there is memory for is drawn in parts, as small as it takes. */
+static conic_status draw_planned(bands *b, size_t i_window, int *n_bands) {
+  enum { MOST_OPEN = 64 };
+  conic_window open[MOST_OPEN];
+  int n_open = 1;
+  conic_status status = CONIC_OK;
+  open[0] = b->windows.windows[i_window];
+  while (n_open > 0 && status == CONIC_OK) {
+    conic_window window = open[n_open - 1], first = window, second;
+    int has_halves = n_open < MOST_OPEN && halve_window(&first, &second), is_too_much;
+    status = conic_layers_spill_load(&b->spill, i_window, &window, has_halves ? b->most : 0, &is_too_much);
+    if (status != CONIC_OK)
+      return status;
+    if (is_too_much) {
+      open[n_open - 1] = second;
+      open[n_open++] = first;
+      continue;
+    }
+    status = draw_window(b, &window);
+    n_open--;
+    ++*n_bands;
+  }
+  return status;
+}
+
+/* What the next window is drawn into. */
+static conic_status begin_window(bands *b, const conic_window *window) {
+  const conic_layers_band_drawing *d = b->d;
+  int samples = d->samples, band_rows = b->windows.band_rows;
+  b->band_begin = window->y_begin / band_rows * band_rows;
+  int band_end = b->band_begin + band_rows < b->fine.height ? b->band_begin + band_rows : b->fine.height;
+  b->band_camera =
+      conic_samples_camera(d->camera, samples, b->band_begin / samples, (band_end - b->band_begin) / samples);
+  b->window = samples > 1 ? *window : (conic_window){0, b->fine.width, 0, b->fine.height};
+  if (samples > 1)
+    return conic_samples_allocate(d->layers->context, window->x_end - window->x_begin, window->y_end - window->y_begin,
+                                  conic_image_planes(d->image) & CONIC_DRAWN_PLANES, &b->pixels);
+  b->pixels = *d->image;
+  return CONIC_OK;
+}
+
+static conic_status draw_all_windows(bands *b, int *n_bands) {
+  const conic_layers_band_drawing *d = b->d;
+  conic_context *context = d->layers->context;
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < b->windows.n_windows && status == CONIC_OK; i++) {
+    status = begin_window(b, &b->windows.windows[i]);
+    if (status == CONIC_OK)
+      status = draw_planned(b, i, n_bands);
+    if (status == CONIC_OK && d->samples > 1)
+      conic_samples_reduce(context, &b->pixels, d->samples, b->window.x_begin / d->samples,
+                           b->window.y_begin / d->samples, d->image);
+    if (d->samples > 1)
+      conic_image_release(context, &b->pixels);
+  }
+  return status;
+}
+
+static void count_windows(const bands *b, conic_render_statistics *statistics) {
+  if (has_several_bands(b)) {
+    conic_render_statistics drawn = *statistics;
+    add_counts(&b->counts, &drawn);
+    statistics->splats_skipped = drawn.splats_skipped;
+    statistics->splats_drawn = drawn.splats_drawn;
+    statistics->splats_fallback = drawn.splats_fallback;
+    statistics->splats_by_laplace = drawn.splats_by_laplace;
+    memcpy(statistics->splats_by_method, drawn.splats_by_method, sizeof drawn.splats_by_method);
+  }
+  statistics->splats_in = b->n_chosen;
+  statistics->splats_culled = statistics->splats_in - statistics->splats_drawn - statistics->splats_skipped;
+}
+
+static conic_status draw_windows(bands *b, conic_render_statistics *statistics, int *n_bands) {
+  const conic_layers_band_drawing *d = b->d;
+  *n_bands = 0;
+  memset(statistics, 0, sizeof *statistics);
+  b->sum = statistics;
+  b->render = *d->render;
+  conic_renderer_give_back(d->renderer); /* which putting aside takes in its place */
+  conic_layers_view_init(&d->layers->header, &b->fine, d->render, d->render->near_z, &b->view);
+  conic_status status = plan_windows(b);
+  if (status == CONIC_OK)
+    status = put_all_aside(b);
+  if (status == CONIC_OK && d->is_gathered)
+    d->is_gathered(d->data);
+  if (status == CONIC_OK)
+    status = draw_all_windows(b, n_bands);
+  if (status == CONIC_OK)
+    count_windows(b, statistics);
+  conic_layers_spill_end(&b->spill);
+  conic_layers_set_release(d->layers->context, d->set); /* so that there is room for what is made of the picture */
+  conic_renderer_give_back(d->renderer);
+  conic_layers_windows_release(d->layers->context, &b->windows);
+  conic_memory_release(d->layers->context, b->is_counted);
+  return status;
+}
+
+/* Whether all of the picture, and of that of its samples, has room: this is no estimate, but of grazing places. */
+static int fits(bands *b) {
+  const conic_layers_band_drawing *d = b->d;
+  double room = (double)conic_layers_drawing_bytes(d->layers);
+  double rows = (double)(d->samples * conic_samples_band_rows(d->camera, d->samples));
+  for (size_t i = 0; i < d->cut->n; i++)
+    b->n_expected += conic_layers_place_weight(d->layers, &d->cut->places[i]);
+  if (d->samples > 1 && conic_renderer_has_parts(d->renderer))
+    room -= rows * (double)b->fine.width * (double)b->pixel_bytes;
+  return b->n_expected * CONIC_LAYERS_SPLAT_BYTES <= room;
+}
+
+static uint64_t bytes_of_pixel(const conic_image *image) {
+  uint64_t n_bytes = 0;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if ((conic_image_planes(image) & CONIC_DRAWN_PLANES) >> i & 1)
+      n_bytes += 4 * (uint64_t)conic_plane_describe((conic_plane)i)->n_channels;
+  return n_bytes;
 }
 
 conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, conic_render_statistics *statistics,
                                      int *n_bands) {
   conic_context *context = drawing->layers->context;
-  bands b = {.d = drawing, .render = *drawing->render, .excess = 1.0};
-  size_t most = conic_layers_drawing_bytes(drawing->layers) / CONIC_LAYERS_SPLAT_BYTES + 1;
-  b.most = (double)most;
+  bands b = {.d = drawing, .pixel_bytes = bytes_of_pixel(drawing->image)};
+  b.block_bytes = conic_layers_drawing_bytes(drawing->layers) / 2;
+  b.most = (size_t)(conic_layers_drawing_bytes(drawing->layers) / CONIC_LAYERS_SPLAT_BYTES) + 1;
+  b.fine = conic_samples_camera(drawing->camera, drawing->samples, 0, drawing->camera->height);
   b.chosen = conic_memory_allocate(context, drawing->cut->n, sizeof *b.chosen);
-  conic_status status = b.chosen ? draw_all_windows(&b, statistics, n_bands) : CONIC_ERROR_MEMORY;
+  if (!b.chosen)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < drawing->cut->n; i++)
+    b.chosen[i] = (uint32_t)i;
+  *n_bands = 1;
+  conic_status status = fits(&b) ? draw_whole(&b, statistics) : draw_windows(&b, statistics, n_bands);
   conic_memory_release(context, b.chosen);
   return status;
 }

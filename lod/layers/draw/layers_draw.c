@@ -7,6 +7,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
 #include "lod/layers/draw/layers_bands.h"
 #include "lod/layers/draw/layers_hidden.h"
@@ -42,6 +43,10 @@ static const char *what_of_draw_is_wrong(const conic_camera *camera, const conic
     return "the image and the camera differ in size";
   if (!(options->error_px >= 0.0) || (options->error_px > 0.0 && options->budget))
     return "the error must not be below 0, nor stand beside a budget";
+  if (options->samples < 1 || options->samples > CONIC_MAX_SAMPLES ||
+      camera->width > CONIC_IMAGE_MAX_SIZE / options->samples ||
+      camera->height > CONIC_IMAGE_MAX_SIZE / options->samples)
+    return "there are too few or too many samples a pixel";
   if (render->tile < 8 || render->tile > 64)
     return "the tile is 8, 16, 32 or 64";
   return NULL;

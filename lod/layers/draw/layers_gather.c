@@ -14,11 +14,16 @@ typedef struct gather gather;
 
 typedef void piece_function(const gather *g, conic_layers_piece *piece);
 
+/* Which of the chosen places lie below a cloud: they follow each other, as the cut is in the order of the keys. */
+typedef struct place_range {
+  uint32_t first, end;
+} place_range;
+
 struct gather {
   conic_layers *layers;
   const conic_layers_gathering *asked;
   conic_layers_set *set;
-  size_t first, end; /* pieces of the clouds that are in memory now */
+  place_range *below; /* a cloud */
   piece_function *function;
 };
 
@@ -40,7 +45,7 @@ static int splats_have_colors(const conic_layers *layers) {
   return splats_have(layers, CONIC_LAYERS_COLOR) || layers->choice.colored_by >= 0;
 }
 
-static size_t n_arrays(const conic_layers *layers) {
+size_t conic_layers_set_arrays(const conic_layers *layers) {
   return 9u + (splats_have_colors(layers) ? 3u : 0u) + (splats_have(layers, CONIC_LAYERS_OPACITY) ? 1u : 0u) +
          (splats_have(layers, CONIC_LAYERS_DOT) ? 1u : 0u);
 }
@@ -59,8 +64,7 @@ static void place_arrays(const conic_layers *layers, conic_layers_set *set) {
     set->splats.dot = next;
 }
 
-/* Room for `count` splats, of which `used` are kept. */
-static conic_status make_room_for_splats(const conic_layers *layers, conic_layers_set *set, size_t used, size_t count) {
+conic_status conic_layers_set_reserve(const conic_layers *layers, conic_layers_set *set, size_t used, size_t count) {
   conic_context *context = layers->context;
   if (count <= set->room)
     return CONIC_OK;
@@ -70,11 +74,11 @@ static conic_status make_room_for_splats(const conic_layers *layers, conic_layer
     set->arrays = NULL;
     set->room = 0;
   }
-  float *arrays = conic_memory_allocate(context, room * n_arrays(layers), sizeof *arrays);
+  float *arrays = conic_memory_allocate(context, room * conic_layers_set_arrays(layers), sizeof *arrays);
   if (!arrays)
     return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < n_arrays(layers) && used; i++)
-    memcpy(arrays + i * room, (float *)set->arrays + i * set->room, used * sizeof *arrays);
+  for (size_t i = 0; i < conic_layers_set_arrays(layers) && used; i++)
+    memcpy(arrays + i * room, set->arrays + i * set->room, used * sizeof *arrays);
   conic_memory_release(context, set->arrays);
   set->arrays = arrays;
   conic_status status = conic_memory_grow(context, &set->ids, used, room, sizeof *set->ids);
@@ -93,50 +97,39 @@ static int is_same_place(const conic_layers_entry *a, const conic_layers_entry *
   return a->key == b->key && a->depth == b->depth;
 }
 
-/* Walks from every chosen place up to the root, and calls every cloud on the way; counts[cloud] counts them or, where
- * `pieces` is there, is where the cloud's next piece goes. */
-static void walk_up(const gather *g, uint32_t *counts, conic_layers_piece *pieces) {
+/* Walks from every chosen place up to the root. */
+static void find_places_below(gather *g) {
   const conic_layers_entry *entries = g->layers->entries;
   for (size_t k = 0; k < g->asked->n_chosen; k++) {
-    uint32_t i_place = g->asked->chosen[k];
-    const conic_layers_place *place = &g->asked->cut->places[i_place];
-    if (place->state == CONIC_PLACE_HIDDEN)
-      continue;
-    for (uint32_t node = place->node;; node = entries[node].parent) {
-      if (pieces)
-        pieces[counts[node]] = (conic_layers_piece){.cloud = node, .i_place = i_place};
-      counts[node]++;
+    const conic_layers_place *place = &g->asked->cut->places[g->asked->chosen[k]];
+    for (uint32_t node = place->node; place->state != CONIC_PLACE_HIDDEN; node = entries[node].parent) {
+      place_range *below = &g->below[node];
+      below->first = below->end ? below->first : (uint32_t)k;
+      below->end = (uint32_t)k + 1;
       if (node == 0)
         break;
     }
   }
 }
 
-/* Lists the pieces by cloud, each cloud's in the order of its keys. */
-static conic_status list_pieces(gather *g) {
-  conic_layers *layers = g->layers;
+/* Lists the pieces of some clouds by cloud, each cloud's in the order of its keys. */
+static conic_status list_pieces(gather *g, const uint32_t *clouds, size_t n_clouds) {
   conic_layers_set *set = g->set;
-  size_t n_clouds = layers->header.n_clouds, n = 0;
-  uint32_t *counts = conic_memory_allocate_zeroed(layers->context, n_clouds, sizeof *counts);
-  if (!counts)
-    return CONIC_ERROR_MEMORY;
-  walk_up(g, counts, NULL);
-  for (size_t i = 0; i < n_clouds; i++) {
-    uint32_t count = counts[i];
-    counts[i] = (uint32_t)n;
-    n += count;
-  }
-  conic_status status = CONIC_OK;
+  size_t n = 0;
+  for (size_t i = 0; i < n_clouds; i++)
+    n += g->below[clouds[i]].end - g->below[clouds[i]].first;
+  set->n_pieces = 0;
   if (n > set->pieces_room) {
-    status = conic_memory_grow(layers->context, &set->pieces, 0, n, sizeof *set->pieces);
-    set->pieces_room = status == CONIC_OK ? n : set->pieces_room;
+    conic_status status = conic_memory_grow(g->layers->context, &set->pieces, 0, n, sizeof *set->pieces);
+    if (status != CONIC_OK)
+      return status;
+    set->pieces_room = n;
   }
-  if (status == CONIC_OK) {
-    walk_up(g, counts, set->pieces);
-    set->n_pieces = n;
-  }
-  conic_memory_release(layers->context, counts);
-  return status;
+  for (size_t i = 0; i < n_clouds; i++)
+    for (uint32_t k = g->below[clouds[i]].first; k < g->below[clouds[i]].end; k++)
+      if (g->asked->cut->places[g->asked->chosen[k]].state != CONIC_PLACE_HIDDEN)
+        set->pieces[set->n_pieces++] = (conic_layers_piece){.cloud = clouds[i], .i_place = g->asked->chosen[k]};
+  return CONIC_OK;
 }
 
 /* What of a piece's samples is taken. */
@@ -144,33 +137,23 @@ typedef struct sieve {
   const conic_layers_cloud *cloud;
   const conic_layers_place *place;
   const conic_layers_view *view;
-  const conic_window *window;        /* null: all of the place is in it */
   const conic_layers_turned *turned; /* null: nothing of it faces away */
   uint64_t n_of;                     /* not 0: so many of the cloud's are chosen, evenly in the order of their keys */
-  double radius;
 } sieve;
-
-static int is_window_within(const conic_window *inner, const conic_window *outer) {
-  return inner->x_begin >= outer->x_begin && inner->x_end <= outer->x_end && inner->y_begin >= outer->y_begin &&
-         inner->y_end <= outer->y_end;
-}
 
 /* Of a piece's cloud: it is in memory. */
 static const conic_layers_cloud *cloud_of(const conic_layers *layers, const conic_layers_piece *piece) {
-  return &layers->store.slots[piece->cloud].cloud;
+  return layers->store.slots[piece->cloud].cloud;
 }
 
 static sieve begin_sieve(const gather *g, const conic_layers_piece *piece, const conic_layers_cloud *cloud) {
   const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
   const conic_layers_turned *turned = g->asked->cut->turned ? &g->asked->cut->turned[piece->i_place] : NULL;
-  const conic_window *window = g->asked->window;
   return (sieve){.cloud = cloud,
                  .place = place,
                  .view = g->asked->view,
                  .n_of = g->asked->cut->n_root < cloud->count ? g->asked->cut->n_root : 0,
-                 .window = window && is_window_within(&place->sight.pixels, window) ? NULL : window,
-                 .turned = turned && turned->is_any && cloud->facing ? turned : NULL,
-                 .radius = (double)g->layers->entries[place->node].radius};
+                 .turned = turned && turned->is_any && cloud->facing ? turned : NULL};
 }
 
 static inline int is_turned(const sieve *s, size_t i) {
@@ -192,15 +175,6 @@ static inline int is_chosen(const sieve *s, size_t i) {
   return !(fabs(along) >= s->place->offset);
 }
 
-static inline int is_in_window(const sieve *s, size_t i) {
-  if (!s->window)
-    return 1;
-  const float position[3] = {s->cloud->position[0][i], s->cloud->position[1][i], s->cloud->position[2][i]};
-  conic_window pixels = s->place->sight.pixels;
-  return conic_layers_narrow(s->view, position, s->radius, &pixels) && pixels.x_begin < s->window->x_end &&
-         pixels.x_end > s->window->x_begin && pixels.y_begin < s->window->y_end && pixels.y_end > s->window->y_begin;
-}
-
 static void count_piece(const gather *g, conic_layers_piece *piece) {
   conic_layers *layers = g->layers;
   const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
@@ -211,18 +185,16 @@ static void count_piece(const gather *g, conic_layers_piece *piece) {
   piece->first = (uint32_t)first;
   piece->end = (uint32_t)end;
   sieve s = begin_sieve(g, piece, cloud);
-  piece->n_chosen = piece->n_kept = piece->end - piece->first;
+  piece->n_chosen = piece->end - piece->first;
   piece->n_turned = 0;
-  if (place->state != CONIC_PLACE_GRAZING && !s.window && !s.turned && !s.n_of && !cloud->is_left_out)
+  if (place->state != CONIC_PLACE_GRAZING && !s.turned && !s.n_of && !cloud->is_left_out)
     return;
-  piece->n_chosen = piece->n_kept = 0;
+  piece->n_chosen = 0;
   for (size_t i = first; i < end; i++)
     if (is_chosen(&s, i) && is_turned(&s, i))
       piece->n_turned++;
-    else if (is_chosen(&s, i)) {
+    else if (is_chosen(&s, i))
       piece->n_chosen++;
-      piece->n_kept += (uint32_t)is_in_window(&s, i);
-    }
 }
 
 /* A piece's samples and their places in the set. */
@@ -353,18 +325,18 @@ static void fill_piece(const gather *g, conic_layers_piece *piece) {
   const conic_layers_cloud *cloud = cloud_of(layers, piece);
   uint32_t first_id = (uint32_t)(layers->first_sample[piece->cloud] + piece->first);
   size_t n = piece->end - piece->first, k = 0;
-  if (piece->n_kept == 0)
+  if (piece->n_chosen == 0)
     return;
   splat_copying c = begin_copy(g, piece);
-  if (piece->n_kept == n) {
+  if (piece->n_chosen == n) {
     copy_all(&c, n, first_id);
     for (size_t i = 0; i < n && cloud->axis[0]; i++)
       copy_payload(&c, piece->first + i, i);
     return;
   }
   sieve s = begin_sieve(g, piece, cloud);
-  for (size_t i = 0; i < n && k < piece->n_kept; i++)
-    if (!is_turned(&s, piece->first + i) && is_chosen(&s, piece->first + i) && is_in_window(&s, piece->first + i)) {
+  for (size_t i = 0; i < n && k < piece->n_chosen; i++)
+    if (!is_turned(&s, piece->first + i) && is_chosen(&s, piece->first + i)) {
       copy_one(&c, i, k, first_id + (uint32_t)i);
       if (cloud->axis[0])
         copy_payload(&c, piece->first + i, k);
@@ -374,31 +346,33 @@ static void fill_piece(const gather *g, conic_layers_piece *piece) {
 
 static void piece_task(void *data, size_t i_task, int i_thread) {
   const gather *g = data;
-  size_t begin = g->first + i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
+  size_t begin = i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
   (void)i_thread;
-  for (size_t i = begin; i < end && i < g->end; i++)
+  for (size_t i = begin; i < end && i < g->set->n_pieces; i++)
     g->function(g, &g->set->pieces[i]);
 }
 
 static void for_pieces(gather *g, piece_function *function) {
   g->function = function;
-  conic_parallel_for(g->layers->context, (g->end - g->first + PIECES_A_TASK - 1) / PIECES_A_TASK, piece_task, g);
+  conic_parallel_for(g->layers->context, (g->set->n_pieces + PIECES_A_TASK - 1) / PIECES_A_TASK, piece_task, g);
 }
 
 /* Gives the pieces their places in the set. Returns where they end. */
 static size_t place_pieces(gather *g) {
   const conic_layers_entry *entries = g->layers->entries;
   const conic_layers_place *places = g->asked->cut->places;
-  size_t at = g->set->splats.count;
-  for (size_t i = g->first; i < g->end; i++) {
-    conic_layers_piece *piece = &g->set->pieces[i];
-    const conic_layers_piece *before = i > g->first ? &g->set->pieces[i - 1] : NULL;
+  conic_layers_set *set = g->set;
+  size_t at = set->splats.count;
+  for (size_t i = 0; i < set->n_pieces; i++) {
+    conic_layers_piece *piece = &set->pieces[i];
+    const conic_layers_piece *before = i > 0 ? &set->pieces[i - 1] : NULL;
     if (before && before->cloud == piece->cloud &&
-        is_same_place(&entries[places[before->i_place].node], &entries[places[piece->i_place].node])) {
-      piece->n_chosen = piece->n_kept = piece->n_turned = 0;
-    }
+        is_same_place(&entries[places[before->i_place].node], &entries[places[piece->i_place].node]))
+      piece->n_chosen = piece->n_turned = 0;
     piece->at = at;
-    at += piece->n_kept;
+    at += piece->n_chosen;
+    set->n_chosen += piece->n_chosen;
+    set->n_turned += piece->n_turned;
   }
   return at;
 }
@@ -407,11 +381,8 @@ static size_t place_pieces(gather *g) {
 static conic_status take_pieces(gather *g) {
   for_pieces(g, count_piece);
   size_t count = place_pieces(g), used = g->set->splats.count;
-  g->set->is_cut_short = g->asked->most && count > g->asked->most;
-  if (g->set->is_cut_short)
-    return CONIC_OK;
   size_t wanted = count > g->set->room && used ? count + count / 4 : count;
-  conic_status status = make_room_for_splats(g->layers, g->set, used, wanted);
+  conic_status status = conic_layers_set_reserve(g->layers, g->set, used, wanted);
   if (status != CONIC_OK)
     return status;
   for_pieces(g, fill_piece);
@@ -419,8 +390,15 @@ static conic_status take_pieces(gather *g) {
   return CONIC_OK;
 }
 
-/* The records of clip lines, now that all splats are there. */
-static conic_status list_lines(const conic_layers *layers, conic_layers_set *set) {
+/* Turns the set's dots to the camera. */
+static conic_status face_dots(const gather *g) {
+  conic_splats *splats = &g->set->splats;
+  if (!splats->dot || !g->asked->camera || splats->count == 0)
+    return CONIC_OK;
+  return conic_splats_face(g->layers->context, splats, g->asked->camera, splats->tangent_u, splats->tangent_v);
+}
+
+conic_status conic_layers_set_list_lines(const conic_layers *layers, conic_layers_set *set) {
   conic_splats *splats = &set->splats;
   size_t n = 0;
   splats->n_clips = 0;
@@ -443,65 +421,91 @@ static conic_status list_lines(const conic_layers *layers, conic_layers_set *set
   return CONIC_OK;
 }
 
-/* The clouds of the pieces from g->first on, once each. */
-static size_t list_clouds(const gather *g, uint32_t *clouds) {
-  size_t n = 0;
-  for (size_t i = g->first; i < g->set->n_pieces; i++)
-    if (n == 0 || clouds[n - 1] != g->set->pieces[i].cloud)
-      clouds[n++] = g->set->pieces[i].cloud;
-  return n;
+/* How many of the first clouds are taken together. */
+static size_t clouds_together(const gather *g, const uint32_t *clouds, size_t n) {
+  const conic_layers *layers = g->layers;
+  size_t n_fit = conic_layers_store_fit(layers, clouds, n, conic_layers_cache_bytes(layers) / 2), n_samples = 0;
+  for (size_t i = 0; i < n_fit && g->asked->receive; i++) {
+    n_samples += layers->entries[clouds[i]].n_samples;
+    if (n_samples > g->asked->most)
+      return i ? i : 1;
+  }
+  return n_fit;
 }
 
-static conic_status take_clouds(gather *g, uint32_t *clouds, size_t n) {
+/* Hands over what there is. */
+static conic_status hand_over(gather *g) {
+  conic_status status = face_dots(g);
+  if (status == CONIC_OK)
+    status = g->asked->receive(g->asked->cookie, g->set);
+  g->set->splats.count = 0;
+  return status;
+}
+
+static conic_status take_clouds(gather *g, const uint32_t *clouds, size_t n) {
   conic_layers *layers = g->layers;
   conic_status status = CONIC_OK;
-  for (size_t done = 0; done < n && status == CONIC_OK && !g->set->is_cut_short;) {
+  for (size_t done = 0; done < n && status == CONIC_OK;) {
     conic_layers_loading loading = {.clouds = clouds + done, .until_s = g->asked->until_s};
-    loading.n = conic_layers_store_fit(layers, clouds + done, n - done, conic_layers_cache_bytes(layers) / 2);
+    loading.n = clouds_together(g, clouds + done, n - done);
     status = conic_layers_store_load(layers, &loading);
     if (status != CONIC_OK)
       break;
-    uint32_t last = clouds[done + loading.n - 1];
-    for (g->end = g->first; g->end < g->set->n_pieces && g->set->pieces[g->end].cloud <= last;)
-      g->end++;
-    status = take_pieces(g);
+    status = list_pieces(g, loading.clouds, loading.n);
+    if (status == CONIC_OK)
+      status = take_pieces(g);
     conic_layers_store_unpin(layers, &loading);
-    g->first = g->end;
+    if (status == CONIC_OK && g->asked->receive)
+      status = hand_over(g);
     done += loading.n;
   }
   return status;
 }
 
-/* What the set will come to: all of the places that are shown, and some of the others'; in a window, there is no
- * telling.
+/* What the set will come to: all of the places that are shown, and some of the others'; of parts, there is no telling.
  */
 static size_t expect(const gather *g) {
   size_t n = 0;
-  for (size_t k = 0; k < g->asked->n_chosen && !g->asked->window; k++) {
+  for (size_t k = 0; k < g->asked->n_chosen && !g->asked->receive; k++) {
     const conic_layers_place *place = &g->asked->cut->places[g->asked->chosen[k]];
     size_t n_drawn = g->layers->entries[place->node].n_drawn;
     n += place->state == CONIC_PLACE_SHOWN ? n_drawn : place->state == CONIC_PLACE_GRAZING ? n_drawn / 16 : 0;
   }
-  return n;
+  return n + 1;
+}
+
+/* The clouds that have something below which a chosen place lies. */
+static conic_status gather_clouds(gather *g) {
+  conic_layers *layers = g->layers;
+  uint32_t *clouds = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *clouds);
+  if (!clouds)
+    return CONIC_ERROR_MEMORY;
+  size_t n = 0;
+  for (uint32_t i = 0; i < layers->header.n_clouds; i++)
+    if (g->below[i].end && layers->entries[i].n_samples > 0)
+      clouds[n++] = i;
+  conic_status status = take_clouds(g, clouds, n);
+  conic_memory_release(layers->context, clouds);
+  return status;
 }
 
 conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gathering *gathering, conic_layers_set *set) {
   gather g = {.layers = layers, .asked = gathering, .set = set};
   set->splats.count = set->splats.n_clips = 0;
-  set->is_cut_short = 0;
+  set->n_pieces = 0;
+  set->n_chosen = set->n_turned = 0;
   memcpy(set->splats.origin, layers->header.origin, sizeof set->splats.origin);
-  conic_status status = list_pieces(&g);
-  if (status == CONIC_OK)
-    status = make_room_for_splats(layers, set, 0, gathering->most ? gathering->most : expect(&g) + 1);
-  if (status != CONIC_OK || set->n_pieces == 0)
+  conic_status status = conic_layers_set_reserve(layers, set, 0, expect(&g));
+  if (status != CONIC_OK)
     return status;
-  uint32_t *clouds = conic_memory_allocate(layers->context, set->n_pieces, sizeof *clouds);
-  if (!clouds)
+  g.below = conic_memory_allocate_zeroed(layers->context, layers->header.n_clouds, sizeof *g.below);
+  if (!g.below)
     return CONIC_ERROR_MEMORY;
-  status = take_clouds(&g, clouds, list_clouds(&g, clouds));
-  conic_memory_release(layers->context, clouds);
-  if (status == CONIC_OK && set->splats.dot && gathering->camera)
-    status = conic_splats_face(layers->context, &set->splats, gathering->camera, set->splats.tangent_u,
-                               set->splats.tangent_v);
-  return status == CONIC_OK ? list_lines(layers, set) : status;
+  find_places_below(&g);
+  status = gather_clouds(&g);
+  conic_memory_release(layers->context, g.below);
+  if (status != CONIC_OK || gathering->receive)
+    return status;
+  status = face_dots(&g);
+  return status == CONIC_OK ? conic_layers_set_list_lines(layers, set) : status;
 }

@@ -9,7 +9,6 @@ typedef struct conic_layers_piece {
   uint32_t cloud, i_place;
   uint32_t first, end; /* its samples, */
   uint32_t n_chosen;   /* of which so many are to be drawn, */
-  uint32_t n_kept;     /* and so many may meet the window, */
   uint32_t n_turned;   /* while so many face away, and are culled, */
   size_t at;           /* from here on in the set */
 } conic_layers_piece;
@@ -21,31 +20,45 @@ struct conic_layers_set {
   conic_layers_lines *lines; /* of each, where the file has some */
   size_t room;               /* of all three */
   size_t clips_room;
-  void *arrays;
-  conic_layers_piece *pieces; /* in the order of the file */
+  float *arrays;              /* conic_layers_set_arrays, each of `room` */
+  conic_layers_piece *pieces; /* of the clouds that were in memory last, in the order of the file */
   size_t n_pieces, pieces_room;
-  int is_cut_short; /* there were more splats than asked for at most */
+  uint64_t n_chosen, n_turned; /* of all pieces since gathering began */
 };
 typedef struct conic_layers_set conic_layers_set;
 
 /* Bytes that drawing takes for a splat of a set, the set's own and room to grow included. */
-enum { CONIC_LAYERS_SPLAT_BYTES = 208 };
+enum { CONIC_LAYERS_SPLAT_BYTES = 176 };
+
+typedef conic_status conic_layers_set_receiver(void *cookie, conic_layers_set *set);
 
 typedef struct conic_layers_gathering {
   const conic_layers_cut *cut;
   const uint32_t *chosen; /* places of the cut, ascending */
   size_t n_chosen;
   const conic_layers_view *view;
-  const conic_window *window; /* only what may meet it is gathered; null: all */
   float cutoff;
-  const conic_camera *camera; /* that dots are turned to; null: they are left as they are */
-  double until_s;             /* by conic_seconds_now; infinite: clouds are waited for */
-  size_t most;                /* splats; where there are more, gathering ends; 0: any number */
+  const conic_camera *camera;         /* that dots are turned to; null: they are left as they are */
+  double until_s;                     /* by conic_seconds_now; infinite: clouds are waited for */
+  conic_layers_set_receiver *receive; /* null: all is gathered at once; else it is handed over part by part, with the
+                                         pieces that it came of; clip lines are not listed yet */
+  void *cookie;
+  size_t most; /* splats of a part, but where one place's of one cloud are more */
 } conic_layers_gathering;
 
 /* Fills the set with what is to be drawn of the places that are shown or grazing; those hidden give nothing. Clouds are
- * read as they are needed, no more of them at a time than the cache holds. Errors: as conic_layers_store_load. */
+ * read once each, in the order of the file, no more of them at a time than the cache holds. Errors: as
+ * conic_layers_store_load, and the receiver's. */
 conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gathering *gathering, conic_layers_set *set);
+
+/* How many arrays of floats the splats of a set have. */
+size_t conic_layers_set_arrays(const conic_layers *layers);
+
+/* Room for `count` splats, of which `used` are kept. Errors: MEMORY. */
+conic_status conic_layers_set_reserve(const conic_layers *layers, conic_layers_set *set, size_t used, size_t count);
+
+/* Makes records of the splats' clip lines, now that all splats are there. Errors: MEMORY. */
+conic_status conic_layers_set_list_lines(const conic_layers *layers, conic_layers_set *set);
 
 void conic_layers_set_release(conic_context *context, conic_layers_set *set);
 

@@ -17,7 +17,7 @@ struct conic_layers {
   int is_remote;
   conic_ranges *ranges;               /* of the clouds */
   struct conic_layers_octree *octree; /* null: a .lpc */
-  uint64_t n_told; /* bytes received that a picture's statistics have told of */
+  uint64_t n_told;                    /* bytes received that a picture's statistics have told of */
   conic_layers_header header;
   conic_layers_entry *entries;
   uint64_t *first_sample; /* number of each cloud's first, in the order of the file */
@@ -40,26 +40,27 @@ static inline uint32_t conic_layers_children(const conic_layers *layers) {
 
 /* Whether a cloud is in memory, or empty. */
 static inline int conic_layers_has_cloud(const conic_layers *layers, uint32_t cloud) {
-  return layers->store.slots[cloud].block || layers->entries[cloud].n_samples == 0;
+  return layers->store.slots[cloud].cloud || layers->entries[cloud].n_samples == 0;
 }
 
-/* What is left of the memory that a picture may take, once the program, the index and the image have theirs; a quarter
+/* What is left of the memory that a picture may take, once the program, the index and the image have theirs; an eighth
  * of all of it at least. */
 static inline uint64_t conic_layers_free_bytes(const conic_layers *layers) {
-  const uint64_t own_bytes = UINT64_C(20) << 20, all = layers->access.memory_bytes;
+  const uint64_t own_bytes = (UINT64_C(14) << 20) + ((uint64_t)conic_context_threads(layers->context) << 21);
+  const uint64_t all = layers->access.memory_bytes;
   uint64_t cloud_bytes = sizeof(conic_layers_entry) + sizeof(conic_layers_slot) + 96; /* with its place and pieces */
   uint64_t taken = own_bytes + layers->header.n_clouds * cloud_bytes + layers->picture_bytes;
-  return all > taken + all / 4 ? all - taken : all / 4;
+  return all > taken + all / 8 ? all - taken : all / 8;
 }
 
 /* Shares of that: for the cache, and for what is gathered and drawn of it at a time. The rest is for what memory that
  * is taken and given back leaves unused. */
 static inline uint64_t conic_layers_cache_bytes(const conic_layers *layers) {
-  return conic_layers_free_bytes(layers) / 8 * 3;
+  return conic_layers_free_bytes(layers) / 4;
 }
 
 static inline uint64_t conic_layers_drawing_bytes(const conic_layers *layers) {
-  return conic_layers_free_bytes(layers) / 8 * 3;
+  return conic_layers_free_bytes(layers) / 8 * 5;
 }
 
 #endif

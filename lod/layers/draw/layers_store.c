@@ -11,12 +11,14 @@
 /* So many answers are decoded together. */
 enum { DECODED_TOGETHER = 64, BLOCK_STEP = 1 << 14 };
 
+/* Of a block, what tells where its arrays are. */
+enum { HEAD_BYTES = (sizeof(conic_layers_cloud) + 63) / 64 * 64 };
+
 /* A cloud on its way into memory. */
 typedef struct arrival {
   conic_range_answer answer;
-  void *block;
-  conic_layers_cloud cloud;
-  const char *wrong; /* with its bytes; null: nothing */
+  conic_layers_cloud *cloud; /* null: none */
+  const char *wrong;         /* with its bytes; null: nothing */
 } arrival;
 
 typedef struct arrivals {
@@ -46,7 +48,7 @@ void conic_layers_store_close(conic_layers *layers) {
   conic_layers_store *store = &layers->store;
   conic_context *context = layers->context;
   for (uint32_t i = 0; store->slots && i < layers->header.n_clouds; i++)
-    conic_memory_release(context, store->slots[i].block);
+    conic_memory_release(context, store->slots[i].cloud);
   for (int i = 0; store->decoders && i < conic_context_threads(context); i++)
     conic_layers_decoder_destroy(store->decoders[i]);
   conic_memory_release(context, store->slots);
@@ -56,7 +58,7 @@ void conic_layers_store_close(conic_layers *layers) {
 
 /* Of few sizes, so that what one cloud leaves another can take. */
 static size_t bytes_of(const conic_layers *layers, uint32_t cloud) {
-  size_t n_bytes = conic_layers_cloud_bytes(&layers->header, &layers->entries[cloud], &layers->choice);
+  size_t n_bytes = HEAD_BYTES + conic_layers_cloud_bytes(&layers->header, &layers->entries[cloud], &layers->choice);
   return (n_bytes + (BLOCK_STEP - 1)) / BLOCK_STEP * BLOCK_STEP;
 }
 
@@ -82,8 +84,8 @@ static void link_newest(conic_layers_store *store, uint32_t cloud) {
 static void drop_cloud(conic_layers *layers, uint32_t cloud) {
   conic_layers_store *store = &layers->store;
   unlink_slot(store, cloud);
-  conic_memory_release(layers->context, store->slots[cloud].block);
-  store->slots[cloud].block = NULL;
+  conic_memory_release(layers->context, store->slots[cloud].cloud);
+  store->slots[cloud].cloud = NULL;
   store->n_bytes -= bytes_of(layers, cloud);
 }
 
@@ -121,18 +123,17 @@ static conic_status request(conic_layers *layers, uint32_t cloud) {
 static void decode_task(void *data, size_t i_item, int i_thread) {
   arrivals *a = data;
   arrival *one = &a->all[i_item];
-  if (one->block && a->layers->octree)
+  if (one->cloud && a->layers->octree)
     one->wrong =
-        conic_layers_octree_decode(a->layers, one->answer.id, one->answer.bytes, one->answer.n_bytes, &one->cloud);
-  else if (one->block)
+        conic_layers_octree_decode(a->layers, one->answer.id, one->answer.bytes, one->answer.n_bytes, one->cloud);
+  else if (one->cloud)
     one->wrong = conic_layers_decode(a->layers->store.decoders[i_thread], &a->layers->entries[one->answer.id],
-                                     one->answer.bytes, &one->cloud);
+                                     one->answer.bytes, one->cloud);
 }
 
 static conic_status keep_cloud(conic_layers *layers, arrival *one) {
   conic_layers_store *store = &layers->store;
   conic_layers_slot *slot = &store->slots[one->answer.id];
-  slot->block = one->block;
   slot->cloud = one->cloud;
   slot->is_doubted = 0;
   link_newest(store, one->answer.id);
@@ -142,8 +143,8 @@ static conic_status keep_cloud(conic_layers *layers, arrival *one) {
   slot->is_asked = slot->is_wanted = 0;
   store->n_bytes += bytes_of(layers, one->answer.id);
   store->n_read++;
-  one->block = NULL;
-  return layers->octree ? conic_layers_octree_keep(layers, one->answer.id, &slot->cloud) : CONIC_OK;
+  one->cloud = NULL;
+  return layers->octree ? conic_layers_octree_keep(layers, one->answer.id, slot->cloud) : CONIC_OK;
 }
 
 /* What becomes of a cloud that did not arrive as it should: asked for once again, missed, or an error. */
@@ -210,11 +211,11 @@ static conic_status allocate_blocks(conic_layers *layers, arrivals *a) {
     }
     n_new += n_bytes;
     make_room_for_bytes(layers, n_new);
-    one->block = conic_memory_allocate(layers->context, n_bytes, 1);
-    if (!one->block)
+    one->cloud = conic_memory_allocate(layers->context, n_bytes, 1);
+    if (!one->cloud)
       return CONIC_ERROR_MEMORY;
-    conic_layers_cloud_place(&layers->header, &layers->entries[one->answer.id], &layers->choice, one->block,
-                             &one->cloud);
+    conic_layers_cloud_place(&layers->header, &layers->entries[one->answer.id], &layers->choice,
+                             (char *)one->cloud + HEAD_BYTES, one->cloud);
   }
   return CONIC_OK;
 }
@@ -225,11 +226,11 @@ static conic_status take_arrivals(conic_layers *layers, arrivals *a, conic_layer
     conic_parallel_for(layers->context, a->n, decode_task, a);
   for (size_t i = 0; i < a->n; i++) {
     arrival *one = &a->all[i];
-    if (status == CONIC_OK && one->block && !one->wrong)
+    if (status == CONIC_OK && one->cloud && !one->wrong)
       status = keep_cloud(layers, one);
     else if (status == CONIC_OK)
       status = take_failure(layers, one, loading);
-    conic_memory_release(layers->context, one->block);
+    conic_memory_release(layers->context, one->cloud);
     if (one->answer.bytes)
       conic_ranges_release(layers->ranges, &one->answer);
   }
@@ -290,7 +291,7 @@ conic_status conic_layers_store_ask_ahead(conic_layers *layers, const uint32_t *
     return CONIC_OK;
   for (size_t i = 0; i < n_fit && status == CONIC_OK; i++) {
     conic_layers_slot *slot = &store->slots[clouds[i]];
-    if (slot->block) { /* is to stay */
+    if (slot->cloud) { /* is to stay */
       unlink_slot(store, clouds[i]);
       link_newest(store, clouds[i]);
     } else if (!slot->is_asked) {
@@ -307,7 +308,7 @@ conic_status conic_layers_store_load(conic_layers *layers, conic_layers_loading 
   conic_status status = layers->store.n_asked > 0 ? take_ahead(layers, loading) : CONIC_OK;
   loading->n_missing = loading->n_damaged = 0;
   for (size_t i = 0; i < loading->n; i++)
-    if (layers->store.slots[loading->clouds[i]].block)
+    if (layers->store.slots[loading->clouds[i]].cloud)
       pin(&layers->store, loading->clouds[i]);
   for (size_t i = 0; i < loading->n && status == CONIC_OK; i++)
     if (!conic_layers_has_cloud(layers, loading->clouds[i])) {

@@ -6,13 +6,12 @@
 #include "lod/layers/format/layers_decode.h"
 
 typedef struct conic_layers_slot {
-  void *block; /* null: the cloud is not in memory */
-  conic_layers_cloud cloud;
-  uint32_t newer, older; /* neighbours by last use: clouds, or CONIC_NO_CLOUD */
-  uint16_t n_pins;       /* it must stay */
-  uint8_t is_doubted;    /* its bytes were wrong once */
-  uint8_t is_asked;      /* ahead of need, and not yet there */
-  uint8_t is_wanted;     /* now */
+  conic_layers_cloud *cloud; /* with its arrays in one block; null: it is not in memory */
+  uint32_t newer, older;     /* neighbours by last use: clouds, or CONIC_NO_CLOUD */
+  uint16_t n_pins;           /* it must stay */
+  uint8_t is_doubted;        /* its bytes were wrong once */
+  uint8_t is_asked;          /* ahead of need, and not yet there */
+  uint8_t is_wanted;         /* now */
 } conic_layers_slot;
 
 #define CONIC_NO_CLOUD UINT32_MAX

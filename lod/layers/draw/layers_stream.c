@@ -21,7 +21,7 @@ static conic_status visit_clouds(conic_layers *layers, int tolerates, cloud_func
       continue;
     status = conic_layers_store_load(layers, &loading);
     *n_damaged += loading.n_damaged;
-    if (status == CONIC_OK && visit && layers->store.slots[i].block)
+    if (status == CONIC_OK && visit && layers->store.slots[i].cloud)
       status = visit(layers, i, data);
     if (status == CONIC_OK)
       conic_layers_store_unpin(layers, &loading);
@@ -38,7 +38,7 @@ typedef struct stream_target {
 
 static conic_status stream_cloud(conic_layers *layers, uint32_t cloud, void *data) {
   const stream_target *target = data;
-  const conic_layers_cloud *from = &layers->store.slots[cloud].cloud;
+  const conic_layers_cloud *from = layers->store.slots[cloud].cloud;
   conic_splats batch;
   memset(&batch, 0, sizeof batch);
   batch.count = from->count;

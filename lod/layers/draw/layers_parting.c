@@ -1,0 +1,164 @@
+#include "lod/layers/draw/layers_parting.h"
+
+#include "core/base/memory.h"
+
+/* No more cells than this along an axis, where the picture is not very long. */
+enum { MOST_CELLS = 256 };
+
+typedef struct cell_range {
+  int x_begin, x_end, y_begin, y_end;
+} cell_range;
+
+typedef struct window_plan {
+  const conic_layers_parting *asked;
+  conic_layers_windows *w;
+  double *sums; /* of the cells above and to the left of a corner: how many splats are there */
+} window_plan;
+
+double conic_layers_place_weight(const conic_layers *layers, const conic_layers_place *place) {
+  double n = (double)layers->entries[place->node].n_drawn;
+  return place->state == CONIC_PLACE_SHOWN ? n : place->state == CONIC_PLACE_GRAZING ? n / 16.0 + 1.0 : 0.0;
+}
+
+void conic_layers_windows_release(conic_context *context, conic_layers_windows *windows) {
+  conic_memory_release(context, windows->windows);
+  conic_memory_release(context, windows->window_of);
+}
+
+/* The first pixel of a row of cells; of the one behind the last, where the picture ends. */
+static int cell_top(const conic_layers_windows *w, int row) {
+  int y = row / w->rows_a_band * w->band_rows + row % w->rows_a_band * w->cell;
+  return y < w->height ? y : w->height;
+}
+
+static void choose_cells(const conic_layers_parting *asked, conic_layers_windows *w) {
+  int step = CONIC_WINDOW_STEP;
+  while (step % asked->samples)
+    step += CONIC_WINDOW_STEP;
+  int longer = asked->width > asked->height ? asked->width : asked->height;
+  *w = (conic_layers_windows){.width = asked->width, .height = asked->height, .band_rows = asked->band_rows};
+  w->cell = (longer / (step * MOST_CELLS) + 1) * step;
+  w->n_columns = (w->width + w->cell - 1) / w->cell;
+  w->rows_a_band = (w->band_rows + w->cell - 1) / w->cell;
+  w->n_rows = conic_layers_cell_row(w, w->height - 1) + 1;
+}
+
+/* How much of the pixels from `begin` to before `end` lies between low and high. */
+static double share_between(int begin, int end, int low, int high) {
+  int from = begin > low ? begin : low, to = end < high ? end : high;
+  return from < to ? (double)(to - from) / (double)(end - begin) : 0.0;
+}
+
+static double *corner_of(const window_plan *p, int column, int row) {
+  return &p->sums[(size_t)row * (size_t)(p->w->n_columns + 1) + (size_t)column];
+}
+
+/* Spreads a place's splats over the cells that it may meet. */
+static void spread_place(const window_plan *p, const conic_layers_place *place) {
+  const conic_layers_windows *w = p->w;
+  const conic_window *pixels = &place->sight.pixels;
+  int n = p->asked->samples, x_begin = n * pixels->x_begin, x_end = n * pixels->x_end;
+  int y_begin = n * pixels->y_begin, y_end = n * pixels->y_end;
+  double weight = conic_layers_place_weight(p->asked->layers, place);
+  if (x_begin >= x_end || y_begin >= y_end || weight == 0.0)
+    return;
+  int last_row = conic_layers_cell_row(w, y_end - 1), last_column = (x_end - 1) / w->cell;
+  for (int row = conic_layers_cell_row(w, y_begin); row <= last_row; row++) {
+    double in_row = weight * share_between(y_begin, y_end, cell_top(w, row), cell_top(w, row + 1));
+    for (int column = x_begin / w->cell; column <= last_column; column++)
+      *corner_of(p, column + 1, row + 1) +=
+          in_row * share_between(x_begin, x_end, column * w->cell, (column + 1) * w->cell);
+  }
+}
+
+static void sum_cells(const window_plan *p) {
+  for (size_t i = 0; i < p->asked->cut->n; i++)
+    spread_place(p, &p->asked->cut->places[i]);
+  for (int row = 1; row <= p->w->n_rows; row++)
+    for (int column = 1; column <= p->w->n_columns; column++)
+      *corner_of(p, column, row) +=
+          *corner_of(p, column - 1, row) + *corner_of(p, column, row - 1) - *corner_of(p, column - 1, row - 1);
+}
+
+static double sum_of(const window_plan *p, const cell_range *c) {
+  return *corner_of(p, c->x_end, c->y_end) - *corner_of(p, c->x_begin, c->y_end) - *corner_of(p, c->x_end, c->y_begin) +
+         *corner_of(p, c->x_begin, c->y_begin);
+}
+
+static conic_window pixels_of_cells(const conic_layers_windows *w, const cell_range *c) {
+  int x_end = c->x_end * w->cell;
+  return (conic_window){c->x_begin * w->cell, x_end < w->width ? x_end : w->width, cell_top(w, c->y_begin),
+                        cell_top(w, c->y_end)};
+}
+
+/* Those about the window reach into it. */
+static int is_small(const window_plan *p, const cell_range *c) {
+  conic_window pixels = pixels_of_cells(p->w, c);
+  double width = (double)(pixels.x_end - pixels.x_begin), height = (double)(pixels.y_end - pixels.y_begin);
+  double growth = (1.0 + 2.0 * p->asked->margin_px / width) * (1.0 + 2.0 * p->asked->margin_px / height);
+  return growth * sum_of(p, c) <= p->asked->most && (p->asked->samples == 1 || width * height <= p->asked->most_pixels);
+}
+
+/* Halves the longer side, so that each half has as many splats, about. */
+static void halve_cells(const window_plan *p, cell_range *first, cell_range *second) {
+  int is_along_x = first->x_end - first->x_begin >= first->y_end - first->y_begin;
+  double half = 0.5 * sum_of(p, first);
+  *second = *first;
+  int *end = is_along_x ? &first->x_end : &first->y_end, last = *end;
+  for (*end = (is_along_x ? first->x_begin : first->y_begin) + 1; *end < last - 1 && sum_of(p, first) < half;)
+    ++*end;
+  *(is_along_x ? &second->x_begin : &second->y_begin) = *end;
+}
+
+static conic_status add_window(const window_plan *p, const cell_range *c) {
+  conic_layers_windows *w = p->w;
+  conic_status status = conic_memory_reserve(p->asked->layers->context, &w->windows, w->n_windows, w->n_windows + 1,
+                                             &w->windows_room, sizeof *w->windows);
+  if (status != CONIC_OK)
+    return status;
+  for (int row = c->y_begin; row < c->y_end; row++)
+    for (int column = c->x_begin; column < c->x_end; column++)
+      w->window_of[(size_t)row * (size_t)w->n_columns + (size_t)column] = (uint32_t)w->n_windows;
+  w->windows[w->n_windows++] = pixels_of_cells(w, c);
+  return CONIC_OK;
+}
+
+static conic_status part_cells(const window_plan *p, cell_range all) {
+  cell_range open[64];
+  int n_open = 1;
+  conic_status status = CONIC_OK;
+  open[0] = all;
+  while (n_open > 0 && status == CONIC_OK) {
+    cell_range *c = &open[n_open - 1];
+    int is_one = c->x_end - c->x_begin == 1 && c->y_end - c->y_begin == 1;
+    if (is_one || n_open == 64 || is_small(p, c)) {
+      status = add_window(p, c);
+      n_open--;
+    } else {
+      cell_range second;
+      halve_cells(p, c, &second);
+      open[n_open] = *c;
+      open[n_open++ - 1] = second;
+    }
+  }
+  return status;
+}
+
+conic_status conic_layers_windows_plan(const conic_layers_parting *parting, conic_layers_windows *windows) {
+  conic_context *context = parting->layers->context;
+  window_plan p = {.asked = parting, .w = windows};
+  choose_cells(parting, windows);
+  size_t n_cells = (size_t)windows->n_columns * (size_t)windows->n_rows;
+  size_t n_corners = (size_t)(windows->n_columns + 1) * (size_t)(windows->n_rows + 1);
+  windows->window_of = conic_memory_allocate(context, n_cells, sizeof *windows->window_of);
+  p.sums = conic_memory_allocate_zeroed(context, n_corners, sizeof *p.sums);
+  conic_status status = windows->window_of && p.sums ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    sum_cells(&p);
+  for (int row = 0; row < windows->n_rows && status == CONIC_OK; row += windows->rows_a_band) {
+    int end = row + windows->rows_a_band;
+    status = part_cells(&p, (cell_range){0, windows->n_columns, row, end < windows->n_rows ? end : windows->n_rows});
+  }
+  conic_memory_release(context, p.sums);
+  return status;
+}
