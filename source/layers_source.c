@@ -13,6 +13,7 @@ typedef struct layers_source {
   conic_layers *layers;
   float cutoff;
   uint64_t n_clouds;
+  int may_pass_none; /* nothing that passes the filter has been seen yet */
   conic_layers_drawn drawn;
 } layers_source;
 
@@ -38,8 +39,6 @@ static conic_status open_layers(conic_source *source, const char *const *paths, 
   conic_status status = conic_layers_open(source->context, paths[0], options->access, &l->layers);
   if (status != CONIC_OK)
     return status;
-  if (status != CONIC_OK)
-    return status;
   if (options->coloring || options->where)
     status = conic_layers_choose(l->layers, options->coloring, options->where, &source->coloring);
   if (status != CONIC_OK)
@@ -53,8 +52,13 @@ static conic_status open_layers(conic_source *source, const char *const *paths, 
   scale->n_splats = found.n_samples;
   scale->n_levels = found.n_levels;
   scale->has_colors = found.has_colors;
+  if (found.up[0] != 0.0 || found.up[1] != 0.0 || found.up[2] != 0.0) {
+    memcpy(scale->up, found.up, sizeof scale->up);
+    scale->up_basis = CONIC_UP_KIND;
+  }
   l->cutoff = options->cutoff;
   l->n_clouds = found.n_clouds;
+  l->may_pass_none = options->where != NULL;
   return CONIC_OK;
 }
 
@@ -62,11 +66,29 @@ static void close_layers(conic_source *source) {
   conic_layers_close(((layers_source *)source)->layers);
 }
 
+static conic_status see_sample(void *cookie, const conic_splats *batch) {
+  (void)batch;
+  ((layers_source *)cookie)->may_pass_none = 0;
+  return CONIC_ERROR_CANCELLED; /* one is enough */
+}
+
+/* Of a picture that is empty: whether any sample passes the filter. All of the file is read for it, at most. */
+static conic_status refuse_none(layers_source *l) {
+  conic_status status = conic_layers_read_samples(l->layers, l->cutoff, NULL, see_sample, l);
+  if (!l->may_pass_none)
+    return CONIC_OK;
+  return status == CONIC_OK ? conic_fail(l->base.context, CONIC_ERROR_INPUT,
+                                         "%s: cannot be drawn: no point passes --where", l->base.name)
+                            : status;
+}
+
 static conic_status draw_layers(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
                                 const conic_render_options *render, const conic_source_view *view, conic_image *image,
                                 conic_render_statistics *statistics) {
   layers_source *l = (layers_source *)source;
+  conic_render_statistics own;
   conic_layers_draw_options options;
+  statistics = statistics ? statistics : &own;
   conic_layers_draw_options_init(&options);
   options.error_px = view->error_px;
   options.budget = view->budget;
@@ -79,7 +101,9 @@ static conic_status draw_layers(conic_source *source, conic_renderer *renderer, 
   conic_status status = conic_layers_draw(l->layers, renderer, camera, render, &options, image, statistics, &l->drawn);
   source->choice = (conic_source_choice){
       .error_px = l->drawn.error_px, .n_culled = l->drawn.n_clouds_culled, .n_levels = l->drawn.n_levels};
-  return status;
+  if (status == CONIC_OK && statistics->splats_in > 0)
+    l->may_pass_none = 0;
+  return status == CONIC_OK && l->may_pass_none && !view->may_be_coarser ? refuse_none(l) : status;
 }
 
 static void tell_layers_rest(const conic_source *source, conic_facts *facts) {
@@ -177,6 +201,10 @@ static conic_status tell_layers_file(conic_source *source, conic_facts *facts) {
                   CONIC_LINE("spacing", "%.4g; positions in steps of %.4g, moved by %.3g at most", info.spacing,
                              info.quantum, info.position_error),
                   CONIC_LINE("outline", "%.4g, the median at full resolution", info.splat_radius));
+  if (info.up[0] != 0.0 || info.up[1] != 0.0 || info.up[2] != 0.0)
+    CONIC_ADD_FACTS(facts, CONIC_ARRAY("up"), CONIC_NUMBER(NULL, info.up[0]), CONIC_NUMBER(NULL, info.up[1]),
+                    CONIC_NUMBER(NULL, info.up[2]), CONIC_END,
+                    CONIC_LINE("up", "%.3g %.3g %.3g", info.up[0], info.up[1], info.up[2]));
   conic_facts_add_bounds(facts, info.minimum, info.maximum);
   CONIC_ADD_FACTS(
       facts, CONIC_LINE("bits", "%.2f a sample: position %.2f, normal %.2f, colour %.2f, index %.2f, more %.2f", bits,

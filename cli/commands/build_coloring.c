@@ -5,7 +5,6 @@
 #include "cli/commands/points_input.h"
 #include "core/base/memory.h"
 #include "core/coloring/coloring_stream.h"
-#include "core/files/file.h"
 
 void cli_coloring_init(cli_coloring *coloring) {
   memset(coloring, 0, sizeof *coloring);
@@ -14,7 +13,7 @@ void cli_coloring_init(cli_coloring *coloring) {
 }
 
 int cli_coloring_check(const cli_session *session, cli_coloring *coloring) {
-  if (coloring->is_up_given && !coloring->options.by)
+  if (coloring->is_up_given && !coloring->options.by && !coloring->keeps_up)
     return cli_usage("%s: --up is about --color-by height; give it, too", session->command);
   return cli_color_check(session, &coloring->options, 0);
 }
@@ -48,22 +47,14 @@ static conic_status see_batch(void *cookie, const conic_splats *batch) {
   return CONIC_OK;
 }
 
-/* Heights are in z. */
-static int is_survey(const char *path) {
-  return conic_file_begins_with(path, "LASF", 4) || conic_file_begins_with(path, "ASTM-E57", 8) ||
-         conic_file_has_ending(path, "ptx") || cli_points_are_hierarchy(path);
-}
-
 conic_status cli_coloring_find_range(cli_session *session, cli_coloring *coloring, const char *const *inputs,
                                      int n_inputs, const conic_read_options *reading) {
   conic_coloring_options *options = &coloring->options;
-  int n_surveys = 0;
   conic_status status = CONIC_OK;
   if (!options->by)
     return CONIC_OK;
-  for (int i = 0; i < n_inputs; i++)
-    n_surveys += is_survey(inputs[i]);
-  use_up(coloring, (const double[3]){0.0, n_surveys == n_inputs ? 0.0 : 1.0, n_surveys == n_inputs ? 1.0 : 0.0});
+  int are_surveys = cli_points_are_surveys(inputs, n_inputs);
+  use_up(coloring, (const double[3]){0.0, are_surveys ? 0.0 : 1.0, are_surveys ? 1.0 : 0.0});
   if (!conic_coloring_needs_range(options))
     return CONIC_OK;
   range_search search = {options, conic_memory_allocate_zeroed(session->context, 1, sizeof *search.sample)};

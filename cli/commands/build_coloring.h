@@ -8,14 +8,14 @@
 
 typedef struct cli_coloring {
   conic_coloring_options options; /* `by` null: colours stay */
-  int is_up_given;
+  int is_up_given, keeps_up;      /* what points up is written, too */
   conic_coloring done;
 } cli_coloring;
 
 #define CLI_BUILD_COLOR_OPTIONS(coloring)                                                                              \
   CLI_COLOR_OPTIONS(&(coloring)->options), {                                                                           \
     "up", CLI_PARSED, (coloring)->options.up, "DIR",                                                                   \
-        "which way is up for --color-by height: x, y, z, -x … or X,Y,Z [y; z for surveys]",                            \
+        "what points up, for --color-by height and in a .lpc: x, y, z, -x … or X,Y,Z [y; z for surveys]",              \
         .parse = cli_parse_up, .is_given = &(coloring)->is_up_given                                                    \
   }
 

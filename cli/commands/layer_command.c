@@ -215,6 +215,8 @@ static conic_status plan_to_continue(layer_job *job, const char *const *paths, i
     conic_layers_close(layers);
     if (i == 0)
       first = job->options;
+    else if (memcmp(first.up, job->options.up, sizeof first.up) != 0) /* what not all say is not known */
+      memset(first.up, 0, sizeof first.up);
     first.is_unoriented = job->options.is_unoriented;
     first.keeps_all = job->options.keeps_all;
   }
@@ -236,11 +238,21 @@ static conic_status read_layers(layer_job *job, const char *const *paths, int n_
   return status;
 }
 
+/* What points up: as is said, or as in the files that go on, or as surveys have it; else nobody knows. */
+static void settle_up(layer_job *job, int n_layers) {
+  static const double survey_up[3] = {0.0, 0.0, 1.0};
+  if (job->coloring.is_up_given)
+    memcpy(job->options.up, job->coloring.options.up, sizeof job->options.up);
+  else if (n_layers == 0 && cli_points_are_surveys(job->inputs, job->n_inputs))
+    memcpy(job->options.up, survey_up, sizeof job->options.up);
+}
+
 static int make_layers(void *cookie) {
   layer_job *job = cookie;
   const char *const *layers = job->is_merging ? job->inputs : &job->base.output;
   int n_layers = job->is_merging ? job->n_inputs : job->is_appending ? 1 : 0;
   conic_status status = plan_to_continue(job, layers, n_layers);
+  settle_up(job, n_layers);
   if (status == CONIC_OK)
     status = conic_layers_builder_open(job->base.session->context, job->base.output, &job->options, &job->builder);
   if (status != CONIC_OK)
@@ -294,6 +306,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
   conic_estimate_options_init(&job.estimate);
   conic_layers_options_init(&job.options);
   cli_coloring_init(&job.coloring);
+  job.coloring.keeps_up = 1;
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.lpc", "the file to write"},
       {"cloud-size", CLI_INT, &job.cloud_size, "M", "about how many samples a cloud has, 64 to 32768 [2048]", 64,

@@ -11,6 +11,14 @@ int cli_points_are_hierarchy(const char *path) {
   return conic_layers_is_url(path) || (conic_file_has_ending(path, "json") && conic_layers_is_hierarchy(path));
 }
 
+int cli_points_are_surveys(const char *const *paths, int n_paths) {
+  int n_surveys = 0;
+  for (int i = 0; i < n_paths; i++)
+    n_surveys += conic_file_begins_with(paths[i], "LASF", 4) || conic_file_begins_with(paths[i], "ASTM-E57", 8) ||
+                 conic_file_has_ending(paths[i], "ptx") || cli_points_are_hierarchy(paths[i]);
+  return n_paths > 0 && n_surveys == n_paths;
+}
+
 /* Only places and colours come from a hierarchy, so what asks for more would be passed over in silence. */
 static conic_status stream_hierarchy(conic_context *context, const char *path, const conic_read_options *options,
                                      conic_batch_receiver *receive, void *cookie) {

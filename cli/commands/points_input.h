@@ -8,6 +8,9 @@
 /* Whether it is read as another kind's hierarchy, of which only places and colours come. */
 int cli_points_are_hierarchy(const char *path);
 
+/* Whether all are surveys, in which z points up. */
+int cli_points_are_surveys(const char *const *paths, int n_paths);
+
 /* As conic_model_stream. */
 conic_status cli_points_stream(conic_context *context, const char *path, const conic_read_options *options,
                                conic_batch_receiver *receive, void *cookie);

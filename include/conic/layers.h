@@ -25,6 +25,7 @@ typedef struct conic_layers_options {
    * this corner or, where samples lie below it, from one that is whole steps away; and normals have no side. */
   int has_corner, is_unoriented;
   double corner[3];
+  double up[3]; /* the direction that points up, of any length; zero: it is not known */
 } conic_layers_options;
 
 /* Clouds of 2048 samples, 1 GiB, half a sampling distance, cutoff 1.5. */
@@ -82,7 +83,8 @@ typedef struct conic_layers_info {
   /* Bits a sample. */
   double bits_position, bits_normal, bits_color, bits_index;
   double bits_more; /* sizes, opacities, clip lines and values */
-  uint64_t reserved[7];
+  double up[3];     /* unit: the direction that points up; zero: it is not known */
+  uint64_t reserved[4];
 } conic_layers_info;
 
 /* Reads and checks header and index. Errors: INPUT, MEMORY. */

@@ -72,7 +72,8 @@ typedef struct conic_layers_scale {
   double near_z;                 /* as conic_default_near of what it was built from */
   double splat_length;           /* for conic_render_options: of the samples at full resolution */
   double spacing;                /* median sampling distance */
-  uint64_t reserved[8];
+  double up[3];                  /* unit: what points up; zero: the file does not say */
+  uint64_t reserved[5];
 } conic_layers_scale;
 
 /* `cutoff` is F_g of the kernel that will draw. */
@@ -163,8 +164,8 @@ CONIC_API void conic_layers_region_init_sized(conic_layers_region *part, size_t 
 CONIC_API conic_status conic_layers_read_samples(conic_layers *layers, float cutoff, const conic_layers_region *part,
                                                  conic_batch_receiver *receive, void *cookie);
 
-/* Sets `options` so that what is built of these samples and others has a grid on which these stay where they are, and
- * keeps as much of each. Errors: UNSUPPORTED (it has values by name, which cannot be handed on). */
+/* Sets `options` so that what is built of these samples and others has a grid on which these stay where they are, keeps
+ * as much of each, and stands as they do. Errors: UNSUPPORTED (it has values by name, which cannot be handed on). */
 CONIC_API conic_status conic_layers_continue(const conic_layers *layers, conic_layers_options *options);
 
 #ifdef __cplusplus

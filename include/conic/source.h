@@ -104,7 +104,7 @@ CONIC_API void conic_source_close(conic_source *source);
 /* How it is known which way is up. */
 typedef enum conic_up_basis {
   CONIC_UP_HABIT = 0, /* nothing tells: +y, and +z for points in text and .pcd */
-  CONIC_UP_KIND = 1,  /* the kind of file says it */
+  CONIC_UP_KIND = 1,  /* the file, or its kind, says it */
   CONIC_UP_FLAT = 2,  /* it lies flat: +z */
   CONIC_UP_OPEN = 3,  /* its surface is open below: +z */
   CONIC_UP_BASE = 4,  /* it stands on a flat base: +z */

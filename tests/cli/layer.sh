@@ -57,6 +57,17 @@ printf '%s\n' '0 0 0 255 0 0' '1 0 0 0 255 0' '0 1 0 0 0 255' '1 1 0 9 9 9' '2 0
 run 0 layer raw.xyz -o raw.lpc
 is_sound raw.lpc
 [[ $(value points info.json) == 9 && $(value colors info.json) == true ]] || fail "raw points"
+# What points up is kept, if all that goes in agree.
+run 0 layer raw.xyz -o up.lpc --up -x
+run 0 layer raw.xyz -o up.lpc --append
+run 0 merge up.lpc up.lpc -o ups.lpc
+run 0 merge up.lpc raw.lpc -o other.lpc
+for name in up ups other; do
+  run 0 render $name.lpc -o up.pfm --size 16x16 --json $name.json
+done
+[[ $(value up_basis up.json) == kind && $(value up_basis ups.json) == kind ]] || fail "what points up is not kept"
+grep -A1 '"up"' ups.json | tr -d ' \n' | grep -q '"up":\[-1,0,0\]' || fail "something else points up: $(cat ups.json)"
+[[ $(value up_basis other.json) == kind ]] && fail "what points up is of one input only"
 # What lies on no surface is dots, as in prepare, where all of a splat is kept.
 awk 'BEGIN { srand(1); for (i = 0; i < 400; i++) print rand(), rand(), rand() }' > dust.xyz
 run 0 layer dust.xyz -o dust.lpc --payload full

@@ -42,6 +42,10 @@ run 0 render knot.lpc -o one.pfm $picture --budget 5000 --json budget.json
 run 0 render knot.lpc -o turn.pfm --size 64x64 --turntable 3 --repeat 2
 [[ -s turn.0003.pfm ]] || fail "no turntable"
 
+# What passes no filter is refused as of a file; what passes and is out of sight is an empty picture.
+run 3 render knot.lpc -o never.pfm --size 8x8 --where 'x > 100'
+grep -q '^conic: error: knot.lpc: cannot be drawn: no point passes --where$' err || fail "none passes: $(cat err)"
+run 0 render knot.lpc -o one.pfm --size 8x8 --where 'x > 0' --eye 0,0,99 --azimuth 90
 # Beside other inputs, and where every splat is to be known, it is read whole.
 run 0 render knot.lpc knot.lpc -o both.pfm --size 64x64 --json both.json
 [[ $(value splats_in both.json) == 120000 ]] || fail "two clouds"

@@ -19,6 +19,10 @@ enum { SOME_KEYS = 512, N_PROBES = 32, N_NEAREST = 8, LEAST_TO_TELL = 32 };
  */
 static const double outline_over_spacing = 1.5;
 
+static double larger(double a, double b) {
+  return a > b ? a : b;
+}
+
 static void steps_of(uint64_t key, double steps[3]) {
   for (int axis = 0; axis < 3; axis++)
     steps[axis] = (double)conic_layers_step(key, axis);
@@ -95,7 +99,7 @@ static void settle_outlines(const conic_layers_plan *plan, conic_layers_branch *
   const conic_layers_schema *schema = plan->schema;
   int axes = conic_layers_schema_find(schema, CONIC_LAYERS_AXES);
   int size = conic_layers_schema_find(schema, CONIC_LAYERS_SIZE);
-  double low = HUGE_VAL, high = 0.0;
+  double largest = 0.0;
   for (size_t i = 0; i < leaf->n_drawn; i++) {
     conic_layers_sample *sample = conic_layers_sample_in(leaf->samples, leaf->stride, i);
     if (!sample->size)
@@ -106,12 +110,9 @@ static void settle_outlines(const conic_layers_plan *plan, conic_layers_branch *
       sample->size = conic_layers_size_of_axes(plan->cutoff, at);
     } else if (size >= 0)
       sample->size = conic_layers_size_as_read(&schema->list[size], sample->size);
-    double own = (double)conic_layers_size_of(sample->size);
-    low = own < low ? own : low;
-    high = own > high ? own : high;
+    largest = larger(largest, (double)conic_layers_size_of(sample->size));
   }
-  leaf->outline_low = low / plan->quantum;
-  leaf->outline_high = high / plan->quantum;
+  leaf->radius = largest / plan->quantum;
 }
 
 static void find_branch_box(conic_layers_branch *branch) {
@@ -204,8 +205,6 @@ conic_status conic_layers_bound_leaf(const conic_layers_plan *plan, conic_layers
   conic_status status = find_spacing(plan, leaf, &spacing);
   leaf->area = spacing * spacing * (double)leaf->n_drawn;
   settle_outlines(plan, leaf, outline_over_spacing * spacing * plan->quantum);
-  leaf->radius = leaf->outline_high;
-  leaf->growth = 1.0;
   find_branch_box(leaf);
   find_sphere(leaf);
   find_axis(leaf);
@@ -230,7 +229,6 @@ typedef struct bounding {
   const conic_thinner *thinner;
   size_t n_below;
   const conic_layers_branch **below;
-  float *sizes;             /* own outlines of the node's samples */
   conic_layers_disc *discs; /* the node's samples as they are drawn, in the order in which they were chosen */
   double quantum;           /* a step of the grid, as they have it */
   int is_cut;               /* full resolution may draw less of a sample than its outline */
@@ -262,26 +260,12 @@ static void raise_most(bounding *b, double value) {
     continue;
 }
 
-typedef double measure_keys(const bounding *b, const conic_layers_branch *below, const uint64_t *keys, size_t n,
-                            double most);
-
-static double measure_below_reach(const bounding *b, const conic_layers_branch *below, const uint64_t *keys, size_t n,
-                                  double most) {
-  return conic_thinner_reach(b->thinner, keys, n, below->covering, most);
-}
-
-/* Whatever lies below has a sample within the covering radius whose outline, times the growth, is no smaller than any
- * of its own. */
-static double measure_below_growth(const bounding *b, const conic_layers_branch *below, const uint64_t *keys, size_t n,
-                                   double most) {
-  return conic_thinner_growth(b->thinner, keys, n, b->node->covering - below->covering,
-                              below->outline_high * b->quantum, b->sizes, most);
-}
-
-static void measure_below(bounding *b, size_t i_item, measure_keys *measure) {
+static void reach_out(void *data, size_t i_item, int i_thread) {
+  bounding *b = data;
   const conic_layers_branch *below = b->below[i_item];
   uint64_t keys[SOME_KEYS];
   double most = most_so_far(b);
+  (void)i_thread;
   for (size_t first = 0, n; first < below->n_drawn; first += n) {
     n = below->n_drawn - first < SOME_KEYS ? below->n_drawn - first : SOME_KEYS;
     conic_status status = conic_layers_fetch_keys(below, first, n, keys);
@@ -289,25 +273,14 @@ static void measure_below(bounding *b, size_t i_item, measure_keys *measure) {
       atomic_store(&b->status, (int)status);
       return;
     }
-    most = measure(b, below, keys, n, most);
+    most = conic_thinner_reach(b->thinner, keys, n, below->covering, most);
   }
   raise_most(b, most);
 }
 
-static void reach_out(void *data, size_t i_item, int i_thread) {
-  (void)i_thread;
-  measure_below(data, i_item, measure_below_reach);
-}
-
-static void grow_out(void *data, size_t i_item, int i_thread) {
-  (void)i_thread;
-  measure_below(data, i_item, measure_below_growth);
-}
-
 /* With what a sample is drawn where the node is the finest, in steps. */
 static double outline_in(const conic_layers_branch *node, double own) {
-  double grown = node->reach + node->growth * own;
-  return node->is_leaf ? own : grown < node->radius ? grown : node->radius;
+  return larger(own, node->is_leaf ? 0.0 : node->covering);
 }
 
 static conic_layers_disc disc_in(const conic_layers_branch *node, uint64_t key, const conic_layers_facet *facet,
@@ -364,18 +337,17 @@ static double find_most(conic_context *context, int is_alone, bounding *b, conic
   return most_so_far(b);
 }
 
-static double larger(double a, double b) {
-  return a > b ? a : b;
-}
-
-/* With what each sample is drawn, and how far that is past what full resolution draws of it. */
+/* With what the samples are drawn at most, and how far that is past what full resolution draws of them. */
 static void find_past(const bounding *b) {
   conic_layers_branch *node = b->node;
-  node->past = 0.0;
+  node->radius = node->past = 0.0;
   for (size_t i = 0; i < node->n_drawn; i++) {
-    double own = (double)b->sizes[i] / b->quantum;
-    node->past = larger(node->past, outline_in(node, own) - (b->is_cut ? 0.0 : own));
+    double own = (double)conic_layers_size_of(node->facets[i].size) / b->quantum, drawn = outline_in(node, own);
+    node->radius = larger(node->radius, drawn);
+    node->past = larger(node->past, drawn - (b->is_cut ? 0.0 : own));
   }
+  for (int i = 0; i < 2; i++)
+    node->radius = larger(node->radius, node->children[i]->radius);
 }
 
 /* How far what full resolution draws is from what is drawn, and the other way round. */
@@ -398,26 +370,19 @@ static conic_status find_part(conic_context *context, int is_alone, bounding *b)
 
 static conic_status find_outlines(conic_context *context, int is_alone, bounding *b) {
   conic_layers_branch *node = b->node;
-  const conic_layers_branch *first = node->children[0], *second = node->children[1];
   visit_below(node, node->n_place, count_below, b);
   b->below = conic_memory_allocate(context, b->n_below, sizeof(void *));
-  b->sizes = conic_memory_allocate(context, node->n_drawn, sizeof *b->sizes);
-  conic_status status = b->below && b->sizes ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status = b->below ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     b->n_below = 0;
     visit_below(node, node->n_place, list_below, b);
-    for (size_t i = 0; i < node->n_drawn; i++)
-      b->sizes[i] = conic_layers_size_of(conic_layers_drawn_at(node, i)->size);
-    node->reach = node->covering = find_most(context, is_alone, b, reach_out, 0.0);
-    node->radius = larger(node->covering + node->outline_high, larger(first->radius, second->radius));
-    node->growth = find_most(context, is_alone, b, grow_out, 1.0) * (1.0 + 1e-6);
+    node->covering = find_most(context, is_alone, b, reach_out, 0.0);
     find_past(b);
     status = (conic_status)atomic_load(&b->status);
     if (status == CONIC_OK)
       status = find_part(context, is_alone, b);
   }
   conic_memory_release(context, (void *)b->below);
-  conic_memory_release(context, b->sizes);
   return status;
 }
 
@@ -429,8 +394,6 @@ conic_status conic_layers_bound_node(const conic_layers_plan *plan, const conic_
   atomic_init(&bounds.most, 0);
   atomic_init(&bounds.status, CONIC_OK);
   node->area = a->area + b->area;
-  node->outline_low = a->outline_low < b->outline_low ? a->outline_low : b->outline_low;
-  node->outline_high = larger(a->outline_high, b->outline_high);
   conic_status status = find_outlines(plan->context, is_alone, &bounds);
   for (int axis = 0; axis < 3; axis++) {
     node->low[axis] = a->low[axis] < b->low[axis] ? a->low[axis] : b->low[axis];
@@ -460,11 +423,11 @@ void conic_layers_describe_branch(const conic_layers_plan *plan, const conic_lay
   entry->n_drawn = (uint32_t)branch->n_drawn;
   entry->spacing = (float)(sqrt(branch->area / (double)branch->n_drawn) * q);
   entry->covering = rounded_up((branch->covering + 2.0 * rounding) * q);
-  entry->radius = rounded_up(branch->radius * q);
-  entry->growth = branch->is_leaf ? 1.0f : rounded_up(branch->growth);
-  entry->reach = branch->is_leaf ? 0.0f : rounded_up((branch->reach + 2.0 * rounding) * q);
-  entry->error = branch->is_leaf ? 0.0f : rounded_up((branch->part + rounding) * q);
-  entry->sphere = rounded_up((branch->sphere + branch->radius) * q);
+  entry->radius = rounded_up((branch->radius + 2.0 * rounding) * q);
+  entry->growth = branch->is_leaf ? 1.0f : 0.0f;
+  entry->reach = branch->is_leaf ? 0.0f : entry->covering;
+  entry->error = branch->is_leaf ? 0.0f : rounded_up((branch->part + 3.0 * rounding) * q);
+  entry->sphere = rounded_up((branch->sphere + branch->radius + 2.0 * rounding) * q);
   double slack = 2.0 * rounding * q;
   for (int axis = 0; axis < 3; axis++) {
     double center = (branch->center[axis] + 0.5) * q;

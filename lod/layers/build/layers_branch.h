@@ -30,15 +30,13 @@ struct conic_layers_branch {
   uint64_t *keys;             /* of these; null: put away */
   conic_layers_facet *facets; /* likewise */
   uint64_t samples_at, keys_at, facets_at;
-  double area;                      /* of the surface: of each sample the square of the spacing about it */
-  double distance;                  /* between the chosen, as conic_thinner_choose has it; 0: a leaf */
-  double covering;                  /* these three in steps of the grid */
-  double outline_low, outline_high; /* of the leaves' outlines */
-  double radius;                    /* the greatest with which any is drawn */
-  double growth, reach, past; /* with what each is: conic_layers_outline; and how far that is past its own at most */
-  double part;                /* how far what full resolution draws is from what is drawn, in steps */
-  double low[3], high[3];     /* box of its place's samples, in steps */
-  double center[3], sphere;   /* of these, in steps */
+  double area;              /* of the surface: of each sample the square of the spacing about it */
+  double distance;          /* between the chosen, as conic_thinner_choose has it; 0: a leaf */
+  double covering, radius;  /* in steps of the grid, as the next; and the greatest outline with which any is drawn */
+  double past;              /* how much larger than at full resolution one is drawn at most */
+  double part;              /* how far what full resolution draws is from what is drawn, in steps */
+  double low[3], high[3];   /* box of its place's samples, in steps */
+  double center[3], sphere; /* of these, in steps */
   double axis[3], cone;
 };
 

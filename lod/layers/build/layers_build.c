@@ -8,6 +8,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/base/vectors.h"
 #include "core/files/file.h"
 #include "core/splats/columns.h"
 #include "lod/layers/build/layers_file.h"
@@ -41,7 +42,8 @@ void conic_layers_options_init_sized(conic_layers_options *options, size_t size)
 
 static int are_options_sound(const conic_layers_options *options) {
   return options->cloud_size >= LEAST_CLOUD && options->cloud_size <= MOST_CLOUD && options->quantum > 0.0 &&
-         options->quantum < 1e15 && options->cutoff > 0.0f && options->cutoff < 1e3f;
+         options->quantum < 1e15 && options->cutoff > 0.0f && options->cutoff < 1e3f &&
+         conic_dot(options->up, options->up) < 1e30;
 }
 
 /* What the program itself takes, its libraries and what reads the samples; and what building takes at least. */
@@ -224,6 +226,9 @@ static conic_status make_plan(conic_layers_builder *builder) {
   header->version = CONIC_LAYERS_VERSION;
   header->flags = (intake->has_colors ? CONIC_LAYERS_COLORS : 0u) | (is_unoriented ? CONIC_LAYERS_UNORIENTED : 0u);
   header->cloud_size = builder->options.cloud_size;
+  double up[3] = {builder->options.up[0], builder->options.up[1], builder->options.up[2]};
+  for (int axis = 0; axis < 3 && conic_normalize(up); axis++)
+    header->up[axis] = (float)up[axis];
   header->near_z = near_of(header);
   builder->plan = (conic_layers_plan){.context = builder->context,
                                       .bits = header->bits,

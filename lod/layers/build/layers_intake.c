@@ -60,6 +60,13 @@ static int is_direction(const float v[3]) {
   return length2 > 1e-60 && length2 < 1e60;
 }
 
+/* The outline of the circle that does best for an ellipse, by experiment: a scan's lies between its axes, nearer to the
+ * longer; what clip lines cut reaches farther than what is seen of it. A full payload has the ellipse, and a bound. */
+static float outline_of(const conic_layers_intake *intake, double longer, double shorter, int is_cut) {
+  double length = intake->is_full ? longer : is_cut ? shorter : 0.75 * longer + 0.25 * shorter;
+  return (float)(length * (double)intake->cutoff);
+}
+
 /* The normal and the outline of a splat with axes; whether it has them. */
 static int take_axes(conic_layers_intake *intake, const conic_splats *batch, size_t i, conic_layers_raw *raw) {
   float u[3], v[3];
@@ -68,7 +75,7 @@ static int take_axes(conic_layers_intake *intake, const conic_splats *batch, siz
   if (!is_finite(u) || !is_finite(v) || !is_direction(u) || !is_direction(v))
     return 0;
   double a[3] = {(double)u[0], (double)u[1], (double)u[2]}, b[3] = {(double)v[0], (double)v[1], (double)v[2]}, cross[3];
-  double longer = conic_length(conic_dot(a, a) > conic_dot(b, b) ? a : b);
+  double length_a = conic_length(a), length_b = conic_length(b);
   conic_normalize(a);
   conic_normalize(b);
   conic_cross(a, b, cross);
@@ -76,7 +83,9 @@ static int take_axes(conic_layers_intake *intake, const conic_splats *batch, siz
   if (!is_direction(normal))
     return 0;
   conic_layers_code_normal(normal, raw->normal);
-  float outline = (float)(longer * (double)intake->cutoff);
+  float outline =
+      outline_of(intake, length_a > length_b ? length_a : length_b, length_a > length_b ? length_b : length_a,
+                 conic_layers_payload_is_cut(&intake->payload, batch, i));
   raw->size = conic_layers_code_size(outline);
   if (raw->size && !intake->is_full) {
     intake->payload.shortest = outline < intake->payload.shortest ? outline : intake->payload.shortest;

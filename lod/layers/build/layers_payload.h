@@ -32,6 +32,9 @@ void conic_layers_payload_end(conic_layers_payload *payload);
 /* Looks for the values in another batch. */
 void conic_layers_payload_turn_to(conic_layers_payload *payload, const conic_splats *batch);
 
+/* Whether splat i of the batch has clip lines; splats come in their order. */
+int conic_layers_payload_is_cut(conic_layers_payload *payload, const conic_splats *batch, size_t i);
+
 /* Fills the bytes behind the head of a record from splat i of the batch; splats come in their order. */
 void conic_layers_payload_take(conic_layers_payload *payload, const conic_splats *batch, size_t i, void *extra);
 

@@ -293,50 +293,6 @@ double conic_thinner_reach(const conic_thinner *thinner, const uint64_t *keys, s
   return reach;
 }
 
-/* The largest size of a chosen point within the distance, of those in the cells about; 0: none is there. Stops at one
- * that is large enough. */
-static float largest_near(const conic_thinner *thinner, point at, float within2, const float *sizes, float enough) {
-  octant o = octant_of(thinner, at);
-  float largest = 0.0f;
-  for (int i = 0; i < 8; i++) {
-    const cell *found =
-        find_cell(thinner, place_of_cell(o.cell[0] + (i & 1 ? o.side[0] : 0), o.cell[1] + (i & 2 ? o.side[1] : 0),
-                                         o.cell[2] + (i & 4 ? o.side[2] : 0)));
-    for (uint32_t k = found->place == NO_PLACE ? NO_POINT : found->first; k != NO_POINT; k = thinner->links[k].next) {
-      float size = sizes[thinner->rank[thinner->chosen[k]]];
-      if (size > largest && squared_distance(at, thinner->links[k].at) <= within2) {
-        largest = size;
-        if (largest >= enough)
-          return largest;
-      }
-    }
-  }
-  return largest;
-}
-
-/* Past the near cells all are looked at: that is seldom. */
-static float largest_of_all(const conic_thinner *thinner, point at, float within2, const float *sizes) {
-  float largest = 0.0f;
-  for (size_t k = 0; k < thinner->n_chosen; k++)
-    if (sizes[thinner->rank[thinner->chosen[k]]] > largest && squared_distance(at, thinner->links[k].at) <= within2)
-      largest = sizes[thinner->rank[thinner->chosen[k]]];
-  return largest;
-}
-
-double conic_thinner_growth(const conic_thinner *thinner, const uint64_t *keys, size_t n, double within, double size,
-                            const float *sizes, double growth) {
-  float within2 = (float)(within * within * (1.0 + 1e-5));
-  for (size_t i = 0; i < n; i++) {
-    point at = point_of(keys[i]);
-    float enough = (float)(size / growth), largest = largest_near(thinner, at, within2, sizes, enough);
-    if (!(largest > 0.0f))
-      largest = largest_of_all(thinner, at, within2, sizes);
-    if (largest > 0.0f && largest < enough)
-      growth = size / (double)largest;
-  }
-  return growth;
-}
-
 size_t conic_thinner_beside(const conic_thinner *thinner, const float at[3], int is_wide, uint32_t *list, size_t most) {
   octant o = octant_of(thinner, (point){at[0], at[1], at[2]});
   size_t n = 0;

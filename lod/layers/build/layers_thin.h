@@ -30,12 +30,6 @@ size_t conic_thinner_choose(conic_thinner *thinner, size_t target, size_t most, 
  * The greatest of several is the same in whichever order they come; several threads may ask. */
 double conic_thinner_reach(const conic_thinner *thinner, const uint64_t *keys, size_t n, double beyond, double reach);
 
-/* The n points of these keys stand for something that is `size` large. Returns the least factor, not below `growth`, by
- * which one of the chosen points `within` the distance of each has to grow to be as large; sizes[i] is that of the i-th
- * chosen point in the order of the loaded ones. Order and threads do not matter here either. */
-double conic_thinner_growth(const conic_thinner *thinner, const uint64_t *keys, size_t n, double within, double size,
-                            const float *sizes, double growth);
-
 /* Chosen points about a place, by their numbers in the order in which they were chosen, up to `most`: all within the
  * distance of it, or, `is_wide`, all within twice that. Returns how many. */
 size_t conic_thinner_beside(const conic_thinner *thinner, const float at[3], int is_wide, uint32_t *list, size_t most);

@@ -306,6 +306,7 @@ static void fill_header(conic_layers *layers) {
   conic_layers_header *header = &layers->header;
   double diagonal2 = 0.0;
   header->flags = CONIC_LAYERS_UNORIENTED;
+  header->up[2] = 1.0f; /* they are of surveys */
   conic_layers_schema_add(&header->schema, CONIC_LAYERS_SIZE, "size", 0);
   header->n_samples = h->n_points;
   header->bits = CONIC_HIERARCHY_LEVELS;

@@ -258,4 +258,6 @@ void conic_layers_measure(const conic_layers *layers, float cutoff, conic_layers
   scale->near_z = header->near_z;
   scale->splat_length = header->splat_radius / (double)cutoff;
   scale->spacing = header->spacing;
+  for (int axis = 0; axis < 3; axis++)
+    scale->up[axis] = (double)header->up[axis];
 }

@@ -165,6 +165,8 @@ conic_status conic_layers_continue(const conic_layers *layers, conic_layers_opti
   options->quantum_in_spacings = 0;
   options->has_corner = 1;
   memcpy(options->corner, header->origin, sizeof options->corner);
+  for (int axis = 0; axis < 3; axis++)
+    options->up[axis] = (double)header->up[axis];
   options->is_unoriented |= (header->flags & CONIC_LAYERS_UNORIENTED) != 0;
   options->keeps_all |= conic_layers_schema_find(&header->schema, CONIC_LAYERS_AXES) >= 0;
   return CONIC_OK;

@@ -25,7 +25,7 @@ static const conic_file_field header_fields[] = {
     IN_HEADER(quantum),      IN_HEADER(low),        IN_HEADER(high),           IN_HEADER(spacing),
     IN_HEADER(splat_radius), IN_HEADER(near_z),     IN_HEADER(position_bytes), IN_HEADER(normal_bytes),
     IN_HEADER(color_bytes),  IN_HEADER(file_bytes), IN_HEADER(index_sum),      IN_HEADER(most_samples),
-    IN_HEADER(most_bytes),   IN_HEADER(schema.n)};
+    IN_HEADER(most_bytes),   IN_HEADER(schema.n),   IN_HEADER(up)};
 
 static const conic_file_field entry_fields[] = {
     IN_ENTRY(key),       IN_ENTRY(offset),  IN_ENTRY(sum),      IN_ENTRY(n_place), IN_ENTRY(n_bytes),
@@ -86,6 +86,9 @@ static const char *check_lengths(const conic_layers_header *header) {
       return "the box is out of range";
   if (!(header->quantum > 0.0 && edge <= 4.0 * farthest))
     return "the quantum is out of range";
+  for (int axis = 0; axis < 3; axis++)
+    if (!is_finite_within((double)header->up[axis], 1.001))
+      return "what points up is no direction";
   if (!(header->spacing >= 0.0 && header->spacing <= farthest) ||
       !(header->splat_radius > 0.0 && header->splat_radius <= farthest) ||
       !(header->near_z > 0.0 && header->near_z <= farthest))

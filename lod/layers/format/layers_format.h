@@ -18,11 +18,7 @@ enum {
 /* What a reader believes of a file: more is refused. */
 enum { CONIC_LAYERS_MOST_SAMPLES = 1 << 17, CONIC_LAYERS_MOST_LEVELS = 128, CONIC_LAYERS_MOST_BITS = 21 };
 
-enum {
-  CONIC_LAYERS_COLORS = 1,
-  CONIC_LAYERS_UNORIENTED = 2,
-  CONIC_LAYERS_ALL_FLAGS = 3
-};
+enum { CONIC_LAYERS_COLORS = 1, CONIC_LAYERS_UNORIENTED = 2, CONIC_LAYERS_ALL_FLAGS = 3 };
 
 typedef struct conic_layers_header {
   uint32_t version, flags;
@@ -42,6 +38,7 @@ typedef struct conic_layers_header {
   uint32_t most_samples; /* of the largest cloud */
   uint32_t most_bytes;   /* of the largest cloud, compressed */
   conic_layers_schema schema;
+  float up[3]; /* unit: what points up; zero: it is not known */
 } conic_layers_header;
 
 /* A cloud, and the node of the tree whose it is. Clouds are numbered in the order of the file: by level, then by key.
@@ -68,8 +65,8 @@ typedef struct conic_layers_entry {
   float center[3], sphere; /* holds every sample of its place with its outline, at this and every finer level; from the
                               origin */
   float axis[3], cone;     /* unit; the least cosine of a normal of its place to it; -1: no bound */
-  float growth, reach; /* a sample of T is drawn with min(radius, reach + growth × its own outline): there is no hole
-                          that is none of all samples */
+  float growth, reach; /* a sample of T is drawn as large as it is itself, or as reach + growth × its own outline where
+                          that is more, up to the radius */
 } conic_layers_entry;
 
 /* Whether a header of CONIC_LAYERS_HEADER_BYTES is as it was written, by its sum. */
@@ -104,6 +101,7 @@ void conic_layers_mend(unsigned char *bytes, size_t n_bytes);
 /* With what outline a sample whose own is `outline` is drawn where the node is the finest. */
 static inline float conic_layers_outline(const conic_layers_entry *entry, float outline) {
   float grown = entry->reach + entry->growth * outline;
+  grown = grown > outline ? grown : outline;
   return grown < entry->radius ? grown : entry->radius;
 }
 

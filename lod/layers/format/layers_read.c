@@ -63,6 +63,8 @@ static void describe_header(const conic_layers_header *header, conic_layers_info
   info->position_error = conic_layers_position_error(header);
   info->splat_radius = header->splat_radius;
   info->near_z = header->near_z;
+  for (int axis = 0; axis < 3; axis++)
+    info->up[axis] = (double)header->up[axis];
   info->bits_position = bits_a_sample(header->position_bytes, header);
   info->bits_normal = bits_a_sample(header->normal_bytes, header);
   info->bits_color = bits_a_sample(header->color_bytes, header);

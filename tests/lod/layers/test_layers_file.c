@@ -1,5 +1,6 @@
 /* .lpc files: whatever is spoiled is refused, or found when its cloud is read, also where its sums were made right
  * again; bounds that lie are found by the check; memory that runs out is an error. */
+#include "core/base/byte_order.h"
 #include "tests/support/layers_fixture.h"
 #include "tests/support/random_numbers.h"
 
@@ -82,6 +83,10 @@ static void test_lies(conic_context *context, bytes file) {
       conic_layers_mend(spoiled, file.n);
       try_bytes(context, spoiled, file.n);
     }
+  memcpy(spoiled, file.at, file.n);
+  conic_store_float(spoiled + 200, -3.0f); /* of what points up, y */
+  conic_layers_mend(spoiled, file.n);
+  CHECK(try_bytes(context, spoiled, file.n) == REFUSED);
   free(spoiled);
 }
 
