@@ -182,8 +182,9 @@ static int is_for_group(const laz_reading *r, size_t i) {
          r->chunks[i].n_bytes <= conic_laz_most_bytes(r->format, most);
 }
 
+/* Chunks of no bytes, which damaged files have, have an address, too. */
 static conic_status reserve_room(laz_reading *r, unsigned char **bytes, size_t *room, size_t wanted) {
-  return wanted <= *room ? CONIC_OK : conic_memory_reserve(r->context, bytes, 0, wanted, room, 1);
+  return wanted < *room ? CONIC_OK : conic_memory_reserve(r->context, bytes, 0, wanted + 1, room, 1);
 }
 
 /* As many as keep all threads busy for a while, where the chunks are of the usual size. */
