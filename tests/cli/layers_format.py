@@ -239,6 +239,14 @@ def write_ply(path, n):
     return a
 
 
+def share_left(lines, cutoff):
+    """Of each disc, the share that lines which must all keep a place leave."""
+    x, y = np.meshgrid(np.linspace(-cutoff, cutoff, 41), np.linspace(-cutoff, cutoff, 41))
+    disc = x * x + y * y <= cutoff * cutoff
+    kept = [np.all([a * x + b * y + c >= 0 for a, b, c in some] + [disc], 0).sum() for some in lines]
+    return np.array(kept) / disc.sum()
+
+
 def expect(what, found, wanted, most):
     worst = np.abs(np.asarray(found, "f8") - np.asarray(wanted, "f8")).max()
     if not worst <= most:
@@ -263,9 +271,9 @@ def main():
         expect(payload + " depth", s["depth"], made["depth"][i], 0)
         lengths = [np.linalg.norm(made[c], axis=1)[i] for c in "uv"]
         if payload == "plain":
-            longer, shorter, is_cut = np.maximum(*lengths), np.minimum(*lengths), i % 3 > 0
-            outline = 1.5 * np.where(is_cut, shorter, 0.75 * longer + 0.25 * shorter)
-            expect("size", s["size"] / outline, 1, file["table"]["size"]["error"] + 0.01)
+            longer, drawn = np.maximum(*lengths), np.prod(lengths, 0) * share_left(made["lines"], 1.5)[i]
+            outline = 1.5 * 0.5 * (longer + np.sqrt(drawn))
+            expect("size", s["size"] / outline, 1, file["table"]["size"]["error"] + 0.04)
             check_nodes(file, s["size"])
             continue
         for k, c in enumerate("uv"):
