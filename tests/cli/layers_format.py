@@ -272,7 +272,7 @@ def main():
         lengths = [np.linalg.norm(made[c], axis=1)[i] for c in "uv"]
         if payload == "plain":
             longer, drawn = np.maximum(*lengths), np.prod(lengths, 0) * share_left(made["lines"], 1.5)[i]
-            outline = 1.5 * 0.5 * (longer + np.sqrt(drawn))
+            outline = 1.5 * (2 * longer + np.sqrt(drawn)) / 3
             expect("size", s["size"] / outline, 1, file["table"]["size"]["error"] + 0.04)
             check_nodes(file, s["size"])
             continue

@@ -79,11 +79,11 @@ static double share_left(const conic_clip *clip, float cutoff) {
   return (double)n_left / (double)n;
 }
 
-/* The outline of the circle that does best for an ellipse, by experiment: half way between one that holds all of it and
- * one as large as what is drawn of it. A full payload has the ellipse, and a bound. */
+/* The outline of the circle that stands for an ellipse: between one that holds all of it and one as large as what is
+ * drawn of it, as near to the latter as leaves no slits, by experiment. A full payload has the ellipse, and a bound. */
 static float outline_of(const conic_layers_intake *intake, double longer, double shorter, const conic_clip *clip) {
   double share = clip && !intake->is_full ? share_left(clip, intake->cutoff) : 1.0;
-  double length = intake->is_full ? longer : 0.5 * (longer + sqrt(longer * shorter * share));
+  double length = intake->is_full ? longer : (2.0 * longer + sqrt(longer * shorter * share)) / 3.0;
   return (float)(length * (double)intake->cutoff);
 }
 
