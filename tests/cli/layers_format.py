@@ -139,14 +139,18 @@ def read(path, zstd):
                       "type": type_, "scale": scale, "offset": offset, "low": low, "high": high, "error": error,
                       "bytes": struct.unpack_from("<Q", data, at + 104)[0]})
         at += 112
-    sums, parts, total = [0] * n_attributes, {}, 0
+    sums, parts, total, nodes = [0] * n_attributes, {}, 0, []
     for c in range(n_clouds):
         entry = at + 112 * c
         key, offset, _, n_place = struct.unpack_from("<4Q", data, entry)
         n_bytes, n = struct.unpack_from("<2I", data, entry + 32)
-        child, = struct.unpack_from("<I", data, entry + 44)
-        most, = struct.unpack_from("<f", data, entry + 64)
+        parent, child, n_drawn = struct.unpack_from("<3I", data, entry + 40)
+        depth, = struct.unpack_from("<H", data, entry + 54)
+        spacing, covering, most, error = struct.unpack_from("<4f", data, entry + 56)
         growth, reach = struct.unpack_from("<2f", data, entry + 104)
+        nodes.append({"first": key, "last": key + (1 << (3 * bits - depth)) - 1, "parent": parent, "child": child,
+                      "samples": n_place, "drawn": n_drawn, "spacing": spacing, "covering": covering, "most": most,
+                      "growth": growth, "reach": reach, "error": error})
         n_streams = sum(a["streams"] for a in table)
         sizes = struct.unpack_from("<%dI" % n_streams, data, offset)
         here, k, cloud = offset + 4 * n_streams, 0, {}
@@ -168,15 +172,43 @@ def read(path, zstd):
             fail("a cloud is not as long as it says")
         if child == 0 and (growth != 1 or reach != 0):
             fail("a leaf does not draw its samples as they are")
-        if reach + growth * 0 > most:
-            fail("a reach is farther than the greatest outline")
         total += n
+        cloud["key"], cloud["cloud"] = keys, [c] * n
         for name, values in cloud.items():
             parts.setdefault(name, []).extend(values)
     if total != n_samples or sums != [a["bytes"] for a in table]:
         fail("samples or bytes are not as many as the header says")
     samples = {name: values if name == "lines" else np.array(values) for name, values in parts.items()}
-    return {"quantum": quantum, "table": {a["name"]: a for a in table}, "samples": samples}
+    return {"quantum": quantum, "table": {a["name"]: a for a in table}, "samples": samples, "nodes": nodes}
+
+
+def check_nodes(file, outline):
+    """What the index says of each node, held against all samples of its place by brute force."""
+    s, nodes = file["samples"], file["nodes"]
+    keys = np.array([int(q) for q in s["key"]], object)
+    for i, node in enumerate(nodes):
+        above, k = set(), i
+        while k not in above:
+            above.add(k)
+            k = nodes[k]["parent"]
+        place = (keys >= node["first"]) & (keys <= node["last"])
+        drawn = place & np.isin(s["cloud"], list(above))
+        if place.sum() != node["samples"] or drawn.sum() != node["drawn"]:
+            fail("node %d holds or draws another number of samples" % i)
+        p, t, own = s["position"][place], s["position"][drawn], outline[drawn]
+        away = np.linalg.norm(p[:, None] - t[None], axis=2).min(1).max()
+        slack = 1e-3 * node["covering"] + 1e-4 * node["spacing"]
+        if not away <= node["covering"] <= away + slack:
+            fail("node %d: covering radius %g, by brute force %g" % (i, node["covering"], away))
+        outlines = np.minimum(np.maximum(own, node["reach"] + node["growth"] * own), node["most"])
+        wanted = np.maximum(own, away) if node["child"] else own
+        expect("node %d: outlines" % i, outlines, wanted, slack)
+        if node["child"] and not np.max(outlines - own) <= node["error"]:
+            fail("node %d: an outline reaches farther out than the error" % i)
+        if node["child"] and len(t) > 1:  # chosen samples keep apart: a Poisson disc set
+            between = np.linalg.norm(t[:, None] - t[None], axis=2) + 1e9 * np.eye(len(t))
+            if not 0.5 * node["spacing"] < between.min():
+                fail("node %d: two samples are %g apart, the spacing is %g" % (i, between.min(), node["spacing"]))
 
 
 def write_ply(path, n):
@@ -207,6 +239,14 @@ def write_ply(path, n):
     return a
 
 
+def share_left(lines, cutoff):
+    """Of each disc, the share that lines which must all keep a place leave."""
+    x, y = np.meshgrid(np.linspace(-cutoff, cutoff, 41), np.linspace(-cutoff, cutoff, 41))
+    disc = x * x + y * y <= cutoff * cutoff
+    kept = [np.all([a * x + b * y + c >= 0 for a, b, c in some] + [disc], 0).sum() for some in lines]
+    return np.array(kept) / disc.sum()
+
+
 def expect(what, found, wanted, most):
     worst = np.abs(np.asarray(found, "f8") - np.asarray(wanted, "f8")).max()
     if not worst <= most:
@@ -231,9 +271,10 @@ def main():
         expect(payload + " depth", s["depth"], made["depth"][i], 0)
         lengths = [np.linalg.norm(made[c], axis=1)[i] for c in "uv"]
         if payload == "plain":
-            longer, shorter, is_cut = np.maximum(*lengths), np.minimum(*lengths), i % 3 > 0
-            outline = 1.5 * np.where(is_cut, shorter, 0.75 * longer + 0.25 * shorter)
-            expect("size", s["size"] / outline, 1, file["table"]["size"]["error"] + 0.01)
+            longer, drawn = np.maximum(*lengths), np.prod(lengths, 0) * share_left(made["lines"], 1.5)[i]
+            outline = 1.5 * (2 * longer + np.sqrt(drawn)) / 3
+            expect("size", s["size"] / outline, 1, file["table"]["size"]["error"] + 0.04)
+            check_nodes(file, s["size"])
             continue
         for k, c in enumerate("uv"):
             expect("axis", (s[c] - made[c][i]) / lengths[k][:, None], 0, 2e-4)

@@ -71,6 +71,15 @@ static inline layers_frame layers_open(int threads, const char *name, const coni
   return frame;
 }
 
+/* How many pixels the disc of a sample covers about: no hole of a coarser picture is larger. */
+static inline double layers_disc_pixels(const layers_frame *frame) {
+  const conic_camera *camera = &frame->f.camera;
+  conic_layers_scale scale;
+  conic_layers_measure(frame->layers, 1.0f, &scale);
+  double radius_px = scale.splat_length * camera->fx / camera->cam_from_world[2][3];
+  return 3.14159 * radius_px * radius_px;
+}
+
 static inline void layers_close(layers_frame *frame) {
   conic_layers_close(frame->layers);
   fixture_close(&frame->f);

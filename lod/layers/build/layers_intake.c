@@ -60,10 +60,30 @@ static int is_direction(const float v[3]) {
   return length2 > 1e-60 && length2 < 1e60;
 }
 
-/* The outline of the circle that does best for an ellipse, by experiment: a scan's lies between its axes, nearer to the
- * longer; what clip lines cut reaches farther than what is seen of it. A full payload has the ellipse, and a bound. */
-static float outline_of(const conic_layers_intake *intake, double longer, double shorter, int is_cut) {
-  double length = intake->is_full ? longer : is_cut ? shorter : 0.75 * longer + 0.25 * shorter;
+/* Of an ellipse's area, the share that its clip lines leave, counted at places in it. */
+static double share_left(const conic_clip *clip, float cutoff) {
+  enum { ACROSS = 6, SQUARE = 42 }; /* of a disc of radius 6.5 */
+  int n = 0, n_left = 0;
+  for (int i = -ACROSS; i <= ACROSS; i++)
+    for (int k = -ACROSS; k <= ACROSS; k++) {
+      int n_kept = 0;
+      if (i * i + k * k > SQUARE)
+        continue;
+      for (int line = 0; line < clip->n_lines; line++) {
+        const float *l = clip->lines[line];
+        n_kept += !((l[0] * (float)i + l[1] * (float)k) * cutoff / ((float)ACROSS + 0.5f) + l[2] < 0.0f);
+      }
+      n++;
+      n_left += n_kept >= (clip->operation == CONIC_CLIP_OR ? 1 : clip->n_lines);
+    }
+  return (double)n_left / (double)n;
+}
+
+/* The outline of the circle that stands for an ellipse: between one that holds all of it and one as large as what is
+ * drawn of it, as near to the latter as leaves no slits, by experiment. A full payload has the ellipse, and a bound. */
+static float outline_of(const conic_layers_intake *intake, double longer, double shorter, const conic_clip *clip) {
+  double share = clip && !intake->is_full ? share_left(clip, intake->cutoff) : 1.0;
+  double length = intake->is_full ? longer : (2.0 * longer + sqrt(longer * shorter * share)) / 3.0;
   return (float)(length * (double)intake->cutoff);
 }
 
@@ -85,7 +105,7 @@ static int take_axes(conic_layers_intake *intake, const conic_splats *batch, siz
   conic_layers_code_normal(normal, raw->normal);
   float outline =
       outline_of(intake, length_a > length_b ? length_a : length_b, length_a > length_b ? length_b : length_a,
-                 conic_layers_payload_is_cut(&intake->payload, batch, i));
+                 conic_layers_payload_clip(&intake->payload, batch, i));
   raw->size = conic_layers_code_size(outline);
   if (raw->size && !intake->is_full) {
     intake->payload.shortest = outline < intake->payload.shortest ? outline : intake->payload.shortest;

@@ -92,17 +92,18 @@ static void take_ellipse(conic_layers_payload *p, const conic_splats *batch, siz
   memcpy(bytes_in_record(p, (uint32_t)p->axes, extra), &axes, sizeof axes);
 }
 
-int conic_layers_payload_is_cut(conic_layers_payload *payload, const conic_splats *batch, size_t i) {
+const conic_clip *conic_layers_payload_clip(conic_layers_payload *payload, const conic_splats *batch, size_t i) {
   size_t *at = &payload->i_clip;
   while (*at < batch->n_clips && batch->clips[*at].splat < i)
     ++*at;
-  return *at < batch->n_clips && batch->clips[*at].splat == i;
+  return *at < batch->n_clips && batch->clips[*at].splat == i ? &batch->clips[*at] : NULL;
 }
 
 static void take_clip_lines(conic_layers_payload *p, const conic_splats *batch, size_t i, void *extra) {
   conic_layers_lines lines = {0, {{0, 0}, {0, 0}}};
-  if (conic_layers_payload_is_cut(p, batch, i))
-    conic_layers_code_lines(&batch->clips[p->i_clip], &lines);
+  const conic_clip *clip = conic_layers_payload_clip(p, batch, i);
+  if (clip)
+    conic_layers_code_lines(clip, &lines);
   p->n_clips += lines.kind > 0;
   memcpy(bytes_in_record(p, (uint32_t)p->clip, extra), &lines, sizeof lines);
 }

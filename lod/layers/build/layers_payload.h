@@ -14,11 +14,11 @@ typedef struct conic_layers_payload {
   float cutoff;
   int axes, opacity, dot, clip; /* attributes; 0: it has none of it */
   uint64_t n_translucent, n_dots, n_clips;
-  float shortest, longest;     /* axes or outlines: of those that have one */
+  float shortest, longest; /* axes or outlines: of those that have one */
   size_t n_values;
-  uint32_t value[CONIC_MOST_POINT_VALUES];              /* attributes */
-  const double *column[CONIC_MOST_POINT_VALUES];        /* of the batch; null: it has none */
-  size_t n_column;                                      /* so many of each */
+  uint32_t value[CONIC_MOST_POINT_VALUES];       /* attributes */
+  const double *column[CONIC_MOST_POINT_VALUES]; /* of the batch; null: it has none */
+  size_t n_column;                               /* so many of each */
   double low[CONIC_MOST_POINT_VALUES], high[CONIC_MOST_POINT_VALUES];
   conic_value_sample *seen[CONIC_MOST_POINT_VALUES];
   size_t i_clip; /* of the batch, the next record */
@@ -32,8 +32,8 @@ void conic_layers_payload_end(conic_layers_payload *payload);
 /* Looks for the values in another batch. */
 void conic_layers_payload_turn_to(conic_layers_payload *payload, const conic_splats *batch);
 
-/* Whether splat i of the batch has clip lines; splats come in their order. */
-int conic_layers_payload_is_cut(conic_layers_payload *payload, const conic_splats *batch, size_t i);
+/* The clip lines of splat i of the batch, or null; splats come in their order. */
+const conic_clip *conic_layers_payload_clip(conic_layers_payload *payload, const conic_splats *batch, size_t i);
 
 /* Fills the bytes behind the head of a record from splat i of the batch; splats come in their order. */
 void conic_layers_payload_take(conic_layers_payload *payload, const conic_splats *batch, size_t i, void *extra);

@@ -175,17 +175,13 @@ static void check_choice(void) {
  * coarser pictures cover all middles of samples. */
 static void check_coverage(void) {
   layers_frame full = layers_open(2, path, NULL), coarse = layers_open(2, path, NULL);
-  const conic_camera *camera = &full.f.camera;
-  conic_layers_scale scale;
-  conic_layers_measure(full.layers, 1.0f, &scale);
-  double radius_px = scale.splat_length * camera->fx / camera->cam_from_world[2][3];
   CHECK_OK(layers_draw(&full));
   for (double error = 1.0; error < 40.0; error *= 2.0) {
     conic_difference difference;
     coarse.draw.error_px = error;
     CHECK_OK(layers_draw(&coarse));
     CHECK_OK(conic_image_compare(full.f.context, &full.f.image, &coarse.f.image, &difference));
-    if ((double)difference.largest_hole > 3.14159 * radius_px * radius_px) {
+    if ((double)difference.largest_hole > layers_disc_pixels(&full)) {
       fprintf(stderr, "error %g: a hole of %zu pixels\n", error, difference.largest_hole);
       check_failures++;
     }
