@@ -137,12 +137,6 @@ static conic_status put_all_aside(bands *b) {
   gathering.receive = take_part;
   gathering.cookie = b;
   gathering.most = b->most;
-  b->spill.layers = d->layers;
-  b->spill.cut = d->cut;
-  b->spill.view = &b->view;
-  b->spill.samples = d->samples;
-  b->spill.windows = &b->windows;
-  b->spill.set = d->set;
   size_t block_count = (size_t)b->block_bytes / (b->windows.n_windows * conic_layers_spill_bytes(d->layers));
   conic_status status = conic_layers_spill_begin(block_count, &b->spill);
   if (status == CONIC_OK)
@@ -281,6 +275,12 @@ static conic_status draw_windows(bands *b, conic_render_statistics *statistics, 
   memset(statistics, 0, sizeof *statistics);
   b->sum = statistics;
   b->render = *d->render;
+  b->spill = (conic_layers_spill){.layers = d->layers,
+                                  .cut = d->cut,
+                                  .view = &b->view,
+                                  .samples = d->samples,
+                                  .windows = &b->windows,
+                                  .set = d->set};
   conic_renderer_give_back(d->renderer); /* which putting aside takes in its place */
   conic_layers_view_init(&d->layers->header, &b->fine, d->render, d->render->near_z, &b->view);
   conic_status status = conic_renderer_check_parts(d->renderer);
