@@ -25,8 +25,9 @@ typedef struct conic_layers conic_layers;
 /* How a file is read. All but the first and the last are of URLs alone. */
 typedef struct conic_layers_access {
   size_t size;           /* sizeof(conic_layers_access), set by the init function */
-  uint64_t memory_bytes; /* what drawing may take: a program of 20 MiB, index, image, clouds, and what is drawn of them;
-                            at least a quarter is for the last two, and what one tile needs comes on top */
+  uint64_t memory_bytes; /* what drawing may take: a program of 14 MiB and 2 a thread, index, image, clouds, and what is
+                            drawn of them; at least an eighth is for the last two, and what 8 × 8 samples need comes on
+                            top; what does not fit goes to a file without a name in $TMPDIR, $TEMP or /var/tmp */
   double connect_seconds; /* a server that is not reached within these is asked again */
   double stall_seconds;   /* so is one that sends under 1 KiB/s for so long */
   int n_retries;          /* so often, with growing pauses, before a cloud is given up */

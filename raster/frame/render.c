@@ -460,7 +460,7 @@ int conic_renderer_has_parts(const conic_renderer *renderer) {
   return !renderer->backend;
 }
 
-static conic_status check_part(const conic_renderer *renderer) {
+conic_status conic_renderer_check_parts(const conic_renderer *renderer) {
   if (!conic_renderer_has_parts(renderer))
     return conic_fail(renderer->context, CONIC_ERROR_UNSUPPORTED,
                       "render: only the processor draws a picture in parts; more memory makes it one");
@@ -471,7 +471,7 @@ conic_status conic_render_part(conic_renderer *renderer, const conic_splats *spl
                                const conic_render_options *options, const conic_part *part, conic_image *image,
                                conic_render_statistics *statistics) {
   const conic_whole_drawing alone = {.splats = splats};
-  conic_status status = check_part(renderer);
+  conic_status status = conic_renderer_check_parts(renderer);
   if (status != CONIC_OK)
     return status;
   frame f = {.renderer = renderer, .splats = splats, .image = image, .part = *part, .is_part = 1};
@@ -481,7 +481,7 @@ conic_status conic_render_part(conic_renderer *renderer, const conic_splats *spl
 conic_status conic_render_hiding(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
                                  const conic_render_options *options, float *hiding) {
   const conic_whole_drawing alone = {.splats = splats};
-  conic_status status = check_part(renderer);
+  conic_status status = conic_renderer_check_parts(renderer);
   if (status != CONIC_OK)
     return status;
   frame f = {.renderer = renderer, .splats = splats, .part = whole_of(camera)};

@@ -13,6 +13,9 @@ typedef struct conic_window {
 /* Whether the renderer draws parts: the processor does, other devices do not. */
 int conic_renderer_has_parts(const conic_renderer *renderer);
 
+/* An error where it does not: UNSUPPORTED. */
+conic_status conic_renderer_check_parts(const conic_renderer *renderer);
+
 /* Gives back the memory that is kept from picture to picture. */
 void conic_renderer_give_back(conic_renderer *renderer);
 

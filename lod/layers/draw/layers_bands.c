@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/message.h"
 #include "lod/layers/draw/layers_spill.h"
 #include "raster/frame/samples.h"
 #include "raster/view/part.h"
@@ -120,6 +121,9 @@ static conic_status take_part(void *cookie, conic_layers_set *set) {
   bands *b = cookie;
   conic_render_statistics counts = {.splats_in = 0};
   conic_status status = conic_layers_spill_take(&b->spill);
+  double fraction = (double)set->n_chosen / (b->n_expected + 1.0);
+  if (status == CONIC_OK)
+    status = conic_progress(b->d->layers->context, "gather", fraction < 1.0 ? fraction : 1.0);
   if (status != CONIC_OK || !has_several_bands(b))
     return status;
   status = conic_samples_count(b->d->layers->context, &set->splats, &b->fine, b->d->render, &counts);
@@ -133,12 +137,6 @@ static conic_status put_all_aside(bands *b) {
   gathering.receive = take_part;
   gathering.cookie = b;
   gathering.most = b->most;
-  b->spill.layers = d->layers;
-  b->spill.cut = d->cut;
-  b->spill.view = &b->view;
-  b->spill.samples = d->samples;
-  b->spill.windows = &b->windows;
-  b->spill.set = d->set;
   size_t block_count = (size_t)b->block_bytes / (b->windows.n_windows * conic_layers_spill_bytes(d->layers));
   conic_status status = conic_layers_spill_begin(block_count, &b->spill);
   if (status == CONIC_OK)
@@ -277,9 +275,17 @@ static conic_status draw_windows(bands *b, conic_render_statistics *statistics, 
   memset(statistics, 0, sizeof *statistics);
   b->sum = statistics;
   b->render = *d->render;
+  b->spill = (conic_layers_spill){.layers = d->layers,
+                                  .cut = d->cut,
+                                  .view = &b->view,
+                                  .samples = d->samples,
+                                  .windows = &b->windows,
+                                  .set = d->set};
   conic_renderer_give_back(d->renderer); /* which putting aside takes in its place */
   conic_layers_view_init(&d->layers->header, &b->fine, d->render, d->render->near_z, &b->view);
-  conic_status status = plan_windows(b);
+  conic_status status = conic_renderer_check_parts(d->renderer);
+  if (status == CONIC_OK)
+    status = plan_windows(b);
   if (status == CONIC_OK)
     status = put_all_aside(b);
   if (status == CONIC_OK && d->is_gathered)
