@@ -358,6 +358,10 @@ static conic_status find_drawing_spacing(conic_source *source, double *spacing) 
   return conic_splats_spacing(source->context, &((drawing_source *)source)->splats, spacing);
 }
 
+static const conic_splats *list_drawing_splats(const conic_source *source) {
+  return &((const drawing_source *)source)->splats;
+}
+
 static void tell_drawing_rest(const conic_source *source, conic_facts *facts) {
   const drawing_source *d = (const drawing_source *)source;
   const conic_repairs *repairs = &d->repairs;
@@ -378,4 +382,5 @@ const conic_source_kind conic_source_kind_drawing = {
     .choose = choose_in_drawing,
     .input_of = find_drawing_input,
     .tell_rest = tell_drawing_rest,
+    .list_splats = list_drawing_splats,
 };

@@ -3,7 +3,7 @@
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
-#include "cli/commands/cut_region.h"
+#include "cli/cut_region.h"
 #include "conic/layers_draw.h"
 #include "core/base/message.h"
 #include "core/files/file.h"

@@ -37,6 +37,7 @@ int main(int argc, char **argv) {
   seeds_all_assimp(set);
   seeds_all_records(set);
   seeds_all_hierarchies(set);
+  seeds_all_references(set);
   seeds_text(set, "suite", "json", SUITE_EXAMPLE);
   for (int i = 0; i < set->n; i++)
     write_seed(argv[1], &set->seeds[i]);

@@ -2,6 +2,7 @@
 #ifndef CONIC_LAYERS_GATHER_H
 #define CONIC_LAYERS_GATHER_H
 
+#include "core/pictures/georeference.h"
 #include "lod/layers/draw/layers_cut.h"
 
 /* What a cloud has in a place of the cut. */
@@ -46,6 +47,15 @@ typedef struct conic_layers_gathering {
 /* Fills the set with what is to be drawn of the places that are shown or grazing; those hidden give nothing. Clouds are
  * read as they are needed, no more of them at a time than the cache holds. Errors: as conic_layers_store_load. */
 conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gathering *gathering, conic_layers_set *set);
+
+/* Fills the layers' own set, which *set becomes, with the samples that conic_layers_read_samples gives for a part, and
+ * those beside it that reach into it: all at once, in the order of the file, the dots as they are. Where there are more
+ * than `most` (0: any number) the set is cut short. Errors: as there. */
+conic_status conic_layers_gather_part(conic_layers *layers, float cutoff, const conic_layers_region *part, size_t most,
+                                      conic_layers_set **set);
+
+/* Which world its coordinates are of, as far as the file says so; the caller releases it. Errors: MEMORY. */
+conic_status conic_layers_find_georeference(const conic_layers *layers, conic_georeference *reference);
 
 void conic_layers_set_release(conic_context *context, conic_layers_set *set);
 

@@ -1,4 +1,4 @@
-#include "cli/commands/cut_region.h"
+#include "cli/cut_region.h"
 
 #include <math.h>
 #include <string.h>
