@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/threads.h"
+#include "core/splats/point_values.h"
 #include "lod/layers/draw/layers_octree.h"
 
 /* Pieces are small: so many make a task. */
@@ -28,6 +29,7 @@ void conic_layers_set_release(conic_context *context, conic_layers_set *set) {
   conic_memory_release(context, set->lines);
   conic_memory_release(context, set->splats.clips);
   conic_memory_release(context, set->pieces);
+  conic_point_values_destroy(context, set->named);
   memset(set, 0, sizeof *set);
 }
 
@@ -59,6 +61,26 @@ static void place_arrays(const conic_layers *layers, conic_layers_set *set) {
     set->splats.dot = next;
 }
 
+/* The values that are handed on, as columns of the file's names. */
+static conic_status name_values(const conic_layers *layers, conic_layers_set *set) {
+  const conic_layers_choice *choice = &layers->choice;
+  conic_point_values_destroy(layers->context, set->named);
+  set->splats.values = set->named = NULL;
+  if (choice->n_kept == 0)
+    return CONIC_OK;
+  set->named = conic_memory_allocate_zeroed(layers->context, 1, sizeof *set->named);
+  if (!set->named)
+    return CONIC_ERROR_MEMORY;
+  set->named->n = set->named->n_columns = choice->n_kept;
+  for (uint32_t k = 0; k < choice->n_kept; k++) {
+    const conic_layers_attribute *value = &layers->header.schema.list[choice->kept[k]];
+    memcpy(set->named->field[k].name, value->name, sizeof value->name);
+    set->named->field[k].type = conic_layers_number_name(value->type);
+  }
+  set->splats.values = set->named;
+  return conic_point_values_reserve(layers->context, set->named, set->room);
+}
+
 /* Room for `count` splats, of which `used` are kept. */
 static conic_status make_room_for_splats(const conic_layers *layers, conic_layers_set *set, size_t used, size_t count) {
   conic_context *context = layers->context;
@@ -80,6 +102,8 @@ static conic_status make_room_for_splats(const conic_layers *layers, conic_layer
   conic_status status = conic_memory_grow(context, &set->ids, used, room, sizeof *set->ids);
   if (status == CONIC_OK && splats_have(layers, CONIC_LAYERS_CLIP))
     status = conic_memory_grow(context, &set->lines, used, room, sizeof *set->lines);
+  if (status == CONIC_OK && set->named)
+    status = conic_point_values_reserve(context, set->named, room);
   if (status != CONIC_OK)
     set->room = 0; /* nothing is kept of it */
   else
@@ -307,6 +331,11 @@ static inline float drawn_sigma(const splat_copying *c, size_t i) {
   return (outline < c->most ? outline : c->most) / c->cutoff;
 }
 
+static void copy_values(const gather *g, const conic_layers_cloud *cloud, size_t i_cloud, size_t k) {
+  for (size_t v = 0; g->set->named && v < g->set->named->n; v++)
+    g->set->named->value[v][k] = cloud->values[v * cloud->count + i_cloud];
+}
+
 /* What else a splat has. At full resolution it is drawn as it came, in coarser places as a circle without lines. */
 static void copy_payload(const splat_copying *c, size_t i_cloud, size_t k) {
   const conic_layers_cloud *cloud = c->cloud;
@@ -360,6 +389,8 @@ static void fill_piece(const gather *g, conic_layers_piece *piece) {
     copy_all(&c, n, first_id);
     for (size_t i = 0; i < n && cloud->axis[0]; i++)
       copy_payload(&c, piece->first + i, i);
+    for (size_t i = 0; i < n && g->set->named; i++)
+      copy_values(g, cloud, piece->first + i, piece->at + i);
     return;
   }
   sieve s = begin_sieve(g, piece, cloud);
@@ -368,6 +399,7 @@ static void fill_piece(const gather *g, conic_layers_piece *piece) {
       copy_one(&c, i, k, first_id + (uint32_t)i);
       if (cloud->axis[0])
         copy_payload(&c, piece->first + i, k);
+      copy_values(g, cloud, piece->first + i, piece->at + k);
       k++;
     }
 }
@@ -491,6 +523,8 @@ conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gather
   set->is_cut_short = 0;
   memcpy(set->splats.origin, layers->header.origin, sizeof set->splats.origin);
   conic_status status = list_pieces(&g);
+  if (status == CONIC_OK && (set->named ? set->named->n : 0) != layers->choice.n_kept)
+    status = name_values(layers, set);
   if (status == CONIC_OK)
     status = make_room_for_splats(layers, set, 0, gathering->most ? gathering->most : expect(&g) + 1);
   if (status != CONIC_OK || set->n_pieces == 0)
@@ -503,5 +537,7 @@ conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gather
   if (status == CONIC_OK && set->splats.dot && gathering->camera)
     status = conic_splats_face(layers->context, &set->splats, gathering->camera, set->splats.tangent_u,
                                set->splats.tangent_v);
+  if (set->named)
+    set->named->count = set->splats.count;
   return status == CONIC_OK ? list_lines(layers, set) : status;
 }

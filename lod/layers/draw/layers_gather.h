@@ -23,7 +23,8 @@ struct conic_layers_set {
   size_t room;               /* of all three */
   size_t clips_room;
   void *arrays;
-  conic_layers_piece *pieces; /* in the order of the file */
+  struct conic_point_values *named; /* the splats' values, where some are kept */
+  conic_layers_piece *pieces;       /* in the order of the file */
   size_t n_pieces, pieces_room;
   int is_cut_short; /* there were more splats than asked for at most */
 };

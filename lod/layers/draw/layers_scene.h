@@ -17,7 +17,7 @@ struct conic_layers {
   int is_remote;
   conic_ranges *ranges;               /* of the clouds */
   struct conic_layers_octree *octree; /* null: a .lpc */
-  uint64_t n_told; /* bytes received that a picture's statistics have told of */
+  uint64_t n_told;                    /* bytes received that a picture's statistics have told of */
   conic_layers_header header;
   conic_layers_entry *entries;
   uint64_t *first_sample; /* number of each cloud's first, in the order of the file */
@@ -29,6 +29,10 @@ struct conic_layers {
   struct conic_layers_facings *facings; /* likewise */
   struct conic_layers_set *set;         /* what is gathered to be drawn; likewise */
 };
+
+/* Which values the samples that are gathered from now on have by name: as conic_layers_region's keep. Errors: INPUT,
+ * MEMORY. */
+conic_status conic_layers_keep(conic_layers *layers, const char *names);
 
 /* How its files are read. */
 void conic_layers_ranges_options(const conic_layers *layers, conic_ranges_options *options);

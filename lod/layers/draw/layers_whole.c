@@ -168,6 +168,8 @@ conic_status conic_layers_read_samples(conic_layers *layers, float cutoff, const
   if (given && (!conic_options_take(&part, given) || !(part.error >= 0.0)))
     return conic_fail(layers->context, CONIC_ERROR_ARGUMENT, "%s: a part of it that has no meaning", layers->name);
   conic_status status = expand_all(layers);
+  if (status == CONIC_OK)
+    status = conic_layers_keep(layers, part.keep);
   if (status != CONIC_OK)
     return status;
   status = list_finest(layers, &part, 0.0, &list);
@@ -203,12 +205,8 @@ conic_status conic_layers_gather_part(conic_layers *layers, float cutoff, const 
   return status;
 }
 
-conic_status conic_layers_continue(const conic_layers *layers, conic_layers_options *options) {
+void conic_layers_continue(const conic_layers *layers, conic_layers_options *options) {
   const conic_layers_header *header = &layers->header;
-  if (conic_layers_schema_find(&header->schema, CONIC_LAYERS_VALUE) >= 0)
-    return conic_fail(layers->context, CONIC_ERROR_UNSUPPORTED,
-                      "%s: its samples have values by name, which are not handed on: build it again with --keep",
-                      layers->name);
   options->cloud_size = header->cloud_size;
   options->quantum = header->quantum;
   options->quantum_in_spacings = 0;
@@ -216,7 +214,6 @@ conic_status conic_layers_continue(const conic_layers *layers, conic_layers_opti
   memcpy(options->corner, header->origin, sizeof options->corner);
   options->is_unoriented |= (header->flags & CONIC_LAYERS_UNORIENTED) != 0;
   options->keeps_all |= conic_layers_schema_find(&header->schema, CONIC_LAYERS_AXES) >= 0;
-  return CONIC_OK;
 }
 
 conic_status conic_layers_find_georeference(const conic_layers *layers, conic_georeference *reference) {
