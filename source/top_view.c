@@ -11,7 +11,7 @@
 #include "source/top_bins.h"
 #include "source/top_lift.h"
 
-enum { BLOCK = CONIC_TOP_BLOCK };
+enum { BLOCK = CONIC_TOP_BLOCK, LEAST_TILE = 8 };
 
 struct conic_top_view {
   conic_source *source;
@@ -177,17 +177,26 @@ static void add_top_statistics(const conic_render_statistics *one, conic_render_
   sum->ms.frame += before.ms.frame;
 }
 
+/* The picture's tiles, or smaller ones that a window is made of. */
+static int tile_of(const conic_window *window, int tile) {
+  while (tile > window->x_end - window->x_begin || tile > window->y_end - window->y_begin)
+    tile /= 2;
+  return tile;
+}
+
 static conic_status draw_lifted(top_block *b, const conic_window *window) {
   conic_top_view *top = b->top;
   conic_splats *splats = &top->set.splats;
+  conic_render_options render = top->render;
   conic_render_statistics one;
   conic_status status = CONIC_OK;
+  render.tile = tile_of(window, render.tile);
   if (splats->count == 0 && !top->render.has_background)
     return CONIC_OK; /* planes are zero */
   if (splats->dot)
     status = conic_splats_face(top->context, splats, &b->camera, splats->tangent_u, splats->tangent_v);
   if (status == CONIC_OK && top->samples == 1 && conic_renderer_has_parts(top->renderer))
-    status = conic_render_window(top->renderer, splats, &b->camera, &top->render, window, b->image, &one);
+    status = conic_render_window(top->renderer, splats, &b->camera, &render, window, b->image, &one);
   else if (status == CONIC_OK)
     status = conic_render_samples(top->context, top->renderer, splats, &b->camera, &top->render, top->samples, b->image,
                                   &one);
@@ -196,14 +205,14 @@ static conic_status draw_lifted(top_block *b, const conic_window *window) {
   return status;
 }
 
-/* Half of a window in whole tiles, and the rest of it; 0: it is one tile. */
-static int part_window(const conic_window *window, int tile, conic_window *first, conic_window *second) {
+/* Both halves of a window; 0: it is too small. */
+static int part_window(const conic_window *window, conic_window *first, conic_window *second) {
   int width = window->x_end - window->x_begin, height = window->y_end - window->y_begin;
   *first = *second = *window;
-  if (width > tile && width >= height)
-    first->x_end = second->x_begin = window->x_begin + width / tile / 2 * tile;
-  else if (height > tile)
-    first->y_end = second->y_begin = window->y_begin + height / tile / 2 * tile;
+  if (width > LEAST_TILE && width >= height)
+    first->x_end = second->x_begin = window->x_begin + width / 2;
+  else if (height > LEAST_TILE)
+    first->y_end = second->y_begin = window->y_begin + height / 2;
   else
     return 0;
   return 1;
@@ -213,8 +222,7 @@ static int part_window(const conic_window *window, int tile, conic_window *first
 static conic_status draw_top_window(top_block *b, const conic_window *window) {
   conic_top_view *top = b->top;
   conic_window first, second;
-  int may_part = top->samples == 1 && conic_renderer_has_parts(top->renderer) &&
-                 part_window(window, top->render.tile, &first, &second);
+  int may_part = top->samples == 1 && conic_renderer_has_parts(top->renderer) && part_window(window, &first, &second);
   int is_cut_short;
   place_window(b, window);
   conic_status status = gather_top_block(b, may_part, &is_cut_short);

@@ -39,6 +39,7 @@ static void check_keys(conic_context *context) {
   static const uint16_t points[] = {1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 2, 3072, 0, 1, 26910};
   static const uint16_t custom[] = {1, 1, 0, 2, 2048, 0, 1, 4269, 3072, 0, 1, 32767};
   static const uint16_t beyond[] = {1, 1, 0, 1, 2062, 34736, 1, 0};
+  static const uint16_t elsewhere[] = {1, 1, 0, 1, 3073, 34735, 4, 100};
   static const uint16_t too_few[] = {1, 1, 0, 9, 3072, 0, 1, 26910};
   conic_georeference found = read_keys(context, points, sizeof points);
   CHECK(found.n_keys == 16 && found.epsg == 26910 && found.keys[8] == 1025 && found.keys[11] == 1);
@@ -47,6 +48,7 @@ static void check_keys(conic_context *context) {
   CHECK(found.n_keys == 16 && found.epsg == 0 && found.keys[3] == 3 && found.keys[4] == 1025 && found.keys[8] == 2048);
   conic_georeference_release(context, &found);
   CHECK(!read_keys(context, beyond, sizeof beyond).keys);
+  CHECK(!read_keys(context, elsewhere, sizeof elsewhere).keys);
   CHECK(!read_keys(context, too_few, sizeof too_few).keys);
 }
 
