@@ -91,7 +91,7 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
     return cli_usage("render: --method patch draws samples of its own: not with --deep");
   answer = check_streaming(job, is_streaming_given);
   if (answer == CLI_DONE && job->top.is_wanted)
-    answer = cli_top_check(job);
+    answer = cli_top_check(session, job);
   if (answer == CLI_DONE && job->has_mattes)
     answer = cli_mattes_check(job);
   if (answer == CLI_DONE && !job->top.is_wanted)

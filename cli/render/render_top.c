@@ -47,8 +47,9 @@ static const char *find_stranger(const cli_render_job *job) {
   return job->device.name && strcmp(job->device.name, "cpu") != 0 ? "--device" : NULL;
 }
 
-int cli_top_check(const cli_render_job *job) {
+int cli_top_check(const cli_session *session, const cli_render_job *job) {
   const char *stranger = find_stranger(job);
+  int has_tiff = 0;
   unsigned others = job->is_aov_given ? job->asked_planes & ~(unsigned)(RGBA | HEIGHTS) : 0;
   if (stranger)
     return cli_usage("render: --camera top is without %s", stranger);
@@ -65,7 +66,9 @@ int cli_top_check(const cli_render_job *job) {
   for (int i = 0; i < job->n_outputs; i++)
     if (strcmp(job->outputs[i], "-") == 0)
       return cli_usage("render: --camera top writes files, beside which world files stand: not to standard output");
-  return CLI_DONE;
+  for (int i = 0; i < job->n_outputs; i++)
+    has_tiff |= is_tiff(job->outputs[i]);
+  return has_tiff ? CLI_DONE : cli_planes_check(session, job);
 }
 
 /* What goes into TIFFs: colours unless heights are asked for. */

@@ -25,7 +25,7 @@ typedef struct cli_top_job {
 } cli_top_job;
 
 /* Wrong usage where other options say something of a picture that is none from above. */
-int cli_top_check(const struct cli_render_job *job);
+int cli_top_check(const cli_session *session, const struct cli_render_job *job);
 /* Whether the outputs can be written, as far as their names tell. */
 conic_status cli_top_check_formats(conic_context *context, const struct cli_render_job *job);
 /* Draws and writes the pictures of an open scene, and reports. Returns the exit code. */

@@ -12,6 +12,7 @@ for options in '--up y' '--size 9x9' '--azimuth 9' '--turntable 2' '--aov N' '--
   run 2 render sheet.xyz --camera top --gsd 1 $options -o never.png
 done
 run 2 render sheet.xyz --camera top --gsd 1 -o -
+run 2 render sheet.xyz --camera top --gsd 1 --aov rgba,Z -o never.png
 run 2 render sheet.xyz --camera top --gsd 0 -o never.png
 run 2 render sheet.xyz --camera top --gsd 1e-9 -o never.tif
 grep -q 'has 1000000001 pixels in a row; .* --box' err || fail "a picture that is too large: $(cat err)"
