@@ -358,8 +358,9 @@ static conic_status find_drawing_spacing(conic_source *source, double *spacing) 
   return conic_splats_spacing(source->context, &((drawing_source *)source)->splats, spacing);
 }
 
-static const conic_splats *list_drawing_splats(const conic_source *source) {
-  return &((const drawing_source *)source)->splats;
+static conic_drawing list_drawing(const conic_source *source) {
+  const drawing_source *d = (const drawing_source *)source;
+  return (conic_drawing){&d->splats, &d->triangles};
 }
 
 static void tell_drawing_rest(const conic_source *source, conic_facts *facts) {
@@ -382,5 +383,5 @@ const conic_source_kind conic_source_kind_drawing = {
     .choose = choose_in_drawing,
     .input_of = find_drawing_input,
     .tell_rest = tell_drawing_rest,
-    .list_splats = list_drawing_splats,
+    .list_all = list_drawing,
 };

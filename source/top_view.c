@@ -9,7 +9,7 @@
 #include "raster/view/part.h"
 #include "source/source_kind.h"
 #include "source/top_bins.h"
-#include "source/top_lift.h"
+#include "source/top_mesh.h"
 
 enum { BLOCK = CONIC_TOP_BLOCK, LEAST_TILE = 8 };
 
@@ -20,9 +20,11 @@ struct conic_top_view {
   conic_render_options render;
   double pixel, error, distance, top_z, heights[2];
   int samples;
-  const conic_splats *splats; /* all of them; null: the source gathers */
+  const conic_splats *splats;       /* all of them; null: the source gathers */
+  const conic_triangles *triangles; /* null: none */
   conic_top_bins bins;
   conic_top_set set;
+  conic_top_mesh mesh;
 };
 
 /* The block that is being drawn. */
@@ -48,18 +50,17 @@ static double choose_distance(const conic_source_scale *scale, double pixel) {
 
 static conic_status take_source(conic_top_view *top) {
   const conic_source *source = top->source;
-  if (source->scale.n_triangles)
-    return conic_fail(top->context, CONIC_ERROR_UNSUPPORTED,
-                      "%s: it has triangles, and from above splats are drawn: see --as points", source->name);
-  if (source->kind->list_splats) {
-    top->splats = source->kind->list_splats(source);
+  if (source->kind->list_all) {
+    const conic_drawing all = source->kind->list_all(source);
+    top->splats = all.splats;
+    top->triangles = all.triangles && all.triangles->count ? all.triangles : NULL;
     return conic_top_bins_make(
         top->context, top->splats, top->render.kernel.cutoff,
         fmax(BLOCK * top->pixel, 4.0 * (double)top->render.kernel.cutoff * source->scale.splat_length), &top->bins);
   }
   return source->kind->gather ? CONIC_OK
                               : conic_fail(top->context, CONIC_ERROR_UNSUPPORTED,
-                                           "%s: from above, only points and splats are drawn", source->name);
+                                           "%s: from above, only points, splats and triangles are drawn", source->name);
 }
 
 conic_status conic_top_view_open(conic_source *source, conic_renderer *renderer, const conic_top_options *options,
@@ -100,6 +101,7 @@ void conic_top_view_close(conic_top_view *top) {
     return;
   conic_top_bins_release(top->context, &top->bins);
   conic_top_set_release(top->context, &top->set);
+  conic_top_mesh_release(top->context, &top->mesh);
   conic_memory_release(top->context, top);
 }
 
@@ -148,7 +150,10 @@ static conic_status gather_top_block(top_block *b, int may_cut, int *is_cut_shor
   *is_cut_short = 0;
   if (splats) {
     status = conic_top_bins_find(top->context, &top->bins, part.low, part.high, &n);
-    return status == CONIC_OK ? conic_top_lift(top->context, place, splats, top->bins.found, n, &top->set) : status;
+    if (status == CONIC_OK)
+      status = conic_top_lift(top->context, place, splats, top->bins.found, n, &top->set);
+    return status == CONIC_OK && top->triangles ? conic_top_mesh_lift(top->context, place, top->triangles, &top->mesh)
+                                                : status;
   }
   status = top->source->kind->gather(top->source, &part, may_cut, &splats, is_cut_short);
   return status == CONIC_OK && !*is_cut_short
@@ -167,6 +172,11 @@ static void add_top_statistics(const conic_render_statistics *one, conic_render_
   sum->splats_by_laplace += before.splats_by_laplace;
   for (int i = 0; i < CONIC_N_METHODS; i++)
     sum->splats_by_method[i] += before.splats_by_method[i];
+  sum->triangles_in += before.triangles_in;
+  sum->triangles_drawn += before.triangles_drawn;
+  sum->triangles_culled += before.triangles_culled;
+  sum->triangles_skipped += before.triangles_skipped;
+  sum->triangle_fragments += before.triangle_fragments;
   sum->fragments += before.fragments;
   sum->pixels_covered += before.pixels_covered;
   sum->ms.setup += before.ms.setup;
@@ -191,15 +201,16 @@ static conic_status draw_lifted(top_block *b, const conic_window *window) {
   conic_render_statistics one;
   conic_status status = CONIC_OK;
   render.tile = tile_of(window, render.tile);
-  if (splats->count == 0 && !top->render.has_background)
+  const conic_drawing drawing = {splats, top->triangles ? &top->mesh.triangles : NULL};
+  if (splats->count == 0 && top->mesh.triangles.count == 0 && !top->render.has_background)
     return CONIC_OK; /* planes are zero */
   if (splats->dot)
     status = conic_splats_face(top->context, splats, &b->camera, splats->tangent_u, splats->tangent_v);
-  if (status == CONIC_OK && top->samples == 1 && conic_renderer_has_parts(top->renderer))
+  if (status == CONIC_OK && top->samples == 1 && !top->triangles && conic_renderer_has_parts(top->renderer))
     status = conic_render_window(top->renderer, splats, &b->camera, &render, window, b->image, &one);
   else if (status == CONIC_OK)
-    status = conic_render_samples(top->context, top->renderer, splats, &b->camera, &top->render, top->samples, b->image,
-                                  &one);
+    status = conic_render_drawing(top->context, top->renderer, &drawing, &b->camera, &top->render, top->samples,
+                                  b->image, &one);
   if (status == CONIC_OK)
     add_top_statistics(&one, b->sum);
   return status;

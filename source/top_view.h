@@ -27,7 +27,7 @@ typedef struct conic_top_options {
 } conic_top_options;
 
 /* On success the caller owns *top, which must not outlive source and renderer. Errors: ARGUMENT, UNSUPPORTED (the
- * source has triangles, or hands nothing over), MEMORY. */
+ * source hands nothing over), MEMORY. */
 conic_status conic_top_view_open(conic_source *source, conic_renderer *renderer, const conic_top_options *options,
                                  conic_top_view **top);
 /* Null is allowed. */

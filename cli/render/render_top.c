@@ -58,7 +58,7 @@ int cli_top_check(const cli_session *session, const cli_render_job *job) {
   if (job->abilities & CONIC_SOURCE_COMPOSITES)
     return cli_usage("render: --camera top draws Gaussian scenes as surfaces; give --profile surface, too");
   if (job->abilities & CONIC_SOURCE_CLUSTERS)
-    return cli_usage("render: --camera top draws points and splats, not hybrids");
+    return cli_usage("render: --camera top draws points, splats and triangles, not hybrids");
   if (job->view.error_px > 0.0 && !(job->abilities & CONIC_SOURCE_STREAMS))
     return cli_usage("render: --error of --camera top is of .lpc, COPC, EPT and Potree");
   if (job->n_outputs == 0)
@@ -311,6 +311,8 @@ static conic_status make_picture(top_picture *p) {
   describe_camera(job, p->corner);
   if (!job->is_shade_given && conic_source_measure(job->source)->has_colors)
     job->options.shading = CONIC_SHADE_NONE; /* photographs have their light already */
+  if (!job->is_samples_given && conic_source_measure(job->source)->n_triangles)
+    job->view.samples = 2; /* whose edges nothing else softens */
   double start = cli_seconds();
   status = open_view(p);
   if (status == CONIC_OK)

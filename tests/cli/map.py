@@ -148,6 +148,24 @@ def check_windows(has_zstd):
         expect(told["top"]["width"] == 174 and told["top"]["corner"] == list(corner), f"{name}: {told['top']}")
 
 
+def check_mesh():
+    """Two triangles that make a slope: every pixel is on it, and a part is a part."""
+    places = [(600000, 100), (600080, 100), (600080, 140), (600000, 140)]
+    with open("mesh.ply", "w", encoding="ascii") as file:
+        file.write("ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
+                   "element face 2\nproperty list uchar int vertex_indices\nend_header\n")
+        file.write("".join(f"{x} {y} {0.25 * (x - 600000) + 0.5 * y}\n" for x, y in places) + "3 0 1 2\n3 0 2 3\n")
+    draw = ["render", "mesh.ply", "--camera", "top", "--gsd", "0.25", "--aov", "Z"]
+    conic(*draw, "-o", "whole.tif")
+    conic(*draw, "--box", "600010.5,103,600060,130", "-o", "part.tif")
+    whole, part = read_tiff("whole.tif"), read_tiff("part.tif")
+    expect(crop(whole, part, "part.tfw"), "a part of a mesh is another picture")
+    _, corner = corner_of(whole[0], "whole.tfw")
+    off = max(abs(whole[1][y][x] - 0.25 * (corner[0] + 0.25 * x + 0.125 - 600000) - 0.5 * (corner[1] - 0.25 * y - 0.125))
+              for y in range(1, 159) for x in range(1, 319))
+    expect(len(whole[1]) == 161 and off < 0.1, f"heights are off the mesh by {off}")
+
+
 def record(number, body):
     return struct.pack("<H16sHH32s", 0, b"LASF_Projection", number, len(body), b"") + body
 
@@ -186,6 +204,7 @@ def main():
         check_places()
         check_windows(int(sys.argv[2]))
         check_seams()
+        check_mesh()
         check_references()
     return n_wrong > 0
 
