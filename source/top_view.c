@@ -42,10 +42,11 @@ conic_status conic_source_georeference(const conic_source *source, conic_georefe
 }
 
 /* How high the camera stands: so that normals, which the lift turns a little, turn by no more than 1/256 at a block's
- * border, and depths stay well apart in floats. */
+ * border, and depths stay well apart in floats. Within a triangle, which may be large, heights are off by the square of
+ * how high it is over four times this. */
 static double choose_distance(const conic_source_scale *scale, double pixel) {
   double relief = scale->maximum[2] - scale->minimum[2], across = 0.5 * BLOCK * pixel;
-  return fmax(64.0 * relief, 256.0 * across);
+  return fmax((scale->n_triangles ? 512.0 : 64.0) * relief, 256.0 * across);
 }
 
 static conic_status take_source(conic_top_view *top) {

@@ -65,6 +65,16 @@ struct conic_las_writer {
 
 /* --- what the source says --- */
 
+/* Whether a record is one of a user's. */
+static int is_of_user(const unsigned char *record, const char *user) {
+  return strncmp((const char *)record + 2, user, 16) == 0;
+}
+
+static void put_letters(unsigned char *to, const char *letters) {
+  while (*letters)
+    *to++ = (unsigned char)*letters++;
+}
+
 /* Keeps the records about the coordinate system of a head of n bytes. */
 static conic_status keep_records(conic_las_writer *w, const unsigned char *head, size_t n) {
   size_t at = conic_load_16(head + AT_OWN_BYTES);
@@ -77,8 +87,7 @@ static conic_status keep_records(conic_las_writer *w, const unsigned char *head,
     unsigned number = conic_load_16(record + 18);
     if (n_bytes > n - at)
       break;
-    if (strncmp((const char *)record + 2, "LASF_Projection", 16) == 0 &&
-        ((number >= KEYS && number <= TEXT) || number == WELL_KNOWN_TEXT)) {
+    if (is_of_user(record, "LASF_Projection") && ((number >= KEYS && number <= TEXT) || number == WELL_KNOWN_TEXT)) {
       memcpy(w->records + w->n_record_bytes, record, n_bytes);
       w->n_record_bytes += n_bytes;
       w->n_records++;
@@ -98,8 +107,8 @@ static conic_status take_source_head(conic_las_writer *w, FILE *file) {
   w->has_source = 1;
   w->header[AT_ENCODING] = start[AT_ENCODING] & GPS_IS_ADJUSTED;
   for (int axis = 0; axis < 3; axis++) {
-    w->scale[axis] = fabs(conic_load_double(start + AT_STEPS + 8 * axis));
-    w->offset[axis] = conic_load_double(start + AT_ORIGIN + 8 * axis);
+    w->scale[axis] = fabs(conic_load_double(start + AT_STEPS + 8 * (size_t)axis));
+    w->offset[axis] = conic_load_double(start + AT_ORIGIN + 8 * (size_t)axis);
     w->has_source &= w->scale[axis] > 0.0 && w->scale[axis] + fabs(w->offset[axis]) < 1e300;
   }
   unsigned char *head = fseeko(file, 0, SEEK_SET) == 0 ? conic_memory_allocate(w->context, n_head, 1) : NULL;
@@ -174,7 +183,7 @@ static void choose_columns(conic_las_writer *w, const conic_point_values *values
 static void put_extra_record(conic_las_writer *w) {
   static const unsigned char numbers[] = {2, 1, 4, 3, 6, 5, 9, 10}; /* of types in the order of conic_ply_type */
   unsigned char record[RECORD] = {0}, extra[EXTRA];
-  memcpy(record + 2, "LASF_Spec", 9);
+  put_letters(record + 2, "LASF_Spec");
   conic_store_bits(record + 18, 2, EXTRA_BYTES);
   conic_store_bits(record + 20, 2, EXTRA * w->n_extra);
   fwrite(record, 1, sizeof record, w->file);
@@ -204,25 +213,25 @@ static void settle_steps(conic_las_writer *w, const conic_splats *first) {
 static void put_las_header(conic_las_writer *w) {
   unsigned char *h = w->header;
   size_t n_extra_bytes = w->n_extra ? RECORD + EXTRA * w->n_extra : 0;
-  memcpy(h, "LASF", 4);
+  put_letters(h, "LASF");
   h[AT_VERSION] = 1;
   h[AT_VERSION + 1] = 4;
-  memcpy(h + AT_SYSTEM, "EXTRACTION", 10);
-  memcpy(h + AT_SOFTWARE, "conic", 5);
+  put_letters(h + AT_SYSTEM, "EXTRACTION");
+  put_letters(h + AT_SOFTWARE, "conic");
   conic_store_bits(h + AT_OWN_BYTES, 2, HEADER);
   conic_store_32(h + AT_FIRST_POINT, (uint32_t)(HEADER + w->n_record_bytes + n_extra_bytes));
   conic_store_32(h + AT_RECORDS, w->n_records + (w->n_extra > 0));
   h[AT_POINT_FORMAT] = w->has_colors ? 7 : 6;
   conic_store_bits(h + AT_RECORD_BYTES, 2, w->point_bytes);
   for (int axis = 0; axis < 3; axis++) {
-    conic_store_double(h + AT_STEPS + 8 * axis, w->scale[axis]);
-    conic_store_double(h + AT_ORIGIN + 8 * axis, w->offset[axis]);
-    conic_store_double(h + AT_BOUNDS + 16 * axis, w->count ? w->high[axis] : 0.0);
-    conic_store_double(h + AT_BOUNDS + 16 * axis + 8, w->count ? w->low[axis] : 0.0);
+    conic_store_double(h + AT_STEPS + 8 * (size_t)axis, w->scale[axis]);
+    conic_store_double(h + AT_ORIGIN + 8 * (size_t)axis, w->offset[axis]);
+    conic_store_double(h + AT_BOUNDS + 16 * (size_t)axis, w->count ? w->high[axis] : 0.0);
+    conic_store_double(h + AT_BOUNDS + 16 * (size_t)axis + 8, w->count ? w->low[axis] : 0.0);
   }
   conic_store_64(h + AT_COUNT, w->count);
   for (int i = 0; i < RETURNS; i++)
-    conic_store_64(h + AT_BY_RETURN + 8 * i, w->by_return[i]);
+    conic_store_64(h + AT_BY_RETURN + 8 * (size_t)i, w->by_return[i]);
   fwrite(h, 1, HEADER, w->file);
 }
 
@@ -256,7 +265,7 @@ static conic_status put_place(conic_las_writer *w, const conic_splats *batch, si
       return conic_fail(w->context, CONIC_ERROR_UNSUPPORTED,
                         "%s: cannot write: %.17g is too far from %.17g for steps of %g", w->path, place[axis],
                         w->offset[axis], w->scale[axis]);
-    conic_store_32(point + 4 * axis, (uint32_t)(int32_t)steps);
+    conic_store_32(point + 4 * (size_t)axis, (uint32_t)(int32_t)steps);
     place[axis] = steps * w->scale[axis] + w->offset[axis]; /* as it will be read */
     w->low[axis] = w->count && w->low[axis] < place[axis] ? w->low[axis] : place[axis];
     w->high[axis] = w->count && w->high[axis] > place[axis] ? w->high[axis] : place[axis];
@@ -278,7 +287,8 @@ static void put_las_value(const conic_las_field *field, double value, unsigned c
 static void put_las_colors(const conic_splats *batch, size_t i, unsigned char *point) {
   for (int c = 0; c < 3; c++) {
     double code = 65535.0 * conic_srgb_encode((double)batch->color[c][i]);
-    conic_store_bits(point + AT_COLOR + 2 * c, 2, (uint64_t)(code > 0.0 ? code < 65535.0 ? code + 0.5 : 65535.0 : 0.0));
+    conic_store_bits(point + AT_COLOR + 2 * (size_t)c, 2,
+                     (uint64_t)(code > 0.0 ? code < 65535.0 ? code + 0.5 : 65535.0 : 0.0));
   }
 }
 

@@ -70,7 +70,7 @@ static void put_key(uint16_t *to, unsigned key, unsigned value) {
 
 conic_status conic_georeference_of_epsg(conic_context *context, unsigned epsg, conic_georeference *reference) {
   const int is_geographic = epsg >= 4000 && epsg < 5000; /* EPSG keeps these for them */
-  conic_status status = make_key_room(context, 0, 4 * KEY_NUMBERS, 0, reference);
+  conic_status status = make_key_room(context, 0, (size_t)4 * KEY_NUMBERS, 0, reference);
   if (status != CONIC_OK)
     return status;
   static const uint16_t head[KEY_NUMBERS] = {1, 1, 0, 3};
@@ -149,9 +149,13 @@ typedef struct las_records {
   las_record keys, numbers, text, wkt;
 } las_records;
 
+static int is_of_user(const unsigned char *record, const char *user) {
+  return strncmp((const char *)record + 2, user, 16) == 0;
+}
+
 static void note_record(const unsigned char *head, const unsigned char *bytes, size_t n_bytes, las_records *found) {
   las_record *to = NULL;
-  if (strncmp((const char *)head + 2, "LASF_Projection", 16) != 0)
+  if (!is_of_user(head, "LASF_Projection"))
     return;
   switch (conic_load_16(head + 18)) {
   case RECORD_KEYS:

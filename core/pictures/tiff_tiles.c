@@ -109,8 +109,8 @@ conic_status conic_tiff_open(conic_context *context, const char *path, const con
 /* Of bytes, each pixel becomes its difference from the one to its left. */
 static void take_differences(const conic_tiff *tiff, unsigned char *pixels) {
   for (size_t y = 0; y < TILE && !tiff->layout.is_elevation; y++) {
-    unsigned char *row = pixels + 4 * TILE * y;
-    for (size_t i = 4 * TILE; i-- > 4;)
+    unsigned char *row = pixels + (size_t)4 * TILE * y;
+    for (size_t i = (size_t)4 * TILE; i-- > 4;)
       row[i] = (unsigned char)(row[i] - row[i - 4]);
   }
 }
