@@ -358,6 +358,11 @@ static conic_status find_drawing_spacing(conic_source *source, double *spacing) 
   return conic_splats_spacing(source->context, &((drawing_source *)source)->splats, spacing);
 }
 
+static conic_drawing list_drawing(const conic_source *source) {
+  const drawing_source *d = (const drawing_source *)source;
+  return (conic_drawing){&d->splats, &d->triangles};
+}
+
 static void tell_drawing_rest(const conic_source *source, conic_facts *facts) {
   const drawing_source *d = (const drawing_source *)source;
   const conic_repairs *repairs = &d->repairs;
@@ -378,4 +383,5 @@ const conic_source_kind conic_source_kind_drawing = {
     .choose = choose_in_drawing,
     .input_of = find_drawing_input,
     .tell_rest = tell_drawing_rest,
+    .list_all = list_drawing,
 };

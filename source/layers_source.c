@@ -5,6 +5,7 @@
 #include "conic/layers.h"
 #include "conic/layers_draw.h"
 #include "lod/hierarchies/hierarchy.h"
+#include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/format/layers_read.h"
 #include "source/source_kind.h"
 
@@ -225,6 +226,23 @@ static conic_status tell_layers_defects(conic_source *source, conic_facts *facts
   return status;
 }
 
+/* What is gathered is copied once more to be drawn. */
+static conic_status gather_layers(conic_source *source, const conic_layers_region *part, int may_cut,
+                                  const conic_splats **splats, int *is_cut_short) {
+  enum { COPY_BYTES = 14 * sizeof(float) };
+  layers_source *l = (layers_source *)source;
+  size_t most = conic_layers_drawing_bytes(l->layers) / (CONIC_LAYERS_SPLAT_BYTES + COPY_BYTES) + 1;
+  conic_layers_set *set;
+  conic_status status = conic_layers_gather_part(l->layers, l->cutoff, part, may_cut ? most : 0, &set);
+  *splats = &set->splats;
+  *is_cut_short = status == CONIC_OK && set->is_cut_short;
+  return status;
+}
+
+static conic_status find_layers_georeference(const conic_source *source, conic_georeference *reference) {
+  return conic_layers_find_georeference(((const layers_source *)source)->layers, reference);
+}
+
 /* Measured from the world's origin, whatever the file's. */
 static conic_status take_layers_splats(conic_source *source, conic_splats *splats) {
   const layers_source *l = (layers_source *)source;
@@ -251,5 +269,7 @@ const conic_source_kind conic_source_kind_layers = {
     .name_file = name_layers_file,
     .tell_file = tell_layers_file,
     .tell_defects = tell_layers_defects,
+    .gather = gather_layers,
+    .find_georeference = find_layers_georeference,
     .take_splats = take_layers_splats,
 };

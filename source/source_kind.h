@@ -3,6 +3,7 @@
 #define CONIC_SOURCE_KIND_H
 
 #include "conic/source.h"
+#include "core/pictures/georeference.h"
 #include "source/facts.h"
 
 typedef enum conic_source_company {
@@ -49,6 +50,13 @@ typedef struct conic_source_kind {
   /* What the file that a source was created for holds, which it may open; and then the object "defects". */
   conic_status (*tell_file)(conic_source *source, conic_facts *facts);
   conic_status (*tell_defects)(conic_source *source, conic_facts *facts);
+  /* All of an open source, as it is kept, dots not turned; or else the splats those of a part, as
+   * conic_layers_gather_part has them: with may_cut no more than there is memory for. */
+  conic_drawing (*list_all)(const conic_source *source);
+  conic_status (*gather)(conic_source *source, const conic_layers_region *part, int may_cut,
+                         const conic_splats **splats, int *is_cut_short);
+  /* Which world its coordinates are of, which the caller releases; null: what its first file says as a LAS. */
+  conic_status (*find_georeference)(const conic_source *source, conic_georeference *reference);
   /* Every splat of an open source, which the caller releases. */
   conic_status (*take_splats)(conic_source *source, conic_splats *splats);
 } conic_source_kind;

@@ -3,10 +3,11 @@
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
-#include "cli/commands/cut_region.h"
+#include "cli/cut_region.h"
 #include "conic/layers_draw.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
+#include "core/formats/las_write.h"
 
 /* The stages by their numbers. */
 enum { READ, WORK, WRITE };
@@ -16,12 +17,13 @@ typedef struct cut_job {
   cli_cut_region region;
   conic_layers_region part;
   conic_layers_options building;
-  const char *polygons;
+  const char *polygons, *keep; /* which values are kept; null: all that there are */
   double memory_mib, cutoff;
-  int is_layered; /* the output is a .lpc */
+  int is_layered, is_las; /* the output is a .lpc, or a .las */
 
   conic_splats_writer *writer;
-  conic_layers_builder *builder; /* neither: points are counted */
+  conic_layers_builder *builder;
+  conic_las_writer *las; /* none of them: points are counted */
   unsigned fields;
   uint64_t n_in, n_out;
 } cut_job;
@@ -29,6 +31,8 @@ typedef struct cut_job {
 static conic_status write_kept(cut_job *job, const conic_splats *kept) {
   if (job->builder)
     return conic_layers_builder_append(job->builder, kept);
+  if (job->las)
+    return conic_las_writer_append(job->las, kept);
   return job->writer ? conic_splats_writer_append(job->writer, kept) : CONIC_OK;
 }
 
@@ -48,10 +52,16 @@ static conic_status take_cut_batch(void *cookie, const conic_splats *batch) {
   return status;
 }
 
+/* The values that are asked for; null: none. */
+static const char *kept_names(const cut_job *job) {
+  return !job->keep ? "all" : strcmp(job->keep, "none") == 0 ? NULL : job->keep;
+}
+
 /* A COPC on disk is a LAZ too, of whose points more is known. */
 static int is_in_layers(const cut_job *job) {
   const char *path = job->base.input;
-  int is_las = conic_file_has_ending(path, "laz") && job->base.where && job->part.error == 0.0;
+  int wants_more = job->base.where || (job->keep && kept_names(job));
+  int is_las = conic_file_has_ending(path, "laz") && wants_more && job->part.error == 0.0;
   return conic_layers_is_url(path) || conic_layers_is_file(path) || (conic_layers_is_hierarchy(path) && !is_las);
 }
 
@@ -82,6 +92,7 @@ static conic_status stream_part(cut_job *job) {
   options.cutoff = (float)job->cutoff;
   options.columns = job->base.columns;
   options.where = job->base.where;
+  options.keep = kept_names(job);
   return conic_model_stream(context, job->base.input, &options, take_cut_batch, job);
 }
 
@@ -122,7 +133,7 @@ static conic_status plan_to_layers(cut_job *job) {
     return CONIC_OK;
   conic_status status = conic_layers_open(job->base.session->context, job->base.input, NULL, &layers);
   if (status == CONIC_OK)
-    status = conic_layers_continue(layers, &job->building);
+    conic_layers_continue(layers, &job->building);
   conic_layers_close(layers);
   return status;
 }
@@ -146,6 +157,25 @@ static conic_status cut_to_layers(cut_job *job) {
   return status;
 }
 
+/* The header of a LAS is written once more at the end. */
+static conic_status cut_to_las(cut_job *job) {
+  conic_context *context = job->base.session->context;
+  conic_status status = conic_las_writer_open(context, job->base.output, job->base.input, &job->las);
+  if (status != CONIC_OK)
+    return status;
+  double start = cli_seconds();
+  status = stream_part(job);
+  start = cli_build_end_stage(&job->base.stages[READ], start);
+  if (status == CONIC_OK && job->n_out == 0)
+    status = refuse_nothing(job);
+  if (status == CONIC_OK)
+    status = conic_las_writer_finish(job->las);
+  else
+    conic_las_writer_abandon(job->las);
+  cli_build_end_stage(&job->base.stages[WRITE], start);
+  return status;
+}
+
 static int make_cut(void *cookie) {
   cut_job *job = cookie;
   conic_status status = CONIC_OK;
@@ -153,8 +183,9 @@ static int make_cut(void *cookie) {
     status = cli_cut_read_polygons(job->base.session->context, job->polygons, &job->region);
   memcpy(job->part.low, job->region.low, sizeof job->part.low);
   memcpy(job->part.high, job->region.high, sizeof job->part.high);
+  job->part.keep = kept_names(job);
   if (status == CONIC_OK)
-    status = job->is_layered ? cut_to_layers(job) : cut_to_ply(job);
+    status = job->is_layered ? cut_to_layers(job) : job->is_las ? cut_to_las(job) : cut_to_ply(job);
   return cli_exit_of(status);
 }
 
@@ -184,13 +215,14 @@ static int check_cut(cut_job *job, const char *const *inputs, int n_inputs) {
     return cli_usage("cut: %s; see conic help cut", n_inputs ? "one input at a time" : "no input given");
   job->base.input = inputs[0];
   if (!job->base.output)
-    return cli_usage("cut: no output given (-o OUT.ply or OUT.lpc)");
+    return cli_usage("cut: no output given (-o OUT.ply, OUT.lpc or OUT.las)");
   job->is_layered = conic_file_has_ending(job->base.output, "lpc");
+  job->is_las = conic_file_has_ending(job->base.output, "las");
   if (strcmp(job->base.input, "-") == 0)
     return cli_usage("cut: standard input cannot be read twice; give a file");
   if (job->part.error > 0.0 && !is_in_layers(job))
     return cli_usage("cut: --error is of clouds in levels: .lpc, COPC, EPT and Potree");
-  return cli_build_check(&job->base, inputs, 1, job->is_layered ? "lpc" : "ply");
+  return cli_build_check(&job->base, inputs, 1, job->is_layered ? "lpc" : job->is_las ? "las" : "ply");
 }
 
 static int run_cut(cli_session *session, int argc, char **argv) {
@@ -202,12 +234,14 @@ static int run_cut(cli_session *session, int argc, char **argv) {
   conic_layers_region_init(&job.part);
   conic_layers_options_init(&job.building);
   const cli_option options[] = {
-      {"o", CLI_TEXT, &job.base.output, "OUT", "the file to write: .ply or .lpc"},
+      {"o", CLI_TEXT, &job.base.output, "OUT", "the file to write: .ply, .lpc or .las"},
       {"box", CLI_PARSED, &job.region, "X0,Y0,Z0,X1,Y1,Z1", "what lies in a box; X0,Y0,X1,Y1 for all heights",
        .parse = cli_cut_parse_box},
       {"polygon", CLI_TEXT, &job.polygons, "FILE",
        "what lies in polygons, seen from above: lines of x and y, an empty line between two polygons"},
       CLI_WHERE(&job.base.where),
+      {"keep", CLI_TEXT, &job.keep, "NAMES",
+       "which values of the points are written: intensity,gps_time, all or none [all; of COPC, EPT and Potree none]"},
       {"error", CLI_NUMBER, &job.part.error, "E",
        "of clouds in levels: no finer than this, in the unit of the points [0: all points]", 0, 1e15},
       {"memory", CLI_NUMBER, &job.memory_mib, "MIB", "what reading, and building a .lpc, may take in memory [512]", 16,

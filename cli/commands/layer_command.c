@@ -23,6 +23,7 @@ typedef struct layer_job {
   cli_length quantum;
   int is_quantum_given, is_appending, is_merging, payload;
   const char *keep;
+  char *continued; /* the values of the files that go on, as --keep has them; null: they have none */
 
   conic_layers_builder *builder;
   conic_layers_statistics statistics;
@@ -202,24 +203,66 @@ static conic_status open_layers_input(layer_job *job, const char *path, conic_la
   return conic_layers_open(job->base.session->context, path, &access, layers);
 }
 
+/* The values of a file that goes on become those of all. */
+static conic_status take_value_names(layer_job *job, const conic_layers *layers) {
+  conic_context *context = job->base.session->context;
+  conic_model_field field;
+  size_t n = 0, room = 0;
+  for (size_t i = 0; conic_layers_value(layers, i, &field); i++)
+    room += strlen(field.name) + 2;
+  if (room == 0)
+    return CONIC_OK;
+  job->continued = conic_memory_allocate(context, room, 1);
+  if (!job->continued)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; conic_layers_value(layers, i, &field); i++)
+    n += (size_t)snprintf(job->continued + n, room - n, "%s%s", i ? "," : "", field.name);
+  job->keep = job->continued;
+  return CONIC_OK;
+}
+
+/* Whether the values of a file are those of the first one, in any order. */
+static conic_status check_value_names(const layer_job *job, const conic_layers *layers, const conic_layers *first) {
+  const conic_layers *pairs[2][2] = {{first, layers}, {layers, first}};
+  for (int k = 0; k < 2; k++) {
+    conic_model_field field, other;
+    for (size_t i = 0; conic_layers_value(pairs[k][0], i, &field); i++) {
+      int is_there = 0;
+      for (size_t j = 0; !is_there && conic_layers_value(pairs[k][1], j, &other); j++)
+        is_there = strcmp(field.name, other.name) == 0 && strcmp(field.type, other.type) == 0;
+      if (!is_there)
+        return conic_fail(job->base.session->context, CONIC_ERROR_INPUT,
+                          "%s: its samples have other values by name than those of %s: '%s' (%s) is in one alone",
+                          job->base.input, job->inputs[0], field.name, field.type);
+    }
+  }
+  return CONIC_OK;
+}
+
 /* The .lpc files that go on: the output, or all inputs. The grid is the first one's. */
 static conic_status plan_to_continue(layer_job *job, const char *const *paths, int n_paths) {
   conic_layers_options first = job->options;
+  conic_layers *opened = NULL; /* the first */
   conic_status status = CONIC_OK;
   for (int i = 0; i < n_paths && status == CONIC_OK; i++) {
     conic_layers *layers;
     status = open_layers_input(job, paths[i], &layers);
     if (status != CONIC_OK)
       break;
-    status = conic_layers_continue(layers, &job->options);
-    conic_layers_close(layers);
+    conic_layers_continue(layers, &job->options);
     if (i == 0)
       first = job->options;
     else if (memcmp(first.up, job->options.up, sizeof first.up) != 0) /* what not all say is not known */
       memset(first.up, 0, sizeof first.up);
     first.is_unoriented = job->options.is_unoriented;
     first.keeps_all = job->options.keeps_all;
+    status = i == 0 ? take_value_names(job, layers) : check_value_names(job, layers, opened);
+    if (i == 0)
+      opened = layers;
+    else
+      conic_layers_close(layers);
   }
+  conic_layers_close(opened);
   if (status == CONIC_OK && n_paths)
     job->options = first;
   return status;
@@ -227,12 +270,15 @@ static conic_status plan_to_continue(layer_job *job, const char *const *paths, i
 
 static conic_status read_layers(layer_job *job, const char *const *paths, int n_paths) {
   conic_status status = CONIC_OK;
+  conic_layers_region all;
+  conic_layers_region_init(&all);
+  all.keep = job->continued;
   for (int i = 0; i < n_paths && status == CONIC_OK; i++) {
     conic_layers *layers;
     status = open_layers_input(job, paths[i], &layers);
     if (status != CONIC_OK)
       break;
-    status = conic_layers_read_samples(layers, job->options.cutoff, NULL, take_old_samples, job);
+    status = conic_layers_read_samples(layers, job->options.cutoff, &all, take_old_samples, job);
     conic_layers_close(layers);
   }
   return status;
@@ -270,6 +316,12 @@ static int make_layers(void *cookie) {
   return cli_exit_of(status);
 }
 
+static void release_layers(void *cookie) {
+  layer_job *job = cookie;
+  if (job->continued)
+    conic_memory_release(job->base.session->context, job->continued);
+}
+
 static int check_layer_arguments(layer_job *job) {
   if (job->n_inputs == 0)
     return cli_usage("layer: no input given; see conic help layer");
@@ -296,7 +348,7 @@ static int check_layer_arguments(layer_job *job) {
 }
 
 static int run_layer(cli_session *session, int argc, char **argv) {
-  static const cli_build_steps steps = {make_layers, tell_layers, report_layers, NULL};
+  static const cli_build_steps steps = {make_layers, tell_layers, report_layers, release_layers};
   layer_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}},
                    .cloud_size = 2048,
                    .memory_mib = 1024.0,
@@ -361,7 +413,7 @@ static int check_merge_arguments(layer_job *job) {
 }
 
 static int run_merge(cli_session *session, int argc, char **argv) {
-  static const cli_build_steps steps = {make_layers, tell_layers, report_layers, NULL};
+  static const cli_build_steps steps = {make_layers, tell_layers, report_layers, release_layers};
   layer_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}}, .memory_mib = 1024.0, .is_merging = 1};
   const char *positional[argc];
   conic_layers_options_init(&job.options);

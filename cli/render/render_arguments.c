@@ -90,9 +90,11 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
   if (job->is_patch && job->deep_path)
     return cli_usage("render: --method patch draws samples of its own: not with --deep");
   answer = check_streaming(job, is_streaming_given);
+  if (answer == CLI_DONE && job->top.is_wanted)
+    answer = cli_top_check(session, job);
   if (answer == CLI_DONE && job->has_mattes)
     answer = cli_mattes_check(job);
-  if (answer == CLI_DONE)
+  if (answer == CLI_DONE && !job->top.is_wanted)
     answer = cli_planes_check(session, job);
   if (answer != CLI_DONE || job->is_every_view) /* how many these are is still to be read */
     return answer;
@@ -137,6 +139,15 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP",
        "only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from 0 [all]",
        .parse = cli_parse_frames},
+      {"gsd", CLI_NUMBER, &job->top.gsd, "G",
+       "of --camera top: a pixel's edge on the ground, in the unit of the points [their typical distance]", 1e-12, 1e12,
+       .is_given = &job->top.is_given, .group = "maps (--camera top)"},
+      {"box", CLI_PARSED, &job->top.box, "X0,Y0,Z0,X1,Y1,Z1",
+       "of --camera top: the part of the ground that is drawn; X0,Y0,X1,Y1 for all heights [all]",
+       .parse = cli_cut_parse_box, .is_given = &job->top.is_given},
+      {"epsg", CLI_INT, &job->top.epsg, "CODE",
+       "of --camera top: the coordinate system that is noted in a .tif, by its EPSG code [the file's]", 1, 65535,
+       .is_given = &job->top.is_given},
       {"boxes", CLI_TEXT, &job->boxes_path, "OUT.png",
        "of a .cot, the nodes of one level in false colours, with their boxes",
        .group = "pictures of what it was drawn from"},

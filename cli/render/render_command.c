@@ -309,7 +309,8 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = cli_session_open(session);
   }
   if (exit_code == CLI_DONE) {
-    conic_status status = check_formats(session, &job);
+    conic_status status =
+        job.top.is_wanted ? cli_top_check_formats(session->context, &job) : check_formats(session, &job);
     if (status == CONIC_OK)
       status = cli_scene_begin(session, &job);
     if (status == CONIC_OK && cli_render_views_check(session, &job) != CLI_DONE)
@@ -317,7 +318,9 @@ static int run(cli_session *session, int argc, char **argv) {
     job.begun_seconds = cli_seconds();
     if (status == CONIC_OK)
       status = cli_scene_open(session, &job);
-    exit_code = status == CONIC_OK ? render_scene(session, &job) : cli_exit_of(status);
+    exit_code = status != CONIC_OK  ? cli_exit_of(status)
+                : job.top.is_wanted ? cli_top_render(session, &job)
+                                    : render_scene(session, &job);
     cli_scene_release(session, &job);
   }
   free(job.inputs);

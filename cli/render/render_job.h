@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/device_option.h"
 #include "cli/json_write.h"
+#include "cli/render/top_job.h"
 #include "core/pictures/cryptomatte.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
@@ -48,12 +49,14 @@ typedef struct cli_render_job {
   int projection; /* of the framed camera: a conic_camera_kind */
   double eye[3];  /* --eye: where it stands */
   int is_eye_given;
+  int is_shade_given;
   int is_plain; /* --plain: nothing is chosen by what looks best */
   int is_background_given;
   cli_backdrop backdrop;                       /* --background with two colours */
   int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/light_options.h) */
   int n_frames;                                /* of a turntable, or views; else 1 */
   int is_turntable;
+  cli_top_job top; /* --camera top */
   cli_frames frames;
   int is_warned;       /* that a picture is empty */
   int is_error_warned; /* that --error is not kept */

@@ -158,6 +158,8 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_number(json, "epsilon", s->epsilon);
   cli_json_number(json, "near", s->near_z);
   report_camera(json, job);
+  if (job->top.is_wanted)
+    cli_top_report(json, &job->top);
   cli_lights_report(json, job);
   cli_backdrop_report(json, job);
   cli_json_count(json, "frames", (uint64_t)cli_frames_count(job));

@@ -51,6 +51,7 @@ void cli_scene_defaults(cli_render_job *job) {
   job->n_frames = job->repeat = 1;
   job->device.name = "cpu";
   job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
+  cli_cut_region_init(&job->top.box);
 }
 
 /* The command's own options, then those of the scene. */
@@ -182,8 +183,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]",
        .parse = cli_parse_near},
       {"shade", CLI_CHOICE, &shading, "HOW",
-       "none (colours as they are), lambert (matt) or phong (with a highlight) [phong]", .choices = words.shadings,
-       .group = "light and background"},
+       "none (colours as they are), lambert (matt) or phong (with a highlight) [phong; none for maps of what has "
+       "colours]",
+       .choices = words.shadings, .is_given = &job->is_shade_given, .group = "light and background"},
       {"light", CLI_PARSED, job, "LIGHT",
        "a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the camera "
        "(right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without; studio, several "
@@ -232,6 +234,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   if (answer != CLI_DONE)
     return answer;
   choose_quality(&raw, job, &method);
+  if (cli_scene_is_top(job) && !raw.is_samples_given && !raw.is_quality_given)
+    job->view.samples = 1; /* that is drawn in bounded memory, and pixels are filtered anyway */
   job->is_samples_given = raw.is_samples_given || raw.is_quality_given;
   job->is_patch = method == CONIC_N_METHODS;
   if (!job->is_patch)
@@ -252,7 +256,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   raw.as = raw.is_as_given ? (int)as_values[raw.as] : job->is_plain ? CONIC_AS_POINTS : CONIC_AS_AUTO;
   if (!job->is_plain && !raw.is_crease_given && !job->opening.is_smooth)
     job->opening.crease_deg = 30.0;
-  job->opening.projects_degrees = !job->is_plain;
+  job->opening.projects_degrees = !job->is_plain && !cli_scene_is_top(job);
   job->opening.finds_dots = !job->is_plain;
   job->opening.h_in_spacings = raw.h.is_in_spacings;
   job->patches.surface.h = raw.h.value;

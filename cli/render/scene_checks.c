@@ -78,10 +78,37 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
   return CLI_DONE;
 }
 
+int cli_scene_is_top(const cli_render_job *job) {
+  return job->camera_path && strcmp(job->camera_path, "top") == 0;
+}
+
+/* Of a map, north is up, and up is z. */
+static int check_top(const cli_session *session, const cli_scene_words *words, cli_render_job *job) {
+  const double *up = job->framing.up;
+  if (!cli_scene_is_top(job))
+    return job->top.is_given
+               ? cli_usage("%s: --gsd, --box and --epsg are of maps; give --camera top, too", session->command)
+               : CLI_DONE;
+  if (!job->is_for_looking)
+    return cli_usage("%s: --camera top is of conic render", session->command);
+  if (words->is_framing_given || words->is_size_given)
+    return cli_usage("%s: --camera top sees all from straight above; --gsd says how large, and --box which part",
+                     session->command);
+  if (job->is_up_given && (up[0] != 0.0 || up[1] != 0.0 || !(up[2] > 0.0)))
+    return cli_usage("%s: of --camera top, z points up", session->command);
+  job->top.is_wanted = job->is_up_given = 1;
+  memcpy(job->framing.up, (const double[3]){0.0, 0.0, 1.0}, sizeof job->framing.up);
+  job->camera_path = NULL;
+  return CLI_DONE;
+}
+
 int cli_scene_check(const cli_session *session, const cli_scene_words *words, cli_render_job *job) {
   const char *command = session->command;
   if (job->n_inputs == 0)
     return cli_usage("%s: no input; see conic help %s", command, command);
+  int top = check_top(session, words, job);
+  if (top != CLI_DONE)
+    return top;
   if (job->view_name && !job->camera_path)
     return cli_usage("%s: --view is of a file of cameras; give --camera, too", command);
   if (cli_views_are_all(job->view_name) && !job->is_for_looking)

@@ -34,6 +34,9 @@ int cli_parse_exposure(const char *text, void *value);
 /* rgba,Z,N … or all into bits of planes. */
 int cli_parse_planes(const char *text, void *value);
 
+/* --camera top, which is no file. */
+int cli_scene_is_top(const cli_render_job *job);
+
 /* What the options of the scene and the drawing mean together. */
 int cli_scene_check(const cli_session *session, const cli_scene_words *words, cli_render_job *job);
 

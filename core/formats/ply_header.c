@@ -1,7 +1,9 @@
 #include "core/formats/ply_header.h"
 
+#include <math.h>
 #include <string.h>
 
+#include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 
@@ -39,6 +41,17 @@ const char *conic_ply_type_name(conic_ply_type type) {
   return types[type].names[conic_ply_type_is_integer(type)];
 }
 
+const char *conic_ply_type_word(conic_ply_type type) {
+  return types[type].names[0];
+}
+
+conic_ply_type conic_ply_type_of(const char *name) {
+  for (int i = 0; i < N_TYPES; i++)
+    if (strcmp(types[i].names[0], name) == 0 || strcmp(types[i].names[1], name) == 0)
+      return (conic_ply_type)i;
+  return CONIC_PLY_DOUBLE;
+}
+
 int conic_ply_type_is_integer(conic_ply_type type) {
   return type < CONIC_PLY_FLOAT;
 }
@@ -46,6 +59,22 @@ int conic_ply_type_is_integer(conic_ply_type type) {
 void conic_ply_type_range(conic_ply_type type, double *least, double *largest) {
   *least = types[type].least;
   *largest = types[type].largest;
+}
+
+double conic_ply_nearest(conic_ply_type type, double value) {
+  if (!conic_ply_type_is_integer(type))
+    return value;
+  value = floor(value + 0.5);
+  return value > types[type].least ? value < types[type].largest ? value : types[type].largest : types[type].least;
+}
+
+void conic_ply_store(conic_ply_type type, double value, void *to) {
+  if (type == CONIC_PLY_FLOAT)
+    conic_store_float(to, (float)value);
+  else if (type == CONIC_PLY_DOUBLE)
+    conic_store_double(to, value);
+  else
+    conic_store_bits(to, types[type].n_bytes, (uint64_t)(int64_t)conic_ply_nearest(type, value));
 }
 
 static void copy_word(char *to, size_t room, const char *from, size_t length) {

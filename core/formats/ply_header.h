@@ -63,6 +63,13 @@ int conic_ply_find_property(const conic_ply_header *header, const conic_ply_elem
 size_t conic_ply_type_bytes(conic_ply_type type);
 /* "uint8", "float" … */
 const char *conic_ply_type_name(conic_ply_type type);
+/* And back, of either of its names, double where it is none; and the older name, which all programs know. */
+conic_ply_type conic_ply_type_of(const char *name);
+const char *conic_ply_type_word(conic_ply_type type);
+/* Of the numbers that a type holds the nearest; of an integer, what is no number becomes the least. And that,
+ * little-endian. */
+double conic_ply_nearest(conic_ply_type type, double value);
+void conic_ply_store(conic_ply_type type, double value, void *to);
 int conic_ply_type_is_integer(conic_ply_type type);
 
 /* The least and largest value of an integer type. */

@@ -1,4 +1,5 @@
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 
 #include "conic/model.h"
@@ -11,7 +12,10 @@
 #include "core/base/vectors.h"
 #include "core/files/file.h"
 #include "core/files/number.h"
+#include "core/formats/ply_header.h"
 #include "core/splats/columns.h"
+#include "core/splats/point_fields.h"
+#include "core/splats/point_values.h"
 
 /* Rows that are laid out at a time, and the most values and bytes of one. */
 enum {
@@ -31,7 +35,11 @@ struct conic_splats_writer {
   unsigned fields;
   int has_header, has_double_positions, has_byte_colors;
   float srgb[256], thresholds[255];
-  char *rows; /* BLOCK of them */
+  char *rows;      /* BLOCK of them */
+  size_t n_values; /* by name, of the first batch */
+  conic_model_field values[CONIC_MOST_POINT_VALUES];
+  conic_ply_type value_types[CONIC_MOST_POINT_VALUES];
+  const double *columns[CONIC_MOST_POINT_VALUES]; /* of the batch that is being written; null: it has none */
 };
 
 /* Where the next value of a row goes. */
@@ -119,6 +127,14 @@ static void print_properties(FILE *to, const char *type, const char *names) {
   }
 }
 
+/* A name's words are joined, as a header's are parted by blanks. */
+static void print_value(FILE *to, const char *type, const char *name) {
+  fprintf(to, "property %s ", type);
+  for (const char *c = name; *c; c++)
+    fputc((unsigned char)*c > ' ' ? *c : '_', to);
+  fputc('\n', to);
+}
+
 static void print_header(const conic_splats_writer *writer) {
   FILE *to = conic_output_stream(writer->output);
   int has_axes = (writer->fields & CONIC_SPLATS_TANGENTS) != 0;
@@ -138,9 +154,40 @@ static void print_header(const conic_splats_writer *writer) {
     print_properties(to, "float", "opacity");
   if (writer->fields & CONIC_SPLATS_DOTS)
     print_properties(to, "uchar", "dot");
+  for (size_t k = 0; k < writer->n_values; k++)
+    print_value(to, conic_ply_type_word(writer->value_types[k]), writer->values[k].name);
   if (writer->fields & CONIC_SPLATS_CLIPS)
     fprintf(to, "property list uchar float clip_and\nproperty list uchar float clip_or\n");
   fprintf(to, "end_header\n");
+}
+
+/* The values that are written, and room for them in a row. */
+static conic_status begin_values(conic_splats_writer *writer, const conic_point_values *values) {
+  int is_text = writer->options.encoding == CONIC_PLY_ASCII;
+  for (size_t k = 0; values && k < values->n; k++) {
+    const conic_model_field *field = &values->field[k];
+    if (conic_field_is_of_splats(field->name))
+      continue;
+    writer->value_types[writer->n_values] = conic_ply_type_of(field->type ? field->type : "double");
+    writer->values[writer->n_values++] = *field;
+  }
+  if (writer->n_values == 0)
+    return CONIC_OK;
+  size_t row_bytes = is_text ? MAX_TEXT_BYTES + writer->n_values * CONIC_NUMBER_ROOM
+                             : MAX_BINARY_BYTES + writer->n_values * sizeof(double);
+  conic_memory_release(writer->context, writer->rows);
+  writer->rows = conic_memory_allocate(writer->context, BLOCK, row_bytes);
+  return writer->rows ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+/* Where the values of a batch are. */
+static void find_columns(conic_splats_writer *writer, const conic_point_values *values) {
+  for (size_t k = 0; k < writer->n_values; k++) {
+    writer->columns[k] = NULL;
+    for (size_t i = 0; values && i < values->n && !writer->columns[k]; i++)
+      if (strcmp(values->field[i].name, writer->values[k].name) == 0)
+        writer->columns[k] = values->value[i];
+  }
 }
 
 /* The first batch decides how positions and colours are stored; there may be none. */
@@ -204,6 +251,17 @@ static void put_circle(row_cursor *row, const conic_splats *batch, size_t i, flo
   put_float(row, (float)(conic_length(u) * (double)cutoff));
 }
 
+static void put_value(row_cursor *row, conic_ply_type type, double value) {
+  if (row->encoding == CONIC_PLY_ASCII && type == CONIC_PLY_FLOAT)
+    put_float(row, (float)value);
+  else if (row->encoding == CONIC_PLY_ASCII)
+    put_double(row, conic_ply_nearest(type, value));
+  else {
+    conic_ply_store(type, value, row->next);
+    row->next += conic_ply_type_bytes(type);
+  }
+}
+
 /* The two lists of splat i's clip lines: one of them is empty, if not both. */
 static void put_clip(conic_splats_writer *writer, row_cursor *row, const conic_splats *batch, size_t i) {
   const conic_clip *clip = NULL;
@@ -248,6 +306,8 @@ static void put_row(conic_splats_writer *writer, row_cursor *row, const conic_sp
     put_float(row, batch->opacity[i]);
   if (writer->fields & CONIC_SPLATS_DOTS)
     put_byte(row, batch->dot[i] != 0.0f);
+  for (size_t k = 0; k < writer->n_values; k++)
+    put_value(row, writer->value_types[k], writer->columns[k] ? writer->columns[k][i] : (double)NAN);
   if (writer->fields & CONIC_SPLATS_CLIPS)
     put_clip(writer, row, batch, i);
   if (row->encoding == CONIC_PLY_ASCII)
@@ -262,8 +322,12 @@ static conic_status append_rows(conic_splats_writer *writer, const conic_splats 
   if (writer->fields & ~conic_splats_fields(batch))
     return conic_fail(writer->context, CONIC_ERROR_ARGUMENT, "%s: a batch lacks arrays that were announced",
                       writer->path);
-  if (!writer->has_header && batch->count > 0)
+  if (!writer->has_header && batch->count > 0) {
+    if (begin_values(writer, batch->values) != CONIC_OK)
+      return CONIC_ERROR_MEMORY;
     begin_rows(writer, batch);
+  }
+  find_columns(writer, batch->values);
   writer->next_clip = 0;
   for (size_t first = 0; first < batch->count; first += BLOCK) {
     size_t n = batch->count - first < BLOCK ? batch->count - first : BLOCK;

@@ -134,11 +134,10 @@ static conic_status keep_named(conic_builder *builder, const char *file, const c
   return CONIC_OK;
 }
 
-/* What splats keep of themselves. */
-static int is_of_splats(const char *name) {
-  static const char *const own[] = {"x",    "y",    "z",    "nx",   "ny",    "nz",   "red",     "green",  "blue", "r",
-                                    "g",    "b",    "tu_x", "tu_y", "tu_z",  "tv_x", "tv_y",    "tv_z",   "dot",  "opacity",
-                                    "radius"};
+int conic_field_is_of_splats(const char *name) {
+  static const char *const own[] = {"x",     "y",    "z",    "nx",   "ny",  "nz",      "red",
+                                    "green", "blue", "r",    "g",    "b",   "tu_x",    "tu_y",
+                                    "tu_z",  "tv_x", "tv_y", "tv_z", "dot", "opacity", "radius"};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++)
     if (strcmp(name, own[i]) == 0)
       return 1;
@@ -150,13 +149,13 @@ static conic_status keep_fields(conic_builder *builder, const char *file, const 
   if (strcmp(keep, "all") != 0)
     return keep_named(builder, file, keep, values);
   for (size_t i = 0; i < builder->model->n_fields; i++)
-    if (!is_of_splats(builder->model->fields[i].name))
+    if (!conic_field_is_of_splats(builder->model->fields[i].name))
       keep_field(builder->model, (int)i, values);
   return CONIC_OK;
 }
 
 static conic_status choose_filtered(conic_builder *builder, const char *file, const char *where,
-                                  conic_point_values *values) {
+                                    conic_point_values *values) {
   conic_status status = conic_filter_parse(builder->context, where, &values->filter);
   for (size_t k = 0; status == CONIC_OK && k < conic_filter_names(values->filter); k++) {
     int source = find_source(builder->model, conic_filter_name(values->filter, k));
@@ -171,7 +170,7 @@ static conic_status choose_filtered(conic_builder *builder, const char *file, co
 }
 
 static conic_status choose_scalar_field(conic_builder *builder, const char *file, const conic_read_options *options,
-                                  conic_point_values *values) {
+                                        conic_point_values *values) {
   int field = options->field ? find_field(builder->model, options->field) : -1;
   if (field < 0)
     return options->field && !options->field_is_optional

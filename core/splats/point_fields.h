@@ -8,6 +8,9 @@
  * it; "reflectance" is the intensity, "class" and "label" are the classification. */
 int conic_field_is(const char *name, const char *other);
 
+/* Whether splats have this of themselves: places, axes, colours and the like, by their usual names. */
+int conic_field_is_of_splats(const char *name);
+
 /* Adds a field to the model's list; `type` is static. Errors: MEMORY. */
 conic_status conic_fields_add(conic_builder *builder, const char *name, size_t length, const char *type);
 

@@ -154,20 +154,25 @@ typedef struct conic_layers_region {
   size_t size;            /* sizeof(conic_layers_region), set by the init function */
   double low[3], high[3]; /* in world units; infinite: no bound */
   double error;           /* in world units; 0: full resolution */
+  const char *keep;       /* the values that samples have by name, "intensity, gps_time" or "all"; null: none */
 } conic_layers_region;
 
-/* No bounds, and full resolution. */
+/* No bounds, full resolution, no values. */
 CONIC_API void conic_layers_region_init_sized(conic_layers_region *part, size_t size);
 #define conic_layers_region_init(part) conic_layers_region_init_sized(part, sizeof *(part))
 
 /* The samples of a part, with axes for `cutoff`, batch by batch, each place's after those of the places before it. A
- * null `part` is all of it. Errors: ARGUMENT, as conic_layers_draw, and the receiver's. */
+ * null `part` is all of it. Errors: ARGUMENT, INPUT (the samples have no such value), as conic_layers_draw, and the
+ * receiver's. */
 CONIC_API conic_status conic_layers_read_samples(conic_layers *layers, float cutoff, const conic_layers_region *part,
                                                  conic_batch_receiver *receive, void *cookie);
 
-/* Sets `options` so that what is built of these samples and others has a grid on which these stay where they are, keeps
- * as much of each, and stands as they do. Errors: UNSUPPORTED (it has values by name, which cannot be handed on). */
-CONIC_API conic_status conic_layers_continue(const conic_layers *layers, conic_layers_options *options);
+/* The i-th of the values that the samples have by name; 0: there are no more. */
+CONIC_API int conic_layers_value(const conic_layers *layers, size_t i, conic_model_field *field);
+
+/* Sets `options` so that what is built of these samples and others has a grid on which these stay where they are, and
+ * keeps as much of each, and stands as they do. */
+CONIC_API void conic_layers_continue(const conic_layers *layers, conic_layers_options *options);
 
 #ifdef __cplusplus
 }

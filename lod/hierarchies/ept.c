@@ -1,5 +1,6 @@
 /* EPT (Entwine point tiles): ept.json, a file of JSON a page of the hierarchy, and a file a node. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -97,6 +98,30 @@ typedef struct ept_head {
   int has_bounds, has_tight;
 } ept_head;
 
+/* Which world it is in. What is said otherwise than expected says nothing. */
+static conic_status read_reference(conic_hierarchy *h, conic_json *json) {
+  const char *begin = json->next;
+  char key[CONIC_JSON_KEY_ROOM], text[8192];
+  unsigned epsg = 0;
+  conic_json within;
+  conic_status status = conic_json_skip(json);
+  if (status == CONIC_OK)
+    status = conic_json_take(h->context, h->name, begin, (size_t)(json->next - begin), &within);
+  if (status != CONIC_OK)
+    return status;
+  within.is_silent = 1;
+  conic_json_begin_object(&within);
+  while (conic_json_next_member(&within, key)) {
+    int is_code = strcmp(key, "horizontal") == 0;
+    conic_json_text(&within, text, sizeof text);
+    if (is_code || (strcmp(key, "wkt") == 0 && !epsg))
+      epsg = is_code ? (unsigned)strtoul(text, NULL, 10) : conic_georeference_find_epsg(text, strlen(text));
+  }
+  conic_json_close(&within);
+  conic_georeference_release(h->context, &h->reference);
+  return epsg > 0 && epsg < 65536 ? conic_georeference_of_epsg(h->context, epsg, &h->reference) : CONIC_OK;
+}
+
 static conic_status read_member(conic_hierarchy *h, conic_json *json, const char *key, ept_head *head) {
   if (strcmp(key, "bounds") == 0) {
     head->has_bounds = 1;
@@ -114,6 +139,8 @@ static conic_status read_member(conic_hierarchy *h, conic_json *json, const char
     return read_ept_packing(json, &((ept_own *)h->own)->packing);
   if (strcmp(key, "schema") == 0)
     return read_schema(json, &h->layout);
+  if (strcmp(key, "srs") == 0)
+    return read_reference(h, json);
   return conic_json_skip(json);
 }
 

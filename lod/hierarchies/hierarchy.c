@@ -66,6 +66,7 @@ void conic_hierarchy_close(conic_hierarchy *hierarchy) {
   conic_ranges_close(hierarchy->ranges);
   conic_memory_release(context, hierarchy->nodes);
   conic_memory_release(context, hierarchy->own);
+  conic_georeference_release(context, &hierarchy->reference);
   conic_memory_release(context, hierarchy);
 }
 

@@ -8,6 +8,7 @@
 #ifndef CONIC_HIERARCHY_H
 #define CONIC_HIERARCHY_H
 
+#include "core/pictures/georeference.h"
 #include "lod/hierarchies/point_layout.h"
 #include "lod/ranges/ranges.h"
 
@@ -45,7 +46,8 @@ typedef struct conic_hierarchy {
   conic_hierarchy_node *nodes;    /* those that are known: in no order; the first is the root's page, or what it told */
   size_t n_nodes, nodes_room;
   conic_point_layout layout;
-  void *own; /* the kind's; null, or released as one block */
+  conic_georeference reference; /* all zero: the file does not say */
+  void *own;                    /* the kind's; null, or released as one block */
 } conic_hierarchy;
 
 /* Any name of a function that returns text says what is wrong, or null. */

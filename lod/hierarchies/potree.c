@@ -141,6 +141,17 @@ static conic_status read_encoding(conic_hierarchy *h, conic_json *json) {
              : status;
 }
 
+/* "EPSG:26910", well-known text, or what proj takes, which has no code. */
+static conic_status read_projection(conic_hierarchy *h, conic_json *json) {
+  char text[8192];
+  conic_status status = conic_json_text(json, text, sizeof text);
+  unsigned epsg = conic_georeference_find_epsg(text, strlen(text));
+  if (status != CONIC_OK || epsg == 0)
+    return status;
+  conic_georeference_release(h->context, &h->reference);
+  return conic_georeference_of_epsg(h->context, epsg, &h->reference);
+}
+
 static conic_status read_potree_member(conic_hierarchy *h, conic_json *json, const char *key) {
   if (strcmp(key, "points") == 0)
     return conic_hierarchy_count(json, UINT64_C(1) << 53, &h->n_points);
@@ -156,6 +167,8 @@ static conic_status read_potree_member(conic_hierarchy *h, conic_json *json, con
     return read_box(h, json);
   if (strcmp(key, "encoding") == 0)
     return read_encoding(h, json);
+  if (strcmp(key, "projection") == 0)
+    return read_projection(h, json);
   return strcmp(key, "attributes") == 0 ? read_potree_attributes(h, json) : conic_json_skip(json);
 }
 

@@ -18,6 +18,7 @@ same() { # WHAT GOT WANTED
 awk 'BEGIN { print "x,y,z,class"; for (i = 0; i < 1600; i++) printf "%.2f,%.2f,%d,%d\n", 600000.25 + i % 40, 800000.25 + int(i / 40), i % 7, i % 3 }' > sheet.csv
 printf '600005 800005\n600030 800005\n600015 800035\n\n# a hole\n600014,800010\n600018,800010\n600016,800016\n' > triangle.txt
 
+printf '0 0 0\n1e9 0 0\n' > far.xyz
 run 0 cut sheet.csv --box 600010,800010,600020.25,800030 -o box.ply
 same box "$(points_in box.ply)" "$(awk -F, 'NR > 1 && $1 >= 600010 && $1 <= 600020.25 && $2 >= 800010 && $2 <= 800030' sheet.csv | wc -l)"
 run 0 cut sheet.csv --box 600010,800010,2,600020,800030,4 -o heights.ply
@@ -28,6 +29,24 @@ same polygon "$(points_in triangle.ply)" "$(awk -F, '
     return (c - a) * (y - b) - (d - b) * (x - a) > 0 && (e - c) * (y - d) - (f - d) * (x - c) > 0 && (a - e) * (y - f) - (b - f) * (x - e) > 0 }
   NR > 1 && $4 == 1 && is_in($1, $2, 600005, 800005, 600030, 800005, 600015, 800035) &&
     !is_in($1, $2, 600014, 800010, 600018, 800010, 600016, 800016)' sheet.csv | wc -l)"
+
+# Values by name go along, or those that are asked for.
+values_in() { # FILE
+  "$conic" info "$1" | sed -nE 's/^values +//p' | sed 's/:.*//'
+}
+wanted=$(awk -F, 'NR > 1 && $1 <= 600010 && $4 == 2' sheet.csv | wc -l)
+run 0 cut sheet.csv --box 600000,800000,600010,800040 -o kept.ply
+run 0 cut kept.ply --where 'class = 2' -o again.ply
+same "a class in a PLY" "$(points_in again.ply)" "$wanted"
+run 0 cut sheet.csv --box 600000,800000,600010,800040 --keep none -o bare.ply
+[[ $(values_in bare.ply) == 'x, y, z' ]] || fail "--keep none keeps $(values_in bare.ply)"
+run 0 cut kept.ply -o kept.las
+run 0 cut kept.las --where 'class = 2' -o again.ply
+same "a class in a LAS" "$(points_in again.ply)" "$wanted"
+run 0 cut kept.las -o twice.las
+cmp -s kept.las twice.las || fail "a LAS that is cut as a whole is another"
+run 3 cut sheet.csv --keep klass -o never.ply
+run 4 cut far.xyz -o never.las
 
 run 2 cut sheet.csv
 run 2 cut sheet.csv --box 1,2,3 -o never.ply
@@ -52,4 +71,23 @@ n_read=$(sed -nE 's/^ *"points_in": ([0-9]+),?$/\1/p' half.json)
 [[ $n_read -lt 60000 && $n_read -ge $(points_in half.ply) ]] || fail "all of it was read: $n_read"
 run 0 cut knot.lpc --error 0.2 -o coarse.ply
 [[ $(points_in coarse.ply) -lt 40000 ]] || fail "--error reads all"
+
+# Of a layered cloud values go along, too; merge and --append want the same of all.
+run 0 layer sheet.csv -o sheet.lpc --keep class
+run 0 cut sheet.lpc --where 'x < 600020' -o west.lpc
+run 0 cut sheet.lpc --where 'x >= 600020' -o east.lpc
+run 0 merge west.lpc east.lpc -o both.lpc
+run 0 layer kept.ply --append -o east.lpc
+run 0 cut both.lpc --where 'class = 2' -o again.ply
+same "a class of what was merged" "$(points_in again.ply)" "$(awk -F, 'NR > 1 && $4 == 2' sheet.csv | wc -l)"
+run 0 cut east.lpc --where 'class = 2' --keep class -o again.ply
+same "a class of what was added" "$(points_in again.ply)" \
+  $((wanted + $(awk -F, 'NR > 1 && $1 >= 600020 && $4 == 2' sheet.csv | wc -l)))
+run 0 cut sheet.lpc --keep none -o bare.lpc
+run 3 merge west.lpc bare.lpc -o never.lpc
+grep -q "^conic: error: bare.lpc: .*west.lpc: 'class' (double) is in one alone$" err || fail "merge: $(cat err)"
+run 3 merge bare.lpc west.lpc -o never.lpc
+run 3 layer bare.ply --append -o east.lpc
+run 3 cut sheet.lpc --keep klass -o never.ply
+[[ ! -e never.lpc && ! -e never.ply && ! -e never.las ]] || fail "a file was written in spite of an error"
 [[ $failures -eq 0 ]]

@@ -73,6 +73,16 @@ def same_everywhere(server, folder, root, first, number):
     for options in ([], ["--threads", "1", "--memory", "1"])[:1 if "copc" in root else 2]:
         _, lines, told = draw(folder, url, options)
         expect(told and told["hash"] == good["hash"], f"{url} {options}: another picture {lines}")
+    maps = set()
+    for options in ([path], [url, "--memory", "1"]):
+        code, lines, _ = run_conic(["render", *options, "--camera", "top", "--epsg", "32610", "-o", "map.pfm",
+                                    "--json", "map.json"], folder)
+        expect(code == 0, f"{options}: no map {lines}")
+        with open(os.path.join(folder, "map.json"), encoding="utf-8") as file:
+            told = json.load(file)
+        maps.add(told["hash"]["rgba"])
+        expect(told["pixels_covered"] > 0 and told["top"]["epsg"] == 32610, f"{options}: {told['top']}")
+    expect(len(maps) == 1, f"{url}: another map than of the file")
     n_all = case.n_requests
     case.n_requests = 0
     _, lines, told = draw(folder, url, ["--error", "200", "--progressive", "levels"])

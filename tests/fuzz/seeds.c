@@ -37,6 +37,7 @@ int main(int argc, char **argv) {
   seeds_all_assimp(set);
   seeds_all_records(set);
   seeds_all_hierarchies(set);
+  seeds_all_references(set);
   seeds_text(set, "suite", "json", SUITE_EXAMPLE);
   seeds_text(set, "filter", "lists", "classification = 2, 9 and not (intensity < 100 or z > 50)");
   seeds_text(set, "filter", "chain", "x >= -1.5e3 and y <= .5 or return_number != 1, 2, 3 and user_data = 7");

@@ -4,10 +4,10 @@
 
 #include "core/assimp/assimp_bridge.h"
 #include "tests/support/camera_files.h"
+#include "tests/support/e57_example.h"
 #include "tests/support/files.h"
 #include "tests/support/gaussian_fixture.h"
 #include "tests/support/hierarchy_parts.h"
-#include "tests/support/e57_example.h"
 #include "tests/support/las_file.h"
 #include "tests/support/laz_examples.h"
 #include "tests/support/mesh_file.h"
@@ -216,6 +216,22 @@ static inline void seeds_all_pcd(seed_set *set) {
              "1e7 2 3 4.2108e+06 7\n4 5 nan 4.808e+06 1\n\n0 0 0 0 0\n-1 +2 .5 1 2\n");
   seeds_text(set, "pcd", "pcd",
              "FIELDS x y z r g b\nSIZE 4 4 4 1 1 1\nTYPE I I F U U U\nPOINTS 1\nDATA ascii\n1 2 3 255 0 9\n");
+}
+
+/* The same records as seeds of what is read of the world that they lie in; and a text of it. */
+static inline void seeds_all_references(seed_set *set) {
+  static const char text[] = "PROJCS[\"a\",GEOGCS[\"b\",AUTHORITY[\"EPSG\",\"4326\"]],AUTHORITY[\"EPSG\",\"32610\"]]";
+  static const unsigned char keys[] = {1, 0, 1, 0, 0, 0, 2, 0, 0, 4, 0, 0, 1, 0, 1, 0, 0, 12, 0, 0, 1, 0, 30, 105};
+  unsigned char file[227 + 54 + sizeof keys] = "LASF";
+  file[94] = 227;
+  file[96] = (unsigned char)(sizeof file & 0xff);
+  file[97] = (unsigned char)(sizeof file >> 8);
+  file[100] = 1;
+  memcpy(file + 227 + 2, "LASF_Projection", 15);
+  memcpy(file + 227 + 18, (const unsigned char[]){0xaf, 0x87, sizeof keys}, 3);
+  memcpy(file + 227 + 54, keys, sizeof keys);
+  seeds_add(set, "georeference", "las", 1, file, sizeof file);
+  seeds_text(set, "georeference", "wkt", text);
 }
 
 static inline void seeds_all_las(seed_set *set) {

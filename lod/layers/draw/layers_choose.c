@@ -57,6 +57,59 @@ static conic_status choose_layer_samples(conic_layers *layers, const char *where
   return status;
 }
 
+/* The next of names that commas part, without blanks about it; where it ends. */
+static const char *next_name(const char *names, char *name, size_t room) {
+  size_t n = 0;
+  names += strspn(names, " ,");
+  size_t length = strcspn(names, ",");
+  for (; n + 1 < room && n < length; n++)
+    name[n] = names[n];
+  while (n > 0 && name[n - 1] == ' ')
+    n--;
+  name[n] = 0;
+  return names + length;
+}
+
+conic_status conic_layers_keep(conic_layers *layers, const char *names) {
+  const conic_layers_schema *schema = &layers->header.schema;
+  conic_layers_choice *choice = &layers->choice;
+  int is_all = names && strcmp(names, "all") == 0;
+  uint32_t n_before = choice->n_kept;
+  conic_status status = CONIC_OK;
+  choice->n_kept = 0;
+  for (uint32_t i = 0; i < schema->n && is_all; i++)
+    if (schema->list[i].kind == CONIC_LAYERS_VALUE)
+      choice->kept[choice->n_kept++] = (uint8_t)i;
+  while (names && !is_all && *names && status == CONIC_OK && choice->n_kept < CONIC_LAYERS_MOST_ATTRIBUTES) {
+    char name[sizeof schema->list->name];
+    names = next_name(names, name, sizeof name);
+    int i = name[0] ? conic_layers_schema_value(schema, name) : -1;
+    if (i >= 0)
+      choice->kept[choice->n_kept++] = (uint8_t)i;
+    else if (name[0])
+      status = refuse_layer_value(layers, name);
+  }
+  choice->n_kept = status == CONIC_OK ? choice->n_kept : 0;
+  if (choice->n_kept == 0 && n_before == 0)
+    return status;
+  conic_layers_store_close(layers); /* what is in memory has others */
+  conic_status opened = conic_layers_store_open(layers);
+  return status == CONIC_OK ? opened : status;
+}
+
+int conic_layers_value(const conic_layers *layers, size_t i, conic_model_field *field) {
+  const conic_layers_schema *schema = &layers->header.schema;
+  for (uint32_t k = 0; k < schema->n; k++) {
+    if (schema->list[k].kind != CONIC_LAYERS_VALUE || i-- > 0)
+      continue;
+    memset(field, 0, sizeof *field);
+    memcpy(field->name, schema->list[k].name, sizeof field->name);
+    field->type = conic_layers_number_name(schema->list[k].type);
+    return 1;
+  }
+  return 0;
+}
+
 conic_status conic_layers_choose(conic_layers *layers, const conic_coloring_options *coloring, const char *where,
                                  conic_coloring *done) {
   conic_layers_choice *choice = &layers->choice;

@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/threads.h"
+#include "core/splats/point_values.h"
 #include "lod/layers/draw/layers_octree.h"
 
 /* Pieces are small: so many make a task. */
@@ -33,6 +34,7 @@ void conic_layers_set_release(conic_context *context, conic_layers_set *set) {
   conic_memory_release(context, set->lines);
   conic_memory_release(context, set->splats.clips);
   conic_memory_release(context, set->pieces);
+  conic_point_values_destroy(context, set->named);
   memset(set, 0, sizeof *set);
 }
 
@@ -64,6 +66,26 @@ static void place_arrays(const conic_layers *layers, conic_layers_set *set) {
     set->splats.dot = next;
 }
 
+/* The values that are handed on, as columns of the file's names. */
+static conic_status name_values(const conic_layers *layers, conic_layers_set *set) {
+  const conic_layers_choice *choice = &layers->choice;
+  conic_point_values_destroy(layers->context, set->named);
+  set->splats.values = set->named = NULL;
+  if (choice->n_kept == 0)
+    return CONIC_OK;
+  set->named = conic_memory_allocate_zeroed(layers->context, 1, sizeof *set->named);
+  if (!set->named)
+    return CONIC_ERROR_MEMORY;
+  set->named->n = set->named->n_columns = choice->n_kept;
+  for (uint32_t k = 0; k < choice->n_kept; k++) {
+    const conic_layers_attribute *value = &layers->header.schema.list[choice->kept[k]];
+    memcpy(set->named->field[k].name, value->name, sizeof value->name);
+    set->named->field[k].type = conic_layers_number_name(value->type);
+  }
+  set->splats.values = set->named;
+  return conic_point_values_reserve(layers->context, set->named, set->room);
+}
+
 conic_status conic_layers_set_reserve(const conic_layers *layers, conic_layers_set *set, size_t used, size_t count) {
   conic_context *context = layers->context;
   if (count <= set->room)
@@ -84,6 +106,8 @@ conic_status conic_layers_set_reserve(const conic_layers *layers, conic_layers_s
   conic_status status = conic_memory_grow(context, &set->ids, used, room, sizeof *set->ids);
   if (status == CONIC_OK && splats_have(layers, CONIC_LAYERS_CLIP))
     status = conic_memory_grow(context, &set->lines, used, room, sizeof *set->lines);
+  if (status == CONIC_OK && set->named)
+    status = conic_point_values_reserve(context, set->named, room);
   if (status != CONIC_OK)
     set->room = 0; /* nothing is kept of it */
   else
@@ -279,6 +303,11 @@ static inline float drawn_sigma(const splat_copying *c, size_t i) {
   return (outline < c->most ? outline : c->most) / c->cutoff;
 }
 
+static void copy_values(const gather *g, const conic_layers_cloud *cloud, size_t i_cloud, size_t k) {
+  for (size_t v = 0; g->set->named && v < g->set->named->n; v++)
+    g->set->named->value[v][k] = cloud->values[v * cloud->count + i_cloud];
+}
+
 /* What else a splat has. At full resolution it is drawn as it came, in coarser places as a circle without lines. */
 static void copy_payload(const splat_copying *c, size_t i_cloud, size_t k) {
   const conic_layers_cloud *cloud = c->cloud;
@@ -332,6 +361,8 @@ static void fill_piece(const gather *g, conic_layers_piece *piece) {
     copy_all(&c, n, first_id);
     for (size_t i = 0; i < n && cloud->axis[0]; i++)
       copy_payload(&c, piece->first + i, i);
+    for (size_t i = 0; i < n && g->set->named; i++)
+      copy_values(g, cloud, piece->first + i, piece->at + i);
     return;
   }
   sieve s = begin_sieve(g, piece, cloud);
@@ -340,6 +371,7 @@ static void fill_piece(const gather *g, conic_layers_piece *piece) {
       copy_one(&c, i, k, first_id + (uint32_t)i);
       if (cloud->axis[0])
         copy_payload(&c, piece->first + i, k);
+      copy_values(g, cloud, piece->first + i, piece->at + k);
       k++;
     }
 }
@@ -381,6 +413,10 @@ static size_t place_pieces(gather *g) {
 static conic_status take_pieces(gather *g) {
   for_pieces(g, count_piece);
   size_t count = place_pieces(g), used = g->set->splats.count;
+  if (!g->asked->receive && g->asked->most && count > g->asked->most) {
+    g->set->is_cut_short = 1;
+    return CONIC_OK;
+  }
   size_t wanted = count > g->set->room && used ? count + count / 4 : count;
   conic_status status = conic_layers_set_reserve(g->layers, g->set, used, wanted);
   if (status != CONIC_OK)
@@ -445,7 +481,7 @@ static conic_status hand_over(gather *g) {
 static conic_status take_clouds(gather *g, const uint32_t *clouds, size_t n) {
   conic_layers *layers = g->layers;
   conic_status status = CONIC_OK;
-  for (size_t done = 0; done < n && status == CONIC_OK;) {
+  for (size_t done = 0; done < n && status == CONIC_OK && !g->set->is_cut_short;) {
     conic_layers_loading loading = {.clouds = clouds + done, .until_s = g->asked->until_s};
     loading.n = clouds_together(g, clouds + done, n - done);
     status = conic_layers_store_load(layers, &loading);
@@ -471,7 +507,7 @@ static size_t expect(const gather *g) {
     size_t n_drawn = g->layers->entries[place->node].n_drawn;
     n += place->state == CONIC_PLACE_SHOWN ? n_drawn : place->state == CONIC_PLACE_GRAZING ? n_drawn / 16 : 0;
   }
-  return n + 1;
+  return n < g->asked->most || !g->asked->most ? n + 1 : g->asked->most + 1;
 }
 
 /* The clouds that have something below which a chosen place lies. */
@@ -495,7 +531,12 @@ conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gather
   set->n_pieces = 0;
   set->n_chosen = set->n_turned = 0;
   memcpy(set->splats.origin, layers->header.origin, sizeof set->splats.origin);
-  conic_status status = conic_layers_set_reserve(layers, set, 0, expect(&g));
+  set->is_cut_short = 0;
+  conic_status status = CONIC_OK;
+  if ((set->named ? set->named->n : 0) != layers->choice.n_kept)
+    status = name_values(layers, set);
+  if (status == CONIC_OK)
+    status = conic_layers_set_reserve(layers, set, 0, expect(&g));
   if (status != CONIC_OK)
     return status;
   g.below = conic_memory_allocate_zeroed(layers->context, layers->header.n_clouds, sizeof *g.below);
@@ -506,6 +547,8 @@ conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gather
   conic_memory_release(layers->context, g.below);
   if (status != CONIC_OK || gathering->receive)
     return status;
+  if (set->named)
+    set->named->count = set->splats.count;
   status = face_dots(&g);
   return status == CONIC_OK ? conic_layers_set_list_lines(layers, set) : status;
 }

@@ -2,6 +2,7 @@
 #ifndef CONIC_LAYERS_GATHER_H
 #define CONIC_LAYERS_GATHER_H
 
+#include "core/pictures/georeference.h"
 #include "lod/layers/draw/layers_cut.h"
 
 /* What a cloud has in a place of the cut. */
@@ -20,10 +21,12 @@ struct conic_layers_set {
   conic_layers_lines *lines; /* of each, where the file has some */
   size_t room;               /* of all three */
   size_t clips_room;
-  float *arrays;              /* conic_layers_set_arrays, each of `room` */
-  conic_layers_piece *pieces; /* of the clouds that were in memory last, in the order of the file */
+  float *arrays;                    /* conic_layers_set_arrays, each of `room` */
+  struct conic_point_values *named; /* the splats' values, where some are kept */
+  conic_layers_piece *pieces;       /* of the clouds that were in memory last, in the order of the file */
   size_t n_pieces, pieces_room;
   uint64_t n_chosen, n_turned; /* of all pieces since gathering began */
+  int is_cut_short;            /* there were more splats than asked for at most */
 };
 typedef struct conic_layers_set conic_layers_set;
 
@@ -43,7 +46,8 @@ typedef struct conic_layers_gathering {
   conic_layers_set_receiver *receive; /* null: all is gathered at once; else it is handed over part by part, with the
                                          pieces that it came of; clip lines are not listed yet */
   void *cookie;
-  size_t most; /* splats of a part, but where one place's of one cloud are more */
+  size_t most; /* splats of a part, but where one place's of one cloud are more; of all, which then are cut short, where
+                  nobody receives parts (0: any number) */
 } conic_layers_gathering;
 
 /* Fills the set with what is to be drawn of the places that are shown or grazing; those hidden give nothing. Clouds are
@@ -59,6 +63,15 @@ conic_status conic_layers_set_reserve(const conic_layers *layers, conic_layers_s
 
 /* Makes records of the splats' clip lines, now that all splats are there. Errors: MEMORY. */
 conic_status conic_layers_set_list_lines(const conic_layers *layers, conic_layers_set *set);
+
+/* Fills the layers' own set, which *set becomes, with the samples that conic_layers_read_samples gives for a part, and
+ * those beside it that reach into it: all at once, in the order of the file, the dots as they are. Where there are more
+ * than `most` (0: any number) the set is cut short. Errors: as there. */
+conic_status conic_layers_gather_part(conic_layers *layers, float cutoff, const conic_layers_region *part, size_t most,
+                                      conic_layers_set **set);
+
+/* Which world its coordinates are of, as far as the file says so; the caller releases it. Errors: MEMORY. */
+conic_status conic_layers_find_georeference(const conic_layers *layers, conic_georeference *reference);
 
 void conic_layers_set_release(conic_context *context, conic_layers_set *set);
 

@@ -30,6 +30,10 @@ struct conic_layers {
   struct conic_layers_set *set;         /* what is gathered to be drawn; likewise */
 };
 
+/* Which values the samples that are gathered from now on have by name: as conic_layers_region's keep. Errors: INPUT,
+ * MEMORY. */
+conic_status conic_layers_keep(conic_layers *layers, const char *names);
+
 /* How its files are read. */
 void conic_layers_ranges_options(const conic_layers *layers, conic_ranges_options *options);
 

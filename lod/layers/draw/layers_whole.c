@@ -14,9 +14,17 @@ void conic_layers_region_init_sized(conic_layers_region *part, size_t size) {
   conic_options_give(part, size, &own);
 }
 
-/* Whether a node's sphere reaches into the part's box. */
-static int meets_part(const conic_layers *layers, const conic_layers_entry *entry, const conic_layers_region *part) {
-  double distance2 = 0.0, reach = (double)entry->sphere;
+/* Places of a part, and their numbers. */
+typedef struct finest {
+  conic_layers_cut cut;
+  uint32_t *chosen;
+  size_t room;
+} finest;
+
+/* Whether a node's sphere, wider by a share of its outlines, reaches into the part's box. */
+static int meets_part(const conic_layers *layers, const conic_layers_entry *entry, const conic_layers_region *part,
+                      double share) {
+  double distance2 = 0.0, reach = (double)entry->sphere + share * (double)entry->radius;
   for (int axis = 0; axis < 3; axis++) {
     double at = layers->header.origin[axis] + (double)entry->center[axis];
     double beyond = at < part->low[axis] ? part->low[axis] - at : at > part->high[axis] ? at - part->high[axis] : 0.0;
@@ -25,29 +33,51 @@ static int meets_part(const conic_layers *layers, const conic_layers_entry *entr
   return distance2 <= reach * reach;
 }
 
+/* One more place, and its number. */
+static conic_status add_place(const conic_layers *layers, uint32_t node, finest *list) {
+  size_t n = list->cut.n;
+  if (n == list->room) {
+    size_t room = list->room;
+    conic_status status =
+        conic_memory_reserve(layers->context, &list->cut.places, n, n + 1, &room, sizeof *list->cut.places);
+    if (status == CONIC_OK)
+      status = conic_memory_grow(layers->context, &list->chosen, n, room, sizeof *list->chosen);
+    if (status != CONIC_OK)
+      return status;
+    list->room = room;
+  }
+  memset(&list->cut.places[n], 0, sizeof *list->cut.places);
+  list->cut.places[n].node = node;
+  list->chosen[n] = (uint32_t)n;
+  list->cut.n++;
+  return CONIC_OK;
+}
+
 /* The part's leaves, or what is fine enough above them, in the order of their keys. */
-static conic_status list_finest(const conic_layers *layers, const conic_layers_region *part, conic_layers_cut *cut,
-                                uint32_t *chosen) {
+static conic_status list_finest(const conic_layers *layers, const conic_layers_region *part, double share,
+                                finest *list) {
   uint32_t open[CONIC_LAYERS_MOST_LEVELS + 7 * CONIC_HIERARCHY_LEVELS] = {0};
   int n_open = 1;
-  cut->places = conic_memory_allocate_zeroed(layers->context, layers->header.n_clouds, sizeof *cut->places);
-  if (!cut->places)
-    return CONIC_ERROR_MEMORY;
-  while (n_open > 0) {
+  conic_status status = CONIC_OK;
+  while (n_open > 0 && status == CONIC_OK) {
     const uint32_t node = open[--n_open];
     const conic_layers_entry *entry = &layers->entries[node];
     uint32_t child = (double)entry->error <= part->error ? 0 : entry->child;
-    if (!meets_part(layers, entry, part))
+    if (!meets_part(layers, entry, part, share))
       continue;
     if (child) {
       for (uint32_t i = conic_layers_children(layers); i-- > 0;)
         open[n_open++] = child + i;
       continue;
     }
-    chosen[cut->n] = (uint32_t)cut->n;
-    cut->places[cut->n++].node = node;
+    status = add_place(layers, node, list);
   }
-  return CONIC_OK;
+  return status;
+}
+
+static void release_finest(const conic_layers *layers, finest *list) {
+  conic_memory_release(layers->context, list->chosen);
+  conic_layers_cut_release(layers->context, &list->cut);
 }
 
 /* Of an octree, all pages. */
@@ -72,7 +102,7 @@ static conic_status prepare_all(conic_layers *layers) {
 
 conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splats *splats) {
   conic_context *context = layers->context;
-  conic_layers_cut cut = {0};
+  finest list = {.room = 0};
   conic_layers_set set = {0};
   conic_layers_region all;
   conic_layers_region_init(&all);
@@ -80,17 +110,15 @@ conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splat
   conic_status status = prepare_all(layers);
   if (status != CONIC_OK)
     return status;
-  uint32_t *chosen = conic_memory_allocate(context, layers->header.n_clouds, sizeof *chosen);
-  status = chosen ? list_finest(layers, &all, &cut, chosen) : CONIC_ERROR_MEMORY;
+  status = list_finest(layers, &all, 0.0, &list);
   conic_layers_gathering gathering = {
-      .cut = &cut, .chosen = chosen, .n_chosen = cut.n, .cutoff = cutoff, .until_s = HUGE_VAL};
+      .cut = &list.cut, .chosen = list.chosen, .n_chosen = list.cut.n, .cutoff = cutoff, .until_s = HUGE_VAL};
   if (status == CONIC_OK)
     status = conic_layers_gather(layers, &gathering, &set);
   memcpy(splats->origin, set.splats.origin, sizeof splats->origin);
   if (status == CONIC_OK)
     status = conic_splats_append(context, splats, &set.splats);
-  conic_memory_release(context, chosen);
-  conic_layers_cut_release(context, &cut);
+  release_finest(layers, &list);
   conic_layers_set_release(context, &set);
   return status;
 }
@@ -134,32 +162,51 @@ static conic_status read_cut(conic_layers *layers, float cutoff, const conic_lay
 
 conic_status conic_layers_read_samples(conic_layers *layers, float cutoff, const conic_layers_region *given,
                                        conic_batch_receiver *receive, void *cookie) {
-  conic_context *context = layers->context;
-  conic_layers_cut cut = {0};
+  finest list = {.room = 0};
   conic_layers_region part;
   conic_layers_region_init(&part);
   if (given && (!conic_options_take(&part, given) || !(part.error >= 0.0)))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a part of it that has no meaning", layers->name);
+    return conic_fail(layers->context, CONIC_ERROR_ARGUMENT, "%s: a part of it that has no meaning", layers->name);
   conic_status status = expand_all(layers);
+  if (status == CONIC_OK)
+    status = conic_layers_keep(layers, part.keep);
   if (status != CONIC_OK)
     return status;
-  uint32_t *chosen = conic_memory_allocate(context, layers->header.n_clouds, sizeof *chosen);
-  status = chosen ? list_finest(layers, &part, &cut, chosen) : CONIC_ERROR_MEMORY;
+  status = list_finest(layers, &part, 0.0, &list);
   if (status == CONIC_OK)
-    status = measure_cut(layers, &cut);
+    status = measure_cut(layers, &list.cut);
   if (status == CONIC_OK)
-    status = read_cut(layers, cutoff, &cut, chosen, receive, cookie);
-  conic_memory_release(context, chosen);
-  conic_layers_cut_release(context, &cut);
+    status = read_cut(layers, cutoff, &list.cut, list.chosen, receive, cookie);
+  release_finest(layers, &list);
   return status;
 }
 
-conic_status conic_layers_continue(const conic_layers *layers, conic_layers_options *options) {
+conic_status conic_layers_gather_part(conic_layers *layers, float cutoff, const conic_layers_region *part, size_t most,
+                                      conic_layers_set **set) {
+  const double share = 0.5; /* filters widen what is drawn */
+  finest list = {.room = 0};
+  conic_status status = expand_all(layers);
+  if (!layers->set)
+    layers->set = conic_memory_allocate_zeroed(layers->context, 1, sizeof *layers->set);
+  *set = layers->set;
+  if (status == CONIC_OK)
+    status = layers->set ? list_finest(layers, part, share, &list) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = measure_cut(layers, &list.cut);
+  conic_layers_gathering gathering = {.cut = &list.cut,
+                                      .chosen = list.chosen,
+                                      .n_chosen = list.cut.n,
+                                      .cutoff = cutoff,
+                                      .until_s = HUGE_VAL,
+                                      .most = most};
+  if (status == CONIC_OK)
+    status = conic_layers_gather(layers, &gathering, layers->set);
+  release_finest(layers, &list);
+  return status;
+}
+
+void conic_layers_continue(const conic_layers *layers, conic_layers_options *options) {
   const conic_layers_header *header = &layers->header;
-  if (conic_layers_schema_find(&header->schema, CONIC_LAYERS_VALUE) >= 0)
-    return conic_fail(layers->context, CONIC_ERROR_UNSUPPORTED,
-                      "%s: its samples have values by name, which are not handed on: build it again with --keep",
-                      layers->name);
   options->cloud_size = header->cloud_size;
   options->quantum = header->quantum;
   options->quantum_in_spacings = 0;
@@ -169,5 +216,10 @@ conic_status conic_layers_continue(const conic_layers *layers, conic_layers_opti
     options->up[axis] = (double)header->up[axis];
   options->is_unoriented |= (header->flags & CONIC_LAYERS_UNORIENTED) != 0;
   options->keeps_all |= conic_layers_schema_find(&header->schema, CONIC_LAYERS_AXES) >= 0;
-  return CONIC_OK;
+}
+
+conic_status conic_layers_find_georeference(const conic_layers *layers, conic_georeference *reference) {
+  memset(reference, 0, sizeof *reference);
+  return layers->octree ? conic_georeference_copy(layers->context, &layers->octree->hierarchy->reference, reference)
+                        : CONIC_OK;
 }

@@ -67,6 +67,8 @@ static size_t lay_out_cloud(const conic_layers_header *header, const conic_layer
   cloud->dot = next_cloud_array(&at, n, sizeof(float), file_has(header, CONIC_LAYERS_DOT));
   cloud->lines = next_cloud_array(&at, n, sizeof(conic_layers_lines), file_has(header, CONIC_LAYERS_CLIP));
   cloud->is_left_out = next_cloud_array(&at, n, 1, choice && choice->filter);
+  size_t n_kept = choice ? choice->n_kept : 0;
+  cloud->values = next_cloud_array(&at, n * n_kept, sizeof(double), n_kept > 0);
   return at.at;
 }
 
@@ -92,6 +94,8 @@ static void choose_attributes(conic_layers_decoder *decoder) {
   for (size_t k = 0; choice && choice->filter && k < conic_filter_names(choice->filter); k++)
     if (choice->filtered_by[k] >= 0)
       decoder->is_wanted[choice->filtered_by[k]] = 1;
+  for (uint32_t k = 0; choice && k < choice->n_kept; k++)
+    decoder->is_wanted[choice->kept[k]] = 1;
 }
 
 conic_status conic_layers_decoder_create(conic_context *context, const conic_layers_header *header,
@@ -175,6 +179,9 @@ static void store_chosen(const conic_layers_decoder *decoder, size_t i, conic_la
     for (int channel = 0; channel < 3; channel++)
       cloud->color[channel][i] = linear[channel];
   }
+  for (uint32_t k = 0; k < choice->n_kept; k++)
+    cloud->values[k * cloud->count + i] =
+        conic_layers_number_get(&list[choice->kept[k]], bytes_of_attribute(decoder, i, choice->kept[k]));
   if (!choice->filter)
     return;
   for (size_t k = 0; k < conic_filter_names(choice->filter); k++) {

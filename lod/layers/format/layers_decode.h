@@ -22,6 +22,7 @@ typedef struct conic_layers_cloud {
   float *dot;                 /* likewise, and null where none is one */
   conic_layers_lines *lines;  /* likewise */
   unsigned char *is_left_out; /* with a filter: a sample that does not pass */
+  double *values;             /* of the values that are kept, one after the other, those of all samples; else null */
   float median_outline;       /* of another hierarchy's cloud: the lower median; more than 0 */
 } conic_layers_cloud;
 
@@ -41,6 +42,8 @@ typedef struct conic_layers_choice {
   conic_coloring coloring;
   conic_filter *filter;                     /* null: all samples pass */
   int filtered_by[CONIC_FILTER_MOST_NAMES]; /* attributes */
+  uint32_t n_kept;                          /* values that are handed on with the samples, and which attributes: */
+  uint8_t kept[CONIC_LAYERS_MOST_ATTRIBUTES];
 } conic_layers_choice;
 
 /* What a cloud's samples take, and laying them out in a block of so many bytes, aligned to 64. */

@@ -1,4 +1,4 @@
-#include "cli/commands/cut_region.h"
+#include "cli/cut_region.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,6 +9,7 @@
 #include "core/files/input.h"
 #include "core/files/number.h"
 #include "core/splats/clip.h"
+#include "core/splats/point_values.h"
 #include "core/splats/splats_gather.h"
 
 void cli_cut_region_init(cli_cut_region *region) {
@@ -178,6 +179,25 @@ static conic_status take_clips(conic_context *context, const conic_splats *batch
   return CONIC_OK;
 }
 
+/* The values by name of those that are kept. */
+static conic_status take_kept_values(conic_context *context, const conic_splats *batch, const uint32_t *sources,
+                                     conic_splats *kept) {
+  const conic_point_values *from = batch->values;
+  if (!from || from->n == 0)
+    return CONIC_OK;
+  conic_point_values *to = kept->values = conic_memory_allocate_zeroed(context, 1, sizeof *to);
+  if (!to)
+    return CONIC_ERROR_MEMORY;
+  to->n = to->n_columns = from->n;
+  to->count = kept->count;
+  memcpy(to->field, from->field, sizeof to->field);
+  conic_status status = conic_point_values_reserve(context, to, kept->count);
+  for (size_t k = 0; k < to->n && status == CONIC_OK; k++)
+    for (size_t i = 0; i < kept->count; i++)
+      to->value[k][i] = from->value[k][sources[i]];
+  return status;
+}
+
 conic_status cli_cut_take(conic_context *context, const cli_cut_region *region, const conic_splats *batch,
                           conic_splats *kept) {
   uint32_t *sources = conic_memory_allocate(context, batch->count, sizeof *sources);
@@ -192,6 +212,8 @@ conic_status cli_cut_take(conic_context *context, const cli_cut_region *region, 
   conic_status status = conic_splats_gather(context, batch, sources, n, kept);
   if (status == CONIC_OK)
     status = take_clips(context, batch, sources, kept);
+  if (status == CONIC_OK)
+    status = take_kept_values(context, batch, sources, kept);
   conic_memory_release(context, sources);
   if (status != CONIC_OK)
     conic_splats_release(context, kept);

@@ -21,8 +21,8 @@ int cli_cut_parse_box(const char *text, void *region);
  * number of them is kept. The region's box becomes no larger than theirs. Errors: INPUT, MEMORY. */
 conic_status cli_cut_read_polygons(conic_context *context, const char *path, cli_cut_region *region);
 
-/* Makes a set of those splats of a batch that lie in the region, clip lines and all. On failure it is empty. Errors:
- * MEMORY. */
+/* Makes a set of those splats of a batch that lie in the region, clip lines, values by name and all. On failure it is
+ * empty. Errors: MEMORY. */
 conic_status cli_cut_take(conic_context *context, const cli_cut_region *region, const conic_splats *batch,
                           conic_splats *kept);
 

@@ -1,0 +1,37 @@
+/* One TIFF of an orthophoto: blocks of pixels in, from the left and from the top, and tiles out. */
+#ifndef CONIC_TOP_TIFF_H
+#define CONIC_TOP_TIFF_H
+
+#include "cli/top/top_store.h"
+#include "conic/image.h"
+#include "core/pictures/tiff_tiles.h"
+#include "source/top_view.h"
+
+#define CLI_TOP_NODATA (-9999.0)
+
+typedef struct cli_top_tiff {
+  conic_context *context;
+  conic_tiff_layout layout;
+  conic_tiff *tiff;
+  cli_top_store store;
+  unsigned char *pixels; /* a block's, or a tile's */
+  size_t n_rows_done;    /* that are tiles already */
+} cli_top_tiff;
+
+/* Where a block lies in a picture: x, y of the picture's pixel that begins it, and the block's pixel there. */
+typedef struct cli_top_cut {
+  size_t x, y, width, height;
+  size_t block_x, block_y;
+} cli_top_cut;
+
+/* What is kept of rows takes up to most_bytes of memory. `path` must stay. Errors: as conic_tiff_open. */
+conic_status cli_top_tiff_open(conic_context *context, const char *path, const conic_tiff_layout *layout,
+                               uint64_t most_bytes, cli_top_tiff *file);
+/* Takes the plane that is wanted of a block: rgba, or Z, NaN where nothing is. Errors: MEMORY, IO. */
+conic_status cli_top_tiff_put(cli_top_tiff *file, const conic_image *block, const cli_top_cut *cut);
+/* Writes the tiles of the rows above n_rows. Errors: MEMORY, IO. */
+conic_status cli_top_tiff_advance(cli_top_tiff *file, size_t n_rows);
+/* Where `status` is OK, ends the file; else drops it. Releases what there is; returns `status`, or what went wrong. */
+conic_status cli_top_tiff_end(cli_top_tiff *file, conic_status status);
+
+#endif

@@ -1,0 +1,359 @@
+#include "core/formats/las_write.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/byte_order.h"
+#include "core/base/color.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/disk.h"
+#include "core/files/file.h"
+#include "core/formats/las_fields.h"
+#include "core/splats/point_fields.h"
+#include "core/splats/point_values.h"
+
+/* Where the header has what is written, and how long it and other parts are. */
+enum {
+  AT_ENCODING = 6,
+  AT_VERSION = 24,
+  AT_SYSTEM = 26,
+  AT_SOFTWARE = 58,
+  AT_OWN_BYTES = 94,
+  AT_FIRST_POINT = 96,
+  AT_RECORDS = 100,
+  AT_POINT_FORMAT = 104,
+  AT_RECORD_BYTES = 105,
+  AT_STEPS = 131,
+  AT_ORIGIN = 155,
+  AT_BOUNDS = 179,
+  AT_COUNT = 247,
+  AT_BY_RETURN = 255,
+  HEADER = 375,
+  RECORD = 54,
+  EXTRA = 192,
+  MOST_RECORDS = 1 << 20
+};
+
+enum { GPS_IS_ADJUSTED = 1, IS_WELL_KNOWN_TEXT = 16 }; /* of the encoding */
+enum { KEYS = 34735, TEXT = 34737, WELL_KNOWN_TEXT = 2112, EXTRA_BYTES = 4, RETURNS = 15 };
+enum { AT_RETURN = 14, AT_COLOR = 30, POINT_BYTES = 30, COLOR_BYTES = 6 };
+
+/* A value of the first batch, and where it goes. */
+typedef struct las_column {
+  char name[CONIC_LAS_NAME_ROOM];
+  conic_las_field field;
+  const double *values; /* of the batch that is written; null: it has none */
+} las_column;
+
+struct conic_las_writer {
+  conic_context *context;
+  const char *path;
+  conic_output *output;
+  FILE *file;
+  unsigned char header[HEADER];
+  unsigned char *records; /* about the coordinate system, as the source has them */
+  size_t n_record_bytes;
+  uint32_t n_records;
+  int has_begun, has_source, has_colors, has_returns;
+  double scale[3], offset[3], low[3], high[3];
+  uint64_t count, by_return[RETURNS];
+  size_t point_bytes, n_columns, n_extra;
+  las_column columns[CONIC_MOST_POINT_VALUES];
+};
+
+/* --- what the source says --- */
+
+/* Whether a record is one of a user's. */
+static int is_of_user(const unsigned char *record, const char *user) {
+  return strncmp((const char *)record + 2, user, 16) == 0;
+}
+
+static void put_letters(unsigned char *to, const char *letters) {
+  while (*letters)
+    *to++ = (unsigned char)*letters++;
+}
+
+/* Keeps the records about the coordinate system of a head of n bytes. */
+static conic_status keep_records(conic_las_writer *w, const unsigned char *head, size_t n) {
+  size_t at = conic_load_16(head + AT_OWN_BYTES);
+  w->records = conic_memory_allocate(w->context, n, 1);
+  if (!w->records)
+    return CONIC_ERROR_MEMORY;
+  for (uint32_t i = conic_load_32(head + AT_RECORDS); i > 0 && at + RECORD <= n; i--) {
+    const unsigned char *record = head + at;
+    size_t n_bytes = RECORD + (size_t)conic_load_16(record + 20);
+    unsigned number = conic_load_16(record + 18);
+    if (n_bytes > n - at)
+      break;
+    if (is_of_user(record, "LASF_Projection") && ((number >= KEYS && number <= TEXT) || number == WELL_KNOWN_TEXT)) {
+      memcpy(w->records + w->n_record_bytes, record, n_bytes);
+      w->n_record_bytes += n_bytes;
+      w->n_records++;
+      if (number == WELL_KNOWN_TEXT)
+        w->header[AT_ENCODING] |= IS_WELL_KNOWN_TEXT;
+    }
+    at += n_bytes;
+  }
+  return CONIC_OK;
+}
+
+static conic_status take_source_head(conic_las_writer *w, FILE *file) {
+  unsigned char start[HEADER] = {0};
+  size_t n = fread(start, 1, sizeof start, file), n_head = conic_load_32(start + AT_FIRST_POINT);
+  if (n < 227 || memcmp(start, "LASF", 4) != 0 || n_head < 227 || n_head > MOST_RECORDS)
+    return CONIC_OK;
+  w->has_source = 1;
+  w->header[AT_ENCODING] = start[AT_ENCODING] & GPS_IS_ADJUSTED;
+  for (int axis = 0; axis < 3; axis++) {
+    w->scale[axis] = fabs(conic_load_double(start + AT_STEPS + 8 * (size_t)axis));
+    w->offset[axis] = conic_load_double(start + AT_ORIGIN + 8 * (size_t)axis);
+    w->has_source &= w->scale[axis] > 0.0 && w->scale[axis] + fabs(w->offset[axis]) < 1e300;
+  }
+  unsigned char *head = fseeko(file, 0, SEEK_SET) == 0 ? conic_memory_allocate(w->context, n_head, 1) : NULL;
+  if (!head)
+    return CONIC_ERROR_MEMORY;
+  conic_status status = keep_records(w, head, fread(head, 1, n_head, file));
+  conic_memory_release(w->context, head);
+  return status;
+}
+
+conic_status conic_las_writer_open(conic_context *context, const char *path, const char *source,
+                                   conic_las_writer **writer) {
+  *writer = NULL;
+  if (strcmp(path, "-") == 0)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "a .las goes into a file, not to standard output");
+  conic_las_writer *w = conic_memory_allocate_zeroed(context, 1, sizeof *w);
+  if (!w)
+    return CONIC_ERROR_MEMORY;
+  w->context = context;
+  w->path = path;
+  FILE *file = source && conic_file_is_there(source) ? conic_disk_open_stream(source, "rb") : NULL;
+  conic_status status = file ? take_source_head(w, file) : CONIC_OK;
+  if (file)
+    fclose(file);
+  if (status == CONIC_OK)
+    status = conic_output_open(context, path, &w->output);
+  if (status != CONIC_OK) {
+    conic_las_writer_abandon(w);
+    return status;
+  }
+  w->file = conic_output_stream(w->output);
+  *writer = w;
+  return CONIC_OK;
+}
+
+/* --- the header --- */
+
+/* The format's own field of a name; null: it has none. */
+static const conic_las_field *find_own_field(const conic_las_fields *fields, const char *name) {
+  for (size_t i = 0; i < fields->n; i++)
+    if (strcmp(fields->list[i].name, name) == 0)
+      return &fields->list[i];
+  return NULL;
+}
+
+static void choose_columns(conic_las_writer *w, const conic_point_values *values) {
+  conic_las_fields fields;
+  conic_las_fields_of_format(w->has_colors ? 7 : 6, &fields);
+  for (size_t k = 0; values && k < values->n; k++) {
+    const char *name = values->field[k].name, *type = values->field[k].type;
+    const conic_las_field *own = find_own_field(&fields, name);
+    las_column *column = &w->columns[w->n_columns];
+    if (conic_field_is_of_splats(name))
+      continue;
+    memset(column, 0, sizeof *column);
+    snprintf(column->name, sizeof column->name, "%s", name);
+    w->has_returns |= strcmp(name, "return_number") == 0;
+    w->n_columns++;
+    if (own) {
+      column->field = *own;
+      continue;
+    }
+    column->field.type = conic_ply_type_of(type ? type : "double");
+    column->field.scale = 1.0;
+    column->field.at = w->point_bytes;
+    w->point_bytes += conic_ply_type_bytes(column->field.type);
+    w->n_extra++;
+  }
+}
+
+/* What of a point its format does not have. */
+static void put_extra_record(conic_las_writer *w) {
+  static const unsigned char numbers[] = {2, 1, 4, 3, 6, 5, 9, 10}; /* of types in the order of conic_ply_type */
+  unsigned char record[RECORD] = {0}, extra[EXTRA];
+  put_letters(record + 2, "LASF_Spec");
+  conic_store_bits(record + 18, 2, EXTRA_BYTES);
+  conic_store_bits(record + 20, 2, EXTRA * w->n_extra);
+  fwrite(record, 1, sizeof record, w->file);
+  for (size_t k = 0; k < w->n_columns; k++) {
+    const las_column *column = &w->columns[k];
+    if (column->field.name[0]) /* the format's own */
+      continue;
+    memset(extra, 0, sizeof extra);
+    extra[2] = numbers[column->field.type];
+    for (size_t i = 0; i < 32 && column->name[i]; i++)
+      extra[4 + i] = (unsigned char)column->name[i];
+    fwrite(extra, 1, sizeof extra, w->file);
+  }
+}
+
+static void settle_steps(conic_las_writer *w, const conic_splats *first) {
+  int may_be_degrees = 1;
+  for (int axis = 0; axis < 3 && !w->has_source; axis++) {
+    double place = first ? first->origin[axis] + (double)first->position[axis][0] : 0.0;
+    may_be_degrees &= axis == 2 || fabs(place) <= 180.0;
+    w->offset[axis] = place - place == 0.0 ? floor(place) : 0.0;
+  }
+  for (int axis = 0; axis < 3 && !w->has_source; axis++)
+    w->scale[axis] = may_be_degrees && axis < 2 ? 1e-7 : 1e-3;
+}
+
+static void put_las_header(conic_las_writer *w) {
+  unsigned char *h = w->header;
+  size_t n_extra_bytes = w->n_extra ? RECORD + EXTRA * w->n_extra : 0;
+  put_letters(h, "LASF");
+  h[AT_VERSION] = 1;
+  h[AT_VERSION + 1] = 4;
+  put_letters(h + AT_SYSTEM, "EXTRACTION");
+  put_letters(h + AT_SOFTWARE, "conic");
+  conic_store_bits(h + AT_OWN_BYTES, 2, HEADER);
+  conic_store_32(h + AT_FIRST_POINT, (uint32_t)(HEADER + w->n_record_bytes + n_extra_bytes));
+  conic_store_32(h + AT_RECORDS, w->n_records + (w->n_extra > 0));
+  h[AT_POINT_FORMAT] = w->has_colors ? 7 : 6;
+  conic_store_bits(h + AT_RECORD_BYTES, 2, w->point_bytes);
+  for (int axis = 0; axis < 3; axis++) {
+    conic_store_double(h + AT_STEPS + 8 * (size_t)axis, w->scale[axis]);
+    conic_store_double(h + AT_ORIGIN + 8 * (size_t)axis, w->offset[axis]);
+    conic_store_double(h + AT_BOUNDS + 16 * (size_t)axis, w->count ? w->high[axis] : 0.0);
+    conic_store_double(h + AT_BOUNDS + 16 * (size_t)axis + 8, w->count ? w->low[axis] : 0.0);
+  }
+  conic_store_64(h + AT_COUNT, w->count);
+  for (int i = 0; i < RETURNS; i++)
+    conic_store_64(h + AT_BY_RETURN + 8 * (size_t)i, w->by_return[i]);
+  fwrite(h, 1, HEADER, w->file);
+}
+
+static void begin_las(conic_las_writer *w, const conic_splats *first) {
+  w->has_begun = 1;
+  w->has_colors = first && first->color[0];
+  w->point_bytes = w->has_colors ? POINT_BYTES + COLOR_BYTES : POINT_BYTES;
+  settle_steps(w, first);
+  choose_columns(w, first ? first->values : NULL);
+  put_las_header(w); /* once more, when all is known */
+  if (w->n_record_bytes)
+    fwrite(w->records, 1, w->n_record_bytes, w->file);
+  if (w->n_extra)
+    put_extra_record(w);
+}
+
+/* --- points --- */
+
+/* Whether a point can be written: it is finite. Positions become steps. */
+static conic_status put_place(conic_las_writer *w, const conic_splats *batch, size_t i, unsigned char *point,
+                              int *is_there) {
+  double place[3];
+  *is_there = 1;
+  for (int axis = 0; axis < 3; axis++) {
+    place[axis] = batch->origin[axis] + (double)batch->position[axis][i];
+    *is_there &= place[axis] - place[axis] == 0.0;
+  }
+  for (int axis = 0; axis < 3 && *is_there; axis++) {
+    double steps = floor((place[axis] - w->offset[axis]) / w->scale[axis] + 0.5);
+    if (!(fabs(steps) <= 2147483647.0))
+      return conic_fail(w->context, CONIC_ERROR_UNSUPPORTED,
+                        "%s: cannot write: %.17g is too far from %.17g for steps of %g", w->path, place[axis],
+                        w->offset[axis], w->scale[axis]);
+    conic_store_32(point + 4 * (size_t)axis, (uint32_t)(int32_t)steps);
+    place[axis] = steps * w->scale[axis] + w->offset[axis]; /* as it will be read */
+    w->low[axis] = w->count && w->low[axis] < place[axis] ? w->low[axis] : place[axis];
+    w->high[axis] = w->count && w->high[axis] > place[axis] ? w->high[axis] : place[axis];
+  }
+  return CONIC_OK;
+}
+
+/* A value into its bits or bytes; what they do not hold becomes the nearest that they do. */
+static void put_las_value(const conic_las_field *field, double value, unsigned char *point) {
+  if (field->mask) {
+    double most = (double)field->mask;
+    unsigned number = value > 0.0 ? (unsigned)(value < most ? value : most) : 0;
+    point[field->at] = (unsigned char)(point[field->at] | number << field->shift);
+    return;
+  }
+  conic_ply_store(field->type, (value - field->offset) / field->scale, point + field->at);
+}
+
+static void put_las_colors(const conic_splats *batch, size_t i, unsigned char *point) {
+  for (int c = 0; c < 3; c++) {
+    double code = 65535.0 * conic_srgb_encode((double)batch->color[c][i]);
+    conic_store_bits(point + AT_COLOR + 2 * (size_t)c, 2,
+                     (uint64_t)(code > 0.0 ? code < 65535.0 ? code + 0.5 : 65535.0 : 0.0));
+  }
+}
+
+static conic_status put_point(conic_las_writer *w, const conic_splats *batch, size_t i, unsigned char *point) {
+  int is_there;
+  memset(point, 0, w->point_bytes);
+  conic_status status = put_place(w, batch, i, point, &is_there);
+  if (status != CONIC_OK || !is_there)
+    return status;
+  for (size_t k = 0; k < w->n_columns; k++)
+    if (w->columns[k].values)
+      put_las_value(&w->columns[k].field, w->columns[k].values[i], point);
+  if (!w->has_returns)
+    point[AT_RETURN] = 1 | 1 << 4; /* the only one */
+  if (w->has_colors && batch->color[0])
+    put_las_colors(batch, i, point);
+  unsigned number = point[AT_RETURN] & 15u;
+  if (number > 0)
+    w->by_return[number - 1]++;
+  w->count++;
+  return fwrite(point, 1, w->point_bytes, w->file) == w->point_bytes
+             ? CONIC_OK
+             : conic_fail(w->context, CONIC_ERROR_IO, "%s: cannot write", w->path);
+}
+
+conic_status conic_las_writer_append(conic_las_writer *w, const conic_splats *batch) {
+  const conic_point_values *values = batch->values;
+  conic_status status = CONIC_OK;
+  if (batch->count == 0)
+    return CONIC_OK;
+  if (!w->has_begun)
+    begin_las(w, batch);
+  for (size_t k = 0; k < w->n_columns; k++) {
+    w->columns[k].values = NULL;
+    for (size_t i = 0; values && i < values->n; i++)
+      if (strcmp(values->field[i].name, w->columns[k].name) == 0)
+        w->columns[k].values = values->value[i];
+  }
+  unsigned char *point = conic_memory_allocate(w->context, w->point_bytes, 1);
+  if (!point)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < batch->count && status == CONIC_OK; i++)
+    status = put_point(w, batch, i, point);
+  conic_memory_release(w->context, point);
+  return status;
+}
+
+static void release_las(conic_las_writer *w) {
+  conic_memory_release(w->context, w->records);
+  conic_memory_release(w->context, w);
+}
+
+conic_status conic_las_writer_finish(conic_las_writer *w) {
+  if (!w->has_begun)
+    begin_las(w, NULL);
+  if (fseeko(w->file, 0, SEEK_SET) == 0)
+    put_las_header(w);
+  conic_status status = conic_output_commit(w->output);
+  release_las(w);
+  return status;
+}
+
+void conic_las_writer_abandon(conic_las_writer *w) {
+  if (!w)
+    return;
+  conic_output_abandon(w->output);
+  release_las(w);
+}
