@@ -111,7 +111,8 @@ static conic_status plan_windows(bands *b) {
                                   .height = b->fine.height,
                                   .band_rows = d->samples * conic_samples_band_rows(d->camera, d->samples),
                                   .samples = d->samples,
-                                  .most_pixels = (double)(conic_layers_drawing_bytes(d->layers) / 8 / b->pixel_bytes),
+                                  .most_pixels =
+                                      (double)conic_layers_drawing_bytes(d->layers) / (8.0 * (double)b->pixel_bytes),
                                   .most = in_window > 0.9 * (double)b->most ? in_window : 0.9 * (double)b->most,
                                   .margin_px = b->view.growth_px + 1.0};
   return conic_layers_windows_plan(&parting, &b->windows);

@@ -192,7 +192,7 @@ static inline int is_chosen(const sieve *s, size_t i) {
     return 0;
   if (s->cloud->is_left_out && s->cloud->is_left_out[i])
     return 0;
-  if (s->place->state != CONIC_PLACE_GRAZING || (s->cloud->dot && s->cloud->dot[i] != 0.0f))
+  if (s->place->state != CONIC_PLACE_GRAZING || !s->view || (s->cloud->dot && s->cloud->dot[i] != 0.0f))
     return 1;
   for (int axis = 0; axis < 3; axis++)
     along += (double)s->cloud->normal[axis][i] * ((double)s->cloud->position[axis][i] - s->view->from.eye[axis]);

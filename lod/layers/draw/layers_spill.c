@@ -287,10 +287,10 @@ static void take_of_block(const conic_layers_spill *spill, const unsigned char *
   block += HEAD_BYTES;
   for (size_t i = 0; i < n_columns; i++) {
     size_t n_bytes = columns[i].n_bytes;
-    char *elements = columns[i].elements + to * n_bytes;
-    if (n_chosen == chosen[n_chosen - 1] + (size_t)1) /* all from the first on */
+    char *elements = columns[i].elements ? columns[i].elements + to * n_bytes : NULL;
+    if (elements && n_chosen == chosen[n_chosen - 1] + (size_t)1) /* all from the first on */
       memcpy(elements, block, n_chosen * n_bytes);
-    for (size_t k = 0; k < n_chosen && n_chosen <= chosen[n_chosen - 1]; k++)
+    for (size_t k = 0; elements && k < n_chosen && n_chosen <= chosen[n_chosen - 1]; k++)
       memcpy(elements + k * n_bytes, block + chosen[k] * n_bytes, n_bytes);
     block += spill->block_count * n_bytes;
   }
@@ -344,7 +344,7 @@ conic_status conic_layers_spill_load(conic_layers_spill *spill, size_t i_window,
   if (status != CONIC_OK || *is_too_much)
     return status;
   size_t n_columns = list_columns(spill, columns);
-  for (size_t i = 0; i < n_columns && at > 0; i++)
+  for (size_t i = 0; i < n_columns && columns[i].elements && at > 0; i++)
     memmove(columns[i].elements, columns[i].elements + at * columns[i].n_bytes, (room - at) * columns[i].n_bytes);
   set->splats.count = room - at;
   return conic_layers_set_list_lines(spill->layers, set);
