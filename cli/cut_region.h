@@ -14,8 +14,8 @@ typedef struct cli_cut_region {
 void cli_cut_region_init(cli_cut_region *region);
 void cli_cut_region_release(conic_context *context, cli_cut_region *region);
 
-/* A box for cli_option.parse: "X0,Y0,Z0,X1,Y1,Z1", or "X0,Y0,X1,Y1" for all heights. `region` is a cli_cut_region. */
-int cli_cut_parse_box(const char *text, void *region);
+/* A box for cli_option.parse: "X0,Y0,Z0,X1,Y1,Z1", or "X0,Y0,X1,Y1" for all heights. `cookie` is a cli_cut_region. */
+int cli_cut_parse_box(const char *text, void *cookie);
 
 /* Reads polygons: lines of x and y, and an empty line between two polygons; # begins a comment. What lies in an odd
  * number of them is kept. The region's box becomes no larger than theirs. Errors: INPUT, MEMORY. */

@@ -117,6 +117,8 @@ conic_status conic_top_bins_find(conic_context *context, conic_top_bins *bins, c
     for (size_t k = 0; k < n_spans; k++)
       if (spans[k].next < spans[k].end && (!least || *spans[k].next < *least->next))
         least = &spans[k];
+    if (!least)
+      break;
     bins->found[(*n)++] = *least->next++;
   }
   return CONIC_OK;

@@ -234,7 +234,7 @@ static int part_window(const conic_window *window, conic_window *first, conic_wi
 /* A window, in parts where there is more in it than there is memory for. */
 static conic_status draw_top_window(top_block *b, const conic_window *window) {
   conic_top_view *top = b->top;
-  conic_window first, second;
+  conic_window first = *window, second = *window;
   int may_part = top->samples == 1 && conic_renderer_has_parts(top->renderer) && part_window(window, &first, &second);
   int is_cut_short;
   place_window(b, window);

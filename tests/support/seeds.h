@@ -227,7 +227,7 @@ static inline void seeds_all_references(seed_set *set) {
   file[96] = (unsigned char)(sizeof file & 0xff);
   file[97] = (unsigned char)(sizeof file >> 8);
   file[100] = 1;
-  memcpy(file + 227 + 2, "LASF_Projection", 15);
+  snprintf((char *)file + 227 + 2, 16, "LASF_Projection");
   memcpy(file + 227 + 18, (const unsigned char[]){0xaf, 0x87, sizeof keys}, 3);
   memcpy(file + 227 + 54, keys, sizeof keys);
   seeds_add(set, "georeference", "las", 1, file, sizeof file);

@@ -25,7 +25,7 @@ static conic_georeference read_keys(conic_context *context, const uint16_t *keys
   conic_georeference reference;
   head[94] = 227;
   head[100] = 1;
-  memcpy(head + 227 + 2, "LASF_Projection", 15);
+  snprintf((char *)head + 227 + 2, 16, "LASF_Projection");
   conic_store_bits(head + 227 + 18, 2, 34735);
   conic_store_bits(head + 227 + 20, 2, n_bytes);
   memcpy(head + 227 + 54, keys, n_bytes);
