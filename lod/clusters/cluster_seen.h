@@ -34,6 +34,11 @@ typedef struct conic_seen_change {
   double steps, smear;
 } conic_seen_change;
 
+/* No less than the number, and finite. */
+static inline float conic_seen_float(double number) {
+  return number < 1e37 ? (float)(number * (1.0 + 1e-6)) : 1e37f;
+}
+
 /* Means of squares over an area. */
 typedef struct conic_seen_sums {
   double area, steps2, smear2;

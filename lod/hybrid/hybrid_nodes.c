@@ -305,8 +305,8 @@ static conic_status find_point(const nodes_pass *pass, node_worker *w, size_t i)
   all.ellipse.reach = radius;
   conic_seen_change change = with_pieces(w, conic_site_change(&all));
   node->point.radius = (float)radius;
-  node->point.change = (float)(change.steps * (1.0 + 1e-6));
-  node->point.smear = (float)(change.smear * (1.0 + 1e-6));
+  node->point.change = conic_seen_float(change.steps);
+  node->point.smear = conic_seen_float(change.smear);
   node->point.error = (float)((radius + conic_face_tree_farther(&pass->job->tree, center, 0.0)) * (1.0 + 1e-6));
   for (int channel = 0; channel < 3; channel++)
     node->point.color[channel] = (float)(color[channel] / area);

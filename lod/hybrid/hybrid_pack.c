@@ -122,8 +122,8 @@ typedef struct cursor {
 } cursor;
 
 static void put_change(conic_hybrid_level *level, const conic_seen_change *change) {
-  level->change = (float)(change->steps * (1.0 + 1e-6));
-  level->smear = (float)(change->smear * (1.0 + 1e-6));
+  level->change = conic_seen_float(change->steps);
+  level->smear = conic_seen_float(change->smear);
 }
 
 static void put_triangles(packing *p, cursor *at, const conic_cluster_level *from) {
