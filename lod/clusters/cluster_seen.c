@@ -133,25 +133,36 @@ static double texel_length(const textured_frame *f, const conic_texture *texture
   return a < b ? a : b;
 }
 
-conic_seen_change conic_seen_change_of(const conic_triangles *t, const conic_seen_place *before, double contrast,
-                                       const conic_seen_place *now) {
-  const conic_texture *texture = texture_of(t, now->material);
+static double steps_between(const conic_triangles *t, const conic_seen_place *before, const conic_seen_place *now) {
   double colors[2][3], way[3];
   conic_seen_color(t, before, colors[0]);
   conic_seen_color(t, now, colors[1]);
   conic_subtract(colors[1], colors[0], way);
-  double steps = conic_length(way);
+  return conic_length(way);
+}
+
+/* Where a texture alone has slid within a triangle, nobody needs to look at its texels. */
+conic_seen_change conic_seen_change_of(const conic_triangles *t, const conic_seen_place *before, double contrast,
+                                       const conic_seen_place *now) {
+  const conic_texture *texture = texture_of(t, now->material);
   textured_frame f = textured_frame_of(t, now->corners);
-  if (!texture || before->material != now->material || !(contrast > 0.0))
+  int is_slid = texture && before->material == now->material;
+  double slide[2] = {0.0, 0.0}, length = HUGE_VAL;
+  if (is_slid) {
+    double at[2][2];
+    texture_coordinates(t, before, at[0]);
+    texture_coordinates(t, now, at[1]);
+    for (int k = 0; k < 2; k++)
+      slide[k] = at[1][k] - at[0][k];
+    length = length_of(&f, slide);
+  }
+  int is_looked_at = t->color[0] || !(length <= f.size);
+  double steps = is_looked_at ? steps_between(t, before, now) : 0.0, over = is_looked_at ? f.size : length;
+  if (!is_slid)
     return (conic_seen_change){steps, steps * f.size};
-  double at[2][2];
-  texture_coordinates(t, before, at[0]);
-  texture_coordinates(t, now, at[1]);
-  const double slide[2] = {at[1][0] - at[0][0], at[1][1] - at[0][1]};
-  double length = length_of(&f, slide), texel = texel_length(&f, texture);
-  double along_edges = length < texel ? contrast * length / texel : contrast;
+  double texel = texel_length(&f, texture), along_edges = length < texel ? contrast * length / texel : contrast;
   steps = along_edges > steps ? along_edges : steps;
-  return (conic_seen_change){steps, (steps > contrast ? steps : contrast) * (length < f.size ? length : f.size)};
+  return (conic_seen_change){steps, (steps > contrast ? steps : contrast) * over};
 }
 
 /* The place of a side that is nearest, as a share of it. */
