@@ -52,8 +52,8 @@ static conic_status take_triangles(drawing_source *d, const char *path, const co
   conic_status status = conic_triangles_take(context, model, &triangles);
   if (status == CONIC_OK)
     status = conic_mesh_check(context, path, &triangles);
-  if (status == CONIC_OK && options->crease_deg > 0.0 && !triangles.normal[0] && !options->is_smooth)
-    status = conic_triangles_crease(context, &triangles, options->crease_deg);
+  if (status == CONIC_OK && !options->is_smooth)
+    status = conic_mesh_round(context, 0, options->crease_deg, &triangles);
   if (status == CONIC_OK)
     status = conic_triangles_append(context, &d->triangles, &triangles);
   conic_triangles_release(context, &triangles);

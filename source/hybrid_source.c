@@ -26,6 +26,7 @@ static conic_status measure_hybrid(hybrid_source *h) {
   scale->splat_length = h->info.splat_length;
   scale->n_splats = h->info.n_surfels;
   scale->n_triangles = h->info.n_triangles;
+  scale->has_colors = h->info.has_colors != 0;
   return status;
 }
 
@@ -33,6 +34,8 @@ static conic_status build_hybrid(hybrid_source *h, const char *path, const conic
   conic_triangles mesh;
   conic_hybrid_options building;
   conic_status status = conic_mesh_read(h->base.context, path, options->texture_path, options->coloring, &mesh);
+  if (status == CONIC_OK)
+    status = conic_mesh_round(h->base.context, options->is_smooth, options->crease_deg, &mesh);
   if (status == CONIC_OK)
     status = conic_source_color(&h->base, options, NULL, &mesh);
   if (status != CONIC_OK) {
@@ -82,9 +85,11 @@ static conic_status choose_from_hybrid(conic_source *source, const conic_camera 
   wanted.error_px = view->error_px;
   wanted.only_kind = view->only_kind;
   wanted.budget = view->budget;
+  wanted.color_error = view->color_error;
   conic_status status = conic_hybrid_select(h->hybrid, camera, render, &wanted, &h->selection);
   source->choice.drawing = (conic_drawing){&h->selection.splats, &h->selection.triangles};
   source->choice.error_px = h->selection.error_px;
+  source->choice.color_error = h->selection.color_error;
   source->choice.n_culled = h->selection.n_culled;
   return status;
 }

@@ -57,6 +57,12 @@ conic_status conic_mesh_check(conic_context *context, const char *path, const co
   return conic_fail(context, CONIC_ERROR_INPUT, "%s: no face has three finite corners at three places", path);
 }
 
+conic_status conic_mesh_round(conic_context *context, int is_smooth, double crease_deg, conic_triangles *triangles) {
+  if (is_smooth)
+    return conic_triangles_smooth(context, triangles);
+  return crease_deg > 0.0 && !triangles->normal[0] ? conic_triangles_crease(context, triangles, crease_deg) : CONIC_OK;
+}
+
 conic_status conic_mesh_lay_texture(conic_context *context, const char *texture_path, conic_triangles *triangles) {
   conic_texture *texture;
   if (!triangles->texture_coordinate[0])

@@ -24,7 +24,7 @@ void conic_source_options_init_sized(conic_source_options *options, size_t size)
 }
 
 void conic_source_view_init_sized(conic_source_view *view, size_t size) {
-  static const conic_source_view own = {.size = sizeof own, .only_kind = -1, .samples = 1};
+  static const conic_source_view own = {.size = sizeof own, .only_kind = -1, .samples = 1, .color_error = 2.0};
   conic_options_give(view, size, &own);
 }
 
@@ -263,6 +263,8 @@ conic_status conic_source_describe(const conic_source *source, const conic_rende
   CONIC_ADD_FACTS(*facts, CONIC_END, CONIC_COUNT("clouds_culled", choice->n_culled));
   if (kind->abilities & CONIC_SOURCE_CHOOSES && !choice->is_all)
     CONIC_ADD_FACTS(*facts, CONIC_NUMBER("error_px", choice->error_px));
+  if (kind->abilities & CONIC_SOURCE_CLUSTERS && !choice->is_all)
+    CONIC_ADD_FACTS(*facts, CONIC_NUMBER("color_error", choice->color_error));
   if (kind->tell_rest)
     kind->tell_rest(source, *facts);
   return CONIC_OK;

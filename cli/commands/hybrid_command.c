@@ -12,6 +12,8 @@ typedef struct hybrid_job {
   cli_build base;
   cli_coloring coloring;
   const char *texture;
+  int is_smooth, is_crease_given;
+  double crease_deg;
   conic_hybrid_options options;
 
   conic_hybrid *hybrid;
@@ -28,6 +30,8 @@ static int make_hybrid(void *cookie) {
   double start = cli_seconds();
   conic_status status =
       conic_mesh_read(job->base.session->context, job->base.input, job->texture, &job->coloring.options, &mesh);
+  if (status == CONIC_OK)
+    status = conic_mesh_round(job->base.session->context, job->is_smooth, job->crease_deg, &mesh);
   if (status == CONIC_OK)
     status = cli_coloring_apply(job->base.session, &job->coloring, (const double[3]){0.0, 1.0, 0.0}, NULL, &mesh);
   start = cli_build_end_stage(&stages[READ], start);
@@ -118,6 +122,7 @@ static void release_hybrid(void *cookie) {
 static int run_hybrid(cli_session *session, int argc, char **argv) {
   static const cli_build_steps steps = {make_hybrid, tell_hybrid, report_hybrid, release_hybrid};
   hybrid_job job = {
+      .crease_deg = 30.0,
       .base = {
           session,
           .stages = {{"read"}, {"cluster"}, {"sample"}, {"simplify"}, {"rest of the work", .key = "work"}, {"write"}}}};
@@ -144,6 +149,11 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
        "blue (blue noise, ellipses) or box (three grids, circles: for comparison) [blue]", .choices = sampling_words},
       {"texture", CLI_TEXT, &job.texture, "FILE", "the picture on the mesh's surface [as its materials say]"},
       CLI_TEXTURE_BOUND(session),
+      {"smooth", CLI_FLAG, &job.is_smooth, NULL,
+       "triangles look smooth everywhere: each vertex gets the mean normal of its faces"},
+      {"crease", CLI_NUMBER, &job.crease_deg, "DEG",
+       "triangles without normals look smooth over edges up to this angle, in degrees; 0: every face is flat [30]", 0,
+       90, .is_given = &job.is_crease_given},
       {"cutoff", CLI_NUMBER, &cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
       {"single", CLI_FLAG, &job.options.has_single_levels, NULL,
        "without the simpler levels that --error chooses from"},
@@ -152,6 +162,8 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
   int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "chy");
   job.options.cutoff = (float)cutoff;
   job.options.sampling = (conic_sampling)sampling;
+  if (exit_code == CLI_DONE && job.is_smooth && job.is_crease_given)
+    exit_code = cli_usage("hybrid: --smooth rounds all edges, --crease those up to an angle; give one of both");
   if (exit_code == CLI_DONE)
     exit_code = cli_coloring_check(session, &job.coloring);
   return cli_build_run(&job, &steps, exit_code);

@@ -178,14 +178,21 @@ static void warn_of_empty(cli_session *session, cli_render_job *job) {
 /* The finest that a hybrid has of one kind may not be as fine as it was asked to be; surfels alone, of which nothing
  * was asked, may stand out by more than a pixel. */
 static void warn_of_error(cli_session *session, cli_render_job *job) {
-  double wanted = job->view.error_px, reached = conic_source_chosen(job->source)->error_px;
+  const conic_source_choice *choice = conic_source_chosen(job->source);
+  double wanted = job->view.error_px, reached = choice->error_px;
   const char *const kinds[] = {"--only triangles ", "--only surfels "};
-  int is_asked = wanted > 0.0, is_free = !is_asked && job->view.budget == 0;
-  if (job->is_error_warned || reached <= (is_asked ? wanted : 1.0))
+  const char *kind = job->view.only_kind < 0 ? "it " : kinds[job->view.only_kind];
+  int is_asked = wanted > 0.0, is_free = !is_asked && job->view.budget == 0,
+      is_faded = is_asked && choice->color_error > job->view.color_error;
+  if (job->is_error_warned || (reached <= (is_asked ? wanted : 1.0) && !is_faded))
     return;
-  if (is_asked)
+  if (is_asked && reached > wanted)
     conic_log(session->context, CONIC_LOG_WARNING, "%s: %scannot keep --error %g: the picture is up to %.3g pixels off",
-              job->inputs[0], job->view.only_kind < 0 ? "it " : kinds[job->view.only_kind], wanted, reached);
+              job->inputs[0], kind, wanted, reached);
+  else if (is_faded)
+    conic_log(session->context, CONIC_LOG_WARNING,
+              "%s: %scannot keep --color-error %g: colours are up to %.3g steps off", job->inputs[0], kind,
+              job->view.color_error, choice->color_error);
   else if (is_free && job->view.only_kind == CONIC_HYBRID_SURFELS)
     conic_log(session->context, CONIC_LOG_WARNING,
               "%s: --only surfels stand out from the mesh: the picture is up to %.3g pixels off", job->inputs[0],

@@ -141,6 +141,10 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all "
        "[0]",
        0, 65536, .group = "levels of detail"},
+      {"color-error", CLI_NUMBER, &job->view.color_error, "STEPS",
+       "with --error, of a .chy, by how much colours may differ at any place: black and white do by 100 steps, and 2 "
+       "are just visible [2]",
+       0.01, 1000},
       {"budget", CLI_COUNT, &job->budget, "N",
        "of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]", 1,
        4294967294.0},

@@ -122,8 +122,8 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
         command);
   if (job->opening.texture_path && words->as == CONIC_AS_POINTS)
     return cli_usage("%s: --texture lies on triangles; give --as mesh or hybrid, too", command);
-  if ((job->opening.is_smooth || words->is_crease_given) && words->as != CONIC_AS_MESH && words->as != CONIC_AS_AUTO)
-    return cli_usage("%s: --smooth and --crease are about triangles; give --as mesh, too", command);
+  if ((job->opening.is_smooth || words->is_crease_given) && words->as == CONIC_AS_POINTS)
+    return cli_usage("%s: --smooth and --crease are about triangles; give --as mesh or hybrid, too", command);
   if (job->opening.is_smooth && words->is_crease_given)
     return cli_usage("%s: --smooth rounds all edges, --crease those up to an angle; give one of both", command);
   if (!job->is_patch && words->is_patch_given)

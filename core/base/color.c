@@ -27,6 +27,24 @@ double conic_srgb_encode(double linear) {
   return 1.055 * sqrt(sqrt(five_thirds)) - 0.055; /* linear^(5/12) */
 }
 
+void conic_oklab_of(const double linear[3], double lab[3]) {
+  static const double cones[3][3] = {{0.4122214708, 0.5363325363, 0.0514459929},
+                                     {0.2119034982, 0.6806995451, 0.1073969566},
+                                     {0.0883024619, 0.2817188376, 0.6299787005}};
+  static const double axes[3][3] = {{0.2104542553, 0.7936177850, -0.0040720468},
+                                    {1.9779984951, -2.4285922050, 0.4505937099},
+                                    {0.0259040371, 0.7827717662, -0.8086757660}};
+  double roots[3];
+  for (int i = 0; i < 3; i++) {
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++)
+      sum += cones[i][k] * (linear[k] > 0.0 ? linear[k] < 1.0 ? linear[k] : 1.0 : 0.0);
+    roots[i] = sum > 0.0 ? conic_cube_root(sum) : 0.0;
+  }
+  for (int i = 0; i < 3; i++)
+    lab[i] = axes[i][0] * roots[0] + axes[i][1] * roots[1] + axes[i][2] * roots[2];
+}
+
 void conic_srgb_decode_table(float table[256]) {
   for (int i = 0; i < 256; i++)
     table[i] = (float)conic_srgb_decode((double)i / 255.0);

@@ -9,6 +9,10 @@
 double conic_srgb_decode(double encoded);
 double conic_srgb_encode(double linear);
 
+/* Linear RGB, clamped to 0 to 1, as lightness and two more axes of OKLab (Ottosson, 2020), where equal distances look
+ * equally large: 1 between black and white, about 0.02 for a step that is just visible. */
+void conic_oklab_of(const double linear[3], double lab[3]);
+
 /* The linear values of the 8-bit codes. */
 void conic_srgb_decode_table(float table[256]);
 

@@ -86,7 +86,8 @@ typedef struct conic_hybrid_info {
   double splat_length;           /* as conic_splats_length of the surfels as built */
   double near_z;                 /* 1e-4 × the box's diagonal */
   uint64_t n_bytes;              /* of the file that holds it */
-  uint64_t reserved[8];
+  uint64_t has_colors;           /* by vertex or by materials */
+  uint64_t reserved[7];
 } conic_hybrid_info;
 
 CONIC_API conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info *info);
@@ -112,10 +113,13 @@ typedef struct conic_hybrid_view {
       error_px; /* above 0: of each cluster the cheapest level whose error on the screen is at most this; 0: as built */
   int only_kind; /* -1: either; else the conic_hybrid_kind that all clusters are drawn as, the finest that there is, or
                     with error_px the cheapest that is good enough */
-  uint64_t budget; /* or, where not 0: the least error that so many triangles and surfels in sight can give */
+  uint64_t budget;    /* or, where not 0: the least error that so many triangles and surfels in sight can give */
+  double color_error; /* above 0: with error_px, by how much colours may differ, in hundredths of the way from black to
+                         white in OKLab; with a budget, what counts as much as a pixel. 2 is just visible; infinite:
+                         colours do not matter */
 } conic_hybrid_view;
 
-/* As built, of either kind. */
+/* As built, of either kind, colours by 2 steps. */
 CONIC_API void conic_hybrid_view_init_sized(conic_hybrid_view *view, size_t size);
 #define conic_hybrid_view_init(view) conic_hybrid_view_init_sized(view, sizeof *(view))
 
@@ -132,10 +136,11 @@ typedef struct conic_hybrid_selection {
   size_t n_nodes, n_points;  /* by so many levels of surfels, and points */
   size_t n_culled;           /* clusters that are out of sight */
   size_t n_simpler;          /* drawn by another level than as built */
-  double error_px; /* no place of these is drawn farther, in pixels, from where it is; infinite where a cluster
-                      that is not drawn by its own triangles reaches the near distance */
-  void *scratch;   /* private */
-  uint64_t reserved[8];
+  double error_px;    /* no place of these is drawn farther, in pixels, from where it is; infinite where a cluster
+                         that is not drawn by its own triangles reaches the near distance */
+  void *scratch;      /* private */
+  double color_error; /* nor do colours differ by more than this from what is there, in steps as those of the view */
+  uint64_t reserved[7];
 } conic_hybrid_selection;
 
 /* Chooses what to draw: clusters out of sight, and with cull_back those that face away, are left out. Neighbours meet

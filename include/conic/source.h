@@ -54,7 +54,7 @@ typedef struct conic_source_options {
   float cutoff;                      /* F_g of the kernel that will draw */
   int n_neighbours;                  /* that a raw point's size is estimated from, 6 to 64 */
   const char *texture_path;          /* a picture that lies on the mesh in place of its own; null: none */
-  int is_smooth;                     /* a mesh that is drawn as one gets vertex normals from its faces */
+  int is_smooth;                     /* a mesh that is drawn as one, or a hybrid, gets vertex normals from its faces */
   const conic_layers_access *access; /* of layered clouds; null: the defaults */
   const conic_patches_options *patches; /* but for the cutoff; null: the defaults */
   int h_in_spacings;                    /* the patches' surface.h is in median sample spacings */
@@ -168,9 +168,10 @@ typedef struct conic_source_view {
   int may_be_coarser;        /* what cannot be read, or not in time, is drawn coarser */
   double seconds;            /* with that: no more is read after so many; 0: no limit */
   int tolerates_damage;      /* with that: so is what is damaged */
+  double color_error;        /* of a hybrid: as conic_hybrid_view has it */
 } conic_source_view;
 
-/* Full detail, either kind, one sample. */
+/* Full detail, either kind, one sample, colours by 2 steps. */
 CONIC_API void conic_source_view_init_sized(conic_source_view *view, size_t size);
 #define conic_source_view_init(view) conic_source_view_init_sized(view, sizeof *(view))
 
@@ -182,6 +183,7 @@ typedef struct conic_source_choice {
   double error_px;       /* asked for, or what the budget came to; 0 where nothing was chosen */
   uint64_t n_culled;     /* parts that are out of sight */
   int n_levels;          /* of a source with levels: that were drawn */
+  double color_error;    /* of a hybrid: as conic_hybrid_selection has it */
 } conic_source_choice;
 
 /* Chooses what a camera sees, and hands it over by conic_source_chosen. Null `view` is the default. Errors: ARGUMENT,

@@ -4,9 +4,10 @@
 
 #include <stdint.h>
 
-/* A vertex where two clusters meet, and the last stage of simplification at which it is still there. */
+/* A vertex where two clusters meet, as each of them has it, the lower one first, and the last stage of simplification
+ * at which it is still there. */
 typedef struct conic_cluster_slot {
-  uint32_t vertex, stage;
+  uint32_t vertices[2], stage;
 } conic_cluster_slot;
 
 #define CONIC_CLUSTER_ALWAYS UINT32_MAX

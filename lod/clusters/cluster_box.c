@@ -52,6 +52,8 @@ static conic_status add_surfel(box_sampling *b, uint32_t face, const double bary
   surfel->face = face;
   b->surfels->error = reach > b->surfels->error ? reach : b->surfels->error;
   b->surfels->reach = reach;
+  if (conic_has_seen_colors(mesh->triangles)) /* nobody looks how they differ */
+    b->surfels->change = (conic_seen_change){CONIC_SEEN_STEPS, CONIC_SEEN_STEPS * reach};
   return CONIC_OK;
 }
 

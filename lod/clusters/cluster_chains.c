@@ -13,8 +13,8 @@ typedef struct border_edge {
 /* The edges between clusters that end at a place. */
 typedef struct border_place {
   uint32_t edges[2];
-  uint32_t vertex; /* one of the mesh that lies there */
-  uint32_t n;      /* how many; more than two where something else ends here too */
+  uint32_t vertices[2]; /* of the mesh that lie there: one of either cluster */
+  uint32_t n;           /* how many; more than two where something else ends here too */
 } border_place;
 
 typedef struct finding {
@@ -43,7 +43,16 @@ static int is_between(const finding *f, uint32_t face, int corner, uint32_t *acr
   return f->region[*across_cluster] == f->region[of_face[face]];
 }
 
+/* The vertex of a face at a place that it has. */
+static uint32_t vertex_at(const finding *f, uint32_t face, uint32_t place) {
+  int corner = 0;
+  while (corner < 2 && place_of_vertex(f, face, corner) != place)
+    corner++;
+  return f->mesh->mesh.faces[face][corner];
+}
+
 static void add_edge(finding *f, uint32_t face, int corner, uint32_t other) {
+  uint32_t across = f->mesh->adjacency->across[3 * (size_t)face + (size_t)corner] / 3;
   uint32_t own = f->mesh->clusters->of_face[face], i = (uint32_t)f->n_edges++;
   border_edge *edge = &f->edges[i];
   edge->ends[0] = place_of_vertex(f, face, corner);
@@ -53,7 +62,8 @@ static void add_edge(finding *f, uint32_t face, int corner, uint32_t other) {
   edge->is_taken = 0;
   for (int k = 0; k < 2; k++) {
     border_place *place = &f->places[edge->ends[k]];
-    place->vertex = f->mesh->mesh.faces[face][(corner + k) % 3];
+    place->vertices[own > other] = f->mesh->mesh.faces[face][(corner + k) % 3];
+    place->vertices[own < other] = vertex_at(f, across, edge->ends[k]);
     if (place->n < 2)
       place->edges[place->n] = i;
     place->n = place->n < CROWD ? place->n + 1 : CROWD;
@@ -96,7 +106,8 @@ static void put_slot(finding *f, uint32_t place, int is_between_ends) {
   conic_cluster_chains *c = f->chains;
   if (is_between_ends)
     c->of_vertex[place] = (uint32_t)c->n_slots;
-  c->slots[c->n_slots++] = (conic_cluster_slot){.vertex = f->places[place].vertex, .stage = CONIC_CLUSTER_ALWAYS};
+  const uint32_t *vertices = f->places[place].vertices;
+  c->slots[c->n_slots++] = (conic_cluster_slot){{vertices[0], vertices[1]}, CONIC_CLUSTER_ALWAYS};
 }
 
 /* From an edge back to the chain's beginning, then along all of it. A closed one begins where the edge does. */

@@ -2,18 +2,26 @@
 #ifndef CONIC_CLUSTER_CONTRAST_H
 #define CONIC_CLUSTER_CONTRAST_H
 
-#include <math.h>
-
 #include "lod/clusters/cluster_sites.h"
 
-/* Pictures show about the square root of linear light; what is beyond their range they do not show. */
-static inline double conic_as_shown(double linear) {
-  return linear >= 1.0 ? 1.0 : linear > 0.0 ? sqrt(linear) : 0.0;
-}
+/* The box of no colour. */
+void conic_site_begin_contrast(conic_site *site);
 
-/* Fills in the contrasts of the sites that are not settled: the greatest difference in a channel among the places that
- * they own, as it is shown (1: black and white). Details that are finer than the lattices count as what they are in the
- * mean. */
+/* Widens the box by a linear colour. */
+void conic_site_note_color(conic_site *site, const double color[3]);
+
+/* Takes the diagonal of the box as the site's contrast, in steps of 1: black and white. */
+void conic_site_end_contrast(conic_site *site);
+
+/* How colours differ in what a site stands for from its own, which is in the middle of them, and how far they are
+ * smeared: as far as it reaches. */
+conic_seen_change conic_site_change(const conic_site *site);
+
+/* Of all sites, in the root mean square, or what is known where that is more. */
+conic_seen_change conic_sites_change(const conic_sampler *sampler, conic_seen_change known);
+
+/* Fills in the contrasts of the sites that are not settled: how far the colours of the places that they own, and of
+ * details between these, are apart. */
 void conic_cluster_find_contrasts(conic_sampler *sampler);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/real.h"
+#include "lod/clusters/cluster_contrast.h"
 #include "lod/clusters/cluster_error.h"
 #include "lod/clusters/cluster_reuse.h"
 #include "lod/clusters/cluster_shape.h"
@@ -220,6 +221,8 @@ conic_status conic_cluster_sample(conic_sampler *s, const conic_sampling_job *jo
   }
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     status = emit(s, &s->sites[i], surfels);
+  if (status == CONIC_OK)
+    surfels->change = conic_sites_change(s, surfels->change);
   surfels->is_coarsest = status == CONIC_OK && is_coarsest(s);
   surfels->is_out = status == CONIC_OK && s->job->most_out < HUGE_VAL && is_out(s);
   if (status == CONIC_OK && surfels->n <= job->useful)

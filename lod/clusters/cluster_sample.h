@@ -2,7 +2,7 @@
 #ifndef CONIC_CLUSTER_SAMPLE_H
 #define CONIC_CLUSTER_SAMPLE_H
 
-#include "lod/clusters/cluster.h"
+#include "lod/clusters/cluster_seen.h"
 #include "lod/mesh/face_tree.h"
 
 typedef struct conic_surfel {
@@ -18,10 +18,11 @@ typedef struct conic_surfels {
   /* No point of the faces is farther from the surfel that stands for it; nor a surfel's outline from the mesh, as
    * measured at forty places. */
   double error;
-  double refined_error; /* the same as measured at the twenty places by which surfels are laid closer or not */
-  double reach;         /* the longest half axis of an outline */
-  int is_out;           /* an outline is farther from the mesh than the job's `most_out` */
-  int is_coarsest;      /* no wider spacing gives fewer */
+  double refined_error;     /* the same as measured at the twenty places by which surfels are laid closer or not */
+  conic_seen_change change; /* how the faces' colours differ from those of the surfels, in the root mean square */
+  double reach;             /* the longest half axis of an outline */
+  int is_out;               /* an outline is farther from the mesh than the job's `most_out` */
+  int is_coarsest;          /* no wider spacing gives fewer */
 } conic_surfels;
 
 typedef struct conic_sampling_job {

@@ -4,6 +4,7 @@
 #define CONIC_CLUSTER_SIMPLIFIER_H
 
 #include "core/base/heap.h"
+#include "lod/clusters/cluster_seen.h"
 #include "lod/clusters/cluster_simplify.h"
 #include "lod/mesh/quadric.h"
 
@@ -13,7 +14,7 @@ typedef enum conic_simplifier_kind {
   CONIC_VERTEX_FREE = 0,   /* faces of one cluster all around */
   CONIC_VERTEX_BORDER = 1, /* on an open border, along which it may go */
   CONIC_VERTEX_CHAIN = 2,  /* between two clusters, along whose chain it may go */
-  CONIC_VERTEX_LOCKED = 3  /* of another region too; or its surroundings are no surface, or its attributes differ */
+  CONIC_VERTEX_LOCKED = 3  /* of another region too; or its surroundings are no surface */
 } conic_simplifier_kind;
 
 typedef struct conic_simplifier_vertex {
@@ -21,10 +22,11 @@ typedef struct conic_simplifier_vertex {
   uint32_t material;             /* of its faces */
   uint32_t ring;                 /* its first slot, 3 · triangle + corner, or none */
   uint32_t target;               /* what it would best be drawn onto; of one that is gone: what it was drawn onto */
-  uint8_t kind, is_old, is_seam; /* is_seam: its attributes differ from face to face */
+  uint8_t kind, is_old, is_seam; /* is_seam: its attributes differ from face to face; it may go along where they do */
   uint8_t is_gone;
   double at[3];
   conic_quadric quadric;
+  double faded, fading; /* what was lost of the colours about it, as a quadric's value; and what its going adds */
 } conic_simplifier_vertex;
 
 /* As long as a line of the cache; what walks do not ask for lies elsewhere. */
@@ -40,7 +42,9 @@ typedef struct conic_simplifier_triangle {
 /* A place of the mesh that the simpler triangles are compared with. */
 typedef struct conic_simplifier_point {
   double at[3];
-  uint32_t vertex; /* that it was near at first */
+  uint32_t vertex;   /* that it was near at first */
+  uint32_t triangle; /* one that it lies on, and of which corners it is the middle, as bits; no corners: its colour */
+  uint32_t corners;  /* is not looked at */
 } conic_simplifier_point;
 
 /* From a vertex that is to go to a neighbour. */
@@ -48,7 +52,7 @@ typedef struct conic_simplifier_spoke {
   uint32_t vertex;
   uint32_t before, slot; /* of its triangle, if it has one: the corner before the vertex that goes, and the slot */
   int is_common;         /* whether it neighbours the vertex that is looked at, too */
-  double cost;
+  double cost, fading;   /* what colours add to it, once it was asked; else infinite */
 } conic_simplifier_spoke;
 
 /* Along it, vertices were left out. */
@@ -68,6 +72,7 @@ struct conic_simplifier {
   conic_simplifier_vertex *vertices;
   conic_simplifier_triangle *triangles;
   uint32_t (*originals)[3]; /* the triangles' vertices in the mesh: with their attributes */
+  uint32_t *wedges;         /* of triangles about a vertex that goes: what its corner becomes */
   uint32_t (*near)[4];      /* faces of the mesh that were near the middles of their edges, and near their own */
   conic_simplifier_point *points;
   conic_simplifier_border *borders; /* of the stage that is to be taken */
@@ -76,12 +81,14 @@ struct conic_simplifier {
   uint32_t *alive;                  /* triangles of each cluster */
   uint32_t *taken;                  /* of each cluster: triangles of its last level */
   double *errors2;                  /* of each cluster, squared, so far */
-  uint32_t stage;                   /* the last one that is taken, or is to be */
-  size_t n_last, n_wanted;          /* triangles: of the last stage, and of the next */
+  conic_seen_sums *changes;         /* of each cluster's colours, in the stage that is measured */
+  float (*contrasts)[2];   /* of the triangles' faces of the mesh, and twice their area; null: all has one colour */
+  uint32_t stage;          /* the last one that is taken, or is to be */
+  size_t n_last, n_wanted; /* triangles: of the last stage, and of the next */
   int is_to_take, is_over;
   conic_cluster_levels *levels;   /* of the region's clusters */
   conic_simplifier_spoke *spokes; /* room for those of any vertex */
-  void *memory[14];               /* all of these, but for the borders */
+  void *memory[17];               /* all of these, but for the borders */
   conic_heap queue;
 };
 
@@ -100,12 +107,29 @@ static inline int conic_simplifier_has(const conic_simplifier_triangle *t, uint3
   return t->corners[0] == v || t->corners[1] == v || t->corners[2] == v;
 }
 
+/* The material of a triangle's face. */
+static inline uint32_t conic_simplifier_material(const conic_simplifier *s, const conic_simplifier_triangle *t) {
+  const uint32_t *materials = s->mesh->triangles->material;
+  return materials ? materials[t->face] : 0;
+}
+
 /* Fills in vertices, triangles and points of the region [begin, end), with room for what is done with them. Errors:
  * MEMORY. */
 conic_status conic_simplifier_load(conic_simplifier *s);
 
+/* What a corner of u becomes when u is drawn onto v: the mesh's vertex at v that a triangle beside their edge has,
+ * which has the same at u; of the same cluster and material. NONE where there is none, or they differ. */
+uint32_t conic_simplifier_wedge(const conic_simplifier *s, uint32_t u, uint32_t v, uint32_t slot);
+
 /* Sets the target of vertex u and its key, or neither where it may be drawn onto no neighbour. */
 void conic_simplifier_find_target(conic_simplifier *s, uint32_t u);
+
+/* What of the colours about vertex u is lost when it goes to v, as a quadric's value; colours are not all the same. */
+double conic_simplifier_fading(const conic_simplifier *s, uint32_t u, uint32_t v);
+
+/* Notes what a point of a cluster has become, being nearest to a triangle. */
+void conic_simplifier_note_change(conic_simplifier *s, uint32_t cluster, const conic_simplifier_point *point,
+                                  const conic_simplifier_triangle *triangle);
 
 /* Whether a cluster has become so much simpler that this stage is a level of it. */
 static inline int conic_simplifier_is_worth_a_level(const conic_simplifier *s, uint32_t cluster) {

@@ -54,7 +54,17 @@ static void leave_slot(conic_simplifier *s, uint32_t u) {
     s->chains->slots[slot].stage = s->stage;
 }
 
+/* While the triangles beside the edge are still there. */
+static void give_wedges(conic_simplifier *s, uint32_t u, uint32_t v) {
+  int is_seam = s->vertices[u].is_seam || s->vertices[v].is_seam;
+  for (uint32_t slot = conic_simplifier_living(s, s->vertices[u].ring); slot != CONIC_NONE;
+       slot = conic_simplifier_after(s, slot))
+    if (!conic_simplifier_has(&s->triangles[slot / 3], v))
+      s->wedges[slot / 3] = is_seam ? conic_simplifier_wedge(s, u, v, slot) : s->vertices[v].original;
+}
+
 static void draw_together(conic_simplifier *s, uint32_t u, uint32_t v) {
+  give_wedges(s, u, v);
   for (uint32_t slot = conic_simplifier_living(s, s->vertices[u].ring); slot != CONIC_NONE;) {
     conic_simplifier_triangle *t = &s->triangles[slot / 3];
     uint32_t following = conic_simplifier_after(s, slot);
@@ -64,7 +74,7 @@ static void draw_together(conic_simplifier *s, uint32_t u, uint32_t v) {
       s->n_alive--;
     } else {
       t->corners[slot % 3] = v;
-      s->originals[slot / 3][slot % 3] = s->vertices[v].original;
+      s->originals[slot / 3][slot % 3] = s->wedges[slot / 3];
       t->next[slot % 3] = s->vertices[v].ring;
       s->vertices[v].ring = slot;
     }
@@ -74,6 +84,7 @@ static void draw_together(conic_simplifier *s, uint32_t u, uint32_t v) {
   leave_slot(s, u);
   s->vertices[u].is_gone = 1;
   conic_quadric_add(&s->vertices[v].quadric, &s->vertices[u].quadric);
+  s->vertices[v].faded += s->vertices[u].faded + s->vertices[u].fading;
   for (uint32_t slot = s->vertices[v].ring; slot != CONIC_NONE; slot = conic_simplifier_after(s, slot))
     for (int corner = 0; corner < 3; corner++)
       s->vertices[s->triangles[slot / 3].corners[corner]].is_old = 1;

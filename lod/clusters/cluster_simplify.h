@@ -3,6 +3,7 @@
 #define CONIC_CLUSTER_SIMPLIFY_H
 
 #include "lod/clusters/cluster_chains.h"
+#include "lod/clusters/cluster_seen.h"
 #include "lod/mesh/face_tree.h"
 
 enum { CONIC_MOST_TRIANGLE_LEVELS = 12 };
@@ -17,6 +18,7 @@ typedef struct conic_cluster_level {
   double error; /* no vertex of the cluster, nor middle of an edge or a face, is farther from these triangles, those of
                    the other clusters of the same stage beside them; nor are the middles of these and of their edges
                    from the mesh, nor those of the fans that they become beside others */
+  conic_seen_change change; /* how colours of the cluster differ, in the root mean square */
 } conic_cluster_level;
 
 typedef struct conic_cluster_levels {

@@ -36,10 +36,16 @@ static conic_status make_room_for_region(conic_simplifier *s, size_t n_vertices,
   s->memory[11] = s->spokes = conic_memory_allocate(s->context, 2 * n_faces, sizeof *s->spokes);
   s->memory[12] = s->originals = conic_memory_allocate(s->context, n_faces, sizeof *s->originals);
   s->memory[13] = s->near = conic_memory_allocate(s->context, n_faces, sizeof *s->near);
-  for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory; i++)
+  s->memory[15] = s->wedges = conic_memory_allocate(s->context, n_faces, sizeof *s->wedges);
+  s->memory[14] = s->changes = conic_memory_allocate_zeroed(s->context, n_clusters, sizeof *s->changes);
+  for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory - 1; i++)
     if (!s->memory[i])
       return CONIC_ERROR_MEMORY;
-  return CONIC_OK;
+  s->contrasts = NULL;
+  if (!conic_has_seen_colors(s->mesh->triangles))
+    return CONIC_OK;
+  s->memory[16] = s->contrasts = conic_memory_allocate(s->context, n_faces, sizeof *s->contrasts);
+  return s->contrasts ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
 /* Numbers the region's places. */
@@ -61,14 +67,18 @@ void conic_region_end(conic_simplifier *s) {
       s->number[mesh->adjacency->place[mesh->mesh.faces[mesh->faces[i]][corner]]] = CONIC_NONE;
 }
 
-static void add_point(conic_simplifier *s, uint32_t i_vertex, const double at[3]) {
+/* The middle of some of a triangle's corners, which are bits. */
+static void add_point(conic_simplifier *s, uint32_t i_vertex, const double at[3], uint32_t triangle, uint32_t corners) {
   conic_simplifier_point *p = &s->points[s->n_points++];
   memcpy(p->at, at, sizeof p->at);
   p->vertex = i_vertex;
+  p->triangle = triangle;
+  p->corners = corners;
 }
 
 /* The region's number of a mesh's vertex. */
-static uint32_t use_vertex(conic_simplifier *s, uint32_t original, uint32_t material) {
+static uint32_t use_vertex(conic_simplifier *s, uint32_t triangle, int corner, uint32_t material) {
+  uint32_t original = s->originals[triangle][corner];
   uint32_t i = s->number[s->mesh->adjacency->place[original]];
   conic_simplifier_vertex *v = &s->vertices[i];
   if (v->original == CONIC_NONE) {
@@ -76,12 +86,21 @@ static uint32_t use_vertex(conic_simplifier *s, uint32_t original, uint32_t mate
     v->material = material;
     for (int axis = 0; axis < 3; axis++)
       v->at[axis] = (double)s->mesh->mesh.position[axis][original];
-    add_point(s, i, v->at);
-  } else if (v->original != original || v->material != material) {
-    v->kind = CONIC_VERTEX_LOCKED;
+    add_point(s, i, v->at, triangle, 1u << corner);
+  } else if (v->original != original || v->material != material)
     v->is_seam = 1;
-  }
   return i;
+}
+
+/* What its colours need to be known of a face. */
+static void note_face(conic_simplifier *s, uint32_t triangle) {
+  double sides[2][3], cross[3];
+  const uint32_t *corners = s->triangles[triangle].corners;
+  for (int k = 0; k < 2; k++)
+    conic_subtract(s->vertices[corners[k + 1]].at, s->vertices[corners[0]].at, sides[k]);
+  conic_cross(sides[0], sides[1], cross);
+  s->contrasts[triangle][0] = (float)conic_seen_contrast(s->mesh->triangles, s->triangles[triangle].face);
+  s->contrasts[triangle][1] = (float)conic_length(cross);
 }
 
 static void add_region_triangle(conic_simplifier *s, uint32_t cluster, uint32_t face) {
@@ -96,7 +115,7 @@ static void add_region_triangle(conic_simplifier *s, uint32_t cluster, uint32_t 
   for (int corner = 0; corner < 3; corner++) {
     const uint32_t *materials = s->mesh->triangles->material;
     s->originals[i][corner] = s->mesh->mesh.faces[face][corner];
-    uint32_t k = use_vertex(s, s->originals[i][corner], materials ? materials[face] : 0);
+    uint32_t k = use_vertex(s, i, corner, materials ? materials[face] : 0);
     conic_simplifier_vertex *v = &s->vertices[k];
     t->corners[corner] = k;
     t->next[corner] = v->ring;
@@ -104,13 +123,15 @@ static void add_region_triangle(conic_simplifier *s, uint32_t cluster, uint32_t 
     for (int axis = 0; axis < 3; axis++)
       middle[axis] += v->at[axis] / 3.0;
   }
-  add_point(s, t->corners[0], middle);
+  if (s->contrasts)
+    note_face(s, i);
+  add_point(s, t->corners[0], middle, i, 7);
   for (int corner = 0; corner < 3; corner++) {
     uint32_t across = s->mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
     const double *a = s->vertices[t->corners[corner]].at, *b = s->vertices[t->corners[(corner + 1) % 3]].at;
     const double half[3] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
     if (conic_cluster_ends_at(s->mesh, face, corner) || across / 3 > face) /* of two faces the one */
-      add_point(s, t->corners[corner], half);
+      add_point(s, t->corners[corner], half, i, 1u << corner | 1u << (corner + 1) % 3);
   }
 }
 
@@ -137,7 +158,8 @@ static void treat_border(conic_simplifier *s, const conic_simplifier_triangle *t
   conic_simplifier_vertex *ends[2] = {&s->vertices[t->corners[corner]], &s->vertices[t->corners[(corner + 1) % 3]]};
   if (!conic_cluster_ends_at(s->mesh, t->face, corner))
     return;
-  add_point(s, t->corners[corner], ends[0]->at); /* it is of each cluster that has it */
+  /* it is of each cluster that has it */
+  add_point(s, t->corners[corner], ends[0]->at, (uint32_t)(t - s->triangles), 1u << corner);
   for (int k = 0; k < 2; k++) {
     uint32_t place = s->mesh->adjacency->place[ends[k]->original];
     uint8_t kind = across == CONIC_OPEN_EDGE                      ? CONIC_VERTEX_BORDER

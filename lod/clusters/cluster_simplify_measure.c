@@ -48,11 +48,13 @@ static const conic_simplifier_triangle *nearest_about(const conic_simplifier *s,
 
 /* From the triangles about the vertex that a point is near to on to those that touch the nearest, as long as that comes
  * nearer: no nearer than the nearest of all. About the corners of the one before all were looked at. */
-static double distance2_of(const conic_simplifier *s, const conic_simplifier_point *point, double enough2) {
+static double distance2_of(const conic_simplifier *s, const conic_simplifier_point *point, double enough2,
+                           const conic_simplifier_triangle **nearest_of_all) {
   const conic_simplifier_vertex *own = &s->vertices[point->vertex];
   uint32_t first = own->is_gone ? own->target : point->vertex;
   approach a = {.at = point->at, .least2 = HUGE_VAL, .enough2 = enough2};
   const conic_simplifier_triangle *before = NULL, *from = nearest_about(s, first, &a);
+  *nearest_of_all = from;
   while (from && a.least2 > enough2) {
     const conic_simplifier_triangle *nearest = NULL;
     for (int corner = 0; corner < 3; corner++) {
@@ -63,6 +65,7 @@ static double distance2_of(const conic_simplifier *s, const conic_simplifier_poi
       nearest = found ? found : nearest;
     }
     before = from;
+    *nearest_of_all = nearest ? nearest : *nearest_of_all;
     from = nearest;
   }
   return a.least2;
@@ -71,8 +74,11 @@ static double distance2_of(const conic_simplifier *s, const conic_simplifier_poi
 static void measure_points(conic_simplifier *s, uint32_t cluster, const size_t *starts) {
   double most2 = s->errors2[cluster];
   for (size_t i = starts[cluster]; i < starts[cluster + 1]; i++) {
-    double distance2 = distance2_of(s, &s->points[i], most2);
+    const conic_simplifier_triangle *nearest;
+    double distance2 = distance2_of(s, &s->points[i], s->contrasts ? 0.0 : most2, &nearest);
     most2 = distance2 > most2 ? distance2 : most2;
+    if (s->contrasts && nearest)
+      conic_simplifier_note_change(s, cluster, &s->points[i], nearest);
   }
   s->errors2[cluster] = most2;
 }
@@ -131,7 +137,7 @@ static double measure_back(const conic_simplifier *s, uint32_t cluster, double m
 /* --- fans --- */
 
 static const double *slot_at(const conic_simplifier *s, uint32_t slot) {
-  return s->vertices[s->number[s->mesh->adjacency->place[s->chains->slots[slot].vertex]]].at;
+  return s->vertices[s->number[s->mesh->adjacency->place[s->chains->slots[slot].vertices[0]]]].at;
 }
 
 /* Whether something between a border's ends is there at the stage before this one, and no more at this one. */
@@ -172,6 +178,7 @@ static double measure_fans(const conic_simplifier *s, uint32_t cluster, double m
 }
 
 void conic_region_measure(conic_simplifier *s, uint32_t cluster) {
+  s->changes[cluster] = (conic_seen_sums){0.0, 0.0, 0.0};
   measure_points(s, cluster, s->point_starts[0]);
   measure_points(s, cluster, s->point_starts[1]);
   if (!conic_simplifier_is_worth_a_level(s, cluster))

@@ -18,7 +18,7 @@ static int add_border(conic_simplifier *s, const conic_chain *chain, int side, c
   uint32_t ends[2], cluster = chain->clusters[side] - s->begin;
   int n = 0;
   for (int k = 0; k < 2; k++)
-    ends[k] = s->number[s->mesh->adjacency->place[s->chains->slots[slots[k]].vertex]];
+    ends[k] = s->number[s->mesh->adjacency->place[s->chains->slots[slots[k]].vertices[side]]];
   for (uint32_t slot = conic_simplifier_living(s, s->vertices[ends[0]].ring); slot != CONIC_NONE;
        slot = conic_simplifier_after(s, slot)) {
     const conic_simplifier_triangle *t = &s->triangles[slot / 3];
@@ -111,6 +111,8 @@ static conic_status take_cluster(const conic_simplifier *s, uint32_t cluster, co
   size_t n_borders = s->border_starts[cluster + 1] - s->border_starts[cluster];
   conic_cluster_level *level = &levels->levels[levels->n++];
   memset(level, 0, sizeof *level);
+  if (levels->n > 1)
+    level->change = level[-1].change;
   level->corners = conic_memory_allocate(s->context, s->alive[cluster], sizeof *level->corners);
   level->face = conic_memory_allocate(s->context, s->alive[cluster], sizeof *level->face);
   level->borders = conic_memory_allocate(s->context, n_borders, sizeof *level->borders);
@@ -129,6 +131,7 @@ static conic_status take_cluster(const conic_simplifier *s, uint32_t cluster, co
   }
   level->stage = s->stage;
   level->error = sqrt(s->errors2[cluster]);
+  level->change = conic_seen_sums_change(&s->changes[cluster], level->change);
   return CONIC_OK;
 }
 

@@ -134,8 +134,40 @@ static int leaves_some(const conic_simplifier *s, const fan *f, uint32_t v) {
   return 1;
 }
 
+/* Whether two slots of a vertex have its attributes in common. */
+static int is_alike(const conic_simplifier *s, uint32_t a, uint32_t b) {
+  const conic_simplifier_triangle *first = &s->triangles[a / 3], *second = &s->triangles[b / 3];
+  return s->originals[a / 3][a % 3] == s->originals[b / 3][b % 3] && first->cluster == second->cluster &&
+         conic_simplifier_material(s, first) == conic_simplifier_material(s, second);
+}
+
+uint32_t conic_simplifier_wedge(const conic_simplifier *s, uint32_t u, uint32_t v, uint32_t slot) {
+  uint32_t wedge = CONIC_NONE;
+  for (uint32_t beside = conic_simplifier_living(s, s->vertices[u].ring); beside != CONIC_NONE;
+       beside = conic_simplifier_after(s, beside)) {
+    const conic_simplifier_triangle *t = &s->triangles[beside / 3];
+    if (!conic_simplifier_has(t, v) || !is_alike(s, slot, beside))
+      continue;
+    uint32_t found = s->originals[beside / 3][t->corners[0] == v ? 0 : t->corners[1] == v ? 1 : 2];
+    if (wedge != CONIC_NONE && wedge != found)
+      return CONIC_NONE;
+    wedge = found;
+  }
+  return wedge;
+}
+
+/* Whether each triangle that stays has its attributes at v. */
+static int keeps_seams(const conic_simplifier *s, const fan *f, uint32_t v) {
+  if (!s->vertices[f->vertex].is_seam && !s->vertices[v].is_seam)
+    return 1;
+  for (size_t i = 0; i < f->n_triangles; i++)
+    if (!has(&f->spokes[i], v) && conic_simplifier_wedge(s, f->vertex, v, f->spokes[i].slot) == CONIC_NONE)
+      return 0;
+  return 1;
+}
+
 static int may_go(const conic_simplifier *s, const fan *f, uint32_t v) {
-  return !s->vertices[v].is_seam && keeps_surface(s, f, v) && leaves_some(s, f, v) && keeps_facing(s, f, v);
+  return keeps_seams(s, f, v) && keeps_surface(s, f, v) && leaves_some(s, f, v) && keeps_facing(s, f, v);
 }
 
 static void find_costs(const conic_simplifier *s, const fan *f) {
@@ -143,7 +175,8 @@ static void find_costs(const conic_simplifier *s, const fan *f) {
     const conic_simplifier_vertex *v = &s->vertices[f->spokes[i].vertex];
     conic_quadric both = s->vertices[f->vertex].quadric;
     conic_quadric_add(&both, &v->quadric);
-    f->spokes[i].cost = conic_quadric_at(&both, v->at);
+    f->spokes[i].cost = conic_quadric_at(&both, v->at) + s->vertices[f->vertex].faded + v->faded;
+    f->spokes[i].fading = s->contrasts ? HUGE_VAL : 0.0;
   }
 }
 
@@ -168,7 +201,14 @@ void conic_simplifier_find_target(conic_simplifier *s, uint32_t u) {
     return;
   find_costs(s, &f);
   for (conic_simplifier_spoke *next = cheapest_of(&f); next; next = cheapest_of(&f)) {
-    if (may_go(s, &f, next->vertex)) {
+    int may = may_go(s, &f, next->vertex);
+    if (may && !(next->fading < HUGE_VAL)) { /* colours are looked at only where the rest is cheap */
+      next->fading = conic_simplifier_fading(s, u, next->vertex);
+      next->cost += next->fading;
+      continue;
+    }
+    if (may) {
+      own->fading = next->fading;
       s->queue.keys[u] = next->cost;
       own->target = next->vertex;
       return;

@@ -40,16 +40,16 @@ typedef struct conic_site {
   double normal[3], color[3], area;
   double u[3], v[3]; /* its plane */
   conic_ellipse ellipse;
-  double darkest[3], brightest[3], contrast; /* of the colours that it stands for */
-  size_t n_supports, first_support;          /* in the sampler's `of_sites` */
-  double lowest, highest;                    /* of what it stands for, above the plane through its place */
-  double height;                             /* of that, from its plane along a face's normal, the most */
-  double foot[3];                            /* the place where it was chosen, from which its supports are seen */
-  double least_error;                        /* what of the error needs no look at the mesh */
-  double error;                              /* conic_site_error of it, from the tolerance on */
-  double error_bound;                        /* no less than that error, also below the tolerance */
-  int is_drawn;                              /* it stands for something that has an area */
-  uint32_t end_faces[4];                     /* what lies towards the ends of the ellipse's axes, in turn */
+  double lowest_seen[3], highest_seen[3], contrast; /* of the colours that it stands for: a box in OKLab */
+  size_t n_supports, first_support;                 /* in the sampler's `of_sites` */
+  double lowest, highest;                           /* of what it stands for, above the plane through its place */
+  double height;                                    /* of that, from its plane along a face's normal, the most */
+  double foot[3];        /* the place where it was chosen, from which its supports are seen */
+  double least_error;    /* what of the error needs no look at the mesh */
+  double error;          /* conic_site_error of it, from the tolerance on */
+  double error_bound;    /* no less than that error, also below the tolerance */
+  int is_drawn;          /* it stands for something that has an area */
+  uint32_t end_faces[4]; /* what lies towards the ends of the ellipse's axes, in turn */
 } conic_site;
 
 /* A point that a site's ellipse must cover. */

@@ -132,6 +132,12 @@ static uint64_t count_stitches(const fitting *f) {
   return count;
 }
 
+/* Colours that are off by what is allowed count as much as places that are off by a pixel. */
+static double with_colors(const conic_hybrid_camera *view, double error_px, double change) {
+  double colors = change > 0.0 ? change / view->color_error : 0.0;
+  return error_px > colors ? error_px : colors;
+}
+
 static conic_status measure_levels(fitting *f, const conic_hybrid_camera *view) {
   const conic_hybrid *h = f->hybrid;
   size_t n_levels = 0;
@@ -142,8 +148,11 @@ static conic_status measure_levels(fitting *f, const conic_hybrid_camera *view) 
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < f->n; i++) {
     const conic_hybrid_cluster *cluster = &h->clusters[f->clusters[i]];
-    for (uint32_t k = 0; k < cluster->n_levels; k++)
-      *next++ = conic_hybrid_error_px(view, &cluster->bound, &h->levels[cluster->first_level + k]);
+    for (uint32_t k = 0; k < cluster->n_levels; k++) {
+      const conic_hybrid_level *level = &h->levels[cluster->first_level + k];
+      *next++ = with_colors(view, conic_hybrid_error_px(view, &cluster->bound, level),
+                            conic_hybrid_change(view, &cluster->bound, level));
+    }
   }
   return CONIC_OK;
 }
@@ -160,9 +169,12 @@ static conic_status measure_nodes(fitting *f, const conic_hybrid_camera *view) {
   for (size_t i = 0; i < h->n_nodes; i++) {
     const conic_hybrid_node *node = &h->nodes[i];
     f->first_errors[i] = (size_t)(next - f->node_errors);
-    for (uint32_t k = 0; k < node->n_levels; k++)
-      *next++ = conic_hybrid_error_px(view, &node->bound, &h->levels[node->first_level + k]);
-    *next++ = conic_hybrid_point_error_px(view, node);
+    for (uint32_t k = 0; k < node->n_levels; k++) {
+      const conic_hybrid_level *level = &h->levels[node->first_level + k];
+      *next++ = with_colors(view, conic_hybrid_error_px(view, &node->bound, level),
+                            conic_hybrid_change(view, &node->bound, level));
+    }
+    *next++ = with_colors(view, conic_hybrid_point_error_px(view, node), conic_hybrid_point_change(view, node));
   }
   return CONIC_OK;
 }

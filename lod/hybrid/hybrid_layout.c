@@ -7,11 +7,11 @@
 #include "core/image/texture_levels.h"
 
 /* The records are in the file as they are in memory, but for the order of the bytes within their members. */
-_Static_assert(sizeof(conic_hybrid_level) == 48, "levels of 48 bytes");
-_Static_assert(sizeof(conic_cluster_slot) == 8, "slots of 8 bytes");
+_Static_assert(sizeof(conic_hybrid_level) == 56, "levels of 56 bytes");
+_Static_assert(sizeof(conic_cluster_slot) == 12, "slots of 12 bytes");
 _Static_assert(sizeof(conic_cluster_border) == 16, "borders of 16 bytes");
 _Static_assert(sizeof(conic_hybrid_cluster) == 48, "clusters of 48 bytes");
-_Static_assert(sizeof(conic_hybrid_node) == 72, "nodes of 72 bytes");
+_Static_assert(sizeof(conic_hybrid_node) == 80, "nodes of 80 bytes");
 _Static_assert(sizeof(conic_chy_material) == 32, "materials of 32 bytes");
 _Static_assert((int)CONIC_CHY_N_ARRAYS <= (int)CONIC_FILE_MOST_ARRAYS, "a layout holds all arrays");
 

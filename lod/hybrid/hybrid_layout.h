@@ -5,7 +5,7 @@
 #include "core/files/file_body.h"
 #include "lod/hybrid/hybrid_model.h"
 
-enum { CONIC_CHY_VERSION = 3 };
+enum { CONIC_CHY_VERSION = 4 };
 
 enum {
   CONIC_CHY_NORMALS = 1,

@@ -156,6 +156,7 @@ static conic_status sample_cluster(conic_ways_job *job, conic_sampler *sampler, 
   for (int i = 0; i < n_most && status == CONIC_OK && sampling.spacing > 0.0; i++) {
     conic_surfels *surfels = &ways->surfels[ways->n_surfels];
     surfels->error = ways->n_surfels ? surfels[-1].error : 0.0; /* it has no less than what it is coarser than */
+    surfels->change = ways->n_surfels ? surfels[-1].change : (conic_seen_change){0.0, 0.0};
     sampling.tolerance = tolerance * sampling.spacing;
     sampling.most_out = i == 0 && is_gathered ? job->most_out : HUGE_VAL;
     sampling.tolerance = sampling.most_out < sampling.tolerance ? sampling.most_out : sampling.tolerance;

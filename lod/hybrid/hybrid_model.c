@@ -36,6 +36,7 @@ conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info
     info->n_surfel_clusters += (size_t)is_surfels;
     *(is_surfels ? &info->n_surfels : &info->n_triangles) += built->count;
   }
+  info->has_colors = hybrid->color[0] || hybrid->n_materials > 0;
   info->n_node_levels = hybrid->n_levels - info->n_levels;
   for (size_t i = 0; i < hybrid->n_materials; i++)
     info->n_textures += hybrid->material_list[i].width > 0;
@@ -75,7 +76,8 @@ static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *
   if (level->n_borders > h->n_borders || level->first_border > h->n_borders - level->n_borders ||
       (level->n_borders > 0 && level->kind != CONIC_HYBRID_TRIANGLES))
     return "a level without its borders";
-  if (!is_length(level->error) || !is_length(level->reach) || !is_length(level->cover) || !is_length(level->spread))
+  if (!is_length(level->error) || !is_length(level->reach) || !is_length(level->cover) || !is_length(level->spread) ||
+      !is_length(level->change) || !is_length(level->smear))
     return "a level's error, reach or extent out of range";
   if (level->kind == CONIC_HYBRID_TRIANGLES)
     for (size_t i = level->first; i < (size_t)level->first + level->count; i++)
@@ -89,7 +91,7 @@ static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *
 static int is_corner(const conic_hybrid *h, const conic_hybrid_level *level, uint32_t triangle, uint32_t corner,
                      uint32_t slot) {
   uint32_t a = h->listed[level->first_vertex + h->corners[level->first + triangle][corner % 3]];
-  uint32_t b = h->slots[slot].vertex;
+  uint32_t b = h->slots[slot].vertices[0];
   int is_there = 1;
   for (int axis = 0; axis < 3; axis++)
     is_there &= h->position[axis][a] == h->position[axis][b];
@@ -176,7 +178,7 @@ static const char *wrong_node_levels(const conic_hybrid *h) {
       if (wrong)
         return wrong;
     }
-    if (!is_length(point->radius) || !is_length(point->error))
+    if (!is_length(point->radius) || !is_length(point->error) || !is_length(point->change) || !is_length(point->smear))
       return "a node's point out of range";
     next += node->n_levels;
   }
@@ -230,7 +232,7 @@ const char *conic_hybrid_structure(const conic_hybrid *h) {
     if (h->listed[i] >= h->n_vertices)
       wrong = "a vertex out of range";
   for (size_t i = 0; i < h->n_slots && !wrong; i++)
-    if (h->slots[i].vertex >= h->n_vertices)
+    if (h->slots[i].vertices[0] >= h->n_vertices || h->slots[i].vertices[1] >= h->n_vertices)
       wrong = "a vertex out of range";
   if (!wrong)
     wrong = wrong_chains(h);

@@ -20,6 +20,8 @@ typedef struct conic_hybrid_level {
   uint32_t stage; /* triangles: how often they were simplified; of its borders' vertices those are left that last */
   uint32_t first_border, n_borders;
   float cover, spread; /* surfels: the products of the half axes of their outlines, and their squares, summed up */
+  float change;        /* by how many steps colours of the cluster are drawn otherwise than they are, at the most, */
+  float smear;         /* and that times the length over which they are */
 } conic_hybrid_level;
 
 /* A sphere that holds the faces, and a cone of their normals: its axis and the cosine of half its opening. */
@@ -39,6 +41,7 @@ typedef struct conic_hybrid_point {
   float radius; /* of the faces alone, without what surfels stand out; 0: there is no point */
   float error;  /* as of a level */
   float color[3];
+  float change, smear; /* as of a level */
 } conic_hybrid_point;
 
 /* In preorder: the root first. */

@@ -32,7 +32,8 @@ typedef struct node_worker {
   conic_sampler *sampler;
   size_t n_pieces, room;
   surfel_piece *pieces;
-  double error; /* the greatest of the levels that the pieces are of */
+  double error;         /* the greatest of the levels that the pieces are of */
+  conic_seen_sums sums; /* how colours of these differ from the mesh's */
 } node_worker;
 
 typedef struct nodes_pass {
@@ -79,6 +80,7 @@ static conic_status gather_pieces(const nodes_pass *pass, node_worker *w, const 
   conic_status status = CONIC_OK;
   w->n_pieces = 0;
   w->error = 0.0;
+  w->sums = (conic_seen_sums){0.0, 0.0, 0.0};
   for (uint32_t i = node->begin; i < node->end; i++) {
     if (pass->job->ways[i].n_surfels == 0) {
       w->n_pieces = 0;
@@ -86,6 +88,7 @@ static conic_status gather_pieces(const nodes_pass *pass, node_worker *w, const 
     }
     const conic_surfels *surfels = fine_enough(&pass->job->ways[i], spacing);
     w->error = surfels->error > w->error ? surfels->error : w->error;
+    conic_seen_sums_add(&w->sums, surfels->change, pass->job->ways[i].area);
     for (size_t k = 0; k < surfels->n && status == CONIC_OK; k++)
       status = add_surfel_piece(pass, w, &surfels->items[k]);
   }
@@ -126,8 +129,7 @@ static conic_status add_site(conic_sampler *s, const surfel_piece *p, double spa
   memcpy(site->facing, p->normal, sizeof site->facing);
   site->face = p->surfel->face;
   site->spacing = spacing;
-  for (int channel = 0; channel < 3; channel++)
-    site->darkest[channel] = 1.0;
+  conic_site_begin_contrast(site);
   return CONIC_OK;
 }
 
@@ -142,15 +144,13 @@ static conic_status choose_sites(node_worker *w, double spacing) {
 }
 
 static void add_to_site(conic_site *site, const surfel_piece *p) {
+  const double color[3] = {(double)p->surfel->color[0], (double)p->surfel->color[1], (double)p->surfel->color[2]};
   for (int k = 0; k < 3; k++) {
-    double color = (double)p->surfel->color[k], shown = conic_as_shown(color);
     site->normal[k] += p->area * p->normal[k];
-    site->color[k] += p->area * color;
-    site->darkest[k] = shown < site->darkest[k] ? shown : site->darkest[k];
-    site->brightest[k] = shown > site->brightest[k] ? shown : site->brightest[k];
-    double contrast = site->brightest[k] - site->darkest[k];
-    site->contrast = contrast > site->contrast ? contrast : site->contrast;
+    site->color[k] += p->area * color[k];
   }
+  conic_site_note_color(site, color);
+  conic_site_end_contrast(site);
   site->area += p->area;
 }
 
@@ -191,6 +191,12 @@ static double error_of_level(const node_worker *w, const conic_site *site, doubl
   return conic_site_off_mesh(w->sampler, site, error > known ? error : known);
 }
 
+/* What the pieces' own colours are off, and those that stand for them from these. */
+static conic_seen_change with_pieces(const node_worker *w, conic_seen_change change) {
+  conic_seen_change pieces = conic_seen_sums_change(&w->sums, (conic_seen_change){0.0, 0.0});
+  return (conic_seen_change){change.steps + pieces.steps, change.smear + pieces.smear};
+}
+
 static conic_status emit(node_worker *w, const conic_site *site, conic_surfels *surfels) {
   conic_status status = conic_surfels_reserve(w->sampler->context, surfels);
   if (status != CONIC_OK)
@@ -207,6 +213,7 @@ static conic_status emit(node_worker *w, const conic_site *site, conic_surfels *
   surfels->n++;
   surfels->reach = site->ellipse.reach > surfels->reach ? site->ellipse.reach : surfels->reach;
   surfels->error = error_of_level(w, site, surfels->error);
+
   return CONIC_OK;
 }
 
@@ -224,6 +231,8 @@ static conic_status make_level(const nodes_pass *pass, node_worker *w, double sp
     status = shape_sites(w);
     for (size_t i = 0; i < w->sampler->n_sites && status == CONIC_OK; i++)
       status = emit(w, &w->sampler->sites[i], surfels);
+    if (status == CONIC_OK)
+      surfels->change = with_pieces(w, conic_sites_change(w->sampler, (conic_seen_change){0.0, 0.0}));
   }
   w->sampler->job = NULL;
   return status;
@@ -280,13 +289,24 @@ static conic_status find_point(const nodes_pass *pass, node_worker *w, size_t i)
       double distance2 = conic_dot(at, at);
       farthest2 = distance2 > farthest2 ? distance2 : farthest2;
     }
+  conic_site all = {.ellipse = {.reach = 0.0}};
+  conic_site_begin_contrast(&all);
   for (size_t k = 0; k < w->n_pieces; k++) {
+    double own[3];
     area += w->pieces[k].area;
-    for (int channel = 0; channel < 3; channel++)
-      color[channel] += w->pieces[k].area * (double)w->pieces[k].surfel->color[channel];
+    for (int channel = 0; channel < 3; channel++) {
+      own[channel] = (double)w->pieces[k].surfel->color[channel];
+      color[channel] += w->pieces[k].area * own[channel];
+    }
+    conic_site_note_color(&all, own);
   }
+  conic_site_end_contrast(&all);
   double radius = sqrt(farthest2) * (1.0 + 1e-6);
+  all.ellipse.reach = radius;
+  conic_seen_change change = with_pieces(w, conic_site_change(&all));
   node->point.radius = (float)radius;
+  node->point.change = conic_seen_float(change.steps);
+  node->point.smear = conic_seen_float(change.smear);
   node->point.error = (float)((radius + conic_face_tree_farther(&pass->job->tree, center, 0.0)) * (1.0 + 1e-6));
   for (int channel = 0; channel < 3; channel++)
     node->point.color[channel] = (float)(color[channel] / area);

@@ -23,6 +23,7 @@ void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *ca
   view->near_z = render->near_z;
   view->n_pixels = (double)camera->width * (double)camera->height;
   view->cull_back = render->cull_back;
+  view->color_error = HUGE_VAL;
   view->margin_px2 = (double)render->prefilter * (double)render->kernel.cutoff * (double)render->kernel.cutoff;
 }
 
@@ -78,6 +79,28 @@ double conic_hybrid_pixels_a_unit(const conic_hybrid_camera *view, const conic_h
 
 static double error_px_of(const conic_hybrid_camera *view, const sight *seen, const conic_hybrid_level *level) {
   return level->error > 0.0f ? (double)level->error * pixels_a_unit(view, seen, (double)level->reach) : 0.0;
+}
+
+/* In steps: less where what differs is smaller than a pixel. */
+static double change_of(double pixels_a_unit, float change, float smear) {
+  double smeared = smear > 0.0f ? (double)smear * pixels_a_unit : 0.0;
+  return smeared < (double)change ? smeared : (double)change;
+}
+
+double conic_hybrid_change(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,
+                           const conic_hybrid_level *level) {
+  return change_of(conic_hybrid_pixels_a_unit(view, bound, (double)level->reach), level->change, level->smear);
+}
+
+double conic_hybrid_point_change(const conic_hybrid_camera *view, const conic_hybrid_node *node) {
+  return change_of(conic_hybrid_pixels_a_unit(view, &node->bound, 0.0), node->point.change, node->point.smear);
+}
+
+/* Whether places and colours are good enough. */
+static int is_good(const conic_hybrid_camera *view, const sight *seen, const conic_hybrid_level *level,
+                   double error_px) {
+  return error_px_of(view, seen, level) <= error_px &&
+         change_of(pixels_a_unit(view, seen, (double)level->reach), level->change, level->smear) <= view->color_error;
 }
 
 double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,
@@ -138,9 +161,9 @@ conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const con
   sight seen = look_well_at(view, &node->bound);
   conic_hybrid_offer best = {0, HUGE_VAL};
   error_px = error_px < HUGE_VAL ? error_px : DBL_MAX; /* what reaches near, or has no point, is never joined */
-  if (conic_hybrid_point_error_px(view, node) <= error_px)
+  if (conic_hybrid_point_error_px(view, node) <= error_px && conic_hybrid_point_change(view, node) <= view->color_error)
     best = (conic_hybrid_offer){node->n_levels, conic_hybrid_point_cost(view, node)};
-  for (uint32_t k = 0; k < node->n_levels && error_px_of(view, &seen, &levels[k]) <= error_px; k++) {
+  for (uint32_t k = 0; k < node->n_levels && is_good(view, &seen, &levels[k], error_px); k++) {
     double cost = cost_of_surfels(view, &levels[k], &seen);
     if (cost < best.amount)
       best = (conic_hybrid_offer){k, cost};
@@ -157,7 +180,7 @@ void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *
     conic_hybrid_offer *offer = &offers[levels[k].kind];
     double cost = levels[k].kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(cluster, &levels[k], &seen)
                                                            : cost_of_surfels(view, &levels[k], &seen);
-    if (cost < offer->amount && error_px_of(view, &seen, &levels[k]) <= error_px)
+    if (cost < offer->amount && is_good(view, &seen, &levels[k], error_px))
       *offer = (conic_hybrid_offer){k, cost};
   }
 }

@@ -10,7 +10,8 @@ typedef struct conic_hybrid_camera {
   conic_viewpoint from; /* places from the model's origin; the sides as far out as the prefilter reaches */
   double focal_px, near_z, n_pixels;
   int cull_back;
-  double margin_px2; /* what the prefilter adds to a splat's squared radius */
+  double margin_px2;  /* what the prefilter adds to a splat's squared radius */
+  double color_error; /* by how many steps colours may be drawn otherwise than they are; infinite at first */
 } conic_hybrid_camera;
 
 void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *camera,
@@ -26,6 +27,12 @@ double conic_hybrid_pixels_a_unit(const conic_hybrid_camera *view, const conic_h
  * sphere reaches near. */
 double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,
                              const conic_hybrid_level *level);
+
+/* By how many steps colours may be drawn otherwise than they are, by a level of a cluster or node with that bound, or
+ * by a node's point: each the mean of a pixel where what differs is smaller. */
+double conic_hybrid_change(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,
+                           const conic_hybrid_level *level);
+double conic_hybrid_point_change(const conic_hybrid_camera *view, const conic_hybrid_node *node);
 
 /* What one of the narrow triangles takes that fit clusters to each other, in nanoseconds of one core. */
 #define CONIC_HYBRID_STITCH_NS 70.0

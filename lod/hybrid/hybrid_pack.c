@@ -121,6 +121,11 @@ typedef struct cursor {
   size_t level, triangle, listed, surfel, border;
 } cursor;
 
+static void put_change(conic_hybrid_level *level, const conic_seen_change *change) {
+  level->change = conic_seen_float(change->steps);
+  level->smear = conic_seen_float(change->smear);
+}
+
 static void put_triangles(packing *p, cursor *at, const conic_cluster_level *from) {
   conic_hybrid_level *levels = array_at(p, CONIC_CHY_LEVELS);
   uint32_t(*local)[3] = array_at(p, CONIC_CHY_CORNERS), *listed = array_at(p, CONIC_CHY_LISTED);
@@ -134,6 +139,7 @@ static void put_triangles(packing *p, cursor *at, const conic_cluster_level *fro
   level->n_vertices = (uint32_t)list_vertices(p, (const uint32_t(*)[3])from->corners, from->n, listed + at->listed,
                                               local + at->triangle);
   level->error = (float)(from->error * (1.0 + 1e-6));
+  put_change(level, &from->change);
   level->stage = from->stage;
   level->first_border = (uint32_t)at->border;
   level->n_borders = (uint32_t)from->n_borders;
@@ -171,6 +177,7 @@ static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
   level->first = (uint32_t)at->surfel;
   level->count = (uint32_t)surfels->n;
   level->error = (float)(surfels->error * (1.0 + 1e-6));
+  put_change(level, &surfels->change);
   level->reach = (float)(surfels->reach * (1.0 + 1e-6));
   sum_extents(surfels, (double)p->job->options->cutoff, level);
   for (int k = 0; k < 12; k++) {

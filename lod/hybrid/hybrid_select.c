@@ -6,13 +6,14 @@
 #include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
+#include "lod/clusters/cluster_seen.h"
 #include "lod/hybrid/hybrid_budget.h"
 #include "lod/hybrid/hybrid_choose.h"
 #include "lod/hybrid/hybrid_point.h"
 #include "lod/hybrid/hybrid_stitch.h"
 
 void conic_hybrid_view_init_sized(conic_hybrid_view *view, size_t size) {
-  static const conic_hybrid_view own = {.size = sizeof own, .only_kind = -1};
+  static const conic_hybrid_view own = {.size = sizeof own, .only_kind = -1, .color_error = CONIC_JUST_VISIBLE};
   conic_options_give(view, size, &own);
 }
 
@@ -186,7 +187,11 @@ static void judge_choices(const hybrid_selecting *s) {
     double error_px = c->level == CONIC_HYBRID_POINT
                           ? conic_hybrid_point_error_px(&s->camera, node)
                           : conic_hybrid_error_px(&s->camera, bound, &s->hybrid->levels[c->level]);
+    double change = c->level == CONIC_HYBRID_POINT
+                        ? conic_hybrid_point_change(&s->camera, node)
+                        : conic_hybrid_change(&s->camera, bound, &s->hybrid->levels[c->level]);
     selection->error_px = error_px > selection->error_px ? error_px : selection->error_px;
+    selection->color_error = change > selection->color_error ? change : selection->color_error;
     selection->n_nodes += node && c->level != CONIC_HYBRID_POINT;
     selection->n_points += c->level == CONIC_HYBRID_POINT;
     if (!node)
@@ -348,9 +353,9 @@ static conic_status take_view(conic_context *context, const conic_hybrid_view *g
   conic_hybrid_view_init(view);
   if (!conic_options_take(view, given))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "a view of a hybrid that was not set by its init function");
-  if (!(view->error_px >= 0.0) || view->only_kind > CONIC_HYBRID_SURFELS)
+  if (!(view->error_px >= 0.0) || !(view->color_error > 0.0) || view->only_kind > CONIC_HYBRID_SURFELS)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
-                      "an error on the screen is 0 or more, and a kind one that there is");
+                      "an error on the screen is 0 or more, one of colours above 0, and a kind one that there is");
   if (view->error_px > 0.0 && view->budget)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "an error and a budget are two ways to choose");
   return CONIC_OK;
@@ -377,6 +382,7 @@ static conic_status begin_selection(hybrid_selecting *s, const conic_camera *cam
     known.near_z = info.near_z;
   }
   conic_hybrid_camera_init(s->hybrid, camera, &known, &s->camera);
+  s->camera.color_error = s->view->color_error;
   return CONIC_OK;
 }
 

@@ -64,7 +64,7 @@ static size_t cut_triangle(conic_hybrid_stitching *s, size_t host, uint32_t begi
   size_t piece = host;
   for (uint32_t slot = next_slot(s->hybrid, border, stage, border->from); slot != border->to;
        slot = next_slot(s->hybrid, border, stage, slot)) {
-    uint32_t put = put_vertex(s, s->hybrid->slots[slot].vertex);
+    uint32_t put = put_vertex(s, s->hybrid->slots[slot].vertices[s->to->cluster[host] > border->across]);
     s->to->corners[piece][piece == host ? (k + 1) % 3 : 1] = put;
     piece = put_triangle(s, host, put, end, opposite);
   }

@@ -14,11 +14,11 @@ hashes() { # FILE
 
 "$1/scripts/terrain-mesh" 60 60 > hill.obj
 
-run 0 hybrid hill.obj -o hill.chy --json made.json
+run 0 hybrid hill.obj --crease 0 -o hill.chy --json made.json # as --plain has it
 [[ $(value triangles_in made.json) == 7200 && $(value bytes made.json) == $(stat -c %s hill.chy) ]] || fail "counts"
 [[ $(value triangles made.json) -gt 0 && $(value surfels made.json) -gt 0 ]] || fail "not both kinds"
 [[ $(value open_edges made.json) == 240 && $(value nan made.json) == 0 ]] || fail "oddities of an open sheet"
-run 0 hybrid hill.obj -o one.chy --threads 1
+run 0 hybrid hill.obj --crease 0 -o one.chy --threads 1
 cmp -s one.chy hill.chy || fail "threads change the file"
 run 0 info hill.chy --check --json info.json
 [[ $(value kind info.json) == chy && $(value sound info.json) == true ]] || fail "info"
@@ -64,6 +64,21 @@ run 0 render hill.chy -o s.pfm --size 1024x1024
 [[ ! -s err ]] || fail "as built: $(cat err)"
 run 0 render hill.chy -o s.pfm --size 64x48 --only surfels
 [[ ! -s err ]] || fail "of small surfels: $(cat err)"
+
+# Nor colours that the kind cannot keep.
+run 0 hybrid hill.obj --crease 0 --color-by height --ramp diverging -o bands.chy
+run 0 render bands.chy -o s.pfm $picture --only surfels --error 100 --json surfels.json
+grep -q '^conic: warning: bands.chy: --only surfels cannot keep --color-error 2: ' err || fail "other colours go unsaid"
+perl -e 'exit !($ARGV[0] > 2)' "$(value color_error surfels.json)" || fail "the colours' error is not there"
+run 0 render bands.chy -o s.pfm $picture --only surfels --error 100 --color-error 100
+[[ ! -s err ]] || fail "of a --color-error that is kept: $(cat err)"
+
+# What looks round in a file looks so on the way, and else not.
+run 0 hybrid hill.obj --smooth -o round.chy
+run 0 render round.chy -o b.pfm $picture --json round.json
+run 0 render hill.obj --as hybrid --smooth -o b.pfm $picture --json smooth.json
+[[ $(hashes round.json) == "$(hashes smooth.json)" && $(hashes round.json) != "$(hashes file.json)" ]] ||
+  fail "--smooth: another picture"
 
 # Never more than the budget, and better with more of it.
 last=1000000
@@ -142,6 +157,8 @@ run 2 hybrid -o x.chy
 run 2 hybrid hill.obj
 run 2 hybrid hill.obj hill.obj -o x.chy
 run 2 hybrid hill.obj -o x.chy --sampling dice
+run 2 hybrid hill.obj -o x.chy --smooth --crease 20
+run 2 render hill.chy -o x.pfm --error 1 --color-error 0
 run 3 hybrid missing.obj -o x.chy
 printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\n' > points.obj
 run 3 hybrid points.obj -o x.chy

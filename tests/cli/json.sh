@@ -62,7 +62,8 @@ declare -A wanted=(
   [render-mesh]="$render primitives.triangles triangles_in triangles_culled triangles_skipped triangles_drawn
     triangle_fragments mtriangles_per_s"
   [render-patches]="$render methods.conic primitives.patches primitives.samples"
-  [render-hybrid]="$render methods triangles_drawn? primitives.triangles? primitives.surfel_patches error_px"
+  [render-hybrid]="$render methods triangles_drawn? primitives.triangles? primitives.surfel_patches error_px
+    color_error"
   [render-layers]="$render methods.conic error_px layers.clouds layers.places_coarser layers.clouds_missing"
   [diff]="identical max_abs rmse p999 psnr ssim flip over_code differing_pixels largest_hole planes.rgba.max_abs
     planes.rgba.rmse"

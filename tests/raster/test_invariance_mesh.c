@@ -82,6 +82,7 @@ static conic_drawing choose(fixture *f, model *m, int scene) {
     return (conic_drawing){scene == MIXED ? &f->splats : NULL, &m->mesh};
   conic_hybrid_view_init(&view);
   view.error_px = scene == JOINED ? 12.0 : 0.0; /* for which nodes stand for patches */
+  view.color_error = HUGE_VAL;
   view.only_kind = scene == SURFELS ? CONIC_HYBRID_SURFELS : -1;
   CHECK_OK(conic_hybrid_select(m->hybrid, &f->camera, &f->options, &view, &m->selection));
   return (conic_drawing){&m->selection.splats, &m->selection.triangles};

@@ -171,7 +171,7 @@ static void test_header(conic_context *context, const sound_file *sound) {
     const char *wanted;
   } edits[] = {
       {0, "CONICHX", 7, "no .chy file (at byte 0)"},
-      {VERSION, &(uint32_t){CONIC_CHY_VERSION + 1}, 4, "version 4 of the format is not known (at byte 8)"},
+      {VERSION, &(uint32_t){CONIC_CHY_VERSION + 1}, 4, "version 5 of the format is not known (at byte 8)"},
       {FLAGS, &(uint32_t){16}, 4, flags},
       {ZERO, &(uint32_t){1}, 4, flags},
       {COUNTS + 8 * VERTICES, &(uint64_t){UINT64_C(1) << 32}, 8, counts},
@@ -214,7 +214,7 @@ static void test_damage(conic_context *context, const sound_file *sound) {
   check_edit(context, sound, sound->levels + offsetof(conic_hybrid_level, error), "error", 4, 0,
              "is damaged: its sum is not that of its header (at byte 256)");
   size_t after_nodes = sound->nodes + sound->n_nodes * sizeof(conic_hybrid_node);
-  CHECK(after_nodes < sound->clusters); /* 48 bytes each, and of a tree of pairs an odd number */
+  CHECK(after_nodes < sound->clusters); /* 80 bytes each, and of a tree of pairs an odd number */
   snprintf(wanted, sizeof wanted, "is damaged (at byte %zu)", after_nodes);
   check_edit(context, sound, after_nodes, &one, 1, 1, wanted);
   memcpy(longer, sound->bytes, sound->n_bytes);
@@ -263,6 +263,8 @@ static void test_levels(conic_context *context, const sound_file *sound) {
   check_f32(context, sound, LEVEL(0, reach), -1.0f, range);
   check_f32(context, sound, LEVEL(1, cover), -1.0f, range);
   check_f32(context, sound, LEVEL(1, spread), NAN, range);
+  check_f32(context, sound, LEVEL(1, change), NAN, range);
+  check_f32(context, sound, LEVEL(1, smear), -1.0f, range);
   check_f32(context, sound, LEVEL(sound->n_levels - 1, reach), NAN, range);
 }
 
@@ -308,6 +310,8 @@ static void test_joined(conic_context *context, const sound_file *sound) {
   check_f32(context, sound, NODE(0, point.radius), NAN, range);
   check_f32(context, sound, NODE(0, point.radius), -1.0f, range);
   check_f32(context, sound, NODE(last, point.error), INFINITY, range);
+  check_f32(context, sound, NODE(0, point.change), NAN, range);
+  check_f32(context, sound, NODE(0, point.smear), -1.0f, range);
 }
 
 /* The tree is a walk: no node leads back, so that no file makes it go around. */
