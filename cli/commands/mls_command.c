@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/commands/mls_cells.h"
+#include "cli/commands/mls_sizes.h"
 #include "cli/device_option.h"
 #include "core/base/message.h"
 #include "core/splats/repairs_log.h"
@@ -61,7 +62,8 @@ static conic_status read_points(mls_job *job) {
   start = cli_build_end_stage(&job->base.stages[READ], start);
   if (status != CONIC_OK)
     return status;
-  cli_build_hint_faces(&job->base, &job->model);
+  if (job->action != MLS_DENSIFY) /* there they say where the surface is */
+    cli_build_hint_faces(&job->base, &job->model);
   conic_splats *points = &job->model.points;
   double low[3], high[3];
   job->n_in = points->count;
@@ -72,6 +74,7 @@ static conic_status read_points(mls_job *job) {
   if (!(conic_splats_fields(points) & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS))) {
     conic_estimate_options estimate;
     conic_estimate_options_init(&estimate);
+    estimate.finds_dots = job->action == MLS_DENSIFY && !job->model.n_triangles;
     status = conic_model_to_splats(context, &estimate, &job->model, &job->repairs);
   }
   if (status == CONIC_OK)
@@ -101,7 +104,10 @@ static conic_status densify(mls_job *job) {
   options.spacing = in_world(job, &job->spacing);
   options.hole = in_world(job, &job->hole);
   options.max_count = job->has_count ? (size_t)job->count : 0;
-  return conic_surface_densify(job->surface, &options, &job->result, &job->report);
+  options.n_triangles = job->model.n_triangles;
+  options.triangles = (const uint32_t(*)[3])job->model.triangles;
+  conic_status status = conic_surface_densify(job->surface, &options, &job->result, &job->report);
+  return status == CONIC_OK ? cli_mls_size_dense(job->base.session->context, &job->model, &job->result) : status;
 }
 
 static conic_status project_all_points(mls_job *job) {
@@ -187,6 +193,9 @@ static void tell_points(const void *cookie) {
               job->base.input, r->moved_rms, r->moved_max, r->outcomes[CONIC_SURFACE_NOT_FINITE],
               r->outcomes[CONIC_SURFACE_TOO_FEW], r->outcomes[CONIC_SURFACE_NO_MINIMUM],
               r->outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
+  if (job->action == MLS_DENSIFY && r->n_flat)
+    conic_log(context, CONIC_LOG_INFO, "%s: no surface was found for %llu of the new points, which lie flat in triangles",
+              job->base.input, (unsigned long long)r->n_flat);
   if (job->action == MLS_THIN)
     conic_log(context, CONIC_LOG_INFO, "%s: the thinned surface is within %.3g of it", job->base.input,
               r->there.max > r->back.max ? r->there.max : r->back.max);
@@ -249,6 +258,8 @@ static void report_points(cli_json *json, const void *cookie) {
   write_surface(json, job);
   if (job->action == MLS_PROJECT)
     write_projected(json, report);
+  if (job->action == MLS_DENSIFY)
+    cli_json_count(json, "flat", report->n_flat);
   if (job->action == MLS_THIN) {
     cli_json_number(json, "error", report->error);
     write_distance(json, "to_thinned", &report->there);
@@ -347,7 +358,7 @@ static int run_mls(cli_session *session, int argc, char **argv) {
        .parse = cli_parse_length},
       {"spacing", CLI_PARSED, &job.spacing, "S", "densify: no circle of a greater radius stays empty",
        .parse = cli_parse_length},
-      {"hole", CLI_PARSED, &job.hole, "R", "densify: circles of a greater radius are holes and stay [h]",
+      {"hole", CLI_PARSED, &job.hole, "R", "densify: circles of a greater radius are holes and stay; faces are none [1.25 h]",
        .parse = cli_parse_length},
       {"memory", CLI_COUNT, &job.memory_mib, "MIB",
        "project: work cell by cell in so much memory, the rest beside the output", 1, 1e9, .is_given = &job.has_memory},

@@ -67,6 +67,17 @@ run 0 mls densify thin.ply -o dense.ply --spacing 0.01 --count 3000 --json dense
 [[ $(value points_out dense.json) -le 3000 || $(value points_in dense.json) -gt 3000 ]] || fail "mls densify --count"
 run 0 render dense.ply -o dense.pfm --size 64x64
 
+# The outlines of a sheet's border reach beyond it, and cover as much when points are added.
+printf '%s %s 0 0 0 1\n' $(for ((i = 0; i < 100; i++)); do echo $((i % 10)) $((i / 10)); done) > sheet.txt
+run 0 mls densify sheet.txt --columns x,y,z,nx,ny,nz -o sheet-dense.ply --spacing 0.25
+head -c 400 sheet-dense.ply | grep -aq tu_x || fail "densified points have no ellipses"
+run 0 prepare sheet.txt --columns x,y,z,nx,ny,nz -o sheet.ply --plain
+for name in sheet sheet-dense; do
+  run 0 render $name.ply -o $name.pfm --aov Z --samples 1 --size 64x64 --up z --elevation 89 --zoom 0.7
+  tail -c 16384 $name.pfm | od -An -v -tf4 -w4 | grep -vc -e inf -e ' 0$' > $name.covered
+done
+holds "$(cat sheet-dense.covered) >= 0.98 * $(cat sheet.covered) && $(cat sheet.covered) < 4000"
+
 # What is asked for in vain.
 run 2 mls
 run 2 mls smooth torus.ply -o x.ply
