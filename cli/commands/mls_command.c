@@ -26,7 +26,7 @@ typedef struct mls_job {
   unsigned long long count;
   int has_count;
   unsigned long long memory_mib;
-  int has_memory;
+  int has_memory, is_sharp;
 
   conic_model model;
   conic_surface *surface;
@@ -107,7 +107,7 @@ static conic_status densify(mls_job *job) {
   options.n_triangles = job->model.n_triangles;
   options.triangles = (const uint32_t(*)[3])job->model.triangles;
   conic_status status = conic_surface_densify(job->surface, &options, &job->result, &job->report);
-  return status == CONIC_OK ? cli_mls_size_dense(job->base.session->context, &job->model, &job->result) : status;
+  return status == CONIC_OK && !job->is_sharp ? cli_mls_size_dense(job->base.session->context, &job->model, &job->result) : status;
 }
 
 static conic_status project_all_points(mls_job *job) {
@@ -116,7 +116,7 @@ static conic_status project_all_points(mls_job *job) {
 
 /* One h for all: cell by cell, which needs not all of them at a time. */
 static int is_by_cells(const mls_job *job) {
-  return job->action == MLS_PROJECT && job->h.value > 0.0 && job->options.cluster == 0.0;
+  return job->action == MLS_PROJECT && job->h.value > 0.0 && job->options.cluster == 0.0 && !job->is_sharp;
 }
 
 static conic_status clean_cells(mls_job *job) {
@@ -154,12 +154,15 @@ static conic_status work(mls_job *job) {
   job->options.weight = (conic_surface_weight)job->weight;
   job->options.isa = (conic_isa)job->isa;
   job->options.h = in_world(job, &job->h);
+  job->options.is_sharp = (uint64_t)job->is_sharp;
   if (is_by_cells(job))
     return clean_cells(job);
   conic_status status =
       conic_surface_create(job->base.session->context, &job->model.points, &job->options, &job->surface);
   if (status == CONIC_OK)
     status = act(job);
+  if (status == CONIC_OK && job->is_sharp)
+    status = cli_mls_size_sharp(job->base.session->context, &job->result);
   job->n_out = job->result.count;
   cli_build_end_stage(&job->base.stages[WORK], start);
   return status;
@@ -317,8 +320,11 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
     return cli_usage("mls %s: --count is of thin and densify, --max-error of thin, --spacing and --hole of densify",
                      name);
   if (job->has_memory && (!is_by_cells(job) || job->h.is_in_spacings || strcmp(positional[1], "-") == 0))
-    return cli_usage("mls %s: --memory is of project, from a file, with --h in world units and without --cluster",
+    return cli_usage("mls %s: --memory is of project, from a file, with --h in world units and without --cluster and "
+                     "--sharp",
                      name);
+  if (job->is_sharp && job->options.cluster > 0.0)
+    return cli_usage("mls %s: --sharp has no --cluster", name);
   exit_code = cli_build_check(&job->base, &job->base.input, 1, "ply");
   return exit_code == CLI_DONE ? cli_isa_check(job->base.session, (conic_isa)job->isa) : exit_code;
 }
@@ -352,6 +358,7 @@ static int run_mls(cli_session *session, int argc, char **argv) {
        "samples farther away than C times h weigh nothing, 1 to 6 [2]", 1, 6},
       {"cluster", CLI_NUMBER, &job.options.cluster, "T",
        "project: cells smaller than T times their distance count as one sample, 0 to 1 [0]", 0, 1},
+      {"sharp", CLI_FLAG, &job.is_sharp, NULL, "keep creases sharp, and clip the splats that are written at them"},
       {"count", CLI_COUNT, &job.count, "N", "thin: points to keep; densify: points to stop at", 1, 4294967294.0,
        .is_given = &job.has_count},
       {"max-error", CLI_PARSED, &job.max_error, "E", "thin: keep the surface within E of what it was",

@@ -118,3 +118,13 @@ conic_status cli_mls_size_dense(conic_context *context, const conic_model *from,
   conic_model_release(context, &sparse);
   return status;
 }
+
+conic_status cli_mls_size_sharp(conic_context *context, conic_splats *points) {
+  conic_estimate_options options;
+  conic_model made = {.points = *points};
+  conic_estimate_options_init(&options);
+  options.feature_angle_deg = 30.0;
+  conic_status status = conic_model_to_splats(context, &options, &made, NULL);
+  *points = made.points;
+  return status;
+}

@@ -9,4 +9,7 @@
  * that lie close together on something thin would. Errors: MEMORY, CANCELLED. */
 conic_status cli_mls_size_dense(conic_context *context, const conic_model *from, conic_splats *dense);
 
+/* Gives points their ellipses, with clip lines at creases over 30°. Errors: MEMORY, CANCELLED. */
+conic_status cli_mls_size_sharp(conic_context *context, conic_splats *points);
+
 #endif

@@ -49,7 +49,8 @@ typedef struct conic_surface_options {
   int n_local;                 /* of h 0: that neighbour lies at the neglect distance; 6 to 64 */
   double cluster;              /* cells smaller than this times their distance are summed as one; 0 (none) to 1 */
   conic_isa isa;
-  uint64_t reserved[8];
+  uint64_t is_sharp; /* other than 0: creases stay sharp; not of clusters, nor cell by cell */
+  uint64_t reserved[7];
 } conic_surface_options;
 
 /* MLS, full plane, Gaussian, degree 3, local h by 32 neighbours, neglected from 2 h on, no clusters. */
