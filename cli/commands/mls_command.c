@@ -39,6 +39,9 @@ typedef struct mls_job {
 
 enum { READ, ESTIMATE, WORK, WRITE };
 
+/* Where nothing is said of how many are to stay, one in so many does. */
+enum { THINNED_TO = 10 };
+
 /* Where a length is in spacings: the median one of the points. */
 static conic_status find_unit(mls_job *job) {
   if (!job->h.is_in_spacings && !job->max_error.is_in_spacings && !job->spacing.is_in_spacings &&
@@ -93,6 +96,8 @@ static conic_status thin(mls_job *job) {
   conic_thin_options options;
   conic_thin_options_init(&options);
   options.count = job->has_count ? (size_t)job->count : 0;
+  if (!job->has_count && !(job->max_error.value > 0.0))
+    options.count = job->n_in / THINNED_TO + 1;
   options.max_error = in_world(job, &job->max_error);
   options.is_measured = 1;
   return conic_surface_thin(job->surface, &options, &job->result, &job->report);
@@ -179,6 +184,10 @@ static void warn(const mls_job *job) {
         "--h reaches more",
         job->base.input, n_lost, job->n_in, outcomes[CONIC_SURFACE_TOO_FEW], outcomes[CONIC_SURFACE_NO_MINIMUM],
         outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
+  if (job->report.n_merged > job->n_out / 100)
+    conic_log(job->base.session->context, CONIC_LOG_WARNING,
+              "%s: %llu of %zu points lie between two sheets that were taken for one; a smaller --h keeps them apart",
+              job->base.input, (unsigned long long)job->report.n_merged, job->n_out);
 }
 
 static void tell_points(const void *cookie) {
@@ -242,6 +251,7 @@ static void write_projected(cli_json *json, const conic_surface_report *report) 
   cli_json_number(json, "max", report->moved_max);
   cli_json_close(json);
   cli_json_number(json, "mean_neighbours", report->mean_neighbours);
+  cli_json_count(json, "merged", report->n_merged);
 }
 
 static void write_distance(cli_json *json, const char *key, const conic_surface_distance *distance) {
@@ -311,10 +321,8 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
   int exit_code = cli_build_take_paths(&job->base, positional[1], "ply");
   if (exit_code != CLI_DONE)
     return exit_code;
-  if (job->action == MLS_THIN && !job->has_count && !(job->max_error.value > 0.0))
-    return cli_usage("mls thin: needs --count N or --max-error E");
   if (job->action == MLS_DENSIFY && !(job->spacing.value > 0.0))
-    return cli_usage("mls densify: needs --spacing S");
+    job->spacing = (cli_length){.value = 0.5, .is_in_spacings = 1};
   if ((job->action == MLS_PROJECT && job->has_count) || (job->action != MLS_THIN && job->max_error.value > 0.0) ||
       (job->action != MLS_DENSIFY && (job->spacing.value > 0.0 || job->hole.value > 0.0)))
     return cli_usage("mls %s: --count is of thin and densify, --max-error of thin, --spacing and --hole of densify",
@@ -359,11 +367,11 @@ static int run_mls(cli_session *session, int argc, char **argv) {
       {"cluster", CLI_NUMBER, &job.options.cluster, "T",
        "project: cells smaller than T times their distance count as one sample, 0 to 1 [0]", 0, 1},
       {"sharp", CLI_FLAG, &job.is_sharp, NULL, "keep creases sharp, and clip the splats that are written at them"},
-      {"count", CLI_COUNT, &job.count, "N", "thin: points to keep; densify: points to stop at", 1, 4294967294.0,
+      {"count", CLI_COUNT, &job.count, "N", "thin: points to keep [a tenth]; densify: points to stop at", 1, 4294967294.0,
        .is_given = &job.has_count},
       {"max-error", CLI_PARSED, &job.max_error, "E", "thin: keep the surface within E of what it was",
        .parse = cli_parse_length},
-      {"spacing", CLI_PARSED, &job.spacing, "S", "densify: no circle of a greater radius stays empty",
+      {"spacing", CLI_PARSED, &job.spacing, "S", "densify: no circle of a greater radius stays empty [0.5x]",
        .parse = cli_parse_length},
       {"hole", CLI_PARSED, &job.hole, "R", "densify: circles of a greater radius are holes and stay; faces are none [1.25 h]",
        .parse = cli_parse_length},
@@ -391,7 +399,7 @@ const cli_command cli_mls = {
     .name = "mls",
     .summary = "point-set surfaces: smooths, thins or densifies points",
     .usage = "conic mls project|thin|densify IN -o OUT.ply [--type mls|apss] [--h H] [--degree D]\n"
-             "          [--count N] [--max-error E] [--spacing S] [--hole R]",
+             "          [--count N] [--max-error E] [--spacing S] [--hole R] [--sharp]",
     .run = run_mls,
     .description = "Fits a surface to the points and moves them onto it (project), leaves out those that it needs not "
                    "(thin), or adds points where it has too few (densify). Lengths are in the units of the file or, "

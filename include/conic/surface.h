@@ -118,7 +118,8 @@ typedef struct conic_surface_report {
       back;             /* thin, where it is measured: from the set's surface to the new one's, and back */
   size_t n_evaluations; /* projections that were computed */
   uint64_t n_flat;      /* densify: new points that stay in their triangle, as there is no surface to be found */
-  uint64_t reserved[7];
+  uint64_t n_merged;    /* of the projected, by polynomials: those that lie between two sheets */
+  uint64_t reserved[6];
 } conic_surface_report;
 
 /* Projects the surface's own points. `projected` gets those that are DONE, in their old order, with normals where the
