@@ -96,11 +96,12 @@ void cli_keep_source(const cli_session *session, conic_source *source) {
   const char *key = kept ? session->host->source_key : NULL;
   if (!key || kept->source == source)
     return;
-  char *copy = malloc(strlen(key) + 1);
+  const size_t room = strlen(key) + 1;
+  char *copy = malloc(room);
   if (!copy)
     return;
   drop_source(kept);
-  kept->source_key = strcpy(copy, key);
+  kept->source_key = memcpy(copy, key, room);
   kept->source = source;
 }
 

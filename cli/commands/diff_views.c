@@ -264,7 +264,7 @@ int cli_diff_views_find(const cli_diff_job *job, cli_diff_views *views) {
   }
   if (exit_code != CLI_DONE)
     return exit_code;
-  views->views = calloc(views->lists[0].n, sizeof *views->views);
+  views->views = calloc(views->lists[0].n + 1, sizeof *views->views);
   return views->views ? match_views(job, views) : no_room();
 }
 

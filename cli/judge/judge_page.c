@@ -24,8 +24,9 @@ static void put_base64(FILE *from, FILE *to) {
   unsigned char b[3];
   for (size_t n; (n = fread(b, 1, 3, from)) > 0;) {
     unsigned bits = (unsigned)b[0] << 16 | (n > 1 ? (unsigned)b[1] << 8 : 0u) | (n > 2 ? (unsigned)b[2] : 0u);
-    const char word[5] = {letters[bits >> 18], letters[bits >> 12 & 63], n > 1 ? letters[bits >> 6 & 63] : '=',
-                          n > 2 ? letters[bits & 63] : '=', 0};
+    char word[5] = {letters[bits >> 18], letters[bits >> 12 & 63], letters[bits >> 6 & 63], letters[bits & 63], 0};
+    for (size_t i = n + 1; i < 4; i++)
+      word[i] = '=';
     fputs(word, to);
   }
 }

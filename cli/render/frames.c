@@ -104,7 +104,9 @@ static int check_pattern(const char *path) {
 static int check_files(const cli_session *session, const cli_render_job *job, const char *const *paths, int n_paths,
                        int i_frame) {
   char **names = calloc((size_t)n_paths, sizeof *names);
-  int answer = names ? CLI_DONE : cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
+  if (!names)
+    return cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
+  int answer = CLI_DONE;
   for (int i = 0; i < n_paths && answer == CLI_DONE; i++)
     if (paths[i] && !(names[i] = cli_frame_name(job, paths[i], i_frame)))
       answer = cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
@@ -112,7 +114,7 @@ static int check_files(const cli_session *session, const cli_render_job *job, co
     answer = cli_check_outputs(session, (const char *const *)names, n_paths);
   if (answer == CLI_DONE)
     answer = cli_scene_inputs_stay(session, job, (const char *const *)names, n_paths);
-  for (int i = 0; names && i < n_paths; i++)
+  for (int i = 0; i < n_paths; i++)
     free(names[i]);
   free(names);
   return answer;
@@ -126,15 +128,17 @@ static int compare_frame_names(const void *a, const void *b) {
 static int check_view_names(const cli_session *session, const cli_render_job *job, const char *path) {
   int n = cli_frames_count(job), answer = CLI_DONE;
   char **names = calloc((size_t)n, sizeof *names);
+  if (!names)
+    return cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
   for (int i = 0; i < n && answer == CLI_DONE; i++)
-    if (!names || !(names[i] = cli_frame_name(job, path, job->frames.first - 1 + i * job->frames.step)))
+    if (!(names[i] = cli_frame_name(job, path, job->frames.first - 1 + i * job->frames.step)))
       answer = cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
   if (answer == CLI_DONE)
     qsort(names, (size_t)n, sizeof *names, compare_frame_names);
   for (int i = 1; i < n && answer == CLI_DONE; i++)
     if (strcmp(names[i - 1], names[i]) == 0)
       answer = cli_usage("%s: two views would be written to %s; number them, as by %%04d", session->command, names[i]);
-  for (int i = 0; names && i < n; i++)
+  for (int i = 0; i < n; i++)
     free(names[i]);
   free(names);
   return answer;

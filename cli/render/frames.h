@@ -6,8 +6,8 @@
 #include "cli/render/render_job.h"
 
 /* Parsers of values: "36" into the job's number of frames, and "A:B:STEP", "A:B" or "A" into a cli_frames. */
-int cli_parse_turntable(const char *text, void *job);
-int cli_parse_frames(const char *text, void *frames);
+int cli_parse_turntable(const char *text, void *value);
+int cli_parse_frames(const char *text, void *value);
 
 /* Sees to it that the frames that are asked for are there, and that none of their files is written over another one, or
  * over an input, when each of `paths` (null entries are fine) gives one a frame. Returns CLI_DONE, or an exit code

@@ -139,7 +139,7 @@ conic_status cli_planes_check_formats(cli_session *session, const cli_render_job
 /* Writes the image as PATH, or as a file a plane, where that is what the kind of file holds: "out.pfm", "out.Z.pfm" …
  */
 conic_status cli_planes_write(cli_session *session, const cli_render_job *job, const char *path,
-                              const conic_image *image);
+                              const conic_image *drawn);
 
 /* --exposure auto: finds it where it is still to be found, for this frame and those that follow. */
 conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, const conic_camera *camera);

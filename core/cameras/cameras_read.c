@@ -185,16 +185,29 @@ static conic_status read_camera_bytes(conic_camera_list *list, const unsigned ch
   }
 }
 
+static conic_status read_camera_file(conic_camera_list *list, const char *path) {
+  conic_mapping mapping;
+  conic_status status = conic_mapping_open(list->context, path, &mapping);
+  if (status != CONIC_OK)
+    return status;
+  status = read_camera_bytes(list, mapping.bytes, mapping.n_bytes);
+  conic_mapping_close(list->context, &mapping);
+  return status;
+}
+
 static conic_status read_camera_path(conic_camera_list *list, const char *path) {
   colmap_paths paths;
-  conic_mapping mapping;
   char inside[PATH_ROOM];
   int is_directory = is_folder(path);
   if (is_directory && find_colmap(path, &paths))
     return read_colmap_paths(list, &paths);
-  if (is_directory && find_json_in(path, inside))
-    path = list->name = list->path = inside;
-  else if (is_directory)
+  if (is_directory && find_json_in(path, inside)) {
+    list->name = list->path = inside;
+    conic_status status = read_camera_file(list, inside);
+    list->name = list->path = path;
+    return status;
+  }
+  if (is_directory)
     return conic_fail(list->context, CONIC_ERROR_INPUT,
                       "%s: the directory holds no cameras: neither COLMAP's cameras and images, also in sparse/0, nor "
                       "transforms.json or cameras.json",
@@ -203,12 +216,7 @@ static conic_status read_camera_path(conic_camera_list *list, const char *path) 
     return find_colmap_beside(path, &paths)
                ? read_colmap_paths(list, &paths)
                : conic_fail(list->context, CONIC_ERROR_INPUT, "%s: COLMAP's cameras and images lie side by side", path);
-  conic_status status = conic_mapping_open(list->context, path, &mapping);
-  if (status != CONIC_OK)
-    return status;
-  status = read_camera_bytes(list, mapping.bytes, mapping.n_bytes);
-  conic_mapping_close(list->context, &mapping);
-  return status;
+  return read_camera_file(list, path);
 }
 
 conic_status conic_cameras_read(conic_context *context, const char *path, const conic_cameras_options *options,

@@ -28,7 +28,8 @@ static void turn_records(conic_file_record record, unsigned char *bytes, size_t 
     conic_turn_words(bytes, n_bytes / (size_t)(*record - '0'), (size_t)(*record - '0'));
     return;
   }
-  for (const unsigned char *end = bytes + n_bytes; CONIC_IS_BIG_ENDIAN && bytes < end;)
+  const unsigned char *const end = CONIC_IS_BIG_ENDIAN ? bytes + n_bytes : bytes;
+  while (bytes < end)
     for (const char *member = record; *member; bytes += *member++ - '0')
       conic_turn_words(bytes, 1, (size_t)(*member - '0'));
 }

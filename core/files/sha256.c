@@ -22,7 +22,7 @@ static uint32_t turned_right(uint32_t x, int n) {
 static void mix_block(conic_sha256 *sum) {
   uint32_t w[64], s[8];
   for (int i = 0; i < 16; i++)
-    w[i] = conic_load_big_32(sum->block + 4 * i);
+    w[i] = conic_load_big_32(&sum->block[4 * (size_t)i]);
   for (int i = 16; i < 64; i++) {
     uint32_t a = w[i - 15], b = w[i - 2];
     w[i] = w[i - 16] + (turned_right(a, 7) ^ turned_right(a, 18) ^ a >> 3) + w[i - 7] +

@@ -30,7 +30,7 @@ void conic_e57_records_close(conic_e57_records *records) {
 /* Appends n bytes to what is left of a stream. */
 static conic_status feed_stream(conic_e57_records *records, conic_e57_stream *stream, uint64_t *at, size_t n) {
   size_t used = (size_t)(stream->bit / 8);
-  if (!stream->is_wanted)
+  if (!stream->is_wanted || n == 0)
     return conic_e57_file_skip(records->file, at, n);
   if (used > 0)
     memmove(stream->bytes, stream->bytes + used, stream->n - used);
