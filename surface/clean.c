@@ -16,12 +16,34 @@ typedef struct points_cleaning {
   conic_workspace *workspaces;
 } points_cleaning;
 
+/* Of two sheets the polynomial's residuals are two heaps: their fourth moment is little more than the square of the
+ * second, where noise has three times that. The heaps must be so far apart as a share of h, too. */
+static const double TWO_HEAPS = 1.5, LEAST_GAP = 0.1;
+
+/* Whether the samples of the point that was projected last lie in two sheets. */
+static int is_between_sheets(const conic_surface *surface, const conic_workspace *workspace,
+                             const conic_landing *projection) {
+  const conic_near *near = &workspace->near;
+  const double *residuals = near->columns + (size_t)conic_n_coefficients(surface->options.degree) * near->n_padded;
+  double sum = 0.0, second = 0.0, fourth = 0.0;
+  if (surface->options.type != CONIC_SURFACE_MLS || surface->creases.side || projection->outcome != CONIC_SURFACE_DONE)
+    return 0;
+  for (size_t i = 0; i < near->n; i++) {
+    double square = residuals[i] * residuals[i]; /* in units of h */
+    sum += near->weights[i];
+    second += near->weights[i] * square;
+    fourth += near->weights[i] * square * square;
+  }
+  return 4.0 * second > LEAST_GAP * LEAST_GAP * sum && fourth * sum < TWO_HEAPS * second * second;
+}
+
 static void keep_projection(points_cleaning *work, size_t slot, const double r[3], const conic_landing *projection,
                             const conic_workspace *workspace) {
   const conic_surface *surface = work->surface;
   conic_own_points *own = work->own;
   double side[3], color[3], turn = 0.0, moved2 = 0.0;
   own->outcomes[slot] = (uint8_t)projection->outcome;
+  own->are_merged[slot] = (uint8_t)is_between_sheets(surface, workspace, projection);
   own->n_neighbours[slot] = (uint32_t)projection->n_neighbours;
   conic_surface_attributes(surface, workspace, side, color);
   for (int axis = 0; axis < 3; axis++)
@@ -67,7 +89,8 @@ static conic_status allocate_own(const conic_surface *surface, conic_own_points 
   own->moved2 = conic_memory_allocate(context, n, sizeof *own->moved2);
   own->n_neighbours = conic_memory_allocate(context, n, sizeof *own->n_neighbours);
   own->outcomes = conic_memory_allocate(context, n, sizeof *own->outcomes);
-  return own->moved2 && own->n_neighbours && own->outcomes ? status : CONIC_ERROR_MEMORY;
+  own->are_merged = conic_memory_allocate(context, n, sizeof *own->are_merged);
+  return own->moved2 && own->n_neighbours && own->outcomes && own->are_merged ? status : CONIC_ERROR_MEMORY;
 }
 
 conic_status conic_own_points_project(const conic_surface *surface, size_t n_wanted, double begin, double end,
@@ -96,6 +119,7 @@ void conic_own_points_release(conic_context *context, conic_own_points *own) {
   conic_memory_release(context, own->moved2);
   conic_memory_release(context, own->n_neighbours);
   conic_memory_release(context, own->outcomes);
+  conic_memory_release(context, own->are_merged);
   memset(own, 0, sizeof *own);
 }
 
@@ -116,6 +140,7 @@ static void report_points(const conic_surface *surface, const conic_own_points *
     sum2 += own->moved2[slot];
     greatest2 = own->moved2[slot] > greatest2 ? own->moved2[slot] : greatest2;
     neighbours += (double)own->n_neighbours[slot];
+    report->n_merged += own->are_merged[slot];
   }
   report->n_out = report->outcomes[CONIC_SURFACE_DONE];
   if (report->n_out) {

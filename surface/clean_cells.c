@@ -264,6 +264,7 @@ static void fill_result(cleaning *work, const conic_own_points *own, uint32_t sl
     to->point.normal[axis] = own->points.normal[0] ? own->points.normal[axis][slot] : 0.0f;
     to->point.color[axis] = own->points.color[0] ? own->points.color[axis][slot] : 0.0f;
   }
+  work->report.n_merged += own->are_merged[slot];
   work->moved2_sum += own->moved2[slot];
   work->moved2_most = own->moved2[slot] > work->moved2_most ? own->moved2[slot] : work->moved2_most;
   work->neighbours += (double)own->n_neighbours[slot];
@@ -410,8 +411,9 @@ conic_status conic_surface_clean_cells(conic_context *context, const conic_clean
   cleaning work = {.context = context, .options = &options};
   conic_clean_options_init(&options);
   if (!conic_options_take(&options, given) || !(options.surface.h > 0.0 && options.surface.h < 1e30) ||
-      options.surface.cluster != 0.0)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: cells need an h for all points, and no clusters");
+      options.surface.cluster != 0.0 || options.surface.is_sharp)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "surface: cells need an h for all points, and have neither clusters nor creases");
   conic_status status = clean_all(&work, source, source_cookie);
   if (status == CONIC_OK)
     status = deliver(&work, sink);

@@ -12,6 +12,7 @@
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"
 #include "surface/clusters.h"
+#include "surface/creases.h"
 #include "surface/kernels/weight.h"
 
 enum { CHUNK = 1024, CHUNKS_A_REPORT = 16 };
@@ -39,6 +40,8 @@ static conic_status check_surface_options(conic_context *context, const conic_su
   if (o->n_local < 6 || o->n_local > 64 || !(o->cluster >= 0.0 && o->cluster <= 1.0))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: n_local %d or cluster %g is out of range", o->n_local,
                       o->cluster);
+  if (o->is_sharp && o->cluster > 0.0)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: clusters have no creases");
   if (o->type == CONIC_SURFACE_APSS && !(fields & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS)))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: algebraic spheres need normals");
   return CONIC_OK;
@@ -200,6 +203,8 @@ static conic_status prepare_surface(conic_surface *surface, const conic_splats *
   status = find_scales(surface);
   if (status == CONIC_OK && surface->options.cluster > 0.0)
     status = conic_clusters_create(surface);
+  if (status == CONIC_OK && surface->options.is_sharp)
+    status = conic_creases_find(surface);
   return status;
 }
 
@@ -246,6 +251,7 @@ void conic_surface_destroy(conic_surface *surface) {
     return;
   conic_context *context = surface->context;
   conic_clusters_release(surface);
+  conic_creases_release(surface);
   for (int axis = 0; axis < 3; axis++) {
     conic_memory_release(context, surface->normal[axis]);
     conic_memory_release(context, surface->color[axis]);

@@ -16,6 +16,12 @@ typedef struct conic_surface_clusters {
   float *h;
 } conic_surface_clusters;
 
+/* What a sharp surface knows of each slot. */
+typedef struct conic_surface_creases {
+  float (*side)[3]; /* the unit normal, of either sign, of the side that it lies on; null: the surface is not sharp */
+  float *spacing;
+} conic_surface_creases;
+
 struct conic_surface {
   conic_context *context;
   conic_surface_options options;
@@ -30,6 +36,7 @@ struct conic_surface {
   float *color[3];   /* by slot; null where the points have none */
   double median_h;
   conic_surface_clusters clusters;
+  conic_surface_creases creases;
 };
 
 /* A point's unit normal: of its axes where it has some, else the given one; zero where that is none. */

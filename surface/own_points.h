@@ -10,6 +10,7 @@ typedef struct conic_own_points {
   double *moved2;      /* the squared distance that each was moved */
   uint32_t *n_neighbours;
   uint8_t *outcomes;
+  uint8_t *are_merged; /* lies between two sheets that the polynomial takes for one */
   size_t n_evaluations;
 } conic_own_points;
 

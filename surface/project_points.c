@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "core/base/threads.h"
-#include "surface/mls_surface.h"
+#include "surface/creases.h"
 
 enum { CHUNK = 256, CHUNKS_A_REPORT = 64 };
 
@@ -130,6 +130,8 @@ static int is_found_again(const conic_surface *surface, const projection_start *
 static conic_surface_outcome project_place(const conic_surface *surface, const projection_start *at,
                                            conic_workspace *workspace, conic_landing *projection) {
   double frame[3][3], t;
+  if (surface->creases.side && conic_creases_project(surface, at->r, at->h, at->except, workspace, projection))
+    return projection->outcome;
   conic_surface_outcome outcome = find_foot(surface, at, workspace, frame, &t, projection);
   if (outcome != CONIC_SURFACE_DONE || surface->options.type == CONIC_SURFACE_APSS)
     return outcome;

@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/commands/mls_cells.h"
+#include "cli/commands/mls_sizes.h"
 #include "cli/device_option.h"
 #include "core/base/message.h"
 #include "core/splats/repairs_log.h"
@@ -25,7 +26,7 @@ typedef struct mls_job {
   unsigned long long count;
   int has_count;
   unsigned long long memory_mib;
-  int has_memory;
+  int has_memory, is_sharp;
 
   conic_model model;
   conic_surface *surface;
@@ -37,6 +38,9 @@ typedef struct mls_job {
 } mls_job;
 
 enum { READ, ESTIMATE, WORK, WRITE };
+
+/* Where nothing is said of how many are to stay, one in so many does. */
+enum { THINNED_TO = 10 };
 
 /* Where a length is in spacings: the median one of the points. */
 static conic_status find_unit(mls_job *job) {
@@ -61,7 +65,8 @@ static conic_status read_points(mls_job *job) {
   start = cli_build_end_stage(&job->base.stages[READ], start);
   if (status != CONIC_OK)
     return status;
-  cli_build_hint_faces(&job->base, &job->model);
+  if (job->action != MLS_DENSIFY) /* there they say where the surface is */
+    cli_build_hint_faces(&job->base, &job->model);
   conic_splats *points = &job->model.points;
   double low[3], high[3];
   job->n_in = points->count;
@@ -72,6 +77,7 @@ static conic_status read_points(mls_job *job) {
   if (!(conic_splats_fields(points) & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS))) {
     conic_estimate_options estimate;
     conic_estimate_options_init(&estimate);
+    estimate.finds_dots = job->action == MLS_DENSIFY && !job->model.n_triangles;
     status = conic_model_to_splats(context, &estimate, &job->model, &job->repairs);
   }
   if (status == CONIC_OK)
@@ -90,6 +96,8 @@ static conic_status thin(mls_job *job) {
   conic_thin_options options;
   conic_thin_options_init(&options);
   options.count = job->has_count ? (size_t)job->count : 0;
+  if (!job->has_count && !(job->max_error.value > 0.0))
+    options.count = job->n_in / THINNED_TO + 1;
   options.max_error = in_world(job, &job->max_error);
   options.is_measured = 1;
   return conic_surface_thin(job->surface, &options, &job->result, &job->report);
@@ -101,7 +109,10 @@ static conic_status densify(mls_job *job) {
   options.spacing = in_world(job, &job->spacing);
   options.hole = in_world(job, &job->hole);
   options.max_count = job->has_count ? (size_t)job->count : 0;
-  return conic_surface_densify(job->surface, &options, &job->result, &job->report);
+  options.n_triangles = job->model.n_triangles;
+  options.triangles = (const uint32_t(*)[3])job->model.triangles;
+  conic_status status = conic_surface_densify(job->surface, &options, &job->result, &job->report);
+  return status == CONIC_OK && !job->is_sharp ? cli_mls_size_dense(job->base.session->context, &job->model, &job->result) : status;
 }
 
 static conic_status project_all_points(mls_job *job) {
@@ -110,7 +121,7 @@ static conic_status project_all_points(mls_job *job) {
 
 /* One h for all: cell by cell, which needs not all of them at a time. */
 static int is_by_cells(const mls_job *job) {
-  return job->action == MLS_PROJECT && job->h.value > 0.0 && job->options.cluster == 0.0;
+  return job->action == MLS_PROJECT && job->h.value > 0.0 && job->options.cluster == 0.0 && !job->is_sharp;
 }
 
 static conic_status clean_cells(mls_job *job) {
@@ -148,12 +159,15 @@ static conic_status work(mls_job *job) {
   job->options.weight = (conic_surface_weight)job->weight;
   job->options.isa = (conic_isa)job->isa;
   job->options.h = in_world(job, &job->h);
+  job->options.is_sharp = (uint64_t)job->is_sharp;
   if (is_by_cells(job))
     return clean_cells(job);
   conic_status status =
       conic_surface_create(job->base.session->context, &job->model.points, &job->options, &job->surface);
   if (status == CONIC_OK)
     status = act(job);
+  if (status == CONIC_OK && job->is_sharp)
+    status = cli_mls_size_sharp(job->base.session->context, &job->result);
   job->n_out = job->result.count;
   cli_build_end_stage(&job->base.stages[WORK], start);
   return status;
@@ -170,6 +184,10 @@ static void warn(const mls_job *job) {
         "--h reaches more",
         job->base.input, n_lost, job->n_in, outcomes[CONIC_SURFACE_TOO_FEW], outcomes[CONIC_SURFACE_NO_MINIMUM],
         outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
+  if (job->report.n_merged > job->n_out / 100)
+    conic_log(job->base.session->context, CONIC_LOG_WARNING,
+              "%s: %llu of %zu points lie between two sheets that were taken for one; a smaller --h keeps them apart",
+              job->base.input, (unsigned long long)job->report.n_merged, job->n_out);
 }
 
 static void tell_points(const void *cookie) {
@@ -187,6 +205,9 @@ static void tell_points(const void *cookie) {
               job->base.input, r->moved_rms, r->moved_max, r->outcomes[CONIC_SURFACE_NOT_FINITE],
               r->outcomes[CONIC_SURFACE_TOO_FEW], r->outcomes[CONIC_SURFACE_NO_MINIMUM],
               r->outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
+  if (job->action == MLS_DENSIFY && r->n_flat)
+    conic_log(context, CONIC_LOG_INFO, "%s: no surface was found for %llu of the new points, which lie flat in triangles",
+              job->base.input, (unsigned long long)r->n_flat);
   if (job->action == MLS_THIN)
     conic_log(context, CONIC_LOG_INFO, "%s: the thinned surface is within %.3g of it", job->base.input,
               r->there.max > r->back.max ? r->there.max : r->back.max);
@@ -230,6 +251,7 @@ static void write_projected(cli_json *json, const conic_surface_report *report) 
   cli_json_number(json, "max", report->moved_max);
   cli_json_close(json);
   cli_json_number(json, "mean_neighbours", report->mean_neighbours);
+  cli_json_count(json, "merged", report->n_merged);
 }
 
 static void write_distance(cli_json *json, const char *key, const conic_surface_distance *distance) {
@@ -249,6 +271,8 @@ static void report_points(cli_json *json, const void *cookie) {
   write_surface(json, job);
   if (job->action == MLS_PROJECT)
     write_projected(json, report);
+  if (job->action == MLS_DENSIFY)
+    cli_json_count(json, "flat", report->n_flat);
   if (job->action == MLS_THIN) {
     cli_json_number(json, "error", report->error);
     write_distance(json, "to_thinned", &report->there);
@@ -297,17 +321,18 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
   int exit_code = cli_build_take_paths(&job->base, positional[1], "ply");
   if (exit_code != CLI_DONE)
     return exit_code;
-  if (job->action == MLS_THIN && !job->has_count && !(job->max_error.value > 0.0))
-    return cli_usage("mls thin: needs --count N or --max-error E");
   if (job->action == MLS_DENSIFY && !(job->spacing.value > 0.0))
-    return cli_usage("mls densify: needs --spacing S");
+    job->spacing = (cli_length){.value = 0.5, .is_in_spacings = 1};
   if ((job->action == MLS_PROJECT && job->has_count) || (job->action != MLS_THIN && job->max_error.value > 0.0) ||
       (job->action != MLS_DENSIFY && (job->spacing.value > 0.0 || job->hole.value > 0.0)))
     return cli_usage("mls %s: --count is of thin and densify, --max-error of thin, --spacing and --hole of densify",
                      name);
   if (job->has_memory && (!is_by_cells(job) || job->h.is_in_spacings || strcmp(positional[1], "-") == 0))
-    return cli_usage("mls %s: --memory is of project, from a file, with --h in world units and without --cluster",
+    return cli_usage("mls %s: --memory is of project, from a file, with --h in world units and without --cluster and "
+                     "--sharp",
                      name);
+  if (job->is_sharp && job->options.cluster > 0.0)
+    return cli_usage("mls %s: --sharp has no --cluster", name);
   exit_code = cli_build_check(&job->base, &job->base.input, 1, "ply");
   return exit_code == CLI_DONE ? cli_isa_check(job->base.session, (conic_isa)job->isa) : exit_code;
 }
@@ -341,13 +366,14 @@ static int run_mls(cli_session *session, int argc, char **argv) {
        "samples farther away than C times h weigh nothing, 1 to 6 [2]", 1, 6},
       {"cluster", CLI_NUMBER, &job.options.cluster, "T",
        "project: cells smaller than T times their distance count as one sample, 0 to 1 [0]", 0, 1},
-      {"count", CLI_COUNT, &job.count, "N", "thin: points to keep; densify: points to stop at", 1, 4294967294.0,
+      {"sharp", CLI_FLAG, &job.is_sharp, NULL, "keep creases sharp, and clip the splats that are written at them"},
+      {"count", CLI_COUNT, &job.count, "N", "thin: points to keep [a tenth]; densify: points to stop at", 1, 4294967294.0,
        .is_given = &job.has_count},
       {"max-error", CLI_PARSED, &job.max_error, "E", "thin: keep the surface within E of what it was",
        .parse = cli_parse_length},
-      {"spacing", CLI_PARSED, &job.spacing, "S", "densify: no circle of a greater radius stays empty",
+      {"spacing", CLI_PARSED, &job.spacing, "S", "densify: no circle of a greater radius stays empty [0.5x]",
        .parse = cli_parse_length},
-      {"hole", CLI_PARSED, &job.hole, "R", "densify: circles of a greater radius are holes and stay [h]",
+      {"hole", CLI_PARSED, &job.hole, "R", "densify: circles of a greater radius are holes and stay; faces are none [1.25 h]",
        .parse = cli_parse_length},
       {"memory", CLI_COUNT, &job.memory_mib, "MIB",
        "project: work cell by cell in so much memory, the rest beside the output", 1, 1e9, .is_given = &job.has_memory},
@@ -373,7 +399,7 @@ const cli_command cli_mls = {
     .name = "mls",
     .summary = "point-set surfaces: smooths, thins or densifies points",
     .usage = "conic mls project|thin|densify IN -o OUT.ply [--type mls|apss] [--h H] [--degree D]\n"
-             "          [--count N] [--max-error E] [--spacing S] [--hole R]",
+             "          [--count N] [--max-error E] [--spacing S] [--hole R] [--sharp]",
     .run = run_mls,
     .description = "Fits a surface to the points and moves them onto it (project), leaves out those that it needs not "
                    "(thin), or adds points where it has too few (densify). Lengths are in the units of the file or, "

@@ -49,7 +49,8 @@ typedef struct conic_surface_options {
   int n_local;                 /* of h 0: that neighbour lies at the neglect distance; 6 to 64 */
   double cluster;              /* cells smaller than this times their distance are summed as one; 0 (none) to 1 */
   conic_isa isa;
-  uint64_t reserved[8];
+  uint64_t is_sharp; /* other than 0: creases stay sharp; not of clusters, nor cell by cell */
+  uint64_t reserved[7];
 } conic_surface_options;
 
 /* MLS, full plane, Gaussian, degree 3, local h by 32 neighbours, neglected from 2 h on, no clusters. */
@@ -116,7 +117,9 @@ typedef struct conic_surface_report {
   conic_surface_distance there,
       back;             /* thin, where it is measured: from the set's surface to the new one's, and back */
   size_t n_evaluations; /* projections that were computed */
-  uint64_t reserved[8];
+  uint64_t n_flat;      /* densify: new points that stay in their triangle, as there is no surface to be found */
+  uint64_t n_merged;    /* of the projected, by polynomials: those that lie between two sheets */
+  uint64_t reserved[6];
 } conic_surface_report;
 
 /* Projects the surface's own points. `projected` gets those that are DONE, in their old order, with normals where the
@@ -179,17 +182,20 @@ CONIC_API conic_status conic_surface_thin(conic_surface *surface, const conic_th
 typedef struct conic_densify_options {
   size_t size;      /* sizeof(conic_densify_options), set by the init function */
   double spacing;   /* no circle of a greater radius stays empty */
-  double hole;      /* circles wider than this are holes and stay; 0: h, as the surface's error bound has it */
+  double hole;      /* circles wider than this are holes and stay; 0: 1.25 h. Not of triangles that are given */
   size_t max_count; /* points in all; 0: 2³² - 2 */
+  size_t n_triangles;             /* 0: those that points make with their neighbours */
+  const uint32_t (*triangles)[3]; /* where the surface is; each a number below the set's count */
 } conic_densify_options;
 
-/* Holes wider than h stay, any number of points; the spacing is still to be set. */
+/* Holes wider than 1.25 h stay, any number of points; the spacing is still to be set. */
 CONIC_API void conic_densify_options_init_sized(conic_densify_options *options, size_t size);
 #define conic_densify_options_init(options) conic_densify_options_init_sized(options, sizeof *(options))
 
-/* Adds points of the surface where the set has gaps, the widest first: at vertices of the Voronoi diagram of a
- * point's neighbours in their plane (PSS §5.2). Nothing is added outside of its neighbours: borders stay where they
- * are. The old points come first, as they were. The caller releases *dense. Errors: ARGUMENT, MEMORY, CANCELLED. */
+/* Adds points of the surface where the set has gaps, the widest first (PSS §5.2), within triangles of points: borders
+ * stay where they are. Where nothing can be projected, a new point lies in its triangle, as a splat would, if the
+ * triangle is a mesh's or its corners face the same way. The old points come first, as they were. The caller releases
+ * *dense. Errors: ARGUMENT, MEMORY, CANCELLED. */
 CONIC_API conic_status conic_surface_densify(conic_surface *surface, const conic_densify_options *options,
                                              conic_splats *dense, conic_surface_report *report);
 

@@ -63,9 +63,34 @@ holds "$(value hausdorff thin.json) <= 0.5 * $spacing * 1.2 && $(value points_ou
 # Densify: more of them.
 run 0 mls densify thin.ply -o dense.ply --spacing 0.3x --json dense.json
 holds "$(value points_out dense.json) > 2 * $(value points_in dense.json)"
+run 0 mls thin thin.ply -o tenth.ply --json tenth.json
+holds "$(value points_out tenth.json) == int($(value points_in tenth.json) / 10) + 1"
+run 0 mls densify tenth.ply -o dense.ply --json dense.json
+holds "$(value points_out dense.json) > 2 * $(value points_in dense.json)"
+
+# Sharp: clip lines at a cube's edges, the same bytes everywhere; what has none has none.
+run 0 make cube -n 1500 -o cube.ply
+run 0 mls project cube.ply -o sharp.ply --sharp
+head -c 600 sharp.ply | grep -aq clip || fail "mls project --sharp: no clip lines"
+run 0 mls project cube.ply -o again.ply --sharp --threads 1 --isa scalar
+cmp -s again.ply sharp.ply || fail "mls project --sharp: other bytes"
+run 0 mls thin cube.ply -o sharp.ply --count 600 --sharp
+head -c 600 sharp.ply | grep -aq clip || fail "mls thin --sharp: no clip lines"
+
 run 0 mls densify thin.ply -o dense.ply --spacing 0.01 --count 3000 --json dense.json
 [[ $(value points_out dense.json) -le 3000 || $(value points_in dense.json) -gt 3000 ]] || fail "mls densify --count"
 run 0 render dense.ply -o dense.pfm --size 64x64
+
+# The outlines of a sheet's border reach beyond it, and cover as much when points are added.
+printf '%s %s 0 0 0 1\n' $(for ((i = 0; i < 100; i++)); do echo $((i % 10)) $((i / 10)); done) > sheet.txt
+run 0 mls densify sheet.txt --columns x,y,z,nx,ny,nz -o sheet-dense.ply --spacing 0.25
+head -c 400 sheet-dense.ply | grep -aq tu_x || fail "densified points have no ellipses"
+run 0 prepare sheet.txt --columns x,y,z,nx,ny,nz -o sheet.ply --plain
+for name in sheet sheet-dense; do
+  run 0 render $name.ply -o $name.pfm --aov Z --samples 1 --size 64x64 --up z --elevation 89 --zoom 0.7
+  tail -c 16384 $name.pfm | od -An -v -tf4 -w4 | grep -vc -e inf -e ' 0$' > $name.covered
+done
+holds "$(cat sheet-dense.covered) >= 0.98 * $(cat sheet.covered) && $(cat sheet.covered) < 4000"
 
 # What is asked for in vain.
 run 2 mls
@@ -73,8 +98,8 @@ run 2 mls smooth torus.ply -o x.ply
 run 2 mls project
 run 2 mls project torus.ply
 run 2 mls project torus.ply all.ply -o x.ply
-run 2 mls thin torus.ply -o x.ply
-run 2 mls densify torus.ply -o x.ply
+run 2 mls project torus.ply -o x.ply --sharp --h 0.06 --memory 100
+run 2 mls project torus.ply -o x.ply --sharp --cluster 0.3
 run 2 mls project torus.ply -o x.ply --count 3
 run 2 mls project torus.ply -o x.ply --degree 5
 run 2 mls project torus.ply -o - --json -

@@ -208,6 +208,49 @@ static void check_borders(conic_context *context) {
   conic_splats_release(context, &sheet);
 }
 
+/* Triangles of a mesh say where the surface is: a square of four corners, of which nothing can be projected, is filled
+ * to its border, with the corners' colours between them. */
+static void check_mesh(conic_context *context) {
+  static const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
+  conic_splats corners = shape_allocate(context, 4, CONIC_SPLATS_NORMALS | CONIC_SPLATS_COLORS), dense;
+  conic_densify_options wanted;
+  conic_surface_report report;
+  conic_neighbours tree;
+  for (int i = 0; i < 4; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      corners.position[axis][i] = axis < 2 ? (float)(i >> axis & 1) : 0.0f;
+      corners.normal[axis][i] = axis == 2 ? 1.0f : 0.0f;
+      corners.color[axis][i] = (float)(i & 1);
+    }
+  conic_densify_options_init(&wanted);
+  wanted.spacing = 0.05;
+  conic_surface *surface = shape_surface(context, &corners, NULL);
+  wanted.triangles = triangles;
+  wanted.n_triangles = 2;
+  CHECK_OK(conic_surface_densify(surface, &wanted, &dense, &report));
+  CHECK(report.n_flat == dense.count - 4 && dense.count < 600);
+  CHECK_OK(conic_neighbours_build(context, (const float *const *)dense.position, dense.count, &tree));
+  for (int i = 0; i < 10000; i++) {
+    const double place[3] = {(i % 100 + 0.5) / 100.0, (i / 100 + 0.5) / 100.0, 0.0};
+    uint32_t slot;
+    double distance2;
+    conic_neighbours_nearest(&tree, place, CONIC_NO_SLOT, 1, HUGE_VAL, &slot, &distance2);
+    CHECK(sqrt(distance2) <= 1.05 * wanted.spacing);
+  }
+  for (size_t i = 4; i < dense.count; i++) {
+    CHECK(dense.position[2][i] == 0.0f && dense.normal[2][i] == 1.0f);
+    CHECK_NEAR((double)dense.color[0][i], (double)dense.position[0][i], 1e-6);
+  }
+  conic_neighbours_release(context, &tree);
+  conic_splats_release(context, &dense);
+  const uint32_t wrong[1][3] = {{0, 1, 4}};
+  wanted.triangles = wrong;
+  wanted.n_triangles = 1;
+  CHECK(conic_surface_densify(surface, &wanted, &dense, NULL) == CONIC_ERROR_ARGUMENT);
+  conic_surface_destroy(surface);
+  conic_splats_release(context, &corners);
+}
+
 int main(void) {
   conic_context *context = check_context(2);
   check_thin_count(context);
@@ -215,6 +258,7 @@ int main(void) {
   check_thin_little(context);
   check_densify(context);
   check_borders(context);
+  check_mesh(context);
   conic_context_destroy(context);
   return check_result();
 }

@@ -159,20 +159,21 @@ static void check_line(conic_context *context) {
 }
 
 typedef struct layers {
-  size_t below, between, above, failed;
+  size_t below, between, above, failed, merged;
 } layers;
 
 static layers sort_layers(conic_context *context, conic_surface_type type, double gap) {
   conic_splats s = shape_allocate(context, 2 * N_SHEET, CONIC_SPLATS_NORMALS), out;
   const double down[3] = {0, 0, -1}, up[3] = {0, 0, gap};
   conic_surface_report report;
-  layers found = {0, 0, 0, 0};
+  layers found = {0, 0, 0, 0, 0};
   put_sheet(&s, 0, 1, X, Y, ZERO, down);
   put_sheet(&s, N_SHEET, 2, X, Y, up, Z);
   conic_surface_options options = options_of(type, 1.0);
   conic_surface *surface = shape_surface(context, &s, &options);
   CHECK_OK(conic_surface_clean(surface, &out, &report));
   found.failed = report.n_in - report.n_out;
+  found.merged = (size_t)report.n_merged;
   for (size_t i = 0; i < out.count; i++) {
     double height = (double)out.position[2][i] / gap;
     found.below += height < 0.1;
@@ -195,8 +196,10 @@ static void check_sheets(conic_context *context) {
              found.below, found.between, found.above, found.failed);
       if (type == CONIC_SURFACE_MLS && gap < 0.5)
         CHECK(found.between == 2 * N_SHEET);
+      if (type == CONIC_SURFACE_MLS && gap > 0.2 && gap < 0.5)
+        CHECK(found.merged > 2 * N_SHEET * 9 / 10);
       if (type == CONIC_SURFACE_MLS && gap > 0.9)
-        CHECK(found.between == 0);
+        CHECK(found.between == 0 && found.merged == 0);
       if (gap > 1.5)
         CHECK(found.below == N_SHEET && found.above == N_SHEET);
     }

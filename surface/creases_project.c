@@ -1,0 +1,355 @@
+/* Projection where pieces of a surface meet. Each piece is fitted by its own samples alone. Its point counts up to where
+ * another piece cuts it off; beyond, the edge between them does, or the corner of three. The nearest of these is the
+ * place's point. */
+#include <math.h>
+#include <string.h>
+
+#include "core/base/vectors.h"
+#include "surface/creases.h"
+#include "surface/kernels/weight.h"
+#include "surface/least_spread.h"
+
+enum { MAX_NEAR = 512, MAX_PIECES = 4, LEAST_SAMPLES = 6, N_ROUNDS = 3, N_TERMS = 6 };
+
+/* A piece has samples on one side only, and so looks this much farther. */
+static const double WIDER = 2.0;
+
+/* Samples are of one piece where they are linked: not farther apart than so many spacings, and turned by no more than
+ * 20°. There is a crease only where a sample is turned from the nearest one by over 30°. */
+static const double LINK = 1.8, LINKED_COSINE = 0.93969262078590838, CREASE_COSINE = 0.86602540378443865;
+
+/* A piece is bent where a bend takes out more of what is left than noise would. */
+static const double BENT = 4.0;
+
+/* An edge or corner farther away than so many spacings is not the place's. */
+static const double FARTHEST_EDGE = 3.0;
+
+/* The samples about a place, relative to it, and the pieces that they are of. */
+typedef struct crease_scene {
+  const conic_surface *surface;
+  const conic_near *near;
+  size_t n;
+  int8_t piece[MAX_NEAR]; /* -1: none yet */
+  int n_pieces;
+  double spacing;
+} crease_scene;
+
+/* A point of a piece. */
+typedef struct piece_point {
+  double place[3], normal[3];
+  int is_there;
+} piece_point;
+
+static const float *side_of(const crease_scene *scene, size_t i) {
+  return scene->surface->creases.side[scene->near->sources[i]];
+}
+
+static double turned(const crease_scene *scene, size_t i, size_t j) {
+  const float *a = side_of(scene, i), *b = side_of(scene, j);
+  return fabs((double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2]);
+}
+
+static double apart2(const crease_scene *scene, size_t i, size_t j) {
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; axis++) {
+    double d = scene->near->offset[axis][i] - scene->near->offset[axis][j];
+    sum += d * d;
+  }
+  return sum;
+}
+
+static double from_place2(const crease_scene *scene, size_t i) {
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    sum += scene->near->offset[axis][i] * scene->near->offset[axis][i];
+  return sum;
+}
+
+/* Gives all that hangs together with sample `first` the number; returns how many there are. */
+static size_t grow_piece(crease_scene *scene, size_t first, int8_t number) {
+  uint16_t queue[MAX_NEAR];
+  size_t n = 0;
+  double link2 = LINK * LINK * scene->spacing * scene->spacing;
+  queue[n++] = (uint16_t)first;
+  scene->piece[first] = number;
+  for (size_t at = 0; at < n; at++)
+    for (size_t i = 0; i < scene->n; i++)
+      if (scene->piece[i] < 0 && apart2(scene, queue[at], i) <= link2 && turned(scene, queue[at], i) >= LINKED_COSINE) {
+        scene->piece[i] = number;
+        queue[n++] = (uint16_t)i;
+      }
+  return n;
+}
+
+/* The sample nearest to the place of those that are in no piece yet; n where there is none. */
+static size_t nearest_left(const crease_scene *scene) {
+  size_t best = scene->n;
+  double least2 = HUGE_VAL;
+  for (size_t i = 0; i < scene->n; i++)
+    if (scene->piece[i] == -1 && from_place2(scene, i) < least2) {
+      least2 = from_place2(scene, i);
+      best = i;
+    }
+  return best;
+}
+
+/* Whether a sample weighs something for the place on a surface that is not sharp. */
+static int is_in_reach(const crease_scene *scene, size_t i) {
+  return from_place2(scene, i) * scene->near->inverse_h2[i] < scene->surface->weighing.end;
+}
+
+/* Splits the samples; 0 where those in reach are of one piece. */
+static int split(crease_scene *scene) {
+  int has_crease = 0, is_mixed = 0;
+  memset(scene->piece, -1, sizeof scene->piece);
+  size_t first = nearest_left(scene);
+  if (first == scene->n)
+    return 0;
+  scene->spacing = (double)scene->surface->creases.spacing[scene->near->sources[first]];
+  for (size_t i = 0; i < scene->n && !has_crease; i++)
+    has_crease = is_in_reach(scene, i) && turned(scene, first, i) < CREASE_COSINE;
+  while (has_crease && first < scene->n && scene->n_pieces < MAX_PIECES) {
+    size_t n = grow_piece(scene, first, (int8_t)scene->n_pieces);
+    if (n >= LEAST_SAMPLES)
+      scene->n_pieces++;
+    else
+      for (size_t i = 0; i < scene->n; i++) /* strays */
+        scene->piece[i] = scene->piece[i] == scene->n_pieces ? (int8_t)MAX_PIECES : scene->piece[i];
+    first = nearest_left(scene);
+  }
+  for (size_t i = 0; i < scene->n && scene->n_pieces > 1; i++)
+    is_mixed |= scene->piece[i] > 0 && scene->piece[i] < scene->n_pieces && is_in_reach(scene, i);
+  return is_mixed;
+}
+
+static double weight_at(const crease_scene *scene, size_t i, const double at[3]) {
+  const conic_near *near = scene->near;
+  double d[3] = {near->offset[0][i] - at[0], near->offset[1][i] - at[1], near->offset[2][i] - at[2]};
+  double s = conic_dot(d, d) * near->inverse_h2[i] / (WIDER * WIDER);
+  return conic_weight_at(&scene->surface->weighing, s).value * near->mass[i];
+}
+
+/* Solves the n by n system in place by elimination without a choice of pivots, as for sums of squares; 0 where there is
+ * no solution. */
+static int solve(int n, double m[N_TERMS][N_TERMS], double x[N_TERMS]) {
+  for (int i = 0; i < n; i++) {
+    if (!(m[i][i] > 1e-10))
+      return 0;
+    for (int j = i + 1; j < n; j++) {
+      double share = m[j][i] / m[i][i];
+      for (int k = i; k < n; k++)
+        m[j][k] -= share * m[i][k];
+      x[j] -= share * x[i];
+    }
+  }
+  for (int i = n - 1; i >= 0; i--) {
+    for (int k = i + 1; k < n; k++)
+      x[i] -= m[i][k] * x[k];
+    x[i] /= m[i][i];
+  }
+  return 1;
+}
+
+/* Heights over a frame at a place, by least squares: 1, x, y, and x², xy, y² where n is 6, in units of `unit`. Returns
+ * the weighted mean of the squares that are left, or infinity. */
+static double fit_heights(const crease_scene *scene, int piece, const double at[3], double frame[3][3], double unit,
+                          int n, double solution[N_TERMS]) {
+  double m[N_TERMS][N_TERMS] = {{0.0}}, right[N_TERMS] = {0.0}, squares = 0.0, sum = 0.0;
+  for (size_t i = 0; i < scene->n; i++) {
+    double w = scene->piece[i] == piece ? weight_at(scene, i, at) : 0.0, local[3];
+    if (!(w > 0.0))
+      continue;
+    for (int row = 0; row < 3; row++)
+      local[row] = ((scene->near->offset[0][i] - at[0]) * frame[row][0] +
+                    (scene->near->offset[1][i] - at[1]) * frame[row][1] +
+                    (scene->near->offset[2][i] - at[2]) * frame[row][2]) /
+                   unit;
+    const double terms[N_TERMS] = {1.0, local[0], local[1], local[0] * local[0], local[0] * local[1],
+                                   local[1] * local[1]};
+    for (int row = 0; row < n; row++) {
+      right[row] += w * terms[row] * local[2];
+      for (int column = 0; column < n; column++)
+        m[row][column] += w * terms[row] * terms[column];
+    }
+    squares += w * local[2] * local[2];
+    sum += w;
+  }
+  for (int row = 0; row < n; row++) {
+    solution[row] = right[row] / sum;
+    for (int column = 0; column < n; column++)
+      m[row][column] /= sum;
+  }
+  if (!(sum > 0.0) || !solve(n, m, solution))
+    return HUGE_VAL;
+  for (int row = 0; row < n; row++)
+    squares -= solution[row] * right[row];
+  return squares > 0.0 ? squares / sum : 0.0;
+}
+
+/* The frame across which a piece spreads least about a place. Returns how many samples weigh something there. */
+static size_t frame_of(const crease_scene *scene, int piece, const double at[3], double frame[3][3]) {
+  double sum = 0.0, mean[3] = {0.0}, products[6] = {0.0};
+  size_t count = 0;
+  for (size_t i = 0; i < scene->n; i++) {
+    double w = scene->piece[i] == piece ? weight_at(scene, i, at) : 0.0, d[3];
+    if (!(w > 0.0))
+      continue;
+    for (int axis = 0; axis < 3; axis++) {
+      d[axis] = scene->near->offset[axis][i] - at[axis];
+      mean[axis] += w * d[axis];
+    }
+    for (int a = 0, k = 0; a < 3; a++)
+      for (int b = a; b < 3; b++, k++)
+        products[k] += w * d[a] * d[b];
+    sum += w;
+    count++;
+  }
+  if (count < LEAST_SAMPLES)
+    return 0;
+  for (int axis = 0; axis < 3; axis++)
+    mean[axis] /= sum;
+  for (int a = 0, k = 0; a < 3; a++)
+    for (int b = a; b < 3; b++, k++)
+      products[k] = products[k] / sum - mean[a] * mean[b];
+  conic_least_spread(products, frame);
+  return count;
+}
+
+/* The piece's point for a place: over the plane of its samples, or where that is not enough, on a bent one. */
+static piece_point land_on(const crease_scene *scene, int piece, const double from[3], double h) {
+  piece_point point = {.is_there = 0};
+  memcpy(point.place, from, sizeof point.place);
+  for (int round = 0; round < N_ROUNDS; round++) {
+    double frame[3][3], flat[N_TERMS], bent[N_TERMS], n[3];
+    size_t count = frame_of(scene, piece, point.place, frame);
+    point.is_there = 0;
+    if (!count)
+      return point;
+    double left = fit_heights(scene, piece, point.place, frame, h, 3, flat);
+    double left_bent = count >= 2 * N_TERMS ? fit_heights(scene, piece, point.place, frame, h, N_TERMS, bent) : HUGE_VAL;
+    int is_bent = (left - left_bent) / 3.0 > BENT * left_bent / (double)(count - N_TERMS) && left_bent < HUGE_VAL;
+    const double *fit = is_bent ? bent : flat;
+    if (!is_bent && !(left < HUGE_VAL))
+      return point;
+    for (int axis = 0; axis < 3; axis++)
+      n[axis] = frame[2][axis] - fit[1] * frame[0][axis] - fit[2] * frame[1][axis];
+    conic_normalize(n);
+    double move = h * fit[0] * conic_dot(n, frame[2]);
+    for (int axis = 0; axis < 3; axis++)
+      point.place[axis] += move * n[axis];
+    memcpy(point.normal, n, sizeof n);
+    point.is_there = 1;
+  }
+  return point;
+}
+
+/* On which side of another piece's plane the samples of a piece lie: a sum of heights. */
+static double lean(const crease_scene *scene, int piece, const piece_point *other) {
+  double sum = 0.0;
+  for (size_t i = 0; i < scene->n; i++) {
+    double d[3] = {scene->near->offset[0][i] - other->place[0], scene->near->offset[1][i] - other->place[1],
+                   scene->near->offset[2][i] - other->place[2]};
+    sum += scene->piece[i] == piece ? conic_dot(d, other->normal) : 0.0;
+  }
+  return sum;
+}
+
+/* Moves a place the shortest way onto the planes of n points, 1 to 3 of them; 0 where they do not meet. */
+static int meet_planes(const piece_point *const planes[3], int n, double place[3]) {
+  double m[N_TERMS][N_TERMS] = {{0.0}}, x[N_TERMS] = {0.0};
+  for (int i = 0; i < n; i++) {
+    double d[3];
+    conic_subtract(planes[i]->place, place, d);
+    x[i] = conic_dot(d, planes[i]->normal);
+    for (int k = 0; k < n; k++)
+      m[i][k] = conic_dot(planes[i]->normal, planes[k]->normal);
+    m[i][i] += 1e-9;
+  }
+  for (int i = 1; i < n; i++) /* nearly the same plane twice */
+    for (int k = 0; k < i; k++)
+      if (fabs(m[i][k]) > LINKED_COSINE)
+        return 0;
+  if (!solve(n, m, x))
+    return 0;
+  for (int i = 0; i < n; i++)
+    for (int axis = 0; axis < 3; axis++)
+      place[axis] += x[i] * planes[i]->normal[axis];
+  return 1;
+}
+
+/* The point of a piece as far as no other cuts it off there: else of the edge, or the corner. */
+static piece_point land_within(const crease_scene *scene, int piece, double h) {
+  static const double origin[3] = {0.0, 0.0, 0.0};
+  piece_point points[MAX_PIECES], result = land_on(scene, piece, origin, h);
+  const piece_point *cutting[3] = {&points[piece]};
+  int n_cutting = 1, is_cutting[MAX_PIECES] = {0};
+  points[piece] = result;
+  for (int round = 0; round < MAX_PIECES - 1 && result.is_there && n_cutting < 3; round++) {
+    int n_before = n_cutting;
+    for (int other = 0; other < scene->n_pieces && n_cutting < 3; other++) {
+      double d[3];
+      if (other == piece || is_cutting[other])
+        continue;
+      points[other] = land_on(scene, other, result.place, h);
+      conic_subtract(result.place, points[other].place, d);
+      double side = points[other].is_there ? lean(scene, piece, &points[other]) : 0.0;
+      double over = conic_dot(d, points[other].normal);
+      if (!(side * over < 0.0) || fabs(conic_dot(points[other].normal, result.normal)) > LINKED_COSINE)
+        continue;
+      is_cutting[other] = 1;
+      cutting[n_cutting++] = &points[other];
+      break;
+    }
+    if (n_cutting == n_before)
+      break;
+    double place[3];
+    memcpy(place, result.place, sizeof place);
+    for (int turn = 0; turn < 2; turn++) {
+      if (!meet_planes(cutting, n_cutting, place))
+        break;
+      for (int i = 0; i < MAX_PIECES && turn == 0; i++) /* bent pieces have other planes there */
+        if (i == piece || is_cutting[i]) {
+          piece_point there = land_on(scene, i, place, h);
+          points[i] = there.is_there ? there : points[i];
+        }
+    }
+    memcpy(result.place, place, sizeof place);
+  }
+  if (n_cutting > 1 && conic_length(result.place) > FARTHEST_EDGE * scene->spacing)
+    result.is_there = 0;
+  return result;
+}
+
+int conic_creases_project(const conic_surface *surface, const double r[3], double h, uint32_t except,
+                          conic_workspace *workspace, conic_landing *landing) {
+  const double box[6] = {r[0], r[1], r[2], r[0], r[1], r[2]};
+  double margin = (WIDER - 1.0) * surface->options.neglect * h, nearest = HUGE_VAL;
+  crease_scene scene = {.surface = surface, .near = &workspace->near};
+  piece_point best = {.is_there = 0};
+  int best_piece = -1;
+  conic_surface_gather(surface, box, margin, workspace, &workspace->single);
+  conic_surface_select(surface, &workspace->single, r, margin, except, workspace);
+  scene.n = workspace->near.n < MAX_NEAR ? workspace->near.n : MAX_NEAR;
+  if (!split(&scene))
+    return 0;
+  workspace->n_evaluations++;
+  for (int piece = 0; piece < scene.n_pieces; piece++) {
+    piece_point point = land_within(&scene, piece, h);
+    if (!point.is_there || !(conic_length(point.place) < nearest))
+      continue;
+    nearest = conic_length(point.place);
+    best = point;
+    best_piece = piece;
+  }
+  landing->outcome = best.is_there ? CONIC_SURFACE_DONE : CONIC_SURFACE_ILL_CONDITIONED;
+  landing->n_neighbours = 0;
+  for (size_t i = 0; i < workspace->near.n_padded; i++) {
+    workspace->near.weights[i] = i < scene.n && scene.piece[i] == best_piece ? weight_at(&scene, i, best.place) : 0.0;
+    landing->n_neighbours += workspace->near.weights[i] > 0.0;
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    landing->offset[axis] = landing->foot[axis] = best.place[axis];
+    landing->normal[axis] = landing->plane_normal[axis] = best.normal[axis];
+  }
+  return 1;
+}

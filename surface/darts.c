@@ -1,0 +1,161 @@
+#include "surface/darts.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/vectors.h"
+
+/* The lattice's step, as a share of the radius. */
+static const double STEP = 0.25;
+
+/* A corner at the distance d sees a place d² / 2R below its tangent plane where the surface's radius is R, which is
+ * half of how far the plane through the corners lies below it. */
+static const double LIFT = 0.5;
+
+conic_status conic_dart_board_begin(conic_context *context, double radius, size_t n_expected, conic_dart_board *board) {
+  *board = (conic_dart_board){.context = context, .radius = radius, .inverse_side = 0.5 / radius, .n_heads = 1024};
+  while (board->n_heads < n_expected && board->n_heads < SIZE_MAX / 16)
+    board->n_heads *= 2;
+  board->heads = conic_memory_allocate_zeroed(context, board->n_heads, sizeof *board->heads);
+  return board->heads ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+void conic_dart_board_end(conic_dart_board *board) {
+  conic_memory_release(board->context, board->places);
+  conic_memory_release(board->context, board->next);
+  conic_memory_release(board->context, board->heads);
+  memset(board, 0, sizeof *board);
+}
+
+/* The number of a cell's column along an axis; what is beyond all numbers shares the last. */
+static int64_t column_of(double scaled) {
+  double column = floor(scaled);
+  return column > -4e18 && column < 4e18 ? (int64_t)column : INT64_MAX / 2;
+}
+
+static size_t head_of(const conic_dart_board *board, int64_t x, int64_t y, int64_t z) {
+  uint64_t mixed = (uint64_t)x * UINT64_C(0x9E3779B97F4A7C15) ^ (uint64_t)y * UINT64_C(0xC2B2AE3D27D4EB4F) ^
+                   (uint64_t)z * UINT64_C(0x165667B19E3779F9);
+  mixed ^= mixed >> 29;
+  return (size_t)((mixed * UINT64_C(0xBF58476D1CE4E5B9)) >> 32) & (board->n_heads - 1);
+}
+
+static conic_status make_room(conic_dart_board *board) {
+  size_t room = board->room;
+  conic_status status =
+      conic_memory_reserve(board->context, &board->places, board->n, board->n + 1, &room, sizeof *board->places);
+  if (status == CONIC_OK)
+    status = conic_memory_reserve(board->context, &board->next, board->n, board->n + 1, &board->room,
+                                  sizeof *board->next);
+  return status;
+}
+
+conic_status conic_dart_board_add(conic_dart_board *board, const double place[3]) {
+  if (board->n >= UINT32_MAX - 1 || (board->n >= board->room && make_room(board) != CONIC_OK))
+    return CONIC_ERROR_MEMORY;
+  const double s = board->inverse_side;
+  size_t head = head_of(board, column_of(place[0] * s), column_of(place[1] * s), column_of(place[2] * s));
+  memcpy(board->places[board->n], place, sizeof board->places[0]);
+  board->next[board->n] = board->heads[head];
+  board->heads[head] = (uint32_t)++board->n;
+  return CONIC_OK;
+}
+
+static int is_near(const conic_dart_board *board, uint32_t i, const double place[3]) {
+  double d[3];
+  conic_subtract(board->places[i], place, d);
+  return conic_dot(d, d) < board->radius * board->radius;
+}
+
+int conic_dart_board_covers(conic_dart_board *board, const double place[3]) {
+  if (board->last < board->n && is_near(board, board->last, place))
+    return 1;
+  int64_t first[3];
+  for (int axis = 0; axis < 3; axis++) /* a radius is half a side: two columns along each axis hold all */
+    first[axis] = column_of(place[axis] * board->inverse_side - 0.5);
+  for (int i = 0; i < 8; i++) {
+    size_t head = head_of(board, first[0] + (i & 1), first[1] + (i >> 1 & 1), first[2] + (i >> 2));
+    for (uint32_t at = board->heads[head]; at; at = board->next[at - 1])
+      if (is_near(board, at - 1, place)) {
+        board->last = at - 1;
+        return 1;
+      }
+  }
+  return 0;
+}
+
+static double edge_of(const conic_dart_triangle *triangle, int i) {
+  double d[3];
+  conic_subtract(triangle->corners[(i + 1) % 3], triangle->corners[i], d);
+  return conic_length(d);
+}
+
+static double twice_area_of(const conic_dart_triangle *triangle) {
+  double u[3], v[3], across[3];
+  conic_subtract(triangle->corners[1], triangle->corners[0], u);
+  conic_subtract(triangle->corners[2], triangle->corners[0], v);
+  conic_cross(u, v, across);
+  return conic_length(across);
+}
+
+double conic_dart_reach(const conic_dart_triangle *triangle) {
+  double a = edge_of(triangle, 0), b = edge_of(triangle, 1), c = edge_of(triangle, 2);
+  double longest = a > b ? (a > c ? a : c) : (b > c ? b : c);
+  double twice_area = twice_area_of(triangle), jung = longest * 0.57735026918962584; /* 1/√3 */
+  double circle = twice_area > 0.0 ? a * b * c / (2.0 * twice_area) : jung;
+  return circle < jung ? circle : jung;
+}
+
+/* The place with these shares of the corners. */
+static void place_in(const conic_dart_triangle *triangle, const double shares[3], double place[3]) {
+  double flat[3], lift[3] = {0.0, 0.0, 0.0};
+  for (int axis = 0; axis < 3; axis++)
+    flat[axis] = shares[0] * triangle->corners[0][axis] + shares[1] * triangle->corners[1][axis] +
+                 shares[2] * triangle->corners[2][axis];
+  for (int i = 0; i < 3 && triangle->is_bent; i++) {
+    double d[3];
+    conic_subtract(triangle->corners[i], flat, d);
+    double height = LIFT * shares[i] * conic_dot(d, triangle->normals[i]);
+    for (int axis = 0; axis < 3; axis++)
+      lift[axis] += height * triangle->normals[i][axis];
+  }
+  for (int axis = 0; axis < 3; axis++)
+    place[axis] = flat[axis] + lift[axis];
+}
+
+static conic_status throw_at(conic_dart_board *board, const conic_dart_triangle *triangle, uint32_t number,
+                             const double shares[3], conic_darts *darts) {
+  conic_dart dart = {.shares = {shares[0], shares[1]}, .triangle = number};
+  place_in(triangle, shares, dart.place);
+  if (conic_dart_board_covers(board, dart.place))
+    return CONIC_OK;
+  if (darts->n >= darts->room && conic_memory_reserve(board->context, &darts->list, darts->n, darts->n + 1,
+                                                      &darts->room, sizeof *darts->list) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
+  darts->list[darts->n++] = dart;
+  return conic_dart_board_add(board, dart.place);
+}
+
+conic_status conic_darts_throw(conic_dart_board *board, const conic_dart_triangle *triangle, uint32_t number,
+                               size_t limit, conic_darts *darts) {
+  double edges[3] = {edge_of(triangle, 0), edge_of(triangle, 1), edge_of(triangle, 2)}, step = STEP * board->radius;
+  /* Rows along the longest edge, from corner a to b, and up to c. */
+  int a = edges[0] >= edges[1] ? (edges[0] >= edges[2] ? 0 : 2) : (edges[1] >= edges[2] ? 1 : 2);
+  int b = (a + 1) % 3, c = (a + 2) % 3;
+  conic_status status = CONIC_OK;
+  if (!(conic_dart_reach(triangle) > board->radius))
+    return CONIC_OK; /* its corners cover it */
+  double height = twice_area_of(triangle) / edges[a], n_rows = height > step ? ceil(height / step) : 1.0;
+  for (double row = 0.0; row < n_rows && status == CONIC_OK; row++) {
+    double up = (row + 0.5) / n_rows, n = ceil((1.0 - up) * edges[a] / step);
+    for (double k = 0.0; k < n && status == CONIC_OK && darts->n < limit; k++) {
+      double along = (1.0 - up) * (k + 0.5) / n, shares[3];
+      shares[a] = (1.0 - up) - along;
+      shares[b] = along;
+      shares[c] = up;
+      status = throw_at(board, triangle, number, shares, darts);
+    }
+  }
+  return status;
+}
