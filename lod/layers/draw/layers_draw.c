@@ -173,7 +173,7 @@ static void look_ahead(void *data) {
   if (conic_layers_find_cut(layers, &view, &wish, &cut) == CONIC_OK) {
     conic_layers_needed(layers, &cut, CONIC_PLACE_SHOWN, d->needed);
     for (uint32_t i = 0; i < layers->header.n_clouds; i++)
-      if (d->needed[i])
+      if (d->needed[i] && layers->entries[i].n_samples > 0)
         d->held[n++] = i;
     if (n > 0)
       (void)conic_layers_store_ask_ahead(layers, d->held, n);
