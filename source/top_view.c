@@ -208,8 +208,8 @@ static conic_status draw_lifted(top_block *b, const conic_window *window) {
   if (splats->dot)
     status = conic_splats_face(top->context, splats, &b->camera, splats->tangent_u, splats->tangent_v);
   if (status == CONIC_OK && top->samples == 1 && !top->triangles && conic_renderer_has_parts(top->renderer))
-    status = conic_render_part(top->renderer, splats, &b->camera, &render, &(conic_part){.window = *window}, b->image,
-                               &one);
+    status =
+        conic_render_part(top->renderer, splats, &b->camera, &render, &(conic_part){.window = *window}, b->image, &one);
   else if (status == CONIC_OK)
     status = conic_render_drawing(top->context, top->renderer, &drawing, &b->camera, &top->render, top->samples,
                                   b->image, &one);

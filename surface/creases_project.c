@@ -1,6 +1,6 @@
-/* Projection where pieces of a surface meet. Each piece is fitted by its own samples alone. Its point counts up to where
- * another piece cuts it off; beyond, the edge between them does, or the corner of three. The nearest of these is the
- * place's point. */
+/* Projection where pieces of a surface meet. Each piece is fitted by its own samples alone. Its point counts up to
+ * where another piece cuts it off; beyond, the edge between them does, or the corner of three. The nearest of these is
+ * the place's point. */
 #include <math.h>
 #include <string.h>
 
@@ -160,12 +160,12 @@ static double fit_heights(const crease_scene *scene, int piece, const double at[
     if (!(w > 0.0))
       continue;
     for (int row = 0; row < 3; row++)
-      local[row] = ((scene->near->offset[0][i] - at[0]) * frame[row][0] +
-                    (scene->near->offset[1][i] - at[1]) * frame[row][1] +
-                    (scene->near->offset[2][i] - at[2]) * frame[row][2]) /
-                   unit;
-    const double terms[N_TERMS] = {1.0, local[0], local[1], local[0] * local[0], local[0] * local[1],
-                                   local[1] * local[1]};
+      local[row] =
+          ((scene->near->offset[0][i] - at[0]) * frame[row][0] + (scene->near->offset[1][i] - at[1]) * frame[row][1] +
+           (scene->near->offset[2][i] - at[2]) * frame[row][2]) /
+          unit;
+    const double terms[N_TERMS] = {
+        1.0, local[0], local[1], local[0] * local[0], local[0] * local[1], local[1] * local[1]};
     for (int row = 0; row < n; row++) {
       right[row] += w * terms[row] * local[2];
       for (int column = 0; column < n; column++)
@@ -226,7 +226,8 @@ static piece_point land_on(const crease_scene *scene, int piece, const double fr
     if (!count)
       return point;
     double left = fit_heights(scene, piece, point.place, frame, h, 3, flat);
-    double left_bent = count >= 2 * N_TERMS ? fit_heights(scene, piece, point.place, frame, h, N_TERMS, bent) : HUGE_VAL;
+    double left_bent =
+        count >= 2 * N_TERMS ? fit_heights(scene, piece, point.place, frame, h, N_TERMS, bent) : HUGE_VAL;
     int is_bent = (left - left_bent) / 3.0 > BENT * left_bent / (double)(count - N_TERMS) && left_bent < HUGE_VAL;
     const double *fit = is_bent ? bent : flat;
     if (!is_bent && !(left < HUGE_VAL))

@@ -11,8 +11,8 @@
 
 enum { CHUNK = 256, CHUNKS_A_REPORT = 16, N_WINDOW = 32 };
 
-/* A plane is taken over where the own one is rougher than so many spacings (a bend of 30° is), by one that is flatter by
- * this factor and passes the sample within as many spacings. */
+/* A plane is taken over where the own one is rougher than so many spacings (a bend of 30° is), by one that is flatter
+ * by this factor and passes the sample within as many spacings. */
 static const double ROUGH = 0.4, FLATTER = 0.6, IN_PLANE = 0.75;
 
 typedef struct window_plane {

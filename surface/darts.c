@@ -46,8 +46,8 @@ static conic_status make_room(conic_dart_board *board) {
   conic_status status =
       conic_memory_reserve(board->context, &board->places, board->n, board->n + 1, &room, sizeof *board->places);
   if (status == CONIC_OK)
-    status = conic_memory_reserve(board->context, &board->next, board->n, board->n + 1, &board->room,
-                                  sizeof *board->next);
+    status =
+        conic_memory_reserve(board->context, &board->next, board->n, board->n + 1, &board->room, sizeof *board->next);
   return status;
 }
 

@@ -1,8 +1,9 @@
-/* Densifying (PSS §5.2): points of the surface wherever a circle of a certain radius is empty, the widest circles first.
+/* Densifying (PSS §5.2): points of the surface wherever a circle of a certain radius is empty, the widest circles
+ * first.
  *
  * The points' own triangles, or those that each makes with its neighbours (Delaunay's), say where there is surface. In
- * passes, each with a smaller radius than the last, a dart is thrown at every place of them that no point is near, and the
- * darts are projected. */
+ * passes, each with a smaller radius than the last, a dart is thrown at every place of them that no point is near, and
+ * the darts are projected. */
 #include <math.h>
 #include <string.h>
 
@@ -97,8 +98,8 @@ static conic_status append_darts(densifying *work, double radius, int is_second,
   size_t n_kept = n < room ? n : room;
   conic_dart_board board;
   *is_full = n > room;
-  conic_status status = conic_splats_resize(context, work->points, work->points->count + n_kept,
-                                            conic_splats_fields(work->points));
+  conic_status status =
+      conic_splats_resize(context, work->points, work->points->count + n_kept, conic_splats_fields(work->points));
   if (status != CONIC_OK || !n)
     return status;
   status = is_second ? set_up_board(work, 0.5 * radius, &board) : CONIC_OK;
@@ -107,7 +108,8 @@ static conic_status append_darts(densifying *work, double radius, int is_second,
     int is_chosen = (uint64_t)(i + 1) * n_kept / n > (uint64_t)i * n_kept / n;
     if (landed->how != CONIC_LANDED_WELL)
       work->is_moved[work->darts.list[i].triangle] = 1;
-    if (landed->how == CONIC_LANDED_NOWHERE || !is_chosen || (is_second && conic_dart_board_covers(&board, landed->place)))
+    if (landed->how == CONIC_LANDED_NOWHERE || !is_chosen ||
+        (is_second && conic_dart_board_covers(&board, landed->place)))
       continue;
     status = append_landed(work, i);
     if (is_second && status == CONIC_OK)

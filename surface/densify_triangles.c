@@ -126,8 +126,7 @@ static conic_status take_triangles(triangle_search *search) {
   conic_densify_triangles *found = search->found;
   const uint32_t *slot_of_point = found->surface->tree.slot_of_point;
   found->are_given = 1;
-  found->corners =
-      conic_memory_allocate(found->surface->context, search->options->n_triangles, sizeof *found->corners);
+  found->corners = conic_memory_allocate(found->surface->context, search->options->n_triangles, sizeof *found->corners);
   if (!found->corners)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < search->options->n_triangles; i++) {

@@ -7,12 +7,12 @@
 
 typedef struct conic_densify_triangles {
   const conic_surface *surface;
-  float (*normals)[3];      /* of the surface at each slot; zero where there is none */
-  uint32_t (*corners)[3];   /* slots */
-  float *reaches;           /* conic_dart_reach of each */
+  float (*normals)[3];    /* of the surface at each slot; zero where there is none */
+  uint32_t (*corners)[3]; /* slots */
+  float *reaches;         /* conic_dart_reach of each */
   size_t n;
-  double widest;            /* the greatest reach */
-  int are_given;            /* they are the set's own */
+  double widest; /* the greatest reach */
+  int are_given; /* they are the set's own */
 } conic_densify_triangles;
 
 /* Errors: MEMORY, CANCELLED; release them all the same. */

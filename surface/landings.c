@@ -33,8 +33,8 @@ typedef struct landing_work {
 static double scale_at(const landing_work *work, const conic_dart *dart) {
   const uint32_t *corners = work->triangles->corners[dart->triangle];
   double rest = 1.0 - dart->shares[0] - dart->shares[1];
-  int nearest = dart->shares[0] >= dart->shares[1] ? (dart->shares[0] >= rest ? 0 : 2)
-                                                   : (dart->shares[1] >= rest ? 1 : 2);
+  int nearest =
+      dart->shares[0] >= dart->shares[1] ? (dart->shares[0] >= rest ? 0 : 2) : (dart->shares[1] >= rest ? 1 : 2);
   return (double)work->surface->h[corners[nearest]];
 }
 

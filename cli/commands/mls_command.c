@@ -112,7 +112,9 @@ static conic_status densify(mls_job *job) {
   options.n_triangles = job->model.n_triangles;
   options.triangles = (const uint32_t(*)[3])job->model.triangles;
   conic_status status = conic_surface_densify(job->surface, &options, &job->result, &job->report);
-  return status == CONIC_OK && !job->is_sharp ? cli_mls_size_dense(job->base.session->context, &job->model, &job->result) : status;
+  return status == CONIC_OK && !job->is_sharp
+             ? cli_mls_size_dense(job->base.session->context, &job->model, &job->result)
+             : status;
 }
 
 static conic_status project_all_points(mls_job *job) {
@@ -206,8 +208,9 @@ static void tell_points(const void *cookie) {
               r->outcomes[CONIC_SURFACE_TOO_FEW], r->outcomes[CONIC_SURFACE_NO_MINIMUM],
               r->outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
   if (job->action == MLS_DENSIFY && r->n_flat)
-    conic_log(context, CONIC_LOG_INFO, "%s: no surface was found for %llu of the new points, which lie flat in triangles",
-              job->base.input, (unsigned long long)r->n_flat);
+    conic_log(context, CONIC_LOG_INFO,
+              "%s: no surface was found for %llu of the new points, which lie flat in triangles", job->base.input,
+              (unsigned long long)r->n_flat);
   if (job->action == MLS_THIN)
     conic_log(context, CONIC_LOG_INFO, "%s: the thinned surface is within %.3g of it", job->base.input,
               r->there.max > r->back.max ? r->there.max : r->back.max);
@@ -367,14 +370,14 @@ static int run_mls(cli_session *session, int argc, char **argv) {
       {"cluster", CLI_NUMBER, &job.options.cluster, "T",
        "project: cells smaller than T times their distance count as one sample, 0 to 1 [0]", 0, 1},
       {"sharp", CLI_FLAG, &job.is_sharp, NULL, "keep creases sharp, and clip the splats that are written at them"},
-      {"count", CLI_COUNT, &job.count, "N", "thin: points to keep [a tenth]; densify: points to stop at", 1, 4294967294.0,
-       .is_given = &job.has_count},
+      {"count", CLI_COUNT, &job.count, "N", "thin: points to keep [a tenth]; densify: points to stop at", 1,
+       4294967294.0, .is_given = &job.has_count},
       {"max-error", CLI_PARSED, &job.max_error, "E", "thin: keep the surface within E of what it was",
        .parse = cli_parse_length},
       {"spacing", CLI_PARSED, &job.spacing, "S", "densify: no circle of a greater radius stays empty [0.5x]",
        .parse = cli_parse_length},
-      {"hole", CLI_PARSED, &job.hole, "R", "densify: circles of a greater radius are holes and stay; faces are none [1.25 h]",
-       .parse = cli_parse_length},
+      {"hole", CLI_PARSED, &job.hole, "R",
+       "densify: circles of a greater radius are holes and stay; faces are none [1.25 h]", .parse = cli_parse_length},
       {"memory", CLI_COUNT, &job.memory_mib, "MIB",
        "project: work cell by cell in so much memory, the rest beside the output", 1, 1e9, .is_given = &job.has_memory},
       {"isa", CLI_CHOICE, &job.isa, "ISA", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",

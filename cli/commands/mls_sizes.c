@@ -43,7 +43,7 @@ static int is_covered(const outline_keeping *work, const double place[3], uint32
 
 /* An old point keeps its ellipse where that covers what no point covers now, as at a border or beside a slit. */
 static int keeps_outline(const outline_keeping *work, size_t i) {
-  static const double turns[N_DIRECTIONS][2] = {{1.0, 0.0},  {0.5, 0.8660254037844386},  {-0.5, 0.8660254037844386},
+  static const double turns[N_DIRECTIONS][2] = {{1.0, 0.0},  {0.5, 0.8660254037844386},   {-0.5, 0.8660254037844386},
                                                 {-1.0, 0.0}, {-0.5, -0.8660254037844386}, {0.5, -0.8660254037844386}};
   const conic_splats *from = work->from;
   uint32_t slot = work->tree.slot_of_point[i];
@@ -52,9 +52,9 @@ static int keeps_outline(const outline_keeping *work, size_t i) {
   for (int k = 0; k < N_DIRECTIONS && slot != CONIC_NO_SLOT; k++) {
     double place[3];
     for (int axis = 0; axis < 3; axis++)
-      place[axis] = (double)from->position[axis][i] +
-                    TO_RIM * work->cutoff * (turns[k][0] * (double)from->tangent_u[axis][i] +
-                                             turns[k][1] * (double)from->tangent_v[axis][i]);
+      place[axis] = (double)from->position[axis][i] + TO_RIM * work->cutoff *
+                                                          (turns[k][0] * (double)from->tangent_u[axis][i] +
+                                                           turns[k][1] * (double)from->tangent_v[axis][i]);
     if (place[0] + place[1] + place[2] - (place[0] + place[1] + place[2]) != 0.0)
       return 0; /* it had none */
     if (!is_covered(work, place, slot))

@@ -4,9 +4,9 @@
 
 #include "conic/model.h"
 
-/* Gives `dense`, of which the first points are those of `from`, its ellipses. Those of `from` keep the ones that its own
- * picture has where they cover what the new points do not, and where they are dots. No other becomes a dot, as points
- * that lie close together on something thin would. Errors: MEMORY, CANCELLED. */
+/* Gives `dense`, of which the first points are those of `from`, its ellipses. Those of `from` keep the ones that its
+ * own picture has where they cover what the new points do not, and where they are dots. No other becomes a dot, as
+ * points that lie close together on something thin would. Errors: MEMORY, CANCELLED. */
 conic_status cli_mls_size_dense(conic_context *context, const conic_model *from, conic_splats *dense);
 
 /* Gives points their ellipses, with clip lines at creases over 30°. Errors: MEMORY, CANCELLED. */

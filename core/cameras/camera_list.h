@@ -18,8 +18,7 @@ typedef struct conic_camera_list {
 
 /* Adds a camera, whose size is the file's, in the size that is asked for. The name need not be
  * ended. Errors: INPUT (it is none to look through), MEMORY. */
-conic_status conic_camera_list_add(conic_camera_list *list, const conic_camera *given, const char *name,
-                                   size_t n_name);
+conic_status conic_camera_list_add(conic_camera_list *list, const conic_camera *given, const char *name, size_t n_name);
 
 /* Logs "FILE: what is wrong (line N)". Returns INPUT. */
 conic_status conic_camera_list_wrong(const conic_camera_list *list, const char *what);

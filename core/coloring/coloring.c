@@ -11,8 +11,8 @@
 #include "core/base/vectors.h"
 #include "core/coloring/color_ramp.h"
 #include "core/coloring/coloring_stream.h"
-#include "core/splats/point_fields.h"
 #include "core/splats/columns.h"
+#include "core/splats/point_fields.h"
 
 static const char *const ramp_names[CONIC_N_RAMPS] = {"sequential", "grey", "heat", "diverging", "terrain", "classes"};
 

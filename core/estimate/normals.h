@@ -8,8 +8,8 @@
  * least, up to the sign. Errors: CANCELLED. */
 conic_status conic_normals_guess(conic_context *context, conic_neighbourhood *neighbourhood, double from, double to);
 
-/* Gives the GUESSED normals the sign that turns them to where their points were seen from, where that is clear; they are
- * then GUESSED no more. */
+/* Gives the GUESSED normals the sign that turns them to where their points were seen from, where that is clear; they
+ * are then GUESSED no more. */
 void conic_normals_turn_to_sights(conic_neighbourhood *neighbourhood, float *const sight[3]);
 
 /* Settles the signs of the GUESSED normals along the most trustworthy links between neighbours (a minimum spanning

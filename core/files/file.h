@@ -30,8 +30,8 @@ void conic_output_abandon(conic_output *output);
 void conic_outputs_give_up(conic_context *context);
 
 /* Removes what programs that were killed have left beside PATH of their outputs to it: hidden files named after
- * processes that are no more, and scratch files that kept their names, untouched for a minute, since others may write to
- * the same disk from elsewhere. For outputs that are too large to be left lying about. */
+ * processes that are no more, and scratch files that kept their names, untouched for a minute, since others may write
+ * to the same disk from elsewhere. For outputs that are too large to be left lying about. */
 void conic_output_sweep(conic_context *context, const char *path);
 
 /* What PATH is in the end, past symbolic links, be it there or not; 0 where the room is too small or links go round. */

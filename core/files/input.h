@@ -48,8 +48,8 @@ static inline const unsigned char *conic_input_bytes(const conic_input *input) {
  * begins null. Errors: as fill, and INPUT (there are more), MEMORY. */
 conic_status conic_input_take_rest(conic_input *input, uint64_t most, unsigned char **bytes, size_t *n_bytes);
 
-/* Copies n bytes from an offset of a file that has_size, wherever the next byte is; fewer are there where the file ends.
- * Errors: INPUT (reading failed). */
+/* Copies n bytes from an offset of a file that has_size, wherever the next byte is; fewer are there where the file
+ * ends. Errors: INPUT (reading failed). */
 conic_status conic_input_read_at(const conic_input *input, uint64_t offset, void *bytes, size_t n, size_t *n_read);
 
 /* The offset of the next byte. */

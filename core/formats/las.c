@@ -187,8 +187,7 @@ static conic_status skip_to_points(las_reader *reader, const conic_read_options 
   for (size_t i = 0; status == CONIC_OK && i < fields->n; i++)
     status = conic_fields_add(&reader->builder, fields->list[i].name, strlen(fields->list[i].name),
                               conic_las_field_type(&fields->list[i]));
-  return status == CONIC_OK ? conic_fields_choose(&reader->builder, reader->input->name, options)
-                            : status;
+  return status == CONIC_OK ? conic_fields_choose(&reader->builder, reader->input->name, options) : status;
 }
 
 /* Three integers of each of n points, as doubles, into the reader's block. */

@@ -15,11 +15,11 @@
 #include "core/formats/obj.h"
 #include "core/formats/pcd.h"
 #include "core/formats/ply_read.h"
-#include "core/splats/point_fields.h"
 #include "core/formats/xyz.h"
 #include "core/scans/e57.h"
 #include "core/scans/ptx.h"
 #include "core/splats/faces.h"
+#include "core/splats/point_fields.h"
 
 void conic_read_options_init_sized(conic_read_options *options, size_t size) {
   static const conic_read_options own = {.size = sizeof own, .cutoff = 1.5f};
@@ -28,10 +28,11 @@ void conic_read_options_init_sized(conic_read_options *options, size_t size) {
 
 const char *conic_model_kind_name(conic_model_kind kind) {
   static const char *const names[] = {
-      [CONIC_MODEL_PLY] = "ply", [CONIC_MODEL_OBJ] = "obj", [CONIC_MODEL_XYZ] = "xyz", [CONIC_MODEL_LAS] = "las",
-      [CONIC_MODEL_PCD] = "pcd", [CONIC_MODEL_E57] = "e57", [CONIC_MODEL_PTX] = "ptx", [CONIC_MODEL_STL] = "stl", [CONIC_MODEL_OFF] = "off", [CONIC_MODEL_GLTF] = "gltf",
-      [CONIC_MODEL_GLB] = "glb", [CONIC_MODEL_3MF] = "3mf", [CONIC_MODEL_DAE] = "dae", [CONIC_MODEL_FBX] = "fbx",
-      [CONIC_MODEL_3DS] = "3ds", [CONIC_MODEL_X3D] = "x3d", [CONIC_MODEL_DXF] = "dxf", [CONIC_MODEL_AMF] = "amf"};
+      [CONIC_MODEL_PLY] = "ply", [CONIC_MODEL_OBJ] = "obj",   [CONIC_MODEL_XYZ] = "xyz", [CONIC_MODEL_LAS] = "las",
+      [CONIC_MODEL_PCD] = "pcd", [CONIC_MODEL_E57] = "e57",   [CONIC_MODEL_PTX] = "ptx", [CONIC_MODEL_STL] = "stl",
+      [CONIC_MODEL_OFF] = "off", [CONIC_MODEL_GLTF] = "gltf", [CONIC_MODEL_GLB] = "glb", [CONIC_MODEL_3MF] = "3mf",
+      [CONIC_MODEL_DAE] = "dae", [CONIC_MODEL_FBX] = "fbx",   [CONIC_MODEL_3DS] = "3ds", [CONIC_MODEL_X3D] = "x3d",
+      [CONIC_MODEL_DXF] = "dxf", [CONIC_MODEL_AMF] = "amf"};
   return (int)kind >= 0 && (size_t)kind < sizeof names / sizeof *names ? names[kind] : NULL;
 }
 

@@ -41,7 +41,11 @@ static conic_status decode_batch(void *cookie, const conic_splats *batch) {
 
 /* Reads on from where the input stands, handing batches to `receive`. */
 static conic_status pass(streaming *s, conic_input *input, conic_batch_receiver *receive, void *cookie) {
-  conic_delivery delivery = {.receive = receive, .cookie = cookie, .batch = BATCH, .is_survey = receive == see_colors, .is_again = receive == decode_batch};
+  conic_delivery delivery = {.receive = receive,
+                             .cookie = cookie,
+                             .batch = BATCH,
+                             .is_survey = receive == see_colors,
+                             .is_again = receive == decode_batch};
   conic_model model;
   conic_status status = conic_model_read_kind(input, s->kind, s->options, &delivery, &model);
   conic_model_release(s->context, &model);

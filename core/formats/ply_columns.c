@@ -6,8 +6,8 @@
 #include "core/base/gaussian.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
-#include "core/splats/point_fields.h"
 #include "core/splats/ellipse.h"
+#include "core/splats/point_fields.h"
 
 /* What properties are called, those of consecutive columns in their order. Where a file has several names of one
  * column, the first listed here is taken. */
@@ -176,8 +176,8 @@ static int column_of(const conic_ply_layout *layout, int i_property) {
 }
 
 conic_status conic_ply_layout_choose_fields(conic_input *input, const conic_ply_header *header,
-                                           const conic_ply_element *vertices, const conic_read_options *options,
-                                           conic_builder *builder, conic_ply_layout *layout) {
+                                            const conic_ply_element *vertices, const conic_read_options *options,
+                                            conic_builder *builder, conic_ply_layout *layout) {
   const conic_ply_property *properties = header->properties + vertices->first_property;
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < vertices->n_properties && status == CONIC_OK; i++)

@@ -48,10 +48,10 @@ typedef struct conic_ply_layout {
   int n_scales;        /* of GAUSSIANS: 2 or 3 */
   int has_harmonics, has_origin_positions;
   int is_origin_set;
-  int n_values;         /* that are asked for, and for each: */
+  int n_values;                              /* that are asked for, and for each: */
   int value_column[CONIC_MOST_POINT_VALUES]; /* where it is read, its own or that of a property which means more; −1:
                                                 nowhere */
-  int clip_property[2]; /* the lists of clip lines, by conic_clip_operator; -1: none */
+  int clip_property[2];                      /* the lists of clip lines, by conic_clip_operator; -1: none */
   float cutoff;
   float srgb[256]; /* linear values of 8-bit codes */
 } conic_ply_layout;
@@ -64,8 +64,8 @@ conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *h
 
 /* Lists the vertices' properties as fields, and finds those that are asked for. Errors: as conic_fields_choose. */
 conic_status conic_ply_layout_choose_fields(conic_input *input, const conic_ply_header *header,
-                                           const conic_ply_element *vertices, const conic_read_options *options,
-                                           conic_builder *builder, conic_ply_layout *layout);
+                                            const conic_ply_element *vertices, const conic_read_options *options,
+                                            conic_builder *builder, conic_ply_layout *layout);
 
 /* Converts the first `n` rows of `block` into `points` from `first` on; sets the origin from the first finite position
  * where positions need one. */

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "core/base/message.h"
+#include "core/formats/xyz_heading.h"
 #include "core/splats/point_fields.h"
 #include "core/splats/raw_colors.h"
-#include "core/formats/xyz_heading.h"
 
 typedef struct xyz_reader {
   conic_input *input;

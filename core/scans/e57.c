@@ -175,8 +175,8 @@ static void store_point(e57_reader *reader, size_t i) {
   }
   for (int slot = VALUES; slot < reader->n_slots; slot++) {
     int field = conic_builder_column_field(&reader->builder, (size_t)(slot - VALUES));
-    int is_none = reader->columns[slot] < 0 || (strcmp(name_of_field(reader, field), "intensity") == 0 &&
-                                                is_set(reader, INTENSITY_INVALID, i));
+    int is_none = reader->columns[slot] < 0 ||
+                  (strcmp(name_of_field(reader, field), "intensity") == 0 && is_set(reader, INTENSITY_INVALID, i));
     *conic_builder_column(&reader->builder, (size_t)(slot - VALUES)) = is_none ? NAN : reader->block[slot][i];
   }
   points->count++;

@@ -10,9 +10,9 @@
 typedef struct conic_delivery {
   conic_batch_receiver *receive;
   void *cookie;
-  size_t batch; /* points that are handed over at a time */
+  size_t batch;  /* points that are handed over at a time */
   int is_survey; /* all points are looked at, wanted or not */
-  int is_again; /* the file has been read before: what can be told of it has been */
+  int is_again;  /* the file has been read before: what can be told of it has been */
 } conic_delivery;
 
 typedef struct conic_builder {
@@ -33,7 +33,8 @@ conic_status conic_builder_begin(conic_context *context, conic_model *model, uns
                                  const conic_delivery *delivery, conic_builder *builder);
 
 /* Hands the points over, where they are not kept and are enough for a batch, or all the same if `is_last`; then there
- * are none. Those that are not wanted are left out before, or, of points that are kept, at the last. Errors: the receiver's. */
+ * are none. Those that are not wanted are left out before, or, of points that are kept, at the last. Errors: the
+ * receiver's. */
 conic_status conic_builder_deliver(conic_builder *builder, int is_last);
 
 /* Points that have been built, delivered or not. */

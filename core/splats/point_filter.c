@@ -15,9 +15,9 @@ typedef enum step_kind { STEP_RANGE, STEP_AND, STEP_OR, STEP_NOT } step_kind;
 /* Of the expression in postfix order: a range that a value has to be in, or what is made of the answers before. */
 typedef struct filter_step {
   step_kind kind;
-  int name;                   /* of a range: whose */
-  double low, high;           /* its ends, */
-  int has_low, has_high;      /* which belong to it, or not */
+  int name;              /* of a range: whose */
+  double low, high;      /* its ends, */
+  int has_low, has_high; /* which belong to it, or not */
 } filter_step;
 
 struct conic_filter {
@@ -248,7 +248,8 @@ int conic_filter_passes(const conic_filter *filter, const double *values) {
       answers[n - 1] = !answers[n - 1];
     else {
       n--;
-      answers[n - 1] = (unsigned char)(step->kind == STEP_AND ? answers[n - 1] & answers[n] : answers[n - 1] | answers[n]);
+      answers[n - 1] =
+          (unsigned char)(step->kind == STEP_AND ? answers[n - 1] & answers[n] : answers[n - 1] | answers[n]);
     }
   }
   return answers[0];

@@ -5,9 +5,9 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/splats/point_values.h"
 #include "core/splats/clip.h"
 #include "core/splats/columns.h"
+#include "core/splats/point_values.h"
 #include "core/splats/splats_gather.h"
 
 /* What an absent array means: white and opaque; zero axes and normals, which are repaired later; no dot, no scalar

@@ -90,14 +90,14 @@ typedef struct conic_read_options {
 CONIC_API void conic_read_options_init_sized(conic_read_options *options, size_t size);
 #define conic_read_options_init(options) conic_read_options_init_sized(options, sizeof *(options))
 
-/* Reads a model: PLY, OBJ, LAS, PCD, E57, PTX, text with a point a line, and what Assimp reads (docs/reference/formats.md); "-"
- * is standard input. The format is told by the content first, then by the name's ending. Integer colours of a PLY and
- * all colours of the others are decoded from sRGB, float colours of a PLY are taken as linear. Positions that a float
- * cannot hold (double or 32-bit integer in a PLY, map coordinates in an OBJ, all of text and LAS) are kept from the
- * first finite one as the origin; else the origin is zero. On success the caller owns *model and releases it; on
- * failure it is empty and the log says file, line or byte offset, and what is wrong there. Null `options` are the
- * defaults. Errors: ARGUMENT, INPUT, MEMORY, CANCELLED, UNSUPPORTED (Assimp's, where it is not there), IO (no process
- * for it). */
+/* Reads a model: PLY, OBJ, LAS, PCD, E57, PTX, text with a point a line, and what Assimp reads
+ * (docs/reference/formats.md); "-" is standard input. The format is told by the content first, then by the name's
+ * ending. Integer colours of a PLY and all colours of the others are decoded from sRGB, float colours of a PLY are
+ * taken as linear. Positions that a float cannot hold (double or 32-bit integer in a PLY, map coordinates in an OBJ,
+ * all of text and LAS) are kept from the first finite one as the origin; else the origin is zero. On success the caller
+ * owns *model and releases it; on failure it is empty and the log says file, line or byte offset, and what is wrong
+ * there. Null `options` are the defaults. Errors: ARGUMENT, INPUT, MEMORY, CANCELLED, UNSUPPORTED (Assimp's, where it
+ * is not there), IO (no process for it). */
 CONIC_API conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
                                         conic_model *model);
 
@@ -107,8 +107,8 @@ typedef conic_status conic_batch_receiver(void *cookie, const conic_splats *batc
 
 /* Reads the points of a file as conic_model_read does, faces aside, and hands them over in their order, a batch at a
  * time, so that memory does not grow with their number. What cannot be read so is read whole, and is one batch: OBJ
- * and Assimp's, and text, LAS, PCD, E57 and PTX where the file is a pipe, for how colours are meant is known only at its end. All
- * batches have the same optional arrays and origin. Errors: as conic_model_read, and the receiver's. */
+ * and Assimp's, and text, LAS, PCD, E57 and PTX where the file is a pipe, for how colours are meant is known only at
+ * its end. All batches have the same optional arrays and origin. Errors: as conic_model_read, and the receiver's. */
 CONIC_API conic_status conic_model_stream(conic_context *context, const char *path, const conic_read_options *options,
                                           conic_batch_receiver *receive, void *cookie);
 

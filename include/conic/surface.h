@@ -180,11 +180,11 @@ CONIC_API conic_status conic_surface_thin(conic_surface *surface, const conic_th
                                           conic_splats *thinned, conic_surface_report *report);
 
 typedef struct conic_densify_options {
-  size_t size;      /* sizeof(conic_densify_options), set by the init function */
-  double spacing;   /* no circle of a greater radius stays empty */
-  double hole;      /* circles wider than this are holes and stay; 0: 1.25 h. Not of triangles that are given */
-  size_t max_count; /* points in all; 0: 2³² - 2 */
-  size_t n_triangles;             /* 0: those that points make with their neighbours */
+  size_t size;        /* sizeof(conic_densify_options), set by the init function */
+  double spacing;     /* no circle of a greater radius stays empty */
+  double hole;        /* circles wider than this are holes and stay; 0: 1.25 h. Not of triangles that are given */
+  size_t max_count;   /* points in all; 0: 2³² - 2 */
+  size_t n_triangles; /* 0: those that points make with their neighbours */
   const uint32_t (*triangles)[3]; /* where the surface is; each a number below the set's count */
 } conic_densify_options;
 

@@ -15,7 +15,7 @@ typedef struct writing {
   conic_layers_order order;
   conic_layers_entry *nodes; /* some at a time */
   unsigned char *bytes;      /* of as many entries, or of a cloud */
-  uint64_t offset; /* where the next cloud's bytes will be */
+  uint64_t offset;           /* where the next cloud's bytes will be */
   conic_checksumming sum;
   FILE *stream;
 } writing;
@@ -136,9 +136,8 @@ conic_status conic_layers_write(conic_context *context, const char *path, const 
                .header = header,
                .nodes = conic_memory_allocate(context, CONIC_LAYERS_SOME_NODES, sizeof *w.nodes),
                .bytes = conic_memory_allocate(context, CONIC_LAYERS_SOME_NODES, CONIC_LAYERS_ENTRY_BYTES)};
-  conic_status status = w.nodes && w.bytes
-                            ? conic_layers_order_nodes(context, forest->nodes.path, forest, &w.order)
-                            : CONIC_ERROR_MEMORY;
+  conic_status status =
+      w.nodes && w.bytes ? conic_layers_order_nodes(context, forest->nodes.path, forest, &w.order) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     status = measure_file(&w);
   if (status == CONIC_OK)

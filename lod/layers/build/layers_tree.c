@@ -36,7 +36,8 @@ conic_status conic_layers_worker_create(const conic_layers_plan *plan, conic_lay
     return CONIC_ERROR_MEMORY;
   made->plan = *plan;
   made->waiting = waiting;
-  conic_status status = conic_layers_coder_create(context, conic_layers_most_in_leaf(plan), plan->schema, NULL, &made->coder);
+  conic_status status =
+      conic_layers_coder_create(context, conic_layers_most_in_leaf(plan), plan->schema, NULL, &made->coder);
   if (status == CONIC_OK)
     status = conic_thinner_create(context, n, &made->thinner);
   if (status == CONIC_OK) {

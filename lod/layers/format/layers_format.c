@@ -19,27 +19,42 @@ static const double farthest = 1e15;
 #define IN_HEADER(member) CONIC_FILE_FIELD(conic_layers_header, member)
 #define IN_ENTRY(member) CONIC_FILE_FIELD(conic_layers_entry, member)
 
-static const conic_file_field header_fields[] = {
-    IN_HEADER(version),      IN_HEADER(flags),      IN_HEADER(n_samples),      IN_HEADER(n_clouds),
-    IN_HEADER(n_levels),     IN_HEADER(bits),       IN_HEADER(cloud_size),     IN_HEADER(origin),
-    IN_HEADER(quantum),      IN_HEADER(low),        IN_HEADER(high),           IN_HEADER(spacing),
-    IN_HEADER(splat_radius), IN_HEADER(near_z),     IN_HEADER(position_bytes), IN_HEADER(normal_bytes),
-    IN_HEADER(color_bytes),  IN_HEADER(file_bytes), IN_HEADER(index_sum),      IN_HEADER(most_samples),
-    IN_HEADER(most_bytes),   IN_HEADER(schema.n),   IN_HEADER(up)};
+static const conic_file_field header_fields[] = {IN_HEADER(version),
+                                                 IN_HEADER(flags),
+                                                 IN_HEADER(n_samples),
+                                                 IN_HEADER(n_clouds),
+                                                 IN_HEADER(n_levels),
+                                                 IN_HEADER(bits),
+                                                 IN_HEADER(cloud_size),
+                                                 IN_HEADER(origin),
+                                                 IN_HEADER(quantum),
+                                                 IN_HEADER(low),
+                                                 IN_HEADER(high),
+                                                 IN_HEADER(spacing),
+                                                 IN_HEADER(splat_radius),
+                                                 IN_HEADER(near_z),
+                                                 IN_HEADER(position_bytes),
+                                                 IN_HEADER(normal_bytes),
+                                                 IN_HEADER(color_bytes),
+                                                 IN_HEADER(file_bytes),
+                                                 IN_HEADER(index_sum),
+                                                 IN_HEADER(most_samples),
+                                                 IN_HEADER(most_bytes),
+                                                 IN_HEADER(schema.n),
+                                                 IN_HEADER(up)};
 
 static const conic_file_field entry_fields[] = {
-    IN_ENTRY(key),       IN_ENTRY(offset),  IN_ENTRY(sum),      IN_ENTRY(n_place), IN_ENTRY(n_bytes),
-    IN_ENTRY(n_samples), IN_ENTRY(parent),  IN_ENTRY(child),    IN_ENTRY(n_drawn), IN_ENTRY(level),
-    IN_ENTRY(depth),     IN_ENTRY(spacing), IN_ENTRY(covering), IN_ENTRY(radius),  IN_ENTRY(error),
-    IN_ENTRY(center),    IN_ENTRY(sphere),  IN_ENTRY(axis),     IN_ENTRY(cone),    IN_ENTRY(growth),
-    IN_ENTRY(reach)};
+    IN_ENTRY(key),      IN_ENTRY(offset), IN_ENTRY(sum),     IN_ENTRY(n_place), IN_ENTRY(n_bytes), IN_ENTRY(n_samples),
+    IN_ENTRY(parent),   IN_ENTRY(child),  IN_ENTRY(n_drawn), IN_ENTRY(level),   IN_ENTRY(depth),   IN_ENTRY(spacing),
+    IN_ENTRY(covering), IN_ENTRY(radius), IN_ENTRY(error),   IN_ENTRY(center),  IN_ENTRY(sphere),  IN_ENTRY(axis),
+    IN_ENTRY(cone),     IN_ENTRY(growth), IN_ENTRY(reach)};
 
 #define IN_ATTRIBUTE(member) CONIC_FILE_FIELD(conic_layers_attribute, member)
 
-static const conic_file_field attribute_fields[] = {
-    IN_ATTRIBUTE(name),   IN_ATTRIBUTE(kind), IN_ATTRIBUTE(n_streams), IN_ATTRIBUTE(type),  IN_ATTRIBUTE(flags),
-    IN_ATTRIBUTE(scale),  IN_ATTRIBUTE(offset), IN_ATTRIBUTE(low),     IN_ATTRIBUTE(high),  IN_ATTRIBUTE(typical), IN_ATTRIBUTE(error),
-    IN_ATTRIBUTE(n_bytes)};
+static const conic_file_field attribute_fields[] = {IN_ATTRIBUTE(name),    IN_ATTRIBUTE(kind),  IN_ATTRIBUTE(n_streams),
+                                                    IN_ATTRIBUTE(type),    IN_ATTRIBUTE(flags), IN_ATTRIBUTE(scale),
+                                                    IN_ATTRIBUTE(offset),  IN_ATTRIBUTE(low),   IN_ATTRIBUTE(high),
+                                                    IN_ATTRIBUTE(typical), IN_ATTRIBUTE(error), IN_ATTRIBUTE(n_bytes)};
 
 enum {
   N_HEADER_FIELDS = sizeof header_fields / sizeof *header_fields,
@@ -242,7 +257,7 @@ static void assume_attributes(const conic_layers_header *header, conic_layers_sc
 }
 
 static conic_status read_attribute_table(conic_context *context, const char *name, conic_layers_header *header,
-                               const unsigned char *bytes) {
+                                         const unsigned char *bytes) {
   conic_layers_schema *schema = &header->schema;
   for (uint32_t i = 0; i < schema->n; i++)
     conic_file_fields_read(attribute_fields, N_ATTRIBUTE_FIELDS, bytes + (size_t)i * CONIC_LAYERS_ATTRIBUTE_BYTES,

@@ -134,8 +134,7 @@ static void unite_sizes(const conic_layers_schema *schema, const conic_layers_at
                         const unsigned char *const *streams, unsigned char *samples) {
   byte_planes p = {1, 0};
   for (size_t i = 0; i < n; i++) {
-    float size =
-        conic_layers_length_of(attribute, dropped_of_size(attribute), (uint32_t)get_folded(&p, i, streams));
+    float size = conic_layers_length_of(attribute, dropped_of_size(attribute), (uint32_t)get_folded(&p, i, streams));
     conic_layers_sample_in(samples, schema->sample_bytes, i)->size = (uint16_t)(conic_bits_of_float(size) >> 16);
   }
 }
@@ -234,7 +233,7 @@ static int is_floating(const conic_layers_attribute *attribute) {
 
 /* Whatever is one number in the record, its bytes as they are. */
 static void split_bare_numbers(const conic_layers_schema *schema, uint32_t i_attribute, const unsigned char *samples,
-                          size_t n, unsigned char *const *streams) {
+                               size_t n, unsigned char *const *streams) {
   const conic_layers_attribute *attribute = &schema->list[i_attribute];
   byte_planes p = {attribute->n_streams, 0};
   for (size_t i = 0; i < n; i++) {
@@ -244,7 +243,7 @@ static void split_bare_numbers(const conic_layers_schema *schema, uint32_t i_att
 }
 
 static void unite_bare_numbers(const conic_layers_schema *schema, uint32_t i_attribute, size_t n,
-                          const unsigned char *const *streams, unsigned char *samples) {
+                               const unsigned char *const *streams, unsigned char *samples) {
   const conic_layers_attribute *attribute = &schema->list[i_attribute];
   byte_planes p = {attribute->n_streams, 0};
   for (size_t i = 0; i < n; i++) {
