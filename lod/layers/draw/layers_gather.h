@@ -4,34 +4,7 @@
 
 #include "core/pictures/georeference.h"
 #include "lod/layers/draw/layers_cut.h"
-
-/* What a cloud has in a place of the cut. */
-typedef struct conic_layers_piece {
-  uint32_t cloud, i_place;
-  uint32_t first, end; /* its samples, */
-  uint32_t n_chosen;   /* of which so many are to be drawn, */
-  uint32_t n_turned;   /* while so many face away, and are culled, */
-  size_t at;           /* from here on in the set */
-} conic_layers_piece;
-
-/* Splats to draw. Zero before the first use; the memory is kept from set to set. */
-struct conic_layers_set {
-  conic_splats splats;
-  uint32_t *ids;             /* number of each in the file */
-  conic_layers_lines *lines; /* of each, where the file has some */
-  size_t room;               /* of all three */
-  size_t clips_room;
-  float *arrays;                    /* conic_layers_set_arrays, each of `room` */
-  struct conic_point_values *named; /* the splats' values, where some are kept */
-  conic_layers_piece *pieces;       /* of the clouds that were in memory last, in the order of the file */
-  size_t n_pieces, pieces_room;
-  uint64_t n_chosen, n_turned; /* of all pieces since gathering began */
-  int is_cut_short;            /* there were more splats than asked for at most */
-};
-typedef struct conic_layers_set conic_layers_set;
-
-/* Bytes that drawing takes for a splat of a set, the set's own and room to grow included. */
-enum { CONIC_LAYERS_SPLAT_BYTES = 176 };
+#include "lod/layers/draw/layers_set.h"
 
 typedef conic_status conic_layers_set_receiver(void *cookie, conic_layers_set *set);
 
@@ -55,15 +28,6 @@ typedef struct conic_layers_gathering {
  * conic_layers_store_load, and the receiver's. */
 conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gathering *gathering, conic_layers_set *set);
 
-/* How many arrays of floats the splats of a set have. */
-size_t conic_layers_set_arrays(const conic_layers *layers);
-
-/* Room for `count` splats, of which `used` are kept. Errors: MEMORY. */
-conic_status conic_layers_set_reserve(const conic_layers *layers, conic_layers_set *set, size_t used, size_t count);
-
-/* Makes records of the splats' clip lines, now that all splats are there. Errors: MEMORY. */
-conic_status conic_layers_set_list_lines(const conic_layers *layers, conic_layers_set *set);
-
 /* Fills the layers' own set, which *set becomes, with the samples that conic_layers_read_samples gives for a part, and
  * those beside it that reach into it: all at once, in the order of the file, the dots as they are. Where there are more
  * than `most` (0: any number) the set is cut short. Errors: as there. */
@@ -72,7 +36,5 @@ conic_status conic_layers_gather_part(conic_layers *layers, float cutoff, const 
 
 /* Which world its coordinates are of, as far as the file says so; the caller releases it. Errors: MEMORY. */
 conic_status conic_layers_find_georeference(const conic_layers *layers, conic_georeference *reference);
-
-void conic_layers_set_release(conic_context *context, conic_layers_set *set);
 
 #endif
