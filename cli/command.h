@@ -6,7 +6,8 @@
 
 /* Whatever a scene is read from. */
 #define CLI_READABLE                                                                                                   \
-  "PLY, XYZ, PTS, CSV, LAS, LAZ, PCD, E57, PTX, OBJ, STL, OFF, glTF, GLB, 3MF, DAE, FBX, .cot, .chy, .lpc"
+  "PLY, XYZ, PTS, CSV, LAS, LAZ, PCD, E57, PTX, OBJ, STL, OFF, glTF, GLB, 3MF, DAE, FBX, .cot, .chy, "                 \
+  ".lpc, COPC, EPT, Potree 2"
 
 /* Words that a command takes as an argument, or as an option's value. */
 typedef struct cli_words {

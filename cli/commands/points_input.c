@@ -8,7 +8,8 @@
 
 /* A COPC on disk is a LAZ too, of which more can be read. */
 int cli_points_are_hierarchy(const char *path) {
-  return conic_layers_is_url(path) || (conic_file_has_ending(path, "json") && conic_layers_is_hierarchy(path));
+  int may_be_copc = conic_file_is_there(path) && !conic_file_has_ending(path, "json");
+  return conic_layers_is_url(path) || (!may_be_copc && conic_layers_is_hierarchy(path));
 }
 
 int cli_points_are_surveys(const char *const *paths, int n_paths) {

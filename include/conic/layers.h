@@ -67,7 +67,7 @@ CONIC_API void conic_layers_builder_abandon(conic_layers_builder *builder);
 CONIC_API int conic_layers_is_file(const char *path);
 
 /* Whether a file that can be read is the first of another kind's hierarchy of points, which conic_layers_open opens
- * too: a COPC, an ept.json, or the metadata.json of Potree 2. */
+ * too: a COPC, an ept.json, or the metadata.json of Potree 2; or a folder with one of the latter two. */
 CONIC_API int conic_layers_is_hierarchy(const char *path);
 
 typedef struct conic_layers_info {

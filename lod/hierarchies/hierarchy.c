@@ -1,10 +1,12 @@
 #include "lod/hierarchies/hierarchy.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/real.h"
+#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "lod/layers/format/layers_key.h"
 
@@ -22,10 +24,24 @@ const conic_hierarchy_kind *conic_hierarchy_kind_of(const char *name, const unsi
   return NULL;
 }
 
+int conic_hierarchy_find_file(const char *path, char *file, size_t room) {
+  static const char *const first[] = {"ept.json", "metadata.json"};
+  conic_disk_entry found;
+  int is_folder = conic_disk_look(path, &found) && found.is_folder;
+  for (size_t i = 0; i < sizeof first / sizeof *first && is_folder; i++) {
+    int n = snprintf(file, room, "%s/%s", path, first[i]);
+    if (n > 0 && (size_t)n < room && conic_file_is_there(file))
+      return 1;
+  }
+  int n = snprintf(file, room, "%s", path);
+  return n >= 0 && (size_t)n < room;
+}
+
 const char *conic_hierarchy_name_of(const char *path) {
   unsigned char head[CONIC_HIERARCHY_HEAD_BYTES];
-  size_t n = conic_file_read_head(path, head, sizeof head);
-  const conic_hierarchy_kind *kind = n > 0 ? conic_hierarchy_kind_of(path, head, n) : NULL;
+  char file[CONIC_HIERARCHY_PATH_ROOM];
+  size_t n = conic_hierarchy_find_file(path, file, sizeof file) ? conic_file_read_head(file, head, sizeof head) : 0;
+  const conic_hierarchy_kind *kind = n > 0 ? conic_hierarchy_kind_of(file, head, n) : NULL;
   return kind ? kind->name : NULL;
 }
 

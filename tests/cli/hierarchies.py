@@ -91,6 +91,10 @@ def same_everywhere(server, folder, root, first, number):
     if good["layers"]["levels"] > 1:
         expect(told and told["splats_drawn"] < good["splats_drawn"], f"{url}: a coarse picture has all splats")
         expect(case.n_requests <= n_all, f"{url}: a coarse picture takes as many requests")
+    if first.endswith(".json"):
+        for name in (root, root + "/"):
+            _, lines, told = draw(folder, name, [])
+            expect(told and told["hash"] == good["hash"], f"{name}: {lines}")
     for budget in (1, 40):
         _, lines, told = draw(folder, path, ["--budget", str(budget)])
         expect(told and 0 < told["splats_in"] <= budget, f"{path}: --budget {budget}: {lines or told['splats_in']}")

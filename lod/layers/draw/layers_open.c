@@ -194,6 +194,18 @@ static conic_status open_kind(conic_layers *layers) {
   return kind ? conic_layers_octree_open(layers, kind) : read_header_and_index(layers);
 }
 
+/* Of a folder, the file in it that is opened. */
+static conic_status take_name(conic_layers *layers, const char *name) {
+  char file[CONIC_HIERARCHY_PATH_ROOM];
+  if (!layers->is_remote && conic_hierarchy_find_file(name, file, sizeof file))
+    name = file;
+  layers->name = conic_memory_allocate(layers->context, strlen(name) + 1, 1);
+  if (!layers->name)
+    return CONIC_ERROR_MEMORY;
+  memcpy(layers->name, name, strlen(name) + 1);
+  return CONIC_OK;
+}
+
 conic_status conic_layers_open(conic_context *context, const char *name, const conic_layers_access *access,
                                conic_layers **layers) {
   *layers = NULL;
@@ -209,12 +221,9 @@ conic_status conic_layers_open(conic_context *context, const char *name, const c
   made->access = own;
   made->until_s = own.seconds > 0.0 ? conic_seconds_now() + own.seconds : HUGE_VAL;
   made->is_remote = conic_ranges_is_url(name);
-  made->name = conic_memory_allocate(context, strlen(name) + 1, 1);
-  conic_status status = made->name ? CONIC_OK : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK) {
-    memcpy(made->name, name, strlen(name) + 1);
+  conic_status status = take_name(made, name);
+  if (status == CONIC_OK)
     status = open_kind(made);
-  }
   if (status == CONIC_OK)
     status = conic_layers_store_open(made);
   if (status != CONIC_OK) {
