@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "raster/frame/statistics.h"
 #include "raster/view/part.h"
 #include "source/source_kind.h"
 #include "source/top_bins.h"
@@ -162,32 +163,6 @@ static conic_status gather_top_block(top_block *b, int may_cut, int *is_cut_shor
              : status;
 }
 
-static void add_top_statistics(const conic_render_statistics *one, conic_render_statistics *sum) {
-  conic_render_statistics before = *sum;
-  *sum = *one;
-  sum->splats_in += before.splats_in;
-  sum->splats_culled += before.splats_culled;
-  sum->splats_skipped += before.splats_skipped;
-  sum->splats_drawn += before.splats_drawn;
-  sum->splats_fallback += before.splats_fallback;
-  sum->splats_by_laplace += before.splats_by_laplace;
-  for (int i = 0; i < CONIC_N_METHODS; i++)
-    sum->splats_by_method[i] += before.splats_by_method[i];
-  sum->triangles_in += before.triangles_in;
-  sum->triangles_drawn += before.triangles_drawn;
-  sum->triangles_culled += before.triangles_culled;
-  sum->triangles_skipped += before.triangles_skipped;
-  sum->triangle_fragments += before.triangle_fragments;
-  sum->fragments += before.fragments;
-  sum->pixels_covered += before.pixels_covered;
-  sum->ms.setup += before.ms.setup;
-  sum->ms.bin += before.ms.bin;
-  sum->ms.visibility += before.ms.visibility;
-  sum->ms.accumulate += before.ms.accumulate;
-  sum->ms.resolve += before.ms.resolve;
-  sum->ms.frame += before.ms.frame;
-}
-
 /* The picture's tiles, or smaller ones that a window is made of. */
 static int tile_of(const conic_window *window, int tile) {
   while (tile > window->x_end - window->x_begin || tile > window->y_end - window->y_begin)
@@ -214,7 +189,7 @@ static conic_status draw_lifted(top_block *b, const conic_window *window) {
     status = conic_render_drawing(top->context, top->renderer, &drawing, &b->camera, &top->render, top->samples,
                                   b->image, &one);
   if (status == CONIC_OK)
-    add_top_statistics(&one, b->sum);
+    conic_statistics_add(&one, b->sum);
   return status;
 }
 

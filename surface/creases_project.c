@@ -40,12 +40,12 @@ typedef struct piece_point {
   int is_there;
 } piece_point;
 
-static const float *side_of(const crease_scene *scene, size_t i) {
+static const float *side_of_crease(const crease_scene *scene, size_t i) {
   return scene->surface->creases.side[scene->near->sources[i]];
 }
 
 static double turned(const crease_scene *scene, size_t i, size_t j) {
-  const float *a = side_of(scene, i), *b = side_of(scene, j);
+  const float *a = side_of_crease(scene, i), *b = side_of_crease(scene, j);
   return fabs((double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2]);
 }
 

@@ -29,7 +29,7 @@ void conic_dart_board_end(conic_dart_board *board) {
 }
 
 /* The number of a cell's column along an axis; what is beyond all numbers shares the last. */
-static int64_t column_of(double scaled) {
+static int64_t dart_column(double scaled) {
   double column = floor(scaled);
   return column > -4e18 && column < 4e18 ? (int64_t)column : INT64_MAX / 2;
 }
@@ -41,7 +41,7 @@ static size_t head_of(const conic_dart_board *board, int64_t x, int64_t y, int64
   return (size_t)((mixed * UINT64_C(0xBF58476D1CE4E5B9)) >> 32) & (board->n_heads - 1);
 }
 
-static conic_status make_room(conic_dart_board *board) {
+static conic_status make_dart_room(conic_dart_board *board) {
   size_t room = board->room;
   conic_status status =
       conic_memory_reserve(board->context, &board->places, board->n, board->n + 1, &room, sizeof *board->places);
@@ -52,32 +52,32 @@ static conic_status make_room(conic_dart_board *board) {
 }
 
 conic_status conic_dart_board_add(conic_dart_board *board, const double place[3]) {
-  if (board->n >= UINT32_MAX - 1 || (board->n >= board->room && make_room(board) != CONIC_OK))
+  if (board->n >= UINT32_MAX - 1 || (board->n >= board->room && make_dart_room(board) != CONIC_OK))
     return CONIC_ERROR_MEMORY;
   const double s = board->inverse_side;
-  size_t head = head_of(board, column_of(place[0] * s), column_of(place[1] * s), column_of(place[2] * s));
+  size_t head = head_of(board, dart_column(place[0] * s), dart_column(place[1] * s), dart_column(place[2] * s));
   memcpy(board->places[board->n], place, sizeof board->places[0]);
   board->next[board->n] = board->heads[head];
   board->heads[head] = (uint32_t)++board->n;
   return CONIC_OK;
 }
 
-static int is_near(const conic_dart_board *board, uint32_t i, const double place[3]) {
+static int is_near_dart(const conic_dart_board *board, uint32_t i, const double place[3]) {
   double d[3];
   conic_subtract(board->places[i], place, d);
   return conic_dot(d, d) < board->radius * board->radius;
 }
 
 int conic_dart_board_covers(conic_dart_board *board, const double place[3]) {
-  if (board->last < board->n && is_near(board, board->last, place))
+  if (board->last < board->n && is_near_dart(board, board->last, place))
     return 1;
   int64_t first[3];
   for (int axis = 0; axis < 3; axis++) /* a radius is half a side: two columns along each axis hold all */
-    first[axis] = column_of(place[axis] * board->inverse_side - 0.5);
+    first[axis] = dart_column(place[axis] * board->inverse_side - 0.5);
   for (int i = 0; i < 8; i++) {
     size_t head = head_of(board, first[0] + (i & 1), first[1] + (i >> 1 & 1), first[2] + (i >> 2));
     for (uint32_t at = board->heads[head]; at; at = board->next[at - 1])
-      if (is_near(board, at - 1, place)) {
+      if (is_near_dart(board, at - 1, place)) {
         board->last = at - 1;
         return 1;
       }

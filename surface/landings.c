@@ -113,7 +113,7 @@ static void land(const landing_work *work, size_t i, double h, conic_workspace *
 }
 
 /* Makes the box hold the place, unless that makes it longer than `most`. */
-static int grow_box(const double place[3], double most, double box[6]) {
+static int grow_landing_box(const double place[3], double most, double box[6]) {
   double grown[6];
   for (int axis = 0; axis < 3; axis++) {
     grown[axis] = place[axis] < box[axis] ? place[axis] : box[axis];
@@ -134,7 +134,7 @@ static size_t share(const landing_work *work, size_t i, size_t end, conic_worksp
     box[axis] = box[3 + axis] = first->place[axis];
   for (; i + n < end && n < MOST_SHARING; n++) {
     double h = scale_at(work, &first[n]);
-    if (!grow_box(first[n].place, SHARED_BOX * h, box))
+    if (!grow_landing_box(first[n].place, SHARED_BOX * h, box))
       break;
     greatest_h = h > greatest_h ? h : greatest_h;
   }

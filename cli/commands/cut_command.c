@@ -96,9 +96,15 @@ static conic_status stream_part(cut_job *job) {
   return conic_model_stream(context, job->base.input, &options, take_cut_batch, job);
 }
 
-static conic_status refuse_nothing(const cut_job *job) {
-  return conic_fail(job->base.session->context, CONIC_ERROR_INPUT,
-                    "%s: nothing of it lies in the part that is asked for", job->base.input);
+/* The first reading, of which *end is when it ended. */
+static conic_status read_part(cut_job *job, double *end) {
+  double start = cli_seconds();
+  conic_status status = stream_part(job);
+  *end = cli_build_end_stage(&job->base.stages[READ], start);
+  if (status == CONIC_OK && job->n_out == 0)
+    return conic_fail(job->base.session->context, CONIC_ERROR_INPUT,
+                      "%s: nothing of it lies in the part that is asked for", job->base.input);
+  return status;
 }
 
 /* A PLY says first how many points it has, so they are read twice. */
@@ -106,11 +112,8 @@ static conic_status cut_to_ply(cut_job *job) {
   conic_write_options options;
   conic_write_options_init(&options);
   options.cutoff = (float)job->cutoff;
-  double start = cli_seconds();
-  conic_status status = stream_part(job);
-  start = cli_build_end_stage(&job->base.stages[READ], start);
-  if (status == CONIC_OK && job->n_out == 0)
-    return refuse_nothing(job);
+  double start;
+  conic_status status = read_part(job, &start);
   if (status == CONIC_OK)
     status = conic_splats_writer_open(job->base.session->context, job->base.output, (size_t)job->n_out, job->fields,
                                       &options, &job->writer);
@@ -144,11 +147,8 @@ static conic_status cut_to_layers(cut_job *job) {
     status = conic_layers_builder_open(job->base.session->context, job->base.output, &job->building, &job->builder);
   if (status != CONIC_OK)
     return status;
-  double start = cli_seconds();
-  status = stream_part(job);
-  start = cli_build_end_stage(&job->base.stages[READ], start);
-  if (status == CONIC_OK && job->n_out == 0)
-    status = refuse_nothing(job);
+  double start;
+  status = read_part(job, &start);
   if (status == CONIC_OK)
     status = conic_layers_builder_finish(job->builder, NULL);
   else
@@ -163,11 +163,8 @@ static conic_status cut_to_las(cut_job *job) {
   conic_status status = conic_las_writer_open(context, job->base.output, job->base.input, &job->las);
   if (status != CONIC_OK)
     return status;
-  double start = cli_seconds();
-  status = stream_part(job);
-  start = cli_build_end_stage(&job->base.stages[READ], start);
-  if (status == CONIC_OK && job->n_out == 0)
-    status = refuse_nothing(job);
+  double start;
+  status = read_part(job, &start);
   if (status == CONIC_OK)
     status = conic_las_writer_finish(job->las);
   else

@@ -258,7 +258,7 @@ static void keep_block(top_picture *p, const cli_top_cut *cut) {
   }
 }
 
-static conic_status draw_block(top_picture *p, int64_t column, int64_t row) {
+static conic_status draw_map_block(top_picture *p, int64_t column, int64_t row) {
   cli_top_job *top = &p->job->top;
   cli_top_cut cut;
   cut_axis(column, top->column, top->width, &cut.x, &cut.width, &cut.block_x);
@@ -280,7 +280,7 @@ static conic_status draw_rows(top_picture *p) {
   for (int64_t row = first_row; row < end_row && status == CONIC_OK; row++) {
     cli_session_part(p->session, "row of blocks", (int)(row - first_row) + 1, (int)(end_row - first_row));
     for (int64_t column = first; column < end && status == CONIC_OK; column++)
-      status = draw_block(p, column, row);
+      status = draw_map_block(p, column, row);
     int64_t n_rows = (row + 1) * BLOCK - top->row;
     for (int i = 0; i < p->n_tiffs && status == CONIC_OK; i++)
       status = cli_top_tiff_advance(&p->tiffs[i], (size_t)(n_rows < top->height ? n_rows : top->height));

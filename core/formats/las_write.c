@@ -154,7 +154,7 @@ static const conic_las_field *find_own_field(const conic_las_fields *fields, con
   return NULL;
 }
 
-static void choose_columns(conic_las_writer *w, const conic_point_values *values) {
+static void choose_las_columns(conic_las_writer *w, const conic_point_values *values) {
   conic_las_fields fields;
   conic_las_fields_of_format(w->has_colors ? 7 : 6, &fields);
   for (size_t k = 0; values && k < values->n; k++) {
@@ -240,7 +240,7 @@ static void begin_las(conic_las_writer *w, const conic_splats *first) {
   w->has_colors = first && first->color[0];
   w->point_bytes = w->has_colors ? POINT_BYTES + COLOR_BYTES : POINT_BYTES;
   settle_steps(w, first);
-  choose_columns(w, first ? first->values : NULL);
+  choose_las_columns(w, first ? first->values : NULL);
   put_las_header(w); /* once more, when all is known */
   if (w->n_record_bytes)
     fwrite(w->records, 1, w->n_record_bytes, w->file);
@@ -292,7 +292,7 @@ static void put_las_colors(const conic_splats *batch, size_t i, unsigned char *p
   }
 }
 
-static conic_status put_point(conic_las_writer *w, const conic_splats *batch, size_t i, unsigned char *point) {
+static conic_status put_las_point(conic_las_writer *w, const conic_splats *batch, size_t i, unsigned char *point) {
   int is_there;
   memset(point, 0, w->point_bytes);
   conic_status status = put_place(w, batch, i, point, &is_there);
@@ -331,7 +331,7 @@ conic_status conic_las_writer_append(conic_las_writer *w, const conic_splats *ba
   if (!point)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < batch->count && status == CONIC_OK; i++)
-    status = put_point(w, batch, i, point);
+    status = put_las_point(w, batch, i, point);
   conic_memory_release(w->context, point);
   return status;
 }

@@ -11,6 +11,7 @@
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
 #include "raster/frame/samples.h"
+#include "raster/frame/statistics.h"
 
 /* The fine picture is drawn in bands of about so many of its pixels, so that memory is bounded: 20 bytes a pixel for
  * colour and depth, 56 for all planes. The bands depend on nothing but the size, as the bits of a band's rows depend on
@@ -134,21 +135,6 @@ conic_camera conic_samples_camera(const conic_camera *camera, int samples, int f
   return fine;
 }
 
-static void add_statistics(const conic_render_statistics *band, conic_render_statistics *sum) {
-  conic_render_milliseconds ms = sum->ms;
-  uint64_t fragments = sum->fragments, pixels_covered = sum->pixels_covered;
-  uint64_t triangle_fragments = sum->triangle_fragments;
-  *sum = *band;
-  sum->triangle_fragments += triangle_fragments;
-  sum->fragments += fragments;
-  sum->pixels_covered += pixels_covered;
-  sum->ms.setup += ms.setup;
-  sum->ms.bin += ms.bin;
-  sum->ms.visibility += ms.visibility;
-  sum->ms.accumulate += ms.accumulate;
-  sum->ms.resolve += ms.resolve;
-}
-
 /* What becomes of the splats in the whole fine picture, which no band sees. */
 typedef struct census {
   const conic_splats *splats;
@@ -241,7 +227,7 @@ static conic_status draw_band(conic_renderer *renderer, const conic_whole_drawin
     return status;
   double start = conic_seconds_now();
   status = taker->receive(taker->cookie, fine, first_row);
-  add_statistics(&band, sum);
+  conic_statistics_add_pixels(&band, sum);
   sum->ms.resolve += 1e3 * (conic_seconds_now() - start);
   return status;
 }

@@ -7,6 +7,7 @@
 #include "core/base/message.h"
 #include "lod/layers/draw/layers_spill.h"
 #include "raster/frame/samples.h"
+#include "raster/frame/statistics.h"
 #include "raster/view/part.h"
 
 typedef struct bands {
@@ -54,25 +55,6 @@ static void rename_window(const bands *b, const conic_window *window, const coni
       uint32_t *id = &ids[(size_t)y * (size_t)image->width + (size_t)x];
       *id = *id < set->splats.count ? set->ids[*id] : *id;
     }
-}
-
-static void add_counts(const conic_render_statistics *part, conic_render_statistics *sum) {
-  conic_render_statistics before = *sum;
-  *sum = *part;
-  sum->splats_skipped += before.splats_skipped;
-  sum->splats_drawn += before.splats_drawn;
-  sum->splats_fallback += before.splats_fallback;
-  sum->splats_by_laplace += before.splats_by_laplace;
-  for (int i = 0; i < CONIC_N_METHODS; i++)
-    sum->splats_by_method[i] += before.splats_by_method[i];
-  sum->fragments += before.fragments;
-  sum->pixels_covered += before.pixels_covered;
-  sum->ms.setup += before.ms.setup;
-  sum->ms.bin += before.ms.bin;
-  sum->ms.visibility += before.ms.visibility;
-  sum->ms.accumulate += before.ms.accumulate;
-  sum->ms.resolve += before.ms.resolve;
-  sum->ms.frame += before.ms.frame;
 }
 
 /* --- at once --- */
@@ -128,7 +110,7 @@ static conic_status take_part(void *cookie, conic_layers_set *set) {
   if (status != CONIC_OK || !has_several_bands(b))
     return status;
   status = conic_samples_count(b->d->layers->context, &set->splats, &b->fine, b->d->render, &counts);
-  add_counts(&counts, &b->counts);
+  conic_statistics_add(&counts, &b->counts);
   return status;
 }
 
@@ -179,7 +161,7 @@ static conic_status draw_window(bands *b, const conic_window *window) {
   if (status != CONIC_OK)
     return status;
   rename_window(b, window, &b->window, &b->pixels);
-  add_counts(&drawn, b->sum);
+  conic_statistics_add(&drawn, b->sum);
   return CONIC_OK;
 }
 
@@ -259,7 +241,7 @@ static conic_status draw_all_windows(bands *b, int *n_bands) {
 static void count_windows(const bands *b, conic_render_statistics *statistics) {
   if (has_several_bands(b)) {
     conic_render_statistics drawn = *statistics;
-    add_counts(&b->counts, &drawn);
+    conic_statistics_add(&b->counts, &drawn);
     statistics->splats_skipped = drawn.splats_skipped;
     statistics->splats_drawn = drawn.splats_drawn;
     statistics->splats_fallback = drawn.splats_fallback;

@@ -34,7 +34,7 @@ static size_t spill_block_bytes(const conic_layers_spill *spill) {
   return (HEAD_BYTES + spill->block_count * spill->splat_bytes + 7) / 8 * 8;
 }
 
-static unsigned char *open_block(const conic_layers_spill *spill, size_t i_window) {
+static unsigned char *begin_spill_block(const conic_layers_spill *spill, size_t i_window) {
   return spill->blocks + i_window * spill_block_bytes(spill);
 }
 
@@ -184,16 +184,16 @@ static void copy_elements(const conic_layers_column *column, const uint32_t *lis
 static void fill_block(const conic_layers_spill *spill, size_t i_window, size_t at, const uint32_t *list, size_t n) {
   conic_layers_column columns[CONIC_LAYERS_MOST_COLUMNS];
   size_t n_columns = list_columns(spill, columns);
-  unsigned char *to = open_block(spill, i_window) + HEAD_BYTES;
+  unsigned char *to = begin_spill_block(spill, i_window) + HEAD_BYTES;
   for (size_t i = 0; i < n_columns; i++) {
     copy_elements(&columns[i], list, n, to + at * columns[i].n_bytes);
     to += spill->block_count * columns[i].n_bytes;
   }
 }
 
-static conic_status close_block(conic_layers_spill *spill, size_t i_window) {
+static conic_status end_spill_block(conic_layers_spill *spill, size_t i_window) {
   conic_layers_heap *heap = &spill->heaps[i_window];
-  unsigned char *block = open_block(spill, i_window);
+  unsigned char *block = begin_spill_block(spill, i_window);
   memcpy(block, &heap->last_block, sizeof heap->last_block);
   return conic_pile_append(&spill->pile, block, spill_block_bytes(spill), &heap->last_block);
 }
@@ -208,7 +208,7 @@ static void put_aside(void *data, size_t i_window, int i_thread) {
     fill_block(spill, i_window, at, spill->list + i, n);
     heap->count += n;
     i += n;
-    if (at + n == spill->block_count && close_block(spill, i_window) != CONIC_OK)
+    if (at + n == spill->block_count && end_spill_block(spill, i_window) != CONIC_OK)
       atomic_store(&spill->failed, 1);
   }
 }
@@ -257,7 +257,7 @@ conic_status conic_layers_spill_close(conic_layers_spill *spill) {
     return CONIC_OK;
   for (size_t i = 0; i < spill->windows->n_windows && status == CONIC_OK; i++)
     if (spill->heaps[i].count % spill->block_count)
-      status = close_block(spill, i);
+      status = end_spill_block(spill, i);
   conic_memory_release(spill->layers->context, spill->blocks);
   spill->blocks = NULL;
   return status;
@@ -306,7 +306,7 @@ static conic_status take_blocks(conic_layers_spill *spill, size_t i_window, cons
   for (size_t left = heap->count; left > 0;) {
     size_t n = left % spill->block_count ? left % spill->block_count : spill->block_count;
     if (spill->blocks) /* which are all there is */
-      block = open_block(spill, i_window);
+      block = begin_spill_block(spill, i_window);
     else {
       conic_status status = conic_pile_read(&spill->pile, before, spill->read, spill_block_bytes(spill));
       if (status != CONIC_OK)

@@ -34,7 +34,7 @@ static int meets_part(const conic_layers *layers, const conic_layers_entry *entr
 }
 
 /* One more place, and its number. */
-static conic_status add_place(const conic_layers *layers, uint32_t node, finest *list) {
+static conic_status list_place(const conic_layers *layers, uint32_t node, finest *list) {
   size_t n = list->cut.n;
   if (n == list->room) {
     size_t room = list->room;
@@ -70,7 +70,7 @@ static conic_status list_finest(const conic_layers *layers, const conic_layers_r
         open[n_open++] = child + i;
       continue;
     }
-    status = add_place(layers, node, list);
+    status = list_place(layers, node, list);
   }
   return status;
 }
