@@ -100,7 +100,7 @@ static double area2_of(const conic_simplifier *s, const uint32_t corners[3], dou
 
 /* What a triangle must not turn away from: its face of the mesh; in what is one, which becomes far simpler than its
  * faces are even, what it is now. */
-static void facing_of(const conic_simplifier *s, const conic_simplifier_triangle *t, double normal[3]) {
+static void facing_of_triangle(const conic_simplifier *s, const conic_simplifier_triangle *t, double normal[3]) {
   double length = s->is_one ? area2_of(s, t->corners, normal) : 0.0;
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = length > 0.0 ? normal[axis] / length : t->normal[axis] * (double)s->mesh->adjacency->side[t->face];
@@ -114,7 +114,7 @@ static int keeps_facing(const conic_simplifier *s, const fan *f, uint32_t v) {
     const conic_simplifier_triangle *t = triangle_of(s, &f->spokes[i]);
     uint32_t corners[3] = {t->corners[0], t->corners[1], t->corners[2]};
     double cross[3], normal[3];
-    facing_of(s, t, normal);
+    facing_of_triangle(s, t, normal);
     corners[f->spokes[i].slot % 3] = v;
     double area2 = area2_of(s, corners, cross), along = conic_dot(cross, normal);
     if (!(area2 > 0.0) || !(along > least_turn * area2))

@@ -55,7 +55,7 @@ static const double *errors_of_node(const fitting *f, const conic_hybrid_node *n
 }
 
 /* Of a node's triangles the most that the budget has room for: levels lie close together, and some err alike. */
-static int is_better(const fitting *f, const conic_hybrid_level *level, conic_hybrid_offer best, int is_closer) {
+static int is_better_offer(const fitting *f, const conic_hybrid_level *level, conic_hybrid_offer best, int is_closer) {
   double n = level ? (double)level->count : 1.0;
   if (level ? !is_allowed(f, level) : f->only_kind == CONIC_HYBRID_TRIANGLES)
     return 0;
@@ -73,7 +73,8 @@ static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *no
   double best_px = HUGE_VAL;
   for (uint32_t k = 0; k <= node->n_levels; k++) {
     const conic_hybrid_level *level = k < node->n_levels ? &f->hybrid->levels[node->first_level + k] : NULL;
-    if (errors_px[k] < HUGE_VAL && errors_px[k] <= f->error_px && is_better(f, level, best, errors_px[k] < best_px)) {
+    if (errors_px[k] < HUGE_VAL && errors_px[k] <= f->error_px &&
+        is_better_offer(f, level, best, errors_px[k] < best_px)) {
       best = (conic_hybrid_offer){k, level ? (double)level->count : 1.0};
       best_px = errors_px[k];
     }

@@ -76,7 +76,7 @@ static void note(double error, double error_px, double *next) {
 }
 
 /* Of the root's triangles the most that there may be; else the fewest. */
-static int is_own(const conic_hybrid_level *level, int only_kind, size_t own, size_t budget) {
+static int is_own_offer(const conic_hybrid_level *level, int only_kind, size_t own, size_t budget) {
   size_t n = level ? level->count : 1;
   if (level && level->kind == CONIC_HYBRID_TRIANGLES)
     return only_kind != CONIC_HYBRID_SURFELS && own > budget;
@@ -98,7 +98,7 @@ static size_t fewest_below(const spending *s, const conic_hybrid_camera *view, u
     double error = level ? weight * conic_hybrid_node_error_px(s->hybrid, view, node, level)
                          : conic_hybrid_point_error_px(view, node);
     note(error, error_px, next);
-    if (error <= error_px && is_own(level, only_kind, own, budget) && (level || node->point.radius > 0.0f))
+    if (error <= error_px && is_own_offer(level, only_kind, own, budget) && (level || node->point.radius > 0.0f))
       own = level ? level->count : 1;
   }
   if (own >= count)
