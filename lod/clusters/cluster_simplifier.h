@@ -35,7 +35,7 @@ typedef struct conic_simplifier_triangle {
   uint32_t corners[3]; /* vertices */
   uint32_t next[3];    /* slots in the rings */
   uint32_t face;
-  uint32_t cluster; /* from the region's first */
+  uint32_t cluster; /* from the region's first; 0 where the region is one */
   int is_alive;
 } conic_simplifier_triangle;
 
@@ -86,6 +86,7 @@ struct conic_simplifier {
   uint32_t stage;          /* the last one that is taken, or is to be */
   size_t n_last, n_wanted; /* triangles: of the last stage, and of the next */
   int is_to_take, is_over;
+  int is_one;                     /* the region is simplified as one cluster in pieces */
   conic_cluster_levels *levels;   /* of the region's clusters */
   conic_simplifier_spoke *spokes; /* room for those of any vertex */
   void *memory[17];               /* all of these, but for the borders */
@@ -133,7 +134,7 @@ void conic_simplifier_note_change(conic_simplifier *s, uint32_t cluster, const c
 
 /* Whether a cluster has become so much simpler that this stage is a level of it. */
 static inline int conic_simplifier_is_worth_a_level(const conic_simplifier *s, uint32_t cluster) {
-  return 4 * (size_t)s->alive[cluster] <= 3 * (size_t)s->taken[cluster];
+  return s->is_one || 4 * (size_t)s->alive[cluster] <= 3 * (size_t)s->taken[cluster];
 }
 
 /* Makes what is alive one more stage, to be measured and then taken, if clusters would fit; else it is over. Errors:

@@ -101,19 +101,26 @@ static void fill_queue(conic_simplifier *s) {
     }
 }
 
+/* What is one has levels close together, of which one is about as large as is asked for. */
+static size_t wanted_after(const conic_simplifier *s) {
+  return s->is_one ? s->n_last - (s->n_last + 5) / 6 : s->n_last / 2;
+}
+
 conic_status conic_region_begin(conic_simplifier *s, conic_cluster_chains *chains, uint32_t begin, uint32_t end,
-                                conic_cluster_levels *levels) {
+                                size_t most_at_first, conic_cluster_levels *levels) {
   s->chains = chains;
   s->begin = begin;
   s->end = end;
   s->levels = levels;
   s->is_to_take = s->is_over = 0;
-  memset(levels, 0, (end - begin) * sizeof *levels);
+  s->is_one = most_at_first > 0;
+  memset(levels, 0, (s->is_one ? 1 : end - begin) * sizeof *levels);
   conic_status status = conic_simplifier_load(s);
   if (status != CONIC_OK)
     return status;
-  s->n_wanted = s->n_triangles / 2;
   s->n_last = s->n_triangles;
+  s->n_wanted = wanted_after(s);
+  s->n_wanted = s->is_one && most_at_first < s->n_wanted ? most_at_first : s->n_wanted;
   fill_queue(s);
   return CONIC_OK;
 }
@@ -132,7 +139,7 @@ static conic_status simplify(conic_simplifier *s) {
     if (s->n_alive <= s->n_wanted)
       return conic_simplifier_begin_stage(s);
   }
-  int is_worth_it = 4 * s->n_alive <= 3 * s->n_last && s->stage < CONIC_MOST_TRIANGLE_LEVELS;
+  int is_worth_it = !s->is_one && 4 * s->n_alive <= 3 * s->n_last && s->stage < CONIC_MOST_TRIANGLE_LEVELS;
   s->is_over = !is_worth_it;
   return is_worth_it ? conic_simplifier_begin_stage(s) : CONIC_OK;
 }
@@ -142,7 +149,7 @@ conic_status conic_region_advance(conic_simplifier *s, uint32_t *n_clusters) {
   if (s->is_to_take) {
     status = conic_simplifier_take(s);
     s->n_last = s->n_alive;
-    s->n_wanted = s->n_alive / 2;
+    s->n_wanted = wanted_after(s);
   }
   if (status == CONIC_OK && !s->is_over)
     status = simplify(s);

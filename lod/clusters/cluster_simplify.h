@@ -6,7 +6,7 @@
 #include "lod/clusters/cluster_seen.h"
 #include "lod/mesh/face_tree.h"
 
-enum { CONIC_MOST_TRIANGLE_LEVELS = 12 };
+enum { CONIC_MOST_TRIANGLE_LEVELS = 32 };
 
 /* Triangles of the mesh's own vertices. */
 typedef struct conic_cluster_level {
@@ -38,9 +38,12 @@ void conic_simplifier_destroy(conic_simplifier *simplifier);
  * and their slots then tell the last stage that has them; those on an open border along that, held by planes that stand
  * on its edges (§3.2.4). Vertices of another region stay, and of no cluster all triangles go. Region: the clusters
  * [begin, end), whose levels are levels[0 …], filled in by what follows. The caller ends the region, and releases the
- * levels, on failure too. Errors: MEMORY. */
+ * levels, on failure too. Errors: MEMORY.
+ * A region of which `most_at_first` is above 0 is simplified as one: the mesh says that there is but one cluster, so
+ * that there are no chains, and its faces in pieces [begin, end), which are only measured one by one. All levels are
+ * levels[0]'s. The first has at most so many triangles, and each further one five sixths of the one before. */
 conic_status conic_region_begin(conic_simplifier *simplifier, conic_cluster_chains *chains, uint32_t begin,
-                                uint32_t end, conic_cluster_levels *levels);
+                                uint32_t end, size_t most_at_first, conic_cluster_levels *levels);
 
 /* Takes the stage that was measured, if any, as levels, and goes on to the next: n_clusters are to be measured before
  * it is taken. None where all is done. Errors: MEMORY. */

@@ -108,9 +108,9 @@ static void add_region_triangle(conic_simplifier *s, uint32_t cluster, uint32_t 
   conic_simplifier_triangle *t = &s->triangles[i];
   double middle[3] = {0.0, 0.0, 0.0};
   t->face = s->near[i][0] = s->near[i][1] = s->near[i][2] = s->near[i][3] = face;
-  t->cluster = cluster;
+  t->cluster = s->is_one ? 0 : cluster;
   t->is_alive = 1;
-  s->alive[cluster]++;
+  s->alive[t->cluster]++;
   conic_cluster_face_normal(s->mesh, face, t->normal);
   for (int corner = 0; corner < 3; corner++) {
     const uint32_t *materials = s->mesh->triangles->material;

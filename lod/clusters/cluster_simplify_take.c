@@ -104,11 +104,13 @@ conic_status conic_simplifier_begin_stage(conic_simplifier *s) {
 
 /* --- levels --- */
 
-/* The cluster's triangles lie together. */
+/* The cluster's triangles lie together; those of what is one are all, of which the pieces' measures are joined. */
 static conic_status take_cluster(const conic_simplifier *s, uint32_t cluster, conic_cluster_levels *levels) {
   const size_t *starts = s->mesh->starts + s->begin;
   const conic_simplifier_border *borders = s->borders + s->border_starts[cluster];
   size_t n_borders = s->border_starts[cluster + 1] - s->border_starts[cluster];
+  uint32_t end = s->is_one ? s->end - s->begin : cluster + 1;
+  conic_seen_sums change = {0.0, 0.0, 0.0};
   conic_cluster_level *level = &levels->levels[levels->n++];
   memset(level, 0, sizeof *level);
   if (levels->n > 1)
@@ -118,7 +120,7 @@ static conic_status take_cluster(const conic_simplifier *s, uint32_t cluster, co
   level->borders = conic_memory_allocate(s->context, n_borders, sizeof *level->borders);
   if (!level->corners || !level->face || !level->borders)
     return CONIC_ERROR_MEMORY;
-  for (size_t i = starts[cluster] - starts[0]; i < starts[cluster + 1] - starts[0]; i++) {
+  for (size_t i = starts[cluster] - starts[0]; i < starts[end] - starts[0]; i++) {
     const conic_simplifier_triangle *t = &s->triangles[i];
     if (!t->is_alive)
       continue;
@@ -130,14 +132,21 @@ static conic_status take_cluster(const conic_simplifier *s, uint32_t cluster, co
     level->face[level->n++] = t->face;
   }
   level->stage = s->stage;
-  level->error = sqrt(s->errors2[cluster]);
-  level->change = conic_seen_sums_change(&s->changes[cluster], level->change);
+  for (uint32_t i = cluster; i < end; i++) {
+    const conic_seen_sums *own = &s->changes[i];
+    double error = sqrt(s->errors2[i]);
+    level->error = error > level->error ? error : level->error;
+    change.area += own->area;
+    change.steps2 += own->steps2;
+    change.smear2 += own->smear2;
+  }
+  level->change = conic_seen_sums_change(&change, level->change);
   return CONIC_OK;
 }
 
 conic_status conic_simplifier_take(conic_simplifier *s) {
   conic_status status = CONIC_OK;
-  for (uint32_t cluster = 0; cluster < s->end - s->begin && status == CONIC_OK; cluster++)
+  for (uint32_t cluster = 0; cluster < (s->is_one ? 1 : s->end - s->begin) && status == CONIC_OK; cluster++)
     if (conic_simplifier_is_worth_a_level(s, cluster)) {
       status = take_cluster(s, cluster, &s->levels[cluster]);
       s->taken[cluster] = s->alive[cluster];

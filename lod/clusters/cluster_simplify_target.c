@@ -98,6 +98,14 @@ static double area2_of(const conic_simplifier *s, const uint32_t corners[3], dou
   return conic_length(cross);
 }
 
+/* What a triangle must not turn away from: its face of the mesh; in what is one, which becomes far simpler than its
+ * faces are even, what it is now. */
+static void facing_of_triangle(const conic_simplifier *s, const conic_simplifier_triangle *t, double normal[3]) {
+  double length = s->is_one ? area2_of(s, t->corners, normal) : 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = length > 0.0 ? normal[axis] / length : t->normal[axis] * (double)s->mesh->adjacency->side[t->face];
+}
+
 /* Whether no triangle that stays turns over or loses its area when the vertex goes to v. */
 static int keeps_facing(const conic_simplifier *s, const fan *f, uint32_t v) {
   for (size_t i = 0; i < f->n_triangles; i++) {
@@ -105,10 +113,10 @@ static int keeps_facing(const conic_simplifier *s, const fan *f, uint32_t v) {
       continue;
     const conic_simplifier_triangle *t = triangle_of(s, &f->spokes[i]);
     uint32_t corners[3] = {t->corners[0], t->corners[1], t->corners[2]};
-    double cross[3];
+    double cross[3], normal[3];
+    facing_of_triangle(s, t, normal);
     corners[f->spokes[i].slot % 3] = v;
-    double area2 = area2_of(s, corners, cross), along = conic_dot(cross, t->normal);
-    along *= (double)s->mesh->adjacency->side[t->face];
+    double area2 = area2_of(s, corners, cross), along = conic_dot(cross, normal);
     if (!(area2 > 0.0) || !(along > least_turn * area2))
       return 0;
   }
@@ -141,8 +149,29 @@ static int is_alike(const conic_simplifier *s, uint32_t a, uint32_t b) {
          conic_simplifier_material(s, first) == conic_simplifier_material(s, second);
 }
 
+/* Of the mesh's vertices at v that triangles have, the one whose normal is the nearest to that of a slot's: where all
+ * that differs along seams are normals, as at creases, they hold up nothing that is one. */
+static uint32_t nearest_normal(const conic_simplifier *s, uint32_t v, uint32_t slot) {
+  const conic_triangles *mesh = s->mesh->triangles;
+  uint32_t own = s->originals[slot / 3][slot % 3], nearest = CONIC_NONE;
+  double most = -HUGE_VAL;
+  for (uint32_t at = conic_simplifier_living(s, s->vertices[v].ring); at != CONIC_NONE;
+       at = conic_simplifier_after(s, at)) {
+    uint32_t other = s->originals[at / 3][at % 3];
+    double along = 0.0;
+    for (int axis = 0; axis < 3 && mesh->normal[0]; axis++)
+      along += (double)mesh->normal[axis][own] * (double)mesh->normal[axis][other];
+    if (nearest == CONIC_NONE || along > most) {
+      nearest = other;
+      most = along;
+    }
+  }
+  return nearest;
+}
+
 uint32_t conic_simplifier_wedge(const conic_simplifier *s, uint32_t u, uint32_t v, uint32_t slot) {
   uint32_t wedge = CONIC_NONE;
+  int may_part = s->is_one && !s->contrasts; /* all has one colour */
   for (uint32_t beside = conic_simplifier_living(s, s->vertices[u].ring); beside != CONIC_NONE;
        beside = conic_simplifier_after(s, beside)) {
     const conic_simplifier_triangle *t = &s->triangles[beside / 3];
@@ -150,10 +179,10 @@ uint32_t conic_simplifier_wedge(const conic_simplifier *s, uint32_t u, uint32_t 
       continue;
     uint32_t found = s->originals[beside / 3][t->corners[0] == v ? 0 : t->corners[1] == v ? 1 : 2];
     if (wedge != CONIC_NONE && wedge != found)
-      return CONIC_NONE;
+      return may_part ? nearest_normal(s, v, slot) : CONIC_NONE;
     wedge = found;
   }
-  return wedge;
+  return wedge == CONIC_NONE && may_part ? nearest_normal(s, v, slot) : wedge;
 }
 
 /* Whether each triangle that stays has its attributes at v. */

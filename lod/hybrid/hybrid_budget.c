@@ -13,6 +13,7 @@
 typedef struct fitting {
   const conic_hybrid *hybrid;
   int only_kind;
+  uint64_t budget;
   const uint32_t *clusters;
   size_t n;
   double *errors_px; /* of all levels of the first cluster, then of the second … */
@@ -53,6 +54,16 @@ static const double *errors_of_node(const fitting *f, const conic_hybrid_node *n
   return f->node_errors + f->first_errors[node - f->hybrid->nodes];
 }
 
+/* Of a node's triangles the most that the budget has room for: levels lie close together, and some err alike. */
+static int is_better_offer(const fitting *f, const conic_hybrid_level *level, conic_hybrid_offer best, int is_closer) {
+  double n = level ? (double)level->count : 1.0;
+  if (level ? !is_allowed(f, level) : f->only_kind == CONIC_HYBRID_TRIANGLES)
+    return 0;
+  if (level && level->kind == CONIC_HYBRID_TRIANGLES)
+    return !(best.amount <= (double)f->budget);
+  return n < best.amount || (n <= best.amount && is_closer);
+}
+
 /* The way of a node that has fewest; never one whose error is infinite: what reaches near is not joined, and a point
  * that is not there, or that the eye is in, cannot be drawn. */
 static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *node) {
@@ -61,10 +72,10 @@ static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *no
   conic_hybrid_offer best = {0, HUGE_VAL};
   double best_px = HUGE_VAL;
   for (uint32_t k = 0; k <= node->n_levels; k++) {
-    double n = k < node->n_levels ? (double)f->hybrid->levels[node->first_level + k].count : 1.0;
-    int is_better = n < best.amount || (n <= best.amount && errors_px[k] < best_px);
-    if (errors_px[k] < HUGE_VAL && errors_px[k] <= f->error_px && is_better) {
-      best = (conic_hybrid_offer){k, n};
+    const conic_hybrid_level *level = k < node->n_levels ? &f->hybrid->levels[node->first_level + k] : NULL;
+    if (errors_px[k] < HUGE_VAL && errors_px[k] <= f->error_px &&
+        is_better_offer(f, level, best, errors_px[k] < best_px)) {
+      best = (conic_hybrid_offer){k, level ? (double)level->count : 1.0};
       best_px = errors_px[k];
     }
   }
@@ -75,7 +86,7 @@ static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *no
 static uint64_t cut_tree(fitting *f) {
   const conic_hybrid_cutting cutting = {f->hybrid, f->counts, ask_node, f, f->below};
   for (size_t i = 0; i < f->n; i++)
-    f->counts[f->clusters[i]] = f->only_kind == CONIC_HYBRID_TRIANGLES ? NAN : (double)chosen(f, i)->count;
+    f->counts[f->clusters[i]] = (double)chosen(f, i)->count;
   return (uint64_t)conic_hybrid_cut(&cutting, f->nodes); /* a whole number */
 }
 
@@ -157,6 +168,10 @@ static conic_status measure_levels(fitting *f, const conic_hybrid_camera *view) 
   return CONIC_OK;
 }
 
+/* Where all is simplified as one, the greatest error is at few places: pictures are nearer to the mesh than those of
+ * clusters that err by more than half of it (docs/notes/hybrid-measured.md). */
+static const double weight_of_whole = 0.5;
+
 static conic_status measure_nodes(fitting *f, const conic_hybrid_camera *view) {
   const conic_hybrid *h = f->hybrid;
   size_t n = h->n_nodes;
@@ -171,7 +186,8 @@ static conic_status measure_nodes(fitting *f, const conic_hybrid_camera *view) {
     f->first_errors[i] = (size_t)(next - f->node_errors);
     for (uint32_t k = 0; k < node->n_levels; k++) {
       const conic_hybrid_level *level = &h->levels[node->first_level + k];
-      *next++ = with_colors(view, conic_hybrid_error_px(view, &node->bound, level),
+      double weight = level->kind == CONIC_HYBRID_TRIANGLES ? weight_of_whole : 1.0;
+      *next++ = with_colors(view, weight * conic_hybrid_node_error_px(h, view, node, level),
                             conic_hybrid_change(view, &node->bound, level));
     }
     *next++ = with_colors(view, conic_hybrid_point_error_px(view, node), conic_hybrid_point_change(view, node));
@@ -251,7 +267,7 @@ static conic_status begin_budget(fitting *f, const conic_hybrid_camera *view) {
 conic_status conic_hybrid_fit_budget(const conic_hybrid *hybrid, const conic_hybrid_camera *view, int only_kind,
                                      uint64_t budget, const uint32_t *clusters, size_t n, uint32_t *levels,
                                      uint32_t *nodes) {
-  fitting f = {.hybrid = hybrid, .only_kind = only_kind, .clusters = clusters, .n = n};
+  fitting f = {.hybrid = hybrid, .only_kind = only_kind, .budget = budget, .clusters = clusters, .n = n};
   conic_status status = begin_budget(&f, view);
   if (status == CONIC_OK)
     status = fit_kinds(&f, budget, levels, nodes);

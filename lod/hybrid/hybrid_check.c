@@ -36,6 +36,11 @@ static int faces_within(const conic_hybrid_bound *bound, double at[3][3]) {
   return bound->cone <= -1.0f || conic_dot(normal, axis) >= ((double)bound->cone - hair) * length;
 }
 
+/* Triangles come before surfels, and each kind is of growing error. */
+static int wrong_after(const conic_hybrid_level *before, const conic_hybrid_level *level) {
+  return level->kind == before->kind ? !(level->error >= before->error) : level->kind != CONIC_HYBRID_SURFELS;
+}
+
 /* The faces themselves: the first level. */
 static void check_cluster(const conic_hybrid *h, const conic_hybrid_cluster *cluster, conic_hybrid_defects *found) {
   const conic_hybrid_level *levels = h->levels + cluster->first_level;
@@ -49,8 +54,7 @@ static void check_cluster(const conic_hybrid *h, const conic_hybrid_cluster *clu
     is_turned |= !faces_within(&cluster->bound, at);
   }
   for (uint32_t k = 1; k < cluster->n_levels; k++)
-    is_wrong |= levels[k].kind == levels[k - 1].kind ? !(levels[k].error >= levels[k - 1].error)
-                                                     : levels[k].kind != CONIC_HYBRID_SURFELS;
+    is_wrong |= wrong_after(&levels[k - 1], &levels[k]);
   found->spheres += (size_t)is_out;
   found->cones += (size_t)is_turned;
   found->levels += (size_t)is_wrong;
@@ -60,8 +64,9 @@ static void check_cluster(const conic_hybrid *h, const conic_hybrid_cluster *clu
 static void check_joined(const conic_hybrid *h, const conic_hybrid_node *node, conic_hybrid_defects *found) {
   const conic_hybrid_bound point = {.center = {node->bound.center[0], node->bound.center[1], node->bound.center[2]}};
   int is_out = 0, is_wrong = 0;
+  const conic_hybrid_level *levels = h->levels + node->first_level;
   for (uint32_t k = 1; k < node->n_levels; k++)
-    is_wrong |= !(h->levels[node->first_level + k].error >= h->levels[node->first_level + k - 1].error);
+    is_wrong |= wrong_after(&levels[k - 1], &levels[k]);
   for (uint32_t i = node->begin; i < node->end && node->point.radius > 0.0f; i++) {
     const conic_hybrid_level *faces = &h->levels[h->clusters[i].first_level];
     for (uint32_t k = 0; k < faces->n_vertices; k++) {

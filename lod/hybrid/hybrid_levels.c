@@ -239,6 +239,8 @@ static conic_status run_passes(ways_pass *pass) {
   double sampled = conic_seconds_now();
   if (status == CONIC_OK && !job->options->has_single_levels)
     status = conic_find_simpler(job);
+  if (status == CONIC_OK && !job->options->has_single_levels)
+    status = conic_find_whole(job);
   job->sample_seconds = sampled - start;
   job->simplify_seconds = conic_seconds_now() - sampled;
   return status;

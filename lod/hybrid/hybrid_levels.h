@@ -34,6 +34,7 @@ typedef struct conic_ways_job {
   size_t n_nodes;
   conic_hybrid_node *nodes; /* over the clusters, with their points but not yet with levels; the caller's to release, */
   conic_node_ways *node_ways;  /* by conic_nodes_release, and these; null where nodes have none */
+  conic_cluster_levels whole;  /* simpler triangles of all clusters as one, for the root; released with these */
   conic_cluster_chains chains; /* between simpler triangles of clusters; the caller's to release, on failure too */
   double sample_seconds, simplify_seconds;
 } conic_ways_job;
@@ -43,8 +44,10 @@ typedef struct conic_ways_job {
 conic_status conic_find_ways(conic_ways_job *job);
 void conic_cluster_ways_release(conic_context *context, conic_cluster_ways *ways);
 
-/* Simpler triangles of all clusters, region by region, which depend on the mesh alone. Errors: MEMORY, CANCELLED. */
+/* Simpler triangles of all clusters, region by region, and of all as one; these depend on the mesh alone. Errors:
+ * MEMORY, CANCELLED. */
 conic_status conic_find_simpler(conic_ways_job *ways);
+conic_status conic_find_whole(conic_ways_job *ways);
 
 /* A sphere and a cone for a cluster's faces. */
 conic_hybrid_bound conic_cluster_bound(const conic_clustered_mesh *mesh, uint32_t cluster);

@@ -172,8 +172,8 @@ static const char *wrong_node_levels(const conic_hybrid *h) {
     if (node->first_level != next || node->n_levels > h->n_levels - next)
       return "a node without its levels";
     for (size_t k = 0; k < node->n_levels; k++) {
-      if (h->levels[next + k].kind != CONIC_HYBRID_SURFELS)
-        return "a node's level that is not surfels";
+      if (h->levels[next + k].n_borders > 0)
+        return "a node's level with borders";
       const char *wrong = wrong_level(h, &h->levels[next + k], 0);
       if (wrong)
         return wrong;

@@ -49,7 +49,8 @@ typedef struct conic_hybrid_node {
   conic_hybrid_bound bound;
   uint32_t begin, end;            /* clusters */
   uint32_t next;                  /* the node after the subtree: this one + 1 where it has no children */
-  uint32_t first_level, n_levels; /* surfels that stand for all of its clusters, of growing error; may be none */
+  uint32_t first_level, n_levels; /* that stand for all of its clusters: triangles first, then surfels, each of growing
+                                     error; may be none */
   conic_hybrid_point point;
 } conic_hybrid_node;
 

@@ -386,6 +386,7 @@ void conic_nodes_release(conic_ways_job *job) {
   for (size_t i = 0; job->node_ways && i < job->n_nodes; i++)
     for (int k = 0; k < job->node_ways[i].n_surfels; k++)
       conic_surfels_release(job->context, &job->node_ways[i].surfels[k]);
+  conic_cluster_levels_release(job->context, &job->whole);
   conic_memory_release(job->context, job->node_ways);
   conic_memory_release(job->context, job->nodes);
   job->node_ways = NULL;

@@ -109,6 +109,19 @@ double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid
   return error_px_of(view, &seen, level);
 }
 
+double conic_hybrid_node_error_px(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
+                                  const conic_hybrid_node *node, const conic_hybrid_level *level) {
+  double most = 0.0, error = (double)level->error;
+  if (level->kind == CONIC_HYBRID_SURFELS || !(error > 0.0))
+    return conic_hybrid_error_px(view, &node->bound, level);
+  for (uint32_t i = node->begin; i < node->end; i++) {
+    const conic_hybrid_bound *bound = &hybrid->clusters[i].bound;
+    double own = conic_hybrid_is_hidden(view, bound, error) ? 0.0 : conic_hybrid_pixels_a_unit(view, bound, error);
+    most = own > most ? own : most;
+  }
+  return error * most;
+}
+
 /* The mean cosine of the faces to the camera: by the axis of their cone as far as that says anything, else half. */
 static double facing_of(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, const sight *seen) {
   double along = 0.0, cone = bound->cone > 0.0f ? (double)bound->cone : 0.0;
@@ -163,7 +176,9 @@ conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const con
   error_px = error_px < HUGE_VAL ? error_px : DBL_MAX; /* what reaches near, or has no point, is never joined */
   if (conic_hybrid_point_error_px(view, node) <= error_px && conic_hybrid_point_change(view, node) <= view->color_error)
     best = (conic_hybrid_offer){node->n_levels, conic_hybrid_point_cost(view, node)};
-  for (uint32_t k = 0; k < node->n_levels && is_good(view, &seen, &levels[k], error_px); k++) {
+  for (uint32_t k = 0; k < node->n_levels; k++) {
+    if (levels[k].kind != CONIC_HYBRID_SURFELS || !is_good(view, &seen, &levels[k], error_px))
+      continue;
     double cost = cost_of_surfels(view, &levels[k], &seen);
     if (cost < best.amount)
       best = (conic_hybrid_offer){k, cost};

@@ -28,6 +28,11 @@ double conic_hybrid_pixels_a_unit(const conic_hybrid_camera *view, const conic_h
 double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,
                              const conic_hybrid_level *level);
 
+/* The same of a node's level. Its triangles, of which all places are that near to those of the node's clusters, are
+ * looked at in the spheres of those that are in sight, which are nearer to what is drawn than the node's. */
+double conic_hybrid_node_error_px(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
+                                  const conic_hybrid_node *node, const conic_hybrid_level *level);
+
 /* By how many steps colours may be drawn otherwise than they are, by a level of a cluster or node with that bound, or
  * by a node's point: each the mean of a pixel where what differs is smaller. */
 double conic_hybrid_change(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,

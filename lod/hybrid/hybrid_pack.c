@@ -40,12 +40,12 @@ static size_t list_vertices(packing *p, const uint32_t (*corners)[3], size_t n, 
   return n_listed;
 }
 
-/* The faces of the largest cluster. */
+/* The faces of the largest cluster, or of the finest level of the root. */
 static size_t most_faces(const packing *p) {
   size_t most = 0;
   for (size_t i = 0; i < p->n_clusters; i++)
     most = p->mesh->starts[i + 1] - p->mesh->starts[i] > most ? p->mesh->starts[i + 1] - p->mesh->starts[i] : most;
-  return most;
+  return p->job->whole.n > 0 && p->job->whole.levels[0].n > most ? p->job->whole.levels[0].n : most;
 }
 
 static void count_cluster(packing *p, uint32_t cluster) {
@@ -59,6 +59,13 @@ static void count_cluster(packing *p, uint32_t cluster) {
   for (int i = 0; i < ways->n_surfels; i++)
     h->n_surfels += ways->surfels[i].n;
   h->n_levels += (uint64_t)(1 + ways->triangles.n + ways->n_surfels);
+}
+
+static void count_whole(packing *p) {
+  const conic_cluster_levels *whole = &p->job->whole;
+  for (int i = 0; i < whole->n; i++)
+    p->header.n_triangles += whole->levels[i].n;
+  p->header.n_levels += (uint64_t)whole->n;
 }
 
 static void count_node(packing *p, size_t node) {
@@ -103,6 +110,7 @@ static conic_status allocate_body(packing *p) {
   }
   for (uint32_t i = 0; i < p->n_clusters; i++)
     count_cluster(p, i);
+  count_whole(p);
   for (size_t i = 0; i < p->job->n_nodes && p->job->node_ways; i++)
     count_node(p, i);
   if (h->n_triangles > UINT32_MAX / 4 || h->n_surfels > UINT32_MAX / 4 || h->n_texels > UINT32_MAX / 4)
@@ -221,9 +229,11 @@ static void put_node(packing *p, cursor *at, size_t i) {
   const conic_node_ways *ways = p->job->node_ways ? &p->job->node_ways[i] : NULL;
   *node = p->job->nodes[i];
   node->first_level = (uint32_t)at->level;
-  node->n_levels = ways ? (uint32_t)ways->n_surfels : 0;
-  for (uint32_t k = 0; k < node->n_levels; k++)
+  for (int k = 0; i == 0 && k < p->job->whole.n; k++)
+    put_triangles(p, at, &p->job->whole.levels[k]);
+  for (int k = 0; ways && k < ways->n_surfels; k++)
     put_surfels(p, at, &ways->surfels[k]);
+  node->n_levels = (uint32_t)at->level - node->first_level;
 }
 
 static void put_vertices(packing *p) {
@@ -313,6 +323,7 @@ static conic_status fill_body(packing *p) {
 
 /* How long the list of vertices is shows only when it is made; so it is counted first. */
 static conic_status count_listed(packing *p) {
+  const conic_cluster_levels *whole = &p->job->whole;
   size_t most = most_faces(p);
   uint32_t(*corners)[3] = conic_memory_allocate(p->job->context, most, sizeof *corners);
   uint32_t(*local)[3] = conic_memory_allocate(p->job->context, most, sizeof *local);
@@ -328,6 +339,9 @@ static conic_status count_listed(packing *p) {
       p->header.n_listed +=
           list_vertices(p, (const uint32_t(*)[3])simpler->levels[k].corners, simpler->levels[k].n, listed, local);
   }
+  for (int k = 0; k < whole->n && status == CONIC_OK; k++)
+    p->header.n_listed +=
+        list_vertices(p, (const uint32_t(*)[3])whole->levels[k].corners, whole->levels[k].n, listed, local);
   conic_memory_release(p->job->context, listed);
   conic_memory_release(p->job->context, local);
   conic_memory_release(p->job->context, corners);

@@ -184,9 +184,9 @@ static void judge_choices(const hybrid_selecting *s) {
     const choice *c = &s->scratch->choices[i];
     const conic_hybrid_node *node = node_of(s, c);
     const conic_hybrid_bound *bound = node ? &node->bound : &s->hybrid->clusters[c->cluster].bound;
-    double error_px = c->level == CONIC_HYBRID_POINT
-                          ? conic_hybrid_point_error_px(&s->camera, node)
-                          : conic_hybrid_error_px(&s->camera, bound, &s->hybrid->levels[c->level]);
+    double error_px = c->level == CONIC_HYBRID_POINT ? conic_hybrid_point_error_px(&s->camera, node)
+                      : node ? conic_hybrid_node_error_px(s->hybrid, &s->camera, node, &s->hybrid->levels[c->level])
+                             : conic_hybrid_error_px(&s->camera, bound, &s->hybrid->levels[c->level]);
     double change = c->level == CONIC_HYBRID_POINT
                         ? conic_hybrid_point_change(&s->camera, node)
                         : conic_hybrid_change(&s->camera, bound, &s->hybrid->levels[c->level]);

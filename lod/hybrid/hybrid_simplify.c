@@ -51,7 +51,7 @@ static void begin_task(void *data, size_t i_place, int i_thread) {
   if (!place->simplifier)
     place->status = conic_simplifier_create(ways->context, ways->mesh, &ways->tree, &place->simplifier);
   if (place->status == CONIC_OK)
-    place->status = conic_region_begin(place->simplifier, &ways->chains, job->starts[i], job->starts[i + 1],
+    place->status = conic_region_begin(place->simplifier, &ways->chains, job->starts[i], job->starts[i + 1], 0,
                                        job->levels + job->starts[i]);
 }
 
@@ -130,5 +130,59 @@ conic_status conic_find_simpler(conic_ways_job *ways) {
   conic_memory_release(context, job.of_cluster);
   conic_memory_release(context, job.levels);
   conic_memory_release(context, job.places);
+  return status;
+}
+
+/* --- all as one --- */
+
+/* What is drawn with more triangles than this has them by cluster. */
+enum { MOST_OF_WHOLE = 16384 };
+
+typedef struct whole_job {
+  conic_ways_job *ways;
+  conic_clustered_mesh mesh; /* its faces lie by cluster, but are of a single one */
+  conic_mesh_clusters one;
+  conic_cluster_chains chains; /* none */
+  conic_simplifier *simplifier;
+} whole_job;
+
+static void measure_whole(void *data, size_t i, int i_thread) {
+  (void)i_thread;
+  conic_region_measure(((whole_job *)data)->simplifier, (uint32_t)i);
+}
+
+static conic_status simplify_whole(whole_job *job) {
+  conic_ways_job *ways = job->ways;
+  uint32_t n = (uint32_t)ways->mesh->clusters->n_clusters, n_pieces;
+  conic_status status = conic_region_begin(job->simplifier, &job->chains, 0, n, MOST_OF_WHOLE, &ways->whole);
+  do {
+    if (status == CONIC_OK)
+      status = conic_region_advance(job->simplifier, &n_pieces);
+    if (status == CONIC_OK)
+      status = conic_parallel_told(ways->context, "sample", 1.0, 1.0, n_pieces, measure_whole, job);
+  } while (status == CONIC_OK && n_pieces > 0);
+  conic_region_end(job->simplifier);
+  return status;
+}
+
+conic_status conic_find_whole(conic_ways_job *ways) {
+  conic_context *context = ways->context;
+  whole_job job = {.ways = ways, .mesh = *ways->mesh, .one = *ways->mesh->clusters};
+  size_t n = ways->mesh->mesh.n_faces;
+  uint32_t region = 0;
+  job.one.of_face = conic_memory_allocate(context, n, sizeof *job.one.of_face);
+  if (!job.one.of_face)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n; i++)
+    job.one.of_face[i] = ways->mesh->clusters->of_face[i] == CONIC_NO_CLUSTER ? CONIC_NO_CLUSTER : 0;
+  job.mesh.clusters = &job.one;
+  conic_status status = conic_cluster_chains_find(context, &job.mesh, &region, &job.chains);
+  if (status == CONIC_OK)
+    status = conic_simplifier_create(context, &job.mesh, &ways->tree, &job.simplifier);
+  if (status == CONIC_OK)
+    status = simplify_whole(&job);
+  conic_simplifier_destroy(job.simplifier);
+  conic_cluster_chains_release(context, &job.chains);
+  conic_memory_release(context, job.one.of_face);
   return status;
 }

@@ -305,8 +305,8 @@ static void test_joined(conic_context *context, const sound_file *sound) {
   check_u32(context, sound, NODE(last, n_levels), n + 1, no_levels);
   if (n > 0)
     check_u32(context, sound, NODE(last, n_levels), n - 1, "levels of no patch or node");
-  check_u32(context, sound, LEVEL(sound->n_levels - 1, kind), CONIC_HYBRID_TRIANGLES,
-            "a node's level that is not surfels");
+  check_u32(context, sound, LEVEL(sound->n_levels - 1, kind), CONIC_HYBRID_TRIANGLES, "a corner out of range");
+  check_u32(context, sound, LEVEL(u32_at(sound, NODE(with, first_level)), n_borders), 1, "a node's level with borders");
   check_f32(context, sound, NODE(0, point.radius), NAN, range);
   check_f32(context, sound, NODE(0, point.radius), -1.0f, range);
   check_f32(context, sound, NODE(last, point.error), INFINITY, range);
