@@ -100,7 +100,10 @@ static conic_status thin(mls_job *job) {
     options.count = job->n_in / THINNED_TO + 1;
   options.max_error = in_world(job, &job->max_error);
   options.is_measured = 1;
-  return conic_surface_thin(job->surface, &options, &job->result, &job->report);
+  conic_status status = conic_surface_thin(job->surface, &options, &job->result, &job->report);
+  return status == CONIC_OK && !job->is_sharp
+             ? cli_mls_size_thinned(job->base.session->context, &job->model, &job->result)
+             : status;
 }
 
 static conic_status densify(mls_job *job) {

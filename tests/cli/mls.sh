@@ -92,6 +92,16 @@ for name in sheet sheet-dense; do
 done
 holds "$(cat sheet-dense.covered) >= 0.98 * $(cat sheet.covered) && $(cat sheet.covered) < 4000"
 
+# Of a wide sheet a tenth covers all of it, and reaches little beyond.
+printf '%s %s 0 0 0 1\n' $(for ((i = 0; i < 900; i++)); do echo $((i % 30)) $((i / 30)); done) > wide.txt
+run 0 mls thin wide.txt --columns x,y,z,nx,ny,nz -o few.ply --count 90
+run 0 prepare wide.txt --columns x,y,z,nx,ny,nz -o wide.ply --plain
+for name in wide few; do
+  run 0 render $name.ply -o $name.pfm --aov Z --samples 1 --size 64x64 --up y --eye 14.5,14.5,50 --fov 50
+  tail -c 16384 $name.pfm | od -An -v -tf4 -w4 | grep -vc -e inf -e ' 0$' > $name.covered
+done
+holds "$(cat few.covered) >= $(cat wide.covered) && $(cat few.covered) <= 1.3 * $(cat wide.covered)"
+
 # What is asked for in vain.
 run 2 mls
 run 2 mls smooth torus.ply -o x.ply
