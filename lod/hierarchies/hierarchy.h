@@ -72,8 +72,8 @@ struct conic_hierarchy_kind {
 enum { CONIC_HIERARCHY_HEAD_BYTES = 429 };
 const conic_hierarchy_kind *conic_hierarchy_kind_of(const char *name, const unsigned char *head, size_t n_head);
 
-/* The file that is opened: `path`, or, where that is a folder with an EPT or a Potree 2 in it, the first of these. 0: it
- * takes more than `room`. */
+/* The file that is opened: `path`, or, where that is a folder with an EPT or a Potree 2 in it, the first of these. 0:
+ * it takes more than `room`. */
 enum { CONIC_HIERARCHY_PATH_ROOM = 4096 };
 int conic_hierarchy_find_file(const char *path, char *file, size_t room);
 
