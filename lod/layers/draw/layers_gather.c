@@ -143,12 +143,19 @@ typedef struct splat_copying {
   float *restrict to_opacity, *restrict to_dot;
   conic_layers_lines *to_lines;
   uint32_t *restrict to_id;
-  float most;        /* no outline is larger */
+  float most;        /* no outline is larger, */
+  float growth;      /* but for this, where not all of the root's samples are drawn */
   const double *eye; /* from the origin; null: nobody looks */
   const conic_layers *layers;
   const uint64_t *keys;
   uint32_t i_cloud;
 } splat_copying;
+
+/* Those that are drawn of a cloud stand for all of its area. */
+static float growth_of(const gather *g, const conic_layers_cloud *cloud) {
+  uint64_t n_root = g->asked->cut->n_root;
+  return n_root > 0 && n_root < cloud->count ? (float)sqrt((double)cloud->count / (double)n_root) : 1.0f;
+}
 
 static splat_copying begin_copy(const gather *g, const conic_layers_piece *piece) {
   const conic_splats *to = &g->set->splats;
@@ -165,6 +172,7 @@ static splat_copying begin_copy(const gather *g, const conic_layers_piece *piece
                      .to_lines = cloud->lines ? g->set->lines + at : NULL,
                      .to_id = g->set->ids + at,
                      .most = is_from_above ? conic_layers_octree_outline(g->layers, node) : INFINITY,
+                     .growth = growth_of(g, cloud),
                      .eye = g->asked->view ? g->asked->view->from.eye : NULL,
                      .layers = g->layers,
                      .keys = cloud->keys + from,
@@ -212,7 +220,7 @@ static inline void set_axes(const splat_copying *c, size_t i, size_t k, float si
 
 static inline float drawn_sigma(const splat_copying *c, size_t i) {
   float outline = conic_layers_outline(c->entry, c->outline ? c->outline[i] : 0.0f);
-  return (outline < c->most ? outline : c->most) / c->cutoff;
+  return c->growth * (outline < c->most ? outline : c->most) / c->cutoff;
 }
 
 static void copy_values(const gather *g, const conic_layers_cloud *cloud, size_t i_cloud, size_t k) {
@@ -225,8 +233,8 @@ static void copy_payload(const splat_copying *c, size_t i_cloud, size_t k) {
   const conic_layers_cloud *cloud = c->cloud;
   int is_full = c->entry->child == 0;
   for (int axis = 0; axis < 3 && is_full; axis++) {
-    c->to_u[axis][k] = cloud->axis[axis][i_cloud];
-    c->to_v[axis][k] = cloud->axis[3 + axis][i_cloud];
+    c->to_u[axis][k] = c->growth * cloud->axis[axis][i_cloud];
+    c->to_v[axis][k] = c->growth * cloud->axis[3 + axis][i_cloud];
   }
   if (c->to_opacity)
     c->to_opacity[k] = cloud->opacity[i_cloud];

@@ -153,6 +153,7 @@ static void check_choice(void) {
     CHECK(layers_same_picture(&frame.f.image, &other.f.image));
     layers_close(&other);
   }
+  uint64_t n_covered = UINT64_MAX;
   for (uint64_t budget = 1; budget < 70; budget += 17) { /* fewer than the coarsest cloud has */
     layers_frame other = layers_open(7, path, NULL);
     frame.draw.budget = other.draw.budget = budget;
@@ -161,6 +162,8 @@ static void check_choice(void) {
     CHECK(frame.f.statistics.splats_in == (budget < 69 ? budget : 69));
     CHECK(layers_same_picture(&frame.f.image, &other.f.image));
     layers_close(&other);
+    CHECK(frame.f.statistics.pixels_covered <= n_covered); /* fewer splats are larger, and leave no holes */
+    n_covered = frame.f.statistics.pixels_covered;
   }
   frame.draw.budget = 0;
   for (int level = 1; level < 5; level++) {
