@@ -186,7 +186,7 @@ static int check(conic_context *context, const seed *from, const unsigned char *
 #ifdef __SANITIZE_ADDRESS__
 enum { N_PLACES = 100, N_CUTS = 200 };
 #else
-enum { N_PLACES = 500, N_CUTS = 2000 };
+enum { N_PLACES = 250, N_CUTS = 1000 };
 #endif
 
 static void test_cut(conic_context *context, const seed *from) {
