@@ -20,23 +20,18 @@ static int is_kept(const conic_splats *splats, size_t splat, double u, double v)
   return clip->operation == CONIC_CLIP_OR ? n_keeping > 0 : n_keeping == clip->n_lines;
 }
 
-/* Whether a splat, whose centre is at `to` from the place, is within most_off of that; where that is not asked for,
- * whether the place is in the middle of the splat, which covers the cell that it was made for. */
+/* Whether a splat, whose centre is at `to` from the place, is within most_off of that. */
 static int is_at_splat(const conic_patches *patches, size_t splat, const double to[3]) {
   const conic_splats *splats = &patches->splats;
-  double u[3], v[3], normal[3],
-      most_off = patches->options.most_off,
-      limit = (double)patches->options.cutoff * (most_off > 0.0 ? 1.0 : CONIC_PATCH_LEAST_SHARE);
+  double u[3], v[3], normal[3], limit = (double)patches->options.cutoff;
   for (int axis = 0; axis < 3; axis++) {
     u[axis] = (double)splats->tangent_u[axis][splat];
     v[axis] = (double)splats->tangent_v[axis][splat];
   }
   double along = -conic_dot(to, u) / conic_dot(u, u), across = -conic_dot(to, v) / conic_dot(v, v);
   conic_cross(u, v, normal);
-  if (!(along * along + across * across <= limit * limit))
-    return 0;
-  return !(most_off > 0.0) ||
-         (conic_normalize(normal) && fabs(conic_dot(to, normal)) <= most_off && is_kept(splats, splat, along, across));
+  return along * along + across * across <= limit * limit && conic_normalize(normal) &&
+         fabs(conic_dot(to, normal)) <= patches->options.most_off && is_kept(splats, splat, along, across);
 }
 
 static double height_at(const conic_fit *fit, int degree, double x, double y) {
@@ -72,8 +67,7 @@ static int is_at_points(const conic_patches *patches, const conic_workspace *wor
 
 int conic_patch_stays_at_points(const conic_patches *patches, const conic_workspace *workspace, int degree, double h,
                                 double radius) {
-  int n_places = patches->options.most_off > 0.0 ? 17 : 8; /* a rim without gaps has none within */
-  for (int i = 0; i < n_places; i++) {
+  for (int i = 0; i < 17; i++) {
     double share = i < 8 ? 1.0 : i < 16 ? 0.5 : 0.0;
     if (!is_at_points(patches, workspace, degree, h, share * radius / h * conic_eight_directions[i % 8][0],
                       share * radius / h * conic_eight_directions[i % 8][1]))

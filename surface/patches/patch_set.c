@@ -15,9 +15,9 @@ enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
 /* What a sample's error may grow to at a patch's rim, squared, and how steep the patch may be there. */
 static const double MOST_GAIN = 4.0, MOST_SLOPE = 3.0;
 
-/* A patch that is not sound to its rim is made smaller in such steps, down to the least share of its splat's outline.
- */
-static const double SHRINKAGE = 0.85;
+/* A patch that is not sound to its rim is made smaller in such steps, down to this share of its splat's outline: there
+ * it just covers the cell of the tangent plane that the splat was made for. */
+static const double SHRINKAGE = 0.85, LEAST_SHARE = 0.6;
 
 void conic_patches_options_init_sized(conic_patches_options *options, size_t size) {
   conic_patches_options own = {.size = sizeof own, .cutoff = 1.5f, .step_px = 2.0};
@@ -102,18 +102,14 @@ static int is_sound(const conic_fit *fit, int degree, double radius) {
   return 1;
 }
 
-/* The greatest radius on which the polynomial is sound and stays at the points, of so many steps from `radius` down to
- * `least`; where it may be any distance off them, else the least sound one. 0: none. */
+/* The greatest radius on which the polynomial is sound, of so many steps from `radius` down to `least`; 0: none. */
 static double sound_radius(const conic_patches *patches, const conic_workspace *workspace, int degree, double h,
                            double radius, double least) {
-  double least_sound = 0.0;
   for (; radius >= least; radius *= SHRINKAGE)
-    if (is_sound(&workspace->fit, degree, radius / h)) {
-      if (conic_patch_stays_at_points(patches, workspace, degree, h, radius))
-        return radius;
-      least_sound = radius;
-    }
-  return patches->options.most_off > 0.0 ? 0.0 : least_sound;
+    if (is_sound(&workspace->fit, degree, radius / h) &&
+        (!(patches->options.most_off > 0.0) || conic_patch_stays_at_points(patches, workspace, degree, h, radius)))
+      return radius;
+  return 0.0;
 }
 
 /* The patch of a fit about r; `sign` -1 turns it over, by mirroring it along its first axis. */
@@ -161,9 +157,9 @@ static void lay_patch(laying *work, size_t slot, conic_workspace *workspace) {
   conic_fit *fit = &workspace->fit;
   for (int axis = 0; axis < 3; axis++)
     turn += (double)surface->normal[axis][slot] * fit->frame[2][axis];
-  double radius = radius_of(workspace, h), least = CONIC_PATCH_LEAST_SHARE * outline;
+  double radius = radius_of(workspace, h), least = LEAST_SHARE * outline;
   radius = radius > least ? radius : least;
-  for (int degree = surface->options.degree; degree > 0; degree--) {
+  for (int degree = surface->options.degree; degree > 1; degree--) { /* a plane is what the splat has */
     conic_fit_solve(fit, degree);
     double sound = sound_radius(patches, workspace, degree, h, radius, least);
     if (!(sound > 0.0))

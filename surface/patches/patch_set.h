@@ -48,12 +48,8 @@ void conic_patches_plan(conic_patches *patches, const conic_patches_view *view, 
 /* Unit vectors, 45° apart. */
 extern const double conic_eight_directions[8][2];
 
-/* This share of a splat's outline just covers the cell of the tangent plane that the splat was made for. */
-#define CONIC_PATCH_LEAST_SHARE 0.6
-
 /* Whether the polynomial of the workspace's fit, on a circle, on one half as large and in the middle, is within the
- * options' most_off of the splats of the points that it was fitted to; without most_off, whether its circle ends at
- * places in the middle of such splats. */
+ * options' most_off of the splats of the points that it was fitted to. */
 int conic_patch_stays_at_points(const conic_patches *patches, const conic_workspace *workspace, int degree, double h,
                                 double radius);
 

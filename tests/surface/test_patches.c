@@ -432,38 +432,6 @@ static void test_staying(fixture *f) {
   CHECK(n_patches[0] == 3000 && n_patches[1] == 0 && n_patches[2] == 3000);
 }
 
-/* A sheet: its border has patches too, and none reaches as far beyond as its splats do. */
-static void test_border(fixture *f) {
-  enum { SIDE = 20 };
-  static const double center[3] = {9.5, 9.5, 0.0}, direction[3] = {0.0, 0.0, -1.0};
-  conic_patches_report report;
-  conic_estimate_options options;
-  conic_model model = {.points = shape_allocate(f->context, (size_t)SIDE * SIDE, 0)};
-  double farthest = 0.0, farthest_splat = 0.0;
-  for (int i = 0; i < SIDE * SIDE; i++) {
-    model.points.position[0][i] = (float)(i % SIDE);
-    model.points.position[1][i] = (float)(i / SIDE);
-    model.points.position[2][i] = 0.0f;
-  }
-  conic_estimate_options_init(&options);
-  CHECK_OK(conic_model_to_splats(f->context, &options, &model, NULL));
-  for (int i = 0; i < SIDE * SIDE; i++)
-    farthest_splat = fmax(farthest_splat, 1.5 * fmax(fabs((double)model.points.tangent_u[0][i]),
-                                                     fabs((double)model.points.tangent_v[0][i])) -
-                                              model.points.position[0][i]);
-  conic_patches *patches = lay(f, &model.points, CONIC_ISA_AUTO);
-  conic_patches_describe(patches, &report);
-  CHECK(report.n_patches == SIDE * SIDE);
-  look_at(f, center, direction, 20.0, 130.0);
-  conic_patch_selection selection = draw(f, patches);
-  for (size_t i = 0; i < selection.splats.count; i++)
-    farthest = fmax(farthest, -(double)selection.splats.position[0][i]);
-  printf("a sheet: samples %.2f spacings beyond the border, splats %.2f\n", farthest, farthest_splat);
-  CHECK(selection.n_splats == 0 && farthest > 0.3 && farthest < 0.75 * farthest_splat);
-  conic_patches_destroy(patches);
-  conic_splats_release(f->context, &model.points);
-}
-
 static void test_refusals(const fixture *f) {
   conic_patches_options options;
   conic_patches *patches;
@@ -495,7 +463,6 @@ int main(void) {
   test_culling(&f);
   test_failures(&f);
   test_staying(&f);
-  test_border(&f);
   test_refusals(&f);
   fixture_close(&f);
   return check_result();
