@@ -1,5 +1,5 @@
-/* conic chart: every method and kernel on every scene, every representation of a mesh, or every profile of a Gaussian
- * scene: its error over its time. */
+/* conic chart: every method and kernel on every scene, every representation of a mesh, every profile of a Gaussian
+ * scene, or any scene along its options: its error over its time. */
 #include "bench/chart.h"
 
 #include <errno.h>
@@ -7,13 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/bench.h"
+#include "bench/chart_axes.h"
 #include "bench/chart_gaussians.h"
 #include "bench/chart_mesh.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
-#include "cli/shell.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
@@ -44,6 +45,7 @@ typedef struct chart_job {
   int is_quick, only; /* -1: both */
   cli_mesh_chart mesh;
   cli_gaussian_chart gaussians; /* with a path, it is all that is charted */
+  cli_axis_chart scenes;        /* likewise */
   conic_renderer *renderer;
   int size, repeat; /* of the pictures, and frames that are timed */
   cli_chart_point points[N_POINTS];
@@ -330,27 +332,13 @@ static conic_status write_tables(const chart_job *job) {
   return status == CONIC_OK && job->only != ONLY_REPRESENTATIONS ? write_table(job) : status;
 }
 
-static void warn_of_plots(const chart_job *job) {
-  fprintf(stderr, "conic: warning: %s: no picture, as there is no gnuplot here or it failed; the table is there\n",
-          job->folder);
-}
-
-static int draw_charts(const chart_job *job) {
-  int is_drawn = 1;
+static conic_status draw_charts(const chart_job *job) {
   conic_status status = CONIC_OK;
   if (job->only != ONLY_METHODS)
-    status = cli_mesh_chart_write_script(job->session, job->folder, &job->mesh);
+    status = cli_mesh_chart_draw(job->session, job->folder, &job->mesh);
   if (status == CONIC_OK && job->only != ONLY_REPRESENTATIONS)
-    status = cli_chart_write_script(job->session, job->folder, job->points, job->n_points);
-  if (status != CONIC_OK)
-    return cli_exit_of(status);
-  if (job->only != ONLY_METHODS)
-    is_drawn = cli_shell_run(job->folder, "gnuplot", "representations.gp");
-  if (is_drawn && job->only != ONLY_REPRESENTATIONS)
-    is_drawn = cli_shell_run(job->folder, "gnuplot", "chart.gp");
-  if (!is_drawn)
-    warn_of_plots(job);
-  return CLI_DONE;
+    status = cli_chart_draw(job->session, job->folder, job->points, job->n_points);
+  return status;
 }
 
 static int is_told(const cli_session *session) {
@@ -359,9 +347,10 @@ static int is_told(const cli_session *session) {
 
 static int write_all(const chart_job *job) {
   conic_status status = write_tables(job);
-  int exit_code = status == CONIC_OK ? draw_charts(job) : cli_exit_of(status);
-  if (exit_code != CLI_DONE || !is_told(job->session))
-    return exit_code;
+  if (status == CONIC_OK)
+    status = draw_charts(job);
+  if (status != CONIC_OK || !is_told(job->session))
+    return cli_exit_of(status);
   if (job->only != ONLY_REPRESENTATIONS)
     print_fronts(job);
   if (job->only != ONLY_METHODS)
@@ -375,9 +364,10 @@ static int write_statistics(const chart_job *job, double seconds) {
   cli_json *json = cli_json_open(job->session, &file, &exit_code);
   if (!json)
     return exit_code;
-  cli_json_count(json, "scenes", job->gaussians.path ? 1 : CLI_N_CHART_SCENES);
-  cli_json_count(json, "methods", job->gaussians.path ? 0 : CONIC_N_METHODS);
-  cli_json_count(json, "points", (uint64_t)job->n_points);
+  const int n_named = job->gaussians.path ? 1 : job->scenes.n_paths;
+  cli_json_count(json, "scenes", (uint64_t)(n_named ? n_named : CLI_N_CHART_SCENES));
+  cli_json_count(json, "methods", n_named ? 0 : CONIC_N_METHODS);
+  cli_json_count(json, "points", (uint64_t)(job->n_points + job->scenes.n_points));
   cli_json_count(json, "representation_points", (uint64_t)job->mesh.n_sizes * CLI_N_CHART_MODELS);
   if (job->gaussians.path)
     cli_gaussian_chart_report(json, &job->gaussians);
@@ -400,11 +390,18 @@ static int chart_gaussians(chart_job *job) {
     status = cli_gaussian_chart_write(job->session, job->folder, &job->gaussians);
   if (status != CONIC_OK)
     return cli_exit_of(status);
-  if (!cli_shell_run(job->folder, "gnuplot", "profiles.gp"))
-    warn_of_plots(job);
   if (is_told(job->session))
     cli_gaussian_chart_print(&job->gaussians);
   return CLI_DONE;
+}
+
+static int chart_scenes(chart_job *job) {
+  int exit_code = cli_axis_chart_measure(job->session, &job->scenes);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_exit_of(cli_axis_chart_write(job->session, job->folder, &job->scenes));
+  if (exit_code == CLI_DONE && is_told(job->session))
+    cli_axis_chart_print(&job->scenes);
+  return exit_code;
 }
 
 static int chart_methods(chart_job *job) {
@@ -421,8 +418,27 @@ static int chart(chart_job *job) {
   exit_code = make_folder(job->folder);
   if (exit_code != CLI_DONE)
     return exit_code;
-  exit_code = job->gaussians.path ? chart_gaussians(job) : chart_methods(job);
+  exit_code = job->gaussians.path       ? chart_gaussians(job)
+              : job->scenes.n_paths > 0 ? chart_scenes(job)
+                                        : chart_methods(job);
   return exit_code == CLI_DONE ? write_statistics(job, cli_seconds() - start) : exit_code;
+}
+
+/* A Gaussian scene alone is charted by its profiles. */
+static void take_scenes(chart_job *job, const char *const *paths, int n_paths) {
+  for (int i = 0; i < 2; i++) {
+    job->gaussians.size[i] = job->gaussians.size[i] ? job->gaussians.size[i] : job->size;
+    job->scenes.size[i] = job->gaussians.size[i];
+  }
+  job->scenes.is_quick = job->is_quick;
+  job->scenes.camera_path = job->gaussians.camera_path;
+  job->scenes.view = job->gaussians.view;
+  if (n_paths == 1 && !job->scenes.over && cli_bench_is_gaussian_file(paths[0])) {
+    job->gaussians.path = paths[0];
+    return;
+  }
+  job->scenes.paths = paths;
+  job->scenes.n_paths = n_paths;
 }
 
 static int run_chart(cli_session *session, int argc, char **argv) {
@@ -434,24 +450,29 @@ static int run_chart(cli_session *session, int argc, char **argv) {
   job->session = session;
   job->only = -1;
   job->gaussians.most_pixels = 1000;
+  job->scenes.truth_samples = 8;
   const cli_option options[] = {
       {"o", CLI_TEXT, &job->folder, "DIR", "the folder of the chart"},
       {"quick", CLI_FLAG, &job->is_quick, NULL, "a small chart in seconds, to try it"},
       {"only", CLI_CHOICE, &job->only, "CHART", "methods or representations [both]", .choices = only_words},
       {"mesh", CLI_TEXT, &job->mesh.path, "MESH", "whose representations are charted [a generated terrain]"},
-      {"camera", CLI_TEXT, &job->gaussians.camera_path, "FILE", "of the Gaussian SCENE [framed as by conic render]"},
+      {"over", CLI_TEXT, &job->scenes.over, "AXES",
+       "of a SCENE: method, kernel, prefilter, samples, passes, error, budget, as, isa, device; with commas between, "
+       "each perhaps with =VALUE:VALUE... [what fits]"},
+      {"truth", CLI_INT, &job->scenes.truth_samples, "N",
+       "samples along a pixel's edge in the picture that a SCENE's are compared with [8]", 1, CONIC_MAX_SAMPLES},
+      {"camera", CLI_TEXT, &job->gaussians.camera_path, "FILE", "of a SCENE [framed as by conic render]"},
       {"view", CLI_TEXT, &job->gaussians.view, "VIEW", "which of its cameras: a name or an index"},
-      {"size", CLI_SIZE, job->gaussians.size, "WxH", "of the SCENE's pictures, without a camera [640x640]", 1, 65535},
+      {"size", CLI_SIZE, job->gaussians.size, "WxH", "of a SCENE's pictures [640x640]", 1, 65535},
       {"pixels", CLI_INT, &job->gaussians.most_pixels, "N",
-       "of the SCENE: where to find the truth, which is slow, at most [1000]", 1, 1 << 24},
+       "of a Gaussian SCENE: where to find the truth, which is slow, at most [1000]", 1, 1 << 24},
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
-  job->gaussians.path = exit_code == CLI_DONE && n_positional ? positional[0] : NULL;
-  if (exit_code == CLI_DONE && n_positional > 1)
-    exit_code = cli_usage("chart: %s is too much; see conic help chart", positional[1]);
-  else if (exit_code == CLI_DONE && n_positional && (job->only >= 0 || job->mesh.path))
-    exit_code = cli_usage("chart: of a Gaussian scene there is one chart, without --only and --mesh");
+  if (exit_code == CLI_DONE && n_positional && (job->only >= 0 || job->mesh.path))
+    exit_code = cli_usage("chart: of a scene there is one chart, without --only and --mesh");
+  else if (exit_code == CLI_DONE && !n_positional && job->scenes.over)
+    exit_code = cli_usage("chart: --over is for scenes; name one");
   else if (exit_code == CLI_DONE && !job->folder)
     exit_code = cli_usage("chart: no folder; give one with -o DIR");
   else if (exit_code == CLI_DONE)
@@ -459,21 +480,24 @@ static int run_chart(cli_session *session, int argc, char **argv) {
   job->size = job->is_quick ? 96 : 640;
   job->repeat = job->is_quick ? 2 : 15;
   job->mesh.is_quick = job->gaussians.is_quick = job->is_quick;
-  for (int i = 0; i < 2; i++)
-    job->gaussians.size[i] = job->gaussians.size[i] ? job->gaussians.size[i] : job->size;
+  take_scenes(job, positional, exit_code == CLI_DONE ? n_positional : 0);
   if (exit_code == CLI_DONE && job->folder)
     exit_code = chart(job);
+  free(job->scenes.points);
   free(job);
   return exit_code < 0 ? CLI_DONE : exit_code;
 }
 
 const cli_command cli_chart = {
     .name = "chart",
-    .summary =
-        "charts error over time: of methods and kernels, of what draws a mesh, or of a Gaussian scene's profiles",
-    .usage = "conic chart [SCENE] -o DIR [--only methods|representations] [--mesh MESH] [--quick]",
+    .summary = "charts error over time: of methods and kernels, of what draws a mesh, or of your own scenes",
+    .usage = "conic chart [SCENE...] -o DIR [--over AXES] [--only methods|representations] [--mesh MESH] [--quick]",
     .run = run_chart,
     .description = "Draws the same scenes in every way, measures time and error, and writes charts and tables into a "
-                   "folder.",
-    .examples = {{"try it", "conic chart --quick -o chart"}},
+                   "folder: what is best for its time. Of a SCENE, each axis is an option that trades one for the "
+                   "other, and the truth is the first SCENE in full detail, supersampled. A Gaussian "
+                   "SCENE alone is charted by its profiles.",
+    .examples = {{"try it", "conic chart --quick -o chart"},
+                 {"what a scan's level of detail costs and loses",
+                  "conic chart scan.cot -o chart --over error=1:2:4:8,budget"}},
 };

@@ -4,7 +4,6 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #if defined(__GLIBC__)
@@ -85,21 +84,6 @@ int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *p
       break;
   globfree(&found);
   return result != GLOB_NOSPACE;
-}
-
-int cli_shell_run(const char *folder, const char *program, const char *argument) {
-  int status;
-  pid_t child = fork();
-  if (child < 0)
-    return 0;
-  if (child == 0) {
-    if (chdir(folder) == 0)
-      execlp(program, program, argument, (char *)NULL);
-    _exit(127);
-  }
-  while (waitpid(child, &status, 0) < 0)
-    ;
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 FILE *cli_shell_open_memory(char **bytes, size_t *n_bytes) {

@@ -155,24 +155,6 @@ int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *p
   return 1;
 }
 
-int cli_shell_run(const char *folder, const char *program, const char *argument) {
-  char line[256];
-  wchar_t wide_line[256], wide_folder[4096];
-  STARTUPINFOW how = {.cb = sizeof how};
-  PROCESS_INFORMATION child;
-  DWORD code = 1;
-  if (snprintf(line, sizeof line, "\"%s\" \"%s\"", program, argument) >= (int)sizeof line ||
-      !MultiByteToWideChar(CP_UTF8, 0, line, -1, wide_line, 256) ||
-      !MultiByteToWideChar(CP_UTF8, 0, folder, -1, wide_folder, 4096) ||
-      !CreateProcessW(NULL, wide_line, NULL, NULL, FALSE, 0, NULL, wide_folder, &how, &child))
-    return 0;
-  WaitForSingleObject(child.hProcess, INFINITE);
-  int is_content = GetExitCodeProcess(child.hProcess, &code) && code == 0;
-  CloseHandle(child.hThread);
-  CloseHandle(child.hProcess);
-  return is_content;
-}
-
 /* By way of a file. */
 FILE *cli_shell_open_memory(char **bytes, size_t *n_bytes) {
   *bytes = NULL;
