@@ -208,6 +208,13 @@ conic_status cli_bench_camera_read(cli_session *session, const char *path, const
   return status;
 }
 
+int cli_bench_file_chooses(const char *path, int has_errors) {
+  conic_source_options options;
+  conic_source_options_init(&options);
+  unsigned abilities = conic_source_abilities(&path, 1, &options);
+  return (abilities & CONIC_SOURCE_CLUSTERS) || (has_errors && (abilities & CONIC_SOURCE_CHOOSES));
+}
+
 static conic_status read_bench_file(cli_session *session, const char *path, const cli_bench_look *look,
                                     cli_bench_scene *scene) {
   conic_source_options options;
@@ -215,15 +222,11 @@ static conic_status read_bench_file(cli_session *session, const char *path, cons
   snprintf(scene->name, sizeof scene->name, "%.31s", conic_file_name(path));
   if (cli_bench_is_gaussian_file(path))
     return cli_bench_gaussians_read(session, path, look, scene);
-  options.is_whole = 1;
+  options.is_whole = !look->chooses;
   scene->cull_back = look->culls_back;
   scene->is_framed = !look->camera_path;
   scene->has_camera = look->camera_path != NULL;
   conic_status status = CONIC_OK;
-  if (conic_source_abilities(&path, 1, &options) & CONIC_SOURCE_CLUSTERS) {
-    cli_error(CLI_USAGE, "%s: hybrid models are measured by conic render --repeat", path);
-    return CONIC_ERROR_ARGUMENT;
-  }
   if (look->camera_path)
     status = cli_bench_camera_read(session, look->camera_path, look->view, &scene->camera);
   return status == CONIC_OK ? conic_source_open(session->context, &path, 1, &options, &scene->source) : status;
@@ -250,7 +253,7 @@ int cli_bench_scene_open(cli_session *session, const char *name, const cli_bench
   if (exit_code != CLI_DONE)
     return exit_code;
   conic_status status = look ? read_bench_file(session, name, look, scene) : make(session, &w, name, scene);
-  if (status == CONIC_OK && !scene->is_gaussian)
+  if (status == CONIC_OK && !scene->is_gaussian && !(look && look->chooses))
     scene->splats = conic_source_chosen(scene->source)->drawing.splats;
   return cli_exit_of(status);
 }
@@ -278,6 +281,11 @@ void cli_bench_camera_resize(conic_camera *camera, int width, int height) {
   camera->fy *= factor;
   camera->width = width;
   camera->height = height;
+}
+
+void cli_bench_scene_turn(const cli_bench_scene *scene, double turns, conic_camera *camera) {
+  const conic_source_scale *scale = conic_source_measure(scene->source);
+  cli_camera_orbit(scale, scale->up, turns, camera);
 }
 
 conic_status cli_bench_scene_camera(const cli_bench_scene *scene, int width, int height, conic_camera *camera) {

@@ -22,6 +22,12 @@ int cli_shell_columns(void);
 /* The most memory that this process has held, as the system counts it. */
 unsigned long long cli_shell_peak_bytes(void);
 
+/* The seconds that processors have worked for this process, on all threads. */
+double cli_shell_cpu_seconds(void);
+
+/* What the processor and the system call themselves; "unknown" where they do not say. */
+void cli_shell_name_host(char *processor, size_t processor_room, char *system, size_t system_room);
+
 /* From now on, what is released of more than 128 KiB goes back to the system at once, where it would else be kept. */
 void cli_shell_give_back_memory(void);
 

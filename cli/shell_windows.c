@@ -88,6 +88,20 @@ int cli_shell_columns(void) {
              : 80;
 }
 
+double cli_shell_cpu_seconds(void) {
+  FILETIME begun, ended, kernel, user;
+  if (!GetProcessTimes(GetCurrentProcess(), &begun, &ended, &kernel, &user))
+    return 0.0;
+  return 429.4967296 * ((double)kernel.dwHighDateTime + (double)user.dwHighDateTime) +
+         1e-7 * ((double)kernel.dwLowDateTime + (double)user.dwLowDateTime);
+}
+
+void cli_shell_name_host(char *processor, size_t processor_room, char *system, size_t system_room) {
+  const char *name = getenv("PROCESSOR_IDENTIFIER"), *kind = getenv("PROCESSOR_ARCHITECTURE");
+  snprintf(processor, processor_room, "%s", name ? name : "unknown");
+  snprintf(system, system_room, "Windows, %s", kind ? kind : "unknown");
+}
+
 unsigned long long cli_shell_peak_bytes(void) {
   PROCESS_MEMORY_COUNTERS held;
   return GetProcessMemoryInfo(GetCurrentProcess(), &held, sizeof held) ? held.PeakWorkingSetSize : 0;
