@@ -87,7 +87,7 @@ declare -A wanted=(
   [judge-gradients]="verdict profile parameters gaussians.equal gaussians.rounding gaussians.explained gaussians.wrong
     kinds.mean.wrong? kinds.sh.max_abs? worst ms.judge"
   [chart]="scenes methods points seconds"
-  [bench]="lines wrong_pictures peak_rss_bytes machine?"
+  [bench]="host lines wrong_pictures peak_rss_bytes machine?"
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
   [info-octree]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound?"
   [info-gaussians]="kind gaussians sh_degree 2d antialiased bytes? bounds.min bounds.max sound?"
@@ -186,6 +186,7 @@ write chart chart chart -o chart --quick --only representations
 write bench-old bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5
 cp runs/bench-old.json old.json
 write bench bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5 --floor --compare old.json
+write bench-chosen bench bench knot.cot --error 2 --size 64x48 --threads 1 --repeat 1
 write info info_model info knot.ply --check
 write info-mesh info_model info triangle.obj
 write info-far info_model info far.xyz --check
