@@ -108,9 +108,9 @@ typedef struct cli_bench_line {
   conic_isa isa;
   cli_device *device; /* null: this machine's processor */
   int threads, width, height;
-  int chooses; /* the frame chooses what it draws … */
+  int chooses;     /* the frame chooses what it draws … */
   double error_px; /* … within this error; 0: all there is, a hybrid as built */
-  int n_turns; /* a warm frame from each of so many directions about the scene; 0: all from one */
+  int n_turns;     /* a warm frame from each of so many directions about the scene; 0: all from one */
 
   /* What came of it. */
   conic_render_statistics statistics; /* ms are medians over the warm frames; of a turntable means */

@@ -191,8 +191,7 @@ static int append_device_line(cli_bench_job *job, int i_scene, int i_method, con
 }
 
 /* A line an error of what chooses, and else one. */
-static int append_errors(cli_bench_job *job, int i_scene, int i_method, conic_isa isa, int threads,
-                         const int size[2]) {
+static int append_errors(cli_bench_job *job, int i_scene, int i_method, conic_isa isa, int threads, const int size[2]) {
   int exit_code = CLI_DONE;
   for (int e = 0; e < (job->chooses[i_scene] ? job->n_errors : 1) && exit_code == CLI_DONE; e++) {
     exit_code = append_line(job, i_scene, i_method, isa, threads, size);

@@ -32,10 +32,10 @@ void cli_bench_print_line(const cli_bench_line *line) {
   const conic_render_statistics *s = &line->statistics;
   const conic_render_milliseconds *ms = &s->ms;
   printf("%-34s %8.2f %8.2f %8.2f  %7.2f %7.2f %6.2f %7.2f %7.2f %7.2f  %8.2f %7.2f %8.1f %6.1f%s\n", line->name,
-         line->first_ms, ms->frame, line->cpu_ms, ms->lod, ms->setup, ms->bin, ms->visibility, ms->accumulate, ms->resolve,
-         millions_per_s((double)s->splats_in, ms->frame), millions_per_s((double)s->splats_drawn, ms->frame),
-         millions_per_s((double)s->fragments, ms->frame), overdraw(s),
-         line->i_wrong_plane >= 0 ? "  WRONG PICTURE" : "");
+         line->first_ms, ms->frame, line->cpu_ms, ms->lod, ms->setup, ms->bin, ms->visibility, ms->accumulate,
+         ms->resolve, millions_per_s((double)s->splats_in, ms->frame),
+         millions_per_s((double)s->splats_drawn, ms->frame), millions_per_s((double)s->fragments, ms->frame),
+         overdraw(s), line->i_wrong_plane >= 0 ? "  WRONG PICTURE" : "");
   fflush(stdout);
 }
 

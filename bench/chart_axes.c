@@ -6,6 +6,7 @@
 
 #include "bench/bench.h"
 #include "cli/arguments.h"
+#include "core/base/message.h"
 #include "core/image/image_common.h"
 
 enum { N_REPRESENTATIONS = 3 };
@@ -115,7 +116,23 @@ static const chart_axis axes[CLI_N_CHART_AXES] = {
 };
 
 const char *cli_chart_axis_name(int i_axis) {
-  return i_axis >= 0 && i_axis < CLI_N_CHART_AXES ? axes[i_axis].name : NULL;
+  return i_axis >= 0 && i_axis < CLI_N_CHART_AXES ? axes[i_axis].name : "beside";
+}
+
+int cli_chart_parse_beside(const char *text, void *beside) {
+  cli_charts_beside *all = beside;
+  cli_chart_beside *next = &all->pictures[all->n];
+  char number[32];
+  size_t name = strcspn(text, "="), digits = text[name] ? strcspn(text + name + 1, ":") : 0;
+  const char *path = text + name + 1 + digits;
+  if (all->n == CLI_MOST_BESIDE || name == 0 || name >= sizeof next->name || digits == 0 || digits >= sizeof number ||
+      path[0] != ':' || !path[1])
+    return 0;
+  snprintf(next->name, sizeof next->name, "%.*s", (int)name, text);
+  snprintf(number, sizeof number, "%.*s", (int)digits, text + name + 1);
+  next->path = path + 1;
+  all->n += cli_parse_number(number, &next->ms) && next->ms > 0.0;
+  return next->ms > 0.0;
 }
 
 /* An axis that was asked for. */
@@ -228,7 +245,8 @@ static int append_axis_point(axis_job *job, int i_scene, int i_axis, const char 
   *point = (cli_axis_point){.i_scene = i_scene, .i_axis = i_axis, .ms = HUGE_VAL};
   snprintf(point->value, sizeof point->value, "%s", value);
   settings[chart->n_points] = job->plain;
-  if (strlen(value) >= sizeof point->value || !axes[i_axis].set(point->value, &settings[chart->n_points]))
+  if (i_axis < CLI_N_CHART_AXES &&
+      (strlen(value) >= sizeof point->value || !axes[i_axis].set(point->value, &settings[chart->n_points])))
     return cli_usage("chart: --over %s: %s is no value of it", axes[i_axis].name, value);
   chart->n_points++;
   return CLI_DONE;
@@ -289,6 +307,8 @@ static int plan_axes(axis_job *job) {
     if (exit_code == CLI_DONE)
       exit_code = plan_chart_scene(job, i, conic_source_measure(source));
   }
+  for (int i = 0; i < job->chart->beside.n && exit_code == CLI_DONE; i++)
+    exit_code = append_axis_point(job, 0, CLI_N_CHART_AXES, job->chart->beside.pictures[i].name);
   return exit_code;
 }
 
@@ -343,14 +363,42 @@ static conic_status measure_axis_point(axis_job *job, int i, int repeat) {
   return status;
 }
 
+/* Pictures of others are read, not drawn. */
+static conic_status measure_beside(axis_job *job, cli_axis_point *point, const cli_chart_beside *beside) {
+  conic_context *context = job->session->context;
+  conic_image drawn = job->image;
+  conic_status status = conic_image_read(context, beside->path, &job->image);
+  if (status != CONIC_OK) {
+    job->image = drawn;
+    return status;
+  }
+  point->ms = beside->ms;
+  if (!job->image.planes[CONIC_PLANE_RGBA] || job->image.width != drawn.width || job->image.height != drawn.height)
+    status = conic_fail(context, CONIC_ERROR_INPUT, "%s: is no colour picture of %d x %d pixels", beside->path,
+                        drawn.width, drawn.height);
+  else
+    status = compare_axis_point(job, point);
+  conic_image_release(context, &job->image);
+  job->image = drawn;
+  return status;
+}
+
+static conic_status measure_all_beside(axis_job *job) {
+  const cli_charts_beside *beside = &job->chart->beside;
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < beside->n && status == CONIC_OK; i++)
+    status = measure_beside(job, &job->chart->points[job->chart->n_points - beside->n + i], &beside->pictures[i]);
+  return status;
+}
+
 /* In rounds, so that what else the machine does hits all alike. */
 static conic_status measure_axis_points(axis_job *job) {
   int n_rounds = job->chart->is_quick ? 1 : 3, repeat = job->chart->is_quick ? 1 : 4;
   conic_status status = CONIC_OK;
   for (int round = 0; round < n_rounds; round++)
-    for (int i = 0; i < job->chart->n_points && status == CONIC_OK; i++)
+    for (int i = 0; i < job->chart->n_points - job->chart->beside.n && status == CONIC_OK; i++)
       status = measure_axis_point(job, i, repeat);
-  return status;
+  return status == CONIC_OK ? measure_all_beside(job) : status;
 }
 
 static conic_status allocate_pictures(axis_job *job) {
@@ -377,6 +425,7 @@ static void mark_best(cli_axis_chart *chart) {
 int cli_axis_chart_measure(cli_session *session, cli_axis_chart *chart) {
   axis_job job = {.session = session, .chart = chart, .plain = {.as = CONIC_AS_AUTO}};
   conic_render_options_init(&job.plain.render);
+  job.plain.render.shading = chart->shading;
   conic_source_view_init(&job.plain.view);
   if (chart->n_paths > CLI_MOST_CHART_SCENES)
     return cli_usage("chart: more than %d scenes", (int)CLI_MOST_CHART_SCENES);

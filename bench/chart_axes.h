@@ -5,10 +5,26 @@
 #include "bench/chart.h"
 #include "cli/device_option.h"
 
-enum { CLI_N_CHART_AXES = 10, CLI_MOST_CHART_SCENES = 8 };
+enum { CLI_N_CHART_AXES = 10, CLI_MOST_CHART_SCENES = 8, CLI_MOST_BESIDE = 24 };
 
-/* "method", "kernel", "prefilter", "samples", "passes", "error", "budget", "as", "isa", "device". */
+/* "method", "kernel", "prefilter", "samples", "passes", "error", "budget", "as", "isa", "device"; and past them
+ * "beside", where values are other programs. */
 const char *cli_chart_axis_name(int i_axis);
+
+/* Another program's picture of the first scene, and the time that it took. */
+typedef struct cli_chart_beside {
+  char name[24];
+  double ms;
+  const char *path;
+} cli_chart_beside;
+
+typedef struct cli_charts_beside {
+  cli_chart_beside pictures[CLI_MOST_BESIDE];
+  int n;
+} cli_charts_beside;
+
+/* Appends what "NAME=MS:PICTURE" says to a cli_charts_beside; 0 where it is not understood. */
+int cli_chart_parse_beside(const char *text, void *beside);
 
 /* A scene drawn with one option at one value, all others as they are by default. */
 typedef struct cli_axis_point {
@@ -27,6 +43,8 @@ typedef struct cli_axis_chart {
   int n_paths;
   const char *over;               /* axes with commas between, each perhaps with =VALUE:VALUE…; null: what fits */
   const char *camera_path, *view; /* without a camera it is framed as by conic render */
+  cli_charts_beside beside;
+  conic_shading shading;
   int size[2], is_quick;
   int truth_samples; /* along an edge of a pixel; with 1, errors are against the first scene as it is drawn */
 

@@ -37,6 +37,7 @@ enum { N_POINTS = N_KERNELS * CONIC_N_METHODS * CLI_N_CHART_SCENES };
 
 /* --only: one of the two charts. */
 enum { ONLY_METHODS, ONLY_REPRESENTATIONS };
+static const char *const shading_words[] = {"none", "lambert", "phong", NULL};
 static const char *const only_words[] = {"methods", "representations", NULL};
 
 typedef struct chart_job {
@@ -433,7 +434,7 @@ static void take_scenes(chart_job *job, const char *const *paths, int n_paths) {
   job->scenes.is_quick = job->is_quick;
   job->scenes.camera_path = job->gaussians.camera_path;
   job->scenes.view = job->gaussians.view;
-  if (n_paths == 1 && !job->scenes.over && cli_bench_is_gaussian_file(paths[0])) {
+  if (n_paths == 1 && !job->scenes.over && !job->scenes.beside.n && cli_bench_is_gaussian_file(paths[0])) {
     job->gaussians.path = paths[0];
     return;
   }
@@ -451,6 +452,7 @@ static int run_chart(cli_session *session, int argc, char **argv) {
   job->only = -1;
   job->gaussians.most_pixels = 1000;
   job->scenes.truth_samples = 8;
+  int shading = CONIC_SHADE_PHONG;
   const cli_option options[] = {
       {"o", CLI_TEXT, &job->folder, "DIR", "the folder of the chart"},
       {"quick", CLI_FLAG, &job->is_quick, NULL, "a small chart in seconds, to try it"},
@@ -459,6 +461,10 @@ static int run_chart(cli_session *session, int argc, char **argv) {
       {"over", CLI_TEXT, &job->scenes.over, "AXES",
        "of a SCENE: method, kernel, prefilter, samples, passes, error, budget, as, isa, device; with commas between, "
        "each perhaps with =VALUE:VALUE... [what fits]"},
+      {"beside", CLI_PARSED, &job->scenes.beside, "NAME=MS:PICTURE",
+       "another program's picture of the first SCENE, and the milliseconds that it took; may be given again",
+       .parse = cli_chart_parse_beside, .may_repeat = 1},
+      {"shade", CLI_CHOICE, &shading, "MODEL", "of a SCENE: none, lambert, phong [phong]", .choices = shading_words},
       {"truth", CLI_INT, &job->scenes.truth_samples, "N",
        "samples along a pixel's edge in the picture that a SCENE's are compared with [8]", 1, CONIC_MAX_SAMPLES},
       {"camera", CLI_TEXT, &job->gaussians.camera_path, "FILE", "of a SCENE [framed as by conic render]"},
@@ -480,6 +486,7 @@ static int run_chart(cli_session *session, int argc, char **argv) {
   job->size = job->is_quick ? 96 : 640;
   job->repeat = job->is_quick ? 2 : 15;
   job->mesh.is_quick = job->gaussians.is_quick = job->is_quick;
+  job->scenes.shading = (conic_shading)shading;
   take_scenes(job, positional, exit_code == CLI_DONE ? n_positional : 0);
   if (exit_code == CLI_DONE && job->folder)
     exit_code = chart(job);

@@ -108,6 +108,19 @@ run 0 chart ball.ply ball.cot -o both --quick --truth 1 --over error=2:8:32
 awk -F, 'NR > 1 { n++; if ($1 ~ /ball.cot/) { if (n > 4 && !($11 > last)) exit 1; last = $11 } else if ($11 != 0) exit 1 } END { exit n != 6 }' both/scene.csv ||
   fail "an error is not one against the whole scene: $(cat both/scene.csv)"
 
+# Another program's picture stands beside: conic's own, said to be another's, is exactly as far from the truth
+cat > camera.json << 'END'
+{"width": 96, "height": 96, "fx": 100, "fy": 100, "cx": 48, "cy": 48,
+ "world_to_camera": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 3], [0, 0, 0, 1]]}
+END
+run 0 render ball.ply -o ball.pfm --camera camera.json --shade none
+run 0 chart ball.ply -o beside --quick --over samples=1 --camera camera.json --size 96x96 --shade none --beside other=12.5:ball.pfm
+awk -F, 'NR == 2 { own = $11 } NR == 3 { other = $11; n = $2 == "beside" && $3 == "other" && $8 == 12.5 }
+  END { exit !(n && own > 0.001 && other == own) }' beside/scene.csv || fail "not beside: $(cat beside/scene.csv)"
+run 2 chart ball.ply -o beside --beside other:ball.pfm
+run 3 chart ball.ply -o beside --quick --size 90x90 --over samples=1 --beside other=1:ball.pfm
+grep -q 'ball.pfm: is no colour picture of 90 x 90 pixels' err || fail "$(cat err)"
+
 run 2 chart
 run 2 chart -o small --over samples
 for over in bogus samples=0 method=conik error=-1 budget=0 as=splats isa=mmx; do
