@@ -42,10 +42,6 @@ void cli_chart_write_quoted(FILE *to, const char *text);
 /* Opens FOLDER/NAME. Errors: those of conic_output_open. */
 conic_status cli_chart_open(const cli_session *session, const char *folder, const char *name, conic_output **output);
 
-/* FOLDER/chart-oracle.svg and chart-scene.svg, a panel a scene, and chart.svg, which has the default kernel alone. */
-conic_status cli_chart_draw(const cli_session *session, const char *folder, const cli_chart_point *points,
-                            int n_points);
-
 static inline const cli_chart_error *cli_chart_error_of(const cli_chart_point *point, int against_truth) {
   return against_truth ? &point->truth : &point->oracle;
 }

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/chart.h"
+#include "bench/chart_methods.h"
 #include "bench/plot.h"
 
 /* A picture: a file's name, its title, and whether its errors are against the surface. */
@@ -147,8 +147,7 @@ static void write_summary(FILE *to, const cli_chart_point *points, int n_points)
   cli_plot_end(&plot);
 }
 
-conic_status cli_chart_draw(const cli_session *session, const char *folder, const cli_chart_point *points,
-                            int n_points) {
+conic_status cli_method_chart_draw(const cli_session *session, const char *folder, const cli_method_chart *chart) {
   conic_output *output;
   conic_status status = CONIC_OK;
   for (int i = 0; i <= N_FIGURES && status == CONIC_OK; i++) {
@@ -156,9 +155,9 @@ conic_status cli_chart_draw(const cli_session *session, const char *folder, cons
     if (status != CONIC_OK)
       return status;
     if (i < N_FIGURES)
-      write_figure(conic_output_stream(output), &figures[i], points, n_points);
+      write_figure(conic_output_stream(output), &figures[i], chart->points, chart->n_points);
     else
-      write_summary(conic_output_stream(output), points, n_points);
+      write_summary(conic_output_stream(output), chart->points, chart->n_points);
     status = conic_output_commit(output);
   }
   return status;
