@@ -228,6 +228,13 @@ static int append_star(cli_bench_job *job) {
   return exit_code;
 }
 
+static int check_turntable(const cli_bench_job *job) {
+  for (int s = 0; s < job->n_scenes && job->n_turns; s++)
+    if (job->is_gaussian[s])
+      return cli_usage("bench: --turntable: %s is of Gaussians, which it does not turn", job->scenes[s]);
+  return CLI_DONE;
+}
+
 static int append_product(cli_bench_job *job) {
   int exit_code = CLI_DONE;
   for (int s = 0; s < job->n_scenes && exit_code == CLI_DONE; s++)
@@ -290,6 +297,8 @@ int cli_bench_plan(cli_bench_job *job) {
     plan_publication(job);
   int is_star = !job->scenes_text && !job->methods_text && !job->isa_text && !job->n_files && !job->is_floor;
   int exit_code = take_lists(job);
+  if (exit_code == CLI_DONE)
+    exit_code = check_turntable(job);
   if (exit_code != CLI_DONE || (job->is_machine && !job->is_floor && !job->publish_path))
     return exit_code;
   return job->is_curve ? append_curve(job) : is_star ? append_star(job) : append_product(job);
