@@ -63,6 +63,29 @@ CONIC_API conic_status conic_hybrid_build(conic_context *context, conic_triangle
                                           const conic_hybrid_options *options, conic_hybrid **hybrid,
                                           conic_hybrid_report *report);
 
+/* How a mesh that is larger than memory is read and built. */
+typedef struct conic_hybrid_streaming {
+  size_t size;           /* sizeof(conic_hybrid_streaming), set by the init function */
+  uint64_t memory_bytes; /* what building may take, temporary files and 1 KiB for each patch aside; the model does not
+                            depend on it */
+  double crease_deg;     /* above 0: of a mesh without normals, by conic_triangles_crease */
+  int is_smooth;         /* in place of all normals: by conic_triangles_smooth */
+} conic_hybrid_streaming;
+
+/* 1 GiB, 30 degrees. */
+CONIC_API void conic_hybrid_streaming_init_sized(conic_hybrid_streaming *streaming, size_t size);
+#define conic_hybrid_streaming_init(streaming) conic_hybrid_streaming_init_sized(streaming, sizeof *(streaming))
+
+/* Builds a model of a PLY of any size, in cells of some 200,000 faces: between cells no vertex is left out, and the
+ * whole is not simplified as one. The temporary files lie beside `path`, until the model is destroyed; they have no
+ * name. The model depends on the mesh and the options alone. Of `report`, which may be null, what is open, crowded,
+ * twisted, turned or welded, and pieces, are not counted. On success the caller owns *hybrid, which must not outlive
+ * the context. Errors: ARGUMENT, INPUT, IO, MEMORY, CANCELLED. */
+CONIC_API conic_status conic_hybrid_build_file(conic_context *context, const char *mesh, const char *path,
+                                               const conic_hybrid_options *options,
+                                               const conic_hybrid_streaming *streaming, conic_hybrid **hybrid,
+                                               conic_hybrid_report *report);
+
 /* Null is allowed. */
 CONIC_API void conic_hybrid_destroy(conic_hybrid *hybrid);
 

@@ -8,6 +8,7 @@
 #include "core/files/file.h"
 #include "lod/hybrid/hybrid_chunks.h"
 #include "lod/hybrid/hybrid_layout.h"
+#include "lod/hybrid/hybrid_pile.h"
 #include "lod/hybrid/hybrid_store.h"
 
 #define FIELD(member) CONIC_FILE_FIELD(conic_chy_header, member)
@@ -100,12 +101,12 @@ static conic_status write_chunk(const conic_hybrid *hybrid, uint32_t chunk, unsi
 }
 
 /* A failed write is seen when the file is committed. */
-static conic_status write_hybrid(const conic_hybrid *hybrid, const uint32_t *order, unsigned char *bytes,
-                                 FILE *stream) {
-  conic_chy_header h = header_of(hybrid);
+static conic_status write_placed(const conic_hybrid *hybrid, const conic_hybrid *placed, const uint32_t *order,
+                                 unsigned char *bytes, FILE *stream) {
+  conic_chy_header h = header_of(placed);
   conic_file_layout l = conic_chy_lay_out(&h);
-  const void *arrays[CONIC_FILE_MOST_ARRAYS] = {hybrid->nodes, hybrid->clusters, hybrid->levels, hybrid->material_list,
-                                                hybrid->texels};
+  const void *arrays[CONIC_FILE_MOST_ARRAYS] = {placed->nodes, placed->clusters, placed->levels, placed->material_list,
+                                                placed->texels};
   size_t n = conic_hybrid_count_chunks(hybrid);
   h.body_sum = conic_file_sum_arrays(hybrid->context, &l, arrays);
   conic_status status = conic_file_put_arrays(hybrid->context, stream, &conic_chy_kind, &h, &l, arrays);
@@ -113,7 +114,31 @@ static conic_status write_hybrid(const conic_hybrid *hybrid, const uint32_t *ord
     status = write_chunk(hybrid, order[i], bytes, stream);
     if (status == CONIC_OK && (i % 256 == 0 || i + 1 == n))
       status = conic_progress(hybrid->context, "write", (double)(i + 1) / (double)n);
+    if (hybrid->pile && i % 256 == 0)
+      conic_hybrid_pile_rest(hybrid->pile);
   }
+  return status;
+}
+
+/* The chunks may lie anywhere now, and get the places that they have in a file. */
+static conic_status write_hybrid(const conic_hybrid *hybrid, const uint32_t *order, unsigned char *bytes,
+                                 FILE *stream) {
+  conic_context *context = hybrid->context;
+  conic_hybrid placed = *hybrid;
+  conic_hybrid_level *levels = conic_memory_allocate(context, hybrid->n_levels, sizeof *levels);
+  conic_hybrid_cluster *clusters = conic_memory_allocate(context, hybrid->n_clusters, sizeof *clusters);
+  conic_status status = levels && clusters ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    memcpy(levels, hybrid->levels, hybrid->n_levels * sizeof *levels);
+    memcpy(clusters, hybrid->clusters, hybrid->n_clusters * sizeof *clusters);
+    placed.levels = levels;
+    placed.clusters = clusters;
+    status = conic_hybrid_place_chunks(&placed, levels, clusters);
+  }
+  if (status == CONIC_OK)
+    status = write_placed(hybrid, &placed, order, bytes, stream);
+  conic_memory_release(context, levels);
+  conic_memory_release(context, clusters);
   return status;
 }
 

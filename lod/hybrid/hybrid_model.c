@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "lod/hybrid/hybrid_layout.h"
+#include "lod/hybrid/hybrid_pile.h"
 #include "lod/hybrid/hybrid_store.h"
 
 void conic_hybrid_destroy(conic_hybrid *hybrid) {
@@ -13,6 +14,7 @@ void conic_hybrid_destroy(conic_hybrid *hybrid) {
   for (size_t i = 0; hybrid->materials && i < hybrid->n_materials; i++)
     conic_texture_destroy(hybrid->materials[i].texture);
   conic_hybrid_store_close(hybrid->store);
+  conic_hybrid_pile_release(hybrid->context, hybrid->pile);
   conic_memory_release(hybrid->context, hybrid->materials);
   conic_memory_release(hybrid->context, hybrid->owned);
   conic_mapping_close(hybrid->context, &hybrid->mapping);

@@ -83,6 +83,7 @@ struct conic_hybrid {
   const unsigned char *data;
   uint64_t n_data;
   struct conic_hybrid_store *store;
+  struct conic_hybrid_pile *pile; /* whose file they lie in, in any order; or null */
   uint64_t drawing_bytes; /* what a picture's parts may take; 0: any number */
 
   /* Where all that lies: in one piece of memory of its own, or in the file's. */

@@ -83,12 +83,26 @@ static void measure_box(const packing *p, conic_chy_header *h) {
       }
 }
 
+/* Of a part of a mesh, those of its own faces. */
+static size_t count_vertices(packing *p) {
+  size_t n = 0;
+  if (p->n_clusters == p->mesh->clusters->n_clusters)
+    return p->flat->n_vertices;
+  for (size_t i = 0; i < 3 * p->mesh->starts[p->n_clusters]; i++) {
+    uint32_t *seen = &p->local[p->flat->corners[p->mesh->faces[i / 3]][i % 3]];
+    n += *seen == UINT32_MAX;
+    *seen = 0;
+  }
+  memset(p->local, 0xFF, p->flat->n_vertices * sizeof *p->local);
+  return n;
+}
+
 static void begin_header(packing *p) {
   conic_chy_header *h = &p->header;
   memcpy(h->origin, p->flat->origin, sizeof h->origin);
   h->version = CONIC_CHY_VERSION;
   h->cutoff = p->job->options->cutoff;
-  h->n_vertices = p->flat->n_vertices;
+  h->n_vertices = count_vertices(p);
   h->n_clusters = p->n_clusters;
   h->n_nodes = p->job->n_nodes;
   h->n_materials = p->flat->n_materials;
@@ -451,7 +465,7 @@ conic_status conic_hybrid_pack(const conic_ways_job *ways, conic_hybrid **hybrid
   packing p = {.job = ways,
                .mesh = ways->mesh,
                .flat = flat,
-               .n_clusters = ways->mesh->clusters->n_clusters,
+               .n_clusters = ways->n_clusters,
                .local = conic_memory_allocate(context, flat->n_vertices, sizeof *p.local),
                .made = conic_memory_allocate_zeroed(context, 1, sizeof *p.made)};
   conic_status status = p.local && p.made ? CONIC_OK : CONIC_ERROR_MEMORY;
