@@ -17,7 +17,7 @@ static double distance_of(const conic_hybrid_bound *bound, const double at[3]) {
   return conic_length(way);
 }
 
-static void place_at(const conic_hybrid_vertices *vertices, size_t vertex, double at[3]) {
+static void vertex_place(const conic_hybrid_vertices *vertices, size_t vertex, double at[3]) {
   for (int axis = 0; axis < 3; axis++)
     at[axis] = (double)vertices->position[axis][vertex];
 }
@@ -48,7 +48,7 @@ static void check_cluster(const conic_hybrid *h, const conic_hybrid_cluster *clu
   for (size_t i = 0; i < levels[0].count; i++) {
     double at[3][3];
     for (int corner = 0; corner < 3; corner++) {
-      place_at(&faces.vertices, conic_hybrid_corner(&faces, i, corner), at[corner]);
+      vertex_place(&faces.vertices, conic_hybrid_corner(&faces, i, corner), at[corner]);
       is_out |= !(distance_of(&cluster->bound, at[corner]) <= most);
     }
     is_turned |= !faces_within(&cluster->bound, at);
@@ -71,7 +71,7 @@ static void check_joined(const conic_hybrid *h, const conic_hybrid_node *node, c
     conic_hybrid_piece faces = conic_hybrid_piece_of(h, h->clusters[i].first_level);
     for (uint32_t k = 0; k < h->levels[h->clusters[i].first_level].n_vertices; k++) {
       double at[3];
-      place_at(&faces.vertices, k, at);
+      vertex_place(&faces.vertices, k, at);
       is_out |= !(distance_of(&point, at) <= (double)node->point.radius * (1.0 + hair));
     }
   }

@@ -7,7 +7,7 @@
 
 /* --- places --- */
 
-static uint64_t round_up(uint64_t n_bytes) {
+static uint64_t whole_units(uint64_t n_bytes) {
   return (n_bytes + CONIC_HYBRID_UNIT - 1) / CONIC_HYBRID_UNIT * CONIC_HYBRID_UNIT;
 }
 
@@ -19,18 +19,18 @@ static uint64_t vertex_bytes(uint32_t flags) {
 uint64_t conic_hybrid_level_bytes(uint32_t flags, const conic_hybrid_level *level) {
   uint64_t corner = level->n_vertices <= CONIC_HYBRID_NARROW ? 2 : 4;
   uint64_t triangle = 3 * corner + (flags & CONIC_CHY_MATERIALS ? 4 : 0);
-  return round_up(CONIC_HYBRID_SUM_BYTES + (level->kind == CONIC_HYBRID_SURFELS
+  return whole_units(CONIC_HYBRID_SUM_BYTES + (level->kind == CONIC_HYBRID_SURFELS
                                                 ? 48 * (uint64_t)level->count
                                                 : vertex_bytes(flags) * level->n_vertices + triangle * level->count));
 }
 
 uint64_t conic_hybrid_frame_bytes(const conic_hybrid_cluster *cluster) {
   uint64_t n_bytes = 4 * (uint64_t)cluster->n_slots + sizeof(conic_cluster_border) * (uint64_t)cluster->n_borders;
-  return n_bytes ? round_up(CONIC_HYBRID_SUM_BYTES + n_bytes) : 0;
+  return n_bytes ? whole_units(CONIC_HYBRID_SUM_BYTES + n_bytes) : 0;
 }
 
 uint64_t conic_hybrid_ends_bytes(uint32_t flags, const conic_hybrid_cluster *cluster) {
-  return cluster->n_slots ? round_up(CONIC_HYBRID_SUM_BYTES + vertex_bytes(flags) * cluster->n_slots) : 0;
+  return cluster->n_slots ? whole_units(CONIC_HYBRID_SUM_BYTES + vertex_bytes(flags) * cluster->n_slots) : 0;
 }
 
 size_t conic_hybrid_count_chunks(const conic_hybrid *h) {
@@ -88,7 +88,7 @@ conic_status conic_hybrid_order_chunks(const conic_hybrid *h, uint32_t **order) 
   return status;
 }
 
-static uint32_t *place_of(const conic_hybrid *h, conic_hybrid_level *levels, conic_hybrid_cluster *clusters,
+static uint32_t *chunk_offset(const conic_hybrid *h, conic_hybrid_level *levels, conic_hybrid_cluster *clusters,
                           uint32_t chunk) {
   if (chunk < h->n_levels)
     return &levels[chunk].at;
@@ -101,7 +101,7 @@ conic_status conic_hybrid_place_chunks(conic_hybrid *h, conic_hybrid_level *leve
   conic_status status = conic_hybrid_order_chunks(h, &order);
   h->n_data = 0;
   for (size_t i = 0; i < conic_hybrid_count_chunks(h) && status == CONIC_OK; i++) {
-    *place_of(h, levels, clusters, order[i]) = (uint32_t)(h->n_data / CONIC_HYBRID_UNIT);
+    *chunk_offset(h, levels, clusters, order[i]) = (uint32_t)(h->n_data / CONIC_HYBRID_UNIT);
     h->n_data += conic_hybrid_chunk_place(h, order[i]).n_bytes;
   }
   conic_memory_release(h->context, order);
@@ -204,12 +204,12 @@ void conic_hybrid_turn_chunk(const conic_hybrid *h, uint32_t chunk, unsigned cha
   conic_turn_words(bytes + CONIC_HYBRID_SUM_BYTES, n_words - CONIC_HYBRID_SUM_BYTES / 4, 4);
 }
 
-static uint64_t sum_of(const unsigned char *bytes, size_t n_bytes) {
+static uint64_t chunk_sum(const unsigned char *bytes, size_t n_bytes) {
   return conic_checksum(bytes + CONIC_HYBRID_SUM_BYTES, n_bytes - CONIC_HYBRID_SUM_BYTES);
 }
 
 void conic_hybrid_seal_chunk(unsigned char *bytes, size_t n_bytes) {
-  conic_store_64(bytes, sum_of(bytes, n_bytes));
+  conic_store_64(bytes, chunk_sum(bytes, n_bytes));
 }
 
 static const char *level_fault(const conic_hybrid *h, const conic_hybrid_level *level, const unsigned char *bytes) {
@@ -256,7 +256,7 @@ const char *conic_hybrid_take_chunk(const conic_hybrid *h, uint32_t chunk, unsig
   size_t n_bytes = (size_t)conic_hybrid_chunk_place(h, chunk).n_bytes;
   if (n_bytes == 0)
     return NULL;
-  if (conic_load_64(bytes) != sum_of(bytes, n_bytes))
+  if (conic_load_64(bytes) != chunk_sum(bytes, n_bytes))
     return "a chunk that is damaged";
   conic_hybrid_turn_chunk(h, chunk, bytes);
   if (chunk < h->n_levels)

@@ -197,7 +197,7 @@ typedef struct chunk_checks {
   } *wrong; /* a thread */
 } chunk_checks;
 
-static void check_task(void *data, size_t i, int i_thread) {
+static void check_chunk_task(void *data, size_t i, int i_thread) {
   chunk_checks *c = data;
   struct chunk_wrong *wrong = &c->wrong[i_thread];
   if (wrong->what && wrong->task < i)
@@ -213,7 +213,7 @@ static void check_task(void *data, size_t i, int i_thread) {
 static conic_status run_checks(chunk_checks *c, const char *path, uint64_t data_at) {
   const conic_hybrid *h = c->hybrid;
   struct chunk_wrong first = {NULL, SIZE_MAX};
-  conic_parallel_for(h->context, c->does_clusters ? h->n_clusters : conic_hybrid_count_chunks(h), check_task, c);
+  conic_parallel_for(h->context, c->does_clusters ? h->n_clusters : conic_hybrid_count_chunks(h), check_chunk_task, c);
   for (int i = 0; i < conic_context_threads(h->context); i++)
     if (c->wrong[i].what && c->wrong[i].task < first.task)
       first = c->wrong[i];

@@ -38,7 +38,7 @@ typedef struct large_building {
   conic_hybrid_report *report;
 } large_building;
 
-static int is_drawable(const conic_triangles *mesh, size_t n_own) {
+static int has_drawable_face(const conic_triangles *mesh, size_t n_own) {
   for (size_t i = 0; i < n_own; i++) {
     const uint32_t *c = mesh->corners[i];
     int n_apart = 0, is_finite = 1;
@@ -92,7 +92,7 @@ static conic_status build_cell(large_building *b, uint32_t cell) {
   conic_hybrid_report own;
   size_t n_own;
   conic_status status = conic_mesh_cells_take(b->cells, cell, &mesh, &n_own);
-  if (status == CONIC_OK && is_drawable(&mesh, n_own)) {
+  if (status == CONIC_OK && has_drawable_face(&mesh, n_own)) {
     status = round_cell(b, &mesh);
     if (status == CONIC_OK)
       status = conic_hybrid_build_part(b->context, &mesh, n_own, b->options, &part, &own);
@@ -131,7 +131,7 @@ static int compare_lengths(const void *a, const void *b) {
 }
 
 /* The median of the cells' medians, each as often as it has surfels. */
-static double median_length(cell_length *lengths, size_t n_lengths) {
+static double median_of_cells(cell_length *lengths, size_t n_lengths) {
   size_t n = 0, before = 0;
   for (size_t i = 0; i < n_lengths; i++)
     n += lengths[i].n;
@@ -180,7 +180,7 @@ static conic_status build_large(large_building *b, const char *mesh, const char 
     status = conic_fail(context, CONIC_ERROR_INPUT, "the mesh has no face that could be drawn");
   if (status != CONIC_OK)
     return status;
-  b->hybrid->splat_length = median_length(b->lengths, b->n_lengths);
+  b->hybrid->splat_length = median_of_cells(b->lengths, b->n_lengths);
   return conic_hybrid_pile_finish(b->hybrid->pile, b->hybrid);
 }
 

@@ -55,7 +55,7 @@ static size_t most_faces(const packing *p) {
   return p->job->whole.n > 0 && p->job->whole.levels[0].n > most ? p->job->whole.levels[0].n : most;
 }
 
-static void count_parts(packing *p) {
+static void count_levels(packing *p) {
   conic_chy_header *h = &p->header;
   h->n_levels = (uint64_t)p->job->whole.n;
   for (size_t i = 0; i < p->n_clusters; i++)
@@ -109,7 +109,7 @@ static void begin_header(packing *p) {
   h->flags = (p->flat->normal[0] ? CONIC_CHY_NORMALS : 0u) | (p->flat->color[0] ? CONIC_CHY_COLORS : 0u) |
              (p->flat->texture_coordinate[0] ? CONIC_CHY_TEXTURE_COORDINATES : 0u) |
              (p->flat->material && p->flat->n_materials ? CONIC_CHY_MATERIALS : 0u);
-  count_parts(p);
+  count_levels(p);
   measure_box(p, h);
 }
 

@@ -207,7 +207,7 @@ static conic_status hold_frames(hybrid_selecting *s) {
 }
 
 /* Lists what a choice is drawn of, its level and what is put in, and returns its bytes. */
-static uint64_t list_chunks(hybrid_selecting *s, const choice *c) {
+static uint64_t list_chunks_of(hybrid_selecting *s, const choice *c) {
   const conic_hybrid *h = s->hybrid;
   hybrid_scratch *kept = s->scratch;
   uint64_t n_bytes = 0;
@@ -228,7 +228,7 @@ static conic_status hold_chunks(hybrid_selecting *s) {
   kept->n_chunks = 0;
   for (s->end = s->first; s->end < kept->n_choices; s->end++) {
     size_t n_before = kept->n_chunks;
-    n_bytes += s->hybrid->store ? list_chunks(s, &kept->choices[s->end]) : 0;
+    n_bytes += s->hybrid->store ? list_chunks_of(s, &kept->choices[s->end]) : 0;
     if (n_bytes > room && s->end > s->first) {
       kept->n_chunks = n_before;
       break;
@@ -378,19 +378,19 @@ static void put_point(const hybrid_selecting *s, const choice *c) {
   s->selection->splat_cluster[c->splat] = c->cluster;
 }
 
-static void copy_values(float *to, size_t at, const float *from, size_t n) {
+static void copy_floats(float *to, size_t at, const float *from, size_t n) {
   if (to)
     memcpy(to + at, from, n * sizeof *to);
 }
 
 static void copy_vertices(const conic_triangles *to, size_t at, const conic_hybrid_vertices *from, size_t n) {
   for (int axis = 0; axis < 3; axis++) {
-    copy_values(to->position[axis], at, from->position[axis], n);
-    copy_values(to->normal[axis], at, from->normal[axis], n);
-    copy_values(to->color[axis], at, from->color[axis], n);
+    copy_floats(to->position[axis], at, from->position[axis], n);
+    copy_floats(to->normal[axis], at, from->normal[axis], n);
+    copy_floats(to->color[axis], at, from->color[axis], n);
   }
   for (int k = 0; k < 2; k++)
-    copy_values(to->texture_coordinate[k], at, from->texture_coordinate[k], n);
+    copy_floats(to->texture_coordinate[k], at, from->texture_coordinate[k], n);
 }
 
 static void copy_triangles(const hybrid_selecting *s, const choice *c, const conic_hybrid_level *level) {

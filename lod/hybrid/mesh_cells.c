@@ -194,7 +194,7 @@ static int compare_floats(const void *a, const void *b) {
 }
 
 /* The middle along the longest axis; 0 where all lie at one place. */
-static int find_plane(float (*at)[3], size_t n, float *sorted, cell_plane *plane) {
+static int find_cell_plane(float (*at)[3], size_t n, float *sorted, cell_plane *plane) {
   float widest = 0.0f;
   for (int axis = 0; axis < 3; axis++) {
     float low = at[0][axis], high = at[0][axis];
@@ -234,7 +234,7 @@ static conic_status grow_tree(conic_mesh_cells *c, float (*at)[3], size_t n, dou
   cell_plane plane = {0.0f, 0};
   c->nodes[own] = (conic_cell_node){0, 0};
   if ((double)n * faces_each <= (double)c->most_faces || n < 2 || depth == MOST_DEPTH ||
-      !find_plane(at, n, sorted, &plane)) {
+      !find_cell_plane(at, n, sorted, &plane)) {
     c->nodes[own].cell = (uint32_t)c->n_cells++;
     return CONIC_OK;
   }
@@ -278,14 +278,14 @@ static conic_status find_tree(conic_mesh_cells *c) {
 
 /* --- what cells share --- */
 
-static shared_place place_at(const float at[3], uint32_t cell) {
+static shared_place shared_place_at(const float at[3], uint32_t cell) {
   shared_place place = {.cell = cell};
   for (int axis = 0; axis < 3; axis++)
     place.at[axis] = conic_bits_of_float(at[axis] + 0.0f); /* no negative zero */
   return place;
 }
 
-static size_t hash_of(const shared_place *place) {
+static size_t hash_place(const shared_place *place) {
   uint64_t h = place->at[0] * UINT64_C(0x9E3779B97F4A7C15);
   h = (h ^ (h >> 29) ^ place->at[1]) * UINT64_C(0xBF58476D1CE4E5B9);
   h = (h ^ (h >> 32) ^ place->at[2]) * UINT64_C(0x94D049BB133111EB);
@@ -337,8 +337,8 @@ static conic_status see_shared(conic_mesh_cells *c, const uint32_t corners[3]) {
     if (conic_memory_reserve(c->context, &c->shared, c->n_shared, c->n_shared + 1, &c->shared_room,
                              sizeof *c->shared) != CONIC_OK)
       return CONIC_ERROR_MEMORY;
-    c->shared[c->n_shared] = place_at(at, cell);
-    size_t hash = hash_of(&c->shared[c->n_shared++]);
+    c->shared[c->n_shared] = shared_place_at(at, cell);
+    size_t hash = hash_place(&c->shared[c->n_shared++]);
     c->filter[hash / 8] |= (uint8_t)(1u << hash % 8);
   }
   return CONIC_OK;
@@ -382,8 +382,8 @@ static size_t cells_beside(const conic_mesh_cells *c, const uint32_t corners[3],
   size_t n = 0;
   for (int k = 0; k < 3; k++) {
     const float *at = position_of(c, corners[k]);
-    shared_place wanted = place_at(at, 0);
-    size_t hash = hash_of(&wanted), low = 0, high = c->n_shared;
+    shared_place wanted = shared_place_at(at, 0);
+    size_t hash = hash_place(&wanted), low = 0, high = c->n_shared;
     if (!(c->filter[hash / 8] >> hash % 8 & 1))
       continue;
     while (low < high) {

@@ -251,6 +251,18 @@ static void test_damaged_part(conic_context *context) {
   CHECK(unlink(path) == 0);
 }
 
+/* What is opened of a file draws the same as what is read, or is refused where that is. */
+static void check_opened(conic_context *context, const char *path, const conic_hybrid *read) {
+  conic_hybrid *opened;
+  conic_status status = conic_hybrid_open(context, path, NULL, &opened);
+  CHECK(status == CONIC_OK || (status == CONIC_ERROR_INPUT && !read));
+  if (status == CONIC_OK) {
+    status = select_as_built(context, opened);
+    CHECK(status == CONIC_OK || (status == CONIC_ERROR_INPUT && !read));
+  }
+  conic_hybrid_destroy(opened);
+}
+
 /* A byte is changed and the sums made right: it is refused, or it can be drawn. */
 static void test_mended(conic_context *context) {
   seed_set *set = calloc(1, sizeof *set);
@@ -276,6 +288,8 @@ static void test_mended(conic_context *context) {
       conic_status status = conic_hybrid_read(context, path, &hybrid);
       CHECK(status == CONIC_OK || status == CONIC_ERROR_INPUT);
       n_refused += status != CONIC_OK;
+      if (run % 4 == 0)
+        check_opened(context, path, hybrid);
       if (status == CONIC_OK) {
         conic_hybrid_defects defects;
         conic_hybrid_selection selection;

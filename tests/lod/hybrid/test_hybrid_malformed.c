@@ -306,6 +306,8 @@ static void test_frames(conic_context *context, const sound_file *sound) {
   check_chunk(context, sound, at, edge, u32_at(sound, edge) | 3, 4, range); /* no triangle has a fourth corner */
   check_chunk(context, sound, at, from, sound->n_slots, 4, range);
   check_chunk(context, sound, at, to, sound->n_slots, 4, range);
+  check_chunk(context, sound, at, to, u32_at(sound, from) < sound->n_slots / 2 ? sound->n_slots - 1 : 0, 4,
+              "borders that run over each other");
   check_chunk(context, sound, at, across, sound->n_clusters, 4, range);
   check_chunk(context, sound, at, across, sound->framed, 4, range);
   check_chunk(context, sound, at, sound->ends + 4 * u32_at(sound, from), conic_bits_of_float(77.0f), 4,
