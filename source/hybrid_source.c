@@ -11,10 +11,15 @@ typedef struct hybrid_source {
   conic_hybrid *hybrid;
   conic_hybrid_info info;
   conic_hybrid_selection selection;
+  int is_opened; /* not built */
 } hybrid_source;
 
+static int is_hybrid_name(const char *path) {
+  return conic_hybrid_is_url(path) || conic_hybrid_is_file(path);
+}
+
 static int takes_hybrid(const char *path, const conic_source_options *options) {
-  return options->as == CONIC_AS_HYBRID || conic_hybrid_is_file(path);
+  return options->as == CONIC_AS_HYBRID || is_hybrid_name(path);
 }
 
 static conic_status measure_hybrid(hybrid_source *h) {
@@ -54,10 +59,12 @@ static conic_status open_hybrid(conic_source *source, const char *const *paths, 
                                 const conic_source_options *options) {
   hybrid_source *h = (hybrid_source *)source;
   (void)n_paths;
-  if (conic_hybrid_is_file(paths[0]) && conic_coloring_is_asked(options))
+  h->is_opened = is_hybrid_name(paths[0]);
+  if (h->is_opened && conic_coloring_is_asked(options))
     return conic_coloring_refuse(source->context, paths[0], options);
-  conic_status status = conic_hybrid_is_file(paths[0]) ? conic_hybrid_read(source->context, paths[0], &h->hybrid)
-                                                       : build_hybrid(h, paths[0], options);
+  conic_status status = h->is_opened
+                            ? conic_hybrid_open(source->context, paths[0], options->access, &h->hybrid)
+                            : build_hybrid(h, paths[0], options);
   return status == CONIC_OK ? measure_hybrid(h) : status;
 }
 
@@ -115,10 +122,22 @@ static void tell_hybrid_primitives(const conic_source *source, conic_facts *fact
                   CONIC_COUNT("points", selection->n_points));
 }
 
+static void tell_hybrid_rest(const conic_source *source, conic_facts *facts) {
+  const hybrid_source *h = (const hybrid_source *)source;
+  const conic_hybrid_selection *selection = &h->selection;
+  if (h->is_opened)
+    CONIC_ADD_FACTS(facts, CONIC_OBJECT("chunks"), CONIC_COUNT("drawn", selection->n_chunks),
+                    CONIC_COUNT("read", selection->n_chunks_read), CONIC_COUNT("bytes_read", selection->n_bytes_read),
+                    CONIC_COUNT("bytes_received", selection->n_bytes_received),
+                    CONIC_COUNT("bytes_kept", selection->n_bytes_kept), CONIC_END);
+}
+
 static conic_status tell_hybrid_file(conic_source *source, conic_facts *facts) {
   hybrid_source *h = (hybrid_source *)source;
   const conic_hybrid_info *info = &h->info;
-  conic_status status = conic_hybrid_read(source->context, source->name, &h->hybrid);
+  conic_status status = conic_hybrid_is_url(source->name)
+                            ? conic_hybrid_open(source->context, source->name, NULL, &h->hybrid)
+                            : conic_hybrid_read(source->context, source->name, &h->hybrid);
   if (status == CONIC_OK)
     status = measure_hybrid(h);
   if (status != CONIC_OK)
@@ -158,7 +177,7 @@ static conic_status tell_hybrid_defects(conic_source *source, conic_facts *facts
 
 const conic_source_kind conic_source_kind_hybrid = {
     .size = sizeof(hybrid_source),
-    .abilities = CONIC_SOURCE_CHOOSES | CONIC_SOURCE_CLUSTERS,
+    .abilities = CONIC_SOURCE_CHOOSES | CONIC_SOURCE_CLUSTERS | CONIC_SOURCE_READS_PARTS,
     .company = CONIC_SOURCE_ALONE,
     .takes = takes_hybrid,
     .open = open_hybrid,
@@ -167,7 +186,8 @@ const conic_source_kind conic_source_kind_hybrid = {
     .name_image = name_hybrid_image,
     .name_splat = name_hybrid_splat,
     .tell_primitives = tell_hybrid_primitives,
-    .is_file = conic_hybrid_is_file,
+    .tell_rest = tell_hybrid_rest,
+    .is_file = is_hybrid_name,
     .name = "chy",
     .tell_file = tell_hybrid_file,
     .tell_defects = tell_hybrid_defects,

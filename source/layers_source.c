@@ -2,6 +2,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "conic/hybrid.h"
 #include "conic/layers.h"
 #include "conic/layers_draw.h"
 #include "lod/hierarchies/hierarchy.h"
@@ -19,7 +20,8 @@ typedef struct layers_source {
 } layers_source;
 
 static int is_layers_file(const char *path) {
-  return conic_layers_is_url(path) || conic_layers_is_file(path) || conic_layers_is_hierarchy(path);
+  return (conic_layers_is_url(path) && !conic_hybrid_is_url(path)) || conic_layers_is_file(path) ||
+         conic_layers_is_hierarchy(path);
 }
 
 static const char *name_layers_file(const char *path) {
@@ -257,7 +259,7 @@ static conic_status take_layers_splats(conic_source *source, conic_splats *splat
 
 const conic_source_kind conic_source_kind_layers = {
     .size = sizeof(layers_source),
-    .abilities = CONIC_SOURCE_CHOOSES | CONIC_SOURCE_STREAMS,
+    .abilities = CONIC_SOURCE_CHOOSES | CONIC_SOURCE_STREAMS | CONIC_SOURCE_READS_PARTS,
     .company = CONIC_SOURCE_SINGLE,
     .takes = takes_layers,
     .open = open_layers,

@@ -15,6 +15,7 @@ typedef struct hybrid_job {
   int is_smooth, is_crease_given;
   double crease_deg;
   conic_hybrid_options options;
+  int memory_mib; /* 0: the mesh is read as a whole */
 
   conic_hybrid *hybrid;
   conic_hybrid_info info;
@@ -23,9 +24,8 @@ typedef struct hybrid_job {
 
 enum { READ, CLUSTER, SAMPLE, SIMPLIFY, WORK, WRITE };
 
-static int make_hybrid(void *cookie) {
-  hybrid_job *job = cookie;
-  cli_stage *stages = job->base.stages;
+/* Of a mesh that is read whole. */
+static conic_status build_whole(hybrid_job *job) {
   conic_triangles mesh;
   double start = cli_seconds();
   conic_status status =
@@ -34,13 +34,29 @@ static int make_hybrid(void *cookie) {
     status = conic_mesh_round(job->base.session->context, job->is_smooth, job->crease_deg, &mesh);
   if (status == CONIC_OK)
     status = cli_coloring_apply(job->base.session, &job->coloring, (const double[3]){0.0, 1.0, 0.0}, NULL, &mesh);
-  start = cli_build_end_stage(&stages[READ], start);
-  if (status != CONIC_OK) {
-    conic_triangles_release(job->base.session->context, &mesh);
-    return cli_exit_of(status);
-  }
-  status = conic_hybrid_build(job->base.session->context, &mesh, &job->options, &job->hybrid, &job->report);
-  start = cli_build_end_stage(&stages[WORK], start);
+  cli_build_end_stage(&job->base.stages[READ], start);
+  if (status == CONIC_OK)
+    return conic_hybrid_build(job->base.session->context, &mesh, &job->options, &job->hybrid, &job->report);
+  conic_triangles_release(job->base.session->context, &mesh);
+  return status;
+}
+
+static conic_status build_within(hybrid_job *job) {
+  conic_hybrid_streaming streaming;
+  conic_hybrid_streaming_init(&streaming);
+  streaming.memory_bytes = (uint64_t)job->memory_mib << 20;
+  streaming.is_smooth = job->is_smooth;
+  streaming.crease_deg = job->crease_deg;
+  return conic_hybrid_build_file(job->base.session->context, job->base.input, job->base.output, &job->options,
+                                 &streaming, &job->hybrid, &job->report);
+}
+
+static int make_hybrid(void *cookie) {
+  hybrid_job *job = cookie;
+  cli_stage *stages = job->base.stages;
+  double start = cli_seconds();
+  conic_status status = job->memory_mib ? build_within(job) : build_whole(job);
+  start = cli_build_end_stage(&stages[WORK], start + stages[READ].seconds);
   stages[CLUSTER].seconds = job->report.cluster_seconds;
   stages[SAMPLE].seconds = job->report.sample_seconds;
   stages[SIMPLIFY].seconds = job->report.simplify_seconds;
@@ -155,6 +171,10 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
        "triangles without normals look smooth over edges up to this angle, in degrees; 0: every face is flat [30]", 0,
        90, .is_given = &job.is_crease_given},
       {"cutoff", CLI_NUMBER, &cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
+      {"memory", CLI_INT, &job.memory_mib, "MiB",
+       "of a PLY that is larger than memory, what building may take; in cells, so that the file is another one "
+       "[the mesh is read whole]",
+       1, 1 << 20},
       {"single", CLI_FLAG, &job.options.has_single_levels, NULL,
        "without the simpler levels that --error chooses from"},
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
@@ -164,6 +184,8 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
   job.options.sampling = (conic_sampling)sampling;
   if (exit_code == CLI_DONE && job.is_smooth && job.is_crease_given)
     exit_code = cli_usage("hybrid: --smooth rounds all edges, --crease those up to an angle; give one of both");
+  if (exit_code == CLI_DONE && job.memory_mib && (job.texture || job.coloring.options.by))
+    exit_code = cli_usage("hybrid: with --memory colours are the vertices' own, not by --texture or --color-by");
   if (exit_code == CLI_DONE)
     exit_code = cli_coloring_check(session, &job.coloring);
   return cli_build_run(&job, &steps, exit_code);

@@ -36,11 +36,13 @@ static int check_deep(const cli_render_job *job) {
   return CLI_DONE;
 }
 
-static int check_streaming(const cli_render_job *job, int is_given) {
+static int check_streaming(const cli_render_job *job, const int is_given[2]) {
   int streams = (job->abilities & CONIC_SOURCE_STREAMS) != 0;
-  if ((job->progressive_path || job->deadline > 0.0 || is_given) && !streams)
-    return cli_usage("render: --progressive, --deadline, --tolerate, --memory, --timeout and --occlusion are for a "
-                     "single .lpc, or the URL of one");
+  if ((job->progressive_path || job->deadline > 0.0 || is_given[0]) && !streams)
+    return cli_usage("render: --progressive, --deadline, --tolerate and --occlusion are for a single .lpc, or the URL "
+                     "of one");
+  if (is_given[1] && !(job->abilities & CONIC_SOURCE_READS_PARTS))
+    return cli_usage("render: --memory and --timeout are for a single .lpc or .chy, or the URL of one");
   if (streams && job->deep_path)
     return cli_usage("render: --deep lists the splats of inputs that are read whole, not of an .lpc");
   if (job->progressive_path && (job->is_turntable || job->repeat > 1))
@@ -65,7 +67,7 @@ int cli_render_views_check(const cli_session *session, cli_render_job *job) {
 }
 
 /* What render's own options mean. */
-static int check_outputs(const cli_session *session, cli_render_job *job, int is_streaming_given) {
+static int check_outputs(const cli_session *session, cli_render_job *job, const int is_given[2]) {
   const char *paths[N_PATHS];
   int answer = CLI_DONE;
   if (!session->host && job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path &&
@@ -89,7 +91,7 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
     return cli_usage("render: --deep lists the splats of the input, not those that --error and --budget choose");
   if (job->is_patch && job->deep_path)
     return cli_usage("render: --method patch draws samples of its own: not with --deep");
-  answer = check_streaming(job, is_streaming_given);
+  answer = check_streaming(job, is_given);
   if (answer == CLI_DONE && job->top.is_wanted)
     answer = cli_top_check(session, job);
   if (answer == CLI_DONE && job->has_mattes)
@@ -112,7 +114,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
     compression_words[i] = conic_compression_name((conic_compression)i);
   int compression = 0;
   enum { USUAL_MIB = 512 };
-  int memory_mib = USUAL_MIB, occlusion = CONIC_OCCLUSION_AUTO, is_streaming_given = 0;
+  int memory_mib = USUAL_MIB, occlusion = CONIC_OCCLUSION_AUTO, is_given[2] = {0, 0}, is_memory_given = 0;
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT",
        "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; may be repeated",
@@ -161,24 +163,27 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "of a cloud in levels, no more is read after so many seconds; what is missing is drawn coarser", 0.001, 1e6},
       {"tolerate", CLI_FLAG, &job->view.tolerates_damage, NULL,
        "of a cloud in levels, what is damaged or does not come is drawn coarser, with a warning",
-       .is_given = &is_streaming_given},
+       .is_given = &is_given[0]},
       {"memory", CLI_INT, &memory_mib, "MiB",
-       "of a cloud in levels, what its clouds and splats may take in memory [512]", 1, 1 << 20,
-       .is_given = &is_streaming_given},
+       "of a cloud in levels, what its clouds and splats may take in memory [512]; of a .chy, what is read and drawn "
+       "[all]",
+       1, 1 << 20, .is_given = &is_memory_given},
       {"occlusion", CLI_CHOICE, &occlusion, "HOW",
        "of a cloud in levels, do not read what is hidden behind the rest: auto, on or off; changes no bit of the "
        "picture [auto]",
-       .choices = occlusion_words, .is_given = &is_streaming_given},
+       .choices = occlusion_words, .is_given = &is_given[0]},
       {"timeout", CLI_NUMBER, &job->access.stall_seconds, "S",
        "of a URL, a server that is silent for so long is asked again, up to 4 times [15]", 1, 3600,
-       .is_given = &is_streaming_given},
+       .is_given = &is_given[1]},
       {"repeat", CLI_INT, &job->repeat, "N", "draw N times and report the median of the times [1]", 1, 100000,
        .group = "measuring"},
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
   job->writing.compression = (conic_compression)compression;
   job->asked_planes = job->is_aov_given ? job->planes : 0;
-  job->access.memory_bytes = (uint64_t)memory_mib << 20;
+  is_given[1] |= is_memory_given;
+  if (is_memory_given)
+    job->access.memory_bytes = (uint64_t)memory_mib << 20;
   if (memory_mib < USUAL_MIB && !session->host)
     cli_shell_give_back_memory();
   job->access.connect_seconds = job->access.stall_seconds;
@@ -199,5 +204,5 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
     job->planes |= 1u << CONIC_PLANE_ID;
   if (job->has_mattes)
     job->planes |= CONIC_MATTE_PLANES;
-  return answer == CLI_DONE ? check_outputs(session, job, is_streaming_given) : answer;
+  return answer == CLI_DONE ? check_outputs(session, job, is_given) : answer;
 }

@@ -141,6 +141,8 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
     return colors;
   job->opening.as = job->is_patch ? CONIC_AS_PATCHES : (conic_representation)words->as;
   job->abilities = conic_source_abilities(job->inputs, (size_t)job->n_inputs, &job->opening);
+  if (job->abilities & CONIC_SOURCE_CLUSTERS) /* of which any part may be drawn, unless --memory says less */
+    job->access.memory_bytes = 0;
   job->opening.is_whole =
       !cli_lod_is_wanted(job) && !job->boxes_path && !(job->may_stream && job->abilities & CONIC_SOURCE_STREAMS);
   int answer = check_choice(session, job, words->as);

@@ -115,20 +115,32 @@ static conic_status write_array(conic_context *context, const conic_file_layout 
   return status;
 }
 
+conic_status conic_file_put_arrays(conic_context *context, FILE *stream, const conic_file_kind *kind,
+                                   const void *numbers, const conic_file_layout *layout, const void *const *arrays) {
+  unsigned char header[CONIC_FILE_HEADER_BYTES];
+  conic_status status = CONIC_OK;
+  conic_file_make_header(kind, numbers, header);
+  fwrite(header, 1, sizeof header, stream);
+  for (int i = 0; i < layout->n && status == CONIC_OK; i++)
+    status = write_array(context, layout, i, arrays[i], stream);
+  return status;
+}
+
 conic_status conic_file_write_arrays(conic_context *context, const char *path, const conic_file_kind *kind,
                                      const void *numbers, const conic_file_layout *layout, const void *const *arrays) {
-  unsigned char header[CONIC_FILE_HEADER_BYTES];
   conic_output *output;
   conic_status status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)
     return status;
-  conic_file_make_header(kind, numbers, header);
-  fwrite(header, 1, sizeof header, conic_output_stream(output)); /* a failure is seen when the file is committed */
-  for (int i = 0; i < layout->n && status == CONIC_OK; i++)
-    status = write_array(context, layout, i, arrays[i], conic_output_stream(output));
+  status = conic_file_put_arrays(context, conic_output_stream(output), kind, numbers, layout, arrays);
   if (status == CONIC_OK)
     status = conic_progress(context, "write", 1.0);
   return conic_output_end(output, status);
+}
+
+void conic_file_turn_arrays(const conic_file_layout *layout, unsigned char *bytes) {
+  for (int i = 0; CONIC_IS_BIG_ENDIAN && i < layout->n; i++)
+    turn_records(layout->arrays[i].record, bytes + layout->arrays[i].offset, layout->arrays[i].n_bytes);
 }
 
 conic_status conic_file_take_arrays(conic_context *context, const char *path, conic_mapping *file,
@@ -144,7 +156,6 @@ conic_status conic_file_take_arrays(conic_context *context, const char *path, co
   if (conic_file_sum_bytes(context, layout, file->bytes) != sum)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: is damaged: its sum is not that of its header (at byte %d)",
                       path, CONIC_FILE_HEADER_BYTES);
-  for (int i = 0; CONIC_IS_BIG_ENDIAN && i < layout->n; i++)
-    turn_records(layout->arrays[i].record, file->bytes + layout->arrays[i].offset, layout->arrays[i].n_bytes);
+  conic_file_turn_arrays(layout, file->bytes);
   return CONIC_OK;
 }

@@ -3,6 +3,8 @@
 #ifndef CONIC_FILE_BODY_H
 #define CONIC_FILE_BODY_H
 
+#include <stdio.h>
+
 #include "core/files/file_header.h"
 #include "core/files/mapping.h"
 
@@ -38,6 +40,13 @@ uint64_t conic_file_sum_bytes(conic_context *context, const conic_file_layout *l
 /* Writes a file of header and arrays. Errors: MEMORY, IO, CANCELLED. */
 conic_status conic_file_write_arrays(conic_context *context, const char *path, const conic_file_kind *kind,
                                      const void *numbers, const conic_file_layout *layout, const void *const *arrays);
+
+/* Writes header and arrays to a stream, whose failures are seen by its owner. Errors: CANCELLED. */
+conic_status conic_file_put_arrays(conic_context *context, FILE *stream, const conic_file_kind *kind,
+                                   const void *numbers, const conic_file_layout *layout, const void *const *arrays);
+
+/* Turns the arrays in the bytes of a file between its order and the machine's. */
+void conic_file_turn_arrays(const conic_file_layout *layout, unsigned char *bytes);
 
 /* Whether the file is as long as its layout tells, has nothing between its arrays, and has that sum. Then its arrays
  * can be used as they lie: where files are the other way round than memory, the mapping, which is private, is turned

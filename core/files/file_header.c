@@ -25,8 +25,8 @@ void conic_file_mend_header(const conic_file_kind *kind, const void *numbers, un
   conic_store_64(bytes + AT_SUM, conic_checksum(bytes, AT_SUM));
 }
 
-static conic_status read_file_header(conic_context *context, const char *path, const conic_file_kind *kind,
-                                     const unsigned char *bytes, size_t n_bytes, void *numbers) {
+conic_status conic_file_read_header(conic_context *context, const char *path, const conic_file_kind *kind,
+                                    const unsigned char *bytes, size_t n_bytes, void *numbers) {
   if (n_bytes < sizeof kind->magic || memcmp(bytes, kind->magic, sizeof kind->magic) != 0)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: no %s file (at byte 0)", path, kind->ending);
   if (n_bytes < CONIC_FILE_HEADER_BYTES)
@@ -45,5 +45,5 @@ static conic_status read_file_header(conic_context *context, const char *path, c
 conic_status conic_file_open_kind(conic_context *context, const char *path, const conic_file_kind *kind,
                                   conic_mapping *file, void *numbers) {
   conic_status status = conic_mapping_open(context, path, file);
-  return status == CONIC_OK ? read_file_header(context, path, kind, file->bytes, file->n_bytes, numbers) : status;
+  return status == CONIC_OK ? conic_file_read_header(context, path, kind, file->bytes, file->n_bytes, numbers) : status;
 }

@@ -29,6 +29,10 @@ void conic_file_make_header(const conic_file_kind *kind, const void *numbers,
 conic_status conic_file_open_kind(conic_context *context, const char *path, const conic_file_kind *kind,
                                   conic_mapping *file, void *numbers);
 
+/* Reads the numbers of the first bytes of a file, of which there are n_bytes. Errors: UNSUPPORTED, INPUT. */
+conic_status conic_file_read_header(conic_context *context, const char *path, const conic_file_kind *kind,
+                                    const unsigned char *bytes, size_t n_bytes, void *numbers);
+
 /* Writes the numbers and the sum into a file's header and leaves the rest as it is; without numbers, only the sum. For
  * tests and fuzzing, which would else see no further than the sums. */
 void conic_file_mend_header(const conic_file_kind *kind, const void *numbers, unsigned char *bytes);

@@ -15,6 +15,12 @@ conic_status conic_model_find_kind(conic_input *input, const char *path, conic_m
 conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, const conic_read_options *options,
                                    const conic_delivery *delivery, conic_model *model);
 
+/* Hands a PLY's points over as conic_model_stream does, and its triangles, polygons being fans, in their order, some at
+ * a time. Errors: as conic_model_stream; INPUT (no PLY). */
+conic_status conic_mesh_stream(conic_context *context, const char *path, conic_batch_receiver *receive,
+                               conic_status (*receive_faces)(void *cookie, const uint32_t (*corners)[3], size_t n),
+                               void *cookie);
+
 /* Null options become the defaults. Errors: ARGUMENT. */
 conic_status conic_read_options_check(conic_context *context, const char *path, const conic_read_options *options,
                                       conic_read_options *settings);

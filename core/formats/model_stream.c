@@ -3,6 +3,7 @@
 
 #include "core/assimp/assimp_kinds.h"
 #include "core/base/memory.h"
+#include "core/base/message.h"
 #include "core/formats/model_loan.h"
 #include "core/formats/model_read.h"
 #include "core/splats/raw_colors.h"
@@ -76,6 +77,30 @@ static conic_status pass_twice(streaming *s, conic_input *input, const char *pat
   if (status == CONIC_OK)
     status = pass(s, &again, decode_batch, s);
   conic_input_close(&again);
+  return status;
+}
+
+conic_status conic_mesh_stream(conic_context *context, const char *path, conic_batch_receiver *receive,
+                               conic_status (*receive_faces)(void *cookie, const uint32_t (*corners)[3], size_t n),
+                               void *cookie) {
+  const conic_delivery delivery = {
+      .receive = receive, .cookie = cookie, .batch = BATCH, .receive_faces = receive_faces};
+  conic_read_options options;
+  conic_input input;
+  conic_model model;
+  conic_model_kind kind;
+  memset(&model, 0, sizeof model);
+  conic_read_options_init(&options);
+  conic_status status = conic_input_open(context, path, &input);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_model_find_kind(&input, path, &kind);
+  if (status == CONIC_OK && kind != CONIC_MODEL_PLY)
+    status = conic_fail(context, CONIC_ERROR_INPUT, "%s: only of a PLY faces are read some at a time", path);
+  if (status == CONIC_OK)
+    status = conic_model_read_kind(&input, kind, &options, &delivery, &model);
+  conic_input_close(&input);
+  conic_model_release(context, &model);
   return status;
 }
 

@@ -96,6 +96,19 @@ static conic_status read_face_row(triangulation *faces, const conic_ply_property
   return status == CONIC_OK ? conic_ply_end_row(faces->source) : status;
 }
 
+/* Triangles that are not kept go, where they are enough for a batch, or all the same if `is_last`; then there are none.
+ */
+static conic_status deliver_faces(conic_builder *builder, int is_last) {
+  conic_model *model = builder->model;
+  const conic_delivery *delivery = builder->delivery;
+  if (!delivery || model->n_triangles < (is_last ? 1 : delivery->batch))
+    return CONIC_OK;
+  conic_status status =
+      delivery->receive_faces(delivery->cookie, (const uint32_t(*)[3])model->triangles, model->n_triangles);
+  model->n_triangles = 0;
+  return status;
+}
+
 conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_header *header, uint64_t n_vertices,
                                   conic_builder *builder) {
   const conic_ply_element *element = source->element;
@@ -111,7 +124,12 @@ conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_head
                       "%s: the element '%s' has no list of integers vertex_indices (line %llu)", source->input->name,
                       element->name, (unsigned long long)element->line);
   conic_ply_face_texture_find(header, element, builder->model, &faces.texture);
-  for (uint64_t i = 0; status == CONIC_OK && i < element->count; i++)
+  if (builder->delivery) /* so that no polygon is settled by a part of the vertices */
+    status = conic_builder_deliver(builder, 1);
+  for (uint64_t i = 0; status == CONIC_OK && i < element->count; i++) {
     status = read_face_row(&faces, properties, (size_t)i_indices);
-  return status;
+    if (status == CONIC_OK)
+      status = deliver_faces(builder, 0);
+  }
+  return status == CONIC_OK ? deliver_faces(builder, 1) : status;
 }

@@ -177,7 +177,7 @@ static conic_status read_elements(vertex_reader *reader, const conic_ply_header 
       break;
     if (element == vertices)
       status = read_vertices(reader);
-    else if (!reader->builder->delivery && element->count > 0 &&
+    else if ((!reader->builder->delivery || reader->builder->delivery->receive_faces) && element->count > 0 &&
              (strcmp(element->name, "face") == 0 || strcmp(element->name, "tristrips") == 0))
       status = conic_ply_read_faces(source, header, vertices->count, reader->builder);
     else

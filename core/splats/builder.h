@@ -13,6 +13,8 @@ typedef struct conic_delivery {
   size_t batch;  /* points that are handed over at a time */
   int is_survey; /* all points are looked at, wanted or not */
   int is_again;  /* the file has been read before: what can be told of it has been */
+  /* A PLY's triangles, some at a time; or null: they are passed over. */
+  conic_status (*receive_faces)(void *cookie, const uint32_t (*corners)[3], size_t n);
 } conic_delivery;
 
 typedef struct conic_builder {

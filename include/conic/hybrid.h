@@ -9,6 +9,7 @@
 #include "conic/camera.h"
 #include "conic/context.h"
 #include "conic/image.h"
+#include "conic/layers_draw.h"
 #include "conic/render.h"
 #include "conic/splats.h"
 #include "conic/triangles.h"
@@ -62,6 +63,29 @@ CONIC_API conic_status conic_hybrid_build(conic_context *context, conic_triangle
                                           const conic_hybrid_options *options, conic_hybrid **hybrid,
                                           conic_hybrid_report *report);
 
+/* How a mesh that is larger than memory is read and built. */
+typedef struct conic_hybrid_streaming {
+  size_t size;           /* sizeof(conic_hybrid_streaming), set by the init function */
+  uint64_t memory_bytes; /* what building may take, temporary files and 1 KiB for each patch aside; the model does not
+                            depend on it */
+  double crease_deg;     /* above 0: of a mesh without normals, by conic_triangles_crease */
+  int is_smooth;         /* in place of all normals: by conic_triangles_smooth */
+} conic_hybrid_streaming;
+
+/* 1 GiB, 30 degrees. */
+CONIC_API void conic_hybrid_streaming_init_sized(conic_hybrid_streaming *streaming, size_t size);
+#define conic_hybrid_streaming_init(streaming) conic_hybrid_streaming_init_sized(streaming, sizeof *(streaming))
+
+/* Builds a model of a PLY of any size, in cells of some 200,000 faces: between cells no vertex is left out, and the
+ * whole is not simplified as one. The temporary files lie beside `path`, until the model is destroyed; they have no
+ * name. The model depends on the mesh and the options alone. Of `report`, which may be null, what is open, crowded,
+ * twisted, turned or welded, and pieces, are not counted. On success the caller owns *hybrid, which must not outlive
+ * the context. Errors: ARGUMENT, INPUT, IO, MEMORY, CANCELLED. */
+CONIC_API conic_status conic_hybrid_build_file(conic_context *context, const char *mesh, const char *path,
+                                               const conic_hybrid_options *options,
+                                               const conic_hybrid_streaming *streaming, conic_hybrid **hybrid,
+                                               conic_hybrid_report *report);
+
 /* Null is allowed. */
 CONIC_API void conic_hybrid_destroy(conic_hybrid *hybrid);
 
@@ -71,6 +95,18 @@ CONIC_API conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path
 /* Maps the file into memory and checks all of it: sums, sizes, structure. On success the caller owns *hybrid, which
  * must not outlive the context. The file must not be changed while it is in use. Errors: INPUT, IO, MEMORY. */
 CONIC_API conic_status conic_hybrid_read(conic_context *context, const char *path, conic_hybrid **hybrid);
+
+/* Opens a path or a URL: reads and checks all but the chunks, of which pictures read what they show
+ * (docs/reference/format-chy.md). `access` bounds the memory that index, chunks and what is drawn take, if memory_bytes
+ * are not 0, and says how a URL is read; null: the defaults of conic_layers_access_init, without a bound. A picture may
+ * fail for what of the file is damaged then, or cannot be had. On success the caller owns *hybrid, which must not
+ * outlive the context, and which one thread at a time may use. Errors: INPUT, IO, UNSUPPORTED (a URL, without libcurl),
+ * MEMORY, CANCELLED. */
+CONIC_API conic_status conic_hybrid_open(conic_context *context, const char *name, const conic_layers_access *access,
+                                         conic_hybrid **hybrid);
+
+/* Whether a name is a URL of which the path ends in .chy. */
+CONIC_API int conic_hybrid_is_url(const char *name);
 
 /* Whether a file that can be read begins like a .chy. */
 CONIC_API int conic_hybrid_is_file(const char *path);
@@ -140,7 +176,10 @@ typedef struct conic_hybrid_selection {
                          that is not drawn by its own triangles reaches the near distance */
   void *scratch;      /* private */
   double color_error; /* nor do colours differ by more than this from what is there, in steps as those of the view */
-  uint64_t reserved[7];
+  /* Of a model that was opened, not read: chunks that this picture took; those that were read since the opening, all
+   * bytes that were, those that came over the network, and those of chunks that are kept. */
+  uint64_t n_chunks, n_chunks_read, n_bytes_read, n_bytes_received, n_bytes_kept;
+  uint64_t reserved[2];
 } conic_hybrid_selection;
 
 /* Chooses what to draw: clusters out of sight, and with cull_back those that face away, are left out. Neighbours meet

@@ -43,8 +43,9 @@ typedef enum conic_source_ability {
   CONIC_SOURCE_CLUSTERS = 2,  /* draws clusters of two kinds: only_kind, and the image's cluster plane */
   CONIC_SOURCE_STREAMS = 4,   /* draws by itself what it reads meanwhile: levels, deadline, occlusion; and hands nothing
                                  over unless it is opened whole */
-  CONIC_SOURCE_COMPOSITES = 8 /* draws Gaussians, composited by alpha: display values, and planes of its own. Of the
+  CONIC_SOURCE_COMPOSITES = 8, /* draws Gaussians, composited by alpha: display values, and planes of its own. Of the
                                  render options, the background and the instruction set count; nothing is handed over */
+  CONIC_SOURCE_READS_PARTS = 16 /* reads of a file or a URL what it draws, by the options' access */
 } conic_source_ability;
 
 typedef struct conic_source_options {
@@ -55,7 +56,7 @@ typedef struct conic_source_options {
   int n_neighbours;                  /* that a raw point's size is estimated from, 6 to 64 */
   const char *texture_path;          /* a picture that lies on the mesh in place of its own; null: none */
   int is_smooth;                     /* a mesh that is drawn as one, or a hybrid, gets vertex normals from its faces */
-  const conic_layers_access *access; /* of layered clouds; null: the defaults */
+  const conic_layers_access *access; /* of what reads parts; null: the defaults */
   const conic_patches_options *patches; /* but for the cutoff; null: the defaults */
   int h_in_spacings;                    /* the patches' surface.h is in median sample spacings */
   int projects_degrees; /* raw points whose x and y are longitude and latitude are drawn in metres, and said to be */

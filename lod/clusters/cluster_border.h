@@ -1,4 +1,4 @@
-/* What is left out where clusters meet, as a .chy file keeps it. */
+/* What is left out where clusters meet. */
 #ifndef CONIC_CLUSTER_BORDER_H
 #define CONIC_CLUSTER_BORDER_H
 
@@ -16,7 +16,7 @@ typedef struct conic_cluster_slot {
  * in when they are drawn side by side. */
 typedef struct conic_cluster_border {
   uint32_t edge;     /* 4 · triangle, counted from the level's first, + the corner where the edge begins */
-  uint32_t from, to; /* slots of its two ends; what was left out lies between */
+  uint32_t from, to; /* slots of its two ends; what was left out lies between; in a model, of the cluster's own */
   uint32_t across;   /* the other cluster */
 } conic_cluster_border;
 

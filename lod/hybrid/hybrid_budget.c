@@ -139,7 +139,7 @@ static uint64_t count_stitches(const fitting *f) {
     f->stages[f->clusters[i]] = f->standing[f->clusters[i]] == CONIC_HYBRID_NO_NODE ? chosen(f, i)->stage : 0;
   for (size_t i = 0; i < f->n; i++)
     if (f->standing[f->clusters[i]] == CONIC_HYBRID_NO_NODE)
-      count += conic_hybrid_count_stitches(f->hybrid, chosen(f, i), f->stages);
+      count += conic_hybrid_count_stitches(f->hybrid, f->clusters[i], chosen(f, i), f->stages);
   return count;
 }
 

@@ -6,6 +6,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/splats/columns.h"
+#include "lod/hybrid/hybrid_build.h"
 #include "lod/hybrid/hybrid_nodes.h"
 #include "lod/hybrid/hybrid_pack.h"
 #include "lod/hybrid/hybrid_tree.h"
@@ -28,6 +29,8 @@ typedef struct building {
   size_t *starts;
   conic_cluster_ways *ways;
   conic_hybrid_report *report;
+  size_t n_own; /* faces; those behind them lie beside the model */
+  size_t n_own_clusters;
 } building;
 
 static void release_building(building *b) {
@@ -51,6 +54,23 @@ static double most_area_of(const building *b) {
   return b->options->most_area > 0.0 ? b->options->most_area : share < 0.02 ? share : 0.02;
 }
 
+/* No cluster has both faces of its own and others. */
+static void part_from_others(building *b) {
+  conic_adjacency *a = &b->adjacency;
+  size_t n = 0;
+  for (size_t i = 0; i < a->n_joints; i++)
+    if ((a->joints[i].faces[0] < b->n_own) == (a->joints[i].faces[1] < b->n_own))
+      a->joints[n++] = a->joints[i];
+  a->n_joints = n;
+}
+
+/* They are numbered by their first faces: others come last. */
+static void count_own(building *b) {
+  for (size_t i = 0; i < b->flat.count && i < b->n_own; i++)
+    if (b->clusters.of_face[i] != CONIC_NO_CLUSTER && b->clusters.of_face[i] >= b->n_own_clusters)
+      b->n_own_clusters = (size_t)b->clusters.of_face[i] + 1;
+}
+
 static conic_status find_clusters(building *b) {
   const conic_clustering_options options = {b->options->phase1, b->options->phase2, most_area_of(b)};
   conic_clustered_mesh *mesh = &b->mesh;
@@ -63,8 +83,12 @@ static conic_status find_clusters(building *b) {
   mesh->clusters = &b->clusters;
   conic_status status = conic_adjacency_find(b->context, &mesh->mesh, &b->adjacency);
   if (status == CONIC_OK)
+    part_from_others(b);
+  if (status == CONIC_OK)
     status = conic_mesh_clusters_find(b->context, &mesh->mesh, &b->adjacency, &options, &b->clusters);
-  if (status == CONIC_OK && b->clusters.n_clusters == 0)
+  if (status == CONIC_OK)
+    count_own(b);
+  if (status == CONIC_OK && b->n_own_clusters == 0)
     status = conic_fail(b->context, CONIC_ERROR_INPUT, "the mesh has no face that could be drawn");
   return status;
 }
@@ -87,7 +111,7 @@ static void sort_faces(building *b) {
 
 /* Numbers the clusters as the hierarchy has them: near each other where they are near. */
 static conic_status order_clusters(building *b) {
-  size_t n = b->clusters.n_clusters;
+  size_t n = b->clusters.n_clusters, n_own = b->n_own_clusters;
   conic_hybrid_bound *bounds = conic_memory_allocate(b->context, n, sizeof *bounds);
   uint32_t *order = conic_memory_allocate(b->context, n, sizeof *order);
   uint32_t *rank = conic_memory_allocate(b->context, n, sizeof *rank);
@@ -96,8 +120,10 @@ static conic_status order_clusters(building *b) {
   for (size_t i = 0; i < n && status == CONIC_OK; i++)
     bounds[i] = conic_cluster_bound(&b->mesh, (uint32_t)i);
   if (status == CONIC_OK)
-    status = conic_hybrid_order(b->context, bounds, n, order);
+    status = conic_hybrid_order(b->context, bounds, n_own, order);
   if (status == CONIC_OK) {
+    for (size_t i = n_own; i < n; i++)
+      order[i] = (uint32_t)i;
     memcpy(is_gathered, b->clusters.is_gathered, n);
     for (size_t i = 0; i < n; i++) {
       rank[order[i]] = (uint32_t)i;
@@ -167,7 +193,11 @@ static conic_status build_hybrid(building *b, conic_triangles *mesh, conic_hybri
     return status;
   report_oddities(b, mesh);
   b->report->cluster_seconds = conic_seconds_now() - start;
-  conic_ways_job ways = {.context = b->context, .mesh = &b->mesh, .options = b->options, .ways = b->ways};
+  conic_ways_job ways = {.context = b->context,
+                         .mesh = &b->mesh,
+                         .options = b->options,
+                         .n_clusters = b->n_own_clusters,
+                         .ways = b->ways};
   status = conic_find_ways(&ways);
   b->report->sample_seconds = ways.sample_seconds;
   b->report->simplify_seconds = ways.simplify_seconds;
@@ -180,9 +210,15 @@ static conic_status build_hybrid(building *b, conic_triangles *mesh, conic_hybri
 
 conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, const conic_hybrid_options *given,
                                 conic_hybrid **hybrid, conic_hybrid_report *report) {
+  return conic_hybrid_build_part(context, mesh, SIZE_MAX, given, hybrid, report);
+}
+
+conic_status conic_hybrid_build_part(conic_context *context, conic_triangles *mesh, size_t n_own,
+                                     const conic_hybrid_options *given, conic_hybrid **hybrid,
+                                     conic_hybrid_report *report) {
   conic_hybrid_report ignored;
   conic_hybrid_options options;
-  building b = {.context = context, .options = &options, .report = report ? report : &ignored};
+  building b = {.context = context, .options = &options, .report = report ? report : &ignored, .n_own = n_own};
   *hybrid = NULL;
   memset(b.report, 0, sizeof *b.report);
   conic_status status = conic_triangles_check_own(context, "the mesh", mesh);

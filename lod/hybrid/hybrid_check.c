@@ -2,9 +2,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/message.h"
 #include "core/base/real.h"
 #include "core/base/vectors.h"
-#include "lod/hybrid/hybrid_model.h"
+#include "lod/hybrid/hybrid_chunks.h"
 
 /* What floats lose between the finding of a bound and its use. */
 static const double hair = 1e-5;
@@ -16,12 +17,9 @@ static double distance_of(const conic_hybrid_bound *bound, const double at[3]) {
   return conic_length(way);
 }
 
-static void corners_of(const conic_hybrid *h, const conic_hybrid_level *level, size_t i, double at[3][3]) {
-  for (int corner = 0; corner < 3; corner++) {
-    uint32_t vertex = h->listed[level->first_vertex + h->corners[level->first + i][corner]];
-    for (int axis = 0; axis < 3; axis++)
-      at[corner][axis] = (double)h->position[axis][vertex];
-  }
+static void vertex_place(const conic_hybrid_vertices *vertices, size_t vertex, double at[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    at[axis] = (double)vertices->position[axis][vertex];
 }
 
 static int faces_within(const conic_hybrid_bound *bound, double at[3][3]) {
@@ -46,11 +44,13 @@ static void check_cluster(const conic_hybrid *h, const conic_hybrid_cluster *clu
   const conic_hybrid_level *levels = h->levels + cluster->first_level;
   double most = (double)cluster->bound.radius * (1.0 + hair);
   int is_out = 0, is_turned = 0, is_wrong = levels[0].error != 0.0f;
+  conic_hybrid_piece faces = conic_hybrid_piece_of(h, cluster->first_level);
   for (size_t i = 0; i < levels[0].count; i++) {
     double at[3][3];
-    corners_of(h, &levels[0], i, at);
-    for (int corner = 0; corner < 3; corner++)
+    for (int corner = 0; corner < 3; corner++) {
+      vertex_place(&faces.vertices, conic_hybrid_corner(&faces, i, corner), at[corner]);
       is_out |= !(distance_of(&cluster->bound, at[corner]) <= most);
+    }
     is_turned |= !faces_within(&cluster->bound, at);
   }
   for (uint32_t k = 1; k < cluster->n_levels; k++)
@@ -68,11 +68,10 @@ static void check_joined(const conic_hybrid *h, const conic_hybrid_node *node, c
   for (uint32_t k = 1; k < node->n_levels; k++)
     is_wrong |= wrong_after(&levels[k - 1], &levels[k]);
   for (uint32_t i = node->begin; i < node->end && node->point.radius > 0.0f; i++) {
-    const conic_hybrid_level *faces = &h->levels[h->clusters[i].first_level];
-    for (uint32_t k = 0; k < faces->n_vertices; k++) {
+    conic_hybrid_piece faces = conic_hybrid_piece_of(h, h->clusters[i].first_level);
+    for (uint32_t k = 0; k < h->levels[h->clusters[i].first_level].n_vertices; k++) {
       double at[3];
-      for (int axis = 0; axis < 3; axis++)
-        at[axis] = (double)h->position[axis][h->listed[faces->first_vertex + k]];
+      vertex_place(&faces.vertices, k, at);
       is_out |= !(distance_of(&point, at) <= (double)node->point.radius * (1.0 + hair));
     }
   }
@@ -113,14 +112,17 @@ static size_t count_wrong(const float *values, size_t n) {
 }
 
 conic_status conic_hybrid_check(const conic_hybrid *h, conic_hybrid_defects *defects) {
+  if (h->store)
+    return conic_fail(h->context, CONIC_ERROR_ARGUMENT, "a model that was opened, not read as a whole, is not checked");
   memset(defects, 0, sizeof *defects);
-  for (int axis = 0; axis < 3; axis++) {
-    for (size_t i = 0; i < h->n_listed; i++)
-      defects->values += !conic_is_finite(h->position[axis][h->listed[i]]);
-    defects->values += count_wrong(h->color[axis], h->n_vertices);
+  for (uint32_t i = 0; i < h->n_levels; i++) {
+    conic_hybrid_piece piece = conic_hybrid_piece_of(h, i);
+    for (int axis = 0; axis < 3; axis++)
+      defects->values += count_wrong(piece.vertices.position[axis], h->levels[i].n_vertices) +
+                         count_wrong(piece.vertices.color[axis], h->levels[i].n_vertices);
+    for (int k = 0; k < 12; k++)
+      defects->values += count_wrong(piece.surfels[k], h->levels[i].count);
   }
-  for (int k = 0; k < 12; k++)
-    defects->values += count_wrong(h->surfels[k], h->n_surfels);
   for (size_t i = 0; i < h->n_clusters; i++)
     check_cluster(h, &h->clusters[i], defects);
   for (size_t i = 0; i < h->n_nodes; i++) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "lod/hybrid/hybrid_chunks.h"
 
 /* Rounds in which each cluster is thought over; and how much less a picture of both kinds must promise to be preferred
  * to one of a single kind. */
@@ -74,8 +75,12 @@ static void add_links(hybrid_planning *p, uint32_t i, uint32_t *last) {
   const conic_hybrid_level *level = triangles_of(p, i);
   plan_candidate *c = &p->candidates[i];
   c->first_link = (uint32_t)p->n_links;
+  c->n_links = 0;
+  if (level->n_borders == 0)
+    return;
+  conic_hybrid_frame frame = conic_hybrid_frame_of(p->hybrid, p->clusters[i]);
   for (size_t k = 0; k < level->n_borders; k++) {
-    const conic_cluster_border *border = &p->hybrid->borders[level->first_border + k];
+    const conic_cluster_border *border = &frame.borders[level->first_border + k];
     uint32_t other = p->of_cluster[border->across];
     uint32_t n = border->from < border->to ? border->to - border->from : border->from - border->to;
     if (other == p->n)

@@ -7,10 +7,8 @@
 #include "core/image/texture_levels.h"
 
 /* The records are in the file as they are in memory, but for the order of the bytes within their members. */
-_Static_assert(sizeof(conic_hybrid_level) == 56, "levels of 56 bytes");
-_Static_assert(sizeof(conic_cluster_slot) == 12, "slots of 12 bytes");
-_Static_assert(sizeof(conic_cluster_border) == 16, "borders of 16 bytes");
-_Static_assert(sizeof(conic_hybrid_cluster) == 48, "clusters of 48 bytes");
+_Static_assert(sizeof(conic_hybrid_level) == 52, "levels of 52 bytes");
+_Static_assert(sizeof(conic_hybrid_cluster) == 64, "clusters of 64 bytes");
 _Static_assert(sizeof(conic_hybrid_node) == 80, "nodes of 80 bytes");
 _Static_assert(sizeof(conic_chy_material) == 32, "materials of 32 bytes");
 _Static_assert((int)CONIC_CHY_N_ARRAYS <= (int)CONIC_FILE_MOST_ARRAYS, "a layout holds all arrays");
@@ -18,26 +16,11 @@ _Static_assert((int)CONIC_CHY_N_ARRAYS <= (int)CONIC_FILE_MOST_ARRAYS, "a layout
 conic_file_layout conic_chy_lay_out(const conic_chy_header *h) {
   conic_file_layout l = {.n_bytes = CONIC_FILE_HEADER_BYTES};
   size_t sizes[CONIC_CHY_N_ARRAYS] = {0};
-  size_t vertices = (size_t)h->n_vertices * sizeof(float);
   sizes[CONIC_CHY_NODES] = (size_t)h->n_nodes * sizeof(conic_hybrid_node);
   sizes[CONIC_CHY_CLUSTERS] = (size_t)h->n_clusters * sizeof(conic_hybrid_cluster);
   sizes[CONIC_CHY_LEVELS] = (size_t)h->n_levels * sizeof(conic_hybrid_level);
-  sizes[CONIC_CHY_CORNERS] = (size_t)h->n_triangles * 3 * sizeof(uint32_t);
-  sizes[CONIC_CHY_LISTED] = (size_t)h->n_listed * sizeof(uint32_t);
-  sizes[CONIC_CHY_MATERIAL_OF] = h->flags & CONIC_CHY_MATERIALS ? (size_t)h->n_triangles * sizeof(uint32_t) : 0;
   sizes[CONIC_CHY_MATERIAL_LIST] = (size_t)h->n_materials * sizeof(conic_chy_material);
   sizes[CONIC_CHY_TEXELS] = (size_t)h->n_texels * 3;
-  for (int axis = 0; axis < 3; axis++) {
-    sizes[CONIC_CHY_POSITION + axis] = vertices;
-    sizes[CONIC_CHY_NORMAL + axis] = h->flags & CONIC_CHY_NORMALS ? vertices : 0;
-    sizes[CONIC_CHY_COLOR + axis] = h->flags & CONIC_CHY_COLORS ? vertices : 0;
-  }
-  for (int k = 0; k < 2; k++)
-    sizes[CONIC_CHY_TEXTURE + k] = h->flags & CONIC_CHY_TEXTURE_COORDINATES ? vertices : 0;
-  for (int k = 0; k < 12; k++)
-    sizes[CONIC_CHY_SURFELS + k] = (size_t)h->n_surfels * sizeof(float);
-  sizes[CONIC_CHY_SLOTS] = (size_t)h->n_slots * sizeof(conic_cluster_slot);
-  sizes[CONIC_CHY_BORDERS] = (size_t)h->n_borders * sizeof(conic_cluster_border);
   for (int i = 0; i < CONIC_CHY_N_ARRAYS; i++)
     conic_file_add_array(&l, sizes[i], i == CONIC_CHY_TEXELS ? "1" : i == CONIC_CHY_MATERIAL_LIST ? "4444448" : "4");
   return l;
@@ -50,6 +33,7 @@ static const void *array_in_layout(const conic_file_layout *l, const unsigned ch
 
 void conic_chy_attach(const conic_chy_header *h, unsigned char *bytes, conic_hybrid *hybrid) {
   conic_file_layout l = conic_chy_lay_out(h);
+  hybrid->flags = h->flags;
   hybrid->cutoff = h->cutoff;
   memcpy(hybrid->origin, h->origin, sizeof hybrid->origin);
   memcpy(hybrid->low, h->low, sizeof hybrid->low);
@@ -57,34 +41,18 @@ void conic_chy_attach(const conic_chy_header *h, unsigned char *bytes, conic_hyb
   hybrid->splat_length = h->splat_length;
   hybrid->n_vertices = (size_t)h->n_vertices;
   hybrid->n_triangles = (size_t)h->n_triangles;
-  hybrid->n_listed = (size_t)h->n_listed;
   hybrid->n_surfels = (size_t)h->n_surfels;
   hybrid->n_levels = (size_t)h->n_levels;
   hybrid->n_clusters = (size_t)h->n_clusters;
   hybrid->n_nodes = (size_t)h->n_nodes;
-  hybrid->n_slots = (size_t)h->n_slots;
-  hybrid->n_borders = (size_t)h->n_borders;
   hybrid->n_materials = (size_t)h->n_materials;
   hybrid->n_texels = (size_t)h->n_texels;
+  hybrid->n_data = h->n_data;
   hybrid->nodes = array_in_layout(&l, bytes, CONIC_CHY_NODES);
   hybrid->clusters = array_in_layout(&l, bytes, CONIC_CHY_CLUSTERS);
   hybrid->levels = array_in_layout(&l, bytes, CONIC_CHY_LEVELS);
-  hybrid->slots = array_in_layout(&l, bytes, CONIC_CHY_SLOTS);
-  hybrid->borders = array_in_layout(&l, bytes, CONIC_CHY_BORDERS);
-  hybrid->corners = array_in_layout(&l, bytes, CONIC_CHY_CORNERS);
-  hybrid->listed = array_in_layout(&l, bytes, CONIC_CHY_LISTED);
-  hybrid->material = array_in_layout(&l, bytes, CONIC_CHY_MATERIAL_OF);
   hybrid->material_list = array_in_layout(&l, bytes, CONIC_CHY_MATERIAL_LIST);
   hybrid->texels = array_in_layout(&l, bytes, CONIC_CHY_TEXELS);
-  for (int axis = 0; axis < 3; axis++) {
-    hybrid->position[axis] = array_in_layout(&l, bytes, CONIC_CHY_POSITION + axis);
-    hybrid->normal[axis] = array_in_layout(&l, bytes, CONIC_CHY_NORMAL + axis);
-    hybrid->color[axis] = array_in_layout(&l, bytes, CONIC_CHY_COLOR + axis);
-  }
-  for (int k = 0; k < 2; k++)
-    hybrid->texture_coordinate[k] = array_in_layout(&l, bytes, CONIC_CHY_TEXTURE + k);
-  for (int k = 0; k < 12; k++)
-    hybrid->surfels[k] = array_in_layout(&l, bytes, CONIC_CHY_SURFELS + k);
 }
 
 static conic_status make_texture(conic_hybrid *hybrid, const conic_chy_material *from, conic_texture **texture) {

@@ -205,7 +205,7 @@ static void ways_task(void *data, size_t i_task, int i_thread) {
 
 static conic_status run_pass(ways_pass *pass) {
   conic_context *context = pass->job->context;
-  size_t n = pass->job->mesh->clusters->n_clusters;
+  size_t n = pass->job->n_clusters;
   conic_status status = conic_parallel_told(context, "sample", 0.0, 0.5, n, ways_task, pass);
   for (int i = 0; i < conic_context_threads(context); i++)
     status = pass->statuses[i] != CONIC_OK ? pass->statuses[i] : status;
@@ -214,7 +214,7 @@ static conic_status run_pass(ways_pass *pass) {
 
 static conic_status order_by_size(ways_pass *pass) {
   const conic_clustered_mesh *mesh = pass->job->mesh;
-  size_t n = mesh->clusters->n_clusters;
+  size_t n = pass->job->n_clusters;
   conic_radix_item *items = conic_memory_allocate(pass->job->context, n, sizeof *items);
   if (!items)
     return CONIC_ERROR_MEMORY;
@@ -230,6 +230,7 @@ static conic_status order_by_size(ways_pass *pass) {
 static conic_status run_passes(ways_pass *pass) {
   conic_ways_job *job = pass->job;
   int n_threads = conic_context_threads(job->context);
+  size_t n_all = job->mesh->clusters->n_clusters;
   double start = conic_seconds_now();
   conic_status status = run_pass(pass);
   for (int i = 0; i < n_threads; i++)
@@ -239,7 +240,7 @@ static conic_status run_passes(ways_pass *pass) {
   double sampled = conic_seconds_now();
   if (status == CONIC_OK && !job->options->has_single_levels)
     status = conic_find_simpler(job);
-  if (status == CONIC_OK && !job->options->has_single_levels)
+  if (status == CONIC_OK && !job->options->has_single_levels && n_all == job->n_clusters)
     status = conic_find_whole(job);
   job->sample_seconds = sampled - start;
   job->simplify_seconds = conic_seconds_now() - sampled;
@@ -248,7 +249,7 @@ static conic_status run_passes(ways_pass *pass) {
 
 conic_status conic_find_ways(conic_ways_job *job) {
   size_t n_threads = (size_t)conic_context_threads(job->context);
-  size_t n = job->mesh->clusters->n_clusters;
+  size_t n = job->n_clusters;
   ways_pass pass = {.job = job,
                     .order = conic_memory_allocate(job->context, n, sizeof *pass.order),
                     .workers = conic_memory_allocate_zeroed(job->context, n_threads, sizeof *pass.workers),

@@ -28,6 +28,7 @@ typedef struct conic_ways_job {
   conic_context *context;
   const conic_clustered_mesh *mesh;
   const conic_hybrid_options *options;
+  size_t n_clusters;        /* the first ones are the model's; what others there are lies beside them and stays */
   conic_face_tree tree;     /* private, */
   double most_out;          /* and how far surfels as built may stand out from the mesh; infinite: by any length */
   conic_cluster_ways *ways; /* of each cluster; zero before */

@@ -5,12 +5,16 @@
 
 #include "core/base/memory.h"
 #include "lod/hybrid/hybrid_layout.h"
+#include "lod/hybrid/hybrid_pile.h"
+#include "lod/hybrid/hybrid_store.h"
 
 void conic_hybrid_destroy(conic_hybrid *hybrid) {
   if (!hybrid)
     return;
   for (size_t i = 0; hybrid->materials && i < hybrid->n_materials; i++)
     conic_texture_destroy(hybrid->materials[i].texture);
+  conic_hybrid_store_close(hybrid->store);
+  conic_hybrid_pile_release(hybrid->context, hybrid->pile);
   conic_memory_release(hybrid->context, hybrid->materials);
   conic_memory_release(hybrid->context, hybrid->owned);
   conic_mapping_close(hybrid->context, &hybrid->mapping);
@@ -36,7 +40,7 @@ conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info
     info->n_surfel_clusters += (size_t)is_surfels;
     *(is_surfels ? &info->n_surfels : &info->n_triangles) += built->count;
   }
-  info->has_colors = hybrid->color[0] || hybrid->n_materials > 0;
+  info->has_colors = hybrid->flags & CONIC_CHY_COLORS || hybrid->n_materials > 0;
   info->n_node_levels = hybrid->n_levels - info->n_levels;
   for (size_t i = 0; i < hybrid->n_materials; i++)
     info->n_textures += hybrid->material_list[i].width > 0;
@@ -65,74 +69,34 @@ static int is_length(float value) {
   return value >= 0.0f && value < HUGE_VALF;
 }
 
-static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *level, int is_first) {
+static const char *wrong_level(const conic_hybrid_level *level, int is_first) {
   if (level->kind > CONIC_HYBRID_SURFELS || (is_first && level->kind != CONIC_HYBRID_TRIANGLES))
     return "a level of no known kind";
-  size_t n = level->kind == CONIC_HYBRID_TRIANGLES ? h->n_triangles : h->n_surfels;
-  if (level->count < 1 || level->count > n || level->first > n - level->count)
+  if (level->count < 1 || level->count > UINT32_MAX / 4)
     return "a level without its triangles or surfels";
-  if (level->n_vertices > h->n_listed || level->first_vertex > h->n_listed - level->n_vertices)
+  if (level->kind == CONIC_HYBRID_SURFELS ? level->n_vertices > 0 : level->n_vertices < 1)
     return "a level without its vertices";
-  if (level->n_borders > h->n_borders || level->first_border > h->n_borders - level->n_borders ||
-      (level->n_borders > 0 && level->kind != CONIC_HYBRID_TRIANGLES))
+  if (level->n_borders > 0 && level->kind != CONIC_HYBRID_TRIANGLES)
     return "a level without its borders";
   if (!is_length(level->error) || !is_length(level->reach) || !is_length(level->cover) || !is_length(level->spread) ||
       !is_length(level->change) || !is_length(level->smear))
     return "a level's error, reach or extent out of range";
-  if (level->kind == CONIC_HYBRID_TRIANGLES)
-    for (size_t i = level->first; i < (size_t)level->first + level->count; i++)
-      for (int corner = 0; corner < 3; corner++)
-        if (h->corners[i][corner] >= level->n_vertices)
-          return "a corner out of range";
   return NULL;
 }
 
-/* Whether a slot lies where a corner of one of the level's triangles does. */
-static int is_corner(const conic_hybrid *h, const conic_hybrid_level *level, uint32_t triangle, uint32_t corner,
-                     uint32_t slot) {
-  uint32_t a = h->listed[level->first_vertex + h->corners[level->first + triangle][corner % 3]];
-  uint32_t b = h->slots[slot].vertices[0];
-  int is_there = 1;
-  for (int axis = 0; axis < 3; axis++)
-    is_there &= h->position[axis][a] == h->position[axis][b];
-  return is_there;
-}
-
-/* `n_left_out` is how many slots the borders run over. */
-static const char *wrong_borders(const conic_hybrid *h, uint32_t cluster, const conic_hybrid_level *level,
-                                 size_t *n_left_out) {
-  *n_left_out = 0;
-  for (uint32_t i = 0; i < level->n_borders; i++) {
-    const conic_cluster_border *border = &h->borders[level->first_border + i];
-    if ((i > 0 && border->edge <= border[-1].edge) || border->edge / 4 >= level->count || border->edge % 4 > 2 ||
-        border->from >= h->n_slots || border->to >= h->n_slots || border->across >= h->n_clusters ||
-        border->across == cluster)
-      return "a border out of range";
-    if (!is_corner(h, level, border->edge / 4, border->edge % 4, border->from) ||
-        !is_corner(h, level, border->edge / 4, border->edge % 4 + 1, border->to))
-      return "a border that is not its triangle's";
-    *n_left_out += border->from < border->to ? border->to - border->from : border->from - border->to;
+/* What a cluster's levels left out follows each other, too. */
+static const char *wrong_levels(const conic_hybrid *h, const conic_hybrid_cluster *cluster) {
+  uint64_t n_borders = 0;
+  for (uint32_t k = 0; k < cluster->n_levels; k++) {
+    const conic_hybrid_level *level = &h->levels[cluster->first_level + k];
+    const char *wrong = wrong_level(level, k == 0);
+    if (wrong)
+      return wrong;
+    if (level->first_border != (level->kind == CONIC_HYBRID_TRIANGLES ? n_borders : 0))
+      return "a level without its borders";
+    n_borders += level->n_borders;
   }
-  return NULL;
-}
-
-/* A slot is of two clusters, so that there is never more to put in than twice as many as there are slots. */
-static const char *wrong_chains(const conic_hybrid *h) {
-  size_t n_left = 2 * h->n_slots;
-  for (uint32_t i = 0; i < h->n_clusters; i++) {
-    size_t most = 0;
-    for (uint32_t k = 0; k < h->clusters[i].n_levels; k++) {
-      size_t n;
-      const char *wrong = wrong_borders(h, i, &h->levels[h->clusters[i].first_level + k], &n);
-      if (wrong)
-        return wrong;
-      most = n > most ? n : most;
-    }
-    if (most > n_left)
-      return "borders that run over each other";
-    n_left -= most;
-  }
-  return NULL;
+  return n_borders == cluster->n_borders ? NULL : "borders of no level";
 }
 
 static int is_bound(const conic_hybrid_bound *b) {
@@ -152,11 +116,9 @@ static const char *wrong_clusters(const conic_hybrid *h) {
       return "a patch without its levels";
     if (!is_bound(&cluster->bound) || !is_length(cluster->area))
       return "a patch's bounds out of range";
-    for (size_t k = 0; k < cluster->n_levels; k++) {
-      const char *wrong = wrong_level(h, &h->levels[next + k], k == 0);
-      if (wrong)
-        return wrong;
-    }
+    const char *wrong = wrong_levels(h, cluster);
+    if (wrong)
+      return wrong;
     next += cluster->n_levels;
   }
   return NULL;
@@ -172,9 +134,9 @@ static const char *wrong_node_levels(const conic_hybrid *h) {
     if (node->first_level != next || node->n_levels > h->n_levels - next)
       return "a node without its levels";
     for (size_t k = 0; k < node->n_levels; k++) {
-      if (h->levels[next + k].n_borders > 0)
+      if (h->levels[next + k].n_borders > 0 || h->levels[next + k].first_border > 0)
         return "a node's level with borders";
-      const char *wrong = wrong_level(h, &h->levels[next + k], 0);
+      const char *wrong = wrong_level(&h->levels[next + k], 0);
       if (wrong)
         return wrong;
     }
@@ -220,6 +182,15 @@ static const char *wrong_children(const conic_hybrid *h) {
   return NULL;
 }
 
+static const char *wrong_counts(const conic_hybrid *h) {
+  uint64_t counts[2] = {0, 0};
+  for (size_t i = 0; i < h->n_levels; i++)
+    counts[h->levels[i].kind] += h->levels[i].count;
+  return counts[CONIC_HYBRID_TRIANGLES] == h->n_triangles && counts[CONIC_HYBRID_SURFELS] == h->n_surfels
+             ? NULL
+             : "other numbers of triangles or surfels than its levels";
+}
+
 const char *conic_hybrid_structure(const conic_hybrid *h) {
   const char *wrong = wrong_clusters(h);
   if (!wrong)
@@ -228,17 +199,8 @@ const char *conic_hybrid_structure(const conic_hybrid *h) {
     wrong = wrong_children(h);
   if (!wrong)
     wrong = wrong_node_levels(h);
-  for (size_t i = 0; i < h->n_listed && !wrong; i++)
-    if (h->listed[i] >= h->n_vertices)
-      wrong = "a vertex out of range";
-  for (size_t i = 0; i < h->n_slots && !wrong; i++)
-    if (h->slots[i].vertices[0] >= h->n_vertices || h->slots[i].vertices[1] >= h->n_vertices)
-      wrong = "a vertex out of range";
   if (!wrong)
-    wrong = wrong_chains(h);
-  for (size_t i = 0; i < h->n_triangles && h->material && !wrong; i++)
-    if (h->material[i] >= h->n_materials)
-      wrong = "a material out of range";
+    wrong = wrong_counts(h);
   for (size_t i = 0; i < h->n_materials && !wrong; i++) {
     const conic_chy_material *m = &h->material_list[i];
     uint64_t n = (uint64_t)m->width * m->height;

@@ -362,7 +362,7 @@ static float reach_of_surfels(const conic_cluster_ways *ways) {
 }
 
 conic_status conic_find_nodes(conic_ways_job *job) {
-  size_t n = job->mesh->clusters->n_clusters;
+  size_t n = job->n_clusters;
   job->n_nodes = conic_hybrid_count_nodes(n);
   job->nodes = conic_memory_allocate(job->context, job->n_nodes, sizeof *job->nodes);
   conic_hybrid_bound *bounds = conic_memory_allocate(job->context, n, sizeof *bounds);

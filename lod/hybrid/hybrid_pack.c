@@ -7,6 +7,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/image/texture_levels.h"
+#include "lod/hybrid/hybrid_chunks.h"
 #include "lod/hybrid/hybrid_layout.h"
 
 typedef struct packing {
@@ -15,16 +16,22 @@ typedef struct packing {
   const conic_triangles *flat;      /* the same mesh */
   size_t n_clusters;
   uint32_t *local; /* of each vertex: its number in the level that is being listed, else none */
+  uint32_t *listed, (*corners)[3];        /* of the level that is being listed: its vertices, and corners among these */
+  conic_cluster_level faces;              /* of the cluster's faces themselves */
+  uint32_t (*first_slots)[2], *of_slot;   /* of each chain: its first slot in both clusters; of each slot its chain */
+  uint32_t *chain_starts, *chains_by;     /* by cluster */
   conic_chy_header header;
   conic_file_layout layout;
   unsigned char *bytes;
+  conic_hybrid *made; /* over these */
+  size_t level;       /* the next */
 } packing;
 
 /* --- sizes --- */
 
-/* How many vertices so many triangles have. */
-static size_t list_vertices(packing *p, const uint32_t (*corners)[3], size_t n, uint32_t *listed,
-                            uint32_t (*local_corners)[3]) {
+/* Lists the vertices of so many triangles, and returns how many they are. */
+static size_t list_vertices(packing *p, const uint32_t (*corners)[3], size_t n) {
+  uint32_t *listed = p->listed;
   size_t n_listed = 0;
   for (size_t i = 0; i < n; i++)
     for (int corner = 0; corner < 3; corner++) {
@@ -33,7 +40,7 @@ static size_t list_vertices(packing *p, const uint32_t (*corners)[3], size_t n, 
         listed[n_listed] = vertex;
         p->local[vertex] = (uint32_t)n_listed++;
       }
-      local_corners[i][corner] = p->local[vertex];
+      p->corners[i][corner] = p->local[vertex];
     }
   for (size_t i = 0; i < n_listed; i++)
     p->local[listed[i]] = UINT32_MAX;
@@ -48,31 +55,18 @@ static size_t most_faces(const packing *p) {
   return p->job->whole.n > 0 && p->job->whole.levels[0].n > most ? p->job->whole.levels[0].n : most;
 }
 
-static void count_cluster(packing *p, uint32_t cluster) {
-  const conic_cluster_ways *ways = &p->job->ways[cluster];
+static void count_levels(packing *p) {
   conic_chy_header *h = &p->header;
-  h->n_triangles += p->mesh->starts[cluster + 1] - p->mesh->starts[cluster];
-  for (int i = 0; i < ways->triangles.n; i++) {
-    h->n_triangles += ways->triangles.levels[i].n;
-    h->n_borders += ways->triangles.levels[i].n_borders;
+  h->n_levels = (uint64_t)p->job->whole.n;
+  for (size_t i = 0; i < p->n_clusters; i++)
+    h->n_levels += (uint64_t)(1 + p->job->ways[i].triangles.n + p->job->ways[i].n_surfels);
+  for (size_t i = 0; i < p->job->n_nodes && p->job->node_ways; i++)
+    h->n_levels += (uint64_t)p->job->node_ways[i].n_surfels;
+  for (size_t i = 0; i < p->flat->n_materials; i++) {
+    const conic_texture *texture = p->flat->materials[i].texture;
+    if (texture)
+      h->n_texels += (uint64_t)texture->levels[0].width * (uint64_t)texture->levels[0].height;
   }
-  for (int i = 0; i < ways->n_surfels; i++)
-    h->n_surfels += ways->surfels[i].n;
-  h->n_levels += (uint64_t)(1 + ways->triangles.n + ways->n_surfels);
-}
-
-static void count_whole(packing *p) {
-  const conic_cluster_levels *whole = &p->job->whole;
-  for (int i = 0; i < whole->n; i++)
-    p->header.n_triangles += whole->levels[i].n;
-  p->header.n_levels += (uint64_t)whole->n;
-}
-
-static void count_node(packing *p, size_t node) {
-  const conic_node_ways *ways = &p->job->node_ways[node];
-  for (int i = 0; i < ways->n_surfels; i++)
-    p->header.n_surfels += ways->surfels[i].n;
-  p->header.n_levels += (uint64_t)ways->n_surfels;
 }
 
 static void measure_box(const packing *p, conic_chy_header *h) {
@@ -89,76 +83,97 @@ static void measure_box(const packing *p, conic_chy_header *h) {
       }
 }
 
-/* The list of vertices is as long as three times the triangles at first, and cut afterwards. */
-static conic_status allocate_body(packing *p) {
+/* Of a part of a mesh, those of its own faces. */
+static size_t count_vertices(packing *p) {
+  size_t n = 0;
+  if (p->n_clusters == p->mesh->clusters->n_clusters)
+    return p->flat->n_vertices;
+  for (size_t i = 0; i < 3 * p->mesh->starts[p->n_clusters]; i++) {
+    uint32_t *seen = &p->local[p->flat->corners[p->mesh->faces[i / 3]][i % 3]];
+    n += *seen == UINT32_MAX;
+    *seen = 0;
+  }
+  memset(p->local, 0xFF, p->flat->n_vertices * sizeof *p->local);
+  return n;
+}
+
+static void begin_header(packing *p) {
   conic_chy_header *h = &p->header;
   memcpy(h->origin, p->flat->origin, sizeof h->origin);
   h->version = CONIC_CHY_VERSION;
   h->cutoff = p->job->options->cutoff;
-  h->n_vertices = p->flat->n_vertices;
+  h->n_vertices = count_vertices(p);
   h->n_clusters = p->n_clusters;
   h->n_nodes = p->job->n_nodes;
-  h->n_slots = p->job->chains.n_slots;
   h->n_materials = p->flat->n_materials;
   h->flags = (p->flat->normal[0] ? CONIC_CHY_NORMALS : 0u) | (p->flat->color[0] ? CONIC_CHY_COLORS : 0u) |
              (p->flat->texture_coordinate[0] ? CONIC_CHY_TEXTURE_COORDINATES : 0u) |
              (p->flat->material && p->flat->n_materials ? CONIC_CHY_MATERIALS : 0u);
-  for (size_t i = 0; i < p->flat->n_materials; i++) {
-    const conic_texture *texture = p->flat->materials[i].texture;
-    if (texture)
-      h->n_texels += (uint64_t)texture->levels[0].width * (uint64_t)texture->levels[0].height;
-  }
-  for (uint32_t i = 0; i < p->n_clusters; i++)
-    count_cluster(p, i);
-  count_whole(p);
-  for (size_t i = 0; i < p->job->n_nodes && p->job->node_ways; i++)
-    count_node(p, i);
-  if (h->n_triangles > UINT32_MAX / 4 || h->n_surfels > UINT32_MAX / 4 || h->n_texels > UINT32_MAX / 4)
-    return conic_fail(p->job->context, CONIC_ERROR_ARGUMENT, "the model's triangles, surfels or textures are too many");
+  count_levels(p);
   measure_box(p, h);
+}
+
+/* --- slots --- */
+
+/* The chains of each cluster, in their order, and where each begins among the cluster's slots. */
+static conic_status sort_chains(packing *p) {
+  conic_context *context = p->job->context;
+  const conic_cluster_chains *c = &p->job->chains;
+  p->first_slots = conic_memory_allocate(context, c->n_chains, sizeof *p->first_slots);
+  p->of_slot = conic_memory_allocate(context, c->n_slots, sizeof *p->of_slot);
+  p->chain_starts = conic_memory_allocate_zeroed(context, p->n_clusters + 2, sizeof *p->chain_starts);
+  p->chains_by = conic_memory_allocate(context, 2 * c->n_chains, sizeof *p->chains_by);
+  if (!p->first_slots || !p->of_slot || !p->chain_starts || !p->chains_by)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < 2 * c->n_chains; i++)
+    p->chain_starts[c->chains[i / 2].clusters[i % 2] + 2]++;
+  for (size_t i = 0; i < p->n_clusters; i++)
+    p->chain_starts[i + 2] += p->chain_starts[i + 1];
+  for (uint32_t i = 0; i < 2 * c->n_chains; i++)
+    p->chains_by[p->chain_starts[c->chains[i / 2].clusters[i % 2] + 1]++] = i / 2;
+  for (uint32_t i = 0; i < c->n_chains; i++)
+    for (uint32_t k = 0; k < c->chains[i].n; k++)
+      p->of_slot[c->chains[i].first + k] = i;
   return CONIC_OK;
 }
 
-/* --- the body --- */
+static uint32_t count_slots(packing *p, uint32_t cluster) {
+  uint32_t n = 0;
+  for (uint32_t k = p->chain_starts[cluster]; k < p->chain_starts[cluster + 1]; k++) {
+    const conic_chain *chain = &p->job->chains.chains[p->chains_by[k]];
+    p->first_slots[p->chains_by[k]][chain->clusters[1] == cluster] = n;
+    n += chain->n;
+  }
+  return n;
+}
+
+/* --- the arrays --- */
 
 static void *array_at(packing *p, int i) {
   return p->bytes + p->layout.arrays[i].offset;
 }
 
-typedef struct cursor {
-  size_t level, triangle, listed, surfel, border;
-} cursor;
+static conic_hybrid_level *next_level(packing *p, conic_hybrid_kind kind, size_t n) {
+  conic_hybrid_level *level = (conic_hybrid_level *)array_at(p, CONIC_CHY_LEVELS) + p->level++;
+  *level = (conic_hybrid_level){.kind = kind, .count = (uint32_t)n};
+  *(kind == CONIC_HYBRID_TRIANGLES ? &p->header.n_triangles : &p->header.n_surfels) += n;
+  return level;
+}
 
 static void put_change(conic_hybrid_level *level, const conic_seen_change *change) {
   level->change = conic_seen_float(change->steps);
   level->smear = conic_seen_float(change->smear);
 }
 
-static void put_triangles(packing *p, cursor *at, const conic_cluster_level *from) {
-  conic_hybrid_level *levels = array_at(p, CONIC_CHY_LEVELS);
-  uint32_t(*local)[3] = array_at(p, CONIC_CHY_CORNERS), *listed = array_at(p, CONIC_CHY_LISTED);
-  uint32_t *material = array_at(p, CONIC_CHY_MATERIAL_OF);
-  conic_hybrid_level *level = &levels[at->level++];
-  memset(level, 0, sizeof *level);
-  level->kind = CONIC_HYBRID_TRIANGLES;
-  level->first = (uint32_t)at->triangle;
-  level->count = (uint32_t)from->n;
-  level->first_vertex = (uint32_t)at->listed;
-  level->n_vertices = (uint32_t)list_vertices(p, (const uint32_t(*)[3])from->corners, from->n, listed + at->listed,
-                                              local + at->triangle);
+static void put_triangles(packing *p, const conic_cluster_level *from, uint32_t *n_borders) {
+  conic_hybrid_level *level = next_level(p, CONIC_HYBRID_TRIANGLES, from->n);
+  level->n_vertices = (uint32_t)list_vertices(p, (const uint32_t(*)[3])from->corners, from->n);
   level->error = (float)(from->error * (1.0 + 1e-6));
   put_change(level, &from->change);
   level->stage = from->stage;
-  level->first_border = (uint32_t)at->border;
+  level->first_border = *n_borders;
   level->n_borders = (uint32_t)from->n_borders;
-  for (size_t i = 0; i < from->n && p->header.flags & CONIC_CHY_MATERIALS; i++)
-    material[at->triangle + i] = p->flat->material[from->face[i]];
-  if (from->n_borders > 0)
-    memcpy((conic_cluster_border *)array_at(p, CONIC_CHY_BORDERS) + at->border, from->borders,
-           from->n_borders * sizeof *from->borders);
-  at->triangle += from->n;
-  at->listed += level->n_vertices;
-  at->border += from->n_borders;
+  *n_borders += level->n_borders;
 }
 
 /* The half axes of the outlines at the cutoff: what a picture of the level may take is found from these sums. */
@@ -177,76 +192,56 @@ static void sum_extents(const conic_surfels *surfels, double cutoff, conic_hybri
   level->spread = (float)(cutoff * cutoff * spread);
 }
 
-static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
-  conic_hybrid_level *levels = array_at(p, CONIC_CHY_LEVELS);
-  conic_hybrid_level *level = &levels[at->level++];
-  memset(level, 0, sizeof *level);
-  level->kind = CONIC_HYBRID_SURFELS;
-  level->first = (uint32_t)at->surfel;
-  level->count = (uint32_t)surfels->n;
+static void put_surfels(packing *p, const conic_surfels *surfels) {
+  conic_hybrid_level *level = next_level(p, CONIC_HYBRID_SURFELS, surfels->n);
   level->error = (float)(surfels->error * (1.0 + 1e-6));
   put_change(level, &surfels->change);
   level->reach = (float)(surfels->reach * (1.0 + 1e-6));
   sum_extents(surfels, (double)p->job->options->cutoff, level);
-  for (int k = 0; k < 12; k++) {
-    float *values = array_at(p, CONIC_CHY_SURFELS + k);
-    for (size_t i = 0; i < surfels->n; i++) {
-      const conic_surfel *s = &surfels->items[i];
-      const float *part = k < 3 ? s->position : k < 6 ? s->tangent_u : k < 9 ? s->tangent_v : s->color;
-      values[at->surfel + i] = part[k % 3];
-    }
-  }
-  at->surfel += surfels->n;
 }
 
-/* The first level of triangles is the cluster's faces themselves. */
-static void put_cluster(packing *p, cursor *at, uint32_t i, conic_cluster_level *mesh) {
-  conic_hybrid_cluster *clusters = array_at(p, CONIC_CHY_CLUSTERS);
+/* The first level of triangles: the cluster's faces themselves. */
+static const conic_cluster_level *take_faces(packing *p, uint32_t cluster) {
+  conic_cluster_level *faces = &p->faces;
+  faces->n = 0;
+  for (size_t k = p->mesh->starts[cluster]; k < p->mesh->starts[cluster + 1]; k++, faces->n++) {
+    faces->face[faces->n] = p->mesh->faces[k];
+    memcpy(faces->corners[faces->n], p->flat->corners[p->mesh->faces[k]], sizeof *faces->corners);
+  }
+  return faces;
+}
+
+static void put_cluster(packing *p, uint32_t i) {
+  conic_hybrid_cluster *cluster = (conic_hybrid_cluster *)array_at(p, CONIC_CHY_CLUSTERS) + i;
   const conic_cluster_ways *ways = &p->job->ways[i];
   double error = 0.0;
-  clusters[i] = (conic_hybrid_cluster){.bound = ways->bound,
-                                       .area = (float)ways->area,
-                                       .first_level = (uint32_t)at->level,
-                                       .n_levels = (uint32_t)(1 + ways->triangles.n + ways->n_surfels)};
-  clusters[i].built = ways->is_surfels ? (uint32_t)(1 + ways->triangles.n) : 0;
-  mesh->n = 0;
-  for (size_t k = p->mesh->starts[i]; k < p->mesh->starts[i + 1]; k++, mesh->n++) {
-    mesh->face[mesh->n] = p->mesh->faces[k];
-    memcpy(mesh->corners[mesh->n], p->flat->corners[p->mesh->faces[k]], sizeof *mesh->corners);
-  }
-  put_triangles(p, at, mesh);
+  *cluster = (conic_hybrid_cluster){.bound = ways->bound,
+                                    .area = (float)ways->area,
+                                    .first_level = (uint32_t)p->level,
+                                    .n_levels = (uint32_t)(1 + ways->triangles.n + ways->n_surfels),
+                                    .n_slots = count_slots(p, i)};
+  cluster->built = ways->is_surfels ? (uint32_t)(1 + ways->triangles.n) : 0;
+  put_triangles(p, take_faces(p, i), &cluster->n_borders);
   for (int k = 0; k < ways->triangles.n; k++) {
     conic_cluster_level level = ways->triangles.levels[k];
     level.error = error = level.error > error ? level.error : error; /* no less than that of what it is simpler than */
-    put_triangles(p, at, &level);
+    put_triangles(p, &level, &cluster->n_borders);
   }
   for (int k = 0; k < ways->n_surfels; k++)
-    put_surfels(p, at, &ways->surfels[k]);
+    put_surfels(p, &ways->surfels[k]);
 }
 
-static void put_node(packing *p, cursor *at, size_t i) {
+static void put_node(packing *p, size_t i) {
   conic_hybrid_node *node = (conic_hybrid_node *)array_at(p, CONIC_CHY_NODES) + i;
   const conic_node_ways *ways = p->job->node_ways ? &p->job->node_ways[i] : NULL;
+  uint32_t n_borders = 0; /* there are none */
   *node = p->job->nodes[i];
-  node->first_level = (uint32_t)at->level;
+  node->first_level = (uint32_t)p->level;
   for (int k = 0; i == 0 && k < p->job->whole.n; k++)
-    put_triangles(p, at, &p->job->whole.levels[k]);
+    put_triangles(p, &p->job->whole.levels[k], &n_borders);
   for (int k = 0; ways && k < ways->n_surfels; k++)
-    put_surfels(p, at, &ways->surfels[k]);
-  node->n_levels = (uint32_t)at->level - node->first_level;
-}
-
-static void put_vertices(packing *p) {
-  size_t n_bytes = p->flat->n_vertices * sizeof(float);
-  for (int axis = 0; axis < 3; axis++) {
-    memcpy(array_at(p, CONIC_CHY_POSITION + axis), p->flat->position[axis], n_bytes);
-    if (p->flat->normal[0])
-      memcpy(array_at(p, CONIC_CHY_NORMAL + axis), p->flat->normal[axis], n_bytes);
-    if (p->flat->color[0])
-      memcpy(array_at(p, CONIC_CHY_COLOR + axis), p->flat->color[axis], n_bytes);
-  }
-  for (int k = 0; k < 2 && p->flat->texture_coordinate[0]; k++)
-    memcpy(array_at(p, CONIC_CHY_TEXTURE + k), p->flat->texture_coordinate[k], n_bytes);
+    put_surfels(p, &ways->surfels[k]);
+  node->n_levels = (uint32_t)p->level - node->first_level;
 }
 
 static void put_materials(packing *p) {
@@ -272,115 +267,217 @@ static void put_materials(packing *p) {
   }
 }
 
+/* --- chunks --- */
+
+/* Where the next values of a chunk go. */
+static unsigned char *begin_chunk(const packing *p, uint32_t chunk) {
+  return p->bytes + p->layout.n_bytes + conic_hybrid_chunk_place(p->made, chunk).at + CONIC_HYBRID_SUM_BYTES;
+}
+
+static void end_chunk(const packing *p, uint32_t chunk) {
+  conic_hybrid_place place = conic_hybrid_chunk_place(p->made, chunk);
+  if (place.n_bytes)
+    conic_hybrid_seal_chunk(p->bytes + p->layout.n_bytes + place.at, (size_t)place.n_bytes);
+}
+
+static unsigned char *put_values(unsigned char *to, const float *values, const uint32_t *listed, size_t n) {
+  float *floats = (float *)(void *)to;
+  for (size_t i = 0; i < n && values; i++)
+    floats[i] = values[listed[i]];
+  return values ? (unsigned char *)(floats + n) : to;
+}
+
+static unsigned char *put_vertices(const packing *p, unsigned char *to, const uint32_t *listed, size_t n) {
+  for (int axis = 0; axis < 3; axis++)
+    to = put_values(to, p->flat->position[axis], listed, n);
+  for (int axis = 0; axis < 3; axis++)
+    to = put_values(to, p->flat->normal[axis], listed, n);
+  for (int channel = 0; channel < 3; channel++)
+    to = put_values(to, p->flat->color[channel], listed, n);
+  for (int k = 0; k < 2; k++)
+    to = put_values(to, p->flat->texture_coordinate[k], listed, n);
+  return to;
+}
+
+static void fill_triangles(packing *p, const conic_cluster_level *from) {
+  uint32_t chunk = (uint32_t)p->level++;
+  size_t n = list_vertices(p, (const uint32_t(*)[3])from->corners, from->n);
+  unsigned char *to = put_vertices(p, begin_chunk(p, chunk), p->listed, n);
+  if (p->header.flags & CONIC_CHY_MATERIALS)
+    for (size_t i = 0; i < from->n; i++, to += sizeof(uint32_t))
+      memcpy(to, &p->flat->material[from->face[i]], sizeof(uint32_t));
+  for (size_t i = 0; i < 3 * from->n; i++) {
+    uint32_t corner = p->corners[i / 3][i % 3];
+    uint16_t narrow = (uint16_t)corner;
+    size_t n_bytes = n <= CONIC_HYBRID_NARROW ? sizeof narrow : sizeof corner;
+    memcpy(to, n <= CONIC_HYBRID_NARROW ? (const void *)&narrow : &corner, n_bytes);
+    to += n_bytes;
+  }
+  end_chunk(p, chunk);
+}
+
+static void fill_surfels(packing *p, const conic_surfels *surfels) {
+  uint32_t chunk = (uint32_t)p->level++;
+  float *values = (float *)(void *)begin_chunk(p, chunk);
+  for (size_t k = 0; k < 12; k++)
+    for (size_t i = 0; i < surfels->n; i++) {
+      const conic_surfel *s = &surfels->items[i];
+      const float *part = k < 3 ? s->position : k < 6 ? s->tangent_u : k < 9 ? s->tangent_v : s->color;
+      values[k * surfels->n + i] = part[k % 3];
+    }
+  end_chunk(p, chunk);
+}
+
+/* A slot of the chain between two clusters becomes one of the cluster's own. */
+static uint32_t own_slot(const packing *p, uint32_t cluster, uint32_t slot) {
+  uint32_t i = p->of_slot[slot];
+  const conic_chain *chain = &p->job->chains.chains[i];
+  return p->first_slots[i][chain->clusters[1] == cluster] + slot - chain->first;
+}
+
+static void fill_frame(packing *p, uint32_t cluster) {
+  const conic_cluster_chains *c = &p->job->chains;
+  const conic_cluster_levels *simpler = &p->job->ways[cluster].triangles;
+  uint32_t frame = conic_hybrid_frame_chunk(p->made, cluster), ends = conic_hybrid_ends_chunk(p->made, cluster), n = 0;
+  unsigned char *to = begin_chunk(p, frame);
+  for (uint32_t k = p->chain_starts[cluster]; k < p->chain_starts[cluster + 1]; k++) {
+    const conic_chain *chain = &c->chains[p->chains_by[k]];
+    for (uint32_t m = chain->first; m < chain->first + chain->n; m++, to += sizeof(uint32_t)) {
+      memcpy(to, &c->slots[m].stage, sizeof(uint32_t));
+      p->listed[n++] = c->slots[m].vertices[chain->clusters[1] == cluster];
+    }
+  }
+  for (int k = 0; k < simpler->n; k++)
+    for (size_t i = 0; i < simpler->levels[k].n_borders; i++, to += sizeof(conic_cluster_border)) {
+      conic_cluster_border border = simpler->levels[k].borders[i];
+      border.from = own_slot(p, cluster, border.from);
+      border.to = own_slot(p, cluster, border.to);
+      memcpy(to, &border, sizeof border);
+    }
+  if (n > 0)
+    put_vertices(p, begin_chunk(p, ends), p->listed, n);
+  end_chunk(p, frame);
+  end_chunk(p, ends);
+}
+
+static void fill_chunks(packing *p) {
+  p->level = 0;
+  for (uint32_t i = 0; i < p->n_clusters; i++) {
+    const conic_cluster_ways *ways = &p->job->ways[i];
+    fill_frame(p, i);
+    fill_triangles(p, take_faces(p, i));
+    for (int k = 0; k < ways->triangles.n; k++)
+      fill_triangles(p, &ways->triangles.levels[k]);
+    for (int k = 0; k < ways->n_surfels; k++)
+      fill_surfels(p, &ways->surfels[k]);
+  }
+  for (size_t i = 0; i < p->job->n_nodes; i++) {
+    const conic_node_ways *ways = p->job->node_ways ? &p->job->node_ways[i] : NULL;
+    for (int k = 0; i == 0 && k < p->job->whole.n; k++)
+      fill_triangles(p, &p->job->whole.levels[k]);
+    for (int k = 0; ways && k < ways->n_surfels; k++)
+      fill_surfels(p, &ways->surfels[k]);
+  }
+}
+
+/* --- all --- */
+
 /* The surfels as built, for the scale of the automatic ε. */
 static conic_status measure_surfels(packing *p) {
-  const conic_hybrid_cluster *clusters = array_at(p, CONIC_CHY_CLUSTERS);
-  const conic_hybrid_level *levels = array_at(p, CONIC_CHY_LEVELS);
+  const conic_hybrid *h = p->made;
   conic_splats built;
   size_t n = 0, at = 0;
-  for (size_t i = 0; i < p->header.n_clusters; i++)
-    n += clusters[i].built ? levels[clusters[i].first_level + clusters[i].built].count : 0;
+  for (size_t i = 0; i < h->n_clusters; i++)
+    n += h->clusters[i].built ? h->levels[h->clusters[i].first_level + h->clusters[i].built].count : 0;
   conic_status status = conic_splats_allocate(p->job->context, n, CONIC_SPLATS_TANGENTS, &built);
-  for (size_t i = 0; i < p->header.n_clusters && status == CONIC_OK; i++) {
-    const conic_hybrid_level *level = &levels[clusters[i].first_level + clusters[i].built];
-    if (!clusters[i].built)
+  for (size_t i = 0; i < h->n_clusters && status == CONIC_OK; i++) {
+    uint32_t level = h->clusters[i].first_level + h->clusters[i].built;
+    if (!h->clusters[i].built)
       continue;
+    conic_hybrid_piece piece = conic_hybrid_piece_of(h, level);
     for (int axis = 0; axis < 3; axis++) {
-      const float *x = array_at(p, CONIC_CHY_SURFELS + axis), *u = array_at(p, CONIC_CHY_SURFELS + 3 + axis);
-      const float *v = array_at(p, CONIC_CHY_SURFELS + 6 + axis);
-      memcpy(built.position[axis] + at, x + level->first, level->count * sizeof(float));
-      memcpy(built.tangent_u[axis] + at, u + level->first, level->count * sizeof(float));
-      memcpy(built.tangent_v[axis] + at, v + level->first, level->count * sizeof(float));
+      memcpy(built.position[axis] + at, piece.surfels[axis], h->levels[level].count * sizeof(float));
+      memcpy(built.tangent_u[axis] + at, piece.surfels[3 + axis], h->levels[level].count * sizeof(float));
+      memcpy(built.tangent_v[axis] + at, piece.surfels[6 + axis], h->levels[level].count * sizeof(float));
     }
-    at += level->count;
+    at += h->levels[level].count;
   }
   if (status == CONIC_OK)
-    status = conic_splats_length(p->job->context, &built, &p->header.splat_length);
+    status = conic_splats_length(p->job->context, &built, &p->made->splat_length);
   conic_splats_release(p->job->context, &built);
   return status;
 }
 
-static conic_status fill_body(packing *p) {
-  cursor at = {0};
-  size_t most = most_faces(p);
-  conic_cluster_level mesh = {.corners = conic_memory_allocate(p->job->context, most, sizeof *mesh.corners),
-                              .face = conic_memory_allocate(p->job->context, most, sizeof *mesh.face)};
-  int is_there = mesh.corners && mesh.face;
-  for (uint32_t i = 0; i < p->n_clusters && is_there; i++)
-    put_cluster(p, &at, i, &mesh);
-  for (size_t i = 0; i < p->job->n_nodes && is_there; i++)
-    put_node(p, &at, i);
-  conic_memory_release(p->job->context, mesh.corners);
-  conic_memory_release(p->job->context, mesh.face);
-  if (!is_there)
-    return CONIC_ERROR_MEMORY;
-  if (p->job->chains.n_slots > 0)
-    memcpy(array_at(p, CONIC_CHY_SLOTS), p->job->chains.slots, p->job->chains.n_slots * sizeof *p->job->chains.slots);
-  put_vertices(p);
-  put_materials(p);
-  return measure_surfels(p);
-}
-
-/* How long the list of vertices is shows only when it is made; so it is counted first. */
-static conic_status count_listed(packing *p) {
-  const conic_cluster_levels *whole = &p->job->whole;
-  size_t most = most_faces(p);
-  uint32_t(*corners)[3] = conic_memory_allocate(p->job->context, most, sizeof *corners);
-  uint32_t(*local)[3] = conic_memory_allocate(p->job->context, most, sizeof *local);
-  uint32_t *listed = conic_memory_allocate(p->job->context, most, 3 * sizeof *listed);
-  conic_status status = corners && local && listed ? CONIC_OK : CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < p->n_clusters && status == CONIC_OK; i++) {
-    const conic_cluster_levels *simpler = &p->job->ways[i].triangles;
-    size_t n = p->mesh->starts[i + 1] - p->mesh->starts[i];
-    for (size_t k = 0; k < n; k++)
-      memcpy(corners[k], p->flat->corners[p->mesh->faces[p->mesh->starts[i] + k]], sizeof *corners);
-    p->header.n_listed += list_vertices(p, (const uint32_t(*)[3])corners, n, listed, local);
-    for (int k = 0; k < simpler->n; k++)
-      p->header.n_listed +=
-          list_vertices(p, (const uint32_t(*)[3])simpler->levels[k].corners, simpler->levels[k].n, listed, local);
-  }
-  for (int k = 0; k < whole->n && status == CONIC_OK; k++)
-    p->header.n_listed +=
-        list_vertices(p, (const uint32_t(*)[3])whole->levels[k].corners, whole->levels[k].n, listed, local);
-  conic_memory_release(p->job->context, listed);
-  conic_memory_release(p->job->context, local);
-  conic_memory_release(p->job->context, corners);
-  return status;
-}
-
-static conic_status pack(packing *p, conic_hybrid **hybrid) {
-  conic_status status = allocate_body(p);
-  if (status == CONIC_OK)
-    status = count_listed(p);
-  if (status != CONIC_OK)
-    return status;
+/* The arrays, and from these where the chunks go. */
+static conic_status pack_arrays(packing *p) {
+  begin_header(p);
   p->layout = conic_chy_lay_out(&p->header);
-  p->bytes = conic_memory_allocate_zeroed(p->job->context, p->layout.n_bytes, 1);
-  conic_hybrid *made = conic_memory_allocate_zeroed(p->job->context, 1, sizeof *made);
-  *hybrid = made;
-  if (!p->bytes || !made) {
-    conic_memory_release(p->job->context, p->bytes);
+  p->made->owned = p->bytes = conic_memory_allocate_zeroed(p->job->context, p->layout.n_bytes, 1);
+  if (!p->bytes)
     return CONIC_ERROR_MEMORY;
-  }
-  made->context = p->job->context;
-  made->owned = p->bytes;
-  status = fill_body(p);
-  conic_chy_attach(&p->header, p->bytes, made);
-  return status == CONIC_OK ? conic_chy_make_materials(made) : status;
+  for (uint32_t i = 0; i < p->n_clusters; i++)
+    put_cluster(p, i);
+  for (size_t i = 0; i < p->job->n_nodes; i++)
+    put_node(p, i);
+  put_materials(p);
+  if (p->header.n_triangles > UINT32_MAX / 4 || p->header.n_surfels > UINT32_MAX / 4 ||
+      p->header.n_texels > UINT32_MAX / 4)
+    return conic_fail(p->job->context, CONIC_ERROR_ARGUMENT, "the model's triangles, surfels or textures are too many");
+  conic_chy_attach(&p->header, p->bytes, p->made);
+  return conic_hybrid_place_chunks(p->made, array_at(p, CONIC_CHY_LEVELS), array_at(p, CONIC_CHY_CLUSTERS));
+}
+
+/* The arrays, and behind them the chunks. */
+static conic_status pack_chunks(packing *p) {
+  size_t n_bytes = p->layout.n_bytes, n_data = (size_t)p->made->n_data;
+  unsigned char *all = conic_memory_allocate_zeroed(p->job->context, n_bytes + n_data, 1);
+  if (!all)
+    return CONIC_ERROR_MEMORY;
+  memcpy(all, p->bytes, n_bytes);
+  conic_memory_release(p->job->context, p->bytes);
+  p->made->owned = p->bytes = all;
+  p->header.n_data = n_data;
+  conic_chy_attach(&p->header, p->bytes, p->made);
+  p->made->data = p->bytes + n_bytes;
+  fill_chunks(p);
+  conic_status status = measure_surfels(p);
+  return status == CONIC_OK ? conic_chy_make_materials(p->made) : status;
+}
+
+static conic_status pack(packing *p) {
+  conic_context *context = p->job->context;
+  size_t most = most_faces(p), n_chains = p->job->chains.n_slots;
+  p->corners = conic_memory_allocate(context, most, sizeof *p->corners);
+  p->listed = conic_memory_allocate(context, 3 * most + n_chains, sizeof *p->listed);
+  p->faces.corners = conic_memory_allocate(context, most, sizeof *p->faces.corners);
+  p->faces.face = conic_memory_allocate(context, most, sizeof *p->faces.face);
+  if (!p->corners || !p->listed || !p->faces.corners || !p->faces.face)
+    return CONIC_ERROR_MEMORY;
+  conic_status status = sort_chains(p);
+  if (status == CONIC_OK)
+    status = pack_arrays(p);
+  return status == CONIC_OK ? pack_chunks(p) : status;
 }
 
 conic_status conic_hybrid_pack(const conic_ways_job *ways, conic_hybrid **hybrid) {
   const conic_triangles *flat = ways->mesh->triangles;
+  conic_context *context = ways->context;
   packing p = {.job = ways,
                .mesh = ways->mesh,
                .flat = flat,
-               .n_clusters = ways->mesh->clusters->n_clusters,
-               .local = conic_memory_allocate(ways->context, flat->n_vertices, sizeof *p.local)};
-  *hybrid = NULL;
-  if (!p.local)
-    return CONIC_ERROR_MEMORY;
-  memset(p.local, 0xFF, flat->n_vertices * sizeof *p.local);
-  conic_status status = pack(&p, hybrid);
-  conic_memory_release(ways->context, p.local);
+               .n_clusters = ways->n_clusters,
+               .local = conic_memory_allocate(context, flat->n_vertices, sizeof *p.local),
+               .made = conic_memory_allocate_zeroed(context, 1, sizeof *p.made)};
+  conic_status status = p.local && p.made ? CONIC_OK : CONIC_ERROR_MEMORY;
+  *hybrid = p.made;
+  if (status == CONIC_OK) {
+    p.made->context = context;
+    memset(p.local, 0xFF, flat->n_vertices * sizeof *p.local);
+    status = pack(&p);
+  }
+  void *const parts[] = {p.local,       p.listed,  p.corners,      p.faces.corners, p.faces.face,
+                         p.first_slots, p.of_slot, p.chain_starts, p.chains_by};
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+    conic_memory_release(context, parts[i]);
   return status;
 }

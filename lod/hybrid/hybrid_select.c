@@ -11,6 +11,7 @@
 #include "lod/hybrid/hybrid_choose.h"
 #include "lod/hybrid/hybrid_point.h"
 #include "lod/hybrid/hybrid_stitch.h"
+#include "lod/hybrid/hybrid_store.h"
 
 void conic_hybrid_view_init_sized(conic_hybrid_view *view, size_t size) {
   static const conic_hybrid_view own = {.size = sizeof own, .only_kind = -1, .color_error = CONIC_JUST_VISIBLE};
@@ -38,6 +39,10 @@ typedef struct hybrid_scratch {
   size_t vertices_room;
   uint32_t *triangles; /* corners, clusters and materials of triangles_room triangles */
   size_t triangles_room;
+  conic_kept_memory chunks_memory;
+  uint32_t *frames, *chunks; /* chunks that are held: frames of clusters in sight, and what some choices are drawn of */
+  size_t n_frames, n_chunks;
+  uint64_t frames_bytes;
 } hybrid_scratch;
 
 /* The level of a choice that is a node's point. */
@@ -51,6 +56,7 @@ typedef struct hybrid_selecting {
   const conic_hybrid_view *view;
   conic_hybrid_selection *selection;
   hybrid_scratch *scratch;
+  size_t first, end; /* the choices that are copied together */
 } hybrid_selecting;
 
 void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selection *selection) {
@@ -61,6 +67,7 @@ void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selecti
     conic_memory_release(context, kept->splats_memory.pointer);
     conic_memory_release(context, kept->vertices_memory.pointer);
     conic_memory_release(context, kept->triangles_memory.pointer);
+    conic_memory_release(context, kept->chunks_memory.pointer);
   }
   conic_memory_release(context, kept);
   memset(selection, 0, sizeof *selection);
@@ -166,6 +173,70 @@ static conic_status choose_together(hybrid_selecting *s) {
   return status;
 }
 
+/* --- what has to be read --- */
+
+/* Holds the frames of clusters in sight that may meet others by simpler levels. */
+static conic_status hold_frames(hybrid_selecting *s) {
+  const conic_hybrid *h = s->hybrid;
+  hybrid_scratch *kept = s->scratch;
+  kept->n_frames = kept->n_chunks = 0;
+  kept->frames_bytes = 0;
+  if (!h->store)
+    return CONIC_OK;
+  kept->frames = conic_keep_room(h->context, &kept->chunks_memory, 3 * kept->n_choices, sizeof *kept->frames);
+  if (!kept->frames)
+    return CONIC_ERROR_MEMORY;
+  kept->chunks = kept->frames + kept->n_choices;
+  for (size_t i = 0; i < kept->n_choices; i++) {
+    const choice *c = &kept->choices[i];
+    if (is_together(s->view) ? h->clusters[c->cluster].n_borders == 0 : h->levels[c->level].n_borders == 0)
+      continue;
+    kept->frames[kept->n_frames++] = conic_hybrid_frame_chunk(h, c->cluster);
+    kept->frames_bytes += conic_hybrid_frame_bytes(&h->clusters[c->cluster]);
+  }
+  conic_status status = CONIC_OK;
+  if (kept->frames_bytes > conic_hybrid_store_room(h))
+    status = conic_fail(h->context, CONIC_ERROR_MEMORY,
+                        "hybrid: what fits the %zu patches in sight to each other takes %llu MiB, more than there is "
+                        "memory for",
+                        kept->n_choices, (unsigned long long)(kept->frames_bytes >> 20) + 1);
+  if (status == CONIC_OK)
+    status = conic_hybrid_store_hold(h, kept->frames, kept->n_frames);
+  kept->n_frames = status == CONIC_OK ? kept->n_frames : 0;
+  return status;
+}
+
+/* Lists what a choice is drawn of, its level and what is put in, and returns its bytes. */
+static uint64_t list_chunks_of(hybrid_selecting *s, const choice *c) {
+  const conic_hybrid *h = s->hybrid;
+  hybrid_scratch *kept = s->scratch;
+  uint64_t n_bytes = 0;
+  if (c->level == CONIC_HYBRID_POINT)
+    return 0;
+  kept->chunks[kept->n_chunks++] = c->level;
+  n_bytes += conic_hybrid_chunk_place(h, c->level).n_bytes;
+  if (c->n_put == 0)
+    return n_bytes;
+  kept->chunks[kept->n_chunks++] = conic_hybrid_ends_chunk(h, c->cluster);
+  return n_bytes + conic_hybrid_chunk_place(h, conic_hybrid_ends_chunk(h, c->cluster)).n_bytes;
+}
+
+/* Holds what the next choices are drawn of, as many as there is room for, and one at least. */
+static conic_status hold_chunks(hybrid_selecting *s) {
+  hybrid_scratch *kept = s->scratch;
+  uint64_t n_bytes = kept->frames_bytes, room = conic_hybrid_store_room(s->hybrid);
+  kept->n_chunks = 0;
+  for (s->end = s->first; s->end < kept->n_choices; s->end++) {
+    size_t n_before = kept->n_chunks;
+    n_bytes += s->hybrid->store ? list_chunks_of(s, &kept->choices[s->end]) : 0;
+    if (n_bytes > room && s->end > s->first) {
+      kept->n_chunks = n_before;
+      break;
+    }
+  }
+  return conic_hybrid_store_hold(s->hybrid, kept->chunks, kept->n_chunks);
+}
+
 static const conic_hybrid_node *node_of(const hybrid_selecting *s, const choice *c) {
   return c->cluster < s->hybrid->n_clusters ? NULL : &s->hybrid->nodes[c->cluster - s->hybrid->n_clusters];
 }
@@ -223,7 +294,7 @@ static void place_parts(hybrid_selecting *s) {
       continue;
     }
     const conic_hybrid_level *level = &s->hybrid->levels[c->level];
-    c->n_put = conic_hybrid_count_stitches(s->hybrid, level, kept->stages);
+    c->n_put = conic_hybrid_count_stitches(s->hybrid, c->cluster, level, kept->stages);
     n_vertices += level->n_vertices + c->n_put;
     *(level->kind == CONIC_HYBRID_SURFELS ? &n_splats : &n_triangles) += level->count + c->n_put;
   }
@@ -240,6 +311,15 @@ static conic_status make_room_for_parts(hybrid_selecting *s) {
   place_parts(s);
   if (selection->triangles.n_vertices > UINT32_MAX)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "the picture's triangles have too many vertices");
+  uint64_t n_bytes = sizeof(float) * ((uint64_t)selection->splats.count * (SPLAT_ARRAYS + 1) +
+                                      (uint64_t)selection->triangles.n_vertices * VERTEX_ARRAYS +
+                                      (uint64_t)selection->triangles.count * TRIANGLE_ARRAYS);
+  if (s->hybrid->drawing_bytes && n_bytes > s->hybrid->drawing_bytes)
+    return conic_fail(context, CONIC_ERROR_MEMORY,
+                      "hybrid: the picture's %zu triangles and %zu surfels take %llu MiB of memory, and may take %llu; "
+                      "an error or a budget draws fewer",
+                      selection->triangles.count, selection->splats.count, (unsigned long long)(n_bytes >> 20) + 1,
+                      (unsigned long long)(s->hybrid->drawing_bytes >> 20));
   kept->splats_room = selection->splats.count;
   kept->vertices_room = selection->triangles.n_vertices;
   kept->triangles_room = selection->triangles.count;
@@ -266,24 +346,25 @@ static void attach(hybrid_selecting *s) {
     splats->tangent_v[axis] = kept->splats + (6 + axis) * kept->splats_room;
     splats->color[axis] = kept->splats + (9 + axis) * kept->splats_room;
     triangles->position[axis] = kept->vertices + axis * kept->vertices_room;
-    triangles->normal[axis] = h->normal[0] ? kept->vertices + (3 + axis) * kept->vertices_room : NULL;
-    triangles->color[axis] = h->color[0] ? kept->vertices + (6 + axis) * kept->vertices_room : NULL;
+    triangles->normal[axis] = h->flags & CONIC_CHY_NORMALS ? kept->vertices + (3 + axis) * kept->vertices_room : NULL;
+    triangles->color[axis] = h->flags & CONIC_CHY_COLORS ? kept->vertices + (6 + axis) * kept->vertices_room : NULL;
   }
   for (size_t k = 0; k < 2; k++)
-    triangles->texture_coordinate[k] = h->texture_coordinate[0] ? kept->vertices + (9 + k) * kept->vertices_room : NULL;
+    triangles->texture_coordinate[k] =
+        h->flags & CONIC_CHY_TEXTURE_COORDINATES ? kept->vertices + (9 + k) * kept->vertices_room : NULL;
   s->selection->splat_cluster = (uint32_t *)(kept->splats + SPLAT_ARRAYS * kept->splats_room);
   triangles->corners = (uint32_t(*)[3])kept->triangles;
   triangles->cluster = kept->triangles + 3 * kept->triangles_room;
-  triangles->material = h->material ? kept->triangles + 4 * kept->triangles_room : NULL;
+  triangles->material = h->flags & CONIC_CHY_MATERIALS ? kept->triangles + 4 * kept->triangles_room : NULL;
   triangles->n_materials = h->n_materials;
   triangles->materials = h->materials;
 }
 
 static void copy_surfels(const hybrid_selecting *s, const choice *c, const conic_hybrid_level *level) {
   const hybrid_scratch *kept = s->scratch;
+  conic_hybrid_piece piece = conic_hybrid_piece_of(s->hybrid, c->level);
   for (size_t k = 0; k < SPLAT_ARRAYS; k++)
-    memcpy(kept->splats + k * kept->splats_room + c->splat, s->hybrid->surfels[k] + level->first,
-           level->count * sizeof(float));
+    memcpy(kept->splats + k * kept->splats_room + c->splat, piece.surfels[k], level->count * sizeof(float));
   for (size_t i = 0; i < level->count; i++)
     s->selection->splat_cluster[c->splat + i] = c->cluster;
 }
@@ -297,34 +378,36 @@ static void put_point(const hybrid_selecting *s, const choice *c) {
   s->selection->splat_cluster[c->splat] = c->cluster;
 }
 
-static void gather_listed(float *to, const float *from, const uint32_t *listed, size_t n) {
-  for (size_t i = 0; i < n && to; i++)
-    to[i] = from[listed[i]];
+static void copy_floats(float *to, size_t at, const float *from, size_t n) {
+  if (to)
+    memcpy(to + at, from, n * sizeof *to);
+}
+
+static void copy_vertices(const conic_triangles *to, size_t at, const conic_hybrid_vertices *from, size_t n) {
+  for (int axis = 0; axis < 3; axis++) {
+    copy_floats(to->position[axis], at, from->position[axis], n);
+    copy_floats(to->normal[axis], at, from->normal[axis], n);
+    copy_floats(to->color[axis], at, from->color[axis], n);
+  }
+  for (int k = 0; k < 2; k++)
+    copy_floats(to->texture_coordinate[k], at, from->texture_coordinate[k], n);
 }
 
 static void copy_triangles(const hybrid_selecting *s, const choice *c, const conic_hybrid_level *level) {
-  const conic_hybrid *h = s->hybrid;
   const conic_triangles *to = &s->selection->triangles;
-  const uint32_t *listed = h->listed + level->first_vertex;
-  for (int axis = 0; axis < 3; axis++) {
-    gather_listed(to->position[axis] + c->vertex, h->position[axis], listed, level->n_vertices);
-    if (to->normal[0])
-      gather_listed(to->normal[axis] + c->vertex, h->normal[axis], listed, level->n_vertices);
-    if (to->color[0])
-      gather_listed(to->color[axis] + c->vertex, h->color[axis], listed, level->n_vertices);
-  }
-  for (int k = 0; k < 2 && to->texture_coordinate[0]; k++)
-    gather_listed(to->texture_coordinate[k] + c->vertex, h->texture_coordinate[k], listed, level->n_vertices);
+  conic_hybrid_piece piece = conic_hybrid_piece_of(s->hybrid, c->level);
+  copy_vertices(to, c->vertex, &piece.vertices, level->n_vertices);
   for (size_t i = 0; i < level->count; i++) {
     for (int corner = 0; corner < 3; corner++)
-      to->corners[c->triangle + i][corner] = (uint32_t)c->vertex + h->corners[level->first + i][corner];
+      to->corners[c->triangle + i][corner] = (uint32_t)c->vertex + conic_hybrid_corner(&piece, i, corner);
     to->cluster[c->triangle + i] = c->cluster;
   }
   if (to->material)
-    memcpy(to->material + c->triangle, h->material + level->first, level->count * sizeof *to->material);
+    memcpy(to->material + c->triangle, piece.material, level->count * sizeof *to->material);
   if (c->n_put == 0)
     return;
-  conic_hybrid_stitching stitching = {.hybrid = h,
+  conic_hybrid_stitching stitching = {.hybrid = s->hybrid,
+                                      .cluster = c->cluster,
                                       .level = level,
                                       .stages = s->scratch->stages,
                                       .to = &s->selection->triangles,
@@ -336,9 +419,9 @@ static void copy_triangles(const hybrid_selecting *s, const choice *c, const con
 
 static void copy_task(void *data, size_t i_task, int i_thread) {
   const hybrid_selecting *s = data;
-  size_t begin = i_task * CHOICES_A_TASK, end = begin + CHOICES_A_TASK;
+  size_t begin = s->first + i_task * CHOICES_A_TASK, end = begin + CHOICES_A_TASK;
   (void)i_thread;
-  for (size_t i = begin; i < end && i < s->scratch->n_choices; i++) {
+  for (size_t i = begin; i < end && i < s->end; i++) {
     const choice *c = &s->scratch->choices[i];
     if (c->level == CONIC_HYBRID_POINT)
       put_point(s, c);
@@ -386,6 +469,37 @@ static conic_status begin_selection(hybrid_selecting *s, const conic_camera *cam
   return CONIC_OK;
 }
 
+/* Some choices after the other, as far as they are to be read. */
+static conic_status copy_parts(hybrid_selecting *s) {
+  const hybrid_scratch *kept = s->scratch;
+  conic_status status = CONIC_OK;
+  for (s->first = 0; s->first < kept->n_choices && status == CONIC_OK; s->first = s->end) {
+    status = hold_chunks(s);
+    if (status != CONIC_OK)
+      return status;
+    conic_parallel_for(s->hybrid->context, (s->end - s->first + CHOICES_A_TASK - 1) / CHOICES_A_TASK, copy_task, s);
+    conic_hybrid_store_let_go(s->hybrid, kept->chunks, kept->n_chunks);
+    s->selection->n_chunks += kept->n_chunks;
+  }
+  return status;
+}
+
+/* With the frames of what is in sight. */
+static conic_status select_held(hybrid_selecting *s) {
+  conic_status status = CONIC_OK;
+  if (is_together(s->view))
+    status = choose_together(s);
+  else
+    note_stages(s);
+  if (status == CONIC_OK)
+    status = make_room_for_parts(s);
+  if (status != CONIC_OK)
+    return status;
+  judge_choices(s);
+  attach(s);
+  return copy_parts(s);
+}
+
 conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera *camera,
                                  const conic_render_options *render, const conic_hybrid_view *given,
                                  conic_hybrid_selection *selection) {
@@ -398,20 +512,19 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
     status = make_stages(&s);
   if (status == CONIC_OK)
     status = choose_all(&s);
-  if (status == CONIC_OK) {
-    if (is_together(&view))
-      status = choose_together(&s);
-    else
-      note_stages(&s);
-  }
   if (status == CONIC_OK)
-    status = make_room_for_parts(&s);
+    status = hold_frames(&s);
   if (status != CONIC_OK)
     return status;
-  judge_choices(&s);
-  attach(&s);
-  conic_parallel_for(hybrid->context, (s.scratch->n_choices + CHOICES_A_TASK - 1) / CHOICES_A_TASK, copy_task, &s);
-  return CONIC_OK;
+  status = select_held(&s);
+  conic_hybrid_store_let_go(hybrid, s.scratch->frames, s.scratch->n_frames);
+  conic_hybrid_traffic traffic = conic_hybrid_store_traffic(hybrid);
+  selection->n_chunks += s.scratch->n_frames;
+  selection->n_chunks_read = traffic.n_chunks;
+  selection->n_bytes_read = traffic.n_bytes;
+  selection->n_bytes_received = traffic.n_received;
+  selection->n_bytes_kept = traffic.n_kept_bytes;
+  return status;
 }
 
 void conic_hybrid_name(const conic_hybrid_selection *selection, conic_image *image) {

@@ -111,15 +111,18 @@ static conic_status run_regions(regions_job *job) {
 
 conic_status conic_find_simpler(conic_ways_job *ways) {
   conic_context *context = ways->context;
-  size_t n = ways->mesh->clusters->n_clusters, n_threads = (size_t)conic_context_threads(context);
+  size_t n = ways->n_clusters, n_all = ways->mesh->clusters->n_clusters;
+  size_t n_threads = (size_t)conic_context_threads(context);
   regions_job job = {.ways = ways};
   job.starts = conic_memory_allocate(context, n + 1, sizeof *job.starts);
-  job.of_cluster = conic_memory_allocate(context, n, sizeof *job.of_cluster);
+  job.of_cluster = conic_memory_allocate(context, n_all, sizeof *job.of_cluster);
   job.levels = conic_memory_allocate_zeroed(context, n, sizeof *job.levels);
   job.places = conic_memory_allocate_zeroed(context, n_threads, sizeof *job.places);
   conic_status status = CONIC_ERROR_MEMORY;
   if (job.starts && job.of_cluster && job.levels && job.places) {
     part(&job, 0, n);
+    for (size_t i = n; i < n_all; i++) /* each a region by itself, which is left as it is */
+      job.of_cluster[i] = (uint32_t)(job.n + i);
     status = conic_cluster_chains_find(context, ways->mesh, job.of_cluster, &ways->chains);
     if (status == CONIC_OK)
       status = run_regions(&job);

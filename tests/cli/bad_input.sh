@@ -169,14 +169,19 @@ printf 'v 1e30 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > distant.obj
 run_wrong 3 distant.obj ': a point is farther out than 1e20$' hybrid distant.obj -o outputs/a.chy
 run_wrong 3 distant.obj 'farther out than 1e20$' render distant.obj --as hybrid -o outputs/a.pfm
 run_wrong 3 distant.obj 'farther out than 1e20$' render distant.obj --as mesh -o outputs/a.pfm
-head -c 1000 partly.chy > cut.chy # longer than its header
-run_wrong 3 cut.chy ": has 1000 bytes where its header tells of $(stat -c %s partly.chy) (at byte 1000)$" info cut.chy
-run_wrong 3 cut.chy ': has 1000 bytes' render cut.chy -o outputs/a.pfm
+head -c 900 partly.chy > cut.chy # longer than its header
+run_wrong 3 cut.chy ": has 900 bytes where its header tells of $(stat -c %s partly.chy) (at byte 900)$" info cut.chy
+run_wrong 3 cut.chy ': has 900 bytes' render cut.chy -o outputs/a.pfm
 head -c 200 partly.chy > header.chy
 run_wrong 3 header.chy ': ends within its header (at byte 200)$' render header.chy -o outputs/a.pfm
 { head -c 600 partly.chy && printf 'damaged' && tail -c +608 partly.chy; } > damaged.chy
 run_wrong 3 damaged.chy ': is damaged.*(at byte [0-9]*)$' info damaged.chy --check
 run_wrong 3 damaged.chy ': is damaged' render damaged.chy -o outputs/a.pfm
+{ head -c -8 partly.chy && printf 'damaged!'; } > damaged.chy # in its last chunk
+run_wrong 3 damaged.chy ': has a chunk that is damaged (at byte [0-9]*)$' info damaged.chy --check
+run_wrong 3 damaged.chy ': cannot read chunk [0-9]*: a chunk that is damaged (at byte [0-9]*)$' render damaged.chy \
+  -o outputs/a.pfm
+run_wrong 2 render 'are for a single .lpc or .chy, or the URL of one$' render partly.obj -o outputs/a.pfm --memory 9
 
 printf '5000000000\n0 0 0\n' > huge.pts
 wrong_model huge.pts 'number of points.*line 1'

@@ -24,6 +24,21 @@ run 0 info hill.chy --check --json info.json
 [[ $(value kind info.json) == chy && $(value sound info.json) == true ]] || fail "info"
 [[ $(value surfels info.json) == "$(value surfels made.json)" ]] || fail "info: surfels"
 
+# A PLY that is read some faces at a time: of one cell it is the same file.
+awk '/^v/ { v[n++] = $2 " " $3 " " $4 } /^f/ { f[m++] = "3 " $2 - 1 " " $3 - 1 " " $4 - 1 } END {
+  print "ply\nformat ascii 1.0\nelement vertex " n "\nproperty float x\nproperty float y\nproperty float z"
+  print "element face " m "\nproperty list uchar int vertex_indices\nend_header"
+  for (i = 0; i < n; i++) print v[i]
+  for (i = 0; i < m; i++) print f[i] }' hill.obj > hill.ply
+run 0 hybrid hill.ply -o whole.chy
+run 0 hybrid hill.ply --memory 200 -o parts.chy --json parts.json
+cmp -s whole.chy parts.chy || fail "--memory makes another file of one cell"
+[[ $(value triangles_in parts.json) == 7200 && $(value bytes parts.json) == $(stat -c %s parts.chy) ]] || fail "counts"
+run 2 hybrid hill.ply --memory 9 -o x.chy
+run 2 hybrid hill.ply --memory 200 --color-by height -o x.chy
+run 3 hybrid hill.obj --memory 200 -o x.chy
+[[ ! -e x.chy && -z $(find . -name '.conic*') ]] || fail "something is left behind"
+
 # A mesh that becomes a hybrid on the way is the file; nothing but the choice changes a picture.
 picture="--size 160x120 --aov rgba,Z,id,cluster"
 run 0 render hill.chy -o a.pfm $picture --json file.json

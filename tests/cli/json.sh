@@ -63,7 +63,7 @@ declare -A wanted=(
     triangle_fragments mtriangles_per_s"
   [render-patches]="$render methods.conic primitives.patches primitives.samples"
   [render-hybrid]="$render methods triangles_drawn? primitives.triangles? primitives.surfel_patches error_px
-    color_error"
+    color_error chunks.drawn chunks.bytes_read"
   [render-layers]="$render methods.conic error_px layers.clouds layers.places_coarser layers.clouds_missing"
   [diff]="identical max_abs rmse p999 psnr ssim flip over_code differing_pixels largest_hole planes.rgba.max_abs
     planes.rgba.rmse"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# conic render of .lpc files and URLs: what the command line promises, against nginx on the loopback.
+# conic render of .lpc and .chy files and URLs: what the command line promises, against nginx on the loopback.
 set -uo pipefail
 # shellcheck source=tests/support/program.bash
 source "$1/tests/support/program.bash"
@@ -25,6 +25,8 @@ same_picture() { # JSON JSON WHAT
 
 run 0 make knot -n 60k -o knot.ply
 run 0 layer knot.ply -o knot.lpc --cloud-size 256
+"$1/scripts/terrain-mesh" 50 50 > hill.obj
+run 0 hybrid hill.obj -o hill.chy
 picture="--size 200x150 --aov all"
 
 # A file: the same picture whatever the memory, threads and occlusion.
@@ -152,6 +154,23 @@ for options in "--memory 1" "--occlusion on" "--threads 1"; do
 done
 run 0 render $site/knot.lpc -o url.pfm $picture --error 8 --json url.json
 [[ $(value bytes_received url.json) -lt $(($(stat -c %s knot.lpc) * 3 / 4)) ]] || fail "a coarse picture fetches everything"
+
+# A hybrid model likewise: what is shown is read, and no more.
+for options in "" "--error 1 --zoom 6" "--budget 300"; do
+  run 0 render hill.chy -o hill.pfm $picture $options --json hill.json
+  for memory in "" "--memory 22"; do
+    run 0 render $site/hill.chy -o url.pfm $picture $options $memory --json url.json
+    same_picture hill.json url.json "a hybrid over HTTP, $options $memory"
+    [[ $(value bytes_received url.json) -ge $(value bytes_read url.json) ]] || fail "a hybrid's bytes over HTTP"
+  done
+done
+[[ $(value bytes_read url.json) -lt $(($(stat -c %s hill.chy) / 2)) ]] || fail "a small budget fetches everything"
+[[ $(value bytes_received url.json) -lt $(($(stat -c %s hill.chy) / 2)) ]] || fail "a small budget receives everything"
+run 0 render $site/whole/hill.chy -o url.pfm $picture --budget 300 --json whole.json
+same_picture url.json whole.json "a hybrid of a server without ranges"
+run 3 render $site/missing.chy -o x.pfm
+run 4 render http://127.0.0.1:9/x.chy -o x.pfm --timeout 1
+
 run 0 render $site/knot.lpc --progressive remote $picture --error 1 --json url.json
 for picture_file in steps/*.exr; do
   run 0 diff "$picture_file" remote/"$(basename "$picture_file")"

@@ -5,8 +5,8 @@
 
 #include "lod/hybrid/hybrid_layout.h"
 
-/* What is read can be used, whatever it says of itself. */
-static void use(fuzz_input *input, conic_hybrid *hybrid) {
+/* What is read can be used, whatever it says of itself; of what is opened, chunks may be damaged. */
+static void use(fuzz_input *input, conic_hybrid *hybrid, int is_whole) {
   conic_hybrid_info info;
   conic_hybrid_defects found;
   conic_hybrid_selection selection;
@@ -16,7 +16,7 @@ static void use(fuzz_input *input, conic_hybrid *hybrid) {
   conic_framing framing;
   memset(&selection, 0, sizeof selection);
   FUZZ_CHECK(conic_hybrid_describe(hybrid, &info) == CONIC_OK);
-  FUZZ_CHECK(conic_hybrid_check(hybrid, &found) == CONIC_OK);
+  FUZZ_CHECK(!is_whole || conic_hybrid_check(hybrid, &found) == CONIC_OK);
   conic_framing_init(&framing);
   conic_render_options_init(&render);
   conic_hybrid_view_init(&view);
@@ -27,7 +27,10 @@ static void use(fuzz_input *input, conic_hybrid *hybrid) {
     view.error_px = i == 1 ? 1.0 : 0.0;
     view.only_kind = i - 2 < 0 ? -1 : i - 2;
     render.cull_back = i & 1;
-    FUZZ_CHECK(conic_hybrid_select(hybrid, &camera, &render, &view, &selection) == CONIC_OK);
+    conic_status status = conic_hybrid_select(hybrid, &camera, &render, &view, &selection);
+    FUZZ_CHECK(status == CONIC_OK || (!is_whole && status == CONIC_ERROR_INPUT));
+    if (status != CONIC_OK)
+      continue;
     FUZZ_CHECK(conic_triangles_check(input->context, &selection.triangles, "selection") == CONIC_OK);
     FUZZ_CHECK(selection.n_clusters[0] + selection.n_clusters[1] + selection.n_joined + selection.n_culled ==
                info.n_clusters);
@@ -40,7 +43,15 @@ static void read_and_use(const uint8_t *bytes, size_t n_bytes) {
   fuzz_input input = fuzz_open(bytes, n_bytes);
   conic_status status = conic_hybrid_read(input.context, input.path, &hybrid);
   if (status == CONIC_OK)
-    use(&input, hybrid);
+    use(&input, hybrid, 1);
+  conic_hybrid_destroy(hybrid);
+  conic_layers_access access;
+  conic_layers_access_init(&access);
+  access.memory_bytes = n_bytes % 2 ? 0 : (uint64_t)1 << 22;
+  conic_status opened = conic_hybrid_open(input.context, input.path, &access, &hybrid);
+  FUZZ_CHECK(opened == CONIC_OK || status != CONIC_OK);
+  if (opened == CONIC_OK)
+    use(&input, hybrid, 0);
   conic_hybrid_destroy(hybrid);
   fuzz_close(&input, status, 0);
 }

@@ -95,6 +95,9 @@ static void init_selection(void *o, size_t size) {
 static void init_hybrid(void *o, size_t size) {
   conic_hybrid_options_init_sized(o, size);
 }
+static void init_hybrid_streaming(void *o, size_t size) {
+  conic_hybrid_streaming_init_sized(o, size);
+}
 static void init_hybrid_view(void *o, size_t size) {
   conic_hybrid_view_init_sized(o, size);
 }
@@ -155,6 +158,7 @@ static const struct {
            {init_octree, sizeof(conic_octree_options)},
            {init_selection, sizeof(conic_selection_options)},
            {init_hybrid, sizeof(conic_hybrid_options)},
+           {init_hybrid_streaming, sizeof(conic_hybrid_streaming)},
            {init_hybrid_view, sizeof(conic_hybrid_view)},
            {init_layers, sizeof(conic_layers_options)},
            {init_access, sizeof(conic_layers_access)},

@@ -16,7 +16,10 @@ typedef struct borders_scene {
   const char *name;
   conic_hybrid *hybrid;
   conic_triangles mesh;
-  uint32_t *place;          /* of each vertex of the hybrid: the first that lies there */
+  size_t n_vertices; /* of the faces of all clusters, one cluster's after the other's: */
+  float (*at)[3];
+  size_t *first;            /* of each cluster */
+  uint32_t *place;          /* of each of these: the first that lies there */
   unsigned char *is_border; /* of each place: it is on an edge of the mesh that has not two faces */
   uint32_t *levels;         /* of each cluster: the one that is drawn, from its first */
   uint32_t *stages;
@@ -42,15 +45,35 @@ typedef struct spot {
   uint32_t vertex;
 } spot;
 
+static void list_all_vertices(borders_scene *s) {
+  const conic_hybrid *h = s->hybrid;
+  s->first = malloc((h->n_clusters + 1) * sizeof *s->first);
+  if (!s->first)
+    exit(1);
+  for (size_t i = 0; i < h->n_clusters; i++) {
+    s->first[i] = s->n_vertices;
+    s->n_vertices += h->levels[h->clusters[i].first_level].n_vertices;
+  }
+  s->at = malloc((s->n_vertices + 1) * sizeof *s->at);
+  if (!s->at)
+    exit(1);
+  for (size_t i = 0; i < h->n_clusters; i++) {
+    conic_hybrid_piece piece = conic_hybrid_piece_of(h, h->clusters[i].first_level);
+    for (size_t k = 0; k < h->levels[h->clusters[i].first_level].n_vertices; k++)
+      for (int axis = 0; axis < 3; axis++)
+        s->at[s->first[i] + k][axis] = piece.vertices.position[axis][k];
+  }
+}
+
 static void find_places(borders_scene *s) {
-  size_t n = s->hybrid->n_vertices;
+  size_t n = s->n_vertices;
   spot *spots = malloc(n * sizeof *spots);
   s->place = malloc(n * sizeof *s->place);
   if (!spots || !s->place)
     exit(1);
   for (uint32_t i = 0; i < n; i++) {
     for (int axis = 0; axis < 3; axis++)
-      spots[i].at[axis] = s->hybrid->position[axis][i] + 0.0f; /* no negative zero */
+      spots[i].at[axis] = s->at[i][axis] + 0.0f; /* no negative zero */
     spots[i].vertex = i;
   }
   qsort(spots, n, sizeof *spots, compare_places);
@@ -104,8 +127,10 @@ static void put_cluster(borders_scene *s, size_t cluster) {
   const conic_hybrid *h = s->hybrid;
   const conic_hybrid_level *level = level_of(s, cluster);
   conic_triangles *to = &s->drawn;
-  size_t n_put = conic_hybrid_count_stitches(h, level, s->stages);
+  size_t n_put = conic_hybrid_count_stitches(h, (uint32_t)cluster, level, s->stages);
+  conic_hybrid_piece piece = conic_hybrid_piece_of(h, (uint32_t)(level - h->levels));
   conic_hybrid_stitching stitching = {.hybrid = h,
+                                      .cluster = (uint32_t)cluster,
                                       .level = level,
                                       .stages = s->stages,
                                       .to = to,
@@ -114,11 +139,11 @@ static void put_cluster(borders_scene *s, size_t cluster) {
                                       .vertex = to->n_vertices + level->n_vertices};
   for (size_t i = 0; i < level->n_vertices; i++)
     for (int axis = 0; axis < 3; axis++)
-      to->position[axis][to->n_vertices + i] = h->position[axis][h->listed[level->first_vertex + i]];
+      to->position[axis][to->n_vertices + i] = piece.vertices.position[axis][i];
   for (size_t i = 0; i < level->count; i++) {
     to->cluster[to->count + i] = (uint32_t)cluster;
     for (int k = 0; k < 3; k++)
-      to->corners[to->count + i][k] = (uint32_t)to->n_vertices + h->corners[level->first + i][k];
+      to->corners[to->count + i][k] = (uint32_t)to->n_vertices + conic_hybrid_corner(&piece, i, k);
   }
   conic_hybrid_stitch(&stitching);
   CHECK(stitching.triangle == to->count + level->count + n_put);
@@ -132,13 +157,13 @@ static void put_cluster(borders_scene *s, size_t cluster) {
 
 /* Where a drawn vertex lies among the mesh's. */
 static void place_drawn(borders_scene *s) {
-  size_t n = s->hybrid->n_vertices;
+  size_t n = s->n_vertices;
   spot *spots = malloc(n * sizeof *spots);
   if (!spots)
     exit(1);
   for (uint32_t i = 0; i < n; i++) {
     for (int axis = 0; axis < 3; axis++)
-      spots[i].at[axis] = s->hybrid->position[axis][i] + 0.0f;
+      spots[i].at[axis] = s->at[i][axis] + 0.0f;
     spots[i].vertex = s->place[i];
   }
   qsort(spots, n, sizeof *spots, compare_places);
@@ -185,11 +210,10 @@ static void check_distances(borders_scene *s, uint64_t *state) {
   for (size_t i = 0; i < s->hybrid->n_clusters; i++)
     most = (double)level_of(s, i)->error > most ? (double)level_of(s, i)->error : most;
   for (int run = 0; run < 200 && most > 0.0; run++) {
-    size_t i = (size_t)(random_unit(state) * (double)s->hybrid->n_listed);
-    uint32_t vertex = s->hybrid->listed[i];
+    size_t i = (size_t)(random_unit(state) * (double)s->n_vertices);
     double at[3];
     for (int axis = 0; axis < 3; axis++)
-      at[axis] = (double)s->hybrid->position[axis][vertex];
+      at[axis] = (double)s->at[i][axis];
     double share = distance_of(s, at) / most;
     s->farthest = share > s->farthest ? share : s->farthest;
   }
@@ -198,13 +222,12 @@ static void check_distances(borders_scene *s, uint64_t *state) {
 
 /* The middles of a triangle and of one of its edges, by the error of its level. */
 static void check_triangle(borders_scene *s, const conic_hybrid_level *level, size_t triangle) {
-  const conic_hybrid *h = s->hybrid;
+  conic_hybrid_piece piece = conic_hybrid_piece_of(s->hybrid, (uint32_t)(level - s->hybrid->levels));
   for (int n = 2; n <= 3; n++) {
     double at[3] = {0.0, 0.0, 0.0};
     for (int k = 0; k < n; k++)
       for (int axis = 0; axis < 3; axis++)
-        at[axis] +=
-            (double)h->position[axis][h->listed[level->first_vertex + h->corners[level->first + triangle][k]]] / n;
+        at[axis] += (double)piece.vertices.position[axis][conic_hybrid_corner(&piece, triangle, k)] / n;
     double distance = distance_of(s, at);
     CHECK(distance <= (double)level->error);
     if (level->error > 0.0f && distance > s->farthest_back * (double)level->error)
@@ -239,15 +262,15 @@ static void find_border(borders_scene *s) {
   for (size_t i = 0; i < h->n_clusters; i++)
     n += h->levels[h->clusters[i].first_level].count;
   corners = malloc((n + 1) * sizeof *corners);
-  s->is_border = calloc(h->n_vertices, 1);
+  s->is_border = calloc(s->n_vertices, 1);
   if (!corners || !s->is_border)
     exit(1);
   n = 0;
   for (size_t i = 0; i < h->n_clusters; i++) {
-    const conic_hybrid_level *level = &h->levels[h->clusters[i].first_level];
-    for (size_t t = 0; t < level->count; t++, n++)
+    conic_hybrid_piece piece = conic_hybrid_piece_of(h, h->clusters[i].first_level);
+    for (size_t t = 0; t < h->levels[h->clusters[i].first_level].count; t++, n++)
       for (int k = 0; k < 3; k++)
-        corners[n][k] = h->listed[level->first_vertex + h->corners[level->first + t][k]];
+        corners[n][k] = (uint32_t)s->first[i] + conic_hybrid_corner(&piece, t, k);
   }
   edge *edges = list_edges((const uint32_t(*)[3])corners, s->place, n);
   for (size_t i = 0; i < 3 * n;) {
@@ -285,13 +308,13 @@ static void test_mesh(conic_context *context, const char *name, const char *path
   CHECK_OK(conic_hybrid_build(context, &mesh, &options, &s.hybrid, NULL));
   size_t n_clusters = s.hybrid->n_clusters, room = 0;
   for (size_t i = 0; i < n_clusters; i++)
-    room += s.hybrid->levels[s.hybrid->clusters[i].first_level].count;
-  room += 2 * s.hybrid->n_slots;
+    room += s.hybrid->levels[s.hybrid->clusters[i].first_level].count + s.hybrid->clusters[i].n_slots;
   s.levels = malloc((n_clusters + 1) * sizeof *s.levels);
   s.stages = malloc((n_clusters + 1) * sizeof *s.stages);
   s.drawn_place = malloc((3 * room + 1) * sizeof *s.drawn_place);
   if (!s.levels || !s.stages || !s.drawn_place)
     exit(1);
+  list_all_vertices(&s);
   find_places(&s);
   find_border(&s);
   for (int run = 0; run < n_runs; run++)
@@ -308,6 +331,8 @@ static void test_mesh(conic_context *context, const char *name, const char *path
   free(s.stages);
   free(s.drawn_place);
   free(s.place);
+  free(s.at);
+  free(s.first);
   free(s.is_border);
   conic_hybrid_destroy(s.hybrid);
 }

@@ -145,7 +145,7 @@ static size_t fewest(const spending *s, const conic_hybrid_camera *view, int onl
   }
   count = fewest_below(s, view, 0, only_kind, budget, error_px, next);
   for (size_t i = 0; i < s->info.n_clusters; i++)
-    count += s->chosen[i] ? conic_hybrid_count_stitches(s->hybrid, s->chosen[i], s->stages) : 0;
+    count += s->chosen[i] ? conic_hybrid_count_stitches(s->hybrid, (uint32_t)i, s->chosen[i], s->stages) : 0;
   return count;
 }
 

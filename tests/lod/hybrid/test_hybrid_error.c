@@ -2,7 +2,7 @@
  * 8 × 8 samples a pixel, so that what is measured is the model and not the pixels: how far outlines moved, how far what
  * is drawn lies from the mesh, and how colours differ. What is to be drawn is chosen for the picture of 256 × 256. */
 #include "core/base/vectors.h"
-#include "lod/hybrid/hybrid_model.h"
+#include "lod/hybrid/hybrid_chunks.h"
 #include "lod/mesh/face_tree.h"
 #include "tests/support/hybrid_fixture.h"
 
@@ -242,12 +242,13 @@ typedef struct disc {
   double at[3], u[3], v[3]; /* half axes of the outline */
 } disc;
 
-static disc disc_of(const conic_hybrid *h, uint32_t i) {
+static disc disc_of(const conic_hybrid *h, const conic_hybrid_level *level, uint32_t i) {
+  conic_hybrid_piece piece = conic_hybrid_piece_of(h, (uint32_t)(level - h->levels));
   disc d;
   for (int axis = 0; axis < 3; axis++) {
-    d.at[axis] = (double)h->surfels[axis][i];
-    d.u[axis] = (double)h->cutoff * (double)h->surfels[3 + axis][i];
-    d.v[axis] = (double)h->cutoff * (double)h->surfels[6 + axis][i];
+    d.at[axis] = (double)piece.surfels[axis][i];
+    d.u[axis] = (double)h->cutoff * (double)piece.surfels[3 + axis][i];
+    d.v[axis] = (double)h->cutoff * (double)piece.surfels[6 + axis][i];
   }
   return d;
 }
@@ -285,13 +286,14 @@ static double vertices_off(const conic_hybrid *h, const conic_hybrid_node *node,
   double farthest = 0.0;
   for (uint32_t i = node->begin; i < node->end; i++) {
     const conic_hybrid_level *faces = &h->levels[h->clusters[i].first_level];
+    conic_hybrid_piece piece = conic_hybrid_piece_of(h, h->clusters[i].first_level);
     for (uint32_t k = 0; k < faces->n_vertices; k += 1 + faces->n_vertices / 20) {
-      uint32_t vertex = h->listed[faces->first_vertex + k];
-      const double at[3] = {(double)h->position[0][vertex], (double)h->position[1][vertex],
-                            (double)h->position[2][vertex]};
+      double at[3];
+      for (int axis = 0; axis < 3; axis++)
+        at[axis] = (double)piece.vertices.position[axis][k];
       double nearest = HUGE_VAL, least = HUGE_VAL, size;
-      for (uint32_t m = level->first; m < level->first + level->count; m++) {
-        disc d = disc_of(h, m);
+      for (uint32_t m = 0; m < level->count; m++) {
+        disc d = disc_of(h, level, m);
         double off = off_disc(&d, at, &size);
         nearest = fmin(nearest, off);
         least = off <= (double)level->error ? fmin(least, size) : least;
@@ -306,14 +308,12 @@ static double vertices_off(const conic_hybrid *h, const conic_hybrid_node *node,
 
 /* These meshes have one colour, and so have nodes. */
 static void check_colors(const conic_hybrid *h, const conic_hybrid_node *node) {
-  for (int channel = 0; channel < 3; channel++) {
-    float color = h->surfels[9 + channel][0];
-    CHECK(fabsf(node->point.color[channel] - color) < 1e-5f);
-    for (uint32_t k = 0; k < node->n_levels; k++) {
-      const conic_hybrid_level *level = &h->levels[node->first_level + k];
-      for (uint32_t i = level->first; level->kind == CONIC_HYBRID_SURFELS && i < level->first + level->count; i++)
-        CHECK(fabsf(h->surfels[9 + channel][i] - color) < 1e-5f);
-    }
+  for (uint32_t k = 0; k < node->n_levels; k++) {
+    const conic_hybrid_level *level = &h->levels[node->first_level + k];
+    conic_hybrid_piece piece = conic_hybrid_piece_of(h, node->first_level + k);
+    for (int channel = 0; channel < 3 && level->kind == CONIC_HYBRID_SURFELS; channel++)
+      for (uint32_t i = 0; i < level->count; i++)
+        CHECK(fabsf(piece.surfels[9 + channel][i] - node->point.color[channel]) < 1e-5f);
   }
 }
 
@@ -350,8 +350,8 @@ static void check_said(const comparison *c, const char *name) {
       if (level->kind == CONIC_HYBRID_TRIANGLES)
         continue;
       CHECK(error >= finest_error(h, node));
-      for (uint32_t m = level->first; m < level->first + level->count; m++) {
-        disc d = disc_of(h, m);
+      for (uint32_t m = 0; m < level->count; m++) {
+        disc d = disc_of(h, level, m);
         farthest = disc_off_mesh(c, &d, farthest);
       }
       discs = fmax(discs, farthest / error);

@@ -1,6 +1,7 @@
 /* .chy files: what is written is read, to the bit, and draws the same picture; what was spoiled is refused, also where
  * its sums were made right again, or can be used; what was built is sound. */
 #include "core/base/byte_order.h"
+#include "lod/hybrid/hybrid_chunks.h"
 #include "lod/hybrid/hybrid_layout.h"
 #include "tests/support/files.h"
 #include "tests/support/hybrid_fixture.h"
@@ -39,8 +40,10 @@ static conic_hybrid *build(conic_context *context, size_t side, double phase2, i
   return hybrid;
 }
 
-/* The picture of a selection: hashes of what is drawn. */
-static uint64_t picture(conic_context *context, const conic_hybrid *hybrid, double error_px) {
+/* The picture of a selection: hashes of what is drawn; by an error, a budget of surfels and triangles, or as built; and
+ * what reading it took. */
+static uint64_t picture_of(conic_context *context, const conic_hybrid *hybrid, double error_px, uint64_t budget,
+                           conic_hybrid_selection *read) {
   conic_hybrid_info info;
   conic_hybrid_selection selection;
   conic_hybrid_view view;
@@ -52,6 +55,7 @@ static uint64_t picture(conic_context *context, const conic_hybrid *hybrid, doub
   conic_render_options_init(&options);
   conic_hybrid_view_init(&view);
   view.error_px = error_px;
+  view.budget = budget;
   CHECK_OK(conic_hybrid_describe(hybrid, &info));
   hybrid_look(context, 17, 120, 1.0, info.minimum, info.maximum, &camera);
   CHECK_OK(conic_hybrid_select(hybrid, &camera, &options, &view, &selection));
@@ -74,8 +78,29 @@ static uint64_t picture(conic_context *context, const conic_hybrid *hybrid, doub
     hash = hash * 31 + conic_image_hash(&image, (conic_plane)plane);
   conic_image_release(context, &image);
   conic_renderer_destroy(renderer);
+  *read = selection;
   conic_hybrid_selection_release(context, &selection);
   return hash;
+}
+
+static uint64_t picture(conic_context *context, const conic_hybrid *hybrid, double error_px) {
+  conic_hybrid_selection read;
+  return picture_of(context, hybrid, error_px, 0, &read);
+}
+
+static conic_status select_as_built(conic_context *context, const conic_hybrid *hybrid) {
+  conic_hybrid_selection selection = {.scratch = NULL};
+  conic_hybrid_view view;
+  conic_render_options options;
+  conic_hybrid_info info;
+  conic_camera camera;
+  conic_render_options_init(&options);
+  conic_hybrid_view_init(&view);
+  CHECK_OK(conic_hybrid_describe(hybrid, &info));
+  hybrid_look(context, 17, 120, 1.0, info.minimum, info.maximum, &camera);
+  conic_status status = conic_hybrid_select(hybrid, &camera, &options, &view, &selection);
+  conic_hybrid_selection_release(context, &selection);
+  return status;
 }
 
 static void check_sound(const conic_hybrid *hybrid) {
@@ -131,12 +156,17 @@ static void test_threads(void) {
   CHECK(sums[0] == sums[1]);
 }
 
-/* A model with vertices left out along its clusters' borders. */
-static void add_hill(seed_set *set, conic_context *context) {
+/* A model with vertices left out along its clusters' borders; they are a small part of it: what is changed are then its
+ * first chunks. */
+static void add_hill(seed_set *set, conic_context *context, size_t *first, size_t *n) {
   const char *path = files_path("hill.chy");
   conic_hybrid *hybrid = build(context, 24, -2.0, 0);
   size_t n_bytes = (size_t)conic_hybrid_file_bytes(hybrid);
-  CHECK(hybrid->n_borders > 4 && hybrid->n_slots > 10);
+  conic_hybrid_place ends = conic_hybrid_chunk_place(hybrid, 0);
+  for (uint32_t i = 0; i < hybrid->n_clusters; i++)
+    if (hybrid->clusters[i].n_slots > 0)
+      ends = conic_hybrid_chunk_place(hybrid, conic_hybrid_ends_chunk(hybrid, i));
+  CHECK(hybrid->clusters[1].n_borders > 1 && hybrid->clusters[1].n_slots > 4);
   CHECK_OK(conic_hybrid_write(hybrid, path));
   unsigned char *bytes = malloc(n_bytes);
   FILE *file = fopen(path, "rb");
@@ -144,21 +174,93 @@ static void add_hill(seed_set *set, conic_context *context) {
   if (file)
     fclose(file);
   CHECK(unlink(path) == 0);
+  *first = n_bytes - (size_t)hybrid->n_data;
+  *n = (size_t)(ends.at + ends.n_bytes);
   seeds_add(set, "chy", "chy", 0, bytes, n_bytes);
   free(bytes);
   conic_hybrid_destroy(hybrid);
 }
 
-/* Slots and borders are a small part of a file: half of the changes are to them. */
-static size_t place_to_change(uint64_t *state, const unsigned char *bytes, size_t n_bytes) {
-  size_t from = 8;
-  if (random_unit(state) < 0.5) {
-    conic_chy_header h = {.n_slots = conic_load_64(bytes + 160), .n_borders = conic_load_64(bytes + 168)};
-    size_t n_chains =
-        (size_t)h.n_slots * sizeof(conic_cluster_slot) + (size_t)h.n_borders * sizeof(conic_cluster_border);
-    from = n_chains < n_bytes - 8 ? n_bytes - n_chains - 8 : 8;
+/* Half of the changes are to the bytes that are asked for. */
+static size_t place_to_change(uint64_t *state, size_t n_bytes, size_t first, size_t n) {
+  if (random_unit(state) < 0.5)
+    return first + (size_t)(random_unit(state) * (double)n);
+  return 8 + (size_t)(random_unit(state) * (double)(n_bytes - 8));
+}
+
+/* Of a file that is opened, pictures read what they show, and are those of the model as a whole, whatever the memory;
+ * what is not damaged is drawn, too. */
+static void test_parts(conic_context *context) {
+  static const struct {
+    double error_px;
+    uint64_t budget;
+  } views[] = {{15.0, 0}, {0.0, 60}, {1.0, 0}, {0.0, 2000}, {0.0, 0}, {1.0, 0}};
+  static const uint64_t memories[] = {0, 4 << 20};
+  const char *path = files_path("parts.chy");
+  conic_hybrid *hybrid = build(context, 60, 0.4, 1), *opened;
+  uint64_t n_bytes = conic_hybrid_file_bytes(hybrid);
+  conic_layers_access access;
+  conic_hybrid_selection read;
+  CHECK_OK(conic_hybrid_write(hybrid, path));
+  conic_layers_access_init(&access);
+  for (size_t m = 0; m < sizeof memories / sizeof *memories; m++) {
+    uint64_t n_read = 0;
+    access.memory_bytes = memories[m];
+    CHECK_OK(conic_hybrid_open(context, path, &access, &opened));
+    for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
+      uint64_t whole = picture_of(context, hybrid, views[i].error_px, views[i].budget, &read);
+      CHECK(read.n_chunks == 0 && read.n_bytes_read == 0);
+      CHECK(picture_of(context, opened, views[i].error_px, views[i].budget, &read) == whole);
+      CHECK(read.n_chunks > 0 && read.n_bytes_read >= n_read && read.n_bytes_received == 0);
+      CHECK(i > 0 || read.n_bytes_read < n_bytes / 4); /* far below what there is */
+      CHECK(memories[m] == 0 || read.n_bytes_kept <= memories[m] / 3);
+      n_read = read.n_bytes_read;
+    }
+    CHECK(memories[m] > 0 ? n_read > read.n_bytes_kept + 100000 : n_read < n_bytes); /* some was dropped */
+    conic_hybrid_destroy(opened);
   }
-  return from + (size_t)(random_unit(state) * (double)(n_bytes - from));
+  access.memory_bytes = 1 << 18; /* too little for what is drawn as built */
+  CHECK_OK(conic_hybrid_open(context, path, &access, &opened));
+  conic_hybrid_defects defects;
+  CHECK(conic_hybrid_check(opened, &defects) == CONIC_ERROR_ARGUMENT); /* of a whole model alone */
+  CHECK(select_as_built(context, opened) == CONIC_ERROR_MEMORY);
+  conic_hybrid_destroy(opened);
+  conic_hybrid_destroy(hybrid);
+  CHECK(unlink(path) == 0);
+}
+
+/* A byte of the finest level is wrong: what does not need it is drawn. */
+static void test_damaged_part(conic_context *context) {
+  conic_hybrid *hybrid = build(context, 24, -2.0, 0), *opened;
+  const char *path = files_path("parts.chy");
+  size_t n_bytes = (size_t)conic_hybrid_file_bytes(hybrid);
+  CHECK_OK(conic_hybrid_write(hybrid, path));
+  uint64_t far_off = picture(context, hybrid, 15.0);
+  size_t at = n_bytes - (size_t)hybrid->n_data + (size_t)conic_hybrid_chunk_place(hybrid, 0).at + 100;
+  conic_hybrid_destroy(hybrid);
+  FILE *file = fopen(path, "r+b");
+  CHECK(file && fseek(file, (long)at, SEEK_SET) == 0 && fputs("damaged", file) >= 0);
+  CHECK(file && fclose(file) == 0);
+  CHECK(conic_hybrid_read(context, path, &hybrid) == CONIC_ERROR_INPUT && !hybrid);
+  CHECK_OK(conic_hybrid_open(context, path, NULL, &opened));
+  CHECK(picture(context, opened, 15.0) == far_off);
+  CHECK(select_as_built(context, opened) == CONIC_ERROR_INPUT);
+  CHECK(strstr(files_message, "cannot read chunk 0: a chunk that is damaged (at byte ") != NULL);
+  CHECK(picture(context, opened, 15.0) == far_off);
+  conic_hybrid_destroy(opened);
+  CHECK(unlink(path) == 0);
+}
+
+/* What is opened of a file draws the same as what is read, or is refused where that is. */
+static void check_opened(conic_context *context, const char *path, const conic_hybrid *read) {
+  conic_hybrid *opened;
+  conic_status status = conic_hybrid_open(context, path, NULL, &opened);
+  CHECK(status == CONIC_OK || (status == CONIC_ERROR_INPUT && !read));
+  if (status == CONIC_OK) {
+    status = select_as_built(context, opened);
+    CHECK(status == CONIC_OK || (status == CONIC_ERROR_INPUT && !read));
+  }
+  conic_hybrid_destroy(opened);
 }
 
 /* A byte is changed and the sums made right: it is refused, or it can be drawn. */
@@ -169,7 +271,8 @@ static void test_mended(conic_context *context) {
     exit(1);
   seeds_hybrid(set, context, 0);
   seeds_hybrid(set, context, 1);
-  add_hill(set, context);
+  size_t first, n;
+  add_hill(set, context, &first, &n);
   int n_refused = 0;
   for (int i = 0; i < set->n; i++) {
     const seed *from = &set->seeds[i];
@@ -177,13 +280,16 @@ static void test_mended(conic_context *context) {
     for (int run = 0; run < 1500 && bytes; run++) {
       conic_hybrid *hybrid;
       memcpy(bytes, from->bytes, from->n_bytes);
-      size_t at = place_to_change(&state, from->bytes, from->n_bytes);
+      size_t at = i + 1 < set->n ? 8 + (size_t)(random_unit(&state) * (double)(from->n_bytes - 8))
+                                 : place_to_change(&state, from->n_bytes, first, n);
       bytes[at] = (unsigned char)(random_unit(&state) * 256.0);
       conic_hybrid_mend(bytes, from->n_bytes);
       const char *path = files_write_bytes("mended.chy", bytes, from->n_bytes);
       conic_status status = conic_hybrid_read(context, path, &hybrid);
       CHECK(status == CONIC_OK || status == CONIC_ERROR_INPUT);
       n_refused += status != CONIC_OK;
+      if (run % 4 == 0)
+        check_opened(context, path, hybrid);
       if (status == CONIC_OK) {
         conic_hybrid_defects defects;
         conic_hybrid_selection selection;
@@ -237,6 +343,8 @@ int main(void) {
   test_there_and_back(context, -2.0, 1);
   test_there_and_back(context, 1e6, 1);
   test_threads();
+  test_parts(context);
+  test_damaged_part(context);
   test_mended(context);
   test_refused(context);
   files_end(context);

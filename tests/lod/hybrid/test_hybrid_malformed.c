@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "core/base/byte_order.h"
+#include "lod/hybrid/hybrid_chunks.h"
 #include "lod/hybrid/hybrid_layout.h"
 #include "tests/support/files.h"
 #include "tests/support/hybrid_fixture.h"
@@ -11,11 +12,14 @@
 typedef struct sound_file {
   unsigned char *bytes;
   size_t n_bytes;
-  size_t nodes, clusters, levels, corners, listed, materials, material_list;
-  size_t n_vertices, n_listed, n_triangles, n_surfels, n_levels, n_clusters, n_nodes, n_materials, n_texels;
+  size_t nodes, clusters, levels, material_list;
+  size_t corners, materials, corners_at; /* of the first level, and where its chunk lies */
+  size_t frame, frame_at, ends, n_slots; /* of the first cluster with borders; which is: */
+  size_t framed;
+  size_t n_triangles, n_surfels, n_levels, n_clusters, n_nodes, n_materials, n_texels;
 } sound_file;
 
-enum { SIDE = 14 };
+enum { SIDE = 24 };
 
 /* A small terrain of two materials, one with a picture, as OBJ, MTL and PFM. */
 static void write_mesh(conic_context *context, const char *path) {
@@ -55,12 +59,8 @@ static void find_arrays(const conic_hybrid *h, const char *path, sound_file *sou
                         .nodes = offset_of(h, h->nodes),
                         .clusters = offset_of(h, h->clusters),
                         .levels = offset_of(h, h->levels),
-                        .corners = offset_of(h, h->corners),
-                        .listed = offset_of(h, h->listed),
-                        .materials = offset_of(h, h->material),
+                        .corners_at = offset_of(h, conic_hybrid_chunk(h, 0)),
                         .material_list = offset_of(h, h->material_list),
-                        .n_vertices = h->n_vertices,
-                        .n_listed = h->n_listed,
                         .n_triangles = h->n_triangles,
                         .n_surfels = h->n_surfels,
                         .n_levels = h->n_levels,
@@ -68,6 +68,17 @@ static void find_arrays(const conic_hybrid *h, const char *path, sound_file *sou
                         .n_nodes = h->n_nodes,
                         .n_materials = h->n_materials,
                         .n_texels = h->n_texels};
+  conic_hybrid_piece piece = conic_hybrid_piece_of(h, 0);
+  sound->corners = offset_of(h, piece.narrow);
+  sound->materials = offset_of(h, piece.material);
+  while (sound->framed < h->n_clusters && h->clusters[sound->framed].n_borders == 0)
+    sound->framed++;
+  CHECK(piece.narrow && piece.material && sound->framed < h->n_clusters);
+  uint32_t framed = (uint32_t)sound->framed;
+  sound->n_slots = h->clusters[framed].n_slots;
+  sound->frame_at = offset_of(h, conic_hybrid_chunk(h, conic_hybrid_frame_chunk(h, framed)));
+  sound->frame = offset_of(h, conic_hybrid_frame_of(h, framed).borders);
+  sound->ends = offset_of(h, conic_hybrid_ends_of(h, framed).position[0]);
   sound->bytes = malloc(sound->n_bytes);
   if (!sound->bytes)
     exit(1);
@@ -91,7 +102,7 @@ static sound_file make_sound(conic_context *context) {
   CHECK_OK(conic_hybrid_write(hybrid, made));
   conic_hybrid_destroy(hybrid);
   CHECK_OK(conic_hybrid_read(context, made, &hybrid));
-  CHECK(hybrid->n_nodes >= 3 && hybrid->material && hybrid->n_materials == 3 && hybrid->n_texels == 12);
+  CHECK(hybrid->n_nodes >= 3 && hybrid->n_materials == 3 && hybrid->n_texels == 12);
   CHECK(hybrid->clusters[0].n_levels >= 2 && hybrid->n_surfels > 0);
   find_arrays(hybrid, made, &sound);
   conic_hybrid_destroy(hybrid);
@@ -139,6 +150,16 @@ static void check_u32(conic_context *context, const sound_file *sound, size_t at
   check_edit(context, sound, at, bits, sizeof bits, 1, wanted);
 }
 
+/* In a chunk, of which the message tells where it is. */
+static void check_chunk(conic_context *context, const sound_file *sound, size_t chunk, size_t at, size_t value,
+                        size_t n_bytes, const char *wrong) {
+  char wanted[200];
+  unsigned char bits[4];
+  conic_store_32(bits, (uint32_t)value);
+  snprintf(wanted, sizeof wanted, "has %s (at byte %zu)", wrong, chunk);
+  check_edit(context, sound, at, bits, n_bytes, 1, wanted);
+}
+
 static void check_f32(conic_context *context, const sound_file *sound, size_t at, float value, const char *wrong) {
   check_u32(context, sound, at, conic_bits_of_float(value), wrong);
 }
@@ -155,7 +176,7 @@ enum {
   CUTOFF = 144,
   ZERO = 148
 };
-enum { VERTICES, TRIANGLES, LISTED, SURFELS, LEVELS, CLUSTERS, NODES, MATERIALS, TEXELS };
+enum { VERTICES, TRIANGLES, SURFELS, LEVELS, CLUSTERS, NODES, MATERIALS, TEXELS, DATA };
 
 static void test_header(conic_context *context, const sound_file *sound) {
   static const char counts[] = "the header has counts that do not go together (at byte 8)";
@@ -171,7 +192,7 @@ static void test_header(conic_context *context, const sound_file *sound) {
     const char *wanted;
   } edits[] = {
       {0, "CONICHX", 7, "no .chy file (at byte 0)"},
-      {VERSION, &(uint32_t){CONIC_CHY_VERSION + 1}, 4, "version 5 of the format is not known (at byte 8)"},
+      {VERSION, &(uint32_t){CONIC_CHY_VERSION + 1}, 4, "version 6 of the format is not known (at byte 8)"},
       {FLAGS, &(uint32_t){16}, 4, flags},
       {ZERO, &(uint32_t){1}, 4, flags},
       {COUNTS + 8 * VERTICES, &(uint64_t){UINT64_C(1) << 32}, 8, counts},
@@ -181,6 +202,7 @@ static void test_header(conic_context *context, const sound_file *sound) {
       {COUNTS + 8 * NODES, &(uint64_t){0}, 8, counts},
       {COUNTS + 8 * NODES, &(uint64_t){2 * sound->n_clusters}, 8, counts},
       {COUNTS + 8 * MATERIALS, &(uint64_t){0}, 8, counts},
+      {COUNTS + 8 * DATA, &(uint64_t){UINT64_C(1) << 38}, 8, counts},
       {CUTOFF, &small, 4, range},
       {CUTOFF, &large, 4, range},
       {CUTOFF, &not_a_number, 4, range},
@@ -213,6 +235,8 @@ static void test_damage(conic_context *context, const sound_file *sound) {
   check_edit(context, sound, LOW, "wide", 4, 0, "the header is damaged (at byte 248)");
   check_edit(context, sound, sound->levels + offsetof(conic_hybrid_level, error), "error", 4, 0,
              "is damaged: its sum is not that of its header (at byte 256)");
+  snprintf(wanted, sizeof wanted, "has a chunk that is damaged (at byte %zu)", sound->corners_at);
+  check_edit(context, sound, sound->corners, "\377", 1, 0, wanted);
   size_t after_nodes = sound->nodes + sound->n_nodes * sizeof(conic_hybrid_node);
   CHECK(after_nodes < sound->clusters); /* 80 bytes each, and of a tree of pairs an odd number */
   snprintf(wanted, sizeof wanted, "is damaged (at byte %zu)", after_nodes);
@@ -244,19 +268,20 @@ static uint32_t u32_at(const sound_file *sound, size_t at) {
 static void test_levels(conic_context *context, const sound_file *sound) {
   static const char no_kind[] = "a level of no known kind", no_parts[] = "a level without its triangles or surfels",
                     no_vertices[] = "a level without its vertices",
-                    range[] = "a level's error, reach or extent out of range";
+                    range[] = "a level's error, reach or extent out of range", order[] = "chunks out of order";
   check_u32(context, sound, LEVEL(0, kind), CONIC_HYBRID_SURFELS, no_kind); /* the first is the mesh itself */
   check_u32(context, sound, LEVEL(1, kind), 2, no_kind);
-  check_u32(context, sound, LEVEL(0, n_borders), UINT32_MAX, "a level without its borders");
   check_u32(context, sound, LEVEL(0, first_border), UINT32_MAX, "a level without its borders");
   check_u32(context, sound, LEVEL(0, count), 0, no_parts);
-  check_u32(context, sound, LEVEL(0, count), sound->n_triangles + 1, no_parts);
-  check_u32(context, sound, LEVEL(0, first), sound->n_triangles, no_parts);
-  check_u32(context, sound, LEVEL(0, first), UINT32_MAX, no_parts);
-  check_u32(context, sound, LEVEL(0, n_vertices), sound->n_listed + 1, no_vertices);
-  check_u32(context, sound, LEVEL(0, first_vertex), UINT32_MAX, no_vertices);
-  check_u32(context, sound, LEVEL(0, n_vertices), 2, "a corner out of range");
-  check_u32(context, sound, sound->corners + 4, sound->n_listed, "a corner out of range");
+  check_u32(context, sound, LEVEL(0, count), UINT32_MAX, no_parts);
+  check_u32(context, sound, LEVEL(0, count), u32_at(sound, LEVEL(0, count)) + 1,
+            "other numbers of triangles or surfels than its levels");
+  check_u32(context, sound, LEVEL(0, n_vertices), 0, no_vertices);
+  check_u32(context, sound, LEVEL(0, n_vertices), UINT32_MAX, order);
+  check_u32(context, sound, LEVEL(0, at), u32_at(sound, LEVEL(0, at)) + 1, order);
+  check_u32(context, sound, LEVEL(sound->n_levels - 1, at), UINT32_MAX, order);
+  check_chunk(context, sound, sound->corners_at, sound->corners + 4, u32_at(sound, LEVEL(0, n_vertices)), 2,
+              "a corner out of range");
   check_f32(context, sound, LEVEL(1, error), NAN, range);
   check_f32(context, sound, LEVEL(1, error), INFINITY, range);
   check_f32(context, sound, LEVEL(1, error), -1e-6f, range);
@@ -268,6 +293,27 @@ static void test_levels(conic_context *context, const sound_file *sound) {
   check_f32(context, sound, LEVEL(sound->n_levels - 1, reach), NAN, range);
 }
 
+/* Where clusters meet. */
+static void test_frames(conic_context *context, const sound_file *sound) {
+  static const char range[] = "a border out of range";
+  size_t edge = sound->frame, from = edge + 4, to = edge + 8, across = edge + 12, at = sound->frame_at;
+  check_u32(context, sound, CLUSTER(sound->framed, n_borders), u32_at(sound, CLUSTER(sound->framed, n_borders)) + 1,
+            "borders of no level");
+  check_u32(context, sound, CLUSTER(sound->framed, n_slots), UINT32_MAX, "chunks out of order");
+  check_u32(context, sound, CLUSTER(sound->framed, frame_at), UINT32_MAX, "chunks out of order");
+  check_u32(context, sound, CLUSTER(sound->framed, ends_at), UINT32_MAX, "chunks out of order");
+  check_chunk(context, sound, at, edge, UINT32_MAX, 4, range);
+  check_chunk(context, sound, at, edge, u32_at(sound, edge) | 3, 4, range); /* no triangle has a fourth corner */
+  check_chunk(context, sound, at, from, sound->n_slots, 4, range);
+  check_chunk(context, sound, at, to, sound->n_slots, 4, range);
+  check_chunk(context, sound, at, to, u32_at(sound, from) < sound->n_slots / 2 ? sound->n_slots - 1 : 0, 4,
+              "borders that run over each other");
+  check_chunk(context, sound, at, across, sound->n_clusters, 4, range);
+  check_chunk(context, sound, at, across, sound->framed, 4, range);
+  check_chunk(context, sound, at, sound->ends + 4 * u32_at(sound, from), conic_bits_of_float(77.0f), 4,
+              "a border that is not its triangle's");
+}
+
 static void test_clusters(conic_context *context, const sound_file *sound) {
   static const char no_levels[] = "a patch without its levels", range[] = "a patch's bounds out of range";
   size_t last = sound->n_clusters - 1;
@@ -276,7 +322,7 @@ static void test_clusters(conic_context *context, const sound_file *sound) {
   check_u32(context, sound, CLUSTER(1, first_level), 0, no_levels); /* whose levels are another's, too */
   check_u32(context, sound, CLUSTER(0, n_levels), 0, no_levels);
   check_u32(context, sound, CLUSTER(0, n_levels), sound->n_levels + 1, no_levels);
-  check_u32(context, sound, CLUSTER(last, n_levels), n_levels + 1, "a node without its levels");
+  check_u32(context, sound, CLUSTER(last, n_levels), n_levels + 1, "a level without its borders"); /* the root's */
   check_u32(context, sound, CLUSTER(0, built), u32_at(sound, CLUSTER(0, n_levels)), no_levels);
   if (u32_at(sound, CLUSTER(last, built)) + 1 < n_levels)
     check_u32(context, sound, CLUSTER(last, n_levels), n_levels - 1, "a node without its levels");
@@ -305,7 +351,7 @@ static void test_joined(conic_context *context, const sound_file *sound) {
   check_u32(context, sound, NODE(last, n_levels), n + 1, no_levels);
   if (n > 0)
     check_u32(context, sound, NODE(last, n_levels), n - 1, "levels of no patch or node");
-  check_u32(context, sound, LEVEL(sound->n_levels - 1, kind), CONIC_HYBRID_TRIANGLES, "a corner out of range");
+  check_u32(context, sound, LEVEL(sound->n_levels - 1, kind), CONIC_HYBRID_TRIANGLES, "a level without its vertices");
   check_u32(context, sound, LEVEL(u32_at(sound, NODE(with, first_level)), n_borders), 1, "a node's level with borders");
   check_f32(context, sound, NODE(0, point.radius), NAN, range);
   check_f32(context, sound, NODE(0, point.radius), -1.0f, range);
@@ -344,9 +390,7 @@ static void test_nodes(conic_context *context, const sound_file *sound) {
 
 static void test_attributes(conic_context *context, const sound_file *sound) {
   static const char no_texels[] = "a texture without its texels";
-  check_u32(context, sound, sound->listed, sound->n_vertices, "a vertex out of range");
-  check_u32(context, sound, sound->listed + 4 * (sound->n_listed - 1), UINT32_MAX, "a vertex out of range");
-  check_u32(context, sound, sound->materials, sound->n_materials, "a material out of range");
+  check_chunk(context, sound, sound->corners_at, sound->materials, sound->n_materials, 4, "a material out of range");
   size_t i = u32_at(sound, MATERIAL(0, width)) ? 0 : 1;
   check_u32(context, sound, MATERIAL(i, width), 65536, no_texels);
   check_u32(context, sound, MATERIAL(i, width), 5, no_texels); /* 5 × 3, and there are 12 */
@@ -401,6 +445,7 @@ int main(void) {
   test_damage(context, &sound);
   test_levels(context, &sound);
   test_clusters(context, &sound);
+  test_frames(context, &sound);
   test_nodes(context, &sound);
   test_joined(context, &sound);
   test_attributes(context, &sound);

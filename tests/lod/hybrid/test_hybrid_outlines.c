@@ -2,6 +2,7 @@
  * the errors that the model states, and few pixels do.
  *   test_hybrid_outlines SOURCE_FOLDER [all]
  * With `all` from 26 directions at 512², all meshes (scripts/hybrid-outlines); else a cheap part of that. */
+#include "lod/hybrid/hybrid_chunks.h"
 #include "tests/support/hybrid_fixture.h"
 
 enum { MOST_PX = 24 }; /* a pixel farther out than this counts as that far */
@@ -79,14 +80,15 @@ static int compare_doubles(const void *a, const void *b) {
  * places each; as it is stated, measured at forty, it may be a seventh more. */
 static double greatest_error_allowed(const conic_hybrid *h, const conic_hybrid_cluster *cluster) {
   const conic_hybrid_level *whole = &h->levels[cluster->first_level];
+  conic_hybrid_piece piece = conic_hybrid_piece_of(h, cluster->first_level);
   double edges = 0.0;
   for (uint32_t i = 0; i < whole->count; i++)
     for (int corner = 0; corner < 3; corner++) {
       double square = 0.0;
       for (int axis = 0; axis < 3; axis++) {
-        const uint32_t *corners = h->corners[whole->first + i], *listed = h->listed + whole->first_vertex;
-        const float *x = h->position[axis];
-        double d = (double)x[listed[corners[corner]]] - (double)x[listed[corners[(corner + 1) % 3]]];
+        const float *x = piece.vertices.position[axis];
+        double d = (double)x[conic_hybrid_corner(&piece, i, corner)] -
+                   (double)x[conic_hybrid_corner(&piece, i, (corner + 1) % 3)];
         square += d * d;
       }
       edges += sqrt(square);
