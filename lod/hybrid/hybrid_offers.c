@@ -11,7 +11,7 @@
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
  * holds a pixel's centre, and a pixel of the cluster; a surfel, and a pixel of its outline
  * (docs/notes/hybrid-measured.md). */
-static const double triangle_ns = 18.0, seen_triangle_ns = 130.0, triangle_pixel_ns = 5.3;
+static const double triangle_ns = 60.0, seen_triangle_ns = 90.0, triangle_pixel_ns = 5.3;
 static const double surfel_ns = 37.0, surfel_pixel_ns = 1.4;
 
 /* What a picture of both kinds takes more: at all, for each of its pixels, and for each in tiles that have triangles. */
@@ -152,7 +152,8 @@ static double cost_of_surfels(const conic_hybrid_camera *view, const conic_hybri
   double product = (double)level->cover / n * seen->scale2 * facing;
   double squares = (double)level->spread / n * seen->scale2 * 0.5 * (1.0 + facing * facing);
   double n_pixels = n * CONIC_PI * sqrt(product * product + widening * squares + widening * widening);
-  return n * surfel_ns + n_pixels * surfel_pixel_ns;
+  double most = n * view->n_pixels; /* what reaches near covers no more */
+  return n * surfel_ns + (n_pixels < most ? n_pixels : most) * surfel_pixel_ns;
 }
 
 double conic_hybrid_disc_cost(const conic_hybrid_camera *view, double radius_px2) {
