@@ -10,6 +10,10 @@
 enum { ROUNDS = 4 };
 static const double margin = 0.97;
 
+/* Surfels that take less of what triangles do stay surfels whatever is beside them, and nothing is looked up for
+ * them. */
+static const double decided = 0.5;
+
 /* A cluster in sight. Infinite costs are of a kind that is not good enough. */
 typedef struct plan_candidate {
   conic_hybrid_offer offers[2]; /* by kind; of surfels its share of a node's that may stand for them */
@@ -38,6 +42,7 @@ typedef struct hybrid_planning {
   double error_px;
   double *amounts, *below; /* of each cluster of the model, and of each node, for cutting */
   uint32_t *nodes;
+  conic_hybrid_offer *node_offers; /* once they were asked for; before, of no amount */
   const uint32_t *seen;
   size_t n_seen, n_standing; /* nodes that may stand, and that do already */
 } hybrid_planning;
@@ -57,7 +62,10 @@ static void ask(hybrid_planning *p) {
 
 static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *node) {
   const hybrid_planning *p = data;
-  return conic_hybrid_node_offer(p->hybrid, p->view, node, p->error_px);
+  conic_hybrid_offer *offer = &p->node_offers[node - p->hybrid->nodes];
+  if (!(offer->amount > 0.0))
+    *offer = conic_hybrid_node_offer(p->hybrid, p->view, node, p->error_px);
+  return *offer;
 }
 
 /* Lets nodes stand for clusters that are surfels now. Returns how much less these take by that. */
@@ -104,15 +112,20 @@ static void match_links(hybrid_planning *p) {
     }
 }
 
+static int is_decided(const plan_candidate *c) {
+  return c->offers[CONIC_HYBRID_SURFELS].amount < decided * c->offers[CONIC_HYBRID_TRIANGLES].amount;
+}
+
 static conic_status find_links(hybrid_planning *p) {
   size_t n_borders = 0;
   for (size_t i = 0; i < p->n; i++)
-    n_borders += triangles_of(p, i)->n_borders;
+    n_borders += is_decided(&p->candidates[i]) ? 0 : triangles_of(p, i)->n_borders;
   uint32_t *last = conic_memory_allocate_zeroed(p->hybrid->context, p->n, sizeof *last);
   p->links = conic_memory_allocate(p->hybrid->context, n_borders, sizeof *p->links);
   if (last && p->links) {
     for (uint32_t i = 0; i < p->n; i++)
-      add_links(p, i, last);
+      if (!is_decided(&p->candidates[i]))
+        add_links(p, i, last);
     match_links(p);
   }
   conic_memory_release(p->hybrid->context, last);
@@ -291,7 +304,8 @@ static conic_status begin_plan(hybrid_planning *p) {
   p->kinds = conic_memory_allocate(context, p->n, sizeof *p->kinds);
   p->amounts = conic_memory_allocate_zeroed(context, p->hybrid->n_clusters, sizeof *p->amounts);
   p->below = conic_memory_allocate_zeroed(context, p->hybrid->n_nodes, sizeof *p->below);
-  if (!p->candidates || !p->of_cluster || !p->kinds || !p->amounts || !p->below)
+  p->node_offers = conic_memory_allocate_zeroed(context, p->hybrid->n_nodes, sizeof *p->node_offers);
+  if (!p->candidates || !p->of_cluster || !p->kinds || !p->amounts || !p->below || !p->node_offers)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < p->hybrid->n_clusters; i++)
     p->of_cluster[i] = (uint32_t)p->n;
@@ -326,6 +340,7 @@ conic_status conic_hybrid_choose_levels(const conic_hybrid_choosing *choosing, u
   for (size_t i = 0; i < p.n && status == CONIC_OK; i++)
     levels[i] = p.candidates[i].offers[p.candidates[i].kind].level;
   conic_memory_release(context, p.links);
+  conic_memory_release(context, p.node_offers);
   conic_memory_release(context, p.below);
   conic_memory_release(context, p.amounts);
   conic_memory_release(context, p.kinds);

@@ -89,7 +89,8 @@ static conic_status add_choice(const hybrid_selecting *s, choice added) {
 
 static conic_status add_cluster(const hybrid_selecting *s, uint32_t i_cluster) {
   const conic_hybrid_cluster *cluster = &s->hybrid->clusters[i_cluster];
-  if (conic_hybrid_is_hidden(&s->camera, &cluster->bound, conic_hybrid_reach(s->hybrid, cluster))) {
+  if (conic_hybrid_is_hidden(&s->camera, &cluster->bound, 0.0) &&
+      conic_hybrid_is_hidden(&s->camera, &cluster->bound, conic_hybrid_reach(s->hybrid, cluster))) {
     s->selection->n_culled++;
     return CONIC_OK;
   }
