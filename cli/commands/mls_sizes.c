@@ -9,7 +9,8 @@
 #include "core/estimate/neighbours.h"
 #include "core/splats/splats_gather.h"
 
-enum { CHUNK = 256, N_DIRECTIONS = 6 };
+/* Dense points lie so evenly that few neighbours bound their cells. */
+enum { CHUNK = 256, N_DIRECTIONS = 6, N_NEIGHBOURS = 12 };
 
 /* Where about a point its old outline is looked after: this share of the way to its rim. */
 static const double TO_RIM = 0.9;
@@ -119,10 +120,13 @@ conic_status cli_mls_size_dense(conic_context *context, const conic_model *from,
   conic_estimate_options options;
   conic_model made = {.points = *dense}, sparse = {.n_triangles = 0};
   conic_estimate_options_init(&options);
+  int n_usual = options.n_neighbours;
+  options.n_neighbours = N_NEIGHBOURS;
   conic_status status = conic_model_to_splats(context, &options, &made, NULL);
   *dense = made.points;
   if (status != CONIC_OK || from->n_triangles)
     return status;
+  options.n_neighbours = n_usual;
   options.finds_dots = 1;
   memcpy(sparse.points.origin, from->points.origin, sizeof sparse.points.origin);
   status = conic_splats_append(context, &sparse.points, &from->points);
