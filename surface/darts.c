@@ -67,14 +67,14 @@ conic_status conic_dart_board_add(conic_dart_board *board, const double place[3]
   return CONIC_OK;
 }
 
-static int is_within(const double a[3], const double b[3], double radius) {
+static int is_dart_within(const double a[3], const double b[3], double radius) {
   double d[3];
   conic_subtract(a, b, d);
   return conic_dot(d, d) < radius * radius;
 }
 
 static int is_near_dart(const conic_dart_board *board, uint32_t i, const double place[3]) {
-  return is_within(board->places[i], place, board->radius);
+  return is_dart_within(board->places[i], place, board->radius);
 }
 
 int conic_dart_board_covers(conic_dart_board *board, const double place[3]) {
@@ -167,10 +167,10 @@ static void add_cover(triangle_covers *covers, const double place[3]) {
 
 /* Whether the place is covered: by what covered others of its triangle, which is soon looked through, or at all. */
 static int is_covered_here(conic_dart_board *board, const double place[3], triangle_covers *covers) {
-  if (is_within(covers->places[covers->last], place, board->radius))
+  if (is_dart_within(covers->places[covers->last], place, board->radius))
     return 1;
   for (int i = 0; i < covers->n; i++)
-    if (is_within(covers->places[i], place, board->radius)) {
+    if (is_dart_within(covers->places[i], place, board->radius)) {
       covers->last = i;
       return 1;
     }

@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
+#include "core/estimate/features.h"
 #include "core/estimate/neighbours.h"
 #include "core/splats/splats_gather.h"
 
@@ -17,6 +18,9 @@ static const double TO_RIM = 0.9;
 
 /* How far over the surface that may be, as a share of its distance from the point. */
 static const double MOST_LIFT = 0.7;
+
+/* Of 30°. */
+static const double CREASE_COSINE = 0.86602540378443865;
 
 typedef struct outline_keeping {
   const conic_splats *from; /* the old points with the ellipses that they had */
@@ -142,8 +146,9 @@ conic_status cli_mls_size_sharp(conic_context *context, conic_splats *points) {
   conic_estimate_options options;
   conic_model made = {.points = *points};
   conic_estimate_options_init(&options);
-  options.feature_angle_deg = 30.0;
   conic_status status = conic_model_to_splats(context, &options, &made, NULL);
+  if (status == CONIC_OK)
+    status = conic_features_in_points(context, CREASE_COSINE, 1, &options, &made.points);
   *points = made.points;
   return status;
 }
