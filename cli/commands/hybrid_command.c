@@ -3,7 +3,7 @@
 #include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
 #include "core/base/message.h"
-#include "source/mesh_input.h"
+#include "source/hybrid_input.h"
 #include "source/reach.h"
 
 static const char *const sampling_words[] = {"blue", "box", NULL};
@@ -26,20 +26,22 @@ enum { READ, CLUSTER, SAMPLE, SIMPLIFY, WORK, WRITE };
 static int make_hybrid(void *cookie) {
   hybrid_job *job = cookie;
   cli_stage *stages = job->base.stages;
-  conic_triangles mesh;
+  conic_context *context = job->base.session->context;
+  conic_hybrid_input input;
+  const conic_hybrid_reading reading = {
+      job->texture, &job->coloring.options, job->is_smooth, job->crease_deg, job->options.cutoff, 0};
   double start = cli_seconds();
-  conic_status status =
-      conic_mesh_read(job->base.session->context, job->base.input, job->texture, &job->coloring.options, &mesh);
-  if (status == CONIC_OK)
-    status = conic_mesh_round(job->base.session->context, job->is_smooth, job->crease_deg, &mesh);
-  if (status == CONIC_OK)
-    status = cli_coloring_apply(job->base.session, &job->coloring, (const double[3]){0.0, 1.0, 0.0}, NULL, &mesh);
+  conic_status status = conic_hybrid_input_read(context, job->base.input, &reading, &input);
   start = cli_build_end_stage(&stages[READ], start);
+  if (status == CONIC_OK)
+    status = cli_coloring_apply(job->base.session, &job->coloring,
+                                input.is_points ? input.up : (const double[3]){0.0, 1.0, 0.0},
+                                input.is_points ? &input.splats : NULL, input.is_points ? NULL : &input.mesh);
   if (status != CONIC_OK) {
-    conic_triangles_release(job->base.session->context, &mesh);
+    conic_hybrid_input_release(context, &input);
     return cli_exit_of(status);
   }
-  status = conic_hybrid_build(job->base.session->context, &mesh, &job->options, &job->hybrid, &job->report);
+  status = conic_hybrid_input_build(context, &input, &job->options, &job->hybrid, &job->report);
   start = cli_build_end_stage(&stages[WORK], start);
   stages[CLUSTER].seconds = job->report.cluster_seconds;
   stages[SAMPLE].seconds = job->report.sample_seconds;

@@ -46,7 +46,7 @@ static void check_cluster(const conic_hybrid *h, const conic_hybrid_cluster *clu
   const conic_hybrid_level *levels = h->levels + cluster->first_level;
   double most = (double)cluster->bound.radius * (1.0 + hair);
   int is_out = 0, is_turned = 0, is_wrong = levels[0].error != 0.0f;
-  for (size_t i = 0; i < levels[0].count; i++) {
+  for (size_t i = 0; i < levels[0].count && levels[0].kind == CONIC_HYBRID_TRIANGLES; i++) {
     double at[3][3];
     corners_of(h, &levels[0], i, at);
     for (int corner = 0; corner < 3; corner++)
