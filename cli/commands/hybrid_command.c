@@ -61,6 +61,10 @@ static int make_hybrid(void *cookie) {
 static void write_counts(cli_json *json, const hybrid_job *job) {
   const conic_hybrid_report *r = &job->report;
   cli_json_count(json, "triangles_in", r->n_faces);
+  if (r->n_points) {
+    cli_json_count(json, "points_in", r->n_points);
+    cli_json_count(json, "splats_kept", r->n_kept);
+  }
   cli_json_count(json, "triangles", job->info.n_triangles);
   cli_json_count(json, "surfels", job->info.n_surfels);
   cli_json_count(json, "clusters", job->info.n_clusters);
@@ -102,6 +106,9 @@ static void tell_hybrid(const void *cookie) {
   conic_context *context = job->base.session->context;
   const conic_hybrid_info *info = &job->info;
   const conic_hybrid_report *r = &job->report;
+  if (r->n_points)
+    conic_log(context, CONIC_LOG_INFO, "%s: %zu points in, of which %zu stay splats", job->base.input,
+              (size_t)r->n_points, (size_t)r->n_kept);
   conic_log(context, CONIC_LOG_INFO,
             "%s: %zu faces in; %zu patches of %zu triangles and %zu of %zu surfels out, with %zu levels, %.1f MiB",
             job->base.input, r->n_faces, info->n_clusters - info->n_surfel_clusters, info->n_triangles,
@@ -173,11 +180,14 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
 
 const cli_command cli_hybrid = {
     .name = "hybrid",
-    .summary = "makes of a mesh patches of triangles where it is flat, and of surfels where it is not",
-    .usage = "conic hybrid MESH -o OUT.chy [--phase1 COST] [--phase2 COST] [--texture FILE]",
+    .summary = "makes of a mesh, or of points, patches of triangles where it is flat, and of surfels where it is not",
+    .usage = "conic hybrid MESH|POINTS -o OUT.chy [--phase1 COST] [--phase2 COST] [--texture FILE]",
     .run = run_hybrid,
     .description = "Cuts a mesh into patches. Where many small triangles bend, splats (here called surfels) draw them "
-                   "faster than triangles do; where the mesh is flat, its triangles stay.",
+                   "faster than triangles do; where the mesh is flat, its triangles stay. Points without faces become "
+                   "triangles where they lie as a surface does; leaves, borders and all else stay splats.",
     .examples = {{"build and draw", "conic hybrid statue.obj -o statue.chy\n"
-                                    "conic render statue.chy -o statue.png"}},
+                                    "conic render statue.chy -o statue.png"},
+                 {"from a scan", "conic hybrid scan.ply -o scan.chy\n"
+                                 "conic render scan.chy -o scan.png --error 1"}},
 };

@@ -41,7 +41,7 @@ static int wrong_after(const conic_hybrid_level *before, const conic_hybrid_leve
   return level->kind == before->kind ? !(level->error >= before->error) : level->kind != CONIC_HYBRID_SURFELS;
 }
 
-/* The faces themselves: the first level. */
+/* The faces themselves, the first level; or splats that stay, which may stand out of the sphere. */
 static void check_cluster(const conic_hybrid *h, const conic_hybrid_cluster *cluster, conic_hybrid_defects *found) {
   const conic_hybrid_level *levels = h->levels + cluster->first_level;
   double most = (double)cluster->bound.radius * (1.0 + hair);

@@ -45,7 +45,7 @@ static int has_to_stay(const points_job *job, size_t i) {
 static void put_vertex(points_job *job, size_t vertex, size_t splat) {
   const conic_splats *s = job->splats;
   for (int axis = 0; axis < 3; axis++) {
-    job->mesh.position[axis][vertex] = s->position[axis][splat];
+    job->mesh.position[axis][vertex] = s->position[axis][splat] + job->skin.lift[splat] * job->skin.normal[splat][axis];
     job->mesh.normal[axis][vertex] = job->skin.normal[splat][axis];
     if (s->color[0])
       job->mesh.color[axis][vertex] = job->skin.color[splat][axis];

@@ -11,7 +11,7 @@
 enum { SLOTS_A_TASK = 64 };
 
 /* The least cosine between the normals of a triangle and of a corner. */
-static const double LEAST_COSINE = 0.5;
+static const double LEAST_COSINE = 0.3;
 
 /* A triangle's circle has its middle within this many of its corners' ellipses. */
 static const double COVERED = 1.1;
@@ -58,8 +58,8 @@ static double circle_of(double at[3][3], const double across[3], double middle[3
   return twice > 0.0 ? conic_length(offset) : HUGE_VAL;
 }
 
-/* Whether all corners face as the triangle does, and their splats meet in the middle of its circle. */
-static int is_covered(const conic_skin_search *search, conic_skin_triangle *triangle) {
+int conic_skin_is_covered(const conic_skin_search *search, double least_cosine, double enlarged,
+                          conic_skin_triangle *triangle) {
   double at[3][3], u[3], v[3], across[3], middle[3];
   for (int k = 0; k < 3; k++)
     conic_skin_place(search, triangle->slots[k], at[k]);
@@ -74,11 +74,11 @@ static int is_covered(const conic_skin_search *search, conic_skin_triangle *tria
     double normal[3], way[3];
     conic_skin_normal(search, triangle->slots[k], normal);
     conic_subtract(middle, at[k], way);
-    if (!(conic_dot(normal, across) >= LEAST_COSINE * length) ||
+    if (!(conic_dot(normal, across) >= least_cosine * length) ||
         !conic_skin_ellipse(search, triangle->slots[k], u, v))
       return 0;
     double x = conic_dot(way, u), y = conic_dot(way, v);
-    if (!(x * x + y * y <= COVERED * COVERED))
+    if (!(x * x + y * y <= enlarged * enlarged))
       return 0;
   }
   return 1;
@@ -99,7 +99,7 @@ static int take_pair(const fan_pass *pass, uint32_t slot, const uint32_t pair[2]
     first = all[k] < all[first] ? k : first;
   for (int k = 0; k < 3; k++)
     triangle->slots[k] = all[(first + k) % 3];
-  return is_covered(pass->search, triangle);
+  return conic_skin_is_covered(pass->search, LEAST_COSINE, COVERED, triangle);
 }
 
 conic_status conic_skin_candidates(conic_skin_search *search) {

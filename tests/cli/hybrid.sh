@@ -160,7 +160,7 @@ run 2 hybrid hill.obj -o x.chy --sampling dice
 run 2 hybrid hill.obj -o x.chy --smooth --crease 20
 run 2 render hill.chy -o x.pfm --error 1 --color-error 0
 run 3 hybrid missing.obj -o x.chy
-printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\n' > points.obj
+printf 'v nan 0 0\n' > points.obj
 run 3 hybrid points.obj -o x.chy
 printf 'v 0 0 0\nv 1 0 0\nv 1 0 0\nf 1 2 3\n' > line.obj
 run 3 hybrid line.obj -o x.chy
