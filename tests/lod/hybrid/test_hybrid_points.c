@@ -97,6 +97,8 @@ static void test_kept(conic_context *context) {
   conic_image before, after;
   conic_splats cloud, leaves;
   conic_hybrid *hybrid;
+  conic_hybrid_options options;
+  conic_hybrid_options_init(&options);
   cloud_fixture(context, 400, 200, 0, &cloud);
   CHECK_OK(conic_splats_allocate(context, 600, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_DOTS, &leaves));
   for (int axis = 0; axis < 3; axis++) {
@@ -108,7 +110,7 @@ static void test_kept(conic_context *context) {
   memcpy(leaves.dot, cloud.dot + CLOUD_GROUND, 600 * sizeof(float));
   conic_splats_release(context, &cloud);
   CHECK_OK(conic_splats_append(context, &cloud, &leaves));
-  CHECK_OK(conic_hybrid_build_points(context, &leaves, NULL, &hybrid, &report));
+  CHECK_OK(conic_hybrid_build_points(context, &leaves, &options, &hybrid, &report));
   CHECK(report.n_points == 600 && report.n_kept == 600 && report.n_faces == 0);
   CHECK_OK(conic_hybrid_describe(hybrid, &info));
   CHECK(info.n_triangles == 0 && info.n_surfels == 600 && info.n_vertices == 0);
@@ -128,24 +130,25 @@ static void test_kept(conic_context *context) {
 static void test_refused(conic_context *context) {
   conic_splats none;
   conic_hybrid *hybrid;
+  conic_hybrid_options options;
+  conic_hybrid_options_init(&options);
   CHECK_OK(conic_splats_allocate(context, 2, 0, &none));
   memset(none.position[0], 0, 2 * sizeof(float));
-  CHECK(conic_hybrid_build_points(context, &none, NULL, &hybrid, NULL) == CONIC_ERROR_ARGUMENT && !hybrid);
+  CHECK(conic_hybrid_build_points(context, &none, &options, &hybrid, NULL) == CONIC_ERROR_ARGUMENT && !hybrid);
   CHECK(none.count == 0);
   CHECK_OK(conic_splats_allocate(context, 2, CONIC_SPLATS_TANGENTS, &none));
   for (int axis = 0; axis < 3; axis++)
     for (size_t i = 0; i < 2; i++)
       none.position[axis][i] = none.tangent_u[axis][i] = none.tangent_v[axis][i] = 0.0f; /* spans no plane */
-  CHECK(conic_hybrid_build_points(context, &none, NULL, &hybrid, NULL) == CONIC_ERROR_INPUT && !hybrid);
+  CHECK(conic_hybrid_build_points(context, &none, &options, &hybrid, NULL) == CONIC_ERROR_INPUT && !hybrid);
 }
 
 int main(void) {
-  conic_context *context = check_context(2), *other = check_context(1);
+  conic_context *context = check_context(2), *other = files_context();
   conic_hybrid_report report;
   conic_hybrid_defects defects, no_defects;
   conic_hybrid_info info;
   conic_hybrid *hybrid = build(context, 300, 100, &report), *again = build(other, 300, 100, NULL), *read;
-  char path[256];
   memset(&no_defects, 0, sizeof no_defects);
   CHECK_OK(conic_hybrid_describe(hybrid, &info));
   CHECK(info.n_bytes == conic_hybrid_file_bytes(again) && report.n_kept >= 400 && report.n_kept < 900);
@@ -153,18 +156,19 @@ int main(void) {
   CHECK_OK(conic_hybrid_check(hybrid, &defects));
   CHECK(memcmp(&defects, &no_defects, sizeof defects) == 0);
   test_holes(context, hybrid, 300, 100);
-  check_path(path, sizeof path, "points.chy");
+  const char *path = files_path("points.chy");
   CHECK_OK(conic_hybrid_write(hybrid, path));
   CHECK_OK(conic_hybrid_read(context, path, &read));
   CHECK(read->n_surfels == hybrid->n_surfels && read->n_triangles == hybrid->n_triangles);
   CHECK(memcmp(read->mapping.bytes + CONIC_FILE_HEADER_BYTES, (const char *)again->owned + CONIC_FILE_HEADER_BYTES,
                info.n_bytes - CONIC_FILE_HEADER_BYTES) == 0);
   conic_hybrid_destroy(read);
+  CHECK(remove(path) == 0);
   conic_hybrid_destroy(again);
   conic_hybrid_destroy(hybrid);
   test_kept(context);
   test_refused(context);
-  conic_context_destroy(other);
+  files_end(other);
   conic_context_destroy(context);
   return check_result();
 }
