@@ -28,8 +28,8 @@ static int make_hybrid(void *cookie) {
   cli_stage *stages = job->base.stages;
   conic_context *context = job->base.session->context;
   conic_hybrid_input input;
-  const conic_hybrid_reading reading = {
-      job->texture, &job->coloring.options, job->is_smooth, job->crease_deg, job->options.cutoff, 0};
+  const conic_hybrid_reading reading = {job->texture,    &job->coloring.options, job->is_smooth,
+                                        job->crease_deg, job->options.cutoff,    0};
   double start = cli_seconds();
   conic_status status = conic_hybrid_input_read(context, job->base.input, &reading, &input);
   start = cli_build_end_stage(&stages[READ], start);

@@ -63,10 +63,10 @@ CONIC_API conic_status conic_hybrid_build(conic_context *context, conic_triangle
                                           const conic_hybrid_options *options, conic_hybrid **hybrid,
                                           conic_hybrid_report *report);
 
-/* The same of splats, which have tangent axes and no strides: triangles where they lie as a surface does, and the others
- * as what they are, but for clip lines and opacities, which are left out. The set is taken over: *splats is empty
- * afterwards, on failure too. n_faces counts the triangles that were made. Errors: ARGUMENT, INPUT (nothing to draw),
- * MEMORY, CANCELLED. */
+/* The same of splats, which have tangent axes and no strides: triangles where they lie as a surface does, and the
+ * others as what they are, but for clip lines and opacities, which are left out. The set is taken over: *splats is
+ * empty afterwards, on failure too. n_faces counts the triangles that were made. Errors: ARGUMENT, INPUT (nothing to
+ * draw), MEMORY, CANCELLED. */
 CONIC_API conic_status conic_hybrid_build_points(conic_context *context, conic_splats *splats,
                                                  const conic_hybrid_options *options, conic_hybrid **hybrid,
                                                  conic_hybrid_report *report);

@@ -8,8 +8,8 @@
 /* Splats that are drawn as what they are, beside a surface: they are its last faces, two each, a rectangle about the
  * ellipse; and clusters have faces of one kind only. */
 typedef struct conic_kept_splats {
-  size_t n_surface;            /* faces before them */
-  size_t n, n_discs;           /* dots come after those */
+  size_t n_surface;  /* faces before them */
+  size_t n, n_discs; /* dots come after those */
   struct conic_surfel *items;
 } conic_kept_splats;
 
@@ -18,8 +18,8 @@ typedef struct conic_clustered_mesh {
   conic_mesh mesh; /* the same */
   const conic_adjacency *adjacency;
   const conic_mesh_clusters *clusters;
-  const uint32_t *faces; /* of use, by cluster */
-  const size_t *starts;  /* n_clusters + 1: those of cluster i are faces[starts[i] … starts[i + 1]) */
+  const uint32_t *faces;         /* of use, by cluster */
+  const size_t *starts;          /* n_clusters + 1: those of cluster i are faces[starts[i] … starts[i + 1]) */
   const conic_kept_splats *kept; /* null: none */
 } conic_clustered_mesh;
 

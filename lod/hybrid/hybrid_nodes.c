@@ -276,7 +276,8 @@ static conic_status find_kept_levels(nodes_pass *pass, node_worker *w, uint32_t 
   const conic_hybrid_node alone = {.begin = cluster, .end = cluster + 1};
   double spacing = first_of_kept * sqrt(ways->area / (double)ways->surfels[0].n);
   int first = ways->n_surfels;
-  conic_status status = find_levels(pass, w, &alone, spacing, CONIC_MOST_SURFEL_LEVELS, ways->surfels, &ways->n_surfels);
+  conic_status status =
+      find_levels(pass, w, &alone, spacing, CONIC_MOST_SURFEL_LEVELS, ways->surfels, &ways->n_surfels);
   for (int k = first; k < ways->n_surfels && ways->surfels[0].are_dots; k++) {
     ways->surfels[k].are_dots = 1;
     ways->surfels[k].reach *= 2.0;

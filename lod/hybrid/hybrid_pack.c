@@ -76,7 +76,7 @@ static void count_node(packing *p, size_t node) {
   p->header.n_levels += (uint64_t)ways->n_surfels;
 }
 
-static void add_to_box(conic_chy_header *h, float *const position[3], size_t i) {
+static void add_vertex_to_box(conic_chy_header *h, float *const position[3], size_t i) {
   for (int axis = 0; axis < 3; axis++) {
     float at = position[axis][i];
     h->low[axis] = at < h->low[axis] ? at : h->low[axis];
@@ -92,11 +92,11 @@ static void measure_box(const packing *p, conic_chy_header *h) {
   for (size_t i = 0; i < p->flat->count; i++)
     for (int corner = 0; corner < 3 && p->mesh->clusters->of_face[i] != CONIC_NO_CLUSTER; corner++)
       if (!p->mesh->kept || i < p->mesh->kept->n_surface)
-        add_to_box(h, (float *const *)p->flat->position, p->flat->corners[i][corner]);
+        add_vertex_to_box(h, (float *const *)p->flat->position, p->flat->corners[i][corner]);
   for (size_t i = 0; p->mesh->kept && i < p->mesh->kept->n; i++) {
     const float *at = p->mesh->kept->items[i].position;
     float *const place[3] = {(float *)at, (float *)at + 1, (float *)at + 2};
-    add_to_box(h, place, 0);
+    add_vertex_to_box(h, place, 0);
   }
 }
 

@@ -42,7 +42,7 @@ static int has_to_stay(const points_job *job, size_t i) {
 
 /* --- the surface --- */
 
-static void put_vertex(points_job *job, size_t vertex, size_t splat) {
+static void put_skin_vertex(points_job *job, size_t vertex, size_t splat) {
   const conic_splats *s = job->splats;
   for (int axis = 0; axis < 3; axis++) {
     job->mesh.position[axis][vertex] = s->position[axis][splat] + job->skin.lift[splat] * job->skin.normal[splat][axis];
@@ -97,7 +97,7 @@ static void put_rectangle(points_job *job, size_t i, size_t first_vertex) {
 
 /* --- all --- */
 
-static size_t number_places(points_job *job) {
+static size_t number_corners(points_job *job) {
   size_t n = 0;
   memset(job->place, 0xFF, job->splats->count * sizeof *job->place);
   for (size_t i = 0; i < job->skin.n_triangles; i++)
@@ -109,9 +109,9 @@ static size_t number_places(points_job *job) {
   return n;
 }
 
-static conic_status make_mesh(points_job *job) {
+static conic_status make_skin_mesh(points_job *job) {
   const conic_splats *s = job->splats;
-  size_t n_kept = 0, n_vertices = number_places(job);
+  size_t n_kept = 0, n_vertices = number_corners(job);
   unsigned fields = CONIC_TRIANGLES_NORMALS | (s->color[0] ? CONIC_TRIANGLES_COLORS : 0u);
   for (size_t i = 0; i < s->count; i++)
     n_kept += (size_t)has_to_stay(job, i);
@@ -130,7 +130,7 @@ static conic_status make_mesh(points_job *job) {
   memcpy(job->mesh.origin, s->origin, sizeof s->origin);
   for (size_t i = 0; i < s->count; i++)
     if (job->place[i] != UINT32_MAX)
-      put_vertex(job, job->place[i], i);
+      put_skin_vertex(job, job->place[i], i);
   for (size_t i = 0; i < job->skin.n_triangles; i++)
     for (int k = 0; k < 3; k++)
       job->mesh.corners[i][k] = job->place[job->skin.corners[i][k]];
@@ -169,7 +169,7 @@ conic_status conic_hybrid_build_points(conic_context *context, conic_splats *spl
     status = conic_skin_find(context, splats, job.cutoff, &job.skin);
   if (status == CONIC_OK) {
     job.place = conic_memory_allocate(context, splats->count, sizeof *job.place);
-    status = job.place ? make_mesh(&job) : CONIC_ERROR_MEMORY;
+    status = job.place ? make_skin_mesh(&job) : CONIC_ERROR_MEMORY;
   }
   conic_memory_release(context, job.place);
   conic_skin_release(context, &job.skin);

@@ -355,7 +355,7 @@ static int are_dots_of(const hybrid_selecting *s, const choice *c) {
 }
 
 /* Marks the dots among what was copied, and turns them to the camera. */
-static conic_status face_dots(const hybrid_selecting *s, const conic_camera *camera) {
+static conic_status turn_dots(const hybrid_selecting *s, const conic_camera *camera) {
   conic_splats *splats = &s->selection->splats;
   const hybrid_scratch *kept = s->scratch;
   size_t n_dots = 0;
@@ -437,7 +437,7 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
   judge_choices(&s);
   attach(&s);
   conic_parallel_for(hybrid->context, (s.scratch->n_choices + CHOICES_A_TASK - 1) / CHOICES_A_TASK, copy_task, &s);
-  return face_dots(&s, camera);
+  return turn_dots(&s, camera);
 }
 
 void conic_hybrid_name(const conic_hybrid_selection *selection, conic_image *image) {

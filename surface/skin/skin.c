@@ -34,7 +34,7 @@ void conic_skin_normal(const conic_skin_search *search, uint32_t slot, double no
 }
 
 /* The unit normal of a splat that can be of a surface; 0 where it is a dot, or spans no plane. */
-static int find_plane(const conic_splats *splats, size_t splat, double normal[3]) {
+static int find_splat_plane(const conic_splats *splats, size_t splat, double normal[3]) {
   double u[3], v[3];
   for (int axis = 0; axis < 3; axis++) {
     u[axis] = (double)splats->tangent_u[axis][splat];
@@ -54,7 +54,7 @@ static conic_status build_tree(conic_skin_search *search) {
   const float *const positions[3] = {places, places + n, places + 2 * n};
   for (size_t i = 0; i < n; i++) {
     double normal[3];
-    int is_of_use = find_plane(splats, i, normal);
+    int is_of_use = find_splat_plane(splats, i, normal);
     for (size_t axis = 0; axis < 3; axis++)
       places[axis * n + i] = is_of_use ? splats->position[axis][i] : NAN;
   }
@@ -71,7 +71,7 @@ static conic_status find_own_normals(conic_skin_search *search) {
   }
   for (size_t slot = 0; slot < search->tree.n_slots; slot++) {
     double normal[3];
-    find_plane(search->splats, search->tree.point_of_slot[slot], normal);
+    find_splat_plane(search->splats, search->tree.point_of_slot[slot], normal);
     for (int axis = 0; axis < 3; axis++)
       search->normal[axis][slot] = (float)normal[axis];
   }

@@ -74,8 +74,7 @@ int conic_skin_is_covered(const conic_skin_search *search, double least_cosine, 
     double normal[3], way[3];
     conic_skin_normal(search, triangle->slots[k], normal);
     conic_subtract(middle, at[k], way);
-    if (!(conic_dot(normal, across) >= least_cosine * length) ||
-        !conic_skin_ellipse(search, triangle->slots[k], u, v))
+    if (!(conic_dot(normal, across) >= least_cosine * length) || !conic_skin_ellipse(search, triangle->slots[k], u, v))
       return 0;
     double x = conic_dot(way, u), y = conic_dot(way, v);
     if (!(x * x + y * y <= enlarged * enlarged))
@@ -113,8 +112,8 @@ conic_status conic_skin_candidates(conic_skin_search *search) {
       status = conic_memory_reserve(search->context, &search->triangles, search->n_triangles, search->n_triangles + 1,
                                     &room, sizeof *search->triangles);
       if (status == CONIC_OK)
-        search->n_triangles += (size_t)take_pair(&pass, (uint32_t)slot, pass.fans[slot].pairs[i],
-                                                 &search->triangles[search->n_triangles]);
+        search->n_triangles +=
+            (size_t)take_pair(&pass, (uint32_t)slot, pass.fans[slot].pairs[i], &search->triangles[search->n_triangles]);
     }
   conic_memory_release(search->context, pass.fans);
   return status;

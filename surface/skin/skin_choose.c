@@ -15,12 +15,11 @@ typedef struct sector {
   double ways[2][2];
 } sector;
 
-static double turn(const double a[2], const double b[2]) {
+static double turn_between(const double a[2], const double b[2]) {
   return a[0] * b[1] - a[1] * b[0];
 }
 
-static void sector_of(const conic_skin_search *search, const conic_skin_triangle *triangle, int corner,
-                      sector *found) {
+static void sector_of(const conic_skin_search *search, const conic_skin_triangle *triangle, int corner, sector *found) {
   double at[3], normal[3], u[3], v[3], end[3], way[3];
   conic_skin_place(search, triangle->slots[corner], at);
   conic_skin_normal(search, triangle->slots[corner], normal);
@@ -34,13 +33,13 @@ static void sector_of(const conic_skin_search *search, const conic_skin_triangle
   }
 }
 
-static int is_within(const sector *s, const double way[2]) {
-  return turn(s->ways[0], way) > 0.0 && turn(way, s->ways[1]) > 0.0;
+static int is_in_sector(const sector *s, const double way[2]) {
+  return turn_between(s->ways[0], way) > 0.0 && turn_between(way, s->ways[1]) > 0.0;
 }
 
 static int do_overlap(const sector *a, const sector *b) {
-  return a->ends[0] == b->ends[0] || a->ends[1] == b->ends[1] || is_within(a, b->ways[0]) ||
-         is_within(a, b->ways[1]) || is_within(b, a->ways[0]) || is_within(b, a->ways[1]);
+  return a->ends[0] == b->ends[0] || a->ends[1] == b->ends[1] || is_in_sector(a, b->ways[0]) || is_in_sector(a, b->ways[1]) ||
+         is_in_sector(b, a->ways[0]) || is_in_sector(b, a->ways[1]);
 }
 
 static int has_room(const conic_skin_search *search, uint32_t i) {
@@ -48,7 +47,7 @@ static int has_room(const conic_skin_search *search, uint32_t i) {
   for (int corner = 0; corner < 3; corner++) {
     sector own, other;
     sector_of(search, triangle, corner, &own);
-    if (!(turn(own.ways[0], own.ways[1]) > 0.0))
+    if (!(turn_between(own.ways[0], own.ways[1]) > 0.0))
       return 0;
     for (uint32_t at = search->heads[triangle->slots[corner]]; at != CONIC_NO_TRIANGLE;
          at = search->next[at / 3][at % 3]) {

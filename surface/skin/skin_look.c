@@ -37,8 +37,7 @@ static int see_splat(const conic_skin_search *search, uint32_t slot, const doubl
   double uu = conic_dot(u, u), vv = conic_dot(v, v), steep2 = uu < vv ? uu : vv;
   seen->q = x * x + y * y;
   seen->lift = conic_dot(seen->facing, way) / along;
-  seen->has_plane =
-      along >= LEAST_OF_PLANES && seen->lift * seen->lift * steep2 <= FARTHEST * FARTHEST;
+  seen->has_plane = along >= LEAST_OF_PLANES && seen->lift * seen->lift * steep2 <= FARTHEST * FARTHEST;
   return along >= LEAST_COSINE;
 }
 

@@ -17,7 +17,8 @@ typedef struct conic_skin_search {
   const conic_splats *splats;
   double cutoff;
   conic_neighbours tree;
-  float *normal[3]; /* by slot: unit, first the splat's own, then the mean of those about it; or zero where there is none */
+  float *normal[3]; /* by slot: unit, first the splat's own, then the mean of those about it; or zero where there is
+                       none */
   size_t n_triangles;
   conic_skin_triangle *triangles;
   uint8_t *is_closed; /* by slot: the triangles that were kept close all around it */

@@ -12,7 +12,7 @@ static size_t count_inner(const conic_skin *skin, size_t n) {
 
 /* No half of an edge is of two triangles. Returns how many are without another half: the border's. */
 static size_t check_edges(const conic_skin *skin, size_t n_splats) {
-  uint32_t (*ends)[24] = calloc(n_splats, sizeof *ends);
+  uint32_t(*ends)[24] = calloc(n_splats, sizeof *ends);
   size_t n_open = 0;
   for (size_t i = 0; i < 3 * skin->n_triangles; i++) {
     uint32_t from = skin->corners[i / 3][i % 3], to = skin->corners[i / 3][(i + 1) % 3], k = 0;
@@ -42,8 +42,10 @@ static void test_ground(conic_context *context) {
   CHECK(count_inner(&skin, n) == n - n_open);
   for (size_t i = 0; i < skin.n_triangles; i++) { /* as their normals see them, which point up */
     const uint32_t *c = skin.corners[i];
-    float ax = cloud.position[0][c[1]] - cloud.position[0][c[0]], az = cloud.position[2][c[1]] - cloud.position[2][c[0]];
-    float bx = cloud.position[0][c[2]] - cloud.position[0][c[0]], bz = cloud.position[2][c[2]] - cloud.position[2][c[0]];
+    float ax = cloud.position[0][c[1]] - cloud.position[0][c[0]],
+          az = cloud.position[2][c[1]] - cloud.position[2][c[0]];
+    float bx = cloud.position[0][c[2]] - cloud.position[0][c[0]],
+          bz = cloud.position[2][c[2]] - cloud.position[2][c[0]];
     CHECK(az * bx - ax * bz > 0.0f);
   }
   conic_skin_release(context, &skin);

@@ -40,8 +40,8 @@ static void draw_cloud(conic_context *context, size_t n_leaves, size_t n_dots, c
   conic_splats_release(context, &cloud);
 }
 
-static void draw_hybrid(conic_context *context, const conic_hybrid *hybrid, double error_px,
-                        const conic_camera *camera, conic_image *image) {
+static void draw_hybrid(conic_context *context, const conic_hybrid *hybrid, double error_px, const conic_camera *camera,
+                        conic_image *image) {
   conic_hybrid_selection selection;
   conic_render_options options;
   conic_hybrid_view view;
@@ -100,7 +100,8 @@ static void test_kept(conic_context *context) {
   conic_hybrid_options options;
   conic_hybrid_options_init(&options);
   cloud_fixture(context, 400, 200, 0, &cloud);
-  CHECK_OK(conic_splats_allocate(context, 600, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_DOTS, &leaves));
+  CHECK_OK(
+      conic_splats_allocate(context, 600, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_DOTS, &leaves));
   for (int axis = 0; axis < 3; axis++) {
     memcpy(leaves.position[axis], cloud.position[axis] + CLOUD_GROUND, 600 * sizeof(float));
     memcpy(leaves.tangent_u[axis], cloud.tangent_u[axis] + CLOUD_GROUND, 600 * sizeof(float));
