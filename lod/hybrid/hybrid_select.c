@@ -104,8 +104,8 @@ static conic_status add_cluster(const hybrid_selecting *s, uint32_t i_cluster) {
   uint32_t level = cluster->built;
   if (s->view->only_kind >= 0)
     level = conic_hybrid_finest(s->hybrid, cluster, s->view->only_kind);
-  return add_choice(s, (choice){.cluster = i_cluster, .level = cluster->first_level + level,
-                                .node = CONIC_HYBRID_NO_NODE});
+  return add_choice(
+      s, (choice){.cluster = i_cluster, .level = cluster->first_level + level, .node = CONIC_HYBRID_NO_NODE});
 }
 
 /* All of a leaf's clusters, unless the node, a leaf or not, stands for all of them at once. */
@@ -235,8 +235,8 @@ static conic_status choose_together(hybrid_selecting *s) {
     return CONIC_ERROR_MEMORY;
   uint32_t *levels = clusters + kept->n_choices, *nodes = levels + kept->n_choices;
   size_t n = list_open(s, clusters, nodes);
-  const conic_hybrid_choosing choosing = {h, &s->camera, view->error_px, view->only_kind, clusters, n,
-                                          kept->seen, kept->n_seen};
+  const conic_hybrid_choosing choosing = {h,        &s->camera, view->error_px, view->only_kind,
+                                          clusters, n,          kept->seen,     kept->n_seen};
   conic_status status =
       view->budget ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, clusters, n, levels, nodes)
                    : conic_hybrid_choose_levels(&choosing, levels, nodes);
@@ -505,6 +505,32 @@ static void copy_task(void *data, size_t i_task, int i_thread) {
   }
 }
 
+static int are_dots_of(const hybrid_selecting *s, const choice *c) {
+  const conic_hybrid_level *level = c->level == CONIC_HYBRID_POINT ? NULL : &s->hybrid->levels[c->level];
+  return level && level->kind == CONIC_HYBRID_SURFELS && level->stage > 0;
+}
+
+/* Marks the dots among what was copied, and turns them to the camera. */
+static conic_status turn_dots(const hybrid_selecting *s, const conic_camera *camera) {
+  conic_splats *splats = &s->selection->splats;
+  const hybrid_scratch *kept = s->scratch;
+  size_t n_dots = 0;
+  for (size_t i = 0; i < kept->n_choices; i++)
+    n_dots += (size_t)are_dots_of(s, &kept->choices[i]);
+  if (n_dots == 0)
+    return CONIC_OK;
+  splats->dot = conic_memory_allocate_zeroed(s->hybrid->context, splats->count, sizeof *splats->dot);
+  if (!splats->dot)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < kept->n_choices; i++)
+    for (size_t k = 0; are_dots_of(s, &kept->choices[i]) && k < s->hybrid->levels[kept->choices[i].level].count; k++)
+      splats->dot[kept->choices[i].splat + k] = 1.0f;
+  conic_status status = conic_splats_face(s->hybrid->context, splats, camera, splats->tangent_u, splats->tangent_v);
+  conic_memory_release(s->hybrid->context, splats->dot);
+  splats->dot = NULL;
+  return status;
+}
+
 static conic_status take_view(conic_context *context, const conic_hybrid_view *given, conic_hybrid_view *view) {
   conic_hybrid_view_init(view);
   if (!conic_options_take(view, given))
@@ -590,6 +616,8 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
   if (status != CONIC_OK)
     return status;
   status = select_held(&s);
+  if (status == CONIC_OK)
+    status = turn_dots(&s, camera);
   conic_hybrid_store_let_go(hybrid, s.scratch->frames, s.scratch->n_frames);
   conic_hybrid_traffic traffic = conic_hybrid_store_traffic(hybrid);
   selection->n_chunks += s.scratch->n_frames;
