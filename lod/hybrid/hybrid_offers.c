@@ -14,7 +14,8 @@
 static const double triangle_ns = 60.0, seen_triangle_ns = 90.0, triangle_pixel_ns = 5.3;
 static const double surfel_ns = 37.0, surfel_pixel_ns = 1.8;
 
-/* What a picture of both kinds takes more: at all, for each of its pixels, and for each in tiles that have triangles. */
+/* What a picture of both kinds takes more: at all, for each of its pixels, and for each in tiles that have triangles.
+ */
 static const double both_ns = 30000.0, both_pixel_ns = 0.2, both_tile_ns = 0.5;
 
 void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *camera,

@@ -97,8 +97,8 @@ static conic_status add_cluster(const hybrid_selecting *s, uint32_t i_cluster) {
   uint32_t level = cluster->built;
   if (s->view->only_kind >= 0)
     level = conic_hybrid_finest(s->hybrid, cluster, s->view->only_kind);
-  return add_choice(s, (choice){.cluster = i_cluster, .level = cluster->first_level + level,
-                                .node = CONIC_HYBRID_NO_NODE});
+  return add_choice(
+      s, (choice){.cluster = i_cluster, .level = cluster->first_level + level, .node = CONIC_HYBRID_NO_NODE});
 }
 
 /* All of a leaf's clusters, unless the node, a leaf or not, stands for all of them at once. */
@@ -228,8 +228,8 @@ static conic_status choose_together(hybrid_selecting *s) {
     return CONIC_ERROR_MEMORY;
   uint32_t *levels = clusters + kept->n_choices, *nodes = levels + kept->n_choices;
   size_t n = list_open(s, clusters, nodes);
-  const conic_hybrid_choosing choosing = {h, &s->camera, view->error_px, view->only_kind, clusters, n,
-                                          kept->seen, kept->n_seen};
+  const conic_hybrid_choosing choosing = {h,        &s->camera, view->error_px, view->only_kind,
+                                          clusters, n,          kept->seen,     kept->n_seen};
   conic_status status =
       view->budget ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, clusters, n, levels, nodes)
                    : conic_hybrid_choose_levels(&choosing, levels, nodes);
