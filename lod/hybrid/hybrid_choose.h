@@ -19,9 +19,9 @@ typedef struct conic_hybrid_choosing {
 } conic_hybrid_choosing;
 
 /* Gives each of the clusters a level, from its first, whose error is at most error_px: triangles or surfels, or the
- * kind that is asked for, at its finest where none is good enough; and to nodes of which all that is in sight is surfels
- * the level by which they stand for it, so that all together they take least, as far as a few rounds find it. Before,
- * nodes[i] is the level of each node that stands already, which stays, or NO_NODE. Errors: MEMORY. */
+ * kind that is asked for, at its finest where none is good enough; and to nodes of which all that is in sight is
+ * surfels the level by which they stand for it, so that all together they take least, as far as a few rounds find it.
+ * Before, nodes[i] is the level of each node that stands already, which stays, or NO_NODE. Errors: MEMORY. */
 conic_status conic_hybrid_choose_levels(const conic_hybrid_choosing *choosing, uint32_t *levels, uint32_t *nodes);
 
 #endif

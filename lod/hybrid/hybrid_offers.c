@@ -12,7 +12,7 @@
  * holds a pixel's centre, and a pixel of the cluster; a surfel, and a pixel of its outline
  * (docs/notes/hybrid-measured.md). */
 static const double triangle_ns = 60.0, seen_triangle_ns = 90.0, triangle_pixel_ns = 5.3;
-static const double surfel_ns = 37.0, surfel_pixel_ns = 1.4;
+static const double surfel_ns = 37.0, surfel_pixel_ns = 1.8;
 
 /* What a picture of both kinds takes more: at all, for each of its pixels, and for each in tiles that have triangles.
  */
