@@ -19,8 +19,9 @@ static const double CELL_SIDE = 64.0;
 /* Feet are looked for within half of h, and found again from the point, which hardly ever is farther off than h. */
 static const double HALO = 1.5;
 
-/* What a point of a cell takes while that is projected, and what everything else takes. */
-enum { BYTES_A_POINT = 192, OTHER_BYTES = 12 << 20 };
+/* What a point of a cell takes while that is projected, the same where its normals are found first, and what everything
+ * else takes. */
+enum { BYTES_A_POINT = 192, BYTES_WITH_NORMALS = 320, OTHER_BYTES = 12 << 20 };
 
 /* Records that are handled at a time. */
 enum { BATCH = 1 << 16, PAGE = 4096 };
@@ -58,6 +59,16 @@ typedef struct cleaning {
 
 static const char *name_of(const cleaning *work) {
   return work->options->name ? work->options->name : "surface";
+}
+
+/* Spheres lean on normals: where the points have none, each cell finds its own. Their sides may be others in the next
+ * cell, which changes no sphere; so the results get none. */
+static int finds_normals(const cleaning *work) {
+  return work->options->surface.type == CONIC_SURFACE_APSS && !(work->fields & CONIC_SPLATS_NORMALS);
+}
+
+static uint64_t bytes_a_point(const cleaning *work) {
+  return finds_normals(work) ? BYTES_WITH_NORMALS : BYTES_A_POINT;
 }
 
 static void put_sample(const cell_sample *from, conic_splats *to, size_t i) {
@@ -197,7 +208,7 @@ static const conic_cell *neighbour_of(const conic_cells *cells, const conic_cell
 
 /* Whether so many points may be in memory with what they take. */
 static conic_status check_room(const cleaning *work, uint64_t n) {
-  uint64_t bytes = n * BYTES_A_POINT + OTHER_BYTES;
+  uint64_t bytes = n * bytes_a_point(work) + OTHER_BYTES;
   if (work->options->memory_bytes && bytes > work->options->memory_bytes)
     return conic_fail(work->context, CONIC_ERROR_MEMORY,
                       "surface: a cell of %g h and what is about it hold %llu points or more, which takes %llu MiB",
@@ -290,6 +301,23 @@ static conic_status keep_cell(cleaning *work, const conic_cell *cell, const coni
   return status;
 }
 
+/* The surface of the cell's points and those about it. */
+static conic_status create_cell_surface(cleaning *work, conic_surface **surface) {
+  conic_estimate_options options;
+  conic_model model = {.n_triangles = 0};
+  if (!finds_normals(work))
+    return conic_surface_create(work->context, &work->subset, &work->options->surface, surface);
+  conic_estimate_options_init(&options);
+  memcpy(model.points.origin, work->subset.origin, sizeof model.points.origin);
+  conic_status status = conic_splats_append(work->context, &model.points, &work->subset);
+  if (status == CONIC_OK)
+    status = conic_model_to_splats(work->context, &options, &model, NULL);
+  if (status == CONIC_OK)
+    status = conic_surface_create(work->context, &model.points, &work->options->surface, surface);
+  conic_model_release(work->context, &model);
+  return status;
+}
+
 static conic_status clean_cell(cleaning *work, const conic_cell *cell) {
   conic_surface *surface;
   conic_own_points own;
@@ -297,7 +325,7 @@ static conic_status clean_cell(cleaning *work, const conic_cell *cell) {
   double end = (double)(cell->start + cell->count) / (double)work->n_finite;
   conic_status status = gather_cell(work, cell);
   if (status == CONIC_OK)
-    status = conic_surface_create(work->context, &work->subset, &work->options->surface, &surface);
+    status = create_cell_surface(work, &surface);
   if (status != CONIC_OK)
     return status;
   status = conic_own_points_project(surface, (size_t)cell->count, begin, end, &own);
@@ -327,8 +355,9 @@ static conic_status reserve_page(cleaning *work) {
   conic_status status = check_room(work, most);
   if (status != CONIC_OK)
     return status;
-  const char *path =
-      o->memory_bytes && 2 * most * BYTES_A_POINT + OTHER_BYTES + kept_bytes > o->memory_bytes ? o->scratch : NULL;
+  const char *path = o->memory_bytes && 2 * most * bytes_a_point(work) + OTHER_BYTES + kept_bytes > o->memory_bytes
+                         ? o->scratch
+                         : NULL;
   status = conic_store_begin(work->context, path, work->n_finite, sizeof(record), &work->records);
   if (status == CONIC_OK)
     status = conic_store_begin(work->context, path, work->n_points, sizeof(result), &work->results);

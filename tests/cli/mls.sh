@@ -39,6 +39,16 @@ for options in "--memory 14" "--memory 100 --threads 1 --isa scalar"; do
   [[ $(value points_out again.json) == "$(value points_out all.json)" ]] || fail "mls project $options: other counts"
 done
 run 4 mls project torus.ply -o x.ply --h 0.06 --memory 1
+# Spheres find the normals that a file lacks, also cell by cell: an unknown side changes nothing.
+awk 'BEGIN { srand(5); for (i = 0; i < 4000; i++) { z = 2 * rand() - 1; r = sqrt(1 - z * z); a = 6.2831853 * rand()
+  s = 5 + 0.01 * (rand() - 0.5); print s * r * cos(a), s * r * sin(a), s * z } }' > globe.xyz
+run 0 mls project globe.xyz -o globe.ply --type apss --h 0.4
+for memory in 14 100; do
+  run 0 mls project globe.xyz -o globe-$memory.ply --type apss --h 0.4 --memory $memory --json globe.json
+  holds "$(value points_out globe.json) > 3900 && $(value rms globe.json) < 0.01"
+done
+cmp -s globe-14.ply globe-100.ply || fail "memory changes what spheres of points without normals give"
+
 run 2 mls project torus.ply -o x.ply --memory 100
 run 2 mls project torus.ply -o x.ply --h 2x --memory 100
 run 2 mls project - -o x.ply --h 0.06 --memory 100
