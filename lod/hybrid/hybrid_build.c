@@ -193,11 +193,8 @@ static conic_status build_hybrid(building *b, conic_triangles *mesh, conic_hybri
     return status;
   report_oddities(b, mesh);
   b->report->cluster_seconds = conic_seconds_now() - start;
-  conic_ways_job ways = {.context = b->context,
-                         .mesh = &b->mesh,
-                         .options = b->options,
-                         .n_clusters = b->n_own_clusters,
-                         .ways = b->ways};
+  conic_ways_job ways = {
+      .context = b->context, .mesh = &b->mesh, .options = b->options, .n_clusters = b->n_own_clusters, .ways = b->ways};
   status = conic_find_ways(&ways);
   b->report->sample_seconds = ways.sample_seconds;
   b->report->simplify_seconds = ways.simplify_seconds;

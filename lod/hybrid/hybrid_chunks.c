@@ -19,9 +19,10 @@ static uint64_t vertex_bytes(uint32_t flags) {
 uint64_t conic_hybrid_level_bytes(uint32_t flags, const conic_hybrid_level *level) {
   uint64_t corner = level->n_vertices <= CONIC_HYBRID_NARROW ? 2 : 4;
   uint64_t triangle = 3 * corner + (flags & CONIC_CHY_MATERIALS ? 4 : 0);
-  return whole_units(CONIC_HYBRID_SUM_BYTES + (level->kind == CONIC_HYBRID_SURFELS
-                                                ? 48 * (uint64_t)level->count
-                                                : vertex_bytes(flags) * level->n_vertices + triangle * level->count));
+  return whole_units(CONIC_HYBRID_SUM_BYTES +
+                     (level->kind == CONIC_HYBRID_SURFELS
+                          ? 48 * (uint64_t)level->count
+                          : vertex_bytes(flags) * level->n_vertices + triangle * level->count));
 }
 
 uint64_t conic_hybrid_frame_bytes(const conic_hybrid_cluster *cluster) {
@@ -89,7 +90,7 @@ conic_status conic_hybrid_order_chunks(const conic_hybrid *h, uint32_t **order) 
 }
 
 static uint32_t *chunk_offset(const conic_hybrid *h, conic_hybrid_level *levels, conic_hybrid_cluster *clusters,
-                          uint32_t chunk) {
+                              uint32_t chunk) {
   if (chunk < h->n_levels)
     return &levels[chunk].at;
   size_t i = chunk - h->n_levels;
@@ -186,7 +187,8 @@ conic_hybrid_frame conic_hybrid_frame_of(const conic_hybrid *h, uint32_t cluster
 }
 
 conic_hybrid_vertices conic_hybrid_ends_of(const conic_hybrid *h, uint32_t cluster) {
-  return conic_hybrid_ends_in(h->flags, &h->clusters[cluster], conic_hybrid_chunk(h, conic_hybrid_ends_chunk(h, cluster)));
+  return conic_hybrid_ends_in(h->flags, &h->clusters[cluster],
+                              conic_hybrid_chunk(h, conic_hybrid_ends_chunk(h, cluster)));
 }
 
 /* --- as in a file --- */

@@ -14,26 +14,25 @@
 #define FIELD(member) CONIC_FILE_FIELD(conic_chy_header, member)
 
 static const conic_file_field fields[] = {
-    FIELD(version),     FIELD(flags),        FIELD(n_vertices), FIELD(n_triangles), FIELD(n_surfels), FIELD(n_levels),
-    FIELD(n_clusters),  FIELD(n_nodes),      FIELD(n_materials), FIELD(n_texels),   FIELD(n_data),    FIELD(origin),
-    FIELD(low),         FIELD(high),         FIELD(splat_length), FIELD(cutoff),    FIELD(zero),      FIELD(body_sum)};
+    FIELD(version),    FIELD(flags),   FIELD(n_vertices),   FIELD(n_triangles), FIELD(n_surfels), FIELD(n_levels),
+    FIELD(n_clusters), FIELD(n_nodes), FIELD(n_materials),  FIELD(n_texels),    FIELD(n_data),    FIELD(origin),
+    FIELD(low),        FIELD(high),    FIELD(splat_length), FIELD(cutoff),      FIELD(zero),      FIELD(body_sum)};
 
 /* Chunks begin at whole units, of which there are fewer than 2³². */
 static const uint64_t most_data = (uint64_t)UINT32_MAX * CONIC_HYBRID_UNIT;
 
 const char *conic_chy_header_fault(const void *numbers) {
   const conic_chy_header *h = numbers;
-  const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_surfels,  h->n_levels,
-                             h->n_clusters, h->n_nodes,     h->n_texels, h->n_materials};
+  const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_surfels, h->n_levels,
+                             h->n_clusters, h->n_nodes,     h->n_texels,  h->n_materials};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     if (counts[i] > UINT32_MAX)
       return "counts that do not go together";
   if (h->flags & ~(uint32_t)CONIC_CHY_ALL_FLAGS || h->zero)
     return "unknown flags";
   if (h->n_clusters < 1 || h->n_clusters + h->n_nodes > UINT32_MAX || h->n_levels + 2 * h->n_clusters > UINT32_MAX ||
-      h->n_data > most_data || h->n_levels < h->n_clusters || h->n_nodes < 1 ||
-      h->n_nodes >= 2 * h->n_clusters || ((h->flags & CONIC_CHY_MATERIALS) && h->n_materials < 1) ||
-      (h->n_texels && h->n_materials < 1))
+      h->n_data > most_data || h->n_levels < h->n_clusters || h->n_nodes < 1 || h->n_nodes >= 2 * h->n_clusters ||
+      ((h->flags & CONIC_CHY_MATERIALS) && h->n_materials < 1) || (h->n_texels && h->n_materials < 1))
     return "counts that do not go together";
   if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->splat_length >= 0.0 && h->splat_length < 1e30))
     return "a cutoff or length out of range";
@@ -107,6 +106,8 @@ static conic_status write_placed(const conic_hybrid *hybrid, const conic_hybrid 
   conic_file_layout l = conic_chy_lay_out(&h);
   const void *arrays[CONIC_FILE_MOST_ARRAYS] = {placed->nodes, placed->clusters, placed->levels, placed->material_list,
                                                 placed->texels};
+  for (int i = 0; i < l.n; i++)
+    arrays[i] = arrays[i] ? arrays[i] : placed->nodes; /* of nothing */
   size_t n = conic_hybrid_count_chunks(hybrid);
   h.body_sum = conic_file_sum_arrays(hybrid->context, &l, arrays);
   conic_status status = conic_file_put_arrays(hybrid->context, stream, &conic_chy_kind, &h, &l, arrays);
@@ -167,8 +168,9 @@ conic_status conic_chy_take_index(conic_hybrid *hybrid, const char *path, const 
   conic_mapping arrays = {.bytes = index, .n_bytes = l.n_bytes};
   uint64_t wanted = l.n_bytes + h->n_data;
   if (n_bytes != wanted)
-    return conic_fail(hybrid->context, CONIC_ERROR_INPUT, "%s: has %llu bytes where its header tells of %llu (at byte %llu)",
-                      path, (unsigned long long)n_bytes, (unsigned long long)wanted,
+    return conic_fail(hybrid->context, CONIC_ERROR_INPUT,
+                      "%s: has %llu bytes where its header tells of %llu (at byte %llu)", path,
+                      (unsigned long long)n_bytes, (unsigned long long)wanted,
                       (unsigned long long)(n_bytes < wanted ? n_bytes : wanted));
   conic_status status = conic_file_take_arrays(hybrid->context, path, &arrays, &l, h->body_sum);
   if (status != CONIC_OK)
@@ -194,7 +196,7 @@ typedef struct chunk_checks {
   struct chunk_wrong {
     const char *what;
     size_t task;
-  } *wrong; /* a thread */
+  } * wrong; /* a thread */
 } chunk_checks;
 
 static void check_chunk_task(void *data, size_t i, int i_thread) {
@@ -202,10 +204,10 @@ static void check_chunk_task(void *data, size_t i, int i_thread) {
   struct chunk_wrong *wrong = &c->wrong[i_thread];
   if (wrong->what && wrong->task < i)
     return;
-  const char *found =
-      c->does_clusters
-          ? conic_hybrid_cluster_fault(c->hybrid, (uint32_t)i)
-          : conic_hybrid_take_chunk(c->hybrid, (uint32_t)i, c->data + conic_hybrid_chunk_place(c->hybrid, (uint32_t)i).at);
+  const char *found = c->does_clusters
+                          ? conic_hybrid_cluster_fault(c->hybrid, (uint32_t)i)
+                          : conic_hybrid_take_chunk(c->hybrid, (uint32_t)i,
+                                                    c->data + conic_hybrid_chunk_place(c->hybrid, (uint32_t)i).at);
   if (found)
     *wrong = (struct chunk_wrong){found, i};
 }
@@ -219,16 +221,15 @@ static conic_status run_checks(chunk_checks *c, const char *path, uint64_t data_
       first = c->wrong[i];
   if (!first.what)
     return CONIC_OK;
-  uint32_t chunk =
-      c->does_clusters ? conic_hybrid_frame_chunk(h, (uint32_t)first.task) : (uint32_t)first.task;
+  uint32_t chunk = c->does_clusters ? conic_hybrid_frame_chunk(h, (uint32_t)first.task) : (uint32_t)first.task;
   return conic_fail(h->context, CONIC_ERROR_INPUT, "%s: has %s (at byte %llu)", path, first.what,
                     (unsigned long long)(data_at + conic_hybrid_chunk_place(h, chunk).at));
 }
 
 static conic_status check_chunks(conic_hybrid *hybrid, const char *path, unsigned char *data, uint64_t data_at) {
   chunk_checks c = {.hybrid = hybrid, .data = data};
-  c.wrong = conic_memory_allocate_zeroed(hybrid->context, (size_t)conic_context_threads(hybrid->context),
-                                         sizeof *c.wrong);
+  c.wrong =
+      conic_memory_allocate_zeroed(hybrid->context, (size_t)conic_context_threads(hybrid->context), sizeof *c.wrong);
   if (!c.wrong)
     return CONIC_ERROR_MEMORY;
   conic_status status = run_checks(&c, path, data_at);

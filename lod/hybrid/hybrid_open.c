@@ -72,8 +72,7 @@ static conic_status read_chy_index(chy_opening *o, unsigned char **bytes) {
     return conic_fail(h->context, CONIC_ERROR_INPUT, "%s: the file is empty", o->name);
   conic_status status = read_to(o, n_header, 0, bytes);
   if (status == CONIC_OK)
-    status =
-        conic_file_read_header(h->context, o->name, &conic_chy_kind, *bytes, (size_t)n_header, &o->header);
+    status = conic_file_read_header(h->context, o->name, &conic_chy_kind, *bytes, (size_t)n_header, &o->header);
   if (status != CONIC_OK)
     return status;
   uint64_t n_bytes = conic_chy_lay_out(&o->header).n_bytes;
@@ -107,10 +106,11 @@ static conic_status open_chy_index(chy_opening *o) {
 static uint64_t share_memory(chy_opening *o) {
   conic_hybrid *h = o->hybrid;
   const uint64_t own_bytes = (UINT64_C(14) << 20) + ((uint64_t)conic_context_threads(h->context) << 21);
-  uint64_t all = o->access.memory_bytes, index = conic_chy_lay_out(&o->header).n_bytes + 32 * conic_hybrid_count_chunks(h);
+  uint64_t all = o->access.memory_bytes,
+           index = conic_chy_lay_out(&o->header).n_bytes + 32 * conic_hybrid_count_chunks(h);
   uint64_t rest = all > own_bytes + index + all / 4 ? all - own_bytes - index : all / 4;
   h->drawing_bytes = rest / 2;
-  return rest / 3;
+  return rest / 5 * 2;
 }
 
 static conic_status open_chy(chy_opening *o) {

@@ -15,11 +15,11 @@ typedef struct packing {
   const conic_clustered_mesh *mesh; /* the job's */
   const conic_triangles *flat;      /* the same mesh */
   size_t n_clusters;
-  uint32_t *local; /* of each vertex: its number in the level that is being listed, else none */
-  uint32_t *listed, (*corners)[3];        /* of the level that is being listed: its vertices, and corners among these */
-  conic_cluster_level faces;              /* of the cluster's faces themselves */
-  uint32_t (*first_slots)[2], *of_slot;   /* of each chain: its first slot in both clusters; of each slot its chain */
-  uint32_t *chain_starts, *chains_by;     /* by cluster */
+  uint32_t *local;                      /* of each vertex: its number in the level that is being listed, else none */
+  uint32_t *listed, (*corners)[3];      /* of the level that is being listed: its vertices, and corners among these */
+  conic_cluster_level faces;            /* of the cluster's faces themselves */
+  uint32_t (*first_slots)[2], *of_slot; /* of each chain: its first slot in both clusters; of each slot its chain */
+  uint32_t *chain_starts, *chains_by;   /* by cluster */
   conic_chy_header header;
   conic_file_layout layout;
   unsigned char *bytes;

@@ -45,8 +45,8 @@ static conic_status append_chunk(conic_context *context, conic_hybrid_pile *pile
     if (!turned)
       return CONIC_ERROR_MEMORY;
     memcpy(turned, bytes, n_bytes);
-    conic_cluster_border *borders = (conic_cluster_border *)(void *)(turned + CONIC_HYBRID_SUM_BYTES +
-                                                                     4 * (size_t)part->clusters[cluster].n_slots);
+    conic_cluster_border *borders =
+        (conic_cluster_border *)(void *)(turned + CONIC_HYBRID_SUM_BYTES + 4 * (size_t)part->clusters[cluster].n_slots);
     for (size_t i = 0; i < part->clusters[cluster].n_borders; i++)
       borders[i].across += (uint32_t)pile->n_clusters;
     bytes = turned;
@@ -90,7 +90,8 @@ conic_status conic_hybrid_pile_add(conic_context *context, conic_hybrid_pile *p,
   size_t n_of_clusters = (size_t)last->first_level + last->n_levels;
   conic_status status = make_pile_room(context, p, part);
   for (uint32_t i = 0; i < part->n_levels && status == CONIC_OK; i++) {
-    conic_hybrid_level *level = i < n_of_clusters ? &p->levels[p->n_levels + i] : &p->joined[p->n_joined + i - n_of_clusters];
+    conic_hybrid_level *level =
+        i < n_of_clusters ? &p->levels[p->n_levels + i] : &p->joined[p->n_joined + i - n_of_clusters];
     *level = part->levels[i];
     status = append_chunk(context, p, part, i, &level->at);
   }
@@ -209,6 +210,7 @@ conic_status conic_hybrid_pile_finish(conic_hybrid_pile *p, conic_hybrid *h) {
     *(h->levels[i].kind == CONIC_HYBRID_TRIANGLES ? &h->n_triangles : &h->n_surfels) += h->levels[i].count;
   h->n_data = p->map_bytes = (size_t)p->file.n_bytes;
   h->data = p->map = conic_disk_map(p->file.file.descriptor, p->map_bytes);
-  return p->map ? CONIC_OK
-                : conic_fail(h->context, CONIC_ERROR_IO, "%s: cannot map a temporary file beside it", p->file.file.path);
+  return p->map
+             ? CONIC_OK
+             : conic_fail(h->context, CONIC_ERROR_IO, "%s: cannot map a temporary file beside it", p->file.file.path);
 }

@@ -103,10 +103,8 @@ conic_hybrid_traffic conic_hybrid_store_traffic(const conic_hybrid *h) {
 
 static conic_status ask_for_chunk(const conic_hybrid *h, uint32_t chunk) {
   conic_hybrid_place place = conic_hybrid_chunk_place(h, chunk);
-  conic_range range = {.offset = h->store->data_at + place.at,
-                       .n_bytes = (size_t)place.n_bytes,
-                       .priority = place.at,
-                       .id = chunk};
+  conic_range range = {
+      .offset = h->store->data_at + place.at, .n_bytes = (size_t)place.n_bytes, .priority = place.at, .id = chunk};
   return conic_ranges_request(h->store->ranges, &range);
 }
 
@@ -154,8 +152,7 @@ static conic_status take_answers(const conic_hybrid *h) {
         conic_ranges_release(ranges, &answer);
     }
     if (status == CONIC_OK && h->store->is_remote)
-      status =
-          conic_progress(h->context, "fetch", 1.0 - (double)conic_ranges_pending(ranges) / (double)n_asked);
+      status = conic_progress(h->context, "fetch", 1.0 - (double)conic_ranges_pending(ranges) / (double)n_asked);
   }
   return status;
 }

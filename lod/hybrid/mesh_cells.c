@@ -11,8 +11,8 @@
 #include "core/files/pile.h"
 #include "core/formats/model_read.h"
 
-/* Faces that are looked at together, and that a cell gathers before they go to the disk; of all about so many tell where
- * the planes are. */
+/* Faces that are looked at together, and that a cell gathers before they go to the disk; of all about so many tell
+ * where the planes are. */
 enum { FACES_AT_ONCE = 1 << 16, FACES_A_BLOCK = 1 << 10, SAMPLES = 1 << 20, FILTER_BITS = 24, MOST_DEPTH = 48 };
 
 /* A plane across an axis. */
@@ -119,7 +119,8 @@ static conic_status receive_vertices(void *cookie, const conic_splats *batch) {
 
 static conic_status receive_faces(void *cookie, const uint32_t (*corners)[3], size_t n) {
   conic_mesh_cells *c = cookie;
-  conic_status status = conic_scratch_write(&c->faces, c->counts.n_faces * sizeof *corners, corners, n * sizeof *corners);
+  conic_status status =
+      conic_scratch_write(&c->faces, c->counts.n_faces * sizeof *corners, corners, n * sizeof *corners);
   c->counts.n_faces += n;
   return status;
 }
@@ -149,9 +150,8 @@ static const float *position_of(const conic_mesh_cells *c, uint32_t vertex) {
 
 static void find_center(const conic_mesh_cells *c, const uint32_t corners[3], float center[3]) {
   for (int axis = 0; axis < 3; axis++)
-    center[axis] = (position_of(c, corners[0])[axis] + position_of(c, corners[1])[axis] +
-                    position_of(c, corners[2])[axis]) /
-                   3.0f;
+    center[axis] =
+        (position_of(c, corners[0])[axis] + position_of(c, corners[1])[axis] + position_of(c, corners[2])[axis]) / 3.0f;
 }
 
 static uint32_t cell_at(const conic_mesh_cells *c, const float at[3]) {
@@ -321,7 +321,8 @@ static void count_oddity(conic_mesh_cells *c, const uint32_t corners[3]) {
   for (int k = 0; k < 9; k++)
     is_finite &= conic_is_finite((double)at[k / 3][k % 3]);
   c->counts.nan += !is_finite;
-  c->counts.zero += is_finite && (is_one_place(at[0], at[1]) || is_one_place(at[1], at[2]) || is_one_place(at[2], at[0]));
+  c->counts.zero +=
+      is_finite && (is_one_place(at[0], at[1]) || is_one_place(at[1], at[2]) || is_one_place(at[2], at[0]));
 }
 
 /* Notes the corners of a face that lie in other cells than it does. */
@@ -347,8 +348,8 @@ static conic_status see_shared(conic_mesh_cells *c, const uint32_t corners[3]) {
 /* --- buckets --- */
 
 static conic_status empty_bucket(conic_mesh_cells *c, face_bucket *b) {
-  conic_status status = conic_memory_reserve(c->context, &b->blocks, b->n_blocks, b->n_blocks + 1, &b->blocks_room,
-                                             sizeof *b->blocks);
+  conic_status status =
+      conic_memory_reserve(c->context, &b->blocks, b->n_blocks, b->n_blocks + 1, &b->blocks_room, sizeof *b->blocks);
   if (status == CONIC_OK)
     status = conic_pile_append(&c->buckets_file, b->faces, b->n * sizeof *b->faces, &b->blocks[b->n_blocks]);
   b->n_blocks++;
@@ -491,8 +492,7 @@ static void copy_cell_vertices(const conic_mesh_cells *c, const uint32_t *listed
 conic_status conic_mesh_cells_take(conic_mesh_cells *c, size_t cell, conic_triangles *mesh, size_t *n_own) {
   const face_bucket *own = &c->buckets[2 * cell];
   size_t n = bucket_faces(own) + bucket_faces(own + 1), n_listed = 0;
-  unsigned fields =
-      (c->has_normals ? CONIC_TRIANGLES_NORMALS : 0u) | (c->has_colors ? CONIC_TRIANGLES_COLORS : 0u);
+  unsigned fields = (c->has_normals ? CONIC_TRIANGLES_NORMALS : 0u) | (c->has_colors ? CONIC_TRIANGLES_COLORS : 0u);
   uint32_t(*corners)[3] = conic_memory_allocate(c->context, n, sizeof *corners);
   uint32_t *listed = conic_memory_allocate(c->context, 3 * n, sizeof *listed);
   conic_status status = corners && listed ? CONIC_OK : CONIC_ERROR_MEMORY;

@@ -1,5 +1,6 @@
-/* Models that are built in cells, of meshes that are read some faces at a time: of one cell they are those of the mesh as
- * a whole; the threads change nothing; and cells meet without a gap, whether their faces share vertices or only places. */
+/* Models that are built in cells, of meshes that are read some faces at a time: of one cell they are those of the mesh
+ * as a whole; the threads change nothing; and cells meet without a gap, whether their faces share vertices or only
+ * places. */
 #include "lod/hybrid/hybrid_chunks.h"
 #include "lod/hybrid/hybrid_large.h"
 #include "lod/hybrid/mesh_cells.h"
