@@ -207,7 +207,6 @@ run 2 verify hill.chy --aov cluster
 run 2 verify hill.chy --error 1 --budget 1000
 run 2 verify hill.obj --only surfels
 run 2 explain hill.chy --pixel 1,1 --method patch
-run 2 bench hill.chy
 [[ ! -e x.pfm ]] || fail "a picture of what was refused"
 
 [[ $failures -eq 0 ]]
