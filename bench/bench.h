@@ -14,12 +14,13 @@ typedef struct cli_bench_look {
   const char *camera_path; /* null: framed; its size is not taken */
   const char *view;        /* of it; null: the only one */
   int culls_back;
+  int chooses; /* what is drawn is chosen by each frame: cli_bench_file_chooses */
 } cli_bench_look;
 
 typedef struct cli_bench_scene {
   char name[32]; /* "sphere-1M" */
   conic_source *source;
-  const conic_splats *splats; /* the source's */
+  const conic_splats *splats; /* the source's; null where each frame chooses its own */
   int is_framed, has_camera;  /* a file's camera; neither: the built-in one */
   conic_camera camera;        /* of has_camera */
   int cull_back;
@@ -27,6 +28,9 @@ typedef struct cli_bench_scene {
   conic_gaussians gaussians;
   conic_gaussian_planes composited;
 } cli_bench_scene;
+
+/* Whether frames of the file choose what they draw: hybrids always, hierarchies where errors are asked for. */
+int cli_bench_file_chooses(const char *path, int has_errors);
 
 /* Makes the scene of a name, or, where there is a look at it, reads the file of that name. Released by
  * cli_bench_scene_release, also after a failure. Returns the exit code, after a message. */
@@ -38,6 +42,10 @@ int cli_bench_scene_check(const char *name, int *is_gaussian);
 const char *cli_bench_scene_at(int i, const char **about);
 /* A view of a file of cameras, whatever the size of its pictures; null: its only one. */
 conic_status cli_bench_camera_read(cli_session *session, const char *path, const char *view, conic_camera *camera);
+/* Turns a camera about the scene's centre and what points up, by so many turns. */
+void cli_bench_scene_turn(const cli_bench_scene *scene, double turns, conic_camera *camera);
+/* The same view in another size: what the shorter side showed it shows again. */
+void cli_bench_camera_resize(conic_camera *camera, int width, int height);
 /* The camera that it is seen by, brought to the size. */
 conic_status cli_bench_scene_camera(const cli_bench_scene *scene, int width, int height, conic_camera *camera);
 
@@ -75,6 +83,19 @@ void cli_bench_work_of(const conic_render_statistics *statistics, const conic_sp
 
 double cli_bench_stage_ms(const conic_render_milliseconds *ms, int i_stage);
 
+/* --- counters (bench/bench_counters.c) --- */
+
+/* What this process and the threads that it will start spend outside the kernel; -1 where the machine does not count,
+ * or keeps it to itself. */
+typedef struct cli_bench_counters {
+  int cycles, instructions;
+} cli_bench_counters;
+
+cli_bench_counters cli_bench_counters_open(void);
+/* What one of them has counted; NaN where there is none. */
+double cli_bench_counter_read(int counter);
+void cli_bench_counters_close(const cli_bench_counters *counters);
+
 /* --- one line (bench/bench_frame.c) --- */
 
 enum { CLI_BENCH_MOST_FRAMES = 1000 };
@@ -87,12 +108,16 @@ typedef struct cli_bench_line {
   conic_isa isa;
   cli_device *device; /* null: this machine's processor */
   int threads, width, height;
+  int chooses;     /* the frame chooses what it draws … */
+  double error_px; /* … within this error; 0: all there is, a hybrid as built */
+  int n_turns;     /* a warm frame from each of so many directions about the scene; 0: all from one */
 
   /* What came of it. */
-  conic_render_statistics statistics; /* ms are medians over the warm frames */
+  conic_render_statistics statistics; /* ms are medians over the warm frames; of a turntable means */
   int n_frames;                       /* warm ones */
   double first_ms, quartile_ms[2];    /* of the first frame; of the warm ones */
-  double cycles;                      /* of a frame, over all threads, median; NaN where nobody counts */
+  double cpu_ms;                      /* of the processor, a frame, over all threads */
+  double cycles, instructions;        /* likewise; NaN where nobody counts */
   cli_bench_work work[CLI_BENCH_N_STAGES];
   uint64_t hash[CONIC_N_PLANES];         /* 0 where the plane was not drawn */
   int i_wrong_plane;                     /* the first that differs from the scalar reference; -1: none */
@@ -116,14 +141,14 @@ conic_status cli_bench_refer(cli_session *session, cli_bench_scene *scene, const
                              conic_image *reference);
 
 /* Measures the line with the worker's threads: one first frame, then warm ones until there are `most`, or at least
- * `least` and the seconds are over. `counter` counts cycles, -1: nobody does. */
+ * `least` and the seconds are over. Null `counters`: nobody counts. */
 typedef struct cli_bench_patience {
   int least, most;
   double seconds;
 } cli_bench_patience;
 
 conic_status cli_bench_measure(cli_session *worker, cli_bench_scene *scene, const cli_bench_patience *patience,
-                               int counter, cli_bench_pictures *pictures, cli_bench_line *line);
+                               const cli_bench_counters *counters, cli_bench_pictures *pictures, cli_bench_line *line);
 
 /* --- Gaussians (bench/bench_gaussians.c) --- */
 
@@ -148,15 +173,6 @@ void cli_bench_gaussians_show(const cli_bench_scene *scene, conic_image *image, 
 
 /* The line's work, by its statistics. */
 void cli_bench_gaussians_work(const cli_bench_scene *scene, cli_bench_line *line);
-
-/* --- cycles (bench/bench_cycles.c) --- */
-
-/* A counter of the cycles that this process and the threads that it will start spend outside the kernel; -1 where the
- * machine has none or keeps it to itself. */
-int cli_bench_cycles_open(void);
-/* NaN where there is no counter. */
-double cli_bench_cycles_read(int counter);
-void cli_bench_cycles_close(int counter);
 
 /* --- the machine (bench/bench_machine.c) --- */
 

@@ -8,6 +8,8 @@
 #include "cli/command.h"
 #include "cli/outputs.h"
 #include "cli/render/views.h"
+#include "cli/shell.h"
+#include "core/base/machine.h"
 
 static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job) {
   static const char *const cull_words[] = {"none", "back", NULL};
@@ -27,9 +29,15 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
       {"cull", CLI_CHOICE, &job->look.culls_back, "WHAT", "of the files: none, or back [none]", .choices = cull_words},
       {"device", CLI_TEXT, &job->device.name, "NAME", "each scene and method on opencl or opencl:P.D too [cpu]"},
       {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL, "also a device that does not round correctly"},
+      {"error", CLI_TEXT, &job->errors_text, "LIST",
+       "of files that choose what they draw, in pixels; 0: all there is [0 for .chy; the others are read whole]"},
+      {"turntable", CLI_INT, &job->n_turns, "N", "N warm frames, all around the scene, and their mean", 1,
+       CLI_BENCH_MOST_FRAMES},
       {"repeat", CLI_INT, &job->repeat, "N", "warm frames a line [3 to 21, about a second]", 1, CLI_BENCH_MOST_FRAMES},
       {"quick", CLI_FLAG, &job->is_quick, NULL, "fewer scenes, fewer frames"},
       {"compare", CLI_TEXT, &job->old_path, "OLD.json", "ratios to an earlier run's --json"},
+      {"publish", CLI_TEXT, &job->publish_path, "FILE.json",
+       "the lines that machines are compared by, with the names of processor, system and compiler"},
       {"curve", CLI_FLAG, &job->is_curve, NULL, "the cost over 10 k to 16 M splats, and over 256² to 8192² pixels"},
       {"machine", CLI_FLAG, &job->is_machine, NULL, "how fast the machine reads, writes, copies and computes"},
       {"kernels", CLI_FLAG, &job->is_kernels, NULL, "each loop alone, by each instruction set, beside plain C"},
@@ -48,6 +56,12 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
     exit_code = cli_usage("bench: --view is one of a file of cameras; give --camera, too");
   if (exit_code == CLI_DONE && job->is_curve && (job->scenes_text || job->n_files || job->is_floor))
     exit_code = cli_usage("bench: --curve has scenes of its own");
+  if (exit_code == CLI_DONE && job->publish_path && (session->json_path || job->is_curve))
+    exit_code = cli_usage("bench: --publish writes what --json would, of lines of its own");
+  else if (exit_code == CLI_DONE && job->publish_path)
+    session->json_path = job->publish_path;
+  if (exit_code == CLI_DONE && job->n_turns && job->repeat)
+    exit_code = cli_usage("bench: --turntable and --repeat both say how many frames");
   if (exit_code == CLI_DONE && job->is_kernels &&
       (job->scenes_text || job->n_files || job->is_curve || job->is_machine || job->is_floor || session->json_path))
     exit_code = cli_usage("bench: --kernels measures and prints nothing else");
@@ -76,6 +90,21 @@ static void print(const cli_session *session, const cli_bench_job *job) {
     cli_bench_print_comparison(job->old_path, job->lines, job->n_lines);
 }
 
+static void report_host(cli_json *json) {
+  char processor[128], system[128];
+  cli_shell_name_host(processor, sizeof processor, system, sizeof system);
+  cli_json_object(json, "host");
+  cli_json_text(json, "processor", processor);
+  cli_json_count(json, "processors", (uint64_t)conic_machine_threads());
+  cli_json_text(json, "system", system);
+#if defined(__clang__)
+  cli_json_text(json, "compiler", "clang " __clang_version__);
+#else
+  cli_json_text(json, "compiler", "gcc " __VERSION__);
+#endif
+  cli_json_close(json);
+}
+
 static int report_bench(cli_session *session, const cli_bench_job *job) {
   cli_json_file *file;
   int exit_code = CLI_DONE;
@@ -83,6 +112,7 @@ static int report_bench(cli_session *session, const cli_bench_job *job) {
   if (!json)
     return exit_code;
   cli_json_text(json, "version", conic_version());
+  report_host(json);
   if (job->n_machines)
     cli_bench_report_machine(json, job->machines, job->n_machines);
   cli_json_object(json, "lines");

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bench/bench.h"
+#include "cli/shell.h"
 #include "core/base/real.h"
 
 const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS] = {
@@ -86,21 +87,36 @@ typedef struct bench {
   conic_camera camera;
   conic_render_options options;
   conic_image timed; /* the planes that are drawn while the clock runs */
-  int counter;
+  cli_bench_counters counters;
   size_t n;
-  double *ms[CLI_BENCH_N_STAGES + 1], *cycles;
+  double *ms[CLI_BENCH_N_STAGES + 1], *lod, *cpu, *cycles, *instructions; /* of each warm frame */
 } bench;
 
-static conic_status draw_one(const bench *b, conic_image *image, conic_render_statistics *statistics) {
-  return b->scene->is_gaussian
-             ? cli_bench_gaussians_draw(b->context, b->scene, &b->camera, b->line, image, statistics)
-             : conic_render(b->renderer, b->scene->splats, &b->camera, &b->options, image, statistics);
+static conic_status draw_chosen(cli_bench_scene *scene, const cli_bench_line *line, conic_renderer *renderer,
+                                const conic_camera *camera, const conic_render_options *options, conic_image *image,
+                                conic_render_statistics *statistics) {
+  conic_source_view view;
+  conic_source_view_init(&view);
+  view.error_px = line->error_px;
+  return conic_source_draw(scene->source, renderer, camera, options, &view, image, statistics);
 }
 
-static conic_status draw_timed(bench *b, conic_render_statistics *statistics) {
-  double cycles = cli_bench_cycles_read(b->counter);
-  conic_status status = draw_one(b, &b->timed, statistics);
-  b->cycles[b->n] = cli_bench_cycles_read(b->counter) - cycles;
+static conic_status draw_one(const bench *b, const conic_camera *camera, conic_image *image,
+                             conic_render_statistics *statistics) {
+  if (b->scene->is_gaussian)
+    return cli_bench_gaussians_draw(b->context, b->scene, camera, b->line, image, statistics);
+  if (b->line->chooses)
+    return draw_chosen(b->scene, b->line, b->renderer, camera, &b->options, image, statistics);
+  return conic_render(b->renderer, b->scene->splats, camera, &b->options, image, statistics);
+}
+
+static conic_status draw_timed(bench *b, const conic_camera *camera, conic_render_statistics *statistics) {
+  double cycles = cli_bench_counter_read(b->counters.cycles), cpu = cli_shell_cpu_seconds();
+  double instructions = cli_bench_counter_read(b->counters.instructions);
+  conic_status status = draw_one(b, camera, &b->timed, statistics);
+  b->instructions[b->n] = cli_bench_counter_read(b->counters.instructions) - instructions;
+  b->cycles[b->n] = cli_bench_counter_read(b->counters.cycles) - cycles;
+  b->cpu[b->n] = 1e3 * (cli_shell_cpu_seconds() - cpu);
   if (status == CONIC_OK && b->scene->is_gaussian)
     cli_bench_gaussians_show(b->scene, &b->timed, statistics);
   return status;
@@ -110,9 +126,13 @@ static conic_status draw_warm(bench *b, const cli_bench_patience *patience, coni
   double start = cli_seconds();
   while (b->n < (size_t)patience->most &&
          (b->n < (size_t)patience->least || cli_seconds() - start < patience->seconds)) {
-    conic_status status = draw_timed(b, statistics);
+    conic_camera camera = b->camera;
+    if (b->line->n_turns)
+      cli_bench_scene_turn(b->scene, (double)b->n / (double)b->line->n_turns, &camera);
+    conic_status status = draw_timed(b, &camera, statistics);
     if (status != CONIC_OK)
       return status;
+    b->lod[b->n] = statistics->ms.lod;
     for (int i = 0; i < CLI_BENCH_N_STAGES; i++)
       b->ms[i][b->n] = cli_bench_stage_ms(&statistics->ms, i);
     b->ms[CLI_BENCH_N_STAGES][b->n++] = statistics->ms.frame;
@@ -120,22 +140,38 @@ static conic_status draw_warm(bench *b, const cli_bench_patience *patience, coni
   return CONIC_OK;
 }
 
-static void take_medians(bench *b, cli_bench_line *line) {
+static double mean(const double *values, size_t n) {
+  double sum = 0.0;
+  for (size_t i = 0; i < n; i++)
+    sum += values[i];
+  return sum / (double)n;
+}
+
+/* Of a turntable the mean, since its frames are not alike. Sorts the values. */
+static double middle_of(const bench *b, double *values, double quartiles[2]) {
+  double median = cli_bench_median(values, b->n, quartiles);
+  return b->line->n_turns ? mean(values, b->n) : median;
+}
+
+static void take_middles(bench *b, cli_bench_line *line) {
   conic_render_milliseconds *ms = &line->statistics.ms;
   double *stages[CLI_BENCH_N_STAGES] = {&ms->setup, &ms->bin, &ms->visibility, &ms->accumulate, &ms->resolve};
   for (int i = 0; i < CLI_BENCH_N_STAGES; i++)
-    *stages[i] = cli_bench_median(b->ms[i], b->n, NULL);
-  ms->frame = cli_bench_median(b->ms[CLI_BENCH_N_STAGES], b->n, line->quartile_ms);
-  line->cycles = cli_bench_median(b->cycles, b->n, NULL);
+    *stages[i] = middle_of(b, b->ms[i], NULL);
+  ms->frame = middle_of(b, b->ms[CLI_BENCH_N_STAGES], line->quartile_ms);
+  ms->lod = middle_of(b, b->lod, NULL);
+  line->cpu_ms = middle_of(b, b->cpu, NULL);
+  line->cycles = middle_of(b, b->cycles, NULL);
+  line->instructions = middle_of(b, b->instructions, NULL);
   line->n_frames = (int)b->n;
 }
 
-/* The pictures of the first and of the last timed frame are compared, and one with all planes; nothing is compared
- * between the warm ones, which would take the caches from them. */
+/* The pictures of the first and of the last timed frame, where that is of the same view, are compared, and one with all
+ * planes; nothing is compared between the warm ones, which would take the caches from them. */
 static conic_status draw_frames(bench *b, const cli_bench_patience *patience, cli_bench_pictures *pictures,
                                 cli_bench_line *line) {
   spoil(&pictures->drawn);
-  conic_status status = draw_timed(b, &line->statistics);
+  conic_status status = draw_timed(b, &b->camera, &line->statistics);
   if (status != CONIC_OK)
     return status;
   line->first_ms = line->statistics.ms.frame;
@@ -144,10 +180,11 @@ static conic_status draw_frames(bench *b, const cli_bench_patience *patience, cl
   status = draw_warm(b, patience, &line->statistics);
   if (status != CONIC_OK)
     return status;
-  note_difference(&pictures->reference, &b->timed, line);
-  take_medians(b, line);
+  if (!line->n_turns)
+    note_difference(&pictures->reference, &b->timed, line);
+  take_middles(b, line);
   conic_render_statistics statistics;
-  status = draw_one(b, &pictures->drawn, &statistics);
+  status = draw_one(b, &b->camera, &pictures->drawn, &statistics);
   if (status == CONIC_OK && b->scene->is_gaussian) {
     cli_bench_gaussians_show(b->scene, &pictures->drawn, &statistics);
     line->statistics.fragments = statistics.fragments;
@@ -180,26 +217,30 @@ conic_status cli_bench_refer(cli_session *session, cli_bench_scene *scene, const
   if (status == CONIC_OK)
     status = conic_renderer_create(session->context, &renderer);
   if (status == CONIC_OK)
-    status = conic_render(renderer, scene->splats, &camera, &options, reference, NULL);
+    status = line->chooses ? draw_chosen(scene, line, renderer, &camera, &options, reference, NULL)
+                           : conic_render(renderer, scene->splats, &camera, &options, reference, NULL);
   conic_renderer_destroy(renderer);
   return status;
 }
 
 conic_status cli_bench_measure(cli_session *worker, cli_bench_scene *scene, const cli_bench_patience *patience,
-                               int counter, cli_bench_pictures *pictures, cli_bench_line *line) {
+                               const cli_bench_counters *counters, cli_bench_pictures *pictures, cli_bench_line *line) {
   size_t most = (size_t)patience->most + 1;
   bench b = {.context = worker->context,
              .scene = scene,
              .line = line,
-             .counter = counter,
+             .counters = counters ? *counters : (cli_bench_counters){-1, -1},
              .options = options_of_frame(scene, line)};
   line->i_wrong_plane = -1;
   b.timed = with_planes(&pictures->drawn, pictures->timed_planes);
-  b.cycles = calloc(most * (CLI_BENCH_N_STAGES + 2), sizeof *b.cycles);
-  if (!b.cycles)
+  double *all = calloc(most * (CLI_BENCH_N_STAGES + 5), sizeof *all), *next = all;
+  if (!all)
     return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i <= CLI_BENCH_N_STAGES; i++)
-    b.ms[i] = b.cycles + (i + 1) * most;
+  double **const series[] = {&b.lod, &b.cpu, &b.cycles, &b.instructions};
+  for (size_t i = 0; i < sizeof series / sizeof *series; i++, next += most)
+    *series[i] = next;
+  for (size_t i = 0; i <= CLI_BENCH_N_STAGES; i++, next += most)
+    b.ms[i] = next;
   conic_status status = cli_bench_scene_camera(scene, line->width, line->height, &b.camera);
   if (status == CONIC_OK)
     status = line->device ? cli_device_open(worker, line->device, &b.renderer)
@@ -215,6 +256,6 @@ conic_status cli_bench_measure(cli_session *worker, cli_bench_scene *scene, cons
       line->hash[plane] = conic_image_hash(&pictures->drawn, (conic_plane)plane);
   }
   conic_renderer_destroy(b.renderer);
-  free(b.cycles);
+  free(all);
   return status;
 }

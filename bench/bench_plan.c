@@ -11,6 +11,8 @@
 
 static const char default_scenes[] = "sphere-100k,sphere-1M,sphere-4M,gyroid-1M,mixed,subpixel,needles,huge,"
                                      "gaussians-1M";
+static const char published_scenes[] = "sphere-1M,sphere-4M,gyroid-1M,mixed,gaussians-1M";
+static const char published_methods[] = "conic,auto,nearest";
 static const char quick_scenes[] = "sphere-100k,sphere-1M,mixed";
 /* The scene on which, where nothing was asked for, all methods and instruction sets are measured. */
 static const char main_scene[] = "sphere-1M";
@@ -55,6 +57,8 @@ static int take_file(cli_bench_job *job, const char *path) {
     return cli_usage("bench: over %d scenes", CLI_BENCH_MOST_SCENES);
   job->is_file[job->n_scenes] = 1;
   job->is_gaussian[job->n_scenes] = cli_bench_is_gaussian_file(path);
+  job->chooses[job->n_scenes] =
+      !job->is_gaussian[job->n_scenes] && cli_bench_file_chooses(path, job->errors_text != NULL);
   job->scenes[job->n_scenes++] = path;
   return CLI_DONE;
 }
@@ -142,6 +146,16 @@ static int take_threads(cli_bench_job *job, const char *word) {
   return CLI_DONE;
 }
 
+static int take_error(cli_bench_job *job, const char *word) {
+  double error;
+  if (!cli_parse_number(word, &error) || error < 0.0)
+    return cli_usage("bench: --error: %s is no error in pixels", word);
+  if (job->n_errors == CLI_BENCH_MOST_THREADS)
+    return cli_usage("bench: --error: over %d numbers", CLI_BENCH_MOST_THREADS);
+  job->errors[job->n_errors++] = error;
+  return CLI_DONE;
+}
+
 /* --- lines --- */
 
 static int append_line(cli_bench_job *job, int i_scene, int i_method, conic_isa isa, int threads, const int size[2]) {
@@ -161,6 +175,8 @@ static int append_line(cli_bench_job *job, int i_scene, int i_method, conic_isa 
   line->width = size[0];
   line->height = size[1];
   line->i_wrong_plane = -1;
+  line->chooses = job->chooses[i_scene];
+  line->n_turns = job->n_turns;
   for (int i = 0; i <= CLI_BENCH_N_STAGES; i++)
     line->old_ms[i] = (double)NAN;
   return CLI_DONE;
@@ -174,6 +190,17 @@ static int append_device_line(cli_bench_job *job, int i_scene, int i_method, con
   return exit_code;
 }
 
+/* A line an error of what chooses, and else one. */
+static int append_errors(cli_bench_job *job, int i_scene, int i_method, conic_isa isa, int threads, const int size[2]) {
+  int exit_code = CLI_DONE;
+  for (int e = 0; e < (job->chooses[i_scene] ? job->n_errors : 1) && exit_code == CLI_DONE; e++) {
+    exit_code = append_line(job, i_scene, i_method, isa, threads, size);
+    if (exit_code == CLI_DONE && job->chooses[i_scene])
+      job->lines[job->n_lines - 1].error_px = job->errors[e];
+  }
+  return exit_code;
+}
+
 /* A scene with every combination of the lists. Devices do not draw Gaussians. */
 static int append_scene(cli_bench_job *job, int i_scene, const int size[2]) {
   const int is_gaussian = job->is_gaussian[i_scene], *methods = is_gaussian ? job->profiles : job->methods;
@@ -181,7 +208,7 @@ static int append_scene(cli_bench_job *job, int i_scene, const int size[2]) {
   for (int m = 0; m < (is_gaussian ? job->n_profiles : job->n_methods); m++) {
     for (int i = 0; i < job->n_isas; i++)
       for (int t = 0; t < job->n_threads && exit_code == CLI_DONE; t++)
-        exit_code = append_line(job, i_scene, methods[m], job->isas[i], job->threads[t], size);
+        exit_code = append_errors(job, i_scene, methods[m], job->isas[i], job->threads[t], size);
     if (exit_code == CLI_DONE && !is_gaussian && strcmp(job->device.name, "cpu") != 0)
       exit_code = append_device_line(job, i_scene, methods[m], size);
   }
@@ -199,6 +226,13 @@ static int append_star(cli_bench_job *job) {
     exit_code = append_scene(job, s, job->size);
   }
   return exit_code;
+}
+
+static int check_turntable(const cli_bench_job *job) {
+  for (int s = 0; s < job->n_scenes && job->n_turns; s++)
+    if (job->is_gaussian[s])
+      return cli_usage("bench: --turntable: %s is of Gaussians, which it does not turn", job->scenes[s]);
+  return CLI_DONE;
 }
 
 static int append_product(cli_bench_job *job) {
@@ -225,8 +259,8 @@ static int append_curve(cli_bench_job *job) {
 }
 
 static int take_lists(cli_bench_job *job) {
-  int exit_code = CLI_DONE;
   const char *scenes = job->scenes_text;
+  int exit_code = for_words(job, "error", job->errors_text ? job->errors_text : "0", take_error);
   for (int i = 0; i < job->n_files && exit_code == CLI_DONE; i++)
     exit_code = take_file(job, job->files[i]);
   if (!scenes && !job->n_files && !job->is_curve)
@@ -251,10 +285,21 @@ static int take_lists(cli_bench_job *job) {
   return exit_code;
 }
 
+/* The lines that machines are compared by. */
+static void plan_publication(cli_bench_job *job) {
+  job->is_machine = 1;
+  job->scenes_text = job->scenes_text ? job->scenes_text : published_scenes;
+  job->methods_text = job->methods_text ? job->methods_text : published_methods;
+}
+
 int cli_bench_plan(cli_bench_job *job) {
+  if (job->publish_path)
+    plan_publication(job);
   int is_star = !job->scenes_text && !job->methods_text && !job->isa_text && !job->n_files && !job->is_floor;
   int exit_code = take_lists(job);
-  if (exit_code != CLI_DONE || (job->is_machine && !job->is_floor))
+  if (exit_code == CLI_DONE)
+    exit_code = check_turntable(job);
+  if (exit_code != CLI_DONE || (job->is_machine && !job->is_floor && !job->publish_path))
     return exit_code;
   return job->is_curve ? append_curve(job) : is_star ? append_star(job) : append_product(job);
 }

@@ -24,18 +24,18 @@ static cli_bench_work sum_of(const cli_bench_work work[CLI_BENCH_N_STAGES]) {
 /* --- the table --- */
 
 void cli_bench_print_head(void) {
-  printf("%-34s %8s %8s  %7s %6s %7s %7s %7s  %8s %7s %8s %6s\n", "scene/method/isa/threads", "first", "frame", "setup",
-         "bin", "visib.", "accum.", "resolve", "Msplat/s", "drawn", "Mfrag/s", "over");
+  printf("%-34s %8s %8s %8s  %7s %7s %6s %7s %7s %7s  %8s %7s %8s %6s\n", "scene/method/isa/threads", "first", "frame",
+         "cpu", "choice", "setup", "bin", "visib.", "accum.", "resolve", "Msplat/s", "drawn", "Mfrag/s", "over");
 }
 
 void cli_bench_print_line(const cli_bench_line *line) {
   const conic_render_statistics *s = &line->statistics;
   const conic_render_milliseconds *ms = &s->ms;
-  printf("%-34s %8.2f %8.2f  %7.2f %6.2f %7.2f %7.2f %7.2f  %8.2f %7.2f %8.1f %6.1f%s\n", line->name, line->first_ms,
-         ms->frame, ms->setup, ms->bin, ms->visibility, ms->accumulate, ms->resolve,
-         millions_per_s((double)s->splats_in, ms->frame), millions_per_s((double)s->splats_drawn, ms->frame),
-         millions_per_s((double)s->fragments, ms->frame), overdraw(s),
-         line->i_wrong_plane >= 0 ? "  WRONG PICTURE" : "");
+  printf("%-34s %8.2f %8.2f %8.2f  %7.2f %7.2f %6.2f %7.2f %7.2f %7.2f  %8.2f %7.2f %8.1f %6.1f%s\n", line->name,
+         line->first_ms, ms->frame, line->cpu_ms, ms->lod, ms->setup, ms->bin, ms->visibility, ms->accumulate,
+         ms->resolve, millions_per_s((double)s->splats_in, ms->frame),
+         millions_per_s((double)s->splats_drawn, ms->frame), millions_per_s((double)s->fragments, ms->frame),
+         overdraw(s), line->i_wrong_plane >= 0 ? "  WRONG PICTURE" : "");
   fflush(stdout);
 }
 
@@ -63,6 +63,9 @@ static void report_counts(cli_json *json, const cli_bench_line *line) {
   cli_json_count(json, "height", (uint64_t)line->height);
   cli_json_count(json, "splats_in", s->splats_in);
   cli_json_count(json, "splats_drawn", s->splats_drawn);
+  cli_json_count(json, "triangles_in", s->triangles_in);
+  if (line->chooses)
+    cli_json_number(json, "error_px", line->error_px);
   cli_json_count(json, "fragments", s->fragments);
   cli_json_count(json, "pixels_covered", s->pixels_covered);
   cli_json_number(json, "overdraw", overdraw(s));
@@ -91,12 +94,15 @@ static void report_times(cli_json *json, const cli_bench_line *line) {
   cli_json_count(json, "frames", (uint64_t)line->n_frames);
   report_stages(json, "ms", &s->ms, 1.0);
   cli_json_number(json, "ms_first", line->first_ms);
+  cli_json_number(json, "ms_choice", s->ms.lod);
+  cli_json_number(json, "cpu_ms", line->cpu_ms);
   cli_json_array(json, "ms_quartiles");
   cli_json_number(json, NULL, line->quartile_ms[0]);
   cli_json_number(json, NULL, line->quartile_ms[1]);
   cli_json_close(json);
   report_stages(json, "ns_per_splat", &s->ms, 1e6 / (double)s->splats_in);
   cli_json_number(json, "cycles", line->cycles);
+  cli_json_number(json, "instructions", line->instructions);
   cli_json_number(json, "cycles_per_splat", line->cycles / (double)s->splats_in);
   cli_json_number(json, "msplats_per_s", millions_per_s((double)s->splats_in, s->ms.frame));
   cli_json_number(json, "drawn_msplats_per_s", millions_per_s((double)s->splats_drawn, s->ms.frame));

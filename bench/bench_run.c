@@ -8,10 +8,12 @@
 typedef struct bench_run {
   cli_session *session; /* owns splats and pictures */
   cli_bench_job *job;
-  int counter;
+  cli_bench_counters counters;
   cli_session workers[CLI_BENCH_MOST_THREADS]; /* one a number of threads */
   int n_workers;
   cli_bench_scene scene;
+  cli_session *owner; /* of the scene: what chooses does so with its own threads */
+  double error_px;
   int i_scene, i_method, width, height; /* what `scene` and `pictures` are of; -1: nothing yet */
   cli_bench_pictures pictures;
 } bench_run;
@@ -57,34 +59,41 @@ static conic_status open_pictures(bench_run *r, const cli_bench_line *line) {
 }
 
 /* The scene, the pictures and the reference that the line needs, where the line before had others. */
-static int turn_to(bench_run *r, const cli_bench_line *line) {
-  int is_new_scene = r->i_scene != line->i_scene;
+static int turn_to(bench_run *r, const cli_bench_line *line, cli_session *worker) {
+  cli_session *owner = line->chooses ? worker : r->session;
+  int is_new_scene = r->i_scene != line->i_scene || r->owner != owner;
   int is_new_size = r->width != line->width || r->height != line->height;
   if (is_new_scene) {
-    cli_bench_scene_release(r->session, &r->scene);
+    cli_bench_scene_release(r->owner, &r->scene);
     r->i_scene = -1;
+    r->owner = owner;
     int i = line->i_scene;
-    const cli_bench_look *look = r->job->is_file[i] ? &r->job->look : NULL;
-    int exit_code = cli_bench_scene_open(r->session, r->job->scenes[i], look, &r->scene);
+    cli_bench_look look = r->job->look;
+    look.chooses = line->chooses;
+    int exit_code = cli_bench_scene_open(owner, r->job->scenes[i], r->job->is_file[i] ? &look : NULL, &r->scene);
     if (exit_code != CLI_DONE)
       return exit_code;
   }
   conic_status status = is_new_size ? open_pictures(r, line) : CONIC_OK;
-  if (status == CONIC_OK && (is_new_scene || is_new_size || r->i_method != line->i_method))
-    status = cli_bench_refer(r->session, &r->scene, line, &r->pictures.reference);
+  if (status == CONIC_OK &&
+      (is_new_scene || is_new_size || r->i_method != line->i_method || r->error_px != line->error_px))
+    status = cli_bench_refer(owner, &r->scene, line, &r->pictures.reference);
   r->i_scene = line->i_scene;
   r->i_method = line->i_method;
+  r->error_px = line->error_px;
   r->width = line->width;
   r->height = line->height;
   return cli_exit_of(status);
 }
 
 static void name_line(const bench_run *r, cli_bench_line *line) {
-  char size[32] = "";
+  char size[32] = "", error[24] = "";
   if (line->width != 1024 || line->height != 1024)
     snprintf(size, sizeof size, "@%dx%d", line->width, line->height);
+  if (line->chooses)
+    snprintf(error, sizeof error, ":%gpx", line->error_px);
   snprintf(line->scene_name, sizeof line->scene_name, "%s", r->scene.name);
-  snprintf(line->name, sizeof line->name, "%.31s%.15s/%.15s/%.15s/%d", r->scene.name, size,
+  snprintf(line->name, sizeof line->name, "%.31s%.15s%.15s/%.15s/%.15s/%d", r->scene.name, error, size,
            cli_bench_method_name(line->i_method), line->device ? line->device->name : conic_isa_name(line->isa),
            line->threads);
 }
@@ -94,14 +103,16 @@ static int measure_line(bench_run *r, cli_bench_line *line, cli_session *worker)
   cli_bench_patience patience = {3, 21, 1.0};
   if (job->is_quick)
     patience = (cli_bench_patience){3, 5, 0.2};
-  if (job->repeat)
+  if (job->n_turns)
+    patience = (cli_bench_patience){job->n_turns, job->n_turns, 0.0};
+  else if (job->repeat)
     patience = (cli_bench_patience){job->repeat, job->repeat, 0.0};
-  int exit_code = turn_to(r, line);
+  int exit_code = turn_to(r, line, worker);
   if (exit_code != CLI_DONE)
     return exit_code;
   line->threads = conic_context_threads(worker->context);
   name_line(r, line);
-  conic_status status = cli_bench_measure(worker, &r->scene, &patience, r->counter, &r->pictures, line);
+  conic_status status = cli_bench_measure(worker, &r->scene, &patience, &r->counters, &r->pictures, line);
   if (status == CONIC_OK && line->i_wrong_plane >= 0) {
     r->job->n_wrong++;
     cli_error(CLI_DIFFERENT, "%s: plane %s is not what plain C draws", line->name,
@@ -158,17 +169,18 @@ int cli_bench_run(cli_session *session, cli_bench_job *job) {
   r->session = session;
   r->job = job;
   r->i_scene = r->i_method = -1;
-  r->counter = cli_bench_cycles_open();
+  r->owner = session;
+  r->counters = cli_bench_counters_open();
   int exit_code = open_workers(r);
   if (exit_code == CLI_DONE && (job->is_machine || job->is_floor))
     exit_code = measure_machines(r);
   if (exit_code == CLI_DONE)
     exit_code = measure_lines(r, prints);
   close_pictures(r);
-  cli_bench_scene_release(r->session, &r->scene);
+  cli_bench_scene_release(r->owner, &r->scene);
   for (int i = 0; i < r->n_workers; i++)
     cli_session_close(&r->workers[i]);
-  cli_bench_cycles_close(r->counter);
+  cli_bench_counters_close(&r->counters);
   free(r);
   return exit_code;
 }

@@ -208,6 +208,13 @@ conic_status cli_bench_camera_read(cli_session *session, const char *path, const
   return status;
 }
 
+int cli_bench_file_chooses(const char *path, int has_errors) {
+  conic_source_options options;
+  conic_source_options_init(&options);
+  unsigned abilities = conic_source_abilities(&path, 1, &options);
+  return (abilities & CONIC_SOURCE_CLUSTERS) || (has_errors && (abilities & CONIC_SOURCE_CHOOSES));
+}
+
 static conic_status read_bench_file(cli_session *session, const char *path, const cli_bench_look *look,
                                     cli_bench_scene *scene) {
   conic_source_options options;
@@ -215,15 +222,11 @@ static conic_status read_bench_file(cli_session *session, const char *path, cons
   snprintf(scene->name, sizeof scene->name, "%.31s", conic_file_name(path));
   if (cli_bench_is_gaussian_file(path))
     return cli_bench_gaussians_read(session, path, look, scene);
-  options.is_whole = 1;
+  options.is_whole = !look->chooses;
   scene->cull_back = look->culls_back;
   scene->is_framed = !look->camera_path;
   scene->has_camera = look->camera_path != NULL;
   conic_status status = CONIC_OK;
-  if (conic_source_abilities(&path, 1, &options) & CONIC_SOURCE_CLUSTERS) {
-    cli_error(CLI_USAGE, "%s: hybrid models are measured by conic render --repeat", path);
-    return CONIC_ERROR_ARGUMENT;
-  }
   if (look->camera_path)
     status = cli_bench_camera_read(session, look->camera_path, look->view, &scene->camera);
   return status == CONIC_OK ? conic_source_open(session->context, &path, 1, &options, &scene->source) : status;
@@ -250,7 +253,7 @@ int cli_bench_scene_open(cli_session *session, const char *name, const cli_bench
   if (exit_code != CLI_DONE)
     return exit_code;
   conic_status status = look ? read_bench_file(session, name, look, scene) : make(session, &w, name, scene);
-  if (status == CONIC_OK && !scene->is_gaussian)
+  if (status == CONIC_OK && !scene->is_gaussian && !(look && look->chooses))
     scene->splats = conic_source_chosen(scene->source)->drawing.splats;
   return cli_exit_of(status);
 }
@@ -269,8 +272,7 @@ static void build_in(conic_camera *camera) {
   memcpy(camera->cam_from_world, cam_from_world, sizeof cam_from_world);
 }
 
-/* The same view in another size: what the shorter side showed it shows again. */
-static void resize(conic_camera *camera, int width, int height) {
+void cli_bench_camera_resize(conic_camera *camera, int width, int height) {
   int shorter = width < height ? width : height;
   double factor = (double)shorter / (double)(camera->width < camera->height ? camera->width : camera->height);
   camera->cx = 0.5 * (double)width + factor * (camera->cx - 0.5 * (double)camera->width);
@@ -279,6 +281,11 @@ static void resize(conic_camera *camera, int width, int height) {
   camera->fy *= factor;
   camera->width = width;
   camera->height = height;
+}
+
+void cli_bench_scene_turn(const cli_bench_scene *scene, double turns, conic_camera *camera) {
+  const conic_source_scale *scale = conic_source_measure(scene->source);
+  cli_camera_orbit(scale, scale->up, turns, camera);
 }
 
 conic_status cli_bench_scene_camera(const cli_bench_scene *scene, int width, int height, conic_camera *camera) {
@@ -296,6 +303,6 @@ conic_status cli_bench_scene_camera(const cli_bench_scene *scene, int width, int
   for (int row = 0; row < 3 && scene->is_gaussian && !scene->has_camera; row++)
     for (int axis = 1; axis < 3; axis++) /* what is made has y down */
       camera->cam_from_world[row][axis] = -camera->cam_from_world[row][axis];
-  resize(camera, width, height);
+  cli_bench_camera_resize(camera, width, height);
   return CONIC_OK;
 }

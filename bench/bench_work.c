@@ -49,10 +49,10 @@ void cli_bench_work_of(const conic_render_statistics *s, const conic_splats *spl
 
   /* Set-up: centres and axes of all, colours of what is drawn. Its records stay in the core's cache until they are
    * sorted. */
-  work[0] =
-      (cli_bench_work){floats * (9.0 * n + 3.0 * drawn + (splats->opacity ? drawn : 0.0)), sizeof(conic_ray) * rays,
-                       FACE * n + (MOVE_CENTER + MOVE_AXES + DEPTH + BOX + SURFACE) * drawn +
-                           DUAL_CONIC * (drawn - rays) + RAY_SET_UP * rays};
+  work[0] = (cli_bench_work){floats * (9.0 * n + 3.0 * drawn + (splats && splats->opacity ? drawn : 0.0)),
+                             sizeof(conic_ray) * rays,
+                             FACE * n + (MOVE_CENTER + MOVE_AXES + DEPTH + BOX + SURFACE) * drawn +
+                                 DUAL_CONIC * (drawn - rays) + RAY_SET_UP * rays};
   /* Bins: the records in the order of their tiles; at least one entry a splat. */
   work[1] = (cli_bench_work){
       0.0, (sizeof(conic_footprint) + sizeof(conic_projected_surface) + sizeof(conic_tile_entry)) * drawn,

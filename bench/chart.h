@@ -36,12 +36,11 @@ conic_status cli_chart_measure(conic_context *context, const conic_image *a, con
 /* Its columns: max, rmse, psnr, flip; a comma before each. */
 void cli_chart_write_error(FILE *to, const cli_chart_error *error);
 
+/* A text as a cell of a table. */
+void cli_chart_write_quoted(FILE *to, const char *text);
+
 /* Opens FOLDER/NAME. Errors: those of conic_output_open. */
 conic_status cli_chart_open(const cli_session *session, const char *folder, const char *name, conic_output **output);
-
-/* FOLDER/chart.gp; the points are those of chart.csv. */
-conic_status cli_chart_write_script(cli_session *session, const char *folder, const cli_chart_point *points,
-                                    int n_points);
 
 static inline const cli_chart_error *cli_chart_error_of(const cli_chart_point *point, int against_truth) {
   return against_truth ? &point->truth : &point->oracle;

@@ -38,3 +38,10 @@ conic_status cli_chart_open(const cli_session *session, const char *folder, cons
   snprintf(path, sizeof path, "%s/%s", folder, name);
   return conic_output_open(session->context, path, output);
 }
+
+void cli_chart_write_quoted(FILE *to, const char *text) {
+  fputc('"', to);
+  for (; *text; text++)
+    fprintf(to, *text == '"' ? "\"\"" : "%c", *text);
+  fputc('"', to);
+}

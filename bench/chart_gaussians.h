@@ -41,7 +41,7 @@ typedef struct cli_gaussian_chart {
 /* Measures every profile. Errors: INPUT (no Gaussian scene), MEMORY, CANCELLED. */
 conic_status cli_gaussian_chart_measure(cli_session *session, cli_gaussian_chart *chart);
 
-/* FOLDER/profiles.csv, and FOLDER/profiles.gp for gnuplot. */
+/* FOLDER/profiles.csv and profiles.svg. */
 conic_status cli_gaussian_chart_write(cli_session *session, const char *folder, const cli_gaussian_chart *chart);
 
 /* The table on standard output, and the key "profiles" in JSON. */

@@ -1,7 +1,8 @@
-/* The chart of a Gaussian scene as a table, as JSON, and as a script for gnuplot. */
+/* The chart of a Gaussian scene as a table, as JSON, and as a picture. */
 #include <math.h>
 
 #include "bench/chart_gaussians.h"
+#include "bench/plot.h"
 
 static void write_profiles(FILE *to, const cli_gaussian_chart *chart) {
   fputs("profile,ms,ms_setup,ms_sort,ms_bin,ms_composite,drawn,entries,pairs", to);
@@ -21,20 +22,33 @@ static void write_profiles(FILE *to, const cli_gaussian_chart *chart) {
   }
 }
 
-static void write_plots(FILE *to, const cli_gaussian_chart *chart) {
-  for (int is_png = 0; is_png < 2; is_png++) {
-    fprintf(to, "set terminal %s size %d,600 font '%s'\nset output 'profiles.%s'\n",
-            is_png ? "pngcairo" : "svg enhanced", 700 * chart->n_truths, is_png ? "Sans,10" : "Sans,12",
-            is_png ? "png" : "svg");
-    fprintf(to, "set multiplot layout 1,%d title '%zu Gaussians, %d pixels compared'\n", chart->n_truths,
-            chart->n_gaussians, chart->n_pixels);
-    for (int i = 0; i < chart->n_truths; i++)
-      fprintf(to,
-              "set title 'against the truth by %s'\nplot 'profiles.csv' using 'ms':'%s_rmse' with points pt 7 lc rgb "
-              "'#1b6ca8', '' using 'ms':'%s_rmse':'profile' with labels offset 0,0.8 font ',9'\n",
-              cli_truth_names[i], cli_truth_names[i], cli_truth_names[i]);
-    fputs("unset multiplot\nset output\n", to);
+/* A panel a truth: the error of every profile over its time. */
+static void draw_profiles(FILE *to, const cli_gaussian_chart *chart) {
+  const cli_plot_grid grid = {chart->n_truths, chart->n_truths, 560, 440, CONIC_N_GAUSSIAN_PROFILES + 2};
+  cli_plot plot;
+  char title[96];
+  snprintf(title, sizeof title, "%zu Gaussians, %d pixels compared", chart->n_gaussians, chart->n_pixels);
+  cli_plot_begin(&plot, to, title, &grid);
+  for (int i = 0; i < chart->n_truths; i++) {
+    cli_plot_axis x = {"ms a frame", 1, 0.0, 0.0}, y = {"RMSE", 1, 0.0, 0.0};
+    for (int k = 0; k < chart->n_points; k++) {
+      cli_plot_include(&x, chart->points[k].ms);
+      cli_plot_include(&y, chart->points[k].errors[i].rmse);
+    }
+    snprintf(title, sizeof title, "against the truth by %s", cli_truth_names[i]);
+    cli_plot_panel(&plot, title, &x, &y);
+    for (int k = 0; k < chart->n_points; k++) {
+      const cli_profile_point *p = &chart->points[k];
+      const cli_plot_style style = cli_plot_style_of(k);
+      cli_plot_mark(&plot, &style, p->ms, p->errors[i].rmse, 6.0, conic_gaussian_profile_name(p->profile));
+    }
   }
+  cli_plot_key(&plot, NULL, "profile");
+  for (int k = 0; k < chart->n_points; k++) {
+    const cli_plot_style style = cli_plot_style_of(k);
+    cli_plot_key(&plot, &style, conic_gaussian_profile_name(chart->points[k].profile));
+  }
+  cli_plot_end(&plot);
 }
 
 conic_status cli_gaussian_chart_write(cli_session *session, const char *folder, const cli_gaussian_chart *chart) {
@@ -45,15 +59,10 @@ conic_status cli_gaussian_chart_write(cli_session *session, const char *folder, 
   write_profiles(conic_output_stream(output), chart);
   status = conic_output_commit(output);
   if (status == CONIC_OK)
-    status = cli_chart_open(session, folder, "profiles.gp", &output);
+    status = cli_chart_open(session, folder, "profiles.svg", &output);
   if (status != CONIC_OK)
     return status;
-  FILE *to = conic_output_stream(output);
-  fputs("set datafile separator ','\nset datafile columnheaders\nset logscale xy\nset grid lc rgb '#dddddd' lt 1\n"
-        "set offsets graph 0.15, graph 0.15, graph 0.1, graph 0.1\nset format y '%g'\n"
-        "set border lc rgb '#666666'\nset xlabel 'ms a frame'\nset ylabel 'RMSE'\nunset key\n",
-        to);
-  write_plots(to, chart);
+  draw_profiles(conic_output_stream(output), chart);
   return conic_output_commit(output);
 }
 

@@ -42,7 +42,11 @@ conic_status cli_mesh_chart_write(cli_session *session, const char *folder, cons
 /* What is best for its time at each size, and where the others become cheaper than triangles. */
 void cli_mesh_chart_print(const cli_mesh_chart *chart);
 
-/* FOLDER/representations.gp, for gnuplot. */
-conic_status cli_mesh_chart_write_script(cli_session *session, const char *folder, const cli_mesh_chart *chart);
+/* The pixels a triangle at which a representation takes as long as triangles, from large to small; returns how many.
+ * Between two sizes both times are taken for powers of the size. */
+int cli_mesh_chart_crossings(const cli_mesh_chart *chart, int model, double at[CLI_MAX_MESH_SIZES]);
+
+/* FOLDER/representations.svg. */
+conic_status cli_mesh_chart_draw(const cli_session *session, const char *folder, const cli_mesh_chart *chart);
 
 #endif

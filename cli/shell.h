@@ -1,5 +1,5 @@
-/* What surrounds the program, where systems differ: its arguments, signals and terminal, names by patterns, other
- * programs. shell_posix.c and shell_windows.c. */
+/* What surrounds the program, where systems differ: its arguments, signals and terminal, names by patterns.
+ * shell_posix.c and shell_windows.c. */
 #ifndef CONIC_SHELL_H
 #define CONIC_SHELL_H
 
@@ -22,14 +22,17 @@ int cli_shell_columns(void);
 /* The most memory that this process has held, as the system counts it. */
 unsigned long long cli_shell_peak_bytes(void);
 
+/* The seconds that processors have worked for this process, on all threads. */
+double cli_shell_cpu_seconds(void);
+
+/* What the processor and the system call themselves; "unknown" where they do not say. */
+void cli_shell_name_host(char *processor, size_t processor_room, char *system, size_t system_room);
+
 /* From now on, what is released of more than 128 KiB goes back to the system at once, where it would else be kept. */
 void cli_shell_give_back_memory(void);
 
 /* Every name that a pattern with *, ? and [ … ] is of, until `take` returns 0. Returns 0 without memory. */
 int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *path), void *cookie);
-
-/* Runs a program in a folder and waits for its end; whether it was there and content. */
-int cli_shell_run(const char *folder, const char *program, const char *argument);
 
 /* A stream into memory, which is malloc's, and has a zero behind its *n_bytes, once it is closed; null on failure.
  * Closing it returns 0 where all is there. */

@@ -4,7 +4,8 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
+#include <sys/utsname.h>
+#include <time.h>
 #include <unistd.h>
 
 #if defined(__GLIBC__)
@@ -52,6 +53,31 @@ int cli_shell_columns(void) {
 }
 
 /* The kernel's own mark of this program: getrusage also counts what the shell that started it held. */
+double cli_shell_cpu_seconds(void) {
+  struct timespec spent;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &spent);
+  return (double)spent.tv_sec + 1e-9 * (double)spent.tv_nsec;
+}
+
+void cli_shell_name_host(char *processor, size_t processor_room, char *system, size_t system_room) {
+  static const char key[] = "model name";
+  struct utsname names;
+  char line[256];
+  FILE *file = fopen("/proc/cpuinfo", "r");
+  snprintf(processor, processor_room, "unknown");
+  snprintf(system, system_room, "unknown");
+  while (file && fgets(line, sizeof line, file))
+    if (strncmp(line, key, sizeof key - 1) == 0 && strchr(line, ':')) {
+      line[strcspn(line, "\n")] = 0;
+      snprintf(processor, processor_room, "%s", strchr(line, ':') + 1 + strspn(strchr(line, ':') + 1, " "));
+      break;
+    }
+  if (file)
+    fclose(file);
+  if (uname(&names) == 0)
+    snprintf(system, system_room, "%s %s, %s", names.sysname, names.release, names.machine);
+}
+
 unsigned long long cli_shell_peak_bytes(void) {
   unsigned long long kibibytes = 0;
   char line[256];
@@ -85,21 +111,6 @@ int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *p
       break;
   globfree(&found);
   return result != GLOB_NOSPACE;
-}
-
-int cli_shell_run(const char *folder, const char *program, const char *argument) {
-  int status;
-  pid_t child = fork();
-  if (child < 0)
-    return 0;
-  if (child == 0) {
-    if (chdir(folder) == 0)
-      execlp(program, program, argument, (char *)NULL);
-    _exit(127);
-  }
-  while (waitpid(child, &status, 0) < 0)
-    ;
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 FILE *cli_shell_open_memory(char **bytes, size_t *n_bytes) {

@@ -88,6 +88,20 @@ int cli_shell_columns(void) {
              : 80;
 }
 
+double cli_shell_cpu_seconds(void) {
+  FILETIME begun, ended, kernel, user;
+  if (!GetProcessTimes(GetCurrentProcess(), &begun, &ended, &kernel, &user))
+    return 0.0;
+  return 429.4967296 * ((double)kernel.dwHighDateTime + (double)user.dwHighDateTime) +
+         1e-7 * ((double)kernel.dwLowDateTime + (double)user.dwLowDateTime);
+}
+
+void cli_shell_name_host(char *processor, size_t processor_room, char *system, size_t system_room) {
+  const char *name = getenv("PROCESSOR_IDENTIFIER"), *kind = getenv("PROCESSOR_ARCHITECTURE");
+  snprintf(processor, processor_room, "%s", name ? name : "unknown");
+  snprintf(system, system_room, "Windows, %s", kind ? kind : "unknown");
+}
+
 unsigned long long cli_shell_peak_bytes(void) {
   PROCESS_MEMORY_COUNTERS held;
   return GetProcessMemoryInfo(GetCurrentProcess(), &held, sizeof held) ? held.PeakWorkingSetSize : 0;
@@ -153,24 +167,6 @@ int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *p
   conic_disk_close_folder(&folder);
   free(path);
   return 1;
-}
-
-int cli_shell_run(const char *folder, const char *program, const char *argument) {
-  char line[256];
-  wchar_t wide_line[256], wide_folder[4096];
-  STARTUPINFOW how = {.cb = sizeof how};
-  PROCESS_INFORMATION child;
-  DWORD code = 1;
-  if (snprintf(line, sizeof line, "\"%s\" \"%s\"", program, argument) >= (int)sizeof line ||
-      !MultiByteToWideChar(CP_UTF8, 0, line, -1, wide_line, 256) ||
-      !MultiByteToWideChar(CP_UTF8, 0, folder, -1, wide_folder, 4096) ||
-      !CreateProcessW(NULL, wide_line, NULL, NULL, FALSE, 0, NULL, wide_folder, &how, &child))
-    return 0;
-  WaitForSingleObject(child.hProcess, INFINITE);
-  int is_content = GetExitCodeProcess(child.hProcess, &code) && code == 0;
-  CloseHandle(child.hThread);
-  CloseHandle(child.hProcess);
-  return is_content;
 }
 
 /* By way of a file. */

@@ -9,7 +9,7 @@
 #include "surface/kernels/weight.h"
 #include "surface/least_spread.h"
 
-enum { MAX_NEAR = 512, MAX_PIECES = 4, LEAST_SAMPLES = 6, N_ROUNDS = 3, N_TERMS = 6 };
+enum { MAX_NEAR = 512, N_BUCKETS = 256, MAX_PIECES = 4, LEAST_SAMPLES = 6, N_ROUNDS = 3, N_TERMS = 6 };
 
 /* A piece has samples on one side only, and so looks this much farther. */
 static const double WIDER = 2.0;
@@ -21,6 +21,12 @@ static const double LINK = 1.8, LINKED_COSINE = 0.93969262078590838, CREASE_COSI
 /* A piece is bent where a bend takes out more of what is left than noise would. */
 static const double BENT = 4.0;
 
+/* A place that moves by less than this many h has settled. */
+static const double SETTLED = 2e-3;
+
+/* A piece whose samples are off the nearest of larger ones by so many spacings, rms, is a part of those. */
+static const double IN_OTHERS = 0.5;
+
 /* An edge or corner farther away than so many spacings is not the place's. */
 static const double FARTHEST_EDGE = 3.0;
 
@@ -29,9 +35,15 @@ typedef struct crease_scene {
   const conic_surface *surface;
   const conic_near *near;
   size_t n;
-  int8_t piece[MAX_NEAR]; /* -1: none yet */
+  double spacing, from_place2[MAX_NEAR];
+  int8_t piece[MAX_NEAR];                    /* -1: none yet */
+  int32_t cells[MAX_NEAR][3];                /* with sides as long as links */
+  uint16_t heads[N_BUCKETS], next[MAX_NEAR]; /* those in no piece by cell, hashed: lists of 1 + number; 0: the end */
+  uint16_t by_distance[MAX_NEAR];
   int n_pieces;
-  double spacing;
+  uint16_t members[MAX_NEAR];    /* the samples of the pieces, piece by piece */
+  size_t starts[MAX_PIECES + 1]; /* in `members` */
+  double weights[MAX_NEAR];      /* of the members of a piece about a place */
 } crease_scene;
 
 /* A point of a piece. */
@@ -58,65 +70,115 @@ static double apart2(const crease_scene *scene, size_t i, size_t j) {
   return sum;
 }
 
-static double from_place2(const crease_scene *scene, size_t i) {
-  double sum = 0.0;
-  for (int axis = 0; axis < 3; axis++)
-    sum += scene->near->offset[axis][i] * scene->near->offset[axis][i];
-  return sum;
+static unsigned link_bucket(const int32_t cell[3], int x, int y, int z) {
+  uint32_t mixed = (uint32_t)(cell[0] + x) * UINT32_C(0x9E3779B1);
+  mixed = (mixed + (uint32_t)(cell[1] + y)) * UINT32_C(0x9E3779B1);
+  return ((mixed + (uint32_t)(cell[2] + z)) * UINT32_C(0x9E3779B1)) >> 24;
 }
 
-/* Gives all that hangs together with sample `first` the number; returns how many there are. */
-static size_t grow_piece(crease_scene *scene, size_t first, int8_t number) {
+static void sort_into_link_cells(crease_scene *scene) {
+  memset(scene->heads, 0, sizeof scene->heads);
+  for (size_t i = 0; i < scene->n; i++) {
+    for (int axis = 0; axis < 3; axis++) {
+      double cell = floor(scene->near->offset[axis][i] / (LINK * scene->spacing));
+      scene->cells[i][axis] = (int32_t)(fabs(cell) < 1e6 ? cell : 1e6);
+    }
+    unsigned bucket = link_bucket(scene->cells[i], 0, 0, 0);
+    scene->next[i] = scene->heads[bucket];
+    scene->heads[bucket] = (uint16_t)(i + 1);
+  }
+}
+
+/* The nearest first. */
+static void sort_by_distance(crease_scene *scene) {
+  for (size_t gap = scene->n / 2; gap; gap /= 2) /* by shells, from how they are gathered */
+    for (size_t i = gap; i < scene->n; i++) {
+      uint16_t moving = scene->by_distance[i];
+      size_t at = i;
+      for (; at >= gap && scene->from_place2[scene->by_distance[at - gap]] > scene->from_place2[moving]; at -= gap)
+        scene->by_distance[at] = scene->by_distance[at - gap];
+      scene->by_distance[at] = moving;
+    }
+}
+
+static int are_linked(const crease_scene *scene, size_t i, size_t j) {
+  return apart2(scene, i, j) <= LINK * LINK * scene->spacing * scene->spacing && turned(scene, i, j) >= LINKED_COSINE;
+}
+
+/* Gives all that hangs together with sample `first` the number, if they are enough, else that of strays. Returns
+ * whether they are. */
+static int grow_piece(crease_scene *scene, size_t first, int8_t number) {
   uint16_t queue[MAX_NEAR];
   size_t n = 0;
-  double link2 = LINK * LINK * scene->spacing * scene->spacing;
   queue[n++] = (uint16_t)first;
   scene->piece[first] = number;
-  for (size_t at = 0; at < n; at++)
-    for (size_t i = 0; i < scene->n; i++)
-      if (scene->piece[i] < 0 && apart2(scene, queue[at], i) <= link2 && turned(scene, queue[at], i) >= LINKED_COSINE) {
-        scene->piece[i] = number;
-        queue[n++] = (uint16_t)i;
-      }
-  return n;
-}
-
-/* The sample nearest to the place of those that are in no piece yet; n where there is none. */
-static size_t nearest_left(const crease_scene *scene) {
-  size_t best = scene->n;
-  double least2 = HUGE_VAL;
-  for (size_t i = 0; i < scene->n; i++)
-    if (scene->piece[i] == -1 && from_place2(scene, i) < least2) {
-      least2 = from_place2(scene, i);
-      best = i;
+  for (uint16_t *link = &scene->heads[link_bucket(scene->cells[first], 0, 0, 0)]; *link;
+       link = &scene->next[*link - 1u])
+    if (*link == first + 1) {
+      *link = scene->next[first];
+      break;
     }
-  return best;
+  for (size_t at = 0; at < n; at++)
+    for (int step = 0; step < 27; step++) {
+      unsigned bucket = link_bucket(scene->cells[queue[at]], step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1);
+      for (uint16_t *link = &scene->heads[bucket]; *link;) {
+        size_t i = *link - 1u;
+        int is_taken = are_linked(scene, queue[at], i);
+        if (is_taken) {
+          scene->piece[i] = number;
+          queue[n++] = (uint16_t)i;
+          *link = scene->next[i];
+        } else
+          link = &scene->next[i];
+      }
+    }
+  for (size_t i = 0; i < n && n < LEAST_SAMPLES; i++)
+    scene->piece[queue[i]] = MAX_PIECES;
+  return n >= LEAST_SAMPLES;
 }
 
 /* Whether a sample weighs something for the place on a surface that is not sharp. */
 static int is_in_reach(const crease_scene *scene, size_t i) {
-  return from_place2(scene, i) * scene->near->inverse_h2[i] < scene->surface->weighing.end;
+  return scene->from_place2[i] * scene->near->inverse_h2[i] < scene->surface->weighing.end;
+}
+
+static void list_piece_members(crease_scene *scene) {
+  size_t n = 0;
+  for (int piece = 0; piece < scene->n_pieces; piece++) {
+    scene->starts[piece] = n;
+    for (size_t i = 0; i < scene->n; i++)
+      if (scene->piece[i] == piece)
+        scene->members[n++] = (uint16_t)i;
+  }
+  scene->starts[scene->n_pieces] = n;
 }
 
 /* Splits the samples; 0 where those in reach are of one piece. */
 static int split(crease_scene *scene) {
   int has_crease = 0, is_mixed = 0;
-  memset(scene->piece, -1, sizeof scene->piece);
-  size_t first = nearest_left(scene);
-  if (first == scene->n)
+  size_t first = 0;
+  for (size_t i = 0; i < scene->n; i++) {
+    double sum = 0.0;
+    for (int axis = 0; axis < 3; axis++)
+      sum += scene->near->offset[axis][i] * scene->near->offset[axis][i];
+    scene->from_place2[i] = sum;
+    scene->piece[i] = -1;
+    scene->by_distance[i] = (uint16_t)i;
+    first = sum < scene->from_place2[first] ? i : first;
+  }
+  if (!scene->n)
     return 0;
   scene->spacing = (double)scene->surface->creases.spacing[scene->near->sources[first]];
   for (size_t i = 0; i < scene->n && !has_crease; i++)
     has_crease = is_in_reach(scene, i) && turned(scene, first, i) < CREASE_COSINE;
-  while (has_crease && first < scene->n && scene->n_pieces < MAX_PIECES) {
-    size_t n = grow_piece(scene, first, (int8_t)scene->n_pieces);
-    if (n >= LEAST_SAMPLES)
-      scene->n_pieces++;
-    else
-      for (size_t i = 0; i < scene->n; i++) /* strays */
-        scene->piece[i] = scene->piece[i] == scene->n_pieces ? (int8_t)MAX_PIECES : scene->piece[i];
-    first = nearest_left(scene);
-  }
+  if (!has_crease)
+    return 0;
+  sort_by_distance(scene);
+  sort_into_link_cells(scene);
+  for (size_t i = 0; i < scene->n && scene->n_pieces < MAX_PIECES; i++)
+    if (scene->piece[scene->by_distance[i]] == -1)
+      scene->n_pieces += grow_piece(scene, scene->by_distance[i], (int8_t)scene->n_pieces);
+  list_piece_members(scene);
   for (size_t i = 0; i < scene->n && scene->n_pieces > 1; i++)
     is_mixed |= scene->piece[i] > 0 && scene->piece[i] < scene->n_pieces && is_in_reach(scene, i);
   return is_mixed;
@@ -155,8 +217,9 @@ static int solve(int n, double m[N_TERMS][N_TERMS], double x[N_TERMS]) {
 static double fit_heights(const crease_scene *scene, int piece, const double at[3], double frame[3][3], double unit,
                           int n, double solution[N_TERMS]) {
   double m[N_TERMS][N_TERMS] = {{0.0}}, right[N_TERMS] = {0.0}, squares = 0.0, sum = 0.0;
-  for (size_t i = 0; i < scene->n; i++) {
-    double w = scene->piece[i] == piece ? weight_at(scene, i, at) : 0.0, local[3];
+  for (size_t k = scene->starts[piece]; k < scene->starts[piece + 1]; k++) {
+    size_t i = scene->members[k];
+    double w = scene->weights[k], local[3];
     if (!(w > 0.0))
       continue;
     for (int row = 0; row < 3; row++)
@@ -186,12 +249,14 @@ static double fit_heights(const crease_scene *scene, int piece, const double at[
   return squares > 0.0 ? squares / sum : 0.0;
 }
 
-/* The frame across which a piece spreads least about a place. Returns how many samples weigh something there. */
-static size_t frame_of(const crease_scene *scene, int piece, const double at[3], double frame[3][3]) {
+/* The weights of a piece about a place, and the frame across which it spreads least there. Returns how many samples
+ * weigh something there. */
+static size_t frame_of(crease_scene *scene, int piece, const double at[3], double frame[3][3]) {
   double sum = 0.0, mean[3] = {0.0}, products[6] = {0.0};
   size_t count = 0;
-  for (size_t i = 0; i < scene->n; i++) {
-    double w = scene->piece[i] == piece ? weight_at(scene, i, at) : 0.0, d[3];
+  for (size_t at_member = scene->starts[piece]; at_member < scene->starts[piece + 1]; at_member++) {
+    size_t i = scene->members[at_member];
+    double w = scene->weights[at_member] = weight_at(scene, i, at), d[3];
     if (!(w > 0.0))
       continue;
     for (int axis = 0; axis < 3; axis++) {
@@ -216,7 +281,7 @@ static size_t frame_of(const crease_scene *scene, int piece, const double at[3],
 }
 
 /* The piece's point for a place: over the plane of its samples, or where that is not enough, on a bent one. */
-static piece_point land_on(const crease_scene *scene, int piece, const double from[3], double h) {
+static piece_point land_on(crease_scene *scene, int piece, const double from[3], double h) {
   piece_point point = {.is_there = 0};
   memcpy(point.place, from, sizeof point.place);
   for (int round = 0; round < N_ROUNDS; round++) {
@@ -240,17 +305,78 @@ static piece_point land_on(const crease_scene *scene, int piece, const double fr
       point.place[axis] += move * n[axis];
     memcpy(point.normal, n, sizeof n);
     point.is_there = 1;
+    if (fabs(move) < SETTLED * h)
+      break;
   }
   return point;
+}
+
+static size_t n_members(const crease_scene *scene, int piece) {
+  return scene->starts[piece + 1] - scene->starts[piece];
+}
+
+/* The planes of all pieces that are larger than this one, beside its middle. */
+static void land_larger(crease_scene *scene, int piece, double h, piece_point planes[MAX_PIECES]) {
+  double middle[3] = {0.0};
+  for (size_t k = scene->starts[piece]; k < scene->starts[piece + 1]; k++)
+    for (int axis = 0; axis < 3; axis++)
+      middle[axis] += scene->near->offset[axis][scene->members[k]] / (double)n_members(scene, piece);
+  for (int other = 0; other < scene->n_pieces; other++) {
+    planes[other].is_there = 0;
+    if (n_members(scene, other) > n_members(scene, piece))
+      planes[other] = land_on(scene, other, middle, h);
+  }
+}
+
+/* Gives the samples of a piece to larger ones where they lie in those: then their sides are mistaken, as noise has them
+ * near an edge. Returns whether it did. */
+static int give_away(crease_scene *scene, int piece, double h) {
+  piece_point planes[MAX_PIECES];
+  int8_t nearest[MAX_NEAR];
+  double sum = 0.0, limit = IN_OTHERS * scene->spacing;
+  size_t n = 0;
+  land_larger(scene, piece, h, planes);
+  for (size_t k = scene->starts[piece]; k < scene->starts[piece + 1]; k++, n++) {
+    double least = HUGE_VAL;
+    for (int other = 0; other < scene->n_pieces; other++) {
+      double d[3];
+      for (int axis = 0; axis < 3; axis++)
+        d[axis] = scene->near->offset[axis][scene->members[k]] - planes[other].place[axis];
+      double height = planes[other].is_there ? fabs(conic_dot(d, planes[other].normal)) : HUGE_VAL;
+      nearest[n] = height < least ? (int8_t)other : nearest[n];
+      least = height < least ? height : least;
+    }
+    sum += least * least;
+  }
+  if (!(sum <= (double)n * limit * limit))
+    return 0;
+  for (size_t k = 0; k < n; k++)
+    scene->piece[scene->members[scene->starts[piece] + k]] = nearest[k];
+  return 1;
+}
+
+/* Leaves the pieces that others do not hold; returns whether these are more than one. */
+static int join_pieces(crease_scene *scene, double h) {
+  for (int piece = scene->n_pieces - 1; piece >= 0 && scene->n_pieces > 1; piece--) {
+    if (!give_away(scene, piece, h))
+      continue;
+    scene->n_pieces--;
+    for (size_t i = 0; i < scene->n; i++)
+      if (scene->piece[i] > piece && scene->piece[i] <= scene->n_pieces)
+        scene->piece[i]--;
+    list_piece_members(scene);
+  }
+  return scene->n_pieces > 1;
 }
 
 /* On which side of another piece's plane the samples of a piece lie: a sum of heights. */
 static double lean(const crease_scene *scene, int piece, const piece_point *other) {
   double sum = 0.0;
-  for (size_t i = 0; i < scene->n; i++) {
-    double d[3] = {scene->near->offset[0][i] - other->place[0], scene->near->offset[1][i] - other->place[1],
-                   scene->near->offset[2][i] - other->place[2]};
-    sum += scene->piece[i] == piece ? conic_dot(d, other->normal) : 0.0;
+  for (size_t k = scene->starts[piece]; k < scene->starts[piece + 1]; k++) {
+    double d[3];
+    for (int axis = 0; axis < 3; axis++)
+      d[axis] = scene->near->offset[axis][scene->members[k]] - other->place[axis];
+    sum += conic_dot(d, other->normal);
   }
   return sum;
 }
@@ -279,7 +405,7 @@ static int meet_planes(const piece_point *const planes[3], int n, double place[3
 }
 
 /* The point of a piece as far as no other cuts it off there: else of the edge, or the corner. */
-static piece_point land_within(const crease_scene *scene, int piece, double h) {
+static piece_point land_within(crease_scene *scene, int piece, double h) {
   static const double origin[3] = {0.0, 0.0, 0.0};
   piece_point points[MAX_PIECES], result = land_on(scene, piece, origin, h);
   const piece_point *cutting[3] = {&points[piece]};
@@ -325,13 +451,18 @@ int conic_creases_project(const conic_surface *surface, const double r[3], doubl
                           conic_workspace *workspace, conic_landing *landing) {
   const double box[6] = {r[0], r[1], r[2], r[0], r[1], r[2]};
   double margin = (WIDER - 1.0) * surface->options.neglect * h, nearest = HUGE_VAL;
-  crease_scene scene = {.surface = surface, .near = &workspace->near};
+  crease_scene scene;
   piece_point best = {.is_there = 0};
   int best_piece = -1;
   conic_surface_gather(surface, box, margin, workspace, &workspace->single);
   conic_surface_select(surface, &workspace->single, r, margin, except, workspace);
+  scene.surface = surface;
+  scene.near = &workspace->near;
+  scene.n_pieces = 0;
   scene.n = workspace->near.n < MAX_NEAR ? workspace->near.n : MAX_NEAR;
   if (!split(&scene))
+    return 0;
+  if (!join_pieces(&scene, h))
     return 0;
   workspace->n_evaluations++;
   for (int piece = 0; piece < scene.n_pieces; piece++) {

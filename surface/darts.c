@@ -6,12 +6,17 @@
 #include "core/base/memory.h"
 #include "core/base/vectors.h"
 
+enum { N_COVERS = 32 };
+
 /* The lattice's step, as a share of the radius. */
 static const double STEP = 0.25;
 
 /* A corner at the distance d sees a place d² / 2R below its tangent plane where the surface's radius is R, which is
  * half of how far the plane through the corners lies below it. */
 static const double LIFT = 0.5;
+
+/* What rounding may take from a radius, as a share of it. */
+static const double SAFETY = 1e-6;
 
 conic_status conic_dart_board_begin(conic_context *context, double radius, size_t n_expected, conic_dart_board *board) {
   *board = (conic_dart_board){.context = context, .radius = radius, .inverse_side = 0.5 / radius, .n_heads = 1024};
@@ -62,10 +67,14 @@ conic_status conic_dart_board_add(conic_dart_board *board, const double place[3]
   return CONIC_OK;
 }
 
-static int is_near_dart(const conic_dart_board *board, uint32_t i, const double place[3]) {
+static int is_dart_within(const double a[3], const double b[3], double radius) {
   double d[3];
-  conic_subtract(board->places[i], place, d);
-  return conic_dot(d, d) < board->radius * board->radius;
+  conic_subtract(a, b, d);
+  return conic_dot(d, d) < radius * radius;
+}
+
+static int is_near_dart(const conic_dart_board *board, uint32_t i, const double place[3]) {
+  return is_dart_within(board->places[i], place, board->radius);
 }
 
 int conic_dart_board_covers(conic_dart_board *board, const double place[3]) {
@@ -124,16 +133,64 @@ static void place_in(const conic_dart_triangle *triangle, const double shares[3]
     place[axis] = flat[axis] + lift[axis];
 }
 
+/* How far place_in may lift a place of the triangle: of each two corners by the product of their shares, and these
+ * products come to 1/3 at most. */
+static double greatest_lift(const conic_dart_triangle *triangle) {
+  double greatest = 0.0;
+  for (int i = 0; i < 3 && triangle->is_bent; i++) {
+    double d[3];
+    conic_subtract(triangle->corners[i], triangle->corners[(i + 1) % 3], d);
+    double height = fabs(conic_dot(d, triangle->normals[i])) + fabs(conic_dot(d, triangle->normals[(i + 1) % 3]));
+    greatest = height > greatest ? height : greatest;
+  }
+  return LIFT * greatest / 3.0;
+}
+
+/* How many steps from `from`, a place of the flat triangle, all lie within `reach` of `center`; 0 where it does not. */
+static double steps_within(const double from[3], const double step[3], const double center[3], double reach) {
+  double d[3], step2 = conic_dot(step, step);
+  conic_subtract(from, center, d);
+  double along = conic_dot(d, step), rest = reach * reach - conic_dot(d, d);
+  return reach > 0.0 && rest > 0.0 && step2 > 0.0 ? floor((sqrt(along * along + step2 * rest) - along) / step2) : 0.0;
+}
+
+/* Places that covered some of a triangle: its corners, and the latest others. */
+typedef struct triangle_covers {
+  double places[N_COVERS][3];
+  int n, last; /* how many there are; which was used last */
+} triangle_covers;
+
+static void add_cover(triangle_covers *covers, const double place[3]) {
+  covers->last = covers->n < N_COVERS ? covers->n++ : covers->last < N_COVERS - 1 ? covers->last + 1 : 3;
+  memcpy(covers->places[covers->last], place, sizeof covers->places[0]);
+}
+
+/* Whether the place is covered: by what covered others of its triangle, which is soon looked through, or at all. */
+static int is_covered_here(conic_dart_board *board, const double place[3], triangle_covers *covers) {
+  if (is_dart_within(covers->places[covers->last], place, board->radius))
+    return 1;
+  for (int i = 0; i < covers->n; i++)
+    if (is_dart_within(covers->places[i], place, board->radius)) {
+      covers->last = i;
+      return 1;
+    }
+  if (!conic_dart_board_covers(board, place))
+    return 0;
+  add_cover(covers, board->places[board->last]);
+  return 1;
+}
+
 static conic_status throw_at(conic_dart_board *board, const conic_dart_triangle *triangle, uint32_t number,
-                             const double shares[3], conic_darts *darts) {
+                             const double shares[3], triangle_covers *covers, conic_darts *darts) {
   conic_dart dart = {.shares = {shares[0], shares[1]}, .triangle = number};
   place_in(triangle, shares, dart.place);
-  if (conic_dart_board_covers(board, dart.place))
+  if (is_covered_here(board, dart.place, covers))
     return CONIC_OK;
   if (darts->n >= darts->room && conic_memory_reserve(board->context, &darts->list, darts->n, darts->n + 1,
                                                       &darts->room, sizeof *darts->list) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   darts->list[darts->n++] = dart;
+  add_cover(covers, dart.place);
   return conic_dart_board_add(board, dart.place);
 }
 
@@ -147,14 +204,24 @@ conic_status conic_darts_throw(conic_dart_board *board, const conic_dart_triangl
   if (!(conic_dart_reach(triangle) > board->radius))
     return CONIC_OK; /* its corners cover it */
   double height = twice_area_of(triangle) / edges[a], n_rows = height > step ? ceil(height / step) : 1.0;
+  triangle_covers covers = {.n = 3};
+  memcpy(covers.places, triangle->corners, sizeof triangle->corners);
+  double reach = (1.0 - SAFETY) * board->radius - greatest_lift(triangle);
   for (double row = 0.0; row < n_rows && status == CONIC_OK; row++) {
     double up = (row + 0.5) / n_rows, n = ceil((1.0 - up) * edges[a] / step);
-    for (double k = 0.0; k < n && status == CONIC_OK && darts->n < limit; k++) {
+    double flat[3], steps[3], ahead = 0.0;
+    for (int axis = 0; axis < 3; axis++)
+      steps[axis] = (1.0 - up) / n * (triangle->corners[b][axis] - triangle->corners[a][axis]);
+    for (double k = 0.0; k < n && status == CONIC_OK && darts->n < limit; k += 1.0 + ahead) {
       double along = (1.0 - up) * (k + 0.5) / n, shares[3];
       shares[a] = (1.0 - up) - along;
       shares[b] = along;
       shares[c] = up;
-      status = throw_at(board, triangle, number, shares, darts);
+      status = throw_at(board, triangle, number, shares, &covers, darts);
+      for (int axis = 0; axis < 3; axis++)
+        flat[axis] = shares[0] * triangle->corners[0][axis] + shares[1] * triangle->corners[1][axis] +
+                     shares[2] * triangle->corners[2][axis];
+      ahead = status == CONIC_OK ? steps_within(flat, steps, covers.places[covers.last], reach) : 0.0;
     }
   }
   return status;

@@ -95,7 +95,9 @@ static void land(const landing_work *work, size_t i, double h, conic_workspace *
   edge = longest_edge(&triangle);
   const float across[3] = {(float)triangle.across[0], (float)triangle.across[1], (float)triangle.across[2]};
   workspace->side = work->surface->normal[0] ? across : NULL;
+  workspace->is_trusting = 1; /* is_on_sheet looks at what is found */
   conic_surface_project_one(work->surface, dart->place, h, CONIC_NO_SLOT, 1, workspace, &landing);
+  workspace->is_trusting = 0;
   workspace->side = NULL;
   if (!is_on_sheet(work, &triangle, &landing)) {
     stay_in_triangle(work, dart, &triangle, landed);

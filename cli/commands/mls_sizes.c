@@ -5,13 +5,22 @@
 
 #include "core/base/memory.h"
 #include "core/base/threads.h"
+#include "core/base/vectors.h"
+#include "core/estimate/features.h"
 #include "core/estimate/neighbours.h"
 #include "core/splats/splats_gather.h"
 
-enum { CHUNK = 256, N_DIRECTIONS = 6 };
+/* Dense points lie so evenly that few neighbours bound their cells. */
+enum { CHUNK = 256, N_DIRECTIONS = 6, N_NEIGHBOURS = 12 };
 
 /* Where about a point its old outline is looked after: this share of the way to its rim. */
 static const double TO_RIM = 0.9;
+
+/* How far over the surface that may be, as a share of its distance from the point. */
+static const double MOST_LIFT = 0.7;
+
+/* Of 30°. */
+static const double CREASE_COSINE = 0.86602540378443865;
 
 typedef struct outline_keeping {
   const conic_splats *from; /* the old points with the ellipses that they had */
@@ -31,14 +40,25 @@ static double outline_radius(const outline_keeping *work, size_t i) {
   return work->cutoff * sqrt(u2 > v2 ? u2 : v2);
 }
 
-/* Whether another of the dense points covers the place. */
-static int is_covered(const outline_keeping *work, const double place[3], uint32_t own_slot) {
+/* Whether another of the dense points covers the place, or lies under it by no more than `most`: the old outline is a
+ * disc, which leaves a surface that is bent. */
+static int is_covered(const outline_keeping *work, const double place[3], double most, uint32_t own_slot) {
   uint32_t slot;
-  double distance2;
+  double distance2, u[3], v[3], normal[3], offset[3];
   if (!conic_neighbours_nearest(&work->tree, place, own_slot, 1, HUGE_VAL, &slot, &distance2))
     return 0;
-  double radius = outline_radius(work, work->tree.point_of_slot[slot]);
-  return distance2 <= radius * radius;
+  size_t i = work->tree.point_of_slot[slot];
+  double radius = outline_radius(work, i);
+  for (int axis = 0; axis < 3; axis++) {
+    u[axis] = (double)work->dense->tangent_u[axis][i];
+    v[axis] = (double)work->dense->tangent_v[axis][i];
+    offset[axis] = place[axis] - (double)work->dense->position[axis][i];
+  }
+  conic_cross(u, v, normal);
+  if (!conic_normalize(normal))
+    return 0;
+  double up = conic_dot(offset, normal);
+  return fabs(up) <= most && distance2 - up * up <= radius * radius;
 }
 
 /* An old point keeps its ellipse where that covers what no point covers now, as at a border or beside a slit. */
@@ -47,17 +67,16 @@ static int keeps_outline(const outline_keeping *work, size_t i) {
                                                 {-1.0, 0.0}, {-0.5, -0.8660254037844386}, {0.5, -0.8660254037844386}};
   const conic_splats *from = work->from;
   uint32_t slot = work->tree.slot_of_point[i];
-  if (from->dot && from->dot[i] != 0.0f)
-    return 1;
   for (int k = 0; k < N_DIRECTIONS && slot != CONIC_NO_SLOT; k++) {
-    double place[3];
-    for (int axis = 0; axis < 3; axis++)
-      place[axis] = (double)from->position[axis][i] + TO_RIM * work->cutoff *
-                                                          (turns[k][0] * (double)from->tangent_u[axis][i] +
-                                                           turns[k][1] * (double)from->tangent_v[axis][i]);
+    double place[3], to_rim[3];
+    for (int axis = 0; axis < 3; axis++) {
+      to_rim[axis] = TO_RIM * work->cutoff *
+                     (turns[k][0] * (double)from->tangent_u[axis][i] + turns[k][1] * (double)from->tangent_v[axis][i]);
+      place[axis] = (double)from->position[axis][i] + to_rim[axis];
+    }
     if (place[0] + place[1] + place[2] - (place[0] + place[1] + place[2]) != 0.0)
       return 0; /* it had none */
-    if (!is_covered(work, place, slot))
+    if (!is_covered(work, place, MOST_LIFT * conic_length(to_rim), slot))
       return 1;
   }
   return 0;
@@ -77,7 +96,7 @@ static void hand_over_outlines(const outline_keeping *work) {
       work->dense->tangent_v[axis][i] = work->from->tangent_v[axis][i];
     }
   for (size_t i = 0; i < work->from->count && work->from->dot; i++)
-    work->dense->dot[i] = work->from->dot[i];
+    work->dense->dot[i] = work->is_kept[i] ? work->from->dot[i] : 0.0f;
 }
 
 static conic_status keep_outlines(conic_context *context, const conic_splats *from, double cutoff,
@@ -105,11 +124,15 @@ conic_status cli_mls_size_dense(conic_context *context, const conic_model *from,
   conic_estimate_options options;
   conic_model made = {.points = *dense}, sparse = {.n_triangles = 0};
   conic_estimate_options_init(&options);
+  int n_usual = options.n_neighbours;
+  options.n_neighbours = N_NEIGHBOURS;
   conic_status status = conic_model_to_splats(context, &options, &made, NULL);
   *dense = made.points;
   if (status != CONIC_OK || from->n_triangles)
     return status;
+  options.n_neighbours = n_usual;
   options.finds_dots = 1;
+  memcpy(sparse.points.origin, from->points.origin, sizeof sparse.points.origin);
   status = conic_splats_append(context, &sparse.points, &from->points);
   if (status == CONIC_OK)
     status = conic_model_to_splats(context, &options, &sparse, NULL);
@@ -123,8 +146,9 @@ conic_status cli_mls_size_sharp(conic_context *context, conic_splats *points) {
   conic_estimate_options options;
   conic_model made = {.points = *points};
   conic_estimate_options_init(&options);
-  options.feature_angle_deg = 30.0;
   conic_status status = conic_model_to_splats(context, &options, &made, NULL);
+  if (status == CONIC_OK)
+    status = conic_features_in_points(context, CREASE_COSINE, 1, &options, &made.points);
   *points = made.points;
   return status;
 }

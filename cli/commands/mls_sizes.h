@@ -5,8 +5,8 @@
 #include "conic/model.h"
 
 /* Gives `dense`, of which the first points are those of `from`, its ellipses. Those of `from` keep the ones that its
- * own picture has where they cover what the new points do not, and where they are dots. No other becomes a dot, as
- * points that lie close together on something thin would. Errors: MEMORY, CANCELLED. */
+ * own picture has, dots or not, where they cover what the new points do not. No other becomes a dot, as points that
+ * lie close together on something thin would. Errors: MEMORY, CANCELLED. */
 conic_status cli_mls_size_dense(conic_context *context, const conic_model *from, conic_splats *dense);
 
 /* Gives `thinned`, points of `from` in its order, ellipses: each covers the outlines of the points of `from` that it is

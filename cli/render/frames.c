@@ -5,8 +5,6 @@
 
 #include "cli/outputs.h"
 #include "cli/render/views.h"
-#include "core/base/trigonometry.h"
-#include "core/base/vectors.h"
 #include "core/files/file.h"
 
 enum { MOST_FRAMES = 9999, MOST_VIEWS = 9999999 };
@@ -173,29 +171,8 @@ int cli_frames_check(const cli_session *session, cli_render_job *job, const char
   return answer == CLI_DONE ? check_files(session, job, paths, n_paths, job->frames.last - 1) : answer;
 }
 
-/* --- cameras --- */
-
-/* By Rodrigues' formula: against the clock as seen from where the axis, which is unit, points to. */
-static void turn_about(const double axis[3], double cosine, double sine, double v[3]) {
-  double across[3], along = conic_dot(axis, v) * (1.0 - cosine);
-  conic_cross(axis, v, across);
-  for (int i = 0; i < 3; i++)
-    v[i] = v[i] * cosine + across[i] * sine + axis[i] * along;
-}
-
 void cli_frame_orbit(const cli_render_job *job, int i_frame, conic_camera *camera) {
   const conic_source_scale *scale = conic_source_measure(job->source);
-  const double *up = job->is_up_given ? job->framing.up : scale->up;
-  double angle = conic_radians(360.0 * (double)i_frame / (double)job->n_frames), length = conic_length(up);
-  const double axis[3] = {up[0] / length, up[1] / length, up[2] / length};
-  double center[3];
-  if (i_frame == 0)
-    return; /* to the bit where the file puts it */
-  for (int i = 0; i < 3; i++)
-    center[i] = 0.5 * scale->minimum[i] + 0.5 * scale->maximum[i];
-  for (int i = 0; i < 3; i++) {
-    double *row = camera->cam_from_world[i], to_center = conic_dot(row, center);
-    turn_about(axis, conic_cos(angle), conic_sin(angle), row);
-    row[3] += to_center - conic_dot(row, center);
-  }
+  cli_camera_orbit(scale, job->is_up_given ? job->framing.up : scale->up, (double)i_frame / (double)job->n_frames,
+                   camera);
 }

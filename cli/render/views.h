@@ -4,6 +4,7 @@
 
 #include "cli/json_write.h"
 #include "cli/session.h"
+#include "conic/source.h"
 
 /* What --camera, --view and --size say. */
 typedef struct cli_views_wish {
@@ -27,5 +28,8 @@ void cli_view_stem(const conic_cameras *cameras, size_t i_view, char *stem, size
 
 /* A camera's members, as a file of one has them. */
 void cli_camera_write(cli_json *json, const conic_camera *camera);
+
+/* Turns a camera by a part of a turn about a scene's centre and what points up; not at all: to the bit as it is. */
+void cli_camera_orbit(const conic_source_scale *scale, const double up[3], double turns, conic_camera *camera);
 
 #endif

@@ -298,7 +298,7 @@ static conic_status estimate_sharp_points(conic_context *context, const conic_es
   if (status == CONIC_OK)
     status = estimate_plain(context, options, &copy, repairs);
   if (status == CONIC_OK && copy.points.n_clips == 0)
-    status = conic_features_in_points(context, cosine, options, &copy.points);
+    status = conic_features_in_points(context, cosine, 0, options, &copy.points);
   if (status == CONIC_OK && copy.points.dot)
     conic_clip_filter(&copy.points, is_dot, copy.points.dot);
   conic_splats_release(context, status == CONIC_OK ? &model->points : &copy.points);

@@ -8,15 +8,17 @@
 
 /* Finds creases among points that have axes: where the planes of neighbours meet at more than the angle of that cosine.
  * Splats there are turned into the plane that their side lies in, made large enough to reach the crease, and clipped at
- * it. Errors: ARGUMENT, MEMORY, CANCELLED. */
-conic_status conic_features_in_points(conic_context *context, double cosine, const conic_estimate_options *options,
-                                      conic_splats *splats);
+ * it. With are_sides the planes that they have are those, also near creases; else they are found anew from the points.
+ * Errors: ARGUMENT, MEMORY, CANCELLED. */
+conic_status conic_features_in_points(conic_context *context, double cosine, int are_sides,
+                                      const conic_estimate_options *options, conic_splats *splats);
 
 /* A choice of clip lines for one splat. */
 typedef struct conic_clip_choice {
   int n;                /* candidates */
   float lines[16][3];   /* the nearest 16 at most */
   double distances[16]; /* of the centre, in units of the axes */
+  double lost_share;    /* of the places, what lines may leave out, whose directions then are sure; 0: none */
 } conic_clip_choice;
 
 /* Notes the line (a, b, c) as a candidate unless it is farther than `reach` or has hardly any direction. */

@@ -40,11 +40,21 @@ static int keeps(const conic_clip *clip, const double place[2], double slack) {
   return clip->operation == CONIC_CLIP_OR ? n_keeping > 0 : n_keeping == clip->n_lines;
 }
 
-static int keeps_all(const conic_clip *clip, const double (*places)[2], size_t n_places, double slack) {
+static int keeps_all(const conic_clip_choice *choice, const conic_clip *clip, const double (*places)[2],
+                     size_t n_places, double slack) {
+  size_t n_lost = 0;
   for (size_t i = 0; i < n_places; i++)
-    if (!keeps(clip, places[i], slack))
-      return 0;
-  return 1;
+    n_lost += !keeps(clip, places[i], slack);
+  return (double)n_lost <= choice->lost_share * (double)n_places;
+}
+
+/* Whether places are kept that either of two lines keeps; not where the lines face each other and keep all there is. */
+static int keeps_either(const conic_clip_choice *choice, const conic_clip *clip, const double (*places)[2],
+                        size_t n_places, double slack) {
+  const float *a = clip->lines[0], *b = clip->lines[1];
+  int is_all =
+      choice->lost_share > 0.0 && a[0] * b[0] + a[1] * b[1] < -0.5f * (float)(length_of_line(a) * length_of_line(b));
+  return clip->n_lines == 2 && !is_all && keeps_all(choice, clip, places, n_places, slack);
 }
 
 int conic_clip_choose(const conic_clip_choice *choice, const double (*places)[2], size_t n_places, double slack,
@@ -63,16 +73,16 @@ int conic_clip_choose(const conic_clip_choice *choice, const double (*places)[2]
   memcpy(clip->lines[0], first, sizeof clip->lines[0]);
   if (clip->n_lines == 2)
     memcpy(clip->lines[1], choice->lines[second], sizeof clip->lines[1]);
-  if (keeps_all(clip, places, n_places, slack))
+  if (keeps_all(choice, clip, places, n_places, slack))
     return 1;
   clip->operation = CONIC_CLIP_OR;
-  if (clip->n_lines == 2 && keeps_all(clip, places, n_places, slack))
+  if (keeps_either(choice, clip, places, n_places, slack))
     return 1;
   clip->operation = CONIC_CLIP_AND;
   clip->n_lines = 1;
   for (int i = 0; i < choice->n; i++) {
     memcpy(clip->lines[0], choice->lines[i], sizeof clip->lines[0]);
-    if (keeps_all(clip, places, n_places, slack)) {
+    if (keeps_all(choice, clip, places, n_places, slack)) {
       memset(clip->lines[1], 0, sizeof clip->lines[1]);
       return 1;
     }

@@ -25,6 +25,13 @@ enum { FEW = 9 };
 /* Lines within this many times the outline count. */
 #define REACH 2.0
 
+/* Of planes that are given. */
+#define SIDE_ROUGHNESS 0.1f
+#define SAME_SIDE_COSINE 0.8
+
+/* Then this share of the neighbours in a plane may be cut off: noise has moved them over the edge. */
+#define LOST_SHARE 0.2
+
 /* A slot's plane: through its position. */
 typedef struct slot_plane {
   float normal[3];
@@ -37,6 +44,7 @@ typedef struct feature_search {
   const conic_splats *splats;
   const conic_neighbourhood *neighbourhood;
   double cosine, cutoff;
+  int are_sides; /* the splats' normals are those of the sides that they lie on */
   slot_plane *small, *final;
   conic_clip *clips; /* by slot, those of its point; n_lines 0: none */
 } feature_search;
@@ -119,6 +127,23 @@ static double wide_roughness(const feature_search *s, size_t slot, const double 
   return all > 0.0 ? sqrt(across / all) : 0.0;
 }
 
+/* The plane across the mean of the normals of those neighbours that are on the slot's side, by their own. */
+static void average_side(const feature_search *s, size_t slot, slot_plane *plane) {
+  const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, slot);
+  const float *own = s->neighbourhood->normals[slot];
+  double sum[3] = {(double)own[0], (double)own[1], (double)own[2]};
+  for (size_t i = 0; i < s->neighbourhood->n_neighbours; i++) {
+    const float *other = s->neighbourhood->normals[list[i]];
+    float along = own[0] * other[0] + own[1] * other[1] + own[2] * other[2];
+    for (int axis = 0; axis < 3 && fabs((double)along) >= SAME_SIDE_COSINE; axis++)
+      sum[axis] += along < 0.0f ? -(double)other[axis] : (double)other[axis];
+  }
+  conic_normalize(sum);
+  for (int axis = 0; axis < 3; axis++)
+    plane->normal[axis] = (float)sum[axis];
+  plane->roughness = SIDE_ROUGHNESS;
+}
+
 /* The plane that a slot's splat is to lie in: that of its axes, where it is flat; else the flattest about. */
 static void choose_plane(const feature_search *s, size_t slot, slot_plane *plane) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, slot);
@@ -128,6 +153,10 @@ static void choose_plane(const feature_search *s, size_t slot, slot_plane *plane
   *plane = s->small[slot];
   for (int axis = 0; axis < 3; axis++)
     own[axis] = (double)s->neighbourhood->normals[slot][axis];
+  if (s->are_sides) {
+    average_side(s, slot, plane);
+    return;
+  }
   for (size_t i = 0; i < s->neighbourhood->n_neighbours; i++) {
     double d[3];
     from_to(s, slot, list[i], d);
@@ -267,7 +296,7 @@ static void scale_lines(const feature_search *s, const slot_splat *p, conic_clip
 
 static void clip_slot(const feature_search *s, size_t slot) {
   slot_splat p = place_of_slot(s, slot);
-  conic_clip_choice choice = {.n = 0};
+  conic_clip_choice choice = {.n = 0, .lost_share = s->are_sides ? LOST_SHARE : 0.0};
   conic_clip *clip = &s->clips[slot];
   *clip = (conic_clip){.splat = (uint32_t)p.point};
   if (!(p.radius > 0.0) || !(p.radius * 0.0 == 0.0)) /* no splat */
@@ -379,11 +408,11 @@ static conic_status run_passes(conic_context *context, feature_search *s, conic_
   return status;
 }
 
-conic_status conic_features_in_points(conic_context *context, double cosine, const conic_estimate_options *options,
-                                      conic_splats *splats) {
+conic_status conic_features_in_points(conic_context *context, double cosine, int are_sides,
+                                      const conic_estimate_options *options, conic_splats *splats) {
   const float *const positions[3] = {splats->position[0], splats->position[1], splats->position[2]};
   conic_neighbourhood neighbourhood;
-  feature_search s = {.splats = splats, .cosine = cosine, .cutoff = (double)options->cutoff};
+  feature_search s = {.splats = splats, .cosine = cosine, .are_sides = are_sides, .cutoff = (double)options->cutoff};
   conic_status status =
       conic_neighbourhood_create(context, positions, splats->count, (size_t)options->n_neighbours, &neighbourhood);
   if (status != CONIC_OK)

@@ -11,6 +11,10 @@
 enum { ROUNDS = 4 };
 static const double margin = 0.97;
 
+/* Surfels that take less of what triangles do stay surfels whatever is beside them, and nothing is looked up for
+ * them. */
+static const double decided = 0.5;
+
 /* A cluster in sight. Infinite costs are of a kind that is not good enough. */
 typedef struct plan_candidate {
   conic_hybrid_offer offers[2]; /* by kind; of surfels its share of a node's that may stand for them */
@@ -31,7 +35,7 @@ typedef struct hybrid_planning {
   size_t n;
   const uint32_t *clusters;
   plan_candidate *candidates;
-  uint32_t *of_cluster; /* of each of the model's clusters, where it is in sight: its candidate, else n */
+  uint32_t *of_cluster; /* of each of the model's clusters: its candidate, or n out of sight; n + 1: a node stands */
   size_t n_links;
   cluster_link *links;
   uint8_t *kinds; /* what was found before */
@@ -39,6 +43,9 @@ typedef struct hybrid_planning {
   double error_px;
   double *amounts, *below; /* of each cluster of the model, and of each node, for cutting */
   uint32_t *nodes;
+  conic_hybrid_offer *node_offers; /* once they were asked for; before, of no amount */
+  const uint32_t *seen;
+  size_t n_seen, n_standing; /* nodes that may stand, and that do already */
 } hybrid_planning;
 
 static const conic_hybrid_level *triangles_of(const hybrid_planning *p, size_t i) {
@@ -56,7 +63,10 @@ static void ask(hybrid_planning *p) {
 
 static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *node) {
   const hybrid_planning *p = data;
-  return conic_hybrid_node_offer(p->hybrid, p->view, node, p->error_px);
+  conic_hybrid_offer *offer = &p->node_offers[node - p->hybrid->nodes];
+  if (!(offer->amount > 0.0))
+    *offer = conic_hybrid_node_offer(p->hybrid, p->view, node, p->error_px);
+  return *offer;
 }
 
 /* Lets nodes stand for clusters that are surfels now. Returns how much less these take by that. */
@@ -64,10 +74,10 @@ static double cut_nodes(const hybrid_planning *p) {
   const conic_hybrid_cutting cutting = {p->hybrid, p->amounts, ask_node, p, p->below};
   for (size_t i = 0; i < p->n; i++) {
     const plan_candidate *c = &p->candidates[i];
-    int is_free = c->kind == CONIC_HYBRID_SURFELS && c->alone_ns < HUGE_VAL;
-    p->amounts[p->clusters[i]] = is_free ? c->alone_ns : NAN;
+    int may_join = c->kind == CONIC_HYBRID_SURFELS && c->alone_ns < HUGE_VAL;
+    p->amounts[p->clusters[i]] = may_join ? c->alone_ns : NAN;
   }
-  return conic_hybrid_cut(&cutting, p->nodes);
+  return conic_hybrid_cut_seen(&cutting, p->seen, p->n_seen, p->nodes);
 }
 
 /* The links of one candidate, one for each neighbour: `last` has for each candidate the link that names it. */
@@ -83,7 +93,9 @@ static void add_links(hybrid_planning *p, uint32_t i, uint32_t *last) {
     const conic_cluster_border *border = &frame.borders[level->first_border + k];
     uint32_t other = p->of_cluster[border->across];
     uint32_t n = border->from < border->to ? border->to - border->from : border->from - border->to;
-    if (other == p->n)
+    if (other > p->n)
+      c->offers[CONIC_HYBRID_TRIANGLES].amount += CONIC_HYBRID_STITCH_NS * ((double)n - 1.0);
+    if (other >= p->n)
       continue;
     if (last[other] < c->first_link || last[other] >= p->n_links) {
       last[other] = (uint32_t)p->n_links;
@@ -105,15 +117,20 @@ static void match_links(hybrid_planning *p) {
     }
 }
 
+static int is_decided(const plan_candidate *c) {
+  return c->offers[CONIC_HYBRID_SURFELS].amount < decided * c->offers[CONIC_HYBRID_TRIANGLES].amount;
+}
+
 static conic_status find_links(hybrid_planning *p) {
   size_t n_borders = 0;
   for (size_t i = 0; i < p->n; i++)
-    n_borders += triangles_of(p, i)->n_borders;
+    n_borders += is_decided(&p->candidates[i]) ? 0 : triangles_of(p, i)->n_borders;
   uint32_t *last = conic_memory_allocate_zeroed(p->hybrid->context, p->n, sizeof *last);
   p->links = conic_memory_allocate(p->hybrid->context, n_borders, sizeof *p->links);
   if (last && p->links) {
     for (uint32_t i = 0; i < p->n; i++)
-      add_links(p, i, last);
+      if (!is_decided(&p->candidates[i]))
+        add_links(p, i, last);
     match_links(p);
   }
   conic_memory_release(p->hybrid->context, last);
@@ -150,9 +167,10 @@ static void improve(hybrid_planning *p) {
   }
 }
 
+/* Nodes that stand are surfels. */
 static int is_mixed(const hybrid_planning *p) {
-  for (size_t i = 1; i < p->n; i++)
-    if (p->candidates[i].kind != p->candidates[0].kind)
+  for (size_t i = 0; i < p->n; i++)
+    if (p->candidates[i].kind != (p->n_standing ? CONIC_HYBRID_SURFELS : p->candidates[0].kind))
       return 1;
   return 0;
 }
@@ -163,17 +181,22 @@ static double mixing(const hybrid_planning *p) {
   for (size_t i = 0; i < p->n; i++)
     if (p->candidates[i].kind == CONIC_HYBRID_TRIANGLES)
       n_pixels += conic_hybrid_tile_pixels(p->view, &p->hybrid->clusters[p->clusters[i]]);
-  n_pixels = n_pixels < p->view->n_pixels ? n_pixels : p->view->n_pixels;
-  return CONIC_HYBRID_BOTH_NS + CONIC_HYBRID_BOTH_PIXEL_NS * p->view->n_pixels + CONIC_HYBRID_BOTH_TILE_NS * n_pixels;
+  return conic_hybrid_mixing_ns(p->view, n_pixels < p->view->n_pixels ? n_pixels : p->view->n_pixels);
 }
 
-/* What all takes; with what a picture of both kinds must promise to be preferred. */
+/* Of what may be either kind: the rest takes the same whatever is chosen, and may be most of it. */
+static int can_be_either(const plan_candidate *c) {
+  return c->offers[CONIC_HYBRID_SURFELS].amount < HUGE_VAL;
+}
+
+/* What all takes that may be either kind; with what a picture of both kinds must promise to be preferred. */
 static double total(const hybrid_planning *p) {
   int is_both = is_mixed(p);
   double sum = is_both ? mixing(p) : 0.0;
   for (size_t i = 0; i < p->n; i++) {
     const plan_candidate *c = &p->candidates[i];
-    sum += c->kind == CONIC_HYBRID_SURFELS ? c->alone_ns : c->offers[CONIC_HYBRID_TRIANGLES].amount;
+    double triangles_ns = can_be_either(c) ? c->offers[CONIC_HYBRID_TRIANGLES].amount : 0.0;
+    sum += c->kind == CONIC_HYBRID_SURFELS ? c->alone_ns : triangles_ns;
     for (size_t k = 0; k < c->n_links && c->kind == CONIC_HYBRID_TRIANGLES; k++)
       if (p->candidates[p->links[c->first_link + k].candidate].kind == CONIC_HYBRID_SURFELS)
         sum += p->links[c->first_link + k].own_ns;
@@ -234,13 +257,15 @@ static void settle(hybrid_planning *p) {
  * looked for. */
 static int is_settled(hybrid_planning *p) {
   double sums[2] = {0.0, 0.0}, least = 0.0;
+  int is_bound = 0;
   for (size_t i = 0; i < p->n; i++) {
     const plan_candidate *c = &p->candidates[i];
-    least += c->offers[c->kind].amount;
+    is_bound |= !can_be_either(c);
+    least += can_be_either(c) ? c->offers[c->kind].amount : 0.0;
     for (int kind = 0; kind < 2; kind++)
-      sums[kind] += c->offers[kind].amount;
+      sums[kind] += can_be_either(c) ? c->offers[kind].amount : 0.0;
   }
-  uint8_t kind = sums[CONIC_HYBRID_SURFELS] < sums[CONIC_HYBRID_TRIANGLES];
+  uint8_t kind = !is_bound && sums[CONIC_HYBRID_SURFELS] < sums[CONIC_HYBRID_TRIANGLES];
   if (is_mixed(p) && !(sums[kind] <= least / margin))
     return 0;
   take_kind(p, kind);
@@ -268,41 +293,59 @@ static conic_status plan_kinds(hybrid_planning *p) {
   return status;
 }
 
+/* No node above it can stand any more. */
+static void note_standing(hybrid_planning *p, size_t i) {
+  const conic_hybrid_node *node = &p->hybrid->nodes[i];
+  p->n_standing++;
+  p->below[i] = NAN;
+  for (uint32_t k = node->begin; k < node->end; k++)
+    p->of_cluster[k] = (uint32_t)p->n + 1;
+}
+
 static conic_status begin_plan(hybrid_planning *p) {
   conic_context *context = p->hybrid->context;
   p->candidates = conic_memory_allocate_zeroed(context, p->n, sizeof *p->candidates);
   p->of_cluster = conic_memory_allocate(context, p->hybrid->n_clusters, sizeof *p->of_cluster);
   p->kinds = conic_memory_allocate(context, p->n, sizeof *p->kinds);
   p->amounts = conic_memory_allocate_zeroed(context, p->hybrid->n_clusters, sizeof *p->amounts);
-  p->below = conic_memory_allocate(context, p->hybrid->n_nodes, sizeof *p->below);
-  if (!p->candidates || !p->of_cluster || !p->kinds || !p->amounts || !p->below)
+  p->below = conic_memory_allocate_zeroed(context, p->hybrid->n_nodes, sizeof *p->below);
+  p->node_offers = conic_memory_allocate_zeroed(context, p->hybrid->n_nodes, sizeof *p->node_offers);
+  if (!p->candidates || !p->of_cluster || !p->kinds || !p->amounts || !p->below || !p->node_offers)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < p->hybrid->n_clusters; i++)
     p->of_cluster[i] = (uint32_t)p->n;
   for (size_t i = 0; i < p->n; i++)
     p->of_cluster[p->clusters[i]] = (uint32_t)i;
+  for (size_t i = 0; i < p->hybrid->n_nodes; i++)
+    if (p->nodes[i] != CONIC_HYBRID_NO_NODE)
+      note_standing(p, i);
   return CONIC_OK;
 }
 
-conic_status conic_hybrid_choose_levels(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
-                                        int only_kind, const uint32_t *clusters, size_t n, uint32_t *levels,
-                                        uint32_t *nodes) {
-  conic_context *context = hybrid->context;
-  hybrid_planning p = {.hybrid = hybrid, .n = n, .clusters = clusters, .view = view, .error_px = error_px};
-  p.nodes = nodes;
+conic_status conic_hybrid_choose_levels(const conic_hybrid_choosing *choosing, uint32_t *levels, uint32_t *nodes) {
+  conic_context *context = choosing->hybrid->context;
+  hybrid_planning p = {.hybrid = choosing->hybrid,
+                       .n = choosing->n,
+                       .clusters = choosing->clusters,
+                       .view = choosing->view,
+                       .error_px = choosing->error_px,
+                       .nodes = nodes,
+                       .seen = choosing->seen,
+                       .n_seen = choosing->n_seen};
   conic_status status = begin_plan(&p);
   if (status == CONIC_OK) {
     ask(&p);
-    if (only_kind < 0)
+    if (choosing->only_kind < 0)
       status = plan_kinds(&p);
     else
-      obey(&p, only_kind);
+      obey(&p, choosing->only_kind);
   }
   if (status == CONIC_OK)
     cut_nodes(&p);
-  for (size_t i = 0; i < n && status == CONIC_OK; i++)
+  for (size_t i = 0; i < p.n && status == CONIC_OK; i++)
     levels[i] = p.candidates[i].offers[p.candidates[i].kind].level;
   conic_memory_release(context, p.links);
+  conic_memory_release(context, p.node_offers);
   conic_memory_release(context, p.below);
   conic_memory_release(context, p.amounts);
   conic_memory_release(context, p.kinds);

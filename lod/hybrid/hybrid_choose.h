@@ -6,12 +6,22 @@
 
 #include "lod/hybrid/hybrid_cut.h"
 
-/* Gives each of n clusters, those in sight, a level, from its first, whose error is at most error_px: triangles or
- * surfels, or the kind that is asked for, at its finest where none is good enough; and to nodes of which all that is in
- * sight is surfels the level by which they stand for it, or NO_NODE; so that all together they take least, as far as a
- * few rounds find it. Errors: MEMORY. */
-conic_status conic_hybrid_choose_levels(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
-                                        int only_kind, const uint32_t *clusters, size_t n, uint32_t *levels,
-                                        uint32_t *nodes);
+/* What there is to choose for. */
+typedef struct conic_hybrid_choosing {
+  const conic_hybrid *hybrid;
+  const conic_hybrid_camera *view;
+  double error_px;
+  int only_kind; /* below 0: either */
+  const uint32_t *clusters;
+  size_t n; /* clusters in sight, but for those that nodes stand for already */
+  const uint32_t *seen;
+  size_t n_seen; /* nodes that may yet stand: in growing order, with each also all that it is below */
+} conic_hybrid_choosing;
+
+/* Gives each of the clusters a level, from its first, whose error is at most error_px: triangles or surfels, or the
+ * kind that is asked for, at its finest where none is good enough; and to nodes of which all that is in sight is surfels
+ * the level by which they stand for it, so that all together they take least, as far as a few rounds find it. Before,
+ * nodes[i] is the level of each node that stands already, which stays, or NO_NODE. Errors: MEMORY. */
+conic_status conic_hybrid_choose_levels(const conic_hybrid_choosing *choosing, uint32_t *levels, uint32_t *nodes);
 
 #endif

@@ -15,38 +15,44 @@ static double sum_children(const conic_hybrid_cutting *c, size_t node) {
   return sum;
 }
 
-/* From the leaves to the root: each node by itself against the best of what is below it. */
-static void cut_upwards(const conic_hybrid_cutting *c, uint32_t *nodes) {
-  for (size_t i = c->hybrid->n_nodes; i-- > 0;) {
-    const conic_hybrid_node *node = &c->hybrid->nodes[i];
-    double sum = node->next == i + 1 ? sum_clusters(c, node) : sum_children(c, i);
-    nodes[i] = CONIC_HYBRID_NO_NODE;
-    c->below[i] = sum;
-    if (!(sum > 0.0)) /* nothing is in sight, or something must stay */
-      continue;
-    conic_hybrid_offer offer = c->offer(c->data, node);
-    if (offer.amount < sum) {
-      nodes[i] = offer.level;
-      c->below[i] = offer.amount;
-    }
+/* A node by itself against the best of what is below it. */
+static void cut_node(const conic_hybrid_cutting *c, size_t i, uint32_t *nodes) {
+  const conic_hybrid_node *node = &c->hybrid->nodes[i];
+  double sum = node->next == i + 1 ? sum_clusters(c, node) : sum_children(c, i);
+  nodes[i] = CONIC_HYBRID_NO_NODE;
+  c->below[i] = sum;
+  if (!(sum > 0.0)) /* nothing is in sight, or something must stay */
+    return;
+  conic_hybrid_offer offer = c->offer(c->data, node);
+  if (offer.amount < sum) {
+    nodes[i] = offer.level;
+    c->below[i] = offer.amount;
   }
 }
 
-double conic_hybrid_cut(const conic_hybrid_cutting *c, uint32_t *nodes) {
+/* Of the k-th node that is looked at: all are, where there is no list. */
+static size_t seen_node(const uint32_t *seen, size_t k) {
+  return seen ? seen[k] : k;
+}
+
+double conic_hybrid_cut_seen(const conic_hybrid_cutting *c, const uint32_t *seen, size_t n_seen, uint32_t *nodes) {
   const conic_hybrid *h = c->hybrid;
   double less = 0.0;
-  cut_upwards(c, nodes);
-  for (size_t i = 0; i < h->n_nodes;) {
-    if (nodes[i] == CONIC_HYBRID_NO_NODE) {
-      i++;
+  for (size_t k = n_seen; k-- > 0;) /* from the leaves to the root */
+    cut_node(c, seen_node(seen, k), nodes);
+  for (size_t k = 0; k < n_seen;) {
+    size_t i = seen_node(seen, k++);
+    if (nodes[i] == CONIC_HYBRID_NO_NODE)
       continue;
-    }
     less += sum_clusters(c, &h->nodes[i]) - c->below[i];
-    for (size_t k = i + 1; k < h->nodes[i].next; k++)
-      nodes[k] = CONIC_HYBRID_NO_NODE;
-    i = h->nodes[i].next;
+    for (; k < n_seen && seen_node(seen, k) < h->nodes[i].next; k++)
+      nodes[seen_node(seen, k)] = CONIC_HYBRID_NO_NODE;
   }
   return less;
+}
+
+double conic_hybrid_cut(const conic_hybrid_cutting *c, uint32_t *nodes) {
+  return conic_hybrid_cut_seen(c, NULL, c->hybrid->n_nodes, nodes);
 }
 
 void conic_hybrid_find_standing(const conic_hybrid *h, const uint32_t *nodes, uint32_t *standing) {

@@ -22,6 +22,10 @@ typedef struct conic_hybrid_cutting {
  * or NO_NODE. Returns how much less all takes by that. */
 double conic_hybrid_cut(const conic_hybrid_cutting *cutting, uint32_t *nodes);
 
+/* The same of some of the nodes, in growing order, with each also all that it is below. Of the others, nodes[i] and
+ * below[i] are the caller's: NO_NODE and 0 out of sight, and NaN where none that it is below may stand for it. */
+double conic_hybrid_cut_seen(const conic_hybrid_cutting *cutting, const uint32_t *seen, size_t n_seen, uint32_t *nodes);
+
 /* For each cluster of the model the node that stands for it, or NO_NODE. */
 void conic_hybrid_find_standing(const conic_hybrid *hybrid, const uint32_t *nodes, uint32_t *standing);
 

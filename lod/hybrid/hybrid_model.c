@@ -69,8 +69,8 @@ static int is_length(float value) {
   return value >= 0.0f && value < HUGE_VALF;
 }
 
-static const char *wrong_level(const conic_hybrid_level *level, int is_first) {
-  if (level->kind > CONIC_HYBRID_SURFELS || (is_first && level->kind != CONIC_HYBRID_TRIANGLES))
+static const char *wrong_level(const conic_hybrid_level *level) {
+  if (level->kind > CONIC_HYBRID_SURFELS)
     return "a level of no known kind";
   if (level->count < 1 || level->count > UINT32_MAX / 4)
     return "a level without its triangles or surfels";
@@ -89,7 +89,7 @@ static const char *wrong_levels(const conic_hybrid *h, const conic_hybrid_cluste
   uint64_t n_borders = 0;
   for (uint32_t k = 0; k < cluster->n_levels; k++) {
     const conic_hybrid_level *level = &h->levels[cluster->first_level + k];
-    const char *wrong = wrong_level(level, k == 0);
+    const char *wrong = wrong_level(level);
     if (wrong)
       return wrong;
     if (level->first_border != (level->kind == CONIC_HYBRID_TRIANGLES ? n_borders : 0))
@@ -136,7 +136,7 @@ static const char *wrong_node_levels(const conic_hybrid *h) {
     for (size_t k = 0; k < node->n_levels; k++) {
       if (h->levels[next + k].n_borders > 0 || h->levels[next + k].first_border > 0)
         return "a node's level with borders";
-      const char *wrong = wrong_level(&h->levels[next + k], 0);
+      const char *wrong = wrong_level(&h->levels[next + k]);
       if (wrong)
         return wrong;
     }

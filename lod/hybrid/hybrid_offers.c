@@ -11,8 +11,12 @@
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
  * holds a pixel's centre, and a pixel of the cluster; a surfel, and a pixel of its outline
  * (docs/notes/hybrid-measured.md). */
-static const double triangle_ns = 18.0, seen_triangle_ns = 130.0, triangle_pixel_ns = 5.3;
+static const double triangle_ns = 60.0, seen_triangle_ns = 90.0, triangle_pixel_ns = 5.3;
 static const double surfel_ns = 37.0, surfel_pixel_ns = 1.4;
+
+/* What a picture of both kinds takes more: at all, for each of its pixels, and for each in tiles that have triangles.
+ */
+static const double both_ns = 30000.0, both_pixel_ns = 0.2, both_tile_ns = 0.5;
 
 void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *camera,
                               const conic_render_options *render, conic_hybrid_camera *view) {
@@ -130,9 +134,15 @@ static double facing_of(const conic_hybrid_camera *view, const conic_hybrid_boun
   return cone * (seen->distance > 0.0 ? fabs(along) / seen->distance : 1.0) + (1.0 - cone) * 0.5;
 }
 
-static double cost_of_triangles(const conic_hybrid_cluster *cluster, const conic_hybrid_level *level,
-                                const sight *seen) {
-  double n = (double)level->count, n_pixels = (double)cluster->area * seen->scale2 * seen->facing;
+/* What reaches near, or behind the eye, covers no more than the picture. */
+static double pixels_of(const conic_hybrid_camera *view, double area, const sight *seen) {
+  double n_pixels = area * seen->scale2 * seen->facing;
+  return n_pixels < view->n_pixels ? n_pixels : view->n_pixels;
+}
+
+static double cost_of_triangles(const conic_hybrid_camera *view, const conic_hybrid_cluster *cluster,
+                                const conic_hybrid_level *level, const sight *seen) {
+  double n = (double)level->count, n_pixels = pixels_of(view, (double)cluster->area, seen);
   double n_seen = n * n_pixels / (n_pixels + 2.0 * n); /* few of those that are smaller than a pixel */
   return n * triangle_ns + n_seen * seen_triangle_ns + n_pixels * triangle_pixel_ns;
 }
@@ -143,7 +153,8 @@ static double cost_of_surfels(const conic_hybrid_camera *view, const conic_hybri
   double product = (double)level->cover / n * seen->scale2 * facing;
   double squares = (double)level->spread / n * seen->scale2 * 0.5 * (1.0 + facing * facing);
   double n_pixels = n * CONIC_PI * sqrt(product * product + widening * squares + widening * widening);
-  return n * surfel_ns + n_pixels * surfel_pixel_ns;
+  double most = n * view->n_pixels; /* what reaches near covers no more */
+  return n * surfel_ns + (n_pixels < most ? n_pixels : most) * surfel_pixel_ns;
 }
 
 double conic_hybrid_disc_cost(const conic_hybrid_camera *view, double radius_px2) {
@@ -159,12 +170,16 @@ static sight look_well_at(const conic_hybrid_camera *view, const conic_hybrid_bo
   return seen;
 }
 
+double conic_hybrid_mixing_ns(const conic_hybrid_camera *view, double n_tile_pixels) {
+  return both_ns + both_pixel_ns * view->n_pixels + both_tile_ns * n_tile_pixels;
+}
+
 /* Tiles are mostly this wide. */
 static const double tile_px = 64.0;
 
 double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_cluster *cluster) {
   sight seen = look_well_at(view, &cluster->bound);
-  double side = sqrt((double)cluster->area * seen.scale2 * seen.facing) + tile_px;
+  double side = sqrt(pixels_of(view, (double)cluster->area, &seen)) + tile_px;
   return side * side;
 }
 
@@ -193,7 +208,7 @@ void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *
   offers[0] = offers[1] = (conic_hybrid_offer){0, HUGE_VAL};
   for (uint32_t k = 0; k < cluster->n_levels; k++) {
     conic_hybrid_offer *offer = &offers[levels[k].kind];
-    double cost = levels[k].kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(cluster, &levels[k], &seen)
+    double cost = levels[k].kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(view, cluster, &levels[k], &seen)
                                                            : cost_of_surfels(view, &levels[k], &seen);
     if (cost < offer->amount && is_good(view, &seen, &levels[k], error_px))
       *offer = (conic_hybrid_offer){k, cost};

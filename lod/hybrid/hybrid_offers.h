@@ -42,11 +42,8 @@ double conic_hybrid_point_change(const conic_hybrid_camera *view, const conic_hy
 /* What one of the narrow triangles takes that fit clusters to each other, in nanoseconds of one core. */
 #define CONIC_HYBRID_STITCH_NS 70.0
 
-/* What a picture of both kinds takes more than its parts: at all, for each of its pixels, and for each of those in
- * tiles that have triangles. */
-#define CONIC_HYBRID_BOTH_NS 30000.0
-#define CONIC_HYBRID_BOTH_PIXEL_NS 0.2
-#define CONIC_HYBRID_BOTH_TILE_NS 0.5
+/* What a picture of both kinds takes more than its parts, if so many pixels are in tiles that have triangles. */
+double conic_hybrid_mixing_ns(const conic_hybrid_camera *view, double n_tile_pixels);
 
 /* How many pixels the tiles have, about, that a cluster's faces meet: of a square of its size, wherever it lies. */
 double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_cluster *cluster);

@@ -59,13 +59,22 @@ static void count_levels(packing *p) {
   conic_chy_header *h = &p->header;
   h->n_levels = (uint64_t)p->job->whole.n;
   for (size_t i = 0; i < p->n_clusters; i++)
-    h->n_levels += (uint64_t)(1 + p->job->ways[i].triangles.n + p->job->ways[i].n_surfels);
+    h->n_levels += (uint64_t)(!conic_cluster_is_kept(p->mesh, (uint32_t)i) + p->job->ways[i].triangles.n +
+                              p->job->ways[i].n_surfels);
   for (size_t i = 0; i < p->job->n_nodes && p->job->node_ways; i++)
     h->n_levels += (uint64_t)p->job->node_ways[i].n_surfels;
   for (size_t i = 0; i < p->flat->n_materials; i++) {
     const conic_texture *texture = p->flat->materials[i].texture;
     if (texture)
       h->n_texels += (uint64_t)texture->levels[0].width * (uint64_t)texture->levels[0].height;
+  }
+}
+
+static void add_vertex_to_box(conic_chy_header *h, float *const position[3], size_t i) {
+  for (int axis = 0; axis < 3; axis++) {
+    float at = position[axis][i];
+    h->low[axis] = at < h->low[axis] ? at : h->low[axis];
+    h->high[axis] = at > h->high[axis] ? at : h->high[axis];
   }
 }
 
@@ -76,11 +85,13 @@ static void measure_box(const packing *p, conic_chy_header *h) {
   }
   for (size_t i = 0; i < p->mesh->starts[p->n_clusters]; i++)
     for (int corner = 0; corner < 3; corner++)
-      for (int axis = 0; axis < 3; axis++) {
-        float at = p->flat->position[axis][p->flat->corners[p->mesh->faces[i]][corner]];
-        h->low[axis] = at < h->low[axis] ? at : h->low[axis];
-        h->high[axis] = at > h->high[axis] ? at : h->high[axis];
-      }
+      if (!p->mesh->kept || p->mesh->faces[i] < p->mesh->kept->n_surface)
+        add_vertex_to_box(h, (float *const *)p->flat->position, p->flat->corners[p->mesh->faces[i]][corner]);
+  for (size_t i = 0; p->mesh->kept && i < p->mesh->kept->n; i++) {
+    const float *at = p->mesh->kept->items[i].position;
+    float *const place[3] = {(float *)at, (float *)at + 1, (float *)at + 2};
+    add_vertex_to_box(h, place, 0);
+  }
 }
 
 /* Of a part of a mesh, those of its own faces. */
@@ -102,7 +113,7 @@ static void begin_header(packing *p) {
   memcpy(h->origin, p->flat->origin, sizeof h->origin);
   h->version = CONIC_CHY_VERSION;
   h->cutoff = p->job->options->cutoff;
-  h->n_vertices = count_vertices(p);
+  h->n_vertices = count_vertices(p) - (p->mesh->kept ? 4 * p->mesh->kept->n : 0);
   h->n_clusters = p->n_clusters;
   h->n_nodes = p->job->n_nodes;
   h->n_materials = p->flat->n_materials;
@@ -196,6 +207,7 @@ static void put_surfels(packing *p, const conic_surfels *surfels) {
   conic_hybrid_level *level = next_level(p, CONIC_HYBRID_SURFELS, surfels->n);
   level->error = (float)(surfels->error * (1.0 + 1e-6));
   put_change(level, &surfels->change);
+  level->stage = (uint32_t)surfels->are_dots;
   level->reach = (float)(surfels->reach * (1.0 + 1e-6));
   sum_extents(surfels, (double)p->job->options->cutoff, level);
 }
@@ -215,13 +227,15 @@ static void put_cluster(packing *p, uint32_t i) {
   conic_hybrid_cluster *cluster = (conic_hybrid_cluster *)array_at(p, CONIC_CHY_CLUSTERS) + i;
   const conic_cluster_ways *ways = &p->job->ways[i];
   double error = 0.0;
+  int has_faces = !conic_cluster_is_kept(p->mesh, i);
   *cluster = (conic_hybrid_cluster){.bound = ways->bound,
                                     .area = (float)ways->area,
                                     .first_level = (uint32_t)p->level,
-                                    .n_levels = (uint32_t)(1 + ways->triangles.n + ways->n_surfels),
+                                    .n_levels = (uint32_t)(has_faces + ways->triangles.n + ways->n_surfels),
                                     .n_slots = count_slots(p, i)};
-  cluster->built = ways->is_surfels ? (uint32_t)(1 + ways->triangles.n) : 0;
-  put_triangles(p, take_faces(p, i), &cluster->n_borders);
+  cluster->built = ways->is_surfels ? (uint32_t)(has_faces + ways->triangles.n) : 0;
+  if (has_faces)
+    put_triangles(p, take_faces(p, i), &cluster->n_borders);
   for (int k = 0; k < ways->triangles.n; k++) {
     conic_cluster_level level = ways->triangles.levels[k];
     level.error = error = level.error > error ? level.error : error; /* no less than that of what it is simpler than */
@@ -365,7 +379,8 @@ static void fill_chunks(packing *p) {
   for (uint32_t i = 0; i < p->n_clusters; i++) {
     const conic_cluster_ways *ways = &p->job->ways[i];
     fill_frame(p, i);
-    fill_triangles(p, take_faces(p, i));
+    if (!conic_cluster_is_kept(p->mesh, i))
+      fill_triangles(p, take_faces(p, i));
     for (int k = 0; k < ways->triangles.n; k++)
       fill_triangles(p, &ways->triangles.levels[k]);
     for (int k = 0; k < ways->n_surfels; k++)
@@ -382,17 +397,21 @@ static void fill_chunks(packing *p) {
 
 /* --- all --- */
 
+static int is_built_of_surfels(const conic_hybrid *h, uint32_t cluster) {
+  return h->levels[h->clusters[cluster].first_level + h->clusters[cluster].built].kind == CONIC_HYBRID_SURFELS;
+}
+
 /* The surfels as built, for the scale of the automatic ε. */
 static conic_status measure_surfels(packing *p) {
   const conic_hybrid *h = p->made;
   conic_splats built;
   size_t n = 0, at = 0;
-  for (size_t i = 0; i < h->n_clusters; i++)
-    n += h->clusters[i].built ? h->levels[h->clusters[i].first_level + h->clusters[i].built].count : 0;
+  for (uint32_t i = 0; i < h->n_clusters; i++)
+    n += is_built_of_surfels(h, i) ? h->levels[h->clusters[i].first_level + h->clusters[i].built].count : 0;
   conic_status status = conic_splats_allocate(p->job->context, n, CONIC_SPLATS_TANGENTS, &built);
-  for (size_t i = 0; i < h->n_clusters && status == CONIC_OK; i++) {
+  for (uint32_t i = 0; i < h->n_clusters && status == CONIC_OK; i++) {
     uint32_t level = h->clusters[i].first_level + h->clusters[i].built;
-    if (!h->clusters[i].built)
+    if (!is_built_of_surfels(h, i))
       continue;
     conic_hybrid_piece piece = conic_hybrid_piece_of(h, level);
     for (int axis = 0; axis < 3; axis++) {

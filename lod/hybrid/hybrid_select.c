@@ -10,6 +10,7 @@
 #include "lod/hybrid/hybrid_budget.h"
 #include "lod/hybrid/hybrid_choose.h"
 #include "lod/hybrid/hybrid_point.h"
+#include "lod/hybrid/hybrid_sight.h"
 #include "lod/hybrid/hybrid_stitch.h"
 #include "lod/hybrid/hybrid_store.h"
 
@@ -19,9 +20,11 @@ void conic_hybrid_view_init_sized(conic_hybrid_view *view, size_t size) {
 }
 
 /* A cluster that is drawn, or, after all clusters by its number, a node; and where its parts go. The level is among all
- * of the model's; a node's point is none of them. */
+ * of the model's; a node's point is none of them. While choosing, a node that stands at once is its first cluster, and
+ * the level is the node's. */
 typedef struct choice {
   uint32_t cluster, level;
+  uint32_t node; /* that stands at once, or NO_NODE */
   size_t splat, triangle, vertex;
   size_t n_put; /* into the triangles, so that they fit their neighbours */
 } choice;
@@ -30,6 +33,9 @@ typedef struct choice {
 typedef struct hybrid_scratch {
   choice *choices;
   size_t n_choices, choices_room;
+  uint32_t *seen; /* nodes in sight, but for those that stand at once and what is below these */
+  size_t n_seen;
+  conic_kept_memory seen_memory;
   uint32_t *stages;   /* of each cluster of the hybrid: that of its level */
   uint32_t *standing; /* the node that stands for it: behind the stages */
   conic_kept_memory stages_memory, splats_memory, vertices_memory, triangles_memory;
@@ -63,6 +69,7 @@ void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selecti
   hybrid_scratch *kept = selection->scratch;
   if (kept) {
     conic_memory_release(context, kept->choices);
+    conic_memory_release(context, kept->seen_memory.pointer);
     conic_memory_release(context, kept->stages_memory.pointer);
     conic_memory_release(context, kept->splats_memory.pointer);
     conic_memory_release(context, kept->vertices_memory.pointer);
@@ -78,38 +85,77 @@ static int is_together(const conic_hybrid_view *view) {
   return view->budget || view->error_px > 0.0;
 }
 
-static conic_status add_choice(hybrid_selecting *s, uint32_t i_cluster) {
+static conic_status add_choice(const hybrid_selecting *s, choice added) {
   hybrid_scratch *kept = s->scratch;
-  const conic_hybrid_cluster *cluster = &s->hybrid->clusters[i_cluster];
   if (conic_memory_reserve(s->hybrid->context, &kept->choices, kept->n_choices, kept->n_choices + 1,
                            &kept->choices_room, sizeof *kept->choices) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
-  uint32_t level = cluster->built;
-  if (s->view->only_kind >= 0)
-    level = conic_hybrid_finest(s->hybrid, cluster, s->view->only_kind);
-  kept->choices[kept->n_choices++] = (choice){.cluster = i_cluster, .level = cluster->first_level + level};
+  kept->choices[kept->n_choices++] = added;
   return CONIC_OK;
 }
 
-static conic_status choose_all(hybrid_selecting *s) {
+static conic_status add_cluster(const hybrid_selecting *s, uint32_t i_cluster) {
+  const conic_hybrid_cluster *cluster = &s->hybrid->clusters[i_cluster];
+  if (conic_hybrid_is_hidden(&s->camera, &cluster->bound, 0.0) &&
+      conic_hybrid_is_hidden(&s->camera, &cluster->bound, conic_hybrid_reach(s->hybrid, cluster))) {
+    s->selection->n_culled++;
+    return CONIC_OK;
+  }
+  uint32_t level = cluster->built;
+  if (s->view->only_kind >= 0)
+    level = conic_hybrid_finest(s->hybrid, cluster, s->view->only_kind);
+  return add_choice(
+      s, (choice){.cluster = i_cluster, .level = cluster->first_level + level, .node = CONIC_HYBRID_NO_NODE});
+}
+
+/* All of a leaf's clusters, unless the node, a leaf or not, stands for all of them at once. */
+static conic_status add_node(const hybrid_selecting *s, uint32_t i, double *saved_ns, uint32_t *next) {
+  const conic_hybrid_node *node = &s->hybrid->nodes[i];
+  conic_hybrid_offer offer;
+  conic_status status = CONIC_OK;
+  if (saved_ns && conic_hybrid_stands_at_once(s->hybrid, &s->camera, node, s->view->error_px, &offer, saved_ns)) {
+    s->selection->n_joined += node->end - node->begin - 1; /* one is counted with the others that stand */
+    *next = node->next;
+    return add_choice(s, (choice){.cluster = node->begin, .level = offer.level, .node = i});
+  }
+  s->scratch->seen[s->scratch->n_seen++] = i;
+  for (uint32_t k = node->begin; k < node->end && node->next == i + 1 && status == CONIC_OK; k++)
+    status = add_cluster(s, k);
+  *next = i + 1;
+  return status;
+}
+
+/* `saved_ns`: what nodes save that stand at once; null where none may. */
+static conic_status look_down(const hybrid_selecting *s, double *saved_ns) {
   const conic_hybrid *h = s->hybrid;
   conic_status status = CONIC_OK;
-  s->scratch->n_choices = 0;
-  for (size_t i = 0; i < h->n_nodes && status == CONIC_OK;) {
+  s->scratch->n_choices = s->scratch->n_seen = s->selection->n_culled = s->selection->n_joined = 0;
+  for (uint32_t i = 0; i < h->n_nodes && status == CONIC_OK;) {
     const conic_hybrid_node *node = &h->nodes[i];
     if (conic_hybrid_is_hidden(&s->camera, &node->bound, 0.0)) {
       s->selection->n_culled += node->end - node->begin;
       i = node->next;
-      continue;
-    }
-    for (uint32_t k = node->begin; k < node->end && node->next == i + 1 && status == CONIC_OK; k++) {
-      if (conic_hybrid_is_hidden(&s->camera, &h->clusters[k].bound, conic_hybrid_reach(h, &h->clusters[k])))
-        s->selection->n_culled++;
-      else
-        status = add_choice(s, k);
-    }
-    i++;
+    } else
+      status = add_node(s, i, saved_ns, &i);
   }
+  return status;
+}
+
+/* All in sight. Nodes stand at once only where that saves more than it takes to draw both kinds. */
+static conic_status choose_all(const hybrid_selecting *s) {
+  const conic_hybrid_view *view = s->view;
+  double saved_ns = 0.0, mixing_ns = view->only_kind == CONIC_HYBRID_SURFELS
+                                         ? 0.0
+                                         : conic_hybrid_mixing_ns(&s->camera, s->camera.n_pixels);
+  s->scratch->seen =
+      conic_keep_room(s->hybrid->context, &s->scratch->seen_memory, s->hybrid->n_nodes, sizeof *s->scratch->seen);
+  if (!s->scratch->seen)
+    return CONIC_ERROR_MEMORY;
+  if (!(view->error_px > 0.0) || view->only_kind == CONIC_HYBRID_TRIANGLES)
+    return look_down(s, NULL);
+  conic_status status = look_down(s, &saved_ns);
+  if (status == CONIC_OK && saved_ns > 0.0 && saved_ns < mixing_ns)
+    status = look_down(s, NULL);
   return status;
 }
 
@@ -143,32 +189,59 @@ static void note_stages(hybrid_selecting *s) {
     kept->stages[kept->choices[i].cluster] = s->hybrid->levels[kept->choices[i].level].stage;
 }
 
+/* The clusters that are yet to be chosen for; and the nodes that stand already. Returns how many clusters. */
+static size_t list_open(const hybrid_selecting *s, uint32_t *clusters, uint32_t *nodes) {
+  const hybrid_scratch *kept = s->scratch;
+  size_t n = 0;
+  for (size_t i = 0; i < s->hybrid->n_nodes; i++)
+    nodes[i] = CONIC_HYBRID_NO_NODE;
+  for (size_t i = 0; i < kept->n_choices; i++)
+    if (kept->choices[i].node == CONIC_HYBRID_NO_NODE)
+      clusters[n++] = kept->choices[i].cluster;
+    else
+      nodes[kept->choices[i].node] = kept->choices[i].level;
+  return n;
+}
+
+/* Gives choices what was chosen, and clusters their stages, which are 0 where nodes stand. */
+static void take_chosen(hybrid_selecting *s, const uint32_t *levels, const uint32_t *nodes) {
+  const conic_hybrid *h = s->hybrid;
+  hybrid_scratch *kept = s->scratch;
+  size_t n = 0;
+  for (size_t i = 0; i < kept->n_choices; i++) {
+    choice *c = &kept->choices[i];
+    c->level = h->clusters[c->cluster].first_level;
+    if (c->node == CONIC_HYBRID_NO_NODE)
+      c->level += levels[n++];
+  }
+  note_stages(s);
+  conic_hybrid_find_standing(h, nodes, kept->standing);
+  for (size_t i = 0; i < kept->n_choices; i++) {
+    const choice *c = &kept->choices[i];
+    uint32_t end = c->node == CONIC_HYBRID_NO_NODE ? c->cluster + 1 : h->nodes[c->node].end;
+    for (uint32_t k = c->cluster; k < end && kept->standing[k] != CONIC_HYBRID_NO_NODE; k++)
+      kept->stages[k] = 0;
+  }
+  let_nodes_stand(s, nodes);
+}
+
 /* Chooses for all clusters in sight, for a budget or for the least time. */
 static conic_status choose_together(hybrid_selecting *s) {
   const conic_hybrid *h = s->hybrid;
   const conic_hybrid_view *view = s->view;
-  hybrid_scratch *kept = s->scratch;
-  size_t n = kept->n_choices;
-  uint32_t *clusters = conic_memory_allocate(h->context, 2 * n + h->n_nodes, sizeof *clusters);
+  const hybrid_scratch *kept = s->scratch;
+  uint32_t *clusters = conic_memory_allocate(h->context, 2 * kept->n_choices + h->n_nodes, sizeof *clusters);
   if (!clusters)
     return CONIC_ERROR_MEMORY;
-  uint32_t *levels = clusters + n, *nodes = levels + n;
-  for (size_t i = 0; i < n; i++)
-    clusters[i] = kept->choices[i].cluster;
+  uint32_t *levels = clusters + kept->n_choices, *nodes = levels + kept->n_choices;
+  size_t n = list_open(s, clusters, nodes);
+  const conic_hybrid_choosing choosing = {h,        &s->camera, view->error_px, view->only_kind,
+                                          clusters, n,          kept->seen,     kept->n_seen};
   conic_status status =
-      view->budget
-          ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, clusters, n, levels, nodes)
-          : conic_hybrid_choose_levels(h, &s->camera, view->error_px, view->only_kind, clusters, n, levels, nodes);
-  if (status == CONIC_OK) {
-    for (size_t i = 0; i < n; i++)
-      kept->choices[i].level = h->clusters[clusters[i]].first_level + levels[i];
-    note_stages(s);
-    conic_hybrid_find_standing(h, nodes, kept->standing);
-    for (size_t i = 0; i < n; i++)
-      if (kept->standing[clusters[i]] != CONIC_HYBRID_NO_NODE)
-        kept->stages[clusters[i]] = 0;
-    let_nodes_stand(s, nodes);
-  }
+      view->budget ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, clusters, n, levels, nodes)
+                   : conic_hybrid_choose_levels(&choosing, levels, nodes);
+  if (status == CONIC_OK)
+    take_chosen(s, levels, nodes);
   conic_memory_release(h->context, clusters);
   return status;
 }
@@ -432,6 +505,32 @@ static void copy_task(void *data, size_t i_task, int i_thread) {
   }
 }
 
+static int are_dots_of(const hybrid_selecting *s, const choice *c) {
+  const conic_hybrid_level *level = c->level == CONIC_HYBRID_POINT ? NULL : &s->hybrid->levels[c->level];
+  return level && level->kind == CONIC_HYBRID_SURFELS && level->stage > 0;
+}
+
+/* Marks the dots among what was copied, and turns them to the camera. */
+static conic_status turn_dots(const hybrid_selecting *s, const conic_camera *camera) {
+  conic_splats *splats = &s->selection->splats;
+  const hybrid_scratch *kept = s->scratch;
+  size_t n_dots = 0;
+  for (size_t i = 0; i < kept->n_choices; i++)
+    n_dots += (size_t)are_dots_of(s, &kept->choices[i]);
+  if (n_dots == 0)
+    return CONIC_OK;
+  splats->dot = conic_memory_allocate_zeroed(s->hybrid->context, splats->count, sizeof *splats->dot);
+  if (!splats->dot)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < kept->n_choices; i++)
+    for (size_t k = 0; are_dots_of(s, &kept->choices[i]) && k < s->hybrid->levels[kept->choices[i].level].count; k++)
+      splats->dot[kept->choices[i].splat + k] = 1.0f;
+  conic_status status = conic_splats_face(s->hybrid->context, splats, camera, splats->tangent_u, splats->tangent_v);
+  conic_memory_release(s->hybrid->context, splats->dot);
+  splats->dot = NULL;
+  return status;
+}
+
 static conic_status take_view(conic_context *context, const conic_hybrid_view *given, conic_hybrid_view *view) {
   conic_hybrid_view_init(view);
   if (!conic_options_take(view, given))
@@ -517,6 +616,8 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
   if (status != CONIC_OK)
     return status;
   status = select_held(&s);
+  if (status == CONIC_OK)
+    status = turn_dots(&s, camera);
   conic_hybrid_store_let_go(hybrid, s.scratch->frames, s.scratch->n_frames);
   conic_hybrid_traffic traffic = conic_hybrid_store_traffic(hybrid);
   selection->n_chunks += s.scratch->n_frames;

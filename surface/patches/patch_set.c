@@ -9,6 +9,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "core/base/vectors.h"
 
 enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
 
@@ -18,6 +19,9 @@ static const double MOST_GAIN = 4.0, MOST_SLOPE = 3.0;
 /* A patch that is not sound to its rim is made smaller in such steps, down to this share of its splat's outline: there
  * it just covers the cell of the tangent plane that the splat was made for. */
 static const double SHRINKAGE = 0.85, LEAST_SHARE = 0.6;
+
+/* A flat patch of this share of a splat's outline reaches about as far as that, with the outlines of its samples. */
+static const double FLAT_SHARE = 0.8;
 
 void conic_patches_options_init_sized(conic_patches_options *options, size_t size) {
   conic_patches_options own = {.size = sizeof own, .cutoff = 1.5f, .step_px = 2.0};
@@ -140,6 +144,32 @@ static void set_patch(conic_patch *patch, const conic_fit *fit, int degree, cons
   patch->radius = (float)radius;
 }
 
+/* The patch of a point about which no polynomial is sound: what its splat covers of its plane. None where the splat has
+ * no axes or is a dot. Beside a mesh's faces, too, the splat stays. */
+static void set_flat_patch(const conic_patches *patches, size_t slot, const double r[3]) {
+  const conic_splats *splats = &patches->splats;
+  size_t point = patches->surface->tree.point_of_slot[slot];
+  conic_patch *patch = &patches->patches[slot];
+  double share = FLAT_SHARE * (double)patches->options.cutoff, outline = FLAT_SHARE * outline_of(patches, point);
+  double u[3], v[3], normal[3];
+  for (int axis = 0; axis < 3; axis++) {
+    u[axis] = share * (double)splats->tangent_u[axis][point];
+    v[axis] = share * (double)splats->tangent_v[axis][point];
+  }
+  conic_cross(u, v, normal);
+  if (!(outline > 0.0) || !conic_normalize(normal) || patches->options.most_off > 0.0 ||
+      (splats->dot && splats->dot[point] != 0.0f))
+    return;
+  *patch = (conic_patch){.radius = (float)outline};
+  for (int axis = 0; axis < 3; axis++) {
+    patch->center[axis] = (float)r[axis];
+    patch->along[axis] = (float)u[axis];
+    patch->across[axis] = (float)v[axis];
+    patch->normal[axis] = (float)normal[axis];
+  }
+  patch->reach = (float)(1.001 * outline * (1.0 + CONIC_SAMPLE_OUTLINE * 2.0 / CONIC_LEAST_GRID));
+}
+
 static void lay_patch(laying *work, size_t slot, conic_workspace *workspace) {
   conic_patches *patches = work->patches;
   const conic_surface *surface = patches->surface;
@@ -152,6 +182,7 @@ static void lay_patch(laying *work, size_t slot, conic_workspace *workspace) {
   conic_surface_project_one(surface, r, h, CONIC_NO_SLOT, 1, workspace, &landing);
   work->outcomes[slot] = (uint8_t)landing.outcome;
   double outline = outline_of(patches, surface->tree.point_of_slot[slot]);
+  set_flat_patch(patches, slot, r);
   if (landing.outcome != CONIC_SURFACE_DONE || !(outline > 0.0))
     return;
   conic_fit *fit = &workspace->fit;
@@ -159,7 +190,7 @@ static void lay_patch(laying *work, size_t slot, conic_workspace *workspace) {
     turn += (double)surface->normal[axis][slot] * fit->frame[2][axis];
   double radius = radius_of(workspace, h), least = LEAST_SHARE * outline;
   radius = radius > least ? radius : least;
-  for (int degree = surface->options.degree; degree > 1; degree--) { /* a plane is what the splat has */
+  for (int degree = surface->options.degree; degree > 1; degree--) { /* a plane is what the flat one has */
     conic_fit_solve(fit, degree);
     double sound = sound_radius(patches, workspace, degree, h, radius, least);
     if (!(sound > 0.0))

@@ -20,7 +20,9 @@ has '^mixed-100@64x48/nearest/[a-z0-9]*/2 '
 lines 16 old.json
 [[ $(grep -c '"identical": true' old.json) -eq 16 ]] || fail "not every picture is said to be right"
 grep -q '"wrong_pictures": 0' old.json || fail "no count of wrong pictures"
-[[ $(grep -c '"cycles": [0-9n]' old.json) -eq 16 ]] || fail "no cycles, not even null"
+for key in cycles instructions cpu_ms; do
+  [[ $(grep -c "\"$key\": [0-9n]" old.json) -eq 16 ]] || fail "no $key, not even null"
+done
 # One picture by every instruction set and number of threads: two methods and two scenes, four in all
 [[ $(grep '"rgba": "' old.json | sort -u | wc -l) -eq 4 ]] || fail "not four pictures"
 # The same as conic render draws
@@ -37,6 +39,22 @@ END
 run 0 render sphere.ply -o sphere.pfm --method conic --camera camera.json --cull back --json render.json
 run 0 bench sphere.ply --camera camera.json --cull back --size 90x90 --repeat 1 --threads 1 --json -
 grep -qF "$(grep -o '"rgba": "[0-9a-f]*"' render.json)" out || fail "bench takes the camera otherwise than render"
+
+# What chooses what it draws does so as conic render does, by every number of threads
+run 0 octree sphere.ply -o sphere.cot
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' > solid.obj
+run 0 hybrid solid.obj -o solid.chy
+run 0 bench sphere.cot solid.chy --error 0.5,8 --threads 1,2 "${small[@]}" --json chosen.json
+[[ $(grep -cE '^    "(sphere.cot|solid.chy):(0.5|8)px@64x48/conic/[a-z0-9]+/[12]": \{' chosen.json) -eq 8 ]] || fail "not 8 lines"
+[[ $(grep '"rgba": "' chosen.json | sort -u | wc -l) -eq 3 && $(grep -c '"identical": true' chosen.json) -eq 8 ]] ||
+  fail "not three pictures: two errors of the sphere, and a solid that is the same in both"
+run 0 render sphere.cot -o sphere.pfm --method conic --size 64x48 --error 8 --json render.json
+[[ $(grep -cF "$(grep -o '"rgba": "[0-9a-f]*"' render.json)" chosen.json) -eq 2 ]] || fail "bench chooses otherwise than render"
+# A frame from every side, and one that is the same again
+run 0 bench solid.chy --turntable 5 --threads 1 --size 64x48 --json turned.json
+grep -q '"frames": 5,' turned.json || fail "not a frame a view"
+run 0 bench solid.chy --repeat 1 --threads 1 --size 64x48 --json still.json
+[[ $(grep '"rgba": "' turned.json) == "$(grep '"rgba": "' still.json)" ]] || fail "the turntable does not begin where it stands"
 
 # Comparing with an earlier run
 run 0 bench --scenes sphere-2k,plane-500 --isa scalar --threads 1 "${small[@]}" --compare old.json --json new.json
@@ -87,6 +105,9 @@ refused 2 'no list' --scenes sphere-2k,
 refused 2 'did you mean affine?' --methods afine
 refused 2 'unknown instruction set' --isa mmx
 refused 2 'threads' --threads many
+refused 2 'no error in pixels' sphere.cot --error -1
+refused 2 'how many frames' --turntable 3 --repeat 3
+refused 2 'of Gaussians' --scenes gaussians-100 --turntable 3
 refused 2 'scenes of its own' --curve --scenes sphere-2k
 refused 2 'nothing else' --kernels --machine
 refused 2 'for files' --camera camera.json

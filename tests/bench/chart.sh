@@ -36,11 +36,16 @@ awk -F, '
       if (f[i] && beaten) exit 1
     }
   }' small/chart.csv || fail "a point of the front is beaten"
-if command -v gnuplot > /dev/null; then
-  for picture in chart-oracle.svg chart-oracle.png chart-scene.svg chart-scene.png representations.svg representations.png; do
-    [[ $(wc -c < "small/$picture") -gt 10000 ]] || fail "no $picture"
-  done
-fi
+# A picture has a mark for each of its points, and beside them those of the legend; no place is nan or inf
+count_marks() { grep -cE '^<(circle|polygon) ' "$1"; }
+check_svg() {
+  [[ $(head -c 5 "$1") == '<svg ' && $(tail -n 1 "$1") == '</svg>' ]] || fail "$1 is no whole picture"
+  grep -qE '[ "=,ML-](nan|inf)' "$1" && fail "$1 has a place that is none"
+}
+for picture in chart chart-oracle chart-scene representations; do check_svg "small/$picture.svg"; done
+[[ $(count_marks small/chart-scene.svg) -eq $((n_points + 6 + 4)) ]] || fail "not a mark a point: $(count_marks small/chart-scene.svg)"
+n_exact=$(awk -F, 'NR > 1 && $12 != ""' small/chart.csv | wc -l)
+[[ $n_exact -gt 10 && $(count_marks small/chart-oracle.svg) -eq $((n_exact + 6 + 4)) ]] || fail "not a mark a point with an oracle"
 # Of every representation of a mesh there is a line a size; the mesh's own triangles are the nearest to it, surfels
 # leave no hole, points do, and fewer are drawn where less is seen
 n_points=$(sed -nE 's/^  "representation_points": ([0-9]+),$/\1/p' chart.json)
@@ -79,15 +84,50 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n
 run 0 chart -o other --quick --only representations --mesh 'a "mesh".obj'
 [[ $(grep -c '^"a ""mesh"".obj",4,' other/representations.csv) -eq 15 && ! -e other/chart.csv ]] || fail "not that mesh alone"
 
-# Without gnuplot there is the table all the same
-mkdir empty
-PATH=$PWD/empty "$conic" chart -o poor --quick --only methods > out 2> err || fail "fails without gnuplot"
-/usr/bin/env grep -q '^conic: warning: poor: no picture' err || fail "silent about the missing picture"
-[[ -s poor/chart.csv && -s poor/chart.gp && ! -e poor/chart-scene.png ]] || fail "not the table alone"
-[[ ! -e poor/representations.csv ]] || fail "not the methods alone"
+run 0 chart -o alone --quick --only methods -q
+[[ -s alone/chart.csv && -s alone/chart.svg && ! -e alone/representations.csv ]] || fail "not the methods alone"
+
+# Scenes of one's own: a line and a mark a value, the default ones all alike, more samples nearer and slower, and an
+# octree that is nearer the smaller the error
+run 0 make sphere -n 3k -o ball.ply
+run 0 octree ball.ply -o ball.cot
+run 0 chart ball.ply -o own --quick --over 'method=conic:point,kernel=gauss:hat,prefilter=1:0,samples=1:2,passes=3,isa=scalar' --json own.json
+awk -F, '
+  NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+  { rmse[$2 "=" $3] = $at["rmse"]; n++; if (!($at["ms"] > 0 && $at["splats"] == 3000)) { print "line " NR; bad = 1 } }
+  END {
+    same = rmse["samples=1"]
+    if (n != 10 || rmse["kernel=gauss"] != same || rmse["prefilter=1"] != same || rmse["passes=3"] != same || rmse["isa=scalar"] != same) bad = 1
+    if (rmse["kernel=hat"] == same || rmse["prefilter=0"] == same || !(rmse["samples=2"] < same) || !(rmse["method=point"] > 2 * same)) bad = 1
+    exit bad
+  }' own/scene.csv || fail "not what the axes say: $(cat own/scene.csv)"
+check_svg own/scene.svg
+[[ $(count_marks own/scene.svg) -eq 16 ]] || fail "not a mark a value"
+grep -q '"points": 10,' own.json || fail "points are not counted"
+run 0 chart ball.ply ball.cot -o both --quick --truth 1 --over error=2:8:32
+awk -F, 'NR > 1 { n++; if ($1 ~ /ball.cot/) { if (n > 4 && !($11 > last)) exit 1; last = $11 } else if ($11 != 0) exit 1 } END { exit n != 6 }' both/scene.csv ||
+  fail "an error is not one against the whole scene: $(cat both/scene.csv)"
+
+# Another program's picture stands beside: conic's own, said to be another's, is exactly as far from the truth
+cat > camera.json << 'END'
+{"width": 96, "height": 96, "fx": 100, "fy": 100, "cx": 48, "cy": 48,
+ "world_to_camera": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 3], [0, 0, 0, 1]]}
+END
+run 0 render ball.ply -o ball.pfm --camera camera.json --shade none
+run 0 chart ball.ply -o beside --quick --over samples=1 --camera camera.json --size 96x96 --shade none --beside other=12.5:ball.pfm
+awk -F, 'NR == 2 { own = $11 } NR == 3 { other = $11; n = $2 == "beside" && $3 == "other" && $8 == 12.5 }
+  END { exit !(n && own > 0.001 && other == own) }' beside/scene.csv || fail "not beside: $(cat beside/scene.csv)"
+run 2 chart ball.ply -o beside --beside other:ball.pfm
+run 3 chart ball.ply -o beside --quick --size 90x90 --over samples=1 --beside other=1:ball.pfm
+grep -q 'ball.pfm: is no colour picture of 90 x 90 pixels' err || fail "$(cat err)"
 
 run 2 chart
-run 2 chart more other -o small
+run 2 chart -o small --over samples
+for over in bogus samples=0 method=conik error=-1 budget=0 as=splats isa=mmx; do
+  run 2 chart ball.ply -o small --over "$over"
+  grep -q 'chart: --over ' err || fail "$(cat err)"
+done
+run 3 chart missing.ply other.ply -o small
 run 3 chart -o small --quick --mesh missing.obj
 run 4 chart -o missing/folder --quick
 [[ $failures -eq 0 ]]

@@ -60,7 +60,7 @@ static void test_planted(cli_session *session, const char *scene_name, int i_met
     unsigned char *bytes = plane < 0 ? NULL : pictures.reference.planes[plane];
     if (bytes)
       bytes[4000] ^= 1;
-    CHECK_OK(cli_bench_measure(session, &scene, &patience, -1, &pictures, &line));
+    CHECK_OK(cli_bench_measure(session, &scene, &patience, NULL, &pictures, &line));
     CHECK(line.i_wrong_plane == plane);
     CHECK(line.n_frames == 2 && line.statistics.ms.frame > 0.0 && line.first_ms > 0.0);
     CHECK(isnan(line.cycles));

@@ -49,6 +49,7 @@ declare -A wanted=(
   [prepare]=$builder
   [octree]="$builder bytes_per_point inner_nodes levels"
   [hybrid]="triangles surfels clusters seconds.read seconds.work seconds.write seconds.total peak_rss_bytes skipped.nan"
+  [hybrid-points]="points_in? splats_kept?"
   [layer]="$builder clouds levels bytes bits_per_sample spacing quantum"
   [cut]=$builder
   [merge]="$builder clouds levels bytes bits_per_sample spacing quantum"
@@ -87,7 +88,7 @@ declare -A wanted=(
   [judge-gradients]="verdict profile parameters gaussians.equal gaussians.rounding gaussians.explained gaussians.wrong
     kinds.mean.wrong? kinds.sh.max_abs? worst ms.judge"
   [chart]="scenes methods points seconds"
-  [bench]="lines wrong_pictures peak_rss_bytes machine?"
+  [bench]="host lines wrong_pictures peak_rss_bytes machine?"
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
   [info-octree]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound?"
   [info-gaussians]="kind gaussians sh_degree 2d antialiased bytes? bounds.min bounds.max sound?"
@@ -140,6 +141,7 @@ write render-colored render render knot.ply -o height.exr --color-by height --si
 write prepare-colored prepare prepare knot.ply -o colored.ply --color-by x
 write octree-colored octree octree colored.ply -o colored.cot --color-by height
 write hybrid-colored hybrid hybrid tent.obj -o colored.chy --color-by height
+write hybrid-points hybrid hybrid knot.ply -o knot.chy
 write diff diff diff knot.exr lod.exr
 write diff-sizes diff diff knot.exr triangle.exr
 mkdir first second
@@ -186,6 +188,7 @@ write chart chart chart -o chart --quick --only representations
 write bench-old bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5
 cp runs/bench-old.json old.json
 write bench bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5 --floor --compare old.json
+write bench-chosen bench bench knot.cot --error 2 --size 64x48 --threads 1 --repeat 1
 write info info_model info knot.ply --check
 write info-mesh info_model info triangle.obj
 write info-far info_model info far.xyz --check

@@ -92,6 +92,18 @@ for name in sheet sheet-dense; do
 done
 holds "$(cat sheet-dense.covered) >= 0.98 * $(cat sheet.covered) && $(cat sheet.covered) < 4000"
 
+# Of a ball, far from the origin, coarse outlines stand out; the dense one ends where the ball does, without a hole.
+awk 'BEGIN { for (i = 0; i < 200; i++) { z = (2 * i + 1) / 200 - 1; r = sqrt(1 - z * z); a = 2.399963 * i
+  print 10 + r * cos(a), r * sin(a), z, r * cos(a), r * sin(a), z } }' > ball.txt
+run 0 mls densify ball.txt --columns x,y,z,nx,ny,nz -o ball-dense.ply --spacing 0.05
+run 0 prepare ball.txt --columns x,y,z,nx,ny,nz -o ball.ply --plain
+for name in ball ball-dense; do
+  run 0 render $name.ply -o $name.pfm --aov Z --samples 1 --size 128x128 --up y --azimuth 0 --elevation 0 --eye 10,0,5 --fov 30
+  tail -c 65536 $name.pfm | od -An -v -tf4 -w4 | grep -vc -e inf -e ' 0$' > $name.covered
+done
+# From a distance of 5 a ball of radius 1 covers (64 / (tan 15° sqrt(24)))² pi = 7,463 pixels, and what filters add.
+holds "$(cat ball-dense.covered) > 7463 && $(cat ball-dense.covered) < 0.95 * $(cat ball.covered)"
+
 # Of a wide sheet a tenth covers all of it, and reaches little beyond.
 printf '%s %s 0 0 0 1\n' $(for ((i = 0; i < 900; i++)); do echo $((i % 30)) $((i / 30)); done) > wide.txt
 run 0 mls thin wide.txt --columns x,y,z,nx,ny,nz -o few.ply --count 90

@@ -1,4 +1,5 @@
 /* Sharp surfaces: a noisy cube keeps its edges and corners, and what has no creases stays as it is, to the bit. */
+#include "core/estimate/features.h"
 #include "tests/support/surface_shapes.h"
 
 enum { SIDE = 16, N_POINTS = 6 * SIDE * SIDE };
@@ -47,6 +48,7 @@ static double from_cube(const double p[3], double *from_edge) {
 
 typedef struct cube_errors {
   double edges, faces; /* rms */
+  size_t n_strays;     /* off by more than half a spacing */
   size_t n;
 } cube_errors;
 
@@ -58,7 +60,7 @@ static cube_errors project_cube(conic_context *context, const conic_splats *cube
   options.isa = isa;
   options.h = 2.5;
   conic_surface *surface = shape_surface(context, cube, &options);
-  cube_errors errors = {0.0, 0.0, 0};
+  cube_errors errors = {0.0, 0.0, 0, 0};
   size_t n_edges = 0, n_faces = 0;
   CHECK_OK(conic_surface_clean(surface, clean, NULL));
   for (size_t i = 0; i < clean->count; i++) {
@@ -66,10 +68,12 @@ static cube_errors project_cube(conic_context *context, const conic_splats *cube
     double from_edge, off = from_cube(p, &from_edge);
     errors.edges += from_edge < 1.0 ? off * off : 0.0;
     errors.faces += from_edge > 3.0 ? off * off : 0.0;
+    errors.n_strays += off > 0.5;
     n_edges += from_edge < 1.0;
     n_faces += from_edge > 3.0;
   }
-  errors = (cube_errors){sqrt(errors.edges / (double)n_edges), sqrt(errors.faces / (double)n_faces), clean->count};
+  errors = (cube_errors){sqrt(errors.edges / (double)n_edges), sqrt(errors.faces / (double)n_faces), errors.n_strays,
+                         clean->count};
   conic_surface_destroy(surface);
   return errors;
 }
@@ -82,6 +86,44 @@ static int are_same(const conic_splats *a, const conic_splats *b) {
   return are;
 }
 
+/* How far the outlines of splats, as far as clip lines leave them, stand out of the cube. */
+static double stands_out(const conic_splats *splats, double cutoff) {
+  double farthest = 0.0, on_edge;
+  size_t at = 0;
+  for (size_t i = 0; i < splats->count; i++) {
+    const conic_clip *clip = at < splats->n_clips && splats->clips[at].splat == i ? &splats->clips[at++] : NULL;
+    for (int k = 0; k < 32; k++) {
+      double u = cutoff * cos(k * 0.19634954), v = cutoff * sin(k * 0.19634954), place[3];
+      int n_keeping = 0, n_lines = clip ? clip->n_lines : 0;
+      for (int line = 0; line < n_lines; line++)
+        n_keeping +=
+            (double)clip->lines[line][0] * u + (double)clip->lines[line][1] * v + (double)clip->lines[line][2] >= 0.0;
+      if (clip && (clip->operation == CONIC_CLIP_OR ? n_keeping == 0 : n_keeping < n_lines))
+        continue;
+      for (int axis = 0; axis < 3; axis++)
+        place[axis] = (double)splats->position[axis][i] + u * (double)splats->tangent_u[axis][i] +
+                      v * (double)splats->tangent_v[axis][i];
+      double off = from_cube(place, &on_edge), least = fmin(fmin(place[0], place[1]), place[2]);
+      double most = fmax(fmax(place[0], place[1]), place[2]);
+      farthest = least < 0.0 || most > SIDE ? fmax(farthest, off) : farthest;
+    }
+  }
+  return farthest;
+}
+
+static void check_outlines(conic_context *context, conic_splats *sharp) {
+  conic_estimate_options options;
+  conic_model model = {.points = *sharp};
+  conic_estimate_options_init(&options);
+  CHECK_OK(conic_model_to_splats(context, &options, &model, NULL));
+  double round = stands_out(&model.points, (double)options.cutoff);
+  CHECK_OK(conic_features_in_points(context, 0.8660254, 1, &options, &model.points));
+  double clipped = stands_out(&model.points, (double)options.cutoff);
+  printf("outlines stand out by %.2f spacings, clipped by %.2f\n", round, clipped);
+  CHECK(round > 2.0 && clipped < 1.1);
+  *sharp = model.points;
+}
+
 static void check_cube(conic_context *context) {
   conic_splats cube = noisy_cube(context, 0.3), round, sharp, again;
   cube_errors blunt = project_cube(context, &cube, 0, CONIC_ISA_AUTO, &round);
@@ -91,11 +133,14 @@ static void check_cube(conic_context *context) {
   CHECK(kept.edges < 0.15 && kept.edges < 0.6 * blunt.edges);
   CHECK(kept.faces <= blunt.faces);
   CHECK(kept.n >= N_POINTS * 99 / 100);
+  printf("%zu points are off by more than half a spacing\n", kept.n_strays);
+  CHECK(kept.n_strays <= N_POINTS / 1000);
   conic_context *one = check_context(1);
   project_cube(one, &cube, 1, CONIC_ISA_SCALAR, &again);
   CHECK(are_same(&again, &sharp));
   conic_splats_release(one, &again);
   conic_context_destroy(one);
+  check_outlines(context, &sharp);
   conic_splats_release(context, &round);
   conic_splats_release(context, &sharp);
   conic_splats_release(context, &cube);
