@@ -13,8 +13,8 @@ typedef struct packing {
   const conic_ways_job *job;
   const conic_clustered_mesh *mesh; /* the job's */
   const conic_triangles *flat;      /* the same mesh */
-  size_t n_clusters;
-  uint32_t *local; /* of each vertex: its number in the level that is being listed, else none */
+  size_t n_clusters, n_vertices;    /* of both the mesh and the whole model */
+  uint32_t *local;                  /* of each vertex: its number in the level that is being listed, else none */
   conic_chy_header header;
   conic_file_layout layout;
   unsigned char *bytes;
@@ -95,7 +95,7 @@ static conic_status allocate_body(packing *p) {
   memcpy(h->origin, p->flat->origin, sizeof h->origin);
   h->version = CONIC_CHY_VERSION;
   h->cutoff = p->job->options->cutoff;
-  h->n_vertices = p->flat->n_vertices;
+  h->n_vertices = p->n_vertices;
   h->n_clusters = p->n_clusters;
   h->n_nodes = p->job->n_nodes;
   h->n_slots = p->job->chains.n_slots;
@@ -249,6 +249,24 @@ static void put_vertices(packing *p) {
     memcpy(array_at(p, CONIC_CHY_TEXTURE + k), p->flat->texture_coordinate[k], n_bytes);
 }
 
+/* What simplifying moved comes after the mesh's own vertices. */
+static void put_moved(packing *p) {
+  const conic_cluster_levels *whole = &p->job->whole;
+  for (size_t i = 0; i < whole->n_moved; i++) {
+    const conic_moved_vertex *from = &whole->moved[i];
+    size_t to = p->flat->n_vertices + i;
+    for (int axis = 0; axis < 3; axis++) {
+      ((float *)array_at(p, CONIC_CHY_POSITION + axis))[to] = from->at[axis];
+      if (p->flat->normal[0])
+        ((float *)array_at(p, CONIC_CHY_NORMAL + axis))[to] = from->normal[axis];
+      if (p->flat->color[0])
+        ((float *)array_at(p, CONIC_CHY_COLOR + axis))[to] = p->flat->color[axis][from->original];
+    }
+    for (int k = 0; k < 2 && p->flat->texture_coordinate[0]; k++)
+      ((float *)array_at(p, CONIC_CHY_TEXTURE + k))[to] = p->flat->texture_coordinate[k][from->original];
+  }
+}
+
 static void put_materials(packing *p) {
   conic_chy_material *list = array_at(p, CONIC_CHY_MATERIAL_LIST);
   unsigned char *codes = array_at(p, CONIC_CHY_TEXELS);
@@ -317,6 +335,7 @@ static conic_status fill_body(packing *p) {
   if (p->job->chains.n_slots > 0)
     memcpy(array_at(p, CONIC_CHY_SLOTS), p->job->chains.slots, p->job->chains.n_slots * sizeof *p->job->chains.slots);
   put_vertices(p);
+  put_moved(p);
   put_materials(p);
   return measure_surfels(p);
 }
@@ -375,11 +394,12 @@ conic_status conic_hybrid_pack(const conic_ways_job *ways, conic_hybrid **hybrid
                .mesh = ways->mesh,
                .flat = flat,
                .n_clusters = ways->mesh->clusters->n_clusters,
-               .local = conic_memory_allocate(ways->context, flat->n_vertices, sizeof *p.local)};
+               .n_vertices = flat->n_vertices + ways->whole.n_moved};
+  p.local = conic_memory_allocate(ways->context, p.n_vertices, sizeof *p.local);
   *hybrid = NULL;
   if (!p.local)
     return CONIC_ERROR_MEMORY;
-  memset(p.local, 0xFF, flat->n_vertices * sizeof *p.local);
+  memset(p.local, 0xFF, p.n_vertices * sizeof *p.local);
   conic_status status = pack(&p, hybrid);
   conic_memory_release(ways->context, p.local);
   return status;

@@ -185,7 +185,10 @@ static void check_distances(borders_scene *s, uint64_t *state) {
   for (size_t i = 0; i < s->hybrid->n_clusters; i++)
     most = (double)level_of(s, i)->error > most ? (double)level_of(s, i)->error : most;
   for (int run = 0; run < 200 && most > 0.0; run++) {
-    size_t i = (size_t)(random_unit(state) * (double)s->hybrid->n_listed);
+    const conic_hybrid_cluster *cluster =
+        &s->hybrid->clusters[(size_t)(random_unit(state) * (double)s->hybrid->n_clusters)];
+    const conic_hybrid_level *finest = &s->hybrid->levels[cluster->first_level];
+    size_t i = finest->first_vertex + (size_t)(random_unit(state) * (double)finest->n_vertices);
     uint32_t vertex = s->hybrid->listed[i];
     double at[3];
     for (int axis = 0; axis < 3; axis++)
