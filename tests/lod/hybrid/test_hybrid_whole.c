@@ -208,7 +208,8 @@ static void check_level(const conic_hybrid *h, const conic_hybrid_level *level, 
           level->count, error, there / error, back / error, mean, volume, turned);
   CHECK(there <= error);
   CHECK(back <= error);
-  if (n >= 200.0) { /* as near as so many can be: without what is fitted they are farther */
+  CHECK(n < 20.0 || turned < 13.5); /* few large ones look like the mesh only with creases between them */
+  if (n >= 200.0) {                 /* as near as so many can be: without what is fitted they are farther */
     CHECK(fabs(1.0 - volume) < 0.002);
     CHECK(turned < 2000.0 / n);
     CHECK(mean < 2.0 / n);
