@@ -14,7 +14,7 @@ typedef struct sound_file {
   size_t n_bytes;
   size_t nodes, clusters, levels, material_list;
   size_t corners, materials, corners_at; /* of the first level, and where its chunk lies */
-  size_t frame, frame_at, ends, n_slots; /* of the cluster with most borders; which is: */
+  size_t frame, frame_at, ends, n_slots; /* of the first cluster with borders; which is: */
   size_t framed;
   size_t n_triangles, n_surfels, n_levels, n_clusters, n_nodes, n_materials, n_texels;
 } sound_file;
@@ -71,10 +71,10 @@ static void find_arrays(const conic_hybrid *h, const char *path, sound_file *sou
   conic_hybrid_piece piece = conic_hybrid_piece_of(h, 0);
   sound->corners = offset_of(h, piece.narrow);
   sound->materials = offset_of(h, piece.material);
-  for (size_t i = 1; i < h->n_clusters; i++)
-    if (h->clusters[i].n_borders > h->clusters[sound->framed].n_borders)
-      sound->framed = i;
-  CHECK(piece.narrow && piece.material && h->clusters[sound->framed].n_borders > 4);
+  while (sound->framed < h->n_clusters && (h->clusters[sound->framed].n_levels < 2 ||
+                                           h->levels[h->clusters[sound->framed].first_level + 1].n_borders < 2))
+    sound->framed++; /* two borders of a level, so that they can run over each other */
+  CHECK(piece.narrow && piece.material && sound->framed < h->n_clusters);
   uint32_t framed = (uint32_t)sound->framed;
   sound->n_slots = h->clusters[framed].n_slots;
   sound->frame_at = offset_of(h, conic_hybrid_chunk(h, conic_hybrid_frame_chunk(h, framed)));
