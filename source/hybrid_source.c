@@ -63,9 +63,8 @@ static conic_status open_hybrid(conic_source *source, const char *const *paths, 
   h->is_opened = is_hybrid_name(paths[0]);
   if (h->is_opened && conic_coloring_is_asked(options))
     return conic_coloring_refuse(source->context, paths[0], options);
-  conic_status status = h->is_opened
-                            ? conic_hybrid_open(source->context, paths[0], options->access, &h->hybrid)
-                            : build_hybrid(h, paths[0], options);
+  conic_status status = h->is_opened ? conic_hybrid_open(source->context, paths[0], options->access, &h->hybrid)
+                                     : build_hybrid(h, paths[0], options);
   return status == CONIC_OK ? measure_hybrid(h) : status;
 }
 

@@ -39,12 +39,12 @@ typedef enum conic_representation {
 
 /* What a source can do besides being drawn, as bits. */
 typedef enum conic_source_ability {
-  CONIC_SOURCE_CHOOSES = 1,   /* draws less than everything: by an error, or within a budget */
-  CONIC_SOURCE_CLUSTERS = 2,  /* draws clusters of two kinds: only_kind, and the image's cluster plane */
-  CONIC_SOURCE_STREAMS = 4,   /* draws by itself what it reads meanwhile: levels, deadline, occlusion; and hands nothing
-                                 over unless it is opened whole */
-  CONIC_SOURCE_COMPOSITES = 8, /* draws Gaussians, composited by alpha: display values, and planes of its own. Of the
-                                 render options, the background and the instruction set count; nothing is handed over */
+  CONIC_SOURCE_CHOOSES = 1,  /* draws less than everything: by an error, or within a budget */
+  CONIC_SOURCE_CLUSTERS = 2, /* draws clusters of two kinds: only_kind, and the image's cluster plane */
+  CONIC_SOURCE_STREAMS = 4,  /* draws by itself what it reads meanwhile: levels, deadline, occlusion; and hands nothing
+                                over unless it is opened whole */
+  CONIC_SOURCE_COMPOSITES = 8,  /* draws Gaussians, composited by alpha: display values, and planes of its own. Of the
+                                  render options, the background and the instruction set count; nothing is handed over */
   CONIC_SOURCE_READS_PARTS = 16 /* reads of a file or a URL what it draws, by the options' access */
 } conic_source_ability;
 

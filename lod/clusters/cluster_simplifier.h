@@ -24,7 +24,8 @@ typedef struct conic_simplifier_vertex {
   uint32_t target;               /* what it would best be drawn onto; of one that is gone: what it was drawn onto */
   uint8_t kind, is_old, is_seam; /* is_seam: its attributes differ from face to face; it may go along where they do */
   uint8_t is_gone;
-  double at[3];
+  uint32_t moved;      /* the first of the moved vertices that a level has of it, or none yet */
+  double at[3], to[3]; /* and where its target would be then */
   conic_quadric quadric;
   double faded, fading; /* what was lost of the colours about it, as a quadric's value; and what its going adds */
 } conic_simplifier_vertex;
@@ -47,11 +48,19 @@ typedef struct conic_simplifier_point {
   uint32_t corners;  /* is not looked at */
 } conic_simplifier_point;
 
+/* The middle of a face of the mesh, and what is nearest to it. */
+typedef struct conic_simplifier_hit {
+  float area2, normal[3]; /* twice the face's area, and the mean of its corners' normals, if it has any */
+  uint32_t triangle;      /* none: nothing that looks the same way */
+  float bary[3], height;  /* how much of each corner is there, and how far the middle is over it */
+} conic_simplifier_hit;
+
 /* From a vertex that is to go to a neighbour. */
 typedef struct conic_simplifier_spoke {
   uint32_t vertex;
   uint32_t before, slot; /* of its triangle, if it has one: the corner before the vertex that goes, and the slot */
   int is_common;         /* whether it neighbours the vertex that is looked at, too */
+  double at[3];          /* where it would be when the vertex has gone to it */
   double cost, fading;   /* what colours add to it, once it was asked; else infinite */
 } conic_simplifier_spoke;
 
@@ -81,15 +90,16 @@ struct conic_simplifier {
   uint32_t *alive;                  /* triangles of each cluster */
   uint32_t *taken;                  /* of each cluster: triangles of its last level */
   double *errors2;                  /* of each cluster, squared, so far */
+  conic_simplifier_hit *hits;       /* of the mesh's faces, where the region is one: what is nearest to their middles */
   conic_seen_sums *changes;         /* of each cluster's colours, in the stage that is measured */
   float (*contrasts)[2];   /* of the triangles' faces of the mesh, and twice their area; null: all has one colour */
   uint32_t stage;          /* the last one that is taken, or is to be */
   size_t n_last, n_wanted; /* triangles: of the last stage, and of the next */
-  int is_to_take, is_over;
+  int is_to_fit, is_to_take, is_over;
   int is_one;                     /* the region is simplified as one cluster in pieces */
   conic_cluster_levels *levels;   /* of the region's clusters */
   conic_simplifier_spoke *spokes; /* room for those of any vertex */
-  void *memory[17];               /* all of these, but for the borders */
+  void *memory[18];               /* all of these, but for the borders */
   conic_heap queue;
 };
 
@@ -122,6 +132,13 @@ conic_status conic_simplifier_load(conic_simplifier *s);
  * which has the same at u; of the same cluster and material. NONE where there is none, or they differ. */
 uint32_t conic_simplifier_wedge(const conic_simplifier *s, uint32_t u, uint32_t v, uint32_t slot);
 
+/* Where v is best when u has gone to it, both being the sum of their quadrics: at its own place, unless it may move. */
+void conic_simplifier_find_place(const conic_simplifier *s, uint32_t u, uint32_t v, const conic_quadric *both,
+                                 double at[3]);
+
+/* Whether the triangle of a slot neither turns over nor loses its area when that corner is somewhere else. */
+int conic_simplifier_keeps_facing(const conic_simplifier *s, uint32_t slot, const double at[3]);
+
 /* Sets the target of vertex u and its key, or neither where it may be drawn onto no neighbour. */
 void conic_simplifier_find_target(conic_simplifier *s, uint32_t u);
 
@@ -143,6 +160,19 @@ conic_status conic_simplifier_begin_stage(conic_simplifier *s);
 
 /* The target of each vertex that is gone becomes what it is now. */
 void conic_simplifier_shorten_ways(conic_simplifier *s);
+
+/* Of what is one: moves the vertices along their normals to where they fit the mesh best, by what its faces have been
+ * nearest to. Errors: MEMORY. */
+conic_status conic_simplifier_fit_places(conic_simplifier *s);
+
+/* Of what is one: the normals of the triangles' corners that fit the mesh's best, and the number of each corner's; both
+ * null where the mesh has none. The caller releases them, on failure too. Errors: MEMORY. */
+typedef struct conic_simplifier_normals {
+  uint32_t (*of_corner)[3]; /* of triangles, as the simplifier has them */
+  double (*normals)[3];     /* unit vectors */
+} conic_simplifier_normals;
+conic_status conic_simplifier_fit_normals(const conic_simplifier *s, conic_simplifier_normals *normals);
+void conic_simplifier_normals_release(const conic_simplifier *s, conic_simplifier_normals *normals);
 
 /* Takes what is alive as the levels of the stage. Errors: MEMORY. */
 conic_status conic_simplifier_take(conic_simplifier *s);

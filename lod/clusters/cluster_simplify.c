@@ -82,6 +82,7 @@ static void draw_together(conic_simplifier *s, uint32_t u, uint32_t v) {
   }
   prune_ring(s, v);
   leave_slot(s, u);
+  memcpy(s->vertices[v].at, s->vertices[u].to, sizeof s->vertices[v].at);
   s->vertices[u].is_gone = 1;
   conic_quadric_add(&s->vertices[v].quadric, &s->vertices[u].quadric);
   s->vertices[v].faded += s->vertices[u].faded + s->vertices[u].fading;
@@ -112,7 +113,7 @@ conic_status conic_region_begin(conic_simplifier *s, conic_cluster_chains *chain
   s->begin = begin;
   s->end = end;
   s->levels = levels;
-  s->is_to_take = s->is_over = 0;
+  s->is_to_take = s->is_to_fit = s->is_over = 0;
   s->is_one = most_at_first > 0;
   memset(levels, 0, (s->is_one ? 1 : end - begin) * sizeof *levels);
   conic_status status = conic_simplifier_load(s);
@@ -146,13 +147,19 @@ static conic_status simplify(conic_simplifier *s) {
 
 conic_status conic_region_advance(conic_simplifier *s, uint32_t *n_clusters) {
   conic_status status = CONIC_OK;
-  if (s->is_to_take) {
-    status = conic_simplifier_take(s);
-    s->n_last = s->n_alive;
-    s->n_wanted = wanted_after(s);
+  if (s->is_to_fit) {
+    s->is_to_fit = 0;
+    status = conic_simplifier_fit_places(s);
+  } else {
+    if (s->is_to_take) {
+      status = conic_simplifier_take(s);
+      s->n_last = s->n_alive;
+      s->n_wanted = wanted_after(s);
+    }
+    if (status == CONIC_OK && !s->is_over)
+      status = simplify(s);
+    s->is_to_fit = s->is_one && s->is_to_take;
   }
-  if (status == CONIC_OK && !s->is_over)
-    status = simplify(s);
   *n_clusters = status == CONIC_OK && s->is_to_take ? s->end - s->begin : 0;
   return status;
 }

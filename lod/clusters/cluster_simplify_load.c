@@ -38,9 +38,12 @@ static conic_status make_room_for_region(conic_simplifier *s, size_t n_vertices,
   s->memory[13] = s->near = conic_memory_allocate(s->context, n_faces, sizeof *s->near);
   s->memory[15] = s->wedges = conic_memory_allocate(s->context, n_faces, sizeof *s->wedges);
   s->memory[14] = s->changes = conic_memory_allocate_zeroed(s->context, n_clusters, sizeof *s->changes);
-  for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory - 1; i++)
+  for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory - 2; i++)
     if (!s->memory[i])
       return CONIC_ERROR_MEMORY;
+  s->memory[17] = s->hits = s->is_one ? conic_memory_allocate(s->context, n_faces, sizeof *s->hits) : NULL;
+  if (s->is_one && !s->hits)
+    return CONIC_ERROR_MEMORY;
   s->contrasts = NULL;
   if (!conic_has_seen_colors(s->mesh->triangles))
     return CONIC_OK;
@@ -92,15 +95,32 @@ static uint32_t use_vertex(conic_simplifier *s, uint32_t triangle, int corner, u
   return i;
 }
 
-/* What its colours need to be known of a face. */
-static void note_face(conic_simplifier *s, uint32_t triangle) {
+static double twice_area_at_first(const conic_simplifier *s, uint32_t triangle) {
   double sides[2][3], cross[3];
   const uint32_t *corners = s->triangles[triangle].corners;
   for (int k = 0; k < 2; k++)
     conic_subtract(s->vertices[corners[k + 1]].at, s->vertices[corners[0]].at, sides[k]);
   conic_cross(sides[0], sides[1], cross);
+  return conic_length(cross);
+}
+
+/* What its colours need to be known of a face. */
+static void note_face(conic_simplifier *s, uint32_t triangle) {
   s->contrasts[triangle][0] = (float)conic_seen_contrast(s->mesh->triangles, s->triangles[triangle].face);
-  s->contrasts[triangle][1] = (float)conic_length(cross);
+  s->contrasts[triangle][1] = (float)twice_area_at_first(s, triangle);
+}
+
+/* A face is nearest to itself. */
+static void begin_hit(conic_simplifier *s, uint32_t triangle) {
+  float *const *normals = s->mesh->triangles->normal;
+  double normal[3] = {0.0, 0.0, 0.0};
+  for (int k = 0; k < 9 && normals[0]; k++)
+    normal[k % 3] += (double)normals[k % 3][s->originals[triangle][k / 3]];
+  conic_normalize(normal);
+  conic_simplifier_hit *hit = &s->hits[triangle];
+  *hit = (conic_simplifier_hit){.area2 = (float)twice_area_at_first(s, triangle), .triangle = triangle};
+  for (int axis = 0; axis < 3; axis++)
+    hit->normal[axis] = (float)normal[axis];
 }
 
 static void add_region_triangle(conic_simplifier *s, uint32_t cluster, uint32_t face) {
@@ -125,6 +145,8 @@ static void add_region_triangle(conic_simplifier *s, uint32_t cluster, uint32_t 
   }
   if (s->contrasts)
     note_face(s, i);
+  if (s->hits)
+    begin_hit(s, i);
   add_point(s, t->corners[0], middle, i, 7);
   for (int corner = 0; corner < 3; corner++) {
     uint32_t across = s->mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
@@ -200,7 +222,7 @@ conic_status conic_simplifier_load(conic_simplifier *s) {
   s->stage = 0;
   memset(s->vertices, 0, s->n_vertices * sizeof *s->vertices);
   for (size_t i = 0; i < s->n_vertices; i++)
-    s->vertices[i].original = s->vertices[i].ring = s->vertices[i].target = CONIC_NONE;
+    s->vertices[i].original = s->vertices[i].ring = s->vertices[i].target = s->vertices[i].moved = CONIC_NONE;
   for (uint32_t cluster = 0; cluster < n_clusters; cluster++) {
     s->point_starts[0][cluster] = s->n_points;
     for (size_t i = starts[cluster]; i < starts[cluster + 1]; i++)

@@ -2,8 +2,12 @@
  * clusters may be measured at the same time. */
 #include <math.h>
 
+#include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
 #include "lod/mesh/distance.h"
+
+/* The least cosine between a face and what stands for it where it is fitted. */
+static const double least_alike = 0.5;
 
 /* What a vertex has become, at the end of a way that is made shorter on it. */
 static uint32_t now_at(conic_simplifier *s, uint32_t v) {
@@ -30,36 +34,51 @@ typedef struct approach {
   double least2, enough2;
 } approach;
 
+/* Whether a triangle is nearer than all before. */
+static int comes_nearer(const conic_simplifier *s, const conic_simplifier_triangle *t, approach *a) {
+  double distance2 = conic_distance2_to_triangle(a->at, s->vertices[t->corners[0]].at, s->vertices[t->corners[1]].at,
+                                                 s->vertices[t->corners[2]].at);
+  if (!(distance2 < a->least2))
+    return 0;
+  a->least2 = distance2;
+  return 1;
+}
+
 /* The nearest of the triangles about a vertex, if it is nearer than all before. */
 static const conic_simplifier_triangle *nearest_about(const conic_simplifier *s, uint32_t v, approach *a) {
   const conic_simplifier_triangle *nearest = NULL;
   for (uint32_t slot = conic_simplifier_living(s, s->vertices[v].ring); slot != CONIC_NONE && a->least2 > a->enough2;
-       slot = conic_simplifier_after(s, slot)) {
-    const conic_simplifier_triangle *t = &s->triangles[slot / 3];
-    double distance2 = conic_distance2_to_triangle(a->at, s->vertices[t->corners[0]].at, s->vertices[t->corners[1]].at,
-                                                   s->vertices[t->corners[2]].at);
-    if (!(distance2 < a->least2))
-      continue;
-    a->least2 = distance2;
-    nearest = t;
-  }
+       slot = conic_simplifier_after(s, slot))
+    if (comes_nearer(s, &s->triangles[slot / 3], a))
+      nearest = &s->triangles[slot / 3];
   return nearest;
 }
 
-/* From the triangles about the vertex that a point is near to on to those that touch the nearest, as long as that comes
- * nearer: no nearer than the nearest of all. About the corners of the one before all were looked at. */
+/* What was nearest to the face of a point, where that is known and still there. */
+static const conic_simplifier_triangle *known_near(const conic_simplifier *s, const conic_simplifier_point *point) {
+  uint32_t known = s->hits ? s->hits[point->triangle].triangle : CONIC_NONE;
+  return known != CONIC_NONE && s->triangles[known].is_alive ? &s->triangles[known] : NULL;
+}
+
+/* From what is known, or the triangles about the vertex that a point is near to, on to those that touch the nearest, as
+ * long as that comes nearer: no nearer than the nearest of all. About the corners of the one before all were looked
+ * at. */
 static double distance2_of(const conic_simplifier *s, const conic_simplifier_point *point, double enough2,
                            const conic_simplifier_triangle **nearest_of_all) {
   const conic_simplifier_vertex *own = &s->vertices[point->vertex];
   uint32_t first = own->is_gone ? own->target : point->vertex;
   approach a = {.at = point->at, .least2 = HUGE_VAL, .enough2 = enough2};
-  const conic_simplifier_triangle *before = NULL, *from = nearest_about(s, first, &a);
+  const conic_simplifier_triangle *before = NULL, *known = known_near(s, point), *from = known;
+  if (!known || !comes_nearer(s, known, &a)) {
+    known = NULL;
+    from = nearest_about(s, first, &a);
+  }
   *nearest_of_all = from;
   while (from && a.least2 > enough2) {
     const conic_simplifier_triangle *nearest = NULL;
     for (int corner = 0; corner < 3; corner++) {
       uint32_t v = from->corners[corner];
-      if (before ? conic_simplifier_has(before, v) : v == first)
+      if (before ? conic_simplifier_has(before, v) : !known && v == first)
         continue;
       const conic_simplifier_triangle *found = nearest_about(s, v, &a);
       nearest = found ? found : nearest;
@@ -69,6 +88,59 @@ static double distance2_of(const conic_simplifier *s, const conic_simplifier_poi
     from = nearest;
   }
   return a.least2;
+}
+
+static void find_bary(const conic_simplifier *s, const double at[3], uint32_t triangle, double bary[3]) {
+  const uint32_t *v = s->triangles[triangle].corners;
+  const double *const corners[3] = {s->vertices[v[0]].at, s->vertices[v[1]].at, s->vertices[v[2]].at};
+  conic_seen_nearest(at, corners, bary);
+}
+
+/* Whether a triangle looks the same way as a face of the mesh. */
+static int looks_alike(const conic_simplifier *s, uint32_t triangle, uint32_t face) {
+  const conic_simplifier_triangle *t = &s->triangles[triangle], *own = &s->triangles[face];
+  double sides[2][3], cross[3];
+  for (int k = 0; k < 2; k++)
+    conic_subtract(s->vertices[t->corners[k + 1]].at, s->vertices[t->corners[0]].at, sides[k]);
+  conic_cross(sides[0], sides[1], cross);
+  double along = conic_dot(cross, own->normal) * (double)s->mesh->adjacency->side[own->face];
+  return along > least_alike * conic_length(cross);
+}
+
+static void put_hit(const conic_simplifier *s, const conic_simplifier_point *point, const double bary[3],
+                    conic_simplifier_hit *hit) {
+  double apart[3] = {point->at[0], point->at[1], point->at[2]};
+  for (int k = 0; k < 9; k++)
+    apart[k % 3] -= bary[k / 3] * s->vertices[s->triangles[hit->triangle].corners[k / 3]].at[k % 3];
+  hit->height = (float)conic_dot(apart, s->triangles[point->triangle].normal);
+  for (int k = 0; k < 3; k++)
+    hit->bary[k] = (float)bary[k];
+}
+
+/* What is nearest to the middle of a face. Where that is seen from within a triangle that was nearest at the last
+ * stage, it still is. */
+static void find_hit(conic_simplifier *s, const conic_simplifier_point *point) {
+  conic_simplifier_hit *hit = &s->hits[point->triangle];
+  double bary[3] = {0.0, 0.0, 0.0};
+  if (hit->triangle != CONIC_NONE && s->triangles[hit->triangle].is_alive)
+    find_bary(s, point->at, hit->triangle, bary);
+  if (!(bary[0] > 0.0 && bary[1] > 0.0 && bary[2] > 0.0)) {
+    const conic_simplifier_triangle *nearest;
+    distance2_of(s, point, 0.0, &nearest);
+    hit->triangle = nearest ? (uint32_t)(nearest - s->triangles) : CONIC_NONE;
+    if (nearest)
+      find_bary(s, point->at, hit->triangle, bary);
+  }
+  if (hit->triangle != CONIC_NONE && looks_alike(s, hit->triangle, point->triangle))
+    put_hit(s, point, bary, hit);
+  else
+    hit->triangle = CONIC_NONE;
+}
+
+static void find_hits(conic_simplifier *s, uint32_t cluster) {
+  for (size_t i = s->point_starts[0][cluster]; i < s->point_starts[0][cluster + 1]; i++)
+    if (s->points[i].corners == 7)
+      find_hit(s, &s->points[i]);
 }
 
 static void measure_points(conic_simplifier *s, uint32_t cluster, const size_t *starts) {
@@ -106,15 +178,42 @@ static int walk_near(const conic_simplifier *s, const double at[3], double enoug
   return least2 <= enough2;
 }
 
-/* The greater of `most` and how far the middle of some places is from the mesh; `near` is a face that is near, and
- * becomes a nearer one. */
+/* The greater of `most` and how far a place is from the mesh; `near` is a face that is near, and becomes a nearer
+ * one. */
+static double farther_of_place(const conic_simplifier *s, const double at[3], uint32_t *near, double most) {
+  return walk_near(s, at, most * most, near) ? most : conic_face_tree_farther_by(s->tree, at, *near, most);
+}
+
+/* The same of the middle of some places. */
 static double farther(const conic_simplifier *s, const double *const places[3], int n, uint32_t *near, double most) {
   double at[3];
   for (int axis = 0; axis < 3; axis++) {
     double sum = places[0][axis] + places[1][axis];
     at[axis] = n == 3 ? (sum + places[2][axis]) / 3.0 : 0.5 * sum;
   }
-  return walk_near(s, at, most * most, near) ? most : conic_face_tree_farther_by(s->tree, at, *near, most);
+  return farther_of_place(s, at, near, most);
+}
+
+/* Triangles of what is one may be large, and their corners lie off the mesh: they are measured on a grid. All together
+ * it has twice as many places as the mesh has faces, or some 30,000, but at least the corners, thirds of the edges and
+ * the middle of each. */
+enum { MOST_PLACES = 30000, LEAST_PARTS = 3, MOST_PARTS = 16 };
+
+static double measure_grid(const conic_simplifier *s, const double *const corners[3], uint32_t *near, double most) {
+  size_t n_places = 2 * s->n_triangles < MOST_PLACES ? 2 * s->n_triangles : MOST_PLACES;
+  int n = LEAST_PARTS;
+  while (n < MOST_PARTS && (size_t)((n + 1) * (n + 2) / 2) * s->n_alive < n_places)
+    n++;
+  for (int i = 0; i <= n; i++)
+    for (int k = 0; k <= n - i; k++) {
+      double at[3];
+      for (int axis = 0; axis < 3; axis++)
+        at[axis] =
+            ((double)i * corners[0][axis] + (double)k * corners[1][axis] + (double)(n - i - k) * corners[2][axis]) /
+            (double)n;
+      most = farther_of_place(s, at, near, most);
+    }
+  return most;
 }
 
 /* The middles of the triangles, and those of their edges. */
@@ -127,8 +226,8 @@ static double measure_back(const conic_simplifier *s, uint32_t cluster, double m
       continue;
     const double *const corners[4] = {s->vertices[t->corners[0]].at, s->vertices[t->corners[1]].at,
                                       s->vertices[t->corners[2]].at, s->vertices[t->corners[0]].at};
-    most = farther(s, corners, 3, &s->near[i][3], most);
-    for (int k = 0; k < 3; k++)
+    most = s->is_one ? measure_grid(s, corners, &s->near[i][3], most) : farther(s, corners, 3, &s->near[i][3], most);
+    for (int k = 0; k < 3 && !s->is_one; k++)
       most = farther(s, corners + k, 2, &s->near[i][k], most);
   }
   return most;
@@ -178,6 +277,10 @@ static double measure_fans(const conic_simplifier *s, uint32_t cluster, double m
 }
 
 void conic_region_measure(conic_simplifier *s, uint32_t cluster) {
+  if (s->is_to_fit) {
+    find_hits(s, cluster);
+    return;
+  }
   s->changes[cluster] = (conic_seen_sums){0.0, 0.0, 0.0};
   measure_points(s, cluster, s->point_starts[0]);
   measure_points(s, cluster, s->point_starts[1]);

@@ -104,6 +104,66 @@ conic_status conic_simplifier_begin_stage(conic_simplifier *s) {
 
 /* --- levels --- */
 
+/* The vertices of a stage of what is one. */
+typedef struct taking {
+  const conic_simplifier *s;
+  conic_cluster_levels *levels;
+  conic_simplifier_normals normals;
+} taking;
+
+static conic_status add_moved(const taking *t, uint32_t vertex, uint32_t original, uint32_t normal) {
+  conic_cluster_levels *levels = t->levels;
+  conic_simplifier_vertex *v = &t->s->vertices[vertex];
+  conic_status status = conic_memory_reserve(t->s->context, &levels->moved, levels->n_moved, levels->n_moved + 1,
+                                             &levels->moved_room, sizeof *levels->moved);
+  if (status != CONIC_OK)
+    return status;
+  conic_moved_vertex *moved = &levels->moved[levels->n_moved];
+  memset(moved, 0, sizeof *moved);
+  for (int axis = 0; axis < 3; axis++) {
+    moved->at[axis] = (float)v->at[axis];
+    if (t->normals.normals)
+      moved->normal[axis] = (float)t->normals.normals[normal][axis];
+  }
+  moved->original = original;
+  moved->of_normal = normal;
+  moved->next = v->moved;
+  v->moved = (uint32_t)levels->n_moved++;
+  return CONIC_OK;
+}
+
+/* The number of a corner's vertex. */
+static conic_status take_moved(const taking *t, size_t triangle, int corner, uint32_t *to) {
+  uint32_t vertex = t->s->triangles[triangle].corners[corner], original = t->s->originals[triangle][corner];
+  uint32_t normal = t->normals.of_corner ? t->normals.of_corner[triangle][corner] : 0;
+  uint32_t at = t->s->vertices[vertex].moved;
+  conic_status status = CONIC_OK;
+  while (at != CONIC_NONE && (t->levels->moved[at].original != original || t->levels->moved[at].of_normal != normal))
+    at = t->levels->moved[at].next;
+  if (at == CONIC_NONE) {
+    status = add_moved(t, vertex, original, normal);
+    at = t->s->vertices[vertex].moved;
+  }
+  *to = (uint32_t)t->s->mesh->mesh.n_vertices + at;
+  return status;
+}
+
+/* The last level has vertices of its own. */
+static conic_status move_level(const conic_simplifier *s, conic_cluster_levels *levels) {
+  conic_cluster_level *level = &levels->levels[levels->n - 1];
+  taking t = {.s = s, .levels = levels};
+  conic_status status = conic_simplifier_fit_normals(s, &t.normals);
+  for (size_t i = 0; i < s->n_vertices; i++)
+    s->vertices[i].moved = CONIC_NONE;
+  for (size_t i = 0, n = 0; i < s->n_triangles && status == CONIC_OK; i++) {
+    for (int corner = 0; corner < 3 && s->triangles[i].is_alive && status == CONIC_OK; corner++)
+      status = take_moved(&t, i, corner, &level->corners[n][corner]);
+    n += (size_t)s->triangles[i].is_alive;
+  }
+  conic_simplifier_normals_release(s, &t.normals);
+  return status;
+}
+
 /* The cluster's triangles lie together; those of what is one are all, of which the pieces' measures are joined. */
 static conic_status take_cluster(const conic_simplifier *s, uint32_t cluster, conic_cluster_levels *levels) {
   const size_t *starts = s->mesh->starts + s->begin;
@@ -141,7 +201,9 @@ static conic_status take_cluster(const conic_simplifier *s, uint32_t cluster, co
     change.smear2 += own->smear2;
   }
   level->change = conic_seen_sums_change(&change, level->change);
-  return CONIC_OK;
+  for (uint32_t i = cluster; i < end && s->is_one; i++) /* no need to measure what is nearer */
+    s->errors2[i] = level->error * level->error;
+  return s->is_one ? move_level(s, levels) : CONIC_OK;
 }
 
 conic_status conic_simplifier_take(conic_simplifier *s) {
@@ -161,5 +223,6 @@ void conic_cluster_levels_release(conic_context *context, conic_cluster_levels *
     conic_memory_release(context, levels->levels[i].face);
     conic_memory_release(context, levels->levels[i].borders);
   }
+  conic_memory_release(context, levels->moved);
   memset(levels, 0, sizeof *levels);
 }

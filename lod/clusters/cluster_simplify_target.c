@@ -1,5 +1,6 @@
 /* What a vertex is best drawn onto, of its neighbours that it may be drawn onto. */
 #include <math.h>
+#include <string.h>
 
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
@@ -89,37 +90,41 @@ static int keeps_surface(const conic_simplifier *s, const fan *f, uint32_t v) {
   return f->n_triangles > (size_t)n && count_common(s, f, v) == n;
 }
 
-static double area2_of(const conic_simplifier *s, const uint32_t corners[3], double cross[3]) {
+static double area2_of(const double *const corners[3], double cross[3]) {
   double sides[2][3];
   for (int k = 0; k < 2; k++)
-    for (int axis = 0; axis < 3; axis++)
-      sides[k][axis] = s->vertices[corners[k + 1]].at[axis] - s->vertices[corners[0]].at[axis];
+    conic_subtract(corners[k + 1], corners[0], sides[k]);
   conic_cross(sides[0], sides[1], cross);
   return conic_length(cross);
 }
 
-/* What a triangle must not turn away from: its face of the mesh; in what is one, which becomes far simpler than its
- * faces are even, what it is now. */
-static void facing_of_triangle(const conic_simplifier *s, const conic_simplifier_triangle *t, double normal[3]) {
-  double length = s->is_one ? area2_of(s, t->corners, normal) : 0.0;
+/* Whether the triangle of a slot neither turns over nor loses its area when that corner is somewhere else: turns away
+ * from its face of the mesh; in what is one, which becomes far simpler than its faces are even, from what it is now. */
+int conic_simplifier_keeps_facing(const conic_simplifier *s, uint32_t slot, const double at[3]) {
+  const conic_simplifier_triangle *t = &s->triangles[slot / 3];
+  const double *corners[3];
+  double cross[3], normal[3];
+  for (int corner = 0; corner < 3; corner++)
+    corners[corner] = s->vertices[t->corners[corner]].at;
+  double length = s->is_one ? area2_of(corners, normal) : 0.0;
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = length > 0.0 ? normal[axis] / length : t->normal[axis] * (double)s->mesh->adjacency->side[t->face];
+  corners[slot % 3] = at;
+  double area2 = area2_of(corners, cross), along = conic_dot(cross, normal);
+  return area2 > 0.0 && along > least_turn * area2;
 }
 
-/* Whether no triangle that stays turns over or loses its area when the vertex goes to v. */
-static int keeps_facing(const conic_simplifier *s, const fan *f, uint32_t v) {
-  for (size_t i = 0; i < f->n_triangles; i++) {
-    if (has(&f->spokes[i], v))
-      continue;
-    const conic_simplifier_triangle *t = triangle_of(s, &f->spokes[i]);
-    uint32_t corners[3] = {t->corners[0], t->corners[1], t->corners[2]};
-    double cross[3], normal[3];
-    facing_of_triangle(s, t, normal);
-    corners[f->spokes[i].slot % 3] = v;
-    double area2 = area2_of(s, corners, cross), along = conic_dot(cross, normal);
-    if (!(area2 > 0.0) || !(along > least_turn * area2))
+/* The same of all triangles that stay when the vertex goes to that spoke's. */
+static int keeps_facing(const conic_simplifier *s, const fan *f, const conic_simplifier_spoke *to) {
+  for (size_t i = 0; i < f->n_triangles; i++)
+    if (!has(&f->spokes[i], to->vertex) && !conic_simplifier_keeps_facing(s, f->spokes[i].slot, to->at))
       return 0;
-  }
+  if (!s->is_one)
+    return 1;
+  for (uint32_t slot = conic_simplifier_living(s, s->vertices[to->vertex].ring); slot != CONIC_NONE;
+       slot = conic_simplifier_after(s, slot))
+    if (!conic_simplifier_has(&s->triangles[slot / 3], f->vertex) && !conic_simplifier_keeps_facing(s, slot, to->at))
+      return 0;
   return 1;
 }
 
@@ -195,8 +200,9 @@ static int keeps_seams(const conic_simplifier *s, const fan *f, uint32_t v) {
   return 1;
 }
 
-static int may_go(const conic_simplifier *s, const fan *f, uint32_t v) {
-  return keeps_seams(s, f, v) && keeps_surface(s, f, v) && leaves_some(s, f, v) && keeps_facing(s, f, v);
+static int may_go(const conic_simplifier *s, const fan *f, const conic_simplifier_spoke *to) {
+  uint32_t v = to->vertex;
+  return keeps_seams(s, f, v) && keeps_surface(s, f, v) && leaves_some(s, f, v) && keeps_facing(s, f, to);
 }
 
 static void find_costs(const conic_simplifier *s, const fan *f) {
@@ -204,7 +210,8 @@ static void find_costs(const conic_simplifier *s, const fan *f) {
     const conic_simplifier_vertex *v = &s->vertices[f->spokes[i].vertex];
     conic_quadric both = s->vertices[f->vertex].quadric;
     conic_quadric_add(&both, &v->quadric);
-    f->spokes[i].cost = conic_quadric_at(&both, v->at) + s->vertices[f->vertex].faded + v->faded;
+    conic_simplifier_find_place(s, f->vertex, f->spokes[i].vertex, &both, f->spokes[i].at);
+    f->spokes[i].cost = conic_quadric_at(&both, f->spokes[i].at) + s->vertices[f->vertex].faded + v->faded;
     f->spokes[i].fading = s->contrasts ? HUGE_VAL : 0.0;
   }
 }
@@ -230,7 +237,7 @@ void conic_simplifier_find_target(conic_simplifier *s, uint32_t u) {
     return;
   find_costs(s, &f);
   for (conic_simplifier_spoke *next = cheapest_of(&f); next; next = cheapest_of(&f)) {
-    int may = may_go(s, &f, next->vertex);
+    int may = may_go(s, &f, next);
     if (may && !(next->fading < HUGE_VAL)) { /* colours are looked at only where the rest is cheap */
       next->fading = conic_simplifier_fading(s, u, next->vertex);
       next->cost += next->fading;
@@ -240,6 +247,7 @@ void conic_simplifier_find_target(conic_simplifier *s, uint32_t u) {
       own->fading = next->fading;
       s->queue.keys[u] = next->cost;
       own->target = next->vertex;
+      memcpy(own->to, next->at, sizeof own->to);
       return;
     }
     next->cost = HUGE_VAL;

@@ -1,6 +1,6 @@
-/* The chunks of a hybrid model, which are read one by one: what is drawn of each level, and of each cluster what fits it
- * to others. Levels have the first numbers, then come the clusters' frames, then their ends. Each begins with its sum
- * (docs/reference/format-chy.md). */
+/* The chunks of a hybrid model, which are read one by one: what is drawn of each level, and of each cluster what fits
+ * it to others. Levels have the first numbers, then come the clusters' frames, then their ends. Each begins with its
+ * sum (docs/reference/format-chy.md). */
 #ifndef CONIC_HYBRID_CHUNKS_H
 #define CONIC_HYBRID_CHUNKS_H
 

@@ -106,6 +106,8 @@ static conic_status write_placed(const conic_hybrid *hybrid, const conic_hybrid 
   conic_file_layout l = conic_chy_lay_out(&h);
   const void *arrays[CONIC_FILE_MOST_ARRAYS] = {placed->nodes, placed->clusters, placed->levels, placed->material_list,
                                                 placed->texels};
+  for (int i = 0; i < l.n; i++)
+    arrays[i] = arrays[i] ? arrays[i] : placed->nodes; /* of nothing */
   size_t n = conic_hybrid_count_chunks(hybrid);
   h.body_sum = conic_file_sum_arrays(hybrid->context, &l, arrays);
   conic_status status = conic_file_put_arrays(hybrid->context, stream, &conic_chy_kind, &h, &l, arrays);

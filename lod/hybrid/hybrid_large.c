@@ -11,7 +11,7 @@
 #include "lod/hybrid/hybrid_chunks.h"
 #include "lod/hybrid/hybrid_large.h"
 #include "lod/hybrid/hybrid_pile.h"
-#include "lod/hybrid/mesh_cells.h"
+#include "lod/mesh/mesh_cells.h"
 
 /* What building takes for each face of a cell, and besides (docs/notes/hybrid-measured.md). */
 enum { BYTES_A_FACE = 640, OTHER_BYTES = 48 << 20 };

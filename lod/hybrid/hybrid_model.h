@@ -10,9 +10,9 @@
 
 /* One way to draw a cluster, or a node. */
 typedef struct conic_hybrid_level {
-  uint32_t kind;                    /* conic_hybrid_kind */
-  uint32_t count;                   /* of its triangles or surfels */
-  uint32_t n_vertices;              /* triangles: of their own */
+  uint32_t kind;       /* conic_hybrid_kind */
+  uint32_t count;      /* of its triangles or surfels */
+  uint32_t n_vertices; /* triangles: of their own */
   uint32_t stage; /* triangles: how often they were simplified; of its borders' vertices those are left that last */
   uint32_t first_border, n_borders; /* among those of its cluster */
   float error;                      /* no place of the cluster is drawn farther than this from where it is */
@@ -84,7 +84,7 @@ struct conic_hybrid {
   uint64_t n_data;
   struct conic_hybrid_store *store;
   struct conic_hybrid_pile *pile; /* whose file they lie in, in any order; or null */
-  uint64_t drawing_bytes; /* what a picture's parts may take; 0: any number */
+  uint64_t drawing_bytes;         /* what a picture's parts may take; 0: any number */
 
   /* Where all that lies: in one piece of memory of its own, or in the file's. */
   void *owned;

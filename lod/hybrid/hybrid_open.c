@@ -110,7 +110,7 @@ static uint64_t share_memory(chy_opening *o) {
            index = conic_chy_lay_out(&o->header).n_bytes + 32 * conic_hybrid_count_chunks(h);
   uint64_t rest = all > own_bytes + index + all / 4 ? all - own_bytes - index : all / 4;
   h->drawing_bytes = rest / 2;
-  return rest / 3;
+  return rest / 5 * 2;
 }
 
 static conic_status open_chy(chy_opening *o) {

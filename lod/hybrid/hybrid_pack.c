@@ -98,7 +98,7 @@ static void measure_box(const packing *p, conic_chy_header *h) {
 static size_t count_vertices(packing *p) {
   size_t n = 0;
   if (p->n_clusters == p->mesh->clusters->n_clusters)
-    return p->flat->n_vertices;
+    return p->flat->n_vertices + p->job->whole.n_moved;
   for (size_t i = 0; i < 3 * p->mesh->starts[p->n_clusters]; i++) {
     uint32_t *seen = &p->local[p->flat->corners[p->mesh->faces[i / 3]][i % 3]];
     n += *seen == UINT32_MAX;
@@ -294,22 +294,34 @@ static void end_chunk(const packing *p, uint32_t chunk) {
     conic_hybrid_seal_chunk(p->bytes + p->layout.n_bytes + place.at, (size_t)place.n_bytes);
 }
 
-static unsigned char *put_values(unsigned char *to, const float *values, const uint32_t *listed, size_t n) {
+/* Which of a vertex's values simplifying may have moved: positions from 0 on, normals from 3 on. */
+enum { POSITION = 0, NORMAL = 3, UNMOVED = 6 };
+
+/* What simplifying moved comes after the mesh's own vertices. */
+static float value_of_vertex(const packing *p, const float *values, uint32_t vertex, int which) {
+  if (vertex < p->flat->n_vertices)
+    return values[vertex];
+  const conic_moved_vertex *moved = &p->job->whole.moved[vertex - p->flat->n_vertices];
+  return which < NORMAL ? moved->at[which] : which < UNMOVED ? moved->normal[which - NORMAL] : values[moved->original];
+}
+
+static unsigned char *put_values(const packing *p, unsigned char *to, const float *values, int which,
+                                 const uint32_t *listed, size_t n) {
   float *floats = (float *)(void *)to;
   for (size_t i = 0; i < n && values; i++)
-    floats[i] = values[listed[i]];
+    floats[i] = value_of_vertex(p, values, listed[i], which);
   return values ? (unsigned char *)(floats + n) : to;
 }
 
 static unsigned char *put_vertices(const packing *p, unsigned char *to, const uint32_t *listed, size_t n) {
   for (int axis = 0; axis < 3; axis++)
-    to = put_values(to, p->flat->position[axis], listed, n);
+    to = put_values(p, to, p->flat->position[axis], POSITION + axis, listed, n);
   for (int axis = 0; axis < 3; axis++)
-    to = put_values(to, p->flat->normal[axis], listed, n);
+    to = put_values(p, to, p->flat->normal[axis], NORMAL + axis, listed, n);
   for (int channel = 0; channel < 3; channel++)
-    to = put_values(to, p->flat->color[channel], listed, n);
+    to = put_values(p, to, p->flat->color[channel], UNMOVED, listed, n);
   for (int k = 0; k < 2; k++)
-    to = put_values(to, p->flat->texture_coordinate[k], listed, n);
+    to = put_values(p, to, p->flat->texture_coordinate[k], UNMOVED, listed, n);
   return to;
 }
 
@@ -481,17 +493,18 @@ static conic_status pack(packing *p) {
 conic_status conic_hybrid_pack(const conic_ways_job *ways, conic_hybrid **hybrid) {
   const conic_triangles *flat = ways->mesh->triangles;
   conic_context *context = ways->context;
+  size_t n_vertices = flat->n_vertices + ways->whole.n_moved;
   packing p = {.job = ways,
                .mesh = ways->mesh,
                .flat = flat,
                .n_clusters = ways->n_clusters,
-               .local = conic_memory_allocate(context, flat->n_vertices, sizeof *p.local),
+               .local = conic_memory_allocate(context, n_vertices, sizeof *p.local),
                .made = conic_memory_allocate_zeroed(context, 1, sizeof *p.made)};
   conic_status status = p.local && p.made ? CONIC_OK : CONIC_ERROR_MEMORY;
   *hybrid = p.made;
   if (status == CONIC_OK) {
     p.made->context = context;
-    memset(p.local, 0xFF, flat->n_vertices * sizeof *p.local);
+    memset(p.local, 0xFF, n_vertices * sizeof *p.local);
     status = pack(&p);
   }
   void *const parts[] = {p.local,       p.listed,  p.corners,      p.faces.corners, p.faces.face,

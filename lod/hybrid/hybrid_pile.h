@@ -16,8 +16,8 @@ typedef struct conic_hybrid_pile {
   size_t n_levels, n_joined, n_clusters, n_nodes, levels_room, joined_room, clusters_room, nodes_room;
 } conic_hybrid_pile;
 
-/* Adds a model's clusters, its chunks, and its nodes, whose levels are numbered from the first of all nodes' on. Errors:
- * IO, MEMORY, ARGUMENT (too much for a file). */
+/* Adds a model's clusters, its chunks, and its nodes, whose levels are numbered from the first of all nodes' on.
+ * Errors: IO, MEMORY, ARGUMENT (too much for a file). */
 conic_status conic_hybrid_pile_add(conic_context *context, conic_hybrid_pile *pile, const conic_hybrid *part);
 
 /* Adds a node before those that are added next; and settles it when all of these are there: it is over them, or goes

@@ -14,8 +14,8 @@ typedef struct conic_hybrid_stitching {
   const conic_hybrid_level *level;
   const uint32_t *stages; /* of each cluster as drawn: 0 with all vertices of its borders; or HIDDEN */
   conic_triangles *to;
-  size_t first_triangle;   /* of the level */
-  size_t triangle, vertex; /* the next */
+  size_t first_triangle;      /* of the level */
+  size_t triangle, vertex;    /* the next */
   conic_hybrid_frame frame;   /* private */
   conic_hybrid_vertices ends; /* private */
 } conic_hybrid_stitching;

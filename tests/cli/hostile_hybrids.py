@@ -1,5 +1,5 @@
-"""What hostile_server.py does to a .lpc, done to a .chy: `hostile_hybrids.py CONIC [STEP]`, of which every STEP-th case is
-run. The picture is that of the file, or there is one line of error: nothing is drawn of what is wrong or late."""
+"""What hostile_server.py does to a .lpc, done to a .chy: `hostile_hybrids.py CONIC [STEP]`, of which every STEP-th case
+is run. The picture is that of the file, or there is one line of error: nothing is drawn of what is wrong or late."""
 import concurrent.futures
 import os
 import subprocess

@@ -269,7 +269,8 @@ static void test_octree(void) {
 static void test_layers(void) {
   fixture f = open_counted();
   const char *path = paths[LPC];
-  CHECK(conic_source_abilities(&path, 1, NULL) == (CONIC_SOURCE_CHOOSES | CONIC_SOURCE_STREAMS | CONIC_SOURCE_READS_PARTS));
+  CHECK(conic_source_abilities(&path, 1, NULL) ==
+        (CONIC_SOURCE_CHOOSES | CONIC_SOURCE_STREAMS | CONIC_SOURCE_READS_PARTS));
   conic_source *source = open_source(&f, path, NULL);
   conic_layers *layers;
   conic_layers_draw_options options;
@@ -321,7 +322,8 @@ static void test_hybrid(void) {
     conic_source_options_init(&opening);
     opening.as = i ? CONIC_AS_HYBRID : CONIC_AS_POINTS;
     const char *path = paths[i ? OBJ : CHY], *const both[] = {path, paths[PLY]};
-    CHECK(conic_source_abilities(&path, 1, &opening) == (CONIC_SOURCE_CHOOSES | CONIC_SOURCE_CLUSTERS | CONIC_SOURCE_READS_PARTS));
+    CHECK(conic_source_abilities(&path, 1, &opening) ==
+          (CONIC_SOURCE_CHOOSES | CONIC_SOURCE_CLUSTERS | CONIC_SOURCE_READS_PARTS));
     conic_source *source = open_source(&f, path, &opening), *none;
     CHECK(conic_source_open(f.context, both, 2, &opening, &none) == CONIC_ERROR_ARGUMENT && !none);
     conic_hybrid *hybrid = build_hybrid(f.context, paths[OBJ]);

@@ -1,8 +1,9 @@
-/* Models that are built in cells, of meshes that are read some faces at a time: of one cell they are those of the mesh as
- * a whole; the threads change nothing; and cells meet without a gap, whether their faces share vertices or only places. */
+/* Models that are built in cells, of meshes that are read some faces at a time: of one cell they are those of the mesh
+ * as a whole; the threads change nothing; and cells meet without a gap, whether their faces share vertices or only
+ * places. */
 #include "lod/hybrid/hybrid_chunks.h"
 #include "lod/hybrid/hybrid_large.h"
-#include "lod/hybrid/mesh_cells.h"
+#include "lod/mesh/mesh_cells.h"
 #include "tests/support/files.h"
 #include "tests/support/hybrid_fixture.h"
 
@@ -120,6 +121,21 @@ static uint32_t cell_of(const uint32_t *starts, size_t n_cells, uint32_t cluster
   return cell;
 }
 
+/* The cluster across a border has a vertex at its end. */
+static void check_across(const conic_hybrid *h, const corner_place *places, size_t n) {
+  size_t n_borders = 0, n_wrong = 0;
+  for (uint32_t i = 0; i < h->n_clusters; i++)
+    for (uint32_t k = 0; k < h->clusters[i].n_borders; k++, n_borders++) {
+      const conic_cluster_border *border = &conic_hybrid_frame_of(h, i).borders[k];
+      conic_hybrid_vertices ends = conic_hybrid_ends_of(h, i);
+      corner_place end = {.cluster = border->across};
+      for (int axis = 0; axis < 3; axis++)
+        end.at[axis] = ends.position[axis][border->from] + 0.0f;
+      n_wrong += bsearch(&end, places, n, sizeof *places, compare_corners) == NULL;
+    }
+  CHECK(n_borders > 0 && n_wrong == 0);
+}
+
 /* Where two cells meet, no vertex is left out, however coarse they are. */
 static void check_seams(const conic_hybrid *h, const uint32_t *starts, size_t n_cells, int is_soup) {
   size_t n_fine, n_coarse, n_shared = 0, n_left = 0;
@@ -134,6 +150,8 @@ static void check_seams(const conic_hybrid *h, const uint32_t *starts, size_t n_
     }
   }
   CHECK(n_shared > 100 && n_left == 0);
+  if (!is_soup)
+    check_across(h, fine, n_fine);
   CHECK(is_soup || n_coarse < n_fine / 2); /* others are left out; of a soup all stay */
   free(fine);
   free(coarse);

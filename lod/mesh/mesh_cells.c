@@ -1,4 +1,4 @@
-#include "lod/hybrid/mesh_cells.h"
+#include "lod/mesh/mesh_cells.h"
 
 #include <stdlib.h>
 #include <string.h>
