@@ -24,11 +24,11 @@ typedef struct camera {
 } camera;
 
 /* What a gathering ray has found. */
-typedef struct gather {
+typedef struct disc_gather {
   struct RTCIntersectContext context;
   const splat *splats;
   float sum[3], weight;
-} gather;
+} disc_gather;
 
 static float linear_of[256];
 
@@ -98,7 +98,7 @@ static RTCScene build(RTCDevice device, const splat *splats, unsigned n) {
 
 /* Adds a disc and lets the ray go on; the outline is 1.5 standard deviations from its centre. */
 static void take_disc(const struct RTCFilterFunctionNArguments *arguments) {
-  gather *g = (gather *)arguments->context;
+  disc_gather *g = (disc_gather *)arguments->context;
   const struct RTCRay *ray = (const struct RTCRay *)arguments->ray;
   const struct RTCHit *hit = (const struct RTCHit *)arguments->hit;
   const splat *s = &g->splats[hit->primID];
@@ -135,7 +135,7 @@ static struct RTCRayHit ray_through(const camera *c, int x, int y) {
 }
 
 static void draw_pixel(RTCScene scene, const camera *c, const splat *splats, int x, int y, float rgb[3]) {
-  gather g = {.splats = splats};
+  disc_gather g = {.splats = splats};
   struct RTCRayHit nearest = ray_through(c, x, y), again = nearest;
   rtcInitIntersectContext(&g.context);
   rtcIntersect1(scene, &g.context, &nearest);
