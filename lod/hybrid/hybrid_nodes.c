@@ -279,8 +279,11 @@ static conic_status find_kept_levels(nodes_pass *pass, node_worker *w, uint32_t 
   conic_status status =
       find_levels(pass, w, &alone, spacing, CONIC_MOST_SURFEL_LEVELS, ways->surfels, &ways->n_surfels);
   for (int k = first; k < ways->n_surfels && ways->surfels[0].are_dots; k++) {
-    ways->surfels[k].are_dots = 1;
-    ways->surfels[k].reach *= 2.0;
+    conic_surfels *surfels = &ways->surfels[k];
+    surfels->are_dots = 1;
+    surfels->error += surfels->reach; /* a dot is as wide as it is long, whoever looks */
+    surfels->error = surfels->error > surfels[-1].error ? surfels->error : surfels[-1].error;
+    surfels->reach *= 2.0;
   }
   return status;
 }

@@ -38,8 +38,8 @@ static int is_in_sector(const sector *s, const double way[2]) {
 }
 
 static int do_overlap(const sector *a, const sector *b) {
-  return a->ends[0] == b->ends[0] || a->ends[1] == b->ends[1] || is_in_sector(a, b->ways[0]) || is_in_sector(a, b->ways[1]) ||
-         is_in_sector(b, a->ways[0]) || is_in_sector(b, a->ways[1]);
+  return a->ends[0] == b->ends[0] || a->ends[1] == b->ends[1] || is_in_sector(a, b->ways[0]) ||
+         is_in_sector(a, b->ways[1]) || is_in_sector(b, a->ways[0]) || is_in_sector(b, a->ways[1]);
 }
 
 static int has_room(const conic_skin_search *search, uint32_t i) {
