@@ -3,7 +3,7 @@
 
 #include "conic/hybrid.h"
 #include "core/base/clock.h"
-#include "source/mesh_input.h"
+#include "source/hybrid_input.h"
 #include "source/source_kind.h"
 
 typedef struct hybrid_source {
@@ -31,21 +31,22 @@ static conic_status measure_hybrid(hybrid_source *h) {
 }
 
 static conic_status build_hybrid(hybrid_source *h, const char *path, const conic_source_options *options) {
-  conic_triangles mesh;
+  conic_hybrid_input input;
   conic_hybrid_options building;
-  conic_status status = conic_mesh_read(h->base.context, path, options->texture_path, options->coloring, &mesh);
+  const conic_hybrid_reading reading = {options->texture_path, options->coloring, options->is_smooth,
+                                        options->crease_deg,   options->cutoff,   options->n_neighbours};
+  conic_status status = conic_hybrid_input_read(h->base.context, path, &reading, &input);
   if (status == CONIC_OK)
-    status = conic_mesh_round(h->base.context, options->is_smooth, options->crease_deg, &mesh);
-  if (status == CONIC_OK)
-    status = conic_source_color(&h->base, options, NULL, &mesh);
+    status = conic_source_color(&h->base, options, input.is_points ? &input.splats : NULL,
+                                input.is_points ? NULL : &input.mesh);
   if (status != CONIC_OK) {
-    conic_triangles_release(h->base.context, &mesh);
+    conic_hybrid_input_release(h->base.context, &input);
     return status;
   }
   double start = conic_seconds_now();
   conic_hybrid_options_init(&building);
   building.cutoff = options->cutoff;
-  status = conic_hybrid_build(h->base.context, &mesh, &building, &h->hybrid, NULL);
+  status = conic_hybrid_input_build(h->base.context, &input, &building, &h->hybrid, NULL);
   h->base.scale.estimate_seconds = conic_seconds_now() - start;
   return status;
 }

@@ -3,7 +3,7 @@
 #include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
 #include "core/base/message.h"
-#include "source/mesh_input.h"
+#include "source/hybrid_input.h"
 #include "source/reach.h"
 
 static const char *const sampling_words[] = {"blue", "box", NULL};
@@ -26,20 +26,22 @@ enum { READ, CLUSTER, SAMPLE, SIMPLIFY, WORK, WRITE };
 static int make_hybrid(void *cookie) {
   hybrid_job *job = cookie;
   cli_stage *stages = job->base.stages;
-  conic_triangles mesh;
+  conic_context *context = job->base.session->context;
+  conic_hybrid_input input;
+  const conic_hybrid_reading reading = {job->texture,    &job->coloring.options, job->is_smooth,
+                                        job->crease_deg, job->options.cutoff,    0};
   double start = cli_seconds();
-  conic_status status =
-      conic_mesh_read(job->base.session->context, job->base.input, job->texture, &job->coloring.options, &mesh);
-  if (status == CONIC_OK)
-    status = conic_mesh_round(job->base.session->context, job->is_smooth, job->crease_deg, &mesh);
-  if (status == CONIC_OK)
-    status = cli_coloring_apply(job->base.session, &job->coloring, (const double[3]){0.0, 1.0, 0.0}, NULL, &mesh);
+  conic_status status = conic_hybrid_input_read(context, job->base.input, &reading, &input);
   start = cli_build_end_stage(&stages[READ], start);
+  if (status == CONIC_OK)
+    status = cli_coloring_apply(job->base.session, &job->coloring,
+                                input.is_points ? input.up : (const double[3]){0.0, 1.0, 0.0},
+                                input.is_points ? &input.splats : NULL, input.is_points ? NULL : &input.mesh);
   if (status != CONIC_OK) {
-    conic_triangles_release(job->base.session->context, &mesh);
+    conic_hybrid_input_release(context, &input);
     return cli_exit_of(status);
   }
-  status = conic_hybrid_build(job->base.session->context, &mesh, &job->options, &job->hybrid, &job->report);
+  status = conic_hybrid_input_build(context, &input, &job->options, &job->hybrid, &job->report);
   start = cli_build_end_stage(&stages[WORK], start);
   stages[CLUSTER].seconds = job->report.cluster_seconds;
   stages[SAMPLE].seconds = job->report.sample_seconds;
@@ -59,6 +61,10 @@ static int make_hybrid(void *cookie) {
 static void write_counts(cli_json *json, const hybrid_job *job) {
   const conic_hybrid_report *r = &job->report;
   cli_json_count(json, "triangles_in", r->n_faces);
+  if (r->n_points) {
+    cli_json_count(json, "points_in", r->n_points);
+    cli_json_count(json, "splats_kept", r->n_kept);
+  }
   cli_json_count(json, "triangles", job->info.n_triangles);
   cli_json_count(json, "surfels", job->info.n_surfels);
   cli_json_count(json, "clusters", job->info.n_clusters);
@@ -100,6 +106,9 @@ static void tell_hybrid(const void *cookie) {
   conic_context *context = job->base.session->context;
   const conic_hybrid_info *info = &job->info;
   const conic_hybrid_report *r = &job->report;
+  if (r->n_points)
+    conic_log(context, CONIC_LOG_INFO, "%s: %zu points in, of which %zu stay splats", job->base.input,
+              (size_t)r->n_points, (size_t)r->n_kept);
   conic_log(context, CONIC_LOG_INFO,
             "%s: %zu faces in; %zu patches of %zu triangles and %zu of %zu surfels out, with %zu levels, %.1f MiB",
             job->base.input, r->n_faces, info->n_clusters - info->n_surfel_clusters, info->n_triangles,
@@ -171,11 +180,14 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
 
 const cli_command cli_hybrid = {
     .name = "hybrid",
-    .summary = "makes of a mesh patches of triangles where it is flat, and of surfels where it is not",
-    .usage = "conic hybrid MESH -o OUT.chy [--phase1 COST] [--phase2 COST] [--texture FILE]",
+    .summary = "makes of a mesh, or of points, patches of triangles where it is flat, and of surfels where it is not",
+    .usage = "conic hybrid MESH|POINTS -o OUT.chy [--phase1 COST] [--phase2 COST] [--texture FILE]",
     .run = run_hybrid,
     .description = "Cuts a mesh into patches. Where many small triangles bend, splats (here called surfels) draw them "
-                   "faster than triangles do; where the mesh is flat, its triangles stay.",
+                   "faster than triangles do; where the mesh is flat, its triangles stay. Points without faces become "
+                   "triangles where they lie as a surface does; leaves, borders and all else stay splats.",
     .examples = {{"build and draw", "conic hybrid statue.obj -o statue.chy\n"
-                                    "conic render statue.chy -o statue.png"}},
+                                    "conic render statue.chy -o statue.png"},
+                 {"from a scan", "conic hybrid scan.ply -o scan.chy\n"
+                                 "conic render scan.chy -o scan.png --error 1"}},
 };

@@ -53,7 +53,7 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
       job->gaussians.prefilter > 0.0)
     return cli_usage("%s: --prefilter is of perspective and orthographic pictures of Gaussian scenes", command);
   if (is_hybrid)
-    return job->n_inputs == 1 ? CLI_DONE : cli_usage("%s: a hybrid is drawn by itself, and made of one mesh", command);
+    return job->n_inputs == 1 ? CLI_DONE : cli_usage("%s: a hybrid is drawn by itself, and made of one file", command);
   if (job->abilities & CONIC_SOURCE_COMPOSITES && (job->deep_path || job->has_mattes || job->is_exposure_automatic))
     return cli_usage("%s: --deep, --cryptomatte and --exposure auto are of splats; give --profile surface, too",
                      command);

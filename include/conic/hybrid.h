@@ -52,7 +52,8 @@ typedef struct conic_hybrid_report {
   size_t n_pieces;               /* what hangs together */
   size_t n_first;                /* clusters after the first phase */
   double cluster_seconds, sample_seconds, simplify_seconds; /* the last two: over all threads, but shared */
-  uint64_t reserved[8];
+  uint64_t n_points, n_kept; /* of a set of splats: all, and those that stay what they are */
+  uint64_t reserved[6];
 } conic_hybrid_report;
 
 /* Takes the mesh's arrays and textures over: *mesh is empty afterwards, on failure too. The result depends on the mesh
@@ -61,6 +62,14 @@ typedef struct conic_hybrid_report {
 CONIC_API conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh,
                                           const conic_hybrid_options *options, conic_hybrid **hybrid,
                                           conic_hybrid_report *report);
+
+/* The same of splats, which have tangent axes and no strides: triangles where they lie as a surface does, and the
+ * others as what they are, but for clip lines and opacities, which are left out. The set is taken over: *splats is
+ * empty afterwards, on failure too. n_faces counts the triangles that were made. Errors: ARGUMENT, INPUT (nothing to
+ * draw), MEMORY, CANCELLED. */
+CONIC_API conic_status conic_hybrid_build_points(conic_context *context, conic_splats *splats,
+                                                 const conic_hybrid_options *options, conic_hybrid **hybrid,
+                                                 conic_hybrid_report *report);
 
 /* Null is allowed. */
 CONIC_API void conic_hybrid_destroy(conic_hybrid *hybrid);

@@ -23,6 +23,7 @@ typedef struct conic_surfels {
   double reach;             /* the longest half axis of an outline */
   int is_out;               /* an outline is farther from the mesh than the job's `most_out` */
   int is_coarsest;          /* no wider spacing gives fewer */
+  int are_dots;             /* turned to each camera */
 } conic_surfels;
 
 typedef struct conic_sampling_job {

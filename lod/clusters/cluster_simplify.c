@@ -103,7 +103,9 @@ static void fill_queue(conic_simplifier *s) {
 
 /* What is one has levels close together, of which one is about as large as is asked for. */
 static size_t wanted_after(const conic_simplifier *s) {
-  return s->is_one ? s->n_last - (s->n_last + 5) / 6 : s->n_last / 2;
+  if (s->is_one)
+    return s->n_last - (s->n_last + 5) / 6;
+  return s->mesh->kept ? s->n_last - s->n_last / 3 : s->n_last / 2;
 }
 
 conic_status conic_region_begin(conic_simplifier *s, conic_cluster_chains *chains, uint32_t begin, uint32_t end,

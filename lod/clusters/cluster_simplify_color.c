@@ -102,6 +102,10 @@ static double smear_at(const going *g, uint32_t slot, int is_middle) {
   return find_now(g, at, &now) ? conic_seen_change_of(s->mesh->triangles, &before, g->contrast, &now).smear : 0.0;
 }
 
+/* Colours of points differ from one to the next where a surface's do not, and a picture shows their mean: so many steps
+ * count as a step of a mesh. */
+static const double weight_of_points = 6.0;
+
 /* A step that is just visible, over a length, counts as much as that length counts as a distance. */
 double conic_simplifier_fading(const conic_simplifier *s, uint32_t u, uint32_t v) {
   going g = {.s = s, .u = u, .v = v, .first = conic_simplifier_living(s, s->vertices[u].ring)};
@@ -112,6 +116,6 @@ double conic_simplifier_fading(const conic_simplifier *s, uint32_t u, uint32_t v
     double smear = smear_at(&g, slot, 1);
     most = smear > most ? smear : most;
   }
-  most /= CONIC_JUST_VISIBLE;
+  most /= s->mesh->kept ? weight_of_points * CONIC_JUST_VISIBLE : CONIC_JUST_VISIBLE;
   return g.area2 * most * most;
 }

@@ -6,6 +6,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/splats/columns.h"
+#include "lod/hybrid/hybrid_kept.h"
 #include "lod/hybrid/hybrid_nodes.h"
 #include "lod/hybrid/hybrid_pack.h"
 #include "lod/hybrid/hybrid_tree.h"
@@ -24,6 +25,7 @@ typedef struct building {
   conic_adjacency adjacency;
   conic_mesh_clusters clusters;
   conic_clustered_mesh mesh;
+  const conic_kept_splats *kept; /* null: none */
   uint32_t *faces;
   size_t *starts;
   conic_cluster_ways *ways;
@@ -61,9 +63,12 @@ static conic_status find_clusters(building *b) {
                             .faces = (const uint32_t(*)[3])b->flat.corners};
   mesh->adjacency = &b->adjacency;
   mesh->clusters = &b->clusters;
+  mesh->kept = b->kept;
   conic_status status = conic_adjacency_find(b->context, &mesh->mesh, &b->adjacency);
   if (status == CONIC_OK)
     status = conic_mesh_clusters_find(b->context, &mesh->mesh, &b->adjacency, &options, &b->clusters);
+  if (status == CONIC_OK && b->kept)
+    status = conic_hybrid_group_kept(b->context, b->kept, &b->clusters);
   if (status == CONIC_OK && b->clusters.n_clusters == 0)
     status = conic_fail(b->context, CONIC_ERROR_INPUT, "the mesh has no face that could be drawn");
   return status;
@@ -91,12 +96,14 @@ static conic_status order_clusters(building *b) {
   conic_hybrid_bound *bounds = conic_memory_allocate(b->context, n, sizeof *bounds);
   uint32_t *order = conic_memory_allocate(b->context, n, sizeof *order);
   uint32_t *rank = conic_memory_allocate(b->context, n, sizeof *rank);
-  uint8_t *is_gathered = conic_memory_allocate(b->context, n, 1);
-  conic_status status = bounds && order && rank && is_gathered ? CONIC_OK : CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < n && status == CONIC_OK; i++)
+  uint8_t *is_gathered = conic_memory_allocate(b->context, n, 1), *is_kept = conic_memory_allocate(b->context, n, 1);
+  conic_status status = bounds && order && rank && is_gathered && is_kept ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n && status == CONIC_OK; i++) {
     bounds[i] = conic_cluster_bound(&b->mesh, (uint32_t)i);
+    is_kept[i] = (uint8_t)conic_cluster_is_kept(&b->mesh, (uint32_t)i);
+  }
   if (status == CONIC_OK)
-    status = conic_hybrid_order(b->context, bounds, n, order);
+    status = conic_hybrid_order(b->context, bounds, is_kept, n, order);
   if (status == CONIC_OK) {
     memcpy(is_gathered, b->clusters.is_gathered, n);
     for (size_t i = 0; i < n; i++) {
@@ -108,6 +115,7 @@ static conic_status order_clusters(building *b) {
         b->clusters.of_face[i] = rank[b->clusters.of_face[i]];
     sort_faces(b);
   }
+  conic_memory_release(b->context, is_kept);
   conic_memory_release(b->context, is_gathered);
   conic_memory_release(b->context, rank);
   conic_memory_release(b->context, order);
@@ -131,6 +139,11 @@ static conic_status make_clusters(building *b) {
 static void report_oddities(building *b, const conic_triangles *mesh) {
   const conic_mesh_oddities *o = &b->adjacency.oddities;
   conic_hybrid_report *r = b->report;
+  if (b->kept) { /* faces that stand for splats are as they must be */
+    r->n_faces = b->kept->n_surface;
+    r->n_first = b->clusters.n_first - b->kept->n;
+    return;
+  }
   r->n_faces = mesh->count;
   r->nan = o->nan;
   r->zero = o->zero;
@@ -178,11 +191,12 @@ static conic_status build_hybrid(building *b, conic_triangles *mesh, conic_hybri
   return status;
 }
 
-conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, const conic_hybrid_options *given,
-                                conic_hybrid **hybrid, conic_hybrid_report *report) {
+conic_status conic_hybrid_build_with(conic_context *context, conic_triangles *mesh, const conic_kept_splats *kept,
+                                     const conic_hybrid_options *given, conic_hybrid **hybrid,
+                                     conic_hybrid_report *report) {
   conic_hybrid_report ignored;
   conic_hybrid_options options;
-  building b = {.context = context, .options = &options, .report = report ? report : &ignored};
+  building b = {.context = context, .options = &options, .kept = kept, .report = report ? report : &ignored};
   *hybrid = NULL;
   memset(b.report, 0, sizeof *b.report);
   conic_status status = conic_triangles_check_own(context, "the mesh", mesh);
@@ -200,4 +214,9 @@ conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, c
     *hybrid = NULL;
   }
   return status;
+}
+
+conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, const conic_hybrid_options *options,
+                                conic_hybrid **hybrid, conic_hybrid_report *report) {
+  return conic_hybrid_build_with(context, mesh, NULL, options, hybrid, report);
 }

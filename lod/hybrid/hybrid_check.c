@@ -41,12 +41,12 @@ static int wrong_after(const conic_hybrid_level *before, const conic_hybrid_leve
   return level->kind == before->kind ? !(level->error >= before->error) : level->kind != CONIC_HYBRID_SURFELS;
 }
 
-/* The faces themselves: the first level. */
+/* The faces themselves, the first level; or splats that stay, which may stand out of the sphere. */
 static void check_cluster(const conic_hybrid *h, const conic_hybrid_cluster *cluster, conic_hybrid_defects *found) {
   const conic_hybrid_level *levels = h->levels + cluster->first_level;
   double most = (double)cluster->bound.radius * (1.0 + hair);
   int is_out = 0, is_turned = 0, is_wrong = levels[0].error != 0.0f;
-  for (size_t i = 0; i < levels[0].count; i++) {
+  for (size_t i = 0; i < levels[0].count && levels[0].kind == CONIC_HYBRID_TRIANGLES; i++) {
     double at[3][3];
     corners_of(h, &levels[0], i, at);
     for (int corner = 0; corner < 3; corner++)

@@ -68,6 +68,8 @@ conic_hybrid_bound conic_cluster_bound(const conic_clustered_mesh *mesh, uint32_
   conic_hybrid_bound bound;
   bound_sphere(mesh, cluster, &bound);
   bound_cone(mesh, cluster, &bound);
+  if (conic_cluster_are_dots(mesh, cluster))
+    bound.cone = -1.0f;
   return bound;
 }
 
@@ -140,6 +142,32 @@ static int is_surfels(const conic_hybrid_options *options, const conic_surfels *
   return finest->n > 0 && (is_good || options->sampling == CONIC_SAMPLING_BOX);
 }
 
+/* Splats that stay are their own finest level. A dot leans so that it is up to twice as long in depth. */
+static conic_status keep_splats(conic_ways_job *job, uint32_t cluster) {
+  const conic_clustered_mesh *mesh = job->mesh;
+  conic_cluster_ways *ways = &job->ways[cluster];
+  conic_surfels *surfels = &ways->surfels[0];
+  conic_status status = CONIC_OK;
+  ways->is_surfels = ways->n_surfels = 1;
+  surfels->are_dots = conic_cluster_are_dots(mesh, cluster);
+  for (size_t i = mesh->starts[cluster]; i < mesh->starts[cluster + 1] && status == CONIC_OK; i += 2) {
+    const conic_surfel *from = &mesh->kept->items[(mesh->faces[i] - mesh->kept->n_surface) / 2];
+    double half[2] = {0.0, 0.0};
+    status = conic_surfels_reserve(job->context, surfels);
+    if (status != CONIC_OK)
+      break;
+    surfels->items[surfels->n++] = *from;
+    for (int axis = 0; axis < 3; axis++) {
+      half[0] += (double)from->tangent_u[axis] * (double)from->tangent_u[axis];
+      half[1] += (double)from->tangent_v[axis] * (double)from->tangent_v[axis];
+    }
+    double reach = (double)job->options->cutoff * sqrt(half[0] > half[1] ? half[0] : half[1]);
+    reach *= surfels->are_dots ? 2.0 : 1.0;
+    surfels->reach = reach > surfels->reach ? reach : surfels->reach;
+  }
+  return status;
+}
+
 /* A cover of the cluster by one kind of sampling, each level twice as wide as the one before, down to a few surfels. */
 static conic_status sample_cluster(conic_ways_job *job, conic_sampler *sampler, uint32_t cluster) {
   conic_cluster_ways *ways = &job->ways[cluster];
@@ -194,6 +222,8 @@ static conic_status do_cluster(ways_pass *pass, uint32_t cluster, int i_thread) 
   if (!sampler)
     status = conic_sampler_create(job->context, &sampler);
   *worker = sampler;
+  if (conic_cluster_is_kept(job->mesh, cluster))
+    return keep_splats(job, cluster);
   return status == CONIC_OK ? sample_cluster(job, sampler, cluster) : status;
 }
 
@@ -239,7 +269,7 @@ static conic_status run_passes(ways_pass *pass) {
   double sampled = conic_seconds_now();
   if (status == CONIC_OK && !job->options->has_single_levels)
     status = conic_find_simpler(job);
-  if (status == CONIC_OK && !job->options->has_single_levels)
+  if (status == CONIC_OK && !job->options->has_single_levels && !job->mesh->kept)
     status = conic_find_whole(job);
   job->sample_seconds = sampled - start;
   job->simplify_seconds = conic_seconds_now() - sampled;

@@ -65,8 +65,8 @@ static int is_length(float value) {
   return value >= 0.0f && value < HUGE_VALF;
 }
 
-static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *level, int is_first) {
-  if (level->kind > CONIC_HYBRID_SURFELS || (is_first && level->kind != CONIC_HYBRID_TRIANGLES))
+static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *level) {
+  if (level->kind > CONIC_HYBRID_SURFELS)
     return "a level of no known kind";
   size_t n = level->kind == CONIC_HYBRID_TRIANGLES ? h->n_triangles : h->n_surfels;
   if (level->count < 1 || level->count > n || level->first > n - level->count)
@@ -153,7 +153,7 @@ static const char *wrong_clusters(const conic_hybrid *h) {
     if (!is_bound(&cluster->bound) || !is_length(cluster->area))
       return "a patch's bounds out of range";
     for (size_t k = 0; k < cluster->n_levels; k++) {
-      const char *wrong = wrong_level(h, &h->levels[next + k], k == 0);
+      const char *wrong = wrong_level(h, &h->levels[next + k]);
       if (wrong)
         return wrong;
     }
@@ -174,7 +174,7 @@ static const char *wrong_node_levels(const conic_hybrid *h) {
     for (size_t k = 0; k < node->n_levels; k++) {
       if (h->levels[next + k].n_borders > 0)
         return "a node's level with borders";
-      const char *wrong = wrong_level(h, &h->levels[next + k], 0);
+      const char *wrong = wrong_level(h, &h->levels[next + k]);
       if (wrong)
         return wrong;
     }

@@ -20,6 +20,9 @@ enum { MOST_SITES = 64 };
  * made. */
 static const double first_spacing = 0.35, finer = 0.5;
 
+/* The same of splats that stay, in sides of the square that one has. */
+static const double first_of_kept = 0.75;
+
 /* A cluster's surfel as a part of what one of a node's stands for. */
 typedef struct surfel_piece {
   double at[3], normal[3], area;
@@ -248,23 +251,39 @@ static size_t count_coarsest(const conic_ways_job *job, const conic_hybrid_node 
 }
 
 /* Each level has a fourth less than the one before, the first than the clusters by themselves. */
-static conic_status find_levels(const nodes_pass *pass, node_worker *w, size_t i) {
-  const conic_hybrid_node *node = &pass->job->nodes[i];
-  conic_node_ways *ways = &pass->job->node_ways[i];
-  double spacing = first_spacing * (double)node->point.radius;
+static conic_status find_levels(const nodes_pass *pass, node_worker *w, const conic_hybrid_node *node, double spacing,
+                                int n_most, conic_surfels *levels, int *n_levels) {
   size_t n_last = count_coarsest(pass->job, node);
   conic_status status = CONIC_OK;
-  for (int k = 0; k < CONIC_MOST_NODE_LEVELS && status == CONIC_OK; k++, spacing *= 2.0) {
-    conic_surfels *surfels = &ways->surfels[ways->n_surfels];
-    surfels->error = ways->n_surfels ? surfels[-1].error : 0.0;
+  for (int k = *n_levels; k < n_most && status == CONIC_OK && n_last > 1; k++, spacing *= 2.0) {
+    conic_surfels *surfels = &levels[*n_levels];
+    surfels->error = *n_levels ? surfels[-1].error : 0.0;
     status = gather_pieces(pass, w, node, spacing);
     if (status == CONIC_OK && w->n_pieces > 0)
       status = make_level(pass, w, spacing, surfels);
     if (surfels->n > 0 && 4 * surfels->n <= 3 * n_last) {
       n_last = surfels->n;
-      ways->n_surfels++;
+      ++*n_levels;
     } else
       conic_surfels_release(pass->job->context, surfels);
+  }
+  return status;
+}
+
+/* Coarser levels of splats that stay, as a node's are made, from twice the mean distance on. */
+static conic_status find_kept_levels(nodes_pass *pass, node_worker *w, uint32_t cluster) {
+  conic_cluster_ways *ways = &pass->job->ways[cluster];
+  const conic_hybrid_node alone = {.begin = cluster, .end = cluster + 1};
+  double spacing = first_of_kept * sqrt(ways->area / (double)ways->surfels[0].n);
+  int first = ways->n_surfels;
+  conic_status status =
+      find_levels(pass, w, &alone, spacing, CONIC_MOST_SURFEL_LEVELS, ways->surfels, &ways->n_surfels);
+  for (int k = first; k < ways->n_surfels && ways->surfels[0].are_dots; k++) {
+    conic_surfels *surfels = &ways->surfels[k];
+    surfels->are_dots = 1;
+    surfels->error += surfels->reach; /* a dot is as wide as it is long, whoever looks */
+    surfels->error = surfels->error > surfels[-1].error ? surfels->error : surfels[-1].error;
+    surfels->reach *= 2.0;
   }
   return status;
 }
@@ -314,21 +333,33 @@ static conic_status find_point(const nodes_pass *pass, node_worker *w, size_t i)
 }
 
 static conic_status do_node(nodes_pass *pass, size_t i, node_worker *w) {
-  conic_status status = w->sampler ? CONIC_OK : conic_sampler_create(pass->job->context, &w->sampler);
-  if (status == CONIC_OK)
-    status = find_point(pass, w, i);
-  return status == CONIC_OK ? find_levels(pass, w, i) : status;
+  conic_node_ways *ways = &pass->job->node_ways[i];
+  const conic_hybrid_node *node = &pass->job->nodes[i];
+  conic_status status = find_point(pass, w, i);
+  return status == CONIC_OK ? find_levels(pass, w, node, first_spacing * (double)node->point.radius,
+                                          CONIC_MOST_NODE_LEVELS, ways->surfels, &ways->n_surfels)
+                            : status;
 }
 
 static void node_task(void *data, size_t i_task, int i_thread) {
   nodes_pass *pass = data;
-  if (pass->statuses[i_thread] == CONIC_OK)
-    pass->statuses[i_thread] = do_node(pass, i_task, &pass->workers[i_thread]);
+  node_worker *w = &pass->workers[i_thread];
+  conic_status *status = &pass->statuses[i_thread];
+  if (*status == CONIC_OK && !w->sampler)
+    *status = conic_sampler_create(pass->job->context, &w->sampler);
+  if (*status != CONIC_OK)
+    return;
+  if (pass->job->node_ways)
+    *status = do_node(pass, i_task, w);
+  else if (conic_cluster_is_kept(pass->job->mesh, (uint32_t)i_task))
+    *status = find_kept_levels(pass, w, (uint32_t)i_task);
 }
 
+/* Nodes; or, before there are any, clusters. */
 static conic_status run_pass(nodes_pass *pass, int n_threads) {
   const conic_ways_job *job = pass->job;
-  conic_status status = conic_parallel_told(job->context, "join", 0.0, 1.0, job->n_nodes, node_task, pass);
+  size_t n = job->node_ways ? job->n_nodes : job->mesh->clusters->n_clusters;
+  conic_status status = conic_parallel_told(job->context, "join", 0.0, 1.0, n, node_task, pass);
   for (int i = 0; i < n_threads; i++)
     status = pass->statuses[i] != CONIC_OK ? pass->statuses[i] : status;
   return status;
@@ -339,9 +370,7 @@ static conic_status find_ways(conic_ways_job *job) {
   nodes_pass pass = {.job = job,
                      .workers = conic_memory_allocate_zeroed(job->context, (size_t)n_threads, sizeof *pass.workers),
                      .statuses = conic_memory_allocate_zeroed(job->context, (size_t)n_threads, sizeof *pass.statuses)};
-  job->node_ways = conic_memory_allocate_zeroed(job->context, job->n_nodes, sizeof *job->node_ways);
-  conic_status status =
-      pass.workers && pass.statuses && job->node_ways ? run_pass(&pass, n_threads) : CONIC_ERROR_MEMORY;
+  conic_status status = pass.workers && pass.statuses ? run_pass(&pass, n_threads) : CONIC_ERROR_MEMORY;
   for (int i = 0; pass.workers && i < n_threads; i++) {
     conic_memory_release(job->context, pass.workers[i].pieces);
     conic_sampler_destroy(pass.workers[i].sampler);
@@ -367,15 +396,19 @@ conic_status conic_find_nodes(conic_ways_job *job) {
   job->nodes = conic_memory_allocate(job->context, job->n_nodes, sizeof *job->nodes);
   conic_hybrid_bound *bounds = conic_memory_allocate(job->context, n, sizeof *bounds);
   float *reach = conic_memory_allocate(job->context, n, sizeof *reach);
+  int is_leveled = !job->options->has_single_levels && job->options->sampling == CONIC_SAMPLING_BLUE;
   conic_status status = job->nodes && bounds && reach ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK && is_leveled && job->mesh->kept)
+    status = find_ways(job);
   for (size_t i = 0; i < n && status == CONIC_OK; i++) {
     bounds[i] = job->ways[i].bound;
     reach[i] = reach_of_surfels(&job->ways[i]);
   }
-  if (status == CONIC_OK) {
+  if (status == CONIC_OK)
     conic_hybrid_fill_nodes(bounds, reach, n, job->nodes);
-    if (!job->options->has_single_levels && job->options->sampling == CONIC_SAMPLING_BLUE)
-      status = find_ways(job);
+  if (status == CONIC_OK && is_leveled) {
+    job->node_ways = conic_memory_allocate_zeroed(job->context, job->n_nodes, sizeof *job->node_ways);
+    status = job->node_ways ? find_ways(job) : CONIC_ERROR_MEMORY;
   }
   conic_memory_release(job->context, reach);
   conic_memory_release(job->context, bounds);

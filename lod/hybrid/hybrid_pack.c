@@ -50,15 +50,16 @@ static size_t most_faces(const packing *p) {
 
 static void count_cluster(packing *p, uint32_t cluster) {
   const conic_cluster_ways *ways = &p->job->ways[cluster];
+  int has_faces = !conic_cluster_is_kept(p->mesh, cluster);
   conic_chy_header *h = &p->header;
-  h->n_triangles += p->mesh->starts[cluster + 1] - p->mesh->starts[cluster];
+  h->n_triangles += has_faces ? p->mesh->starts[cluster + 1] - p->mesh->starts[cluster] : 0;
   for (int i = 0; i < ways->triangles.n; i++) {
     h->n_triangles += ways->triangles.levels[i].n;
     h->n_borders += ways->triangles.levels[i].n_borders;
   }
   for (int i = 0; i < ways->n_surfels; i++)
     h->n_surfels += ways->surfels[i].n;
-  h->n_levels += (uint64_t)(1 + ways->triangles.n + ways->n_surfels);
+  h->n_levels += (uint64_t)(has_faces + ways->triangles.n + ways->n_surfels);
 }
 
 static void count_whole(packing *p) {
@@ -75,18 +76,28 @@ static void count_node(packing *p, size_t node) {
   p->header.n_levels += (uint64_t)ways->n_surfels;
 }
 
+static void add_vertex_to_box(conic_chy_header *h, float *const position[3], size_t i) {
+  for (int axis = 0; axis < 3; axis++) {
+    float at = position[axis][i];
+    h->low[axis] = at < h->low[axis] ? at : h->low[axis];
+    h->high[axis] = at > h->high[axis] ? at : h->high[axis];
+  }
+}
+
 static void measure_box(const packing *p, conic_chy_header *h) {
   for (int axis = 0; axis < 3; axis++) {
     h->low[axis] = HUGE_VALF;
     h->high[axis] = -HUGE_VALF;
   }
-  for (size_t i = 0; i < p->mesh->starts[p->n_clusters]; i++)
-    for (int corner = 0; corner < 3; corner++)
-      for (int axis = 0; axis < 3; axis++) {
-        float at = p->flat->position[axis][p->flat->corners[p->mesh->faces[i]][corner]];
-        h->low[axis] = at < h->low[axis] ? at : h->low[axis];
-        h->high[axis] = at > h->high[axis] ? at : h->high[axis];
-      }
+  for (size_t i = 0; i < p->flat->count; i++)
+    for (int corner = 0; corner < 3 && p->mesh->clusters->of_face[i] != CONIC_NO_CLUSTER; corner++)
+      if (!p->mesh->kept || i < p->mesh->kept->n_surface)
+        add_vertex_to_box(h, (float *const *)p->flat->position, p->flat->corners[i][corner]);
+  for (size_t i = 0; p->mesh->kept && i < p->mesh->kept->n; i++) {
+    const float *at = p->mesh->kept->items[i].position;
+    float *const place[3] = {(float *)at, (float *)at + 1, (float *)at + 2};
+    add_vertex_to_box(h, place, 0);
+  }
 }
 
 /* The list of vertices is as long as three times the triangles at first, and cut afterwards. */
@@ -95,7 +106,7 @@ static conic_status allocate_body(packing *p) {
   memcpy(h->origin, p->flat->origin, sizeof h->origin);
   h->version = CONIC_CHY_VERSION;
   h->cutoff = p->job->options->cutoff;
-  h->n_vertices = p->flat->n_vertices;
+  h->n_vertices = p->flat->n_vertices - (p->mesh->kept ? 4 * p->mesh->kept->n : 0);
   h->n_clusters = p->n_clusters;
   h->n_nodes = p->job->n_nodes;
   h->n_slots = p->job->chains.n_slots;
@@ -186,6 +197,7 @@ static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
   level->count = (uint32_t)surfels->n;
   level->error = (float)(surfels->error * (1.0 + 1e-6));
   put_change(level, &surfels->change);
+  level->stage = (uint32_t)surfels->are_dots;
   level->reach = (float)(surfels->reach * (1.0 + 1e-6));
   sum_extents(surfels, (double)p->job->options->cutoff, level);
   for (int k = 0; k < 12; k++) {
@@ -204,17 +216,19 @@ static void put_cluster(packing *p, cursor *at, uint32_t i, conic_cluster_level 
   conic_hybrid_cluster *clusters = array_at(p, CONIC_CHY_CLUSTERS);
   const conic_cluster_ways *ways = &p->job->ways[i];
   double error = 0.0;
+  int has_faces = !conic_cluster_is_kept(p->mesh, i);
   clusters[i] = (conic_hybrid_cluster){.bound = ways->bound,
                                        .area = (float)ways->area,
                                        .first_level = (uint32_t)at->level,
-                                       .n_levels = (uint32_t)(1 + ways->triangles.n + ways->n_surfels)};
-  clusters[i].built = ways->is_surfels ? (uint32_t)(1 + ways->triangles.n) : 0;
+                                       .n_levels = (uint32_t)(has_faces + ways->triangles.n + ways->n_surfels)};
+  clusters[i].built = ways->is_surfels ? (uint32_t)(has_faces + ways->triangles.n) : 0;
   mesh->n = 0;
-  for (size_t k = p->mesh->starts[i]; k < p->mesh->starts[i + 1]; k++, mesh->n++) {
+  for (size_t k = p->mesh->starts[i]; k < p->mesh->starts[i + 1] && has_faces; k++, mesh->n++) {
     mesh->face[mesh->n] = p->mesh->faces[k];
     memcpy(mesh->corners[mesh->n], p->flat->corners[p->mesh->faces[k]], sizeof *mesh->corners);
   }
-  put_triangles(p, at, mesh);
+  if (has_faces)
+    put_triangles(p, at, mesh);
   for (int k = 0; k < ways->triangles.n; k++) {
     conic_cluster_level level = ways->triangles.levels[k];
     level.error = error = level.error > error ? level.error : error; /* no less than that of what it is simpler than */
@@ -237,7 +251,7 @@ static void put_node(packing *p, cursor *at, size_t i) {
 }
 
 static void put_vertices(packing *p) {
-  size_t n_bytes = p->flat->n_vertices * sizeof(float);
+  size_t n_bytes = p->header.n_vertices * sizeof(float);
   for (int axis = 0; axis < 3; axis++) {
     memcpy(array_at(p, CONIC_CHY_POSITION + axis), p->flat->position[axis], n_bytes);
     if (p->flat->normal[0])
@@ -272,6 +286,10 @@ static void put_materials(packing *p) {
   }
 }
 
+static int is_built_of_surfels(const conic_hybrid_cluster *cluster, const conic_hybrid_level *levels) {
+  return levels[cluster->first_level + cluster->built].kind == CONIC_HYBRID_SURFELS;
+}
+
 /* The surfels as built, for the scale of the automatic ε. */
 static conic_status measure_surfels(packing *p) {
   const conic_hybrid_cluster *clusters = array_at(p, CONIC_CHY_CLUSTERS);
@@ -279,11 +297,11 @@ static conic_status measure_surfels(packing *p) {
   conic_splats built;
   size_t n = 0, at = 0;
   for (size_t i = 0; i < p->header.n_clusters; i++)
-    n += clusters[i].built ? levels[clusters[i].first_level + clusters[i].built].count : 0;
+    n += is_built_of_surfels(&clusters[i], levels) ? levels[clusters[i].first_level + clusters[i].built].count : 0;
   conic_status status = conic_splats_allocate(p->job->context, n, CONIC_SPLATS_TANGENTS, &built);
   for (size_t i = 0; i < p->header.n_clusters && status == CONIC_OK; i++) {
     const conic_hybrid_level *level = &levels[clusters[i].first_level + clusters[i].built];
-    if (!clusters[i].built)
+    if (!is_built_of_surfels(&clusters[i], levels))
       continue;
     for (int axis = 0; axis < 3; axis++) {
       const float *x = array_at(p, CONIC_CHY_SURFELS + axis), *u = array_at(p, CONIC_CHY_SURFELS + 3 + axis);
@@ -331,7 +349,7 @@ static conic_status count_listed(packing *p) {
   conic_status status = corners && local && listed ? CONIC_OK : CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < p->n_clusters && status == CONIC_OK; i++) {
     const conic_cluster_levels *simpler = &p->job->ways[i].triangles;
-    size_t n = p->mesh->starts[i + 1] - p->mesh->starts[i];
+    size_t n = conic_cluster_is_kept(p->mesh, (uint32_t)i) ? 0 : p->mesh->starts[i + 1] - p->mesh->starts[i];
     for (size_t k = 0; k < n; k++)
       memcpy(corners[k], p->flat->corners[p->mesh->faces[p->mesh->starts[i] + k]], sizeof *corners);
     p->header.n_listed += list_vertices(p, (const uint32_t(*)[3])corners, n, listed, local);

@@ -349,6 +349,32 @@ static void copy_task(void *data, size_t i_task, int i_thread) {
   }
 }
 
+static int are_dots_of(const hybrid_selecting *s, const choice *c) {
+  const conic_hybrid_level *level = c->level == CONIC_HYBRID_POINT ? NULL : &s->hybrid->levels[c->level];
+  return level && level->kind == CONIC_HYBRID_SURFELS && level->stage > 0;
+}
+
+/* Marks the dots among what was copied, and turns them to the camera. */
+static conic_status turn_dots(const hybrid_selecting *s, const conic_camera *camera) {
+  conic_splats *splats = &s->selection->splats;
+  const hybrid_scratch *kept = s->scratch;
+  size_t n_dots = 0;
+  for (size_t i = 0; i < kept->n_choices; i++)
+    n_dots += (size_t)are_dots_of(s, &kept->choices[i]);
+  if (n_dots == 0)
+    return CONIC_OK;
+  splats->dot = conic_memory_allocate_zeroed(s->hybrid->context, splats->count, sizeof *splats->dot);
+  if (!splats->dot)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < kept->n_choices; i++)
+    for (size_t k = 0; are_dots_of(s, &kept->choices[i]) && k < s->hybrid->levels[kept->choices[i].level].count; k++)
+      splats->dot[kept->choices[i].splat + k] = 1.0f;
+  conic_status status = conic_splats_face(s->hybrid->context, splats, camera, splats->tangent_u, splats->tangent_v);
+  conic_memory_release(s->hybrid->context, splats->dot);
+  splats->dot = NULL;
+  return status;
+}
+
 static conic_status take_view(conic_context *context, const conic_hybrid_view *given, conic_hybrid_view *view) {
   conic_hybrid_view_init(view);
   if (!conic_options_take(view, given))
@@ -411,7 +437,7 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
   judge_choices(&s);
   attach(&s);
   conic_parallel_for(hybrid->context, (s.scratch->n_choices + CHOICES_A_TASK - 1) / CHOICES_A_TASK, copy_task, &s);
-  return CONIC_OK;
+  return turn_dots(&s, camera);
 }
 
 void conic_hybrid_name(const conic_hybrid_selection *selection, conic_image *image) {

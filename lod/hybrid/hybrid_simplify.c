@@ -113,13 +113,19 @@ conic_status conic_find_simpler(conic_ways_job *ways) {
   conic_context *context = ways->context;
   size_t n = ways->mesh->clusters->n_clusters, n_threads = (size_t)conic_context_threads(context);
   regions_job job = {.ways = ways};
+  size_t n_surface = 0; /* splats that stay come after what may become simpler */
+  while (n_surface < n && !conic_cluster_is_kept(ways->mesh, (uint32_t)n_surface))
+    n_surface++;
   job.starts = conic_memory_allocate(context, n + 1, sizeof *job.starts);
   job.of_cluster = conic_memory_allocate(context, n, sizeof *job.of_cluster);
   job.levels = conic_memory_allocate_zeroed(context, n, sizeof *job.levels);
   job.places = conic_memory_allocate_zeroed(context, n_threads, sizeof *job.places);
   conic_status status = CONIC_ERROR_MEMORY;
   if (job.starts && job.of_cluster && job.levels && job.places) {
-    part(&job, 0, n);
+    if (n_surface > 0)
+      part(&job, 0, n_surface);
+    for (size_t i = n_surface; i < n; i++)
+      job.of_cluster[i] = (uint32_t)job.n;
     status = conic_cluster_chains_find(context, ways->mesh, job.of_cluster, &ways->chains);
     if (status == CONIC_OK)
       status = run_regions(&job);

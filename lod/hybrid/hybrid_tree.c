@@ -47,27 +47,39 @@ static int longest_axis(const conic_hybrid_bound *bounds, const uint32_t *order,
   return longest;
 }
 
-static void order_range(const conic_hybrid_bound *bounds, uint32_t *order, size_t n, cluster_place *places) {
-  if (n <= CONIC_HYBRID_LEAF)
+static int has_both_kinds(const uint8_t *kinds, const uint32_t *order, size_t n) {
+  size_t i = 1;
+  while (kinds && i < n && kinds[order[i]] == kinds[order[0]])
+    i++;
+  return kinds && i < n;
+}
+
+/* Kinds first, so that few nodes hold both. */
+static void order_range(const conic_hybrid_bound *bounds, const uint8_t *kinds, uint32_t *order, size_t n,
+                        cluster_place *places) {
+  int is_mixed = has_both_kinds(kinds, order, n);
+  if (n <= CONIC_HYBRID_LEAF && !is_mixed)
     return;
   int axis = longest_axis(bounds, order, n);
   for (size_t i = 0; i < n; i++)
-    places[i] = (cluster_place){bounds[order[i]].center[axis], order[i]};
+    places[i] = (cluster_place){is_mixed ? (float)kinds[order[i]] : bounds[order[i]].center[axis], order[i]};
   qsort(places, n, sizeof *places, compare_places);
   for (size_t i = 0; i < n; i++)
     order[i] = places[i].cluster;
-  order_range(bounds, order, conic_hybrid_half(n), places);
-  order_range(bounds, order + conic_hybrid_half(n), n - conic_hybrid_half(n), places);
+  if (n <= CONIC_HYBRID_LEAF)
+    return;
+  order_range(bounds, kinds, order, conic_hybrid_half(n), places);
+  order_range(bounds, kinds, order + conic_hybrid_half(n), n - conic_hybrid_half(n), places);
 }
 
-conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, size_t n_clusters,
-                                uint32_t *order) {
+conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, const uint8_t *kinds,
+                                size_t n_clusters, uint32_t *order) {
   cluster_place *places = conic_memory_allocate(context, n_clusters, sizeof *places);
   if (!places)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < n_clusters; i++)
     order[i] = (uint32_t)i;
-  order_range(bounds, order, n_clusters, places);
+  order_range(bounds, kinds, order, n_clusters, places);
   conic_memory_release(context, places);
   return CONIC_OK;
 }

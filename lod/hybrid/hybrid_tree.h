@@ -14,9 +14,9 @@ size_t conic_hybrid_half(size_t n);
 size_t conic_hybrid_count_nodes(size_t n_clusters);
 
 /* Brings clusters with the given bounds in an order in which neighbours are near each other: order[k] is the number of
- * the k-th. Errors: MEMORY. */
-conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, size_t n_clusters,
-                                uint32_t *order);
+ * the k-th. Where `kinds` is not null, those of kind 0 come before those of kind 1. Errors: MEMORY. */
+conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, const uint8_t *kinds,
+                                size_t n_clusters, uint32_t *order);
 
 /* Fills in the nodes, without their levels and points, over ordered clusters with the given bounds; reach[k] is how far
  * the surfels of cluster k may stand out of its sphere. */

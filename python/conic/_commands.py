@@ -360,7 +360,7 @@ def mls(what: str, scene: AnyScene, output: Optional[PathLike] = None, *, progre
 
 def hybrid(mesh: AnyScene, output: Optional[PathLike] = None, *, progress: Any = None,
            threads: Optional[int] = None, **options: Options) -> Scene:
-    """Builds a hybrid model (.chy) of a mesh: triangles where it is flat, surfels where it is detailed."""
+    """Builds a hybrid model (.chy) of a mesh or of points: triangles where it is flat, surfels where it is detailed."""
     call = _Call("hybrid")
     call.input(mesh)
     return _build(call, output, "chy", options, progress, threads)

@@ -148,7 +148,9 @@ texture|f 1/1 2/1 3/1|: index 1, but there are only 0 texture coordinates (line 
 normal|f 1//1 2//1 3//1|: index 1, but there are only 0 normals (line 4)$
 END
 printf "$corners" > faceless.obj
-wrong_mesh faceless.obj ': the file has no faces$'
+run_wrong 3 faceless.obj ': there are no faces for the texture to lie on$' hybrid faceless.obj -o outputs/a.chy --texture a.png
+printf 'v nan 0 0\n' > pointless.obj
+wrong_mesh pointless.obj ': cannot be drawn: no point is finite$'
 printf 'v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > nan.obj
 printf 'v 0 0 0\nv 0 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 2\n' > flat.obj
 printf 'v 1e300 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > infinite.obj

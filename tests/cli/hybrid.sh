@@ -24,6 +24,17 @@ run 0 info hill.chy --check --json info.json
 [[ $(value kind info.json) == chy && $(value sound info.json) == true ]] || fail "info"
 [[ $(value surfels info.json) == "$(value surfels made.json)" ]] || fail "info: surfels"
 
+# Points become triangles where they lie as a surface does, and stay splats at the border, on the way too.
+{ printf 'ply\nformat ascii 1.0\nelement vertex 3721\nproperty float x\nproperty float y\nproperty float z\nend_header\n'
+  sed -n 's/^v //p' hill.obj; } > hill.ply
+run 0 hybrid hill.ply -o scan.chy --json scan.json
+[[ $(value points_in scan.json) == 3721 && $(value splats_kept scan.json) -lt 600 ]] || fail "points: $(cat scan.json)"
+[[ $(value triangles_in scan.json) -gt 6500 ]] || fail "few triangles of points"
+run 0 info scan.chy --check
+run 0 render scan.chy -o a.pfm --size 160x120 --error 1 --json file.json
+run 0 render hill.ply --as hybrid -o b.pfm --size 160x120 --error 1 --json mesh.json
+[[ -n $(hashes file.json) && $(hashes file.json) == "$(hashes mesh.json)" ]] || fail "--as hybrid of points is another"
+
 # A mesh that becomes a hybrid on the way is the file; nothing but the choice changes a picture.
 picture="--size 160x120 --aov rgba,Z,id,cluster"
 run 0 render hill.chy -o a.pfm $picture --json file.json
@@ -160,7 +171,7 @@ run 2 hybrid hill.obj -o x.chy --sampling dice
 run 2 hybrid hill.obj -o x.chy --smooth --crease 20
 run 2 render hill.chy -o x.pfm --error 1 --color-error 0
 run 3 hybrid missing.obj -o x.chy
-printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\n' > points.obj
+printf 'v nan 0 0\n' > points.obj
 run 3 hybrid points.obj -o x.chy
 printf 'v 0 0 0\nv 1 0 0\nv 1 0 0\nf 1 2 3\n' > line.obj
 run 3 hybrid line.obj -o x.chy

@@ -49,6 +49,7 @@ declare -A wanted=(
   [prepare]=$builder
   [octree]="$builder bytes_per_point inner_nodes levels"
   [hybrid]="triangles surfels clusters seconds.read seconds.work seconds.write seconds.total peak_rss_bytes skipped.nan"
+  [hybrid-points]="points_in? splats_kept?"
   [layer]="$builder clouds levels bytes bits_per_sample spacing quantum"
   [cut]=$builder
   [merge]="$builder clouds levels bytes bits_per_sample spacing quantum"
@@ -140,6 +141,7 @@ write render-colored render render knot.ply -o height.exr --color-by height --si
 write prepare-colored prepare prepare knot.ply -o colored.ply --color-by x
 write octree-colored octree octree colored.ply -o colored.cot --color-by height
 write hybrid-colored hybrid hybrid tent.obj -o colored.chy --color-by height
+write hybrid-points hybrid hybrid knot.ply -o knot.chy
 write diff diff diff knot.exr lod.exr
 write diff-sizes diff diff knot.exr triangle.exr
 mkdir first second
