@@ -161,8 +161,8 @@ conic_status conic_simplifier_begin_stage(conic_simplifier *s);
 /* The target of each vertex that is gone becomes what it is now. */
 void conic_simplifier_shorten_ways(conic_simplifier *s);
 
-/* Of what is one: moves the vertices along their normals to where they fit the mesh best, by what its faces have been
- * nearest to. Errors: MEMORY. */
+/* Of what is one and has colours: moves the vertices along their normals to where they fit the mesh best, by what its
+ * faces have been nearest to. Errors: MEMORY. */
 conic_status conic_simplifier_fit_places(conic_simplifier *s);
 
 /* Of what is one: the normals of the triangles' corners that fit the mesh's best, and the number of each corner's; both

@@ -52,9 +52,9 @@ void conic_simplifier_destroy(conic_simplifier *simplifier);
  * A region of which `most_at_first` is above 0 is simplified as one: the mesh says that there is but one cluster, so
  * that there are no chains, and its faces in pieces [begin, end), which are only measured one by one. All levels are
  * levels[0]'s. The first has at most so many triangles, and each further one five sixths of the one before. What stays
- * of an edge moves to where the quadric is least (Garland and Heckbert 1997), if the mesh has one colour; and at each
- * stage the vertices move along their normals, and corners get normals, that fit the mesh's faces best by least
- * squares. So all vertices of these levels are moved ones. */
+ * of an edge moves to where the quadric is least (Garland and Heckbert 1997); if the mesh has colours, all vertices
+ * move along their normals at each stage, to fit the mesh's faces best by least squares. So do normals of corners. All
+ * vertices of these levels are moved ones. */
 conic_status conic_region_begin(conic_simplifier *simplifier, conic_cluster_chains *chains, uint32_t begin,
                                 uint32_t end, size_t most_at_first, conic_cluster_levels *levels);
 

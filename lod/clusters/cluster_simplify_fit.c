@@ -78,8 +78,11 @@ static void move_vertices(const conic_simplifier *s, double (*const ways)[3], co
   }
 }
 
+/* Without colours they were put where the quadric is least, from where this would put outlines out too far. */
 conic_status conic_simplifier_fit_places(conic_simplifier *s) {
   conic_corner_fit fit = {0};
+  if (!s->contrasts)
+    return CONIC_OK;
   uint32_t *numbers = conic_memory_allocate(s->context, s->n_triangles, sizeof *numbers);
   double(*ways)[3] = conic_memory_allocate(s->context, s->n_vertices, sizeof *ways);
   conic_status status = numbers && ways ? CONIC_OK : CONIC_ERROR_MEMORY;
