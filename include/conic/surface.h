@@ -155,8 +155,8 @@ CONIC_API void conic_clean_options_init_sized(conic_clean_options *options, size
 
 /* conic_surface_clean for sets of any size: cell by cell of a lattice with sides of 64 h, each with what lies within
  * (neglect + 1.5) h about it. The memory that there is changes no bit. Algebraic spheres of points without normals find
- * their own, and hand none over. Errors: ARGUMENT, INPUT (no finite point), UNSUPPORTED, MEMORY (a cell that does not fit), IO, CANCELLED, the
- * source's and the sink's. */
+ * their own, and hand none over. Errors: ARGUMENT, INPUT (no finite point), UNSUPPORTED, MEMORY (a cell that does not
+ * fit), IO, CANCELLED, the source's and the sink's. */
 CONIC_API conic_status conic_surface_clean_cells(conic_context *context, const conic_clean_options *options,
                                                  conic_points_source *source, void *source_cookie,
                                                  const conic_points_sink *sink, conic_surface_report *report);
