@@ -3,7 +3,7 @@
 /* First, for what it defines. */
 #include "tests/fuzz/fuzz.h"
 
-#include "lod/hybrid/hybrid_layout.h"
+#include "lod/hybrid/model/hybrid_layout.h"
 
 /* What is read can be used, whatever it says of itself; of what is opened, chunks may be damaged. */
 static void use(fuzz_input *input, conic_hybrid *hybrid, int is_whole) {

@@ -1,7 +1,7 @@
 /* One image, one set of bits, of meshes and of hybrid models: over threads, tile sizes, instruction sets and passes;
  * and the models themselves over threads. */
 #include "core/lanes/instruction_sets.h"
-#include "lod/hybrid/hybrid_model.h"
+#include "lod/hybrid/model/hybrid_model.h"
 #include "tests/support/hybrid_fixture.h"
 #include "tests/support/triangle_fixture.h"
 

@@ -2,7 +2,7 @@
 #ifndef CONIC_HYBRID_FIXTURE_H
 #define CONIC_HYBRID_FIXTURE_H
 
-#include "lod/hybrid/hybrid_model.h"
+#include "lod/hybrid/model/hybrid_model.h"
 #include "tests/support/check.h"
 
 /* A height field of side × side squares, two triangles each: smooth, with hills of several sizes. */

@@ -2,7 +2,7 @@
  * 8 × 8 samples a pixel, so that what is measured is the model and not the pixels: how far outlines moved, how far what
  * is drawn lies from the mesh, and how colours differ. What is to be drawn is chosen for the picture of 256 × 256. */
 #include "core/base/vectors.h"
-#include "lod/hybrid/hybrid_chunks.h"
+#include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/mesh/face_tree.h"
 #include "tests/support/hybrid_fixture.h"
 

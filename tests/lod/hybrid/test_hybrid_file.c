@@ -1,8 +1,8 @@
 /* .chy files: what is written is read, to the bit, and draws the same picture; what was spoiled is refused, also where
  * its sums were made right again, or can be used; what was built is sound. */
 #include "core/base/byte_order.h"
-#include "lod/hybrid/hybrid_chunks.h"
-#include "lod/hybrid/hybrid_layout.h"
+#include "lod/hybrid/model/hybrid_chunks.h"
+#include "lod/hybrid/model/hybrid_layout.h"
 #include "tests/support/files.h"
 #include "tests/support/hybrid_fixture.h"
 #include "tests/support/random_numbers.h"

@@ -3,8 +3,8 @@
 #include <stddef.h>
 
 #include "core/base/byte_order.h"
-#include "lod/hybrid/hybrid_chunks.h"
-#include "lod/hybrid/hybrid_layout.h"
+#include "lod/hybrid/model/hybrid_chunks.h"
+#include "lod/hybrid/model/hybrid_layout.h"
 #include "tests/support/files.h"
 #include "tests/support/hybrid_fixture.h"
 

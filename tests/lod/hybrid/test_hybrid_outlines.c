@@ -2,7 +2,7 @@
  * the errors that the model states, and few pixels do.
  *   test_hybrid_outlines SOURCE_FOLDER [all]
  * With `all` from 26 directions at 512², all meshes (scripts/hybrid-outlines); else a cheap part of that. */
-#include "lod/hybrid/hybrid_chunks.h"
+#include "lod/hybrid/model/hybrid_chunks.h"
 #include "tests/support/hybrid_fixture.h"
 
 enum { MOST_PX = 24 }; /* a pixel farther out than this counts as that far */

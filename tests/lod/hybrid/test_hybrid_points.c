@@ -1,6 +1,6 @@
 /* Hybrid models of splats: the same for every number of threads, sound, without a hole that the splats have not; and
  * what stays a splat is drawn as it was. */
-#include "lod/hybrid/hybrid_layout.h"
+#include "lod/hybrid/model/hybrid_layout.h"
 #include "tests/support/cloud_fixture.h"
 #include "tests/support/files.h"
 #include "tests/support/hybrid_fixture.h"

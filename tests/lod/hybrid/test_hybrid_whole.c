@@ -3,7 +3,7 @@
  * normals are the mesh's. */
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_seen.h"
-#include "lod/hybrid/hybrid_chunks.h"
+#include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/mesh/distance.h"
 #include "tests/support/hybrid_fixture.h"
 #include "tests/support/random_numbers.h"

@@ -1,0 +1,263 @@
+/* From a mesh to a hybrid model: flat, who beside whom, clusters, ways to draw each. */
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/options.h"
+#include "core/splats/columns.h"
+#include "lod/hybrid/build/hybrid_build.h"
+#include "lod/hybrid/build/hybrid_kept.h"
+#include "lod/hybrid/build/hybrid_nodes.h"
+#include "lod/hybrid/build/hybrid_pack.h"
+#include "lod/hybrid/model/hybrid_tree.h"
+#include "lod/mesh/flat_mesh.h"
+
+void conic_hybrid_options_init_sized(conic_hybrid_options *options, size_t size) {
+  static const conic_hybrid_options own = {
+      .size = sizeof own, .phase1 = 0.12, .phase2 = 0.4, .density = 2.0, .most_error = 0.5, .cutoff = 1.5f};
+  conic_options_give(options, size, &own);
+}
+
+typedef struct building {
+  conic_context *context;
+  const conic_hybrid_options *options;
+  conic_triangles flat;
+  conic_adjacency adjacency;
+  conic_mesh_clusters clusters;
+  conic_clustered_mesh mesh;
+  const conic_kept_splats *kept; /* null: none */
+  uint32_t *faces;
+  size_t *starts;
+  conic_cluster_ways *ways;
+  conic_hybrid_report *report;
+  size_t n_own; /* faces; those behind them lie beside the model */
+  size_t n_own_clusters;
+} building;
+
+static void release_building(building *b) {
+  for (size_t i = 0; b->ways && i < b->clusters.n_clusters; i++)
+    conic_cluster_ways_release(b->context, &b->ways[i]);
+  conic_memory_release(b->context, b->ways);
+  conic_memory_release(b->context, b->faces);
+  conic_memory_release(b->context, b->starts);
+  conic_mesh_clusters_release(b->context, &b->clusters);
+  conic_adjacency_release(b->context, &b->adjacency);
+  b->flat.materials = NULL; /* lent by the mesh */
+  b->flat.n_materials = 0;
+  conic_triangles_release(b->context, &b->flat);
+}
+
+/* --- clusters --- */
+
+/* Where none is given, a share that has some 2000 faces if they are of one size; of small meshes a fiftieth. */
+static double most_area_of(const building *b) {
+  double share = 2000.0 / (double)b->flat.count;
+  return b->options->most_area > 0.0 ? b->options->most_area : share < 0.02 ? share : 0.02;
+}
+
+/* No cluster has both faces of its own and others. */
+static void part_from_others(building *b) {
+  conic_adjacency *a = &b->adjacency;
+  size_t n = 0;
+  for (size_t i = 0; i < a->n_joints; i++)
+    if ((a->joints[i].faces[0] < b->n_own) == (a->joints[i].faces[1] < b->n_own))
+      a->joints[n++] = a->joints[i];
+  a->n_joints = n;
+}
+
+/* They are numbered by their first faces: others come last. */
+static void count_own(building *b) {
+  for (size_t i = 0; i < b->flat.count && i < b->n_own; i++)
+    if (b->clusters.of_face[i] != CONIC_NO_CLUSTER && b->clusters.of_face[i] >= b->n_own_clusters)
+      b->n_own_clusters = (size_t)b->clusters.of_face[i] + 1;
+}
+
+static conic_status find_clusters(building *b) {
+  const conic_clustering_options options = {b->options->phase1, b->options->phase2, most_area_of(b)};
+  conic_clustered_mesh *mesh = &b->mesh;
+  mesh->triangles = &b->flat;
+  mesh->mesh = (conic_mesh){.n_vertices = b->flat.n_vertices,
+                            .n_faces = b->flat.count,
+                            .position = {b->flat.position[0], b->flat.position[1], b->flat.position[2]},
+                            .faces = (const uint32_t(*)[3])b->flat.corners};
+  mesh->adjacency = &b->adjacency;
+  mesh->clusters = &b->clusters;
+  mesh->kept = b->kept;
+  conic_status status = conic_adjacency_find(b->context, &mesh->mesh, &b->adjacency);
+  if (status == CONIC_OK)
+    part_from_others(b);
+  if (status == CONIC_OK)
+    status = conic_mesh_clusters_find(b->context, &mesh->mesh, &b->adjacency, &options, &b->clusters);
+  if (status == CONIC_OK && b->kept)
+    status = conic_hybrid_group_kept(b->context, b->kept, &b->clusters);
+  if (status == CONIC_OK)
+    count_own(b);
+  if (status == CONIC_OK && b->n_own_clusters == 0)
+    status = conic_fail(b->context, CONIC_ERROR_INPUT, "the mesh has no face that could be drawn");
+  return status;
+}
+
+/* A counting sort of the faces by cluster. */
+static void sort_faces(building *b) {
+  const uint32_t *of_face = b->clusters.of_face;
+  memset(b->starts, 0, (b->clusters.n_clusters + 2) * sizeof *b->starts);
+  for (size_t i = 0; i < b->flat.count; i++)
+    if (of_face[i] != CONIC_NO_CLUSTER)
+      b->starts[of_face[i] + 2]++;
+  for (size_t i = 0; i < b->clusters.n_clusters; i++)
+    b->starts[i + 2] += b->starts[i + 1];
+  for (size_t i = 0; i < b->flat.count; i++)
+    if (of_face[i] != CONIC_NO_CLUSTER)
+      b->faces[b->starts[of_face[i] + 1]++] = (uint32_t)i;
+  b->mesh.faces = b->faces;
+  b->mesh.starts = b->starts;
+}
+
+/* Numbers the clusters as the hierarchy has them: near each other where they are near. */
+static conic_status order_clusters(building *b) {
+  size_t n = b->clusters.n_clusters, n_own = b->n_own_clusters;
+  conic_hybrid_bound *bounds = conic_memory_allocate(b->context, n, sizeof *bounds);
+  uint32_t *order = conic_memory_allocate(b->context, n, sizeof *order);
+  uint32_t *rank = conic_memory_allocate(b->context, n, sizeof *rank);
+  uint8_t *is_gathered = conic_memory_allocate(b->context, n, 1), *is_kept = conic_memory_allocate(b->context, n, 1);
+  conic_status status = bounds && order && rank && is_gathered && is_kept ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n && status == CONIC_OK; i++) {
+    bounds[i] = conic_cluster_bound(&b->mesh, (uint32_t)i);
+    is_kept[i] = (uint8_t)conic_cluster_is_kept(&b->mesh, (uint32_t)i);
+  }
+  if (status == CONIC_OK)
+    status = conic_hybrid_order(b->context, bounds, is_kept, n_own, order);
+  if (status == CONIC_OK) {
+    for (size_t i = n_own; i < n; i++)
+      order[i] = (uint32_t)i;
+    memcpy(is_gathered, b->clusters.is_gathered, n);
+    for (size_t i = 0; i < n; i++) {
+      rank[order[i]] = (uint32_t)i;
+      b->clusters.is_gathered[i] = is_gathered[order[i]];
+    }
+    for (size_t i = 0; i < b->flat.count; i++)
+      if (b->clusters.of_face[i] != CONIC_NO_CLUSTER)
+        b->clusters.of_face[i] = rank[b->clusters.of_face[i]];
+    sort_faces(b);
+  }
+  conic_memory_release(b->context, is_kept);
+  conic_memory_release(b->context, is_gathered);
+  conic_memory_release(b->context, rank);
+  conic_memory_release(b->context, order);
+  conic_memory_release(b->context, bounds);
+  return status;
+}
+
+static conic_status make_clusters(building *b) {
+  size_t n = b->clusters.n_clusters;
+  b->faces = conic_memory_allocate(b->context, b->flat.count, sizeof *b->faces);
+  b->starts = conic_memory_allocate(b->context, n + 2, sizeof *b->starts);
+  b->ways = conic_memory_allocate_zeroed(b->context, n, sizeof *b->ways);
+  if (!b->faces || !b->starts || !b->ways)
+    return CONIC_ERROR_MEMORY;
+  sort_faces(b);
+  return order_clusters(b);
+}
+
+/* --- all --- */
+
+static void report_oddities(building *b, const conic_triangles *mesh) {
+  const conic_mesh_oddities *o = &b->adjacency.oddities;
+  conic_hybrid_report *r = b->report;
+  if (b->kept) { /* faces that stand for splats are as they must be */
+    r->n_faces = b->kept->n_surface;
+    r->n_first = b->clusters.n_first - b->kept->n;
+    return;
+  }
+  r->n_faces = mesh->count;
+  r->nan = o->nan;
+  r->zero = o->zero;
+  r->welded = o->welded;
+  r->open = o->open;
+  r->crowded = o->crowded;
+  r->twisted = o->twisted;
+  r->turned = o->turned;
+  r->n_pieces = o->n_pieces;
+  r->n_first = b->clusters.n_first;
+}
+
+static conic_status take_options(conic_context *context, const conic_hybrid_options *given, conic_hybrid_options *o) {
+  conic_hybrid_options_init(o);
+  int is_good = conic_options_take(o, given) && o->phase1 - o->phase1 == 0.0 && o->phase2 - o->phase2 == 0.0 &&
+                o->most_area >= 0.0 && o->density > 0.0 && o->density <= 1024.0 && o->most_error >= 0.0 &&
+                o->cutoff >= 0.25f && o->cutoff <= 5.0f &&
+                (o->sampling == CONIC_SAMPLING_BLUE || o->sampling == CONIC_SAMPLING_BOX);
+  return is_good ? CONIC_OK
+                 : conic_fail(context, CONIC_ERROR_ARGUMENT, "an option of the hybrid model is out of range");
+}
+
+static conic_status build_hybrid(building *b, conic_triangles *mesh, conic_hybrid **hybrid) {
+  double start = conic_seconds_now();
+  conic_status status = conic_flat_mesh(b->context, mesh, &b->flat);
+  if (status != CONIC_OK)
+    return status;
+  b->flat.n_materials = mesh->n_materials;
+  b->flat.materials = mesh->materials;
+  status = find_clusters(b);
+  if (status == CONIC_OK)
+    status = make_clusters(b);
+  if (status != CONIC_OK)
+    return status;
+  report_oddities(b, mesh);
+  b->report->cluster_seconds = conic_seconds_now() - start;
+  conic_ways_job ways = {
+      .context = b->context, .mesh = &b->mesh, .options = b->options, .n_clusters = b->n_own_clusters, .ways = b->ways};
+  status = conic_find_ways(&ways);
+  b->report->sample_seconds = ways.sample_seconds;
+  b->report->simplify_seconds = ways.simplify_seconds;
+  if (status == CONIC_OK)
+    status = conic_hybrid_pack(&ways, hybrid);
+  conic_cluster_chains_release(b->context, &ways.chains);
+  conic_nodes_release(&ways);
+  return status;
+}
+
+/* All of a mesh, or its first n_own faces; its last ones may stand for splats. */
+static conic_status build_some(conic_context *context, conic_triangles *mesh, size_t n_own,
+                               const conic_kept_splats *kept, const conic_hybrid_options *given, conic_hybrid **hybrid,
+                               conic_hybrid_report *report) {
+  conic_hybrid_report ignored;
+  conic_hybrid_options options;
+  building b = {
+      .context = context, .options = &options, .kept = kept, .report = report ? report : &ignored, .n_own = n_own};
+  *hybrid = NULL;
+  memset(b.report, 0, sizeof *b.report);
+  conic_status status = conic_triangles_check_own(context, "the mesh", mesh);
+  if (status != CONIC_OK)
+    return status;
+  status = take_options(context, given, &options);
+  if (status == CONIC_OK)
+    status = conic_triangles_check(context, mesh, "the mesh");
+  if (status == CONIC_OK)
+    status = build_hybrid(&b, mesh, hybrid);
+  release_building(&b);
+  conic_triangles_release(context, mesh);
+  if (status != CONIC_OK) {
+    conic_hybrid_destroy(*hybrid);
+    *hybrid = NULL;
+  }
+  return status;
+}
+
+conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, const conic_hybrid_options *options,
+                                conic_hybrid **hybrid, conic_hybrid_report *report) {
+  return build_some(context, mesh, SIZE_MAX, NULL, options, hybrid, report);
+}
+
+conic_status conic_hybrid_build_part(conic_context *context, conic_triangles *mesh, size_t n_own,
+                                     const conic_hybrid_options *options, conic_hybrid **hybrid,
+                                     conic_hybrid_report *report) {
+  return build_some(context, mesh, n_own, NULL, options, hybrid, report);
+}
+
+conic_status conic_hybrid_build_with(conic_context *context, conic_triangles *mesh, const conic_kept_splats *kept,
+                                     const conic_hybrid_options *options, conic_hybrid **hybrid,
+                                     conic_hybrid_report *report) {
+  return build_some(context, mesh, SIZE_MAX, kept, options, hybrid, report);
+}

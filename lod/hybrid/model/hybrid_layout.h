@@ -1,0 +1,61 @@
+/* Where everything but the chunks is in a .chy file, and in the memory of a hybrid model, which is the same. */
+#ifndef CONIC_HYBRID_LAYOUT_H
+#define CONIC_HYBRID_LAYOUT_H
+
+#include "core/files/file_body.h"
+#include "lod/hybrid/model/hybrid_model.h"
+
+enum { CONIC_CHY_VERSION = 5 };
+
+/* Each member is little-endian in the file, one after the other, after the 8 bytes that say what it is. */
+typedef struct conic_chy_header {
+  uint32_t version, flags;
+  uint64_t n_vertices, n_triangles, n_surfels, n_levels, n_clusters, n_nodes, n_materials, n_texels;
+  uint64_t n_data; /* bytes of all chunks */
+  double origin[3];
+  float low[3], high[3];
+  double splat_length;
+  float cutoff;
+  uint32_t zero;
+  uint64_t body_sum; /* over the arrays' sums */
+} conic_chy_header;
+
+/* A material as the file has it: its texture's texels are codes[3 · first_texel …], row by row from the top; sRGB. */
+typedef struct conic_chy_material {
+  float color[3];
+  uint32_t width, height; /* 0: no texture */
+  uint32_t wrap;
+  uint64_t first_texel;
+} conic_chy_material;
+
+/* The arrays by number; texels may be none. */
+enum {
+  CONIC_CHY_NODES,
+  CONIC_CHY_CLUSTERS,
+  CONIC_CHY_LEVELS,
+  CONIC_CHY_MATERIAL_LIST,
+  CONIC_CHY_TEXELS,
+  CONIC_CHY_N_ARRAYS
+};
+
+/* Of the arrays, behind which the chunks lie. Counts are below 2³² each. */
+conic_file_layout conic_chy_lay_out(const conic_chy_header *header);
+
+/* Points the model's arrays into `bytes`, and takes the header's numbers. */
+void conic_chy_attach(const conic_chy_header *header, unsigned char *bytes, conic_hybrid *hybrid);
+
+/* Takes header and arrays of a file of n_bytes, which stand in `index`, and checks all but the chunks. Errors: INPUT,
+ * MEMORY. */
+conic_status conic_chy_take_index(conic_hybrid *hybrid, const char *path, const conic_chy_header *h, uint64_t n_bytes,
+                                  unsigned char *index);
+
+/* What is wrong with a header's numbers, or null. */
+const char *conic_chy_header_fault(const void *numbers);
+
+/* What .chy files are, for reading and writing their header. */
+extern const conic_file_kind conic_chy_kind;
+
+/* Makes the materials and their textures of what is attached. Errors: MEMORY. */
+conic_status conic_chy_make_materials(conic_hybrid *hybrid);
+
+#endif

@@ -1,0 +1,107 @@
+/* A hybrid model as it is in memory. */
+#ifndef CONIC_HYBRID_MODEL_H
+#define CONIC_HYBRID_MODEL_H
+
+#include "conic/hybrid.h"
+#include "core/base/vectors.h"
+#include "core/files/mapping.h"
+
+/* The records of a .chy file (docs/reference/format-chy.md), as they are in memory too. */
+
+/* One way to draw a cluster, or a node. */
+typedef struct conic_hybrid_level {
+  uint32_t kind;       /* conic_hybrid_kind */
+  uint32_t count;      /* of its triangles or surfels */
+  uint32_t n_vertices; /* triangles: of their own */
+  uint32_t stage; /* triangles: how often they were simplified; of its borders' vertices those are left that last */
+  uint32_t first_border, n_borders; /* among those of its cluster */
+  float error;                      /* no place of the cluster is drawn farther than this from where it is */
+  float reach;                      /* surfels: the longest half axis of an outline */
+  float cover, spread; /* surfels: the products of the half axes of their outlines, and their squares, summed up */
+  float change;        /* by how many steps colours of the cluster are drawn otherwise than they are, at the most, */
+  float smear;         /* and that times the length over which they are */
+  uint32_t at;         /* its chunk: CONIC_HYBRID_UNIT times that from the first chunk on */
+} conic_hybrid_level;
+
+/* A sphere that holds the faces, and a cone of their normals: its axis and the cosine of half its opening. */
+typedef struct conic_hybrid_bound {
+  float center[3], radius, axis[3], cone;
+} conic_hybrid_bound;
+
+typedef struct conic_hybrid_cluster {
+  conic_hybrid_bound bound;
+  float area;
+  uint32_t first_level, n_levels; /* triangles first, of growing error, then surfels likewise */
+  uint32_t built;                 /* which level is drawn where no error is asked for, from first_level */
+  uint32_t n_slots, n_borders;    /* along which it meets others, chain by chain; and of all of its levels */
+  uint32_t frame_at, ends_at;     /* the chunk of the slots' stages and the borders, and that of the slots' vertices */
+} conic_hybrid_cluster;
+
+/* All that a node holds as one disc that faces the camera, about the centre of its sphere. */
+typedef struct conic_hybrid_point {
+  float radius; /* of the faces alone, without what surfels stand out; 0: there is no point */
+  float error;  /* as of a level */
+  float color[3];
+  float change, smear; /* as of a level */
+} conic_hybrid_point;
+
+/* In preorder: the root first. */
+typedef struct conic_hybrid_node {
+  conic_hybrid_bound bound;
+  uint32_t begin, end;            /* clusters */
+  uint32_t next;                  /* the node after the subtree: this one + 1 where it has no children */
+  uint32_t first_level, n_levels; /* that stand for all of its clusters: triangles first, then surfels, each of growing
+                                     error; may be none */
+  conic_hybrid_point point;
+} conic_hybrid_node;
+
+enum {
+  CONIC_CHY_NORMALS = 1,
+  CONIC_CHY_COLORS = 2,
+  CONIC_CHY_TEXTURE_COORDINATES = 4,
+  CONIC_CHY_MATERIALS = 8, /* each triangle names one */
+  CONIC_CHY_ALL_FLAGS = 15
+};
+
+struct conic_hybrid {
+  conic_context *context;
+  uint32_t flags; /* of what there is by vertex and by triangle */
+  float cutoff;
+  double origin[3];
+  float low[3], high[3]; /* of the vertices, from the origin */
+  double splat_length;
+  size_t n_vertices, n_triangles, n_surfels, n_levels, n_clusters, n_nodes;
+  const conic_hybrid_level *levels;
+  const conic_hybrid_cluster *clusters;
+  const conic_hybrid_node *nodes;
+  size_t n_materials, n_texels;
+  const struct conic_chy_material *material_list;
+  const unsigned char *texels;
+  conic_material *materials; /* made of these; the textures are the hybrid's own */
+
+  /* The chunks (lod/hybrid/model/hybrid_chunks.h): all of them, or null and a store that has those that were asked for.
+   */
+  const unsigned char *data;
+  uint64_t n_data;
+  struct conic_hybrid_store *store;
+  struct conic_hybrid_pile *pile; /* whose file they lie in, in any order; or null */
+  uint64_t drawing_bytes;         /* what a picture's parts may take; 0: any number */
+
+  /* Where all that lies: in one piece of memory of its own, or in the file's. */
+  void *owned;
+  conic_mapping mapping;
+};
+
+/* The size of the file that holds it. */
+uint64_t conic_hybrid_file_bytes(const conic_hybrid *hybrid);
+
+/* Makes the sums in a file's bytes right, for tests and fuzzing. */
+void conic_hybrid_mend(unsigned char *bytes, size_t n_bytes);
+
+/* How far the levels of a cluster reach out of its sphere. */
+double conic_hybrid_reach(const conic_hybrid *hybrid, const conic_hybrid_cluster *cluster);
+
+/* What is wrong with all but its chunks, or null: nothing is used before it was asked. */
+const char *conic_hybrid_structure(const conic_hybrid *hybrid);
+
+#endif
