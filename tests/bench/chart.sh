@@ -84,9 +84,6 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n
 run 0 chart -o other --quick --only representations --mesh 'a "mesh".obj'
 [[ $(grep -c '^"a ""mesh"".obj",4,' other/representations.csv) -eq 15 && ! -e other/chart.csv ]] || fail "not that mesh alone"
 
-run 0 chart -o alone --quick --only methods -q
-[[ -s alone/chart.csv && -s alone/chart.svg && ! -e alone/representations.csv ]] || fail "not the methods alone"
-
 # Scenes of one's own: a line and a mark a value, the default ones all alike, more samples nearer and slower, and an
 # octree that is nearer the smaller the error
 run 0 make sphere -n 3k -o ball.ply
