@@ -211,17 +211,46 @@ static double least_error(fitting *f, uint64_t budget) {
   return conic_double_of_bits(high);
 }
 
-/* With what fits them to each other the number may go up and down with the error; so from there on each is tried.
- * Returns whether one was found, the number that it takes, or the coarsest, and the error of what was chosen. */
+/* choose_all, with what fits the choice to each other; whether the budget is enough. */
+static int try_error(fitting *f, double error_px, uint64_t budget, uint64_t *count, double *greatest_px,
+                     double *next_px) {
+  *count = choose_all(f, error_px, greatest_px, next_px) + count_stitches(f);
+  return *count <= budget;
+}
+
+/* Halves the errors between one that is too small and the greatest: finds one that is enough where the next smaller
+ * one is not, which need not be the least of all. Returns whether there is any. */
+static int halve_errors(fitting *f, double low_px, uint64_t budget, uint64_t *count, double *greatest_px) {
+  double next_px;
+  if (!try_error(f, HUGE_VAL, budget, count, greatest_px, &next_px))
+    return 0;
+  uint64_t low = conic_bits_of_double(low_px), high = conic_bits_of_double(*greatest_px);
+  while (high > low && high - low > 1) {
+    uint64_t middle = low + (high - low) / 2;
+    if (!try_error(f, conic_double_of_bits(middle), budget, count, greatest_px, &next_px))
+      low = middle;
+    else
+      high = *greatest_px < conic_double_of_bits(middle) ? conic_bits_of_double(*greatest_px) : middle;
+  }
+  return try_error(f, conic_double_of_bits(high), budget, count, greatest_px, &next_px);
+}
+
+/* With what fits them to each other the number may go up and down with the error; so from there on each is tried, but
+ * no more of them than a frame has time for. Returns whether one was found, the number that it takes, or the coarsest,
+ * and the error of what was chosen. */
 static int fit(fitting *f, uint64_t budget, uint64_t *count, double *greatest_px) {
+  enum { ONE_BY_ONE = 64 };
   double next_px, error_px = 0.0;
   if (choose_all(f, error_px, greatest_px, &next_px) > budget)
     error_px = least_error(f, budget);
-  for (;; error_px = next_px) {
-    *count = choose_all(f, error_px, greatest_px, &next_px) + count_stitches(f);
-    if (*count <= budget || !(error_px < HUGE_VAL))
-      return *count <= budget;
+  for (int i = 0; i < ONE_BY_ONE; i++) {
+    if (try_error(f, error_px, budget, count, greatest_px, &next_px))
+      return 1;
+    if (!(error_px < HUGE_VAL))
+      return 0;
+    error_px = next_px;
   }
+  return halve_errors(f, error_px, budget, count, greatest_px);
 }
 
 /* Of each cluster the level of fewest primitives; or of one kind alone, which may be fewer together. */

@@ -1,13 +1,15 @@
 /* Models that are built in cells, of meshes that are read some faces at a time: of one cell they are those of the mesh
  * as a whole; the threads change nothing; and cells meet without a gap, whether their faces share vertices or only
  * places. */
-#include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/build/hybrid_large.h"
+#include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/mesh/mesh_cells.h"
 #include "tests/support/files.h"
 #include "tests/support/hybrid_fixture.h"
 
-enum { SIDE = 36, FACES_A_CELL = 400 };
+enum { FACES_A_CELL = 400 };
+
+static size_t side = 36; /* of the terrain, in squares */
 
 /* A terrain; as a soup each face has vertices of its own. One face has a corner that is none. */
 static void write_ply(conic_context *context, const char *path, int is_soup) {
@@ -15,7 +17,7 @@ static void write_ply(conic_context *context, const char *path, int is_soup) {
   FILE *file = fopen(path, "w");
   if (!file)
     exit(1);
-  hybrid_terrain(context, SIDE, &mesh);
+  hybrid_terrain(context, side, &mesh);
   size_t n_vertices = is_soup ? 3 * mesh.count : mesh.n_vertices;
   fprintf(file, "ply\nformat ascii 1.0\nelement vertex %zu\nproperty float x\nproperty float y\nproperty float z\n",
           n_vertices + 1);
@@ -44,7 +46,7 @@ static conic_hybrid *build_cells(conic_context *context, const char *path, size_
   options.most_area = 0.3; /* so that there are some faces to a patch */
   conic_hybrid_streaming_init(&streaming);
   CHECK_OK(conic_hybrid_build_cells(context, path, path, &options, &streaming, most_faces, &hybrid, &report));
-  CHECK(report.n_faces == 2 * SIDE * SIDE + 1 && report.nan == 1 && report.zero == 0);
+  CHECK(report.n_faces == 2 * side * side + 1 && report.nan == 1 && report.zero == 0);
   return hybrid;
 }
 
@@ -184,7 +186,7 @@ static void test_seams(conic_context *context, const char *path, const conic_hyb
     starts[i + 1] = cluster;
     conic_triangles_release(context, &mesh);
   }
-  CHECK(n_faces == 2 * SIDE * SIDE + 1 && starts[n_cells] == h->n_clusters && n_all < 2 * n_faces);
+  CHECK(n_faces == 2 * side * side + 1 && starts[n_cells] == h->n_clusters && n_all < 2 * n_faces);
   check_seams(h, starts, n_cells, is_soup);
   conic_mesh_cells_release(cells);
 }
@@ -207,6 +209,36 @@ static void test_mesh(conic_context *context, int is_soup) {
   CHECK(sum_of_file(other, cells) == sum);
   conic_hybrid_destroy(cells);
   conic_context_destroy(other);
+  CHECK(unlink(path) == 0);
+}
+
+/* Of many cells, which nothing simplifies as a whole: budgets near the least that there are, where what fits clusters
+ * to each other is most of what is drawn, so that a great many errors are too small. */
+static void test_budgets(conic_context *context) {
+  char path[512];
+  conic_hybrid_info info;
+  conic_camera camera;
+  conic_render_options render;
+  conic_hybrid_selection selection = {0};
+  snprintf(path, sizeof path, "%s", files_path("large.ply"));
+  side = 120;
+  write_ply(context, path, 0);
+  conic_hybrid *cells = build_cells(context, path, FACES_A_CELL);
+  conic_render_options_init(&render);
+  CHECK_OK(conic_hybrid_describe(cells, &info));
+  hybrid_look(context, 17, 512, 1.0, info.minimum, info.maximum, &camera);
+  double error_px = HUGE_VAL;
+  for (uint64_t budget = 250; budget <= 16000; budget *= 2) {
+    conic_hybrid_view view;
+    conic_hybrid_view_init(&view);
+    view.budget = budget;
+    CHECK_OK(conic_hybrid_select(cells, &camera, &render, &view, &selection));
+    uint64_t n = selection.splats.count + selection.triangles.count;
+    CHECK(n <= budget && n > budget / 3 && selection.error_px < 0.7 * error_px);
+    error_px = selection.error_px;
+  }
+  conic_hybrid_selection_release(context, &selection);
+  conic_hybrid_destroy(cells);
   CHECK(unlink(path) == 0);
 }
 
@@ -233,6 +265,7 @@ int main(void) {
   conic_context *context = files_context();
   test_mesh(context, 0);
   test_mesh(context, 1);
+  test_budgets(context);
   test_refused_meshes(context);
   files_end(context);
   return check_result();
