@@ -1,4 +1,4 @@
-// Moving least squares of the Point Cloud Library, for scripts/mls-peers: one cloud in, its projected points out.
+// Moving least squares of the Point Cloud Library, for bench/peers/mls: one cloud in, its projected points out.
 //   pcl_mls IN.xyz OUT.xyz RADIUS ORDER
 // Prints the seconds of processor time that this took, its search tree included, files not.
 #include <cstdio>
