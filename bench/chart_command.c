@@ -195,8 +195,8 @@ static int run_chart(cli_session *session, int argc, char **argv) {
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
   if (exit_code == CLI_DONE && n_positional && (job->only >= 0 || job->mesh.path))
     exit_code = cli_usage("chart: of a scene there is one chart, without --only and --mesh");
-  else if (exit_code == CLI_DONE && !n_positional && job->scenes.over)
-    exit_code = cli_usage("chart: --over is for scenes; name one");
+  else if (exit_code == CLI_DONE && !n_positional && (job->scenes.over || job->scenes.beside.n))
+    exit_code = cli_usage("chart: --over and --beside are for scenes; name one");
   else if (exit_code == CLI_DONE && !job->folder)
     exit_code = cli_usage("chart: no folder; give one with -o DIR");
   else if (exit_code == CLI_DONE)

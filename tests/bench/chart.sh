@@ -120,6 +120,7 @@ grep -q 'ball.pfm: is no colour picture of 90 x 90 pixels' err || fail "$(cat er
 
 run 2 chart
 run 2 chart -o small --over samples
+run 2 chart -o small --beside other=1:ball.pfm
 for over in bogus samples=0 method=conik error=-1 budget=0 as=splats isa=mmx; do
   run 2 chart ball.ply -o small --over "$over"
   grep -q 'chart: --over ' err || fail "$(cat err)"
