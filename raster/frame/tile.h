@@ -7,6 +7,7 @@
 /* What a thread's tiles work in. */
 typedef struct conic_tile_scratch {
   conic_tile_entry *entries; /* the tile's, in file order */
+  conic_tile_entry *samples; /* room for as many */
   uint32_t *indices, *words; /* of a row of blocks */
   conic_kept *kept;
   conic_nearest *nearest;
@@ -25,6 +26,7 @@ typedef struct conic_tile {
   int x_begin, x_end, y_begin, y_end; /* its pixels of the picture */
   int first_column, first_row;        /* of the picture, where the image begins */
   int keeps_indices;                  /* the image wants counts or ids */
+  int skips_hidden;                   /* fragments need not be counted */
   float *hiding;                      /* not null: no picture is drawn, but this raised (raster/view/part.h) */
   conic_tile_scratch scratch;
   const conic_triangle_frame *triangles; /* null: there are none in it */
