@@ -134,7 +134,8 @@ static int measure_line(bench_run *r, cli_bench_line *line, cli_session *worker)
 }
 
 /* The line's frames by one thread, shared out as for `threads`, and the schedule of their tasks. */
-static conic_status simulate(bench_run *r, const cli_bench_line *line, int threads, cli_bench_schedule *schedule) {
+static conic_status simulate_threads(bench_run *r, const cli_bench_line *line, int threads,
+                                     cli_bench_schedule *schedule) {
   cli_bench_trace trace = {.n_rows = 0};
   cli_bench_line planned = *line;
   double start_ms[CONIC_MAX_THREADS];
@@ -160,7 +161,7 @@ static int simulate_line(bench_run *r, cli_bench_line *line) {
     return cli_error(CLI_RESOURCE, "bench: out of memory");
   int exit_code = turn_to(r, line, &r->planner);
   for (int i = 0; i < job->n_simulated && exit_code == CLI_DONE; i++) {
-    exit_code = cli_exit_of(simulate(r, line, job->simulated[i], &line->schedules[i]));
+    exit_code = cli_exit_of(simulate_threads(r, line, job->simulated[i], &line->schedules[i]));
     line->n_schedules++;
   }
   return exit_code;

@@ -6,7 +6,7 @@
 #include "core/base/clock.h"
 
 /* Room for one more. Returns 0 where there is no memory. */
-static int make_room(cli_bench_trace *trace, void **array, size_t wanted, size_t *room, size_t size) {
+static int make_trace_room(cli_bench_trace *trace, void **array, size_t wanted, size_t *room, size_t size) {
   if (trace->is_broken)
     return 0;
   if (wanted <= *room)
@@ -23,10 +23,10 @@ static int make_room(cli_bench_trace *trace, void **array, size_t wanted, size_t
 }
 
 /* What passed since the part before. */
-static void note_part(cli_bench_trace *trace) {
+static void note_trace_part(cli_bench_trace *trace) {
   double now = conic_seconds_now();
   void *seconds = trace->seconds;
-  if (make_room(trace, &seconds, trace->n_seconds + 1, &trace->seconds_room, sizeof *trace->seconds)) {
+  if (make_trace_room(trace, &seconds, trace->n_seconds + 1, &trace->seconds_room, sizeof *trace->seconds)) {
     trace->seconds = seconds;
     trace->seconds[trace->n_seconds++] = now - trace->now;
   }
@@ -40,9 +40,9 @@ void cli_bench_trace_begin(cli_bench_trace *trace) {
 
 void cli_bench_trace_watch(void *cookie, const char *name, size_t n_tasks, size_t n_done) {
   cli_bench_trace *trace = cookie;
-  note_part(trace);
+  note_trace_part(trace);
   void *regions = trace->regions;
-  if (n_done || !make_room(trace, &regions, trace->n_regions + 1, &trace->regions_room, sizeof *trace->regions))
+  if (n_done || !make_trace_room(trace, &regions, trace->n_regions + 1, &trace->regions_room, sizeof *trace->regions))
     return;
   trace->regions = regions;
   trace->regions[trace->n_regions++] = (cli_bench_region){name, n_tasks};
@@ -58,7 +58,7 @@ static int has_last_regions(const cli_bench_trace *trace) {
 
 static void take_regions(cli_bench_trace *trace) {
   void *last = trace->last_regions;
-  if (!make_room(trace, &last, trace->n_regions, &trace->last_regions_room, sizeof *trace->last_regions))
+  if (!make_trace_room(trace, &last, trace->n_regions, &trace->last_regions_room, sizeof *trace->last_regions))
     return;
   trace->last_regions = last;
   if (trace->n_regions)
@@ -69,11 +69,11 @@ static void take_regions(cli_bench_trace *trace) {
 }
 
 void cli_bench_trace_end(cli_bench_trace *trace) {
-  note_part(trace);
+  note_trace_part(trace);
   if (!has_last_regions(trace))
     take_regions(trace);
   void *kept = trace->kept;
-  if (!make_room(trace, &kept, (trace->n_rows + 1) * trace->n_a_row, &trace->kept_room, sizeof *trace->kept))
+  if (!make_trace_room(trace, &kept, (trace->n_rows + 1) * trace->n_a_row, &trace->kept_room, sizeof *trace->kept))
     return;
   trace->kept = kept;
   memcpy(trace->kept + trace->n_rows++ * trace->n_a_row, trace->seconds, trace->n_a_row * sizeof *trace->kept);

@@ -51,7 +51,7 @@ static void do_items(conic_pool *pool, int i_thread) {
   }
 }
 
-static int enter(conic_pool *pool, uint64_t generation) {
+static int enter_region(conic_pool *pool, uint64_t generation) {
   uint64_t door = atomic_load(&pool->door);
   while (door >> GENERATION_SHIFT == generation && !(door & DOOR_CLOSED))
     if (atomic_compare_exchange_weak(&pool->door, &door, door + 1))
@@ -59,7 +59,7 @@ static int enter(conic_pool *pool, uint64_t generation) {
   return 0;
 }
 
-static void leave(conic_pool *pool) {
+static void leave_region(conic_pool *pool) {
   uint64_t before = atomic_fetch_sub(&pool->door, 1);
   if (!(before & DOOR_CLOSED) || (before & DOOR_INSIDE) != 1)
     return;
@@ -93,11 +93,11 @@ static void *run_worker(void *argument) {
   pool_worker *self = argument;
   uint64_t generation = 0;
   while ((generation = wait_for_call(self, generation))) {
-    if (!enter(self->pool, generation))
+    if (!enter_region(self->pool, generation))
       continue;
     call_two(self->pool, self->i_thread, generation);
     do_items(self->pool, self->i_thread);
-    leave(self->pool);
+    leave_region(self->pool);
   }
   return NULL;
 }

@@ -120,7 +120,7 @@ static void test_floor(void) {
 }
 
 /* A trace as if its tasks had taken so many seconds. */
-static cli_bench_trace trace_of(cli_bench_region *regions, size_t n_regions, double *seconds) {
+static cli_bench_trace trace_of_seconds(cli_bench_region *regions, size_t n_regions, double *seconds) {
   return (cli_bench_trace){.last_regions = regions, .n_last_regions = n_regions, .kept = seconds, .n_rows = 1};
 }
 
@@ -129,7 +129,7 @@ static void test_schedule(void) {
   cli_bench_region regions[] = {{"tile_task", 5}, {"sort", 1}, {"tile_task", 2}};
   double seconds[] = {0.25e-3, 2e-3, 1e-3, 1e-3, 1e-3, 5e-3, 0.5e-3, 4e-3, 0.0, 1e-3, 1e-3, 0.25e-3};
   const double at_once[] = {0.0, 0.0, 0.0}, late[] = {0.0, 0.5, 1.0};
-  cli_bench_trace trace = trace_of(regions, 3, seconds);
+  cli_bench_trace trace = trace_of_seconds(regions, 3, seconds);
   cli_bench_schedule schedule;
   const char *region;
   cli_bench_schedule_make(&trace, 3, at_once, &schedule);
