@@ -96,6 +96,69 @@ cli_bench_counters cli_bench_counters_open(void);
 double cli_bench_counter_read(int counter);
 void cli_bench_counters_close(const cli_bench_counters *counters);
 
+/* --- more threads than there are (bench/bench_trace.c, bench_schedule.c) --- */
+
+/* A part of a frame that threads share. Those of the same name are one in a schedule. */
+typedef struct cli_bench_region {
+  const char *name;
+  size_t n_tasks;
+} cli_bench_region;
+
+/* How long each task of frames took that one thread drew, while all was shared out as for more, and what lay between
+ * the regions. Frames that differ in their regions from the last one are forgotten. */
+typedef struct cli_bench_trace {
+  double now;    /* when the part began that is measured */
+  int is_broken; /* there was no memory */
+  cli_bench_region *regions, *last_regions;
+  size_t n_regions, n_last_regions, regions_room, last_regions_room;
+  double *seconds, *kept; /* of each region what was before it and its tasks, and what was after all: a row */
+  size_t n_seconds, seconds_room, n_a_row, n_rows, kept_room;
+} cli_bench_trace;
+
+void cli_bench_trace_begin(cli_bench_trace *trace);
+void cli_bench_trace_end(cli_bench_trace *trace);
+/* A conic_region_watch. */
+void cli_bench_trace_watch(void *trace, const char *name, size_t n_tasks, size_t n_done);
+/* Medians over the frames, the first left out where there are more, in n_a_row places at the beginning of `kept`. */
+conic_status cli_bench_trace_settle(cli_bench_trace *trace);
+void cli_bench_trace_release(cli_bench_trace *trace);
+
+enum { CLI_BENCH_MOST_REGIONS = 12 };
+
+/* Where a schedule loses time against its work shared out evenly. */
+typedef enum cli_bench_loss {
+  CLI_BENCH_LOSS_SERIAL,  /* what one thread does alone */
+  CLI_BENCH_LOSS_STARTS,  /* until the threads have begun */
+  CLI_BENCH_LOSS_LONGEST, /* one task is longer than its share */
+  CLI_BENCH_LOSS_UNEVEN,  /* threads wait at the end of a region: too few tasks */
+  CLI_BENCH_N_LOSSES
+} cli_bench_loss;
+
+typedef struct cli_bench_scheduled {
+  char name[32];
+  size_t n_tasks, n_regions;
+  double work_ms, ms, longest_ms; /* all tasks one after the other; by the threads; the longest task */
+  double lost_ms[CLI_BENCH_N_LOSSES];
+} cli_bench_scheduled;
+
+typedef struct cli_bench_schedule {
+  int threads;
+  double start_ms;                    /* until the last thread has begun a region */
+  double work_ms, serial_ms, ms;      /* by one thread; of that, outside of regions; by all */
+  double lost_ms[CLI_BENCH_N_LOSSES]; /* of the whole frame */
+  int n_regions;
+  cli_bench_scheduled regions[CLI_BENCH_MOST_REGIONS]; /* the last is of all others, where there are more */
+} cli_bench_schedule;
+
+/* When so many threads of this machine begin a region's work, after its call; rising. */
+conic_status cli_bench_starts_measure(int threads, double *start_ms);
+
+/* How a context of so many threads would do a settled trace: tasks in order, each by the first thread that is free. */
+void cli_bench_schedule_make(const cli_bench_trace *trace, int threads, const double *start_ms,
+                             cli_bench_schedule *schedule);
+/* What loses the most, and the region, null where it is none. */
+cli_bench_loss cli_bench_schedule_limit(const cli_bench_schedule *schedule, const char **region);
+
 /* --- one line (bench/bench_frame.c) --- */
 
 enum { CLI_BENCH_MOST_FRAMES = 1000 };
@@ -122,6 +185,9 @@ typedef struct cli_bench_line {
   uint64_t hash[CONIC_N_PLANES];         /* 0 where the plane was not drawn */
   int i_wrong_plane;                     /* the first that differs from the scalar reference; -1: none */
   double old_ms[CLI_BENCH_N_STAGES + 1]; /* of --compare: stages and frame; NaN where it has no such line */
+  cli_bench_trace *trace;                /* null: nobody asks */
+  cli_bench_schedule *schedules;         /* of --simulate-threads; freed by who frees the lines */
+  int n_schedules;
 } cli_bench_line;
 
 /* The pictures of one scene and method. */
@@ -197,6 +263,10 @@ void cli_bench_report_machine(cli_json *json, const cli_bench_machine *machines,
 double cli_bench_floor_ms(const cli_bench_work *work, const cli_bench_machine *machine);
 void cli_bench_print_floor(const cli_bench_line *line, const cli_bench_machine *machine);
 void cli_bench_report_floor(cli_json *json, const cli_bench_line *line, const cli_bench_machine *machine);
+
+/* Nothing where the line has none. */
+void cli_bench_print_schedules(const cli_bench_line *line);
+void cli_bench_report_schedules(cli_json *json, const cli_bench_line *line);
 
 /* The cost of a line's frame over what it is made of. */
 void cli_bench_print_curve(const cli_bench_line *lines, int n_lines);

@@ -23,6 +23,8 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
        "of Gaussian scenes: those of conic render, or all [gsplat-1.6,exact]"},
       {"isa", CLI_TEXT, &job->isa_text, "LIST", "auto, scalar, sse2, avx2, avx512, neon, or all [auto]"},
       {"threads", CLI_TEXT, &job->threads_text, "LIST", "numbers of threads; 0: all that there are [1,0]"},
+      {"simulate-threads", CLI_TEXT, &job->simulated_text, "LIST",
+       "also by a schedule of the tasks that one thread took, what so many would need"},
       {"size", CLI_SIZE, job->size, "WxH", "pixels [1024x1024]", 1, 65535},
       {"camera", CLI_TEXT, &job->look.camera_path, "FILE", "camera of the files, as of conic render [framed]"},
       {"view", CLI_TEXT, &job->look.view, "VIEW", "of --camera: an index from 0, or a name [the only one]"},
@@ -62,6 +64,8 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
     session->json_path = job->publish_path;
   if (exit_code == CLI_DONE && job->n_turns && job->repeat)
     exit_code = cli_usage("bench: --turntable and --repeat both say how many frames");
+  if (exit_code == CLI_DONE && job->simulated_text && (job->n_turns || job->is_kernels))
+    exit_code = cli_usage("bench: --simulate-threads is of frames that are alike, not of --turntable or --kernels");
   if (exit_code == CLI_DONE && job->is_kernels &&
       (job->scenes_text || job->n_files || job->is_curve || job->is_machine || job->is_floor || session->json_path))
     exit_code = cli_usage("bench: --kernels measures and prints nothing else");
@@ -86,6 +90,8 @@ static void print(const cli_session *session, const cli_bench_job *job) {
     cli_bench_print_machine(&job->machines[i]);
   for (int i = 0; i < job->n_lines && job->is_floor; i++)
     cli_bench_print_floor(&job->lines[i], machine_of(job, &job->lines[i]));
+  for (int i = 0; i < job->n_lines; i++)
+    cli_bench_print_schedules(&job->lines[i]);
   if (job->old_path)
     cli_bench_print_comparison(job->old_path, job->lines, job->n_lines);
 }
@@ -171,6 +177,8 @@ static int run_bench(cli_session *session, int argc, char **argv) {
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE && !job->is_kernels)
     exit_code = measure_plan(session, job);
+  for (int i = 0; i < job->n_lines; i++)
+    free(job->lines[i].schedules);
   free(job->lines);
   free(job->files);
   free(job);

@@ -113,7 +113,11 @@ static conic_status draw_one(const bench *b, const conic_camera *camera, conic_i
 static conic_status draw_timed(bench *b, const conic_camera *camera, conic_render_statistics *statistics) {
   double cycles = cli_bench_counter_read(b->counters.cycles), cpu = cli_shell_cpu_seconds();
   double instructions = cli_bench_counter_read(b->counters.instructions);
+  if (b->line->trace)
+    cli_bench_trace_begin(b->line->trace);
   conic_status status = draw_one(b, camera, &b->timed, statistics);
+  if (b->line->trace)
+    cli_bench_trace_end(b->line->trace);
   b->instructions[b->n] = cli_bench_counter_read(b->counters.instructions) - instructions;
   b->cycles[b->n] = cli_bench_counter_read(b->counters.cycles) - cycles;
   b->cpu[b->n] = 1e3 * (cli_shell_cpu_seconds() - cpu);

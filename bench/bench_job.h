@@ -8,7 +8,8 @@ enum { CLI_BENCH_MOST_SCENES = 64, CLI_BENCH_MOST_THREADS = 8 };
 
 typedef struct cli_bench_job {
   /* What was asked for; texts are null where nothing was. */
-  const char *scenes_text, *methods_text, *profiles_text, *isa_text, *threads_text, *errors_text, *old_path;
+  const char *scenes_text, *methods_text, *profiles_text, *isa_text, *threads_text, *simulated_text, *errors_text,
+      *old_path;
   const char **files;
   int n_files;
   cli_bench_look look; /* at the files */
@@ -29,6 +30,7 @@ typedef struct cli_bench_job {
   conic_isa isas[CONIC_N_ISAS];
   int n_isas;
   int threads[CLI_BENCH_MOST_THREADS], n_threads;
+  int simulated[CLI_BENCH_MOST_THREADS], n_simulated; /* numbers of threads */
   cli_bench_line *lines;
   int n_lines;
 

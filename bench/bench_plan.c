@@ -136,14 +136,22 @@ static int take_isa(cli_bench_job *job, const char *word) {
   return cli_usage("bench: unknown instruction set %s; there are auto, all, scalar, sse2, avx2, avx512, neon", word);
 }
 
-static int take_threads(cli_bench_job *job, const char *word) {
+static int take_number_of_threads(const char *option, const char *word, unsigned least, int *numbers, int *n_numbers) {
   unsigned long long n;
-  if (!cli_parse_count(word, &n) || n > 1024)
-    return cli_usage("bench: --threads: %s is no number from 0 to 1024", word);
-  if (job->n_threads == CLI_BENCH_MOST_THREADS)
-    return cli_usage("bench: --threads: over %d numbers", CLI_BENCH_MOST_THREADS);
-  job->threads[job->n_threads++] = (int)n;
+  if (!cli_parse_count(word, &n) || n < least || n > 1024)
+    return cli_usage("bench: --%s: %s is no number from %u to 1024", option, word, least);
+  if (*n_numbers == CLI_BENCH_MOST_THREADS)
+    return cli_usage("bench: --%s: over %d numbers", option, CLI_BENCH_MOST_THREADS);
+  numbers[(*n_numbers)++] = (int)n;
   return CLI_DONE;
+}
+
+static int take_threads(cli_bench_job *job, const char *word) {
+  return take_number_of_threads("threads", word, 0, job->threads, &job->n_threads);
+}
+
+static int take_simulated(cli_bench_job *job, const char *word) {
+  return take_number_of_threads("simulate-threads", word, 2, job->simulated, &job->n_simulated);
 }
 
 static int take_error(cli_bench_job *job, const char *word) {
@@ -282,6 +290,8 @@ static int take_lists(cli_bench_job *job) {
                           : job->is_curve   ? "0"
                                             : "1,0",
                           take_threads);
+  if (exit_code == CLI_DONE && job->simulated_text)
+    exit_code = for_words(job, "simulate-threads", job->simulated_text, take_simulated);
   return exit_code;
 }
 

@@ -129,6 +129,8 @@ void cli_bench_report_line(cli_json *json, const cli_bench_line *line) {
   report_picture(json, line);
   report_times(json, line);
   report_work(json, line);
+  if (line->n_schedules)
+    cli_bench_report_schedules(json, line);
   if (!isnan(line->old_ms[CLI_BENCH_N_STAGES])) {
     cli_json_object(json, "speedup");
     for (int i = 0; i < CLI_BENCH_N_STAGES; i++)

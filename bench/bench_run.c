@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "bench/bench_job.h"
+#include "core/base/context_struct.h"
+#include "core/base/threads.h"
 
 /* What the lines of a run share. */
 typedef struct bench_run {
@@ -11,6 +13,7 @@ typedef struct bench_run {
   cli_bench_counters counters;
   cli_session workers[CLI_BENCH_MOST_THREADS]; /* one a number of threads */
   int n_workers;
+  cli_session planner; /* of --simulate-threads: one thread that plans as for more */
   cli_bench_scene scene;
   cli_session *owner; /* of the scene: what chooses does so with its own threads */
   double error_px;
@@ -18,19 +21,22 @@ typedef struct bench_run {
   cli_bench_pictures pictures;
 } bench_run;
 
+static int open_worker(const bench_run *r, int threads, cli_session *worker) {
+  *worker = *r->session;
+  worker->context = NULL;
+  worker->threads = threads;
+  return cli_session_open(worker);
+}
+
 static int open_workers(bench_run *r) {
   cli_bench_job *job = r->job;
   for (int i = 0; i < job->n_threads; i++) {
-    cli_session *worker = &r->workers[i];
-    *worker = *r->session;
-    worker->context = NULL;
-    worker->threads = job->threads[i];
-    int exit_code = cli_session_open(worker);
+    int exit_code = open_worker(r, job->threads[i], &r->workers[i]);
     if (exit_code != CLI_DONE)
       return exit_code;
     r->n_workers++;
   }
-  return CLI_DONE;
+  return job->n_simulated ? open_worker(r, 1, &r->planner) : CLI_DONE;
 }
 
 /* Numbers of threads that turn out the same (a machine of one) are measured once. */
@@ -98,27 +104,67 @@ static void name_line(const bench_run *r, cli_bench_line *line) {
            line->threads);
 }
 
-static int measure_line(bench_run *r, cli_bench_line *line, cli_session *worker) {
-  const cli_bench_job *job = r->job;
-  cli_bench_patience patience = {3, 21, 1.0};
-  if (job->is_quick)
-    patience = (cli_bench_patience){3, 5, 0.2};
+static cli_bench_patience patience_of(const cli_bench_job *job) {
   if (job->n_turns)
-    patience = (cli_bench_patience){job->n_turns, job->n_turns, 0.0};
-  else if (job->repeat)
-    patience = (cli_bench_patience){job->repeat, job->repeat, 0.0};
-  int exit_code = turn_to(r, line, worker);
-  if (exit_code != CLI_DONE)
-    return exit_code;
-  line->threads = conic_context_threads(worker->context);
-  name_line(r, line);
-  conic_status status = cli_bench_measure(worker, &r->scene, &patience, &r->counters, &r->pictures, line);
+    return (cli_bench_patience){job->n_turns, job->n_turns, 0.0};
+  if (job->repeat)
+    return (cli_bench_patience){job->repeat, job->repeat, 0.0};
+  return job->is_quick ? (cli_bench_patience){3, 5, 0.2} : (cli_bench_patience){3, 21, 1.0};
+}
+
+static conic_status measure_by(bench_run *r, cli_session *worker, const cli_bench_counters *counters,
+                               cli_bench_line *line) {
+  cli_bench_patience patience = patience_of(r->job);
+  conic_status status = cli_bench_measure(worker, &r->scene, &patience, counters, &r->pictures, line);
   if (status == CONIC_OK && line->i_wrong_plane >= 0) {
     r->job->n_wrong++;
     cli_error(CLI_DIFFERENT, "%s: plane %s is not what plain C draws", line->name,
               conic_plane_describe((conic_plane)line->i_wrong_plane)->name);
   }
-  return cli_exit_of(status);
+  return status;
+}
+
+static int measure_line(bench_run *r, cli_bench_line *line, cli_session *worker) {
+  int exit_code = turn_to(r, line, worker);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  line->threads = conic_context_threads(worker->context);
+  name_line(r, line);
+  return cli_exit_of(measure_by(r, worker, &r->counters, line));
+}
+
+/* The line's frames by one thread, shared out as for `threads`, and the schedule of their tasks. */
+static conic_status simulate_threads(bench_run *r, const cli_bench_line *line, int threads,
+                                     cli_bench_schedule *schedule) {
+  cli_bench_trace trace = {.n_rows = 0};
+  cli_bench_line planned = *line;
+  double start_ms[CONIC_MAX_THREADS];
+  planned.trace = &trace;
+  planned.schedules = NULL;
+  conic_parallel_plan(r->planner.context, threads, cli_bench_trace_watch, &trace);
+  conic_status status = cli_bench_starts_measure(threads, start_ms);
+  if (status == CONIC_OK)
+    status = measure_by(r, &r->planner, NULL, &planned);
+  conic_parallel_plan(r->planner.context, 1, NULL, NULL);
+  if (status == CONIC_OK)
+    status = cli_bench_trace_settle(&trace);
+  if (status == CONIC_OK)
+    cli_bench_schedule_make(&trace, threads, start_ms, schedule);
+  cli_bench_trace_release(&trace);
+  return status;
+}
+
+static int simulate_line(bench_run *r, cli_bench_line *line) {
+  const cli_bench_job *job = r->job;
+  line->schedules = calloc((size_t)job->n_simulated, sizeof *line->schedules);
+  if (!line->schedules)
+    return cli_error(CLI_RESOURCE, "bench: out of memory");
+  int exit_code = turn_to(r, line, &r->planner);
+  for (int i = 0; i < job->n_simulated && exit_code == CLI_DONE; i++) {
+    exit_code = cli_exit_of(simulate_threads(r, line, job->simulated[i], &line->schedules[i]));
+    line->n_schedules++;
+  }
+  return exit_code;
 }
 
 /* Which of the workers has the line's threads. */
@@ -143,6 +189,8 @@ static int measure_lines(bench_run *r, int prints) {
       cli_bench_print_head();
     if (prints && exit_code == CLI_DONE)
       cli_bench_print_line(line);
+    if (job->n_simulated && i_worker == 0 && !line->device && exit_code == CLI_DONE)
+      exit_code = simulate_line(r, line);
     n_measured++;
   }
   job->n_lines = n_measured;
@@ -180,6 +228,8 @@ int cli_bench_run(cli_session *session, cli_bench_job *job) {
   cli_bench_scene_release(r->owner, &r->scene);
   for (int i = 0; i < r->n_workers; i++)
     cli_session_close(&r->workers[i]);
+  if (r->planner.context)
+    cli_session_close(&r->planner);
   cli_bench_counters_close(&r->counters);
   free(r);
   return exit_code;

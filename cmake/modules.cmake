@@ -32,3 +32,6 @@ if(TARGET assimp::assimp)
   conic_add_module(assimp assimp::assimp core/assimp/assimp_bridge.c core/assimp/assimp_files_bridge.c
     core/assimp/assimp_materials_bridge.c core/assimp/assimp_settle_bridge.c)
 endif()
+if(CURL_FOUND AND NOT WIN32)
+  conic_add_module(curl CURL::libcurl lod/ranges/curl_bridge.c)
+endif()

@@ -2,32 +2,45 @@
 
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdint.h>
 
 #include "core/base/context_struct.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 
+enum { LINE_BYTES = 64 };
+
+/* Each worker sleeps on a condition of its own: many that wake by one would queue for its mutex. */
 typedef struct pool_worker {
-  conic_pool *pool;
+  _Alignas(LINE_BYTES) conic_pool *pool;
   int i_thread;
   pthread_t thread;
+  pthread_mutex_t mutex;
+  pthread_cond_t work_ready;
+  uint64_t wanted; /* the generation that it is called to */
+  int stop;
 } pool_worker;
 
 struct conic_pool {
   pthread_mutex_t mutex;
-  pthread_cond_t work_ready, work_done;
-  unsigned long generation; /* grows by one with each parallel_for */
-  int stop;
-  int n_busy; /* workers that have not finished the current generation */
-  int n_workers;
+  pthread_cond_t work_done;
+  int n_workers, n_called;   /* of the workers as many as there are items for */
+  conic_region_watch *watch; /* null: nobody */
+  void *watch_cookie;
 
   conic_task *task;
   void *data;
   size_t n_items;
-  atomic_size_t next_item;
+  _Alignas(LINE_BYTES) atomic_size_t next_item;
+  /* Generation, DOOR_CLOSED, and how many workers are in it. Who comes when it is closed stays out, so nobody waits for
+   * those that wake late. */
+  _Alignas(LINE_BYTES) _Atomic(uint64_t) door;
 
   pool_worker workers[];
 };
+
+static const uint64_t DOOR_CLOSED = 1 << 15, DOOR_INSIDE = DOOR_CLOSED - 1;
+enum { GENERATION_SHIFT = 16 };
 
 static void do_items(conic_pool *pool, int i_thread) {
   for (;;) {
@@ -38,25 +51,70 @@ static void do_items(conic_pool *pool, int i_thread) {
   }
 }
 
+static int enter_region(conic_pool *pool, uint64_t generation) {
+  uint64_t door = atomic_load(&pool->door);
+  while (door >> GENERATION_SHIFT == generation && !(door & DOOR_CLOSED))
+    if (atomic_compare_exchange_weak(&pool->door, &door, door + 1))
+      return 1;
+  return 0;
+}
+
+static void leave_region(conic_pool *pool) {
+  uint64_t before = atomic_fetch_sub(&pool->door, 1);
+  if (!(before & DOOR_CLOSED) || (before & DOOR_INSIDE) != 1)
+    return;
+  pthread_mutex_lock(&pool->mutex);
+  pthread_cond_signal(&pool->work_done);
+  pthread_mutex_unlock(&pool->mutex);
+}
+
+/* Each thread wakes two more, so that the last begins after as many steps as the binary logarithm of their number. */
+static void call_two(conic_pool *pool, int i_thread, uint64_t generation) {
+  for (int i = 2 * i_thread; i < 2 * i_thread + 2 && i < pool->n_called; i++) {
+    pool_worker *worker = &pool->workers[i];
+    pthread_mutex_lock(&worker->mutex);
+    worker->wanted = generation;
+    pthread_cond_signal(&worker->work_ready);
+    pthread_mutex_unlock(&worker->mutex);
+  }
+}
+
+/* The next generation that the worker is called to; 0: it is to end. */
+static uint64_t wait_for_call(pool_worker *self, uint64_t seen) {
+  pthread_mutex_lock(&self->mutex);
+  while (!self->stop && self->wanted == seen)
+    pthread_cond_wait(&self->work_ready, &self->mutex);
+  uint64_t generation = self->stop ? 0 : self->wanted;
+  pthread_mutex_unlock(&self->mutex);
+  return generation;
+}
+
 static void *run_worker(void *argument) {
   pool_worker *self = argument;
-  conic_pool *pool = self->pool;
-  unsigned long seen = 0;
-  pthread_mutex_lock(&pool->mutex);
-  for (;;) {
-    while (!pool->stop && pool->generation == seen)
-      pthread_cond_wait(&pool->work_ready, &pool->mutex);
-    if (pool->stop)
-      break;
-    seen = pool->generation;
-    pthread_mutex_unlock(&pool->mutex);
-    do_items(pool, self->i_thread);
-    pthread_mutex_lock(&pool->mutex);
-    if (--pool->n_busy == 0)
-      pthread_cond_signal(&pool->work_done);
+  uint64_t generation = 0;
+  while ((generation = wait_for_call(self, generation))) {
+    if (!enter_region(self->pool, generation))
+      continue;
+    call_two(self->pool, self->i_thread, generation);
+    do_items(self->pool, self->i_thread);
+    leave_region(self->pool);
   }
-  pthread_mutex_unlock(&pool->mutex);
   return NULL;
+}
+
+static int start_worker(conic_pool *pool) {
+  pool_worker *next = &pool->workers[pool->n_workers];
+  next->pool = pool;
+  next->i_thread = pool->n_workers + 1;
+  pthread_mutex_init(&next->mutex, NULL);
+  pthread_cond_init(&next->work_ready, NULL);
+  if (pthread_create(&next->thread, NULL, run_worker, next) == 0) {
+    pool->n_workers++;
+    return 1;
+  }
+  pthread_cond_destroy(&next->work_ready);
+  pthread_mutex_destroy(&next->mutex);
+  return 0;
 }
 
 conic_status conic_pool_create(conic_context *context, conic_pool **pool) {
@@ -66,55 +124,74 @@ conic_status conic_pool_create(conic_context *context, conic_pool **pool) {
   if (!made)
     return CONIC_ERROR_MEMORY;
   pthread_mutex_init(&made->mutex, NULL);
-  pthread_cond_init(&made->work_ready, NULL);
   pthread_cond_init(&made->work_done, NULL);
-  while (made->n_workers < n_wanted) {
-    pool_worker *next = &made->workers[made->n_workers];
-    next->pool = made;
-    next->i_thread = made->n_workers + 1;
-    if (pthread_create(&next->thread, NULL, run_worker, next) != 0)
-      break;
-    made->n_workers++;
-  }
+  while (made->n_workers < n_wanted && start_worker(made))
+    ;
   context->options.threads = made->n_workers + 1; /* those that there are */
   *pool = made;
   return CONIC_OK;
 }
 
+static void end_worker(pool_worker *worker) {
+  pthread_mutex_lock(&worker->mutex);
+  worker->stop = 1;
+  pthread_cond_signal(&worker->work_ready);
+  pthread_mutex_unlock(&worker->mutex);
+}
+
 void conic_pool_destroy(conic_context *context, conic_pool *pool) {
   if (!pool)
     return;
-  pthread_mutex_lock(&pool->mutex);
-  pool->stop = 1;
-  pthread_cond_broadcast(&pool->work_ready);
-  pthread_mutex_unlock(&pool->mutex);
   for (int i = 0; i < pool->n_workers; i++)
+    end_worker(&pool->workers[i]);
+  for (int i = 0; i < pool->n_workers; i++) {
     pthread_join(pool->workers[i].thread, NULL);
+    pthread_cond_destroy(&pool->workers[i].work_ready);
+    pthread_mutex_destroy(&pool->workers[i].mutex);
+  }
   pthread_cond_destroy(&pool->work_done);
-  pthread_cond_destroy(&pool->work_ready);
   pthread_mutex_destroy(&pool->mutex);
   conic_memory_release(context, pool);
 }
 
-void conic_parallel_for(conic_context *context, size_t n_items, conic_task *task, void *data) {
+static void tell_watch(const conic_pool *pool, const char *name, size_t n_items, size_t n_done) {
+  if (pool->watch && n_items)
+    pool->watch(pool->watch_cookie, name, n_items, n_done);
+}
+
+static void do_items_alone(const conic_pool *pool, const char *name, size_t n_items, conic_task *task, void *data) {
+  tell_watch(pool, name, n_items, 0);
+  for (size_t i_item = 0; i_item < n_items; i_item++) {
+    task(data, i_item, 0);
+    tell_watch(pool, name, n_items, i_item + 1);
+  }
+}
+
+void conic_parallel_plan(conic_context *context, int threads, conic_region_watch *watch, void *cookie) {
+  context->options.threads = threads;
+  context->pool->watch = watch;
+  context->pool->watch_cookie = cookie;
+}
+
+void conic_parallel_region(conic_context *context, const char *name, size_t n_items, conic_task *task, void *data) {
   conic_pool *pool = context->pool;
   if (n_items <= 1 || pool->n_workers == 0) {
-    for (size_t i_item = 0; i_item < n_items; i_item++)
-      task(data, i_item, 0);
+    do_items_alone(pool, name, n_items, task, data);
     return;
   }
-  pthread_mutex_lock(&pool->mutex);
+  uint64_t generation = (atomic_load(&pool->door) >> GENERATION_SHIFT) + 1;
   pool->task = task;
   pool->data = data;
   pool->n_items = n_items;
+  pool->n_called = n_items - 1 < (size_t)pool->n_workers ? (int)(n_items - 1) : pool->n_workers;
   atomic_store_explicit(&pool->next_item, 0, memory_order_relaxed);
-  pool->n_busy = pool->n_workers;
-  pool->generation++;
-  pthread_cond_broadcast(&pool->work_ready);
-  pthread_mutex_unlock(&pool->mutex);
+  atomic_store(&pool->door, generation << GENERATION_SHIFT);
+  call_two(pool, 0, generation);
   do_items(pool, 0);
+  if (!(atomic_fetch_or(&pool->door, DOOR_CLOSED) & DOOR_INSIDE))
+    return;
   pthread_mutex_lock(&pool->mutex);
-  while (pool->n_busy)
+  while (atomic_load(&pool->door) & DOOR_INSIDE)
     pthread_cond_wait(&pool->work_done, &pool->mutex);
   pthread_mutex_unlock(&pool->mutex);
 }
@@ -138,7 +215,7 @@ conic_status conic_parallel_runs(conic_context *context, const char *name, doubl
     conic_status status = conic_progress(context, name, from + (to - from) * ((double)now.first / (double)n_items));
     if (status != CONIC_OK)
       return status;
-    conic_parallel_for(context, n_left < n_a_run ? n_left : n_a_run, do_item_of_run, &now);
+    conic_parallel_region(context, name, n_left < n_a_run ? n_left : n_a_run, do_item_of_run, &now);
   }
   return CONIC_OK;
 }
@@ -181,6 +258,6 @@ conic_status conic_parallel_told(conic_context *context, const char *name, doubl
                .task = task,
                .data = data,
                .status = CONIC_OK};
-  conic_parallel_for(context, n_items, do_told_item, &t);
+  conic_parallel_region(context, name, n_items, do_told_item, &t);
   return t.status;
 }

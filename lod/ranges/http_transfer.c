@@ -143,32 +143,33 @@ static size_t on_body(char *data, size_t one, size_t n, void *cookie) {
 
 int conic_http_transfer_set_up(conic_http_ranges *http, conic_http_transfer *t) {
   const conic_ranges_options *o = &http->options;
-  CURL *easy = t->easy = curl_easy_init();
+  CURL *easy = t->easy = http->curl->easy_init();
   t->owner = http;
   if (!easy)
     return 0;
-  int failed = curl_easy_setopt(easy, CURLOPT_URL, http->url) != CURLE_OK;
+  CURLcode (*set)(CURL *, CURLoption, ...) = http->curl->easy_setopt;
+  int failed = set(easy, CURLOPT_URL, http->url) != CURLE_OK;
 #if LIBCURL_VERSION_NUM >= 0x075500
-  failed |= curl_easy_setopt(easy, CURLOPT_PROTOCOLS_STR, "http,https") != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_REDIR_PROTOCOLS_STR, "http,https") != CURLE_OK;
+  failed |= set(easy, CURLOPT_PROTOCOLS_STR, "http,https") != CURLE_OK;
+  failed |= set(easy, CURLOPT_REDIR_PROTOCOLS_STR, "http,https") != CURLE_OK;
 #else
-  failed |= curl_easy_setopt(easy, CURLOPT_PROTOCOLS, CURLPROTO_HTTP | CURLPROTO_HTTPS) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_REDIR_PROTOCOLS, CURLPROTO_HTTP | CURLPROTO_HTTPS) != CURLE_OK;
+  failed |= set(easy, CURLOPT_PROTOCOLS, CURLPROTO_HTTP | CURLPROTO_HTTPS) != CURLE_OK;
+  failed |= set(easy, CURLOPT_REDIR_PROTOCOLS, CURLPROTO_HTTP | CURLPROTO_HTTPS) != CURLE_OK;
 #endif
 #if LIBCURL_VERSION_NUM >= 0x075700 /* else giving up waits for a name server that does not answer */
-  failed |= curl_easy_setopt(easy, CURLOPT_QUICK_EXIT, 1L) != CURLE_OK;
+  failed |= set(easy, CURLOPT_QUICK_EXIT, 1L) != CURLE_OK;
 #endif
-  failed |= curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_1_1) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, 1L) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_MAXREDIRS, (long)MOST_REDIRECTS) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, (long)(1e3 * o->connect_seconds)) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_HEADERFUNCTION, on_header) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_HEADERDATA, t) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_WRITEFUNCTION, on_body) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_WRITEDATA, t) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_ERRORBUFFER, t->words) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_PRIVATE, t) != CURLE_OK;
+  failed |= set(easy, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_1_1) != CURLE_OK;
+  failed |= set(easy, CURLOPT_NOSIGNAL, 1L) != CURLE_OK;
+  failed |= set(easy, CURLOPT_FOLLOWLOCATION, 1L) != CURLE_OK;
+  failed |= set(easy, CURLOPT_MAXREDIRS, (long)MOST_REDIRECTS) != CURLE_OK;
+  failed |= set(easy, CURLOPT_CONNECTTIMEOUT_MS, (long)(1e3 * o->connect_seconds)) != CURLE_OK;
+  failed |= set(easy, CURLOPT_HEADERFUNCTION, on_header) != CURLE_OK;
+  failed |= set(easy, CURLOPT_HEADERDATA, t) != CURLE_OK;
+  failed |= set(easy, CURLOPT_WRITEFUNCTION, on_body) != CURLE_OK;
+  failed |= set(easy, CURLOPT_WRITEDATA, t) != CURLE_OK;
+  failed |= set(easy, CURLOPT_ERRORBUFFER, t->words) != CURLE_OK;
+  failed |= set(easy, CURLOPT_PRIVATE, t) != CURLE_OK;
   return !failed;
 }
 
@@ -184,9 +185,9 @@ conic_status conic_http_transfer_begin(conic_http_transfer *t) {
   t->is_whole = 0;
   snprintf(range, sizeof range, "%llu-%llu", (unsigned long long)t->offset,
            (unsigned long long)(t->offset + t->n_expected - 1));
-  if (curl_easy_setopt(t->easy, CURLOPT_RANGE, t->is_beside ? NULL : range) != CURLE_OK ||
-      curl_easy_setopt(t->easy, CURLOPT_URL, t->is_beside ? t->own_url : http->url) != CURLE_OK ||
-      curl_multi_add_handle(http->multi, t->easy) != CURLM_OK) {
+  if (http->curl->easy_setopt(t->easy, CURLOPT_RANGE, t->is_beside ? NULL : range) != CURLE_OK ||
+      http->curl->easy_setopt(t->easy, CURLOPT_URL, t->is_beside ? t->own_url : http->url) != CURLE_OK ||
+      http->curl->multi_add_handle(http->multi, t->easy) != CURLM_OK) {
     conic_http_let_go(http, t->body);
     t->body = NULL;
     return CONIC_ERROR_MEMORY;
@@ -200,7 +201,7 @@ conic_status conic_http_transfer_begin(conic_http_transfer *t) {
 void conic_http_transfer_end(conic_http_transfer *t) {
   if (!t->is_busy)
     return;
-  curl_multi_remove_handle(t->owner->multi, t->easy);
+  t->owner->curl->multi_remove_handle(t->owner->multi, t->easy);
   conic_http_let_go(t->owner, t->body);
   t->body = NULL;
   t->is_busy = 0;
@@ -230,7 +231,7 @@ static int refuse_code(conic_http_transfer *t, CURLcode code) {
   if (code == CURLE_UNSUPPORTED_PROTOCOL && !redirects)
     return refuse_answer(t, CONIC_HTTP_WRONG,
                          "the server sends what is no answer, or more than it said in the one before");
-  if (curl_easy_getinfo(t->easy, CURLINFO_OS_ERRNO, &system_error) != CURLE_OK)
+  if (t->owner->curl->easy_getinfo(t->easy, CURLINFO_OS_ERRNO, &system_error) != CURLE_OK)
     system_error = 0;
   int is_lasting = code == CURLE_TOO_MANY_REDIRECTS || code == CURLE_UNSUPPORTED_PROTOCOL ||
                    code == CURLE_URL_MALFORMAT || code == CURLE_PEER_FAILED_VERIFICATION;
@@ -240,7 +241,7 @@ static int refuse_code(conic_http_transfer *t, CURLcode code) {
                        is_lasting ? CONIC_HTTP_LASTING
                        : is_wrong ? CONIC_HTTP_WRONG
                                   : CONIC_HTTP_SILENCE,
-                       t->words[0] ? t->words : curl_easy_strerror(code));
+                       t->words[0] ? t->words : t->owner->curl->easy_strerror(code));
 }
 
 int conic_http_transfer_is_complete(conic_http_transfer *t, CURLcode code) {

@@ -4,10 +4,10 @@
 
 #ifdef CONIC_HAVE_CURL
 
-#include <curl/curl.h>
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "lod/ranges/curl_bridge.h"
 #include "lod/ranges/http_response.h"
 #include "lod/ranges/ranges_backend.h"
 
@@ -61,6 +61,7 @@ typedef struct conic_http_ranges {
   conic_ranges base;
   conic_ranges_options options;
   char *url;
+  const conic_curl_bridge_functions *curl;
   CURLM *multi;
   int is_global; /* curl_global_init was called */
   conic_http_transfer transfers[CONIC_HTTP_CONNECTIONS];

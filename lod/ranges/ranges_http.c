@@ -19,6 +19,7 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
+#include "core/base/module.h"
 #include "lod/ranges/http_transfer.h"
 
 enum {
@@ -163,11 +164,12 @@ static void send_requests(conic_http_ranges *http, double *wait_s) {
 static void take_finished(conic_http_ranges *http) {
   CURLMsg *message;
   int n_left, n_running;
-  curl_multi_perform(http->multi, &n_running);
-  while ((message = curl_multi_info_read(http->multi, &n_left))) {
+  http->curl->multi_perform(http->multi, &n_running);
+  while ((message = http->curl->multi_info_read(http->multi, &n_left))) {
     char *cookie = NULL;
     CURLcode code = message->data.result;
-    if (message->msg == CURLMSG_DONE && curl_easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, &cookie) == CURLE_OK)
+    if (message->msg == CURLMSG_DONE &&
+        http->curl->easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, &cookie) == CURLE_OK)
       finish_transfer((conic_http_transfer *)(void *)cookie, code);
   }
   for (int i = 0; i < http->options.n_connections; i++)
@@ -219,7 +221,7 @@ static int next(conic_ranges *ranges, double wait_seconds, conic_range_answer *a
     if (!(left > 0.0) || is_idle(http))
       return 0;
     left = left < 0.1 ? left : 0.1;
-    curl_multi_poll(http->multi, NULL, 0, 1 + (int)(1e3 * left), NULL);
+    http->curl->multi_poll(http->multi, NULL, 0, 1 + (int)(1e3 * left), NULL);
   }
 }
 
@@ -242,14 +244,14 @@ static void close_url(conic_ranges *ranges) {
   cancel(ranges);
   for (int i = 0; i < CONIC_HTTP_CONNECTIONS; i++) {
     if (http->transfers[i].easy)
-      curl_easy_cleanup(http->transfers[i].easy);
+      http->curl->easy_cleanup(http->transfers[i].easy);
     conic_memory_release(context, http->transfers[i].parts);
     conic_memory_release(context, http->transfers[i].own_url);
   }
   if (http->multi)
-    curl_multi_cleanup(http->multi);
+    http->curl->multi_cleanup(http->multi);
   if (http->is_global)
-    curl_global_cleanup();
+    http->curl->global_cleanup();
   conic_http_let_go(http, http->head);
   conic_memory_release(context, http->ready);
   conic_memory_release(context, http->url);
@@ -263,7 +265,7 @@ static void *pump_transfers(void *data) {
     send_requests(http, &wait_s);
     take_finished(http);
     if (!is_idle(http))
-      curl_multi_poll(http->multi, NULL, 0, 20, NULL);
+      http->curl->multi_poll(http->multi, NULL, 0, 20, NULL);
   }
   return NULL;
 }
@@ -278,7 +280,7 @@ static void halt(conic_ranges *ranges) {
   conic_http_ranges *http = (conic_http_ranges *)ranges;
   atomic_store(&http->is_to_halt, 1);
 #if LIBCURL_VERSION_NUM >= 0x074400
-  curl_multi_wakeup(http->multi);
+  http->curl->multi_wakeup(http->multi);
 #endif
   pthread_join(http->pump, NULL);
 }
@@ -294,7 +296,7 @@ static conic_status go_on_opening(conic_http_ranges *http, int wait_ms) {
   if (!(left > 0.0))
     return conic_fail(http->base.context, CONIC_ERROR_IO, "%s: cannot read: nothing came in time", http->url);
   wait_ms = left < 1e-3 * wait_ms ? 1 + (int)(1e3 * left) : wait_ms;
-  curl_multi_poll(http->multi, NULL, 0, wait_ms, NULL);
+  http->curl->multi_poll(http->multi, NULL, 0, wait_ms, NULL);
   return CONIC_OK;
 }
 
@@ -310,8 +312,8 @@ static conic_status probe(conic_http_ranges *http, conic_http_transfer *t, int *
   for (;;) {
     CURLMsg *message;
     int n_running = 0, n_left;
-    curl_multi_perform(http->multi, &n_running);
-    message = curl_multi_info_read(http->multi, &n_left);
+    http->curl->multi_perform(http->multi, &n_running);
+    message = http->curl->multi_info_read(http->multi, &n_left);
     if (message && message->msg == CURLMSG_DONE) {
       *is_good = conic_http_transfer_is_complete(t, message->data.result);
       status = CONIC_OK;
@@ -356,6 +358,19 @@ static conic_status look_at_file(conic_http_ranges *http) {
   return conic_fail(http->base.context, conic_http_fates[t->fault].status, "%s: cannot read: %s", http->url, t->reason);
 }
 
+#ifdef _WIN32 /* where nothing is loaded late */
+extern const conic_curl_bridge_functions conic_curl_bridge;
+
+static const conic_curl_bridge_functions *load_curl(char message[CONIC_MODULE_MESSAGE]) {
+  message[0] = 0;
+  return &conic_curl_bridge;
+}
+#else
+static const conic_curl_bridge_functions *load_curl(char message[CONIC_MODULE_MESSAGE]) {
+  return conic_module_load("conic-curl.so", "conic_curl_bridge", message);
+}
+#endif
+
 static conic_status start(conic_http_ranges *http, const char *url) {
   conic_context *context = http->base.context;
   size_t length = strlen(url) + 1;
@@ -363,8 +378,12 @@ static conic_status start(conic_http_ranges *http, const char *url) {
   if (!http->url)
     return CONIC_ERROR_MEMORY;
   memcpy(http->url, url, length);
-  http->is_global = curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK;
-  http->multi = http->is_global ? curl_multi_init() : NULL;
+  char message[CONIC_MODULE_MESSAGE];
+  http->curl = load_curl(message);
+  if (!http->curl)
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: libcurl cannot be loaded: %s", url, message);
+  http->is_global = http->curl->global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK;
+  http->multi = http->is_global ? http->curl->multi_init() : NULL;
   int is_up = http->multi != NULL;
   for (int i = 0; i < http->options.n_connections && is_up; i++)
     is_up = conic_http_transfer_set_up(http, &http->transfers[i]);

@@ -56,6 +56,15 @@ grep -q '"frames": 5,' turned.json || fail "not a frame a view"
 run 0 bench solid.chy --repeat 1 --threads 1 --size 64x48 --json still.json
 [[ $(grep '"rgba": "' turned.json) == "$(grep '"rgba": "' still.json)" ]] || fail "the turntable does not begin where it stands"
 
+# More threads than there are: the first line of a scene has their schedules, of the tasks that they would have
+run 0 bench --scenes sphere-30k --threads 1,2 --simulate-threads 2,40 "${small[@]}" --json simulated.json
+has '^| 40 | frame |'
+[[ $(grep -c '"schedules"' simulated.json) -eq 1 && $(grep -c '"identical": true' simulated.json) -eq 2 ]] ||
+  fail "not one list of schedules"
+[[ $(grep -A4 '"name": "project"' simulated.json | grep -c '"tasks": 15,') -eq 2 ]] || fail "not 15 chunks of 2048"
+run 2 bench --scenes sphere-2k --simulate-threads 1
+run 2 bench --scenes sphere-2k --simulate-threads 4 --turntable 5
+
 # Comparing with an earlier run
 run 0 bench --scenes sphere-2k,plane-500 --isa scalar --threads 1 "${small[@]}" --compare old.json --json new.json
 has '^times as fast as old.json'

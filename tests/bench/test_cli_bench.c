@@ -1,6 +1,7 @@
 /* The inside of conic bench: medians, the comparison of pictures, lines that are measured, the model of their work. */
 #include "bench/bench.h"
 #include "cli/command.h"
+#include "core/base/threads.h"
 #include "tests/support/check.h"
 
 const cli_command *cli_find_command(const char *name) {
@@ -118,6 +119,93 @@ static void test_floor(void) {
   CHECK_NEAR(cli_bench_floor_ms(&computes, &machine), 3000.0, 1e-9);
 }
 
+/* A trace as if its tasks had taken so many seconds. */
+static cli_bench_trace trace_of_seconds(cli_bench_region *regions, size_t n_regions, double *seconds) {
+  return (cli_bench_trace){.last_regions = regions, .n_last_regions = n_regions, .kept = seconds, .n_rows = 1};
+}
+
+/* Three threads, of which the last begins after 1 ms, do 2, 1, 1, 1, 5 ms and then one task alone. */
+static void test_schedule(void) {
+  cli_bench_region regions[] = {{"tile_task", 5}, {"sort", 1}, {"tile_task", 2}};
+  double seconds[] = {0.25e-3, 2e-3, 1e-3, 1e-3, 1e-3, 5e-3, 0.5e-3, 4e-3, 0.0, 1e-3, 1e-3, 0.25e-3};
+  const double at_once[] = {0.0, 0.0, 0.0}, late[] = {0.0, 0.5, 1.0};
+  cli_bench_trace trace = trace_of_seconds(regions, 3, seconds);
+  cli_bench_schedule schedule;
+  const char *region;
+  cli_bench_schedule_make(&trace, 3, at_once, &schedule);
+  CHECK(schedule.n_regions == 2 && schedule.threads == 3 && schedule.start_ms == 0.0);
+  CHECK(strcmp(schedule.regions[0].name, "tile") == 0 && strcmp(schedule.regions[1].name, "sort") == 0);
+  CHECK(schedule.regions[0].n_tasks == 7 && schedule.regions[0].n_regions == 2);
+  CHECK_NEAR(schedule.serial_ms, 1.0, 1e-12);
+  CHECK_NEAR(schedule.work_ms, 17.0, 1e-12);
+  CHECK_NEAR(schedule.regions[0].ms, 6.0 + 1.0, 1e-12); /* 1 and then 5; 1 */
+  CHECK_NEAR(schedule.regions[0].longest_ms, 5.0, 1e-12);
+  CHECK_NEAR(schedule.ms, 1.0 + 4.0 + 7.0, 1e-12);
+  CHECK_NEAR(schedule.lost_ms[CLI_BENCH_LOSS_STARTS], 0.0, 1e-12);
+  CHECK_NEAR(schedule.lost_ms[CLI_BENCH_LOSS_SERIAL], 1.0 - 1.0 / 3.0, 1e-12);
+  CHECK(cli_bench_schedule_limit(&schedule, &region) == CLI_BENCH_LOSS_LONGEST && strcmp(region, "sort") == 0);
+  cli_bench_schedule_make(&trace, 3, late, &schedule);
+  CHECK_NEAR(schedule.regions[0].ms, 7.0 + 1.5, 1e-12); /* 0 to 2, and 5; 0.5 to 1.5 */
+  CHECK_NEAR(schedule.lost_ms[CLI_BENCH_LOSS_STARTS], 1.5, 1e-12);
+  CHECK(schedule.start_ms == 1.0);
+}
+
+/* Medians over the frames that are as the last, without the first of them. */
+static void test_trace(void) {
+  cli_bench_trace trace;
+  memset(&trace, 0, sizeof trace);
+  CHECK(cli_bench_trace_settle(&trace) == CONIC_ERROR_MEMORY);
+  for (int frame = 0; frame < 5; frame++) {
+    size_t n_tasks = frame ? 3 : 4;
+    cli_bench_trace_begin(&trace);
+    for (size_t n_done = 0; n_done <= n_tasks; n_done++)
+      cli_bench_trace_watch(&trace, "tile_task", n_tasks, n_done);
+    cli_bench_trace_end(&trace);
+  }
+  CHECK(trace.n_rows == 4 && trace.n_a_row == 5 && trace.n_last_regions == 1 && trace.last_regions[0].n_tasks == 3);
+  for (size_t row = 0; row < 4; row++)
+    for (size_t i = 0; i < 5; i++)
+      trace.kept[row * 5 + i] = (double)(row == 0 ? 100 : row * (i + 1));
+  CHECK_OK(cli_bench_trace_settle(&trace));
+  CHECK(trace.n_rows == 1 && trace.kept[0] == 2.0 && trace.kept[4] == 10.0);
+  cli_bench_trace_release(&trace);
+}
+
+/* A frame that is shared out as for sixteen has more chunks and is the same picture; its tasks add up to it. */
+static void test_simulation(cli_session *session) {
+  const cli_bench_patience patience = {3, 3, 0.0};
+  cli_bench_scene scene;
+  cli_session planner = {.command = "bench", .threads = 1};
+  cli_bench_pictures pictures = {.timed_planes = 1u << CONIC_PLANE_RGBA};
+  cli_bench_trace trace;
+  cli_bench_schedule schedule;
+  cli_bench_line line = line_of(0, 200);
+  double start_ms[16];
+  memset(&trace, 0, sizeof trace);
+  CHECK(cli_session_open(&planner) == CLI_DONE);
+  CHECK(cli_bench_scene_open(session, "sphere-200k", NULL, &scene) == CLI_DONE);
+  CHECK_OK(conic_image_allocate(session->context, line.width, line.height, 1u, &pictures.reference));
+  CHECK_OK(conic_image_allocate(session->context, line.width, line.height, 1u, &pictures.drawn));
+  CHECK_OK(cli_bench_refer(session, &scene, &line, &pictures.reference));
+  line.trace = &trace;
+  conic_parallel_plan(planner.context, 16, cli_bench_trace_watch, &trace);
+  CHECK_OK(cli_bench_measure(&planner, &scene, &patience, NULL, &pictures, &line));
+  CHECK(line.i_wrong_plane == -1);
+  CHECK_OK(cli_bench_trace_settle(&trace));
+  CHECK_OK(cli_bench_starts_measure(16, start_ms));
+  CHECK(start_ms[0] >= 0.0 && start_ms[15] >= start_ms[0]);
+  cli_bench_schedule_make(&trace, 16, start_ms, &schedule);
+  CHECK(schedule.n_regions == 2 && strcmp(schedule.regions[0].name, "project") == 0);
+  CHECK(schedule.regions[0].n_tasks == (200000 + 2047) / 2048 && schedule.regions[1].n_tasks == 4 * 3);
+  CHECK(schedule.serial_ms > 0.0 && schedule.work_ms > schedule.serial_ms + schedule.regions[0].work_ms);
+  CHECK(schedule.ms > schedule.regions[1].longest_ms);
+  cli_bench_trace_release(&trace);
+  conic_image_release(session->context, &pictures.reference);
+  conic_image_release(session->context, &pictures.drawn);
+  cli_bench_scene_release(session, &scene);
+  cli_session_close(&planner);
+}
+
 int main(void) {
   cli_session session = {.command = "bench", .threads = 2};
   if (cli_session_open(&session) != CLI_DONE)
@@ -135,6 +223,9 @@ int main(void) {
   test_work();
   test_gaussian_work(&session);
   test_floor();
+  test_schedule();
+  test_trace();
+  test_simulation(&session);
   cli_session_close(&session);
   return check_result();
 }

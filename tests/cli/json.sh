@@ -188,6 +188,7 @@ write chart chart chart -o chart --quick --only representations
 write bench-old bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5
 cp runs/bench-old.json old.json
 write bench bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5 --floor --compare old.json
+write bench-simulated bench bench --scenes sphere-20k --size 256x256 --threads 1 --repeat 3 --simulate-threads 2,40
 write bench-chosen bench bench knot.cot --error 2 --size 64x48 --threads 1 --repeat 1
 write info info_model info knot.ply --check
 write info-mesh info_model info triangle.obj
