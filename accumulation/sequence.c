@@ -31,9 +31,9 @@ static const sobol_dimension dimensions[CONIC_N_SEQUENCE_DIMENSIONS] = {
     {5, 7, {1, 1, 7, 11, 19}},      /* 10 */
     {6, 13, {1, 1, 1, 15, 21, 21}}, /* 15 */
     {5, 11, {1, 1, 5, 1, 1}},       /* 11 */
-    {5, 13, {1, 1, 1, 3, 11}},      /* 12 */
-    {5, 14, {1, 3, 5, 5, 31}},      /* 13 */
     {6, 1, {1, 3, 3, 9, 7, 49}},    /* 14 */
+    {5, 14, {1, 3, 5, 5, 31}},      /* 13 */
+    {5, 13, {1, 1, 1, 3, 11}},      /* 12 */
 };
 
 /* The sum of the direction numbers that the bits of an index select, by Sobol's recurrence. */
