@@ -59,10 +59,10 @@ static int is_enough(const conic_accumulate_options *options, const conic_accumu
   return noise >= 0.0 && noise <= options->noise;
 }
 
-static conic_status add_samples(conic_context *context, const conic_accumulate_options *options,
-                                conic_accumulation *sums, conic_image *image) {
-  double start = conic_seconds_now();
+static conic_status add_missing_samples(conic_context *context, const conic_accumulate_options *options,
+                                        conic_accumulation *sums, conic_image *image) {
   conic_status status = settle_key(context, options, sums, image);
+  double start = conic_seconds_now();
   while (status == CONIC_OK && !is_enough(options, sums, start)) {
     uint64_t index = sums->first_sample + sums->n_samples;
     status = conic_progress(context, "accumulate", (double)index / (double)options->end_sample);
@@ -87,7 +87,7 @@ conic_status conic_accumulate(conic_context *context, const conic_accumulate_opt
   conic_status status =
       conic_image_allocate(context, sums->width, sums->height, sums->planes | options.sample_planes, &image);
   if (status == CONIC_OK)
-    status = add_samples(context, &options, sums, &image);
+    status = add_missing_samples(context, &options, sums, &image);
   conic_image_release(context, &image);
   return status;
 }

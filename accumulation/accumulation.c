@@ -93,7 +93,7 @@ typedef struct adding {
   int is_half;
 } adding;
 
-static void add_row(void *data, size_t y, int i_thread) {
+static void add_sample_row(void *data, size_t y, int i_thread) {
   const adding *work = data;
   const conic_accumulation *a = work->sums;
   size_t width = (size_t)a->width, first = 0;
@@ -126,7 +126,7 @@ conic_status conic_accumulation_add(conic_accumulation *sums, const conic_image 
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "accumulation: there are %u samples already, which is all",
                       CONIC_MAX_ACCUMULATED);
   adding work = {sums, sample, is_in_half(i_sample)};
-  conic_parallel_for(context, (size_t)sums->height, add_row, &work);
+  conic_parallel_for(context, (size_t)sums->height, add_sample_row, &work);
   sums->n_samples++;
   sums->n_half += (uint64_t)work.is_half;
   return CONIC_OK;

@@ -100,7 +100,7 @@ static void quaternion_of(const double m[3][4], double q[4]) {
     q[0] = scale * differences[largest - 1];
 }
 
-static void rotation_of(const double q[4], double m[3][4]) {
+static void rows_of_quaternion(const double q[4], double m[3][4]) {
   double w = q[0], x = q[1], y = q[2], z = q[3];
   const double rows[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
                              {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
@@ -109,7 +109,7 @@ static void rotation_of(const double q[4], double m[3][4]) {
     memcpy(m[row], rows[row], sizeof rows[row]);
 }
 
-static void eye_of(const conic_camera *camera, double eye[3]) {
+static void eye_of_camera(const conic_camera *camera, double eye[3]) {
   for (int axis = 0; axis < 3; axis++) {
     eye[axis] = 0.0;
     for (int row = 0; row < 3; row++)
@@ -139,14 +139,14 @@ conic_status conic_camera_between(conic_context *context, const conic_camera *fr
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "camera: there is no single way between opposite directions");
   for (int i = 0; i < 4; i++)
     q[i] /= sqrt(square);
-  eye_of(from, eyes[0]);
-  eye_of(to, eyes[1]);
+  eye_of_camera(from, eyes[0]);
+  eye_of_camera(to, eyes[1]);
   conic_camera between = *from;
   if (part == 0.0 || part == 1.0) { /* to the bit */
     *camera = part == 0.0 ? *from : *to;
     return CONIC_OK;
   }
-  rotation_of(q, between.cam_from_world);
+  rows_of_quaternion(q, between.cam_from_world);
   for (int axis = 0; axis < 3; axis++)
     eye[axis] = on_the_way(eyes[0][axis], eyes[1][axis], part);
   for (int row = 0; row < 3; row++) {

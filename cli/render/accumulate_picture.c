@@ -124,7 +124,7 @@ conic_status cli_accumulate_camera(cli_session *session, cli_render_job *job, in
 
 /* --- focus --- */
 
-static int compare_depths(const void *a, const void *b) {
+static int compare_focus_depths(const void *a, const void *b) {
   float first = *(const float *)a, second = *(const float *)b;
   return (first > second) - (first < second);
 }
@@ -144,7 +144,7 @@ static conic_status depth_at(cli_session *session, const conic_image *image, con
   for (size_t i = 0; i < n; i++)
     if (z[i] > 0.0f)
       covered[n_covered++] = z[i];
-  qsort(covered, n_covered, sizeof *covered, compare_depths);
+  qsort(covered, n_covered, sizeof *covered, compare_focus_depths);
   *depth = n_covered ? (double)covered[n_covered / 2] : 1.0;
   free(covered);
   cli_note(session, "focus: nothing is at this pixel; the median depth, %g", *depth);
@@ -164,7 +164,7 @@ static conic_status find_focus(cli_session *session, cli_render_job *job, const 
 
 /* --- the samples --- */
 
-static conic_status draw_source(void *cookie, const conic_sample *sample, conic_image *image) {
+static conic_status draw_source_sample(void *cookie, const conic_sample *sample, conic_image *image) {
   accumulating *work = cookie;
   cli_render_job *job = work->job;
   conic_render_statistics statistics;
@@ -249,7 +249,7 @@ static conic_status begin_sums(accumulating *work, conic_accumulation **sums) {
   return CONIC_ERROR_INPUT;
 }
 
-static conic_status add_samples(accumulating *work, conic_accumulation *sums) {
+static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
   const cli_accumulate_job *own = &work->job->accumulating;
   conic_accumulate_options options;
   conic_accumulate_options_init(&options);
@@ -260,7 +260,7 @@ static conic_status add_samples(accumulating *work, conic_accumulation *sums) {
   options.noise = own->noise;
   options.cookie = work;
   options.camera_at = own->is_shutter_given ? camera_on_way : NULL;
-  options.draw = draw_source;
+  options.draw = draw_source_sample;
   options.watch = watch_sums;
   return conic_accumulate(work->session->context, &options, sums);
 }
@@ -282,7 +282,7 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
   if (status == CONIC_OK)
     status = begin_sums(&work, &sums);
   if (status == CONIC_OK)
-    status = add_samples(&work, sums);
+    status = run_samples(&work, sums);
   if (status == CONIC_OK)
     status = show_sums(&work, sums);
   if (status == CONIC_OK)

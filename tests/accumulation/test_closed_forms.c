@@ -101,13 +101,13 @@ static double motion_blur(double inside_px, double length_px) {
 }
 
 /* Its mean over a pixel. */
-static double blurred_pixel(edge_blur *blur, double size_px, double tilt, int x, int y) {
+static double blurred_pixel(edge_blur *blur, double size_px, double tilt, double steepness, int x, int y) {
   enum { N = 64 };
   double sum = 0.0;
   for (int j = 0; j < N; j++)
     for (int i = 0; i < N; i++) {
       double px = x + (i + 0.5) / N - 24.0, py = y + (j + 0.5) / N - 12.0;
-      sum += blur(px - tilt * py, size_px);
+      sum += blur((px - tilt * py) * steepness, size_px);
     }
   return sum / (N * N);
 }
@@ -142,8 +142,10 @@ static errors edge_errors(const conic_aperture *aperture, double speed, float ti
   conic_image image = accumulate_stage(&s, aperture, n_samples, &noise);
   for (int y = 0; y < HEIGHT; y++)
     for (int x = 0; x < WIDTH; x++) {
-      double in_motion = speed != 0.0 ? blurred_pixel(motion_blur, length_px, (double)tilt, x, y) : 0.0;
-      truth[y * WIDTH + x] = speed != 0.0 ? in_motion : blurred_pixel(lens_blur, wide_px, (double)tilt, x, y);
+      double in_motion = speed != 0.0 ? blurred_pixel(motion_blur, length_px, (double)tilt, 1.0, x, y) : 0.0;
+      truth[y * WIDTH + x] =
+          speed != 0.0 ? in_motion
+                       : blurred_pixel(lens_blur, wide_px, (double)tilt, 1.0 / sqrt(1.0 + (double)(tilt * tilt)), x, y);
     }
   errors e = errors_of(&image, truth);
   fprintf(stderr, "%s tilt %g, %llu samples: largest %.2e, rms %.2e, noise %.2e\n", speed != 0.0 ? "motion" : "lens",
@@ -172,7 +174,9 @@ static errors point_errors(uint64_t n_samples) {
   CHECK_OK(conic_splats_allocate(s.context, 1, CONIC_SPLATS_TANGENTS, &s.splats));
   s.options.method = CONIC_METHOD_DISC;
   s.options.kernel.type = CONIC_KERNEL_BOX;
+  s.splats.position[0][0] = s.splats.position[1][0] = 0.0f;
   s.splats.position[2][0] = 2.0f;
+  s.splats.tangent_u[1][0] = s.splats.tangent_u[2][0] = s.splats.tangent_v[0][0] = s.splats.tangent_v[2][0] = 0.0f;
   s.splats.tangent_u[0][0] = s.splats.tangent_v[1][0] = (float)(radius_px / 1.5 / 100.0 * 2.0);
   conic_image image = accumulate_stage(&s, &wide, n_samples, &noise);
   for (int p = 0; p < WIDTH * HEIGHT; p++) {
@@ -191,14 +195,20 @@ static errors point_errors(uint64_t n_samples) {
   return e;
 }
 
+/* With 64 times as many samples, errors are 64^-0.65 of what they were, and small. Edges in three and four dimensions
+ * cannot do better than N^-2/3 and N^-5/8 (docs/reference/accumulation.md). */
+static void check_errors(errors few, errors many) {
+  CHECK(many.rms <= few.rms * pow(64.0, -0.65));
+  CHECK(many.rms <= 2.5e-3 && many.largest <= 1e-2);
+}
+
 int main(void) {
   static const conic_aperture pinhole = {0};
-  for (uint64_t n = 16; n <= N_SAMPLES; n *= 4) {
-    edge_errors(&wide, 0.0, 0.0f, n);
-    edge_errors(&wide, 0.0, 0.3f, n);
-    edge_errors(&pinhole, -0.25, 0.0f, n);
-    edge_errors(&pinhole, -0.25, 0.3f, n);
-    point_errors(n);
+  for (int i = 0; i < 2; i++) {
+    float tilt = i ? 0.3f : 0.0f;
+    check_errors(edge_errors(&wide, 0.0, tilt, N_SAMPLES / 64), edge_errors(&wide, 0.0, tilt, N_SAMPLES));
+    check_errors(edge_errors(&pinhole, -0.25, tilt, N_SAMPLES / 64), edge_errors(&pinhole, -0.25, tilt, N_SAMPLES));
   }
+  check_errors(point_errors(N_SAMPLES / 64), point_errors(N_SAMPLES));
   return check_result();
 }

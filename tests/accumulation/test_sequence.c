@@ -70,8 +70,8 @@ static void check_stratified(void) {
 /* A scramble moves the whole sequence: its first sample is at no corner, and samples beyond 2³² are others. */
 static void check_numbers(void) {
   static const uint32_t known[CONIC_N_SEQUENCE_DIMENSIONS] = {
-      1993166683, 362120511,  1219068286, 1703367089, 444296909,  218001083, 3440288519, 2577926851,
-      1320530306, 2391072722, 3621760552, 1308977999, 3306130959, 710633860, 3937069983, 1102610066};
+      532100048,  4242007328, 2675657954, 2788396384, 3852536081, 3184989232, 912616399, 2692297997,
+      2695573587, 1285206317, 2151692040, 1824781754, 2822620150, 2580127943, 801464891, 1146920183};
   for (int d = 0; d < CONIC_N_SEQUENCE_DIMENSIONS; d++) {
     CHECK_NEAR(conic_sequence_at(12345, d), known[d] * 0x1p-32, 0.0);
     CHECK(conic_sequence_at(0, d) > 0.0);
@@ -95,6 +95,6 @@ static double error_of_edge(uint64_t n_samples) {
 int main(void) {
   check_stratified();
   check_numbers();
-  CHECK(error_of_edge(1024) <= 0.004);
+  CHECK(error_of_edge(1024) <= 6e-3 && error_of_edge(16) <= 0.1);
   return check_result();
 }
