@@ -124,6 +124,7 @@ static void test_exact(void) {
   CHECK_NEAR(conic_exact_value(sum), -1000.0 * small, 0.0);
   conic_exact_add(&sum, NAN);
   conic_exact_add(&sum, 1e30);
+  CHECK_NEAR(conic_exact_value(sum), large, 1e-4);
   conic_exact_add(&sum, -(double)INFINITY);
   CHECK_NEAR(conic_exact_value(sum), -1000.0 * small, 0.0);
 }
