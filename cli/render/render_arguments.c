@@ -94,6 +94,8 @@ static int check_outputs(const cli_session *session, cli_render_job *job, const 
   answer = check_streaming(job, is_given);
   if (answer == CLI_DONE && job->top.is_wanted)
     answer = cli_top_check(session, job);
+  if (answer == CLI_DONE)
+    answer = cli_accumulate_check(job);
   if (answer == CLI_DONE && job->has_mattes)
     answer = cli_mattes_check(job);
   if (answer == CLI_DONE && !job->top.is_wanted)
@@ -141,6 +143,37 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP",
        "only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from 0 [all]",
        .parse = cli_parse_frames},
+      {"accumulate", CLI_COUNT, &job->accumulating.n_samples, "N",
+       "the mean of N whole pictures, each with its own place in the pixel, point on the lens and moment [none: drawn "
+       "at once]",
+       1, CONIC_MAX_ACCUMULATED, .group = "final pictures (--accumulate)"},
+      {"time", CLI_NUMBER, &job->accumulating.seconds, "S", "no sample is begun after S seconds [no limit]", 1e-3, 1e9,
+       .is_given = &job->accumulating.is_given},
+      {"noise", CLI_NUMBER, &job->accumulating.noise, "E",
+       "16, 32, 64 … samples are enough when their two halves say that the picture is E from its end, in luminance "
+       "[none]",
+       1e-9, 1e9, .is_given = &job->accumulating.is_given},
+      {"preview", CLI_NUMBER, &job->accumulating.preview_seconds, "S",
+       "write the picture as it is every S seconds, too [only at the end]", 1e-3, 1e9,
+       .is_given = &job->accumulating.is_given},
+      {"resumable", CLI_FLAG, &job->accumulating.is_resumable, NULL,
+       "keep the sums beside the first OUT, as OUT.sums, so that --resume can go on",
+       .is_given = &job->accumulating.is_given},
+      {"resume", CLI_TEXT, &job->accumulating.resume_path, "PICTURE",
+       "go on with the samples of PICTURE.sums, to the bit as if it had never stopped",
+       .is_given = &job->accumulating.is_given},
+      {"aperture", CLI_NUMBER, &job->accumulating.aperture, "D",
+       "the diameter of the lens, in world units; what is out of focus blurs [0: a pinhole]", 0, 1e29,
+       .is_given = &job->accumulating.is_given},
+      {"focus", CLI_PARSED, &job->accumulating.focus, "Z",
+       "the depth at which all is sharp; X,Y: what is at that pixel; auto: what is in the picture's middle [auto]",
+       .parse = cli_parse_focus, .is_given = &job->accumulating.is_given},
+      {"blades", CLI_INT, &job->accumulating.n_blades, "N", "the corners of the lens; 0: it is round [0]", 0,
+       CONIC_MAX_BLADES, .is_given = &job->accumulating.is_given},
+      {"shutter", CLI_PARSED, job->accumulating.shutter, "A:B",
+       "open from A to B, in frames from the one drawn, along a --turntable or the cameras of a file: 0:0.5 blurs "
+       "half the way to the next [closed]",
+       .parse = cli_parse_shutter, .is_given = &job->accumulating.is_shutter_given},
       {"gsd", CLI_NUMBER, &job->top.gsd, "G",
        "of --camera top: a pixel's edge on the ground, in the unit of the points [their typical distance]", 1e-12, 1e12,
        .is_given = &job->top.is_given, .group = "maps (--camera top)"},

@@ -52,7 +52,7 @@ static void name_attribute(conic_image *image, const char *name, const char *tex
 }
 
 /* What the picture says of itself in its header. */
-static void describe(const cli_render_job *job, const conic_camera *camera, conic_image *image) {
+void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, conic_image *image) {
   const conic_render_statistics *s = &job->statistics;
   image->n_attributes = 0;
   name_attribute(image, "conicVersion", conic_version(), 0);
@@ -75,10 +75,11 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   matrix->type = CONIC_ATTRIBUTE_MATRIX;
   memcpy(matrix->values, camera->cam_from_world, sizeof camera->cam_from_world);
   matrix->values[15] = 1.0;
+  cli_accumulate_describe(job, image);
   conic_image_describe_camera(image, camera);
 }
 
-static conic_status write_frame(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
+conic_status cli_frame_write(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
   double start = cli_seconds();
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
@@ -215,13 +216,14 @@ static conic_status find_doubts(cli_session *session, const cli_render_job *job,
 }
 
 /* Fragments are counted once, and where somebody asks for them: what is hidden needs no look otherwise. */
-static conic_status render_repeats(cli_session *session, cli_render_job *job, const conic_camera *camera,
+static conic_status render_repeats(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
                                    conic_image *image, conic_render_statistics *repeats) {
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++) {
     job->options.skip_hidden = i > 0 || !session->json_path;
-    status = job->progressive_path ? cli_render_levels(session, job, camera, image, &repeats[i])
-                                   : cli_render_picture(job, camera, image, &repeats[i]);
+    status = job->accumulating.n_samples ? cli_accumulate_picture(session, job, i_frame, camera, image, &repeats[i])
+             : job->progressive_path     ? cli_render_levels(session, job, camera, image, &repeats[i])
+                                         : cli_render_picture(job, camera, image, &repeats[i]);
     repeats[i].fragments = repeats[0].fragments;
   }
   return status;
@@ -231,7 +233,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
                                  conic_render_statistics *repeats) {
   conic_camera camera;
   double start = cli_seconds();
-  conic_status status = cli_scene_camera(job, i_frame, &camera);
+  conic_status status = cli_accumulate_camera(session, job, i_frame, &camera);
   job->last_camera = camera;
   job->camera_ms += 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)
@@ -241,7 +243,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   if (status == CONIC_OK && !conic_image_planes(image))
     status = cli_host_allocate_image(session, camera.width, camera.height, job->planes, image);
   if (status == CONIC_OK)
-    status = render_repeats(session, job, &camera, image, repeats);
+    status = render_repeats(session, job, i_frame, &camera, image, repeats);
   if (status != CONIC_OK)
     return status;
   for (int i = 0; i < job->repeat; i++)
@@ -254,14 +256,14 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   take_medians(job, repeats, (size_t)job->repeat);
   warn_of_empty(session, job);
   warn_of_error(session, job);
-  describe(job, &camera, image);
+  cli_frame_describe(job, &camera, image);
   if (job->has_mattes)
     status = cli_mattes_fill(session, job, &camera, image);
   if (status != CONIC_OK)
     return status;
   status = cli_legend_show(session, job, image);
   if (status == CONIC_OK)
-    status = write_frame(session, job, image, i_frame);
+    status = cli_frame_write(session, job, image, i_frame);
   if (status == CONIC_OK)
     status = write_overdraw(session, job, image, i_frame);
   if (status == CONIC_OK)

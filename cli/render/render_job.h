@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/device_option.h"
 #include "cli/json_write.h"
+#include "cli/render/accumulate_job.h"
 #include "cli/render/top_job.h"
 #include "core/pictures/cryptomatte.h"
 
@@ -62,15 +63,16 @@ typedef struct cli_render_job {
   int is_error_warned; /* that --error is not kept */
   int repeat;
   unsigned planes; /* bits 1 << conic_plane */
-  int is_aov_given, is_samples_given;
-  unsigned asked_planes;        /* of these, what --aov names */
-  unsigned unwritten_planes;    /* drawn for what else is written */
-  conic_image_options writing;  /* how pictures are written */
-  int is_patch;                 /* --method patch: options.method draws its samples */
-  int is_exposure_automatic;    /* until it is found */
-  conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
-  cli_length epsilon, near_z;   /* below 0: automatic */
-  cli_device device;            /* what draws: */
+  int is_aov_given, is_samples_given, is_prefilter_given;
+  cli_accumulate_job accumulating; /* --accumulate */
+  unsigned asked_planes;           /* of these, what --aov names */
+  unsigned unwritten_planes;       /* drawn for what else is written */
+  conic_image_options writing;     /* how pictures are written */
+  int is_patch;                    /* --method patch: options.method draws its samples */
+  int is_exposure_automatic;       /* until it is found */
+  conic_render_options options;    /* but for the two lengths, which the scene has to be known for: */
+  cli_length epsilon, near_z;      /* below 0: automatic */
+  cli_device device;               /* what draws: */
   conic_renderer *renderer;
   unsigned long long budget; /* the view's */
   double deadline;           /* seconds; 0: none */
@@ -143,6 +145,10 @@ conic_status cli_planes_check_formats(cli_session *session, const cli_render_job
  */
 conic_status cli_planes_write(cli_session *session, const cli_render_job *job, const char *path,
                               const conic_image *drawn);
+
+/* Says in a picture's header what it is, and writes it to all outputs. */
+void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, conic_image *image);
+conic_status cli_frame_write(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame);
 
 /* --exposure auto: finds it where it is still to be found, for this frame and those that follow. */
 conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, const conic_camera *camera);

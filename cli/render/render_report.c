@@ -153,6 +153,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_count(json, "threads", (uint64_t)s->threads);
   cli_json_count(json, "tile", (uint64_t)s->tile);
   cli_json_count(json, "samples", (uint64_t)job->view.samples);
+  cli_accumulate_report(json, job);
   cli_json_number(json, "exposure", job->options.exposure);
   cli_json_text(json, "epsilon_mode", s->epsilon_is_fixed ? "fixed" : "auto");
   cli_json_number(json, "epsilon", s->epsilon);

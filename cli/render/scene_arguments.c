@@ -84,7 +84,8 @@ static void choose_quality(const cli_scene_words *raw, cli_render_job *job, int 
   int is_wanted = raw->is_quality_given || !job->is_plain;
   if (is_wanted && !raw->is_method_given)
     *method = raw->quality == CLI_QUALITY_DRAFT ? CONIC_METHOD_CONIC : CONIC_METHOD_AUTO;
-  if (is_wanted && !raw->is_samples_given && (raw->is_quality_given || is_picture(raw, job)))
+  if (is_wanted && !raw->is_samples_given && !job->accumulating.n_samples &&
+      (raw->is_quality_given || is_picture(raw, job)))
     job->view.samples = samples[raw->quality];
 }
 
@@ -253,6 +254,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   o->shading = (conic_shading)shading;
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;
+  job->is_prefilter_given = raw.is_prefilter_given;
   o->passes = raw.passes;
   o->isa = session->isa = (conic_isa)raw.isa;
   job->view.budget = job->budget;

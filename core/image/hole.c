@@ -14,7 +14,7 @@ static int is_covered(const conic_image *image, conic_plane plane, size_t i) {
     return value[0] < 1.0f;
   if (plane == CONIC_PLANE_ID || plane == CONIC_PLANE_CLUSTER || plane == CONIC_PLANE_LAST)
     return ((const uint32_t *)image->planes[plane])[i] != CONIC_NO_ID;
-  if (plane == CONIC_PLANE_COUNT || plane == CONIC_PLANE_DOUBT)
+  if (plane == CONIC_PLANE_COUNT || plane == CONIC_PLANE_DOUBT || plane == CONIC_PLANE_SAMPLES)
     return ((const uint32_t *)image->planes[plane])[i] != 0;
   for (size_t c = 0; c < n_channels; c++)
     if (value[c] != 0.0f)
@@ -29,7 +29,8 @@ static int covering_plane(const conic_image *a, const conic_image *b) {
       CONIC_PLANE_COUNT,        CONIC_PLANE_NORMAL,   CONIC_PLANE_ALBEDO,    CONIC_PLANE_CLUSTER,
       CONIC_PLANE_POSITION,     CONIC_PLANE_MATTE_0,  CONIC_PLANE_MATTE_1,   CONIC_PLANE_MATTE_2,
       CONIC_PLANE_TRANSPARENCY, CONIC_PLANE_MEDIAN_Z, CONIC_PLANE_INVERSE_Z, CONIC_PLANE_LAST,
-      CONIC_PLANE_DOUBT};
+      CONIC_PLANE_DOUBT,        CONIC_PLANE_AO,       CONIC_PLANE_SHADOW,    CONIC_PLANE_SAMPLES,
+      CONIC_PLANE_VARIANCE};
   for (size_t i = 0; i < sizeof order / sizeof order[0]; i++)
     if (a->planes[order[i]] && b->planes[order[i]])
       return (int)order[i];

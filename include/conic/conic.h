@@ -17,6 +17,7 @@
 #ifndef CONIC_CONIC_H
 #define CONIC_CONIC_H
 
+#include "conic/accumulate.h"
 #include "conic/camera.h"
 #include "conic/cameras.h"
 #include "conic/coloring.h"

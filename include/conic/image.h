@@ -36,7 +36,12 @@ typedef enum conic_plane {
   CONIC_PLANE_LAST = 15,         /* 1 uint32: the last Gaussian composited, 0xFFFFFFFF where nothing is */
   CONIC_PLANE_DOUBT = 16,        /* 1 uint32: how many decisions rounding may take either way;
                                     conic_gaussian_find_doubts' */
-  CONIC_N_PLANES = 17
+  CONIC_PLANE_AO = 17,     /* 1 float: the part of the light from all around that nothing hides; conic_image_light's */
+  CONIC_PLANE_SHADOW = 18, /* 1 float: the part of the lights' power that nothing hides; likewise */
+  CONIC_PLANE_SAMPLES =
+      19, /* 1 uint32: how many samples were accumulated; this and the next are conic/accumulate.h's */
+  CONIC_PLANE_VARIANCE = 20, /* 1 float: of the luminance's mean, by the difference of two halves of the samples */
+  CONIC_N_PLANES = 21
 } conic_plane;
 
 /* The planes that drawing fills: the first ones; and as bits. */

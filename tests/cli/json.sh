@@ -58,6 +58,7 @@ declare -A wanted=(
   [mls-densify]="$builder flat"
   [render]="$render methods.conic"
   [render-octree]="$render methods.conic primitives.inner_nodes primitives.leaves error_px error_px_asked?"
+  [render-accumulated]="$render accumulated.samples accumulated.resumed accumulated.noise? accumulated.focus?"
   [render-odd]="$render skipped.nan? skipped.zero? skipped.duplicate? skipped.isolated? skipped.failed?"
   [render-steep]="$render methods.conic methods.laplace"
   [render-mesh]="$render primitives.triangles triangles_in triangles_culled triangles_skipped triangles_drawn
@@ -121,6 +122,7 @@ write mls-spheres mls_project mls project thin.ply -o clean.ply --type apss
 write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 10k
 write mls-densify mls_densify mls densify thinner.ply -o dense.ply --spacing 0.7x
 write render render render knot.ply -o knot.exr --aov all --size 512x512
+write render-accumulated render render knot.ply -o accumulated.exr --accumulate 4 --aperture 0.1 --size 64x64
 write render-octree render_octree render knot.cot -o lod.exr --error 2 --size 512x512
 write render-mesh render_mesh render triangle.obj --as mesh --size 256x256 -o triangle.exr
 write render-patches render_patches render thin.ply -o patches.exr --method patch --zoom 4 --size 256x256

@@ -1,5 +1,6 @@
 /* Writes the seeds of every fuzz target: FOLDER/TARGET/NAME. */
 #include "tests/support/seeds.h"
+#include "conic/accumulate.h"
 #include "tests/support/suite_example.h"
 
 static void write_seed(const char *folder, const seed *from) {
@@ -27,6 +28,27 @@ static void write_packed_seed(const char *folder, const seed *from) {
     }
 }
 
+/* Sums of two samples of nothing. */
+static void seeds_sums(seed_set *set, conic_context *context) {
+  unsigned char bytes[4096];
+  conic_accumulation *sums;
+  conic_image image;
+  const char *path = files_path("seed.sums");
+  CHECK_OK(conic_image_allocate(context, 3, 2, 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_NORMAL, &image));
+  CHECK_OK(conic_accumulation_create(context, 3, 2, conic_image_planes(&image), 0, &sums));
+  for (int i = 0; i < 2; i++)
+    CHECK_OK(conic_accumulation_add(sums, &image));
+  CHECK_OK(conic_accumulation_write(sums, path));
+  FILE *file = fopen(path, "rb");
+  size_t n = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+  if (file)
+    fclose(file);
+  unlink(path);
+  seeds_add(set, "sums", "sums", 1, bytes, n);
+  conic_accumulation_destroy(sums);
+  conic_image_release(context, &image);
+}
+
 int main(int argc, char **argv) {
   if (argc != 2) {
     fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
@@ -38,6 +60,7 @@ int main(int argc, char **argv) {
   seeds_all_records(set);
   seeds_all_hierarchies(set);
   seeds_all_references(set);
+  seeds_sums(set, context);
   seeds_text(set, "suite", "json", SUITE_EXAMPLE);
   seeds_text(set, "filter", "lists", "classification = 2, 9 and not (intensity < 100 or z > 50)");
   seeds_text(set, "filter", "chain", "x >= -1.5e3 and y <= .5 or return_number != 1, 2, 3 and user_data = 7");

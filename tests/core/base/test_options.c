@@ -134,6 +134,9 @@ static void init_view(void *o, size_t size) {
 static void init_patches(void *o, size_t size) {
   conic_patches_options_init_sized(o, size);
 }
+static void init_accumulate(void *o, size_t size) {
+  conic_accumulate_options_init_sized(o, size);
+}
 static void init_coloring(void *o, size_t size) {
   conic_coloring_options_init_sized(o, size);
 }
@@ -170,6 +173,7 @@ static const struct {
            {init_densify, sizeof(conic_densify_options)},
            {init_patches, sizeof(conic_patches_options)},
            {init_source, sizeof(conic_source_options)},
+           {init_accumulate, sizeof(conic_accumulate_options)},
            {init_coloring, sizeof(conic_coloring_options)},
            {init_gaussian, sizeof(conic_gaussian_options)},
            {init_gaussians_read, sizeof(conic_gaussians_read_options)},
@@ -266,6 +270,9 @@ static void test_other_structs_keep_their_size(void) {
       PINNED(conic_model, 416),
       PINNED(conic_image, 6608),
       PINNED(conic_drawing, 48),
+      PINNED(conic_sample, 328),
+      PINNED(conic_aperture, 56),
+      PINNED(conic_accumulation_facts, 72),
       PINNED(conic_selection, 432),
       PINNED(conic_hybrid_selection, 760),
       PINNED(conic_patch_selection, 432),

@@ -209,7 +209,7 @@ static conic_image text_image(conic_context *context, conic_plane plane, const c
   for (int i = 0; i < width * height; i++)
     if (plane == CONIC_PLANE_ID || plane == CONIC_PLANE_CLUSTER || plane == CONIC_PLANE_LAST)
       ((uint32_t *)image.planes[plane])[i] = text[i] == '#' ? 0 : CONIC_NO_ID;
-    else if (plane == CONIC_PLANE_COUNT || plane == CONIC_PLANE_DOUBT)
+    else if (plane == CONIC_PLANE_COUNT || plane == CONIC_PLANE_DOUBT || plane == CONIC_PLANE_SAMPLES)
       ((uint32_t *)image.planes[plane])[i] = text[i] == '#';
     else if (plane == CONIC_PLANE_TRANSPARENCY)
       ((float *)image.planes[plane])[i] = text[i] == '#' ? 0.5f : 1.0f;

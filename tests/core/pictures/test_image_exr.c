@@ -148,9 +148,10 @@ static void test_attributes(conic_context *context) {
 
 /* The channels stand in the header in the order of their names, with the types 0 (UINT) and 2 (FLOAT). */
 static void test_channels(conic_context *context) {
-  static const char *const names[] = {"A",     "B",     "G",  "N.X",      "N.Y",      "N.Z",      "P.X",      "P.Y",
-                                      "P.Z",   "R",     "T",  "Z",        "albedo.B", "albedo.G", "albedo.R", "cluster",
-                                      "count", "doubt", "id", "inverseZ", "last",     "medianZ",  "weight"};
+  static const char *const names[] = {"A",        "B",       "G",       "N.X",    "N.Y",      "N.Z",      "P.X",
+                                      "P.Y",      "P.Z",     "R",       "T",      "Z",        "albedo.B", "albedo.G",
+                                      "albedo.R", "ao",      "cluster", "count",  "doubt",    "id",       "inverseZ",
+                                      "last",     "medianZ", "samples", "shadow", "variance", "weight"};
   conic_image image = random_image(context, 3, 3, EVERY_PLANE & ~CONIC_MATTE_PLANES);
   size_t n_bytes;
   CHECK_OK(conic_image_write(context, in_folder("a.exr"), &image));
@@ -161,7 +162,7 @@ static void test_channels(conic_context *context) {
   for (size_t i = 0; at && i < sizeof names / sizeof names[0]; i++) {
     CHECK(strcmp((const char *)at, names[i]) == 0);
     at += strlen((const char *)at) + 1;
-    CHECK(*at == ((i >= 15 && i <= 18) || i == 20 ? 0 : 2));
+    CHECK(*at == ((i >= 16 && i <= 19) || i == 21 || i == 23 ? 0 : 2));
     at += 16;
   }
   CHECK(at && *at == 0);

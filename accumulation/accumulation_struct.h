@@ -1,0 +1,22 @@
+/* What the sums of a run of samples are. */
+#ifndef CONIC_ACCUMULATION_STRUCT_H
+#define CONIC_ACCUMULATION_STRUCT_H
+
+#include "accumulation/exact_sum.h"
+#include "conic/accumulate.h"
+
+struct conic_accumulation {
+  conic_context *context;
+  int width, height;
+  unsigned planes;
+  size_t n_channels;     /* of all planes, and that of the half */
+  conic_exact_sum *sums; /* a row after the other, in it pixel by pixel, in it channel by channel */
+  uint64_t first_sample, n_samples;
+  uint64_t n_half; /* of these, those that are in the half */
+  uint64_t key;
+};
+
+/* The place of a plane's first channel in a pixel's sums; the half's luminance is the last channel. */
+size_t conic_accumulation_channel(unsigned planes, conic_plane plane);
+
+#endif

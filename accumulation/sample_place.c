@@ -1,0 +1,164 @@
+/* Where a sample looks from: its place in the pixel and on the lens, and a camera on its way. */
+#include <math.h>
+#include <string.h>
+
+#include "accumulation/sequence.h"
+#include "conic/accumulate.h"
+#include "core/base/message.h"
+#include "core/base/trigonometry.h"
+#include "core/image/view_arguments.h"
+
+double conic_sample_time(uint64_t index) {
+  return conic_sequence_at(index, CONIC_SEQUENCE_SHUTTER);
+}
+
+/* The unit disc, by squares about its centre that become circles, which keeps areas and what is near (Shirley and Chiu,
+ * "A low distortion map between disk and square", 1997). */
+static void point_on_disc(double u, double v, double point[2]) {
+  double x = 2.0 * u - 1.0, y = 2.0 * v - 1.0;
+  int is_flat = fabs(x) > fabs(y);
+  double radius = is_flat ? x : y, other = is_flat ? y : x;
+  double angle = radius == 0.0 ? 0.0 : CONIC_PI / 4.0 * (other / radius);
+  double along = radius * conic_cos(angle), across = radius * conic_sin(angle);
+  point[0] = is_flat ? along : across;
+  point[1] = is_flat ? across : along;
+}
+
+/* The polygon whose corners are on the unit circle, the first at the top: a triangle about its centre for each side,
+ * in each of which areas are kept. */
+static void point_on_polygon(int n_corners, double u, double v, double point[2]) {
+  int corner = (int)(u * n_corners);
+  double part = u * n_corners - corner, radius = sqrt(v), step = 2.0 * CONIC_PI / n_corners;
+  double first = step * corner, second = step * (corner + 1);
+  point[0] = radius * ((1.0 - part) * conic_sin(first) + part * conic_sin(second));
+  point[1] = -radius * ((1.0 - part) * conic_cos(first) + part * conic_cos(second));
+}
+
+static conic_status check_aperture(conic_context *context, const conic_camera *camera, const conic_aperture *aperture) {
+  if (!(aperture->diameter >= 0.0 && aperture->diameter < 1e30) || aperture->n_blades < 0 ||
+      aperture->n_blades > CONIC_MAX_BLADES || aperture->n_blades == 1 || aperture->n_blades == 2)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "lens: a diameter below 0, or a number of blades that is none");
+  if (aperture->diameter == 0.0)
+    return CONIC_OK;
+  if (!(aperture->focus > 0.0 && aperture->focus < 1e30))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "lens: the focus is to be in front of the camera");
+  return conic_view_pinhole_check(context, "lens", camera);
+}
+
+conic_status conic_sample_place(conic_context *context, const conic_camera *camera, const conic_aperture *aperture,
+                                uint64_t index, conic_sample *sample) {
+  static const conic_aperture pinhole = {0};
+  const conic_aperture *lens = aperture ? aperture : &pinhole;
+  if (!sample || !camera || index >= CONIC_MAX_ACCUMULATED)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "sample: no camera, or there is no such sample");
+  conic_status status = check_aperture(context, camera, lens);
+  if (status != CONIC_OK)
+    return status;
+  memset(sample, 0, sizeof *sample);
+  sample->index = index;
+  sample->time = conic_sample_time(index);
+  sample->camera = *camera;
+  sample->camera.cx += 0.5 - conic_sequence_at(index, CONIC_SEQUENCE_PIXEL);
+  sample->camera.cy += 0.5 - conic_sequence_at(index, CONIC_SEQUENCE_PIXEL + 1);
+  if (lens->diameter == 0.0)
+    return CONIC_OK;
+  double point[2], u = conic_sequence_at(index, CONIC_SEQUENCE_LENS),
+                   v = conic_sequence_at(index, CONIC_SEQUENCE_LENS + 1);
+  if (lens->n_blades)
+    point_on_polygon(lens->n_blades, u, v, point);
+  else
+    point_on_disc(u, v, point);
+  for (int axis = 0; axis < 2; axis++) {
+    sample->lens[axis] = 0.5 * lens->diameter * point[axis];
+    sample->camera.cam_from_world[axis][3] -= sample->lens[axis];
+  }
+  sample->camera.cx += camera->fx * (sample->lens[0] / lens->focus);
+  sample->camera.cy += camera->fy * (sample->lens[1] / lens->focus);
+  return CONIC_OK;
+}
+
+/* --- on the way --- */
+
+/* Of a rotation's rows; w, x, y, z, by the largest of the four, so that nothing small is divided by (Shepperd 1978). */
+static void quaternion_of(const double m[3][4], double q[4]) {
+  double squares[4] = {m[0][0] + m[1][1] + m[2][2], m[0][0] - m[1][1] - m[2][2], m[1][1] - m[0][0] - m[2][2],
+                       m[2][2] - m[0][0] - m[1][1]};
+  int largest = 0;
+  for (int i = 1; i < 4; i++)
+    largest = squares[i] > squares[largest] ? i : largest;
+  double root = sqrt(1.0 + squares[largest]), scale = 0.5 / root;
+  const double sums[3] = {m[1][2] + m[2][1], m[2][0] + m[0][2], m[0][1] + m[1][0]};
+  const double differences[3] = {m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]};
+  q[largest] = 0.5 * root;
+  for (int i = 0; i < 3; i++) {
+    if (largest == 0)
+      q[1 + i] = scale * differences[i];
+    else if (1 + i != largest)
+      q[1 + i] = scale * sums[3 - i - (largest - 1)];
+  }
+  if (largest > 0)
+    q[0] = scale * differences[largest - 1];
+}
+
+static void rows_of_quaternion(const double q[4], double m[3][4]) {
+  double w = q[0], x = q[1], y = q[2], z = q[3];
+  const double rows[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
+                             {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
+                             {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)}};
+  for (int row = 0; row < 3; row++)
+    memcpy(m[row], rows[row], sizeof rows[row]);
+}
+
+static void eye_of_camera(const conic_camera *camera, double eye[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    eye[axis] = 0.0;
+    for (int row = 0; row < 3; row++)
+      eye[axis] -= camera->cam_from_world[row][axis] * camera->cam_from_world[row][3];
+  }
+}
+
+static double on_the_way(double from, double to, double part) {
+  return from + (to - from) * part;
+}
+
+conic_status conic_camera_between(conic_context *context, const conic_camera *from, const conic_camera *to, double part,
+                                  conic_camera *camera) {
+  double first[4], second[4], q[4], eyes[2][3], eye[3], cosine = 0.0, square = 0.0;
+  if (!from || !to || !camera || from->width != to->width || from->height != to->height || from->kind != to->kind ||
+      from->lens != to->lens || !(fabs(part) < 1e6))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "camera: there is no way between cameras of different kinds");
+  quaternion_of(from->cam_from_world, first);
+  quaternion_of(to->cam_from_world, second);
+  for (int i = 0; i < 4; i++)
+    cosine += first[i] * second[i];
+  for (int i = 0; i < 4; i++) {
+    q[i] = on_the_way(first[i], cosine < 0.0 ? -second[i] : second[i], part);
+    square += q[i] * q[i];
+  }
+  if (!(square > 0.0))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "camera: there is no single way between opposite directions");
+  for (int i = 0; i < 4; i++)
+    q[i] /= sqrt(square);
+  eye_of_camera(from, eyes[0]);
+  eye_of_camera(to, eyes[1]);
+  conic_camera between = *from;
+  if (part == 0.0 || part == 1.0) { /* to the bit */
+    *camera = part == 0.0 ? *from : *to;
+    return CONIC_OK;
+  }
+  rows_of_quaternion(q, between.cam_from_world);
+  for (int axis = 0; axis < 3; axis++)
+    eye[axis] = on_the_way(eyes[0][axis], eyes[1][axis], part);
+  for (int row = 0; row < 3; row++) {
+    const double *m = between.cam_from_world[row];
+    between.cam_from_world[row][3] = -(m[0] * eye[0] + m[1] * eye[1] + m[2] * eye[2]);
+  }
+  between.fx = on_the_way(from->fx, to->fx, part);
+  between.fy = on_the_way(from->fy, to->fy, part);
+  between.cx = on_the_way(from->cx, to->cx, part);
+  between.cy = on_the_way(from->cy, to->cy, part);
+  for (int i = 0; i < 8; i++)
+    between.distortion[i] = on_the_way(from->distortion[i], to->distortion[i], part);
+  *camera = between;
+  return CONIC_OK;
+}

@@ -1,0 +1,61 @@
+/* Pictures that are the mean of many samples: --accumulate and what goes with it. */
+#ifndef CONIC_ACCUMULATE_JOB_H
+#define CONIC_ACCUMULATE_JOB_H
+
+#include "cli/json_write.h"
+#include "cli/session.h"
+#include "conic/accumulate.h"
+
+struct cli_render_job;
+
+/* Where all is sharp. */
+typedef enum cli_focus_kind { CLI_FOCUS_AUTO, CLI_FOCUS_DEPTH, CLI_FOCUS_PIXEL } cli_focus_kind;
+
+typedef struct cli_focus {
+  int kind; /* a cli_focus_kind */
+  double depth;
+  double pixel[2];
+} cli_focus;
+
+/* Part of a cli_render_job. */
+typedef struct cli_accumulate_job {
+  /* What was asked for. */
+  unsigned long long n_samples; /* 0: pictures are drawn at once */
+  double seconds, noise;        /* stops; 0: none */
+  double preview_seconds;       /* 0: none */
+  const char *resume_path;      /* the picture; null: from the start */
+  int is_resumable;
+  double aperture;
+  cli_focus focus;
+  int n_blades;
+  double shutter[2]; /* frames, from the one that is drawn */
+  int is_shutter_given, is_given;
+
+  /* What came of the last frame. */
+  conic_accumulation_facts facts;
+  uint64_t n_resumed;
+  double reached_noise; /* below 0: not known */
+  double focus_depth;
+} cli_accumulate_job;
+
+/* Parsers of values: auto, a depth or X,Y in pixels, into a cli_focus; A:B into a double[2]. */
+int cli_parse_focus(const char *text, void *value);
+int cli_parse_shutter(const char *text, void *value);
+
+/* What the options mean together with the others. */
+int cli_accumulate_check(struct cli_render_job *job);
+
+/* The camera in the middle of the shutter, which stands for the frame. */
+conic_status cli_accumulate_camera(cli_session *session, struct cli_render_job *job, int i_frame, conic_camera *camera);
+
+/* Draws the picture of a frame; its camera is cli_accumulate_camera's. */
+conic_status cli_accumulate_picture(cli_session *session, struct cli_render_job *job, int i_frame,
+                                    const conic_camera *camera, conic_image *image,
+                                    conic_render_statistics *statistics);
+
+/* Says in the picture's header what it is the mean of. */
+void cli_accumulate_describe(const struct cli_render_job *job, conic_image *image);
+
+void cli_accumulate_report(cli_json *json, const struct cli_render_job *job);
+
+#endif

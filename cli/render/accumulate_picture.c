@@ -1,0 +1,330 @@
+#include "cli/render/accumulate_job.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "cli/render/backdrop.h"
+#include "cli/render/frames.h"
+#include "cli/render/views.h"
+#include "core/files/file.h"
+
+int cli_parse_focus(const char *text, void *value) {
+  cli_focus *focus = value;
+  const char *comma = strchr(text, ',');
+  char first[64];
+  if (strcmp(text, "auto") == 0) {
+    focus->kind = CLI_FOCUS_AUTO;
+    return 1;
+  }
+  if (!comma) {
+    focus->kind = CLI_FOCUS_DEPTH;
+    return cli_parse_number(text, &focus->depth) && focus->depth > 0.0 && focus->depth < 1e30;
+  }
+  focus->kind = CLI_FOCUS_PIXEL;
+  if ((size_t)(comma - text) >= sizeof first)
+    return 0;
+  snprintf(first, sizeof first, "%.*s", (int)(comma - text), text);
+  return cli_parse_number(first, &focus->pixel[0]) && cli_parse_number(comma + 1, &focus->pixel[1]) &&
+         focus->pixel[0] >= 0.0 && focus->pixel[1] >= 0.0;
+}
+
+int cli_parse_shutter(const char *text, void *value) {
+  double *shutter = value;
+  const char *colon = strchr(text, ':');
+  char first[64];
+  if (!colon || (size_t)(colon - text) >= sizeof first)
+    return 0;
+  snprintf(first, sizeof first, "%.*s", (int)(colon - text), text);
+  return cli_parse_number(first, &shutter[0]) && cli_parse_number(colon + 1, &shutter[1]) && shutter[0] <= shutter[1] &&
+         fabs(shutter[0]) <= 1e5 && fabs(shutter[1]) <= 1e5;
+}
+
+/* What a sample is drawn with, unless it is said otherwise: the samples are the filter. */
+static const float sample_prefilter = 0.0625f;
+
+static int check_company(const cli_render_job *job) {
+  if (job->view.samples > 1)
+    return cli_usage("render: --accumulate places its samples itself: not with --samples");
+  if (job->repeat > 1 || job->progressive_path || job->deadline > 0.0 || job->deep_path || job->has_mattes)
+    return cli_usage("render: not --accumulate with --repeat, --progressive, --deadline, --deep or --cryptomatte");
+  if (job->top.is_wanted)
+    return cli_usage("render: --camera top filters its pixels itself: not with --accumulate");
+  return CLI_DONE;
+}
+
+int cli_accumulate_check(cli_render_job *job) {
+  cli_accumulate_job *own = &job->accumulating;
+  if (!own->n_samples && job->planes & (1u << CONIC_PLANE_SAMPLES | 1u << CONIC_PLANE_VARIANCE))
+    return cli_usage("render: the planes samples and variance are --accumulate's");
+  if (!own->n_samples)
+    return own->is_given || own->is_shutter_given
+               ? cli_usage("render: --time, --noise, --preview, --resumable, --resume, --aperture, --focus, "
+                           "--blades and --shutter want --accumulate N")
+               : CLI_DONE;
+  int answer = check_company(job);
+  if (answer != CLI_DONE)
+    return answer;
+  if (own->n_blades == 1 || own->n_blades == 2)
+    return cli_usage("render: --blades is 0, for a round lens, or 3 at least");
+  if (own->is_shutter_given && !job->is_turntable && !job->camera_path)
+    return cli_usage("render: --shutter wants a way of the camera: --turntable, or --camera with several");
+  if (own->resume_path && cli_frames_are_many(job))
+    return cli_usage("render: --resume goes on with one picture, not with several");
+  if (own->is_resumable && (job->n_outputs == 0 || strcmp(job->outputs[0], "-") == 0))
+    return cli_usage("render: --resumable keeps the sums beside the picture; give a file with -o");
+  if (!job->is_prefilter_given)
+    job->options.prefilter = sample_prefilter;
+  if (own->aperture > 0.0 && own->focus.kind != CLI_FOCUS_DEPTH)
+    job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_Z;
+  job->planes |= job->unwritten_planes;
+  return CLI_DONE;
+}
+
+/* --- the camera on its way --- */
+
+typedef struct accumulating {
+  cli_session *session;
+  cli_render_job *job;
+  int i_frame;
+  conic_camera frame_camera; /* of the frame itself, at the shutter's 0 */
+  conic_image *image;        /* what is written */
+  conic_render_statistics statistics;
+  double shown_seconds; /* when a preview was written last */
+} accumulating;
+
+/* A turntable's camera goes round; one of a file goes on to the next. */
+static conic_status camera_on_way(void *cookie, double time, conic_camera *camera) {
+  accumulating *work = cookie;
+  const cli_render_job *job = work->job;
+  const double *shutter = job->accumulating.shutter;
+  double frames = shutter[0] + (shutter[1] - shutter[0]) * time;
+  *camera = work->frame_camera;
+  if (job->is_turntable) {
+    const conic_source_scale *scale = conic_source_measure(job->source);
+    cli_camera_orbit(scale, job->is_up_given ? job->framing.up : scale->up, frames / (double)job->n_frames, camera);
+    return CONIC_OK;
+  }
+  double place = (double)job->i_view + frames, last = (double)job->cameras.count - 1.0;
+  place = place < 0.0 ? 0.0 : place > last ? last : place;
+  size_t from = (size_t)place, to = from + 1 < job->cameras.count ? from + 1 : from;
+  return conic_camera_between(work->session->context, &job->cameras.cameras[from], &job->cameras.cameras[to],
+                              place - (double)from, camera);
+}
+
+conic_status cli_accumulate_camera(cli_session *session, cli_render_job *job, int i_frame, conic_camera *camera) {
+  accumulating work = {.session = session, .job = job};
+  conic_status status = cli_scene_camera(job, i_frame, camera);
+  if (status != CONIC_OK || !job->accumulating.is_shutter_given)
+    return status;
+  work.frame_camera = *camera;
+  return camera_on_way(&work, 0.5, camera);
+}
+
+/* --- focus --- */
+
+static int compare_focus_depths(const void *a, const void *b) {
+  float first = *(const float *)a, second = *(const float *)b;
+  return (first > second) - (first < second);
+}
+
+/* The depth at a pixel; where nothing is there, the median of all there is. */
+static conic_status depth_at(cli_session *session, const conic_image *image, const double pixel[2], double *depth) {
+  size_t n = (size_t)image->width * (size_t)image->height, n_covered = 0;
+  const float *z = image->planes[CONIC_PLANE_Z];
+  size_t x = (size_t)pixel[0], y = (size_t)pixel[1];
+  if (x < (size_t)image->width && y < (size_t)image->height && z[y * (size_t)image->width + x] > 0.0f) {
+    *depth = (double)z[y * (size_t)image->width + x];
+    return CONIC_OK;
+  }
+  float *covered = malloc(n * sizeof *covered);
+  if (!covered)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n; i++)
+    if (z[i] > 0.0f)
+      covered[n_covered++] = z[i];
+  qsort(covered, n_covered, sizeof *covered, compare_focus_depths);
+  *depth = n_covered ? (double)covered[n_covered / 2] : 1.0;
+  free(covered);
+  cli_note(session, "focus: nothing is at this pixel; the median depth, %g", *depth);
+  return CONIC_OK;
+}
+
+static conic_status find_focus(cli_session *session, cli_render_job *job, const conic_image *image) {
+  const cli_focus *focus = &job->accumulating.focus;
+  const double middle[2] = {0.5 * image->width, 0.5 * image->height};
+  double *depth = &job->accumulating.focus_depth;
+  if (!(job->accumulating.aperture > 0.0) || focus->kind == CLI_FOCUS_DEPTH) {
+    *depth = focus->depth;
+    return CONIC_OK;
+  }
+  return depth_at(session, image, focus->kind == CLI_FOCUS_PIXEL ? focus->pixel : middle, depth);
+}
+
+/* --- the samples --- */
+
+static conic_status draw_source_sample(void *cookie, const conic_sample *sample, conic_image *image) {
+  accumulating *work = cookie;
+  cli_render_job *job = work->job;
+  conic_render_statistics statistics;
+  conic_status status =
+      conic_source_draw(job->source, job->renderer, &sample->camera, &job->options, &job->view, image, &statistics);
+  work->statistics.ms.frame += statistics.ms.frame;
+  return status;
+}
+
+/* The means so far, over what the middle of the pixels shows. */
+static conic_status show_sums(accumulating *work, const conic_accumulation *sums) {
+  cli_accumulate_job *own = &work->job->accumulating;
+  conic_status status = conic_accumulation_resolve(sums, work->image);
+  conic_accumulation_inspect(sums, &own->facts);
+  own->reached_noise = conic_accumulation_noise(sums);
+  if (status == CONIC_OK)
+    cli_backdrop_show(work->job, work->image);
+  return status;
+}
+
+static char *sums_name(const char *picture) {
+  size_t room = strlen(picture) + 8;
+  char *name = malloc(room);
+  if (name)
+    snprintf(name, room, "%s.sums", picture);
+  return name;
+}
+
+static conic_status keep_sums(accumulating *work, const conic_accumulation *sums) {
+  const cli_render_job *job = work->job;
+  if (!job->accumulating.is_resumable)
+    return CONIC_OK;
+  char *picture = cli_frame_name(job, job->outputs[0], work->i_frame);
+  char *path = picture ? sums_name(picture) : NULL;
+  conic_status status = path ? conic_accumulation_write(sums, path) : CONIC_ERROR_MEMORY;
+  free(picture);
+  free(path);
+  return status;
+}
+
+/* --preview: the picture as it is, every so many seconds, and the first at once. */
+static conic_status watch_sums(void *cookie, const conic_accumulation *sums) {
+  accumulating *work = cookie;
+  const cli_accumulate_job *own = &work->job->accumulating;
+  conic_accumulation_facts facts;
+  conic_accumulation_inspect(sums, &facts);
+  if (own->preview_seconds <= 0.0 || facts.end_sample >= own->n_samples ||
+      cli_seconds() - work->shown_seconds < own->preview_seconds)
+    return CONIC_OK;
+  conic_status status = show_sums(work, sums);
+  if (status == CONIC_OK)
+    cli_frame_describe(work->job, &work->job->last_camera, work->image);
+  if (status == CONIC_OK)
+    status = cli_frame_write(work->session, work->job, work->image, work->i_frame);
+  if (status == CONIC_OK)
+    status = keep_sums(work, sums);
+  work->shown_seconds = cli_seconds();
+  return status;
+}
+
+/* The sums that are gone on with; or none yet. */
+static conic_status begin_sums(accumulating *work, conic_accumulation **sums) {
+  const conic_camera *camera = &work->frame_camera;
+  cli_accumulate_job *own = &work->job->accumulating;
+  conic_context *context = work->session->context;
+  unsigned planes = (work->job->planes | 1u << CONIC_PLANE_RGBA) & CONIC_ACCUMULATED_PLANES;
+  conic_accumulation_facts facts;
+  own->n_resumed = 0;
+  if (!own->resume_path)
+    return conic_accumulation_create(context, camera->width, camera->height, planes, 0, sums);
+  char *path = sums_name(own->resume_path);
+  conic_status status = path ? conic_accumulation_read(context, path, sums) : CONIC_ERROR_MEMORY;
+  free(path);
+  if (status != CONIC_OK)
+    return status;
+  conic_accumulation_inspect(*sums, &facts);
+  own->n_resumed = facts.end_sample;
+  if (facts.width == camera->width && facts.height == camera->height && facts.planes == planes &&
+      facts.first_sample == 0)
+    return CONIC_OK;
+  cli_error(CLI_INPUT, "%s: cannot go on: its samples are of another size, or of other planes", own->resume_path);
+  return CONIC_ERROR_INPUT;
+}
+
+static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
+  const cli_accumulate_job *own = &work->job->accumulating;
+  conic_accumulate_options options;
+  conic_accumulate_options_init(&options);
+  options.camera = work->frame_camera;
+  options.aperture = (conic_aperture){own->aperture, own->focus_depth, own->n_blades, 0, {0}};
+  options.end_sample = own->n_samples;
+  options.seconds = own->seconds;
+  options.noise = own->noise;
+  options.cookie = work;
+  options.camera_at = own->is_shutter_given ? camera_on_way : NULL;
+  options.draw = draw_source_sample;
+  options.watch = watch_sums;
+  return conic_accumulate(work->session->context, &options, sums);
+}
+
+conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
+                                    conic_image *image, conic_render_statistics *statistics) {
+  accumulating work = {.session = session, .job = job, .i_frame = i_frame, .image = image};
+  conic_accumulation *sums = NULL;
+  conic_status status =
+      conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, &work.statistics);
+  if (status == CONIC_OK)
+    status = find_focus(session, job, image);
+  work.frame_camera = *camera;
+  job->statistics = work.statistics;                            /* for the header of a preview */
+  if (status == CONIC_OK && job->accumulating.is_shutter_given) /* the middle was drawn; the way starts at the frame */
+    status = cli_scene_camera(job, i_frame, &work.frame_camera);
+  if (status == CONIC_OK)
+    status = conic_image_locate(session->context, camera, 1, image);
+  if (status == CONIC_OK)
+    status = begin_sums(&work, &sums);
+  if (status == CONIC_OK)
+    status = run_samples(&work, sums);
+  if (status == CONIC_OK)
+    status = show_sums(&work, sums);
+  if (status == CONIC_OK)
+    status = keep_sums(&work, sums);
+  conic_accumulation_destroy(sums);
+  *statistics = work.statistics;
+  return status;
+}
+
+/* --- what is said of it --- */
+
+static void add_number(conic_image *image, const char *name, double value) {
+  if (image->n_attributes == CONIC_MAX_ATTRIBUTES)
+    return;
+  conic_attribute *attribute = &image->attributes[image->n_attributes++];
+  memset(attribute, 0, sizeof *attribute);
+  snprintf(attribute->name, sizeof attribute->name, "%s", name);
+  attribute->type = CONIC_ATTRIBUTE_DOUBLE;
+  attribute->values[0] = value;
+}
+
+void cli_accumulate_describe(const cli_render_job *job, conic_image *image) {
+  const cli_accumulate_job *own = &job->accumulating;
+  if (!own->n_samples)
+    return;
+  add_number(image, "conicAccumulated", (double)own->facts.end_sample);
+  if (own->aperture > 0.0) {
+    add_number(image, "conicAperture", own->aperture);
+    add_number(image, "conicFocus", own->focus_depth);
+  }
+}
+
+void cli_accumulate_report(cli_json *json, const cli_render_job *job) {
+  const cli_accumulate_job *own = &job->accumulating;
+  if (!own->n_samples)
+    return;
+  cli_json_object(json, "accumulated");
+  cli_json_count(json, "samples", own->facts.end_sample);
+  cli_json_count(json, "resumed", own->n_resumed);
+  if (own->reached_noise >= 0.0)
+    cli_json_number(json, "noise", own->reached_noise);
+  if (own->aperture > 0.0)
+    cli_json_number(json, "focus", own->focus_depth);
+  cli_json_close(json);
+}
