@@ -122,12 +122,14 @@ static void find_local_h(void *data, size_t i_item, int i_thread) {
   size_t end = (i_item + 1) * CHUNK < tree->n_slots ? (i_item + 1) * CHUNK : tree->n_slots;
   uint32_t slots[64];
   double distances2[64];
+  size_t n = 0;
   (void)i_thread;
   for (size_t slot = i_item * CHUNK; slot < end; slot++) {
     const double query[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
                              (double)tree->position[2][slot]};
-    size_t n = conic_neighbours_nearest(tree, query, (uint32_t)slot, (size_t)surface->options.n_local, HUGE_VAL, slots,
-                                        distances2);
+    double bound2 = n ? conic_neighbours_bound2(tree, slots, n, slot - 1, slot) : HUGE_VAL;
+    n = conic_neighbours_nearest(tree, query, (uint32_t)slot, (size_t)surface->options.n_local, bound2, slots,
+                                 distances2);
     surface->h[slot] = n ? (float)(sqrt(distances2[n - 1]) / surface->options.neglect) : 0.0f;
   }
 }

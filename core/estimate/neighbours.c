@@ -1,15 +1,27 @@
 #include "core/estimate/neighbours.h"
 
+#include <string.h>
+
 enum { MAX_DEPTH = 34 };
 
-/* The least squared distance from the query to the box. Rounding is monotonic, and this sum is formed like that of a
- * point's distance: it is never above the distance of any point in the box, to the last bit. */
-static double box_distance2(const float box[6], const double query[3]) {
-  double sum = 0.0;
+/* Two doubles at a time: one of each of two boxes that lie side by side. What is compared cannot be foreseen, so
+ * nothing here branches. */
+typedef double box_pair __attribute__((vector_size(16)));
+typedef int64_t box_pair_mask __attribute__((vector_size(16)));
+
+static inline box_pair greater_of(box_pair a, box_pair b) {
+  box_pair_mask is_a = a > b;
+  return (box_pair)((is_a & (box_pair_mask)a) | (~is_a & (box_pair_mask)b));
+}
+
+/* The least squared distances from the query to two boxes, one after the other. Rounding is monotonic, and these sums
+ * are formed like that of a point's distance: none is above the distance of any point in the box, to the last bit. */
+static inline box_pair box_distances2(const float boxes[2][6], const double query[3]) {
+  box_pair sum = {0.0, 0.0};
   for (int axis = 0; axis < 3; axis++) {
-    double below = (double)box[axis] - query[axis], above = query[axis] - (double)box[3 + axis];
-    double outside = below > above ? below : above;
-    outside = outside > 0.0 ? outside : 0.0;
+    const box_pair low = {(double)boxes[0][axis], (double)boxes[1][axis]};
+    const box_pair high = {(double)boxes[0][3 + axis], (double)boxes[1][3 + axis]};
+    box_pair outside = greater_of(greater_of(low - query[axis], query[axis] - high), (box_pair){0.0, 0.0});
     sum += outside * outside;
   }
   return sum;
@@ -33,25 +45,22 @@ typedef struct neighbour_search {
   double *distances2;
 } neighbour_search;
 
-static inline void move_on(neighbour_search *s, size_t i) {
-  s->distances2[i] = s->distances2[i - 1];
-  s->slots[i] = s->slots[i - 1];
-}
-
 static void insert(neighbour_search *s, uint32_t slot, double distance2) {
-  size_t i = s->n_found;
-  if (i == s->k) {
-    i--;
-    if (distance2 == s->distances2[i] && !lies_before(s->tree, slot, s->slots[i]))
+  size_t n = s->n_found, place = 0;
+  if (n == s->k) {
+    n--;
+    if (distance2 == s->distances2[n] && !lies_before(s->tree, slot, s->slots[n]))
       return;
   } else
     s->n_found++;
-  for (; i > 0 && s->distances2[i - 1] > distance2; i--)
-    move_on(s, i);
-  for (; i > 0 && s->distances2[i - 1] == distance2 && lies_before(s->tree, slot, s->slots[i - 1]); i--)
-    move_on(s, i);
-  s->distances2[i] = distance2;
-  s->slots[i] = slot;
+  for (size_t i = 0; i < n; i++) /* counted, as where it belongs cannot be foreseen */
+    place += s->distances2[i] <= distance2;
+  while (place > 0 && s->distances2[place - 1] == distance2 && lies_before(s->tree, slot, s->slots[place - 1]))
+    place--;
+  memmove(s->distances2 + place + 1, s->distances2 + place, (n - place) * sizeof *s->distances2);
+  memmove(s->slots + place + 1, s->slots + place, (n - place) * sizeof *s->slots);
+  s->distances2[place] = distance2;
+  s->slots[place] = slot;
   if (s->n_found == s->k)
     s->limit2 = s->distances2[s->k - 1];
 }
@@ -80,29 +89,35 @@ size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query
   if (k == 0 || tree->n_slots == 0)
     return 0;
   stack[n_stack].i_node = 0;
-  stack[n_stack++].distance2 = box_distance2(tree->boxes[0], query);
+  stack[n_stack++].distance2 = 0.0;
   while (n_stack > 0) {
     size_t i_node = stack[--n_stack].i_node;
     int is_near = stack[n_stack].distance2 <= s.limit2;
     while (is_near && i_node < tree->n_leaves - 1) {
-      size_t near = 2 * i_node + 1, far = near + 1;
-      double near2 = box_distance2(tree->boxes[near], query), far2 = box_distance2(tree->boxes[far], query);
-      if (far2 < near2) {
-        double distance2 = near2;
-        near2 = far2;
-        far2 = distance2;
-        near = far;
-        far = 2 * i_node + 1;
-      }
-      if (far2 <= s.limit2) {
-        stack[n_stack].i_node = far;
-        stack[n_stack++].distance2 = far2;
-      }
-      i_node = near;
+      size_t first = 2 * i_node + 1;
+      const box_pair both = box_distances2((const float(*)[6])tree->boxes + first, query);
+      size_t nearer = both[1] < both[0];
+      const double near2 = nearer ? both[1] : both[0], far2 = nearer ? both[0] : both[1];
+      stack[n_stack].i_node = first + (1 - nearer);
+      stack[n_stack].distance2 = far2;
+      n_stack += far2 <= s.limit2;
+      i_node = first + nearer;
       is_near = near2 <= s.limit2;
     }
     if (is_near)
       search_leaf(&s, i_node - (tree->n_leaves - 1));
   }
   return s.n_found;
+}
+
+double conic_neighbours_bound2(const conic_neighbours *tree, const uint32_t *nearest, size_t n, size_t other,
+                               size_t slot) {
+  const double query[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
+                           (double)tree->position[2][slot]};
+  double bound2 = 0.0;
+  for (size_t i = 0; i < n; i++) {
+    double distance2 = conic_neighbours_distance2(tree, nearest[i] == slot ? other : nearest[i], query);
+    bound2 = distance2 > bound2 ? distance2 : bound2;
+  }
+  return bound2;
 }

@@ -46,6 +46,11 @@ static inline double conic_neighbours_distance2(const conic_neighbours *tree, si
   return x * x + y * y + z * z;
 }
 
+/* How far the n-th neighbour of `slot` is at most, squared, from the n nearest of a slot near by: as far as the farthest
+ * of these, the slot itself replaced by the other one. */
+double conic_neighbours_bound2(const conic_neighbours *tree, const uint32_t *nearest, size_t n, size_t other,
+                               size_t slot);
+
 /* The slots of the leaf `i_leaf`: from the returned one to that of the next leaf. */
 static inline size_t conic_neighbours_leaf_begin(const conic_neighbours *tree, size_t i_leaf) {
   return (size_t)((uint64_t)i_leaf * (uint64_t)tree->n_slots / (uint64_t)tree->n_leaves);

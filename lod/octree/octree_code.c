@@ -128,11 +128,10 @@ void conic_code_normal_of(const uint8_t code[3], double normal[3]) {
   double x = (double)(code[0] | (code[1] & 15) << 8) / 2047.0 - 1.0;
   double y = (double)(code[1] >> 4 | code[2] << 4) / 2047.0 - 1.0;
   double z = 1.0 - fabs(x) - fabs(y);
-  if (z < 0.0) {
-    double unfolded = (1.0 - fabs(y)) * sign_of(x);
-    y = (1.0 - fabs(x)) * sign_of(y);
-    x = unfolded;
-  }
+  /* Both are worked out, for which half it is cannot be foreseen. Neither coordinate is -0. */
+  const double xs[2] = {x, (1.0 - fabs(y)) * copysign(1.0, x)}, ys[2] = {y, (1.0 - fabs(x)) * copysign(1.0, y)};
+  x = xs[z < 0.0];
+  y = ys[z < 0.0];
   double length = sqrt(x * x + y * y + z * z);
   normal[0] = x / length;
   normal[1] = y / length;
