@@ -35,34 +35,86 @@ static int lies_before(const conic_neighbours *tree, size_t a, size_t b) {
   return 0;
 }
 
+/* Slots that may be among the nearest are put together unsorted. Of half as many again as are wanted, and some more,
+ * only those are kept that are. */
+enum {
+  MOST_BESIDE = CONIC_MOST_NEAREST / 2 + 4,
+  MOST_CANDIDATES = CONIC_MOST_NEAREST + MOST_BESIDE + CONIC_LEAF_SLOTS,
+  BLOCK_KEYS = 16
+};
+
 typedef struct neighbour_search {
   const conic_neighbours *tree;
   double query[3];
   uint32_t except;
-  size_t k, n_found;
-  double limit2; /* what is farther is not wanted: the limit, later the k-th distance */
-  uint32_t *slots;
-  double *distances2;
+  size_t k, n;   /* candidates */
+  double limit2; /* what is farther is not wanted: the limit, later the distance of the last of those that were kept */
+  double distances2[MOST_CANDIDATES];
+  uint32_t slots[MOST_CANDIDATES];
 } neighbour_search;
 
-static void insert(neighbour_search *s, uint32_t slot, double distance2) {
-  size_t n = s->n_found, place = 0;
-  if (n == s->k) {
-    n--;
-    if (distance2 == s->distances2[n] && !lies_before(s->tree, slot, s->slots[n]))
-      return;
-  } else
-    s->n_found++;
-  for (size_t i = 0; i < n; i++) /* counted, as where it belongs cannot be foreseen */
-    place += s->distances2[i] <= distance2;
-  while (place > 0 && s->distances2[place - 1] == distance2 && lies_before(s->tree, slot, s->slots[place - 1]))
-    place--;
-  memmove(s->distances2 + place + 1, s->distances2 + place, (n - place) * sizeof *s->distances2);
-  memmove(s->slots + place + 1, s->slots + place, (n - place) * sizeof *s->slots);
-  s->distances2[place] = distance2;
-  s->slots[place] = slot;
-  if (s->n_found == s->k)
-    s->limit2 = s->distances2[s->k - 1];
+/* The squared distances as floats, whole blocks of them, and how many others each is above. */
+typedef float key_four __attribute__((vector_size(16)));
+typedef int32_t place_four __attribute__((vector_size(16)));
+typedef struct candidate_order {
+  float keys[MOST_CANDIDATES + BLOCK_KEYS];
+  int32_t places[MOST_CANDIDATES + BLOCK_KEYS];
+} candidate_order;
+
+/* Each is compared with each: that is quicker than to sort so few, whose comparisons cannot be foreseen. */
+static void rank_block(candidate_order *order, size_t begin, size_t n) {
+  key_four keys[BLOCK_KEYS / 4];
+  place_four places[BLOCK_KEYS / 4] = {{0}};
+  memcpy(keys, order->keys + begin, sizeof keys);
+  for (size_t j = 0; j < n; j++)
+    for (int part = 0; part < BLOCK_KEYS / 4; part++)
+      places[part] -= order->keys[j] < keys[part];
+  memcpy(order->places + begin, places, sizeof places);
+}
+
+static int is_nearer(const neighbour_search *s, size_t a, size_t b) {
+  return s->distances2[a] < s->distances2[b] ||
+         (s->distances2[a] == s->distances2[b] && lies_before(s->tree, s->slots[a], s->slots[b]));
+}
+
+/* Lists the candidates, nearest first. Those with the same key share a place, from which on they are put in order. */
+static void sort_candidates(const neighbour_search *s, uint8_t sorted[MOST_CANDIDATES]) {
+  candidate_order order;
+  uint8_t n_at[MOST_CANDIDATES] = {0};
+  for (size_t i = 0; i < s->n; i++)
+    order.keys[i] = (float)s->distances2[i];
+  for (size_t i = s->n; i % BLOCK_KEYS != 0; i++)
+    order.keys[i] = 0.0f; /* some number */
+  for (size_t begin = 0; begin < s->n; begin += BLOCK_KEYS)
+    rank_block(&order, begin, s->n);
+  for (size_t i = 0; i < s->n; i++) {
+    size_t first = (size_t)order.places[i], place = first + n_at[first]++;
+    for (; place > first && is_nearer(s, i, sorted[place - 1]); place--)
+      sorted[place] = sorted[place - 1];
+    sorted[place] = (uint8_t)i;
+  }
+}
+
+/* Writes the k nearest candidates, or all, nearest first. Returns how many. */
+static size_t take_nearest(const neighbour_search *s, uint32_t *slots, double *distances2) {
+  uint8_t sorted[MOST_CANDIDATES];
+  size_t n = s->n < s->k ? s->n : s->k;
+  sort_candidates(s, sorted);
+  for (size_t i = 0; i < n; i++) {
+    slots[i] = s->slots[sorted[i]];
+    distances2[i] = s->distances2[sorted[i]];
+  }
+  return n;
+}
+
+/* Keeps the k nearest, of more than that. */
+static void keep_nearest(neighbour_search *s) {
+  double distances2[CONIC_MOST_NEAREST];
+  uint32_t slots[CONIC_MOST_NEAREST];
+  s->n = take_nearest(s, slots, distances2);
+  memcpy(s->distances2, distances2, s->n * sizeof *distances2);
+  memcpy(s->slots, slots, s->n * sizeof *slots);
+  s->limit2 = distances2[s->n - 1];
 }
 
 static void search_leaf(neighbour_search *s, size_t i_leaf) {
@@ -71,16 +123,24 @@ static void search_leaf(neighbour_search *s, size_t i_leaf) {
   size_t n = conic_neighbours_leaf_begin(s->tree, i_leaf + 1) - begin;
   for (size_t i = 0; i < n; i++)
     distances2[i] = conic_neighbours_distance2(s->tree, begin + i, s->query);
-  for (size_t i = 0; i < n; i++)
-    if (distances2[i] <= s->limit2 && begin + i != s->except)
-      insert(s, (uint32_t)(begin + i), distances2[i]);
+  for (size_t i = 0; i < n; i++) {
+    s->distances2[s->n] = distances2[i];
+    s->slots[s->n] = (uint32_t)(begin + i);
+    s->n += (distances2[i] <= s->limit2) & (begin + i != s->except);
+  }
+  if (s->n > s->k + s->k / 2 + 4)
+    keep_nearest(s);
 }
 
 size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query[3], uint32_t except, size_t k,
                                 double limit2, uint32_t *slots, double *distances2) {
-  neighbour_search s = {tree, {query[0], query[1], query[2]}, except, k, 0, limit2, NULL, NULL};
-  s.slots = slots;
-  s.distances2 = distances2;
+  neighbour_search s;
+  s.tree = tree;
+  memcpy(s.query, query, sizeof s.query);
+  s.except = except;
+  s.k = k;
+  s.n = 0;
+  s.limit2 = limit2;
   struct {
     size_t i_node;
     double distance2;
@@ -107,7 +167,7 @@ size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query
     if (is_near)
       search_leaf(&s, i_node - (tree->n_leaves - 1));
   }
-  return s.n_found;
+  return take_nearest(&s, slots, distances2);
 }
 
 double conic_neighbours_bound2(const conic_neighbours *tree, const uint32_t *nearest, size_t n, size_t other,

@@ -32,6 +32,9 @@ conic_status conic_neighbours_build(conic_context *context, const float *const p
                                     conic_neighbours *tree);
 void conic_neighbours_release(conic_context *context, conic_neighbours *tree);
 
+/* No more can be asked for. */
+enum { CONIC_MOST_NEAREST = 64 };
+
 /* The k slots nearest to `query` among those whose squared distance is at most `limit2` (HUGE_VAL: no limit), without
  * the slot `except` (CONIC_NO_SLOT: none), nearest first; equal distances by x, then y, then z. `slots` and
  * `distances2` have room for k. Returns how many there are. Thread-safe. */
@@ -46,8 +49,8 @@ static inline double conic_neighbours_distance2(const conic_neighbours *tree, si
   return x * x + y * y + z * z;
 }
 
-/* How far the n-th neighbour of `slot` is at most, squared, from the n nearest of a slot near by: as far as the farthest
- * of these, the slot itself replaced by the other one. */
+/* How far the n-th neighbour of `slot` is at most, squared, from the n nearest of a slot near by: as far as the
+ * farthest of these, the slot itself replaced by the other one. */
 double conic_neighbours_bound2(const conic_neighbours *tree, const uint32_t *nearest, size_t n, size_t other,
                                size_t slot);
 
