@@ -150,12 +150,17 @@ static conic_status allocate_decoded(conic_octree *octree) {
                       &octree->cone,      &octree->normal[0], &octree->normal[1], &octree->normal[2], &octree->excess};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
     conic_memory_release(context, *arrays[i]); /* of an attempt that failed */
-    *arrays[i] = conic_memory_allocate_zeroed(context, octree->n_nodes + CONIC_OCTREE_GROUP, sizeof(float));
+    *arrays[i] = conic_memory_allocate(context, octree->n_nodes + CONIC_OCTREE_GROUP, sizeof(float));
     if (!*arrays[i])
       return CONIC_ERROR_MEMORY;
+    conic_memory_prefer_large_pages(context, *arrays[i], octree->n_nodes * sizeof(float));
+    memset(*arrays[i] + octree->n_nodes, 0, CONIC_OCTREE_GROUP * sizeof(float));
   }
   octree->drawn = conic_memory_allocate(context, octree->n_nodes, sizeof *octree->drawn);
-  return octree->drawn ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (!octree->drawn)
+    return CONIC_ERROR_MEMORY;
+  conic_memory_prefer_large_pages(context, octree->drawn, octree->n_nodes * sizeof *octree->drawn);
+  return CONIC_OK;
 }
 
 conic_status conic_octree_decode(conic_octree *octree) {
@@ -191,6 +196,8 @@ conic_status conic_octree_decode_all(conic_octree *octree) {
   octree->drawn_leaves = conic_memory_allocate(octree->context, octree->n_leaves, sizeof *octree->drawn_leaves);
   if (!octree->drawn_leaves)
     return CONIC_ERROR_MEMORY;
+  conic_memory_prefer_large_pages(octree->context, octree->drawn_leaves,
+                                  octree->n_leaves * sizeof *octree->drawn_leaves);
   conic_parallel_for(octree->context, (octree->n_leaves + chunk_nodes - 1) / chunk_nodes, copy_chunk, octree);
   return CONIC_OK;
 }
