@@ -72,7 +72,7 @@ static void rank_block(candidate_order *order, size_t begin, size_t n) {
   memcpy(order->places + begin, places, sizeof places);
 }
 
-static int is_nearer(const neighbour_search *s, size_t a, size_t b) {
+static int is_candidate_nearer(const neighbour_search *s, size_t a, size_t b) {
   return s->distances2[a] < s->distances2[b] ||
          (s->distances2[a] == s->distances2[b] && lies_before(s->tree, s->slots[a], s->slots[b]));
 }
@@ -89,14 +89,14 @@ static void sort_candidates(const neighbour_search *s, uint8_t sorted[MOST_CANDI
     rank_block(&order, begin, s->n);
   for (size_t i = 0; i < s->n; i++) {
     size_t first = (size_t)order.places[i], place = first + n_at[first]++;
-    for (; place > first && is_nearer(s, i, sorted[place - 1]); place--)
+    for (; place > first && is_candidate_nearer(s, i, sorted[place - 1]); place--)
       sorted[place] = sorted[place - 1];
     sorted[place] = (uint8_t)i;
   }
 }
 
 /* Writes the k nearest candidates, or all, nearest first. Returns how many. */
-static size_t take_nearest(const neighbour_search *s, uint32_t *slots, double *distances2) {
+static size_t take_candidates(const neighbour_search *s, uint32_t *slots, double *distances2) {
   uint8_t sorted[MOST_CANDIDATES];
   size_t n = s->n < s->k ? s->n : s->k;
   sort_candidates(s, sorted);
@@ -108,10 +108,10 @@ static size_t take_nearest(const neighbour_search *s, uint32_t *slots, double *d
 }
 
 /* Keeps the k nearest, of more than that. */
-static void keep_nearest(neighbour_search *s) {
+static void cut_candidates(neighbour_search *s) {
   double distances2[CONIC_MOST_NEAREST];
   uint32_t slots[CONIC_MOST_NEAREST];
-  s->n = take_nearest(s, slots, distances2);
+  s->n = take_candidates(s, slots, distances2);
   memcpy(s->distances2, distances2, s->n * sizeof *distances2);
   memcpy(s->slots, slots, s->n * sizeof *slots);
   s->limit2 = distances2[s->n - 1];
@@ -129,7 +129,7 @@ static void search_leaf(neighbour_search *s, size_t i_leaf) {
     s->n += (distances2[i] <= s->limit2) & (begin + i != s->except);
   }
   if (s->n > s->k + s->k / 2 + 4)
-    keep_nearest(s);
+    cut_candidates(s);
 }
 
 size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query[3], uint32_t except, size_t k,
@@ -167,7 +167,7 @@ size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query
     if (is_near)
       search_leaf(&s, i_node - (tree->n_leaves - 1));
   }
-  return take_nearest(&s, slots, distances2);
+  return take_candidates(&s, slots, distances2);
 }
 
 double conic_neighbours_bound2(const conic_neighbours *tree, const uint32_t *nearest, size_t n, size_t other,
