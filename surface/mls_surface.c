@@ -1,13 +1,12 @@
 #include "surface/mls_surface.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
-#include "core/base/real.h"
+#include "core/base/rank.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"
@@ -123,26 +122,21 @@ static void find_local_h(void *data, size_t i_item, int i_thread) {
   size_t end = (i_item + 1) * CHUNK < tree->n_slots ? (i_item + 1) * CHUNK : tree->n_slots;
   uint32_t slots[64];
   double distances2[64];
+  size_t n = 0;
   (void)i_thread;
   for (size_t slot = i_item * CHUNK; slot < end; slot++) {
     const double query[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
                              (double)tree->position[2][slot]};
-    size_t n = conic_neighbours_nearest(tree, query, (uint32_t)slot, (size_t)surface->options.n_local, HUGE_VAL, slots,
-                                        distances2);
+    double bound2 = n ? conic_neighbours_bound2(tree, slots, n, slot - 1, slot) : HUGE_VAL;
+    n = conic_neighbours_nearest(tree, query, (uint32_t)slot, (size_t)surface->options.n_local, bound2, slots,
+                                 distances2);
     surface->h[slot] = n ? (float)(sqrt(distances2[n - 1]) / surface->options.neglect) : 0.0f;
   }
 }
 
-static conic_status find_median_h(conic_surface *surface) {
+static void find_median_h(conic_surface *surface) {
   size_t n = surface->tree.n_slots;
-  float *sorted = conic_memory_allocate(surface->context, n, sizeof *sorted);
-  if (!sorted)
-    return CONIC_ERROR_MEMORY;
-  memcpy(sorted, surface->h, n * sizeof *sorted);
-  qsort(sorted, n, sizeof *sorted, conic_compare_floats);
-  surface->median_h = (double)sorted[(n - 1) / 2];
-  conic_memory_release(surface->context, sorted);
-  return CONIC_OK;
+  surface->median_h = (double)conic_float_of_rank(surface->h, n, (n - 1) / 2);
 }
 
 /* The least float that is not below a double. */
@@ -180,7 +174,7 @@ static conic_status find_scales(conic_surface *surface) {
     status = conic_parallel_runs(surface->context, "scales", 0.0, 1.0, (n + CHUNK - 1) / CHUNK, CHUNKS_A_REPORT,
                                  find_local_h, surface);
   if (status == CONIC_OK)
-    status = find_median_h(surface);
+    find_median_h(surface);
   find_node_reach(surface);
   return status;
 }

@@ -12,7 +12,7 @@ typedef struct cover_desk {
   conic_discs discs;
   conic_near_discs near;
   float *errors[3]; /* of all nodes: by everything, its own leaves first; everything at once; what is near */
-  float (*numbers)[ROOM], (*block_numbers)[N_BLOCKS], (*near_numbers)[N_BLOCKS], (*own_numbers)[N_BLOCKS];
+  float (*numbers)[ROOM], (*block_numbers)[N_BLOCKS], (*near_numbers)[N_BLOCKS];
   uint64_t *n_near;
 } cover_desk;
 
@@ -25,10 +25,9 @@ static cover_desk *open_cover(void) {
   for (int i = 0; i < 3; i++)
     d->errors[i] = cross_room(&d->memory, "errors", N_OVER * sizeof *d->errors[i]);
   d->n_near = cross_room(&d->memory, "numbers of blocks", N_OVER * sizeof *d->n_near);
-  d->own_numbers = cross_room(&d->memory, "a node's boxes", 6 * sizeof *d->own_numbers);
-  d->near.of_node.block = cross_room(&d->memory, "a node's blocks", N_BLOCKS * sizeof(uint32_t));
   d->near.flat = cross_room(&d->memory, "flattened", N_BLOCKS * sizeof *d->near.flat);
-  for (int i = d->memory.n_arenas - 3; i < d->memory.n_arenas; i++)
+  d->near.are_flat = cross_room(&d->memory, "which are", (N_BLOCKS / CONIC_DISC_BLOCK + 1) * sizeof(uint16_t));
+  for (int i = d->memory.n_arenas - 2; i < d->memory.n_arenas; i++)
     d->memory.arenas[i].compared = 0; /* what lanes work in */
   return d;
 }
@@ -45,8 +44,6 @@ static void lay_sheet(cover_desk *s) {
     discs->block_half[axis] = s->block_numbers[3 + axis];
     s->near.blocks.center[axis] = s->near_numbers[axis];
     s->near.blocks.half[axis] = s->near_numbers[3 + axis];
-    s->near.of_node.center[axis] = s->own_numbers[axis];
-    s->near.of_node.half[axis] = s->own_numbers[3 + axis];
   }
   discs->error = s->numbers[12];
   discs->count = N_DISCS;

@@ -45,9 +45,4 @@ static inline int conic_compare_doubles(const void *a, const void *b) {
   return (*first > *second) - (*first < *second);
 }
 
-static inline int conic_compare_floats(const void *a, const void *b) {
-  const float *first = a, *second = b;
-  return (*first > *second) - (*first < *second);
-}
-
 #endif

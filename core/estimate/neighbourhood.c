@@ -59,19 +59,6 @@ typedef struct listing {
   unsigned flags;
 } listing;
 
-/* How far the k-th neighbour of the slot is at most, from the list of a slot near by: as far as the farthest of that
- * list, the slot itself replaced by the other one. */
-static double bound_by(const conic_neighbourhood *neighbourhood, size_t other, size_t slot, const double query[3]) {
-  const uint32_t *list = conic_neighbourhood_of(neighbourhood, other);
-  double bound2 = 0.0;
-  for (size_t i = 0; i < neighbourhood->n_neighbours; i++) {
-    size_t neighbour = list[i] == slot ? other : list[i];
-    double distance2 = conic_neighbours_distance2(&neighbourhood->tree, neighbour, query);
-    bound2 = distance2 > bound2 ? distance2 : bound2;
-  }
-  return bound2;
-}
-
 static void list_slots(void *data, size_t begin, size_t end) {
   const listing *l = data;
   conic_neighbourhood *neighbourhood = l->neighbourhood;
@@ -82,7 +69,10 @@ static void list_slots(void *data, size_t begin, size_t end) {
     if (!(neighbourhood->flags[slot] & l->flags) || neighbourhood->flags[slot] & CONIC_SLOT_LISTED)
       continue;
     conic_neighbourhood_position(neighbourhood, slot, query);
-    double bound2 = previous == end ? HUGE_VAL : bound_by(neighbourhood, previous, slot, query);
+    double bound2 = previous == end
+                        ? HUGE_VAL
+                        : conic_neighbours_bound2(&neighbourhood->tree, conic_neighbourhood_of(neighbourhood, previous),
+                                                  neighbourhood->n_neighbours, previous, slot);
     conic_neighbours_nearest(&neighbourhood->tree, query, (uint32_t)slot, neighbourhood->n_neighbours, bound2,
                              neighbourhood->neighbours + slot * neighbourhood->n_neighbours, distances2);
     neighbourhood->flags[slot] |= CONIC_SLOT_LISTED;

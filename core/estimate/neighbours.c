@@ -1,15 +1,27 @@
 #include "core/estimate/neighbours.h"
 
+#include <string.h>
+
 enum { MAX_DEPTH = 34 };
 
-/* The least squared distance from the query to the box. Rounding is monotonic, and this sum is formed like that of a
- * point's distance: it is never above the distance of any point in the box, to the last bit. */
-static double box_distance2(const float box[6], const double query[3]) {
-  double sum = 0.0;
+/* Two doubles at a time: one of each of two boxes that lie side by side. What is compared cannot be foreseen, so
+ * nothing here branches. */
+typedef double box_pair __attribute__((vector_size(16)));
+typedef int64_t box_pair_mask __attribute__((vector_size(16)));
+
+static inline box_pair greater_of(box_pair a, box_pair b) {
+  box_pair_mask is_a = a > b;
+  return (box_pair)((is_a & (box_pair_mask)a) | (~is_a & (box_pair_mask)b));
+}
+
+/* The least squared distances from the query to two boxes, one after the other. Rounding is monotonic, and these sums
+ * are formed like that of a point's distance: none is above the distance of any point in the box, to the last bit. */
+static inline box_pair box_distances2(const float boxes[2][6], const double query[3]) {
+  box_pair sum = {0.0, 0.0};
   for (int axis = 0; axis < 3; axis++) {
-    double below = (double)box[axis] - query[axis], above = query[axis] - (double)box[3 + axis];
-    double outside = below > above ? below : above;
-    outside = outside > 0.0 ? outside : 0.0;
+    const box_pair low = {(double)boxes[0][axis], (double)boxes[1][axis]};
+    const box_pair high = {(double)boxes[0][3 + axis], (double)boxes[1][3 + axis]};
+    box_pair outside = greater_of(greater_of(low - query[axis], query[axis] - high), (box_pair){0.0, 0.0});
     sum += outside * outside;
   }
   return sum;
@@ -23,37 +35,86 @@ static int lies_before(const conic_neighbours *tree, size_t a, size_t b) {
   return 0;
 }
 
+/* Slots that may be among the nearest are put together unsorted. Of half as many again as are wanted, and some more,
+ * only those are kept that are. */
+enum {
+  MOST_BESIDE = CONIC_MOST_NEAREST / 2 + 4,
+  MOST_CANDIDATES = CONIC_MOST_NEAREST + MOST_BESIDE + CONIC_LEAF_SLOTS,
+  BLOCK_KEYS = 16
+};
+
 typedef struct neighbour_search {
   const conic_neighbours *tree;
   double query[3];
   uint32_t except;
-  size_t k, n_found;
-  double limit2; /* what is farther is not wanted: the limit, later the k-th distance */
-  uint32_t *slots;
-  double *distances2;
+  size_t k, n;   /* candidates */
+  double limit2; /* what is farther is not wanted: the limit, later the distance of the last of those that were kept */
+  double distances2[MOST_CANDIDATES];
+  uint32_t slots[MOST_CANDIDATES];
 } neighbour_search;
 
-static inline void move_on(neighbour_search *s, size_t i) {
-  s->distances2[i] = s->distances2[i - 1];
-  s->slots[i] = s->slots[i - 1];
+/* The squared distances as floats, whole blocks of them, and how many others each is above. */
+typedef float key_four __attribute__((vector_size(16)));
+typedef int32_t place_four __attribute__((vector_size(16)));
+typedef struct candidate_order {
+  float keys[MOST_CANDIDATES + BLOCK_KEYS];
+  int32_t places[MOST_CANDIDATES + BLOCK_KEYS];
+} candidate_order;
+
+/* Each is compared with each: that is quicker than to sort so few, whose comparisons cannot be foreseen. */
+static void rank_block(candidate_order *order, size_t begin, size_t n) {
+  key_four keys[BLOCK_KEYS / 4];
+  place_four places[BLOCK_KEYS / 4] = {{0}};
+  memcpy(keys, order->keys + begin, sizeof keys);
+  for (size_t j = 0; j < n; j++)
+    for (int part = 0; part < BLOCK_KEYS / 4; part++)
+      places[part] -= order->keys[j] < keys[part];
+  memcpy(order->places + begin, places, sizeof places);
 }
 
-static void insert(neighbour_search *s, uint32_t slot, double distance2) {
-  size_t i = s->n_found;
-  if (i == s->k) {
-    i--;
-    if (distance2 == s->distances2[i] && !lies_before(s->tree, slot, s->slots[i]))
-      return;
-  } else
-    s->n_found++;
-  for (; i > 0 && s->distances2[i - 1] > distance2; i--)
-    move_on(s, i);
-  for (; i > 0 && s->distances2[i - 1] == distance2 && lies_before(s->tree, slot, s->slots[i - 1]); i--)
-    move_on(s, i);
-  s->distances2[i] = distance2;
-  s->slots[i] = slot;
-  if (s->n_found == s->k)
-    s->limit2 = s->distances2[s->k - 1];
+static int is_candidate_nearer(const neighbour_search *s, size_t a, size_t b) {
+  return s->distances2[a] < s->distances2[b] ||
+         (s->distances2[a] == s->distances2[b] && lies_before(s->tree, s->slots[a], s->slots[b]));
+}
+
+/* Lists the candidates, nearest first. Those with the same key share a place, from which on they are put in order. */
+static void sort_candidates(const neighbour_search *s, uint8_t sorted[MOST_CANDIDATES]) {
+  candidate_order order;
+  uint8_t n_at[MOST_CANDIDATES] = {0};
+  for (size_t i = 0; i < s->n; i++)
+    order.keys[i] = (float)s->distances2[i];
+  for (size_t i = s->n; i % BLOCK_KEYS != 0; i++)
+    order.keys[i] = 0.0f; /* some number */
+  for (size_t begin = 0; begin < s->n; begin += BLOCK_KEYS)
+    rank_block(&order, begin, s->n);
+  for (size_t i = 0; i < s->n; i++) {
+    size_t first = (size_t)order.places[i], place = first + n_at[first]++;
+    for (; place > first && is_candidate_nearer(s, i, sorted[place - 1]); place--)
+      sorted[place] = sorted[place - 1];
+    sorted[place] = (uint8_t)i;
+  }
+}
+
+/* Writes the k nearest candidates, or all, nearest first. Returns how many. */
+static size_t take_candidates(const neighbour_search *s, uint32_t *slots, double *distances2) {
+  uint8_t sorted[MOST_CANDIDATES];
+  size_t n = s->n < s->k ? s->n : s->k;
+  sort_candidates(s, sorted);
+  for (size_t i = 0; i < n; i++) {
+    slots[i] = s->slots[sorted[i]];
+    distances2[i] = s->distances2[sorted[i]];
+  }
+  return n;
+}
+
+/* Keeps the k nearest, of more than that. */
+static void cut_candidates(neighbour_search *s) {
+  double distances2[CONIC_MOST_NEAREST];
+  uint32_t slots[CONIC_MOST_NEAREST];
+  s->n = take_candidates(s, slots, distances2);
+  memcpy(s->distances2, distances2, s->n * sizeof *distances2);
+  memcpy(s->slots, slots, s->n * sizeof *slots);
+  s->limit2 = distances2[s->n - 1];
 }
 
 static void search_leaf(neighbour_search *s, size_t i_leaf) {
@@ -62,16 +123,24 @@ static void search_leaf(neighbour_search *s, size_t i_leaf) {
   size_t n = conic_neighbours_leaf_begin(s->tree, i_leaf + 1) - begin;
   for (size_t i = 0; i < n; i++)
     distances2[i] = conic_neighbours_distance2(s->tree, begin + i, s->query);
-  for (size_t i = 0; i < n; i++)
-    if (distances2[i] <= s->limit2 && begin + i != s->except)
-      insert(s, (uint32_t)(begin + i), distances2[i]);
+  for (size_t i = 0; i < n; i++) {
+    s->distances2[s->n] = distances2[i];
+    s->slots[s->n] = (uint32_t)(begin + i);
+    s->n += (distances2[i] <= s->limit2) & (begin + i != s->except);
+  }
+  if (s->n > s->k + s->k / 2 + 4)
+    cut_candidates(s);
 }
 
 size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query[3], uint32_t except, size_t k,
                                 double limit2, uint32_t *slots, double *distances2) {
-  neighbour_search s = {tree, {query[0], query[1], query[2]}, except, k, 0, limit2, NULL, NULL};
-  s.slots = slots;
-  s.distances2 = distances2;
+  neighbour_search s;
+  s.tree = tree;
+  memcpy(s.query, query, sizeof s.query);
+  s.except = except;
+  s.k = k;
+  s.n = 0;
+  s.limit2 = limit2;
   struct {
     size_t i_node;
     double distance2;
@@ -80,29 +149,35 @@ size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query
   if (k == 0 || tree->n_slots == 0)
     return 0;
   stack[n_stack].i_node = 0;
-  stack[n_stack++].distance2 = box_distance2(tree->boxes[0], query);
+  stack[n_stack++].distance2 = 0.0;
   while (n_stack > 0) {
     size_t i_node = stack[--n_stack].i_node;
     int is_near = stack[n_stack].distance2 <= s.limit2;
     while (is_near && i_node < tree->n_leaves - 1) {
-      size_t near = 2 * i_node + 1, far = near + 1;
-      double near2 = box_distance2(tree->boxes[near], query), far2 = box_distance2(tree->boxes[far], query);
-      if (far2 < near2) {
-        double distance2 = near2;
-        near2 = far2;
-        far2 = distance2;
-        near = far;
-        far = 2 * i_node + 1;
-      }
-      if (far2 <= s.limit2) {
-        stack[n_stack].i_node = far;
-        stack[n_stack++].distance2 = far2;
-      }
-      i_node = near;
+      size_t first = 2 * i_node + 1;
+      const box_pair both = box_distances2((const float(*)[6])tree->boxes + first, query);
+      size_t nearer = both[1] < both[0];
+      const double near2 = nearer ? both[1] : both[0], far2 = nearer ? both[0] : both[1];
+      stack[n_stack].i_node = first + (1 - nearer);
+      stack[n_stack].distance2 = far2;
+      n_stack += far2 <= s.limit2;
+      i_node = first + nearer;
       is_near = near2 <= s.limit2;
     }
     if (is_near)
       search_leaf(&s, i_node - (tree->n_leaves - 1));
   }
-  return s.n_found;
+  return take_candidates(&s, slots, distances2);
+}
+
+double conic_neighbours_bound2(const conic_neighbours *tree, const uint32_t *nearest, size_t n, size_t other,
+                               size_t slot) {
+  const double query[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
+                           (double)tree->position[2][slot]};
+  double bound2 = 0.0;
+  for (size_t i = 0; i < n; i++) {
+    double distance2 = conic_neighbours_distance2(tree, nearest[i] == slot ? other : nearest[i], query);
+    bound2 = distance2 > bound2 ? distance2 : bound2;
+  }
+  return bound2;
 }

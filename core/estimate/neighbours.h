@@ -32,6 +32,9 @@ conic_status conic_neighbours_build(conic_context *context, const float *const p
                                     conic_neighbours *tree);
 void conic_neighbours_release(conic_context *context, conic_neighbours *tree);
 
+/* No more can be asked for. */
+enum { CONIC_MOST_NEAREST = 64 };
+
 /* The k slots nearest to `query` among those whose squared distance is at most `limit2` (HUGE_VAL: no limit), without
  * the slot `except` (CONIC_NO_SLOT: none), nearest first; equal distances by x, then y, then z. `slots` and
  * `distances2` have room for k. Returns how many there are. Thread-safe. */
@@ -45,6 +48,11 @@ static inline double conic_neighbours_distance2(const conic_neighbours *tree, si
   double z = (double)tree->position[2][slot] - query[2];
   return x * x + y * y + z * z;
 }
+
+/* How far the n-th neighbour of `slot` is at most, squared, from the n nearest of a slot near by: as far as the
+ * farthest of these, the slot itself replaced by the other one. */
+double conic_neighbours_bound2(const conic_neighbours *tree, const uint32_t *nearest, size_t n, size_t other,
+                               size_t slot);
 
 /* The slots of the leaf `i_leaf`: from the returned one to that of the next leaf. */
 static inline size_t conic_neighbours_leaf_begin(const conic_neighbours *tree, size_t i_leaf) {

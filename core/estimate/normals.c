@@ -47,13 +47,19 @@ static double agreement(const conic_neighbourhood *neighbourhood, size_t a, size
   return length2 > 0.0 ? cosine - 2.0 * (a_along / length2) * b_along : cosine;
 }
 
-/* A link from a slot to its i-th neighbour, as slot · LINKS + i, sorted by doubt in steps of 1/STEPS. */
+/* A slot has links to its first LINKS neighbours, which are sorted by doubt in steps of 1/STEPS. */
 enum { LINKS = 8, STEPS = 65535, LINKS_A_REPORT = 1 << 18 };
+
+/* Two slots; the higher one first where they belong together with opposite signs. */
+typedef struct normal_link {
+  uint32_t ends[2];
+} normal_link;
 
 typedef struct linking {
   conic_neighbourhood *neighbourhood;
-  size_t n_links;   /* of each slot */
-  uint16_t *doubt;  /* of each link */
+  size_t n_links;               /* of each slot */
+  uint16_t *doubt;              /* of each link */
+  uint8_t *opposite, *left_out; /* of each slot: bits of its links: whether signs are opposite; what joins nothing */
   uint32_t *parent; /* of each slot in the forest of what hangs together; the last stands for all given normals */
   uint8_t *flip;    /* whether a slot's sign is opposite to its parent's */
 } linking;
@@ -64,25 +70,40 @@ static void doubt_slots(void *data, size_t begin, size_t end) {
     if (!(l->neighbourhood->flags[slot] & CONIC_SLOT_GUESSED))
       continue;
     const uint32_t *list = conic_neighbourhood_of(l->neighbourhood, slot);
+    unsigned opposite = 0, left_out = 0;
     for (size_t i = 0; i < l->n_links; i++) {
-      double trust = fabs(agreement(l->neighbourhood, slot, list[i]));
+      const float *normal = l->neighbourhood->normals[list[i]];
+      double agreed = agreement(l->neighbourhood, slot, list[i]), trust = fabs(agreed);
       l->doubt[slot * LINKS + i] = (uint16_t)(trust < 1.0 ? (1.0 - trust) * (double)STEPS : 0.0);
+      opposite |= (unsigned)(agreed < 0.0) << i;
+      left_out |= (unsigned)(normal[0] == 0.0f && normal[1] == 0.0f && normal[2] == 0.0f) << i;
     }
+    l->opposite[slot] = (uint8_t)opposite;
+    l->left_out[slot] = (uint8_t)left_out;
   }
 }
 
-/* Sorts the links of the guessed slots by doubt, stably: `order` gets them, in n · LINKS at most. */
-static size_t sort_links(const linking *l, size_t *starts, uint64_t *order) {
+/* Sorts the links of the guessed slots by doubt, stably: `order` gets them, n · LINKS at most. Returns how many. */
+static size_t sort_links(const linking *l, size_t *starts, normal_link *order) {
   size_t n_slots = l->neighbourhood->tree.n_slots;
   for (size_t slot = 0; slot < n_slots; slot++)
     for (size_t i = 0; i < l->n_links && l->neighbourhood->flags[slot] & CONIC_SLOT_GUESSED; i++)
-      starts[l->doubt[slot * LINKS + i] + 1]++;
+      starts[l->doubt[slot * LINKS + i] + 1] += !(l->left_out[slot] >> i & 1);
   for (size_t step = 0; step <= STEPS; step++)
     starts[step + 1] += starts[step];
   size_t n = starts[STEPS + 1];
-  for (size_t slot = 0; slot < n_slots; slot++)
-    for (size_t i = 0; i < l->n_links && l->neighbourhood->flags[slot] & CONIC_SLOT_GUESSED; i++)
-      order[starts[l->doubt[slot * LINKS + i]]++] = (uint64_t)(slot * LINKS + i);
+  for (size_t slot = 0; slot < n_slots; slot++) {
+    if (!(l->neighbourhood->flags[slot] & CONIC_SLOT_GUESSED))
+      continue;
+    const uint32_t *list = conic_neighbourhood_of(l->neighbourhood, slot);
+    for (size_t i = 0; i < l->n_links; i++) {
+      uint32_t a = (uint32_t)slot, b = list[i];
+      int is_opposite = l->opposite[slot] >> i & 1;
+      if (!(l->left_out[slot] >> i & 1))
+        order[starts[l->doubt[slot * LINKS + i]]++] =
+            (a > b) == is_opposite ? (normal_link){{a, b}} : (normal_link){{b, a}};
+    }
+  }
   return n;
 }
 
@@ -118,7 +139,7 @@ static void join_parts(linking *l, uint32_t a, uint32_t b, unsigned is_opposite)
   l->flip[other] = (uint8_t)(flip_a ^ flip_b ^ is_opposite);
 }
 
-static conic_status join_links(conic_context *context, linking *l, const uint64_t *order, size_t n) {
+static conic_status join_links(conic_context *context, linking *l, const normal_link *order, size_t n) {
   const conic_neighbourhood *neighbourhood = l->neighbourhood;
   for (size_t slot = 0; slot <= neighbourhood->tree.n_slots; slot++) {
     int is_given = slot == neighbourhood->tree.n_slots || !(neighbourhood->flags[slot] & CONIC_SLOT_GUESSED);
@@ -129,11 +150,7 @@ static conic_status join_links(conic_context *context, linking *l, const uint64_
     conic_status status = i % LINKS_A_REPORT == 0 ? conic_progress(context, "estimate", 0.55) : CONIC_OK;
     if (status != CONIC_OK)
       return status;
-    size_t slot = (size_t)(order[i] / LINKS);
-    uint32_t other = conic_neighbourhood_of(neighbourhood, slot)[order[i] % LINKS];
-    const float *normal = neighbourhood->normals[other];
-    if (normal[0] != 0.0f || normal[1] != 0.0f || normal[2] != 0.0f)
-      join_parts(l, (uint32_t)slot, other, agreement(neighbourhood, slot, other) < 0.0);
+    join_parts(l, order[i].ends[0], order[i].ends[1], order[i].ends[0] > order[i].ends[1]);
   }
   return CONIC_OK;
 }
@@ -198,7 +215,7 @@ static void settle_signs(linking *l, connected_part *parts) {
 }
 
 static conic_status orient_with(conic_context *context, linking *l, connected_part *parts, size_t *starts,
-                                uint64_t *order) {
+                                normal_link *order) {
   conic_status status = conic_slots_for(context, l->neighbourhood->tree.n_slots, doubt_slots, l, 0.5, 0.55);
   if (status == CONIC_OK)
     status = join_links(context, l, order, sort_links(l, starts, order));
@@ -209,22 +226,25 @@ static conic_status orient_with(conic_context *context, linking *l, connected_pa
 
 conic_status conic_normals_orient(conic_context *context, conic_neighbourhood *neighbourhood) {
   size_t n_slots = neighbourhood->tree.n_slots;
-  linking l = {neighbourhood, neighbourhood->n_neighbours < LINKS ? neighbourhood->n_neighbours : LINKS, NULL, NULL,
-               NULL};
+  linking l = {neighbourhood, neighbourhood->n_neighbours < LINKS ? neighbourhood->n_neighbours : LINKS};
   l.doubt = conic_memory_allocate(context, n_slots, LINKS * sizeof *l.doubt);
+  l.opposite = conic_memory_allocate(context, n_slots, sizeof *l.opposite);
+  l.left_out = conic_memory_allocate(context, n_slots, sizeof *l.left_out);
   l.parent = conic_memory_allocate(context, n_slots + 1, sizeof *l.parent);
   l.flip = conic_memory_allocate(context, n_slots + 1, sizeof *l.flip);
   connected_part *parts = conic_memory_allocate_zeroed(context, n_slots + 1, sizeof *parts);
   size_t *starts = conic_memory_allocate_zeroed(context, STEPS + 2, sizeof *starts);
-  uint64_t *order = conic_memory_allocate(context, n_slots, LINKS * sizeof *order);
+  normal_link *order = conic_memory_allocate(context, n_slots, LINKS * sizeof *order);
   conic_status status = CONIC_ERROR_MEMORY;
-  if (l.doubt && l.parent && l.flip && parts && starts && order)
+  if (l.doubt && l.opposite && l.left_out && l.parent && l.flip && parts && starts && order)
     status = orient_with(context, &l, parts, starts, order);
   conic_memory_release(context, order);
   conic_memory_release(context, starts);
   conic_memory_release(context, parts);
   conic_memory_release(context, l.flip);
   conic_memory_release(context, l.parent);
+  conic_memory_release(context, l.left_out);
+  conic_memory_release(context, l.opposite);
   conic_memory_release(context, l.doubt);
   return status;
 }

@@ -1,11 +1,14 @@
 #include <math.h>
-#include <string.h>
 
 #include "conic/splats.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/rank.h"
 #include "core/base/real.h"
+#include "core/base/threads.h"
 #include "core/splats/columns.h"
+
+enum { CHUNK = 65536 };
 
 /* The longer axis as the bits of a float, which order like the lengths themselves; 0 for a splat that is not usable. */
 static uint32_t length_bits(const conic_splats *splats, size_t i) {
@@ -24,42 +27,31 @@ static uint32_t length_bits(const conic_splats *splats, size_t i) {
   return conic_bits_of_float(length);
 }
 
-/* The bucket that holds the element of that rank; *rank becomes its rank within the bucket. */
-static uint32_t find_bucket(const size_t *histogram, size_t *rank) {
-  uint32_t bucket = 0;
-  while (*rank >= histogram[bucket])
-    *rank -= histogram[bucket++];
-  return bucket;
+typedef struct length_list {
+  const conic_splats *splats;
+  uint32_t *bits;
+} length_list;
+
+static void length_chunk(void *data, size_t i_chunk, int i_thread) {
+  const length_list *list = data;
+  size_t begin = i_chunk * CHUNK, end = begin + CHUNK < list->splats->count ? begin + CHUNK : list->splats->count;
+  (void)i_thread;
+  for (size_t i = begin; i < end; i++)
+    list->bits[i] = length_bits(list->splats, i);
 }
 
+/* The median of those that are usable. */
 static conic_status find_length(conic_context *context, const conic_splats *splats, double *length) {
-  enum { N_BUCKETS = 65536 };
-  size_t *histogram = conic_memory_allocate_zeroed(context, N_BUCKETS, sizeof *histogram);
-  if (!histogram)
+  size_t n = splats->count, n_unusable = 0;
+  length_list list = {splats, conic_memory_allocate(context, n, sizeof *list.bits)};
+  if (!list.bits)
     return CONIC_ERROR_MEMORY;
-  /* The upper half of the bits first, then the lower half of those in the median's bucket. */
-  size_t n_usable = 0;
-  for (size_t i = 0; i < splats->count; i++) {
-    uint32_t bits = length_bits(splats, i);
-    if (bits) {
-      histogram[bits >> 16]++;
-      n_usable++;
-    }
-  }
-  if (n_usable) {
-    size_t rank = (n_usable - 1) / 2;
-    uint32_t upper = find_bucket(histogram, &rank);
-    memset(histogram, 0, N_BUCKETS * sizeof *histogram);
-    for (size_t i = 0; i < splats->count; i++) {
-      uint32_t bits = length_bits(splats, i);
-      if (bits && bits >> 16 == upper)
-        histogram[bits & 0xffff]++;
-    }
-    uint32_t bits = upper << 16 | find_bucket(histogram, &rank);
-    float median = conic_float_of_bits(bits);
-    *length = (double)median;
-  }
-  conic_memory_release(context, histogram);
+  conic_parallel_for(context, (n + CHUNK - 1) / CHUNK, length_chunk, &list);
+  for (size_t i = 0; i < n; i++)
+    n_unusable += list.bits[i] == 0;
+  if (n > n_unusable) /* those stand first */
+    *length = (double)conic_float_of_bits(conic_bits_of_rank(list.bits, n, n_unusable + (n - n_unusable - 1) / 2));
+  conic_memory_release(context, list.bits);
   return CONIC_OK;
 }
 

@@ -6,7 +6,7 @@
 
 #include "core/base/eigen.h"
 #include "core/base/memory.h"
-#include "core/base/real.h"
+#include "core/base/rank.h"
 #include "lod/layers/format/layers_key.h"
 
 /* A plane goes through so many of the nearest. Cells are so large that one has about so many points; where they are too
@@ -208,8 +208,7 @@ static conic_status find_median(conic_context *context, const conic_node_shape *
   for (size_t i = 0; i < shape->n; i += stride)
     if (shape->spacing[i] > 0.0f)
       some[n++] = shape->spacing[i];
-  qsort(some, n, sizeof *some, conic_compare_floats);
-  *median = n ? some[(n - 1) / 2] : 0.0f;
+  *median = n ? conic_float_of_rank(some, n, (n - 1) / 2) : 0.0f;
   conic_memory_release(context, some);
   return CONIC_OK;
 }

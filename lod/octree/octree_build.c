@@ -52,30 +52,50 @@ static int is_in_reach(const conic_splats *splats, size_t i) {
   return 1;
 }
 
+enum { KIND_DRAWN, KIND_UNDRAWN, KIND_FAR };
+
+typedef struct sorting_out {
+  const conic_splats *splats;
+  uint8_t *kinds;
+} sorting_out;
+
+static void kind_chunk(void *data, size_t i_chunk, int i_thread) {
+  const sorting_out *s = data;
+  size_t begin = i_chunk * chunk_splats,
+         end = begin + chunk_splats < s->splats->count ? begin + chunk_splats : s->splats->count;
+  (void)i_thread;
+  for (size_t i = begin; i < end; i++)
+    s->kinds[i] = !is_drawable(s->splats, i) ? KIND_UNDRAWN : is_in_reach(s->splats, i) ? KIND_DRAWN : KIND_FAR;
+}
+
 /* Those that can be drawn first, each kind in its order. */
-static conic_status sort_out(conic_octree *octree, const conic_splats *splats) {
-  octree->owned_index = conic_memory_allocate(octree->context, splats->count, sizeof *octree->index);
-  if (!octree->owned_index)
-    return CONIC_ERROR_MEMORY;
-  octree->index = octree->owned_index;
-  size_t n_last = splats->count;
-  for (size_t i = 0; i < splats->count; i++) {
-    if (!is_drawable(splats, i))
-      octree->index[--n_last] = (uint32_t)i;
-    else if (is_in_reach(splats, i))
-      octree->index[octree->n_leaves++] = (uint32_t)i;
-    else
+static conic_status list_by_kind(conic_octree *octree, const uint8_t *kinds) {
+  size_t n = octree->n_points, n_last = n;
+  for (size_t i = 0; i < n; i++)
+    if (kinds[i] == KIND_FAR)
       return conic_fail(octree->context, CONIC_ERROR_INPUT, "octree: splat %zu is farther out, or larger, than 1e15",
                         i);
-  }
-  for (size_t a = n_last, b = splats->count; a + 1 < b; a++) {
-    uint32_t first = octree->index[a];
-    octree->index[a] = octree->index[--b];
-    octree->index[b] = first;
-  }
+    else if (kinds[i] == KIND_DRAWN)
+      octree->index[octree->n_leaves++] = (uint32_t)i;
+  for (size_t i = n; i-- > 0 && n_last > octree->n_leaves;)
+    if (kinds[i] == KIND_UNDRAWN)
+      octree->index[--n_last] = (uint32_t)i;
   return octree->n_leaves
              ? CONIC_OK
              : conic_fail(octree->context, CONIC_ERROR_INPUT, "octree: there is no splat that can be drawn");
+}
+
+static conic_status sort_out(conic_octree *octree, const conic_splats *splats) {
+  conic_context *context = octree->context;
+  sorting_out s = {splats, conic_memory_allocate(context, splats->count, sizeof *s.kinds)};
+  conic_status status = CONIC_ERROR_MEMORY;
+  octree->index = octree->owned_index = conic_memory_allocate(context, splats->count, sizeof *octree->index);
+  if (s.kinds && octree->index) {
+    conic_parallel_for(context, (splats->count + chunk_splats - 1) / chunk_splats, kind_chunk, &s);
+    status = list_by_kind(octree, s.kinds);
+  }
+  conic_memory_release(context, s.kinds);
+  return status;
 }
 
 typedef struct gathering {
@@ -144,35 +164,88 @@ static conic_status split(conic_octree *octree) {
   return status == CONIC_OK ? gather_rest(octree) : status;
 }
 
-/* The scales of the codes: what nothing in the octree exceeds. */
-static void choose_scale(conic_octree *octree, double cutoff) {
-  const conic_splats *leaves = &octree->leaves;
-  double diagonal2 = 0.0, longest2 = 0.0, length = 1.0;
-  float color = 1.0f;
+/* What the scales go by, of some of the leaves. */
+typedef struct leaf_range {
+  float low[3], high[3], color;
+  double longest2; /* of the sums of both axes' squares */
+} leaf_range;
+
+typedef struct ranging {
+  const conic_octree *octree;
+  leaf_range *chunks;
+} ranging;
+
+static void range_chunk(void *data, size_t i_chunk, int i_thread) {
+  const ranging *r = data;
+  const conic_splats *leaves = &r->octree->leaves;
+  size_t begin = i_chunk * chunk_splats,
+         end = begin + chunk_splats < r->octree->n_leaves ? begin + chunk_splats : r->octree->n_leaves;
+  leaf_range range = {.color = 1.0f};
+  (void)i_thread;
   for (int axis = 0; axis < 3; axis++) {
-    float low = leaves->position[axis][0], high = low;
-    for (size_t i = 0; i < octree->n_leaves; i++) {
-      low = leaves->position[axis][i] < low ? leaves->position[axis][i] : low;
-      high = leaves->position[axis][i] > high ? leaves->position[axis][i] : high;
-      color = leaves->color[axis] && leaves->color[axis][i] > color ? leaves->color[axis][i] : color;
+    const float *positions = leaves->position[axis], *colors = leaves->color[axis];
+    float low = positions[begin], high = low;
+    for (size_t i = begin; i < end; i++) {
+      low = positions[i] < low ? positions[i] : low;
+      high = positions[i] > high ? positions[i] : high;
     }
-    diagonal2 += ((double)high - (double)low) * ((double)high - (double)low);
+    for (size_t i = begin; i < end && colors; i++)
+      range.color = colors[i] > range.color ? colors[i] : range.color;
+    range.low[axis] = low;
+    range.high[axis] = high;
   }
-  for (size_t i = 0; i < octree->n_leaves; i++) {
+  for (size_t i = begin; i < end; i++) {
     double sum = 0.0;
     for (int axis = 0; axis < 3; axis++) {
       double u = (double)leaves->tangent_u[axis][i], v = (double)leaves->tangent_v[axis][i];
       sum += u * u + v * v;
     }
-    longest2 = sum > longest2 ? sum : longest2;
+    range.longest2 = sum > range.longest2 ? sum : range.longest2;
+  }
+  r->chunks[i_chunk] = range;
+}
+
+static void join_ranges(const leaf_range *more, leaf_range *range) {
+  for (int axis = 0; axis < 3; axis++) {
+    range->low[axis] = more->low[axis] < range->low[axis] ? more->low[axis] : range->low[axis];
+    range->high[axis] = more->high[axis] > range->high[axis] ? more->high[axis] : range->high[axis];
+  }
+  range->color = more->color > range->color ? more->color : range->color;
+  range->longest2 = more->longest2 > range->longest2 ? more->longest2 : range->longest2;
+}
+
+static conic_status find_leaf_range(const conic_octree *octree, leaf_range *range) {
+  size_t n_chunks = (octree->n_leaves + chunk_splats - 1) / chunk_splats;
+  ranging r = {octree, conic_memory_allocate(octree->context, n_chunks, sizeof *r.chunks)};
+  if (!r.chunks)
+    return CONIC_ERROR_MEMORY;
+  conic_parallel_for(octree->context, n_chunks, range_chunk, &r);
+  *range = r.chunks[0];
+  for (size_t i = 1; i < n_chunks; i++)
+    join_ranges(&r.chunks[i], range);
+  conic_memory_release(octree->context, r.chunks);
+  return CONIC_OK;
+}
+
+/* The scales of the codes: what nothing in the octree exceeds. */
+static conic_status choose_scale(conic_octree *octree, double cutoff) {
+  double diagonal2 = 0.0, length = 1.0;
+  leaf_range range;
+  conic_status status = find_leaf_range(octree, &range);
+  if (status != CONIC_OK)
+    return status;
+  for (int axis = 0; axis < 3; axis++) {
+    double extent = (double)range.high[axis] - (double)range.low[axis];
+    diagonal2 += extent * extent;
   }
   /* The ellipse of a node reaches ten times as far as its leaves at most (least_ratio in octree_fit.c). */
-  double wanted = 16.0 * (sqrt(diagonal2) + 2.0 * cutoff * sqrt(longest2)) / (cutoff < 1.0 ? cutoff : 1.0);
+  double wanted = 16.0 * (sqrt(diagonal2) + 2.0 * cutoff * sqrt(range.longest2)) / (cutoff < 1.0 ? cutoff : 1.0);
   while (length < wanted)
     length *= 2.0;
   while (length * 0.5 >= wanted)
     length *= 0.5;
-  conic_code_scale_init(length, cutoff, color, &octree->scale);
+  conic_code_scale_init(length, cutoff, range.color, &octree->scale);
+  return CONIC_OK;
 }
 
 /* Rounds the leaves to what the codes of a quantised file give, and leaves out what cannot be drawn. */
@@ -249,10 +322,11 @@ static conic_status build_octree(conic_octree *octree, const conic_octree_option
   if (status != CONIC_OK)
     return status;
   octree->leaves = *leaves;
-  choose_scale(octree, (double)options->cutoff);
-  if (options->quantize)
+  status = choose_scale(octree, (double)options->cutoff);
+  if (status == CONIC_OK && options->quantize)
     status = quantize(octree);
-  octree->has_color_codes = conic_octree_colors_are_codes(&octree->scale, &octree->leaves);
+  if (status == CONIC_OK)
+    status = conic_octree_check_colors(octree);
   if (status == CONIC_OK)
     status = lay_out_leaves(octree);
   return status == CONIC_OK ? conic_octree_fit(octree) : status;

@@ -24,7 +24,7 @@ enum {
   AT_OPACITY = 18
 };
 
-enum { OCTAVE_STEPS = 1024 };
+enum { OCTAVE_STEPS = 1024, SHARE_STEPS = 16 };
 
 /* The upper halves of the bits of 2^-14 and 1. */
 enum { FIRST_GUESS = 0x3880, LAST_GUESS = 0x3f80, GUESSES = LAST_GUESS - FIRST_GUESS };
@@ -58,7 +58,7 @@ void conic_code_scale_init(double length, double cutoff, float color, conic_code
   }
   for (int i = 0; i < 256; i++) {
     scale->widening[i] = power(scale, i, 32);
-    scale->share[i] = power(scale, -i, 16);
+    scale->share[i] = power(scale, -i, SHARE_STEPS);
     scale->factor[i] = i ? power(scale, i - 160, 16) : 0.0;
   }
 }
@@ -74,16 +74,26 @@ uint8_t conic_code_srgb(const conic_code_scale *scale, float linear) {
   return code;
 }
 
+/* How many of an octave's `per_octave` parts a ratio is above 1, or one or two beside that: by the exponent, and a
+ * polynomial that is off from log2 by no more than 1.5e-4. */
+static int guess_steps(double ratio, int per_octave) {
+  uint64_t bits;
+  memcpy(&bits, &ratio, sizeof bits);
+  double m = conic_double_of_bits((bits & UINT64_C(0xfffffffffffff)) | UINT64_C(0x3ff0000000000000)) - 1.0;
+  double log2 = m * (1.4387257 + m * (-0.6778778 + m * (0.3218538 - m * 0.0827017)));
+  return (int)(((double)(int)(bits >> 52) - 1023.0 + log2) * (double)per_octave);
+}
+
 uint16_t conic_code_length(const conic_code_scale *scale, double longest, double length) {
-  int low = 0, high = 65535; /* the greatest code that still gives `length` or more */
-  while (low < high) {
-    int middle = (low + high + 1) / 2;
-    if (longest * power(scale, -middle, OCTAVE_STEPS) >= length)
-      low = middle;
-    else
-      high = middle - 1;
-  }
-  return (uint16_t)low;
+  double ratio = longest / length;
+  int code = ratio > 1.0 && ratio < 0x1p64 ? guess_steps(ratio, OCTAVE_STEPS) : ratio > 1.0 ? 65535 : 0;
+  code = code < 65535 ? code : 65535;
+  /* The greatest code that still gives `length` or more. */
+  while (code > 0 && !(longest * power(scale, -code, OCTAVE_STEPS) >= length))
+    code--;
+  while (code < 65535 && longest * power(scale, -code - 1, OCTAVE_STEPS) >= length)
+    code++;
+  return (uint16_t)code;
 }
 
 double conic_code_length_of(const conic_code_scale *scale, double longest, uint16_t code) {
@@ -118,11 +128,10 @@ void conic_code_normal_of(const uint8_t code[3], double normal[3]) {
   double x = (double)(code[0] | (code[1] & 15) << 8) / 2047.0 - 1.0;
   double y = (double)(code[1] >> 4 | code[2] << 4) / 2047.0 - 1.0;
   double z = 1.0 - fabs(x) - fabs(y);
-  if (z < 0.0) {
-    double unfolded = (1.0 - fabs(y)) * sign_of(x);
-    y = (1.0 - fabs(x)) * sign_of(y);
-    x = unfolded;
-  }
+  /* Both are worked out, for which half it is cannot be foreseen. Neither coordinate is -0. */
+  const double xs[2] = {x, (1.0 - fabs(y)) * copysign(1.0, x)}, ys[2] = {y, (1.0 - fabs(x)) * copysign(1.0, y)};
+  x = xs[z < 0.0];
+  y = ys[z < 0.0];
   double length = sqrt(x * x + y * y + z * z);
   normal[0] = x / length;
   normal[1] = y / length;
@@ -236,10 +245,13 @@ void conic_code_extent(const conic_code_scale *scale, double *reach, double *rad
 }
 
 double conic_code_error(const conic_code_scale *scale, double error, double radius, uint8_t *code) {
-  int steps = 0;
-  for (int bit = 128; bit; bit /= 2) /* the most that still give `error` or more */
-    if (2.0 * radius * scale->share[steps + bit] >= error)
-      steps += bit;
+  double ratio = 2.0 * radius / error;
+  int steps = ratio > 1.0 && ratio < 0x1p16 ? guess_steps(ratio, SHARE_STEPS) : ratio > 1.0 ? 255 : 0;
+  steps = steps < 255 ? steps : 255;
+  while (steps > 0 && !(2.0 * radius * scale->share[steps] >= error)) /* the most that still give `error` or more */
+    steps--;
+  while (steps < 255 && 2.0 * radius * scale->share[steps + 1] >= error)
+    steps++;
   code[AT_ERROR] = (uint8_t)steps;
   return 2.0 * radius * scale->share[steps];
 }
@@ -281,13 +293,21 @@ static double reach_of_code(const conic_code_scale *scale, const uint8_t *code) 
   return conic_code_length_of(scale, scale->length * scale->cutoff, conic_load_16(code + AT_REACH));
 }
 
+float conic_code_radius_of(const conic_code_scale *scale, const uint8_t *code) {
+  return (float)(reach_of_code(scale, code) * scale->widening[code[AT_RADIUS]]);
+}
+
+float conic_code_cone_of(const uint8_t *code) {
+  return (float)cone_of(code[AT_CONE]);
+}
+
 void conic_code_sphere(const conic_code_scale *scale, const double first[3], const uint8_t *code, float center[3],
                        float *radius) {
   double position[3];
   decode_place(scale, first, code, position);
   for (int axis = 0; axis < 3; axis++)
     center[axis] = (float)position[axis];
-  *radius = (float)(reach_of_code(scale, code) * scale->widening[code[AT_RADIUS]]);
+  *radius = conic_code_radius_of(scale, code);
 }
 
 void conic_code_decode(const conic_code_scale *scale, const double first[3], const uint8_t *code, conic_node *node) {

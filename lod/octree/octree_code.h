@@ -57,6 +57,9 @@ void conic_code_frame_in(const conic_code_scale *scale, const double first[3], c
 /* The sphere alone, faster. */
 void conic_code_sphere(const conic_code_scale *scale, const double first[3], const uint8_t *code, float center[3],
                        float *radius);
+/* Its radius alone; and the cone's cosine. */
+float conic_code_radius_of(const conic_code_scale *scale, const uint8_t *code);
+float conic_code_cone_of(const uint8_t *code);
 /* The basis in which conic_code_axes takes its direction; n is the facing itself. */
 void conic_code_basis(const uint8_t *code, double u[3], double v[3], double n[3]);
 

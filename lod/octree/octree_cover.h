@@ -48,8 +48,9 @@ typedef struct conic_near_discs {
   float center[3], half[3]; /* a box: whatever reaches into it is in these blocks */
   size_t begin, end;        /* the nodes' own discs */
   int is_full;              /* some that reach into the box are left out, and nothing outside is looked at */
-  conic_block_list blocks, of_node;
-  float (*flat)[CONIC_FLAT_NUMBERS][CONIC_DISC_BLOCK]; /* the node's blocks as it sees them */
+  conic_block_list blocks;
+  float (*flat)[CONIC_FLAT_NUMBERS][CONIC_DISC_BLOCK]; /* the blocks as the node that is looked at sees them, */
+  uint16_t *are_flat;                                  /* those with a bit here: a number for 16 of them */
 } conic_near_discs;
 
 /* Whether there is room in the list for one more that reaches into the box. */

@@ -24,9 +24,6 @@ _Static_assert((int)N_NUMBERS == (int)CONIC_FLAT_NUMBERS, "there is room for wha
 _Static_assert(CONIC_DISC_BLOCK % CONIC_LANES == 0, "lanes are parts of blocks");
 _Static_assert(CONIC_DISC_SAMPLES % CONIC_LANES == 0, "samples are whole lanes");
 
-/* Of a block in a node's list: that it was flattened. */
-static const uint32_t FLAT = UINT32_C(1) << 31;
-
 /* The error that no disc has lowered: of no real distance, but a number, so that boxes of the padding stay out of it.
  */
 static const float unknown = 1e30f;
@@ -147,9 +144,12 @@ CONIC_INLINE void flatten_lanes(const cover *c, const conic_discs *discs, size_t
   lanes root = lanes_sqrt(sum), scale = 1.0f / determinant, area = lanes_absolute(determinant);
   /* One seen from its edge counts by its centre. */
   lanes_mask is_flat = lanes_less(sum * 1e-3f, area);
-  lanes point = 1.0f / (root * 1e-3f + 1e-30f);
-  lanes inverse[4] = {lanes_select(is_flat, vy * scale, point), lanes_keep(is_flat, -vx * scale),
-                      lanes_keep(is_flat, -uy * scale), lanes_select(is_flat, ux * scale, point)};
+  lanes inverse[4] = {vy * scale, lanes_keep(is_flat, -vx * scale), lanes_keep(is_flat, -uy * scale), ux * scale};
+  if (lanes_any(lanes_not(is_flat))) {
+    lanes point = 1.0f / (root * 1e-3f + 1e-30f);
+    inverse[0] = lanes_select(is_flat, inverse[0], point);
+    inverse[3] = lanes_select(is_flat, inverse[3], point);
+  }
   uz = lanes_keep(is_flat, uz);
   vz = lanes_keep(is_flat, vz);
   lanes minor = lanes_keep(is_flat, area / root);
@@ -233,18 +233,18 @@ CONIC_INLINE int approach_block(const cover *c, const conic_discs *discs, size_t
   return is_flat;
 }
 
-/* Searches the node's blocks. */
+/* Searches the blocks nearby. */
 CONIC_INLINE void search_near(const cover *c, const conic_discs *discs, conic_near_discs *near, search *s) {
-  conic_block_list *list = &near->of_node;
-  for (size_t first = 0; first < list->count && s->nearest > c->enough; first += CONIC_DISC_BLOCK) {
+  const conic_block_list *list = &near->blocks;
+  for (size_t chunk = 0; chunk * CONIC_DISC_BLOCK < list->count && s->nearest > c->enough; chunk++) {
     const middle_box box = box_of_sample(s);
-    unsigned blocks = find_in_block(list->center, list->half, first / CONIC_DISC_BLOCK, &box);
+    unsigned blocks = find_in_block(list->center, list->half, chunk, &box), are_flat = near->are_flat[chunk];
     for (; blocks && s->nearest > c->enough; blocks &= blocks - 1) {
-      size_t i = first + (size_t)__builtin_ctz(blocks);
-      uint32_t block = list->block[i] & ~FLAT;
-      if (approach_block(c, discs, block, near->flat[i], block != list->block[i], s))
-        list->block[i] |= FLAT;
+      unsigned k = (unsigned)__builtin_ctz(blocks);
+      size_t i = chunk * CONIC_DISC_BLOCK + k;
+      are_flat |= (unsigned)approach_block(c, discs, list->block[i], near->flat[i], (int)(are_flat >> k & 1), s) << k;
     }
+    near->are_flat[chunk] = (uint16_t)are_flat;
   }
 }
 
@@ -339,33 +339,20 @@ static void end_list(conic_block_list *list) {
     }
 }
 
-/* Those of the blocks nearby that may matter to a sample that counts as `farthest` off, or less. */
-static void list_blocks(const conic_node_disc *node, float farthest, conic_near_discs *near) {
-  const conic_block_list *from = &near->blocks;
-  middle_box box = box_of_node(node, farthest);
-  begin_list(&near->of_node);
-  for (size_t first = 0; first < from->count; first += CONIC_DISC_BLOCK)
-    for (unsigned bits = find_in_block(from->center, from->half, first / CONIC_DISC_BLOCK, &box); bits;
-         bits &= bits - 1) {
-      size_t i = first + (size_t)__builtin_ctz(bits);
-      add_to_list(from->center, from->half, i, from->block[i], &near->of_node);
-    }
-  end_list(&near->of_node);
-}
-
 static float find_cover(const conic_disc_samples *samples, const conic_discs *discs, size_t begin, size_t end,
                         conic_near_discs *near, const conic_node_disc *node) {
   cover c = {.node = node, .enough = node->enough};
-  int is_listed = 0;
+  int is_begun = 0;
   begin_cover(samples, &c);
   approach_own(discs, begin, end, &c);
   for (;;) { /* once one is known for sure, others that are no worse need not be */
     int worst = find_worst(&c);
     if (!(c.nearest[worst] > c.enough))
       return c.enough;
-    if (!is_listed)
-      list_blocks(node, c.nearest[worst], near);
-    is_listed = 1;
+    if (!is_begun) /* of no block it is known how this node sees it */
+      memset(near->are_flat, 0,
+             near->blocks.count / CONIC_DISC_BLOCK * sizeof *near->are_flat + sizeof *near->are_flat);
+    is_begun = 1;
     search s = begin_search(&c, worst);
     search_near(&c, discs, near, &s);
     if (s.nearest > c.enough && !near->is_full && !is_all_near(near, &s))

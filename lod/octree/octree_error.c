@@ -124,6 +124,19 @@ static void set_disc_of_leaf(const conic_octree *octree, size_t i, const conic_d
   }
 }
 
+/* The same of a leaf that is no disc yet. */
+static int is_leaf_in_box(const conic_octree *octree, size_t i, const error_box *b) {
+  const conic_splats *leaves = &octree->leaves;
+  float cutoff = (float)octree->scale.cutoff;
+  for (int axis = 0; axis < 3; axis++) {
+    float half = fabsf(cutoff * leaves->tangent_u[axis][i]) + fabsf(cutoff * leaves->tangent_v[axis][i]);
+    float center = leaves->position[axis][i];
+    if (!(center - half <= b->high[axis] && center + half >= b->low[axis]))
+      return 0;
+  }
+  return 1;
+}
+
 /* Whether subtree i reaches into the box. Reads of its code what no other thread writes. */
 static int is_near(const conic_octree *octree, size_t i, const error_box *b) {
   float center[3], radius, apart2 = 0.0f;
@@ -203,10 +216,9 @@ static void gather_discs(neighbourhood *around, size_t begin, size_t end, const 
       i = octree->end[i];
       continue;
     }
-    for (uint32_t k = octree->first_leaf[i]; k < octree->first_leaf[i + 1] && discs->count < room; k++) {
-      set_disc_of_leaf(octree, k, discs, discs->count);
-      discs->count += (size_t)is_in_box(b, discs, discs->count);
-    }
+    for (uint32_t k = octree->first_leaf[i]; k < octree->first_leaf[i + 1] && discs->count < room; k++)
+      if (is_leaf_in_box(octree, k, b))
+        set_disc_of_leaf(octree, k, discs, discs->count++);
     i++;
   }
 }
@@ -324,6 +336,7 @@ static void release_around(const neighbourhood *around) {
   conic_memory_release(context, around->near_numbers);
   conic_memory_release(context, around->near_blocks);
   conic_memory_release(context, around->near.flat);
+  conic_memory_release(context, around->near.are_flat);
 }
 
 /* Lays out the arrays of discs: `stride` of each number, and a block's. */
@@ -364,15 +377,15 @@ static conic_status make_room_for_discs(neighbourhood *around, size_t n_own) {
   around->first_leaf = conic_memory_allocate(context, n_own, sizeof *around->first_leaf);
   around->members = conic_memory_allocate(context, n_own, sizeof *around->members);
   size_t n_blocks = stride / CONIC_DISC_BLOCK;
-  around->near_numbers = conic_memory_allocate(context, n_blocks, 12 * sizeof *around->near_numbers);
-  around->near_blocks = conic_memory_allocate(context, n_blocks, 2 * sizeof *around->near_blocks);
+  around->near_numbers = conic_memory_allocate(context, n_blocks, 6 * sizeof *around->near_numbers);
+  around->near_blocks = conic_memory_allocate(context, n_blocks, sizeof *around->near_blocks);
   near->flat = conic_memory_allocate(context, n_blocks, sizeof *near->flat);
+  near->are_flat = conic_memory_allocate(context, n_blocks / CONIC_DISC_BLOCK + 1, sizeof *near->are_flat);
   if (!around->numbers || !around->first_leaf || !around->members || !around->near_numbers || !around->near_blocks ||
-      !near->flat)
+      !near->flat || !near->are_flat)
     return CONIC_ERROR_MEMORY;
   lay_out_discs(around->numbers, stride, discs);
   lay_out_list(around->near_numbers, around->near_blocks, n_blocks, &near->blocks);
-  lay_out_list(around->near_numbers + 6 * n_blocks, around->near_blocks + n_blocks, n_blocks, &near->of_node);
   return CONIC_OK;
 }
 

@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/real.h"
+#include "core/base/threads.h"
 #include "core/files/file_body.h"
 #include "lod/octree/leaf_code.h"
 #include "lod/octree/octree_nodes.h"
@@ -114,16 +115,51 @@ uint64_t conic_octree_file_bytes(const conic_octree *octree) {
   return lay_out_file(&h).n_bytes;
 }
 
-int conic_octree_colors_are_codes(const conic_code_scale *scale, const conic_splats *splats) {
-  if (!splats->color[0])
-    return 0;
+/* What is done with the colours a chunk of leaves at a time. */
+enum { COLOR_CHUNK = 65536 };
+typedef struct color_coding {
+  const conic_octree *octree;
+  unsigned char **codes;
+  uint8_t *are_codes; /* by chunk; null where they are to be written */
+} color_coding;
+
+static size_t count_color_chunks(const conic_octree *octree) {
+  return (octree->leaves.count + COLOR_CHUNK - 1) / COLOR_CHUNK;
+}
+
+static void code_colors(void *data, size_t i_chunk, int i_thread) {
+  const color_coding *c = data;
+  const conic_code_scale *scale = &c->octree->scale;
+  const conic_splats *leaves = &c->octree->leaves;
+  size_t begin = i_chunk * COLOR_CHUNK, end = begin + COLOR_CHUNK < leaves->count ? begin + COLOR_CHUNK : leaves->count;
+  int are_codes = 1;
+  (void)i_thread;
   for (int channel = 0; channel < 3; channel++)
-    for (size_t i = 0; i < splats->count; i++) {
-      float value = splats->color[channel][i];
-      if (!(scale->colors[conic_code_srgb(scale, value)] == value))
-        return 0;
+    for (size_t i = begin; i < end && are_codes; i++) {
+      float value = leaves->color[channel][i];
+      uint8_t code = conic_code_srgb(scale, value);
+      if (c->are_codes)
+        are_codes = scale->colors[code] == value;
+      else
+        c->codes[channel][i] = code;
     }
-  return 1;
+  if (c->are_codes)
+    c->are_codes[i_chunk] = (uint8_t)are_codes;
+}
+
+conic_status conic_octree_check_colors(conic_octree *octree) {
+  size_t n_chunks = count_color_chunks(octree);
+  octree->has_color_codes = octree->leaves.color[0] != NULL;
+  if (!octree->has_color_codes)
+    return CONIC_OK;
+  color_coding c = {.octree = octree, .are_codes = conic_memory_allocate(octree->context, n_chunks, 1)};
+  if (!c.are_codes)
+    return CONIC_ERROR_MEMORY;
+  conic_parallel_for(octree->context, n_chunks, code_colors, &c);
+  for (size_t i = 0; i < n_chunks; i++)
+    octree->has_color_codes &= c.are_codes[i];
+  conic_memory_release(octree->context, c.are_codes);
+  return CONIC_OK;
 }
 
 /* What the arrays are filled from; colours as codes have been made into bytes. */
@@ -156,9 +192,10 @@ static conic_status encode_colors(const conic_octree *octree, unsigned char *cod
     codes[channel] = conic_memory_allocate(octree->context, octree->n_points, 1);
     if (!codes[channel])
       return CONIC_ERROR_MEMORY;
-    for (size_t i = 0; i < octree->n_points; i++)
-      codes[channel][i] = conic_code_srgb(&octree->scale, octree->leaves.color[channel][i]);
   }
+  color_coding c = {.octree = octree, .codes = codes};
+  if (codes[0])
+    conic_parallel_for(octree->context, count_color_chunks(octree), code_colors, &c);
   return CONIC_OK;
 }
 

@@ -2,11 +2,10 @@
 #include "core/base/options.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/real.h"
+#include "core/base/rank.h"
 #include "core/base/threads.h"
 
 static const size_t chunk_nodes = 4096;
@@ -151,12 +150,17 @@ static conic_status allocate_decoded(conic_octree *octree) {
                       &octree->cone,      &octree->normal[0], &octree->normal[1], &octree->normal[2], &octree->excess};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
     conic_memory_release(context, *arrays[i]); /* of an attempt that failed */
-    *arrays[i] = conic_memory_allocate_zeroed(context, octree->n_nodes + CONIC_OCTREE_GROUP, sizeof(float));
+    *arrays[i] = conic_memory_allocate(context, octree->n_nodes + CONIC_OCTREE_GROUP, sizeof(float));
     if (!*arrays[i])
       return CONIC_ERROR_MEMORY;
+    conic_memory_prefer_large_pages(context, *arrays[i], octree->n_nodes * sizeof(float));
+    memset(*arrays[i] + octree->n_nodes, 0, CONIC_OCTREE_GROUP * sizeof(float));
   }
   octree->drawn = conic_memory_allocate(context, octree->n_nodes, sizeof *octree->drawn);
-  return octree->drawn ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (!octree->drawn)
+    return CONIC_ERROR_MEMORY;
+  conic_memory_prefer_large_pages(context, octree->drawn, octree->n_nodes * sizeof *octree->drawn);
+  return CONIC_OK;
 }
 
 conic_status conic_octree_decode(conic_octree *octree) {
@@ -192,16 +196,35 @@ conic_status conic_octree_decode_all(conic_octree *octree) {
   octree->drawn_leaves = conic_memory_allocate(octree->context, octree->n_leaves, sizeof *octree->drawn_leaves);
   if (!octree->drawn_leaves)
     return CONIC_ERROR_MEMORY;
+  conic_memory_prefer_large_pages(octree->context, octree->drawn_leaves,
+                                  octree->n_leaves * sizeof *octree->drawn_leaves);
   conic_parallel_for(octree->context, (octree->n_leaves + chunk_nodes - 1) / chunk_nodes, copy_chunk, octree);
   return CONIC_OK;
 }
 
 /* Least, median, greatest. */
-static void find_quantiles(float *values, size_t n, double quantiles[3]) {
-  qsort(values, n, sizeof *values, conic_compare_floats);
-  quantiles[0] = n ? (double)values[0] : 0.0;
-  quantiles[1] = n ? (double)values[(n - 1) / 2] : 0.0;
-  quantiles[2] = n ? (double)values[n - 1] : 0.0;
+static void find_quantiles(const float *values, size_t n, double quantiles[3]) {
+  const size_t ranks[3] = {0, (n - 1) / 2, n - 1};
+  for (int i = 0; i < 3; i++)
+    quantiles[i] = n ? (double)conic_float_of_rank(values, n, ranks[i]) : 0.0;
+}
+
+typedef struct node_spreads {
+  const conic_octree *octree;
+  float *radii, *cones;
+} node_spreads;
+
+static void spread_chunk(void *data, size_t i_chunk, int i_thread) {
+  const node_spreads *spreads = data;
+  const conic_octree *octree = spreads->octree;
+  size_t begin = i_chunk * chunk_nodes,
+         end = begin + chunk_nodes < octree->n_nodes ? begin + chunk_nodes : octree->n_nodes;
+  (void)i_thread;
+  for (size_t i = begin; i < end; i++) {
+    const uint8_t *code = octree->codes + i * CONIC_NODE_BYTES;
+    spreads->radii[i] = conic_code_radius_of(&octree->scale, code);
+    spreads->cones[i] = conic_code_cone_of(code);
+  }
 }
 
 /* Of all radii and cones, straight from the codes. */
@@ -210,15 +233,9 @@ static conic_status find_spreads(const conic_octree *octree, conic_octree_info *
   float *radii = conic_memory_allocate(octree->context, n, sizeof *radii);
   float *cones = conic_memory_allocate(octree->context, n, sizeof *cones);
   conic_status status = radii && cones ? CONIC_OK : CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < n && status == CONIC_OK; i++) {
-    conic_node node;
-    double first[3];
-    conic_octree_place(octree, octree->first_leaf[i], first);
-    conic_code_decode(&octree->scale, first, octree->codes + i * CONIC_NODE_BYTES, &node);
-    radii[i] = node.radius;
-    cones[i] = node.cone;
-  }
   if (status == CONIC_OK) {
+    node_spreads spreads = {octree, radii, cones};
+    conic_parallel_for(octree->context, (n + chunk_nodes - 1) / chunk_nodes, spread_chunk, &spreads);
     find_quantiles(radii, n, info->radius);
     find_quantiles(cones, n, info->cone);
   }

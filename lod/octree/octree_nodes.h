@@ -75,8 +75,8 @@ conic_status conic_octree_decode_all(conic_octree *octree);
 /* What conic_default_near gives for the splats that it was built from. */
 double conic_octree_near(const conic_octree *octree);
 
-/* Whether all colours of a set are those of 8-bit codes. */
-int conic_octree_colors_are_codes(const conic_code_scale *scale, const conic_splats *splats);
+/* Finds has_color_codes. Errors: MEMORY. */
+conic_status conic_octree_check_colors(conic_octree *octree);
 
 /* Finds the clip lines of each point. Errors: MEMORY. */
 conic_status conic_octree_index_clips(conic_octree *octree);

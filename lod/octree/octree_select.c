@@ -164,6 +164,7 @@ static conic_status make_room_for_arrays(octree_selecting *s, size_t room) {
   float *arrays = s->scratch->arrays = conic_memory_allocate(context, stride * N_ARRAYS, sizeof *arrays);
   if (!arrays)
     return CONIC_ERROR_MEMORY;
+  conic_memory_prefer_large_pages(context, arrays, stride * N_ARRAYS * sizeof *arrays);
   for (int axis = 0; axis < 3; axis++) {
     splats->position[axis] = arrays + stride * (size_t)n++;
     splats->tangent_u[axis] = arrays + stride * (size_t)n++;

@@ -13,7 +13,7 @@ static const size_t task_points = 32768;
 
 /* Splitting at the mean takes more levels than this only where points crowd towards one place by the thousandth of a
  * thousandth; such a node is cut into eight by order, which ends after another few. */
-enum { DEEPEST_MEAN = 96, FANOUT = CONIC_NODE_FANOUT };
+enum { DEEPEST_MEAN = 96, FANOUT = CONIC_NODE_FANOUT, FEW_POINTS = 64 };
 
 /* A subtree that is yet to be split, or the children's byte of a node that has been. */
 typedef struct top_item {
@@ -97,6 +97,27 @@ static void move_points(splitter *s, size_t begin, size_t end, const size_t plac
   memcpy(split->index + begin, s->scratch_index + begin, n * sizeof(uint32_t));
 }
 
+/* The same of few points, each of whose places is found once. */
+static void move_few(const splitter *s, size_t begin, size_t n, size_t places[FANOUT]) {
+  conic_split *split = s->split;
+  float moved[FEW_POINTS];
+  uint32_t moved_index[FEW_POINTS];
+  uint8_t to[FEW_POINTS];
+  for (size_t i = 0; i < n; i++)
+    to[i] = (uint8_t)(places[s->octants[begin + i]]++ - begin);
+  for (int axis = 0; axis < 3; axis++) {
+    float *position = split->position[axis] + begin;
+    for (size_t i = 0; i < n; i++)
+      moved[to[i]] = position[i];
+    for (size_t i = 0; i < n; i++)
+      position[i] = moved[i];
+  }
+  for (size_t i = 0; i < n; i++)
+    moved_index[to[i]] = split->index[begin + i];
+  for (size_t i = 0; i < n; i++)
+    split->index[begin + i] = moved_index[i];
+}
+
 /* Equal parts by order, the smaller ones first. */
 static void cut_by_order(size_t begin, size_t end, parts *result) {
   size_t n = end - begin, n_parts = n < FANOUT ? n : FANOUT, larger = n % n_parts;
@@ -110,8 +131,35 @@ static void cut_by_order(size_t begin, size_t end, parts *result) {
   }
 }
 
+/* Two points part always, and half of the nodes are no more: they only may have to change places. */
+static void split_pair(const splitter *s, size_t begin, parts *result) {
+  conic_split *split = s->split;
+  int first_octant = 0, last_octant = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    const float *pair = split->position[axis] + begin;
+    double mean = ((double)pair[0] + (double)pair[1]) / 2.0;
+    first_octant |= ((double)pair[0] > mean) << axis;
+    last_octant |= ((double)pair[1] > mean) << axis;
+  }
+  if (first_octant > last_octant) {
+    for (int axis = 0; axis < 3; axis++) {
+      float *pair = split->position[axis] + begin, first = pair[0];
+      pair[0] = pair[1];
+      pair[1] = first;
+    }
+    uint32_t *pair = split->index + begin, first = pair[0];
+    pair[0] = pair[1];
+    pair[1] = first;
+  }
+  *result = (parts){.n_direct = 2, .begin = {begin, begin + 1, begin + 2}};
+}
+
 static void split_node(splitter *s, size_t begin, size_t end, int depth, parts *result) {
   size_t counts[FANOUT], places[FANOUT], place = begin;
+  if (end - begin == 2 && depth < DEEPEST_MEAN) {
+    split_pair(s, begin, result);
+    return;
+  }
   if (depth >= DEEPEST_MEAN || find_octants(s, begin, end, counts) < 2) {
     cut_by_order(begin, end, result);
     return;
@@ -126,7 +174,10 @@ static void split_node(splitter *s, size_t begin, size_t end, int depth, parts *
         result->n_inner += is_inner;
       }
   result->begin[result->n_direct + result->n_inner] = place;
-  move_points(s, begin, end, places);
+  if (end - begin <= FEW_POINTS)
+    move_few(s, begin, end - begin, places);
+  else
+    move_points(s, begin, end, places);
 }
 
 static uint8_t children_byte(const parts *p) {

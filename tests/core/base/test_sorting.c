@@ -1,6 +1,7 @@
-/* Sorting by digits, and the queue of slots: by key, and what is equal in an order of its own. */
+/* Sorting by digits, the value of a rank, and the queue of slots: by key, and what is equal in an order of its own. */
 #include "core/base/heap.h"
 #include "core/base/radix.h"
+#include "core/base/rank.h"
 #include "tests/support/check.h"
 #include "tests/support/random_numbers.h"
 
@@ -18,6 +19,32 @@ static void test_radix(conic_context *context, size_t n, int n_bits) {
   for (size_t i = 1; i < n; i++)
     CHECK(items[i - 1].key < items[i].key || (items[i - 1].key == items[i].key && items[i - 1].value < items[i].value));
   free(items);
+}
+
+/* At its rank there are no more smaller values than that, and no more greater ones than are left. */
+static void test_rank(size_t n) {
+  enum { MOST = 500 };
+  uint64_t state = 7;
+  float values[MOST];
+  uint32_t numbers[MOST];
+  for (size_t i = 0; i < n; i++) {
+    values[i] = (float)(floor(40.0 * random_unit(&state)) - 20.0) * 1.25e-7f;
+    numbers[i] = (uint32_t)(random_unit(&state) * 4294967295.0);
+  }
+  for (size_t rank = 0; rank < n; rank++) {
+    float value = conic_float_of_rank(values, n, rank);
+    uint32_t number = conic_bits_of_rank(numbers, n, rank);
+    size_t n_below = 0, n_above = 0, n_less = 0, n_more = 0, n_equal = 0;
+    for (size_t i = 0; i < n; i++) {
+      n_below += values[i] < value;
+      n_above += values[i] > value;
+      n_less += numbers[i] < number;
+      n_more += numbers[i] > number;
+      n_equal += numbers[i] == number;
+    }
+    CHECK(n_below <= rank && n_above < n - rank && n_below + n_above < n);
+    CHECK(n_less <= rank && n_more < n - rank && n_equal > 0);
+  }
 }
 
 static void test_heap(void) {
@@ -45,6 +72,8 @@ int main(void) {
   for (int n_bits = 8; n_bits <= 64; n_bits += 7)
     for (size_t n = 1; n < 10000; n *= 9)
       test_radix(context, n, n_bits);
+  for (size_t n = 1; n <= 500; n = 3 * n + 1)
+    test_rank(n);
   test_heap();
   conic_context_destroy(context);
   return check_result();
