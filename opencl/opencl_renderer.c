@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "opencl/device_name.h"
 #include "opencl/frame.h"
 #include "opencl/program.h"
 
@@ -60,6 +61,7 @@ static conic_status keep_folder(conic_opencl *opencl, const char *folder) {
 static conic_status open_device(conic_opencl *opencl, const conic_opencl_options *options) {
   conic_context *context = opencl->context;
   conic_opencl_device *device = &opencl->device;
+  conic_device_name name;
   cl_platform_id platform;
   conic_status status = conic_opencl_find(context, options, &platform, &opencl->id, device);
   if (status == CONIC_OK)
@@ -69,7 +71,8 @@ static conic_status open_device(conic_opencl *opencl, const conic_opencl_options
   opencl->gaussian_device.n_units = device->n_compute_units;
   opencl->projects_on_host = options->projects_on_host || !device->has_double;
   opencl->part_splats = options->part_splats;
-  opencl->work = options->work;
+  conic_device_name_read(options->device, &name);
+  opencl->work = name.work == CONIC_OPENCL_WORK_AUTO ? options->work : name.work;
   if (opencl->work == CONIC_OPENCL_WORK_AUTO)
     opencl->work = device->is_cpu ? CONIC_OPENCL_WORK_TILES : CONIC_OPENCL_WORK_PIXELS;
   opencl->tile = 1 << tile_bits_of(opencl);
