@@ -303,7 +303,12 @@ conic_status conic_frame_draw(conic_backend *backend, const conic_view *view, co
                               struct conic_triangle_frame *triangles, const conic_finish *finish, conic_image *image,
                               conic_render_statistics *statistics) {
   conic_opencl *opencl = (conic_opencl *)backend;
-  conic_frame f = {.opencl = opencl, .view = view, .splats = splats, .triangles = triangles, .image = image};
+  conic_frame f = {.opencl = opencl,
+                   .view = view,
+                   .splats = splats,
+                   .triangles = triangles,
+                   .image = image,
+                   .splats_version = finish->options->splats_version};
   memset(opencl->queue.ms, 0, sizeof opencl->queue.ms);
   set_finish(finish, &f.constants);
   conic_status status = conic_opencl_need_splats(opencl);

@@ -20,7 +20,8 @@ typedef struct conic_frame {
   uint64_t n_references;
   uint64_t counts[CONIC_DEVICE_N_COUNTS]; /* of all parts of the first walk over them */
   uint64_t n_fragments, n_drawn_in_all;
-  double triangle_bytes; /* of the device's memory */
+  double triangle_bytes;   /* of the device's memory */
+  uint64_t splats_version; /* of the options */
 } conic_frame;
 
 /* Makes ready what all parts share. */

@@ -55,6 +55,7 @@ conic_status conic_queue_write_at(conic_queue *queue, const conic_buffer *buffer
                                   size_t bytes) {
   if (bytes == 0)
     return CONIC_OK;
+  queue->n_bytes_written += bytes;
   cl_int answer = clEnqueueWriteBuffer(queue->queue, buffer->memory, CL_TRUE, at, bytes, from, 0, NULL, NULL);
   return conic_opencl_check(queue->context, answer, "clEnqueueWriteBuffer");
 }

@@ -23,6 +23,7 @@ typedef struct conic_queue {
   cl_event events[CONIC_QUEUE_EVENTS];
   conic_stage stages[CONIC_QUEUE_EVENTS];
   double ms[CONIC_N_STAGES];
+  uint64_t n_bytes_written; /* copied to the device since it was opened */
 } conic_queue;
 
 /* Memory on the device; only ever grows. */

@@ -1,5 +1,6 @@
 /* On an OpenCL device, whole pictures are those of the CPU, in every bit of every plane: all methods and kernels, clip
  * lines, both pass modes, splats friendly and hostile, in one part and in several, by tiles and by pixels. */
+#include "opencl/opencl_renderer.h"
 #include "tests/support/opencl_fixture.h"
 
 enum { N_RENDERERS = 6 };
@@ -157,6 +158,51 @@ static void check_planes_and_samples(fixture *f) {
   conic_image_release(f->context, &image);
 }
 
+static uint64_t draw_again(fixture *f, conic_renderer *renderer, conic_image *image) {
+  conic_opencl *opencl = (conic_opencl *)conic_renderer_backend(renderer);
+  uint64_t before = opencl->queue.n_bytes_written;
+  CHECK_OK(conic_render(renderer, &f->splats, &f->camera, &f->options, image, NULL));
+  return opencl->queue.n_bytes_written - before;
+}
+
+/* Splats that have a number are copied to a device with memory of its own once, and anew with another number, in other
+ * arrays or where the number is 0. */
+static void check_kept_splats(fixture *f) {
+  const size_t bytes = f->splats.count * sizeof(float);
+  float *const red = f->splats.color[0], *other = malloc(bytes);
+  conic_image image;
+  CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, ALL_PLANES, &image));
+  for (int i = 0; i < 3; i++) {
+    conic_opencl *opencl = (conic_opencl *)conic_renderer_backend(renderers[i]);
+    const int is_in_parts = ways[i].part_splats != 0;
+    opencl->device.is_cpu = 0;
+    f->options.splats_version = 5;
+    fixture_render(f);
+    CHECK(draw_again(f, renderers[i], &image) > bytes);
+    CHECK(opencl_same(&f->image, &image, "splats that are to be kept"));
+    memcpy(other, red, bytes);
+    for (size_t splat = 0; splat < f->splats.count; splat++)
+      red[splat] = 0.5f * other[splat];
+    CHECK((draw_again(f, renderers[i], &image) > bytes) == is_in_parts);
+    CHECK(is_in_parts || opencl_same(&f->image, &image, "kept splats"));
+    fixture_render(f);
+    f->options.splats_version = i % 2 ? 6 : 0;
+    CHECK(draw_again(f, renderers[i], &image) > bytes);
+    CHECK(opencl_same(&f->image, &image, "changed splats"));
+    CHECK((draw_again(f, renderers[i], &image) > bytes) == (is_in_parts || i % 2 == 0));
+    f->splats.color[0] = other;
+    fixture_render(f);
+    CHECK(draw_again(f, renderers[i], &image) > bytes);
+    CHECK(opencl_same(&f->image, &image, "splats in other arrays"));
+    f->splats.color[0] = red;
+    memcpy(red, other, bytes);
+    opencl->device.is_cpu = 1;
+  }
+  f->options.splats_version = 0;
+  conic_image_release(f->context, &image);
+  free(other);
+}
+
 static void check_all(fixture *f) {
   fixture_camera(f, 230, 170, 160.0);
   check_hostile(f, 0, 0.0, 1.5);
@@ -166,6 +212,7 @@ static void check_all(fixture *f) {
   check_odd_cases(f);
   fixture_render(f);
   check_planes_and_samples(f);
+  check_kept_splats(f);
 }
 
 /* FOLDER, or FOLDER small */
