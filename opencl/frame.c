@@ -223,11 +223,11 @@ static conic_status take_part(conic_frame *f, walk purpose) {
   int counts = purpose == WALK_VISIBILITY || f->constants.is_single_pass;
   if (counts)
     status = add_counts(f);
-  if (status == CONIC_OK && purpose == WALK_VISIBILITY)
-    status = conic_frame_visibility(f);
-  if (status == CONIC_OK && (purpose == WALK_ACCUMULATE || f->n == f->splats->count))
-    status = conic_frame_accumulate(f);
-  return status;
+  if (status != CONIC_OK)
+    return status;
+  if (purpose == WALK_ACCUMULATE)
+    return conic_frame_accumulate(f);
+  return f->n == f->splats->count ? conic_frame_blend(f) : conic_frame_visibility(f);
 }
 
 /* Walks over the splats part by part; parts become smaller where their lists are too long for the device. */

@@ -33,6 +33,8 @@ conic_status conic_frame_bin(conic_frame *frame, int *fits);
 conic_status conic_frame_visibility(conic_frame *frame);
 /* Accumulation or, in a single pass, the nearest splats; with the last part, the picture. */
 conic_status conic_frame_accumulate(conic_frame *frame);
+/* Visibility and accumulation of all splats, which are on the device; by tiles as one, which counts as accumulation. */
+conic_status conic_frame_blend(conic_frame *frame);
 /* Brings the picture to the image. */
 conic_status conic_frame_end(conic_frame *frame, uint64_t *n_covered);
 /* Waits for all; after that, also after a failure, the device knows nothing more of the image and the splats. */

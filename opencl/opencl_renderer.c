@@ -12,7 +12,7 @@
 static const char *kernel_name(const conic_opencl *opencl, int kernel) {
   static const char *const names[] = {"project", "lanes_project", "scan_sums",    "scan_tops", "scan_places",
                                       "compact", "count_tiles",   "place_chunks", "fill_tiles"};
-  static const char *const of_tiles[] = {"lanes_visibility", "lanes_accumulate",    "lanes_nearest",
+  static const char *const of_tiles[] = {"lanes_passes", "lanes_passes",    "lanes_nearest",
                                          "lanes_triangles",  "lanes_add_triangles", "tiles_composite"};
   static const char *const of_pixels[] = {"gather_visibility", "gather_accumulate",    "gather_nearest",
                                           "gather_triangles",  "gather_add_triangles", "pixels_composite"};

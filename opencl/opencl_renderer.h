@@ -50,7 +50,7 @@ typedef enum conic_buffer_name {
   CONIC_BUFFER_TILE_TOTALS,
   CONIC_BUFFER_TILE_BEGIN,
   CONIC_BUFFER_REFERENCES,
-  CONIC_BUFFER_MASKS,       /* of references: the blocks where the splat may be seen; by tiles only */
+  CONIC_BUFFER_SELECTED,    /* where a tile's references of one row of blocks are copied to; by tiles only */
   CONIC_BUFFER_THRESHOLDS,  /* [block][pixel] */
   CONIC_BUFFER_SUMS,        /* [block][CONIC_SUM_WEIGHT …][pixel] */
   CONIC_BUFFER_N_FRAGMENTS, /* a tile */

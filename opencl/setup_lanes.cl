@@ -33,13 +33,16 @@ static lanes zip_high(lanes a, lanes b) {
 
 /* Numbers that lie by field and then by lane come to lie by lane and then by field; n, a power of two, is how many
  * fields there are. Each round takes the highest bit of a number's place to the end. */
-static void turn(lanes *fields, int n) {
+CONIC_INLINE void turn(lanes *fields, int n) {
   lanes turned[16];
+#pragma unroll
   for (int round = 1; round < n; round *= 2) {
+#pragma unroll
     for (int i = 0; i < n / 2; i++) {
       turned[2 * i] = zip_low(fields[i], fields[i + n / 2]);
       turned[2 * i + 1] = zip_high(fields[i], fields[i + n / 2]);
     }
+#pragma unroll
     for (int i = 0; i < n; i++)
       fields[i] = turned[i];
   }
@@ -68,6 +71,11 @@ static lanes pick(__global const float *column, const uint *p) {
                  column[p[14]], column[p[15]]);
 }
 
+static int is_there(const splat_columns *from, int column) {
+  return column < COLOR || (column < OPACITY ? from->fields & CONIC_DEVICE_HAS_COLOR
+                                             : from->fields & CONIC_DEVICE_HAS_OPACITY);
+}
+
 /* The first n_valid of sixteen splats by their places in the columns. */
 static void project_group(const conic_view *view, splat_columns *from, const uint *places, uint n_valid,
                           record_places *to, uint counts[CONIC_DEVICE_N_COUNTS]) {
@@ -75,9 +83,7 @@ static void project_group(const conic_view *view, splat_columns *from, const uin
   group_screen s;
   records r;
   for (int column = 0; column < N_COLUMNS; column++) {
-    int is_there = column < COLOR || (column < OPACITY ? from->fields & CONIC_DEVICE_HAS_COLOR
-                                                       : from->fields & CONIC_DEVICE_HAS_OPACITY);
-    from_places.columns[column] = is_there ? pick(from->values[column], places) : 1.0f;
+    from_places.columns[column] = is_there(from, column) ? pick(from->values[column], places) : 1.0f;
   }
   from_places.index = vload16(0, places) + from->first;
   group_verdict verdict = set_up_group(view, &from_places, 0, &s, &r);
@@ -98,21 +104,30 @@ static void project_group(const conic_view *view, splat_columns *from, const uin
   }
 }
 
-/* The places of those of the item's splats that do not face away or lie behind; whole groups are looked at. Returns how
- * many. */
-static uint find_facing(const conic_view *view, const splat_columns *from, uint begin, uint end, uint *places) {
+/* Calls for the columns at place i: so many at a time are more than the hardware fetches ahead by itself. */
+static void fetch_columns(const splat_columns *from, uint i) {
+#pragma unroll
+  for (int column = 0; column < N_COLUMNS; column++)
+    if (is_there(from, column))
+      CONIC_FETCH_AHEAD(from->values[column] + i);
+}
+
+/* The places of those of the item's splats that do not surely face away; whole groups are looked at. Returns how many.
+ */
+static uint find_facing(const conic_view *view, const splat_columns *from, uint begin, uint end, uint n_splats,
+                        uint *places) {
   uint n = 0, i = begin;
-  for (; view->cull_back && i + 16 <= end; i += 16) {
-    lanes columns[COLOR];
-    group_splats g;
-    for (int column = 0; column < COLOR; column++)
-      columns[column] = vload16(0, from->values[column] + i);
-    look_at(view, columns + POSITION, columns + TANGENT_U, columns + TANGENT_V, &g);
-    int16 away = g.behind | (g.usual & (g.area > 0.0f));
-    for (int lane = 0; lane < 16; lane++) {
-      places[n] = i + (uint)lane;
-      n += ((const int *)&away)[lane] == 0;
+  for (; i + 16 <= end; i += 16) {
+    int16 away = 0;
+    fetch_columns(from, min(i + CONIC_SETUP_SPLATS, n_splats - 1));
+    if (view->cull_back) {
+      lanes columns[COLOR];
+#pragma unroll
+      for (int column = 0; column < COLOR; column++)
+        columns[column] = vload16(0, from->values[column] + i);
+      away = surely_faces_away(view, columns + POSITION, columns + TANGENT_U, columns + TANGENT_V);
     }
+    n += (uint)lanes_append(places + n, ~away, lanes_ascending(i));
   }
   for (; i < end; i++)
     places[n++] = i;
@@ -127,7 +142,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_project(SETUP
   splat_columns columns = SETUP_COLUMNS;
   record_places to = {footprints, boxes, surfaces, rays, records, begin};
   seek_clip(&columns, first + begin);
-  uint n_facing = find_facing(&view, &columns, begin, end, places), i = 0;
+  uint n_facing = find_facing(&view, &columns, begin, end, n, places), i = 0;
   own[CONIC_DEVICE_CULLED] = end - begin - n_facing;
   for (uint spare = 0; spare < 16; spare++) /* the last group's spare lanes repeat the first splat */
     places[n_facing + spare] = begin;
