@@ -16,10 +16,9 @@ typedef struct lanes_splat {
   uint column_begin, column_last, row_begin, row_last; /* of the tile's blocks */
 } lanes_splat;
 
-static void lanes_fetch(__global const conic_device_reference *reference, __global const conic_footprint *footprints,
+static void lanes_fetch(uint index, uint blocks, __global const conic_footprint *footprints,
                         __global const conic_ray *rays, __global const conic_clip_record *clips, lanes_splat *splat) {
-  uint blocks = reference->blocks;
-  splat->index = reference->footprint;
+  splat->index = index;
   splat->footprint = footprints[splat->index];
   splat->is_special = !(splat->footprint.s3 > 0.0f);
   if (splat->footprint.s3 == 0.0f)
@@ -111,8 +110,7 @@ static void lanes_begin_sums(const conic_device_frame *frame, const lanes_tile *
 
 /* Pass 2 and, with the last part of the splats, pass 3 of a row; returns how many pixels are covered. */
 static uint lanes_accumulate_row(const conic_view *view, const conic_device_frame *frame, const lanes_tile *t,
-                                 const lanes_band *band, __global const conic_device_reference *selected,
-                                 __global const conic_footprint *footprints,
+                                 const lanes_band *band, __global const conic_footprint *footprints,
                                  __global const conic_projected_surface *surfaces, __global const conic_ray *rays,
                                  __global const conic_clip_record *clips, __global lanes *sums, PIXEL_PLANES) {
   lanes_sums of_blocks[CONIC_DEVICE_TILE_BLOCKS];
@@ -125,7 +123,7 @@ static uint lanes_accumulate_row(const conic_view *view, const conic_device_fram
     else
       lanes_blend_kept(view, kind, &band->blocks[column], surfaces, &of_blocks[column]);
   }
-  lanes_blend_rest(view, frame, band, selected, footprints, surfaces, rays, clips, of_blocks);
+  lanes_blend_rest(view, frame, band, footprints, surfaces, rays, clips, of_blocks);
   for (uint column = 0; column < CONIC_DEVICE_TILE_BLOCKS; column++) {
     lanes_keep_heaviest(frame, footprints, surfaces, t->x + 4 * (int)column, t->y + 4 * (int)band->row,
                         &of_blocks[column]);
@@ -137,7 +135,7 @@ static uint lanes_accumulate_row(const conic_view *view, const conic_device_fram
 /* The passes that the frame says, one or both. */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 lanes_passes(GATHER_RECORDS, __global lanes *thresholds, __global uint *n_fragments,
-             __global conic_device_reference *selected, __global lanes *sums, PIXEL_PLANES) {
+             __global uint *selected, __global lanes *sums, PIXEL_PLANES) {
   conic_view view = view_of(frame_view, profile_table);
   conic_device_frame frame = *frame_constants;
   lanes_tile t = lanes_tile_of(&frame);
@@ -148,13 +146,13 @@ lanes_passes(GATHER_RECORDS, __global lanes *thresholds, __global uint *n_fragme
   band.found = 0;
   for (uint row = 0; row < CONIC_DEVICE_TILE_BLOCKS && t.y + 4 * (int)row < frame.height; row++) {
     lanes_begin_band(&frame, &t, row, thresholds, &band);
-    band.n = lanes_select_row(references, begin, end, row, selected);
+    band.list = lanes_select_row(references, begin, end, row, selected);
     if (frame.walks & CONIC_WALK_VISIBILITY)
-      lanes_pass_row(&view, &t, selected + begin, footprints, rays, clips, columns, rows, &band);
+      lanes_pass_row(&view, &t, footprints, rays, clips, columns, rows, &band);
     for (uint column = 0; column < CONIC_DEVICE_TILE_BLOCKS && (!does_both || frame.has_triangles); column++)
       thresholds[lanes_block(&t, &frame, CONIC_DEVICE_TILE_BLOCKS * row + column)] = band.blocks[column].threshold;
     if (frame.walks & CONIC_WALK_ACCUMULATE)
-      covered += lanes_accumulate_row(&view, &frame, &t, &band, selected + begin, footprints, surfaces, rays, clips,
+      covered += lanes_accumulate_row(&view, &frame, &t, &band, footprints, surfaces, rays, clips,
                                       sums, PIXEL_PLANES_PASSED);
   }
   if (frame.walks & CONIC_WALK_VISIBILITY)
@@ -201,7 +199,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_nearest(GATHE
   for (ulong i = tile_begin[t.index]; i < tile_begin[t.index + 1]; i++) {
     lanes_splat splat;
     CONIC_FETCH_AHEAD(&footprints[references[min(i + LANES_AHEAD, tile_begin[t.index + 1] - 1)].footprint]);
-    lanes_fetch(&references[i], footprints, rays, clips, &splat);
+    lanes_fetch(references[i].footprint, references[i].blocks, footprints, rays, clips, &splat);
     for (uint row = splat.row_begin; row <= splat.row_last; row++) {
       splat_rows of_rows = lanes_begin(&view, &splat, lanes_within(rows_from(t.y + 4 * (int)row), t.height));
       for (uint column = splat.column_begin; column <= splat.column_last; column++) {

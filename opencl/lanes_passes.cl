@@ -20,11 +20,18 @@ typedef struct lanes_kept {
   uint n, not_kept; /* of the row's list: the first that covers a pixel here and is not kept */
 } lanes_kept;
 
+/* Of a tile's references those that meet a row of its blocks, in order. */
+typedef struct lanes_list {
+  __global uint *footprints, *blocks;
+  uint n;
+} lanes_list;
+
 /* A row of a tile's blocks; the last one is beside it, for splats that have no second block. */
 typedef struct lanes_band {
   uint row;
   lanes x[CONIC_DEVICE_TILE_BLOCKS + 1], y; /* NaN outside of the image, where nothing is covered then */
-  uint n, room;
+  lanes_list list;
+  uint room;
   index_lanes found;
   lanes_kept blocks[CONIC_DEVICE_TILE_BLOCKS + 1];
 } lanes_band;
@@ -52,16 +59,27 @@ static void lanes_begin_band(const conic_device_frame *frame, const lanes_tile *
   }
 }
 
-/* Those of the tile's references that meet the row, in order, to where the tile's begin in `selected`. */
-static uint lanes_select_row(__global const conic_device_reference *references, ulong begin, ulong end, uint row,
-                             __global conic_device_reference *selected) {
-  uint n = 0;
-  for (ulong i = begin; i < end; i++) {
-    conic_device_reference reference = references[i];
-    selected[begin + n] = reference;
-    n += ((reference.blocks >> 8 & 15) <= row) & (row <= reference.blocks >> 12);
+/* In the memory that the tile's references have in `selected`. */
+static lanes_list lanes_select_row(__global const conic_device_reference *references, ulong begin, ulong end, uint row,
+                                   __global uint *selected) {
+  lanes_list list = {selected + 2 * begin, selected + begin + end, 0};
+  ulong i = begin;
+  for (; i + 16 <= end; i += 16) {
+    index_lanes first = vload16(0, (__global const uint *)(references + i));
+    index_lanes second = vload16(0, (__global const uint *)(references + i + 8));
+    index_lanes blocks = (index_lanes)(first.odd, second.odd);
+    lanes_mask meets = ((blocks >> 8 & 15) <= row) & (row <= blocks >> 12);
+    vstore16(CONIC_LANES_PACK(meets, (index_lanes)(first.even, second.even)), 0, list.footprints + list.n);
+    vstore16(CONIC_LANES_PACK(meets, blocks), 0, list.blocks + list.n);
+    list.n += popcount(lanes_bits(meets));
   }
-  return n;
+  for (; i < end; i++) {
+    conic_device_reference reference = references[i];
+    list.footprints[list.n] = reference.footprint;
+    list.blocks[list.n] = reference.blocks;
+    list.n += ((reference.blocks >> 8 & 15) <= row) & (row <= reference.blocks >> 12);
+  }
+  return list;
 }
 
 /* Raises the thresholds of a block and keeps its fragments. */
@@ -106,27 +124,25 @@ static void lanes_pass_special(const conic_view *view, const lanes_tile *t, lane
 
 /* Pass 1 of a row. Two blocks of a usual splat are done in any case, the second perhaps beside the row: most have one
  * or two, and which, no branch can foresee. */
-static void lanes_pass_row(const conic_view *view, const lanes_tile *t, __global const conic_device_reference *selected,
-                           __global const conic_footprint *footprints, __global const conic_ray *rays,
+static void lanes_pass_row(const conic_view *view, const lanes_tile *t, __global const conic_footprint *footprints, __global const conic_ray *rays,
                            __global const conic_clip_record *clips, __global const float *columns,
                            __global const float *rows, lanes_band *band) {
-  for (uint i = 0; i < band->n; i++) {
-    conic_device_reference reference = selected[i];
-    uint first = reference.blocks & 15, last = reference.blocks >> 4 & 15;
-    CONIC_FETCH_AHEAD(&footprints[selected[min(i + LANES_AHEAD, band->n - 1)].footprint]);
-    conic_footprint footprint = footprints[reference.footprint];
+  lanes_list list = band->list;
+  for (uint i = 0; i < list.n; i++) {
+    uint index = list.footprints[i], blocks = list.blocks[i], first = blocks & 15, last = blocks >> 4 & 15;
+    CONIC_FETCH_AHEAD(&footprints[list.footprints[min(i + LANES_AHEAD, list.n - 1)]]);
+    conic_footprint footprint = footprints[index];
     if (view->profile.table || !(footprint.s3 > 0.0f) || !(footprint.nearness > 0.0f)) {
       lanes_splat splat;
-      lanes_fetch(&selected[i], footprints, rays, clips, &splat);
+      lanes_fetch(list.footprints[i], list.blocks[i], footprints, rays, clips, &splat);
       lanes_pass_special(view, t, band, &splat, i, columns, rows);
       continue;
     }
     splat_rows of_rows = begin_rows(&footprint, band->y);
-    lanes_pass_usual(view, band, first, i, reference.footprint, footprint.nearness, &of_rows);
-    lanes_pass_usual(view, band, last > first ? first + 1 : CONIC_DEVICE_TILE_BLOCKS, i, reference.footprint,
-                     footprint.nearness, &of_rows);
+    lanes_pass_usual(view, band, first, i, index, footprint.nearness, &of_rows);
+    lanes_pass_usual(view, band, last > first ? first + 1 : CONIC_DEVICE_TILE_BLOCKS, i, index, footprint.nearness, &of_rows);
     for (uint column = first + 2; column <= last; column++)
-      lanes_pass_usual(view, band, column, i, reference.footprint, footprint.nearness, &of_rows);
+      lanes_pass_usual(view, band, column, i, index, footprint.nearness, &of_rows);
   }
 }
 
@@ -179,7 +195,6 @@ static void lanes_note(__global const conic_projected_surface *surface, const fr
 
 /* Pass 2 of what was not kept in the row, splat by splat. */
 static void lanes_blend_rest(const conic_view *view, const conic_device_frame *frame, const lanes_band *band,
-                             __global const conic_device_reference *selected,
                              __global const conic_footprint *footprints,
                              __global const conic_projected_surface *surfaces, __global const conic_ray *rays,
                              __global const conic_clip_record *clips, lanes_sums *to) {
@@ -187,9 +202,10 @@ static void lanes_blend_rest(const conic_view *view, const conic_device_frame *f
   uint first = UINT_MAX;
   for (uint column = 0; column < CONIC_DEVICE_TILE_BLOCKS; column++)
     first = min(first, band->blocks[column].not_kept);
-  for (uint i = first; i < band->n; i++) {
+  lanes_list list = band->list;
+  for (uint i = first; i < list.n; i++) {
     lanes_splat splat;
-    lanes_fetch(&selected[i], footprints, rays, clips, &splat);
+    lanes_fetch(list.footprints[i], list.blocks[i], footprints, rays, clips, &splat);
     splat_rows rows = lanes_begin(view, &splat, band->y);
     for (uint column = splat.column_begin; column <= splat.column_last; column++) {
       fragments f;
