@@ -26,7 +26,7 @@ conic_status conic_frame_give(const conic_frame *f, int buffer, const void *from
     return conic_queue_wrap(&opencl->queue, &opencl->buffers[buffer], CL_MEM_READ_ONLY, from, bytes);
   if (bytes)
     return conic_frame_copy(f, buffer, from, bytes);
-  conic_queue_release(&opencl->buffers[buffer]);
+  conic_queue_release(&opencl->queue, &opencl->buffers[buffer]);
   return CONIC_OK;
 }
 
@@ -93,7 +93,7 @@ static size_t plane_bytes(const conic_image *image, int plane) {
 conic_status conic_frame_open_plane(const conic_frame *f, int buffer, void *plane, size_t bytes) {
   conic_opencl *opencl = f->opencl;
   if (!plane)
-    conic_queue_release(&opencl->buffers[buffer]);
+    conic_queue_release(&opencl->queue, &opencl->buffers[buffer]);
   else if (opencl->device.is_cpu)
     return conic_queue_wrap(&opencl->queue, &opencl->buffers[buffer], CL_MEM_READ_WRITE, plane, bytes);
   else
@@ -179,7 +179,7 @@ conic_status conic_frame_close(conic_frame *f) {
   if (opencl->device.is_cpu) /* the image and the splats are the caller's */
     for (int buffer = CONIC_BUFFER_COLUMNS; buffer < CONIC_N_BUFFER_NAMES; buffer++)
       if (buffer < CONIC_BUFFER_CLIPS || buffer >= CONIC_BUFFER_PLANES)
-        conic_queue_release(&opencl->buffers[buffer]);
+        conic_queue_release(&opencl->queue, &opencl->buffers[buffer]);
   return status;
 }
 

@@ -101,8 +101,8 @@ CONIC_INLINE void lanes_pass_block(lanes_band *band, uint column, uint i, uint i
 }
 
 /* An ellipse that is neither wide nor clipped nor has a profile, in one block. */
-CONIC_INLINE void lanes_pass_usual(const conic_view *view, lanes_band *band, uint column, uint i, uint index, float nearness,
-                             const splat_rows *rows) {
+CONIC_INLINE void lanes_pass_usual(const conic_view *view, lanes_band *band, uint column, uint i, uint index,
+                                   float nearness, const splat_rows *rows) {
   fragments f;
   ellipse_fragments(view, rows, view->support, SPLAT_USUAL, (band->x[column] - rows->x) + rows->dx0, &f);
   lanes_pass_block(band, column, i, index, nearness * lanes_min(f.plane_iz, f.iz), 0, &f);
@@ -124,9 +124,9 @@ static void lanes_pass_special(const conic_view *view, const lanes_tile *t, lane
 
 /* Pass 1 of a row. Two blocks of a usual splat are done in any case, the second perhaps beside the row: most have one
  * or two, and which, no branch can foresee. */
-static void lanes_pass_row(const conic_view *view, const lanes_tile *t, __global const conic_footprint *footprints, __global const conic_ray *rays,
-                           __global const conic_clip_record *clips, __global const float *columns,
-                           __global const float *rows, lanes_band *band) {
+static void lanes_pass_row(const conic_view *view, const lanes_tile *t, __global const conic_footprint *footprints,
+                           __global const conic_ray *rays, __global const conic_clip_record *clips,
+                           __global const float *columns, __global const float *rows, lanes_band *band) {
   lanes_list list = band->list;
   for (uint i = 0; i < list.n; i++) {
     uint index = list.footprints[i], blocks = list.blocks[i], first = blocks & 15, last = blocks >> 4 & 15;
@@ -140,7 +140,8 @@ static void lanes_pass_row(const conic_view *view, const lanes_tile *t, __global
     }
     splat_rows of_rows = begin_rows(&footprint, band->y);
     lanes_pass_usual(view, band, first, i, index, footprint.nearness, &of_rows);
-    lanes_pass_usual(view, band, last > first ? first + 1 : CONIC_DEVICE_TILE_BLOCKS, i, index, footprint.nearness, &of_rows);
+    uint second = last > first ? first + 1 : CONIC_DEVICE_TILE_BLOCKS;
+    lanes_pass_usual(view, band, second, i, index, footprint.nearness, &of_rows);
     for (uint column = first + 2; column <= last; column++)
       lanes_pass_usual(view, band, column, i, index, footprint.nearness, &of_rows);
   }
@@ -215,8 +216,8 @@ static void lanes_blend_rest(const conic_view *view, const conic_device_frame *f
       int16 is_visible = f.covered & (lanes_max(f.plane_iz, f.iz) >= band->blocks[column].threshold);
       if (!lanes_any(is_visible))
         continue;
-      lanes_blend(view, kind_of_view(view), splat.index, splat.footprint.amplitude, &surfaces[splat.index], f.q, f.scale, is_visible,
-                  &to[column]);
+      lanes_blend(view, kind_of_view(view), splat.index, splat.footprint.amplitude, &surfaces[splat.index], f.q,
+                  f.scale, is_visible, &to[column]);
       if (keeps_indices)
         lanes_note(&surfaces[splat.index], &f, is_visible, &to[column]);
     }

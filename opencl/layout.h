@@ -90,7 +90,7 @@ typedef struct conic_device_frame {
   int32_t is_first, is_last; /* of the parts in which the splats come */
   int32_t keeps_sums;        /* leaves them in memory, though the part is the last */
   int32_t walks;
-  int32_t planes;            /* that the image has, as bits 1 << conic_plane */
+  int32_t planes; /* that the image has, as bits 1 << conic_plane */
   int32_t shading;
   float world_from_cam[3][3];
   conic_finish_lights lights;

@@ -12,8 +12,8 @@
 static const char *kernel_name(const conic_opencl *opencl, int kernel) {
   static const char *const names[] = {"project", "lanes_project", "scan_sums",    "scan_tops", "scan_places",
                                       "compact", "count_tiles",   "place_chunks", "fill_tiles"};
-  static const char *const of_tiles[] = {"lanes_passes", "lanes_passes",    "lanes_nearest",
-                                         "lanes_triangles",  "lanes_add_triangles", "tiles_composite"};
+  static const char *const of_tiles[] = {"lanes_passes",    "lanes_passes",        "lanes_nearest",
+                                         "lanes_triangles", "lanes_add_triangles", "tiles_composite"};
   static const char *const of_pixels[] = {"gather_visibility", "gather_accumulate",    "gather_nearest",
                                           "gather_triangles",  "gather_add_triangles", "pixels_composite"};
   if (kernel < CONIC_KERNEL_VISIBILITY)
@@ -134,7 +134,7 @@ void conic_opencl_close(conic_opencl *opencl) {
   if (!opencl)
     return;
   for (int i = 0; i < CONIC_N_BUFFER_NAMES; i++)
-    conic_queue_release(&opencl->buffers[i]);
+    conic_queue_release(&opencl->queue, &opencl->buffers[i]);
   for (int i = 0; i < CONIC_N_KERNEL_NAMES; i++)
     if (opencl->kernels[i])
       clReleaseKernel(opencl->kernels[i]);

@@ -7,13 +7,12 @@
 /* The columns of a splat set that set-up reads. */
 enum { POSITION = 0, TANGENT_U = 3, TANGENT_V = 6, COLOR = 9, OPACITY = 12, N_COLUMNS };
 
-/* Those of an item's splats that may be drawn, packed, with their places in the part; the last group's spare lanes have
- * room, too. */
+/* Those of an item's splats that may be drawn, packed; there is room for the last group's spare lanes. */
 enum { BATCH_ROOM = CONIC_SETUP_SPLATS + 16 };
 
 typedef struct batch {
   float columns[N_COLUMNS][BATCH_ROOM];
-  uint places[BATCH_ROOM];
+  uint index[BATCH_ROOM]; /* in the part */
   uint n, first; /* `first`: the index of the part's place 0 in the whole set */
 } batch;
 
@@ -22,7 +21,7 @@ CONIC_INLINE lanes batch_column(const batch *from, int column, size_t at) {
 }
 
 CONIC_INLINE index_lanes batch_index(const batch *from, size_t at) {
-  return vload16(0, from->places + at) + from->first;
+  return vload16(0, from->index + at) + from->first;
 }
 
 #include "raster/project/setup_body.h"
@@ -79,7 +78,7 @@ static void project_group(const conic_view *view, splat_columns *from, const bat
   group_screen s;
   records r;
   uint n_valid = min(packed->n - at, 16u);
-  const uint *places = packed->places + at;
+  const uint *places = packed->index + at;
   group_verdict verdict = set_up_group(view, packed, at, &s, &r);
   turn(r.footprint, 16);
   turn(r.surface, 8);
@@ -100,14 +99,14 @@ static void project_group(const conic_view *view, splat_columns *from, const bat
 
 /* Appends the kept ones of the sixteen splats at place i, and calls for those of the next item: so many columns at a
  * time are more than the hardware fetches ahead by itself. */
-static void append_columns(const splat_columns *from, uint i, uint ahead, int16 kept, batch *to) {
+static void append_group(const splat_columns *from, uint i, uint ahead, int16 kept, batch *to) {
 #pragma unroll
   for (int column = 0; column < N_COLUMNS; column++)
     if (has_column(from, column)) {
       CONIC_FETCH_AHEAD(from->values[column] + ahead);
       lanes_append((uint *)(to->columns[column] + to->n), kept, as_uint16(vload16(0, from->values[column] + i)));
     }
-  to->n += (uint)lanes_append(to->places + to->n, kept, lanes_ascending(i));
+  to->n += (uint)lanes_append(to->index + to->n, kept, lanes_ascending(i));
 }
 
 /* Packs those of the splats begin … end - 1 that do not surely face away; whole groups are looked at. A set without
@@ -127,22 +126,13 @@ static void pack_facing(const conic_view *view, const splat_columns *from, uint 
         columns[column] = vload16(0, from->values[column] + i);
       away = surely_faces_away(view, columns + POSITION, columns + TANGENT_U, columns + TANGENT_V);
     }
-    append_columns(from, i, min(i + CONIC_SETUP_SPLATS, n_splats - 1), ~away, to);
+    append_group(from, i, min(i + CONIC_SETUP_SPLATS, n_splats - 1), ~away, to);
   }
   for (; i < end; i++) {
     for (int column = 0; column < N_COLUMNS; column++)
       if (has_column(from, column))
         to->columns[column][to->n] = from->values[column][i];
-    to->places[to->n++] = i;
-  }
-}
-
-/* Lets the last splat stand in the spare lanes of its group, too. */
-static void fill_last_group(batch *last) {
-  for (uint spare = last->n; spare % 16; spare++) {
-    last->places[spare] = last->places[last->n - 1];
-    for (int column = 0; column < N_COLUMNS; column++)
-      last->columns[column][spare] = last->columns[column][last->n - 1];
+    to->index[to->n++] = i;
   }
 }
 

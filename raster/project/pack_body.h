@@ -53,17 +53,6 @@ static void pack_batch(const conic_view *view, const conic_splats *splats, size_
   to->n = n_packed;
 }
 
-/* Lets the last splat stand in the spare lanes of its group too; returns where that ends. */
-static size_t fill_last_group(batch *last) {
-  size_t end = (last->n + CONIC_LANES - 1) / CONIC_LANES * CONIC_LANES;
-  for (size_t spare = last->n; spare < end; spare++) {
-    last->index[spare] = last->index[last->n - 1];
-    for (int column = 0; column < N_COLUMNS; column++)
-      last->columns[column][spare] = last->columns[column][last->n - 1];
-  }
-  return end;
-}
-
 /* Brings what is behind the first n to the front: less than a group. */
 static void keep_rest(batch *of, size_t n) {
   size_t n_left = of->n > n ? of->n - n : 0;

@@ -1,8 +1,20 @@
 /* Set-up in lanes: project_splat (raster/project/project_splats.c) for a group of splats at once, with the same
  * operations in the same order. What is not usual (near the camera, not finite) is left to the plain text. C and
  * OpenCL C share this text. Who includes it has the words of core/lanes, the columns POSITION … OPACITY, and `batch`
- * with batch_column(batch, column, at) and batch_index(batch, at): the values of the group that begins at place `at`.
+ * of n splats' `columns` and `index`, with batch_column(batch, column, at) and batch_index(batch, at): the values of the
+ * group that begins at place `at`.
  */
+/* Lets the last splat stand in the spare lanes of its group too; returns where that ends. */
+static size_t fill_last_group(batch *last) {
+  size_t end = (last->n + CONIC_LANES - 1) / CONIC_LANES * CONIC_LANES;
+  for (size_t spare = last->n; spare < end; spare++) {
+    last->index[spare] = last->index[last->n - 1];
+    for (int column = 0; column < N_COLUMNS; column++)
+      last->columns[column][spare] = last->columns[column][last->n - 1];
+  }
+  return end;
+}
+
 /* A group's splats in camera space. */
 typedef struct group_splats {
   doubles p[3], inverse_z;
