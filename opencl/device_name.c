@@ -11,7 +11,7 @@ static int take_number(const char **text) {
 }
 
 /* ":P.D" at *text, and *text past it. */
-static int take_place(const char **text, conic_device_name *name) {
+static int take_device_place(const char **text, conic_device_name *name) {
   (*text)++;
   name->i_platform = take_number(text);
   if (**text != '.')
@@ -26,7 +26,7 @@ int conic_device_name_read(const char *text, conic_device_name *name) {
   if (!text || strncmp(text, "opencl", 6) != 0)
     return 0;
   text += 6;
-  if (text[0] == ':' && text[1] >= '0' && text[1] <= '9' && !take_place(&text, name))
+  if (text[0] == ':' && text[1] >= '0' && text[1] <= '9' && !take_device_place(&text, name))
     return 0;
   if (strcmp(text, ":gather") == 0)
     name->work = CONIC_OPENCL_WORK_PIXELS;

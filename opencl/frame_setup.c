@@ -6,7 +6,7 @@
 #include "raster/project/projected.h"
 #include "raster/view/method.h"
 
-static void list_splats(const conic_frame *f, conic_splats_on_device *list) {
+static void note_splats(const conic_frame *f, conic_splats_on_device *list) {
   const conic_splats *s = f->splats;
   memset(list, 0, sizeof *list);
   list->version = f->splats_version;
@@ -51,7 +51,7 @@ static conic_status bring_splats(const conic_frame *f, uint32_t *n_clips) {
   conic_opencl *opencl = f->opencl;
   conic_splats_on_device list;
   size_t n = f->splats->n_clips;
-  list_splats(f, &list);
+  note_splats(f, &list);
   int is_whole = f->first == 0 && f->n == f->splats->count,
       may_keep = is_whole && list.version && !opencl->device.is_cpu;
   conic_status status = CONIC_OK;

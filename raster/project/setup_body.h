@@ -1,9 +1,10 @@
 /* Set-up in lanes: project_splat (raster/project/project_splats.c) for a group of splats at once, with the same
  * operations in the same order. What is not usual (near the camera, not finite) is left to the plain text. C and
  * OpenCL C share this text. Who includes it has the words of core/lanes, the columns POSITION … OPACITY, and `batch`
- * of n splats' `columns` and `index`, with batch_column(batch, column, at) and batch_index(batch, at): the values of the
- * group that begins at place `at`.
+ * of n splats' `columns` and `index`, with batch_column(batch, column, at) and batch_index(batch, at): the values of
+ * the group that begins at place `at`.
  */
+
 /* Lets the last splat stand in the spare lanes of its group too; returns where that ends. */
 static size_t fill_last_group(batch *last) {
   size_t end = (last->n + CONIC_LANES - 1) / CONIC_LANES * CONIC_LANES;
@@ -95,8 +96,8 @@ CONIC_INLINE void look_at(const conic_view *view, const lanes position[3], const
 }
 
 /* Which splats surely face away, by their plane and the eye in the world: cheaper than the camera's own decision,
- * area > 0, which is p·(t_u × t_v) over p_z³, and which falls the same way for what is far enough from edge-on, from the
- * eye, from 90° off the axis and from the ends of float's range. What is not sure stays. */
+ * area > 0, which is p·(t_u × t_v) over p_z³, and which falls the same way for what is far enough from edge-on, from
+ * the eye, from 90° off the axis and from the ends of float's range. What is not sure stays. */
 CONIC_INLINE lanes_mask surely_faces_away(const conic_view *view, const lanes position[3], const lanes u[3],
                                           const lanes v[3]) {
   const float least_sine = 1e-3f, least_cosine = 1e-2f, least_size = 1e-15f, greatest_size = 1e6f;
