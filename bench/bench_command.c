@@ -29,7 +29,7 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
       {"camera", CLI_TEXT, &job->look.camera_path, "FILE", "camera of the files, as of conic render [framed]"},
       {"view", CLI_TEXT, &job->look.view, "VIEW", "of --camera: an index from 0, or a name [the only one]"},
       {"cull", CLI_CHOICE, &job->look.culls_back, "WHAT", "of the files: none, or back [none]", .choices = cull_words},
-      {"device", CLI_TEXT, &job->device.name, "NAME", "each scene and method on opencl or opencl:P.D too [cpu]"},
+      {"device", CLI_TEXT, &job->device.name, "NAME", "each scene and method on opencl[:P.D][:gather|:lanes] too [cpu]"},
       {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL, "also a device that does not round correctly"},
       {"error", CLI_TEXT, &job->errors_text, "LIST",
        "of files that choose what they draw, in pixels; 0: all there is [0 for .chy; the others are read whole]"},

@@ -4,25 +4,13 @@
 #include <string.h>
 
 #include "core/lanes/instruction_sets.h"
-
-/* P.D: two numbers of up to four digits. */
-static int is_place(const char *text) {
-  static const char digits[] = "0123456789";
-  size_t n_platform = strspn(text, digits);
-  if (n_platform < 1 || n_platform > 4 || text[n_platform] != '.')
-    return 0;
-  text += n_platform + 1;
-  size_t n_device = strspn(text, digits);
-  return n_device >= 1 && n_device <= 4 && !text[n_device];
-}
+#include "opencl/device_name.h"
 
 int cli_device_check(const cli_session *session, const cli_device *device) {
-  const char *name = device->name;
-  if (strcmp(name, "cpu") == 0 || strcmp(name, "opencl") == 0)
+  conic_device_name name;
+  if (strcmp(device->name, "cpu") == 0 || conic_device_name_read(device->name, &name))
     return CLI_DONE;
-  if (strncmp(name, "opencl:", 7) == 0 && is_place(name + 7))
-    return CLI_DONE;
-  return cli_usage("%s: --device takes cpu or opencl[:P.D], not %s", session->command, name);
+  return cli_usage("%s: --device takes cpu or opencl[:P.D][:gather|:lanes], not %s", session->command, device->name);
 }
 
 int cli_isa_check(const cli_session *session, conic_isa isa) {
@@ -47,15 +35,20 @@ conic_status cli_device_open(cli_session *session, cli_device *device, conic_ren
   char folder[3072];
   conic_opencl_options options;
   conic_opencl_device found;
+  conic_device_name name;
   snprintf(device->used, sizeof device->used, "cpu");
   if (!device->name || strcmp(device->name, "cpu") == 0)
     return conic_renderer_create(session->context, renderer);
   conic_opencl_options_init(&options);
+  conic_device_name_read(device->name, &name);
   options.device = device->name;
   options.allow_inexact = device->allow_inexact;
   options.cache_folder = cache_folder(folder, sizeof folder);
   conic_status status = conic_opencl_renderer_create(session->context, &options, &found, renderer);
   if (status == CONIC_OK)
-    snprintf(device->used, sizeof device->used, "opencl:%d.%d", found.i_platform, found.i_device);
+    snprintf(device->used, sizeof device->used, "opencl:%d.%d%s", found.i_platform, found.i_device,
+             name.work == CONIC_OPENCL_WORK_AUTO    ? ""
+             : name.work == CONIC_OPENCL_WORK_TILES ? ":lanes"
+                                                    : ":gather");
   return status;
 }

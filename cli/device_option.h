@@ -5,7 +5,7 @@
 #include "cli/session.h"
 
 typedef struct cli_device {
-  const char *name; /* cpu, opencl or opencl:P.D */
+  const char *name; /* cpu, or opencl[:P.D][:gather|:lanes] */
   int allow_inexact;
   char used[32]; /* "cpu", "opencl:0.0": what it turned out to be */
 } cli_device;

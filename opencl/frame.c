@@ -26,7 +26,7 @@ conic_status conic_frame_give(const conic_frame *f, int buffer, const void *from
     return conic_queue_wrap(&opencl->queue, &opencl->buffers[buffer], CL_MEM_READ_ONLY, from, bytes);
   if (bytes)
     return conic_frame_copy(f, buffer, from, bytes);
-  conic_queue_release(&opencl->buffers[buffer]);
+  conic_queue_release(&opencl->queue, &opencl->buffers[buffer]);
   return CONIC_OK;
 }
 
@@ -93,7 +93,7 @@ static size_t plane_bytes(const conic_image *image, int plane) {
 conic_status conic_frame_open_plane(const conic_frame *f, int buffer, void *plane, size_t bytes) {
   conic_opencl *opencl = f->opencl;
   if (!plane)
-    conic_queue_release(&opencl->buffers[buffer]);
+    conic_queue_release(&opencl->queue, &opencl->buffers[buffer]);
   else if (opencl->device.is_cpu)
     return conic_queue_wrap(&opencl->queue, &opencl->buffers[buffer], CL_MEM_READ_WRITE, plane, bytes);
   else
@@ -179,7 +179,7 @@ conic_status conic_frame_close(conic_frame *f) {
   if (opencl->device.is_cpu) /* the image and the splats are the caller's */
     for (int buffer = CONIC_BUFFER_COLUMNS; buffer < CONIC_N_BUFFER_NAMES; buffer++)
       if (buffer < CONIC_BUFFER_CLIPS || buffer >= CONIC_BUFFER_PLANES)
-        conic_queue_release(&opencl->buffers[buffer]);
+        conic_queue_release(&opencl->queue, &opencl->buffers[buffer]);
   return status;
 }
 
@@ -223,11 +223,11 @@ static conic_status take_part(conic_frame *f, walk purpose) {
   int counts = purpose == WALK_VISIBILITY || f->constants.is_single_pass;
   if (counts)
     status = add_counts(f);
-  if (status == CONIC_OK && purpose == WALK_VISIBILITY)
-    status = conic_frame_visibility(f);
-  if (status == CONIC_OK && (purpose == WALK_ACCUMULATE || f->n == f->splats->count))
-    status = conic_frame_accumulate(f);
-  return status;
+  if (status != CONIC_OK)
+    return status;
+  if (purpose == WALK_ACCUMULATE)
+    return conic_frame_accumulate(f);
+  return f->n == f->splats->count ? conic_frame_blend(f) : conic_frame_visibility(f);
 }
 
 /* Walks over the splats part by part; parts become smaller where their lists are too long for the device. */
@@ -303,7 +303,12 @@ conic_status conic_frame_draw(conic_backend *backend, const conic_view *view, co
                               struct conic_triangle_frame *triangles, const conic_finish *finish, conic_image *image,
                               conic_render_statistics *statistics) {
   conic_opencl *opencl = (conic_opencl *)backend;
-  conic_frame f = {.opencl = opencl, .view = view, .splats = splats, .triangles = triangles, .image = image};
+  conic_frame f = {.opencl = opencl,
+                   .view = view,
+                   .splats = splats,
+                   .triangles = triangles,
+                   .image = image,
+                   .splats_version = finish->options->splats_version};
   memset(opencl->queue.ms, 0, sizeof opencl->queue.ms);
   set_finish(finish, &f.constants);
   conic_status status = conic_opencl_need_splats(opencl);

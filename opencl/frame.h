@@ -20,7 +20,8 @@ typedef struct conic_frame {
   uint64_t n_references;
   uint64_t counts[CONIC_DEVICE_N_COUNTS]; /* of all parts of the first walk over them */
   uint64_t n_fragments, n_drawn_in_all;
-  double triangle_bytes; /* of the device's memory */
+  double triangle_bytes;   /* of the device's memory */
+  uint64_t splats_version; /* of the options */
 } conic_frame;
 
 /* Makes ready what all parts share. */
@@ -32,6 +33,8 @@ conic_status conic_frame_bin(conic_frame *frame, int *fits);
 conic_status conic_frame_visibility(conic_frame *frame);
 /* Accumulation or, in a single pass, the nearest splats; with the last part, the picture. */
 conic_status conic_frame_accumulate(conic_frame *frame);
+/* Visibility and accumulation of all splats, which are on the device; by tiles as one, which counts as accumulation. */
+conic_status conic_frame_blend(conic_frame *frame);
 /* Brings the picture to the image. */
 conic_status conic_frame_end(conic_frame *frame, uint64_t *n_covered);
 /* Waits for all; after that, also after a failure, the device knows nothing more of the image and the splats. */

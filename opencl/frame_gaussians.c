@@ -151,7 +151,7 @@ static conic_status close_gaussian_picture(const gaussian_frame *g) {
   conic_opencl *opencl = g->frame.opencl;
   conic_status status = conic_queue_finish(&opencl->queue);
   for (int buffer = CONIC_BUFFER_GAUSSIAN_PICTURE; buffer < CONIC_N_BUFFER_NAMES && opencl->device.is_cpu; buffer++)
-    conic_queue_release(&opencl->buffers[buffer]);
+    conic_queue_release(&opencl->queue, &opencl->buffers[buffer]);
   return status;
 }
 

@@ -1,41 +1,72 @@
 /* Set-up: the splats of a part to the device, their records, and these in order. */
+#include <string.h>
+
 #include "opencl/frame.h"
 #include "raster/project/clip_lines.h"
 #include "raster/project/projected.h"
 #include "raster/view/method.h"
 
-static conic_status write_columns(const conic_frame *f) {
+static void note_splats(const conic_frame *f, conic_splats_on_device *list) {
   const conic_splats *s = f->splats;
-  const float *columns[13];
-  conic_status status = CONIC_OK;
+  memset(list, 0, sizeof *list);
+  list->version = f->splats_version;
+  list->count = s->count;
+  list->n_clips = s->n_clips;
+  list->clips = s->clips;
   for (int axis = 0; axis < 3; axis++) {
-    columns[axis] = s->position[axis];
-    columns[3 + axis] = s->tangent_u[axis];
-    columns[6 + axis] = s->tangent_v[axis];
-    columns[9 + axis] = s->color[axis];
+    list->columns[axis] = s->position[axis];
+    list->columns[3 + axis] = s->tangent_u[axis];
+    list->columns[6 + axis] = s->tangent_v[axis];
+    list->columns[9 + axis] = s->color[axis];
   }
-  columns[12] = s->opacity;
-  for (int column = 0; column < 13 && status == CONIC_OK; column++)
-    status = conic_frame_give(f, CONIC_BUFFER_COLUMNS + column, columns[column] ? columns[column] + f->first : NULL,
-                              columns[column] ? f->n * sizeof(float) : 0);
+  list->columns[12] = s->opacity;
+}
+
+static conic_status write_columns(const conic_frame *f, const conic_splats_on_device *list) {
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < CONIC_N_COLUMNS && status == CONIC_OK; i++) {
+    const float *column = list->columns[i];
+    status = conic_frame_give(f, CONIC_BUFFER_COLUMNS + i, column ? column + f->first : NULL,
+                              column ? f->n * sizeof(float) : 0);
+  }
   return status;
 }
 
 /* The clip lines of the part's splats. */
-static conic_status write_clips(const conic_frame *f, uint32_t *n_clips) {
+static conic_status write_clips(const conic_frame *f, size_t *n_clips) {
   const conic_splats *s = f->splats;
   size_t begin = 0, end;
   while (begin < s->n_clips && s->clips[begin].splat < f->first)
     begin++;
   for (end = begin; end < s->n_clips && s->clips[end].splat < f->first + f->n;)
     end++;
-  *n_clips = (uint32_t)(end - begin);
-  if (end == begin)
-    return CONIC_OK;
-  conic_status status = conic_frame_room(f, CONIC_BUFFER_CLIP_RECORDS, f->n, sizeof(conic_clip_record));
-  return status == CONIC_OK
-             ? conic_frame_copy(f, CONIC_BUFFER_CLIPS, s->clips + begin, (end - begin) * sizeof *s->clips)
-             : status;
+  *n_clips = end - begin;
+  return end == begin ? CONIC_OK
+                      : conic_frame_copy(f, CONIC_BUFFER_CLIPS, s->clips + begin, (end - begin) * sizeof *s->clips);
+}
+
+/* The part's splats to the device, unless they are there from the picture before; and how many of them have clip
+ * lines. A CPU's device reads them where they are, and holds no copy. */
+static conic_status bring_splats(const conic_frame *f, uint32_t *n_clips) {
+  conic_opencl *opencl = f->opencl;
+  conic_splats_on_device list;
+  size_t n = f->splats->n_clips;
+  note_splats(f, &list);
+  int is_whole = f->first == 0 && f->n == f->splats->count,
+      may_keep = is_whole && list.version && !opencl->device.is_cpu;
+  conic_status status = CONIC_OK;
+  if (!may_keep || memcmp(&list, &opencl->kept, sizeof list) != 0) {
+    opencl->kept.version = 0;
+    status = write_columns(f, &list);
+    if (status == CONIC_OK)
+      status = write_clips(f, &n);
+    if (status == CONIC_OK && may_keep)
+      opencl->kept = list;
+  }
+  if (status == CONIC_OK && n)
+    status = conic_frame_room(f, CONIC_BUFFER_CLIP_RECORDS, f->n, sizeof(conic_clip_record));
+  *n_clips = (uint32_t)n;
+  return status;
 }
 
 static conic_status make_room_for_records(const conic_frame *f) {
@@ -62,9 +93,7 @@ static conic_status project_on_device(conic_frame *f) {
   int n = 0;
   fields |= f->splats->color[0] ? CONIC_DEVICE_HAS_COLOR : 0;
   fields |= f->splats->opacity ? CONIC_DEVICE_HAS_OPACITY : 0;
-  conic_status status = write_columns(f);
-  if (status == CONIC_OK)
-    status = write_clips(f, &n_clips);
+  conic_status status = bring_splats(f, &n_clips);
   if (status == CONIC_OK)
     status = conic_queue_fill_zero(queue, &f->opencl->buffers[CONIC_BUFFER_COUNTS],
                                    CONIC_DEVICE_N_COUNTS * sizeof(uint32_t));
@@ -75,7 +104,7 @@ static conic_status project_on_device(conic_frame *f) {
   arguments[n++] = CONIC_ARGUMENT(first);
   arguments[n++] = CONIC_ARGUMENT(f->splats_per_item);
   arguments[n++] = CONIC_ARGUMENT(fields);
-  for (int column = 0; column < 13; column++)
+  for (int column = 0; column < CONIC_N_COLUMNS; column++)
     arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_COLUMNS + column);
   arguments[n++] = CONIC_ARGUMENT(n_clips);
   for (int buffer = CONIC_BUFFER_CLIPS; buffer <= CONIC_BUFFER_COUNTS; buffer++)

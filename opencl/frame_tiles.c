@@ -15,7 +15,7 @@ static uint32_t chunks_of(const conic_frame *f) {
 
 static int fits_device(const conic_frame *f, uint64_t n_references) {
   const conic_opencl_device *device = &f->opencl->device;
-  double bytes = (double)n_references * (double)sizeof(conic_device_reference); /* and masks, of the same size */
+  double bytes = (double)n_references * (double)sizeof(conic_device_reference); /* and those selected */
   return bytes <= (double)device->greatest_buffer_bytes && 2.0 * bytes <= 0.25 * (double)device->memory_bytes;
 }
 
@@ -55,7 +55,7 @@ conic_status conic_frame_bin(conic_frame *f, int *fits) {
     return CONIC_OK;
   status = conic_frame_room(f, CONIC_BUFFER_REFERENCES, f->n_references, sizeof(conic_device_reference));
   if (status == CONIC_OK && f->opencl->work == CONIC_OPENCL_WORK_TILES)
-    status = conic_frame_room(f, CONIC_BUFFER_MASKS, f->n_references, sizeof(uint64_t));
+    status = conic_frame_room(f, CONIC_BUFFER_SELECTED, f->n_references, sizeof(conic_device_reference));
   return status == CONIC_OK ? conic_frame_run(f, CONIC_STAGE_BIN, CONIC_KERNEL_FILL_TILES, arguments, 10, n_chunks)
                             : status;
 }
@@ -78,14 +78,6 @@ int conic_frame_planes(const conic_frame *f, conic_argument *to) {
     to[2 + plane] = conic_frame_argument(f, CONIC_BUFFER_PLANES + plane);
   to[2 + CONIC_N_DRAWN_PLANES] = conic_frame_argument(f, CONIC_BUFFER_N_COVERED);
   return CONIC_FRAME_PLANE_ARGUMENTS;
-}
-
-/* What pass 1 tells pass 2 where a tile is a work-item. */
-static int masks(const conic_frame *f, conic_argument *to) {
-  if (f->opencl->work != CONIC_OPENCL_WORK_TILES)
-    return 0;
-  *to = conic_frame_argument(f, CONIC_BUFFER_MASKS);
-  return 1;
 }
 
 /* A tile or a pixel a work-item. */
@@ -111,14 +103,43 @@ conic_status conic_frame_clear_tiles(const conic_frame *f, int buffer) {
   return conic_queue_fill_zero(&f->opencl->queue, &f->opencl->buffers[buffer], f->n_tiles * sizeof(uint32_t));
 }
 
-conic_status conic_frame_visibility(conic_frame *f) {
-  conic_argument arguments[ARGUMENTS_OF_RECORDS + 5];
+/* Where sums are looked at after this. */
+static conic_status make_room_for_sums(const conic_frame *f) {
+  size_t tile_pixels = (size_t)f->opencl->tile * (size_t)f->opencl->tile;
+  if (f->constants.is_first && f->constants.is_last && !f->constants.keeps_sums)
+    return CONIC_OK;
+  return conic_frame_room(f, CONIC_BUFFER_SUMS, f->n_tiles, tile_pixels * CONIC_N_SUMS * sizeof(float));
+}
+
+/* One pass, or both, a tile a work-item. */
+static conic_status walk_tiles(conic_frame *f, conic_stage stage, int32_t walks) {
+  conic_argument arguments[ARGUMENTS_OF_RECORDS + 4 + CONIC_FRAME_PLANE_ARGUMENTS];
   int n = records(f, arguments);
+  f->constants.walks = walks;
+  conic_status status = conic_frame_write_constants(f);
+  if (status == CONIC_OK && walks & CONIC_WALK_ACCUMULATE)
+    status = make_room_for_sums(f);
+  arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_THRESHOLDS);
+  arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_N_FRAGMENTS);
+  arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_SELECTED);
+  arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_SUMS);
+  n += conic_frame_planes(f, arguments + n);
+  if (status == CONIC_OK)
+    status = conic_frame_run_raster(f, stage, CONIC_KERNEL_ACCUMULATE, arguments, n);
+  return status == CONIC_OK && walks & CONIC_WALK_VISIBILITY
+             ? conic_frame_add_tiles(f, CONIC_BUFFER_N_FRAGMENTS, &f->n_fragments)
+             : status;
+}
+
+conic_status conic_frame_visibility(conic_frame *f) {
+  conic_argument arguments[ARGUMENTS_OF_RECORDS + 4];
+  int n = records(f, arguments);
+  if (f->opencl->work == CONIC_OPENCL_WORK_TILES)
+    return walk_tiles(f, CONIC_STAGE_VISIBILITY, CONIC_WALK_VISIBILITY);
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_DIRECTIONS_X);
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_DIRECTIONS_Y);
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_THRESHOLDS);
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_N_FRAGMENTS);
-  n += masks(f, arguments + n);
   conic_status status = conic_frame_write_constants(f);
   if (status == CONIC_OK)
     status = conic_frame_clear_tiles(f, CONIC_BUFFER_N_FRAGMENTS);
@@ -128,18 +149,16 @@ conic_status conic_frame_visibility(conic_frame *f) {
 }
 
 conic_status conic_frame_accumulate(conic_frame *f) {
-  conic_argument arguments[ARGUMENTS_OF_RECORDS + 2 + CONIC_FRAME_PLANE_ARGUMENTS + 1];
+  conic_argument arguments[ARGUMENTS_OF_RECORDS + 2 + CONIC_FRAME_PLANE_ARGUMENTS];
   int n = records(f, arguments), is_single = f->constants.is_single_pass, counts = CONIC_BUFFER_N_FRAGMENTS;
+  if (f->opencl->work == CONIC_OPENCL_WORK_TILES && !is_single)
+    return walk_tiles(f, CONIC_STAGE_ACCUMULATE, CONIC_WALK_ACCUMULATE);
+  conic_status status = conic_frame_write_constants(f);
+  if (status == CONIC_OK)
+    status = make_room_for_sums(f);
   arguments[n++] = conic_frame_argument(f, is_single ? counts : CONIC_BUFFER_THRESHOLDS);
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_SUMS);
   n += conic_frame_planes(f, arguments + n);
-  n += is_single ? 0 : masks(f, arguments + n);
-  conic_status status = conic_frame_write_constants(f);
-  if (status == CONIC_OK && (!f->constants.is_first || !f->constants.is_last || f->constants.keeps_sums)) {
-    status = conic_frame_room(f, CONIC_BUFFER_SUMS, f->n_tiles,
-                              (size_t)f->opencl->tile * (size_t)f->opencl->tile * CONIC_N_SUMS * sizeof(float));
-    arguments[ARGUMENTS_OF_RECORDS + 1] = conic_frame_argument(f, CONIC_BUFFER_SUMS);
-  }
   if (status == CONIC_OK && is_single)
     status = conic_frame_clear_tiles(f, counts);
   if (status == CONIC_OK)
@@ -148,4 +167,11 @@ conic_status conic_frame_accumulate(conic_frame *f) {
     status = conic_frame_run_raster(f, CONIC_STAGE_ACCUMULATE,
                                     is_single ? CONIC_KERNEL_NEAREST : CONIC_KERNEL_ACCUMULATE, arguments, n);
   return status == CONIC_OK && is_single ? conic_frame_add_tiles(f, counts, &f->n_fragments) : status;
+}
+
+conic_status conic_frame_blend(conic_frame *f) {
+  if (f->opencl->work == CONIC_OPENCL_WORK_TILES)
+    return walk_tiles(f, CONIC_STAGE_ACCUMULATE, CONIC_WALK_VISIBILITY | CONIC_WALK_ACCUMULATE);
+  conic_status status = conic_frame_visibility(f);
+  return status == CONIC_OK ? conic_frame_accumulate(f) : status;
 }

@@ -111,21 +111,17 @@ static uint lanes_resolve(const conic_device_frame *frame, const lanes_sums *s, 
   return lanes_count(is_covered);
 }
 
-/* Of a part of the splats: on with the sums, or the picture where it is the last and no triangles follow. */
-static void lanes_finish(const conic_device_frame *frame, const lanes_tile *t, const lanes_sums *of_blocks,
+/* A block of a part of the splats: on with the sums, or the picture where it is the last and no triangles follow.
+ * Returns how many of its pixels are covered then. */
+static uint lanes_finish(const conic_device_frame *frame, const lanes_tile *t, uint block, const lanes_sums *s,
                          __global lanes *sums, PIXEL_PLANES) {
-  uint covered = 0;
-  for (uint block = 0; block < N_TILE_BLOCKS; block++) {
-    const lanes_sums *s = &of_blocks[block];
-    int x = lanes_block_x(t, block), y = lanes_block_y(t, block);
-    if (!frame->is_last || frame->keeps_sums) {
-      __global lanes *to = sums + lanes_block(t, frame, block) * CONIC_N_SUMS;
-      for (int i = 0; i < CONIC_N_SUMS; i++)
-        to[i] = s->values[i];
-    }
-    if (!frame->is_last || frame->has_triangles || x >= frame->width || y >= frame->height)
-      continue;
-    covered += lanes_resolve(frame, s, x, y, PIXEL_PLANES_PASSED);
+  int x = lanes_block_x(t, block), y = lanes_block_y(t, block);
+  if (!frame->is_last || frame->keeps_sums) {
+    __global lanes *to = sums + lanes_block(t, frame, block) * CONIC_N_SUMS;
+    for (int i = 0; i < CONIC_N_SUMS; i++)
+      to[i] = s->values[i];
   }
-  n_covered[t->index] = covered;
+  if (!frame->is_last || frame->has_triangles || x >= frame->width || y >= frame->height)
+    return 0;
+  return lanes_resolve(frame, s, x, y, PIXEL_PLANES_PASSED);
 }

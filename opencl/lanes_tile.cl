@@ -26,7 +26,6 @@ typedef struct lanes_tile {
   uint index;
   int x, y; /* its first pixel */
   uint first_block;
-  int is_at_border; /* pixels of it are outside of the image */
   int width, height;
 } lanes_tile;
 
@@ -36,7 +35,6 @@ static lanes_tile lanes_tile_of(const conic_device_frame *frame) {
   t.x = (int)(t.index % (uint)frame->n_tiles_x) * CONIC_DEVICE_TILE;
   t.y = (int)(t.index / (uint)frame->n_tiles_x) * CONIC_DEVICE_TILE;
   t.first_block = (uint)(t.y / 4) * (uint)frame->n_blocks_x + (uint)(t.x / 4);
-  t.is_at_border = t.x + CONIC_DEVICE_TILE > frame->width || t.y + CONIC_DEVICE_TILE > frame->height;
   t.width = frame->width;
   t.height = frame->height;
   return t;
@@ -55,10 +53,6 @@ static int lanes_block_x(const lanes_tile *t, uint block) {
 
 static int lanes_block_y(const lanes_tile *t, uint block) {
   return t->y + 4 * (int)(block / CONIC_DEVICE_TILE_BLOCKS);
-}
-
-static int16 lanes_inside(const lanes_tile *t, int x, int y) {
-  return (columns_from(x) < (float)t->width) & (rows_from(y) < (float)t->height);
 }
 
 static uint sum_of_lanes(index_lanes values) {

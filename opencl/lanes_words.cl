@@ -5,7 +5,7 @@
 #define CONIC_LANES_TABLE_H
 #define CONIC_LANES 16
 #define CONIC_WIDE_LANES 8
-#define CONIC_INLINE static inline
+#define CONIC_INLINE static inline __attribute__((always_inline))
 #define CONIC_OUTLINE static
 /* A block of 4 × 4 pixels is one vector, column by column. */
 #define CONIC_PARTS 1
@@ -86,15 +86,8 @@ CONIC_INLINE lanes lanes_min(lanes a, lanes b) {
   return a < b ? a : b;
 }
 
-CONIC_INLINE int lanes_any(lanes_mask mask) {
-  int8 a = mask.lo | mask.hi;
-  int4 b = a.lo | a.hi;
-  long2 c = as_long2(b);
-  return (c.x | c.y) != 0;
-}
-
-/* Bit l for lane l. */
-CONIC_INLINE uint lanes_bits(lanes_mask mask) {
+/* Bit l for lane l, where the compiler has no word for it (opencl/program.c). */
+CONIC_INLINE uint lanes_gather_bits(lanes_mask mask) {
   int16 bits = mask & (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
   int8 a = bits.lo | bits.hi;
   int4 b = a.lo | a.hi;
@@ -102,17 +95,31 @@ CONIC_INLINE uint lanes_bits(lanes_mask mask) {
   return (uint)(c.x | c.y);
 }
 
+CONIC_INLINE int lanes_find_any(lanes_mask mask) {
+  int8 a = mask.lo | mask.hi;
+  int4 b = a.lo | a.hi;
+  long2 c = as_long2(b);
+  return (c.x | c.y) != 0;
+}
+
+#define lanes_any(mask) CONIC_LANES_ANY(mask)
+#define lanes_bits(mask) CONIC_LANES_BITS(mask)
+
 CONIC_INLINE lanes_mask lanes_mask_of(uint bits) {
   return (bits & (index_lanes)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768)) != 0u;
 }
 
+CONIC_INLINE index_lanes lanes_bring_forward(lanes_mask mask, index_lanes value) {
+  index_lanes packed = 0;
+  for (uint bits = lanes_gather_bits(mask), n = 0; bits; bits &= bits - 1)
+    ((uint *)&packed)[n++] = ((const uint *)&value)[31 - clz(bits & -bits)];
+  return packed;
+}
+
+/* There is room for all lanes. */
 CONIC_INLINE size_t lanes_append(uint *to, lanes_mask mask, index_lanes value) {
-  size_t n = 0;
-  for (int lane = 0; lane < CONIC_LANES; lane++) {
-    to[n] = ((const uint *)&value)[lane];
-    n += ((const int *)&mask)[lane] != 0;
-  }
-  return n;
+  vstore16(CONIC_LANES_PACK(mask, value), 0, to);
+  return popcount(lanes_bits(mask));
 }
 
 #define __builtin_prefetch(pointer) CONIC_FETCH_AHEAD(pointer)

@@ -78,6 +78,9 @@ typedef struct conic_device_material {
   uint64_t texture;
 } conic_device_material;
 
+/* What is done with a part of the splats where tiles are work-items, as bits. */
+enum { CONIC_WALK_VISIBILITY = 1, CONIC_WALK_ACCUMULATE = 2 };
+
 /* The frame as the raster's kernels want it. */
 typedef struct conic_device_frame {
   int32_t width, height;
@@ -86,7 +89,8 @@ typedef struct conic_device_frame {
   int32_t is_single_pass;
   int32_t is_first, is_last; /* of the parts in which the splats come */
   int32_t keeps_sums;        /* leaves them in memory, though the part is the last */
-  int32_t planes;            /* that the image has, as bits 1 << conic_plane */
+  int32_t walks;
+  int32_t planes; /* that the image has, as bits 1 << conic_plane */
   int32_t shading;
   float world_from_cam[3][3];
   conic_finish_lights lights;

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "opencl/device_name.h"
 
 enum { MOST_PLATFORMS = 16, MOST_DEVICES = 64 };
 
@@ -124,31 +125,6 @@ void conic_opencl_options_init_sized(conic_opencl_options *options, size_t size)
   conic_options_give(options, size, &own);
 }
 
-/* The digits at *text as a number, and *text past them; -1 where there are none or too many. */
-static int take_number(const char **text) {
-  int number = 0, n_digits = 0;
-  for (; **text >= '0' && **text <= '9' && n_digits < 4; (*text)++, n_digits++)
-    number = 10 * number + (**text - '0');
-  return n_digits ? number : -1;
-}
-
-/* "opencl" or "opencl:P.D"; -1 for what is not given. 0 where it is neither. */
-static int parse_name(const char *text, int *i_platform, int *i_device) {
-  *i_platform = *i_device = -1;
-  if (!text || strncmp(text, "opencl", 6) != 0)
-    return 0;
-  text += 6;
-  if (!*text)
-    return 1;
-  if (*text++ != ':')
-    return 0;
-  *i_platform = take_number(&text);
-  if (*text++ != '.')
-    return 0;
-  *i_device = take_number(&text);
-  return *i_platform >= 0 && *i_device >= 0 && !*text;
-}
-
 /* GPUs before others, what rounds correctly before what does not. */
 static const found_device *choose_device(const found_device *found, size_t n) {
   const found_device *best = NULL;
@@ -186,19 +162,20 @@ conic_status conic_opencl_find(conic_context *context, const conic_opencl_option
                                cl_device_id *id, conic_opencl_device *device) {
   found_device found[MOST_DEVICES];
   const found_device *chosen = NULL;
-  int i_platform, i_device;
-  if (!parse_name(options->device, &i_platform, &i_device))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a device is cpu, opencl or opencl:P.D, such as opencl:0.0",
+  conic_device_name name;
+  if (!conic_device_name_read(options->device, &name))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "%s: a device is cpu, opencl or opencl:P.D, such as opencl:0.0, with :gather or :lanes behind it",
                       options->device ? options->device : "(null)");
   size_t n = find_all(found);
   if (n == 0)
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED,
                       "%s: there is no OpenCL platform with a device (a driver, such as PoCL, is a package of its own)",
                       options->device);
-  if (i_platform < 0)
+  if (name.i_platform < 0)
     chosen = choose_device(found, n);
-  for (size_t i = 0; i < n && i_platform >= 0; i++)
-    if (found[i].i_platform == i_platform && found[i].i_device == i_device)
+  for (size_t i = 0; i < n && name.i_platform >= 0; i++)
+    if (found[i].i_platform == name.i_platform && found[i].i_device == name.i_device)
       chosen = &found[i];
   if (!chosen)
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: no such device; conic devices lists what there is",

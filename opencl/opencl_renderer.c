@@ -5,14 +5,15 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "opencl/device_name.h"
 #include "opencl/frame.h"
 #include "opencl/program.h"
 
 static const char *kernel_name(const conic_opencl *opencl, int kernel) {
   static const char *const names[] = {"project", "lanes_project", "scan_sums",    "scan_tops", "scan_places",
                                       "compact", "count_tiles",   "place_chunks", "fill_tiles"};
-  static const char *const of_tiles[] = {"lanes_visibility", "lanes_accumulate",    "lanes_nearest",
-                                         "lanes_triangles",  "lanes_add_triangles", "tiles_composite"};
+  static const char *const of_tiles[] = {"lanes_passes",    "lanes_passes",        "lanes_nearest",
+                                         "lanes_triangles", "lanes_add_triangles", "tiles_composite"};
   static const char *const of_pixels[] = {"gather_visibility", "gather_accumulate",    "gather_nearest",
                                           "gather_triangles",  "gather_add_triangles", "pixels_composite"};
   if (kernel < CONIC_KERNEL_VISIBILITY)
@@ -60,6 +61,7 @@ static conic_status keep_folder(conic_opencl *opencl, const char *folder) {
 static conic_status open_device(conic_opencl *opencl, const conic_opencl_options *options) {
   conic_context *context = opencl->context;
   conic_opencl_device *device = &opencl->device;
+  conic_device_name name;
   cl_platform_id platform;
   conic_status status = conic_opencl_find(context, options, &platform, &opencl->id, device);
   if (status == CONIC_OK)
@@ -69,7 +71,8 @@ static conic_status open_device(conic_opencl *opencl, const conic_opencl_options
   opencl->gaussian_device.n_units = device->n_compute_units;
   opencl->projects_on_host = options->projects_on_host || !device->has_double;
   opencl->part_splats = options->part_splats;
-  opencl->work = options->work;
+  conic_device_name_read(options->device, &name);
+  opencl->work = name.work == CONIC_OPENCL_WORK_AUTO ? options->work : name.work;
   if (opencl->work == CONIC_OPENCL_WORK_AUTO)
     opencl->work = device->is_cpu ? CONIC_OPENCL_WORK_TILES : CONIC_OPENCL_WORK_PIXELS;
   opencl->tile = 1 << tile_bits_of(opencl);
@@ -131,7 +134,7 @@ void conic_opencl_close(conic_opencl *opencl) {
   if (!opencl)
     return;
   for (int i = 0; i < CONIC_N_BUFFER_NAMES; i++)
-    conic_queue_release(&opencl->buffers[i]);
+    conic_queue_release(&opencl->queue, &opencl->buffers[i]);
   for (int i = 0; i < CONIC_N_KERNEL_NAMES; i++)
     if (opencl->kernels[i])
       clReleaseKernel(opencl->kernels[i]);

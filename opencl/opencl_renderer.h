@@ -27,12 +27,15 @@ typedef enum conic_kernel_name {
   CONIC_N_KERNEL_NAMES
 } conic_kernel_name;
 
+/* Of a splat set: position, tangent_u, tangent_v, colour, opacity. */
+enum { CONIC_N_COLUMNS = 13 };
+
 typedef enum conic_buffer_name {
   CONIC_BUFFER_VIEW,
   CONIC_BUFFER_PROFILE, /* its table */
   CONIC_BUFFER_FRAME,
-  CONIC_BUFFER_COLUMNS, /* of the splat set: position, tangent_u, tangent_v, colour, opacity */
-  CONIC_BUFFER_CLIPS = CONIC_BUFFER_COLUMNS + 13,
+  CONIC_BUFFER_COLUMNS,
+  CONIC_BUFFER_CLIPS = CONIC_BUFFER_COLUMNS + CONIC_N_COLUMNS,
   CONIC_BUFFER_FOOTPRINTS,
   CONIC_BUFFER_BOXES,
   CONIC_BUFFER_SURFACES,
@@ -47,7 +50,7 @@ typedef enum conic_buffer_name {
   CONIC_BUFFER_TILE_TOTALS,
   CONIC_BUFFER_TILE_BEGIN,
   CONIC_BUFFER_REFERENCES,
-  CONIC_BUFFER_MASKS,       /* of references: the blocks where the splat may be seen; by tiles only */
+  CONIC_BUFFER_SELECTED,    /* where a tile's references of one row of blocks are copied to; by tiles only */
   CONIC_BUFFER_THRESHOLDS,  /* [block][pixel] */
   CONIC_BUFFER_SUMS,        /* [block][CONIC_SUM_WEIGHT …][pixel] */
   CONIC_BUFFER_N_FRAGMENTS, /* a tile */
@@ -85,6 +88,14 @@ typedef enum conic_buffer_name {
   CONIC_N_BUFFER_NAMES = CONIC_BUFFER_GAUSSIAN_PLANES + 9
 } conic_buffer_name;
 
+/* Which splats the buffers of columns and clip lines hold, whole, from one picture to the next. */
+typedef struct conic_splats_on_device {
+  uint64_t version; /* 0: none */
+  size_t count, n_clips;
+  const float *columns[CONIC_N_COLUMNS];
+  const conic_clip *clips;
+} conic_splats_on_device;
+
 typedef struct conic_opencl {
   conic_backend backend; /* first: what the renderer has */
   conic_gaussian_device gaussian_device;
@@ -101,6 +112,7 @@ typedef struct conic_opencl {
   cl_program setup, raster, triangles, gaussians;
   cl_kernel kernels[CONIC_N_KERNEL_NAMES];
   conic_buffer buffers[CONIC_N_BUFFER_NAMES];
+  conic_splats_on_device kept;
 } conic_opencl;
 
 /* Opens the device that the options ask for. On success the caller ends *opened with conic_opencl_close. Errors: as

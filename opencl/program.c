@@ -15,15 +15,32 @@ static const char *options_of_device(const conic_opencl_device *device) {
   return device->rounds_correctly ? exact_options : inexact_options;
 }
 
-/* What stands before the text: the tiles' size, and how memory is called for ahead of its use, which changes no value.
- * PoCL leaves prefetch() without effect, but its compiler is clang. */
+/* What memory is called for ahead of its use by, which changes no value; and how masks become bits and a vector's lanes
+ * come to the front, where lanes_words.cl has slower words. PoCL leaves prefetch() without effect, but its compiler is
+ * clang. */
+static const char words_of_others[] =
+    "#define CONIC_FETCH_AHEAD(pointer) prefetch((const __global float *)(pointer), 1)\n";
+static const char words_of_pocl[] =
+    "#define CONIC_FETCH_AHEAD(pointer) __builtin_prefetch((const void *)(size_t)(pointer))\n"
+    "#ifdef __AVX512F__\n"
+    "typedef int conic_words __attribute__((vector_size(64)));\n"
+    "#define CONIC_WORDS(value) __builtin_astype((value), conic_words)\n"
+    "#define CONIC_LANES_BITS(mask) ((uint)(ushort)__builtin_ia32_cmpd512_mask("
+    "CONIC_WORDS(mask), CONIC_WORDS((int16)(0)), 4, -1))\n"
+    "#define CONIC_LANES_ANY(mask) (CONIC_LANES_BITS(mask) != 0)\n"
+    "#define CONIC_LANES_PACK(mask, value) __builtin_astype(__builtin_ia32_compresssi512_mask("
+    "CONIC_WORDS(value), CONIC_WORDS((int16)(0)), (ushort)CONIC_LANES_BITS(mask)), uint16)\n"
+    "#endif\n";
+
+/* What stands before the text: the tiles' size, and those words. */
 static void write_prelude(const conic_opencl_device *device, int tile_bits, char *prelude, size_t room) {
-  const char *fetch = strstr(device->platform, "Portable Computing Language")
-                          ? "__builtin_prefetch((const void *)(size_t)(pointer))"
-                          : "prefetch((const __global float *)(pointer), 1)";
+  int is_pocl = strstr(device->platform, "Portable Computing Language") != NULL;
   snprintf(prelude, room,
-           "#define CONIC_DEVICE_TILE %d\n#define CONIC_DEVICE_TILE_BITS %d\n#define CONIC_FETCH_AHEAD(pointer) %s\n",
-           1 << tile_bits, tile_bits, fetch);
+           "#define CONIC_DEVICE_TILE %d\n#define CONIC_DEVICE_TILE_BITS %d\n%s"
+           "#ifndef CONIC_LANES_BITS\n#define CONIC_LANES_BITS(mask) lanes_gather_bits(mask)\n"
+           "#define CONIC_LANES_ANY(mask) lanes_find_any(mask)\n"
+           "#define CONIC_LANES_PACK(mask, value) lanes_bring_forward(mask, value)\n#endif\n",
+           1 << tile_bits, tile_bits, is_pocl ? words_of_pocl : words_of_others);
 }
 
 /* What a built program depends on. */
@@ -101,7 +118,7 @@ static void to_cache(conic_context *context, cl_program program, const char *pat
 conic_status conic_opencl_build(conic_context *context, cl_context cl, cl_device_id id,
                                 const conic_opencl_device *device, int tile_bits, const conic_opencl_text *text,
                                 const char *cache_folder, cl_program *program) {
-  char path[4096] = "", prelude[512];
+  char path[4096] = "", prelude[2048];
   cl_int answer;
   write_prelude(device, tile_bits, prelude, sizeof prelude);
   if (cache_folder)

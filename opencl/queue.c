@@ -2,11 +2,16 @@
 
 #include <string.h>
 
+#include "core/base/memory.h"
+
 conic_status conic_queue_open(conic_context *context, cl_platform_id platform, cl_device_id id, conic_queue *queue) {
   const cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)platform, 0};
   cl_int answer;
   memset(queue, 0, sizeof *queue);
+  cl_device_type type = 0;
   queue->context = context;
+  clGetDeviceInfo(id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
+  queue->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
   queue->cl = clCreateContext(properties, 1, &id, NULL, NULL, &answer);
   conic_status status = conic_opencl_check(context, answer, "clCreateContext");
   if (status != CONIC_OK)
@@ -30,8 +35,15 @@ conic_status conic_queue_room(conic_queue *queue, conic_buffer *buffer, size_t b
   bytes = bytes ? bytes : 1;
   if (buffer->memory && bytes <= buffer->bytes)
     return CONIC_OK;
-  conic_queue_release(buffer);
-  buffer->memory = clCreateBuffer(queue->cl, CL_MEM_READ_WRITE, bytes, NULL, &answer);
+  conic_queue_release(queue, buffer);
+  if (queue->is_cpu) {
+    buffer->own = conic_memory_allocate(queue->context, bytes, 1);
+    if (!buffer->own)
+      return CONIC_ERROR_MEMORY;
+    conic_memory_prefer_large_pages(queue->context, buffer->own, bytes);
+  }
+  buffer->memory = clCreateBuffer(queue->cl, CL_MEM_READ_WRITE | (buffer->own ? CL_MEM_USE_HOST_PTR : 0), bytes,
+                                  buffer->own, &answer);
   buffer->bytes = answer == CL_SUCCESS ? bytes : 0;
   return conic_opencl_check(queue->context, answer, "clCreateBuffer");
 }
@@ -39,22 +51,25 @@ conic_status conic_queue_room(conic_queue *queue, conic_buffer *buffer, size_t b
 conic_status conic_queue_wrap(conic_queue *queue, conic_buffer *buffer, cl_mem_flags access, const void *memory,
                               size_t bytes) {
   cl_int answer;
-  conic_queue_release(buffer);
+  conic_queue_release(queue, buffer);
   buffer->memory = clCreateBuffer(queue->cl, access | CL_MEM_USE_HOST_PTR, bytes, (void *)memory, &answer);
   return conic_opencl_check(queue->context, answer, "clCreateBuffer");
 }
 
-void conic_queue_release(conic_buffer *buffer) {
+void conic_queue_release(conic_queue *queue, conic_buffer *buffer) {
+  if (buffer->own) /* it is not OpenCL that frees it when all is done */
+    clFinish(queue->queue);
   if (buffer->memory)
     clReleaseMemObject(buffer->memory);
-  buffer->memory = NULL;
-  buffer->bytes = 0;
+  conic_memory_release(queue->context, buffer->own);
+  *buffer = (conic_buffer){NULL, 0, NULL};
 }
 
 conic_status conic_queue_write_at(conic_queue *queue, const conic_buffer *buffer, size_t at, const void *from,
                                   size_t bytes) {
   if (bytes == 0)
     return CONIC_OK;
+  queue->n_bytes_written += bytes;
   cl_int answer = clEnqueueWriteBuffer(queue->queue, buffer->memory, CL_TRUE, at, bytes, from, 0, NULL, NULL);
   return conic_opencl_check(queue->context, answer, "clEnqueueWriteBuffer");
 }

@@ -19,16 +19,19 @@ typedef struct conic_queue {
   conic_context *context;
   cl_context cl;
   cl_command_queue queue;
+  int is_cpu;   /* the device is this machine's processor */
   int n_events; /* of commands whose times are not yet counted */
   cl_event events[CONIC_QUEUE_EVENTS];
   conic_stage stages[CONIC_QUEUE_EVENTS];
   double ms[CONIC_N_STAGES];
+  uint64_t n_bytes_written; /* copied to the device since it was opened */
 } conic_queue;
 
 /* Memory on the device; only ever grows. */
 typedef struct conic_buffer {
   cl_mem memory;
   size_t bytes;
+  void *own; /* where a CPU's is, which so has the pages that the context asks for */
 } conic_buffer;
 
 /* A kernel's argument. */
@@ -50,7 +53,7 @@ conic_status conic_queue_room(conic_queue *queue, conic_buffer *buffer, size_t b
 /* Makes it the host's own memory, which a CPU's device reads or writes (`access`) where it is. */
 conic_status conic_queue_wrap(conic_queue *queue, conic_buffer *buffer, cl_mem_flags access, const void *memory,
                               size_t bytes);
-void conic_queue_release(conic_buffer *buffer);
+void conic_queue_release(conic_queue *queue, conic_buffer *buffer);
 
 /* Both return when it is done. */
 conic_status conic_queue_write(conic_queue *queue, const conic_buffer *buffer, const void *from, size_t bytes);

@@ -7,18 +7,21 @@
 /* The columns of a splat set that set-up reads. */
 enum { POSITION = 0, TANGENT_U = 3, TANGENT_V = 6, COLOR = 9, OPACITY = 12, N_COLUMNS };
 
-/* A group's splats, and their places in the set. */
+/* Those of an item's splats that may be drawn, packed; there is room for the last group's spare lanes. */
+enum { BATCH_ROOM = CONIC_SETUP_SPLATS + 16 };
+
 typedef struct batch {
-  lanes columns[N_COLUMNS];
-  index_lanes index;
+  float columns[N_COLUMNS][BATCH_ROOM];
+  uint index[BATCH_ROOM]; /* in the part */
+  uint n, first; /* `first`: the index of the part's place 0 in the whole set */
 } batch;
 
 CONIC_INLINE lanes batch_column(const batch *from, int column, size_t at) {
-  return from->columns[column];
+  return vload16(0, from->columns[column] + at);
 }
 
 CONIC_INLINE index_lanes batch_index(const batch *from, size_t at) {
-  return from->index;
+  return vload16(0, from->index + at) + from->first;
 }
 
 #include "raster/project/setup_body.h"
@@ -33,13 +36,16 @@ static lanes zip_high(lanes a, lanes b) {
 
 /* Numbers that lie by field and then by lane come to lie by lane and then by field; n, a power of two, is how many
  * fields there are. Each round takes the highest bit of a number's place to the end. */
-static void turn(lanes *fields, int n) {
+CONIC_INLINE void turn(lanes *fields, int n) {
   lanes turned[16];
+#pragma unroll
   for (int round = 1; round < n; round *= 2) {
+#pragma unroll
     for (int i = 0; i < n / 2; i++) {
       turned[2 * i] = zip_low(fields[i], fields[i + n / 2]);
       turned[2 * i + 1] = zip_high(fields[i], fields[i + n / 2]);
     }
+#pragma unroll
     for (int i = 0; i < n; i++)
       fields[i] = turned[i];
   }
@@ -61,26 +67,19 @@ static void write_lane(const group_screen *s, const records *r, int lane, record
   to->at++;
 }
 
-/* A column's numbers at the places. */
-static lanes pick(__global const float *column, const uint *p) {
-  return (lanes)(column[p[0]], column[p[1]], column[p[2]], column[p[3]], column[p[4]], column[p[5]], column[p[6]],
-                 column[p[7]], column[p[8]], column[p[9]], column[p[10]], column[p[11]], column[p[12]], column[p[13]],
-                 column[p[14]], column[p[15]]);
+static int has_column(const splat_columns *from, int column) {
+  return column < COLOR || (column < OPACITY ? from->fields & CONIC_DEVICE_HAS_COLOR
+                                             : from->fields & CONIC_DEVICE_HAS_OPACITY);
 }
 
-/* The first n_valid of sixteen splats by their places in the columns. */
-static void project_group(const conic_view *view, splat_columns *from, const uint *places, uint n_valid,
-                          record_places *to, uint counts[CONIC_DEVICE_N_COUNTS]) {
-  batch from_places;
+/* The group of the batch that begins at `at`. */
+static void project_group(const conic_view *view, splat_columns *from, const batch *packed, uint at, record_places *to,
+                          uint counts[CONIC_DEVICE_N_COUNTS]) {
   group_screen s;
   records r;
-  for (int column = 0; column < N_COLUMNS; column++) {
-    int is_there = column < COLOR || (column < OPACITY ? from->fields & CONIC_DEVICE_HAS_COLOR
-                                                       : from->fields & CONIC_DEVICE_HAS_OPACITY);
-    from_places.columns[column] = is_there ? pick(from->values[column], places) : 1.0f;
-  }
-  from_places.index = vload16(0, places) + from->first;
-  group_verdict verdict = set_up_group(view, &from_places, 0, &s, &r);
+  uint n_valid = min(packed->n - at, 16u);
+  const uint *places = packed->index + at;
+  group_verdict verdict = set_up_group(view, packed, at, &s, &r);
   turn(r.footprint, 16);
   turn(r.surface, 8);
   for (int lane = 0; lane < (int)n_valid; lane++) {
@@ -98,41 +97,61 @@ static void project_group(const conic_view *view, splat_columns *from, const uin
   }
 }
 
-/* The places of those of the item's splats that do not face away or lie behind; whole groups are looked at. Returns how
- * many. */
-static uint find_facing(const conic_view *view, const splat_columns *from, uint begin, uint end, uint *places) {
-  uint n = 0, i = begin;
-  for (; view->cull_back && i + 16 <= end; i += 16) {
-    lanes columns[COLOR];
-    group_splats g;
-    for (int column = 0; column < COLOR; column++)
-      columns[column] = vload16(0, from->values[column] + i);
-    look_at(view, columns + POSITION, columns + TANGENT_U, columns + TANGENT_V, &g);
-    int16 away = g.behind | (g.usual & (g.area > 0.0f));
-    for (int lane = 0; lane < 16; lane++) {
-      places[n] = i + (uint)lane;
-      n += ((const int *)&away)[lane] == 0;
+/* Appends the kept ones of the sixteen splats at place i, and calls for those of the next item: so many columns at a
+ * time are more than the hardware fetches ahead by itself. */
+static void append_group(const splat_columns *from, uint i, uint ahead, int16 kept, batch *to) {
+#pragma unroll
+  for (int column = 0; column < N_COLUMNS; column++)
+    if (has_column(from, column)) {
+      CONIC_FETCH_AHEAD(from->values[column] + ahead);
+      lanes_append((uint *)(to->columns[column] + to->n), kept, as_uint16(vload16(0, from->values[column] + i)));
     }
+  to->n += (uint)lanes_append(to->index + to->n, kept, lanes_ascending(i));
+}
+
+/* Packs those of the splats begin … end - 1 that do not surely face away; whole groups are looked at. A set without
+ * colours is white, one without opacities opaque. */
+static void pack_facing(const conic_view *view, const splat_columns *from, uint begin, uint end, uint n_splats,
+                        batch *to) {
+  uint i = begin;
+  for (int column = COLOR; column < N_COLUMNS; column++)
+    for (uint at = 0; at < BATCH_ROOM && !has_column(from, column); at++)
+      to->columns[column][at] = 1.0f;
+  for (; i + 16 <= end; i += 16) {
+    int16 away = 0;
+    if (view->cull_back) {
+      lanes columns[COLOR];
+#pragma unroll
+      for (int column = 0; column < COLOR; column++)
+        columns[column] = vload16(0, from->values[column] + i);
+      away = surely_faces_away(view, columns + POSITION, columns + TANGENT_U, columns + TANGENT_V);
+    }
+    append_group(from, i, min(i + CONIC_SETUP_SPLATS, n_splats - 1), ~away, to);
   }
-  for (; i < end; i++)
-    places[n++] = i;
-  return n;
+  for (; i < end; i++) {
+    for (int column = 0; column < N_COLUMNS; column++)
+      if (has_column(from, column))
+        to->columns[column][to->n] = from->values[column][i];
+    to->index[to->n++] = i;
+  }
 }
 
 /* The same as the kernel `project`, of all methods but point and disc. */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_project(SETUP_ARGUMENTS) {
   conic_view view = *frame_view;
   uint item = (uint)get_global_id(0), begin = item * splats_per_item, own[CONIC_DEVICE_N_COUNTS] = {0};
-  uint end = n - begin < splats_per_item ? n : begin + splats_per_item, places[CONIC_SETUP_SPLATS + 16];
+  uint end = n - begin < splats_per_item ? n : begin + splats_per_item;
   splat_columns columns = SETUP_COLUMNS;
   record_places to = {footprints, boxes, surfaces, rays, records, begin};
+  batch packed;
+  packed.n = 0;
+  packed.first = first;
   seek_clip(&columns, first + begin);
-  uint n_facing = find_facing(&view, &columns, begin, end, places), i = 0;
-  own[CONIC_DEVICE_CULLED] = end - begin - n_facing;
-  for (uint spare = 0; spare < 16; spare++) /* the last group's spare lanes repeat the first splat */
-    places[n_facing + spare] = begin;
-  for (; i < n_facing; i += 16)
-    project_group(&view, &columns, places + i, min(n_facing - i, 16u), &to, own);
+  pack_facing(&view, &columns, begin, end, n, &packed);
+  fill_last_group(&packed);
+  own[CONIC_DEVICE_CULLED] = end - begin - packed.n;
+  for (uint at = 0; at < packed.n; at += 16)
+    project_group(&view, &columns, &packed, at, &to, own);
   n_drawn[item] = to.at - begin;
   add_counts(own, counts);
 }

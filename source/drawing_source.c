@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "core/base/context_struct.h"
 #include "core/base/loan_find.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
@@ -245,6 +246,8 @@ static conic_status measure_drawing(drawing_source *d) {
       d->splats.count ? conic_splats_length(d->base.context, &d->splats, &scale->splat_length) : CONIC_OK;
   if (status == CONIC_OK)
     status = copy_axes(d);
+  if (!d->is_lent && !d->n_dots)
+    d->base.splats_version = conic_context_next_version(d->base.context);
   scale->estimate_seconds += conic_seconds_now() - start;
   return status;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "conic/octree.h"
+#include "core/base/context_struct.h"
 #include "core/base/trigonometry.h"
 #include "source/source_kind.h"
 
@@ -22,6 +23,7 @@ static int takes_octree(const char *path, const conic_source_options *options) {
 static conic_status measure_octree(octree_source *o) {
   conic_source_scale *scale = &o->base.scale;
   conic_status status = conic_octree_describe(o->octree, &o->info);
+  o->base.splats_version = conic_context_next_version(o->base.context);
   memcpy(scale->minimum, o->info.minimum, sizeof scale->minimum);
   memcpy(scale->maximum, o->info.maximum, sizeof scale->maximum);
   scale->near_z = o->info.near_z;

@@ -212,6 +212,8 @@ conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, c
   status = choose_settled(source, camera, &settled);
   int is_chosen = kind->choose && (!source->choice.is_all || source->choice.drawing.splats->dot);
   double ms = is_chosen ? 1e3 * (conic_seconds_now() - start) : 0.0;
+  if (source->choice.is_all && !settled.splats_version)
+    settled.splats_version = source->splats_version;
   if (status == CONIC_OK)
     status = conic_render_drawing(source->context, renderer, &source->choice.drawing, camera, &settled,
                                   source->view.samples, image, statistics);

@@ -69,8 +69,9 @@ struct conic_source {
   conic_source_choice choice;
   conic_source_view view; /* of the last picture */
   conic_coloring coloring;
-  conic_splats outline; /* conic_source_take_samples', where they were asked for */
-  double tolerance;     /* by which splats made of meshes are off these; 0: none are */
+  uint64_t splats_version; /* conic_render_options' for pictures of all that there is; 0: the splats may change */
+  conic_splats outline;    /* conic_source_take_samples', where they were asked for */
+  double tolerance;        /* by which splats made of meshes are off these; 0: none are */
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,

@@ -224,8 +224,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it [64]", 8,
        64, .group = "what draws"},
       {"device", CLI_TEXT, &job->device.name, "NAME",
-       "what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices); changes no bit of the picture "
-       "[cpu]"},
+       "what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go about it as "
+       "on a GPU and :lanes as on a CPU; changes no bit of the picture [cpu]"},
       {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL,
        "also take an OpenCL device whose rounding makes the picture another one"},
       {"plain", CLI_FLAG, &job->is_plain, NULL,

@@ -203,3 +203,7 @@ const char *conic_status_string(conic_status status) {
   }
   return "unknown status";
 }
+
+uint64_t conic_context_next_version(conic_context *context) {
+  return (UINT64_C(1) << 63) + atomic_fetch_add(&context->n_versions, 1);
+}

@@ -43,7 +43,11 @@ struct conic_context {
   struct conic_output *outputs; /* core/files/file.h: those with temporary files */
   conic_loan *loans;
   size_t n_loans, loans_room;
+  _Atomic(uint64_t) n_versions; /* conic_context_next_version */
 };
+
+/* A number for conic_render_options.splats_version, above all that a caller may give and another for each call. */
+uint64_t conic_context_next_version(conic_context *context);
 
 /* Starts the threads beside the calling one; fewer where the system gives fewer, and counts them. Errors: MEMORY. */
 conic_status conic_pool_create(conic_context *context, conic_pool **pool);

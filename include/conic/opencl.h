@@ -30,16 +30,17 @@ CONIC_API conic_status conic_opencl_devices(conic_context *context, conic_opencl
 /* Null is allowed. */
 CONIC_API void conic_opencl_devices_release(conic_context *context, conic_opencl_device *devices);
 
-/* How the raster is shared out; neither changes a bit. */
+/* How the raster is shared out; neither changes a bit, and either may be asked for on any device. */
 typedef enum conic_opencl_work {
   CONIC_OPENCL_WORK_AUTO = 0,  /* tiles on a CPU, else pixels */
-  CONIC_OPENCL_WORK_TILES = 1, /* a tile a work-item, in vectors of 16 */
-  CONIC_OPENCL_WORK_PIXELS = 2 /* a pixel a work-item */
+  CONIC_OPENCL_WORK_TILES = 1, /* "lanes": a tile a work-item, in vectors of 16 */
+  CONIC_OPENCL_WORK_PIXELS = 2 /* "gather": a pixel a work-item */
 } conic_opencl_work;
 
 typedef struct conic_opencl_options {
   size_t size;              /* sizeof(conic_opencl_options), set by the init function */
-  const char *device;       /* "opencl": the first that will do, GPUs before others; or "opencl:P.D" */
+  const char *device;       /* "opencl": the first that will do, GPUs before others; or "opencl:P.D"; behind either,
+                               ":gather" or ":lanes" stands in the place of `work` */
   int allow_inexact;        /* also a device that does not round correctly */
   const char *cache_folder; /* where built programs are kept; null: nowhere */
   conic_opencl_work work;

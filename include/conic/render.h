@@ -108,6 +108,10 @@ typedef struct conic_render_options {
   int tile;            /* tile edge in pixels: 8, 16, 32 or 64; changes no bit of the image */
   conic_isa isa;
   conic_lighting lighting; /* in the place of has_light and light */
+  /* Names what the splats are, from 1 to 2⁶³ - 1: a renderer on another device keeps its copy of them, and draws that
+   * where the next picture has the same number and the same arrays. Who changes a splat changes the number. 0: the
+   * splats are looked at anew for every picture. A processor's renderer does so in any case. */
+  uint64_t splats_version;
   int skip_hidden; /* what is surely hidden is left out as soon as that is known: the same picture, sooner where many
                     * surfaces lie behind each other; fragments are then not counted, and 0 in the statistics */
 } conic_render_options;

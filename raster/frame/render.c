@@ -340,7 +340,7 @@ static void count_up(const frame *f, const conic_render_options *options, conic_
   if (f->part.is_counted)
     take_out_others(f, options->method, statistics);
   for (size_t i = 0; i < f->bins.n_tiles; i++) {
-    statistics->fragments += options->skip_hidden ? 0 : f->n_fragments[i];
+    statistics->fragments += f->n_fragments[i];
     statistics->pixels_covered += f->n_covered[i];
   }
   if (f->triangles)
@@ -462,6 +462,8 @@ static conic_status render(frame *f, const conic_whole_drawing *drawing, const c
   if (status != CONIC_OK)
     return status;
   note_settings(f, options, &counted);
+  if (options->skip_hidden)
+    counted.fragments = 0;
   counted.ms.frame = 1e3 * (conic_seconds_now() - start);
   if (statistics)
     *statistics = counted;

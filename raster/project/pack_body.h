@@ -11,30 +11,15 @@ CONIC_INLINE void find_columns(const conic_splats *splats, size_t first, const f
   columns[OPACITY] = splats->opacity ? splats->opacity + first : NULL;
 }
 
-/* Which of the splats i … i + CONIC_LANES surely face away, by their plane and the eye in the world: cheaper than the
- * camera's own decision, area > 0, which is p·(t_u × t_v) over p_z³, and which falls the same way for what is far
- * enough from edge-on, from the eye, from 90° off the axis and from the ends of float's range. What is not sure stays.
- */
-CONIC_INLINE lanes_mask surely_faces_away(const conic_view *view, const float *const columns[N_COLUMNS], size_t i) {
-  const float least_sine = 1e-3f, least_cosine = 1e-2f, least_size = 1e-15f, greatest_size = 1e6f;
-  lanes p[3], u[3], v[3];
+/* Of the splats i … i + CONIC_LANES. */
+CONIC_INLINE lanes_mask columns_face_away(const conic_view *view, const float *const columns[N_COLUMNS], size_t i) {
+  lanes position[3], u[3], v[3];
   for (int axis = 0; axis < 3; axis++) {
-    p[axis] = lanes_load(columns[POSITION + axis] + i) - view->eye[axis];
+    position[axis] = lanes_load(columns[POSITION + axis] + i);
     u[axis] = lanes_load(columns[TANGENT_U + axis] + i);
     v[axis] = lanes_load(columns[TANGENT_V + axis] + i);
   }
-  lanes distance = lanes_absolute(p[0]) + lanes_absolute(p[1]) + lanes_absolute(p[2]);
-  lanes u_size = lanes_absolute(u[0]) + lanes_absolute(u[1]) + lanes_absolute(u[2]);
-  lanes v_size = lanes_absolute(v[0]) + lanes_absolute(v[1]) + lanes_absolute(v[2]);
-  lanes depth =
-      view->rotation_float[2][0] * p[0] + view->rotation_float[2][1] * p[1] + view->rotation_float[2][2] * p[2];
-  lanes along =
-      p[0] * (u[1] * v[2] - u[2] * v[1]) + p[1] * (u[2] * v[0] - u[0] * v[2]) + p[2] * (u[0] * v[1] - u[1] * v[0]);
-  lanes_mask sure = lanes_less(lanes_of(view->nearest_sure), distance) & lanes_less(distance, lanes_of(1e15f)) &
-                    lanes_less(least_cosine * distance, depth);
-  sure &= lanes_less(least_size * distance, lanes_min(u_size, v_size)) &
-          lanes_less(lanes_max(u_size, v_size), greatest_size * distance);
-  return sure & lanes_less(least_sine * (distance * (u_size * v_size)), along);
+  return surely_faces_away(view, position, u, v);
 }
 
 /* Appends the kept lanes of each column. So many columns at a time are more than the hardware fetches ahead by itself.
@@ -56,7 +41,7 @@ static void pack_batch(const conic_view *view, const conic_splats *splats, size_
   size_t i = 0, n_packed = to->n;
   find_columns(splats, first, columns);
   for (; view->cull_back && i + CONIC_LANES <= n; i += CONIC_LANES) {
-    lanes_mask kept = lanes_not(surely_faces_away(view, columns, i));
+    lanes_mask kept = lanes_not(columns_face_away(view, columns, i));
     append_columns(columns, i, kept, to, n_packed);
     n_packed += lanes_append(to->index + n_packed, kept, lanes_ascending((uint32_t)(first + i)));
   }
@@ -66,17 +51,6 @@ static void pack_batch(const conic_view *view, const conic_splats *splats, size_
   for (; i < n; i++)
     to->index[n_packed++] = (uint32_t)(first + i);
   to->n = n_packed;
-}
-
-/* Lets the last splat stand in the spare lanes of its group too; returns where that ends. */
-static size_t fill_last_group(batch *last) {
-  size_t end = (last->n + CONIC_LANES - 1) / CONIC_LANES * CONIC_LANES;
-  for (size_t spare = last->n; spare < end; spare++) {
-    last->index[spare] = last->index[last->n - 1];
-    for (int column = 0; column < N_COLUMNS; column++)
-      last->columns[column][spare] = last->columns[column][last->n - 1];
-  }
-  return end;
 }
 
 /* Brings what is behind the first n to the front: less than a group. */

@@ -1,8 +1,21 @@
 /* Set-up in lanes: project_splat (raster/project/project_splats.c) for a group of splats at once, with the same
  * operations in the same order. What is not usual (near the camera, not finite) is left to the plain text. C and
  * OpenCL C share this text. Who includes it has the words of core/lanes, the columns POSITION … OPACITY, and `batch`
- * with batch_column(batch, column, at) and batch_index(batch, at): the values of the group that begins at place `at`.
+ * of n splats' `columns` and `index`, with batch_column(batch, column, at) and batch_index(batch, at): the values of
+ * the group that begins at place `at`.
  */
+
+/* Lets the last splat stand in the spare lanes of its group too; returns where that ends. */
+static size_t fill_last_group(batch *last) {
+  size_t end = (last->n + CONIC_LANES - 1) / CONIC_LANES * CONIC_LANES;
+  for (size_t spare = last->n; spare < end; spare++) {
+    last->index[spare] = last->index[last->n - 1];
+    for (int column = 0; column < N_COLUMNS; column++)
+      last->columns[column][spare] = last->columns[column][last->n - 1];
+  }
+  return end;
+}
+
 /* A group's splats in camera space. */
 typedef struct group_splats {
   doubles p[3], inverse_z;
@@ -80,6 +93,29 @@ CONIC_INLINE void look_at(const conic_view *view, const lanes position[3], const
   rotate_lanes(view->rotation_float, tv, g->tv);
   classify(view, g);
   shear(view, g);
+}
+
+/* Which splats surely face away, by their plane and the eye in the world: cheaper than the camera's own decision,
+ * area > 0, which is p·(t_u × t_v) over p_z³, and which falls the same way for what is far enough from edge-on, from
+ * the eye, from 90° off the axis and from the ends of float's range. What is not sure stays. */
+CONIC_INLINE lanes_mask surely_faces_away(const conic_view *view, const lanes position[3], const lanes u[3],
+                                          const lanes v[3]) {
+  const float least_sine = 1e-3f, least_cosine = 1e-2f, least_size = 1e-15f, greatest_size = 1e6f;
+  lanes p[3];
+  for (int axis = 0; axis < 3; axis++)
+    p[axis] = position[axis] - view->eye[axis];
+  lanes distance = lanes_absolute(p[0]) + lanes_absolute(p[1]) + lanes_absolute(p[2]);
+  lanes u_size = lanes_absolute(u[0]) + lanes_absolute(u[1]) + lanes_absolute(u[2]);
+  lanes v_size = lanes_absolute(v[0]) + lanes_absolute(v[1]) + lanes_absolute(v[2]);
+  lanes depth =
+      view->rotation_float[2][0] * p[0] + view->rotation_float[2][1] * p[1] + view->rotation_float[2][2] * p[2];
+  lanes along =
+      p[0] * (u[1] * v[2] - u[2] * v[1]) + p[1] * (u[2] * v[0] - u[0] * v[2]) + p[2] * (u[0] * v[1] - u[1] * v[0]);
+  lanes_mask sure = lanes_less(lanes_of(view->nearest_sure), distance) & lanes_less(distance, lanes_of(1e15f)) &
+                    lanes_less(least_cosine * distance, depth);
+  sure &= lanes_less(least_size * distance, lanes_min(u_size, v_size)) &
+          lanes_less(lanes_max(u_size, v_size), greatest_size * distance);
+  return sure & lanes_less(least_sine * (distance * (u_size * v_size)), along);
 }
 
 /* The screen's side of a group. */

@@ -9,6 +9,8 @@ export XDG_CACHE_HOME=$work/cache
 run 2 render nothing.ply -o out.pfm --device banana
 run 2 render nothing.ply -o out.pfm --device opencl:1
 run 2 render nothing.ply -o out.pfm --device opencl:0.0x
+run 2 render nothing.ply -o out.pfm --device opencl:0.0:scatter
+run 2 render nothing.ply -o out.pfm --device opencl:gather:0.0
 run 2 devices everything
 run 0 make knot -n 20k -o knot.ply
 
@@ -37,11 +39,12 @@ fi
 run 4 render knot.ply -o out.pfm --device opencl:97.0
 grep -q 'no such device' err || fail "a device that is not there: $(cat err)"
 
+device=opencl
 same() { # WHAT, RENDER'S ARGUMENTS …: the CPU's picture and the device's
   local what=$1
   shift
   run 0 render --aov all "$@" -o cpu.pfm --json cpu.json
-  run 0 render --aov all "$@" -o device.pfm --json device.json --device opencl
+  run 0 render --aov all "$@" -o device.pfm --json device.json --device $device
   for file in cpu*.pfm; do
     cmp -s "$file" "${file/cpu/device}" || fail "$what: $file differs"
   done
@@ -50,7 +53,7 @@ same() { # WHAT, RENDER'S ARGUMENTS …: the CPU's picture and the device's
     [[ $(grep "\"$key\"" cpu.json) == "$(grep "\"$key\"" device.json)" ]] || fail "$what: $key differs"
   done
   diff <(sed -n '/"hash"/,/}/p' cpu.json) <(sed -n '/"hash"/,/}/p' device.json) > /dev/null || fail "$what: a hash differs"
-  grep -q '"device": "opencl:[0-9]*\.[0-9]*"' device.json || fail "$what: no device in the statistics"
+  grep -q "\"device\": \"opencl:[0-9]*\.[0-9]*${device#opencl}\"" device.json || fail "$what: no device in the statistics"
 }
 for method in conic ray affine point disc auto; do
   same "knot, $method" knot.ply --size 200x150 --method $method
@@ -95,6 +98,17 @@ if [[ -f $data/cow.obj ]]; then
 fi
 [[ ! -f $data/spot.obj ]] || same "spot" "$data/spot.obj" --as mesh --size 200x150
 ls cache/conic/triangles-*.bin > /dev/null || fail "the triangles' program was not kept"
+
+# The same as on a GPU, by name.
+device=opencl:gather
+same "knot by pixels" knot.ply --size 100x75
+grep -q '"tile": 16' device.json || fail "gather has the tiles of lanes"
+same "Gaussians by pixels" "$scene" --size 45x35 --aov rgba,Z,N,count,id
+ls cache/conic/gaussian_pixels-*.bin > /dev/null || fail "gather drew Gaussians by $(ls cache/conic)"
+device=opencl:lanes
+same "knot by tiles" knot.ply --size 100x75
+grep -q '"tile": 32' device.json || fail "lanes has the tiles of gather"
+device=opencl
 
 # What was built is kept, whole; what is not whole is built anew.
 ls cache/conic/setup-*.bin cache/conic/raster-*.bin > /dev/null || fail "no program was kept"

@@ -1,5 +1,6 @@
 /* On an OpenCL device, whole pictures are those of the CPU, in every bit of every plane: all methods and kernels, clip
  * lines, both pass modes, splats friendly and hostile, in one part and in several, by tiles and by pixels. */
+#include "opencl/opencl_renderer.h"
 #include "tests/support/opencl_fixture.h"
 
 enum { N_RENDERERS = 6 };
@@ -43,6 +44,24 @@ static void check_counts(const conic_render_statistics *a, const conic_render_st
   CHECK(a->splats_by_laplace == b->splats_by_laplace);
 }
 
+/* By tiles, fragments are kept from pass to pass only where neither counts nor ids are wanted. */
+static void compare_without_counts(fixture *f, const char *scene) {
+  const unsigned planes = ALL_PLANES & ~(1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_ID);
+  conic_render_statistics statistics;
+  conic_image image;
+  CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, planes, &image));
+  CHECK_OK(conic_render(renderers[0], &f->splats, &f->camera, &f->options, &image, &statistics));
+  check_counts(&f->statistics, &statistics);
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
+    if (planes & 1u << plane &&
+        conic_image_hash(&image, (conic_plane)plane) != conic_image_hash(&f->image, (conic_plane)plane)) {
+      fprintf(stderr, "%s: %s differs where neither counts nor ids are wanted\n", scene,
+              conic_plane_describe((conic_plane)plane)->name);
+      check_failures++;
+    }
+  conic_image_release(f->context, &image);
+}
+
 /* Draws what the fixture holds on the CPU and in the first `n_ways` ways on the device. */
 static void compare(fixture *f, int n_ways, const char *scene) {
   conic_image image;
@@ -62,6 +81,7 @@ static void compare(fixture *f, int n_ways, const char *scene) {
     check_counts(&f->statistics, &statistics);
   }
   conic_image_release(f->context, &image);
+  compare_without_counts(f, scene);
 }
 
 /* Every second pair of a method and a kernel, from the first on; the rest of the options as it comes. */
@@ -157,15 +177,64 @@ static void check_planes_and_samples(fixture *f) {
   conic_image_release(f->context, &image);
 }
 
+static uint64_t draw_again(fixture *f, conic_renderer *renderer, conic_image *image) {
+  conic_opencl *opencl = (conic_opencl *)conic_renderer_backend(renderer);
+  uint64_t before = opencl->queue.n_bytes_written;
+  CHECK_OK(conic_render(renderer, &f->splats, &f->camera, &f->options, image, NULL));
+  return opencl->queue.n_bytes_written - before;
+}
+
+/* Splats that have a number are copied to a device with memory of its own once, and anew with another number, in other
+ * arrays or where the number is 0. */
+static void check_kept_splats(fixture *f) {
+  const size_t bytes = f->splats.count * sizeof(float);
+  float *const red = f->splats.color[0], *other = malloc(bytes);
+  conic_image image;
+  CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, ALL_PLANES, &image));
+  for (int i = 0; i < 3; i++) {
+    conic_opencl *opencl = (conic_opencl *)conic_renderer_backend(renderers[i]);
+    const int is_in_parts = ways[i].part_splats != 0;
+    opencl->device.is_cpu = 0;
+    f->options.splats_version = 5;
+    fixture_render(f);
+    CHECK(draw_again(f, renderers[i], &image) > bytes);
+    CHECK(opencl_same(&f->image, &image, "splats that are to be kept"));
+    memcpy(other, red, bytes);
+    for (size_t splat = 0; splat < f->splats.count; splat++)
+      red[splat] = 0.5f * other[splat];
+    CHECK((draw_again(f, renderers[i], &image) > bytes) == is_in_parts);
+    CHECK(is_in_parts || opencl_same(&f->image, &image, "kept splats"));
+    fixture_render(f);
+    f->options.splats_version = i % 2 ? 6 : 0;
+    CHECK(draw_again(f, renderers[i], &image) > bytes);
+    CHECK(opencl_same(&f->image, &image, "changed splats"));
+    CHECK((draw_again(f, renderers[i], &image) > bytes) == (is_in_parts || i % 2 == 0));
+    f->splats.color[0] = other;
+    fixture_render(f);
+    CHECK(draw_again(f, renderers[i], &image) > bytes);
+    CHECK(opencl_same(&f->image, &image, "splats in other arrays"));
+    f->splats.color[0] = red;
+    memcpy(red, other, bytes);
+    opencl->device.is_cpu = 1;
+  }
+  f->options.splats_version = 0;
+  conic_image_release(f->context, &image);
+  free(other);
+}
+
 static void check_all(fixture *f) {
   fixture_camera(f, 230, 170, 160.0);
   check_hostile(f, 0, 0.0, 1.5);
   check_hostile(f, 1, 0.01, 3.0);
   check_scene(f, CONIC_SCENE_KNOT, 20000, 2.2, "knot");
+  fixture_camera(f, 23, 17, 16.0);
+  check_scene(f, CONIC_SCENE_KNOT, 20000, 2.2, "crowd"); /* more splats on a block than are kept */
+  fixture_camera(f, 230, 170, 160.0);
   check_scene(f, CONIC_SCENE_TORUS, 6000, 1.2, "torus"); /* from inside the tube */
   check_odd_cases(f);
   fixture_render(f);
   check_planes_and_samples(f);
+  check_kept_splats(f);
 }
 
 /* FOLDER, or FOLDER small */

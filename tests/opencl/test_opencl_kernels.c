@@ -123,7 +123,7 @@ static void close_workbench(workbench *d) {
   conic_buffer *all[] = {&d->view,       &d->x,     &d->records[0], &d->records[1],
                          &d->records[2], &d->plain, &d->in_lanes,   &d->profile};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-    conic_queue_release(all[i]);
+    conic_queue_release(&d->queue, all[i]);
   clReleaseKernel(d->functions);
   clReleaseKernel(d->fragments);
   clReleaseProgram(d->program);
@@ -277,9 +277,9 @@ static void check_scan(conic_context *context, uint64_t *state) {
       CHECK(places[i] == sum);
       sum += i < n ? numbers[i] : 0;
     }
-    conic_queue_release(&of_numbers);
-    conic_queue_release(&sums);
-    conic_queue_release(&of_places);
+    conic_queue_release(queue, &of_numbers);
+    conic_queue_release(queue, &sums);
+    conic_queue_release(queue, &of_places);
   }
   conic_opencl_close(opencl);
 }
