@@ -38,6 +38,8 @@ static const conic_plane_description descriptions[CONIC_N_PLANES] = {
     [CONIC_PLANE_INVERSE_Z] = {"inverseZ", 1, 0, {"inverseZ"}},
     [CONIC_PLANE_LAST] = {"last", 1, 1, {"last"}},
     [CONIC_PLANE_DOUBT] = {"doubt", 1, 1, {"doubt"}},
+    [CONIC_PLANE_AO] = {"ao", 1, 0, {"ao"}},
+    [CONIC_PLANE_SHADOW] = {"shadow", 1, 0, {"shadow"}},
 };
 
 const conic_plane_description *conic_plane_describe(conic_plane plane) {

@@ -36,7 +36,9 @@ typedef enum conic_plane {
   CONIC_PLANE_LAST = 15,         /* 1 uint32: the last Gaussian composited, 0xFFFFFFFF where nothing is */
   CONIC_PLANE_DOUBT = 16,        /* 1 uint32: how many decisions rounding may take either way;
                                     conic_gaussian_find_doubts' */
-  CONIC_N_PLANES = 17
+  CONIC_PLANE_AO = 17,     /* 1 float: the part of the light from all around that nothing hides; conic_image_light's */
+  CONIC_PLANE_SHADOW = 18, /* 1 float: the part of the lights' power that nothing hides; likewise */
+  CONIC_N_PLANES = 19
 } conic_plane;
 
 /* The planes that drawing fills: the first ones; and as bits. */

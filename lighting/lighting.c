@@ -1,0 +1,292 @@
+/* What of its light a drawn picture does not get. */
+#include "conic/lighting.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/color.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/options.h"
+#include "core/base/threads.h"
+#include "core/base/vectors.h"
+#include "core/image/camera_rays.h"
+#include "core/image/image_common.h"
+#include "core/image/view_arguments.h"
+#include "lighting/lit_map.h"
+#include "raster/tiles/lights.h"
+
+/* A pixel that is no receiver. */
+static const float unknown = -1.0f;
+
+typedef struct lighting {
+  conic_context *context;
+  const conic_camera *camera;
+  const conic_render_options *render;
+  const conic_lighting_options *options;
+  conic_image *image;
+  conic_camera_rays rays;
+  conic_finish finish;
+  conic_finish_lights lights; /* all of them */
+  conic_finish_lights one;    /* the one at hand */
+  conic_receivers receivers;
+  conic_map_room room;
+  float *spread;  /* of each pixel what a receiver got, or unknown */
+  float *visible; /* of each receiver */
+  conic_sky_sums sums;
+  float *sums_block;
+  double power; /* Σ of the luminances of the lights so far */
+} lighting;
+
+/* What a pixel that is no receiver, but beside some, gets: the mean of the neighbours that are. */
+static float mean_of_neighbours(const float *plane, int width, int height, int x, int y) {
+  float sum = 0.0f, n = 0.0f;
+  for (int j = y > 0 ? y - 1 : 0; j <= y + 1 && j < height; j++)
+    for (int i = x > 0 ? x - 1 : 0; i <= x + 1 && i < width; i++) {
+      float value = plane[(size_t)j * (size_t)width + (size_t)i];
+      sum += value >= 0.0f ? value : 0.0f;
+      n += value >= 0.0f ? 1.0f : 0.0f;
+    }
+  return n > 0.0f ? sum / n : 1.0f;
+}
+
+static float spread_at(const lighting *l, size_t x, size_t y) {
+  float value = l->spread[y * (size_t)l->image->width + x];
+  return value >= 0.0f ? value : mean_of_neighbours(l->spread, l->image->width, l->image->height, (int)x, (int)y);
+}
+
+/* What receivers got, at their pixels. */
+static void spread_out(lighting *l, const float *of_receivers) {
+  size_t n = conic_image_pixels(l->image);
+  for (size_t i = 0; i < n; i++)
+    l->spread[i] = unknown;
+  for (size_t i = 0; i < l->receivers.count; i++)
+    l->spread[l->receivers.pixel[i]] = of_receivers[i];
+}
+
+/* --- lights with a direction --- */
+
+typedef struct receiving {
+  lighting *l;
+  const conic_light_map *map;
+} receiving;
+
+static void receive_light(void *data, size_t i_item, int i_thread) {
+  const receiving *r = data;
+  float facing[CONIC_RECEIVED_TOGETHER];
+  size_t begin = i_item * CONIC_RECEIVED_TOGETHER, end = begin + CONIC_RECEIVED_TOGETHER;
+  end = end < r->l->receivers.count ? end : r->l->receivers.count;
+  (void)i_thread;
+  r->l->room.kernels.receive(r->map, &r->l->receivers, begin, end, 1, r->l->visible + begin, facing);
+}
+
+/* The unit direction from what is seen at the pixel to the viewer, in the world. */
+static void find_viewer(const lighting *l, size_t x, size_t y, float viewer[3]) {
+  double origin[3], direction[3], world[3];
+  if (!conic_camera_ray(&l->rays, (double)x + 0.5, (double)y + 0.5, origin, direction))
+    direction[0] = direction[1] = direction[2] = 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    world[axis] =
+        -((l->camera->cam_from_world[0][axis] * direction[0] + l->camera->cam_from_world[1][axis] * direction[1]) +
+          l->camera->cam_from_world[2][axis] * direction[2]);
+  conic_normalize(world);
+  for (int axis = 0; axis < 3; axis++)
+    viewer[axis] = (float)world[axis];
+}
+
+/* How much of the pixel is something, where its background is nothing. */
+static float coverage_of(const lighting *l, size_t pixel) {
+  float alpha = ((const float *)l->image->planes[CONIC_PLANE_RGBA])[4 * pixel + 3];
+  return l->render->has_background || !(alpha < 1.0f) ? 1.0f : alpha;
+}
+
+/* Takes `part` of the light at hand from the pixel. */
+static void take_light(const lighting *l, size_t x, size_t y, float part) {
+  size_t pixel = y * (size_t)l->image->width + x;
+  const float *albedo = (const float *)l->image->planes[CONIC_PLANE_ALBEDO] + 3 * pixel;
+  const float *normal = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel;
+  float *rgba = (float *)l->image->planes[CONIC_PLANE_RGBA] + 4 * pixel;
+  float coverage = coverage_of(l, pixel), viewer[3], own[3], shaded[3];
+  if (!(coverage > 0.0f) || !(part > 0.0f))
+    return;
+  for (int c = 0; c < 3; c++)
+    own[c] = albedo[c] / coverage;
+  find_viewer(l, x, y, viewer);
+  conic_shade(&l->finish, own, normal, normal, viewer, shaded);
+  for (int c = 0; c < 3; c++) {
+    float left = rgba[c] - shaded[c] * (part * coverage * l->finish.exposure);
+    rgba[c] = left > 0.0f ? left : 0.0f;
+  }
+}
+
+static void shade_row(void *data, size_t y, int i_thread) {
+  const lighting *l = data;
+  (void)i_thread;
+  for (size_t x = 0; x < (size_t)l->image->width; x++)
+    take_light(l, x, y, 1.0f - spread_at(l, x, y));
+}
+
+static void add_shadow(lighting *l, float luminance) {
+  float *shadow = l->image->planes[CONIC_PLANE_SHADOW];
+  for (int y = 0; y < l->image->height && shadow; y++)
+    for (int x = 0; x < l->image->width; x++)
+      shadow[(size_t)y * (size_t)l->image->width + (size_t)x] += luminance * spread_at(l, (size_t)x, (size_t)y);
+}
+
+static conic_status cast_shadow(lighting *l, const conic_finish_light *light) {
+  conic_light_map map;
+  receiving work = {l, &map};
+  double direction[3] = {(double)light->towards[0], (double)light->towards[1], (double)light->towards[2]};
+  float luminance = (0.2126f * light->diffuse[0] + 0.7152f * light->diffuse[1]) + 0.0722f * light->diffuse[2];
+  size_t n_items = (l->receivers.count + CONIC_RECEIVED_TOGETHER - 1) / CONIC_RECEIVED_TOGETHER;
+  conic_status status = n_items ? conic_map_room_draw(&l->room, direction, &map) : CONIC_OK;
+  if (status != CONIC_OK)
+    return status;
+  conic_parallel_for(l->context, n_items, receive_light, &work);
+  spread_out(l, l->visible);
+  l->one = (conic_finish_lights){.n_lights = 1, .lights[0] = *light};
+  l->finish.lights = &l->one;
+  if (l->image->planes[CONIC_PLANE_RGBA] && l->render->shading != CONIC_SHADE_NONE)
+    conic_parallel_for(l->context, (size_t)l->image->height, shade_row, l);
+  add_shadow(l, luminance);
+  l->power += (double)luminance;
+  return CONIC_OK;
+}
+
+static conic_status cast_shadows(lighting *l) {
+  float *shadow = l->image->planes[CONIC_PLANE_SHADOW];
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < l->lights.n_lights && l->options->has_shadows && status == CONIC_OK; i++)
+    if (!l->lights.lights[i].is_head) /* what it lights is what the viewer sees */
+      status = cast_shadow(l, &l->lights.lights[i]);
+  for (size_t i = 0; shadow && i < conic_image_pixels(l->image); i++)
+    shadow[i] = l->power > 0.0 ? shadow[i] / (float)l->power : 1.0f;
+  return status;
+}
+
+/* --- light from all around --- */
+
+/* Of the lights' sky, in units of a white one. */
+static void light_of_sky(const void *cookie, const double direction[3], double light[3]) {
+  const conic_finish_lights *lights = cookie;
+  double up = 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    up += direction[axis] * (double)lights->up[axis];
+  for (int c = 0; c < 3; c++)
+    light[c] = (double)lights->ambient[c] + (up > 0.0 ? (double)lights->slope[c] : -(double)lights->slope[c]);
+}
+
+/* Adds so much of the albedo, or takes it. */
+static void add_albedo(lighting *l, int c, float factor) {
+  const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
+  float *rgba = l->image->planes[CONIC_PLANE_RGBA];
+  for (int y = 0; y < l->image->height; y++)
+    for (int x = 0; x < l->image->width; x++) {
+      size_t pixel = (size_t)y * (size_t)l->image->width + (size_t)x;
+      float value = albedo[3 * pixel + (size_t)c] > 0.0f ? spread_at(l, (size_t)x, (size_t)y) : 0.0f;
+      float sum = rgba[4 * pixel + (size_t)c] + factor * albedo[3 * pixel + (size_t)c] * value;
+      rgba[4 * pixel + (size_t)c] = sum > 0.0f ? sum : 0.0f;
+    }
+}
+
+/* The sums, made what a white surface reflects of each colour. */
+static void color_by_sky(lighting *l) {
+  const conic_sky_sums *sums = &l->sums;
+  float n = (float)l->options->n_directions;
+  for (int c = 0; c < 3; c++) {
+    for (size_t i = 0; i < l->receivers.count; i++) {
+      float whole = sums->takes_hidden ? sums->facing[i] : n;
+      l->visible[i] = whole > 0.0f ? sums->color[c][i] / whole : 0.0f;
+    }
+    spread_out(l, l->visible);
+    add_albedo(l, c, sums->takes_hidden ? -l->finish.exposure : l->finish.exposure);
+  }
+}
+
+static conic_status gather_sky(lighting *l) {
+  float *ao = l->image->planes[CONIC_PLANE_AO];
+  int has_colors = l->image->planes[CONIC_PLANE_RGBA] && l->render->shading != CONIC_SHADE_NONE;
+  size_t n = l->receivers.count;
+  l->sums_block = conic_memory_allocate_zeroed(l->context, n, (has_colors ? 5 : 2) * sizeof *l->sums_block);
+  if (!l->sums_block)
+    return CONIC_ERROR_MEMORY;
+  l->sums = (conic_sky_sums){.facing = l->sums_block, .visible = l->sums_block + n, .takes_hidden = !l->options->sky};
+  for (size_t c = 0; c < 3 && has_colors; c++)
+    l->sums.color[c] = l->sums_block + (2 + c) * n;
+  conic_status status =
+      conic_sky_sums_add(&l->room, l->options, l->options->sky ? NULL : light_of_sky, &l->lights, &l->sums);
+  if (status != CONIC_OK)
+    return status;
+  if (has_colors)
+    color_by_sky(l);
+  for (size_t i = 0; i < n; i++)
+    l->visible[i] = conic_sky_sums_share(&l->sums, i);
+  spread_out(l, l->visible);
+  for (int y = 0; y < l->image->height && ao; y++)
+    for (int x = 0; x < l->image->width; x++)
+      ao[(size_t)y * (size_t)l->image->width + (size_t)x] = spread_at(l, (size_t)x, (size_t)y);
+  return CONIC_OK;
+}
+
+/* --- all of it --- */
+
+static conic_status check_picture(conic_context *context, const conic_camera *camera, const conic_image *image) {
+  conic_status status = conic_view_ray_check(context, "light", camera);
+  if (status != CONIC_OK)
+    return status;
+  if (image->width != camera->width || image->height != camera->height || !image->planes[CONIC_PLANE_Z] ||
+      !image->planes[CONIC_PLANE_NORMAL])
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "light: the picture has no planes Z and N of its camera's size");
+  if (image->planes[CONIC_PLANE_RGBA] && !image->planes[CONIC_PLANE_ALBEDO])
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "light: the picture has rgba without albedo");
+  return CONIC_OK;
+}
+
+static conic_status prepare_lighting(lighting *l, const conic_casters *casters) {
+  conic_image *image = l->image;
+  conic_camera_rays_init(l->camera, &l->rays);
+  l->finish.options = l->render;
+  l->finish.exposure = conic_exposure_factor(l->render->exposure);
+  conic_status status = conic_finish_lights_init(l->context, l->camera, l->render, &l->lights);
+  if (status == CONIC_OK)
+    status = conic_map_room_init(l->context, "light", casters, l->options, &l->room);
+  if (status == CONIC_OK)
+    status = conic_receivers_of_image(l->context, l->camera, l->options->samples, image, &l->receivers);
+  if (status != CONIC_OK)
+    return status;
+  l->room.receivers = &l->receivers;
+  l->room.texel = l->receivers.spacing / l->options->texels;
+  l->spread = conic_memory_allocate(l->context, conic_image_pixels(image), sizeof *l->spread);
+  l->visible = conic_memory_allocate(l->context, l->receivers.count, sizeof *l->visible);
+  for (size_t i = 0; i < conic_image_pixels(image) && image->planes[CONIC_PLANE_AO]; i++)
+    ((float *)image->planes[CONIC_PLANE_AO])[i] = 1.0f;
+  if (image->planes[CONIC_PLANE_SHADOW])
+    memset(image->planes[CONIC_PLANE_SHADOW], 0, conic_image_pixels(image) * sizeof(float));
+  return l->spread && l->visible ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+conic_status conic_image_light(conic_context *context, const conic_casters *casters, const conic_camera *camera,
+                               const conic_render_options *render, const conic_lighting_options *options,
+                               conic_image *image) {
+  conic_render_options own_render;
+  conic_lighting_options own;
+  lighting l = {.context = context, .camera = camera, .render = &own_render, .options = &own, .image = image};
+  conic_render_options_init(&own_render);
+  conic_lighting_options_init(&own);
+  if (!casters || !camera || !image || !conic_options_take(&own_render, render) || !conic_options_take(&own, options))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "light: an argument is null, or the options were not initialised");
+  conic_status status = check_picture(context, camera, image);
+  if (status != CONIC_OK)
+    return status;
+  status = prepare_lighting(&l, casters);
+  if (status == CONIC_OK && own.n_directions > 0)
+    status = gather_sky(&l);
+  if (status == CONIC_OK)
+    status = cast_shadows(&l);
+  conic_memory_release(context, l.sums_block);
+  conic_memory_release(context, l.spread);
+  conic_memory_release(context, l.visible);
+  conic_receivers_release(context, &l.receivers);
+  conic_map_room_release(&l.room);
+  return status;
+}
