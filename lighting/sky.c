@@ -3,13 +3,14 @@
 #include <string.h>
 
 #include "conic/lighting.h"
+
+#include "accumulation/sequence.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/image/framing.h"
 #include "core/image/image_common.h"
-#include "lighting/sequence.h"
 
 /* The rows' and, within each, the pixels' power, summed up and divided by the whole: of a pixel its greatest colour
  * times its solid angle. */
@@ -162,7 +163,8 @@ static void set_direction(double height, double angle, double direction[3]) {
 }
 
 void conic_sky_direction(const conic_sky *sky, uint64_t i, double direction[3], double light[3]) {
-  double u = conic_lighting_sequence(i, 0), v = conic_lighting_sequence(i, 1), from_sky[3];
+  double u = conic_sequence_at(i, CONIC_SEQUENCE_DIRECTION), v = conic_sequence_at(i, CONIC_SEQUENCE_DIRECTION + 1),
+         from_sky[3];
   if (!sky) {
     set_direction(1.0 - 2.0 * u, 2.0 * CONIC_PI * v, direction);
     light[0] = light[1] = light[2] = 4.0; /* the mean of the cosine over all directions is a quarter */

@@ -1,0 +1,23 @@
+/* The one low-discrepancy sequence that all samples of a picture are placed by (docs/reference/accumulation.md). */
+#ifndef CONIC_SEQUENCE_H
+#define CONIC_SEQUENCE_H
+
+#include <stdint.h>
+
+/* What a dimension of the sequence decides. Those from CONIC_SEQUENCE_FREE on are free. */
+enum {
+  CONIC_SEQUENCE_PIXEL = 0,     /* and 1: the place in the pixel, to the right and down */
+  CONIC_SEQUENCE_LENS = 2,      /* and 3: the point on the lens */
+  CONIC_SEQUENCE_SHUTTER = 4,   /* the time in the shutter */
+  CONIC_SEQUENCE_DIRECTION = 5, /* and 6: the direction of the sky, or the place on a light */
+  CONIC_SEQUENCE_LIGHT = 7,     /* which light */
+  CONIC_SEQUENCE_FREE = 8,
+  CONIC_N_SEQUENCE_DIMENSIONS = 16
+};
+
+/* Dimension 0 to 15 of sample `i_sample`: in [0, 1), a multiple of 2⁻³², the same on every machine. Every run of
+ * 2ᵏ samples that starts at a multiple of 2ᵏ has one sample in each 2ᵏ-th of each dimension, and in the place in the
+ * pixel one in each of the equal boxes of any power-of-two shape. */
+double conic_sequence_at(uint64_t i_sample, int dimension);
+
+#endif
