@@ -18,8 +18,8 @@ typedef struct conic_light_map {
 
 /* What of the texel's edge a surface may lie off its own plane before it hides itself, where it faces the light, and
  * how much more the slope adds. */
-#define CONIC_LIGHT_MAP_FLAT 0.25f
-#define CONIC_LIGHT_MAP_SLOPE 0.5f
+#define CONIC_LIGHT_MAP_FLAT 0.15f
+#define CONIC_LIGHT_MAP_SLOPE 0.3f
 
 /* The cosine below which a receiver is taken to face the light no less: what a map says of one that is seen from its
  * edge is not known to a texel. */

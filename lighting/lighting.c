@@ -16,8 +16,7 @@
 #include "lighting/lit_map.h"
 #include "raster/tiles/lights.h"
 
-/* A pixel that is no receiver. */
-static const float unknown = -1.0f;
+enum { NO_RECEIVER, RECEIVER, RECEIVER_AT_EDGE };
 
 typedef struct lighting {
   conic_context *context;
@@ -31,37 +30,127 @@ typedef struct lighting {
   conic_finish_lights one;    /* the one at hand */
   conic_receivers receivers;
   conic_map_room room;
-  float *spread;  /* of each pixel what a receiver got, or unknown */
-  float *visible; /* of each receiver */
+  unsigned char *kind; /* of each pixel */
+  float *spread;       /* of each pixel that is a receiver, what it got */
+  float *filled;       /* of each pixel what it gets by that */
+  float epsilon;       /* the casters' */
+  float *visible;      /* of each receiver */
   conic_sky_sums sums;
   float *sums_block;
   double power; /* Σ of the luminances of the lights so far */
 } lighting;
 
-/* What a pixel that is no receiver, but beside some, gets: the mean of the neighbours that are. */
-static float mean_of_neighbours(const float *plane, int width, int height, int x, int y) {
+static size_t pixel_at(const lighting *l, size_t x, size_t y) {
+  return y * (size_t)l->image->width + x;
+}
+
+/* The unit direction from what is seen at the pixel to the viewer, in the world. */
+static void find_viewer(const lighting *l, size_t x, size_t y, float viewer[3]) {
+  const double(*m)[4] = l->camera->cam_from_world;
+  double origin[3], direction[3], world[3];
+  if (!conic_camera_ray(&l->rays, (double)x + 0.5, (double)y + 0.5, origin, direction))
+    direction[0] = direction[1] = direction[2] = 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    world[axis] = -((m[0][axis] * direction[0] + m[1][axis] * direction[1]) + m[2][axis] * direction[2]);
+  conic_normalize(world);
+  for (int axis = 0; axis < 3; axis++)
+    viewer[axis] = (float)world[axis];
+}
+
+/* How much deeper a neighbour may be that is still the same surface. */
+static float depth_of_step(const lighting *l, size_t x, size_t y) {
+  static const float steps = 4.0f, least_cosine = 0.03f;
+  const float *n = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel_at(l, x, y);
+  float viewer[3];
+  find_viewer(l, x, y, viewer);
+  float cosine = (n[0] * viewer[0] + n[1] * viewer[1]) + n[2] * viewer[2];
+  cosine = cosine > least_cosine ? cosine : least_cosine;
+  return steps * (l->epsilon + (float)l->receivers.spacing / cosine);
+}
+
+/* The pixels at most one away, at the picture's edges fewer. */
+typedef struct pixel_range {
+  size_t left, right, top, bottom; /* the last two past the last */
+} pixel_range;
+
+static pixel_range pixels_about(const lighting *l, size_t x, size_t y) {
+  size_t width = (size_t)l->image->width, height = (size_t)l->image->height;
+  return (pixel_range){x > 0 ? x - 1 : 0, x + 2 < width ? x + 2 : width, y > 0 ? y - 1 : 0,
+                       y + 2 < height ? y + 2 : height};
+}
+
+/* Splats stick out where a surface turns away, and what of its far side does so is seen from behind: it takes the side
+ * that it shows for its outer one, on which there is no light. */
+static int is_at_edge(const lighting *l, size_t x, size_t y) {
+  const float *z = l->image->planes[CONIC_PLANE_Z];
+  float deepest = z[pixel_at(l, x, y)] + depth_of_step(l, x, y);
+  pixel_range range = pixels_about(l, x, y);
+  for (size_t j = range.top; j < range.bottom; j++)
+    for (size_t i = range.left; i < range.right; i++)
+      if (!(z[pixel_at(l, i, j)] > 0.0f) || z[pixel_at(l, i, j)] > deepest)
+        return 1;
+  return 0;
+}
+
+static void find_edges(void *data, size_t y, int i_thread) {
+  const lighting *l = data;
+  (void)i_thread;
+  for (size_t x = 0; x < (size_t)l->image->width; x++)
+    if (l->kind[pixel_at(l, x, y)] == RECEIVER && is_at_edge(l, x, y))
+      l->kind[pixel_at(l, x, y)] = RECEIVER_AT_EDGE;
+}
+
+static void name_receivers(lighting *l) {
+  memset(l->kind, NO_RECEIVER, conic_image_pixels(l->image));
+  for (size_t i = 0; i < l->receivers.count; i++)
+    l->kind[l->receivers.pixel[i]] = RECEIVER;
+}
+
+/* The mean over the pixels about one that are of a kind, and no deeper; below 0 where none is. */
+static float mean_about(const lighting *l, size_t x, size_t y, unsigned char kind, float deepest) {
+  const float *z = l->image->planes[CONIC_PLANE_Z];
+  pixel_range range = pixels_about(l, x, y);
   float sum = 0.0f, n = 0.0f;
-  for (int j = y > 0 ? y - 1 : 0; j <= y + 1 && j < height; j++)
-    for (int i = x > 0 ? x - 1 : 0; i <= x + 1 && i < width; i++) {
-      float value = plane[(size_t)j * (size_t)width + (size_t)i];
-      sum += value >= 0.0f ? value : 0.0f;
-      n += value >= 0.0f ? 1.0f : 0.0f;
+  for (size_t j = range.top; j < range.bottom; j++)
+    for (size_t i = range.left; i < range.right; i++) {
+      size_t pixel = pixel_at(l, i, j);
+      if (l->kind[pixel] != kind || z[pixel] > deepest)
+        continue;
+      sum += l->spread[pixel];
+      n += 1.0f;
     }
-  return n > 0.0f ? sum / n : 1.0f;
+  return n > 0.0f ? sum / n : -1.0f;
 }
 
+/* What a pixel gets: a receiver its own, one at an edge what its surface gets beside it, and what is none, but has been
+ * drawn at its border, what is about it. */
 static float spread_at(const lighting *l, size_t x, size_t y) {
-  float value = l->spread[y * (size_t)l->image->width + x];
-  return value >= 0.0f ? value : mean_of_neighbours(l->spread, l->image->width, l->image->height, (int)x, (int)y);
+  size_t pixel = pixel_at(l, x, y);
+  if (l->kind[pixel] == RECEIVER)
+    return l->spread[pixel];
+  float z = ((const float *)l->image->planes[CONIC_PLANE_Z])[pixel];
+  float deepest = l->kind[pixel] == RECEIVER_AT_EDGE ? z + depth_of_step(l, x, y) : HUGE_VALF;
+  float mean = mean_about(l, x, y, RECEIVER, deepest);
+  if (mean >= 0.0f)
+    return mean;
+  if (l->kind[pixel] == RECEIVER_AT_EDGE)
+    return l->spread[pixel];
+  mean = mean_about(l, x, y, RECEIVER_AT_EDGE, deepest);
+  return mean >= 0.0f ? mean : 1.0f;
 }
 
-/* What receivers got, at their pixels. */
+static void fill_row(void *data, size_t y, int i_thread) {
+  const lighting *l = data;
+  (void)i_thread;
+  for (size_t x = 0; x < (size_t)l->image->width; x++)
+    l->filled[pixel_at(l, x, y)] = spread_at(l, x, y);
+}
+
+/* What receivers got, made what pixels get. */
 static void spread_out(lighting *l, const float *of_receivers) {
-  size_t n = conic_image_pixels(l->image);
-  for (size_t i = 0; i < n; i++)
-    l->spread[i] = unknown;
   for (size_t i = 0; i < l->receivers.count; i++)
     l->spread[l->receivers.pixel[i]] = of_receivers[i];
+  conic_parallel_for(l->context, (size_t)l->image->height, fill_row, l);
 }
 
 /* --- lights with a direction --- */
@@ -78,20 +167,6 @@ static void receive_light(void *data, size_t i_item, int i_thread) {
   end = end < r->l->receivers.count ? end : r->l->receivers.count;
   (void)i_thread;
   r->l->room.kernels.receive(r->map, &r->l->receivers, begin, end, 1, r->l->visible + begin, facing);
-}
-
-/* The unit direction from what is seen at the pixel to the viewer, in the world. */
-static void find_viewer(const lighting *l, size_t x, size_t y, float viewer[3]) {
-  double origin[3], direction[3], world[3];
-  if (!conic_camera_ray(&l->rays, (double)x + 0.5, (double)y + 0.5, origin, direction))
-    direction[0] = direction[1] = direction[2] = 0.0;
-  for (int axis = 0; axis < 3; axis++)
-    world[axis] =
-        -((l->camera->cam_from_world[0][axis] * direction[0] + l->camera->cam_from_world[1][axis] * direction[1]) +
-          l->camera->cam_from_world[2][axis] * direction[2]);
-  conic_normalize(world);
-  for (int axis = 0; axis < 3; axis++)
-    viewer[axis] = (float)world[axis];
 }
 
 /* How much of the pixel is something, where its background is nothing. */
@@ -123,14 +198,13 @@ static void shade_row(void *data, size_t y, int i_thread) {
   const lighting *l = data;
   (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++)
-    take_light(l, x, y, 1.0f - spread_at(l, x, y));
+    take_light(l, x, y, 1.0f - l->filled[pixel_at(l, x, y)]);
 }
 
 static void add_shadow(lighting *l, float luminance) {
   float *shadow = l->image->planes[CONIC_PLANE_SHADOW];
-  for (int y = 0; y < l->image->height && shadow; y++)
-    for (int x = 0; x < l->image->width; x++)
-      shadow[(size_t)y * (size_t)l->image->width + (size_t)x] += luminance * spread_at(l, (size_t)x, (size_t)y);
+  for (size_t i = 0; i < conic_image_pixels(l->image) && shadow; i++)
+    shadow[i] += luminance * l->filled[i];
 }
 
 static conic_status cast_shadow(lighting *l, const conic_finish_light *light) {
@@ -180,13 +254,10 @@ static void light_of_sky(const void *cookie, const double direction[3], double l
 static void add_albedo(lighting *l, int c, float factor) {
   const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
   float *rgba = l->image->planes[CONIC_PLANE_RGBA];
-  for (int y = 0; y < l->image->height; y++)
-    for (int x = 0; x < l->image->width; x++) {
-      size_t pixel = (size_t)y * (size_t)l->image->width + (size_t)x;
-      float value = albedo[3 * pixel + (size_t)c] > 0.0f ? spread_at(l, (size_t)x, (size_t)y) : 0.0f;
-      float sum = rgba[4 * pixel + (size_t)c] + factor * albedo[3 * pixel + (size_t)c] * value;
-      rgba[4 * pixel + (size_t)c] = sum > 0.0f ? sum : 0.0f;
-    }
+  for (size_t i = 0; i < conic_image_pixels(l->image); i++) {
+    float sum = rgba[4 * i + (size_t)c] + factor * albedo[3 * i + (size_t)c] * l->filled[i];
+    rgba[4 * i + (size_t)c] = sum > 0.0f ? sum : 0.0f;
+  }
 }
 
 /* The sums, made what a white surface reflects of each colour. */
@@ -222,9 +293,8 @@ static conic_status gather_sky(lighting *l) {
   for (size_t i = 0; i < n; i++)
     l->visible[i] = conic_sky_sums_share(&l->sums, i);
   spread_out(l, l->visible);
-  for (int y = 0; y < l->image->height && ao; y++)
-    for (int x = 0; x < l->image->width; x++)
-      ao[(size_t)y * (size_t)l->image->width + (size_t)x] = spread_at(l, (size_t)x, (size_t)y);
+  if (ao)
+    memcpy(ao, l->filled, conic_image_pixels(l->image) * sizeof *ao);
   return CONIC_OK;
 }
 
@@ -254,15 +324,23 @@ static conic_status prepare_lighting(lighting *l, const conic_casters *casters) 
     status = conic_receivers_of_image(l->context, l->camera, l->options->samples, image, &l->receivers);
   if (status != CONIC_OK)
     return status;
+  l->epsilon = (float)casters->epsilon;
   l->room.receivers = &l->receivers;
   l->room.texel = l->receivers.spacing / l->options->texels;
   l->spread = conic_memory_allocate(l->context, conic_image_pixels(image), sizeof *l->spread);
+  l->filled = conic_memory_allocate(l->context, conic_image_pixels(image), sizeof *l->filled);
+  l->kind = conic_memory_allocate(l->context, conic_image_pixels(image), 1);
   l->visible = conic_memory_allocate(l->context, l->receivers.count, sizeof *l->visible);
   for (size_t i = 0; i < conic_image_pixels(image) && image->planes[CONIC_PLANE_AO]; i++)
     ((float *)image->planes[CONIC_PLANE_AO])[i] = 1.0f;
   if (image->planes[CONIC_PLANE_SHADOW])
     memset(image->planes[CONIC_PLANE_SHADOW], 0, conic_image_pixels(image) * sizeof(float));
-  return l->spread && l->visible ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (!l->spread || !l->filled || !l->kind || !l->visible)
+    return CONIC_ERROR_MEMORY;
+  name_receivers(l);
+  if (l->epsilon > 0.0f)
+    conic_parallel_for(l->context, (size_t)image->height, find_edges, l);
+  return CONIC_OK;
 }
 
 conic_status conic_image_light(conic_context *context, const conic_casters *casters, const conic_camera *camera,
@@ -284,6 +362,8 @@ conic_status conic_image_light(conic_context *context, const conic_casters *cast
   if (status == CONIC_OK)
     status = cast_shadows(&l);
   conic_memory_release(context, l.sums_block);
+  conic_memory_release(context, l.kind);
+  conic_memory_release(context, l.filled);
   conic_memory_release(context, l.spread);
   conic_memory_release(context, l.visible);
   conic_receivers_release(context, &l.receivers);

@@ -229,7 +229,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     status = cli_host_allocate_image(session, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
     status = job->progressive_path ? cli_render_levels(session, job, &camera, image, &repeats[i])
-                                   : cli_render_picture(job, &camera, image, &repeats[i]);
+                                   : cli_render_picture(session, job, &camera, image, &repeats[i]);
   if (status != CONIC_OK)
     return status;
   for (int i = 0; i < job->repeat; i++)

@@ -197,7 +197,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = cli_parse_light, .may_repeat = 1},
       {"sky", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "light from all around; of two colours, the first falls on what faces up, the second on what faces down [the "
-       "studio's]",
+       "studio's]; or a picture of all directions, such as sky.exr, which needs --ao",
        .parse = cli_parse_sky},
       {"background", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in PNG and JPEG, "

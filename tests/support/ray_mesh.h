@@ -6,7 +6,7 @@
 
 typedef struct ray_mesh_node {
   double low[3], high[3];
-  size_t begin, end; /* triangles */
+  size_t begin, end;  /* triangles */
   size_t children[2]; /* 0: none, it is a leaf */
 } ray_mesh_node;
 
