@@ -74,6 +74,7 @@ void conic_light_map_place(const conic_casters *casters, const conic_receivers *
   camera->cam_from_world[2][3] += (double)map->distance - distance;
   *near_z = 0.5 * (distance - reach);
   map->focal = (float)camera->fx;
+  map->angle = (float)(1.0 / camera->fx);
   map->center_x = (float)camera->cx;
   map->center_y = (float)camera->cy;
   map->epsilon = (float)casters->epsilon;

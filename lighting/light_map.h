@@ -12,12 +12,13 @@ typedef struct conic_light_map {
   const float *z;
   int width, height;
   float rotation[3][3], distance;
-  float focal, center_x, center_y;
-  float epsilon; /* in world units */
+  float focal, angle, center_x, center_y; /* angle: 1/focal, of a texel */
+  float epsilon;                          /* in world units */
 } conic_light_map;
 
 /* What of the texel's edge a surface may lie off its own plane before it hides itself, where it faces the light, and
- * how much more the slope adds. */
+ * what of that edge and of the splats' epsilon the slope adds: planes that are off by an angle part the faster the more
+ * the light grazes them. */
 #define CONIC_LIGHT_MAP_FLAT 0.15f
 #define CONIC_LIGHT_MAP_SLOPE 0.3f
 

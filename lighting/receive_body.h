@@ -20,7 +20,7 @@ static inline float ray_reaches_plane(const conic_light_map *map, const received
   y = y < last_y ? y : last_y;
   float z = map->z[(int)y * map->width + (int)x];
   float to_x = r->column - (x + 0.5f), to_y = r->row - (y + 0.5f);
-  float ray_x = ((x + 0.5f) - map->center_x) / map->focal, ray_y = ((y + 0.5f) - map->center_y) / map->focal;
+  float ray_x = ((x + 0.5f) - map->center_x) * map->angle, ray_y = ((y + 0.5f) - map->center_y) * map->angle;
   float along = (r->n[0] * ray_x + r->n[1] * ray_y) + r->n[2];
   along = along < -CONIC_LIGHT_MAP_GRAZING ? along : -CONIC_LIGHT_MAP_GRAZING;
   float plane = r->height + r->texel * ((r->n[0] * to_x + r->n[1] * to_y) / along);
@@ -63,10 +63,10 @@ static inline void receive_one(const conic_light_map *map, const conic_receivers
   r.column = clamp_to_map(at[0] * scale + map->center_x, map->width);
   r.row = clamp_to_map(at[1] * scale + map->center_y, map->height);
   r.height = at[2];
-  r.texel = z / map->focal;
+  r.texel = z * map->angle;
   float cosine = -r.n[2], flat = cosine > CONIC_LIGHT_MAP_GRAZING ? cosine : CONIC_LIGHT_MAP_GRAZING;
   float slope = sqrtf(r.n[0] * r.n[0] + r.n[1] * r.n[1]) / flat;
-  r.bias = map->epsilon + r.texel * (CONIC_LIGHT_MAP_FLAT + CONIC_LIGHT_MAP_SLOPE * slope);
+  r.bias = (map->epsilon + r.texel * CONIC_LIGHT_MAP_FLAT) + (map->epsilon + r.texel) * (CONIC_LIGHT_MAP_SLOPE * slope);
   float seen = is_smooth ? four_texels(map, &r) : nearest_texel(map, &r);
   *visible = cosine > 0.0f ? seen : 0.0f;
   *facing = cosine > 0.0f ? cosine : 0.0f;
