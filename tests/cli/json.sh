@@ -138,6 +138,7 @@ write render-odd-patches render_patches render odd.xyz -o odd.exr --size 64x64 -
 grep -q '"nan": 1,' runs/render-odd-patches.json || fail "render does not count what it lays no patches about"
 write render-top render render knot.ply --camera top --gsd 0.1 --epsg 26910 -o top.exr
 write render-colored render render knot.ply -o height.exr --color-by height --size 64x64
+write prepare-baked prepare prepare knot.ply -o baked.ply --bake color --directions 4
 write prepare-colored prepare prepare knot.ply -o colored.ply --color-by x
 write octree-colored octree octree colored.ply -o colored.cot --color-by height
 write hybrid-colored hybrid hybrid tent.obj -o colored.chy --color-by height
