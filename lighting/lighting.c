@@ -240,14 +240,14 @@ static conic_status cast_shadows(lighting *l) {
 
 /* --- light from all around --- */
 
-/* Of the lights' sky, in units of a white one. */
+/* What a white sky's light of one direction is multiplied by, for the lights' sky. */
 static void light_of_sky(const void *cookie, const double direction[3], double light[3]) {
   const conic_finish_lights *lights = cookie;
   double up = 0.0;
   for (int axis = 0; axis < 3; axis++)
     up += direction[axis] * (double)lights->up[axis];
   for (int c = 0; c < 3; c++)
-    light[c] = (double)lights->ambient[c] + (up > 0.0 ? (double)lights->slope[c] : -(double)lights->slope[c]);
+    light[c] *= (double)lights->ambient[c] + (up > 0.0 ? (double)lights->slope[c] : -(double)lights->slope[c]);
 }
 
 /* Adds so much of the albedo, or takes it. */
@@ -263,15 +263,30 @@ static void add_albedo(lighting *l, int c, float factor) {
 /* The sums, made what a white surface reflects of each colour. */
 static void color_by_sky(lighting *l) {
   const conic_sky_sums *sums = &l->sums;
-  float n = (float)l->options->n_directions;
+  float n = (float)l->options->n_directions, white = 4.0f; /* of each direction's light (conic_sky_direction) */
   for (int c = 0; c < 3; c++) {
     for (size_t i = 0; i < l->receivers.count; i++) {
-      float whole = sums->takes_hidden ? sums->facing[i] : n;
+      float whole = sums->takes_hidden ? white * sums->facing[i] : n;
       l->visible[i] = whole > 0.0f ? sums->color[c][i] / whole : 0.0f;
     }
     spread_out(l, l->visible);
     add_albedo(l, c, sums->takes_hidden ? -l->finish.exposure : l->finish.exposure);
   }
+}
+
+/* What the picture was drawn with as if nothing hid anything, so that what arrives can take its place. */
+static void take_whole_sky(lighting *l) {
+  l->one = l->lights;
+  l->one.n_lights = 0;
+  l->finish.lights = &l->one;
+  memset(l->filled, 0, conic_image_pixels(l->image) * sizeof *l->filled);
+  conic_parallel_for(l->context, (size_t)l->image->height, shade_row, l);
+}
+
+/* Of a sample's one direction, what on the mean is its share. */
+static float arriving_part(const lighting *l, size_t i) {
+  float part = 4.0f * l->sums.visible[i] / (float)l->options->n_directions;
+  return l->options->is_sample ? part : conic_sky_sums_share(&l->sums, i);
 }
 
 static conic_status gather_sky(lighting *l) {
@@ -281,17 +296,21 @@ static conic_status gather_sky(lighting *l) {
   l->sums_block = conic_memory_allocate_zeroed(l->context, n, (has_colors ? 5 : 2) * sizeof *l->sums_block);
   if (!l->sums_block)
     return CONIC_ERROR_MEMORY;
-  l->sums = (conic_sky_sums){.facing = l->sums_block, .visible = l->sums_block + n, .takes_hidden = !l->options->sky};
+  l->sums = (conic_sky_sums){.facing = l->sums_block,
+                             .visible = l->sums_block + n,
+                             .takes_hidden = !l->options->sky && !l->options->is_sample};
   for (size_t c = 0; c < 3 && has_colors; c++)
     l->sums.color[c] = l->sums_block + (2 + c) * n;
   conic_status status =
       conic_sky_sums_add(&l->room, l->options, l->options->sky ? NULL : light_of_sky, &l->lights, &l->sums);
   if (status != CONIC_OK)
     return status;
+  if (has_colors && l->options->is_sample && !l->options->sky)
+    take_whole_sky(l);
   if (has_colors)
     color_by_sky(l);
   for (size_t i = 0; i < n; i++)
-    l->visible[i] = conic_sky_sums_share(&l->sums, i);
+    l->visible[i] = arriving_part(l, i);
   spread_out(l, l->visible);
   if (ao)
     memcpy(ao, l->filled, conic_image_pixels(l->image) * sizeof *ao);
@@ -369,4 +388,16 @@ conic_status conic_image_light(conic_context *context, const conic_casters *cast
   conic_receivers_release(context, &l.receivers);
   conic_map_room_release(&l.room);
   return status;
+}
+
+conic_status conic_lighter_shade(void *cookie, uint64_t i_sample, const conic_camera *camera, conic_image *sample) {
+  const conic_lighter *lighter = cookie;
+  conic_lighting_options options;
+  conic_lighting_options_init(&options);
+  if (!conic_options_take(&options, lighter->options))
+    return conic_fail(lighter->context, CONIC_ERROR_ARGUMENT, "light: the options were not initialised");
+  options.first_direction = i_sample;
+  options.n_directions = options.n_directions > 0;
+  options.is_sample = 1;
+  return conic_image_light(lighter->context, lighter->casters, camera, lighter->render, &options, sample);
 }

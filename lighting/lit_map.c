@@ -7,6 +7,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/threads.h"
+#include "core/splats/columns.h"
 
 void conic_lighting_options_init_sized(conic_lighting_options *options, size_t size) {
   static const conic_lighting_options own = {.size = sizeof own, .texels = 1.0, .most_texels = 4096, .samples = 1};
@@ -120,35 +121,48 @@ conic_status conic_sky_sums_add(conic_map_room *room, const conic_lighting_optio
   return status;
 }
 
-conic_status conic_splats_occlude(conic_context *context, const conic_casters *casters, const conic_splats *splats,
-                                  double spacing, const conic_lighting_options *options, float *ao) {
-  conic_lighting_options own;
+static conic_status occlude_splats(conic_context *context, const conic_casters *casters, const conic_splats *splats,
+                                   double spacing, const conic_lighting_options *options, float *ao) {
   conic_receivers receivers;
   conic_map_room room;
-  conic_sky_sums sums = {.facing = NULL};
-  conic_lighting_options_init(&own);
-  if (!casters || !splats || !ao || !conic_options_take(&own, options))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "light: an argument is null, or the options were not initialised");
-  if (!splats->tangent_u[0] || !(spacing > 0.0 && spacing < 1e20))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "light: the splats have no tangent axes, or the spacing is none");
-  conic_status status = conic_map_room_init(context, "light", casters, &own, &room);
+  conic_sky_sums sums = {.visible = ao};
+  conic_status status = conic_map_room_init(context, "light", casters, options, &room);
   if (status != CONIC_OK)
     return status;
   status = conic_receivers_of_splats(context, splats, spacing, &receivers);
   room.receivers = &receivers;
-  room.texel = spacing / own.texels;
-  sums.visible = ao;
+  room.texel = spacing / options->texels;
   memset(ao, 0, splats->count * sizeof *ao);
   if (status == CONIC_OK)
     sums.facing = conic_memory_allocate_zeroed(context, splats->count, sizeof *sums.facing);
   if (status == CONIC_OK && !sums.facing)
     status = CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
-    status = conic_sky_sums_add(&room, &own, NULL, NULL, &sums);
+    status = conic_sky_sums_add(&room, options, NULL, NULL, &sums);
   for (size_t i = 0; i < splats->count && status == CONIC_OK; i++)
     ao[i] = conic_sky_sums_share(&sums, i);
   conic_memory_release(context, sums.facing);
   conic_receivers_release(context, &receivers);
   conic_map_room_release(&room);
+  return status;
+}
+
+conic_status conic_splats_occlude(conic_context *context, const conic_casters *casters, const conic_splats *splats,
+                                  double spacing, const conic_lighting_options *options, float *ao) {
+  conic_lighting_options own;
+  conic_splats close;
+  float *block;
+  conic_lighting_options_init(&own);
+  if (!casters || !ao || !conic_options_take(&own, options))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "light: an argument is null, or the options were not initialised");
+  conic_status status = conic_splats_enter(context, "light", splats, &close, &block);
+  if (status != CONIC_OK)
+    return status;
+  if (!close.tangent_u[0] || !(spacing > 0.0 && spacing < 1e20))
+    status =
+        conic_fail(context, CONIC_ERROR_ARGUMENT, "light: the splats have no tangent axes, or the spacing is none");
+  if (status == CONIC_OK)
+    status = occlude_splats(context, casters, &close, spacing, &own, ao);
+  conic_memory_release(context, block);
   return status;
 }

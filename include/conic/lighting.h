@@ -58,6 +58,8 @@ typedef struct conic_lighting_options {
   int most_texels;          /* along an edge of a map, 16 to 16384 */
   int samples;              /* N × N of the picture's pixel; Z is of the one nearest to its centre */
   conic_isa isa;
+  int is_sample; /* the picture is one of many whose mean is wanted: of a direction comes what on the mean is its share,
+                    so that the plane ao and the colours of one picture may be up to 4 times too bright, or dark */
 } conic_lighting_options;
 
 /* None, no shadows, 1 texel, 4096 at most, 1 sample. */
@@ -76,6 +78,18 @@ CONIC_API void conic_lighting_options_init_sized(conic_lighting_options *options
 CONIC_API conic_status conic_image_light(conic_context *context, const conic_casters *casters,
                                          const conic_camera *camera, const conic_render_options *render,
                                          const conic_lighting_options *options, conic_image *image);
+
+/* What lights each of many pictures, for who takes their mean. */
+typedef struct conic_lighter {
+  conic_context *context;
+  const conic_casters *casters;
+  const conic_render_options *render;
+  const conic_lighting_options *options; /* where n_directions is not 0, each picture gets one direction of its own */
+} conic_lighter;
+
+/* conic_image_light of picture i_sample; `cookie` is a conic_lighter. Errors: as there. */
+CONIC_API conic_status conic_lighter_shade(void *cookie, uint64_t i_sample, const conic_camera *camera,
+                                           conic_image *sample);
 
 /* How much of the light from all around arrives at each splat of a set, as the plane ao says of a pixel: `count`
  * floats. The set has tangent axes, and its outer sides are those that their normals point to. `spacing` is a map's

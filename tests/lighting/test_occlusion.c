@@ -314,6 +314,38 @@ static void shadow_takes_the_light_that_is_hidden(conic_context *context) {
   conic_triangles_release(context, &mesh);
 }
 
+/* The mean of samples, each lit from one direction, is the picture that is lit from all of them. */
+static void mean_of_samples_is_the_picture(conic_context *context) {
+  enum { SIZE = 64, N = 256, COLORS = LIGHT_PLANES | 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_ALBEDO };
+  static double mean_ao[SIZE * SIZE], mean_red[SIZE * SIZE];
+  conic_triangles mesh = cube_on_plane(context);
+  const conic_drawing drawing = {NULL, &mesh};
+  sunny s;
+  stand_in_the_sun(context, &drawing, 0.0, SIZE, &s);
+  s.drawer.options.lighting = (conic_lighting){.is_given = 1, .sky = {0.5f, 0.5f, 0.5f}, .ground = {0.2f, 0.2f, 0.2f}};
+  s.drawer.options.lighting.up[1] = 1.0;
+  s.options.n_directions = N;
+  const conic_lighter lighter = {context, &s.casters, &s.drawer.options, &s.options};
+  for (uint64_t i = 0; i < N; i++) {
+    light_picture one = light_take_picture(&s.drawer, SIZE, 30.0, 25.0, COLORS);
+    CHECK_OK(conic_lighter_shade((void *)&lighter, i, &one.camera, &one.image));
+    for (int k = 0; k < SIZE * SIZE; k++) {
+      mean_ao[k] += (double)((const float *)one.image.planes[CONIC_PLANE_AO])[k] / N;
+      mean_red[k] += (double)((const float *)one.image.planes[CONIC_PLANE_RGBA])[4 * k] / N;
+    }
+    conic_image_release(context, &one.image);
+  }
+  light_picture whole = light_take_picture(&s.drawer, SIZE, 30.0, 25.0, COLORS);
+  CHECK_OK(conic_image_light(context, &s.casters, &whole.camera, &s.drawer.options, &s.options, &whole.image));
+  for (int k = 0; k < SIZE * SIZE; k++) {
+    CHECK_NEAR(mean_ao[k], (double)((const float *)whole.image.planes[CONIC_PLANE_AO])[k], 0.02);
+    CHECK_NEAR(mean_red[k], (double)((const float *)whole.image.planes[CONIC_PLANE_RGBA])[4 * k], 0.01);
+  }
+  conic_image_release(context, &whole.image);
+  leave_the_sun(&s);
+  conic_triangles_release(context, &mesh);
+}
+
 /* --- what must not matter --- */
 
 static uint64_t light_hash(int threads, conic_isa isa, int tile) {
@@ -460,6 +492,7 @@ int main(int argc, char **argv) {
   wrong_arguments_are_refused(context);
   sky_is_gathered(context);
   shadow_takes_the_light_that_is_hidden(context);
+  mean_of_samples_is_the_picture(context);
   cube_leaks_nothing(context);
   ball_has_no_acne(context);
   points_are_occluded(context);
