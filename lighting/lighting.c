@@ -16,7 +16,7 @@
 #include "lighting/lit_map.h"
 #include "raster/tiles/lights.h"
 
-enum { NO_RECEIVER, RECEIVER, RECEIVER_AT_EDGE };
+enum { NO_RECEIVER, RECEIVER, RECEIVER_AT_EDGE, MOST_EDGE_PX = 4 };
 
 typedef struct lighting {
   conic_context *context;
@@ -34,6 +34,8 @@ typedef struct lighting {
   float *spread;       /* of each pixel that is a receiver, what it got */
   float *filled;       /* of each pixel what it gets by that */
   float epsilon;       /* the casters' */
+  size_t edge_px;      /* how far splats may stick out */
+  float *hidden;       /* of each pixel the colour, unexposed, that hidden lights would make; null: no colours */
   float *visible;      /* of each receiver */
   conic_sky_sums sums;
   float *sums_block;
@@ -68,27 +70,31 @@ static float depth_of_step(const lighting *l, size_t x, size_t y) {
   return steps * (l->epsilon + (float)l->receivers.spacing / cosine);
 }
 
-/* The pixels at most one away, at the picture's edges fewer. */
+/* The pixels at most so many away as splats stick out, at the picture's edges fewer. */
 typedef struct pixel_range {
-  size_t left, right, top, bottom; /* the last two past the last */
+  size_t left, right, top, bottom; /* the second and the fourth past the last */
 } pixel_range;
 
 static pixel_range pixels_about(const lighting *l, size_t x, size_t y) {
-  size_t width = (size_t)l->image->width, height = (size_t)l->image->height;
-  return (pixel_range){x > 0 ? x - 1 : 0, x + 2 < width ? x + 2 : width, y > 0 ? y - 1 : 0,
-                       y + 2 < height ? y + 2 : height};
+  size_t width = (size_t)l->image->width, height = (size_t)l->image->height, reach = l->edge_px;
+  return (pixel_range){x > reach ? x - reach : 0, x + reach < width ? x + reach + 1 : width, y > reach ? y - reach : 0,
+                       y + reach < height ? y + reach + 1 : height};
 }
 
 /* Splats stick out where a surface turns away, and what of its far side does so is seen from behind: it takes the side
- * that it shows for its outer one, on which there is no light. */
+ * that it shows for its outer one, on which there is no light. And of samples on two surfaces, the mean normal is of
+ * neither. */
 static int is_at_edge(const lighting *l, size_t x, size_t y) {
   const float *z = l->image->planes[CONIC_PLANE_Z];
-  float deepest = z[pixel_at(l, x, y)] + depth_of_step(l, x, y);
+  float here = z[pixel_at(l, x, y)], step = depth_of_step(l, x, y);
+  float least = l->options->samples > 1 ? here - step : 0.0f;
   pixel_range range = pixels_about(l, x, y);
   for (size_t j = range.top; j < range.bottom; j++)
-    for (size_t i = range.left; i < range.right; i++)
-      if (!(z[pixel_at(l, i, j)] > 0.0f) || z[pixel_at(l, i, j)] > deepest)
+    for (size_t i = range.left; i < range.right; i++) {
+      float there = z[pixel_at(l, i, j)];
+      if (!(there > least) || there > here + step)
         return 1;
+    }
   return 0;
 }
 
@@ -106,15 +112,15 @@ static void name_receivers(lighting *l) {
     l->kind[l->receivers.pixel[i]] = RECEIVER;
 }
 
-/* The mean over the pixels about one that are of a kind, and no deeper; below 0 where none is. */
-static float mean_about(const lighting *l, size_t x, size_t y, unsigned char kind, float deepest) {
+/* The mean over the pixels about one that are of a kind, and no nearer nor deeper; below 0 where none is. */
+static float mean_about(const lighting *l, size_t x, size_t y, unsigned char kind, float nearest, float deepest) {
   const float *z = l->image->planes[CONIC_PLANE_Z];
   pixel_range range = pixels_about(l, x, y);
   float sum = 0.0f, n = 0.0f;
   for (size_t j = range.top; j < range.bottom; j++)
     for (size_t i = range.left; i < range.right; i++) {
       size_t pixel = pixel_at(l, i, j);
-      if (l->kind[pixel] != kind || z[pixel] > deepest)
+      if (l->kind[pixel] != kind || z[pixel] < nearest || z[pixel] > deepest)
         continue;
       sum += l->spread[pixel];
       n += 1.0f;
@@ -128,14 +134,14 @@ static float spread_at(const lighting *l, size_t x, size_t y) {
   size_t pixel = pixel_at(l, x, y);
   if (l->kind[pixel] == RECEIVER)
     return l->spread[pixel];
-  float z = ((const float *)l->image->planes[CONIC_PLANE_Z])[pixel];
-  float deepest = l->kind[pixel] == RECEIVER_AT_EDGE ? z + depth_of_step(l, x, y) : HUGE_VALF;
-  float mean = mean_about(l, x, y, RECEIVER, deepest);
-  if (mean >= 0.0f)
-    return mean;
-  if (l->kind[pixel] == RECEIVER_AT_EDGE)
-    return l->spread[pixel];
-  mean = mean_about(l, x, y, RECEIVER_AT_EDGE, deepest);
+  if (l->kind[pixel] == RECEIVER_AT_EDGE) {
+    float z = ((const float *)l->image->planes[CONIC_PLANE_Z])[pixel], step = depth_of_step(l, x, y);
+    float mean = mean_about(l, x, y, RECEIVER, z - step, z + step);
+    return mean >= 0.0f ? mean : l->spread[pixel];
+  }
+  float mean = mean_about(l, x, y, RECEIVER, 0.0f, HUGE_VALF);
+  if (mean < 0.0f)
+    mean = mean_about(l, x, y, RECEIVER_AT_EDGE, 0.0f, HUGE_VALF);
   return mean >= 0.0f ? mean : 1.0f;
 }
 
@@ -175,30 +181,56 @@ static float coverage_of(const lighting *l, size_t pixel) {
   return l->render->has_background || !(alpha < 1.0f) ? 1.0f : alpha;
 }
 
-/* Takes `part` of the light at hand from the pixel. */
-static void take_light(const lighting *l, size_t x, size_t y, float part) {
-  size_t pixel = y * (size_t)l->image->width + x;
+/* The colour of what is seen, as if it covered the pixel, by the lights at hand. */
+static int shade_pixel(const lighting *l, size_t x, size_t y, float shaded[3]) {
+  size_t pixel = pixel_at(l, x, y);
   const float *albedo = (const float *)l->image->planes[CONIC_PLANE_ALBEDO] + 3 * pixel;
   const float *normal = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel;
-  float *rgba = (float *)l->image->planes[CONIC_PLANE_RGBA] + 4 * pixel;
-  float coverage = coverage_of(l, pixel), viewer[3], own[3], shaded[3];
-  if (!(coverage > 0.0f) || !(part > 0.0f))
-    return;
-  for (int c = 0; c < 3; c++)
+  float coverage = coverage_of(l, pixel), viewer[3], own[3];
+  for (int c = 0; c < 3 && coverage > 0.0f; c++)
     own[c] = albedo[c] / coverage;
+  if (!(coverage > 0.0f))
+    return 0;
   find_viewer(l, x, y, viewer);
   conic_shade(&l->finish, own, normal, normal, viewer, shaded);
-  for (int c = 0; c < 3; c++) {
-    float left = rgba[c] - shaded[c] * (part * coverage * l->finish.exposure);
-    rgba[c] = left > 0.0f ? left : 0.0f;
+  return 1;
+}
+
+static void hide_row(void *data, size_t y, int i_thread) {
+  const lighting *l = data;
+  float shaded[3];
+  (void)i_thread;
+  for (size_t x = 0; x < (size_t)l->image->width; x++) {
+    size_t pixel = pixel_at(l, x, y);
+    float part = 1.0f - l->filled[pixel];
+    if (part > 0.0f && shade_pixel(l, x, y, shaded))
+      for (int c = 0; c < 3; c++)
+        l->hidden[3 * pixel + (size_t)c] += part * shaded[c];
   }
 }
 
-static void shade_row(void *data, size_t y, int i_thread) {
+/* Adds what of the given lights does not come to pixels that get only l->filled of it. */
+static void hide_lights(lighting *l, const conic_finish_lights *lights) {
+  if (!l->hidden)
+    return;
+  l->finish.lights = lights;
+  conic_parallel_for(l->context, (size_t)l->image->height, hide_row, l);
+}
+
+/* Of what all lights make of a pixel, the part that is hidden is taken. It is a part, and no difference: where normals
+ * cancel, the picture is darker than its planes tell (conic_shade). */
+static void take_row(void *data, size_t y, int i_thread) {
   const lighting *l = data;
+  float shaded[3];
   (void)i_thread;
-  for (size_t x = 0; x < (size_t)l->image->width; x++)
-    take_light(l, x, y, 1.0f - l->filled[pixel_at(l, x, y)]);
+  for (size_t x = 0; x < (size_t)l->image->width; x++) {
+    size_t pixel = pixel_at(l, x, y);
+    const float *hidden = l->hidden + 3 * pixel;
+    float *rgba = (float *)l->image->planes[CONIC_PLANE_RGBA] + 4 * pixel;
+    if ((hidden[0] > 0.0f || hidden[1] > 0.0f || hidden[2] > 0.0f) && shade_pixel(l, x, y, shaded))
+      for (int c = 0; c < 3; c++)
+        rgba[c] *= hidden[c] < shaded[c] ? 1.0f - hidden[c] / shaded[c] : shaded[c] > 0.0f ? 0.0f : 1.0f;
+  }
 }
 
 static void add_shadow(lighting *l, float luminance) {
@@ -219,9 +251,7 @@ static conic_status cast_shadow(lighting *l, const conic_finish_light *light) {
   conic_parallel_for(l->context, n_items, receive_light, &work);
   spread_out(l, l->visible);
   l->one = (conic_finish_lights){.n_lights = 1, .lights[0] = *light};
-  l->finish.lights = &l->one;
-  if (l->image->planes[CONIC_PLANE_RGBA] && l->render->shading != CONIC_SHADE_NONE)
-    conic_parallel_for(l->context, (size_t)l->image->height, shade_row, l);
+  hide_lights(l, &l->one);
   add_shadow(l, luminance);
   l->power += (double)luminance;
   return CONIC_OK;
@@ -250,37 +280,46 @@ static void light_of_sky(const void *cookie, const double direction[3], double l
     light[c] *= (double)lights->ambient[c] + (up > 0.0 ? (double)lights->slope[c] : -(double)lights->slope[c]);
 }
 
-/* Adds so much of the albedo, or takes it. */
-static void add_albedo(lighting *l, int c, float factor) {
-  const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
-  float *rgba = l->image->planes[CONIC_PLANE_RGBA];
-  for (size_t i = 0; i < conic_image_pixels(l->image); i++) {
-    float sum = rgba[4 * i + (size_t)c] + factor * albedo[3 * i + (size_t)c] * l->filled[i];
-    rgba[4 * i + (size_t)c] = sum > 0.0f ? sum : 0.0f;
-  }
-}
-
-/* The sums, made what a white surface reflects of each colour. */
-static void color_by_sky(lighting *l) {
+/* The sums of one colour, made what a white surface reflects at each pixel. */
+static void reflect_sky(lighting *l, size_t c) {
   const conic_sky_sums *sums = &l->sums;
   float n = (float)l->options->n_directions, white = 4.0f; /* of each direction's light (conic_sky_direction) */
-  for (int c = 0; c < 3; c++) {
-    for (size_t i = 0; i < l->receivers.count; i++) {
-      float whole = sums->takes_hidden ? white * sums->facing[i] : n;
-      l->visible[i] = whole > 0.0f ? sums->color[c][i] / whole : 0.0f;
-    }
-    spread_out(l, l->visible);
-    add_albedo(l, c, sums->takes_hidden ? -l->finish.exposure : l->finish.exposure);
+  for (size_t i = 0; i < l->receivers.count; i++) {
+    float whole = sums->takes_hidden ? white * sums->facing[i] : n;
+    l->visible[i] = whole > 0.0f ? sums->color[c][i] / whole : 0.0f;
+  }
+  spread_out(l, l->visible);
+}
+
+/* What is hidden of the lights' sky and ground. */
+static void hide_sky(lighting *l) {
+  const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
+  for (size_t c = 0; c < 3; c++) {
+    reflect_sky(l, c);
+    for (size_t i = 0; i < conic_image_pixels(l->image); i++)
+      if (albedo[3 * i + c] > 0.0f)
+        l->hidden[3 * i + c] += albedo[3 * i + c] / coverage_of(l, i) * l->filled[i];
   }
 }
 
-/* What the picture was drawn with as if nothing hid anything, so that what arrives can take its place. */
-static void take_whole_sky(lighting *l) {
+/* Adds what arrives of a sky that the picture was drawn without. */
+static void add_sky(lighting *l) {
+  const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
+  float *rgba = l->image->planes[CONIC_PLANE_RGBA];
+  for (size_t c = 0; c < 3; c++) {
+    reflect_sky(l, c);
+    for (size_t i = 0; i < conic_image_pixels(l->image); i++)
+      if (albedo[3 * i + c] > 0.0f)
+        rgba[4 * i + c] += l->finish.exposure * albedo[3 * i + c] * l->filled[i];
+  }
+}
+
+/* All of the lights' sky and ground is hidden, so that what arrives can take its place. */
+static void hide_whole_sky(lighting *l) {
   l->one = l->lights;
   l->one.n_lights = 0;
-  l->finish.lights = &l->one;
   memset(l->filled, 0, conic_image_pixels(l->image) * sizeof *l->filled);
-  conic_parallel_for(l->context, (size_t)l->image->height, shade_row, l);
+  hide_lights(l, &l->one);
 }
 
 /* Of a sample's one direction, what on the mean is its share. */
@@ -291,7 +330,7 @@ static float arriving_part(const lighting *l, size_t i) {
 
 static conic_status gather_sky(lighting *l) {
   float *ao = l->image->planes[CONIC_PLANE_AO];
-  int has_colors = l->image->planes[CONIC_PLANE_RGBA] && l->render->shading != CONIC_SHADE_NONE;
+  int has_colors = l->hidden != NULL;
   size_t n = l->receivers.count;
   l->sums_block = conic_memory_allocate_zeroed(l->context, n, (has_colors ? 5 : 2) * sizeof *l->sums_block);
   if (!l->sums_block)
@@ -305,10 +344,10 @@ static conic_status gather_sky(lighting *l) {
       conic_sky_sums_add(&l->room, l->options, l->options->sky ? NULL : light_of_sky, &l->lights, &l->sums);
   if (status != CONIC_OK)
     return status;
-  if (has_colors && l->options->is_sample && !l->options->sky)
-    take_whole_sky(l);
-  if (has_colors)
-    color_by_sky(l);
+  if (has_colors && l->sums.takes_hidden)
+    hide_sky(l);
+  else if (has_colors && !l->options->sky)
+    hide_whole_sky(l);
   for (size_t i = 0; i < n; i++)
     l->visible[i] = arriving_part(l, i);
   spread_out(l, l->visible);
@@ -318,6 +357,13 @@ static conic_status gather_sky(lighting *l) {
 }
 
 /* --- all of it --- */
+
+static void finish_colors(lighting *l) {
+  l->finish.lights = &l->lights;
+  conic_parallel_for(l->context, (size_t)l->image->height, take_row, l);
+  if (l->options->n_directions > 0 && !l->sums.takes_hidden)
+    add_sky(l);
+}
 
 static conic_status check_picture(conic_context *context, const conic_camera *camera, const conic_image *image) {
   conic_status status = conic_view_ray_check(context, "light", camera);
@@ -354,10 +400,15 @@ static conic_status prepare_lighting(lighting *l, const conic_casters *casters) 
     ((float *)image->planes[CONIC_PLANE_AO])[i] = 1.0f;
   if (image->planes[CONIC_PLANE_SHADOW])
     memset(image->planes[CONIC_PLANE_SHADOW], 0, conic_image_pixels(image) * sizeof(float));
-  if (!l->spread || !l->filled || !l->kind || !l->visible)
+  int has_colors = image->planes[CONIC_PLANE_RGBA] && l->render->shading != CONIC_SHADE_NONE;
+  if (has_colors)
+    l->hidden = conic_memory_allocate_zeroed(l->context, conic_image_pixels(image), 3 * sizeof *l->hidden);
+  if (!l->spread || !l->filled || !l->kind || !l->visible || (has_colors && !l->hidden))
     return CONIC_ERROR_MEMORY;
   name_receivers(l);
-  if (l->epsilon > 0.0f)
+  double edge = casters->epsilon > 0.0 ? 0.5 * casters->epsilon / l->receivers.spacing : 0.0;
+  l->edge_px = edge > 1.0 ? edge < MOST_EDGE_PX ? (size_t)edge : MOST_EDGE_PX : 1;
+  if (l->epsilon > 0.0f || l->options->samples > 1)
     conic_parallel_for(l->context, (size_t)image->height, find_edges, l);
   return CONIC_OK;
 }
@@ -380,6 +431,9 @@ conic_status conic_image_light(conic_context *context, const conic_casters *cast
     status = gather_sky(&l);
   if (status == CONIC_OK)
     status = cast_shadows(&l);
+  if (status == CONIC_OK && l.hidden)
+    finish_colors(&l);
+  conic_memory_release(context, l.hidden);
   conic_memory_release(context, l.sums_block);
   conic_memory_release(context, l.kind);
   conic_memory_release(context, l.filled);
