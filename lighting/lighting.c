@@ -42,7 +42,7 @@ typedef struct lighting {
   double power; /* Σ of the luminances of the lights so far */
 } lighting;
 
-static size_t pixel_at(const lighting *l, size_t x, size_t y) {
+static size_t lighting_pixel(const lighting *l, size_t x, size_t y) {
   return y * (size_t)l->image->width + x;
 }
 
@@ -62,7 +62,7 @@ static void find_viewer(const lighting *l, size_t x, size_t y, float viewer[3]) 
 /* How much deeper a neighbour may be that is still the same surface. */
 static float depth_of_step(const lighting *l, size_t x, size_t y) {
   static const float steps = 4.0f, least_cosine = 0.03f;
-  const float *n = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel_at(l, x, y);
+  const float *n = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * lighting_pixel(l, x, y);
   float viewer[3];
   find_viewer(l, x, y, viewer);
   float cosine = (n[0] * viewer[0] + n[1] * viewer[1]) + n[2] * viewer[2];
@@ -86,24 +86,24 @@ static pixel_range pixels_about(const lighting *l, size_t x, size_t y) {
  * neither. */
 static int is_at_edge(const lighting *l, size_t x, size_t y) {
   const float *z = l->image->planes[CONIC_PLANE_Z];
-  float here = z[pixel_at(l, x, y)], step = depth_of_step(l, x, y);
+  float here = z[lighting_pixel(l, x, y)], step = depth_of_step(l, x, y);
   float least = l->options->samples > 1 ? here - step : 0.0f;
   pixel_range range = pixels_about(l, x, y);
   for (size_t j = range.top; j < range.bottom; j++)
     for (size_t i = range.left; i < range.right; i++) {
-      float there = z[pixel_at(l, i, j)];
+      float there = z[lighting_pixel(l, i, j)];
       if (!(there > least) || there > here + step)
         return 1;
     }
   return 0;
 }
 
-static void find_edges(void *data, size_t y, int i_thread) {
+static void find_receivers_at_edges(void *data, size_t y, int i_thread) {
   const lighting *l = data;
   (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++)
-    if (l->kind[pixel_at(l, x, y)] == RECEIVER && is_at_edge(l, x, y))
-      l->kind[pixel_at(l, x, y)] = RECEIVER_AT_EDGE;
+    if (l->kind[lighting_pixel(l, x, y)] == RECEIVER && is_at_edge(l, x, y))
+      l->kind[lighting_pixel(l, x, y)] = RECEIVER_AT_EDGE;
 }
 
 static void name_receivers(lighting *l) {
@@ -119,7 +119,7 @@ static float mean_about(const lighting *l, size_t x, size_t y, unsigned char kin
   float sum = 0.0f, n = 0.0f;
   for (size_t j = range.top; j < range.bottom; j++)
     for (size_t i = range.left; i < range.right; i++) {
-      size_t pixel = pixel_at(l, i, j);
+      size_t pixel = lighting_pixel(l, i, j);
       if (l->kind[pixel] != kind || z[pixel] < nearest || z[pixel] > deepest)
         continue;
       sum += l->spread[pixel];
@@ -131,7 +131,7 @@ static float mean_about(const lighting *l, size_t x, size_t y, unsigned char kin
 /* What a pixel gets: a receiver its own, one at an edge what its surface gets beside it, and what is none, but has been
  * drawn at its border, what is about it. */
 static float spread_at(const lighting *l, size_t x, size_t y) {
-  size_t pixel = pixel_at(l, x, y);
+  size_t pixel = lighting_pixel(l, x, y);
   if (l->kind[pixel] == RECEIVER)
     return l->spread[pixel];
   if (l->kind[pixel] == RECEIVER_AT_EDGE) {
@@ -149,7 +149,7 @@ static void fill_row(void *data, size_t y, int i_thread) {
   const lighting *l = data;
   (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++)
-    l->filled[pixel_at(l, x, y)] = spread_at(l, x, y);
+    l->filled[lighting_pixel(l, x, y)] = spread_at(l, x, y);
 }
 
 /* What receivers got, made what pixels get. */
@@ -183,7 +183,7 @@ static float coverage_of(const lighting *l, size_t pixel) {
 
 /* The colour of what is seen, as if it covered the pixel, by the lights at hand. */
 static int shade_pixel(const lighting *l, size_t x, size_t y, float shaded[3]) {
-  size_t pixel = pixel_at(l, x, y);
+  size_t pixel = lighting_pixel(l, x, y);
   const float *albedo = (const float *)l->image->planes[CONIC_PLANE_ALBEDO] + 3 * pixel;
   const float *normal = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel;
   float coverage = coverage_of(l, pixel), viewer[3], own[3];
@@ -201,7 +201,7 @@ static void hide_row(void *data, size_t y, int i_thread) {
   float shaded[3];
   (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++) {
-    size_t pixel = pixel_at(l, x, y);
+    size_t pixel = lighting_pixel(l, x, y);
     float part = 1.0f - l->filled[pixel];
     if (part > 0.0f && shade_pixel(l, x, y, shaded))
       for (int c = 0; c < 3; c++)
@@ -224,7 +224,7 @@ static void take_row(void *data, size_t y, int i_thread) {
   float shaded[3];
   (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++) {
-    size_t pixel = pixel_at(l, x, y);
+    size_t pixel = lighting_pixel(l, x, y);
     const float *hidden = l->hidden + 3 * pixel;
     float *rgba = (float *)l->image->planes[CONIC_PLANE_RGBA] + 4 * pixel;
     if ((hidden[0] > 0.0f || hidden[1] > 0.0f || hidden[2] > 0.0f) && shade_pixel(l, x, y, shaded))
@@ -409,7 +409,7 @@ static conic_status prepare_lighting(lighting *l, const conic_casters *casters) 
   double edge = casters->epsilon > 0.0 ? 0.5 * casters->epsilon / l->receivers.spacing : 0.0;
   l->edge_px = edge > 1.0 ? edge < MOST_EDGE_PX ? (size_t)edge : MOST_EDGE_PX : 1;
   if (l->epsilon > 0.0f || l->options->samples > 1)
-    conic_parallel_for(l->context, (size_t)image->height, find_edges, l);
+    conic_parallel_for(l->context, (size_t)image->height, find_receivers_at_edges, l);
   return CONIC_OK;
 }
 

@@ -57,8 +57,8 @@ static inline conic_triangles light_mesh(conic_context *context, size_t most) {
   return t;
 }
 
-/* Of the box's six sides those that `sides` names by bits: -x, +x, -y, +y, -z, +z. */
-static inline void light_box(conic_triangles *t, const double low[3], const double high[3], unsigned sides) {
+/* The six sides of a box. */
+static inline void light_box(conic_triangles *t, const double low[3], const double high[3]) {
   for (int side = 0; side < 6; side++) {
     int axis = side / 2, i = (axis + 1) % 3, j = (axis + 2) % 3;
     double p[4][3];
@@ -68,8 +68,7 @@ static inline void light_box(conic_triangles *t, const double low[3], const doub
       p[corner][i] = right ? high[i] : low[i];
       p[corner][j] = top ? high[j] : low[j];
     }
-    if (sides >> side & 1)
-      light_quad(t, p[0], side % 2 ? p[1] : p[3], p[2], side % 2 ? p[3] : p[1]);
+    light_quad(t, p[0], side % 2 ? p[1] : p[3], p[2], side % 2 ? p[3] : p[1]);
   }
 }
 
@@ -85,6 +84,20 @@ static inline void light_field(conic_triangles *t, int n, double half, double (*
       }
       light_quad(t, p[0], p[3], p[2], p[1]);
     }
+}
+
+static inline double light_flat(double x, double z) {
+  (void)x;
+  (void)z;
+  return 0.0;
+}
+
+/* A cube of edge 1 on a square of edge 6. */
+static inline conic_triangles light_cube_on_plane(conic_context *context) {
+  conic_triangles t = light_mesh(context, 2 * 100 + 12);
+  light_field(&t, 10, 3.0, light_flat);
+  light_box(&t, (const double[3]){-0.5, 0.0, -0.5}, (const double[3]){0.5, 1.0, 0.5});
+  return t;
 }
 
 /* n × m quads about the origin. */
