@@ -208,7 +208,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = cli_parse_exposure},
       {"aov", CLI_PARSED, &job->planes, "LIST",
        "planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place in the "
-       "world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes [rgba,Z]",
+       "world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow, what light "
+       "arrives [rgba,Z]",
        .parse = cli_parse_planes, .is_given = &job->is_aov_given, .group = "planes"},
       {"degree", CLI_INT, &job->patches.surface.degree, "D", "the degree of the surface's polynomials, 1 to 4 [3]", 1,
        CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given, .group = "method patch"},
