@@ -5,6 +5,7 @@
 #include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
 #include "cli/commands/points_input.h"
+#include "cli/commands/prepare_bake.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
@@ -16,6 +17,8 @@ typedef struct prepare_job {
   cli_coloring coloring;
   unsigned long long count, seed;
   int has_count, is_plain;
+  cli_bake bake;
+  int n_directions;
 
   conic_model model;
   size_t n_in;
@@ -100,7 +103,8 @@ static int find_axes(prepare_job *job) {
     return cli_exit_of(status);
   if (job->repairs.nan + job->repairs.failed >= job->model.points.count)
     return cli_error(CLI_INPUT, "%s: has no point that can be drawn", job->base.input);
-  return CLI_DONE;
+  return cli_exit_of(cli_bake_splats(job->base.session->context, job->bake, job->n_directions, job->estimate.cutoff,
+                                     &job->model.points));
 }
 
 static int write_splats(prepare_job *job) {
@@ -115,6 +119,8 @@ static void report_prepared(cli_json *json, const void *cookie) {
   cli_json_count(json, "points_in", job->n_in);
   cli_json_count(json, "points_out", job->model.points.count);
   cli_json_count(json, "clipped", job->model.points.n_clips);
+  if (job->bake)
+    cli_json_count(json, "baked_directions", (uint64_t)job->n_directions);
   cli_json_count(json, "dots", conic_splats_count_dots(&job->model.points));
   cli_color_report(json, &job->coloring.done);
   cli_build_report_seconds(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[WORK].seconds);
@@ -159,6 +165,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
   conic_estimate_options_init(&job.estimate);
   cli_coloring_init(&job.coloring);
   job.estimate.stays_at_mesh = 1;
+  job.n_directions = 256;
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
       CLI_IN_PLACE(job.base),
@@ -178,6 +185,10 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
       CLI_WHERE(&job.base.where),
       {"plain", CLI_FLAG, &job.is_plain, NULL,
        "every point becomes an ellipse; else those that lie on no surface become round dots"},
+      {"bake", CLI_PARSED, &job.bake, "WHAT",
+       "ao: how much light from all around reaches each point, as the value ao; color: colours are darkened by it, too",
+       .parse = cli_bake_parse},
+      {"directions", CLI_INT, &job.n_directions, "N", "of --bake: from so many directions [256]", 1, 65536},
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
   };
   int parsed = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply");
@@ -192,5 +203,6 @@ const cli_command cli_prepare = {
     .description = "Reads raw points, or the vertices of a mesh, and writes the splats that conic render would make of "
                    "them. Each point gets an ellipse of the size and the direction that its neighbours mean.",
     .examples = {{"keep 100,000 points of a scan", "conic prepare scan.las --count 100k -o small.ply"},
-                 {"colour points by their height", "conic prepare scan.las --color-by height -o coloured.ply"}},
+                 {"colour points by their height", "conic prepare scan.las --color-by height -o coloured.ply"},
+                 {"darken what light hardly reaches", "conic prepare scan.ply --bake color -o baked.ply"}},
 };

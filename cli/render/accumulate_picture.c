@@ -7,6 +7,7 @@
 
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
+#include "cli/render/lit_picture.h"
 #include "cli/render/views.h"
 #include "core/files/file.h"
 
@@ -174,6 +175,12 @@ static conic_status draw_source_sample(void *cookie, const conic_sample *sample,
   return status;
 }
 
+static conic_status light_source_sample(void *cookie, uint64_t i_sample, const conic_camera *camera,
+                                        conic_image *image) {
+  const accumulating *work = cookie;
+  return cli_light_sample(work->session, work->job, i_sample, camera, image);
+}
+
 /* The means so far, over what the middle of the pixels shows. */
 static conic_status show_sums(accumulating *work, const conic_accumulation *sums) {
   cli_accumulate_job *own = &work->job->accumulating;
@@ -262,6 +269,10 @@ static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
   options.camera_at = own->is_shutter_given ? camera_on_way : NULL;
   options.draw = draw_source_sample;
   options.watch = watch_sums;
+  if (cli_light_is_wanted(work->job)) {
+    options.shade = light_source_sample;
+    options.sample_planes = 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO;
+  }
   return conic_accumulate(work->session->context, &options, sums);
 }
 

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/files/file.h"
+
 /* Chosen by eye on scans, meshes and a terrain: a warm key light from the viewer's upper left gives the shape, a cool
  * one from behind on the right draws the edge of the shaded side, a little from the front keeps what neither reaches
  * readable, and from all around comes a sky over a darker ground. White does not burn out where they meet. */
@@ -88,6 +90,12 @@ int cli_parse_sky(const char *text, void *value) {
   size_t length = strcspn(text, ":");
   const char *ground = text[length] ? text + length + 1 : text;
   job->is_sky_given = 1;
+  job->sky_path = *conic_file_ending(text) && text[strspn(text, "0123456789.,:")] ? text : NULL;
+  if (job->sky_path) {
+    memset(lighting->sky, 0, sizeof lighting->sky);
+    memset(lighting->ground, 0, sizeof lighting->ground);
+    return 1;
+  }
   return cli_parse_color(text, length, lighting->sky) && cli_parse_color(ground, strlen(ground), lighting->ground);
 }
 
@@ -149,6 +157,12 @@ void cli_lights_report(cli_json *json, const cli_render_job *job) {
     cli_json_close(json);
   }
   cli_json_close(json);
+  if (job->n_directions)
+    cli_json_count(json, "ao", (uint64_t)job->n_directions);
+  if (job->has_shadows)
+    cli_json_bool(json, "shadow", 1);
+  if (job->sky_path)
+    cli_json_text(json, "sky_picture", job->sky_path);
   cli_report_color(json, "sky", lighting->sky);
   cli_report_color(json, "ground", lighting->ground);
 }

@@ -3,6 +3,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/render/frames.h"
+#include "cli/render/lit_picture.h"
 #include "cli/shell.h"
 #include "core/files/file.h"
 
@@ -92,6 +93,8 @@ static int check_outputs(const cli_session *session, cli_render_job *job, const 
   if (job->is_patch && job->deep_path)
     return cli_usage("render: --method patch draws samples of its own: not with --deep");
   answer = check_streaming(job, is_given);
+  if (answer == CLI_DONE)
+    answer = cli_light_check(job);
   if (answer == CLI_DONE && job->top.is_wanted)
     answer = cli_top_check(session, job);
   if (answer == CLI_DONE)
@@ -208,6 +211,11 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"timeout", CLI_NUMBER, &job->access.stall_seconds, "S",
        "of a URL, a server that is silent for so long is asked again, up to 4 times [15]", 1, 3600,
        .is_given = &is_given[1]},
+      {"ao", CLI_INT, &job->n_directions, "N",
+       "light from all around falls only where nothing hides it, as so many directions tell: 64 look smooth, 1024 are "
+       "exact",
+       1, 65536, .group = "shadow"},
+      {"shadow", CLI_FLAG, &job->has_shadows, NULL, "the lights cast shadows, but for those at your eye"},
       {"repeat", CLI_INT, &job->repeat, "N", "draw N times and report the median of the times [1]", 1, 100000,
        .group = "measuring"},
   };
@@ -222,6 +230,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   job->access.connect_seconds = job->access.stall_seconds;
   job->view.occlusion = (conic_occlusion)occlusion;
   job->view.may_be_coarser = job->progressive_path || job->deadline > 0.0 || job->view.tolerates_damage;
+  cli_light_want_planes(job);
   if (job->deep_path)
     job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_RGBA; /* which its samples make */
   if (job->planes & 1u << CONIC_PLANE_POSITION)

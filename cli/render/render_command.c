@@ -223,7 +223,7 @@ static conic_status render_repeats(cli_session *session, cli_render_job *job, in
     job->options.skip_hidden = i > 0 || !session->json_path;
     status = job->accumulating.n_samples ? cli_accumulate_picture(session, job, i_frame, camera, image, &repeats[i])
              : job->progressive_path     ? cli_render_levels(session, job, camera, image, &repeats[i])
-                                         : cli_render_picture(job, camera, image, &repeats[i]);
+                                         : cli_render_picture(session, job, camera, image, &repeats[i]);
     repeats[i].fragments = repeats[0].fragments;
   }
   return status;

@@ -55,6 +55,9 @@ typedef struct cli_render_job {
   int is_background_given;
   cli_backdrop backdrop;                       /* --background with two colours */
   int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/light_options.h) */
+  const char *sky_path;                        /* --sky with a picture; null: none */
+  int n_directions, has_shadows;               /* --ao, --shadow */
+  conic_sky *sky;                              /* of the picture, once it is read */
   int n_frames;                                /* of a turntable, or views; else 1 */
   int is_turntable;
   cli_top_job top; /* --camera top */
@@ -94,7 +97,7 @@ typedef struct cli_render_job {
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
   conic_camera last_camera;
-  double first_frame_ms, camera_ms, frames_ms, write_ms, hash_ms, total_ms;
+  double first_frame_ms, camera_ms, frames_ms, light_ms, write_ms, hash_ms, total_ms;
   double begun_seconds;                /* when reading began */
   conic_cryptomatte_manifest manifest; /* of the last image */
   uint64_t hashes[CONIC_N_PLANES];     /* of the last image, where they are reported */
@@ -134,8 +137,8 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, const 
                                conic_image *image, conic_render_statistics *statistics);
 /* Opening, and one picture, within what is left of the deadline. */
 void cli_deadline_open(cli_render_job *job);
-conic_status cli_render_picture(cli_render_job *job, const conic_camera *camera, conic_image *image,
-                                conic_render_statistics *statistics);
+conic_status cli_render_picture(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                                conic_image *image, conic_render_statistics *statistics);
 
 /* Wrong usage where a plane that was asked for goes into no file. */
 int cli_planes_check(const cli_session *session, const cli_render_job *job);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/render/backdrop.h"
+#include "cli/render/lit_picture.h"
 #include "core/files/disk.h"
 
 /* The deadline counts from the start of the program's work, not of this picture. */
@@ -16,12 +17,14 @@ void cli_deadline_open(cli_render_job *job) {
     job->access.seconds = seconds_left(job);
 }
 
-conic_status cli_render_picture(cli_render_job *job, const conic_camera *camera, conic_image *image,
-                                conic_render_statistics *statistics) {
+conic_status cli_render_picture(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                                conic_image *image, conic_render_statistics *statistics) {
   if (job->deadline > 0.0)
     job->view.seconds = seconds_left(job);
   conic_status status =
       conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, statistics);
+  if (status == CONIC_OK)
+    status = cli_light_picture(session, job, camera, image);
   if (status == CONIC_OK)
     cli_backdrop_show(job, image);
   return status;
@@ -50,7 +53,7 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, const 
   conic_status status = make_folder(job->progressive_path);
   for (int level = 1; level <= n_levels && status == CONIC_OK; level++) {
     job->view.most_levels = level;
-    status = cli_render_picture(job, camera, image, statistics);
+    status = cli_render_picture(session, job, camera, image, statistics);
     if (status == CONIC_OK)
       status = write_progress(session, job, level, image);
     if (conic_source_chosen(job->source)->n_levels < level || (job->deadline > 0.0 && seconds_left(job) <= 1e-3))

@@ -9,7 +9,7 @@
 #include "cli/tell.h"
 #include "core/base/message.h"
 
-enum { N_STAGES = 7, N_FRAME_STAGES = 6 };
+enum { N_STAGES = 8, N_FRAME_STAGES = 6 };
 
 /* What all of the run consists of. */
 static void list_stages(const cli_render_job *job, cli_stage stages[N_STAGES]) {
@@ -19,6 +19,7 @@ static void list_stages(const cli_render_job *job, cli_stage stages[N_STAGES]) {
                                     {"estimate", scale->estimate_seconds},
                                     {"camera", 1e-3 * job->camera_ms},
                                     {"draw", 1e-3 * job->frames_ms},
+                                    {"light", 1e-3 * job->light_ms},
                                     {"write", 1e-3 * job->write_ms},
                                     {"hashing", 1e-3 * job->hash_ms}};
   memcpy(stages, list, sizeof list);

@@ -198,7 +198,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = cli_parse_light, .may_repeat = 1},
       {"sky", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "light from all around; of two colours, the first falls on what faces up, the second on what faces down [the "
-       "studio's]",
+       "studio's]; or a picture of all directions, such as sky.exr, which needs --ao",
        .parse = cli_parse_sky},
       {"background", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in PNG and JPEG, "
@@ -209,7 +209,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = cli_parse_exposure},
       {"aov", CLI_PARSED, &job->planes, "LIST",
        "planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place in the "
-       "world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes [rgba,Z]",
+       "world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow, what light "
+       "arrives [rgba,Z]",
        .parse = cli_parse_planes, .is_given = &job->is_aov_given, .group = "planes"},
       {"degree", CLI_INT, &job->patches.surface.degree, "D", "the degree of the surface's polynomials, 1 to 4 [3]", 1,
        CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given, .group = "method patch"},
@@ -224,7 +225,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it [64]", 8,
        64, .group = "what draws"},
       {"device", CLI_TEXT, &job->device.name, "NAME",
-       "what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go about it as "
+       "what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go about it "
+       "as "
        "on a GPU and :lanes as on a CPU; changes no bit of the picture [cpu]"},
       {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL,
        "also take an OpenCL device whose rounding makes the picture another one"},

@@ -35,6 +35,7 @@
 #include "conic/isa.h"
 #include "conic/layers.h"
 #include "conic/layers_draw.h"
+#include "conic/lighting.h"
 #include "conic/loan.h"
 #include "conic/model.h"
 #include "conic/octree.h"

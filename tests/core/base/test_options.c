@@ -107,6 +107,9 @@ static void init_layers(void *o, size_t size) {
 static void init_access(void *o, size_t size) {
   conic_layers_access_init_sized(o, size);
 }
+static void init_lighting(void *o, size_t size) {
+  conic_lighting_options_init_sized(o, size);
+}
 static void init_draw(void *o, size_t size) {
   conic_layers_draw_options_init_sized(o, size);
 }
@@ -166,6 +169,7 @@ static const struct {
            {init_layers, sizeof(conic_layers_options)},
            {init_access, sizeof(conic_layers_access)},
            {init_draw, sizeof(conic_layers_draw_options)},
+           {init_lighting, sizeof(conic_lighting_options)},
            {init_opencl, sizeof(conic_opencl_options)},
            {init_surface, sizeof(conic_surface_options)},
            {init_clean, sizeof(conic_clean_options)},

@@ -1,0 +1,17 @@
+/* conic prepare --bake: light from all around, worked out at the points themselves. */
+#ifndef CONIC_PREPARE_BAKE_H
+#define CONIC_PREPARE_BAKE_H
+
+#include "cli/arguments.h"
+
+typedef enum cli_bake { CLI_BAKE_NONE, CLI_BAKE_AO, CLI_BAKE_COLOR } cli_bake;
+
+/* Parser of --bake's value, into a cli_bake. */
+int cli_bake_parse(const char *text, void *value);
+
+/* Gives splats with axes the value "ao" of that name, and darkens their colours by it where that is wanted, too.
+ * Errors: as conic_splats_occlude. */
+conic_status cli_bake_splats(conic_context *context, cli_bake bake, int n_directions, float cutoff,
+                             conic_splats *splats);
+
+#endif

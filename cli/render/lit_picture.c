@@ -1,0 +1,119 @@
+#include "cli/render/lit_picture.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "cli/render/light_options.h"
+#include "conic/lighting.h"
+
+enum { USUAL_DIRECTIONS = 64 };
+
+int cli_light_is_wanted(const cli_render_job *job) {
+  return job->n_directions > 0 || job->has_shadows;
+}
+
+void cli_light_want_planes(cli_render_job *job) {
+  unsigned needed = 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL;
+  if (job->planes & 1u << CONIC_PLANE_AO && job->n_directions == 0)
+    job->n_directions = USUAL_DIRECTIONS;
+  if (job->planes & 1u << CONIC_PLANE_SHADOW)
+    job->has_shadows = 1;
+  if (job->planes & 1u << CONIC_PLANE_RGBA)
+    needed |= 1u << CONIC_PLANE_ALBEDO;
+  if (cli_light_is_wanted(job))
+    job->unwritten_planes |= needed & ~job->planes;
+  job->planes |= job->unwritten_planes;
+}
+
+int cli_light_check(const cli_render_job *job) {
+  if (job->sky_path && job->n_directions == 0)
+    return cli_usage("render: the light of %s comes from so many directions as --ao says; give it, too", job->sky_path);
+  if (cli_light_is_wanted(job) && job->abilities & CONIC_SOURCE_COMPOSITES)
+    return cli_usage("render: --ao and --shadow are of surfaces; give --profile surface, too");
+  if (cli_light_is_wanted(job) && job->top.is_wanted)
+    return cli_usage("render: --ao and --shadow are not of --camera top");
+  return CLI_DONE;
+}
+
+/* What draws the maps. */
+typedef struct map_drawer {
+  cli_render_job *job;
+  conic_render_options options;
+} map_drawer;
+
+/* The nearest splat is what hides. */
+static conic_status draw_light_map(void *cookie, const conic_camera *camera, double near_z, conic_image *depth) {
+  const map_drawer *drawer = cookie;
+  cli_render_job *job = drawer->job;
+  conic_render_options options = drawer->options;
+  conic_source_view view = job->view;
+  options.near_z = near_z;
+  view.samples = 1;
+  return conic_source_draw(job->source, job->renderer, camera, &options, &view, depth, NULL);
+}
+
+static map_drawer drawer_of(cli_render_job *job) {
+  map_drawer drawer = {job, job->options};
+  drawer.options.passes = 1;
+  drawer.options.cull_back = 0;
+  drawer.options.shading = CONIC_SHADE_NONE;
+  return drawer;
+}
+
+/* The source's box holds centres and corners: splats reach beyond by their size. */
+static conic_casters casters_of(const cli_render_job *job, map_drawer *drawer) {
+  const conic_source_scale *scale = conic_source_measure(job->source);
+  double reach = scale->n_splats ? (double)job->options.kernel.cutoff * scale->splat_length : 0.0;
+  conic_casters casters = {.draw = draw_light_map, .cookie = drawer, .epsilon = reach};
+  for (int axis = 0; axis < 3; axis++) {
+    casters.minimum[axis] = scale->minimum[axis] - 4.0 * reach;
+    casters.maximum[axis] = scale->maximum[axis] + 4.0 * reach;
+  }
+  return casters;
+}
+
+/* What was chosen last is a map's. */
+static conic_status choose_again(cli_render_job *job, const conic_camera *camera, const conic_image *image) {
+  conic_image depth = {.width = image->width, .height = image->height};
+  if (!(job->abilities & CONIC_SOURCE_STREAMS))
+    return conic_source_choose(job->source, camera, &job->options, &job->view);
+  depth.planes[CONIC_PLANE_Z] = image->planes[CONIC_PLANE_Z];
+  return conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, &depth, NULL);
+}
+
+/* As one of many samples, unless i_sample is null. */
+static conic_status light_image(cli_session *session, cli_render_job *job, const uint64_t *i_sample,
+                                const conic_camera *camera, conic_image *image) {
+  conic_lighting_options options;
+  double start = cli_seconds();
+  map_drawer drawer = drawer_of(job);
+  conic_casters casters = casters_of(job, &drawer);
+  conic_lighter lighter = {session->context, &casters, &job->options, &options};
+  conic_lighting_options_init(&options);
+  options.n_directions = (uint64_t)job->n_directions;
+  options.has_shadows = job->has_shadows;
+  options.samples = job->view.samples;
+  options.isa = job->options.isa;
+  conic_status status = CONIC_OK;
+  if (job->sky_path && !job->sky)
+    status = conic_sky_read(session->context, job->sky_path, job->options.lighting.up, &job->sky);
+  options.sky = job->sky;
+  if (status == CONIC_OK && i_sample)
+    status = conic_lighter_shade(&lighter, *i_sample, camera, image);
+  else if (status == CONIC_OK)
+    status = conic_image_light(session->context, &casters, camera, &job->options, &options, image);
+  if (status == CONIC_OK && !i_sample)
+    status = choose_again(job, camera, image);
+  job->light_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+conic_status cli_light_picture(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                               conic_image *image) {
+  return cli_light_is_wanted(job) ? light_image(session, job, NULL, camera, image) : CONIC_OK;
+}
+
+conic_status cli_light_sample(cli_session *session, cli_render_job *job, uint64_t i_sample, const conic_camera *camera,
+                              conic_image *image) {
+  return light_image(session, job, &i_sample, camera, image);
+}

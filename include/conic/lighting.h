@@ -1,0 +1,104 @@
+/* Light that does not arrive: shadows, ambient occlusion and the sky, by depth pictures that are drawn from where the
+ * light comes (docs/reference/lighting.md). */
+#ifndef CONIC_LIGHTING_H
+#define CONIC_LIGHTING_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/image.h"
+#include "conic/isa.h"
+#include "conic/render.h"
+#include "conic/splats.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Draws what casts shadows into the plane Z of `depth`, which is of the camera's size and zero, nothing nearer than
+ * near_z; called by the thread that asked for light, one picture at a time. What it returns but OK ends the work. */
+typedef conic_status conic_depth_drawer(void *cookie, const conic_camera *camera, double near_z, conic_image *depth);
+
+typedef struct conic_casters {
+  conic_depth_drawer *draw;
+  void *cookie;
+  double minimum[3], maximum[3]; /* box of all that casts, in world units */
+  double epsilon; /* how far what is drawn may lie off the surface that it shows, in world units: of splats the cutoff
+                     times their length, of triangles 0 */
+  uint64_t reserved[4];
+} conic_casters;
+
+/* A sky: light from all around, by direction. */
+typedef struct conic_sky conic_sky;
+
+/* Reads a picture of all directions: as an equirectangular camera at azimuth 0 and elevation 0 of conic_framing, with
+ * that `up`, sees them. Its colours are linear. On success the caller owns *sky, which must not outlive the context;
+ * threads may share it. Errors: ARGUMENT (no direction up), INPUT (no colours; a number that is not finite; no light),
+ * UNSUPPORTED, MEMORY. */
+CONIC_API conic_status conic_sky_read(conic_context *context, const char *path, const double up[3], conic_sky **sky);
+/* The same of a picture in memory, of which nothing is kept. */
+CONIC_API conic_status conic_sky_create(conic_context *context, const conic_image *image, const double up[3],
+                                        conic_sky **sky);
+/* Null is allowed. */
+CONIC_API void conic_sky_destroy(conic_sky *sky);
+
+/* Direction i of the sequence, a unit vector towards the light, and what of the sky's light it stands for: the mean
+ * over i of light × visible × cosine is what a white surface reflects. A null sky is white, of radiance 1. */
+CONIC_API void conic_sky_direction(const conic_sky *sky, uint64_t i, double direction[3], double light[3]);
+
+typedef struct conic_lighting_options {
+  size_t size;              /* sizeof(conic_lighting_options), set by the init function */
+  uint64_t first_direction; /* in the sequence */
+  uint64_t n_directions;    /* of which light from all around comes: 0: it is not occluded */
+  int has_shadows;          /* of the lights that have a direction */
+  const conic_sky *sky;     /* in the place of the sky and ground of the lights; null: these */
+  double texels;            /* of a map, to an edge of the picture's pixel, 0.125 to 8 */
+  int most_texels;          /* along an edge of a map, 16 to 16384 */
+  int samples;              /* N × N of the picture's pixel; Z is of the one nearest to its centre */
+  conic_isa isa;
+  int is_sample; /* the picture is one of many whose mean is wanted: of a direction comes what on the mean is its share,
+                    so that the plane ao and the colours of one picture may be up to 4 times too bright, or dark */
+} conic_lighting_options;
+
+/* None, no shadows, 1 texel, 4096 at most, 1 sample. */
+CONIC_API void conic_lighting_options_init_sized(conic_lighting_options *options, size_t size);
+#define conic_lighting_options_init(options) conic_lighting_options_init_sized(options, sizeof *(options))
+
+/* Takes from a drawn picture what light does not arrive, by its planes Z and N, and fills what it has of the planes:
+ * - ao: Σ V·max(0, n·d) / Σ max(0, n·d) over the directions d, where V is 1 where nothing hides the direction, else 0;
+ * - shadow: of the lights with a direction, the part of their power that arrives: Σ w·V / Σ w, where w is a light's
+ *   luminance, and V 0 where the surface faces away. 1 where there is no such light;
+ * - rgba, for which there has to be albedo: less the part of each light that is hidden, and less what of sky and ground
+ *   is; with a sky, plus its light. `render` is what the picture was drawn by.
+ * Both planes are 1 where nothing is, but beside what is: there they are the mean of the neighbours. Errors: ARGUMENT
+ * (a plane is missing; a light without a direction), UNSUPPORTED (the instruction set), MEMORY, CANCELLED, the
+ * drawer's; the planes' contents are then undefined. */
+CONIC_API conic_status conic_image_light(conic_context *context, const conic_casters *casters,
+                                         const conic_camera *camera, const conic_render_options *render,
+                                         const conic_lighting_options *options, conic_image *image);
+
+/* What lights each of many pictures, for who takes their mean. */
+typedef struct conic_lighter {
+  conic_context *context;
+  const conic_casters *casters;
+  const conic_render_options *render;
+  const conic_lighting_options *options; /* where n_directions is not 0, each picture gets one direction of its own */
+} conic_lighter;
+
+/* conic_image_light of picture i_sample; `cookie` is a conic_lighter. Errors: as there. */
+CONIC_API conic_status conic_lighter_shade(void *cookie, uint64_t i_sample, const conic_camera *camera,
+                                           conic_image *sample);
+
+/* How much of the light from all around arrives at each splat of a set, as the plane ao says of a pixel: `count`
+ * floats. The set has tangent axes, and its outer sides are those that their normals point to. `spacing` is a map's
+ * texel in world units. Errors: as conic_image_light. */
+CONIC_API conic_status conic_splats_occlude(conic_context *context, const conic_casters *casters,
+                                            const conic_splats *splats, double spacing,
+                                            const conic_lighting_options *options, float *ao);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

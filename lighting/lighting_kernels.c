@@ -1,0 +1,3 @@
+#include "lighting/lighting_kernels.h"
+
+CONIC_DEFINE_KERNELS(conic_lighting_kernels)

@@ -1,0 +1,51 @@
+/* One map after the other, drawn and received. */
+#ifndef CONIC_LIT_MAP_H
+#define CONIC_LIT_MAP_H
+
+#include "lighting/lighting_kernels.h"
+
+/* What maps are drawn into and received by. */
+typedef struct conic_map_room {
+  conic_context *context;
+  const conic_casters *casters;
+  const conic_receivers *receivers;
+  conic_lighting_kernels kernels;
+  double texel; /* in world units, wanted */
+  int most_texels;
+  float *z;
+  size_t n_room; /* floats of it */
+} conic_map_room;
+
+/* `options` are whole. Errors: ARGUMENT (the casters, the options), UNSUPPORTED. */
+conic_status conic_map_room_init(conic_context *context, const char *who, const conic_casters *casters,
+                                 const conic_lighting_options *options, conic_map_room *room);
+
+/* Draws the map of the light from a direction. Errors: MEMORY, the drawer's. */
+conic_status conic_map_room_draw(conic_map_room *room, const double direction[3], conic_light_map *map);
+
+void conic_map_room_release(conic_map_room *room);
+
+/* So many receivers are one thread's at a time. */
+enum { CONIC_RECEIVED_TOGETHER = 2048 };
+
+/* Sums over directions, an array of receivers each; null: not wanted. */
+typedef struct conic_sky_sums {
+  float *facing, *visible; /* Σ max(0, n·d), and of that what nothing hides */
+  float *color[3];         /* Σ light · max(0, n·d) of what is visible, or with takes_hidden of what is not */
+  int takes_hidden;
+} conic_sky_sums;
+
+/* What light comes from a direction: *light is on entry what the sequence says (conic_sky_direction). */
+typedef void conic_direction_light(const void *cookie, const double direction[3], double light[3]);
+
+/* Adds the options' directions, whose light is changed by `light`, which may be null. Errors: MEMORY, CANCELLED, the
+ * drawer's. */
+conic_status conic_sky_sums_add(conic_map_room *room, const conic_lighting_options *options,
+                                conic_direction_light *light, const void *cookie, conic_sky_sums *sums);
+
+/* The part of what faces a receiver that is visible to it: 1 where nothing faces it. */
+static inline float conic_sky_sums_share(const conic_sky_sums *sums, size_t i) {
+  return sums->facing[i] > 0.0f ? sums->visible[i] / sums->facing[i] : 1.0f;
+}
+
+#endif

@@ -1,0 +1,85 @@
+/* What lighting/light_map.h says of receiving: plain C, which compilers put in lanes. */
+#include <math.h>
+
+#include "lighting/lighting_kernels.h"
+
+/* A receiver as the map sees it. */
+typedef struct received {
+  float column, row;   /* in the map, in texels */
+  float height, texel; /* its z from the map's distance on, and a texel's edge at its place */
+  float n[3];          /* the normal in the map's camera space; z is below 0 where it faces the light */
+  float bias;
+} received;
+
+/* Whether the light of one texel's ray reaches the plane of the receiver: it is where that ray meets the plane that is
+ * compared, so that no slope hides itself, and no contact has to be let through for that. */
+static inline float ray_reaches_plane(const conic_light_map *map, const received *r, float column, float row) {
+  float x = column > 0.0f ? column : 0.0f, y = row > 0.0f ? row : 0.0f;
+  float last_x = (float)(map->width - 1), last_y = (float)(map->height - 1);
+  x = x < last_x ? x : last_x;
+  y = y < last_y ? y : last_y;
+  float z = map->z[(int)y * map->width + (int)x];
+  float to_x = r->column - (x + 0.5f), to_y = r->row - (y + 0.5f);
+  float ray_x = ((x + 0.5f) - map->center_x) * map->angle, ray_y = ((y + 0.5f) - map->center_y) * map->angle;
+  float along = (r->n[0] * ray_x + r->n[1] * ray_y) + r->n[2];
+  along = along < -CONIC_LIGHT_MAP_GRAZING ? along : -CONIC_LIGHT_MAP_GRAZING;
+  float plane = r->height + r->texel * ((r->n[0] * to_x + r->n[1] * to_y) / along);
+  return (z > 0.0f) & ((z - map->distance) + r->bias < plane) ? 0.0f : 1.0f;
+}
+
+static inline float nearest_texel(const conic_light_map *map, const received *r) {
+  return ray_reaches_plane(map, r, (float)(int)r->column, (float)(int)r->row);
+}
+
+static inline float four_texels(const conic_light_map *map, const received *r) {
+  float x = r->column + 0.5f, y = r->row + 0.5f; /* at least 0.5, so that cutting off is rounding down */
+  float left = (float)(int)x - 1.0f, top = (float)(int)y - 1.0f;
+  float right_part = x - (left + 1.0f), bottom_part = y - (top + 1.0f);
+  float above = ray_reaches_plane(map, r, left, top) * (1.0f - right_part) +
+                ray_reaches_plane(map, r, left + 1.0f, top) * right_part;
+  float below = ray_reaches_plane(map, r, left, top + 1.0f) * (1.0f - right_part) +
+                ray_reaches_plane(map, r, left + 1.0f, top + 1.0f) * right_part;
+  return above * (1.0f - bottom_part) + below * bottom_part;
+}
+
+static inline float clamp_to_map(float place, int size) {
+  float last = (float)size;
+  place = place > 0.0f ? place : 0.0f;
+  return place < last ? place : last;
+}
+
+static inline void receive_one(const conic_light_map *map, const conic_receivers *from, size_t i, int is_smooth,
+                               float *visible, float *facing) {
+  float p[3] = {from->position[0][i], from->position[1][i], from->position[2][i]};
+  float n[3] = {from->normal[0][i], from->normal[1][i], from->normal[2][i]};
+  float at[3];
+  received r;
+  for (int axis = 0; axis < 3; axis++) {
+    const float *row = map->rotation[axis];
+    at[axis] = (row[0] * p[0] + row[1] * p[1]) + row[2] * p[2];
+    r.n[axis] = (row[0] * n[0] + row[1] * n[1]) + row[2] * n[2];
+  }
+  float z = map->distance + at[2], scale = map->focal / z;
+  r.column = clamp_to_map(at[0] * scale + map->center_x, map->width);
+  r.row = clamp_to_map(at[1] * scale + map->center_y, map->height);
+  r.height = at[2];
+  r.texel = z * map->angle;
+  float cosine = -r.n[2], flat = cosine > CONIC_LIGHT_MAP_GRAZING ? cosine : CONIC_LIGHT_MAP_GRAZING;
+  float slope = sqrtf(r.n[0] * r.n[0] + r.n[1] * r.n[1]) / flat;
+  r.bias = (map->epsilon + r.texel * CONIC_LIGHT_MAP_FLAT) + (map->epsilon + r.texel) * (CONIC_LIGHT_MAP_SLOPE * slope);
+  float seen = is_smooth ? four_texels(map, &r) : nearest_texel(map, &r);
+  *visible = cosine > 0.0f ? seen : 0.0f;
+  *facing = cosine > 0.0f ? cosine : 0.0f;
+}
+
+static void receive(const conic_light_map *map, const conic_receivers *receivers, size_t begin, size_t end,
+                    int is_smooth, float *visible, float *facing) {
+  const conic_light_map m = *map;
+  const conic_receivers from = *receivers;
+  if (is_smooth)
+    for (size_t i = begin; i < end; i++)
+      receive_one(&m, &from, i, 1, &visible[i - begin], &facing[i - begin]);
+  else
+    for (size_t i = begin; i < end; i++)
+      receive_one(&m, &from, i, 0, &visible[i - begin], &facing[i - begin]);
+}

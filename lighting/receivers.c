@@ -1,0 +1,182 @@
+#include "lighting/receivers.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/base/vectors.h"
+#include "core/image/camera_rays.h"
+#include "core/image/image_common.h"
+
+/* One row of a picture's receivers. */
+typedef struct receiver_row {
+  size_t first, count;
+  double low[3], high[3], spacing; /* the last: the sum */
+} receiver_row;
+
+typedef struct receiver_rows {
+  const conic_camera *camera;
+  conic_camera_rays rays;
+  double offset; /* of the sample that Z is of, from the pixel's centre */
+  const float *z, *normal;
+  receiver_row *rows;
+  conic_receivers *to;
+} receiver_rows;
+
+static int is_receiver(const receiver_rows *r, size_t pixel) {
+  const float *n = r->normal + 3 * pixel;
+  float length_squared = (n[0] * n[0] + n[1] * n[1]) + n[2] * n[2];
+  return r->z[pixel] > 0.0f && r->z[pixel] < 1e30f && length_squared > 0.5f && length_squared < 2.0f;
+}
+
+/* Where the pixel's depth is, in the world; 0: nowhere. */
+static int place_receiver(const receiver_rows *r, size_t x, size_t y, double world[3]) {
+  const conic_camera *camera = r->camera;
+  double origin[3], direction[3], z = (double)r->z[y * (size_t)camera->width + x];
+  if (!conic_camera_ray(&r->rays, (double)x + 0.5 + r->offset, (double)y + 0.5 + r->offset, origin, direction))
+    return 0;
+  for (int axis = 0; axis < 3; axis++) {
+    world[axis] = 0.0;
+    for (int row = 0; row < 3; row++)
+      world[axis] +=
+          camera->cam_from_world[row][axis] * (origin[row] + z * direction[row] - camera->cam_from_world[row][3]);
+  }
+  return 1;
+}
+
+static void count_receivers(void *data, size_t y, int i_thread) {
+  const receiver_rows *r = data;
+  receiver_row row = {.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+  size_t width = (size_t)r->camera->width;
+  double world[3];
+  int is_parallel = r->camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
+  (void)i_thread;
+  for (size_t x = 0; x < width; x++) {
+    if (!is_receiver(r, y * width + x) || !place_receiver(r, x, y, world))
+      continue;
+    row.count++;
+    row.spacing += is_parallel ? 1.0 : (double)r->z[y * width + x];
+    for (int axis = 0; axis < 3; axis++) {
+      row.low[axis] = world[axis] < row.low[axis] ? world[axis] : row.low[axis];
+      row.high[axis] = world[axis] > row.high[axis] ? world[axis] : row.high[axis];
+    }
+  }
+  r->rows[y] = row;
+}
+
+static void take_receivers(void *data, size_t y, int i_thread) {
+  const receiver_rows *r = data;
+  conic_receivers *to = r->to;
+  size_t width = (size_t)r->camera->width, place = r->rows[y].first;
+  double world[3];
+  (void)i_thread;
+  for (size_t x = 0; x < width; x++) {
+    size_t pixel = y * width + x;
+    if (!is_receiver(r, pixel) || !place_receiver(r, x, y, world))
+      continue;
+    for (int axis = 0; axis < 3; axis++) {
+      to->position[axis][place] = (float)(world[axis] - to->origin[axis]);
+      to->normal[axis][place] = r->normal[3 * pixel + (size_t)axis];
+    }
+    to->pixel[place++] = (uint32_t)pixel;
+  }
+}
+
+static conic_status make_room_for_receivers(conic_context *context, int has_pixels, conic_receivers *r) {
+  size_t padded = (r->count + 15) / 16 * 16;
+  r->block = conic_memory_allocate(context, padded, (6 + (size_t)has_pixels) * sizeof *r->block);
+  if (!r->block)
+    return CONIC_ERROR_MEMORY;
+  for (size_t axis = 0; axis < 3; axis++) {
+    r->position[axis] = r->block + axis * padded;
+    r->normal[axis] = r->block + (3 + axis) * padded;
+  }
+  r->pixel = has_pixels ? (uint32_t *)(r->block + 6 * padded) : NULL;
+  return CONIC_OK;
+}
+
+static void set_receivers_box(const double low[3], const double high[3], conic_receivers *r) {
+  for (int axis = 0; axis < 3; axis++) {
+    r->origin[axis] = r->count ? 0.5 * low[axis] + 0.5 * high[axis] : 0.0;
+    r->half[axis] = r->count ? 0.5 * (high[axis] - low[axis]) : 0.0;
+  }
+}
+
+/* Sums up the rows. */
+static void plan_receivers(receiver_rows *r) {
+  receiver_row all = {.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+  for (int y = 0; y < r->camera->height; y++) {
+    receiver_row *row = &r->rows[y];
+    row->first = all.count;
+    all.count += row->count;
+    all.spacing += row->spacing;
+    for (int axis = 0; axis < 3; axis++) {
+      all.low[axis] = row->low[axis] < all.low[axis] ? row->low[axis] : all.low[axis];
+      all.high[axis] = row->high[axis] > all.high[axis] ? row->high[axis] : all.high[axis];
+    }
+  }
+  r->to->count = all.count;
+  r->to->spacing = all.count ? all.spacing / (double)all.count / sqrt(r->camera->fx * r->camera->fy) : 0.0;
+  set_receivers_box(all.low, all.high, r->to);
+}
+
+conic_status conic_receivers_of_image(conic_context *context, const conic_camera *camera, int samples,
+                                      const conic_image *image, conic_receivers *receivers) {
+  memset(receivers, 0, sizeof *receivers);
+  receiver_rows work = {.camera = camera,
+                        .offset = samples % 2 ? 0.0 : -0.5 / samples,
+                        .z = image->planes[CONIC_PLANE_Z],
+                        .normal = image->planes[CONIC_PLANE_NORMAL],
+                        .to = receivers};
+  conic_camera_rays_init(camera, &work.rays);
+  work.rows = conic_memory_allocate(context, (size_t)image->height, sizeof *work.rows);
+  if (!work.rows)
+    return CONIC_ERROR_MEMORY;
+  conic_parallel_for(context, (size_t)image->height, count_receivers, &work);
+  plan_receivers(&work);
+  conic_status status = make_room_for_receivers(context, 1, receivers);
+  if (status == CONIC_OK)
+    conic_parallel_for(context, (size_t)image->height, take_receivers, &work);
+  conic_memory_release(context, work.rows);
+  return status;
+}
+
+/* The splat's unit normal; 0: it has none, or no place. */
+static int splat_normal(const conic_splats *s, size_t i, double normal[3]) {
+  double u[3], v[3];
+  for (int axis = 0; axis < 3; axis++) {
+    u[axis] = (double)s->tangent_u[axis][i];
+    v[axis] = (double)s->tangent_v[axis][i];
+    if (!isfinite(s->position[axis][i]))
+      return 0;
+  }
+  conic_cross(u, v, normal);
+  return conic_normalize(normal);
+}
+
+conic_status conic_receivers_of_splats(conic_context *context, const conic_splats *splats, double spacing,
+                                       conic_receivers *receivers) {
+  double low[3], high[3], normal[3];
+  memset(receivers, 0, sizeof *receivers);
+  receivers->count = splats->count;
+  receivers->spacing = spacing;
+  conic_splats_bounds(splats, low, high);
+  set_receivers_box(low, high, receivers);
+  conic_status status = make_room_for_receivers(context, 0, receivers);
+  for (size_t i = 0; i < splats->count && status == CONIC_OK; i++) {
+    int is_there = splat_normal(splats, i, normal);
+    for (int axis = 0; axis < 3; axis++) {
+      double place = (double)splats->position[axis][i] + splats->origin[axis] - receivers->origin[axis];
+      receivers->position[axis][i] = is_there ? (float)place : 0.0f;
+      receivers->normal[axis][i] = is_there ? (float)normal[axis] : 0.0f;
+    }
+  }
+  return status;
+}
+
+void conic_receivers_release(conic_context *context, conic_receivers *receivers) {
+  conic_memory_release(context, receivers->block);
+  memset(receivers, 0, sizeof *receivers);
+}

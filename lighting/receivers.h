@@ -1,0 +1,31 @@
+/* What light falls on: points of a surface, with the sides that they face. */
+#ifndef CONIC_RECEIVERS_H
+#define CONIC_RECEIVERS_H
+
+#include <stdint.h>
+
+#include "conic/camera.h"
+#include "conic/image.h"
+#include "conic/splats.h"
+
+typedef struct conic_receivers {
+  size_t count;
+  double origin[3];               /* in the world, from which positions are measured: the middle of their box */
+  double half[3];                 /* of that box */
+  double spacing;                 /* the mean edge of what one stands for, in world units */
+  float *position[3], *normal[3]; /* normals of unit length */
+  uint32_t *pixel;                /* which pixel of the picture it is; null: of splats */
+  float *block;                   /* what holds all these */
+} conic_receivers;
+
+/* The pixels of a picture that have a depth and a normal, row by row. Errors: ARGUMENT, MEMORY. */
+conic_status conic_receivers_of_image(conic_context *context, const conic_camera *camera, int samples,
+                                      const conic_image *image, conic_receivers *receivers);
+
+/* All splats of a set; one without a place or normal is in the middle of all, and faces nowhere. Errors: MEMORY. */
+conic_status conic_receivers_of_splats(conic_context *context, const conic_splats *splats, double spacing,
+                                       conic_receivers *receivers);
+
+void conic_receivers_release(conic_context *context, conic_receivers *receivers);
+
+#endif
