@@ -103,7 +103,7 @@ ls cache/conic/triangles-*.bin > /dev/null || fail "the triangles' program was n
 device=opencl:gather
 same "knot by pixels" knot.ply --size 100x75
 grep -q '"tile": 16' device.json || fail "gather has the tiles of lanes"
-same "Gaussians by pixels" "$scene" --size 45x35 --aov rgba,Z,N,count,id
+same "Gaussians by pixels" two.splat --profile exact --size 45x35 --aov rgba,Z,N,count,id
 ls cache/conic/gaussian_pixels-*.bin > /dev/null || fail "gather drew Gaussians by $(ls cache/conic)"
 device=opencl:lanes
 same "knot by tiles" knot.ply --size 100x75
