@@ -5,7 +5,7 @@
 #define CONIC_LANES_TABLE_H
 #define CONIC_LANES 16
 #define CONIC_WIDE_LANES 8
-#define CONIC_INLINE static inline __attribute__((always_inline))
+#define CONIC_INLINE static inline CONIC_ALWAYS_INLINE /* opencl/program.c */
 #define CONIC_OUTLINE static
 /* A block of 4 × 4 pixels is one vector, column by column. */
 #define CONIC_PARTS 1

@@ -15,12 +15,14 @@ static const char *options_of_device(const conic_opencl_device *device) {
   return device->rounds_correctly ? exact_options : inexact_options;
 }
 
-/* What memory is called for ahead of its use by, which changes no value; and how masks become bits and a vector's lanes
- * come to the front, where lanes_words.cl has slower words. PoCL leaves prefetch() without effect, but its compiler is
- * clang. */
+/* What memory is called for ahead of its use by, which changes no value; what is put in place of its call; and how
+ * masks become bits and a vector's lanes come to the front, where lanes_words.cl has slower words. PoCL leaves
+ * prefetch() without effect, but its compiler is clang. Oclgrind cannot run what is always put in place. */
 static const char words_of_others[] =
+    "#define CONIC_ALWAYS_INLINE\n"
     "#define CONIC_FETCH_AHEAD(pointer) prefetch((const __global float *)(pointer), 1)\n";
 static const char words_of_pocl[] =
+    "#define CONIC_ALWAYS_INLINE __attribute__((always_inline))\n"
     "#define CONIC_FETCH_AHEAD(pointer) __builtin_prefetch((const void *)(size_t)(pointer))\n"
     "#ifdef __AVX512F__\n"
     "typedef int conic_words __attribute__((vector_size(64)));\n"
