@@ -79,6 +79,12 @@ conic_status cli_planes_check_formats(cli_session *session, const cli_render_job
   return status;
 }
 
+conic_image_options cli_picture_writing(const cli_render_job *job) {
+  conic_image_options writing = job->writing;
+  writing.tone = (conic_tone)job->tone;
+  return writing;
+}
+
 /* A plane as colours that show it: directions from -1 to 1 as codes from 0 to 255. */
 static conic_status show_plane(cli_session *session, const conic_image *image, conic_plane plane, conic_image *shown) {
   const float *from = image->planes[plane];
@@ -102,7 +108,8 @@ static conic_status write_plane(cli_session *session, const cli_render_job *job,
   if (plane == CONIC_PLANE_RGBA || holds(job, path) == HOLDS_ONE) {
     memset(alone.planes, 0, sizeof alone.planes);
     alone.planes[plane] = image->planes[plane];
-    return conic_image_write_as(session->context, path, &alone, &job->writing);
+    const conic_image_options writing = cli_picture_writing(job);
+    return conic_image_write_as(session->context, path, &alone, &writing);
   }
   conic_status status = show_plane(session, image, plane, &alone);
   if (status == CONIC_OK)
@@ -122,8 +129,10 @@ conic_status cli_planes_write(cli_session *session, const cli_render_job *job, c
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (job->unwritten_planes >> i & 1)
       kept.planes[i] = NULL;
-  if (!set)
-    return conic_image_write_as(session->context, path, image, &job->writing);
+  if (!set) {
+    const conic_image_options writing = cli_picture_writing(job);
+    return conic_image_write_as(session->context, path, image, &writing);
+  }
   char *name = malloc(n_room);
   for (int i = 0; name && i < CONIC_N_PLANES && status == CONIC_OK; i++) {
     if (!(set >> i & 1))

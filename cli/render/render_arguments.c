@@ -117,6 +117,9 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   const char *compression_words[CONIC_N_COMPRESSIONS + 1] = {NULL};
   for (int i = 0; i < CONIC_N_COMPRESSIONS; i++)
     compression_words[i] = conic_compression_name((conic_compression)i);
+  const char *tone_words[CONIC_N_TONES + 1] = {NULL};
+  for (int i = 0; i < CONIC_N_TONES; i++)
+    tone_words[i] = conic_tone_name((conic_tone)i);
   int compression = 0;
   enum { USUAL_MIB = 512 };
   int memory_mib = USUAL_MIB, occlusion = CONIC_OCCLUSION_AUTO, is_given[2] = {0, 0}, is_memory_given = 0;
@@ -130,6 +133,10 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "numbers of an .exr: float, or half for rgba, N and albedo [float]", .choices = exr_words},
       {"compression", CLI_CHOICE, &compression, "NAME",
        "of an .exr: zip, none, rle, zips, piz; pxr24 loses bits of floats [zip]", .choices = compression_words},
+      {"tone", CLI_CHOICE, &job->tone, "NAME",
+       "how files of 8 and 16 bits show what is brighter than white: srgb (as white), filmic (Hable's curve) or aces "
+       "(Hill's fit); .exr, .pfm and .hdr stay linear [srgb]",
+       .choices = tone_words},
       {"deep", CLI_TEXT, &job->deep_path, "OUT.exr",
        "every splat and triangle of every pixel, as a deep image: colour, depth, id, weight"},
       {"overdraw", CLI_TEXT, &job->overdraw_path, "OUT.png",

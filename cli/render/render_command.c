@@ -79,9 +79,19 @@ void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, c
   conic_image_describe_camera(image, camera);
 }
 
+/* Display values are past all curves. */
+static void check_tone(const cli_session *session, cli_render_job *job, const conic_image *image) {
+  if (job->tone == CONIC_TONE_SRGB || !image->is_display)
+    return;
+  conic_log(session->context, CONIC_LOG_WARNING, "%s: no --tone: the colours are display values, not linear",
+            job->inputs[0]);
+  job->tone = CONIC_TONE_SRGB; /* said once */
+}
+
 conic_status cli_frame_write(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
   double start = cli_seconds();
   conic_status status = CONIC_OK;
+  check_tone(session, job, image);
   for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
     char *path = cli_frame_name(job, job->outputs[i], i_frame);
     status = path ? cli_backdrop_write(session, job, path, image) : CONIC_ERROR_MEMORY;

@@ -70,7 +70,8 @@ typedef struct cli_render_job {
   cli_accumulate_job accumulating; /* --accumulate */
   unsigned asked_planes;           /* of these, what --aov names */
   unsigned unwritten_planes;       /* drawn for what else is written */
-  conic_image_options writing;     /* how pictures are written */
+  conic_image_options writing;     /* how pictures are written, but for the tone, which is of rgba alone */
+  int tone;                        /* --tone: a conic_tone */
   int is_patch;                    /* --method patch: options.method draws its samples */
   int is_exposure_automatic;       /* until it is found */
   conic_render_options options;    /* but for the two lengths, which the scene has to be known for: */
@@ -148,6 +149,9 @@ conic_status cli_planes_check_formats(cli_session *session, const cli_render_job
  */
 conic_status cli_planes_write(cli_session *session, const cli_render_job *job, const char *path,
                               const conic_image *drawn);
+
+/* How rgba is written: with the tone. */
+conic_image_options cli_picture_writing(const cli_render_job *job);
 
 /* Says in a picture's header what it is, and writes it to all outputs. */
 void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, conic_image *image);

@@ -8,7 +8,8 @@ static conic_status write_legend(cli_session *session, const cli_render_job *job
   conic_status status = conic_legend_make(session->context, coloring, &legend);
   if (status != CONIC_OK)
     return status;
-  status = conic_image_write(session->context, job->legend_path, &legend);
+  const conic_image_options writing = cli_picture_writing(job);
+  status = conic_image_write_as(session->context, job->legend_path, &legend, &writing);
   conic_image_release(session->context, &legend);
   return status;
 }

@@ -156,6 +156,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_count(json, "samples", (uint64_t)job->view.samples);
   cli_accumulate_report(json, job);
   cli_json_number(json, "exposure", job->options.exposure);
+  cli_json_text(json, "tone", conic_tone_name((conic_tone)job->tone));
   cli_json_text(json, "epsilon_mode", s->epsilon_is_fixed ? "fixed" : "auto");
   cli_json_number(json, "epsilon", s->epsilon);
   cli_json_number(json, "near", s->near_z);

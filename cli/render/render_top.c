@@ -40,8 +40,8 @@ static const char *find_stranger(const cli_render_job *job) {
     return "--deep, --overdraw, --clusters and --boxes";
   if (job->has_legend || job->legend_path || job->has_mattes)
     return "--legend and --cryptomatte";
-  if (job->is_exposure_automatic || job->backdrop.is_given)
-    return "--exposure auto and a background of two colours";
+  if (job->is_exposure_automatic || job->backdrop.is_given || job->tone != CONIC_TONE_SRGB)
+    return "--exposure auto, --tone and a background of two colours";
   if (job->repeat > 1 || job->budget || job->is_patch)
     return "--repeat, --budget and --method patch";
   return job->device.name && strcmp(job->device.name, "cpu") != 0 ? "--device" : NULL;

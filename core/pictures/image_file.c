@@ -54,7 +54,8 @@ static conic_status find_format(conic_context *context, const char *path, const 
 
 static conic_status take_options(conic_context *context, const conic_image_options *options, conic_image_options *own) {
   conic_image_options_init(own);
-  if ((options && !conic_options_take(own, options)) || !conic_compression_name(own->compression))
+  if ((options && !conic_options_take(own, options)) || !conic_compression_name(own->compression) ||
+      !conic_tone_name(own->tone))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: the options were not initialised");
   return CONIC_OK;
 }
@@ -97,8 +98,8 @@ conic_status conic_image_write_as(conic_context *context, const char *path, cons
   if (strcasecmp(format, "pfm") == 0)
     return conic_pfm_write(context, path, image);
   if (strcasecmp(format, "png") == 0)
-    return conic_png_write(context, path, image);
-  return conic_foreign_write(context, path, format, image);
+    return conic_png_write(context, path, image, own.tone);
+  return conic_foreign_write(context, path, format, image, own.tone);
 }
 
 conic_status conic_image_write(conic_context *context, const char *path, const conic_image *image) {

@@ -73,8 +73,8 @@ conic_status conic_foreign_check(conic_context *context, const char *path, const
   return find_writer(context, path, ending, planes, &bridge, &writer);
 }
 
-conic_status conic_foreign_write(conic_context *context, const char *path, const char *ending,
-                                 const conic_image *image) {
+conic_status conic_foreign_write(conic_context *context, const char *path, const char *ending, const conic_image *image,
+                                 conic_tone tone) {
   const conic_bridge *bridge;
   conic_bridge_writer writer = {.has_alpha = 0};
   conic_status status = find_writer(context, path, ending, conic_image_planes(image), &bridge, &writer);
@@ -83,6 +83,7 @@ conic_status conic_foreign_write(conic_context *context, const char *path, const
   const float *rgba = image->planes[CONIC_PLANE_RGBA];
   conic_samples_layout layout = choose_layout(&writer);
   layout.is_display = image->is_display != 0;
+  layout.tone = tone;
   const conic_bridge_picture picture = {image->width, image->height, layout.n_channels, layout.sample_bytes,
                                         layout.is_straight};
   void *samples = conic_memory_allocate(context, conic_image_pixels(image),

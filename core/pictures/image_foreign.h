@@ -15,8 +15,8 @@
 conic_status conic_foreign_check(conic_context *context, const char *path, const char *ending, unsigned planes);
 
 /* Errors: ARGUMENT (no rgba, an ending that nobody knows), UNSUPPORTED, MEMORY, IO. */
-conic_status conic_foreign_write(conic_context *context, const char *path, const char *ending,
-                                 const conic_image *image);
+conic_status conic_foreign_write(conic_context *context, const char *path, const char *ending, const conic_image *image,
+                                 conic_tone tone);
 
 /* Errors: INPUT, UNSUPPORTED, MEMORY. */
 conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image);

@@ -114,14 +114,16 @@ conic_status conic_png_check(conic_context *context, const char *path, unsigned 
   return CONIC_OK;
 }
 
-static conic_status encode_image(conic_context *context, const char *path, FILE *stream, const conic_image *image) {
+static conic_status encode_image(conic_context *context, const char *path, FILE *stream, const conic_image *image,
+                                 conic_tone tone) {
   png_work work = {
       .context = context,
       .path = path,
       .file = stream,
       .width = image->width,
       .height = image->height,
-      .layout = {.n_channels = 4, .sample_bytes = 1, .is_straight = 1, .is_display = image->is_display != 0}};
+      .layout = {
+          .n_channels = 4, .sample_bytes = 1, .is_straight = 1, .is_display = image->is_display != 0, .tone = tone}};
   conic_status status = conic_png_check(context, path, conic_image_planes(image));
   if (status != CONIC_OK)
     return status;
@@ -139,12 +141,12 @@ static conic_status encode_image(conic_context *context, const char *path, FILE 
   return status;
 }
 
-conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image) {
-  return encode_image(context, path, NULL, image);
+conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image, conic_tone tone) {
+  return encode_image(context, path, NULL, image, tone);
 }
 
 conic_status conic_png_write_to(conic_context *context, FILE *stream, const conic_image *image) {
-  return encode_image(context, "a picture", stream, image);
+  return encode_image(context, "a picture", stream, image, CONIC_TONE_SRGB);
 }
 
 /* --- reading --- */
@@ -254,8 +256,8 @@ conic_status conic_png_check(conic_context *context, const char *path, unsigned 
   return conic_foreign_check(context, path, "png", planes);
 }
 
-conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image) {
-  return conic_foreign_write(context, path, "png", image);
+conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image, conic_tone tone) {
+  return conic_foreign_write(context, path, "png", image, tone);
 }
 
 conic_status conic_png_read(conic_context *context, const char *path, conic_image *image) {

@@ -13,9 +13,10 @@
 conic_status conic_png_check(conic_context *context, const char *path, unsigned planes);
 
 /* Errors: ARGUMENT (no rgba), UNSUPPORTED, MEMORY, IO. */
-conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image);
+conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image, conic_tone tone);
 
-/* The same to a stream, which the caller looks at for errors of writing. Errors: ARGUMENT, UNSUPPORTED, MEMORY. */
+/* The same without a curve to a stream, which the caller looks at for errors of writing. Errors: ARGUMENT, UNSUPPORTED,
+ * MEMORY. */
 conic_status conic_png_write_to(conic_context *context, FILE *stream, const conic_image *image);
 
 /* Errors: INPUT, UNSUPPORTED, MEMORY. */

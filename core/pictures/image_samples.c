@@ -62,10 +62,13 @@ static void encode_row(void *data, size_t y, int i_thread) {
   const conversion *work = data;
   size_t n = (size_t)work->layout.n_channels, n_row = work->width * n;
   const float *rgba = work->rgba + y * work->width * 4;
+  int has_curve = work->layout.tone != CONIC_TONE_SRGB && work->layout.sample_bytes < 4 && !work->layout.is_display;
   (void)i_thread;
   for (size_t x = 0; x < work->width; x++) {
     float color[4];
     arrange_pixel(rgba + 4 * x, work->layout.is_straight, color);
+    if (has_curve)
+      conic_tone_map(work->layout.tone, color, color);
     for (size_t c = 0; c < n; c++) {
       size_t i = y * n_row + x * n + c;
       if (work->layout.sample_bytes == 4)

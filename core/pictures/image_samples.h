@@ -4,13 +4,14 @@
 
 #include <stddef.h>
 
-#include "conic/context.h"
+#include "conic/image.h"
 
 typedef struct conic_samples_layout {
   int n_channels;   /* 1: grey; 2: grey, alpha; 3: R, G, B; 4: R, G, B, A; more: the rest is not looked at */
   int sample_bytes; /* 1 or 2: unsigned, colour sRGB-encoded, alpha not; 4: linear floats */
   int is_straight;  /* the colour is not multiplied by alpha */
   int is_display;   /* the colours of the plane are display values: they are neither sRGB-encoded nor decoded */
+  conic_tone tone;  /* through which linear colours go on their way to codes */
 } conic_samples_layout;
 
 static inline int conic_samples_have_alpha(conic_samples_layout layout) {

@@ -139,15 +139,34 @@ typedef enum conic_compression {
 /* "zip", "none", "rle" …; null for a number that is none. */
 CONIC_API const char *conic_compression_name(conic_compression compression);
 
+/* How linear colours become the codes of files of 8 and 16 bits. The curves bring what is brighter than 1 below it, for
+ * sRGB to encode; floats (EXR, PFM, HDR), alpha, and display values never go through one. */
+typedef enum conic_tone {
+  CONIC_TONE_SRGB = 0,   /* no curve: what is above 1 is white */
+  CONIC_TONE_FILMIC = 1, /* Hable's of 2010, channel by channel, with his exposure of 2 before: 5.6 is white */
+  CONIC_TONE_ACES = 2    /* Hill's fit of the Academy's reference rendering (ACES 1, for sRGB screens), with matrices */
+} conic_tone;
+
+#define CONIC_N_TONES 3
+
+/* "srgb", "filmic", "aces"; null for a number that is none. */
+CONIC_API const char *conic_tone_name(conic_tone tone);
+
+/* A linear colour, not multiplied by alpha, as one that is linear, too, and from 0 to 1; by CONIC_TONE_SRGB, or a
+ * number that is no tone, as it is. Through a curve black stays black, and what is negative or NaN counts as 0.
+ * `mapped` may be `linear`. The same bits on every machine. */
+CONIC_API void conic_tone_map(conic_tone tone, const float linear[3], float mapped[3]);
+
 /* How an image is written. */
 typedef struct conic_image_options {
   size_t size;                   /* sizeof(conic_image_options), set by the init function */
   const char *format;            /* "png", "exr" …: of what goes to "-" or has no ending; null: png, and none */
   int is_half;                   /* of an EXR: rgba, N and albedo in half floats */
   conic_compression compression; /* of an EXR */
+  conic_tone tone;               /* of files of 8 and 16 bits */
 } conic_image_options;
 
-/* Floats, zip. */
+/* Floats, zip, no curve. */
 CONIC_API void conic_image_options_init_sized(conic_image_options *options, size_t size);
 #define conic_image_options_init(options) conic_image_options_init_sized(options, sizeof *(options))
 

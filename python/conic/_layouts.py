@@ -166,6 +166,11 @@ class Image(ctypes.Structure):
     ]
 
 
+class ImageOptions(ctypes.Structure):
+    C_NAME = "conic_image_options"
+    _fields_ = [("size", c_size_t), ("format", c_char_p), ("is_half", c_int), ("compression", c_int), ("tone", c_int)]
+
+
 class PlaneDescription(ctypes.Structure):
     C_NAME = "conic_plane_description"
     _fields_ = [("name", c_char_p), ("n_channels", c_int), ("is_uint", c_int), ("channels", c_char_p * 4)]
@@ -227,4 +232,4 @@ class Host(ctypes.Structure):
 
 
 STRUCTS = (Strides, Splats, TrianglesStrides, Triangles, Model, Gaussians, Camera, Cameras, CamerasOptions, Attribute,
-           Image, PlaneDescription, Feature, ContextOptions, Loan, Host)
+           Image, ImageOptions, PlaneDescription, Feature, ContextOptions, Loan, Host)

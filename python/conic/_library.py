@@ -49,7 +49,9 @@ def _load() -> ctypes.CDLL:
         ("conic_cameras_find", ctypes.c_int, [pointer, pointer, ctypes.c_char_p, ctypes.POINTER(size)]),
         ("conic_cameras_release", None, [pointer, pointer]),
         ("conic_image_hash", ctypes.c_uint64, [pointer, ctypes.c_int]),
-        ("conic_image_write", ctypes.c_int, [pointer, ctypes.c_char_p, pointer]),
+        ("conic_image_options_init_sized", None, [pointer, size]),
+        ("conic_image_write_as", ctypes.c_int, [pointer, ctypes.c_char_p, pointer, pointer]),
+        ("conic_tone_name", ctypes.c_char_p, [ctypes.c_int]),
         ("conic_image_read", ctypes.c_int, [pointer, ctypes.c_char_p, pointer]),
         ("conic_image_release", None, [pointer, pointer]),
         ("conic_gaussians_read", ctypes.c_int, [pointer, ctypes.c_char_p, pointer, pointer]),
@@ -91,6 +93,16 @@ def _list_planes() -> List[Plane]:
 
 PLANES = _list_planes()
 PLANE_BY_NAME = {plane.name: plane for plane in PLANES}
+
+
+def _list_tones() -> List[str]:
+    found: List[str] = []
+    while name := library.conic_tone_name(len(found)):
+        found.append(name.decode())
+    return found
+
+
+TONES = _list_tones()
 
 
 def version() -> str:

@@ -12,7 +12,7 @@ import numpy
 
 from . import _layouts as layouts
 from ._camera import Camera, PathLike
-from ._library import PLANE_BY_NAME, context, library
+from ._library import PLANE_BY_NAME, TONES, context, library
 from .errors import ArgumentError
 
 
@@ -108,11 +108,16 @@ class Picture(Dict[str, Any]):
         image = alone.image()
         return f"{library.conic_image_hash(ctypes.byref(image), PLANE_BY_NAME[plane].number):016x}"
 
-    def save(self, path: PathLike) -> None:
-        """Writes .exr (all planes), .png, .pfm …, as the ending says; without a background, as they are."""
-        image = self.image()
+    def save(self, path: PathLike, *, tone: str = "srgb") -> None:
+        """Writes .exr (all planes), .png, .pfm …, as the ending says; without a background, as they are. `tone`, of
+        what has 8 or 16 bits: "srgb", "filmic" or "aces"."""
+        image, options = self.image(), layouts.ImageOptions()
+        library.conic_image_options_init_sized(ctypes.byref(options), ctypes.sizeof(options))
+        if tone not in TONES:
+            raise ArgumentError(f"tone: {tone} is none of {', '.join(TONES)}")
+        options.tone = TONES.index(tone)
         with context() as (made, check):
-            check(library.conic_image_write(made, os.fsencode(path), ctypes.byref(image)))
+            check(library.conic_image_write_as(made, os.fsencode(path), ctypes.byref(image), ctypes.byref(options)))
 
     def to_uint8(self, *, backdrop: bool = True) -> numpy.ndarray:
         """(H, W, 3) sRGB codes to look at: over the greys that the program's PNG has behind, or over black."""

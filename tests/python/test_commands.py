@@ -118,6 +118,13 @@ class Commands(unittest.TestCase):
         conic.render(self.splats, size=SIZE, output=[self.path("written.exr"), self.path("written.png")])
         self.assertTrue(conic.diff(self.path("saved.exr"), self.path("written.exr"))["identical"])
         self.assertTrue(conic.diff(picture, self.path("saved.exr"))["identical"])
+        for options in ({}, {"tone": "srgb"}, {"tone": "filmic"}):
+            picture.save(self.path("saved.png"), **options)
+            conic.render(self.splats, size=SIZE, output=self.path("toned.png"), background="none", **options)
+            self.assertTrue(conic.diff(self.path("saved.png"), self.path("toned.png"))["identical"])
+        self.assertFalse(conic.diff(picture, self.path("toned.png"))["max_abs"] < 0.01)
+        with self.assertRaisesRegex(conic.ArgumentError, "tone: none is none of srgb, filmic, aces"):
+            picture.save(self.path("saved.png"), tone="none")
         codes = picture.to_uint8()
         self.assertEqual((codes.shape, codes.dtype), ((60, 80, 3), numpy.uint8))
         self.assertLess(conic.diff(codes, self.path("written.png"))["max_abs"], 0.01)
