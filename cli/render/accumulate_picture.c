@@ -9,6 +9,7 @@
 #include "cli/render/frames.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/views.h"
+#include "cli/stopper.h"
 #include "core/files/file.h"
 
 int cli_parse_focus(const char *text, void *value) {
@@ -212,6 +213,24 @@ static conic_status keep_sums(accumulating *work, const conic_accumulation *sums
   return status;
 }
 
+/* A run that is stopped keeps the samples that it has, for --resume. Sums are large: nobody watches how long that
+ * takes, and a second signal ends it. */
+static void keep_stopped_sums(accumulating *work, const conic_accumulation *sums) {
+  const cli_render_job *job = work->job;
+  conic_accumulation_facts facts;
+  conic_accumulation_inspect(sums, &facts);
+  if (!job->accumulating.is_resumable || facts.end_sample == 0)
+    return;
+  cli_stopper_end();
+  if (keep_sums(work, sums) != CONIC_OK)
+    return;
+  char *picture = cli_frame_name(job, job->outputs[0], work->i_frame);
+  if (picture)
+    cli_note(work->session, "stopped after %llu samples; --resume %s goes on with them",
+             (unsigned long long)facts.end_sample, picture);
+  free(picture);
+}
+
 /* --preview: the picture as it is, every so many seconds, and the first at once. */
 static conic_status watch_sums(void *cookie, const conic_accumulation *sums) {
   accumulating *work = cookie;
@@ -294,6 +313,8 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
     status = begin_sums(&work, &sums);
   if (status == CONIC_OK)
     status = run_samples(&work, sums);
+  if (status == CONIC_ERROR_CANCELLED && sums)
+    keep_stopped_sums(&work, sums);
   if (status == CONIC_OK)
     status = show_sums(&work, sums);
   if (status == CONIC_OK)
