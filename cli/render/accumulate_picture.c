@@ -149,7 +149,7 @@ static conic_status depth_at(cli_session *session, const conic_image *image, con
   qsort(covered, n_covered, sizeof *covered, compare_focus_depths);
   *depth = n_covered ? (double)covered[n_covered / 2] : 1.0;
   free(covered);
-  cli_note(session, "focus: nothing is at this pixel; the median depth, %g", *depth);
+  cli_note(session, "focus: nothing is at pixel %g,%g; the median depth, %g", pixel[0], pixel[1], *depth);
   return CONIC_OK;
 }
 
@@ -160,6 +160,12 @@ static conic_status find_focus(cli_session *session, cli_render_job *job, const 
   if (!(job->accumulating.aperture > 0.0) || focus->kind == CLI_FOCUS_DEPTH) {
     *depth = focus->depth;
     return CONIC_OK;
+  }
+  if (focus->kind == CLI_FOCUS_PIXEL &&
+      (focus->pixel[0] >= (double)image->width || focus->pixel[1] >= (double)image->height)) {
+    cli_usage("render: --focus: pixel %g,%g lies outside of the picture, which has %d x %d", focus->pixel[0],
+              focus->pixel[1], image->width, image->height);
+    return CONIC_ERROR_ARGUMENT;
   }
   return depth_at(session, image, focus->kind == CLI_FOCUS_PIXEL ? focus->pixel : middle, depth);
 }

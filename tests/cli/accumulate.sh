@@ -88,6 +88,8 @@ run 2 render $scene --accumulate 4 --shutter 0:1 -o x.exr
 run 2 render $scene --accumulate 4 --samples 2 -o x.exr
 run 2 render $scene --accumulate 4 --blades 2 -o x.exr
 run 2 render $scene --accumulate 4 --focus 0 -o x.exr
+run 2 render $scene --accumulate 4 --aperture 1 --focus 64,1 -o x.exr
+run 2 render $scene --accumulate 4 --aperture 1 --focus 1,48 -o x.exr
 run 2 render $scene --aov variance -o x.exr
 run 2 render $scene --accumulate 4 --resumable -o -
 [[ $failures -eq 0 ]]
