@@ -9,6 +9,7 @@
 #include "cli/render/frames.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/views.h"
+#include "cli/stopper.h"
 #include "core/files/file.h"
 
 int cli_parse_focus(const char *text, void *value) {
@@ -148,7 +149,7 @@ static conic_status depth_at(cli_session *session, const conic_image *image, con
   qsort(covered, n_covered, sizeof *covered, compare_focus_depths);
   *depth = n_covered ? (double)covered[n_covered / 2] : 1.0;
   free(covered);
-  cli_note(session, "focus: nothing is at this pixel; the median depth, %g", *depth);
+  cli_note(session, "focus: nothing is at pixel %g,%g; the median depth, %g", pixel[0], pixel[1], *depth);
   return CONIC_OK;
 }
 
@@ -159,6 +160,12 @@ static conic_status find_focus(cli_session *session, cli_render_job *job, const 
   if (!(job->accumulating.aperture > 0.0) || focus->kind == CLI_FOCUS_DEPTH) {
     *depth = focus->depth;
     return CONIC_OK;
+  }
+  if (focus->kind == CLI_FOCUS_PIXEL &&
+      (focus->pixel[0] >= (double)image->width || focus->pixel[1] >= (double)image->height)) {
+    cli_usage("render: --focus: pixel %g,%g lies outside of the picture, which has %d x %d", focus->pixel[0],
+              focus->pixel[1], image->width, image->height);
+    return CONIC_ERROR_ARGUMENT;
   }
   return depth_at(session, image, focus->kind == CLI_FOCUS_PIXEL ? focus->pixel : middle, depth);
 }
@@ -210,6 +217,24 @@ static conic_status keep_sums(accumulating *work, const conic_accumulation *sums
   free(picture);
   free(path);
   return status;
+}
+
+/* A run that is stopped keeps the samples that it has, for --resume. Sums are large: nobody watches how long that
+ * takes, and a second signal ends it. */
+static void keep_stopped_sums(accumulating *work, const conic_accumulation *sums) {
+  const cli_render_job *job = work->job;
+  conic_accumulation_facts facts;
+  conic_accumulation_inspect(sums, &facts);
+  if (!job->accumulating.is_resumable || facts.end_sample == 0)
+    return;
+  cli_stopper_end();
+  if (keep_sums(work, sums) != CONIC_OK)
+    return;
+  char *picture = cli_frame_name(job, job->outputs[0], work->i_frame);
+  if (picture)
+    cli_note(work->session, "stopped after %llu samples; --resume %s goes on with them",
+             (unsigned long long)facts.end_sample, picture);
+  free(picture);
 }
 
 /* --preview: the picture as it is, every so many seconds, and the first at once. */
@@ -294,6 +319,8 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
     status = begin_sums(&work, &sums);
   if (status == CONIC_OK)
     status = run_samples(&work, sums);
+  if (status == CONIC_ERROR_CANCELLED && sums)
+    keep_stopped_sums(&work, sums);
   if (status == CONIC_OK)
     status = show_sums(&work, sums);
   if (status == CONIC_OK)

@@ -167,7 +167,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "write the picture as it is every S seconds, too [only at the end]", 1e-3, 1e9,
        .is_given = &job->accumulating.is_given},
       {"resumable", CLI_FLAG, &job->accumulating.is_resumable, NULL,
-       "keep the sums beside the first OUT, as OUT.sums, so that --resume can go on",
+       "keep the sums beside the first OUT, as OUT.sums, also at Ctrl-C, so that --resume can go on",
        .is_given = &job->accumulating.is_given},
       {"resume", CLI_TEXT, &job->accumulating.resume_path, "PICTURE",
        "go on with the samples of PICTURE.sums, to the bit as if it had never stopped",

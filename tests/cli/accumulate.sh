@@ -45,6 +45,22 @@ grep -q 'the first sample is another one' err || fail "it goes on with another l
 run 3 render $scene --accumulate 21 --resume part.exr -o x.exr
 run 3 render $look --accumulate 21 --resume nothing.exr -o x.exr
 
+# What is stopped is gone on with, too: nothing but the stop itself writes these sums.
+set -m # else what runs in the background ignores Ctrl-C
+"$conic" render --plain $look --accumulate 16777216 --resumable -o stopped.exr > out 2> err &
+sleep 3
+kill -INT $!
+wait $!
+got=$?
+set +m
+[[ $got -eq 130 ]] || fail "a run that is stopped: exit code $got"
+[[ ! -e stopped.exr ]] || fail "a run that is stopped leaves half a picture"
+n_kept=$(grep -o 'stopped after [0-9]*' err | grep -o '[0-9]*')
+draw more --accumulate $((n_kept + 3)) --resume stopped.exr
+grep -q "\"resumed\": $n_kept," more.json || fail "it does not go on after the $n_kept samples of a run that was stopped"
+draw once --accumulate $((n_kept + 3))
+same once more
+
 # Stops, lens and shutter change what they should.
 draw noise --accumulate 4096 --noise 0.02
 grep -Eq '"samples": (16|32|64|128|256|512|1024),' noise.json || fail "--noise does not stop at a power of two"
@@ -72,6 +88,8 @@ run 2 render $scene --accumulate 4 --shutter 0:1 -o x.exr
 run 2 render $scene --accumulate 4 --samples 2 -o x.exr
 run 2 render $scene --accumulate 4 --blades 2 -o x.exr
 run 2 render $scene --accumulate 4 --focus 0 -o x.exr
+run 2 render $scene --accumulate 4 --aperture 1 --focus 64,1 -o x.exr
+run 2 render $scene --accumulate 4 --aperture 1 --focus 1,48 -o x.exr
 run 2 render $scene --aov variance -o x.exr
 run 2 render $scene --accumulate 4 --resumable -o -
 [[ $failures -eq 0 ]]
