@@ -207,11 +207,11 @@ static void resolve_row(void *data, size_t y, int i_thread) {
   (void)i_thread;
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     size_t n = (size_t)conic_plane_describe((conic_plane)i)->n_channels;
-    float *to = (float *)work->image->planes[i] + y * width * n;
+    float *to = work->image->planes[i];
     if (!(a->planes >> i & 1))
       continue;
-    for (size_t x = 0; x < width && work->image->planes[i]; x++)
-      resolve_means(a, (conic_plane)i, row + x * a->n_channels + first, to + x * n);
+    for (size_t x = 0; x < width && to; x++)
+      resolve_means(a, (conic_plane)i, row + x * a->n_channels + first, to + (y * width + x) * n);
     first += n;
   }
   uint32_t *samples = work->image->planes[CONIC_PLANE_SAMPLES];

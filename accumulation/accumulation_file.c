@@ -36,7 +36,7 @@ static void store_head(const conic_accumulation *a, uint8_t head[HEAD_BYTES]) {
   conic_store_32(head + 12, (uint32_t)a->width);
   conic_store_32(head + 16, (uint32_t)a->height);
   conic_store_32(head + 20, a->planes);
-  for (int i = 0; i < 4; i++)
+  for (size_t i = 0; i < 4; i++)
     conic_store_64(head + 24 + 8 * i, numbers[i]);
 }
 
@@ -134,7 +134,7 @@ conic_status conic_accumulation_read(conic_context *context, const char *path, c
       fread(head, 1, sizeof head, file) == sizeof head
           ? make_from_head(context, path, head, entry.n_bytes, sums)
           : conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: it holds no sums of samples", path);
-  if (status == CONIC_OK)
+  if (*sums)
     status = read_sums(context, path, file, hash_head(head), *sums);
   fclose(file);
   if (status != CONIC_OK) {

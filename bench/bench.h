@@ -117,8 +117,8 @@ typedef struct cli_bench_trace {
 
 void cli_bench_trace_begin(cli_bench_trace *trace);
 void cli_bench_trace_end(cli_bench_trace *trace);
-/* A conic_region_watch. */
-void cli_bench_trace_watch(void *trace, const char *name, size_t n_tasks, size_t n_done);
+/* A conic_region_watch, whose cookie is the trace. */
+void cli_bench_trace_watch(void *cookie, const char *name, size_t n_tasks, size_t n_done);
 /* Medians over the frames, the first left out where there are more, in n_a_row places at the beginning of `kept`. */
 conic_status cli_bench_trace_settle(cli_bench_trace *trace);
 void cli_bench_trace_release(cli_bench_trace *trace);

@@ -111,7 +111,8 @@ static cli_bench_scheduled *scheduled_of(cli_bench_schedule *schedule, const cha
   if (length > 5 && strcmp(shown + length - 5, "_task") == 0)
     shown[length - 5] = 0;
   for (char *c = shown; *c; c++)
-    *c = *c == '_' ? ' ' : *c;
+    if (*c == '_')
+      *c = ' ';
   for (int i = 0; i < schedule->n_regions; i++)
     if (strcmp(schedule->regions[i].name, shown) == 0)
       return &schedule->regions[i];

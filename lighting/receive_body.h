@@ -24,7 +24,8 @@ static inline float ray_reaches_plane(const conic_light_map *map, const received
   float along = (r->n[0] * ray_x + r->n[1] * ray_y) + r->n[2];
   along = along < -CONIC_LIGHT_MAP_GRAZING ? along : -CONIC_LIGHT_MAP_GRAZING;
   float plane = r->height + r->texel * ((r->n[0] * to_x + r->n[1] * to_y) / along);
-  return (z > 0.0f) & ((z - map->distance) + r->bias < plane) ? 0.0f : 1.0f;
+  int is_nearer = (z > 0.0f) & ((z - map->distance) + r->bias < plane);
+  return is_nearer ? 0.0f : 1.0f;
 }
 
 static inline float nearest_texel(const conic_light_map *map, const received *r) {

@@ -47,17 +47,18 @@ static double row_area(const conic_sky *sky, int y) {
 }
 
 static void sum_up_sky(conic_sky *sky) {
+  size_t width = (size_t)sky->width;
   double whole = 0.0;
   for (int y = 0; y < sky->height; y++) {
-    const float *color = sky->color + 3 * (size_t)y * (size_t)sky->width;
-    float *sums = sky->pixel_sums + (size_t)y * ((size_t)sky->width + 1);
+    const float *color = sky->color + 3 * (size_t)y * width;
+    float *sums = sky->pixel_sums + (size_t)y * (width + 1);
     double of_row = 0.0, so_far = 0.0;
-    for (int x = 0; x < sky->width; x++)
+    for (size_t x = 0; x < width; x++)
       of_row += power_of(color + 3 * x);
     sums[0] = 0.0f;
-    for (int x = 0; x < sky->width; x++) {
+    for (size_t x = 0; x < width; x++) {
       so_far += power_of(color + 3 * x);
-      sums[x + 1] = of_row > 0.0 ? (float)(so_far / of_row) : (float)(x + 1) / (float)sky->width;
+      sums[x + 1] = of_row > 0.0 ? (float)(so_far / of_row) : (float)(x + 1) / (float)width;
     }
     sky->row_sums[y] = whole;
     whole += of_row / sky->width * row_area(sky, y);
@@ -91,15 +92,24 @@ static conic_status fill_sky(const conic_image *image, const double up[3], conic
   return sky->whole > 0.0 ? CONIC_OK : conic_fail(sky->context, CONIC_ERROR_INPUT, "sky: it is black");
 }
 
+static conic_status check_sky_place(conic_context *context, const double up[3], conic_sky **sky) {
+  if (sky)
+    *sky = NULL;
+  return sky && up ? CONIC_OK
+                   : conic_fail(context, CONIC_ERROR_ARGUMENT, "sky: no place to put it, or no direction up");
+}
+
 conic_status conic_sky_create(conic_context *context, const conic_image *image, const double up[3], conic_sky **sky) {
-  *sky = NULL;
+  conic_status status = check_sky_place(context, up, sky);
+  if (status != CONIC_OK)
+    return status;
   if (!image || !image->planes[CONIC_PLANE_RGBA])
     return conic_fail(context, CONIC_ERROR_INPUT, "sky: the picture has no colours");
   conic_sky *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
-  conic_status status = fill_sky(image, up, made);
+  status = fill_sky(image, up, made);
   if (status == CONIC_OK)
     *sky = made;
   else
@@ -109,8 +119,9 @@ conic_status conic_sky_create(conic_context *context, const conic_image *image, 
 
 conic_status conic_sky_read(conic_context *context, const char *path, const double up[3], conic_sky **sky) {
   conic_image image;
-  *sky = NULL;
-  conic_status status = conic_image_read(context, path, &image);
+  conic_status status = check_sky_place(context, up, sky);
+  if (status == CONIC_OK)
+    status = conic_image_read(context, path, &image);
   if (status != CONIC_OK)
     return status;
   status = conic_sky_create(context, &image, up, sky);

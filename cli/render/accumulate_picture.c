@@ -10,6 +10,7 @@
 #include "cli/render/lit_picture.h"
 #include "cli/render/views.h"
 #include "cli/stopper.h"
+#include "core/base/rank.h"
 #include "core/files/file.h"
 
 int cli_parse_focus(const char *text, void *value) {
@@ -126,19 +127,15 @@ conic_status cli_accumulate_camera(cli_session *session, cli_render_job *job, in
 
 /* --- focus --- */
 
-static int compare_focus_depths(const void *a, const void *b) {
-  float first = *(const float *)a, second = *(const float *)b;
-  return (first > second) - (first < second);
-}
-
 /* The depth at a pixel; where nothing is there, the median of all there is. */
 static conic_status depth_at(cli_session *session, const conic_image *image, const double pixel[2], double *depth) {
   size_t n = (size_t)image->width * (size_t)image->height, n_covered = 0;
   const float *z = image->planes[CONIC_PLANE_Z];
-  size_t x = (size_t)pixel[0], y = (size_t)pixel[1];
-  if (x < (size_t)image->width && y < (size_t)image->height && z[y * (size_t)image->width + x] > 0.0f) {
-    *depth = (double)z[y * (size_t)image->width + x];
-    return CONIC_OK;
+  if (pixel[0] < image->width && pixel[1] < image->height) {
+    float here = z[(size_t)pixel[1] * (size_t)image->width + (size_t)pixel[0]];
+    *depth = (double)here;
+    if (here > 0.0f)
+      return CONIC_OK;
   }
   float *covered = malloc(n * sizeof *covered);
   if (!covered)
@@ -146,8 +143,7 @@ static conic_status depth_at(cli_session *session, const conic_image *image, con
   for (size_t i = 0; i < n; i++)
     if (z[i] > 0.0f)
       covered[n_covered++] = z[i];
-  qsort(covered, n_covered, sizeof *covered, compare_focus_depths);
-  *depth = n_covered ? (double)covered[n_covered / 2] : 1.0;
+  *depth = n_covered ? (double)conic_float_of_rank(covered, n_covered, n_covered / 2) : 1.0;
   free(covered);
   cli_note(session, "focus: nothing is at pixel %g,%g; the median depth, %g", pixel[0], pixel[1], *depth);
   return CONIC_OK;

@@ -226,8 +226,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        64, .group = "what draws"},
       {"device", CLI_TEXT, &job->device.name, "NAME",
        "what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go about it "
-       "as "
-       "on a GPU and :lanes as on a CPU; changes no bit of the picture [cpu]"},
+       "as on a GPU and :lanes as on a CPU; changes no bit of the picture [cpu]"},
       {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL,
        "also take an OpenCL device whose rounding makes the picture another one"},
       {"plain", CLI_FLAG, &job->is_plain, NULL,

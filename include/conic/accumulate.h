@@ -52,7 +52,7 @@ CONIC_API double conic_sample_time(uint64_t index);
 
 /* The camera on the way from one to the other, at `part` of it: the eye on a straight line, the rotation's quaternion
  * on a straight line and normalised, the inner numbers likewise linear. Parts beyond 0 and 1 go on. Errors: ARGUMENT
- * (they differ in size, kind or lens). */
+ * (they differ in size, kind or lens; they look in opposite directions, between which there is no single way). */
 CONIC_API conic_status conic_camera_between(conic_context *context, const conic_camera *from, const conic_camera *to,
                                             double part, conic_camera *camera);
 

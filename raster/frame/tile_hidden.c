@@ -25,9 +25,9 @@ static int has_many_layers(const conic_tile *tile, size_t n_blocks) {
     return 0;
   for (size_t k = 0; k < LOOKED_AT; k++) {
     uint32_t word = entry_looked_at(tile, k)->word;
-    n_met += (conic_word_last(word) - conic_word_first(word) + 1) * (uint32_t)__builtin_popcount(word >> 16);
+    n_met += (conic_word_last(word) - conic_word_first(word) + 1) * (size_t)__builtin_popcount(word >> 16);
   }
-  return tile->n_references * n_met >= MEETINGS * LOOKED_AT * n_blocks;
+  return tile->n_references * n_met >= (size_t)MEETINGS * LOOKED_AT * n_blocks;
 }
 
 /* The least threshold of a block's pixels in the picture. */

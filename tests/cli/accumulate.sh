@@ -71,6 +71,10 @@ grep -q '"focus": 1.5' near.json || fail "--focus is not the focus"
 draw pixel --accumulate 21 --focus 32,24
 same whole pixel
 other whole near
+for column in 64 1e30; do
+  run 0 render $look --accumulate 2 --zoom 6 --focus $column,24 -o x.exr
+  grep -q 'nothing is at this pixel' err || fail "a pixel outside the picture has a depth"
+done
 draw still --accumulate 21 --turntable 12 --frames 1
 draw moved --accumulate 21 --turntable 12 --frames 1 --shutter 0:1
 mv still.json whole2.json

@@ -1,4 +1,3 @@
-#include "conic/accumulate.h"
 #include "tests/fuzz/fuzz.h"
 
 /* The sums of samples, as --resumable keeps them. */

@@ -346,6 +346,9 @@ static void sky_is_gathered(conic_context *context) {
     CHECK_NEAR(sum[2], 0.0, 0.0);
   }
   conic_sky_destroy(sky);
+  CHECK(conic_sky_create(context, &image, NULL, &sky) == CONIC_ERROR_ARGUMENT && !sky);
+  CHECK(conic_sky_create(context, &image, up, NULL) == CONIC_ERROR_ARGUMENT);
+  CHECK(conic_sky_read(context, "sky.pfm", up, NULL) == CONIC_ERROR_ARGUMENT);
   rgba[5] = NAN;
   CHECK(conic_sky_create(context, &image, up, &sky) == CONIC_ERROR_INPUT && !sky);
   conic_image_release(context, &image);

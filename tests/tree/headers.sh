@@ -31,7 +31,7 @@ compiles_cpp() { # FILE; true where there is no compiler for it
     "$cpp_compiler" -std=c++17 -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude "$1"
 }
 
-for header in $(find include core raster oracle lod surface gaussians judge source opencl bench cli -name '*.h' | sort); do
+for header in $(find include core raster oracle lod surface gaussians judge lighting accumulation source opencl bench cli -name '*.h' | sort); do
   [[ -e $header && $header != *_body.h ]] || continue # a body is included by what sets its types
   [[ $header != opencl/shared.h ]] || continue          # stands before what OpenCL C compiles
   [[ $header != opencl/c_library/* ]] || continue       # stands for the C library where there is none
@@ -71,8 +71,10 @@ global_names() { # FILES: strong definitions
 while read -r name; do
   fail "$name is global in the library and does not start with conic_"
 done < <(global_names "$library_folder/libconic.a" | grep -v '^conic_' || true)
+mapfile -t program < <(find "$build_folder/CMakeFiles/conic_cli_objects.dir" -name '*.o')
+[[ ${#program[@]} -gt 10 ]] || fail "the program's object files were not found"
 while read -r name; do
   fail "$name is global in the program and does not start with cli_"
-done < <(global_names $(find "$build_folder/CMakeFiles/conic.dir" -name '*.o') | grep -vE '^(cli_|main$)' || true)
+done < <(global_names "${program[@]}" | grep -vE '^(cli_|main$)' || true)
 
 exit $((failures > 0))
