@@ -127,16 +127,13 @@ conic_status cli_accumulate_camera(cli_session *session, cli_render_job *job, in
 
 /* --- focus --- */
 
-/* The depth at a pixel; where nothing is there, the median of all there is. */
+/* The depth at a pixel of the picture; where nothing is there, the median of all there is. */
 static conic_status depth_at(cli_session *session, const conic_image *image, const double pixel[2], double *depth) {
   size_t n = (size_t)image->width * (size_t)image->height, n_covered = 0;
   const float *z = image->planes[CONIC_PLANE_Z];
-  if (pixel[0] < image->width && pixel[1] < image->height) {
-    float here = z[(size_t)pixel[1] * (size_t)image->width + (size_t)pixel[0]];
-    *depth = (double)here;
-    if (here > 0.0f)
-      return CONIC_OK;
-  }
+  *depth = (double)z[(size_t)pixel[1] * (size_t)image->width + (size_t)pixel[0]];
+  if (*depth > 0.0)
+    return CONIC_OK;
   float *covered = malloc(n * sizeof *covered);
   if (!covered)
     return CONIC_ERROR_MEMORY;
@@ -297,6 +294,13 @@ static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
   return conic_accumulate(work->session->context, &options, sums);
 }
 
+/* --time and --noise end before N, and a file may hold more than N. */
+static void tell_samples(const cli_session *session, const cli_accumulate_job *own) {
+  if (own->facts.end_sample != own->n_samples)
+    cli_note(session, "the mean of %llu samples of %llu; noise %.2g", (unsigned long long)own->facts.end_sample,
+             own->n_samples, own->reached_noise > 0.0 ? own->reached_noise : 0.0);
+}
+
 conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
                                     conic_image *image, conic_render_statistics *statistics) {
   accumulating work = {.session = session, .job = job, .i_frame = i_frame, .image = image};
@@ -321,6 +325,8 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
     status = show_sums(&work, sums);
   if (status == CONIC_OK)
     status = keep_sums(&work, sums);
+  if (status == CONIC_OK)
+    tell_samples(session, &job->accumulating);
   conic_accumulation_destroy(sums);
   *statistics = work.statistics;
   return status;
