@@ -87,14 +87,23 @@ int cli_parse_count(const char *text, unsigned long long *value) {
   return 1;
 }
 
-int cli_parse_vector(const char *text, double vector[3]) {
-  for (int axis = 0; axis < 3; axis++) {
+/* So many numbers, with a separator between them. */
+static int parse_row(const char *text, int n, char separator, double *numbers) {
+  for (int i = 0; i < n; i++) {
     const char *end;
-    if (!parse_decimal(text, &end, &vector[axis]) || *end != (axis < 2 ? ',' : '\0'))
+    if (!parse_decimal(text, &end, &numbers[i]) || *end != (i < n - 1 ? separator : '\0'))
       return 0;
     text = end + 1;
   }
   return 1;
+}
+
+int cli_parse_pair(const char *text, char separator, double pair[2]) {
+  return parse_row(text, 2, separator, pair);
+}
+
+int cli_parse_vector(const char *text, double vector[3]) {
+  return parse_row(text, 3, ',', vector);
 }
 
 int cli_parse_length(const char *text, void *length) {

@@ -86,5 +86,6 @@ int cli_parse_number(const char *text, double *number);
 
 /* Parses "X,Y,Z" whole; 0 where it is not. */
 int cli_parse_vector(const char *text, double vector[3]);
+int cli_parse_pair(const char *text, char separator, double pair[2]);
 
 #endif

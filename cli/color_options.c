@@ -1,6 +1,5 @@
 #include "cli/color_options.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/nearest_word.h"
@@ -10,15 +9,14 @@ const char *const cli_ramp_words[] = {"sequential", "grey", "heat", "diverging",
 
 int cli_parse_color_range(const char *text, void *value) {
   conic_coloring_options *coloring = value;
-  char *end;
-  coloring->has_range = 1;
-  coloring->minimum = strtod(text, &end);
-  if (end == text || *end != ',')
+  double range[2];
+  if (!cli_parse_pair(text, ',', range))
     return 0;
-  text = end + 1;
-  coloring->maximum = strtod(text, &end);
-  double extent = coloring->maximum - coloring->minimum;
-  return end != text && !*end && extent > 0.0 && extent - extent == 0.0;
+  coloring->has_range = 1;
+  coloring->minimum = range[0];
+  coloring->maximum = range[1];
+  double extent = range[1] - range[0];
+  return extent > 0.0 && extent - extent == 0.0;
 }
 
 static int check_ramp(const cli_session *session, const char *ramp) {

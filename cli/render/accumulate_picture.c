@@ -1,9 +1,7 @@
 #include "cli/render/accumulate_job.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
@@ -11,79 +9,6 @@
 #include "cli/render/views.h"
 #include "cli/stopper.h"
 #include "core/base/rank.h"
-#include "core/files/file.h"
-
-int cli_parse_focus(const char *text, void *value) {
-  cli_focus *focus = value;
-  const char *comma = strchr(text, ',');
-  char first[64];
-  if (strcmp(text, "auto") == 0) {
-    focus->kind = CLI_FOCUS_AUTO;
-    return 1;
-  }
-  if (!comma) {
-    focus->kind = CLI_FOCUS_DEPTH;
-    return cli_parse_number(text, &focus->depth) && focus->depth > 0.0 && focus->depth < 1e30;
-  }
-  focus->kind = CLI_FOCUS_PIXEL;
-  if ((size_t)(comma - text) >= sizeof first)
-    return 0;
-  snprintf(first, sizeof first, "%.*s", (int)(comma - text), text);
-  return cli_parse_number(first, &focus->pixel[0]) && cli_parse_number(comma + 1, &focus->pixel[1]) &&
-         focus->pixel[0] >= 0.0 && focus->pixel[1] >= 0.0;
-}
-
-int cli_parse_shutter(const char *text, void *value) {
-  double *shutter = value;
-  const char *colon = strchr(text, ':');
-  char first[64];
-  if (!colon || (size_t)(colon - text) >= sizeof first)
-    return 0;
-  snprintf(first, sizeof first, "%.*s", (int)(colon - text), text);
-  return cli_parse_number(first, &shutter[0]) && cli_parse_number(colon + 1, &shutter[1]) && shutter[0] <= shutter[1] &&
-         fabs(shutter[0]) <= 1e5 && fabs(shutter[1]) <= 1e5;
-}
-
-/* What a sample is drawn with, unless it is said otherwise: the samples are the filter. */
-static const float sample_prefilter = 0.0625f;
-
-static int check_company(const cli_render_job *job) {
-  if (job->view.samples > 1)
-    return cli_usage("render: --accumulate places its samples itself: not with --samples");
-  if (job->repeat > 1 || job->progressive_path || job->deadline > 0.0 || job->deep_path || job->has_mattes)
-    return cli_usage("render: not --accumulate with --repeat, --progressive, --deadline, --deep or --cryptomatte");
-  if (job->top.is_wanted)
-    return cli_usage("render: --camera top filters its pixels itself: not with --accumulate");
-  return CLI_DONE;
-}
-
-int cli_accumulate_check(cli_render_job *job) {
-  cli_accumulate_job *own = &job->accumulating;
-  if (!own->n_samples && job->planes & (1u << CONIC_PLANE_SAMPLES | 1u << CONIC_PLANE_VARIANCE))
-    return cli_usage("render: the planes samples and variance are --accumulate's");
-  if (!own->n_samples)
-    return own->is_given || own->is_shutter_given
-               ? cli_usage("render: --time, --noise, --preview, --resumable, --resume, --aperture, --focus, "
-                           "--blades and --shutter want --accumulate N")
-               : CLI_DONE;
-  int answer = check_company(job);
-  if (answer != CLI_DONE)
-    return answer;
-  if (own->n_blades == 1 || own->n_blades == 2)
-    return cli_usage("render: --blades is 0, for a round lens, or 3 at least");
-  if (own->is_shutter_given && !job->is_turntable && !job->camera_path)
-    return cli_usage("render: --shutter wants a way of the camera: --turntable, or --camera with several");
-  if (own->resume_path && cli_frames_are_many(job))
-    return cli_usage("render: --resume goes on with one picture, not with several");
-  if (own->is_resumable && (job->n_outputs == 0 || strcmp(job->outputs[0], "-") == 0))
-    return cli_usage("render: --resumable keeps the sums beside the picture; give a file with -o");
-  if (!job->is_prefilter_given)
-    job->options.prefilter = sample_prefilter;
-  if (own->aperture > 0.0 && own->focus.kind != CLI_FOCUS_DEPTH)
-    job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_Z;
-  job->planes |= job->unwritten_planes;
-  return CLI_DONE;
-}
 
 /* --- the camera on its way --- */
 
@@ -330,41 +255,4 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
   conic_accumulation_destroy(sums);
   *statistics = work.statistics;
   return status;
-}
-
-/* --- what is said of it --- */
-
-static void add_number(conic_image *image, const char *name, double value) {
-  if (image->n_attributes == CONIC_MAX_ATTRIBUTES)
-    return;
-  conic_attribute *attribute = &image->attributes[image->n_attributes++];
-  memset(attribute, 0, sizeof *attribute);
-  snprintf(attribute->name, sizeof attribute->name, "%s", name);
-  attribute->type = CONIC_ATTRIBUTE_DOUBLE;
-  attribute->values[0] = value;
-}
-
-void cli_accumulate_describe(const cli_render_job *job, conic_image *image) {
-  const cli_accumulate_job *own = &job->accumulating;
-  if (!own->n_samples)
-    return;
-  add_number(image, "conicAccumulated", (double)own->facts.end_sample);
-  if (own->aperture > 0.0) {
-    add_number(image, "conicAperture", own->aperture);
-    add_number(image, "conicFocus", own->focus_depth);
-  }
-}
-
-void cli_accumulate_report(cli_json *json, const cli_render_job *job) {
-  const cli_accumulate_job *own = &job->accumulating;
-  if (!own->n_samples)
-    return;
-  cli_json_object(json, "accumulated");
-  cli_json_count(json, "samples", own->facts.end_sample);
-  cli_json_count(json, "resumed", own->n_resumed);
-  if (own->reached_noise >= 0.0)
-    cli_json_number(json, "noise", own->reached_noise);
-  if (own->aperture > 0.0)
-    cli_json_number(json, "focus", own->focus_depth);
-  cli_json_close(json);
 }
