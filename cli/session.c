@@ -278,13 +278,15 @@ int cli_session_open(cli_session *session) {
   options.log_cookie = session;
   options.progress = on_progress;
   options.progress_cookie = session;
-  options.threads = session->threads;
+  options.threads = !session->threads && session->team ? session->team->threads : session->threads;
   options.large_pages = session->draws_many_frames;
   options.isa = session->isa;
   if (session->max_texture_mib)
     options.max_texture_bytes = (size_t)session->max_texture_mib << 20;
   if (session->host)
     return open_hosted(session, &options);
+  if (!cli_team_is_first(session)) /* the first reports for all */
+    session->json_path = NULL;
   conic_status status = conic_context_create(&options, &session->context);
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));

@@ -32,6 +32,12 @@ int cli_team_is_first(const cli_session *session) {
   return !session->team || session->team->index == 0;
 }
 
+void cli_team_trace(const cli_session *session, const char *kind, const char *name, uint64_t number, double from,
+                    uint64_t sent_bytes) {
+  if (session->team)
+    session->team->trace(kind, name, number, from, cli_seconds(), sent_bytes);
+}
+
 int cli_team_agree(const cli_session *session, int exit_code) {
   if (!cli_team_is_shared(session))
     return exit_code;

@@ -17,6 +17,7 @@
 
 typedef struct cli_team {
   int index, count;
+  int threads; /* of this process, unless --threads says otherwise: others share its machine */
 
   /* Collective: from now on `next` gives the units from 0 to before `n`. What `hand` is given arrives in the first
    * process's `take`, one call at a time, on any thread, until the next `agree` has returned; null: nothing is handed.
@@ -42,8 +43,11 @@ typedef struct cli_team {
   void (*send)(int to, const void *bytes, size_t n_bytes);
   void *(*receive)(int from, size_t *n_bytes);
 
-  /* For --trace: what this process did, between two times of cli_seconds. `what` stays. */
-  void (*trace)(const char *what, uint64_t unit, double from, double to);
+  /* What this process has sent and received so far, and how long it has waited for others. */
+  void (*count_traffic)(uint64_t *sent_bytes, uint64_t *received_bytes, double *waited_seconds);
+  /* For --trace: what this process did, between two times of cli_seconds. `kind` is "open" (once before its units),
+   * "unit", "join" (what the first does with a result) or "write", `name` "frame" or the like; both stay. */
+  void (*trace)(const char *kind, const char *name, uint64_t number, double from, double to, uint64_t sent_bytes);
 } cli_team;
 
 /* The team of this process from now on, whose messages it keeps; null: it is alone. */
@@ -56,6 +60,9 @@ int cli_team_keeps(conic_log_level level, const char *message);
 int cli_team_is_shared(const cli_session *session);
 /* Whether this process speaks: it is alone, or the first. */
 int cli_team_is_first(const cli_session *session);
+/* Does what the team's function does, if there is a team. */
+void cli_team_trace(const cli_session *session, const char *kind, const char *name, uint64_t number, double from,
+                    uint64_t sent_bytes);
 /* Collective: the greatest exit code of all, whose message the first process prints; alone, the code itself. After a
  * failure it is that failure at once. */
 int cli_team_agree(const cli_session *session, int exit_code);

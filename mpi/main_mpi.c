@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/shell.h"
 #include "cli/team.h"
+#include "core/base/machine.h"
 #include "mpi/ranks.h"
 
 /* Whether all ranks work on it: for anything else than a shared command, and for its help, the first does. */
@@ -15,13 +16,23 @@ static int is_shared(int argc, char **argv) {
   return command && command->is_shared;
 }
 
-static void note_nothing(const char *what, uint64_t unit, double from, double to) {
-  (void)what, (void)unit, (void)from, (void)to;
+static void count_traffic(uint64_t *sent_bytes, uint64_t *received_bytes, double *waited_seconds) {
+  ranks_traffic traffic = ranks_traffic_now();
+  *sent_bytes = traffic.sent_bytes;
+  *received_bytes = traffic.received_bytes;
+  *waited_seconds = traffic.waited_seconds;
+}
+
+static void note_nothing(const char *kind, const char *name, uint64_t number, double from, double to,
+                         uint64_t sent_bytes) {
+  (void)kind, (void)name, (void)number, (void)from, (void)to, (void)sent_bytes;
 }
 
 static int run(int argc, char **argv) {
+  int threads = conic_machine_threads() / ranks_on_machine();
   cli_team team = {.index = ranks_index(),
                    .count = ranks_count(),
+                   .threads = threads > 0 ? threads : 1,
                    .share = ranks_share,
                    .next = ranks_next,
                    .stop = ranks_stop,
@@ -32,6 +43,7 @@ static int run(int argc, char **argv) {
                    .gather = ranks_gather,
                    .send = ranks_send,
                    .receive = ranks_receive,
+                   .count_traffic = count_traffic,
                    .trace = note_nothing};
   const cli_session session = {.team = &team};
   int exit_code = CLI_DONE;

@@ -220,6 +220,15 @@ int ranks_count(void) {
   return n_ranks;
 }
 
+int ranks_on_machine(void) {
+  MPI_Comm machine;
+  int n;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+  MPI_Comm_size(machine, &n);
+  MPI_Comm_free(&machine);
+  return n;
+}
+
 void ranks_library(char *text, size_t room) {
   char whole[MPI_MAX_LIBRARY_VERSION_STRING];
   int length;

@@ -15,6 +15,8 @@ void ranks_end(void);
 
 int ranks_index(void);
 int ranks_count(void);
+/* How many of the ranks are on this rank's machine, itself among them. Collective. */
+int ranks_on_machine(void);
 /* "Open MPI v4.1.4 …", one line. */
 void ranks_library(char *text, size_t room);
 
