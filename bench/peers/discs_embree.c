@@ -7,77 +7,19 @@
  * SPLATS.ply is as `run` beside this makes it (binary: x y z nx ny nz radius r g b), and the camera is eighteen
  * numbers: width, height, fx, fy, cx, cy, and the rows of world to camera without the last. One thread. */
 #include <embree3/rtcore.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
 
-typedef struct splat {
-  float position[3], normal[3], radius;
-  unsigned char color[3];
-} splat;
-
-typedef struct camera {
-  int width, height;
-  double f[2], c[2], world_to_camera[3][4];
-} camera;
+#include "peer_scene.h"
 
 /* What a gathering ray has found. */
 typedef struct disc_gather {
   struct RTCIntersectContext context;
-  const splat *splats;
+  const peer_splat *splats;
   float sum[3], weight;
 } disc_gather;
 
 static float linear_of[256];
 
-static void fail_peer(const char *what) {
-  fprintf(stderr, "discs_embree: %s\n", what);
-  exit(1);
-}
-
-static double spent_ms(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
-
-static splat *read_splats(const char *path, unsigned *n) {
-  enum { BYTES = 31 };
-  char line[256];
-  FILE *file = fopen(path, "rb");
-  *n = 0;
-  while (file && fgets(line, sizeof line, file) && strcmp(line, "end_header\n") != 0)
-    sscanf(line, "element vertex %u", n);
-  splat *splats = *n ? calloc(*n, sizeof *splats) : NULL;
-  for (unsigned i = 0; splats && i < *n; i++) {
-    unsigned char bytes[BYTES];
-    if (fread(bytes, sizeof bytes, 1, file) != 1)
-      fail_peer("the splats end too soon");
-    memcpy(&splats[i], bytes, 28);
-    memcpy(splats[i].color, bytes + 28, 3);
-  }
-  if (file)
-    fclose(file);
-  return splats;
-}
-
-static void read_camera(const char *text, camera *to) {
-  double *rows = &to->world_to_camera[0][0];
-  int n = 0;
-  if (sscanf(text, "%d %d %lf %lf %lf %lf%n", &to->width, &to->height, &to->f[0], &to->f[1], &to->c[0], &to->c[1],
-             &n) != 6)
-    fail_peer("the camera is not understood");
-  for (int i = 0; i < 12; i++) {
-    int m = 0;
-    if (sscanf(text + n, "%lf%n", &rows[i], &m) != 1)
-      fail_peer("the camera is not understood");
-    n += m;
-  }
-}
-
-static RTCScene build(RTCDevice device, const splat *splats, unsigned n) {
+static RTCScene build(RTCDevice device, const peer_splat *splats, unsigned n) {
   RTCScene scene = rtcNewScene(device);
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   RTCGeometry discs = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
@@ -101,7 +43,7 @@ static void take_disc(const struct RTCFilterFunctionNArguments *arguments) {
   disc_gather *g = (disc_gather *)arguments->context;
   const struct RTCRay *ray = (const struct RTCRay *)arguments->ray;
   const struct RTCHit *hit = (const struct RTCHit *)arguments->hit;
-  const splat *s = &g->splats[hit->primID];
+  const peer_splat *s = &g->splats[hit->primID];
   const float d[3] = {ray->dir_x, ray->dir_y, ray->dir_z}, from[3] = {ray->org_x, ray->org_y, ray->org_z};
   float square = 0.0f, deviation = s->radius / 1.5f;
   for (int i = 0; i < 3; i++) {
@@ -115,7 +57,7 @@ static void take_disc(const struct RTCFilterFunctionNArguments *arguments) {
   arguments->valid[0] = 0;
 }
 
-static struct RTCRayHit ray_through(const camera *c, int x, int y) {
+static struct RTCRayHit ray_through(const peer_camera *c, int x, int y) {
   struct RTCRayHit r;
   memset(&r, 0, sizeof r);
   double d[3] = {(x + 0.5 - c->c[0]) / c->f[0], (y + 0.5 - c->c[1]) / c->f[1], 1.0}, world[3], eye[3];
@@ -134,7 +76,7 @@ static struct RTCRayHit ray_through(const camera *c, int x, int y) {
   return r;
 }
 
-static void draw_pixel(RTCScene scene, const camera *c, const splat *splats, int x, int y, float rgb[3]) {
+static void draw_pixel(RTCScene scene, const peer_camera *c, const peer_splat *splats, int x, int y, float rgb[3]) {
   disc_gather g = {.splats = splats};
   struct RTCRayHit nearest = ray_through(c, x, y), again = nearest;
   rtcInitIntersectContext(&g.context);
@@ -150,23 +92,17 @@ static void draw_pixel(RTCScene scene, const camera *c, const splat *splats, int
     rgb[i] = g.weight > 0.0f ? g.sum[i] / g.weight : 0.0f;
 }
 
-static int compare_ms(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 int main(int argc, char **argv) {
   unsigned n;
-  camera c;
+  peer_camera c;
   if (argc != 5)
     fail_peer("usage: discs_embree SPLATS.ply CAMERA OUT.pfm FRAMES");
-  splat *splats = read_splats(argv[1], &n);
-  read_camera(argv[2], &c);
+  peer_splat *splats = read_splats(argv[1], &n);
+  read_peer_camera(argv[2], &c);
   int n_frames = atoi(argv[4]);
   if (!splats || n_frames < 1)
     fail_peer("no splats, or no frames");
-  for (int i = 0; i < 256; i++)
-    linear_of[i] = i <= 10 ? (float)i / 255.0f / 12.92f : powf(((float)i / 255.0f + 0.055f) / 1.055f, 2.4f);
+  fill_linear(linear_of);
   float *rgb = calloc((size_t)c.width * (size_t)c.height, 3 * sizeof *rgb);
   double ms[n_frames];
   RTCDevice device = rtcNewDevice("threads=1");
@@ -182,12 +118,7 @@ int main(int argc, char **argv) {
     ms[frame] = spent_ms() - begun;
   }
   qsort(ms, (size_t)n_frames, sizeof *ms, compare_ms);
-  FILE *out = fopen(argv[3], "wb");
-  if (!out)
-    fail_peer("the picture cannot be written");
-  fprintf(out, "PF\n%d %d\n-1.0\n", c.width, c.height);
-  fwrite(rgb, 3 * sizeof *rgb, (size_t)c.width * (size_t)c.height, out);
-  fclose(out);
+  write_peer_picture(argv[3], &c, rgb);
   printf("%.2f %.2f\n", built - start, ms[n_frames / 2]);
   rtcReleaseScene(scene);
   rtcReleaseDevice(device);

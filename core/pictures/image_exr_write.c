@@ -1,6 +1,7 @@
 #include "core/pictures/image_exr.h"
 
 #include "core/base/message.h"
+#include "core/pictures/image_exr_bands.h"
 
 #if CONIC_HAVE_OPENEXR
 
@@ -25,13 +26,22 @@ typedef struct exr_chunk {
   exr_result_t result;
 } exr_chunk;
 
-typedef struct exr_writer {
-  const conic_image *image;
-  const conic_image_options *options;
+struct conic_exr_bands {
+  conic_context *context;
+  const char *path; /* for messages */
+  conic_image_options options;
+  unsigned planes;
+  int width, height;
+  conic_output *output;
+  FILE *spool; /* what is written to, where the output cannot be gone back in; null: the output */
+  conic_exr_stream stream;
   exr_context_t file;
   exr_chunk *chunks;
-  conic_status status; /* whether it is to go on */
-} exr_writer;
+  size_t n_chunks;
+  int next_y;              /* of the picture, the first row that is missing */
+  const conic_image *band; /* the one at hand, */
+  int band_y;              /* and its first row */
+};
 
 static exr_compression_t compression_of(const conic_image_options *options) {
   static const exr_compression_t compressions[CONIC_N_COMPRESSIONS] = {EXR_COMPRESSION_ZIP, EXR_COMPRESSION_NONE,
@@ -48,13 +58,12 @@ static exr_pixel_type_t type_of(int i_plane, const conic_image_options *options)
   return is_looked_at && options->is_half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
 }
 
-static exr_result_t add_channels(exr_context_t file, const exr_writer *writer) {
-  const conic_image *image = writer->image;
+static exr_result_t add_channels(const conic_exr_bands *bands) {
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
-    for (int c = 0; image->planes[i] && c < plane->n_channels; c++) {
-      exr_result_t result =
-          exr_add_channel(file, 0, plane->channels[c], type_of(i, writer->options), EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    for (int c = 0; bands->planes >> i & 1u && c < plane->n_channels; c++) {
+      exr_result_t result = exr_add_channel(bands->file, 0, plane->channels[c], type_of(i, &bands->options),
+                                            EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
       if (result != EXR_ERR_SUCCESS)
         return result;
     }
@@ -80,152 +89,208 @@ static exr_result_t describe_mattes(exr_context_t file, const conic_image *image
 }
 
 /* By the attribute of OpenEXR 3.4 that names a colour space; linear colours have their chromaticities. */
-static exr_result_t describe_display(exr_context_t file, const conic_image *image) {
-  if (!image->is_display || !image->planes[CONIC_PLANE_RGBA])
+static exr_result_t describe_display(const conic_exr_bands *bands, const conic_image *header) {
+  if (!header->is_display || !(bands->planes & 1u << CONIC_PLANE_RGBA))
     return EXR_ERR_SUCCESS;
-  return exr_attr_set_string(file, 0, CONIC_EXR_COLOR_SPACE, CONIC_EXR_DISPLAY);
+  return exr_attr_set_string(bands->file, 0, CONIC_EXR_COLOR_SPACE, CONIC_EXR_DISPLAY);
 }
 
-static exr_result_t write_header(exr_context_t file, const exr_writer *writer) {
-  const conic_image *image = writer->image;
-  exr_compression_t compression = compression_of(writer->options);
+static exr_result_t write_header(const conic_exr_bands *bands, const conic_image *header) {
+  exr_context_t file = bands->file;
+  exr_compression_t compression = compression_of(&bands->options);
   int part;
-  exr_result_t result = conic_exr_prepare_attributes(file, image);
+  exr_result_t result = conic_exr_prepare_attributes(file, header);
   if (result == EXR_ERR_SUCCESS)
     result = exr_add_part(file, NULL, EXR_STORAGE_SCANLINE, &part);
   if (result == EXR_ERR_SUCCESS)
-    result = exr_initialize_required_attr_simple(file, 0, image->width, image->height, compression);
+    result = exr_initialize_required_attr_simple(file, 0, bands->width, bands->height, compression);
   if (result == EXR_ERR_SUCCESS && (compression == EXR_COMPRESSION_ZIP || compression == EXR_COMPRESSION_ZIPS))
     result = exr_set_zip_compression_level(file, 0, ZIP_LEVEL);
   if (result == EXR_ERR_SUCCESS)
-    result = add_channels(file, writer);
+    result = add_channels(bands);
   if (result == EXR_ERR_SUCCESS)
-    result = conic_exr_add_attributes(file, image);
-  if (result == EXR_ERR_SUCCESS && conic_image_planes(image) & CONIC_MATTE_PLANES)
-    result = describe_mattes(file, image);
+    result = conic_exr_add_attributes(file, header);
+  if (result == EXR_ERR_SUCCESS && bands->planes & CONIC_MATTE_PLANES)
+    result = describe_mattes(file, header);
   if (result == EXR_ERR_SUCCESS)
-    result = describe_display(file, image);
+    result = describe_display(bands, header);
   if (result == EXR_ERR_SUCCESS)
     result = exr_write_header(file);
   return result;
 }
 
-static void point_channels(exr_encode_pipeline_t *pipeline, const conic_image *image) {
+static void point_channels(const conic_exr_bands *bands, exr_encode_pipeline_t *pipeline) {
+  size_t row = (size_t)(pipeline->chunk.start_y - bands->band_y);
   for (int i = 0; i < pipeline->channel_count; i++) {
     exr_coding_channel_info_t *channel = &pipeline->channels[i];
     conic_channel from = conic_channel_find(channel->channel_name);
-    const uint8_t *first = (const uint8_t *)image->planes[from.plane] + (size_t)from.channel * 4;
+    const uint8_t *first = (const uint8_t *)bands->band->planes[from.plane] + (size_t)from.channel * 4;
     channel->user_pixel_stride = conic_plane_describe((conic_plane)from.plane)->n_channels * 4;
-    channel->user_line_stride = channel->user_pixel_stride * image->width;
+    channel->user_line_stride = channel->user_pixel_stride * bands->width;
     channel->user_bytes_per_element = 4;
     channel->user_data_type = (uint16_t)(channel->data_type == EXR_PIXEL_UINT ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT);
-    channel->encode_from_ptr = first + (size_t)pipeline->chunk.start_y * (size_t)channel->user_line_stride;
+    channel->encode_from_ptr = first + row * (size_t)channel->user_line_stride;
   }
 }
 
 static void encode_chunk(void *data, size_t i_item, int i_thread) {
-  exr_writer *writer = data;
-  exr_chunk *chunk = &writer->chunks[i_item];
+  conic_exr_bands *bands = data;
+  exr_chunk *chunk = &bands->chunks[i_item];
   int is_new = !chunk->pipeline.context;
   (void)i_thread;
   if (is_new)
-    chunk->result = exr_encoding_initialize(writer->file, 0, &chunk->info, &chunk->pipeline);
+    chunk->result = exr_encoding_initialize(bands->file, 0, &chunk->info, &chunk->pipeline);
   else
-    chunk->result = exr_encoding_update(writer->file, 0, &chunk->info, &chunk->pipeline);
+    chunk->result = exr_encoding_update(bands->file, 0, &chunk->info, &chunk->pipeline);
   if (chunk->result != EXR_ERR_SUCCESS)
     return;
-  point_channels(&chunk->pipeline, writer->image);
+  point_channels(bands, &chunk->pipeline);
   if (is_new)
-    chunk->result = exr_encoding_choose_default_routines(writer->file, 0, &chunk->pipeline);
+    chunk->result = exr_encoding_choose_default_routines(bands->file, 0, &chunk->pipeline);
   chunk->pipeline.yield_until_ready_fn = NULL;
   chunk->pipeline.write_fn = NULL;
   if (chunk->result == EXR_ERR_SUCCESS)
-    chunk->result = exr_encoding_run(writer->file, 0, &chunk->pipeline);
+    chunk->result = exr_encoding_run(bands->file, 0, &chunk->pipeline);
 }
 
-/* Compresses up to n_chunks chunks side by side, writes them, and goes on. */
-static exr_result_t write_chunks(conic_context *context, exr_writer *writer, size_t n_chunks) {
+/* Compresses some chunks of the band side by side, and writes them. */
+static exr_result_t write_chunks(conic_exr_bands *bands) {
   exr_result_t result = EXR_ERR_SUCCESS;
-  for (int y = 0; y < writer->image->height && result == EXR_ERR_SUCCESS;) {
-    size_t n = 0;
-    writer->status = conic_progress(context, "write", (double)y / (double)writer->image->height);
-    if (writer->status != CONIC_OK)
-      break;
-    for (; n < n_chunks && y < writer->image->height && result == EXR_ERR_SUCCESS; n++) {
-      result = exr_write_scanline_chunk_info(writer->file, 0, y, &writer->chunks[n].info);
-      y = writer->chunks[n].info.start_y + writer->chunks[n].info.height;
-    }
-    if (result == EXR_ERR_SUCCESS)
-      conic_parallel_for(context, n, encode_chunk, writer);
-    for (size_t i = 0; i < n && result == EXR_ERR_SUCCESS; i++) {
-      const exr_chunk *chunk = &writer->chunks[i];
-      result = chunk->result;
-      if (result == EXR_ERR_SUCCESS)
-        result = exr_write_scanline_chunk(writer->file, 0, chunk->info.start_y, chunk->pipeline.compressed_buffer,
-                                          chunk->pipeline.compressed_bytes);
-    }
+  size_t n = 0;
+  for (int end = bands->band_y + bands->band->height;
+       n < bands->n_chunks && bands->next_y < end && result == EXR_ERR_SUCCESS; n++) {
+    result = exr_write_scanline_chunk_info(bands->file, 0, bands->next_y, &bands->chunks[n].info);
+    bands->next_y = bands->chunks[n].info.start_y + bands->chunks[n].info.height;
   }
-  for (size_t i = 0; i < n_chunks; i++)
-    if (writer->chunks[i].pipeline.context)
-      exr_encoding_destroy(writer->file, &writer->chunks[i].pipeline);
+  if (result == EXR_ERR_SUCCESS)
+    conic_parallel_for(bands->context, n, encode_chunk, bands);
+  for (size_t i = 0; i < n && result == EXR_ERR_SUCCESS; i++) {
+    const exr_chunk *chunk = &bands->chunks[i];
+    result = chunk->result;
+    if (result == EXR_ERR_SUCCESS)
+      result = exr_write_scanline_chunk(bands->file, 0, chunk->info.start_y, chunk->pipeline.compressed_buffer,
+                                        chunk->pipeline.compressed_bytes);
+  }
   return result;
 }
 
-static conic_status write_stream(conic_context *context, const char *path, FILE *file, const conic_image *image,
-                                 const conic_image_options *options) {
-  conic_exr_stream stream;
-  exr_context_initializer_t settings;
-  exr_writer writer = {.image = image, .options = options};
-  size_t n_chunks = 2 * (size_t)conic_context_threads(context);
-  conic_exr_stream_init(&stream, context, path, file, &settings);
-  writer.chunks = conic_memory_allocate_zeroed(context, n_chunks, sizeof *writer.chunks);
-  if (!writer.chunks)
-    return CONIC_ERROR_MEMORY;
-  exr_result_t result = exr_start_write(&writer.file, path, EXR_WRITE_FILE_DIRECTLY, &settings);
-  if (result == EXR_ERR_SUCCESS)
-    result = write_header(writer.file, &writer);
-  if (result == EXR_ERR_SUCCESS)
-    result = write_chunks(context, &writer, n_chunks);
-  exr_result_t finish = exr_finish(&writer.file);
-  conic_memory_release(context, writer.chunks);
-  if (result == EXR_ERR_SUCCESS)
-    result = finish;
-  if (writer.status != CONIC_OK)
-    return writer.status;
-  return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&stream, result, "write", CONIC_ERROR_ARGUMENT);
+conic_status conic_exr_bands_append(conic_exr_bands *bands, const conic_image *band) {
+  exr_result_t result = EXR_ERR_SUCCESS;
+  int end = bands->next_y + band->height;
+  if (band->width != bands->width || end > bands->height || bands->planes & ~conic_image_planes(band) ||
+      (end < bands->height && band->height % CONIC_EXR_BAND != 0))
+    return conic_fail(bands->context, CONIC_ERROR_ARGUMENT, "%s: cannot write: no such band", bands->path);
+  bands->band = band;
+  bands->band_y = bands->next_y;
+  while (bands->next_y < end && result == EXR_ERR_SUCCESS) {
+    conic_status status = conic_progress(bands->context, "write", (double)bands->next_y / (double)bands->height);
+    if (status != CONIC_OK)
+      return status;
+    result = write_chunks(bands);
+  }
+  return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&bands->stream, result, "write", CONIC_ERROR_ARGUMENT);
 }
 
-/* Into what cannot be gone back in, as a pipe: an EXR's beginning says where its parts are. */
-static conic_status write_by_way(conic_context *context, const char *path, FILE *to, const conic_image *image,
-                                 const conic_image_options *options) {
+/* An EXR's beginning says where its parts are, which cannot be gone back to in what is like a pipe. */
+static conic_status choose_stream(conic_exr_bands *bands, FILE **stream) {
+  *stream = conic_output_stream(bands->output);
+  if (*stream != stdout && ftello(*stream) == 0)
+    return CONIC_OK;
+  bands->spool = conic_disk_open_nameless();
+  *stream = bands->spool;
+  return bands->spool ? CONIC_OK
+                      : conic_fail(bands->context, CONIC_ERROR_IO, "%s: cannot write: no temporary file: %s",
+                                   bands->path, strerror(errno));
+}
+
+static conic_status begin_file(conic_exr_bands *bands, const conic_image *header) {
+  exr_context_initializer_t settings;
+  FILE *stream;
+  conic_status status = conic_output_open(bands->context, bands->path, &bands->output);
+  if (status == CONIC_OK)
+    status = choose_stream(bands, &stream);
+  if (status != CONIC_OK)
+    return status;
+  bands->n_chunks = 2 * (size_t)conic_context_threads(bands->context);
+  bands->chunks = conic_memory_allocate_zeroed(bands->context, bands->n_chunks, sizeof *bands->chunks);
+  if (!bands->chunks)
+    return CONIC_ERROR_MEMORY;
+  conic_exr_stream_init(&bands->stream, bands->context, bands->path, stream, &settings);
+  exr_result_t result = exr_start_write(&bands->file, bands->path, EXR_WRITE_FILE_DIRECTLY, &settings);
+  if (result == EXR_ERR_SUCCESS)
+    result = write_header(bands, header);
+  return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&bands->stream, result, "write", CONIC_ERROR_ARGUMENT);
+}
+
+conic_status conic_exr_bands_open(conic_context *context, const char *path, const conic_image *header, unsigned planes,
+                                  const conic_image_options *options, conic_exr_bands **bands) {
+  *bands = NULL;
+  conic_status status = conic_exr_check(context, path, planes, options);
+  if (status != CONIC_OK)
+    return status;
+  conic_exr_bands *opened = conic_memory_allocate_zeroed(context, 1, sizeof *opened);
+  if (!opened)
+    return CONIC_ERROR_MEMORY;
+  opened->context = context;
+  opened->path = path;
+  opened->options = *options;
+  opened->planes = planes;
+  opened->width = header->width;
+  opened->height = header->height;
+  status = begin_file(opened, header);
+  if (status == CONIC_OK)
+    *bands = opened;
+  else
+    conic_exr_bands_end(opened, status);
+  return status;
+}
+
+static conic_status copy_spool(conic_exr_bands *bands) {
   char bytes[1 << 14];
-  FILE *spool = conic_disk_open_nameless();
-  if (!spool)
-    return conic_fail(context, CONIC_ERROR_IO, "%s: cannot write: no temporary file: %s", path, strerror(errno));
-  conic_status status = write_stream(context, path, spool, image, options);
-  rewind(spool);
-  for (size_t n; status == CONIC_OK && (n = fread(bytes, 1, sizeof bytes, spool)) > 0;)
+  conic_status status = CONIC_OK;
+  FILE *to = conic_output_stream(bands->output);
+  rewind(bands->spool);
+  for (size_t n; (n = fread(bytes, 1, sizeof bytes, bands->spool)) > 0;)
     if (fwrite(bytes, 1, n, to) != n)
-      break; /* the stream remembers, and commit says so */
-  if (ferror(spool))
-    status = conic_fail(context, CONIC_ERROR_IO, "%s: cannot write: the temporary file cannot be read", path);
-  fclose(spool);
+      break; /* the stream remembers, and the output's end says so */
+  if (ferror(bands->spool))
+    status =
+        conic_fail(bands->context, CONIC_ERROR_IO, "%s: cannot write: the temporary file cannot be read", bands->path);
+  return status;
+}
+
+static conic_status finish_file(conic_exr_bands *bands, conic_status status) {
+  for (size_t i = 0; bands->chunks && i < bands->n_chunks; i++)
+    if (bands->chunks[i].pipeline.context)
+      exr_encoding_destroy(bands->file, &bands->chunks[i].pipeline);
+  exr_result_t result = bands->file ? exr_finish(&bands->file) : EXR_ERR_SUCCESS;
+  if (status == CONIC_OK && result != EXR_ERR_SUCCESS)
+    status = conic_exr_fail(&bands->stream, result, "write", CONIC_ERROR_ARGUMENT);
+  if (status == CONIC_OK && bands->next_y < bands->height)
+    status = conic_fail(bands->context, CONIC_ERROR_ARGUMENT, "%s: cannot write: bands are missing", bands->path);
+  return status == CONIC_OK && bands->spool ? copy_spool(bands) : status;
+}
+
+conic_status conic_exr_bands_end(conic_exr_bands *bands, conic_status status) {
+  if (!bands)
+    return status;
+  status = finish_file(bands, status);
+  if (bands->spool)
+    fclose(bands->spool);
+  if (bands->output)
+    status = conic_output_end(bands->output, status);
+  conic_memory_release(bands->context, bands->chunks);
+  conic_memory_release(bands->context, bands);
   return status;
 }
 
 conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image,
                              const conic_image_options *options) {
-  conic_output *output;
-  conic_status status = conic_exr_check(context, path, conic_image_planes(image), options);
+  conic_exr_bands *bands;
+  conic_status status = conic_exr_bands_open(context, path, image, conic_image_planes(image), options, &bands);
   if (status == CONIC_OK)
-    status = conic_output_open(context, path, &output);
-  if (status != CONIC_OK)
-    return status;
-  FILE *stream = conic_output_stream(output);
-  int is_plain = stream != stdout && ftello(stream) == 0;
-  status = is_plain ? write_stream(context, path, stream, image, options)
-                    : write_by_way(context, path, stream, image, options);
-  return conic_output_end(output, status);
+    status = conic_exr_bands_end(bands, conic_exr_bands_append(bands, image));
+  return status;
 }
 
 conic_status conic_exr_check(conic_context *context, const char *path, unsigned planes,
@@ -247,6 +312,23 @@ conic_status conic_exr_check(conic_context *context, const char *path, unsigned 
 conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image,
                              const conic_image_options *options) {
   return conic_exr_check(context, path, conic_image_planes(image), options);
+}
+
+conic_status conic_exr_bands_open(conic_context *context, const char *path, const conic_image *header, unsigned planes,
+                                  const conic_image_options *options, conic_exr_bands **bands) {
+  (void)header;
+  *bands = NULL;
+  return conic_exr_check(context, path, planes, options);
+}
+
+conic_status conic_exr_bands_append(conic_exr_bands *bands, const conic_image *band) {
+  (void)bands, (void)band;
+  return CONIC_ERROR_UNSUPPORTED;
+}
+
+conic_status conic_exr_bands_end(conic_exr_bands *bands, conic_status status) {
+  (void)bands;
+  return status;
 }
 
 #endif

@@ -218,6 +218,8 @@ write info-gaussians info_gaussians info two.compressed.ply --check
 write chart-gaussians chart chart two.compressed.ply -o chart --quick --pixels 100
 write render-gaussians render render two.compressed.ply --profile gsplat-1.6 --size 64x64 -o two.exr --aov all
 write devices devices devices
+echo '{"traceEvents": [{"cat": "unit", "name": "frame 0", "ph": "X", "ts": 0, "dur": 9, "pid": 0, "args": {"sent_bytes": 8}}]}' > trace.json
+write simulate simulate simulate trace.json --ranks 1,8
 write conformance conformance conformance suite --profile 2dgs-gsplat
 mkdir drawn
 run 0 render suite/scenes/disc.ply --profile 2dgs-gsplat --size 36x20 -o drawn/L1-disc-2dgs-gsplat.pfm

@@ -62,6 +62,10 @@ int main(int argc, char **argv) {
   seeds_all_references(set);
   seeds_sums(set, context);
   seeds_text(set, "suite", "json", SUITE_EXAMPLE);
+  seeds_text(set, "trace", "json",
+             "{\"traceEvents\": [{\"name\": \"window 0\", \"cat\": \"unit\", \"ph\": \"X\", \"ts\": 1.5, \"dur\": 20, "
+             "\"pid\": 1, \"tid\": 0, \"args\": {\"sent_bytes\": 64}}, {\"name\": \"sums\", \"cat\": \"join\", "
+             "\"ts\": 22, \"dur\": 3, \"pid\": 0}], \"displayTimeUnit\": \"ms\"}");
   seeds_text(set, "filter", "lists", "classification = 2, 9 and not (intensity < 100 or z > 50)");
   seeds_text(set, "filter", "chain", "x >= -1.5e3 and y <= .5 or return_number != 1, 2, 3 and user_data = 7");
   for (int i = 0; i < set->n; i++)

@@ -1,4 +1,5 @@
 /* EXR files: every bit there and back, what stands in the header, and files that are cut short. */
+#include "core/pictures/image_exr_bands.h"
 #include "core/pictures/image_foreign.h"
 #include "tests/support/image_fixture.h"
 
@@ -66,6 +67,55 @@ static void test_options(conic_context *context) {
   }
   options.compression = CONIC_N_COMPRESSIONS;
   CHECK(conic_image_write_as(context, in_folder("a.exr"), &image, &options) == CONIC_ERROR_ARGUMENT);
+  conic_image_release(context, &image);
+}
+
+/* Rows of `image` from `y` on as an image that shares its memory. */
+static conic_image band_of(const conic_image *image, int y, int height) {
+  conic_image band = *image;
+  band.height = height;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (image->planes[i])
+      band.planes[i] = (unsigned char *)image->planes[i] +
+                       (size_t)y * (size_t)image->width * 4 * (size_t)conic_plane_describe((conic_plane)i)->n_channels;
+  return band;
+}
+
+static conic_status write_bands(conic_context *context, const conic_image *image, const conic_image_options *options,
+                                int rows, int last_row) {
+  conic_exr_bands *bands;
+  conic_image header = *image;
+  memset(header.planes, 0, sizeof header.planes);
+  conic_status status =
+      conic_exr_bands_open(context, in_folder("b.exr"), &header, conic_image_planes(image), options, &bands);
+  for (int y = 0; y < last_row && status == CONIC_OK; y += rows) {
+    conic_image band = band_of(image, y, y + rows < last_row ? rows : last_row - y);
+    status = conic_exr_bands_append(bands, &band);
+  }
+  return conic_exr_bands_end(bands, status);
+}
+
+/* Written band by band, the file is the same; what is no band of it leaves no file. */
+static void test_bands(conic_context *context) {
+  conic_image image = random_image(context, 61, 301, EVERY_PLANE & ~CONIC_MATTE_PLANES);
+  conic_image_options options;
+  conic_image_options_init(&options);
+  image.attributes[image.n_attributes++] = text_attribute("conicVersion", "1");
+  for (int i = 0; i < CONIC_N_COMPRESSIONS; i++) {
+    size_t n_bytes, n_banded;
+    options.compression = (conic_compression)i;
+    CHECK_OK(conic_image_write_as(context, in_folder("a.exr"), &image, &options));
+    CHECK_OK(write_bands(context, &image, &options, i % 2 ? 32 : 96, 301));
+    unsigned char *bytes = read_bytes(in_folder("a.exr"), &n_bytes);
+    unsigned char *banded = read_bytes(in_folder("b.exr"), &n_banded);
+    CHECK(n_bytes == n_banded && memcmp(bytes, banded, n_bytes) == 0);
+    free(bytes);
+    free(banded);
+  }
+  CHECK(remove(in_folder("b.exr")) == 0);
+  CHECK(write_bands(context, &image, &options, 40, 301) == CONIC_ERROR_ARGUMENT);
+  CHECK(write_bands(context, &image, &options, 32, 288) == CONIC_ERROR_ARGUMENT);
+  CHECK(fopen(in_folder("b.exr"), "rb") == NULL);
   conic_image_release(context, &image);
 }
 
@@ -202,6 +252,7 @@ int main(void) {
   for (int i = 0; i < CONIC_N_PLANES; i++)
     test_round_trip(context, 17, 33, 1u << i);
   test_threads(context);
+  test_bands(context);
   test_options(context);
   if (has_feature("OpenImageIO"))
     test_by_openimageio(context);

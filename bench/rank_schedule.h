@@ -1,0 +1,60 @@
+/* What a job of conic-mpi would take on other numbers of ranks, by a trace of it (docs/notes/mpi.md). */
+#ifndef CONIC_RANK_SCHEDULE_H
+#define CONIC_RANK_SCHEDULE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+/* A unit of work: how long it took, and what its result was on the way to rank 0. */
+typedef struct cli_rank_unit {
+  double seconds, bytes;
+} cli_rank_unit;
+
+/* What a trace says of a job. */
+typedef struct cli_rank_trace {
+  int n_ranks;    /* that it ran on */
+  double seconds; /* from its first event to the end of its last */
+  double open_s;  /* before its units, on each rank: the mean */
+  cli_rank_unit *units;
+  size_t n_units, room;
+  double join_s;                /* what rank 0 does with all results of units */
+  double merge_s, merge_bytes;  /* of one merging of two ranks' sums: the means */
+  double write_s;               /* after all units */
+  double first_event, n_merges; /* while it is read */
+} cli_rank_trace;
+
+/* Reads what --trace wrote: events of Chrome's format. On success the caller releases it. Errors: INPUT, MEMORY. */
+conic_status cli_rank_trace_read(conic_context *context, const char *path, cli_rank_trace *trace);
+void cli_rank_trace_release(conic_context *context, cli_rank_trace *trace);
+
+/* The line between ranks. */
+typedef struct cli_rank_line {
+  double latency_s, bytes_per_s;
+} cli_rank_line;
+
+/* Where time is lost, in seconds of the job: */
+typedef enum cli_rank_loss {
+  CLI_RANK_OPEN,   /* before the units, which more ranks do not make shorter */
+  CLI_RANK_FIRST,  /* waiting for rank 0, the mean of the ranks */
+  CLI_RANK_UNEVEN, /* until the last unit is done, the mean */
+  CLI_RANK_MERGE,  /* bringing sums together */
+  CLI_RANK_WRITE,
+  CLI_RANK_N_LOSSES
+} cli_rank_loss;
+
+typedef struct cli_rank_estimate {
+  int n_ranks;
+  double seconds, efficiency; /* over one rank's seconds for the same job: 1 is ideal */
+  double lost_s[CLI_RANK_N_LOSSES];
+} cli_rank_estimate;
+
+enum { CLI_MOST_RANKS = 65536 };
+
+/* The job on 1 to CLI_MOST_RANKS ranks, with its units so many `times`. Units are taken in order, each by the first
+ * rank that is free. Rank 0 gives them out and takes results one at a time, beside its own units. Errors: MEMORY. */
+conic_status cli_rank_schedule(conic_context *context, const cli_rank_trace *trace, const cli_rank_line *line,
+                               int n_ranks, uint64_t times, cli_rank_estimate *estimate);
+
+#endif

@@ -1,0 +1,138 @@
+/* Reading the trace of a job. */
+#include <string.h>
+
+#include "bench/rank_schedule.h"
+#include "core/base/memory.h"
+#include "core/files/json_read.h"
+
+typedef struct trace_event {
+  char name[32], kind[16];
+  double begun_us, lasted_us, rank, bytes;
+} trace_event;
+
+static conic_status add_unit(conic_context *context, cli_rank_trace *trace, const trace_event *event) {
+  if (trace->n_units == trace->room) {
+    size_t room = 2 * trace->room + 64;
+    cli_rank_unit *units = conic_memory_allocate(context, room, sizeof *units);
+    if (!units)
+      return CONIC_ERROR_MEMORY;
+    if (trace->n_units)
+      memcpy(units, trace->units, trace->n_units * sizeof *units);
+    conic_memory_release(context, trace->units);
+    trace->units = units;
+    trace->room = room;
+  }
+  trace->units[trace->n_units++] = (cli_rank_unit){1e-6 * event->lasted_us, event->bytes};
+  return CONIC_OK;
+}
+
+/* Sums that one rank takes from another are "sums"; that they were sent is part of it. */
+static conic_status take_event(conic_context *context, cli_rank_trace *trace, const trace_event *event) {
+  double lasted_s = 1e-6 * event->lasted_us, end_s = 1e-6 * event->begun_us + lasted_s;
+  if (end_s > trace->seconds)
+    trace->seconds = end_s;
+  if (1e-6 * event->begun_us < trace->first_event)
+    trace->first_event = 1e-6 * event->begun_us;
+  if (event->rank >= trace->n_ranks)
+    trace->n_ranks = (int)event->rank + 1;
+  if (strcmp(event->kind, "unit") == 0)
+    return add_unit(context, trace, event);
+  if (strcmp(event->kind, "open") == 0)
+    trace->open_s += lasted_s;
+  else if (strcmp(event->kind, "write") == 0)
+    trace->write_s += lasted_s;
+  else if (strcmp(event->kind, "join") == 0 && strncmp(event->name, "send", 4) == 0)
+    trace->merge_bytes += event->bytes;
+  else if (strcmp(event->kind, "join") == 0 && strncmp(event->name, "sums", 4) == 0) {
+    trace->merge_s += lasted_s;
+    trace->n_merges += 1.0;
+  } else if (strcmp(event->kind, "join") == 0)
+    trace->join_s += lasted_s;
+  return CONIC_OK;
+}
+
+static void read_arguments(conic_json *json, trace_event *event) {
+  char key[CONIC_JSON_KEY_ROOM];
+  conic_json_begin_object(json);
+  while (conic_json_next_member(json, key))
+    if (strcmp(key, "sent_bytes") == 0)
+      conic_json_number(json, &event->bytes);
+    else
+      conic_json_skip(json);
+}
+
+static void read_event(conic_json *json, trace_event *event) {
+  char key[CONIC_JSON_KEY_ROOM];
+  memset(event, 0, sizeof *event);
+  conic_json_begin_object(json);
+  while (conic_json_next_member(json, key))
+    if (strcmp(key, "name") == 0)
+      conic_json_text(json, event->name, sizeof event->name);
+    else if (strcmp(key, "cat") == 0)
+      conic_json_text(json, event->kind, sizeof event->kind);
+    else if (strcmp(key, "ts") == 0)
+      conic_json_number(json, &event->begun_us);
+    else if (strcmp(key, "dur") == 0)
+      conic_json_number(json, &event->lasted_us);
+    else if (strcmp(key, "pid") == 0)
+      conic_json_number(json, &event->rank);
+    else if (strcmp(key, "args") == 0)
+      read_arguments(json, event);
+    else
+      conic_json_skip(json);
+  if (!(event->lasted_us >= 0.0) || !(event->bytes >= 0.0) || !(event->rank >= 0.0) || event->rank >= CLI_MOST_RANKS)
+    conic_json_wrong(json, "is no event of a trace");
+}
+
+static conic_status read_events(conic_context *context, conic_json *json, cli_rank_trace *trace) {
+  conic_status status = CONIC_OK;
+  conic_json_begin_array(json);
+  while (status == CONIC_OK && conic_json_next_item(json)) {
+    trace_event event;
+    read_event(json, &event);
+    status = json->status == CONIC_OK ? take_event(context, trace, &event) : json->status;
+  }
+  return status;
+}
+
+/* Sums of ranks and merges become means. */
+static void settle_trace(cli_rank_trace *trace) {
+  trace->seconds -= trace->first_event;
+  trace->open_s /= trace->n_ranks;
+  if (trace->n_merges > 0.0) {
+    trace->merge_s /= trace->n_merges;
+    trace->merge_bytes /= trace->n_merges;
+  }
+}
+
+conic_status cli_rank_trace_read(conic_context *context, const char *path, cli_rank_trace *trace) {
+  char key[CONIC_JSON_KEY_ROOM];
+  conic_json json;
+  memset(trace, 0, sizeof *trace);
+  trace->first_event = 1e300;
+  conic_status status = conic_json_open(context, path, &json);
+  if (status != CONIC_OK)
+    return status;
+  conic_json_begin_object(&json);
+  while (status == CONIC_OK && conic_json_next_member(&json, key))
+    if (strcmp(key, "traceEvents") == 0)
+      status = read_events(context, &json, trace);
+    else
+      conic_json_skip(&json);
+  if (status == CONIC_OK)
+    status = conic_json_end(&json);
+  if (status == CONIC_OK && trace->n_units == 0)
+    status = conic_json_wrong(&json, "is no trace of conic-mpi: it has no units");
+  conic_json_close(&json);
+  if (status == CONIC_OK)
+    settle_trace(trace);
+  else
+    cli_rank_trace_release(context, trace);
+  return status;
+}
+
+void cli_rank_trace_release(conic_context *context, cli_rank_trace *trace) {
+  conic_memory_release(context, trace->units);
+  trace->units = NULL;
+  trace->n_units = trace->room = 0;
+}

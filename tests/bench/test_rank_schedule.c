@@ -1,0 +1,108 @@
+/* Jobs on more ranks: traces, and what the model makes of them where it can be told without it. */
+#include "bench/rank_schedule.h"
+#include "tests/support/check.h"
+
+static const char *const path = "trace.json";
+
+static conic_status read_trace(conic_context *context, const char *text, cli_rank_trace *trace) {
+  FILE *file = fopen(path, "wb");
+  CHECK(file && fputs(text, file) >= 0 && fclose(file) == 0);
+  return cli_rank_trace_read(context, path, trace);
+}
+
+/* Two ranks, three units, one merging. */
+static void test_rank_trace(conic_context *context) {
+  cli_rank_trace trace;
+  CHECK_OK(read_trace(
+      context,
+      "{\"displayTimeUnit\": \"ms\", \"traceEvents\": ["
+      "{\"name\": \"scene 0\", \"cat\": \"open\", \"ph\": \"X\", \"ts\": 1e6, \"dur\": 2e6, \"pid\": 0, \"tid\": 0},"
+      "{\"name\": \"scene 0\", \"cat\": \"open\", \"ts\": 1e6, \"dur\": 1e6, \"pid\": 1},"
+      "{\"name\": \"samples 0\", \"cat\": \"unit\", \"ts\": 3e6, \"dur\": 5e5, \"pid\": 0, \"args\": {\"sent_bytes\": "
+      "7}},"
+      "{\"name\": \"samples 1\", \"cat\": \"unit\", \"ts\": 2e6, \"dur\": 4e6, \"pid\": 1, \"args\": {\"sent_bytes\": "
+      "0}},"
+      "{\"name\": \"samples 2\", \"cat\": \"unit\", \"ts\": 4e6, \"dur\": 25e4, \"pid\": 0},"
+      "{\"name\": \"send 0\", \"cat\": \"join\", \"ts\": 6e6, \"dur\": 1, \"pid\": 1, \"args\": {\"sent_bytes\": 100}},"
+      "{\"name\": \"sums 1\", \"cat\": \"join\", \"ts\": 6e6, \"dur\": 3e6, \"pid\": 0},"
+      "{\"name\": \"OUT\", \"cat\": \"write\", \"ts\": 9e6, \"dur\": 2e6, \"pid\": 0}]}",
+      &trace));
+  CHECK(trace.n_ranks == 2 && trace.n_units == 3 && trace.seconds == 10.0 && trace.open_s == 1.5);
+  CHECK(trace.units[1].seconds == 4.0 && trace.units[0].bytes == 7.0);
+  CHECK(trace.merge_s == 3.0 && trace.merge_bytes == 100.0 && trace.write_s == 2.0 && trace.join_s == 0.0);
+  cli_rank_trace_release(context, &trace);
+}
+
+static void test_wrong_traces(conic_context *context) {
+  static const char *const wrong[] = {"",
+                                      "[]",
+                                      "{}",
+                                      "{\"traceEvents\": []}",
+                                      "{\"traceEvents\": [{\"cat\": \"open\", \"dur\": 1}]}",
+                                      "{\"traceEvents\": [{\"cat\": \"unit\", \"dur\": -1}]}",
+                                      "{\"traceEvents\": [{\"cat\": \"unit\", \"pid\": 1e9}]}",
+                                      "{\"traceEvents\": [{\"cat\": \"unit\", \"dur\": 1}"};
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    cli_rank_trace trace;
+    CHECK(read_trace(context, wrong[i], &trace) == CONIC_ERROR_INPUT && !trace.units);
+  }
+}
+
+/* 96 units of a second each, of so many bytes. */
+static cli_rank_trace even_trace(conic_context *context, double bytes) {
+  cli_rank_trace trace = {.n_ranks = 1, .n_units = 96};
+  trace.units = calloc(trace.n_units, sizeof *trace.units);
+  CHECK(trace.units != NULL);
+  for (size_t i = 0; i < trace.n_units; i++)
+    trace.units[i] = (cli_rank_unit){1.0, bytes};
+  (void)context;
+  return trace;
+}
+
+static cli_rank_estimate estimate(conic_context *context, const cli_rank_trace *trace, int n_ranks, uint64_t times) {
+  const cli_rank_line line = {1e-6, 1e9};
+  cli_rank_estimate e;
+  CHECK_OK(cli_rank_schedule(context, trace, &line, n_ranks, times, &e));
+  CHECK(e.n_ranks == n_ranks && e.efficiency <= 1.0);
+  return e;
+}
+
+static void check_near(double got, double wanted, double off) {
+  if (!(fabs(got - wanted) <= off))
+    fprintf(stderr, "%g instead of %g\n", got, wanted);
+  CHECK(fabs(got - wanted) <= off);
+}
+
+static void test_rank_schedule(conic_context *context) {
+  cli_rank_trace light = even_trace(context, 0.0), heavy = even_trace(context, 2e8);
+  check_near(estimate(context, &light, 1, 1).seconds, 96.0, 1e-3);
+  check_near(estimate(context, &light, 32, 1).seconds, 3.0, 1e-3);
+  check_near(estimate(context, &light, 64, 1).seconds, 2.0, 1e-3); /* half of the ranks have one unit, the others two */
+  check_near(estimate(context, &light, 64, 1).lost_s[CLI_RANK_UNEVEN], 0.5, 1e-3);
+  check_near(estimate(context, &light, 64, 10).seconds, 15.0, 1e-3);
+  /* Rank 0 takes a fifth of a second for each result: five ranks keep it busy. */
+  check_near(estimate(context, &heavy, 2, 1).seconds, 48.0 * 1.2, 1.0);
+  check_near(estimate(context, &heavy, 96, 1).seconds, 1.0 + 96.0 * 0.2, 1e-2);
+  CHECK(estimate(context, &heavy, 96, 1).lost_s[CLI_RANK_FIRST] > 9.0);
+  light.open_s = 4.0;
+  light.write_s = 1.0;
+  check_near(estimate(context, &light, 32, 1).seconds, 8.0, 1e-3);
+  check_near(estimate(context, &light, 32, 10).seconds, 4.0 + 30.0 + 10.0, 1e-3);
+  light.n_merges = 1.0;
+  light.merge_s = 0.5;
+  light.merge_bytes = 1e9;
+  check_near(estimate(context, &light, 32, 1).seconds, 8.0 + 5.0 * 1.5, 1e-3); /* 32, 16, 8, 4, 2 */
+  check_near(estimate(context, &light, 32, 10).seconds, 4.0 + 30.0 + 1.0 + 5.0 * 1.5, 1e-3);
+  free(light.units);
+  free(heavy.units);
+}
+
+int main(void) {
+  conic_context *context = check_context(1);
+  test_rank_trace(context);
+  test_wrong_traces(context);
+  test_rank_schedule(context);
+  conic_context_destroy(context);
+  remove(path);
+  return check_result();
+}
