@@ -285,8 +285,6 @@ int cli_session_open(cli_session *session) {
     options.max_texture_bytes = (size_t)session->max_texture_mib << 20;
   if (session->host)
     return open_hosted(session, &options);
-  if (!cli_team_is_first(session)) /* the first reports for all */
-    session->json_path = NULL;
   conic_status status = conic_context_create(&options, &session->context);
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));

@@ -16,7 +16,7 @@ static int is_shared(int argc, char **argv) {
   return command && command->is_shared;
 }
 
-static void count_traffic(uint64_t *sent_bytes, uint64_t *received_bytes, double *waited_seconds) {
+static void tell_traffic(uint64_t *sent_bytes, uint64_t *received_bytes, double *waited_seconds) {
   ranks_traffic traffic = ranks_traffic_now();
   *sent_bytes = traffic.sent_bytes;
   *received_bytes = traffic.received_bytes;
@@ -43,7 +43,7 @@ static int run(int argc, char **argv) {
                    .gather = ranks_gather,
                    .send = ranks_send,
                    .receive = ranks_receive,
-                   .count_traffic = count_traffic,
+                   .count_traffic = tell_traffic,
                    .trace = note_nothing};
   const cli_session session = {.team = &team};
   int exit_code = CLI_DONE;

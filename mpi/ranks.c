@@ -94,7 +94,7 @@ static void receive_once(void *bytes, size_t n_bytes, int from, int tag, MPI_Com
   count_traffic(0, n_bytes, 0.0);
 }
 
-static size_t piece_of(size_t offset, size_t n_bytes) {
+static size_t piece_bytes(size_t offset, size_t n_bytes) {
   size_t rest = n_bytes - offset;
   return rest < PIECE_BYTES ? rest : PIECE_BYTES;
 }
@@ -103,14 +103,14 @@ static size_t piece_of(size_t offset, size_t n_bytes) {
 static void send_blob(int to, const void *bytes, size_t n_bytes, int tag, int piece_tag, MPI_Comm line) {
   uint64_t size = n_bytes;
   send_once(&size, sizeof size, to, tag, line);
-  for (size_t at = 0; at < n_bytes; at += piece_of(at, n_bytes))
-    send_once((const char *)bytes + at, piece_of(at, n_bytes), to, piece_tag, line);
+  for (size_t at = 0; at < n_bytes; at += piece_bytes(at, n_bytes))
+    send_once((const char *)bytes + at, piece_bytes(at, n_bytes), to, piece_tag, line);
 }
 
 static void *receive_pieces(int from, size_t n_bytes, int piece_tag, MPI_Comm line) {
   char *bytes = take_memory(n_bytes);
-  for (size_t at = 0; bytes && at < n_bytes; at += piece_of(at, n_bytes))
-    receive_once(bytes + at, piece_of(at, n_bytes), from, piece_tag, line);
+  for (size_t at = 0; bytes && at < n_bytes; at += piece_bytes(at, n_bytes))
+    receive_once(bytes + at, piece_bytes(at, n_bytes), from, piece_tag, line);
   return bytes;
 }
 
@@ -318,9 +318,9 @@ void ranks_barrier(void) {
 }
 
 static void broadcast_from(int root, void *bytes, size_t n_bytes) {
-  for (size_t at = 0; at < n_bytes && n_ranks > 1; at += piece_of(at, n_bytes)) {
+  for (size_t at = 0; at < n_bytes && n_ranks > 1; at += piece_bytes(at, n_bytes)) {
     MPI_Request request;
-    MPI_Ibcast((char *)bytes + at, (int)piece_of(at, n_bytes), MPI_BYTE, root, main_line, &request);
+    MPI_Ibcast((char *)bytes + at, (int)piece_bytes(at, n_bytes), MPI_BYTE, root, main_line, &request);
     wait_for(&request);
   }
   count_traffic(own_index == root ? n_bytes : 0, own_index == root ? 0 : n_bytes, 0.0);

@@ -241,6 +241,11 @@ static conic_status render_repeats(cli_session *session, cli_render_job *job, in
   return status;
 }
 
+/* Of windows, the picture comes together in the first process. */
+static int needs_image(const cli_session *session, const cli_render_job *job) {
+  return job->sharing != CLI_SHARES_WINDOWS || cli_sharing_has_picture(session, job);
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
@@ -252,7 +257,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     status = cli_choose_exposure(session, job, &camera);
   if (session->host || image->width != camera.width || image->height != camera.height)
     cli_host_release_image(session, image);
-  if (status == CONIC_OK && !conic_image_planes(image))
+  if (status == CONIC_OK && !conic_image_planes(image) && needs_image(session, job))
     status = cli_host_allocate_image(session, camera.width, camera.height, job->planes, image);
   if (status == CONIC_OK)
     status = render_repeats(session, job, i_frame, &camera, image, repeats);
@@ -300,10 +305,19 @@ static void hash_image(const cli_session *session, cli_render_job *job, const co
 /* That of all frames is the first one's, whoever draws that. */
 static conic_status choose_first_exposure(cli_session *session, cli_render_job *job) {
   conic_camera camera;
-  if (!job->is_exposure_automatic)
+  conic_status status = CONIC_OK;
+  if (job->sharing == CLI_SHARES_NOTHING || !job->is_exposure_automatic)
     return CONIC_OK;
-  conic_status status = cli_accumulate_camera(session, job, job->frames.first - 1, &camera);
-  return status == CONIC_OK ? cli_choose_exposure(session, job, &camera) : status;
+  if (cli_team_is_first(session)) {
+    status = cli_accumulate_camera(session, job, job->frames.first - 1, &camera);
+    if (status == CONIC_OK)
+      status = cli_choose_exposure(session, job, &camera);
+  }
+  status = cli_sharing_end(session, job, status);
+  if (status == CONIC_OK)
+    session->team->broadcast(&job->options.exposure, sizeof job->options.exposure);
+  job->is_exposure_automatic = 0;
+  return status;
 }
 
 /* All frames, or of a team's those that this process takes. */
@@ -329,9 +343,9 @@ static int render_scene(cli_session *session, cli_render_job *job) {
   memset(&image, 0, sizeof image);
   conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
   conic_status status = repeats ? CONIC_OK : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK && job->sharing == CLI_SHARES_FRAMES)
-    status = choose_first_exposure(session, job);
   status = cli_sharing_end(session, job, status);
+  if (status == CONIC_OK)
+    status = choose_first_exposure(session, job);
   if (status == CONIC_OK)
     status = cli_sharing_end(session, job, render_frames(session, job, &image, repeats));
   if (status == CONIC_OK)
@@ -380,6 +394,8 @@ static int run(cli_session *session, int argc, char **argv) {
     job.begun_seconds = cli_seconds();
     if (status == CONIC_OK && !cli_sharing_is_idle(session, &job))
       status = cli_scene_open(session, &job);
+    if (status == CONIC_OK)
+      cli_sharing_settle(&job);
     cli_team_trace(session, "open", "scene", 0, job.begun_seconds, 0);
     exit_code = cli_exit_of(status);
     if (status == CONIC_OK && !cli_sharing_is_idle(session, &job))

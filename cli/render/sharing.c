@@ -5,6 +5,7 @@
 
 #include "cli/render/frames.h"
 #include "cli/team.h"
+#include "source/source_parts.h"
 
 struct cli_shares {
   uint64_t n_units, sent_bytes, received_bytes, peak_bytes;
@@ -34,11 +35,19 @@ int cli_sharing_choose(const cli_session *session, cli_render_job *job) {
     job->sharing = CLI_SHARES_FRAMES;
   else if (job->accumulating.n_samples)
     job->sharing = CLI_SHARES_SAMPLES;
+  else if (!(job->abilities & (CONIC_SOURCE_STREAMS | CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_CLUSTERS)) &&
+           !job->progressive_path && !job->overdraw_path)
+    job->sharing = CLI_SHARES_WINDOWS;
   if (job->sharing == CLI_SHARES_SAMPLES && job->accumulating.seconds > 0.0)
     return cli_usage("render: what --time ends depends on the number of processes; give --noise or a count");
   if (job->sharing == CLI_SHARES_SAMPLES && job->accumulating.preview_seconds > 0.0)
     cli_note(session, "--preview: the samples come together at the end only");
   return job->sharing == CLI_SHARES_NOTHING ? CLI_DONE : check_streams(job);
+}
+
+void cli_sharing_settle(cli_render_job *job) {
+  if (job->sharing == CLI_SHARES_WINDOWS && !conic_source_has_windows(job->source, job->renderer))
+    job->sharing = CLI_SHARES_NOTHING;
 }
 
 int cli_sharing_is_idle(const cli_session *session, const cli_render_job *job) {

@@ -14,6 +14,9 @@ typedef struct cli_frame_turns {
 /* Decides what is shared, once the views are known. Wrong usage where the team cannot do what is asked for. */
 int cli_sharing_choose(const cli_session *session, cli_render_job *job);
 
+/* Once the source is open: what is not drawn in windows is not shared. */
+void cli_sharing_settle(cli_render_job *job);
+
 /* Whether this process has nothing to do with the render, as the first does it alone. */
 int cli_sharing_is_idle(const cli_session *session, const cli_render_job *job);
 
