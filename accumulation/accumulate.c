@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "accumulation/accumulation_struct.h"
+#include "accumulation/scattered.h"
 #include "core/base/clock.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
@@ -27,17 +28,21 @@ static conic_status draw_sample(conic_context *context, const conic_accumulate_o
   return status;
 }
 
-/* Sees to it that the samples that are there, if any, are of this picture: its sample 0 says so. */
-static conic_status settle_key(conic_context *context, const conic_accumulate_options *options,
-                               conic_accumulation *sums, conic_image *image) {
-  conic_image known = *image; /* without the planes that were drawn for `shade` alone */
-  conic_status status = draw_sample(context, options, 0, image);
-  if (status != CONIC_OK)
-    return status;
+static uint64_t key_of(const conic_accumulation *sums, const conic_image *first) {
+  conic_image known = *first; /* without the planes that were drawn for `shade` alone */
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (!(sums->planes >> i & 1))
       known.planes[i] = NULL;
-  uint64_t key = conic_sample_key(&known);
+  return conic_sample_key(&known);
+}
+
+/* Sees to it that the samples that are there, if any, are of this picture: its sample 0 says so. */
+static conic_status settle_key(conic_context *context, const conic_accumulate_options *options,
+                               conic_accumulation *sums, conic_image *image) {
+  conic_status status = draw_sample(context, options, 0, image);
+  if (status != CONIC_OK)
+    return status;
+  uint64_t key = key_of(sums, image);
   if (sums->key && sums->key != key)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "accumulate: the first sample is another one: the scene, the camera or an option differs");
@@ -57,6 +62,40 @@ static int is_enough(const conic_accumulate_options *options, const conic_accumu
     return 0;
   double noise = conic_accumulation_noise(sums);
   return noise >= 0.0 && noise <= options->noise;
+}
+
+int conic_accumulate_is_enough(const conic_accumulate_options *options, const conic_accumulation *sums) {
+  return is_enough(options, sums, conic_seconds_now());
+}
+
+conic_status conic_accumulate_check_key(conic_context *context, const conic_accumulate_options *options,
+                                        conic_accumulation *sums) {
+  conic_image image;
+  conic_status status =
+      conic_image_allocate(context, sums->width, sums->height, sums->planes | options->sample_planes, &image);
+  if (status == CONIC_OK)
+    status = settle_key(context, options, sums, &image);
+  conic_image_release(context, &image);
+  return status;
+}
+
+conic_status conic_accumulate_range(conic_context *context, const conic_accumulate_options *options, uint64_t begin,
+                                    uint64_t end, conic_accumulation *sums) {
+  conic_image image;
+  conic_status status =
+      conic_image_allocate(context, sums->width, sums->height, sums->planes | options->sample_planes, &image);
+  sums->first_sample = begin - sums->n_samples; /* modulo 2⁶⁴ */
+  for (uint64_t i = begin; i < end && status == CONIC_OK; i++) {
+    status = conic_progress(context, "accumulate", (double)i / (double)options->end_sample);
+    if (status == CONIC_OK)
+      status = draw_sample(context, options, i, &image);
+    if (status == CONIC_OK && i == 0)
+      sums->key = key_of(sums, &image);
+    if (status == CONIC_OK)
+      status = conic_accumulation_add(sums, &image);
+  }
+  conic_image_release(context, &image);
+  return status;
 }
 
 static conic_status add_missing_samples(conic_context *context, const conic_accumulate_options *options,

@@ -4,6 +4,8 @@
 
 #include "cli/session.h"
 
+struct cli_team;
+
 /* Whatever a scene is read from. */
 #define CLI_READABLE                                                                                                   \
   "PLY, XYZ, PTS, CSV, LAS, LAZ, PCD, E57, PTX, OBJ, STL, OFF, glTF, GLB, 3MF, DAE, FBX, .cot, .chy, "                 \
@@ -30,12 +32,15 @@ typedef struct cli_command {
   const char *description; /* whole sentences: what goes in, what comes out */
   const cli_words *words;
   cli_example examples[4];
+  int is_shared; /* a team works on it together (cli/team.h); else its first process does alone */
 } cli_command;
 
 extern const cli_command cli_make, cli_prepare, cli_octree, cli_layer, cli_merge, cli_cut, cli_mls, cli_hybrid,
     cli_render, cli_diff, cli_info, cli_verify, cli_judge, cli_explain, cli_gradient, cli_conformance, cli_chart,
     cli_bench, cli_devices, cli_convert;
 
+/* Runs what the arguments say, argv[0] being the program's name. Returns its exit code. */
+int cli_program(int argc, char **argv, struct cli_team *team);
 /* The command of that name, or null. */
 const cli_command *cli_find_command(const char *name);
 /* The i-th command; null past the last. */

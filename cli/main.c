@@ -1,87 +1,8 @@
-/* The program: finds the sub-command and hands over. */
-#include <errno.h>
-#include <string.h>
-
+/* conic: the program, alone. */
 #include "cli/command.h"
 #include "cli/shell.h"
-#include "core/base/nearest_word.h"
-
-static const cli_command *const commands[] = {&cli_make,     &cli_prepare,     &cli_octree, &cli_layer,   &cli_merge,
-                                              &cli_cut,      &cli_mls,         &cli_hybrid, &cli_convert, &cli_render,
-                                              &cli_diff,     &cli_info,        &cli_verify, &cli_judge,   &cli_explain,
-                                              &cli_gradient, &cli_conformance, &cli_chart,  &cli_bench,   &cli_devices};
-
-enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
-
-const cli_command *cli_find_command(const char *name) {
-  for (int i = 0; i < N_COMMANDS; i++)
-    if (strcmp(commands[i]->name, name) == 0)
-      return commands[i];
-  return NULL;
-}
-
-const cli_command *cli_command_at(int i) {
-  return i < N_COMMANDS ? commands[i] : NULL;
-}
-
-int cli_refuse_command(const char *name) {
-  int is_option = name[0] == '-';
-  const char *kind = is_option ? "option" : "command";
-  const char *nearest = conic_nearer_word(name, NULL, is_option ? "--version" : "help");
-  if (is_option)
-    nearest = conic_nearer_word(name, nearest, "--help");
-  for (int i = 0; i < N_COMMANDS && !is_option; i++)
-    nearest = conic_nearer_word(name, nearest, commands[i]->name);
-  if (nearest)
-    return cli_usage("unknown %s %s; did you mean %s?", kind, name, nearest);
-  return cli_usage("unknown %s %s; see conic help", kind, name);
-}
-
-static void print_features(const char *label, int available) {
-  fputs(label, stdout);
-  int n_printed = 0;
-  for (int i = 0; conic_feature_at(i); i++)
-    if (conic_feature_at(i)->available == available)
-      n_printed += printf(" %s", conic_feature_at(i)->name) > 0;
-  puts(n_printed ? "" : " none");
-}
-
-static int print_version(void) {
-  printf("conic %s\n", conic_version());
-  puts("License: BSD-3-Clause. There is no warranty.");
-  print_features("In this build:", 1);
-  print_features("Not in this build:", 0);
-  return CLI_DONE;
-}
-
-static int run_command(int argc, char **argv) {
-  const cli_command *command = cli_find_command(argv[0]);
-  if (!command)
-    return cli_refuse_command(argv[0]);
-  cli_session session = {.command = command->name};
-  int exit_code = command->run(&session, argc, argv);
-  cli_session_close(&session);
-  return exit_code;
-}
-
-static int run(int argc, char **argv) {
-  if (argc < 2) {
-    cli_help_usage(stderr);
-    return CLI_USAGE;
-  }
-  if (strcmp(argv[1], "help") == 0 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)
-    return cli_help(argc - 1, argv + 1);
-  if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0)
-    return print_version();
-  return run_command(argc - 1, argv + 1);
-}
 
 int main(int argc, char **argv) {
   char **arguments = cli_shell_begin(&argc, argv);
-  int exit_code = arguments ? run(argc, arguments) : cli_error(CLI_RESOURCE, "out of memory");
-  errno = 0;
-  if ((fflush(stdout) != 0 || ferror(stdout)) && exit_code < CLI_USAGE)
-    exit_code =
-        cli_error(CLI_RESOURCE, "standard output: cannot write: %s", errno ? strerror(errno) : "the device failed");
-  return cli_exit_after_signals(exit_code);
+  return arguments ? cli_program(argc, arguments, NULL) : cli_error(CLI_RESOURCE, "out of memory");
 }

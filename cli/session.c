@@ -11,6 +11,7 @@
 #include "cli/host_keeps.h"
 #include "cli/shell.h"
 #include "cli/stopper.h"
+#include "cli/team.h"
 #include "core/base/clock.h"
 #include "core/files/guard.h"
 
@@ -64,6 +65,8 @@ static void print_message(conic_log_level level, const char *format, va_list arg
     say_to_host(thread_host, level, message);
     return;
   }
+  if (cli_team_keeps(level, message))
+    return;
   pthread_mutex_lock(&screen);
   erase_bar();
   fprintf(stderr, "conic: %s%s\n", labels[level], message);
@@ -221,6 +224,8 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
     return;
   if (level == CONIC_LOG_ERROR && atomic_exchange(&has_failed, 1) && !session->is_verbose)
     return;
+  if (cli_team_keeps(level, message))
+    return;
   const char *label = level == CONIC_LOG_ERROR ? "error: " : level == CONIC_LOG_WARNING ? "warning: " : "";
   pthread_mutex_lock(&screen);
   erase_bar();
@@ -273,7 +278,7 @@ int cli_session_open(cli_session *session) {
   options.log_cookie = session;
   options.progress = on_progress;
   options.progress_cookie = session;
-  options.threads = session->threads;
+  options.threads = !session->threads && session->team ? session->team->threads : session->threads;
   options.large_pages = session->draws_many_frames;
   options.isa = session->isa;
   if (session->max_texture_mib)
@@ -284,7 +289,7 @@ int cli_session_open(cli_session *session) {
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
   conic_guard_inputs(session->context, session->replaced_path);
-  session->has_bar = !session->is_quiet && cli_shell_has_cursor();
+  session->has_bar = !session->is_quiet && cli_shell_has_cursor() && cli_team_is_first(session);
   cli_stopper_begin(session->context, session->command);
   cli_shell_catch(on_interrupt, on_closed_pipe);
   return CLI_DONE;

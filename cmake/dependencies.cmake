@@ -93,6 +93,12 @@ else()
   set(CURL_FOUND FALSE)
 endif()
 
+if(CONIC_WITH_MPI AND NOT CMAKE_CROSSCOMPILING AND NOT WIN32)
+  find_package(MPI QUIET COMPONENTS C)
+else()
+  set(MPI_C_FOUND FALSE)
+endif()
+
 set(found_openexr ${OpenEXR_FOUND})
 set(found_png ${PNG_FOUND})
 set(found_zlib ${ZLIB_FOUND})
@@ -104,11 +110,13 @@ set(found_zstd ${ZSTD_FOUND})
 set(found_webp ${WEBP_FOUND})
 set(found_brotli ${BROTLI_FOUND})
 set(found_xml ${LIBXML2_FOUND})
+set(found_mpi ${MPI_C_FOUND})
 foreach(dependency "openexr:OpenEXR (EXR images)" "png:libpng (PNG images)"
         "zlib:zlib (compressed deep images, Gaussian scenes in .spz)"
         "openimageio:OpenImageIO (TIFF, JPEG … images, and PNG without libpng)"
         "assimp:Assimp (STL, OFF, glTF, 3MF, DAE, FBX … meshes)" "opencl:OpenCL (other devices)"
-        "zstd:zstd (layered point clouds, Gaussian scenes in .spz)" "webp:libwebp (Gaussian scenes in .sog)" "xml:libxml2 (scans in .e57)" "brotli:libbrotlidec (points of Potree 2)" "curl:CURL (layered clouds from web servers)")
+        "zstd:zstd (layered point clouds, Gaussian scenes in .spz)" "webp:libwebp (Gaussian scenes in .sog)" "xml:libxml2 (scans in .e57)" "brotli:libbrotlidec (points of Potree 2)" "curl:CURL (layered clouds from web servers)"
+        "mpi:MPI (the program conic-mpi)")
   string(REGEX MATCH "^([a-z]+):(.*)$" matched ${dependency})
   set(description "${CMAKE_MATCH_2}")
   if(found_${CMAKE_MATCH_1})

@@ -6,6 +6,9 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/conic)
 
 # In components, each of which is a package: the program, the library that programs run with, and what they are built with.
 install(TARGETS conic COMPONENT program)
+if(TARGET conic_mpi)
+  install(TARGETS conic_mpi COMPONENT mpi)
+endif()
 install(DIRECTORY include/conic DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)

@@ -3,11 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/render/accumulate_team.h"
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/views.h"
 #include "cli/stopper.h"
+#include "cli/team.h"
 #include "core/base/rank.h"
 
 /* --- the camera on its way --- */
@@ -71,11 +73,16 @@ static conic_status depth_at(cli_session *session, const conic_image *image, con
   return CONIC_OK;
 }
 
+/* Whether the focus is where the picture shows it. */
+static int needs_depth(const cli_accumulate_job *own) {
+  return own->aperture > 0.0 && own->focus.kind != CLI_FOCUS_DEPTH;
+}
+
 static conic_status find_focus(cli_session *session, cli_render_job *job, const conic_image *image) {
   const cli_focus *focus = &job->accumulating.focus;
   const double middle[2] = {0.5 * image->width, 0.5 * image->height};
   double *depth = &job->accumulating.focus_depth;
-  if (!(job->accumulating.aperture > 0.0) || focus->kind == CLI_FOCUS_DEPTH) {
+  if (!needs_depth(&job->accumulating)) {
     *depth = focus->depth;
     return CONIC_OK;
   }
@@ -125,7 +132,8 @@ static char *sums_name(const char *picture) {
   return name;
 }
 
-static conic_status keep_sums(accumulating *work, const conic_accumulation *sums) {
+static conic_status keep_sums(void *cookie, const conic_accumulation *sums) {
+  accumulating *work = cookie;
   const cli_render_job *job = work->job;
   if (!job->accumulating.is_resumable)
     return CONIC_OK;
@@ -183,7 +191,7 @@ static conic_status begin_sums(accumulating *work, conic_accumulation **sums) {
   unsigned planes = (work->job->planes | 1u << CONIC_PLANE_RGBA) & CONIC_ACCUMULATED_PLANES;
   conic_accumulation_facts facts;
   own->n_resumed = 0;
-  if (!own->resume_path)
+  if (!own->resume_path || !cli_team_is_first(work->session))
     return conic_accumulation_create(context, camera->width, camera->height, planes, 0, sums);
   char *path = sums_name(own->resume_path);
   conic_status status = path ? conic_accumulation_read(context, path, sums) : CONIC_ERROR_MEMORY;
@@ -216,6 +224,8 @@ static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
     options.shade = light_source_sample;
     options.sample_planes = 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO;
   }
+  if (work->job->sharing == CLI_SHARES_SAMPLES)
+    return cli_accumulate_together(work->session, work->job, &options, own->is_resumable ? keep_sums : NULL, sums);
   return conic_accumulate(work->session->context, &options, sums);
 }
 
@@ -230,8 +240,10 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
                                     conic_image *image, conic_render_statistics *statistics) {
   accumulating work = {.session = session, .job = job, .i_frame = i_frame, .image = image};
   conic_accumulation *sums = NULL;
-  conic_status status =
-      conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, &work.statistics);
+  conic_status status = CONIC_OK;
+  int is_first = job->sharing != CLI_SHARES_SAMPLES || cli_team_is_first(session);
+  if (is_first || needs_depth(&job->accumulating))
+    status = conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, &work.statistics);
   if (status == CONIC_OK)
     status = find_focus(session, job, image);
   work.frame_camera = *camera;
@@ -244,11 +256,11 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
     status = begin_sums(&work, &sums);
   if (status == CONIC_OK)
     status = run_samples(&work, sums);
-  if (status == CONIC_ERROR_CANCELLED && sums)
+  if (status == CONIC_ERROR_CANCELLED && sums && job->sharing != CLI_SHARES_SAMPLES)
     keep_stopped_sums(&work, sums);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && is_first)
     status = show_sums(&work, sums);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && is_first)
     status = keep_sums(&work, sums);
   if (status == CONIC_OK)
     tell_samples(session, &job->accumulating);

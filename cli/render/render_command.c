@@ -6,6 +6,8 @@
 #include "cli/host_keeps.h"
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
+#include "cli/render/sharing.h"
+#include "cli/team.h"
 #include "conic/gaussian_judge.h"
 #include "core/base/message.h"
 
@@ -239,6 +241,11 @@ static conic_status render_repeats(cli_session *session, cli_render_job *job, in
   return status;
 }
 
+/* Of windows, the picture comes together in the first process. */
+static int needs_image(const cli_session *session, const cli_render_job *job) {
+  return job->sharing != CLI_SHARES_WINDOWS || cli_sharing_has_picture(session, job);
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
@@ -250,11 +257,11 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     status = cli_choose_exposure(session, job, &camera);
   if (session->host || image->width != camera.width || image->height != camera.height)
     cli_host_release_image(session, image);
-  if (status == CONIC_OK && !conic_image_planes(image))
+  if (status == CONIC_OK && !conic_image_planes(image) && needs_image(session, job))
     status = cli_host_allocate_image(session, camera.width, camera.height, job->planes, image);
   if (status == CONIC_OK)
     status = render_repeats(session, job, i_frame, &camera, image, repeats);
-  if (status != CONIC_OK)
+  if (status != CONIC_OK || !cli_sharing_has_picture(session, job))
     return status;
   for (int i = 0; i < job->repeat; i++)
     job->frames_ms += repeats[i].ms.frame;
@@ -295,18 +302,55 @@ static void hash_image(const cli_session *session, cli_render_job *job, const co
   job->hash_ms = 1e3 * (cli_seconds() - start);
 }
 
+/* That of all frames is the first one's, whoever draws that. */
+static conic_status choose_first_exposure(cli_session *session, cli_render_job *job) {
+  conic_camera camera;
+  conic_status status = CONIC_OK;
+  if (job->sharing == CLI_SHARES_NOTHING || !job->is_exposure_automatic)
+    return CONIC_OK;
+  if (cli_team_is_first(session)) {
+    status = cli_accumulate_camera(session, job, job->frames.first - 1, &camera);
+    if (status == CONIC_OK)
+      status = cli_choose_exposure(session, job, &camera);
+  }
+  status = cli_sharing_end(session, job, status);
+  if (status == CONIC_OK)
+    session->team->broadcast(&job->options.exposure, sizeof job->options.exposure);
+  job->is_exposure_automatic = 0;
+  return status;
+}
+
+/* All frames, or of a team's those that this process takes. */
+static conic_status render_frames(cli_session *session, cli_render_job *job, conic_image *image,
+                                  conic_render_statistics *repeats) {
+  cli_frame_turns turns;
+  conic_status status = CONIC_OK;
+  cli_frame_turns_begin(session, job, &turns);
+  for (int i; status == CONIC_OK && (i = cli_frame_turns_next(session, job, &turns)) >= 0;) {
+    double start = cli_seconds();
+    if (cli_frames_are_many(job))
+      cli_session_part(session, job->is_turntable ? "frame" : "view", i + 1, turns.n_frames);
+    status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, image, repeats);
+    if (job->sharing == CLI_SHARES_FRAMES)
+      cli_sharing_note(session, job, "frame", (uint64_t)i, start, 0);
+  }
+  return status;
+}
+
 static int render_scene(cli_session *session, cli_render_job *job) {
   conic_image image;
   int exit_code = CLI_DONE;
   memset(&image, 0, sizeof image);
   conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
   conic_status status = repeats ? CONIC_OK : CONIC_ERROR_MEMORY;
-  for (int i = 0, n = cli_frames_count(job); i < n && status == CONIC_OK; i++) {
-    if (cli_frames_are_many(job))
-      cli_session_part(session, job->is_turntable ? "frame" : "view", i + 1, n);
-    status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, &image, repeats);
-  }
-  if (status == CONIC_OK) {
+  status = cli_sharing_end(session, job, status);
+  if (status == CONIC_OK)
+    status = choose_first_exposure(session, job);
+  if (status == CONIC_OK)
+    status = cli_sharing_end(session, job, render_frames(session, job, &image, repeats));
+  if (status == CONIC_OK)
+    cli_sharing_gather(session, job);
+  if (status == CONIC_OK && cli_team_is_first(session)) {
     hash_image(session, job, &image);
     job->total_ms = 1e3 * (cli_seconds() - job->start_seconds);
     cli_render_tell(session, job);
@@ -344,15 +388,20 @@ static int run(cli_session *session, int argc, char **argv) {
         job.top.is_wanted ? cli_top_check_formats(session->context, &job) : check_formats(session, &job);
     if (status == CONIC_OK)
       status = cli_scene_begin(session, &job);
-    if (status == CONIC_OK && cli_render_views_check(session, &job) != CLI_DONE)
+    if (status == CONIC_OK &&
+        (cli_render_views_check(session, &job) != CLI_DONE || cli_sharing_choose(session, &job) != CLI_DONE))
       status = CONIC_ERROR_ARGUMENT;
     job.begun_seconds = cli_seconds();
-    if (status == CONIC_OK)
+    if (status == CONIC_OK && !cli_sharing_is_idle(session, &job))
       status = cli_scene_open(session, &job);
-    exit_code = status != CONIC_OK  ? cli_exit_of(status)
-                : job.top.is_wanted ? cli_top_render(session, &job)
-                                    : render_scene(session, &job);
+    if (status == CONIC_OK)
+      cli_sharing_settle(&job);
+    cli_team_trace(session, "open", "scene", 0, job.begun_seconds, 0);
+    exit_code = cli_exit_of(status);
+    if (status == CONIC_OK && !cli_sharing_is_idle(session, &job))
+      exit_code = job.top.is_wanted ? cli_top_render(session, &job) : render_scene(session, &job);
     cli_scene_release(session, &job);
+    cli_sharing_release(&job);
   }
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;
@@ -360,6 +409,7 @@ static int run(cli_session *session, int argc, char **argv) {
 
 const cli_command cli_render = {
     .name = "render",
+    .is_shared = 1,
     .summary = "draws splats, points or meshes into pictures",
     .usage = "conic render IN… -o OUT [options]",
     .run = run,

@@ -22,6 +22,11 @@ typedef struct cli_frames {
   int first, last, step, is_given;
 } cli_frames;
 
+/* What of a render a team shares (cli/render/sharing.h), and what each process had to do with it. */
+typedef enum cli_sharing { CLI_SHARES_NOTHING, CLI_SHARES_FRAMES, CLI_SHARES_SAMPLES, CLI_SHARES_WINDOWS } cli_sharing;
+
+typedef struct cli_shares cli_shares;
+
 typedef struct cli_render_job {
   /* What was asked for. */
   const char **inputs;
@@ -102,6 +107,13 @@ typedef struct cli_render_job {
   double begun_seconds;                /* when reading began */
   conic_cryptomatte_manifest manifest; /* of the last image */
   uint64_t hashes[CONIC_N_PLANES];     /* of the last image, where they are reported */
+
+  /* Of a team. */
+  cli_sharing sharing;
+  uint64_t n_units; /* that this process did, */
+  double busy_seconds;
+  cli_shares *shares; /* and all processes */
+  int n_shares;
 } cli_render_job;
 
 /* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */

@@ -4,6 +4,8 @@
 
 #include "cli/render/backdrop.h"
 #include "cli/render/lit_picture.h"
+#include "cli/render/sharing.h"
+#include "cli/render/windows_team.h"
 #include "core/files/disk.h"
 
 /* The deadline counts from the start of the program's work, not of this picture. */
@@ -22,7 +24,11 @@ conic_status cli_render_picture(cli_session *session, cli_render_job *job, const
   if (job->deadline > 0.0)
     job->view.seconds = seconds_left(job);
   conic_status status =
-      conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, statistics);
+      job->sharing == CLI_SHARES_WINDOWS
+          ? cli_draw_together(session, job, camera, image, statistics)
+          : conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, statistics);
+  if (!cli_sharing_has_picture(session, job))
+    return status;
   if (status == CONIC_OK)
     status = cli_light_picture(session, job, camera, image);
   if (status == CONIC_OK)

@@ -4,6 +4,7 @@
 #include "cli/color_options.h"
 #include "cli/render/frames.h"
 #include "cli/render/light_options.h"
+#include "cli/render/sharing.h"
 #include "cli/render/views.h"
 #include "cli/source_facts.h"
 #include "cli/tell.h"
@@ -213,6 +214,7 @@ int cli_render_report(cli_session *session, const cli_render_job *job, const con
   conic_status status = report_counts(json, job);
   report_settings(json, job);
   report_hashes(json, job, image);
+  cli_sharing_report(json, job);
   report_times(json, job);
   exit_code = cli_json_finish(file);
   return status == CONIC_OK ? exit_code : cli_exit_of(status);

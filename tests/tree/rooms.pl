@@ -20,8 +20,9 @@ my %may_include = (
   opencl => [qw(conic core raster lod gaussians)],
   cli => [qw(conic core raster lod surface gaussians lighting judge source opencl accumulation)],
   bench => [qw(conic core raster lod surface gaussians lighting source opencl accumulation cli tests)],
+  mpi => [qw(conic core cli)],
   examples => [qw(conic)],
-  tests => [qw(conic core raster oracle lod surface gaussians lighting judge source opencl accumulation cli bench)],
+  tests => [qw(conic core raster oracle lod surface gaussians lighting judge source opencl accumulation cli mpi bench)],
 );
 my @library = qw(include core raster oracle lod surface gaussians lighting judge source opencl accumulation);
 my %is_folder = map { s{.*/}{}r => 1 } keys %may_include;

@@ -45,6 +45,7 @@ raster/a.c|char *p = malloc(3);
 raster/a.c|fprintf(stderr, "text");
 core/a.cpp|printf("text");
 core/a.c|exit(1);
+cli/a.c|#include "mpi/ranks.h"
 END
 put core/a_bridge.c 'p = malloc(3); exit(1);'
 expect peace

@@ -1,0 +1,142 @@
+#include "cli/render/sharing.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/render/frames.h"
+#include "cli/team.h"
+#include "source/source_parts.h"
+
+struct cli_shares {
+  uint64_t n_units, sent_bytes, received_bytes, peak_bytes;
+  double waited_seconds, busy_seconds;
+};
+
+static int is_stream(const char *path) {
+  return strcmp(path, "-") == 0;
+}
+
+static int check_streams(const cli_render_job *job) {
+  for (int i = 0; i < job->n_inputs; i++)
+    if (is_stream(job->inputs[i]))
+      return cli_usage("render: several processes cannot share standard input; give files");
+  for (int i = 0; i < job->n_outputs; i++)
+    if (is_stream(job->outputs[i]) && job->sharing == CLI_SHARES_FRAMES)
+      return cli_usage("render: several processes cannot share standard output; give files with -o");
+  return CLI_DONE;
+}
+
+int cli_sharing_choose(const cli_session *session, cli_render_job *job) {
+  int n = cli_frames_count(job);
+  job->sharing = CLI_SHARES_NOTHING;
+  if (!cli_team_is_shared(session) || job->top.is_wanted)
+    return CLI_DONE;
+  if (n >= session->team->count || (n > 1 && !job->accumulating.n_samples))
+    job->sharing = CLI_SHARES_FRAMES;
+  else if (job->accumulating.n_samples)
+    job->sharing = CLI_SHARES_SAMPLES;
+  else if (!(job->abilities & (CONIC_SOURCE_STREAMS | CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_CLUSTERS)) &&
+           !job->progressive_path && !job->overdraw_path)
+    job->sharing = CLI_SHARES_WINDOWS;
+  if (job->sharing == CLI_SHARES_SAMPLES && job->accumulating.seconds > 0.0)
+    return cli_usage("render: what --time ends depends on the number of processes; give --noise or a count");
+  if (job->sharing == CLI_SHARES_SAMPLES && job->accumulating.preview_seconds > 0.0)
+    cli_note(session, "--preview: the samples come together at the end only");
+  return job->sharing == CLI_SHARES_NOTHING ? CLI_DONE : check_streams(job);
+}
+
+void cli_sharing_settle(cli_render_job *job) {
+  if (job->sharing == CLI_SHARES_WINDOWS && !conic_source_has_windows(job->source, job->renderer))
+    job->sharing = CLI_SHARES_NOTHING;
+}
+
+int cli_sharing_is_idle(const cli_session *session, const cli_render_job *job) {
+  return job->sharing == CLI_SHARES_NOTHING && !cli_team_is_first(session);
+}
+
+int cli_sharing_has_picture(const cli_session *session, const cli_render_job *job) {
+  return job->sharing <= CLI_SHARES_FRAMES || cli_team_is_first(session);
+}
+
+void cli_frame_turns_begin(const cli_session *session, const cli_render_job *job, cli_frame_turns *turns) {
+  *turns = (cli_frame_turns){.n_frames = cli_frames_count(job), .most = cli_frames_count(job)};
+  if (job->sharing != CLI_SHARES_FRAMES)
+    return;
+  int count = session->team->count;
+  if (session->team->index == 0)
+    turns->most = (turns->n_frames + count - 1) / count - 1;
+  session->team->share((uint64_t)turns->n_frames - 1, NULL, NULL);
+}
+
+int cli_frame_turns_next(const cli_session *session, const cli_render_job *job, cli_frame_turns *turns) {
+  if (job->sharing != CLI_SHARES_FRAMES)
+    return turns->n_taken < turns->n_frames ? turns->n_taken++ : -1;
+  uint64_t unit = turns->n_taken < turns->most ? session->team->next() : CLI_NO_UNIT;
+  if (unit != CLI_NO_UNIT) {
+    turns->n_taken++;
+    return (int)unit;
+  }
+  int is_last = session->team->index == 0 && !turns->has_ended;
+  turns->has_ended = 1;
+  return is_last ? turns->n_frames - 1 : -1;
+}
+
+conic_status cli_sharing_end(const cli_session *session, const cli_render_job *job, conic_status status) {
+  if (job->sharing == CLI_SHARES_NOTHING)
+    return status;
+  if (status != CONIC_OK)
+    session->team->stop();
+  int exit_code = cli_team_agree(session, cli_exit_of(status));
+  return status != CONIC_OK || exit_code == CLI_DONE ? status : CONIC_ERROR_CANCELLED;
+}
+
+void cli_sharing_note(const cli_session *session, cli_render_job *job, const char *name, uint64_t number, double start,
+                      uint64_t sent_bytes) {
+  job->n_units++;
+  job->busy_seconds += cli_seconds() - start;
+  cli_team_trace(session, "unit", name, number, start, sent_bytes);
+}
+
+/* --- the report --- */
+
+void cli_sharing_gather(const cli_session *session, cli_render_job *job) {
+  cli_team *team = session->team;
+  if (job->sharing == CLI_SHARES_NOTHING)
+    return;
+  cli_shares own = {.n_units = job->n_units, .peak_bytes = cli_peak_rss_bytes(), .busy_seconds = job->busy_seconds};
+  team->count_traffic(&own.sent_bytes, &own.received_bytes, &own.waited_seconds);
+  size_t *sizes = calloc((size_t)team->count, sizeof *sizes);
+  if (sizes)
+    job->shares = team->gather(&own, sizeof own, sizes);
+  job->n_shares = job->shares ? team->count : 0;
+  free(sizes);
+}
+
+static const char *name_sharing(cli_sharing sharing) {
+  return sharing == CLI_SHARES_FRAMES ? "frames" : sharing == CLI_SHARES_SAMPLES ? "samples" : "windows";
+}
+
+void cli_sharing_report(cli_json *json, const cli_render_job *job) {
+  if (!job->n_shares)
+    return;
+  cli_json_object(json, "team");
+  cli_json_text(json, "shares", name_sharing(job->sharing));
+  cli_json_array(json, "processes");
+  for (int i = 0; i < job->n_shares; i++) {
+    const cli_shares *s = &job->shares[i];
+    cli_json_object(json, NULL);
+    cli_json_count(json, "units", s->n_units);
+    cli_json_number(json, "busy_ms", 1e3 * s->busy_seconds);
+    cli_json_number(json, "waited_ms", 1e3 * s->waited_seconds);
+    cli_json_count(json, "sent_bytes", s->sent_bytes);
+    cli_json_count(json, "received_bytes", s->received_bytes);
+    cli_json_count(json, "peak_rss_bytes", s->peak_bytes);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+  cli_json_close(json);
+}
+
+void cli_sharing_release(cli_render_job *job) {
+  free(job->shares);
+}

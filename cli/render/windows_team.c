@@ -1,0 +1,197 @@
+#include "cli/render/windows_team.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/render/sharing.h"
+#include "cli/team.h"
+#include "core/image/image_common.h"
+#include "raster/frame/statistics.h"
+#include "source/source_parts.h"
+
+/* Windows a process: so many that those who are early have something to take, so few that the splats, which each
+ * projects, are not most of the work. */
+enum { WINDOWS_EACH = 6, LEAST_SIDE = 64 };
+
+/* What is handed over with a window's pixels. */
+typedef struct window_result {
+  uint64_t i_window, fragments, pixels_covered;
+} window_result;
+
+typedef struct window_work {
+  cli_session *session;
+  cli_team *team;
+  cli_render_job *job;
+  conic_source_windows windows;
+  conic_window *list; /* the hardest first */
+  double *weights;
+  size_t n;
+  unsigned planes;
+  conic_image *image; /* of the first process: the whole */
+  uint64_t fragments, pixels_covered;
+  conic_render_statistics statistics;
+} window_work;
+
+/* --- the list --- */
+
+static int round_up(double length) {
+  int side = (int)length;
+  side = side < LEAST_SIDE ? LEAST_SIDE : side;
+  return (side + CONIC_WINDOW_STEP - 1) / CONIC_WINDOW_STEP * CONIC_WINDOW_STEP;
+}
+
+/* Squares, as far as bands and the picture's borders have them be. */
+static conic_status list_windows(window_work *w, int side) {
+  const conic_camera *camera = &w->windows.camera;
+  int rows = w->windows.band_rows;
+  size_t columns = (size_t)((camera->width + side - 1) / side), n_bands = (size_t)((camera->height + rows - 1) / rows),
+         most = columns * n_bands * (size_t)((rows + side - 1) / side);
+  w->list = calloc(most, sizeof *w->list);
+  w->weights = calloc(most, sizeof *w->weights);
+  if (!w->list || !w->weights)
+    return CONIC_ERROR_MEMORY;
+  for (int band = 0; band < camera->height; band += rows) {
+    int band_end = camera->height - band < rows ? camera->height : band + rows;
+    for (int y = band; y < band_end; y += side)
+      for (int x = 0; x < camera->width; x += side)
+        w->list[w->n++] = (conic_window){x, camera->width - x < side ? camera->width : x + side, y,
+                                         band_end - y < side ? band_end : y + side};
+  }
+  return CONIC_OK;
+}
+
+/* The hardest first, so that the last ones, which others wait for, are easy; windows of one weight stay in order. */
+static void order_windows(window_work *w) {
+  conic_source_windows_weigh(&w->windows, w->list, w->n, w->weights);
+  for (size_t i = 1; i < w->n; i++) {
+    conic_window window = w->list[i];
+    double weight = w->weights[i];
+    size_t at = i;
+    for (; at > 0 && w->weights[at - 1] < weight; at--) {
+      w->list[at] = w->list[at - 1];
+      w->weights[at] = w->weights[at - 1];
+    }
+    w->list[at] = window;
+    w->weights[at] = weight;
+  }
+}
+
+static conic_status plan_windows(window_work *w) {
+  const conic_camera *camera = &w->windows.camera;
+  double pixels = (double)camera->width * (double)camera->height / (double)(w->team->count * WINDOWS_EACH), side = 1.0;
+  while (side * side < pixels)
+    side += CONIC_WINDOW_STEP;
+  conic_status status = list_windows(w, round_up(side));
+  if (status == CONIC_OK)
+    order_windows(w);
+  return status;
+}
+
+/* --- pixels on their way --- */
+
+static size_t plane_bytes(conic_plane plane) {
+  return 4 * (size_t)conic_plane_describe(plane)->n_channels;
+}
+
+static size_t window_bytes(const window_work *w, const conic_window *window) {
+  size_t n = 0;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    n += w->planes >> i & 1 ? plane_bytes((conic_plane)i) : 0;
+  return n * (size_t)(window->x_end - window->x_begin) * (size_t)(window->y_end - window->y_begin);
+}
+
+/* On the first process, of each window. */
+static void place_window(void *cookie, int from, void *bytes, size_t n_bytes) {
+  window_work *w = cookie;
+  window_result result;
+  double start = cli_seconds();
+  const char *pixels = (const char *)bytes + sizeof result;
+  memcpy(&result, bytes, sizeof result);
+  const conic_window *window = &w->list[result.i_window];
+  size_t width = (size_t)(window->x_end - window->x_begin);
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    size_t size = plane_bytes((conic_plane)i);
+    for (int y = window->y_begin; y < window->y_end && w->planes >> i & 1; y++, pixels += width * size)
+      memcpy((char *)w->image->planes[i] + ((size_t)y * (size_t)w->image->width + (size_t)window->x_begin) * size,
+             pixels, width * size);
+  }
+  w->fragments += result.fragments;
+  w->pixels_covered += result.pixels_covered;
+  cli_team_trace(w->session, "join", "window", result.i_window, start, n_bytes);
+  (void)from;
+}
+
+static conic_status hand_window(const window_work *w, size_t i_window, const conic_image *pixels,
+                                const conic_render_statistics *statistics, size_t *n_bytes) {
+  window_result result = {i_window, statistics->fragments, statistics->pixels_covered};
+  size_t at = sizeof result, n = conic_image_pixels(pixels);
+  *n_bytes = sizeof result + window_bytes(w, &w->list[i_window]);
+  char *bytes = malloc(*n_bytes);
+  if (!bytes)
+    return CONIC_ERROR_MEMORY;
+  memcpy(bytes, &result, sizeof result);
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (w->planes >> i & 1) {
+      memcpy(bytes + at, pixels->planes[i], n * plane_bytes((conic_plane)i));
+      at += n * plane_bytes((conic_plane)i);
+    }
+  w->team->hand(bytes, *n_bytes);
+  free(bytes);
+  return CONIC_OK;
+}
+
+/* --- drawing --- */
+
+static conic_status draw_one(window_work *w, size_t i_window) {
+  const conic_window *window = &w->list[i_window];
+  conic_context *context = w->session->context;
+  conic_image pixels;
+  size_t n_bytes = 0;
+  double start = cli_seconds();
+  conic_status status = conic_image_allocate(context, window->x_end - window->x_begin, window->y_end - window->y_begin,
+                                             w->planes, &pixels);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_source_windows_draw(&w->windows, window, &pixels, &w->statistics);
+  if (status == CONIC_OK)
+    status = hand_window(w, i_window, &pixels, &w->statistics, &n_bytes);
+  conic_image_release(context, &pixels);
+  cli_sharing_note(w->session, w->job, "window", i_window, start, n_bytes);
+  return status;
+}
+
+/* The first one is the first process's: it has statistics of its own, then. */
+static conic_status draw_given(window_work *w) {
+  uint64_t unit;
+  w->team->share((uint64_t)w->n - 1, w->team->index == 0 ? place_window : NULL, w);
+  conic_status status = w->team->index == 0 ? draw_one(w, 0) : CONIC_OK;
+  while (status == CONIC_OK && (unit = w->team->next()) != CLI_NO_UNIT) {
+    status = conic_progress(w->session->context, "draw", (double)(unit + 1) / (double)w->n);
+    if (status == CONIC_OK)
+      status = draw_one(w, (size_t)unit + 1);
+  }
+  return status;
+}
+
+conic_status cli_draw_together(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                               conic_image *image, conic_render_statistics *statistics) {
+  window_work w = {.session = session, .team = session->team, .job = job, .image = image};
+  double start = cli_seconds();
+  w.planes = job->planes & CONIC_DRAWN_PLANES;
+  conic_status status =
+      conic_source_windows_begin(job->source, job->renderer, camera, &job->options, &job->view, &w.windows);
+  if (status == CONIC_OK)
+    status = plan_windows(&w);
+  status = cli_sharing_end(session, job, status);
+  if (status == CONIC_OK)
+    status = cli_sharing_end(session, job, draw_given(&w));
+  if (status == CONIC_OK && session->team->index == 0)
+    status = conic_source_windows_count(&w.windows, &w.statistics);
+  *statistics = w.statistics;
+  statistics->fragments = w.fragments;
+  statistics->pixels_covered = w.pixels_covered;
+  statistics->ms.frame = 1e3 * (cli_seconds() - start);
+  free(w.list);
+  free(w.weights);
+  return status;
+}

@@ -1,0 +1,12 @@
+/* One picture over a team's processes, in windows. */
+#ifndef CONIC_WINDOWS_TEAM_H
+#define CONIC_WINDOWS_TEAM_H
+
+#include "cli/render/render_job.h"
+
+/* Collective: conic_source_draw, after which the first process has the picture and the statistics, to the bits of one
+ * process. The others' image is not looked at. */
+conic_status cli_draw_together(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                               conic_image *image, conic_render_statistics *statistics);
+
+#endif

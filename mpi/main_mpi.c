@@ -1,0 +1,64 @@
+/* conic-mpi: the program over the ranks of an MPI job. */
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/shell.h"
+#include "cli/team.h"
+#include "core/base/machine.h"
+#include "mpi/ranks.h"
+
+/* Whether all ranks work on it: for anything else than a shared command, and for its help, the first does. */
+static int is_shared(int argc, char **argv) {
+  const cli_command *command = argc > 1 ? cli_find_command(argv[1]) : NULL;
+  for (int i = 2; i < argc; i++)
+    if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0)
+      return 0;
+  return command && command->is_shared;
+}
+
+static void tell_traffic(uint64_t *sent_bytes, uint64_t *received_bytes, double *waited_seconds) {
+  ranks_traffic traffic = ranks_traffic_now();
+  *sent_bytes = traffic.sent_bytes;
+  *received_bytes = traffic.received_bytes;
+  *waited_seconds = traffic.waited_seconds;
+}
+
+static void note_nothing(const char *kind, const char *name, uint64_t number, double from, double to,
+                         uint64_t sent_bytes) {
+  (void)kind, (void)name, (void)number, (void)from, (void)to, (void)sent_bytes;
+}
+
+static int run(int argc, char **argv) {
+  int threads = conic_machine_threads() / ranks_on_machine();
+  cli_team team = {.index = ranks_index(),
+                   .count = ranks_count(),
+                   .threads = threads > 0 ? threads : 1,
+                   .share = ranks_share,
+                   .next = ranks_next,
+                   .stop = ranks_stop,
+                   .allow = ranks_allow,
+                   .hand = ranks_hand,
+                   .agree = ranks_agree,
+                   .broadcast = ranks_broadcast,
+                   .gather = ranks_gather,
+                   .send = ranks_send,
+                   .receive = ranks_receive,
+                   .count_traffic = tell_traffic,
+                   .trace = note_nothing};
+  const cli_session session = {.team = &team};
+  int exit_code = CLI_DONE;
+  cli_team_join(&team);
+  if (is_shared(argc, argv))
+    exit_code = cli_program(argc, argv, &team);
+  else if (team.index == 0)
+    exit_code = cli_program(argc, argv, NULL);
+  return cli_team_agree(&session, exit_code);
+}
+
+int main(int argc, char **argv) {
+  ranks_begin(&argc, &argv);
+  char **arguments = cli_shell_begin(&argc, argv);
+  int exit_code = arguments ? run(argc, arguments) : cli_error(CLI_RESOURCE, "out of memory");
+  ranks_end();
+  return exit_code;
+}

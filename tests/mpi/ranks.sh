@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# conic-mpi: what several ranks draw together has the bits of one, and what goes wrong on any rank is told once.
+set -uo pipefail
+
+source "$1/tests/support/program.bash"
+conic_mpi=$3/bin/conic-mpi
+if [[ ! -x $conic_mpi ]] || ! command -v mpirun > /dev/null; then
+  echo "skipped: there is no conic-mpi, or no mpirun"
+  exit 77
+fi
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+export OMPI_MCA_plm=isolated OMPI_MCA_pml=ob1 OMPI_MCA_btl=self,vader # this machine alone, which it need not look for
+export OMPI_MCA_btl_vader_single_copy_mechanism=none                  # which containers forbid
+export LSAN_OPTIONS=detect_leaks=0                                    # MPI's own
+
+# ranks N EXIT_CODE ARGUMENTS …: with what it prints in `err`, or in the file that $err names.
+ranks() {
+  local n=$1 wanted=$2 got to=${err:-err}
+  mpirun -n "$n" "$conic_mpi" "${@:3}" > "$to.out" 2> "$to" < /dev/null
+  got=$?
+  [[ $got -eq $wanted ]] || fail "$n ranks: conic-mpi ${*:3}: exit code $got instead of $wanted: $(head -c 600 "$to")"
+  [[ $got -eq $wanted ]]
+}
+hashes() { # JSON FILE: of all planes
+  sed -n '/"hash": {/,/}/p' "$1"
+}
+same_hashes() { # JSON FILE, JSON FILE, WHAT
+  [[ -n $(hashes "$1") && $(hashes "$1") == "$(hashes "$2")" ]] || fail "$3 has other bits"
+}
+
+mkdir alone together
+"$conic" make knot -n 3000 -o knot.ply
+frames=(render knot.ply --plain --size 48x32 --turntable 5 --exposure auto --threads 1)
+samples=(render knot.ply --plain --size 48x32 --accumulate 20 --aperture 0.2 --aov rgba,Z,samples,variance --threads 1)
+
+# What goes wrong is told in one line, whoever it befell. Their mpiruns take a second each to end, so together.
+told_once() { # ERR, RANKS, EXIT_CODE, WORDS, ARGUMENTS …
+  err=$1 ranks "$2" "$3" "${@:5}" || return 1
+  [[ $(grep -c '^conic: ' "$1") -eq 1 ]] && grep -q -- "^conic: error: .*$4" "$1" && return
+  fail "told is not once $4: $(cat "$1")"
+  return 1
+}
+told_once err1 3 3 nothing.ply render nothing.ply -o a.pfm & jobs=$!
+told_once err2 2 2 '--size' render knot.ply --sise 3 -o a.pfm & jobs+=" $!"
+told_once err3 2 4 '/f.000[1345].pfm' "${frames[@]}" -o nowhere/f.pfm & jobs+=" $!"
+told_once err4 2 2 'standard output' "${frames[@]}" -o - & jobs+=" $!"
+told_once err5 2 2 '--time' "${samples[@]}" --time 3 -o a.exr & jobs+=" $!"
+
+# Frames, the exposure being the first one's whoever draws it
+run_as_typed 0 "${frames[@]}" -o alone/f.pfm --json alone.json
+ranks 3 0 "${frames[@]}" -o together/f.pfm --json together.json
+diff -r alone together || fail "frames of three ranks have other bits"
+same_hashes alone.json together.json "the last frame"
+[[ $(grep -c '"busy_ms"' together.json) -eq 3 ]] || fail "the report is not about three ranks: $(cat together.json)"
+grep -o '"units": [0-9]*' together.json | awk '{n += $2} END {exit n != 5}' || fail "frames were drawn twice, or not"
+
+# Samples, however they are shared out, with a focus that the picture shows, and with an end that the noise decides
+run_as_typed 0 "${samples[@]}" -o alone.exr --json alone.json
+ranks 2 0 "${samples[@]}" -o together.exr --json together.json
+same_hashes alone.json together.json "the mean of 20 samples on two ranks"
+run_as_typed 0 "${samples[@]}" --noise 0.006 --accumulate 70 --resumable -o alone.exr --json alone.json 2> /dev/null
+ranks 3 0 "${samples[@]}" --noise 0.006 --accumulate 70 --resumable -o together.exr --json together.json
+same_hashes alone.json together.json "the mean of samples up to a noise on three ranks"
+cmp alone.exr.sums together.exr.sums || fail "the sums that are kept differ"
+grep -q '"samples": 64' together.json || fail "the noise ends it elsewhere: $(grep '"samples": [0-9]' together.json)"
+
+for job in $jobs; do
+  wait "$job" || failures=$((failures + 1))
+done
+exit $((failures > 0))
