@@ -212,6 +212,10 @@ FILE *conic_output_stream(conic_output *output) {
   return output->stream;
 }
 
+const char *conic_output_temporary(const conic_output *output) {
+  return output->temporary_path;
+}
+
 conic_status conic_output_commit(conic_output *output) {
   conic_status status = CONIC_OK;
   int is_wrong = ferror(output->stream) || fflush(output->stream) != 0;

@@ -16,6 +16,9 @@ conic_status conic_output_open(conic_context *context, const char *path, conic_o
 /* Where to write; never null. */
 FILE *conic_output_stream(conic_output *output);
 
+/* Under which name it is written until then, for other processes that write to it, too; null: there is none. */
+const char *conic_output_temporary(const conic_output *output);
+
 /* Flushes, checks and renames; releases `output`, on failure too (then nothing new stands under PATH). Errors: IO. */
 conic_status conic_output_commit(conic_output *output);
 

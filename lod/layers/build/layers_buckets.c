@@ -1,11 +1,8 @@
 #include "lod/layers/build/layers_buckets.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
-#include "lod/layers/format/layers_key.h"
 
 /* So many bits of the keys part the samples at a time, fewer where there is little memory for open blocks. */
 enum { MOST_SPLIT_BITS = 12, LEAST_SPLIT_BITS = 4, LEAST_BLOCK = 32, MOST_BLOCK = 1024 };
@@ -148,63 +145,9 @@ static conic_status end_split(split *parts, size_t at) {
   return CONIC_OK;
 }
 
-/* From world units to steps of the grid. */
-typedef struct gridding {
-  double origin[3], quantum, last;
-} gridding;
-
-/* The sample's key, and, where it is bare, where in its steps it is. */
-static void place_sample(const gridding *grid, const conic_layers_block *block, const conic_layers_raw *raw,
-                         conic_layers_sample *sample) {
-  uint32_t steps[3];
-  sample->bare = raw->is_bare;
-  for (int axis = 0; axis < 3; axis++) {
-    double place = ((block->origin[axis] - grid->origin[axis]) + (double)raw->position[axis]) / grid->quantum;
-    double step = floor(place);
-    steps[axis] = (uint32_t)(step > 0.0 ? step < grid->last ? step : grid->last : 0.0);
-    int quarter = (int)(4.0 * (place - step));
-    if (raw->is_bare)
-      sample->bare = (uint8_t)(sample->bare | (quarter < 3 ? quarter : 3) << 2 * axis);
-  }
-  sample->key = conic_layers_key(steps[0], steps[1], steps[2]);
-}
-
-static conic_status split_block(const conic_layers_intake *intake, const gridding *grid,
-                                const conic_layers_block *block, const unsigned char *raws, conic_layers_sample *sample,
-                                split *parts) {
-  conic_status status = CONIC_OK;
-  for (size_t i = 0; i < block->count && status == CONIC_OK; i++) {
-    const conic_layers_raw *raw = conic_layers_raw_at(raws, intake->raw_bytes, i);
-    *sample = (conic_layers_sample){.normal = {raw->normal[0], raw->normal[1]},
-                                    .size = raw->size,
-                                    .color = {raw->color[0], raw->color[1], raw->color[2]}};
-    memcpy(sample + 1, raw + 1, intake->extra_bytes);
-    place_sample(grid, block, raw, sample);
-    status = add_to_cell(parts, cell_of_key(parts, sample->key), sample);
-  }
-  return status;
-}
-
-static conic_status split_all(const conic_layers_intake *intake, const gridding *grid, split *parts) {
-  conic_context *context = intake->context;
-  uint64_t offset = 0, n_done = 0;
-  conic_layers_block block;
-  int is_there = 1;
-  unsigned char *raws = conic_memory_allocate(context, CONIC_LAYERS_BLOCK, intake->raw_bytes);
-  conic_layers_sample *sample = conic_memory_allocate_zeroed(context, 1, parts->all->sample_bytes);
-  conic_status status = raws && sample ? CONIC_OK : CONIC_ERROR_MEMORY;
-  while (status == CONIC_OK) {
-    status = conic_layers_intake_read(intake, &offset, &block, raws, &is_there);
-    if (status != CONIC_OK || !is_there)
-      break;
-    status = split_block(intake, grid, &block, raws, sample, parts);
-    n_done += block.count;
-    if (status == CONIC_OK)
-      status = conic_progress(context, "sort", (double)n_done / (double)intake->n_samples);
-  }
-  conic_memory_release(context, raws);
-  conic_memory_release(context, sample);
-  return status;
+static conic_status take_placed(void *to, const conic_layers_sample *sample) {
+  split *parts = to;
+  return add_to_cell(parts, cell_of_key(parts, sample->key), sample);
 }
 
 typedef conic_status take_block(void *data, const unsigned char *samples, size_t n);
@@ -258,14 +201,27 @@ static conic_status refine(split *parts, size_t at, uint64_t most, unsigned char
   return status == CONIC_OK ? end_split(parts, at) : status;
 }
 
-static conic_status refine_all(split *parts, uint64_t most) {
+/* Whether a place in which a bucket has to end lies within it. */
+static int is_cut(const conic_layers_bucket *bucket, const conic_layers_cuts *cuts) {
+  size_t low = 0, high = cuts->n; /* of those not above the bucket's first key */
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (cuts->keys[middle] <= bucket->key)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < cuts->n && cuts->keys[low] - bucket->key < UINT64_C(1) << bucket->n_bits;
+}
+
+static conic_status refine_all(split *parts, uint64_t most, const conic_layers_cuts *cuts) {
   conic_layers_buckets *all = parts->all;
   conic_status status = CONIC_OK;
   unsigned char *block = conic_memory_allocate(all->context, block_bytes(all, all->block_samples), 1);
   if (!block)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < all->n && status == CONIC_OK;)
-    if (all->buckets[i].count > most)
+    if (all->buckets[i].count > most || is_cut(&all->buckets[i], cuts))
       status = refine(parts, i, most, block);
     else
       i++;
@@ -273,26 +229,24 @@ static conic_status refine_all(split *parts, uint64_t most) {
   return status;
 }
 
-conic_status conic_layers_buckets_fill(const conic_layers_intake *intake, const conic_layers_plan *plan,
-                                       const double origin[3], size_t memory_bytes, uint64_t most,
-                                       conic_layers_buckets *buckets) {
-  gridding grid = {.quantum = plan->quantum, .last = (double)((UINT64_C(1) << plan->bits) - 1)};
+conic_status conic_layers_buckets_fill(conic_context *context, const char *path, const conic_layers_feed *feed,
+                                       const conic_layers_plan *plan, const conic_layers_cuts *cuts,
+                                       size_t memory_bytes, uint64_t most, conic_layers_buckets *buckets) {
   size_t open_bytes = memory_bytes / 4;
   split parts;
-  memcpy(grid.origin, origin, sizeof grid.origin);
   memset(buckets, 0, sizeof *buckets);
-  buckets->context = intake->context;
+  buckets->context = context;
   buckets->sample_bytes = plan->sample_bytes;
-  conic_spool_begin(intake->context, intake->spool.path, memory_bytes - open_bytes, &buckets->spool);
+  conic_spool_begin(context, path, memory_bytes - open_bytes, &buckets->spool);
   conic_status status = create_split(buckets, open_bytes, &parts);
   if (status == CONIC_OK) {
-    begin_split(&parts, 0, 3 * plan->bits, intake->n_samples, most);
-    status = split_all(intake, &grid, &parts);
+    begin_split(&parts, 0, 3 * plan->bits, feed->n_samples, most);
+    status = feed->run(feed->from, take_placed, &parts);
   }
   if (status == CONIC_OK)
     status = end_split(&parts, 0);
   if (status == CONIC_OK)
-    status = refine_all(&parts, most);
+    status = refine_all(&parts, most, cuts);
   release_split(&parts);
   return status;
 }

@@ -2,8 +2,8 @@
 #ifndef CONIC_LAYERS_BUCKETS_H
 #define CONIC_LAYERS_BUCKETS_H
 
-#include "lod/layers/build/layers_intake.h"
-#include "lod/layers/build/layers_tree.h"
+#include "core/files/spool.h"
+#include "lod/layers/build/layers_place.h"
 
 /* The samples of a cell of the grid, or of those that coincide a part. */
 typedef struct conic_layers_bucket {
@@ -22,11 +22,18 @@ typedef struct conic_layers_buckets {
   conic_layers_bucket *buckets; /* ascending by key; none is empty */
 } conic_layers_buckets;
 
-/* Gives every sample of the intake its key on the grid and sorts them, until no bucket holds more than `most`. Samples
- * that coincide are halved as often as it takes. Errors: MEMORY, IO, CANCELLED. */
-conic_status conic_layers_buckets_fill(const conic_layers_intake *intake, const conic_layers_plan *plan,
-                                       const double origin[3], size_t memory_bytes, uint64_t most,
-                                       conic_layers_buckets *buckets);
+/* Keys, ascending, at which a bucket has to end if it has samples on both sides. */
+typedef struct conic_layers_cuts {
+  const uint64_t *keys;
+  size_t n;
+} conic_layers_cuts;
+
+/* Sorts the samples that the feed has, until no bucket holds more than `most`. Samples that coincide are halved as
+ * often as it takes. `path`: beside which the file lies; it must outlive the buckets. Errors: MEMORY, IO, the feed's.
+ */
+conic_status conic_layers_buckets_fill(conic_context *context, const char *path, const conic_layers_feed *feed,
+                                       const conic_layers_plan *plan, const conic_layers_cuts *cuts,
+                                       size_t memory_bytes, uint64_t most, conic_layers_buckets *buckets);
 void conic_layers_buckets_end(conic_layers_buckets *buckets);
 
 /* Copies the samples of some buckets in a row, and sorts them by key, those of one key as they came; both arrays have

@@ -11,15 +11,21 @@
 #include "core/base/vectors.h"
 #include "core/files/file.h"
 #include "core/splats/columns.h"
+#include "lod/layers/build/layers_exchange.h"
 #include "lod/layers/build/layers_file.h"
 #include "lod/layers/build/layers_intake.h"
 #include "lod/layers/build/layers_normals.h"
+#include "lod/layers/build/layers_team.h"
 
 struct conic_layers_builder {
   conic_context *context;
   char *path;
   conic_layers_options options;
+  const conic_team *team; /* null: one process builds all */
+  int has_united;
   conic_layers_intake intake;
+  conic_layers_shares shares;
+  conic_layers_arrivals arrivals;
   conic_layers_buckets buckets;
   conic_layers_forest forest;
   conic_layers_plan plan;
@@ -89,6 +95,12 @@ static conic_layers_growth plan_growth(const conic_layers_builder *builder) {
 
 conic_status conic_layers_builder_open(conic_context *context, const char *path, const conic_layers_options *options,
                                        conic_layers_builder **builder) {
+  return conic_layers_builder_open_team(context, path, options, NULL, builder);
+}
+
+conic_status conic_layers_builder_open_team(conic_context *context, const char *path,
+                                            const conic_layers_options *options, const conic_team *team,
+                                            conic_layers_builder **builder) {
   conic_zstd *zstd;
   *builder = NULL;
   conic_layers_options own;
@@ -110,13 +122,15 @@ conic_status conic_layers_builder_open(conic_context *context, const char *path,
   status = made->path ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     memcpy(made->path, path, n_path);
-    conic_output_sweep(context, path);
+    if (!team || team->index == 0)
+      conic_output_sweep(context, path);
     status = conic_layers_intake_begin(context, made->path, eighths_of_memory(made, 3), made->options.cutoff,
-                                       made->options.keeps_all, &made->intake);
+                                       made->options.keeps_all, team, &made->intake);
   }
-  if (status == CONIC_OK)
+  if (status == CONIC_OK) {
+    made->team = team;
     *builder = made;
-  else
+  } else
     conic_layers_builder_abandon(made);
   return status;
 }
@@ -124,6 +138,10 @@ conic_status conic_layers_builder_open(conic_context *context, const char *path,
 void conic_layers_builder_abandon(conic_layers_builder *builder) {
   if (!builder)
     return;
+  if (builder->team && !builder->has_united)
+    conic_layers_intake_unite(&builder->intake, CONIC_ERROR_CANCELLED);
+  conic_layers_shares_end(&builder->shares);
+  conic_layers_arrivals_end(&builder->arrivals);
   conic_layers_intake_end(&builder->intake);
   conic_layers_buckets_end(&builder->buckets);
   conic_layers_forest_end(&builder->forest);
@@ -138,6 +156,12 @@ conic_status conic_layers_builder_append(conic_layers_builder *builder, const co
   if (status == CONIC_OK)
     status = conic_layers_intake_append(&builder->intake, &close);
   conic_memory_release(builder->context, block);
+  return status;
+}
+
+conic_status conic_layers_builder_meet(conic_layers_builder *builder, const conic_splats *batch, int *has_colors) {
+  conic_status status = builder->team ? conic_layers_intake_meet(&builder->intake, batch, 0) : CONIC_OK;
+  *has_colors = builder->team ? builder->intake.has_colors : batch->color[0] != NULL;
   return status;
 }
 
@@ -255,19 +279,52 @@ static conic_status refuse_nothing(const conic_layers_builder *builder) {
   return CONIC_OK;
 }
 
+/* Where the samples come from that are sorted here: what was taken in, or, with a team, what has come then from all.
+ */
+static conic_status feed_samples(conic_layers_builder *builder, conic_layers_placing *placing,
+                                 conic_layers_feed *feed) {
+  const conic_layers_plan *plan = &builder->plan;
+  conic_layers_placing_init(&builder->intake, plan, builder->header.origin, "sort", placing);
+  conic_status status = conic_layers_shares_find(builder->team, placing, plan, least_in_chunk(plan), &builder->shares);
+  *feed = (conic_layers_feed){conic_layers_place_all, placing, builder->intake.n_samples};
+  if (status != CONIC_OK || !builder->team)
+    return status;
+  status = conic_layers_exchange(&builder->shares, placing, builder->path, eighths_of_memory(builder, 4),
+                                 &builder->arrivals);
+  conic_layers_intake_end(&builder->intake);
+  *feed = (conic_layers_feed){conic_layers_arrivals_run, &builder->arrivals, builder->arrivals.n_samples};
+  return status;
+}
+
+static conic_status sort_samples(conic_layers_builder *builder, const conic_layers_growth *growth) {
+  conic_layers_placing placing;
+  conic_layers_feed feed;
+  conic_status status = feed_samples(builder, &placing, &feed);
+  const conic_layers_cuts cuts = {builder->shares.own_keys, builder->shares.n_own};
+  if (status == CONIC_OK)
+    status = conic_layers_buckets_fill(builder->context, builder->path, &feed, &builder->plan, &cuts,
+                                       eighths_of_memory(builder, 3) / 2, growth->most, &builder->buckets);
+  conic_layers_intake_end(&builder->intake);
+  conic_layers_arrivals_end(&builder->arrivals);
+  return conic_team_agree(builder->team, status);
+}
+
 static conic_status build_layers(conic_layers_builder *builder) {
   conic_layers_growth growth;
-  conic_status status = refuse_nothing(builder);
+  conic_status status = CONIC_OK;
+  builder->has_united = 1;
+  if (builder->team)
+    status = conic_layers_intake_unite(&builder->intake, CONIC_OK);
+  if (status == CONIC_OK)
+    status = conic_team_agree(builder->team, refuse_nothing(builder));
   if (status == CONIC_OK)
     status = make_plan(builder);
   if (status == CONIC_OK) {
     growth = plan_growth(builder);
-    status = conic_layers_buckets_fill(&builder->intake, &builder->plan, builder->header.origin,
-                                       eighths_of_memory(builder, 3) / 2, growth.most, &builder->buckets);
+    status = sort_samples(builder, &growth);
   }
-  conic_layers_intake_end(&builder->intake);
   if (status == CONIC_OK)
-    status = conic_layers_forest_grow(&builder->plan, &builder->buckets, &growth, &builder->forest);
+    status = conic_layers_forest_grow(&builder->plan, &builder->buckets, &builder->shares, &growth, &builder->forest);
   conic_layers_buckets_end(&builder->buckets);
   return status;
 }
@@ -294,7 +351,7 @@ conic_status conic_layers_builder_finish(conic_layers_builder *builder, conic_la
   conic_status status = build_layers(builder);
   double built = conic_seconds_now();
   if (status == CONIC_OK)
-    status = conic_layers_write(builder->context, builder->path, &builder->forest, &builder->header);
+    status = conic_layers_write(builder->context, builder->path, builder->team, &builder->forest, &builder->header);
   if (status == CONIC_OK && statistics) {
     fill_statistics(builder, begun, built);
     *statistics = builder->statistics;

@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "lod/layers/build/layers_crown.h"
 #include "lod/layers/build/layers_waiting.h"
 #include "lod/layers/format/layers_axes.h"
 
@@ -26,6 +27,7 @@ typedef struct layers_part {
   size_t first, end;
   uint64_t n_samples;
   unsigned n_joins; /* with other parts */
+  int ends_limb;
   conic_layers_branch *branch;
   conic_layers_entry *nodes;
   size_t n_nodes;
@@ -49,16 +51,20 @@ typedef struct hand {
 typedef struct growing {
   const conic_layers_plan *plan;
   const conic_layers_buckets *buckets;
+  const conic_layers_shares *shares;
   const conic_layers_growth *growth;
   conic_layers_forest *forest;
   conic_layers_waiting waiting;
+  uint64_t n_samples; /* in the buckets */
   uint64_t most_in_part;
   size_t n_chunks, chunk_room, n_parts, part_room;
   chunk *chunks;
   layers_part *parts;
   hand *hands;
   stack crown;
-  size_t end_part; /* of those that grow now */
+  size_t n_limbs;
+  uint64_t *limb_ends; /* how many nodes there are when a limb has grown */
+  size_t end_part;     /* of those that grow now */
   atomic_size_t next_part;
   atomic_int is_stopped;
   uint64_t n_grown;
@@ -191,7 +197,7 @@ static void grow_parts(void *data, size_t i_hand, int i_thread) {
     layers_part *p = &g->parts[i];
     p->status = CONIC_OK;
     if (i_thread == 0)
-      p->status = conic_progress(g->plan->context, "build", (double)g->n_grown / (double)g->plan->n_samples);
+      p->status = conic_progress(g->plan->context, "build", (double)g->n_grown / (double)g->n_samples);
     if (p->status == CONIC_OK)
       p->status = grow_part(g, p, &g->hands[i_hand]);
     if (p->status != CONIC_OK)
@@ -220,6 +226,8 @@ static conic_status collect_part(growing *g, layers_part *p) {
   if (status == CONIC_OK)
     status = put_nodes(g, h->shelf.nodes, h->shelf.n_nodes);
   h->shelf.n_nodes = h->shelf.n_put = 0;
+  if (p->ends_limb)
+    g->limb_ends[g->n_limbs++] = conic_spool_bytes(&g->forest->nodes) / sizeof *p->nodes;
   return status;
 }
 
@@ -239,27 +247,37 @@ static conic_status grow_all(growing *g) {
   return status == CONIC_OK ? conic_progress(g->plan->context, "build", 1.0) : status;
 }
 
+/* What all workers have counted goes to the first one's. */
+static void add_up(growing *g) {
+  for (int i = 0; i < g->growth->n_workers; i++)
+    for (int k = 0; k < CONIC_LAYERS_MOST_ATTRIBUTES; k++)
+      g->forest->part_bytes[k] += g->hands[i].shelf.part_bytes[k];
+  for (int i = 1; i < g->growth->n_workers; i++)
+    conic_layers_worker_add_outlines(g->hands[0].worker, conic_layers_worker_outlines(g->hands[i].worker));
+}
+
 /* The lower median of all samples' outlines. */
 static double median_outline(const growing *g) {
+  const uint64_t *outlines = conic_layers_worker_outlines(g->hands[0].worker);
   uint64_t before = 0;
   uint16_t code = 0;
   for (uint32_t i = 0; i < CONIC_LAYERS_OUTLINES && before <= (g->plan->n_samples - 1) / 2; i++) {
     code = (uint16_t)i;
-    for (int k = 0; k < g->growth->n_workers; k++)
-      before += conic_layers_worker_outlines(g->hands[k].worker)[i];
+    before += outlines[i];
   }
   return (double)conic_layers_size_of(code);
 }
 
-/* The root's own cloud. */
-static conic_status finish_root(growing *g) {
+/* The limbs of all, and then the root's own cloud. */
+static conic_status finish_tree(growing *g, conic_status status) {
   hand *h = &g->hands[0];
-  conic_status status = conic_layers_finish_root(h->worker, g->crown.branches[0], &h->shelf);
+  if (g->shares->team)
+    return conic_layers_crown_join(g->shares, status, h->worker, &h->shelf, &g->waiting, g->crown.branches, &g->crown.n,
+                                   g->limb_ends, g->forest);
+  if (status == CONIC_OK)
+    status = conic_layers_finish_root(h->worker, g->crown.branches[0], &h->shelf);
   if (status == CONIC_OK)
     status = conic_layers_shelf_flush(&h->shelf);
-  for (int i = 0; i < g->growth->n_workers; i++)
-    for (int k = 0; k < CONIC_LAYERS_MOST_ATTRIBUTES; k++)
-      g->forest->part_bytes[k] += g->hands[i].shelf.part_bytes[k];
   return status == CONIC_OK ? put_nodes(g, h->shelf.nodes, h->shelf.n_nodes) : status;
 }
 
@@ -308,36 +326,58 @@ static void release_growing(growing *g) {
   conic_memory_release(context, g->hands);
   conic_memory_release(context, g->parts);
   conic_memory_release(context, g->chunks);
+  conic_memory_release(context, g->limb_ends);
   conic_layers_waiting_end(&g->waiting);
 }
 
-/* Chunks and parts, of all buckets. */
+/* Chunks and parts, of all buckets, limb by limb. */
 static conic_status list_all_parts(growing *g) {
-  uint64_t even = g->plan->n_samples / (PARTS_A_THREAD * (uint64_t)g->growth->n_workers);
+  const conic_layers_shares *shares = g->shares;
+  const conic_layers_buckets *buckets = g->buckets;
+  conic_status status = CONIC_OK;
+  g->n_samples = samples_in_buckets(g, 0, buckets->n);
+  uint64_t even = g->n_samples / (PARTS_A_THREAD * (uint64_t)g->growth->n_workers);
   g->most_in_part = even < MOST_IN_PART ? even : MOST_IN_PART;
   g->most_in_part = g->most_in_part > g->growth->most ? g->most_in_part : g->growth->most;
-  return list_parts(g, 0, g->buckets->n);
+  g->limb_ends = conic_memory_allocate(g->plan->context, shares->n_own, sizeof *g->limb_ends);
+  if (!g->limb_ends)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0, first = 0, end = 0; i < shares->n_own && status == CONIC_OK; i++, first = end) {
+    while (end < buckets->n && (i + 1 == shares->n_own || buckets->buckets[end].key < shares->own_keys[i + 1]))
+      end++;
+    status = list_parts(g, first, end);
+    if (status == CONIC_OK)
+      g->parts[g->n_parts - 1].ends_limb = 1;
+  }
+  return status;
 }
 
 conic_status conic_layers_forest_grow(const conic_layers_plan *plan, const conic_layers_buckets *buckets,
-                                      const conic_layers_growth *growth, conic_layers_forest *forest) {
+                                      const conic_layers_shares *shares, const conic_layers_growth *growth,
+                                      conic_layers_forest *forest) {
   growing *g = conic_memory_allocate_zeroed(plan->context, 1, sizeof *g);
   memset(forest, 0, sizeof *forest);
-  if (!g)
-    return CONIC_ERROR_MEMORY;
-  *g = (growing){.plan = plan, .buckets = buckets, .growth = growth, .forest = forest};
+  conic_status status = conic_team_agree(shares->team, g ? CONIC_OK : CONIC_ERROR_MEMORY);
+  if (status != CONIC_OK) {
+    conic_memory_release(plan->context, g);
+    return status;
+  }
+  *g = (growing){.plan = plan, .buckets = buckets, .shares = shares, .growth = growth, .forest = forest};
   conic_spool_begin(plan->context, buckets->spool.path, growth->node_bytes, &forest->nodes);
-  conic_status status = conic_pile_begin(plan->context, buckets->spool.path, &forest->clouds);
+  status = conic_pile_begin(plan->context, buckets->spool.path, &forest->clouds);
   if (status == CONIC_OK)
     status = conic_layers_waiting_begin(plan->context, buckets->spool.path, growth->waiting_bytes, &g->waiting);
   if (status == CONIC_OK)
     status = list_all_parts(g);
   if (status == CONIC_OK)
     status = create_hands(g);
-  if (status == CONIC_OK)
-    status = grow_all(g);
-  if (status == CONIC_OK)
-    status = finish_root(g);
+  status = conic_team_agree(shares->team, status);
+  if (status == CONIC_OK) {
+    status = finish_tree(g, grow_all(g));
+    add_up(g);
+    if (status == CONIC_OK)
+      status = conic_layers_crown_add_up(shares->team, g->hands[0].worker, forest);
+  }
   if (status == CONIC_OK)
     forest->outline = median_outline(g);
   release_growing(g);

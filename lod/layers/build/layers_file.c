@@ -6,6 +6,7 @@
 #include "core/base/message.h"
 #include "core/files/file.h"
 #include "core/files/mapping.h"
+#include "lod/layers/build/layers_moves.h"
 #include "lod/layers/build/layers_order.h"
 
 typedef struct writing {
@@ -18,6 +19,7 @@ typedef struct writing {
   uint64_t offset;           /* where the next cloud's bytes will be */
   conic_checksumming sum;
   FILE *stream;
+  conic_layers_moving *moving; /* null: one process writes all */
 } writing;
 
 typedef conic_status take_nodes(writing *w, size_t n);
@@ -107,6 +109,22 @@ static conic_status write_clouds(writing *w, size_t n) {
                             : status;
 }
 
+/* Tells everybody where its clouds go. */
+static conic_status move_clouds(writing *w, size_t n) {
+  conic_layers_move moves[CONIC_LAYERS_SOME_NODES];
+  for (size_t i = 0; i < n; i++) {
+    moves[i] = (conic_layers_move){w->nodes[i].offset, w->offset, w->nodes[i].n_bytes};
+    w->offset += w->nodes[i].n_bytes;
+  }
+  conic_status status = conic_progress(w->context, "write", (double)w->offset / (double)w->header->file_bytes);
+  return conic_layers_moves_tell(w->moving, status, moves, n);
+}
+
+static conic_status write_clouds_together(writing *w) {
+  conic_status status = fflush(w->stream) == 0 ? for_nodes(w, move_clouds) : CONIC_ERROR_IO;
+  return conic_layers_moves_tell(w->moving, status, NULL, 0);
+}
+
 static conic_status write_file(writing *w) {
   unsigned char head[CONIC_LAYERS_HEADER_BYTES];
   conic_layers_write_header(w->header, head);
@@ -114,6 +132,8 @@ static conic_status write_file(writing *w) {
   fwrite(head, 1, sizeof head, w->stream);
   fwrite(w->bytes, 1, conic_layers_table_bytes(w->header), w->stream);
   conic_status status = for_nodes(w, write_entries);
+  if (w->moving)
+    return status == CONIC_OK ? write_clouds_together(w) : status;
   if (status == CONIC_OK)
     status = conic_memory_grow(w->context, &w->bytes, 0, w->header->most_bytes, 1);
   return status == CONIC_OK ? for_nodes(w, write_clouds) : status;
@@ -125,15 +145,19 @@ static conic_status write_measured(writing *w, const char *path) {
   if (status != CONIC_OK)
     return status;
   w->stream = conic_output_stream(output);
-  status = write_file(w);
+  if (w->moving)
+    status = conic_layers_moves_begin(w->moving, conic_output_temporary(output), fileno(w->stream));
+  if (status == CONIC_OK)
+    status = write_file(w);
   return ferror(w->stream) ? conic_output_commit(output) : conic_output_end(output, status);
 }
 
-conic_status conic_layers_write(conic_context *context, const char *path, const conic_layers_forest *forest,
-                                conic_layers_header *header) {
+static conic_status write_all(conic_context *context, const char *path, const conic_layers_forest *forest,
+                              conic_layers_header *header, conic_layers_moving *moving) {
   writing w = {.context = context,
                .forest = forest,
                .header = header,
+               .moving = moving,
                .nodes = conic_memory_allocate(context, CONIC_LAYERS_SOME_NODES, sizeof *w.nodes),
                .bytes = conic_memory_allocate(context, CONIC_LAYERS_SOME_NODES, CONIC_LAYERS_ENTRY_BYTES)};
   conic_status status =
@@ -146,4 +170,13 @@ conic_status conic_layers_write(conic_context *context, const char *path, const 
   conic_memory_release(context, w.nodes);
   conic_memory_release(context, w.bytes);
   return status;
+}
+
+conic_status conic_layers_write(conic_context *context, const char *path, const conic_team *team,
+                                const conic_layers_forest *forest, conic_layers_header *header) {
+  conic_layers_moving moving = {.context = context, .team = team, .path = path, .clouds = &forest->clouds};
+  if (!team)
+    return write_all(context, path, forest, header, NULL);
+  conic_status status = team->index == 0 ? write_all(context, path, forest, header, &moving) : CONIC_OK;
+  return conic_layers_moves_end(&moving, status);
 }

@@ -9,8 +9,9 @@
 #include "core/base/vectors.h"
 
 conic_status conic_layers_intake_begin(conic_context *context, const char *path, size_t memory_bytes, float cutoff,
-                                       int is_full, conic_layers_intake *intake) {
+                                       int is_full, const conic_team *team, conic_layers_intake *intake) {
   memset(intake, 0, sizeof *intake);
+  intake->team = team;
   intake->context = context;
   intake->cutoff = cutoff;
   intake->is_full = is_full;
@@ -21,11 +22,11 @@ conic_status conic_layers_intake_begin(conic_context *context, const char *path,
   }
   conic_code_scale_init(1.0, 1.0, 1.0f, &intake->scale);
   conic_spool_begin(context, path, memory_bytes, &intake->spool);
+  conic_spool_begin(context, path, CONIC_SPOOL_SLAB, &intake->columns);
   return CONIC_OK;
 }
 
-/* The first batch says what all samples have. */
-static conic_status begin_samples(conic_layers_intake *intake, const conic_splats *batch) {
+conic_status conic_layers_intake_start(conic_layers_intake *intake, const conic_splats *batch) {
   conic_status status =
       conic_layers_payload_begin(intake->context, batch, intake->is_full, intake->cutoff, &intake->payload);
   intake->extra_bytes = intake->payload.schema.extra_bytes;
@@ -40,6 +41,7 @@ void conic_layers_intake_end(conic_layers_intake *intake) {
   if (!intake->context)
     return;
   conic_spool_end(&intake->spool);
+  conic_spool_end(&intake->columns);
   conic_layers_payload_end(&intake->payload);
   conic_memory_release(intake->context, intake->pending);
   intake->pending = NULL;
@@ -175,27 +177,44 @@ static int take_sample(conic_layers_intake *intake, const conic_splats *batch, s
   conic_layers_payload_take(&intake->payload, batch, i, raw + 1);
   remember_some(intake, position);
   intake->n_samples++;
+  intake->n_own++;
   return 1;
 }
 
+/* One sample, into what waits of a block. */
+static conic_status take_one(conic_layers_intake *intake, const conic_splats *batch, size_t i,
+                             conic_layers_block *block) {
+  double row[CONIC_MOST_POINT_VALUES];
+  unsigned char *raw = intake->pending + (size_t)block->count * intake->raw_bytes;
+  if (!take_sample(intake, batch, i, (conic_layers_raw *)(void *)raw))
+    return CONIC_OK;
+  block->count++;
+  if (!intake->team || intake->payload.n_values == 0)
+    return CONIC_OK;
+  conic_layers_payload_row(&intake->payload, i, row);
+  return conic_spool_append(&intake->columns, row, intake->payload.n_values * sizeof *row);
+}
+
 conic_status conic_layers_intake_append(conic_layers_intake *intake, const conic_splats *batch) {
-  int has_colors = batch->color[0] != NULL;
-  if (intake->has_started && has_colors != intake->has_colors)
-    return conic_fail(intake->context, CONIC_ERROR_ARGUMENT, "%s: some samples have colours, others have none",
-                      intake->spool.path);
-  conic_status begun = !intake->has_started && batch->count > 0 ? begin_samples(intake, batch) : CONIC_OK;
+  conic_status begun = intake->has_started || batch->count == 0 ? CONIC_OK
+                       : intake->team                           ? conic_layers_intake_meet(intake, batch, 0)
+                                                                : conic_layers_intake_start(intake, batch);
   if (begun != CONIC_OK)
     return begun;
+  if (intake->has_started && (batch->color[0] != NULL) != intake->has_colors)
+    return conic_fail(intake->context, CONIC_ERROR_ARGUMENT, "%s: some samples have colours, others have none",
+                      intake->spool.path);
   conic_layers_payload_turn_to(&intake->payload, batch);
   for (size_t first = 0; first < batch->count; first += CONIC_LAYERS_BLOCK) {
     size_t left = batch->count - first, end = first + (left < CONIC_LAYERS_BLOCK ? left : CONIC_LAYERS_BLOCK);
     conic_layers_block block = {.count = 0};
     memcpy(block.origin, batch->origin, sizeof block.origin);
-    for (size_t i = first; i < end; i++)
-      block.count += (uint64_t)take_sample(
-          intake, batch, i, (conic_layers_raw *)(void *)(intake->pending + (size_t)block.count * intake->raw_bytes));
+    conic_status status = CONIC_OK;
+    for (size_t i = first; i < end && status == CONIC_OK; i++)
+      status = take_one(intake, batch, i, &block);
     intake->n_in += end - first;
-    conic_status status = conic_spool_append(&intake->spool, &block, sizeof block);
+    if (status == CONIC_OK)
+      status = conic_spool_append(&intake->spool, &block, sizeof block);
     if (status == CONIC_OK)
       status = conic_spool_append(&intake->spool, intake->pending, (size_t)block.count * intake->raw_bytes);
     if (status != CONIC_OK)

@@ -3,6 +3,7 @@
 #define CONIC_LAYERS_INTAKE_H
 
 #include "conic/splats.h"
+#include "core/base/team.h"
 #include "core/files/spool.h"
 #include "lod/layers/build/layers_payload.h"
 #include "lod/layers/format/layers_code.h"
@@ -44,12 +45,31 @@ typedef struct conic_layers_intake {
   double some[CONIC_LAYERS_SOME][3]; /* of every stride-th sample, the position */
   uint64_t stride;
   size_t n_some;
+  uint64_t n_own; /* samples of its own; n_samples and all that is said of them are of the whole team since it united */
+
+  /* Of several processes, each of which takes in a part of the samples in a row. Null: one takes all. */
+  const conic_team *team;
+  int has_met;         /* it is known what the first batch of all has */
+  conic_spool columns; /* the values by name, as they came: n_values doubles a sample */
 } conic_layers_intake;
 
-/* `path`: where the result goes; it must outlive the intake. `is_full`: all that splats have is kept. */
+/* `path`: where the result goes; it must outlive the intake. `is_full`: all that splats have is kept. `team`: which
+ * takes in the samples together; null: one process does. */
 conic_status conic_layers_intake_begin(conic_context *context, const char *path, size_t memory_bytes, float cutoff,
-                                       int is_full, conic_layers_intake *intake);
+                                       int is_full, const conic_team *team, conic_layers_intake *intake);
 void conic_layers_intake_end(conic_layers_intake *intake);
+
+/* Sees to it that what all samples have is what the first batch of all processes has, which this one is unless the
+ * process before has another; null: there is none. `has_failed`: say so to those after. Nothing is done the second
+ * time. Errors: MEMORY, CANCELLED (a process before failed). */
+conic_status conic_layers_intake_meet(conic_layers_intake *intake, const conic_splats *batch, int has_failed);
+
+/* Collective, once all is taken in; also by a process whose `status` is a failure, which everybody gets then: what is
+ * known of the samples is known of those of all. Errors: MEMORY, IO, CANCELLED. */
+conic_status conic_layers_intake_unite(conic_layers_intake *intake, conic_status status);
+
+/* The first batch says what all samples have. Errors: MEMORY. */
+conic_status conic_layers_intake_start(conic_layers_intake *intake, const conic_splats *batch);
 
 /* Errors: ARGUMENT, MEMORY, IO, CANCELLED. */
 conic_status conic_layers_intake_append(conic_layers_intake *intake, const conic_splats *batch);

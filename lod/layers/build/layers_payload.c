@@ -108,9 +108,18 @@ static void take_clip_lines(conic_layers_payload *p, const conic_splats *batch, 
   memcpy(bytes_in_record(p, (uint32_t)p->clip, extra), &lines, sizeof lines);
 }
 
+static double named_value(const conic_layers_payload *p, size_t k, size_t i) {
+  return p->column[k] && i < p->n_column ? p->column[k][i] : (double)NAN;
+}
+
+void conic_layers_payload_row(const conic_layers_payload *payload, size_t i, double *row) {
+  for (size_t k = 0; k < payload->n_values; k++)
+    row[k] = named_value(payload, k, i);
+}
+
 static void take_named_values(conic_layers_payload *p, size_t i, void *extra) {
   for (size_t k = 0; k < p->n_values; k++) {
-    double value = p->column[k] && i < p->n_column ? p->column[k][i] : (double)NAN;
+    double value = named_value(p, k, i);
     conic_layers_number_put(&p->schema.list[p->value[k]], value, bytes_in_record(p, p->value[k], extra));
     conic_value_sample_add(p->seen[k], value);
     if (value - value == 0.0) {

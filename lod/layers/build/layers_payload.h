@@ -38,6 +38,9 @@ const conic_clip *conic_layers_payload_clip(conic_layers_payload *payload, const
 /* Fills the bytes behind the head of a record from splat i of the batch; splats come in their order. */
 void conic_layers_payload_take(conic_layers_payload *payload, const conic_splats *batch, size_t i, void *extra);
 
+/* The values of splat i as the batch has them, n_values of them. */
+void conic_layers_payload_row(const conic_layers_payload *payload, size_t i, double *row);
+
 /* Now that all have come: the table of attributes, without those that no sample has. `spacing` is what lengths that are
  * not known yet will be about. */
 void conic_layers_payload_settle(conic_layers_payload *payload, double spacing);

@@ -103,10 +103,31 @@ static conic_status look_at_all(const conic_layers_intake *intake, unsigned char
       look_at_sample(s, position);
     }
     n_done += block.count;
-    status = conic_progress(intake->context, "measure", (double)n_done / (double)intake->n_samples);
+    status = conic_progress(intake->context, "measure", (double)n_done / (double)intake->n_own);
     if (status == CONIC_OK)
       status = conic_layers_intake_read(intake, &offset, &block, samples, &is_there);
   }
+  return status;
+}
+
+/* What the others of a team have found, too. */
+static conic_status unite_places(const conic_layers_intake *intake, spacing_search *s, conic_status status) {
+  enum { N = N_NEAREST + 1 };
+  const conic_team *team = intake->team;
+  double own[N_PLACES][N], *all;
+  if (!team)
+    return status;
+  all = conic_memory_allocate(intake->context, (size_t)team->count, sizeof own);
+  status = conic_team_agree(team, status == CONIC_OK && !all ? CONIC_ERROR_MEMORY : status);
+  for (size_t i = 0; i < s->n_places; i++)
+    memcpy(own[i], s->places[i].nearest2, sizeof own[i]);
+  if (status == CONIC_OK)
+    conic_team_collect(team, own, s->n_places * sizeof own[0], all);
+  for (size_t i = 0; i < (size_t)team->count * s->n_places && status == CONIC_OK; i++)
+    for (int k = 0; k < N && (int)(i / s->n_places) != team->index; k++)
+      if (all[i * N + (size_t)k] < s->places[i % s->n_places].nearest2[N_NEAREST])
+        keep_distance(&s->places[i % s->n_places], all[i * N + (size_t)k]);
+  conic_memory_release(intake->context, all);
   return status;
 }
 
@@ -141,17 +162,17 @@ static conic_status guess_spacing(const conic_layers_intake *intake, double *gue
 
 conic_status conic_layers_intake_spacing(conic_layers_intake *intake, double *spacing) {
   *spacing = 0.0;
-  conic_status status = guess_spacing(intake, spacing);
+  conic_status status = conic_team_agree(intake->team, guess_spacing(intake, spacing));
   if (status != CONIC_OK || !(*spacing > 0.0) || intake->n_some == intake->n_samples)
     return status; /* the few are all */
   double edge = 6.0 * *spacing, guess = *spacing;
   spacing_search *s = conic_memory_allocate(intake->context, 1, sizeof *s);
   unsigned char *samples = conic_memory_allocate(intake->context, CONIC_LAYERS_BLOCK, intake->raw_bytes);
-  status = s && samples ? CONIC_OK : CONIC_ERROR_MEMORY;
+  status = conic_team_agree(intake->team, s && samples ? CONIC_OK : CONIC_ERROR_MEMORY);
   *spacing = 0.0;
   for (int i = 0; i < MOST_PASSES && status == CONIC_OK && !(*spacing > 0.0); i++, edge *= 3.0) {
     lay_out_marks(intake, edge, s);
-    status = look_at_all(intake, samples, s);
+    status = unite_places(intake, s, look_at_all(intake, samples, s));
     *spacing = median_of_places(s);
   }
   if (!(*spacing > 0.0))

@@ -69,6 +69,11 @@ const uint64_t *conic_layers_worker_outlines(const conic_layers_worker *worker) 
   return worker->outlines;
 }
 
+void conic_layers_worker_add_outlines(conic_layers_worker *worker, const uint64_t *outlines) {
+  for (size_t i = 0; i < CONIC_LAYERS_OUTLINES; i++)
+    worker->outlines[i] += outlines[i];
+}
+
 size_t conic_layers_worker_bytes(const conic_layers_plan *plan) {
   size_t zstd_bytes = 1 << 20,
          cloud_bytes = 2 * (size_t)(plan->schema->n_streams + 8) * conic_layers_most_in_leaf(plan);

@@ -59,6 +59,8 @@ void conic_layers_worker_destroy(conic_layers_worker *worker);
 /* How many samples have which outline at full resolution, by conic_layers_code_size: CONIC_LAYERS_OUTLINES counts. */
 enum { CONIC_LAYERS_OUTLINES = 1 << 15 };
 const uint64_t *conic_layers_worker_outlines(const conic_layers_worker *worker);
+/* Adds what another has counted. */
+void conic_layers_worker_add_outlines(conic_layers_worker *worker, const uint64_t *outlines);
 
 /* What a worker takes, about. */
 size_t conic_layers_worker_bytes(const conic_layers_plan *plan);
