@@ -1,7 +1,6 @@
 /* What of its light a drawn picture does not get. */
 #include "conic/lighting.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/color.h"
@@ -10,13 +9,11 @@
 #include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
-#include "core/image/camera_rays.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
+#include "lighting/edge_spread.h"
 #include "lighting/lit_map.h"
 #include "raster/tiles/lights.h"
-
-enum { NO_RECEIVER, RECEIVER, RECEIVER_AT_EDGE, MOST_EDGE_PX = 4 };
 
 typedef struct lighting {
   conic_context *context;
@@ -24,19 +21,14 @@ typedef struct lighting {
   const conic_render_options *render;
   const conic_lighting_options *options;
   conic_image *image;
-  conic_camera_rays rays;
   conic_finish finish;
   conic_finish_lights lights; /* all of them */
   conic_finish_lights one;    /* the one at hand */
   conic_receivers receivers;
   conic_map_room room;
-  unsigned char *kind; /* of each pixel */
-  float *spread;       /* of each pixel that is a receiver, what it got */
-  float *filled;       /* of each pixel what it gets by that */
-  float epsilon;       /* the casters' */
-  size_t edge_px;      /* how far splats may stick out */
-  float *hidden;       /* of each pixel the colour, unexposed, that hidden lights would make; null: no colours */
-  float *visible;      /* of each receiver */
+  conic_edge_spread spread;
+  float *hidden;  /* of each pixel the colour, unexposed, that hidden lights would make; null: no colours */
+  float *visible; /* of each receiver */
   conic_sky_sums sums;
   float *sums_block;
   double power; /* Σ of the luminances of the lights so far */
@@ -44,119 +36,6 @@ typedef struct lighting {
 
 static size_t lighting_pixel(const lighting *l, size_t x, size_t y) {
   return y * (size_t)l->image->width + x;
-}
-
-/* The unit direction from what is seen at the pixel to the viewer, in the world. */
-static void find_viewer(const lighting *l, size_t x, size_t y, float viewer[3]) {
-  const double(*m)[4] = l->camera->cam_from_world;
-  double origin[3], direction[3], world[3];
-  if (!conic_camera_ray(&l->rays, (double)x + 0.5, (double)y + 0.5, origin, direction))
-    direction[0] = direction[1] = direction[2] = 0.0;
-  for (int axis = 0; axis < 3; axis++)
-    world[axis] = -((m[0][axis] * direction[0] + m[1][axis] * direction[1]) + m[2][axis] * direction[2]);
-  conic_normalize(world);
-  for (int axis = 0; axis < 3; axis++)
-    viewer[axis] = (float)world[axis];
-}
-
-/* How much deeper a neighbour may be that is still the same surface. */
-static float depth_of_step(const lighting *l, size_t x, size_t y) {
-  static const float steps = 4.0f, least_cosine = 0.03f;
-  const float *n = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * lighting_pixel(l, x, y);
-  float viewer[3];
-  find_viewer(l, x, y, viewer);
-  float cosine = (n[0] * viewer[0] + n[1] * viewer[1]) + n[2] * viewer[2];
-  cosine = cosine > least_cosine ? cosine : least_cosine;
-  return steps * (l->epsilon + (float)l->receivers.spacing / cosine);
-}
-
-/* The pixels at most so many away as splats stick out, at the picture's edges fewer. */
-typedef struct pixel_range {
-  size_t left, right, top, bottom; /* the second and the fourth past the last */
-} pixel_range;
-
-static pixel_range pixels_about(const lighting *l, size_t x, size_t y) {
-  size_t width = (size_t)l->image->width, height = (size_t)l->image->height, reach = l->edge_px;
-  return (pixel_range){x > reach ? x - reach : 0, x + reach < width ? x + reach + 1 : width, y > reach ? y - reach : 0,
-                       y + reach < height ? y + reach + 1 : height};
-}
-
-/* Splats stick out where a surface turns away, and what of its far side does so is seen from behind: it takes the side
- * that it shows for its outer one, on which there is no light. And of samples on two surfaces, the mean normal is of
- * neither. */
-static int is_at_edge(const lighting *l, size_t x, size_t y) {
-  const float *z = l->image->planes[CONIC_PLANE_Z];
-  float here = z[lighting_pixel(l, x, y)], step = depth_of_step(l, x, y);
-  float least = l->options->samples > 1 ? here - step : 0.0f;
-  pixel_range range = pixels_about(l, x, y);
-  for (size_t j = range.top; j < range.bottom; j++)
-    for (size_t i = range.left; i < range.right; i++) {
-      float there = z[lighting_pixel(l, i, j)];
-      if (!(there > least) || there > here + step)
-        return 1;
-    }
-  return 0;
-}
-
-static void find_receivers_at_edges(void *data, size_t y, int i_thread) {
-  const lighting *l = data;
-  (void)i_thread;
-  for (size_t x = 0; x < (size_t)l->image->width; x++)
-    if (l->kind[lighting_pixel(l, x, y)] == RECEIVER && is_at_edge(l, x, y))
-      l->kind[lighting_pixel(l, x, y)] = RECEIVER_AT_EDGE;
-}
-
-static void name_receivers(lighting *l) {
-  memset(l->kind, NO_RECEIVER, conic_image_pixels(l->image));
-  for (size_t i = 0; i < l->receivers.count; i++)
-    l->kind[l->receivers.pixel[i]] = RECEIVER;
-}
-
-/* The mean over the pixels about one that are of a kind, and no nearer nor deeper; below 0 where none is. */
-static float mean_about(const lighting *l, size_t x, size_t y, unsigned char kind, float nearest, float deepest) {
-  const float *z = l->image->planes[CONIC_PLANE_Z];
-  pixel_range range = pixels_about(l, x, y);
-  float sum = 0.0f, n = 0.0f;
-  for (size_t j = range.top; j < range.bottom; j++)
-    for (size_t i = range.left; i < range.right; i++) {
-      size_t pixel = lighting_pixel(l, i, j);
-      if (l->kind[pixel] != kind || z[pixel] < nearest || z[pixel] > deepest)
-        continue;
-      sum += l->spread[pixel];
-      n += 1.0f;
-    }
-  return n > 0.0f ? sum / n : -1.0f;
-}
-
-/* What a pixel gets: a receiver its own, one at an edge what its surface gets beside it, and what is none, but has been
- * drawn at its border, what is about it. */
-static float spread_at(const lighting *l, size_t x, size_t y) {
-  size_t pixel = lighting_pixel(l, x, y);
-  if (l->kind[pixel] == RECEIVER)
-    return l->spread[pixel];
-  if (l->kind[pixel] == RECEIVER_AT_EDGE) {
-    float z = ((const float *)l->image->planes[CONIC_PLANE_Z])[pixel], step = depth_of_step(l, x, y);
-    float mean = mean_about(l, x, y, RECEIVER, z - step, z + step);
-    return mean >= 0.0f ? mean : l->spread[pixel];
-  }
-  float mean = mean_about(l, x, y, RECEIVER, 0.0f, HUGE_VALF);
-  if (mean < 0.0f)
-    mean = mean_about(l, x, y, RECEIVER_AT_EDGE, 0.0f, HUGE_VALF);
-  return mean >= 0.0f ? mean : 1.0f;
-}
-
-static void fill_row(void *data, size_t y, int i_thread) {
-  const lighting *l = data;
-  (void)i_thread;
-  for (size_t x = 0; x < (size_t)l->image->width; x++)
-    l->filled[lighting_pixel(l, x, y)] = spread_at(l, x, y);
-}
-
-/* What receivers got, made what pixels get. */
-static void spread_out(lighting *l, const float *of_receivers) {
-  for (size_t i = 0; i < l->receivers.count; i++)
-    l->spread[l->receivers.pixel[i]] = of_receivers[i];
-  conic_parallel_for(l->context, (size_t)l->image->height, fill_row, l);
 }
 
 /* --- lights with a direction --- */
@@ -191,7 +70,7 @@ static int shade_pixel(const lighting *l, size_t x, size_t y, float shaded[3]) {
     own[c] = albedo[c] / coverage;
   if (!(coverage > 0.0f))
     return 0;
-  find_viewer(l, x, y, viewer);
+  conic_pixel_viewer(l->camera, &l->spread.rays, x, y, viewer);
   conic_shade(&l->finish, own, normal, normal, viewer, shaded);
   return 1;
 }
@@ -202,14 +81,14 @@ static void hide_row(void *data, size_t y, int i_thread) {
   (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++) {
     size_t pixel = lighting_pixel(l, x, y);
-    float part = 1.0f - l->filled[pixel];
+    float part = 1.0f - l->spread.filled[pixel];
     if (part > 0.0f && shade_pixel(l, x, y, shaded))
       for (int c = 0; c < 3; c++)
         l->hidden[3 * pixel + (size_t)c] += part * shaded[c];
   }
 }
 
-/* Adds what of the given lights does not come to pixels that get only l->filled of it. */
+/* Adds what of the given lights does not come to pixels that get only l->spread.filled of it. */
 static void hide_lights(lighting *l, const conic_finish_lights *lights) {
   if (!l->hidden)
     return;
@@ -236,7 +115,7 @@ static void take_row(void *data, size_t y, int i_thread) {
 static void add_shadow(lighting *l, float luminance) {
   float *shadow = l->image->planes[CONIC_PLANE_SHADOW];
   for (size_t i = 0; i < conic_image_pixels(l->image) && shadow; i++)
-    shadow[i] += luminance * l->filled[i];
+    shadow[i] += luminance * l->spread.filled[i];
 }
 
 static conic_status cast_shadow(lighting *l, const conic_finish_light *light) {
@@ -249,7 +128,7 @@ static conic_status cast_shadow(lighting *l, const conic_finish_light *light) {
   if (status != CONIC_OK)
     return status;
   conic_parallel_for(l->context, n_items, receive_light, &work);
-  spread_out(l, l->visible);
+  conic_edge_spread_fill(&l->spread, l->visible, 1.0f);
   l->one = (conic_finish_lights){.n_lights = 1, .lights[0] = *light};
   hide_lights(l, &l->one);
   add_shadow(l, luminance);
@@ -288,7 +167,7 @@ static void reflect_sky(lighting *l, size_t c) {
     float whole = sums->takes_hidden ? white * sums->facing[i] : n;
     l->visible[i] = whole > 0.0f ? sums->color[c][i] / whole : 0.0f;
   }
-  spread_out(l, l->visible);
+  conic_edge_spread_fill(&l->spread, l->visible, 1.0f);
 }
 
 /* What is hidden of the lights' sky and ground. */
@@ -298,7 +177,7 @@ static void hide_sky(lighting *l) {
     reflect_sky(l, c);
     for (size_t i = 0; i < conic_image_pixels(l->image); i++)
       if (albedo[3 * i + c] > 0.0f)
-        l->hidden[3 * i + c] += albedo[3 * i + c] / coverage_of(l, i) * l->filled[i];
+        l->hidden[3 * i + c] += albedo[3 * i + c] / coverage_of(l, i) * l->spread.filled[i];
   }
 }
 
@@ -310,7 +189,7 @@ static void add_sky(lighting *l) {
     reflect_sky(l, c);
     for (size_t i = 0; i < conic_image_pixels(l->image); i++)
       if (albedo[3 * i + c] > 0.0f)
-        rgba[4 * i + c] += l->finish.exposure * albedo[3 * i + c] * l->filled[i];
+        rgba[4 * i + c] += l->finish.exposure * albedo[3 * i + c] * l->spread.filled[i];
   }
 }
 
@@ -318,7 +197,7 @@ static void add_sky(lighting *l) {
 static void hide_whole_sky(lighting *l) {
   l->one = l->lights;
   l->one.n_lights = 0;
-  memset(l->filled, 0, conic_image_pixels(l->image) * sizeof *l->filled);
+  memset(l->spread.filled, 0, conic_image_pixels(l->image) * sizeof *l->spread.filled);
   hide_lights(l, &l->one);
 }
 
@@ -350,9 +229,9 @@ static conic_status gather_sky(lighting *l) {
     hide_whole_sky(l);
   for (size_t i = 0; i < n; i++)
     l->visible[i] = arriving_part(l, i);
-  spread_out(l, l->visible);
+  conic_edge_spread_fill(&l->spread, l->visible, 1.0f);
   if (ao)
-    memcpy(ao, l->filled, conic_image_pixels(l->image) * sizeof *ao);
+    memcpy(ao, l->spread.filled, conic_image_pixels(l->image) * sizeof *ao);
   return CONIC_OK;
 }
 
@@ -379,7 +258,6 @@ static conic_status check_picture(conic_context *context, const conic_camera *ca
 
 static conic_status prepare_lighting(lighting *l, const conic_casters *casters) {
   conic_image *image = l->image;
-  conic_camera_rays_init(l->camera, &l->rays);
   l->finish.options = l->render;
   l->finish.exposure = conic_exposure_factor(l->render->exposure);
   conic_status status = conic_finish_lights_init(l->context, l->camera, l->render, &l->lights);
@@ -389,12 +267,8 @@ static conic_status prepare_lighting(lighting *l, const conic_casters *casters) 
     status = conic_receivers_of_image(l->context, l->camera, l->options->samples, image, &l->receivers);
   if (status != CONIC_OK)
     return status;
-  l->epsilon = (float)casters->epsilon;
   l->room.receivers = &l->receivers;
   l->room.texel = l->receivers.spacing / l->options->texels;
-  l->spread = conic_memory_allocate(l->context, conic_image_pixels(image), sizeof *l->spread);
-  l->filled = conic_memory_allocate(l->context, conic_image_pixels(image), sizeof *l->filled);
-  l->kind = conic_memory_allocate(l->context, conic_image_pixels(image), 1);
   l->visible = conic_memory_allocate(l->context, l->receivers.count, sizeof *l->visible);
   for (size_t i = 0; i < conic_image_pixels(image) && image->planes[CONIC_PLANE_AO]; i++)
     ((float *)image->planes[CONIC_PLANE_AO])[i] = 1.0f;
@@ -403,14 +277,10 @@ static conic_status prepare_lighting(lighting *l, const conic_casters *casters) 
   int has_colors = image->planes[CONIC_PLANE_RGBA] && l->render->shading != CONIC_SHADE_NONE;
   if (has_colors)
     l->hidden = conic_memory_allocate_zeroed(l->context, conic_image_pixels(image), 3 * sizeof *l->hidden);
-  if (!l->spread || !l->filled || !l->kind || !l->visible || (has_colors && !l->hidden))
+  if (!l->visible || (has_colors && !l->hidden))
     return CONIC_ERROR_MEMORY;
-  name_receivers(l);
-  double edge = casters->epsilon > 0.0 ? 0.5 * casters->epsilon / l->receivers.spacing : 0.0;
-  l->edge_px = edge > 1.0 ? edge < MOST_EDGE_PX ? (size_t)edge : MOST_EDGE_PX : 1;
-  if (l->epsilon > 0.0f || l->options->samples > 1)
-    conic_parallel_for(l->context, (size_t)image->height, find_receivers_at_edges, l);
-  return CONIC_OK;
+  return conic_edge_spread_init(l->context, l->camera, image, &l->receivers, casters->epsilon, l->options->samples,
+                                &l->spread);
 }
 
 conic_status conic_image_light(conic_context *context, const conic_casters *casters, const conic_camera *camera,
@@ -435,9 +305,7 @@ conic_status conic_image_light(conic_context *context, const conic_casters *cast
     finish_colors(&l);
   conic_memory_release(context, l.hidden);
   conic_memory_release(context, l.sums_block);
-  conic_memory_release(context, l.kind);
-  conic_memory_release(context, l.filled);
-  conic_memory_release(context, l.spread);
+  conic_edge_spread_release(&l.spread);
   conic_memory_release(context, l.visible);
   conic_receivers_release(context, &l.receivers);
   conic_map_room_release(&l.room);

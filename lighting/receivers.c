@@ -180,3 +180,16 @@ void conic_receivers_release(conic_context *context, conic_receivers *receivers)
   conic_memory_release(context, receivers->block);
   memset(receivers, 0, sizeof *receivers);
 }
+
+void conic_pixel_viewer(const conic_camera *camera, const conic_camera_rays *rays, size_t x, size_t y,
+                        float viewer[3]) {
+  const double(*m)[4] = camera->cam_from_world;
+  double origin[3], direction[3], world[3];
+  if (!conic_camera_ray(rays, (double)x + 0.5, (double)y + 0.5, origin, direction))
+    direction[0] = direction[1] = direction[2] = 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    world[axis] = -((m[0][axis] * direction[0] + m[1][axis] * direction[1]) + m[2][axis] * direction[2]);
+  conic_normalize(world);
+  for (int axis = 0; axis < 3; axis++)
+    viewer[axis] = (float)world[axis];
+}

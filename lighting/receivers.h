@@ -7,6 +7,7 @@
 #include "conic/camera.h"
 #include "conic/image.h"
 #include "conic/splats.h"
+#include "core/image/camera_rays.h"
 
 typedef struct conic_receivers {
   size_t count;
@@ -27,5 +28,8 @@ conic_status conic_receivers_of_splats(conic_context *context, const conic_splat
                                        conic_receivers *receivers);
 
 void conic_receivers_release(conic_context *context, conic_receivers *receivers);
+
+/* The unit direction from what is seen at a pixel to the viewer, in the world. */
+void conic_pixel_viewer(const conic_camera *camera, const conic_camera_rays *rays, size_t x, size_t y, float viewer[3]);
 
 #endif
