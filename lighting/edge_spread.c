@@ -18,7 +18,7 @@ static float depth_of_step(const conic_edge_spread *s, size_t x, size_t y) {
   static const float steps = 4.0f, least_cosine = 0.03f;
   const float *n = (const float *)s->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel_at(s, x, y);
   float viewer[3];
-  conic_pixel_viewer(s->camera, &s->rays, x, y, viewer);
+  conic_pixel_viewer(&s->rays, x, y, viewer);
   float cosine = (n[0] * viewer[0] + n[1] * viewer[1]) + n[2] * viewer[2];
   cosine = cosine > least_cosine ? cosine : least_cosine;
   return steps * (s->epsilon + (float)s->receivers->spacing / cosine);
@@ -120,7 +120,6 @@ conic_status conic_edge_spread_init(conic_context *context, const conic_camera *
   size_t n = conic_image_pixels(image);
   double edge = epsilon > 0.0 ? 0.5 * epsilon / receivers->spacing : 0.0;
   *s = (conic_edge_spread){.context = context,
-                           .camera = camera,
                            .image = image,
                            .receivers = receivers,
                            .epsilon = (float)epsilon,

@@ -7,7 +7,6 @@
 
 typedef struct conic_edge_spread {
   conic_context *context;
-  const conic_camera *camera;
   const conic_image *image;
   const conic_receivers *receivers;
   conic_camera_rays rays;

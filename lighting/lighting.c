@@ -8,40 +8,15 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/threads.h"
-#include "core/base/vectors.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
-#include "lighting/edge_spread.h"
-#include "lighting/lit_map.h"
+#include "lighting/light_work.h"
 #include "raster/tiles/lights.h"
-
-typedef struct lighting {
-  conic_context *context;
-  const conic_camera *camera;
-  const conic_render_options *render;
-  const conic_lighting_options *options;
-  conic_image *image;
-  conic_finish finish;
-  conic_finish_lights lights; /* all of them */
-  conic_finish_lights one;    /* the one at hand */
-  conic_receivers receivers;
-  conic_map_room room;
-  conic_edge_spread spread;
-  float *hidden;  /* of each pixel the colour, unexposed, that hidden lights would make; null: no colours */
-  float *visible; /* of each receiver */
-  conic_sky_sums sums;
-  float *sums_block;
-  double power; /* Σ of the luminances of the lights so far */
-} lighting;
-
-static size_t lighting_pixel(const lighting *l, size_t x, size_t y) {
-  return y * (size_t)l->image->width + x;
-}
 
 /* --- lights with a direction --- */
 
 typedef struct receiving {
-  lighting *l;
+  conic_light_work *l;
   const conic_light_map *map;
 } receiving;
 
@@ -54,42 +29,21 @@ static void receive_light(void *data, size_t i_item, int i_thread) {
   r->l->room.kernels.receive(r->map, &r->l->receivers, begin, end, 1, r->l->visible + begin, facing);
 }
 
-/* How much of the pixel is something, where its background is nothing. */
-static float coverage_of(const lighting *l, size_t pixel) {
-  float alpha = ((const float *)l->image->planes[CONIC_PLANE_RGBA])[4 * pixel + 3];
-  return l->render->has_background || !(alpha < 1.0f) ? 1.0f : alpha;
-}
-
-/* The colour of what is seen, as if it covered the pixel, by the lights at hand. */
-static int shade_pixel(const lighting *l, size_t x, size_t y, float shaded[3]) {
-  size_t pixel = lighting_pixel(l, x, y);
-  const float *albedo = (const float *)l->image->planes[CONIC_PLANE_ALBEDO] + 3 * pixel;
-  const float *normal = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel;
-  float coverage = coverage_of(l, pixel), viewer[3], own[3];
-  for (int c = 0; c < 3 && coverage > 0.0f; c++)
-    own[c] = albedo[c] / coverage;
-  if (!(coverage > 0.0f))
-    return 0;
-  conic_pixel_viewer(l->camera, &l->spread.rays, x, y, viewer);
-  conic_shade(&l->finish, own, normal, normal, viewer, shaded);
-  return 1;
-}
-
 static void hide_row(void *data, size_t y, int i_thread) {
-  const lighting *l = data;
+  const conic_light_work *l = data;
   float shaded[3];
   (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++) {
-    size_t pixel = lighting_pixel(l, x, y);
+    size_t pixel = conic_light_pixel(l, x, y);
     float part = 1.0f - l->spread.filled[pixel];
-    if (part > 0.0f && shade_pixel(l, x, y, shaded))
+    if (part > 0.0f && conic_light_shade(l, &l->finish, x, y, shaded))
       for (int c = 0; c < 3; c++)
         l->hidden[3 * pixel + (size_t)c] += part * shaded[c];
   }
 }
 
 /* Adds what of the given lights does not come to pixels that get only l->spread.filled of it. */
-static void hide_lights(lighting *l, const conic_finish_lights *lights) {
+static void hide_lights(conic_light_work *l, const conic_finish_lights *lights) {
   if (!l->hidden)
     return;
   l->finish.lights = lights;
@@ -99,30 +53,30 @@ static void hide_lights(lighting *l, const conic_finish_lights *lights) {
 /* Of what all lights make of a pixel, the part that is hidden is taken. It is a part, and no difference: where normals
  * cancel, the picture is darker than its planes tell (conic_shade). */
 static void take_row(void *data, size_t y, int i_thread) {
-  const lighting *l = data;
+  const conic_light_work *l = data;
   float shaded[3];
   (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++) {
-    size_t pixel = lighting_pixel(l, x, y);
+    size_t pixel = conic_light_pixel(l, x, y);
     const float *hidden = l->hidden + 3 * pixel;
     float *rgba = (float *)l->image->planes[CONIC_PLANE_RGBA] + 4 * pixel;
-    if ((hidden[0] > 0.0f || hidden[1] > 0.0f || hidden[2] > 0.0f) && shade_pixel(l, x, y, shaded))
+    if ((hidden[0] > 0.0f || hidden[1] > 0.0f || hidden[2] > 0.0f) && conic_light_shade(l, &l->finish, x, y, shaded))
       for (int c = 0; c < 3; c++)
         rgba[c] *= hidden[c] < shaded[c] ? 1.0f - hidden[c] / shaded[c] : shaded[c] > 0.0f ? 0.0f : 1.0f;
   }
 }
 
-static void add_shadow(lighting *l, float luminance) {
+static void add_shadow(conic_light_work *l, float luminance) {
   float *shadow = l->image->planes[CONIC_PLANE_SHADOW];
   for (size_t i = 0; i < conic_image_pixels(l->image) && shadow; i++)
     shadow[i] += luminance * l->spread.filled[i];
 }
 
-static conic_status cast_shadow(lighting *l, const conic_finish_light *light) {
+static conic_status cast_shadow(conic_light_work *l, const conic_finish_light *light) {
   conic_light_map map;
   receiving work = {l, &map};
   double direction[3] = {(double)light->towards[0], (double)light->towards[1], (double)light->towards[2]};
-  float luminance = (0.2126f * light->diffuse[0] + 0.7152f * light->diffuse[1]) + 0.0722f * light->diffuse[2];
+  float luminance = conic_light_luminance(light->diffuse);
   size_t n_items = (l->receivers.count + CONIC_RECEIVED_TOGETHER - 1) / CONIC_RECEIVED_TOGETHER;
   conic_status status = n_items ? conic_map_room_draw(&l->room, direction, &map) : CONIC_OK;
   if (status != CONIC_OK)
@@ -136,15 +90,21 @@ static conic_status cast_shadow(lighting *l, const conic_finish_light *light) {
   return CONIC_OK;
 }
 
-static conic_status cast_shadows(lighting *l) {
-  float *shadow = l->image->planes[CONIC_PLANE_SHADOW];
+static conic_status cast_shadows(conic_light_work *l) {
   conic_status status = CONIC_OK;
   for (int i = 0; i < l->lights.n_lights && l->options->has_shadows && status == CONIC_OK; i++)
     if (!l->lights.lights[i].is_head) /* what it lights is what the viewer sees */
       status = cast_shadow(l, &l->lights.lights[i]);
-  for (size_t i = 0; shadow && i < conic_image_pixels(l->image); i++)
-    shadow[i] = l->power > 0.0 ? shadow[i] / (float)l->power : 1.0f;
   return status;
+}
+
+/* Of the power that arrives, the part. */
+static void divide_shadow(conic_light_work *l) {
+  float *shadow = l->image->planes[CONIC_PLANE_SHADOW];
+  for (size_t i = 0; shadow && i < conic_image_pixels(l->image); i++) {
+    float power = (float)l->power + (l->lamp_power ? l->lamp_power[i] : 0.0f);
+    shadow[i] = power > 0.0f ? shadow[i] / power : 1.0f;
+  }
 }
 
 /* --- light from all around --- */
@@ -160,7 +120,7 @@ static void light_of_sky(const void *cookie, const double direction[3], double l
 }
 
 /* The sums of one colour, made what a white surface reflects at each pixel. */
-static void reflect_sky(lighting *l, size_t c) {
+static void reflect_sky(conic_light_work *l, size_t c) {
   const conic_sky_sums *sums = &l->sums;
   float n = (float)l->options->n_directions, white = 4.0f; /* of each direction's light (conic_sky_direction) */
   for (size_t i = 0; i < l->receivers.count; i++) {
@@ -171,18 +131,18 @@ static void reflect_sky(lighting *l, size_t c) {
 }
 
 /* What is hidden of the lights' sky and ground. */
-static void hide_sky(lighting *l) {
+static void hide_sky(conic_light_work *l) {
   const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
   for (size_t c = 0; c < 3; c++) {
     reflect_sky(l, c);
     for (size_t i = 0; i < conic_image_pixels(l->image); i++)
       if (albedo[3 * i + c] > 0.0f)
-        l->hidden[3 * i + c] += albedo[3 * i + c] / coverage_of(l, i) * l->spread.filled[i];
+        l->hidden[3 * i + c] += albedo[3 * i + c] / conic_light_coverage(l, i) * l->spread.filled[i];
   }
 }
 
 /* Adds what arrives of a sky that the picture was drawn without. */
-static void add_sky(lighting *l) {
+static void add_sky(conic_light_work *l) {
   const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
   float *rgba = l->image->planes[CONIC_PLANE_RGBA];
   for (size_t c = 0; c < 3; c++) {
@@ -194,7 +154,7 @@ static void add_sky(lighting *l) {
 }
 
 /* All of the lights' sky and ground is hidden, so that what arrives can take its place. */
-static void hide_whole_sky(lighting *l) {
+static void hide_whole_sky(conic_light_work *l) {
   l->one = l->lights;
   l->one.n_lights = 0;
   memset(l->spread.filled, 0, conic_image_pixels(l->image) * sizeof *l->spread.filled);
@@ -202,12 +162,12 @@ static void hide_whole_sky(lighting *l) {
 }
 
 /* Of a sample's one direction, what on the mean is its share. */
-static float arriving_part(const lighting *l, size_t i) {
+static float arriving_part(const conic_light_work *l, size_t i) {
   float part = 4.0f * l->sums.visible[i] / (float)l->options->n_directions;
   return l->options->is_sample ? part : conic_sky_sums_share(&l->sums, i);
 }
 
-static conic_status gather_sky(lighting *l) {
+static conic_status gather_sky(conic_light_work *l) {
   float *ao = l->image->planes[CONIC_PLANE_AO];
   int has_colors = l->hidden != NULL;
   size_t n = l->receivers.count;
@@ -237,7 +197,7 @@ static conic_status gather_sky(lighting *l) {
 
 /* --- all of it --- */
 
-static void finish_colors(lighting *l) {
+static void finish_colors(conic_light_work *l) {
   l->finish.lights = &l->lights;
   conic_parallel_for(l->context, (size_t)l->image->height, take_row, l);
   if (l->options->n_directions > 0 && !l->sums.takes_hidden)
@@ -256,7 +216,7 @@ static conic_status check_picture(conic_context *context, const conic_camera *ca
   return CONIC_OK;
 }
 
-static conic_status prepare_lighting(lighting *l, const conic_casters *casters) {
+static conic_status prepare_lighting(conic_light_work *l, const conic_casters *casters) {
   conic_image *image = l->image;
   l->finish.options = l->render;
   l->finish.exposure = conic_exposure_factor(l->render->exposure);
@@ -288,7 +248,7 @@ conic_status conic_image_light(conic_context *context, const conic_casters *cast
                                conic_image *image) {
   conic_render_options own_render;
   conic_lighting_options own;
-  lighting l = {.context = context, .camera = camera, .render = &own_render, .options = &own, .image = image};
+  conic_light_work l = {.context = context, .camera = camera, .render = &own_render, .options = &own, .image = image};
   conic_render_options_init(&own_render);
   conic_lighting_options_init(&own);
   if (!casters || !camera || !image || !conic_options_take(&own_render, render) || !conic_options_take(&own, options))
@@ -303,6 +263,11 @@ conic_status conic_image_light(conic_context *context, const conic_casters *cast
     status = cast_shadows(&l);
   if (status == CONIC_OK && l.hidden)
     finish_colors(&l);
+  if (status == CONIC_OK && own.n_lamps > 0)
+    status = conic_light_add_lamps(&l);
+  if (status == CONIC_OK)
+    divide_shadow(&l);
+  conic_memory_release(context, l.lamp_power);
   conic_memory_release(context, l.hidden);
   conic_memory_release(context, l.sums_block);
   conic_edge_spread_release(&l.spread);
