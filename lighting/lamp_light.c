@@ -74,9 +74,10 @@ static conic_status light_lamp(lamp_lighting *work, const conic_lamp *lamp) {
   conic_light_work *l = work->l;
   conic_lighting_options middle = *l->options;
   conic_status status = CONIC_OK;
+  double nearest = 0.01 * l->receivers.spacing;
   middle.is_sample = 0;
-  conic_lamp_shine(lamp, l->options, l->receivers.spacing, &work->point);
-  conic_lamp_shine(lamp, &middle, l->receivers.spacing, &work->middle);
+  conic_lamp_shine(lamp, l->options, l->receivers.origin, nearest, &work->point);
+  conic_lamp_shine(lamp, &middle, l->receivers.origin, nearest, &work->middle);
   if (l->options->has_shadows)
     status = conic_lamp_receive(&l->room, &work->point, l->visible);
   for (size_t i = 0; i < l->receivers.count && !l->options->has_shadows; i++)

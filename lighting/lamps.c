@@ -8,6 +8,7 @@
 #include "core/base/options.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
+#include "lighting/light_axes.h"
 
 static int are_lengths(const double *of, int n) {
   for (int i = 0; i < n; i++)
@@ -43,14 +44,20 @@ const char *conic_lamps_fault(const conic_lighting_options *options) {
   return fault;
 }
 
-/* A point of the sphere, each part of which has its share. */
-static void shine_from_sphere(double u, double v, conic_lamp_point *point) {
+/* A point of the sphere, each part of which has its share. Heights are along the way to `onto`: on the mean of few
+ * samples, what is sent there is as much as it should be. */
+static void shine_from_sphere(double u, double v, const double onto[3], conic_lamp_point *point) {
   double height = 1.0 - 2.0 * u, around = sqrt((1.0 - height) * (1.0 + height)), angle = 2.0 * CONIC_PI * v;
-  const double normal[3] = {around * conic_cos(angle), around * conic_sin(angle), height};
+  double way[3], rows[3][3];
   point->is_middle = !(point->lamp->radius > 0.0);
+  conic_subtract(onto, point->place, way);
+  if (!conic_normalize(way))
+    memcpy(way, (const double[3]){0.0, 0.0, 1.0}, sizeof way);
+  conic_light_axes(way, rows);
   for (int axis = 0; axis < 3; axis++) {
-    point->normal[axis] = normal[axis];
-    point->place[axis] += point->lamp->radius * normal[axis];
+    point->normal[axis] =
+        around * (conic_cos(angle) * rows[0][axis] + conic_sin(angle) * rows[1][axis]) + height * way[axis];
+    point->place[axis] += point->lamp->radius * point->normal[axis];
   }
 }
 
@@ -62,8 +69,8 @@ static void shine_from_plane(double u, double v, conic_lamp_point *point) {
     point->place[axis] += place[0] * point->lamp->axes[0][axis] + place[1] * point->lamp->axes[1][axis];
 }
 
-void conic_lamp_shine(const conic_lamp *lamp, const conic_lighting_options *options, double nearest,
-                      conic_lamp_point *point) {
+void conic_lamp_shine(const conic_lamp *lamp, const conic_lighting_options *options, const double onto[3],
+                      double nearest, conic_lamp_point *point) {
   double u = conic_sequence_at(options->first_direction, CONIC_SEQUENCE_DIRECTION),
          v = conic_sequence_at(options->first_direction, CONIC_SEQUENCE_DIRECTION + 1);
   *point = (conic_lamp_point){.lamp = lamp, .is_middle = 1, .nearest = nearest};
@@ -75,7 +82,7 @@ void conic_lamp_shine(const conic_lamp *lamp, const conic_lighting_options *opti
   if (!options->is_sample)
     return;
   if (lamp->kind == CONIC_LAMP_SPHERE)
-    shine_from_sphere(u, v, point);
+    shine_from_sphere(u, v, onto, point);
   else
     shine_from_plane(u, v, point);
 }

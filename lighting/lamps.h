@@ -16,9 +16,10 @@ typedef struct conic_lamp_point {
 /* What is wrong with the options' lamps; null: nothing. */
 const char *conic_lamps_fault(const conic_lighting_options *options);
 
-/* Where a lamp shines from by the options. */
-void conic_lamp_shine(const conic_lamp *lamp, const conic_lighting_options *options, double nearest,
-                      conic_lamp_point *point);
+/* Where a lamp shines from by the options, onto what lies about a place: of a ball, the samples tell best what is sent
+ * there. */
+void conic_lamp_shine(const conic_lamp *lamp, const conic_lighting_options *options, const double onto[3],
+                      double nearest, conic_lamp_point *point);
 
 /* What its colour is multiplied by at a place of the world that faces it, and the unit direction from there to it. */
 double conic_lamp_strength(const conic_lamp_point *point, const double at[3], double towards[3]);

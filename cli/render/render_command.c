@@ -349,6 +349,8 @@ static int run(cli_session *session, int argc, char **argv) {
     job.begun_seconds = cli_seconds();
     if (status == CONIC_OK)
       status = cli_scene_open(session, &job);
+    if (status == CONIC_OK)
+      cli_lamps_warn(session, &job);
     exit_code = status != CONIC_OK  ? cli_exit_of(status)
                 : job.top.is_wanted ? cli_top_render(session, &job)
                                     : render_scene(session, &job);
