@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "accumulation/disc_point.h"
 #include "accumulation/sequence.h"
 #include "conic/accumulate.h"
 #include "core/base/message.h"
@@ -10,18 +11,6 @@
 
 double conic_sample_time(uint64_t index) {
   return conic_sequence_at(index, CONIC_SEQUENCE_SHUTTER);
-}
-
-/* The unit disc, by squares about its centre that become circles, which keeps areas and what is near (Shirley and Chiu,
- * "A low distortion map between disk and square", 1997). */
-static void point_on_disc(double u, double v, double point[2]) {
-  double x = 2.0 * u - 1.0, y = 2.0 * v - 1.0;
-  int is_flat = fabs(x) > fabs(y);
-  double radius = is_flat ? x : y, other = is_flat ? y : x;
-  double angle = radius == 0.0 ? 0.0 : CONIC_PI / 4.0 * (other / radius);
-  double along = radius * conic_cos(angle), across = radius * conic_sin(angle);
-  point[0] = is_flat ? along : across;
-  point[1] = is_flat ? across : along;
 }
 
 /* The polygon whose corners are on the unit circle, the first at the top: a triangle about its centre for each side,
@@ -67,7 +56,7 @@ conic_status conic_sample_place(conic_context *context, const conic_camera *came
   if (lens->n_blades)
     point_on_polygon(lens->n_blades, u, v, point);
   else
-    point_on_disc(u, v, point);
+    conic_disc_point(u, v, point);
   for (int axis = 0; axis < 2; axis++) {
     sample->lens[axis] = 0.5 * lens->diameter * point[axis];
     sample->camera.cam_from_world[axis][3] -= sample->lens[axis];

@@ -4,25 +4,11 @@
 #include <string.h>
 
 #include "core/base/vectors.h"
+#include "lighting/light_axes.h"
 
 /* The light stands so many times as far away as the receivers reach from their middle: its rays meet at 0.2°, less than
  * the sun's own disc, and a float still tells depths apart by a fiftieth of a texel. */
 static const double far_away = 256.0;
-
-/* Forward is away from the light; right is at a right angle to the world's axis that it is farthest from. */
-static void choose_axes(const double direction[3], double rows[3][3]) {
-  int axis = 0;
-  double helper[3] = {0.0, 0.0, 0.0};
-  for (int i = 1; i < 3; i++)
-    if (fabs(direction[i]) < fabs(direction[axis]))
-      axis = i;
-  helper[axis] = 1.0;
-  for (int i = 0; i < 3; i++)
-    rows[2][i] = -direction[i];
-  conic_cross(helper, rows[2], rows[0]);
-  conic_normalize(rows[0]);
-  conic_cross(rows[2], rows[0], rows[1]);
-}
 
 /* How far a box reaches along a direction from its middle. */
 static double reach_along(const double half[3], const double direction[3]) {
@@ -46,7 +32,7 @@ static int map_edge(double texels, int most) {
 void conic_light_map_place(const conic_casters *casters, const conic_receivers *receivers, const double direction[3],
                            double texel, int most, conic_camera *camera, double *near_z, conic_light_map *map) {
   double rows[3][3], half = conic_length(receivers->half);
-  choose_axes(direction, rows);
+  conic_light_axes(direction, rows);
   double reach = casters_reach(casters, receivers->origin, direction);
   reach = reach > half ? reach : half;
   half = half > 0.0 ? half : texel;

@@ -14,6 +14,7 @@ typedef struct conic_light_map {
   float rotation[3][3], distance;
   float focal, angle, center_x, center_y; /* angle: 1/focal, of a texel */
   float epsilon;                          /* in world units */
+  int is_lamp;                            /* its rays part: receivers are measured from it, and `distance` is 0 */
 } conic_light_map;
 
 /* What of the texel's edge a surface may lie off its own plane before it hides itself, where it faces the light, and

@@ -1,7 +1,6 @@
 /* What of its light a drawn picture does not get. */
 #include "conic/lighting.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/color.h"
@@ -9,160 +8,15 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/threads.h"
-#include "core/base/vectors.h"
-#include "core/image/camera_rays.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
-#include "lighting/lit_map.h"
+#include "lighting/light_work.h"
 #include "raster/tiles/lights.h"
-
-enum { NO_RECEIVER, RECEIVER, RECEIVER_AT_EDGE, MOST_EDGE_PX = 4 };
-
-typedef struct lighting {
-  conic_context *context;
-  const conic_camera *camera;
-  const conic_render_options *render;
-  const conic_lighting_options *options;
-  conic_image *image;
-  conic_camera_rays rays;
-  conic_finish finish;
-  conic_finish_lights lights; /* all of them */
-  conic_finish_lights one;    /* the one at hand */
-  conic_receivers receivers;
-  conic_map_room room;
-  unsigned char *kind; /* of each pixel */
-  float *spread;       /* of each pixel that is a receiver, what it got */
-  float *filled;       /* of each pixel what it gets by that */
-  float epsilon;       /* the casters' */
-  size_t edge_px;      /* how far splats may stick out */
-  float *hidden;       /* of each pixel the colour, unexposed, that hidden lights would make; null: no colours */
-  float *visible;      /* of each receiver */
-  conic_sky_sums sums;
-  float *sums_block;
-  double power; /* Σ of the luminances of the lights so far */
-} lighting;
-
-static size_t lighting_pixel(const lighting *l, size_t x, size_t y) {
-  return y * (size_t)l->image->width + x;
-}
-
-/* The unit direction from what is seen at the pixel to the viewer, in the world. */
-static void find_viewer(const lighting *l, size_t x, size_t y, float viewer[3]) {
-  const double(*m)[4] = l->camera->cam_from_world;
-  double origin[3], direction[3], world[3];
-  if (!conic_camera_ray(&l->rays, (double)x + 0.5, (double)y + 0.5, origin, direction))
-    direction[0] = direction[1] = direction[2] = 0.0;
-  for (int axis = 0; axis < 3; axis++)
-    world[axis] = -((m[0][axis] * direction[0] + m[1][axis] * direction[1]) + m[2][axis] * direction[2]);
-  conic_normalize(world);
-  for (int axis = 0; axis < 3; axis++)
-    viewer[axis] = (float)world[axis];
-}
-
-/* How much deeper a neighbour may be that is still the same surface. */
-static float depth_of_step(const lighting *l, size_t x, size_t y) {
-  static const float steps = 4.0f, least_cosine = 0.03f;
-  const float *n = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * lighting_pixel(l, x, y);
-  float viewer[3];
-  find_viewer(l, x, y, viewer);
-  float cosine = (n[0] * viewer[0] + n[1] * viewer[1]) + n[2] * viewer[2];
-  cosine = cosine > least_cosine ? cosine : least_cosine;
-  return steps * (l->epsilon + (float)l->receivers.spacing / cosine);
-}
-
-/* The pixels at most so many away as splats stick out, at the picture's edges fewer. */
-typedef struct pixel_range {
-  size_t left, right, top, bottom; /* the second and the fourth past the last */
-} pixel_range;
-
-static pixel_range pixels_about(const lighting *l, size_t x, size_t y) {
-  size_t width = (size_t)l->image->width, height = (size_t)l->image->height, reach = l->edge_px;
-  return (pixel_range){x > reach ? x - reach : 0, x + reach < width ? x + reach + 1 : width, y > reach ? y - reach : 0,
-                       y + reach < height ? y + reach + 1 : height};
-}
-
-/* Splats stick out where a surface turns away, and what of its far side does so is seen from behind: it takes the side
- * that it shows for its outer one, on which there is no light. And of samples on two surfaces, the mean normal is of
- * neither. */
-static int is_at_edge(const lighting *l, size_t x, size_t y) {
-  const float *z = l->image->planes[CONIC_PLANE_Z];
-  float here = z[lighting_pixel(l, x, y)], step = depth_of_step(l, x, y);
-  float least = l->options->samples > 1 ? here - step : 0.0f;
-  pixel_range range = pixels_about(l, x, y);
-  for (size_t j = range.top; j < range.bottom; j++)
-    for (size_t i = range.left; i < range.right; i++) {
-      float there = z[lighting_pixel(l, i, j)];
-      if (!(there > least) || there > here + step)
-        return 1;
-    }
-  return 0;
-}
-
-static void find_receivers_at_edges(void *data, size_t y, int i_thread) {
-  const lighting *l = data;
-  (void)i_thread;
-  for (size_t x = 0; x < (size_t)l->image->width; x++)
-    if (l->kind[lighting_pixel(l, x, y)] == RECEIVER && is_at_edge(l, x, y))
-      l->kind[lighting_pixel(l, x, y)] = RECEIVER_AT_EDGE;
-}
-
-static void name_receivers(lighting *l) {
-  memset(l->kind, NO_RECEIVER, conic_image_pixels(l->image));
-  for (size_t i = 0; i < l->receivers.count; i++)
-    l->kind[l->receivers.pixel[i]] = RECEIVER;
-}
-
-/* The mean over the pixels about one that are of a kind, and no nearer nor deeper; below 0 where none is. */
-static float mean_about(const lighting *l, size_t x, size_t y, unsigned char kind, float nearest, float deepest) {
-  const float *z = l->image->planes[CONIC_PLANE_Z];
-  pixel_range range = pixels_about(l, x, y);
-  float sum = 0.0f, n = 0.0f;
-  for (size_t j = range.top; j < range.bottom; j++)
-    for (size_t i = range.left; i < range.right; i++) {
-      size_t pixel = lighting_pixel(l, i, j);
-      if (l->kind[pixel] != kind || z[pixel] < nearest || z[pixel] > deepest)
-        continue;
-      sum += l->spread[pixel];
-      n += 1.0f;
-    }
-  return n > 0.0f ? sum / n : -1.0f;
-}
-
-/* What a pixel gets: a receiver its own, one at an edge what its surface gets beside it, and what is none, but has been
- * drawn at its border, what is about it. */
-static float spread_at(const lighting *l, size_t x, size_t y) {
-  size_t pixel = lighting_pixel(l, x, y);
-  if (l->kind[pixel] == RECEIVER)
-    return l->spread[pixel];
-  if (l->kind[pixel] == RECEIVER_AT_EDGE) {
-    float z = ((const float *)l->image->planes[CONIC_PLANE_Z])[pixel], step = depth_of_step(l, x, y);
-    float mean = mean_about(l, x, y, RECEIVER, z - step, z + step);
-    return mean >= 0.0f ? mean : l->spread[pixel];
-  }
-  float mean = mean_about(l, x, y, RECEIVER, 0.0f, HUGE_VALF);
-  if (mean < 0.0f)
-    mean = mean_about(l, x, y, RECEIVER_AT_EDGE, 0.0f, HUGE_VALF);
-  return mean >= 0.0f ? mean : 1.0f;
-}
-
-static void fill_row(void *data, size_t y, int i_thread) {
-  const lighting *l = data;
-  (void)i_thread;
-  for (size_t x = 0; x < (size_t)l->image->width; x++)
-    l->filled[lighting_pixel(l, x, y)] = spread_at(l, x, y);
-}
-
-/* What receivers got, made what pixels get. */
-static void spread_out(lighting *l, const float *of_receivers) {
-  for (size_t i = 0; i < l->receivers.count; i++)
-    l->spread[l->receivers.pixel[i]] = of_receivers[i];
-  conic_parallel_for(l->context, (size_t)l->image->height, fill_row, l);
-}
 
 /* --- lights with a direction --- */
 
 typedef struct receiving {
-  lighting *l;
+  conic_light_work *l;
   const conic_light_map *map;
 } receiving;
 
@@ -175,42 +29,21 @@ static void receive_light(void *data, size_t i_item, int i_thread) {
   r->l->room.kernels.receive(r->map, &r->l->receivers, begin, end, 1, r->l->visible + begin, facing);
 }
 
-/* How much of the pixel is something, where its background is nothing. */
-static float coverage_of(const lighting *l, size_t pixel) {
-  float alpha = ((const float *)l->image->planes[CONIC_PLANE_RGBA])[4 * pixel + 3];
-  return l->render->has_background || !(alpha < 1.0f) ? 1.0f : alpha;
-}
-
-/* The colour of what is seen, as if it covered the pixel, by the lights at hand. */
-static int shade_pixel(const lighting *l, size_t x, size_t y, float shaded[3]) {
-  size_t pixel = lighting_pixel(l, x, y);
-  const float *albedo = (const float *)l->image->planes[CONIC_PLANE_ALBEDO] + 3 * pixel;
-  const float *normal = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel;
-  float coverage = coverage_of(l, pixel), viewer[3], own[3];
-  for (int c = 0; c < 3 && coverage > 0.0f; c++)
-    own[c] = albedo[c] / coverage;
-  if (!(coverage > 0.0f))
-    return 0;
-  find_viewer(l, x, y, viewer);
-  conic_shade(&l->finish, own, normal, normal, viewer, shaded);
-  return 1;
-}
-
 static void hide_row(void *data, size_t y, int i_thread) {
-  const lighting *l = data;
+  const conic_light_work *l = data;
   float shaded[3];
   (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++) {
-    size_t pixel = lighting_pixel(l, x, y);
-    float part = 1.0f - l->filled[pixel];
-    if (part > 0.0f && shade_pixel(l, x, y, shaded))
+    size_t pixel = conic_light_pixel(l, x, y);
+    float part = 1.0f - l->spread.filled[pixel];
+    if (part > 0.0f && conic_light_shade(l, &l->finish, x, y, shaded))
       for (int c = 0; c < 3; c++)
         l->hidden[3 * pixel + (size_t)c] += part * shaded[c];
   }
 }
 
-/* Adds what of the given lights does not come to pixels that get only l->filled of it. */
-static void hide_lights(lighting *l, const conic_finish_lights *lights) {
+/* Adds what of the given lights does not come to pixels that get only l->spread.filled of it. */
+static void hide_lights(conic_light_work *l, const conic_finish_lights *lights) {
   if (!l->hidden)
     return;
   l->finish.lights = lights;
@@ -220,36 +53,36 @@ static void hide_lights(lighting *l, const conic_finish_lights *lights) {
 /* Of what all lights make of a pixel, the part that is hidden is taken. It is a part, and no difference: where normals
  * cancel, the picture is darker than its planes tell (conic_shade). */
 static void take_row(void *data, size_t y, int i_thread) {
-  const lighting *l = data;
+  const conic_light_work *l = data;
   float shaded[3];
   (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++) {
-    size_t pixel = lighting_pixel(l, x, y);
+    size_t pixel = conic_light_pixel(l, x, y);
     const float *hidden = l->hidden + 3 * pixel;
     float *rgba = (float *)l->image->planes[CONIC_PLANE_RGBA] + 4 * pixel;
-    if ((hidden[0] > 0.0f || hidden[1] > 0.0f || hidden[2] > 0.0f) && shade_pixel(l, x, y, shaded))
+    if ((hidden[0] > 0.0f || hidden[1] > 0.0f || hidden[2] > 0.0f) && conic_light_shade(l, &l->finish, x, y, shaded))
       for (int c = 0; c < 3; c++)
         rgba[c] *= hidden[c] < shaded[c] ? 1.0f - hidden[c] / shaded[c] : shaded[c] > 0.0f ? 0.0f : 1.0f;
   }
 }
 
-static void add_shadow(lighting *l, float luminance) {
+static void add_shadow(conic_light_work *l, float luminance) {
   float *shadow = l->image->planes[CONIC_PLANE_SHADOW];
   for (size_t i = 0; i < conic_image_pixels(l->image) && shadow; i++)
-    shadow[i] += luminance * l->filled[i];
+    shadow[i] += luminance * l->spread.filled[i];
 }
 
-static conic_status cast_shadow(lighting *l, const conic_finish_light *light) {
+static conic_status cast_shadow(conic_light_work *l, const conic_finish_light *light) {
   conic_light_map map;
   receiving work = {l, &map};
   double direction[3] = {(double)light->towards[0], (double)light->towards[1], (double)light->towards[2]};
-  float luminance = (0.2126f * light->diffuse[0] + 0.7152f * light->diffuse[1]) + 0.0722f * light->diffuse[2];
+  float luminance = conic_light_luminance(light->diffuse);
   size_t n_items = (l->receivers.count + CONIC_RECEIVED_TOGETHER - 1) / CONIC_RECEIVED_TOGETHER;
   conic_status status = n_items ? conic_map_room_draw(&l->room, direction, &map) : CONIC_OK;
   if (status != CONIC_OK)
     return status;
   conic_parallel_for(l->context, n_items, receive_light, &work);
-  spread_out(l, l->visible);
+  conic_edge_spread_fill(&l->spread, l->visible, 1.0f);
   l->one = (conic_finish_lights){.n_lights = 1, .lights[0] = *light};
   hide_lights(l, &l->one);
   add_shadow(l, luminance);
@@ -257,15 +90,21 @@ static conic_status cast_shadow(lighting *l, const conic_finish_light *light) {
   return CONIC_OK;
 }
 
-static conic_status cast_shadows(lighting *l) {
-  float *shadow = l->image->planes[CONIC_PLANE_SHADOW];
+static conic_status cast_shadows(conic_light_work *l) {
   conic_status status = CONIC_OK;
   for (int i = 0; i < l->lights.n_lights && l->options->has_shadows && status == CONIC_OK; i++)
     if (!l->lights.lights[i].is_head) /* what it lights is what the viewer sees */
       status = cast_shadow(l, &l->lights.lights[i]);
-  for (size_t i = 0; shadow && i < conic_image_pixels(l->image); i++)
-    shadow[i] = l->power > 0.0 ? shadow[i] / (float)l->power : 1.0f;
   return status;
+}
+
+/* Of the power that arrives, the part. */
+static void divide_shadow(conic_light_work *l) {
+  float *shadow = l->image->planes[CONIC_PLANE_SHADOW];
+  for (size_t i = 0; shadow && i < conic_image_pixels(l->image); i++) {
+    float power = (float)l->power + (l->lamp_power ? l->lamp_power[i] : 0.0f);
+    shadow[i] = power > 0.0f ? shadow[i] / power : 1.0f;
+  }
 }
 
 /* --- light from all around --- */
@@ -281,54 +120,54 @@ static void light_of_sky(const void *cookie, const double direction[3], double l
 }
 
 /* The sums of one colour, made what a white surface reflects at each pixel. */
-static void reflect_sky(lighting *l, size_t c) {
+static void reflect_sky(conic_light_work *l, size_t c) {
   const conic_sky_sums *sums = &l->sums;
   float n = (float)l->options->n_directions, white = 4.0f; /* of each direction's light (conic_sky_direction) */
   for (size_t i = 0; i < l->receivers.count; i++) {
     float whole = sums->takes_hidden ? white * sums->facing[i] : n;
     l->visible[i] = whole > 0.0f ? sums->color[c][i] / whole : 0.0f;
   }
-  spread_out(l, l->visible);
+  conic_edge_spread_fill(&l->spread, l->visible, 1.0f);
 }
 
 /* What is hidden of the lights' sky and ground. */
-static void hide_sky(lighting *l) {
+static void hide_sky(conic_light_work *l) {
   const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
   for (size_t c = 0; c < 3; c++) {
     reflect_sky(l, c);
     for (size_t i = 0; i < conic_image_pixels(l->image); i++)
       if (albedo[3 * i + c] > 0.0f)
-        l->hidden[3 * i + c] += albedo[3 * i + c] / coverage_of(l, i) * l->filled[i];
+        l->hidden[3 * i + c] += albedo[3 * i + c] / conic_light_coverage(l, i) * l->spread.filled[i];
   }
 }
 
 /* Adds what arrives of a sky that the picture was drawn without. */
-static void add_sky(lighting *l) {
+static void add_sky(conic_light_work *l) {
   const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
   float *rgba = l->image->planes[CONIC_PLANE_RGBA];
   for (size_t c = 0; c < 3; c++) {
     reflect_sky(l, c);
     for (size_t i = 0; i < conic_image_pixels(l->image); i++)
       if (albedo[3 * i + c] > 0.0f)
-        rgba[4 * i + c] += l->finish.exposure * albedo[3 * i + c] * l->filled[i];
+        rgba[4 * i + c] += l->finish.exposure * albedo[3 * i + c] * l->spread.filled[i];
   }
 }
 
 /* All of the lights' sky and ground is hidden, so that what arrives can take its place. */
-static void hide_whole_sky(lighting *l) {
+static void hide_whole_sky(conic_light_work *l) {
   l->one = l->lights;
   l->one.n_lights = 0;
-  memset(l->filled, 0, conic_image_pixels(l->image) * sizeof *l->filled);
+  memset(l->spread.filled, 0, conic_image_pixels(l->image) * sizeof *l->spread.filled);
   hide_lights(l, &l->one);
 }
 
 /* Of a sample's one direction, what on the mean is its share. */
-static float arriving_part(const lighting *l, size_t i) {
+static float arriving_part(const conic_light_work *l, size_t i) {
   float part = 4.0f * l->sums.visible[i] / (float)l->options->n_directions;
   return l->options->is_sample ? part : conic_sky_sums_share(&l->sums, i);
 }
 
-static conic_status gather_sky(lighting *l) {
+static conic_status gather_sky(conic_light_work *l) {
   float *ao = l->image->planes[CONIC_PLANE_AO];
   int has_colors = l->hidden != NULL;
   size_t n = l->receivers.count;
@@ -350,15 +189,15 @@ static conic_status gather_sky(lighting *l) {
     hide_whole_sky(l);
   for (size_t i = 0; i < n; i++)
     l->visible[i] = arriving_part(l, i);
-  spread_out(l, l->visible);
+  conic_edge_spread_fill(&l->spread, l->visible, 1.0f);
   if (ao)
-    memcpy(ao, l->filled, conic_image_pixels(l->image) * sizeof *ao);
+    memcpy(ao, l->spread.filled, conic_image_pixels(l->image) * sizeof *ao);
   return CONIC_OK;
 }
 
 /* --- all of it --- */
 
-static void finish_colors(lighting *l) {
+static void finish_colors(conic_light_work *l) {
   l->finish.lights = &l->lights;
   conic_parallel_for(l->context, (size_t)l->image->height, take_row, l);
   if (l->options->n_directions > 0 && !l->sums.takes_hidden)
@@ -377,9 +216,8 @@ static conic_status check_picture(conic_context *context, const conic_camera *ca
   return CONIC_OK;
 }
 
-static conic_status prepare_lighting(lighting *l, const conic_casters *casters) {
+static conic_status prepare_lighting(conic_light_work *l, const conic_casters *casters) {
   conic_image *image = l->image;
-  conic_camera_rays_init(l->camera, &l->rays);
   l->finish.options = l->render;
   l->finish.exposure = conic_exposure_factor(l->render->exposure);
   conic_status status = conic_finish_lights_init(l->context, l->camera, l->render, &l->lights);
@@ -389,12 +227,8 @@ static conic_status prepare_lighting(lighting *l, const conic_casters *casters) 
     status = conic_receivers_of_image(l->context, l->camera, l->options->samples, image, &l->receivers);
   if (status != CONIC_OK)
     return status;
-  l->epsilon = (float)casters->epsilon;
   l->room.receivers = &l->receivers;
   l->room.texel = l->receivers.spacing / l->options->texels;
-  l->spread = conic_memory_allocate(l->context, conic_image_pixels(image), sizeof *l->spread);
-  l->filled = conic_memory_allocate(l->context, conic_image_pixels(image), sizeof *l->filled);
-  l->kind = conic_memory_allocate(l->context, conic_image_pixels(image), 1);
   l->visible = conic_memory_allocate(l->context, l->receivers.count, sizeof *l->visible);
   for (size_t i = 0; i < conic_image_pixels(image) && image->planes[CONIC_PLANE_AO]; i++)
     ((float *)image->planes[CONIC_PLANE_AO])[i] = 1.0f;
@@ -403,14 +237,10 @@ static conic_status prepare_lighting(lighting *l, const conic_casters *casters) 
   int has_colors = image->planes[CONIC_PLANE_RGBA] && l->render->shading != CONIC_SHADE_NONE;
   if (has_colors)
     l->hidden = conic_memory_allocate_zeroed(l->context, conic_image_pixels(image), 3 * sizeof *l->hidden);
-  if (!l->spread || !l->filled || !l->kind || !l->visible || (has_colors && !l->hidden))
+  if (!l->visible || (has_colors && !l->hidden))
     return CONIC_ERROR_MEMORY;
-  name_receivers(l);
-  double edge = casters->epsilon > 0.0 ? 0.5 * casters->epsilon / l->receivers.spacing : 0.0;
-  l->edge_px = edge > 1.0 ? edge < MOST_EDGE_PX ? (size_t)edge : MOST_EDGE_PX : 1;
-  if (l->epsilon > 0.0f || l->options->samples > 1)
-    conic_parallel_for(l->context, (size_t)image->height, find_receivers_at_edges, l);
-  return CONIC_OK;
+  return conic_edge_spread_init(l->context, l->camera, image, &l->receivers, casters->epsilon, l->options->samples,
+                                &l->spread);
 }
 
 conic_status conic_image_light(conic_context *context, const conic_casters *casters, const conic_camera *camera,
@@ -418,7 +248,7 @@ conic_status conic_image_light(conic_context *context, const conic_casters *cast
                                conic_image *image) {
   conic_render_options own_render;
   conic_lighting_options own;
-  lighting l = {.context = context, .camera = camera, .render = &own_render, .options = &own, .image = image};
+  conic_light_work l = {.context = context, .camera = camera, .render = &own_render, .options = &own, .image = image};
   conic_render_options_init(&own_render);
   conic_lighting_options_init(&own);
   if (!casters || !camera || !image || !conic_options_take(&own_render, render) || !conic_options_take(&own, options))
@@ -433,11 +263,14 @@ conic_status conic_image_light(conic_context *context, const conic_casters *cast
     status = cast_shadows(&l);
   if (status == CONIC_OK && l.hidden)
     finish_colors(&l);
+  if (status == CONIC_OK && own.n_lamps > 0)
+    status = conic_light_add_lamps(&l);
+  if (status == CONIC_OK)
+    divide_shadow(&l);
+  conic_memory_release(context, l.lamp_power);
   conic_memory_release(context, l.hidden);
   conic_memory_release(context, l.sums_block);
-  conic_memory_release(context, l.kind);
-  conic_memory_release(context, l.filled);
-  conic_memory_release(context, l.spread);
+  conic_edge_spread_release(&l.spread);
   conic_memory_release(context, l.visible);
   conic_receivers_release(context, &l.receivers);
   conic_map_room_release(&l.room);

@@ -8,6 +8,7 @@
 #include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/splats/columns.h"
+#include "lighting/lamps.h"
 
 void conic_lighting_options_init_sized(conic_lighting_options *options, size_t size) {
   static const conic_lighting_options own = {.size = sizeof own, .texels = 1.0, .most_texels = 4096, .samples = 1};
@@ -26,7 +27,7 @@ static const char *find_fault(const conic_casters *c, const conic_lighting_optio
     return "a map has 0.125 to 8 texels to a pixel, and its edge 16 to 16384";
   if (o->samples < 1 || o->samples > CONIC_MAX_SAMPLES)
     return "a pixel has 1 to 16 samples";
-  return NULL;
+  return conic_lamps_fault(o);
 }
 
 conic_status conic_map_room_init(conic_context *context, const char *who, const conic_casters *casters,
@@ -45,13 +46,10 @@ conic_status conic_map_room_init(conic_context *context, const char *who, const 
   return status;
 }
 
-conic_status conic_map_room_draw(conic_map_room *room, const double direction[3], conic_light_map *map) {
-  conic_camera camera;
+conic_status conic_map_room_fill(conic_map_room *room, const conic_camera *camera, double near_z,
+                                 conic_light_map *map) {
   conic_image depth;
-  double near_z;
-  conic_light_map_place(room->casters, room->receivers, direction, room->texel, room->most_texels, &camera, &near_z,
-                        map);
-  size_t n = (size_t)camera.width * (size_t)camera.height;
+  size_t n = (size_t)camera->width * (size_t)camera->height;
   if (n > room->n_room) {
     conic_memory_release(room->context, room->z);
     room->z = conic_memory_allocate(room->context, n + n / 4, sizeof *room->z);
@@ -61,11 +59,19 @@ conic_status conic_map_room_draw(conic_map_room *room, const double direction[3]
     conic_memory_prefer_large_pages(room->context, room->z, room->n_room * sizeof *room->z);
   }
   memset(&depth, 0, sizeof depth);
-  depth.width = camera.width;
-  depth.height = camera.height;
+  depth.width = camera->width;
+  depth.height = camera->height;
   depth.planes[CONIC_PLANE_Z] = room->z;
   map->z = room->z;
-  return room->casters->draw(room->casters->cookie, &camera, near_z, &depth);
+  return room->casters->draw(room->casters->cookie, camera, near_z, &depth);
+}
+
+conic_status conic_map_room_draw(conic_map_room *room, const double direction[3], conic_light_map *map) {
+  conic_camera camera;
+  double near_z;
+  conic_light_map_place(room->casters, room->receivers, direction, room->texel, room->most_texels, &camera, &near_z,
+                        map);
+  return conic_map_room_fill(room, &camera, near_z, map);
 }
 
 void conic_map_room_release(conic_map_room *room) {

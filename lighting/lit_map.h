@@ -20,7 +20,10 @@ typedef struct conic_map_room {
 conic_status conic_map_room_init(conic_context *context, const char *who, const conic_casters *casters,
                                  const conic_lighting_options *options, conic_map_room *room);
 
-/* Draws the map of the light from a direction. Errors: MEMORY, the drawer's. */
+/* Draws the map that a camera sees, nothing nearer than near_z. Errors: MEMORY, the drawer's. */
+conic_status conic_map_room_fill(conic_map_room *room, const conic_camera *camera, double near_z, conic_light_map *map);
+
+/* Draws the map of the light from a direction. Errors: as conic_map_room_fill. */
 conic_status conic_map_room_draw(conic_map_room *room, const double direction[3], conic_light_map *map);
 
 void conic_map_room_release(conic_map_room *room);

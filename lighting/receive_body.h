@@ -49,8 +49,29 @@ static inline float clamp_to_map(float place, int size) {
   return place < last ? place : last;
 }
 
+/* How the receiver faces the parallel rays of a map, and how far it may lie off its plane along them. */
+static inline float face_sun(const conic_light_map *map, received *r) {
+  float cosine = -r->n[2], flat = cosine > CONIC_LIGHT_MAP_GRAZING ? cosine : CONIC_LIGHT_MAP_GRAZING;
+  float slope = sqrtf(r->n[0] * r->n[0] + r->n[1] * r->n[1]) / flat;
+  r->bias =
+      (map->epsilon + r->texel * CONIC_LIGHT_MAP_FLAT) + (map->epsilon + r->texel) * (CONIC_LIGHT_MAP_SLOPE * slope);
+  return cosine;
+}
+
+/* Likewise of the ray to `at`, which is longer than its z. */
+static inline float face_lamp(const conic_light_map *map, const float at[3], received *r) {
+  float distance = sqrtf((at[0] * at[0] + at[1] * at[1]) + at[2] * at[2]);
+  float cosine = -((r->n[0] * at[0] + r->n[1] * at[1]) + r->n[2] * at[2]) / distance;
+  float flat = cosine > CONIC_LIGHT_MAP_GRAZING ? cosine : CONIC_LIGHT_MAP_GRAZING;
+  float square = 1.0f - cosine * cosine, slope = sqrtf(square > 0.0f ? square : 0.0f) / flat;
+  r->bias =
+      ((map->epsilon + r->texel * CONIC_LIGHT_MAP_FLAT) + (map->epsilon + r->texel) * (CONIC_LIGHT_MAP_SLOPE * slope)) *
+      (at[2] / distance);
+  return cosine;
+}
+
 static inline void receive_one(const conic_light_map *map, const conic_receivers *from, size_t i, int is_smooth,
-                               float *visible, float *facing) {
+                               int is_lamp, float *visible, float *facing) {
   float p[3] = {from->position[0][i], from->position[1][i], from->position[2][i]};
   float n[3] = {from->normal[0][i], from->normal[1][i], from->normal[2][i]};
   float at[3];
@@ -65,9 +86,7 @@ static inline void receive_one(const conic_light_map *map, const conic_receivers
   r.row = clamp_to_map(at[1] * scale + map->center_y, map->height);
   r.height = at[2];
   r.texel = z * map->angle;
-  float cosine = -r.n[2], flat = cosine > CONIC_LIGHT_MAP_GRAZING ? cosine : CONIC_LIGHT_MAP_GRAZING;
-  float slope = sqrtf(r.n[0] * r.n[0] + r.n[1] * r.n[1]) / flat;
-  r.bias = (map->epsilon + r.texel * CONIC_LIGHT_MAP_FLAT) + (map->epsilon + r.texel) * (CONIC_LIGHT_MAP_SLOPE * slope);
+  float cosine = is_lamp ? face_lamp(map, at, &r) : face_sun(map, &r);
   float seen = is_smooth ? four_texels(map, &r) : nearest_texel(map, &r);
   *visible = cosine > 0.0f ? seen : 0.0f;
   *facing = cosine > 0.0f ? cosine : 0.0f;
@@ -77,10 +96,13 @@ static void receive(const conic_light_map *map, const conic_receivers *receivers
                     int is_smooth, float *visible, float *facing) {
   const conic_light_map m = *map;
   const conic_receivers from = *receivers;
-  if (is_smooth)
+  if (m.is_lamp)
     for (size_t i = begin; i < end; i++)
-      receive_one(&m, &from, i, 1, &visible[i - begin], &facing[i - begin]);
+      receive_one(&m, &from, i, 1, 1, &visible[i - begin], &facing[i - begin]);
+  else if (is_smooth)
+    for (size_t i = begin; i < end; i++)
+      receive_one(&m, &from, i, 1, 0, &visible[i - begin], &facing[i - begin]);
   else
     for (size_t i = begin; i < end; i++)
-      receive_one(&m, &from, i, 0, &visible[i - begin], &facing[i - begin]);
+      receive_one(&m, &from, i, 0, 0, &visible[i - begin], &facing[i - begin]);
 }

@@ -31,19 +31,9 @@ static int is_receiver(const receiver_rows *r, size_t pixel) {
   return r->z[pixel] > 0.0f && r->z[pixel] < 1e30f && length_squared > 0.5f && length_squared < 2.0f;
 }
 
-/* Where the pixel's depth is, in the world; 0: nowhere. */
 static int place_receiver(const receiver_rows *r, size_t x, size_t y, double world[3]) {
-  const conic_camera *camera = r->camera;
-  double origin[3], direction[3], z = (double)r->z[y * (size_t)camera->width + x];
-  if (!conic_camera_ray(&r->rays, (double)x + 0.5 + r->offset, (double)y + 0.5 + r->offset, origin, direction))
-    return 0;
-  for (int axis = 0; axis < 3; axis++) {
-    world[axis] = 0.0;
-    for (int row = 0; row < 3; row++)
-      world[axis] +=
-          camera->cam_from_world[row][axis] * (origin[row] + z * direction[row] - camera->cam_from_world[row][3]);
-  }
-  return 1;
+  double z = (double)r->z[y * (size_t)r->camera->width + x];
+  return conic_pixel_place(&r->rays, (double)x + 0.5 + r->offset, (double)y + 0.5 + r->offset, z, world);
 }
 
 static void count_receivers(void *data, size_t y, int i_thread) {
@@ -126,7 +116,7 @@ conic_status conic_receivers_of_image(conic_context *context, const conic_camera
                                       const conic_image *image, conic_receivers *receivers) {
   memset(receivers, 0, sizeof *receivers);
   receiver_rows work = {.camera = camera,
-                        .offset = samples % 2 ? 0.0 : -0.5 / samples,
+                        .offset = conic_receiver_offset(samples),
                         .z = image->planes[CONIC_PLANE_Z],
                         .normal = image->planes[CONIC_PLANE_NORMAL],
                         .to = receivers};
@@ -179,4 +169,33 @@ conic_status conic_receivers_of_splats(conic_context *context, const conic_splat
 void conic_receivers_release(conic_context *context, conic_receivers *receivers) {
   conic_memory_release(context, receivers->block);
   memset(receivers, 0, sizeof *receivers);
+}
+
+double conic_receiver_offset(int samples) {
+  return samples % 2 ? 0.0 : -0.5 / samples;
+}
+
+int conic_pixel_place(const conic_camera_rays *rays, double x_px, double y_px, double z, double world[3]) {
+  const double(*m)[4] = rays->camera->cam_from_world;
+  double origin[3], direction[3];
+  if (!conic_camera_ray(rays, x_px, y_px, origin, direction))
+    return 0;
+  for (int axis = 0; axis < 3; axis++) {
+    world[axis] = 0.0;
+    for (int row = 0; row < 3; row++)
+      world[axis] += m[row][axis] * (origin[row] + z * direction[row] - m[row][3]);
+  }
+  return 1;
+}
+
+void conic_pixel_viewer(const conic_camera_rays *rays, size_t x, size_t y, float viewer[3]) {
+  const double(*m)[4] = rays->camera->cam_from_world;
+  double origin[3], direction[3], world[3];
+  if (!conic_camera_ray(rays, (double)x + 0.5, (double)y + 0.5, origin, direction))
+    direction[0] = direction[1] = direction[2] = 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    world[axis] = -((m[0][axis] * direction[0] + m[1][axis] * direction[1]) + m[2][axis] * direction[2]);
+  conic_normalize(world);
+  for (int axis = 0; axis < 3; axis++)
+    viewer[axis] = (float)world[axis];
 }

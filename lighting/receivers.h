@@ -7,6 +7,7 @@
 #include "conic/camera.h"
 #include "conic/image.h"
 #include "conic/splats.h"
+#include "core/image/camera_rays.h"
 
 typedef struct conic_receivers {
   size_t count;
@@ -27,5 +28,14 @@ conic_status conic_receivers_of_splats(conic_context *context, const conic_splat
                                        conic_receivers *receivers);
 
 void conic_receivers_release(conic_context *context, conic_receivers *receivers);
+
+/* Of the sample that Z is of, how far it is from the pixel's centre to the right and down. */
+double conic_receiver_offset(int samples);
+
+/* Where what is seen at a place of the picture, in pixels, is in the world by its depth; 0: nowhere. */
+int conic_pixel_place(const conic_camera_rays *rays, double x_px, double y_px, double z, double world[3]);
+
+/* The unit direction from what is seen at a pixel to the viewer, in the world. */
+void conic_pixel_viewer(const conic_camera_rays *rays, size_t x, size_t y, float viewer[3]);
 
 #endif

@@ -69,7 +69,7 @@ static void sum_up_sky(conic_sky *sky) {
   sky->whole = whole;
 }
 
-static conic_status fill_sky(const conic_image *image, const double up[3], conic_sky *sky) {
+static conic_status fill_sky(const char *who, const conic_image *image, const double up[3], conic_sky *sky) {
   conic_framing framing, own;
   size_t width = (size_t)image->width, height = (size_t)image->height;
   conic_framing_init(&framing);
@@ -87,9 +87,10 @@ static conic_status fill_sky(const conic_image *image, const double up[3], conic
   if (!sky->row_sums || !sky->pixel_sums || !sky->color)
     return CONIC_ERROR_MEMORY;
   if (!take_sky_colors(image, sky))
-    return conic_fail(sky->context, CONIC_ERROR_INPUT, "sky: a colour is not finite, or above 1e12");
+    return conic_fail(sky->context, CONIC_ERROR_INPUT, "%s: a colour is not finite, or above 1e12", who);
   sum_up_sky(sky);
-  return sky->whole > 0.0 ? CONIC_OK : conic_fail(sky->context, CONIC_ERROR_INPUT, "sky: it is black");
+  return sky->whole > 0.0 ? CONIC_OK
+                          : conic_fail(sky->context, CONIC_ERROR_INPUT, "%s: no light: no colour is above 0", who);
 }
 
 static conic_status check_sky_place(conic_context *context, const double up[3], conic_sky **sky) {
@@ -99,22 +100,25 @@ static conic_status check_sky_place(conic_context *context, const double up[3], 
                    : conic_fail(context, CONIC_ERROR_ARGUMENT, "sky: no place to put it, or no direction up");
 }
 
-conic_status conic_sky_create(conic_context *context, const conic_image *image, const double up[3], conic_sky **sky) {
-  conic_status status = check_sky_place(context, up, sky);
-  if (status != CONIC_OK)
-    return status;
+static conic_status make_sky(conic_context *context, const char *who, const conic_image *image, const double up[3],
+                             conic_sky **sky) {
   if (!image || !image->planes[CONIC_PLANE_RGBA])
-    return conic_fail(context, CONIC_ERROR_INPUT, "sky: the picture has no colours");
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the picture has no colours", who);
   conic_sky *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
-  status = fill_sky(image, up, made);
+  conic_status status = fill_sky(who, image, up, made);
   if (status == CONIC_OK)
     *sky = made;
   else
     conic_sky_destroy(made);
   return status;
+}
+
+conic_status conic_sky_create(conic_context *context, const conic_image *image, const double up[3], conic_sky **sky) {
+  conic_status status = check_sky_place(context, up, sky);
+  return status == CONIC_OK ? make_sky(context, "sky", image, up, sky) : status;
 }
 
 conic_status conic_sky_read(conic_context *context, const char *path, const double up[3], conic_sky **sky) {
@@ -124,7 +128,7 @@ conic_status conic_sky_read(conic_context *context, const char *path, const doub
     status = conic_image_read(context, path, &image);
   if (status != CONIC_OK)
     return status;
-  status = conic_sky_create(context, &image, up, sky);
+  status = make_sky(context, path, &image, up, sky);
   conic_image_release(context, &image);
   return status;
 }

@@ -100,9 +100,12 @@ static conic_status find_focus(cli_session *session, cli_render_job *job, const 
 static conic_status draw_source_sample(void *cookie, const conic_sample *sample, conic_image *image) {
   accumulating *work = cookie;
   cli_render_job *job = work->job;
+  conic_render_options options = job->options;
   conic_render_statistics statistics;
-  conic_status status =
-      conic_source_draw(job->source, job->renderer, &sample->camera, &job->options, &job->view, image, &statistics);
+  conic_status status = cli_lamps_sample(work->session, job, sample->index, &options.lighting);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_source_draw(job->source, job->renderer, &sample->camera, &options, &job->view, image, &statistics);
   work->statistics.ms.frame += statistics.ms.frame;
   return status;
 }

@@ -1,6 +1,7 @@
 /* conic render --exposure auto. */
 #include <string.h>
 
+#include "cli/render/lit_picture.h"
 #include "cli/render/render_job.h"
 #include "core/base/message.h"
 
@@ -17,11 +18,15 @@ conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, cons
   plain.exposure = 0.0;
   view.samples = 1;
   view.most_levels = view.may_be_coarser ? 1 : 0;
-  conic_status status =
-      conic_image_allocate(session->context, camera->width, camera->height, 1u << CONIC_PLANE_RGBA, &image);
+  unsigned planes = 1u << CONIC_PLANE_RGBA;
+  if (job->lamps.n_lamps) /* without which it may be dark */
+    planes |= 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO;
+  conic_status status = conic_image_allocate(session->context, camera->width, camera->height, planes, &image);
   if (status != CONIC_OK)
     return status;
   status = conic_source_draw(job->source, job->renderer, camera, &plain, &view, &image, &statistics);
+  if (status == CONIC_OK && job->lamps.n_lamps)
+    status = cli_light_picture(session, job, camera, &image);
   if (status == CONIC_OK) {
     job->options.exposure = conic_image_exposure(&image);
     job->is_exposure_automatic = 0; /* kept for all frames */

@@ -16,7 +16,7 @@ static const conic_light studio_lights[] = {
 static const float studio_sky[3] = {0.17f, 0.19f, 0.22f}, studio_ground[3] = {0.055f, 0.05f, 0.045f};
 static const float plain_sky = 0.05f;
 
-int cli_parse_color(const char *text, size_t length, float color[3]) {
+int cli_parse_color_to(const char *text, size_t length, double most, float color[3]) {
   char copy[128], grey[3 * sizeof copy];
   double rgb[3];
   if (length == 0 || length >= sizeof copy)
@@ -26,11 +26,15 @@ int cli_parse_color(const char *text, size_t length, float color[3]) {
   if (!cli_parse_vector(strchr(copy, ',') ? copy : grey, rgb))
     return 0;
   for (int i = 0; i < 3; i++) {
-    if (!(rgb[i] >= 0.0 && rgb[i] <= 1e6))
+    if (!(rgb[i] >= 0.0 && rgb[i] <= most))
       return 0;
     color[i] = (float)rgb[i];
   }
   return 1;
+}
+
+int cli_parse_color(const char *text, size_t length, float color[3]) {
+  return cli_parse_color_to(text, length, 1e6, color);
 }
 
 /* Room for one more; null: there are as many as there may be. */
@@ -70,18 +74,31 @@ static int parse_place(const char *text, size_t length, conic_light *light) {
   return cli_parse_vector(direction, light->direction) && (d[0] != 0.0 || d[1] != 0.0 || d[2] != 0.0);
 }
 
+/* The colour, and of what has a direction the radius of its disc. */
+static int parse_looks(const char *text, cli_render_job *job, conic_light *light) {
+  size_t length = strcspn(text, ":");
+  if (!cli_parse_color(text, length, light->color))
+    return 0;
+  return !text[length] ||
+         (light->frame != CONIC_LIGHT_HEAD &&
+          cli_parse_sun_radius(text + length + 1, &job->lamps.sun_radius_deg[light - job->options.lighting.lights]));
+}
+
 int cli_parse_light(const char *text, void *value) {
+  static const char lamp[] = "lamp:";
   cli_render_job *job = value;
   job->is_light_given = 1;
   if (strcmp(text, "none") == 0)
     return 1;
   if (strcmp(text, "studio") == 0)
     return add_studio(job);
+  if (strncmp(text, lamp, sizeof lamp - 1) == 0)
+    return cli_parse_lamp(text + sizeof lamp - 1, job);
   conic_light *light = next_light(job);
   const char *colon = strchr(strncmp(text, "camera:", 7) == 0 ? text + 7 : text, ':');
   if (!light || !parse_place(text, colon ? (size_t)(colon - text) : strlen(text), light))
     return 0;
-  return cli_parse_color(colon ? colon + 1 : "1", colon ? strlen(colon + 1) : 1, light->color);
+  return parse_looks(colon ? colon + 1 : "1", job, light);
 }
 
 int cli_parse_sky(const char *text, void *value) {
@@ -108,6 +125,7 @@ static void find_up(const cli_render_job *job, double up[3]) {
 
 void cli_lights_turn(cli_render_job *job) {
   find_up(job, job->options.lighting.up);
+  cli_lamps_turn(job);
 }
 
 void cli_lights_settle(cli_render_job *job) {
@@ -154,9 +172,12 @@ void cli_lights_report(cli_json *json, const cli_render_job *job) {
       cli_json_number(json, NULL, light->direction[axis]);
     cli_json_close(json);
     cli_report_color(json, "color", light->color);
+    if (job->lamps.sun_radius_deg[i] > 0.0f)
+      cli_json_number(json, "radius_deg", (double)job->lamps.sun_radius_deg[i]);
     cli_json_close(json);
   }
   cli_json_close(json);
+  cli_lamps_report(json, job);
   if (job->n_directions)
     cli_json_count(json, "ao", (uint64_t)job->n_directions);
   if (job->has_shadows)

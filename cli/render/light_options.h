@@ -6,12 +6,15 @@
 
 /* R,G,B, or one number for a grey, each 0 to 1e6; 0 where it is none. `text` has `length` letters. */
 int cli_parse_color(const char *text, size_t length, float color[3]);
+/* Each 0 to `most`. */
+int cli_parse_color_to(const char *text, size_t length, double most, float color[3]);
 
 /* The key `key` as an array, in the digits that a float holds. */
 void cli_report_color(cli_json *json, const char *key, const float color[3]);
 
 /* Parsers of values, into a cli_render_job. --light may be given again:
- * X,Y,Z, camera:X,Y,Z or head, each with :COLOR behind it or without; studio; none. */
+ * X,Y,Z, camera:X,Y,Z or head, each with :COLOR behind it or without, and then :RADIUSdeg but for head; lamp:, and
+ * what cli_parse_lamp takes; studio; none. */
 int cli_parse_light(const char *text, void *value);
 /* COLOR, or COLOR:COLOR of the sky and the ground. */
 int cli_parse_sky(const char *text, void *value);

@@ -9,7 +9,7 @@
 enum { USUAL_DIRECTIONS = 64 };
 
 int cli_light_is_wanted(const cli_render_job *job) {
-  return job->n_directions > 0 || job->has_shadows;
+  return job->n_directions > 0 || job->has_shadows || job->lamps.n_lamps > 0;
 }
 
 void cli_light_want_planes(cli_render_job *job) {
@@ -29,9 +29,9 @@ int cli_light_check(const cli_render_job *job) {
   if (job->sky_path && job->n_directions == 0)
     return cli_usage("render: the light of %s comes from so many directions as --ao says; give it, too", job->sky_path);
   if (cli_light_is_wanted(job) && job->abilities & CONIC_SOURCE_COMPOSITES)
-    return cli_usage("render: --ao and --shadow are of surfaces; give --profile surface, too");
+    return cli_usage("render: --ao, --shadow and lamps are of surfaces; give --profile surface, too");
   if (cli_light_is_wanted(job) && job->top.is_wanted)
-    return cli_usage("render: --ao and --shadow are not of --camera top");
+    return cli_usage("render: --ao, --shadow and lamps are not of --camera top");
   return CLI_DONE;
 }
 
@@ -88,10 +88,13 @@ static conic_status light_image(cli_session *session, cli_render_job *job, const
   double start = cli_seconds();
   map_drawer drawer = drawer_of(job);
   conic_casters casters = casters_of(job, &drawer);
-  conic_lighter lighter = {session->context, &casters, &job->options, &options};
+  conic_render_options render = job->options;
+  conic_lighter lighter = {session->context, &casters, &render, &options};
   conic_lighting_options_init(&options);
   options.n_directions = (uint64_t)job->n_directions;
   options.has_shadows = job->has_shadows;
+  options.lamps = job->lamps.lamps;
+  options.n_lamps = (size_t)job->lamps.n_lamps;
   options.samples = job->view.samples;
   options.isa = job->options.isa;
   conic_status status = CONIC_OK;
@@ -99,9 +102,11 @@ static conic_status light_image(cli_session *session, cli_render_job *job, const
     status = conic_sky_read(session->context, job->sky_path, job->options.lighting.up, &job->sky);
   options.sky = job->sky;
   if (status == CONIC_OK && i_sample)
+    status = cli_lamps_sample(session, job, *i_sample, &render.lighting);
+  if (status == CONIC_OK && i_sample)
     status = conic_lighter_shade(&lighter, *i_sample, camera, image);
   else if (status == CONIC_OK)
-    status = conic_image_light(session->context, &casters, camera, &job->options, &options, image);
+    status = conic_image_light(session->context, &casters, camera, &render, &options, image);
   if (status == CONIC_OK && !i_sample)
     status = choose_again(job, camera, image);
   job->light_ms += 1e3 * (cli_seconds() - start);

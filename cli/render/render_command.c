@@ -396,6 +396,8 @@ static int run(cli_session *session, int argc, char **argv) {
       status = cli_scene_open(session, &job);
     if (status == CONIC_OK)
       cli_sharing_settle(&job);
+    if (status == CONIC_OK)
+      cli_lamps_warn(session, &job);
     cli_team_trace(session, "open", "scene", 0, job.begun_seconds, 0);
     exit_code = cli_exit_of(status);
     if (status == CONIC_OK && !cli_sharing_is_idle(session, &job))

@@ -6,6 +6,7 @@
 #include "cli/device_option.h"
 #include "cli/json_write.h"
 #include "cli/render/accumulate_job.h"
+#include "cli/render/lamp_job.h"
 #include "cli/render/top_job.h"
 #include "core/pictures/cryptomatte.h"
 
@@ -60,6 +61,7 @@ typedef struct cli_render_job {
   int is_background_given;
   cli_backdrop backdrop;                       /* --background with two colours */
   int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/light_options.h) */
+  cli_lamp_job lamps;                          /* of these, the lamps, and how large the others are */
   const char *sky_path;                        /* --sky with a picture; null: none */
   int n_directions, has_shadows;               /* --ao, --shadow */
   conic_sky *sky;                              /* of the picture, once it is read */

@@ -193,12 +193,15 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .choices = words.shadings, .is_given = &job->is_shade_given, .group = "light and background"},
       {"light", CLI_PARSED, job, "LIGHT",
        "a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the camera "
-       "(right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without; studio, several "
-       "that suit most scenes; none. Up to 8 [studio]",
+       "(right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without, and a direction "
+       "then "
+       "with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z, a place, with :R,G,B of "
+       "which a surface at distance 1 is lit, then :RADIUS of a ball, then :X,Y,Z where to it shines, for a disc or, "
+       "with :WxH, a rectangle; studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]",
        .parse = cli_parse_light, .may_repeat = 1},
       {"sky", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "light from all around; of two colours, the first falls on what faces up, the second on what faces down [the "
-       "studio's]; or a picture of all directions, such as sky.exr, which needs --ao",
+       "studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao",
        .parse = cli_parse_sky},
       {"background", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in PNG and JPEG, "

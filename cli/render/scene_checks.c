@@ -130,6 +130,8 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
     return cli_usage("%s: --degree and --h are of patches; give --method patch, too", command);
   if (job->backdrop.is_given && !job->is_for_looking)
     return cli_usage("%s: --background takes two colours in conic render; here it takes one", command);
+  if ((job->lamps.n_lamps || cli_lamps_are_soft(job)) && !job->is_for_looking)
+    return cli_usage("%s: lamps, and lights with a radius, are of conic render", command);
   if (job->is_exposure_automatic && !job->is_for_looking)
     return cli_usage("%s: --exposure auto is of conic render, which says in --json what it chose", command);
   if (words->passes != 1 && words->passes != 3)

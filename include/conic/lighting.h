@@ -48,6 +48,27 @@ CONIC_API void conic_sky_destroy(conic_sky *sky);
  * over i of light × visible × cosine is what a white surface reflects. A null sky is white, of radiance 1. */
 CONIC_API void conic_sky_direction(const conic_sky *sky, uint64_t i, double direction[3], double light[3]);
 
+/* What gives the light of a lamp. */
+typedef enum conic_lamp_kind {
+  CONIC_LAMP_SPHERE = 0,   /* to all sides */
+  CONIC_LAMP_DISC = 1,     /* to one side, as the cosine of the angle to its normal */
+  CONIC_LAMP_RECTANGLE = 2 /* likewise */
+} conic_lamp_kind;
+
+/* A light that stands in the scene, and fades with the square of the distance. */
+typedef struct conic_lamp {
+  conic_lamp_kind kind;
+  float color[3];     /* linear RGB, 0 to 1e12: a surface that faces it at distance 1, in the world's unit of length, is
+                         lit as by a light with a direction of that colour; of a disc and a rectangle, straight ahead */
+  double position[3]; /* of its middle, in the world */
+  double radius;      /* of a sphere; 0: a point */
+  double axes[2][3];  /* of a disc and a rectangle: from the middle to the rim or to two edges. Light goes to the side
+                         of the first × the second */
+  uint64_t reserved[4];
+} conic_lamp;
+
+#define CONIC_MAX_LAMPS 8
+
 typedef struct conic_lighting_options {
   size_t size;              /* sizeof(conic_lighting_options), set by the init function */
   uint64_t first_direction; /* in the sequence */
@@ -59,25 +80,37 @@ typedef struct conic_lighting_options {
   int samples;              /* N × N of the picture's pixel; Z is of the one nearest to its centre */
   conic_isa isa;
   int is_sample; /* the picture is one of many whose mean is wanted: of a direction comes what on the mean is its share,
-                    so that the plane ao and the colours of one picture may be up to 4 times too bright, or dark */
+                    so that the plane ao and the colours of one picture may be up to 4 times too bright, or dark.
+                    A lamp shines from the point of it that first_direction says; else from its middle */
+  const conic_lamp *lamps; /* what the picture was drawn without; their light is added */
+  size_t n_lamps;          /* 0 to CONIC_MAX_LAMPS */
 } conic_lighting_options;
 
-/* None, no shadows, 1 texel, 4096 at most, 1 sample. */
+/* None, no lamps, no shadows, 1 texel, 4096 at most, 1 sample. */
 CONIC_API void conic_lighting_options_init_sized(conic_lighting_options *options, size_t size);
 #define conic_lighting_options_init(options) conic_lighting_options_init_sized(options, sizeof *(options))
 
 /* Takes from a drawn picture what light does not arrive, by its planes Z and N, and fills what it has of the planes:
  * - ao: Σ V·max(0, n·d) / Σ max(0, n·d) over the directions d, where V is 1 where nothing hides the direction, else 0;
  * - shadow: of the lights with a direction, the part of their power that arrives: Σ w·V / Σ w, where w is a light's
- *   luminance, and V 0 where the surface faces away. 1 where there is no such light;
+ *   luminance, of a lamp that which comes to the pixel from its middle, and V 0 where the surface faces away. 1 where
+ *   there is no such light;
  * - rgba, for which there has to be albedo: less the part of each light that is hidden, and less what of sky and ground
- *   is; with a sky, plus its light. `render` is what the picture was drawn by.
+ *   is; with a sky, plus its light; plus that of the lamps. `render` is what the picture was drawn by.
  * Both planes are 1 where nothing is, but beside what is: there they are the mean of the neighbours. Errors: ARGUMENT
- * (a plane is missing; a light without a direction), UNSUPPORTED (the instruction set), MEMORY, CANCELLED, the
- * drawer's; the planes' contents are then undefined. */
+ * (a plane is missing; a light without a direction; a lamp that is none), UNSUPPORTED (the instruction set), MEMORY,
+ * CANCELLED, the drawer's; the planes' contents are then undefined. */
 CONIC_API conic_status conic_image_light(conic_context *context, const conic_casters *casters,
                                          const conic_camera *camera, const conic_render_options *render,
                                          const conic_lighting_options *options, conic_image *image);
+
+/* Where the lights stand in sample i_sample, for who takes the mean of many pictures: light i with a direction is a
+ * disc of radius_deg[i] degrees, 0 to 90, whose every part is as bright, and shines from one point of it. `lighting` is
+ * as it is given in conic_render_options, and *sample may be the same; both what draws the sample and the conic_lighter
+ * that shades it take it. Errors: ARGUMENT (a radius; a light without a direction that is no head). */
+CONIC_API conic_status conic_lighting_sample(conic_context *context, const conic_lighting *lighting,
+                                             const float radius_deg[CONIC_MAX_LIGHTS], uint64_t i_sample,
+                                             conic_lighting *sample);
 
 /* What lights each of many pictures, for who takes their mean. */
 typedef struct conic_lighter {

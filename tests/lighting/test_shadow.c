@@ -49,7 +49,7 @@ static int lit_by_ray(const light_picture *picture, const ray_mesh *mesh, const 
   double facing = normal[0] * sun[0] + normal[1] * sun[1] + normal[2] * sun[2];
   for (int axis = 0; axis < 3; axis++)
     place[axis] += 1e-4 * normal[axis];
-  return fabs(facing) < 0.02 ? -1 : facing > 0.0 && !ray_is_blocked(mesh, place, sun, 0.0);
+  return fabs(facing) < 0.02 ? -1 : facing > 0.0 && !ray_is_blocked(mesh, place, sun, HUGE_VAL);
 }
 
 /* Whether all about a pixel are lit as it is, as far as texels reach; and those that are lit, of one face: a texel that
@@ -98,18 +98,6 @@ static void cube_leaks_nothing(conic_context *context) {
   conic_triangles_release(context, &mesh);
 }
 
-/* A pixel at the ball's outline gets what its neighbours get. */
-static int is_covered_about(const light_picture *picture, int x, int y) {
-  int n = 0;
-  for (int k = 0; k < 25; k++) {
-    int i = x + k % 5 - 2, j = y + k / 5 - 2;
-    size_t pixel = (size_t)j * (size_t)picture->camera.width + (size_t)i;
-    n += i >= 0 && j >= 0 && i < picture->camera.width && j < picture->camera.height &&
-         ((const float *)picture->image.planes[CONIC_PLANE_Z])[pixel] > 0.0f;
-  }
-  return n == 25;
-}
-
 /* What faces the light by more than `least` is lit wholly, all about a ball whose normals are right. */
 static void expect_no_acne(sunny *s, double least) {
   const float *shadow = s->picture.image.planes[CONIC_PLANE_SHADOW];
@@ -121,7 +109,7 @@ static void expect_no_acne(sunny *s, double least) {
     set_sun(-85.0 + 7.3 * i, 101.0 * i, sun);
     turn_to(s, sun);
     for (int k = 0; k < size * size; k++)
-      if (is_covered_about(&s->picture, k % size, k / size) &&
+      if (light_is_covered_about(&s->picture, k % size, k / size) &&
           light_place(&s->picture, k % size, k / size, place, normal) &&
           normal[0] * place[0] + normal[1] * place[1] + normal[2] * place[2] > 0.9 &&
           normal[0] * sun[0] + normal[1] * sun[1] + normal[2] * sun[2] > least) {
@@ -130,26 +118,6 @@ static void expect_no_acne(sunny *s, double least) {
       }
     CHECK(n == 0 || darkest == 1.0f);
   }
-}
-
-/* Discs about a ball. */
-static conic_splats splats_on_ball(conic_context *context, size_t n) {
-  conic_splats splats;
-  if (conic_splats_allocate(context, n, CONIC_SPLATS_TANGENTS, &splats) != CONIC_OK)
-    exit(1);
-  double size = sqrt(4.0 * light_pi / (double)n);
-  for (size_t i = 0; i < n; i++) {
-    double y = 1.0 - 2.0 * ((double)i + 0.5) / (double)n, r = sqrt(1.0 - y * y), a = 2.399963229728653 * (double)i;
-    double p[3] = {r * cos(a), y, r * sin(a)}, u[3] = {-sin(a), 0.0, cos(a)}, v[3];
-    for (int axis = 0; axis < 3; axis++)
-      v[axis] = p[(axis + 1) % 3] * u[(axis + 2) % 3] - p[(axis + 2) % 3] * u[(axis + 1) % 3];
-    for (int axis = 0; axis < 3; axis++) {
-      splats.position[axis][i] = (float)p[axis];
-      splats.tangent_u[axis][i] = (float)(size * u[axis]);
-      splats.tangent_v[axis][i] = (float)(size * v[axis]);
-    }
-  }
-  return splats;
 }
 
 static void ball_has_no_acne(conic_context *context) {
@@ -165,7 +133,7 @@ static void ball_has_no_acne(conic_context *context) {
   expect_no_acne(&s, 0.1);
   leave_the_sun(&s);
   conic_triangles_release(context, &mesh);
-  conic_splats splats = splats_on_ball(context, 20000);
+  conic_splats splats = light_splats_on_ball(context, 20000);
   double length;
   CHECK_OK(conic_splats_length(context, &splats, &length));
   drawing = (conic_drawing){&splats, NULL};
@@ -249,7 +217,7 @@ static void mean_of_samples_is_the_picture(conic_context *context) {
 static uint64_t light_hash(int threads, conic_isa isa, int tile) {
   conic_context *context = check_context(threads);
   conic_triangles mesh = light_cube_on_plane(context);
-  conic_splats splats = splats_on_ball(context, 3000);
+  conic_splats splats = light_splats_on_ball(context, 3000);
   const conic_drawing drawing = {&splats, &mesh};
   sunny s;
   stand_in_the_sun(context, &drawing, 0.1, 120, &s);
@@ -280,7 +248,7 @@ static void light_is_the_same_everywhere(void) {
 
 /* Of a ball alone nothing is hidden; in its middle plane, all of a point that looks at the ball from close by. */
 static void points_are_occluded(conic_context *context) {
-  conic_splats splats = splats_on_ball(context, 4000);
+  conic_splats splats = light_splats_on_ball(context, 4000);
   const conic_drawing drawing = {&splats, NULL};
   light_drawer drawer = {.context = context, .drawing = &drawing};
   conic_lighting_options options;

@@ -115,6 +115,26 @@ static inline void light_ball(conic_triangles *t, int n, int m) {
     }
 }
 
+/* Discs about a ball. */
+static inline conic_splats light_splats_on_ball(conic_context *context, size_t n) {
+  conic_splats splats;
+  if (conic_splats_allocate(context, n, CONIC_SPLATS_TANGENTS, &splats) != CONIC_OK)
+    exit(1);
+  double size = sqrt(4.0 * light_pi / (double)n);
+  for (size_t i = 0; i < n; i++) {
+    double y = 1.0 - 2.0 * ((double)i + 0.5) / (double)n, r = sqrt(1.0 - y * y), a = 2.399963229728653 * (double)i;
+    double p[3] = {r * cos(a), y, r * sin(a)}, u[3] = {-sin(a), 0.0, cos(a)}, v[3];
+    for (int axis = 0; axis < 3; axis++)
+      v[axis] = p[(axis + 1) % 3] * u[(axis + 2) % 3] - p[(axis + 2) % 3] * u[(axis + 1) % 3];
+    for (int axis = 0; axis < 3; axis++) {
+      splats.position[axis][i] = (float)p[axis];
+      splats.tangent_u[axis][i] = (float)(size * u[axis]);
+      splats.tangent_v[axis][i] = (float)(size * v[axis]);
+    }
+  }
+  return splats;
+}
+
 /* A picture of a drawing with depth, normals and what light makes of them. */
 typedef struct light_picture {
   conic_camera camera;
@@ -155,6 +175,18 @@ static inline int light_place(const light_picture *picture, int x, int y, double
   return z > 0.0;
 }
 
+/* Whether no outline is near: a pixel there gets what its neighbours get. */
+static inline int light_is_covered_about(const light_picture *picture, int x, int y) {
+  int n = 0;
+  for (int k = 0; k < 25; k++) {
+    int i = x + k % 5 - 2, j = y + k / 5 - 2;
+    size_t pixel = (size_t)j * (size_t)picture->camera.width + (size_t)i;
+    n += i >= 0 && j >= 0 && i < picture->camera.width && j < picture->camera.height &&
+         ((const float *)picture->image.planes[CONIC_PLANE_Z])[pixel] > 0.0f;
+  }
+  return n == 25;
+}
+
 /* Ambient occlusion by n × n rays, one in each part of the hemisphere that counts the same, from so far above the
  * place that it lies on no wrong side for want of digits. */
 static inline double light_occlusion_by_rays(const ray_mesh *mesh, const double place[3], const double normal[3], int n,
@@ -180,7 +212,7 @@ static inline double light_occlusion_by_rays(const ray_mesh *mesh, const double 
       double a = sqrt(square) * cos(angle), b = sqrt(square) * sin(angle), c = sqrt(1.0 - square);
       for (int axis = 0; axis < 3; axis++)
         d[axis] = a * u[axis] + b * v[axis] + c * normal[axis];
-      n_free += !ray_is_blocked(mesh, from, d, 0.0);
+      n_free += !ray_is_blocked(mesh, from, d, HUGE_VAL);
     }
   return (double)n_free / (n * n);
 }

@@ -84,7 +84,7 @@ static inline void ray_mesh_free(ray_mesh *mesh) {
 }
 
 /* Moeller and Trumbore 1997, from either side. */
-static inline int ray_meets_triangle(double (*corners)[3], const double from[3], const double d[3], double least) {
+static inline int ray_meets_triangle(double (*corners)[3], const double from[3], const double d[3], double most) {
   double e[3], f[3], p[3], q[3], t[3];
   for (int axis = 0; axis < 3; axis++) {
     e[axis] = corners[1][axis] - corners[0][axis];
@@ -101,7 +101,8 @@ static inline int ray_meets_triangle(double (*corners)[3], const double from[3],
     return 0;
   double u = (t[0] * p[0] + t[1] * p[1] + t[2] * p[2]) / determinant;
   double v = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2]) / determinant;
-  return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && (f[0] * q[0] + f[1] * q[1] + f[2] * q[2]) / determinant > least;
+  double distance = (f[0] * q[0] + f[1] * q[1] + f[2] * q[2]) / determinant;
+  return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance < most;
 }
 
 static inline int ray_meets_node(const ray_mesh_node *node, const double from[3], const double d[3]) {
@@ -119,8 +120,8 @@ static inline int ray_meets_node(const ray_mesh_node *node, const double from[3]
   return near <= far * (1.0 + 1e-12);
 }
 
-/* Whether anything lies farther than `least` along the unit direction d. */
-static inline int ray_is_blocked(const ray_mesh *mesh, const double from[3], const double d[3], double least) {
+/* Whether anything lies nearer than `most` along the unit direction d. */
+static inline int ray_is_blocked(const ray_mesh *mesh, const double from[3], const double d[3], double most) {
   size_t stack[256], n = 1;
   stack[0] = 0;
   while (n > 0) {
@@ -133,7 +134,7 @@ static inline int ray_is_blocked(const ray_mesh *mesh, const double from[3], con
       continue;
     }
     for (size_t i = node->begin; i < node->end; i++)
-      if (ray_meets_triangle(mesh->corners[mesh->order[i]], from, d, least))
+      if (ray_meets_triangle(mesh->corners[mesh->order[i]], from, d, most))
         return 1;
   }
   return 0;

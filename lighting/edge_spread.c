@@ -1,0 +1,146 @@
+#include "lighting/edge_spread.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/threads.h"
+#include "core/image/image_common.h"
+
+enum { NO_RECEIVER, RECEIVER, RECEIVER_AT_EDGE, MOST_EDGE_PX = 4 };
+
+static size_t pixel_at(const conic_edge_spread *s, size_t x, size_t y) {
+  return y * (size_t)s->image->width + x;
+}
+
+/* How much deeper a neighbour may be that is still the same surface. */
+static float depth_of_step(const conic_edge_spread *s, size_t x, size_t y) {
+  static const float steps = 4.0f, least_cosine = 0.03f;
+  const float *n = (const float *)s->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel_at(s, x, y);
+  float viewer[3];
+  conic_pixel_viewer(&s->rays, x, y, viewer);
+  float cosine = (n[0] * viewer[0] + n[1] * viewer[1]) + n[2] * viewer[2];
+  cosine = cosine > least_cosine ? cosine : least_cosine;
+  return steps * (s->epsilon + (float)s->receivers->spacing / cosine);
+}
+
+/* The pixels at most so many away as splats stick out, at the picture's edges fewer. */
+typedef struct pixel_range {
+  size_t left, right, top, bottom; /* the second and the fourth past the last */
+} pixel_range;
+
+static pixel_range pixels_about(const conic_edge_spread *s, size_t x, size_t y) {
+  size_t width = (size_t)s->image->width, height = (size_t)s->image->height, reach = s->edge_px;
+  return (pixel_range){x > reach ? x - reach : 0, x + reach < width ? x + reach + 1 : width, y > reach ? y - reach : 0,
+                       y + reach < height ? y + reach + 1 : height};
+}
+
+/* Splats stick out where a surface turns away, and what of its far side does so is seen from behind: it takes the side
+ * that it shows for its outer one, on which there is no light. And of samples on two surfaces, the mean normal is of
+ * neither. */
+static int is_at_edge(const conic_edge_spread *s, size_t x, size_t y) {
+  const float *z = s->image->planes[CONIC_PLANE_Z];
+  float here = z[pixel_at(s, x, y)], step = depth_of_step(s, x, y);
+  float least = s->samples > 1 ? here - step : 0.0f;
+  pixel_range range = pixels_about(s, x, y);
+  for (size_t j = range.top; j < range.bottom; j++)
+    for (size_t i = range.left; i < range.right; i++) {
+      float there = z[pixel_at(s, i, j)];
+      if (!(there > least) || there > here + step)
+        return 1;
+    }
+  return 0;
+}
+
+static void find_receivers_at_edges(void *data, size_t y, int i_thread) {
+  const conic_edge_spread *s = data;
+  (void)i_thread;
+  for (size_t x = 0; x < (size_t)s->image->width; x++)
+    if (s->kind[pixel_at(s, x, y)] == RECEIVER && is_at_edge(s, x, y))
+      s->kind[pixel_at(s, x, y)] = RECEIVER_AT_EDGE;
+}
+
+static void name_receivers(conic_edge_spread *s) {
+  memset(s->kind, NO_RECEIVER, conic_image_pixels(s->image));
+  for (size_t i = 0; i < s->receivers->count; i++)
+    s->kind[s->receivers->pixel[i]] = RECEIVER;
+}
+
+/* The mean over the pixels about one that are of a kind, and no nearer nor deeper; below 0 where none is. */
+static float mean_about(const conic_edge_spread *s, size_t x, size_t y, unsigned char kind, float nearest,
+                        float deepest) {
+  const float *z = s->image->planes[CONIC_PLANE_Z];
+  pixel_range range = pixels_about(s, x, y);
+  float sum = 0.0f, n = 0.0f;
+  for (size_t j = range.top; j < range.bottom; j++)
+    for (size_t i = range.left; i < range.right; i++) {
+      size_t pixel = pixel_at(s, i, j);
+      if (s->kind[pixel] != kind || z[pixel] < nearest || z[pixel] > deepest)
+        continue;
+      sum += s->own[pixel];
+      n += 1.0f;
+    }
+  return n > 0.0f ? sum / n : -1.0f;
+}
+
+/* What a pixel gets: a receiver its own, one at an edge what its surface gets beside it, and what is none, but has been
+ * drawn at its border, what is about it. */
+static float spread_at(const conic_edge_spread *s, size_t x, size_t y) {
+  size_t pixel = pixel_at(s, x, y);
+  if (s->kind[pixel] == RECEIVER)
+    return s->own[pixel];
+  if (s->kind[pixel] == RECEIVER_AT_EDGE) {
+    float z = ((const float *)s->image->planes[CONIC_PLANE_Z])[pixel], step = depth_of_step(s, x, y);
+    float mean = mean_about(s, x, y, RECEIVER, z - step, z + step);
+    return mean >= 0.0f ? mean : s->own[pixel];
+  }
+  float mean = mean_about(s, x, y, RECEIVER, 0.0f, HUGE_VALF);
+  if (mean < 0.0f)
+    mean = mean_about(s, x, y, RECEIVER_AT_EDGE, 0.0f, HUGE_VALF);
+  return mean >= 0.0f ? mean : s->otherwise;
+}
+
+static void fill_row(void *data, size_t y, int i_thread) {
+  const conic_edge_spread *s = data;
+  (void)i_thread;
+  for (size_t x = 0; x < (size_t)s->image->width; x++)
+    s->filled[pixel_at(s, x, y)] = spread_at(s, x, y);
+}
+
+void conic_edge_spread_fill(conic_edge_spread *s, const float *of_receivers, float otherwise) {
+  for (size_t i = 0; i < s->receivers->count; i++)
+    s->own[s->receivers->pixel[i]] = of_receivers[i];
+  s->otherwise = otherwise;
+  conic_parallel_for(s->context, (size_t)s->image->height, fill_row, s);
+}
+
+conic_status conic_edge_spread_init(conic_context *context, const conic_camera *camera, const conic_image *image,
+                                    const conic_receivers *receivers, double epsilon, int samples,
+                                    conic_edge_spread *s) {
+  size_t n = conic_image_pixels(image);
+  double edge = epsilon > 0.0 ? 0.5 * epsilon / receivers->spacing : 0.0;
+  *s = (conic_edge_spread){.context = context,
+                           .image = image,
+                           .receivers = receivers,
+                           .epsilon = (float)epsilon,
+                           .samples = samples,
+                           .edge_px = edge > 1.0 ? edge < MOST_EDGE_PX ? (size_t)edge : MOST_EDGE_PX : 1};
+  conic_camera_rays_init(camera, &s->rays);
+  s->own = conic_memory_allocate(context, n, sizeof *s->own);
+  s->filled = conic_memory_allocate(context, n, sizeof *s->filled);
+  s->kind = conic_memory_allocate(context, n, 1);
+  if (!s->own || !s->filled || !s->kind)
+    return CONIC_ERROR_MEMORY;
+  name_receivers(s);
+  if (s->epsilon > 0.0f || samples > 1)
+    conic_parallel_for(context, (size_t)image->height, find_receivers_at_edges, s);
+  return CONIC_OK;
+}
+
+void conic_edge_spread_release(conic_edge_spread *s) {
+  if (!s->context)
+    return;
+  conic_memory_release(s->context, s->kind);
+  conic_memory_release(s->context, s->filled);
+  conic_memory_release(s->context, s->own);
+}

@@ -1,0 +1,63 @@
+/* A picture that is being lit. */
+#ifndef CONIC_LIGHT_WORK_H
+#define CONIC_LIGHT_WORK_H
+
+#include "lighting/edge_spread.h"
+#include "lighting/lit_map.h"
+#include "raster/tiles/finish.h"
+
+typedef struct conic_light_work {
+  conic_context *context;
+  const conic_camera *camera;
+  const conic_render_options *render;
+  const conic_lighting_options *options;
+  conic_image *image;
+  conic_finish finish;
+  conic_finish_lights lights; /* all of them */
+  conic_finish_lights one;    /* the one at hand */
+  conic_receivers receivers;
+  conic_map_room room;
+  conic_edge_spread spread;
+  float *hidden;  /* of each pixel the colour, unexposed, that hidden lights would make; null: no colours */
+  float *visible; /* of each receiver */
+  conic_sky_sums sums;
+  float *sums_block;
+  double power;      /* Σ of the luminances of the lights so far */
+  float *lamp_power; /* of each pixel, likewise of lamps; null: there are none */
+} conic_light_work;
+
+static inline size_t conic_light_pixel(const conic_light_work *l, size_t x, size_t y) {
+  return y * (size_t)l->image->width + x;
+}
+
+static inline float conic_light_luminance(const float color[3]) {
+  return (0.2126f * color[0] + 0.7152f * color[1]) + 0.0722f * color[2];
+}
+
+/* How much of the pixel is something, where its background is nothing. */
+static inline float conic_light_coverage(const conic_light_work *l, size_t pixel) {
+  float alpha = ((const float *)l->image->planes[CONIC_PLANE_RGBA])[4 * pixel + 3];
+  return l->render->has_background || !(alpha < 1.0f) ? 1.0f : alpha;
+}
+
+/* The colour of what is seen, as if it covered the pixel, by the lights of `finish`; 0: nothing is. */
+static inline int conic_light_shade(const conic_light_work *l, const conic_finish *finish, size_t x, size_t y,
+                                    float shaded[3]) {
+  size_t pixel = conic_light_pixel(l, x, y);
+  const float *albedo = (const float *)l->image->planes[CONIC_PLANE_ALBEDO] + 3 * pixel;
+  const float *normal = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel;
+  float coverage = conic_light_coverage(l, pixel), viewer[3], own[3];
+  for (int c = 0; c < 3 && coverage > 0.0f; c++)
+    own[c] = albedo[c] / coverage;
+  if (!(coverage > 0.0f))
+    return 0;
+  conic_pixel_viewer(&l->spread.rays, x, y, viewer);
+  conic_shade(finish, own, normal, normal, viewer, shaded);
+  return 1;
+}
+
+/* Adds what arrives of the options' lamps to the picture's colours, and to its shadow, which is not divided by the
+ * power yet. Errors: MEMORY, CANCELLED, the drawer's. */
+conic_status conic_light_add_lamps(conic_light_work *l);
+
+#endif
