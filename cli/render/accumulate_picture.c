@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "accumulation/sequence.h"
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
 #include "cli/render/lit_picture.h"
@@ -94,8 +95,12 @@ static conic_status draw_source_sample(void *cookie, const conic_sample *sample,
   accumulating *work = cookie;
   cli_render_job *job = work->job;
   conic_render_statistics statistics;
+  conic_source_view view = job->view;
+  view.chance = conic_sequence_at(sample->index, CONIC_SEQUENCE_SURFACE);
+  if (job->is_transparent && cli_light_is_wanted(job)) /* what is lit has one depth and one normal */
+    view.transparency = CONIC_TRANSPARENCY_CHANCE;
   conic_status status =
-      conic_source_draw(job->source, job->renderer, &sample->camera, &job->options, &job->view, image, &statistics);
+      conic_source_draw(job->source, job->renderer, &sample->camera, &job->options, &view, image, &statistics);
   work->statistics.ms.frame += statistics.ms.frame;
   return status;
 }

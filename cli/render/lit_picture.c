@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "accumulation/sequence.h"
 #include "cli/render/light_options.h"
 #include "conic/lighting.h"
 
@@ -49,6 +50,12 @@ static conic_status draw_light_map(void *cookie, const conic_camera *camera, dou
   conic_source_view view = job->view;
   options.near_z = near_z;
   view.samples = 1;
+  if (job->is_transparent) {
+    view.transparency = CONIC_TRANSPARENCY_CHANCE;
+    view.chance = conic_sequence_at(job->i_light_map, CONIC_SEQUENCE_SHADOW);
+    job->i_light_map += !job->accumulating.n_samples; /* the maps of a sample share its chance */
+    options.passes = 3;
+  }
   return conic_source_draw(job->source, job->renderer, camera, &options, &view, depth, NULL);
 }
 
@@ -88,6 +95,7 @@ static conic_status light_image(cli_session *session, cli_render_job *job, const
   double start = cli_seconds();
   map_drawer drawer = drawer_of(job);
   conic_casters casters = casters_of(job, &drawer);
+  job->i_light_map = i_sample ? *i_sample : 0;
   conic_lighter lighter = {session->context, &casters, &job->options, &options};
   conic_lighting_options_init(&options);
   options.n_directions = (uint64_t)job->n_directions;

@@ -18,6 +18,7 @@
 #include "conic/patches.h"
 #include "conic/render.h"
 #include "conic/splats.h"
+#include "conic/transparency.h"
 #include "conic/triangles.h"
 
 #ifdef __cplusplus
@@ -170,6 +171,9 @@ typedef struct conic_source_view {
   double seconds;            /* with that: no more is read after so many; 0: no limit */
   int tolerates_damage;      /* with that: so is what is damaged */
   double color_error;        /* of a hybrid: as conic_hybrid_view has it */
+  conic_transparency transparency; /* as conic_render_transparent has it; of what hands over what is drawn, hybrids
+                                    aside: else UNSUPPORTED */
+  double chance;                   /* likewise */
 } conic_source_view;
 
 /* Full detail, either kind, one sample, colours by 2 steps. */
