@@ -14,7 +14,7 @@ enum {
   CONIC_SEQUENCE_FREE = 8,
   CONIC_SEQUENCE_SHADOW = 13,  /* which surfaces stop a light, where they let light through */
   CONIC_SEQUENCE_SURFACE = 14, /* which of them a pixel shows */
-  CONIC_SEQUENCE_HALF = 15, /* which half, for the estimate of what the mean is off */
+  CONIC_SEQUENCE_HALF = 15,    /* which half, for the estimate of what the mean is off */
   CONIC_N_SEQUENCE_DIMENSIONS = 16
 };
 

@@ -218,8 +218,10 @@ static void warn_of_alpha(cli_session *session, cli_render_job *job) {
   if (job->is_transparent || job->is_alpha_warned || !conic_drawing_is_transparent(&meshes))
     return;
   job->is_alpha_warned = 1;
-  conic_log(session->context, CONIC_LOG_WARNING, "%s: drawn opaque, where its materials let light through: "
-            "--transparency shows that", job->inputs[0]);
+  conic_log(session->context, CONIC_LOG_WARNING,
+            "%s: drawn opaque, where its materials let light through: "
+            "--transparency shows that",
+            job->inputs[0]);
 }
 
 /* The plane doubt is not the renderer's, but the oracle's about what it may have drawn. */

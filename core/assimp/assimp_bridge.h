@@ -40,7 +40,7 @@ typedef struct conic_assimp_record {
   uint32_t picture, is_clamped, width, height;
   float color[3], opacity, alpha_cutoff; /* of a material */
   uint32_t alpha_mode;                   /* likewise */
-  double up[3];   /* at the end: zero where the file does not say */
+  double up[3];                          /* at the end: zero where the file does not say */
   uint64_t n_bytes, n_vertices, n_triangles;
 } conic_assimp_record;
 

@@ -16,7 +16,7 @@ typedef struct material_reader {
   conic_input input;
   const conic_texts *names;
   conic_material *materials, *current; /* null: one that nobody uses */
-  conic_texture **alphas; /* a material: its map_d; null: none */
+  conic_texture **alphas;              /* a material: its map_d; null: none */
 } material_reader;
 
 static conic_status read_name(void *data) {
@@ -165,8 +165,9 @@ static conic_status join_alphas(material_reader *reader) {
 
 conic_status conic_material_file_read(conic_context *context, const char *path, const conic_texts *names,
                                       conic_material *materials) {
-  static const conic_input_statement statements[] = {
-      {"newmtl", read_name}, {"Kd", read_color}, {"map_Kd", read_map}, {"d", read_opacity}, {"Tr", read_transparency}, {"map_d", read_alpha_map}};
+  static const conic_input_statement statements[] = {{"newmtl", read_name},     {"Kd", read_color},
+                                                     {"map_Kd", read_map},      {"d", read_opacity},
+                                                     {"Tr", read_transparency}, {"map_d", read_alpha_map}};
   material_reader reader = {.names = names, .materials = materials};
   reader.alphas = conic_memory_allocate_zeroed(context, names->count, sizeof *reader.alphas);
   conic_status status = reader.alphas ? conic_input_open(context, path, &reader.input) : CONIC_ERROR_MEMORY;

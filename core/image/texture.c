@@ -165,7 +165,11 @@ static conic_status make_texture(conic_context *context, float *texels, int widt
   return status;
 }
 
-/* The other picture is looked at through a texel. */
+static int is_as_large(const conic_texture *a, const conic_texture *b) {
+  return a->levels[0].width == b->levels[0].width && a->levels[0].height == b->levels[0].height;
+}
+
+/* Texel by texel, or where they are others, the other picture is looked at through a texel. */
 conic_status conic_texture_take_alpha(conic_texture *texture, const conic_texture *other) {
   const conic_texture_level *level = &texture->levels[0];
   const float along[2] = {1.0f / (float)level->width, 0.0f}, across[2] = {0.0f, 1.0f / (float)level->height};
@@ -177,8 +181,11 @@ conic_status conic_texture_take_alpha(conic_texture *texture, const conic_textur
   for (size_t i = 0; i < n; i++) {
     const size_t x = i % (size_t)level->width, y = i / (size_t)level->width;
     const float uv[2] = {((float)x + 0.5f) * along[0], 1.0f - ((float)y + 0.5f) * across[1]};
-    float rgba[4];
-    conic_texture_sample_rgba(other, uv, along, across, rgba);
+    float rgba[4] = {0.0f, 0.0f, 0.0f, 1.0f};
+    if (!is_as_large(texture, other))
+      conic_texture_sample_rgba(other, uv, along, across, rgba);
+    else if (other->cover)
+      rgba[3] = other->cover->levels[0].texels[4 * i + 3];
     memcpy(texels + 4 * i, level->texels + 4 * i, 3 * sizeof *texels);
     texels[4 * i + 3] = rgba[3];
   }

@@ -29,7 +29,7 @@ static int compare_file_order(const void *a, const void *b) {
   return (first->i_splat > second->i_splat) - (first->i_splat < second->i_splat);
 }
 
-static int compare_triangles(const void *a, const void *b) {
+static int compare_ranked_triangles(const void *a, const void *b) {
   const conic_ranked_triangle *first = a, *second = b;
   if (first->iz != second->iz)
     return first->iz > second->iz ? -1 : 1;
@@ -68,24 +68,24 @@ void conic_pixel_sheets_begin(conic_pixel_sheets *sheets) {
     sheets->ranked[i].reach = reach;
   }
   if (sheets->n_triangles > 1)
-    qsort(sheets->ranked_triangles, sheets->n_triangles, sizeof *sheets->ranked_triangles, compare_triangles);
+    qsort(sheets->ranked_triangles, sheets->n_triangles, sizeof *sheets->ranked_triangles, compare_ranked_triangles);
   sheets->i = sheets->i_triangle = 0;
 }
 
 /* --- a sheet --- */
 
 /* Of what is not a number, nothing is seen. */
-static float opacity_of(const float *opacity, uint32_t splat) {
+static float sheet_opacity(const float *opacity, uint32_t splat) {
   float value = opacity ? opacity[splat] : 1.0f;
   return value > 0.0f ? value < 1.0f ? value : 1.0f : 0.0f;
 }
 
-static void add_splat(const conic_pixel_sheets *sheets, const conic_sheet_splat *splat, sums *s) {
+static void sum_splat(const conic_pixel_sheets *sheets, const conic_sheet_splat *splat, sums *s) {
   const conic_contributions *c = sheets->scene->contributions;
   const conic_footprint *footprint = &c->projected.footprints[splat->footprint];
   const conic_projected_surface *surface = &c->projected.surfaces[splat->footprint];
   float whole = conic_final_weight(&c->view, footprint, splat->fragment.q, splat->fragment.scale);
-  float weight = whole * opacity_of(sheets->scene->opacity, surface->index);
+  float weight = whole * sheet_opacity(sheets->scene->opacity, surface->index);
   s->whole += whole;
   if (!(weight > 0.0f))
     return;
@@ -106,7 +106,7 @@ static void add_splat(const conic_pixel_sheets *sheets, const conic_sheet_splat 
   s->count++;
 }
 
-static void add_triangle(const conic_pixel_sheets *sheets, float iz, const conic_triangle_sight *sight, float alpha,
+static void sum_triangle(const conic_pixel_sheets *sheets, float iz, const conic_triangle_sight *sight, float alpha,
                          sums *s) {
   const conic_triangle_frame *frame = &sheets->scene->contributions->triangles;
   const conic_ranked_triangle *ranked = &sheets->ranked_triangles[sheets->i_triangle];
@@ -165,9 +165,9 @@ static void take_sheet(conic_pixel_sheets *sheets, float threshold, const conic_
     sheets->i++;
   sort_ranked(sheets->ranked + first, sheets->i - first, compare_file_order);
   for (size_t k = first; k < sheets->i; k++)
-    add_splat(sheets, &sheets->splats[sheets->ranked[k].i_splat], s);
+    sum_splat(sheets, &sheets->splats[sheets->ranked[k].i_splat], s);
   if (alpha > 0.0f)
-    add_triangle(sheets, *iz, sight, alpha, s);
+    sum_triangle(sheets, *iz, sight, alpha, s);
   sheets->i_triangle += alpha > 0.0f;
 }
 
@@ -180,9 +180,9 @@ int conic_pixel_sheets_next(conic_pixel_sheets *sheets, conic_sheet *sheet) {
     if (sheets->i == sheets->n && !(alpha > 0.0f))
       return 0;
     if (alpha > 0.0f) {
-      float hides = conic_triangle_hides(sheets->scene->contributions->triangles.epsilon,
-                                         sheets->ranked_triangles[sheets->i_triangle].iz, sheets->ray[0],
-                                         sheets->ray[1]);
+      float hides =
+          conic_triangle_hides(sheets->scene->contributions->triangles.epsilon,
+                               sheets->ranked_triangles[sheets->i_triangle].iz, sheets->ray[0], sheets->ray[1]);
       threshold = threshold < hides ? hides : threshold;
     }
     memset(&s, 0, sizeof s);

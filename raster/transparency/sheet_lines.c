@@ -24,14 +24,14 @@ typedef struct sheet_work {
   line_room *rooms; /* a thread */
 } sheet_work;
 
-static int is_marked(const conic_sheet_picture *p, int x, int y) {
+static int is_in_mask(const conic_sheet_picture *p, int x, int y) {
   return p->mark[3 * ((size_t)y * (size_t)p->image->width + (size_t)x)] > 0.0f;
 }
 
 /* --- what covers the line's pixels --- */
 
-static conic_status add_splat(conic_context *context, line_room *room, int x, uint32_t i_footprint,
-                              const conic_fragment *fragment) {
+static conic_status keep_sheet_splat(conic_context *context, line_room *room, int x, uint32_t i_footprint,
+                                     const conic_fragment *fragment) {
   if (room->n_splats == room->splat_room &&
       conic_memory_reserve(context, &room->splats, room->n_splats, room->n_splats + 1, &room->splat_room,
                            sizeof *room->splats) != CONIC_OK)
@@ -47,32 +47,32 @@ static conic_status add_splat(conic_context *context, line_room *room, int x, ui
 }
 
 /* Splats that no picture draws are none here. */
-static int is_drawn(const conic_sheet_scene *scene, uint32_t i_footprint) {
+static int is_sheet_splat(const conic_sheet_scene *scene, uint32_t i_footprint) {
   uint32_t i = scene->contributions->projected.surfaces[i_footprint].index;
   return !scene->opacity || scene->opacity[i] <= CONIC_GREATEST_OPACITY;
 }
 
-static conic_status list_splats(const conic_sheet_picture *p, int y, line_room *room) {
+static conic_status list_line_splats(const conic_sheet_picture *p, int y, line_room *room) {
   const conic_contributions *c = p->scene.contributions;
   size_t band = (size_t)y / CONIC_CONTRIBUTION_BAND;
   for (size_t i = c->band_begin[band]; i < c->band_begin[band + 1]; i++) {
     uint32_t i_footprint = c->references[i];
     conic_reach reach = conic_reach_of(c, i_footprint);
-    if (y < reach.y_begin || y >= reach.y_end || !is_drawn(&p->scene, i_footprint))
+    if (y < reach.y_begin || y >= reach.y_end || !is_sheet_splat(&p->scene, i_footprint))
       continue;
     for (int x = reach.x_begin; x < reach.x_end; x++) {
       conic_fragment fragment;
-      if (is_marked(p, x, y) &&
+      if (is_in_mask(p, x, y) &&
           conic_fragment_at(&c->view, &c->projected, &c->projected.footprints[i_footprint], x, y, &fragment) &&
-          add_splat(c->context, room, x, i_footprint, &fragment) != CONIC_OK)
+          keep_sheet_splat(c->context, room, x, i_footprint, &fragment) != CONIC_OK)
         return CONIC_ERROR_MEMORY;
     }
   }
   return CONIC_OK;
 }
 
-static conic_status add_triangle(conic_context *context, line_room *room, int x, const conic_triangle_record *record,
-                                 float iz) {
+static conic_status keep_sheet_triangle(conic_context *context, line_room *room, int x,
+                                        const conic_triangle_record *record, float iz) {
   if (room->n_triangles == room->triangle_room &&
       conic_memory_reserve(context, &room->triangles, room->n_triangles, room->n_triangles + 1, &room->triangle_room,
                            sizeof *room->triangles) != CONIC_OK)
@@ -93,14 +93,14 @@ static conic_status list_record(const conic_sheet_picture *p, const conic_triang
   conic_triangle_edges_of(record, &edges);
   for (int x = first; x < last; x++) {
     float iz;
-    if (is_marked(p, x, y) && conic_triangle_sample(record, &edges, x, y, &iz) &&
-        add_triangle(p->scene.contributions->context, room, x, record, iz) != CONIC_OK)
+    if (is_in_mask(p, x, y) && conic_triangle_sample(record, &edges, x, y, &iz) &&
+        keep_sheet_triangle(p->scene.contributions->context, room, x, record, iz) != CONIC_OK)
       return CONIC_ERROR_MEMORY;
   }
   return CONIC_OK;
 }
 
-static conic_status list_tile(const conic_sheet_picture *p, int x_begin, int y, line_room *room) {
+static conic_status list_tile_triangles(const conic_sheet_picture *p, int x_begin, int y, line_room *room) {
   const conic_triangle_frame *frame = &p->scene.contributions->triangles;
   size_t i_tile = (size_t)(y >> frame->tile_bits) * (size_t)frame->n_tiles_x + (size_t)(x_begin >> frame->tile_bits);
   conic_status status = CONIC_OK;
@@ -114,21 +114,21 @@ static conic_status list_tile(const conic_sheet_picture *p, int x_begin, int y, 
   return status;
 }
 
-static conic_status list_triangles(const conic_sheet_picture *p, int y, line_room *room) {
+static conic_status list_line_triangles(const conic_sheet_picture *p, int y, line_room *room) {
   conic_status status = CONIC_OK;
   int tile = p->scene.contributions->triangles.tile;
   for (int x = 0; x < p->image->width && p->scene.contributions->drawing.triangles && status == CONIC_OK; x += tile)
-    status = list_tile(p, x, y, room);
+    status = list_tile_triangles(p, x, y, room);
   return status;
 }
 
 /* --- a pixel --- */
 
-static conic_status begin_pixel(const conic_sheet_picture *p, int x, int y, line_room *room,
-                                conic_pixel_sheets *sheets) {
+static conic_status begin_sheet_pixel(const conic_sheet_picture *p, int x, int y, line_room *room,
+                                      conic_pixel_sheets *sheets) {
   conic_context *context = p->scene.contributions->context;
-  *sheets = (conic_pixel_sheets){
-      .scene = &p->scene, .splats = room->splats, .triangles = room->triangles, .x = x, .y = y};
+  *sheets =
+      (conic_pixel_sheets){.scene = &p->scene, .splats = room->splats, .triangles = room->triangles, .x = x, .y = y};
   for (uint32_t i = room->first_splat[x]; i != CONIC_NO_SHEET_PART; i = room->splats[i].next)
     sheets->n++;
   for (uint32_t i = room->first_triangle[x]; i != CONIC_NO_SHEET_PART; i = room->triangles[i].next)
@@ -195,19 +195,19 @@ static void show_one(const conic_sheet_picture *p, conic_pixel_sheets *sheets, s
   }
 }
 
-static void store_floats(const conic_image *image, conic_plane plane, size_t at, const float *values, size_t n) {
+static void store_sheet_floats(const conic_image *image, conic_plane plane, size_t at, const float *values, size_t n) {
   float *to = image->planes[plane];
   if (to)
     memcpy(to + at * n, values, n * sizeof *to);
 }
 
-static void store_index(const conic_image *image, conic_plane plane, size_t at, uint32_t value) {
+static void store_sheet_index(const conic_image *image, conic_plane plane, size_t at, uint32_t value) {
   uint32_t *to = image->planes[plane];
   if (to)
     to[at] = value;
 }
 
-static void store_pixel(const conic_sheet_picture *p, size_t at, const shown_pixel *shown) {
+static void store_shown_pixel(const conic_sheet_picture *p, size_t at, const shown_pixel *shown) {
   static const conic_sheet nothing = {.id = CONIC_NO_ID};
   const conic_sheet *front = shown->is_covered ? &shown->front : &nothing;
   const float *background = p->scene.finish->background;
@@ -217,19 +217,19 @@ static void store_pixel(const conic_sheet_picture *p, size_t at, const shown_pix
     albedo[channel] = (float)shown->albedo[channel];
   }
   rgba[3] = background[3] > 0.0f ? 1.0f : alpha;
-  store_floats(p->image, CONIC_PLANE_RGBA, at, rgba, 4);
-  store_floats(p->image, CONIC_PLANE_ALBEDO, at, albedo, 3);
-  store_floats(p->image, CONIC_PLANE_NORMAL, at, front->pixel.normal, 3);
-  store_floats(p->image, CONIC_PLANE_Z, at, &front->z, 1);
-  store_floats(p->image, CONIC_PLANE_WEIGHT, at, &front->weight, 1);
-  store_index(p->image, CONIC_PLANE_COUNT, at, front->count);
-  store_index(p->image, CONIC_PLANE_ID, at, front->id);
+  store_sheet_floats(p->image, CONIC_PLANE_RGBA, at, rgba, 4);
+  store_sheet_floats(p->image, CONIC_PLANE_ALBEDO, at, albedo, 3);
+  store_sheet_floats(p->image, CONIC_PLANE_NORMAL, at, front->pixel.normal, 3);
+  store_sheet_floats(p->image, CONIC_PLANE_Z, at, &front->z, 1);
+  store_sheet_floats(p->image, CONIC_PLANE_WEIGHT, at, &front->weight, 1);
+  store_sheet_index(p->image, CONIC_PLANE_COUNT, at, front->count);
+  store_sheet_index(p->image, CONIC_PLANE_ID, at, front->id);
 }
 
-static conic_status draw_pixel(const conic_sheet_picture *p, int x, int y, line_room *room) {
+static conic_status draw_sheet_pixel(const conic_sheet_picture *p, int x, int y, line_room *room) {
   conic_pixel_sheets sheets;
   shown_pixel shown;
-  conic_status status = begin_pixel(p, x, y, room, &sheets);
+  conic_status status = begin_sheet_pixel(p, x, y, room, &sheets);
   if (status != CONIC_OK)
     return status;
   memset(&shown, 0, sizeof shown);
@@ -238,44 +238,43 @@ static conic_status draw_pixel(const conic_sheet_picture *p, int x, int y, line_
     show_one(p, &sheets, &shown);
   else
     show_layers(&sheets, &shown);
-  store_pixel(p, (size_t)y * (size_t)p->image->width + (size_t)x, &shown);
+  store_shown_pixel(p, (size_t)y * (size_t)p->image->width + (size_t)x, &shown);
   return CONIC_OK;
 }
 
 /* --- all lines --- */
 
-static void draw_line(void *data, size_t i_item, int i_thread) {
+static void draw_sheet_line(void *data, size_t i_item, int i_thread) {
   const sheet_work *work = data;
   const conic_sheet_picture *p = work->picture;
   line_room *room = &work->rooms[i_thread];
   size_t width = (size_t)p->image->width;
   int y = (int)i_item, x = 0;
-  while (x < p->image->width && !is_marked(p, x, y))
+  while (x < p->image->width && !is_in_mask(p, x, y))
     x++;
   if (x == p->image->width || room->status != CONIC_OK)
     return;
   memset(room->first_splat, 0xff, width * sizeof *room->first_splat);
   memset(room->first_triangle, 0xff, width * sizeof *room->first_triangle);
   room->n_splats = room->n_triangles = 0;
-  room->status = list_splats(p, y, room);
+  room->status = list_line_splats(p, y, room);
   if (room->status == CONIC_OK)
-    room->status = list_triangles(p, y, room);
+    room->status = list_line_triangles(p, y, room);
   for (; x < p->image->width && room->status == CONIC_OK; x++)
-    if (is_marked(p, x, y))
-      room->status = draw_pixel(p, x, y, room);
+    if (is_in_mask(p, x, y))
+      room->status = draw_sheet_pixel(p, x, y, room);
 }
 
-static conic_status begin_room(conic_context *context, size_t width, line_room *room) {
+static conic_status begin_line_room(conic_context *context, size_t width, line_room *room) {
   room->first_splat = conic_memory_allocate(context, width, sizeof *room->first_splat);
   room->last_splat = conic_memory_allocate(context, width, sizeof *room->last_splat);
   room->first_triangle = conic_memory_allocate(context, width, sizeof *room->first_triangle);
   return room->first_splat && room->last_splat && room->first_triangle ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-static void release_room(conic_context *context, line_room *room) {
-  void *all[] = {room->first_splat,    room->last_splat, room->first_triangle,
-                 room->splats,         room->triangles,  room->ranked.pointer,
-                 room->ranked_triangles.pointer};
+static void release_line_room(conic_context *context, line_room *room) {
+  void *all[] = {room->first_splat, room->last_splat,     room->first_triangle,          room->splats,
+                 room->triangles,   room->ranked.pointer, room->ranked_triangles.pointer};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(context, all[i]);
 }
@@ -288,13 +287,13 @@ conic_status conic_sheet_lines_draw(const conic_sheet_picture *picture) {
     return CONIC_ERROR_MEMORY;
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < n_threads && status == CONIC_OK; i++)
-    status = begin_room(context, (size_t)picture->image->width, &work.rooms[i]);
+    status = begin_line_room(context, (size_t)picture->image->width, &work.rooms[i]);
   if (status == CONIC_OK)
     status =
-        conic_parallel_told(context, "transparency", 0.0, 1.0, (size_t)picture->image->height, draw_line, &work);
+        conic_parallel_told(context, "transparency", 0.0, 1.0, (size_t)picture->image->height, draw_sheet_line, &work);
   for (size_t i = 0; i < n_threads; i++) {
     status = status == CONIC_OK ? work.rooms[i].status : status;
-    release_room(context, &work.rooms[i]);
+    release_line_room(context, &work.rooms[i]);
   }
   conic_memory_release(context, work.rooms);
   return status;

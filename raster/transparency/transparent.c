@@ -50,7 +50,7 @@ int conic_drawing_is_transparent(const conic_drawing *drawing) {
 
 /* --- the mask --- */
 
-static conic_status make_marks(transparent *t) {
+static conic_status make_transparent_marks(transparent *t) {
   const conic_splats *splats = t->drawing->splats;
   const conic_triangles *triangles = t->drawing->triangles;
   t->splat_marks = conic_memory_allocate(t->context, splats->count, sizeof *t->splat_marks);
@@ -66,7 +66,7 @@ static conic_status make_marks(transparent *t) {
 }
 
 /* The same picture of the marks for colours: not black where a part of the front surface has one. */
-static conic_status draw_mask(transparent *t, const conic_camera *camera, conic_image *mask) {
+static conic_status draw_transparent_mask(transparent *t, const conic_camera *camera, conic_image *mask) {
   conic_splats splats = *t->drawing->splats;
   conic_triangles triangles;
   conic_drawing marked = {.splats = &splats};
@@ -88,7 +88,7 @@ static conic_status draw_mask(transparent *t, const conic_camera *camera, conic_
   return conic_render_drawing(t->context, t->renderer, &marked, camera, &options, 1, mask, NULL);
 }
 
-static int is_empty(const conic_image *mask) {
+static int is_mask_empty(const conic_image *mask) {
   const float *mark = mask->planes[CONIC_PLANE_ALBEDO];
   size_t n = conic_image_pixels(mask), i = 0;
   while (i < n && !(mark[3 * i] > 0.0f))
@@ -117,16 +117,16 @@ static conic_status draw_sheets(transparent *t, const conic_camera *camera, cons
   return status;
 }
 
-static conic_status draw_once(transparent *t, const conic_camera *camera, conic_image *image,
-                              conic_render_statistics *statistics) {
+static conic_status draw_transparent(transparent *t, const conic_camera *camera, conic_image *image,
+                                     conic_render_statistics *statistics) {
   conic_image mask;
   conic_status status = conic_render_whole(t->renderer, t->drawing, camera, t->options, image, statistics);
   if (status == CONIC_OK)
     status = conic_samples_allocate(t->context, camera->width, camera->height, 1u << CONIC_PLANE_ALBEDO, &mask);
   if (status != CONIC_OK)
     return status;
-  status = draw_mask(t, camera, &mask);
-  if (status == CONIC_OK && !is_empty(&mask))
+  status = draw_transparent_mask(t, camera, &mask);
+  if (status == CONIC_OK && !is_mask_empty(&mask))
     status = draw_sheets(t, camera, mask.planes[CONIC_PLANE_ALBEDO], image);
   conic_image_release(t->context, &mask);
   return status;
@@ -134,8 +134,8 @@ static conic_status draw_once(transparent *t, const conic_camera *camera, conic_
 
 /* --- several samples a pixel --- */
 
-static conic_status draw_bands(transparent *t, const conic_camera *camera, int samples, conic_image *image,
-                               conic_render_statistics *sum) {
+static conic_status draw_transparent_bands(transparent *t, const conic_camera *camera, int samples, conic_image *image,
+                                           conic_render_statistics *sum) {
   conic_image fine;
   int rows = conic_samples_band_rows(camera, samples);
   conic_status status = conic_samples_allocate(t->context, samples * camera->width, samples * rows,
@@ -147,7 +147,7 @@ static conic_status draw_bands(transparent *t, const conic_camera *camera, int s
     int n_rows = camera->height - y < rows ? camera->height - y : rows;
     conic_camera own = conic_samples_camera(camera, samples, y, n_rows);
     fine.height = own.height;
-    status = draw_once(t, &own, &fine, &band);
+    status = draw_transparent(t, &own, &fine, &band);
     if (status == CONIC_OK)
       conic_samples_reduce(t->context, &fine, samples, 0, y, image);
     if (status == CONIC_OK && y == 0)
@@ -159,8 +159,8 @@ static conic_status draw_bands(transparent *t, const conic_camera *camera, int s
   return status;
 }
 
-static conic_status check(conic_context *context, const conic_render_options *options, conic_transparency how,
-                          double chance) {
+static conic_status check_transparent(conic_context *context, const conic_render_options *options,
+                                      conic_transparency how, double chance) {
   if ((unsigned)how >= CONIC_N_TRANSPARENCIES || !(chance >= 0.0 && chance < 1.0))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: an unknown transparency, or a chance not within 0 and 1");
   if (options->passes != 3)
@@ -184,7 +184,7 @@ conic_status conic_render_transparent(conic_context *context, conic_renderer *re
   double start = conic_seconds_now();
   conic_status status = conic_view_arguments_take(context, "render", camera, given, &options);
   if (status == CONIC_OK)
-    status = check(context, &options, transparency, chance);
+    status = check_transparent(context, &options, transparency, chance);
   if (status != CONIC_OK)
     return status;
   /* All else that can be wrong is found there. */
@@ -195,9 +195,10 @@ conic_status conic_render_transparent(conic_context *context, conic_renderer *re
   if (status == CONIC_OK)
     status = conic_whole_drawing_scale(context, &whole, &options);
   if (status == CONIC_OK)
-    status = make_marks(&t);
+    status = make_transparent_marks(&t);
   if (status == CONIC_OK)
-    status = samples == 1 ? draw_once(&t, camera, image, &own) : draw_bands(&t, camera, samples, image, &own);
+    status = samples == 1 ? draw_transparent(&t, camera, image, &own)
+                          : draw_transparent_bands(&t, camera, samples, image, &own);
   own.ms.frame = 1e3 * (conic_seconds_now() - start);
   if (status == CONIC_OK && statistics)
     *statistics = own;

@@ -54,8 +54,8 @@ static void fill_planes(fixture *f, const int *which, int n_layers) {
   enum { EDGE = 25 };
   size_t n = (size_t)n_layers * EDGE * EDGE;
   conic_splats_release(f->context, &f->splats);
-  CHECK_OK(conic_splats_allocate(f->context, n,
-                                 CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES, &f->splats));
+  CHECK_OK(conic_splats_allocate(f->context, n, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES,
+                                 &f->splats));
   for (size_t i = 0; i < n; i++) {
     const layer *from = &layers[which[i % (size_t)n_layers]];
     size_t at = i / (size_t)n_layers;
