@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/* What a dimension of the sequence decides. Those from CONIC_SEQUENCE_FREE on are free, but for the last. */
+/* What a dimension of the sequence decides. Those from CONIC_SEQUENCE_FREE on are free, but for the last three. */
 enum {
   CONIC_SEQUENCE_PIXEL = 0,     /* and 1: the place in the pixel, to the right and down */
   CONIC_SEQUENCE_LENS = 2,      /* and 3: the point on the lens */
@@ -12,7 +12,9 @@ enum {
   CONIC_SEQUENCE_DIRECTION = 5, /* and 6: the direction of the sky, or the place on a light */
   CONIC_SEQUENCE_LIGHT = 7,     /* which light */
   CONIC_SEQUENCE_FREE = 8,
-  CONIC_SEQUENCE_HALF = 15, /* which half, for the estimate of what the mean is off */
+  CONIC_SEQUENCE_SHADOW = 13,  /* which surfaces stop a light, where they let light through */
+  CONIC_SEQUENCE_SURFACE = 14, /* which of them a pixel shows */
+  CONIC_SEQUENCE_HALF = 15,    /* which half, for the estimate of what the mean is off */
   CONIC_N_SEQUENCE_DIMENSIONS = 16
 };
 

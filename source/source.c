@@ -205,6 +205,9 @@ conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, c
   const conic_source_kind *kind = source->kind;
   conic_render_options settled;
   conic_status status = begin_picture(source, render, view, &settled);
+  if (status == CONIC_OK && source->view.transparency && (kind->draw || kind->abilities & CONIC_SOURCE_CLUSTERS))
+    return conic_fail(source->context, CONIC_ERROR_UNSUPPORTED,
+                      "%s: transparency is of splats and meshes that are drawn as they are", source->name);
   if (status != CONIC_OK || kind->draw)
     return status == CONIC_OK ? kind->draw(source, renderer, camera, &settled, &source->view, image, statistics)
                               : status;
@@ -214,7 +217,11 @@ conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, c
   double ms = is_chosen ? 1e3 * (conic_seconds_now() - start) : 0.0;
   if (source->choice.is_all && !settled.splats_version)
     settled.splats_version = source->splats_version;
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && source->view.transparency)
+    status = conic_render_transparent(source->context, renderer, &source->choice.drawing, camera, &settled,
+                                      source->view.transparency, source->view.chance, source->view.samples, image,
+                                      statistics);
+  else if (status == CONIC_OK)
     status = conic_render_drawing(source->context, renderer, &source->choice.drawing, camera, &settled,
                                   source->view.samples, image, statistics);
   if (status != CONIC_OK)

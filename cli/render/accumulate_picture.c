@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "accumulation/sequence.h"
 #include "cli/render/accumulate_team.h"
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
@@ -102,10 +103,14 @@ static conic_status draw_source_sample(void *cookie, const conic_sample *sample,
   cli_render_job *job = work->job;
   conic_render_options options = job->options;
   conic_render_statistics statistics;
+  conic_source_view view = job->view;
+  view.chance = conic_sequence_at(sample->index, CONIC_SEQUENCE_SURFACE);
+  if (job->is_transparent && cli_light_is_wanted(job)) /* what is lit has one depth and one normal */
+    view.transparency = CONIC_TRANSPARENCY_CHANCE;
   conic_status status = cli_lamps_sample(work->session, job, sample->index, &options.lighting);
   if (status != CONIC_OK)
     return status;
-  status = conic_source_draw(job->source, job->renderer, &sample->camera, &options, &job->view, image, &statistics);
+  status = conic_source_draw(job->source, job->renderer, &sample->camera, &options, &view, image, &statistics);
   work->statistics.ms.frame += statistics.ms.frame;
   return status;
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "accumulation/sequence.h"
 #include "cli/render/light_options.h"
 #include "conic/lighting.h"
 
@@ -49,6 +50,12 @@ static conic_status draw_light_map(void *cookie, const conic_camera *camera, dou
   conic_source_view view = job->view;
   options.near_z = near_z;
   view.samples = 1;
+  if (job->is_transparent) {
+    view.transparency = CONIC_TRANSPARENCY_CHANCE;
+    view.chance = conic_sequence_at(job->i_light_map, CONIC_SEQUENCE_SHADOW);
+    job->i_light_map += !job->accumulating.n_samples; /* the maps of a sample share its chance */
+    options.passes = 3;
+  }
   return conic_source_draw(job->source, job->renderer, camera, &options, &view, depth, NULL);
 }
 
@@ -90,6 +97,7 @@ static conic_status light_image(cli_session *session, cli_render_job *job, const
   conic_casters casters = casters_of(job, &drawer);
   conic_render_options render = job->options;
   conic_lighter lighter = {session->context, &casters, &render, &options};
+  job->i_light_map = i_sample ? *i_sample : 0;
   conic_lighting_options_init(&options);
   options.n_directions = (uint64_t)job->n_directions;
   options.has_shadows = job->has_shadows;

@@ -51,6 +51,18 @@ static int check_streaming(const cli_render_job *job, const int is_given[2]) {
   return CLI_DONE;
 }
 
+static int check_transparency(cli_render_job *job) {
+  if (job->abilities & (CONIC_SOURCE_STREAMS | CONIC_SOURCE_CLUSTERS | CONIC_SOURCE_COMPOSITES))
+    return cli_usage("render: --transparency is of splats and meshes that are drawn as they are: not of an .lpc, a "
+                     "hybrid or a Gaussian scene");
+  if (job->deep_path || job->has_mattes || job->top.is_wanted)
+    return cli_usage("render: not --transparency with --deep, --cryptomatte or --camera top");
+  if (job->options.passes != 3)
+    return cli_usage("render: --transparency is of surfaces that blend: not with --passes 1");
+  job->view.transparency = CONIC_TRANSPARENCY_LAYERS;
+  return CLI_DONE;
+}
+
 /* Everything that a frame writes; null: nothing. */
 enum { N_PATHS = CLI_MAX_OUTPUTS + 5 };
 static void list_frame_paths(const cli_render_job *job, const char *paths[N_PATHS]) {
@@ -95,6 +107,8 @@ static int check_outputs(const cli_session *session, cli_render_job *job, const 
   answer = check_streaming(job, is_given);
   if (answer == CLI_DONE)
     answer = cli_light_check(job);
+  if (answer == CLI_DONE && job->is_transparent)
+    answer = check_transparency(job);
   if (answer == CLI_DONE && job->top.is_wanted)
     answer = cli_top_check(session, job);
   if (answer == CLI_DONE)
@@ -221,8 +235,10 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"ao", CLI_INT, &job->n_directions, "N",
        "light from all around falls only where nothing hides it, as so many directions tell: 64 look smooth, 1024 are "
        "exact",
-       1, 65536, .group = "shadow"},
+       1, 65536, .group = "shadow and transparency"},
       {"shadow", CLI_FLAG, &job->has_shadows, NULL, "the lights cast shadows, but for those at your eye"},
+      {"transparency", CLI_FLAG, &job->is_transparent, NULL,
+       "splats let light through as their opacity says, and meshes as the alpha of their materials and pictures"},
       {"repeat", CLI_INT, &job->repeat, "N", "draw N times and report the median of the times [1]", 1, 100000,
        .group = "measuring"},
   };

@@ -215,6 +215,17 @@ static void warn_of_error(cli_session *session, cli_render_job *job) {
   job->is_error_warned = 1;
 }
 
+static void warn_of_alpha(cli_session *session, cli_render_job *job) {
+  const conic_drawing meshes = {.triangles = conic_source_chosen(job->source)->drawing.triangles};
+  if (job->is_transparent || job->is_alpha_warned || !conic_drawing_is_transparent(&meshes))
+    return;
+  job->is_alpha_warned = 1;
+  conic_log(session->context, CONIC_LOG_WARNING,
+            "%s: drawn opaque, where its materials let light through: "
+            "--transparency shows that",
+            job->inputs[0]);
+}
+
 /* The plane doubt is not the renderer's, but the oracle's about what it may have drawn. */
 static conic_status find_doubts(cli_session *session, const cli_render_job *job, const conic_camera *camera,
                                 conic_image *image) {
@@ -273,6 +284,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   take_medians(job, repeats, (size_t)job->repeat);
   warn_of_empty(session, job);
   warn_of_error(session, job);
+  warn_of_alpha(session, job);
   cli_frame_describe(job, &camera, image);
   if (job->has_mattes)
     status = cli_mattes_fill(session, job, &camera, image);

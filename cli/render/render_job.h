@@ -65,12 +65,15 @@ typedef struct cli_render_job {
   const char *sky_path;                        /* --sky with a picture; null: none */
   int n_directions, has_shadows;               /* --ao, --shadow */
   conic_sky *sky;                              /* of the picture, once it is read */
+  int is_transparent;                          /* --transparency */
+  uint64_t i_light_map;                        /* of those that show it: which sample of its chances is next */
   int n_frames;                                /* of a turntable, or views; else 1 */
   int is_turntable;
   cli_top_job top; /* --camera top */
   cli_frames frames;
   int is_warned;       /* that a picture is empty */
   int is_error_warned; /* that --error is not kept */
+  int is_alpha_warned; /* that alpha is not shown */
   int repeat;
   unsigned planes; /* bits 1 << conic_plane */
   int is_aov_given, is_samples_given, is_prefilter_given;

@@ -28,6 +28,9 @@ typedef enum conic_assimp_picture {
 
 enum { CONIC_ASSIMP_NORMALS = 1, CONIC_ASSIMP_COORDINATES = 2, CONIC_ASSIMP_COLORS = 4 };
 
+/* As conic_alpha_mode has them. */
+enum { CONIC_ASSIMP_BLEND = 0, CONIC_ASSIMP_MASK = 1, CONIC_ASSIMP_OPAQUE = 2 };
+
 /* What a record is not about is zero. After a part come double position[n_vertices][3] in the world; if there are such,
  * float normal[][3], coordinate[][2] and color[][3]; and uint32_t triangles[n_triangles][3]. */
 typedef struct conic_assimp_record {
@@ -35,8 +38,9 @@ typedef struct conic_assimp_record {
   uint32_t fields;     /* of a part: which of the arrays there are */
   uint32_t i_material; /* of a part: in the order of their records */
   uint32_t picture, is_clamped, width, height;
-  float color[3]; /* of a material */
-  double up[3];   /* at the end: zero where the file does not say */
+  float color[3], opacity, alpha_cutoff; /* of a material */
+  uint32_t alpha_mode;                   /* likewise */
+  double up[3];                          /* at the end: zero where the file does not say */
   uint64_t n_bytes, n_vertices, n_triangles;
 } conic_assimp_record;
 

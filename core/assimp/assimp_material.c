@@ -156,6 +156,10 @@ conic_status conic_assimp_take_material(const conic_input *input, conic_assimp_p
     float value = conic_assimp_decode(parts, record->color[channel]);
     material.color[channel] = value >= 0.0f && value <= 1e6f ? value : 1.0f;
   }
+  float opacity = record->opacity, cutoff = record->alpha_cutoff;
+  material.transparency = opacity > 0.0f && opacity < 1.0f ? 1.0f - opacity : 0.0f;
+  material.alpha_cutoff = cutoff >= 0.0f && cutoff <= 1.0f ? cutoff : 0.5f;
+  material.alpha_mode = record->alpha_mode <= CONIC_ALPHA_OPAQUE ? record->alpha_mode : CONIC_ALPHA_BLEND;
   conic_status status = CONIC_OK;
   if (record->picture == CONIC_ASSIMP_PATH)
     status = take_path(input, process, record->n_bytes, record->is_clamped ? CONIC_WRAP_CLAMP : CONIC_WRAP_REPEAT,

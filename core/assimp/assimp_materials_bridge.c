@@ -1,3 +1,4 @@
+#include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <stdlib.h>
 #include <string.h>
@@ -93,12 +94,33 @@ static void find_material_color(const conic_assimp_writer *w, const struct aiMat
   color[2] = (float)found.b;
 }
 
+/* Of the modes, glTF says which; elsewhere alpha is what it is. A wholly invisible material is a file's mistake. */
+static void find_alpha(const conic_assimp_writer *w, const struct aiMaterial *material, conic_assimp_record *record) {
+  struct aiString mode = {0};
+  ai_real opacity = 1, cutoff = (ai_real)0.5;
+  record->opacity = 1.0f;
+  record->alpha_cutoff = 0.5f;
+  if (is_default(w, material))
+    return;
+  if (aiGetMaterialFloat(material, AI_MATKEY_OPACITY, &opacity) == aiReturn_SUCCESS)
+    record->opacity = (float)opacity;
+  if (!is_gltf(w))
+    return;
+  if (aiGetMaterialFloat(material, AI_MATKEY_GLTF_ALPHACUTOFF, &cutoff) == aiReturn_SUCCESS)
+    record->alpha_cutoff = (float)cutoff;
+  aiGetMaterialString(material, AI_MATKEY_GLTF_ALPHAMODE, &mode);
+  record->alpha_mode = strcmp(mode.data, "BLEND") == 0  ? CONIC_ASSIMP_BLEND
+                       : strcmp(mode.data, "MASK") == 0 ? CONIC_ASSIMP_MASK
+                                                        : CONIC_ASSIMP_OPAQUE;
+}
+
 static void send_material(conic_assimp_writer *w, const struct aiMaterial *material) {
   conic_assimp_record record = {.type = CONIC_ASSIMP_MATERIAL};
   struct aiString path;
   unsigned i_coordinate;
   int is_clamped = 0, has_texture = find_texture(material, &path, &i_coordinate, &is_clamped);
   find_material_color(w, material, has_texture, record.color);
+  find_alpha(w, material, &record);
   record.is_clamped = (uint32_t)is_clamped;
   if (!has_texture) {
     conic_assimp_send(w, record, NULL, 0);

@@ -3,16 +3,20 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/color.h"
+#include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
 #include "core/files/input.h"
 #include "core/files/number.h"
+#include "core/image/image_common.h"
+#include "core/image/texture_levels.h"
 
 typedef struct material_reader {
   conic_input input;
   const conic_texts *names;
   conic_material *materials, *current; /* null: one that nobody uses */
-  int has_warned;
+  conic_texture **alphas;              /* a material: its map_d; null: none */
 } material_reader;
 
 static conic_status read_name(void *data) {
@@ -50,36 +54,35 @@ static conic_status read_color(void *data) {
   return CONIC_OK;
 }
 
-/* Triangles are opaque; said once of a file. */
-static conic_status warn_of_opacity(material_reader *reader, double opaque) {
+/* A number from 0 to 1; what is none, such as -halo, says nothing. */
+static conic_status read_part(material_reader *reader, int is_opacity) {
   const char *word;
   size_t length;
   double value;
   conic_status status = conic_input_word(&reader->input, &word, &length);
-  if (status != CONIC_OK || reader->has_warned || !reader->current || length == 0 ||
-      conic_number_parse(word, length, &value) != length || value == opaque)
+  if (status != CONIC_OK || !reader->current || length == 0 || conic_number_parse(word, length, &value) != length ||
+      !(value >= 0.0 && value <= 1.0))
     return status;
-  reader->has_warned = 1;
-  conic_log(reader->input.context, CONIC_LOG_WARNING,
-            "%s: triangles are opaque: what d and Tr say is left out (line %llu)", reader->input.name,
-            (unsigned long long)reader->input.line);
+  reader->current->transparency = (float)(is_opacity ? 1.0 - value : value);
   return CONIC_OK;
 }
 
 static conic_status read_opacity(void *data) {
-  return warn_of_opacity(data, 1.0);
+  return read_part(data, 1);
 }
 
 static conic_status read_transparency(void *data) {
-  return warn_of_opacity(data, 0.0);
+  return read_part(data, 0);
 }
 
-/* map_Kd [-option value …] FILE: the file is the last word; `-clamp on` is the one option that matters here. */
-static conic_status read_map(void *data) {
-  material_reader *reader = data;
-  char file[CONIC_INPUT_LONGEST_WORD + 1] = "", path[2 * CONIC_INPUT_LONGEST_WORD];
+/* [-option value …] FILE: the file is the last word; `-clamp on` is the one option that matters here. An empty path
+ * where there is no such file. */
+static conic_status read_path(material_reader *reader, conic_texture_wrap *wrap,
+                              char path[2 * CONIC_INPUT_LONGEST_WORD]) {
+  char file[CONIC_INPUT_LONGEST_WORD + 1] = "";
   int is_clamp_next = 0;
-  conic_texture_wrap wrap = CONIC_WRAP_REPEAT;
+  *wrap = CONIC_WRAP_REPEAT;
+  path[0] = '\0';
   for (;;) {
     const char *word;
     size_t length;
@@ -89,33 +92,94 @@ static conic_status read_map(void *data) {
     if (length == 0)
       break;
     if (is_clamp_next && conic_input_is(word, length, "on"))
-      wrap = CONIC_WRAP_CLAMP;
+      *wrap = CONIC_WRAP_CLAMP;
     is_clamp_next = conic_input_is(word, length, "-clamp");
     snprintf(file, sizeof file, "%.*s", (int)length, word);
   }
-  if (!file[0] || !reader->current || reader->current->texture)
+  if (!file[0] || !reader->current)
     return CONIC_OK;
-  if (!conic_input_beside(&reader->input, file, strlen(file), path, sizeof path))
+  if (!conic_input_beside(&reader->input, file, strlen(file), path, 2 * CONIC_INPUT_LONGEST_WORD))
     return conic_input_wrong(&reader->input, "a picture's name is too long");
-  if (!conic_file_is_there(path)) {
-    conic_log(reader->input.context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out (line %llu)",
-              reader->input.name, path, (unsigned long long)reader->input.line);
+  if (conic_file_is_there(path))
     return CONIC_OK;
-  }
+  conic_log(reader->input.context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out (line %llu)",
+            reader->input.name, path, (unsigned long long)reader->input.line);
+  path[0] = '\0';
+  return CONIC_OK;
+}
+
+static conic_status read_map(void *data) {
+  material_reader *reader = data;
+  char path[2 * CONIC_INPUT_LONGEST_WORD];
+  conic_texture_wrap wrap;
+  conic_status status = read_path(reader, &wrap, path);
+  if (status != CONIC_OK || !path[0] || reader->current->texture)
+    return status;
   return conic_texture_read(reader->input.context, path, wrap, &reader->current->texture);
+}
+
+/* A picture of alpha: its own, or how bright it is where it has none. White otherwise. */
+static conic_status read_alpha_picture(conic_context *context, const char *path, conic_texture_wrap wrap,
+                                       conic_texture **texture) {
+  conic_image image;
+  conic_status status = conic_texture_read_image(context, path, &image);
+  if (status != CONIC_OK)
+    return status;
+  float *rgba = image.planes[CONIC_PLANE_RGBA];
+  for (size_t i = 0; i < conic_image_pixels(&image); i++) {
+    float *pixel = rgba + 4 * i;
+    float bright = (0.2126f * pixel[0] + 0.7152f * pixel[1]) + 0.0722f * pixel[2];
+    float alpha = image.lacks_alpha ? (float)conic_srgb_encode((double)bright) : pixel[3];
+    pixel[0] = pixel[1] = pixel[2] = pixel[3] = alpha;
+  }
+  return conic_texture_take(context, &image, wrap, texture);
+}
+
+/* map_d: in place of the alpha of map_Kd, which may come later. */
+static conic_status read_alpha_map(void *data) {
+  material_reader *reader = data;
+  char path[2 * CONIC_INPUT_LONGEST_WORD];
+  conic_texture_wrap wrap;
+  conic_status status = read_path(reader, &wrap, path);
+  if (status != CONIC_OK || !path[0])
+    return status;
+  conic_texture **alpha = &reader->alphas[reader->current - reader->materials];
+  return *alpha ? CONIC_OK : read_alpha_picture(reader->input.context, path, wrap, alpha);
+}
+
+/* A material without a picture has that of its alpha. */
+static conic_status join_alphas(material_reader *reader) {
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < reader->names->count; i++) {
+    conic_material *material = &reader->materials[i];
+    if (reader->alphas[i] && material->texture && status == CONIC_OK)
+      status = conic_texture_take_alpha(material->texture, reader->alphas[i]);
+    else if (reader->alphas[i] && status == CONIC_OK) {
+      material->texture = reader->alphas[i];
+      reader->alphas[i] = NULL;
+    }
+    conic_texture_destroy(reader->alphas[i]);
+  }
+  return status;
 }
 
 conic_status conic_material_file_read(conic_context *context, const char *path, const conic_texts *names,
                                       conic_material *materials) {
-  static const conic_input_statement statements[] = {
-      {"newmtl", read_name}, {"Kd", read_color}, {"map_Kd", read_map}, {"d", read_opacity}, {"Tr", read_transparency}};
+  static const conic_input_statement statements[] = {{"newmtl", read_name},     {"Kd", read_color},
+                                                     {"map_Kd", read_map},      {"d", read_opacity},
+                                                     {"Tr", read_transparency}, {"map_d", read_alpha_map}};
   material_reader reader = {.names = names, .materials = materials};
-  conic_status status = conic_input_open(context, path, &reader.input);
-  if (status != CONIC_OK)
+  reader.alphas = conic_memory_allocate_zeroed(context, names->count, sizeof *reader.alphas);
+  conic_status status = reader.alphas ? conic_input_open(context, path, &reader.input) : CONIC_ERROR_MEMORY;
+  if (status != CONIC_OK) {
+    conic_memory_release(context, reader.alphas);
     return status;
+  }
   status = conic_input_skip_mark(&reader.input);
   if (status == CONIC_OK)
     status = conic_input_read_statements(&reader.input, statements, sizeof statements / sizeof *statements, &reader);
   conic_input_close(&reader.input);
-  return status;
+  conic_status joined = join_alphas(&reader);
+  conic_memory_release(context, reader.alphas);
+  return status == CONIC_OK ? joined : status;
 }

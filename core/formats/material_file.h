@@ -1,4 +1,4 @@
-/* Material files (MTL) beside an OBJ: of each material its diffuse colour and picture. */
+/* Material files (MTL) beside an OBJ: of each material its diffuse colour, its alpha, and the pictures of both. */
 #ifndef CONIC_MATERIAL_FILE_H
 #define CONIC_MATERIAL_FILE_H
 

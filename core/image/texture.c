@@ -26,18 +26,17 @@ static void reduce_level(const conic_texture_level *from, conic_texture_level *t
     int first_row, first_column, n_rows = shares_of(y, from->height, to->height, &first_row, row_shares);
     for (int x = 0; x < to->width; x++) {
       int n_columns = shares_of(x, from->width, to->width, &first_column, column_shares);
-      double sum[3] = {0.0, 0.0, 0.0};
+      double sum[4] = {0.0, 0.0, 0.0, 0.0};
       for (int row = 0; row < n_rows; row++)
         for (int column = 0; column < n_columns; column++) {
           const float *texel =
               from->texels + 4 * ((size_t)(first_row + row) * (size_t)from->width + (size_t)(first_column + column));
-          for (int channel = 0; channel < 3; channel++)
+          for (int channel = 0; channel < 4; channel++)
             sum[channel] += row_shares[row] * column_shares[column] * (double)texel[channel];
         }
       float *texel = to->texels + 4 * ((size_t)y * (size_t)to->width + (size_t)x);
-      for (int channel = 0; channel < 3; channel++)
+      for (int channel = 0; channel < 4; channel++)
         texel[channel] = (float)sum[channel];
-      texel[3] = 0.0f;
     }
   }
 }
@@ -82,7 +81,11 @@ static conic_status add_level(conic_texture *texture, int width, int height, flo
   return CONIC_OK;
 }
 
-/* Colour without its alpha; what is no usable number is black. */
+static float alpha_of(const float *texel) {
+  return texel[3] > 0.0f ? texel[3] < 1.0f ? texel[3] : 1.0f : 0.0f;
+}
+
+/* Colour without its alpha, and alpha; what is no usable number is black. */
 static void make_texels(const conic_texture_level *level) {
   for (size_t i = 0; i < (size_t)level->width * (size_t)level->height; i++) {
     float *texel = level->texels + 4 * i, alpha = texel[3];
@@ -90,14 +93,15 @@ static void make_texels(const conic_texture_level *level) {
       float value = alpha > 0.0f ? texel[channel] / alpha : 0.0f;
       texel[channel] = value >= -1e6f && value <= 1e6f ? value : 0.0f;
     }
-    texel[3] = 0.0f;
+    texel[3] = alpha_of(texel);
   }
 }
 
-/* `texels`, the image's colour, becomes the first level, on failure, too. */
-static conic_status make_texture(conic_context *context, float *texels, int width, int height, conic_texture_wrap wrap,
-                                 conic_texture **texture) {
+/* Makes all levels of the first one's `texels`, which become the texture's, on failure, too. */
+static conic_status make_levels(conic_context *context, float *texels, int width, int height, conic_texture_wrap wrap,
+                                conic_texture **texture) {
   conic_texture *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
+  *texture = NULL;
   if (!made) {
     conic_memory_release(context, texels);
     return CONIC_ERROR_MEMORY;
@@ -105,7 +109,6 @@ static conic_status make_texture(conic_context *context, float *texels, int widt
   made->context = context;
   made->wrap = wrap;
   conic_status status = add_level(made, width, height, texels);
-  make_texels(&made->levels[0]);
   while (status == CONIC_OK && (width > 1 || height > 1)) {
     width = (width + 1) / 2;
     height = (height + 1) / 2;
@@ -118,6 +121,85 @@ static conic_status make_texture(conic_context *context, float *texels, int widt
   else
     conic_texture_destroy(made);
   return status;
+}
+
+/* Makes the cover of the texels' colours and alphas; null where all are opaque. */
+static conic_status make_cover(conic_context *context, const float *texels, int width, int height,
+                               conic_texture_wrap wrap, conic_texture **cover) {
+  size_t n = (size_t)width * (size_t)height, i = 0;
+  *cover = NULL;
+  while (i < n && texels[4 * i + 3] == 1.0f)
+    i++;
+  if (i == n)
+    return CONIC_OK;
+  conic_status status = conic_texture_check_room(context, "alpha", width, height);
+  float *covering = status == CONIC_OK ? conic_memory_allocate(context, n, 4 * sizeof *covering) : NULL;
+  if (!covering)
+    return status == CONIC_OK ? CONIC_ERROR_MEMORY : status;
+  for (i = 0; i < n; i++) {
+    for (size_t channel = 0; channel < 3; channel++)
+      covering[4 * i + channel] = texels[4 * i + channel] * texels[4 * i + 3];
+    covering[4 * i + 3] = texels[4 * i + 3];
+  }
+  return make_levels(context, covering, width, height, wrap, cover);
+}
+
+/* `texels`, the image's colour, becomes the first level, on failure, too. */
+static conic_status make_texture(conic_context *context, float *texels, int width, int height, conic_texture_wrap wrap,
+                                 conic_texture **texture) {
+  const conic_texture_level first = {width, height, texels};
+  conic_texture *cover;
+  make_texels(&first);
+  conic_status status = make_cover(context, texels, width, height, wrap, &cover);
+  if (status != CONIC_OK) {
+    conic_memory_release(context, texels);
+    return status;
+  }
+  for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
+    texels[4 * i + 3] = 0.0f;
+  status = make_levels(context, texels, width, height, wrap, texture);
+  if (status == CONIC_OK)
+    (*texture)->cover = cover;
+  else
+    conic_texture_destroy(cover);
+  return status;
+}
+
+static int is_as_large(const conic_texture *a, const conic_texture *b) {
+  return a->levels[0].width == b->levels[0].width && a->levels[0].height == b->levels[0].height;
+}
+
+/* Texel by texel, or where they are others, the other picture is looked at through a texel. */
+conic_status conic_texture_take_alpha(conic_texture *texture, const conic_texture *other) {
+  const conic_texture_level *level = &texture->levels[0];
+  const float along[2] = {1.0f / (float)level->width, 0.0f}, across[2] = {0.0f, 1.0f / (float)level->height};
+  size_t n = (size_t)level->width * (size_t)level->height;
+  conic_texture *cover;
+  float *texels = conic_memory_allocate(texture->context, n, 4 * sizeof *texels);
+  if (!texels)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n; i++) {
+    const size_t x = i % (size_t)level->width, y = i / (size_t)level->width;
+    const float uv[2] = {((float)x + 0.5f) * along[0], 1.0f - ((float)y + 0.5f) * across[1]};
+    float rgba[4] = {0.0f, 0.0f, 0.0f, 1.0f};
+    if (!is_as_large(texture, other))
+      conic_texture_sample_rgba(other, uv, along, across, rgba);
+    else if (other->cover)
+      rgba[3] = other->cover->levels[0].texels[4 * i + 3];
+    memcpy(texels + 4 * i, level->texels + 4 * i, 3 * sizeof *texels);
+    texels[4 * i + 3] = rgba[3];
+  }
+  conic_status status = make_cover(texture->context, texels, level->width, level->height, texture->wrap, &cover);
+  conic_memory_release(texture->context, texels);
+  if (status != CONIC_OK)
+    return status;
+  conic_texture_destroy(texture->cover);
+  texture->cover = cover;
+  return CONIC_OK;
+}
+
+int conic_texture_has_alpha(const conic_texture *texture) {
+  return texture->cover != NULL;
 }
 
 conic_status conic_texture_create(conic_context *context, const conic_image *image, conic_texture_wrap wrap,
@@ -164,6 +246,7 @@ conic_status conic_texture_read(conic_context *context, const char *path, conic_
 void conic_texture_destroy(conic_texture *texture) {
   if (!texture)
     return;
+  conic_texture_destroy(texture->cover);
   for (int i = 0; i < texture->n_levels; i++) {
     const conic_texture_level *level = &texture->levels[i];
     texture->context->texture_bytes -= level_bytes(level->width, level->height);

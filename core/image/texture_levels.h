@@ -10,7 +10,7 @@ enum { CONIC_TEXTURE_LEVELS = 17 };
 /* A part of a texel. A device's text has a memory of its own for them (opencl/triangle_set.cl). */
 typedef float conic_texel;
 
-/* One picture of the pyramid: linear RGB and a float of no matter, row by row from the top. */
+/* One picture of the pyramid: linear RGB and a float of no matter, row by row from the top; of a cover, alpha. */
 typedef struct conic_texture_level {
   int width, height;
   conic_texel *texels;
@@ -25,7 +25,11 @@ struct conic_texture {
   conic_texture_wrap wrap;
   int n_levels; /* each has half the width and height of the one before, rounded up; the last is one texel */
   conic_texture_level levels[CONIC_TEXTURE_LEVELS];
+  struct conic_texture *cover; /* the same picture, colours times alpha and alpha; null where alpha is 1 throughout */
 };
+
+/* Gives the texture the other's alpha in place of its own. Errors: INPUT (no room), MEMORY. */
+conic_status conic_texture_take_alpha(conic_texture *texture, const conic_texture *other);
 
 /* Whether a texture of a file has room beside those that there are. Errors: INPUT. */
 conic_status conic_texture_check_room(conic_context *context, const char *name, int width, int height);

@@ -1,6 +1,7 @@
 /* Elliptical filtering of a texture (docs/reference/picture.md, Textures): a Gaussian over a footprint, on two levels
  * of the pyramid, with a bounded number of texels. */
 #include <math.h>
+#include <string.h>
 
 #include "core/image/texture_filter.h"
 #include "core/image/texture_levels.h"
@@ -66,10 +67,10 @@ static footprint footprint_of(const conic_texture_level *level, const float alon
 /* The filter on one level. Where a side of the picture is one texel already, all texels along it are the same, and it
  * is of no matter that the footprint goes on shrinking. */
 static void filter(const conic_texture *texture, int i_level, const float place[2], const footprint *of_pixel,
-                   float color[3]) {
+                   float color[4]) {
   const conic_texture_level *level = &texture->levels[i_level];
   if (i_level == texture->n_levels - 1) {
-    for (int channel = 0; channel < 3; channel++)
+    for (int channel = 0; channel < 4; channel++)
       color[channel] = conic_texels_of(level)[channel];
     return;
   }
@@ -79,7 +80,7 @@ static void filter(const conic_texture *texture, int i_level, const float place[
   float x = place[0] * (float)level->width - 0.5f, y = (1.0f - place[1]) * (float)level->height - 0.5f;
   float determinant = xx * yy - xy * xy, inverse = 1.0f / determinant;
   float reach_x = sqrtf(CONIC_FILTER_SUPPORT * xx), reach_y = sqrtf(CONIC_FILTER_SUPPORT * yy);
-  float sum[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+  float sum[4] = {0.0f, 0.0f, 0.0f, 0.0f}, weights = 0.0f;
   int x_begin = (int)floorf(x - reach_x) + 1, x_end = (int)floorf(x + reach_x) + 1;
   int y_begin = (int)floorf(y - reach_y) + 1, y_end = (int)floorf(y + reach_y) + 1;
   for (int j = y_begin; j < y_end; j++) {
@@ -93,13 +94,13 @@ static void filter(const conic_texture *texture, int i_level, const float place[
         continue;
       float weight = conic_exp_negative(-0.5f * q) - CONIC_FILTER_END;
       const conic_texel *texel = row + 4 * (size_t)wrapped(i, level->width, texture->wrap);
-      for (int channel = 0; channel < 3; channel++)
+      for (int channel = 0; channel < 4; channel++)
         sum[channel] += weight * texel[channel];
-      sum[3] += weight;
+      weights += weight;
     }
   }
-  for (int channel = 0; channel < 3; channel++)
-    color[channel] = sum[channel] / sum[3];
+  for (int channel = 0; channel < 4; channel++)
+    color[channel] = sum[channel] / weights;
 }
 
 /* The level on which the footprint is as wide as it should be, and how far it is to the one after. */
@@ -116,15 +117,31 @@ static int level_of(const conic_texture *texture, const footprint *v, float *bey
   return i;
 }
 
-void conic_texture_sample(const conic_texture *texture, const float uv[2], const float along[2], const float across[2],
-                          float color[3]) {
-  float place[2] = {place_in(uv[0], texture->wrap), place_in(uv[1], texture->wrap)}, beyond, coarse[3];
+static void sample(const conic_texture *texture, const float uv[2], const float along[2], const float across[2],
+                   float color[4]) {
+  float place[2] = {place_in(uv[0], texture->wrap), place_in(uv[1], texture->wrap)}, beyond, coarse[4];
   footprint v = footprint_of(&texture->levels[0], along, across);
   int i = level_of(texture, &v, &beyond);
   filter(texture, i, place, &v, color);
   if (!(beyond > 0.0f))
     return;
   filter(texture, i + 1, place, &v, coarse);
-  for (int channel = 0; channel < 3; channel++)
+  for (int channel = 0; channel < 4; channel++)
     color[channel] += beyond * (coarse[channel] - color[channel]);
+}
+
+void conic_texture_sample(const conic_texture *texture, const float uv[2], const float along[2], const float across[2],
+                          float color[3]) {
+  float own[4];
+  sample(texture, uv, along, across, own);
+  memcpy(color, own, 3 * sizeof *color);
+}
+
+void conic_texture_sample_rgba(const conic_texture *texture, const float uv[2], const float along[2],
+                               const float across[2], float rgba[4]) {
+  sample(texture->cover ? texture->cover : texture, uv, along, across, rgba);
+  float alpha = texture->cover ? rgba[3] < 1.0f ? rgba[3] : 1.0f : 1.0f;
+  for (int channel = 0; channel < 3 && texture->cover; channel++)
+    rgba[channel] = alpha > 0.0f ? rgba[channel] / alpha : 0.0f;
+  rgba[3] = alpha;
 }

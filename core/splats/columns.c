@@ -94,9 +94,14 @@ const char *conic_triangles_fault(const conic_triangles *given) {
     return "reserved words are not zero";
   if (given->count && (!given->corners || !given->position[0]))
     return "there are no corners or positions";
-  for (size_t i = 0; given->materials && i < given->n_materials; i++)
-    if (!conic_is_zero(given->materials[i].reserved, sizeof given->materials[i].reserved))
+  for (size_t i = 0; given->materials && i < given->n_materials; i++) {
+    const conic_material *material = &given->materials[i];
+    if (material->reserved_word || !conic_is_zero(material->reserved, sizeof material->reserved))
       return "a material's reserved words are not zero";
+    if (material->alpha_mode > CONIC_ALPHA_OPAQUE ||
+        !(material->transparency >= 0.0f && material->transparency <= 1.0f))
+      return "a material's alpha mode is unknown, or its transparency is not within 0 and 1";
+  }
   return given->n_materials && !given->materials ? "there are no materials" : fault_of(columns, TRIANGLES_COLUMNS);
 }
 

@@ -50,6 +50,7 @@
 #include "conic/status.h"
 #include "conic/surface.h"
 #include "conic/texture.h"
+#include "conic/transparency.h"
 #include "conic/triangles.h"
 #include "conic/version.h"
 

@@ -18,6 +18,7 @@
 #include "conic/patches.h"
 #include "conic/render.h"
 #include "conic/splats.h"
+#include "conic/transparency.h"
 #include "conic/triangles.h"
 
 #ifdef __cplusplus
@@ -159,17 +160,20 @@ CONIC_API void conic_source_settle(const conic_source *source, conic_render_opti
 
 /* How one picture is chosen. What a source cannot do is not looked at. */
 typedef struct conic_source_view {
-  size_t size;               /* sizeof(conic_source_view), set by the init function */
-  double error_px;           /* above 0: the greatest error on the screen; 0: full detail, a hybrid as built */
-  uint64_t budget;           /* or, where not 0: the least error that so many splats and triangles can give */
-  int only_kind;             /* -1, or the conic_hybrid_kind that all clusters are drawn as */
-  int samples;               /* N × N a pixel */
-  int most_levels;           /* no more levels are drawn; 0: all */
-  conic_occlusion occlusion; /* leave out what is hidden */
-  int may_be_coarser;        /* what cannot be read, or not in time, is drawn coarser */
-  double seconds;            /* with that: no more is read after so many; 0: no limit */
-  int tolerates_damage;      /* with that: so is what is damaged */
-  double color_error;        /* of a hybrid: as conic_hybrid_view has it */
+  size_t size;                     /* sizeof(conic_source_view), set by the init function */
+  double error_px;                 /* above 0: the greatest error on the screen; 0: full detail, a hybrid as built */
+  uint64_t budget;                 /* or, where not 0: the least error that so many splats and triangles can give */
+  int only_kind;                   /* -1, or the conic_hybrid_kind that all clusters are drawn as */
+  int samples;                     /* N × N a pixel */
+  int most_levels;                 /* no more levels are drawn; 0: all */
+  conic_occlusion occlusion;       /* leave out what is hidden */
+  int may_be_coarser;              /* what cannot be read, or not in time, is drawn coarser */
+  double seconds;                  /* with that: no more is read after so many; 0: no limit */
+  int tolerates_damage;            /* with that: so is what is damaged */
+  double color_error;              /* of a hybrid: as conic_hybrid_view has it */
+  conic_transparency transparency; /* as conic_render_transparent has it; of what hands over what is drawn, hybrids
+                                    aside: else UNSUPPORTED */
+  double chance;                   /* likewise */
 } conic_source_view;
 
 /* Full detail, either kind, one sample, colours by 2 steps. */

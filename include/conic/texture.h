@@ -41,6 +41,14 @@ CONIC_API int conic_texture_height(const conic_texture *texture);
 CONIC_API void conic_texture_sample(const conic_texture *texture, const float uv[2], const float along[2],
                                     const float across[2], float color[3]);
 
+/* Whether a texel's alpha is below 1. */
+CONIC_API int conic_texture_has_alpha(const conic_texture *texture);
+
+/* The same with alpha, each texel's colour in proportion to its own: rgba is not premultiplied, and black where alpha
+ * is 0. Of a texture without alpha, conic_texture_sample's colour and 1. */
+CONIC_API void conic_texture_sample_rgba(const conic_texture *texture, const float uv[2], const float along[2],
+                                         const float across[2], float rgba[4]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -18,11 +18,22 @@
 extern "C" {
 #endif
 
+/* What a material's alpha, that is (1 - transparency) × the texture's, means where pictures show it. */
+typedef enum conic_alpha_mode {
+  CONIC_ALPHA_BLEND = 0, /* so much of the light from behind it stops */
+  CONIC_ALPHA_MASK = 1,  /* the surface is there where alpha is at least `alpha_cutoff`, opaque, and else is not */
+  CONIC_ALPHA_OPAQUE = 2 /* nothing */
+} conic_alpha_mode;
+
 /* What a triangle's surface is made of: its colour is that of the vertices × `color` × the texture. */
 typedef struct conic_material {
   float color[3];         /* linear */
   conic_texture *texture; /* null: none */
-  uint64_t reserved[4];
+  uint32_t alpha_mode;    /* a conic_alpha_mode; this and the next two count where transparency is asked for */
+  float transparency;     /* 0: opaque, to 1 */
+  float alpha_cutoff;     /* of CONIC_ALPHA_MASK */
+  uint32_t reserved_word;
+  uint64_t reserved[2];
 } conic_material;
 
 /* As conic_splats_strides, of the arrays of floats. */

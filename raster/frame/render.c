@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/base/clock.h"
-#include "core/base/color.h"
 #include "core/base/kept_memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
@@ -368,20 +367,6 @@ double conic_default_near(const conic_splats *splats) {
   return conic_near_of_box(low, high);
 }
 
-static conic_status prepare_finish(frame *f, const conic_camera *camera, const conic_render_options *options) {
-  conic_finish *finish = &f->finish;
-  finish->options = options;
-  finish->lights = &f->lights;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      finish->world_from_cam[i][j] = (float)camera->cam_from_world[j][i];
-  finish->exposure = conic_exposure_factor(options->exposure);
-  for (int i = 0; options->has_background && i < 3; i++)
-    finish->background[i] = options->background[i] * finish->exposure;
-  finish->background[3] = options->has_background ? 1.0f : 0.0f;
-  return conic_finish_lights_init(f->renderer->context, camera, options, &f->lights);
-}
-
 static conic_status draw_frame(frame *f, conic_render_milliseconds *ms) {
   conic_context *context = f->renderer->context;
   double start = conic_seconds_now();
@@ -451,7 +436,7 @@ static conic_status render(frame *f, const conic_whole_drawing *drawing, const c
   if (f->view.slips)
     f->kernels.project.project = conic_project_range;
   if (status == CONIC_OK)
-    status = prepare_finish(f, camera, options);
+    status = conic_finish_init(renderer->context, camera, options, &f->lights, &f->finish);
   if (status == CONIC_OK)
     status = begin_triangles(f, drawing, camera, options);
   if (status == CONIC_OK && renderer->backend)

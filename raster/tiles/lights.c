@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/color.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 
@@ -91,4 +92,18 @@ conic_status conic_finish_lights_init(conic_context *context, const conic_camera
   memset(lights, 0, sizeof *lights);
   const char *wrong = take_lighting(camera, options->lighting.is_given ? &options->lighting : &alone, lights);
   return wrong ? conic_fail(context, CONIC_ERROR_ARGUMENT, "%s", wrong) : CONIC_OK;
+}
+
+conic_status conic_finish_init(conic_context *context, const conic_camera *camera, const conic_render_options *options,
+                               conic_finish_lights *lights, conic_finish *finish) {
+  finish->options = options;
+  finish->lights = lights;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      finish->world_from_cam[i][j] = (float)camera->cam_from_world[j][i];
+  finish->exposure = conic_exposure_factor(options->exposure);
+  for (int i = 0; i < 3; i++)
+    finish->background[i] = options->has_background ? options->background[i] * finish->exposure : 0.0f;
+  finish->background[3] = options->has_background ? 1.0f : 0.0f;
+  return conic_finish_lights_init(context, camera, options, lights);
 }

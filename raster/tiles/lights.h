@@ -10,4 +10,8 @@
 conic_status conic_finish_lights_init(conic_context *context, const conic_camera *camera,
                                       const conic_render_options *options, conic_finish_lights *lights);
 
+/* A picture's, whose lights they become. Errors: as there. */
+conic_status conic_finish_init(conic_context *context, const conic_camera *camera, const conic_render_options *options,
+                               conic_finish_lights *lights, conic_finish *finish);
+
 #endif

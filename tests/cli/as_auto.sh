@@ -41,7 +41,7 @@ run_as_typed 0 render tent.obj --method patch -o a.pfm --size 64x64
 printf 'mtllib said.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nl 1 2\nl 2 3\n' > said.obj
 printf 'newmtl a\nKd 1 0 0\nd 0.5\nTr 0.5\n' > said.mtl
 run_as_typed 0 render said.obj -o said.pfm
-[[ $(grep -c 'lines are not drawn.*(line 7)' err) -eq 1 && $(grep -c 'opaque.*(line 3)' err) -eq 1 ]] || fail "$(cat err)"
+[[ $(grep -c 'lines are not drawn.*(line 7)' err) -eq 1 && $(grep -c 'drawn opaque.*--transparency' err) -eq 1 ]] || fail "$(cat err)"
 printf 'newmtl a\nKd 1 0 0\nd 1\nTr 0\n' > said.mtl
 run_as_typed 0 render said.obj -o said.pfm
 grep -q opaque err && fail "what is opaque is warned of"

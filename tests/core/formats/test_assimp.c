@@ -130,6 +130,28 @@ static void test_embedded_texture(void) {
   conic_triangles_release(context, &t);
 }
 
+/* Of glTF's modes, alpha counts in BLEND and MASK alone. */
+static void test_alpha_modes(void) {
+  static const struct {
+    const char *json;
+    uint32_t mode;
+    float cutoff;
+  } modes[] = {{"", CONIC_ALPHA_OPAQUE, 0.5f},
+               {"},\"alphaMode\":\"BLEND\",\"extras\":{", CONIC_ALPHA_BLEND, 0.5f},
+               {"},\"alphaMode\":\"MASK\",\"alphaCutoff\":0.75,\"extras\":{", CONIC_ALPHA_MASK, 0.75f}};
+  static mesh_file file;
+  for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
+    char material[200];
+    snprintf(material, sizeof material, "\"baseColorFactor\":[1,1,1,0.25]%s", modes[i].json);
+    file.n = 0;
+    mesh_gltf_json(&file, "", one_node, material, "", 0);
+    conic_triangles t = read_triangles("a.gltf", file.bytes, file.n, CONIC_OK);
+    CHECK(t.materials && t.materials[0].alpha_mode == modes[i].mode);
+    CHECK(t.materials && t.materials[0].transparency == 0.75f && t.materials[0].alpha_cutoff == modes[i].cutoff);
+    conic_triangles_release(context, &t);
+  }
+}
+
 static const char *write_pfm(const char *name) {
   static const float texels[12] = {0, 0, 0, 1, 1, 1, 0.5f, 0.25f, 0.125f, 1, 0, 0};
   char pfm[64 + sizeof texels];
@@ -307,6 +329,7 @@ int main(void) {
   context = files_context();
   test_kinds();
   test_embedded_texture();
+  test_alpha_modes();
   test_files_beside();
   test_mirrored();
   test_origin();

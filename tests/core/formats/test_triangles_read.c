@@ -82,6 +82,34 @@ static void test_materials(void) {
   CHECK(unlink(library) == 0 && unlink(picture) == 0);
 }
 
+/* d and Tr; a map_d before the map_Kd whose alpha it is, and one by itself. */
+static void test_alpha(void) {
+  static const float texels[12] = {0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1}, whole[2] = {1, 0}, high[2] = {0, 1};
+  char pfm[64 + sizeof texels], picture[160], library[160];
+  int n = snprintf(pfm, sizeof pfm, "PF\n2 2\n-1.0\n");
+  for (int i = 0; i < 12; i++)
+    conic_store_float(pfm + n + 4 * i, texels[i]);
+  snprintf(picture, sizeof picture, "%s", files_write_bytes("t.pfm", pfm, (size_t)n + sizeof texels));
+  snprintf(library, sizeof library, "%s",
+           files_write("m.mtl", "newmtl a\nd 0.25\nnewmtl b\nTr 0.25\nmap_d t.pfm\nmap_Kd t.pfm\nnewmtl c\n"
+                                "d -halo 0.5\nmap_d t.pfm\n"));
+  conic_triangles t = read_text("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n"
+                                "usemtl b\nf 1/1 2/1 3/1\nusemtl c\nf 1/1 2/1 3/1\n",
+                                CONIC_OK);
+  CHECK(t.n_materials == 4 && t.materials[0].transparency == 0.0f && t.materials[1].transparency == 0.75f);
+  CHECK(t.materials[2].transparency == 0.25f && t.materials[3].transparency == 0.0f);
+  for (int i = 2; i < 4 && t.n_materials == 4; i++) {
+    const float uv[2] = {0.5f, 0.5f};
+    float rgba[4];
+    CHECK(t.materials[i].texture && conic_texture_has_alpha(t.materials[i].texture));
+    conic_texture_sample_rgba(t.materials[i].texture, uv, whole, high, rgba);
+    CHECK(rgba[3] > 0.5f && rgba[3] < 0.95f);
+    CHECK_NEAR((double)rgba[0], 1.0, 1e-6); /* nothing of the black that is not there */
+  }
+  conic_triangles_release(context, &t);
+  CHECK(unlink(library) == 0 && unlink(picture) == 0);
+}
+
 #define PLY_VERTICES                                                                                                   \
   "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float %s\nproperty double %s\n"
 #define PLY_FACES "element face 3\n%sproperty list uchar int vertex_indices\n%sproperty uchar flags\n"
@@ -247,6 +275,7 @@ int main(void) {
   test_corners();
   test_refused();
   test_materials();
+  test_alpha();
   test_ply_vertices();
   test_ply_corners();
   test_ply_pictures();
