@@ -5,6 +5,7 @@
 
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
+#include "cli/render/gather_picture.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/views.h"
 #include "cli/stopper.h"
@@ -94,8 +95,8 @@ static conic_status draw_source_sample(void *cookie, const conic_sample *sample,
   accumulating *work = cookie;
   cli_render_job *job = work->job;
   conic_render_statistics statistics;
-  conic_status status =
-      conic_source_draw(job->source, job->renderer, &sample->camera, &job->options, &job->view, image, &statistics);
+  const cli_looking looking = {&sample->camera, &job->options, &job->view, sample};
+  conic_status status = cli_draw_looking(work->session, job, &looking, image, &statistics);
   work->statistics.ms.frame += statistics.ms.frame;
   return status;
 }
@@ -212,7 +213,7 @@ static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
   options.camera_at = own->is_shutter_given ? camera_on_way : NULL;
   options.draw = draw_source_sample;
   options.watch = watch_sums;
-  if (cli_light_is_wanted(work->job)) {
+  if (cli_light_is_wanted(work->job) && !cli_is_gathered(work->job, &work->frame_camera)) { /* whose views are lit */
     options.shade = light_source_sample;
     options.sample_planes = 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO;
   }
@@ -230,8 +231,8 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
                                     conic_image *image, conic_render_statistics *statistics) {
   accumulating work = {.session = session, .job = job, .i_frame = i_frame, .image = image};
   conic_accumulation *sums = NULL;
-  conic_status status =
-      conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, &work.statistics);
+  const cli_looking looking = {camera, &job->options, &job->view, NULL};
+  conic_status status = cli_draw_looking(session, job, &looking, image, &work.statistics);
   if (status == CONIC_OK)
     status = find_focus(session, job, image);
   work.frame_camera = *camera;

@@ -1,7 +1,7 @@
 /* conic render --exposure auto. */
 #include <string.h>
 
-#include "cli/render/render_job.h"
+#include "cli/render/gather_picture.h"
 #include "core/base/message.h"
 
 /* Of a picture without background, of one sample a pixel; of what is read while it is drawn, where that is to be seen
@@ -21,7 +21,7 @@ conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, cons
       conic_image_allocate(session->context, camera->width, camera->height, 1u << CONIC_PLANE_RGBA, &image);
   if (status != CONIC_OK)
     return status;
-  status = conic_source_draw(job->source, job->renderer, camera, &plain, &view, &image, &statistics);
+  status = cli_draw_looking(session, job, &(cli_looking){camera, &plain, &view, NULL}, &image, &statistics);
   if (status == CONIC_OK) {
     job->options.exposure = conic_image_exposure(&image);
     job->is_exposure_automatic = 0; /* kept for all frames */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/render/backdrop.h"
+#include "cli/render/gather_picture.h"
 #include "cli/render/lit_picture.h"
 #include "core/files/disk.h"
 
@@ -21,8 +22,8 @@ conic_status cli_render_picture(cli_session *session, cli_render_job *job, const
                                 conic_image *image, conic_render_statistics *statistics) {
   if (job->deadline > 0.0)
     job->view.seconds = seconds_left(job);
-  conic_status status =
-      conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, statistics);
+  const cli_looking looking = {camera, &job->options, &job->view, NULL};
+  conic_status status = cli_draw_looking(session, job, &looking, image, statistics);
   if (status == CONIC_OK)
     status = cli_light_picture(session, job, camera, image);
   if (status == CONIC_OK)

@@ -141,7 +141,7 @@ conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *ca
   }
   if (!job->is_up_given)
     memcpy(framing.up, conic_source_measure(job->source)->up, sizeof framing.up);
-  if (!job->is_elevation_given && (job->is_eye_given || job->projection == CONIC_CAMERA_EQUIRECTANGULAR))
+  if (!job->is_elevation_given && (job->is_eye_given || job->projection >= CONIC_CAMERA_EQUIRECTANGULAR))
     framing.elevation_deg = 0.0; /* of who stands in it */
   else if (!job->is_plain && !job->is_elevation_given)
     framing.elevation_deg = elevation_for(conic_source_measure(job->source), framing.up);
