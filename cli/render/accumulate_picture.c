@@ -7,6 +7,7 @@
 #include "cli/render/frames.h"
 #include "cli/render/gather_picture.h"
 #include "cli/render/lit_picture.h"
+#include "cli/render/stereo.h"
 #include "cli/render/views.h"
 #include "cli/stopper.h"
 #include "core/base/rank.h"
@@ -38,8 +39,9 @@ static conic_status camera_on_way(void *cookie, double time, conic_camera *camer
   double place = (double)job->i_view + frames, last = (double)job->cameras.count - 1.0;
   place = place < 0.0 ? 0.0 : place > last ? last : place;
   size_t from = (size_t)place, to = from + 1 < job->cameras.count ? from + 1 : from;
-  return conic_camera_between(work->session->context, &job->cameras.cameras[from], &job->cameras.cameras[to],
-                              place - (double)from, camera);
+  conic_status status = conic_camera_between(work->session->context, &job->cameras.cameras[from],
+                                             &job->cameras.cameras[to], place - (double)from, camera);
+  return status == CONIC_OK ? cli_stereo_move(job, camera) : status;
 }
 
 conic_status cli_accumulate_camera(cli_session *session, cli_render_job *job, int i_frame, conic_camera *camera) {

@@ -6,6 +6,7 @@
 #include "cli/host_keeps.h"
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
+#include "cli/render/stereo.h"
 #include "conic/gaussian_judge.h"
 #include "core/base/message.h"
 
@@ -304,7 +305,10 @@ static int render_scene(cli_session *session, cli_render_job *job) {
   for (int i = 0, n = cli_frames_count(job); i < n && status == CONIC_OK; i++) {
     if (cli_frames_are_many(job))
       cli_session_part(session, job->is_turntable ? "frame" : "view", i + 1, n);
-    status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, &image, repeats);
+    for (int eye = 0; eye < cli_stereo_eyes(job) && status == CONIC_OK; eye++) {
+      cli_stereo_begin(job, eye);
+      status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, &image, repeats);
+    }
   }
   if (status == CONIC_OK) {
     hash_image(session, job, &image);

@@ -74,7 +74,7 @@ typedef struct camera_case {
 
 static const camera_case cases[] = {
     {"panorama", CONIC_CAMERA_EQUIRECTANGULAR, CONIC_LENS_NONE, 120, 60, 120 / (2.0 * 3.14159265358979323846), {0}, 6},
-    {"fisheye", CONIC_CAMERA_FISHEYE, CONIC_LENS_NONE, 96, 96, 30.0, {0}, 5},
+    {"fisheye", CONIC_CAMERA_FISHEYE, CONIC_LENS_NONE, 96, 96, 30.0, {0}, 6},
     {"whole fisheye", CONIC_CAMERA_FISHEYE, CONIC_LENS_NONE, 90, 90, 14.0, {0}, 6},
     {"narrow fisheye", CONIC_CAMERA_FISHEYE, CONIC_LENS_RADIAL, 96, 64, 70.0, {0.03, -0.01, 2e-3, -3e-4}, 1},
     {"opencv", CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_OPENCV, 96, 64, 60.0, {-0.2, 0.04, 2e-3, -1e-3}, 1},
@@ -191,7 +191,8 @@ static void test_places(conic_context *context) {
 }
 
 /* A view's pixel is no larger than the picture's, divided by the fineness: in the middle of a fisheye and of a panorama,
- * a pixel is 1/f; and of the pincushion its corners are finer. */
+ * a pixel is 1/f; at a whole fisheye's rim, where it is as thin as a line, its diagonal is; and the pincushion's corners
+ * are finer. */
 static void test_fineness(conic_context *context) {
   for (int i = 0; i < 6; i++) {
     const conic_camera camera = camera_of(&cases[i]);
@@ -204,7 +205,7 @@ static void test_fineness(conic_context *context) {
     CHECK_OK(conic_gather(context, &options, &image));
     double part = r.greatest_pixels_per_unit / (2.0 * 3.0 * camera.fx);
     CHECK(r.last.samples == 1);
-    CHECK(cases[i].lens ? part > 0.9 && part < 1.7 : part > 0.999 && part < 1.02);
+    CHECK(cases[i].lens ? part > 0.9 && part < 1.7 : part > 0.999 && part < (i == 2 ? 1.45 : 1.02));
     conic_image_release(context, &image);
   }
 }
