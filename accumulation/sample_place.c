@@ -23,6 +23,10 @@ static void point_on_polygon(int n_corners, double u, double v, double point[2])
   point[1] = -radius * ((1.0 - part) * conic_cos(first) + part * conic_cos(second));
 }
 
+static int sees_all_around(const conic_camera *camera) {
+  return camera->kind == CONIC_CAMERA_EQUIRECTANGULAR || camera->kind == CONIC_CAMERA_CUBE;
+}
+
 static conic_status check_aperture(conic_context *context, const conic_camera *camera, const conic_aperture *aperture) {
   if (!(aperture->diameter >= 0.0 && aperture->diameter < 1e30) || aperture->n_blades < 0 ||
       aperture->n_blades > CONIC_MAX_BLADES || aperture->n_blades == 1 || aperture->n_blades == 2)
@@ -31,7 +35,16 @@ static conic_status check_aperture(conic_context *context, const conic_camera *c
     return CONIC_OK;
   if (!(aperture->focus > 0.0 && aperture->focus < 1e30))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "lens: the focus is to be in front of the camera");
-  return conic_view_pinhole_check(context, "lens", camera);
+  if (aperture->n_blades > 0 && sees_all_around(camera))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "lens: of a picture of all directions, it is round");
+  return conic_view_camera_check(context, "lens", camera);
+}
+
+/* A disc's point becomes one in the ball that looks like that disc from all sides: a point of the sphere in four
+ * dimensions, seen without the fourth. */
+static double point_in_ball(const double point[2], double w) {
+  double left = 1.0 - (point[0] * point[0] + point[1] * point[1]);
+  return left > 0.0 ? sqrt(left) * conic_cos(2.0 * CONIC_PI * w) : 0.0;
 }
 
 conic_status conic_sample_place(conic_context *context, const conic_camera *camera, const conic_aperture *aperture,
@@ -59,8 +72,14 @@ conic_status conic_sample_place(conic_context *context, const conic_camera *came
     conic_disc_point(u, v, point);
   for (int axis = 0; axis < 2; axis++) {
     sample->lens[axis] = 0.5 * lens->diameter * point[axis];
-    sample->camera.cam_from_world[axis][3] -= sample->lens[axis];
   }
+  if (sees_all_around(camera))
+    sample->lens_forward =
+        0.5 * lens->diameter * point_in_ball(point, conic_sequence_at(index, CONIC_SEQUENCE_LENS_DEPTH));
+  if (camera->kind || camera->lens) /* no camera shows it: who gathers looks from there */
+    return CONIC_OK;
+  for (int axis = 0; axis < 2; axis++)
+    sample->camera.cam_from_world[axis][3] -= sample->lens[axis];
   sample->camera.cx += camera->fx * (sample->lens[0] / lens->focus);
   sample->camera.cy += camera->fy * (sample->lens[1] / lens->focus);
   return CONIC_OK;

@@ -6,12 +6,14 @@
 
 /* What a dimension of the sequence decides. Those from CONIC_SEQUENCE_FREE on are free, but for the last three. */
 enum {
-  CONIC_SEQUENCE_PIXEL = 0,     /* and 1: the place in the pixel, to the right and down */
-  CONIC_SEQUENCE_LENS = 2,      /* and 3: the point on the lens */
-  CONIC_SEQUENCE_SHUTTER = 4,   /* the time in the shutter */
-  CONIC_SEQUENCE_DIRECTION = 5, /* and 6: the direction of the sky, or the place on a light */
-  CONIC_SEQUENCE_LIGHT = 7,     /* which light */
-  CONIC_SEQUENCE_FREE = 8,
+  CONIC_SEQUENCE_PIXEL = 0,       /* and 1: the place in the pixel, to the right and down */
+  CONIC_SEQUENCE_LENS = 2,        /* and 3: the point on the lens */
+  CONIC_SEQUENCE_SHUTTER = 4,     /* the time in the shutter */
+  CONIC_SEQUENCE_DIRECTION = 5,   /* and 6: the direction of the sky, or the place on a light */
+  CONIC_SEQUENCE_LIGHT = 7,       /* which light */
+  CONIC_SEQUENCE_VIEW = 8,        /* and 9: where the pixels of gathered views lie */
+  CONIC_SEQUENCE_LENS_DEPTH = 10, /* the point's way forward, of a lens for all directions */
+  CONIC_SEQUENCE_FREE = 11,
   CONIC_SEQUENCE_SHADOW = 13,  /* which surfaces stop a light, where they let light through */
   CONIC_SEQUENCE_SURFACE = 14, /* which of them a pixel shows */
   CONIC_SEQUENCE_HALF = 15,    /* which half, for the estimate of what the mean is off */

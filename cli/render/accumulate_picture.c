@@ -7,7 +7,9 @@
 #include "cli/render/accumulate_team.h"
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
+#include "cli/render/gather_picture.h"
 #include "cli/render/lit_picture.h"
+#include "cli/render/stereo.h"
 #include "cli/render/views.h"
 #include "cli/stopper.h"
 #include "cli/team.h"
@@ -40,8 +42,9 @@ static conic_status camera_on_way(void *cookie, double time, conic_camera *camer
   double place = (double)job->i_view + frames, last = (double)job->cameras.count - 1.0;
   place = place < 0.0 ? 0.0 : place > last ? last : place;
   size_t from = (size_t)place, to = from + 1 < job->cameras.count ? from + 1 : from;
-  return conic_camera_between(work->session->context, &job->cameras.cameras[from], &job->cameras.cameras[to],
-                              place - (double)from, camera);
+  conic_status status = conic_camera_between(work->session->context, &job->cameras.cameras[from],
+                                             &job->cameras.cameras[to], place - (double)from, camera);
+  return status == CONIC_OK ? cli_stereo_move(job, camera) : status;
 }
 
 conic_status cli_accumulate_camera(cli_session *session, cli_render_job *job, int i_frame, conic_camera *camera) {
@@ -110,7 +113,8 @@ static conic_status draw_source_sample(void *cookie, const conic_sample *sample,
   conic_status status = cli_lamps_sample(work->session, job, sample->index, &options.lighting);
   if (status != CONIC_OK)
     return status;
-  status = conic_source_draw(job->source, job->renderer, &sample->camera, &options, &view, image, &statistics);
+  const cli_looking looking = {&sample->camera, &options, &view, sample};
+  status = cli_draw_looking(work->session, job, &looking, image, &statistics);
   work->statistics.ms.frame += statistics.ms.frame;
   return status;
 }
@@ -228,7 +232,7 @@ static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
   options.camera_at = own->is_shutter_given ? camera_on_way : NULL;
   options.draw = draw_source_sample;
   options.watch = watch_sums;
-  if (cli_light_is_wanted(work->job)) {
+  if (cli_light_is_wanted(work->job) && !cli_is_gathered(work->job, &work->frame_camera)) { /* whose views are lit */
     options.shade = light_source_sample;
     options.sample_planes = 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO;
   }
@@ -249,9 +253,10 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
   accumulating work = {.session = session, .job = job, .i_frame = i_frame, .image = image};
   conic_accumulation *sums = NULL;
   conic_status status = CONIC_OK;
+  const cli_looking looking = {camera, &job->options, &job->view, NULL};
   int is_first = job->sharing != CLI_SHARES_SAMPLES || cli_team_is_first(session);
   if (is_first || needs_depth(&job->accumulating))
-    status = conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, &work.statistics);
+    status = cli_draw_looking(session, job, &looking, image, &work.statistics);
   if (status == CONIC_OK)
     status = find_focus(session, job, image);
   work.frame_camera = *camera;

@@ -1,6 +1,7 @@
 /* conic render --exposure auto. */
 #include <string.h>
 
+#include "cli/render/gather_picture.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/render_job.h"
 #include "core/base/message.h"
@@ -24,7 +25,7 @@ conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, cons
   conic_status status = conic_image_allocate(session->context, camera->width, camera->height, planes, &image);
   if (status != CONIC_OK)
     return status;
-  status = conic_source_draw(job->source, job->renderer, camera, &plain, &view, &image, &statistics);
+  status = cli_draw_looking(session, job, &(cli_looking){camera, &plain, &view, NULL}, &image, &statistics);
   if (status == CONIC_OK && job->lamps.n_lamps)
     status = cli_light_picture(session, job, camera, &image);
   if (status == CONIC_OK) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/outputs.h"
+#include "cli/render/stereo.h"
 #include "cli/render/views.h"
 #include "core/files/file.h"
 
@@ -86,7 +87,7 @@ char *cli_frame_name(const cli_render_job *job, const char *path, int i_frame) {
     const char *ending = dot ? dot : end;
     snprintf(name, room, "%.*s.%04d%s", (int)(ending - path), path, number, ending);
   }
-  return name;
+  return cli_stereo_name(job, name);
 }
 
 static int check_pattern(const char *path) {
@@ -166,9 +167,13 @@ int cli_frames_check(const cli_session *session, cli_render_job *job, const char
   for (int i = 0; i < n_paths && answer == CLI_DONE && job->is_every_view; i++)
     if (paths[i] && strstr(paths[i], "%s"))
       answer = check_view_names(session, job, paths[i]);
-  if (answer == CLI_DONE)
+  for (int eye = 0; eye < cli_stereo_eyes(job) && answer == CLI_DONE; eye++) {
+    cli_stereo_begin(job, eye);
     answer = check_files(session, job, paths, n_paths, job->frames.first - 1);
-  return answer == CLI_DONE ? check_files(session, job, paths, n_paths, job->frames.last - 1) : answer;
+    if (answer == CLI_DONE)
+      answer = check_files(session, job, paths, n_paths, job->frames.last - 1);
+  }
+  return answer;
 }
 
 void cli_frame_orbit(const cli_render_job *job, int i_frame, conic_camera *camera) {

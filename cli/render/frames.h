@@ -22,7 +22,7 @@ int cli_frames_count(const cli_render_job *job);
 
 /* The name of a frame's file, from 0, which the caller frees; null without memory. In a turntable "name.exr" becomes
  * "name.0001.exr", and "name_%03d.exr" becomes "name_001.exr"; views are
- * counted from 0, and of these "%s.exr" is the view's own name. */
+ * counted from 0, and of these "%s.exr" is the view's own name. Of two eyes, cli_stereo_name comes on top. */
 char *cli_frame_name(const cli_render_job *job, const char *path, int i_frame);
 
 /* Turns a camera about the source's centre and what points up, as far as frame `i_frame` of the turntable. */

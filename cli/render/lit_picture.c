@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "accumulation/sequence.h"
+#include "cli/render/gather_picture.h"
 #include "cli/render/light_options.h"
 #include "conic/lighting.h"
 
@@ -82,6 +83,8 @@ static conic_casters casters_of(const cli_render_job *job, map_drawer *drawer) {
 /* What was chosen last is a map's. */
 static conic_status choose_again(cli_render_job *job, const conic_camera *camera, const conic_image *image) {
   conic_image depth = {.width = image->width, .height = image->height};
+  if (cli_is_gathered(job, camera)) /* of several choices */
+    return CONIC_OK;
   if (!(job->abilities & CONIC_SOURCE_STREAMS))
     return conic_source_choose(job->source, camera, &job->options, &job->view);
   depth.planes[CONIC_PLANE_Z] = image->planes[CONIC_PLANE_Z];

@@ -3,7 +3,7 @@
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 
-const char *const cli_projection_words[] = {"perspective", "fisheye", "orthographic", "panorama", NULL};
+const char *const cli_projection_words[] = {"perspective", "fisheye", "orthographic", "panorama", "cube", NULL};
 
 int cli_parse_eye(const char *text, void *eye) {
   return cli_parse_vector(text, eye);
@@ -29,6 +29,9 @@ void cli_project(const cli_render_job *job, const conic_framing *framing, conic_
     camera->fx = camera->fy = framing->zoom * shorter / conic_radians(framing->fov_deg);
   else if (job->projection == CONIC_CAMERA_EQUIRECTANGULAR) { /* all around, from amid the scene */
     camera->fx = camera->fy = framing->zoom * camera->width / (2.0 * CONIC_PI);
+    stand_at(center, camera);
+  } else if (job->projection == CONIC_CAMERA_CUBE) { /* likewise; the picture is as wide as one of its sides */
+    camera->fx = camera->fy = camera->cx = camera->cy = 0.5 * camera->width;
     stand_at(center, camera);
   }
   if (job->is_eye_given)

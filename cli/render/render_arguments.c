@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/render/frames.h"
 #include "cli/render/lit_picture.h"
+#include "cli/render/stereo.h"
 #include "cli/shell.h"
 #include "core/files/file.h"
 
@@ -112,6 +113,8 @@ static int check_outputs(const cli_session *session, cli_render_job *job, const 
   if (answer == CLI_DONE && job->top.is_wanted)
     answer = cli_top_check(session, job);
   if (answer == CLI_DONE)
+    answer = cli_stereo_check(session, job);
+  if (answer == CLI_DONE)
     answer = cli_accumulate_check(job);
   if (answer == CLI_DONE && job->has_mattes)
     answer = cli_mattes_check(job);
@@ -167,6 +170,15 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP",
        "only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from 0 [all]",
        .parse = cli_parse_frames},
+      {"stereo", CLI_NUMBER, &job->stereo.distance, "E",
+       "two pictures, of eyes that are E apart, in world units: OUT.left.exr and OUT.right.exr, or left and right in "
+       "the "
+       "place of %V [one]",
+       0, 1e29},
+      {"convergence", CLI_NUMBER, &job->stereo.convergence, "Z",
+       "of --stereo: the depth that both eyes see at the same place; 0: they are parallel [the depth of the scene's "
+       "middle; 0 of lenses that distort and of fisheyes]",
+       0, 1e29, .is_given = &job->stereo.is_convergence_given},
       {"accumulate", CLI_COUNT, &job->accumulating.n_samples, "N",
        "the mean of N whole pictures, each with its own place in the pixel, point on the lens and moment [none: drawn "
        "at once]",

@@ -7,6 +7,7 @@
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
 #include "cli/render/sharing.h"
+#include "cli/render/stereo.h"
 #include "cli/team.h"
 #include "conic/gaussian_judge.h"
 #include "core/base/message.h"
@@ -342,7 +343,10 @@ static conic_status render_frames(cli_session *session, cli_render_job *job, con
     double start = cli_seconds();
     if (cli_frames_are_many(job))
       cli_session_part(session, job->is_turntable ? "frame" : "view", i + 1, turns.n_frames);
-    status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, image, repeats);
+    for (int eye = 0; eye < cli_stereo_eyes(job) && status == CONIC_OK; eye++) {
+      cli_stereo_begin(job, eye);
+      status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, image, repeats);
+    }
     if (job->sharing == CLI_SHARES_FRAMES)
       cli_sharing_note(session, job, "frame", (uint64_t)i, start, 0);
   }

@@ -27,6 +27,13 @@ typedef struct cli_frames {
 typedef enum cli_sharing { CLI_SHARES_NOTHING, CLI_SHARES_FRAMES, CLI_SHARES_SAMPLES, CLI_SHARES_WINDOWS } cli_sharing;
 
 typedef struct cli_shares cli_shares;
+/* Two eyes. */
+typedef struct cli_stereo {
+  double distance;    /* from one to the other, in world units; 0: there is one */
+  double convergence; /* the depth at which both pictures agree; 0: none */
+  int is_convergence_given;
+  int side; /* that is drawn: -1 the left eye, 1 the right, 0 the only one */
+} cli_stereo;
 
 typedef struct cli_render_job {
   /* What was asked for. */
@@ -77,6 +84,7 @@ typedef struct cli_render_job {
   int repeat;
   unsigned planes; /* bits 1 << conic_plane */
   int is_aov_given, is_samples_given, is_prefilter_given;
+  cli_stereo stereo;               /* --stereo */
   cli_accumulate_job accumulating; /* --accumulate */
   unsigned asked_planes;           /* of these, what --aov names */
   unsigned unwritten_planes;       /* drawn for what else is written */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/render/backdrop.h"
+#include "cli/render/gather_picture.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/sharing.h"
 #include "cli/render/windows_team.h"
@@ -23,10 +24,10 @@ conic_status cli_render_picture(cli_session *session, cli_render_job *job, const
                                 conic_image *image, conic_render_statistics *statistics) {
   if (job->deadline > 0.0)
     job->view.seconds = seconds_left(job);
-  conic_status status =
-      job->sharing == CLI_SHARES_WINDOWS
-          ? cli_draw_together(session, job, camera, image, statistics)
-          : conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, statistics);
+  const cli_looking looking = {camera, &job->options, &job->view, NULL};
+  conic_status status = job->sharing == CLI_SHARES_WINDOWS && !cli_is_gathered(job, camera)
+                            ? cli_draw_together(session, job, camera, image, statistics)
+                            : cli_draw_looking(session, job, &looking, image, statistics);
   if (!cli_sharing_has_picture(session, job))
     return status;
   if (status == CONIC_OK)

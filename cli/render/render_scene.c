@@ -7,6 +7,7 @@
 #include "cli/render/frames.h"
 #include "cli/render/light_options.h"
 #include "cli/render/projection.h"
+#include "cli/render/stereo.h"
 #include "cli/render/views.h"
 #include "core/files/file.h"
 
@@ -126,7 +127,7 @@ static double elevation_for(const conic_source_scale *scale, const double up[3])
   return height > 0.0 && height < flat_part * ground ? flat_elevation_deg : elevation_deg;
 }
 
-conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *camera) {
+static conic_status find_camera(cli_render_job *job, int i_frame, conic_camera *camera) {
   conic_framing framing = job->framing;
   if (job->is_every_view) {
     job->i_view = (size_t)i_frame;
@@ -141,7 +142,7 @@ conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *ca
   }
   if (!job->is_up_given)
     memcpy(framing.up, conic_source_measure(job->source)->up, sizeof framing.up);
-  if (!job->is_elevation_given && (job->is_eye_given || job->projection == CONIC_CAMERA_EQUIRECTANGULAR))
+  if (!job->is_elevation_given && (job->is_eye_given || job->projection >= CONIC_CAMERA_EQUIRECTANGULAR))
     framing.elevation_deg = 0.0; /* of who stands in it */
   else if (!job->is_plain && !job->is_elevation_given)
     framing.elevation_deg = elevation_for(conic_source_measure(job->source), framing.up);
@@ -157,4 +158,9 @@ conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *ca
   if (status == CONIC_OK && job->near_z.value < 0.0 && near_z < job->options.near_z)
     job->options.near_z = near_z;
   return status;
+}
+
+conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *camera) {
+  conic_status status = find_camera(job, i_frame, camera);
+  return status == CONIC_OK ? cli_stereo_move(job, camera) : status;
 }

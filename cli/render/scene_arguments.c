@@ -118,10 +118,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length: 2 shows the middle, twice as large [1]",
        1e-6, 1e6, .is_given = &raw.is_framing_given},
       {"projection", CLI_CHOICE, &job->projection, "HOW",
-       "perspective, or of a Gaussian scene by --profile exact: orthographic, fisheye or panorama [perspective]",
+       "perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one below the other) "
+       "[perspective]",
        .choices = cli_projection_words, .is_given = &raw.is_framing_given},
       {"eye", CLI_PARSED, job->eye, "X,Y,Z",
-       "the place from which the camera looks [where it sees all of the scene; a panorama's: the scene's middle]",
+       "the place from which the camera looks [where it sees all of the scene; a panorama's and a cube's: the scene's "
+       "middle]",
        .parse = cli_parse_eye, .is_given = &job->is_eye_given},
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [the file's, or by its shape]",
        .parse = cli_parse_up, .is_given = &job->is_up_given},
@@ -277,6 +279,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
     memcpy(job->camera_size, raw.size, sizeof raw.size);
   } else if (job->projection == CONIC_CAMERA_EQUIRECTANGULAR)
     view->height = view->width / 2;
+  else if (job->projection == CONIC_CAMERA_CUBE)
+    view->height = 6 * (view->width /= 2);
   raw.is_framing_given |= job->is_elevation_given || job->is_eye_given;
   return cli_scene_check(session, &raw, job);
 }

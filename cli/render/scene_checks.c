@@ -46,10 +46,13 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
     return cli_usage("%s: --boxes shows the nodes of a single .cot (conic octree makes one), not with --color-by",
                      command);
   int is_exact = job->abilities & CONIC_SOURCE_COMPOSITES && job->gaussians.profile == CONIC_PROFILE_EXACT;
-  if (job->projection != CONIC_CAMERA_PERSPECTIVE && !is_exact)
-    return cli_usage("%s: --projection %s is of Gaussian scenes by --profile exact; all else is drawn in perspective",
+  int is_profiled = job->abilities & CONIC_SOURCE_COMPOSITES && !is_exact && job->projection != CONIC_CAMERA_CUBE;
+  if (job->projection != CONIC_CAMERA_PERSPECTIVE && (is_profiled || (!job->is_for_looking && !is_exact)))
+    return cli_usage("%s: --projection %s is of pictures by conic render, and of Gaussian scenes by --profile exact",
                      command, cli_projection_words[job->projection]);
-  if (job->projection != CONIC_CAMERA_PERSPECTIVE && job->projection != CONIC_CAMERA_ORTHOGRAPHIC &&
+  if (job->projection == CONIC_CAMERA_CUBE && job->framing.height != 6 * job->framing.width)
+    return cli_usage("%s: --projection cube is six times as high as wide", command);
+  if ((job->projection == CONIC_CAMERA_FISHEYE || job->projection == CONIC_CAMERA_EQUIRECTANGULAR) &&
       job->gaussians.prefilter > 0.0)
     return cli_usage("%s: --prefilter is of perspective and orthographic pictures of Gaussian scenes", command);
   if (is_hybrid)

@@ -88,7 +88,7 @@ static conic_status read_kind(conic_json *json, uint32_t *kind) {
       *kind = i;
       return CONIC_OK;
     }
-  return conic_json_wrong(json, "a camera's kind is perspective, fisheye, orthographic or equirectangular");
+  return conic_json_wrong(json, "a camera's kind is perspective, fisheye, orthographic, equirectangular or cube");
 }
 
 static conic_status read_own_lens(conic_json *json, uint32_t *lens) {

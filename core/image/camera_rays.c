@@ -7,6 +7,11 @@
 
 enum { TOP = 5, BOTTOM = 4, FOLD = TOP + BOTTOM - 1 };
 
+const double conic_cube_sides[CONIC_CUBE_SIDES][3][3] = {
+    {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}, {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}, {{-1, 0, 0}, {0, 0, -1}, {0, -1, 0}},
+    {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}},
+};
+
 /* Slopes over this are 89.94° from the axis. */
 static const double greatest_slope = 1000.0;
 
@@ -150,11 +155,26 @@ static int undistort(const conic_camera_rays *r, double at[2]) {
   return !r->is_bent || undistort_bent(r, wanted, at);
 }
 
+/* Six pinholes, one below the other. */
+static void ray_of_cube(const conic_camera *camera, double x_px, double y_px, double direction[3]) {
+  int side = y_px > 0.0 ? (int)(y_px / camera->width) : 0;
+  side = side < 5 ? side : 5;
+  const double(*axes)[3] = conic_cube_sides[side];
+  const double at[2] = {(x_px - camera->cx) / camera->fx,
+                        (y_px - (double)side * camera->width - camera->cy) / camera->fy};
+  for (int axis = 0; axis < 3; axis++)
+    direction[axis] = (at[0] * axes[0][axis] + at[1] * axes[1][axis]) + axes[2][axis];
+}
+
 int conic_camera_ray(const conic_camera_rays *r, double x_px, double y_px, double origin[3], double direction[3]) {
   const conic_camera *camera = r->camera;
   double at[2] = {(x_px - camera->cx) / camera->fx, (y_px - camera->cy) / camera->fy};
   origin[0] = origin[1] = origin[2] = direction[0] = direction[1] = 0.0;
   direction[2] = 1.0;
+  if (camera->kind == CONIC_CAMERA_CUBE) {
+    ray_of_cube(camera, x_px, y_px, direction);
+    return 1;
+  }
   if (!undistort(r, at))
     return 0;
   double radius = sqrt(at[0] * at[0] + at[1] * at[1]);

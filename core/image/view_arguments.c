@@ -44,6 +44,8 @@ static const char *find_number_fault(const conic_camera *c) {
       return "the camera's distortion is out of range";
   if (c->width < 1 || c->width > 65535 || c->height < 1 || c->height > 65535)
     return "the camera's picture is 1 to 65535 pixels wide and high";
+  if (c->kind == CONIC_CAMERA_CUBE && (c->height != 6 * c->width || c->lens))
+    return "a cube is six times as high as wide, and has no lens";
   if (!(c->fx > 0.0 && c->fx < 1e12 && c->fy > 0.0 && c->fy < 1e12 && fabs(c->cx) < 1e12 && fabs(c->cy) < 1e12))
     return "the camera's focal lengths or centre are out of range";
   return NULL;
@@ -69,12 +71,14 @@ conic_status conic_view_pinhole_check(conic_context *context, const char *who, c
     return status;
   return conic_fail(
       context, CONIC_ERROR_ARGUMENT,
-      "%s: the camera is %s%s, and this takes pinholes alone; render draws Gaussians by it, with --profile exact", who,
+      "%s: the camera is %s%s, and this takes pinholes alone; render draws by it, Gaussians with --profile exact", who,
       conic_camera_kind_name((conic_camera_kind)c->kind), c->lens ? " with a lens that distorts" : "");
 }
 
 conic_status conic_view_ray_check(conic_context *context, const char *who, const conic_camera *c) {
   conic_status status = conic_view_camera_check(context, who, c);
+  if (status == CONIC_OK && c->kind == CONIC_CAMERA_CUBE)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a cube is drawn side by side, and this takes one camera", who);
   if (status == CONIC_OK && c->lens &&
       (c->kind == CONIC_CAMERA_ORTHOGRAPHIC || c->kind == CONIC_CAMERA_EQUIRECTANGULAR))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: an orthographic or equirectangular camera has no lens", who);

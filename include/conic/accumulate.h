@@ -39,12 +39,13 @@ typedef struct conic_sample {
   uint64_t index;
   double time;         /* in the shutter, 0 to 1 */
   double lens[2];      /* the eye's way to the right and down, in world units */
-  conic_camera camera; /* what draws it */
-  uint64_t reserved[4];
+  conic_camera camera; /* what draws it; the eye's way is in it where it is a pinhole, else for conic_gather */
+  double lens_forward; /* the eye's way forward: of equirectangular cameras and cubes, whose lens is a ball */
+  uint64_t reserved[3];
 } conic_sample;
 
 /* Sample `index` (below CONIC_MAX_ACCUMULATED) of a camera; its time is that of conic_sample_time, at which the caller
- * knows the camera. A null aperture is a pinhole. A lens wants a perspective camera that does not distort.
+ * knows the camera. A null aperture is a pinhole. The lens of a camera of all directions is round.
  * Errors: ARGUMENT. */
 CONIC_API conic_status conic_sample_place(conic_context *context, const conic_camera *camera,
                                           const conic_aperture *aperture, uint64_t index, conic_sample *sample);

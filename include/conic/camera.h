@@ -20,6 +20,9 @@ typedef enum conic_camera_kind {
   CONIC_CAMERA_FISHEYE,         /* (x, y)·θ/‖(x, y)‖, θ the angle from the z axis: equidistant */
   CONIC_CAMERA_ORTHOGRAPHIC,    /* (x, y): fx and fy are pixels per unit */
   CONIC_CAMERA_EQUIRECTANGULAR, /* (atan2(x, z), atan2(y, hypot(x, z))): fx and fy are pixels per radian */
+  CONIC_CAMERA_CUBE, /* six pinholes, one below the other, each as high as the picture is wide: OpenEXR's cube, +X −X +Y
+                        −Y +Z −Z, where +Z is z and +Y is −y; fx, fy, cx and cy are each side's. Nothing draws it but
+                        conic/gather.h */
   CONIC_N_CAMERA_KINDS
 } conic_camera_kind;
 
@@ -34,7 +37,7 @@ typedef enum conic_lens {
   CONIC_N_LENSES
 } conic_lens;
 
-/* "perspective", "fisheye", "orthographic", "equirectangular"; and "none", "radial", "opencv", "thin-prism", "fov";
+/* "perspective", "fisheye", "orthographic", "equirectangular", "cube"; and "none", "radial", "opencv", "thin-prism", "fov";
  * null for a number that is none of them. */
 CONIC_API const char *conic_camera_kind_name(conic_camera_kind kind);
 CONIC_API const char *conic_lens_name(conic_lens lens);

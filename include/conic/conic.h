@@ -25,6 +25,7 @@
 #include "conic/contributions.h"
 #include "conic/diagnosis.h"
 #include "conic/export.h"
+#include "conic/gather.h"
 #include "conic/gaussian_gradient.h"
 #include "conic/gaussian_judge.h"
 #include "conic/gaussian_oracle.h"

@@ -123,7 +123,7 @@ class Camera:
 
     @property
     def kind(self) -> str:
-        """"perspective", "fisheye", "orthographic" or "equirectangular"."""
+        """"perspective", "fisheye", "orthographic", "equirectangular" or "cube"."""
         return library.conic_camera_kind_name(self._struct.kind).decode()
 
     @property

@@ -24,6 +24,17 @@ static void turn_with_camera(const conic_camera *camera, const double of_light[3
     world[i] = (m[0][i] * of_light[0] - m[1][i] * of_light[1]) - m[2][i] * of_light[2];
 }
 
+void conic_lighting_place(const conic_camera *camera, conic_lighting *lighting) {
+  for (int i = 0; i < lighting->n_lights && i < CONIC_MAX_LIGHTS; i++) {
+    conic_light *light = &lighting->lights[i];
+    if (light->frame != CONIC_LIGHT_CAMERA)
+      continue;
+    const double of_light[3] = {light->direction[0], light->direction[1], light->direction[2]};
+    turn_with_camera(camera, of_light, light->direction);
+    light->frame = CONIC_LIGHT_WORLD;
+  }
+}
+
 static int is_grey(const float color[3]) {
   return color[0] == color[1] && color[1] == color[2];
 }

@@ -14,4 +14,7 @@ conic_status conic_finish_lights_init(conic_context *context, const conic_camera
 conic_status conic_finish_init(conic_context *context, const conic_camera *camera, const conic_render_options *options,
                                conic_finish_lights *lights, conic_finish *finish);
 
+/* Lights that move with the camera become lights in the world, as it sees them. */
+void conic_lighting_place(const conic_camera *camera, conic_lighting *lighting);
+
 #endif

@@ -50,7 +50,8 @@ says '--view is of a file of cameras'
 run 2 render sphere.ply --camera colmap --view all --turntable 3 -o a.pfm
 run 2 explain sphere.ply --camera colmap --view all --pixel 1,1
 says 'it takes one view'
-run 2 render sphere.ply --camera colmap --view wide -o a.pfm
+run 0 render sphere.ply --camera colmap --view wide -o a.pfm
+run 2 verify sphere.ply --camera colmap --view wide
 says 'a lens that distorts'
 run 0 render one.ply --profile exact --camera colmap --view wide -o a.pfm # which draws by any lens
 rm a.pfm

@@ -334,7 +334,7 @@ static void test_resampled(conic_context *context) {
       scene.scale[k][i] = 0.1f + scene.scale[k][i];
   const conic_camera pinhole = camera_of_kind(CONIC_CAMERA_PERSPECTIVE, 8.0, 60, 60);
   conic_gaussian_planes wanted = draw_view(context, &scene, &pinhole, 0.0);
-  for (int kind = CONIC_CAMERA_FISHEYE; kind < CONIC_N_CAMERA_KINDS; kind += 2) {
+  for (int kind = CONIC_CAMERA_FISHEYE; kind <= CONIC_CAMERA_EQUIRECTANGULAR; kind += 2) {
     conic_camera camera = camera_of_kind((uint32_t)kind, 8.0, 500, 500);
     camera.fx = camera.fy = 450.0;
     conic_gaussian_planes p = draw_view(context, &scene, &camera, 0.0);

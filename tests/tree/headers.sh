@@ -31,7 +31,7 @@ compiles_cpp() { # FILE; true where there is no compiler for it
     "$cpp_compiler" -std=c++17 -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude "$1"
 }
 
-for header in $(find include core raster oracle lod surface gaussians judge lighting accumulation source opencl bench cli mpi -name '*.h' | sort); do
+for header in $(find include core raster oracle lod surface gaussians judge lighting accumulation gathering source opencl bench cli mpi -name '*.h' | sort); do
   [[ -e $header && $header != *_body.h ]] || continue # a body is included by what sets its types
   [[ $header != opencl/shared.h ]] || continue          # stands before what OpenCL C compiles
   [[ $header != opencl/c_library/* ]] || continue       # stands for the C library where there is none

@@ -13,18 +13,19 @@ my %may_include = (
   judge => [qw(conic core raster oracle gaussians)],
   lod => [qw(conic core raster surface)],
   accumulation => [qw(conic core raster gaussians lod)],
+  gathering => [qw(conic core raster)],
   surface => [qw(conic core)],
   gaussians => [qw(conic core)],
   lighting => [qw(conic core raster lod gaussians accumulation)],
   source => [qw(conic core raster lod surface gaussians)],
   opencl => [qw(conic core raster lod gaussians)],
-  cli => [qw(conic core raster lod surface gaussians lighting judge source opencl accumulation)],
-  bench => [qw(conic core raster lod surface gaussians lighting source opencl accumulation cli tests)],
+  cli => [qw(conic core raster lod surface gaussians lighting judge source opencl accumulation gathering)],
+  bench => [qw(conic core raster lod surface gaussians lighting source opencl accumulation gathering cli tests)],
   mpi => [qw(conic core cli)],
   examples => [qw(conic)],
-  tests => [qw(conic core raster oracle lod surface gaussians lighting judge source opencl accumulation cli mpi bench)],
+  tests => [qw(conic core raster oracle lod surface gaussians lighting judge source opencl accumulation gathering cli mpi bench)],
 );
-my @library = qw(include core raster oracle lod surface gaussians lighting judge source opencl accumulation);
+my @library = qw(include core raster oracle lod surface gaussians lighting judge source opencl accumulation gathering);
 my %is_folder = map { s{.*/}{}r => 1 } keys %may_include;
 
 # Rooms that still include each other in a circle. A circle that is gone must leave the list.

@@ -1,0 +1,70 @@
+#include "cli/render/stereo.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/files/file.h"
+
+int cli_stereo_check(const cli_session *session, const cli_render_job *job) {
+  const cli_stereo *stereo = &job->stereo;
+  if (!(stereo->distance > 0.0))
+    return stereo->is_convergence_given ? cli_usage("render: --convergence is of two eyes; give --stereo, too")
+                                        : CLI_DONE;
+  if (session->host || job->top.is_wanted || job->progressive_path || job->accumulating.resume_path)
+    return cli_usage("render: --stereo writes files: not with --camera top, --progressive, --resume, nor from Python");
+  for (int i = 0; i < job->n_outputs; i++)
+    if (strcmp(job->outputs[i], "-") == 0)
+      return cli_usage("render: --stereo writes two files, and standard output is one");
+  return CLI_DONE;
+}
+
+int cli_stereo_eyes(const cli_render_job *job) {
+  return job->stereo.distance > 0.0 ? 2 : 1;
+}
+
+void cli_stereo_begin(cli_render_job *job, int i_eye) {
+  job->stereo.side = job->stereo.distance > 0.0 ? 2 * i_eye - 1 : 0;
+}
+
+/* The depth at which both pictures agree; 0: nowhere. */
+static double convergence_of(const cli_render_job *job, const conic_camera *camera) {
+  const conic_source_scale *scale = conic_source_measure(job->source);
+  double depth = camera->cam_from_world[2][3];
+  if (job->stereo.is_convergence_given)
+    return job->stereo.convergence;
+  for (int axis = 0; axis < 3; axis++)
+    depth += camera->cam_from_world[2][axis] * (0.5 * scale->minimum[axis] + 0.5 * scale->maximum[axis]);
+  return depth > 0.0 && !camera->kind && !camera->lens ? depth : 0.0;
+}
+
+conic_status cli_stereo_move(const cli_render_job *job, conic_camera *camera) {
+  double moved = 0.5 * job->stereo.distance * job->stereo.side;
+  if (job->stereo.side == 0)
+    return CONIC_OK;
+  double depth = convergence_of(job, camera);
+  if ((camera->kind != CONIC_CAMERA_PERSPECTIVE && camera->kind != CONIC_CAMERA_FISHEYE) ||
+      (depth > 0.0 && (camera->kind || camera->lens))) {
+    cli_usage("render: --stereo is of perspective and fisheye cameras; two that distort are parallel: --convergence 0");
+    return CONIC_ERROR_ARGUMENT;
+  }
+  camera->cam_from_world[0][3] -= moved;
+  if (depth > 0.0)
+    camera->cx += camera->fx * (moved / depth);
+  return CONIC_OK;
+}
+
+char *cli_stereo_name(const cli_render_job *job, char *name) {
+  if (!name || job->stereo.side == 0)
+    return name;
+  const char *eye = job->stereo.side < 0 ? "left" : "right", *place = strstr(name, "%V");
+  const char *base = conic_file_name(name), *dot = strrchr(base, '.');
+  const char *ending = dot ? dot : name + strlen(name);
+  size_t room = strlen(name) + 8;
+  char *named = malloc(room);
+  if (named && place)
+    snprintf(named, room, "%.*s%s%s", (int)(place - name), name, eye, place + 2);
+  else if (named)
+    snprintf(named, room, "%.*s.%s%s", (int)(ending - name), name, eye, ending);
+  free(name);
+  return named;
+}

@@ -1,0 +1,21 @@
+/* --stereo: each frame twice, from the left and from the right eye. */
+#ifndef CONIC_STEREO_H
+#define CONIC_STEREO_H
+
+#include "cli/render/render_job.h"
+
+/* Wrong usage where it does not go with other options. */
+int cli_stereo_check(const cli_session *session, const cli_render_job *job);
+
+/* How many pictures a frame is; begins the one of an eye, from 0. */
+int cli_stereo_eyes(const cli_render_job *job);
+void cli_stereo_begin(cli_render_job *job, int i_eye);
+
+/* Moves a camera to the eye that is drawn. Errors: ARGUMENT (of such a camera there are no two eyes). */
+conic_status cli_stereo_move(const cli_render_job *job, conic_camera *camera);
+
+/* Of a name that malloc gave and that this takes, the eye's: left or right in the place of %V, or before the ending. Null
+ * without memory. */
+char *cli_stereo_name(const cli_render_job *job, char *name);
+
+#endif

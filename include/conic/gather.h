@@ -1,0 +1,58 @@
+/* Pictures of cameras that are no pinholes, gathered from pinholes' pictures ("views"), which any renderer draws:
+ * fisheyes, lenses that distort, panoramas, cubes and parallel projections. docs/reference/cameras.md says how, and
+ * how far what a pixel shows is from its own ray. */
+#ifndef CONIC_GATHER_H
+#define CONIC_GATHER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/image.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A view that is to be drawn. */
+typedef struct conic_gather_view {
+  conic_camera camera; /* a pinhole of the image's size */
+  double near_z;       /* nothing nearer is drawn */
+  int samples;         /* N × N a pixel */
+  int reserved_int;
+  uint64_t reserved[4];
+} conic_gather_view;
+
+typedef struct conic_gather_options {
+  size_t size;         /* sizeof(conic_gather_options), set by the init function */
+  conic_camera camera; /* of any kind and lens */
+  double near_z;       /* of a cube and an orthographic camera as of a pinhole; of others, from each side of a cube */
+  int samples;         /* N × N a pixel */
+  double fineness;     /* 1 or more: a view's pixel is no larger than a sample's, divided by this */
+  double shift[2];     /* 0 to 1: the place of the views' pixels in the grid of these; no matter but for means of many */
+  /* The eye's way to the right, down and forward, in world units, about what is in focus: at the depth or distance
+   * `focus` from the camera, the picture stays. */
+  double lens[3], focus;
+  double minimum[3], maximum[3]; /* box of all that is drawn; only an orthographic camera looks at it */
+  float empty[4];                /* rgba where the camera sees no direction */
+  unsigned view_planes;          /* what is drawn of views beside the image's planes */
+  void *cookie;
+  /* Draws all planes of the view's image, the depth being that of a pinhole. What it returns other than OK ends all. */
+  conic_status (*draw)(void *cookie, const conic_gather_view *view, conic_image *image);
+} conic_gather_options;
+
+/* One sample, fineness 1½, the eye in its place. */
+CONIC_API void conic_gather_options_init_sized(conic_gather_options *options, size_t size);
+#define conic_gather_options_init(options) conic_gather_options_init_sized(options, sizeof *(options))
+
+/* Draws the views that the camera needs, one after the other, and fills the image's planes from them: Z and medianZ
+ * are depths as the camera's kind has them (conic_camera_rays.h: along the ray for fisheyes and panoramas), inverseZ
+ * is 1 over that, and all else is as the views have it. Several samples are of drawn planes alone. The same bits
+ * whatever the threads, as far as `draw` has them. Errors: ARGUMENT, MEMORY, CANCELLED, and what `draw` returns. */
+CONIC_API conic_status conic_gather(conic_context *context, const conic_gather_options *options, conic_image *image);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
