@@ -198,6 +198,16 @@ conic_status conic_texture_take_alpha(conic_texture *texture, const conic_textur
   return CONIC_OK;
 }
 
+void conic_texture_sample_rgba(const conic_texture *texture, const float uv[2], const float along[2],
+                               const float across[2], float rgba[4]) {
+  const conic_texture *cover = texture->cover;
+  conic_texture_sample_channels(cover ? cover : texture, uv, along, across, rgba);
+  float alpha = cover ? alpha_of(rgba) : 1.0f;
+  for (int channel = 0; channel < 3 && cover; channel++)
+    rgba[channel] = alpha > 0.0f ? rgba[channel] / alpha : 0.0f;
+  rgba[3] = alpha;
+}
+
 int conic_texture_has_alpha(const conic_texture *texture) {
   return texture->cover != NULL;
 }

@@ -28,6 +28,10 @@ struct conic_texture {
   struct conic_texture *cover; /* the same picture, colours times alpha and alpha; null where alpha is 1 throughout */
 };
 
+/* As conic_texture_sample, with the float beside the colour. */
+void conic_texture_sample_channels(const conic_texture *texture, const float uv[2], const float along[2],
+                                   const float across[2], float channels[4]);
+
 /* Gives the texture the other's alpha in place of its own. Errors: INPUT (no room), MEMORY. */
 conic_status conic_texture_take_alpha(conic_texture *texture, const conic_texture *other);
 

@@ -1,7 +1,6 @@
 /* Elliptical filtering of a texture (docs/reference/picture.md, Textures): a Gaussian over a footprint, on two levels
  * of the pyramid, with a bounded number of texels. */
 #include <math.h>
-#include <string.h>
 
 #include "core/image/texture_filter.h"
 #include "core/image/texture_levels.h"
@@ -117,8 +116,8 @@ static int level_of(const conic_texture *texture, const footprint *v, float *bey
   return i;
 }
 
-static void sample(const conic_texture *texture, const float uv[2], const float along[2], const float across[2],
-                   float color[4]) {
+void conic_texture_sample_channels(const conic_texture *texture, const float uv[2], const float along[2],
+                                   const float across[2], float color[4]) {
   float place[2] = {place_in(uv[0], texture->wrap), place_in(uv[1], texture->wrap)}, beyond, coarse[4];
   footprint v = footprint_of(&texture->levels[0], along, across);
   int i = level_of(texture, &v, &beyond);
@@ -132,16 +131,8 @@ static void sample(const conic_texture *texture, const float uv[2], const float 
 
 void conic_texture_sample(const conic_texture *texture, const float uv[2], const float along[2], const float across[2],
                           float color[3]) {
-  float own[4];
-  sample(texture, uv, along, across, own);
-  memcpy(color, own, 3 * sizeof *color);
-}
-
-void conic_texture_sample_rgba(const conic_texture *texture, const float uv[2], const float along[2],
-                               const float across[2], float rgba[4]) {
-  sample(texture->cover ? texture->cover : texture, uv, along, across, rgba);
-  float alpha = texture->cover ? rgba[3] < 1.0f ? rgba[3] : 1.0f : 1.0f;
-  for (int channel = 0; channel < 3 && texture->cover; channel++)
-    rgba[channel] = alpha > 0.0f ? rgba[channel] / alpha : 0.0f;
-  rgba[3] = alpha;
+  float channels[4];
+  conic_texture_sample_channels(texture, uv, along, across, channels);
+  for (int channel = 0; channel < 3; channel++)
+    color[channel] = channels[channel];
 }
