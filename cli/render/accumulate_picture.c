@@ -12,23 +12,12 @@
 
 /* --- the camera on its way --- */
 
-typedef struct accumulating {
-  cli_session *session;
-  cli_render_job *job;
-  int i_frame;
-  conic_camera frame_camera; /* of the frame itself, at the shutter's 0 */
-  conic_image *image;        /* what is written */
-  conic_render_statistics statistics;
-  double shown_seconds; /* when a preview was written last */
-} accumulating;
-
 /* A turntable's camera goes round; one of a file goes on to the next. */
-static conic_status camera_on_way(void *cookie, double time, conic_camera *camera) {
-  accumulating *work = cookie;
-  const cli_render_job *job = work->job;
+static conic_status camera_on_way(const cli_sample_way *way, double time, conic_camera *camera) {
+  const cli_render_job *job = way->job;
   const double *shutter = job->accumulating.shutter;
   double frames = shutter[0] + (shutter[1] - shutter[0]) * time;
-  *camera = work->frame_camera;
+  *camera = way->frame_camera;
   if (job->is_turntable) {
     const conic_source_scale *scale = conic_source_measure(job->source);
     cli_camera_orbit(scale, job->is_up_given ? job->framing.up : scale->up, frames / (double)job->n_frames, camera);
@@ -37,17 +26,17 @@ static conic_status camera_on_way(void *cookie, double time, conic_camera *camer
   double place = (double)job->i_view + frames, last = (double)job->cameras.count - 1.0;
   place = place < 0.0 ? 0.0 : place > last ? last : place;
   size_t from = (size_t)place, to = from + 1 < job->cameras.count ? from + 1 : from;
-  return conic_camera_between(work->session->context, &job->cameras.cameras[from], &job->cameras.cameras[to],
+  return conic_camera_between(way->session->context, &job->cameras.cameras[from], &job->cameras.cameras[to],
                               place - (double)from, camera);
 }
 
 conic_status cli_accumulate_camera(cli_session *session, cli_render_job *job, int i_frame, conic_camera *camera) {
-  accumulating work = {.session = session, .job = job};
+  cli_sample_way way = {.session = session, .job = job};
   conic_status status = cli_scene_camera(job, i_frame, camera);
   if (status != CONIC_OK || !job->accumulating.is_shutter_given)
     return status;
-  work.frame_camera = *camera;
-  return camera_on_way(&work, 0.5, camera);
+  way.frame_camera = *camera;
+  return camera_on_way(&way, 0.5, camera);
 }
 
 /* --- focus --- */
@@ -71,24 +60,76 @@ static conic_status depth_at(cli_session *session, const conic_image *image, con
   return CONIC_OK;
 }
 
+static int is_focus_seen(const cli_accumulate_job *own) {
+  return own->aperture > 0.0 && own->focus.kind != CLI_FOCUS_DEPTH;
+}
+
+/* `image`, of which the depths count, is of the middle of lens and shutter. */
 static conic_status find_focus(cli_session *session, cli_render_job *job, const conic_image *image) {
   const cli_focus *focus = &job->accumulating.focus;
   const double middle[2] = {0.5 * image->width, 0.5 * image->height};
   double *depth = &job->accumulating.focus_depth;
-  if (!(job->accumulating.aperture > 0.0) || focus->kind == CLI_FOCUS_DEPTH) {
+  if (!is_focus_seen(&job->accumulating)) {
     *depth = focus->depth;
     return CONIC_OK;
   }
   if (focus->kind == CLI_FOCUS_PIXEL &&
       (focus->pixel[0] >= (double)image->width || focus->pixel[1] >= (double)image->height)) {
-    cli_usage("render: --focus: pixel %g,%g lies outside of the picture, which has %d x %d", focus->pixel[0],
-              focus->pixel[1], image->width, image->height);
+    cli_usage("%s: --focus: pixel %g,%g lies outside of the picture, which has %d x %d", session->command,
+              focus->pixel[0], focus->pixel[1], image->width, image->height);
     return CONIC_ERROR_ARGUMENT;
   }
   return depth_at(session, image, focus->kind == CLI_FOCUS_PIXEL ? focus->pixel : middle, depth);
 }
 
 /* --- the samples --- */
+
+static conic_aperture aperture_of(const cli_accumulate_job *own) {
+  return (conic_aperture){own->aperture, own->focus_depth, own->n_blades, 0, {0}};
+}
+
+conic_status cli_accumulate_begin(cli_session *session, cli_render_job *job, int i_frame, cli_sample_way *way) {
+  conic_camera middle;
+  conic_image image;
+  memset(&image, 0, sizeof image);
+  *way = (cli_sample_way){.session = session, .job = job};
+  conic_status status = cli_accumulate_camera(session, job, i_frame, &middle);
+  if (status == CONIC_OK && is_focus_seen(&job->accumulating)) {
+    status = conic_image_allocate(session->context, middle.width, middle.height, 1u << CONIC_PLANE_Z, &image);
+    if (status == CONIC_OK)
+      status = conic_source_draw(job->source, job->renderer, &middle, &job->options, &job->view, &image, NULL);
+  }
+  if (status == CONIC_OK)
+    status = find_focus(session, job, &image);
+  if (status == CONIC_OK)
+    status = cli_scene_camera(job, i_frame, &way->frame_camera);
+  conic_image_release(session->context, &image);
+  return status;
+}
+
+conic_status cli_accumulate_place(const cli_sample_way *way, uint64_t index, conic_sample *sample) {
+  const conic_aperture aperture = aperture_of(&way->job->accumulating);
+  conic_camera camera = way->frame_camera;
+  conic_status status = CONIC_OK;
+  if (way->job->accumulating.is_shutter_given)
+    status = camera_on_way(way, conic_sample_time(index), &camera);
+  return status == CONIC_OK ? conic_sample_place(way->session->context, &camera, &aperture, index, sample) : status;
+}
+
+typedef struct accumulating {
+  cli_session *session;
+  cli_render_job *job;
+  int i_frame;
+  cli_sample_way way;
+  conic_image *image; /* what is written */
+  conic_render_statistics statistics;
+  double shown_seconds; /* when a preview was written last */
+} accumulating;
+
+static conic_status sample_camera(void *cookie, double time, conic_camera *camera) {
+  const accumulating *work = cookie;
+  return camera_on_way(&work->way, time, camera);
+}
 
 static conic_status draw_source_sample(void *cookie, const conic_sample *sample, conic_image *image) {
   accumulating *work = cookie;
@@ -177,7 +218,7 @@ static conic_status watch_sums(void *cookie, const conic_accumulation *sums) {
 
 /* The sums that are gone on with; or none yet. */
 static conic_status begin_sums(accumulating *work, conic_accumulation **sums) {
-  const conic_camera *camera = &work->frame_camera;
+  const conic_camera *camera = &work->way.frame_camera;
   cli_accumulate_job *own = &work->job->accumulating;
   conic_context *context = work->session->context;
   unsigned planes = (work->job->planes | 1u << CONIC_PLANE_RGBA) & CONIC_ACCUMULATED_PLANES;
@@ -203,13 +244,13 @@ static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
   const cli_accumulate_job *own = &work->job->accumulating;
   conic_accumulate_options options;
   conic_accumulate_options_init(&options);
-  options.camera = work->frame_camera;
-  options.aperture = (conic_aperture){own->aperture, own->focus_depth, own->n_blades, 0, {0}};
+  options.camera = work->way.frame_camera;
+  options.aperture = aperture_of(own);
   options.end_sample = own->n_samples;
   options.seconds = own->seconds;
   options.noise = own->noise;
   options.cookie = work;
-  options.camera_at = own->is_shutter_given ? camera_on_way : NULL;
+  options.camera_at = own->is_shutter_given ? sample_camera : NULL;
   options.draw = draw_source_sample;
   options.watch = watch_sums;
   if (cli_light_is_wanted(work->job)) {
@@ -228,16 +269,16 @@ static void tell_samples(const cli_session *session, const cli_accumulate_job *o
 
 conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
                                     conic_image *image, conic_render_statistics *statistics) {
-  accumulating work = {.session = session, .job = job, .i_frame = i_frame, .image = image};
+  accumulating work = {
+      .session = session, .job = job, .i_frame = i_frame, .way = {session, job, *camera}, .image = image};
   conic_accumulation *sums = NULL;
   conic_status status =
       conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, &work.statistics);
   if (status == CONIC_OK)
     status = find_focus(session, job, image);
-  work.frame_camera = *camera;
   job->statistics = work.statistics;                            /* for the header of a preview */
   if (status == CONIC_OK && job->accumulating.is_shutter_given) /* the middle was drawn; the way starts at the frame */
-    status = cli_scene_camera(job, i_frame, &work.frame_camera);
+    status = cli_scene_camera(job, i_frame, &work.way.frame_camera);
   if (status == CONIC_OK)
     status = conic_image_locate(session->context, camera, 1, image);
   if (status == CONIC_OK)
