@@ -56,6 +56,8 @@ static conic_status judge_middle(mean_work *work) {
   memset(&reference, 0, sizeof reference);
   conic_status status = cli_accumulate_camera(work->session, scene, cli_sample_frame(scene), &camera);
   if (status == CONIC_OK)
+    status = cli_accumulate_move_middle(work->session, scene, cli_sample_frame(scene));
+  if (status == CONIC_OK)
     status = conic_source_choose(scene->source, &camera, &scene->options, &scene->view);
   if (status == CONIC_OK && !work->image_path)
     status = conic_image_allocate(context, camera.width, camera.height, scene->planes, work->image);
@@ -68,6 +70,7 @@ static conic_status judge_middle(mean_work *work) {
   const conic_image drawn = only(work->image, OF_THE_MIDDLE);
   if (status == CONIC_OK)
     status = conic_oracle_compare(context, &reference, &drawn, &work->result->verdict);
+  cli_accumulate_rest(scene);
   conic_reference_release(context, &reference);
   return status;
 }

@@ -43,8 +43,8 @@ int cli_accumulate_settle(const cli_session *session, cli_render_job *job) {
   const cli_accumulate_job *own = &job->accumulating;
   if (own->n_blades == 1 || own->n_blades == 2)
     return cli_usage("%s: --blades is 0, for a round lens, or 3 at least", session->command);
-  if (own->is_shutter_given && !job->is_turntable && !job->camera_path)
-    return cli_usage("%s: --shutter wants a way of the camera: --turntable, or --camera with several",
+  if (own->is_shutter_given && !job->is_turntable && !job->camera_path && !own->motion_path)
+    return cli_usage("%s: --shutter wants a way of the camera, --turntable or --camera with several, or --motion",
                      session->command);
   if (!job->is_prefilter_given)
     job->options.prefilter = sample_prefilter;
@@ -56,9 +56,9 @@ int cli_accumulate_check(const cli_session *session, cli_render_job *job) {
   if (!own->n_samples && job->planes & (1u << CONIC_PLANE_SAMPLES | 1u << CONIC_PLANE_VARIANCE))
     return cli_usage("render: the planes samples and variance are --accumulate's");
   if (!own->n_samples)
-    return own->is_given || own->is_shutter_given
+    return own->is_given || own->is_shutter_given || own->motion_path
                ? cli_usage("render: --time, --noise, --preview, --resumable, --resume, --aperture, --focus, "
-                           "--blades and --shutter want --accumulate N")
+                           "--blades, --shutter and --motion want --accumulate N")
                : CLI_DONE;
   int answer = check_company(job);
   if (answer == CLI_DONE)

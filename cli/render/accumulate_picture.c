@@ -18,6 +18,8 @@ static conic_status camera_on_way(const cli_sample_way *way, double time, conic_
   const double *shutter = job->accumulating.shutter;
   double frames = shutter[0] + (shutter[1] - shutter[0]) * time;
   *camera = way->frame_camera;
+  if (!job->is_turntable && !job->camera_path)
+    return CONIC_OK;
   if (job->is_turntable) {
     const conic_source_scale *scale = conic_source_measure(job->source);
     cli_camera_orbit(scale, job->is_up_given ? job->framing.up : scale->up, frames / (double)job->n_frames, camera);
@@ -37,6 +39,29 @@ conic_status cli_accumulate_camera(cli_session *session, cli_render_job *job, in
     return status;
   way.frame_camera = *camera;
   return camera_on_way(&way, 0.5, camera);
+}
+
+/* --- the scene on its way --- */
+
+static conic_status move_scene(cli_session *session, cli_render_job *job, int i_frame, double time) {
+  cli_accumulate_job *own = &job->accumulating;
+  conic_status status = CONIC_OK;
+  if (!own->motion_path)
+    return CONIC_OK;
+  if (!own->motion)
+    status = conic_motion_read(session->context, own->motion_path, (size_t)job->n_inputs, &job->opening, &own->motion);
+  double frame = (double)i_frame + own->shutter[0] + (own->shutter[1] - own->shutter[0]) * time;
+  return status == CONIC_OK ? conic_motion_apply(own->motion, job->source, frame) : status;
+}
+
+conic_status cli_accumulate_move_middle(cli_session *session, cli_render_job *job, int i_frame) {
+  return move_scene(session, job, i_frame, 0.5);
+}
+
+/* Cannot fail: nothing is asked for. */
+void cli_accumulate_rest(cli_render_job *job) {
+  if (job->accumulating.motion)
+    conic_source_move(job->source, NULL, 0);
 }
 
 /* --- focus --- */
@@ -92,8 +117,10 @@ conic_status cli_accumulate_begin(cli_session *session, cli_render_job *job, int
   conic_camera middle;
   conic_image image;
   memset(&image, 0, sizeof image);
-  *way = (cli_sample_way){.session = session, .job = job};
+  *way = (cli_sample_way){.session = session, .job = job, .i_frame = i_frame};
   conic_status status = cli_accumulate_camera(session, job, i_frame, &middle);
+  if (status == CONIC_OK)
+    status = cli_accumulate_move_middle(session, job, i_frame);
   if (status == CONIC_OK && is_focus_seen(&job->accumulating)) {
     status = conic_image_allocate(session->context, middle.width, middle.height, 1u << CONIC_PLANE_Z, &image);
     if (status == CONIC_OK)
@@ -101,6 +128,7 @@ conic_status cli_accumulate_begin(cli_session *session, cli_render_job *job, int
   }
   if (status == CONIC_OK)
     status = find_focus(session, job, &image);
+  cli_accumulate_rest(job);
   if (status == CONIC_OK)
     status = cli_scene_camera(job, i_frame, &way->frame_camera);
   conic_image_release(session->context, &image);
@@ -113,6 +141,8 @@ conic_status cli_accumulate_place(const cli_sample_way *way, uint64_t index, con
   conic_status status = CONIC_OK;
   if (way->job->accumulating.is_shutter_given)
     status = camera_on_way(way, conic_sample_time(index), &camera);
+  if (status == CONIC_OK)
+    status = move_scene(way->session, way->job, way->i_frame, conic_sample_time(index));
   return status == CONIC_OK ? conic_sample_place(way->session->context, &camera, &aperture, index, sample) : status;
 }
 
@@ -134,9 +164,11 @@ static conic_status sample_camera(void *cookie, double time, conic_camera *camer
 static conic_status draw_source_sample(void *cookie, const conic_sample *sample, conic_image *image) {
   accumulating *work = cookie;
   cli_render_job *job = work->job;
-  conic_render_statistics statistics;
-  conic_status status =
-      conic_source_draw(job->source, job->renderer, &sample->camera, &job->options, &job->view, image, &statistics);
+  conic_render_statistics statistics = {.ms = {0}};
+  conic_status status = move_scene(work->session, job, work->i_frame, sample->time);
+  if (status == CONIC_OK)
+    status =
+        conic_source_draw(job->source, job->renderer, &sample->camera, &job->options, &job->view, image, &statistics);
   work->statistics.ms.frame += statistics.ms.frame;
   return status;
 }
@@ -270,12 +302,14 @@ static void tell_samples(const cli_session *session, const cli_accumulate_job *o
 conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
                                     conic_image *image, conic_render_statistics *statistics) {
   accumulating work = {
-      .session = session, .job = job, .i_frame = i_frame, .way = {session, job, *camera}, .image = image};
+      .session = session, .job = job, .i_frame = i_frame, .way = {session, job, i_frame, *camera}, .image = image};
   conic_accumulation *sums = NULL;
-  conic_status status =
-      conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, &work.statistics);
+  conic_status status = cli_accumulate_move_middle(session, job, i_frame);
+  if (status == CONIC_OK)
+    status = conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, &work.statistics);
   if (status == CONIC_OK)
     status = find_focus(session, job, image);
+  cli_accumulate_rest(job);
   job->statistics = work.statistics;                            /* for the header of a preview */
   if (status == CONIC_OK && job->accumulating.is_shutter_given) /* the middle was drawn; the way starts at the frame */
     status = cli_scene_camera(job, i_frame, &work.way.frame_camera);
@@ -293,6 +327,7 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
     status = keep_sums(&work, sums);
   if (status == CONIC_OK)
     tell_samples(session, &job->accumulating);
+  cli_accumulate_rest(job);
   conic_accumulation_destroy(sums);
   *statistics = work.statistics;
   return status;

@@ -17,9 +17,10 @@ int cli_sample_check(const cli_session *session, cli_render_job *job) {
   if (cli_frames_count(job) != 1)
     return cli_usage("%s: it looks at one picture; --frames takes one number here", command);
   if (!is_one_of_many)
-    return own->is_given || own->is_shutter_given
-               ? cli_usage("%s: --aperture, --focus, --blades and --shutter are of samples; give --sample I, too",
-                           command)
+    return own->is_given || own->is_shutter_given || own->motion_path
+               ? cli_usage(
+                     "%s: --aperture, --focus, --blades, --shutter and --motion are of samples; give --sample I, too",
+                     command)
                : CLI_DONE;
   if (own->n_samples && own->is_sample_given)
     return cli_usage("%s: --sample asks for one of the samples, --accumulate for all; give one of both", command);

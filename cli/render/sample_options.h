@@ -29,11 +29,19 @@
        0,                                                                                                              \
        CONIC_MAX_BLADES,                                                                                               \
        .is_given = &(own)->is_given},                                                                                  \
+      {"shutter",                                                                                                      \
+       CLI_PARSED,                                                                                                     \
+       (own)->shutter,                                                                                                 \
+       "A:B",                                                                                                          \
+       "open from A to B, in frames from the one drawn, along a --turntable, the cameras of a file or --motion: "      \
+       "0:0.5 "                                                                                                        \
+       "blurs half the way to the next [closed]",                                                                      \
+       .parse = cli_parse_shutter,                                                                                     \
+       .is_given = &(own)->is_shutter_given},                                                                          \
   {                                                                                                                    \
-    "shutter", CLI_PARSED, (own)->shutter, "A:B",                                                                      \
-        "open from A to B, in frames from the one drawn, along a --turntable or the cameras of a file: 0:0.5 blurs "   \
-        "half the way to the next [closed]",                                                                           \
-        .parse = cli_parse_shutter, .is_given = &(own)->is_shutter_given                                               \
+    "motion", CLI_TEXT, &(own)->motion_path, "FILE",                                                                   \
+        "where the inputs are at which frame, as matrices, or what shape they have, as files (JSON) [they stand "      \
+        "still]"                                                                                                       \
   }
 
 /* The same with the sample's number, and the frame whose sample it is; `job` is a cli_render_job's address. */

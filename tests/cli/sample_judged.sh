@@ -82,7 +82,30 @@ if "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
   }
 fi
 
+# Of two inputs, one turns; light and shadow are of where it is, whatever the threads.
+run 0 make sphere -n 500 -o sphere.ply
+echo '[{"input": 1, "frame": 0, "matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,0]]},' \
+  '{"input": 1, "frame": 1, "matrix": [[0,0,1,0.5],[0,1,0,0],[-1,0,0,0]]}]' > turn.json
+run 0 verify sphere.ply knot.ply --size 60x44 --accumulate 3 --motion turn.json --shutter 0:0.5 --json -
+has '"wrong_pixels": 0'
+if "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
+  both="sphere.ply knot.ply --size 60x44 --accumulate 3 --motion turn.json --shadow --ao 4"
+  # shellcheck disable=SC2086
+  {
+    run 0 render $both --shutter 0:1 -o moved.exr --threads 1
+    run 0 render $both --shutter 0:1 -o moved2.exr --threads 2 --tile 16
+    run 0 render $both --shutter 0:0 -o begin.exr
+    run 0 render ${both/--motion turn.json/} -o still.exr
+  }
+  run 0 diff moved.exr moved2.exr
+  run 0 diff begin.exr still.exr
+  run 1 diff moved.exr still.exr
+fi
+
 run 2 verify knot.ply --aperture 0.1
+run 2 render knot.ply -o x.png --motion turn.json
+run 3 render knot.ply -o x.png --accumulate 2 --motion turn.json
+run 3 render knot.ply -o x.png --accumulate 2 --motion knot.ply
 run 2 verify knot.ply --sample 1 --accumulate 2
 run 2 verify knot.ply --sample 16777216
 run 2 verify knot.ply --sample 1 --samples 2
