@@ -12,6 +12,7 @@
 #include "core/splats/near.h"
 #include "core/splats/repairs_log.h"
 #include "source/mesh_input.h"
+#include "source/moved_drawing.h"
 #include "source/source_kind.h"
 
 typedef struct drawing_source {
@@ -21,10 +22,13 @@ typedef struct drawing_source {
   float *unstrided; /* but for arrays with strides, of which this holds copies */
   conic_triangles triangles;
   conic_repairs repairs; /* of all inputs */
-  size_t *ends;          /* of each input, the splats of it and those before it; then likewise the triangles */
-  size_t n_inputs;
+  size_t *ends;          /* of each input, the splats of it and those before it; likewise the triangles, */
+  size_t n_inputs;       /* the vertices and the normals */
   size_t n_dots;
   conic_splats facing; /* the same with the dots turned to the camera: axes of its own, where there are dots */
+  int has_moved;       /* something did, so that there is room for */
+  conic_splats moved;  /* the same, where they are now: places and axes of its own, */
+  conic_triangles moved_triangles; /* and normals */
 } drawing_source;
 
 static int takes_drawing(const char *path, const conic_source_options *options) {
@@ -225,10 +229,80 @@ static conic_status choose_in_drawing(conic_source *source, const conic_camera *
   drawing_source *d = (drawing_source *)source;
   (void)render;
   (void)view;
-  source->choice.drawing = (conic_drawing){d->n_dots ? &d->facing : &d->splats, &d->triangles};
+  const conic_splats *splats = source->is_moved ? &d->moved : &d->splats;
+  const conic_triangles *triangles = source->is_moved ? &d->moved_triangles : &d->triangles;
+  source->choice.drawing = (conic_drawing){d->n_dots ? &d->facing : splats, triangles};
   source->choice.is_all = 1;
-  return d->n_dots ? conic_splats_face(source->context, &d->splats, camera, d->facing.tangent_u, d->facing.tangent_v)
+  memcpy(d->facing.position, splats->position, sizeof d->facing.position);
+  return d->n_dots ? conic_splats_face(source->context, splats, camera, d->facing.tangent_u, d->facing.tangent_v)
                    : CONIC_OK;
+}
+
+/* Which of all splats, vertices and normals are an input's. */
+static conic_drawing_range range_of_input(const drawing_source *d, size_t i) {
+  const size_t *vertices = d->ends + 2 * d->n_inputs,
+               *normals = d->triangles.normal_corners ? vertices + d->n_inputs : vertices;
+  int is_first = i == 0, has_normals = d->triangles.normal[0] != NULL;
+  return (conic_drawing_range){{is_first ? 0 : d->ends[i - 1], d->ends[i]},
+                               {is_first ? 0 : vertices[i - 1], vertices[i]},
+                               {is_first || !has_normals ? 0 : normals[i - 1], has_normals ? normals[i] : 0}};
+}
+
+static int is_at_rest(const conic_source_pose *pose) {
+  conic_source_pose rest;
+  conic_source_pose_init(&rest);
+  return memcmp(rest.world_from_rest, pose->world_from_rest, sizeof rest.world_from_rest) == 0 && !pose->shapes[0] &&
+         (!pose->shapes[1] || pose->part == 0.0);
+}
+
+static conic_status check_pose_shapes(const drawing_source *d, const conic_source_pose *poses) {
+  for (size_t i = 0; i < d->n_inputs; i++) {
+    const conic_drawing_range range = range_of_input(d, i);
+    for (int k = 0; k < 2; k++)
+      if (poses[i].shapes[k] && (poses[i].shapes[k]->kind != &conic_source_kind_drawing ||
+                                 !conic_moved_fits(&range, &poses[i].shapes[k]->choice.drawing)))
+        return conic_fail(d->base.context, CONIC_ERROR_ARGUMENT,
+                          "%s: as a shape of input %zu, it has another number of splats, corners or normals",
+                          poses[i].shapes[k]->name, i);
+  }
+  return CONIC_OK;
+}
+
+static conic_status move_drawing(conic_source *source, const conic_source_pose *poses, size_t n_poses) {
+  drawing_source *d = (drawing_source *)source;
+  const conic_drawing rest = {&d->splats, &d->triangles}, moved = {&d->moved, &d->moved_triangles};
+  int is_still = 1;
+  conic_status status = CONIC_OK;
+  if (poses && n_poses != d->n_inputs)
+    return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: %zu poses for %zu inputs", source->name, n_poses,
+                      d->n_inputs);
+  for (size_t i = 0; poses && i < n_poses; i++)
+    is_still &= is_at_rest(&poses[i]);
+  if (poses)
+    status = check_pose_shapes(d, poses);
+  if (status == CONIC_OK && is_still && source->is_moved) /* what was kept of it is of another picture */
+    source->splats_version = d->is_lent || d->n_dots ? 0 : conic_context_next_version(source->context);
+  if (status != CONIC_OK || is_still) {
+    source->is_moved &= status != CONIC_OK;
+    return status;
+  }
+  if (!d->has_moved)
+    status = conic_moved_begin(source->context, &rest, &d->moved, &d->moved_triangles);
+  d->has_moved = 1;
+  if (status != CONIC_OK) {
+    conic_moved_end(source->context, &d->moved, &d->moved_triangles);
+    d->has_moved = 0;
+    return status;
+  }
+  for (size_t i = 0; i < n_poses; i++) {
+    const conic_drawing_range range = range_of_input(d, i);
+    conic_moved_put(source->context, &rest, &range, is_at_rest(&poses[i]) ? NULL : &poses[i], &d->moved,
+                    &d->moved_triangles);
+  }
+  source->is_moved = 1;
+  source->splats_version = d->n_dots ? 0 : conic_context_next_version(source->context);
+  conic_drawing_bounds(&moved, source->moved_minimum, source->moved_maximum);
+  return CONIC_OK;
 }
 
 static conic_status measure_drawing(drawing_source *d) {
@@ -272,13 +346,21 @@ static conic_status borrow_splats(drawing_source *d, const char *path, const con
   return CONIC_OK;
 }
 
+/* What there is now is that of the inputs up to this one. */
+static void end_input(drawing_source *d, size_t i) {
+  d->ends[i] = d->splats.count;
+  d->ends[d->n_inputs + i] = d->triangles.count;
+  d->ends[2 * d->n_inputs + i] = d->triangles.n_vertices;
+  d->ends[3 * d->n_inputs + i] = conic_triangles_normals(&d->triangles);
+}
+
 static conic_status open_drawing(conic_source *source, const char *const *paths, size_t n_paths,
                                  const conic_source_options *options) {
   drawing_source *d = (drawing_source *)source;
   conic_source_scale *scale = &source->scale;
   double up[3] = {0.0, 0.0, 0.0};
   conic_status status = CONIC_OK;
-  d->ends = conic_memory_allocate_zeroed(source->context, 2 * n_paths, sizeof *d->ends);
+  d->ends = conic_memory_allocate_zeroed(source->context, 4 * n_paths, sizeof *d->ends);
   if (!d->ends)
     return CONIC_ERROR_MEMORY;
   d->n_inputs = n_paths;
@@ -287,8 +369,7 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
   for (size_t i = 0; i < n_paths && status == CONIC_OK && !d->is_lent; i++) {
     double own[3] = {0.0, 0.0, 0.0};
     status = read_into_drawing(d, paths[i], options, own);
-    d->ends[i] = d->splats.count;
-    d->ends[n_paths + i] = d->triangles.count;
+    end_input(d, i);
     for (int axis = 0; axis < 3; axis++) /* what not all say is not known */
       up[axis] = i == 0 || up[axis] == own[axis] ? own[axis] : 0.0;
   }
@@ -325,6 +406,11 @@ conic_status conic_source_of_drawing(conic_context *context, conic_splats *splat
     d->triangles = *triangles;
     memset(triangles, 0, sizeof *triangles);
   }
+  d->ends = conic_memory_allocate(context, 4, sizeof *d->ends);
+  if (!d->ends)
+    return conic_source_finish(CONIC_ERROR_MEMORY, source);
+  d->n_inputs = 1;
+  end_input(d, 0);
   return conic_source_finish(measure_drawing(d), source);
 }
 
@@ -334,6 +420,8 @@ static void close_drawing(conic_source *source) {
     conic_memory_release(source->context, d->facing.tangent_u[axis]);
     conic_memory_release(source->context, d->facing.tangent_v[axis]);
   }
+  if (d->has_moved)
+    conic_moved_end(source->context, &d->moved, &d->moved_triangles);
   if (!d->is_lent)
     conic_splats_release(source->context, &d->splats);
   conic_memory_release(source->context, d->unstrided);
@@ -383,6 +471,7 @@ const conic_source_kind conic_source_kind_drawing = {
     .open = open_drawing,
     .close = close_drawing,
     .find_spacing = find_drawing_spacing,
+    .move = move_drawing,
     .choose = choose_in_drawing,
     .input_of = find_drawing_input,
     .tell_rest = tell_drawing_rest,

@@ -9,6 +9,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/base/vectors.h"
 #include "source/reach.h"
 #include "source/source_kind.h"
 
@@ -161,6 +162,43 @@ void conic_source_settle(const conic_source *source, conic_render_options *rende
     render->splat_length = scale->splat_length;
   if (render->epsilon < 0.0)
     render->epsilon = scale->epsilon;
+}
+
+/* --- poses --- */
+
+void conic_source_pose_init(conic_source_pose *pose) {
+  memset(pose, 0, sizeof *pose);
+  for (int axis = 0; axis < 3; axis++)
+    pose->world_from_rest[axis][axis] = 1.0;
+}
+
+/* NaN fails all of this. */
+static int is_pose(const conic_source_pose *pose) {
+  double across[3];
+  const double(*m)[4] = (const double(*)[4])pose->world_from_rest;
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 4; column++)
+      if (!(m[row][column] > -1e20 && m[row][column] < 1e20))
+        return 0;
+  conic_cross(m[0], m[1], across);
+  return conic_dot(across, m[2]) > 0.0 && pose->part >= 0.0 && pose->part <= 1.0;
+}
+
+conic_status conic_source_move(conic_source *source, const conic_source_pose *poses, size_t n_poses) {
+  if (!source->kind->move)
+    return poses ? conic_fail(source->context, CONIC_ERROR_UNSUPPORTED,
+                              "%s: it stands still: splats, points and meshes that are read whole move", source->name)
+                 : CONIC_OK;
+  for (size_t i = 0; poses && i < n_poses; i++)
+    if (!is_pose(&poses[i]))
+      return conic_fail(source->context, CONIC_ERROR_ARGUMENT,
+                        "%s: the pose of input %zu mirrors it, makes it flat or is not finite", source->name, i);
+  return source->kind->move(source, poses, n_poses);
+}
+
+void conic_source_box(const conic_source *source, double minimum[3], double maximum[3]) {
+  memcpy(minimum, source->is_moved ? source->moved_minimum : source->scale.minimum, 3 * sizeof *minimum);
+  memcpy(maximum, source->is_moved ? source->moved_maximum : source->scale.maximum, 3 * sizeof *maximum);
 }
 
 /* --- pictures --- */

@@ -7,7 +7,7 @@
 #include "cli/commands/gaussian_commands.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
-#include "cli/render/render_job.h"
+#include "cli/render/sample_options.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
 
@@ -249,6 +249,8 @@ static int write_report(cli_session *session, const explain_job *job) {
   if (!json)
     return exit_code;
   cli_json_text(json, "method", cli_method_name(&job->scene));
+  if (job->scene.accumulating.is_sample_given)
+    cli_json_count(json, "sample", job->scene.accumulating.i_sample);
   cli_json_count(json, "width", (uint64_t)job->camera.width);
   cli_json_count(json, "height", (uint64_t)job->camera.height);
   if (job->is_splat_given)
@@ -330,7 +332,7 @@ static int check_questions(const explain_job *job) {
 }
 
 static int answer(cli_session *session, explain_job *job) {
-  conic_status status = cli_scene_camera(&job->scene, 0, &job->camera);
+  conic_status status = cli_sample_camera(session, &job->scene, &job->camera);
   if (status == CONIC_OK) /* where something is chosen, that is what is drawn, and explained */
     status = conic_source_choose(job->scene.source, &job->camera, &job->scene.options, &job->scene.view);
   job->drawing = &conic_source_chosen(job->scene.source)->drawing;
@@ -390,10 +392,13 @@ static int run(cli_session *session, int argc, char **argv) {
       {"splat", CLI_COUNT, &job.splat, "I", "where splat I of the input lies on the screen", 0, 4294967294.0,
        .is_given = &job.is_splat_given},
       {"dump-projection", CLI_TEXT, &job.dump_path, "FILE", "where every splat does, as a table (CSV)"},
+      CLI_SAMPLE_OPTIONS(&job.scene),
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   if (exit_code == CLI_DONE)
     exit_code = check(session, &job);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_sample_check(session, &job.scene);
   if (exit_code == CLI_DONE)
     exit_code = explain(session, &job);
   free(job.scene.inputs);
@@ -403,7 +408,8 @@ static int run(cli_session *session, int argc, char **argv) {
 const cli_command cli_explain = {
     .name = "explain",
     .summary = "says why a pixel is as it is, splat by splat",
-    .usage = "conic explain IN… --pixel X,Y [--splat I] [--dump-projection FILE] [camera and render options]",
+    .usage =
+        "conic explain IN… --pixel X,Y [--splat I] [--dump-projection FILE] [--sample I] [camera and render options]",
     .run = run,
     .description = "Lists what a pixel is made of, from front to back: each splat's place, depth, weight and colour, "
                    "and why it counts or does not.",

@@ -1,6 +1,7 @@
 /* conic explain of a Gaussian scene: what a pixel is composited of, and which decisions rounding may take either way.
  */
 #include "cli/commands/gaussian_commands.h"
+#include "cli/render/sample_options.h"
 #include "conic/source.h"
 
 static void write_list(cli_json *json, const char *key, const double *values, int n) {
@@ -124,7 +125,7 @@ int cli_explain_composited(cli_session *session, cli_render_job *scene, int x, i
   conic_gaussian_listing listing = {.n = 0};
   conic_image image = {.width = 0};
   conic_camera camera;
-  conic_status status = cli_scene_camera(scene, 0, &camera);
+  conic_status status = cli_sample_camera(session, scene, &camera);
   if (status == CONIC_OK && (x >= camera.width || y >= camera.height))
     return cli_usage("explain: the pixel %d,%d is not in a picture of %d x %d", x, y, camera.width, camera.height);
   if (status == CONIC_OK)

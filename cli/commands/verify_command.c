@@ -6,10 +6,11 @@
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_fault.h"
+#include "cli/commands/verify_mean.h"
 #include "cli/commands/verify_reference.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
-#include "cli/render/render_job.h"
+#include "cli/render/sample_options.h"
 
 typedef struct verify_job {
   cli_render_job scene;
@@ -21,6 +22,7 @@ typedef struct verify_job {
   conic_reference reference;
   conic_oracle_verdict verdict;
   double render_ms, oracle_ms;
+  cli_mean_verdict mean; /* with --accumulate; its reference and verdict are those above */
 } verify_job;
 
 static conic_status get_image(cli_session *session, verify_job *job, const conic_drawing *drawing,
@@ -41,7 +43,7 @@ static conic_status get_image(cli_session *session, verify_job *job, const conic
 static conic_status compare(cli_session *session, verify_job *job) {
   const conic_source_choice *choice = conic_source_chosen(job->scene.source);
   conic_camera camera;
-  conic_status status = cli_scene_camera(&job->scene, 0, &camera);
+  conic_status status = cli_sample_camera(session, &job->scene, &camera);
   if (status == CONIC_OK) /* the oracle judges how what is chosen is drawn, not the choice */
     status = conic_source_choose(job->scene.source, &camera, &job->scene.options, &job->scene.view);
   if (status == CONIC_OK)
@@ -55,6 +57,16 @@ static conic_status compare(cli_session *session, verify_job *job) {
   job->oracle_ms = 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)
     status = conic_oracle_compare(session->context, &job->reference, &job->image, &job->verdict);
+  return status;
+}
+
+static conic_status compare_mean(cli_session *session, verify_job *job) {
+  conic_status status =
+      cli_verify_mean(session, &job->scene, (size_t)job->n_pixels, job->image_path, &job->image, &job->mean);
+  job->reference = job->mean.reference;
+  job->verdict = job->mean.verdict;
+  job->render_ms = job->mean.render_ms;
+  job->oracle_ms = job->mean.oracle_ms;
   return status;
 }
 
@@ -101,6 +113,20 @@ static void report_pixels(cli_json *json, const verify_job *job) {
     cli_report_fault(json, "worst", &verdict->worst);
 }
 
+/* Which samples were judged, too. */
+static void report_samples(cli_json *json, const verify_job *job) {
+  const cli_accumulate_job *asked = &job->scene.accumulating;
+  if (asked->is_sample_given)
+    cli_json_count(json, "sample", asked->i_sample);
+  if (!asked->n_samples)
+    return;
+  cli_json_object(json, "accumulated");
+  cli_json_count(json, "samples", asked->n_samples);
+  if (!job->image_path)
+    cli_json_count(json, "wrong_pixels", job->mean.n_wrong);
+  cli_json_close(json);
+}
+
 static void report_weights(cli_json *json, const conic_weight_error *error) {
   cli_json_object(json, "weight_error");
   cli_json_number(json, "max_abs", error->max_abs);
@@ -122,6 +148,7 @@ static int write_statistics(cli_session *session, const verify_job *job) {
   cli_json_text(json, "method", cli_method_name(&job->scene));
   if (job->scene.view.samples > 1)
     cli_json_count(json, "samples", (uint64_t)job->scene.view.samples);
+  report_samples(json, job);
   report_planes(json, job);
   report_pixels(json, job);
   if (job->question == CONIC_ORACLE_EXACT)
@@ -155,6 +182,16 @@ static void print_unstable(const verify_job *job) {
            reference->n_pixels, 100.0 * verdict->unbounded_limit);
 }
 
+static void print_samples(const verify_job *job) {
+  unsigned long long n = job->scene.accumulating.n_samples;
+  if (!n || job->image_path)
+    return;
+  printf("samples   %llu, %zu pixels of them wrong", n, job->mean.n_wrong);
+  if (job->mean.n_wrong)
+    printf(", the first in sample %llu, such as pixel %d,%d", job->mean.i_worst, job->mean.worst.x, job->mean.worst.y);
+  putchar('\n');
+}
+
 static void print_pixels(const verify_job *job) {
   const conic_oracle_verdict *verdict = &job->verdict;
   const conic_reference *reference = &job->reference;
@@ -186,6 +223,7 @@ static void print_result(const verify_job *job) {
     putchar('\n');
   }
   print_pixels(job);
+  print_samples(job);
   if (job->question == CONIC_ORACLE_EXACT) {
     const conic_weight_error *error = &job->reference.weight_error;
     printf("weights   max %-12.4g p99.9 %-12.4g of the peak: max %.4g, p99.9 %.4g (%zu weights, integrals to %.1g)\n",
@@ -216,13 +254,27 @@ static int verify(cli_session *session, verify_job *job) {
     exit_code = cli_verify_composited(session, &job->scene, (size_t)job->n_pixels, job->image_path, &job->image);
   else {
     if (status == CONIC_OK)
-      status = compare(session, job);
+      status = job->scene.accumulating.n_samples ? compare_mean(session, job) : compare(session, job);
     exit_code = status == CONIC_OK ? finish(session, job) : cli_exit_of(status);
   }
   conic_reference_release(session->context, &job->reference);
   conic_image_release(session->context, &job->image);
   cli_scene_release(session, &job->scene);
   return exit_code;
+}
+
+/* What of a final picture can be judged. */
+static int check_samples(const cli_session *session, verify_job *job) {
+  int answer = cli_sample_check(session, &job->scene);
+  if (answer != CLI_DONE || !job->scene.accumulating.n_samples)
+    return answer;
+  if (job->question == CONIC_ORACLE_EXACT || cli_is_composited(&job->scene))
+    return cli_usage("verify: --accumulate judges means of splats and triangles by their method; give --sample I");
+  const unsigned normals = 1u << CONIC_PLANE_NORMAL; /* of which the picture has the direction of the sum */
+  if (job->scene.is_aov_given && job->scene.planes & normals)
+    return cli_usage("verify: of N, a mean of samples is not judged; --sample I judges that of a sample");
+  job->scene.planes &= ~normals;
+  return CLI_DONE;
 }
 
 /* Which planes can be judged. */
@@ -255,10 +307,16 @@ static int run(cli_session *session, int argc, char **argv) {
       {"image", CLI_TEXT, &job.image_path, "FILE", "the picture to verify, of whatever renderer [drawn anew]"},
       {"pixels", CLI_COUNT, &job.n_pixels, "N", "judge this many pixels, spread evenly; always the same ones [all]",
        .minimum = 1, .maximum = 4294836225.0},
+      CLI_SAMPLE_OPTIONS(&job.scene),
+      {"accumulate", CLI_COUNT, &job.scene.accumulating.n_samples, "N",
+       "as conic render has it: judge the mean of N samples, and where they are drawn anew, each of them, too",
+       .minimum = 1, .maximum = 65536},
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   if (exit_code == CLI_DONE)
     exit_code = check_judged_planes(&job);
+  if (exit_code == CLI_DONE)
+    exit_code = check_samples(session, &job);
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, NULL, 0);
   if (exit_code == CLI_DONE)
@@ -272,10 +330,14 @@ static int run(cli_session *session, int argc, char **argv) {
 const cli_command cli_verify = {
     .name = "verify",
     .summary = "measures pictures against a slow, exact reference",
-    .usage = "conic verify IN… [--against method|exact] [--image FILE] [--pixels N] [camera and render options]",
+    .usage = "conic verify IN… [--against method|exact] [--image FILE] [--pixels N] [--sample I | --accumulate N] "
+             "[camera and render "
+             "options]",
     .run = run,
     .description = "Draws a scene, or takes a picture of it, and computes the same pixels in double precision, slowly "
                    "and by other code. It ends with 1 where they differ by more than rounding explains.",
     .examples = {{"is this picture right?", "conic verify scene.ply --size 640x480"},
+                 {"is this final picture the mean of its 64 samples?",
+                  "conic verify scene.ply --accumulate 64 --aperture 0.1 --image final.exr"},
                  {"how far is the method from the truth?", "conic verify scene.ply --method affine --against exact"}},
 };

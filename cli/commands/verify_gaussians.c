@@ -4,6 +4,7 @@
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_fault.h"
 #include "cli/commands/verify_reference.h"
+#include "cli/render/sample_options.h"
 #include "conic/source.h"
 
 typedef struct gaussian_report {
@@ -40,6 +41,8 @@ static void write_verdict(cli_json *json, const gaussian_report *r) {
   const conic_gaussian_verdict *v = &r->verdict;
   cli_json_text(json, "against", "profile");
   cli_json_text(json, "profile", profile_of(r->scene));
+  if (r->scene->accumulating.is_sample_given)
+    cli_json_count(json, "sample", r->scene->accumulating.i_sample);
   if (r->judging.samples > 1)
     cli_json_count(json, "samples", (uint64_t)r->judging.samples);
   cli_json_object(json, "planes");
@@ -133,7 +136,7 @@ int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_
   r.judging.n_pixels = n_pixels;
   r.judging.samples = scene->view.samples;
   r.judging.is_opaque = scene->options.has_background;
-  conic_status status = cli_scene_camera(scene, 0, &camera);
+  conic_status status = cli_sample_camera(session, scene, &camera);
   if (status == CONIC_OK && !image_path)
     status = draw_composited(session, scene, &camera, image, &r.render_ms);
   if (status == CONIC_OK)

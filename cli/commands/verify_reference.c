@@ -27,7 +27,8 @@ conic_status cli_reference_draw(cli_session *session, const cli_render_job *scen
   const conic_source_choice *choice = conic_source_chosen(scene->source);
   const conic_splats *splats = choice->drawing.splats;
   conic_render_options options = scene->options;
-  if (choice->is_all && !(splats && splats->dot))
+  int is_at_rest = !scene->accumulating.motion; /* what moves keeps the length that it has there */
+  if (choice->is_all && !(splats && splats->dot) && is_at_rest)
     options.splat_length = 0.0; /* the oracle sees all splats as they are kept, and measures them by itself */
   conic_oracle_asking asking;
   conic_oracle_asking_init(&asking);

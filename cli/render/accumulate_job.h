@@ -5,6 +5,7 @@
 #include "cli/json_write.h"
 #include "cli/session.h"
 #include "conic/accumulate.h"
+#include "conic/motion.h"
 
 struct cli_render_job;
 
@@ -30,6 +31,10 @@ typedef struct cli_accumulate_job {
   int n_blades;
   double shutter[2]; /* frames, from the one that is drawn */
   int is_shutter_given, is_given;
+  unsigned long long i_sample; /* --sample: of commands that ask about one */
+  int is_sample_given;
+  const char *motion_path; /* null: the scene stands still */
+  conic_motion *motion;    /* once it is read */
 
   /* What came of the last frame. */
   conic_accumulation_facts facts;
@@ -43,10 +48,29 @@ int cli_parse_focus(const char *text, void *value);
 int cli_parse_shutter(const char *text, void *value);
 
 /* What the options mean together with the others. */
-int cli_accumulate_check(struct cli_render_job *job);
+int cli_accumulate_check(const cli_session *session, struct cli_render_job *job);
+/* The same of those that a sample has, too; and what it is drawn with, unless it is said otherwise. */
+int cli_accumulate_settle(const cli_session *session, struct cli_render_job *job);
 
 /* The camera in the middle of the shutter, which stands for the frame. */
 conic_status cli_accumulate_camera(cli_session *session, struct cli_render_job *job, int i_frame, conic_camera *camera);
+
+/* The way of a frame's camera through its samples. */
+typedef struct cli_sample_way {
+  cli_session *session;
+  struct cli_render_job *job;
+  int i_frame;
+  conic_camera frame_camera; /* of the frame itself, at the shutter's 0 */
+} cli_sample_way;
+
+/* Finds the way, and where it is sharp, which may take a picture of the middle. */
+conic_status cli_accumulate_begin(cli_session *session, struct cli_render_job *job, int i_frame, cli_sample_way *way);
+/* Where a sample is taken from, as cli_accumulate_picture has it; the scene is then as at its moment. */
+conic_status cli_accumulate_place(const cli_sample_way *way, uint64_t index, conic_sample *sample);
+
+/* Brings the scene to the middle of the shutter, or to rest. */
+conic_status cli_accumulate_move_middle(cli_session *session, struct cli_render_job *job, int i_frame);
+void cli_accumulate_rest(struct cli_render_job *job);
 
 /* Draws the picture of a frame; its camera is cli_accumulate_camera's. */
 conic_status cli_accumulate_picture(cli_session *session, struct cli_render_job *job, int i_frame,

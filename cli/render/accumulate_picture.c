@@ -17,23 +17,14 @@
 
 /* --- the camera on its way --- */
 
-typedef struct accumulating {
-  cli_session *session;
-  cli_render_job *job;
-  int i_frame;
-  conic_camera frame_camera; /* of the frame itself, at the shutter's 0 */
-  conic_image *image;        /* what is written */
-  conic_render_statistics statistics;
-  double shown_seconds; /* when a preview was written last */
-} accumulating;
-
 /* A turntable's camera goes round; one of a file goes on to the next. */
-static conic_status camera_on_way(void *cookie, double time, conic_camera *camera) {
-  accumulating *work = cookie;
-  const cli_render_job *job = work->job;
+static conic_status camera_on_way(const cli_sample_way *way, double time, conic_camera *camera) {
+  const cli_render_job *job = way->job;
   const double *shutter = job->accumulating.shutter;
   double frames = shutter[0] + (shutter[1] - shutter[0]) * time;
-  *camera = work->frame_camera;
+  *camera = way->frame_camera;
+  if (!job->is_turntable && !job->camera_path)
+    return CONIC_OK;
   if (job->is_turntable) {
     const conic_source_scale *scale = conic_source_measure(job->source);
     cli_camera_orbit(scale, job->is_up_given ? job->framing.up : scale->up, frames / (double)job->n_frames, camera);
@@ -42,18 +33,41 @@ static conic_status camera_on_way(void *cookie, double time, conic_camera *camer
   double place = (double)job->i_view + frames, last = (double)job->cameras.count - 1.0;
   place = place < 0.0 ? 0.0 : place > last ? last : place;
   size_t from = (size_t)place, to = from + 1 < job->cameras.count ? from + 1 : from;
-  conic_status status = conic_camera_between(work->session->context, &job->cameras.cameras[from],
+  conic_status status = conic_camera_between(way->session->context, &job->cameras.cameras[from],
                                              &job->cameras.cameras[to], place - (double)from, camera);
   return status == CONIC_OK ? cli_stereo_move(job, camera) : status;
 }
 
 conic_status cli_accumulate_camera(cli_session *session, cli_render_job *job, int i_frame, conic_camera *camera) {
-  accumulating work = {.session = session, .job = job};
+  cli_sample_way way = {.session = session, .job = job};
   conic_status status = cli_scene_camera(job, i_frame, camera);
   if (status != CONIC_OK || !job->accumulating.is_shutter_given)
     return status;
-  work.frame_camera = *camera;
-  return camera_on_way(&work, 0.5, camera);
+  way.frame_camera = *camera;
+  return camera_on_way(&way, 0.5, camera);
+}
+
+/* --- the scene on its way --- */
+
+static conic_status move_scene(cli_session *session, cli_render_job *job, int i_frame, double time) {
+  cli_accumulate_job *own = &job->accumulating;
+  conic_status status = CONIC_OK;
+  if (!own->motion_path)
+    return CONIC_OK;
+  if (!own->motion)
+    status = conic_motion_read(session->context, own->motion_path, (size_t)job->n_inputs, &job->opening, &own->motion);
+  double frame = (double)i_frame + own->shutter[0] + (own->shutter[1] - own->shutter[0]) * time;
+  return status == CONIC_OK ? conic_motion_apply(own->motion, job->source, frame) : status;
+}
+
+conic_status cli_accumulate_move_middle(cli_session *session, cli_render_job *job, int i_frame) {
+  return move_scene(session, job, i_frame, 0.5);
+}
+
+/* Cannot fail: nothing is asked for. */
+void cli_accumulate_rest(cli_render_job *job) {
+  if (job->accumulating.motion)
+    conic_source_move(job->source, NULL, 0);
 }
 
 /* --- focus --- */
@@ -77,23 +91,23 @@ static conic_status depth_at(cli_session *session, const conic_image *image, con
   return CONIC_OK;
 }
 
-/* Whether the focus is where the picture shows it. */
-static int needs_depth(const cli_accumulate_job *own) {
+static int is_focus_seen(const cli_accumulate_job *own) {
   return own->aperture > 0.0 && own->focus.kind != CLI_FOCUS_DEPTH;
 }
 
+/* `image`, of which the depths count, is of the middle of lens and shutter. */
 static conic_status find_focus(cli_session *session, cli_render_job *job, const conic_image *image) {
   const cli_focus *focus = &job->accumulating.focus;
   const double middle[2] = {0.5 * image->width, 0.5 * image->height};
   double *depth = &job->accumulating.focus_depth;
-  if (!needs_depth(&job->accumulating)) {
+  if (!is_focus_seen(&job->accumulating)) {
     *depth = focus->depth;
     return CONIC_OK;
   }
   if (focus->kind == CLI_FOCUS_PIXEL &&
       (focus->pixel[0] >= (double)image->width || focus->pixel[1] >= (double)image->height)) {
-    cli_usage("render: --focus: pixel %g,%g lies outside of the picture, which has %d x %d", focus->pixel[0],
-              focus->pixel[1], image->width, image->height);
+    cli_usage("%s: --focus: pixel %g,%g lies outside of the picture, which has %d x %d", session->command,
+              focus->pixel[0], focus->pixel[1], image->width, image->height);
     return CONIC_ERROR_ARGUMENT;
   }
   return depth_at(session, image, focus->kind == CLI_FOCUS_PIXEL ? focus->pixel : middle, depth);
@@ -101,20 +115,73 @@ static conic_status find_focus(cli_session *session, cli_render_job *job, const 
 
 /* --- the samples --- */
 
+static conic_aperture aperture_of(const cli_accumulate_job *own) {
+  return (conic_aperture){own->aperture, own->focus_depth, own->n_blades, 0, {0}};
+}
+
+conic_status cli_accumulate_begin(cli_session *session, cli_render_job *job, int i_frame, cli_sample_way *way) {
+  conic_camera middle;
+  conic_image image;
+  memset(&image, 0, sizeof image);
+  *way = (cli_sample_way){.session = session, .job = job, .i_frame = i_frame};
+  conic_status status = cli_accumulate_camera(session, job, i_frame, &middle);
+  if (status == CONIC_OK)
+    status = cli_accumulate_move_middle(session, job, i_frame);
+  if (status == CONIC_OK && is_focus_seen(&job->accumulating)) {
+    status = conic_image_allocate(session->context, middle.width, middle.height, 1u << CONIC_PLANE_Z, &image);
+    if (status == CONIC_OK)
+      status = conic_source_draw(job->source, job->renderer, &middle, &job->options, &job->view, &image, NULL);
+  }
+  if (status == CONIC_OK)
+    status = find_focus(session, job, &image);
+  cli_accumulate_rest(job);
+  if (status == CONIC_OK)
+    status = cli_scene_camera(job, i_frame, &way->frame_camera);
+  conic_image_release(session->context, &image);
+  return status;
+}
+
+conic_status cli_accumulate_place(const cli_sample_way *way, uint64_t index, conic_sample *sample) {
+  const conic_aperture aperture = aperture_of(&way->job->accumulating);
+  conic_camera camera = way->frame_camera;
+  conic_status status = CONIC_OK;
+  if (way->job->accumulating.is_shutter_given)
+    status = camera_on_way(way, conic_sample_time(index), &camera);
+  if (status == CONIC_OK)
+    status = move_scene(way->session, way->job, way->i_frame, conic_sample_time(index));
+  return status == CONIC_OK ? conic_sample_place(way->session->context, &camera, &aperture, index, sample) : status;
+}
+
+typedef struct accumulating {
+  cli_session *session;
+  cli_render_job *job;
+  int i_frame;
+  cli_sample_way way;
+  conic_image *image; /* what is written */
+  conic_render_statistics statistics;
+  double shown_seconds; /* when a preview was written last */
+} accumulating;
+
+static conic_status sample_camera(void *cookie, double time, conic_camera *camera) {
+  const accumulating *work = cookie;
+  return camera_on_way(&work->way, time, camera);
+}
+
 static conic_status draw_source_sample(void *cookie, const conic_sample *sample, conic_image *image) {
   accumulating *work = cookie;
   cli_render_job *job = work->job;
   conic_render_options options = job->options;
-  conic_render_statistics statistics;
+  conic_render_statistics statistics = {.ms = {0}};
   conic_source_view view = job->view;
   view.chance = conic_sequence_at(sample->index, CONIC_SEQUENCE_SURFACE);
   if (job->is_transparent && cli_light_is_wanted(job)) /* what is lit has one depth and one normal */
     view.transparency = CONIC_TRANSPARENCY_CHANCE;
-  conic_status status = cli_lamps_sample(work->session, job, sample->index, &options.lighting);
-  if (status != CONIC_OK)
-    return status;
   const cli_looking looking = {&sample->camera, &options, &view, sample};
-  status = cli_draw_looking(work->session, job, &looking, image, &statistics);
+  conic_status status = cli_lamps_sample(work->session, job, sample->index, &options.lighting);
+  if (status == CONIC_OK)
+    status = move_scene(work->session, job, work->i_frame, sample->time);
+  if (status == CONIC_OK)
+    status = cli_draw_looking(work->session, job, &looking, image, &statistics);
   work->statistics.ms.frame += statistics.ms.frame;
   return status;
 }
@@ -197,7 +264,7 @@ static conic_status watch_sums(void *cookie, const conic_accumulation *sums) {
 
 /* The sums that are gone on with; or none yet. */
 static conic_status begin_sums(accumulating *work, conic_accumulation **sums) {
-  const conic_camera *camera = &work->frame_camera;
+  const conic_camera *camera = &work->way.frame_camera;
   cli_accumulate_job *own = &work->job->accumulating;
   conic_context *context = work->session->context;
   unsigned planes = (work->job->planes | 1u << CONIC_PLANE_RGBA) & CONIC_ACCUMULATED_PLANES;
@@ -223,16 +290,17 @@ static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
   const cli_accumulate_job *own = &work->job->accumulating;
   conic_accumulate_options options;
   conic_accumulate_options_init(&options);
-  options.camera = work->frame_camera;
-  options.aperture = (conic_aperture){own->aperture, own->focus_depth, own->n_blades, 0, {0}};
+  options.camera = work->way.frame_camera;
+  options.aperture = aperture_of(own);
   options.end_sample = own->n_samples;
   options.seconds = own->seconds;
   options.noise = own->noise;
   options.cookie = work;
-  options.camera_at = own->is_shutter_given ? camera_on_way : NULL;
+  options.camera_at = own->is_shutter_given ? sample_camera : NULL;
   options.draw = draw_source_sample;
   options.watch = watch_sums;
-  if (cli_light_is_wanted(work->job) && !cli_is_gathered(work->job, &work->frame_camera)) { /* whose views are lit */
+  if (cli_light_is_wanted(work->job) &&
+      !cli_is_gathered(work->job, &work->way.frame_camera)) { /* whose views are lit */
     options.shade = light_source_sample;
     options.sample_planes = 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO;
   }
@@ -250,19 +318,20 @@ static void tell_samples(const cli_session *session, const cli_accumulate_job *o
 
 conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
                                     conic_image *image, conic_render_statistics *statistics) {
-  accumulating work = {.session = session, .job = job, .i_frame = i_frame, .image = image};
+  accumulating work = {
+      .session = session, .job = job, .i_frame = i_frame, .way = {session, job, i_frame, *camera}, .image = image};
   conic_accumulation *sums = NULL;
-  conic_status status = CONIC_OK;
   const cli_looking looking = {camera, &job->options, &job->view, NULL};
   int is_first = job->sharing != CLI_SHARES_SAMPLES || cli_team_is_first(session);
-  if (is_first || needs_depth(&job->accumulating))
+  conic_status status = cli_accumulate_move_middle(session, job, i_frame);
+  if (status == CONIC_OK && (is_first || is_focus_seen(&job->accumulating)))
     status = cli_draw_looking(session, job, &looking, image, &work.statistics);
   if (status == CONIC_OK)
     status = find_focus(session, job, image);
-  work.frame_camera = *camera;
+  cli_accumulate_rest(job);
   job->statistics = work.statistics;                            /* for the header of a preview */
   if (status == CONIC_OK && job->accumulating.is_shutter_given) /* the middle was drawn; the way starts at the frame */
-    status = cli_scene_camera(job, i_frame, &work.frame_camera);
+    status = cli_scene_camera(job, i_frame, &work.way.frame_camera);
   if (status == CONIC_OK)
     status = conic_image_locate(session->context, camera, 1, image);
   if (status == CONIC_OK)
@@ -277,6 +346,7 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
     status = keep_sums(&work, sums);
   if (status == CONIC_OK)
     tell_samples(session, &job->accumulating);
+  cli_accumulate_rest(job);
   conic_accumulation_destroy(sums);
   *statistics = work.statistics;
   return status;

@@ -73,9 +73,10 @@ static conic_casters casters_of(const cli_render_job *job, map_drawer *drawer) {
   const conic_source_scale *scale = conic_source_measure(job->source);
   double reach = scale->n_splats ? (double)job->options.kernel.cutoff * scale->splat_length : 0.0;
   conic_casters casters = {.draw = draw_light_map, .cookie = drawer, .epsilon = reach};
+  conic_source_box(job->source, casters.minimum, casters.maximum);
   for (int axis = 0; axis < 3; axis++) {
-    casters.minimum[axis] = scale->minimum[axis] - 4.0 * reach;
-    casters.maximum[axis] = scale->maximum[axis] + 4.0 * reach;
+    casters.minimum[axis] -= 4.0 * reach;
+    casters.maximum[axis] += 4.0 * reach;
   }
   return casters;
 }

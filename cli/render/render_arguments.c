@@ -2,8 +2,8 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/render/frames.h"
 #include "cli/render/lit_picture.h"
+#include "cli/render/sample_options.h"
 #include "cli/render/stereo.h"
 #include "cli/shell.h"
 #include "core/files/file.h"
@@ -115,7 +115,7 @@ static int check_outputs(const cli_session *session, cli_render_job *job, const 
   if (answer == CLI_DONE)
     answer = cli_stereo_check(session, job);
   if (answer == CLI_DONE)
-    answer = cli_accumulate_check(job);
+    answer = cli_accumulate_check(session, job);
   if (answer == CLI_DONE && job->has_mattes)
     answer = cli_mattes_check(job);
   if (answer == CLI_DONE && !job->top.is_wanted)
@@ -198,18 +198,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"resume", CLI_TEXT, &job->accumulating.resume_path, "PICTURE",
        "go on with the samples of PICTURE.sums, to the bit as if it had never stopped",
        .is_given = &job->accumulating.is_given},
-      {"aperture", CLI_NUMBER, &job->accumulating.aperture, "D",
-       "the diameter of the lens, in world units; what is out of focus blurs [0: a pinhole]", 0, 1e29,
-       .is_given = &job->accumulating.is_given},
-      {"focus", CLI_PARSED, &job->accumulating.focus, "Z",
-       "the depth at which all is sharp; X,Y: what is at that pixel; auto: what is in the picture's middle [auto]",
-       .parse = cli_parse_focus, .is_given = &job->accumulating.is_given},
-      {"blades", CLI_INT, &job->accumulating.n_blades, "N", "the corners of the lens; 0: it is round [0]", 0,
-       CONIC_MAX_BLADES, .is_given = &job->accumulating.is_given},
-      {"shutter", CLI_PARSED, job->accumulating.shutter, "A:B",
-       "open from A to B, in frames from the one drawn, along a --turntable or the cameras of a file: 0:0.5 blurs "
-       "half the way to the next [closed]",
-       .parse = cli_parse_shutter, .is_given = &job->accumulating.is_shutter_given},
+      CLI_LENS_OPTIONS(&job->accumulating),
       {"gsd", CLI_NUMBER, &job->top.gsd, "G",
        "of --camera top: a pixel's edge on the ground, in the unit of the points [their typical distance]", 1e-12, 1e12,
        .is_given = &job->top.is_given, .group = "maps (--camera top)"},

@@ -108,6 +108,8 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
 void cli_scene_release(cli_session *session, cli_render_job *job) {
   conic_cameras_release(session->context, &job->cameras);
   conic_sky_destroy(job->sky);
+  cli_accumulate_rest(job);
+  conic_motion_destroy(job->accumulating.motion);
   cli_keep_renderer(session, &job->device, job->renderer);
   if (!cli_source_is_kept(session, job->source))
     conic_source_close(job->source);

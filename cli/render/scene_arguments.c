@@ -84,7 +84,7 @@ static void choose_quality(const cli_scene_words *raw, cli_render_job *job, int 
   int is_wanted = raw->is_quality_given || !job->is_plain;
   if (is_wanted && !raw->is_method_given)
     *method = raw->quality == CLI_QUALITY_DRAFT ? CONIC_METHOD_CONIC : CONIC_METHOD_AUTO;
-  if (is_wanted && !raw->is_samples_given && !job->accumulating.n_samples &&
+  if (is_wanted && !raw->is_samples_given && !job->accumulating.n_samples && !job->accumulating.is_sample_given &&
       (raw->is_quality_given || is_picture(raw, job)))
     job->view.samples = samples[raw->quality];
 }

@@ -156,7 +156,7 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
 
 int cli_scene_inputs_stay(const cli_session *session, const cli_render_job *job, const char *const *outputs,
                           int n_outputs) {
-  const char *const beside[] = {job->camera_path, job->opening.texture_path};
+  const char *const beside[] = {job->camera_path, job->opening.texture_path, job->accumulating.motion_path};
   int answer = cli_check_inputs_stay(session, job->inputs, job->n_inputs, outputs, n_outputs);
-  return answer == CLI_DONE ? cli_check_inputs_stay(session, beside, 2, outputs, n_outputs) : answer;
+  return answer == CLI_DONE ? cli_check_inputs_stay(session, beside, 3, outputs, n_outputs) : answer;
 }

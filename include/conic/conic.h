@@ -39,6 +39,7 @@
 #include "conic/lighting.h"
 #include "conic/loan.h"
 #include "conic/model.h"
+#include "conic/motion.h"
 #include "conic/octree.h"
 #include "conic/opencl.h"
 #include "conic/oracle.h"

@@ -156,6 +156,14 @@ CONIC_API double conic_reference_width(const conic_reference *reference, conic_p
 
 CONIC_API void conic_reference_release(conic_context *context, conic_reference *reference);
 
+/* Makes `mean`, that of `n_before` pictures, the reference of the mean with one more, `sample`, of the same size and
+ * pixels; before the first, it is written over. It holds rgba, albedo and weight, so other planes are not to be
+ * compared with it. Each pixel has one alternative: from the mean of the least that the samples may be to that of the
+ * greatest; it is as unstable as they are together, and has as many unbounded pixels as the worst of them. Errors:
+ * ARGUMENT (also: not of the method's question), MEMORY; after the latter, `mean` is empty. */
+CONIC_API conic_status conic_reference_average(conic_context *context, const conic_reference *sample, uint64_t n_before,
+                                               conic_reference *mean);
+
 /* How an image compares with a reference. */
 typedef struct conic_oracle_plane_verdict {
   int is_compared;      /* the image has the plane */

@@ -143,6 +143,28 @@ CONIC_API conic_status conic_source_spacing(conic_source *source, double *spacin
 CONIC_API conic_status conic_source_frame(const conic_source *source, const conic_framing *framing,
                                           conic_camera *camera);
 
+/* Where an input is, and what its shape is. */
+typedef struct conic_source_pose {
+  double world_from_rest[3][4]; /* affine: where what its file says goes; the determinant above 0 */
+  /* Shapes beside the input's own: sources of one file each, of as many splats, vertices and normals, which have to
+   * stay open. It is drawn with its places, axes and normals at `part` of the way from the first (null: its own) to the
+   * second (null: it stays). Axes of estimated splats are first turned to where they are nearest. */
+  const conic_source *shapes[2];
+  double part; /* 0 to 1 */
+  uint64_t reserved[4];
+} conic_source_pose;
+
+/* At rest. */
+CONIC_API void conic_source_pose_init(conic_source_pose *pose);
+
+/* Draws input i as poses[i] says, from the next picture on; null: all are at rest, as at first. What is at rest is
+ * drawn to the bit as without poses. The scale stays that of rest. Errors: ARGUMENT (another number of poses; a pose
+ * that is none; a shape that does not fit), UNSUPPORTED (it is no source of splats and triangles in memory), MEMORY. */
+CONIC_API conic_status conic_source_move(conic_source *source, const conic_source_pose *poses, size_t n_poses);
+
+/* The box of what is drawn: the scale's, unless something moves. */
+CONIC_API void conic_source_box(const conic_source *source, double minimum[3], double maximum[3]);
+
 /* Where no kind of file says which way is up, looks at the shape, and sets the scale's `up` and its basis. Errors: as
  * conic_source_choose. */
 CONIC_API conic_status conic_source_stand(conic_source *source);

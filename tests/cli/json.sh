@@ -160,10 +160,13 @@ write verify-samples verify verify thinner.ply --size 40x30 --samples 2
 write render-prefiltered render render thinner.ply --size 160x120 --prefilter 1.01 -o prefiltered.exr
 write verify-wrong verify verify thinner.ply --size 160x120 --pixels 500 --image prefiltered.exr
 write make-one make make plane -n 1 -o one.ply
+write verify-sample verify verify thinner.ply --size 40x30 --sample 3 --aperture 0.1
+write verify-accumulated verify verify thinner.ply --size 40x30 --accumulate 2
 write verify-exact verify verify one.ply --size 12x9 --against exact
 write explain explain explain one.ply --size 64x48 --pixel 30,20
 printf '\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200' > two.splat
 write verify-gaussians verify_gaussians verify two.splat --profile exact --size 40x40
+write verify-gaussians-sample verify_gaussians verify two.splat --profile exact --size 20x20 --sample 3
 write verify-gaussians-samples verify_gaussians verify two.splat --profile inria-2023 --size 20x20 --samples 2
 run 0 render two.splat --profile gsplat-1.6 --size 40x40 -o two.exr
 write verify-gaussians-wrong verify_gaussians verify two.splat --profile khr-2026 --size 40x40 --image two.exr
@@ -178,6 +181,7 @@ write judge-splats-wrong judge judge thinner.ply --size 160x120 --picture prefil
 write judge-mesh-wrong judge judge triangle.obj --as mesh --size 256x256 --picture triangle.exr --shade none
 cat two.splat two.splat > copies.splat
 write judge-copies-wrong judge judge copies.splat --profile gsplat-1.6 --size 40x40 --picture two.exr
+write explain-sample explain explain one.ply --size 64x48 --pixel 30,20 --sample 3
 write explain-gaussians explain_gaussians explain two.splat --profile exact --size 40x40 --pixel 20,20
 write gradient gradient gradient two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr
 run 0 gradient two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr -o two-g.ply --quiet

@@ -61,6 +61,9 @@ int main(int argc, char **argv) {
   seeds_all_hierarchies(set);
   seeds_all_references(set);
   seeds_sums(set, context);
+  seeds_text(set, "motion", "json",
+             "[{\"frame\": 1, \"matrix\": [[1,0,0,0.25],[0,1,0,0],[0,0,1,0],[0,0,0,1]]},\n"
+             " {\"input\": 2, \"frame\": -1.5, \"file\": \"walk.0001.ply\"}]\n");
   seeds_text(set, "suite", "json", SUITE_EXAMPLE);
   seeds_text(set, "trace", "json",
              "{\"traceEvents\": [{\"name\": \"window 0\", \"cat\": \"unit\", \"ph\": \"X\", \"ts\": 1.5, \"dur\": 20, "

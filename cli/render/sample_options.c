@@ -1,0 +1,43 @@
+#include "cli/render/sample_options.h"
+
+int cli_sample_frame(const cli_render_job *job) {
+  return job->frames.first - 1;
+}
+
+int cli_sample_check(const cli_session *session, cli_render_job *job) {
+  static const char *const no_paths[1] = {NULL};
+  cli_accumulate_job *own = &job->accumulating;
+  const char *command = session->command;
+  int is_one_of_many = own->n_samples > 0 || own->is_sample_given;
+  int answer = cli_frames_check(session, job, no_paths, 1);
+  if (answer != CLI_DONE)
+    return answer;
+  if (!job->frames.is_given)
+    job->frames.last = job->frames.first;
+  if (cli_frames_count(job) != 1)
+    return cli_usage("%s: it looks at one picture; --frames takes one number here", command);
+  if (!is_one_of_many)
+    return own->is_given || own->is_shutter_given || own->motion_path
+               ? cli_usage(
+                     "%s: --aperture, --focus, --blades, --shutter and --motion are of samples; give --sample I, too",
+                     command)
+               : CLI_DONE;
+  if (own->n_samples && own->is_sample_given)
+    return cli_usage("%s: --sample asks for one of the samples, --accumulate for all; give one of both", command);
+  if (job->view.samples > 1)
+    return cli_usage("%s: a sample is one a pixel: not with --samples", command);
+  return cli_accumulate_settle(session, job);
+}
+
+conic_status cli_sample_camera(cli_session *session, cli_render_job *job, conic_camera *camera) {
+  const cli_accumulate_job *own = &job->accumulating;
+  cli_sample_way way;
+  conic_sample sample;
+  if (!own->is_sample_given)
+    return cli_scene_camera(job, cli_sample_frame(job), camera);
+  conic_status status = cli_accumulate_begin(session, job, cli_sample_frame(job), &way);
+  if (status == CONIC_OK)
+    status = cli_accumulate_place(&way, own->i_sample, &sample);
+  *camera = sample.camera;
+  return status;
+}
