@@ -60,7 +60,7 @@ declare -A wanted=(
   [render-octree]="$render methods.conic primitives.inner_nodes primitives.leaves error_px error_px_asked?"
   [render-accumulated]="$render accumulated.samples accumulated.resumed accumulated.noise? accumulated.focus?"
   [render-odd]="$render skipped.nan? skipped.zero? skipped.duplicate? skipped.isolated? skipped.failed?"
-  [render-lit]="$render ao? shadow? ms.light hash.ao hash.shadow"
+  [render-lit]="$render ao? shadow? lamps? ms.light hash.ao hash.shadow"
   [render-steep]="$render methods.conic methods.laplace"
   [render-mesh]="$render primitives.triangles triangles_in triangles_culled triangles_skipped triangles_drawn
     triangle_fragments mtriangles_per_s"
@@ -140,7 +140,8 @@ grep -q '"duplicate": 1,' runs/render-odd.json || fail "render does not count wh
 write render-odd-patches render_patches render odd.xyz -o odd.exr --size 64x64 --method patch
 grep -q '"nan": 1,' runs/render-odd-patches.json || fail "render does not count what it lays no patches about"
 write render-top render render knot.ply --camera top --gsd 0.1 --epsg 26910 -o top.exr
-write render-lit render render knot.ply -o lit.exr --aov rgba,ao,shadow --ao 4 --shadow --size 64x64
+write render-lit render render knot.ply -o lit.exr --aov rgba,ao,shadow --ao 4 --shadow --size 64x64 \
+  --light 1,2,3:1:2deg --light lamp:1,2,3:4:0.1 --light lamp:0,3,0:5:0.4x0.2:0,-1,0
 write render-sky render render knot.ply -o sky.exr --sky knot.exr --ao 2 --size 32x32
 write render-colored render render knot.ply -o height.exr --color-by height --size 64x64
 write prepare-baked prepare prepare knot.ply -o baked.ply --bake color --directions 4

@@ -78,7 +78,10 @@ awk "BEGIN { exit !($above > 1.5 * $below) }" || fail "the sky is not above a ca
 
 # What is refused
 for light in '' x 1,2 1,2,3,4 0,0,0 camera camera: camera:0,0,0 camera:1,2 head: head:-1 head:1,2 head:nan head:1e9 \
-  studio:1 none:1 1,2,3: 1,2,3:1:1 camera:1,2,3:1,2,3,4 heads Head " head" camera:1,2,3,head; do
+  studio:1 none:1 1,2,3: 1,2,3:1:1 camera:1,2,3:1,2,3,4 heads Head " head" camera:1,2,3,head \
+  1,2,3:1:2 1,2,3:1:91deg 1,2,3:1:-1deg 1,2,3:1:deg head:1:2deg lamp lamp: lamp:1,2 lamp:1,2,3: lamp:1,2,3:-1 \
+  lamp:1,2,3:1:-1 lamp:1,2,3:1:2x1 lamp:1,2,3:1:0:0,1,0 lamp:1,2,3:1:1x0:0,1,0 lamp:1,2,3:1:1:0,0,0 \
+  lamp:1,2,3:1:1:0,1,0:1 lamp:camera:1,2,3; do
   run 2 render ball.ply -o no.pfm --light "$light"
 done
 for sky in '' x 1,2 1:2:3 : 1: :1 -0.1 1,1,1,1 inf 1e7; do
@@ -94,6 +97,8 @@ done
 run 0 render ball.ply -o x.pfm --size 16x16 "${eight[@]}"
 run 2 render ball.ply -o no.pfm "${eight[@]}" --light none --light head
 run 2 verify ball.ply --background 1:0
+run 2 verify ball.ply --light lamp:1,2,3
+run 2 verify ball.ply --light 1,2,3:1:2deg
 [[ ! -e no.pfm ]] || fail "something is drawn after wrong usage"
 
 # The oracle knows them all

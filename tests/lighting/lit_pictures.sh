@@ -41,6 +41,51 @@ for scene in "${scenes[@]}"; do
     fail "$scene: light changes what was counted"
 done
 
+# Lamps light every kind of scene, with shadows and without.
+# shellcheck disable=SC2086 # a scene is a file and its options
+for scene in "${scenes[@]}"; do
+  lamp="$scene --size 64x64 --samples 2 --light lamp:1,3,1:9 --aov rgba,shadow"
+  run 0 render $lamp -o a.exr --json plain.json
+  run 0 render $lamp --shadow -o b.exr --json lit.json
+  run 0 render $lamp --shadow -o c.exr --json again.json --threads 3 --tile 8
+  run 0 render $scene --size 64x64 --samples 2 --light none -o d.exr --aov rgba --json dark.json
+  cmp -s b.exr c.exr || fail "$scene: threads or tiles change its lamp"
+  [[ $(hash_of dark.json rgba) != "$(hash_of lit.json rgba)" ]] || fail "$scene: a lamp changes nothing"
+done
+
+# Samples of lamps and suns that have a size are the same, however a run is cut.
+soft="knot.ply --size 32x32 --shadow --light 1,2,1:1:8deg --light lamp:0,3,0:5:0.5 --light lamp:2,2,0:3:1x0.5:-1,-1,0"
+# shellcheck disable=SC2086 # several options
+{
+  run 0 render $soft --accumulate 6 -o whole.exr --json whole.json
+  run 0 render $soft --accumulate 4 --resumable -o part.exr
+  run 0 render $soft --accumulate 6 --resume part.exr -o rest.exr --json rest.json
+  run 0 render ${soft//:8deg/} --accumulate 6 -o hard.exr --json hard.json
+}
+[[ $(hash_of whole.json rgba) == "$(hash_of rest.json rgba)" ]] || fail "a cut changes soft light"
+[[ $(hash_of whole.json rgba) != "$(hash_of hard.json rgba)" ]] || fail "a sun's disc changes nothing"
+grep -q '"kind": "rectangle"' whole.json || fail "the lamps are not named"
+
+# What changes nothing is said, and nothing else.
+warns() { # WORD, or none; OPTIONS
+  local word="$1"
+  shift
+  "$conic" render knot.ply --size 16x16 -o w.exr "$@" 2> warned.txt || fail "$*: it ends with $?"
+  if [[ -z $word ]]; then
+    ! grep -q warning warned.txt || fail "$*: $(cat warned.txt)"
+  else
+    grep -q "warning: .*$word" warned.txt || fail "$*: it does not warn of $word"
+  fi
+}
+warns 'shadow changes nothing' --shadow --light head
+warns 'shadow changes nothing' --shadow --light none
+warns 'no light (--shade none)' --ao 4 --shade none
+warns 'shine from their middle' --shadow --light 1,2,1:1:2deg
+warns '' --shadow --light 1,2,1
+warns '' --shadow --light lamp:1,2,1 --light head
+warns '' --shadow --shade none --aov shadow
+warns '' --accumulate 2 --shadow --light 1,2,1:1:2deg
+
 # The planes alone ask for what fills them.
 run 0 render knot.ply --size 32x32 --aov ao,shadow -o planes.exr --json planes.json
 grep -q '"ao": 64' planes.json || fail "--aov ao draws no maps"
@@ -51,6 +96,10 @@ run 0 render knot.ply --size 32x32 --light none --sky sky.exr --ao 4 -o lit.exr 
 grep -q '"sky_picture": "sky.exr"' sky.json || fail "the sky is not named"
 run 2 render knot.ply --size 32x32 --sky sky.exr -o lit.exr
 run 3 render knot.ply --size 32x32 --sky none.exr --ao 4 -o lit.exr
+printf 'PF\n2 1\n-1\n' > below.pfm
+printf '\0\0\200\277%.0s' 1 2 3 4 5 6 >> below.pfm
+"$conic" render knot.ply --size 32x32 --light none --sky below.pfm --ao 4 -o lit.exr 2> said.txt && fail "no light lights"
+grep -q 'below.pfm: no light: no colour is above 0' said.txt || fail "a dark sky is not named: $(cat said.txt)"
 run 2 render knot.ply --camera top --gsd 0.1 --shadow -o top.exr
 run 2 render knot.ply --ao 0 -o lit.exr
 
