@@ -2,6 +2,7 @@
 #ifndef CONIC_ACCUMULATE_JOB_H
 #define CONIC_ACCUMULATE_JOB_H
 
+#include "cli/arguments.h"
 #include "cli/json_write.h"
 #include "cli/session.h"
 #include "conic/accumulate.h"
@@ -25,16 +26,17 @@ typedef struct cli_accumulate_job {
   double preview_seconds;       /* 0: none */
   const char *resume_path;      /* the picture; null: from the start */
   int is_resumable;
-  double aperture;
+  cli_length width; /* of the lens */
   cli_focus focus;
   int n_blades;
-  double shutter[2]; /* frames, from the one that is drawn */
-  int is_shutter_given, is_given;
+  double shutter[2];                             /* frames, from the one that is drawn */
+  int is_shutter_given, is_lens_given, is_given; /* is_lens_given: --focus or --blades */
 
   /* What came of the last frame. */
   conic_accumulation_facts facts;
   uint64_t n_resumed;
   double reached_noise; /* below 0: not known */
+  double aperture;      /* the width in world units */
   double focus_depth;
 } cli_accumulate_job;
 
