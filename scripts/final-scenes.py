@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""final-scenes.py FOLDER DATA makes what scripts/final-pictures puts about its models: stages (a floor that rises behind the
-scene), cameras, and skies with softboxes. The same files on every run."""
+"""final-scenes.py FOLDER DATA makes what scripts/final-pictures puts about its models: stages (a floor that rises
+behind the scene), cameras, and skies with softboxes. The same files on every run."""
 import json
 import math
 import os
@@ -48,13 +48,15 @@ def stage(name, up, center, azimuth, front, back, bend, wall, half_width, color)
     frame = FRAMES[up]
     a = math.radians(azimuth)
     profile = [(-front + (front + back) * k / 64, 0) for k in range(65)]
-    profile += [(back + bend * math.sin(math.pi * k / 96), bend - bend * math.cos(math.pi * k / 96)) for k in range(1, 49)]
+    turns = [math.pi * k / 96 for k in range(1, 49)]
+    profile += [(back + bend * math.sin(turn), bend - bend * math.cos(turn)) for turn in turns]
     profile += [(back + bend, bend + wall)]
     lines, n = [], 48
     for depth, height in profile:
         for k in range(n + 1):
             side = half_width * (2 * k / n - 1)
-            at = place(frame, side * math.cos(a) - depth * math.sin(a), side * math.sin(a) + depth * math.cos(a), height)
+            at = place(frame, side * math.cos(a) - depth * math.sin(a), side * math.sin(a) + depth * math.cos(a),
+                       height)
             lines.append('v ' + ' '.join('%.7g' % (c + x) for c, x in zip(center, at)) + ' %g %g %g' % color)
     for i in range(len(profile) - 1):
         for k in range(n):

@@ -67,7 +67,8 @@ def make_camera(scene):
         data.dof.use_dof, data.dof.focus_distance = True, job["focus"]
         data.dof.aperture_fstop = data.lens * 1e-3 / job["aperture"]
     camera = bpy.data.objects.new("camera", data)
-    camera.matrix_world = mathutils.Matrix(given["world_to_camera"]).inverted() @ mathutils.Matrix.Diagonal((1, -1, -1, 1))
+    turn = mathutils.Matrix.Diagonal((1, -1, -1, 1))
+    camera.matrix_world = mathutils.Matrix(given["world_to_camera"]).inverted() @ turn
     scene.collection.objects.link(camera)
     scene.camera = camera
     scene.render.resolution_x, scene.render.resolution_y = given["width"], given["height"]
