@@ -165,6 +165,12 @@ static int refuse_text(const cli_session *session, const cli_option *option, con
                    option->name, text, words);
 }
 
+/* Whether it is a number, and none that the option takes. */
+static int is_too_large(const cli_option *option, const char *text) {
+  double number;
+  return cli_parse_number(text, &number) && !is_within_limits(option, number);
+}
+
 /* Reads one value; CLI_DONE or CLI_USAGE after a message. */
 static int store_value(const cli_session *session, const cli_option *option, const char *text) {
   int is_understood = 1, is_in_range = 1;
@@ -175,6 +181,7 @@ static int store_value(const cli_session *session, const cli_option *option, con
   case CLI_INT:
     is_understood = parse_int(text, option->value);
     is_in_range = is_understood && is_within_limits(option, *(int *)option->value);
+    is_understood = is_understood || is_too_large(option, text); /* as 1e6 may be, which is no int's way of writing */
     break;
   case CLI_COUNT:
     is_understood = cli_parse_count(text, option->value);

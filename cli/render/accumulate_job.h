@@ -2,6 +2,7 @@
 #ifndef CONIC_ACCUMULATE_JOB_H
 #define CONIC_ACCUMULATE_JOB_H
 
+#include "cli/arguments.h"
 #include "cli/json_write.h"
 #include "cli/session.h"
 #include "conic/accumulate.h"
@@ -26,12 +27,12 @@ typedef struct cli_accumulate_job {
   double preview_seconds;       /* 0: none */
   const char *resume_path;      /* the picture; null: from the start */
   int is_resumable;
-  double aperture;
+  cli_length width; /* of the lens */
   cli_focus focus;
   int n_blades;
-  double shutter[2]; /* frames, from the one that is drawn */
-  int is_shutter_given, is_given;
-  unsigned long long i_sample; /* --sample: of commands that ask about one */
+  double shutter[2];                             /* frames, from the one that is drawn */
+  int is_shutter_given, is_lens_given, is_given; /* is_lens_given: --focus or --blades */
+  unsigned long long i_sample;                   /* --sample: of commands that ask about one */
   int is_sample_given;
   const char *motion_path; /* null: the scene stands still */
   conic_motion *motion;    /* once it is read */
@@ -40,6 +41,7 @@ typedef struct cli_accumulate_job {
   conic_accumulation_facts facts;
   uint64_t n_resumed;
   double reached_noise; /* below 0: not known */
+  double aperture;      /* the width in world units */
   double focus_depth;
 } cli_accumulate_job;
 

@@ -41,6 +41,8 @@ static int check_company(const cli_render_job *job) {
 
 int cli_accumulate_settle(const cli_session *session, cli_render_job *job) {
   const cli_accumulate_job *own = &job->accumulating;
+  if (own->is_lens_given && own->width.value <= 0.0)
+    return cli_usage("%s: --focus and --blades are of a lens; give its --aperture, too", session->command);
   if (own->n_blades == 1 || own->n_blades == 2)
     return cli_usage("%s: --blades is 0, for a round lens, or 3 at least", session->command);
   if (own->is_shutter_given && !job->is_turntable && !job->camera_path && !own->motion_path)
@@ -51,12 +53,19 @@ int cli_accumulate_settle(const cli_session *session, cli_render_job *job) {
   return CLI_DONE;
 }
 
+/* A turntable or all views, and --frames takes no single one of them. */
+static int draws_several(const cli_render_job *job) {
+  const cli_frames *frames = &job->frames;
+  int is_one = frames->is_given ? frames->last - frames->first < frames->step : job->is_turntable && job->n_frames == 1;
+  return cli_frames_are_many(job) && !is_one;
+}
+
 int cli_accumulate_check(const cli_session *session, cli_render_job *job) {
   cli_accumulate_job *own = &job->accumulating;
   if (!own->n_samples && job->planes & (1u << CONIC_PLANE_SAMPLES | 1u << CONIC_PLANE_VARIANCE))
     return cli_usage("render: the planes samples and variance are --accumulate's");
   if (!own->n_samples)
-    return own->is_given || own->is_shutter_given || own->motion_path
+    return own->is_given || own->is_lens_given || own->is_shutter_given || own->motion_path
                ? cli_usage("render: --time, --noise, --preview, --resumable, --resume, --aperture, --focus, "
                            "--blades, --shutter and --motion want --accumulate N")
                : CLI_DONE;
@@ -65,11 +74,11 @@ int cli_accumulate_check(const cli_session *session, cli_render_job *job) {
     answer = cli_accumulate_settle(session, job);
   if (answer != CLI_DONE)
     return answer;
-  if (own->resume_path && cli_frames_are_many(job))
+  if (own->resume_path && draws_several(job))
     return cli_usage("render: --resume goes on with one picture, not with several");
   if (own->is_resumable && (job->n_outputs == 0 || strcmp(job->outputs[0], "-") == 0))
     return cli_usage("render: --resumable keeps the sums beside the picture; give a file with -o");
-  if (own->aperture > 0.0 && own->focus.kind != CLI_FOCUS_DEPTH)
+  if (own->width.value > 0.0 && own->focus.kind != CLI_FOCUS_DEPTH)
     job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_Z;
   job->planes |= job->unwritten_planes;
   return CLI_DONE;

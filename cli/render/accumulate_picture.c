@@ -1,5 +1,6 @@
 #include "cli/render/accumulate_job.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -111,6 +112,18 @@ static conic_status find_focus(cli_session *session, cli_render_job *job, const 
     return CONIC_ERROR_ARGUMENT;
   }
   return depth_at(session, image, focus->kind == CLI_FOCUS_PIXEL ? focus->pixel : middle, depth);
+}
+
+/* A width that was meant in other units shows nothing but blur. */
+static void tell_wide_lens(const cli_session *session, const cli_render_job *job) {
+  const conic_source_scale *scale = conic_source_measure(job->source);
+  double square = 0.0, width = job->accumulating.aperture;
+  for (int axis = 0; axis < 3; axis++) {
+    double edge = scale->maximum[axis] - scale->minimum[axis];
+    square += edge * edge;
+  }
+  if (width * width > square && square > 0.0)
+    cli_warn(session, "--aperture: the lens, %g wide, is wider than the whole scene, %.3g", width, sqrt(square));
 }
 
 /* --- the samples --- */
@@ -262,6 +275,26 @@ static conic_status watch_sums(void *cookie, const conic_accumulation *sums) {
   return status;
 }
 
+/* What of them is not of the picture. */
+static conic_status refuse_sums(const cli_accumulate_job *own, const conic_camera *camera, unsigned planes,
+                                const conic_accumulation_facts *facts) {
+  if (facts->width != camera->width || facts->height != camera->height)
+    cli_error(CLI_INPUT, "%s.sums: cannot go on: its samples have %d x %d pixels, and the picture %d x %d",
+              own->resume_path, facts->width, facts->height, camera->width, camera->height);
+  else if (facts->first_sample != 0)
+    cli_error(CLI_INPUT, "%s.sums: cannot go on: its first sample is number %llu", own->resume_path,
+              (unsigned long long)facts->first_sample);
+  else {
+    int i = 0;
+    while (!((facts->planes ^ planes) >> i & 1))
+      i++;
+    cli_error(CLI_INPUT, "%s.sums: cannot go on: %s the plane %s, and the picture %s", own->resume_path,
+              facts->planes >> i & 1 ? "it has" : "it lacks", conic_plane_describe((conic_plane)i)->name,
+              facts->planes >> i & 1 ? "does not" : "has it");
+  }
+  return CONIC_ERROR_INPUT;
+}
+
 /* The sums that are gone on with; or none yet. */
 static conic_status begin_sums(accumulating *work, conic_accumulation **sums) {
   const conic_camera *camera = &work->way.frame_camera;
@@ -282,8 +315,7 @@ static conic_status begin_sums(accumulating *work, conic_accumulation **sums) {
   if (facts.width == camera->width && facts.height == camera->height && facts.planes == planes &&
       facts.first_sample == 0)
     return CONIC_OK;
-  cli_error(CLI_INPUT, "%s: cannot go on: its samples are of another size, or of other planes", own->resume_path);
-  return CONIC_ERROR_INPUT;
+  return refuse_sums(own, camera, planes, &facts);
 }
 
 static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
@@ -304,9 +336,15 @@ static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
     options.shade = light_source_sample;
     options.sample_planes = 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO;
   }
-  if (work->job->sharing == CLI_SHARES_SAMPLES)
-    return cli_accumulate_together(work->session, work->job, &options, own->is_resumable ? keep_sums : NULL, sums);
-  return conic_accumulate(work->session->context, &options, sums);
+  conic_status status =
+      work->job->sharing == CLI_SHARES_SAMPLES
+          ? cli_accumulate_together(work->session, work->job, &options, own->is_resumable ? keep_sums : NULL, sums)
+          : conic_accumulate(work->session->context, &options, sums);
+  if (status != CONIC_ERROR_ARGUMENT || !own->resume_path)
+    return status;
+  cli_note(work->session, "%s.sums was begun with other inputs, or another view, lens, light or option",
+           own->resume_path);
+  return CONIC_ERROR_INPUT;
 }
 
 /* --time and --noise end before N, and a file may hold more than N. */
@@ -329,6 +367,8 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
   if (status == CONIC_OK)
     status = find_focus(session, job, image);
   cli_accumulate_rest(job);
+  if (status == CONIC_OK && i_frame == job->frames.first - 1)
+    tell_wide_lens(session, job);
   job->statistics = work.statistics;                            /* for the header of a preview */
   if (status == CONIC_OK && job->accumulating.is_shutter_given) /* the middle was drawn; the way starts at the frame */
     status = cli_scene_camera(job, i_frame, &work.way.frame_camera);

@@ -49,9 +49,10 @@ conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
 
 /* Lengths in spacings become world units. */
 static conic_status resolve_lengths(cli_session *session, cli_render_job *job) {
+  const cli_length *lens = &job->accumulating.width;
   double spacing = 1.0;
   conic_status status = CONIC_OK;
-  int has_spacings = job->epsilon.is_in_spacings || job->near_z.is_in_spacings;
+  int has_spacings = job->epsilon.is_in_spacings || job->near_z.is_in_spacings || lens->is_in_spacings;
   int is_known = conic_source_measure(job->source)->spacing > 0.0;
   if (has_spacings && !is_known && (cli_lod_is_wanted(job) || job->abilities & CONIC_SOURCE_CLUSTERS)) {
     cli_error(CLI_USAGE,
@@ -65,6 +66,7 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job) {
     job->options.epsilon = job->epsilon.value * (job->epsilon.is_in_spacings ? spacing : 1.0);
   if (job->near_z.value >= 0.0)
     job->options.near_z = job->near_z.value * (job->near_z.is_in_spacings ? spacing : 1.0);
+  job->accumulating.aperture = lens->value * (lens->is_in_spacings ? spacing : 1.0);
   return status;
 }
 

@@ -7,12 +7,11 @@
 /* Rows of an option table; `own` is a cli_accumulate_job's address. */
 #define CLI_LENS_OPTIONS(own)                                                                                          \
   {"aperture",                                                                                                         \
-   CLI_NUMBER,                                                                                                         \
-   &(own)->aperture,                                                                                                   \
+   CLI_PARSED,                                                                                                         \
+   &(own)->width,                                                                                                      \
    "D",                                                                                                                \
-   "the diameter of the lens, in world units; what is out of focus blurs [0: a pinhole]",                              \
-   0,                                                                                                                  \
-   1e29,                                                                                                               \
+   "the diameter of the lens: a length, also in spacings (2x); what is out of focus blurs [0: a pinhole]",             \
+   .parse = cli_parse_length,                                                                                          \
    .is_given = &(own)->is_given},                                                                                      \
       {"focus",                                                                                                        \
        CLI_PARSED,                                                                                                     \
@@ -20,7 +19,7 @@
        "Z",                                                                                                            \
        "the depth at which all is sharp; X,Y: what is at that pixel; auto: what is in the picture's middle [auto]",    \
        .parse = cli_parse_focus,                                                                                       \
-       .is_given = &(own)->is_given},                                                                                  \
+       .is_given = &(own)->is_lens_given},                                                                             \
       {"blades",                                                                                                       \
        CLI_INT,                                                                                                        \
        &(own)->n_blades,                                                                                               \
@@ -28,14 +27,14 @@
        "the corners of the lens; 0: it is round [0]",                                                                  \
        0,                                                                                                              \
        CONIC_MAX_BLADES,                                                                                               \
-       .is_given = &(own)->is_given},                                                                                  \
+       .is_given = &(own)->is_lens_given},                                                                             \
       {"shutter",                                                                                                      \
        CLI_PARSED,                                                                                                     \
        (own)->shutter,                                                                                                 \
        "A:B",                                                                                                          \
        "open from A to B, in frames from the one drawn, along a --turntable, the cameras of a file or --motion: "      \
        "0:0.5 "                                                                                                        \
-       "blurs half the way to the next [closed]",                                                                      \
+       "blurs half the way to the next; up to 100000 either way [closed]",                                             \
        .parse = cli_parse_shutter,                                                                                     \
        .is_given = &(own)->is_shutter_given},                                                                          \
   {                                                                                                                    \
