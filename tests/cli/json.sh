@@ -129,8 +129,6 @@ if [[ -x $3/bin/conic-mpi ]] && command -v mpirun > /dev/null; then
   OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n 2 "$3/bin/conic-mpi" render knot.ply \
     --plain -o team.exr --aov all --size 64x64 --json runs/render-team.json < /dev/null || fail "two ranks cannot draw"
   echo render > runs/render-team.definition
-else
-  unset "wanted[render-team]"
 fi
 write render-octree render_octree render knot.cot -o lod.exr --error 2 --size 512x512
 write render-mesh render_mesh render triangle.obj --as mesh --size 256x256 -o triangle.exr
@@ -251,6 +249,11 @@ if [[ $has_zstd -eq 1 ]]; then
 else
   unset "wanted[layer]" "wanted[cut]" "wanted[merge]" "wanted[render-layers]" "wanted[info-layers]" "wanted[info-kept]"
   unseen+=" layer.* layers_drawn.* info_layers.* render.layers"
+fi
+
+if [[ ! -e runs/render-team.json ]]; then
+  unset "wanted[render-team]"
+  unseen+=" render.team render.team.*"
 fi
 
 for name in "${!wanted[@]}"; do
