@@ -67,7 +67,7 @@ conic_status conic_source_windows_count(const conic_source_windows *w, conic_ren
 }
 
 /* Where a splat's centre lies, as a pinhole would see it; 0 where it is not in front. */
-static int find_center(const conic_source_windows *w, const conic_splats *splats, size_t i, double pixel[2]) {
+static int find_splat_pixel(const conic_source_windows *w, const conic_splats *splats, size_t i, double pixel[2]) {
   double at[3];
   for (int row = 0; row < 3; row++) {
     const double *matrix = w->camera.cam_from_world[row];
@@ -91,7 +91,7 @@ void conic_source_windows_weigh(const conic_source_windows *w, const conic_windo
     weights[k] = splats_a_pixel * (double)(list[k].x_end - list[k].x_begin) * (double)(list[k].y_end - list[k].y_begin);
   for (size_t i = 0; i < splats->count; i += step) {
     double pixel[2];
-    if (!find_center(w, splats, i, pixel))
+    if (!find_splat_pixel(w, splats, i, pixel))
       continue;
     for (size_t k = 0; k < n; k++)
       if (pixel[0] >= (double)list[k].x_begin && pixel[0] < (double)list[k].x_end &&

@@ -76,7 +76,7 @@ static void order_windows(window_work *w) {
   }
 }
 
-static conic_status plan_windows(window_work *w) {
+static conic_status choose_windows(window_work *w) {
   const conic_camera *camera = &w->windows.camera;
   double pixels = (double)camera->width * (double)camera->height / (double)(w->team->count * WINDOWS_EACH), side = 1.0;
   while (side * side < pixels)
@@ -89,19 +89,19 @@ static conic_status plan_windows(window_work *w) {
 
 /* --- pixels on their way --- */
 
-static size_t plane_bytes(conic_plane plane) {
+static size_t pixel_bytes_of(conic_plane plane) {
   return 4 * (size_t)conic_plane_describe(plane)->n_channels;
 }
 
 static size_t window_bytes(const window_work *w, const conic_window *window) {
   size_t n = 0;
   for (int i = 0; i < CONIC_N_PLANES; i++)
-    n += w->planes >> i & 1 ? plane_bytes((conic_plane)i) : 0;
+    n += w->planes >> i & 1 ? pixel_bytes_of((conic_plane)i) : 0;
   return n * (size_t)(window->x_end - window->x_begin) * (size_t)(window->y_end - window->y_begin);
 }
 
 /* On the first process, of each window. */
-static void place_window(void *cookie, int from, void *bytes, size_t n_bytes) {
+static void take_window(void *cookie, int from, void *bytes, size_t n_bytes) {
   window_work *w = cookie;
   window_result result;
   double start = cli_seconds();
@@ -110,7 +110,7 @@ static void place_window(void *cookie, int from, void *bytes, size_t n_bytes) {
   const conic_window *window = &w->list[result.i_window];
   size_t width = (size_t)(window->x_end - window->x_begin);
   for (int i = 0; i < CONIC_N_PLANES; i++) {
-    size_t size = plane_bytes((conic_plane)i);
+    size_t size = pixel_bytes_of((conic_plane)i);
     for (int y = window->y_begin; y < window->y_end && w->planes >> i & 1; y++, pixels += width * size)
       memcpy((char *)w->image->planes[i] + ((size_t)y * (size_t)w->image->width + (size_t)window->x_begin) * size,
              pixels, width * size);
@@ -132,8 +132,8 @@ static conic_status hand_window(const window_work *w, size_t i_window, const con
   memcpy(bytes, &result, sizeof result);
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (w->planes >> i & 1) {
-      memcpy(bytes + at, pixels->planes[i], n * plane_bytes((conic_plane)i));
-      at += n * plane_bytes((conic_plane)i);
+      memcpy(bytes + at, pixels->planes[i], n * pixel_bytes_of((conic_plane)i));
+      at += n * pixel_bytes_of((conic_plane)i);
     }
   w->team->hand(bytes, *n_bytes);
   free(bytes);
@@ -142,7 +142,7 @@ static conic_status hand_window(const window_work *w, size_t i_window, const con
 
 /* --- drawing --- */
 
-static conic_status draw_one(window_work *w, size_t i_window) {
+static conic_status draw_given_window(window_work *w, size_t i_window) {
   const conic_window *window = &w->list[i_window];
   conic_context *context = w->session->context;
   conic_image pixels;
@@ -163,12 +163,12 @@ static conic_status draw_one(window_work *w, size_t i_window) {
 /* The first one is the first process's: it has statistics of its own, then. */
 static conic_status draw_given(window_work *w) {
   uint64_t unit;
-  w->team->share((uint64_t)w->n - 1, w->team->index == 0 ? place_window : NULL, w);
-  conic_status status = w->team->index == 0 ? draw_one(w, 0) : CONIC_OK;
+  w->team->share((uint64_t)w->n - 1, w->team->index == 0 ? take_window : NULL, w);
+  conic_status status = w->team->index == 0 ? draw_given_window(w, 0) : CONIC_OK;
   while (status == CONIC_OK && (unit = w->team->next()) != CLI_NO_UNIT) {
     status = conic_progress(w->session->context, "draw", (double)(unit + 1) / (double)w->n);
     if (status == CONIC_OK)
-      status = draw_one(w, (size_t)unit + 1);
+      status = draw_given_window(w, (size_t)unit + 1);
   }
   return status;
 }
@@ -181,7 +181,7 @@ conic_status cli_draw_together(cli_session *session, cli_render_job *job, const 
   conic_status status =
       conic_source_windows_begin(job->source, job->renderer, camera, &job->options, &job->view, &w.windows);
   if (status == CONIC_OK)
-    status = plan_windows(&w);
+    status = choose_windows(&w);
   status = cli_sharing_end(session, job, status);
   if (status == CONIC_OK)
     status = cli_sharing_end(session, job, draw_given(&w));

@@ -58,6 +58,7 @@ declare -A wanted=(
   [mls-densify]="$builder flat"
   [render]="$render methods.conic"
   [render-octree]="$render methods.conic primitives.inner_nodes primitives.leaves error_px error_px_asked?"
+  [render-team]="$render team.shares team.processes"
   [render-accumulated]="$render accumulated.samples accumulated.resumed accumulated.noise? accumulated.focus?"
   [render-odd]="$render skipped.nan? skipped.zero? skipped.duplicate? skipped.isolated? skipped.failed?"
   [render-lit]="$render ao? shadow? lamps? ms.light hash.ao hash.shadow"
@@ -124,6 +125,11 @@ write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 10k
 write mls-densify mls_densify mls densify thinner.ply -o dense.ply --spacing 0.7x
 write render render render knot.ply -o knot.exr --aov all --size 512x512
 write render-accumulated render render knot.ply -o accumulated.exr --accumulate 4 --aperture 0.1 --size 64x64
+if [[ -x $3/bin/conic-mpi ]] && command -v mpirun > /dev/null; then
+  OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n 2 "$3/bin/conic-mpi" render knot.ply \
+    --plain -o team.exr --aov all --size 64x64 --json runs/render-team.json < /dev/null || fail "two ranks cannot draw"
+  echo render > runs/render-team.definition
+fi
 write render-octree render_octree render knot.cot -o lod.exr --error 2 --size 512x512
 write render-mesh render_mesh render triangle.obj --as mesh --size 256x256 -o triangle.exr
 write render-patches render_patches render thin.ply -o patches.exr --method patch --zoom 4 --size 256x256
@@ -250,6 +256,11 @@ if [[ $has_zstd -eq 1 ]]; then
 else
   unset "wanted[layer]" "wanted[cut]" "wanted[merge]" "wanted[render-layers]" "wanted[info-layers]" "wanted[info-kept]"
   unseen+=" layer.* layers_drawn.* info_layers.* render.layers"
+fi
+
+if [[ ! -e runs/render-team.json ]]; then
+  unset "wanted[render-team]"
+  unseen+=" render.team render.team.*"
 fi
 
 for name in "${!wanted[@]}"; do

@@ -64,6 +64,22 @@ same_hashes alone.json together.json "the mean of samples up to a noise on three
 cmp alone.exr.sums together.exr.sums || fail "the sums that are kept differ"
 grep -q '"samples": 64' together.json || fail "the noise ends it elsewhere: $(grep '"samples": [0-9]' together.json)"
 
+# Windows of one picture, of splats and of an octree's, also of several samples a pixel; what has none is drawn by one
+windows=(render knot.ply --plain --size 200x130 --aov rgba,Z,N,id,count --threads 1)
+run_as_typed 0 "${windows[@]}" -o alone.exr --json alone.json
+ranks 3 0 "${windows[@]}" -o together.exr --json together.json
+same_hashes alone.json together.json "a picture in windows on three ranks"
+cmp alone.exr together.exr || fail "the file of a picture in windows differs"
+for key in splats_in splats_drawn fragments pixels_covered; do
+  [[ $(grep "\"$key\"" alone.json) == "$(grep "\"$key\"" together.json)" ]] || fail "$key of windows differs"
+done
+"$conic" octree knot.ply -o knot.cot
+octree=(render knot.cot --plain --size 160x130 --samples 2 --error 1 --aov rgba,id --threads 1)
+run_as_typed 0 "${octree[@]}" -o alone.exr --json alone.json
+ranks 2 0 "${octree[@]}" -o together.exr --json together.json
+same_hashes alone.json together.json "an octree in windows on two ranks"
+grep -q '"shares": "windows"' together.json || fail "an octree is not drawn in windows"
+
 for job in $jobs; do
   wait "$job" || failures=$((failures + 1))
 done
