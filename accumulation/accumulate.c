@@ -28,7 +28,7 @@ static conic_status draw_sample(conic_context *context, const conic_accumulate_o
   return status;
 }
 
-static uint64_t key_of(const conic_accumulation *sums, const conic_image *first) {
+static uint64_t key_of_first(const conic_accumulation *sums, const conic_image *first) {
   conic_image known = *first; /* without the planes that were drawn for `shade` alone */
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (!(sums->planes >> i & 1))
@@ -42,7 +42,7 @@ static conic_status settle_key(conic_context *context, const conic_accumulate_op
   conic_status status = draw_sample(context, options, 0, image);
   if (status != CONIC_OK)
     return status;
-  uint64_t key = key_of(sums, image);
+  uint64_t key = key_of_first(sums, image);
   if (sums->key && sums->key != key)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "accumulate: the first sample is another one: the scene, the camera or an option differs");
@@ -90,7 +90,7 @@ conic_status conic_accumulate_range(conic_context *context, const conic_accumula
     if (status == CONIC_OK)
       status = draw_sample(context, options, i, &image);
     if (status == CONIC_OK && i == 0)
-      sums->key = key_of(sums, &image);
+      sums->key = key_of_first(sums, &image);
     if (status == CONIC_OK)
       status = conic_accumulation_add(sums, &image);
   }

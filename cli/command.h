@@ -32,7 +32,7 @@ typedef struct cli_command {
   const char *description; /* whole sentences: what goes in, what comes out */
   const cli_words *words;
   cli_example examples[4];
-  int is_shared; /* a team works on it together (cli/team.h); else its first process does alone */
+  int is_shared; /* a team works on it together (cli/session_team.h); else its first process does alone */
 } cli_command;
 
 extern const cli_command cli_make, cli_prepare, cli_octree, cli_layer, cli_merge, cli_cut, cli_mls, cli_hybrid,

@@ -6,7 +6,7 @@
 
 #include "cli/host_keeps.h"
 #include "cli/session.h"
-#include "cli/team.h"
+#include "cli/session_team.h"
 #include "core/files/file.h"
 
 /* What has_items remembers of each open object or array. */

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/team.h"
+#include "cli/session_team.h"
 #include "core/base/nearest_word.h"
 
 static const cli_command *const commands[] = {

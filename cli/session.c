@@ -9,9 +9,9 @@
 
 #include "cli/host.h"
 #include "cli/host_keeps.h"
+#include "cli/session_team.h"
 #include "cli/shell.h"
 #include "cli/stopper.h"
-#include "cli/team.h"
 #include "core/base/clock.h"
 #include "core/files/guard.h"
 

@@ -33,7 +33,7 @@ typedef struct cli_session {
   void (*show_help)(struct cli_session *session, const struct cli_option_table *table);
   void *help;
   struct cli_host *host; /* cli/host.h: what runs the command within itself; null: a shell */
-  struct cli_team *team; /* cli/team.h: the processes that run it together; null: this one is alone */
+  struct cli_team *team; /* cli/session_team.h: the processes that run it together; null: this one is alone */
 } cli_session;
 
 /* Makes the context. Returns CLI_DONE or, after an error message, the exit code. */

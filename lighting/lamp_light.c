@@ -90,7 +90,7 @@ static conic_status light_lamp(lamp_lighting *work, const conic_lamp *lamp) {
 }
 
 /* A pixel at the border of what is drawn may have a colour, but no depth. */
-static conic_status find_depths(lamp_lighting *work) {
+static conic_status find_lamp_depths(lamp_lighting *work) {
   conic_light_work *l = work->l;
   const float *z = l->image->planes[CONIC_PLANE_Z];
   size_t n = conic_image_pixels(l->image);
@@ -107,7 +107,7 @@ static conic_status find_depths(lamp_lighting *work) {
 
 conic_status conic_light_add_lamps(conic_light_work *l) {
   lamp_lighting work = {.l = l, .offset = conic_receiver_offset(l->options->samples)};
-  conic_status status = find_depths(&work);
+  conic_status status = find_lamp_depths(&work);
   for (size_t i = 0; i < l->options->n_lamps && status == CONIC_OK; i++) {
     status = conic_progress(l->context, "light", (double)i / (double)l->options->n_lamps);
     if (status == CONIC_OK)

@@ -17,7 +17,7 @@ static int are_lengths(const double *of, int n) {
   return 1;
 }
 
-static const char *fault_of(const conic_lamp *lamp) {
+static const char *fault_of_lamp(const conic_lamp *lamp) {
   double normal[3];
   if (lamp->kind != CONIC_LAMP_SPHERE && lamp->kind != CONIC_LAMP_DISC && lamp->kind != CONIC_LAMP_RECTANGLE)
     return "a lamp is of an unknown kind";
@@ -40,7 +40,7 @@ const char *conic_lamps_fault(const conic_lighting_options *options) {
   if (options->n_lamps > CONIC_MAX_LAMPS || (options->n_lamps > 0 && !options->lamps))
     return "there are 0 to 8 lamps";
   for (size_t i = 0; i < options->n_lamps && !fault; i++)
-    fault = fault_of(&options->lamps[i]);
+    fault = fault_of_lamp(&options->lamps[i]);
   return fault;
 }
 

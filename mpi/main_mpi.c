@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/session_team.h"
 #include "cli/shell.h"
-#include "cli/team.h"
 #include "core/base/machine.h"
 #include "mpi/ranks.h"
 

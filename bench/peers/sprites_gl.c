@@ -14,7 +14,7 @@ typedef struct sprite {
   float position[3], normal[3], radius, color[3];
 } sprite;
 
-static void upload(const peer_splat *splats, unsigned n) {
+static void upload_sprites(const peer_splat *splats, unsigned n) {
   static const struct {
     int n;
     size_t offset;
@@ -119,7 +119,7 @@ int main(int argc, char **argv) {
   glGenVertexArrays(1, &vertices);
   glBindVertexArray(vertices);
   double start = spent_ms();
-  upload(splats, n);
+  upload_sprites(splats, n);
   double uploaded = spent_ms() - start;
   open_targets(&c);
   GLuint program = use_program(&c);

@@ -12,8 +12,8 @@
 #include "cli/render/lit_picture.h"
 #include "cli/render/stereo.h"
 #include "cli/render/views.h"
+#include "cli/session_team.h"
 #include "cli/stopper.h"
-#include "cli/team.h"
 #include "core/base/rank.h"
 
 /* --- the camera on its way --- */

@@ -4,7 +4,7 @@
 
 #include "accumulation/scattered.h"
 #include "cli/render/sharing.h"
-#include "cli/team.h"
+#include "cli/session_team.h"
 
 enum { LEAST_SAMPLES = 16, UNITS_EACH = 4 };
 
@@ -63,7 +63,7 @@ static conic_status take_sums(const together *t, int from) {
 }
 
 /* Two by two, so that it takes the logarithm of their number. */
-static conic_status join_all(const together *t) {
+static conic_status join_all_sums(const together *t) {
   int index = t->team->index, count = t->team->count;
   conic_status status = CONIC_OK;
   for (int step = 1; step < count; step *= 2) {
@@ -84,7 +84,7 @@ static conic_status join_all(const together *t) {
 static conic_status run_stage(const together *t, uint64_t begin) {
   conic_status status = cli_sharing_end(t->session, t->job, add_given(t, begin, stage_end(t, begin)));
   if (status == CONIC_OK)
-    status = join_all(t);
+    status = join_all_sums(t);
   if (status == CONIC_OK && t->keep && t->team->index == 0)
     status = t->keep(t->options->cookie, t->sums);
   return cli_sharing_end(t->session, t->job, status);

@@ -1,4 +1,4 @@
-#include "cli/render/lamp_job.h"
+#include "cli/lamp_job.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "lighting/light_axes.h"
 
 /* R, or WxH. */
-static int parse_size(const char *text, double size[2], int *is_flat) {
+static int parse_lamp_size(const char *text, double size[2], int *is_flat) {
   double radius;
   *is_flat = strchr(text, 'x') != NULL;
   if (*is_flat)
@@ -21,7 +21,7 @@ static int parse_size(const char *text, double size[2], int *is_flat) {
 }
 
 /* The parts of a text between colons; 0: there are more than `most`. */
-static int split(char *text, int most, char *parts[]) {
+static int split_words(char *text, int most, char *parts[]) {
   int n = 0;
   for (char *rest = text; rest; n++) {
     if (n == most)
@@ -42,7 +42,7 @@ int cli_parse_lamp(const char *text, cli_render_job *job) {
   if (i == CONIC_MAX_LAMPS || strlen(text) >= sizeof copy)
     return 0;
   strcpy(copy, text);
-  int n = split(copy, N_PARTS, parts);
+  int n = split_words(copy, N_PARTS, parts);
   conic_lamp *lamp = &own->lamps[own->n_lamps++];
   double size[2] = {0.0, 0.0};
   *lamp = (conic_lamp){.color = {1.0f, 1.0f, 1.0f}};
@@ -50,7 +50,7 @@ int cli_parse_lamp(const char *text, cli_render_job *job) {
     return 0;
   if (n > COLOR && !cli_parse_color_to(parts[COLOR], strlen(parts[COLOR]), 1e12, lamp->color))
     return 0;
-  if (n > SIZE && !parse_size(parts[SIZE], size, &is_rectangle))
+  if (n > SIZE && !parse_lamp_size(parts[SIZE], size, &is_rectangle))
     return 0;
   if (n <= AHEAD) {
     lamp->radius = 0.5 * size[0];

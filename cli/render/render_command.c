@@ -8,7 +8,7 @@
 #include "cli/render/frames.h"
 #include "cli/render/sharing.h"
 #include "cli/render/stereo.h"
-#include "cli/team.h"
+#include "cli/session_team.h"
 #include "conic/gaussian_judge.h"
 #include "core/base/message.h"
 

@@ -5,8 +5,8 @@
 #include "cli/arguments.h"
 #include "cli/device_option.h"
 #include "cli/json_write.h"
+#include "cli/lamp_job.h"
 #include "cli/render/accumulate_job.h"
-#include "cli/render/lamp_job.h"
 #include "cli/render/top_job.h"
 #include "core/pictures/cryptomatte.h"
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/render/frames.h"
-#include "cli/team.h"
+#include "cli/session_team.h"
 #include "source/source_parts.h"
 
 struct cli_shares {

@@ -1,5 +1,5 @@
-/* How a team (cli/team.h) shares one `conic render`: frames one by one, or of each frame the samples or the windows.
- * Alone, each function does what one process does. */
+/* How a team (cli/session_team.h) shares one `conic render`: frames one by one, or of each frame the samples or
+ * the windows. Alone, each function does what one process does. */
 #ifndef CONIC_SHARING_H
 #define CONIC_SHARING_H
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/render/sharing.h"
-#include "cli/team.h"
+#include "cli/session_team.h"
 #include "core/image/image_common.h"
 #include "raster/frame/statistics.h"
 #include "source/source_parts.h"
@@ -34,7 +34,7 @@ typedef struct window_work {
 
 /* --- the list --- */
 
-static int round_up(double length) {
+static int round_to_step(double length) {
   int side = (int)length;
   side = side < LEAST_SIDE ? LEAST_SIDE : side;
   return (side + CONIC_WINDOW_STEP - 1) / CONIC_WINDOW_STEP * CONIC_WINDOW_STEP;
@@ -81,7 +81,7 @@ static conic_status choose_windows(window_work *w) {
   double pixels = (double)camera->width * (double)camera->height / (double)(w->team->count * WINDOWS_EACH), side = 1.0;
   while (side * side < pixels)
     side += CONIC_WINDOW_STEP;
-  conic_status status = list_windows(w, round_up(side));
+  conic_status status = list_windows(w, round_to_step(side));
   if (status == CONIC_OK)
     order_windows(w);
   return status;

@@ -95,7 +95,8 @@ static void find_material_color(const conic_assimp_writer *w, const struct aiMat
 }
 
 /* Of the modes, glTF says which; elsewhere alpha is what it is. A wholly invisible material is a file's mistake. */
-static void find_alpha(const conic_assimp_writer *w, const struct aiMaterial *material, conic_assimp_record *record) {
+static void find_alpha_mode(const conic_assimp_writer *w, const struct aiMaterial *material,
+                            conic_assimp_record *record) {
   struct aiString mode = {0};
   ai_real opacity = 1, cutoff = (ai_real)0.5;
   record->opacity = 1.0f;
@@ -120,7 +121,7 @@ static void send_material(conic_assimp_writer *w, const struct aiMaterial *mater
   unsigned i_coordinate;
   int is_clamped = 0, has_texture = find_texture(material, &path, &i_coordinate, &is_clamped);
   find_material_color(w, material, has_texture, record.color);
-  find_alpha(w, material, &record);
+  find_alpha_mode(w, material, &record);
   record.is_clamped = (uint32_t)is_clamped;
   if (!has_texture) {
     conic_assimp_send(w, record, NULL, 0);

@@ -55,7 +55,7 @@ static conic_status read_color(void *data) {
 }
 
 /* A number from 0 to 1; what is none, such as -halo, says nothing. */
-static conic_status read_part(material_reader *reader, int is_opacity) {
+static conic_status read_material_part(material_reader *reader, int is_opacity) {
   const char *word;
   size_t length;
   double value;
@@ -68,11 +68,11 @@ static conic_status read_part(material_reader *reader, int is_opacity) {
 }
 
 static conic_status read_opacity(void *data) {
-  return read_part(data, 1);
+  return read_material_part(data, 1);
 }
 
 static conic_status read_transparency(void *data) {
-  return read_part(data, 0);
+  return read_material_part(data, 0);
 }
 
 /* [-option value …] FILE: the file is the last word; `-clamp on` is the one option that matters here. An empty path

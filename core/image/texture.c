@@ -81,7 +81,7 @@ static conic_status add_level(conic_texture *texture, int width, int height, flo
   return CONIC_OK;
 }
 
-static float alpha_of(const float *texel) {
+static float alpha_of_texel(const float *texel) {
   return texel[3] > 0.0f ? texel[3] < 1.0f ? texel[3] : 1.0f : 0.0f;
 }
 
@@ -93,7 +93,7 @@ static void make_texels(const conic_texture_level *level) {
       float value = alpha > 0.0f ? texel[channel] / alpha : 0.0f;
       texel[channel] = value >= -1e6f && value <= 1e6f ? value : 0.0f;
     }
-    texel[3] = alpha_of(texel);
+    texel[3] = alpha_of_texel(texel);
   }
 }
 
@@ -202,7 +202,7 @@ void conic_texture_sample_rgba(const conic_texture *texture, const float uv[2], 
                                const float across[2], float rgba[4]) {
   const conic_texture *cover = texture->cover;
   conic_texture_sample_channels(cover ? cover : texture, uv, along, across, rgba);
-  float alpha = cover ? alpha_of(rgba) : 1.0f;
+  float alpha = cover ? alpha_of_texel(rgba) : 1.0f;
   for (int channel = 0; channel < 3 && cover; channel++)
     rgba[channel] = alpha > 0.0f ? rgba[channel] / alpha : 0.0f;
   rgba[3] = alpha;

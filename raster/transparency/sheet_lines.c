@@ -174,7 +174,7 @@ static void show_layers(conic_pixel_sheets *sheets, shown_pixel *shown) {
 }
 
 /* A number in [0, 1) of the pixel's own. */
-static double turn_of(int x, int y) {
+static double turn_of_line(int x, int y) {
   uint32_t h = (uint32_t)x * UINT32_C(0x9e3779b1) ^ (uint32_t)y * UINT32_C(0x85ebca77);
   h = (h ^ h >> 15) * UINT32_C(0x2c1b3c6d);
   h = (h ^ h >> 12) * UINT32_C(0x297a2d39);
@@ -183,7 +183,7 @@ static double turn_of(int x, int y) {
 
 /* The surface behind which no more light than the chance says is left. */
 static void show_one(const conic_sheet_picture *p, conic_pixel_sheets *sheets, shown_pixel *shown) {
-  double chance = p->chance + turn_of(sheets->x, sheets->y), light = 1.0;
+  double chance = p->chance + turn_of_line(sheets->x, sheets->y), light = 1.0;
   conic_sheet sheet;
   chance -= chance < 1.0 ? 0.0 : 1.0;
   while (light > LEAST_LIGHT && conic_pixel_sheets_next(sheets, &sheet)) {

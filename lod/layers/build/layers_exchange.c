@@ -24,7 +24,7 @@ void conic_layers_arrivals_end(conic_layers_arrivals *arrivals) {
   memset(arrivals, 0, sizeof *arrivals);
 }
 
-static conic_status put_aside(conic_layers_arrivals *a, int from, const void *samples, size_t n) {
+static conic_status put_parcel_aside(conic_layers_arrivals *a, int from, const void *samples, size_t n) {
   if (n == 0)
     return CONIC_OK;
   conic_status status = conic_memory_reserve(a->context, &a->list, a->n, a->n + 1, &a->room, sizeof *a->list);
@@ -73,7 +73,7 @@ static conic_status swap_parcels(exchanging *e, conic_status status, int is_last
     e->n_in[partner] = 0;
     void *received = partner == team->index ? NULL : conic_team_swap(team, partner, parcel, n_bytes, &n_received);
     if (status == CONIC_OK)
-      status = put_aside(arrivals, partner, received ? received : parcel, n_received / arrivals->sample_bytes);
+      status = put_parcel_aside(arrivals, partner, received ? received : parcel, n_received / arrivals->sample_bytes);
     arrivals->sent_bytes += received ? n_bytes : 0;
     if (received)
       team->release(team->data, received);
@@ -91,7 +91,7 @@ static conic_status send_sample(void *to, const conic_layers_sample *sample) {
   if (owner != e->shares->team->index)
     return swap_parcels(e, CONIC_OK, 0);
   e->n_in[owner] = 0;
-  return put_aside(e->arrivals, owner, parcel_for(e, owner), e->room);
+  return put_parcel_aside(e->arrivals, owner, parcel_for(e, owner), e->room);
 }
 
 conic_status conic_layers_exchange(const conic_layers_shares *shares, const conic_layers_placing *placing,

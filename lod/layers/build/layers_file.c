@@ -152,8 +152,8 @@ static conic_status write_measured(writing *w, const char *path) {
   return ferror(w->stream) ? conic_output_commit(output) : conic_output_end(output, status);
 }
 
-static conic_status write_all(conic_context *context, const char *path, const conic_layers_forest *forest,
-                              conic_layers_header *header, conic_layers_moving *moving) {
+static conic_status write_all_bytes(conic_context *context, const char *path, const conic_layers_forest *forest,
+                                    conic_layers_header *header, conic_layers_moving *moving) {
   writing w = {.context = context,
                .forest = forest,
                .header = header,
@@ -176,7 +176,7 @@ conic_status conic_layers_write(conic_context *context, const char *path, const 
                                 const conic_layers_forest *forest, conic_layers_header *header) {
   conic_layers_moving moving = {.context = context, .team = team, .path = path, .clouds = &forest->clouds};
   if (!team)
-    return write_all(context, path, forest, header, NULL);
-  conic_status status = team->index == 0 ? write_all(context, path, forest, header, &moving) : CONIC_OK;
+    return write_all_bytes(context, path, forest, header, NULL);
+  conic_status status = team->index == 0 ? write_all_bytes(context, path, forest, header, &moving) : CONIC_OK;
   return conic_layers_moves_end(&moving, status);
 }

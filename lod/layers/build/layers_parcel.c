@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "lod/layers/build/layers_waiting.h"
 
-static size_t facets_bytes(const conic_layers_branch *branch) {
+static size_t parcel_facets_bytes(const conic_layers_branch *branch) {
   return (branch->n_drawn * sizeof *branch->facets + 7) / 8 * 8;
 }
 
@@ -13,7 +13,7 @@ static size_t facets_bytes(const conic_layers_branch *branch) {
  * some, its keys and facets, and its children; all of it a multiple of 8. */
 static size_t own_bytes(const conic_layers_branch *branch, int has_samples) {
   return sizeof *branch + branch->n_drawn * ((has_samples ? branch->stride : 0) + sizeof *branch->keys) +
-         facets_bytes(branch);
+         parcel_facets_bytes(branch);
 }
 
 static size_t packed_bytes(const conic_layers_branch *branch, int has_samples) {
@@ -23,7 +23,7 @@ static size_t packed_bytes(const conic_layers_branch *branch, int has_samples) {
   return n;
 }
 
-static conic_status pack(const conic_layers_branch *branch, int has_samples, unsigned char **at) {
+static conic_status pack_parcel(const conic_layers_branch *branch, int has_samples, unsigned char **at) {
   size_t n = branch->n_drawn;
   conic_status status = CONIC_OK;
   memcpy(*at, branch, sizeof *branch);
@@ -37,10 +37,10 @@ static conic_status pack(const conic_layers_branch *branch, int has_samples, uns
   *at += n * sizeof *branch->keys;
   if (status == CONIC_OK)
     status = conic_layers_fetch_facets(branch, 0, n, (conic_layers_facet *)(void *)*at);
-  *at += facets_bytes(branch);
+  *at += parcel_facets_bytes(branch);
   for (int i = 0; i < 2 && status == CONIC_OK; i++)
     if (branch->children[i])
-      status = pack(branch->children[i], 0, at);
+      status = pack_parcel(branch->children[i], 0, at);
   return status;
 }
 
@@ -48,7 +48,7 @@ conic_status conic_layers_parcel_pack(const conic_layers_branch *branch, unsigne
   *n_bytes = packed_bytes(branch, 1);
   *bytes = conic_memory_allocate(branch->waiting->context, *n_bytes, 1);
   unsigned char *at = *bytes;
-  return at ? pack(branch, 1, &at) : CONIC_ERROR_MEMORY;
+  return at ? pack_parcel(branch, 1, &at) : CONIC_ERROR_MEMORY;
 }
 
 static conic_status unpack(conic_layers_waiting *waiting, int has_samples, const unsigned char **at,
@@ -69,7 +69,7 @@ static conic_status unpack(conic_layers_waiting *waiting, int has_samples, const
     memcpy(made->keys, *at, made->n_drawn * sizeof *made->keys);
     *at += made->n_drawn * sizeof *made->keys;
     memcpy(made->facets, *at, made->n_drawn * sizeof *made->facets);
-    *at += facets_bytes(made);
+    *at += parcel_facets_bytes(made);
   }
   if (!has_samples)
     conic_layers_drop_samples(made);

@@ -45,9 +45,9 @@ static void place_sample(const conic_layers_placing *grid, const conic_layers_bl
   sample->key = conic_layers_key(steps[0], steps[1], steps[2]);
 }
 
-static conic_status place_block(const conic_layers_placing *grid, const conic_layers_block *block,
-                                const unsigned char *raws, conic_layers_sample *sample, conic_layers_take *take,
-                                void *to) {
+static conic_status place_written_block(const conic_layers_placing *grid, const conic_layers_block *block,
+                                        const unsigned char *raws, conic_layers_sample *sample, conic_layers_take *take,
+                                        void *to) {
   const conic_layers_intake *intake = grid->intake;
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < block->count && status == CONIC_OK; i++) {
@@ -75,7 +75,7 @@ conic_status conic_layers_place_all(const void *placing, conic_layers_take *take
     status = conic_layers_intake_read(grid->intake, &offset, &block, raws, &is_there);
     if (status != CONIC_OK || !is_there)
       break;
-    status = place_block(grid, &block, raws, sample, take, to);
+    status = place_written_block(grid, &block, raws, sample, take, to);
     n_done += block.count;
     if (status == CONIC_OK)
       status = conic_progress(context, grid->task, (double)n_done / (double)grid->intake->n_own);

@@ -36,7 +36,7 @@ void conic_layers_shares_end(conic_layers_shares *shares) {
   memset(shares, 0, sizeof *shares);
 }
 
-static size_t cell_of(const conic_layers_shares *shares, uint64_t key) {
+static size_t cell_of_key(const conic_layers_shares *shares, uint64_t key) {
   size_t low = 0, high = shares->n_cells; /* the last that begins no later than the key */
   while (high - low > 1) {
     size_t middle = low + (high - low) / 2;
@@ -49,7 +49,7 @@ static size_t cell_of(const conic_layers_shares *shares, uint64_t key) {
 }
 
 int conic_layers_shares_owner(const conic_layers_shares *shares, uint64_t key) {
-  return shares->owners[cell_of(shares, key)];
+  return shares->owners[cell_of_key(shares, key)];
 }
 
 /* Halves a place until no half holds more than `most` of some keys, ascending. */
@@ -71,7 +71,7 @@ static conic_status list_cells(sharing *s, uint64_t first, unsigned n_bits, cons
   return status == CONIC_OK ? list_cells(s, middle, n_bits - 1, keys + n_first, n - n_first, most) : status;
 }
 
-static int compare_keys(const void *a, const void *b) {
+static int compare_share_keys(const void *a, const void *b) {
   uint64_t first = *(const uint64_t *)a, second = *(const uint64_t *)b;
   return (first > second) - (first < second);
 }
@@ -85,7 +85,7 @@ static conic_status find_cells(sharing *s, const conic_layers_placing *placing, 
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < n; i++)
     keys[i] = conic_layers_key_about(placing, intake->some[i]);
-  qsort(keys, n, sizeof *keys, compare_keys);
+  qsort(keys, n, sizeof *keys, compare_share_keys);
   conic_status status = list_cells(s, 0, 3 * s->plan->bits, keys, n, most > 1 ? most : 1);
   conic_memory_release(s->shares->context, keys);
   return status;
@@ -93,12 +93,12 @@ static conic_status find_cells(sharing *s, const conic_layers_placing *placing, 
 
 static conic_status count_sample(void *to, const conic_layers_sample *sample) {
   sharing *s = to;
-  s->counts[cell_of(s->shares, sample->key)]++;
+  s->counts[cell_of_key(s->shares, sample->key)]++;
   return CONIC_OK;
 }
 
 /* Of every cell, how many samples all have of it. Cells that hold none are left out. */
-static conic_status count_cells(sharing *s, const conic_layers_placing *placing) {
+static conic_status count_share_cells(sharing *s, const conic_layers_placing *placing) {
   conic_layers_shares *shares = s->shares;
   const conic_team *team = shares->team;
   size_t n = shares->n_cells, n_kept = 0;
@@ -125,7 +125,7 @@ static conic_status count_cells(sharing *s, const conic_layers_placing *placing)
 }
 
 /* The first of some keys in a row, which lie so many bytes apart, that is past the middle of the place they share. */
-static size_t split_keys(const void *keys, size_t stride, size_t first, size_t end) {
+static size_t split_share_keys(const void *keys, size_t stride, size_t first, size_t end) {
   const char *bytes = keys;
   uint64_t low, high, at;
   memcpy(&low, bytes + first * stride, sizeof low);
@@ -144,7 +144,7 @@ static conic_status list_shared_parts(sharing *s, size_t first, size_t end, uint
   for (size_t i = first; i < end; i++)
     n += s->counts[i];
   if (n > s->most_in_part && end - first > 1) {
-    size_t middle = split_keys(shares->cells, sizeof *shares->cells, first, end);
+    size_t middle = split_share_keys(shares->cells, sizeof *shares->cells, first, end);
     conic_status status = list_shared_parts(s, first, middle, n_before);
     return status == CONIC_OK ? list_shared_parts(s, middle, end, n_before) : status;
   }
@@ -164,7 +164,7 @@ static conic_status list_shared_parts(sharing *s, size_t first, size_t end, uint
 static conic_status list_limbs(sharing *s, size_t first, size_t end) {
   conic_layers_shares *shares = s->shares;
   if (s->parts[first].rank != s->parts[end - 1].rank) {
-    size_t middle = split_keys(s->parts, sizeof *s->parts, first, end);
+    size_t middle = split_share_keys(s->parts, sizeof *s->parts, first, end);
     conic_status status = list_limbs(s, first, middle);
     if (status == CONIC_OK)
       status = list_limbs(s, middle, end);
@@ -189,14 +189,14 @@ static conic_status list_own_keys(conic_layers_shares *shares) {
   return CONIC_OK;
 }
 
-static conic_status share_out(sharing *s, const conic_layers_placing *placing, uint64_t least) {
+static conic_status share_cells_out(sharing *s, const conic_layers_placing *placing, uint64_t least) {
   conic_layers_shares *shares = s->shares;
   uint64_t n_before = 0;
   int n_ranks = shares->team->count;
   conic_status status = find_cells(s, placing, n_ranks);
   status = conic_team_agree(shares->team, status);
   if (status == CONIC_OK)
-    status = count_cells(s, placing);
+    status = count_share_cells(s, placing);
   if (status != CONIC_OK)
     return status;
   s->most_in_part = s->n_samples / ((uint64_t)n_ranks * PARTS_A_RANK);
@@ -214,7 +214,7 @@ conic_status conic_layers_shares_find(const conic_team *team, const conic_layers
   *shares = (conic_layers_shares){.context = plan->context, .team = team};
   conic_status status = CONIC_OK;
   if (team)
-    status = share_out(&s, placing, least);
+    status = share_cells_out(&s, placing, least);
   else {
     shares->limbs = conic_memory_allocate_zeroed(plan->context, 1, sizeof *shares->limbs);
     shares->n_limbs = 1;

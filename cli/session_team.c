@@ -1,4 +1,4 @@
-#include "cli/team.h"
+#include "cli/session_team.h"
 
 #include <pthread.h>
 #include <string.h>

@@ -4,8 +4,8 @@
  *
  * Collective functions are called by every process of the team in the same order. So whoever failed comes to the next
  * cli_team_agree, too, and after one that returned a failure there are no collective functions any more. */
-#ifndef CONIC_TEAM_H
-#define CONIC_TEAM_H
+#ifndef CONIC_SESSION_TEAM_H
+#define CONIC_SESSION_TEAM_H
 
 #include <stddef.h>
 #include <stdint.h>
