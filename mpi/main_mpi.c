@@ -1,4 +1,5 @@
 /* conic-mpi: the program over the ranks of an MPI job. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
@@ -6,6 +7,7 @@
 #include "cli/shell.h"
 #include "core/base/machine.h"
 #include "mpi/ranks.h"
+#include "mpi/timeline.h"
 
 /* Whether all ranks work on it: for anything else than a shared command, and for its help, the first does. */
 static int is_shared(int argc, char **argv) {
@@ -23,12 +25,23 @@ static void tell_traffic(uint64_t *sent_bytes, uint64_t *received_bytes, double 
   *waited_seconds = traffic.waited_seconds;
 }
 
-static void note_nothing(const char *kind, const char *name, uint64_t number, double from, double to,
-                         uint64_t sent_bytes) {
-  (void)kind, (void)name, (void)number, (void)from, (void)to, (void)sent_bytes;
+/* --trace FILE or --trace=FILE, which is then gone from the arguments; null where there is none. */
+static const char *take_trace(int *argc, char **argv) {
+  const char *path = NULL;
+  int n = 0;
+  for (int i = 0; i < *argc; i++)
+    if (i > 0 && strcmp(argv[i], "--trace") == 0 && i + 1 < *argc)
+      path = argv[++i];
+    else if (i > 0 && strncmp(argv[i], "--trace=", 8) == 0)
+      path = argv[i] + 8;
+    else
+      argv[n++] = argv[i];
+  argv[ *argc = n] = NULL;
+  return path;
 }
 
 static int run(int argc, char **argv) {
+  const char *trace_path = take_trace(&argc, argv);
   int threads = conic_machine_threads() / ranks_on_machine();
   cli_team team = {.index = ranks_index(),
                    .count = ranks_count(),
@@ -44,15 +57,18 @@ static int run(int argc, char **argv) {
                    .send = ranks_send,
                    .receive = ranks_receive,
                    .count_traffic = tell_traffic,
-                   .trace = note_nothing};
+                   .trace = timeline_note};
   const cli_session session = {.team = &team};
   int exit_code = CLI_DONE;
   cli_team_join(&team);
+  if (trace_path)
+    timeline_begin();
   if (is_shared(argc, argv))
     exit_code = cli_program(argc, argv, &team);
   else if (team.index == 0)
     exit_code = cli_program(argc, argv, NULL);
-  return cli_team_agree(&session, exit_code);
+  exit_code = cli_team_agree(&session, exit_code);
+  return exit_code == CLI_DONE && trace_path ? timeline_write(trace_path) : exit_code;
 }
 
 int main(int argc, char **argv) {

@@ -101,6 +101,8 @@ conic_status cli_frame_write(cli_session *session, cli_render_job *job, const co
     free(path);
   }
   job->write_ms += 1e3 * (cli_seconds() - start);
+  if (job->sharing != CLI_SHARES_FRAMES) /* whose units write */
+    cli_team_trace(session, "write", "picture", (uint64_t)i_frame, start, 0);
   return status;
 }
 

@@ -80,6 +80,13 @@ ranks 2 0 "${octree[@]}" -o together.exr --json together.json
 same_hashes alone.json together.json "an octree in windows on two ranks"
 grep -q '"shares": "windows"' together.json || fail "an octree is not drawn in windows"
 
+# A trace says what each rank did, and what more of them would do.
+ranks 2 0 "${octree[@]}" -o traced.exr --trace trace.json
+run_as_typed 0 simulate trace.json --ranks 1,2,64 --json model.json
+[[ $(grep -c '"cat": "open"' trace.json) -eq 2 ]] || fail "a trace lacks what a rank opened"
+grep -q '"cat": "unit".*"pid": 1.*"sent_bytes": [1-9]' trace.json || fail "a trace lacks the units of rank 1"
+[[ $(grep -c '"rank_hours"' model.json) -eq 4 ]] || fail "a trace is not modelled"
+
 for job in $jobs; do
   wait "$job" || failures=$((failures + 1))
 done
