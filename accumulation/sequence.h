@@ -14,7 +14,7 @@ enum {
   CONIC_SEQUENCE_FREE = 8,
   CONIC_SEQUENCE_LENS_DEPTH = 12, /* the point's way forward, of a lens for all directions */
   CONIC_SEQUENCE_VIEW = 13,       /* and 14: where the pixels of gathered views lie */
-  CONIC_SEQUENCE_HALF = 15, /* which half, for the estimate of what the mean is off */
+  CONIC_SEQUENCE_HALF = 15,       /* which half, for the estimate of what the mean is off */
   CONIC_N_SEQUENCE_DIMENSIONS = 16
 };
 

@@ -65,7 +65,7 @@ static int side_of_ray(const double d[3]) {
 }
 
 /* The side that the ray of a place goes through, and where. */
-static int find_place(const gather_band *b, double x_px, double y_px, double at[2]) {
+static int find_view_place(const gather_band *b, double x_px, double y_px, double at[2]) {
   double d[3];
   if (!ray_of_place(b, x_px, y_px, d))
     return NO_SIDE;
@@ -89,8 +89,8 @@ static double step_between(const double a[2], const double b[2]) {
 /* The larger edge of a pixel at a place, in the side's plane; infinite where it is none. */
 static double pixel_at(const gather_band *b, double x, double y) {
   double here[2], right[2], below[2];
-  int side = find_place(b, x, y, here);
-  if (side == NO_SIDE || find_place(b, x + 1.0, y, right) != side || find_place(b, x, y + 1.0, below) != side)
+  int side = find_view_place(b, x, y, here);
+  if (side == NO_SIDE || find_view_place(b, x + 1.0, y, right) != side || find_view_place(b, x, y + 1.0, below) != side)
     return HUGE_VAL;
   double across = step_between(here, right), down = step_between(here, below);
   return across > down ? across : down;
@@ -115,8 +115,8 @@ static conic_status plan_views(gather_band *b) {
   b->is_one_view = !is_wide && (high[0] - low[0]) * (high[1] - low[1]) <= widest_area;
   for (int i = 0; i <= PROBES; i++)
     for (int j = 0; j <= PROBES; j++)
-      finest = fmin(finest, pixel_at(b, (double)(o->camera.width - 1) * j / PROBES,
-                                     (double)(o->camera.height - 1) * i / PROBES));
+      finest = fmin(
+          finest, pixel_at(b, (double)(o->camera.width - 1) * j / PROBES, (double)(o->camera.height - 1) * i / PROBES));
   b->pixels_per_unit = o->fineness * o->samples / finest;
   return finest > 0.0 ? CONIC_OK
                       : conic_fail(b->g->context, CONIC_ERROR_ARGUMENT,
@@ -143,7 +143,7 @@ static void look_up_row(void *data, size_t i_row, int i_thread) {
   for (size_t x = 0; x < b->width; x++) {
     size_t i = i_row * b->width + x;
     double at[2] = {0.0, 0.0};
-    int side = find_place(b, ((double)x + 0.5) * step, y, at);
+    int side = find_view_place(b, ((double)x + 0.5) * step, y, at);
     b->side[i] = (unsigned char)side;
     for (int axis = 0; axis < 2; axis++)
       b->place[i].at[axis] = (float)at[axis];
@@ -169,7 +169,7 @@ static double depth_factor(const gather_band *b, long column, long row) {
   return o->camera.kind == CONIC_CAMERA_PERSPECTIVE && there[2] > 0.0 ? there[2] : conic_length(there);
 }
 
-static void take_pixel(const gather_band *b, size_t from, size_t to, double factor) {
+static void gather_pixel(const gather_band *b, size_t from, size_t to, double factor) {
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     size_t n = (size_t)conic_plane_describe((conic_plane)i)->n_channels;
     if (!b->fine->planes[i])
@@ -181,7 +181,7 @@ static void take_pixel(const gather_band *b, size_t from, size_t to, double fact
   }
 }
 
-static void take_row(void *data, size_t i_row, int i_thread) {
+static void gather_row(void *data, size_t i_row, int i_thread) {
   const gather_band *b = data;
   size_t fine_row = b->fine == b->g->image ? b->first_row + i_row : i_row;
   (void)i_thread;
@@ -191,7 +191,7 @@ static void take_row(void *data, size_t i_row, int i_thread) {
       continue;
     long column = grid_pixel(b, 0, b->place[i].at[0]), row = grid_pixel(b, 1, b->place[i].at[1]);
     size_t from = (size_t)(row - b->top) * (size_t)b->view->width + (size_t)(column - b->left);
-    take_pixel(b, from, fine_row * b->width + x, depth_factor(b, column, row));
+    gather_pixel(b, from, fine_row * b->width + x, depth_factor(b, column, row));
   }
 }
 
@@ -242,13 +242,13 @@ static conic_status draw_side(gather_band *b, const gather_box *box) {
   conic_status status = conic_gather_draw(b->g, &view, &image);
   b->view = &image;
   if (status == CONIC_OK)
-    conic_parallel_for(b->g->context, b->n_rows * b->samples, take_row, b);
+    conic_parallel_for(b->g->context, b->n_rows * b->samples, gather_row, b);
   conic_image_release(b->g->context, &image);
   b->view = NULL;
   return status;
 }
 
-static conic_status draw_band(gather_band *b) {
+static conic_status gather_band_rows(gather_band *b) {
   size_t n_fine_rows = b->n_rows * b->samples;
   conic_status status = CONIC_OK;
   conic_parallel_for(b->g->context, n_fine_rows, look_up_row, b);
@@ -281,9 +281,9 @@ static conic_status allocate_band(gather_band *b, size_t n_rows, conic_image *fi
   b->boxes = conic_memory_allocate(context, n_fine_rows, CONIC_CUBE_SIDES * sizeof *b->boxes);
   if (!b->side || !b->place || !b->boxes)
     return CONIC_ERROR_MEMORY;
-  return b->samples == 1 ? CONIC_OK
-                         : conic_samples_allocate(context, (int)b->width, (int)n_fine_rows,
-                                                  conic_image_planes(b->g->image), fine);
+  return b->samples == 1
+             ? CONIC_OK
+             : conic_samples_allocate(context, (int)b->width, (int)n_fine_rows, conic_image_planes(b->g->image), fine);
 }
 
 conic_status conic_gather_central(const conic_gathering *g) {
@@ -303,7 +303,7 @@ conic_status conic_gather_central(const conic_gathering *g) {
   for (b.first_row = 0; b.first_row < height && status == CONIC_OK; b.first_row += n_rows) {
     b.n_rows = b.first_row + n_rows < height ? n_rows : height - b.first_row;
     fine.height = (int)(b.n_rows * samples);
-    status = draw_band(&b);
+    status = gather_band_rows(&b);
   }
   conic_image_release(g->context, &fine);
   conic_memory_release(g->context, b.boxes);

@@ -45,8 +45,7 @@ conic_status conic_gather_cube(const conic_gathering *g) {
   conic_status status = CONIC_OK;
   for (int i = 0; i < CONIC_CUBE_SIDES && status == CONIC_OK; i++) {
     conic_image image = {0};
-    const conic_gather_view view = {
-        .camera = cube_side_camera(o, i), .near_z = o->near_z, .samples = o->samples};
+    const conic_gather_view view = {.camera = cube_side_camera(o, i), .near_z = o->near_z, .samples = o->samples};
     if (!(view.camera.fx > 0.0))
       return conic_fail(g->context, CONIC_ERROR_ARGUMENT, "gather: the lens reaches as far as the focus");
     status = conic_gather_draw(g, &view, &image);
@@ -63,7 +62,7 @@ conic_status conic_gather_cube(const conic_gathering *g) {
 enum { FAR_EDGE = 512 };
 
 /* The depths of the box of all that is drawn. */
-static void find_depths(const conic_gather_options *o, double depths[2]) {
+static void find_far_depths(const conic_gather_options *o, double depths[2]) {
   depths[0] = HUGE_VAL;
   depths[1] = -HUGE_VAL;
   for (int corner = 0; corner < 8; corner++) {
@@ -77,7 +76,7 @@ static void find_depths(const conic_gather_options *o, double depths[2]) {
 
 /* The eye stands so far off that rays through a view's corner leave the parallel ones by 1/2048 of the pixels to the
  * middle over all depths there are, while floats still tell depths apart by that. */
-static double find_distance(const conic_gather_options *o, const double depths[2]) {
+static double find_far_distance(const conic_gather_options *o, const double depths[2]) {
   const double across = FAR_EDGE / (o->camera.fx < o->camera.fy ? o->camera.fx : o->camera.fy);
   double by_depth = 2048.0 * 0.5 * (depths[1] - depths[0]), by_width = 256.0 * across;
   return by_depth > by_width ? by_depth : by_width;
@@ -93,10 +92,9 @@ static conic_status draw_block(const conic_gathering *g, size_t x, size_t y, dou
   const double eye[3] = {(at_x - camera->cx) / camera->fx + (o->focus - far_z) * tilt[0],
                          (at_y - camera->cy) / camera->fy + (o->focus - far_z) * tilt[1], far_z};
   conic_image image = {0};
-  conic_gather_view view = {
-      .camera = conic_gather_side_camera(camera, conic_cube_sides[CONIC_CUBE_FORWARD], eye),
-      .near_z = fmax(o->near_z - far_z, 0.5 * distance),
-      .samples = o->samples};
+  conic_gather_view view = {.camera = conic_gather_side_camera(camera, conic_cube_sides[CONIC_CUBE_FORWARD], eye),
+                            .near_z = fmax(o->near_z - far_z, 0.5 * distance),
+                            .samples = o->samples};
   view.camera.width = (int)(right - x);
   view.camera.height = (int)(bottom - y);
   view.camera.fx = distance * camera->fx;
@@ -114,12 +112,12 @@ conic_status conic_gather_parallel(const conic_gathering *g) {
   const conic_gather_options *o = g->options;
   double depths[2];
   conic_status status = CONIC_OK;
-  find_depths(o, depths);
+  find_far_depths(o, depths);
   if (!(depths[1] - depths[0] < 1e20 && fabs(depths[0]) < 1e20) || o->lens[2] != 0.0 ||
       conic_image_planes(g->image) >> CONIC_PLANE_INVERSE_Z & 1)
     return conic_fail(g->context, CONIC_ERROR_ARGUMENT,
                       "gather: an orthographic camera wants the box of what it sees, a flat lens, and no inverseZ");
-  double distance = find_distance(o, depths), middle = 0.5 * (depths[0] + depths[1]);
+  double distance = find_far_distance(o, depths), middle = 0.5 * (depths[0] + depths[1]);
   for (size_t y = 0; y < (size_t)o->camera.height && status == CONIC_OK; y += FAR_EDGE)
     for (size_t x = 0; x < (size_t)o->camera.width && status == CONIC_OK; x += FAR_EDGE)
       status = draw_block(g, x, y, middle, distance);

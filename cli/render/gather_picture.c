@@ -9,13 +9,13 @@
 #include "raster/frame/statistics.h"
 #include "raster/tiles/lights.h"
 
-typedef struct gathering {
+typedef struct view_drawing {
   cli_session *session;
   cli_render_job *job;
   const cli_looking *looking;
   conic_lighting lighting; /* the options', with lights that stay where they are for all views */
   conic_render_statistics *sum;
-} gathering;
+} view_drawing;
 
 /* Gaussians have pictures of their own for what a profile defines, but not through a lens, nor of all directions at
  * once. */
@@ -30,7 +30,7 @@ int cli_is_gathered(const cli_render_job *job, const conic_camera *camera) {
   return (camera->kind || camera->lens) && !draws_itself(job, camera);
 }
 
-static conic_status light_view(const gathering *work, const conic_camera *camera, conic_image *image) {
+static conic_status light_view(const view_drawing *work, const conic_camera *camera, conic_image *image) {
   conic_lighting *lighting = &work->job->options.lighting;
   const conic_lighting own = *lighting;
   *lighting = work->lighting;
@@ -40,7 +40,7 @@ static conic_status light_view(const gathering *work, const conic_camera *camera
 }
 
 static conic_status draw_gathered_view(void *cookie, const conic_gather_view *gathered, conic_image *image) {
-  const gathering *work = cookie;
+  const view_drawing *work = cookie;
   cli_render_job *job = work->job;
   conic_render_options options = *work->looking->options;
   conic_source_view view = *work->looking->view;
@@ -48,8 +48,7 @@ static conic_status draw_gathered_view(void *cookie, const conic_gather_view *ga
   options.near_z = gathered->near_z;
   options.lighting = work->lighting;
   view.samples = gathered->samples;
-  conic_status status =
-      conic_source_draw(job->source, job->renderer, &gathered->camera, &options, &view, image, &one);
+  conic_status status = conic_source_draw(job->source, job->renderer, &gathered->camera, &options, &view, image, &one);
   if (status == CONIC_OK)
     conic_statistics_add(&one, work->sum);
   if (status == CONIC_OK && work->looking->sample && cli_light_is_wanted(job))
@@ -58,7 +57,7 @@ static conic_status draw_gathered_view(void *cookie, const conic_gather_view *ga
 }
 
 /* Splats reach beyond the box of their centres. */
-static void find_box(const cli_render_job *job, conic_gather_options *gather) {
+static void find_reached_box(const cli_render_job *job, conic_gather_options *gather) {
   const conic_source_scale *scale = conic_source_measure(job->source);
   double reach = scale->n_splats ? 4.0 * (double)job->options.kernel.cutoff * scale->splat_length : 0.0;
   for (int axis = 0; axis < 3; axis++) {
@@ -84,7 +83,7 @@ static int wants_pinhole(const cli_render_job *job) {
 
 static conic_status gather_picture(cli_session *session, cli_render_job *job, const cli_looking *looking,
                                    conic_image *image, conic_render_statistics *statistics) {
-  gathering work = {session, job, looking, looking->options->lighting, statistics};
+  view_drawing work = {session, job, looking, looking->options->lighting, statistics};
   conic_gather_options gather;
   if (wants_pinhole(job)) {
     cli_usage("render: --progressive, --deadline, --deep, --boxes and --cryptomatte want a perspective camera without "
@@ -99,7 +98,7 @@ static conic_status gather_picture(cli_session *session, cli_render_job *job, co
   gather.samples = looking->view->samples;
   gather.cookie = &work;
   gather.draw = draw_gathered_view;
-  find_box(job, &gather);
+  find_reached_box(job, &gather);
   if (looking->options->has_background) {
     float factor = job->abilities & CONIC_SOURCE_COMPOSITES ? 1.0f : conic_exposure_factor(looking->options->exposure);
     for (int c = 0; c < 3; c++)
@@ -113,10 +112,9 @@ static conic_status gather_picture(cli_session *session, cli_render_job *job, co
   return conic_gather(session->context, &gather, image);
 }
 
-conic_status cli_draw_looking(cli_session *session, cli_render_job *job, const cli_looking *looking,
-                              conic_image *image, conic_render_statistics *statistics) {
-  return cli_is_gathered(job, looking->camera)
-             ? gather_picture(session, job, looking, image, statistics)
-             : conic_source_draw(job->source, job->renderer, looking->camera, looking->options, looking->view, image,
-                                 statistics);
+conic_status cli_draw_looking(cli_session *session, cli_render_job *job, const cli_looking *looking, conic_image *image,
+                              conic_render_statistics *statistics) {
+  return cli_is_gathered(job, looking->camera) ? gather_picture(session, job, looking, image, statistics)
+                                               : conic_source_draw(job->source, job->renderer, looking->camera,
+                                                                   looking->options, looking->view, image, statistics);
 }

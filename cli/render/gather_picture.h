@@ -17,7 +17,7 @@ int cli_is_gathered(const cli_render_job *job, const conic_camera *camera);
 
 /* Draws into the image's planes. Errors: as conic_source_draw and conic_gather; ARGUMENT where another option wants a
  * pinhole. */
-conic_status cli_draw_looking(cli_session *session, cli_render_job *job, const cli_looking *looking,
-                              conic_image *image, conic_render_statistics *statistics);
+conic_status cli_draw_looking(cli_session *session, cli_render_job *job, const cli_looking *looking, conic_image *image,
+                              conic_render_statistics *statistics);
 
 #endif

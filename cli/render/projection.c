@@ -30,8 +30,7 @@ void cli_project(const cli_render_job *job, const conic_framing *framing, conic_
   else if (job->projection == CONIC_CAMERA_EQUIRECTANGULAR) { /* all around, from amid the scene */
     camera->fx = camera->fy = framing->zoom * camera->width / (2.0 * CONIC_PI);
     stand_at(center, camera);
-  }
-  else if (job->projection == CONIC_CAMERA_CUBE) { /* likewise; the picture is as wide as one of its sides */
+  } else if (job->projection == CONIC_CAMERA_CUBE) { /* likewise; the picture is as wide as one of its sides */
     camera->fx = camera->fy = camera->cx = camera->cy = 0.5 * camera->width;
     stand_at(center, camera);
   }

@@ -157,7 +157,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from 0 [all]",
        .parse = cli_parse_frames},
       {"stereo", CLI_NUMBER, &job->stereo.distance, "E",
-       "two pictures, of eyes that are E apart, in world units: OUT.left.exr and OUT.right.exr, or left and right in the "
+       "two pictures, of eyes that are E apart, in world units: OUT.left.exr and OUT.right.exr, or left and right in "
+       "the "
        "place of %V [one]",
        0, 1e29},
       {"convergence", CLI_NUMBER, &job->stereo.convergence, "Z",

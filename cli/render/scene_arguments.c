@@ -122,7 +122,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "[perspective]",
        .choices = cli_projection_words, .is_given = &raw.is_framing_given},
       {"eye", CLI_PARSED, job->eye, "X,Y,Z",
-       "the place from which the camera looks [where it sees all of the scene; a panorama's and a cube's: the scene's middle]",
+       "the place from which the camera looks [where it sees all of the scene; a panorama's and a cube's: the scene's "
+       "middle]",
        .parse = cli_parse_eye, .is_given = &job->is_eye_given},
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [the file's, or by its shape]",
        .parse = cli_parse_up, .is_given = &job->is_up_given},

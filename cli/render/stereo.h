@@ -14,8 +14,8 @@ void cli_stereo_begin(cli_render_job *job, int i_eye);
 /* Moves a camera to the eye that is drawn. Errors: ARGUMENT (of such a camera there are no two eyes). */
 conic_status cli_stereo_move(const cli_render_job *job, conic_camera *camera);
 
-/* Of a name that malloc gave and that this takes, the eye's: left or right in the place of %V, or before the ending. Null
- * without memory. */
+/* Of a name that malloc gave and that this takes, the eye's: left or right in the place of %V, or before the ending.
+ * Null without memory. */
 char *cli_stereo_name(const cli_render_job *job, char *name);
 
 #endif

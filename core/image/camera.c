@@ -10,7 +10,7 @@
 
 const char *conic_camera_kind_name(conic_camera_kind kind) {
   static const char *const names[CONIC_N_CAMERA_KINDS] = {"perspective", "fisheye", "orthographic", "equirectangular",
-                                                            "cube"};
+                                                          "cube"};
   return (unsigned)kind < CONIC_N_CAMERA_KINDS ? names[kind] : NULL;
 }
 

@@ -21,8 +21,9 @@ typedef struct conic_camera_rays {
 void conic_camera_rays_init(const conic_camera *camera, conic_camera_rays *rays);
 
 /* The ray through a place of the picture, in pixels, in camera space: origin + z·direction. The direction's z is 1 for
- * perspective and orthographic cameras, where z is the depth, and so in its own axes is that of a cube's side; others have unit directions, and z is the distance from
- * the eye. Returns 0 where none goes through the place: no direction is seen there, or the lens has no single one. */
+ * perspective and orthographic cameras, where z is the depth, and so in its own axes is that of a cube's side; others
+ * have unit directions, and z is the distance from the eye. Returns 0 where none goes through the place: no direction
+ * is seen there, or the lens has no single one. */
 int conic_camera_ray(const conic_camera_rays *rays, double x_px, double y_px, double origin[3], double direction[3]);
 
 #endif

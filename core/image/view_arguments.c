@@ -78,7 +78,8 @@ conic_status conic_view_pinhole_check(conic_context *context, const char *who, c
 conic_status conic_view_ray_check(conic_context *context, const char *who, const conic_camera *c) {
   conic_status status = conic_view_camera_check(context, who, c);
   if (status == CONIC_OK && c->kind == CONIC_CAMERA_CUBE)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a cube is drawn side by side, and this takes one camera", who);
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a cube is drawn side by side, and this takes one camera",
+                      who);
   if (status == CONIC_OK && c->lens &&
       (c->kind == CONIC_CAMERA_ORTHOGRAPHIC || c->kind == CONIC_CAMERA_EQUIRECTANGULAR))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: an orthographic or equirectangular camera has no lens", who);

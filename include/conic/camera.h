@@ -37,8 +37,8 @@ typedef enum conic_lens {
   CONIC_N_LENSES
 } conic_lens;
 
-/* "perspective", "fisheye", "orthographic", "equirectangular", "cube"; and "none", "radial", "opencv", "thin-prism", "fov";
- * null for a number that is none of them. */
+/* "perspective", "fisheye", "orthographic", "equirectangular", "cube"; and "none", "radial", "opencv", "thin-prism",
+ * "fov"; null for a number that is none of them. */
 CONIC_API const char *conic_camera_kind_name(conic_camera_kind kind);
 CONIC_API const char *conic_lens_name(conic_lens lens);
 

@@ -19,16 +19,17 @@ typedef struct room {
 
 static void eye_of(const conic_camera *c, double eye[3]) {
   for (int axis = 0; axis < 3; axis++)
-    eye[axis] = -(c->cam_from_world[0][axis] * c->cam_from_world[0][3] +
-                  c->cam_from_world[1][axis] * c->cam_from_world[1][3] +
-                  c->cam_from_world[2][axis] * c->cam_from_world[2][3]);
+    eye[axis] =
+        -(c->cam_from_world[0][axis] * c->cam_from_world[0][3] + c->cam_from_world[1][axis] * c->cam_from_world[1][3] +
+          c->cam_from_world[2][axis] * c->cam_from_world[2][3]);
 }
 
 /* Along the ray from `from`, where the wall is. */
 static double wall_at(const room *r, const double from[3], const double direction[3]) {
   double to[3];
   conic_subtract(from, r->center, to);
-  double a = conic_dot(direction, direction), b = conic_dot(to, direction), c = conic_dot(to, to) - r->radius * r->radius;
+  double a = conic_dot(direction, direction), b = conic_dot(to, direction),
+         c = conic_dot(to, to) - r->radius * r->radius;
   return (sqrt(b * b - a * c) - b) / a;
 }
 
@@ -87,8 +88,14 @@ enum { N_CASES = sizeof cases / sizeof cases[0] };
 /* Looks aslant, from amid the room. */
 static conic_camera camera_of(const camera_case *c) {
   static const double rows[3][4] = {{0.36, 0.48, -0.8, 0.1}, {-0.8, 0.6, 0.0, -0.2}, {0.48, 0.64, 0.6, 0.3}};
-  conic_camera camera = {.width = c->width, .height = c->height, .fx = c->focal, .fy = c->focal, .cx = 0.5 * c->width,
-                         .cy = 0.5 * c->height, .kind = (uint32_t)c->kind, .lens = (uint32_t)c->lens};
+  conic_camera camera = {.width = c->width,
+                         .height = c->height,
+                         .fx = c->focal,
+                         .fy = c->focal,
+                         .cx = 0.5 * c->width,
+                         .cy = 0.5 * c->height,
+                         .kind = (uint32_t)c->kind,
+                         .lens = (uint32_t)c->lens};
   memcpy(camera.cam_from_world, rows, sizeof rows);
   memcpy(camera.distortion, c->distortion, sizeof c->distortion);
   return camera;
@@ -190,9 +197,9 @@ static void test_places(conic_context *context) {
     }
 }
 
-/* A view's pixel is no larger than the picture's, divided by the fineness: in the middle of a fisheye and of a panorama,
- * a pixel is 1/f; at a whole fisheye's rim, where it is as thin as a line, its diagonal is; and the pincushion's corners
- * are finer. */
+/* A view's pixel is no larger than the picture's, divided by the fineness: in the middle of a fisheye and of a
+ * panorama, a pixel is 1/f; at a whole fisheye's rim, where it is as thin as a line, its diagonal is; and the
+ * pincushion's corners are finer. */
 static void test_fineness(conic_context *context) {
   for (int i = 0; i < 6; i++) {
     const conic_camera camera = camera_of(&cases[i]);
@@ -253,7 +260,8 @@ static void test_bands(conic_context *context) {
       size_t i = (size_t)y * (size_t)c.width + (size_t)x;
       CHECK(truth_at(&options, &r, x, y, there, &depth));
       for (int axis = 0; axis < 3; axis++)
-        apart = fmax(apart, fabs((double)((float *)image.planes[CONIC_PLANE_ALBEDO])[3 * i + (size_t)axis] - there[axis]));
+        apart =
+            fmax(apart, fabs((double)((float *)image.planes[CONIC_PLANE_ALBEDO])[3 * i + (size_t)axis] - there[axis]));
       CHECK(apart < 3.5 / camera.fx);
     }
   conic_image_release(context, &image);
@@ -264,9 +272,9 @@ static void test_bands(conic_context *context) {
 static void test_cube(conic_context *context) {
   enum { EDGE = 20 };
   /* right, down and forward of OpenEXR's sides, by its latitude and longitude map's axes: x is left, y up, z forward */
-  static const double sides[6][3][3] = {
-      {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}, {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}, {{-1, 0, 0}, {0, 0, -1}, {0, -1, 0}},
-      {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
+  static const double sides[6][3][3] = {{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}},   {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}},
+                                        {{-1, 0, 0}, {0, 0, -1}, {0, -1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
+                                        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},    {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
   const camera_case c = {"cube", CONIC_CAMERA_CUBE, CONIC_LENS_NONE, EDGE, 6 * EDGE, EDGE / 2, {0}, 6};
   conic_camera camera = camera_of(&c);
   camera.cy = EDGE / 2;
@@ -279,8 +287,8 @@ static void test_cube(conic_context *context) {
   CHECK_OK(conic_gather(context, &options, &image));
   CHECK(r.n_views == 6 && r.last.samples == 4 && r.last.near_z == 0.01);
   for (int i = 0; i < 6; i++) {
-    conic_gather_view view = {.camera = {.width = EDGE, .height = EDGE, .fx = EDGE / 2, .fy = EDGE / 2, .cx = EDGE / 2,
-                                         .cy = EDGE / 2}};
+    conic_gather_view view = {
+        .camera = {.width = EDGE, .height = EDGE, .fx = EDGE / 2, .fy = EDGE / 2, .cx = EDGE / 2, .cy = EDGE / 2}};
     for (int row = 0; row < 3; row++)
       for (int column = 0; column < 4; column++)
         for (int k = 0; k < 3; k++)

@@ -11,7 +11,7 @@
 #include "gathering/gather_views.h"
 
 void conic_gather_options_init_sized(conic_gather_options *options, size_t size) {
-  static const conic_gather_options own = {.size = sizeof own, .samples = 1, .fineness = 1.5};
+  static const conic_gather_options own = {.size = sizeof own, .samples = 1, .fineness = 2.0};
   conic_options_give(options, size, &own);
 }
 
@@ -33,14 +33,13 @@ conic_camera conic_gather_side_camera(const conic_camera *camera, const double s
 
 conic_status conic_gather_draw(const conic_gathering *g, const conic_gather_view *view, conic_image *image) {
   unsigned planes = conic_image_planes(g->image) | g->options->view_planes;
-  conic_status status =
-      conic_image_allocate(g->context, view->camera.width, view->camera.height, planes, image);
+  conic_status status = conic_image_allocate(g->context, view->camera.width, view->camera.height, planes, image);
   if (status == CONIC_OK)
     status = g->options->draw(g->options->cookie, view, image);
   return status;
 }
 
-static const char *find_fault(const conic_gather_options *o, const conic_image *image) {
+static const char *find_gather_fault(const conic_gather_options *o, const conic_image *image) {
   const conic_camera *camera = &o->camera;
   if (!o->draw || !image || image->width != camera->width || image->height != camera->height)
     return "nothing draws, or the image is not of the camera's size";
@@ -65,7 +64,7 @@ conic_status conic_gather(conic_context *context, const conic_gather_options *gi
   if (!conic_options_take(&options, given))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "gather: the options were not initialised");
   conic_status status = conic_view_camera_check(context, "gather", &options.camera);
-  const char *fault = status == CONIC_OK ? find_fault(&options, image) : NULL;
+  const char *fault = status == CONIC_OK ? find_gather_fault(&options, image) : NULL;
   if (fault)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "gather: %s", fault);
   if (status == CONIC_OK && options.camera.kind != CONIC_CAMERA_CUBE)
