@@ -115,8 +115,8 @@ static conic_status plan_views(gather_band *b) {
   b->is_one_view = !is_wide && (high[0] - low[0]) * (high[1] - low[1]) <= widest_area;
   for (int i = 0; i <= PROBES; i++)
     for (int j = 0; j <= PROBES; j++)
-      finest = fmin(finest, view_pixel_at(b, (double)(o->camera.width - 1) * j / PROBES,
-                                          (double)(o->camera.height - 1) * i / PROBES));
+      finest = fmin(
+          finest, pixel_at(b, (double)(o->camera.width - 1) * j / PROBES, (double)(o->camera.height - 1) * i / PROBES));
   b->pixels_per_unit = o->fineness * o->samples / finest;
   return finest > 0.0 ? CONIC_OK
                       : conic_fail(b->g->context, CONIC_ERROR_ARGUMENT,
@@ -169,7 +169,7 @@ static double depth_factor(const gather_band *b, long column, long row) {
   return o->camera.kind == CONIC_CAMERA_PERSPECTIVE && there[2] > 0.0 ? there[2] : conic_length(there);
 }
 
-static void take_view_pixel(const gather_band *b, size_t from, size_t to, double factor) {
+static void gather_pixel(const gather_band *b, size_t from, size_t to, double factor) {
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     size_t n = (size_t)conic_plane_describe((conic_plane)i)->n_channels;
     if (!b->fine->planes[i])
@@ -181,7 +181,7 @@ static void take_view_pixel(const gather_band *b, size_t from, size_t to, double
   }
 }
 
-static void take_view_row(void *data, size_t i_row, int i_thread) {
+static void gather_row(void *data, size_t i_row, int i_thread) {
   const gather_band *b = data;
   size_t fine_row = b->fine == b->g->image ? b->first_row + i_row : i_row;
   (void)i_thread;
@@ -191,7 +191,7 @@ static void take_view_row(void *data, size_t i_row, int i_thread) {
       continue;
     long column = grid_pixel(b, 0, b->place[i].at[0]), row = grid_pixel(b, 1, b->place[i].at[1]);
     size_t from = (size_t)(row - b->top) * (size_t)b->view->width + (size_t)(column - b->left);
-    take_view_pixel(b, from, fine_row * b->width + x, depth_factor(b, column, row));
+    gather_pixel(b, from, fine_row * b->width + x, depth_factor(b, column, row));
   }
 }
 
@@ -242,13 +242,13 @@ static conic_status draw_side(gather_band *b, const gather_box *box) {
   conic_status status = conic_gather_draw(b->g, &view, &image);
   b->view = &image;
   if (status == CONIC_OK)
-    conic_parallel_for(b->g->context, b->n_rows * b->samples, take_view_row, b);
+    conic_parallel_for(b->g->context, b->n_rows * b->samples, gather_row, b);
   conic_image_release(b->g->context, &image);
   b->view = NULL;
   return status;
 }
 
-static conic_status draw_view_band(gather_band *b) {
+static conic_status gather_band_rows(gather_band *b) {
   size_t n_fine_rows = b->n_rows * b->samples;
   conic_status status = CONIC_OK;
   conic_parallel_for(b->g->context, n_fine_rows, look_up_row, b);
@@ -303,7 +303,7 @@ conic_status conic_gather_central(const conic_gathering *g) {
   for (b.first_row = 0; b.first_row < height && status == CONIC_OK; b.first_row += n_rows) {
     b.n_rows = b.first_row + n_rows < height ? n_rows : height - b.first_row;
     fine.height = (int)(b.n_rows * samples);
-    status = draw_view_band(&b);
+    status = gather_band_rows(&b);
   }
   conic_image_release(g->context, &fine);
   conic_memory_release(g->context, b.boxes);

@@ -9,13 +9,13 @@
 #include "raster/frame/statistics.h"
 #include "raster/tiles/lights.h"
 
-typedef struct gathered_work {
+typedef struct view_drawing {
   cli_session *session;
   cli_render_job *job;
   const cli_looking *looking;
   conic_lighting lighting; /* the options', with lights that stay where they are for all views */
   conic_render_statistics *sum;
-} gathered_work;
+} view_drawing;
 
 /* Gaussians have pictures of their own for what a profile defines, but not through a lens, nor of all directions at
  * once. */
@@ -30,7 +30,7 @@ int cli_is_gathered(const cli_render_job *job, const conic_camera *camera) {
   return (camera->kind || camera->lens) && !draws_itself(job, camera);
 }
 
-static conic_status light_view(const gathered_work *work, const conic_camera *camera, conic_image *image) {
+static conic_status light_view(const view_drawing *work, const conic_camera *camera, conic_image *image) {
   conic_lighting *lighting = &work->job->options.lighting;
   const conic_lighting own = *lighting;
   *lighting = work->lighting;
@@ -40,7 +40,7 @@ static conic_status light_view(const gathered_work *work, const conic_camera *ca
 }
 
 static conic_status draw_gathered_view(void *cookie, const conic_gather_view *gathered, conic_image *image) {
-  const gathered_work *work = cookie;
+  const view_drawing *work = cookie;
   cli_render_job *job = work->job;
   conic_render_options options = *work->looking->options;
   conic_source_view view = *work->looking->view;
@@ -83,7 +83,7 @@ static int wants_pinhole(const cli_render_job *job) {
 
 static conic_status gather_picture(cli_session *session, cli_render_job *job, const cli_looking *looking,
                                    conic_image *image, conic_render_statistics *statistics) {
-  gathered_work work = {session, job, looking, looking->options->lighting, statistics};
+  view_drawing work = {session, job, looking, looking->options->lighting, statistics};
   conic_gather_options gather;
   if (wants_pinhole(job)) {
     cli_usage("render: --progressive, --deadline, --deep, --boxes and --cryptomatte want a perspective camera without "

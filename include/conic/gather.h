@@ -42,7 +42,7 @@ typedef struct conic_gather_options {
   conic_status (*draw)(void *cookie, const conic_gather_view *view, conic_image *image);
 } conic_gather_options;
 
-/* One sample, fineness 1½, the eye in its place. */
+/* One sample, fineness 2, the eye in its place. */
 CONIC_API void conic_gather_options_init_sized(conic_gather_options *options, size_t size);
 #define conic_gather_options_init(options) conic_gather_options_init_sized(options, sizeof *(options))
 

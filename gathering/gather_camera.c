@@ -11,7 +11,7 @@
 #include "gathering/gather_views.h"
 
 void conic_gather_options_init_sized(conic_gather_options *options, size_t size) {
-  static const conic_gather_options own = {.size = sizeof own, .samples = 1, .fineness = 1.5};
+  static const conic_gather_options own = {.size = sizeof own, .samples = 1, .fineness = 2.0};
   conic_options_give(options, size, &own);
 }
 
