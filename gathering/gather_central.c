@@ -115,8 +115,8 @@ static conic_status plan_views(gather_band *b) {
   b->is_one_view = !is_wide && (high[0] - low[0]) * (high[1] - low[1]) <= widest_area;
   for (int i = 0; i <= PROBES; i++)
     for (int j = 0; j <= PROBES; j++)
-      finest = fmin(
-          finest, pixel_at(b, (double)(o->camera.width - 1) * j / PROBES, (double)(o->camera.height - 1) * i / PROBES));
+      finest = fmin(finest, view_pixel_at(b, (double)(o->camera.width - 1) * j / PROBES,
+                                          (double)(o->camera.height - 1) * i / PROBES));
   b->pixels_per_unit = o->fineness * o->samples / finest;
   return finest > 0.0 ? CONIC_OK
                       : conic_fail(b->g->context, CONIC_ERROR_ARGUMENT,
