@@ -247,7 +247,10 @@ static void check_axes_and_normals(conic_context *context) {
   conic_source_pose_init(&pose);
   pose.shapes[0] = edge;
   CHECK(conic_source_move(source, &pose, 1) == CONIC_ERROR_ARGUMENT);
-  CHECK(conic_source_move(source, &pose, 2) == CONIC_ERROR_ARGUMENT);
+  conic_source_pose too_many[2];
+  conic_source_pose_init(&too_many[0]);
+  conic_source_pose_init(&too_many[1]);
+  CHECK(conic_source_move(source, too_many, 2) == CONIC_ERROR_ARGUMENT);
   conic_source_close(edge);
   conic_source_close(source);
   conic_source_close(next);

@@ -137,7 +137,8 @@ static conic_status end_split(split *parts, size_t at) {
         conic_memory_reserve(all->context, &all->buckets, all->n, all->n + n_new, &all->room, sizeof *all->buckets);
   if (status != CONIC_OK)
     return status;
-  memmove(all->buckets + at + n_new, all->buckets + at + n_dropped, (all->n - at - n_dropped) * sizeof *all->buckets);
+  if (all->n > at + n_dropped) /* there may be no room for none */
+    memmove(all->buckets + at + n_new, all->buckets + at + n_dropped, (all->n - at - n_dropped) * sizeof *all->buckets);
   for (size_t i = 0, k = at; i < n_cells; i++)
     if (parts->cells[i].count > 0)
       all->buckets[k++] = parts->cells[i];
