@@ -7,7 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
-#include "cli/render/views.h"
+#include "cli/scene/views.h"
 #include "cli/shell.h"
 #include "core/base/machine.h"
 

@@ -4,7 +4,7 @@
 
 #include "bench/bench.h"
 #include "cli/arguments.h"
-#include "cli/render/views.h"
+#include "cli/scene/views.h"
 #include "core/base/nearest_word.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"

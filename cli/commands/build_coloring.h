@@ -3,7 +3,7 @@
 #define CONIC_BUILD_COLORING_H
 
 #include "cli/color_options.h"
-#include "cli/render/scene_options.h"
+#include "cli/scene/scene_options.h"
 #include "conic/coloring.h"
 
 typedef struct cli_coloring {

@@ -2,7 +2,7 @@
 #ifndef CONIC_GAUSSIAN_COMMANDS_H
 #define CONIC_GAUSSIAN_COMMANDS_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 #include "conic/gaussian_judge.h"
 
 /* Whether the scene is such a one: known once the arguments are parsed. */

@@ -6,7 +6,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
-#include "cli/render/views.h"
+#include "cli/scene/views.h"
 #include "cli/source_facts.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"

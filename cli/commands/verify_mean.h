@@ -2,7 +2,7 @@
 #ifndef CONIC_VERIFY_MEAN_H
 #define CONIC_VERIFY_MEAN_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 #include "conic/oracle.h"
 
 typedef struct cli_mean_verdict {

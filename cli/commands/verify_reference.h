@@ -2,7 +2,7 @@
 #ifndef CONIC_VERIFY_REFERENCE_H
 #define CONIC_VERIFY_REFERENCE_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 /* Of what has been chosen for this camera. With `is_from_file`, ids are the names of what was chosen, as a picture from
  * a file has them. On success the caller owns *reference. */

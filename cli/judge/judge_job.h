@@ -2,7 +2,7 @@
 #ifndef CONIC_JUDGE_JOB_H
 #define CONIC_JUDGE_JOB_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 #include "conic/diagnosis.h"
 #include "conic/picture.h"
 

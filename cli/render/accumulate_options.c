@@ -1,10 +1,10 @@
-#include "cli/render/accumulate_job.h"
+#include "cli/scene/accumulate_job.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "cli/render/frames.h"
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 int cli_parse_focus(const char *text, void *value) {
   cli_focus *focus = value;

@@ -1,4 +1,4 @@
-#include "cli/render/accumulate_job.h"
+#include "cli/scene/accumulate_job.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -6,12 +6,12 @@
 
 #include "accumulation/sequence.h"
 #include "cli/render/accumulate_team.h"
-#include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
 #include "cli/render/gather_picture.h"
 #include "cli/render/lit_picture.h"
-#include "cli/render/stereo.h"
-#include "cli/render/views.h"
+#include "cli/scene/backdrop.h"
+#include "cli/scene/stereo.h"
+#include "cli/scene/views.h"
 #include "cli/session_team.h"
 #include "cli/stopper.h"
 #include "core/base/rank.h"

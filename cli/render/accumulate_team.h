@@ -2,7 +2,7 @@
 #ifndef CONIC_ACCUMULATE_TEAM_H
 #define CONIC_ACCUMULATE_TEAM_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 /* What the first process does with the sums whenever they are together. */
 typedef conic_status cli_sums_keeper(void *cookie, const conic_accumulation *sums);

@@ -3,7 +3,7 @@
 
 #include "cli/render/gather_picture.h"
 #include "cli/render/lit_picture.h"
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 #include "core/base/message.h"
 
 /* Of a picture without background, of one sample a pixel; of what is read while it is drawn, where that is to be seen

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "cli/outputs.h"
-#include "cli/render/stereo.h"
-#include "cli/render/views.h"
+#include "cli/scene/stereo.h"
+#include "cli/scene/views.h"
 #include "core/files/file.h"
 
 enum { MOST_FRAMES = 9999, MOST_VIEWS = 9999999 };

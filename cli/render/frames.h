@@ -3,7 +3,7 @@
 #ifndef CONIC_FRAMES_H
 #define CONIC_FRAMES_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 /* Parsers of values: "36" into the job's number of frames, and "A:B:STEP", "A:B" or "A" into a cli_frames. */
 int cli_parse_turntable(const char *text, void *value);

@@ -2,7 +2,7 @@
 #ifndef CONIC_GATHER_PICTURE_H
 #define CONIC_GATHER_PICTURE_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 /* How a picture is drawn. */
 typedef struct cli_looking {

@@ -5,7 +5,7 @@
 
 #include "accumulation/sequence.h"
 #include "cli/render/gather_picture.h"
-#include "cli/render/light_options.h"
+#include "cli/scene/light_options.h"
 #include "conic/lighting.h"
 
 enum { USUAL_DIRECTIONS = 64 };

@@ -2,7 +2,7 @@
 #ifndef CONIC_LIT_PICTURE_H
 #define CONIC_LIT_PICTURE_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 /* The planes that lighting needs, and what the planes that are asked for need. */
 void cli_light_want_planes(cli_render_job *job);

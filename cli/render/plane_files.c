@@ -4,7 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 #include "core/base/color.h"
 #include "core/files/file.h"
 

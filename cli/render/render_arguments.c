@@ -4,7 +4,7 @@
 #include "cli/command.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/sample_options.h"
-#include "cli/render/stereo.h"
+#include "cli/scene/stereo.h"
 #include "cli/shell.h"
 #include "core/files/file.h"
 

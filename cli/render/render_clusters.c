@@ -1,5 +1,5 @@
 /* conic render --clusters: what belongs to which cluster of a hybrid. */
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 #include "core/coloring/color_ramp.h"
 
 conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,

@@ -4,10 +4,10 @@
 
 #include "cli/command.h"
 #include "cli/host_keeps.h"
-#include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
 #include "cli/render/sharing.h"
-#include "cli/render/stereo.h"
+#include "cli/scene/backdrop.h"
+#include "cli/scene/stereo.h"
 #include "cli/session_team.h"
 #include "conic/gaussian_judge.h"
 #include "core/base/message.h"

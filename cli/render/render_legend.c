@@ -1,5 +1,5 @@
 /* conic render --legend: what the colours mean. */
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 #include "core/base/message.h"
 #include "core/coloring/legend.h"
 

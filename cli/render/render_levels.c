@@ -2,11 +2,11 @@
 #include <errno.h>
 #include <string.h>
 
-#include "cli/render/backdrop.h"
 #include "cli/render/gather_picture.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/sharing.h"
 #include "cli/render/windows_team.h"
+#include "cli/scene/backdrop.h"
 #include "core/files/disk.h"
 
 /* The deadline counts from the start of the program's work, not of this picture. */

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 #include "core/files/file.h"

@@ -1,11 +1,11 @@
-#include "cli/render/backdrop.h"
+#include "cli/scene/backdrop.h"
 #include <string.h>
 
 #include "cli/color_options.h"
 #include "cli/render/frames.h"
-#include "cli/render/light_options.h"
 #include "cli/render/sharing.h"
-#include "cli/render/views.h"
+#include "cli/scene/light_options.h"
+#include "cli/scene/views.h"
 #include "cli/source_facts.h"
 #include "cli/tell.h"
 #include "core/base/message.h"

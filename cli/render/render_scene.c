@@ -5,10 +5,10 @@
 
 #include "cli/host_keeps.h"
 #include "cli/render/frames.h"
-#include "cli/render/light_options.h"
-#include "cli/render/projection.h"
-#include "cli/render/stereo.h"
-#include "cli/render/views.h"
+#include "cli/scene/light_options.h"
+#include "cli/scene/projection.h"
+#include "cli/scene/stereo.h"
+#include "cli/scene/views.h"
 #include "core/files/file.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {

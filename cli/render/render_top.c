@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 #include "cli/top/top_tiff.h"
 #include "cli/top/world_file.h"
 #include "core/base/message.h"

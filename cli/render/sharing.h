@@ -3,7 +3,7 @@
 #ifndef CONIC_SHARING_H
 #define CONIC_SHARING_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 /* Which of the frames this process draws. */
 typedef struct cli_frame_turns {

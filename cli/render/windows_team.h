@@ -2,7 +2,7 @@
 #ifndef CONIC_WINDOWS_TEAM_H
 #define CONIC_WINDOWS_TEAM_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 /* Collective: conic_source_draw, after which the first process has the picture and the statistics, to the bits of one
  * process. The others' image is not looked at. */

@@ -2,7 +2,7 @@
 #ifndef CONIC_PROJECTION_H
 #define CONIC_PROJECTION_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 /* The words of --projection, in the order of conic_camera_kind. */
 extern const char *const cli_projection_words[];

@@ -1,4 +1,4 @@
-#include "cli/render/stereo.h"
+#include "cli/scene/stereo.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #define CONIC_SCENE_OPTIONS_H
 
 #include "cli/command.h"
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 enum cli_quality { CLI_QUALITY_DRAFT = 0, CLI_QUALITY_GOOD = 1, CLI_QUALITY_FINAL = 2 };
 

@@ -3,11 +3,11 @@
 #include <string.h>
 
 #include "cli/color_options.h"
-#include "cli/render/backdrop.h"
-#include "cli/render/light_options.h"
-#include "cli/render/projection.h"
-#include "cli/render/scene_options.h"
-#include "cli/render/views.h"
+#include "cli/scene/backdrop.h"
+#include "cli/scene/light_options.h"
+#include "cli/scene/projection.h"
+#include "cli/scene/scene_options.h"
+#include "cli/scene/views.h"
 
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const as_words[] = {"auto", "points", "mesh", "hybrid", NULL};

@@ -2,7 +2,7 @@
 #ifndef CONIC_STEREO_H
 #define CONIC_STEREO_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 /* Wrong usage where it does not go with other options. */
 int cli_stereo_check(const cli_session *session, const cli_render_job *job);

@@ -1,9 +1,9 @@
-#include "cli/render/backdrop.h"
+#include "cli/scene/backdrop.h"
 
 #include <string.h>
 #include <strings.h>
 
-#include "cli/render/light_options.h"
+#include "cli/scene/light_options.h"
 #include "core/base/color.h"
 #include "core/files/file.h"
 

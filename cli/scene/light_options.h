@@ -2,7 +2,7 @@
 #ifndef CONIC_LIGHT_OPTIONS_H
 #define CONIC_LIGHT_OPTIONS_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 /* R,G,B, or one number for a grey, each 0 to 1e6; 0 where it is none. `text` has `length` letters. */
 int cli_parse_color(const char *text, size_t length, float color[3]);

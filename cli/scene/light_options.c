@@ -1,4 +1,4 @@
-#include "cli/render/light_options.h"
+#include "cli/scene/light_options.h"
 
 #include <stdlib.h>
 #include <string.h>

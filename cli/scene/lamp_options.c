@@ -1,9 +1,9 @@
-#include "cli/lamp_job.h"
+#include "cli/scene/lamp_job.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/render/light_options.h"
+#include "cli/scene/light_options.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
 #include "lighting/light_axes.h"

@@ -3,9 +3,9 @@
 
 #include "cli/color_options.h"
 #include "cli/outputs.h"
-#include "cli/render/projection.h"
-#include "cli/render/scene_options.h"
-#include "cli/render/views.h"
+#include "cli/scene/projection.h"
+#include "cli/scene/scene_options.h"
+#include "cli/scene/views.h"
 #include "conic/layers_draw.h"
 #include "core/files/disk.h"
 

@@ -5,14 +5,14 @@
 #include "cli/arguments.h"
 #include "cli/device_option.h"
 #include "cli/json_write.h"
-#include "cli/lamp_job.h"
-#include "cli/render/accumulate_job.h"
-#include "cli/render/top_job.h"
+#include "cli/scene/accumulate_job.h"
+#include "cli/scene/lamp_job.h"
+#include "cli/scene/top_job.h"
 #include "core/pictures/cryptomatte.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
-/* A gradient from top to bottom, in linear colours (cli/render/backdrop.h). */
+/* A gradient from top to bottom, in linear colours (cli/scene/backdrop.h). */
 typedef struct cli_backdrop {
   int is_given;
   float top[3], bottom[3];
@@ -67,7 +67,7 @@ typedef struct cli_render_job {
   int is_plain; /* --plain: nothing is chosen by what looks best */
   int is_background_given;
   cli_backdrop backdrop;                       /* --background with two colours */
-  int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/light_options.h) */
+  int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/scene/light_options.h) */
   cli_lamp_job lamps;                          /* of these, the lamps, and how large the others are */
   const char *sky_path;                        /* --sky with a picture; null: none */
   int n_directions, has_shadows;               /* --ao, --shadow */

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/render/scene_options.h"
+#include "cli/scene/scene_options.h"
 
 /* gauss, hat, box, or confetti:A,B,N. */
 int cli_parse_kernel(const char *text, void *value) {

@@ -1,4 +1,4 @@
-#include "cli/render/projection.h"
+#include "cli/scene/projection.h"
 
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"

@@ -1,4 +1,4 @@
-#include "cli/render/views.h"
+#include "cli/scene/views.h"
 
 #include <string.h>
 

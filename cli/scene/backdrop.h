@@ -2,7 +2,7 @@
 #ifndef CONIC_BACKDROP_H
 #define CONIC_BACKDROP_H
 
-#include "cli/render/render_job.h"
+#include "cli/scene/render_job.h"
 
 /* A parser of values, into a cli_render_job: COLOR, COLOR:COLOR of the top and the bottom, or none. */
 int cli_parse_background(const char *text, void *value);
