@@ -1,6 +1,7 @@
 #include "cli/session_team.h"
 
 #include <pthread.h>
+#include <stdlib.h>
 #include <string.h>
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
@@ -26,6 +27,47 @@ int cli_team_keeps(conic_log_level level, const char *message) {
 
 int cli_team_is_shared(const cli_session *session) {
   return session->team && session->team->count > 1;
+}
+
+/* --- the library's team --- */
+
+static void send_bytes(void *data, int to, const void *bytes, size_t n_bytes) {
+  const cli_team *team = data;
+  team->send(to, bytes, n_bytes);
+}
+
+static void *receive_bytes(void *data, int from, size_t *n_bytes) {
+  const cli_team *team = data;
+  return team->receive(from, n_bytes);
+}
+
+static void release_bytes(void *data, void *bytes) {
+  (void)data;
+  free(bytes);
+}
+
+/* Gathered in the first process, and from there to all. */
+static void *collect_bytes(void *data, const void *bytes, size_t n_bytes, size_t *sizes) {
+  const cli_team *team = data;
+  size_t total = 0;
+  char *all = team->gather(bytes, n_bytes, sizes);
+  team->broadcast(sizes, (size_t)team->count * sizeof *sizes);
+  for (int i = 0; i < team->count; i++)
+    total += sizes[i];
+  if (!all) /* whoever makes a team ends it where there is no memory */
+    all = malloc(total ? total : 1);
+  if (!all)
+    abort();
+  team->broadcast(all, total);
+  return all;
+}
+
+const conic_team *cli_team_of_library(const cli_session *session, conic_team *team) {
+  if (!cli_team_is_shared(session))
+    return NULL;
+  *team = (conic_team){session->team->index, session->team->count, session->team, send_bytes,
+                       receive_bytes,        release_bytes,        collect_bytes};
+  return team;
 }
 
 int cli_team_is_first(const cli_session *session) {

@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "cli/session.h"
+#include "core/base/team.h"
 
 /* No unit is left. */
 #define CLI_NO_UNIT UINT64_MAX
@@ -60,6 +61,8 @@ int cli_team_keeps(conic_log_level level, const char *message);
 int cli_team_is_shared(const cli_session *session);
 /* Whether this process speaks: it is alone, or the first. */
 int cli_team_is_first(const cli_session *session);
+/* The same processes, as what the library builds by several takes them; null where nobody shares the work. */
+const conic_team *cli_team_of_library(const cli_session *session, conic_team *team);
 /* Does what the team's function does, if there is a team. */
 void cli_team_trace(const cli_session *session, const char *kind, const char *name, uint64_t number, double from,
                     uint64_t sent_bytes);

@@ -3,43 +3,14 @@
 set -uo pipefail
 
 source "$1/tests/support/program.bash"
-conic_mpi=$3/bin/conic-mpi
-if [[ ! -x $conic_mpi ]] || ! command -v mpirun > /dev/null; then
-  echo "skipped: there is no conic-mpi, or no mpirun"
-  exit 77
-fi
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
-export OMPI_MCA_plm=isolated OMPI_MCA_pml=ob1 OMPI_MCA_btl=self,vader # this machine alone, which it need not look for
-export OMPI_MCA_btl_vader_single_copy_mechanism=none                  # which containers forbid
-export LSAN_OPTIONS=detect_leaks=0                                    # MPI's own
-
-# ranks N EXIT_CODE ARGUMENTS …: with what it prints in `err`, or in the file that $err names.
-ranks() {
-  local n=$1 wanted=$2 got to=${err:-err}
-  mpirun -n "$n" "$conic_mpi" "${@:3}" > "$to.out" 2> "$to" < /dev/null
-  got=$?
-  [[ $got -eq $wanted ]] || fail "$n ranks: conic-mpi ${*:3}: exit code $got instead of $wanted: $(head -c 600 "$to")"
-  [[ $got -eq $wanted ]]
-}
-hashes() { # JSON FILE: of all planes
-  sed -n '/"hash": {/,/}/p' "$1"
-}
-same_hashes() { # JSON FILE, JSON FILE, WHAT
-  [[ -n $(hashes "$1") && $(hashes "$1") == "$(hashes "$2")" ]] || fail "$3 has other bits"
-}
+source "$1/tests/support/ranks.bash"
 
 mkdir alone together
 "$conic" make knot -n 3000 -o knot.ply
 frames=(render knot.ply --plain --size 48x32 --turntable 5 --exposure auto --threads 1)
 samples=(render knot.ply --plain --size 48x32 --accumulate 20 --aperture 0.2 --aov rgba,Z,samples,variance --threads 1)
 
-# What goes wrong is told in one line, whoever it befell. Their mpiruns take a second each to end, so together.
-told_once() { # ERR, RANKS, EXIT_CODE, WORDS, ARGUMENTS …
-  err=$1 ranks "$2" "$3" "${@:5}" || return 1
-  [[ $(grep -c '^conic: ' "$1") -eq 1 ]] && grep -q -- "^conic: error: .*$4" "$1" && return
-  fail "told is not once $4: $(cat "$1")"
-  return 1
-}
+# Their mpiruns take a second each to end, so together.
 told_once err1 3 3 nothing.ply render nothing.ply -o a.pfm & jobs=$!
 told_once err2 2 2 '--size' render knot.ply --sise 3 -o a.pfm & jobs+=" $!"
 told_once err3 2 4 '/f.000[1345].pfm' "${frames[@]}" -o nowhere/f.pfm & jobs+=" $!"
