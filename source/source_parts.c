@@ -63,7 +63,7 @@ conic_status conic_source_windows_count(const conic_source_windows *w, conic_ren
   if (w->samples == 1 || w->band_rows >= w->camera.height)
     return CONIC_OK; /* each window sees all splats */
   conic_camera whole = conic_samples_camera(&w->camera, w->samples, 0, w->camera.height);
-  return conic_samples_count(w->source->context, w->source->choice.drawing.splats, &whole, &w->render, statistics);
+  return conic_samples_count(w->source->context, w->source->choice.drawing.splats, NULL, &whole, &w->render, statistics);
 }
 
 /* Where a splat's centre lies, as a pinhole would see it; 0 where it is not in front. */
