@@ -207,9 +207,8 @@ const conic_source_choice *conic_source_chosen(const conic_source *source) {
   return &source->choice;
 }
 
-/* The view becomes the source's, and the options are filled in. */
-static conic_status begin_picture(conic_source *source, const conic_render_options *render,
-                                  const conic_source_view *view, conic_render_options *settled) {
+conic_status conic_source_begin_picture(conic_source *source, const conic_render_options *render,
+                                        const conic_source_view *view, conic_render_options *settled) {
   conic_render_options_init(settled);
   conic_source_view_init(&source->view);
   if (!conic_options_take(settled, render) || (view && !conic_options_take(&source->view, view)))
@@ -233,7 +232,7 @@ static conic_status choose_settled(conic_source *source, const conic_camera *cam
 conic_status conic_source_choose(conic_source *source, const conic_camera *camera, const conic_render_options *render,
                                  const conic_source_view *view) {
   conic_render_options settled;
-  conic_status status = begin_picture(source, render, view, &settled);
+  conic_status status = conic_source_begin_picture(source, render, view, &settled);
   return status == CONIC_OK ? choose_settled(source, camera, &settled) : status;
 }
 
@@ -242,7 +241,7 @@ conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, c
                                conic_render_statistics *statistics) {
   const conic_source_kind *kind = source->kind;
   conic_render_options settled;
-  conic_status status = begin_picture(source, render, view, &settled);
+  conic_status status = conic_source_begin_picture(source, render, view, &settled);
   if (status == CONIC_OK && source->view.transparency && (kind->draw || kind->abilities & CONIC_SOURCE_CLUSTERS))
     return conic_fail(source->context, CONIC_ERROR_UNSUPPORTED,
                       "%s: transparency is of splats and meshes that are drawn as they are", source->name);

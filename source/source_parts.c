@@ -5,6 +5,8 @@
 #include "source/source_kind.h"
 
 int conic_source_has_windows(const conic_source *source, const conic_renderer *renderer) {
+  if (source->kind->windowing)
+    return conic_renderer_has_parts(renderer);
   return !source->kind->draw && !(source->scale.abilities & (CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_CLUSTERS)) &&
          source->scale.n_triangles == 0 && source->scale.n_splats > 0 && conic_renderer_has_parts(renderer);
 }
@@ -14,7 +16,13 @@ conic_status conic_source_windows_begin(conic_source *source, conic_renderer *re
                                         conic_source_windows *windows) {
   if (!conic_source_has_windows(source, renderer))
     return conic_fail(source->context, CONIC_ERROR_UNSUPPORTED, "%s: it is not drawn in windows", source->name);
-  *windows = (conic_source_windows){.source = source, .renderer = renderer, .camera = *camera};
+  *windows = (conic_source_windows){
+      .source = source, .renderer = renderer, .camera = *camera, .step = CONIC_WINDOW_STEP, .samples = 1};
+  if (source->kind->windowing) {
+    conic_status begun = conic_source_begin_picture(source, render, view, &windows->render);
+    windows->samples = source->view.samples;
+    return begun == CONIC_OK ? source->kind->windowing->begin(windows) : begun;
+  }
   conic_status status = conic_source_choose(source, camera, render, view);
   if (status != CONIC_OK)
     return status;
@@ -23,6 +31,12 @@ conic_status conic_source_windows_begin(conic_source *source, conic_renderer *re
   windows->samples = source->view.samples;
   windows->band_rows = conic_samples_band_rows(camera, windows->samples);
   return CONIC_OK;
+}
+
+void conic_source_windows_end(conic_source_windows *windows) {
+  if (windows->own)
+    windows->source->kind->windowing->end(windows);
+  windows->own = NULL;
 }
 
 static conic_status draw_fine(const conic_source_windows *w, const conic_window *window, conic_image *image,
@@ -48,8 +62,10 @@ static conic_status draw_fine(const conic_source_windows *w, const conic_window 
   return status;
 }
 
-conic_status conic_source_windows_draw(const conic_source_windows *w, const conic_window *window, conic_image *image,
+conic_status conic_source_windows_draw(conic_source_windows *w, const conic_window *window, conic_image *image,
                                        conic_render_statistics *statistics) {
+  if (w->source->kind->windowing)
+    return w->source->kind->windowing->draw(w, window, image, statistics);
   const conic_part part = {.window = *window, .first_column = window->x_begin, .first_row = window->y_begin};
   conic_status status = w->samples > 1 ? draw_fine(w, window, image, statistics)
                                        : conic_render_part(w->renderer, w->source->choice.drawing.splats, &w->camera,
@@ -60,10 +76,14 @@ conic_status conic_source_windows_draw(const conic_source_windows *w, const coni
 }
 
 conic_status conic_source_windows_count(const conic_source_windows *w, conic_render_statistics *statistics) {
+  const conic_source_windowing *windowing = w->source->kind->windowing;
+  if (windowing)
+    return windowing->count ? windowing->count(w, statistics) : CONIC_OK;
   if (w->samples == 1 || w->band_rows >= w->camera.height)
     return CONIC_OK; /* each window sees all splats */
   conic_camera whole = conic_samples_camera(&w->camera, w->samples, 0, w->camera.height);
-  return conic_samples_count(w->source->context, w->source->choice.drawing.splats, NULL, &whole, &w->render, statistics);
+  return conic_samples_count(w->source->context, w->source->choice.drawing.splats, NULL, &whole, &w->render,
+                             statistics);
 }
 
 /* Where a splat's centre lies, as a pinhole would see it; 0 where it is not in front. */
@@ -85,10 +105,14 @@ static int find_splat_pixel(const conic_source_windows *w, const conic_splats *s
 void conic_source_windows_weigh(const conic_source_windows *w, const conic_window *list, size_t n, double *weights) {
   enum { MOST_LOOKED_AT = 1 << 16 };
   static const double splats_a_pixel = 0.25; /* so much work is a pixel that nothing covers */
-  const conic_splats *splats = w->source->choice.drawing.splats;
-  size_t step = splats->count / MOST_LOOKED_AT + 1;
   for (size_t k = 0; k < n; k++)
     weights[k] = splats_a_pixel * (double)(list[k].x_end - list[k].x_begin) * (double)(list[k].y_end - list[k].y_begin);
+  if (w->source->kind->windowing) {
+    w->source->kind->windowing->weigh(w, list, n, weights);
+    return;
+  }
+  const conic_splats *splats = w->source->choice.drawing.splats;
+  size_t step = splats->count / MOST_LOOKED_AT + 1;
   for (size_t i = 0; i < splats->count; i += step) {
     double pixel[2];
     if (!find_splat_pixel(w, splats, i, pixel))
