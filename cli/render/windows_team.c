@@ -13,9 +13,13 @@
  * projects, are not most of the work. */
 enum { WINDOWS_EACH = 6, LEAST_SIDE = 64 };
 
+/* What windows are drawn of; others are made of these later. */
+static const unsigned windows_planes =
+    CONIC_DRAWN_PLANES | 1u << CONIC_PLANE_CLUSTER | (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT));
+
 /* What is handed over with a window's pixels. */
 typedef struct window_result {
-  uint64_t i_window, fragments, pixels_covered;
+  uint64_t i_window, fragments, triangle_fragments, pixels_covered;
 } window_result;
 
 typedef struct window_work {
@@ -28,16 +32,16 @@ typedef struct window_work {
   size_t n;
   unsigned planes;
   conic_image *image; /* of the first process: the whole */
-  uint64_t fragments, pixels_covered;
+  window_result sum;
   conic_render_statistics statistics;
 } window_work;
 
 /* --- the list --- */
 
-static int round_to_step(double length) {
+static int round_to_step(double length, int step) {
   int side = (int)length;
   side = side < LEAST_SIDE ? LEAST_SIDE : side;
-  return (side + CONIC_WINDOW_STEP - 1) / CONIC_WINDOW_STEP * CONIC_WINDOW_STEP;
+  return (side + step - 1) / step * step;
 }
 
 /* Squares, as far as bands and the picture's borders have them be. */
@@ -60,14 +64,19 @@ static conic_status list_windows(window_work *w, int side) {
   return CONIC_OK;
 }
 
-/* The hardest first, so that the last ones, which others wait for, are easy; windows of one weight stay in order. */
+static int band_of(const window_work *w, size_t i) {
+  return w->list[i].y_begin / w->windows.band_rows;
+}
+
+/* Band by band, and of each the hardest first, so that the last ones, which others wait for, are easy; windows of one
+ * weight stay in order. */
 static void order_windows(window_work *w) {
   conic_source_windows_weigh(&w->windows, w->list, w->n, w->weights);
   for (size_t i = 1; i < w->n; i++) {
     conic_window window = w->list[i];
     double weight = w->weights[i];
     size_t at = i;
-    for (; at > 0 && w->weights[at - 1] < weight; at--) {
+    for (; at > 0 && w->weights[at - 1] < weight && band_of(w, at - 1) == window.y_begin / w->windows.band_rows; at--) {
       w->list[at] = w->list[at - 1];
       w->weights[at] = w->weights[at - 1];
     }
@@ -81,7 +90,7 @@ static conic_status choose_windows(window_work *w) {
   double pixels = (double)camera->width * (double)camera->height / (double)(w->team->count * WINDOWS_EACH), side = 1.0;
   while (side * side < pixels)
     side += CONIC_WINDOW_STEP;
-  conic_status status = list_windows(w, round_to_step(side));
+  conic_status status = list_windows(w, round_to_step(side, w->windows.step));
   if (status == CONIC_OK)
     order_windows(w);
   return status;
@@ -115,15 +124,16 @@ static void take_window(void *cookie, int from, void *bytes, size_t n_bytes) {
       memcpy((char *)w->image->planes[i] + ((size_t)y * (size_t)w->image->width + (size_t)window->x_begin) * size,
              pixels, width * size);
   }
-  w->fragments += result.fragments;
-  w->pixels_covered += result.pixels_covered;
+  w->sum.fragments += result.fragments;
+  w->sum.triangle_fragments += result.triangle_fragments;
+  w->sum.pixels_covered += result.pixels_covered;
   cli_team_trace(w->session, "join", "window", result.i_window, start, n_bytes);
   (void)from;
 }
 
 static conic_status hand_window(const window_work *w, size_t i_window, const conic_image *pixels,
                                 const conic_render_statistics *statistics, size_t *n_bytes) {
-  window_result result = {i_window, statistics->fragments, statistics->pixels_covered};
+  window_result result = {i_window, statistics->fragments, statistics->triangle_fragments, statistics->pixels_covered};
   size_t at = sizeof result, n = conic_image_pixels(pixels);
   *n_bytes = sizeof result + window_bytes(w, &w->list[i_window]);
   char *bytes = malloc(*n_bytes);
@@ -155,6 +165,8 @@ static conic_status draw_given_window(window_work *w, size_t i_window) {
   status = conic_source_windows_draw(&w->windows, window, &pixels, &w->statistics);
   if (status == CONIC_OK)
     status = hand_window(w, i_window, &pixels, &w->statistics, &n_bytes);
+  if (w->image)
+    w->image->is_display = pixels.is_display;
   conic_image_release(context, &pixels);
   cli_sharing_note(w->session, w->job, "window", i_window, start, n_bytes);
   return status;
@@ -173,13 +185,13 @@ static conic_status draw_given(window_work *w) {
   return status;
 }
 
-conic_status cli_draw_together(cli_session *session, cli_render_job *job, const conic_camera *camera,
+conic_status cli_draw_together(cli_session *session, cli_render_job *job, const cli_looking *looking,
                                conic_image *image, conic_render_statistics *statistics) {
   window_work w = {.session = session, .team = session->team, .job = job, .image = image};
   double start = cli_seconds();
-  w.planes = job->planes & CONIC_DRAWN_PLANES;
-  conic_status status =
-      conic_source_windows_begin(job->source, job->renderer, camera, &job->options, &job->view, &w.windows);
+  w.planes = (conic_image_planes(image) ? conic_image_planes(image) : job->planes) & windows_planes;
+  conic_status status = conic_source_windows_begin(job->source, job->renderer, looking->camera, looking->options,
+                                                   looking->view, w.planes, &w.windows);
   if (status == CONIC_OK)
     status = choose_windows(&w);
   status = cli_sharing_end(session, job, status);
@@ -187,9 +199,11 @@ conic_status cli_draw_together(cli_session *session, cli_render_job *job, const 
     status = cli_sharing_end(session, job, draw_given(&w));
   if (status == CONIC_OK && session->team->index == 0)
     status = conic_source_windows_count(&w.windows, &w.statistics);
+  conic_source_windows_end(&w.windows);
   *statistics = w.statistics;
-  statistics->fragments = w.fragments;
-  statistics->pixels_covered = w.pixels_covered;
+  statistics->fragments = w.sum.fragments;
+  statistics->triangle_fragments = w.sum.triangle_fragments;
+  statistics->pixels_covered = w.sum.pixels_covered;
   statistics->ms.frame = 1e3 * (cli_seconds() - start);
   free(w.list);
   free(w.weights);
