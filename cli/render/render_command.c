@@ -5,6 +5,7 @@
 #include "cli/command.h"
 #include "cli/host_keeps.h"
 #include "cli/render/frames.h"
+#include "cli/render/gather_picture.h"
 #include "cli/render/sharing.h"
 #include "cli/scene/backdrop.h"
 #include "cli/scene/stereo.h"
@@ -255,9 +256,9 @@ static conic_status render_repeats(cli_session *session, cli_render_job *job, in
   return status;
 }
 
-/* Of windows, the picture comes together in the first process. */
-static int needs_image(const cli_session *session, const cli_render_job *job) {
-  return job->sharing != CLI_SHARES_WINDOWS || cli_sharing_has_picture(session, job);
+/* Of windows, the picture comes together in the first process; of others all gather along, to draw its views. */
+static int needs_image(const cli_session *session, const cli_render_job *job, const conic_camera *camera) {
+  return job->sharing != CLI_SHARES_WINDOWS || cli_sharing_has_picture(session, job) || cli_is_gathered(job, camera);
 }
 
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
@@ -271,7 +272,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     status = cli_choose_exposure(session, job, &camera);
   if (session->host || image->width != camera.width || image->height != camera.height)
     cli_host_release_image(session, image);
-  if (status == CONIC_OK && !conic_image_planes(image) && needs_image(session, job))
+  if (status == CONIC_OK && !conic_image_planes(image) && needs_image(session, job, &camera))
     status = cli_host_allocate_image(session, camera.width, camera.height, job->planes, image);
   if (status == CONIC_OK)
     status = render_repeats(session, job, i_frame, &camera, image, repeats);

@@ -35,8 +35,7 @@ int cli_sharing_choose(const cli_session *session, cli_render_job *job) {
     job->sharing = CLI_SHARES_FRAMES;
   else if (job->accumulating.n_samples)
     job->sharing = CLI_SHARES_SAMPLES;
-  else if (!(job->abilities & (CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_CLUSTERS)) && !job->view.may_be_coarser &&
-           !job->overdraw_path && !job->is_transparent)
+  else if (!job->view.may_be_coarser)
     job->sharing = CLI_SHARES_WINDOWS;
   if (job->sharing == CLI_SHARES_SAMPLES && job->accumulating.seconds > 0.0)
     return cli_usage("render: what --time ends depends on the number of processes; give --noise or a count");

@@ -65,14 +65,19 @@ static conic_status list_windows(window_work *w, int side) {
   return CONIC_OK;
 }
 
-/* The hardest first, so that the last ones, which others wait for, are easy; windows of one weight stay in order. */
+static int band_of(const window_work *w, size_t i) {
+  return w->list[i].y_begin / w->windows.band_rows;
+}
+
+/* Band by band, and of each the hardest first, so that the last ones, which others wait for, are easy; windows of one
+ * weight stay in order. */
 static void order_windows(window_work *w) {
   conic_source_windows_weigh(&w->windows, w->list, w->n, w->weights);
   for (size_t i = 1; i < w->n; i++) {
     conic_window window = w->list[i];
     double weight = w->weights[i];
     size_t at = i;
-    for (; at > 0 && w->weights[at - 1] < weight; at--) {
+    for (; at > 0 && w->weights[at - 1] < weight && band_of(w, at - 1) == window.y_begin / w->windows.band_rows; at--) {
       w->list[at] = w->list[at - 1];
       w->weights[at] = w->weights[at - 1];
     }
@@ -202,6 +207,8 @@ static conic_status draw_given_window(window_work *w, size_t i_window) {
     return status;
   conic_render_statistics drawn;
   status = conic_source_windows_draw(&w->windows, window, &pixels, &drawn);
+  if (w->image)
+    w->image->is_display = pixels.is_display;
   if (status == CONIC_OK) {
     cli_windows_count(&w->windows, &drawn, &w->counts);
     status = hand_window(w, i_window, &pixels, &n_bytes);
@@ -224,13 +231,14 @@ static conic_status draw_given(window_work *w) {
   return status;
 }
 
-conic_status cli_draw_together(cli_session *session, cli_render_job *job, const conic_camera *camera,
+conic_status cli_draw_together(cli_session *session, cli_render_job *job, const cli_looking *looking,
                                conic_image *image, conic_render_statistics *statistics) {
   window_work w = {.session = session, .team = session->team, .job = job, .image = image};
   double start = cli_seconds();
-  w.planes = job->planes & CONIC_DRAWN_PLANES;
-  conic_status status =
-      conic_source_windows_begin(job->source, job->renderer, camera, &job->options, &job->view, &w.windows);
+  const conic_camera *camera = looking->camera;
+  w.planes = (conic_image_planes(image) ? conic_image_planes(image) : job->planes) & CLI_WINDOWS_PLANES;
+  conic_status status = conic_source_windows_begin(job->source, job->renderer, camera, looking->options, looking->view,
+                                                   w.planes, &w.windows);
   w.windows.other_bytes =
       session->team->index == 0 ? cli_pixel_bytes(w.planes) * (uint64_t)camera->width * (uint64_t)camera->height : 0;
   if (status == CONIC_OK)

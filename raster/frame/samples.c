@@ -190,6 +190,17 @@ static conic_status count_whole(conic_context *context, const conic_whole_drawin
   return status == CONIC_OK ? conic_whole_drawing_count(context, drawing, &view, camera, options->isa, s) : status;
 }
 
+conic_status conic_samples_count_drawing(conic_context *context, const conic_drawing *drawing,
+                                         const conic_camera *camera, const conic_render_options *options,
+                                         conic_render_statistics *statistics) {
+  conic_whole_drawing whole;
+  conic_status status = conic_whole_drawing_enter(context, "render", drawing, &whole);
+  if (status == CONIC_OK)
+    status = count_whole(context, &whole, camera, options, statistics);
+  conic_drawing_leave(context, &whole.entered);
+  return status;
+}
+
 conic_status conic_samples_allocate(conic_context *context, int width, int height, unsigned planes, conic_image *fine) {
   memset(fine, 0, sizeof *fine);
   fine->width = width;

@@ -30,6 +30,11 @@ conic_status conic_samples_count(conic_context *context, const conic_splats *spl
                                  const conic_camera *camera, const conic_render_options *options,
                                  conic_render_statistics *statistics);
 
+/* The same of a drawing. Errors: as conic_render_drawing. */
+conic_status conic_samples_count_drawing(conic_context *context, const conic_drawing *drawing,
+                                         const conic_camera *camera, const conic_render_options *options,
+                                         conic_render_statistics *statistics);
+
 /* The planes of a fine picture, which the renderer fills whole: unlike conic_image_allocate's they are not cleared, for
  * at this size that is a large part of a frame. Errors: MEMORY. */
 conic_status conic_samples_allocate(conic_context *context, int width, int height, unsigned planes, conic_image *fine);
