@@ -97,6 +97,7 @@ typedef struct cli_render_job {
   cli_device device;               /* what draws: */
   conic_renderer *renderer;
   unsigned long long budget; /* the view's */
+  int is_memory_given;       /* --memory */
   double deadline;           /* seconds; 0: none */
   double start_seconds;      /* from which it counts */
 
@@ -120,6 +121,7 @@ typedef struct cli_render_job {
   double begun_seconds;                /* when reading began */
   conic_cryptomatte_manifest manifest; /* of the last image */
   uint64_t hashes[CONIC_N_PLANES];     /* of the last image, where they are reported */
+  unsigned banded_planes;              /* of a picture that nobody held: its planes; 0: it was held */
 
   /* Of a team. */
   cli_sharing sharing;

@@ -23,6 +23,8 @@ conic_status conic_exr_bands_append(conic_exr_bands *bands, const conic_image *b
  */
 conic_status conic_exr_packer_open(conic_context *context, int width, int height, unsigned planes,
                                    const conic_image_options *options, conic_exr_bands **bands);
+/* Memory that packing takes at most, about. */
+uint64_t conic_exr_packer_bytes(const conic_exr_bands *bands);
 /* Takes rows of the picture as they stand in the file, from the top; an answer other than CONIC_OK ends packing. */
 typedef conic_status conic_exr_receiver(void *cookie, int y, int n_rows, const void *bytes, size_t n_bytes);
 /* Packs the picture's rows from `begin` to before `end`, both multiples of CONIC_EXR_BAND or the picture's end, of an

@@ -16,6 +16,9 @@
 #include "core/pictures/image_channels.h"
 #include "core/pictures/image_exr_stream.h"
 
+/* Chunks that are compressed side by side take no more than this of pixels, where they are so small. */
+enum { CHUNKS_BYTES = 1 << 25 };
+
 /* zlib's level. 4, the library's default, makes files at most 5 % smaller and takes up to a half longer. */
 enum { ZIP_LEVEL = 2 };
 
@@ -222,6 +225,23 @@ static conic_status choose_stream(conic_exr_bands *bands, FILE **stream) {
                                    bands->path, strerror(errno));
 }
 
+/* Pixels of a chunk. */
+static uint64_t chunk_bytes(const conic_exr_bands *bands) {
+  conic_compression compression = bands->options.compression;
+  uint64_t n_rows = compression == CONIC_COMPRESSION_PIZ                                             ? 32
+                    : compression == CONIC_COMPRESSION_ZIP || compression == CONIC_COMPRESSION_PXR24 ? 16
+                                                                                                     : 1;
+  uint64_t n_values = 0;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    n_values += bands->planes >> i & 1 ? (uint64_t)conic_plane_describe((conic_plane)i)->n_channels : 0;
+  return 4 * n_values * n_rows * (uint64_t)bands->width;
+}
+
+/* The pixels in the file's order, and compressed, and what that takes. */
+uint64_t conic_exr_packer_bytes(const conic_exr_bands *bands) {
+  return 3 * bands->n_chunks * chunk_bytes(bands);
+}
+
 static conic_status begin_file(conic_exr_bands *bands, const conic_image *header, int is_packer) {
   exr_context_initializer_t settings;
   FILE *stream = NULL;
@@ -230,7 +250,8 @@ static conic_status begin_file(conic_exr_bands *bands, const conic_image *header
     status = choose_stream(bands, &stream);
   if (status != CONIC_OK)
     return status;
-  bands->n_chunks = 2 * (size_t)conic_context_threads(bands->context);
+  uint64_t most = CHUNKS_BYTES / chunk_bytes(bands) + 1, wanted = 2 * (uint64_t)conic_context_threads(bands->context);
+  bands->n_chunks = (size_t)(wanted < most ? wanted : most);
   bands->chunks = conic_memory_allocate_zeroed(bands->context, bands->n_chunks, sizeof *bands->chunks);
   if (!bands->chunks)
     return CONIC_ERROR_MEMORY;
@@ -363,6 +384,11 @@ conic_status conic_exr_packer_open(conic_context *context, int width, int height
 conic_status conic_exr_bands_append(conic_exr_bands *bands, const conic_image *band) {
   (void)bands, (void)band;
   return CONIC_ERROR_UNSUPPORTED;
+}
+
+uint64_t conic_exr_packer_bytes(const conic_exr_bands *bands) {
+  (void)bands;
+  return 0;
 }
 
 conic_status conic_exr_pack(conic_exr_bands *bands, const conic_image *image, int first, int begin, int end,
