@@ -8,6 +8,8 @@ static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static cli_team *own_team;
 static int is_agreeing, agreed_failure;
 static char first_error[2048];
+static uint64_t n_units;
+static double busy_seconds;
 
 void cli_team_join(cli_team *team) {
   own_team = team && team->count > 1 ? team : NULL;
@@ -62,11 +64,24 @@ static void *collect_bytes(void *data, const void *bytes, size_t n_bytes, size_t
   return all;
 }
 
+/* One loop is a unit of each process: they are told by their numbers. */
+static void note_loop(void *data, const char *kind, const char *name, double start) {
+  const cli_team *team = data;
+  double now = cli_seconds();
+  team->trace(kind, name, n_units++, start, now, 0);
+  busy_seconds += now - start;
+}
+
+void cli_team_count_loops(uint64_t *units, double *seconds) {
+  *units = n_units;
+  *seconds = busy_seconds;
+}
+
 const conic_team *cli_team_of_library(const cli_session *session, conic_team *team) {
   if (!cli_team_is_shared(session))
     return NULL;
   *team = (conic_team){session->team->index, session->team->count, session->team, send_bytes,
-                       receive_bytes,        release_bytes,        collect_bytes};
+                       receive_bytes,        release_bytes,        collect_bytes, note_loop};
   return team;
 }
 

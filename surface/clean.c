@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/team_runs.h"
 #include "core/splats/splats_gather.h"
 #include "surface/own_points.h"
 
@@ -81,6 +81,29 @@ static void clean_chunk(void *data, size_t i_item, int i_thread) {
     clean_leaf(work, i, &work->workspaces[i_thread]);
 }
 
+/* The first slot of the leaves of a chunk. */
+static size_t first_slot(const void *data, size_t i_item) {
+  const conic_neighbours *tree = &((const points_cleaning *)data)->surface->tree;
+  return conic_neighbours_leaf_begin(tree, i_item * CHUNK < tree->n_leaves ? i_item * CHUNK : tree->n_leaves);
+}
+
+static conic_status clean_leaves(points_cleaning *work, double begin, double end) {
+  conic_own_points *own = work->own;
+  conic_team_loop loop = {"project",       begin,       end,  (work->surface->tree.n_leaves + CHUNK - 1) / CHUNK,
+                          CHUNKS_A_REPORT, clean_chunk, work, .first_of = first_slot};
+  int n = 0;
+  loop.columns[n++] = (conic_team_column){own->moved2, sizeof *own->moved2};
+  loop.columns[n++] = (conic_team_column){own->n_neighbours, sizeof *own->n_neighbours};
+  loop.columns[n++] = (conic_team_column){own->outcomes, sizeof *own->outcomes};
+  loop.columns[n++] = (conic_team_column){own->are_merged, sizeof *own->are_merged};
+  for (int axis = 0; axis < 3; axis++) {
+    loop.columns[n++] = (conic_team_column){own->points.position[axis], sizeof(float)};
+    loop.columns[n++] = (conic_team_column){own->points.normal[axis], sizeof(float)};
+    loop.columns[n++] = (conic_team_column){own->points.color[axis], sizeof(float)};
+  }
+  return conic_team_runs(work->surface->context, &loop);
+}
+
 static conic_status allocate_own(const conic_surface *surface, conic_own_points *own) {
   conic_context *context = surface->context;
   size_t n = surface->tree.n_slots;
@@ -102,12 +125,11 @@ conic_status conic_own_points_project(const conic_surface *surface, size_t n_wan
   if (status == CONIC_OK)
     status = allocate_own(surface, own);
   if (status == CONIC_OK)
-    status = conic_parallel_runs(context, "project", begin, end, (surface->tree.n_leaves + CHUNK - 1) / CHUNK,
-                                 CHUNKS_A_REPORT, clean_chunk, &work);
+    status = clean_leaves(&work, begin, end);
   if (status == CONIC_OK)
     status = conic_workspaces_check(context, work.workspaces);
-  for (int i = 0; work.workspaces && i < conic_context_threads(context); i++)
-    own->n_evaluations += work.workspaces[i].n_evaluations;
+  if (status == CONIC_OK)
+    status = conic_workspaces_count(context, work.workspaces, &own->n_evaluations);
   conic_workspaces_release(context, work.workspaces);
   if (status != CONIC_OK)
     conic_own_points_release(context, own);

@@ -21,6 +21,9 @@ typedef struct conic_team {
    * before; sizes[i] is their number. Goes to `release`. */
   void *(*collect)(void *data, const void *bytes, size_t n_bytes, size_t *sizes);
 
+  /* Takes note of what this process did since `start` of conic_seconds_now: "unit", "points". Null: nobody does. */
+  void (*note)(void *data, const char *kind, const char *name, double start);
+
   /* Where one has no memory for what comes, whoever made the team ends all of it: none of these fails. */
 } conic_team;
 
