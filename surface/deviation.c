@@ -82,7 +82,7 @@ conic_status conic_surface_deviation(conic_surface *from, conic_surface *to, con
   conic_own_points own;
   measuring work = {from, to, &own, NULL, NULL};
   memset(distance, 0, sizeof *distance);
-  conic_status status = conic_own_points_project(from, SIZE_MAX, 0.0, 1.0, &own);
+  conic_status status = conic_own_points_project(from, NULL, 0.0, 1.0, &own);
   if (status != CONIC_OK)
     return status;
   work.distances2 = conic_memory_allocate(context, from->tree.n_slots, sizeof *work.distances2);
