@@ -408,8 +408,7 @@ static conic_status clean_own(cleaning *work) {
     if (part->first == part->end)
       continue;
     status = clean_cell(work, &work->cells.cells[i], part);
-    if (work->team && work->team->note)
-      work->team->note(work->team->data, "unit", "cell", start);
+    conic_team_note(work->team, "cell", start, part->end - part->first);
   }
   return status;
 }

@@ -25,7 +25,9 @@ void cli_build_share(cli_build *build) {
 }
 
 conic_status cli_build_part(cli_build *build, conic_status status) {
-  return conic_context_part(build->session->context, status);
+  status = conic_context_part(build->session->context, status);
+  cli_team_exit(build->session, status); /* what is told of a failure is told now */
+  return status;
 }
 
 int cli_build_take_paths(cli_build *build, const char *input, const char *ending) {
@@ -96,10 +98,10 @@ static int agree_on_build(cli_build *build, int exit_code) {
     return exit_code;
   exit_code = cli_team_agree(build->session, exit_code);
   if (exit_code == CLI_DONE) {
-    uint64_t n_units;
+    uint64_t n_stages;
     double busy_seconds;
-    cli_team_count_loops(&n_units, &busy_seconds);
-    cli_team_shares_gather(build->session, n_units, busy_seconds, &build->shares);
+    cli_team_count_stages(&n_stages, &busy_seconds);
+    cli_team_shares_gather(build->session, n_stages, busy_seconds, &build->shares);
   }
   return exit_code;
 }

@@ -152,11 +152,10 @@ conic_status conic_team_runs(conic_context *context, const conic_team_loop *loop
                                do_own_item, &blocks);
   if (status == CONIC_OK && !(own = conic_memory_allocate(context, most_own_bytes(&blocks), 1)))
     status = CONIC_ERROR_MEMORY;
-  if (team->note)
-    team->note(team->data, "unit", loop->name, start);
   status = agree_on(context, status);
   if (status == CONIC_OK)
     exchange_values(&blocks, own);
+  conic_team_note(team, loop->name, start, loop->n_items);
   conic_memory_release(context, own);
   return status;
 }
