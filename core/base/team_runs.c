@@ -74,6 +74,14 @@ static size_t first_value(const team_blocks *blocks, size_t i_block) {
   return loop->first_of ? loop->first_of(loop->data, i_item) : lesser_count(i_item * loop->n_an_item, loop->n_values);
 }
 
+static void copy_column(const conic_team_column *column, size_t begin, size_t n, char *bytes, int is_back) {
+  size_t n_bytes = column->value_bytes;
+  for (size_t i = 0, n_run = column->places ? 1 : n; i < n; i += n_run) {
+    char *value = (char *)column->values + (column->places ? column->places[begin + i] : begin + i) * n_bytes;
+    memcpy(is_back ? value : bytes + i * n_bytes, is_back ? bytes + i * n_bytes : value, n_run * n_bytes);
+  }
+}
+
 /* Copies a block's values out of the columns, or back into them, unless there are no bytes; returns their size. */
 static size_t copy_values(const team_blocks *blocks, size_t i_block, char *bytes, int is_back) {
   const conic_team_loop *loop = blocks->loop;
@@ -82,13 +90,9 @@ static size_t copy_values(const team_blocks *blocks, size_t i_block, char *bytes
     const conic_team_column *column = &loop->columns[i];
     if (!column->values)
       continue;
-    char *values = (char *)column->values + begin * column->value_bytes;
-    size_t column_bytes = n * column->value_bytes;
-    if (bytes && is_back)
-      memcpy(values, bytes + n_bytes, column_bytes);
-    else if (bytes)
-      memcpy(bytes + n_bytes, values, column_bytes);
-    n_bytes += column_bytes;
+    if (bytes)
+      copy_column(column, begin, n, bytes + n_bytes, is_back);
+    n_bytes += n * column->value_bytes;
   }
   return n_bytes;
 }

@@ -21,6 +21,7 @@ conic_status conic_context_part(conic_context *context, conic_status status);
 typedef struct conic_team_column {
   void *values; /* null: there is none */
   size_t value_bytes;
+  const uint32_t *places; /* where value i stands; null: at i */
 } conic_team_column;
 
 enum { CONIC_TEAM_COLUMNS = 16 };
