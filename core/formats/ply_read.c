@@ -103,7 +103,9 @@ static conic_status read_blocks(vertex_reader *reader) {
   if (reader->builder->delivery && reader->builder->delivery->range)
     range = *reader->builder->delivery->range;
   range.end = range.end < count ? range.end : count;
-  conic_status status = range.first > 0 && range.first < range.end ? pass_rows(reader, range.first) : CONIC_OK;
+  if (range.first >= range.end)
+    return CONIC_OK;
+  conic_status status = range.first > 0 ? pass_rows(reader, range.first) : CONIC_OK;
   while (status == CONIC_OK && source->i_row < range.end) {
     size_t n = 0;
     status = read_block(reader, range.end, &n);

@@ -45,6 +45,9 @@ static conic_status read_parts(const char *path, const conic_read_options *optio
       conic_model_survey_add(&survey, &own);
     }
   CHECK(survey.n_wanted == row->n_all);
+  const conic_points_range none = {step, step};
+  if (status == CONIC_OK)
+    status = conic_model_stream_part(context, path, options, &none, &survey, take_row, row);
   return status;
 }
 
