@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/render/frames.h"
+#include "cli/render/kept_frames.h"
 #include "cli/session_team.h"
 #include "source/source_parts.h"
 
@@ -58,7 +59,7 @@ void cli_frame_turns_begin(const cli_session *session, const cli_render_job *job
   int count = session->team->count;
   if (session->team->index == 0)
     turns->most = (turns->n_frames + count - 1) / count - 1;
-  session->team->share((uint64_t)turns->n_frames - 1, NULL, NULL);
+  session->team->share((uint64_t)turns->n_frames - 1, job->kept ? cli_kept_frames_take : NULL, job->kept);
 }
 
 int cli_frame_turns_next(const cli_session *session, const cli_render_job *job, cli_frame_turns *turns) {
