@@ -2,6 +2,7 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/render/kept_frames.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/sample_options.h"
 #include "cli/scene/stereo.h"
@@ -115,6 +116,8 @@ static int check_outputs(const cli_session *session, cli_render_job *job, const 
   if (answer == CLI_DONE)
     answer = cli_stereo_check(session, job);
   if (answer == CLI_DONE)
+    answer = cli_kept_frames_check(job);
+  if (answer == CLI_DONE)
     answer = cli_accumulate_check(session, job);
   if (answer == CLI_DONE && job->has_mattes)
     answer = cli_mattes_check(job);
@@ -170,6 +173,13 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP",
        "only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from 0 [all]",
        .parse = cli_parse_frames},
+      {"resumable", CLI_FLAG, &job->accumulating.is_resumable, NULL,
+       "note beside the first OUT what is finished, so that --resume can go on after any end: the frames in "
+       "OUT.frames, "
+       "and of one --accumulate the sums in OUT.sums"},
+      {"resume", CLI_TEXT, &job->accumulating.resume_path, "OUT",
+       "go on with what OUT.frames or OUT.sums says is finished, to the bit as if it had never stopped; with "
+       "--resumable, too, where there is none begin"},
       {"stereo", CLI_NUMBER, &job->stereo.distance, "E",
        "two pictures, of eyes that are E apart, in world units: OUT.left.exr and OUT.right.exr, or left and right in "
        "the "
@@ -191,12 +201,6 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        1e-9, 1e9, .is_given = &job->accumulating.is_given},
       {"preview", CLI_NUMBER, &job->accumulating.preview_seconds, "S",
        "write the picture as it is every S seconds, too [only at the end]", 1e-3, 1e9,
-       .is_given = &job->accumulating.is_given},
-      {"resumable", CLI_FLAG, &job->accumulating.is_resumable, NULL,
-       "keep the sums beside the first OUT, as OUT.sums, also at Ctrl-C, so that --resume can go on",
-       .is_given = &job->accumulating.is_given},
-      {"resume", CLI_TEXT, &job->accumulating.resume_path, "PICTURE",
-       "go on with the samples of PICTURE.sums, to the bit as if it had never stopped",
        .is_given = &job->accumulating.is_given},
       CLI_LENS_OPTIONS(&job->accumulating),
       {"gsd", CLI_NUMBER, &job->top.gsd, "G",

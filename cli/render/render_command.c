@@ -7,6 +7,7 @@
 #include "cli/render/banded_picture.h"
 #include "cli/render/frames.h"
 #include "cli/render/gather_picture.h"
+#include "cli/render/kept_frames.h"
 #include "cli/render/sharing.h"
 #include "cli/scene/backdrop.h"
 #include "cli/scene/stereo.h"
@@ -343,7 +344,7 @@ static void hash_image(const cli_session *session, cli_render_job *job, const co
 static conic_status choose_first_exposure(cli_session *session, cli_render_job *job) {
   conic_camera camera;
   conic_status status = CONIC_OK;
-  if (job->sharing == CLI_SHARES_NOTHING || !job->is_exposure_automatic)
+  if ((job->sharing == CLI_SHARES_NOTHING && !cli_frames_are_several(job)) || !job->is_exposure_automatic)
     return CONIC_OK;
   if (cli_team_is_first(session)) {
     status = cli_accumulate_camera(session, job, job->frames.first - 1, &camera);
@@ -351,7 +352,7 @@ static conic_status choose_first_exposure(cli_session *session, cli_render_job *
       status = cli_choose_exposure(session, job, &camera);
   }
   status = cli_sharing_end(session, job, status);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && job->sharing != CLI_SHARES_NOTHING)
     session->team->broadcast(&job->options.exposure, sizeof job->options.exposure);
   job->is_exposure_automatic = 0;
   return status;
@@ -365,12 +366,19 @@ static conic_status render_frames(cli_session *session, cli_render_job *job, con
   cli_frame_turns_begin(session, job, &turns);
   for (int i; status == CONIC_OK && (i = cli_frame_turns_next(session, job, &turns)) >= 0;) {
     double start = cli_seconds();
+    int i_frame = job->frames.first - 1 + i * job->frames.step, is_finished = 0;
     if (cli_frames_are_many(job))
       cli_session_part(session, job->is_turntable ? "frame" : "view", i + 1, turns.n_frames);
+    if (!session->json_path || i < turns.n_frames - 1) /* which the report is about */
+      status = cli_kept_frames_look(session, job, i_frame, &is_finished);
+    if (is_finished)
+      continue;
     for (int eye = 0; eye < cli_stereo_eyes(job) && status == CONIC_OK; eye++) {
       cli_stereo_begin(job, eye);
-      status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, image, repeats);
+      status = render_frame(session, job, i_frame, image, repeats);
     }
+    if (status == CONIC_OK)
+      status = cli_kept_frames_add(session, job, i_frame);
     if (job->sharing == CLI_SHARES_FRAMES)
       cli_sharing_note(session, job, "frame", (uint64_t)i, start, 0);
   }
@@ -387,16 +395,22 @@ static int render_scene(cli_session *session, cli_render_job *job) {
   if (status == CONIC_OK)
     status = choose_first_exposure(session, job);
   if (status == CONIC_OK)
+    status = cli_kept_frames_begin(session, job);
+  if (status == CONIC_OK)
     status = cli_sharing_end(session, job, render_frames(session, job, &image, repeats));
+  if (status == CONIC_OK)
+    status = cli_kept_frames_end(session, job);
   if (status == CONIC_OK)
     cli_sharing_gather(session, job);
   if (status == CONIC_OK && cli_team_is_first(session)) {
     hash_image(session, job, &image);
     job->total_ms = 1e3 * (cli_seconds() - job->start_seconds);
-    cli_render_tell(session, job);
+    if (conic_image_planes(&image))
+      cli_render_tell(session, job);
     exit_code = cli_render_report(session, job, &image);
   } else
     exit_code = cli_exit_of(status);
+  cli_kept_frames_release(session, job);
   cli_host_release_image(session, &image);
   conic_cryptomatte_manifest_release(session->context, &job->manifest);
   free(repeats);
@@ -419,6 +433,8 @@ static int run(cli_session *session, int argc, char **argv) {
   int exit_code = cli_render_parse(session, argc, argv, &job);
   enum { MANY = 16 };
   job.start_seconds = start;
+  job.n_arguments = argc;
+  job.arguments = argv;
   if (exit_code == CLI_DONE) {
     session->draws_many_frames = job.is_every_view || (double)job.repeat * cli_frames_count(&job) >= MANY;
     exit_code = cli_session_open(session);

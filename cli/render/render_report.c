@@ -3,6 +3,7 @@
 
 #include "cli/color_options.h"
 #include "cli/render/frames.h"
+#include "cli/render/kept_frames.h"
 #include "cli/render/sharing.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/views.h"
@@ -214,6 +215,8 @@ int cli_render_report(cli_session *session, const cli_render_job *job, const con
   conic_status status = report_counts(json, job);
   report_settings(json, job);
   report_hashes(json, job, image);
+  if (job->kept)
+    cli_json_count(json, "frames_finished", (uint64_t)cli_kept_frames_count(job));
   cli_sharing_report(json, job);
   report_times(json, job);
   exit_code = cli_json_finish(file);
