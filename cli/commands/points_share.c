@@ -101,6 +101,8 @@ static conic_status find_cut(const cli_points_share *share, const conic_read_opt
   can_part = can_part && shape->can_part && !(shape->is_raw && shape->n_points <= most_whole);
   uint64_t n_steps = shape->n_points / CONIC_PART_STEP;
   cut->point = can_part ? (uint64_t)(fraction * (double)n_steps + 0.5) * CONIC_PART_STEP : 0;
+  if (can_part && cut->input == 0 && cut->point == 0) /* the first process has something */
+    cut->point = CONIC_PART_STEP;
   if ((can_part && cut->point >= shape->n_points) || (!can_part && (fraction >= 0.5 || cut->input == 0)))
     *cut = (cli_points_cut){.input = cut->input + 1};
   return status;
