@@ -1,4 +1,4 @@
-#include "cli/commands/points_folder.h"
+#include "cli/layer/points_folder.h"
 
 #include <stdio.h>
 #include <stdlib.h>
