@@ -8,6 +8,8 @@ static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static cli_team *own_team;
 static int is_agreeing, agreed_failure;
 static char first_error[2048];
+static uint64_t n_stages;
+static double busy_seconds;
 
 void cli_team_join(cli_team *team) {
   own_team = team && team->count > 1 ? team : NULL;
@@ -75,6 +77,13 @@ static void note_stage(void *data, const char *name, double from, uint64_t numbe
   team->trace("wait", name, number, now - waited_now, now, 0);
   sent_before = sent_bytes;
   waited_before = waited;
+  n_stages++;
+  busy_seconds += now - from - waited_now;
+}
+
+void cli_team_count_stages(uint64_t *n, double *seconds) {
+  *n = n_stages;
+  *seconds = busy_seconds;
 }
 
 const conic_team *cli_team_of_library(const cli_session *session, conic_team *team) {
