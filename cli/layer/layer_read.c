@@ -1,7 +1,7 @@
 #include <string.h>
 
-#include "cli/commands/points_input.h"
 #include "cli/layer/layer_job.h"
+#include "cli/points/points_input.h"
 #include "conic/layers_draw.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"

@@ -12,8 +12,8 @@ mkdir tiles bad none
 "$conic" make sphere -n 2000 -o tiles/c.ply
 awk 'BEGIN { for (i = 0; i < 1500; i++) print i % 40 / 20, int(i / 40) / 20, (i % 7) / 100 }' > tiles/b.xyz
 echo "no points" > tiles/readme.txt
-"$conic" make knot -n 140000 -o large.ply
-"$conic" cut large.ply -o raw.las --box -9,-9,-9,9,0.1,9 --quiet
+"$conic" make knot -n 70000 -o large.ply
+"$conic" cut large.ply -o raw.las --box -9,-9,-9,9,9,9 --quiet
 cp tiles/a.ply bad/a.ply
 head -c 20000 tiles/c.ply > bad/b.ply
 
@@ -30,8 +30,10 @@ run_as_typed 0 layer tiles/a.ply tiles/b.xyz tiles/c.ply -o listed.lpc
 cmp tiles.lpc listed.lpc || fail "a folder is not its files in the order of their names"
 run_as_typed 0 layer tiles --payload full -o full.lpc
 run_as_typed 0 layer large.ply --memory 16 -o large.lpc
-raw=(--memory 16 --where 'not classification = 3' --keep intensity --color-by height)
+raw=(--memory 16 --keep intensity --color-by height)
 run_as_typed 0 layer raw.las "${raw[@]}" -o raw.lpc
+few=(--memory 16 --where 'x > 0') # so few that their normals are estimated from all of them
+run_as_typed 0 layer raw.las "${few[@]}" -o few.lpc
 
 jobs=
 for n in 1 2 3 4 7; do
@@ -41,6 +43,7 @@ same full 3 tiles --payload full & jobs+=" $!"
 same large 2 large.ply --memory 16 & jobs+=" $!"
 same large 3 large.ply --memory 16 --trace trace.json & jobs+=" $!"
 same raw 2 raw.las "${raw[@]}" & jobs+=" $!"
+same few 2 raw.las "${few[@]}" & jobs+=" $!"
 told_once err1 3 3 bad/b.ply layer bad -o failed.lpc & jobs+=" $!"
 told_once err2 2 3 'it is a directory' layer none -o failed.lpc & jobs+=" $!"
 told_once err3 2 3 'name it first' layer tiles/b.xyz tiles/a.ply -o failed.lpc & jobs+=" $!"
@@ -54,6 +57,7 @@ done
 for report in tiles-3 large-2 raw-2; do
   ! grep -q '"units": 0' "$report.json" || fail "a rank has had nothing of $report: $(cat "$report.json")"
 done
+grep -q '"units": 0' few-2.json || fail "what is estimated from all points has been parted"
 grep -q '"shares": "points"' large-3.json || fail "the report does not say what was shared"
 for stage in exchange grow crown write; do
   [[ $(grep -c "\"name\": \"$stage .*\"stage\"" trace.json) -eq 3 ]] || fail "the trace lacks $stage"

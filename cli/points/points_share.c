@@ -1,9 +1,9 @@
-#include "cli/layer/points_share.h"
+#include "cli/points/points_share.h"
 
 #include <string.h>
 
-#include "cli/commands/points_input.h"
-#include "cli/layer/points_folder.h"
+#include "cli/points/points_folder.h"
+#include "cli/points/points_input.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/disk.h"
