@@ -173,7 +173,7 @@ typedef struct sky_walk {
 } sky_walk;
 
 /* What comes from direction i. */
-static conic_status turn_to(sky_walk *w, uint64_t i, double direction[3]) {
+static conic_status turn_to_direction(sky_walk *w, uint64_t i, double direction[3]) {
   double from_there[3];
   conic_sky_direction(w->options->sky, w->options->first_direction + i, direction, from_there);
   if (w->light)
@@ -192,7 +192,7 @@ static conic_status walk_alone(sky_walk *w) {
   conic_status status = CONIC_OK;
   for (uint64_t i = 0; i < w->options->n_directions && status == CONIC_OK; i++) {
     double direction[3];
-    status = turn_to(w, i, direction);
+    status = turn_to_direction(w, i, direction);
     if (status == CONIC_OK)
       status = conic_map_room_draw(w->room, direction, &w->map);
     if (status == CONIC_OK)
@@ -202,14 +202,14 @@ static conic_status walk_alone(sky_walk *w) {
 }
 
 /* The first process adds what the others say of their directions, in the order of these. */
-static conic_status take_round(sky_walk *w, const sky_round *r, uint64_t first) {
+static conic_status take_directions(sky_walk *w, const sky_round *r, uint64_t first) {
   conic_status status = CONIC_OK;
   for (int other = 1; other < r->team->count && first + (uint64_t)other < w->options->n_directions; other++) {
     conic_camera camera;
     double direction[3], near_z;
     size_t n_bytes;
     unsigned char *reached = r->team->receive(r->team->data, other, &n_bytes);
-    conic_status turned = turn_to(w, first + (uint64_t)other, direction);
+    conic_status turned = turn_to_direction(w, first + (uint64_t)other, direction);
     status = status == CONIC_OK ? turned : status;
     conic_light_map_place(w->room->casters, w->room->receivers, direction, w->room->texel, w->room->most_texels,
                           &camera, &near_z, &w->map);
@@ -227,7 +227,7 @@ static conic_status draw_in_round(sky_walk *w, const sky_round *r, uint64_t i, u
   if (i >= w->options->n_directions)
     return CONIC_OK;
   sharing->i_map = i;
-  conic_status status = turn_to(w, i, direction);
+  conic_status status = turn_to_direction(w, i, direction);
   if (status != CONIC_OK || r->team->index > 0)
     return status == CONIC_OK ? draw_own_map(r, direction, reached) : status;
   status = conic_map_room_draw(w->room, direction, &w->map);
@@ -246,7 +246,7 @@ static conic_status walk_rounds(sky_walk *w, const sky_round *r, unsigned char *
     if (status == CONIC_OK && team->index > 0 && own < w->options->n_directions)
       team->send(team->data, 0, reached, r->n_bytes);
     else if (status == CONIC_OK && team->index == 0)
-      taken = take_round(w, r, first);
+      taken = take_directions(w, r, first);
   }
   return status == CONIC_OK ? conic_team_agree(team, taken) : status;
 }

@@ -27,8 +27,7 @@ alike mixed 3 torus.obj knot.ply --size 200x130 --aov rgba,Z,N,albedo,weight,cou
 alike lit 2 glass.obj knot.ply --size 150x130 --samples 2 --transparency --ao 5 --shadow --light 1,1,1 \
   --light lamp:0,2,2:3,3,3 --aov rgba,Z,ao,shadow
 alike hybrid 2 torus.obj --as hybrid --size 140x130 --projection fisheye --aov rgba,id,cluster --exposure auto
-alike patches 2 knot.ply --method patch --size 130x130 --aov rgba,id
-alike gaussians 3 cloud.ply --profile exact --size 200x130 --aov rgba,Z,N,count,id,T,last
-alike profile 2 cloud.ply --profile 2dgs-2024 --samples 2 --size 130x140 --aov rgba,Z
+alike gaussians 3 cloud.ply --profile inria-2023 --size 200x130 --aov rgba,Z,N,count,id,T,last
+alike rays 2 cloud.ply --profile exact --projection panorama --samples 2 --size 130x140 --aov rgba,Z
 
 exit $((failures > 0))
