@@ -81,12 +81,20 @@ static void wait_for(MPI_Request *request) {
   count_traffic(0, 0, n_dozes ? conic_seconds_now() - start : 0.0);
 }
 
-/* Of a piece the other side is at work on, too, and each test moves some of its bytes: who dozes holds both up. */
+/* Of a piece the other side is at work on, too, and each test moves some of its bytes: who dozes long holds both up. */
 static void move_piece(MPI_Request *request) {
+  enum { YIELDS = 256 };
   int is_done = 0;
   double start = conic_seconds_now();
-  for (MPI_Test(request, &is_done, MPI_STATUS_IGNORE); !is_done; MPI_Test(request, &is_done, MPI_STATUS_IGNORE))
-    sched_yield();
+  MPI_Test(request, &is_done, MPI_STATUS_IGNORE);
+  for (int n = 0; !is_done; n++) {
+    int n_dozes = 0;
+    if (n < YIELDS)
+      sched_yield();
+    else
+      doze(&n_dozes);
+    MPI_Test(request, &is_done, MPI_STATUS_IGNORE);
+  }
   count_traffic(0, 0, conic_seconds_now() - start);
 }
 
