@@ -5,6 +5,9 @@
 #include "conic/source.h"
 #include "raster/view/part.h"
 
+/* What a kind counts of its windows. */
+enum { CONIC_SOURCE_TALLIES = 4 };
+
 /* Whether it can: by the processor, what its kind has windows of. */
 int conic_source_has_windows(const conic_source *source, const conic_renderer *renderer);
 
@@ -15,14 +18,18 @@ typedef struct conic_source_windows {
   conic_render_options render; /* settled */
   unsigned planes;
   int samples;
-  int step;      /* windows begin at multiples of so many pixels, in rows from where their band begins, */
-  int band_rows; /* and none lies in two bands of so many rows */
-  void *own;     /* the kind's */
+  int step;             /* windows begin at multiples of so many pixels, in rows from where their band begins, */
+  int band_rows;        /* and none lies in two bands of so many rows */
+  int is_summed;        /* the windows' statistics sum up to the picture's; else only fragments and pixels do */
+  uint64_t other_bytes; /* of memory that is not the source's to take, beside the image at hand */
+  uint64_t tallies[CONIC_SOURCE_TALLIES]; /* of the windows drawn so far: a sum over processes is all windows' */
+  void *own;                              /* the kind's */
 } conic_source_windows;
 
 /* How a kind of source draws in windows. */
 typedef struct conic_source_windowing {
-  /* Chooses what the camera sees, and sets step and band_rows. What it leaves in `own`, also on failure, is ended. */
+  /* Chooses what the camera sees, and sets step, band_rows and is_summed. What it leaves in `own`, also on failure, is
+   * ended. */
   conic_status (*begin)(conic_source_windows *windows);
   void (*end)(conic_source_windows *windows);
   /* The next three are the functions of this page. */
@@ -44,11 +51,13 @@ conic_status conic_source_windows_begin(conic_source *source, conic_renderer *re
 void conic_source_windows_end(conic_source_windows *windows);
 
 /* Draws the window's pixels into an image of its size. Of `statistics`, fragments and pixels are the window's, all else
- * the band's. Windows are best drawn band by band. Errors: as conic_source_draw. */
+ * the band's, or the window's part of the picture's. Windows are best drawn band by band. Errors: as conic_source_draw.
+ */
 conic_status conic_source_windows_draw(conic_source_windows *windows, const conic_window *window, conic_image *image,
                                        conic_render_statistics *statistics);
 
-/* Makes of the sum of all windows' statistics those of the picture. Errors: MEMORY, CANCELLED. */
+/* Makes of the sum of all windows' statistics those of the picture, which the source's facts are then about. Errors:
+ * MEMORY, CANCELLED. */
 conic_status conic_source_windows_count(const conic_source_windows *windows, conic_render_statistics *statistics);
 
 /* How much work each of the windows is, about: of what lies in it, and of its pixels. */

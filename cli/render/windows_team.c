@@ -13,14 +13,16 @@
  * projects, are not most of the work. */
 enum { WINDOWS_EACH = 6, LEAST_SIDE = 64 };
 
-/* What windows are drawn of; others are made of these later. */
-static const unsigned windows_planes =
-    CONIC_DRAWN_PLANES | 1u << CONIC_PLANE_CLUSTER | (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT));
-
-/* What is handed over with a window's pixels. */
+/* What is handed over before a window's pixels. */
 typedef struct window_result {
-  uint64_t i_window, fragments, triangle_fragments, pixels_covered;
+  uint64_t i_window;
 } window_result;
+
+/* What a process has counted of its windows. */
+typedef struct window_sum {
+  uint64_t n_windows, tallies[CONIC_SOURCE_TALLIES];
+  conic_render_statistics statistics;
+} window_sum;
 
 typedef struct window_work {
   cli_session *session;
@@ -32,8 +34,7 @@ typedef struct window_work {
   size_t n;
   unsigned planes;
   conic_image *image; /* of the first process: the whole */
-  window_result sum;
-  conic_render_statistics statistics;
+  cli_window_counts counts;
 } window_work;
 
 /* --- the list --- */
@@ -102,11 +103,16 @@ static size_t pixel_bytes_of(conic_plane plane) {
   return 4 * (size_t)conic_plane_describe(plane)->n_channels;
 }
 
-static size_t window_bytes(const window_work *w, const conic_window *window) {
+size_t cli_pixel_bytes(unsigned planes) {
   size_t n = 0;
   for (int i = 0; i < CONIC_N_PLANES; i++)
-    n += w->planes >> i & 1 ? pixel_bytes_of((conic_plane)i) : 0;
-  return n * (size_t)(window->x_end - window->x_begin) * (size_t)(window->y_end - window->y_begin);
+    n += planes >> i & 1 ? pixel_bytes_of((conic_plane)i) : 0;
+  return n;
+}
+
+static size_t window_bytes(const window_work *w, const conic_window *window) {
+  return cli_pixel_bytes(w->planes) * (size_t)(window->x_end - window->x_begin) *
+         (size_t)(window->y_end - window->y_begin);
 }
 
 /* On the first process, of each window. */
@@ -124,16 +130,12 @@ static void take_window(void *cookie, int from, void *bytes, size_t n_bytes) {
       memcpy((char *)w->image->planes[i] + ((size_t)y * (size_t)w->image->width + (size_t)window->x_begin) * size,
              pixels, width * size);
   }
-  w->sum.fragments += result.fragments;
-  w->sum.triangle_fragments += result.triangle_fragments;
-  w->sum.pixels_covered += result.pixels_covered;
   cli_team_trace(w->session, "join", "window", result.i_window, start, n_bytes);
   (void)from;
 }
 
-static conic_status hand_window(const window_work *w, size_t i_window, const conic_image *pixels,
-                                const conic_render_statistics *statistics, size_t *n_bytes) {
-  window_result result = {i_window, statistics->fragments, statistics->triangle_fragments, statistics->pixels_covered};
+static conic_status hand_window(const window_work *w, size_t i_window, const conic_image *pixels, size_t *n_bytes) {
+  window_result result = {i_window};
   size_t at = sizeof result, n = conic_image_pixels(pixels);
   *n_bytes = sizeof result + window_bytes(w, &w->list[i_window]);
   char *bytes = malloc(*n_bytes);
@@ -150,6 +152,47 @@ static conic_status hand_window(const window_work *w, size_t i_window, const con
   return CONIC_OK;
 }
 
+/* --- what is counted --- */
+
+void cli_windows_count(const conic_source_windows *windows, const conic_render_statistics *drawn,
+                       cli_window_counts *counts) {
+  counts->n_windows++;
+  if (windows->is_summed)
+    conic_statistics_add(drawn, &counts->statistics);
+  else
+    conic_statistics_add_pixels(drawn, &counts->statistics);
+}
+
+/* Times stay the first process's, as does what is not in the memory of both. */
+static void add_counts(conic_source_windows *windows, const window_sum *other, cli_window_counts *counts) {
+  conic_render_statistics part = other->statistics;
+  if (!other->n_windows)
+    return;
+  memset(&part.ms, 0, sizeof part.ms);
+  part.isa = counts->statistics.isa;
+  part.threads = counts->statistics.threads;
+  cli_windows_count(windows, &part, counts);
+  for (int i = 0; i < CONIC_SOURCE_TALLIES; i++)
+    windows->tallies[i] += other->tallies[i];
+}
+
+conic_status cli_windows_sum(cli_team *team, conic_source_windows *windows, cli_window_counts *counts) {
+  window_sum own = {.n_windows = counts->n_windows, .statistics = counts->statistics};
+  memcpy(own.tallies, windows->tallies, sizeof own.tallies);
+  if (team) {
+    size_t *sizes = calloc((size_t)team->count, sizeof *sizes);
+    window_sum *all = sizes ? team->gather(&own, sizeof own, sizes) : NULL;
+    int is_there = team->index > 0 || all;
+    for (int i = 1; all && i < team->count; i++)
+      add_counts(windows, &all[i], counts);
+    free(all);
+    free(sizes);
+    if (team->index > 0 || !is_there)
+      return is_there ? CONIC_OK : CONIC_ERROR_MEMORY;
+  }
+  return conic_source_windows_count(windows, &counts->statistics);
+}
+
 /* --- drawing --- */
 
 static conic_status draw_given_window(window_work *w, size_t i_window) {
@@ -162,17 +205,20 @@ static conic_status draw_given_window(window_work *w, size_t i_window) {
                                              w->planes, &pixels);
   if (status != CONIC_OK)
     return status;
-  status = conic_source_windows_draw(&w->windows, window, &pixels, &w->statistics);
-  if (status == CONIC_OK)
-    status = hand_window(w, i_window, &pixels, &w->statistics, &n_bytes);
+  conic_render_statistics drawn;
+  status = conic_source_windows_draw(&w->windows, window, &pixels, &drawn);
   if (w->image)
     w->image->is_display = pixels.is_display;
+  if (status == CONIC_OK) {
+    cli_windows_count(&w->windows, &drawn, &w->counts);
+    status = hand_window(w, i_window, &pixels, &n_bytes);
+  }
   conic_image_release(context, &pixels);
   cli_sharing_note(w->session, w->job, "window", i_window, start, n_bytes);
   return status;
 }
 
-/* The first one is the first process's: it has statistics of its own, then. */
+/* The first one is the first process's: what stands for all in its statistics is the picture's. */
 static conic_status draw_given(window_work *w) {
   uint64_t unit;
   w->team->share((uint64_t)w->n - 1, w->team->index == 0 ? take_window : NULL, w);
@@ -189,21 +235,21 @@ conic_status cli_draw_together(cli_session *session, cli_render_job *job, const 
                                conic_image *image, conic_render_statistics *statistics) {
   window_work w = {.session = session, .team = session->team, .job = job, .image = image};
   double start = cli_seconds();
-  w.planes = (conic_image_planes(image) ? conic_image_planes(image) : job->planes) & windows_planes;
-  conic_status status = conic_source_windows_begin(job->source, job->renderer, looking->camera, looking->options,
-                                                   looking->view, w.planes, &w.windows);
+  const conic_camera *camera = looking->camera;
+  w.planes = (conic_image_planes(image) ? conic_image_planes(image) : job->planes) & CLI_WINDOWS_PLANES;
+  conic_status status = conic_source_windows_begin(job->source, job->renderer, camera, looking->options, looking->view,
+                                                   w.planes, &w.windows);
+  w.windows.other_bytes =
+      session->team->index == 0 ? cli_pixel_bytes(w.planes) * (uint64_t)camera->width * (uint64_t)camera->height : 0;
   if (status == CONIC_OK)
     status = choose_windows(&w);
   status = cli_sharing_end(session, job, status);
   if (status == CONIC_OK)
     status = cli_sharing_end(session, job, draw_given(&w));
-  if (status == CONIC_OK && session->team->index == 0)
-    status = conic_source_windows_count(&w.windows, &w.statistics);
+  if (status == CONIC_OK)
+    status = cli_windows_sum(session->team, &w.windows, &w.counts);
   conic_source_windows_end(&w.windows);
-  *statistics = w.statistics;
-  statistics->fragments = w.sum.fragments;
-  statistics->triangle_fragments = w.sum.triangle_fragments;
-  statistics->pixels_covered = w.sum.pixels_covered;
+  *statistics = w.counts.statistics;
   statistics->ms.frame = 1e3 * (cli_seconds() - start);
   free(w.list);
   free(w.weights);

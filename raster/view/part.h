@@ -11,6 +11,12 @@ typedef struct conic_window {
   int x_begin, x_end, y_begin, y_end;
 } conic_window;
 
+/* What two have in common; begin is not before end where that is nothing. */
+static inline conic_window conic_window_meet(const conic_window *a, const conic_window *b) {
+  return (conic_window){a->x_begin > b->x_begin ? a->x_begin : b->x_begin, a->x_end < b->x_end ? a->x_end : b->x_end,
+                        a->y_begin > b->y_begin ? a->y_begin : b->y_begin, a->y_end < b->y_end ? a->y_end : b->y_end};
+}
+
 /* Whether the renderer draws parts: the processor does, other devices do not. */
 int conic_renderer_has_parts(const conic_renderer *renderer);
 
