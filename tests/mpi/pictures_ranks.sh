@@ -6,8 +6,8 @@ source "$1/tests/support/program.bash"
 source "$1/tests/support/ranks.bash"
 source "$1/tests/support/torus.bash"
 
-torus 20 12 torus.obj picture.ppm
-torus 14 8 glass.obj picture.ppm 0.4
+torus 20 12 torus.obj picture.pfm
+torus 14 8 glass.obj picture.pfm 0.4
 "$conic" make knot -n 1500 -o knot.ply
 "$conic" make gaussians -n 300 -o cloud.ply
 counted='"(splats|triangles)_[a-z]*"|"(fragments|triangle_fragments|pixels_covered|entries)":'
@@ -23,8 +23,8 @@ alike() { # NAME, RANKS, OPTIONS …: of one process and of several
   grep -o '"units": [0-9]*' "$name.json" | awk '{n += $2} END {exit n < 2}' || fail "$name: it was not parted"
 }
 
-alike mixed 3 torus.obj knot.ply --size 200x130 --aov rgba,Z,N,albedo,weight,count,id
-alike lit 2 glass.obj knot.ply --size 150x130 --samples 2 --transparency --ao 5 --shadow --light 1,1,1 \
+alike mixed 3 torus.obj knot.ply --as mesh --size 200x130 --aov rgba,Z,N,albedo,weight,count,id
+alike lit 2 glass.obj knot.ply --as mesh --size 150x130 --samples 2 --transparency --ao 5 --shadow --light 1,1,1 \
   --light lamp:0,2,2:3,3,3 --aov rgba,Z,ao,shadow
 alike hybrid 2 torus.obj --as hybrid --size 140x130 --projection fisheye --aov rgba,id,cluster --exposure auto
 alike gaussians 3 cloud.ply --profile inria-2023 --size 200x130 --aov rgba,Z,N,count,id,T,last
