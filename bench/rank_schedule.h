@@ -20,9 +20,10 @@ typedef struct cli_rank_trace {
   cli_rank_unit *units;
   size_t n_units, room;
   double join_s;                /* what rank 0 does with all results of units */
-  double merge_s, merge_bytes;  /* of one merging of two ranks' sums: the means */
+  double merge_s, merge_bytes;  /* of one rank's sums: adding all of them to another's, and how long they are */
+  double n_merges;              /* how often the sums come together */
   double write_s;               /* after all units */
-  double first_event, n_merges; /* while it is read */
+  double first_event;           /* while it is read */
 } cli_rank_trace;
 
 /* Reads what --trace wrote: events of Chrome's format. On success the caller releases it. Errors: INPUT, MEMORY. */

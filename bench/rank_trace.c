@@ -26,7 +26,8 @@ static conic_status add_unit(conic_context *context, cli_rank_trace *trace, cons
   return CONIC_OK;
 }
 
-/* Sums that one rank takes from another are "sums"; that they were sent is part of it. */
+/* Each time that sums come together, every rank says by "swap" how much it sends, and by "sums" how long it
+ * worked on it; "parts" wait for others. */
 static conic_status take_event(conic_context *context, cli_rank_trace *trace, const trace_event *event) {
   double lasted_s = 1e-6 * event->lasted_us, end_s = 1e-6 * event->begun_us + lasted_s;
   if (end_s > trace->seconds)
@@ -41,12 +42,12 @@ static conic_status take_event(conic_context *context, cli_rank_trace *trace, co
     trace->open_s += lasted_s;
   else if (strcmp(event->kind, "write") == 0)
     trace->write_s += lasted_s;
-  else if (strcmp(event->kind, "join") == 0 && strncmp(event->name, "send", 4) == 0)
+  else if (strcmp(event->kind, "join") == 0 && strncmp(event->name, "swap", 4) == 0) {
     trace->merge_bytes += event->bytes;
-  else if (strcmp(event->kind, "join") == 0 && strncmp(event->name, "sums", 4) == 0) {
-    trace->merge_s += lasted_s;
     trace->n_merges += 1.0;
-  } else if (strcmp(event->kind, "join") == 0)
+  } else if (strcmp(event->kind, "join") == 0 && strncmp(event->name, "sums", 4) == 0)
+    trace->merge_s += lasted_s;
+  else if (strcmp(event->kind, "join") == 0 && strncmp(event->name, "parts", 5) != 0)
     trace->join_s += lasted_s;
   return CONIC_OK;
 }
@@ -95,13 +96,15 @@ static conic_status read_events(conic_context *context, conic_json *json, cli_ra
   return status;
 }
 
-/* Sums of ranks and merges become means. */
+/* Sums of ranks and merges become means; each rank kept its share of the bytes. */
 static void settle_trace(cli_rank_trace *trace) {
   trace->seconds -= trace->first_event;
   trace->open_s /= trace->n_ranks;
   if (trace->n_merges > 0.0) {
-    trace->merge_s /= trace->n_merges;
-    trace->merge_bytes /= trace->n_merges;
+    double whole = trace->n_ranks > 1 ? trace->n_ranks / (trace->n_ranks - 1.0) : 1.0;
+    trace->merge_s *= whole / trace->n_merges;
+    trace->merge_bytes *= whole / trace->n_merges;
+    trace->n_merges /= trace->n_ranks;
   }
 }
 
