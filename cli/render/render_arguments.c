@@ -45,7 +45,7 @@ static int check_streaming(const cli_render_job *job, const int is_given[2]) {
     return cli_usage("render: --progressive, --deadline, --tolerate and --occlusion are for a single .lpc, or the URL "
                      "of one");
   if (is_given[1] && !(job->abilities & CONIC_SOURCE_READS_PARTS))
-    return cli_usage("render: --memory and --timeout are for a single .lpc or .chy, or the URL of one");
+    return cli_usage("render: --timeout is for a single .lpc or .chy, or the URL of one");
   if (streams && job->deep_path)
     return cli_usage("render: --deep lists the splats of inputs that are read whole, not of an .lpc");
   if (job->progressive_path && (job->is_turntable || job->repeat > 1))
@@ -142,7 +142,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
     tone_words[i] = conic_tone_name((conic_tone)i);
   int compression = 0;
   enum { USUAL_MIB = 512 };
-  int memory_mib = USUAL_MIB, occlusion = CONIC_OCCLUSION_AUTO, is_given[2] = {0, 0}, is_memory_given = 0;
+  int memory_mib = USUAL_MIB, occlusion = CONIC_OCCLUSION_AUTO, is_given[2] = {0, 0};
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT",
        "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; may be repeated",
@@ -227,9 +227,9 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "of a cloud in levels, what is damaged or does not come is drawn coarser, with a warning",
        .is_given = &is_given[0]},
       {"memory", CLI_INT, &memory_mib, "MiB",
-       "of a cloud in levels, what its clouds and splats may take in memory [512]; of a .chy, what is read and drawn "
-       "[all]",
-       1, 1 << 20, .is_given = &is_memory_given},
+       "of a cloud in levels, what its clouds, splats and pixels may take in memory [512]; of a .chy, what is read and "
+       "drawn [all]; of all else, twice what the pixels of an .exr may [2048]",
+       1, 1 << 20, .is_given = &job->is_memory_given},
       {"occlusion", CLI_CHOICE, &occlusion, "HOW",
        "of a cloud in levels, do not read what is hidden behind the rest: auto, on or off; changes no bit of the "
        "picture [auto]",
@@ -250,8 +250,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
   job->writing.compression = (conic_compression)compression;
   job->asked_planes = job->is_aov_given ? job->planes : 0;
-  is_given[1] |= is_memory_given;
-  if (is_memory_given)
+  if (job->is_memory_given)
     job->access.memory_bytes = (uint64_t)memory_mib << 20;
   if (memory_mib < USUAL_MIB && !session->host)
     cli_shell_give_back_memory();

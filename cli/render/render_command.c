@@ -4,7 +4,9 @@
 
 #include "cli/command.h"
 #include "cli/host_keeps.h"
+#include "cli/render/banded_picture.h"
 #include "cli/render/frames.h"
+#include "cli/render/gather_picture.h"
 #include "cli/render/kept_frames.h"
 #include "cli/render/sharing.h"
 #include "cli/scene/backdrop.h"
@@ -256,9 +258,24 @@ static conic_status render_repeats(cli_session *session, cli_render_job *job, in
   return status;
 }
 
-/* Of windows, the picture comes together in the first process. */
-static int needs_image(const cli_session *session, const cli_render_job *job) {
-  return job->sharing != CLI_SHARES_WINDOWS || cli_sharing_has_picture(session, job);
+/* Of windows, the picture comes together in the first process; of others all gather along, to draw its views. */
+static int needs_image(const cli_session *session, const cli_render_job *job, const conic_camera *camera) {
+  return job->sharing != CLI_SHARES_WINDOWS || cli_sharing_has_picture(session, job) || cli_is_gathered(job, camera);
+}
+
+/* One that is written while it is drawn. */
+static conic_status render_banded(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
+                                  conic_render_statistics *statistics) {
+  job->options.skip_hidden = !session->json_path;
+  conic_status status = cli_render_banded(session, job, i_frame, camera, statistics);
+  if (status != CONIC_OK || !cli_sharing_has_picture(session, job))
+    return status;
+  job->frames_ms += statistics->ms.frame;
+  take_medians(job, statistics, 1);
+  warn_of_empty(session, job);
+  warn_of_error(session, job);
+  warn_of_alpha(session, job);
+  return CONIC_OK;
 }
 
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
@@ -272,7 +289,11 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     status = cli_choose_exposure(session, job, &camera);
   if (session->host || image->width != camera.width || image->height != camera.height)
     cli_host_release_image(session, image);
-  if (status == CONIC_OK && !conic_image_planes(image) && needs_image(session, job))
+  if (status == CONIC_OK && cli_is_banded(session, job, &camera))
+    return render_banded(session, job, i_frame, &camera, repeats);
+  if (status == CONIC_OK)
+    status = cli_refuse_too_large(session, job, &camera);
+  if (status == CONIC_OK && !conic_image_planes(image) && needs_image(session, job, &camera))
     status = cli_host_allocate_image(session, camera.width, camera.height, job->planes, image);
   if (status == CONIC_OK)
     status = render_repeats(session, job, i_frame, &camera, image, repeats);
@@ -313,7 +334,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
 /* Only where they are reported: it takes a while. */
 static void hash_image(const cli_session *session, cli_render_job *job, const conic_image *image) {
   double start = cli_seconds();
-  for (int i = 0; i < CONIC_N_PLANES && session->json_path && !session->host; i++) /* a host has the planes */
+  int is_hashed = job->banded_planes || session->host; /* row by row; a host has the planes */
+  for (int i = 0; i < CONIC_N_PLANES && session->json_path && !is_hashed; i++)
     job->hashes[i] = conic_image_hash(image, (conic_plane)i);
   job->hash_ms = 1e3 * (cli_seconds() - start);
 }

@@ -201,7 +201,7 @@ static void report_times(cli_json *json, const cli_render_job *job) {
 static void report_hashes(cli_json *json, const cli_render_job *job, const conic_image *image) {
   cli_json_object(json, "hash");
   for (int i = 0; i < CONIC_N_PLANES; i++)
-    if (image->planes[i])
+    if (image->planes[i] || job->banded_planes >> i & 1)
       cli_json_hash(json, conic_plane_describe((conic_plane)i)->name, job->hashes[i]);
   cli_json_close(json);
 }

@@ -8,6 +8,7 @@
 #include "cli/scene/accumulate_job.h"
 #include "cli/scene/lamp_job.h"
 #include "cli/scene/top_job.h"
+#include "cli/team_shares.h"
 #include "core/pictures/cryptomatte.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
@@ -26,7 +27,6 @@ typedef struct cli_frames {
 /* What of a render a team shares (cli/render/sharing.h), and what each process had to do with it. */
 typedef enum cli_sharing { CLI_SHARES_NOTHING, CLI_SHARES_FRAMES, CLI_SHARES_SAMPLES, CLI_SHARES_WINDOWS } cli_sharing;
 
-typedef struct cli_shares cli_shares;
 /* Two eyes. */
 typedef struct cli_stereo {
   double distance;    /* from one to the other, in world units; 0: there is one */
@@ -100,6 +100,7 @@ typedef struct cli_render_job {
   cli_device device;               /* what draws: */
   conic_renderer *renderer;
   unsigned long long budget; /* the view's */
+  int is_memory_given;       /* --memory */
   double deadline;           /* seconds; 0: none */
   double start_seconds;      /* from which it counts */
 
@@ -123,13 +124,13 @@ typedef struct cli_render_job {
   double begun_seconds;                /* when reading began */
   conic_cryptomatte_manifest manifest; /* of the last image */
   uint64_t hashes[CONIC_N_PLANES];     /* of the last image, where they are reported */
+  unsigned banded_planes;              /* of a picture that nobody held: its planes; 0: it was held */
 
   /* Of a team. */
   cli_sharing sharing;
   uint64_t n_units; /* that this process did, */
   double busy_seconds;
-  cli_shares *shares; /* and all processes */
-  int n_shares;
+  cli_team_shares shares; /* what all did */
 } cli_render_job;
 
 /* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */

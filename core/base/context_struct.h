@@ -45,7 +45,8 @@ struct conic_context {
   void *watch_cookie;
   conic_loan *loans;
   size_t n_loans, loans_room;
-  _Atomic(uint64_t) n_versions; /* conic_context_next_version */
+  _Atomic(uint64_t) n_versions;  /* conic_context_next_version */
+  const struct conic_team *team; /* core/base/team_runs.h; null: there is none */
 };
 
 /* A number for conic_render_options.splats_version, above all that a caller may give and another for each call. */
