@@ -12,6 +12,21 @@ typedef struct cli_rank_unit {
   double seconds, bytes;
 } cli_rank_unit;
 
+/* What a rank did at a time. */
+typedef enum cli_rank_kind {
+  CLI_RANK_OPENS,
+  CLI_RANK_DRAWS,
+  CLI_RANK_JOINS,
+  CLI_RANK_WRITES,
+  CLI_RANK_N_KINDS
+} cli_rank_kind;
+
+typedef struct cli_rank_event {
+  double begin_s, end_s;
+  int rank;
+  cli_rank_kind kind;
+} cli_rank_event;
+
 /* The stages of building a layered cloud together, by what a trace calls them. */
 typedef enum cli_rank_stage {
   CLI_STAGE_READ,
@@ -37,18 +52,24 @@ typedef struct cli_rank_trace {
   double seconds; /* from its first event to the end of its last */
   double open_s;  /* before its units, on each rank: the mean */
   cli_rank_unit *units;
-  size_t n_units, room;         /* of building: parts of the inputs, which are no units */
-  double join_s;                /* what rank 0 does with all results of units */
-  double merge_s, merge_bytes;  /* of one merging of two ranks' sums: the means */
-  double write_s;               /* after all units */
-  double first_event, n_merges; /* while it is read */
-  int is_build;                 /* of a cloud: stages in place of units */
+  size_t n_units, room;   /* of building: parts of the inputs, which are no units */
+  cli_rank_event *events; /* all of them */
+  size_t n_events, events_room;
+  double join_s;               /* what rank 0 does with all results of units */
+  double merge_s, merge_bytes; /* of one rank's sums: adding all of them to another's, and how long they are */
+  double n_merges;             /* how often the sums come together */
+  double write_s;              /* after all units */
+  double first_event;          /* while it is read */
+  int is_build;                /* of a cloud: stages in place of units */
   cli_rank_stage_sum stages[CLI_RANK_N_STAGES];
 } cli_rank_trace;
 
 /* Reads what --trace wrote: events of Chrome's format. On success the caller releases it. Errors: INPUT, MEMORY. */
 conic_status cli_rank_trace_read(conic_context *context, const char *path, cli_rank_trace *trace);
 void cli_rank_trace_release(conic_context *context, cli_rank_trace *trace);
+
+/* A picture of it: time goes to the right, and each rank has a row. Errors: IO, MEMORY. */
+conic_status cli_rank_trace_draw(conic_context *context, const cli_rank_trace *trace, const char *path);
 
 /* The line between ranks. */
 typedef struct cli_rank_line {

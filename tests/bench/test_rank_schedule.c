@@ -23,13 +23,18 @@ static void test_rank_trace(conic_context *context) {
       "{\"name\": \"samples 1\", \"cat\": \"unit\", \"ts\": 2e6, \"dur\": 4e6, \"pid\": 1, \"args\": {\"sent_bytes\": "
       "0}},"
       "{\"name\": \"samples 2\", \"cat\": \"unit\", \"ts\": 4e6, \"dur\": 25e4, \"pid\": 0},"
-      "{\"name\": \"send 0\", \"cat\": \"join\", \"ts\": 6e6, \"dur\": 1, \"pid\": 1, \"args\": {\"sent_bytes\": 100}},"
+      "{\"name\": \"swap 0\", \"cat\": \"join\", \"ts\": 6e6, \"dur\": 5e6, \"pid\": 1, \"args\": {\"sent_bytes\": "
+      "100}},"
+      "{\"name\": \"swap 0\", \"cat\": \"join\", \"ts\": 6e6, \"dur\": 5e6, \"pid\": 0, \"args\": {\"sent_bytes\": "
+      "100}},"
+      "{\"name\": \"parts 0\", \"cat\": \"join\", \"ts\": 6e6, \"dur\": 5e6, \"pid\": 0},"
       "{\"name\": \"sums 1\", \"cat\": \"join\", \"ts\": 6e6, \"dur\": 3e6, \"pid\": 0},"
       "{\"name\": \"OUT\", \"cat\": \"write\", \"ts\": 9e6, \"dur\": 2e6, \"pid\": 0}]}",
       &trace));
   CHECK(trace.n_ranks == 2 && trace.n_units == 3 && trace.seconds == 10.0 && trace.open_s == 1.5);
   CHECK(trace.units[1].seconds == 4.0 && trace.units[0].bytes == 7.0);
-  CHECK(trace.merge_s == 3.0 && trace.merge_bytes == 100.0 && trace.write_s == 2.0 && trace.join_s == 0.0);
+  CHECK(trace.merge_s == 3.0 && trace.merge_bytes == 200.0 && trace.n_merges == 1.0 && trace.write_s == 2.0 &&
+        trace.join_s == 0.0);
   cli_rank_trace_release(context, &trace);
 }
 
@@ -130,8 +135,9 @@ static void test_rank_schedule(conic_context *context) {
   light.n_merges = 1.0;
   light.merge_s = 0.5;
   light.merge_bytes = 1e9;
-  check_near(estimate(context, &light, 32, 1).seconds, 8.0 + 5.0 * 1.5, 1e-3); /* 32, 16, 8, 4, 2 */
-  check_near(estimate(context, &light, 32, 10).seconds, 4.0 + 30.0 + 1.0 + 5.0 * 1.5, 1e-3);
+  check_near(estimate(context, &light, 2, 1).seconds, 53.0 + 0.5 * 2.5, 1e-3);
+  check_near(estimate(context, &light, 32, 1).seconds, 8.0 + 2.5 * 31.0 / 32.0, 2e-3); /* the bytes go twice */
+  check_near(estimate(context, &light, 32, 10).seconds, 4.0 + 30.0 + 1.0 + 2.5 * 31.0 / 32.0, 2e-3);
   free(light.units);
   free(heavy.units);
 }
