@@ -6,6 +6,8 @@ source "$1/tests/support/program.bash"
 source "$1/tests/support/ranks.bash"
 
 "$conic" make knot -n 3000 --noise 0.3 -o knot.ply
+"$conic" make terrain -n 3000 --noise 0.3 --ascii -o terrain.ply
+sed '1,/^end_header/d' terrain.ply | cut -d' ' -f1-3 > points.xyz
 
 # same_file RANKS OUT ARGUMENTS …: with -o OUT.
 same_file() {
@@ -32,11 +34,12 @@ lost_rank() { # OUT, ARGUMENTS …
 mkdir elsewhere
 
 cells=(mls project knot.ply --h 0.2)
-same_file 3 points.ply mls project knot.ply & jobs=$!
-same_file 4 cells.ply "${cells[@]}" & jobs+=" $!"
+same_file 4 cells.ply "${cells[@]}" & jobs=$!
 same_file 7 memory.ply "${cells[@]}" --memory 14 & jobs+=" $!"
 same_file 2 thin.ply mls thin knot.ply & jobs+=" $!"
 same_file 2 dense.ply mls densify knot.ply --count 5000 & jobs+=" $!"
+same_file 3 baked.ply prepare points.xyz --bake ao --directions 7 & jobs+=" $!"
+same_file 3 knot.cot octree knot.ply & jobs+=" $!"
 lost_rank lost1.ply mls project knot.ply & jobs+=" $!"
 lost_rank lost2.ply "${cells[@]}" & jobs+=" $!"
 told_once err3 2 2 'standard input' mls project - -o a.ply & jobs+=" $!"
