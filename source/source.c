@@ -207,9 +207,8 @@ const conic_source_choice *conic_source_chosen(const conic_source *source) {
   return &source->choice;
 }
 
-/* The view becomes the source's, and the options are filled in. */
-static conic_status begin_picture(conic_source *source, const conic_render_options *render,
-                                  const conic_source_view *view, conic_render_options *settled) {
+static conic_status settle_picture(conic_source *source, const conic_render_options *render,
+                                   const conic_source_view *view, conic_render_options *settled) {
   conic_render_options_init(settled);
   conic_source_view_init(&source->view);
   if (!conic_options_take(settled, render) || (view && !conic_options_take(&source->view, view)))
@@ -218,8 +217,18 @@ static conic_status begin_picture(conic_source *source, const conic_render_optio
   return CONIC_OK;
 }
 
-static conic_status choose_settled(conic_source *source, const conic_camera *camera,
-                                   const conic_render_options *render) {
+conic_status conic_source_begin_picture(conic_source *source, const conic_render_options *render,
+                                        const conic_source_view *view, conic_render_options *settled) {
+  const conic_source_kind *kind = source->kind;
+  conic_status status = settle_picture(source, render, view, settled);
+  if (status == CONIC_OK && source->view.transparency && (kind->draw || kind->abilities & CONIC_SOURCE_CLUSTERS))
+    return conic_fail(source->context, CONIC_ERROR_UNSUPPORTED,
+                      "%s: transparency is of splats and meshes that are drawn as they are", source->name);
+  return status;
+}
+
+conic_status conic_source_choose_settled(conic_source *source, const conic_camera *camera,
+                                         const conic_render_options *render) {
   static const conic_splats no_splats;
   static const conic_triangles no_triangles;
   if (!source->kind->choose)
@@ -233,8 +242,8 @@ static conic_status choose_settled(conic_source *source, const conic_camera *cam
 conic_status conic_source_choose(conic_source *source, const conic_camera *camera, const conic_render_options *render,
                                  const conic_source_view *view) {
   conic_render_options settled;
-  conic_status status = begin_picture(source, render, view, &settled);
-  return status == CONIC_OK ? choose_settled(source, camera, &settled) : status;
+  conic_status status = settle_picture(source, render, view, &settled);
+  return status == CONIC_OK ? conic_source_choose_settled(source, camera, &settled) : status;
 }
 
 conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
@@ -242,15 +251,12 @@ conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, c
                                conic_render_statistics *statistics) {
   const conic_source_kind *kind = source->kind;
   conic_render_options settled;
-  conic_status status = begin_picture(source, render, view, &settled);
-  if (status == CONIC_OK && source->view.transparency && (kind->draw || kind->abilities & CONIC_SOURCE_CLUSTERS))
-    return conic_fail(source->context, CONIC_ERROR_UNSUPPORTED,
-                      "%s: transparency is of splats and meshes that are drawn as they are", source->name);
+  conic_status status = conic_source_begin_picture(source, render, view, &settled);
   if (status != CONIC_OK || kind->draw)
     return status == CONIC_OK ? kind->draw(source, renderer, camera, &settled, &source->view, image, statistics)
                               : status;
   double start = conic_seconds_now();
-  status = choose_settled(source, camera, &settled);
+  status = conic_source_choose_settled(source, camera, &settled);
   int is_chosen = kind->choose && (!source->choice.is_all || source->choice.drawing.splats->dot);
   double ms = is_chosen ? 1e3 * (conic_seconds_now() - start) : 0.0;
   if (source->choice.is_all && !settled.splats_version)

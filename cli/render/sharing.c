@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/render/frames.h"
+#include "cli/render/kept_frames.h"
 #include "cli/session_team.h"
 #include "source/source_parts.h"
 
@@ -29,8 +30,7 @@ int cli_sharing_choose(const cli_session *session, cli_render_job *job) {
     job->sharing = CLI_SHARES_FRAMES;
   else if (job->accumulating.n_samples)
     job->sharing = CLI_SHARES_SAMPLES;
-  else if (!(job->abilities & (CONIC_SOURCE_STREAMS | CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_CLUSTERS)) &&
-           !job->progressive_path && !job->overdraw_path && !job->is_transparent)
+  else if (!job->view.may_be_coarser)
     job->sharing = CLI_SHARES_WINDOWS;
   if (job->sharing == CLI_SHARES_SAMPLES && job->accumulating.seconds > 0.0)
     return cli_usage("render: what --time ends depends on the number of processes; give --noise or a count");
@@ -59,7 +59,7 @@ void cli_frame_turns_begin(const cli_session *session, const cli_render_job *job
   int count = session->team->count;
   if (session->team->index == 0)
     turns->most = (turns->n_frames + count - 1) / count - 1;
-  session->team->share((uint64_t)turns->n_frames - 1, NULL, NULL);
+  session->team->share((uint64_t)turns->n_frames - 1, job->kept ? cli_kept_frames_take : NULL, job->kept);
 }
 
 int cli_frame_turns_next(const cli_session *session, const cli_render_job *job, cli_frame_turns *turns) {
