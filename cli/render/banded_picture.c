@@ -97,10 +97,11 @@ conic_status cli_refuse_too_large(const cli_session *session, const cli_render_j
   uint64_t all = conic_machine_memory(), bytes = picture_bytes(job, camera);
   if (!all || bytes <= all)
     return CONIC_OK;
-  return conic_fail(session->context, CONIC_ERROR_ARGUMENT,
-                    "render: a picture of %d × %d pixels takes %.0f GiB, and the machine has %.0f; only a lone .exr "
-                    "of planes that are drawn as they are is written while it is drawn",
-                    camera->width, camera->height, (double)bytes / 1073741824.0, (double)all / 1073741824.0);
+  return conic_fail(
+      session->context, CONIC_ERROR_MEMORY,
+      "out of memory: a picture of %d × %d pixels takes %llu bytes, and the machine has %llu; only a lone "
+      ".exr of planes as they are drawn is written strip by strip",
+      camera->width, camera->height, (unsigned long long)bytes, (unsigned long long)all);
 }
 
 /* --- the writer --- */
