@@ -15,6 +15,13 @@ same() { # WHAT, JSON FILE, JSON FILE, EXR, EXR
   [[ $(counts "$2") == "$(counts "$3")" ]] || fail "the counts of $1 differ: $(diff <(counts "$2") <(counts "$3"))"
 }
 
+"$conic" make knot -n 500 -o knot.ply
+
+# A full disk is told once, and leaves nothing, while other things are tried.
+mkdir full
+full=(render knot.ply --plain --size 1100x1000 --threads 1 --compression none --memory 8 -o full/a.exr)
+(ulimit -f 16000 && told_once err1 2 4 'full/a.exr: cannot write' "${full[@]}") & job=$! # MPI's own files are smaller
+
 "$conic" make gyroid -n 20000 -o gyroid.ply
 "$conic" layer gyroid.ply -o gyroid.lpc --cloud-size 500
 
@@ -36,17 +43,14 @@ same "a picture in strips" whole.json strips.json whole.exr strips.exr
 [[ $(grep '"bands"' whole.json) != "$(grep '"bands"' strips.json)" ]] || fail "the picture was not drawn in strips"
 ranks 3 0 "${large[@]}" --memory 2 -o together.exr --json together.json
 same "a picture in strips on three ranks" whole.json together.json whole.exr together.exr
-"$conic" make knot -n 500 -o knot.ply
 odd=(render knot.ply --plain --size 1200x70 --samples 16 --fov 2 --compression piz --exr half --threads 1)
 run_as_typed 0 "${odd[@]}" -o whole.exr --json whole.json
 ranks 2 0 "${odd[@]}" --memory 1 -o together.exr --json together.json
 same "strips that end between rows that are packed together" whole.json together.json whole.exr together.exr
 
-# A full disk is told once, and leaves nothing; what is written at once and cannot be held is refused.
-mkdir full
-full=(render knot.ply --plain --size 1100x1000 --threads 1 --compression none --memory 8 -o full/a.exr)
-(ulimit -f 16000 && told_once err 2 4 'full/a.exr: cannot write' "${full[@]}") || failures=1 # MPI's own files are smaller
-[[ -z $(ls -A full) ]] || fail "a full disk leaves $(ls -A full)"
-run_as_typed 4 render knot.ply --plain --size 65535x65535 --aov rgba,Z,N,albedo,P,count,id,weight -o full/a.exr
+# What is written at once and cannot be held is refused.
+run_as_typed 4 render knot.ply --plain --size 65535x65535 --aov rgba,Z,N,albedo,P,count,id,weight -o full.exr
 grep -q 'bytes, and the machine has' err || fail "told is not that the picture is too large: $(cat err)"
+wait "$job" || failures=$((failures + 1))
+[[ -z $(ls -A full) ]] || fail "a full disk leaves $(ls -A full)"
 exit $((failures > 0))
