@@ -16,7 +16,7 @@ void conic_lighting_options_init_sized(conic_lighting_options *options, size_t s
 }
 
 static const char *find_fault(const conic_casters *c, const conic_lighting_options *o) {
-  if (!c->draw || !conic_is_zero(c->reserved, sizeof c->reserved))
+  if (!c->draw || c->epsilon_is_drawn > 1 || !conic_is_zero(c->reserved, sizeof c->reserved))
     return "the casters have nothing that draws them, or their reserved words are not zero";
   for (int axis = 0; axis < 3; axis++)
     if (!(c->minimum[axis] <= c->maximum[axis] && fabs(c->minimum[axis]) < 1e20 && fabs(c->maximum[axis]) < 1e20))
@@ -63,6 +63,8 @@ conic_status conic_map_room_fill(conic_map_room *room, const conic_camera *camer
   depth.height = camera->height;
   depth.planes[CONIC_PLANE_Z] = room->z;
   map->z = room->z;
+  map->epsilon = (float)room->casters->epsilon;
+  map->flat_epsilon = room->casters->epsilon_is_drawn ? 0.0f : map->epsilon;
   return room->casters->draw(room->casters->cookie, camera, near_z, &depth);
 }
 
@@ -127,6 +129,13 @@ conic_status conic_sky_sums_add(conic_map_room *room, const conic_lighting_optio
   return status;
 }
 
+/* A surface sees one half of all directions: of what has no normal, that much counts as all. */
+static float share_of_splat(const conic_receivers *r, const conic_sky_sums *sums, size_t i) {
+  float share = conic_sky_sums_share(sums, i);
+  int has_none = r->normal[0][i] == 0.0f && r->normal[1][i] == 0.0f && r->normal[2][i] == 0.0f;
+  return !has_none ? share : share < 0.5f ? 2.0f * share : 1.0f;
+}
+
 static conic_status occlude_splats(conic_context *context, const conic_casters *casters, const conic_splats *splats,
                                    double spacing, const conic_lighting_options *options, float *ao) {
   conic_receivers receivers;
@@ -146,7 +155,7 @@ static conic_status occlude_splats(conic_context *context, const conic_casters *
   if (status == CONIC_OK)
     status = conic_sky_sums_add(&room, options, NULL, NULL, &sums);
   for (size_t i = 0; i < splats->count && status == CONIC_OK; i++)
-    ao[i] = conic_sky_sums_share(&sums, i);
+    ao[i] = share_of_splat(&receivers, &sums, i);
   conic_memory_release(context, sums.facing);
   conic_receivers_release(context, &receivers);
   conic_map_room_release(&room);

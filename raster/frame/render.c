@@ -7,6 +7,7 @@
 #include "core/base/kept_memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "core/image/image_common.h"
 #include "core/splats/near.h"
 #include "raster/frame/backend.h"
 #include "raster/frame/drawing.h"
@@ -416,16 +417,29 @@ static conic_status draw_here(frame *f, const conic_render_options *options, con
   return status;
 }
 
+/* Triangles alone hide by what they are. */
+static conic_status take_passes(const frame *f, conic_render_options *options) {
+  if (options->passes != CONIC_PASS_OF_HIDING || !f->image)
+    return CONIC_OK;
+  if (conic_image_planes(f->image) != 1u << CONIC_PLANE_Z)
+    return conic_fail(f->renderer->context, CONIC_ERROR_ARGUMENT, "render: the pass of hiding has the plane Z alone");
+  options->passes = f->splats->count ? CONIC_PASS_OF_HIDING : 1;
+  return CONIC_OK;
+}
+
 /* All of conic_render, for the window and the plane that `f` names already. */
 static conic_status render(frame *f, const conic_whole_drawing *drawing, const conic_camera *camera,
-                           const conic_render_options *options, conic_render_statistics *statistics) {
+                           const conic_render_options *given, conic_render_statistics *statistics) {
   double start = conic_seconds_now();
   conic_render_statistics counted;
   conic_renderer *renderer = f->renderer;
   conic_context *context = renderer->context;
   memset(&counted, 0, sizeof counted);
-  conic_render_options scaled = *options;
-  conic_status status = conic_isa_choose(context, options->isa, &f->isa);
+  conic_render_options own = *given, scaled = *given;
+  const conic_render_options *options = &own;
+  conic_status status = take_passes(f, &own);
+  if (status == CONIC_OK)
+    status = conic_isa_choose(context, options->isa, &f->isa);
   if (status != CONIC_OK)
     return status;
   conic_raster_kernels_init(&f->kernels, f->isa);
