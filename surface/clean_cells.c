@@ -61,7 +61,7 @@ typedef struct cleaning {
   conic_surface_report report;
 } cleaning;
 
-static int keeps_all(const cleaning *work) {
+static int has_all_results(const cleaning *work) {
   return !work->team || work->team->index == 0;
 }
 
@@ -164,7 +164,7 @@ static conic_status place_points(cleaning *work, const conic_splats *batch, size
     const conic_cell *cell = conic_cells_locate(&work->cells, place, at) ? conic_cells_find(&work->cells, at) : NULL;
     if (cell && work->share.parts[cell - work->cells.cells].is_kept)
       work->keys[n_keys++] = (uint64_t)(cell - work->cells.cells) << 32 | i;
-    else if (!cell && keeps_all(work)) {
+    else if (!cell && has_all_results(work)) {
       const conic_cell_result none = {.outcome = CONIC_SURFACE_NOT_FINITE};
       status = conic_cells_results_keep(&work->results, work->n_placed + i, 1, &none);
     }
@@ -505,7 +505,7 @@ conic_status conic_surface_clean_cells(conic_context *context, const conic_clean
   conic_status status = bring_together(&work, clean_all(&work, source, source_cookie));
   if (status == CONIC_OK)
     sum_up(&work);
-  if (status == CONIC_OK && keeps_all(&work))
+  if (status == CONIC_OK && has_all_results(&work))
     status = deliver(&work, sink);
   if (status == CONIC_OK && report)
     *report = work.report;
