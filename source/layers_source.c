@@ -101,6 +101,8 @@ static conic_status draw_layers(conic_source *source, conic_renderer *renderer, 
   options.may_be_coarser = view->may_be_coarser;
   options.seconds = view->seconds;
   options.tolerates_damage = view->tolerates_damage;
+  options.transparency = view->transparency;
+  options.chance = view->chance;
   conic_status status = conic_layers_draw(l->layers, renderer, camera, render, &options, image, statistics, &l->drawn);
   source->choice = (conic_source_choice){
       .error_px = l->drawn.error_px, .n_culled = l->drawn.n_clouds_culled, .n_levels = l->drawn.n_levels};

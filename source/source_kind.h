@@ -27,7 +27,8 @@ typedef struct conic_source_kind {
   void (*close)(conic_source *source); /* never null */
   conic_status (*find_spacing)(conic_source *source, double *spacing);
 
-  /* conic_source_move of poses that have been checked, as many as inputs; null: at rest. */
+  /* conic_source_move of poses that have been checked, as many as inputs; null: at rest. Where it is null, the source
+   * is carried as one piece (source/carried.h). */
   conic_status (*move)(conic_source *source, const conic_source_pose *poses, size_t n_poses);
 
   /* Fills in the choice, which is two empty sets; null: it stays as opening set it. */
@@ -75,8 +76,9 @@ struct conic_source {
   uint64_t splats_version; /* conic_render_options' for pictures of all that there is; 0: the splats may change */
   int is_moved;            /* what is drawn has another box than the scale's: */
   double moved_minimum[3], moved_maximum[3];
-  conic_splats outline; /* conic_source_take_samples', where they were asked for */
-  double tolerance;     /* by which splats made of meshes are off these; 0: none are */
+  double world_from_rest[3][4]; /* of one that is carried and moved */
+  conic_splats outline;         /* conic_source_take_samples', where they were asked for */
+  double tolerance;             /* by which splats made of meshes are off these; 0: none are */
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,

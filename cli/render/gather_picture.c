@@ -60,9 +60,10 @@ static conic_status draw_gathered_view(void *cookie, const conic_gather_view *ga
 static void find_reached_box(const cli_render_job *job, conic_gather_options *gather) {
   const conic_source_scale *scale = conic_source_measure(job->source);
   double reach = scale->n_splats ? 4.0 * (double)job->options.kernel.cutoff * scale->splat_length : 0.0;
+  conic_source_box(job->source, gather->minimum, gather->maximum);
   for (int axis = 0; axis < 3; axis++) {
-    gather->minimum[axis] = scale->minimum[axis] - reach;
-    gather->maximum[axis] = scale->maximum[axis] + reach;
+    gather->minimum[axis] -= reach;
+    gather->maximum[axis] += reach;
   }
 }
 

@@ -53,14 +53,18 @@ static int check_streaming(const cli_render_job *job, const int is_given[2]) {
 }
 
 static int check_transparency(cli_render_job *job) {
-  if (job->abilities & (CONIC_SOURCE_STREAMS | CONIC_SOURCE_CLUSTERS | CONIC_SOURCE_COMPOSITES))
-    return cli_usage("render: --transparency is of splats and meshes that are drawn as they are: not of an .lpc, a "
-                     "hybrid or a Gaussian scene");
+  if (job->abilities & CONIC_SOURCE_COMPOSITES)
+    return cli_usage("render: a Gaussian scene lets light through as it is; --transparency is of its splats, by "
+                     "--profile surface");
+  if (job->abilities & CONIC_SOURCE_CLUSTERS)
+    return cli_usage("render: a hybrid keeps no opacities; --transparency is of what it was made of, as splats or as a "
+                     "mesh");
   if (job->deep_path || job->has_mattes || job->top.is_wanted)
     return cli_usage("render: not --transparency with --deep, --cryptomatte or --camera top");
   if (job->options.passes != 3)
     return cli_usage("render: --transparency is of surfaces that blend: not with --passes 1");
   job->view.transparency = CONIC_TRANSPARENCY_LAYERS;
+  job->opening.keeps_alpha = 1;
   return CLI_DONE;
 }
 

@@ -203,8 +203,7 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
   reader->source = &source;
   reader->builder = &builder;
   int keeps_coordinates = options->keeps_faces && !delivery;
-  conic_status status =
-      conic_ply_layout_find(input, header, vertices, options->cutoff, keeps_coordinates, &reader->layout);
+  conic_status status = conic_ply_layout_find(input, header, vertices, options, keeps_coordinates, &reader->layout);
   if (status == CONIC_OK) {
     reader->properties = header->properties + vertices->first_property; /* there are some, as x, y and z were found */
     status = conic_builder_begin(input->context, model, reader->layout.fields, delivery, &builder);

@@ -38,9 +38,9 @@ static int splats_are_transparent(const conic_splats *splats) {
 
 static int triangles_are_transparent(const conic_triangles *triangles) {
   for (size_t i = 0; triangles->materials && i < triangles->n_materials; i++)
-    if (conic_material_is_transparent(&triangles->materials[i]))
+    if (conic_material_is_transparent(triangles, &triangles->materials[i]))
       return 1;
-  return 0;
+  return !triangles->n_materials && conic_material_is_transparent(triangles, NULL);
 }
 
 int conic_drawing_is_transparent(const conic_drawing *drawing) {
@@ -61,7 +61,9 @@ static conic_status make_transparent_marks(transparent *t) {
     t->splat_marks[i] = splats->opacity && splats->opacity[i] != 1.0f ? 1.0f : 0.0f;
   for (size_t i = 0; triangles && i < triangles->n_materials; i++)
     for (int channel = 0; channel < 3; channel++)
-      t->materials[i].color[channel] = conic_material_is_transparent(&triangles->materials[i]) ? 1.0f : 0.0f;
+      t->materials[i].color[channel] = conic_material_is_transparent(triangles, &triangles->materials[i]) ? 1.0f : 0.0f;
+  for (int channel = 0; triangles && channel < 3; channel++)
+    t->no_material.color[channel] = conic_material_is_transparent(triangles, NULL) ? 1.0f : 0.0f;
   return CONIC_OK;
 }
 

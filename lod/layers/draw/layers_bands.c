@@ -67,9 +67,10 @@ static conic_status draw_whole(bands *b, conic_render_statistics *statistics) {
   *d->n_turned += d->set->n_turned;
   if (status == CONIC_OK && d->is_gathered)
     d->is_gathered(d->data);
+  const conic_drawing drawing = {.splats = &d->set->splats};
   if (status == CONIC_OK)
-    status = conic_render_samples(d->layers->context, d->renderer, &d->set->splats, d->camera, d->render, d->samples,
-                                  d->image, statistics);
+    status = conic_render_transparent(d->layers->context, d->renderer, &drawing, d->camera, d->render, d->transparency,
+                                      d->chance, d->samples, d->image, statistics);
   if (status == CONIC_OK)
     rename_window(b, &whole, &whole, d->image);
   return status;
@@ -287,14 +288,16 @@ static conic_status draw_windows(bands *b, conic_render_statistics *statistics, 
 
 /* Whether all of the picture, and of that of its samples, has room: this is no estimate, but of grazing places. */
 static int fits(bands *b) {
+  enum { PROJECTED_BYTES = 144 }; /* what transparency keeps of a splat besides */
   const conic_layers_band_drawing *d = b->d;
+  double splat_bytes = CONIC_LAYERS_SPLAT_BYTES + (d->transparency ? PROJECTED_BYTES : 0);
   double room = (double)conic_layers_drawing_bytes(d->layers);
   double rows = (double)(d->samples * conic_samples_band_rows(d->camera, d->samples));
   for (size_t i = 0; i < d->cut->n; i++)
     b->n_expected += conic_layers_place_weight(d->layers, &d->cut->places[i]);
   if (d->samples > 1 && conic_renderer_has_parts(d->renderer))
     room -= rows * (double)b->fine.width * (double)b->pixel_bytes;
-  return b->n_expected * CONIC_LAYERS_SPLAT_BYTES <= room;
+  return b->n_expected * splat_bytes <= room;
 }
 
 static uint64_t bytes_of_pixel(const conic_image *image) {
@@ -318,7 +321,15 @@ conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, c
   for (size_t i = 0; i < drawing->cut->n; i++)
     b.chosen[i] = (uint32_t)i;
   *n_bands = 1;
-  conic_status status = fits(&b) ? draw_whole(&b, statistics) : draw_windows(&b, statistics, n_bands);
+  conic_status status = CONIC_OK;
+  if (fits(&b))
+    status = draw_whole(&b, statistics);
+  else if (drawing->transparency)
+    status = conic_fail(context, CONIC_ERROR_MEMORY,
+                        "%s: transparency wants all %.0f splats of the picture in memory at once, where fewer may be",
+                        drawing->layers->name, b.n_expected);
+  else
+    status = draw_windows(&b, statistics, n_bands);
   conic_memory_release(context, b.chosen);
   return status;
 }

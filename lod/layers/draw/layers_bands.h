@@ -12,6 +12,8 @@ typedef struct conic_layers_band_drawing {
   const conic_layers_cut *cut;
   const conic_layers_view *view;
   int samples;
+  conic_transparency transparency; /* NONE where the samples keep no opacities */
+  double chance;
   conic_image *image;
   conic_layers_set *set;
   void (*is_gathered)(void *data); /* called where nothing more will be read; null: nothing */

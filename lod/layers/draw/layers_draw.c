@@ -30,6 +30,7 @@ typedef struct layers_drawing {
   uint64_t pages_damaged; /* of an octree's hierarchy */
   conic_layers_drawn drawn;
   uint64_t n_root; /* as in a cut */
+  conic_transparency transparency;
 } layers_drawing;
 
 void conic_layers_draw_options_init_sized(conic_layers_draw_options *options, size_t size) {
@@ -107,7 +108,7 @@ static void tell_of_missing(const layers_drawing *d) {
 }
 
 static int wants_hiding(const layers_drawing *d) {
-  if (d->options->samples > 1 || d->options->occlusion == CONIC_OCCLUSION_OFF || d->cut.n < 2)
+  if (d->transparency || d->options->samples > 1 || d->options->occlusion == CONIC_OCCLUSION_OFF || d->cut.n < 2)
     return 0;
   return d->options->occlusion == CONIC_OCCLUSION_ON ||
          conic_layers_depth_complexity(d->layers, &d->view, &d->cut) >= deep;
@@ -204,6 +205,8 @@ static conic_status draw_layers(layers_drawing *d, conic_renderer *renderer, con
                                      .cut = &d->cut,
                                      .view = &d->view,
                                      .samples = d->options->samples,
+                                     .transparency = d->transparency,
+                                     .chance = d->options->chance,
                                      .image = image,
                                      .set = d->set,
                                      .is_gathered = d->options->may_be_coarser ? NULL : look_ahead,
@@ -235,6 +238,8 @@ static conic_status begin_drawing(layers_drawing *d, const conic_render_options 
     d->render.near_z = scale.near_z;
   if (!(d->render.splat_length > 0.0))
     d->render.splat_length = scale.splat_length;
+  if (conic_layers_schema_find(&d->layers->header.schema, CONIC_LAYERS_OPACITY) >= 0)
+    d->transparency = d->options->transparency;
   conic_layers_view_init(&d->layers->header, d->camera, &d->render, d->render.near_z, &d->view);
   if (!d->view.cull_back || d->layers->facings)
     return CONIC_OK;
