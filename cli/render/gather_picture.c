@@ -69,6 +69,7 @@ static void find_reached_box(const cli_render_job *job, conic_gather_options *ga
 
 /* Of a sample, its own place in the views' pixels and on the lens. */
 static void place_in_views(const cli_render_job *job, const conic_sample *sample, conic_gather_options *gather) {
+  gather->edge = 512; /* as where the views lie changes, so does by what their rays are off: the mean is not */
   for (int axis = 0; axis < 2; axis++)
     gather->shift[axis] = conic_sequence_at(sample->index, CONIC_SEQUENCE_VIEW + axis);
   if (!(job->accumulating.aperture > 0.0))
