@@ -30,11 +30,18 @@ int cli_is_gathered(const cli_render_job *job, const conic_camera *camera) {
   return (camera->kind || camera->lens) && !draws_itself(job, camera);
 }
 
+/* Samples, and sides that no one camera sees together, are lit view by view. */
+static int lights_views(const cli_render_job *job, const cli_looking *looking) {
+  return cli_light_is_wanted(job) && (looking->sample || looking->camera->kind == CONIC_CAMERA_CUBE);
+}
+
 static conic_status light_view(const view_drawing *work, const conic_camera *camera, conic_image *image) {
   conic_lighting *lighting = &work->job->options.lighting;
   const conic_lighting own = *lighting;
   *lighting = work->lighting;
-  conic_status status = cli_light_sample(work->session, work->job, work->looking->sample->index, camera, image);
+  const conic_sample *sample = work->looking->sample;
+  conic_status status = sample ? cli_light_sample(work->session, work->job, sample->index, camera, image)
+                               : cli_light_picture(work->session, work->job, camera, image);
   *lighting = own;
   return status;
 }
@@ -51,7 +58,7 @@ static conic_status draw_gathered_view(void *cookie, const conic_gather_view *ga
   conic_status status = conic_source_draw(job->source, job->renderer, &gathered->camera, &options, &view, image, &one);
   if (status == CONIC_OK)
     conic_statistics_add(&one, work->sum);
-  if (status == CONIC_OK && work->looking->sample && cli_light_is_wanted(job))
+  if (status == CONIC_OK && lights_views(job, work->looking))
     status = light_view(work, &gathered->camera, image);
   return status;
 }
@@ -109,7 +116,7 @@ static conic_status gather_picture(cli_session *session, cli_render_job *job, co
   }
   if (looking->sample)
     place_in_views(job, looking->sample, &gather);
-  if (looking->sample && cli_light_is_wanted(job))
+  if (lights_views(job, looking))
     gather.view_planes = 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO;
   return conic_gather(session->context, &gather, image);
 }

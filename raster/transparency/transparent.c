@@ -165,7 +165,7 @@ static conic_status check_transparent(conic_context *context, const conic_render
                                       conic_transparency how, double chance) {
   if ((unsigned)how >= CONIC_N_TRANSPARENCIES || !(chance >= 0.0 && chance < 1.0))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: an unknown transparency, or a chance not within 0 and 1");
-  if (options->passes != 3)
+  if (how != CONIC_TRANSPARENCY_NONE && options->passes != 3)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: transparency is of surfaces that blend: of 3 passes");
   return CONIC_OK;
 }
