@@ -51,7 +51,7 @@ CONIC_API void conic_gather_options_init_sized(conic_gather_options *options, si
 
 /* Draws the views that the camera needs, one after the other, and fills the image's planes from them: Z and medianZ
  * are depths as the camera's kind has them (conic_camera_rays.h: along the ray for fisheyes and panoramas), inverseZ
- * is 1 over that, and all else is as the views have it. Several samples are of drawn planes alone. The same bits
+ * is 1 over that, and all else is as the views have it. Several samples are of drawn planes and clusters alone. The same bits
  * whatever the threads, as far as `draw` has them. Errors: ARGUMENT, MEMORY, CANCELLED, and what `draw` returns. */
 CONIC_API conic_status conic_gather(conic_context *context, const conic_gather_options *options, conic_image *image);
 

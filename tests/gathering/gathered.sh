@@ -58,6 +58,17 @@ for kind in "${kinds[@]}"; do
 done
 [[ $n_compared -ge 12 ]] || fail "$n_compared pictures showed something"
 
+# What a plane is made of that is drawn in false colours.
+run 0 hybrid sphere.ply -o sphere.chy
+run 0 render sphere.chy --projection fisheye --fov 120 --size 40x40 --samples 3 --clusters clusters.pfm --overdraw o.pfm
+"$conic" render sphere.chy --plain --projection fisheye --fov 120 --size 120x120 --clusters fine.pfm > /dev/null
+perl -e 'sub rows { open my $f, "<:raw", $_[0]; <$f>; <$f>; <$f>; local $/; my @all = unpack "f<*", <$f>; @all }
+  my ($few, $many) = ([rows("clusters.pfm")], [rows("fine.pfm")]); my ($n, $same) = (0, 0);
+  sub hue { my @c = @_; my $sum = $c[0] + $c[1] + $c[2]; $sum ? join " ", map { int(50 * $_ / $sum + 0.5) } @c : "" }
+  for my $i (0 .. 1599) { my $j = (int($i / 40) * 3 + 1) * 120 + $i % 40 * 3 + 1;
+    $n++; $same += hue(@$few[3 * $i .. 3 * $i + 2]) eq hue(@$many[3 * $j .. 3 * $j + 2]) }
+  exit($same < 0.97 * $n)' || fail "clusters of several samples"
+
 # From the middle of a sphere, all around it is as far away as its radius is, which is 1.
 run 0 render sphere.ply --projection panorama --size 60x30 --samples 1 --aov Z -o z.pfm --eye 0,0,0 --json z.json
 grep -q '"pixels_covered": [1-9]' z.json || fail "the sphere is not seen from within"
@@ -67,7 +78,6 @@ perl -e 'binmode STDIN; <>; <>; <>; local $/; my @z = unpack "f<*", <>; my @bad 
 # A side of the cube is a picture of its own, also of a hybrid: +Z looks ahead.
 camera cube '"kind": "cube", "width": 20, "height": 120, "fx": 10, "fy": 10, "cx": 10, "cy": 10'
 camera ahead '"width": 20, "height": 20, "fx": 10, "fy": 10, "cx": 10, "cy": 10'
-run 0 hybrid sphere.ply -o sphere.chy
 for source in sphere.ply sphere.chy; do
   run 0 render $source --light 1,2,3 --shadow --camera cube.json --aov Z -o cube.pfm
   run 0 render $source --light 1,2,3 --camera ahead.json --aov Z -o ahead.pfm
