@@ -86,6 +86,11 @@ for source in sphere.ply sphere.chy; do
   exit(substr($cube, 1600, 1600) ne $ahead)' || fail "the cube's side ahead of $source"
 done
 
+# Parallel rays frame what they see, from as far off as a pinhole of the angle: a ball of radius 1 is 90 pixels wide, and a filter.
+run_as_typed 0 render sphere.ply --projection orthographic --size 100x100 --samples 1 --fov 40 --aov Z -o z.pfm
+perl -e 'binmode STDIN; <>; <>; <>; local $/; my @z = unpack "f<*", <>; my @row = grep { $_ > 0 } @z[5000 .. 5099];
+  exit(abs(@row - 91.5) > 1.5 || abs($z[5050] + 1 - 50 / 45 / 0.36397) > 0.03)' < z.pfm || fail "what parallel rays frame"
+
 # Two eyes: what is in the middle at the convergence stays, and others move by B·f·(1/z − 1/c).
 camera eyes '"width": 200, "height": 20, "fx": 100, "fy": 100, "cx": 100, "cy": 10' 0
 printf 'ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float nx
