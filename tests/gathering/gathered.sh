@@ -79,11 +79,11 @@ perl -e 'binmode STDIN; <>; <>; <>; local $/; my @z = unpack "f<*", <>; my @bad 
 camera cube '"kind": "cube", "width": 20, "height": 120, "fx": 10, "fy": 10, "cx": 10, "cy": 10'
 camera ahead '"width": 20, "height": 20, "fx": 10, "fy": 10, "cx": 10, "cy": 10'
 for source in sphere.ply sphere.chy; do
-  run 0 render $source --light 1,2,3 --shadow --camera cube.json --aov Z -o cube.pfm
-  run 0 render $source --light 1,2,3 --camera ahead.json --aov Z -o ahead.pfm
+  run 0 render $source --light 1,2,3 --shadow --ao 4 --camera cube.json --aov rgba -o cube.pfm
+  run 0 render $source --light 1,2,3 --shadow --ao 4 --camera ahead.json --aov rgba -o ahead.pfm
   perl -e 'sub rows { open my $f, "<:raw", $_[0]; <$f>; <$f>; <$f>; local $/; my $all = <$f>; $all }
   my ($cube, $ahead) = (rows("cube.pfm"), rows("ahead.pfm")); # from the bottom: the fifth of six sides is the second
-  exit(substr($cube, 1600, 1600) ne $ahead)' || fail "the cube's side ahead of $source"
+  exit(substr($cube, 4800, 4800) ne $ahead)' || fail "the cube's side ahead of $source"
 done
 
 # Parallel rays frame what they see, from as far off as a pinhole of the angle: a ball of radius 1 is 90 pixels wide, and a filter.

@@ -302,6 +302,59 @@ static void test_transparent(fixture *f) {
   f->splats.opacity = NULL;
 }
 
+/* Of a PLY's vertices, coded as colours are; where all are opaque, there is none. */
+static void test_alpha_of_vertices(fixture *f) {
+  static const struct {
+    const char *type, *values[3];
+    float expected[3];
+  } files[] = {{"uchar", {"0", "51", "255"}, {0.0f, 0.2f, 1.0f}},
+               {"ushort", {"65535", "0", "13107"}, {1.0f, 0.0f, 0.2f}},
+               {"float", {"0.25", "1", "0.5"}, {0.25f, 1.0f, 0.5f}},
+               {"uchar", {"255", "255", "255"}, {1.0f, 1.0f, 1.0f}}};
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    char text[400];
+    const char *const *v = files[i].values;
+    snprintf(
+        text, sizeof text,
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty %s "
+        "alpha\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 %s\n1 0 0 %s\n0 1 0 %s\n"
+        "3 0 1 2\n",
+        files[i].type, v[0], v[1], v[2]);
+    const char *path = files_write("final.ply", text);
+    for (int keeps_alpha = 0; keeps_alpha < 2; keeps_alpha++) {
+      conic_source_options options;
+      conic_source_options_init(&options);
+      options.as = CONIC_AS_AUTO;
+      options.keeps_alpha = keeps_alpha;
+      conic_source *source = open_file(f, path, &options);
+      CHECK_OK(conic_source_choose(source, &f->camera, &f->options, NULL));
+      const float *alpha = conic_source_chosen(source)->drawing.triangles->alpha;
+      CHECK((alpha != NULL) == (keeps_alpha && i < 3));
+      for (int k = 0; alpha && k < 3; k++)
+        CHECK_NEAR((double)alpha[k], (double)files[i].expected[k], 1e-7);
+      conic_source_close(source);
+    }
+  }
+  const char *opaque = files_write("opaque.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty "
+                                                 "float y\nproperty float z\nelement face 1\nproperty list uchar int "
+                                                 "vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const char *both[2] = {opaque, files_write("final.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                                          "property float y\nproperty float z\nproperty float alpha\n"
+                                                          "element face 1\nproperty list uchar int vertex_indices\n"
+                                                          "end_header\n0 0 1 0\n1 0 1 0\n0 1 1 0.5\n3 0 1 2\n")};
+  conic_source_options options;
+  conic_source *source;
+  conic_source_options_init(&options);
+  options.as = CONIC_AS_AUTO;
+  options.keeps_alpha = 1;
+  CHECK_OK(conic_source_open(f->context, both, 2, &options, &source));
+  CHECK_OK(conic_source_choose(source, &f->camera, &f->options, NULL));
+  const float *alpha = conic_source_chosen(source)->drawing.triangles->alpha;
+  CHECK(alpha && alpha[0] == 1.0f && alpha[2] == 1.0f && alpha[3] == 0.0f && alpha[5] == 0.5f);
+  conic_source_close(source);
+  CHECK(unlink(opaque) == 0);
+}
+
 int main(void) {
   conic_context *context = files_context();
   fixture f = {.context = context};
@@ -309,6 +362,7 @@ int main(void) {
   conic_render_options_init(&f.options);
   test_carried(&f);
   test_transparent(&f);
+  test_alpha_of_vertices(&f);
   fixture_close(&f);
   remove(files_path("final.lpc"));
   remove(files_path("final.ply"));
