@@ -246,8 +246,8 @@ conic_status conic_source_choose(conic_source *source, const conic_camera *camer
 }
 
 /* What a kind does not draw by itself. */
-static conic_status draw_chosen(conic_source *source, conic_renderer *renderer, settled_picture *picture,
-                                conic_image *image, conic_render_statistics *statistics) {
+static conic_status draw_from_choice(conic_source *source, conic_renderer *renderer, settled_picture *picture,
+                                     conic_image *image, conic_render_statistics *statistics) {
   const conic_source_kind *kind = source->kind;
   const conic_source_choice *choice = &source->choice;
   const conic_source_view *view = &source->view;
@@ -294,7 +294,7 @@ conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, c
   if (status == CONIC_OK)
     status = kind->draw
                  ? kind->draw(source, renderer, &picture.camera, &picture.render, &source->view, image, statistics)
-                 : draw_chosen(source, renderer, &picture, image, statistics);
+                 : draw_from_choice(source, renderer, &picture, image, statistics);
   if (status == CONIC_OK && picture.is_carried)
     conic_carried_turn(source, image);
   return status;

@@ -155,8 +155,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"compression", CLI_CHOICE, &compression, "NAME",
        "of an .exr: zip, none, rle, zips, piz; pxr24 loses bits of floats [zip]", .choices = compression_words},
       {"tone", CLI_CHOICE, &job->tone, "NAME",
-       "how files of 8 and 16 bits show what is brighter than white: srgb (as white), filmic (Hable's curve) or aces "
-       "(Hill's fit); .exr, .pfm and .hdr stay linear [srgb]",
+       "how files of 8 and 16 bits show what is brighter than white: srgb (as white), filmic (Hable's curve), aces "
+       "(Hill's fit) or agx (Sobotka's); .exr, .pfm and .hdr stay linear [srgb]",
        .choices = tone_words},
       {"deep", CLI_TEXT, &job->deep_path, "OUT.exr",
        "every splat and triangle of every pixel, as a deep image: colour, depth, id, weight"},
