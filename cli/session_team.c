@@ -8,6 +8,8 @@ static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static cli_team *own_team;
 static int is_agreeing, agreed_failure;
 static char first_error[2048];
+static uint64_t n_stages;
+static double busy_seconds;
 
 void cli_team_join(cli_team *team) {
   own_team = team && team->count > 1 ? team : NULL;
@@ -62,11 +64,33 @@ static void *collect_bytes(void *data, const void *bytes, size_t n_bytes, size_t
   return all;
 }
 
+/* What was waited for others since the last stage is noted, too, as if it had all come last. */
+static void note_stage(void *data, const char *name, double from, uint64_t number) {
+  static uint64_t sent_before;
+  static double waited_before;
+  const cli_team *team = data;
+  uint64_t sent_bytes, received_bytes;
+  double waited, now = cli_seconds();
+  team->count_traffic(&sent_bytes, &received_bytes, &waited);
+  double waited_now = waited - waited_before < now - from ? waited - waited_before : now - from;
+  team->trace("stage", name, number, from, now, sent_bytes - sent_before);
+  team->trace("wait", name, number, now - waited_now, now, 0);
+  sent_before = sent_bytes;
+  waited_before = waited;
+  n_stages++;
+  busy_seconds += now - from - waited_now;
+}
+
+void cli_team_count_stages(uint64_t *n, double *seconds) {
+  *n = n_stages;
+  *seconds = busy_seconds;
+}
+
 const conic_team *cli_team_of_library(const cli_session *session, conic_team *team) {
   if (!cli_team_is_shared(session))
     return NULL;
   *team = (conic_team){session->team->index, session->team->count, session->team, send_bytes,
-                       receive_bytes,        release_bytes,        collect_bytes};
+                       receive_bytes,        release_bytes,        collect_bytes, note_stage};
   return team;
 }
 
@@ -94,4 +118,12 @@ int cli_team_agree(const cli_session *session, int exit_code) {
     cli_error(exit_code, "%s", first_error);
   is_agreeing = 0;
   return exit_code;
+}
+
+int cli_team_exit(const cli_session *session, conic_status status) {
+  int own = cli_exit_of(status);
+  if (!cli_team_is_shared(session))
+    return own;
+  int agreed = cli_team_agree(session, status == CONIC_ERROR_CANCELLED ? CLI_DONE : own);
+  return agreed == CLI_DONE ? own : agreed;
 }

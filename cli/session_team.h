@@ -63,9 +63,14 @@ int cli_team_is_shared(const cli_session *session);
 int cli_team_is_first(const cli_session *session);
 /* The same processes, as what the library builds by several takes them; null where nobody shares the work. */
 const conic_team *cli_team_of_library(const cli_session *session, conic_team *team);
+/* What the library has noted that this process did of them. */
+void cli_team_count_stages(uint64_t *n, double *seconds);
 /* Does what the team's function does, if there is a team. */
 void cli_team_trace(const cli_session *session, const char *kind, const char *name, uint64_t number, double from,
                     uint64_t sent_bytes);
+/* Collective: the exit code of what all came to; where a process was only told that another failed, its own does not
+ * count. */
+int cli_team_exit(const cli_session *session, conic_status status);
 /* Collective: the greatest exit code of all, whose message the first process prints; alone, the code itself. After a
  * failure it is that failure at once. */
 int cli_team_agree(const cli_session *session, int exit_code);

@@ -6,9 +6,10 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
-#include "core/base/threads.h"
+#include "core/base/team_runs.h"
 #include "core/splats/columns.h"
 #include "lighting/lamps.h"
+#include "lighting/sky_team.h"
 
 void conic_lighting_options_init_sized(conic_lighting_options *options, size_t size) {
   static const conic_lighting_options own = {.size = sizeof own, .texels = 1.0, .most_texels = 4096, .samples = 1};
@@ -127,27 +128,43 @@ conic_status conic_sky_sums_add(conic_map_room *room, const conic_lighting_optio
   return status;
 }
 
+static conic_status sum_up_visible(conic_map_room *room, const conic_lighting_options *options, float *ao) {
+  conic_context *context = room->context;
+  size_t n = room->receivers->count;
+  conic_sky_sums sums = {.visible = ao};
+  memset(ao, 0, n * sizeof *ao);
+  sums.facing = conic_memory_allocate_zeroed(context, n, sizeof *sums.facing);
+  conic_status status = sums.facing ? conic_sky_sums_add(room, options, NULL, NULL, &sums) : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n && status == CONIC_OK; i++)
+    ao[i] = conic_sky_sums_share(&sums, i);
+  conic_memory_release(context, sums.facing);
+  return status;
+}
+
+/* Maps are drawn by each process of a team alone. */
+static conic_status find_visible(conic_map_room *room, const conic_lighting_options *options, float *ao) {
+  conic_context *context = room->context;
+  const conic_team *team = conic_context_join(context, NULL);
+  if (!team)
+    return sum_up_visible(room, options, ao);
+  conic_status status = conic_sky_share_visible(room, options, team, ao);
+  if (status == CONIC_OK)
+    conic_context_join(context, team);
+  return status;
+}
+
 static conic_status occlude_splats(conic_context *context, const conic_casters *casters, const conic_splats *splats,
                                    double spacing, const conic_lighting_options *options, float *ao) {
   conic_receivers receivers;
   conic_map_room room;
-  conic_sky_sums sums = {.visible = ao};
   conic_status status = conic_map_room_init(context, "light", casters, options, &room);
   if (status != CONIC_OK)
     return status;
   status = conic_receivers_of_splats(context, splats, spacing, &receivers);
   room.receivers = &receivers;
   room.texel = spacing / options->texels;
-  memset(ao, 0, splats->count * sizeof *ao);
   if (status == CONIC_OK)
-    sums.facing = conic_memory_allocate_zeroed(context, splats->count, sizeof *sums.facing);
-  if (status == CONIC_OK && !sums.facing)
-    status = CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK)
-    status = conic_sky_sums_add(&room, options, NULL, NULL, &sums);
-  for (size_t i = 0; i < splats->count && status == CONIC_OK; i++)
-    ao[i] = conic_sky_sums_share(&sums, i);
-  conic_memory_release(context, sums.facing);
+    status = find_visible(&room, options, ao);
   conic_receivers_release(context, &receivers);
   conic_map_room_release(&room);
   return status;

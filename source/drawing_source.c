@@ -474,6 +474,7 @@ const conic_source_kind conic_source_kind_drawing = {
     .find_spacing = find_drawing_spacing,
     .move = move_drawing,
     .choose = choose_in_drawing,
+    .windowing = &conic_source_windowing_choice,
     .input_of = find_drawing_input,
     .tell_rest = tell_drawing_rest,
     .list_all = list_drawing,

@@ -7,6 +7,8 @@
 #include "core/base/message.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
+#include "gaussians/draw/gaussian_parts.h"
+#include "gaussians/draw/gaussian_tile.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "source/source_kind.h"
 
@@ -98,9 +100,8 @@ static void close_gaussians(conic_source *source) {
     conic_gaussians_release(source->context, &g->gaussians);
 }
 
-/* The picture with several samples a pixel. */
+/* A window of the picture with several samples a pixel. */
 typedef struct fine_picture {
-  conic_camera camera;
   conic_gaussian_planes planes;
   int samples, is_opaque; /* a background is behind */
 } fine_picture;
@@ -241,36 +242,89 @@ static void tell_drawing(const gaussians_source *g, uint64_t n_covered, conic_re
   statistics->ms.frame = statistics->ms.setup + statistics->ms.bin + statistics->ms.accumulate;
 }
 
-static conic_status draw_gaussians(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
-                                   const conic_render_options *render, const conic_source_view *view,
-                                   conic_image *image, conic_render_statistics *statistics) {
-  gaussians_source *g = (gaussians_source *)source;
-  const int n = view->samples;
-  fine_picture fine = {.camera = *camera, .samples = n, .is_opaque = render->has_background};
-  if ((long)camera->width * n > 65535 || (long)camera->height * n > 65535)
-    return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: so many samples make more than 65535 a side",
-                      source->name);
-  fine.planes.width = fine.camera.width *= n;
-  fine.planes.height = fine.camera.height *= n;
-  fine.camera.fx *= n;
-  fine.camera.fy *= n;
-  fine.camera.cx *= n;
-  fine.camera.cy *= n;
-  g->options.isa = render->isa;
-  g->options.device = renderer ? conic_opencl_gaussian_device(renderer) : NULL;
+/* --- windows --- */
+
+static conic_status begin_gaussian_windows(conic_source_windows *w) {
+  gaussians_source *g = (gaussians_source *)w->source;
+  conic_context *context = w->source->context;
+  conic_camera fine = w->camera;
+  const int n = w->samples;
+  conic_gaussian_picture *picture = NULL;
+  if ((long)fine.width * n > 65535 || (long)fine.height * n > 65535)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: so many samples make more than 65535 a side",
+                      w->source->name);
+  fine.width *= n;
+  fine.height *= n;
+  fine.fx *= n;
+  fine.fy *= n;
+  fine.cx *= n;
+  fine.cy *= n;
+  w->step = CONIC_GAUSSIAN_TILE;
+  w->band_rows = w->camera.height;
+  g->options.isa = w->render.isa;
+  g->options.device = w->renderer ? conic_opencl_gaussian_device(w->renderer) : NULL;
   for (int c = 0; c < 3; c++)
-    g->options.background[c] = render->has_background ? render->background[c] : 0.0f;
-  conic_status status = allocate_planes(source->context, image, &fine);
+    g->options.background[c] = w->render.has_background ? w->render.background[c] : 0.0f;
+  conic_status status = conic_gaussian_picture_begin(context, &g->gaussians, &fine, &g->options,
+                                                     w->planes >> CONIC_PLANE_NORMAL & 1, &picture);
+  w->own = picture;
+  return status;
+}
+
+static void end_gaussian_windows(conic_source_windows *w) {
+  conic_gaussian_picture_release(w->own);
+}
+
+static conic_status draw_gaussian_window(conic_source_windows *w, const conic_window *window, conic_image *image,
+                                         conic_render_statistics *statistics) {
+  gaussians_source *g = (gaussians_source *)w->source;
+  conic_context *context = w->source->context;
+  const int n = w->samples;
+  const conic_gaussian_window fine_window = {{n * window->x_begin, n * window->y_begin},
+                                             {n * window->x_end, n * window->y_end}};
+  fine_picture fine = {.samples = n, .is_opaque = w->render.has_background};
+  fine.planes.width = n * image->width;
+  fine.planes.height = n * image->height;
+  conic_status status = allocate_planes(context, image, &fine);
   if (status == CONIC_OK)
-    status = conic_gaussians_render(source->context, &g->gaussians, &fine.camera, &g->options, &fine.planes, &g->drawn);
+    status = conic_gaussian_picture_draw(w->own, &fine_window, &fine.planes);
   if (status == CONIC_OK) {
     clear_other_planes(image);
     uint64_t n_covered = reduce_samples(&fine, image);
     image->is_display = !g->gaussians.is_linear;
-    if (statistics)
-      tell_drawing(g, n_covered, statistics);
+    g->drawn = *conic_gaussian_picture_statistics(w->own);
+    tell_drawing(g, n_covered, statistics);
   }
-  release_planes(source->context, &fine);
+  release_planes(context, &fine);
+  return status;
+}
+
+static void weigh_gaussian_windows(const conic_source_windows *w, const conic_window *list, size_t n, double *weights) {
+  const conic_gaussians *set = &((const gaussians_source *)w->source)->gaussians;
+  conic_source_windows_weigh_places(w, set->position, set->count, set->origin, list, n, weights);
+}
+
+static const conic_source_windowing gaussian_windowing = {.begin = begin_gaussian_windows,
+                                                          .end = end_gaussian_windows,
+                                                          .draw = draw_gaussian_window,
+                                                          .weigh = weigh_gaussian_windows};
+
+/* All in one. */
+static conic_status draw_gaussians(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                                   const conic_render_options *render, const conic_source_view *view,
+                                   conic_image *image, conic_render_statistics *statistics) {
+  conic_source_windows w = {.source = source,
+                            .renderer = renderer,
+                            .camera = *camera,
+                            .render = *render,
+                            .planes = conic_image_planes(image),
+                            .samples = view->samples};
+  const conic_window whole = {0, camera->width, 0, camera->height};
+  conic_render_statistics unused;
+  conic_status status = begin_gaussian_windows(&w);
+  if (status == CONIC_OK)
+    status = draw_gaussian_window(&w, &whole, image, statistics ? statistics : &unused);
+  end_gaussian_windows(&w);
   return status;
 }
 
@@ -289,5 +343,6 @@ const conic_source_kind conic_source_kind_gaussians = {
     .open = open_gaussians,
     .close = close_gaussians,
     .draw = draw_gaussians,
+    .windowing = &gaussian_windowing,
     .tell_rest = tell_gaussians_rest,
 };

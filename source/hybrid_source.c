@@ -183,6 +183,7 @@ const conic_source_kind conic_source_kind_hybrid = {
     .open = open_hybrid,
     .close = close_hybrid,
     .choose = choose_from_hybrid,
+    .windowing = &conic_source_windowing_choice,
     .name_image = name_hybrid_image,
     .name_splat = name_hybrid_splat,
     .tell_primitives = tell_hybrid_primitives,

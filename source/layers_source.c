@@ -7,7 +7,9 @@
 #include "conic/layers_draw.h"
 #include "lod/hierarchies/hierarchy.h"
 #include "lod/layers/draw/layers_gather.h"
+#include "lod/layers/draw/layers_picture.h"
 #include "lod/layers/format/layers_read.h"
+#include "raster/frame/samples.h"
 #include "source/source_kind.h"
 
 typedef struct layers_source {
@@ -85,13 +87,8 @@ static conic_status refuse_none(layers_source *l) {
                             : status;
 }
 
-static conic_status draw_layers(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
-                                const conic_render_options *render, const conic_source_view *view, conic_image *image,
-                                conic_render_statistics *statistics) {
-  layers_source *l = (layers_source *)source;
-  conic_render_statistics own;
+static conic_layers_draw_options wish_of(const conic_source_view *view) {
   conic_layers_draw_options options;
-  statistics = statistics ? statistics : &own;
   conic_layers_draw_options_init(&options);
   options.error_px = view->error_px;
   options.budget = view->budget;
@@ -103,13 +100,72 @@ static conic_status draw_layers(conic_source *source, conic_renderer *renderer, 
   options.tolerates_damage = view->tolerates_damage;
   options.transparency = view->transparency;
   options.chance = view->chance;
-  conic_status status = conic_layers_draw(l->layers, renderer, camera, render, &options, image, statistics, &l->drawn);
-  source->choice = (conic_source_choice){
-      .error_px = l->drawn.error_px, .n_culled = l->drawn.n_clouds_culled, .n_levels = l->drawn.n_levels};
-  if (status == CONIC_OK && statistics->splats_in > 0)
-    l->may_pass_none = 0;
-  return status == CONIC_OK && l->may_pass_none && !view->may_be_coarser ? refuse_none(l) : status;
+  return options;
 }
+
+static conic_status finish_picture(layers_source *l, const conic_render_statistics *statistics) {
+  l->base.choice = (conic_source_choice){
+      .error_px = l->drawn.error_px, .n_culled = l->drawn.n_clouds_culled, .n_levels = l->drawn.n_levels};
+  if (statistics->splats_in > 0)
+    l->may_pass_none = 0;
+  return l->may_pass_none && !l->base.view.may_be_coarser ? refuse_none(l) : CONIC_OK;
+}
+
+static conic_status draw_layers(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                                const conic_render_options *render, const conic_source_view *view, conic_image *image,
+                                conic_render_statistics *statistics) {
+  layers_source *l = (layers_source *)source;
+  conic_render_statistics own;
+  const conic_layers_draw_options options = wish_of(view);
+  statistics = statistics ? statistics : &own;
+  conic_status status = conic_layers_draw(l->layers, renderer, camera, render, &options, image, statistics, &l->drawn);
+  return status == CONIC_OK ? finish_picture(l, statistics) : status;
+}
+
+/* --- in windows --- */
+
+static conic_status begin_windows(conic_source_windows *windows) {
+  layers_source *l = (layers_source *)windows->source;
+  const conic_layers_draw_options options = wish_of(&l->base.view);
+  conic_layers_picture *picture;
+  windows->step = CONIC_WINDOW_STEP;
+  windows->band_rows = conic_samples_band_rows(&windows->camera, windows->samples);
+  windows->is_summed = 1;
+  conic_status status =
+      conic_layers_picture_begin(l->layers, windows->renderer, &windows->camera, &windows->render, &options, &picture);
+  windows->own = picture;
+  return status;
+}
+
+static void end_windows(conic_source_windows *windows) {
+  conic_layers_picture_end(windows->own);
+}
+
+static conic_status draw_window(conic_source_windows *windows, const conic_window *window, conic_image *image,
+                                conic_render_statistics *statistics) {
+  conic_layers_tally tally = {.n_turned = 0};
+  conic_status status =
+      conic_layers_picture_draw(windows->own, window, windows->other_bytes, image, statistics, &tally);
+  const uint64_t counts[] = {tally.n_turned, tally.n_clouds_read, tally.n_bytes_received, tally.n_bands};
+  for (int i = 0; i < CONIC_SOURCE_TALLIES; i++)
+    windows->tallies[i] += counts[i];
+  return status;
+}
+
+static conic_status count_windows(const conic_source_windows *windows, conic_render_statistics *statistics) {
+  layers_source *l = (layers_source *)windows->source;
+  const uint64_t *counts = windows->tallies;
+  const conic_layers_tally tally = {counts[0], counts[1], counts[2], counts[3]};
+  conic_layers_picture_tell(windows->own, statistics, &tally, &l->drawn);
+  return finish_picture(l, statistics);
+}
+
+static void weigh_windows(const conic_source_windows *windows, const conic_window *list, size_t n, double *weights) {
+  conic_layers_picture_weigh(windows->own, list, n, weights);
+}
+
+static const conic_source_windowing windowing_of_layers = {begin_windows, end_windows, draw_window, count_windows,
+                                                           weigh_windows};
 
 static void tell_layers_rest(const conic_source *source, conic_facts *facts) {
   const conic_layers_drawn *d = &((const layers_source *)source)->drawn;
@@ -267,6 +323,7 @@ const conic_source_kind conic_source_kind_layers = {
     .open = open_layers,
     .close = close_layers,
     .draw = draw_layers,
+    .windowing = &windowing_of_layers,
     .tell_rest = tell_layers_rest,
     .is_file = is_layers_file,
     .name = "lpc",

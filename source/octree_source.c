@@ -203,6 +203,7 @@ const conic_source_kind conic_source_kind_octree = {
     .close = close_octree,
     .find_spacing = find_octree_spacing,
     .choose = choose_from_octree,
+    .windowing = &conic_source_windowing_choice,
     .name_image = name_octree_image,
     .name_splat = name_octree_splat,
     .tell_primitives = tell_octree_primitives,

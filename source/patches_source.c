@@ -110,6 +110,7 @@ const conic_source_kind conic_source_kind_patches = {
     .close = close_patches,
     .find_spacing = find_patches_spacing,
     .choose = choose_from_patches,
+    .windowing = &conic_source_windowing_choice,
     .name_image = name_patches_image,
     .name_splat = name_patches_splat,
     .input_of = find_patches_input,

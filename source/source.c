@@ -204,16 +204,18 @@ const conic_source_choice *conic_source_chosen(const conic_source *source) {
   return &source->choice;
 }
 
-/* A picture as it is chosen and drawn: where the source is carried, of the source at rest. */
-typedef struct settled_picture {
-  conic_camera camera;
-  conic_render_options render;
-  int is_carried;
-} settled_picture;
+/* Transparency is of surfaces that keep their opacities. */
+static conic_status check_opacities(conic_source *source) {
+  const unsigned abilities = source->scale.abilities;
+  const char *fault = abilities & CONIC_SOURCE_COMPOSITES ? "a Gaussian scene is composited by its opacities already"
+                      : abilities & CONIC_SOURCE_CLUSTERS ? "a hybrid keeps no opacities; draw what it was made of"
+                                                          : NULL;
+  return fault ? conic_fail(source->context, CONIC_ERROR_UNSUPPORTED, "%s: no transparency: %s", source->name, fault)
+               : CONIC_OK;
+}
 
-/* The view becomes the source's, and the options are filled in. */
-static conic_status begin_picture(conic_source *source, const conic_camera *camera, const conic_render_options *render,
-                                  const conic_source_view *view, settled_picture *picture) {
+static conic_status settle_picture(conic_source *source, const conic_camera *camera, const conic_render_options *render,
+                                   const conic_source_view *view, conic_source_picture *picture) {
   picture->camera = *camera;
   picture->is_carried = source->is_moved && !source->kind->move;
   conic_render_options_init(&picture->render);
@@ -226,8 +228,15 @@ static conic_status begin_picture(conic_source *source, const conic_camera *came
   return CONIC_OK;
 }
 
-static conic_status choose_settled(conic_source *source, const conic_camera *camera,
-                                   const conic_render_options *render) {
+conic_status conic_source_begin_picture(conic_source *source, const conic_camera *camera,
+                                        const conic_render_options *render, const conic_source_view *view,
+                                        conic_source_picture *picture) {
+  conic_status status = settle_picture(source, camera, render, view, picture);
+  return status == CONIC_OK && source->view.transparency ? check_opacities(source) : status;
+}
+
+conic_status conic_source_choose_settled(conic_source *source, const conic_camera *camera,
+                                         const conic_render_options *render) {
   static const conic_splats no_splats;
   static const conic_triangles no_triangles;
   if (!source->kind->choose)
@@ -240,19 +249,19 @@ static conic_status choose_settled(conic_source *source, const conic_camera *cam
 
 conic_status conic_source_choose(conic_source *source, const conic_camera *camera, const conic_render_options *render,
                                  const conic_source_view *view) {
-  settled_picture picture;
-  conic_status status = begin_picture(source, camera, render, view, &picture);
-  return status == CONIC_OK ? choose_settled(source, &picture.camera, &picture.render) : status;
+  conic_source_picture picture;
+  conic_status status = settle_picture(source, camera, render, view, &picture);
+  return status == CONIC_OK ? conic_source_choose_settled(source, &picture.camera, &picture.render) : status;
 }
 
 /* What a kind does not draw by itself. */
-static conic_status draw_from_choice(conic_source *source, conic_renderer *renderer, settled_picture *picture,
+static conic_status draw_from_choice(conic_source *source, conic_renderer *renderer, conic_source_picture *picture,
                                      conic_image *image, conic_render_statistics *statistics) {
   const conic_source_kind *kind = source->kind;
   const conic_source_choice *choice = &source->choice;
   const conic_source_view *view = &source->view;
   double start = conic_seconds_now();
-  conic_status status = choose_settled(source, &picture->camera, &picture->render);
+  conic_status status = conic_source_choose_settled(source, &picture->camera, &picture->render);
   int is_chosen = kind->choose && (!choice->is_all || choice->drawing.splats->dot);
   double ms = is_chosen ? 1e3 * (conic_seconds_now() - start) : 0.0;
   if (choice->is_all && !picture->render.splats_version)
@@ -273,24 +282,12 @@ static conic_status draw_from_choice(conic_source *source, conic_renderer *rende
   return CONIC_OK;
 }
 
-/* Transparency is of surfaces that keep their opacities. */
-static conic_status check_opacities(conic_source *source) {
-  const unsigned abilities = source->scale.abilities;
-  const char *fault = abilities & CONIC_SOURCE_COMPOSITES ? "a Gaussian scene is composited by its opacities already"
-                      : abilities & CONIC_SOURCE_CLUSTERS ? "a hybrid keeps no opacities; draw what it was made of"
-                                                          : NULL;
-  return fault ? conic_fail(source->context, CONIC_ERROR_UNSUPPORTED, "%s: no transparency: %s", source->name, fault)
-               : CONIC_OK;
-}
-
 conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
                                const conic_render_options *render, const conic_source_view *view, conic_image *image,
                                conic_render_statistics *statistics) {
   const conic_source_kind *kind = source->kind;
-  settled_picture picture;
-  conic_status status = begin_picture(source, camera, render, view, &picture);
-  if (status == CONIC_OK && source->view.transparency)
-    status = check_opacities(source);
+  conic_source_picture picture;
+  conic_status status = conic_source_begin_picture(source, camera, render, view, &picture);
   if (status == CONIC_OK)
     status = kind->draw
                  ? kind->draw(source, renderer, &picture.camera, &picture.render, &source->view, image, statistics)

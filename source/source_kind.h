@@ -5,6 +5,7 @@
 #include "conic/source.h"
 #include "core/pictures/georeference.h"
 #include "source/facts.h"
+#include "source/source_parts.h"
 
 typedef enum conic_source_company {
   CONIC_SOURCE_SINGLE, /* takes the only input; beside others its splats are taken */
@@ -38,6 +39,7 @@ typedef struct conic_source_kind {
   conic_status (*draw)(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
                        const conic_render_options *render, const conic_source_view *view, conic_image *image,
                        conic_render_statistics *statistics);
+  const conic_source_windowing *windowing; /* null: it is not drawn in windows */
   void (*name_image)(const conic_source *source, conic_image *image);
   const char *(*name_splat)(const conic_source *source, uint32_t splat, uint32_t *number);
   /* Which input has an id; null: the first. */
@@ -94,6 +96,21 @@ conic_status conic_source_create(conic_context *context, const conic_source_kind
                                  conic_source **source);
 /* Where `status` is a failure, closes what was made so far. Hands it on. */
 conic_status conic_source_finish(conic_status status, conic_source **source);
+
+/* A picture as it is chosen and drawn: where the source is carried, of the source at rest. */
+typedef struct conic_source_picture {
+  conic_camera camera;
+  conic_render_options render;
+  int is_carried;
+} conic_source_picture;
+
+/* The view becomes the source's, and the options are filled in. Errors: ARGUMENT, UNSUPPORTED (transparency). */
+conic_status conic_source_begin_picture(conic_source *source, const conic_camera *camera,
+                                        const conic_render_options *render, const conic_source_view *view,
+                                        conic_source_picture *picture);
+/* conic_source_choose after that. */
+conic_status conic_source_choose_settled(conic_source *source, const conic_camera *camera,
+                                         const conic_render_options *render);
 
 /* Whether colours are to be made of something else than the file's. */
 int conic_coloring_is_asked(const conic_source_options *options);

@@ -77,7 +77,17 @@ static conic_status grow(conic_cells *cells) {
   return CONIC_OK;
 }
 
-conic_status conic_cells_count(conic_cells *cells, const int32_t at[3]) {
+/* The number of the part that a place lies in. */
+static int part_of(const conic_cells *cells, const int32_t at[3], const float place[3]) {
+  int number = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    int i = (int)(4.0 * ((double)place[axis] / cells->side - (double)at[axis]));
+    number = 4 * number + (i < 3 ? i : 3);
+  }
+  return number;
+}
+
+conic_status conic_cells_count(conic_cells *cells, const int32_t at[3], const float place[3]) {
   uint32_t entry = cells->table[look_up(cells, at)];
   if (!entry) {
     if (cells->n == cells->room) {
@@ -91,6 +101,7 @@ conic_status conic_cells_count(conic_cells *cells, const int32_t at[3]) {
     cells->table[look_up(cells, at)] = entry = (uint32_t)cells->n;
   }
   cells->cells[entry - 1].count++;
+  cells->cells[entry - 1].parts |= UINT64_C(1) << part_of(cells, at, place);
   return CONIC_OK;
 }
 
@@ -110,4 +121,14 @@ void conic_cells_sort(conic_cells *cells) {
     start += cells->cells[i].count;
   }
   fill_table(cells);
+}
+
+const conic_cell *conic_cells_neighbour(const conic_cells *cells, const conic_cell *cell, int i) {
+  int32_t at[3], step = i;
+  if (i == 0)
+    return cell;
+  step = i <= 13 ? i - 1 : i; /* the middle one of 27 is the cell */
+  for (int axis = 2; axis >= 0; axis--, step /= 3)
+    at[axis] = cell->at[axis] + step % 3 - 1;
+  return conic_cells_find(cells, at);
 }

@@ -12,6 +12,7 @@ typedef struct conic_cell {
   uint64_t count;  /* points in it */
   uint64_t start;  /* of its points among all, cell by cell */
   uint64_t filled; /* of them so far */
+  uint64_t parts;  /* as bits: which of 4 × 4 × 4 parts of it hold any */
 } conic_cell;
 
 typedef struct conic_cells {
@@ -33,10 +34,14 @@ int conic_cells_locate(const conic_cells *cells, const float place[3], int32_t a
 /* The cell there; null: none. */
 conic_cell *conic_cells_find(const conic_cells *cells, const int32_t at[3]);
 
-/* Counts a point. Errors: MEMORY. */
-conic_status conic_cells_count(conic_cells *cells, const int32_t at[3]);
+/* Counts a point at a place of that cell. Errors: MEMORY. */
+conic_status conic_cells_count(conic_cells *cells, const int32_t at[3], const float place[3]);
 
 /* Orders them, and gives each its place among all points. */
 void conic_cells_sort(conic_cells *cells);
+
+/* A cell's neighbours, 27 with itself, which is the first; null where there is none. */
+enum { CONIC_CELL_NEIGHBOURS = 27 };
+const conic_cell *conic_cells_neighbour(const conic_cells *cells, const conic_cell *cell, int i);
 
 #endif

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/team_runs.h"
 #include "core/splats/splats_gather.h"
 #include "surface/own_points.h"
 
@@ -12,7 +12,8 @@ enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
 typedef struct points_cleaning {
   const conic_surface *surface;
   conic_own_points *own;
-  size_t n_wanted;
+  uint64_t n_points;           /* whose slots are wanted */
+  size_t first_leaf, end_leaf; /* those are in */
   conic_workspace *workspaces;
 } points_cleaning;
 
@@ -65,7 +66,7 @@ static void clean_leaf(points_cleaning *work, size_t i_leaf, conic_workspace *wo
   size_t begin = conic_neighbours_leaf_begin(tree, i_leaf), end = conic_neighbours_leaf_begin(tree, i_leaf + 1);
   conic_surface_share_leaf(surface, i_leaf, workspace);
   for (size_t slot = begin; slot < end; slot++) {
-    if (tree->point_of_slot[slot] >= work->n_wanted)
+    if (tree->point_of_slot[slot] >= work->n_points)
       continue;
     conic_landing projection;
     const double r[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
@@ -77,8 +78,52 @@ static void clean_leaf(points_cleaning *work, size_t i_leaf, conic_workspace *wo
 
 static void clean_chunk(void *data, size_t i_item, int i_thread) {
   points_cleaning *work = data;
-  for (size_t i = i_item * CHUNK; i < (i_item + 1) * CHUNK && i < work->surface->tree.n_leaves; i++)
+  size_t first = work->first_leaf + i_item * CHUNK;
+  for (size_t i = first; i < first + CHUNK && i < work->end_leaf; i++)
     clean_leaf(work, i, &work->workspaces[i_thread]);
+}
+
+/* The first slot of the leaves of a chunk. */
+static size_t first_slot(const void *data, size_t i_item) {
+  const points_cleaning *work = data;
+  size_t leaf = work->first_leaf + i_item * CHUNK;
+  return conic_neighbours_leaf_begin(&work->surface->tree, leaf < work->end_leaf ? leaf : work->end_leaf);
+}
+
+static conic_status clean_leaves(points_cleaning *work, double begin, double end) {
+  size_t n_leaves = work->end_leaf - work->first_leaf;
+  conic_own_points *own = work->own;
+  conic_team_loop loop = {"project",       begin,       end,  (n_leaves + CHUNK - 1) / CHUNK,
+                          CHUNKS_A_REPORT, clean_chunk, work, .first_of = first_slot};
+  int n = 0;
+  loop.columns[n++] = (conic_team_column){own->moved2, sizeof *own->moved2};
+  loop.columns[n++] = (conic_team_column){own->n_neighbours, sizeof *own->n_neighbours};
+  loop.columns[n++] = (conic_team_column){own->outcomes, sizeof *own->outcomes};
+  loop.columns[n++] = (conic_team_column){own->are_merged, sizeof *own->are_merged};
+  for (int axis = 0; axis < 3; axis++) {
+    loop.columns[n++] = (conic_team_column){own->points.position[axis], sizeof(float)};
+    loop.columns[n++] = (conic_team_column){own->points.normal[axis], sizeof(float)};
+    loop.columns[n++] = (conic_team_column){own->points.color[axis], sizeof(float)};
+  }
+  return conic_team_runs(work->surface->context, &loop);
+}
+
+/* The leaves of the wanted slots. */
+static void find_own_leaves(points_cleaning *work, const conic_own_range *wanted) {
+  const conic_neighbours *tree = &work->surface->tree;
+  uint64_t n = 0;
+  size_t leaf = 0;
+  work->n_points = wanted ? wanted->n_points : UINT64_MAX;
+  work->first_leaf = wanted ? tree->n_leaves : 0;
+  for (; leaf < tree->n_leaves && wanted && n < wanted->end; leaf++) {
+    if (n >= wanted->first && leaf < work->first_leaf)
+      work->first_leaf = leaf;
+    for (size_t slot = conic_neighbours_leaf_begin(tree, leaf); slot < conic_neighbours_leaf_begin(tree, leaf + 1);
+         slot++)
+      n += tree->point_of_slot[slot] < wanted->n_points;
+  }
+  work->end_leaf = wanted ? leaf : tree->n_leaves;
+  work->first_leaf = work->first_leaf < work->end_leaf ? work->first_leaf : work->end_leaf;
 }
 
 static conic_status allocate_own(const conic_surface *surface, conic_own_points *own) {
@@ -93,21 +138,23 @@ static conic_status allocate_own(const conic_surface *surface, conic_own_points 
   return own->moved2 && own->n_neighbours && own->outcomes && own->are_merged ? status : CONIC_ERROR_MEMORY;
 }
 
-conic_status conic_own_points_project(const conic_surface *surface, size_t n_wanted, double begin, double end,
-                                      conic_own_points *own) {
+conic_status conic_own_points_project(const conic_surface *surface, const conic_own_range *wanted, double from,
+                                      double to, conic_own_points *own) {
   conic_context *context = surface->context;
-  points_cleaning work = {surface, own, n_wanted, NULL};
+  points_cleaning work = {.surface = surface, .own = own};
   memset(own, 0, sizeof *own);
+  find_own_leaves(&work, wanted);
+  own->begin = conic_neighbours_leaf_begin(&surface->tree, work.first_leaf);
+  own->end = conic_neighbours_leaf_begin(&surface->tree, work.end_leaf);
   conic_status status = conic_workspaces_create(context, &work.workspaces);
   if (status == CONIC_OK)
     status = allocate_own(surface, own);
   if (status == CONIC_OK)
-    status = conic_parallel_runs(context, "project", begin, end, (surface->tree.n_leaves + CHUNK - 1) / CHUNK,
-                                 CHUNKS_A_REPORT, clean_chunk, &work);
+    status = clean_leaves(&work, from, to);
   if (status == CONIC_OK)
     status = conic_workspaces_check(context, work.workspaces);
-  for (int i = 0; work.workspaces && i < conic_context_threads(context); i++)
-    own->n_evaluations += work.workspaces[i].n_evaluations;
+  if (status == CONIC_OK)
+    status = conic_workspaces_count(context, work.workspaces, &own->n_evaluations);
   conic_workspaces_release(context, work.workspaces);
   if (status != CONIC_OK)
     conic_own_points_release(context, own);
@@ -171,7 +218,7 @@ conic_status conic_surface_clean(conic_surface *surface, conic_splats *projected
   conic_own_points own;
   conic_surface_report counted;
   memset(projected, 0, sizeof *projected);
-  conic_status status = conic_own_points_project(surface, SIZE_MAX, 0.0, 1.0, &own);
+  conic_status status = conic_own_points_project(surface, NULL, 0.0, 1.0, &own);
   if (status != CONIC_OK)
     return status;
   report_points(surface, &own, &counted);

@@ -1,17 +1,20 @@
 /* Projecting sets larger than memory: points are put in order of the cells of a lattice, each cell is projected as a
- * set of its own together with what reaches into it, and the results are put back into the points' old order. */
+ * set of its own together with what reaches into it, and the results are put back into the points' old order. Of a team
+ * each process keeps the cells that it projects points of and those about them, and the first gets all results. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/base/team_runs.h"
 #include "core/splats/columns.h"
 #include "core/splats/splats_gather.h"
-#include "surface/cells.h"
+#include "surface/cells_results.h"
+#include "surface/cells_share.h"
 #include "surface/own_points.h"
-#include "surface/store.h"
 
 /* A side in h: what lies about a cell and is looked at with it then is little beside it. */
 static const double CELL_SIDE = 64.0;
@@ -26,26 +29,27 @@ enum { BYTES_A_POINT = 192, BYTES_WITH_NORMALS = 320, OTHER_BYTES = 12 << 20 };
 /* Records that are handled at a time. */
 enum { BATCH = 1 << 16, PAGE = 4096 };
 
-typedef struct cell_sample {
-  float position[3], normal[3], color[3];
-} cell_sample;
-
 typedef struct record {
-  cell_sample point;
+  conic_cell_sample point;
   uint32_t unused;
   uint64_t index; /* in the set */
 } record;
 
-typedef struct result {
-  cell_sample point;
-  uint32_t outcome;
-} result;
+/* What is told of the points, the same whoever projected which: whole numbers. */
+typedef struct cells_sums {
+  uint64_t outcomes[CONIC_N_SURFACE_OUTCOMES], n_merged, n_evaluations, neighbours;
+  uint64_t moved2[2]; /* in units of h² / 2^24, and what is left in 2^-30 of that */
+  double moved2_most;
+} cells_sums;
 
 typedef struct cleaning {
   conic_context *context;
   const conic_clean_options *options;
+  const conic_team *team; /* null: this process is alone */
   conic_cells cells;
-  conic_store records, results; /* by cell; by index */
+  conic_cells_share share;
+  conic_store records; /* by cell */
+  conic_cells_results results;
   uint64_t n_points, n_finite, n_placed;
   double origin[3];
   unsigned fields; /* of the points: normals (also those of axes) and colours */
@@ -53,9 +57,13 @@ typedef struct cleaning {
   uint64_t *keys;  /* likewise: cell and number in a batch */
   conic_splats subset;
   size_t subset_room;
-  double moved2_sum, moved2_most, neighbours;
+  cells_sums sums;
   conic_surface_report report;
 } cleaning;
+
+static int is_first(const cleaning *work) {
+  return !work->team || work->team->index == 0;
+}
 
 static const char *name_of(const cleaning *work) {
   return work->options->name ? work->options->name : "surface";
@@ -71,7 +79,7 @@ static uint64_t bytes_a_point(const cleaning *work) {
   return finds_normals(work) ? BYTES_WITH_NORMALS : BYTES_A_POINT;
 }
 
-static void put_sample(const cell_sample *from, conic_splats *to, size_t i) {
+static void put_sample(const conic_cell_sample *from, conic_splats *to, size_t i) {
   for (int axis = 0; axis < 3; axis++) {
     to->position[axis][i] = from->position[axis];
     if (to->normal[0])
@@ -113,7 +121,7 @@ static conic_status count_points(cleaning *work, const conic_splats *batch) {
     if (!conic_cells_locate(&work->cells, place, at))
       return conic_fail(work->context, CONIC_ERROR_ARGUMENT, "surface: h %g is too small for where the points are",
                         work->options->surface.h);
-    conic_status status = conic_cells_count(&work->cells, at);
+    conic_status status = conic_cells_count(&work->cells, at, place);
     if (status != CONIC_OK)
       return status;
     work->n_finite++;
@@ -154,11 +162,11 @@ static conic_status place_points(cleaning *work, const conic_splats *batch, size
                             batch->position[2][first + i]};
     int32_t at[3];
     const conic_cell *cell = conic_cells_locate(&work->cells, place, at) ? conic_cells_find(&work->cells, at) : NULL;
-    if (cell)
+    if (cell && work->share.parts[cell - work->cells.cells].is_kept)
       work->keys[n_keys++] = (uint64_t)(cell - work->cells.cells) << 32 | i;
-    else {
-      const result none = {.outcome = CONIC_SURFACE_NOT_FINITE};
-      status = conic_store_write(&work->results, work->n_placed + i, 1, &none);
+    else if (!cell && is_first(work)) {
+      const conic_cell_result none = {.outcome = CONIC_SURFACE_NOT_FINITE};
+      status = conic_cells_results_keep(&work->results, work->n_placed + i, 1, &none);
     }
   }
   qsort(work->keys, n_keys, sizeof *work->keys, compare_keys);
@@ -194,17 +202,6 @@ static conic_status place_batch(void *cookie, const conic_splats *batch) {
 }
 
 /* --- a cell --- */
-
-/* Its neighbours, itself first. */
-static const conic_cell *neighbour_of(const conic_cells *cells, const conic_cell *cell, int i) {
-  int32_t at[3], step = i;
-  if (i == 0)
-    return cell;
-  step = i <= 13 ? i - 1 : i; /* the middle one of 27 is the cell */
-  for (int axis = 2; axis >= 0; axis--, step /= 3)
-    at[axis] = cell->at[axis] + step % 3 - 1;
-  return conic_cells_find(cells, at);
-}
 
 /* Whether so many points may be in memory with what they take. */
 static conic_status check_room(const cleaning *work, uint64_t n) {
@@ -249,8 +246,8 @@ static conic_status gather_cell(cleaning *work, const conic_cell *cell) {
     high[axis] = ((double)cell->at[axis] + 1.0) * work->cells.side + halo;
   }
   work->subset.count = 0;
-  for (int i = 0; i < 27 && status == CONIC_OK; i++) {
-    const conic_cell *from = neighbour_of(&work->cells, cell, i);
+  for (int i = 0; i < CONIC_CELL_NEIGHBOURS && status == CONIC_OK; i++) {
+    const conic_cell *from = conic_cells_neighbour(&work->cells, cell, i);
     for (uint64_t at = 0; from && at < from->count && status == CONIC_OK; at += PAGE) {
       size_t n = from->count - at < PAGE ? (size_t)(from->count - at) : PAGE;
       status = conic_store_read(&work->records, from->start + at, n, work->page);
@@ -264,10 +261,20 @@ static conic_status gather_cell(cleaning *work, const conic_cell *cell) {
   return status;
 }
 
-static void fill_result(cleaning *work, const conic_own_points *own, uint32_t slot, result *to) {
+/* A sum that does not depend on the order. */
+static void add_moved(cleaning *work, double moved2) {
+  double h = work->options->surface.h, units = moved2 / (h * h) * 0x1p24;
+  units = units < 0x1p40 ? units : 0x1p40;
+  uint64_t whole = (uint64_t)units;
+  work->sums.moved2[0] += whole;
+  work->sums.moved2[1] += (uint64_t)((units - (double)whole) * 0x1p30);
+  work->sums.moved2_most = moved2 > work->sums.moved2_most ? moved2 : work->sums.moved2_most;
+}
+
+static void fill_result(cleaning *work, const conic_own_points *own, uint32_t slot, conic_cell_result *to) {
   memset(to, 0, sizeof *to);
   to->outcome = own->outcomes[slot];
-  work->report.outcomes[to->outcome]++;
+  work->sums.outcomes[to->outcome]++;
   if (to->outcome != CONIC_SURFACE_DONE)
     return;
   for (int axis = 0; axis < 3; axis++) {
@@ -275,28 +282,31 @@ static void fill_result(cleaning *work, const conic_own_points *own, uint32_t sl
     to->point.normal[axis] = own->points.normal[0] ? own->points.normal[axis][slot] : 0.0f;
     to->point.color[axis] = own->points.color[0] ? own->points.color[axis][slot] : 0.0f;
   }
-  work->report.n_merged += own->are_merged[slot];
-  work->moved2_sum += own->moved2[slot];
-  work->moved2_most = own->moved2[slot] > work->moved2_most ? own->moved2[slot] : work->moved2_most;
-  work->neighbours += (double)own->n_neighbours[slot];
+  work->sums.n_merged += own->are_merged[slot];
+  work->sums.neighbours += own->n_neighbours[slot];
+  add_moved(work, own->moved2[slot]);
 }
 
-/* Puts the cell's results where the points stood. */
+/* Keeps the results of the process's own points of a cell. */
 static conic_status keep_cell(cleaning *work, const conic_cell *cell, const conic_surface *surface,
                               const conic_own_points *own) {
-  result run[64];
+  conic_cell_result run[CONIC_RESULTS_RUN];
   conic_status status = CONIC_OK;
   for (uint64_t at = 0; at < cell->count && status == CONIC_OK; at += PAGE) {
     size_t n = cell->count - at < PAGE ? (size_t)(cell->count - at) : PAGE, n_run = 0;
     status = conic_store_read(&work->records, cell->start + at, n, work->page);
     for (size_t i = 0; i < n && status == CONIC_OK; i++) {
-      fill_result(work, own, surface->tree.slot_of_point[at + i], &run[n_run++]);
-      int is_last = i + 1 == n || work->page[i + 1].index != work->page[i].index + 1;
-      if (!is_last && n_run < sizeof run / sizeof run[0])
-        continue;
-      status = conic_store_write(&work->results, work->page[i].index + 1 - n_run, n_run, run);
-      n_run = 0;
+      uint32_t slot = surface->tree.slot_of_point[at + i];
+      int is_own = slot >= own->begin && slot < own->end;
+      if (n_run > 0 && (!is_own || n_run == CONIC_RESULTS_RUN || work->page[i].index != work->page[i - 1].index + 1)) {
+        status = conic_cells_results_keep(&work->results, work->page[i - 1].index + 1 - n_run, n_run, run);
+        n_run = 0;
+      }
+      if (is_own)
+        fill_result(work, own, slot, &run[n_run++]);
     }
+    if (n_run > 0 && status == CONIC_OK)
+      status = conic_cells_results_keep(&work->results, work->page[n - 1].index + 1 - n_run, n_run, run);
   }
   return status;
 }
@@ -318,20 +328,19 @@ static conic_status create_cell_surface(cleaning *work, conic_surface **surface)
   return status;
 }
 
-static conic_status clean_cell(cleaning *work, const conic_cell *cell) {
+static conic_status clean_cell(cleaning *work, const conic_cell *cell, const conic_cell_part *part) {
+  const conic_own_range wanted = {cell->count, part->first, part->end};
   conic_surface *surface;
   conic_own_points own;
-  double begin = (double)cell->start / (double)work->n_finite;
-  double end = (double)(cell->start + cell->count) / (double)work->n_finite;
   conic_status status = gather_cell(work, cell);
   if (status == CONIC_OK)
     status = create_cell_surface(work, &surface);
   if (status != CONIC_OK)
     return status;
-  status = conic_own_points_project(surface, (size_t)cell->count, begin, end, &own);
+  status = conic_own_points_project(surface, &wanted, part->from, part->to, &own);
   if (status == CONIC_OK) {
     status = keep_cell(work, cell, surface, &own);
-    work->report.n_evaluations += own.n_evaluations;
+    work->sums.n_evaluations += own.n_evaluations;
     conic_own_points_release(work->context, &own);
   }
   conic_surface_destroy(surface);
@@ -351,16 +360,18 @@ static uint64_t most_in(const cleaning *work) {
 /* Once it is known how many there are: room for one cell, and where the others are put. */
 static conic_status reserve_page(cleaning *work) {
   const conic_clean_options *o = work->options;
-  uint64_t most = most_in(work), kept_bytes = work->n_points * (sizeof(record) + sizeof(result));
+  const conic_cells_share *share = &work->share;
+  uint64_t most = most_in(work), kept_bytes = share->n_kept * sizeof(record) +
+                                              conic_cells_results_bytes(work->team, work->n_points, share->n_most);
   conic_status status = check_room(work, most);
   if (status != CONIC_OK)
     return status;
   const char *path = o->memory_bytes && 2 * most * bytes_a_point(work) + OTHER_BYTES + kept_bytes > o->memory_bytes
                          ? o->scratch
                          : NULL;
-  status = conic_store_begin(work->context, path, work->n_finite, sizeof(record), &work->records);
+  status = conic_store_begin(work->context, path, share->n_kept, sizeof(record), &work->records);
   if (status == CONIC_OK)
-    status = conic_store_begin(work->context, path, work->n_points, sizeof(result), &work->results);
+    status = conic_cells_results_begin(work->context, work->team, path, work->n_points, share->n_most, &work->results);
   work->page = conic_memory_allocate(work->context, BATCH, sizeof *work->page);
   work->keys = conic_memory_allocate(work->context, BATCH, sizeof *work->keys);
   if (status == CONIC_OK && !(work->page && work->keys))
@@ -370,15 +381,36 @@ static conic_status reserve_page(cleaning *work) {
 
 static void sum_up(cleaning *work) {
   conic_surface_report *report = &work->report;
+  const cells_sums *sums = &work->sums;
+  double h = work->options->surface.h;
+  for (int i = 0; i < CONIC_N_SURFACE_OUTCOMES; i++)
+    report->outcomes[i] = (size_t)sums->outcomes[i];
+  report->n_merged = sums->n_merged;
+  report->n_evaluations = (size_t)sums->n_evaluations;
   report->n_in = (size_t)work->n_points;
   report->n_out = report->outcomes[CONIC_SURFACE_DONE];
   report->outcomes[CONIC_SURFACE_NOT_FINITE] += (size_t)(work->n_points - work->n_finite);
-  report->h = work->options->surface.h;
+  report->h = h;
   if (report->n_out) {
-    report->moved_rms = sqrt(work->moved2_sum / (double)report->n_out);
-    report->moved_max = sqrt(work->moved2_most);
-    report->mean_neighbours = work->neighbours / (double)report->n_out;
+    double moved2 = ((double)sums->moved2[0] + 0x1p-30 * (double)sums->moved2[1]) * 0x1p-24 * (h * h);
+    report->moved_rms = sqrt(moved2 / (double)report->n_out);
+    report->moved_max = sqrt(sums->moved2_most);
+    report->mean_neighbours = (double)sums->neighbours / (double)report->n_out;
   }
+}
+
+/* Whatever this process keeps: its cells, one after the other. */
+static conic_status clean_own(cleaning *work) {
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < work->cells.n && status == CONIC_OK; i++) {
+    const conic_cell_part *part = &work->share.parts[i];
+    double start = conic_seconds_now();
+    if (part->first == part->end)
+      continue;
+    status = clean_cell(work, &work->cells.cells[i], part);
+    conic_team_note(work->team, "cell", start, part->end - part->first);
+  }
+  return status;
 }
 
 static conic_status clean_all(cleaning *work, conic_points_source *source, void *source_cookie) {
@@ -391,29 +423,55 @@ static conic_status clean_all(cleaning *work, conic_points_source *source, void 
   if (status != CONIC_OK)
     return status;
   conic_cells_sort(&work->cells);
-  status = reserve_page(work);
+  status = conic_cells_share_out(&work->cells, work->team, &work->share);
+  if (status == CONIC_OK)
+    status = reserve_page(work);
   if (status == CONIC_OK)
     status = source(source_cookie, place_batch, work);
   if (status == CONIC_OK && work->n_placed != work->n_points)
     status = conic_fail(work->context, CONIC_ERROR_INPUT, "%s: the points changed while they were read", name_of(work));
-  for (size_t i = 0; i < work->cells.n && status == CONIC_OK; i++)
-    status = clean_cell(work, &work->cells.cells[i]);
-  if (status == CONIC_OK)
-    sum_up(work);
-  return status;
+  return status == CONIC_OK ? clean_own(work) : status;
+}
+
+/* --- a team's results --- */
+
+static void add_sums(cells_sums *sums, const cells_sums *other) {
+  for (int i = 0; i < CONIC_N_SURFACE_OUTCOMES; i++)
+    sums->outcomes[i] += other->outcomes[i];
+  sums->n_merged += other->n_merged;
+  sums->n_evaluations += other->n_evaluations;
+  sums->neighbours += other->neighbours;
+  sums->moved2[0] += other->moved2[0];
+  sums->moved2[1] += other->moved2[1];
+  sums->moved2_most = other->moved2_most > sums->moved2_most ? other->moved2_most : sums->moved2_most;
+}
+
+/* Collective, whatever came of the work here: the first process then has all results, and every one the sums. */
+static conic_status bring_together(cleaning *work, conic_status status) {
+  const conic_team *team = work->team;
+  size_t sizes[CONIC_MOST_IN_TEAM];
+  status = conic_team_agree(team, status);
+  if (status != CONIC_OK || !team)
+    return status;
+  cells_sums *all = team->collect(team->data, &work->sums, sizeof work->sums, sizes);
+  memset(&work->sums, 0, sizeof work->sums);
+  for (int i = 0; i < team->count; i++)
+    add_sums(&work->sums, &all[i]);
+  team->release(team->data, all);
+  return conic_team_agree(team, conic_cells_results_bring(&work->results));
 }
 
 /* Hands over what is DONE, in the old order. */
 static conic_status deliver(cleaning *work, const conic_points_sink *sink) {
   conic_splats batch;
   conic_status status = conic_splats_allocate(work->context, PAGE, work->fields, &batch);
-  result *page = conic_memory_allocate(work->context, PAGE, sizeof *page);
+  conic_cell_result *page = conic_memory_allocate(work->context, PAGE, sizeof *page);
   memcpy(batch.origin, work->origin, sizeof batch.origin);
   if (status == CONIC_OK)
     status = page ? sink->begin(sink->cookie, &work->report, work->fields) : CONIC_ERROR_MEMORY;
   for (uint64_t at = 0; at < work->n_points && status == CONIC_OK; at += PAGE) {
     size_t n = work->n_points - at < PAGE ? (size_t)(work->n_points - at) : PAGE, k = 0;
-    status = conic_store_read(&work->results, at, n, page);
+    status = conic_store_read(&work->results.store, at, n, page);
     for (size_t i = 0; i < n && status == CONIC_OK; i++)
       if (page[i].outcome == CONIC_SURFACE_DONE)
         put_sample(&page[i].point, &batch, k++);
@@ -443,16 +501,20 @@ conic_status conic_surface_clean_cells(conic_context *context, const conic_clean
       options.surface.cluster != 0.0 || options.surface.is_sharp)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "surface: cells need an h for all points, and have neither clusters nor creases");
-  conic_status status = clean_all(&work, source, source_cookie);
+  work.team = conic_context_join(context, NULL);
+  conic_status status = bring_together(&work, clean_all(&work, source, source_cookie));
   if (status == CONIC_OK)
+    sum_up(&work);
+  if (status == CONIC_OK && is_first(&work))
     status = deliver(&work, sink);
   if (status == CONIC_OK && report)
     *report = work.report;
   conic_splats_release(context, &work.subset);
   conic_memory_release(context, work.page);
   conic_memory_release(context, work.keys);
-  conic_store_end(&work.results);
+  conic_cells_results_end(&work.results);
   conic_store_end(&work.records);
+  conic_cells_share_end(context, &work.share);
   conic_cells_end(&work.cells);
   return status;
 }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "surface/creases.h"
 #include "surface/least_spread.h"
@@ -109,10 +109,31 @@ conic_status conic_creases_find(conic_surface *surface) {
   surface->creases.spacing = conic_memory_allocate(context, n, sizeof *surface->creases.spacing);
   conic_status status =
       search.planes && surface->creases.side && surface->creases.spacing ? CONIC_OK : CONIC_ERROR_MEMORY;
+  const conic_team_loop windows = {"creases",
+                                   0.0,
+                                   0.5,
+                                   n_chunks,
+                                   CHUNKS_A_REPORT,
+                                   fit_windows,
+                                   &search,
+                                   .n_an_item = CHUNK,
+                                   .n_values = n,
+                                   .columns = {{search.planes, sizeof *search.planes},
+                                               {surface->creases.spacing, sizeof *surface->creases.spacing}}};
+  const conic_team_loop sides = {"creases",
+                                 0.5,
+                                 1.0,
+                                 n_chunks,
+                                 CHUNKS_A_REPORT,
+                                 choose_sides,
+                                 &search,
+                                 .n_an_item = CHUNK,
+                                 .n_values = n,
+                                 .columns = {{surface->creases.side, sizeof *surface->creases.side}}};
   if (status == CONIC_OK)
-    status = conic_parallel_runs(context, "creases", 0.0, 0.5, n_chunks, CHUNKS_A_REPORT, fit_windows, &search);
+    status = conic_team_runs(context, &windows);
   if (status == CONIC_OK)
-    status = conic_parallel_runs(context, "creases", 0.5, 1.0, n_chunks, CHUNKS_A_REPORT, choose_sides, &search);
+    status = conic_team_runs(context, &sides);
   conic_memory_release(context, search.planes);
   return status;
 }

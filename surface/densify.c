@@ -41,7 +41,7 @@ typedef struct densifying {
   conic_darts darts;
   conic_landing_places landed; /* of the darts */
   uint8_t *is_moved;           /* by triangle: a dart of it came down elsewhere, or nowhere */
-  size_t n_flat;
+  size_t n_flat, n_evaluations;
 } densifying;
 
 /* --- a pass --- */
@@ -176,8 +176,7 @@ static void report_densified(const densifying *work, double left, conic_surface_
   report->n_flat = work->n_flat;
   report->h = work->surface->median_h;
   report->error = left;
-  for (int i = 0; i < conic_context_threads(work->surface->context); i++)
-    report->n_evaluations += work->workspaces[i].n_evaluations;
+  report->n_evaluations = work->n_evaluations;
 }
 
 static int are_densify_options(const conic_surface *surface, const conic_densify_options *o) {
@@ -205,6 +204,8 @@ conic_status conic_surface_densify(conic_surface *surface, const conic_densify_o
     status = run_passes(&work, &left);
   if (status == CONIC_OK)
     status = conic_workspaces_check(context, work.workspaces);
+  if (status == CONIC_OK)
+    status = conic_workspaces_count(context, work.workspaces, &work.n_evaluations);
   if (status == CONIC_OK && report)
     report_densified(&work, left, report);
   conic_densify_triangles_release(context, &work.triangles);

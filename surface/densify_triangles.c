@@ -4,11 +4,12 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "surface/fan.h"
 
-enum { CHUNK = 16 };
+/* In leaves, and in points. */
+enum { CHUNK = 16, FANS = 64, CHUNKS_A_REPORT = 256 };
 
 /* Circles up to this many h are no holes, where it is not said what is: the outlines of splats close those. */
 static const double HOLE = 1.25;
@@ -57,13 +58,18 @@ static void find_normals(void *data, size_t i_item, int i_thread) {
   }
 }
 
+static size_t first_slot_of_leaves(const void *data, size_t i_item) {
+  const conic_neighbours *tree = &((const triangle_search *)data)->found->surface->tree;
+  return conic_neighbours_leaf_begin(tree, i_item * CHUNK < tree->n_leaves ? i_item * CHUNK : tree->n_leaves);
+}
+
 /* --- triangles of neighbours --- */
 
 static void find_fans(void *data, size_t i_item, int i_thread) {
   triangle_search *search = data;
   const conic_surface *surface = search->found->surface;
   (void)i_thread;
-  for (size_t slot = i_item * 64; slot < (i_item + 1) * 64 && slot < surface->tree.n_slots; slot++) {
+  for (size_t slot = i_item * FANS; slot < (i_item + 1) * FANS && slot < surface->tree.n_slots; slot++) {
     double most = search->options->hole > 0.0 ? search->options->hole : HOLE * (double)surface->h[slot], normal[3];
     for (int axis = 0; axis < 3; axis++)
       normal[axis] = (double)search->found->normals[slot][axis];
@@ -114,8 +120,20 @@ static conic_status triangulate(triangle_search *search) {
   search->fans = conic_memory_allocate(context, surface->tree.n_slots, sizeof *search->fans);
   if (!search->fans)
     return CONIC_ERROR_MEMORY;
-  conic_parallel_for(context, (surface->tree.n_slots + 63) / 64, find_fans, search);
-  conic_status status = list_fans(search);
+  size_t n = surface->tree.n_slots;
+  const conic_team_loop loop = {"densify",
+                                0.0,
+                                0.0,
+                                (n + FANS - 1) / FANS,
+                                CHUNKS_A_REPORT,
+                                find_fans,
+                                search,
+                                .n_an_item = FANS,
+                                .n_values = n,
+                                .columns = {{search->fans, sizeof *search->fans}}};
+  conic_status status = conic_team_runs(context, &loop);
+  if (status == CONIC_OK)
+    status = list_fans(search);
   conic_memory_release(context, search->fans);
   return status;
 }
@@ -163,8 +181,18 @@ conic_status conic_densify_triangles_find(const conic_surface *surface, const co
   triangles->normals = conic_memory_allocate(context, surface->tree.n_slots, sizeof *triangles->normals);
   if (!triangles->normals)
     return CONIC_ERROR_MEMORY;
-  conic_parallel_for(context, (surface->tree.n_leaves + CHUNK - 1) / CHUNK, find_normals, &search);
-  conic_status status = options->n_triangles ? take_triangles(&search) : triangulate(&search);
+  const conic_team_loop loop = {"densify",
+                                0.0,
+                                0.0,
+                                (surface->tree.n_leaves + CHUNK - 1) / CHUNK,
+                                CHUNKS_A_REPORT,
+                                find_normals,
+                                &search,
+                                .first_of = first_slot_of_leaves,
+                                .columns = {{triangles->normals, sizeof *triangles->normals}}};
+  conic_status status = conic_team_runs(context, &loop);
+  if (status == CONIC_OK)
+    status = options->n_triangles ? take_triangles(&search) : triangulate(&search);
   return status == CONIC_OK ? measure_triangles(triangles) : status;
 }
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/team_runs.h"
 #include "surface/own_points.h"
 
 enum { CHUNK = 256, CHUNKS_A_REPORT = 64 };
@@ -40,12 +40,22 @@ static void measure_chunk(void *data, size_t i_item, int i_thread) {
 
 static conic_status measure_slots(measuring *work) {
   conic_context *context = work->from->context;
+  size_t n = work->from->tree.n_slots;
+  const conic_team_loop loop = {"measure",
+                                0.0,
+                                1.0,
+                                (n + CHUNK - 1) / CHUNK,
+                                CHUNKS_A_REPORT,
+                                measure_chunk,
+                                work,
+                                .n_an_item = CHUNK,
+                                .n_values = n,
+                                .columns = {{work->distances2, sizeof *work->distances2}}};
   conic_status status = conic_workspaces_create(context, &work->workspaces);
   for (int i = 0; status == CONIC_OK && i < conic_context_threads(context); i++)
     work->workspaces[i].is_trusting = 1;
   if (status == CONIC_OK)
-    status = conic_parallel_runs(context, "measure", 0.0, 1.0, (work->from->tree.n_slots + CHUNK - 1) / CHUNK,
-                                 CHUNKS_A_REPORT, measure_chunk, work);
+    status = conic_team_runs(context, &loop);
   if (status == CONIC_OK)
     status = conic_workspaces_check(context, work->workspaces);
   conic_workspaces_release(context, work->workspaces);
@@ -72,7 +82,7 @@ conic_status conic_surface_deviation(conic_surface *from, conic_surface *to, con
   conic_own_points own;
   measuring work = {from, to, &own, NULL, NULL};
   memset(distance, 0, sizeof *distance);
-  conic_status status = conic_own_points_project(from, SIZE_MAX, 0.0, 1.0, &own);
+  conic_status status = conic_own_points_project(from, NULL, 0.0, 1.0, &own);
   if (status != CONIC_OK)
     return status;
   work.distances2 = conic_memory_allocate(context, from->tree.n_slots, sizeof *work.distances2);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/team_runs.h"
 #include "surface/mls_surface.h"
 
 enum { MAX_DEPTH = 34 };
@@ -30,6 +31,17 @@ conic_status conic_workspaces_check(const conic_context *context, const conic_wo
     if (workspaces[i].is_out_of_memory)
       return CONIC_ERROR_MEMORY;
   return CONIC_OK;
+}
+
+conic_status conic_workspaces_count(conic_context *context, conic_workspace *workspaces, size_t *n_evaluations) {
+  size_t n = 0;
+  for (int i = 0; i < conic_context_threads(context); i++) {
+    n += workspaces[i].n_evaluations;
+    workspaces[i].n_evaluations = 0;
+  }
+  conic_status status = conic_team_total(context, &n);
+  *n_evaluations += n;
+  return status;
 }
 
 /* Room for `n` neighbours and what pads them: one block, the arrays side by side. */

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 
 enum { CHUNK = 64, CHUNKS_A_REPORT = 64, MOST_SHARING = 24 };
@@ -162,6 +162,15 @@ conic_status conic_land_darts(const conic_surface *surface, const conic_densify_
   if (darts->n > landed->room &&
       conic_memory_reserve(context, &landed->list, 0, darts->n, &landed->room, sizeof *landed->list) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
-  return conic_parallel_runs(context, "densify", from, to, (darts->n + CHUNK - 1) / CHUNK, CHUNKS_A_REPORT, land_chunk,
-                             &work);
+  const conic_team_loop loop = {"densify",
+                                from,
+                                to,
+                                (darts->n + CHUNK - 1) / CHUNK,
+                                CHUNKS_A_REPORT,
+                                land_chunk,
+                                &work,
+                                .n_an_item = CHUNK,
+                                .n_values = darts->n,
+                                .columns = {{landed->list, sizeof *landed->list}}};
+  return conic_team_runs(context, &loop);
 }

@@ -7,7 +7,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/rank.h"
-#include "core/base/threads.h"
+#include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"
 #include "surface/clusters.h"
@@ -166,13 +166,22 @@ static void find_node_reach(conic_surface *surface) {
 
 static conic_status find_scales(conic_surface *surface) {
   size_t n = surface->tree.n_slots;
+  const conic_team_loop loop = {"scales",
+                                0.0,
+                                1.0,
+                                (n + CHUNK - 1) / CHUNK,
+                                CHUNKS_A_REPORT,
+                                find_local_h,
+                                surface,
+                                .n_an_item = CHUNK,
+                                .n_values = n,
+                                .columns = {{surface->h, sizeof *surface->h}}};
   conic_status status = CONIC_OK;
   if (surface->options.h > 0.0)
     for (size_t slot = 0; slot < n; slot++)
       surface->h[slot] = (float)surface->options.h;
   else
-    status = conic_parallel_runs(surface->context, "scales", 0.0, 1.0, (n + CHUNK - 1) / CHUNK, CHUNKS_A_REPORT,
-                                 find_local_h, surface);
+    status = conic_team_runs(surface->context, &loop);
   if (status == CONIC_OK)
     find_median_h(surface);
   find_node_reach(surface);

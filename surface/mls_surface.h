@@ -80,6 +80,9 @@ conic_status conic_workspaces_create(conic_context *context, conic_workspace **w
 void conic_workspaces_release(conic_context *context, conic_workspace *workspaces);
 /* MEMORY where any of them ran out. */
 conic_status conic_workspaces_check(const conic_context *context, const conic_workspace *workspaces);
+/* Adds what the workspaces have counted of evaluations, all processes of a team together, and begins again from 0.
+ * Errors: CANCELLED. */
+conic_status conic_workspaces_count(conic_context *context, conic_workspace *workspaces, size_t *n_evaluations);
 
 /* Finds the samples whose neglect distance, plus the margin, reaches into the box (least x, y, z, greatest x, y, z);
  * `candidates` is one of the workspace's. */

@@ -10,7 +10,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
-#include "core/base/threads.h"
+#include "core/base/team_runs.h"
 #include "core/splats/splats_gather.h"
 #include "surface/mls_surface.h"
 
@@ -36,6 +36,7 @@ typedef struct thinning {
   uint8_t *is_stale;
   const uint32_t *batch;
   double greatest_error;
+  size_t n_evaluations;
 } thinning;
 
 /* How far the slot lies from the surface of the others; infinite where that has none there. */
@@ -112,8 +113,19 @@ static int allocate_thinning(thinning *work) {
 static conic_status remove_slots(thinning *work, size_t n_wanted, double max_error, size_t *n_left) {
   conic_context *context = work->surface->context;
   size_t n = work->surface->tree.n_slots;
-  conic_status status =
-      conic_parallel_runs(context, "measure", 0.0, 1.0, (n + BATCH - 1) / BATCH, BATCHES_A_REPORT, measure_chunk, work);
+  const conic_team_loop loop = {"measure",
+                                0.0,
+                                1.0,
+                                (n + BATCH - 1) / BATCH,
+                                BATCHES_A_REPORT,
+                                measure_chunk,
+                                work,
+                                .n_an_item = BATCH,
+                                .n_values = n,
+                                .columns = {{work->heap.keys, sizeof *work->heap.keys}}};
+  conic_status status = conic_team_runs(context, &loop);
+  if (status == CONIC_OK)
+    status = conic_workspaces_count(context, work->workspaces, &work->n_evaluations);
   if (status != CONIC_OK)
     return status;
   for (size_t slot = 0; slot < n; slot++)
@@ -162,7 +174,7 @@ static conic_status copy_left(const conic_surface *surface, size_t n_left, conic
 static conic_status thin_stage(conic_context *context, const conic_surface_options *options,
                                const conic_thin_options *wanted, const conic_splats *points, conic_splats *left,
                                conic_surface_report *report) {
-  thinning work = {NULL, NULL, {0}, NULL, NULL, report->error};
+  thinning work = {.greatest_error = report->error};
   size_t n_left = 0;
   conic_status status = conic_surface_create(context, points, options, &work.surface);
   if (status != CONIC_OK)
@@ -179,6 +191,7 @@ static conic_status thin_stage(conic_context *context, const conic_surface_optio
     status = copy_left(work.surface, n_left, left);
   for (int i = 0; work.workspaces && i < conic_context_threads(context); i++)
     report->n_evaluations += work.workspaces[i].n_evaluations;
+  report->n_evaluations += work.n_evaluations;
   report->error = work.greatest_error;
   conic_memory_release(context, work.heap.slots);
   conic_memory_release(context, work.heap.keys);

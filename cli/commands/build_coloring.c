@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "cli/commands/points_input.h"
 #include "core/base/memory.h"
 #include "core/coloring/coloring_stream.h"
 
@@ -47,23 +46,62 @@ static conic_status see_batch(void *cookie, const conic_splats *batch) {
   return CONIC_OK;
 }
 
-conic_status cli_coloring_find_range(cli_session *session, cli_coloring *coloring, const char *const *inputs,
-                                     int n_inputs, const conic_read_options *reading) {
-  conic_coloring_options *options = &coloring->options;
+static conic_status sample_pieces(const cli_points_share *share, const conic_read_options *reading,
+                                  range_search *search) {
   conic_status status = CONIC_OK;
+  for (size_t i = 0; i < share->n && status == CONIC_OK; i++)
+    status = cli_points_share_stream(share, &share->pieces[i], reading, see_batch, search);
+  return status;
+}
+
+/* Those of all, which is every so many-th of all values: the second time it is known which these are. */
+static conic_status sample_together(const cli_points_share *share, const conic_read_options *reading,
+                                    range_search *search) {
+  conic_value_sample *sample = search->sample;
+  const conic_team *team = share->team;
+  uint64_t n_seen[CONIC_MOST_IN_TEAM], n_before = 0, n_all = 0;
+  size_t sizes[CONIC_MOST_IN_TEAM];
+  conic_team_collect(team, &sample->n_seen, sizeof sample->n_seen, n_seen);
+  for (int i = 0; i < team->count; i++) {
+    n_before += i < team->index ? n_seen[i] : 0;
+    n_all += n_seen[i];
+  }
+  uint64_t stride = conic_value_stride(n_all, CONIC_MOST_VALUES);
+  conic_status status = CONIC_OK;
+  if (stride > 1) {
+    sample->n_seen = n_before;
+    sample->stride = stride;
+    sample->n = 0;
+    status = conic_team_agree(team, sample_pieces(share, reading, search));
+  }
+  if (status != CONIC_OK)
+    return status;
+  double *all = team->collect(team->data, sample->values, sample->n * sizeof *sample->values, sizes);
+  sample->n = 0;
+  for (int i = 0; i < team->count; i++)
+    sample->n += sizes[i] / sizeof *all;
+  memcpy(sample->values, all, sample->n * sizeof *all);
+  team->release(team->data, all);
+  return CONIC_OK;
+}
+
+conic_status cli_coloring_find_range(cli_coloring *coloring, const cli_points_share *share,
+                                     const conic_read_options *reading) {
+  conic_coloring_options *options = &coloring->options;
   if (!options->by)
     return CONIC_OK;
-  int are_surveys = cli_points_are_surveys(inputs, n_inputs);
-  use_up(coloring, (const double[3]){0.0, are_surveys ? 0.0 : 1.0, are_surveys ? 1.0 : 0.0});
+  use_up(coloring, (const double[3]){0.0, share->are_surveys ? 0.0 : 1.0, share->are_surveys ? 1.0 : 0.0});
   if (!conic_coloring_needs_range(options))
     return CONIC_OK;
-  range_search search = {options, conic_memory_allocate_zeroed(session->context, 1, sizeof *search.sample)};
-  if (!search.sample)
-    return CONIC_ERROR_MEMORY;
-  for (int i = 0; i < n_inputs && status == CONIC_OK; i++)
-    status = cli_points_stream(session->context, inputs[i], reading, see_batch, &search);
-  conic_value_sample_limits(search.sample, &options->minimum, &options->maximum);
+  conic_context *context = share->session->context;
+  range_search search = {options, conic_memory_allocate_zeroed(context, 1, sizeof *search.sample)};
+  conic_status status = search.sample ? sample_pieces(share, reading, &search) : CONIC_ERROR_MEMORY;
+  status = conic_team_agree(share->team, status);
+  if (status == CONIC_OK && share->team)
+    status = sample_together(share, reading, &search);
+  if (status == CONIC_OK)
+    conic_value_sample_limits(search.sample, &options->minimum, &options->maximum);
   options->has_range = options->minimum < options->maximum;
-  conic_memory_release(session->context, search.sample);
+  conic_memory_release(context, search.sample);
   return status;
 }

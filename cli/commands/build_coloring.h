@@ -3,6 +3,7 @@
 #define CONIC_BUILD_COLORING_H
 
 #include "cli/color_options.h"
+#include "cli/commands/points_share.h"
 #include "cli/scene/scene_options.h"
 #include "conic/coloring.h"
 
@@ -32,8 +33,9 @@ void cli_coloring_read(const cli_coloring *coloring, conic_read_options *reading
 conic_status cli_coloring_apply(cli_session *session, cli_coloring *coloring, const double up[3], conic_splats *splats,
                                 conic_triangles *triangles);
 
-/* Of inputs that are coloured a batch at a time: reads them once to find the range. Errors: as conic_model_stream. */
-conic_status cli_coloring_find_range(cli_session *session, cli_coloring *coloring, const char *const *inputs,
-                                     int n_inputs, const conic_read_options *reading);
+/* Of inputs that are coloured a batch at a time: reads them once to find the range, or, several processes, twice.
+ * Collective. Errors: as conic_model_stream. */
+conic_status cli_coloring_find_range(cli_coloring *coloring, const cli_points_share *share,
+                                     const conic_read_options *reading);
 
 #endif

@@ -3,16 +3,31 @@
 #include <string.h>
 
 #include "cli/outputs.h"
+#include "cli/session_team.h"
 #include "core/base/message.h"
+#include "core/base/team_runs.h"
 #include "source/reach.h"
 
 int cli_build_check(const cli_build *build, const char *const *inputs, int n_inputs, const char *ending) {
   int exit_code = cli_check_ending(build->output, ending);
+  for (int i = 0; i < n_inputs && exit_code == CLI_DONE && cli_team_is_shared(build->session); i++)
+    if (strcmp(inputs[i], "-") == 0)
+      exit_code = cli_usage("%s: several processes cannot share standard input; give files", build->session->command);
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(build->session, &build->output, 1);
   return exit_code == CLI_DONE
              ? cli_check_inputs_stay(build->session, inputs, n_inputs, &build->output, !build->is_in_place)
              : exit_code;
+}
+
+void cli_build_share(cli_build *build) {
+  conic_context_join(build->session->context, cli_team_of_library(build->session, &build->team));
+}
+
+conic_status cli_build_part(cli_build *build, conic_status status) {
+  status = conic_context_part(build->session->context, status);
+  cli_team_exit(build->session, status); /* what is told of a failure is told now */
+  return status;
 }
 
 int cli_build_take_paths(cli_build *build, const char *input, const char *ending) {
@@ -73,7 +88,22 @@ static int write_report(cli_build *build, const cli_build_steps *steps) {
   if (!json)
     return exit_code;
   steps->report(json, build);
+  cli_team_shares_report(json, "points", &build->shares);
   return cli_json_finish(file);
+}
+
+/* What all came to. The first process alone then has something to say. */
+static int agree_on_build(cli_build *build, int exit_code) {
+  if (!build->team.count)
+    return exit_code;
+  exit_code = cli_team_agree(build->session, exit_code);
+  if (exit_code == CLI_DONE) {
+    uint64_t n_stages;
+    double busy_seconds;
+    cli_team_count_stages(&n_stages, &busy_seconds);
+    cli_team_shares_gather(build->session, n_stages, busy_seconds, &build->shares);
+  }
+  return exit_code;
 }
 
 int cli_build_run(void *job, const cli_build_steps *steps, int parsed) {
@@ -84,15 +114,16 @@ int cli_build_run(void *job, const cli_build_steps *steps, int parsed) {
   int exit_code = cli_session_open(build->session);
   if (exit_code != CLI_DONE)
     return exit_code;
-  exit_code = steps->make(job);
+  exit_code = agree_on_build(build, steps->make(job));
   build->total_seconds = cli_seconds() - start;
-  if (exit_code == CLI_DONE) {
+  if (exit_code == CLI_DONE && cli_team_is_first(build->session)) {
     steps->tell(job);
     cli_tell_run(build->session, build->stages, count_stages(build), build->total_seconds);
     exit_code = write_report(build, steps);
   }
   if (steps->release)
     steps->release(job);
+  cli_team_shares_release(&build->shares);
   return exit_code;
 }
 

@@ -4,7 +4,9 @@
 
 #include "cli/arguments.h"
 #include "cli/json_write.h"
+#include "cli/team_shares.h"
 #include "cli/tell.h"
+#include "core/base/team.h"
 
 /* The first member of a command's job. */
 typedef struct cli_build {
@@ -15,6 +17,8 @@ typedef struct cli_build {
   int is_in_place;     /* the output is the input */
   cli_stage stages[6]; /* in the order in which they are told; their number is that of the names */
   double total_seconds;
+  conic_team team; /* of the processes that share it, if there are more than one */
+  cli_team_shares shares;
 } cli_build;
 
 /* What a command does; each function gets the job. */
@@ -46,6 +50,12 @@ conic_status cli_build_check_reach(const cli_build *build, const conic_splats *p
 
 /* Warns where the input is a mesh, of which the output will only hold what stands for the vertices. */
 void cli_build_hint_faces(const cli_build *build, const conic_model *model);
+
+/* Of a command that a team shares, between these two whatever the library shares with a context: `make` calls them
+ * where that begins, and when it has ended and nothing is written yet. The second returns what all came to, alone the
+ * status itself; only the first process goes on, and where it returns CONIC_OK to the others nothing is left to do. */
+void cli_build_share(cli_build *build);
+conic_status cli_build_part(cli_build *build, conic_status status);
 
 /* Opens the session, makes the file, says so, and writes --json; nothing where `parsed`, which cli_build_parse
  * returned, is not CLI_DONE. Returns the exit code. */

@@ -2,162 +2,17 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/commands/build_coloring.h"
-#include "cli/commands/build_steps.h"
-#include "cli/commands/points_input.h"
+#include "cli/commands/layer_job.h"
 #include "conic/layers_draw.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/files/disk.h"
-#include "core/splats/repairs_log.h"
-
-typedef struct layer_job {
-  cli_build base; /* its input is the one that is being read */
-  const char *const *inputs;
-  int n_inputs;
-  conic_layers_options options;
-  conic_estimate_options estimate;
-  cli_coloring coloring;
-  int cloud_size;
-  double memory_mib, cutoff;
-  cli_length quantum;
-  int is_quantum_given, is_appending, is_merging, payload;
-  const char *keep;
-  char *continued; /* the values of the files that go on, as --keep has them; null: they have none */
-
-  conic_layers_builder *builder;
-  conic_layers_statistics statistics;
-  int may_read_again, has_begun, is_raw, is_counting;
-  int has_points, has_colors; /* of all inputs up to here */
-  uint64_t n_points;
-} layer_job;
+#include "lod/layers/build/layers_team.h"
 
 static const char *const payload_words[] = {"plain", "full", NULL};
 enum { PLAIN, FULL };
 
-/* Estimating from the whole file takes about so much. */
-static const double estimate_bytes_a_point = 250.0;
-
-/* Of several inputs some may have colours; where the first has, what has none is white, as in pictures. */
-static conic_status append_colored(layer_job *job, const conic_splats *batch) {
-  conic_context *context = job->base.session->context;
-  if (!job->has_points)
-    job->has_colors = batch->color[0] != NULL;
-  job->has_points = 1;
-  conic_status status = cli_build_check_reach(&job->base, batch);
-  if (status != CONIC_OK)
-    return status;
-  if (!batch->color[0] == !job->has_colors)
-    return conic_layers_builder_append(job->builder, batch);
-  if (!job->has_colors)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: has colours, and what comes before it has none: name it first",
-                      job->base.input);
-  float *white = conic_memory_allocate(context, batch->count, sizeof *white);
-  if (!white)
-    return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < batch->count; i++)
-    white[i] = 1.0f;
-  conic_splats colored = *batch;
-  for (int channel = 0; channel < 3; channel++)
-    colored.color[channel] = white;
-  status = conic_layers_builder_append(job->builder, &colored);
-  conic_memory_release(context, white);
-  return status;
-}
-
-/* A batch's arrays are the reader's: colours go with a copy. */
-static conic_status append_layer_batch(layer_job *job, const conic_splats *batch) {
-  conic_context *context = job->base.session->context;
-  conic_splats own;
-  struct conic_point_values *values = batch->values;
-  if (!job->coloring.options.by)
-    return append_colored(job, batch);
-  conic_status status = conic_splats_allocate(context, 0, conic_splats_fields(batch), &own);
-  if (status != CONIC_OK)
-    return status;
-  memcpy(own.origin, batch->origin, sizeof own.origin);
-  status = conic_splats_append(context, &own, batch);
-  if (status == CONIC_OK)
-    status = conic_drawing_color(context, &job->coloring.options, &own, NULL, &job->coloring.done);
-  own.values = values;
-  if (status == CONIC_OK)
-    status = append_colored(job, &own);
-  own.values = NULL;
-  conic_splats_release(context, &own);
-  return status;
-}
-
-/* Points without normals and axes: where the whole file fits into memory, they are estimated from it, as elsewhere; the
- * others get their normals while the cloud is built. */
-static conic_status take_layer_batch(void *cookie, const conic_splats *batch) {
-  layer_job *job = cookie;
-  int is_raw = !batch->tangent_u[0] && !batch->normal[0];
-  job->n_points += batch->count;
-  if (job->is_counting)
-    return CONIC_OK;
-  if (is_raw && !job->has_begun && job->may_read_again) {
-    job->is_raw = 1;
-    return CONIC_ERROR_CANCELLED;
-  }
-  job->has_begun = 1;
-  return append_layer_batch(job, batch);
-}
-
-static conic_status read_whole_file(layer_job *job, const conic_read_options *options) {
-  conic_context *context = job->base.session->context;
-  conic_repairs repairs;
-  conic_model model;
-  conic_status status = cli_points_read(context, job->base.input, options, &model);
-  if (status != CONIC_OK)
-    return status;
-  cli_build_hint_faces(&job->base, &model);
-  status = conic_model_to_splats(context, &job->estimate, &model, &repairs);
-  if (status == CONIC_OK)
-    conic_repairs_log(job->base.session->context, job->base.input, &repairs);
-  if (status == CONIC_OK)
-    status = append_layer_batch(job, &model.points);
-  conic_model_release(context, &model);
-  return status;
-}
-
-static conic_status read_raw(layer_job *job, const conic_read_options *options) {
-  conic_context *context = job->base.session->context;
-  job->n_points = 0;
-  job->is_counting = 1;
-  conic_status status = cli_points_stream(context, job->base.input, options, take_layer_batch, job);
-  job->is_counting = job->may_read_again = 0;
-  if (status != CONIC_OK)
-    return status;
-  if ((double)job->n_points * estimate_bytes_a_point <= (double)job->options.memory_bytes)
-    return read_whole_file(job, options);
-  return cli_points_stream(context, job->base.input, options, take_layer_batch, job);
-}
-
-static conic_status read_inputs(layer_job *job) {
-  conic_status status = CONIC_OK;
-  conic_read_options options;
-  conic_read_options_init(&options);
-  options.cutoff = job->options.cutoff;
-  cli_coloring_read(&job->coloring, &options);
-  status = cli_coloring_find_range(job->base.session, &job->coloring, job->inputs, job->n_inputs, &options);
-  options.columns = job->base.columns;
-  options.where = job->base.where;
-  options.keep = job->keep;
-  for (int i = 0; i < job->n_inputs && status == CONIC_OK; i++) {
-    conic_disk_entry found;
-    job->base.input = job->inputs[i];
-    job->has_begun = job->is_raw = 0;
-    job->may_read_again =
-        strcmp(job->base.input, "-") != 0 && conic_disk_look(job->base.input, &found) && found.is_file;
-    status = cli_points_stream(job->base.session->context, job->base.input, &options, take_layer_batch, job);
-    if (job->is_raw)
-      status = read_raw(job, &options);
-  }
-  return status;
-}
-
 static void report_layers(cli_json *json, const void *cookie) {
-  const layer_job *job = cookie;
+  const cli_layer_job *job = cookie;
   const conic_layers_statistics *s = &job->statistics;
   const conic_repairs repairs = {.nan = (size_t)s->n_nan, .zero = (size_t)s->n_zero};
   cli_json_count(json, "points_in", s->n_in);
@@ -172,10 +27,11 @@ static void report_layers(cli_json *json, const void *cookie) {
   cli_build_report_seconds(json, &job->base, "points_per_s", (double)s->n_in / job->base.total_seconds);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
   cli_json_skipped(json, &repairs);
+  cli_team_shares_report(json, "points", &job->shares);
 }
 
 static void tell_layers(const void *cookie) {
-  const layer_job *job = cookie;
+  const cli_layer_job *job = cookie;
   const conic_layers_statistics *s = &job->statistics;
   conic_log(job->base.session->context, CONIC_LOG_INFO,
             "%s: %llu points in; %llu samples in %llu clouds and %d levels out, %.1f MiB; a sample every %.4g, in "
@@ -190,139 +46,79 @@ static void tell_layers(const void *cookie) {
               (unsigned long long)s->n_zero);
 }
 
-/* A batch of a .lpc that goes on: it is as it was, and its colours too. */
-static conic_status take_old_samples(void *cookie, const conic_splats *batch) {
-  return append_colored(cookie, batch);
-}
-
-static conic_status open_layers_input(layer_job *job, const char *path, conic_layers **layers) {
-  conic_layers_access access;
-  conic_layers_access_init(&access);
-  access.memory_bytes = job->options.memory_bytes / 2;
-  job->base.input = path;
-  return conic_layers_open(job->base.session->context, path, &access, layers);
-}
-
-/* The values of a file that goes on become those of all. */
-static conic_status take_value_names(layer_job *job, const conic_layers *layers) {
-  conic_context *context = job->base.session->context;
-  conic_model_field field;
-  size_t n = 0, room = 0;
-  for (size_t i = 0; conic_layers_value(layers, i, &field); i++)
-    room += strlen(field.name) + 2;
-  if (room == 0)
-    return CONIC_OK;
-  job->continued = conic_memory_allocate(context, room, 1);
-  if (!job->continued)
-    return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; conic_layers_value(layers, i, &field); i++)
-    n += (size_t)snprintf(job->continued + n, room - n, "%s%s", i ? "," : "", field.name);
-  job->keep = job->continued;
-  return CONIC_OK;
-}
-
-/* Whether the values of a file are those of the first one, in any order. */
-static conic_status check_value_names(const layer_job *job, const conic_layers *layers, const conic_layers *first) {
-  const conic_layers *pairs[2][2] = {{first, layers}, {layers, first}};
-  for (int k = 0; k < 2; k++) {
-    conic_model_field field, other;
-    for (size_t i = 0; conic_layers_value(pairs[k][0], i, &field); i++) {
-      int is_there = 0;
-      for (size_t j = 0; !is_there && conic_layers_value(pairs[k][1], j, &other); j++)
-        is_there = strcmp(field.name, other.name) == 0 && strcmp(field.type, other.type) == 0;
-      if (!is_there)
-        return conic_fail(job->base.session->context, CONIC_ERROR_INPUT,
-                          "%s: its samples have other values by name than those of %s: '%s' (%s) is in one alone",
-                          job->base.input, job->inputs[0], field.name, field.type);
-    }
-  }
-  return CONIC_OK;
-}
-
-/* The .lpc files that go on: the output, or all inputs. The grid is the first one's. */
-static conic_status plan_to_continue(layer_job *job, const char *const *paths, int n_paths) {
-  conic_layers_options first = job->options;
-  conic_layers *opened = NULL; /* the first */
-  conic_status status = CONIC_OK;
-  for (int i = 0; i < n_paths && status == CONIC_OK; i++) {
-    conic_layers *layers;
-    status = open_layers_input(job, paths[i], &layers);
-    if (status != CONIC_OK)
-      break;
-    conic_layers_continue(layers, &job->options);
-    if (i == 0)
-      first = job->options;
-    else if (memcmp(first.up, job->options.up, sizeof first.up) != 0) /* what not all say is not known */
-      memset(first.up, 0, sizeof first.up);
-    first.is_unoriented = job->options.is_unoriented;
-    first.keeps_all = job->options.keeps_all;
-    status = i == 0 ? take_value_names(job, layers) : check_value_names(job, layers, opened);
-    if (i == 0)
-      opened = layers;
-    else
-      conic_layers_close(layers);
-  }
-  conic_layers_close(opened);
-  if (status == CONIC_OK && n_paths)
-    job->options = first;
-  return status;
-}
-
-static conic_status read_layers(layer_job *job, const char *const *paths, int n_paths) {
-  conic_status status = CONIC_OK;
-  conic_layers_region all;
-  conic_layers_region_init(&all);
-  all.keep = job->continued;
-  for (int i = 0; i < n_paths && status == CONIC_OK; i++) {
-    conic_layers *layers;
-    status = open_layers_input(job, paths[i], &layers);
-    if (status != CONIC_OK)
-      break;
-    status = conic_layers_read_samples(layers, job->options.cutoff, &all, take_old_samples, job);
-    conic_layers_close(layers);
-  }
-  return status;
-}
-
 /* What points up: as is said, or as in the files that go on, or as surveys have it; else nobody knows. */
-static void settle_up(layer_job *job, int n_layers) {
+static void settle_up(cli_layer_job *job) {
   static const double survey_up[3] = {0.0, 0.0, 1.0};
   if (job->coloring.is_up_given)
     memcpy(job->options.up, job->coloring.options.up, sizeof job->options.up);
-  else if (n_layers == 0 && cli_points_are_surveys(job->inputs, job->n_inputs))
+  else if (job->n_continued == 0 && job->share.are_surveys)
     memcpy(job->options.up, survey_up, sizeof job->options.up);
 }
 
-static int make_layers(void *cookie) {
-  layer_job *job = cookie;
-  const char *const *layers = job->is_merging ? job->inputs : &job->base.output;
-  int n_layers = job->is_merging ? job->n_inputs : job->is_appending ? 1 : 0;
-  conic_status status = plan_to_continue(job, layers, n_layers);
-  settle_up(job, n_layers);
+/* The files that go on come before what is added to them, as inputs that are read in another way. */
+static conic_status list_layer_inputs(cli_layer_job *job) {
+  cli_session *session = job->base.session;
+  const char *all[job->n_inputs + 1];
+  int n = 0;
+  if (job->is_appending)
+    all[n++] = job->base.output;
+  memcpy(all + n, job->inputs, (size_t)job->n_inputs * sizeof *all);
+  job->n_continued = job->is_merging ? job->n_inputs : n;
+  return cli_points_share_list(session, all, n + job->n_inputs, job->n_continued, &job->share);
+}
+
+/* All that is settled before samples come, the same in every process. */
+static conic_status plan_layers(cli_layer_job *job, conic_read_options *options) {
+  double start = cli_seconds();
+  conic_status status = list_layer_inputs(job);
   if (status == CONIC_OK)
-    status = conic_layers_builder_open(job->base.session->context, job->base.output, &job->options, &job->builder);
+    status = conic_team_agree(job->share.team, cli_layer_continue(job, job->share.inputs, job->n_continued));
   if (status != CONIC_OK)
-    return cli_exit_of(status);
-  status = read_layers(job, layers, n_layers);
+    return status;
+  settle_up(job);
+  cli_layer_reading(job, options);
+  options->where = job->base.where;
+  status = cli_points_share_out(&job->share, options, cli_layer_most_whole(job));
+  options->where = NULL; /* the range is that of all points */
   if (status == CONIC_OK && !job->is_merging)
-    status = read_inputs(job);
+    status = cli_coloring_find_range(&job->coloring, &job->share, options);
+  cli_team_trace(job->base.session, "open", "inputs", 0, start, 0);
+  return status;
+}
+
+static int make_layers(void *cookie) {
+  cli_layer_job *job = cookie;
+  cli_session *session = job->base.session;
+  conic_read_options options;
+  conic_status status = plan_layers(job, &options);
   if (status == CONIC_OK)
-    status = conic_layers_builder_finish(job->builder, &job->statistics);
-  else
-    conic_layers_builder_abandon(job->builder);
+    status = conic_layers_builder_open_team(session->context, job->base.output, &job->options, job->share.team,
+                                            &job->builder);
+  if (status == CONIC_OK) {
+    status = cli_layer_read_share(job, &options);
+    if (status == CONIC_OK)
+      status = conic_layers_builder_finish(job->builder, &job->statistics);
+    else
+      conic_layers_builder_abandon(job->builder);
+  }
   job->base.stages[0].seconds = job->statistics.read_seconds;
   job->base.stages[1].seconds = job->statistics.work_seconds;
   job->base.stages[2].seconds = job->statistics.write_seconds;
-  return cli_exit_of(status);
+  int exit_code = cli_team_exit(session, status);
+  if (exit_code == CLI_DONE && job->share.team)
+    cli_team_shares_gather(session, job->n_pieces, job->busy_seconds, &job->shares);
+  return exit_code;
 }
 
 static void release_layers(void *cookie) {
-  layer_job *job = cookie;
+  cli_layer_job *job = cookie;
   if (job->continued)
     conic_memory_release(job->base.session->context, job->continued);
+  cli_points_share_end(&job->share);
+  cli_team_shares_release(&job->shares);
 }
 
-static int check_layer_arguments(layer_job *job) {
+static int check_layer_arguments(cli_layer_job *job) {
   if (job->n_inputs == 0)
     return cli_usage("layer: no input given; see conic help layer");
   if (!job->base.output)
@@ -349,11 +145,11 @@ static int check_layer_arguments(layer_job *job) {
 
 static int run_layer(cli_session *session, int argc, char **argv) {
   static const cli_build_steps steps = {make_layers, tell_layers, report_layers, release_layers};
-  layer_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}},
-                   .cloud_size = 2048,
-                   .memory_mib = 1024.0,
-                   .cutoff = 1.5,
-                   .quantum = {0.5, 1}};
+  cli_layer_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}},
+                       .cloud_size = 2048,
+                       .memory_mib = 1024.0,
+                       .cutoff = 1.5,
+                       .quantum = {0.5, 1}};
   const char *positional[argc];
   conic_estimate_options_init(&job.estimate);
   conic_layers_options_init(&job.options);
@@ -400,10 +196,12 @@ const cli_command cli_layer = {
         "Writes the samples in small clouds, coarse ones first. conic render reads only those that a picture "
         "shows, from a file or from a web server.",
     .examples = {{"join scans that do not fit into memory", "conic layer scans/*.ply -o all.lpc --memory 4096"},
-                 {"keep all that a survey says of its points", "conic layer survey.las -o survey.lpc --keep all"}},
+                 {"keep all that a survey says of its points", "conic layer survey.las -o survey.lpc --keep all"},
+                 {"build a survey of thousands of tiles", "mpirun -n 8 conic-mpi layer tiles -o survey.lpc"}},
+    .is_shared = 1,
 };
 
-static int check_merge_arguments(layer_job *job) {
+static int check_merge_arguments(cli_layer_job *job) {
   if (job->n_inputs < 2)
     return cli_usage("merge: two inputs or more are needed; see conic help merge");
   if (!job->base.output)
@@ -414,7 +212,8 @@ static int check_merge_arguments(layer_job *job) {
 
 static int run_merge(cli_session *session, int argc, char **argv) {
   static const cli_build_steps steps = {make_layers, tell_layers, report_layers, release_layers};
-  layer_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}}, .memory_mib = 1024.0, .is_merging = 1};
+  cli_layer_job job = {
+      .base = {session, .stages = {{"read"}, {"work"}, {"write"}}}, .memory_mib = 1024.0, .is_merging = 1};
   const char *positional[argc];
   conic_layers_options_init(&job.options);
   const cli_option options[] = {
@@ -437,4 +236,5 @@ const cli_command cli_merge = {
         "Builds one file of the samples of all, in the order given. Those of the first stay exactly where they "
         "are; those of the others move by half a step of its grid at most.",
     .examples = {{"join two surveys", "conic merge west.lpc east.lpc -o all.lpc"}},
+    .is_shared = 1,
 };

@@ -6,6 +6,7 @@
 #include "cli/commands/mls_cells.h"
 #include "cli/commands/mls_sizes.h"
 #include "cli/device_option.h"
+#include "cli/session_team.h"
 #include "core/base/message.h"
 #include "core/splats/repairs_log.h"
 
@@ -297,10 +298,12 @@ static void report_points(cli_json *json, const void *cookie) {
 
 static int make_points(void *cookie) {
   mls_job *job = cookie;
+  cli_build_share(&job->base);
   conic_status status = job->has_memory ? CONIC_OK : read_points(job);
   if (status == CONIC_OK)
     status = work(job);
-  return status == CONIC_OK ? write_points(job) : cli_exit_of(status);
+  status = cli_build_part(&job->base, status);
+  return status == CONIC_OK && cli_team_is_first(job->base.session) ? write_points(job) : cli_exit_of(status);
 }
 
 static void release_points(void *cookie) {
@@ -407,6 +410,7 @@ const cli_command cli_mls = {
     .usage = "conic mls project|thin|densify IN -o OUT.ply [--type mls|apss] [--h H] [--degree D]\n"
              "          [--count N] [--max-error E] [--spacing S] [--hole R] [--sharp]",
     .run = run_mls,
+    .is_shared = 1,
     .description = "Fits a surface to the points and moves them onto it (project), leaves out those that it needs not "
                    "(thin), or adds points where it has too few (densify). Lengths are in the units of the file or, "
                    "with an x behind them (2x), multiples of the typical distance between neighbouring points.",

@@ -6,6 +6,7 @@
 #include "cli/commands/build_steps.h"
 #include "cli/commands/points_input.h"
 #include "cli/commands/prepare_bake.h"
+#include "cli/session_team.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
@@ -77,7 +78,7 @@ static conic_status thin_model(prepare_job *job) {
   return conic_splats_thin(context, &model->points, (size_t)job->count, job->seed);
 }
 
-static int read_model(prepare_job *job) {
+static conic_status read_model(prepare_job *job) {
   conic_read_options options;
   conic_read_options_init(&options);
   options.cutoff = job->estimate.cutoff;
@@ -89,10 +90,10 @@ static int read_model(prepare_job *job) {
   cli_build_hint_faces(&job->base, &job->model);
   if (status == CONIC_OK)
     status = cli_build_check_reach(&job->base, &job->model.points);
-  return cli_exit_of(status);
+  return status;
 }
 
-static int find_axes(prepare_job *job) {
+static conic_status find_axes(prepare_job *job) {
   job->estimate.finds_dots = !job->is_plain;
   conic_status status = thin_model(job);
   if (status == CONIC_OK)
@@ -100,11 +101,13 @@ static int find_axes(prepare_job *job) {
   if (status == CONIC_OK)
     status = cli_coloring_apply(job->base.session, &job->coloring, job->model.up, &job->model.points, NULL);
   if (status != CONIC_OK)
-    return cli_exit_of(status);
-  if (job->repairs.nan + job->repairs.failed >= job->model.points.count)
-    return cli_error(CLI_INPUT, "%s: has no point that can be drawn", job->base.input);
-  return cli_exit_of(cli_bake_splats(job->base.session->context, job->bake, job->n_directions, job->estimate.cutoff,
-                                     &job->model.points));
+    return status;
+  if (job->repairs.nan + job->repairs.failed >= job->model.points.count) {
+    cli_error(CLI_INPUT, "%s: has no point that can be drawn", job->base.input);
+    return CONIC_ERROR_INPUT;
+  }
+  return cli_bake_splats(job->base.session->context, job->bake, job->n_directions, job->estimate.cutoff,
+                         &job->model.points);
 }
 
 static int write_splats(prepare_job *job) {
@@ -143,12 +146,15 @@ static int make_prepared(void *cookie) {
   prepare_job *job = cookie;
   cli_stage *stages = job->base.stages;
   double start = cli_seconds();
-  int exit_code = read_model(job);
+  cli_build_share(&job->base);
+  conic_status status = read_model(job);
   start = cli_build_end_stage(&stages[READ], start);
-  if (exit_code == CLI_DONE)
-    exit_code = find_axes(job);
+  if (status == CONIC_OK)
+    status = find_axes(job);
+  status = cli_build_part(&job->base, status);
   start = cli_build_end_stage(&stages[WORK], start);
-  if (exit_code == CLI_DONE)
+  int exit_code = cli_exit_of(status);
+  if (exit_code == CLI_DONE && cli_team_is_first(job->base.session))
     exit_code = write_splats(job);
   cli_build_end_stage(&stages[WRITE], start);
   return exit_code;
@@ -200,6 +206,7 @@ const cli_command cli_prepare = {
     .summary = "turns points or a mesh into splats: normals, sizes, thinning",
     .usage = "conic prepare IN -o OUT.ply [-k K] [--ellipse RULE] [--features ANGLE] [--count N --seed S] [--plain]",
     .run = run_prepare,
+    .is_shared = 1,
     .description = "Reads raw points, or the vertices of a mesh, and writes the splats that conic render would make of "
                    "them. Each point gets an ellipse of the size and the direction that its neighbours mean.",
     .examples = {{"keep 100,000 points of a scan", "conic prepare scan.las --count 100k -o small.ply"},

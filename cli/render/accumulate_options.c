@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/render/frames.h"
 #include "cli/scene/render_job.h"
 
 int cli_parse_focus(const char *text, void *value) {
@@ -53,31 +52,20 @@ int cli_accumulate_settle(const cli_session *session, cli_render_job *job) {
   return CLI_DONE;
 }
 
-/* A turntable or all views, and --frames takes no single one of them. */
-static int draws_several(const cli_render_job *job) {
-  const cli_frames *frames = &job->frames;
-  int is_one = frames->is_given ? frames->last - frames->first < frames->step : job->is_turntable && job->n_frames == 1;
-  return cli_frames_are_many(job) && !is_one;
-}
-
 int cli_accumulate_check(const cli_session *session, cli_render_job *job) {
   cli_accumulate_job *own = &job->accumulating;
   if (!own->n_samples && job->planes & (1u << CONIC_PLANE_SAMPLES | 1u << CONIC_PLANE_VARIANCE))
     return cli_usage("render: the planes samples and variance are --accumulate's");
   if (!own->n_samples)
     return own->is_given || own->is_lens_given || own->is_shutter_given || own->motion_path
-               ? cli_usage("render: --time, --noise, --preview, --resumable, --resume, --aperture, --focus, "
-                           "--blades, --shutter and --motion want --accumulate N")
+               ? cli_usage("render: --time, --noise, --preview, --aperture, --focus, --blades, --shutter and "
+                           "--motion want --accumulate N")
                : CLI_DONE;
   int answer = check_company(job);
   if (answer == CLI_DONE)
     answer = cli_accumulate_settle(session, job);
   if (answer != CLI_DONE)
     return answer;
-  if (own->resume_path && draws_several(job))
-    return cli_usage("render: --resume goes on with one picture, not with several");
-  if (own->is_resumable && (job->n_outputs == 0 || strcmp(job->outputs[0], "-") == 0))
-    return cli_usage("render: --resumable keeps the sums beside the picture; give a file with -o");
   if (own->width.value > 0.0 && own->focus.kind != CLI_FOCUS_DEPTH)
     job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_Z;
   job->planes |= job->unwritten_planes;

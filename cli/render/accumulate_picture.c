@@ -15,6 +15,7 @@
 #include "cli/session_team.h"
 #include "cli/stopper.h"
 #include "core/base/rank.h"
+#include "core/files/disk.h"
 
 /* --- the camera on its way --- */
 
@@ -216,11 +217,14 @@ static conic_status show_sums(accumulating *work, const conic_accumulation *sums
   return status;
 }
 
-static char *sums_name(const char *picture) {
-  size_t room = strlen(picture) + 8;
-  char *name = malloc(room);
+/* Of a frame's sums, which the caller frees; null without memory. */
+static char *sums_name(const cli_render_job *job, int i_frame) {
+  char *picture = cli_frame_name(job, job->outputs[0], i_frame);
+  size_t room = picture ? strlen(picture) + 8 : 0;
+  char *name = picture ? malloc(room) : NULL;
   if (name)
     snprintf(name, room, "%s.sums", picture);
+  free(picture);
   return name;
 }
 
@@ -229,12 +233,17 @@ static conic_status keep_sums(void *cookie, const conic_accumulation *sums) {
   const cli_render_job *job = work->job;
   if (!job->accumulating.is_resumable)
     return CONIC_OK;
-  char *picture = cli_frame_name(job, job->outputs[0], work->i_frame);
-  char *path = picture ? sums_name(picture) : NULL;
+  char *path = sums_name(job, work->i_frame);
   conic_status status = path ? conic_accumulation_write(sums, path) : CONIC_ERROR_MEMORY;
-  free(picture);
   free(path);
   return status;
+}
+
+void cli_accumulate_forget(const cli_render_job *job, int i_frame) {
+  char *path = job->accumulating.n_samples ? sums_name(job, i_frame) : NULL;
+  if (path)
+    conic_disk_remove(path);
+  free(path);
 }
 
 /* A run that is stopped keeps the samples that it has, for --resume. Sums are large: nobody watches how long that
@@ -276,23 +285,43 @@ static conic_status watch_sums(void *cookie, const conic_accumulation *sums) {
 }
 
 /* What of them is not of the picture. */
-static conic_status refuse_sums(const cli_accumulate_job *own, const conic_camera *camera, unsigned planes,
+static conic_status refuse_sums(const char *path, const conic_camera *camera, unsigned planes,
                                 const conic_accumulation_facts *facts) {
   if (facts->width != camera->width || facts->height != camera->height)
-    cli_error(CLI_INPUT, "%s.sums: cannot go on: its samples have %d x %d pixels, and the picture %d x %d",
-              own->resume_path, facts->width, facts->height, camera->width, camera->height);
+    cli_error(CLI_INPUT, "%s: cannot go on: its samples have %d x %d pixels, and the picture %d x %d", path,
+              facts->width, facts->height, camera->width, camera->height);
   else if (facts->first_sample != 0)
-    cli_error(CLI_INPUT, "%s.sums: cannot go on: its first sample is number %llu", own->resume_path,
+    cli_error(CLI_INPUT, "%s: cannot go on: its first sample is number %llu", path,
               (unsigned long long)facts->first_sample);
   else {
     int i = 0;
     while (!((facts->planes ^ planes) >> i & 1))
       i++;
-    cli_error(CLI_INPUT, "%s.sums: cannot go on: %s the plane %s, and the picture %s", own->resume_path,
+    cli_error(CLI_INPUT, "%s: cannot go on: %s the plane %s, and the picture %s", path,
               facts->planes >> i & 1 ? "it has" : "it lacks", conic_plane_describe((conic_plane)i)->name,
               facts->planes >> i & 1 ? "does not" : "has it");
   }
   return CONIC_ERROR_INPUT;
+}
+
+/* Of the sums that are gone on with; null where there are none yet, or, where *status says so, no memory. */
+static char *resumed_name(const accumulating *work, conic_status *status) {
+  const cli_render_job *job = work->job;
+  const cli_accumulate_job *own = &job->accumulating;
+  conic_disk_entry entry;
+  if (!own->resume_path || !cli_team_is_first(work->session))
+    return NULL;
+  char *name = job->kept ? sums_name(job, work->i_frame) : malloc(strlen(own->resume_path) + 8);
+  if (!name) {
+    *status = CONIC_ERROR_MEMORY;
+    return NULL;
+  }
+  if (!job->kept)
+    snprintf(name, strlen(own->resume_path) + 8, "%s.sums", own->resume_path);
+  if ((!job->kept && !own->is_resumable) || conic_disk_look(name, &entry))
+    return name;
+  free(name);
+  return NULL;
 }
 
 /* The sums that are gone on with; or none yet. */
@@ -302,20 +331,22 @@ static conic_status begin_sums(accumulating *work, conic_accumulation **sums) {
   conic_context *context = work->session->context;
   unsigned planes = (work->job->planes | 1u << CONIC_PLANE_RGBA) & CONIC_ACCUMULATED_PLANES;
   conic_accumulation_facts facts;
+  conic_status status = CONIC_OK;
+  char *path = resumed_name(work, &status);
   own->n_resumed = 0;
-  if (!own->resume_path || !cli_team_is_first(work->session))
-    return conic_accumulation_create(context, camera->width, camera->height, planes, 0, sums);
-  char *path = sums_name(own->resume_path);
-  conic_status status = path ? conic_accumulation_read(context, path, sums) : CONIC_ERROR_MEMORY;
+  if (!path)
+    return status == CONIC_OK ? conic_accumulation_create(context, camera->width, camera->height, planes, 0, sums)
+                              : status;
+  status = conic_accumulation_read(context, path, sums);
+  if (status == CONIC_OK) {
+    conic_accumulation_inspect(*sums, &facts);
+    own->n_resumed = facts.end_sample;
+    if (facts.width != camera->width || facts.height != camera->height || facts.planes != planes ||
+        facts.first_sample != 0)
+      status = refuse_sums(path, camera, planes, &facts);
+  }
   free(path);
-  if (status != CONIC_OK)
-    return status;
-  conic_accumulation_inspect(*sums, &facts);
-  own->n_resumed = facts.end_sample;
-  if (facts.width == camera->width && facts.height == camera->height && facts.planes == planes &&
-      facts.first_sample == 0)
-    return CONIC_OK;
-  return refuse_sums(own, camera, planes, &facts);
+  return status;
 }
 
 static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
@@ -340,10 +371,12 @@ static conic_status run_samples(accumulating *work, conic_accumulation *sums) {
       work->job->sharing == CLI_SHARES_SAMPLES
           ? cli_accumulate_together(work->session, work->job, &options, own->is_resumable ? keep_sums : NULL, sums)
           : conic_accumulate(work->session->context, &options, sums);
-  if (status != CONIC_ERROR_ARGUMENT || !own->resume_path)
+  if (status != CONIC_ERROR_ARGUMENT || !own->n_resumed)
     return status;
-  cli_note(work->session, "%s.sums was begun with other inputs, or another view, lens, light or option",
-           own->resume_path);
+  char *path = resumed_name(work, &status);
+  if (path)
+    cli_note(work->session, "%s was begun with other inputs, or another view, lens, light or option", path);
+  free(path);
   return CONIC_ERROR_INPUT;
 }
 
@@ -382,7 +415,7 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
     keep_stopped_sums(&work, sums);
   if (status == CONIC_OK && is_first)
     status = show_sums(&work, sums);
-  if (status == CONIC_OK && is_first)
+  if (status == CONIC_OK && is_first && !job->kept)
     status = keep_sums(&work, sums);
   if (status == CONIC_OK)
     tell_samples(session, &job->accumulating);

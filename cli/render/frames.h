@@ -17,6 +17,9 @@ int cli_frames_check(const cli_session *session, cli_render_job *job, const char
 /* Whether there are several, with numbers in the names of their files. */
 int cli_frames_are_many(const cli_render_job *job);
 
+/* Whether more than one is drawn, as far as the options tell. */
+int cli_frames_are_several(const cli_render_job *job);
+
 /* How many are drawn. */
 int cli_frames_count(const cli_render_job *job);
 

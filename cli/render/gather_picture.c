@@ -4,6 +4,7 @@
 
 #include "accumulation/sequence.h"
 #include "cli/render/lit_picture.h"
+#include "cli/render/windows_team.h"
 #include "conic/gather.h"
 #include "core/base/color.h"
 #include "raster/frame/statistics.h"
@@ -46,6 +47,14 @@ static conic_status light_view(const view_drawing *work, const conic_camera *cam
   return status;
 }
 
+/* Of a pinhole, or of what draws itself. */
+static conic_status draw_plain(cli_session *session, cli_render_job *job, const cli_looking *looking,
+                               conic_image *image, conic_render_statistics *statistics) {
+  return job->sharing == CLI_SHARES_WINDOWS ? cli_draw_together(session, job, looking, image, statistics)
+                                            : conic_source_draw(job->source, job->renderer, looking->camera,
+                                                                looking->options, looking->view, image, statistics);
+}
+
 static conic_status draw_gathered_view(void *cookie, const conic_gather_view *gathered, conic_image *image) {
   const view_drawing *work = cookie;
   cli_render_job *job = work->job;
@@ -55,7 +64,8 @@ static conic_status draw_gathered_view(void *cookie, const conic_gather_view *ga
   options.near_z = gathered->near_z;
   options.lighting = work->lighting;
   view.samples = gathered->samples;
-  conic_status status = conic_source_draw(job->source, job->renderer, &gathered->camera, &options, &view, image, &one);
+  const cli_looking looking = {&gathered->camera, &options, &view, NULL};
+  conic_status status = draw_plain(work->session, job, &looking, image, &one);
   if (status == CONIC_OK)
     conic_statistics_add(&one, work->sum);
   if (status == CONIC_OK && lights_views(job, work->looking))
@@ -124,6 +134,5 @@ static conic_status gather_picture(cli_session *session, cli_render_job *job, co
 conic_status cli_draw_looking(cli_session *session, cli_render_job *job, const cli_looking *looking, conic_image *image,
                               conic_render_statistics *statistics) {
   return cli_is_gathered(job, looking->camera) ? gather_picture(session, job, looking, image, statistics)
-                                               : conic_source_draw(job->source, job->renderer, looking->camera,
-                                                                   looking->options, looking->view, image, statistics);
+                                               : draw_plain(session, job, looking, image, statistics);
 }

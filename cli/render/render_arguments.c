@@ -2,6 +2,7 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/render/kept_frames.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/sample_options.h"
 #include "cli/scene/stereo.h"
@@ -44,7 +45,7 @@ static int check_streaming(const cli_render_job *job, const int is_given[2]) {
     return cli_usage("render: --progressive, --deadline, --tolerate and --occlusion are for a single .lpc, or the URL "
                      "of one");
   if (is_given[1] && !(job->abilities & CONIC_SOURCE_READS_PARTS))
-    return cli_usage("render: --memory and --timeout are for a single .lpc or .chy, or the URL of one");
+    return cli_usage("render: --timeout is for a single .lpc or .chy, or the URL of one");
   if (streams && job->deep_path)
     return cli_usage("render: --deep lists the splats of inputs that are read whole, not of an .lpc");
   if (job->progressive_path && (job->is_turntable || job->repeat > 1))
@@ -119,6 +120,8 @@ static int check_outputs(const cli_session *session, cli_render_job *job, const 
   if (answer == CLI_DONE)
     answer = cli_stereo_check(session, job);
   if (answer == CLI_DONE)
+    answer = cli_kept_frames_check(job);
+  if (answer == CLI_DONE)
     answer = cli_accumulate_check(session, job);
   if (answer == CLI_DONE && job->has_mattes)
     answer = cli_mattes_check(job);
@@ -143,7 +146,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
     tone_words[i] = conic_tone_name((conic_tone)i);
   int compression = 0;
   enum { USUAL_MIB = 512 };
-  int memory_mib = USUAL_MIB, occlusion = CONIC_OCCLUSION_AUTO, is_given[2] = {0, 0}, is_memory_given = 0;
+  int memory_mib = USUAL_MIB, occlusion = CONIC_OCCLUSION_AUTO, is_given[2] = {0, 0};
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT",
        "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; may be repeated",
@@ -174,6 +177,13 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP",
        "only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from 0 [all]",
        .parse = cli_parse_frames},
+      {"resumable", CLI_FLAG, &job->accumulating.is_resumable, NULL,
+       "note beside the first OUT what is finished, so that --resume can go on after any end: the frames in "
+       "OUT.frames, "
+       "and of one --accumulate the sums in OUT.sums"},
+      {"resume", CLI_TEXT, &job->accumulating.resume_path, "OUT",
+       "go on with what OUT.frames or OUT.sums says is finished, to the bit as if it had never stopped; with "
+       "--resumable, too, where there is none begin"},
       {"stereo", CLI_NUMBER, &job->stereo.distance, "E",
        "two pictures, of eyes that are E apart, in world units: OUT.left.exr and OUT.right.exr, or left and right in "
        "the "
@@ -195,12 +205,6 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        1e-9, 1e9, .is_given = &job->accumulating.is_given},
       {"preview", CLI_NUMBER, &job->accumulating.preview_seconds, "S",
        "write the picture as it is every S seconds, too [only at the end]", 1e-3, 1e9,
-       .is_given = &job->accumulating.is_given},
-      {"resumable", CLI_FLAG, &job->accumulating.is_resumable, NULL,
-       "keep the sums beside the first OUT, as OUT.sums, also at Ctrl-C, so that --resume can go on",
-       .is_given = &job->accumulating.is_given},
-      {"resume", CLI_TEXT, &job->accumulating.resume_path, "PICTURE",
-       "go on with the samples of PICTURE.sums, to the bit as if it had never stopped",
        .is_given = &job->accumulating.is_given},
       CLI_LENS_OPTIONS(&job->accumulating),
       {"gsd", CLI_NUMBER, &job->top.gsd, "G",
@@ -227,9 +231,9 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "of a cloud in levels, what is damaged or does not come is drawn coarser, with a warning",
        .is_given = &is_given[0]},
       {"memory", CLI_INT, &memory_mib, "MiB",
-       "of a cloud in levels, what its clouds and splats may take in memory [512]; of a .chy, what is read and drawn "
-       "[all]",
-       1, 1 << 20, .is_given = &is_memory_given},
+       "of a cloud in levels, what its clouds, splats and pixels may take in memory [512]; of a .chy, what is read and "
+       "drawn [all]; of all else, twice what the pixels of an .exr may [2048]",
+       1, 1 << 20, .is_given = &job->is_memory_given},
       {"occlusion", CLI_CHOICE, &occlusion, "HOW",
        "of a cloud in levels, do not read what is hidden behind the rest: auto, on or off; changes no bit of the "
        "picture [auto]",
@@ -250,8 +254,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
   job->writing.compression = (conic_compression)compression;
   job->asked_planes = job->is_aov_given ? job->planes : 0;
-  is_given[1] |= is_memory_given;
-  if (is_memory_given)
+  if (job->is_memory_given)
     job->access.memory_bytes = (uint64_t)memory_mib << 20;
   if (memory_mib < USUAL_MIB && !session->host)
     cli_shell_give_back_memory();

@@ -4,7 +4,10 @@
 
 #include "cli/command.h"
 #include "cli/host_keeps.h"
+#include "cli/render/banded_picture.h"
 #include "cli/render/frames.h"
+#include "cli/render/gather_picture.h"
+#include "cli/render/kept_frames.h"
 #include "cli/render/sharing.h"
 #include "cli/scene/backdrop.h"
 #include "cli/scene/stereo.h"
@@ -255,9 +258,24 @@ static conic_status render_repeats(cli_session *session, cli_render_job *job, in
   return status;
 }
 
-/* Of windows, the picture comes together in the first process. */
-static int needs_image(const cli_session *session, const cli_render_job *job) {
-  return job->sharing != CLI_SHARES_WINDOWS || cli_sharing_has_picture(session, job);
+/* Of windows, the picture comes together in the first process; of others all gather along, to draw its views. */
+static int needs_image(const cli_session *session, const cli_render_job *job, const conic_camera *camera) {
+  return job->sharing != CLI_SHARES_WINDOWS || cli_sharing_has_picture(session, job) || cli_is_gathered(job, camera);
+}
+
+/* One that is written while it is drawn. */
+static conic_status render_banded(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
+                                  conic_render_statistics *statistics) {
+  job->options.skip_hidden = !session->json_path;
+  conic_status status = cli_render_banded(session, job, i_frame, camera, statistics);
+  if (status != CONIC_OK || !cli_sharing_has_picture(session, job))
+    return status;
+  job->frames_ms += statistics->ms.frame;
+  take_medians(job, statistics, 1);
+  warn_of_empty(session, job);
+  warn_of_error(session, job);
+  warn_of_alpha(session, job);
+  return CONIC_OK;
 }
 
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
@@ -271,7 +289,11 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     status = cli_choose_exposure(session, job, &camera);
   if (session->host || image->width != camera.width || image->height != camera.height)
     cli_host_release_image(session, image);
-  if (status == CONIC_OK && !conic_image_planes(image) && needs_image(session, job))
+  if (status == CONIC_OK && cli_is_banded(session, job, &camera))
+    return render_banded(session, job, i_frame, &camera, repeats);
+  if (status == CONIC_OK)
+    status = cli_refuse_too_large(session, job, &camera);
+  if (status == CONIC_OK && !conic_image_planes(image) && needs_image(session, job, &camera))
     status = cli_host_allocate_image(session, camera.width, camera.height, job->planes, image);
   if (status == CONIC_OK)
     status = render_repeats(session, job, i_frame, &camera, image, repeats);
@@ -312,7 +334,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
 /* Only where they are reported: it takes a while. */
 static void hash_image(const cli_session *session, cli_render_job *job, const conic_image *image) {
   double start = cli_seconds();
-  for (int i = 0; i < CONIC_N_PLANES && session->json_path && !session->host; i++) /* a host has the planes */
+  int is_hashed = job->banded_planes || session->host; /* row by row; a host has the planes */
+  for (int i = 0; i < CONIC_N_PLANES && session->json_path && !is_hashed; i++)
     job->hashes[i] = conic_image_hash(image, (conic_plane)i);
   job->hash_ms = 1e3 * (cli_seconds() - start);
 }
@@ -321,7 +344,7 @@ static void hash_image(const cli_session *session, cli_render_job *job, const co
 static conic_status choose_first_exposure(cli_session *session, cli_render_job *job) {
   conic_camera camera;
   conic_status status = CONIC_OK;
-  if (job->sharing == CLI_SHARES_NOTHING || !job->is_exposure_automatic)
+  if ((job->sharing == CLI_SHARES_NOTHING && !cli_frames_are_several(job)) || !job->is_exposure_automatic)
     return CONIC_OK;
   if (cli_team_is_first(session)) {
     status = cli_accumulate_camera(session, job, job->frames.first - 1, &camera);
@@ -329,7 +352,7 @@ static conic_status choose_first_exposure(cli_session *session, cli_render_job *
       status = cli_choose_exposure(session, job, &camera);
   }
   status = cli_sharing_end(session, job, status);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && job->sharing != CLI_SHARES_NOTHING)
     session->team->broadcast(&job->options.exposure, sizeof job->options.exposure);
   job->is_exposure_automatic = 0;
   return status;
@@ -343,12 +366,19 @@ static conic_status render_frames(cli_session *session, cli_render_job *job, con
   cli_frame_turns_begin(session, job, &turns);
   for (int i; status == CONIC_OK && (i = cli_frame_turns_next(session, job, &turns)) >= 0;) {
     double start = cli_seconds();
+    int i_frame = job->frames.first - 1 + i * job->frames.step, is_finished = 0;
     if (cli_frames_are_many(job))
       cli_session_part(session, job->is_turntable ? "frame" : "view", i + 1, turns.n_frames);
+    if (!session->json_path || i < turns.n_frames - 1) /* which the report is about */
+      status = cli_kept_frames_look(session, job, i_frame, &is_finished);
+    if (is_finished)
+      continue;
     for (int eye = 0; eye < cli_stereo_eyes(job) && status == CONIC_OK; eye++) {
       cli_stereo_begin(job, eye);
-      status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, image, repeats);
+      status = render_frame(session, job, i_frame, image, repeats);
     }
+    if (status == CONIC_OK)
+      status = cli_kept_frames_add(session, job, i_frame);
     if (job->sharing == CLI_SHARES_FRAMES)
       cli_sharing_note(session, job, "frame", (uint64_t)i, start, 0);
   }
@@ -365,16 +395,22 @@ static int render_scene(cli_session *session, cli_render_job *job) {
   if (status == CONIC_OK)
     status = choose_first_exposure(session, job);
   if (status == CONIC_OK)
+    status = cli_kept_frames_begin(session, job);
+  if (status == CONIC_OK)
     status = cli_sharing_end(session, job, render_frames(session, job, &image, repeats));
+  if (status == CONIC_OK)
+    status = cli_kept_frames_end(session, job);
   if (status == CONIC_OK)
     cli_sharing_gather(session, job);
   if (status == CONIC_OK && cli_team_is_first(session)) {
     hash_image(session, job, &image);
     job->total_ms = 1e3 * (cli_seconds() - job->start_seconds);
-    cli_render_tell(session, job);
+    if (conic_image_planes(&image))
+      cli_render_tell(session, job);
     exit_code = cli_render_report(session, job, &image);
   } else
     exit_code = cli_exit_of(status);
+  cli_kept_frames_release(session, job);
   cli_host_release_image(session, &image);
   conic_cryptomatte_manifest_release(session->context, &job->manifest);
   free(repeats);
@@ -397,6 +433,8 @@ static int run(cli_session *session, int argc, char **argv) {
   int exit_code = cli_render_parse(session, argc, argv, &job);
   enum { MANY = 16 };
   job.start_seconds = start;
+  job.n_arguments = argc;
+  job.arguments = argv;
   if (exit_code == CLI_DONE) {
     session->draws_many_frames = job.is_every_view || (double)job.repeat * cli_frames_count(&job) >= MANY;
     exit_code = cli_session_open(session);

@@ -5,7 +5,6 @@
 #include "cli/render/gather_picture.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/sharing.h"
-#include "cli/render/windows_team.h"
 #include "cli/scene/backdrop.h"
 #include "core/files/disk.h"
 
@@ -25,9 +24,7 @@ conic_status cli_render_picture(cli_session *session, cli_render_job *job, const
   if (job->deadline > 0.0)
     job->view.seconds = seconds_left(job);
   const cli_looking looking = {camera, &job->options, &job->view, NULL};
-  conic_status status = job->sharing == CLI_SHARES_WINDOWS && !cli_is_gathered(job, camera)
-                            ? cli_draw_together(session, job, camera, image, statistics)
-                            : cli_draw_looking(session, job, &looking, image, statistics);
+  conic_status status = cli_draw_looking(session, job, &looking, image, statistics);
   if (!cli_sharing_has_picture(session, job))
     return status;
   if (status == CONIC_OK)

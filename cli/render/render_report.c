@@ -3,6 +3,7 @@
 
 #include "cli/color_options.h"
 #include "cli/render/frames.h"
+#include "cli/render/kept_frames.h"
 #include "cli/render/sharing.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/views.h"
@@ -200,7 +201,7 @@ static void report_times(cli_json *json, const cli_render_job *job) {
 static void report_hashes(cli_json *json, const cli_render_job *job, const conic_image *image) {
   cli_json_object(json, "hash");
   for (int i = 0; i < CONIC_N_PLANES; i++)
-    if (image->planes[i])
+    if (image->planes[i] || job->banded_planes >> i & 1)
       cli_json_hash(json, conic_plane_describe((conic_plane)i)->name, job->hashes[i]);
   cli_json_close(json);
 }
@@ -214,6 +215,8 @@ int cli_render_report(cli_session *session, const cli_render_job *job, const con
   conic_status status = report_counts(json, job);
   report_settings(json, job);
   report_hashes(json, job, image);
+  if (job->kept)
+    cli_json_count(json, "frames_finished", (uint64_t)cli_kept_frames_count(job));
   cli_sharing_report(json, job);
   report_times(json, job);
   exit_code = cli_json_finish(file);

@@ -1,16 +1,11 @@
 #include "cli/render/sharing.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/render/frames.h"
+#include "cli/render/kept_frames.h"
 #include "cli/session_team.h"
 #include "source/source_parts.h"
-
-struct cli_shares {
-  uint64_t n_units, sent_bytes, received_bytes, peak_bytes;
-  double waited_seconds, busy_seconds;
-};
 
 static int is_stream(const char *path) {
   return strcmp(path, "-") == 0;
@@ -35,8 +30,7 @@ int cli_sharing_choose(const cli_session *session, cli_render_job *job) {
     job->sharing = CLI_SHARES_FRAMES;
   else if (job->accumulating.n_samples)
     job->sharing = CLI_SHARES_SAMPLES;
-  else if (!(job->abilities & (CONIC_SOURCE_STREAMS | CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_CLUSTERS)) &&
-           !job->progressive_path && !job->overdraw_path && !job->is_transparent)
+  else if (!job->view.may_be_coarser)
     job->sharing = CLI_SHARES_WINDOWS;
   if (job->sharing == CLI_SHARES_SAMPLES && job->accumulating.seconds > 0.0)
     return cli_usage("render: what --time ends depends on the number of processes; give --noise or a count");
@@ -65,7 +59,7 @@ void cli_frame_turns_begin(const cli_session *session, const cli_render_job *job
   int count = session->team->count;
   if (session->team->index == 0)
     turns->most = (turns->n_frames + count - 1) / count - 1;
-  session->team->share((uint64_t)turns->n_frames - 1, NULL, NULL);
+  session->team->share((uint64_t)turns->n_frames - 1, job->kept ? cli_kept_frames_take : NULL, job->kept);
 }
 
 int cli_frame_turns_next(const cli_session *session, const cli_render_job *job, cli_frame_turns *turns) {
@@ -100,16 +94,8 @@ void cli_sharing_note(const cli_session *session, cli_render_job *job, const cha
 /* --- the report --- */
 
 void cli_sharing_gather(const cli_session *session, cli_render_job *job) {
-  cli_team *team = session->team;
-  if (job->sharing == CLI_SHARES_NOTHING)
-    return;
-  cli_shares own = {.n_units = job->n_units, .peak_bytes = cli_peak_rss_bytes(), .busy_seconds = job->busy_seconds};
-  team->count_traffic(&own.sent_bytes, &own.received_bytes, &own.waited_seconds);
-  size_t *sizes = calloc((size_t)team->count, sizeof *sizes);
-  if (sizes)
-    job->shares = team->gather(&own, sizeof own, sizes);
-  job->n_shares = job->shares ? team->count : 0;
-  free(sizes);
+  if (job->sharing != CLI_SHARES_NOTHING)
+    cli_team_shares_gather(session, job->n_units, job->busy_seconds, &job->shares);
 }
 
 static const char *name_sharing(cli_sharing sharing) {
@@ -117,26 +103,9 @@ static const char *name_sharing(cli_sharing sharing) {
 }
 
 void cli_sharing_report(cli_json *json, const cli_render_job *job) {
-  if (!job->n_shares)
-    return;
-  cli_json_object(json, "team");
-  cli_json_text(json, "shares", name_sharing(job->sharing));
-  cli_json_array(json, "processes");
-  for (int i = 0; i < job->n_shares; i++) {
-    const cli_shares *s = &job->shares[i];
-    cli_json_object(json, NULL);
-    cli_json_count(json, "units", s->n_units);
-    cli_json_number(json, "busy_ms", 1e3 * s->busy_seconds);
-    cli_json_number(json, "waited_ms", 1e3 * s->waited_seconds);
-    cli_json_count(json, "sent_bytes", s->sent_bytes);
-    cli_json_count(json, "received_bytes", s->received_bytes);
-    cli_json_count(json, "peak_rss_bytes", s->peak_bytes);
-    cli_json_close(json);
-  }
-  cli_json_close(json);
-  cli_json_close(json);
+  cli_team_shares_report(json, name_sharing(job->sharing), &job->shares);
 }
 
 void cli_sharing_release(cli_render_job *job) {
-  free(job->shares);
+  cli_team_shares_release(&job->shares);
 }

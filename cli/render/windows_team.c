@@ -13,10 +13,16 @@
  * projects, are not most of the work. */
 enum { WINDOWS_EACH = 6, LEAST_SIDE = 64 };
 
-/* What is handed over with a window's pixels. */
+/* What is handed over before a window's pixels. */
 typedef struct window_result {
-  uint64_t i_window, fragments, pixels_covered;
+  uint64_t i_window;
 } window_result;
+
+/* What a process has counted of its windows. */
+typedef struct window_sum {
+  uint64_t n_windows, tallies[CONIC_SOURCE_TALLIES];
+  conic_render_statistics statistics;
+} window_sum;
 
 typedef struct window_work {
   cli_session *session;
@@ -28,16 +34,15 @@ typedef struct window_work {
   size_t n;
   unsigned planes;
   conic_image *image; /* of the first process: the whole */
-  uint64_t fragments, pixels_covered;
-  conic_render_statistics statistics;
+  cli_window_counts counts;
 } window_work;
 
 /* --- the list --- */
 
-static int round_to_step(double length) {
+static int round_to_step(double length, int step) {
   int side = (int)length;
   side = side < LEAST_SIDE ? LEAST_SIDE : side;
-  return (side + CONIC_WINDOW_STEP - 1) / CONIC_WINDOW_STEP * CONIC_WINDOW_STEP;
+  return (side + step - 1) / step * step;
 }
 
 /* Squares, as far as bands and the picture's borders have them be. */
@@ -60,14 +65,19 @@ static conic_status list_windows(window_work *w, int side) {
   return CONIC_OK;
 }
 
-/* The hardest first, so that the last ones, which others wait for, are easy; windows of one weight stay in order. */
+static int band_of(const window_work *w, size_t i) {
+  return w->list[i].y_begin / w->windows.band_rows;
+}
+
+/* Band by band, and of each the hardest first, so that the last ones, which others wait for, are easy; windows of one
+ * weight stay in order. */
 static void order_windows(window_work *w) {
   conic_source_windows_weigh(&w->windows, w->list, w->n, w->weights);
   for (size_t i = 1; i < w->n; i++) {
     conic_window window = w->list[i];
     double weight = w->weights[i];
     size_t at = i;
-    for (; at > 0 && w->weights[at - 1] < weight; at--) {
+    for (; at > 0 && w->weights[at - 1] < weight && band_of(w, at - 1) == window.y_begin / w->windows.band_rows; at--) {
       w->list[at] = w->list[at - 1];
       w->weights[at] = w->weights[at - 1];
     }
@@ -81,7 +91,7 @@ static conic_status choose_windows(window_work *w) {
   double pixels = (double)camera->width * (double)camera->height / (double)(w->team->count * WINDOWS_EACH), side = 1.0;
   while (side * side < pixels)
     side += CONIC_WINDOW_STEP;
-  conic_status status = list_windows(w, round_to_step(side));
+  conic_status status = list_windows(w, round_to_step(side, w->windows.step));
   if (status == CONIC_OK)
     order_windows(w);
   return status;
@@ -93,11 +103,16 @@ static size_t pixel_bytes_of(conic_plane plane) {
   return 4 * (size_t)conic_plane_describe(plane)->n_channels;
 }
 
-static size_t window_bytes(const window_work *w, const conic_window *window) {
+size_t cli_pixel_bytes(unsigned planes) {
   size_t n = 0;
   for (int i = 0; i < CONIC_N_PLANES; i++)
-    n += w->planes >> i & 1 ? pixel_bytes_of((conic_plane)i) : 0;
-  return n * (size_t)(window->x_end - window->x_begin) * (size_t)(window->y_end - window->y_begin);
+    n += planes >> i & 1 ? pixel_bytes_of((conic_plane)i) : 0;
+  return n;
+}
+
+static size_t window_bytes(const window_work *w, const conic_window *window) {
+  return cli_pixel_bytes(w->planes) * (size_t)(window->x_end - window->x_begin) *
+         (size_t)(window->y_end - window->y_begin);
 }
 
 /* On the first process, of each window. */
@@ -115,15 +130,12 @@ static void take_window(void *cookie, int from, void *bytes, size_t n_bytes) {
       memcpy((char *)w->image->planes[i] + ((size_t)y * (size_t)w->image->width + (size_t)window->x_begin) * size,
              pixels, width * size);
   }
-  w->fragments += result.fragments;
-  w->pixels_covered += result.pixels_covered;
   cli_team_trace(w->session, "join", "window", result.i_window, start, n_bytes);
   (void)from;
 }
 
-static conic_status hand_window(const window_work *w, size_t i_window, const conic_image *pixels,
-                                const conic_render_statistics *statistics, size_t *n_bytes) {
-  window_result result = {i_window, statistics->fragments, statistics->pixels_covered};
+static conic_status hand_window(const window_work *w, size_t i_window, const conic_image *pixels, size_t *n_bytes) {
+  window_result result = {i_window};
   size_t at = sizeof result, n = conic_image_pixels(pixels);
   *n_bytes = sizeof result + window_bytes(w, &w->list[i_window]);
   char *bytes = malloc(*n_bytes);
@@ -140,6 +152,47 @@ static conic_status hand_window(const window_work *w, size_t i_window, const con
   return CONIC_OK;
 }
 
+/* --- what is counted --- */
+
+void cli_windows_count(const conic_source_windows *windows, const conic_render_statistics *drawn,
+                       cli_window_counts *counts) {
+  counts->n_windows++;
+  if (windows->is_summed)
+    conic_statistics_add(drawn, &counts->statistics);
+  else
+    conic_statistics_add_pixels(drawn, &counts->statistics);
+}
+
+/* Times stay the first process's, as does what is not in the memory of both. */
+static void add_counts(conic_source_windows *windows, const window_sum *other, cli_window_counts *counts) {
+  conic_render_statistics part = other->statistics;
+  if (!other->n_windows)
+    return;
+  memset(&part.ms, 0, sizeof part.ms);
+  part.isa = counts->statistics.isa;
+  part.threads = counts->statistics.threads;
+  cli_windows_count(windows, &part, counts);
+  for (int i = 0; i < CONIC_SOURCE_TALLIES; i++)
+    windows->tallies[i] += other->tallies[i];
+}
+
+conic_status cli_windows_sum(cli_team *team, conic_source_windows *windows, cli_window_counts *counts) {
+  window_sum own = {.n_windows = counts->n_windows, .statistics = counts->statistics};
+  memcpy(own.tallies, windows->tallies, sizeof own.tallies);
+  if (team) {
+    size_t *sizes = calloc((size_t)team->count, sizeof *sizes);
+    window_sum *all = sizes ? team->gather(&own, sizeof own, sizes) : NULL;
+    int is_there = team->index > 0 || all;
+    for (int i = 1; all && i < team->count; i++)
+      add_counts(windows, &all[i], counts);
+    free(all);
+    free(sizes);
+    if (team->index > 0 || !is_there)
+      return is_there ? CONIC_OK : CONIC_ERROR_MEMORY;
+  }
+  return conic_source_windows_count(windows, &counts->statistics);
+}
+
 /* --- drawing --- */
 
 static conic_status draw_given_window(window_work *w, size_t i_window) {
@@ -152,15 +205,20 @@ static conic_status draw_given_window(window_work *w, size_t i_window) {
                                              w->planes, &pixels);
   if (status != CONIC_OK)
     return status;
-  status = conic_source_windows_draw(&w->windows, window, &pixels, &w->statistics);
-  if (status == CONIC_OK)
-    status = hand_window(w, i_window, &pixels, &w->statistics, &n_bytes);
+  conic_render_statistics drawn;
+  status = conic_source_windows_draw(&w->windows, window, &pixels, &drawn);
+  if (w->image)
+    w->image->is_display = pixels.is_display;
+  if (status == CONIC_OK) {
+    cli_windows_count(&w->windows, &drawn, &w->counts);
+    status = hand_window(w, i_window, &pixels, &n_bytes);
+  }
   conic_image_release(context, &pixels);
   cli_sharing_note(w->session, w->job, "window", i_window, start, n_bytes);
   return status;
 }
 
-/* The first one is the first process's: it has statistics of its own, then. */
+/* The first one is the first process's: what stands for all in its statistics is the picture's. */
 static conic_status draw_given(window_work *w) {
   uint64_t unit;
   w->team->share((uint64_t)w->n - 1, w->team->index == 0 ? take_window : NULL, w);
@@ -173,23 +231,25 @@ static conic_status draw_given(window_work *w) {
   return status;
 }
 
-conic_status cli_draw_together(cli_session *session, cli_render_job *job, const conic_camera *camera,
+conic_status cli_draw_together(cli_session *session, cli_render_job *job, const cli_looking *looking,
                                conic_image *image, conic_render_statistics *statistics) {
   window_work w = {.session = session, .team = session->team, .job = job, .image = image};
   double start = cli_seconds();
-  w.planes = job->planes & CONIC_DRAWN_PLANES;
-  conic_status status =
-      conic_source_windows_begin(job->source, job->renderer, camera, &job->options, &job->view, &w.windows);
+  const conic_camera *camera = looking->camera;
+  w.planes = (conic_image_planes(image) ? conic_image_planes(image) : job->planes) & CLI_WINDOWS_PLANES;
+  conic_status status = conic_source_windows_begin(job->source, job->renderer, camera, looking->options, looking->view,
+                                                   w.planes, &w.windows);
+  w.windows.other_bytes =
+      session->team->index == 0 ? cli_pixel_bytes(w.planes) * (uint64_t)camera->width * (uint64_t)camera->height : 0;
   if (status == CONIC_OK)
     status = choose_windows(&w);
   status = cli_sharing_end(session, job, status);
   if (status == CONIC_OK)
     status = cli_sharing_end(session, job, draw_given(&w));
-  if (status == CONIC_OK && session->team->index == 0)
-    status = conic_source_windows_count(&w.windows, &w.statistics);
-  *statistics = w.statistics;
-  statistics->fragments = w.fragments;
-  statistics->pixels_covered = w.pixels_covered;
+  if (status == CONIC_OK)
+    status = cli_windows_sum(session->team, &w.windows, &w.counts);
+  conic_source_windows_end(&w.windows);
+  *statistics = w.counts.statistics;
   statistics->ms.frame = 1e3 * (cli_seconds() - start);
   free(w.list);
   free(w.weights);

@@ -2,11 +2,31 @@
 #ifndef CONIC_WINDOWS_TEAM_H
 #define CONIC_WINDOWS_TEAM_H
 
-#include "cli/scene/render_job.h"
+#include "cli/render/gather_picture.h"
+#include "cli/session_team.h"
+#include "source/source_parts.h"
+
+/* What windows are drawn of; other planes are made of these later. */
+#define CLI_WINDOWS_PLANES                                                                                             \
+  (CONIC_DRAWN_PLANES | 1u << CONIC_PLANE_CLUSTER | (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT)))
+
+/* What a process has counted of the windows that it drew; zero at first. */
+typedef struct cli_window_counts {
+  uint64_t n_windows;
+  conic_render_statistics statistics;
+} cli_window_counts;
+
+void cli_windows_count(const conic_source_windows *windows, const conic_render_statistics *drawn,
+                       cli_window_counts *counts);
+/* Collective, with a team; once all are drawn. The first process's counts become the picture's. */
+conic_status cli_windows_sum(cli_team *team, conic_source_windows *windows, cli_window_counts *counts);
+
+/* Of all of the planes, bytes a pixel. */
+size_t cli_pixel_bytes(unsigned planes);
 
 /* Collective: conic_source_draw, after which the first process has the picture and the statistics, to the bits of one
- * process. The others' image is not looked at. */
-conic_status cli_draw_together(cli_session *session, cli_render_job *job, const conic_camera *camera,
+ * process. The others' image may be without planes, and stays as it is. */
+conic_status cli_draw_together(cli_session *session, cli_render_job *job, const cli_looking *looking,
                                conic_image *image, conic_render_statistics *statistics);
 
 #endif

@@ -79,6 +79,9 @@ conic_status cli_accumulate_picture(cli_session *session, struct cli_render_job 
                                     const conic_camera *camera, conic_image *image,
                                     conic_render_statistics *statistics);
 
+/* Removes what a frame's sums were kept in, if they were: it is finished. */
+void cli_accumulate_forget(const struct cli_render_job *job, int i_frame);
+
 /* Says in the picture's header what it is the mean of. */
 void cli_accumulate_describe(const struct cli_render_job *job, conic_image *image);
 

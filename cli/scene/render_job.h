@@ -8,6 +8,7 @@
 #include "cli/scene/accumulate_job.h"
 #include "cli/scene/lamp_job.h"
 #include "cli/scene/top_job.h"
+#include "cli/team_shares.h"
 #include "core/pictures/cryptomatte.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
@@ -26,7 +27,6 @@ typedef struct cli_frames {
 /* What of a render a team shares (cli/render/sharing.h), and what each process had to do with it. */
 typedef enum cli_sharing { CLI_SHARES_NOTHING, CLI_SHARES_FRAMES, CLI_SHARES_SAMPLES, CLI_SHARES_WINDOWS } cli_sharing;
 
-typedef struct cli_shares cli_shares;
 /* Two eyes. */
 typedef struct cli_stereo {
   double distance;    /* from one to the other, in world units; 0: there is one */
@@ -37,6 +37,8 @@ typedef struct cli_stereo {
 
 typedef struct cli_render_job {
   /* What was asked for. */
+  int n_arguments;
+  char **arguments; /* as they were given, the command's name first */
   const char **inputs;
   int n_inputs;
   const char *outputs[CLI_MAX_OUTPUTS];
@@ -86,6 +88,7 @@ typedef struct cli_render_job {
   int is_aov_given, is_samples_given, is_prefilter_given;
   cli_stereo stereo;               /* --stereo */
   cli_accumulate_job accumulating; /* --accumulate */
+  struct cli_kept_frames *kept;    /* --resumable and --resume, of several frames (cli/render/kept_frames.h) */
   unsigned asked_planes;           /* of these, what --aov names */
   unsigned unwritten_planes;       /* drawn for what else is written */
   conic_image_options writing;     /* how pictures are written, but for the tone, which is of rgba alone */
@@ -97,6 +100,7 @@ typedef struct cli_render_job {
   cli_device device;               /* what draws: */
   conic_renderer *renderer;
   unsigned long long budget; /* the view's */
+  int is_memory_given;       /* --memory */
   double deadline;           /* seconds; 0: none */
   double start_seconds;      /* from which it counts */
 
@@ -120,13 +124,13 @@ typedef struct cli_render_job {
   double begun_seconds;                /* when reading began */
   conic_cryptomatte_manifest manifest; /* of the last image */
   uint64_t hashes[CONIC_N_PLANES];     /* of the last image, where they are reported */
+  unsigned banded_planes;              /* of a picture that nobody held: its planes; 0: it was held */
 
   /* Of a team. */
   cli_sharing sharing;
   uint64_t n_units; /* that this process did, */
   double busy_seconds;
-  cli_shares *shares; /* and all processes */
-  int n_shares;
+  cli_team_shares shares; /* what all did */
 } cli_render_job;
 
 /* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */

@@ -15,7 +15,7 @@ typedef struct conic_pool conic_pool;
 /* What the system calls a file, whatever its names. */
 typedef struct conic_file_identity {
   int is_there;
-  uint64_t device, number;
+  uint64_t device, number, n_bytes;
 } conic_file_identity;
 
 /* What begins a block of memory that lasts as long as the context. */
@@ -41,9 +41,12 @@ struct conic_context {
   conic_file_identity replaceable;
   pthread_mutex_t outputs_lock;
   struct conic_output *outputs; /* core/files/file.h: those with temporary files */
+  void (*watch_outputs)(void *cookie, const char *path); /* null: nobody does */
+  void *watch_cookie;
   conic_loan *loans;
   size_t n_loans, loans_room;
-  _Atomic(uint64_t) n_versions; /* conic_context_next_version */
+  _Atomic(uint64_t) n_versions;  /* conic_context_next_version */
+  const struct conic_team *team; /* core/base/team_runs.h; null: there is none */
 };
 
 /* A number for conic_render_options.splats_version, above all that a caller may give and another for each call. */

@@ -8,6 +8,11 @@ int conic_machine_threads(void) {
   return n < 1 ? 1 : (int)n;
 }
 
+uint64_t conic_machine_memory(void) {
+  MEMORYSTATUSEX found = {.dwLength = sizeof found};
+  return GlobalMemoryStatusEx(&found) ? found.ullTotalPhys : 0;
+}
+
 /* Which would need a right of the user's, and memory that is never paged out. */
 void conic_memory_advise_large_pages(void *pointer, size_t bytes) {
   (void)pointer;

@@ -4,6 +4,7 @@
 #define CONIC_TEAM_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "conic/context.h"
 
@@ -20,6 +21,10 @@ typedef struct conic_team {
   /* Collective, which is called by every process in the same order: the bytes of all, each after those of the one
    * before; sizes[i] is their number. Goes to `release`. */
   void *(*collect)(void *data, const void *bytes, size_t n_bytes, size_t *sizes);
+
+  /* Takes note that this process has done with a part of the work, of that name, which stays, since a time of
+   * conic_seconds_now; `number` is what the work grows with. Null: nobody wants to know. */
+  void (*note)(void *data, const char *name, double from, uint64_t number);
 
   /* Where one has no memory for what comes, whoever made the team ends all of it: none of these fails. */
 } conic_team;
@@ -39,6 +44,9 @@ void conic_team_collect(const conic_team *team, const void *bytes, size_t n_byte
 static inline int conic_team_partner(const conic_team *team, int round) {
   return (round - team->index + team->count) % team->count;
 }
+
+/* Calls `note`, if there is one, and returns what time it is; fine where the team is null. */
+double conic_team_note(const conic_team *team, const char *name, double from, uint64_t number);
 
 /* Sends to a partner, who does the same at a time, and receives what it sends. */
 void *conic_team_swap(const conic_team *team, int partner, const void *bytes, size_t n_bytes, size_t *n_received);

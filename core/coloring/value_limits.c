@@ -2,6 +2,13 @@
 
 #include <stdlib.h>
 
+uint64_t conic_value_stride(uint64_t n, uint64_t most) {
+  uint64_t stride = 1;
+  while (n > most * stride)
+    stride *= 2;
+  return stride;
+}
+
 void conic_value_sample_add(conic_value_sample *sample, double value) {
   if (!(value - value == 0.0))
     return;

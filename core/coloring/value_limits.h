@@ -14,6 +14,9 @@ typedef struct conic_value_sample {
   double values[CONIC_MOST_VALUES];
 } conic_value_sample;
 
+/* Of n in a row every how many-th are taken, where that doubles whenever there are more than `most`. */
+uint64_t conic_value_stride(uint64_t n, uint64_t most);
+
 void conic_value_sample_add(conic_value_sample *sample, double value);
 
 /* The 2nd and the 98th percentile of the sample, or its least and largest value where those are the same; both 0 where

@@ -28,6 +28,16 @@ conic_status conic_slots_for(conic_context *context, size_t n_slots, conic_slots
                              &work);
 }
 
+conic_status conic_slots_share(conic_context *context, size_t n_slots, conic_slots_task *task, void *data, double from,
+                               double to, const conic_team_column *columns, size_t n) {
+  slots_work work = {task, data, n_slots};
+  conic_team_loop loop = {"estimate",         from,     to,    (n_slots + CHUNK - 1) / CHUNK,
+                          CHUNKS_A_REPORT,    do_chunk, &work, .n_an_item = CHUNK,
+                          .n_values = n_slots};
+  memcpy(loop.columns, columns, n * sizeof *columns);
+  return conic_team_runs(context, &loop);
+}
+
 conic_status conic_neighbourhood_create(conic_context *context, const float *const positions[3], size_t count,
                                         size_t n_neighbours, conic_neighbourhood *neighbourhood) {
   memset(neighbourhood, 0, sizeof *neighbourhood);
@@ -83,7 +93,10 @@ static void list_slots(void *data, size_t begin, size_t end) {
 conic_status conic_neighbourhood_list(conic_context *context, conic_neighbourhood *neighbourhood, unsigned flags,
                                       double from, double to) {
   listing l = {neighbourhood, flags};
-  return conic_slots_for(context, neighbourhood->tree.n_slots, list_slots, &l, from, to);
+  const conic_team_column columns[] = {
+      {neighbourhood->neighbours, neighbourhood->n_neighbours * sizeof *neighbourhood->neighbours},
+      {neighbourhood->flags, sizeof *neighbourhood->flags}};
+  return conic_slots_share(context, neighbourhood->tree.n_slots, list_slots, &l, from, to, columns, 2);
 }
 
 void conic_neighbourhood_spread(conic_neighbourhood *neighbourhood, unsigned flags, unsigned more) {

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "core/base/threads.h"
+#include "core/base/team_runs.h"
 #include "core/estimate/neighbours.h"
 
 enum { CONIC_MAX_NEIGHBOURS = 64 };
@@ -46,6 +46,11 @@ typedef void conic_slots_task(void *data, size_t begin, size_t end);
 /* Does all slots on all threads, and reports the progress of "estimate". Errors: CANCELLED. */
 conic_status conic_slots_for(conic_context *context, size_t n_slots, conic_slots_task *task, void *data, double from,
                              double to);
+
+/* Likewise what takes long: a team shares it, which makes for each slot the values of n columns
+ * (core/base/team_runs.h), and changes nothing else. Errors: CANCELLED, MEMORY. */
+conic_status conic_slots_share(conic_context *context, size_t n_slots, conic_slots_task *task, void *data, double from,
+                               double to, const conic_team_column *columns, size_t n);
 
 static inline const uint32_t *conic_neighbourhood_of(const conic_neighbourhood *neighbourhood, size_t slot) {
   return neighbourhood->neighbours + slot * neighbourhood->n_neighbours;

@@ -28,7 +28,8 @@ static void guess_slots(void *data, size_t begin, size_t end) {
 }
 
 conic_status conic_normals_guess(conic_context *context, conic_neighbourhood *neighbourhood, double from, double to) {
-  return conic_slots_for(context, neighbourhood->tree.n_slots, guess_slots, neighbourhood, from, to);
+  const conic_team_column column = {neighbourhood->normals, sizeof *neighbourhood->normals};
+  return conic_slots_share(context, neighbourhood->tree.n_slots, guess_slots, neighbourhood, from, to, &column, 1);
 }
 
 /* How two neighbours' normals belong together: the other one is mirrored in the plane half way between the points, as

@@ -97,7 +97,8 @@ static void space_slots(void *data, size_t begin, size_t end) {
 conic_status conic_estimate_spacings(conic_context *context, const conic_neighbourhood *neighbourhood,
                                      double *spacings) {
   spacing_work work = {neighbourhood, spacings};
-  return conic_slots_for(context, neighbourhood->tree.n_slots, space_slots, &work, 0.6, 0.7);
+  const conic_team_column column = {spacings, sizeof *spacings};
+  return conic_slots_share(context, neighbourhood->tree.n_slots, space_slots, &work, 0.6, 0.7, &column, 1);
 }
 
 /* The upper median of the neighbours' spacings. */
@@ -262,7 +263,15 @@ static void spread_duplicates(void *data, size_t begin, size_t end) {
 conic_status conic_estimate_from_neighbours(conic_context *context, conic_estimate *estimate,
                                             const conic_neighbourhood *neighbourhood, const double *spacings) {
   spread_work work = {estimate, neighbourhood, spacings};
-  conic_status status = conic_slots_for(context, neighbourhood->tree.n_slots, spread_slots, &work, 0.7, 0.98);
+  const uint32_t *points = neighbourhood->tree.point_of_slot;
+  conic_team_column columns[8] = {{estimate->states, sizeof *estimate->states, points},
+                                  {estimate->dot, sizeof(float), points}};
+  for (int axis = 0; axis < 3; axis++) {
+    columns[2 + axis] = (conic_team_column){estimate->tangent_u[axis], sizeof(float), points};
+    columns[5 + axis] = (conic_team_column){estimate->tangent_v[axis], sizeof(float), points};
+  }
+  conic_status status =
+      conic_slots_share(context, neighbourhood->tree.n_slots, spread_slots, &work, 0.7, 0.98, columns, 8);
   if (status == CONIC_OK && neighbourhood->tree.n_duplicates)
     status = conic_slots_for(context, neighbourhood->tree.n_points, spread_duplicates, &work, 0.98, 1.0);
   return status;

@@ -147,7 +147,8 @@ static conic_status find_with(conic_context *context, scatter_work *work, float 
         neighbourhood->flags[slot] |= CONIC_SLOT_SCATTERED;
     return CONIC_OK;
   }
-  conic_status status = conic_slots_for(context, n_slots, score_slots, work, from, to);
+  const conic_team_column column = {work->to, sizeof *work->to};
+  conic_status status = conic_slots_share(context, n_slots, score_slots, work, from, to, &column, 1);
   for (int i = 0; i < N_MEANS && status == CONIC_OK; i++) {
     work->from = scores[i % 2];
     work->to = scores[1 - i % 2];

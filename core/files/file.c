@@ -133,6 +133,11 @@ void conic_outputs_give_up(conic_context *context) {
     conic_disk_remove(output->temporary_path);
 }
 
+void conic_outputs_watch(conic_context *context, void (*watch)(void *cookie, const char *path), void *cookie) {
+  context->watch_outputs = watch;
+  context->watch_cookie = cookie;
+}
+
 static conic_status open_temporary(conic_output *output) {
   for (int attempt = 0; attempt < 100; attempt++) {
     conic_memory_release(output->context, output->temporary_path);
@@ -226,6 +231,8 @@ conic_status conic_output_commit(conic_output *output) {
   if (is_wrong)
     status = conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: %s", output->path,
                         errno ? strerror(errno) : "the device failed");
+  else if (output->temporary_path && output->context->watch_outputs)
+    output->context->watch_outputs(output->context->watch_cookie, output->path);
   release_output(output);
   return status;
 }

@@ -28,6 +28,9 @@ conic_status conic_output_end(conic_output *output, conic_status status);
 /* Removes what was written and releases `output`; null is allowed. */
 void conic_output_abandon(conic_output *output);
 
+/* From now on `watch` is told of each file that was committed, by the name that it was opened by; null: nobody is. */
+void conic_outputs_watch(conic_context *context, void (*watch)(void *cookie, const char *path), void *cookie);
+
 /* Removes the temporary files of all outputs, for a program that ends now, whatever its other threads do: no output can
  * be committed, abandoned or opened after this. */
 void conic_outputs_give_up(conic_context *context);

@@ -11,7 +11,7 @@ static int is_file(const conic_file_identity *known, const conic_disk_entry *fou
 }
 
 static conic_file_identity identify(const conic_disk_entry *found) {
-  return (conic_file_identity){1, found->device, found->number};
+  return (conic_file_identity){1, found->device, found->number, found->n_bytes};
 }
 
 void conic_guard_inputs(conic_context *context, const char *replaceable) {
@@ -43,6 +43,13 @@ conic_status conic_guard_note(conic_context *context, const conic_disk_entry *re
 conic_status conic_guard_note_path(conic_context *context, const char *path) {
   conic_disk_entry found;
   return conic_disk_look(path, &found) ? conic_guard_note(context, &found) : CONIC_OK;
+}
+
+uint64_t conic_guard_bytes(const conic_context *context) {
+  uint64_t n_bytes = 0;
+  for (size_t i = 0; i < context->n_inputs; i++)
+    n_bytes += context->inputs[i].n_bytes;
+  return n_bytes;
 }
 
 conic_status conic_guard_check(conic_context *context, const char *path, const conic_disk_entry *existing) {

@@ -15,6 +15,9 @@ conic_status conic_guard_note(conic_context *context, const conic_disk_entry *re
 /* The same of a file by its name; one that is not there is no input. */
 conic_status conic_guard_note_path(conic_context *context, const char *path);
 
+/* How many bytes the files have together that were noted so far. */
+uint64_t conic_guard_bytes(const conic_context *context);
+
 /* Whether a file that is there may be written over: not if it was read. Errors: ARGUMENT. */
 conic_status conic_guard_check(conic_context *context, const char *path, const conic_disk_entry *existing);
 

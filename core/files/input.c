@@ -69,6 +69,13 @@ static conic_status report_progress(conic_input *input) {
   return conic_progress(input->context, "read", fraction < 1.0 ? fraction : 1.0);
 }
 
+static ptrdiff_t read_on(const conic_input *input, size_t n_bytes) {
+  unsigned char *to = input->window + input->filled;
+  return input->has_jumped ? conic_disk_read_at(input->descriptor, to, n_bytes,
+                                                input->start_bytes + input->window_offset + input->filled)
+                           : conic_disk_read(input->descriptor, to, n_bytes);
+}
+
 conic_status conic_input_fill(conic_input *input, size_t count) {
   if (conic_input_available(input) >= count || input->is_at_end)
     return CONIC_OK;
@@ -77,7 +84,7 @@ conic_status conic_input_fill(conic_input *input, size_t count) {
   input->window_offset += input->next;
   input->next = 0;
   while (input->filled < count && !input->is_at_end) {
-    ptrdiff_t n = conic_disk_read(input->descriptor, input->window + input->filled, CONIC_INPUT_WINDOW - input->filled);
+    ptrdiff_t n = read_on(input, CONIC_INPUT_WINDOW - input->filled);
     if (n < 0 && errno == EINTR) { /* whoever waits for a pipe may have been told to stop */
       conic_status status = conic_progress(input->context, "read", 0.0);
       if (status != CONIC_OK)
@@ -115,8 +122,20 @@ uint64_t conic_input_remaining_bytes(const conic_input *input) {
   return offset < input->size_bytes ? input->size_bytes - offset : 0;
 }
 
+/* Past what need not be read. */
+static void jump(conic_input *input, uint64_t count) {
+  input->window_offset += input->next + count;
+  input->next = input->filled = 0;
+  input->has_jumped = 1;
+}
+
 conic_status conic_input_skip(conic_input *input, uint64_t count, uint64_t *skipped) {
-  for (*skipped = 0; *skipped < count;) {
+  *skipped = 0;
+  if (input->has_size && count > CONIC_INPUT_WINDOW && count <= conic_input_remaining_bytes(input)) {
+    jump(input, count);
+    *skipped = count;
+  }
+  while (*skipped < count) {
     conic_status status = conic_input_fill(input, 1);
     if (status != CONIC_OK)
       return status;

@@ -24,6 +24,7 @@ typedef struct conic_input {
   uint64_t reported_bytes; /* when progress was reported last */
   uint64_t line;           /* of the next byte, from 1; counted by the functions for text only */
   int is_at_end;           /* nothing follows the window's bytes */
+  int has_jumped;          /* the descriptor reads on elsewhere than the window does */
   int continues_lines;     /* text: a line that ends with \ goes on in the next */
 } conic_input;
 

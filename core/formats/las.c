@@ -48,6 +48,8 @@ typedef struct las_reader {
   int is_packed; /* LAZ */
   size_t point_bytes;
   uint64_t n_points, points_offset;
+  uint64_t begin, end; /* the points that are read */
+  int has_first;
   int color; /* as in `formats` */
   double scale[3], offset[3];
   double first[3]; /* the first point's integers */
@@ -196,19 +198,33 @@ static void convert(las_reader *reader, const unsigned char *records, size_t ste
     conic_ply_convert(records + i * step, reader->point_bytes, n, type, CONIC_PLY_LITTLE_ENDIAN, reader->block[i]);
 }
 
+/* The file's first point is the origin, whichever are read. */
+static void take_first(las_reader *reader, const unsigned char *record) {
+  double *origin = reader->builder.model->points.origin;
+  convert(reader, record, 4, CONIC_PLY_INT32, 1);
+  for (int axis = 0; axis < 3; axis++) {
+    reader->first[axis] = reader->block[axis][0];
+    origin[axis] = reader->block[axis][0] * reader->scale[axis] + reader->offset[axis];
+  }
+  reader->has_first = 1;
+}
+
+static conic_status take_first_packed(void *reader, const unsigned char *records, size_t n) {
+  take_first(reader, records);
+  (void)n;
+  return CONIC_OK;
+}
+
 /* Differences of the integers are exact, and rounded once. */
 static void store_records(las_reader *reader, const unsigned char *records, size_t n) {
   conic_splats *points = &reader->builder.model->points;
+  if (!reader->has_first)
+    take_first(reader, records);
   convert(reader, records, 4, CONIC_PLY_INT32, n);
-  for (int axis = 0; axis < 3; axis++) {
-    if (conic_builder_points(&reader->builder) == 0) {
-      reader->first[axis] = reader->block[axis][0];
-      points->origin[axis] = reader->block[axis][0] * reader->scale[axis] + reader->offset[axis];
-    }
+  for (int axis = 0; axis < 3; axis++)
     for (size_t i = 0; i < n; i++)
       points->position[axis][points->count + i] =
           (float)((reader->block[axis][i] - reader->first[axis]) * reader->scale[axis]);
-  }
   if (reader->color)
     convert(reader, records + reader->color, 2, CONIC_PLY_UINT16, n);
   for (int channel = 0; channel < 3 && reader->color; channel++)
@@ -240,11 +256,23 @@ static conic_status take_las_records(void *cookie, const unsigned char *records,
   return status;
 }
 
+/* To the first point that is read, past the first of the file. */
+static conic_status begin_plain_las(las_reader *reader) {
+  uint64_t left = reader->begin * reader->point_bytes, skipped;
+  if (reader->begin == 0 || reader->begin >= reader->end)
+    return CONIC_OK;
+  conic_status status = conic_input_fill(reader->input, reader->point_bytes);
+  if (status == CONIC_OK && conic_input_available(reader->input) >= reader->point_bytes)
+    take_first(reader, conic_input_bytes(reader->input));
+  return status == CONIC_OK ? conic_input_skip(reader->input, left, &skipped) : status;
+}
+
 static conic_status read_plain_las(las_reader *reader) {
   conic_input *input = reader->input;
-  conic_status status = CONIC_OK;
-  while (status == CONIC_OK && conic_builder_points(&reader->builder) < reader->n_points) {
-    uint64_t left = reader->n_points - conic_builder_points(&reader->builder);
+  uint64_t n_points = reader->begin < reader->end ? reader->end - reader->begin : 0;
+  conic_status status = begin_plain_las(reader);
+  while (status == CONIC_OK && conic_builder_points(&reader->builder) < n_points) {
+    uint64_t left = n_points - conic_builder_points(&reader->builder);
     status = conic_input_fill(input, reader->point_bytes);
     size_t n = conic_input_available(input) / reader->point_bytes;
     if (status != CONIC_OK)
@@ -274,9 +302,11 @@ static conic_status read_packed_las(las_reader *reader) {
   }
   conic_status status = conic_laz_format_read(input->context, input->name, fields->packing, fields->n_packing,
                                               reader->format, reader->point_bytes, &packing);
-  return status == CONIC_OK
-             ? conic_laz_read(input, &packing, reader->n_points, wanted, reader->is_again, take_las_records, reader)
-             : status;
+  if (status == CONIC_OK && reader->begin > 0)
+    status = conic_laz_read(input, &packing, reader->n_points, 0, 1, CONIC_LAZ_Z, 1, take_first_packed, reader);
+  return status == CONIC_OK ? conic_laz_read(input, &packing, reader->n_points, reader->begin, reader->end, wanted,
+                                             reader->is_again, take_las_records, reader)
+                            : status;
 }
 
 /* Room for all at once, where the file's size bears out their number. What is packed may be far less: then room grows
@@ -293,16 +323,30 @@ static conic_status read_points(las_reader *reader) {
   return status;
 }
 
+static conic_status read_head(las_reader *reader) {
+  conic_status status = read_las_header(reader);
+  if (status == CONIC_OK)
+    status = check_format(reader);
+  if (status == CONIC_OK)
+    status = read_scale(reader);
+  return status == CONIC_OK ? check_sizes(reader) : status;
+}
+
+conic_status conic_las_look(conic_input *input, conic_model_shape *shape) {
+  las_reader reader = {.input = input, .is_again = 1};
+  conic_status status = read_head(&reader);
+  *shape =
+      (conic_model_shape){.can_part = 1, .is_raw = 1, .needs_survey = reader.color != 0, .n_points = reader.n_points};
+  return status;
+}
+
 conic_status conic_las_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
                             conic_model *model) {
   las_reader reader = {.input = input, .is_again = delivery && delivery->is_again};
-  conic_status status = read_las_header(&reader);
-  if (status == CONIC_OK)
-    status = check_format(&reader);
-  if (status == CONIC_OK)
-    status = read_scale(&reader);
-  if (status == CONIC_OK)
-    status = check_sizes(&reader);
+  conic_status status = read_head(&reader);
+  reader.begin = delivery && delivery->range ? delivery->range->first : 0;
+  reader.end =
+      delivery && delivery->range && delivery->range->end < reader.n_points ? delivery->range->end : reader.n_points;
   if (status == CONIC_OK)
     status =
         conic_builder_begin(input->context, model, reader.color ? CONIC_SPLATS_COLORS : 0u, delivery, &reader.builder);

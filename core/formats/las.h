@@ -10,11 +10,15 @@
 
 #include "conic/model.h"
 #include "core/files/input.h"
+#include "core/formats/model_part.h"
 #include "core/splats/builder.h"
 
 /* Reads a model from the start of the file; with a delivery the points go there. On failure *model is for the caller to
  * release. Errors: INPUT, MEMORY, CANCELLED, the receiver's. */
 conic_status conic_las_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
                             conic_model *model);
+
+/* What the header says of a file that stands at its start. Errors: INPUT, CANCELLED. */
+conic_status conic_las_look(conic_input *input, conic_model_shape *shape);
 
 #endif

@@ -4,12 +4,12 @@
 #include "core/assimp/assimp_kinds.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/formats/las.h"
 #include "core/formats/model_loan.h"
+#include "core/formats/model_part.h"
 #include "core/formats/model_read.h"
+#include "core/formats/ply_read.h"
 #include "core/splats/raw_colors.h"
-
-/* Points in memory at a time. */
-enum { BATCH = 1 << 16 };
 
 /* What stands between the reader and the receiver: colours whose scale only the whole file tells. */
 typedef struct streaming {
@@ -20,6 +20,8 @@ typedef struct streaming {
   void *cookie;
   conic_raw_range range;
   conic_raw_scale scale;
+  const conic_points_range *part; /* null: all points */
+  uint64_t n_wanted;
 } streaming;
 
 static conic_status see_colors(void *cookie, const conic_splats *batch) {
@@ -44,9 +46,11 @@ static conic_status decode_batch(void *cookie, const conic_splats *batch) {
 static conic_status pass(streaming *s, conic_input *input, conic_batch_receiver *receive, void *cookie) {
   conic_delivery delivery = {.receive = receive,
                              .cookie = cookie,
-                             .batch = BATCH,
+                             .batch = CONIC_PART_STEP,
                              .is_survey = receive == see_colors,
-                             .is_again = receive == decode_batch};
+                             .is_again = receive == decode_batch,
+                             .range = s->part,
+                             .n_wanted = &s->n_wanted};
   conic_model model;
   conic_status status = conic_model_read_kind(input, s->kind, s->options, &delivery, &model);
   conic_model_release(s->context, &model);
@@ -84,7 +88,7 @@ conic_status conic_mesh_stream(conic_context *context, const char *path, conic_b
                                conic_status (*receive_faces)(void *cookie, const uint32_t (*corners)[3], size_t n),
                                void *cookie) {
   const conic_delivery delivery = {
-      .receive = receive, .cookie = cookie, .batch = BATCH, .receive_faces = receive_faces};
+      .receive = receive, .cookie = cookie, .batch = CONIC_PART_STEP, .receive_faces = receive_faces};
   conic_read_options options;
   conic_input input;
   conic_model model;
@@ -135,6 +139,76 @@ conic_status conic_model_stream(conic_context *context, const char *path, const 
   else if (status == CONIC_OK)
     status = pass_twice(&s, &input, path);
   conic_input_close(&input);
+  conic_memory_release(context, s.scale.table);
+  return status;
+}
+
+/* --- in parts --- */
+
+conic_status conic_model_look(conic_context *context, const char *path, const conic_read_options *options,
+                              conic_model_shape *shape) {
+  conic_read_options settings;
+  conic_input input;
+  conic_model_kind kind;
+  *shape = (conic_model_shape){.can_part = 0};
+  conic_status status = conic_read_options_check(context, path, options, &settings);
+  if (status == CONIC_OK && conic_model_is_lent(context, path))
+    return CONIC_OK;
+  if (status == CONIC_OK)
+    status = conic_input_open(context, path, &input);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_model_find_kind(&input, path, &kind);
+  if (status == CONIC_OK && input.has_size && input.descriptor != STDIN_FILENO && kind == CONIC_MODEL_PLY)
+    status = conic_ply_look(&input, &settings, shape);
+  else if (status == CONIC_OK && input.has_size && input.descriptor != STDIN_FILENO && kind == CONIC_MODEL_LAS)
+    status = conic_las_look(&input, shape);
+  conic_input_close(&input);
+  return status;
+}
+
+static conic_status pass_part(streaming *s, const char *path, conic_batch_receiver *receive, void *cookie) {
+  conic_input input;
+  conic_status status = conic_input_open(s->context, path, &input);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_model_find_kind(&input, path, &s->kind);
+  if (status == CONIC_OK)
+    status = pass(s, &input, receive, cookie);
+  conic_input_close(&input);
+  return status;
+}
+
+conic_status conic_model_survey_part(conic_context *context, const char *path, const conic_read_options *options,
+                                     const conic_points_range *range, conic_model_survey *survey) {
+  conic_read_options settings;
+  streaming s = {.context = context, .options = &settings, .part = range};
+  conic_status status = conic_read_options_check(context, path, options, &settings);
+  if (status == CONIC_OK)
+    status = pass_part(&s, path, see_colors, &s);
+  const conic_model_survey found = {s.n_wanted, s.range};
+  conic_model_survey_add(survey, &found);
+  return status;
+}
+
+void conic_model_survey_add(conic_model_survey *survey, const conic_model_survey *other) {
+  survey->n_wanted += other->n_wanted;
+  conic_raw_colors_unite(&survey->colors, &other->colors);
+}
+
+conic_status conic_model_stream_part(conic_context *context, const char *path, const conic_read_options *options,
+                                     const conic_points_range *range, const conic_model_survey *survey,
+                                     conic_batch_receiver *receive, void *cookie) {
+  conic_read_options settings;
+  conic_model_shape shape;
+  streaming s = {.context = context, .options = &settings, .receive = receive, .cookie = cookie, .part = range};
+  conic_status status = conic_model_look(context, path, options, &shape);
+  if (status == CONIC_OK)
+    status = conic_read_options_check(context, path, options, &settings);
+  if (status == CONIC_OK && shape.needs_survey)
+    status = conic_raw_colors_scale(context, &survey->colors, 0, &s.scale);
+  if (status == CONIC_OK)
+    status = shape.needs_survey ? pass_part(&s, path, decode_batch, &s) : pass_part(&s, path, receive, cookie);
   conic_memory_release(context, s.scale.table);
   return status;
 }

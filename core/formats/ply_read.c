@@ -44,34 +44,76 @@ static conic_status append_block(vertex_reader *reader, size_t n) {
   return status == CONIC_OK ? conic_builder_deliver(reader->builder, 0) : status;
 }
 
-/* Binary rows of one size: column by column, straight from the window. */
-static conic_status read_blocks(vertex_reader *reader) {
+/* The next rows up to before `end`, straight from the window into the block. */
+static conic_status read_block(vertex_reader *reader, uint64_t end, size_t *n_rows) {
   conic_ply_source *source = reader->source;
   conic_input *input = source->input;
   size_t row_bytes = source->element->least_row_bytes;
-  while (source->i_row < source->element->count) {
-    uint64_t left = source->element->count - source->i_row;
-    conic_status status = conic_input_fill(input, row_bytes);
-    size_t n = conic_input_available(input) / row_bytes;
-    if (status != CONIC_OK)
-      return status;
-    if (n == 0)
-      return conic_ply_truncated(source);
-    n = n < CONIC_PLY_BLOCK ? n : CONIC_PLY_BLOCK;
-    n = n < left ? n : (size_t)left;
-    for (int column = 0; column < CONIC_PLY_N_COLUMNS; column++) {
-      int i_property = reader->layout.property[column];
-      if (i_property >= 0)
-        conic_ply_convert(conic_input_bytes(input) + reader->properties[i_property].row_offset, row_bytes, n,
-                          reader->layout.type[column], source->format, reader->block[column]);
-    }
-    status = append_block(reader, n);
-    if (status != CONIC_OK)
-      return status;
-    input->next += n * row_bytes;
-    source->i_row += n;
+  uint64_t left = end - source->i_row;
+  conic_status status = conic_input_fill(input, row_bytes);
+  size_t n = conic_input_available(input) / row_bytes;
+  if (status != CONIC_OK)
+    return status;
+  if (n == 0)
+    return conic_ply_truncated(source);
+  n = n < CONIC_PLY_BLOCK ? n : CONIC_PLY_BLOCK;
+  n = n < left ? n : (size_t)left;
+  for (int column = 0; column < CONIC_PLY_N_COLUMNS; column++) {
+    int i_property = reader->layout.property[column];
+    if (i_property >= 0)
+      conic_ply_convert(conic_input_bytes(input) + reader->properties[i_property].row_offset, row_bytes, n,
+                        reader->layout.type[column], source->format, reader->block[column]);
   }
+  *n_rows = n;
   return CONIC_OK;
+}
+
+static void pass_block(const vertex_reader *reader, size_t n) {
+  conic_ply_source *source = reader->source;
+  source->input->next += n * source->element->least_row_bytes;
+  source->i_row += n;
+}
+
+/* Past rows that are not wanted, of which the first finite position is still the origin. */
+static conic_status pass_rows(vertex_reader *reader, uint64_t end) {
+  conic_ply_source *source = reader->source;
+  conic_splats *points = &reader->builder->model->points;
+  conic_status status = CONIC_OK;
+  while (reader->layout.has_origin_positions && !reader->layout.is_origin_set && source->i_row < end) {
+    size_t n = 0;
+    status = read_block(reader, end, &n);
+    if (status == CONIC_OK)
+      status = conic_builder_reserve_points(reader->builder, n);
+    if (status != CONIC_OK)
+      return status;
+    conic_ply_layout_convert(&reader->layout, (const double(*)[CONIC_PLY_BLOCK])reader->block, n, 0, points);
+    pass_block(reader, n);
+  }
+  uint64_t n_bytes = (end - source->i_row) * source->element->least_row_bytes, skipped;
+  status = conic_input_skip(source->input, n_bytes, &skipped);
+  source->i_row = end;
+  return status == CONIC_OK && skipped < n_bytes ? conic_ply_truncated(source) : status;
+}
+
+/* Binary rows of one size, column by column. */
+static conic_status read_blocks(vertex_reader *reader) {
+  conic_ply_source *source = reader->source;
+  uint64_t count = source->element->count;
+  conic_points_range range = {0, count};
+  if (reader->builder->delivery && reader->builder->delivery->range)
+    range = *reader->builder->delivery->range;
+  range.end = range.end < count ? range.end : count;
+  if (range.first >= range.end)
+    return CONIC_OK;
+  conic_status status = range.first > 0 ? pass_rows(reader, range.first) : CONIC_OK;
+  while (status == CONIC_OK && source->i_row < range.end) {
+    size_t n = 0;
+    status = read_block(reader, range.end, &n);
+    if (status == CONIC_OK)
+      status = append_block(reader, n);
+    pass_block(reader, n);
+  }
+  return status;
 }
 
 /* A list of clip lines, three values each, into the row's record. Both of a row's lists may be there, but one of them
@@ -150,6 +192,11 @@ static conic_status read_rows(vertex_reader *reader) {
   return status;
 }
 
+/* Whether each row is where their number says. */
+static int is_plain(conic_ply_format format, const conic_ply_element *element) {
+  return format != CONIC_PLY_TEXT && !element->has_lists && element->least_row_bytes <= CONIC_INPUT_WINDOW;
+}
+
 static conic_status read_vertices(vertex_reader *reader) {
   const conic_ply_source *source = reader->source;
   const conic_ply_element *element = source->element;
@@ -160,9 +207,7 @@ static conic_status read_vertices(vertex_reader *reader) {
     status = conic_builder_reserve_points_exactly(reader->builder, (size_t)element->count);
   if (status != CONIC_OK)
     return status;
-  int is_plain =
-      source->format != CONIC_PLY_TEXT && !element->has_lists && element->least_row_bytes <= CONIC_INPUT_WINDOW;
-  return is_plain ? read_blocks(reader) : read_rows(reader);
+  return is_plain(source->format, element) ? read_blocks(reader) : read_rows(reader);
 }
 
 /* Elements stand in the file in the header's order; those that mean nothing here are passed over. */
@@ -182,6 +227,8 @@ static conic_status read_elements(vertex_reader *reader, const conic_ply_header 
       status = conic_ply_read_faces(source, header, vertices->count, reader->builder);
     else
       status = conic_ply_skip_element(source, header);
+    if (element == vertices && source->i_row < element->count)
+      return status; /* what follows is for who reads the last part */
   }
   return status;
 }
@@ -230,6 +277,23 @@ conic_status conic_ply_read(conic_input *input, const conic_read_options *option
   if (status != CONIC_OK)
     return status;
   status = read_body(input, options, &header, delivery, model);
+  conic_ply_header_release(input->context, &header);
+  return status;
+}
+
+conic_status conic_ply_look(conic_input *input, const conic_read_options *options, conic_model_shape *shape) {
+  conic_ply_header header;
+  conic_ply_layout layout;
+  conic_status status = conic_ply_header_read(input, &header);
+  if (status != CONIC_OK)
+    return status;
+  const conic_ply_element *vertices = conic_ply_find_element(&header, "vertex");
+  if (vertices && vertices->count <= CONIC_MAX_POINTS && is_plain(header.format, vertices)) {
+    status = conic_ply_layout_find(input, &header, vertices, options, 0, &layout);
+    *shape = (conic_model_shape){.can_part = status == CONIC_OK,
+                                 .is_raw = !(layout.fields & (CONIC_SPLATS_TANGENTS | CONIC_SPLATS_NORMALS)),
+                                 .n_points = vertices->count};
+  }
   conic_ply_header_release(input->context, &header);
   return status;
 }

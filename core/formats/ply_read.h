@@ -4,6 +4,7 @@
 
 #include "conic/model.h"
 #include "core/files/input.h"
+#include "core/formats/model_part.h"
 #include "core/formats/ply_source.h"
 #include "core/splats/builder.h"
 
@@ -11,6 +12,9 @@
  * *model is for the caller to release. Errors: INPUT, MEMORY, CANCELLED, the receiver's. */
 conic_status conic_ply_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
                             conic_model *model);
+
+/* What the header says of a file that stands at its start. Errors: INPUT, MEMORY, CANCELLED. */
+conic_status conic_ply_look(conic_input *input, const conic_read_options *options, conic_model_shape *shape);
 
 /* Reads the elements `face` and `tristrips`: the source stands at the start of the element's rows. Errors: as above. */
 conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_header *header, uint64_t n_vertices,

@@ -113,21 +113,24 @@ void conic_image_release(conic_context *context, conic_image *image) {
 }
 
 /* By words whose bytes may stand the other way round in memory: the last bits of a byte's place are turned. */
-static uint64_t hash_words(const uint8_t *byte, size_t n_bytes, size_t turned) {
-  uint64_t hash = UINT64_C(0xcbf29ce484222325);
+static uint64_t hash_words(uint64_t hash, const uint8_t *byte, size_t n_bytes, size_t turned) {
   for (size_t i = 0; i < n_bytes; i++)
     hash = (hash ^ byte[i ^ turned]) * UINT64_C(0x100000001b3);
   return hash;
 }
 
 uint64_t conic_hash_bytes(const void *bytes, size_t n_bytes) {
-  return hash_words(bytes, n_bytes, 0);
+  return hash_words(CONIC_IMAGE_HASH_START, bytes, n_bytes, 0);
+}
+
+uint64_t conic_image_hash_on(uint64_t hash, const void *values, size_t n_bytes) {
+  return hash_words(hash, values, n_bytes, CONIC_IS_BIG_ENDIAN ? 3 : 0);
 }
 
 uint64_t conic_image_hash(const conic_image *image, conic_plane plane) {
   const conic_plane_description *description = conic_plane_describe(plane);
   if (!description || !image->planes[plane])
     return 0;
-  return hash_words(image->planes[plane], conic_image_pixels(image) * (size_t)description->n_channels * 4,
-                    CONIC_IS_BIG_ENDIAN ? 3 : 0);
+  return conic_image_hash_on(CONIC_IMAGE_HASH_START, image->planes[plane],
+                             conic_image_pixels(image) * (size_t)description->n_channels * 4);
 }

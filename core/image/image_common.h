@@ -34,4 +34,8 @@ int conic_image_most_mib(conic_context *context, const char *path);
 /* 64-bit FNV-1a. */
 uint64_t conic_hash_bytes(const void *bytes, size_t n_bytes);
 
+/* conic_image_hash row by row: of no pixels, and of more that follow, of one plane. */
+#define CONIC_IMAGE_HASH_START UINT64_C(0xcbf29ce484222325)
+uint64_t conic_image_hash_on(uint64_t hash, const void *values, size_t n_bytes);
+
 #endif

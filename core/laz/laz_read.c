@@ -31,7 +31,8 @@ typedef struct laz_reading {
   conic_context *context;
   const conic_laz_format *format;
   packed_bytes from;
-  uint64_t n_points, n_read;
+  uint64_t n_points, n_read; /* n_read: also those that are passed over */
+  uint64_t first, end;       /* that are handed over */
   unsigned wanted;
   size_t piece; /* points */
   int is_again, n_threads;
@@ -194,6 +195,8 @@ static conic_status plan_group(laz_reading *r, laz_group *group) {
     const conic_laz_chunk *chunk = &r->chunks[group->first + group->n];
     if (group->n >= most && n_records + chunk->n_points * r->format->point_bytes > most * USUAL_BYTES)
       break;
+    if (group->n > 0 && r->n_read + n_records / r->format->point_bytes >= r->end)
+      break;
     group->packed_at[group->n] = n_packed;
     group->records_at[group->n] = n_records;
     n_packed += (size_t)chunk->n_bytes;
@@ -204,9 +207,10 @@ static conic_status plan_group(laz_reading *r, laz_group *group) {
 }
 
 static conic_status hand_over(laz_reading *r, const unsigned char *records, size_t n) {
-  conic_status status = n ? r->receive(r->cookie, records, n) : CONIC_OK;
+  uint64_t at = r->n_read, first = at > r->first ? at : r->first, end = at + n < r->end ? at + n : r->end;
   r->n_read += n;
-  return status;
+  return first < end ? r->receive(r->cookie, records + (first - at) * r->format->point_bytes, (size_t)(end - first))
+                     : CONIC_OK;
 }
 
 static conic_status read_group(laz_reading *r, laz_group *group) {
@@ -308,9 +312,13 @@ static conic_status read_chunk(laz_reading *r, uint64_t offset, uint64_t n_point
 
 static conic_status read_listed(laz_reading *r) {
   conic_status status = CONIC_OK;
-  for (size_t i = 0; i < r->n_chunks && status == CONIC_OK;) {
+  for (size_t i = 0; i < r->n_chunks && r->n_read < r->end && status == CONIC_OK;) {
     laz_group group = {.reading = r, .first = i, .n = 1};
     uint64_t n_bytes;
+    if (r->n_read + r->chunks[i].n_points <= r->first) {
+      r->n_read += r->chunks[i++].n_points;
+      continue;
+    }
     status = conic_progress(r->context, "read", (double)r->n_read / (double)r->n_points);
     if (status == CONIC_OK && is_for_group(r, i))
       status = read_group(r, &group);
@@ -328,7 +336,7 @@ static conic_status read_unlisted(laz_reading *r, uint64_t offset) {
   const conic_laz_format *format = r->format;
   int is_counted = format->chunk_points != CONIC_LAZ_VARIABLE;
   conic_status status = CONIC_OK;
-  for (uint64_t i = 0, n_bytes = 0; r->n_read < r->n_points; i++, offset += n_bytes) {
+  for (uint64_t i = 0, n_bytes = 0; r->n_read < r->end; i++, offset += n_bytes) {
     uint64_t left = r->n_points - r->n_read, n_points = left;
     if (is_counted)
       n_points = format->chunk_points < left ? format->chunk_points : left;
@@ -387,27 +395,29 @@ static conic_status read_all_chunks(laz_reading *r) {
   return status;
 }
 
-conic_status conic_laz_read(conic_input *input, const conic_laz_format *format, uint64_t n_points, unsigned wanted,
-                            int is_again, conic_laz_receiver *receive, void *cookie) {
+conic_status conic_laz_read(conic_input *input, const conic_laz_format *format, uint64_t n_points, uint64_t first,
+                            uint64_t end, unsigned wanted, int is_again, conic_laz_receiver *receive, void *cookie) {
   uint64_t start = conic_input_offset(input);
   laz_reading r = {.context = input->context,
                    .format = format,
                    .from = {.input = input, .start = start, .end = input->size_bytes},
                    .n_points = n_points,
+                   .first = first,
+                   .end = end < n_points ? end : n_points,
                    .wanted = wanted,
                    .is_again = is_again,
                    .receive = receive,
                    .cookie = cookie};
   size_t piece = PIECE_BYTES / format->point_bytes;
   r.piece = piece ? piece : 1;
-  if (n_points == 0)
+  if (r.first >= r.end)
     return CONIC_OK;
   conic_status status = input->has_size ? CONIC_OK : hold_pipe(&r.from);
   if (status == CONIC_OK)
     status = make_decoders(&r);
   if (status == CONIC_OK)
     status = read_all_chunks(&r);
-  if (status == CONIC_OK && r.n_read < n_points && r.n_chunks > 0)
+  if (status == CONIC_OK && r.n_read < r.end && r.n_chunks > 0)
     laz_warn(&r, "the file has fewer points than its header counts");
   release_reading(&r);
   return status;

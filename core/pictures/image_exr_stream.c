@@ -30,6 +30,8 @@ static int64_t write_bytes(exr_const_context_t file, void *data, const void *byt
   (void)file;
   (void)report;
   errno = 0;
+  if (!stream->file)
+    return (int64_t)n_bytes;
   if ((int64_t)offset != stream->position && fseeko(stream->file, (off_t)offset, SEEK_SET) != 0) {
     stream->error = errno;
     return -1;

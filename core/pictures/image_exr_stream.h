@@ -19,7 +19,7 @@
 typedef struct conic_exr_stream {
   conic_context *context;
   const char *path;
-  FILE *file;       /* of the caller */
+  FILE *file;       /* of the caller; null: what is written goes nowhere */
   int64_t position; /* of `file`, for writing */
   int error;        /* errno of the first failed access */
   atomic_flag has_message;

@@ -16,6 +16,9 @@
 #include "core/pictures/image_channels.h"
 #include "core/pictures/image_exr_stream.h"
 
+/* Chunks that are compressed side by side take no more than this of pixels, where they are so small. */
+enum { CHUNKS_BYTES = 1 << 25 };
+
 /* zlib's level. 4, the library's default, makes files at most 5 % smaller and takes up to a half longer. */
 enum { ZIP_LEVEL = 2 };
 
@@ -32,8 +35,8 @@ struct conic_exr_bands {
   conic_image_options options;
   unsigned planes;
   int width, height;
-  conic_output *output;
-  FILE *spool; /* what is written to, where the output cannot be gone back in; null: the output */
+  conic_output *output; /* null: there is none to write */
+  FILE *spool;          /* what is written to, where the output cannot be gone back in; null: the output */
   conic_exr_stream stream;
   exr_context_t file;
   exr_chunk *chunks;
@@ -153,42 +156,61 @@ static void encode_chunk(void *data, size_t i_item, int i_thread) {
     chunk->result = exr_encoding_run(bands->file, 0, &chunk->pipeline);
 }
 
-/* Compresses some chunks of the band side by side, and writes them. */
-static exr_result_t write_chunks(conic_exr_bands *bands) {
-  exr_result_t result = EXR_ERR_SUCCESS;
+/* Compresses the next chunks before `end` side by side. Returns how many. */
+static size_t pack_chunks(conic_exr_bands *bands, int *y, int end, int is_alone, exr_result_t *result) {
   size_t n = 0;
-  for (int end = bands->band_y + bands->band->height;
-       n < bands->n_chunks && bands->next_y < end && result == EXR_ERR_SUCCESS; n++) {
-    result = exr_write_scanline_chunk_info(bands->file, 0, bands->next_y, &bands->chunks[n].info);
-    bands->next_y = bands->chunks[n].info.start_y + bands->chunks[n].info.height;
+  for (*result = EXR_ERR_SUCCESS; n < bands->n_chunks && *y < end && *result == EXR_ERR_SUCCESS; n++) {
+    *result = exr_write_scanline_chunk_info(bands->file, 0, *y, &bands->chunks[n].info);
+    *y = bands->chunks[n].info.start_y + bands->chunks[n].info.height;
   }
-  if (result == EXR_ERR_SUCCESS)
+  for (size_t i = 0; i < n && *result == EXR_ERR_SUCCESS && is_alone; i++)
+    encode_chunk(bands, i, 0);
+  if (*result == EXR_ERR_SUCCESS && !is_alone)
     conic_parallel_for(bands->context, n, encode_chunk, bands);
-  for (size_t i = 0; i < n && result == EXR_ERR_SUCCESS; i++) {
-    const exr_chunk *chunk = &bands->chunks[i];
-    result = chunk->result;
-    if (result == EXR_ERR_SUCCESS)
-      result = exr_write_scanline_chunk(bands->file, 0, chunk->info.start_y, chunk->pipeline.compressed_buffer,
-                                        chunk->pipeline.compressed_bytes);
+  return n;
+}
+
+conic_status conic_exr_pack(conic_exr_bands *bands, const conic_image *image, int first, int begin, int end,
+                            int is_alone, conic_exr_receiver *receive, void *cookie) {
+  exr_result_t result = EXR_ERR_SUCCESS;
+  bands->band = image;
+  bands->band_y = first;
+  for (int y = begin; y < end;) {
+    conic_status status =
+        is_alone ? CONIC_OK : conic_progress(bands->context, "write", (double)y / (double)bands->height);
+    size_t n = status == CONIC_OK ? pack_chunks(bands, &y, end, is_alone, &result) : 0;
+    for (size_t i = 0; i < n && status == CONIC_OK; i++) {
+      const exr_chunk *chunk = &bands->chunks[i];
+      result = result == EXR_ERR_SUCCESS ? chunk->result : result;
+      status = result == EXR_ERR_SUCCESS ? receive(cookie, chunk->info.start_y, chunk->info.height,
+                                                   chunk->pipeline.compressed_buffer, chunk->pipeline.compressed_bytes)
+                                         : conic_exr_fail(&bands->stream, result, "write", CONIC_ERROR_ARGUMENT);
+    }
+    if (status != CONIC_OK)
+      return status;
   }
-  return result;
+  return CONIC_OK;
+}
+
+conic_status conic_exr_bands_append_packed(conic_exr_bands *bands, int y, int n_rows, const void *bytes,
+                                           size_t n_bytes) {
+  if (y != bands->next_y)
+    return conic_fail(bands->context, CONIC_ERROR_ARGUMENT, "%s: cannot write: no such band", bands->path);
+  exr_result_t result = exr_write_scanline_chunk(bands->file, 0, y, bytes, n_bytes);
+  bands->next_y = y + n_rows;
+  return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&bands->stream, result, "write", CONIC_ERROR_ARGUMENT);
+}
+
+static conic_status append_next(void *cookie, int y, int n_rows, const void *bytes, size_t n_bytes) {
+  return conic_exr_bands_append_packed(cookie, y, n_rows, bytes, n_bytes);
 }
 
 conic_status conic_exr_bands_append(conic_exr_bands *bands, const conic_image *band) {
-  exr_result_t result = EXR_ERR_SUCCESS;
   int end = bands->next_y + band->height;
   if (band->width != bands->width || end > bands->height || bands->planes & ~conic_image_planes(band) ||
       (end < bands->height && band->height % CONIC_EXR_BAND != 0))
     return conic_fail(bands->context, CONIC_ERROR_ARGUMENT, "%s: cannot write: no such band", bands->path);
-  bands->band = band;
-  bands->band_y = bands->next_y;
-  while (bands->next_y < end && result == EXR_ERR_SUCCESS) {
-    conic_status status = conic_progress(bands->context, "write", (double)bands->next_y / (double)bands->height);
-    if (status != CONIC_OK)
-      return status;
-    result = write_chunks(bands);
-  }
-  return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&bands->stream, result, "write", CONIC_ERROR_ARGUMENT);
+  return conic_exr_pack(bands, band, bands->next_y, bands->next_y, end, 0, append_next, bands);
 }
 
 /* An EXR's beginning says where its parts are, which cannot be gone back to in what is like a pipe. */
@@ -203,15 +225,33 @@ static conic_status choose_stream(conic_exr_bands *bands, FILE **stream) {
                                    bands->path, strerror(errno));
 }
 
-static conic_status begin_file(conic_exr_bands *bands, const conic_image *header) {
+/* Pixels of a chunk. */
+static uint64_t chunk_bytes(const conic_exr_bands *bands) {
+  conic_compression compression = bands->options.compression;
+  uint64_t n_rows = compression == CONIC_COMPRESSION_PIZ                                             ? 32
+                    : compression == CONIC_COMPRESSION_ZIP || compression == CONIC_COMPRESSION_PXR24 ? 16
+                                                                                                     : 1;
+  uint64_t n_values = 0;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    n_values += bands->planes >> i & 1 ? (uint64_t)conic_plane_describe((conic_plane)i)->n_channels : 0;
+  return 4 * n_values * n_rows * (uint64_t)bands->width;
+}
+
+/* The pixels in the file's order, and compressed, and what that takes. */
+uint64_t conic_exr_packer_bytes(const conic_exr_bands *bands) {
+  return 3 * bands->n_chunks * chunk_bytes(bands);
+}
+
+static conic_status begin_file(conic_exr_bands *bands, const conic_image *header, int is_packer) {
   exr_context_initializer_t settings;
-  FILE *stream;
-  conic_status status = conic_output_open(bands->context, bands->path, &bands->output);
-  if (status == CONIC_OK)
+  FILE *stream = NULL;
+  conic_status status = is_packer ? CONIC_OK : conic_output_open(bands->context, bands->path, &bands->output);
+  if (status == CONIC_OK && !is_packer)
     status = choose_stream(bands, &stream);
   if (status != CONIC_OK)
     return status;
-  bands->n_chunks = 2 * (size_t)conic_context_threads(bands->context);
+  uint64_t most = CHUNKS_BYTES / chunk_bytes(bands) + 1, wanted = 2 * (uint64_t)conic_context_threads(bands->context);
+  bands->n_chunks = (size_t)(wanted < most ? wanted : most);
   bands->chunks = conic_memory_allocate_zeroed(bands->context, bands->n_chunks, sizeof *bands->chunks);
   if (!bands->chunks)
     return CONIC_ERROR_MEMORY;
@@ -222,8 +262,8 @@ static conic_status begin_file(conic_exr_bands *bands, const conic_image *header
   return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&bands->stream, result, "write", CONIC_ERROR_ARGUMENT);
 }
 
-conic_status conic_exr_bands_open(conic_context *context, const char *path, const conic_image *header, unsigned planes,
-                                  const conic_image_options *options, conic_exr_bands **bands) {
+static conic_status open_bands(conic_context *context, const char *path, const conic_image *header, unsigned planes,
+                               const conic_image_options *options, int is_packer, conic_exr_bands **bands) {
   *bands = NULL;
   conic_status status = conic_exr_check(context, path, planes, options);
   if (status != CONIC_OK)
@@ -237,12 +277,23 @@ conic_status conic_exr_bands_open(conic_context *context, const char *path, cons
   opened->planes = planes;
   opened->width = header->width;
   opened->height = header->height;
-  status = begin_file(opened, header);
+  status = begin_file(opened, header, is_packer);
   if (status == CONIC_OK)
     *bands = opened;
   else
     conic_exr_bands_end(opened, status);
   return status;
+}
+
+conic_status conic_exr_bands_open(conic_context *context, const char *path, const conic_image *header, unsigned planes,
+                                  const conic_image_options *options, conic_exr_bands **bands) {
+  return open_bands(context, path, header, planes, options, 0, bands);
+}
+
+conic_status conic_exr_packer_open(conic_context *context, int width, int height, unsigned planes,
+                                   const conic_image_options *options, conic_exr_bands **bands) {
+  const conic_image header = {.width = width, .height = height};
+  return open_bands(context, "exr", &header, planes, options, 1, bands);
 }
 
 static conic_status copy_spool(conic_exr_bands *bands) {
@@ -264,6 +315,8 @@ static conic_status finish_file(conic_exr_bands *bands, conic_status status) {
     if (bands->chunks[i].pipeline.context)
       exr_encoding_destroy(bands->file, &bands->chunks[i].pipeline);
   exr_result_t result = bands->file ? exr_finish(&bands->file) : EXR_ERR_SUCCESS;
+  if (!bands->output)
+    return status;
   if (status == CONIC_OK && result != EXR_ERR_SUCCESS)
     status = conic_exr_fail(&bands->stream, result, "write", CONIC_ERROR_ARGUMENT);
   if (status == CONIC_OK && bands->next_y < bands->height)
@@ -321,8 +374,32 @@ conic_status conic_exr_bands_open(conic_context *context, const char *path, cons
   return conic_exr_check(context, path, planes, options);
 }
 
+conic_status conic_exr_packer_open(conic_context *context, int width, int height, unsigned planes,
+                                   const conic_image_options *options, conic_exr_bands **bands) {
+  (void)width, (void)height;
+  *bands = NULL;
+  return conic_exr_check(context, "exr", planes, options);
+}
+
 conic_status conic_exr_bands_append(conic_exr_bands *bands, const conic_image *band) {
   (void)bands, (void)band;
+  return CONIC_ERROR_UNSUPPORTED;
+}
+
+uint64_t conic_exr_packer_bytes(const conic_exr_bands *bands) {
+  (void)bands;
+  return 0;
+}
+
+conic_status conic_exr_pack(conic_exr_bands *bands, const conic_image *image, int first, int begin, int end,
+                            int is_alone, conic_exr_receiver *receive, void *cookie) {
+  (void)bands, (void)image, (void)first, (void)begin, (void)end, (void)is_alone, (void)receive, (void)cookie;
+  return CONIC_ERROR_UNSUPPORTED;
+}
+
+conic_status conic_exr_bands_append_packed(conic_exr_bands *bands, int y, int n_rows, const void *bytes,
+                                           size_t n_bytes) {
+  (void)bands, (void)y, (void)n_rows, (void)bytes, (void)n_bytes;
   return CONIC_ERROR_UNSUPPORTED;
 }
 

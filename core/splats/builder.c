@@ -40,6 +40,10 @@ conic_status conic_builder_deliver(conic_builder *builder, int is_last) {
   if (points->values && !delivery->is_survey)
     conic_point_values_settle(points);
   conic_status status = points->count > 0 ? delivery->receive(delivery->cookie, points) : CONIC_OK;
+  if (delivery->n_wanted && points->values && delivery->is_survey)
+    conic_point_values_settle(points);
+  if (delivery->n_wanted)
+    *delivery->n_wanted += points->count;
   points->count = points->n_clips = 0;
   return status;
 }

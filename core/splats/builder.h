@@ -5,14 +5,21 @@
 #include "conic/model.h"
 #include "core/splats/point_values.h"
 
+/* Some of a file's points in a row, counted as they stand there, wanted or not: from `first` to before `end`. */
+typedef struct conic_points_range {
+  uint64_t first, end;
+} conic_points_range;
+
 /* Where a file's points go that are not kept: see conic_model_stream. All kinds of points but PLY deliver
  * colours as they stand in the file. */
 typedef struct conic_delivery {
   conic_batch_receiver *receive;
   void *cookie;
-  size_t batch;  /* points that are handed over at a time */
-  int is_survey; /* all points are looked at, wanted or not */
-  int is_again;  /* the file has been read before: what can be told of it has been */
+  size_t batch;                    /* points that are handed over at a time */
+  int is_survey;                   /* all points are looked at, wanted or not */
+  int is_again;                    /* the file has been read before: what can be told of it has been */
+  const conic_points_range *range; /* which points go there, of a PLY or LAS; null: all */
+  uint64_t *n_wanted;              /* counts those that are wanted; or null */
   /* A PLY's triangles, some at a time; or null: they are passed over. */
   conic_status (*receive_faces)(void *cookie, const uint32_t (*corners)[3], size_t n);
 } conic_delivery;

@@ -21,6 +21,12 @@ void conic_raw_colors_see(const conic_splats *points, conic_raw_range *range) {
     }
 }
 
+void conic_raw_colors_unite(conic_raw_range *range, const conic_raw_range *other) {
+  range->largest = other->largest > range->largest ? other->largest : range->largest;
+  range->has_low_bits |= other->has_low_bits;
+  range->has_two_bytes |= other->has_two_bytes;
+}
+
 static void drop_colors(conic_context *context, conic_splats *points) {
   for (int channel = 0; channel < 3; channel++) {
     conic_memory_release(context, points->color[channel]);

@@ -13,6 +13,8 @@ typedef struct conic_raw_range {
 } conic_raw_range;
 
 void conic_raw_colors_see(const conic_splats *points, conic_raw_range *range);
+/* Adds what others have been seen to be. */
+void conic_raw_colors_unite(conic_raw_range *range, const conic_raw_range *other);
 
 /* How to decode values of that range: what they are fractions of, and the linear value of every whole one up to it,
  * which is null where the colours mean nothing. The caller releases `table`. Errors: MEMORY. */

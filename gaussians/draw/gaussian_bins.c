@@ -17,15 +17,31 @@ typedef struct bin_job {
 
 enum { AHEAD = 16 };
 
+/* Of the window's tiles along an axis, the first that a box meets, and where it ends. */
+static size_t first_in(size_t first_pixel, size_t first_tile) {
+  size_t tile = first_pixel / CONIC_GAUSSIAN_TILE;
+  return tile > first_tile ? tile - first_tile : 0;
+}
+
+static size_t end_in(size_t last_pixel, size_t first_tile, size_t n_tiles) {
+  size_t end = last_pixel / CONIC_GAUSSIAN_TILE + 1 - first_tile;
+  return end < n_tiles ? end : n_tiles;
+}
+
 static void visit(const bin_job *j, size_t i_run, int writes) {
-  size_t *places = &j->places[i_run * j->bins->n_tiles], across = j->bins->n_tiles_x;
+  size_t *places = &j->places[i_run * j->bins->n_tiles], across = j->bins->n_tiles_x,
+         down = j->bins->n_tiles / j->bins->n_tiles_x;
   size_t end = (i_run + 1) * j->a_run < j->n ? (i_run + 1) * j->a_run : j->n;
   for (size_t i = i_run * j->a_run; i < end; i++) {
     const conic_gaussian_footprint *f = &j->footprints[j->order[i].value];
     if (i + AHEAD < end) /* they lie all over the memory */
       __builtin_prefetch(j->footprints[j->order[i + AHEAD].value].box);
-    for (size_t y = f->box[0][1] / CONIC_GAUSSIAN_TILE; y <= f->box[1][1] / CONIC_GAUSSIAN_TILE; y++)
-      for (size_t x = f->box[0][0] / CONIC_GAUSSIAN_TILE; x <= f->box[1][0] / CONIC_GAUSSIAN_TILE; x++) {
+    const size_t x_begin = first_in(f->box[0][0], j->bins->first_x),
+                 x_end = end_in(f->box[1][0], j->bins->first_x, across);
+    const size_t y_begin = first_in(f->box[0][1], j->bins->first_y),
+                 y_end = end_in(f->box[1][1], j->bins->first_y, down);
+    for (size_t y = y_begin; y < y_end; y++)
+      for (size_t x = x_begin; x < x_end; x++) {
         size_t *place = &places[y * across + x];
         if (writes)
           j->bins->entries[*place] = j->order[i].value;
@@ -58,12 +74,15 @@ static size_t place_counts(const bin_job *j) {
 }
 
 conic_status conic_gaussian_bins_make(conic_context *context, const conic_gaussian_footprint *footprints,
-                                      const conic_radix_item *order, size_t n, int width, int height,
+                                      const conic_radix_item *order, size_t n, const conic_gaussian_window *window,
                                       conic_gaussian_bins *bins) {
   enum { LEAST_RUN = 16384, MOST_RUNS = 64 };
   bin_job j = {.footprints = footprints, .order = order, .n = n, .bins = bins};
-  bins->n_tiles_x = ((size_t)width + CONIC_GAUSSIAN_TILE - 1) / CONIC_GAUSSIAN_TILE;
-  bins->n_tiles = bins->n_tiles_x * (((size_t)height + CONIC_GAUSSIAN_TILE - 1) / CONIC_GAUSSIAN_TILE);
+  bins->first_x = (size_t)window->begin[0] / CONIC_GAUSSIAN_TILE;
+  bins->first_y = (size_t)window->begin[1] / CONIC_GAUSSIAN_TILE;
+  bins->n_tiles_x = ((size_t)window->end[0] + CONIC_GAUSSIAN_TILE - 1) / CONIC_GAUSSIAN_TILE - bins->first_x;
+  bins->n_tiles =
+      bins->n_tiles_x * (((size_t)window->end[1] + CONIC_GAUSSIAN_TILE - 1) / CONIC_GAUSSIAN_TILE - bins->first_y);
   j.a_run = n / MOST_RUNS + 1 > LEAST_RUN ? n / MOST_RUNS + 1 : LEAST_RUN;
   j.n_runs = (n + j.a_run - 1) / j.a_run;
   bins->tile_begin = conic_memory_allocate(context, bins->n_tiles + 1, sizeof *bins->tile_begin);

@@ -11,15 +11,16 @@
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
 #include "gaussians/draw/gaussian_device.h"
+#include "gaussians/draw/gaussian_parts.h"
 #include "gaussians/draw/view_rays.h"
 
 enum { SET_UP_RUN = 2048 };
 
-typedef struct frame {
+struct conic_gaussian_picture {
   conic_context *context;
   const conic_gaussians *set;
-  const conic_gaussian_options *options;
-  conic_gaussian_planes *planes;
+  conic_gaussian_options options;
+  conic_camera camera;
   conic_gaussian_view view;
   conic_gaussian_kernels kernels;
   conic_gaussian_statistics statistics;
@@ -31,11 +32,24 @@ typedef struct frame {
   conic_gaussian_filter *filters;
   conic_gaussian_sight *sights;
   float (*normals)[3], *keys;
-  size_t *n_of_run, *n_skipped_of_run, n_runs, n;
+  size_t *n_of_run, *n_skipped_of_run, *n_entries_of_run, n_runs, n;
+  int has_normals;
+  /* Of the window that is drawn. */
+  const conic_gaussian_window *window;
+  conic_gaussian_planes *planes;
   conic_radix_item *order;
+  size_t n_ordered;
   conic_gaussian_bins bins;
   void **rooms; /* by thread */
-} frame;
+};
+
+typedef conic_gaussian_picture frame;
+
+static size_t count_tiles(const conic_gaussian_footprint *f) {
+  size_t across = f->box[1][0] / CONIC_GAUSSIAN_TILE - f->box[0][0] / CONIC_GAUSSIAN_TILE + 1u,
+         down = f->box[1][1] / CONIC_GAUSSIAN_TILE - f->box[0][1] / CONIC_GAUSSIAN_TILE + 1u;
+  return across * down;
+}
 
 static void set_up_run(void *data, size_t i_run, int i_thread) {
   frame *f = data;
@@ -51,6 +65,7 @@ static void set_up_run(void *data, size_t i_run, int i_thread) {
                               f->filters ? &f->filters[to] : &unused_filter, f->sights ? &f->sights[to] : &unused_sight,
                               f->normals ? f->normals[to] : NULL);
     f->n_skipped_of_run[i_run] += fate == CONIC_GAUSSIAN_SKIPPED;
+    f->n_entries_of_run[i_run] += fate == CONIC_GAUSSIAN_DRAWN ? count_tiles(&f->footprints[to]) : 0;
     to += fate == CONIC_GAUSSIAN_DRAWN;
   }
   f->n_of_run[i_run] = to - begin;
@@ -65,13 +80,15 @@ static conic_status set_up_all(frame *f) {
   is_done &= (f->n_of_run = conic_memory_allocate_zeroed(f->context, f->n_runs, sizeof *f->n_of_run)) != NULL;
   is_done &=
       (f->n_skipped_of_run = conic_memory_allocate_zeroed(f->context, f->n_runs, sizeof *f->n_skipped_of_run)) != NULL;
+  is_done &=
+      (f->n_entries_of_run = conic_memory_allocate_zeroed(f->context, f->n_runs, sizeof *f->n_entries_of_run)) != NULL;
   if (f->shape == CONIC_SHAPE_SIGHT)
     is_done &= (f->sights = conic_memory_allocate(f->context, count, sizeof *f->sights)) != NULL;
   else if (f->shape != CONIC_SHAPE_ELLIPSE)
     is_done &= (f->rays = conic_memory_allocate(f->context, count, sizeof *f->rays)) != NULL;
   if (f->shape == CONIC_SHAPE_FILTERED)
     is_done &= (f->filters = conic_memory_allocate(f->context, count, sizeof *f->filters)) != NULL;
-  if (f->planes->normal)
+  if (f->has_normals)
     is_done &= (f->normals = conic_memory_allocate(f->context, count, sizeof *f->normals)) != NULL;
   if (!is_done)
     return CONIC_ERROR_MEMORY;
@@ -79,6 +96,7 @@ static conic_status set_up_all(frame *f) {
   for (size_t run = 0; run < f->n_runs; run++) {
     f->n += f->n_of_run[run];
     f->statistics.gaussians_skipped += f->n_skipped_of_run[run];
+    f->statistics.entries += f->n_entries_of_run[run];
   }
   f->statistics.gaussians_drawn = f->n;
   f->statistics.gaussians_culled = count - f->n - f->statistics.gaussians_skipped;
@@ -91,20 +109,27 @@ static uint64_t key_of(float key) {
   return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
+static int meets_window(const conic_gaussian_footprint *f, const conic_gaussian_window *w) {
+  return f->box[0][0] < w->end[0] && f->box[1][0] >= w->begin[0] && f->box[0][1] < w->end[1] &&
+         f->box[1][1] >= w->begin[1];
+}
+
+/* Of what meets the window. */
 static conic_status order_footprints(frame *f) {
   f->order = conic_memory_allocate(f->context, f->n, sizeof *f->order);
   if (!f->order)
     return CONIC_ERROR_MEMORY;
-  size_t n = 0;
+  f->n_ordered = 0;
   for (size_t run = 0; run < f->n_runs; run++)
     for (size_t i = run * SET_UP_RUN; i < run * SET_UP_RUN + f->n_of_run[run]; i++)
-      f->order[n++] = (conic_radix_item){key_of(f->keys[i]), (uint32_t)i};
-  return conic_radix_sort(f->context, f->order, n, 32);
+      if (meets_window(&f->footprints[i], f->window))
+        f->order[f->n_ordered++] = (conic_radix_item){key_of(f->keys[i]), (uint32_t)i};
+  return conic_radix_sort(f->context, f->order, f->n_ordered, 32);
 }
 
 static conic_gaussian_target target_of(const frame *f) {
   const conic_gaussian_planes *p = f->planes;
-  const float *background = f->options->background;
+  const float *background = f->options.background;
   return (conic_gaussian_target){p->width,    p->height,       {background[0], background[1], background[2]},
                                  p->rgb,      p->transparency, p->z,
                                  p->median_z, p->inverse_z,    p->normal,
@@ -119,14 +144,15 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
   frame *f = data;
   const conic_gaussian_target target = target_of(f);
   conic_gaussian_tile tile;
-  conic_gaussian_tile_begin(&tile, (int)(i_tile % f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE,
-                            (int)(i_tile / f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE);
+  const size_t x = f->bins.first_x + i_tile % f->bins.n_tiles_x, y = f->bins.first_y + i_tile / f->bins.n_tiles_x;
+  const conic_view_rays *rays = f->view.rays;
+  conic_gaussian_tile_begin(&tile, (int)x * CONIC_GAUSSIAN_TILE, (int)y * CONIC_GAUSSIAN_TILE);
   conic_gaussian_list list = {.rules = f->view.rules,
                               .footprints = f->footprints,
                               .rays = f->rays,
                               .filters = f->filters,
                               .sights = f->sights,
-                              .tile_rays = f->view.rays ? &f->view.rays->tiles[i_tile] : NULL,
+                              .tile_rays = rays ? &rays->tiles[y * (size_t)rays->n_tiles[0] + x] : NULL,
                               .is_parallel = f->view.is_parallel,
                               .normals = (const float(*)[3])f->normals,
                               .wants_all = wants_all(f->planes),
@@ -134,6 +160,8 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
                               .n = f->bins.tile_begin[i_tile + 1] - f->bins.tile_begin[i_tile],
                               .room = f->rooms ? f->rooms[i_thread] : NULL};
   f->kernels.composite[f->shape](&list, &tile);
+  tile.x -= f->window->begin[0]; /* where the planes begin */
+  tile.y -= f->window->begin[1];
   conic_gaussian_tile_end(&target, &tile);
 }
 
@@ -172,41 +200,55 @@ static conic_status composite_on_device(const frame *f) {
                                                   .wants_all = wants_all(f->planes),
                                                   .bins = &f->bins,
                                                   .target = target_of(f)};
-  return f->options->device->composite(f->options->device, &composition);
+  return f->options.device->composite(f->options.device, &composition);
 }
 
-static void release_frame(frame *f) {
-  void *const all[] = {f->footprints,       f->keys, f->rays, f->filters, f->sights, f->normals, f->n_of_run,
-                       f->n_skipped_of_run, f->order};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    conic_memory_release(f->context, all[i]);
+static void release_window(frame *f) {
+  conic_memory_release(f->context, f->order);
+  f->order = NULL;
   for (int i = 0; f->rooms && i < conic_context_threads(f->context); i++)
     conic_memory_release(f->context, f->rooms[i]);
   conic_memory_release(f->context, f->rooms);
+  f->rooms = NULL;
   conic_gaussian_bins_release(f->context, &f->bins);
-  conic_view_rays_release(f->context, &f->view_rays);
 }
 
-static conic_status draw_scene(frame *f) {
+void conic_gaussian_picture_release(conic_gaussian_picture *f) {
+  if (!f)
+    return;
+  void *const all[] = {f->footprints,      f->keys,    f->rays,     f->filters,
+                       f->sights,          f->normals, f->n_of_run, f->n_skipped_of_run,
+                       f->n_entries_of_run};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+    conic_memory_release(f->context, all[i]);
+  conic_view_rays_release(f->context, &f->view_rays);
+  conic_memory_release(f->context, f);
+}
+
+const conic_gaussian_statistics *conic_gaussian_picture_statistics(const conic_gaussian_picture *f) {
+  return &f->statistics;
+}
+
+static conic_status draw_window(frame *f) {
   double begin = conic_seconds_now(), now;
-  conic_status status = f->view.rays ? conic_view_rays_make(f->context, f->view.camera, &f->view_rays) : CONIC_OK;
+  conic_status status = order_footprints(f);
+  f->statistics.seconds_sort += (now = conic_seconds_now()) - begin;
   if (status == CONIC_OK)
-    status = set_up_all(f);
-  f->statistics.seconds_setup = (now = conic_seconds_now()) - begin;
-  if (status == CONIC_OK)
-    status = order_footprints(f);
-  f->statistics.seconds_sort = conic_seconds_now() - now;
+    status = conic_gaussian_bins_make(f->context, f->footprints, f->order, f->n_ordered, f->window, &f->bins);
+  f->statistics.seconds_bin += conic_seconds_now() - now;
   now = conic_seconds_now();
   if (status == CONIC_OK)
-    status = conic_gaussian_bins_make(f->context, f->footprints, f->order, f->n, f->planes->width, f->planes->height,
-                                      &f->bins);
-  f->statistics.seconds_bin = conic_seconds_now() - now;
-  now = conic_seconds_now();
-  if (status == CONIC_OK) {
-    f->statistics.entries = f->bins.tile_begin[f->bins.n_tiles];
-    status = f->options->device ? composite_on_device(f) : composite_here(f);
-  }
-  f->statistics.seconds_composite = conic_seconds_now() - now;
+    status = f->options.device ? composite_on_device(f) : composite_here(f);
+  f->statistics.seconds_composite += conic_seconds_now() - now;
+  return status;
+}
+
+conic_status conic_gaussian_picture_draw(conic_gaussian_picture *f, const conic_gaussian_window *window,
+                                         conic_gaussian_planes *planes) {
+  f->window = window;
+  f->planes = planes;
+  conic_status status = draw_window(f);
+  release_window(f);
   return status;
 }
 
@@ -259,37 +301,76 @@ static conic_status check_sight(conic_context *context, const conic_camera *came
   return status;
 }
 
-conic_status conic_gaussians_render(conic_context *context, const conic_gaussians *gaussians,
-                                    const conic_camera *camera, const conic_gaussian_options *options,
-                                    conic_gaussian_planes *planes, conic_gaussian_statistics *statistics) {
+static conic_status set_up_picture(frame *f) {
+  double begin = conic_seconds_now();
+  conic_status status = f->view.rays ? conic_view_rays_make(f->context, f->view.camera, &f->view_rays) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = set_up_all(f);
+  f->statistics.seconds_setup = conic_seconds_now() - begin;
+  return status;
+}
+
+static void look_at_scene(frame *f, conic_isa isa) {
+  const conic_gaussian_options *own = &f->options;
+  const conic_camera *camera = &f->camera;
+  f->view.rules = conic_gaussian_rules_of(own->profile);
+  f->view.prefilter = own->prefilter;
+  f->view.is_parallel = camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
+  f->view.rays = is_affine(camera) ? NULL : &f->view_rays;
+  f->shape = f->view.rays ? CONIC_SHAPE_SIGHT : own->prefilter > 0.0 ? CONIC_SHAPE_FILTERED : f->view.rules->shape;
+  f->statistics.gaussians_in = f->set->count;
+  f->statistics.isa = isa;
+  f->statistics.device_units = own->device ? (uint64_t)own->device->n_units : 0;
+  f->statistics.tile = CONIC_GAUSSIAN_TILE;
+  conic_gaussian_kernels_init(&f->kernels, isa);
+  look_through(camera, &f->view);
+}
+
+conic_status conic_gaussian_picture_begin(conic_context *context, const conic_gaussians *gaussians,
+                                          const conic_camera *camera, const conic_gaussian_options *options,
+                                          int has_normals, conic_gaussian_picture **picture) {
   conic_gaussian_options own;
   conic_isa isa;
+  *picture = NULL;
   conic_gaussian_options_init(&own);
-  if (!gaussians || !camera || !planes || (options && !conic_options_take(&own, options)) ||
-      !conic_gaussian_rules_of(own.profile) || planes->width != camera->width || planes->height != camera->height)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT,
-                      "gaussians: an argument is null, or there is no such profile, or the planes are not of the "
-                      "camera's size");
+  if (!gaussians || !camera || (options && !conic_options_take(&own, options)) || !conic_gaussian_rules_of(own.profile))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "gaussians: an argument is null, or there is no such profile");
   conic_status status = check_sight(context, camera, &own);
   if (status == CONIC_OK)
     status = check_center(context, &own, camera);
   if (status != CONIC_OK || (status = conic_isa_choose(context, own.isa, &isa)) != CONIC_OK)
     return status;
-  frame f = {.context = context, .set = gaussians, .options = &own, .planes = planes};
-  f.view.rules = conic_gaussian_rules_of(own.profile);
-  f.view.prefilter = own.prefilter;
-  f.view.is_parallel = camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
-  f.view.rays = is_affine(camera) ? NULL : &f.view_rays;
-  f.shape = f.view.rays ? CONIC_SHAPE_SIGHT : own.prefilter > 0.0 ? CONIC_SHAPE_FILTERED : f.view.rules->shape;
-  f.statistics.gaussians_in = gaussians->count;
-  f.statistics.isa = isa;
-  f.statistics.device_units = own.device ? (uint64_t)own.device->n_units : 0;
-  f.statistics.tile = CONIC_GAUSSIAN_TILE;
-  conic_gaussian_kernels_init(&f.kernels, isa);
-  look_through(camera, &f.view);
-  status = draw_scene(&f);
-  release_frame(&f);
-  if (statistics)
-    *statistics = f.statistics;
+  frame *f = conic_memory_allocate_zeroed(context, 1, sizeof *f);
+  if (!f)
+    return CONIC_ERROR_MEMORY;
+  f->context = context;
+  f->set = gaussians;
+  f->options = own;
+  f->camera = *camera;
+  f->has_normals = has_normals;
+  look_at_scene(f, isa);
+  status = set_up_picture(f);
+  if (status == CONIC_OK)
+    *picture = f;
+  else
+    conic_gaussian_picture_release(f);
+  return status;
+}
+
+conic_status conic_gaussians_render(conic_context *context, const conic_gaussians *gaussians,
+                                    const conic_camera *camera, const conic_gaussian_options *options,
+                                    conic_gaussian_planes *planes, conic_gaussian_statistics *statistics) {
+  conic_gaussian_picture *picture;
+  if (!camera || !planes || planes->width != camera->width || planes->height != camera->height)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "gaussians: an argument is null, or the planes are not of the camera's size");
+  const conic_gaussian_window whole = {{0, 0}, {camera->width, camera->height}};
+  conic_status status =
+      conic_gaussian_picture_begin(context, gaussians, camera, options, planes->normal != NULL, &picture);
+  if (status == CONIC_OK)
+    status = conic_gaussian_picture_draw(picture, &whole, planes);
+  if (picture && statistics)
+    *statistics = *conic_gaussian_picture_statistics(picture);
+  conic_gaussian_picture_release(picture);
   return status;
 }

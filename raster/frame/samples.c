@@ -140,6 +140,7 @@ conic_camera conic_samples_camera(const conic_camera *camera, int samples, int f
 /* What becomes of the splats in the whole fine picture, which no band sees. */
 typedef struct census {
   const conic_splats *splats;
+  const unsigned char *is_counted; /* null: all are */
   conic_view view;
   conic_chunk *chunks; /* a task */
 } census;
@@ -156,14 +157,17 @@ static void count_splats(void *data, size_t i_item, int i_thread) {
   (void)i_thread;
   for (size_t i = 0; i < (n < COUNTED_TOGETHER ? n : COUNTED_TOGETHER); i++) {
     conic_chunk one = {.n_drawn = 0};
+    if (c->is_counted && !c->is_counted[first + i])
+      continue;
     conic_project_one(&c->view, c->splats, first + i, &place, &one);
     conic_chunk_add(&one, chunk);
   }
 }
 
-conic_status conic_samples_count(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                                 const conic_render_options *options, conic_render_statistics *statistics) {
-  census c = {.splats = splats};
+conic_status conic_samples_count(conic_context *context, const conic_splats *splats, const unsigned char *is_counted,
+                                 const conic_camera *camera, const conic_render_options *options,
+                                 conic_render_statistics *statistics) {
+  census c = {.splats = splats, .is_counted = is_counted};
   size_t n_tasks = (splats->count + COUNTED_TOGETHER - 1) / COUNTED_TOGETHER;
   conic_status status =
       conic_view_init(context, splats, camera, options, options->near_z, options->splat_length, &c.view);
@@ -182,10 +186,21 @@ conic_status conic_samples_count(conic_context *context, const conic_splats *spl
 static conic_status count_whole(conic_context *context, const conic_whole_drawing *drawing, const conic_camera *camera,
                                 const conic_render_options *options, conic_render_statistics *s) {
   conic_view view;
-  conic_status status = conic_samples_count(context, drawing->splats, camera, options, s);
+  conic_status status = conic_samples_count(context, drawing->splats, NULL, camera, options, s);
   if (status == CONIC_OK)
     status = conic_view_init(context, drawing->splats, camera, options, options->near_z, options->splat_length, &view);
   return status == CONIC_OK ? conic_whole_drawing_count(context, drawing, &view, camera, options->isa, s) : status;
+}
+
+conic_status conic_samples_count_drawing(conic_context *context, const conic_drawing *drawing,
+                                         const conic_camera *camera, const conic_render_options *options,
+                                         conic_render_statistics *statistics) {
+  conic_whole_drawing whole;
+  conic_status status = conic_whole_drawing_enter(context, "render", drawing, &whole);
+  if (status == CONIC_OK)
+    status = count_whole(context, &whole, camera, options, statistics);
+  conic_drawing_leave(context, &whole.entered);
+  return status;
 }
 
 conic_status conic_samples_allocate(conic_context *context, int width, int height, unsigned planes, conic_image *fine) {

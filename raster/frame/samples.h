@@ -24,10 +24,16 @@ conic_camera conic_samples_camera(const conic_camera *camera, int samples, int f
 void conic_samples_reduce(conic_context *context, const conic_image *fine, int samples, int first_column, int first_row,
                           conic_image *image);
 
-/* What becomes of the splats in a picture, without drawing it; near_z and splat_length are given. Errors: MEMORY,
- * CANCELLED. */
-conic_status conic_samples_count(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                                 const conic_render_options *options, conic_render_statistics *statistics);
+/* What becomes of the splats in a picture, without drawing it, of those that `is_counted` is not 0 of (null: of all);
+ * near_z and splat_length are given. Errors: MEMORY, CANCELLED. */
+conic_status conic_samples_count(conic_context *context, const conic_splats *splats, const unsigned char *is_counted,
+                                 const conic_camera *camera, const conic_render_options *options,
+                                 conic_render_statistics *statistics);
+
+/* The same of a drawing. Errors: as conic_render_drawing. */
+conic_status conic_samples_count_drawing(conic_context *context, const conic_drawing *drawing,
+                                         const conic_camera *camera, const conic_render_options *options,
+                                         conic_render_statistics *statistics);
 
 /* The planes of a fine picture, which the renderer fills whole: unlike conic_image_allocate's they are not cleared, for
  * at this size that is a large part of a frame. Errors: MEMORY. */

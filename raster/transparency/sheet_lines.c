@@ -10,7 +10,7 @@
 
 /* A thread's, from line to line. */
 typedef struct line_room {
-  uint32_t *first_splat, *last_splat, *first_triangle; /* of each of the line's pixels */
+  uint32_t *first_splat, *last_splat, *first_triangle; /* of each of the line's pixels up to the image's last */
   conic_sheet_splat *splats;
   size_t n_splats, splat_room;
   conic_sheet_triangle *triangles;
@@ -24,8 +24,17 @@ typedef struct sheet_work {
   line_room *rooms; /* a thread */
 } sheet_work;
 
+/* Of a line that the image has. */
+static size_t image_pixel(const conic_sheet_picture *p, int x, int y) {
+  return (size_t)(y - p->first_row) * (size_t)p->image->width + (size_t)(x - p->first_column);
+}
+
+static int last_column(const conic_sheet_picture *p) {
+  return p->first_column + p->image->width;
+}
+
 static int is_in_mask(const conic_sheet_picture *p, int x, int y) {
-  return p->mark[3 * ((size_t)y * (size_t)p->image->width + (size_t)x)] > 0.0f;
+  return x >= p->first_column && x < last_column(p) && p->mark[3 * image_pixel(p, x, y)] > 0.0f;
 }
 
 /* --- what covers the line's pixels --- */
@@ -117,7 +126,9 @@ static conic_status list_tile_triangles(const conic_sheet_picture *p, int x_begi
 static conic_status list_line_triangles(const conic_sheet_picture *p, int y, line_room *room) {
   conic_status status = CONIC_OK;
   int tile = p->scene.contributions->triangles.tile;
-  for (int x = 0; x < p->image->width && p->scene.contributions->drawing.triangles && status == CONIC_OK; x += tile)
+  if (!p->scene.contributions->drawing.triangles)
+    return CONIC_OK;
+  for (int x = p->first_column / tile * tile; x < last_column(p) && status == CONIC_OK; x += tile)
     status = list_tile_triangles(p, x, y, room);
   return status;
 }
@@ -238,7 +249,7 @@ static conic_status draw_sheet_pixel(const conic_sheet_picture *p, int x, int y,
     show_one(p, &sheets, &shown);
   else
     show_layers(&sheets, &shown);
-  store_shown_pixel(p, (size_t)y * (size_t)p->image->width + (size_t)x, &shown);
+  store_shown_pixel(p, image_pixel(p, x, y), &shown);
   return CONIC_OK;
 }
 
@@ -248,11 +259,11 @@ static void draw_sheet_line(void *data, size_t i_item, int i_thread) {
   const sheet_work *work = data;
   const conic_sheet_picture *p = work->picture;
   line_room *room = &work->rooms[i_thread];
-  size_t width = (size_t)p->image->width;
-  int y = (int)i_item, x = 0;
-  while (x < p->image->width && !is_in_mask(p, x, y))
+  size_t width = (size_t)last_column(p);
+  int y = p->first_row + (int)i_item, x = p->first_column;
+  while (x < last_column(p) && !is_in_mask(p, x, y))
     x++;
-  if (x == p->image->width || room->status != CONIC_OK)
+  if (x == last_column(p) || room->status != CONIC_OK)
     return;
   memset(room->first_splat, 0xff, width * sizeof *room->first_splat);
   memset(room->first_triangle, 0xff, width * sizeof *room->first_triangle);
@@ -260,7 +271,7 @@ static void draw_sheet_line(void *data, size_t i_item, int i_thread) {
   room->status = list_line_splats(p, y, room);
   if (room->status == CONIC_OK)
     room->status = list_line_triangles(p, y, room);
-  for (; x < p->image->width && room->status == CONIC_OK; x++)
+  for (; x < last_column(p) && room->status == CONIC_OK; x++)
     if (is_in_mask(p, x, y))
       room->status = draw_sheet_pixel(p, x, y, room);
 }
@@ -287,7 +298,7 @@ conic_status conic_sheet_lines_draw(const conic_sheet_picture *picture) {
     return CONIC_ERROR_MEMORY;
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < n_threads && status == CONIC_OK; i++)
-    status = begin_line_room(context, (size_t)picture->image->width, &work.rooms[i]);
+    status = begin_line_room(context, (size_t)last_column(picture), &work.rooms[i]);
   if (status == CONIC_OK)
     status =
         conic_parallel_told(context, "transparency", 0.0, 1.0, (size_t)picture->image->height, draw_sheet_line, &work);

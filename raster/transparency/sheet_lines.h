@@ -10,7 +10,8 @@ typedef struct conic_sheet_picture {
   const float *mark; /* of each pixel three numbers: it is drawn where the first is not 0 */
   conic_transparency how;
   double chance;
-  conic_image *image; /* the other pixels stay */
+  conic_image *image;          /* the other pixels stay */
+  int first_column, first_row; /* of the picture, where mask and image begin */
 } conic_sheet_picture;
 
 /* Reports progress as "transparency". Errors: MEMORY, CANCELLED. */

@@ -14,6 +14,7 @@
 #include "raster/frame/statistics.h"
 #include "raster/tiles/lights.h"
 #include "raster/transparency/sheet_lines.h"
+#include "raster/transparency/transparent_windows.h"
 #include "raster/transparency/triangle_alpha.h"
 
 typedef struct transparent {
@@ -67,27 +68,40 @@ static conic_status make_transparent_marks(transparent *t) {
   return CONIC_OK;
 }
 
-/* The same picture of the marks for colours: not black where a part of the front surface has one. */
-static conic_status draw_transparent_mask(transparent *t, const conic_camera *camera, conic_image *mask) {
-  conic_splats splats = *t->drawing->splats;
+/* The drawing with its marks for colours. */
+typedef struct marked_drawing {
+  conic_splats splats;
   conic_triangles triangles;
-  conic_drawing marked = {.splats = &splats};
-  conic_render_options options = *t->options;
-  options.shading = CONIC_SHADE_NONE;
-  options.splats_version = 0;
+  conic_drawing drawing;
+  conic_render_options options;
+} marked_drawing;
+
+static void mark_drawing(transparent *t, marked_drawing *marked) {
+  conic_triangles *triangles = &marked->triangles;
+  marked->splats = *t->drawing->splats;
+  marked->drawing = (conic_drawing){.splats = &marked->splats};
+  marked->options = *t->options;
+  marked->options.shading = CONIC_SHADE_NONE;
+  marked->options.splats_version = 0;
   for (int channel = 0; channel < 3; channel++)
-    splats.color[channel] = t->splat_marks;
-  if (t->drawing->triangles) {
-    triangles = *t->drawing->triangles;
-    marked.triangles = &triangles;
-    memset(triangles.color, 0, sizeof triangles.color);
-    if (!triangles.n_materials) {
-      triangles.n_materials = 1;
-      triangles.material = NULL;
-    }
-    triangles.materials = t->drawing->triangles->n_materials ? t->materials : &t->no_material;
+    marked->splats.color[channel] = t->splat_marks;
+  if (!t->drawing->triangles)
+    return;
+  *triangles = *t->drawing->triangles;
+  marked->drawing.triangles = triangles;
+  memset(triangles->color, 0, sizeof triangles->color);
+  if (!triangles->n_materials) {
+    triangles->n_materials = 1;
+    triangles->material = NULL;
   }
-  return conic_render_drawing(t->context, t->renderer, &marked, camera, &options, 1, mask, NULL);
+  triangles->materials = t->drawing->triangles->n_materials ? t->materials : &t->no_material;
+}
+
+/* The same picture of the marks: not black where a part of the front surface has one. */
+static conic_status draw_transparent_mask(transparent *t, const conic_camera *camera, conic_image *mask) {
+  marked_drawing marked;
+  mark_drawing(t, &marked);
+  return conic_render_drawing(t->context, t->renderer, &marked.drawing, camera, &marked.options, 1, mask, NULL);
 }
 
 static int is_mask_empty(const conic_image *mask) {
@@ -100,22 +114,46 @@ static int is_mask_empty(const conic_image *mask) {
 
 /* --- a picture of one sample a pixel --- */
 
-static conic_status draw_sheets(transparent *t, const conic_camera *camera, const float *mark, conic_image *image) {
-  conic_splats splats = *t->drawing->splats; /* whose weights are without opacity */
-  const conic_drawing bare = {.splats = &splats, .triangles = t->drawing->triangles};
+/* What draws the pixels that let light through. */
+typedef struct sheet_drawer {
+  conic_splats splats; /* whose weights are without opacity */
   conic_contributions *contributions;
   conic_finish_lights lights;
   conic_finish finish;
-  splats.opacity = NULL;
-  conic_status status = conic_finish_init(t->context, camera, t->options, &lights, &finish);
-  if (status == CONIC_OK)
-    status = conic_contributions_create_drawing(t->context, &bare, camera, t->options, &contributions);
+} sheet_drawer;
+
+static conic_status begin_sheets(transparent *t, const conic_camera *camera, sheet_drawer *drawer) {
+  const conic_drawing bare = {.splats = &drawer->splats, .triangles = t->drawing->triangles};
+  drawer->splats = *t->drawing->splats;
+  drawer->splats.opacity = NULL;
+  conic_status status = conic_finish_init(t->context, camera, t->options, &drawer->lights, &drawer->finish);
+  return status == CONIC_OK
+             ? conic_contributions_create_drawing(t->context, &bare, camera, t->options, &drawer->contributions)
+             : status;
+}
+
+/* `first` is the picture's pixel where mask and image begin. */
+static conic_status draw_sheets(const transparent *t, const sheet_drawer *drawer, const int first[2],
+                                const conic_image *mask, conic_image *image) {
+  const conic_sheet_picture picture = {{drawer->contributions, &drawer->finish, t->drawing->splats->opacity},
+                                       mask->planes[CONIC_PLANE_ALBEDO],
+                                       t->how,
+                                       t->chance,
+                                       image,
+                                       first[0],
+                                       first[1]};
+  return conic_sheet_lines_draw(&picture);
+}
+
+static conic_status draw_all_sheets(transparent *t, const conic_camera *camera, const conic_image *mask,
+                                    conic_image *image) {
+  static const int first[2];
+  sheet_drawer drawer;
+  conic_status status = begin_sheets(t, camera, &drawer);
   if (status != CONIC_OK)
     return status;
-  const conic_sheet_picture picture = {
-      {contributions, &finish, t->drawing->splats->opacity}, mark, t->how, t->chance, image};
-  status = conic_sheet_lines_draw(&picture);
-  conic_contributions_destroy(contributions);
+  status = draw_sheets(t, &drawer, first, mask, image);
+  conic_contributions_destroy(drawer.contributions);
   return status;
 }
 
@@ -129,7 +167,7 @@ static conic_status draw_transparent(transparent *t, const conic_camera *camera,
     return status;
   status = draw_transparent_mask(t, camera, &mask);
   if (status == CONIC_OK && !is_mask_empty(&mask))
-    status = draw_sheets(t, camera, mask.planes[CONIC_PLANE_ALBEDO], image);
+    status = draw_all_sheets(t, camera, &mask, image);
   conic_image_release(t->context, &mask);
   return status;
 }
@@ -208,4 +246,106 @@ conic_status conic_render_transparent(conic_context *context, conic_renderer *re
   conic_memory_release(context, t.materials);
   conic_drawing_leave(context, &whole.entered);
   return status;
+}
+
+/* --- window by window --- */
+
+struct conic_transparent_windows {
+  transparent t;
+  conic_render_options options;
+  conic_whole_drawing whole;
+  conic_camera camera;
+  marked_drawing marked;
+  conic_renderer *mask_renderer;
+  conic_prepared *picture, *mask;
+  sheet_drawer sheets; /* begun where a window needs them */
+};
+
+static conic_status begin_transparent_windows(conic_transparent_windows *w, const conic_drawing *drawing,
+                                              unsigned planes) {
+  transparent *t = &w->t;
+  conic_status status = conic_whole_drawing_enter(t->context, "render", drawing, &w->whole);
+  if (status == CONIC_OK)
+    status = conic_whole_drawing_scale(t->context, &w->whole, &w->options);
+  if (status == CONIC_OK)
+    status = conic_prepare(t->renderer, drawing, &w->camera, &w->options, planes, &w->picture);
+  if (status != CONIC_OK || !conic_drawing_is_transparent(drawing))
+    return status;
+  status = make_transparent_marks(t);
+  if (status == CONIC_OK)
+    status = conic_renderer_create(t->context, &w->mask_renderer);
+  if (status != CONIC_OK)
+    return status;
+  mark_drawing(t, &w->marked);
+  return conic_prepare(w->mask_renderer, &w->marked.drawing, &w->camera, &w->marked.options, 1u << CONIC_PLANE_ALBEDO,
+                       &w->mask);
+}
+
+conic_status conic_transparent_windows_begin(conic_context *context, conic_renderer *renderer,
+                                             const conic_drawing *drawing, const conic_camera *camera,
+                                             const conic_render_options *given, conic_transparency how, double chance,
+                                             unsigned planes, conic_transparent_windows **windows) {
+  *windows = NULL;
+  conic_status status = check_transparent(context, given, how, chance);
+  if (status != CONIC_OK)
+    return status;
+  conic_transparent_windows *w = conic_memory_allocate_zeroed(context, 1, sizeof *w);
+  if (!w)
+    return CONIC_ERROR_MEMORY;
+  w->options = *given;
+  w->camera = *camera;
+  w->t = (transparent){.context = context,
+                       .renderer = renderer,
+                       .drawing = &w->whole,
+                       .options = &w->options,
+                       .how = how,
+                       .chance = chance};
+  status = begin_transparent_windows(w, drawing, planes);
+  if (status == CONIC_OK)
+    *windows = w;
+  else
+    conic_transparent_windows_end(w);
+  return status;
+}
+
+static conic_status draw_window_sheets(conic_transparent_windows *w, const conic_window *window,
+                                       const conic_image *mask, conic_image *image) {
+  const int first[2] = {window->x_begin, window->y_begin};
+  conic_status status = CONIC_OK;
+  if (is_mask_empty(mask))
+    return CONIC_OK;
+  if (!w->sheets.contributions)
+    status = begin_sheets(&w->t, &w->camera, &w->sheets);
+  return status == CONIC_OK ? draw_sheets(&w->t, &w->sheets, first, mask, image) : status;
+}
+
+conic_status conic_transparent_windows_draw(conic_transparent_windows *w, const conic_window *window,
+                                            conic_image *image, conic_render_statistics *statistics) {
+  conic_image mask;
+  conic_render_statistics unused;
+  conic_status status = conic_prepared_draw(w->picture, window, image, statistics);
+  if (status != CONIC_OK || !w->mask)
+    return status;
+  status = conic_samples_allocate(w->t.context, image->width, image->height, 1u << CONIC_PLANE_ALBEDO, &mask);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_prepared_draw(w->mask, window, &mask, &unused);
+  if (status == CONIC_OK)
+    status = draw_window_sheets(w, window, &mask, image);
+  conic_image_release(w->t.context, &mask);
+  return status;
+}
+
+void conic_transparent_windows_end(conic_transparent_windows *w) {
+  if (!w)
+    return;
+  conic_context *context = w->t.context;
+  conic_contributions_destroy(w->sheets.contributions);
+  conic_prepared_release(w->mask);
+  conic_prepared_release(w->picture);
+  conic_renderer_destroy(w->mask_renderer);
+  conic_memory_release(context, w->t.splat_marks);
+  conic_memory_release(context, w->t.materials);
+  conic_drawing_leave(context, &w->whole.entered);
+  conic_memory_release(context, w);
 }

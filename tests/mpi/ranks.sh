@@ -25,6 +25,29 @@ same_hashes alone.json together.json "the last frame"
 [[ $(grep -c '"busy_ms"' together.json) -eq 3 ]] || fail "the report is not about three ranks: $(cat together.json)"
 grep -o '"units": [0-9]*' together.json | awk '{n += $2} END {exit n != 5}' || fail "frames were drawn twice, or not"
 
+# Frames that are finished stay, whoever drew them; those that are not as they were written, or missing, come again.
+kept=("${frames[@]}" -o together/f.pfm --resume together/f.pfm)
+ranks 2 0 "${frames[@]}" -o together/f.pfm --resumable
+cp together/f.pfm.frames list
+echo 'file torn' >> together/f.pfm.frames
+rm together/f.0002.pfm
+printf x | dd of=together/f.0004.pfm bs=1 seek=99 conv=notrunc 2> dd.err
+touch -d @1 together/f.0003.pfm
+ranks 3 0 "${kept[@]}" --json kept.json
+grep -q '"frames_finished": 2,' kept.json || fail "which frames were there is not told: $(grep finished kept.json)"
+diff -r -x '*.frames' alone together || fail "frames that were gone on with have other bits"
+[[ $(stat -c %Y together/f.0003.pfm) -eq 1 ]] || fail "a finished frame is drawn again"
+diff <(grep -A1 ^file list | sort -u) <(grep -A1 ^file together/f.pfm.frames | sort -u) || fail "the list has other frames"
+run_as_typed 0 "${kept[@]}"
+grep -q '^conic: 5 of 5 frames were finished' err || fail "conic does not go on with ranks' frames: $(cat err)"
+cp knot.ply other.ply
+printf x | dd of=other.ply bs=1 seek=2000 conv=notrunc 2> dd.err
+run_as_typed 3 render other.ply "${kept[@]:2}"
+mv knot.ply first.ply && cp other.ply knot.ply
+run_as_typed 3 "${kept[@]}"
+mv first.ply knot.ply
+told_once err6 2 3 'together/f.pfm.frames: cannot go on: .*options' "${kept[@]}" --zoom 2 & jobs+=" $!"
+
 # Samples, however they are shared out, with a focus that the picture shows, and with an end that the noise decides
 run_as_typed 0 "${samples[@]}" -o alone.exr --json alone.json
 ranks 2 0 "${samples[@]}" -o together.exr --json together.json

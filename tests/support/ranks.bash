@@ -1,8 +1,13 @@
-# What the tests of conic-mpi share: sourced after program.bash, it skips the test where there is no MPI.
+# What the tests of conic-mpi share: sourced after program.bash, it skips the test where there is no MPI. $launcher is
+# that of the MPI which conic-mpi was built with.
 
 conic_mpi=$3/bin/conic-mpi
-if [[ ! -x $conic_mpi ]] || ! command -v mpirun > /dev/null; then
-  echo "skipped: there is no conic-mpi, or no mpirun"
+launcher=("$(sed -n 's/^MPIEXEC_EXECUTABLE:[A-Z]*=//p' "$3/CMakeCache.txt")")
+if grep -q '^MPI_C_LIB_NAMES:STRING=.*mpich' "$3/CMakeCache.txt"; then # where Open MPI's has the plain name
+  launcher=("$(command -v mpiexec.mpich || echo "${launcher[0]}")")
+fi
+if [[ ! -x $conic_mpi ]] || ! command -v "${launcher[0]}" > /dev/null; then
+  echo "skipped: there is no conic-mpi, or nothing to start it with"
   exit 77
 fi
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
@@ -13,7 +18,7 @@ export LSAN_OPTIONS=detect_leaks=0                                    # MPI's ow
 # ranks N EXIT_CODE ARGUMENTS …: with what it prints in `err`, or in the file that $err names.
 ranks() {
   local n=$1 wanted=$2 got to=${err:-err}
-  mpirun -n "$n" "$conic_mpi" "${@:3}" > "$to.out" 2> "$to" < /dev/null
+  "${launcher[@]}" -n "$n" "$conic_mpi" "${@:3}" > "$to.out" 2> "$to" < /dev/null
   got=$?
   [[ $got -eq $wanted ]] || fail "$n ranks: conic-mpi ${*:3}: exit code $got instead of $wanted: $(head -c 600 "$to")"
   [[ $got -eq $wanted ]]

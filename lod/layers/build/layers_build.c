@@ -98,11 +98,9 @@ conic_status conic_layers_builder_open(conic_context *context, const char *path,
   return conic_layers_builder_open_team(context, path, options, NULL, builder);
 }
 
-conic_status conic_layers_builder_open_team(conic_context *context, const char *path,
-                                            const conic_layers_options *options, const conic_team *team,
-                                            conic_layers_builder **builder) {
+static conic_status open_builder(conic_context *context, const char *path, const conic_layers_options *options,
+                                 const conic_team *team, conic_layers_builder **builder) {
   conic_zstd *zstd;
-  *builder = NULL;
   conic_layers_options own;
   conic_layers_options_init(&own);
   if ((options && !conic_options_take(&own, options)) || !are_options_sound(&own))
@@ -127,11 +125,21 @@ conic_status conic_layers_builder_open_team(conic_context *context, const char *
     status = conic_layers_intake_begin(context, made->path, eighths_of_memory(made, 3), made->options.cutoff,
                                        made->options.keeps_all, team, &made->intake);
   }
+  *builder = made;
+  return status;
+}
+
+conic_status conic_layers_builder_open_team(conic_context *context, const char *path,
+                                            const conic_layers_options *options, const conic_team *team,
+                                            conic_layers_builder **builder) {
+  *builder = NULL;
+  conic_status status = conic_team_agree(team, open_builder(context, path, options, team, builder));
   if (status == CONIC_OK) {
-    made->team = team;
-    *builder = made;
-  } else
-    conic_layers_builder_abandon(made);
+    (*builder)->team = team;
+    return CONIC_OK;
+  }
+  conic_layers_builder_abandon(*builder);
+  *builder = NULL;
   return status;
 }
 
@@ -284,13 +292,16 @@ static conic_status refuse_nothing(const conic_layers_builder *builder) {
 static conic_status feed_samples(conic_layers_builder *builder, conic_layers_placing *placing,
                                  conic_layers_feed *feed) {
   const conic_layers_plan *plan = &builder->plan;
+  double start = conic_seconds_now();
   conic_layers_placing_init(&builder->intake, plan, builder->header.origin, "sort", placing);
   conic_status status = conic_layers_shares_find(builder->team, placing, plan, least_in_chunk(plan), &builder->shares);
   *feed = (conic_layers_feed){conic_layers_place_all, placing, builder->intake.n_samples};
   if (status != CONIC_OK || !builder->team)
     return status;
+  start = conic_team_note(builder->team, "share", start, builder->intake.n_own);
   status = conic_layers_exchange(&builder->shares, placing, builder->path, eighths_of_memory(builder, 4),
                                  &builder->arrivals);
+  conic_team_note(builder->team, "exchange", start, builder->arrivals.n_samples);
   conic_layers_intake_end(&builder->intake);
   *feed = (conic_layers_feed){conic_layers_arrivals_run, &builder->arrivals, builder->arrivals.n_samples};
   return status;
@@ -301,9 +312,11 @@ static conic_status sort_samples(conic_layers_builder *builder, const conic_laye
   conic_layers_feed feed;
   conic_status status = feed_samples(builder, &placing, &feed);
   const conic_layers_cuts cuts = {builder->shares.own_keys, builder->shares.n_own};
+  double start = conic_seconds_now();
   if (status == CONIC_OK)
     status = conic_layers_buckets_fill(builder->context, builder->path, &feed, &builder->plan, &cuts,
                                        eighths_of_memory(builder, 3) / 2, growth->most, &builder->buckets);
+  conic_team_note(builder->team, "sort", start, feed.n_samples);
   conic_layers_intake_end(&builder->intake);
   conic_layers_arrivals_end(&builder->arrivals);
   return conic_team_agree(builder->team, status);
@@ -312,6 +325,7 @@ static conic_status sort_samples(conic_layers_builder *builder, const conic_laye
 static conic_status build_layers(conic_layers_builder *builder) {
   conic_layers_growth growth;
   conic_status status = CONIC_OK;
+  double start = conic_seconds_now();
   builder->has_united = 1;
   if (builder->team)
     status = conic_layers_intake_unite(&builder->intake, CONIC_OK);
@@ -319,6 +333,7 @@ static conic_status build_layers(conic_layers_builder *builder) {
     status = conic_team_agree(builder->team, refuse_nothing(builder));
   if (status == CONIC_OK)
     status = make_plan(builder);
+  conic_team_note(builder->team, "measure", start, builder->intake.n_own);
   if (status == CONIC_OK) {
     growth = plan_growth(builder);
     status = sort_samples(builder, &growth);

@@ -3,6 +3,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
+#include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
@@ -373,10 +374,14 @@ conic_status conic_layers_forest_grow(const conic_layers_plan *plan, const conic
     status = create_hands(g);
   status = conic_team_agree(shares->team, status);
   if (status == CONIC_OK) {
-    status = finish_tree(g, grow_all(g));
+    double start = conic_seconds_now();
+    status = grow_all(g);
+    start = conic_team_note(shares->team, "grow", start, g->n_samples);
+    status = finish_tree(g, status);
     add_up(g);
     if (status == CONIC_OK)
       status = conic_layers_crown_add_up(shares->team, g->hands[0].worker, forest);
+    conic_team_note(shares->team, "crown", start, shares->n_limbs);
   }
   if (status == CONIC_OK)
     forest->outline = median_outline(g);

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
@@ -11,6 +12,7 @@
 
 typedef struct writing {
   conic_context *context;
+  const conic_team *team; /* null: one process writes all */
   const conic_layers_forest *forest;
   conic_layers_header *header;
   conic_layers_order order;
@@ -19,7 +21,7 @@ typedef struct writing {
   uint64_t offset;           /* where the next cloud's bytes will be */
   conic_checksumming sum;
   FILE *stream;
-  conic_layers_moving *moving; /* null: one process writes all */
+  conic_layers_moving *moving; /* null, too */
 } writing;
 
 typedef conic_status take_nodes(writing *w, size_t n);
@@ -121,8 +123,11 @@ static conic_status move_clouds(writing *w, size_t n) {
 }
 
 static conic_status write_clouds_together(writing *w) {
+  double start = conic_seconds_now();
   conic_status status = fflush(w->stream) == 0 ? for_nodes(w, move_clouds) : CONIC_ERROR_IO;
-  return conic_layers_moves_tell(w->moving, status, NULL, 0);
+  status = conic_layers_moves_tell(w->moving, status, NULL, 0);
+  conic_team_note(w->team, "write", start, w->header->file_bytes);
+  return status;
 }
 
 static conic_status write_file(writing *w) {
@@ -154,7 +159,9 @@ static conic_status write_measured(writing *w, const char *path) {
 
 static conic_status write_all_bytes(conic_context *context, const char *path, const conic_layers_forest *forest,
                                     conic_layers_header *header, conic_layers_moving *moving) {
+  double start = conic_seconds_now();
   writing w = {.context = context,
+               .team = moving ? moving->team : NULL,
                .forest = forest,
                .header = header,
                .moving = moving,
@@ -164,6 +171,7 @@ static conic_status write_all_bytes(conic_context *context, const char *path, co
       w.nodes && w.bytes ? conic_layers_order_nodes(context, forest->nodes.path, forest, &w.order) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     status = measure_file(&w);
+  conic_team_note(w.team, "order", start, w.order.n);
   if (status == CONIC_OK)
     status = write_measured(&w, path);
   conic_layers_order_end(&w.order);
@@ -178,5 +186,9 @@ conic_status conic_layers_write(conic_context *context, const char *path, const 
   if (!team)
     return write_all_bytes(context, path, forest, header, NULL);
   conic_status status = team->index == 0 ? write_all_bytes(context, path, forest, header, &moving) : CONIC_OK;
-  return conic_layers_moves_end(&moving, status);
+  double start = conic_seconds_now();
+  status = conic_layers_moves_end(&moving, status);
+  if (team->index > 0)
+    conic_team_note(team, "write", start, conic_spool_bytes(&forest->nodes));
+  return status;
 }

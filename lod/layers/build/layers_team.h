@@ -9,7 +9,7 @@
 
 /* As conic_layers_builder_open, in every process of a team, which may be null. Each appends its own samples, and then
  * all finish. Whoever has failed abandons the builder, at which the others fail when they finish, with CANCELLED. The
- * statistics are whole in the first process. Where this itself fails in one process only, the others are not told. */
+ * statistics are whole in the first process. Collective: where it fails in one process, it does in all. */
 conic_status conic_layers_builder_open_team(conic_context *context, const char *path,
                                             const conic_layers_options *options, const conic_team *team,
                                             conic_layers_builder **builder);

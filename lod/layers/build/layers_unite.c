@@ -144,14 +144,6 @@ static void add_facts(conic_layers_intake *intake, const intake_facts *facts) {
   }
 }
 
-/* Of n in a row every how many-th are taken, where that doubles whenever there are too many. */
-static uint64_t stride_of_level(uint64_t n, uint64_t most) {
-  uint64_t stride = 1;
-  while (n > most * stride)
-    stride *= 2;
-  return stride;
-}
-
 /* Of those of all, the few that are the own ones, and then those of all. `first`: how many samples come before. */
 static conic_status unite_some(conic_layers_intake *intake, uint64_t first, uint64_t stride) {
   const conic_team *team = intake->team;
@@ -193,7 +185,7 @@ static conic_status unite_values(conic_layers_intake *intake, size_t k, uint64_t
   conic_value_sample *seen = intake->payload.seen[k];
   size_t row_bytes = intake->payload.n_values * sizeof(double);
   conic_status status = CONIC_OK;
-  *seen = (conic_value_sample){.n_seen = n_seen, .stride = stride_of_level(n_seen, CONIC_MOST_VALUES)};
+  *seen = (conic_value_sample){.n_seen = n_seen, .stride = conic_value_stride(n_seen, CONIC_MOST_VALUES)};
   for (uint64_t i = 0; i < intake->n_own && status == CONIC_OK; i++) {
     double value;
     status = conic_spool_read(&intake->columns, i * row_bytes + k * sizeof value, &value, sizeof value);
@@ -252,7 +244,7 @@ static conic_status unite_facts(conic_layers_intake *intake) {
   }
   conic_memory_release(intake->context, all);
   if (status == CONIC_OK)
-    status = unite_some(intake, first, stride_of_level(intake->n_samples, CONIC_LAYERS_SOME));
+    status = unite_some(intake, first, conic_value_stride(intake->n_samples, CONIC_LAYERS_SOME));
   for (size_t k = 0; k < intake->payload.n_values && status == CONIC_OK; k++)
     status = unite_values(intake, k, first_seen[k], n_seen[k]);
   return status;

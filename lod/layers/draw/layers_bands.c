@@ -13,19 +13,20 @@
 typedef struct bands {
   const conic_layers_band_drawing *d;
   conic_render_options render;
-  uint32_t *chosen;     /* all places */
   size_t most;          /* splats at a time */
-  double n_expected;    /* splats of all places */
+  double n_expected;    /* splats of the places */
   uint64_t block_bytes; /* of what is put aside and not yet written */
   uint64_t pixel_bytes;
-  conic_camera fine; /* of the picture of samples */
+  conic_camera fine; /* of the picture of samples, */
+  conic_window part; /* of which that is drawn */
+  int band_rows;     /* of it, too */
   conic_layers_view view;
   conic_layers_windows windows;
   conic_layers_spill spill;
   conic_window window;       /* that is drawn, whole or in parts */
   int band_begin;            /* the first row of its band, */
   conic_camera band_camera;  /* whose camera this is */
-  conic_image pixels;        /* the window's; with one sample a pixel, the whole image */
+  conic_image pixels;        /* the window's; with one sample a pixel, the image */
   unsigned char *is_counted; /* a splat of the set */
   size_t counted_room;
   uint64_t n_chosen;              /* splats that were put aside */
@@ -33,11 +34,12 @@ typedef struct bands {
   conic_render_statistics *sum;
 } bands;
 
-static conic_layers_gathering all_places(const bands *b) {
+static conic_layers_gathering begin_gathering(const bands *b) {
   const conic_layers_band_drawing *d = b->d;
   return (conic_layers_gathering){.cut = d->cut,
-                                  .chosen = b->chosen,
-                                  .n_chosen = d->cut->n,
+                                  .chosen = d->chosen,
+                                  .n_chosen = d->n_chosen,
+                                  .is_counted = d->is_counted,
                                   .view = d->view,
                                   .cutoff = d->render->kernel.cutoff,
                                   .camera = d->camera,
@@ -62,7 +64,7 @@ static void rename_window(const bands *b, const conic_window *window, const coni
 static conic_status draw_whole(bands *b, conic_render_statistics *statistics) {
   const conic_layers_band_drawing *d = b->d;
   const conic_window whole = {0, d->camera->width, 0, d->camera->height};
-  conic_layers_gathering gathering = all_places(b);
+  conic_layers_gathering gathering = begin_gathering(b);
   conic_status status = conic_layers_gather(d->layers, &gathering, d->set);
   *d->n_turned += d->set->n_turned;
   if (status == CONIC_OK && d->is_gathered)
@@ -78,8 +80,12 @@ static conic_status draw_whole(bands *b, conic_render_statistics *statistics) {
 
 /* --- in windows --- */
 
+static int is_whole(const bands *b) {
+  return memcmp(&b->part, &(conic_window){0, b->fine.width, 0, b->fine.height}, sizeof b->part) == 0;
+}
+
 static int has_several_bands(const bands *b) {
-  return b->windows.band_rows < b->windows.height;
+  return b->band_rows < b->fine.height;
 }
 
 /* Cuts the picture into windows, whose samples take an eighth of what there is for drawing. */
@@ -90,9 +96,8 @@ static conic_status plan_windows(bands *b) {
   double in_window = 1.5 * b->n_expected / most_windows;
   conic_layers_parting parting = {.layers = d->layers,
                                   .cut = d->cut,
-                                  .width = b->fine.width,
-                                  .height = b->fine.height,
-                                  .band_rows = d->samples * conic_samples_band_rows(d->camera, d->samples),
+                                  .part = b->part,
+                                  .band_rows = b->band_rows,
                                   .samples = d->samples,
                                   .most_pixels =
                                       (double)conic_layers_drawing_bytes(d->layers) / (8.0 * (double)b->pixel_bytes),
@@ -101,23 +106,50 @@ static conic_status plan_windows(bands *b) {
   return conic_layers_windows_plan(&parting, &b->windows);
 }
 
-static conic_status take_part(void *cookie, conic_layers_set *set) {
-  bands *b = cookie;
+static conic_status reserve_counted(bands *b) {
+  size_t room = b->d->set->room;
+  if (room <= b->counted_room)
+    return CONIC_OK;
+  b->counted_room = 0;
+  conic_status status = conic_memory_grow(b->d->layers->context, &b->is_counted, 0, room, 1);
+  b->counted_room = status == CONIC_OK ? room : 0;
+  return status;
+}
+
+/* Of a picture in several bands, what becomes of the splats of the pieces that have just come. */
+static conic_status count_part(bands *b, const conic_layers_set *set) {
+  const unsigned char *is_place_counted = b->d->is_counted;
   conic_render_statistics counts = {.splats_in = 0};
-  conic_status status = conic_layers_spill_take(&b->spill);
-  double fraction = (double)set->n_chosen / (b->n_expected + 1.0);
-  if (status == CONIC_OK)
-    status = conic_progress(b->d->layers->context, "gather", fraction < 1.0 ? fraction : 1.0);
-  if (status != CONIC_OK || !has_several_bands(b))
+  conic_status status = reserve_counted(b);
+  if (status != CONIC_OK)
     return status;
-  status = conic_samples_count(b->d->layers->context, &set->splats, &b->fine, b->d->render, &counts);
+  memset(b->is_counted, 0, set->splats.count);
+  for (size_t i = 0; i < set->n_pieces; i++)
+    if (!is_place_counted || is_place_counted[set->pieces[i].i_place])
+      memset(b->is_counted + set->pieces[i].at, 1, set->pieces[i].n_chosen);
+  status = conic_samples_count(b->d->layers->context, &set->splats, b->is_counted, &b->fine, b->d->render, &counts);
   conic_statistics_add(&counts, &b->counts);
   return status;
 }
 
+static conic_status take_part(void *cookie, conic_layers_set *set) {
+  bands *b = cookie;
+  conic_status status = conic_layers_spill_take(&b->spill);
+  double fraction = (double)set->n_chosen / (b->n_expected + 1.0);
+  if (status == CONIC_OK)
+    status = conic_progress(b->d->layers->context, "gather", fraction < 1.0 ? fraction : 1.0);
+  return status == CONIC_OK && has_several_bands(b) ? count_part(b, set) : status;
+}
+
+static conic_status look_at_part(void *cookie, conic_layers_set *set) {
+  bands *b = cookie;
+  conic_status status = conic_layers_spill_look(&b->spill);
+  return status == CONIC_OK && has_several_bands(b) ? count_part(b, set) : status;
+}
+
 static conic_status put_all_aside(bands *b) {
   const conic_layers_band_drawing *d = b->d;
-  conic_layers_gathering gathering = all_places(b);
+  conic_layers_gathering gathering = begin_gathering(b);
   gathering.receive = take_part;
   gathering.cookie = b;
   gathering.most = b->most;
@@ -132,18 +164,13 @@ static conic_status put_all_aside(bands *b) {
 
 /* Each splat is counted in the window that has the first of its pixels. */
 static conic_status choose_counted(bands *b, const conic_window *window) {
-  const conic_layers_set *set = b->d->set;
-  size_t n = set->splats.count;
-  if (n > b->counted_room) {
-    b->counted_room = 0;
-    if (conic_memory_grow(b->d->layers->context, &b->is_counted, 0, set->room, 1) != CONIC_OK)
-      return CONIC_ERROR_MEMORY;
-    b->counted_room = set->room;
+  conic_status status = reserve_counted(b);
+  for (size_t i = 0; i < b->d->set->splats.count && status == CONIC_OK; i++) {
+    const conic_box *box = &b->spill.boxes[i];
+    b->is_counted[i] = !has_several_bands(b) && !conic_box_is_empty(box) && box->x_begin >= window->x_begin &&
+                       box->y_begin >= window->y_begin && box->x_begin < window->x_end && box->y_begin < window->y_end;
   }
-  for (size_t i = 0; i < n; i++)
-    b->is_counted[i] = !has_several_bands(b) && b->spill.boxes[i].x_begin >= window->x_begin &&
-                       b->spill.boxes[i].y_begin >= window->y_begin;
-  return CONIC_OK;
+  return status;
 }
 
 static conic_status draw_window(bands *b, const conic_window *window) {
@@ -209,12 +236,12 @@ static conic_status draw_planned(bands *b, size_t i_window, int *n_bands) {
 /* What the next window is drawn into. */
 static conic_status begin_window(bands *b, const conic_window *window) {
   const conic_layers_band_drawing *d = b->d;
-  int samples = d->samples, band_rows = b->windows.band_rows;
-  b->band_begin = window->y_begin / band_rows * band_rows;
-  int band_end = b->band_begin + band_rows < b->fine.height ? b->band_begin + band_rows : b->fine.height;
+  int samples = d->samples;
+  b->band_begin = window->y_begin / b->band_rows * b->band_rows;
+  int band_end = b->band_begin + b->band_rows < b->fine.height ? b->band_begin + b->band_rows : b->fine.height;
   b->band_camera =
       conic_samples_camera(d->camera, samples, b->band_begin / samples, (band_end - b->band_begin) / samples);
-  b->window = samples > 1 ? *window : (conic_window){0, b->fine.width, 0, b->fine.height};
+  b->window = samples > 1 ? *window : b->part;
   if (samples > 1)
     return conic_samples_allocate(d->layers->context, window->x_end - window->x_begin, window->y_end - window->y_begin,
                                   conic_image_planes(d->image) & CONIC_DRAWN_PLANES, &b->pixels);
@@ -222,20 +249,57 @@ static conic_status begin_window(bands *b, const conic_window *window) {
   return CONIC_OK;
 }
 
-static conic_status draw_all_windows(bands *b, int *n_bands) {
+static void end_window(bands *b, conic_status status) {
   const conic_layers_band_drawing *d = b->d;
-  conic_context *context = d->layers->context;
+  int n = d->samples;
+  if (status == CONIC_OK && n > 1)
+    conic_samples_reduce(d->layers->context, &b->pixels, n, b->window.x_begin / n - d->window.x_begin,
+                         b->window.y_begin / n - d->window.y_begin, d->image);
+  if (n > 1)
+    conic_image_release(d->layers->context, &b->pixels);
+}
+
+static conic_status draw_all_windows(bands *b, int *n_bands) {
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < b->windows.n_windows && status == CONIC_OK; i++) {
     status = begin_window(b, &b->windows.windows[i]);
     if (status == CONIC_OK)
       status = draw_planned(b, i, n_bands);
-    if (status == CONIC_OK && d->samples > 1)
-      conic_samples_reduce(context, &b->pixels, d->samples, b->window.x_begin / d->samples,
-                           b->window.y_begin / d->samples, d->image);
-    if (d->samples > 1)
-      conic_image_release(context, &b->pixels);
+    end_window(b, status);
   }
+  return status;
+}
+
+/* A part whose splats have room all at once. */
+static conic_status draw_gathered(bands *b, int *n_bands) {
+  const conic_layers_band_drawing *d = b->d;
+  conic_layers_gathering gathering = begin_gathering(b);
+  gathering.look = look_at_part;
+  gathering.cookie = b;
+  conic_status status = conic_layers_gather(d->layers, &gathering, d->set);
+  b->n_chosen = d->set->n_chosen;
+  *d->n_turned += d->set->n_turned;
+  if (status == CONIC_OK)
+    status = begin_window(b, &b->part);
+  if (status != CONIC_OK)
+    return status;
+  status = draw_window(b, &b->part);
+  end_window(b, status);
+  *n_bands = 1;
+  return status;
+}
+
+static conic_status draw_put_aside(bands *b, int *n_bands) {
+  const conic_layers_band_drawing *d = b->d;
+  conic_renderer_give_back(d->renderer); /* which putting aside takes in its place */
+  conic_status status = plan_windows(b);
+  if (status == CONIC_OK)
+    status = put_all_aside(b);
+  if (status == CONIC_OK && d->is_gathered)
+    d->is_gathered(d->data);
+  if (status == CONIC_OK)
+    status = draw_all_windows(b, n_bands);
+  conic_layers_windows_release(d->layers->context, &b->windows);
   return status;
 }
 
@@ -253,7 +317,7 @@ static void count_windows(const bands *b, conic_render_statistics *statistics) {
   statistics->splats_culled = statistics->splats_in - statistics->splats_drawn - statistics->splats_skipped;
 }
 
-static conic_status draw_windows(bands *b, conic_render_statistics *statistics, int *n_bands) {
+static conic_status draw_windows(bands *b, int is_room, conic_render_statistics *statistics, int *n_bands) {
   const conic_layers_band_drawing *d = b->d;
   *n_bands = 0;
   memset(statistics, 0, sizeof *statistics);
@@ -265,38 +329,31 @@ static conic_status draw_windows(bands *b, conic_render_statistics *statistics, 
                                   .samples = d->samples,
                                   .windows = &b->windows,
                                   .set = d->set};
-  conic_renderer_give_back(d->renderer); /* which putting aside takes in its place */
   conic_layers_view_init(&d->layers->header, &b->fine, d->render, d->render->near_z, &b->view);
   conic_status status = conic_renderer_check_parts(d->renderer);
   if (status == CONIC_OK)
-    status = plan_windows(b);
-  if (status == CONIC_OK)
-    status = put_all_aside(b);
-  if (status == CONIC_OK && d->is_gathered)
-    d->is_gathered(d->data);
-  if (status == CONIC_OK)
-    status = draw_all_windows(b, n_bands);
+    status = is_room ? draw_gathered(b, n_bands) : draw_put_aside(b, n_bands);
   if (status == CONIC_OK)
     count_windows(b, statistics);
   conic_layers_spill_end(&b->spill);
   conic_layers_set_release(d->layers->context, d->set); /* so that there is room for what is made of the picture */
   conic_renderer_give_back(d->renderer);
-  conic_layers_windows_release(d->layers->context, &b->windows);
   conic_memory_release(d->layers->context, b->is_counted);
   return status;
 }
 
-/* Whether all of the picture, and of that of its samples, has room: this is no estimate, but of grazing places. */
+/* Whether all that is drawn, and of the picture of its samples, has room: this is no estimate, but of grazing places.
+ */
 static int fits(bands *b) {
   enum { PROJECTED_BYTES = 144 }; /* what transparency keeps of a splat besides */
   const conic_layers_band_drawing *d = b->d;
   double splat_bytes = CONIC_LAYERS_SPLAT_BYTES + (d->transparency ? PROJECTED_BYTES : 0);
   double room = (double)conic_layers_drawing_bytes(d->layers);
-  double rows = (double)(d->samples * conic_samples_band_rows(d->camera, d->samples));
-  for (size_t i = 0; i < d->cut->n; i++)
-    b->n_expected += conic_layers_place_weight(d->layers, &d->cut->places[i]);
+  int height = b->part.y_end - b->part.y_begin, rows = b->band_rows < height ? b->band_rows : height;
+  for (size_t i = 0; i < d->n_chosen; i++)
+    b->n_expected += conic_layers_place_weight(d->layers, &d->cut->places[d->chosen[i]]);
   if (d->samples > 1 && conic_renderer_has_parts(d->renderer))
-    room -= rows * (double)b->fine.width * (double)b->pixel_bytes;
+    room -= (double)rows * (double)(b->part.x_end - b->part.x_begin) * (double)b->pixel_bytes;
   return b->n_expected * splat_bytes <= room;
 }
 
@@ -310,26 +367,19 @@ static uint64_t bytes_of_pixel(const conic_image *image) {
 
 conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, conic_render_statistics *statistics,
                                      int *n_bands) {
-  conic_context *context = drawing->layers->context;
+  const conic_window *window = &drawing->window;
+  int n = drawing->samples;
   bands b = {.d = drawing, .pixel_bytes = bytes_of_pixel(drawing->image)};
   b.block_bytes = conic_layers_drawing_bytes(drawing->layers) / 2;
   b.most = (size_t)(conic_layers_drawing_bytes(drawing->layers) / CONIC_LAYERS_SPLAT_BYTES) + 1;
-  b.fine = conic_samples_camera(drawing->camera, drawing->samples, 0, drawing->camera->height);
-  b.chosen = conic_memory_allocate(context, drawing->cut->n, sizeof *b.chosen);
-  if (!b.chosen)
-    return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < drawing->cut->n; i++)
-    b.chosen[i] = (uint32_t)i;
+  b.fine = conic_samples_camera(drawing->camera, n, 0, drawing->camera->height);
+  b.part = (conic_window){n * window->x_begin, n * window->x_end, n * window->y_begin, n * window->y_end};
+  b.band_rows = n * conic_samples_band_rows(drawing->camera, n);
   *n_bands = 1;
-  conic_status status = CONIC_OK;
-  if (fits(&b))
-    status = draw_whole(&b, statistics);
-  else if (drawing->transparency)
-    status = conic_fail(context, CONIC_ERROR_MEMORY,
-                        "%s: transparency wants all %.0f splats of the picture in memory at once, where fewer may be",
-                        drawing->layers->name, b.n_expected);
-  else
-    status = draw_windows(&b, statistics, n_bands);
-  conic_memory_release(context, b.chosen);
-  return status;
+  int is_room = fits(&b), is_at_once = is_room && is_whole(&b);
+  if (drawing->transparency && !is_at_once)
+    return conic_fail(drawing->layers->context, CONIC_ERROR_MEMORY,
+                      "%s: transparency wants all %.0f splats of the picture in memory at once, where fewer may be",
+                      drawing->layers->name, b.n_expected);
+  return is_at_once ? draw_whole(&b, statistics) : draw_windows(&b, is_room, statistics, n_bands);
 }

@@ -6,6 +6,11 @@
 #include "lod/layers/draw/layers_scene.h"
 #include "lod/layers/draw/layers_view.h"
 
+/* Two nodes of one place that stand side by side split samples that coincide: what lies above both is drawn once. */
+static inline int conic_layers_is_same_place(const conic_layers_entry *a, const conic_layers_entry *b) {
+  return a->key == b->key && a->depth == b->depth;
+}
+
 /* How much of a place is drawn. */
 typedef enum conic_place_state {
   CONIC_PLACE_SHOWN,

@@ -1,5 +1,6 @@
 #include "conic/layers_draw.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -12,26 +13,30 @@
 #include "lod/layers/draw/layers_bands.h"
 #include "lod/layers/draw/layers_hidden.h"
 #include "lod/layers/draw/layers_octree.h"
+#include "lod/layers/draw/layers_parting.h"
+#include "lod/layers/draw/layers_picture.h"
 
 /* Where fewer surfaces than this lie behind each other, finding out what is hidden takes longer than drawing it. */
 static const double deep = 4.0;
 
-typedef struct layers_drawing {
+struct conic_layers_picture {
   conic_layers *layers;
-  const conic_camera *camera;
+  conic_renderer *renderer;
+  conic_camera camera;
   conic_render_options render; /* near_z and splat_length given */
-  const conic_layers_draw_options *options;
+  conic_layers_draw_options options;
   conic_layers_view view;
   conic_layers_cut cut;
   conic_layers_set *set; /* the layers', so that its memory is kept from picture to picture */
   unsigned char *needed; /* a cloud */
   uint32_t *held;        /* clouds that are kept until the picture is drawn */
   conic_layers_loading holding;
-  uint64_t pages_damaged; /* of an octree's hierarchy */
+  uint32_t *chosen;          /* a place of the cut: those of a window, */
+  unsigned char *is_counted; /* and whether what becomes of its splats is the window's to count */
+  uint64_t pages_damaged;    /* of an octree's hierarchy */
   conic_layers_drawn drawn;
   uint64_t n_root; /* as in a cut */
-  conic_transparency transparency;
-} layers_drawing;
+};
 
 void conic_layers_draw_options_init_sized(conic_layers_draw_options *options, size_t size) {
   static const conic_layers_draw_options own = {.size = sizeof own, .samples = 1};
@@ -39,9 +44,7 @@ void conic_layers_draw_options_init_sized(conic_layers_draw_options *options, si
 }
 
 static const char *what_of_draw_is_wrong(const conic_camera *camera, const conic_render_options *render,
-                                         const conic_layers_draw_options *options, const conic_image *image) {
-  if (!image || image->width != camera->width || image->height != camera->height)
-    return "the image and the camera differ in size";
+                                         const conic_layers_draw_options *options) {
   if (!(options->error_px >= 0.0) || (options->error_px > 0.0 && options->budget))
     return "the error must not be below 0, nor stand beside a budget";
   if (options->samples < 1 || options->samples > CONIC_MAX_SAMPLES ||
@@ -53,22 +56,22 @@ static const char *what_of_draw_is_wrong(const conic_camera *camera, const conic
   return NULL;
 }
 
-static conic_status choose_clouds(layers_drawing *d, const unsigned char *is_in) {
+static conic_status choose_clouds(conic_layers_picture *d, const unsigned char *is_in) {
   conic_layers_wish wish = {
-      .error_px = d->drawn.error_px, .most_levels = d->options->most_levels, .is_in = is_in, .n_root = d->n_root};
+      .error_px = d->drawn.error_px, .most_levels = d->options.most_levels, .is_in = is_in, .n_root = d->n_root};
   return conic_layers_find_cut(d->layers, &d->view, &wish, &d->cut);
 }
 
-static conic_status choose_first(layers_drawing *d) {
-  d->drawn.error_px = d->options->error_px;
-  if (d->options->budget)
+static conic_status choose_first(conic_layers_picture *d) {
+  d->drawn.error_px = d->options.error_px;
+  if (d->options.budget)
     d->n_root =
-        conic_layers_fit_budget(d->layers, &d->view, d->options->most_levels, d->options->budget, &d->drawn.error_px);
+        conic_layers_fit_budget(d->layers, &d->view, d->options.most_levels, d->options.budget, &d->drawn.error_px);
   return choose_clouds(d, NULL);
 }
 
 /* Reads what the cut needs, as far as there is time and room, and makes it coarser where something is missing. */
-static conic_status make_do(layers_drawing *d, double until_s) {
+static conic_status make_do(conic_layers_picture *d, double until_s) {
   conic_layers *layers = d->layers;
   size_t n = 0;
   conic_layers_needed(layers, &d->cut, CONIC_PLACE_SHOWN, d->needed);
@@ -78,7 +81,7 @@ static conic_status make_do(layers_drawing *d, double until_s) {
   if (n == 0)
     return CONIC_OK;
   d->holding = (conic_layers_loading){
-      .clouds = d->held, .until_s = until_s, .may_miss = 1, .tolerates_damage = d->options->tolerates_damage};
+      .clouds = d->held, .until_s = until_s, .may_miss = 1, .tolerates_damage = d->options.tolerates_damage};
   d->holding.n = conic_layers_store_fit(layers, d->held, n, conic_layers_cache_bytes(layers));
   conic_status status = conic_layers_store_load(layers, &d->holding);
   if (status != CONIC_OK) {
@@ -89,7 +92,7 @@ static conic_status make_do(layers_drawing *d, double until_s) {
   if (!conic_layers_has_cloud(layers, 0))
     return conic_fail(layers->context, d->holding.n_damaged > 0 ? CONIC_ERROR_INPUT : CONIC_ERROR_IO,
                       "%s: not even the coarsest cloud could be read%s", layers->name,
-                      d->options->seconds > 0.0 ? " in time" : "");
+                      d->options.seconds > 0.0 ? " in time" : "");
   for (uint32_t i = 0; i < layers->header.n_clouds; i++) {
     int is_in = conic_layers_has_cloud(layers, i) && !conic_layers_octree_is_page(layers, i);
     d->drawn.n_clouds_missing += d->needed[i] && !is_in;
@@ -99,27 +102,27 @@ static conic_status make_do(layers_drawing *d, double until_s) {
 }
 
 /* What is late is no error, and still not what was asked for. */
-static void tell_of_missing(const layers_drawing *d) {
+static void tell_of_missing(const conic_layers_picture *d) {
   unsigned long long n_late = d->drawn.n_clouds_missing - d->drawn.n_clouds_damaged;
   if (n_late)
     conic_log(d->layers->context, CONIC_LOG_WARNING, "%s: %llu clouds are missing%s: %llu places are drawn coarser",
-              d->layers->name, n_late, d->options->seconds > 0.0 ? " when the time is up" : "",
+              d->layers->name, n_late, d->options.seconds > 0.0 ? " when the time is up" : "",
               (unsigned long long)d->cut.n_coarser);
 }
 
-static int wants_hiding(const layers_drawing *d) {
-  if (d->transparency || d->options->samples > 1 || d->options->occlusion == CONIC_OCCLUSION_OFF || d->cut.n < 2)
+static int wants_hiding(const conic_layers_picture *d) {
+  if (d->options.transparency || d->options.samples > 1 || d->options.occlusion == CONIC_OCCLUSION_OFF || d->cut.n < 2)
     return 0;
-  return d->options->occlusion == CONIC_OCCLUSION_ON ||
+  return d->options.occlusion == CONIC_OCCLUSION_ON ||
          conic_layers_depth_complexity(d->layers, &d->view, &d->cut) >= deep;
 }
 
-static void count_up(layers_drawing *d, const conic_render_statistics *statistics) {
+static void count_up(conic_layers_picture *d, const conic_render_statistics *statistics) {
   conic_layers_drawn *drawn = &d->drawn;
   uint64_t n_splats = 0;
   drawn->n_places = d->cut.n;
-  drawn->n_places_coarser = d->options->may_be_coarser ? d->cut.n_coarser : 0;
-  drawn->missing_error_px = d->options->may_be_coarser ? d->cut.coarser_px : 0.0;
+  drawn->n_places_coarser = d->options.may_be_coarser ? d->cut.n_coarser : 0;
+  drawn->missing_error_px = d->options.may_be_coarser ? d->cut.coarser_px : 0.0;
   for (size_t i = 0; i < d->cut.n; i++) {
     const conic_layers_place *place = &d->cut.places[i];
     drawn->n_places_hidden += place->state == CONIC_PLACE_HIDDEN;
@@ -159,17 +162,17 @@ static void move_camera_on(const conic_camera *before, const conic_camera *now, 
 
 /* Asks for what the next picture will want, if the camera goes on as it came. What fails here is seen there. */
 static void look_ahead(void *data) {
-  layers_drawing *d = data;
+  conic_layers_picture *d = data;
   conic_layers *layers = d->layers;
-  conic_layers_wish wish = {.error_px = d->drawn.error_px, .most_levels = d->options->most_levels};
+  conic_layers_wish wish = {.error_px = d->drawn.error_px, .most_levels = d->options.most_levels};
   conic_layers_view view;
   conic_layers_cut cut = {0};
   conic_camera camera;
   size_t n = 0;
-  if (!layers->is_remote || layers->last_camera.width != d->camera->width ||
-      memcmp(&layers->last_camera, d->camera, sizeof *d->camera) == 0)
+  if (!layers->is_remote || layers->last_camera.width != d->camera.width ||
+      memcmp(&layers->last_camera, &d->camera, sizeof d->camera) == 0)
     return;
-  move_camera_on(&layers->last_camera, d->camera, &camera);
+  move_camera_on(&layers->last_camera, &d->camera, &camera);
   conic_layers_view_init(&layers->header, &camera, &d->render, d->render.near_z, &view);
   if (conic_layers_find_cut(layers, &view, &wish, &cut) == CONIC_OK) {
     conic_layers_needed(layers, &cut, CONIC_PLACE_SHOWN, d->needed);
@@ -182,43 +185,27 @@ static void look_ahead(void *data) {
   conic_layers_cut_release(layers->context, &cut);
 }
 
-static conic_status draw_layers(layers_drawing *d, conic_renderer *renderer, conic_image *image,
-                                conic_render_statistics *statistics) {
-  double start = conic_seconds_now();
+/* --- a picture --- */
+
+/* What of a hierarchy is drawn is measured as it is read. */
+static conic_status measure_needed(conic_layers_picture *d) {
+  return d->layers->octree ? conic_layers_octree_measure(d->layers, d->needed) : CONIC_OK;
+}
+
+static conic_status choose_all(conic_layers_picture *d) {
   conic_status status = choose_first(d);
-  if (status == CONIC_OK && d->options->may_be_coarser)
-    status = make_do(d, d->options->seconds > 0.0 ? start + d->options->seconds : HUGE_VAL);
-  if (status == CONIC_OK)
-    tell_of_missing(d);
-  if (status == CONIC_OK && d->layers->octree) {
-    conic_layers_needed(d->layers, &d->cut, CONIC_PLACE_SHOWN, d->needed);
-    status = conic_layers_octree_measure(d->layers, d->needed);
-  }
-  if (status == CONIC_OK && wants_hiding(d))
-    status = conic_layers_hide(d->layers, renderer, &d->view, d->camera, &d->render, HUGE_VAL, &d->cut, d->set);
+  if (status == CONIC_OK && d->options.may_be_coarser)
+    status = make_do(d, d->options.seconds > 0.0 ? conic_seconds_now() + d->options.seconds : HUGE_VAL);
   if (status != CONIC_OK)
     return status;
-  conic_layers_band_drawing bands = {.layers = d->layers,
-                                     .renderer = renderer,
-                                     .camera = d->camera,
-                                     .render = &d->render,
-                                     .cut = &d->cut,
-                                     .view = &d->view,
-                                     .samples = d->options->samples,
-                                     .transparency = d->transparency,
-                                     .chance = d->options->chance,
-                                     .image = image,
-                                     .set = d->set,
-                                     .is_gathered = d->options->may_be_coarser ? NULL : look_ahead,
-                                     .data = d,
-                                     .n_turned = &d->drawn.n_splats_turned};
-  status = conic_layers_draw_bands(&bands, statistics, &d->drawn.n_bands);
-  if (status != CONIC_OK)
-    return status;
-  count_up(d, statistics);
-  statistics->ms.lod = 1e3 * (conic_seconds_now() - start) - statistics->ms.frame;
-  statistics->ms.frame += statistics->ms.lod;
-  return CONIC_OK;
+  tell_of_missing(d);
+  if (!wants_hiding(d))
+    return CONIC_OK;
+  conic_layers_needed(d->layers, &d->cut, CONIC_PLACE_SHOWN, d->needed);
+  status = measure_needed(d);
+  return status == CONIC_OK
+             ? conic_layers_hide(d->layers, d->renderer, &d->view, &d->camera, &d->render, HUGE_VAL, &d->cut, d->set)
+             : status;
 }
 
 /* All planes have four bytes a value; and how far what is drawn hides is known for each pixel. */
@@ -229,30 +216,29 @@ static uint64_t bytes_of_picture(const conic_image *image) {
   return n_values * sizeof(float) * (uint64_t)image->width * (uint64_t)image->height;
 }
 
-static conic_status begin_drawing(layers_drawing *d, const conic_render_options *render, const conic_image *image) {
+static conic_status look_at_all(conic_layers_picture *d) {
+  conic_layers *layers = d->layers;
   conic_layers_scale scale;
-  d->layers->picture_bytes = bytes_of_picture(image);
-  conic_layers_measure(d->layers, render->kernel.cutoff, &scale);
-  d->render = *render;
+  conic_layers_measure(layers, d->render.kernel.cutoff, &scale);
   if (!(d->render.near_z > 0.0))
     d->render.near_z = scale.near_z;
   if (!(d->render.splat_length > 0.0))
     d->render.splat_length = scale.splat_length;
-  if (conic_layers_schema_find(&d->layers->header.schema, CONIC_LAYERS_OPACITY) >= 0)
-    d->transparency = d->options->transparency;
-  conic_layers_view_init(&d->layers->header, d->camera, &d->render, d->render.near_z, &d->view);
-  if (!d->view.cull_back || d->layers->facings)
+  if (conic_layers_schema_find(&layers->header.schema, CONIC_LAYERS_OPACITY) < 0)
+    d->options.transparency = CONIC_TRANSPARENCY_NONE;
+  conic_layers_view_init(&layers->header, &d->camera, &d->render, d->render.near_z, &d->view);
+  if (!d->view.cull_back || layers->facings)
     return CONIC_OK;
-  d->layers->facings = conic_memory_allocate(d->layers->context, 1, sizeof *d->layers->facings);
-  if (!d->layers->facings)
+  layers->facings = conic_memory_allocate(layers->context, 1, sizeof *layers->facings);
+  if (!layers->facings)
     return CONIC_ERROR_MEMORY;
-  conic_layers_facings_init(d->layers->facings);
+  conic_layers_facings_init(layers->facings);
   return CONIC_OK;
 }
 
 /* What of a hierarchy the picture needs. */
-static conic_status expand_layers(layers_drawing *d) {
-  const conic_layers_draw_options *o = d->options;
+static conic_status expand_layers(conic_layers_picture *d) {
+  const conic_layers_draw_options *o = &d->options;
   conic_layers_expansion expansion = {
       .error_px = o->error_px,
       .budget = o->budget,
@@ -267,55 +253,197 @@ static conic_status expand_layers(layers_drawing *d) {
   return status;
 }
 
-static void end_drawing(layers_drawing *d) {
+void conic_layers_picture_end(conic_layers_picture *d) {
+  if (!d)
+    return;
   conic_context *context = d->layers->context;
   conic_layers_store_unpin(d->layers, &d->holding);
   conic_layers_cut_release(context, &d->cut);
   conic_memory_release(context, d->needed);
   conic_memory_release(context, d->held);
+  conic_memory_release(context, d->chosen);
+  conic_memory_release(context, d->is_counted);
+  conic_memory_release(context, d);
 }
 
-conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, const conic_camera *camera,
-                               const conic_render_options *given, const conic_layers_draw_options *wanted,
-                               conic_image *image, conic_render_statistics *statistics, conic_layers_drawn *drawn) {
-  conic_render_statistics counted;
+static conic_status begin_choosing(conic_layers_picture *d) {
+  conic_layers *layers = d->layers;
+  conic_status status = look_at_all(d);
+  if (status == CONIC_OK)
+    status = expand_layers(d);
+  if (status != CONIC_OK)
+    return status;
+  d->needed = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d->needed);
+  d->held = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d->held);
+  status = d->needed && d->held ? choose_all(d) : CONIC_ERROR_MEMORY;
+  if (status != CONIC_OK)
+    return status;
+  d->chosen = conic_memory_allocate(layers->context, d->cut.n, sizeof *d->chosen);
+  d->is_counted = conic_memory_allocate(layers->context, d->cut.n, sizeof *d->is_counted);
+  return d->chosen && d->is_counted ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+conic_status conic_layers_picture_begin(conic_layers *layers, conic_renderer *renderer, const conic_camera *camera,
+                                        const conic_render_options *given, const conic_layers_draw_options *wanted,
+                                        conic_layers_picture **picture) {
+  conic_context *context = layers->context;
   conic_render_options render;
   conic_layers_draw_options options;
-  conic_status status = conic_view_arguments_take(layers->context, "layers", camera, given, &render);
+  *picture = NULL;
+  conic_status status = conic_view_arguments_take(context, "layers", camera, given, &render);
   if (status != CONIC_OK)
     return status;
   conic_layers_draw_options_init(&options);
-  const char *wrong = conic_options_take(&options, wanted) ? what_of_draw_is_wrong(camera, &render, &options, image)
+  const char *wrong = conic_options_take(&options, wanted) ? what_of_draw_is_wrong(camera, &render, &options)
                                                            : "the options were not initialised";
   if (wrong)
-    return conic_fail(layers->context, CONIC_ERROR_ARGUMENT, "layers: %s", wrong);
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "layers: %s", wrong);
   if (!layers->set)
-    layers->set = conic_memory_allocate_zeroed(layers->context, 1, sizeof *layers->set);
-  if (!layers->set)
+    layers->set = conic_memory_allocate_zeroed(context, 1, sizeof *layers->set);
+  conic_layers_picture *d = layers->set ? conic_memory_allocate_zeroed(context, 1, sizeof *d) : NULL;
+  if (!d)
     return CONIC_ERROR_MEMORY;
-  layers_drawing d = {.layers = layers, .camera = camera, .options = &options, .set = layers->set};
+  d->layers = layers;
+  d->renderer = renderer;
+  d->camera = *camera;
+  d->render = render;
+  d->options = options;
+  d->set = layers->set;
+  status = begin_choosing(d);
+  if (status == CONIC_OK)
+    *picture = d;
+  else
+    conic_layers_picture_end(d);
+  return status;
+}
+
+static int is_in_window(const conic_window *window, int x, int y) {
+  return x >= window->x_begin && x < window->x_end && y >= window->y_begin && y < window->y_end;
+}
+
+/* Of one place only the first is given what lies above, so those of one place go together. */
+static size_t choose_places(conic_layers_picture *d, const conic_window *window) {
+  const conic_layers_place *places = d->cut.places;
+  const conic_layers_entry *entries = d->layers->entries;
+  size_t n = 0;
+  for (size_t i = 0, end; i < d->cut.n; i = end) {
+    int is_in = 0;
+    for (end = i; end < d->cut.n && conic_layers_is_same_place(&entries[places[i].node], &entries[places[end].node]);
+         end++) {
+      const conic_window *pixels = &places[end].sight.pixels;
+      conic_window in = conic_window_meet(pixels, window);
+      is_in |= in.x_begin < in.x_end && in.y_begin < in.y_end;
+      d->is_counted[end] = (unsigned char)is_in_window(window, pixels->x_begin, pixels->y_begin);
+    }
+    for (size_t k = i; k < end && is_in; k++)
+      d->chosen[n++] = (uint32_t)k;
+  }
+  return n;
+}
+
+/* Those that the chosen places draw of. */
+static void list_needed(conic_layers_picture *d, size_t n_chosen) {
+  memset(d->needed, 0, d->layers->header.n_clouds);
+  for (size_t k = 0; k < n_chosen; k++)
+    for (uint32_t node = d->cut.places[d->chosen[k]].node; !d->needed[node]; node = d->layers->entries[node].parent) {
+      d->needed[node] = 1;
+      if (node == 0)
+        break;
+    }
+}
+
+static uint64_t count_received(const conic_layers *layers) {
+  return conic_ranges_received(layers->ranges) + conic_layers_octree_received(layers);
+}
+
+conic_status conic_layers_picture_draw(conic_layers_picture *d, const conic_window *window, uint64_t other_bytes,
+                                       conic_image *image, conic_render_statistics *statistics,
+                                       conic_layers_tally *tally) {
+  conic_layers *layers = d->layers;
+  if (!image || image->width != window->x_end - window->x_begin || image->height != window->y_end - window->y_begin)
+    return conic_fail(layers->context, CONIC_ERROR_ARGUMENT, "layers: the image and the camera differ in size");
   uint64_t n_read = layers->store.n_read;
-  status = begin_drawing(&d, &render, image);
-  if (status == CONIC_OK)
-    status = expand_layers(&d);
+  int n_bands, is_whole = image->width == d->camera.width && image->height == d->camera.height;
+  size_t n_chosen = choose_places(d, window);
+  layers->picture_bytes = bytes_of_picture(image) + other_bytes;
+  list_needed(d, n_chosen);
+  conic_status status = measure_needed(d);
   if (status != CONIC_OK)
     return status;
-  d.needed = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d.needed);
-  d.held = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d.held);
-  if (status == CONIC_OK)
-    status = d.needed && d.held ? draw_layers(&d, renderer, image, &counted) : CONIC_ERROR_MEMORY;
-  end_drawing(&d);
+  conic_layers_band_drawing bands = {.layers = layers,
+                                     .renderer = d->renderer,
+                                     .camera = &d->camera,
+                                     .render = &d->render,
+                                     .cut = &d->cut,
+                                     .view = &d->view,
+                                     .samples = d->options.samples,
+                                     .transparency = d->options.transparency,
+                                     .chance = d->options.chance,
+                                     .window = *window,
+                                     .chosen = d->chosen,
+                                     .n_chosen = n_chosen,
+                                     .is_counted = is_whole ? NULL : d->is_counted,
+                                     .image = image,
+                                     .set = d->set,
+                                     .is_gathered = d->options.may_be_coarser || !is_whole ? NULL : look_ahead,
+                                     .data = d,
+                                     .n_turned = &tally->n_turned};
+  status = conic_layers_draw_bands(&bands, statistics, &n_bands);
+  tally->n_clouds_read += layers->store.n_read - n_read;
+  tally->n_bands += (uint64_t)n_bands;
+  tally->n_bytes_received += count_received(layers) - layers->n_told;
+  layers->n_told = count_received(layers);
+  return status;
+}
+
+/* Each place's splats are spread over its pixels. */
+void conic_layers_picture_weigh(const conic_layers_picture *d, const conic_window *list, size_t n, double *weights) {
+  for (size_t i = 0; i < d->cut.n; i++) {
+    const conic_window *pixels = &d->cut.places[i].sight.pixels;
+    double area = (double)(pixels->x_end - pixels->x_begin) * (double)(pixels->y_end - pixels->y_begin);
+    double weight = conic_layers_place_weight(d->layers, &d->cut.places[i]) / area;
+    for (size_t k = 0; k < n; k++) {
+      conic_window in = conic_window_meet(pixels, &list[k]);
+      if (in.x_begin < in.x_end && in.y_begin < in.y_end)
+        weights[k] += weight * (double)(in.x_end - in.x_begin) * (double)(in.y_end - in.y_begin);
+    }
+  }
+}
+
+void conic_layers_picture_tell(conic_layers_picture *d, const conic_render_statistics *statistics,
+                               const conic_layers_tally *tally, conic_layers_drawn *drawn) {
+  d->drawn.n_splats_turned = tally->n_turned;
+  count_up(d, statistics);
+  d->drawn.n_bands = tally->n_bands < INT_MAX ? (int)tally->n_bands : INT_MAX;
+  d->drawn.n_clouds_culled = d->layers->header.n_clouds - d->drawn.n_clouds;
+  d->drawn.n_clouds_read = tally->n_clouds_read;
+  d->drawn.n_bytes_received = tally->n_bytes_received;
+  *drawn = d->drawn;
+}
+
+conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, const conic_camera *camera,
+                               const conic_render_options *render, const conic_layers_draw_options *options,
+                               conic_image *image, conic_render_statistics *statistics, conic_layers_drawn *drawn) {
+  conic_render_statistics counted;
+  conic_layers_drawn told;
+  conic_layers_picture *d;
+  double start = conic_seconds_now();
+  uint64_t n_read = layers->store.n_read;
+  layers->picture_bytes = image ? bytes_of_picture(image) : 0;
+  conic_status status = conic_layers_picture_begin(layers, renderer, camera, render, options, &d);
   if (status != CONIC_OK)
     return status;
-  layers->last_camera = *camera;
-  d.drawn.n_clouds_culled = layers->header.n_clouds - d.drawn.n_clouds;
-  d.drawn.n_clouds_read = layers->store.n_read - n_read;
-  d.drawn.n_bytes_received =
-      conic_ranges_received(layers->ranges) + conic_layers_octree_received(layers) - layers->n_told;
-  layers->n_told += d.drawn.n_bytes_received;
-  if (statistics)
-    *statistics = counted;
-  if (drawn)
-    *drawn = d.drawn;
-  return CONIC_OK;
+  conic_layers_tally tally = {.n_clouds_read = layers->store.n_read - n_read};
+  const conic_window whole = {0, camera->width, 0, camera->height};
+  status = conic_layers_picture_draw(d, &whole, 0, image, &counted, &tally);
+  if (status == CONIC_OK) {
+    layers->last_camera = *camera;
+    counted.ms.lod = 1e3 * (conic_seconds_now() - start) - counted.ms.frame;
+    counted.ms.frame += counted.ms.lod;
+    conic_layers_picture_tell(d, &counted, &tally, drawn ? drawn : &told);
+    if (statistics)
+      *statistics = counted;
+  }
+  conic_layers_picture_end(d);
+  return status;
 }

@@ -28,11 +28,6 @@ struct gather {
   piece_function *function;
 };
 
-/* Two nodes of one place that stand side by side split samples that coincide: what lies above both is drawn once. */
-static int is_same_place(const conic_layers_entry *a, const conic_layers_entry *b) {
-  return a->key == b->key && a->depth == b->depth;
-}
-
 /* Walks from every chosen place up to the root. */
 static void find_places_below(gather *g) {
   const conic_layers_entry *entries = g->layers->entries;
@@ -319,12 +314,13 @@ static size_t place_pieces(gather *g) {
     conic_layers_piece *piece = &set->pieces[i];
     const conic_layers_piece *before = i > 0 ? &set->pieces[i - 1] : NULL;
     if (before && before->cloud == piece->cloud &&
-        is_same_place(&entries[places[before->i_place].node], &entries[places[piece->i_place].node]))
+        conic_layers_is_same_place(&entries[places[before->i_place].node], &entries[places[piece->i_place].node]))
       piece->n_chosen = piece->n_turned = 0;
     piece->at = at;
     at += piece->n_chosen;
-    set->n_chosen += piece->n_chosen;
-    set->n_turned += piece->n_turned;
+    int is_counted = !g->asked->is_counted || g->asked->is_counted[piece->i_place];
+    set->n_chosen += is_counted ? piece->n_chosen : 0;
+    set->n_turned += is_counted ? piece->n_turned : 0;
   }
   return at;
 }
@@ -390,6 +386,8 @@ static conic_status take_clouds(gather *g, const uint32_t *clouds, size_t n) {
     conic_layers_store_unpin(layers, &loading);
     if (status == CONIC_OK && g->asked->receive)
       status = hand_over(g);
+    else if (status == CONIC_OK && g->asked->look)
+      status = g->asked->look(g->asked->cookie, g->set);
     done += loading.n;
   }
   return status;

@@ -18,7 +18,9 @@ typedef struct conic_layers_gathering {
   double until_s;                     /* by conic_seconds_now; infinite: clouds are waited for */
   conic_layers_set_receiver *receive; /* null: all is gathered at once; else it is handed over part by part, with the
                                          pieces that it came of; clip lines are not listed yet */
+  conic_layers_set_receiver *look;    /* called where nothing is handed over, as more has come of the pieces; or null */
   void *cookie;
+  const unsigned char *is_counted; /* a place of the cut: 0 where the set's numbers are not to tell of it; null: none */
   size_t most; /* splats of a part, but where one place's of one cloud are more; of all, which then are cut short, where
                   nobody receives parts (0: any number) */
 } conic_layers_gathering;

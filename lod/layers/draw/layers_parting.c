@@ -27,20 +27,21 @@ void conic_layers_windows_release(conic_context *context, conic_layers_windows *
 
 /* The first pixel of a row of cells; of the one behind the last, where the picture ends. */
 static int cell_top(const conic_layers_windows *w, int row) {
-  int y = row / w->rows_a_band * w->band_rows + row % w->rows_a_band * w->cell;
-  return y < w->height ? y : w->height;
+  int y = w->part.y_begin + row / w->rows_a_band * w->band_rows + row % w->rows_a_band * w->cell;
+  return y < w->part.y_end ? y : w->part.y_end;
 }
 
 static void choose_cells(const conic_layers_parting *asked, conic_layers_windows *w) {
   int step = CONIC_WINDOW_STEP;
   while (step % asked->samples)
     step += CONIC_WINDOW_STEP;
-  int longer = asked->width > asked->height ? asked->width : asked->height;
-  *w = (conic_layers_windows){.width = asked->width, .height = asked->height, .band_rows = asked->band_rows};
+  int width = asked->part.x_end - asked->part.x_begin, height = asked->part.y_end - asked->part.y_begin;
+  int longer = width > height ? width : height;
+  *w = (conic_layers_windows){.part = asked->part, .band_rows = asked->band_rows < height ? asked->band_rows : height};
   w->cell = (longer / (step * MOST_CELLS) + 1) * step;
-  w->n_columns = (w->width + w->cell - 1) / w->cell;
+  w->n_columns = (width + w->cell - 1) / w->cell;
   w->rows_a_band = (w->band_rows + w->cell - 1) / w->cell;
-  w->n_rows = conic_layers_cell_row(w, w->height - 1) + 1;
+  w->n_rows = conic_layers_cell_row(w, asked->part.y_end - 1) + 1;
 }
 
 /* How much of the pixels from `begin` to before `end` lies between low and high. */
@@ -59,15 +60,17 @@ static void spread_place(const window_plan *p, const conic_layers_place *place) 
   const conic_window *pixels = &place->sight.pixels;
   int n = p->asked->samples, x_begin = n * pixels->x_begin, x_end = n * pixels->x_end;
   int y_begin = n * pixels->y_begin, y_end = n * pixels->y_end;
+  conic_window in = conic_window_meet(&w->part, &(conic_window){x_begin, x_end, y_begin, y_end});
   double weight = conic_layers_place_weight(p->asked->layers, place);
-  if (x_begin >= x_end || y_begin >= y_end || weight == 0.0)
+  if (in.x_begin >= in.x_end || in.y_begin >= in.y_end || weight == 0.0)
     return;
-  int last_row = conic_layers_cell_row(w, y_end - 1), last_column = (x_end - 1) / w->cell;
-  for (int row = conic_layers_cell_row(w, y_begin); row <= last_row; row++) {
+  int last_row = conic_layers_cell_row(w, in.y_end - 1), last_column = conic_layers_cell_column(w, in.x_end - 1);
+  for (int row = conic_layers_cell_row(w, in.y_begin); row <= last_row; row++) {
     double in_row = weight * share_between(y_begin, y_end, cell_top(w, row), cell_top(w, row + 1));
-    for (int column = x_begin / w->cell; column <= last_column; column++)
-      *corner_of(p, column + 1, row + 1) +=
-          in_row * share_between(x_begin, x_end, column * w->cell, (column + 1) * w->cell);
+    for (int column = conic_layers_cell_column(w, in.x_begin); column <= last_column; column++) {
+      int left = w->part.x_begin + column * w->cell;
+      *corner_of(p, column + 1, row + 1) += in_row * share_between(x_begin, x_end, left, left + w->cell);
+    }
   }
 }
 
@@ -86,9 +89,9 @@ static double sum_of(const window_plan *p, const cell_range *c) {
 }
 
 static conic_window pixels_of_cells(const conic_layers_windows *w, const cell_range *c) {
-  int x_end = c->x_end * w->cell;
-  return (conic_window){c->x_begin * w->cell, x_end < w->width ? x_end : w->width, cell_top(w, c->y_begin),
-                        cell_top(w, c->y_end)};
+  int x_end = w->part.x_begin + c->x_end * w->cell;
+  return (conic_window){w->part.x_begin + c->x_begin * w->cell, x_end < w->part.x_end ? x_end : w->part.x_end,
+                        cell_top(w, c->y_begin), cell_top(w, c->y_end)};
 }
 
 /* Those about the window reach into it. */

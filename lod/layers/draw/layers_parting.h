@@ -4,12 +4,13 @@
 
 #include "lod/layers/draw/layers_cut.h"
 
-/* What is parted: a picture of `samples` × as many pixels as the cut's sights tell of, which is drawn in bands of so
- * many rows, each by a camera of its own. */
+/* What is parted: of a picture of `samples` × as many pixels as the cut's sights tell of, all of it or a part, which is
+ * drawn in bands of so many rows, each by a camera of its own. */
 typedef struct conic_layers_parting {
   const conic_layers *layers;
   const conic_layers_cut *cut;
-  int width, height, band_rows, samples;
+  conic_window part; /* from where a band begins to where one ends, or within one */
+  int band_rows, samples;
   double most_pixels; /* of a window with more than one sample a pixel, where a cell has no more */
   double most;        /* splats that may meet a window, if each place's are spread evenly */
   double margin_px;   /* how far from its middle a splat is taken to reach */
@@ -17,8 +18,9 @@ typedef struct conic_layers_parting {
 
 /* Windows have whole cells. Zero before the first use. */
 typedef struct conic_layers_windows {
-  int width, height, band_rows;
-  int cell; /* the edge, in pixels: a multiple of CONIC_WINDOW_STEP and of the samples */
+  conic_window part;
+  int band_rows; /* from the part's first on */
+  int cell;      /* the edge, in pixels: a multiple of CONIC_WINDOW_STEP and of the samples */
   int n_columns, n_rows, rows_a_band;
   conic_window *windows; /* each within a band */
   uint32_t *window_of;   /* a cell */
@@ -32,9 +34,15 @@ void conic_layers_windows_release(conic_context *context, conic_layers_windows *
 /* How many splats a place gives, about: of a grazing one few. */
 double conic_layers_place_weight(const conic_layers *layers, const conic_layers_place *place);
 
-/* The row of cells that has the row of pixels. */
+/* The row of cells that has the part's row of pixels. */
 static inline int conic_layers_cell_row(const conic_layers_windows *w, int y) {
+  y -= w->part.y_begin;
   return y / w->band_rows * w->rows_a_band + y % w->band_rows / w->cell;
+}
+
+/* The column of cells that has the part's column of pixels. */
+static inline int conic_layers_cell_column(const conic_layers_windows *w, int x) {
+  return (x - w->part.x_begin) / w->cell;
 }
 
 #endif

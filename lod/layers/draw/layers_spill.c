@@ -114,10 +114,11 @@ typedef struct cell_visit {
 } cell_visit;
 
 static inline cell_visit cells_of_box(const conic_layers_windows *w, const conic_box *box) {
-  if (conic_box_is_empty(box))
+  conic_window in = conic_window_meet(&w->part, &(conic_window){box->x_begin, box->x_end, box->y_begin, box->y_end});
+  if (in.x_begin >= in.x_end || in.y_begin >= in.y_end)
     return (cell_visit){0, 0, 0, 0};
-  return (cell_visit){box->x_begin / w->cell, (box->x_end - 1) / w->cell + 1, conic_layers_cell_row(w, box->y_begin),
-                      conic_layers_cell_row(w, box->y_end - 1) + 1};
+  return (cell_visit){conic_layers_cell_column(w, in.x_begin), conic_layers_cell_column(w, in.x_end - 1) + 1,
+                      conic_layers_cell_row(w, in.y_begin), conic_layers_cell_row(w, in.y_end - 1) + 1};
 }
 
 /* The window that has the cell, where the cell is the first of the visited ones in it; else none. */
@@ -225,23 +226,28 @@ static conic_status open_pile(conic_layers_spill *spill) {
   return CONIC_OK;
 }
 
+/* For as many splats as the set has room for; those that there are stay. */
 static conic_status reserve_boxes(conic_layers_spill *spill) {
   if (spill->set->room <= spill->boxes_room)
     return CONIC_OK;
-  spill->boxes_room = 0;
-  conic_status status =
-      conic_memory_grow(spill->layers->context, &spill->boxes, 0, spill->set->room, sizeof *spill->boxes);
+  conic_status status = conic_memory_grow(spill->layers->context, &spill->boxes, spill->boxes_room, spill->set->room,
+                                          sizeof *spill->boxes);
   spill->boxes_room = status == CONIC_OK ? spill->set->room : 0;
+  return status;
+}
+
+conic_status conic_layers_spill_look(conic_layers_spill *spill) {
+  conic_status status = reserve_boxes(spill);
+  if (status == CONIC_OK)
+    conic_parallel_for(spill->layers->context, spill->set->n_pieces, find_boxes, spill);
   return status;
 }
 
 conic_status conic_layers_spill_take(conic_layers_spill *spill) {
   conic_context *context = spill->layers->context;
-  conic_status status = reserve_boxes(spill);
-  if (status != CONIC_OK)
-    return status;
-  conic_parallel_for(context, spill->set->n_pieces, find_boxes, spill);
-  status = list_by_window(spill);
+  conic_status status = conic_layers_spill_look(spill);
+  if (status == CONIC_OK)
+    status = list_by_window(spill);
   if (status == CONIC_OK)
     status = open_pile(spill);
   if (status != CONIC_OK)

@@ -52,6 +52,9 @@ void conic_layers_spill_end(conic_layers_spill *spill);
 /* What a splat takes that is put aside. */
 size_t conic_layers_spill_bytes(const conic_layers *layers);
 
+/* Finds the boxes of the splats that the set's pieces have; of a spill that was not begun, too. Errors: MEMORY. */
+conic_status conic_layers_spill_look(conic_layers_spill *spill);
+
 /* Puts the set's splats aside. Errors: MEMORY, IO. */
 conic_status conic_layers_spill_take(conic_layers_spill *spill);
 

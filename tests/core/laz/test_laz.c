@@ -57,7 +57,7 @@ static conic_status unpack_input(conic_context *own, conic_input *input, const u
   if (status == CONIC_OK)
     status = conic_input_skip(input, conic_load_bits(bytes + 96, 4), &skipped);
   if (status == CONIC_OK)
-    status = conic_laz_read(input, &to->format, to->n_points, CONIC_LAZ_ALL, 0, keep_records, to);
+    status = conic_laz_read(input, &to->format, to->n_points, 0, to->n_points, CONIC_LAZ_ALL, 0, keep_records, to);
   return status;
 }
 

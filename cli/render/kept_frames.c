@@ -1,0 +1,281 @@
+#include "cli/render/kept_frames.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/render/frames.h"
+#include "cli/render/frames_file.h"
+#include "cli/render/sharing.h"
+#include "cli/session_team.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/disk.h"
+#include "core/files/file.h"
+
+/* Text that grows. */
+typedef struct growing_text {
+  char *bytes;
+  size_t n, room;
+} growing_text;
+
+struct cli_kept_frames {
+  conic_context *context;
+  char *path;            /* OUT.frames */
+  FILE *stream;          /* of it, in the first process */
+  cli_frames_file found; /* when it began */
+  growing_text names;    /* of the files of the frame that is drawn, each with a zero behind it */
+  growing_text lines;    /* of the frame that is finished */
+  int n_finished;        /* in the first process: frames that were there */
+  int error;             /* and what became of writing: an errno, or 0 */
+  conic_status status;   /* of noting names */
+};
+
+/* --- the options --- */
+
+static int is_stream(const cli_render_job *job) {
+  for (int i = 0; i < job->n_inputs; i++)
+    if (strcmp(job->inputs[i], "-") == 0)
+      return 1;
+  return 0;
+}
+
+int cli_kept_frames_check(const cli_render_job *job) {
+  const cli_accumulate_job *own = &job->accumulating;
+  int is_several = cli_frames_are_several(job), has_file = job->n_outputs > 0 && strcmp(job->outputs[0], "-") != 0;
+  if (!own->is_resumable && !own->resume_path)
+    return CLI_DONE;
+  if (!is_several && !own->n_samples)
+    return cli_usage("render: --resumable and --resume are of several frames, or of --accumulate N");
+  if ((own->is_resumable || is_several) && !has_file)
+    return cli_usage("render: --resumable keeps what is finished beside the picture; give a file with -o");
+  if (is_several && own->resume_path && strcmp(own->resume_path, job->outputs[0]) != 0)
+    return cli_usage("render: --resume goes on with frames where they are; give -o %s, too", own->resume_path);
+  if (is_several && is_stream(job))
+    return cli_usage("render: frames of standard input cannot be gone on with; give files");
+  return CLI_DONE;
+}
+
+/* --- text --- */
+
+static conic_status add_bytes(conic_context *context, growing_text *text, const char *bytes, size_t n) {
+  conic_status status = conic_memory_reserve(context, &text->bytes, text->n, text->n + n, &text->room, 1);
+  if (status == CONIC_OK) {
+    memcpy(text->bytes + text->n, bytes, n);
+    text->n += n;
+  }
+  return status;
+}
+
+/* Notes the name of a file that was written, once. Sums are no part of a frame. */
+static void note_name(void *cookie, const char *path) {
+  cli_kept_frames *kept = cookie;
+  const char *end = kept->names.bytes + kept->names.n;
+  for (const char *name = kept->names.bytes; kept->names.n && name < end; name += strlen(name) + 1)
+    if (strcmp(name, path) == 0)
+      return;
+  if (!conic_file_has_ending(path, "sums") && kept->status == CONIC_OK)
+    kept->status = add_bytes(kept->context, &kept->names, path, strlen(path) + 1);
+}
+
+static conic_status add_file_line(cli_kept_frames *kept, const char *name) {
+  char hash[CONIC_SHA256_ROOM], head[CONIC_SHA256_ROOM + 40];
+  uint64_t n_bytes;
+  if (cli_file_hash(name, &n_bytes, hash) != CONIC_OK)
+    return conic_fail(kept->context, CONIC_ERROR_IO, "%s: cannot read what was written: %s", name, strerror(errno));
+  int n = snprintf(head, sizeof head, "file %s %llu ", hash, (unsigned long long)n_bytes);
+  conic_status status = add_bytes(kept->context, &kept->lines, head, (size_t)n);
+  if (status == CONIC_OK)
+    status = add_bytes(kept->context, &kept->lines, name, strlen(name));
+  return status == CONIC_OK ? add_bytes(kept->context, &kept->lines, "\n", 1) : status;
+}
+
+/* --- the file --- */
+
+static char *name_list(const cli_render_job *job) {
+  const cli_frames *frames = &job->frames;
+  size_t room = strlen(job->outputs[0]) + 64;
+  char *path = malloc(room);
+  int from = job->is_every_view ? -1 : 0; /* as users count */
+  if (path && frames->is_given)
+    snprintf(path, room, "%s.%d-%d-%d.frames", job->outputs[0], frames->first + from, frames->last + from,
+             frames->step);
+  else if (path)
+    snprintf(path, room, "%s.frames", job->outputs[0]);
+  return path;
+}
+
+/* In the first process. */
+static conic_status open_list(cli_session *session, cli_render_job *job) {
+  cli_kept_frames *kept = job->kept;
+  const cli_accumulate_job *own = &job->accumulating;
+  char key[CONIC_SHA256_ROOM];
+  conic_disk_entry entry;
+  conic_status status = CONIC_OK;
+  cli_frames_key(session, job, key);
+  if (own->resume_path && (!own->is_resumable || conic_disk_look(kept->path, &entry)))
+    status = cli_frames_file_read(session->context, kept->path, key, job->n_frames, &kept->found);
+  else
+    status = cli_frames_file_parse(session->context, NULL, 0, job->n_frames, &kept->found);
+  if (status == CONIC_OK)
+    status = cli_frames_file_write(session->context, kept->path, key, &kept->found);
+  if (status != CONIC_OK)
+    return status;
+  kept->stream = conic_disk_open_stream(kept->path, "ab");
+  return kept->stream
+             ? CONIC_OK
+             : conic_fail(session->context, CONIC_ERROR_IO, "%s: cannot write: %s", kept->path, strerror(errno));
+}
+
+/* To all what the first has found. */
+static conic_status spread_list(cli_session *session, cli_render_job *job) {
+  cli_kept_frames *kept = job->kept;
+  uint64_t n_bytes = kept->found.n_bytes;
+  char *text = kept->found.text;
+  session->team->broadcast(&n_bytes, sizeof n_bytes);
+  if (!cli_team_is_first(session))
+    text = conic_memory_allocate(session->context, (size_t)n_bytes, 1);
+  int has_room = text || !n_bytes;
+  conic_status status = cli_sharing_end(session, job, has_room ? CONIC_OK : CONIC_ERROR_MEMORY);
+  if (status == CONIC_OK)
+    session->team->broadcast(text, (size_t)n_bytes);
+  if (!cli_team_is_first(session) && status == CONIC_OK)
+    status = cli_frames_file_parse(session->context, text, (size_t)n_bytes, job->n_frames, &kept->found);
+  else if (!cli_team_is_first(session))
+    conic_memory_release(session->context, text);
+  return cli_sharing_end(session, job, status);
+}
+
+conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job) {
+  cli_accumulate_job *own = &job->accumulating;
+  if ((!own->is_resumable && !own->resume_path) || !cli_frames_are_several(job))
+    return CONIC_OK;
+  conic_status status = CONIC_OK;
+  job->kept = calloc(1, sizeof *job->kept);
+  if (!job->kept || !(job->kept->path = name_list(job)))
+    status = CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    job->kept->context = session->context;
+    conic_outputs_watch(session->context, note_name, job->kept);
+    status = cli_team_is_first(session) ? open_list(session, job) : CONIC_OK;
+  }
+  own->is_resumable = 1; /* also of who goes on */
+  status = cli_sharing_end(session, job, status);
+  return status == CONIC_OK && job->sharing != CLI_SHARES_NOTHING ? spread_list(session, job) : status;
+}
+
+void cli_kept_frames_release(cli_session *session, cli_render_job *job) {
+  cli_kept_frames *kept = job->kept;
+  if (!kept)
+    return;
+  conic_outputs_watch(session->context, NULL, NULL);
+  if (kept->stream)
+    fclose(kept->stream);
+  cli_frames_file_release(session->context, &kept->found);
+  conic_memory_release(session->context, kept->names.bytes);
+  conic_memory_release(session->context, kept->lines.bytes);
+  free(kept->path);
+  free(kept);
+  job->kept = NULL;
+}
+
+/* --- frames --- */
+
+static int is_whole(const cli_finished_file *file) {
+  char path[4096], hash[CONIC_SHA256_ROOM];
+  conic_disk_entry entry;
+  uint64_t n_bytes;
+  if (file->n_name >= sizeof path)
+    return 0;
+  memcpy(path, file->name, file->n_name);
+  path[file->n_name] = '\0';
+  return conic_disk_look(path, &entry) && entry.is_file && entry.n_bytes == file->n_bytes &&
+         cli_file_hash(path, &n_bytes, hash) == CONIC_OK && n_bytes == file->n_bytes &&
+         memcmp(hash, file->hash, CONIC_SHA256_ROOM - 1) == 0;
+}
+
+static int is_there(const cli_kept_frames *kept, int i_frame) {
+  size_t at = kept->found.begins[i_frame];
+  cli_finished_file file;
+  if (at == SIZE_MAX)
+    return 0;
+  while (cli_frames_file_next(&kept->found, &at, &file))
+    if (!is_whole(&file))
+      return 0;
+  return 1;
+}
+
+/* In the first process, one call at a time: the lines of a finished frame; none: it was there. */
+void cli_kept_frames_take(void *cookie, int from, void *bytes, size_t n_bytes) {
+  cli_kept_frames *kept = cookie;
+  (void)from;
+  if (!n_bytes)
+    kept->n_finished++;
+  else if (!kept->error && (fwrite(bytes, 1, n_bytes, kept->stream) != n_bytes || fflush(kept->stream) != 0))
+    kept->error = errno ? errno : EIO;
+}
+
+static void hand_lines(cli_session *session, cli_render_job *job, const growing_text *lines) {
+  if (job->sharing == CLI_SHARES_FRAMES)
+    session->team->hand(lines->bytes, lines->n);
+  else
+    cli_kept_frames_take(job->kept, 0, lines->bytes, lines->n);
+}
+
+static conic_status tell_error(const cli_kept_frames *kept) {
+  return kept->error
+             ? conic_fail(kept->context, CONIC_ERROR_IO, "%s: cannot write: %s", kept->path, strerror(kept->error))
+             : CONIC_OK;
+}
+
+conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int i_frame, int *is_finished) {
+  cli_kept_frames *kept = job->kept;
+  const growing_text nothing = {0};
+  *is_finished = 0;
+  if (!kept)
+    return CONIC_OK;
+  conic_status status = conic_progress(session->context, "draw", 0.0);
+  if (cli_sharing_has_picture(session, job))
+    *is_finished = status == CONIC_OK && is_there(kept, i_frame);
+  if (job->sharing > CLI_SHARES_FRAMES)
+    session->team->broadcast(is_finished, sizeof *is_finished);
+  if (*is_finished && cli_sharing_has_picture(session, job))
+    hand_lines(session, job, &nothing);
+  if (!*is_finished && !job->accumulating.resume_path &&
+      cli_sharing_has_picture(session, job)) /* sums of another time */
+    cli_accumulate_forget(job, i_frame);
+  kept->names.n = 0;
+  return status;
+}
+
+conic_status cli_kept_frames_add(cli_session *session, cli_render_job *job, int i_frame) {
+  cli_kept_frames *kept = job->kept;
+  char last[32];
+  if (!kept || !cli_sharing_has_picture(session, job))
+    return CONIC_OK;
+  conic_status status = kept->status;
+  kept->lines.n = 0;
+  for (size_t at = 0; at < kept->names.n && status == CONIC_OK; at += strlen(kept->names.bytes + at) + 1)
+    status = add_file_line(kept, kept->names.bytes + at);
+  int n = snprintf(last, sizeof last, "frame %d\n", i_frame);
+  if (status == CONIC_OK)
+    status = add_bytes(kept->context, &kept->lines, last, (size_t)n);
+  if (status == CONIC_OK) {
+    hand_lines(session, job, &kept->lines);
+    cli_accumulate_forget(job, i_frame);
+  }
+  return status == CONIC_OK ? tell_error(kept) : status;
+}
+
+int cli_kept_frames_count(const cli_render_job *job) {
+  return job->kept ? job->kept->n_finished : 0;
+}
+
+conic_status cli_kept_frames_end(cli_session *session, cli_render_job *job) {
+  cli_kept_frames *kept = job->kept;
+  if (!kept)
+    return CONIC_OK;
+  if (kept->n_finished)
+    cli_note(session, "%d of %d frames were finished", kept->n_finished, cli_frames_count(job));
+  return cli_sharing_end(session, job, tell_error(kept));
+}

@@ -1,0 +1,39 @@
+/* --resumable and --resume of several frames: which are finished stands in OUT.frames (cli/render/frames_file.h),
+ * which the first process of a team writes for all. A frame is finished when its files are there and have the hashes
+ * that they were written with. */
+#ifndef CONIC_KEPT_FRAMES_H
+#define CONIC_KEPT_FRAMES_H
+
+#include "cli/scene/render_job.h"
+#include "core/files/sha256.h"
+
+typedef struct cli_kept_frames cli_kept_frames;
+
+/* What the two options mean together with the others, also for one picture. */
+int cli_kept_frames_check(const cli_render_job *job);
+
+/* Collective, once the scene is open and the exposure known: reads what is to be gone on with, and begins OUT.frames;
+ * nothing where no frames are kept. Errors: INPUT (of another scene, or with other options), IO, MEMORY. */
+conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job);
+
+/* What a team's `share` is given for the frames, so that the first process notes those of all. */
+void cli_kept_frames_take(void *cookie, int from, void *bytes, size_t n_bytes);
+
+/* Whether a frame, from 0, is finished; collective where all processes draw it. If it is not, what is written from now
+ * on are its files. Errors: CANCELLED. */
+conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int i_frame, int *is_finished);
+/* Notes that it is. Errors: IO, MEMORY. */
+conic_status cli_kept_frames_add(cli_session *session, cli_render_job *job, int i_frame);
+
+/* Collective, after all frames: what came of the notes. Says how many frames were there. */
+conic_status cli_kept_frames_end(cli_session *session, cli_render_job *job);
+/* How many frames were there. */
+int cli_kept_frames_count(const cli_render_job *job);
+void cli_kept_frames_release(cli_session *session, cli_render_job *job);
+
+/* What decides the bits of the frames: the program's version, the options, and what the files hold that they name. Of
+ * a file of over 64 MiB, 64 pieces, its length and its time; of files that these lead to, how long they are together.
+ */
+void cli_frames_key(const cli_session *session, const cli_render_job *job, char key[CONIC_SHA256_ROOM]);
+
+#endif

@@ -1,0 +1,32 @@
+/* A picture of Gaussians that is set up once and drawn window by window. */
+#ifndef CONIC_GAUSSIAN_PARTS_H
+#define CONIC_GAUSSIAN_PARTS_H
+
+#include "conic/gaussian_render.h"
+
+typedef struct conic_gaussian_picture conic_gaussian_picture;
+
+/* Pixels of a picture, from begin to before end; they begin at multiples of CONIC_GAUSSIAN_TILE, and end there or where
+ * the picture ends. */
+typedef struct conic_gaussian_window {
+  int begin[2], end[2];
+} conic_gaussian_window;
+
+/* Sets up all Gaussians, which stay as they are until the picture is released; with normals where a window wants them.
+ * On success the caller owns *picture. Errors: as conic_gaussians_render. */
+conic_status conic_gaussian_picture_begin(conic_context *context, const conic_gaussians *gaussians,
+                                          const conic_camera *camera, const conic_gaussian_options *options,
+                                          int has_normals, conic_gaussian_picture **picture);
+
+/* Puts in order, bins and composites what the window meets, into planes of its size. On a device the window is the
+ * picture. Errors: MEMORY, CANCELLED, the device's. */
+conic_status conic_gaussian_picture_draw(conic_gaussian_picture *picture, const conic_gaussian_window *window,
+                                         conic_gaussian_planes *planes);
+
+/* What was drawn and how long it took so far; its counts are those of the whole picture from the beginning on. */
+const conic_gaussian_statistics *conic_gaussian_picture_statistics(const conic_gaussian_picture *picture);
+
+/* Null is allowed. */
+void conic_gaussian_picture_release(conic_gaussian_picture *picture);
+
+#endif
