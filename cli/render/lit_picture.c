@@ -171,7 +171,8 @@ static conic_status light_image(cli_session *session, cli_render_job *job, const
 
 conic_status cli_light_picture(cli_session *session, cli_render_job *job, const conic_camera *camera,
                                conic_image *image) {
-  return cli_light_is_wanted(job) ? light_image(session, job, NULL, camera, image) : CONIC_OK;
+  int is_lit = camera->kind == CONIC_CAMERA_CUBE; /* side by side, as it was drawn */
+  return cli_light_is_wanted(job) && !is_lit ? light_image(session, job, NULL, camera, image) : CONIC_OK;
 }
 
 conic_status cli_light_sample(cli_session *session, cli_render_job *job, uint64_t i_sample, const conic_camera *camera,
