@@ -10,39 +10,65 @@ static size_t sums_bytes(const conic_accumulation *sums) {
   return (size_t)sums->width * (size_t)sums->height * sums->n_channels * sizeof *sums->sums;
 }
 
-const void *conic_accumulation_bytes(const conic_accumulation *sums, uint64_t header[CONIC_SCATTERED_HEADER],
-                                     size_t *n_bytes) {
-  header[0] = sums->n_samples;
-  header[1] = sums->n_half;
-  header[2] = sums->key;
-  header[3] = sums->n_channels;
-  *n_bytes = sums_bytes(sums);
-  return sums->sums;
+/* A part goes from a sum to before another one. */
+static size_t part_begin(const conic_accumulation *sums, int i, int n) {
+  uint64_t n_sums = sums_bytes(sums) / sizeof *sums->sums;
+  return (size_t)(n_sums / (uint64_t)n * (uint64_t)i + n_sums % (uint64_t)n * (uint64_t)i / (uint64_t)n);
 }
 
-typedef struct sums_joining {
-  conic_accumulation *sums;
+const void *conic_accumulation_part(const conic_accumulation *sums, int i, int n, size_t *n_bytes) {
+  size_t begin = part_begin(sums, i, n);
+  *n_bytes = (part_begin(sums, i + 1, n) - begin) * sizeof *sums->sums;
+  return sums->sums + begin;
+}
+
+static conic_status check_part(const conic_accumulation *sums, int i, int n, size_t n_bytes) {
+  size_t n_wanted;
+  conic_accumulation_part(sums, i, n, &n_wanted);
+  return n_bytes == n_wanted
+             ? CONIC_OK
+             : conic_fail(sums->context, CONIC_ERROR_ARGUMENT, "accumulation: the sums are not of the same picture");
+}
+
+enum { RUN = 1 << 14 };
+
+typedef struct part_joining {
+  conic_exact_sum *sums;
   const conic_exact_sum *others;
-} sums_joining;
+  size_t n;
+} part_joining;
 
-static void join_row(void *data, size_t y, int i_thread) {
-  const sums_joining *work = data;
-  size_t n = (size_t)work->sums->width * work->sums->n_channels;
+static void join_run(void *data, size_t i_run, int i_thread) {
+  const part_joining *work = data;
+  size_t begin = i_run * RUN, end = work->n - begin < RUN ? work->n : begin + RUN;
   (void)i_thread;
-  for (size_t i = y * n; i < (y + 1) * n; i++)
-    conic_exact_merge(&work->sums->sums[i], work->others[i]);
+  for (size_t i = begin; i < end; i++)
+    conic_exact_merge(&work->sums[i], work->others[i]);
 }
 
-conic_status conic_accumulation_join(conic_accumulation *sums, const uint64_t header[CONIC_SCATTERED_HEADER],
-                                     const void *bytes, size_t n_bytes) {
-  sums_joining work = {sums, bytes};
-  if (n_bytes != sums_bytes(sums) || header[3] != sums->n_channels ||
-      (sums->key && header[2] && sums->key != header[2]))
-    return conic_fail(sums->context, CONIC_ERROR_ARGUMENT, "accumulation: the sums are not of the same picture");
-  conic_parallel_for(sums->context, (size_t)sums->height, join_row, &work);
-  sums->n_samples += header[0];
-  sums->n_half += header[1];
-  sums->key = sums->key ? sums->key : header[2];
+conic_status conic_accumulation_join_part(conic_accumulation *sums, int i, int n, const void *bytes, size_t n_bytes) {
+  part_joining work = {sums->sums + part_begin(sums, i, n), bytes, n_bytes / sizeof *sums->sums};
+  conic_status status = check_part(sums, i, n, n_bytes);
+  if (status == CONIC_OK)
+    conic_parallel_for(sums->context, (work.n + RUN - 1) / RUN, join_run, &work);
+  return status;
+}
+
+conic_scattered conic_accumulation_scattered(const conic_accumulation *sums) {
+  return (conic_scattered){sums->n_samples, sums->n_half, sums->key};
+}
+
+conic_status conic_accumulation_take_part(conic_accumulation *sums, int i, int n, const conic_scattered *other,
+                                          const void *bytes, size_t n_bytes) {
+  conic_status status = check_part(sums, i, n, n_bytes);
+  if (status == CONIC_OK && sums->key && other->key && sums->key != other->key)
+    status = conic_fail(sums->context, CONIC_ERROR_ARGUMENT, "accumulation: the sums are not of the same picture");
+  if (status != CONIC_OK)
+    return status;
+  memcpy(sums->sums + part_begin(sums, i, n), bytes, n_bytes);
+  sums->n_samples += other->n_samples;
+  sums->n_half += other->n_half;
+  sums->key = sums->key ? sums->key : other->key;
   return CONIC_OK;
 }
 

@@ -17,16 +17,23 @@ int conic_accumulate_is_enough(const conic_accumulate_options *options, const co
 conic_status conic_accumulate_check_key(conic_context *context, const conic_accumulate_options *options,
                                         conic_accumulation *sums);
 
-/* The sums as bytes of the same machine: *n_bytes of them at what is returned, behind a header of
- * CONIC_SCATTERED_HEADER words that is filled in. They are the sums' own. */
-enum { CONIC_SCATTERED_HEADER = 4 };
-const void *conic_accumulation_bytes(const conic_accumulation *sums, uint64_t header[CONIC_SCATTERED_HEADER],
-                                     size_t *n_bytes);
+/* The sums in `n` parts, one behind the other: part `i` as *n_bytes bytes of the same machine, which are the sums' own.
+ */
+const void *conic_accumulation_part(const conic_accumulation *sums, int i, int n, size_t *n_bytes);
 
-/* Adds what conic_accumulation_bytes gave of other sums of the same size and planes. Errors: ARGUMENT (the bytes are
- * not so many, or the keys differ). */
-conic_status conic_accumulation_join(conic_accumulation *sums, const uint64_t header[CONIC_SCATTERED_HEADER],
-                                     const void *bytes, size_t n_bytes);
+/* Adds to a part the same part of other sums of the same size and planes. Errors: ARGUMENT (it is not so long). */
+conic_status conic_accumulation_join_part(conic_accumulation *sums, int i, int n, const void *bytes, size_t n_bytes);
+
+/* What is to be known of sums beside their parts. */
+typedef struct conic_scattered {
+  uint64_t n_samples, n_half, key;
+} conic_scattered;
+conic_scattered conic_accumulation_scattered(const conic_accumulation *sums);
+
+/* Takes a part to which other sums were joined elsewhere, and the samples of whoever had it. Errors: ARGUMENT (it is
+ * not so long, or the keys differ). */
+conic_status conic_accumulation_take_part(conic_accumulation *sums, int i, int n, const conic_scattered *other,
+                                          const void *bytes, size_t n_bytes);
 
 /* All samples are there: they are the run from `first_sample` on. */
 void conic_accumulation_joined(conic_accumulation *sums, uint64_t first_sample);

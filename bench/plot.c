@@ -95,7 +95,7 @@ static int linear_ticks(const cli_plot_axis *axis, double *ticks) {
   double step = rough > 5.0 * power ? 10.0 * power : rough > 2.0 * power ? 5.0 * power : 2.0 * power;
   int n = 0;
   for (double k = ceil(axis->low / step); n <= MOST_TICKS && k * step <= axis->high; k += 1.0)
-    ticks[n++] = k * step;
+    ticks[n++] = k * step + 0.0; /* not -0 */
   return n;
 }
 

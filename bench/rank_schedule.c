@@ -71,13 +71,12 @@ static void run_units(rank_run *run) {
   }
 }
 
-/* Sums go to half as many ranks again and again. */
+/* Ranks swap parts of their sums, both ways at a time, so that each has one part of all; these go to rank 0. A message
+ * is its length and its bytes. */
 static double merging_s(const cli_rank_trace *trace, const cli_rank_line *line, int n_ranks) {
-  int rounds = 0;
-  while (1 << rounds < n_ranks)
-    rounds++;
-  return trace->n_merges > 0.0 ? rounds * (line->latency_s + trace->merge_bytes / line->bytes_per_s + trace->merge_s)
-                               : 0.0;
+  double others = n_ranks - 1.0, share = others / n_ranks;
+  return trace->n_merges *
+         (4.0 * others * line->latency_s + share * (2.0 * trace->merge_bytes / line->bytes_per_s + trace->merge_s));
 }
 
 conic_status cli_rank_schedule(conic_context *context, const cli_rank_trace *trace, const cli_rank_line *line,
@@ -86,6 +85,10 @@ conic_status cli_rank_schedule(conic_context *context, const cli_rank_trace *tra
       .trace = trace, .line = line, .n_ranks = (size_t)n_ranks, .n_units = trace->n_units * times, .last_s = 0.0};
   double work_s = 0.0;
   memset(estimate, 0, sizeof *estimate);
+  if (trace->is_build) {
+    cli_rank_build(trace, line, n_ranks, times, estimate);
+    return CONIC_OK;
+  }
   run.turns = conic_memory_allocate(context, run.n_ranks, sizeof *run.turns);
   if (!run.turns)
     return CONIC_ERROR_MEMORY;

@@ -4,6 +4,7 @@
 #include "bench/rank_schedule.h"
 #include "core/base/memory.h"
 #include "core/files/json_read.h"
+#include "core/files/number.h"
 
 typedef struct trace_event {
   char name[32], kind[16];
@@ -11,22 +12,49 @@ typedef struct trace_event {
 } trace_event;
 
 static conic_status add_unit(conic_context *context, cli_rank_trace *trace, const trace_event *event) {
-  if (trace->n_units == trace->room) {
-    size_t room = 2 * trace->room + 64;
-    cli_rank_unit *units = conic_memory_allocate(context, room, sizeof *units);
-    if (!units)
-      return CONIC_ERROR_MEMORY;
-    if (trace->n_units)
-      memcpy(units, trace->units, trace->n_units * sizeof *units);
-    conic_memory_release(context, trace->units);
-    trace->units = units;
-    trace->room = room;
-  }
-  trace->units[trace->n_units++] = (cli_rank_unit){1e-6 * event->lasted_us, event->bytes};
-  return CONIC_OK;
+  conic_status status = conic_memory_reserve(context, &trace->units, trace->n_units, trace->n_units + 1, &trace->room,
+                                             sizeof *trace->units);
+  if (status == CONIC_OK)
+    trace->units[trace->n_units++] = (cli_rank_unit){1e-6 * event->lasted_us, event->bytes};
+  return status;
 }
 
-/* Sums that one rank takes from another are "sums"; that they were sent is part of it. */
+/* What is of no kind is not drawn. */
+static conic_status add_event(conic_context *context, cli_rank_trace *trace, const trace_event *event) {
+  static const char *const kinds[CLI_RANK_N_KINDS] = {"open", "unit", "join", "write"};
+  int kind = 0;
+  while (kind < CLI_RANK_N_KINDS && strcmp(event->kind, kinds[kind]) != 0)
+    kind++;
+  if (kind == CLI_RANK_N_KINDS)
+    return CONIC_OK;
+  conic_status status = conic_memory_reserve(context, &trace->events, trace->n_events, trace->n_events + 1,
+                                             &trace->events_room, sizeof *trace->events);
+  if (status == CONIC_OK)
+    trace->events[trace->n_events++] = (cli_rank_event){
+        1e-6 * event->begun_us, 1e-6 * (event->begun_us + event->lasted_us), (int)event->rank, (cli_rank_kind)kind};
+  return status;
+}
+
+/* "grow 20000" is a stage of building with its number; what was waited then is an event of the same name. */
+static void add_stage(cli_rank_trace *trace, const trace_event *event, double sign) {
+  static const char *const names[CLI_RANK_N_STAGES] = {"read", "measure", "share", "exchange", "sort",
+                                                       "grow", "crown",   "order", "write"};
+  for (int i = 0; i < CLI_RANK_N_STAGES; i++) {
+    size_t length = strlen(names[i]);
+    double number;
+    if (strncmp(event->name, names[i], length) != 0 || event->name[length] != ' ')
+      continue;
+    trace->stages[i].seconds += sign * 1e-6 * event->lasted_us;
+    trace->stages[i].bytes += event->bytes;
+    if (sign > 0.0 && conic_number_parse(event->name + length + 1, strlen(event->name + length + 1), &number) > 0)
+      trace->stages[i].number += number;
+    trace->n_units += i == CLI_STAGE_READ && sign > 0.0;
+  }
+  trace->is_build = 1;
+}
+
+/* Each time that sums come together, every rank says by "swap" how much it sends, and by "sums" how long it
+ * worked on it; "parts" wait for others. */
 static conic_status take_event(conic_context *context, cli_rank_trace *trace, const trace_event *event) {
   double lasted_s = 1e-6 * event->lasted_us, end_s = 1e-6 * event->begun_us + lasted_s;
   if (end_s > trace->seconds)
@@ -35,18 +63,20 @@ static conic_status take_event(conic_context *context, cli_rank_trace *trace, co
     trace->first_event = 1e-6 * event->begun_us;
   if (event->rank >= trace->n_ranks)
     trace->n_ranks = (int)event->rank + 1;
-  if (strcmp(event->kind, "unit") == 0)
+  if (strcmp(event->kind, "unit") == 0 && !trace->is_build)
     return add_unit(context, trace, event);
-  if (strcmp(event->kind, "open") == 0)
+  if (!trace->units && (strcmp(event->kind, "stage") == 0 || strcmp(event->kind, "wait") == 0))
+    add_stage(trace, event, event->kind[0] == 's' ? 1.0 : -1.0);
+  else if (strcmp(event->kind, "open") == 0)
     trace->open_s += lasted_s;
   else if (strcmp(event->kind, "write") == 0)
     trace->write_s += lasted_s;
-  else if (strcmp(event->kind, "join") == 0 && strncmp(event->name, "send", 4) == 0)
+  else if (strcmp(event->kind, "join") == 0 && strncmp(event->name, "swap", 4) == 0) {
     trace->merge_bytes += event->bytes;
-  else if (strcmp(event->kind, "join") == 0 && strncmp(event->name, "sums", 4) == 0) {
-    trace->merge_s += lasted_s;
     trace->n_merges += 1.0;
-  } else if (strcmp(event->kind, "join") == 0)
+  } else if (strcmp(event->kind, "join") == 0 && strncmp(event->name, "sums", 4) == 0)
+    trace->merge_s += lasted_s;
+  else if (strcmp(event->kind, "join") == 0 && strncmp(event->name, "parts", 5) != 0)
     trace->join_s += lasted_s;
   return CONIC_OK;
 }
@@ -90,18 +120,22 @@ static conic_status read_events(conic_context *context, conic_json *json, cli_ra
   while (status == CONIC_OK && conic_json_next_item(json)) {
     trace_event event;
     read_event(json, &event);
-    status = json->status == CONIC_OK ? take_event(context, trace, &event) : json->status;
+    status = json->status == CONIC_OK ? add_event(context, trace, &event) : json->status;
+    if (status == CONIC_OK)
+      status = take_event(context, trace, &event);
   }
   return status;
 }
 
-/* Sums of ranks and merges become means. */
+/* Sums of ranks and merges become means; each rank kept its share of the bytes. */
 static void settle_trace(cli_rank_trace *trace) {
   trace->seconds -= trace->first_event;
   trace->open_s /= trace->n_ranks;
   if (trace->n_merges > 0.0) {
-    trace->merge_s /= trace->n_merges;
-    trace->merge_bytes /= trace->n_merges;
+    double whole = trace->n_ranks > 1 ? trace->n_ranks / (trace->n_ranks - 1.0) : 1.0;
+    trace->merge_s *= whole / trace->n_merges;
+    trace->merge_bytes *= whole / trace->n_merges;
+    trace->n_merges /= trace->n_ranks;
   }
 }
 
@@ -133,6 +167,8 @@ conic_status cli_rank_trace_read(conic_context *context, const char *path, cli_r
 
 void cli_rank_trace_release(conic_context *context, cli_rank_trace *trace) {
   conic_memory_release(context, trace->units);
+  conic_memory_release(context, trace->events);
   trace->units = NULL;
-  trace->n_units = trace->room = 0;
+  trace->events = NULL;
+  trace->n_units = trace->room = trace->n_events = trace->events_room = 0;
 }

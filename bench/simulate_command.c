@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json_write.h"
+#include "cli/outputs.h"
 
 enum { MOST_ESTIMATES = 32 };
 
@@ -12,6 +13,7 @@ typedef struct simulate_job {
   int n_ranks[MOST_ESTIMATES], n; /* of the estimates */
   double latency_us, gigabytes_per_s;
   unsigned long long times;
+  const char *picture_path; /* --svg; null: none */
   cli_rank_trace trace;
   cli_rank_estimate estimates[MOST_ESTIMATES], same; /* same: on as many ranks as the trace is of */
 } simulate_job;
@@ -44,8 +46,12 @@ static cli_rank_loss limit_of(const cli_rank_estimate *e) {
 
 static void print_estimates(const simulate_job *job) {
   const cli_rank_trace *trace = &job->trace;
-  printf("%zu units on %d ranks took %.3f s; %.3f s by the model\n\n", trace->n_units, trace->n_ranks, trace->seconds,
-         job->same.seconds);
+  if (trace->is_build)
+    printf("Building on %d ranks took %.3f s; %.3f s by the model\n\n", trace->n_ranks, trace->seconds,
+           job->same.seconds);
+  else
+    printf("%zu units on %d ranks took %.3f s; %.3f s by the model\n\n", trace->n_units, trace->n_ranks, trace->seconds,
+           job->same.seconds);
   puts("| ranks | s | efficiency | rank hours | most is lost by | s |\n|---|---|---|---|---|---|");
   for (int i = 0; i < job->n; i++) {
     const cli_rank_estimate *e = &job->estimates[i];
@@ -105,6 +111,8 @@ static int simulate(cli_session *session, const char *path, simulate_job *job) {
   conic_status status = cli_rank_trace_read(session->context, path, &job->trace);
   if (status == CONIC_OK)
     status = estimate_all(session, job);
+  if (status == CONIC_OK && job->picture_path)
+    status = cli_rank_trace_draw(session->context, &job->trace, job->picture_path);
   int prints = !session->is_quiet && !(session->json_path && session->json_path[0] == '-' && !session->json_path[1]);
   if (status == CONIC_OK && prints)
     print_estimates(job);
@@ -122,6 +130,7 @@ static int run(cli_session *session, int argc, char **argv) {
       {"latency", CLI_NUMBER, &job.latency_us, "US", "of a message, in microseconds [2]", 0, 1e6},
       {"bandwidth", CLI_NUMBER, &job.gigabytes_per_s, "GB/S", "into one rank [10]", 1e-3, 1e6},
       {"times", CLI_COUNT, &job.times, "N", "a job of N times as many units as the trace has [1]", 1, 1e6},
+      {"svg", CLI_TEXT, &job.picture_path, "OUT.svg", "what each rank did when, by the trace, as a picture"},
   };
   if (argc > 64)
     return cli_usage("simulate: one trace at a time");
@@ -129,6 +138,8 @@ static int run(cli_session *session, int argc, char **argv) {
   int exit_code = cli_parse(session, options, sizeof options / sizeof *options, argc, argv, inputs, &n_inputs);
   if (exit_code == CLI_DONE && n_inputs != 1)
     exit_code = cli_usage("simulate: %s; see conic help simulate", n_inputs ? "one trace at a time" : "no trace given");
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(session, (const char *const[]){job.picture_path}, 1);
   if (exit_code == CLI_DONE)
     exit_code = simulate(session, inputs[0], &job);
   return exit_code < 0 ? CLI_DONE : exit_code;
@@ -141,7 +152,8 @@ const cli_command cli_simulate = {
     .run = run,
     .description = "Reads what conic-mpi wrote by --trace, and says for each number of ranks when the job would be "
                    "done, and what would lose the most time: opening what each rank opens, waiting for the first rank, "
-                   "ranks without work at the end, merging sums, or writing.",
+                   "ranks without work at the end, merging sums, or writing; of building a layered cloud, what merges "
+                   "is the exchange of samples and the top of the tree.",
     .examples = {{"on up to 1024 ranks", "conic simulate trace.json"},
                  {"the same for a picture of 100 times as many windows, on a slow network",
                   "conic simulate trace.json --times 100 --bandwidth 1 --latency 50"}},

@@ -121,7 +121,7 @@ static size_t piece_bytes(size_t offset, size_t n_bytes) {
   return rest < PIECE_BYTES ? rest : PIECE_BYTES;
 }
 
-/* The size first, then the pieces. */
+/* The size first, then the pieces, for which the other then waits. */
 static void send_blob(int to, const void *bytes, size_t n_bytes, int tag, int piece_tag, MPI_Comm line) {
   uint64_t size = n_bytes;
   send_once(&size, sizeof size, to, tag, line);
@@ -131,7 +131,7 @@ static void send_blob(int to, const void *bytes, size_t n_bytes, int tag, int pi
 
 static void *receive_pieces(int from, size_t n_bytes, int piece_tag, MPI_Comm line) {
   char *bytes = take_memory(n_bytes);
-  for (size_t at = 0; bytes && at < n_bytes; at += piece_bytes(at, n_bytes))
+  for (size_t at = 0; at < n_bytes; at += piece_bytes(at, n_bytes))
     receive_once(bytes + at, piece_bytes(at, n_bytes), from, piece_tag, line);
   return bytes;
 }

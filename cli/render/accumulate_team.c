@@ -1,6 +1,6 @@
 #include "cli/render/accumulate_team.h"
 
-#include <stdlib.h>
+#include <pthread.h>
 
 #include "accumulation/scattered.h"
 #include "cli/render/sharing.h"
@@ -39,46 +39,98 @@ static conic_status add_given(const together *t, uint64_t begin, uint64_t end) {
   return status;
 }
 
-static void send_sums(const together *t, int to) {
-  uint64_t header[CONIC_SCATTERED_HEADER];
-  size_t n_bytes;
-  double start = cli_seconds();
-  const void *bytes = conic_accumulation_bytes(t->sums, header, &n_bytes);
-  t->team->send(to, header, sizeof header);
-  t->team->send(to, bytes, n_bytes);
-  cli_team_trace(t->session, "join", "send", (uint64_t)to, start, n_bytes);
-  conic_accumulation_clear(t->sums);
-}
+typedef struct part_sending {
+  const conic_accumulation *sums;
+  const conic_team *team;
+} part_sending;
 
-static conic_status take_sums(const together *t, int from) {
-  size_t n_header, n_bytes;
-  double start = cli_seconds();
-  uint64_t *header = t->team->receive(from, &n_header);
-  void *bytes = t->team->receive(from, &n_bytes);
-  conic_status status = conic_accumulation_join(t->sums, header, bytes, n_bytes);
-  free(header);
-  free(bytes);
-  cli_team_trace(t->session, "join", "sums", (uint64_t)from, start, 0);
-  return status;
-}
-
-/* Two by two, so that it takes the logarithm of their number. */
-static conic_status join_all_sums(const together *t) {
-  int index = t->team->index, count = t->team->count;
-  conic_status status = CONIC_OK;
-  for (int step = 1; step < count; step *= 2) {
-    if (index % (2 * step) == step) {
-      send_sums(t, index - step);
-      break;
-    }
-    if (index + step < count) {
-      conic_status taken = take_sums(t, index + step);
-      status = status == CONIC_OK ? taken : status;
-    }
+static void *send_parts(void *cookie) {
+  const part_sending *work = cookie;
+  const conic_team *team = work->team;
+  for (int round = 0; round < team->count; round++) {
+    int partner = conic_team_partner(team, round);
+    size_t n_bytes;
+    const void *part = conic_accumulation_part(work->sums, partner, team->count, &n_bytes);
+    if (partner != team->index)
+      team->send(team->data, partner, part, n_bytes);
   }
-  if (index == 0)
-    conic_accumulation_joined(t->sums, 0);
+  return NULL;
+}
+
+/* Every process brings together a part of the sums: it meets each of the others, and they swap their parts; both ways
+ * at a time, where there is a thread for it. */
+static conic_status join_own_part(const together *t, const conic_team *team, double *join_s) {
+  part_sending sending = {t->sums, team};
+  pthread_t thread;
+  int has_thread = pthread_create(&thread, NULL, send_parts, &sending) == 0;
+  conic_status status = CONIC_OK;
+  for (int round = 0; round < team->count; round++) {
+    int partner = conic_team_partner(team, round);
+    size_t n_bytes;
+    const void *part = conic_accumulation_part(t->sums, partner, team->count, &n_bytes);
+    if (partner == team->index)
+      continue;
+    void *others = has_thread ? team->receive(team->data, partner, &n_bytes)
+                              : conic_team_swap(team, partner, part, n_bytes, &n_bytes);
+    double start = cli_seconds();
+    if (status == CONIC_OK)
+      status = conic_accumulation_join_part(t->sums, team->index, team->count, others, n_bytes);
+    *join_s += cli_seconds() - start;
+    team->release(team->data, others);
+  }
+  if (has_thread)
+    pthread_join(thread, NULL);
   return status;
+}
+
+static conic_status take_part(const together *t, const conic_team *team, int from) {
+  size_t n_header, n_bytes;
+  conic_scattered *header = team->receive(team->data, from, &n_header);
+  void *part = team->receive(team->data, from, &n_bytes);
+  conic_status status = conic_accumulation_take_part(t->sums, from, team->count, header, part, n_bytes);
+  team->release(team->data, header);
+  team->release(team->data, part);
+  return status;
+}
+
+/* The parts come together in the first process. */
+static conic_status take_all_parts(const together *t, const conic_team *team) {
+  conic_status status = CONIC_OK;
+  if (team->index > 0) {
+    size_t n_bytes;
+    const conic_scattered header = conic_accumulation_scattered(t->sums);
+    const void *part = conic_accumulation_part(t->sums, team->index, team->count, &n_bytes);
+    team->send(team->data, 0, &header, sizeof header);
+    team->send(team->data, 0, part, n_bytes);
+    return CONIC_OK;
+  }
+  for (int from = 1; from < team->count; from++) {
+    conic_status taken = take_part(t, team, from);
+    status = status == CONIC_OK ? taken : status;
+  }
+  return status;
+}
+
+/* Two by two again and again, everything would go over the line as often as the logarithm of their number says; so it
+ * goes twice. */
+static conic_status join_all_sums(const together *t) {
+  conic_team room;
+  const conic_team *team = cli_team_of_library(t->session, &room);
+  double join_s = 0.0, start = cli_seconds();
+  size_t n_bytes, n_own;
+  conic_accumulation_part(t->sums, 0, 1, &n_bytes);
+  conic_accumulation_part(t->sums, team->index, team->count, &n_own);
+  conic_status status = join_own_part(t, team, &join_s);
+  cli_team_trace(t->session, "join", "swap", 0, start, n_bytes - n_own);
+  cli_team_trace(t->session, "join", "sums", 0, cli_seconds() - join_s, 0); /* of it, what is no waiting */
+  start = cli_seconds();
+  conic_status taken = take_all_parts(t, team);
+  cli_team_trace(t->session, "join", "parts", 0, start, team->index ? n_own : 0);
+  if (team->index == 0)
+    conic_accumulation_joined(t->sums, 0);
+  else
+    conic_accumulation_clear(t->sums);
+  return status == CONIC_OK ? taken : status;
 }
 
 static conic_status run_stage(const together *t, uint64_t begin) {

@@ -81,6 +81,27 @@ draw still --accumulate 21 --turntable 12 --frames 1
 draw moved --accumulate 21 --turntable 12 --frames 1 --shutter 0:1
 same whole still
 other whole moved
+# Of several frames, those that are finished stay, and one that was stopped goes on with its sums.
+turn=($scene --accumulate 40 --turntable 3 -o turn.exr)
+run 0 render "${turn[@]}" --resumable
+mkdir turn && cp turn.000*.exr turn
+[[ ! -e turn.0001.exr.sums ]] || fail "the sums of finished frames stay"
+rm turn.0002.exr
+run 0 render $scene --accumulate 7 --turntable 3 --frames 2 --resumable -o turn.exr
+run 0 render "${turn[@]}" --resume turn.exr --threads 1 --json turn.json
+grep -q '"frames_finished": 1,' turn.json || fail "of three frames one is finished, and one is what the report is about"
+[[ ! -e turn.0002.exr.sums ]] || fail "the sums of a frame that was gone on with stay"
+diff <(cat turn/*) <(cat turn.000*.exr) || fail "frames that were gone on with are others"
+run 3 render "${turn[@]}" --resume turn.exr --aperture 0.1
+grep -q 'turn.exr.frames: cannot go on: it was begun with other inputs or options' err || fail "it goes on: $(cat err)"
+echo nothing > turn.exr.frames
+run 3 render "${turn[@]}" --resume turn.exr
+rm turn.exr.frames
+run 3 render "${turn[@]}" --resume turn.exr
+run 0 render "${turn[@]}" --resume turn.exr --resumable
+run 2 render "${turn[@]}" --resume x.exr
+run 2 render $scene --turntable 3 --resumable -o -
+run 2 render $scene --resumable -o x.exr
 # One frame of several is gone on with, too.
 draw turned --accumulate 10 --turntable 12 --frames 1 --resumable
 draw again --accumulate 21 --turntable 12 --frames 1 --resume turned.0001.exr

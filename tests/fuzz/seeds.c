@@ -69,6 +69,10 @@ int main(int argc, char **argv) {
              "{\"traceEvents\": [{\"name\": \"window 0\", \"cat\": \"unit\", \"ph\": \"X\", \"ts\": 1.5, \"dur\": 20, "
              "\"pid\": 1, \"tid\": 0, \"args\": {\"sent_bytes\": 64}}, {\"name\": \"sums\", \"cat\": \"join\", "
              "\"ts\": 22, \"dur\": 3, \"pid\": 0}], \"displayTimeUnit\": \"ms\"}");
+  seeds_text(set, "frames", "frames",
+             "conic frames 1\nkey 0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef\n"
+             "file 82907b05ff270d1cb93fab619df708504259a9aa9214808f6563f59d1076fe3c 5831 a/f.0001.exr\nframe 0\n"
+             "file 46e96ae1ec3d53ce1900ceecd503c342834f51d9fdd5dd8315fc8f8934906eed 57 b.exr\nframe 15\nfile 4");
   seeds_text(set, "filter", "lists", "classification = 2, 9 and not (intensity < 100 or z > 50)");
   seeds_text(set, "filter", "chain", "x >= -1.5e3 and y <= .5 or return_number != 1, 2, 3 and user_data = 7");
   for (int i = 0; i < set->n; i++)

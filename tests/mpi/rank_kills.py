@@ -96,10 +96,10 @@ def kill_one(arguments, n_ranks, seconds, chance, whole):
     if any(map(is_alive, ranks)):
         wrong.append(f"ranks live on {MOST_SECONDS} s after one was killed")
     try:
-        told = process.communicate(timeout=MOST_SECONDS)[1].decode()
+        told = b"".join(process.communicate(timeout=MOST_SECONDS)).decode()
     except subprocess.TimeoutExpired:
         process.kill()
-        told, outcome = process.communicate()[1].decode(), "ended, but the launcher had to be"
+        told, outcome = b"".join(process.communicate()).decode(), "ended, but the launcher had to be"
     if process.returncode and not told.strip():
         wrong.append("it tells nothing")
     for file, bytes_now in pictures().items():

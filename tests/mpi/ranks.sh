@@ -17,6 +17,31 @@ told_once err3 2 4 '/f.000[1345].pfm' "${frames[@]}" -o nowhere/f.pfm & jobs+=" 
 told_once err4 2 2 'standard output' "${frames[@]}" -o - & jobs+=" $!"
 told_once err5 2 2 '--time' "${samples[@]}" --time 3 -o a.exr & jobs+=" $!"
 
+# So is what goes wrong on rank 1 alone: its disk is full, it sees other files, or it has no memory.
+cat > ill << 'END'
+#!/usr/bin/env bash
+if [[ ${OMPI_COMM_WORLD_RANK:-${PMI_RANK:-}} == 1 ]]; then
+  case $1 in
+    disk) trap '' XFSZ && ulimit -f 20000 ;; # KiB: MPI writes some, too
+    path) mkdir -p elsewhere/ill.out && cd elsewhere && echo ply > knot.ply ;;
+    memory) ulimit -v 500000 ;;
+  esac
+fi
+exec "$CONIC_MPI" "${@:2}"
+END
+chmod +x ill
+mkdir ill.out
+export CONIC_MPI=$conic_mpi
+told_once_ill() { # as told_once
+  conic_mpi=./ill told_once "$@"
+}
+large=("${frames[@]}" -q --size 1400x1100 --compression none)
+told_once_ill err7 3 4 'ill.out/d.000.*cannot write' disk "${large[@]}" -o ill.out/d.exr & jobs+=" $!"
+told_once_ill err8 3 3 'knot.ply' path "${frames[@]}" -o ill.out/p.pfm & jobs+=" $!"
+if ! grep -q '^CONIC_SANITIZE:[A-Z]*=.' "$3/CMakeCache.txt"; then
+  told_once_ill err9 2 4 'memory' memory "${samples[@]}" -q --size 4000x3000 -o ill.out/m.exr & jobs+=" $!"
+fi
+
 # Frames, the exposure being the first one's whoever draws it
 run_as_typed 0 "${frames[@]}" -o alone/f.pfm --json alone.json
 ranks 3 0 "${frames[@]}" -o together/f.pfm --json together.json
@@ -84,4 +109,6 @@ grep -q '"cat": "unit".*"pid": 1.*"sent_bytes": [1-9]' trace.json || fail "a tra
 for job in $jobs; do
   wait "$job" || failures=$((failures + 1))
 done
+compgen -G 'ill.out/.*.*' > left && fail "a rank that failed leaves $(cat left)"
+compgen -G 'ill.out/m*' > left && fail "a picture without one rank's samples is written"
 exit $((failures > 0))
