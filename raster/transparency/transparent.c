@@ -196,7 +196,11 @@ static conic_status draw_transparent_bands(transparent *t, const conic_camera *c
       conic_statistics_add_pixels(&band, sum);
   }
   conic_image_release(t->context, &fine);
-  return status;
+  if (status != CONIC_OK || rows >= camera->height)
+    return status;
+  const conic_drawing all = {t->drawing->splats, t->drawing->triangles};
+  conic_camera whole = conic_samples_camera(camera, samples, 0, camera->height);
+  return conic_samples_count_drawing(t->context, &all, &whole, t->options, sum); /* no band sees all */
 }
 
 static conic_status check_transparent(conic_context *context, const conic_render_options *options,
