@@ -124,7 +124,7 @@ static conic_status draw_layers(conic_source *source, conic_renderer *renderer, 
 
 /* --- in windows --- */
 
-static conic_status begin_windows(conic_source_windows *windows) {
+static conic_status begin_layers_windows(conic_source_windows *windows) {
   layers_source *l = (layers_source *)windows->source;
   const conic_layers_draw_options options = wish_of(&l->base.view);
   conic_layers_picture *picture;
@@ -141,12 +141,12 @@ static conic_status begin_windows(conic_source_windows *windows) {
   return status;
 }
 
-static void end_windows(conic_source_windows *windows) {
+static void end_layers_windows(conic_source_windows *windows) {
   conic_layers_picture_end(windows->own);
 }
 
-static conic_status draw_window(conic_source_windows *windows, const conic_window *window, conic_image *image,
-                                conic_render_statistics *statistics) {
+static conic_status draw_layers_window(conic_source_windows *windows, const conic_window *window, conic_image *image,
+                                       conic_render_statistics *statistics) {
   conic_layers_tally tally = {.n_turned = 0};
   conic_status status =
       conic_layers_picture_draw(windows->own, window, windows->other_bytes, image, statistics, &tally);
@@ -156,7 +156,7 @@ static conic_status draw_window(conic_source_windows *windows, const conic_windo
   return status;
 }
 
-static conic_status count_windows(const conic_source_windows *windows, conic_render_statistics *statistics) {
+static conic_status count_layers_windows(const conic_source_windows *windows, conic_render_statistics *statistics) {
   layers_source *l = (layers_source *)windows->source;
   const uint64_t *counts = windows->tallies;
   const conic_layers_tally tally = {counts[0], counts[1], counts[2], counts[3]};
@@ -164,12 +164,13 @@ static conic_status count_windows(const conic_source_windows *windows, conic_ren
   return finish_picture(l, statistics);
 }
 
-static void weigh_windows(const conic_source_windows *windows, const conic_window *list, size_t n, double *weights) {
+static void weigh_layers_windows(const conic_source_windows *windows, const conic_window *list, size_t n,
+                                 double *weights) {
   conic_layers_picture_weigh(windows->own, list, n, weights);
 }
 
-static const conic_source_windowing windowing_of_layers = {begin_windows, end_windows, draw_window, count_windows,
-                                                           weigh_windows};
+static const conic_source_windowing windowing_of_layers = {begin_layers_windows, end_layers_windows, draw_layers_window,
+                                                           count_layers_windows, weigh_layers_windows};
 
 static void tell_layers_rest(const conic_source *source, conic_facts *facts) {
   const conic_layers_drawn *d = &((const layers_source *)source)->drawn;

@@ -97,15 +97,16 @@ conic_status cli_refuse_too_large(const cli_session *session, const cli_render_j
   uint64_t all = conic_machine_memory(), bytes = picture_bytes(job, camera);
   if (!all || bytes <= all)
     return CONIC_OK;
-  return conic_fail(session->context, CONIC_ERROR_ARGUMENT,
-                    "render: a picture of %d × %d pixels takes %.0f GiB, and the machine has %.0f; only a lone .exr "
-                    "of planes that are drawn as they are is written while it is drawn",
-                    camera->width, camera->height, (double)bytes / 1073741824.0, (double)all / 1073741824.0);
+  return conic_fail(
+      session->context, CONIC_ERROR_MEMORY,
+      "out of memory: a picture of %d × %d pixels takes %llu bytes, and the machine has %llu; only a lone "
+      ".exr of planes as they are drawn is written strip by strip",
+      camera->width, camera->height, (unsigned long long)bytes, (unsigned long long)all);
 }
 
 /* --- the writer --- */
 
-static conic_status open_file(banded *b, const conic_image *first) {
+static conic_status open_banded_file(banded *b, const conic_image *first) {
   conic_image header = *first;
   header.width = b->camera->width;
   header.height = b->camera->height;
@@ -118,7 +119,7 @@ static conic_status append_odd(void *cookie, int y, int n_rows, const void *byte
   return conic_exr_bands_append_packed(cookie, y, n_rows, bytes, n_bytes);
 }
 
-static size_t row_bytes(const banded *b, int i_plane) {
+static size_t plane_row_bytes(const banded *b, int i_plane) {
   return 4 * (size_t)conic_plane_describe((conic_plane)i_plane)->n_channels * (size_t)b->camera->width;
 }
 
@@ -133,8 +134,8 @@ static conic_status take_odd_rows(banded *b, const piece_head *head, const char 
   b->odd_y = b->n_odd ? b->odd_y : head->y;
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (b->written >> i & 1) {
-      size_t n_bytes = row_bytes(b, i) * (size_t)head->n_rows;
-      memcpy((char *)b->odd.planes[i] + row_bytes(b, i) * (size_t)b->n_odd, pixels, n_bytes);
+      size_t n_bytes = plane_row_bytes(b, i) * (size_t)head->n_rows;
+      memcpy((char *)b->odd.planes[i] + plane_row_bytes(b, i) * (size_t)b->n_odd, pixels, n_bytes);
       pixels += n_bytes;
     }
   b->n_odd += head->n_rows;
@@ -148,7 +149,7 @@ static conic_status take_odd_rows(banded *b, const piece_head *head, const char 
 static void hash_rows(banded *b, const piece_head *head, const char *pixels) {
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (b->written >> i & 1) {
-      size_t n_bytes = row_bytes(b, i) * (size_t)head->n_rows;
+      size_t n_bytes = plane_row_bytes(b, i) * (size_t)head->n_rows;
       b->job->hashes[i] = conic_image_hash_on(b->job->hashes[i], pixels, n_bytes);
       pixels += n_bytes;
     }
@@ -167,7 +168,7 @@ static void write_piece(banded *b, const char *bytes) {
   b->next += head.y + head.n_rows == b->strips[b->next].y_end;
 }
 
-static conic_status put_off(banded *b, uint64_t i_strip, const void *bytes, size_t n_bytes) {
+static conic_status put_piece_off(banded *b, uint64_t i_strip, const void *bytes, size_t n_bytes) {
   conic_context *context = b->session->context;
   conic_status status =
       conic_memory_reserve(context, &b->waiting, b->n_waiting, b->n_waiting + 1, &b->waiting_room, sizeof *b->waiting);
@@ -199,7 +200,7 @@ static void write_waiting(banded *b) {
 }
 
 /* On any thread of the process that writes, one call at a time. */
-static void take_piece(void *cookie, int from, void *bytes, size_t n_bytes) {
+static void take_piece_of_strip(void *cookie, int from, void *bytes, size_t n_bytes) {
   banded *b = cookie;
   piece_head head;
   double start = cli_seconds();
@@ -210,7 +211,7 @@ static void take_piece(void *cookie, int from, void *bytes, size_t n_bytes) {
   if (head.i_strip == b->next)
     write_piece(b, bytes);
   else
-    b->status = put_off(b, head.i_strip, bytes, n_bytes);
+    b->status = put_piece_off(b, head.i_strip, bytes, n_bytes);
   if (b->next > before)
     write_waiting(b);
   if (b->team) /* where something failed nobody is to wait for what does not come */
@@ -231,8 +232,8 @@ static void hand_piece(banded *b, int y, int n_rows, const void *packed, size_t 
   to += packed_bytes;
   for (int i = 0; i < CONIC_N_PLANES && (b->is_hashed || !packed_bytes); i++)
     if (b->written >> i & 1) {
-      size_t n_bytes = row_bytes(b, i) * (size_t)n_rows;
-      memcpy(to, (const char *)b->strip->planes[i] + row_bytes(b, i) * (size_t)(y - strip->y_begin), n_bytes);
+      size_t n_bytes = plane_row_bytes(b, i) * (size_t)n_rows;
+      memcpy(to, (const char *)b->strip->planes[i] + plane_row_bytes(b, i) * (size_t)(y - strip->y_begin), n_bytes);
       to += n_bytes;
     }
   size_t n_bytes = (size_t)(to - b->piece);
@@ -240,7 +241,7 @@ static void hand_piece(banded *b, int y, int n_rows, const void *packed, size_t 
   if (b->team)
     b->team->hand(b->piece, n_bytes);
   else
-    take_piece(b, 0, b->piece, n_bytes);
+    take_piece_of_strip(b, 0, b->piece, n_bytes);
 }
 
 static conic_status hand_packed(void *cookie, int y, int n_rows, const void *bytes, size_t n_bytes) {
@@ -286,7 +287,7 @@ static conic_status draw_strip(banded *b, size_t i_strip) {
     cli_windows_count(&b->windows, &drawn, &b->counts);
     b->job->statistics = drawn; /* which the file's header tells of */
     if (i_strip == 0)
-      status = open_file(b, &pixels);
+      status = open_banded_file(b, &pixels);
   }
   if (status == CONIC_OK)
     status = hand_strip(b);
@@ -299,7 +300,7 @@ static conic_status draw_strip(banded *b, size_t i_strip) {
 static conic_status draw_strips(banded *b) {
   uint64_t unit;
   if (b->team)
-    b->team->share((uint64_t)b->n - 1, b->team->index == 0 ? take_piece : NULL, b);
+    b->team->share((uint64_t)b->n - 1, b->team->index == 0 ? take_piece_of_strip : NULL, b);
   conic_status status = !b->team || b->team->index == 0 ? draw_strip(b, 0) : CONIC_OK;
   for (size_t i = 1; i < b->n && !b->team && status == CONIC_OK; i++)
     status = draw_strip(b, i);

@@ -164,7 +164,7 @@ void cli_windows_count(const conic_source_windows *windows, const conic_render_s
 }
 
 /* Times stay the first process's, as does what is not in the memory of both. */
-static void add_counts(conic_source_windows *windows, const window_sum *other, cli_window_counts *counts) {
+static void add_window_sum(conic_source_windows *windows, const window_sum *other, cli_window_counts *counts) {
   conic_render_statistics part = other->statistics;
   if (!other->n_windows)
     return;
@@ -184,7 +184,7 @@ conic_status cli_windows_sum(cli_team *team, conic_source_windows *windows, cli_
     window_sum *all = sizes ? team->gather(&own, sizeof own, sizes) : NULL;
     int is_there = team->index > 0 || all;
     for (int i = 1; all && i < team->count; i++)
-      add_counts(windows, &all[i], counts);
+      add_window_sum(windows, &all[i], counts);
     free(all);
     free(sizes);
     if (team->index > 0 || !is_there)

@@ -157,7 +157,7 @@ static void encode_chunk(void *data, size_t i_item, int i_thread) {
 }
 
 /* Compresses the next chunks before `end` side by side. Returns how many. */
-static size_t pack_chunks(conic_exr_bands *bands, int *y, int end, int is_alone, exr_result_t *result) {
+static size_t pack_next_chunks(conic_exr_bands *bands, int *y, int end, int is_alone, exr_result_t *result) {
   size_t n = 0;
   for (*result = EXR_ERR_SUCCESS; n < bands->n_chunks && *y < end && *result == EXR_ERR_SUCCESS; n++) {
     *result = exr_write_scanline_chunk_info(bands->file, 0, *y, &bands->chunks[n].info);
@@ -178,7 +178,7 @@ conic_status conic_exr_pack(conic_exr_bands *bands, const conic_image *image, in
   for (int y = begin; y < end;) {
     conic_status status =
         is_alone ? CONIC_OK : conic_progress(bands->context, "write", (double)y / (double)bands->height);
-    size_t n = status == CONIC_OK ? pack_chunks(bands, &y, end, is_alone, &result) : 0;
+    size_t n = status == CONIC_OK ? pack_next_chunks(bands, &y, end, is_alone, &result) : 0;
     for (size_t i = 0; i < n && status == CONIC_OK; i++) {
       const exr_chunk *chunk = &bands->chunks[i];
       result = result == EXR_ERR_SUCCESS ? chunk->result : result;

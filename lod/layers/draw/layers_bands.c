@@ -80,7 +80,7 @@ static conic_status draw_whole(bands *b, conic_render_statistics *statistics) {
 
 /* --- in windows --- */
 
-static int is_whole(const bands *b) {
+static int draws_whole(const bands *b) {
   return memcmp(&b->part, &(conic_window){0, b->fine.width, 0, b->fine.height}, sizeof b->part) == 0;
 }
 
@@ -141,7 +141,7 @@ static conic_status take_part(void *cookie, conic_layers_set *set) {
   return status == CONIC_OK && has_several_bands(b) ? count_part(b, set) : status;
 }
 
-static conic_status look_at_part(void *cookie, conic_layers_set *set) {
+static conic_status look_at_new(void *cookie, conic_layers_set *set) {
   bands *b = cookie;
   conic_status status = conic_layers_spill_look(&b->spill);
   return status == CONIC_OK && has_several_bands(b) ? count_part(b, set) : status;
@@ -274,7 +274,7 @@ static conic_status draw_all_windows(bands *b, int *n_bands) {
 static conic_status draw_gathered(bands *b, int *n_bands) {
   const conic_layers_band_drawing *d = b->d;
   conic_layers_gathering gathering = begin_gathering(b);
-  gathering.look = look_at_part;
+  gathering.look = look_at_new;
   gathering.cookie = b;
   conic_status status = conic_layers_gather(d->layers, &gathering, d->set);
   b->n_chosen = d->set->n_chosen;
@@ -376,7 +376,7 @@ conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, c
   b.part = (conic_window){n * window->x_begin, n * window->x_end, n * window->y_begin, n * window->y_end};
   b.band_rows = n * conic_samples_band_rows(drawing->camera, n);
   *n_bands = 1;
-  int is_room = fits(&b), is_at_once = is_room && is_whole(&b);
+  int is_room = fits(&b), is_at_once = is_room && draws_whole(&b);
   if (drawing->transparency && !is_at_once)
     return conic_fail(drawing->layers->context, CONIC_ERROR_MEMORY,
                       "%s: transparency wants all %.0f splats of the picture in memory at once, where fewer may be",

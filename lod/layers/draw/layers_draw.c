@@ -192,7 +192,7 @@ static conic_status measure_needed(conic_layers_picture *d) {
   return d->layers->octree ? conic_layers_octree_measure(d->layers, d->needed) : CONIC_OK;
 }
 
-static conic_status choose_all(conic_layers_picture *d) {
+static conic_status choose_for_picture(conic_layers_picture *d) {
   conic_status status = choose_first(d);
   if (status == CONIC_OK && d->options.may_be_coarser)
     status = make_do(d, d->options.seconds > 0.0 ? conic_seconds_now() + d->options.seconds : HUGE_VAL);
@@ -216,7 +216,7 @@ static uint64_t bytes_of_picture(const conic_image *image) {
   return n_values * sizeof(float) * (uint64_t)image->width * (uint64_t)image->height;
 }
 
-static conic_status look_at_all(conic_layers_picture *d) {
+static conic_status look_at_picture(conic_layers_picture *d) {
   conic_layers *layers = d->layers;
   conic_layers_scale scale;
   conic_layers_measure(layers, d->render.kernel.cutoff, &scale);
@@ -268,14 +268,14 @@ void conic_layers_picture_end(conic_layers_picture *d) {
 
 static conic_status begin_choosing(conic_layers_picture *d) {
   conic_layers *layers = d->layers;
-  conic_status status = look_at_all(d);
+  conic_status status = look_at_picture(d);
   if (status == CONIC_OK)
     status = expand_layers(d);
   if (status != CONIC_OK)
     return status;
   d->needed = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d->needed);
   d->held = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d->held);
-  status = d->needed && d->held ? choose_all(d) : CONIC_ERROR_MEMORY;
+  status = d->needed && d->held ? choose_for_picture(d) : CONIC_ERROR_MEMORY;
   if (status != CONIC_OK)
     return status;
   d->chosen = conic_memory_allocate(layers->context, d->cut.n, sizeof *d->chosen);
