@@ -85,6 +85,10 @@ conic_status cli_rank_schedule(conic_context *context, const cli_rank_trace *tra
       .trace = trace, .line = line, .n_ranks = (size_t)n_ranks, .n_units = trace->n_units * times, .last_s = 0.0};
   double work_s = 0.0;
   memset(estimate, 0, sizeof *estimate);
+  if (trace->is_build) {
+    cli_rank_build(trace, line, n_ranks, times, estimate);
+    return CONIC_OK;
+  }
   run.turns = conic_memory_allocate(context, run.n_ranks, sizeof *run.turns);
   if (!run.turns)
     return CONIC_ERROR_MEMORY;

@@ -27,13 +27,32 @@ typedef struct cli_rank_event {
   cli_rank_kind kind;
 } cli_rank_event;
 
+/* The stages of building a layered cloud together, by what a trace calls them. */
+typedef enum cli_rank_stage {
+  CLI_STAGE_READ,
+  CLI_STAGE_MEASURE,
+  CLI_STAGE_SHARE,
+  CLI_STAGE_EXCHANGE,
+  CLI_STAGE_SORT,
+  CLI_STAGE_GROW,
+  CLI_STAGE_CROWN,
+  CLI_STAGE_ORDER, /* rank 0's alone */
+  CLI_STAGE_WRITE,
+  CLI_RANK_N_STAGES
+} cli_rank_stage;
+
+/* Of all ranks: how long they worked, without waiting, what they sent, and of how much each spoke. */
+typedef struct cli_rank_stage_sum {
+  double seconds, bytes, number;
+} cli_rank_stage_sum;
+
 /* What a trace says of a job. */
 typedef struct cli_rank_trace {
   int n_ranks;    /* that it ran on */
   double seconds; /* from its first event to the end of its last */
   double open_s;  /* before its units, on each rank: the mean */
   cli_rank_unit *units;
-  size_t n_units, room;
+  size_t n_units, room;   /* of building: parts of the inputs, which are no units */
   cli_rank_event *events; /* all of them */
   size_t n_events, events_room;
   double join_s;               /* what rank 0 does with all results of units */
@@ -41,6 +60,8 @@ typedef struct cli_rank_trace {
   double n_merges;             /* how often the sums come together */
   double write_s;              /* after all units */
   double first_event;          /* while it is read */
+  int is_build;                /* of a cloud: stages in place of units */
+  cli_rank_stage_sum stages[CLI_RANK_N_STAGES];
 } cli_rank_trace;
 
 /* Reads what --trace wrote: events of Chrome's format. On success the caller releases it. Errors: INPUT, MEMORY. */
@@ -77,5 +98,10 @@ enum { CLI_MOST_RANKS = 65536 };
  * rank that is free. Rank 0 gives them out and takes results one at a time, beside its own units. Errors: MEMORY. */
 conic_status cli_rank_schedule(conic_context *context, const cli_rank_trace *trace, const cli_rank_line *line,
                                int n_ranks, uint64_t times, cli_rank_estimate *estimate);
+
+/* The same of building: what is shared out takes its share of the time, and then there is what more ranks make longer.
+ */
+void cli_rank_build(const cli_rank_trace *trace, const cli_rank_line *line, int n_ranks, uint64_t times,
+                    cli_rank_estimate *estimate);
 
 #endif

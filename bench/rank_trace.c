@@ -4,6 +4,7 @@
 #include "bench/rank_schedule.h"
 #include "core/base/memory.h"
 #include "core/files/json_read.h"
+#include "core/files/number.h"
 
 typedef struct trace_event {
   char name[32], kind[16];
@@ -34,6 +35,24 @@ static conic_status add_event(conic_context *context, cli_rank_trace *trace, con
   return status;
 }
 
+/* "grow 20000" is a stage of building with its number; what was waited then is an event of the same name. */
+static void add_stage(cli_rank_trace *trace, const trace_event *event, double sign) {
+  static const char *const names[CLI_RANK_N_STAGES] = {"read", "measure", "share", "exchange", "sort",
+                                                       "grow", "crown",   "order", "write"};
+  for (int i = 0; i < CLI_RANK_N_STAGES; i++) {
+    size_t length = strlen(names[i]);
+    double number;
+    if (strncmp(event->name, names[i], length) != 0 || event->name[length] != ' ')
+      continue;
+    trace->stages[i].seconds += sign * 1e-6 * event->lasted_us;
+    trace->stages[i].bytes += event->bytes;
+    if (sign > 0.0 && conic_number_parse(event->name + length + 1, strlen(event->name + length + 1), &number) > 0)
+      trace->stages[i].number += number;
+    trace->n_units += i == CLI_STAGE_READ && sign > 0.0;
+  }
+  trace->is_build = 1;
+}
+
 /* Each time that sums come together, every rank says by "swap" how much it sends, and by "sums" how long it
  * worked on it; "parts" wait for others. */
 static conic_status take_event(conic_context *context, cli_rank_trace *trace, const trace_event *event) {
@@ -44,9 +63,11 @@ static conic_status take_event(conic_context *context, cli_rank_trace *trace, co
     trace->first_event = 1e-6 * event->begun_us;
   if (event->rank >= trace->n_ranks)
     trace->n_ranks = (int)event->rank + 1;
-  if (strcmp(event->kind, "unit") == 0)
+  if (strcmp(event->kind, "unit") == 0 && !trace->is_build)
     return add_unit(context, trace, event);
-  if (strcmp(event->kind, "open") == 0)
+  if (!trace->units && (strcmp(event->kind, "stage") == 0 || strcmp(event->kind, "wait") == 0))
+    add_stage(trace, event, event->kind[0] == 's' ? 1.0 : -1.0);
+  else if (strcmp(event->kind, "open") == 0)
     trace->open_s += lasted_s;
   else if (strcmp(event->kind, "write") == 0)
     trace->write_s += lasted_s;

@@ -46,8 +46,12 @@ static cli_rank_loss limit_of(const cli_rank_estimate *e) {
 
 static void print_estimates(const simulate_job *job) {
   const cli_rank_trace *trace = &job->trace;
-  printf("%zu units on %d ranks took %.3f s; %.3f s by the model\n\n", trace->n_units, trace->n_ranks, trace->seconds,
-         job->same.seconds);
+  if (trace->is_build)
+    printf("Building on %d ranks took %.3f s; %.3f s by the model\n\n", trace->n_ranks, trace->seconds,
+           job->same.seconds);
+  else
+    printf("%zu units on %d ranks took %.3f s; %.3f s by the model\n\n", trace->n_units, trace->n_ranks, trace->seconds,
+           job->same.seconds);
   puts("| ranks | s | efficiency | rank hours | most is lost by | s |\n|---|---|---|---|---|---|");
   for (int i = 0; i < job->n; i++) {
     const cli_rank_estimate *e = &job->estimates[i];
@@ -148,7 +152,8 @@ const cli_command cli_simulate = {
     .run = run,
     .description = "Reads what conic-mpi wrote by --trace, and says for each number of ranks when the job would be "
                    "done, and what would lose the most time: opening what each rank opens, waiting for the first rank, "
-                   "ranks without work at the end, merging sums, or writing.",
+                   "ranks without work at the end, merging sums, or writing; of building a layered cloud, what merges "
+                   "is the exchange of samples and the top of the tree.",
     .examples = {{"on up to 1024 ranks", "conic simulate trace.json"},
                  {"the same for a picture of 100 times as many windows, on a slow network",
                   "conic simulate trace.json --times 100 --bandwidth 1 --latency 50"}},

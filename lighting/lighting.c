@@ -10,6 +10,7 @@
 #include "core/base/threads.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
+#include "lighting/light_sharing.h"
 #include "lighting/light_work.h"
 #include "raster/tiles/lights.h"
 
@@ -167,20 +168,25 @@ static float arriving_part(const conic_light_work *l, size_t i) {
   return l->options->is_sample ? part : conic_sky_sums_share(&l->sums, i);
 }
 
+/* Before what all do together. */
+static conic_status agree_on_light(const conic_light_work *l, conic_status status) {
+  return conic_team_agree(l->room.sharing ? l->room.sharing->team : NULL, status);
+}
+
 static conic_status gather_sky(conic_light_work *l) {
   float *ao = l->image->planes[CONIC_PLANE_AO];
   int has_colors = l->hidden != NULL;
   size_t n = l->receivers.count;
   l->sums_block = conic_memory_allocate_zeroed(l->context, n, (has_colors ? 5 : 2) * sizeof *l->sums_block);
-  if (!l->sums_block)
-    return CONIC_ERROR_MEMORY;
+  conic_status status = agree_on_light(l, l->sums_block ? CONIC_OK : CONIC_ERROR_MEMORY);
+  if (status != CONIC_OK)
+    return status;
   l->sums = (conic_sky_sums){.facing = l->sums_block,
                              .visible = l->sums_block + n,
                              .takes_hidden = !l->options->sky && !l->options->is_sample};
   for (size_t c = 0; c < 3 && has_colors; c++)
     l->sums.color[c] = l->sums_block + (2 + c) * n;
-  conic_status status =
-      conic_sky_sums_add(&l->room, l->options, l->options->sky ? NULL : light_of_sky, &l->lights, &l->sums);
+  status = conic_sky_sums_add(&l->room, l->options, l->options->sky ? NULL : light_of_sky, &l->lights, &l->sums);
   if (status != CONIC_OK)
     return status;
   if (has_colors && l->sums.takes_hidden)
@@ -243,9 +249,9 @@ static conic_status prepare_lighting(conic_light_work *l, const conic_casters *c
                                 &l->spread);
 }
 
-conic_status conic_image_light(conic_context *context, const conic_casters *casters, const conic_camera *camera,
-                               const conic_render_options *render, const conic_lighting_options *options,
-                               conic_image *image) {
+conic_status conic_image_light_shared(conic_context *context, const conic_casters *casters, const conic_camera *camera,
+                                      const conic_render_options *render, const conic_lighting_options *options,
+                                      conic_light_sharing *sharing, conic_image *image) {
   conic_render_options own_render;
   conic_lighting_options own;
   conic_light_work l = {.context = context, .camera = camera, .render = &own_render, .options = &own, .image = image};
@@ -257,6 +263,8 @@ conic_status conic_image_light(conic_context *context, const conic_casters *cast
   if (status != CONIC_OK)
     return status;
   status = prepare_lighting(&l, casters);
+  l.room.sharing = sharing;
+  status = agree_on_light(&l, status);
   if (status == CONIC_OK && own.n_directions > 0)
     status = gather_sky(&l);
   if (status == CONIC_OK)
@@ -275,6 +283,12 @@ conic_status conic_image_light(conic_context *context, const conic_casters *cast
   conic_receivers_release(context, &l.receivers);
   conic_map_room_release(&l.room);
   return status;
+}
+
+conic_status conic_image_light(conic_context *context, const conic_casters *casters, const conic_camera *camera,
+                               const conic_render_options *render, const conic_lighting_options *options,
+                               conic_image *image) {
+  return conic_image_light_shared(context, casters, camera, render, options, NULL, image);
 }
 
 conic_status conic_lighter_shade(void *cookie, uint64_t i_sample, const conic_camera *camera, conic_image *sample) {

@@ -64,7 +64,10 @@ conic_status conic_map_room_fill(conic_map_room *room, const conic_camera *camer
   depth.height = camera->height;
   depth.planes[CONIC_PLANE_Z] = room->z;
   map->z = room->z;
-  return room->casters->draw(room->casters->cookie, camera, near_z, &depth);
+  conic_status status = room->casters->draw(room->casters->cookie, camera, near_z, &depth);
+  if (room->sharing)
+    room->sharing->i_map++;
+  return status;
 }
 
 conic_status conic_map_room_draw(conic_map_room *room, const double direction[3], conic_light_map *map) {
@@ -85,18 +88,25 @@ void conic_map_room_release(conic_map_room *room) {
 typedef struct sky_adding {
   const conic_map_room *room;
   const conic_light_map *map;
+  const unsigned char *reached; /* a bit a receiver: another process has looked into the map; null: nobody has */
   float light[3];
   const conic_sky_sums *sums;
 } sky_adding;
+
+static size_t end_of_receivers(const conic_map_room *room, size_t begin) {
+  size_t end = begin + CONIC_RECEIVED_TOGETHER;
+  return end < room->receivers->count ? end : room->receivers->count;
+}
 
 static void add_sky_light(void *data, size_t i_item, int i_thread) {
   const sky_adding *a = data;
   const conic_sky_sums *sums = a->sums;
   float visible[CONIC_RECEIVED_TOGETHER], facing[CONIC_RECEIVED_TOGETHER];
-  size_t begin = i_item * CONIC_RECEIVED_TOGETHER, count = a->room->receivers->count - begin;
-  count = count < CONIC_RECEIVED_TOGETHER ? count : CONIC_RECEIVED_TOGETHER;
+  size_t begin = i_item * CONIC_RECEIVED_TOGETHER, count = end_of_receivers(a->room, begin) - begin;
   (void)i_thread;
   a->room->kernels.receive(a->map, a->room->receivers, begin, begin + count, 0, visible, facing);
+  for (size_t i = 0; i < count && a->reached; i++)
+    visible[i] = a->reached[(begin + i) / 8] >> (begin + i) % 8 & 1 ? 1.0f : 0.0f;
   for (size_t i = 0; i < count; i++) {
     sums->facing[begin + i] += facing[i];
     sums->visible[begin + i] += facing[i] * visible[i];
@@ -106,26 +116,165 @@ static void add_sky_light(void *data, size_t i_item, int i_thread) {
       sums->color[c][begin + i] += a->light[c] * (facing[i] * (sums->takes_hidden ? 1.0f - visible[i] : visible[i]));
 }
 
-conic_status conic_sky_sums_add(conic_map_room *room, const conic_lighting_options *options,
-                                conic_direction_light *light, const void *cookie, conic_sky_sums *sums) {
+/* --- by several processes --- */
+
+/* What a process says of a map to the first one: the nearest texel's answer is yes or no. */
+typedef struct sky_looking {
+  const conic_map_room *room;
+  const conic_light_map *map;
+  unsigned char *reached;
+} sky_looking;
+
+static void look_into_map(void *data, size_t i_item, int i_thread) {
+  const sky_looking *l = data;
+  float visible[CONIC_RECEIVED_TOGETHER], facing[CONIC_RECEIVED_TOGETHER];
+  size_t begin = i_item * CONIC_RECEIVED_TOGETHER, end = end_of_receivers(l->room, begin);
+  (void)i_thread;
+  l->room->kernels.receive(l->map, l->room->receivers, begin, end, 0, visible, facing);
+  for (size_t i = begin; i < end; i++)
+    l->reached[i / 8] |= (unsigned char)((visible[i - begin] > 0.0f) << i % 8);
+}
+
+/* A map in which nothing hides anything: how receivers face the light, without looking. */
+static void open_map(conic_light_map *map) {
+  static const float nothing;
+  map->z = &nothing;
+  map->width = map->height = 1;
+}
+
+/* One map a process and round, so that none waits for long. */
+typedef struct sky_round {
+  conic_map_room *room;
+  const conic_team *team;
+  size_t n_items, n_bytes; /* of the bits of all receivers */
+  sky_adding *adding;
+} sky_round;
+
+/* In the others: what is made of direction `own`. */
+static conic_status draw_own_map(const sky_round *r, const double direction[3], unsigned char *reached) {
   conic_light_map map;
-  sky_adding adding = {.room = room, .map = &map, .sums = sums};
-  size_t n_items = (room->receivers->count + CONIC_RECEIVED_TOGETHER - 1) / CONIC_RECEIVED_TOGETHER;
+  sky_looking looking = {r->room, &map, reached};
+  memset(reached, 0, r->n_bytes);
+  conic_status status = conic_map_room_draw(r->room, direction, &map);
+  if (status == CONIC_OK)
+    conic_parallel_for(r->room->context, r->n_items, look_into_map, &looking);
+  return status;
+}
+
+/* --- all directions --- */
+
+typedef struct sky_walk {
+  conic_map_room *room;
+  const conic_lighting_options *options;
+  conic_direction_light *light;
+  const void *cookie;
+  size_t n_items;
+  sky_adding adding;
+  conic_light_map map;
+} sky_walk;
+
+/* What comes from direction i. */
+static conic_status turn_to_direction(sky_walk *w, uint64_t i, double direction[3]) {
+  double from_there[3];
+  conic_sky_direction(w->options->sky, w->options->first_direction + i, direction, from_there);
+  if (w->light)
+    w->light(w->cookie, direction, from_there);
+  for (int c = 0; c < 3; c++)
+    w->adding.light[c] = (float)from_there[c];
+  return conic_progress(w->room->context, "light", (double)i / (double)w->options->n_directions);
+}
+
+static void add_direction(sky_walk *w, const unsigned char *reached) {
+  w->adding.reached = reached;
+  conic_parallel_for(w->room->context, w->n_items, add_sky_light, &w->adding);
+}
+
+static conic_status walk_alone(sky_walk *w) {
   conic_status status = CONIC_OK;
-  for (uint64_t i = 0; i < options->n_directions && n_items > 0 && status == CONIC_OK; i++) {
-    double direction[3], from_there[3];
-    conic_sky_direction(options->sky, options->first_direction + i, direction, from_there);
-    if (light)
-      light(cookie, direction, from_there);
-    for (int c = 0; c < 3; c++)
-      adding.light[c] = (float)from_there[c];
-    status = conic_progress(room->context, "light", (double)i / (double)options->n_directions);
+  for (uint64_t i = 0; i < w->options->n_directions && status == CONIC_OK; i++) {
+    double direction[3];
+    status = turn_to_direction(w, i, direction);
     if (status == CONIC_OK)
-      status = conic_map_room_draw(room, direction, &map);
+      status = conic_map_room_draw(w->room, direction, &w->map);
     if (status == CONIC_OK)
-      conic_parallel_for(room->context, n_items, add_sky_light, &adding);
+      add_direction(w, NULL);
   }
   return status;
+}
+
+/* The first process adds what the others say of their directions, in the order of these. */
+static conic_status take_directions(sky_walk *w, const sky_round *r, uint64_t first) {
+  conic_status status = CONIC_OK;
+  for (int other = 1; other < r->team->count && first + (uint64_t)other < w->options->n_directions; other++) {
+    conic_camera camera;
+    double direction[3], near_z;
+    size_t n_bytes;
+    unsigned char *reached = r->team->receive(r->team->data, other, &n_bytes);
+    conic_status turned = turn_to_direction(w, first + (uint64_t)other, direction);
+    status = status == CONIC_OK ? turned : status;
+    conic_light_map_place(w->room->casters, w->room->receivers, direction, w->room->texel, w->room->most_texels,
+                          &camera, &near_z, &w->map);
+    open_map(&w->map);
+    add_direction(w, reached);
+    r->team->release(r->team->data, reached);
+  }
+  return status;
+}
+
+/* A process's own map of a round. */
+static conic_status draw_in_round(sky_walk *w, const sky_round *r, uint64_t i, unsigned char *reached) {
+  double direction[3];
+  conic_light_sharing *sharing = w->room->sharing;
+  if (i >= w->options->n_directions)
+    return CONIC_OK;
+  sharing->i_map = i;
+  conic_status status = turn_to_direction(w, i, direction);
+  if (status != CONIC_OK || r->team->index > 0)
+    return status == CONIC_OK ? draw_own_map(r, direction, reached) : status;
+  status = conic_map_room_draw(w->room, direction, &w->map);
+  if (status == CONIC_OK)
+    add_direction(w, NULL);
+  return status;
+}
+
+/* Round by round: all draw a map, all know that none failed, and the first one takes what the others found. */
+static conic_status walk_rounds(sky_walk *w, const sky_round *r, unsigned char *reached) {
+  const conic_team *team = r->team;
+  conic_status status = conic_team_agree(team, reached ? CONIC_OK : CONIC_ERROR_MEMORY), taken = CONIC_OK;
+  for (uint64_t first = 0; first < w->options->n_directions && status == CONIC_OK; first += (uint64_t)team->count) {
+    uint64_t own = first + (uint64_t)team->index;
+    status = conic_team_agree(team, taken == CONIC_OK ? draw_in_round(w, r, own, reached) : taken);
+    if (status == CONIC_OK && team->index > 0 && own < w->options->n_directions)
+      team->send(team->data, 0, reached, r->n_bytes);
+    else if (status == CONIC_OK && team->index == 0)
+      taken = take_directions(w, r, first);
+  }
+  return status == CONIC_OK ? conic_team_agree(team, taken) : status;
+}
+
+static conic_status walk_together(sky_walk *w) {
+  conic_light_sharing *sharing = w->room->sharing;
+  const sky_round r = {w->room, sharing->team, w->n_items, (w->room->receivers->count + 7) / 8};
+  unsigned char *reached = conic_memory_allocate(w->room->context, r.n_bytes, 1);
+  sharing->is_apart = 1;
+  conic_status status = walk_rounds(w, &r, reached);
+  sharing->is_apart = 0;
+  sharing->i_map = w->options->n_directions;
+  conic_memory_release(w->room->context, reached);
+  return status;
+}
+
+conic_status conic_sky_sums_add(conic_map_room *room, const conic_lighting_options *options,
+                                conic_direction_light *light, const void *cookie, conic_sky_sums *sums) {
+  sky_walk walk = {.room = room,
+                   .options = options,
+                   .light = light,
+                   .cookie = cookie,
+                   .n_items = (room->receivers->count + CONIC_RECEIVED_TOGETHER - 1) / CONIC_RECEIVED_TOGETHER};
+  walk.adding = (sky_adding){.room = room, .map = &walk.map, .sums = sums};
+  if (walk.n_items == 0)
+    return CONIC_OK;
+  return room->sharing ? walk_together(&walk) : walk_alone(&walk);
 }
 
 static conic_status sum_up_visible(conic_map_room *room, const conic_lighting_options *options, float *ao) {

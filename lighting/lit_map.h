@@ -2,6 +2,7 @@
 #ifndef CONIC_LIT_MAP_H
 #define CONIC_LIT_MAP_H
 
+#include "lighting/light_sharing.h"
 #include "lighting/lighting_kernels.h"
 
 /* What maps are drawn into and received by. */
@@ -13,7 +14,8 @@ typedef struct conic_map_room {
   double texel; /* in world units, wanted */
   int most_texels;
   float *z;
-  size_t n_room; /* floats of it */
+  size_t n_room;                /* floats of it */
+  conic_light_sharing *sharing; /* null: all maps are drawn here */
 } conic_map_room;
 
 /* `options` are whole. Errors: ARGUMENT (the casters, the options), UNSUPPORTED. */

@@ -81,29 +81,38 @@ static void wait_for(MPI_Request *request) {
   count_traffic(0, 0, n_dozes ? conic_seconds_now() - start : 0.0);
 }
 
-/* The same for bytes that are on their way: MPI may move a few of them each time that it is asked. */
-static void wait_awake(MPI_Request *request) {
+/* Of a piece the other side is at work on, too, and each test moves some of its bytes: who dozes long holds both up. */
+static void move_piece(MPI_Request *request) {
+  enum { YIELDS = 256 };
   int is_done = 0;
   double start = conic_seconds_now();
   MPI_Test(request, &is_done, MPI_STATUS_IGNORE);
-  while (!is_done) {
-    sched_yield();
+  for (int n = 0; !is_done; n++) {
+    int n_dozes = 0;
+    if (n < YIELDS)
+      sched_yield();
+    else
+      doze(&n_dozes);
     MPI_Test(request, &is_done, MPI_STATUS_IGNORE);
   }
   count_traffic(0, 0, conic_seconds_now() - start);
 }
 
+static int is_piece(int tag) {
+  return tag == TAG_PIECE || tag == TAG_HAND_PIECE;
+}
+
 static void send_once(const void *bytes, size_t n_bytes, int to, int tag, MPI_Comm line) {
   MPI_Request request;
   MPI_Issend(bytes, (int)n_bytes, MPI_BYTE, to, tag, line, &request);
-  wait_for(&request);
+  (is_piece(tag) ? move_piece : wait_for)(&request);
   count_traffic(n_bytes, 0, 0.0);
 }
 
 static void receive_once(void *bytes, size_t n_bytes, int from, int tag, MPI_Comm line) {
   MPI_Request request;
   MPI_Irecv(bytes, (int)n_bytes, MPI_BYTE, from, tag, line, &request);
-  wait_for(&request);
+  (is_piece(tag) ? move_piece : wait_for)(&request);
   count_traffic(0, n_bytes, 0.0);
 }
 
@@ -116,22 +125,14 @@ static size_t piece_bytes(size_t offset, size_t n_bytes) {
 static void send_blob(int to, const void *bytes, size_t n_bytes, int tag, int piece_tag, MPI_Comm line) {
   uint64_t size = n_bytes;
   send_once(&size, sizeof size, to, tag, line);
-  for (size_t at = 0; at < n_bytes; at += piece_bytes(at, n_bytes)) {
-    MPI_Request request;
-    MPI_Issend((const char *)bytes + at, (int)piece_bytes(at, n_bytes), MPI_BYTE, to, piece_tag, line, &request);
-    wait_awake(&request);
-  }
-  count_traffic(n_bytes, 0, 0.0);
+  for (size_t at = 0; at < n_bytes; at += piece_bytes(at, n_bytes))
+    send_once((const char *)bytes + at, piece_bytes(at, n_bytes), to, piece_tag, line);
 }
 
 static void *receive_pieces(int from, size_t n_bytes, int piece_tag, MPI_Comm line) {
   char *bytes = take_memory(n_bytes);
-  for (size_t at = 0; at < n_bytes; at += piece_bytes(at, n_bytes)) {
-    MPI_Request request;
-    MPI_Irecv(bytes + at, (int)piece_bytes(at, n_bytes), MPI_BYTE, from, piece_tag, line, &request);
-    wait_awake(&request);
-  }
-  count_traffic(0, n_bytes, 0.0);
+  for (size_t at = 0; at < n_bytes; at += piece_bytes(at, n_bytes))
+    receive_once(bytes + at, piece_bytes(at, n_bytes), from, piece_tag, line);
   return bytes;
 }
 

@@ -3,7 +3,7 @@
 #define CONIC_BUILD_COLORING_H
 
 #include "cli/color_options.h"
-#include "cli/commands/points_share.h"
+#include "cli/points/points_share.h"
 #include "cli/scene/scene_options.h"
 #include "conic/coloring.h"
 

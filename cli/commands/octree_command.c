@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
+#include "cli/session_team.h"
 #include "core/base/message.h"
 #include "core/splats/repairs_log.h"
 #include "source/reach.h"
@@ -59,8 +60,11 @@ static conic_status build_from_model(octree_job *job) {
 
 static int make_octree(void *cookie) {
   octree_job *job = cookie;
-  conic_status status = build_from_model(job);
+  cli_build_share(&job->base);
+  conic_status status = cli_build_part(&job->base, build_from_model(job));
   double start = cli_seconds();
+  if (!cli_team_is_first(job->base.session))
+    return cli_exit_of(status);
   if (status == CONIC_OK)
     status = conic_octree_describe(job->octree, &job->info);
   if (status == CONIC_OK)
@@ -126,6 +130,7 @@ const cli_command cli_octree = {
     .summary = "builds a point-octree: splats in several resolutions, for --error and --budget",
     .usage = "conic octree IN -o OUT.cot [--quantize] [--cutoff F]",
     .run = run_octree,
+    .is_shared = 1,
     .description =
         "Writes the splats and means of them, level by level, so that conic render --error or --budget draws "
         "no more than a picture needs.",

@@ -353,8 +353,10 @@ static conic_status begin_banded(banded *b) {
     return CONIC_ERROR_MEMORY;
   for (int i = 0; i < CONIC_N_PLANES; i++)
     b->job->hashes[i] = b->is_hashed && b->written >> i & 1 ? CONIC_IMAGE_HASH_START : 0;
-  conic_status status = conic_source_windows_begin(b->job->source, b->job->renderer, b->camera, &b->job->options,
-                                                   &b->job->view, b->planes, &b->windows);
+  conic_source_view view = b->job->view;
+  view.occlusion = CONIC_OCCLUSION_OFF; /* which needs to hold how deep every pixel hides */
+  conic_status status = conic_source_windows_begin(b->job->source, b->job->renderer, b->camera, &b->job->options, &view,
+                                                   b->planes, &b->windows);
   if (status == CONIC_OK)
     status = list_strips(b);
   return status == CONIC_OK ? begin_pieces(b) : status;

@@ -33,7 +33,7 @@ struct cli_kept_frames {
 
 /* --- the options --- */
 
-static int is_stream(const cli_render_job *job) {
+static int reads_stream(const cli_render_job *job) {
   for (int i = 0; i < job->n_inputs; i++)
     if (strcmp(job->inputs[i], "-") == 0)
       return 1;
@@ -51,7 +51,7 @@ int cli_kept_frames_check(const cli_render_job *job) {
     return cli_usage("render: --resumable keeps what is finished beside the picture; give a file with -o");
   if (is_several && own->resume_path && strcmp(own->resume_path, job->outputs[0]) != 0)
     return cli_usage("render: --resume goes on with frames where they are; give -o %s, too", own->resume_path);
-  if (is_several && is_stream(job))
+  if (is_several && reads_stream(job))
     return cli_usage("render: frames of standard input cannot be gone on with; give files");
   return CLI_DONE;
 }
@@ -181,7 +181,7 @@ void cli_kept_frames_release(cli_session *session, cli_render_job *job) {
 
 /* --- frames --- */
 
-static int is_whole(const cli_finished_file *file) {
+static int is_as_noted(const cli_finished_file *file) {
   char path[4096], hash[CONIC_SHA256_ROOM];
   conic_disk_entry entry;
   uint64_t n_bytes;
@@ -194,13 +194,13 @@ static int is_whole(const cli_finished_file *file) {
          memcmp(hash, file->hash, CONIC_SHA256_ROOM - 1) == 0;
 }
 
-static int is_there(const cli_kept_frames *kept, int i_frame) {
+static int is_frame_there(const cli_kept_frames *kept, int i_frame) {
   size_t at = kept->found.begins[i_frame];
   cli_finished_file file;
   if (at == SIZE_MAX)
     return 0;
   while (cli_frames_file_next(&kept->found, &at, &file))
-    if (!is_whole(&file))
+    if (!is_as_noted(&file))
       return 0;
   return 1;
 }
@@ -236,7 +236,7 @@ conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int
     return CONIC_OK;
   conic_status status = conic_progress(session->context, "draw", 0.0);
   if (cli_sharing_has_picture(session, job))
-    *is_finished = status == CONIC_OK && is_there(kept, i_frame);
+    *is_finished = status == CONIC_OK && is_frame_there(kept, i_frame);
   if (job->sharing > CLI_SHARES_FRAMES)
     session->team->broadcast(is_finished, sizeof *is_finished);
   if (*is_finished && cli_sharing_has_picture(session, job))

@@ -4,9 +4,12 @@
 #include <string.h>
 
 #include "accumulation/sequence.h"
-#include "cli/render/gather_picture.h"
+#include "cli/render/sharing.h"
+#include "cli/render/windows_team.h"
 #include "cli/scene/light_options.h"
-#include "conic/lighting.h"
+#include "cli/session_team.h"
+#include "core/image/image_common.h"
+#include "lighting/light_sharing.h"
 
 enum { USUAL_DIRECTIONS = 64 };
 
@@ -39,9 +42,19 @@ int cli_light_check(const cli_render_job *job) {
 
 /* What draws the maps. */
 typedef struct map_drawer {
+  cli_session *session;
   cli_render_job *job;
   conic_render_options options;
+  conic_light_sharing *sharing; /* null: this process lights alone */
 } map_drawer;
+
+/* Of a map that all draw, the first process gets the pixels; the others look into an empty one. */
+static conic_status draw_map_together(const map_drawer *drawer, const cli_looking *looking, conic_image *depth) {
+  conic_render_statistics unused;
+  if (!cli_team_is_first(drawer->session))
+    memset(depth->planes[CONIC_PLANE_Z], 0, conic_image_pixels(depth) * sizeof(float));
+  return cli_draw_together(drawer->session, drawer->job, looking, depth, &unused);
+}
 
 /* The nearest splat is what hides. */
 static conic_status draw_light_map(void *cookie, const conic_camera *camera, double near_z, conic_image *depth) {
@@ -53,15 +66,18 @@ static conic_status draw_light_map(void *cookie, const conic_camera *camera, dou
   view.samples = 1;
   if (job->is_transparent) {
     view.transparency = CONIC_TRANSPARENCY_CHANCE;
-    view.chance = conic_sequence_at(job->i_light_map, CONIC_SEQUENCE_SHADOW);
+    view.chance = conic_sequence_at(drawer->sharing ? drawer->sharing->i_map : job->i_light_map, CONIC_SEQUENCE_SHADOW);
     job->i_light_map += !job->accumulating.n_samples; /* the maps of a sample share its chance */
     options.passes = 3;
   }
-  return conic_source_draw(job->source, job->renderer, camera, &options, &view, depth, NULL);
+  const cli_looking looking = {camera, &options, &view, NULL};
+  return drawer->sharing && !drawer->sharing->is_apart
+             ? draw_map_together(drawer, &looking, depth)
+             : conic_source_draw(job->source, job->renderer, camera, &options, &view, depth, NULL);
 }
 
-static map_drawer drawer_of(cli_render_job *job) {
-  map_drawer drawer = {job, job->options};
+static map_drawer drawer_of(cli_session *session, cli_render_job *job) {
+  map_drawer drawer = {session, job, job->options, NULL};
   drawer.options.passes = 1;
   drawer.options.cull_back = 0;
   drawer.options.shading = CONIC_SHADE_NONE;
@@ -92,12 +108,36 @@ static conic_status choose_again(cli_render_job *job, const conic_camera *camera
   return conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, &depth, NULL);
 }
 
+/* What light falls on is the first process's to say. */
+static void send_receivers(const cli_session *session, conic_image *image) {
+  size_t n = conic_image_pixels(image) * sizeof(float);
+  session->team->broadcast(image->planes[CONIC_PLANE_Z], n);
+  session->team->broadcast(image->planes[CONIC_PLANE_NORMAL], 3 * n);
+}
+
+/* A picture by itself, where `status` says that nothing is wrong; of a team that shares it, by all. */
+static conic_status light_whole(map_drawer *drawer, const conic_lighter *lighter, const conic_camera *camera,
+                                conic_status status, conic_image *image) {
+  conic_team team;
+  cli_session *session = drawer->session;
+  conic_light_sharing sharing = {.team = cli_team_of_library(session, &team)};
+  if (drawer->job->sharing == CLI_SHARES_WINDOWS) {
+    status = cli_sharing_end(session, drawer->job, status);
+    drawer->sharing = &sharing;
+    if (status == CONIC_OK)
+      send_receivers(session, image);
+  }
+  return status == CONIC_OK ? conic_image_light_shared(lighter->context, lighter->casters, camera, lighter->render,
+                                                       lighter->options, drawer->sharing, image)
+                            : status;
+}
+
 /* As one of many samples, unless i_sample is null. */
 static conic_status light_image(cli_session *session, cli_render_job *job, const uint64_t *i_sample,
                                 const conic_camera *camera, conic_image *image) {
   conic_lighting_options options;
   double start = cli_seconds();
-  map_drawer drawer = drawer_of(job);
+  map_drawer drawer = drawer_of(session, job);
   conic_casters casters = casters_of(job, &drawer);
   conic_render_options render = job->options;
   conic_lighter lighter = {session->context, &casters, &render, &options};
@@ -117,9 +157,9 @@ static conic_status light_image(cli_session *session, cli_render_job *job, const
     status = cli_lamps_sample(session, job, *i_sample, &render.lighting);
   if (status == CONIC_OK && i_sample)
     status = conic_lighter_shade(&lighter, *i_sample, camera, image);
-  else if (status == CONIC_OK)
-    status = conic_image_light(session->context, &casters, camera, &render, &options, image);
-  if (status == CONIC_OK && !i_sample)
+  else
+    status = light_whole(&drawer, &lighter, camera, status, image);
+  if (status == CONIC_OK && !i_sample && cli_sharing_has_picture(session, job))
     status = choose_again(job, camera, image);
   job->light_ms += 1e3 * (cli_seconds() - start);
   return status;

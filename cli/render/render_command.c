@@ -8,6 +8,7 @@
 #include "cli/render/frames.h"
 #include "cli/render/gather_picture.h"
 #include "cli/render/kept_frames.h"
+#include "cli/render/lit_picture.h"
 #include "cli/render/sharing.h"
 #include "cli/scene/backdrop.h"
 #include "cli/scene/stereo.h"
@@ -258,9 +259,11 @@ static conic_status render_repeats(cli_session *session, cli_render_job *job, in
   return status;
 }
 
-/* Of windows, the picture comes together in the first process; of others all gather along, to draw its views. */
+/* Of windows, the picture comes together in the first process; others need it where it is gathered or lit, for all go
+ * along to draw views and maps. */
 static int needs_image(const cli_session *session, const cli_render_job *job, const conic_camera *camera) {
-  return job->sharing != CLI_SHARES_WINDOWS || cli_sharing_has_picture(session, job) || cli_is_gathered(job, camera);
+  return job->sharing != CLI_SHARES_WINDOWS || cli_sharing_has_picture(session, job) || cli_is_gathered(job, camera) ||
+         cli_light_is_wanted(job);
 }
 
 /* One that is written while it is drawn. */
@@ -346,7 +349,7 @@ static conic_status choose_first_exposure(cli_session *session, cli_render_job *
   conic_status status = CONIC_OK;
   if ((job->sharing == CLI_SHARES_NOTHING && !cli_frames_are_several(job)) || !job->is_exposure_automatic)
     return CONIC_OK;
-  if (cli_team_is_first(session)) {
+  if (cli_team_is_first(session) || job->sharing == CLI_SHARES_WINDOWS) { /* of which all draw some */
     status = cli_accumulate_camera(session, job, job->frames.first - 1, &camera);
     if (status == CONIC_OK)
       status = cli_choose_exposure(session, job, &camera);

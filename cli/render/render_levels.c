@@ -25,11 +25,9 @@ conic_status cli_render_picture(cli_session *session, cli_render_job *job, const
     job->view.seconds = seconds_left(job);
   const cli_looking looking = {camera, &job->options, &job->view, NULL};
   conic_status status = cli_draw_looking(session, job, &looking, image, statistics);
-  if (!cli_sharing_has_picture(session, job))
-    return status;
   if (status == CONIC_OK)
     status = cli_light_picture(session, job, camera, image);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && cli_sharing_has_picture(session, job))
     cli_backdrop_show(job, image);
   return status;
 }

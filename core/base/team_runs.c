@@ -85,11 +85,13 @@ static void copy_column(const conic_team_column *column, size_t begin, size_t n,
 /* Copies a block's values out of the columns, or back into them, unless there are no bytes; returns their size. */
 static size_t copy_values(const team_blocks *blocks, size_t i_block, char *bytes, int is_back) {
   const conic_team_loop *loop = blocks->loop;
-  size_t begin = first_value(blocks, i_block), n = first_value(blocks, i_block + 1) - begin, n_bytes = 0;
-  for (int i = 0; i < CONIC_TEAM_COLUMNS && n > 0; i++) {
+  size_t n_bytes = 0;
+  for (int i = 0; i < CONIC_TEAM_COLUMNS; i++) {
     const conic_team_column *column = &loop->columns[i];
     if (!column->values)
       continue;
+    size_t begin = column->is_by_item ? block_begin(blocks, i_block) : first_value(blocks, i_block);
+    size_t n = (column->is_by_item ? block_begin(blocks, i_block + 1) : first_value(blocks, i_block + 1)) - begin;
     if (bytes)
       copy_column(column, begin, n, bytes + n_bytes, is_back);
     n_bytes += n * column->value_bytes;
@@ -141,19 +143,24 @@ static void exchange_values(const team_blocks *blocks, char *own) {
   }
 }
 
+static conic_status do_loop(conic_context *context, const conic_team_loop *loop, size_t n_items, conic_task *task,
+                            void *data) {
+  return loop->n_a_run
+             ? conic_parallel_runs(context, loop->name, loop->from, loop->to, n_items, loop->n_a_run, task, data)
+             : conic_parallel_told(context, loop->name, loop->from, loop->to, n_items, task, data);
+}
+
 conic_status conic_team_runs(conic_context *context, const conic_team_loop *loop) {
   const conic_team *team = context->team;
   if (!team)
-    return conic_parallel_runs(context, loop->name, loop->from, loop->to, loop->n_items, loop->n_a_run, loop->task,
-                               loop->data);
+    return do_loop(context, loop, loop->n_items, loop->task, loop->data);
   team_blocks blocks = divide_loop(team, loop);
   double start = conic_seconds_now();
   char *own = NULL;
   conic_status status = agree_on(context, CONIC_OK);
   if (status != CONIC_OK)
     return status;
-  status = conic_parallel_runs(context, loop->name, loop->from, loop->to, count_own_items(&blocks), loop->n_a_run,
-                               do_own_item, &blocks);
+  status = do_loop(context, loop, count_own_items(&blocks), do_own_item, &blocks);
   if (status == CONIC_OK && !(own = conic_memory_allocate(context, most_own_bytes(&blocks), 1)))
     status = CONIC_ERROR_MEMORY;
   status = agree_on(context, status);

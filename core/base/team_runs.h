@@ -22,6 +22,7 @@ typedef struct conic_team_column {
   void *values; /* null: there is none */
   size_t value_bytes;
   const uint32_t *places; /* where value i stands; null: at i */
+  int is_by_item;         /* each item makes one value, whatever it makes of the others */
 } conic_team_column;
 
 enum { CONIC_TEAM_COLUMNS = 16 };
@@ -29,7 +30,7 @@ enum { CONIC_TEAM_COLUMNS = 16 };
 typedef struct conic_team_loop {
   const char *name; /* of the progress, between two fractions, */
   double from, to;
-  size_t n_items, n_a_run; /* which is reported before so many items */
+  size_t n_items, n_a_run; /* which is reported before so many items; 0: before each, as conic_parallel_told does */
   conic_task *task;
   void *data;
   /* Each item makes so many values of every column, the last one those that are left of all, and changes nothing else
@@ -40,8 +41,8 @@ typedef struct conic_team_loop {
   conic_team_column columns[CONIC_TEAM_COLUMNS];
 } conic_team_loop;
 
-/* conic_parallel_runs, which is all of it where the context has no team. Else collective: each process does some of the
- * items, and all then have all values. Errors: CANCELLED, MEMORY. */
+/* conic_parallel_runs or conic_parallel_told, which is all of it where the context has no team. Else collective: each
+ * process does some of the items, and all then have all values. Errors: CANCELLED, MEMORY. */
 conic_status conic_team_runs(conic_context *context, const conic_team_loop *loop);
 
 /* Collective: makes it the sum of what all have. Errors: CANCELLED. */

@@ -323,7 +323,7 @@ static conic_status read_points(las_reader *reader) {
   return status;
 }
 
-static conic_status read_head(las_reader *reader) {
+static conic_status read_las_head(las_reader *reader) {
   conic_status status = read_las_header(reader);
   if (status == CONIC_OK)
     status = check_format(reader);
@@ -334,7 +334,7 @@ static conic_status read_head(las_reader *reader) {
 
 conic_status conic_las_look(conic_input *input, conic_model_shape *shape) {
   las_reader reader = {.input = input, .is_again = 1};
-  conic_status status = read_head(&reader);
+  conic_status status = read_las_head(&reader);
   *shape =
       (conic_model_shape){.can_part = 1, .is_raw = 1, .needs_survey = reader.color != 0, .n_points = reader.n_points};
   return status;
@@ -343,7 +343,7 @@ conic_status conic_las_look(conic_input *input, conic_model_shape *shape) {
 conic_status conic_las_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
                             conic_model *model) {
   las_reader reader = {.input = input, .is_again = delivery && delivery->is_again};
-  conic_status status = read_head(&reader);
+  conic_status status = read_las_head(&reader);
   reader.begin = delivery && delivery->range ? delivery->range->first : 0;
   reader.end =
       delivery && delivery->range && delivery->range->end < reader.n_points ? delivery->range->end : reader.n_points;

@@ -45,7 +45,7 @@ static conic_status append_block(vertex_reader *reader, size_t n) {
 }
 
 /* The next rows up to before `end`, straight from the window into the block. */
-static conic_status read_block(vertex_reader *reader, uint64_t end, size_t *n_rows) {
+static conic_status read_ply_block(vertex_reader *reader, uint64_t end, size_t *n_rows) {
   conic_ply_source *source = reader->source;
   conic_input *input = source->input;
   size_t row_bytes = source->element->least_row_bytes;
@@ -68,7 +68,7 @@ static conic_status read_block(vertex_reader *reader, uint64_t end, size_t *n_ro
   return CONIC_OK;
 }
 
-static void pass_block(const vertex_reader *reader, size_t n) {
+static void pass_ply_block(const vertex_reader *reader, size_t n) {
   conic_ply_source *source = reader->source;
   source->input->next += n * source->element->least_row_bytes;
   source->i_row += n;
@@ -81,13 +81,13 @@ static conic_status pass_rows(vertex_reader *reader, uint64_t end) {
   conic_status status = CONIC_OK;
   while (reader->layout.has_origin_positions && !reader->layout.is_origin_set && source->i_row < end) {
     size_t n = 0;
-    status = read_block(reader, end, &n);
+    status = read_ply_block(reader, end, &n);
     if (status == CONIC_OK)
       status = conic_builder_reserve_points(reader->builder, n);
     if (status != CONIC_OK)
       return status;
     conic_ply_layout_convert(&reader->layout, (const double(*)[CONIC_PLY_BLOCK])reader->block, n, 0, points);
-    pass_block(reader, n);
+    pass_ply_block(reader, n);
   }
   uint64_t n_bytes = (end - source->i_row) * source->element->least_row_bytes, skipped;
   status = conic_input_skip(source->input, n_bytes, &skipped);
@@ -108,10 +108,10 @@ static conic_status read_blocks(vertex_reader *reader) {
   conic_status status = range.first > 0 ? pass_rows(reader, range.first) : CONIC_OK;
   while (status == CONIC_OK && source->i_row < range.end) {
     size_t n = 0;
-    status = read_block(reader, range.end, &n);
+    status = read_ply_block(reader, range.end, &n);
     if (status == CONIC_OK)
       status = append_block(reader, n);
-    pass_block(reader, n);
+    pass_ply_block(reader, n);
   }
   return status;
 }

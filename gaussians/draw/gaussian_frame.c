@@ -45,7 +45,7 @@ struct conic_gaussian_picture {
 
 typedef conic_gaussian_picture frame;
 
-static size_t count_tiles(const conic_gaussian_footprint *f) {
+static size_t count_met_tiles(const conic_gaussian_footprint *f) {
   size_t across = f->box[1][0] / CONIC_GAUSSIAN_TILE - f->box[0][0] / CONIC_GAUSSIAN_TILE + 1u,
          down = f->box[1][1] / CONIC_GAUSSIAN_TILE - f->box[0][1] / CONIC_GAUSSIAN_TILE + 1u;
   return across * down;
@@ -65,7 +65,7 @@ static void set_up_run(void *data, size_t i_run, int i_thread) {
                               f->filters ? &f->filters[to] : &unused_filter, f->sights ? &f->sights[to] : &unused_sight,
                               f->normals ? f->normals[to] : NULL);
     f->n_skipped_of_run[i_run] += fate == CONIC_GAUSSIAN_SKIPPED;
-    f->n_entries_of_run[i_run] += fate == CONIC_GAUSSIAN_DRAWN ? count_tiles(&f->footprints[to]) : 0;
+    f->n_entries_of_run[i_run] += fate == CONIC_GAUSSIAN_DRAWN ? count_met_tiles(&f->footprints[to]) : 0;
     to += fate == CONIC_GAUSSIAN_DRAWN;
   }
   f->n_of_run[i_run] = to - begin;
@@ -229,7 +229,7 @@ const conic_gaussian_statistics *conic_gaussian_picture_statistics(const conic_g
   return &f->statistics;
 }
 
-static conic_status draw_window(frame *f) {
+static conic_status composite_window(frame *f) {
   double begin = conic_seconds_now(), now;
   conic_status status = order_footprints(f);
   f->statistics.seconds_sort += (now = conic_seconds_now()) - begin;
@@ -247,7 +247,7 @@ conic_status conic_gaussian_picture_draw(conic_gaussian_picture *f, const conic_
                                          conic_gaussian_planes *planes) {
   f->window = window;
   f->planes = planes;
-  conic_status status = draw_window(f);
+  conic_status status = composite_window(f);
   release_window(f);
   return status;
 }
@@ -301,7 +301,7 @@ static conic_status check_sight(conic_context *context, const conic_camera *came
   return status;
 }
 
-static conic_status set_up_picture(frame *f) {
+static conic_status set_up_scene(frame *f) {
   double begin = conic_seconds_now();
   conic_status status = f->view.rays ? conic_view_rays_make(f->context, f->view.camera, &f->view_rays) : CONIC_OK;
   if (status == CONIC_OK)
@@ -349,7 +349,7 @@ conic_status conic_gaussian_picture_begin(conic_context *context, const conic_ga
   f->camera = *camera;
   f->has_normals = has_normals;
   look_at_scene(f, isa);
-  status = set_up_picture(f);
+  status = set_up_scene(f);
   if (status == CONIC_OK)
     *picture = f;
   else

@@ -6,7 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/team_runs.h"
 #include "lod/octree/octree_kernels.h"
 
 /* Subtrees with as many leaves are worked off at a time: their discs stay in the cache. */
@@ -442,17 +442,32 @@ static size_t list_tasks(const error_pass *pass, uint32_t *tasks) {
   return n;
 }
 
+/* The first node that is a task's. */
+static size_t first_node_of_task(const void *data, size_t i_task) {
+  const error_pass *pass = data;
+  return i_task < pass->n_tasks ? pass->tasks[i_task] : pass->octree->n_nodes;
+}
+
 static conic_status run_pass(error_pass *pass) {
   conic_context *context = pass->octree->context;
   conic_status status = CONIC_OK;
   pass->n_tasks = list_tasks(pass, NULL);
   pass->tasks = conic_memory_allocate(context, pass->n_tasks, sizeof *pass->tasks);
-  pass->statuses = conic_memory_allocate(context, pass->n_tasks, sizeof *pass->statuses);
+  pass->statuses = conic_memory_allocate_zeroed(context, pass->n_tasks, sizeof *pass->statuses); /* CONIC_OK */
   if (!pass->tasks || !pass->statuses)
     status = CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     list_tasks(pass, pass->tasks);
-    status = conic_parallel_told(context, "octree", pass->from, pass->to, pass->n_tasks, run_task, pass);
+    const conic_team_loop loop = {"octree",
+                                  pass->from,
+                                  pass->to,
+                                  pass->n_tasks,
+                                  0,
+                                  run_task,
+                                  pass,
+                                  .first_of = first_node_of_task,
+                                  .columns = {{pass->octree->codes, CONIC_NODE_BYTES}}};
+    status = conic_team_runs(context, &loop);
   }
   for (size_t i = 0; i < pass->n_tasks && status == CONIC_OK; i++)
     status = pass->statuses[i];

@@ -5,7 +5,7 @@
 #include "core/base/eigen.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "lod/octree/octree_kernels.h"
 
@@ -192,6 +192,11 @@ static size_t list_tasks(const conic_octree *octree, fit_task *tasks) {
   return n;
 }
 
+static size_t first_node_of_fit(const void *data, size_t i_task) {
+  const fitter *f = data;
+  return i_task < f->n_tasks ? f->tasks[i_task].i_node : f->octree->n_nodes;
+}
+
 conic_status conic_octree_fit(conic_octree *octree) {
   fitter f = {.octree = octree};
   conic_moments root;
@@ -205,7 +210,17 @@ conic_status conic_octree_fit(conic_octree *octree) {
   if (!f.tasks)
     return CONIC_ERROR_MEMORY;
   list_tasks(octree, f.tasks);
-  status = conic_parallel_told(octree->context, "octree", 0.4, 0.6, f.n_tasks, run_task, &f);
+  const conic_team_loop loop = {
+      "octree",
+      0.4,
+      0.6,
+      f.n_tasks,
+      0,
+      run_task,
+      &f,
+      .first_of = first_node_of_fit,
+      .columns = {{octree->codes, CONIC_NODE_BYTES}, {f.tasks, sizeof *f.tasks, .is_by_item = 1}}};
+  status = conic_team_runs(octree->context, &loop);
   if (status == CONIC_OK)
     status = fit_top(&f, 0, &root);
   conic_memory_release(octree->context, f.tasks);

@@ -86,7 +86,7 @@ static void tile_task(void *data, size_t i_task, int i_thread) {
   atomic_fetch_add(&f->n_tiles_done, 1);
 }
 
-static size_t most_entries_of(const conic_raster_frame *f) {
+static size_t most_listed_entries(const conic_raster_frame *f) {
   size_t most = 0;
   for (size_t i = 0; i < f->n_drawn_tiles; i++) {
     size_t n = f->bins.length[listed_tile(f, i)];
@@ -101,7 +101,7 @@ static conic_status order_tiles(conic_raster_frame *f) {
   enum { FEW = 32, N_CLASSES = 256 };
   conic_context *context = f->renderer->context;
   size_t n_threads = (size_t)conic_context_threads(context), next[N_CLASSES] = {0}, begin = 0, n = f->n_drawn_tiles;
-  size_t most_entries = most_entries_of(f);
+  size_t most_entries = most_listed_entries(f);
   f->tile_order = NULL;
   if (n_threads == 1 || n >= FEW * n_threads || !most_entries)
     return CONIC_OK;

@@ -38,6 +38,45 @@ static void test_rank_trace(conic_context *context) {
   cli_rank_trace_release(context, &trace);
 }
 
+/* Of two ranks that built a cloud: what they waited is no work. */
+static cli_rank_trace build_trace(conic_context *context) {
+  cli_rank_trace trace;
+  CHECK_OK(read_trace(context,
+                      "{\"traceEvents\": ["
+                      "{\"name\": \"inputs 0\", \"cat\": \"open\", \"ts\": 0, \"dur\": 1e5, \"pid\": 0},"
+                      "{\"name\": \"read 0\", \"cat\": \"stage\", \"ts\": 1e5, \"dur\": 5e6, \"pid\": 0},"
+                      "{\"name\": \"read 0\", \"cat\": \"stage\", \"ts\": 1e5, \"dur\": 7e6, \"pid\": 1},"
+                      "{\"name\": \"read 0\", \"cat\": \"wait\", \"ts\": 1e5, \"dur\": 2e6, \"pid\": 1},"
+                      "{\"name\": \"exchange 1000000\", \"cat\": \"stage\", \"ts\": 7e6, \"dur\": 1e6, \"pid\": 0, "
+                      "\"args\": {\"sent_bytes\": 8e6}},"
+                      "{\"name\": \"exchange 1000000\", \"cat\": \"stage\", \"ts\": 7e6, \"dur\": 1e6, \"pid\": 1, "
+                      "\"args\": {\"sent_bytes\": 8e6}},"
+                      "{\"name\": \"grow 1000000\", \"cat\": \"stage\", \"ts\": 8e6, \"dur\": 40e6, \"pid\": 0},"
+                      "{\"name\": \"grow 1000000\", \"cat\": \"stage\", \"ts\": 8e6, \"dur\": 40e6, \"pid\": 1},"
+                      "{\"name\": \"order 2000\", \"cat\": \"stage\", \"ts\": 48e6, \"dur\": 5e5, \"pid\": 0}]}",
+                      &trace));
+  return trace;
+}
+
+static void test_rank_build(conic_context *context) {
+  const cli_rank_line line = {1e-6, 1e9}, slow = {1e-3, 1e6};
+  cli_rank_trace trace = build_trace(context);
+  cli_rank_estimate alone, few, many, late;
+  CHECK(trace.is_build && trace.n_units == 2 && trace.n_ranks == 2);
+  CHECK(trace.stages[CLI_STAGE_READ].seconds == 10.0 && trace.stages[CLI_STAGE_GROW].number == 2e6);
+  CHECK_OK(cli_rank_schedule(context, &trace, &line, 1, 1, &alone));
+  CHECK(fabs(alone.seconds - 90.55) < 0.01 && alone.efficiency == 1.0); /* without an exchange */
+  CHECK_OK(cli_rank_schedule(context, &trace, &line, 16, 1, &few));
+  CHECK(few.seconds > 92.0 / 16.0 + 0.55 && few.seconds < 92.0 / 16.0 + 1.2 && few.efficiency > 0.8);
+  CHECK_OK(cli_rank_schedule(context, &trace, &line, 1024, 1, &many));
+  CHECK(many.efficiency < few.efficiency && many.lost_s[CLI_RANK_FIRST] == 0.5);
+  CHECK_OK(cli_rank_schedule(context, &trace, &slow, 16, 1, &late));
+  CHECK(late.lost_s[CLI_RANK_MERGE] > few.lost_s[CLI_RANK_MERGE] + 1.0);
+  CHECK_OK(cli_rank_schedule(context, &trace, &line, 16, 10, &late));
+  CHECK(fabs(late.lost_s[CLI_RANK_FIRST] - 5.0) < 1e-9 && late.seconds > 9.0 * few.seconds);
+  cli_rank_trace_release(context, &trace);
+}
+
 static void test_wrong_traces(conic_context *context) {
   static const char *const wrong[] = {"",
                                       "[]",
@@ -108,6 +147,7 @@ int main(void) {
   test_rank_trace(context);
   test_wrong_traces(context);
   test_rank_schedule(context);
+  test_rank_build(context);
   conic_context_destroy(context);
   remove(path);
   return check_result();

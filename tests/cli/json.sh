@@ -242,7 +242,8 @@ echo help > runs/help.definition
 write info-hierarchy info_hierarchy info octrees/ept/ept.json --check
 # What no run above writes, or not on every machine.
 unseen="device.name device.platform device.version device.driver device.is_cpu device.has_double
-  device.rounds_correctly device.compute_units device.memory_bytes"
+  device.rounds_correctly device.compute_units device.memory_bytes
+  layer.team mls.team octree.team prepare.team"
 if [[ $has_zstd -eq 1 ]]; then
   write layer layer layer knot.ply -o knot.lpc
   write cut cut cut knot.lpc --box -9,-9,9,9 -o cut.lpc
@@ -260,7 +261,7 @@ fi
 
 if [[ ! -e runs/render-team.json ]]; then
   unset "wanted[render-team]"
-  unseen+=" render.team render.team.*"
+  unseen+=" render.team team.*"
 fi
 
 for name in "${!wanted[@]}"; do

@@ -1,4 +1,4 @@
-# torus NU NV FILE.obj PICTURE.ppm [ALPHA]: a mesh with texture coordinates, its material beside it, and the picture.
+# torus NU NV FILE.obj PICTURE.pfm [ALPHA]: a mesh with texture coordinates, its material beside it, and the picture.
 torus() {
   local name=${3%.obj}
   awk -v nu="$1" -v nv="$2" -v name="$name" 'BEGIN {
@@ -16,9 +16,6 @@ torus() {
       }
   }' > "$3"
   printf 'newmtl skin\nKd 0.9 0.8 0.7\nd %s\nmap_Kd %s\n' "${5:-1}" "$4" > "$name.mtl"
-  awk 'BEGIN {
-    print "P3\n16 16\n255"
-    for (i = 0; i < 256; i++)
-      print i, (i * 7) % 256, int(i / 16 + i) % 2 * 200
-  }' > "$4"
+  local one='\0\0\200\077' half='\0\0\0\077' none='\0\0\0\0'
+  printf "PF\n2 2\n-1\n$one$half$none$half$one$half$none$none$one$one$one$half" > "$4"
 }

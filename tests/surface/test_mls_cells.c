@@ -1,5 +1,7 @@
 /* Projecting cell by cell: the same surface as in one piece, and the same bits whatever memory there is. */
+#include "core/base/team_runs.h"
 #include "tests/support/surface_shapes.h"
+#include "tests/support/thread_team.h"
 
 typedef struct feed {
   const conic_splats *points;
@@ -201,6 +203,50 @@ static void test_bare(conic_context *context, const conic_splats *points, conic_
   CHECK(counts[1] >= counts[0] * 99 / 100 && squares[1] < 1.4 * 1.4 * squares[0]);
 }
 
+/* By a team, of which one may fail as it reads. */
+typedef struct cells_team {
+  const conic_splats *points;
+  const conic_clean_options *options;
+  const kept *alone;
+  const conic_surface_report *expected;
+  int failing;
+  conic_status statuses[THREAD_TEAM_MOST];
+} cells_team;
+
+static void clean_in_team(const conic_team *team, void *cookie) {
+  cells_team *c = cookie;
+  conic_context *context = check_context(1 + team->index % 2);
+  conic_surface_report report;
+  kept own = {0};
+  feed from = {.points = c->points, .batch = 3000, .n_more = team->index == c->failing ? 1 : 0};
+  conic_context_join(context, team);
+  conic_status status = clean(context, &from, c->options, &own, &report);
+  c->statuses[team->index] = conic_context_part(context, status);
+  if (status == CONIC_OK)
+    CHECK(memcmp(&report, c->expected, sizeof report) == 0);
+  CHECK(team->index == 0 && status == CONIC_OK ? is_same(&own.points, &c->alone->points) : own.n == 0);
+  conic_splats_release(context, &own.points);
+  conic_context_destroy(context);
+}
+
+static void test_team(conic_context *context, const conic_splats *points, conic_clean_options options) {
+  static const int counts[] = {2, 3, 7};
+  conic_surface_report expected;
+  kept alone = {0};
+  feed from = {.points = points, .batch = 3000};
+  CHECK_OK(clean(context, &from, &options, &alone, &expected));
+  options.memory_bytes = (size_t)15 << 20;
+  options.scratch = "test-cells";
+  for (int i = 0; i < 4; i++) {
+    int count = counts[i % 3];
+    cells_team c = {points, &options, &alone, &expected, .failing = i < 3 ? -1 : 1};
+    thread_team_run(count, clean_in_team, &c);
+    for (int k = 0; k < count; k++)
+      CHECK(c.statuses[k] == (i < 3 ? CONIC_OK : k == 1 ? CONIC_ERROR_INPUT : CONIC_ERROR_CANCELLED));
+  }
+  conic_splats_release(context, &alone.points);
+}
+
 int main(void) {
   conic_context *context = check_context(2);
   conic_splats points = make_points(context);
@@ -214,6 +260,7 @@ int main(void) {
   options.surface.type = CONIC_SURFACE_MLS;
   options.surface.plane = CONIC_PLANE_FAST;
   test_memory(&points, options);
+  test_team(context, &points, options);
   test_bare(context, &points, options);
   conic_splats_release(context, &points);
   conic_context_destroy(context);

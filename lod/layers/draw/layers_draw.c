@@ -208,9 +208,9 @@ static conic_status choose_all(conic_layers_picture *d) {
              : status;
 }
 
-/* All planes have four bytes a value; and how far what is drawn hides is known for each pixel. */
+/* All planes have four bytes a value. */
 static uint64_t bytes_of_picture(const conic_image *image) {
-  uint64_t n_values = 1;
+  uint64_t n_values = 0;
   for (int i = 0; i < CONIC_MAX_PLANES; i++)
     n_values += image->planes[i] ? (uint64_t)conic_plane_describe((conic_plane)i)->n_channels : 0;
   return n_values * sizeof(float) * (uint64_t)image->width * (uint64_t)image->height;
@@ -283,7 +283,7 @@ static conic_status begin_choosing(conic_layers_picture *d) {
 
 conic_status conic_layers_picture_begin(conic_layers *layers, conic_renderer *renderer, const conic_camera *camera,
                                         const conic_render_options *given, const conic_layers_draw_options *wanted,
-                                        conic_layers_picture **picture) {
+                                        uint64_t image_bytes, conic_layers_picture **picture) {
   conic_context *context = layers->context;
   conic_render_options render;
   conic_layers_draw_options options;
@@ -307,6 +307,7 @@ conic_status conic_layers_picture_begin(conic_layers *layers, conic_renderer *re
   d->render = render;
   d->options = options;
   d->set = layers->set;
+  layers->picture_bytes = image_bytes + sizeof(float) * (uint64_t)camera->width * (uint64_t)camera->height;
   status = begin_choosing(d);
   if (status == CONIC_OK)
     *picture = d;
@@ -425,8 +426,8 @@ conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, c
   conic_layers_picture *d;
   double start = conic_seconds_now();
   uint64_t n_read = layers->store.n_read;
-  layers->picture_bytes = image ? bytes_of_picture(image) : 0;
-  conic_status status = conic_layers_picture_begin(layers, renderer, camera, render, options, &d);
+  conic_status status =
+      conic_layers_picture_begin(layers, renderer, camera, render, options, image ? bytes_of_picture(image) : 0, &d);
   if (status != CONIC_OK)
     return status;
   conic_layers_tally tally = {.n_clouds_read = layers->store.n_read - n_read};

@@ -13,11 +13,11 @@ typedef struct conic_layers_tally {
   uint64_t n_turned, n_clouds_read, n_bytes_received, n_bands;
 } conic_layers_tally;
 
-/* Chooses. Layers, renderer, camera and options are checked; all but the first two may go. Until the picture ends, the
- * layers draw no other. Errors: as conic_layers_draw. */
+/* Chooses, which with occlusion also holds how deep each pixel hides, beside an image of so many bytes. All but layers
+ * and renderer may go. Until the picture ends, the layers draw no other. Errors: as conic_layers_draw. */
 conic_status conic_layers_picture_begin(conic_layers *layers, conic_renderer *renderer, const conic_camera *camera,
                                         const conic_render_options *render, const conic_layers_draw_options *options,
-                                        conic_layers_picture **picture);
+                                        uint64_t image_bytes, conic_layers_picture **picture);
 void conic_layers_picture_end(conic_layers_picture *picture); /* null is allowed */
 
 /* Draws a window's pixels into an image of its size: all of the picture, or what lies in one of the bands in which

@@ -52,7 +52,7 @@ static conic_status read_parts(const char *path, const conic_read_options *optio
 }
 
 static void check_parts(const char *path, const char *where) {
-  static const uint64_t steps[] = {13, 25, 1000};
+  static const uint64_t steps[] = {17, 1000};
   conic_read_options options;
   row_of_points whole = {.n_all = 0};
   conic_read_options_init(&options);
@@ -94,12 +94,13 @@ static void check_ply(const char *type, int has_faces) {
   CHECK(unlink(path) == 0);
 }
 
+/* Points that are so far apart that whole windows of the file are passed over. */
 static void check_las(void) {
-  las_file file = las_begin(2, 2, 90, 0);
+  las_file file = las_begin(2, 2, 90, 11000);
   las_set_scale(&file, 0.001, 589500.0, 231300.0, -50.0);
   for (size_t i = 0; i < 90; i++) {
     las_set_point(&file, i, (int32_t)(1000 * i), -2000 + (int32_t)i, 3000);
-    las_set_color(&file, i, 0, i == 80 ? 4000 : 7 * (unsigned)i, 0); /* one point says that there are 12 bits */
+    las_set_color(&file, i, 0, i == 40 ? 4000 : 7 * (unsigned)i, 0); /* one point says that there are 12 bits */
   }
   const char *path = files_write_bytes("a.las", file.bytes, file.n_bytes);
   check_parts(path, NULL);

@@ -1,9 +1,9 @@
-#include "cli/commands/points_share.h"
+#include "cli/points/points_share.h"
 
 #include <string.h>
 
-#include "cli/commands/points_folder.h"
-#include "cli/commands/points_input.h"
+#include "cli/points/points_folder.h"
+#include "cli/points/points_input.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/disk.h"
@@ -101,6 +101,8 @@ static conic_status find_cut(const cli_points_share *share, const conic_read_opt
   can_part = can_part && shape->can_part && !(shape->is_raw && shape->n_points <= most_whole);
   uint64_t n_steps = shape->n_points / CONIC_PART_STEP;
   cut->point = can_part ? (uint64_t)(fraction * (double)n_steps + 0.5) * CONIC_PART_STEP : 0;
+  if (can_part && cut->input == 0 && cut->point == 0) /* the first process has something */
+    cut->point = CONIC_PART_STEP;
   if ((can_part && cut->point >= shape->n_points) || (!can_part && (fraction >= 0.5 || cut->input == 0)))
     *cut = (cli_points_cut){.input = cut->input + 1};
   return status;
@@ -135,7 +137,7 @@ static conic_status find_cuts(cli_points_share *share, const conic_read_options 
 
 /* --- pieces --- */
 
-static conic_status list_pieces(cli_points_share *share) {
+static conic_status list_share_pieces(cli_points_share *share) {
   int index = share->team ? share->team->index : 0;
   const cli_points_cut *from = &share->cuts[index], *to = from + 1;
   share->n = 0;
@@ -160,7 +162,7 @@ typedef struct part_facts {
   conic_model_survey survey[2];
 } part_facts;
 
-static const conic_model_shape *shape_of(const cli_points_share *share, const cli_points_piece *piece) {
+static const conic_model_shape *shape_of_piece(const cli_points_share *share, const cli_points_piece *piece) {
   const cli_points_cut *from = &share->cuts[share->team->index];
   return piece->range.first > 0 ? &from->shape : &from[1].shape;
 }
@@ -178,7 +180,7 @@ static conic_status survey_parts(const cli_points_share *share, const conic_read
     if (piece->is_whole)
       continue;
     facts->input[k] = piece->input;
-    if (is_surveyed(shape_of(share, piece), options))
+    if (is_surveyed(shape_of_piece(share, piece), options))
       status = conic_model_survey_part(share->session->context, share->inputs[piece->input], options, &piece->range,
                                        &facts->survey[k]);
   }
@@ -216,7 +218,7 @@ static conic_status settle_parts(cli_points_share *share, const conic_read_optio
   if (status == CONIC_OK) {
     conic_team_collect(share->team, &own, sizeof own, all);
     if (mend_cuts(share, options, all, most_whole))
-      status = list_pieces(share);
+      status = list_share_pieces(share);
     for (size_t i = 0; i < share->n && status == CONIC_OK; i++)
       if (!share->pieces[i].is_whole)
         add_facts_of(&share->pieces[i], all, share->team->count);
@@ -232,14 +234,14 @@ conic_status cli_points_share_out(cli_points_share *share, const conic_read_opti
   for (size_t k = 1; k <= n_shares && status == CONIC_OK; k++)
     share->cuts[k] = (cli_points_cut){.input = share->n_inputs};
   if (!share->team)
-    return status == CONIC_OK ? list_pieces(share) : status;
+    return status == CONIC_OK ? list_share_pieces(share) : status;
   if (status == CONIC_OK && share->team->index == 0)
     status = find_cuts(share, options, most_whole);
   status = conic_team_agree(share->team, status);
   if (status != CONIC_OK)
     return status;
   share->session->team->broadcast(share->cuts, (n_shares + 1) * sizeof *share->cuts);
-  status = conic_team_agree(share->team, list_pieces(share));
+  status = conic_team_agree(share->team, list_share_pieces(share));
   return status == CONIC_OK ? settle_parts(share, options, most_whole) : status;
 }
 

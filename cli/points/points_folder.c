@@ -1,10 +1,10 @@
-#include "cli/commands/points_folder.h"
+#include "cli/points/points_folder.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/commands/points_input.h"
+#include "cli/points/points_input.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/disk.h"

@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "cli/commands/layer_job.h"
+#include "cli/layer/layer_job.h"
 #include "conic/layers_draw.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/commands/layer_job.h"
+#include "cli/layer/layer_job.h"
 #include "conic/layers_draw.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
@@ -194,7 +194,8 @@ const cli_command cli_layer = {
     .run = run_layer,
     .description =
         "Writes the samples in small clouds, coarse ones first. conic render reads only those that a picture "
-        "shows, from a file or from a web server.",
+        "shows, from a file or from a web server. A folder stands for its files of points, in the order of their "
+        "names.",
     .examples = {{"join scans that do not fit into memory", "conic layer scans/*.ply -o all.lpc --memory 4096"},
                  {"keep all that a survey says of its points", "conic layer survey.las -o survey.lpc --keep all"},
                  {"build a survey of thousands of tiles", "mpirun -n 8 conic-mpi layer tiles -o survey.lpc"}},

@@ -1,4 +1,4 @@
-#include "cli/commands/points_input.h"
+#include "cli/points/points_input.h"
 
 #include <string.h>
 

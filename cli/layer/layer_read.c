@@ -1,7 +1,7 @@
 #include <string.h>
 
-#include "cli/commands/layer_job.h"
-#include "cli/commands/points_input.h"
+#include "cli/layer/layer_job.h"
+#include "cli/points/points_input.h"
 #include "conic/layers_draw.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
@@ -120,7 +120,8 @@ void cli_layer_reading(const cli_layer_job *job, conic_read_options *options) {
   options->columns = job->base.columns;
 }
 
-static conic_status read_part(cli_layer_job *job, const cli_points_piece *piece, const conic_read_options *options) {
+static conic_status read_layer_piece(cli_layer_job *job, const cli_points_piece *piece,
+                                     const conic_read_options *options) {
   conic_disk_entry found;
   job->has_begun = job->is_raw = 0;
   job->may_read_again =
@@ -154,7 +155,8 @@ conic_status cli_layer_read_share(cli_layer_job *job, conic_read_options *option
     const cli_points_piece *piece = &job->share.pieces[i];
     double start = cli_seconds();
     job->base.input = job->share.inputs[piece->input];
-    status = piece->input < job->n_continued ? read_continued(job, job->base.input) : read_part(job, piece, options);
+    status =
+        piece->input < job->n_continued ? read_continued(job, job->base.input) : read_layer_piece(job, piece, options);
     job->n_pieces++;
     job->busy_seconds += cli_seconds() - start;
     conic_team_note(job->share.team, "read", start, i);

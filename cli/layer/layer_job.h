@@ -4,7 +4,7 @@
 
 #include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
-#include "cli/commands/points_share.h"
+#include "cli/points/points_share.h"
 #include "cli/team_shares.h"
 #include "conic/layers.h"
 
