@@ -156,8 +156,8 @@ conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job) {
     status = CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     job->kept->context = session->context;
-    conic_outputs_watch(session->context, note_name, job->kept);
     status = cli_team_is_first(session) ? open_list(session, job) : CONIC_OK;
+    conic_outputs_watch(session->context, note_name, job->kept);
   }
   own->is_resumable = 1; /* also of who goes on */
   status = cli_sharing_end(session, job, status);
@@ -244,7 +244,6 @@ conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int
   if (!*is_finished && !job->accumulating.resume_path &&
       cli_sharing_has_picture(session, job)) /* sums of another time */
     cli_accumulate_forget(job, i_frame);
-  kept->names.n = 0;
   return status;
 }
 
@@ -257,6 +256,7 @@ conic_status cli_kept_frames_add(cli_session *session, cli_render_job *job, int 
   kept->lines.n = 0;
   for (size_t at = 0; at < kept->names.n && status == CONIC_OK; at += strlen(kept->names.bytes + at) + 1)
     status = add_file_line(kept, kept->names.bytes + at);
+  kept->names.n = 0;
   int n = snprintf(last, sizeof last, "frame %d\n", i_frame);
   if (status == CONIC_OK)
     status = add_bytes(kept->context, &kept->lines, last, (size_t)n);
