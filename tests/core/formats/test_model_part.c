@@ -15,7 +15,7 @@ typedef struct row_of_points {
   float color[MOST];
 } row_of_points;
 
-static conic_status take_row(void *cookie, const conic_splats *batch) {
+static conic_status take_parts_row(void *cookie, const conic_splats *batch) {
   row_of_points *row = cookie;
   row->n_all += batch->count;
   for (size_t i = 0; i < batch->count && row->n < MOST; i++) {
@@ -41,13 +41,13 @@ static conic_status read_parts(const char *path, const conic_read_options *optio
       if (is_survey)
         status = conic_model_survey_part(context, path, options, &part, &own);
       else
-        status = conic_model_stream_part(context, path, options, &part, &survey, take_row, row);
+        status = conic_model_stream_part(context, path, options, &part, &survey, take_parts_row, row);
       conic_model_survey_add(&survey, &own);
     }
   CHECK(survey.n_wanted == row->n_all);
   const conic_points_range none = {step, step};
   if (status == CONIC_OK)
-    status = conic_model_stream_part(context, path, options, &none, &survey, take_row, row);
+    status = conic_model_stream_part(context, path, options, &none, &survey, take_parts_row, row);
   return status;
 }
 
@@ -57,7 +57,7 @@ static void check_parts(const char *path, const char *where) {
   row_of_points whole = {.n_all = 0};
   conic_read_options_init(&options);
   options.where = where;
-  CHECK_OK(conic_model_stream(context, path, &options, take_row, &whole));
+  CHECK_OK(conic_model_stream(context, path, &options, take_parts_row, &whole));
   CHECK(whole.n > 0);
   for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
     row_of_points parts = {.n_all = 0};
@@ -125,7 +125,7 @@ static void check_laz(void) {
   }
 }
 
-static void check_whole(const char *name, const char *text) {
+static void check_unparted(const char *name, const char *text) {
   conic_model_shape shape;
   const char *path = files_write(name, text);
   CHECK_OK(conic_model_look(context, path, NULL, &shape));
@@ -140,9 +140,10 @@ int main(void) {
   check_ply("float", 0);
   check_las();
   check_laz();
-  check_whole("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
-                       "end_header\n1 2 3\n");
-  check_whole("a.xyz", "1 2 3\n4 5 6\n");
+  check_unparted("a.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+                 "end_header\n1 2 3\n");
+  check_unparted("a.xyz", "1 2 3\n4 5 6\n");
   files_end(context);
   return check_result();
 }

@@ -14,6 +14,7 @@ typedef struct team_case {
   const double *weights; /* of the processes' parts; null: all alike */
   const char *path;
   int failing; /* which process fails, at its first batch; -1: none */
+  int refused; /* or, above 0, whose options have no meaning, which no process opens then */
   conic_status statuses[THREAD_TEAM_MOST];
   conic_layers_statistics statistics;
 } team_case;
@@ -56,7 +57,9 @@ static void build_part(const conic_team *team, void *cookie) {
   options.log = NULL;
   if (conic_context_create(&options, &context) != CONIC_OK || !values)
     exit(1);
-  conic_status status = conic_layers_builder_open_team(context, c->path, &c->options, team, &builder);
+  conic_layers_options own = c->options;
+  own.cloud_size = c->refused > 0 && c->refused == team->index ? 1 : own.cloud_size;
+  conic_status status = conic_layers_builder_open_team(context, c->path, &own, team, &builder);
   size_t first = start_of(c, team->index, team->count), end = start_of(c, team->index + 1, team->count), n;
   for (; first < end && status == CONIC_OK; first += n) {
     n = end - first < 700 ? end - first : 700;
@@ -221,6 +224,11 @@ static void test_failing(conic_context *context) {
     for (int i = 0; i < 3; i++)
       CHECK(c.statuses[i] == (i == failing ? CONIC_ERROR_INPUT : CONIC_ERROR_CANCELLED));
   }
+  team_case refused = {
+      .splats = &splats, .options = small_clouds(), .failing = -1, .refused = 2, .path = files_path("none.lpc")};
+  thread_team_run(3, build_part, &refused);
+  for (int i = 0; i < 3; i++)
+    CHECK(refused.statuses[i] == (i == 2 ? CONIC_ERROR_ARGUMENT : CONIC_ERROR_CANCELLED));
   team_case c = {.splats = &splats, .options = small_clouds(), .failing = -1};
   c.path = files_path("folder.lpc");
   CHECK(mkdir(c.path, 0777) == 0);
