@@ -22,7 +22,7 @@ const void *conic_accumulation_part(const conic_accumulation *sums, int i, int n
   return sums->sums + begin;
 }
 
-static conic_status check_part(const conic_accumulation *sums, int i, int n, size_t n_bytes) {
+static conic_status check_part_length(const conic_accumulation *sums, int i, int n, size_t n_bytes) {
   size_t n_wanted;
   conic_accumulation_part(sums, i, n, &n_wanted);
   return n_bytes == n_wanted
@@ -48,7 +48,7 @@ static void join_run(void *data, size_t i_run, int i_thread) {
 
 conic_status conic_accumulation_join_part(conic_accumulation *sums, int i, int n, const void *bytes, size_t n_bytes) {
   part_joining work = {sums->sums + part_begin(sums, i, n), bytes, n_bytes / sizeof *sums->sums};
-  conic_status status = check_part(sums, i, n, n_bytes);
+  conic_status status = check_part_length(sums, i, n, n_bytes);
   if (status == CONIC_OK)
     conic_parallel_for(sums->context, (work.n + RUN - 1) / RUN, join_run, &work);
   return status;
@@ -60,7 +60,7 @@ conic_scattered conic_accumulation_scattered(const conic_accumulation *sums) {
 
 conic_status conic_accumulation_take_part(conic_accumulation *sums, int i, int n, const conic_scattered *other,
                                           const void *bytes, size_t n_bytes) {
-  conic_status status = check_part(sums, i, n, n_bytes);
+  conic_status status = check_part_length(sums, i, n, n_bytes);
   if (status == CONIC_OK && sums->key && other->key && sums->key != other->key)
     status = conic_fail(sums->context, CONIC_ERROR_ARGUMENT, "accumulation: the sums are not of the same picture");
   if (status != CONIC_OK)

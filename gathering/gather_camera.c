@@ -11,7 +11,7 @@
 #include "gathering/gather_views.h"
 
 void conic_gather_options_init_sized(conic_gather_options *options, size_t size) {
-  static const conic_gather_options own = {.size = sizeof own, .samples = 1, .fineness = 2.0};
+  static const conic_gather_options own = {.size = sizeof own, .samples = 1, .fineness = 2.0, .edge = 256};
   conic_options_give(options, size, &own);
 }
 
@@ -48,6 +48,8 @@ static const char *find_gather_fault(const conic_gather_options *o, const conic_
     return "samples are 1 to 16, and that times the picture's size at most 65535";
   if (!(o->fineness >= 1.0 && o->fineness <= 16.0) || !(o->near_z >= 0.0 && o->near_z < 1e30))
     return "the fineness is 1 to 16, and the nearest depth not below 0";
+  if (o->edge < 32 || o->edge > 4096)
+    return "the edge of views is 32 to 4096";
   for (int i = 0; i < 2; i++)
     if (!(o->shift[i] >= 0.0 && o->shift[i] <= 1.0))
       return "the views' shift is 0 to 1";

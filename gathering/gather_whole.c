@@ -58,9 +58,6 @@ conic_status conic_gather_cube(const conic_gathering *g) {
 
 /* --- from far away --- */
 
-/* Views are no larger, in pixels. */
-enum { FAR_EDGE = 512 };
-
 /* The depths of the box of all that is drawn. */
 static void find_far_depths(const conic_gather_options *o, double depths[2]) {
   depths[0] = HUGE_VAL;
@@ -77,17 +74,27 @@ static void find_far_depths(const conic_gather_options *o, double depths[2]) {
 /* The eye stands so far off that rays through a view's corner leave the parallel ones by 1/2048 of the pixels to the
  * middle over all depths there are, while floats still tell depths apart by that. */
 static double find_far_distance(const conic_gather_options *o, const double depths[2]) {
-  const double across = FAR_EDGE / (o->camera.fx < o->camera.fy ? o->camera.fx : o->camera.fy);
+  const double across = o->edge / (o->camera.fx < o->camera.fy ? o->camera.fx : o->camera.fy);
   double by_depth = 2048.0 * 0.5 * (depths[1] - depths[0]), by_width = 256.0 * across;
   return by_depth > by_width ? by_depth : by_width;
 }
 
-static conic_status draw_block(const conic_gathering *g, size_t x, size_t y, double middle, double distance) {
+/* A column or row of blocks: pixels from begin to before end. */
+typedef struct far_block {
+  int begin, end;
+} far_block;
+
+static far_block find_block(const conic_gather_options *o, int i, int axis, int n_pixels) {
+  int begin = i * o->edge - (int)(o->shift[axis] * o->edge), end = begin + o->edge;
+  return (far_block){begin > 0 ? begin : 0, end < n_pixels ? end : n_pixels};
+}
+
+static conic_status draw_block(const conic_gathering *g, far_block across, far_block down, double middle,
+                               double distance) {
   const conic_gather_options *o = g->options;
   const conic_camera *camera = &o->camera;
-  size_t right = x + FAR_EDGE < (size_t)camera->width ? x + FAR_EDGE : (size_t)camera->width;
-  size_t bottom = y + FAR_EDGE < (size_t)camera->height ? y + FAR_EDGE : (size_t)camera->height;
-  const double at_x = 0.5 * (double)(x + right), at_y = 0.5 * (double)(y + bottom), far_z = middle - distance;
+  const double at_x = 0.5 * (across.begin + across.end), at_y = 0.5 * (down.begin + down.end),
+               far_z = middle - distance;
   const double tilt[2] = {o->focus > 0.0 ? o->lens[0] / o->focus : 0.0, o->focus > 0.0 ? o->lens[1] / o->focus : 0.0};
   const double eye[3] = {(at_x - camera->cx) / camera->fx + (o->focus - far_z) * tilt[0],
                          (at_y - camera->cy) / camera->fy + (o->focus - far_z) * tilt[1], far_z};
@@ -95,15 +102,15 @@ static conic_status draw_block(const conic_gathering *g, size_t x, size_t y, dou
   conic_gather_view view = {.camera = conic_gather_side_camera(camera, conic_cube_sides[CONIC_CUBE_FORWARD], eye),
                             .near_z = fmax(o->near_z - far_z, 0.5 * distance),
                             .samples = o->samples};
-  view.camera.width = (int)(right - x);
-  view.camera.height = (int)(bottom - y);
+  view.camera.width = across.end - across.begin;
+  view.camera.height = down.end - down.begin;
   view.camera.fx = distance * camera->fx;
   view.camera.fy = distance * camera->fy;
-  view.camera.cx = at_x - (double)x + view.camera.fx * tilt[0];
-  view.camera.cy = at_y - (double)y + view.camera.fy * tilt[1];
+  view.camera.cx = at_x - across.begin + view.camera.fx * tilt[0];
+  view.camera.cy = at_y - down.begin + view.camera.fy * tilt[1];
   conic_status status = conic_gather_draw(g, &view, &image);
   if (status == CONIC_OK)
-    put_view(g, &image, x, y, far_z);
+    put_view(g, &image, (size_t)across.begin, (size_t)down.begin, far_z);
   conic_image_release(g->context, &image);
   return status;
 }
@@ -118,8 +125,15 @@ conic_status conic_gather_parallel(const conic_gathering *g) {
     return conic_fail(g->context, CONIC_ERROR_ARGUMENT,
                       "gather: an orthographic camera wants the box of what it sees, a flat lens, and no inverseZ");
   double distance = find_far_distance(o, depths), middle = 0.5 * (depths[0] + depths[1]);
-  for (size_t y = 0; y < (size_t)o->camera.height && status == CONIC_OK; y += FAR_EDGE)
-    for (size_t x = 0; x < (size_t)o->camera.width && status == CONIC_OK; x += FAR_EDGE)
-      status = draw_block(g, x, y, middle, distance);
+  far_block across, down = {0, 0};
+  for (int i = 0; down.end < o->camera.height && status == CONIC_OK; i++) {
+    down = find_block(o, i, 1, o->camera.height);
+    across.end = down.end > down.begin ? 0 : o->camera.width;
+    for (int k = 0; across.end < o->camera.width && status == CONIC_OK; k++) {
+      across = find_block(o, k, 0, o->camera.width);
+      if (across.end > across.begin)
+        status = draw_block(g, across, down, middle, distance);
+    }
+  }
   return status;
 }

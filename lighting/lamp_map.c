@@ -95,5 +95,4 @@ void conic_lamp_map_place(double epsilon, const double place[3], int i_side, con
   map->angle = (float)(1.0 / focal);
   map->center_x = (float)camera->cx;
   map->center_y = (float)camera->cy;
-  map->epsilon = (float)epsilon;
 }

@@ -63,5 +63,4 @@ void conic_light_map_place(const conic_casters *casters, const conic_receivers *
   map->angle = (float)(1.0 / camera->fx);
   map->center_x = (float)camera->cx;
   map->center_y = (float)camera->cy;
-  map->epsilon = (float)casters->epsilon;
 }

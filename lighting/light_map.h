@@ -13,7 +13,7 @@ typedef struct conic_light_map {
   int width, height;
   float rotation[3][3], distance;
   float focal, angle, center_x, center_y; /* angle: 1/focal, of a texel */
-  float epsilon;                          /* in world units */
+  float epsilon, flat_epsilon;            /* in world units; what of it z does not have in it already */
   int is_lamp;                            /* its rays part: receivers are measured from it, and `distance` is 0 */
 } conic_light_map;
 

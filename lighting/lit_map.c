@@ -17,7 +17,7 @@ void conic_lighting_options_init_sized(conic_lighting_options *options, size_t s
 }
 
 static const char *find_fault(const conic_casters *c, const conic_lighting_options *o) {
-  if (!c->draw || !conic_is_zero(c->reserved, sizeof c->reserved))
+  if (!c->draw || c->epsilon_is_drawn > 1 || !conic_is_zero(c->reserved, sizeof c->reserved))
     return "the casters have nothing that draws them, or their reserved words are not zero";
   for (int axis = 0; axis < 3; axis++)
     if (!(c->minimum[axis] <= c->maximum[axis] && fabs(c->minimum[axis]) < 1e20 && fabs(c->maximum[axis]) < 1e20))
@@ -64,6 +64,8 @@ conic_status conic_map_room_fill(conic_map_room *room, const conic_camera *camer
   depth.height = camera->height;
   depth.planes[CONIC_PLANE_Z] = room->z;
   map->z = room->z;
+  map->epsilon = (float)room->casters->epsilon;
+  map->flat_epsilon = room->casters->epsilon_is_drawn ? 0.0f : map->epsilon;
   conic_status status = room->casters->draw(room->casters->cookie, camera, near_z, &depth);
   if (room->sharing)
     room->sharing->i_map++;
@@ -302,6 +304,12 @@ static conic_status find_visible(conic_map_room *room, const conic_lighting_opti
   return status;
 }
 
+/* A surface sees one half of all directions: of what has no normal, that much counts as all. */
+static float share_of_splat(const conic_receivers *r, float share, size_t i) {
+  int has_none = r->normal[0][i] == 0.0f && r->normal[1][i] == 0.0f && r->normal[2][i] == 0.0f;
+  return !has_none ? share : share < 0.5f ? 2.0f * share : 1.0f;
+}
+
 static conic_status occlude_splats(conic_context *context, const conic_casters *casters, const conic_splats *splats,
                                    double spacing, const conic_lighting_options *options, float *ao) {
   conic_receivers receivers;
@@ -314,6 +322,8 @@ static conic_status occlude_splats(conic_context *context, const conic_casters *
   room.texel = spacing / options->texels;
   if (status == CONIC_OK)
     status = find_visible(&room, options, ao);
+  for (size_t i = 0; i < splats->count && status == CONIC_OK; i++)
+    ao[i] = share_of_splat(&receivers, ao[i], i);
   conic_receivers_release(context, &receivers);
   conic_map_room_release(&room);
   return status;

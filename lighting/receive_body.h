@@ -49,12 +49,16 @@ static inline float clamp_to_map(float place, int size) {
   return place < last ? place : last;
 }
 
+/* How far along a ray what a map shows may lie off the surface that it shows, by the tangent of the slope. */
+static inline float bias_of(const conic_light_map *map, float texel, float slope) {
+  return (map->flat_epsilon + texel * CONIC_LIGHT_MAP_FLAT) + (map->epsilon + texel) * (CONIC_LIGHT_MAP_SLOPE * slope);
+}
+
 /* How the receiver faces the parallel rays of a map, and how far it may lie off its plane along them. */
 static inline float face_sun(const conic_light_map *map, received *r) {
   float cosine = -r->n[2], flat = cosine > CONIC_LIGHT_MAP_GRAZING ? cosine : CONIC_LIGHT_MAP_GRAZING;
   float slope = sqrtf(r->n[0] * r->n[0] + r->n[1] * r->n[1]) / flat;
-  r->bias =
-      (map->epsilon + r->texel * CONIC_LIGHT_MAP_FLAT) + (map->epsilon + r->texel) * (CONIC_LIGHT_MAP_SLOPE * slope);
+  r->bias = bias_of(map, r->texel, slope);
   return cosine;
 }
 
@@ -64,9 +68,7 @@ static inline float face_lamp(const conic_light_map *map, const float at[3], rec
   float cosine = -((r->n[0] * at[0] + r->n[1] * at[1]) + r->n[2] * at[2]) / distance;
   float flat = cosine > CONIC_LIGHT_MAP_GRAZING ? cosine : CONIC_LIGHT_MAP_GRAZING;
   float square = 1.0f - cosine * cosine, slope = sqrtf(square > 0.0f ? square : 0.0f) / flat;
-  r->bias =
-      ((map->epsilon + r->texel * CONIC_LIGHT_MAP_FLAT) + (map->epsilon + r->texel) * (CONIC_LIGHT_MAP_SLOPE * slope)) *
-      (at[2] / distance);
+  r->bias = bias_of(map, r->texel, slope) * (at[2] / distance);
   return cosine;
 }
 
@@ -81,6 +83,8 @@ static inline void receive_one(const conic_light_map *map, const conic_receivers
     at[axis] = (row[0] * p[0] + row[1] * p[1]) + row[2] * p[2];
     r.n[axis] = (row[0] * n[0] + row[1] * n[1]) + row[2] * n[2];
   }
+  int has_none = (n[0] == 0.0f) & (n[1] == 0.0f) & (n[2] == 0.0f);
+  r.n[2] = has_none ? -1.0f : r.n[2];
   float z = map->distance + at[2], scale = map->focal / z;
   r.column = clamp_to_map(at[0] * scale + map->center_x, map->width);
   r.row = clamp_to_map(at[1] * scale + map->center_y, map->height);

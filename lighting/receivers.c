@@ -133,15 +133,15 @@ conic_status conic_receivers_of_image(conic_context *context, const conic_camera
   return status;
 }
 
-/* The splat's unit normal; 0: it has none, or no place. */
+/* The splat's unit normal; 0: it has none. */
 static int splat_normal(const conic_splats *s, size_t i, double normal[3]) {
   double u[3], v[3];
   for (int axis = 0; axis < 3; axis++) {
     u[axis] = (double)s->tangent_u[axis][i];
     v[axis] = (double)s->tangent_v[axis][i];
-    if (!isfinite(s->position[axis][i]))
-      return 0;
   }
+  if (s->dot && s->dot[i] != 0.0f)
+    return 0;
   conic_cross(u, v, normal);
   return conic_normalize(normal);
 }
@@ -156,11 +156,13 @@ conic_status conic_receivers_of_splats(conic_context *context, const conic_splat
   set_receivers_box(low, high, receivers);
   conic_status status = make_room_for_receivers(context, 0, receivers);
   for (size_t i = 0; i < splats->count && status == CONIC_OK; i++) {
-    int is_there = splat_normal(splats, i, normal);
+    int has_normal = splat_normal(splats, i, normal), is_there = 1;
+    for (int axis = 0; axis < 3; axis++)
+      is_there &= isfinite(splats->position[axis][i]);
     for (int axis = 0; axis < 3; axis++) {
       double place = (double)splats->position[axis][i] + splats->origin[axis] - receivers->origin[axis];
       receivers->position[axis][i] = is_there ? (float)place : 0.0f;
-      receivers->normal[axis][i] = is_there ? (float)normal[axis] : 0.0f;
+      receivers->normal[axis][i] = has_normal ? (float)normal[axis] : 0.0f;
     }
   }
   return status;

@@ -14,7 +14,7 @@ typedef struct conic_receivers {
   double origin[3];               /* in the world, from which positions are measured: the middle of their box */
   double half[3];                 /* of that box */
   double spacing;                 /* the mean edge of what one stands for, in world units */
-  float *position[3], *normal[3]; /* normals of unit length */
+  float *position[3], *normal[3]; /* normals of unit length, or 0: it faces parallel rays, wherever from */
   uint32_t *pixel;                /* which pixel of the picture it is; null: of splats */
   float *block;                   /* what holds all these */
 } conic_receivers;
@@ -23,7 +23,8 @@ typedef struct conic_receivers {
 conic_status conic_receivers_of_image(conic_context *context, const conic_camera *camera, int samples,
                                       const conic_image *image, conic_receivers *receivers);
 
-/* All splats of a set; one without a place or normal is in the middle of all, and faces nowhere. Errors: MEMORY. */
+/* All splats of a set; dots and what has no axes have no normal, and one without a place is in the middle of all.
+ * Errors: MEMORY. */
 conic_status conic_receivers_of_splats(conic_context *context, const conic_splats *splats, double spacing,
                                        conic_receivers *receivers);
 

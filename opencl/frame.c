@@ -116,11 +116,16 @@ conic_status conic_frame_close_plane(const conic_frame *f, int buffer, void *pla
   return conic_opencl_check(opencl->context, answer, "clEnqueueMapBuffer");
 }
 
+/* What the device draws into; null: no such plane. */
+static void *drawn_plane(const conic_frame *f, int plane) {
+  return f->is_hiding ? NULL : f->image->planes[plane];
+}
+
 static conic_status open_planes(const conic_frame *f) {
   conic_status status = CONIC_OK;
   for (int plane = 0; plane < CONIC_N_DRAWN_PLANES && status == CONIC_OK; plane++)
     status =
-        conic_frame_open_plane(f, CONIC_BUFFER_PLANES + plane, f->image->planes[plane], plane_bytes(f->image, plane));
+        conic_frame_open_plane(f, CONIC_BUFFER_PLANES + plane, drawn_plane(f, plane), plane_bytes(f->image, plane));
   return status;
 }
 
@@ -132,7 +137,7 @@ conic_status conic_frame_begin(conic_frame *f) {
   c->n_tiles_x = (c->width + tile - 1) / tile;
   c->n_tiles_y = (c->height + tile - 1) / tile;
   c->n_blocks_x = c->n_tiles_x * (tile / 4);
-  c->planes = (int32_t)conic_image_planes(f->image);
+  c->planes = f->is_hiding ? 0 : (int32_t)conic_image_planes(f->image);
   c->keeps_sums = f->opencl->keeps_sums;
   f->n_tiles = (uint32_t)c->n_tiles_x * (uint32_t)c->n_tiles_y;
   const struct {
@@ -165,11 +170,39 @@ conic_status conic_frame_begin(conic_frame *f) {
 
 /* --- after the parts --- */
 
+/* The thresholds lie block by block, and those of a block column by column. */
+static void take_hiding(const conic_frame *f, const float *thresholds, uint64_t *n_covered) {
+  float *z = f->image->planes[CONIC_PLANE_Z];
+  size_t width = (size_t)f->image->width, n_blocks_x = (size_t)f->constants.n_blocks_x;
+  for (size_t y = 0; y < (size_t)f->image->height; y++)
+    for (size_t x = 0; x < width; x++) {
+      float iz = thresholds[16 * (y / 4 * n_blocks_x + x / 4) + 4 * (x % 4) + y % 4];
+      z[y * width + x] = iz > 0.0f ? 1.0f / iz : 0.0f;
+      *n_covered += iz > 0.0f;
+    }
+}
+
+static conic_status end_hiding(const conic_frame *f, uint64_t *n_covered) {
+  conic_context *context = f->opencl->context;
+  size_t n = (size_t)f->n_tiles * (size_t)f->opencl->tile * (size_t)f->opencl->tile;
+  float *thresholds = conic_memory_allocate(context, n, sizeof *thresholds);
+  if (!thresholds)
+    return CONIC_ERROR_MEMORY;
+  conic_status status = conic_queue_read(&f->opencl->queue, &f->opencl->buffers[CONIC_BUFFER_THRESHOLDS], 0, thresholds,
+                                         n * sizeof *thresholds);
+  if (status == CONIC_OK)
+    take_hiding(f, thresholds, n_covered);
+  conic_memory_release(context, thresholds);
+  return status;
+}
+
 conic_status conic_frame_end(conic_frame *f, uint64_t *n_covered) {
   conic_status status = CONIC_OK;
+  if (f->is_hiding)
+    return end_hiding(f, n_covered);
   for (int plane = 0; plane < CONIC_N_DRAWN_PLANES && status == CONIC_OK; plane++)
     status =
-        conic_frame_close_plane(f, CONIC_BUFFER_PLANES + plane, f->image->planes[plane], plane_bytes(f->image, plane));
+        conic_frame_close_plane(f, CONIC_BUFFER_PLANES + plane, drawn_plane(f, plane), plane_bytes(f->image, plane));
   return status == CONIC_OK ? conic_frame_add_tiles(f, CONIC_BUFFER_N_COVERED, n_covered) : status;
 }
 
@@ -227,7 +260,7 @@ static conic_status take_part(conic_frame *f, walk purpose) {
     return status;
   if (purpose == WALK_ACCUMULATE)
     return conic_frame_accumulate(f);
-  return f->n == f->splats->count ? conic_frame_blend(f) : conic_frame_visibility(f);
+  return f->n == f->splats->count && !f->is_hiding ? conic_frame_blend(f) : conic_frame_visibility(f);
 }
 
 /* Walks over the splats part by part; parts become smaller where their lists are too long for the device. */
@@ -294,9 +327,9 @@ static conic_status draw_parts(conic_frame *f) {
     status = conic_frame_draw_triangles(f);
   if (status == CONIC_OK && draws_splats && !is_single)
     status = walk_parts(f, WALK_VISIBILITY, &part);
-  if (status == CONIC_OK && draws_splats && (is_single || f->n < count))
+  if (status == CONIC_OK && draws_splats && !f->is_hiding && (is_single || f->n < count))
     status = walk_parts(f, WALK_ACCUMULATE, &part);
-  return status == CONIC_OK && f->triangles ? conic_frame_add_triangles(f) : status;
+  return status == CONIC_OK && f->triangles && !f->is_hiding ? conic_frame_add_triangles(f) : status;
 }
 
 conic_status conic_frame_draw(conic_backend *backend, const conic_view *view, const conic_splats *splats,
@@ -308,7 +341,8 @@ conic_status conic_frame_draw(conic_backend *backend, const conic_view *view, co
                    .splats = splats,
                    .triangles = triangles,
                    .image = image,
-                   .splats_version = finish->options->splats_version};
+                   .splats_version = finish->options->splats_version,
+                   .is_hiding = finish->options->passes == CONIC_PASS_OF_HIDING};
   memset(opencl->queue.ms, 0, sizeof opencl->queue.ms);
   set_finish(finish, &f.constants);
   conic_status status = conic_opencl_need_splats(opencl);

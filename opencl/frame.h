@@ -22,6 +22,7 @@ typedef struct conic_frame {
   uint64_t n_fragments, n_drawn_in_all;
   double triangle_bytes;   /* of the device's memory */
   uint64_t splats_version; /* of the options */
+  int is_hiding;           /* CONIC_PASS_OF_HIDING: the plane Z is made here, of the device's thresholds */
 } conic_frame;
 
 /* Makes ready what all parts share. */

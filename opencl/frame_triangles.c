@@ -171,7 +171,7 @@ static void set_constants(conic_frame *f) {
   f->constants.n_triangle_chunks = (uint32_t)t->n_chunks;
   f->constants.n_materials = (uint32_t)t->triangles->n_materials;
   f->constants.first_triangle_id = t->first_id;
-  f->constants.triangle_epsilon = t->epsilon;
+  f->constants.triangle_epsilon = f->is_hiding ? 0.0f : t->epsilon;
 }
 
 conic_status conic_frame_set_up_triangles(conic_frame *f, conic_isa isa) {

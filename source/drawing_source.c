@@ -142,6 +142,7 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   reading.keeps_faces = options->as == CONIC_AS_MESH || options->as == CONIC_AS_AUTO;
   conic_coloring_read(options->coloring, &reading);
   reading.where = options->where;
+  reading.keeps_alpha = options->keeps_alpha;
   conic_status status = conic_gaussians_read_model(context, path, &reading, &model);
   if (status != CONIC_OK)
     return status;

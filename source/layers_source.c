@@ -98,6 +98,8 @@ static conic_layers_draw_options wish_of(const conic_source_view *view) {
   options.may_be_coarser = view->may_be_coarser;
   options.seconds = view->seconds;
   options.tolerates_damage = view->tolerates_damage;
+  options.transparency = view->transparency;
+  options.chance = view->chance;
   return options;
 }
 

@@ -72,6 +72,19 @@ static conic_status find_octree_spacing(conic_source *source, double *spacing) {
   return status == CONIC_OK ? conic_splats_spacing(source->context, &o->leaves, spacing) : status;
 }
 
+/* What nodes have for opacities says how much their leaves weigh, not how far light comes through. */
+static conic_status settle_transparency(octree_source *o) {
+  conic_status status = need_leaves(o);
+  const conic_drawing leaves = {.splats = &o->leaves};
+  if (status == CONIC_OK && conic_drawing_is_transparent(&leaves))
+    return conic_fail(o->base.context, CONIC_ERROR_UNSUPPORTED,
+                      "%s: the nodes of an octree keep no opacities: transparency is of all its points, without an "
+                      "error or a budget",
+                      o->base.name);
+  o->base.view.transparency = CONIC_TRANSPARENCY_NONE;
+  return status;
+}
+
 static conic_status choose_from_octree(conic_source *source, const conic_camera *camera,
                                        const conic_render_options *render, const conic_source_view *view) {
   octree_source *o = (octree_source *)source;
@@ -84,7 +97,10 @@ static conic_status choose_from_octree(conic_source *source, const conic_camera 
   choice->drawing.splats = choice->is_all ? &o->leaves : &o->selection.splats;
   if (choice->is_all)
     return need_leaves(o);
-  conic_status status = conic_octree_select(o->octree, camera, render, &options, &o->selection);
+  conic_status status = view->transparency ? settle_transparency(o) : CONIC_OK;
+  if (status != CONIC_OK)
+    return status;
+  status = conic_octree_select(o->octree, camera, render, &options, &o->selection);
   choice->ids = o->selection.ids;
   choice->error_px = o->selection.error_px;
   choice->n_culled = o->selection.n_culled;

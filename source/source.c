@@ -10,6 +10,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/vectors.h"
+#include "source/carried.h"
 #include "source/reach.h"
 #include "source/source_kind.h"
 
@@ -185,15 +186,11 @@ static int is_pose(const conic_source_pose *pose) {
 }
 
 conic_status conic_source_move(conic_source *source, const conic_source_pose *poses, size_t n_poses) {
-  if (!source->kind->move)
-    return poses ? conic_fail(source->context, CONIC_ERROR_UNSUPPORTED,
-                              "%s: it stands still: splats, points and meshes that are read whole move", source->name)
-                 : CONIC_OK;
   for (size_t i = 0; poses && i < n_poses; i++)
     if (!is_pose(&poses[i]))
       return conic_fail(source->context, CONIC_ERROR_ARGUMENT,
                         "%s: the pose of input %zu mirrors it, makes it flat or is not finite", source->name, i);
-  return source->kind->move(source, poses, n_poses);
+  return source->kind->move ? source->kind->move(source, poses, n_poses) : conic_carried_move(source, poses, n_poses);
 }
 
 void conic_source_box(const conic_source *source, double minimum[3], double maximum[3]) {
@@ -207,24 +204,35 @@ const conic_source_choice *conic_source_chosen(const conic_source *source) {
   return &source->choice;
 }
 
-static conic_status settle_picture(conic_source *source, const conic_render_options *render,
-                                   const conic_source_view *view, conic_render_options *settled) {
-  conic_render_options_init(settled);
+/* Transparency is of surfaces that keep their opacities. */
+static conic_status check_opacities(conic_source *source) {
+  const unsigned abilities = source->scale.abilities;
+  const char *fault = abilities & CONIC_SOURCE_COMPOSITES ? "a Gaussian scene is composited by its opacities already"
+                      : abilities & CONIC_SOURCE_CLUSTERS ? "a hybrid keeps no opacities; draw what it was made of"
+                                                          : NULL;
+  return fault ? conic_fail(source->context, CONIC_ERROR_UNSUPPORTED, "%s: no transparency: %s", source->name, fault)
+               : CONIC_OK;
+}
+
+static conic_status settle_picture(conic_source *source, const conic_camera *camera, const conic_render_options *render,
+                                   const conic_source_view *view, conic_source_picture *picture) {
+  picture->camera = *camera;
+  picture->is_carried = source->is_moved && !source->kind->move;
+  conic_render_options_init(&picture->render);
   conic_source_view_init(&source->view);
-  if (!conic_options_take(settled, render) || (view && !conic_options_take(&source->view, view)))
+  if (!conic_options_take(&picture->render, render) || (view && !conic_options_take(&source->view, view)))
     return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "source: the options were not initialised");
-  conic_source_settle(source, settled);
+  conic_source_settle(source, &picture->render);
+  if (picture->is_carried)
+    conic_carried_look(source, &picture->camera, &picture->render, &picture->camera, &picture->render);
   return CONIC_OK;
 }
 
-conic_status conic_source_begin_picture(conic_source *source, const conic_render_options *render,
-                                        const conic_source_view *view, conic_render_options *settled) {
-  const conic_source_kind *kind = source->kind;
-  conic_status status = settle_picture(source, render, view, settled);
-  if (status == CONIC_OK && source->view.transparency && (kind->draw || kind->abilities & CONIC_SOURCE_CLUSTERS))
-    return conic_fail(source->context, CONIC_ERROR_UNSUPPORTED,
-                      "%s: transparency is of splats and meshes that are drawn as they are", source->name);
-  return status;
+conic_status conic_source_begin_picture(conic_source *source, const conic_camera *camera,
+                                        const conic_render_options *render, const conic_source_view *view,
+                                        conic_source_picture *picture) {
+  conic_status status = settle_picture(source, camera, render, view, picture);
+  return status == CONIC_OK && source->view.transparency ? check_opacities(source) : status;
 }
 
 conic_status conic_source_choose_settled(conic_source *source, const conic_camera *camera,
@@ -241,33 +249,29 @@ conic_status conic_source_choose_settled(conic_source *source, const conic_camer
 
 conic_status conic_source_choose(conic_source *source, const conic_camera *camera, const conic_render_options *render,
                                  const conic_source_view *view) {
-  conic_render_options settled;
-  conic_status status = settle_picture(source, render, view, &settled);
-  return status == CONIC_OK ? conic_source_choose_settled(source, camera, &settled) : status;
+  conic_source_picture picture;
+  conic_status status = settle_picture(source, camera, render, view, &picture);
+  return status == CONIC_OK ? conic_source_choose_settled(source, &picture.camera, &picture.render) : status;
 }
 
-conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
-                               const conic_render_options *render, const conic_source_view *view, conic_image *image,
-                               conic_render_statistics *statistics) {
+/* What a kind does not draw by itself. */
+static conic_status draw_from_choice(conic_source *source, conic_renderer *renderer, conic_source_picture *picture,
+                                     conic_image *image, conic_render_statistics *statistics) {
   const conic_source_kind *kind = source->kind;
-  conic_render_options settled;
-  conic_status status = conic_source_begin_picture(source, render, view, &settled);
-  if (status != CONIC_OK || kind->draw)
-    return status == CONIC_OK ? kind->draw(source, renderer, camera, &settled, &source->view, image, statistics)
-                              : status;
+  const conic_source_choice *choice = &source->choice;
+  const conic_source_view *view = &source->view;
   double start = conic_seconds_now();
-  status = conic_source_choose_settled(source, camera, &settled);
-  int is_chosen = kind->choose && (!source->choice.is_all || source->choice.drawing.splats->dot);
+  conic_status status = conic_source_choose_settled(source, &picture->camera, &picture->render);
+  int is_chosen = kind->choose && (!choice->is_all || choice->drawing.splats->dot);
   double ms = is_chosen ? 1e3 * (conic_seconds_now() - start) : 0.0;
-  if (source->choice.is_all && !settled.splats_version)
-    settled.splats_version = source->splats_version;
-  if (status == CONIC_OK && source->view.transparency)
-    status = conic_render_transparent(source->context, renderer, &source->choice.drawing, camera, &settled,
-                                      source->view.transparency, source->view.chance, source->view.samples, image,
-                                      statistics);
+  if (choice->is_all && !picture->render.splats_version)
+    picture->render.splats_version = source->splats_version;
+  if (status == CONIC_OK && view->transparency)
+    status = conic_render_transparent(source->context, renderer, &choice->drawing, &picture->camera, &picture->render,
+                                      view->transparency, view->chance, view->samples, image, statistics);
   else if (status == CONIC_OK)
-    status = conic_render_drawing(source->context, renderer, &source->choice.drawing, camera, &settled,
-                                  source->view.samples, image, statistics);
+    status = conic_render_drawing(source->context, renderer, &choice->drawing, &picture->camera, &picture->render,
+                                  view->samples, image, statistics);
   if (status != CONIC_OK)
     return status;
   conic_source_name_image(source, image);
@@ -276,6 +280,21 @@ conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, c
     statistics->ms.frame += ms;
   }
   return CONIC_OK;
+}
+
+conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                               const conic_render_options *render, const conic_source_view *view, conic_image *image,
+                               conic_render_statistics *statistics) {
+  const conic_source_kind *kind = source->kind;
+  conic_source_picture picture;
+  conic_status status = conic_source_begin_picture(source, camera, render, view, &picture);
+  if (status == CONIC_OK)
+    status = kind->draw
+                 ? kind->draw(source, renderer, &picture.camera, &picture.render, &source->view, image, statistics)
+                 : draw_from_choice(source, renderer, &picture, image, statistics);
+  if (status == CONIC_OK && picture.is_carried)
+    conic_carried_turn(source, image);
+  return status;
 }
 
 const char *conic_source_name_splat(const conic_source *source, uint32_t splat, uint32_t *number) {

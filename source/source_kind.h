@@ -28,7 +28,8 @@ typedef struct conic_source_kind {
   void (*close)(conic_source *source); /* never null */
   conic_status (*find_spacing)(conic_source *source, double *spacing);
 
-  /* conic_source_move of poses that have been checked, as many as inputs; null: at rest. */
+  /* conic_source_move of poses that have been checked, as many as inputs; null: at rest. Where it is null, the source
+   * is carried as one piece (source/carried.h). */
   conic_status (*move)(conic_source *source, const conic_source_pose *poses, size_t n_poses);
 
   /* Fills in the choice, which is two empty sets; null: it stays as opening set it. */
@@ -77,8 +78,9 @@ struct conic_source {
   uint64_t splats_version; /* conic_render_options' for pictures of all that there is; 0: the splats may change */
   int is_moved;            /* what is drawn has another box than the scale's: */
   double moved_minimum[3], moved_maximum[3];
-  conic_splats outline; /* conic_source_take_samples', where they were asked for */
-  double tolerance;     /* by which splats made of meshes are off these; 0: none are */
+  double world_from_rest[3][4]; /* of one that is carried and moved */
+  conic_splats outline;         /* conic_source_take_samples', where they were asked for */
+  double tolerance;             /* by which splats made of meshes are off these; 0: none are */
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
@@ -95,9 +97,17 @@ conic_status conic_source_create(conic_context *context, const conic_source_kind
 /* Where `status` is a failure, closes what was made so far. Hands it on. */
 conic_status conic_source_finish(conic_status status, conic_source **source);
 
+/* A picture as it is chosen and drawn: where the source is carried, of the source at rest. */
+typedef struct conic_source_picture {
+  conic_camera camera;
+  conic_render_options render;
+  int is_carried;
+} conic_source_picture;
+
 /* The view becomes the source's, and the options are filled in. Errors: ARGUMENT, UNSUPPORTED (transparency). */
-conic_status conic_source_begin_picture(conic_source *source, const conic_render_options *render,
-                                        const conic_source_view *view, conic_render_options *settled);
+conic_status conic_source_begin_picture(conic_source *source, const conic_camera *camera,
+                                        const conic_render_options *render, const conic_source_view *view,
+                                        conic_source_picture *picture);
 /* conic_source_choose after that. */
 conic_status conic_source_choose_settled(conic_source *source, const conic_camera *camera,
                                          const conic_render_options *render);

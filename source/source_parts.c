@@ -6,20 +6,23 @@
 #include "source/source_kind.h"
 
 int conic_source_has_windows(const conic_source *source, const conic_renderer *renderer) {
-  return source->kind->windowing && conic_renderer_has_parts(renderer);
+  int is_carried = source->is_moved && !source->kind->move;
+  return source->kind->windowing && !is_carried && conic_renderer_has_parts(renderer);
 }
 
 conic_status conic_source_windows_begin(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
                                         const conic_render_options *render, const conic_source_view *view,
                                         unsigned planes, conic_source_windows *windows) {
   memset(windows, 0, sizeof *windows);
-  if (!conic_source_has_windows(source, renderer))
+  conic_source_picture picture;
+  if (!conic_source_has_windows(source, renderer) || (view && view->transparency))
     return conic_fail(source->context, CONIC_ERROR_UNSUPPORTED, "%s: it is not drawn in windows", source->name);
   windows->source = source;
   windows->renderer = renderer;
   windows->camera = *camera;
   windows->planes = planes;
-  conic_status status = conic_source_begin_picture(source, render, view, &windows->render);
+  conic_status status = conic_source_begin_picture(source, camera, render, view, &picture);
+  windows->render = picture.render;
   windows->samples = source->view.samples;
   return status == CONIC_OK ? source->kind->windowing->begin(windows) : status;
 }

@@ -5,7 +5,7 @@
 /* What a point takes beside what its neighbours do, as so many points of its part more. */
 static const double POINT_COST = 300.0;
 
-static int count_bits(uint64_t bits) {
+static int count_set_bits(uint64_t bits) {
   int n = 0;
   for (; bits; bits &= bits - 1)
     n++;
@@ -13,8 +13,8 @@ static int count_bits(uint64_t bits) {
 }
 
 /* How long the cell may take: its points have the more neighbours the more of them share a part. */
-static double cost_of(const conic_cell *cell) {
-  double a_part = (double)cell->count / (double)count_bits(cell->parts);
+static double cell_cost(const conic_cell *cell) {
+  double a_part = (double)cell->count / (double)count_set_bits(cell->parts);
   return (double)cell->count * (a_part + POINT_COST);
 }
 
@@ -28,12 +28,12 @@ static void divide_cells(const conic_cells *cells, conic_cells_share *share) {
   double total = 0.0, begin = 0.0;
   int index = share->team ? share->team->index : 0, count = share->team ? share->team->count : 1;
   for (size_t i = 0; i < cells->n; i++)
-    total += cost_of(&cells->cells[i]);
+    total += cell_cost(&cells->cells[i]);
   double from = total * ((double)index / (double)count), to = total * ((double)(index + 1) / (double)count);
   for (size_t i = 0; i < cells->n; i++) {
     const conic_cell *cell = &cells->cells[i];
     conic_cell_part *part = &share->parts[i];
-    double cost = cost_of(cell);
+    double cost = cell_cost(cell);
     part->first = index == 0 ? 0 : points_before(cell, begin, cost, from);
     part->end = index + 1 == count ? cell->count : points_before(cell, begin, cost, to);
     part->from = begin > from ? (begin - from) / (to - from) : 0.0;

@@ -93,8 +93,11 @@ static size_t first_slot(const void *data, size_t i_item) {
 static conic_status clean_leaves(points_cleaning *work, double begin, double end) {
   size_t n_leaves = work->end_leaf - work->first_leaf;
   conic_own_points *own = work->own;
-  conic_team_loop loop = {"project",       begin,       end,  (n_leaves + CHUNK - 1) / CHUNK,
-                          CHUNKS_A_REPORT, clean_chunk, work, .first_of = first_slot};
+  conic_team_loop loop = {.name = "project", .from = begin, .to = end, .n_a_run = CHUNKS_A_REPORT};
+  loop.n_items = (n_leaves + CHUNK - 1) / CHUNK;
+  loop.task = clean_chunk;
+  loop.data = work;
+  loop.first_of = first_slot;
   int n = 0;
   loop.columns[n++] = (conic_team_column){own->moved2, sizeof *own->moved2};
   loop.columns[n++] = (conic_team_column){own->n_neighbours, sizeof *own->n_neighbours};

@@ -61,7 +61,7 @@ typedef struct cleaning {
   conic_surface_report report;
 } cleaning;
 
-static int is_first(const cleaning *work) {
+static int has_all_results(const cleaning *work) {
   return !work->team || work->team->index == 0;
 }
 
@@ -164,7 +164,7 @@ static conic_status place_points(cleaning *work, const conic_splats *batch, size
     const conic_cell *cell = conic_cells_locate(&work->cells, place, at) ? conic_cells_find(&work->cells, at) : NULL;
     if (cell && work->share.parts[cell - work->cells.cells].is_kept)
       work->keys[n_keys++] = (uint64_t)(cell - work->cells.cells) << 32 | i;
-    else if (!cell && is_first(work)) {
+    else if (!cell && has_all_results(work)) {
       const conic_cell_result none = {.outcome = CONIC_SURFACE_NOT_FINITE};
       status = conic_cells_results_keep(&work->results, work->n_placed + i, 1, &none);
     }
@@ -262,7 +262,7 @@ static conic_status gather_cell(cleaning *work, const conic_cell *cell) {
 }
 
 /* A sum that does not depend on the order. */
-static void add_moved(cleaning *work, double moved2) {
+static void add_move(cleaning *work, double moved2) {
   double h = work->options->surface.h, units = moved2 / (h * h) * 0x1p24;
   units = units < 0x1p40 ? units : 0x1p40;
   uint64_t whole = (uint64_t)units;
@@ -284,7 +284,7 @@ static void fill_result(cleaning *work, const conic_own_points *own, uint32_t sl
   }
   work->sums.n_merged += own->are_merged[slot];
   work->sums.neighbours += own->n_neighbours[slot];
-  add_moved(work, own->moved2[slot]);
+  add_move(work, own->moved2[slot]);
 }
 
 /* Keeps the results of the process's own points of a cell. */
@@ -505,7 +505,7 @@ conic_status conic_surface_clean_cells(conic_context *context, const conic_clean
   conic_status status = bring_together(&work, clean_all(&work, source, source_cookie));
   if (status == CONIC_OK)
     sum_up(&work);
-  if (status == CONIC_OK && is_first(&work))
+  if (status == CONIC_OK && has_all_results(&work))
     status = deliver(&work, sink);
   if (status == CONIC_OK && report)
     *report = work.report;

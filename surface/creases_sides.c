@@ -103,33 +103,17 @@ static void choose_sides(void *data, size_t i_item, int i_thread) {
 
 conic_status conic_creases_find(conic_surface *surface) {
   conic_context *context = surface->context;
-  size_t n = surface->tree.n_slots, n_chunks = (n + CHUNK - 1) / CHUNK;
+  size_t n = surface->tree.n_slots;
   sides_search search = {surface, conic_memory_allocate(context, n, sizeof *search.planes)};
   surface->creases.side = conic_memory_allocate(context, n, sizeof *surface->creases.side);
   surface->creases.spacing = conic_memory_allocate(context, n, sizeof *surface->creases.spacing);
   conic_status status =
       search.planes && surface->creases.side && surface->creases.spacing ? CONIC_OK : CONIC_ERROR_MEMORY;
-  const conic_team_loop windows = {"creases",
-                                   0.0,
-                                   0.5,
-                                   n_chunks,
-                                   CHUNKS_A_REPORT,
-                                   fit_windows,
-                                   &search,
-                                   .n_an_item = CHUNK,
-                                   .n_values = n,
-                                   .columns = {{search.planes, sizeof *search.planes},
-                                               {surface->creases.spacing, sizeof *surface->creases.spacing}}};
-  const conic_team_loop sides = {"creases",
-                                 0.5,
-                                 1.0,
-                                 n_chunks,
-                                 CHUNKS_A_REPORT,
-                                 choose_sides,
-                                 &search,
-                                 .n_an_item = CHUNK,
-                                 .n_values = n,
-                                 .columns = {{surface->creases.side, sizeof *surface->creases.side}}};
+  conic_team_loop windows = conic_team_loop_of("creases", 0.0, 0.5, n, CHUNK, CHUNKS_A_REPORT, fit_windows, &search);
+  conic_team_loop sides = conic_team_loop_of("creases", 0.5, 1.0, n, CHUNK, CHUNKS_A_REPORT, choose_sides, &search);
+  windows.columns[0] = (conic_team_column){search.planes, sizeof *search.planes};
+  windows.columns[1] = (conic_team_column){surface->creases.spacing, sizeof *surface->creases.spacing};
+  sides.columns[0] = (conic_team_column){surface->creases.side, sizeof *surface->creases.side};
   if (status == CONIC_OK)
     status = conic_team_runs(context, &windows);
   if (status == CONIC_OK)

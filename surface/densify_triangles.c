@@ -120,17 +120,9 @@ static conic_status triangulate(triangle_search *search) {
   search->fans = conic_memory_allocate(context, surface->tree.n_slots, sizeof *search->fans);
   if (!search->fans)
     return CONIC_ERROR_MEMORY;
-  size_t n = surface->tree.n_slots;
-  const conic_team_loop loop = {"densify",
-                                0.0,
-                                0.0,
-                                (n + FANS - 1) / FANS,
-                                CHUNKS_A_REPORT,
-                                find_fans,
-                                search,
-                                .n_an_item = FANS,
-                                .n_values = n,
-                                .columns = {{search->fans, sizeof *search->fans}}};
+  conic_team_loop loop =
+      conic_team_loop_of("densify", 0.0, 0.0, surface->tree.n_slots, FANS, CHUNKS_A_REPORT, find_fans, search);
+  loop.columns[0] = (conic_team_column){search->fans, sizeof *search->fans};
   conic_status status = conic_team_runs(context, &loop);
   if (status == CONIC_OK)
     status = list_fans(search);
@@ -181,15 +173,10 @@ conic_status conic_densify_triangles_find(const conic_surface *surface, const co
   triangles->normals = conic_memory_allocate(context, surface->tree.n_slots, sizeof *triangles->normals);
   if (!triangles->normals)
     return CONIC_ERROR_MEMORY;
-  const conic_team_loop loop = {"densify",
-                                0.0,
-                                0.0,
-                                (surface->tree.n_leaves + CHUNK - 1) / CHUNK,
-                                CHUNKS_A_REPORT,
-                                find_normals,
-                                &search,
-                                .first_of = first_slot_of_leaves,
-                                .columns = {{triangles->normals, sizeof *triangles->normals}}};
+  conic_team_loop loop = {.name = "densify", .n_a_run = CHUNKS_A_REPORT, .task = find_normals, .data = &search};
+  loop.n_items = (surface->tree.n_leaves + CHUNK - 1) / CHUNK;
+  loop.first_of = first_slot_of_leaves;
+  loop.columns[0] = (conic_team_column){triangles->normals, sizeof *triangles->normals};
   conic_status status = conic_team_runs(context, &loop);
   if (status == CONIC_OK)
     status = options->n_triangles ? take_triangles(&search) : triangulate(&search);

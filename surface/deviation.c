@@ -40,17 +40,9 @@ static void measure_chunk(void *data, size_t i_item, int i_thread) {
 
 static conic_status measure_slots(measuring *work) {
   conic_context *context = work->from->context;
-  size_t n = work->from->tree.n_slots;
-  const conic_team_loop loop = {"measure",
-                                0.0,
-                                1.0,
-                                (n + CHUNK - 1) / CHUNK,
-                                CHUNKS_A_REPORT,
-                                measure_chunk,
-                                work,
-                                .n_an_item = CHUNK,
-                                .n_values = n,
-                                .columns = {{work->distances2, sizeof *work->distances2}}};
+  conic_team_loop loop =
+      conic_team_loop_of("measure", 0.0, 1.0, work->from->tree.n_slots, CHUNK, CHUNKS_A_REPORT, measure_chunk, work);
+  loop.columns[0] = (conic_team_column){work->distances2, sizeof *work->distances2};
   conic_status status = conic_workspaces_create(context, &work->workspaces);
   for (int i = 0; status == CONIC_OK && i < conic_context_threads(context); i++)
     work->workspaces[i].is_trusting = 1;

@@ -162,15 +162,7 @@ conic_status conic_land_darts(const conic_surface *surface, const conic_densify_
   if (darts->n > landed->room &&
       conic_memory_reserve(context, &landed->list, 0, darts->n, &landed->room, sizeof *landed->list) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
-  const conic_team_loop loop = {"densify",
-                                from,
-                                to,
-                                (darts->n + CHUNK - 1) / CHUNK,
-                                CHUNKS_A_REPORT,
-                                land_chunk,
-                                &work,
-                                .n_an_item = CHUNK,
-                                .n_values = darts->n,
-                                .columns = {{landed->list, sizeof *landed->list}}};
+  conic_team_loop loop = conic_team_loop_of("densify", from, to, darts->n, CHUNK, CHUNKS_A_REPORT, land_chunk, &work);
+  loop.columns[0] = (conic_team_column){landed->list, sizeof *landed->list};
   return conic_team_runs(context, &loop);
 }

@@ -166,16 +166,8 @@ static void find_node_reach(conic_surface *surface) {
 
 static conic_status find_scales(conic_surface *surface) {
   size_t n = surface->tree.n_slots;
-  const conic_team_loop loop = {"scales",
-                                0.0,
-                                1.0,
-                                (n + CHUNK - 1) / CHUNK,
-                                CHUNKS_A_REPORT,
-                                find_local_h,
-                                surface,
-                                .n_an_item = CHUNK,
-                                .n_values = n,
-                                .columns = {{surface->h, sizeof *surface->h}}};
+  conic_team_loop loop = conic_team_loop_of("scales", 0.0, 1.0, n, CHUNK, CHUNKS_A_REPORT, find_local_h, surface);
+  loop.columns[0] = (conic_team_column){surface->h, sizeof *surface->h};
   conic_status status = CONIC_OK;
   if (surface->options.h > 0.0)
     for (size_t slot = 0; slot < n; slot++)

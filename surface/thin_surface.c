@@ -113,16 +113,8 @@ static int allocate_thinning(thinning *work) {
 static conic_status remove_slots(thinning *work, size_t n_wanted, double max_error, size_t *n_left) {
   conic_context *context = work->surface->context;
   size_t n = work->surface->tree.n_slots;
-  const conic_team_loop loop = {"measure",
-                                0.0,
-                                1.0,
-                                (n + BATCH - 1) / BATCH,
-                                BATCHES_A_REPORT,
-                                measure_chunk,
-                                work,
-                                .n_an_item = BATCH,
-                                .n_values = n,
-                                .columns = {{work->heap.keys, sizeof *work->heap.keys}}};
+  conic_team_loop loop = conic_team_loop_of("measure", 0.0, 1.0, n, BATCH, BATCHES_A_REPORT, measure_chunk, work);
+  loop.columns[0] = (conic_team_column){work->heap.keys, sizeof *work->heap.keys};
   conic_status status = conic_team_runs(context, &loop);
   if (status == CONIC_OK)
     status = conic_workspaces_count(context, work->workspaces, &work->n_evaluations);

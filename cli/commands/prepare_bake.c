@@ -30,16 +30,16 @@ static conic_status occlude(conic_context *context, int n_directions, float cuto
                             float *ao) {
   const conic_drawing drawing = {.splats = splats};
   bake_drawer drawer = {.context = context, .drawing = &drawing};
-  conic_casters casters = {.draw = draw_bake_map, .cookie = &drawer};
+  conic_casters casters = {.draw = draw_bake_map, .cookie = &drawer, .epsilon_is_drawn = 1};
   conic_lighting_options options;
   double length;
   conic_lighting_options_init(&options);
   options.n_directions = (uint64_t)n_directions;
   conic_render_options_init(&drawer.options);
   drawer.options.kernel.cutoff = cutoff;
-  drawer.options.passes = 1;
+  drawer.options.passes = CONIC_PASS_OF_HIDING;
   conic_status status = conic_splats_length(context, splats, &length);
-  drawer.options.splat_length = length;
+  drawer.options.splat_length = CONIC_MAP_LENGTHS * length;
   casters.epsilon = (double)cutoff * length;
   conic_splats_bounds(splats, casters.minimum, casters.maximum);
   for (int axis = 0; axis < 3; axis++) { /* splats reach beyond their centres */

@@ -83,7 +83,7 @@ static conic_status join_own_part(const together *t, const conic_team *team, dou
   return status;
 }
 
-static conic_status take_part(const together *t, const conic_team *team, int from) {
+static conic_status take_joined_part(const together *t, const conic_team *team, int from) {
   size_t n_header, n_bytes;
   conic_scattered *header = team->receive(team->data, from, &n_header);
   void *part = team->receive(team->data, from, &n_bytes);
@@ -105,7 +105,7 @@ static conic_status take_all_parts(const together *t, const conic_team *team) {
     return CONIC_OK;
   }
   for (int from = 1; from < team->count; from++) {
-    conic_status taken = take_part(t, team, from);
+    conic_status taken = take_joined_part(t, team, from);
     status = status == CONIC_OK ? taken : status;
   }
   return status;

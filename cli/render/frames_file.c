@@ -15,7 +15,7 @@ static const char first_line[] = "conic frames 1\nkey ";
 /* --- lines --- */
 
 /* From *text, past its end; 0 where there is none or it is past all bounds. */
-static int take_number(const char **text, const char *end, uint64_t *number) {
+static int take_digits(const char **text, const char *end, uint64_t *number) {
   const char *c = *text;
   for (*number = 0; c < end && *c >= '0' && *c <= '9' && *number < UINT64_C(1) << 60; c++)
     *number = 10 * *number + (uint64_t)(*c - '0');
@@ -38,7 +38,7 @@ static int parse_file(const char *line, const char *end, cli_finished_file *file
   for (int i = 0; i < N_DIGITS; i++, c++)
     if (!strchr("0123456789abcdef", *c) || !*c)
       return 0;
-  if (*c++ != ' ' || !take_number(&c, end, &file->n_bytes) || c + 1 >= end || *c++ != ' ')
+  if (*c++ != ' ' || !take_digits(&c, end, &file->n_bytes) || c + 1 >= end || *c++ != ' ')
     return 0;
   file->name = c;
   file->n_name = (size_t)(end - c);
@@ -49,7 +49,7 @@ static int parse_file(const char *line, const char *end, cli_finished_file *file
 static int parse_frame(const char *line, const char *end, int n_frames, int *i_frame) {
   const char *c = line + 6;
   uint64_t number;
-  if (!begins_with(line, end, "frame ") || !take_number(&c, end, &number) || c != end || number >= (uint64_t)n_frames)
+  if (!begins_with(line, end, "frame ") || !take_digits(&c, end, &number) || c != end || number >= (uint64_t)n_frames)
     return 0;
   *i_frame = (int)number;
   return 1;

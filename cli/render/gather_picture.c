@@ -31,11 +31,18 @@ int cli_is_gathered(const cli_render_job *job, const conic_camera *camera) {
   return (camera->kind || camera->lens) && !draws_itself(job, camera);
 }
 
+/* Samples, and sides that no one camera sees together, are lit view by view. */
+static int lights_views(const cli_render_job *job, const cli_looking *looking) {
+  return cli_light_is_wanted(job) && (looking->sample || looking->camera->kind == CONIC_CAMERA_CUBE);
+}
+
 static conic_status light_view(const view_drawing *work, const conic_camera *camera, conic_image *image) {
   conic_lighting *lighting = &work->job->options.lighting;
   const conic_lighting own = *lighting;
   *lighting = work->lighting;
-  conic_status status = cli_light_sample(work->session, work->job, work->looking->sample->index, camera, image);
+  const conic_sample *sample = work->looking->sample;
+  conic_status status = sample ? cli_light_sample(work->session, work->job, sample->index, camera, image)
+                               : cli_light_picture(work->session, work->job, camera, image);
   *lighting = own;
   return status;
 }
@@ -61,7 +68,7 @@ static conic_status draw_gathered_view(void *cookie, const conic_gather_view *ga
   conic_status status = draw_plain(work->session, job, &looking, image, &one);
   if (status == CONIC_OK)
     conic_statistics_add(&one, work->sum);
-  if (status == CONIC_OK && work->looking->sample && cli_light_is_wanted(job))
+  if (status == CONIC_OK && lights_views(job, work->looking))
     status = light_view(work, &gathered->camera, image);
   return status;
 }
@@ -70,14 +77,16 @@ static conic_status draw_gathered_view(void *cookie, const conic_gather_view *ga
 static void find_reached_box(const cli_render_job *job, conic_gather_options *gather) {
   const conic_source_scale *scale = conic_source_measure(job->source);
   double reach = scale->n_splats ? 4.0 * (double)job->options.kernel.cutoff * scale->splat_length : 0.0;
+  conic_source_box(job->source, gather->minimum, gather->maximum);
   for (int axis = 0; axis < 3; axis++) {
-    gather->minimum[axis] = scale->minimum[axis] - reach;
-    gather->maximum[axis] = scale->maximum[axis] + reach;
+    gather->minimum[axis] -= reach;
+    gather->maximum[axis] += reach;
   }
 }
 
 /* Of a sample, its own place in the views' pixels and on the lens. */
 static void place_in_views(const cli_render_job *job, const conic_sample *sample, conic_gather_options *gather) {
+  gather->edge = 512; /* as where the views lie changes, so does by what their rays are off: the mean is not */
   for (int axis = 0; axis < 2; axis++)
     gather->shift[axis] = conic_sequence_at(sample->index, CONIC_SEQUENCE_VIEW + axis);
   if (!(job->accumulating.aperture > 0.0))
@@ -117,7 +126,7 @@ static conic_status gather_picture(cli_session *session, cli_render_job *job, co
   }
   if (looking->sample)
     place_in_views(job, looking->sample, &gather);
-  if (looking->sample && cli_light_is_wanted(job))
+  if (lights_views(job, looking))
     gather.view_planes = 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO;
   return conic_gather(session->context, &gather, image);
 }

@@ -33,7 +33,7 @@ struct cli_kept_frames {
 
 /* --- the options --- */
 
-static int is_stream(const cli_render_job *job) {
+static int reads_stream(const cli_render_job *job) {
   for (int i = 0; i < job->n_inputs; i++)
     if (strcmp(job->inputs[i], "-") == 0)
       return 1;
@@ -51,7 +51,7 @@ int cli_kept_frames_check(const cli_render_job *job) {
     return cli_usage("render: --resumable keeps what is finished beside the picture; give a file with -o");
   if (is_several && own->resume_path && strcmp(own->resume_path, job->outputs[0]) != 0)
     return cli_usage("render: --resume goes on with frames where they are; give -o %s, too", own->resume_path);
-  if (is_several && is_stream(job))
+  if (is_several && reads_stream(job))
     return cli_usage("render: frames of standard input cannot be gone on with; give files");
   return CLI_DONE;
 }
@@ -156,8 +156,8 @@ conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job) {
     status = CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     job->kept->context = session->context;
-    conic_outputs_watch(session->context, note_name, job->kept);
     status = cli_team_is_first(session) ? open_list(session, job) : CONIC_OK;
+    conic_outputs_watch(session->context, note_name, job->kept);
   }
   own->is_resumable = 1; /* also of who goes on */
   status = cli_sharing_end(session, job, status);
@@ -181,7 +181,7 @@ void cli_kept_frames_release(cli_session *session, cli_render_job *job) {
 
 /* --- frames --- */
 
-static int is_whole(const cli_finished_file *file) {
+static int is_as_noted(const cli_finished_file *file) {
   char path[4096], hash[CONIC_SHA256_ROOM];
   conic_disk_entry entry;
   uint64_t n_bytes;
@@ -194,13 +194,13 @@ static int is_whole(const cli_finished_file *file) {
          memcmp(hash, file->hash, CONIC_SHA256_ROOM - 1) == 0;
 }
 
-static int is_there(const cli_kept_frames *kept, int i_frame) {
+static int is_frame_there(const cli_kept_frames *kept, int i_frame) {
   size_t at = kept->found.begins[i_frame];
   cli_finished_file file;
   if (at == SIZE_MAX)
     return 0;
   while (cli_frames_file_next(&kept->found, &at, &file))
-    if (!is_whole(&file))
+    if (!is_as_noted(&file))
       return 0;
   return 1;
 }
@@ -236,7 +236,7 @@ conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int
     return CONIC_OK;
   conic_status status = conic_progress(session->context, "draw", 0.0);
   if (cli_sharing_has_picture(session, job))
-    *is_finished = status == CONIC_OK && is_there(kept, i_frame);
+    *is_finished = status == CONIC_OK && is_frame_there(kept, i_frame);
   if (job->sharing > CLI_SHARES_FRAMES)
     session->team->broadcast(is_finished, sizeof *is_finished);
   if (*is_finished && cli_sharing_has_picture(session, job))
@@ -244,7 +244,6 @@ conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int
   if (!*is_finished && !job->accumulating.resume_path &&
       cli_sharing_has_picture(session, job)) /* sums of another time */
     cli_accumulate_forget(job, i_frame);
-  kept->names.n = 0;
   return status;
 }
 
@@ -257,6 +256,7 @@ conic_status cli_kept_frames_add(cli_session *session, cli_render_job *job, int 
   kept->lines.n = 0;
   for (size_t at = 0; at < kept->names.n && status == CONIC_OK; at += strlen(kept->names.bytes + at) + 1)
     status = add_file_line(kept, kept->names.bytes + at);
+  kept->names.n = 0;
   int n = snprintf(last, sizeof last, "frame %d\n", i_frame);
   if (status == CONIC_OK)
     status = add_bytes(kept->context, &kept->lines, last, (size_t)n);

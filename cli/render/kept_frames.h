@@ -19,10 +19,9 @@ conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job);
 /* What a team's `share` is given for the frames, so that the first process notes those of all. */
 void cli_kept_frames_take(void *cookie, int from, void *bytes, size_t n_bytes);
 
-/* Whether a frame, from 0, is finished; collective where all processes draw it. If it is not, what is written from now
- * on are its files. Errors: CANCELLED. */
+/* Whether a frame, from 0, is finished; collective where all processes draw it. Errors: CANCELLED. */
 conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int i_frame, int *is_finished);
-/* Notes that it is. Errors: IO, MEMORY. */
+/* Notes that it is, with the files that were written since the last one was. Errors: IO, MEMORY. */
 conic_status cli_kept_frames_add(cli_session *session, cli_render_job *job, int i_frame);
 
 /* Collective, after all frames: what came of the notes. Says how many frames were there. */

@@ -77,8 +77,11 @@ static conic_status draw_light_map(void *cookie, const conic_camera *camera, dou
 }
 
 static map_drawer drawer_of(cli_session *session, cli_render_job *job) {
+  const conic_source_scale *scale = conic_source_measure(job->source);
   map_drawer drawer = {session, job, job->options, NULL};
-  drawer.options.passes = 1;
+  drawer.options.passes = CONIC_PASS_OF_HIDING;
+  drawer.options.epsilon = scale->epsilon;
+  drawer.options.splat_length = CONIC_MAP_LENGTHS * scale->splat_length;
   drawer.options.cull_back = 0;
   drawer.options.shading = CONIC_SHADE_NONE;
   return drawer;
@@ -88,7 +91,8 @@ static map_drawer drawer_of(cli_session *session, cli_render_job *job) {
 static conic_casters casters_of(const cli_render_job *job, map_drawer *drawer) {
   const conic_source_scale *scale = conic_source_measure(job->source);
   double reach = scale->n_splats ? (double)job->options.kernel.cutoff * scale->splat_length : 0.0;
-  conic_casters casters = {.draw = draw_light_map, .cookie = drawer, .epsilon = reach};
+  conic_casters casters = {
+      .draw = draw_light_map, .cookie = drawer, .epsilon = reach, .epsilon_is_drawn = !job->is_transparent};
   conic_source_box(job->source, casters.minimum, casters.maximum);
   for (int axis = 0; axis < 3; axis++) {
     casters.minimum[axis] -= 4.0 * reach;
@@ -167,7 +171,8 @@ static conic_status light_image(cli_session *session, cli_render_job *job, const
 
 conic_status cli_light_picture(cli_session *session, cli_render_job *job, const conic_camera *camera,
                                conic_image *image) {
-  return cli_light_is_wanted(job) ? light_image(session, job, NULL, camera, image) : CONIC_OK;
+  int is_lit = camera->kind == CONIC_CAMERA_CUBE; /* side by side, as it was drawn */
+  return cli_light_is_wanted(job) && !is_lit ? light_image(session, job, NULL, camera, image) : CONIC_OK;
 }
 
 conic_status cli_light_sample(cli_session *session, cli_render_job *job, uint64_t i_sample, const conic_camera *camera,

@@ -54,14 +54,18 @@ static int check_streaming(const cli_render_job *job, const int is_given[2]) {
 }
 
 static int check_transparency(cli_render_job *job) {
-  if (job->abilities & (CONIC_SOURCE_STREAMS | CONIC_SOURCE_CLUSTERS | CONIC_SOURCE_COMPOSITES))
-    return cli_usage("render: --transparency is of splats and meshes that are drawn as they are: not of an .lpc, a "
-                     "hybrid or a Gaussian scene");
+  if (job->abilities & CONIC_SOURCE_COMPOSITES)
+    return cli_usage("render: a Gaussian scene lets light through as it is; --transparency is of its splats, by "
+                     "--profile surface");
+  if (job->abilities & CONIC_SOURCE_CLUSTERS)
+    return cli_usage("render: a hybrid keeps no opacities; --transparency is of what it was made of, as splats or as a "
+                     "mesh");
   if (job->deep_path || job->has_mattes || job->top.is_wanted)
     return cli_usage("render: not --transparency with --deep, --cryptomatte or --camera top");
   if (job->options.passes != 3)
     return cli_usage("render: --transparency is of surfaces that blend: not with --passes 1");
   job->view.transparency = CONIC_TRANSPARENCY_LAYERS;
+  job->opening.keeps_alpha = 1;
   return CLI_DONE;
 }
 
@@ -154,8 +158,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"compression", CLI_CHOICE, &compression, "NAME",
        "of an .exr: zip, none, rle, zips, piz; pxr24 loses bits of floats [zip]", .choices = compression_words},
       {"tone", CLI_CHOICE, &job->tone, "NAME",
-       "how files of 8 and 16 bits show what is brighter than white: srgb (as white), filmic (Hable's curve) or aces "
-       "(Hill's fit); .exr, .pfm and .hdr stay linear [srgb]",
+       "how files of 8 and 16 bits show what is brighter than white: srgb (as white), filmic (Hable's curve), aces "
+       "(Hill's fit) or agx (Sobotka's); .exr, .pfm and .hdr stay linear [srgb]",
        .choices = tone_words},
       {"deep", CLI_TEXT, &job->deep_path, "OUT.exr",
        "every splat and triangle of every pixel, as a deep image: colour, depth, id, weight"},

@@ -151,11 +151,13 @@ static conic_status find_camera(cli_render_job *job, int i_frame, conic_camera *
   else if (!job->is_plain && !job->is_elevation_given)
     framing.elevation_deg = elevation_for(conic_source_measure(job->source), framing.up);
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
+  conic_framing pinhole = framing;
+  cli_project_frame(job, &pinhole);
   double near_z = HUGE_VAL;
   conic_status status =
       job->is_plain || job->deadline > 0.0 /* to find the outline takes time */
-          ? conic_source_frame(job->source, &framing, camera)
-          : conic_source_fit(job->source, &framing, job->options.kernel.cutoff, job->n_frames, camera, &near_z);
+          ? conic_source_frame(job->source, &pinhole, camera)
+          : conic_source_fit(job->source, &pinhole, job->options.kernel.cutoff, job->n_frames, camera, &near_z);
   if (status == CONIC_OK)
     cli_project(job, &framing, camera);
   /* Strays, which are not framed, are no reason to cut off what is. */

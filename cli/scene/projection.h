@@ -10,7 +10,11 @@ extern const char *const cli_projection_words[];
 /* X,Y,Z into a double[3]. */
 int cli_parse_eye(const char *text, void *eye);
 
-/* Turns a pinhole that frames the scene into what was asked for. */
+/* Changes the framing to that of the pinhole that cli_project wants. */
+void cli_project_frame(const cli_render_job *job, conic_framing *framing);
+
+/* Turns a pinhole that frames the scene so into what was asked for, by the framing as it was: an orthographic camera
+ * stands where a pinhole of its angle would. */
 void cli_project(const cli_render_job *job, const conic_framing *framing, conic_camera *camera);
 
 #endif

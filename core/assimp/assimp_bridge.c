@@ -112,6 +112,16 @@ static void send_colors(conic_assimp_writer *w, const struct aiMesh *mesh) {
   }
 }
 
+static void send_alphas(conic_assimp_writer *w, const struct aiMesh *mesh) {
+  float block[BLOCK];
+  for (unsigned done = 0, m; done < mesh->mNumVertices; done += m) {
+    m = mesh->mNumVertices - done < BLOCK ? mesh->mNumVertices - done : BLOCK;
+    for (unsigned i = 0; i < m; i++)
+      block[i] = (float)mesh->mColors[0][done + i].a;
+    conic_assimp_send_bytes(w, block, m * sizeof block[0]);
+  }
+}
+
 static void send_triangles(conic_assimp_writer *w, const struct aiMesh *mesh, int is_mirrored) {
   const unsigned second = is_mirrored ? 2 : 1, third = is_mirrored ? 1 : 2;
   uint32_t block[BLOCK][3];
@@ -151,8 +161,10 @@ static void send_mesh(conic_assimp_writer *w, const struct aiMesh *mesh, const p
                                 .i_material = w->request->keeps_faces ? conic_assimp_material(w, mesh) : UINT32_MAX};
   int has_normals =
       mesh->mNormals && strcmp(w->request->ending, "stl") != 0; /* there the faces' own, and seldom right */
+  int has_alphas = w->request->keeps_alpha && mesh->mColors[0] &&
+                   (strcmp(w->request->ending, "gltf") == 0 || strcmp(w->request->ending, "glb") == 0);
   record.fields = (has_normals ? CONIC_ASSIMP_NORMALS : 0u) | (coordinates ? CONIC_ASSIMP_COORDINATES : 0u) |
-                  (mesh->mColors[0] ? CONIC_ASSIMP_COLORS : 0u);
+                  (mesh->mColors[0] ? CONIC_ASSIMP_COLORS : 0u) | (has_alphas ? CONIC_ASSIMP_ALPHAS : 0u);
   conic_assimp_send_bytes(w, &record, sizeof record);
   send_positions(w, mesh, place);
   if (has_normals)
@@ -161,6 +173,8 @@ static void send_mesh(conic_assimp_writer *w, const struct aiMesh *mesh, const p
     send_coordinates(w, mesh, coordinates);
   if (mesh->mColors[0])
     send_colors(w, mesh);
+  if (has_alphas)
+    send_alphas(w, mesh);
   send_triangles(w, mesh, place->is_mirrored);
 }
 

@@ -26,13 +26,13 @@ typedef enum conic_assimp_picture {
   CONIC_ASSIMP_TEXELS = 3, /* width × height × (r, g, b, a), from the top left */
 } conic_assimp_picture;
 
-enum { CONIC_ASSIMP_NORMALS = 1, CONIC_ASSIMP_COORDINATES = 2, CONIC_ASSIMP_COLORS = 4 };
+enum { CONIC_ASSIMP_NORMALS = 1, CONIC_ASSIMP_COORDINATES = 2, CONIC_ASSIMP_COLORS = 4, CONIC_ASSIMP_ALPHAS = 8 };
 
 /* As conic_alpha_mode has them. */
 enum { CONIC_ASSIMP_BLEND = 0, CONIC_ASSIMP_MASK = 1, CONIC_ASSIMP_OPAQUE = 2 };
 
 /* What a record is not about is zero. After a part come double position[n_vertices][3] in the world; if there are such,
- * float normal[][3], coordinate[][2] and color[][3]; and uint32_t triangles[n_triangles][3]. */
+ * float normal[][3], coordinate[][2], color[][3] and alpha[]; and uint32_t triangles[n_triangles][3]. */
 typedef struct conic_assimp_record {
   uint32_t type;
   uint32_t fields;     /* of a part: which of the arrays there are */
@@ -52,6 +52,7 @@ typedef struct conic_assimp_request {
   size_t folder_length; /* what it names besides is looked for in here, "…/" or "", and below */
   const char *folder;
   int keeps_faces; /* materials and texture coordinates are wanted */
+  int keeps_alpha; /* so is that of vertices, of glTF */
   int descriptor;  /* where the records go */
 } conic_assimp_request;
 

@@ -11,7 +11,7 @@
 typedef struct assimp_part {
   size_t n_vertices, n_triangles;
   double (*position)[3];
-  float (*normal)[3], (*coordinate)[2], (*color)[3];
+  float (*normal)[3], (*coordinate)[2], (*color)[3], *alpha;
   uint32_t (*triangles)[3];
   uint32_t *point;
 } assimp_part;
@@ -48,6 +48,7 @@ static void release_part(conic_context *context, assimp_part *taken) {
   conic_memory_release(context, taken->normal);
   conic_memory_release(context, taken->coordinate);
   conic_memory_release(context, taken->color);
+  conic_memory_release(context, taken->alpha);
   conic_memory_release(context, taken->triangles);
   conic_memory_release(context, taken->point);
 }
@@ -74,6 +75,8 @@ static conic_status take_part_arrays(conic_assimp_process *process, const conic_
   if (status == CONIC_OK)
     status = take_array(process, (record->fields & CONIC_ASSIMP_COLORS) != 0, n, sizeof *taken->color, &taken->color);
   if (status == CONIC_OK)
+    status = take_array(process, (record->fields & CONIC_ASSIMP_ALPHAS) != 0, n, sizeof *taken->alpha, &taken->alpha);
+  if (status == CONIC_OK)
     status = take_array(process, 1, n_triangles, sizeof *taken->triangles, &taken->triangles);
   for (size_t i = 0; status == CONIC_OK && i < n_triangles; i++)
     for (int corner = 0; corner < 3; corner++)
@@ -94,8 +97,12 @@ static uint32_t color_bits(const conic_splats *points, int channel, size_t i) {
   return bits_of(points->color[channel] ? points->color[channel][i] : 1.0f);
 }
 
+static uint32_t alpha_bits(const conic_splats *points, size_t i) {
+  return bits_of(points->opacity ? points->opacity[i] : 1.0f);
+}
+
 static size_t hash_point(const conic_splats *points, size_t i) {
-  uint64_t hash = 0;
+  uint64_t hash = alpha_bits(points, i);
   for (int axis = 0; axis < 3; axis++) {
     hash = (hash ^ bits_of(points->position[axis][i])) * UINT64_C(0x9E3779B97F4A7C15);
     hash = (hash ^ hash >> 29 ^ color_bits(points, axis, i)) * UINT64_C(0xBF58476D1CE4E5B9);
@@ -108,7 +115,7 @@ static int is_same_point(const conic_splats *points, size_t i, size_t j) {
     if (bits_of(points->position[axis][i]) != bits_of(points->position[axis][j]) ||
         color_bits(points, axis, i) != color_bits(points, axis, j))
       return 0;
-  return 1;
+  return alpha_bits(points, i) == alpha_bits(points, j);
 }
 
 /* The slot of the point like this one, or the free one for it. */
@@ -147,6 +154,8 @@ static uint32_t add_vertex(conic_assimp_part_builder *parts, const assimp_part *
   conic_builder_store_position(&parts->builder, taken->position[i]);
   for (int channel = 0; channel < 3 && points->color[0]; channel++)
     points->color[channel][next] = taken->color ? conic_assimp_decode(parts, taken->color[i][channel]) : 1.0f;
+  if (points->opacity)
+    points->opacity[next] = taken->alpha ? taken->alpha[i] : 1.0f;
   if (taken->n_triangles) {
     uint32_t *slot = find_slot(parts, next);
     if (*slot)
@@ -164,6 +173,8 @@ static conic_status add_vertices(conic_assimp_part_builder *parts, assimp_part *
   conic_status status = conic_builder_reserve_points(&parts->builder, count);
   if (status == CONIC_OK && taken->color)
     status = conic_builder_add_field(&parts->builder, CONIC_SPLATS_COLORS);
+  if (status == CONIC_OK && taken->alpha)
+    status = conic_builder_add_field(&parts->builder, CONIC_SPLATS_OPACITIES);
   if (status == CONIC_OK && taken->n_triangles)
     status = reserve_slots(parts, count);
   if (status != CONIC_OK)

@@ -1,5 +1,5 @@
-/* The parts of a model that Assimp has read, put together. Vertices at one place and of one colour become one, as other
- * files have them, whatever else their corners differ in. */
+/* The parts of a model that Assimp has read, put together. Vertices at one place and of one colour and alpha become
+ * one, as other files have them, whatever else their corners differ in. */
 #ifndef CONIC_ASSIMP_PART_H
 #define CONIC_ASSIMP_PART_H
 
@@ -13,7 +13,7 @@ typedef struct conic_assimp_part_builder {
   conic_builder builder;
   conic_faces *faces; /* the model's, where those are kept */
   int is_linear;      /* the file's colours, which are else encoded as sRGB */
-  uint32_t *slots;    /* by place and colour: a point + 1; 0: none */
+  uint32_t *slots;    /* by place, colour and alpha: a point + 1; 0: none */
   size_t n_slots;     /* a power of two */
   double (*normals)[3];
   size_t normal_room; /* sums of the corners' normals, of each point */

@@ -162,7 +162,8 @@ static conic_status start_process(const conic_input *input, const conic_assimp_b
                                   .n_bytes = file->n_bytes,
                                   .folder = input->name,
                                   .folder_length = (size_t)(name - input->name),
-                                  .keeps_faces = options->keeps_faces};
+                                  .keeps_faces = options->keeps_faces,
+                                  .keeps_alpha = options->keeps_alpha};
   warn_if_cut(input, kind, file);
   return conic_assimp_process_start(input->context, input->name, bridge, request, process);
 }

@@ -83,7 +83,7 @@ static void copy_column(const conic_team_column *column, size_t begin, size_t n,
 }
 
 /* Copies a block's values out of the columns, or back into them, unless there are no bytes; returns their size. */
-static size_t copy_values(const team_blocks *blocks, size_t i_block, char *bytes, int is_back) {
+static size_t copy_block_values(const team_blocks *blocks, size_t i_block, char *bytes, int is_back) {
   const conic_team_loop *loop = blocks->loop;
   size_t n_bytes = 0;
   for (int i = 0; i < CONIC_TEAM_COLUMNS; i++) {
@@ -103,7 +103,7 @@ static size_t copy_values(const team_blocks *blocks, size_t i_block, char *bytes
 static size_t copy_blocks(const team_blocks *blocks, size_t first, size_t end, int index, char *bytes, int is_back) {
   size_t n_bytes = 0;
   for (size_t i = first + (size_t)index; i < end; i += (size_t)blocks->team->count)
-    n_bytes += copy_values(blocks, i, bytes ? bytes + n_bytes : NULL, is_back);
+    n_bytes += copy_block_values(blocks, i, bytes ? bytes + n_bytes : NULL, is_back);
   return n_bytes;
 }
 
@@ -112,7 +112,7 @@ static size_t end_of_round(const team_blocks *blocks, size_t first) {
   size_t n_bytes = 0, end = first, count = (size_t)blocks->team->count;
   while (end < blocks->n_blocks && n_bytes < EXCHANGED_BYTES) {
     for (size_t i = end; i < lesser_count(end + count, blocks->n_blocks); i++)
-      n_bytes += copy_values(blocks, i, NULL, 0);
+      n_bytes += copy_block_values(blocks, i, NULL, 0);
     end += count;
   }
   return lesser_count(end, blocks->n_blocks);

@@ -31,9 +31,7 @@ conic_status conic_slots_for(conic_context *context, size_t n_slots, conic_slots
 conic_status conic_slots_share(conic_context *context, size_t n_slots, conic_slots_task *task, void *data, double from,
                                double to, const conic_team_column *columns, size_t n) {
   slots_work work = {task, data, n_slots};
-  conic_team_loop loop = {"estimate",         from,     to,    (n_slots + CHUNK - 1) / CHUNK,
-                          CHUNKS_A_REPORT,    do_chunk, &work, .n_an_item = CHUNK,
-                          .n_values = n_slots};
+  conic_team_loop loop = conic_team_loop_of("estimate", from, to, n_slots, CHUNK, CHUNKS_A_REPORT, do_chunk, &work);
   memcpy(loop.columns, columns, n * sizeof *columns);
   return conic_team_runs(context, &loop);
 }

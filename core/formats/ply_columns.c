@@ -101,6 +101,16 @@ static void choose_opacity(conic_ply_layout *layout) {
     drop_columns(layout, CONIC_PLY_OPACITY, 1);
 }
 
+/* In place of an opacity that is none. */
+static void find_alpha(const conic_ply_header *header, const conic_ply_element *vertices, conic_ply_layout *layout) {
+  int i_property;
+  if (layout->form == CONIC_PLY_GAUSSIANS || has_columns(layout, CONIC_PLY_OPACITY, 1) ||
+      !find_value(header, vertices, "alpha", &i_property))
+    return;
+  set_column(header, vertices, CONIC_PLY_OPACITY, i_property, layout);
+  layout->is_alpha = 1;
+}
+
 static void choose_form(conic_ply_layout *layout) {
   int has_normals = has_columns(layout, CONIC_PLY_NORMAL, 3);
   layout->form = has_normals ? CONIC_PLY_NORMALS : CONIC_PLY_POINTS;
@@ -135,8 +145,8 @@ static int needs_origin(conic_ply_type type) {
 }
 
 conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *header,
-                                   const conic_ply_element *vertices, float cutoff, int keeps_coordinates,
-                                   conic_ply_layout *layout) {
+                                   const conic_ply_element *vertices, const conic_read_options *options,
+                                   int keeps_coordinates, conic_ply_layout *layout) {
   memset(layout, 0, sizeof *layout);
   find_columns(header, vertices, layout);
   if (!has_columns(layout, CONIC_PLY_X, 3)) {
@@ -148,10 +158,12 @@ conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *h
                       (unsigned long long)vertices->line);
   }
   choose_form(layout);
+  if (options->keeps_alpha)
+    find_alpha(header, vertices, layout);
   find_clip_lists(header, vertices, layout);
   if (keeps_coordinates)
     find_coordinates(header, vertices, layout);
-  layout->cutoff = cutoff;
+  layout->cutoff = options->cutoff;
   conic_srgb_decode_table(layout->srgb);
   for (int axis = 0; axis < 3; axis++)
     layout->has_origin_positions |= needs_origin(layout->type[CONIC_PLY_X + axis]);
@@ -278,8 +290,12 @@ static void store_colors(const conic_ply_layout *layout, const double *values, s
 }
 
 static void store_opacities(const conic_ply_layout *layout, const double *values, size_t n, float *to) {
+  conic_ply_type type = layout->type[CONIC_PLY_OPACITY];
+  double whole = !layout->is_alpha || !conic_ply_type_is_integer(type) ? 1.0
+                 : type == CONIC_PLY_UINT16                            ? 65535.0
+                                                                       : 255.0;
   for (size_t i = 0; i < n; i++)
-    to[i] = (float)(layout->form == CONIC_PLY_GAUSSIANS ? conic_gaussian_opacity(values[i]) : values[i]);
+    to[i] = (float)(layout->form == CONIC_PLY_GAUSSIANS ? conic_gaussian_opacity(values[i]) : values[i] / whole);
 }
 
 void conic_ply_layout_convert(conic_ply_layout *layout, const conic_ply_block block, size_t n, size_t first,

@@ -48,6 +48,7 @@ typedef struct conic_ply_layout {
   int n_scales;        /* of GAUSSIANS: 2 or 3 */
   int has_harmonics, has_origin_positions;
   int is_origin_set;
+  int is_alpha;                              /* the opacity is coded as colours are */
   int n_values;                              /* that are asked for, and for each: */
   int value_column[CONIC_MOST_POINT_VALUES]; /* where it is read, its own or that of a property which means more; −1:
                                                 nowhere */
@@ -56,11 +57,11 @@ typedef struct conic_ply_layout {
   float srgb[256]; /* linear values of 8-bit codes */
 } conic_ply_layout;
 
-/* Finds what the vertices hold; `cutoff` turns radii into standard deviations. Texture coordinates are left out unless
- * `keeps_coordinates`. Errors: INPUT (no x, y, z). */
+/* Finds what the vertices hold; the options' cutoff turns radii into standard deviations. Texture coordinates are left
+ * out unless `keeps_coordinates`, and alpha unless the options keep it. Errors: INPUT (no x, y, z). */
 conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *header,
-                                   const conic_ply_element *vertices, float cutoff, int keeps_coordinates,
-                                   conic_ply_layout *layout);
+                                   const conic_ply_element *vertices, const conic_read_options *options,
+                                   int keeps_coordinates, conic_ply_layout *layout);
 
 /* Lists the vertices' properties as fields, and finds those that are asked for. Errors: as conic_fields_choose. */
 conic_status conic_ply_layout_choose_fields(conic_input *input, const conic_ply_header *header,

@@ -250,8 +250,7 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
   reader->source = &source;
   reader->builder = &builder;
   int keeps_coordinates = options->keeps_faces && !delivery;
-  conic_status status =
-      conic_ply_layout_find(input, header, vertices, options->cutoff, keeps_coordinates, &reader->layout);
+  conic_status status = conic_ply_layout_find(input, header, vertices, options, keeps_coordinates, &reader->layout);
   if (status == CONIC_OK) {
     reader->properties = header->properties + vertices->first_property; /* there are some, as x, y and z were found */
     status = conic_builder_begin(input->context, model, reader->layout.fields, delivery, &builder);
@@ -290,7 +289,7 @@ conic_status conic_ply_look(conic_input *input, const conic_read_options *option
     return status;
   const conic_ply_element *vertices = conic_ply_find_element(&header, "vertex");
   if (vertices && vertices->count <= CONIC_MAX_POINTS && is_plain(header.format, vertices)) {
-    status = conic_ply_layout_find(input, &header, vertices, options->cutoff, 0, &layout);
+    status = conic_ply_layout_find(input, &header, vertices, options, 0, &layout);
     *shape = (conic_model_shape){.can_part = status == CONIC_OK,
                                  .is_raw = !(layout.fields & (CONIC_SPLATS_TANGENTS | CONIC_SPLATS_NORMALS)),
                                  .n_points = vertices->count};

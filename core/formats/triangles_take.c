@@ -9,7 +9,14 @@
 #include "core/formats/model_read.h"
 #include "core/splats/faces.h"
 
-/* Moves the model's vertices, their colours, normals and scalars, and its faces. */
+static int are_opaque(const conic_splats *points) {
+  size_t i = 0;
+  while (points->opacity && i < points->count && points->opacity[i] >= 1.0f)
+    i++;
+  return !points->opacity || i == points->count;
+}
+
+/* Moves the model's vertices, their colours, normals, scalars and alpha, and its faces. */
 static void take_arrays(conic_model *model, conic_triangles *triangles) {
   conic_splats *points = &model->points;
   triangles->count = model->n_triangles;
@@ -20,6 +27,10 @@ static void take_arrays(conic_model *model, conic_triangles *triangles) {
   memcpy(triangles->color, points->color, sizeof triangles->color);
   memcpy(triangles->normal, points->normal, sizeof triangles->normal);
   triangles->scalar = points->scalar;
+  if (!are_opaque(points)) {
+    triangles->alpha = points->opacity;
+    points->opacity = NULL;
+  }
   triangles->n_normals = triangles->normal[0] ? points->count : 0;
   points->scalar = NULL;
   memset(points->position, 0, sizeof points->position);

@@ -1,12 +1,14 @@
-/* Tone curves: light without bound, as colours that a screen can show. Only + − × ÷, so that the bits are the same
+/* Tone curves: light without bound, as colours that a screen can show. Only + − × ÷ √, so that the bits are the same
  * everywhere. */
 #include <float.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "conic/image.h"
+#include "core/base/color.h"
 
 const char *conic_tone_name(conic_tone tone) {
-  static const char *const names[CONIC_N_TONES] = {"srgb", "filmic", "aces"};
+  static const char *const names[CONIC_N_TONES] = {"srgb", "filmic", "aces", "agx"};
   return (int)tone >= 0 && tone < CONIC_N_TONES ? names[tone] : NULL;
 }
 
@@ -45,18 +47,56 @@ static void map_aces(double color[3]) {
   multiply_color(to_screen, color);
 }
 
+/* The base-2 logarithm of a normal number above 0, to 1e-13: with m from √½ to √2, 2·(t + t³/3 + …) of
+ * t = (m - 1)/(m + 1) is that of e to m. */
+static double stops_of(double x) {
+  static const double root = 1.4142135623730951, stops_of_e = 1.4426950408889634;
+  uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  double whole = (double)(int)(bits >> 52) - 1023.0, m;
+  bits = (bits & ((UINT64_C(1) << 52) - 1)) | UINT64_C(1023) << 52;
+  memcpy(&m, &bits, sizeof m);
+  if (m > root) {
+    m *= 0.5;
+    whole += 1.0;
+  }
+  double t = (m - 1.0) / (m + 1.0), tt = t * t, sum = 0.0;
+  for (int k = 15; k > 0; k -= 2)
+    sum = sum * tt + 1.0 / k;
+  return whole + 2.0 * stops_of_e * (t * sum);
+}
+
+/* Sobotka's AgX: stops about middle grey along Wrensch's polynomial for its sigmoid, between matrices by which bright
+ * colours go towards white. What it gives are the screen's codes. */
+static void map_agx(double color[3]) {
+  static const double inset[3][3] = {{0.842479062253094, 0.0784335999999992, 0.0792237451477643},
+                                     {0.0423282422610123, 0.878468636469772, 0.0791661274605434},
+                                     {0.0423756549057051, 0.0784336, 0.879142973793104}};
+  static const double outset[3][3] = {{1.19687900512017, -0.0980208811401368, -0.0990297440797205},
+                                      {-0.0528968517574562, 1.15190312990417, -0.0989611768448433},
+                                      {-0.0529716355144438, -0.0980434501171241, 1.15107367264116}};
+  static const double lowest = -12.47393, highest = 4.026069, least = 0x1p-20;
+  multiply_color(inset, color);
+  for (int c = 0; c < 3; c++) {
+    double x = limit_to_screen((stops_of(color[c] > least ? color[c] : least) - lowest) / (highest - lowest));
+    color[c] = (((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x + 0.1191) * x - 0.00232;
+  }
+  multiply_color(outset, color);
+  for (int c = 0; c < 3; c++)
+    color[c] = conic_srgb_decode(limit_to_screen(color[c]));
+}
+
 void conic_tone_map(conic_tone tone, const float linear[3], float mapped[3]) {
   double color[3];
-  if (tone != CONIC_TONE_FILMIC && tone != CONIC_TONE_ACES) {
+  static void (*const maps[CONIC_N_TONES])(double color[3]) = {
+      [CONIC_TONE_FILMIC] = map_filmic, [CONIC_TONE_ACES] = map_aces, [CONIC_TONE_AGX] = map_agx};
+  if (tone <= CONIC_TONE_SRGB || tone >= CONIC_N_TONES) {
     memmove(mapped, linear, 3 * sizeof *mapped);
     return;
   }
   for (int c = 0; c < 3; c++) /* NaN is 0, and no infinities, whose quotient would be none */
     color[c] = linear[c] > 0.0f ? linear[c] < FLT_MAX ? (double)linear[c] : (double)FLT_MAX : 0.0;
-  if (tone == CONIC_TONE_FILMIC)
-    map_filmic(color);
-  else
-    map_aces(color);
+  maps[tone](color);
   for (int c = 0; c < 3; c++)
     mapped[c] = (float)limit_to_screen(color[c]);
 }

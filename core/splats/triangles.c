@@ -30,6 +30,8 @@ conic_status conic_triangles_allocate(conic_context *context, size_t count, size
     status = allocate_floats(context, n_vertices, triangles->texture_coordinate, 2);
   if (status == CONIC_OK && (fields & CONIC_TRIANGLES_SCALARS))
     status = allocate_floats(context, n_vertices, &triangles->scalar, 1);
+  if (status == CONIC_OK && (fields & CONIC_TRIANGLES_ALPHAS))
+    status = allocate_floats(context, n_vertices, &triangles->alpha, 1);
   if (status == CONIC_OK) {
     triangles->corners = conic_memory_allocate(context, count, sizeof *triangles->corners);
     if (fields & CONIC_TRIANGLES_CLUSTERS)
@@ -65,6 +67,7 @@ void conic_triangles_release(conic_context *context, conic_triangles *triangles)
   conic_memory_release(context, triangles->material);
   conic_memory_release(context, triangles->cluster);
   conic_memory_release(context, triangles->scalar);
+  conic_memory_release(context, triangles->alpha);
   memset(triangles, 0, sizeof *triangles);
 }
 

@@ -121,6 +121,10 @@ static void join_vertices(const conic_triangles *a, const conic_triangles *b, co
     const conic_triangles *set = i < a->n_vertices ? a : b;
     joined->scalar[i] = set->scalar ? set->scalar[i < a->n_vertices ? i : i - a->n_vertices] : NAN;
   }
+  for (size_t i = 0; joined->alpha && i < joined->n_vertices; i++) {
+    const conic_triangles *set = i < a->n_vertices ? a : b;
+    joined->alpha[i] = set->alpha ? set->alpha[i < a->n_vertices ? i : i - a->n_vertices] : 1.0f;
+  }
   for (size_t i = 0; i < joined->count; i++) {
     const conic_triangles *set = i < a->count ? a : b;
     size_t shift = i < a->count ? 0 : a->n_vertices, at = i < a->count ? i : i - a->count;
@@ -136,7 +140,8 @@ conic_status conic_triangles_append(conic_context *context, conic_triangles *tri
   attribute_joining j = {.context = context, .first = triangles, .next = more};
   unsigned fields = (triangles->color[0] || more->color[0] ? (unsigned)CONIC_TRIANGLES_COLORS : 0u) |
                     (triangles->cluster || more->cluster ? (unsigned)CONIC_TRIANGLES_CLUSTERS : 0u) |
-                    (triangles->scalar || more->scalar ? (unsigned)CONIC_TRIANGLES_SCALARS : 0u);
+                    (triangles->scalar || more->scalar ? (unsigned)CONIC_TRIANGLES_SCALARS : 0u) |
+                    (triangles->alpha || more->alpha ? (unsigned)CONIC_TRIANGLES_ALPHAS : 0u);
   conic_status status = conic_triangles_check_own(context, "append", triangles);
   if (status == CONIC_OK)
     status = conic_triangles_check_own(context, "append", more);

@@ -30,7 +30,8 @@ typedef struct conic_gather_options {
   double near_z;       /* of a cube and an orthographic camera as of a pinhole; of others, from each side of a cube */
   int samples;         /* N × N a pixel */
   double fineness;     /* 1 or more: a view's pixel is no larger than a sample's, divided by this */
-  double shift[2]; /* 0 to 1: the place of the views' pixels in the grid of these; no matter but for means of many */
+  double shift[2]; /* 0 to 1: the place of the views' pixels in the grid of these, and of an orthographic camera's views
+                    * in the picture, by their edge; no matter but for means of many */
   /* The eye's way to the right, down and forward, in world units, about what is in focus: at the depth or distance
    * `focus` from the camera, the picture stays. */
   double lens[3], focus;
@@ -40,15 +41,17 @@ typedef struct conic_gather_options {
   void *cookie;
   /* Draws all planes of the view's image, the depth being that of a pinhole. What it returns other than OK ends all. */
   conic_status (*draw)(void *cookie, const conic_gather_view *view, conic_image *image);
+  int edge; /* an orthographic camera's views have at most so many pixels a side, 32 to 4096: their rays are off by up to
+             * half a view's diagonal / 2048 */
 } conic_gather_options;
 
-/* One sample, fineness 2, the eye in its place. */
+/* One sample, fineness 2, the eye in its place, an edge of 256. */
 CONIC_API void conic_gather_options_init_sized(conic_gather_options *options, size_t size);
 #define conic_gather_options_init(options) conic_gather_options_init_sized(options, sizeof *(options))
 
 /* Draws the views that the camera needs, one after the other, and fills the image's planes from them: Z and medianZ
  * are depths as the camera's kind has them (conic_camera_rays.h: along the ray for fisheyes and panoramas), inverseZ
- * is 1 over that, and all else is as the views have it. Several samples are of drawn planes alone. The same bits
+ * is 1 over that, and all else is as the views have it. Several samples are of drawn planes and clusters alone. The same bits
  * whatever the threads, as far as `draw` has them. Errors: ARGUMENT, MEMORY, CANCELLED, and what `draw` returns. */
 CONIC_API conic_status conic_gather(conic_context *context, const conic_gather_options *options, conic_image *image);
 

@@ -144,12 +144,13 @@ CONIC_API const char *conic_compression_name(conic_compression compression);
 typedef enum conic_tone {
   CONIC_TONE_SRGB = 0,   /* no curve: what is above 1 is white */
   CONIC_TONE_FILMIC = 1, /* Hable's of 2010, channel by channel, with his exposure of 2 before: 5.6 is white */
-  CONIC_TONE_ACES = 2    /* Hill's fit of the Academy's reference rendering (ACES 1, for sRGB screens), with matrices */
+  CONIC_TONE_ACES = 2,   /* Hill's fit of the Academy's reference rendering (ACES 1, for sRGB screens), with matrices */
+  CONIC_TONE_AGX = 3     /* Sobotka's AgX, by Wrensch's polynomial: 16.5 stops, bright colours go towards white */
 } conic_tone;
 
-#define CONIC_N_TONES 3
+#define CONIC_N_TONES 4
 
-/* "srgb", "filmic", "aces"; null for a number that is none. */
+/* "srgb", "filmic", "aces", "agx"; null for a number that is none. */
 CONIC_API const char *conic_tone_name(conic_tone tone);
 
 /* A linear colour, not multiplied by alpha, as one that is linear, too, and from 0 to 1; by CONIC_TONE_SRGB, or a

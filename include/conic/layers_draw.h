@@ -14,6 +14,7 @@
 #include "conic/model.h"
 #include "conic/render.h"
 #include "conic/splats.h"
+#include "conic/transparency.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -97,6 +98,9 @@ typedef struct conic_layers_draw_options {
   int may_be_coarser;        /* what does not come, or not in time, is drawn coarser in place of an error */
   double seconds;            /* with that: no more is read after so many seconds from the call; 0: no limit */
   int tolerates_damage;      /* with that: so is what is damaged, and a warning names the first of it */
+  conic_transparency transparency; /* as conic_render_transparent has it, where the samples keep their opacities: then
+                                      what is hidden is read, too, and all has to fit into memory at once */
+  double chance;                   /* likewise */
 } conic_layers_draw_options;
 
 /* Full resolution, one sample, automatic occlusion. */
@@ -129,7 +133,8 @@ typedef struct conic_layers_drawn {
  * 2³²). near_z and splat_length, where 0 in `render`, are the file's. The picture depends on file, camera and options
  * alone: not on memory, cache, order of arrival, occlusion, or where the file lies; with may_be_coarser, on what there
  * is in time, too. `statistics` and `drawn` may be null. Errors: ARGUMENT, INPUT (damaged; a server that answers
- * wrongly), IO (network), UNSUPPORTED (bands on another device), MEMORY, CANCELLED. */
+ * wrongly), IO (network), UNSUPPORTED (bands on another device), MEMORY (also where transparency does not fit into the
+ * access' memory_bytes), CANCELLED. */
 CONIC_API conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, const conic_camera *camera,
                                          const conic_render_options *render, const conic_layers_draw_options *options,
                                          conic_image *image, conic_render_statistics *statistics,

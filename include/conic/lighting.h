@@ -27,8 +27,14 @@ typedef struct conic_casters {
   double minimum[3], maximum[3]; /* box of all that casts, in world units */
   double epsilon; /* how far what is drawn may lie off the surface that it shows, in world units: of splats the cutoff
                      times their length, of triangles 0 */
-  uint64_t reserved[4];
+  uint64_t epsilon_is_drawn; /* 1: by CONIC_PASS_OF_HIDING: each splat's own is in Z, and the one here is what a slope
+                                adds to it; else 0 */
+  uint64_t reserved[3];
 } conic_casters;
+
+/* Of the splats' length, what a drawer of maps by CONIC_PASS_OF_HIDING gives for it in its options: no ε is above four
+ * such lengths, and a splat that is much larger than most sticks out of its surface by as much more. */
+#define CONIC_MAP_LENGTHS 4.0
 
 /* A sky: light from all around, by direction. */
 typedef struct conic_sky conic_sky;

@@ -84,6 +84,9 @@ typedef struct conic_read_options {
    * (docs/reference/formats.md, Choosing points); null: all. Files with faces, and those whose points have no values,
    * are refused. */
   const char *where;
+
+  /* The alpha of a PLY's and a glTF's vertices is their opacity, where they have no other. */
+  int keeps_alpha;
 } conic_read_options;
 
 /* Cutoff 1.5, points alone, columns as the file has them. */

@@ -89,13 +89,18 @@ typedef struct conic_lighting {
   uint64_t reserved[4];
 } conic_lighting;
 
+/* In the place of the number of passes: the plane Z alone, the only one that the image may have. It is how deep a pixel
+ * begins to hide: the least depth of a triangle, or of a splat with its ε behind it; of a splat 1 over what
+ * docs/reference/picture.md, "Visible", compares with. What is less deep is hidden by nothing. */
+#define CONIC_PASS_OF_HIDING 2
+
 typedef struct conic_render_options {
   size_t size; /* sizeof(conic_render_options), set by the init function */
   conic_method method;
   conic_kernel kernel;
   float prefilter; /* low-pass variance h in pixels², 0 or more */
   double epsilon;  /* depth tolerance along the ray in world units; negative: from the splat sizes */
-  int passes;      /* 3: blend what belongs to one surface; 1: the nearest splat wins */
+  int passes;      /* 3: blend what belongs to one surface; 1: the nearest splat wins; or CONIC_PASS_OF_HIDING */
   int cull_back;   /* leave out splats that face away */
   double near_z;   /* nothing nearer in camera-space z is drawn; 0: 1e-4 × the diagonal of the finite centres' box */
   double splat_length; /* what conic_splats_length gives; 0: found anew by every call */

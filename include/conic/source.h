@@ -70,6 +70,7 @@ typedef struct conic_source_options {
   double crease_deg;   /* above 0: triangles of a file without normals are round over edges up to this angle */
   const conic_gaussian_options *gaussians; /* how Gaussian scenes are composited; null: they are splats like others */
   const char *where; /* which points are wanted, as conic_read_options has it, of files of points and .lpc; null: all */
+  int keeps_alpha;   /* of a file's vertices, as conic_read_options has it */
 } conic_source_options;
 
 /* Splats, cutoff 1.5, 20 neighbours, no dots, flat faces. */
@@ -158,8 +159,10 @@ typedef struct conic_source_pose {
 CONIC_API void conic_source_pose_init(conic_source_pose *pose);
 
 /* Draws input i as poses[i] says, from the next picture on; null: all are at rest, as at first. What is at rest is
- * drawn to the bit as without poses. The scale stays that of rest. Errors: ARGUMENT (another number of poses; a pose
- * that is none; a shape that does not fit), UNSUPPORTED (it is no source of splats and triangles in memory), MEMORY. */
+ * drawn to the bit as without poses. The scale stays that of rest. A source that is not of splats and triangles in
+ * memory takes one pose for all of it, which turns and shifts: its pictures are those of a camera, and of lights, that
+ * move the other way, and what it hands over stays where its file says. Errors: ARGUMENT (another number of poses; a
+ * pose that is none; a shape that does not fit), UNSUPPORTED (of such a source, anything else), MEMORY. */
 CONIC_API conic_status conic_source_move(conic_source *source, const conic_source_pose *poses, size_t n_poses);
 
 /* The box of what is drawn: the scale's, unless something moves. */
@@ -193,8 +196,9 @@ typedef struct conic_source_view {
   double seconds;                  /* with that: no more is read after so many; 0: no limit */
   int tolerates_damage;            /* with that: so is what is damaged */
   double color_error;              /* of a hybrid: as conic_hybrid_view has it */
-  conic_transparency transparency; /* as conic_render_transparent has it; of what hands over what is drawn, hybrids
-                                    aside: else UNSUPPORTED */
+  conic_transparency transparency; /* as conic_render_transparent has it; of what keeps opacities: UNSUPPORTED of
+                                    hybrids, of Gaussian scenes, and of an octree that keeps some and draws less than
+                                    everything */
   double chance;                   /* likewise */
 } conic_source_view;
 

@@ -18,7 +18,7 @@
 extern "C" {
 #endif
 
-/* What a material's alpha, that is (1 - transparency) × the texture's, means where pictures show it. */
+/* What a material's alpha, that is (1 - transparency) × the texture's × the vertices', means where pictures show it. */
 typedef enum conic_alpha_mode {
   CONIC_ALPHA_BLEND = 0, /* so much of the light from behind it stops */
   CONIC_ALPHA_MASK = 1,  /* the surface is there where alpha is at least `alpha_cutoff`, opaque, and else is not */
@@ -76,7 +76,8 @@ typedef struct conic_triangles {
 
   conic_triangles_strides strides;
   float *scalar; /* [n_vertices]: as in conic_splats; optional */
-  uint64_t reserved[6];
+  float *alpha;  /* [n_vertices]: by which the material's alpha is multiplied, 0 to 1; side by side; optional (1) */
+  uint64_t reserved[5];
 } conic_triangles;
 
 /* The optional arrays of a set, as bits. */
@@ -85,7 +86,8 @@ typedef enum conic_triangles_field {
   CONIC_TRIANGLES_NORMALS = 2,             /* one a vertex, unless n_normals is set by the caller */
   CONIC_TRIANGLES_TEXTURE_COORDINATES = 4, /* likewise */
   CONIC_TRIANGLES_CLUSTERS = 8,
-  CONIC_TRIANGLES_SCALARS = 16
+  CONIC_TRIANGLES_SCALARS = 16,
+  CONIC_TRIANGLES_ALPHAS = 32
 } conic_triangles_field;
 
 /* Allocates a set with the optional arrays of `fields` (bits of conic_triangles_field), normals and texture coordinates

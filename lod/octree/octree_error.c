@@ -458,15 +458,11 @@ static conic_status run_pass(error_pass *pass) {
     status = CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     list_tasks(pass, pass->tasks);
-    const conic_team_loop loop = {"octree",
-                                  pass->from,
-                                  pass->to,
-                                  pass->n_tasks,
-                                  0,
-                                  run_task,
-                                  pass,
-                                  .first_of = first_node_of_task,
-                                  .columns = {{pass->octree->codes, CONIC_NODE_BYTES}}};
+    conic_team_loop loop = {.name = "octree", .from = pass->from, .to = pass->to, .n_items = pass->n_tasks};
+    loop.task = run_task;
+    loop.data = pass;
+    loop.first_of = first_node_of_task;
+    loop.columns[0] = (conic_team_column){pass->octree->codes, CONIC_NODE_BYTES};
     status = conic_team_runs(context, &loop);
   }
   for (size_t i = 0; i < pass->n_tasks && status == CONIC_OK; i++)

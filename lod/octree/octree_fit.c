@@ -210,16 +210,9 @@ conic_status conic_octree_fit(conic_octree *octree) {
   if (!f.tasks)
     return CONIC_ERROR_MEMORY;
   list_tasks(octree, f.tasks);
-  const conic_team_loop loop = {
-      "octree",
-      0.4,
-      0.6,
-      f.n_tasks,
-      0,
-      run_task,
-      &f,
-      .first_of = first_node_of_fit,
-      .columns = {{octree->codes, CONIC_NODE_BYTES}, {f.tasks, sizeof *f.tasks, .is_by_item = 1}}};
+  conic_team_loop loop = {"octree", 0.4, 0.6, f.n_tasks, 0, run_task, &f, .first_of = first_node_of_fit};
+  loop.columns[0] = (conic_team_column){octree->codes, CONIC_NODE_BYTES};
+  loop.columns[1] = (conic_team_column){f.tasks, sizeof *f.tasks, .is_by_item = 1};
   status = conic_team_runs(octree->context, &loop);
   if (status == CONIC_OK)
     status = fit_top(&f, 0, &root);

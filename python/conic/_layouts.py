@@ -67,7 +67,8 @@ class Triangles(ctypes.Structure):
         ("cluster", c_void_p),
         ("strides", TrianglesStrides),
         ("scalar", Column),
-        ("reserved", c_uint64 * 6),
+        ("alpha", Column),
+        ("reserved", c_uint64 * 5),
     ]
 
 

@@ -110,7 +110,7 @@ class Picture(Dict[str, Any]):
 
     def save(self, path: PathLike, *, tone: str = "srgb") -> None:
         """Writes .exr (all planes), .png, .pfm …, as the ending says; without a background, as they are. `tone`, of
-        what has 8 or 16 bits: "srgb", "filmic" or "aces"."""
+        what has 8 or 16 bits: "srgb", "filmic", "aces" or "agx"."""
         image, options = self.image(), layouts.ImageOptions()
         library.conic_image_options_init_sized(ctypes.byref(options), ctypes.sizeof(options))
         if tone not in TONES:

@@ -21,7 +21,9 @@ static conic_status set_up_picture(conic_prepared *p, conic_renderer *renderer, 
   p->frame.renderer = renderer;
   p->frame.splats = p->drawing.splats;
   p->frame.part.window = (conic_window){0, p->camera.width, 0, p->camera.height};
-  conic_status status = conic_raster_frame_begin(&p->frame, &p->drawing, &p->camera, &p->options);
+  conic_status status = conic_raster_frame_take_passes(&p->frame, planes, &p->options);
+  if (status == CONIC_OK)
+    status = conic_raster_frame_begin(&p->frame, &p->drawing, &p->camera, &p->options);
   if (status == CONIC_OK)
     status = conic_raster_frame_set_up(&p->frame, planes, &p->statistics.ms);
   if (status != CONIC_OK)

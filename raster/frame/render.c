@@ -111,6 +111,16 @@ static conic_status draw_there(conic_raster_frame *f, conic_image *image, conic_
   return status;
 }
 
+conic_status conic_raster_frame_take_passes(const conic_raster_frame *f, unsigned planes,
+                                            conic_render_options *options) {
+  if (options->passes != CONIC_PASS_OF_HIDING)
+    return CONIC_OK;
+  if (planes != 1u << CONIC_PLANE_Z)
+    return conic_fail(f->renderer->context, CONIC_ERROR_ARGUMENT, "render: the pass of hiding has the plane Z alone");
+  options->passes = f->splats->count ? CONIC_PASS_OF_HIDING : 1;
+  return CONIC_OK;
+}
+
 /* All of conic_render, for the window and the plane that `f` names already. */
 static conic_status render(conic_raster_frame *f, const conic_whole_drawing *drawing, const conic_camera *camera,
                            const conic_render_options *options, conic_image *image,
@@ -118,7 +128,10 @@ static conic_status render(conic_raster_frame *f, const conic_whole_drawing *dra
   double start = conic_seconds_now();
   conic_render_statistics counted;
   memset(&counted, 0, sizeof counted);
-  conic_status status = conic_raster_frame_begin(f, drawing, camera, options);
+  conic_render_options own = *options;
+  conic_status status = image ? conic_raster_frame_take_passes(f, conic_image_planes(image), &own) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = conic_raster_frame_begin(f, drawing, camera, &own);
   if (status == CONIC_OK)
     status = (f->renderer->backend ? draw_there : draw_here)(f, image, &counted);
   if (status != CONIC_OK)

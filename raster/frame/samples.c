@@ -120,6 +120,8 @@ static void reduce_row(void *data, size_t i_row, int i_thread) {
       take_central(r, CONIC_PLANE_Z, corner, at);
     if (planes[CONIC_PLANE_ID])
       take_central(r, CONIC_PLANE_ID, corner, at);
+    if (planes[CONIC_PLANE_CLUSTER] && r->fine->planes[CONIC_PLANE_CLUSTER])
+      take_central(r, CONIC_PLANE_CLUSTER, corner, at);
   }
 }
 

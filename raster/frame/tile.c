@@ -66,6 +66,38 @@ static void begin_triangles(const conic_tile *tile, int i_row, conic_band *band)
     conic_triangle_tile_row(tile->triangles, tile->triangle_tile, i_row, band);
 }
 
+/* A row's depths, of whichever hides first. */
+static unsigned write_hiding_row(const conic_tile *tile, const conic_band *band, int row, float *z) {
+  unsigned n_covered = 0;
+  int x = band->x - band->first_column, width = tile->x_end - tile->x_begin;
+  for (int i = 0; i < width; i++) {
+    int block = i / CONIC_BLOCK_EDGE, l = i % CONIC_BLOCK_EDGE * CONIC_BLOCK_EDGE + row;
+    float iz = band->kept[block].threshold[l];
+    if (band->triangles && band->triangles->covered[block] >> l & 1)
+      iz = iz > band->triangles->blocks[block].iz[l] ? iz : band->triangles->blocks[block].iz[l];
+    z[x + i] = iz > 0.0f ? 1.0f / iz : 0.0f;
+    n_covered += iz > 0.0f;
+  }
+  return n_covered;
+}
+
+/* Visibility alone: Z is where hiding begins. Nothing is kept for blending. */
+static void draw_hiding(conic_tile *tile, const conic_raster_kernels *kernels, conic_band *band, conic_image *image) {
+  uint64_t start = conic_ticks();
+  band->keeps_indices = 1;
+  for (int i_row = 0; i_row < band->n_rows; i_row++) {
+    select_band(tile, kernels, i_row, band);
+    kernels->passes.visibility(band);
+    begin_triangles(tile, i_row, band);
+    for (int i = 0; i < CONIC_BLOCK_EDGE && band->y + i < tile->y_end; i++) {
+      size_t row = (size_t)(band->y + i - band->first_row);
+      float *z = (float *)image->planes[CONIC_PLANE_Z] + row * (size_t)image->width;
+      band->n_covered += write_hiding_row(tile, band, i, z);
+    }
+  }
+  tile->ticks.visibility += conic_ticks() - start;
+}
+
 static void draw_triangles(conic_tile *tile, const conic_raster_kernels *kernels) {
   uint64_t start = conic_ticks();
   kernels->triangles.draw(tile->triangles, tile->i_tile, tile->x_begin, tile->y_begin, tile->triangle_tile);
@@ -158,6 +190,8 @@ void conic_tile_draw(conic_tile *tile, const conic_raster_kernels *kernels, cons
     conic_tile_leave_hidden_out(tile, kernels, &band);
   if (tile->hiding)
     hide(tile, kernels, &band);
+  else if (finish->options->passes == CONIC_PASS_OF_HIDING)
+    draw_hiding(tile, kernels, &band, image);
   else if (finish->options->passes == 1)
     draw_nearest(tile, kernels, finish, &rays, &band, image);
   else

@@ -39,9 +39,9 @@ static int splats_are_transparent(const conic_splats *splats) {
 
 static int triangles_are_transparent(const conic_triangles *triangles) {
   for (size_t i = 0; triangles->materials && i < triangles->n_materials; i++)
-    if (conic_material_is_transparent(&triangles->materials[i]))
+    if (conic_material_is_transparent(triangles, &triangles->materials[i]))
       return 1;
-  return 0;
+  return !triangles->n_materials && conic_material_is_transparent(triangles, NULL);
 }
 
 int conic_drawing_is_transparent(const conic_drawing *drawing) {
@@ -62,7 +62,9 @@ static conic_status make_transparent_marks(transparent *t) {
     t->splat_marks[i] = splats->opacity && splats->opacity[i] != 1.0f ? 1.0f : 0.0f;
   for (size_t i = 0; triangles && i < triangles->n_materials; i++)
     for (int channel = 0; channel < 3; channel++)
-      t->materials[i].color[channel] = conic_material_is_transparent(&triangles->materials[i]) ? 1.0f : 0.0f;
+      t->materials[i].color[channel] = conic_material_is_transparent(triangles, &triangles->materials[i]) ? 1.0f : 0.0f;
+  for (int channel = 0; triangles && channel < 3; channel++)
+    t->no_material.color[channel] = conic_material_is_transparent(triangles, NULL) ? 1.0f : 0.0f;
   return CONIC_OK;
 }
 
@@ -194,14 +196,18 @@ static conic_status draw_transparent_bands(transparent *t, const conic_camera *c
       conic_statistics_add_pixels(&band, sum);
   }
   conic_image_release(t->context, &fine);
-  return status;
+  if (status != CONIC_OK || rows >= camera->height)
+    return status;
+  const conic_drawing all = {t->drawing->splats, t->drawing->triangles};
+  conic_camera whole = conic_samples_camera(camera, samples, 0, camera->height);
+  return conic_samples_count_drawing(t->context, &all, &whole, t->options, sum); /* no band sees all */
 }
 
 static conic_status check_transparent(conic_context *context, const conic_render_options *options,
                                       conic_transparency how, double chance) {
   if ((unsigned)how >= CONIC_N_TRANSPARENCIES || !(chance >= 0.0 && chance < 1.0))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: an unknown transparency, or a chance not within 0 and 1");
-  if (options->passes != 3)
+  if (how != CONIC_TRANSPARENCY_NONE && options->passes != 3)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: transparency is of surfaces that blend: of 3 passes");
   return CONIC_OK;
 }

@@ -87,6 +87,7 @@ static inline void conic_triangle_look_normal(const conic_triangle_look *look, c
 /* What a pixel sees of its triangle; where there is a texture, the colour without it, and where it is seen. */
 typedef struct conic_triangle_sight {
   float color[3], normal[3];
+  float at[2];                  /* the weights of the triangle's second and third corner */
   const conic_texture *texture; /* null: none */
   float uv[2], along[2], across[2];
 } conic_triangle_sight;
@@ -102,6 +103,9 @@ static inline void conic_triangle_see(const conic_triangle_frame *frame, const c
   conic_triangle_weights_at(&look, (float)column, (float)row, &weights);
   conic_triangle_look_plain_color(&look, &weights, sight->color);
   conic_triangle_look_normal(&look, &weights, world_from_cam, ray[0], ray[1], sight->normal);
+  int is_swapped = record->is_swapped && record->piece == CONIC_NO_PIECE;
+  sight->at[0] = weights.at[is_swapped];
+  sight->at[1] = weights.at[!is_swapped];
   sight->texture = look.texture;
   if (look.texture)
     conic_triangle_look_place(&look, &weights, sight->uv, sight->along, sight->across);

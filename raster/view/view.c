@@ -24,8 +24,8 @@ static const char *what_of_camera_is_wrong(const conic_splats *splats, const con
     return "the kernel's cutoff or parameters are out of range";
   if (!(options->prefilter >= 0.0f && options->prefilter <= 1e4f))
     return "the prefilter is out of range (0 to 10000)";
-  if (options->passes != 1 && options->passes != 3)
-    return "there are 3 passes or 1";
+  if (options->passes != 1 && options->passes != 3 && options->passes != CONIC_PASS_OF_HIDING)
+    return "there are 3 passes or 1, or that of hiding";
   if (options->tile < 8 || options->tile > 64 || (options->tile & (options->tile - 1)))
     return "the tile is not 8, 16, 32 or 64";
   if (!conic_method_name(options->method))

@@ -29,8 +29,9 @@ draw plain
 draw srgb --tone srgb
 draw filmic --tone filmic
 draw aces --tone aces
+draw agx --tone agx
 draw threads --tone aces --threads 3
-for tone in srgb filmic aces; do
+for tone in srgb filmic aces agx; do
   is_same $tone.pfm plain.pfm
   [[ ! -e plain.exr ]] || is_same $tone.exr plain.exr
   grep -q "\"tone\": \"$tone\"" $tone.json || fail "$tone is not told"
@@ -45,6 +46,7 @@ if ((has_png)); then
   is_other filmic.png plain.png
   is_other aces.png plain.png
   is_other aces.png filmic.png
+  is_other agx.png aces.png
   printf '\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200' > two.splat
   run 0 render two.splat --profile exact --size 40x40 -o display.png
   run 0 render two.splat --profile exact --size 40x40 -o toned.png --tone filmic --json toned.json

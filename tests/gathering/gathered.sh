@@ -31,20 +31,65 @@ for how in "--projection panorama --size 80x40" "--projection fisheye --fov 170 
   done
 done
 
+# Every kind of source is what its splats in memory are.
+"$conic" octree knot.ply -o knot.cot
+"$conic" make gaussians -n 300 --degree 0 -o scene.ply
+"$conic" prepare scene.ply -o surfels.ply
+kinds=("knot.cot knot.ply" "scene.ply surfels.ply --profile surface")
+"$conic" layer knot.ply -o knot.lpc --payload full --cloud-size 500 2> /dev/null &&
+  "$conic" cut knot.lpc -o same.ply && kinds+=("knot.lpc same.ply")
+camera flat '"kind": "orthographic", "width": 40, "height": 32, "fx": 10, "fy": 10, "cx": 20, "cy": 16' 5
+camera eye '"width": 40, "height": 32, "fx": 36, "fy": 36, "cx": 20, "cy": 16' 5
+n_compared=0
+for kind in "${kinds[@]}"; do
+  read -r source whole more <<< "$kind"
+  i=0
+  for how in "--projection panorama --size 60x30 --eye 0,0,0" "--projection fisheye --fov 170 --eye 0,0,0.5 --size 32x32" \
+    "--camera flat.json" "--projection cube --size 12x72 --eye 0,0,0" "--camera lens.json" \
+    "--camera eye.json --stereo 0.1 --convergence 5"; do
+    light=("--samples 2" "--transparency" "--accumulate 3 --aperture 0.2 --focus 4")
+    [[ $source == *.cot ]] && light=("--ao 4 --shadow --light 1,2,3" "--accumulate 2 --aperture 0.2 --ao 4 --shadow")
+    how="$how ${light[i++ % ${#light[@]}]} --up y --near 0.01 --aov rgba,Z,N,count"
+    run 0 render $source $how ${more-} -o a.exr --json a.json
+    run 0 render $whole $how -o a.exr --json b.json
+    [[ $(hashes a.json) == "$(hashes b.json)" && -n $(hashes a.json) ]] || fail "$source $how ${more-}"
+    grep -q '"pixels_covered": [1-9]' a.json && n_compared=$((n_compared + 1))
+  done
+done
+[[ $n_compared -ge 12 ]] || fail "$n_compared pictures showed something"
+
+# What a plane is made of that is drawn in false colours.
+run 0 hybrid sphere.ply -o sphere.chy
+run 0 render sphere.chy --projection fisheye --fov 120 --size 40x40 --samples 3 --clusters clusters.pfm --overdraw o.pfm
+"$conic" render sphere.chy --plain --projection fisheye --fov 120 --size 120x120 --clusters fine.pfm > /dev/null
+perl -e 'sub rows { open my $f, "<:raw", $_[0]; <$f>; <$f>; <$f>; local $/; my @all = unpack "f<*", <$f>; @all }
+  my ($few, $many) = ([rows("clusters.pfm")], [rows("fine.pfm")]); my ($n, $same) = (0, 0);
+  sub hue { my @c = @_; my $sum = $c[0] + $c[1] + $c[2]; $sum ? join " ", map { int(50 * $_ / $sum + 0.5) } @c : "" }
+  for my $i (0 .. 1599) { my $j = (int($i / 40) * 3 + 1) * 120 + $i % 40 * 3 + 1;
+    $n++; $same += hue(@$few[3 * $i .. 3 * $i + 2]) eq hue(@$many[3 * $j .. 3 * $j + 2]) }
+  exit($same < 0.97 * $n)' || fail "clusters of several samples"
+
 # From the middle of a sphere, all around it is as far away as its radius is, which is 1.
 run 0 render sphere.ply --projection panorama --size 60x30 --samples 1 --aov Z -o z.pfm --eye 0,0,0 --json z.json
 grep -q '"pixels_covered": [1-9]' z.json || fail "the sphere is not seen from within"
 perl -e 'binmode STDIN; <>; <>; <>; local $/; my @z = unpack "f<*", <>; my @bad = grep { abs($_ - 1) > 0.02 } @z;
   exit(@z != 1800 || @bad > 0)' < z.pfm || fail "distances in a panorama"
 
-# A side of the cube is a picture of its own: +Z looks ahead.
+# A side of the cube is a picture of its own, also of a hybrid: +Z looks ahead.
 camera cube '"kind": "cube", "width": 20, "height": 120, "fx": 10, "fy": 10, "cx": 10, "cy": 10'
 camera ahead '"width": 20, "height": 20, "fx": 10, "fy": 10, "cx": 10, "cy": 10'
-run 0 render sphere.ply --plain --light 1,2,3 --camera cube.json --aov Z -o cube.pfm
-run 0 render sphere.ply --plain --light 1,2,3 --camera ahead.json --aov Z -o ahead.pfm
-perl -e 'sub rows { open my $f, "<:raw", $_[0]; <$f>; <$f>; <$f>; local $/; my $all = <$f>; $all }
+for source in sphere.ply sphere.chy; do
+  run 0 render $source --light 1,2,3 --shadow --ao 4 --camera cube.json --aov rgba -o cube.pfm
+  run 0 render $source --light 1,2,3 --shadow --ao 4 --camera ahead.json --aov rgba -o ahead.pfm
+  perl -e 'sub rows { open my $f, "<:raw", $_[0]; <$f>; <$f>; <$f>; local $/; my $all = <$f>; $all }
   my ($cube, $ahead) = (rows("cube.pfm"), rows("ahead.pfm")); # from the bottom: the fifth of six sides is the second
-  exit(substr($cube, 1600, 1600) ne $ahead)' || fail "the cube's side ahead"
+  exit(substr($cube, 4800, 4800) ne $ahead)' || fail "the cube's side ahead of $source"
+done
+
+# Parallel rays frame what they see, from as far off as a pinhole of the angle: a ball of radius 1 is 90 pixels wide, and a filter.
+run_as_typed 0 render sphere.ply --projection orthographic --size 100x100 --samples 1 --fov 40 --aov Z -o z.pfm
+perl -e 'binmode STDIN; <>; <>; <>; local $/; my @z = unpack "f<*", <>; my @row = grep { $_ > 0 } @z[5000 .. 5099];
+  exit(abs(@row - 91.5) > 1.5 || abs($z[5050] + 1 - 50 / 45 / 0.36397) > 0.03)' < z.pfm || fail "what parallel rays frame"
 
 # Two eyes: what is in the middle at the convergence stays, and others move by B·f·(1/z − 1/c).
 camera eyes '"width": 200, "height": 20, "fx": 100, "fy": 100, "cx": 100, "cy": 10' 0

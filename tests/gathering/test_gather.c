@@ -319,6 +319,7 @@ static void test_cube(conic_context *context) {
 typedef struct parallel_check {
   conic_gather_options options;
   double depths[2], greatest_px;
+  double sum_px; /* by what pixel (300, 200) is off to the right at the farther depth, over all pictures */
   int n_views, left, top;
 } parallel_check;
 
@@ -342,6 +343,9 @@ static conic_status check_far_view(void *cookie, const conic_gather_view *view, 
     CHECK(along > view->near_z && view->near_z > 0.0);
     p->greatest_px = fmax(p->greatest_px, hypot(seen[0] - own[0], seen[1] - own[1]) * o->camera.fx);
   }
+  if (p->left <= 300 && 300 < p->left + c->width && p->top <= 200 && 200 < p->top + c->height)
+    p->sum_px += (at_camera[0] + (p->depths[1] - at_camera[2]) * (300.5 - p->left - c->cx) / c->fx) * o->camera.fx -
+                 (300.5 - o->camera.cx);
   for (int i = 0; i < c->width * c->height; i++)
     ((float *)image->planes[CONIC_PLANE_Z])[i] = (float)(p->depths[1] - at_camera[2]);
   p->n_views++;
@@ -378,12 +382,21 @@ static void test_parallel(conic_context *context) {
     }
     CHECK_OK(conic_image_allocate(context, c.width, c.height, 1u << CONIC_PLANE_Z, &image));
     CHECK_OK(conic_gather(context, &p.options, &image));
-    CHECK(p.n_views == 4);
-    if (!(p.greatest_px < 0.18))
+    CHECK(p.n_views == 9);
+    if (!(p.greatest_px < 0.09))
       printf("parallel: %g pixels off\n", p.greatest_px);
-    CHECK(p.greatest_px < 0.18 && p.greatest_px > 0.1); /* half a view's diagonal, by 2048 */
+    CHECK(p.greatest_px < 0.09 && p.greatest_px > 0.05); /* half a view's diagonal, by 2048 */
     for (size_t i = 0; i < (size_t)c.width * (size_t)c.height; i++)
       CHECK(fabs((double)((float *)image.planes[CONIC_PLANE_Z])[i] - 5.0) < 2e-4);
+    p.sum_px = p.greatest_px = 0.0;
+    p.options.edge = 512;
+    for (int i = 0; i < 16 && !is_moved; i++) { /* on the mean over all places of the views, nothing is off */
+      p.left = p.top = 0;
+      p.options.shift[0] = (i + 0.5) / 16;
+      p.options.shift[1] = (i * 5 % 16 + 0.5) / 16;
+      CHECK_OK(conic_gather(context, &p.options, &image));
+    }
+    CHECK(is_moved || (p.greatest_px > 0.15 && p.greatest_px < 0.18 && fabs(p.sum_px) / 16 < 1e-2));
     conic_image_release(context, &image);
   }
 }
@@ -503,6 +516,9 @@ static void test_refusals(conic_context *context) {
   CHECK(conic_gather(context, &options, &image) == CONIC_ERROR_ARGUMENT);
   options = good;
   options.camera.width--;
+  CHECK(conic_gather(context, &options, &image) == CONIC_ERROR_ARGUMENT);
+  options = good;
+  options.edge = 16;
   CHECK(conic_gather(context, &options, &image) == CONIC_ERROR_ARGUMENT);
   options = good;
   options.shift[1] = 1.5;

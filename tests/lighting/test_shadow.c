@@ -143,6 +143,40 @@ static void ball_has_no_acne(conic_context *context) {
   conic_splats_release(context, &splats);
 }
 
+/* Discs on a square of edge 6, narrower than a texel where the sun grazes them. */
+static void floor_has_no_acne(conic_context *context) {
+  enum { N = 160, SIZE = 120 };
+  conic_splats splats;
+  if (conic_splats_allocate(context, (size_t)N * N, CONIC_SPLATS_TANGENTS, &splats) != CONIC_OK)
+    exit(1);
+  for (int i = 0; i < N * N; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      splats.position[axis][i] = axis == 1 ? 0.0f : (float)(6.0 * ((axis ? i / N : i % N) + 0.5) / N - 3.0);
+      splats.tangent_u[axis][i] = axis == 2 ? 4.5f / N : 0.0f;
+      splats.tangent_v[axis][i] = axis == 0 ? 4.5f / N : 0.0f;
+    }
+  const conic_drawing drawing = {&splats, NULL};
+  sunny s;
+  double length;
+  CHECK_OK(conic_splats_length(context, &splats, &length));
+  stand_in_the_sun(context, &drawing, 1.5 * length, SIZE, &s);
+  const float *shadow = s.picture.image.planes[CONIC_PLANE_SHADOW];
+  for (int i = 0; i < 6; i++) {
+    double sun[3];
+    set_sun(6.0 + 4.0 * i, 50.0 * i, sun);
+    turn_to(&s, sun);
+    long n = 0;
+    for (int k = 0; k < SIZE * SIZE; k++)
+      if (light_is_covered_about(&s.picture, k % SIZE, k / SIZE)) {
+        CHECK_NEAR((double)shadow[k], 1.0, 0.0);
+        n++;
+      }
+    CHECK(n > 1000);
+  }
+  leave_the_sun(&s);
+  conic_splats_release(context, &splats);
+}
+
 /* --- colours --- */
 
 /* What is in shadow is what the engine draws without that light, and all else is as it was. */
@@ -260,6 +294,11 @@ static void points_are_occluded(conic_context *context) {
   conic_lighting_options_init(&options);
   options.n_directions = 64;
   conic_casters casters = light_casters(&drawer, 1.5 * length);
+  /* The first has no axes, and the second, in the middle, none either. */
+  for (int axis = 0; axis < 3; axis++) {
+    splats.tangent_u[axis][0] = splats.tangent_u[axis][1] = NAN;
+    splats.position[axis][1] = 0.0f;
+  }
   for (int inside = 0; inside < 2; inside++) {
     for (size_t i = 0; i < splats.count; i++)
       for (int axis = 0; axis < 3 && inside; axis++)
@@ -269,6 +308,7 @@ static void points_are_occluded(conic_context *context) {
     for (size_t i = 0; i < splats.count; i++)
       mean += (double)ao[i] / (double)splats.count;
     CHECK_NEAR(mean, inside ? 0.0 : 1.0, 0.05);
+    CHECK(ao[0] > 0.7f && ao[1] < 0.05f);
   }
   CHECK(conic_splats_occlude(context, &casters, &splats, 0.0, &options, ao) == CONIC_ERROR_ARGUMENT);
   free(ao);
@@ -363,6 +403,7 @@ int main(void) {
   mean_of_samples_is_the_picture(context);
   cube_leaks_nothing(context);
   ball_has_no_acne(context);
+  floor_has_no_acne(context);
   points_are_occluded(context);
   light_is_the_same_everywhere();
   conic_context_destroy(context);

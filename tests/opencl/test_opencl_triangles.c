@@ -286,6 +286,31 @@ static void check_planes(fixture *f) {
   conic_triangles_release(f->context, &t);
 }
 
+/* The pass of hiding, of both kinds and of each alone. */
+static void check_hiding(fixture *f) {
+  conic_triangles t = fill_wild(f, 200, 0);
+  conic_image here, there;
+  fixture_scene(f, CONIC_SCENE_KNOT, 900);
+  fixture_camera(f, 90, 70, 60.0);
+  f->camera.cam_from_world[2][3] = 2.5;
+  const conic_drawing drawings[3] = {{&f->splats, &t}, {&f->splats, NULL}, {NULL, &t}};
+  conic_render_options_init(&f->options);
+  f->options.passes = CONIC_PASS_OF_HIDING;
+  CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, 1u << CONIC_PLANE_Z, &here));
+  CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, 1u << CONIC_PLANE_Z, &there));
+  for (int i = 0; i < 3; i++) {
+    CHECK_OK(conic_render_drawing(f->context, f->renderer, &drawings[i], &f->camera, &f->options, 1, &here, NULL));
+    for (int k = 0; k < N_RENDERERS && renderers[k]; k++) {
+      spoil(&there);
+      CHECK_OK(conic_render_drawing(f->context, renderers[k], &drawings[i], &f->camera, &f->options, 1, &there, NULL));
+      CHECK(conic_image_hash(&here, CONIC_PLANE_Z) == conic_image_hash(&there, CONIC_PLANE_Z));
+    }
+  }
+  conic_image_release(f->context, &here);
+  conic_image_release(f->context, &there);
+  conic_triangles_release(f->context, &t);
+}
+
 /* A device that has no double precision says so, and so does one that cannot hold the triangles. One that is no CPU
  * gets copies of them. */
 static void check_devices(fixture *f, conic_opencl_work work) {
@@ -339,6 +364,7 @@ int main(int argc, char **argv) {
     check_floor(&f);
     check_corners(&f);
     check_planes(&f);
+    check_hiding(&f);
     check_devices(&f, CONIC_OPENCL_WORK_TILES);
     check_devices(&f, CONIC_OPENCL_WORK_PIXELS);
   }

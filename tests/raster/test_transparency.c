@@ -301,6 +301,47 @@ static void test_card(fixture *f, uint32_t mode) {
   conic_triangles_release(f->context, &t);
 }
 
+/* --- alpha of vertices --- */
+
+/* A floor under the eye, from behind it to z = 8, whose alpha goes from 0 to 1 along z; one face is wound the other
+ * way. Before it all is cut off. */
+static void test_vertex_alpha(fixture *f) {
+  static const double from_z = -2.0, to_z = 8.0;
+  conic_triangles t = triangles_make(f, 2, 4, CONIC_TRIANGLES_ALPHAS | CONIC_TRIANGLES_COLORS);
+  conic_material material = {.color = {1, 1, 1}, .transparency = 0.5f};
+  for (uint32_t k = 0; k < 4; k++) {
+    triangles_vertex(&t, k, k % 2 ? 40.0 : -40.0, 1.0, k / 2 ? to_z : from_z);
+    for (int c = 0; c < 3; c++)
+      t.color[c][k] = 0.5f;
+    t.alpha[k] = k / 2 ? 1.0f : 0.0f;
+  }
+  triangles_corner(&t, 0, 0, 1, 2);
+  triangles_corner(&t, 1, 1, 2, 3);
+  f->splats.count = 0;
+  for (int kind = 0; kind < 4; kind++) {
+    double factor = kind ? 0.5 : 1.0;
+    t.materials = kind ? &material : NULL;
+    t.n_materials = kind != 0;
+    material.alpha_mode = kind == 2 ? CONIC_ALPHA_MASK : kind == 3 ? CONIC_ALPHA_OPAQUE : CONIC_ALPHA_BLEND;
+    material.alpha_cutoff = 0.4f;
+    CHECK(conic_drawing_is_transparent(&(conic_drawing){.triangles = &t}) == (kind != 3));
+    draw(f, &t);
+    for (int i = 0; i < SIZE * SIZE; i++) {
+      double dy = (i / SIZE + 0.5 - f->camera.cy) / f->camera.fy, z = 1.0 / dy;
+      double alpha = z > 0.1 && z < to_z ? factor * (z - from_z) / (to_z - from_z) : 0.0;
+      const float *rgba = fixture_pixel(f, CONIC_PLANE_RGBA, i % SIZE, i / SIZE);
+      if (kind == 2 && fabs(alpha - 0.4) < 1e-4)
+        continue;
+      double expected = kind < 2 || alpha == 0.0 ? alpha : kind == 3 || alpha > 0.4 ? 1.0 : 0.0;
+      CHECK_NEAR((double)rgba[3], expected, 1e-5);
+      CHECK_NEAR((double)rgba[1], 0.5 * expected, 1e-5);
+    }
+  }
+  t.materials = NULL;
+  t.n_materials = 0;
+  conic_triangles_release(f->context, &t);
+}
+
 /* --- one surface a picture --- */
 
 static void test_chance(fixture *f) {
@@ -388,6 +429,7 @@ int main(void) {
   test_opaque(&f, CONIC_METHOD_AUTO, 1);
   for (uint32_t mode = CONIC_ALPHA_BLEND; mode <= CONIC_ALPHA_OPAQUE; mode++)
     test_card(&f, mode);
+  test_vertex_alpha(&f);
   test_chance(&f);
   test_bits(&f);
   test_refusals(&f);

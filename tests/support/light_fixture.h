@@ -13,6 +13,7 @@ typedef struct light_drawer {
   conic_renderer *renderer;
   const conic_drawing *drawing;
   conic_render_options options;
+  double splat_length; /* of the drawing's splats, if it has any */
   int n_maps;
 } light_drawer;
 
@@ -20,13 +21,16 @@ static inline conic_status light_draw(void *cookie, const conic_camera *camera, 
   light_drawer *d = cookie;
   conic_render_options options = d->options;
   options.near_z = near_z;
-  options.passes = 1;
+  options.passes = CONIC_PASS_OF_HIDING;
+  options.splat_length = CONIC_MAP_LENGTHS * d->splat_length;
   d->n_maps++;
   return conic_render_drawing(d->context, d->renderer, d->drawing, camera, &options, 1, depth, NULL);
 }
 
 static inline conic_casters light_casters(light_drawer *drawer, double epsilon) {
-  conic_casters casters = {.draw = light_draw, .cookie = drawer, .epsilon = epsilon};
+  conic_casters casters = {.draw = light_draw, .cookie = drawer, .epsilon = epsilon, .epsilon_is_drawn = 1};
+  if (drawer->drawing->splats)
+    CHECK_OK(conic_splats_length(drawer->context, drawer->drawing->splats, &drawer->splat_length));
   conic_drawing_bounds(drawer->drawing, casters.minimum, casters.maximum);
   return casters;
 }

@@ -69,9 +69,10 @@ static conic_status draw_whole(bands *b, conic_render_statistics *statistics) {
   *d->n_turned += d->set->n_turned;
   if (status == CONIC_OK && d->is_gathered)
     d->is_gathered(d->data);
+  const conic_drawing drawing = {.splats = &d->set->splats};
   if (status == CONIC_OK)
-    status = conic_render_samples(d->layers->context, d->renderer, &d->set->splats, d->camera, d->render, d->samples,
-                                  d->image, statistics);
+    status = conic_render_transparent(d->layers->context, d->renderer, &drawing, d->camera, d->render, d->transparency,
+                                      d->chance, d->samples, d->image, statistics);
   if (status == CONIC_OK)
     rename_window(b, &whole, &whole, d->image);
   return status;
@@ -344,14 +345,16 @@ static conic_status draw_windows(bands *b, int is_room, conic_render_statistics 
 /* Whether all that is drawn, and of the picture of its samples, has room: this is no estimate, but of grazing places.
  */
 static int fits(bands *b) {
+  enum { PROJECTED_BYTES = 144 }; /* what transparency keeps of a splat besides */
   const conic_layers_band_drawing *d = b->d;
+  double splat_bytes = CONIC_LAYERS_SPLAT_BYTES + (d->transparency ? PROJECTED_BYTES : 0);
   double room = (double)conic_layers_drawing_bytes(d->layers);
   int height = b->part.y_end - b->part.y_begin, rows = b->band_rows < height ? b->band_rows : height;
   for (size_t i = 0; i < d->n_chosen; i++)
     b->n_expected += conic_layers_place_weight(d->layers, &d->cut->places[d->chosen[i]]);
   if (d->samples > 1 && conic_renderer_has_parts(d->renderer))
     room -= (double)rows * (double)(b->part.x_end - b->part.x_begin) * (double)b->pixel_bytes;
-  return b->n_expected * CONIC_LAYERS_SPLAT_BYTES <= room;
+  return b->n_expected * splat_bytes <= room;
 }
 
 static uint64_t bytes_of_pixel(const conic_image *image) {
@@ -373,6 +376,10 @@ conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, c
   b.part = (conic_window){n * window->x_begin, n * window->x_end, n * window->y_begin, n * window->y_end};
   b.band_rows = n * conic_samples_band_rows(drawing->camera, n);
   *n_bands = 1;
-  int is_room = fits(&b);
-  return is_room && draws_whole(&b) ? draw_whole(&b, statistics) : draw_windows(&b, is_room, statistics, n_bands);
+  int is_room = fits(&b), is_at_once = is_room && draws_whole(&b);
+  if (drawing->transparency && !is_at_once)
+    return conic_fail(drawing->layers->context, CONIC_ERROR_MEMORY,
+                      "%s: transparency wants all %.0f splats of the picture in memory at once, where fewer may be",
+                      drawing->layers->name, b.n_expected);
+  return is_at_once ? draw_whole(&b, statistics) : draw_windows(&b, is_room, statistics, n_bands);
 }

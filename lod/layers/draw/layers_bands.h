@@ -12,6 +12,8 @@ typedef struct conic_layers_band_drawing {
   const conic_layers_cut *cut;
   const conic_layers_view *view;
   int samples;
+  conic_transparency transparency; /* NONE where the samples keep no opacities */
+  double chance;
   conic_window window;    /* of the picture's pixels, which the image has: all, or within one of its bands */
   const uint32_t *chosen; /* places of the cut, ascending: those that the window may show */
   size_t n_chosen;

@@ -111,7 +111,7 @@ static void tell_of_missing(const conic_layers_picture *d) {
 }
 
 static int wants_hiding(const conic_layers_picture *d) {
-  if (d->options.samples > 1 || d->options.occlusion == CONIC_OCCLUSION_OFF || d->cut.n < 2)
+  if (d->options.transparency || d->options.samples > 1 || d->options.occlusion == CONIC_OCCLUSION_OFF || d->cut.n < 2)
     return 0;
   return d->options.occlusion == CONIC_OCCLUSION_ON ||
          conic_layers_depth_complexity(d->layers, &d->view, &d->cut) >= deep;
@@ -224,6 +224,8 @@ static conic_status look_at_picture(conic_layers_picture *d) {
     d->render.near_z = scale.near_z;
   if (!(d->render.splat_length > 0.0))
     d->render.splat_length = scale.splat_length;
+  if (conic_layers_schema_find(&layers->header.schema, CONIC_LAYERS_OPACITY) < 0)
+    d->options.transparency = CONIC_TRANSPARENCY_NONE;
   conic_layers_view_init(&layers->header, &d->camera, &d->render, d->render.near_z, &d->view);
   if (!d->view.cull_back || layers->facings)
     return CONIC_OK;
@@ -376,6 +378,8 @@ conic_status conic_layers_picture_draw(conic_layers_picture *d, const conic_wind
                                      .cut = &d->cut,
                                      .view = &d->view,
                                      .samples = d->options.samples,
+                                     .transparency = d->options.transparency,
+                                     .chance = d->options.chance,
                                      .window = *window,
                                      .chosen = d->chosen,
                                      .n_chosen = n_chosen,

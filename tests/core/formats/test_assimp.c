@@ -235,10 +235,11 @@ static void test_origin(void) {
   CHECK(unlink(path) == 0);
 }
 
-/* Points, with colours that are linear floats. */
+/* Points, with colours that are linear floats, and alpha where it is asked for. */
 static void test_points(void) {
   static mesh_file file, buffer;
-  static const float colors[4][3] = {{0.25f, 0.5f, 1}, {0, 0, 0}, {1, 1, 1}, {0.125f, 0, 0}};
+  static const float colors[4][4] = {{0.25f, 0.5f, 1, 0.5f}, {0, 0, 0, 1}, {1, 1, 1, 0}, {0.125f, 0, 0, 0.25f}};
+  conic_read_options options;
   conic_model model;
   file.n = buffer.n = 0;
   mesh_put(&buffer, mesh_corners, sizeof mesh_corners);
@@ -247,18 +248,25 @@ static void test_points(void) {
             "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
             "\"meshes\":[{\"primitives\":[{\"mode\":0,\"attributes\":{\"POSITION\":0,\"COLOR_0\":1}}]}],"
             "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,0],"
-            "\"max\":[3,2,1]},{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"}],"
-            "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":48}],"
-            "\"buffers\":[{\"byteLength\":96,\"uri\":\"data:application/octet-stream;base64,");
+            "\"max\":[3,2,1]},{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"VEC4\"}],"
+            "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":64}],"
+            "\"buffers\":[{\"byteLength\":112,\"uri\":\"data:application/octet-stream;base64,");
   mesh_base64(&file, buffer.bytes, buffer.n);
   mesh_text(&file, "\"}]}");
   const char *path = files_write_bytes("a.gltf", file.bytes, file.n);
-  CHECK_OK(conic_model_read(context, path, NULL, &model));
-  CHECK(model.points.count == 4 && model.n_triangles == 0 && model.points.color[0]);
-  for (size_t i = 0; model.points.color[0] && i < 4; i++)
-    for (int c = 0; c < 3; c++)
-      CHECK(model.points.color[c][i] == colors[i][c] && model.points.position[c][i] == mesh_corners[i][c]);
-  conic_model_release(context, &model);
+  conic_read_options_init(&options);
+  for (int keeps_alpha = 0; keeps_alpha < 2; keeps_alpha++) {
+    options.keeps_alpha = keeps_alpha;
+    CHECK_OK(conic_model_read(context, path, &options, &model));
+    CHECK(model.points.count == 4 && model.n_triangles == 0 && model.points.color[0]);
+    CHECK((model.points.opacity != NULL) == keeps_alpha);
+    for (size_t i = 0; model.points.color[0] && i < 4; i++)
+      for (int c = 0; c < 3; c++)
+        CHECK(model.points.color[c][i] == colors[i][c] && model.points.position[c][i] == mesh_corners[i][c]);
+    for (size_t i = 0; model.points.opacity && i < 4; i++)
+      CHECK(model.points.opacity[i] == colors[i][3]);
+    conic_model_release(context, &model);
+  }
   CHECK(unlink(path) == 0);
 }
 
