@@ -198,7 +198,7 @@ const cli_command cli_layer = {
         "names.",
     .examples = {{"join scans that do not fit into memory", "conic layer scans/*.ply -o all.lpc --memory 4096"},
                  {"keep all that a survey says of its points", "conic layer survey.las -o survey.lpc --keep all"},
-                 {"build a survey of thousands of tiles", "mpirun -n 8 conic-mpi layer tiles -o survey.lpc"}},
+                 {"build a survey of thousands of tiles", "conic layer tiles -o survey.lpc"}},
     .is_shared = 1,
 };
 

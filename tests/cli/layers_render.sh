@@ -65,7 +65,6 @@ run 1 diff steps/0001.exr steps/0002.exr
 run 0 diff steps/"$(printf %04d "$n")".exr whole.exr
 
 # Wrong usage, wrong inputs.
-run 2 render knot.ply -o x.pfm --memory 10
 run 2 render knot.ply -o x.pfm --progressive x
 run 2 render knot.ply -o x.pfm --deadline 1
 run 2 render knot.ply -o x.pfm --tolerate
