@@ -5,13 +5,17 @@
 
 enum { ROW_HEIGHT = 16, LEAST_HEIGHT = 200, MOST_HEIGHT = 4000 };
 
-static const char *const kind_names[CLI_RANK_N_KINDS] = {"opens", "draws", "joins results", "writes"};
-static const char *const kind_colors[CLI_RANK_N_KINDS] = {"#888888", "#0072b2", "#d55e00", "#009e73"};
+static const char *const kind_names[CLI_RANK_N_KINDS] = {"each by itself", "shares",        "waits", "opens",
+                                                         "draws",          "joins results", "writes"};
+static const char *const kind_colors[CLI_RANK_N_KINDS] = {"#f0e442", "#56b4e9", "#ffffff", "#888888",
+                                                          "#0072b2", "#d55e00", "#009e73"};
 
 /* The first event is at 0. Rank 0 is the lowest row. */
-static void draw_events(cli_plot *plot, const cli_rank_trace *trace) {
+static void draw_events(cli_plot *plot, const cli_rank_trace *trace, cli_rank_kind kind) {
   for (size_t i = 0; i < trace->n_events; i++) {
     const cli_rank_event *event = &trace->events[i];
+    if (event->kind != kind)
+      continue;
     const cli_plot_style style = {.color = kind_colors[event->kind], .shape = CLI_PLOT_SQUARE};
     const double x[2] = {event->begin_s - trace->first_event, event->end_s - trace->first_event},
                  y[2] = {event->rank - 0.4, event->rank + 0.4};
@@ -30,10 +34,11 @@ static void write_timeline(FILE *to, const cli_rank_trace *trace) {
   cli_plot_include(&rank, trace->n_ranks - 0.5);
   cli_plot_begin(&plot, to, "What the ranks did", &grid);
   cli_plot_panel(&plot, "", &time, &rank);
-  draw_events(&plot, trace);
   for (int kind = 0; kind < CLI_RANK_N_KINDS; kind++) {
+    draw_events(&plot, trace, (cli_rank_kind)kind);
     const cli_plot_style style = {.color = kind_colors[kind], .shape = CLI_PLOT_SQUARE};
-    cli_plot_key(&plot, &style, kind_names[kind]);
+    if (kind != CLI_RANK_WAITS) /* gaps */
+      cli_plot_key(&plot, &style, kind_names[kind]);
   }
   cli_plot_end(&plot);
 }
