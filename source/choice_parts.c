@@ -114,7 +114,8 @@ static void weigh_choice_windows(const conic_source_windows *w, const conic_wind
                                       weights);
 }
 
-const conic_source_windowing conic_source_windowing_choice = {.begin = begin_choice_windows,
+const conic_source_windowing conic_source_windowing_choice = {.has_transparency = 1,
+                                                              .begin = begin_choice_windows,
                                                               .end = end_choice_windows,
                                                               .draw = draw_choice_window,
                                                               .count = count_choice_windows,

@@ -5,9 +5,11 @@
 #include "core/base/message.h"
 #include "source/source_kind.h"
 
-int conic_source_has_windows(const conic_source *source, const conic_renderer *renderer) {
+int conic_source_has_windows(const conic_source *source, const conic_renderer *renderer, int is_transparent) {
+  const conic_source_windowing *windowing = source->kind->windowing;
   int is_carried = source->is_moved && !source->kind->move;
-  return source->kind->windowing && !is_carried && conic_renderer_has_parts(renderer);
+  return windowing && (!is_transparent || windowing->has_transparency) && !is_carried &&
+         conic_renderer_has_parts(renderer);
 }
 
 conic_status conic_source_windows_begin(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
@@ -15,7 +17,7 @@ conic_status conic_source_windows_begin(conic_source *source, conic_renderer *re
                                         unsigned planes, conic_source_windows *windows) {
   memset(windows, 0, sizeof *windows);
   conic_source_picture picture;
-  if (!conic_source_has_windows(source, renderer) || (view && view->transparency))
+  if (!conic_source_has_windows(source, renderer, view && view->transparency))
     return conic_fail(source->context, CONIC_ERROR_UNSUPPORTED, "%s: it is not drawn in windows", source->name);
   windows->source = source;
   windows->renderer = renderer;

@@ -8,8 +8,8 @@
 /* What a kind counts of its windows. */
 enum { CONIC_SOURCE_TALLIES = 4 };
 
-/* Whether it can: by the processor, what its kind has windows of. */
-int conic_source_has_windows(const conic_source *source, const conic_renderer *renderer);
+/* Whether it can: by the processor, what its kind has windows of, and with transparency not every kind. */
+int conic_source_has_windows(const conic_source *source, const conic_renderer *renderer, int is_transparent);
 
 typedef struct conic_source_windows {
   conic_source *source;
@@ -28,6 +28,7 @@ typedef struct conic_source_windows {
 
 /* How a kind of source draws in windows. */
 typedef struct conic_source_windowing {
+  int has_transparency; /* whether its windows do */
   /* Chooses what the camera sees, and sets step, band_rows and is_summed. What it leaves in `own`, also on failure, is
    * ended. */
   conic_status (*begin)(conic_source_windows *windows);

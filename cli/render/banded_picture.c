@@ -90,7 +90,7 @@ int cli_is_banded(const cli_session *session, const cli_render_job *job, const c
   return picture_bytes(job, camera) > memory_for(job) / 2 && is_plain_exr(session, job) && job->repeat == 1 &&
          !job->accumulating.n_samples && !job->is_exposure_automatic && !cli_light_is_wanted(job) &&
          !job->view.may_be_coarser && !cli_is_gathered(job, camera) &&
-         conic_source_has_windows(job->source, job->renderer);
+         conic_source_has_windows(job->source, job->renderer, job->is_transparent);
 }
 
 conic_status cli_refuse_too_large(const cli_session *session, const cli_render_job *job, const conic_camera *camera) {

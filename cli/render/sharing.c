@@ -40,7 +40,7 @@ int cli_sharing_choose(const cli_session *session, cli_render_job *job) {
 }
 
 void cli_sharing_settle(cli_render_job *job) {
-  if (job->sharing == CLI_SHARES_WINDOWS && !conic_source_has_windows(job->source, job->renderer))
+  if (job->sharing == CLI_SHARES_WINDOWS && !conic_source_has_windows(job->source, job->renderer, job->is_transparent))
     job->sharing = CLI_SHARES_NOTHING;
 }
 
