@@ -169,8 +169,11 @@ static void weigh_layers_windows(const conic_source_windows *windows, const coni
   conic_layers_picture_weigh(windows->own, list, n, weights);
 }
 
-static const conic_source_windowing windowing_of_layers = {begin_layers_windows, end_layers_windows, draw_layers_window,
-                                                           count_layers_windows, weigh_layers_windows};
+static const conic_source_windowing windowing_of_layers = {.begin = begin_layers_windows,
+                                                           .end = end_layers_windows,
+                                                           .draw = draw_layers_window,
+                                                           .count = count_layers_windows,
+                                                           .weigh = weigh_layers_windows};
 
 static void tell_layers_rest(const conic_source *source, conic_facts *facts) {
   const conic_layers_drawn *d = &((const layers_source *)source)->drawn;
