@@ -14,7 +14,7 @@ typedef struct cli_rank_unit {
 
 /* What a rank did at a time. */
 typedef enum cli_rank_kind {
-  CLI_RANK_BUILDS, /* from its beginning to its end: under what follows */
+  CLI_RANK_BUILDS, /* from its beginning to its end, around what follows */
   CLI_RANK_SHARES, /* a stage, */
   CLI_RANK_WAITS,  /* and what of it is waiting for others */
   CLI_RANK_OPENS,
