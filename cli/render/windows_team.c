@@ -99,25 +99,14 @@ static conic_status choose_windows(window_work *w) {
 
 /* --- pixels on their way --- */
 
-static size_t pixel_bytes_of(conic_plane plane) {
-  return 4 * (size_t)conic_plane_describe(plane)->n_channels;
-}
-
-size_t cli_pixel_bytes(unsigned planes) {
-  size_t n = 0;
-  for (int i = 0; i < CONIC_N_PLANES; i++)
-    n += planes >> i & 1 ? pixel_bytes_of((conic_plane)i) : 0;
-  return n;
-}
-
 static size_t window_bytes(const window_work *w, const conic_window *window) {
-  return cli_pixel_bytes(w->planes) * (size_t)(window->x_end - window->x_begin) *
+  return conic_planes_pixel_bytes(w->planes) * (size_t)(window->x_end - window->x_begin) *
          (size_t)(window->y_end - window->y_begin);
 }
 
 /* On the first process, of each window, its own included: where its pixels belong. */
 static void place_plane(const window_work *w, const conic_window *window, conic_plane plane, const void *pixels) {
-  size_t size = pixel_bytes_of(plane), n_bytes = (size_t)(window->x_end - window->x_begin) * size;
+  size_t size = conic_planes_pixel_bytes(1u << plane), n_bytes = (size_t)(window->x_end - window->x_begin) * size;
   const char *row = pixels;
   for (int y = window->y_begin; y < window->y_end; y++, row += n_bytes)
     memcpy((char *)w->image->planes[plane] + ((size_t)y * (size_t)w->image->width + (size_t)window->x_begin) * size,
@@ -135,7 +124,7 @@ static void take_window(void *cookie, int from, void *bytes, size_t n_bytes) {
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (w->planes >> i & 1) {
       place_plane(w, window, (conic_plane)i, pixels);
-      pixels += n * pixel_bytes_of((conic_plane)i);
+      pixels += n * conic_planes_pixel_bytes(1u << i);
     }
   cli_team_trace(w->session, "join", "window", result.i_window, start, n_bytes);
   (void)from;
@@ -159,8 +148,8 @@ static conic_status hand_window(const window_work *w, size_t i_window, const con
   memcpy(bytes, &result, sizeof result);
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (w->planes >> i & 1) {
-      memcpy(bytes + at, pixels->planes[i], n * pixel_bytes_of((conic_plane)i));
-      at += n * pixel_bytes_of((conic_plane)i);
+      memcpy(bytes + at, pixels->planes[i], n * conic_planes_pixel_bytes(1u << i));
+      at += n * conic_planes_pixel_bytes(1u << i);
     }
   w->team->hand(bytes, n_bytes);
   free(bytes);
@@ -256,8 +245,9 @@ conic_status cli_draw_together(cli_session *session, cli_render_job *job, const 
   w.planes = (conic_image_planes(image) ? conic_image_planes(image) : job->planes) & CLI_WINDOWS_PLANES;
   conic_status status = conic_source_windows_begin(job->source, job->renderer, camera, looking->options, looking->view,
                                                    w.planes, &w.windows);
-  w.windows.other_bytes =
-      session->team->index == 0 ? cli_pixel_bytes(w.planes) * (uint64_t)camera->width * (uint64_t)camera->height : 0;
+  w.windows.other_bytes = session->team->index == 0
+                              ? conic_planes_pixel_bytes(w.planes) * (uint64_t)camera->width * (uint64_t)camera->height
+                              : 0;
   if (status == CONIC_OK)
     status = choose_windows(&w);
   status = cli_sharing_end(session, job, status);
