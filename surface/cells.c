@@ -78,7 +78,7 @@ static conic_status grow(conic_cells *cells) {
 }
 
 /* The number of the part that a place lies in. */
-static int part_of(const conic_cells *cells, const int32_t at[3], const float place[3]) {
+static int part_of_cell(const conic_cells *cells, const int32_t at[3], const float place[3]) {
   int number = 0;
   for (int axis = 0; axis < 3; axis++) {
     int i = (int)(4.0 * ((double)place[axis] / cells->side - (double)at[axis]));
@@ -101,7 +101,7 @@ conic_status conic_cells_count(conic_cells *cells, const int32_t at[3], const fl
     cells->table[look_up(cells, at)] = entry = (uint32_t)cells->n;
   }
   cells->cells[entry - 1].count++;
-  cells->cells[entry - 1].parts |= UINT64_C(1) << part_of(cells, at, place);
+  cells->cells[entry - 1].parts |= UINT64_C(1) << part_of_cell(cells, at, place);
   return CONIC_OK;
 }
 

@@ -45,7 +45,8 @@ typedef struct conic_team_loop {
 static inline conic_team_loop conic_team_loop_of(const char *name, double from, double to, size_t n_values,
                                                  size_t n_an_item, size_t n_a_run, conic_task *task, void *data) {
   size_t n_items = (n_values + n_an_item - 1) / n_an_item;
-  return (conic_team_loop){name, from, to, n_items, n_a_run, task, data, n_an_item, n_values, NULL, {{NULL, 0, NULL, 0}}};
+  return (conic_team_loop){
+      name, from, to, n_items, n_a_run, task, data, n_an_item, n_values, NULL, {{NULL, 0, NULL, 0}}};
 }
 
 /* conic_parallel_runs or conic_parallel_told, which is all of it where the context has no team. Else collective: each

@@ -167,7 +167,7 @@ conic_status conic_model_look(conic_context *context, const char *path, const co
   return status;
 }
 
-static conic_status pass_part(streaming *s, const char *path, conic_batch_receiver *receive, void *cookie) {
+static conic_status pass_over_part(streaming *s, const char *path, conic_batch_receiver *receive, void *cookie) {
   conic_input input;
   conic_status status = conic_input_open(s->context, path, &input);
   if (status != CONIC_OK)
@@ -185,7 +185,7 @@ conic_status conic_model_survey_part(conic_context *context, const char *path, c
   streaming s = {.context = context, .options = &settings, .part = range};
   conic_status status = conic_read_options_check(context, path, options, &settings);
   if (status == CONIC_OK)
-    status = pass_part(&s, path, see_colors, &s);
+    status = pass_over_part(&s, path, see_colors, &s);
   const conic_model_survey found = {s.n_wanted, s.range};
   conic_model_survey_add(survey, &found);
   return status;
@@ -208,7 +208,8 @@ conic_status conic_model_stream_part(conic_context *context, const char *path, c
   if (status == CONIC_OK && shape.needs_survey)
     status = conic_raw_colors_scale(context, &survey->colors, 0, &s.scale);
   if (status == CONIC_OK)
-    status = shape.needs_survey ? pass_part(&s, path, decode_batch, &s) : pass_part(&s, path, receive, cookie);
+    status =
+        shape.needs_survey ? pass_over_part(&s, path, decode_batch, &s) : pass_over_part(&s, path, receive, cookie);
   conic_memory_release(context, s.scale.table);
   return status;
 }

@@ -102,7 +102,7 @@ static void choose_opacity(conic_ply_layout *layout) {
 }
 
 /* In place of an opacity that is none. */
-static void find_alpha(const conic_ply_header *header, const conic_ply_element *vertices, conic_ply_layout *layout) {
+static void use_alpha(const conic_ply_header *header, const conic_ply_element *vertices, conic_ply_layout *layout) {
   int i_property;
   if (layout->form == CONIC_PLY_GAUSSIANS || has_columns(layout, CONIC_PLY_OPACITY, 1) ||
       !find_value(header, vertices, "alpha", &i_property))
@@ -159,7 +159,7 @@ conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *h
   }
   choose_form(layout);
   if (options->keeps_alpha)
-    find_alpha(header, vertices, layout);
+    use_alpha(header, vertices, layout);
   find_clip_lists(header, vertices, layout);
   if (keeps_coordinates)
     find_coordinates(header, vertices, layout);

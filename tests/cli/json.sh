@@ -60,6 +60,7 @@ declare -A wanted=(
   [render-octree]="$render methods.conic primitives.inner_nodes primitives.leaves error_px error_px_asked?"
   [render-team]="$render team.shares team.processes"
   [render-accumulated]="$render accumulated.samples accumulated.resumed accumulated.noise? accumulated.focus?"
+  [render-kept]="$render frames_finished?"
   [render-odd]="$render skipped.nan? skipped.zero? skipped.duplicate? skipped.isolated? skipped.failed?"
   [render-lit]="$render ao? shadow? lamps? ms.light hash.ao hash.shadow"
   [render-steep]="$render methods.conic methods.laplace"
@@ -125,6 +126,7 @@ write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 10k
 write mls-densify mls_densify mls densify thinner.ply -o dense.ply --spacing 0.7x
 write render render render knot.ply -o knot.exr --aov all --size 512x512
 write render-accumulated render render knot.ply -o accumulated.exr --accumulate 4 --aperture 0.1 --size 64x64
+write render-kept render render knot.ply --turntable 2 -o turn.exr --resumable --resume turn.exr --size 32x32
 if [[ -x $3/bin/conic-mpi ]] && command -v mpirun > /dev/null; then
   OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n 2 "$3/bin/conic-mpi" render knot.ply \
     --plain -o team.exr --aov all --size 64x64 --json runs/render-team.json < /dev/null || fail "two ranks cannot draw"
