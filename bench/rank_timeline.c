@@ -11,8 +11,8 @@ static const char *const kind_colors[CLI_RANK_N_KINDS] = {"#f0e442", "#56b4e9", 
                                                           "#0072b2", "#d55e00", "#009e73"};
 
 /* The first event is at 0. Rank 0 is the lowest row. */
-static void draw_box(cli_plot *plot, const cli_rank_trace *trace, const cli_rank_event *event, double begin_s,
-                     double end_s) {
+static void draw_span(cli_plot *plot, const cli_rank_trace *trace, const cli_rank_event *event, double begin_s,
+                      double end_s) {
   const cli_plot_style style = {.color = kind_colors[event->kind], .shape = CLI_PLOT_SQUARE};
   const double x[2] = {begin_s - trace->first_event, end_s - trace->first_event},
                y[2] = {event->rank - 0.4, event->rank + 0.4};
@@ -35,10 +35,10 @@ static void draw_between(cli_plot *plot, const cli_rank_trace *trace, const cli_
     const cli_rank_event *event = &trace->events[i];
     if (event->rank != whole->rank || event->kind != CLI_RANK_SHARES)
       continue;
-    draw_box(plot, trace, whole, at, event->begin_s);
+    draw_span(plot, trace, whole, at, event->begin_s);
     at = event->end_s > at ? event->end_s : at;
   }
-  draw_box(plot, trace, whole, at, whole->end_s);
+  draw_span(plot, trace, whole, at, whole->end_s);
 }
 
 static void draw_events(cli_plot *plot, const cli_rank_trace *trace) {
@@ -47,8 +47,8 @@ static void draw_events(cli_plot *plot, const cli_rank_trace *trace) {
     if (event->kind == CLI_RANK_BUILDS)
       draw_between(plot, trace, event);
     else if (event->kind != CLI_RANK_WAITS)
-      draw_box(plot, trace, event, event->begin_s,
-               event->kind == CLI_RANK_SHARES ? end_of_work(trace, i) : event->end_s);
+      draw_span(plot, trace, event, event->begin_s,
+                event->kind == CLI_RANK_SHARES ? end_of_work(trace, i) : event->end_s);
   }
 }
 
