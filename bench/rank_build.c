@@ -1,4 +1,4 @@
-/* Building a layered cloud on more ranks. */
+/* Building on more ranks. */
 #include <math.h>
 
 #include "bench/rank_schedule.h"
@@ -43,10 +43,14 @@ static double crown_s(const cli_rank_trace *trace, const cli_rank_line *line, do
          (n_nodes * node_bytes + n_ranks * outlines_bytes) / line->bytes_per_s + n_ranks * 4.0 * line->latency_s;
 }
 
+/* Everybody says something small, and rank 0 something to all. */
+static double round_s(const cli_rank_line *line, double n_ranks) {
+  return n_ranks * small_s + (2.0 + 2.0 * ceil(log2(n_ranks))) * line->latency_s;
+}
+
 /* Everybody writes its own clouds in place, of some at a time, which rank 0 tells all. */
 static double telling_s(const cli_rank_line *line, double n_ranks, double n_nodes) {
-  double each = n_ranks * small_s + (2.0 + 2.0 * ceil(log2(n_ranks))) * line->latency_s;
-  return (n_nodes / nodes_at_once + 2.0) * each;
+  return (n_nodes / nodes_at_once + 2.0) * round_s(line, n_ranks);
 }
 
 void cli_rank_build(const cli_rank_trace *trace, const cli_rank_line *line, int n_ranks, uint64_t times,
@@ -76,4 +80,23 @@ void cli_rank_build(const cli_rank_trace *trace, const cli_rank_line *line, int 
   for (int i = 0; i < CLI_RANK_N_LOSSES; i++)
     estimate->seconds += estimate->lost_s[i];
   estimate->efficiency = (trace->open_s + alone_s + order_s) / (n * estimate->seconds);
+}
+
+double cli_rank_loops_merge(const cli_rank_trace *trace, const cli_rank_line *line, int n_ranks, uint64_t times) {
+  double here = (double)trace->n_ranks, n_loops = trace->loops.number / here, others = 1.0 - 1.0 / (double)n_ranks;
+  if (n_ranks < 2)
+    return 0.0;
+  /* Rank 0 gets what the others made, and sends all of it once: so the trace counts. */
+  double bytes = trace->loops.bytes * (double)times / (2.0 - 1.0 / here);
+  return (others + 1.0) * bytes / line->bytes_per_s + n_loops * round_s(line, (double)n_ranks);
+}
+
+void cli_rank_loops(const cli_rank_trace *trace, const cli_rank_line *line, int n_ranks, uint64_t times,
+                    cli_rank_estimate *estimate) {
+  double n = (double)n_ranks, shared_s = trace->loops.seconds * (double)times, alone_s = trace->alone_s * (double)times;
+  *estimate = (cli_rank_estimate){.n_ranks = n_ranks};
+  estimate->lost_s[CLI_RANK_OPEN] = alone_s;
+  estimate->lost_s[CLI_RANK_MERGE] = cli_rank_loops_merge(trace, line, n_ranks, times);
+  estimate->seconds = alone_s + shared_s / n + estimate->lost_s[CLI_RANK_MERGE];
+  estimate->efficiency = (alone_s + shared_s) / (n * estimate->seconds);
 }

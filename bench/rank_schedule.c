@@ -83,10 +83,10 @@ conic_status cli_rank_schedule(conic_context *context, const cli_rank_trace *tra
                                int n_ranks, uint64_t times, cli_rank_estimate *estimate) {
   rank_run run = {
       .trace = trace, .line = line, .n_ranks = (size_t)n_ranks, .n_units = trace->n_units * times, .last_s = 0.0};
-  double work_s = 0.0;
+  double work_s = 0.0, loops_s = trace->loops.seconds * (double)times; /* light that a picture's windows then get */
   memset(estimate, 0, sizeof *estimate);
-  if (trace->is_build) {
-    cli_rank_build(trace, line, n_ranks, times, estimate);
+  if (trace->job != CLI_RANK_UNITS) {
+    (trace->job == CLI_RANK_LAYERS ? cli_rank_build : cli_rank_loops)(trace, line, n_ranks, times, estimate);
     return CONIC_OK;
   }
   run.turns = conic_memory_allocate(context, run.n_ranks, sizeof *run.turns);
@@ -102,12 +102,13 @@ conic_status cli_rank_schedule(conic_context *context, const cli_rank_trace *tra
   estimate->lost_s[CLI_RANK_OPEN] = trace->open_s;
   estimate->lost_s[CLI_RANK_FIRST] = run.waited_s / n_ranks;
   estimate->lost_s[CLI_RANK_UNEVEN] = run.last_s - run.done_s / n_ranks;
-  estimate->lost_s[CLI_RANK_MERGE] = merging_s(trace, line, n_ranks);
+  estimate->lost_s[CLI_RANK_MERGE] =
+      merging_s(trace, line, n_ranks) + cli_rank_loops_merge(trace, line, n_ranks, times);
   /* More samples are no larger picture. */
   double write_s = trace->n_merges > 0.0 ? trace->write_s : trace->write_s * (double)times;
   estimate->lost_s[CLI_RANK_WRITE] = write_s;
-  estimate->seconds = trace->open_s + run.last_s + estimate->lost_s[CLI_RANK_MERGE] + write_s;
-  double alone_s = trace->open_s + work_s + trace->join_s * (double)times + write_s;
+  estimate->seconds = trace->open_s + run.last_s + loops_s / n_ranks + estimate->lost_s[CLI_RANK_MERGE] + write_s;
+  double alone_s = trace->open_s + work_s + loops_s + trace->join_s * (double)times + write_s;
   estimate->efficiency = alone_s / (n_ranks * estimate->seconds);
   return CONIC_OK;
 }

@@ -14,6 +14,9 @@ typedef struct cli_rank_unit {
 
 /* What a rank did at a time. */
 typedef enum cli_rank_kind {
+  CLI_RANK_BUILDS, /* from its beginning to its end, around what follows */
+  CLI_RANK_SHARES, /* a stage, */
+  CLI_RANK_WAITS,  /* and what of it is waiting for others */
   CLI_RANK_OPENS,
   CLI_RANK_DRAWS,
   CLI_RANK_JOINS,
@@ -46,13 +49,21 @@ typedef struct cli_rank_stage_sum {
   double seconds, bytes, number;
 } cli_rank_stage_sum;
 
+/* What the ranks do with a job. */
+typedef enum cli_rank_job {
+  CLI_RANK_UNITS,  /* draw frames, samples or windows */
+  CLI_RANK_LAYERS, /* build a layered cloud, by the stages above */
+  CLI_RANK_LOOPS   /* all do the same, but for loops that they share */
+} cli_rank_job;
+
 /* What a trace says of a job. */
 typedef struct cli_rank_trace {
+  cli_rank_job job;
   int n_ranks;    /* that it ran on */
   double seconds; /* from its first event to the end of its last */
   double open_s;  /* before its units, on each rank: the mean */
   cli_rank_unit *units;
-  size_t n_units, room;   /* of building: parts of the inputs, which are no units */
+  size_t n_units, room;   /* of layers: parts of the inputs, and of loops the ranks' turns, which are no units */
   cli_rank_event *events; /* all of them */
   size_t n_events, events_room;
   double join_s;               /* what rank 0 does with all results of units */
@@ -60,8 +71,10 @@ typedef struct cli_rank_trace {
   double n_merges;             /* how often the sums come together */
   double write_s;              /* after all units */
   double first_event;          /* while it is read */
-  int is_build;                /* of a cloud: stages in place of units */
   cli_rank_stage_sum stages[CLI_RANK_N_STAGES];
+  double n_parts;           /* of inputs, that were read */
+  cli_rank_stage_sum loops; /* all stages, whatever their names; `number` says how many */
+  double whole_s, alone_s;  /* of building, on rank 0: all of it, and without stages */
 } cli_rank_trace;
 
 /* Reads what --trace wrote: events of Chrome's format. On success the caller releases it. Errors: INPUT, MEMORY. */
@@ -98,6 +111,13 @@ enum { CLI_MOST_RANKS = 65536 };
  * rank that is free. Rank 0 gives them out and takes results one at a time, beside its own units. Errors: MEMORY. */
 conic_status cli_rank_schedule(conic_context *context, const cli_rank_trace *trace, const cli_rank_line *line,
                                int n_ranks, uint64_t times, cli_rank_estimate *estimate);
+
+/* Of loops that all share, on so many ranks: bringing together what they made, in seconds. */
+double cli_rank_loops_merge(const cli_rank_trace *trace, const cli_rank_line *line, int n_ranks, uint64_t times);
+
+/* The same of a job of such loops: between them everybody does all of it. */
+void cli_rank_loops(const cli_rank_trace *trace, const cli_rank_line *line, int n_ranks, uint64_t times,
+                    cli_rank_estimate *estimate);
 
 /* The same of building: what is shared out takes its share of the time, and then there is what more ranks make longer.
  */

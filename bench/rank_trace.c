@@ -21,7 +21,7 @@ static conic_status add_unit(conic_context *context, cli_rank_trace *trace, cons
 
 /* What is of no kind is not drawn. */
 static conic_status add_event(conic_context *context, cli_rank_trace *trace, const trace_event *event) {
-  static const char *const kinds[CLI_RANK_N_KINDS] = {"open", "unit", "join", "write"};
+  static const char *const kinds[CLI_RANK_N_KINDS] = {"build", "stage", "wait", "open", "unit", "join", "write"};
   int kind = 0;
   while (kind < CLI_RANK_N_KINDS && strcmp(event->kind, kinds[kind]) != 0)
     kind++;
@@ -48,9 +48,12 @@ static void add_stage(cli_rank_trace *trace, const trace_event *event, double si
     trace->stages[i].bytes += event->bytes;
     if (sign > 0.0 && conic_number_parse(event->name + length + 1, strlen(event->name + length + 1), &number) > 0)
       trace->stages[i].number += number;
-    trace->n_units += i == CLI_STAGE_READ && sign > 0.0;
+    trace->n_parts += i == CLI_STAGE_READ && sign > 0.0 ? 1.0 : 0.0;
   }
-  trace->is_build = 1;
+  trace->loops.seconds += sign * 1e-6 * event->lasted_us;
+  trace->loops.bytes += event->bytes;
+  trace->loops.number += sign > 0.0 ? 1.0 : 0.0;
+  trace->alone_s -= event->rank < 1.0 && sign > 0.0 ? 1e-6 * event->lasted_us : 0.0;
 }
 
 /* Each time that sums come together, every rank says by "swap" how much it sends, and by "sums" how long it
@@ -63,10 +66,12 @@ static conic_status take_event(conic_context *context, cli_rank_trace *trace, co
     trace->first_event = 1e-6 * event->begun_us;
   if (event->rank >= trace->n_ranks)
     trace->n_ranks = (int)event->rank + 1;
-  if (strcmp(event->kind, "unit") == 0 && !trace->is_build)
+  if (strcmp(event->kind, "unit") == 0)
     return add_unit(context, trace, event);
-  if (!trace->units && (strcmp(event->kind, "stage") == 0 || strcmp(event->kind, "wait") == 0))
+  if (strcmp(event->kind, "stage") == 0 || strcmp(event->kind, "wait") == 0)
     add_stage(trace, event, event->kind[0] == 's' ? 1.0 : -1.0);
+  else if (strcmp(event->kind, "build") == 0 && event->rank < 1.0)
+    trace->whole_s += lasted_s;
   else if (strcmp(event->kind, "open") == 0)
     trace->open_s += lasted_s;
   else if (strcmp(event->kind, "write") == 0)
@@ -127,10 +132,23 @@ static conic_status read_events(conic_context *context, conic_json *json, cli_ra
   return status;
 }
 
+/* A stage alone does not tell: the light of a picture has some, too. */
+static void find_job(cli_rank_trace *trace) {
+  if (trace->whole_s > 0.0) {
+    trace->job = CLI_RANK_LOOPS;
+    trace->n_units = (size_t)trace->loops.number;
+  } else if (trace->n_units == 0) {
+    trace->job = CLI_RANK_LAYERS;
+    trace->n_units = (size_t)trace->n_parts;
+  }
+}
+
 /* Sums of ranks and merges become means; each rank kept its share of the bytes. */
 static void settle_trace(cli_rank_trace *trace) {
   trace->seconds -= trace->first_event;
   trace->open_s /= trace->n_ranks;
+  trace->loops.seconds = trace->loops.seconds > 0.0 ? trace->loops.seconds : 0.0;
+  trace->alone_s = trace->whole_s + trace->alone_s > 0.0 ? trace->whole_s + trace->alone_s : 0.0;
   if (trace->n_merges > 0.0) {
     double whole = trace->n_ranks > 1 ? trace->n_ranks / (trace->n_ranks - 1.0) : 1.0;
     trace->merge_s *= whole / trace->n_merges;
@@ -155,8 +173,9 @@ conic_status cli_rank_trace_read(conic_context *context, const char *path, cli_r
       conic_json_skip(&json);
   if (status == CONIC_OK)
     status = conic_json_end(&json);
+  find_job(trace);
   if (status == CONIC_OK && trace->n_units == 0)
-    status = conic_json_wrong(&json, "is no trace of conic-mpi: it has no units");
+    status = conic_json_wrong(&json, "is no trace of conic-mpi: it has neither units nor stages of building");
   conic_json_close(&json);
   if (status == CONIC_OK)
     settle_trace(trace);

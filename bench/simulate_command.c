@@ -46,7 +46,7 @@ static cli_rank_loss limit_of(const cli_rank_estimate *e) {
 
 static void print_estimates(const simulate_job *job) {
   const cli_rank_trace *trace = &job->trace;
-  if (trace->is_build)
+  if (trace->job != CLI_RANK_UNITS)
     printf("Building on %d ranks took %.3f s; %.3f s by the model\n\n", trace->n_ranks, trace->seconds,
            job->same.seconds);
   else
@@ -152,8 +152,9 @@ const cli_command cli_simulate = {
     .run = run,
     .description = "Reads what conic-mpi wrote by --trace, and says for each number of ranks when the job would be "
                    "done, and what would lose the most time: opening what each rank opens, waiting for the first rank, "
-                   "ranks without work at the end, merging sums, or writing; of building a layered cloud, what merges "
-                   "is the exchange of samples and the top of the tree.",
+                   "ranks without work at the end, merging sums, or writing. Of building a layered cloud, what merges "
+                   "is the exchange of samples and the top of the tree; of mls, prepare and octree, what each rank "
+                   "does itself counts as opening, and what merges is what comes of shared loops.",
     .examples = {{"on up to 1024 ranks", "conic simulate trace.json"},
                  {"the same for a picture of 100 times as many windows, on a slow network",
                   "conic simulate trace.json --times 100 --bandwidth 1 --latency 50"}},

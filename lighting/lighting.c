@@ -168,17 +168,12 @@ static float arriving_part(const conic_light_work *l, size_t i) {
   return l->options->is_sample ? part : conic_sky_sums_share(&l->sums, i);
 }
 
-/* Before what all do together. */
-static conic_status agree_on_light(const conic_light_work *l, conic_status status) {
-  return conic_team_agree(l->room.sharing ? l->room.sharing->team : NULL, status);
-}
-
 static conic_status gather_sky(conic_light_work *l) {
   float *ao = l->image->planes[CONIC_PLANE_AO];
   int has_colors = l->hidden != NULL;
   size_t n = l->receivers.count;
   l->sums_block = conic_memory_allocate_zeroed(l->context, n, (has_colors ? 5 : 2) * sizeof *l->sums_block);
-  conic_status status = agree_on_light(l, l->sums_block ? CONIC_OK : CONIC_ERROR_MEMORY);
+  conic_status status = conic_map_room_agree(&l->room, l->sums_block ? CONIC_OK : CONIC_ERROR_MEMORY);
   if (status != CONIC_OK)
     return status;
   l->sums = (conic_sky_sums){.facing = l->sums_block,
@@ -264,7 +259,7 @@ conic_status conic_image_light_shared(conic_context *context, const conic_caster
     return status;
   status = prepare_lighting(&l, casters);
   l.room.sharing = sharing;
-  status = agree_on_light(&l, status);
+  status = conic_map_room_agree(&l.room, status);
   if (status == CONIC_OK && own.n_directions > 0)
     status = gather_sky(&l);
   if (status == CONIC_OK)

@@ -3,13 +3,16 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/team_runs.h"
 #include "core/splats/columns.h"
 #include "lighting/lamps.h"
-#include "lighting/sky_team.h"
+
+/* Of bits, one a receiver. */
+enum { BYTES_OF_ITEM = CONIC_RECEIVED_TOGETHER / 8 };
 
 void conic_lighting_options_init_sized(conic_lighting_options *options, size_t size) {
   static const conic_lighting_options own = {.size = sizeof own, .texels = 1.0, .most_texels = 4096, .samples = 1};
@@ -86,11 +89,28 @@ void conic_map_room_release(conic_map_room *room) {
   room->n_room = 0;
 }
 
-/* One direction's light, added to all sums. */
+conic_status conic_map_room_agree(const conic_map_room *room, conic_status status) {
+  const conic_team *team = room->sharing ? room->sharing->team : NULL;
+  uint64_t counts[CONIC_MOST_IN_TEAM];
+  status = conic_team_agree(team, status);
+  if (!team || status != CONIC_OK)
+    return status;
+  const uint64_t own = room->receivers->count;
+  conic_team_collect(team, &own, sizeof own, counts);
+  if (own != counts[0])
+    return conic_fail(room->context, CONIC_ERROR_ARGUMENT, "light: process %d has %llu receivers, and the first %llu",
+                      team->index, (unsigned long long)own, (unsigned long long)counts[0]);
+  for (int i = 1; i < team->count && status == CONIC_OK; i++)
+    status = counts[i] == own ? CONIC_OK : CONIC_ERROR_CANCELLED;
+  return status;
+}
+
+/* One direction's light, added to the sums of the receivers of items from `first_item` on. */
 typedef struct sky_adding {
   const conic_map_room *room;
   const conic_light_map *map;
-  const unsigned char *reached; /* a bit a receiver: another process has looked into the map; null: nobody has */
+  size_t first_item;
+  const unsigned char *reached; /* a bit a receiver, of these: whoever drew the map has looked; null: nobody has */
   float light[3];
   const conic_sky_sums *sums;
 } sky_adding;
@@ -103,12 +123,13 @@ static size_t end_of_receivers(const conic_map_room *room, size_t begin) {
 static void add_sky_light(void *data, size_t i_item, int i_thread) {
   const sky_adding *a = data;
   const conic_sky_sums *sums = a->sums;
+  const unsigned char *reached = a->reached ? a->reached + i_item * BYTES_OF_ITEM : NULL;
   float visible[CONIC_RECEIVED_TOGETHER], facing[CONIC_RECEIVED_TOGETHER];
-  size_t begin = i_item * CONIC_RECEIVED_TOGETHER, count = end_of_receivers(a->room, begin) - begin;
+  size_t begin = (a->first_item + i_item) * CONIC_RECEIVED_TOGETHER, count = end_of_receivers(a->room, begin) - begin;
   (void)i_thread;
   a->room->kernels.receive(a->map, a->room->receivers, begin, begin + count, 0, visible, facing);
-  for (size_t i = 0; i < count && a->reached; i++)
-    visible[i] = a->reached[(begin + i) / 8] >> (begin + i) % 8 & 1 ? 1.0f : 0.0f;
+  for (size_t i = 0; i < count && reached; i++)
+    visible[i] = reached[i / 8] >> i % 8 & 1 ? 1.0f : 0.0f;
   for (size_t i = 0; i < count; i++) {
     sums->facing[begin + i] += facing[i];
     sums->visible[begin + i] += facing[i] * visible[i];
@@ -116,51 +137,6 @@ static void add_sky_light(void *data, size_t i_item, int i_thread) {
   for (int c = 0; c < 3 && sums->color[0]; c++)
     for (size_t i = 0; i < count; i++)
       sums->color[c][begin + i] += a->light[c] * (facing[i] * (sums->takes_hidden ? 1.0f - visible[i] : visible[i]));
-}
-
-/* --- by several processes --- */
-
-/* What a process says of a map to the first one: the nearest texel's answer is yes or no. */
-typedef struct sky_looking {
-  const conic_map_room *room;
-  const conic_light_map *map;
-  unsigned char *reached;
-} sky_looking;
-
-static void look_into_map(void *data, size_t i_item, int i_thread) {
-  const sky_looking *l = data;
-  float visible[CONIC_RECEIVED_TOGETHER], facing[CONIC_RECEIVED_TOGETHER];
-  size_t begin = i_item * CONIC_RECEIVED_TOGETHER, end = end_of_receivers(l->room, begin);
-  (void)i_thread;
-  l->room->kernels.receive(l->map, l->room->receivers, begin, end, 0, visible, facing);
-  for (size_t i = begin; i < end; i++)
-    l->reached[i / 8] |= (unsigned char)((visible[i - begin] > 0.0f) << i % 8);
-}
-
-/* A map in which nothing hides anything: how receivers face the light, without looking. */
-static void open_map(conic_light_map *map) {
-  static const float nothing;
-  map->z = &nothing;
-  map->width = map->height = 1;
-}
-
-/* One map a process and round, so that none waits for long. */
-typedef struct sky_round {
-  conic_map_room *room;
-  const conic_team *team;
-  size_t n_items, n_bytes; /* of the bits of all receivers */
-  sky_adding *adding;
-} sky_round;
-
-/* In the others: what is made of direction `own`. */
-static conic_status draw_own_map(const sky_round *r, const double direction[3], unsigned char *reached) {
-  conic_light_map map;
-  sky_looking looking = {r->room, &map, reached};
-  memset(reached, 0, r->n_bytes);
-  conic_status status = conic_map_room_draw(r->room, direction, &map);
-  if (status == CONIC_OK)
-    conic_parallel_for(r->room->context, r->n_items, look_into_map, &looking);
-  return status;
 }
 
 /* --- all directions --- */
@@ -176,93 +152,164 @@ typedef struct sky_walk {
 } sky_walk;
 
 /* What comes from direction i. */
-static conic_status turn_to_direction(sky_walk *w, uint64_t i, double direction[3]) {
+static void turn_to_direction(sky_walk *w, uint64_t i, double direction[3]) {
   double from_there[3];
   conic_sky_direction(w->options->sky, w->options->first_direction + i, direction, from_there);
   if (w->light)
     w->light(w->cookie, direction, from_there);
   for (int c = 0; c < 3; c++)
     w->adding.light[c] = (float)from_there[c];
-  return conic_progress(w->room->context, "light", (double)i / (double)w->options->n_directions);
 }
 
-static void add_direction(sky_walk *w, const unsigned char *reached) {
-  w->adding.reached = reached;
-  conic_parallel_for(w->room->context, w->n_items, add_sky_light, &w->adding);
+static conic_status draw_direction(sky_walk *w, uint64_t i) {
+  double direction[3];
+  turn_to_direction(w, i, direction);
+  conic_status status = conic_progress(w->room->context, "light", (double)i / (double)w->options->n_directions);
+  return status == CONIC_OK ? conic_map_room_draw(w->room, direction, &w->map) : status;
 }
 
 static conic_status walk_alone(sky_walk *w) {
   conic_status status = CONIC_OK;
   for (uint64_t i = 0; i < w->options->n_directions && status == CONIC_OK; i++) {
-    double direction[3];
-    status = turn_to_direction(w, i, direction);
+    status = draw_direction(w, i);
     if (status == CONIC_OK)
-      status = conic_map_room_draw(w->room, direction, &w->map);
-    if (status == CONIC_OK)
-      add_direction(w, NULL);
+      conic_parallel_for(w->room->context, w->n_items, add_sky_light, &w->adding);
   }
   return status;
 }
 
-/* The first process adds what the others say of their directions, in the order of these. */
-static conic_status take_directions(sky_walk *w, const sky_round *r, uint64_t first) {
-  conic_status status = CONIC_OK;
-  for (int other = 1; other < r->team->count && first + (uint64_t)other < w->options->n_directions; other++) {
+/* --- by several processes --- */
+
+/* At a time each process draws one direction's map, in which the nearest texel's answer is yes or no: it tells each
+ * other one by bits which of that one's receivers the light reaches. All add, in the order of directions, as sums of
+ * floats depend on it, what reaches their own. */
+typedef struct sky_team {
+  sky_walk *walk;
+  const conic_team *team;
+  unsigned char *drawn;  /* of all receivers, by this process's map */
+  unsigned char *theirs; /* by process, of this one's receivers */
+} sky_team;
+
+static size_t first_item(const sky_team *s, int index) {
+  return (size_t)((uint64_t)s->walk->n_items * (uint64_t)index / (uint64_t)s->team->count);
+}
+
+static size_t count_items_of(const sky_team *s, int index) {
+  return first_item(s, index + 1) - first_item(s, index);
+}
+
+static void look_into_map(void *data, size_t i_item, int i_thread) {
+  const sky_team *s = data;
+  const sky_walk *w = s->walk;
+  unsigned char *reached = s->drawn + i_item * BYTES_OF_ITEM;
+  float visible[CONIC_RECEIVED_TOGETHER], facing[CONIC_RECEIVED_TOGETHER];
+  size_t begin = i_item * CONIC_RECEIVED_TOGETHER, end = end_of_receivers(w->room, begin);
+  (void)i_thread;
+  memset(reached, 0, BYTES_OF_ITEM);
+  w->room->kernels.receive(&w->map, w->room->receivers, begin, end, 0, visible, facing);
+  for (size_t i = 0; i < end - begin; i++)
+    reached[i / 8] |= (unsigned char)((visible[i] > 0.0f) << i % 8);
+}
+
+static conic_status draw_in_round(sky_team *s, uint64_t i) {
+  sky_walk *w = s->walk;
+  if (i >= w->options->n_directions)
+    return CONIC_OK;
+  w->room->sharing->i_map = i;
+  conic_status status = draw_direction(w, i);
+  if (status == CONIC_OK)
+    conic_parallel_for(w->room->context, w->n_items, look_into_map, s);
+  return status;
+}
+
+static void swap_bits(const sky_team *s) {
+  const conic_team *team = s->team;
+  size_t n_own = count_items_of(s, team->index) * BYTES_OF_ITEM;
+  for (int round = 0; round < team->count; round++) {
+    int partner = conic_team_partner(team, round);
+    size_t n_received = 0;
+    const unsigned char *bits = s->drawn + first_item(s, partner) * BYTES_OF_ITEM;
+    unsigned char *to = s->theirs + n_own * (size_t)partner;
+    if (partner == team->index) {
+      memcpy(to, bits, n_own);
+      continue;
+    }
+    void *theirs = conic_team_swap(team, partner, bits, count_items_of(s, partner) * BYTES_OF_ITEM, &n_received);
+    if (n_own > 0)
+      memcpy(to, theirs, n_own);
+    team->release(team->data, theirs);
+  }
+}
+
+/* A map in which nothing hides anything: how receivers face the light, without looking. */
+static void open_map(conic_light_map *map) {
+  static const float nothing;
+  map->z = &nothing;
+  map->width = map->height = 1;
+}
+
+static void add_round(const sky_team *s, uint64_t first, uint64_t end) {
+  sky_walk *w = s->walk;
+  size_t n_items = count_items_of(s, s->team->index);
+  w->adding.first_item = first_item(s, s->team->index);
+  for (uint64_t i = first; i < end; i++) {
     conic_camera camera;
     double direction[3], near_z;
-    size_t n_bytes;
-    unsigned char *reached = r->team->receive(r->team->data, other, &n_bytes);
-    conic_status turned = turn_to_direction(w, first + (uint64_t)other, direction);
-    status = status == CONIC_OK ? turned : status;
+    turn_to_direction(w, i, direction);
     conic_light_map_place(w->room->casters, w->room->receivers, direction, w->room->texel, w->room->most_texels,
                           &camera, &near_z, &w->map);
     open_map(&w->map);
-    add_direction(w, reached);
-    r->team->release(r->team->data, reached);
+    w->adding.reached = s->theirs + n_items * BYTES_OF_ITEM * (size_t)(i - first);
+    conic_parallel_for(w->room->context, n_items, add_sky_light, &w->adding);
+  }
+}
+
+static conic_status walk_rounds(sky_team *s) {
+  const conic_team *team = s->team;
+  uint64_t n_directions = s->walk->options->n_directions, count = (uint64_t)team->count;
+  conic_status status = conic_team_agree(team, s->drawn && s->theirs ? CONIC_OK : CONIC_ERROR_MEMORY);
+  for (uint64_t first = 0; first < n_directions && status == CONIC_OK; first += count) {
+    double start = conic_seconds_now();
+    status = conic_team_agree(team, draw_in_round(s, first + (uint64_t)team->index));
+    if (status != CONIC_OK)
+      return status;
+    swap_bits(s);
+    add_round(s, first, n_directions - first < count ? n_directions : first + count);
+    conic_team_note(team, "direction", start, s->walk->room->receivers->count);
   }
   return status;
 }
 
-/* A process's own map of a round. */
-static conic_status draw_in_round(sky_walk *w, const sky_round *r, uint64_t i, unsigned char *reached) {
-  double direction[3];
-  conic_light_sharing *sharing = w->room->sharing;
-  if (i >= w->options->n_directions)
-    return CONIC_OK;
-  sharing->i_map = i;
-  conic_status status = turn_to_direction(w, i, direction);
-  if (status != CONIC_OK || r->team->index > 0)
-    return status == CONIC_OK ? draw_own_map(r, direction, reached) : status;
-  status = conic_map_room_draw(w->room, direction, &w->map);
-  if (status == CONIC_OK)
-    add_direction(w, NULL);
-  return status;
-}
-
-/* Round by round: all draw a map, all know that none failed, and the first one takes what the others found. */
-static conic_status walk_rounds(sky_walk *w, const sky_round *r, unsigned char *reached) {
-  const conic_team *team = r->team;
-  conic_status status = conic_team_agree(team, reached ? CONIC_OK : CONIC_ERROR_MEMORY), taken = CONIC_OK;
-  for (uint64_t first = 0; first < w->options->n_directions && status == CONIC_OK; first += (uint64_t)team->count) {
-    uint64_t own = first + (uint64_t)team->index;
-    status = conic_team_agree(team, taken == CONIC_OK ? draw_in_round(w, r, own, reached) : taken);
-    if (status == CONIC_OK && team->index > 0 && own < w->options->n_directions)
-      team->send(team->data, 0, reached, r->n_bytes);
-    else if (status == CONIC_OK && team->index == 0)
-      taken = take_directions(w, r, first);
-  }
-  return status == CONIC_OK ? conic_team_agree(team, taken) : status;
+/* What each has of one sum. */
+static void bring_sum(const sky_team *s, float *sum) {
+  const conic_team *team = s->team;
+  size_t sizes[CONIC_MOST_IN_TEAM], count = s->walk->room->receivers->count;
+  size_t begin = first_item(s, team->index) * CONIC_RECEIVED_TOGETHER,
+         end = first_item(s, team->index + 1) * CONIC_RECEIVED_TOGETHER;
+  end = end < count ? end : count;
+  void *all = team->collect(team->data, sum + begin, (end - begin) * sizeof *sum, sizes);
+  memcpy(sum, all, count * sizeof *sum);
+  team->release(team->data, all);
 }
 
 static conic_status walk_together(sky_walk *w) {
+  conic_context *context = w->room->context;
   conic_light_sharing *sharing = w->room->sharing;
-  const sky_round r = {w->room, sharing->team, w->n_items, (w->room->receivers->count + 7) / 8};
-  unsigned char *reached = conic_memory_allocate(w->room->context, r.n_bytes, 1);
+  const conic_sky_sums *sums = w->adding.sums;
+  sky_team s = {.walk = w, .team = sharing->team};
+  size_t n_own = count_items_of(&s, s.team->index);
+  s.drawn = conic_memory_allocate(context, w->n_items, BYTES_OF_ITEM);
+  s.theirs = conic_memory_allocate(context, n_own * (size_t)s.team->count, BYTES_OF_ITEM);
   sharing->is_apart = 1;
-  conic_status status = walk_rounds(w, &r, reached);
+  conic_status status = walk_rounds(&s);
   sharing->is_apart = 0;
   sharing->i_map = w->options->n_directions;
-  conic_memory_release(w->room->context, reached);
+  float *const all[] = {sums->facing, sums->visible, sums->color[0], sums->color[1], sums->color[2]};
+  for (size_t i = 0; i < sizeof all / sizeof *all && status == CONIC_OK; i++)
+    if (all[i])
+      bring_sum(&s, all[i]);
+  conic_memory_release(context, s.drawn);
+  conic_memory_release(context, s.theirs);
   return status;
 }
 
@@ -279,28 +326,24 @@ conic_status conic_sky_sums_add(conic_map_room *room, const conic_lighting_optio
   return room->sharing ? walk_together(&walk) : walk_alone(&walk);
 }
 
-static conic_status sum_up_visible(conic_map_room *room, const conic_lighting_options *options, float *ao) {
+/* By the context's team, if it has one, whose processes draw maps apart. */
+static conic_status find_visible(conic_map_room *room, const conic_lighting_options *options, float *ao) {
   conic_context *context = room->context;
+  conic_light_sharing sharing = {.team = conic_context_join(context, NULL)};
   size_t n = room->receivers->count;
   conic_sky_sums sums = {.visible = ao};
   memset(ao, 0, n * sizeof *ao);
   sums.facing = conic_memory_allocate_zeroed(context, n, sizeof *sums.facing);
-  conic_status status = sums.facing ? conic_sky_sums_add(room, options, NULL, NULL, &sums) : CONIC_ERROR_MEMORY;
+  room->sharing = sharing.team ? &sharing : NULL;
+  conic_status status = conic_map_room_agree(room, sums.facing ? CONIC_OK : CONIC_ERROR_MEMORY);
+  if (status == CONIC_OK)
+    status = conic_sky_sums_add(room, options, NULL, NULL, &sums);
   for (size_t i = 0; i < n && status == CONIC_OK; i++)
     ao[i] = conic_sky_sums_share(&sums, i);
   conic_memory_release(context, sums.facing);
-  return status;
-}
-
-/* Maps are drawn by each process of a team alone. */
-static conic_status find_visible(conic_map_room *room, const conic_lighting_options *options, float *ao) {
-  conic_context *context = room->context;
-  const conic_team *team = conic_context_join(context, NULL);
-  if (!team)
-    return sum_up_visible(room, options, ao);
-  conic_status status = conic_sky_share_visible(room, options, team, ao);
-  if (status == CONIC_OK)
-    conic_context_join(context, team);
+  room->sharing = NULL;
+  if (status == CONIC_OK && sharing.team)
+    conic_context_join(context, sharing.team);
   return status;
 }
 

@@ -28,6 +28,11 @@ conic_status conic_map_room_fill(conic_map_room *room, const conic_camera *camer
 /* Draws the map of the light from a direction. Errors: as conic_map_room_fill. */
 conic_status conic_map_room_draw(conic_map_room *room, const double direction[3], conic_light_map *map);
 
+/* Collective where the light is shared, before what all do together: conic_team_agree, and whether all have as many
+ * receivers. Errors: ARGUMENT where this process has others than the first; CANCELLED where another one has, or failed.
+ */
+conic_status conic_map_room_agree(const conic_map_room *room, conic_status status);
+
 void conic_map_room_release(conic_map_room *room);
 
 /* So many receivers are one thread's at a time. */
@@ -44,7 +49,8 @@ typedef struct conic_sky_sums {
 typedef void conic_direction_light(const void *cookie, const double direction[3], double light[3]);
 
 /* Adds the options' directions, whose light is changed by `light`, which may be null. Errors: MEMORY, CANCELLED, the
- * drawer's. */
+ * drawer's. Collective where the light is shared: each process draws some of the directions' maps and adds up those of
+ * all for some of the receivers, whose number they agree on; all then have all sums. */
 conic_status conic_sky_sums_add(conic_map_room *room, const conic_lighting_options *options,
                                 conic_direction_light *light, const void *cookie, conic_sky_sums *sums);
 

@@ -5,6 +5,7 @@
 #include "conic/hybrid.h"
 #include "conic/layers.h"
 #include "conic/layers_draw.h"
+#include "core/image/image_common.h"
 #include "lod/hierarchies/hierarchy.h"
 #include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_picture.h"
@@ -128,15 +129,13 @@ static conic_status begin_layers_windows(conic_source_windows *windows) {
   layers_source *l = (layers_source *)windows->source;
   const conic_layers_draw_options options = wish_of(&l->base.view);
   conic_layers_picture *picture;
-  uint64_t pixel_bytes = 0;
-  for (int i = 0; i < CONIC_N_PLANES; i++)
-    pixel_bytes += windows->planes >> i & 1 ? 4 * (uint64_t)conic_plane_describe((conic_plane)i)->n_channels : 0;
   windows->step = CONIC_WINDOW_STEP;
   windows->band_rows = conic_samples_band_rows(&windows->camera, windows->samples);
   windows->is_summed = 1;
-  uint64_t n_pixels = (uint64_t)windows->camera.width * (uint64_t)windows->camera.height;
+  uint64_t n_bytes =
+      conic_planes_pixel_bytes(windows->planes) * (uint64_t)windows->camera.width * (uint64_t)windows->camera.height;
   conic_status status = conic_layers_picture_begin(l->layers, windows->renderer, &windows->camera, &windows->render,
-                                                   &options, pixel_bytes * n_pixels, &picture);
+                                                   &options, n_bytes, &picture);
   windows->own = picture;
   return status;
 }
@@ -169,8 +168,11 @@ static void weigh_layers_windows(const conic_source_windows *windows, const coni
   conic_layers_picture_weigh(windows->own, list, n, weights);
 }
 
-static const conic_source_windowing windowing_of_layers = {begin_layers_windows, end_layers_windows, draw_layers_window,
-                                                           count_layers_windows, weigh_layers_windows};
+static const conic_source_windowing windowing_of_layers = {.begin = begin_layers_windows,
+                                                           .end = end_layers_windows,
+                                                           .draw = draw_layers_window,
+                                                           .count = count_layers_windows,
+                                                           .weigh = weigh_layers_windows};
 
 static void tell_layers_rest(const conic_source *source, conic_facts *facts) {
   const conic_layers_drawn *d = &((const layers_source *)source)->drawn;

@@ -93,9 +93,10 @@ static int write_report(cli_build *build, const cli_build_steps *steps) {
 }
 
 /* What all came to. The first process alone then has something to say. */
-static int agree_on_build(cli_build *build, int exit_code) {
+static int agree_on_build(cli_build *build, double start, int exit_code) {
   if (!build->team.count)
     return exit_code;
+  cli_team_trace(build->session, "build", build->session->command, 0, start, 0);
   exit_code = cli_team_agree(build->session, exit_code);
   if (exit_code == CLI_DONE) {
     uint64_t n_stages;
@@ -114,7 +115,7 @@ int cli_build_run(void *job, const cli_build_steps *steps, int parsed) {
   int exit_code = cli_session_open(build->session);
   if (exit_code != CLI_DONE)
     return exit_code;
-  exit_code = agree_on_build(build, steps->make(job));
+  exit_code = agree_on_build(build, start, steps->make(job));
   build->total_seconds = cli_seconds() - start;
   if (exit_code == CLI_DONE && cli_team_is_first(build->session)) {
     steps->tell(job);

@@ -67,7 +67,7 @@ typedef struct banded {
 /* --- which pictures --- */
 
 static uint64_t picture_bytes(const cli_render_job *job, const conic_camera *camera) {
-  return cli_pixel_bytes(job->planes) * (uint64_t)camera->width * (uint64_t)camera->height;
+  return conic_planes_pixel_bytes(job->planes) * (uint64_t)camera->width * (uint64_t)camera->height;
 }
 
 /* What is said of memory; where nothing is, pictures of what is read whole may have a gibibyte. */
@@ -120,7 +120,7 @@ static conic_status append_odd(void *cookie, int y, int n_rows, const void *byte
 }
 
 static size_t plane_row_bytes(const banded *b, int i_plane) {
-  return 4 * (size_t)conic_plane_describe((conic_plane)i_plane)->n_channels * (size_t)b->camera->width;
+  return conic_planes_pixel_bytes(1u << i_plane) * (size_t)b->camera->width;
 }
 
 /* Puts rows that are not packed behind those of the strip before; once there are enough, or no more, packs them. */
@@ -316,7 +316,7 @@ static conic_status draw_strips(banded *b) {
 static conic_status list_strips(banded *b) {
   const conic_camera *camera = b->camera;
   int band_rows = b->windows.band_rows, step = CONIC_EXR_BAND;
-  uint64_t row = cli_pixel_bytes(b->planes) * (uint64_t)camera->width, rows = memory_for(b->job) / 4 / row;
+  uint64_t row = conic_planes_pixel_bytes(b->planes) * (uint64_t)camera->width, rows = memory_for(b->job) / 4 / row;
   uint64_t each = (uint64_t)camera->height / (uint64_t)(STRIPS_EACH * (b->team ? b->team->count : 1));
   while (step % b->windows.step)
     step += CONIC_EXR_BAND;
@@ -338,7 +338,7 @@ static conic_status list_strips(banded *b) {
 
 /* A piece has at most so many rows' pixels, and what packing makes of them is not much more. */
 static conic_status begin_pieces(banded *b) {
-  size_t rows_bytes = cli_pixel_bytes(b->written) * (size_t)b->camera->width * CONIC_EXR_BAND;
+  size_t rows_bytes = conic_planes_pixel_bytes(b->written) * (size_t)b->camera->width * CONIC_EXR_BAND;
   conic_status status = conic_exr_packer_open(b->session->context, b->camera->width, b->camera->height, b->written,
                                               &b->job->writing, &b->packer);
   if (status != CONIC_OK)

@@ -99,23 +99,20 @@ static conic_status choose_windows(window_work *w) {
 
 /* --- pixels on their way --- */
 
-static size_t pixel_bytes_of(conic_plane plane) {
-  return 4 * (size_t)conic_plane_describe(plane)->n_channels;
-}
-
-size_t cli_pixel_bytes(unsigned planes) {
-  size_t n = 0;
-  for (int i = 0; i < CONIC_N_PLANES; i++)
-    n += planes >> i & 1 ? pixel_bytes_of((conic_plane)i) : 0;
-  return n;
-}
-
 static size_t window_bytes(const window_work *w, const conic_window *window) {
-  return cli_pixel_bytes(w->planes) * (size_t)(window->x_end - window->x_begin) *
+  return conic_planes_pixel_bytes(w->planes) * (size_t)(window->x_end - window->x_begin) *
          (size_t)(window->y_end - window->y_begin);
 }
 
-/* On the first process, of each window. */
+/* On the first process, of each window, its own included: where its pixels belong. */
+static void place_plane(const window_work *w, const conic_window *window, conic_plane plane, const void *pixels) {
+  size_t size = conic_planes_pixel_bytes(1u << plane), n_bytes = (size_t)(window->x_end - window->x_begin) * size;
+  const char *row = pixels;
+  for (int y = window->y_begin; y < window->y_end; y++, row += n_bytes)
+    memcpy((char *)w->image->planes[plane] + ((size_t)y * (size_t)w->image->width + (size_t)window->x_begin) * size,
+           row, n_bytes);
+}
+
 static void take_window(void *cookie, int from, void *bytes, size_t n_bytes) {
   window_work *w = cookie;
   window_result result;
@@ -123,31 +120,38 @@ static void take_window(void *cookie, int from, void *bytes, size_t n_bytes) {
   const char *pixels = (const char *)bytes + sizeof result;
   memcpy(&result, bytes, sizeof result);
   const conic_window *window = &w->list[result.i_window];
-  size_t width = (size_t)(window->x_end - window->x_begin);
-  for (int i = 0; i < CONIC_N_PLANES; i++) {
-    size_t size = pixel_bytes_of((conic_plane)i);
-    for (int y = window->y_begin; y < window->y_end && w->planes >> i & 1; y++, pixels += width * size)
-      memcpy((char *)w->image->planes[i] + ((size_t)y * (size_t)w->image->width + (size_t)window->x_begin) * size,
-             pixels, width * size);
-  }
+  size_t n = (size_t)(window->x_end - window->x_begin) * (size_t)(window->y_end - window->y_begin);
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (w->planes >> i & 1) {
+      place_plane(w, window, (conic_plane)i, pixels);
+      pixels += n * conic_planes_pixel_bytes(1u << i);
+    }
   cli_team_trace(w->session, "join", "window", result.i_window, start, n_bytes);
   (void)from;
 }
 
-static conic_status hand_window(const window_work *w, size_t i_window, const conic_image *pixels, size_t *n_bytes) {
+static void keep_window(const window_work *w, size_t i_window, const conic_image *pixels) {
+  double start = cli_seconds();
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (w->planes >> i & 1)
+      place_plane(w, &w->list[i_window], (conic_plane)i, pixels->planes[i]);
+  cli_team_trace(w->session, "join", "window", i_window, start, window_bytes(w, &w->list[i_window]));
+}
+
+static conic_status hand_window(const window_work *w, size_t i_window, const conic_image *pixels) {
   window_result result = {i_window};
   size_t at = sizeof result, n = conic_image_pixels(pixels);
-  *n_bytes = sizeof result + window_bytes(w, &w->list[i_window]);
-  char *bytes = malloc(*n_bytes);
+  size_t n_bytes = sizeof result + window_bytes(w, &w->list[i_window]);
+  char *bytes = malloc(n_bytes);
   if (!bytes)
     return CONIC_ERROR_MEMORY;
   memcpy(bytes, &result, sizeof result);
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (w->planes >> i & 1) {
-      memcpy(bytes + at, pixels->planes[i], n * pixel_bytes_of((conic_plane)i));
-      at += n * pixel_bytes_of((conic_plane)i);
+      memcpy(bytes + at, pixels->planes[i], n * conic_planes_pixel_bytes(1u << i));
+      at += n * conic_planes_pixel_bytes(1u << i);
     }
-  w->team->hand(bytes, *n_bytes);
+  w->team->hand(bytes, n_bytes);
   free(bytes);
   return CONIC_OK;
 }
@@ -199,7 +203,6 @@ static conic_status draw_given_window(window_work *w, size_t i_window) {
   const conic_window *window = &w->list[i_window];
   conic_context *context = w->session->context;
   conic_image pixels;
-  size_t n_bytes = 0;
   double start = cli_seconds();
   conic_status status = conic_image_allocate(context, window->x_end - window->x_begin, window->y_end - window->y_begin,
                                              w->planes, &pixels);
@@ -211,10 +214,13 @@ static conic_status draw_given_window(window_work *w, size_t i_window) {
     w->image->is_display = pixels.is_display;
   if (status == CONIC_OK) {
     cli_windows_count(&w->windows, &drawn, &w->counts);
-    status = hand_window(w, i_window, &pixels, &n_bytes);
+    if (w->team->index > 0)
+      status = hand_window(w, i_window, &pixels);
+    else
+      keep_window(w, i_window, &pixels);
   }
   conic_image_release(context, &pixels);
-  cli_sharing_note(w->session, w->job, "window", i_window, start, n_bytes);
+  cli_sharing_note(w->session, w->job, "window", i_window, start, window_bytes(w, window));
   return status;
 }
 
@@ -239,8 +245,9 @@ conic_status cli_draw_together(cli_session *session, cli_render_job *job, const 
   w.planes = (conic_image_planes(image) ? conic_image_planes(image) : job->planes) & CLI_WINDOWS_PLANES;
   conic_status status = conic_source_windows_begin(job->source, job->renderer, camera, looking->options, looking->view,
                                                    w.planes, &w.windows);
-  w.windows.other_bytes =
-      session->team->index == 0 ? cli_pixel_bytes(w.planes) * (uint64_t)camera->width * (uint64_t)camera->height : 0;
+  w.windows.other_bytes = session->team->index == 0
+                              ? conic_planes_pixel_bytes(w.planes) * (uint64_t)camera->width * (uint64_t)camera->height
+                              : 0;
   if (status == CONIC_OK)
     status = choose_windows(&w);
   status = cli_sharing_end(session, job, status);

@@ -21,9 +21,6 @@ void cli_windows_count(const conic_source_windows *windows, const conic_render_s
 /* Collective, with a team; once all are drawn. The first process's counts become the picture's. */
 conic_status cli_windows_sum(cli_team *team, conic_source_windows *windows, cli_window_counts *counts);
 
-/* Of all of the planes, bytes a pixel. */
-size_t cli_pixel_bytes(unsigned planes);
-
 /* Collective: conic_source_draw, after which the first process has the picture and the statistics, to the bits of one
  * process. The others' image may be without planes, and stays as it is. */
 conic_status cli_draw_together(cli_session *session, cli_render_job *job, const cli_looking *looking,

@@ -104,6 +104,13 @@ unsigned conic_image_planes(const conic_image *image) {
   return planes;
 }
 
+size_t conic_planes_pixel_bytes(unsigned planes) {
+  size_t n_values = 0;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    n_values += planes >> i & 1 ? (size_t)descriptions[i].n_channels : 0;
+  return 4 * n_values;
+}
+
 void conic_image_release(conic_context *context, conic_image *image) {
   if (!image)
     return;

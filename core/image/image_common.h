@@ -14,6 +14,9 @@ static inline size_t conic_image_pixels(const conic_image *image) {
   return (size_t)image->width * (size_t)image->height;
 }
 
+/* Of all of the planes together, bytes a pixel. */
+size_t conic_planes_pixel_bytes(unsigned planes);
+
 /* Tells -0 from 0, and a NaN from itself only where it is another one. */
 static inline int conic_same_bits(float a, float b) {
   uint32_t bits_a, bits_b;

@@ -12,6 +12,7 @@
 #include "core/base/threads.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
+#include "core/image/image_common.h"
 #include "core/pictures/cryptomatte.h"
 #include "core/pictures/image_channels.h"
 #include "core/pictures/image_exr_stream.h"
@@ -231,10 +232,7 @@ static uint64_t chunk_bytes(const conic_exr_bands *bands) {
   uint64_t n_rows = compression == CONIC_COMPRESSION_PIZ                                             ? 32
                     : compression == CONIC_COMPRESSION_ZIP || compression == CONIC_COMPRESSION_PXR24 ? 16
                                                                                                      : 1;
-  uint64_t n_values = 0;
-  for (int i = 0; i < CONIC_N_PLANES; i++)
-    n_values += bands->planes >> i & 1 ? (uint64_t)conic_plane_describe((conic_plane)i)->n_channels : 0;
-  return 4 * n_values * n_rows * (uint64_t)bands->width;
+  return conic_planes_pixel_bytes(bands->planes) * n_rows * (uint64_t)bands->width;
 }
 
 /* The pixels in the file's order, and compressed, and what that takes. */

@@ -62,7 +62,7 @@ static void test_rank_build(conic_context *context) {
   const cli_rank_line line = {1e-6, 1e9}, slow = {1e-3, 1e6};
   cli_rank_trace trace = build_trace(context);
   cli_rank_estimate alone, few, many, late;
-  CHECK(trace.is_build && trace.n_units == 2 && trace.n_ranks == 2);
+  CHECK(trace.job == CLI_RANK_LAYERS && trace.n_units == 2 && trace.n_ranks == 2);
   CHECK(trace.stages[CLI_STAGE_READ].seconds == 10.0 && trace.stages[CLI_STAGE_GROW].number == 2e6);
   CHECK_OK(cli_rank_schedule(context, &trace, &line, 1, 1, &alone));
   CHECK(fabs(alone.seconds - 90.55) < 0.01 && alone.efficiency == 1.0); /* without an exchange */
@@ -74,6 +74,52 @@ static void test_rank_build(conic_context *context) {
   CHECK(late.lost_s[CLI_RANK_MERGE] > few.lost_s[CLI_RANK_MERGE] + 1.0);
   CHECK_OK(cli_rank_schedule(context, &trace, &line, 16, 10, &late));
   CHECK(fabs(late.lost_s[CLI_RANK_FIRST] - 5.0) < 1e-9 && late.seconds > 9.0 * few.seconds);
+  cli_rank_trace_release(context, &trace);
+}
+
+/* Two ranks that do the same for a second, and share loops of 3 s each, of which one waits for a half. */
+static void test_rank_loops(conic_context *context) {
+  const cli_rank_line line = {1e-6, 1e9}, slow = {1e-6, 1e6};
+  cli_rank_trace trace;
+  cli_rank_estimate alone, same, many, late;
+  CHECK_OK(read_trace(context,
+                      "{\"traceEvents\": ["
+                      "{\"name\": \"measure 9\", \"cat\": \"stage\", \"ts\": 1e6, \"dur\": 3e6, \"pid\": 0, "
+                      "\"args\": {\"sent_bytes\": 2e6}},"
+                      "{\"name\": \"measure 9\", \"cat\": \"stage\", \"ts\": 1e6, \"dur\": 3e6, \"pid\": 1, "
+                      "\"args\": {\"sent_bytes\": 1e6}},"
+                      "{\"name\": \"measure 9\", \"cat\": \"wait\", \"ts\": 35e5, \"dur\": 5e5, \"pid\": 1},"
+                      "{\"name\": \"prepare 0\", \"cat\": \"build\", \"ts\": 0, \"dur\": 35e5, \"pid\": 1},"
+                      "{\"name\": \"prepare 0\", \"cat\": \"build\", \"ts\": 0, \"dur\": 4e6, \"pid\": 0}]}",
+                      &trace));
+  CHECK(trace.job == CLI_RANK_LOOPS && trace.n_units == 2 && trace.n_events == 5 && trace.seconds == 4.0);
+  CHECK(trace.alone_s == 1.0 && trace.loops.seconds == 5.5);
+  CHECK_OK(cli_rank_schedule(context, &trace, &line, 1, 1, &alone));
+  CHECK(alone.seconds == 6.5 && alone.efficiency == 1.0);
+  CHECK_OK(cli_rank_schedule(context, &trace, &line, 2, 1, &same));
+  CHECK(fabs(same.seconds - (1.0 + 2.75 + 3e-3)) < 1e-4); /* 2 MB, of which half comes to rank 0 first */
+  CHECK_OK(cli_rank_schedule(context, &trace, &line, 64, 10, &many));
+  CHECK(many.lost_s[CLI_RANK_OPEN] == 10.0 && fabs(many.seconds - (10.0 + 55.0 / 64.0)) < 0.05);
+  CHECK_OK(cli_rank_schedule(context, &trace, &slow, 2, 1, &late));
+  CHECK(fabs(late.lost_s[CLI_RANK_MERGE] - 3.0) < 1e-3);
+  cli_rank_trace_release(context, &trace);
+}
+
+/* A picture whose light the ranks share is no building; its light is shared like its windows. */
+static void test_rank_light(conic_context *context) {
+  const cli_rank_line line = {0.0, 1e12};
+  cli_rank_trace trace;
+  cli_rank_estimate e;
+  CHECK_OK(read_trace(context,
+                      "{\"traceEvents\": ["
+                      "{\"name\": \"direction 9\", \"cat\": \"stage\", \"ts\": 0, \"dur\": 3e6, \"pid\": 0},"
+                      "{\"name\": \"read 9\", \"cat\": \"stage\", \"ts\": 0, \"dur\": 3e6, \"pid\": 1},"
+                      "{\"name\": \"window 0\", \"cat\": \"unit\", \"ts\": 3e6, \"dur\": 1e6, \"pid\": 0},"
+                      "{\"name\": \"window 1\", \"cat\": \"unit\", \"ts\": 3e6, \"dur\": 1e6, \"pid\": 1}]}",
+                      &trace));
+  CHECK(trace.job == CLI_RANK_UNITS && trace.n_units == 2 && trace.units[1].seconds == 1.0);
+  CHECK_OK(cli_rank_schedule(context, &trace, &line, 2, 1, &e));
+  CHECK(fabs(e.seconds - 4.0) < 1e-4);
   cli_rank_trace_release(context, &trace);
 }
 
@@ -148,6 +194,8 @@ int main(void) {
   test_wrong_traces(context);
   test_rank_schedule(context);
   test_rank_build(context);
+  test_rank_loops(context);
+  test_rank_light(context);
   conic_context_destroy(context);
   remove(path);
   return check_result();

@@ -1,6 +1,8 @@
 /* Shadows, light by samples, at points and from skies, and what must not change them. */
+#include "core/base/team_runs.h"
 #include "core/lanes/instruction_sets.h"
 #include "tests/support/light_fixture.h"
+#include "tests/support/thread_team.h"
 
 /* --- shadows of the sun --- */
 
@@ -316,6 +318,55 @@ static void points_are_occluded(conic_context *context) {
   conic_splats_release(context, &splats);
 }
 
+/* A ball by a team of three, whose second process may have other receivers. */
+typedef struct ball_team {
+  size_t n, n_of_second;
+  float *ao[3];
+  conic_status statuses[3];
+} ball_team;
+
+static conic_status occlude_ball(const conic_team *team, size_t n, float *ao) {
+  conic_context *context = check_context(1);
+  conic_splats splats = light_splats_on_ball(context, n);
+  const conic_drawing drawing = {&splats, NULL};
+  light_drawer drawer = {.context = context, .drawing = &drawing};
+  conic_lighting_options options;
+  CHECK_OK(conic_renderer_create(context, &drawer.renderer));
+  conic_render_options_init(&drawer.options);
+  conic_lighting_options_init(&options);
+  options.n_directions = 7;
+  conic_casters casters = light_casters(&drawer, 0.02);
+  conic_context_join(context, team);
+  conic_status status = conic_splats_occlude(context, &casters, &splats, 0.03, &options, ao);
+  status = conic_context_part(context, status);
+  conic_renderer_destroy(drawer.renderer);
+  conic_splats_release(context, &splats);
+  conic_context_destroy(context);
+  return status;
+}
+
+static void occlude_in_team(const conic_team *team, void *cookie) {
+  ball_team *b = cookie;
+  b->statuses[team->index] = occlude_ball(team, team->index == 1 ? b->n_of_second : b->n, b->ao[team->index]);
+}
+
+static void points_are_occluded_together(void) {
+  enum { MOST = 5000 };
+  const size_t counts[3][2] = {{MOST, MOST}, {500, 500}, {500, 400}};
+  float *alone = calloc(4 * MOST, sizeof *alone);
+  for (int i = 0; i < 3; i++) {
+    ball_team b = {counts[i][0], counts[i][1], {alone + MOST, alone + 2 * MOST, alone + 3 * MOST}, {CONIC_OK}};
+    int is_one = b.n == b.n_of_second;
+    CHECK_OK(occlude_ball(NULL, b.n, alone));
+    thread_team_run(3, occlude_in_team, &b);
+    for (int k = 0; k < 3; k++) {
+      CHECK(b.statuses[k] == (is_one ? CONIC_OK : k == 1 ? CONIC_ERROR_ARGUMENT : CONIC_ERROR_CANCELLED));
+      CHECK(!is_one || memcmp(b.ao[k], alone, b.n * sizeof *alone) == 0);
+    }
+  }
+  free(alone);
+}
+
 /* --- the sky --- */
 
 /* What a white surface that faces along `axis` reflects of it. */
@@ -405,6 +456,7 @@ int main(void) {
   ball_has_no_acne(context);
   floor_has_no_acne(context);
   points_are_occluded(context);
+  points_are_occluded_together();
   light_is_the_same_everywhere();
   conic_context_destroy(context);
   return check_result();

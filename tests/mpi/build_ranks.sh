@@ -14,7 +14,7 @@ sed '1,/^end_header/d' terrain.ply | cut -d' ' -f1-3 > points.xyz
 same_file() {
   local n=$1 out=$2
   "$conic" "${@:3}" -o "alone.$out" --threads 1 --json "alone.$out.json" -q || fail "conic ${*:3}"
-  err=err.$out ranks "$n" 0 "${@:3}" -o "$out" --threads 1 --json "$out.json" -q
+  err=err.$out ranks "$n" 0 "${@:3}" -o "$out" --threads 1 --json "$out.json" -q --trace "$out.trace"
   cmp "alone.$out" "$out" || fail "$n ranks make another file: ${*:3}"
   [[ $(grep -c '"busy_ms"' "$out.json") -eq $n ]] || fail "the report is not about $n ranks: ${*:3}"
   diff <(facts "alone.$out.json") <(facts "$out.json") || fail "$n ranks count otherwise: ${*:3}"
@@ -47,5 +47,11 @@ told_once err3 2 2 'standard input' mls project - -o a.ply & jobs+=" $!"
 
 for job in $jobs; do
   wait "$job" || failures=$((failures + 1))
+done
+# What they shared and what each did itself is drawn, and modelled on more ranks.
+for traced in thin.ply baked.ply cells.ply; do
+  run_as_typed 0 simulate "$traced.trace" --ranks 1,64 --json model.json --svg traced.svg
+  [[ $(grep -c '"rank_hours"' model.json) -eq 3 ]] || fail "the trace of $traced is not modelled"
+  grep -q 'each by itself' traced.svg || fail "the trace of $traced is not drawn"
 done
 exit $((failures > 0))

@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/image/image_common.h"
 #include "lod/layers/draw/layers_spill.h"
 #include "raster/frame/samples.h"
 #include "raster/frame/statistics.h"
@@ -357,19 +358,12 @@ static int fits(bands *b) {
   return b->n_expected * splat_bytes <= room;
 }
 
-static uint64_t bytes_of_pixel(const conic_image *image) {
-  uint64_t n_bytes = 0;
-  for (int i = 0; i < CONIC_N_PLANES; i++)
-    if ((conic_image_planes(image) & CONIC_DRAWN_PLANES) >> i & 1)
-      n_bytes += 4 * (uint64_t)conic_plane_describe((conic_plane)i)->n_channels;
-  return n_bytes;
-}
-
 conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, conic_render_statistics *statistics,
                                      int *n_bands) {
   const conic_window *window = &drawing->window;
   int n = drawing->samples;
-  bands b = {.d = drawing, .pixel_bytes = bytes_of_pixel(drawing->image)};
+  bands b = {.d = drawing,
+             .pixel_bytes = conic_planes_pixel_bytes(conic_image_planes(drawing->image) & CONIC_DRAWN_PLANES)};
   b.block_bytes = conic_layers_drawing_bytes(drawing->layers) / 2;
   b.most = (size_t)(conic_layers_drawing_bytes(drawing->layers) / CONIC_LAYERS_SPLAT_BYTES) + 1;
   b.fine = conic_samples_camera(drawing->camera, n, 0, drawing->camera->height);

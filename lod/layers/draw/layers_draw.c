@@ -208,12 +208,8 @@ static conic_status choose_for_picture(conic_layers_picture *d) {
              : status;
 }
 
-/* All planes have four bytes a value. */
 static uint64_t bytes_of_picture(const conic_image *image) {
-  uint64_t n_values = 0;
-  for (int i = 0; i < CONIC_MAX_PLANES; i++)
-    n_values += image->planes[i] ? (uint64_t)conic_plane_describe((conic_plane)i)->n_channels : 0;
-  return n_values * sizeof(float) * (uint64_t)image->width * (uint64_t)image->height;
+  return conic_planes_pixel_bytes(conic_image_planes(image)) * (uint64_t)conic_image_pixels(image);
 }
 
 static conic_status look_at_picture(conic_layers_picture *d) {
