@@ -321,7 +321,8 @@ void ranks_hand(const void *bytes, size_t n_bytes) {
     return;
   }
   void *copy = take_memory(n_bytes);
-  memcpy(copy, bytes, n_bytes);
+  if (n_bytes)
+    memcpy(copy, bytes, n_bytes);
   pthread_mutex_lock(&work.lock);
   if (work.take)
     work.take(work.cookie, 0, copy, n_bytes);
@@ -387,7 +388,7 @@ void *ranks_gather(const void *bytes, size_t n_bytes, size_t *sizes) {
   }
   size_t total = n_bytes;
   char *all = malloc(n_bytes ? n_bytes : 1);
-  if (all)
+  if (all && n_bytes)
     memcpy(all, bytes, n_bytes);
   sizes[0] = n_bytes;
   for (int from = 1; from < n_ranks; from++) {
