@@ -56,9 +56,9 @@ static void *collect_bytes(void *data, const void *bytes, size_t n_bytes, size_t
   team->broadcast(sizes, (size_t)team->count * sizeof *sizes);
   for (int i = 0; i < team->count; i++)
     total += sizes[i];
-  if (!all) /* whoever makes a team ends it where there is no memory */
+  if (team->index > 0)
     all = malloc(total ? total : 1);
-  if (!all)
+  if (!all) /* whoever makes a team ends it where there is no memory */
     abort();
   team->broadcast(all, total);
   return all;
