@@ -93,7 +93,7 @@ else()
   set(CURL_FOUND FALSE)
 endif()
 
-if(CONIC_WITH_MPI AND NOT CMAKE_CROSSCOMPILING AND NOT WIN32)
+if(CONIC_WITH_MPI AND (NOT CMAKE_CROSSCOMPILING OR MPI_C_COMPILER) AND NOT WIN32) # of another processor where it is said which
   find_package(MPI QUIET COMPONENTS C)
 else()
   set(MPI_C_FOUND FALSE)
