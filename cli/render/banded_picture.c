@@ -203,7 +203,7 @@ static void write_waiting(banded *b) {
 static void take_piece_of_strip(void *cookie, int from, void *bytes, size_t n_bytes) {
   banded *b = cookie;
   piece_head head;
-  double start = cli_seconds();
+  conic_moment start = conic_moment_now();
   memcpy(&head, bytes, sizeof head);
   if (b->status != CONIC_OK)
     return;
@@ -215,7 +215,7 @@ static void take_piece_of_strip(void *cookie, int from, void *bytes, size_t n_by
   if (b->next > before)
     write_waiting(b);
   if (b->team) /* where something failed nobody is to wait for what does not come */
-    b->team->allow(b->status == CONIC_OK ? b->next + (uint64_t)(STRIPS_AHEAD * b->team->count) : UINT64_MAX);
+    b->team->allow(b->status == CONIC_OK ? b->next + (uint64_t)(STRIPS_AHEAD * b->team->cut_for) : UINT64_MAX);
   cli_team_trace(b->session, "join", "rows", (uint64_t)head.y, start, n_bytes);
   (void)from;
 }
@@ -273,7 +273,7 @@ static conic_status draw_strip(banded *b, size_t i_strip) {
   conic_context *context = b->session->context;
   conic_render_statistics drawn;
   conic_image pixels;
-  double start = cli_seconds();
+  conic_moment start = conic_moment_now();
   conic_status status = conic_progress(context, "draw", (double)s->y_begin / (double)b->camera->height);
   if (status == CONIC_OK)
     status = conic_image_allocate(context, b->camera->width, s->y_end - s->y_begin, b->planes, &pixels);
@@ -317,7 +317,7 @@ static conic_status list_strips(banded *b) {
   const conic_camera *camera = b->camera;
   int band_rows = b->windows.band_rows, step = CONIC_EXR_BAND;
   uint64_t row = conic_planes_pixel_bytes(b->planes) * (uint64_t)camera->width, rows = memory_for(b->job) / 4 / row;
-  uint64_t each = (uint64_t)camera->height / (uint64_t)(STRIPS_EACH * (b->team ? b->team->count : 1));
+  uint64_t each = (uint64_t)camera->height / (uint64_t)(STRIPS_EACH * (b->team ? b->team->cut_for : 1));
   while (step % b->windows.step)
     step += CONIC_EXR_BAND;
   if (b->team && rows > each)
@@ -388,8 +388,10 @@ conic_status cli_render_banded(cli_session *session, cli_render_job *job, int i_
               .planes = job->planes,
               .written = job->planes & ~job->unwritten_planes,
               .is_hashed = session->json_path != NULL};
-  double start = cli_seconds();
-  conic_status status = agree(&b, begin_banded(&b));
+  conic_moment start = conic_moment_now();
+  conic_status status = begin_banded(&b);
+  cli_team_trace(session, "open", "picture", (uint64_t)i_frame, start, 0);
+  status = agree(&b, status);
   if (status == CONIC_OK)
     status = agree(&b, draw_strips(&b));
   if (status == CONIC_OK)
@@ -400,7 +402,7 @@ conic_status cli_render_banded(cli_session *session, cli_render_job *job, int i_
     status = cli_windows_sum(b.team, &b.windows, &b.counts);
   job->banded_planes = b.written;
   *statistics = b.counts.statistics;
-  statistics->ms.frame = 1e3 * (cli_seconds() - start);
+  statistics->ms.frame = 1e3 * (cli_seconds() - start.clock_s);
   release_banded(&b);
   return status;
 }
