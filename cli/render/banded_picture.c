@@ -8,6 +8,7 @@
 #include "cli/render/gather_picture.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/sharing.h"
+#include "cli/render/strip_list.h"
 #include "cli/render/windows_team.h"
 #include "core/base/machine.h"
 #include "core/base/memory.h"
@@ -17,9 +18,8 @@
 #include "core/image/image_common.h"
 #include "core/pictures/image_exr_bands.h"
 
-/* Strips a process at least, where they can be so small; and how many may be drawn, a process, before the first that is
- * missing: they wait in a file. */
-enum { STRIPS_EACH = 4, STRIPS_AHEAD = 4 };
+/* How many strips may be drawn, a process, before the first that is missing: they wait in a file. */
+enum { STRIPS_AHEAD = 4 };
 
 /* Some rows of a strip, as they are handed over: packed, or as pixels; those that are hashed are both. */
 typedef struct piece_head {
@@ -314,26 +314,13 @@ static conic_status draw_strips(banded *b) {
 /* A strip's pixels take a quarter of the memory; it has a multiple of the rows that are packed together, where bands of
  * samples let it. */
 static conic_status list_strips(banded *b) {
-  const conic_camera *camera = b->camera;
-  int band_rows = b->windows.band_rows, step = CONIC_EXR_BAND;
-  uint64_t row = conic_planes_pixel_bytes(b->planes) * (uint64_t)camera->width, rows = memory_for(b->job) / 4 / row;
-  uint64_t each = (uint64_t)camera->height / (uint64_t)(STRIPS_EACH * (b->team ? b->team->cut_for : 1));
+  int step = CONIC_EXR_BAND, n_processes = b->team ? b->team->cut_for : 1;
+  uint64_t row = conic_planes_pixel_bytes(b->planes) * (uint64_t)b->camera->width, rows = memory_for(b->job) / 4 / row;
   while (step % b->windows.step)
     step += CONIC_EXR_BAND;
-  if (b->team && rows > each)
-    rows = each;
   rows = rows < (uint64_t)step ? (uint64_t)step : rows / (uint64_t)step * (uint64_t)step;
-  int side = rows < (uint64_t)camera->height ? (int)rows : camera->height;
-  size_t most = ((size_t)camera->height / (size_t)band_rows + 1) * ((size_t)band_rows / (size_t)side + 1);
-  b->strips = calloc(most, sizeof *b->strips);
-  if (!b->strips)
-    return CONIC_ERROR_MEMORY;
-  for (int band = 0; band < camera->height; band += band_rows) {
-    int band_end = camera->height - band < band_rows ? camera->height : band + band_rows;
-    for (int y = band; y < band_end; y += side)
-      b->strips[b->n++] = (conic_window){0, camera->width, y, band_end - y < side ? band_end : y + side};
-  }
-  return CONIC_OK;
+  int most = rows < (uint64_t)b->camera->height ? (int)rows : b->camera->height;
+  return cli_list_strips(&b->windows, step, most, n_processes, &b->strips, &b->n);
 }
 
 /* A piece has at most so many rows' pixels, and what packing makes of them is not much more. */
