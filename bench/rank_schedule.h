@@ -7,9 +7,9 @@
 
 #include "conic/context.h"
 
-/* A unit of work: how long it took, and what its result was on the way to rank 0. */
+/* A unit of work: how long it took, what its result was on the way to rank 0, and when it was begun. */
 typedef struct cli_rank_unit {
-  double seconds, bytes;
+  double seconds, bytes, begin_s;
 } cli_rank_unit;
 
 /* What a rank did at a time. */
@@ -63,7 +63,7 @@ typedef struct cli_rank_trace {
   int is_by_processor; /* times are what its ranks' first threads worked, but `seconds` and `events` */
   double seconds;      /* from its first event to the end of its last */
   double open_s;       /* before its units, on each rank: the mean */
-  cli_rank_unit *units;
+  cli_rank_unit *units; /* in the order in which they were begun */
   size_t n_units, room;   /* of layers: parts of the inputs, and of loops the ranks' turns, which are no units */
   cli_rank_event *events; /* all of them */
   size_t n_events, events_room;

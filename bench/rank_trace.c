@@ -1,4 +1,5 @@
 /* Reading the trace of a job. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "bench/rank_schedule.h"
@@ -16,7 +17,7 @@ static conic_status add_unit(conic_context *context, cli_rank_trace *trace, cons
   conic_status status = conic_memory_reserve(context, &trace->units, trace->n_units, trace->n_units + 1, &trace->room,
                                              sizeof *trace->units);
   if (status == CONIC_OK)
-    trace->units[trace->n_units++] = (cli_rank_unit){event->spent_s, event->bytes};
+    trace->units[trace->n_units++] = (cli_rank_unit){event->spent_s, event->bytes, 1e-6 * event->begun_us};
   return status;
 }
 
@@ -150,9 +151,16 @@ static void find_job(cli_rank_trace *trace) {
   }
 }
 
+static int compare_units(const void *a, const void *b) {
+  double first = ((const cli_rank_unit *)a)->begin_s, second = ((const cli_rank_unit *)b)->begin_s;
+  return (first > second) - (first < second);
+}
+
 /* Sums of ranks and merges become means; each rank kept its share of the bytes. */
 static void settle_trace(cli_rank_trace *trace) {
   trace->seconds -= trace->first_event;
+  if (trace->job == CLI_RANK_UNITS) /* which a trace has rank by rank */
+    qsort(trace->units, trace->n_units, sizeof *trace->units, compare_units);
   trace->open_s /= trace->n_ranks;
   trace->loops.seconds = trace->loops.seconds > 0.0 ? trace->loops.seconds : 0.0;
   trace->alone_s = trace->whole_s + trace->alone_s > 0.0 ? trace->whole_s + trace->alone_s : 0.0;

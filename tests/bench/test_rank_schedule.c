@@ -36,7 +36,7 @@ static void test_rank_trace(conic_context *context) {
       "{\"name\": \"OUT\", \"cat\": \"write\", \"ts\": 9e6, \"dur\": 2e6, \"pid\": 0}]}",
       &trace));
   CHECK(trace.n_ranks == 2 && trace.n_units == 3 && trace.seconds == 10.0 && trace.open_s == 1.5);
-  CHECK(trace.units[1].seconds == 4.0 && trace.units[0].bytes == 7.0);
+  CHECK(trace.units[0].seconds == 4.0 && trace.units[1].bytes == 7.0 && trace.units[2].seconds == 0.25);
   CHECK(trace.merge_s == 3.0 && trace.merge_bytes == 200.0 && trace.n_merges == 1.0 && trace.write_s == 2.0 &&
         trace.join_s == 0.0);
   cli_rank_trace_release(context, &trace);
