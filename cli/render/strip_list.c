@@ -36,7 +36,7 @@ static size_t find_strip_end(const conic_source_windows *w, const conic_window *
   size_t end = first + 1;
   for (size_t i = first; i < n && slices[i].y_begin / w->band_rows == band; i++)
     in_band += weights[i];
-  double n_parts = floor(in_band / wanted + 0.5);
+  double n_parts = ceil(in_band / wanted - 0.15);
   wanted = in_band / (n_parts > 1.0 ? n_parts : 1.0);
   while (end < n && slices[end].y_begin / w->band_rows == band && slices[end].y_end - begin <= most_rows &&
          weight + 0.5 * weights[end] <= wanted)
