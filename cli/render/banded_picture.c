@@ -19,7 +19,7 @@
 #include "core/pictures/image_exr_bands.h"
 
 /* How many strips may be drawn, a process, before the first that is missing: they wait in a file. */
-enum { STRIPS_AHEAD = 4 };
+enum { STRIPS_AHEAD = 6 };
 
 /* Some rows of a strip, as they are handed over: packed, or as pixels; those that are hashed are both. */
 typedef struct piece_head {

@@ -3,9 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What lies across the border of two strips is done in both, so there are few: the last ones of a process's share by
- * this. */
-enum { LEAST_SHARE = 5 };
+/* What lies across the border of two strips is read for both, so there are few: of a process's share, the first is one
+ * part of so many, and the last of so many. */
+enum { FIRST_PARTS = 2, LAST_PARTS = 10 };
 
 /* The picture is weighed by so many slices, about. */
 enum { SLICES = 1024 };
@@ -50,10 +50,10 @@ static size_t unite_slices(const conic_source_windows *w, conic_window *slices, 
   double left = 0.0;
   for (size_t i = 0; i < n; i++)
     left += weights[i];
-  double least = left / (double)(n_processes * LEAST_SHARE);
+  double least = left / ((double)n_processes * LAST_PARTS);
   size_t n_strips = 0;
   for (size_t first = 0, end; first < n; first = end) {
-    double wanted = left / (double)n_processes;
+    double wanted = left / ((double)n_processes * FIRST_PARTS);
     end = find_strip_end(w, slices, weights, n, first, wanted > least ? wanted : least, most_rows);
     slices[n_strips] = slices[first];
     slices[n_strips++].y_end = slices[end - 1].y_end;
