@@ -59,11 +59,11 @@ typedef enum cli_rank_job {
 /* What a trace says of a job. */
 typedef struct cli_rank_trace {
   cli_rank_job job;
-  int n_ranks;         /* that it ran on */
-  int is_by_processor; /* times are what its ranks' first threads worked, but `seconds` and `events` */
-  double seconds;      /* from its first event to the end of its last */
-  double open_s;       /* before its units, on each rank: the mean */
-  cli_rank_unit *units; /* in the order in which they were begun */
+  int n_ranks;            /* that it ran on */
+  int is_by_processor;    /* times are what its ranks' first threads worked, but `seconds` and `events` */
+  double seconds;         /* from its first event to the end of its last */
+  double open_s;          /* before its units, on each rank: the mean */
+  cli_rank_unit *units;   /* in the order in which they were begun */
   size_t n_units, room;   /* of layers: parts of the inputs, and of loops the ranks' turns, which are no units */
   cli_rank_event *events; /* all of them */
   size_t n_events, events_room;
