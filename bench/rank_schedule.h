@@ -7,9 +7,9 @@
 
 #include "conic/context.h"
 
-/* A unit of work: how long it took, and what its result was on the way to rank 0. */
+/* A unit of work: how long it took, what its result was on the way to rank 0, and when it was begun. */
 typedef struct cli_rank_unit {
-  double seconds, bytes;
+  double seconds, bytes, begin_s;
 } cli_rank_unit;
 
 /* What a rank did at a time. */
@@ -59,10 +59,11 @@ typedef enum cli_rank_job {
 /* What a trace says of a job. */
 typedef struct cli_rank_trace {
   cli_rank_job job;
-  int n_ranks;    /* that it ran on */
-  double seconds; /* from its first event to the end of its last */
-  double open_s;  /* before its units, on each rank: the mean */
-  cli_rank_unit *units;
+  int n_ranks;            /* that it ran on */
+  int is_by_processor;    /* times are what its ranks' first threads worked, but `seconds` and `events` */
+  double seconds;         /* from its first event to the end of its last */
+  double open_s;          /* before its units, on each rank: the mean */
+  cli_rank_unit *units;   /* in the order in which they were begun */
   size_t n_units, room;   /* of layers: parts of the inputs, and of loops the ranks' turns, which are no units */
   cli_rank_event *events; /* all of them */
   size_t n_events, events_room;
@@ -77,8 +78,9 @@ typedef struct cli_rank_trace {
   double whole_s, alone_s;  /* of building, on rank 0: all of it, and without stages */
 } cli_rank_trace;
 
-/* Reads what --trace wrote: events of Chrome's format. On success the caller releases it. Errors: INPUT, MEMORY. */
-conic_status cli_rank_trace_read(conic_context *context, const char *path, cli_rank_trace *trace);
+/* Reads what --trace wrote: events of Chrome's format. On success the caller releases it. By the
+ * processor's time it is of use where ranks have one thread each. Errors: INPUT, MEMORY. */
+conic_status cli_rank_trace_read(conic_context *context, const char *path, int is_by_processor, cli_rank_trace *trace);
 void cli_rank_trace_release(conic_context *context, cli_rank_trace *trace);
 
 /* A picture of it: time goes to the right, and each rank has a row. Errors: IO, MEMORY. */

@@ -13,6 +13,7 @@ typedef struct simulate_job {
   int n_ranks[MOST_ESTIMATES], n; /* of the estimates */
   double latency_us, gigabytes_per_s;
   unsigned long long times;
+  int is_by_processor;
   const char *picture_path; /* --svg; null: none */
   cli_rank_trace trace;
   cli_rank_estimate estimates[MOST_ESTIMATES], same; /* same: on as many ranks as the trace is of */
@@ -108,7 +109,7 @@ static int simulate(cli_session *session, const char *path, simulate_job *job) {
   int exit_code = cli_session_open(session);
   if (exit_code != CLI_DONE)
     return exit_code;
-  conic_status status = cli_rank_trace_read(session->context, path, &job->trace);
+  conic_status status = cli_rank_trace_read(session->context, path, job->is_by_processor, &job->trace);
   if (status == CONIC_OK)
     status = estimate_all(session, job);
   if (status == CONIC_OK && job->picture_path)
@@ -130,6 +131,8 @@ static int run(cli_session *session, int argc, char **argv) {
       {"latency", CLI_NUMBER, &job.latency_us, "US", "of a message, in microseconds [2]", 0, 1e6},
       {"bandwidth", CLI_NUMBER, &job.gigabytes_per_s, "GB/S", "into one rank [10]", 1e-3, 1e6},
       {"times", CLI_COUNT, &job.times, "N", "a job of N times as many units as the trace has [1]", 1, 1e6},
+      {"processor", CLI_FLAG, &job.is_by_processor, NULL,
+       "count what ranks of one thread worked, not the clock's time: of a trace from busy cores"},
       {"svg", CLI_TEXT, &job.picture_path, "OUT.svg", "what each rank did when, by the trace, as a picture"},
   };
   if (argc > 64)

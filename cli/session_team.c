@@ -65,20 +65,21 @@ static void *collect_bytes(void *data, const void *bytes, size_t n_bytes, size_t
 }
 
 /* What was waited for others since the last stage is noted, too, as if it had all come last. */
-static void note_stage(void *data, const char *name, double from, uint64_t number) {
+static void note_stage(void *data, const char *name, conic_moment from, uint64_t number) {
   static uint64_t sent_before;
   static double waited_before;
   const cli_team *team = data;
   uint64_t sent_bytes, received_bytes;
-  double waited, now = cli_seconds();
+  double waited;
+  conic_moment now = conic_moment_now();
   team->count_traffic(&sent_bytes, &received_bytes, &waited);
-  double waited_now = waited - waited_before < now - from ? waited - waited_before : now - from;
+  double took = now.clock_s - from.clock_s, waited_now = waited - waited_before < took ? waited - waited_before : took;
   team->trace("stage", name, number, from, now, sent_bytes - sent_before);
-  team->trace("wait", name, number, now - waited_now, now, 0);
+  team->trace("wait", name, number, (conic_moment){now.clock_s - waited_now, now.processor_s}, now, 0);
   sent_before = sent_bytes;
   waited_before = waited;
   n_stages++;
-  busy_seconds += now - from - waited_now;
+  busy_seconds += took - waited_now;
 }
 
 void cli_team_count_stages(uint64_t *n, double *seconds) {
@@ -98,10 +99,10 @@ int cli_team_is_first(const cli_session *session) {
   return !session->team || session->team->index == 0;
 }
 
-void cli_team_trace(const cli_session *session, const char *kind, const char *name, uint64_t number, double from,
+void cli_team_trace(const cli_session *session, const char *kind, const char *name, uint64_t number, conic_moment from,
                     uint64_t sent_bytes) {
   if (session->team)
-    session->team->trace(kind, name, number, from, cli_seconds(), sent_bytes);
+    session->team->trace(kind, name, number, from, conic_moment_now(), sent_bytes);
 }
 
 int cli_team_agree(const cli_session *session, int exit_code) {

@@ -18,6 +18,7 @@
 
 typedef struct cli_team {
   int index, count;
+  int cut_for; /* so many processes units of work are cut for: `count`, or as many as a trace is to tell of */
   int threads; /* of this process, unless --threads says otherwise: others share its machine */
 
   /* Collective: from now on `next` gives the units from 0 to before `n`. What `hand` is given arrives in the first
@@ -46,9 +47,10 @@ typedef struct cli_team {
 
   /* What this process has sent and received so far, and how long it has waited for others. */
   void (*count_traffic)(uint64_t *sent_bytes, uint64_t *received_bytes, double *waited_seconds);
-  /* Takes note of what this process did, between two times of cli_seconds. `kind` is "open" (once before its units),
+  /* Takes note of what this process did, between two moments. `kind` is "open" (once before its units),
    * "unit", "join" (what the first does with a result) or "write", `name` "frame" or the like; both stay. */
-  void (*trace)(const char *kind, const char *name, uint64_t number, double from, double to, uint64_t sent_bytes);
+  void (*trace)(const char *kind, const char *name, uint64_t number, conic_moment from, conic_moment to,
+                uint64_t sent_bytes);
 } cli_team;
 
 /* The team of this process from now on, whose messages it keeps; null: it is alone. */
@@ -66,7 +68,7 @@ const conic_team *cli_team_of_library(const cli_session *session, conic_team *te
 /* What the library has noted that this process did of them. */
 void cli_team_count_stages(uint64_t *n, double *seconds);
 /* Does what the team's function does, if there is a team. */
-void cli_team_trace(const cli_session *session, const char *kind, const char *name, uint64_t number, double from,
+void cli_team_trace(const cli_session *session, const char *kind, const char *name, uint64_t number, conic_moment from,
                     uint64_t sent_bytes);
 /* Collective: the exit code of what all came to; where a process was only told that another failed, its own does not
  * count. */

@@ -269,7 +269,7 @@ static conic_status walk_rounds(sky_team *s) {
   uint64_t n_directions = s->walk->options->n_directions, count = (uint64_t)team->count;
   conic_status status = conic_team_agree(team, s->drawn && s->theirs ? CONIC_OK : CONIC_ERROR_MEMORY);
   for (uint64_t first = 0; first < n_directions && status == CONIC_OK; first += count) {
-    double start = conic_seconds_now();
+    conic_moment start = conic_moment_now();
     status = conic_team_agree(team, draw_in_round(s, first + (uint64_t)team->index));
     if (status != CONIC_OK)
       return status;

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/session_team.h"
 #include "cli/shell.h"
@@ -25,26 +26,39 @@ static void tell_traffic(uint64_t *sent_bytes, uint64_t *received_bytes, double 
   *waited_seconds = traffic.waited_seconds;
 }
 
-/* --trace FILE or --trace=FILE, which is then gone from the arguments; null where there is none. */
-static const char *take_trace(int *argc, char **argv) {
-  const char *path = NULL;
+/* "--trace FILE" or "--trace=FILE", which is then gone from the arguments; null where there is none. */
+static const char *take_option(int *argc, char **argv, const char *name) {
+  const char *value = NULL;
+  size_t length = strlen(name);
   int n = 0;
   for (int i = 0; i < *argc; i++)
-    if (i > 0 && strcmp(argv[i], "--trace") == 0 && i + 1 < *argc)
-      path = argv[++i];
-    else if (i > 0 && strncmp(argv[i], "--trace=", 8) == 0)
-      path = argv[i] + 8;
+    if (i > 0 && strcmp(argv[i], name) == 0 && i + 1 < *argc)
+      value = argv[++i];
+    else if (i > 0 && strncmp(argv[i], name, length) == 0 && argv[i][length] == '=')
+      value = argv[i] + length + 1;
     else
       argv[n++] = argv[i];
   argv[ *argc = n] = NULL;
-  return path;
+  return value;
+}
+
+/* How many ranks work is cut for. */
+static int settle_cut(const char *text, const char *trace_path, cli_team *team) {
+  unsigned long long n;
+  if (!text)
+    return CLI_DONE;
+  if (!trace_path || !cli_parse_count(text, &n) || n < 1 || n > CONIC_MOST_IN_TEAM)
+    return cli_usage("--trace-ranks: wanted is a number of ranks, 1 to %d, and a --trace", CONIC_MOST_IN_TEAM);
+  team->cut_for = (int)n;
+  return CLI_DONE;
 }
 
 static int run(int argc, char **argv) {
-  const char *trace_path = take_trace(&argc, argv);
+  const char *trace_path = take_option(&argc, argv, "--trace"), *cut = take_option(&argc, argv, "--trace-ranks");
   int threads = conic_machine_threads() / ranks_on_machine();
   cli_team team = {.index = ranks_index(),
                    .count = ranks_count(),
+                   .cut_for = ranks_count(),
                    .threads = threads > 0 ? threads : 1,
                    .share = ranks_share,
                    .next = ranks_next,
@@ -59,13 +73,13 @@ static int run(int argc, char **argv) {
                    .count_traffic = tell_traffic,
                    .trace = timeline_note};
   const cli_session session = {.team = &team};
-  int exit_code = CLI_DONE;
   cli_team_join(&team);
+  int exit_code = settle_cut(cut, trace_path, &team);
   if (trace_path)
     timeline_begin();
-  if (is_shared(argc, argv))
+  if (exit_code == CLI_DONE && is_shared(argc, argv))
     exit_code = cli_program(argc, argv, &team);
-  else if (team.index == 0)
+  else if (exit_code == CLI_DONE && team.index == 0)
     exit_code = cli_program(argc, argv, NULL);
   exit_code = cli_team_agree(&session, exit_code);
   return exit_code == CLI_DONE && trace_path ? timeline_write(trace_path) : exit_code;

@@ -35,15 +35,17 @@ static int make_timeline_room(size_t wanted) {
   return 1;
 }
 
-void timeline_note(const char *kind, const char *name, uint64_t number, double from, double to, uint64_t sent_bytes) {
+void timeline_note(const char *kind, const char *name, uint64_t number, conic_moment from, conic_moment to,
+                   uint64_t sent_bytes) {
   char line[256];
   if (!timeline.is_on)
     return;
-  int n = snprintf(line, sizeof line,
-                   "{\"name\": \"%s %llu\", \"cat\": \"%s\", \"ph\": \"X\", \"ts\": %.1f, \"dur\": %.1f, "
-                   "\"pid\": %d, \"tid\": 0, \"args\": {\"sent_bytes\": %llu}},\n",
-                   name, (unsigned long long)number, kind, 1e6 * (from - timeline.begun), 1e6 * (to - from),
-                   ranks_index(), (unsigned long long)sent_bytes);
+  int n = snprintf(
+      line, sizeof line,
+      "{\"name\": \"%s %llu\", \"cat\": \"%s\", \"ph\": \"X\", \"ts\": %.1f, \"dur\": %.1f, \"tdur\": %.1f, "
+      "\"pid\": %d, \"tid\": 0, \"args\": {\"sent_bytes\": %llu}},\n",
+      name, (unsigned long long)number, kind, 1e6 * (from.clock_s - timeline.begun), 1e6 * (to.clock_s - from.clock_s),
+      1e6 * (to.processor_s - from.processor_s), ranks_index(), (unsigned long long)sent_bytes);
   pthread_mutex_lock(&timeline.lock);
   if (n > 0 && (size_t)n < sizeof line && make_timeline_room(timeline.n + (size_t)n + 1)) {
     memcpy(timeline.text + timeline.n, line, (size_t)n);

@@ -20,28 +20,6 @@ static void leave_band(choice_band *band) {
   *band = (choice_band){.first_row = -1};
 }
 
-static conic_status begin_choice_windows(conic_source_windows *w) {
-  conic_source *source = w->source;
-  conic_status status = conic_source_choose_settled(source, &w->camera, &w->render);
-  if (status != CONIC_OK)
-    return status;
-  if (source->choice.is_all && !w->render.splats_version)
-    w->render.splats_version = source->splats_version;
-  w->step = w->render.tile;
-  w->band_rows = conic_samples_band_rows(&w->camera, w->samples);
-  choice_band *band = conic_memory_allocate(source->context, 1, sizeof *band);
-  if (!band)
-    return CONIC_ERROR_MEMORY;
-  *band = (choice_band){.first_row = -1};
-  w->own = band;
-  return CONIC_OK;
-}
-
-static void end_choice_windows(conic_source_windows *w) {
-  leave_band(w->own);
-  conic_memory_release(w->source->context, w->own);
-}
-
 static conic_status enter_band(const conic_source_windows *w, int first_row, choice_band *band) {
   const conic_source *source = w->source;
   const conic_drawing *drawing = &source->choice.drawing;
@@ -57,6 +35,28 @@ static conic_status enter_band(const conic_source_windows *w, int first_row, cho
   if (status == CONIC_OK)
     band->first_row = first_row;
   return status;
+}
+
+static conic_status begin_choice_windows(conic_source_windows *w) {
+  conic_source *source = w->source;
+  conic_status status = conic_source_choose_settled(source, &w->camera, &w->render);
+  if (status != CONIC_OK)
+    return status;
+  if (source->choice.is_all && !w->render.splats_version)
+    w->render.splats_version = source->splats_version;
+  w->step = w->render.tile;
+  w->band_rows = conic_samples_band_rows(&w->camera, w->samples);
+  choice_band *band = conic_memory_allocate(source->context, 1, sizeof *band);
+  if (!band)
+    return CONIC_ERROR_MEMORY;
+  *band = (choice_band){.first_row = -1};
+  w->own = band;
+  return w->band_rows < w->camera.height ? CONIC_OK : enter_band(w, 0, band); /* of several each one that is drawn in */
+}
+
+static void end_choice_windows(conic_source_windows *w) {
+  leave_band(w->own);
+  conic_memory_release(w->source->context, w->own);
 }
 
 /* Of the band's picture. */

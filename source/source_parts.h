@@ -61,7 +61,8 @@ conic_status conic_source_windows_draw(conic_source_windows *windows, const coni
  * MEMORY, CANCELLED. */
 conic_status conic_source_windows_count(const conic_source_windows *windows, conic_render_statistics *statistics);
 
-/* How much work each of the windows is, about: of what lies in it, and of its pixels. */
+/* How much work each of the windows is, about: of what lies in it, and of its pixels. Neither
+ * their first nor their last rows ever decrease. */
 void conic_source_windows_weigh(const conic_source_windows *windows, const conic_window *list, size_t n,
                                 double *weights);
 

@@ -404,7 +404,7 @@ static conic_status clean_own(cleaning *work) {
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < work->cells.n && status == CONIC_OK; i++) {
     const conic_cell_part *part = &work->share.parts[i];
-    double start = conic_seconds_now();
+    conic_moment start = conic_moment_now();
     if (part->first == part->end)
       continue;
     status = clean_cell(work, &work->cells.cells[i], part);

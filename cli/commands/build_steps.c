@@ -93,7 +93,7 @@ static int write_report(cli_build *build, const cli_build_steps *steps) {
 }
 
 /* What all came to. The first process alone then has something to say. */
-static int agree_on_build(cli_build *build, double start, int exit_code) {
+static int agree_on_build(cli_build *build, conic_moment start, int exit_code) {
   if (!build->team.count)
     return exit_code;
   cli_team_trace(build->session, "build", build->session->command, 0, start, 0);
@@ -109,14 +109,14 @@ static int agree_on_build(cli_build *build, double start, int exit_code) {
 
 int cli_build_run(void *job, const cli_build_steps *steps, int parsed) {
   cli_build *build = job;
-  double start = cli_seconds();
+  conic_moment start = conic_moment_now();
   if (parsed != CLI_DONE)
     return parsed < 0 ? CLI_DONE : parsed;
   int exit_code = cli_session_open(build->session);
   if (exit_code != CLI_DONE)
     return exit_code;
   exit_code = agree_on_build(build, start, steps->make(job));
-  build->total_seconds = cli_seconds() - start;
+  build->total_seconds = cli_seconds() - start.clock_s;
   if (exit_code == CLI_DONE && cli_team_is_first(build->session)) {
     steps->tell(job);
     cli_tell_run(build->session, build->stages, count_stages(build), build->total_seconds);

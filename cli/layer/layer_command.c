@@ -69,7 +69,7 @@ static conic_status list_layer_inputs(cli_layer_job *job) {
 
 /* All that is settled before samples come, the same in every process. */
 static conic_status plan_layers(cli_layer_job *job, conic_read_options *options) {
-  double start = cli_seconds();
+  conic_moment start = conic_moment_now();
   conic_status status = list_layer_inputs(job);
   if (status == CONIC_OK)
     status = conic_team_agree(job->share.team, cli_layer_continue(job, job->share.inputs, job->n_continued));

@@ -153,12 +153,12 @@ conic_status cli_layer_read_share(cli_layer_job *job, conic_read_options *option
   options->keep = job->keep;
   for (size_t i = 0; i < job->share.n && status == CONIC_OK; i++) {
     const cli_points_piece *piece = &job->share.pieces[i];
-    double start = cli_seconds();
+    conic_moment start = conic_moment_now();
     job->base.input = job->share.inputs[piece->input];
     status =
         piece->input < job->n_continued ? read_continued(job, job->base.input) : read_layer_piece(job, piece, options);
     job->n_pieces++;
-    job->busy_seconds += cli_seconds() - start;
+    job->busy_seconds += cli_seconds() - start.clock_s;
     conic_team_note(job->share.team, "read", start, i);
   }
   return status;

@@ -27,11 +27,11 @@ static uint64_t stage_end(const together *t, uint64_t begin) {
 
 /* Of the samples from `begin` to before `end` those that this process is given. */
 static conic_status add_given(const together *t, uint64_t begin, uint64_t end) {
-  uint64_t count = (uint64_t)t->team->count, each = (end - begin) / (count * UNITS_EACH) + 1, unit;
+  uint64_t count = (uint64_t)t->team->cut_for, each = (end - begin) / (count * UNITS_EACH) + 1, unit;
   conic_status status = CONIC_OK;
   t->team->share((end - begin + each - 1) / each, NULL, NULL);
   while (status == CONIC_OK && (unit = t->team->next()) != CLI_NO_UNIT) {
-    double start = cli_seconds();
+    conic_moment start = conic_moment_now();
     uint64_t from = begin + unit * each, to = from + each < end ? from + each : end;
     status = conic_accumulate_range(t->session->context, t->options, from, to, t->sums);
     cli_sharing_note(t->session, t->job, "samples", from, start, 0);
@@ -57,9 +57,15 @@ static void *send_parts(void *cookie) {
   return NULL;
 }
 
+static void add_time_since(conic_moment start, conic_moment *sum) {
+  conic_moment now = conic_moment_now();
+  sum->clock_s += now.clock_s - start.clock_s;
+  sum->processor_s += now.processor_s - start.processor_s;
+}
+
 /* Every process brings together a part of the sums: it meets each of the others, and they swap their parts; both ways
  * at a time, where there is a thread for it. */
-static conic_status join_own_part(const together *t, const conic_team *team, double *join_s) {
+static conic_status join_own_part(const together *t, const conic_team *team, conic_moment *joining) {
   part_sending sending = {t->sums, team};
   pthread_t thread;
   int has_thread = pthread_create(&thread, NULL, send_parts, &sending) == 0;
@@ -72,10 +78,10 @@ static conic_status join_own_part(const together *t, const conic_team *team, dou
       continue;
     void *others = has_thread ? team->receive(team->data, partner, &n_bytes)
                               : conic_team_swap(team, partner, part, n_bytes, &n_bytes);
-    double start = cli_seconds();
+    conic_moment start = conic_moment_now();
     if (status == CONIC_OK)
       status = conic_accumulation_join_part(t->sums, team->index, team->count, others, n_bytes);
-    *join_s += cli_seconds() - start;
+    add_time_since(start, joining);
     team->release(team->data, others);
   }
   if (has_thread)
@@ -111,19 +117,26 @@ static conic_status take_all_parts(const together *t, const conic_team *team) {
   return status;
 }
 
+/* Of the swap, what is no waiting. */
+static void trace_joining(const cli_session *session, const conic_moment *took) {
+  conic_moment now = conic_moment_now();
+  cli_team_trace(session, "join", "sums", 0,
+                 (conic_moment){now.clock_s - took->clock_s, now.processor_s - took->processor_s}, 0);
+}
+
 /* Two by two again and again, everything would go over the line as often as the logarithm of their number says; so it
  * goes twice. */
 static conic_status join_all_sums(const together *t) {
   conic_team room;
   const conic_team *team = cli_team_of_library(t->session, &room);
-  double join_s = 0.0, start = cli_seconds();
+  conic_moment start = conic_moment_now(), joining = {0.0, 0.0};
   size_t n_bytes, n_own;
   conic_accumulation_part(t->sums, 0, 1, &n_bytes);
   conic_accumulation_part(t->sums, team->index, team->count, &n_own);
-  conic_status status = join_own_part(t, team, &join_s);
+  conic_status status = join_own_part(t, team, &joining);
   cli_team_trace(t->session, "join", "swap", 0, start, n_bytes - n_own);
-  cli_team_trace(t->session, "join", "sums", 0, cli_seconds() - join_s, 0); /* of it, what is no waiting */
-  start = cli_seconds();
+  trace_joining(t->session, &joining);
+  start = conic_moment_now();
   conic_status taken = take_all_parts(t, team);
   cli_team_trace(t->session, "join", "parts", 0, start, team->index ? n_own : 0);
   if (team->index == 0)

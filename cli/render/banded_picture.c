@@ -8,6 +8,7 @@
 #include "cli/render/gather_picture.h"
 #include "cli/render/lit_picture.h"
 #include "cli/render/sharing.h"
+#include "cli/render/strip_list.h"
 #include "cli/render/windows_team.h"
 #include "core/base/machine.h"
 #include "core/base/memory.h"
@@ -17,9 +18,8 @@
 #include "core/image/image_common.h"
 #include "core/pictures/image_exr_bands.h"
 
-/* Strips a process at least, where they can be so small; and how many may be drawn, a process, before the first that is
- * missing: they wait in a file. */
-enum { STRIPS_EACH = 4, STRIPS_AHEAD = 4 };
+/* How many strips may be drawn, a process, before the first that is missing: they wait in a file. */
+enum { STRIPS_AHEAD = 6 };
 
 /* Some rows of a strip, as they are handed over: packed, or as pixels; those that are hashed are both. */
 typedef struct piece_head {
@@ -203,7 +203,7 @@ static void write_waiting(banded *b) {
 static void take_piece_of_strip(void *cookie, int from, void *bytes, size_t n_bytes) {
   banded *b = cookie;
   piece_head head;
-  double start = cli_seconds();
+  conic_moment start = conic_moment_now();
   memcpy(&head, bytes, sizeof head);
   if (b->status != CONIC_OK)
     return;
@@ -215,7 +215,7 @@ static void take_piece_of_strip(void *cookie, int from, void *bytes, size_t n_by
   if (b->next > before)
     write_waiting(b);
   if (b->team) /* where something failed nobody is to wait for what does not come */
-    b->team->allow(b->status == CONIC_OK ? b->next + (uint64_t)(STRIPS_AHEAD * b->team->count) : UINT64_MAX);
+    b->team->allow(b->status == CONIC_OK ? b->next + (uint64_t)(STRIPS_AHEAD * b->team->cut_for) : UINT64_MAX);
   cli_team_trace(b->session, "join", "rows", (uint64_t)head.y, start, n_bytes);
   (void)from;
 }
@@ -273,7 +273,7 @@ static conic_status draw_strip(banded *b, size_t i_strip) {
   conic_context *context = b->session->context;
   conic_render_statistics drawn;
   conic_image pixels;
-  double start = cli_seconds();
+  conic_moment start = conic_moment_now();
   conic_status status = conic_progress(context, "draw", (double)s->y_begin / (double)b->camera->height);
   if (status == CONIC_OK)
     status = conic_image_allocate(context, b->camera->width, s->y_end - s->y_begin, b->planes, &pixels);
@@ -314,26 +314,13 @@ static conic_status draw_strips(banded *b) {
 /* A strip's pixels take a quarter of the memory; it has a multiple of the rows that are packed together, where bands of
  * samples let it. */
 static conic_status list_strips(banded *b) {
-  const conic_camera *camera = b->camera;
-  int band_rows = b->windows.band_rows, step = CONIC_EXR_BAND;
-  uint64_t row = conic_planes_pixel_bytes(b->planes) * (uint64_t)camera->width, rows = memory_for(b->job) / 4 / row;
-  uint64_t each = (uint64_t)camera->height / (uint64_t)(STRIPS_EACH * (b->team ? b->team->count : 1));
+  int step = CONIC_EXR_BAND, n_processes = b->team ? b->team->cut_for : 1;
+  uint64_t row = conic_planes_pixel_bytes(b->planes) * (uint64_t)b->camera->width, rows = memory_for(b->job) / 4 / row;
   while (step % b->windows.step)
     step += CONIC_EXR_BAND;
-  if (b->team && rows > each)
-    rows = each;
   rows = rows < (uint64_t)step ? (uint64_t)step : rows / (uint64_t)step * (uint64_t)step;
-  int side = rows < (uint64_t)camera->height ? (int)rows : camera->height;
-  size_t most = ((size_t)camera->height / (size_t)band_rows + 1) * ((size_t)band_rows / (size_t)side + 1);
-  b->strips = calloc(most, sizeof *b->strips);
-  if (!b->strips)
-    return CONIC_ERROR_MEMORY;
-  for (int band = 0; band < camera->height; band += band_rows) {
-    int band_end = camera->height - band < band_rows ? camera->height : band + band_rows;
-    for (int y = band; y < band_end; y += side)
-      b->strips[b->n++] = (conic_window){0, camera->width, y, band_end - y < side ? band_end : y + side};
-  }
-  return CONIC_OK;
+  int most = rows < (uint64_t)b->camera->height ? (int)rows : b->camera->height;
+  return cli_list_strips(&b->windows, step, most, n_processes, &b->strips, &b->n);
 }
 
 /* A piece has at most so many rows' pixels, and what packing makes of them is not much more. */
@@ -388,8 +375,10 @@ conic_status cli_render_banded(cli_session *session, cli_render_job *job, int i_
               .planes = job->planes,
               .written = job->planes & ~job->unwritten_planes,
               .is_hashed = session->json_path != NULL};
-  double start = cli_seconds();
-  conic_status status = agree(&b, begin_banded(&b));
+  conic_moment start = conic_moment_now();
+  conic_status status = begin_banded(&b);
+  cli_team_trace(session, "open", "picture", (uint64_t)i_frame, start, 0);
+  status = agree(&b, status);
   if (status == CONIC_OK)
     status = agree(&b, draw_strips(&b));
   if (status == CONIC_OK)
@@ -400,7 +389,7 @@ conic_status cli_render_banded(cli_session *session, cli_render_job *job, int i_
     status = cli_windows_sum(b.team, &b.windows, &b.counts);
   job->banded_planes = b.written;
   *statistics = b.counts.statistics;
-  statistics->ms.frame = 1e3 * (cli_seconds() - start);
+  statistics->ms.frame = 1e3 * (cli_seconds() - start.clock_s);
   release_banded(&b);
   return status;
 }

@@ -96,7 +96,7 @@ static void check_tone(const cli_session *session, cli_render_job *job, const co
 }
 
 conic_status cli_frame_write(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
-  double start = cli_seconds();
+  conic_moment start = conic_moment_now();
   conic_status status = CONIC_OK;
   check_tone(session, job, image);
   for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
@@ -104,7 +104,7 @@ conic_status cli_frame_write(cli_session *session, cli_render_job *job, const co
     status = path ? cli_backdrop_write(session, job, path, image) : CONIC_ERROR_MEMORY;
     free(path);
   }
-  job->write_ms += 1e3 * (cli_seconds() - start);
+  job->write_ms += 1e3 * (cli_seconds() - start.clock_s);
   if (job->sharing != CLI_SHARES_FRAMES) /* whose units write */
     cli_team_trace(session, "write", "picture", (uint64_t)i_frame, start, 0);
   return status;
@@ -368,7 +368,7 @@ static conic_status render_frames(cli_session *session, cli_render_job *job, con
   conic_status status = CONIC_OK;
   cli_frame_turns_begin(session, job, &turns);
   for (int i; status == CONIC_OK && (i = cli_frame_turns_next(session, job, &turns)) >= 0;) {
-    double start = cli_seconds();
+    conic_moment start = conic_moment_now();
     int i_frame = job->frames.first - 1 + i * job->frames.step, is_finished = 0;
     if (cli_frames_are_many(job))
       cli_session_part(session, job->is_turntable ? "frame" : "view", i + 1, turns.n_frames);
@@ -450,14 +450,15 @@ static int run(cli_session *session, int argc, char **argv) {
     if (status == CONIC_OK &&
         (cli_render_views_check(session, &job) != CLI_DONE || cli_sharing_choose(session, &job) != CLI_DONE))
       status = CONIC_ERROR_ARGUMENT;
-    job.begun_seconds = cli_seconds();
+    conic_moment begun = conic_moment_now();
+    job.begun_seconds = begun.clock_s;
     if (status == CONIC_OK && !cli_sharing_is_idle(session, &job))
       status = cli_scene_open(session, &job);
     if (status == CONIC_OK)
       cli_sharing_settle(&job);
     if (status == CONIC_OK)
       cli_lamps_warn(session, &job);
-    cli_team_trace(session, "open", "scene", 0, job.begun_seconds, 0);
+    cli_team_trace(session, "open", "scene", 0, begun, 0);
     exit_code = cli_exit_of(status);
     if (status == CONIC_OK && !cli_sharing_is_idle(session, &job))
       exit_code = job.top.is_wanted ? cli_top_render(session, &job) : render_scene(session, &job);

@@ -84,10 +84,10 @@ conic_status cli_sharing_end(const cli_session *session, const cli_render_job *j
   return status != CONIC_OK || exit_code == CLI_DONE ? status : CONIC_ERROR_CANCELLED;
 }
 
-void cli_sharing_note(const cli_session *session, cli_render_job *job, const char *name, uint64_t number, double start,
-                      uint64_t sent_bytes) {
+void cli_sharing_note(const cli_session *session, cli_render_job *job, const char *name, uint64_t number,
+                      conic_moment start, uint64_t sent_bytes) {
   job->n_units++;
-  job->busy_seconds += cli_seconds() - start;
+  job->busy_seconds += cli_seconds() - start.clock_s;
   cli_team_trace(session, "unit", name, number, start, sent_bytes);
 }
 

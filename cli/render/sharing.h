@@ -4,6 +4,7 @@
 #define CONIC_SHARING_H
 
 #include "cli/scene/render_job.h"
+#include "core/base/clock.h"
 
 /* Which of the frames this process draws. */
 typedef struct cli_frame_turns {
@@ -29,8 +30,8 @@ void cli_frame_turns_begin(const cli_session *session, const cli_render_job *job
 int cli_frame_turns_next(const cli_session *session, const cli_render_job *job, cli_frame_turns *turns);
 
 /* Notes that this process did a unit of the work: "frame" 3, since `start`. */
-void cli_sharing_note(const cli_session *session, cli_render_job *job, const char *name, uint64_t number, double start,
-                      uint64_t sent_bytes);
+void cli_sharing_note(const cli_session *session, cli_render_job *job, const char *name, uint64_t number,
+                      conic_moment start, uint64_t sent_bytes);
 
 /* Collective, at the end of what was shared: what all came to. Alone, the status itself. */
 conic_status cli_sharing_end(const cli_session *session, const cli_render_job *job, conic_status status);

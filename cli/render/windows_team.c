@@ -88,7 +88,8 @@ static void order_windows(window_work *w) {
 
 static conic_status choose_windows(window_work *w) {
   const conic_camera *camera = &w->windows.camera;
-  double pixels = (double)camera->width * (double)camera->height / (double)(w->team->count * WINDOWS_EACH), side = 1.0;
+  double pixels = (double)camera->width * (double)camera->height / (double)(w->team->cut_for * WINDOWS_EACH),
+         side = 1.0;
   while (side * side < pixels)
     side += CONIC_WINDOW_STEP;
   conic_status status = list_windows(w, round_to_step(side, w->windows.step));
@@ -116,7 +117,7 @@ static void place_plane(const window_work *w, const conic_window *window, conic_
 static void take_window(void *cookie, int from, void *bytes, size_t n_bytes) {
   window_work *w = cookie;
   window_result result;
-  double start = cli_seconds();
+  conic_moment start = conic_moment_now();
   const char *pixels = (const char *)bytes + sizeof result;
   memcpy(&result, bytes, sizeof result);
   const conic_window *window = &w->list[result.i_window];
@@ -131,7 +132,7 @@ static void take_window(void *cookie, int from, void *bytes, size_t n_bytes) {
 }
 
 static void keep_window(const window_work *w, size_t i_window, const conic_image *pixels) {
-  double start = cli_seconds();
+  conic_moment start = conic_moment_now();
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (w->planes >> i & 1)
       place_plane(w, &w->list[i_window], (conic_plane)i, pixels->planes[i]);
@@ -203,7 +204,7 @@ static conic_status draw_given_window(window_work *w, size_t i_window) {
   const conic_window *window = &w->list[i_window];
   conic_context *context = w->session->context;
   conic_image pixels;
-  double start = cli_seconds();
+  conic_moment start = conic_moment_now();
   conic_status status = conic_image_allocate(context, window->x_end - window->x_begin, window->y_end - window->y_begin,
                                              w->planes, &pixels);
   if (status != CONIC_OK)
@@ -240,7 +241,7 @@ static conic_status draw_given(window_work *w) {
 conic_status cli_draw_together(cli_session *session, cli_render_job *job, const cli_looking *looking,
                                conic_image *image, conic_render_statistics *statistics) {
   window_work w = {.session = session, .team = session->team, .job = job, .image = image};
-  double start = cli_seconds();
+  conic_moment start = conic_moment_now();
   const conic_camera *camera = looking->camera;
   w.planes = (conic_image_planes(image) ? conic_image_planes(image) : job->planes) & CLI_WINDOWS_PLANES;
   conic_status status = conic_source_windows_begin(job->source, job->renderer, camera, looking->options, looking->view,
@@ -250,6 +251,7 @@ conic_status cli_draw_together(cli_session *session, cli_render_job *job, const 
                               : 0;
   if (status == CONIC_OK)
     status = choose_windows(&w);
+  cli_team_trace(session, "open", "picture", 0, start, 0);
   status = cli_sharing_end(session, job, status);
   if (status == CONIC_OK)
     status = cli_sharing_end(session, job, draw_given(&w));
@@ -257,7 +259,7 @@ conic_status cli_draw_together(cli_session *session, cli_render_job *job, const 
     status = cli_windows_sum(session->team, &w.windows, &w.counts);
   conic_source_windows_end(&w.windows);
   *statistics = w.counts.statistics;
-  statistics->ms.frame = 1e3 * (cli_seconds() - start);
+  statistics->ms.frame = 1e3 * (cli_seconds() - start.clock_s);
   free(w.list);
   free(w.weights);
   return status;

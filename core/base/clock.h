@@ -1,4 +1,4 @@
-/* The time that passes: for statistics and limits of time, never for what is computed. */
+/* The time that passes, and that is worked: for statistics and limits of time, never for what is computed. */
 #ifndef CONIC_CLOCK_H
 #define CONIC_CLOCK_H
 
@@ -9,6 +9,18 @@ static inline double conic_seconds_now(void) {
   struct timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* When something is, and what the calling thread has worked until then. */
+typedef struct conic_moment {
+  double clock_s, processor_s;
+} conic_moment;
+
+static inline conic_moment conic_moment_now(void) {
+  struct timespec worked;
+  if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &worked) != 0)
+    worked = (struct timespec){0, 0};
+  return (conic_moment){conic_seconds_now(), (double)worked.tv_sec + 1e-9 * (double)worked.tv_nsec};
 }
 
 #endif

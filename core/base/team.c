@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#include "core/base/clock.h"
-
 conic_status conic_team_agree(const conic_team *team, conic_status status) {
   if (!team)
     return status;
@@ -26,10 +24,10 @@ void conic_team_collect(const conic_team *team, const void *bytes, size_t n_byte
   team->release(team->data, collected);
 }
 
-double conic_team_note(const conic_team *team, const char *name, double from, uint64_t number) {
+conic_moment conic_team_note(const conic_team *team, const char *name, conic_moment from, uint64_t number) {
   if (team && team->note)
     team->note(team->data, name, from, number);
-  return conic_seconds_now();
+  return conic_moment_now();
 }
 
 void *conic_team_swap(const conic_team *team, int partner, const void *bytes, size_t n_bytes, size_t *n_received) {

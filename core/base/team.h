@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "conic/context.h"
+#include "core/base/clock.h"
 
 typedef struct conic_team {
   int index, count;
@@ -22,9 +23,9 @@ typedef struct conic_team {
    * before; sizes[i] is their number. Goes to `release`. */
   void *(*collect)(void *data, const void *bytes, size_t n_bytes, size_t *sizes);
 
-  /* Takes note that this process has done with a part of the work, of that name, which stays, since a time of
-   * conic_seconds_now; `number` is what the work grows with. Null: nobody wants to know. */
-  void (*note)(void *data, const char *name, double from, uint64_t number);
+  /* Takes note that this process has done with a part of the work, of that name, which stays, since a moment; `number`
+   * is what the work grows with. Null: nobody wants to know. */
+  void (*note)(void *data, const char *name, conic_moment from, uint64_t number);
 
   /* Where one has no memory for what comes, whoever made the team ends all of it: none of these fails. */
 } conic_team;
@@ -45,8 +46,8 @@ static inline int conic_team_partner(const conic_team *team, int round) {
   return (round - team->index + team->count) % team->count;
 }
 
-/* Calls `note`, if there is one, and returns what time it is; fine where the team is null. */
-double conic_team_note(const conic_team *team, const char *name, double from, uint64_t number);
+/* Calls `note`, if there is one, and returns the moment; fine where the team is null. */
+conic_moment conic_team_note(const conic_team *team, const char *name, conic_moment from, uint64_t number);
 
 /* Sends to a partner, who does the same at a time, and receives what it sends. */
 void *conic_team_swap(const conic_team *team, int partner, const void *bytes, size_t n_bytes, size_t *n_received);

@@ -155,7 +155,7 @@ conic_status conic_team_runs(conic_context *context, const conic_team_loop *loop
   if (!team)
     return do_loop(context, loop, loop->n_items, loop->task, loop->data);
   team_blocks blocks = divide_loop(team, loop);
-  double start = conic_seconds_now();
+  conic_moment start = conic_moment_now();
   char *own = NULL;
   conic_status status = agree_on(context, CONIC_OK);
   if (status != CONIC_OK)

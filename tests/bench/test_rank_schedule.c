@@ -4,10 +4,14 @@
 
 static const char *const path = "trace.json";
 
-static conic_status read_trace(conic_context *context, const char *text, cli_rank_trace *trace) {
+static void write_trace(const char *text) {
   FILE *file = fopen(path, "wb");
   CHECK(file && fputs(text, file) >= 0 && fclose(file) == 0);
-  return cli_rank_trace_read(context, path, trace);
+}
+
+static conic_status read_trace(conic_context *context, const char *text, cli_rank_trace *trace) {
+  write_trace(text);
+  return cli_rank_trace_read(context, path, 0, trace);
 }
 
 /* Two ranks, three units, one merging. */
@@ -32,7 +36,7 @@ static void test_rank_trace(conic_context *context) {
       "{\"name\": \"OUT\", \"cat\": \"write\", \"ts\": 9e6, \"dur\": 2e6, \"pid\": 0}]}",
       &trace));
   CHECK(trace.n_ranks == 2 && trace.n_units == 3 && trace.seconds == 10.0 && trace.open_s == 1.5);
-  CHECK(trace.units[1].seconds == 4.0 && trace.units[0].bytes == 7.0);
+  CHECK(trace.units[0].seconds == 4.0 && trace.units[1].bytes == 7.0 && trace.units[2].seconds == 0.25);
   CHECK(trace.merge_s == 3.0 && trace.merge_bytes == 200.0 && trace.n_merges == 1.0 && trace.write_s == 2.0 &&
         trace.join_s == 0.0);
   cli_rank_trace_release(context, &trace);
@@ -123,6 +127,25 @@ static void test_rank_light(conic_context *context) {
   cli_rank_trace_release(context, &trace);
 }
 
+/* A rank that was kept from its core: what it worked is all that counts, and what it waited is no work. */
+static void test_processor_time(conic_context *context) {
+  cli_rank_trace trace;
+  write_trace("{\"traceEvents\": ["
+              "{\"name\": \"scene 0\", \"cat\": \"open\", \"ts\": 0, \"dur\": 4e6, \"tdur\": 1e6, \"pid\": 0},"
+              "{\"name\": \"read 9\", \"cat\": \"stage\", \"ts\": 4e6, \"dur\": 3e6, \"tdur\": 1e6, \"pid\": 0},"
+              "{\"name\": \"read 9\", \"cat\": \"wait\", \"ts\": 5e6, \"dur\": 2e6, \"tdur\": 0, \"pid\": 0},"
+              "{\"name\": \"window 0\", \"cat\": \"unit\", \"ts\": 7e6, \"dur\": 9e6, \"tdur\": 2e6, \"pid\": 0}]}");
+  CHECK_OK(cli_rank_trace_read(context, path, 1, &trace));
+  CHECK(trace.seconds == 16.0 && trace.open_s == 1.0 && trace.loops.seconds == 1.0 && trace.units[0].seconds == 2.0);
+  cli_rank_trace_release(context, &trace);
+  CHECK_OK(cli_rank_trace_read(context, path, 0, &trace));
+  CHECK(trace.open_s == 4.0 && trace.units[0].seconds == 9.0);
+  cli_rank_trace_release(context, &trace);
+  write_trace(
+      "{\"traceEvents\": [{\"name\": \"window 0\", \"cat\": \"unit\", \"ts\": 7e6, \"dur\": 9e6, \"pid\": 0}]}");
+  CHECK(cli_rank_trace_read(context, path, 1, &trace) == CONIC_ERROR_INPUT && !trace.units);
+}
+
 static void test_wrong_traces(conic_context *context) {
   static const char *const wrong[] = {"",
                                       "[]",
@@ -191,6 +214,7 @@ static void test_rank_schedule(conic_context *context) {
 int main(void) {
   conic_context *context = check_context(1);
   test_rank_trace(context);
+  test_processor_time(context);
   test_wrong_traces(context);
   test_rank_schedule(context);
   test_rank_build(context);

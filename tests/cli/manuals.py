@@ -62,7 +62,8 @@ for command in table["commands"]:
 
 # What belongs to other programs, where docs speak of them.
 others = set(
-    """--trace --build --install --prefix --test-dir --preset --parallel --label-exclude --output-on-failure --version --static
+    """--trace --trace-ranks --mpi
+    --build --install --prefix --test-dir --preset --parallel --label-exclude --output-on-failure --version --static
     --cflags --libs --format --fix --check --list --break --all --help
     --manylinux""".split()
 )

@@ -43,6 +43,10 @@ same "a picture in strips" whole.json strips.json whole.exr strips.exr
 [[ $(grep '"bands"' whole.json) != "$(grep '"bands"' strips.json)" ]] || fail "the picture was not drawn in strips"
 ranks 3 0 "${large[@]}" --memory 2 -o together.exr --json together.json
 same "a picture in strips on three ranks" whole.json together.json whole.exr together.exr
+bands=(render gyroid.lpc --plain --size 1200x70 --fov 8 --error 2 --samples 16 --occlusion off --threads 1)
+run_as_typed 0 "${bands[@]}" -o whole.exr --json whole.json
+ranks 2 0 "${bands[@]}" --memory 1 -o together.exr --json together.json
+same "strips of several bands of samples" whole.json together.json whole.exr together.exr
 odd=(render knot.ply --plain --size 1200x70 --samples 16 --fov 2 --compression piz --exr half --threads 1)
 run_as_typed 0 "${odd[@]}" -o whole.exr --json whole.json
 ranks 2 0 "${odd[@]}" --memory 1 -o together.exr --json together.json

@@ -292,7 +292,7 @@ static conic_status refuse_nothing(const conic_layers_builder *builder) {
 static conic_status feed_samples(conic_layers_builder *builder, conic_layers_placing *placing,
                                  conic_layers_feed *feed) {
   const conic_layers_plan *plan = &builder->plan;
-  double start = conic_seconds_now();
+  conic_moment start = conic_moment_now();
   conic_layers_placing_init(&builder->intake, plan, builder->header.origin, "sort", placing);
   conic_status status = conic_layers_shares_find(builder->team, placing, plan, least_in_chunk(plan), &builder->shares);
   *feed = (conic_layers_feed){conic_layers_place_all, placing, builder->intake.n_samples};
@@ -312,7 +312,7 @@ static conic_status sort_samples(conic_layers_builder *builder, const conic_laye
   conic_layers_feed feed;
   conic_status status = feed_samples(builder, &placing, &feed);
   const conic_layers_cuts cuts = {builder->shares.own_keys, builder->shares.n_own};
-  double start = conic_seconds_now();
+  conic_moment start = conic_moment_now();
   if (status == CONIC_OK)
     status = conic_layers_buckets_fill(builder->context, builder->path, &feed, &builder->plan, &cuts,
                                        eighths_of_memory(builder, 3) / 2, growth->most, &builder->buckets);
@@ -325,7 +325,7 @@ static conic_status sort_samples(conic_layers_builder *builder, const conic_laye
 static conic_status build_layers(conic_layers_builder *builder) {
   conic_layers_growth growth;
   conic_status status = CONIC_OK;
-  double start = conic_seconds_now();
+  conic_moment start = conic_moment_now();
   builder->has_united = 1;
   if (builder->team)
     status = conic_layers_intake_unite(&builder->intake, CONIC_OK);

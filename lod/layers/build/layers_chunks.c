@@ -374,7 +374,7 @@ conic_status conic_layers_forest_grow(const conic_layers_plan *plan, const conic
     status = create_hands(g);
   status = conic_team_agree(shares->team, status);
   if (status == CONIC_OK) {
-    double start = conic_seconds_now();
+    conic_moment start = conic_moment_now();
     status = grow_all(g);
     start = conic_team_note(shares->team, "grow", start, g->n_samples);
     status = finish_tree(g, status);

@@ -123,7 +123,7 @@ static conic_status move_clouds(writing *w, size_t n) {
 }
 
 static conic_status write_clouds_together(writing *w) {
-  double start = conic_seconds_now();
+  conic_moment start = conic_moment_now();
   conic_status status = fflush(w->stream) == 0 ? for_nodes(w, move_clouds) : CONIC_ERROR_IO;
   status = conic_layers_moves_tell(w->moving, status, NULL, 0);
   conic_team_note(w->team, "write", start, w->header->file_bytes);
@@ -159,7 +159,7 @@ static conic_status write_measured(writing *w, const char *path) {
 
 static conic_status write_all_bytes(conic_context *context, const char *path, const conic_layers_forest *forest,
                                     conic_layers_header *header, conic_layers_moving *moving) {
-  double start = conic_seconds_now();
+  conic_moment start = conic_moment_now();
   writing w = {.context = context,
                .team = moving ? moving->team : NULL,
                .forest = forest,
@@ -186,7 +186,7 @@ conic_status conic_layers_write(conic_context *context, const char *path, const 
   if (!team)
     return write_all_bytes(context, path, forest, header, NULL);
   conic_status status = team->index == 0 ? write_all_bytes(context, path, forest, header, &moving) : CONIC_OK;
-  double start = conic_seconds_now();
+  conic_moment start = conic_moment_now();
   status = conic_layers_moves_end(&moving, status);
   if (team->index > 0)
     conic_team_note(team, "write", start, conic_spool_bytes(&forest->nodes));

@@ -14,9 +14,10 @@
 typedef struct bands {
   const conic_layers_band_drawing *d;
   conic_render_options render;
-  size_t most;          /* splats at a time */
-  double n_expected;    /* splats of the places */
-  uint64_t block_bytes; /* of what is put aside and not yet written */
+  size_t most, most_at_once; /* splats at a time, and of a part that is drawn at once */
+  double n_expected;         /* splats of the places, */
+  double n_here;             /* and of these in the part; an estimate, but of the whole picture */
+  uint64_t block_bytes;      /* of what is put aside and not yet written */
   uint64_t pixel_bytes;
   conic_camera fine; /* of the picture of samples, */
   conic_window part; /* of which that is drawn */
@@ -34,6 +35,10 @@ typedef struct bands {
   conic_render_statistics counts; /* where the picture has several bands: of the splats */
   conic_render_statistics *sum;
 } bands;
+
+static int has_several_bands(const bands *b) {
+  return b->band_rows < b->fine.height;
+}
 
 static conic_layers_gathering begin_gathering(const bands *b) {
   const conic_layers_band_drawing *d = b->d;
@@ -60,6 +65,16 @@ static void rename_window(const bands *b, const conic_window *window, const coni
     }
 }
 
+/* What meets the part alone; of several bands, what becomes of a splat is counted with its place. */
+static conic_layers_gathering begin_gathering_part(const bands *b) {
+  conic_layers_gathering gathering = begin_gathering(b);
+  gathering.part_view = &b->view;
+  gathering.takes_counted = has_several_bands(b);
+  gathering.part = b->part;
+  gathering.samples = b->d->samples;
+  return gathering;
+}
+
 /* --- at once --- */
 
 static conic_status draw_whole(bands *b, conic_render_statistics *statistics) {
@@ -83,10 +98,6 @@ static conic_status draw_whole(bands *b, conic_render_statistics *statistics) {
 
 static int draws_whole(const bands *b) {
   return memcmp(&b->part, &(conic_window){0, b->fine.width, 0, b->fine.height}, sizeof b->part) == 0;
-}
-
-static int has_several_bands(const bands *b) {
-  return b->band_rows < b->fine.height;
 }
 
 /* Cuts the picture into windows, whose samples take an eighth of what there is for drawing. */
@@ -150,7 +161,7 @@ static conic_status look_at_new(void *cookie, conic_layers_set *set) {
 
 static conic_status put_all_aside(bands *b) {
   const conic_layers_band_drawing *d = b->d;
-  conic_layers_gathering gathering = begin_gathering(b);
+  conic_layers_gathering gathering = begin_gathering_part(b);
   gathering.receive = take_part;
   gathering.cookie = b;
   gathering.most = b->most;
@@ -271,13 +282,18 @@ static conic_status draw_all_windows(bands *b, int *n_bands) {
   return status;
 }
 
-/* A part whose splats have room all at once. */
+/* A part whose splats have room all at once; where more of them meet it than was thought, *n_bands stays 0. */
 static conic_status draw_gathered(bands *b, int *n_bands) {
   const conic_layers_band_drawing *d = b->d;
-  conic_layers_gathering gathering = begin_gathering(b);
+  conic_layers_gathering gathering = begin_gathering_part(b);
   gathering.look = look_at_new;
   gathering.cookie = b;
+  gathering.most = b->most_at_once;
   conic_status status = conic_layers_gather(d->layers, &gathering, d->set);
+  if (status == CONIC_OK && d->set->is_cut_short) {
+    memset(&b->counts, 0, sizeof b->counts);
+    return CONIC_OK;
+  }
   b->n_chosen = d->set->n_chosen;
   *d->n_turned += d->set->n_turned;
   if (status == CONIC_OK)
@@ -333,7 +349,9 @@ static conic_status draw_windows(bands *b, int is_room, conic_render_statistics 
   conic_layers_view_init(&d->layers->header, &b->fine, d->render, d->render->near_z, &b->view);
   conic_status status = conic_renderer_check_parts(d->renderer);
   if (status == CONIC_OK)
-    status = is_room ? draw_gathered(b, n_bands) : draw_put_aside(b, n_bands);
+    status = is_room ? draw_gathered(b, n_bands) : CONIC_OK;
+  if (status == CONIC_OK && *n_bands == 0)
+    status = draw_put_aside(b, n_bands);
   if (status == CONIC_OK)
     count_windows(b, statistics);
   conic_layers_spill_end(&b->spill);
@@ -343,19 +361,24 @@ static conic_status draw_windows(bands *b, int is_room, conic_render_statistics 
   return status;
 }
 
-/* Whether all that is drawn, and of the picture of its samples, has room: this is no estimate, but of grazing places.
- */
+/* Whether all that is drawn, and of the picture of its samples, has room: of a whole picture this is no estimate, but
+ * of grazing places. */
 static int fits(bands *b) {
   enum { PROJECTED_BYTES = 144 }; /* what transparency keeps of a splat besides */
   const conic_layers_band_drawing *d = b->d;
   double splat_bytes = CONIC_LAYERS_SPLAT_BYTES + (d->transparency ? PROJECTED_BYTES : 0);
   double room = (double)conic_layers_drawing_bytes(d->layers);
+  const conic_layers_gathering gathering = begin_gathering_part(b);
   int height = b->part.y_end - b->part.y_begin, rows = b->band_rows < height ? b->band_rows : height;
-  for (size_t i = 0; i < d->n_chosen; i++)
-    b->n_expected += conic_layers_place_weight(d->layers, &d->cut->places[d->chosen[i]]);
+  for (size_t i = 0; i < d->n_chosen; i++) {
+    double weight = conic_layers_place_weight(d->layers, &d->cut->places[d->chosen[i]]);
+    b->n_expected += weight;
+    b->n_here += weight * conic_layers_share_of_place(&gathering, d->chosen[i]);
+  }
   if (d->samples > 1 && conic_renderer_has_parts(d->renderer))
     room -= (double)rows * (double)(b->part.x_end - b->part.x_begin) * (double)b->pixel_bytes;
-  return b->n_expected * splat_bytes <= room;
+  b->most_at_once = room > splat_bytes ? (size_t)(room / splat_bytes) : 1;
+  return b->n_here * splat_bytes <= room;
 }
 
 conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, conic_render_statistics *statistics,

@@ -393,13 +393,27 @@ conic_status conic_layers_picture_draw(conic_layers_picture *d, const conic_wind
   return status;
 }
 
+/* The first window that ends below the row. */
+static size_t find_window_at(const conic_window *list, size_t n, int row) {
+  size_t first = 0;
+  while (n > 0) {
+    size_t half = n / 2;
+    if (list[first + half].y_end <= row) {
+      first += half + 1;
+      n -= half + 1;
+    } else
+      n = half;
+  }
+  return first;
+}
+
 /* Each place's splats are spread over its pixels. */
 void conic_layers_picture_weigh(const conic_layers_picture *d, const conic_window *list, size_t n, double *weights) {
   for (size_t i = 0; i < d->cut.n; i++) {
     const conic_window *pixels = &d->cut.places[i].sight.pixels;
     double area = (double)(pixels->x_end - pixels->x_begin) * (double)(pixels->y_end - pixels->y_begin);
     double weight = conic_layers_place_weight(d->layers, &d->cut.places[i]) / area;
-    for (size_t k = 0; k < n; k++) {
+    for (size_t k = find_window_at(list, n, pixels->y_begin); k < n && list[k].y_begin < pixels->y_end; k++) {
       conic_window in = conic_window_meet(pixels, &list[k]);
       if (in.x_begin < in.x_end && in.y_begin < in.y_end)
         weights[k] += weight * (double)(in.x_end - in.x_begin) * (double)(in.y_end - in.y_begin);

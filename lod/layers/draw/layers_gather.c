@@ -68,8 +68,10 @@ typedef struct sieve {
   const conic_layers_cloud *cloud;
   const conic_layers_place *place;
   const conic_layers_view *view;
-  const conic_layers_turned *turned; /* null: nothing of it faces away */
-  uint64_t n_of;                     /* not 0: so many of the cloud's are chosen, evenly in the order of their keys */
+  const conic_layers_turned *turned;  /* null: nothing of it faces away */
+  const conic_layers_gathering *part; /* null: all of the place lies in the part that is gathered for */
+  double reach_px;                    /* of its splats, there */
+  uint64_t n_of;                      /* not 0: so many of the cloud's are chosen, evenly in the order of their keys */
 } sieve;
 
 /* Of a piece's cloud: it is in memory. */
@@ -77,12 +79,36 @@ static const conic_layers_cloud *cloud_of(const conic_layers *layers, const coni
   return layers->store.slots[piece->cloud].cloud;
 }
 
+static conic_window fine_pixels(const conic_layers_place *place, int n) {
+  const conic_window *in = &place->sight.pixels;
+  return (conic_window){n * in->x_begin, n * in->x_end, n * in->y_begin, n * in->y_end};
+}
+
+static int is_place_counted(const conic_layers_gathering *asked, uint32_t i_place) {
+  return !asked->is_counted || asked->is_counted[i_place];
+}
+
+double conic_layers_share_of_place(const conic_layers_gathering *asked, uint32_t i_place) {
+  if (!asked->part_view || (asked->takes_counted && is_place_counted(asked, i_place)))
+    return 1.0;
+  conic_window pixels = fine_pixels(&asked->cut->places[i_place], asked->samples),
+               in = conic_window_meet(&pixels, &asked->part);
+  if (in.x_begin >= in.x_end || in.y_begin >= in.y_end)
+    return 0.0;
+  return (double)(in.x_end - in.x_begin) / (double)(pixels.x_end - pixels.x_begin) *
+         ((double)(in.y_end - in.y_begin) / (double)(pixels.y_end - pixels.y_begin));
+}
+
 static sieve begin_sieve(const gather *g, const conic_layers_piece *piece, const conic_layers_cloud *cloud) {
   const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
+  const conic_layers_gathering *part = conic_layers_share_of_place(g->asked, piece->i_place) < 1.0 ? g->asked : NULL;
   const conic_layers_turned *turned = g->asked->cut->turned ? &g->asked->cut->turned[piece->i_place] : NULL;
   return (sieve){.cloud = cloud,
                  .place = place,
                  .view = g->asked->view,
+                 .part = part,
+                 .reach_px =
+                     part ? conic_layers_reach(part->part_view, &g->layers->entries[place->node], &place->sight) : 0.0,
                  .n_of = g->asked->cut->n_root < cloud->count ? g->asked->cut->n_root : 0,
                  .turned = turned && turned->is_any && cloud->facing ? turned : NULL};
 }
@@ -106,6 +132,14 @@ static inline int is_chosen(const sieve *s, size_t i) {
   return !(fabs(along) >= s->place->offset);
 }
 
+/* Whether a splat surely meets no pixel of the part. */
+static inline int is_elsewhere(const sieve *s, size_t i) {
+  if (!s->part)
+    return 0;
+  const float position[3] = {s->cloud->position[0][i], s->cloud->position[1][i], s->cloud->position[2][i]};
+  return !conic_layers_may_meet(s->part->part_view, position, s->reach_px, &s->part->part);
+}
+
 static void count_piece(const gather *g, conic_layers_piece *piece) {
   conic_layers *layers = g->layers;
   const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
@@ -117,15 +151,16 @@ static void count_piece(const gather *g, conic_layers_piece *piece) {
   piece->end = (uint32_t)end;
   sieve s = begin_sieve(g, piece, cloud);
   piece->n_chosen = piece->end - piece->first;
-  piece->n_turned = 0;
-  if (place->state != CONIC_PLACE_GRAZING && !s.turned && !s.n_of && !cloud->is_left_out)
+  piece->n_turned = piece->n_elsewhere = 0;
+  if (place->state != CONIC_PLACE_GRAZING && !s.turned && !s.n_of && !s.part && !cloud->is_left_out)
     return;
   piece->n_chosen = 0;
-  for (size_t i = first; i < end; i++)
-    if (is_chosen(&s, i) && is_turned(&s, i))
-      piece->n_turned++;
-    else if (is_chosen(&s, i))
-      piece->n_chosen++;
+  for (size_t i = first; i < end; i++) {
+    if (!is_chosen(&s, i))
+      continue;
+    uint32_t *n = is_turned(&s, i) ? &piece->n_turned : is_elsewhere(&s, i) ? &piece->n_elsewhere : &piece->n_chosen;
+    ++*n;
+  }
 }
 
 /* A piece's samples and their places in the set. */
@@ -282,7 +317,7 @@ static void fill_piece(const gather *g, conic_layers_piece *piece) {
   }
   sieve s = begin_sieve(g, piece, cloud);
   for (size_t i = 0; i < n && k < piece->n_chosen; i++)
-    if (!is_turned(&s, piece->first + i) && is_chosen(&s, piece->first + i)) {
+    if (!is_turned(&s, piece->first + i) && is_chosen(&s, piece->first + i) && !is_elsewhere(&s, piece->first + i)) {
       copy_one(&c, i, k, first_id + (uint32_t)i);
       if (cloud->axis[0])
         copy_payload(&c, piece->first + i, k);
@@ -315,11 +350,11 @@ static size_t place_pieces(gather *g) {
     const conic_layers_piece *before = i > 0 ? &set->pieces[i - 1] : NULL;
     if (before && before->cloud == piece->cloud &&
         conic_layers_is_same_place(&entries[places[before->i_place].node], &entries[places[piece->i_place].node]))
-      piece->n_chosen = piece->n_turned = 0;
+      piece->n_chosen = piece->n_turned = piece->n_elsewhere = 0;
     piece->at = at;
     at += piece->n_chosen;
-    int is_counted = !g->asked->is_counted || g->asked->is_counted[piece->i_place];
-    set->n_chosen += is_counted ? piece->n_chosen : 0;
+    int is_counted = is_place_counted(g->asked, piece->i_place);
+    set->n_chosen += is_counted ? piece->n_chosen + piece->n_elsewhere : 0;
     set->n_turned += is_counted ? piece->n_turned : 0;
   }
   return at;
@@ -386,7 +421,7 @@ static conic_status take_clouds(gather *g, const uint32_t *clouds, size_t n) {
     conic_layers_store_unpin(layers, &loading);
     if (status == CONIC_OK && g->asked->receive)
       status = hand_over(g);
-    else if (status == CONIC_OK && g->asked->look)
+    else if (status == CONIC_OK && g->asked->look && !g->set->is_cut_short)
       status = g->asked->look(g->asked->cookie, g->set);
     done += loading.n;
   }
@@ -400,6 +435,7 @@ static size_t expect(const gather *g) {
   for (size_t k = 0; k < g->asked->n_chosen && !g->asked->receive; k++) {
     const conic_layers_place *place = &g->asked->cut->places[g->asked->chosen[k]];
     size_t n_drawn = g->layers->entries[place->node].n_drawn;
+    n_drawn = (size_t)((double)n_drawn * conic_layers_share_of_place(g->asked, g->asked->chosen[k]));
     n += place->state == CONIC_PLACE_SHOWN ? n_drawn : place->state == CONIC_PLACE_GRAZING ? n_drawn / 16 : 0;
   }
   return n < g->asked->most || !g->asked->most ? n + 1 : g->asked->most + 1;

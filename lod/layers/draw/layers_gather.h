@@ -13,6 +13,10 @@ typedef struct conic_layers_gathering {
   const uint32_t *chosen; /* places of the cut, ascending */
   size_t n_chosen;
   const conic_layers_view *view;
+  const conic_layers_view *part_view; /* null: for all of the picture; else what may meet the part of it is taken, */
+  conic_window part;                  /* in the pixels of this view, */
+  int samples;                        /* so many of which, a side, are one of the places', */
+  int takes_counted;                  /* and all of the places that is_counted tells of */
   float cutoff;
   const conic_camera *camera;         /* that dots are turned to; null: they are left as they are */
   double until_s;                     /* by conic_seconds_now; infinite: clouds are waited for */
@@ -24,6 +28,9 @@ typedef struct conic_layers_gathering {
   size_t most; /* splats of a part, but where one place's of one cloud are more; of all, which then are cut short, where
                   nobody receives parts (0: any number) */
 } conic_layers_gathering;
+
+/* How much of a chosen place is taken, about: 0 to 1. */
+double conic_layers_share_of_place(const conic_layers_gathering *gathering, uint32_t i_place);
 
 /* Fills the set with what is to be drawn of the places that are shown or grazing; those hidden give nothing. Clouds are
  * read once each, in the order of the file, no more of them at a time than the cache holds. Errors: as

@@ -28,7 +28,8 @@ conic_status conic_layers_picture_draw(conic_layers_picture *picture, const coni
                                        conic_image *image, conic_render_statistics *statistics,
                                        conic_layers_tally *tally);
 
-/* How many splats each of the windows has, about; windows do not overlap. */
+/* How many splats each of the windows has, about; windows do not overlap, and neither their first
+ * nor their last rows ever decrease. */
 void conic_layers_picture_weigh(const conic_layers_picture *picture, const conic_window *list, size_t n,
                                 double *weights);
 

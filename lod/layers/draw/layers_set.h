@@ -7,10 +7,11 @@
 /* What a cloud has in a place of the cut. */
 typedef struct conic_layers_piece {
   uint32_t cloud, i_place;
-  uint32_t first, end; /* its samples, */
-  uint32_t n_chosen;   /* of which so many are to be drawn, */
-  uint32_t n_turned;   /* while so many face away, and are culled, */
-  size_t at;           /* from here on in the set */
+  uint32_t first, end;  /* its samples, */
+  uint32_t n_chosen;    /* of which so many are to be drawn, */
+  uint32_t n_turned;    /* while so many face away, and are culled, */
+  uint32_t n_elsewhere; /* and so many meet no pixel of the part that is gathered for, */
+  size_t at;            /* from here on in the set */
 } conic_layers_piece;
 
 /* Splats to draw. Zero before the first use; the memory is kept from set to set. */

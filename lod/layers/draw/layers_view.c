@@ -153,6 +153,16 @@ int conic_layers_narrow(const conic_layers_view *view, const float position[3], 
   return pixels->x_begin < pixels->x_end && pixels->y_begin < pixels->y_end;
 }
 
+double conic_layers_reach(const conic_layers_view *view, const conic_layers_entry *entry,
+                          const conic_layers_sight *sight) {
+  double radius = (double)entry->radius * (1.0 + 2.0 * slack);
+  double farthest = (sight->distance + 2.0 * ((double)entry->sphere + radius)) * 1.001;
+  double front = 1.0 / sight->near_iz - radius - 2e-6 * farthest;
+  if (!(front > view->near_z))
+    return HUGE_VAL;
+  return most_px(view, radius, farthest + radius, front) + view->growth_px;
+}
+
 double conic_layers_least_offset(const conic_layers_view *view, const conic_layers_entry *entry) {
   double cosine[2], sine[2], to[3];
   for (int axis = 0; axis < 3; axis++)

@@ -2,6 +2,8 @@
 #ifndef CONIC_LAYERS_VIEW_H
 #define CONIC_LAYERS_VIEW_H
 
+#include <math.h>
+
 #include "conic/camera.h"
 #include "conic/render.h"
 #include "core/image/viewpoint.h"
@@ -40,6 +42,23 @@ int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *e
 /* Narrows a place's pixels to those that one of its splats, at a position relative to the origin, may cover. 0 where
  * there are none. */
 int conic_layers_narrow(const conic_layers_view *view, const float position[3], double radius, conic_window *pixels);
+
+/* How far from where its centre is seen a splat of the place reaches at most, in pixels, so that narrowing comes to no
+ * more; infinite where one may be close to the eye. */
+double conic_layers_reach(const conic_layers_view *view, const conic_layers_entry *entry,
+                          const conic_layers_sight *sight);
+
+/* 0 where a splat that reaches so far surely meets nothing of the window, nor do its pixels by narrowing. */
+static inline int conic_layers_may_meet(const conic_layers_view *view, const float position[3], double reach_px,
+                                        const conic_window *window) {
+  double p[3];
+  if (!(reach_px < HUGE_VAL))
+    return 1;
+  conic_viewpoint_move_floats(&view->from, position, p);
+  double x = view->cx + view->fx * p[0] / p[2], y = view->cy + view->fy * p[1] / p[2];
+  return y + reach_px >= (double)window->y_begin && y - reach_px <= (double)window->y_end &&
+         x + reach_px >= (double)window->x_begin && x - reach_px <= (double)window->x_end;
+}
 
 /* The least |n·p| of the place's splats: how far from the eye their planes are. 0 where that is not known. */
 double conic_layers_least_offset(const conic_layers_view *view, const conic_layers_entry *entry);
