@@ -87,7 +87,7 @@ static conic_status write_bands(conic_context *context, const conic_image *image
   conic_image header = *image;
   memset(header.planes, 0, sizeof header.planes);
   conic_status status =
-      conic_exr_bands_open(context, in_folder("b.exr"), &header, conic_image_planes(image), options, &bands);
+      conic_exr_bands_open(context, in_folder("b.exr"), NULL, &header, conic_image_planes(image), options, &bands);
   for (int y = 0; y < last_row && status == CONIC_OK; y += rows) {
     conic_image band = band_of(image, y, y + rows < last_row ? rows : last_row - y);
     status = conic_exr_bands_append(bands, &band);
