@@ -202,7 +202,7 @@ static conic_status read_strips(reading *r) {
 /* Opens one, which is made where it is not there. */
 static conic_status open_kept_file(conic_context *context, const char *path, conic_scratch *file, uint64_t *n_bytes) {
   conic_disk_entry entry = {0};
-  *file = (conic_scratch){context, path, -1};
+  *file = (conic_scratch){context, path, -1, 1};
   if (conic_disk_look(path, &entry)) {
     conic_status status = conic_guard_check(context, path, &entry);
     if (status != CONIC_OK)
