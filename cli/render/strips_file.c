@@ -44,7 +44,7 @@ conic_status cli_strips_file_get(const cli_strips_file *file, const cli_strip_re
 
 /* --- what is there --- */
 
-typedef struct reading {
+typedef struct strips_reading {
   conic_context *context;
   cli_strips_file *file;
   const cli_strips_size *size;
@@ -52,7 +52,7 @@ typedef struct reading {
   cli_strip_record *records; /* all */
   size_t n, room, found_room;
   char *bytes; /* of a record */
-} reading;
+} strips_reading;
 
 /* Whether a strip may begin or end there. */
 static int is_place_of_strip(const cli_strips_size *size, int y) {
@@ -60,7 +60,7 @@ static int is_place_of_strip(const cli_strips_size *size, int y) {
 }
 
 /* Rows that are not packed lie between two multiples of those that are packed together. */
-static int is_sound(const reading *r, const cli_strip_piece *p) {
+static int is_record_sound(const strips_reading *r, const cli_strip_piece *p) {
   const cli_strips_size *size = r->size;
   uint64_t row_bytes = (uint64_t)p->n_rows * size->row_bytes;
   if (!is_place_of_strip(size, p->y_begin) || !is_place_of_strip(size, p->y_end) || p->y_begin >= p->y_end ||
@@ -78,7 +78,7 @@ static int is_sound(const reading *r, const cli_strip_piece *p) {
   return p->pixel_bytes == row_bytes || (p->packed_bytes && !p->pixel_bytes);
 }
 
-static conic_status list_records(reading *r) {
+static conic_status list_strip_records(strips_reading *r) {
   uint64_t at = HEAD_BYTES;
   conic_status status = CONIC_OK;
   cli_strip_record record;
@@ -91,9 +91,9 @@ static conic_status list_records(reading *r) {
       break;
     at = record.at + following_bytes(&record.piece);
     record.i = r->n;
-    if (is_sound(r, &record.piece))
+    if (is_record_sound(r, &record.piece))
       status = conic_memory_reserve(r->context, &r->records, r->n, r->n + 1, &r->room, sizeof record);
-    if (status == CONIC_OK && is_sound(r, &record.piece))
+    if (status == CONIC_OK && is_record_sound(r, &record.piece))
       r->records[r->n++] = record;
   }
   atomic_store(&r->file->list.n_bytes, at);
@@ -101,7 +101,7 @@ static conic_status list_records(reading *r) {
 }
 
 /* Strip by strip from the top, and of one in the order in which they came. */
-static int compare_records(const void *a, const void *b) {
+static int compare_strip_records(const void *a, const void *b) {
   const cli_strip_record *first = a, *second = b;
   if (first->piece.y_begin != second->piece.y_begin)
     return first->piece.y_begin < second->piece.y_begin ? -1 : 1;
@@ -110,7 +110,7 @@ static int compare_records(const void *a, const void *b) {
   return (first->i > second->i) - (first->i < second->i);
 }
 
-static int is_record_whole(const reading *r, const cli_strip_record *record) {
+static int is_record_whole(const strips_reading *r, const cli_strip_record *record) {
   const cli_strip_piece *p = &record->piece;
   return cli_strips_file_get(r->file, record, r->bytes) == CONIC_OK &&
          conic_hash_bytes(r->bytes, (size_t)p->packed_bytes) == p->checks[0] &&
@@ -119,7 +119,7 @@ static int is_record_whole(const reading *r, const cli_strip_record *record) {
 
 /* Whether the records from `first` to `end`, the strip's last, are whole; and the hashes known, where they are needed.
  */
-static int is_strip_there(const reading *r, size_t first, size_t end) {
+static int is_strip_there(const strips_reading *r, size_t first, size_t end) {
   cli_strip_end about;
   int has_pixels = 1;
   for (size_t i = first; i <= end; i++) {
@@ -131,7 +131,7 @@ static int is_strip_there(const reading *r, size_t first, size_t end) {
   return !r->size->is_hashed || has_pixels || about.has_hashes;
 }
 
-static conic_status keep_strip(reading *r, size_t first, size_t end) {
+static conic_status keep_strip(strips_reading *r, size_t first, size_t end) {
   cli_strips_file *file = r->file;
   size_t n = end + 1 - first;
   conic_status status = conic_memory_reserve(r->context, &file->found, file->n_found, file->n_found + n, &r->found_room,
@@ -144,12 +144,12 @@ static conic_status keep_strip(reading *r, size_t first, size_t end) {
 }
 
 /* A strip that was begun again has records of both times: those count that are its rows in their order. */
-static conic_status find_strips(reading *r) {
+static conic_status find_strips(strips_reading *r) {
   int kept_end = 0;
   size_t first = SIZE_MAX;
   conic_status status = CONIC_OK;
   if (r->n)
-    qsort(r->records, r->n, sizeof *r->records, compare_records);
+    qsort(r->records, r->n, sizeof *r->records, compare_strip_records);
   for (size_t i = 0; i < r->n && status == CONIC_OK; i++) {
     const cli_strip_piece *p = &r->records[i].piece, *before = i ? &r->records[i - 1].piece : NULL;
     int is_next = first != SIZE_MAX && before->y_begin == p->y_begin && before->y_end == p->y_end &&
@@ -175,7 +175,7 @@ static uint64_t part_in_use(const cli_strips_file *file) {
   return end;
 }
 
-static conic_status check_strips_head(reading *r, const char *path, const char *key) {
+static conic_status check_strips_head(strips_reading *r, const char *path, const char *key) {
   char head[HEAD_BYTES];
   size_t n = sizeof first_line - 1;
   if (r->list_bytes < sizeof head || conic_pile_read(&r->file->list, 0, head, sizeof head) != CONIC_OK ||
@@ -187,9 +187,9 @@ static conic_status check_strips_head(reading *r, const char *path, const char *
   return CONIC_OK;
 }
 
-static conic_status read_strips(reading *r) {
+static conic_status read_strips(strips_reading *r) {
   r->bytes = conic_memory_allocate(r->context, (size_t)r->size->most_bytes, 1);
-  conic_status status = r->bytes ? list_records(r) : CONIC_ERROR_MEMORY;
+  conic_status status = r->bytes ? list_strip_records(r) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     status = find_strips(r);
   conic_memory_release(r->context, r->records);
@@ -222,7 +222,7 @@ static conic_status cut_kept_file(const conic_scratch *file, uint64_t n_bytes) {
              : conic_fail(file->context, CONIC_ERROR_IO, "%s: cannot write: %s", file->path, strerror(errno));
 }
 
-static conic_status begin_list(cli_strips_file *file, const char *key) {
+static conic_status begin_strips_list(cli_strips_file *file, const char *key) {
   char head[HEAD_BYTES] = "";
   uint64_t at;
   snprintf(head, sizeof head, "%s%s\n", first_line, key);
@@ -232,7 +232,7 @@ static conic_status begin_list(cli_strips_file *file, const char *key) {
 
 conic_status cli_strips_file_begin(conic_context *context, const char *list, const char *part, const char *key,
                                    const cli_strips_size *size, int is_going_on, cli_strips_file *file) {
-  reading r = {.context = context, .file = file, .size = size};
+  strips_reading r = {.context = context, .file = file, .size = size};
   conic_disk_entry entry;
   memset(file, 0, sizeof *file);
   file->part.descriptor = -1;
@@ -246,7 +246,7 @@ conic_status cli_strips_file_begin(conic_context *context, const char *list, con
   if (status == CONIC_OK && is_going_on)
     status = read_strips(&r);
   if (status == CONIC_OK && !is_going_on)
-    status = begin_list(file, key);
+    status = begin_strips_list(file, key);
   if (status == CONIC_OK)
     status = cut_kept_file(&file->list.file, atomic_load(&file->list.n_bytes));
   return status == CONIC_OK ? cut_kept_file(&file->part, part_in_use(file)) : status;

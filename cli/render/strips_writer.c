@@ -20,7 +20,7 @@ static conic_status append_odd(void *cookie, int y, int n_rows, const void *byte
 }
 
 /* A plane's part of some rows. */
-static size_t plane_bytes(const cli_strips_writer *w, int i_plane, int n_rows) {
+static size_t plane_rows_bytes(const cli_strips_writer *w, int i_plane, int n_rows) {
   return conic_planes_pixel_bytes(1u << i_plane) * (size_t)w->camera->width * (size_t)n_rows;
 }
 
@@ -37,8 +37,8 @@ static conic_status take_odd_rows(cli_strips_writer *w, const cli_strip_piece *p
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot go on: its strips do not follow each other", w->path);
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (w->written >> i & 1) {
-      size_t n_bytes = plane_bytes(w, i, piece->n_rows);
-      memcpy((char *)w->odd.planes[i] + plane_bytes(w, i, w->n_odd), pixels, n_bytes);
+      size_t n_bytes = plane_rows_bytes(w, i, piece->n_rows);
+      memcpy((char *)w->odd.planes[i] + plane_rows_bytes(w, i, w->n_odd), pixels, n_bytes);
       pixels += n_bytes;
     }
   w->n_odd += piece->n_rows;
@@ -52,14 +52,14 @@ static conic_status take_odd_rows(cli_strips_writer *w, const cli_strip_piece *p
 static void hash_rows(cli_strips_writer *w, const cli_strip_piece *piece, const char *pixels) {
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (w->written >> i & 1) {
-      size_t n_bytes = plane_bytes(w, i, piece->n_rows);
+      size_t n_bytes = plane_rows_bytes(w, i, piece->n_rows);
       w->job->hashes[i] = conic_image_hash_on(w->job->hashes[i], pixels, n_bytes);
       pixels += n_bytes;
     }
 }
 
 /* What is packed stands in its place already where it is kept there. */
-static conic_status append_rows(cli_strips_writer *w, const cli_strip_piece *piece, const char *bytes) {
+static conic_status append_packed_rows(cli_strips_writer *w, const cli_strip_piece *piece, const char *bytes) {
   conic_status status =
       conic_exr_bands_append_packed(w->file, piece->y, piece->n_rows, bytes, (size_t)piece->packed_bytes);
   if (status != CONIC_OK || !piece->place || piece->place + piece->packed_bytes == conic_exr_bands_length(w->file))
@@ -118,7 +118,7 @@ static conic_status write_piece(cli_strips_writer *w, const cli_strip_piece *pie
     return end_strip(w, piece, bytes, is_new);
   if (w->is_hashed && piece->pixel_bytes)
     hash_rows(w, piece, pixels);
-  conic_status status = piece->packed_bytes ? append_rows(w, piece, bytes) : take_odd_rows(w, piece, pixels);
+  conic_status status = piece->packed_bytes ? append_packed_rows(w, piece, bytes) : take_odd_rows(w, piece, pixels);
   return status == CONIC_OK && w->part && is_new ? keep_rows(w, piece, bytes) : status;
 }
 

@@ -28,7 +28,7 @@ static void mend_checks(unsigned char *bytes, size_t n_bytes) {
   }
 }
 
-static void check_found(const cli_strips_file *file) {
+static void check_found_strips(const cli_strips_file *file) {
   unsigned char bytes[4096];
   int y = 0;
   for (size_t i = 0; i < file->n_found; i++) {
@@ -50,7 +50,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
   conic_status status =
       cli_strips_file_begin(input.context, input.path, written.path, STRIPS_EXAMPLE_KEY, &strips_example, 1, &file);
   if (status == CONIC_OK) {
-    check_found(&file);
+    check_found_strips(&file);
     FUZZ_CHECK(cli_strips_file_begin(input.context, input.path, written.path, STRIPS_EXAMPLE_KEY, &strips_example, 1,
                                      &again) == CONIC_OK);
     FUZZ_CHECK(again.n_found == file.n_found);
