@@ -78,6 +78,13 @@ static int is_record_sound(const strips_reading *r, const cli_strip_piece *p) {
   return p->pixel_bytes == row_bytes || (p->packed_bytes && !p->pixel_bytes);
 }
 
+static conic_status add_record(strips_reading *r, const cli_strip_record *record) {
+  conic_status status = conic_memory_reserve(r->context, &r->records, r->n, r->n + 1, &r->room, sizeof *r->records);
+  if (status == CONIC_OK)
+    r->records[r->n++] = *record;
+  return status;
+}
+
 static conic_status list_strip_records(strips_reading *r) {
   uint64_t at = HEAD_BYTES;
   conic_status status = CONIC_OK;
@@ -92,9 +99,7 @@ static conic_status list_strip_records(strips_reading *r) {
     at = record.at + following_bytes(&record.piece);
     record.i = r->n;
     if (is_record_sound(r, &record.piece))
-      status = conic_memory_reserve(r->context, &r->records, r->n, r->n + 1, &r->room, sizeof record);
-    if (status == CONIC_OK && is_record_sound(r, &record.piece))
-      r->records[r->n++] = record;
+      status = add_record(r, &record);
   }
   atomic_store(&r->file->list.n_bytes, at);
   return status;

@@ -87,19 +87,18 @@ typedef struct cli_render_job {
   int repeat;
   unsigned planes; /* bits 1 << conic_plane */
   int is_aov_given, is_samples_given, is_prefilter_given;
-  cli_stereo stereo;                /* --stereo */
-  cli_accumulate_job accumulating;  /* --accumulate */
-  struct cli_kept_frames *kept;     /* --resumable and --resume, of several frames (cli/render/kept_frames.h); */
-  char kept_key[CONIC_SHA256_ROOM]; /* also of one in strips: what decides its bits; empty: nothing is kept */
-  unsigned asked_planes;            /* of these, what --aov names */
-  unsigned unwritten_planes;        /* drawn for what else is written */
-  conic_image_options writing;      /* how pictures are written, but for the tone, which is of rgba alone */
-  int tone;                         /* --tone: a conic_tone */
-  int is_patch;                     /* --method patch: options.method draws its samples */
-  int is_exposure_automatic;        /* until it is found */
-  conic_render_options options;     /* but for the two lengths, which the scene has to be known for: */
-  cli_length epsilon, near_z;       /* below 0: automatic */
-  cli_device device;                /* what draws: */
+  cli_stereo stereo;               /* --stereo */
+  cli_accumulate_job accumulating; /* --accumulate */
+  struct cli_kept_frames *kept;    /* --resumable and --resume, of several frames (cli/render/kept_frames.h) */
+  unsigned asked_planes;           /* of these, what --aov names */
+  unsigned unwritten_planes;       /* drawn for what else is written */
+  conic_image_options writing;     /* how pictures are written, but for the tone, which is of rgba alone */
+  int tone;                        /* --tone: a conic_tone */
+  int is_patch;                    /* --method patch: options.method draws its samples */
+  int is_exposure_automatic;       /* until it is found */
+  conic_render_options options;    /* but for the two lengths, which the scene has to be known for: */
+  cli_length epsilon, near_z;      /* below 0: automatic */
+  cli_device device;               /* what draws: */
   conic_renderer *renderer;
   unsigned long long budget; /* the view's */
   int is_memory_given;       /* --memory */
@@ -132,7 +131,8 @@ typedef struct cli_render_job {
   cli_sharing sharing;
   uint64_t n_units; /* that this process did, */
   double busy_seconds;
-  cli_team_shares shares; /* what all did */
+  cli_team_shares shares;           /* what all did */
+  char kept_key[CONIC_SHA256_ROOM]; /* what decides the bits, where --resumable or --resume keep frames or strips */
 } cli_render_job;
 
 /* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */
