@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/render/banded_picture.h"
 #include "cli/render/frames.h"
 #include "cli/render/frames_file.h"
 #include "cli/render/sharing.h"
@@ -40,19 +41,32 @@ static int reads_stream(const cli_render_job *job) {
   return 0;
 }
 
-int cli_kept_frames_check(const cli_render_job *job) {
+static int refuse_kept(void) {
+  return cli_usage("render: --resumable and --resume are of several frames, of --accumulate N, or of one .exr that is "
+                   "larger than half of --memory and is drawn in strips");
+}
+
+conic_status cli_refuse_kept_picture(const cli_render_job *job) {
+  if (!*job->kept_key || job->kept)
+    return CONIC_OK;
+  refuse_kept();
+  return CONIC_ERROR_ARGUMENT;
+}
+
+int cli_kept_frames_check(const cli_session *session, const cli_render_job *job) {
   const cli_accumulate_job *own = &job->accumulating;
   int is_several = cli_frames_are_several(job), has_file = job->n_outputs > 0 && strcmp(job->outputs[0], "-") != 0;
+  int is_placed = is_several || !own->n_samples;
   if (!own->is_resumable && !own->resume_path)
     return CLI_DONE;
-  if (!is_several && !own->n_samples)
-    return cli_usage("render: --resumable and --resume are of several frames, or of --accumulate N");
-  if ((own->is_resumable || is_several) && !has_file)
+  if (is_placed && !is_several && !cli_may_be_banded(session, job))
+    return refuse_kept();
+  if ((own->is_resumable || is_placed) && !has_file)
     return cli_usage("render: --resumable keeps what is finished beside the picture; give a file with -o");
-  if (is_several && own->resume_path && strcmp(own->resume_path, job->outputs[0]) != 0)
-    return cli_usage("render: --resume goes on with frames where they are; give -o %s, too", own->resume_path);
-  if (is_several && reads_stream(job))
-    return cli_usage("render: frames of standard input cannot be gone on with; give files");
+  if (is_placed && own->resume_path && strcmp(own->resume_path, job->outputs[0]) != 0)
+    return cli_usage("render: --resume goes on with pictures where they are; give -o %s, too", own->resume_path);
+  if (is_placed && reads_stream(job))
+    return cli_usage("render: what standard input shows cannot be gone on with; give files");
   return CLI_DONE;
 }
 
@@ -109,16 +123,14 @@ static char *name_list(const cli_render_job *job) {
 static conic_status open_list(cli_session *session, cli_render_job *job) {
   cli_kept_frames *kept = job->kept;
   const cli_accumulate_job *own = &job->accumulating;
-  char key[CONIC_SHA256_ROOM];
   conic_disk_entry entry;
   conic_status status = CONIC_OK;
-  cli_frames_key(session, job, key);
   if (own->resume_path && (!own->is_resumable || conic_disk_look(kept->path, &entry)))
-    status = cli_frames_file_read(session->context, kept->path, key, job->n_frames, &kept->found);
+    status = cli_frames_file_read(session->context, kept->path, job->kept_key, job->n_frames, &kept->found);
   else
     status = cli_frames_file_parse(session->context, NULL, 0, job->n_frames, &kept->found);
   if (status == CONIC_OK)
-    status = cli_frames_file_write(session->context, kept->path, key, &kept->found);
+    status = cli_frames_file_write(session->context, kept->path, job->kept_key, &kept->found);
   if (status != CONIC_OK)
     return status;
   kept->stream = conic_disk_open_stream(kept->path, "ab");
@@ -148,7 +160,14 @@ static conic_status spread_list(cli_session *session, cli_render_job *job) {
 
 conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job) {
   cli_accumulate_job *own = &job->accumulating;
-  if ((!own->is_resumable && !own->resume_path) || !cli_frames_are_several(job))
+  int is_several = cli_frames_are_several(job);
+  if ((!own->is_resumable && !own->resume_path) || (!is_several && own->n_samples))
+    return CONIC_OK;
+  if (cli_team_is_first(session))
+    cli_frames_key(session, job, job->kept_key);
+  if (job->sharing != CLI_SHARES_NOTHING)
+    session->team->broadcast(job->kept_key, sizeof job->kept_key);
+  if (!is_several)
     return CONIC_OK;
   conic_status status = CONIC_OK;
   job->kept = calloc(1, sizeof *job->kept);

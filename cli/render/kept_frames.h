@@ -10,10 +10,11 @@
 typedef struct cli_kept_frames cli_kept_frames;
 
 /* What the two options mean together with the others, also for one picture. */
-int cli_kept_frames_check(const cli_render_job *job);
+int cli_kept_frames_check(const cli_session *session, const cli_render_job *job);
 
-/* Collective, once the scene is open and the exposure known: reads what is to be gone on with, and begins OUT.frames;
- * nothing where no frames are kept. Errors: INPUT (of another scene, or with other options), IO, MEMORY. */
+/* Collective, once the scene is open and the exposure known: finds the job's key, reads what is to be gone on with, and
+ * begins OUT.frames; nothing where neither frames nor strips are kept. Errors: INPUT (of another scene, or with other
+ * options), IO, MEMORY. */
 conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job);
 
 /* What a team's `share` is given for the frames, so that the first process notes those of all. */
@@ -29,6 +30,9 @@ conic_status cli_kept_frames_end(cli_session *session, cli_render_job *job);
 /* How many frames were there. */
 int cli_kept_frames_count(const cli_render_job *job);
 void cli_kept_frames_release(cli_session *session, cli_render_job *job);
+
+/* Of one picture: wrong usage where it is drawn at once, so that nothing of it could be kept. */
+conic_status cli_refuse_kept_picture(const cli_render_job *job);
 
 /* What decides the bits of the frames: the program's version, the options, and what the files hold that they name. Of
  * a file of over 64 MiB, 64 pieces, its length and its time; of files that these lead to, how long they are together.

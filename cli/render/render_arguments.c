@@ -120,7 +120,7 @@ static int check_outputs(const cli_session *session, cli_render_job *job, const 
   if (answer == CLI_DONE)
     answer = cli_stereo_check(session, job);
   if (answer == CLI_DONE)
-    answer = cli_kept_frames_check(job);
+    answer = cli_kept_frames_check(session, job);
   if (answer == CLI_DONE)
     answer = cli_accumulate_check(session, job);
   if (answer == CLI_DONE && job->has_mattes)
@@ -178,11 +178,13 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from 0 [all]",
        .parse = cli_parse_frames},
       {"resumable", CLI_FLAG, &job->accumulating.is_resumable, NULL,
-       "note beside the first OUT what is finished, so that --resume can go on after any end: the frames in "
-       "OUT.frames, "
-       "and of one --accumulate the sums in OUT.sums"},
+       "keep beside the first OUT what is finished, so that --resume can go on after any end: frames in OUT.frames, of "
+       "one --accumulate the sums in OUT.sums, and of one .exr larger than half of --memory the strips in OUT.strips "
+       "and "
+       "OUT.part"},
       {"resume", CLI_TEXT, &job->accumulating.resume_path, "OUT",
-       "go on with what OUT.frames or OUT.sums says is finished, to the bit as if it had never stopped; with "
+       "go on with what OUT.frames, OUT.sums or OUT.strips says is finished, to the bit as if it had never stopped; "
+       "with "
        "--resumable, too, where there is none begin"},
       {"stereo", CLI_NUMBER, &job->stereo.distance, "E",
        "two pictures, of eyes that are E apart, in world units: OUT.left.exr and OUT.right.exr, or left and right in "

@@ -295,6 +295,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   if (status == CONIC_OK && cli_is_banded(session, job, &camera))
     return render_banded(session, job, i_frame, &camera, repeats);
   if (status == CONIC_OK)
+    status = cli_refuse_kept_picture(job);
+  if (status == CONIC_OK)
     status = cli_refuse_too_large(session, job, &camera);
   if (status == CONIC_OK && !conic_image_planes(image) && needs_image(session, job, &camera))
     status = cli_host_allocate_image(session, camera.width, camera.height, job->planes, image);

@@ -14,38 +14,74 @@ static int lesser_row(int a, int b) {
   return a < b ? a : b;
 }
 
-/* Rows in pieces of `rows`, none of them in two bands. Returns how many; `list` may be null. */
-static size_t slice_picture(const conic_source_windows *w, int rows, conic_window *list) {
-  int height = w->camera.height;
-  size_t n = 0;
-  for (int band = 0; band < height; band += w->band_rows) {
-    int band_end = height - band < w->band_rows ? height : band + w->band_rows;
-    for (int y = band; y < band_end; y += rows, n++)
-      if (list)
-        list[n] = (conic_window){0, w->camera.width, y, lesser_row(y + rows, band_end)};
+/* Rows in pieces of `rows`, none of them in two bands; behind *n strips of a list, which may be null. */
+static void slice_rows(const conic_source_windows *w, int y, int y_end, int rows, cli_strip *list, size_t *n) {
+  while (y < y_end) {
+    int band = y / w->band_rows * w->band_rows, end = y_end - band < w->band_rows ? y_end : band + w->band_rows;
+    end = end - y < rows ? end : y + rows;
+    if (list)
+      list[*n] = (cli_strip){y, end, 0};
+    ++*n;
+    y = end;
   }
+}
+
+/* What is kept, and pieces of what lies between. Returns how many; `list` may be null. */
+static size_t slice_picture(const conic_source_windows *w, const cli_strip *kept, size_t n_kept, int rows,
+                            cli_strip *list) {
+  size_t n = 0;
+  int y = 0;
+  for (size_t i = 0; i < n_kept; i++) {
+    slice_rows(w, y, kept[i].y_begin, rows, list, &n);
+    if (list)
+      list[n] = kept[i];
+    n++;
+    y = kept[i].y_end;
+  }
+  slice_rows(w, y, w->camera.height, rows, list, &n);
   return n;
 }
 
-/* Where the strip ends that begins with slice `first`: where its weight is next to what is wanted. The rest of a band
- * is parted evenly, lest something small is left of it. */
-static size_t find_strip_end(const conic_source_windows *w, const conic_window *slices, const double *weights, size_t n,
-                             size_t first, double wanted, int most_rows) {
-  int begin = slices[first].y_begin, band = begin / w->band_rows;
-  double weight = weights[first], in_band = 0.0;
+/* Kept ones are no work. */
+static conic_status weigh_slices(const conic_source_windows *w, const cli_strip *slices, size_t n, double *weights) {
+  conic_window *list = calloc(n, sizeof *list);
+  if (!list)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n; i++)
+    list[i] = (conic_window){0, w->camera.width, slices[i].y_begin, slices[i].y_end};
+  conic_source_windows_weigh(w, list, n, weights);
+  for (size_t i = 0; i < n; i++)
+    weights[i] = slices[i].is_kept ? 0.0 : weights[i];
+  free(list);
+  return CONIC_OK;
+}
+
+/* Where the slices end that may be one strip with slice `first`: of its band, and none of them kept. */
+static size_t find_run_end(const conic_source_windows *w, const cli_strip *slices, size_t n, size_t first) {
   size_t end = first + 1;
-  for (size_t i = first; i < n && slices[i].y_begin / w->band_rows == band; i++)
-    in_band += weights[i];
-  double n_parts = ceil(in_band / wanted - 0.15);
-  wanted = in_band / (n_parts > 1.0 ? n_parts : 1.0);
-  while (end < n && slices[end].y_begin / w->band_rows == band && slices[end].y_end - begin <= most_rows &&
-         weight + 0.5 * weights[end] <= wanted)
+  while (end < n && !slices[end].is_kept && slices[end].y_begin / w->band_rows == slices[first].y_begin / w->band_rows)
+    end++;
+  return end;
+}
+
+/* Where the strip ends that begins with slice `first`: where its weight is next to what is wanted. The rest of a run
+ * is parted evenly, lest something small is left of it. */
+static size_t find_strip_end(const cli_strip *slices, const double *weights, size_t first, size_t run_end,
+                             double wanted, int most_rows) {
+  int begin = slices[first].y_begin;
+  double weight = weights[first], in_run = 0.0;
+  size_t end = first + 1;
+  for (size_t i = first; i < run_end; i++)
+    in_run += weights[i];
+  double n_parts = ceil(in_run / wanted - 0.15);
+  wanted = in_run / (n_parts > 1.0 ? n_parts : 1.0);
+  while (end < run_end && slices[end].y_end - begin <= most_rows && weight + 0.5 * weights[end] <= wanted)
     weight += weights[end++];
   return end;
 }
 
 /* Slices become strips, in place. */
-static size_t unite_slices(const conic_source_windows *w, conic_window *slices, const double *weights, size_t n,
+static size_t unite_slices(const conic_source_windows *w, cli_strip *slices, const double *weights, size_t n,
                            int most_rows, int n_processes) {
   double left = 0.0;
   for (size_t i = 0; i < n; i++)
@@ -54,7 +90,10 @@ static size_t unite_slices(const conic_source_windows *w, conic_window *slices, 
   size_t n_strips = 0;
   for (size_t first = 0, end; first < n; first = end) {
     double wanted = left / ((double)n_processes * FIRST_PARTS);
-    end = find_strip_end(w, slices, weights, n, first, wanted > least ? wanted : least, most_rows);
+    end = first + 1;
+    if (!slices[first].is_kept)
+      end = find_strip_end(slices, weights, first, find_run_end(w, slices, n, first), wanted > least ? wanted : least,
+                           most_rows);
     slices[n_strips] = slices[first];
     slices[n_strips++].y_end = slices[end - 1].y_end;
     for (size_t i = first; i < end; i++)
@@ -63,23 +102,22 @@ static size_t unite_slices(const conic_source_windows *w, conic_window *slices, 
   return n_strips;
 }
 
-conic_status cli_list_strips(const conic_source_windows *windows, int step, int most_rows, int n_processes,
-                             conic_window **strips, size_t *n) {
+conic_status cli_list_strips(const conic_source_windows *windows, const cli_strip *kept, size_t n_kept, int step,
+                             int most_rows, int n_processes, cli_strip **strips, size_t *n) {
   int rows = most_rows;
   if (n_processes > 1)
     rows = lesser_row(((windows->camera.height - 1) / SLICES + step) / step * step, most_rows);
-  *n = slice_picture(windows, rows, NULL);
+  *n = slice_picture(windows, kept, n_kept, rows, NULL);
   *strips = calloc(*n, sizeof **strips);
   if (!*strips)
     return CONIC_ERROR_MEMORY;
-  slice_picture(windows, rows, *strips);
+  slice_picture(windows, kept, n_kept, rows, *strips);
   if (n_processes == 1)
     return CONIC_OK;
   double *weights = calloc(*n, sizeof *weights);
-  if (!weights)
-    return CONIC_ERROR_MEMORY;
-  conic_source_windows_weigh(windows, *strips, *n, weights);
-  *n = unite_slices(windows, *strips, weights, *n, most_rows, n_processes);
+  conic_status status = weights ? weigh_slices(windows, *strips, *n, weights) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    *n = unite_slices(windows, *strips, weights, *n, most_rows, n_processes);
   free(weights);
-  return CONIC_OK;
+  return status;
 }

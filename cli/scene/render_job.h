@@ -9,6 +9,7 @@
 #include "cli/scene/lamp_job.h"
 #include "cli/scene/top_job.h"
 #include "cli/team_shares.h"
+#include "core/files/sha256.h"
 #include "core/pictures/cryptomatte.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
@@ -130,7 +131,8 @@ typedef struct cli_render_job {
   cli_sharing sharing;
   uint64_t n_units; /* that this process did, */
   double busy_seconds;
-  cli_team_shares shares; /* what all did */
+  cli_team_shares shares;           /* what all did */
+  char kept_key[CONIC_SHA256_ROOM]; /* what decides the bits, where --resumable or --resume keep frames or strips */
 } cli_render_job;
 
 /* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */

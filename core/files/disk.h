@@ -27,11 +27,12 @@ int conic_disk_can_write_in(const char *folder);
 /* As fopen. */
 FILE *conic_disk_open_stream(const char *path, const char *mode);
 
-/* Descriptors, below 0 on failure: to read; to write a file that was not there; and a file to write and read that has
- * no name, or loses it when it is closed, however that comes. `pattern` says where, and ends in XXXXXX, which change.
- */
+/* Descriptors, below 0 on failure: to read; to write a file that was not there; to read and write one that may be
+ * there; and a file to write and read that has no name, or loses it when it is closed, however that comes. `pattern`
+ * says where, and ends in XXXXXX, which change. */
 int conic_disk_open(const char *path);
 int conic_disk_create(const char *path);
+int conic_disk_open_to_change(const char *path);
 int conic_disk_create_nameless(char *pattern);
 /* A stream of such a file, in the folder for temporary ones. */
 FILE *conic_disk_open_nameless(void);
@@ -43,6 +44,8 @@ void conic_disk_permit(int descriptor, unsigned permissions);
 ptrdiff_t conic_disk_read(int descriptor, void *bytes, size_t n_bytes);
 ptrdiff_t conic_disk_read_at(int descriptor, void *bytes, size_t n_bytes, uint64_t at);
 ptrdiff_t conic_disk_write_at(int descriptor, const void *bytes, size_t n_bytes, uint64_t at);
+/* Ends a file after so many bytes; 0 on failure. */
+int conic_disk_cut(int descriptor, uint64_t n_bytes);
 /* Where reading goes on; below 0: that can not be said of a pipe. */
 int64_t conic_disk_position(int descriptor);
 

@@ -57,6 +57,10 @@ int conic_disk_create(const char *path) {
   return open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
 }
 
+int conic_disk_open_to_change(const char *path) {
+  return open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+}
+
 /* Linux makes files that never had a name, so that nothing is left of a process that is killed at that moment. Disks
  * that cannot, and other systems, give one for a moment. */
 static int create_unnamed(char *pattern) {
@@ -106,6 +110,10 @@ ptrdiff_t conic_disk_read_at(int descriptor, void *bytes, size_t n_bytes, uint64
 
 ptrdiff_t conic_disk_write_at(int descriptor, const void *bytes, size_t n_bytes, uint64_t at) {
   return pwrite(descriptor, bytes, n_bytes, (off_t)at);
+}
+
+int conic_disk_cut(int descriptor, uint64_t n_bytes) {
+  return ftruncate(descriptor, (off_t)n_bytes) == 0;
 }
 
 int64_t conic_disk_position(int descriptor) {

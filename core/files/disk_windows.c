@@ -149,6 +149,10 @@ int conic_disk_create(const char *path) {
   return descriptor_of(open_handle(path, GENERIC_WRITE | DELETE, CREATE_NEW, 0), _O_WRONLY);
 }
 
+int conic_disk_open_to_change(const char *path) {
+  return descriptor_of(open_handle(path, GENERIC_READ | GENERIC_WRITE | DELETE, OPEN_ALWAYS, 0), _O_RDWR);
+}
+
 int conic_disk_create_nameless(char *pattern) {
   static const char letters[] = "0123456789abcdefghijklmnopqrstuvwxyz";
   LARGE_INTEGER ticks;
@@ -232,6 +236,11 @@ ptrdiff_t conic_disk_write_at(int descriptor, const void *bytes, size_t n_bytes,
   }
   note_error();
   return -1;
+}
+
+int conic_disk_cut(int descriptor, uint64_t n_bytes) {
+  errno = _chsize_s(descriptor, (int64_t)n_bytes);
+  return errno == 0;
 }
 
 int64_t conic_disk_position(int descriptor) {

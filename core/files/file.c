@@ -19,6 +19,7 @@ struct conic_output {
   char *path;           /* for messages */
   char *target;         /* what the path leads to */
   char *temporary_path; /* null for standard output and for what is no regular file */
+  int is_kept;          /* that stays, whatever comes */
   conic_output *next;   /* of the context's */
 };
 
@@ -101,7 +102,9 @@ static char *temporary_name(conic_context *context, const char *path, int attemp
 static int begin_temporary(conic_output *output) {
   conic_context *context = output->context;
   pthread_mutex_lock(&context->outputs_lock); /* whoever gives up keeps it for good */
-  int descriptor = conic_disk_create(output->temporary_path), error = errno;
+  int descriptor = output->is_kept ? conic_disk_open_to_change(output->temporary_path)
+                                   : conic_disk_create(output->temporary_path),
+      error = errno;
   if (descriptor >= 0) {
     output->next = context->outputs;
     context->outputs = output;
@@ -116,7 +119,7 @@ static int end_temporary(conic_output *output, int is_wanted) {
   conic_context *context = output->context;
   pthread_mutex_lock(&context->outputs_lock);
   int is_renamed = is_wanted && conic_disk_rename(output->temporary_path, output->target), error = errno;
-  if (!is_renamed)
+  if (!is_renamed && !output->is_kept)
     conic_disk_remove(output->temporary_path);
   conic_output **at = &context->outputs;
   while (*at != output)
@@ -130,7 +133,8 @@ static int end_temporary(conic_output *output, int is_wanted) {
 void conic_outputs_give_up(conic_context *context) {
   pthread_mutex_lock(&context->outputs_lock);
   for (conic_output *output = context->outputs; output; output = output->next)
-    conic_disk_remove(output->temporary_path);
+    if (!output->is_kept)
+      conic_disk_remove(output->temporary_path);
 }
 
 void conic_outputs_watch(conic_context *context, void (*watch)(void *cookie, const char *path), void *cookie) {
@@ -138,7 +142,28 @@ void conic_outputs_watch(conic_context *context, void (*watch)(void *cookie, con
   context->watch_cookie = cookie;
 }
 
+static conic_status open_kept(conic_output *output) {
+  conic_disk_entry there;
+  if (conic_disk_look(output->temporary_path, &there)) {
+    conic_status status = conic_guard_check(output->context, output->temporary_path, &there);
+    if (status != CONIC_OK)
+      return status;
+  }
+  int descriptor = begin_temporary(output);
+  output->stream = descriptor >= 0 ? fdopen(descriptor, "r+b") : NULL;
+  if (output->stream)
+    return CONIC_OK;
+  conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: %s", output->temporary_path, strerror(errno));
+  if (descriptor >= 0) {
+    close(descriptor);
+    end_temporary(output, 0);
+  }
+  return CONIC_ERROR_IO;
+}
+
 static conic_status open_temporary(conic_output *output) {
+  if (output->is_kept)
+    return open_kept(output);
   for (int attempt = 0; attempt < 100; attempt++) {
     conic_memory_release(output->context, output->temporary_path);
     output->temporary_path = temporary_name(output->context, output->target, attempt);
@@ -186,6 +211,8 @@ static conic_status open_target(conic_output *output) {
     return CONIC_OK;
   }
   int is_there = conic_disk_look(output->path, &existing);
+  if (is_there && !existing.is_file && output->is_kept)
+    return conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot be gone on with: it is no file", output->path);
   if (is_there && !existing.is_file)
     return open_existing(output, &existing);
   if (!conic_file_follow(output->path, target, sizeof target))
@@ -197,20 +224,30 @@ static conic_status open_target(conic_output *output) {
   return is_there ? open_existing(output, &existing) : open_temporary(output);
 }
 
-conic_status conic_output_open(conic_context *context, const char *path, conic_output **output) {
+static conic_status open_output(conic_context *context, const char *path, const char *part, conic_output **output) {
   *output = NULL;
   conic_output *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
   made->path = copy_text(context, path);
-  conic_status status = made->path ? open_target(made) : CONIC_ERROR_MEMORY;
+  made->is_kept = part != NULL;
+  made->temporary_path = part ? copy_text(context, part) : NULL;
+  conic_status status = made->path && (!part || made->temporary_path) ? open_target(made) : CONIC_ERROR_MEMORY;
   if (status != CONIC_OK) {
     release_output(made);
     return status;
   }
   *output = made;
   return CONIC_OK;
+}
+
+conic_status conic_output_open(conic_context *context, const char *path, conic_output **output) {
+  return open_output(context, path, NULL, output);
+}
+
+conic_status conic_output_go_on(conic_context *context, const char *path, const char *part, conic_output **output) {
+  return open_output(context, path, part, output);
 }
 
 FILE *conic_output_stream(conic_output *output) {

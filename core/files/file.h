@@ -13,6 +13,10 @@ typedef struct conic_output conic_output;
  * input: core/files/guard.h), MEMORY, IO. */
 conic_status conic_output_open(conic_context *context, const char *path, conic_output **output);
 
+/* The same of a regular file, but until then it is PART, which stays on failure, too, and of which what stands there is
+ * not cut off. PART is to lie beside what PATH leads to (conic_file_follow). Errors: also IO where PATH is no file. */
+conic_status conic_output_go_on(conic_context *context, const char *path, const char *part, conic_output **output);
+
 /* Where to write; never null. */
 FILE *conic_output_stream(conic_output *output);
 

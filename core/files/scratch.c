@@ -10,14 +10,14 @@
 #include "core/files/file.h"
 
 static conic_status complain(const conic_scratch *scratch, const char *doing, const char *why) {
-  return conic_fail(scratch->context, CONIC_ERROR_IO, "%s: cannot %s a temporary file beside it: %s", scratch->path,
-                    doing, why);
+  return conic_fail(scratch->context, CONIC_ERROR_IO, "%s: cannot %s%s: %s", scratch->path, doing,
+                    scratch->is_named ? "" : " a temporary file beside it", why);
 }
 
 conic_status conic_scratch_open(conic_context *context, const char *path, conic_scratch *scratch) {
   static const char pattern[] = CONIC_SCRATCH_START "XXXXXX";
   size_t folder_length = (size_t)(conic_file_name(path) - path);
-  *scratch = (conic_scratch){context, path, -1};
+  *scratch = (conic_scratch){context, path, -1, 0};
   char *name = conic_memory_allocate(context, folder_length + sizeof pattern, 1);
   if (!name)
     return CONIC_ERROR_MEMORY;

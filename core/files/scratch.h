@@ -14,6 +14,7 @@ typedef struct conic_scratch {
   conic_context *context;
   const char *path; /* beside which it lies, on the disk that has to hold the result; for messages too */
   int descriptor;   /* -1: not open */
+  int is_named;     /* it has that path itself, of whoever opened it */
 } conic_scratch;
 
 /* `path` must outlive the file. Errors: MEMORY, IO. */

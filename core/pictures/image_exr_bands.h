@@ -11,11 +11,12 @@ enum { CONIC_EXR_BAND = 32 };
 typedef struct conic_exr_bands conic_exr_bands;
 
 /* Starts a file of the size, attributes and manifest of `header`, whose planes are not looked at, and with `planes`, as
- * bits. It appears under its name when it is whole. On success the caller owns *bands and ends it by
- * conic_exr_bands_end; `path` is to stay until then. Errors: as conic_exr_check; ARGUMENT (an attribute that the format
+ * bits. It appears under its name when it is whole; until then it is `part`, which also stays when it is dropped, or
+ * where that is null a hidden file. On success the caller owns *bands and ends it by conic_exr_bands_end; `path` is to
+ * stay until then. Errors: as conic_exr_check; ARGUMENT (an attribute that the format
  * refuses), MEMORY, IO. */
-conic_status conic_exr_bands_open(conic_context *context, const char *path, const conic_image *header, unsigned planes,
-                                  const conic_image_options *options, conic_exr_bands **bands);
+conic_status conic_exr_bands_open(conic_context *context, const char *path, const char *part, const conic_image *header,
+                                  unsigned planes, const conic_image_options *options, conic_exr_bands **bands);
 /* The next rows: an image of the picture's width with at least its planes, compressed by all of the context's threads.
  * Reports progress as "write". Errors: ARGUMENT (no such band), MEMORY, IO, CANCELLED. */
 conic_status conic_exr_bands_append(conic_exr_bands *bands, const conic_image *band);
@@ -36,6 +37,10 @@ conic_status conic_exr_pack(conic_exr_bands *bands, const conic_image *image, in
  * (others than the next), IO. */
 conic_status conic_exr_bands_append_packed(conic_exr_bands *bands, int y, int n_rows, const void *bytes,
                                            size_t n_bytes);
+/* How long the file is so far: the rows that were appended last are its end. */
+uint64_t conic_exr_bands_length(const conic_exr_bands *bands);
+/* Hands what was appended to the system, which keeps it if the program is killed. Errors: IO. */
+conic_status conic_exr_bands_flush(conic_exr_bands *bands);
 /* After the last band, or with a status other than OK to drop all of it. Releases the writer, which may be null, and
  * returns the status. Errors: ARGUMENT (rows are missing), IO. */
 conic_status conic_exr_bands_end(conic_exr_bands *bands, conic_status status);

@@ -38,6 +38,7 @@ static int64_t write_bytes(exr_const_context_t file, void *data, const void *byt
   }
   size_t n = fwrite(bytes, 1, (size_t)n_bytes, stream->file);
   stream->position = (int64_t)(offset + n);
+  stream->length = stream->position > stream->length ? stream->position : stream->length;
   if (n != n_bytes) {
     stream->error = errno ? errno : EIO;
     return -1;

@@ -21,6 +21,7 @@ typedef struct conic_exr_stream {
   const char *path;
   FILE *file;       /* of the caller; null: what is written goes nowhere */
   int64_t position; /* of `file`, for writing */
+  int64_t length;   /* of what was written to it */
   int error;        /* errno of the first failed access */
   atomic_flag has_message;
   char message[200]; /* the library's first, as its later ones only repeat that something failed */

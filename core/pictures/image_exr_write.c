@@ -33,6 +33,7 @@ typedef struct exr_chunk {
 struct conic_exr_bands {
   conic_context *context;
   const char *path; /* for messages */
+  const char *part; /* null: a hidden file */
   conic_image_options options;
   unsigned planes;
   int width, height;
@@ -202,6 +203,18 @@ conic_status conic_exr_bands_append_packed(conic_exr_bands *bands, int y, int n_
   return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&bands->stream, result, "write", CONIC_ERROR_ARGUMENT);
 }
 
+uint64_t conic_exr_bands_length(const conic_exr_bands *bands) {
+  return (uint64_t)bands->stream.length;
+}
+
+conic_status conic_exr_bands_flush(conic_exr_bands *bands) {
+  errno = 0;
+  if (fflush(bands->stream.file) == 0)
+    return CONIC_OK;
+  bands->stream.error = errno ? errno : EIO;
+  return conic_exr_fail(&bands->stream, EXR_ERR_WRITE_IO, "write", CONIC_ERROR_IO);
+}
+
 static conic_status append_next(void *cookie, int y, int n_rows, const void *bytes, size_t n_bytes) {
   return conic_exr_bands_append_packed(cookie, y, n_rows, bytes, n_bytes);
 }
@@ -243,7 +256,9 @@ uint64_t conic_exr_packer_bytes(const conic_exr_bands *bands) {
 static conic_status begin_file(conic_exr_bands *bands, const conic_image *header, int is_packer) {
   exr_context_initializer_t settings;
   FILE *stream = NULL;
-  conic_status status = is_packer ? CONIC_OK : conic_output_open(bands->context, bands->path, &bands->output);
+  conic_status status = is_packer     ? CONIC_OK
+                        : bands->part ? conic_output_go_on(bands->context, bands->path, bands->part, &bands->output)
+                                      : conic_output_open(bands->context, bands->path, &bands->output);
   if (status == CONIC_OK && !is_packer)
     status = choose_stream(bands, &stream);
   if (status != CONIC_OK)
@@ -260,8 +275,9 @@ static conic_status begin_file(conic_exr_bands *bands, const conic_image *header
   return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&bands->stream, result, "write", CONIC_ERROR_ARGUMENT);
 }
 
-static conic_status open_bands(conic_context *context, const char *path, const conic_image *header, unsigned planes,
-                               const conic_image_options *options, int is_packer, conic_exr_bands **bands) {
+static conic_status open_bands(conic_context *context, const char *path, const char *part, const conic_image *header,
+                               unsigned planes, const conic_image_options *options, int is_packer,
+                               conic_exr_bands **bands) {
   *bands = NULL;
   conic_status status = conic_exr_check(context, path, planes, options);
   if (status != CONIC_OK)
@@ -271,6 +287,7 @@ static conic_status open_bands(conic_context *context, const char *path, const c
     return CONIC_ERROR_MEMORY;
   opened->context = context;
   opened->path = path;
+  opened->part = part;
   opened->options = *options;
   opened->planes = planes;
   opened->width = header->width;
@@ -283,15 +300,15 @@ static conic_status open_bands(conic_context *context, const char *path, const c
   return status;
 }
 
-conic_status conic_exr_bands_open(conic_context *context, const char *path, const conic_image *header, unsigned planes,
-                                  const conic_image_options *options, conic_exr_bands **bands) {
-  return open_bands(context, path, header, planes, options, 0, bands);
+conic_status conic_exr_bands_open(conic_context *context, const char *path, const char *part, const conic_image *header,
+                                  unsigned planes, const conic_image_options *options, conic_exr_bands **bands) {
+  return open_bands(context, path, part, header, planes, options, 0, bands);
 }
 
 conic_status conic_exr_packer_open(conic_context *context, int width, int height, unsigned planes,
                                    const conic_image_options *options, conic_exr_bands **bands) {
   const conic_image header = {.width = width, .height = height};
-  return open_bands(context, "exr", &header, planes, options, 1, bands);
+  return open_bands(context, "exr", NULL, &header, planes, options, 1, bands);
 }
 
 static conic_status copy_spool(conic_exr_bands *bands) {
@@ -338,7 +355,7 @@ conic_status conic_exr_bands_end(conic_exr_bands *bands, conic_status status) {
 conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image,
                              const conic_image_options *options) {
   conic_exr_bands *bands;
-  conic_status status = conic_exr_bands_open(context, path, image, conic_image_planes(image), options, &bands);
+  conic_status status = conic_exr_bands_open(context, path, NULL, image, conic_image_planes(image), options, &bands);
   if (status == CONIC_OK)
     status = conic_exr_bands_end(bands, conic_exr_bands_append(bands, image));
   return status;
@@ -365,9 +382,9 @@ conic_status conic_exr_write(conic_context *context, const char *path, const con
   return conic_exr_check(context, path, conic_image_planes(image), options);
 }
 
-conic_status conic_exr_bands_open(conic_context *context, const char *path, const conic_image *header, unsigned planes,
-                                  const conic_image_options *options, conic_exr_bands **bands) {
-  (void)header;
+conic_status conic_exr_bands_open(conic_context *context, const char *path, const char *part, const conic_image *header,
+                                  unsigned planes, const conic_image_options *options, conic_exr_bands **bands) {
+  (void)part, (void)header;
   *bands = NULL;
   return conic_exr_check(context, path, planes, options);
 }
@@ -387,6 +404,16 @@ conic_status conic_exr_bands_append(conic_exr_bands *bands, const conic_image *b
 uint64_t conic_exr_packer_bytes(const conic_exr_bands *bands) {
   (void)bands;
   return 0;
+}
+
+uint64_t conic_exr_bands_length(const conic_exr_bands *bands) {
+  (void)bands;
+  return 0;
+}
+
+conic_status conic_exr_bands_flush(conic_exr_bands *bands) {
+  (void)bands;
+  return CONIC_ERROR_UNSUPPORTED;
 }
 
 conic_status conic_exr_pack(conic_exr_bands *bands, const conic_image *image, int first, int begin, int end,

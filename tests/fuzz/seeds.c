@@ -1,6 +1,8 @@
 /* Writes the seeds of every fuzz target: FOLDER/TARGET/NAME. */
 #include "tests/support/seeds.h"
 #include "conic/accumulate.h"
+#include "core/image/image_common.h"
+#include "tests/fuzz/strips_example.h"
 #include "tests/support/suite_example.h"
 
 static void write_seed(const char *folder, const seed *from) {
@@ -28,6 +30,43 @@ static void write_packed_seed(const char *folder, const seed *from) {
     }
 }
 
+static void add_file(seed_set *set, const char *target, const char *path, unsigned char *bytes, size_t room) {
+  FILE *file = fopen(path, "rb");
+  size_t n = file ? fread(bytes, 1, room, file) : 0;
+  if (file)
+    fclose(file);
+  unlink(path);
+  seeds_add(set, target, target, 1, bytes, n);
+}
+
+/* Two strips: one packed in its place and as pixels, and one that came before its turn. */
+static void seeds_strips(seed_set *set, conic_context *context) {
+  static const cli_strip_piece pieces[] = {
+      {.packed_bytes = 300, .place = 200, .y_end = 48, .n_rows = 32},
+      {.pixel_bytes = 64, .y_end = 48, .y = 32, .n_rows = 16},
+      {.pixel_bytes = sizeof(cli_strip_end), .y_end = 48, .y = 48},
+      {.packed_bytes = 9, .pixel_bytes = 32, .y_begin = 192, .y_end = 200, .y = 192, .n_rows = 8},
+      {.pixel_bytes = sizeof(cli_strip_end), .y_begin = 192, .y_end = 200, .y = 200}};
+  static unsigned char nothing[4096], bytes[8192];
+  const cli_strip_end end = {.has_hashes = 1};
+  char part[4096];
+  const char *path = files_path("seed.strips");
+  cli_strips_file file;
+  uint64_t at;
+  snprintf(part, sizeof part, "%s.part", path);
+  CHECK_OK(cli_strips_file_begin(context, path, part, STRIPS_EXAMPLE_KEY, &strips_example, 0, &file));
+  for (size_t i = 0; i < sizeof pieces / sizeof *pieces; i++) {
+    cli_strip_piece piece = pieces[i];
+    const void *following = piece.n_rows ? (const void *)nothing : (const void *)&end;
+    piece.checks[0] = conic_hash_bytes(nothing, (size_t)piece.packed_bytes);
+    piece.checks[1] = conic_hash_bytes(following, (size_t)piece.pixel_bytes);
+    CHECK_OK(cli_strips_file_add(&file, &piece, following, &at));
+  }
+  cli_strips_file_end(context, &file);
+  unlink(part);
+  add_file(set, "strips", path, bytes, sizeof bytes);
+}
+
 /* Sums of two samples of nothing. */
 static void seeds_sums(seed_set *set, conic_context *context) {
   unsigned char bytes[4096];
@@ -39,12 +78,7 @@ static void seeds_sums(seed_set *set, conic_context *context) {
   for (int i = 0; i < 2; i++)
     CHECK_OK(conic_accumulation_add(sums, &image));
   CHECK_OK(conic_accumulation_write(sums, path));
-  FILE *file = fopen(path, "rb");
-  size_t n = file ? fread(bytes, 1, sizeof bytes, file) : 0;
-  if (file)
-    fclose(file);
-  unlink(path);
-  seeds_add(set, "sums", "sums", 1, bytes, n);
+  add_file(set, "sums", path, bytes, sizeof bytes);
   conic_accumulation_destroy(sums);
   conic_image_release(context, &image);
 }
@@ -61,6 +95,7 @@ int main(int argc, char **argv) {
   seeds_all_hierarchies(set);
   seeds_all_references(set);
   seeds_sums(set, context);
+  seeds_strips(set, context);
   seeds_text(set, "motion", "json",
              "[{\"frame\": 1, \"matrix\": [[1,0,0,0.25],[0,1,0,0],[0,0,1,0],[0,0,0,1]]},\n"
              " {\"input\": 2, \"frame\": -1.5, \"file\": \"walk.0001.ply\"}]\n");

@@ -52,6 +52,22 @@ run_as_typed 0 "${odd[@]}" -o whole.exr --json whole.json
 ranks 2 0 "${odd[@]}" --memory 1 -o together.exr --json together.json
 same "strips that end between rows that are packed together" whole.json together.json whole.exr together.exr
 
+# A disk that is full leaves what is finished, which any number of ranks go on with, of any number's strips.
+mkdir kept
+kept=(render knot.ply --plain --size 1100x1000 --threads 1 --compression none --memory 8)
+kept+=(--resumable --resume kept/a.exr -o kept/a.exr)
+run_as_typed 0 "${kept[@]}" --json whole.json && mv kept/a.exr whole.exr
+(ulimit -f 16000 && told_once err2 3 4 'kept/a.exr.*: cannot write' "${kept[@]}" --json together.json; exit $failures) ||
+  fail "strips on a full disk"
+cp -r kept stopped
+for n in 1 2; do
+  rm -r kept && cp -r stopped kept
+  ranks $n 0 "${kept[@]}" --json together.json
+  grep -q 'rows were finished' err || fail "nothing was kept: $(cat err)"
+  same "strips that $n ranks go on with" whole.json together.json whole.exr kept/a.exr
+  [[ $(ls -A kept) == a.exr ]] || fail "beside a whole picture lies $(ls -A kept)"
+done
+
 # What is written at once and cannot be held is refused.
 run_as_typed 4 render knot.ply --plain --size 65535x65535 --aov rgba,Z,N,albedo,P,count,id,weight -o full.exr
 grep -q 'bytes, and the machine has' err || fail "told is not that the picture is too large: $(cat err)"

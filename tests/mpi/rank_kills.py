@@ -23,6 +23,8 @@ JOBS = {
     "samples": (["--accumulate", "100", "--size", "160x120", "-o", "out/s.exr"] + KEEPS + ["out/s.exr"], 3),
     "frames of samples": (["--turntable", "2", "--accumulate", "40", "--size", "120x90", "-o", "out/a.exr"] + KEEPS
                           + ["out/a.exr"], 3),
+    "strips": (["--size", "900x1600", "--samples", "2", "--memory", "8", "--compression", "none", "-o", "out/p.exr"]
+               + KEEPS + ["out/p.exr"], 3),
     "windows": (["--samples", "4", "--size", "700x500", "-o", "out/w.exr"], 4),
 }  # and on how many ranks
 

@@ -81,13 +81,13 @@ static conic_image band_of(const conic_image *image, int y, int height) {
   return band;
 }
 
-static conic_status write_bands(conic_context *context, const conic_image *image, const conic_image_options *options,
-                                int rows, int last_row) {
+static conic_status write_bands(conic_context *context, const char *part, const conic_image *image,
+                                const conic_image_options *options, int rows, int last_row) {
   conic_exr_bands *bands;
   conic_image header = *image;
   memset(header.planes, 0, sizeof header.planes);
   conic_status status =
-      conic_exr_bands_open(context, in_folder("b.exr"), &header, conic_image_planes(image), options, &bands);
+      conic_exr_bands_open(context, in_folder("b.exr"), part, &header, conic_image_planes(image), options, &bands);
   for (int y = 0; y < last_row && status == CONIC_OK; y += rows) {
     conic_image band = band_of(image, y, y + rows < last_row ? rows : last_row - y);
     status = conic_exr_bands_append(bands, &band);
@@ -105,7 +105,7 @@ static void test_bands(conic_context *context) {
     size_t n_bytes, n_banded;
     options.compression = (conic_compression)i;
     CHECK_OK(conic_image_write_as(context, in_folder("a.exr"), &image, &options));
-    CHECK_OK(write_bands(context, &image, &options, i % 2 ? 32 : 96, 301));
+    CHECK_OK(write_bands(context, NULL, &image, &options, i % 2 ? 32 : 96, 301));
     unsigned char *bytes = read_bytes(in_folder("a.exr"), &n_bytes);
     unsigned char *banded = read_bytes(in_folder("b.exr"), &n_banded);
     CHECK(n_bytes == n_banded && memcmp(bytes, banded, n_bytes) == 0);
@@ -113,9 +113,32 @@ static void test_bands(conic_context *context) {
     free(banded);
   }
   CHECK(remove(in_folder("b.exr")) == 0);
-  CHECK(write_bands(context, &image, &options, 40, 301) == CONIC_ERROR_ARGUMENT);
-  CHECK(write_bands(context, &image, &options, 32, 288) == CONIC_ERROR_ARGUMENT);
+  CHECK(write_bands(context, NULL, &image, &options, 40, 301) == CONIC_ERROR_ARGUMENT);
+  CHECK(write_bands(context, NULL, &image, &options, 32, 288) == CONIC_ERROR_ARGUMENT);
   CHECK(fopen(in_folder("b.exr"), "rb") == NULL);
+  conic_image_release(context, &image);
+}
+
+/* A file that is to be gone on with stays as far as it was written, and becomes the file when it is whole. */
+static void test_part(conic_context *context) {
+  conic_image image = random_image(context, 61, 301, 1u << CONIC_PLANE_RGBA);
+  conic_image_options options;
+  char part[4096];
+  size_t n_bytes, n_banded, n_part;
+  conic_image_options_init(&options);
+  snprintf(part, sizeof part, "%s", in_folder("b.exr.part"));
+  CHECK_OK(conic_image_write_as(context, in_folder("a.exr"), &image, &options));
+  unsigned char *bytes = read_bytes(in_folder("a.exr"), &n_bytes);
+  CHECK(write_bands(context, part, &image, &options, 32, 288) == CONIC_ERROR_ARGUMENT);
+  unsigned char *begun = read_bytes(part, &n_part);
+  CHECK(n_part > n_bytes / 2 && memcmp(begun + n_part / 2, bytes + n_part / 2, n_part - n_part / 2) == 0);
+  CHECK_OK(write_bands(context, part, &image, &options, 96, 301));
+  unsigned char *banded = read_bytes(in_folder("b.exr"), &n_banded);
+  CHECK(n_bytes == n_banded && memcmp(bytes, banded, n_bytes) == 0);
+  CHECK(fopen(part, "rb") == NULL && remove(in_folder("b.exr")) == 0);
+  free(begun);
+  free(banded);
+  free(bytes);
   conic_image_release(context, &image);
 }
 
@@ -253,6 +276,7 @@ int main(void) {
     test_round_trip(context, 17, 33, 1u << i);
   test_threads(context);
   test_bands(context);
+  test_part(context);
   test_options(context);
   if (has_feature("OpenImageIO"))
     test_by_openimageio(context);
