@@ -4,6 +4,7 @@
 
 #include "conic/source.h"
 #include "core/pictures/georeference.h"
+#include "core/splats/shares.h"
 #include "source/facts.h"
 #include "source/source_parts.h"
 
@@ -81,6 +82,7 @@ struct conic_source {
   double world_from_rest[3][4]; /* of one that is carried and moved */
   conic_splats outline;         /* conic_source_take_samples', where they were asked for */
   double tolerance;             /* by which splats made of meshes are off these; 0: none are */
+  conic_splats_shares shares;   /* where a team has the splats among it, what of them is chosen to be looked at */
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
