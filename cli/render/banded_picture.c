@@ -43,6 +43,7 @@ typedef struct banded {
   int i_frame;
   conic_source_windows windows;
   conic_window *strips;
+  int *owners; /* of the strips; null: they are not dealt out */
   size_t n;
   unsigned planes, written; /* as bits: drawn, and of these in the file */
   int is_hashed;
@@ -300,11 +301,11 @@ static conic_status draw_strip(banded *b, size_t i_strip) {
 static conic_status draw_strips(banded *b) {
   uint64_t unit;
   if (b->team)
-    b->team->share((uint64_t)b->n - 1, b->team->index == 0 ? take_piece_of_strip : NULL, b);
+    b->team->share(b->owners ? 0 : (uint64_t)b->n - 1, b->team->index == 0 ? take_piece_of_strip : NULL, b);
   conic_status status = !b->team || b->team->index == 0 ? draw_strip(b, 0) : CONIC_OK;
-  for (size_t i = 1; i < b->n && !b->team && status == CONIC_OK; i++)
-    status = draw_strip(b, i);
-  while (b->team && status == CONIC_OK && (unit = b->team->next()) != CLI_NO_UNIT)
+  for (size_t i = 1; i < b->n && (!b->team || b->owners) && status == CONIC_OK; i++)
+    status = !b->team || b->owners[i] == b->team->index ? draw_strip(b, i) : CONIC_OK;
+  while (b->team && !b->owners && status == CONIC_OK && (unit = b->team->next()) != CLI_NO_UNIT)
     status = draw_strip(b, (size_t)unit + 1);
   return status;
 }
@@ -374,6 +375,7 @@ static void release_banded(banded *b) {
   conic_image_release(b->session->context, &b->odd);
   conic_memory_release(b->session->context, b->waiting);
   free(b->strips);
+  free(b->owners);
   free(b->piece);
   free(b->path);
 }
@@ -390,6 +392,8 @@ conic_status cli_render_banded(cli_session *session, cli_render_job *job, int i_
               .is_hashed = session->json_path != NULL};
   double start = cli_seconds();
   conic_status status = agree(&b, begin_banded(&b));
+  if (status == CONIC_OK && b.team)
+    status = cli_windows_deal(session, &b.windows, b.strips, b.n, 1, &b.owners);
   if (status == CONIC_OK)
     status = agree(&b, draw_strips(&b));
   if (status == CONIC_OK)
