@@ -172,7 +172,7 @@ conic_status cli_windows_deal(cli_session *session, conic_source_windows *window
       conic_team_agree(cli_team_of_library(session, &team), *owners ? CONIC_OK : CONIC_ERROR_MEMORY);
   if (status == CONIC_OK)
     status = conic_source_windows_deal(windows, list, n, is_in_order, *owners);
-  cli_team_trace(session, "exchange", "splats", 0, start, 0);
+  cli_team_trace(session, "open", "splats", 0, start, 0);
   return cli_sharing_tell(session, status);
 }
 
