@@ -66,10 +66,12 @@ alike gathered 2 few.ply knot.ply --projection fisheye --exposure auto --size 90
 alike strips 3 knot.ply --size 1100x400 --memory 2 --compression none
 alike bands 2 knot.ply --plain --size 1200x70 --samples 16 --fov 2 # each of which is set up by itself
 
-# A splat without axes gets them from its neighbours, for which everybody needs all.
+# Light comes from all that there is, and a splat without axes gets them from its neighbours: everybody needs all.
 alone needy needy.ply --size 90x70 --aov rgba,id
 compare needy 2 needy.ply --size 90x70 --aov rgba,id
-! grep -q '"splats 0"' needy.trace || fail "splats that need their neighbours were shared"
+alone lit near.ply --size 60x50 --ao 3 --aov rgba,ao
+compare lit 2 near.ply --size 60x50 --ao 3 --aov rgba,ao
+! grep -q '"splats 0"' needy.trace lit.trace || fail "splats were shared of which everybody needs all"
 
 # Who finds another file is told of, once, and nobody waits.
 mkdir here there
