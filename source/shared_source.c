@@ -15,9 +15,9 @@
 #include "core/splats/repairs_log.h"
 #include "raster/frame/samples.h"
 #include "raster/frame/splat_boxes.h"
-#include "source/window_deal.h"
 #include "source/source_kind.h"
 #include "source/splat_exchange.h"
+#include "source/window_deal.h"
 
 typedef struct shared_source {
   conic_source base;
@@ -39,10 +39,7 @@ typedef struct files_look {
   uint64_t n_splats;
 } files_look;
 
-enum {
-  NEEDED = CONIC_SPLATS_TANGENTS,
-  HANDED = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES
-};
+enum { NEEDED = CONIC_SPLATS_TANGENTS, HANDED = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES };
 
 /* Whether nothing but the splats' own axes decides what they are. */
 static int wants_splats(const char *const *paths, size_t n_paths, const conic_source_options *options) {
@@ -77,8 +74,8 @@ static conic_status look_at_files(conic_context *context, const char *const *pat
     look->fields |= shape.fields;
     look->n_splats += n_points[i] = shape.n_points;
   }
-  look->can_share &= look->n_splats <= CONIC_MAX_POINTS &&
-                     (look->fields & CONIC_SPLATS_COLORS || !colors_may_be_made(options));
+  look->can_share &=
+      look->n_splats <= CONIC_MAX_POINTS && (look->fields & CONIC_SPLATS_COLORS || !colors_may_be_made(options));
   return status;
 }
 
@@ -118,16 +115,16 @@ static conic_status read_piece_of_file(const conic_source_options *options, cons
   conic_read_options reading;
   const conic_model_survey unneeded = {.n_wanted = 0};
   read_as_drawing_does(options, &reading);
-  conic_status status =
-      conic_model_stream_part(context, r->path, &reading, range, &unneeded, take_part_batch, r);
+  conic_status status = conic_model_stream_part(context, r->path, &reading, range, &unneeded, take_part_batch, r);
   return status == CONIC_OK && r->next < r->end
              ? conic_fail(context, CONIC_ERROR_INPUT, "%s: it changes while it is read", r->path)
              : status;
 }
 
 /* Everybody reads the next splats after those of the process before. */
-static conic_status read_part(shared_source *s, const char *const *paths, size_t n_paths, const uint64_t *n_points,
-                              const conic_source_options *options, part_reading *pieces) {
+static conic_status read_part_of_files(shared_source *s, const char *const *paths, size_t n_paths,
+                                       const uint64_t *n_points, const conic_source_options *options,
+                                       part_reading *pieces) {
   uint64_t before = 0, first = s->base.shares.first, end = first + s->part.count;
   conic_status status = CONIC_OK;
   size_t next = 0;
@@ -206,7 +203,7 @@ static conic_status open_part(shared_source *s, const char *const *paths, size_t
   if (status == CONIC_OK)
     status = conic_splats_allocate(context, (size_t)(end - s->base.shares.first), look->fields & HANDED, &s->part);
   if (status == CONIC_OK)
-    status = read_part(s, paths, n_paths, n_points, options, pieces);
+    status = read_part_of_files(s, paths, n_paths, n_points, options, pieces);
   status = conic_team_agree(team, status);
   double start = conic_seconds_now();
   if (status == CONIC_OK) {
@@ -330,8 +327,7 @@ static conic_status exchange_for(shared_source *s, const conic_dealing *dealing,
   conic_context *context = s->base.context;
   uint32_t *list = NULL;
   size_t *begin = conic_memory_allocate(context, (size_t)dealing->team->count + 1, sizeof *begin);
-  conic_status status =
-      begin ? conic_windows_list_splats(context, dealing, owners, begin, &list) : CONIC_ERROR_MEMORY;
+  conic_status status = begin ? conic_windows_list_splats(context, dealing, owners, begin, &list) : CONIC_ERROR_MEMORY;
   status = conic_team_agree(dealing->team, status);
   if (status == CONIC_OK)
     status = conic_splats_exchange(context, &s->base.shares, &s->part, begin, list, &s->held, &s->ids);

@@ -51,7 +51,7 @@ static void swap_counts(splat_exchange *e) {
     e->received[k + 1] += e->received[k];
 }
 
-static size_t part_of(size_t first, size_t end) {
+static size_t parcel_of(size_t first, size_t end) {
   return first >= end ? 0 : end - first < PARCEL ? end - first : PARCEL;
 }
 
@@ -78,7 +78,7 @@ static void meet_partner(const splat_exchange *e, int partner) {
   const conic_team *team = e->shares->team;
   size_t end = e->begin[partner + 1], got_end = e->received[partner + 1];
   for (size_t at = e->begin[partner], got_at = e->received[partner]; at < end || got_at < got_end;) {
-    size_t n = part_of(at, end), n_got = part_of(got_at, got_end), n_bytes;
+    size_t n = parcel_of(at, end), n_got = parcel_of(got_at, got_end), n_bytes;
     void *received = e->parcel;
     pack_splats(e, at, n, e->parcel);
     if (partner != team->index)
@@ -91,7 +91,7 @@ static void meet_partner(const splat_exchange *e, int partner) {
   }
 }
 
-static conic_status make_room(conic_context *context, splat_exchange *e, conic_splats *to) {
+static conic_status make_exchange_room(conic_context *context, splat_exchange *e, conic_splats *to) {
   size_t n = e->received[e->shares->team->count];
   conic_status status = conic_splats_allocate(context, n, conic_splats_fields(e->from) & FIELDS, to);
   if (status != CONIC_OK)
@@ -112,7 +112,7 @@ conic_status conic_splats_exchange(conic_context *context, const conic_splats_sh
   conic_status status = conic_team_agree(shares->team, e.received ? CONIC_OK : CONIC_ERROR_MEMORY);
   if (status == CONIC_OK) {
     swap_counts(&e);
-    status = conic_team_agree(shares->team, make_room(context, &e, to));
+    status = conic_team_agree(shares->team, make_exchange_room(context, &e, to));
   }
   for (int round = 0; round < shares->team->count && status == CONIC_OK; round++)
     meet_partner(&e, conic_team_partner(shares->team, round));

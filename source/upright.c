@@ -150,14 +150,13 @@ static conic_up_basis look_at_samples(const samples *s, int is_mesh) {
   return is_base ? CONIC_UP_BASE : CONIC_UP_HABIT;
 }
 
-conic_status conic_upright_look(conic_context *context, const conic_splats_shares *shares,
-                                const conic_drawing *drawing, conic_up_basis *basis) {
+conic_status conic_upright_look(conic_context *context, const conic_splats_shares *shares, const conic_drawing *drawing,
+                                conic_up_basis *basis) {
   size_t most = 2 * (size_t)MOST_SAMPLES + 2;
   samples s = {.place = conic_memory_allocate(context, most, sizeof *s.place),
                .area = conic_memory_allocate(context, most, sizeof *s.area),
                .sorted = conic_memory_allocate(context, most, sizeof *s.sorted)};
-  conic_status status =
-      conic_team_agree(shares->team, s.place && s.area && s.sorted ? CONIC_OK : CONIC_ERROR_MEMORY);
+  conic_status status = conic_team_agree(shares->team, s.place && s.area && s.sorted ? CONIC_OK : CONIC_ERROR_MEMORY);
   *basis = CONIC_UP_HABIT;
   if (status == CONIC_OK) {
     take_splat_samples(&s, shares, drawing->splats);

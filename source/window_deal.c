@@ -11,18 +11,18 @@ enum { OF_SPLAT = 32, OF_SAMPLE = 1, OF_PIXEL = 4 };
 
 /* The windows' edges cut the picture into cells, each within one window. */
 typedef struct cell_grid {
-  size_t n[2];        /* columns, rows */
-  int length[2];      /* of the picture, in samples */
-  uint16_t *cell[2];  /* of each column and row of samples: that of cells */
-  int *first[2];      /* of each column and row of cells: where it begins; and the end */
-  uint32_t *window;   /* of each cell */
+  size_t n[2];       /* columns, rows */
+  int length[2];     /* of the picture, in samples */
+  uint16_t *cell[2]; /* of each column and row of samples: that of cells */
+  int *first[2];     /* of each column and row of cells: where it begins; and the end */
+  uint32_t *window;  /* of each cell */
 } cell_grid;
 
 /* Cells that a splat may cover, from begin to before end. */
-typedef struct cell_range {
+typedef struct cells_range {
   size_t begin[2], end[2];
   int low[2], high[2]; /* in samples */
-} cell_range;
+} cells_range;
 
 /* --- the grid --- */
 
@@ -34,7 +34,7 @@ static int window_end(const conic_window *window, int axis) {
   return axis ? window->y_end : window->x_end;
 }
 
-static conic_status cut_axis(conic_context *context, const conic_dealing *d, int axis, cell_grid *grid) {
+static conic_status cut_into_cells(conic_context *context, const conic_dealing *d, int axis, cell_grid *grid) {
   int length = 0;
   for (size_t i = 0; i < d->n; i++)
     length = window_end(&d->list[i], axis) > length ? window_end(&d->list[i], axis) : length;
@@ -58,7 +58,7 @@ static conic_status cut_axis(conic_context *context, const conic_dealing *d, int
 }
 
 /* From begin to before end of an axis in samples, as cells; nothing where that is none. */
-static void cells_between(const cell_grid *grid, int axis, int low, int high, cell_range *range) {
+static void cells_between(const cell_grid *grid, int axis, int low, int high, cells_range *range) {
   low = low < 0 ? 0 : low;
   high = high < grid->length[axis] ? high : grid->length[axis];
   range->low[axis] = low;
@@ -72,7 +72,7 @@ static conic_status name_cells(conic_context *context, const conic_dealing *d, c
   if (!grid->window)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < d->n; i++) {
-    cell_range range;
+    cells_range range;
     for (int axis = 0; axis < 2; axis++)
       cells_between(grid, axis, d->samples * window_begin(&d->list[i], axis),
                     d->samples * window_end(&d->list[i], axis), &range);
@@ -96,12 +96,12 @@ static conic_status begin_grid(conic_context *context, const conic_dealing *d, c
   conic_status status = CONIC_OK;
   memset(grid, 0, sizeof *grid);
   for (int axis = 0; axis < 2 && status == CONIC_OK; axis++)
-    status = cut_axis(context, d, axis, grid);
+    status = cut_into_cells(context, d, axis, grid);
   return status == CONIC_OK ? name_cells(context, d, grid) : status;
 }
 
 /* Whether splat i may cover any. */
-static int find_cells(const conic_dealing *d, const cell_grid *grid, size_t i, cell_range *range) {
+static int cells_of_splat(const conic_dealing *d, const cell_grid *grid, size_t i, cells_range *range) {
   const conic_box *box = &d->boxes[i];
   if (conic_box_is_empty(box))
     return 0;
@@ -113,7 +113,7 @@ static int find_cells(const conic_dealing *d, const cell_grid *grid, size_t i, c
 /* --- weights --- */
 
 /* How many samples a range has in a column or row of cells. */
-static uint64_t length_in_cell(const cell_grid *grid, const cell_range *range, int axis, size_t cell) {
+static uint64_t length_in_cell(const cell_grid *grid, const cells_range *range, int axis, size_t cell) {
   int low = grid->first[axis][cell], high = grid->first[axis][cell + 1];
   low = low > range->low[axis] ? low : range->low[axis];
   high = high < range->high[axis] ? high : range->high[axis];
@@ -121,9 +121,9 @@ static uint64_t length_in_cell(const cell_grid *grid, const cell_range *range, i
 }
 
 static void weigh_splats(const conic_dealing *d, const cell_grid *grid, uint64_t *weights) {
-  cell_range range;
+  cells_range range;
   for (size_t i = 0; i < d->n_splats; i++) {
-    if (!find_cells(d, grid, i, &range))
+    if (!cells_of_splat(d, grid, i, &range))
       continue;
     for (size_t y = range.begin[1]; y < range.end[1]; y++)
       for (size_t x = range.begin[0]; x < range.end[0]; x++)
@@ -197,16 +197,16 @@ typedef struct splat_lister {
   const conic_dealing *dealing;
   const cell_grid *grid;
   const int *owners;
-  size_t *last; /* of a process: the splat that it was given last, and one */
-  size_t *next; /* of a process: where the next one is listed */
+  size_t *last;   /* of a process: the splat that it was given last, and one */
+  size_t *next;   /* of a process: where the next one is listed */
   uint32_t *list; /* null: only counted */
 } splat_lister;
 
 static void list_splats_once(const splat_lister *l) {
-  cell_range range;
+  cells_range range;
   memset(l->last, 0, (size_t)l->dealing->team->count * sizeof *l->last);
   for (size_t i = 0; i < l->dealing->n_splats; i++) {
-    if (!find_cells(l->dealing, l->grid, i, &range))
+    if (!cells_of_splat(l->dealing, l->grid, i, &range))
       continue;
     for (size_t y = range.begin[1]; y < range.end[1]; y++)
       for (size_t x = range.begin[0]; x < range.end[0]; x++) {

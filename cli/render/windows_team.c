@@ -168,8 +168,7 @@ conic_status cli_windows_deal(cli_session *session, conic_source_windows *window
     return CONIC_OK;
   double start = cli_seconds();
   *owners = calloc(n, sizeof **owners);
-  conic_status status =
-      conic_team_agree(cli_team_of_library(session, &team), *owners ? CONIC_OK : CONIC_ERROR_MEMORY);
+  conic_status status = conic_team_agree(cli_team_of_library(session, &team), *owners ? CONIC_OK : CONIC_ERROR_MEMORY);
   if (status == CONIC_OK)
     status = conic_source_windows_deal(windows, list, n, is_in_order, *owners);
   cli_team_trace(session, "open", "splats", 0, start, 0);

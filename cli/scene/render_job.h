@@ -130,7 +130,7 @@ typedef struct cli_render_job {
   /* Of a team. */
   cli_sharing sharing;
   conic_team library_team; /* the same, as the source may have it */
-  uint64_t n_units; /* that this process did, */
+  uint64_t n_units;        /* that this process did, */
   double busy_seconds;
   cli_team_shares shares; /* what all did */
 } cli_render_job;

@@ -13,25 +13,25 @@
 enum { CHUNK = 2048, PLACES = CHUNK + CONIC_PROJECT_SLACK };
 
 /* A thread's records, which are dropped. */
-typedef struct records {
+typedef struct dropped_records {
   conic_footprint footprints[PLACES];
   conic_projected_surface surfaces[PLACES];
   conic_ray rays[PLACES];
   conic_box boxes[PLACES];
-} records;
+} dropped_records;
 
-typedef struct search {
+typedef struct box_search {
   const conic_splats *splats;
   conic_view view;
   conic_raster_kernels kernels;
   conic_box *boxes;
-  records *records;    /* a thread */
-  conic_chunk *counts; /* likewise */
-} search;
+  dropped_records *records; /* a thread */
+  conic_chunk *counts;      /* likewise */
+} box_search;
 
 static void find_boxes_of_chunk(void *data, size_t i_chunk, int i_thread) {
-  search *s = data;
-  records *r = &s->records[i_thread];
+  box_search *s = data;
+  dropped_records *r = &s->records[i_thread];
   conic_chunk chunk = {.first = 0};
   conic_projected projected = {.n_chunks = 1,
                                .chunk_size = CHUNK,
@@ -48,8 +48,8 @@ static void find_boxes_of_chunk(void *data, size_t i_chunk, int i_thread) {
   conic_chunk_add(&chunk, &s->counts[i_thread]);
 }
 
-static conic_status begin_search(conic_context *context, const conic_camera *camera,
-                                 const conic_render_options *options, unsigned planes, search *s) {
+static conic_status begin_box_search(conic_context *context, const conic_camera *camera,
+                                     const conic_render_options *options, unsigned planes, box_search *s) {
   conic_isa isa;
   conic_status status = conic_isa_choose(context, options->isa, &isa);
   if (status == CONIC_OK)
@@ -68,14 +68,14 @@ static conic_status begin_search(conic_context *context, const conic_camera *cam
 conic_status conic_splats_find_boxes(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                                      const conic_render_options *given, unsigned planes, conic_box *boxes,
                                      conic_render_statistics *statistics) {
-  search s = {.splats = splats, .boxes = boxes};
+  box_search s = {.splats = splats, .boxes = boxes};
   conic_render_options options;
   conic_status status = conic_view_arguments_take(context, "render", camera, given, &options);
   if (status == CONIC_OK)
-    status = begin_search(context, camera, &options, planes, &s);
+    status = begin_box_search(context, camera, &options, planes, &s);
   if (status == CONIC_OK)
-    status = conic_parallel_told(context, "render", 0.0, 0.0, (splats->count + CHUNK - 1) / CHUNK, find_boxes_of_chunk,
-                                 &s);
+    status =
+        conic_parallel_told(context, "render", 0.0, 0.0, (splats->count + CHUNK - 1) / CHUNK, find_boxes_of_chunk, &s);
   if (status == CONIC_OK)
     conic_chunks_count(s.counts, (size_t)conic_context_threads(context), options.method, statistics);
   conic_memory_release(context, s.records);

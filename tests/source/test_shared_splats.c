@@ -162,8 +162,8 @@ int main(void) {
   CHECK_OK(conic_context_create(NULL, &context));
   scatter_splats(context, &c);
   for (int i = 0; i < WINDOWS; i++)
-    c.windows[i] = (conic_window){40 * (i % COLUMNS), 40 * (i % COLUMNS) + 40, 30 * (i / COLUMNS),
-                                  30 * (i / COLUMNS) + 30};
+    c.windows[i] =
+        (conic_window){40 * (i % COLUMNS), 40 * (i % COLUMNS) + 40, 30 * (i / COLUMNS), 30 * (i / COLUMNS) + 30};
   c.found = find_all(context, &alone, &c.splats);
   CHECK(c.found.basis == CONIC_UP_FLAT);
   for (int count = 1; count <= 5; count += 2) {
