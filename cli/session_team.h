@@ -47,7 +47,7 @@ typedef struct cli_team {
 
   /* What this process has sent and received so far, and how long it has waited for others. */
   void (*count_traffic)(uint64_t *sent_bytes, uint64_t *received_bytes, double *waited_seconds);
-  /* Takes note of what this process did, between two moments. `kind` is "open" (once before its units),
+  /* Takes note of what this process did, between two moments. `kind` is "open" (before its units),
    * "unit", "join" (what the first does with a result) or "write", `name` "frame" or the like; both stay. */
   void (*trace)(const char *kind, const char *name, uint64_t number, conic_moment from, conic_moment to,
                 uint64_t sent_bytes);

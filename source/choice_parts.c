@@ -51,7 +51,9 @@ static conic_status begin_choice_windows(conic_source_windows *w) {
     return CONIC_ERROR_MEMORY;
   *band = (choice_band){.first_row = -1};
   w->own = band;
-  return w->band_rows < w->camera.height ? CONIC_OK : enter_band(w, 0, band); /* of several each one that is drawn in */
+  /* Of several each one that is drawn in; and nothing before there is all that is drawn. */
+  int is_later = w->band_rows < w->camera.height || conic_source_windows_are_dealt(w);
+  return is_later ? CONIC_OK : enter_band(w, 0, band);
 }
 
 static void end_choice_windows(conic_source_windows *w) {

@@ -455,14 +455,17 @@ static conic_drawing list_drawing(const conic_source *source) {
   return (conic_drawing){&d->splats, &d->triangles};
 }
 
-static void tell_drawing_rest(const conic_source *source, conic_facts *facts) {
-  const drawing_source *d = (const drawing_source *)source;
-  const conic_repairs *repairs = &d->repairs;
-  if (d->n_dots)
-    CONIC_ADD_FACTS(facts, CONIC_COUNT("dots", d->n_dots));
+void conic_facts_add_repairs(conic_facts *facts, const conic_repairs *repairs) {
   CONIC_ADD_FACTS(facts, CONIC_OBJECT("skipped"), CONIC_COUNT("nan", repairs->nan), CONIC_COUNT("zero", repairs->zero),
                   CONIC_COUNT("duplicate", repairs->duplicate), CONIC_COUNT("isolated", repairs->isolated),
                   CONIC_COUNT("failed", repairs->failed), CONIC_COUNT("clip", repairs->clip), CONIC_END);
+}
+
+static void tell_drawing_rest(const conic_source *source, conic_facts *facts) {
+  const drawing_source *d = (const drawing_source *)source;
+  if (d->n_dots)
+    CONIC_ADD_FACTS(facts, CONIC_COUNT("dots", d->n_dots));
+  conic_facts_add_repairs(facts, &d->repairs);
 }
 
 const conic_source_kind conic_source_kind_drawing = {

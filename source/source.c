@@ -42,7 +42,8 @@ static int takes_any(const conic_source_kind *kind, const char *const *paths, si
   return 0;
 }
 
-static const conic_source_kind *find_kind(const char *const *paths, size_t n, const conic_source_options *options) {
+const conic_source_kind *conic_source_kind_find(const char *const *paths, size_t n,
+                                                const conic_source_options *options) {
   int i = 0;
   while (i < N_KINDS - 1 && !takes_any(kinds[i], paths, n, options))
     i++;
@@ -60,7 +61,7 @@ unsigned conic_source_abilities(const char *const *paths, size_t n_paths, const 
   conic_source_options own;
   conic_source_options_init(&own);
   conic_options_take(&own, options);
-  return find_kind(paths, n_paths, &own)->abilities;
+  return conic_source_kind_find(paths, n_paths, &own)->abilities;
 }
 
 /* --- opening and closing --- */
@@ -106,7 +107,7 @@ conic_status conic_source_open(conic_context *context, const char *const *paths,
   *source = NULL;
   if ((options && !conic_options_take(&own, options)) || n_paths == 0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "source: no input, or the options were not initialised");
-  const conic_source_kind *kind = find_kind(paths, n_paths, &own);
+  const conic_source_kind *kind = conic_source_kind_find(paths, n_paths, &own);
   if (kind->company == CONIC_SOURCE_ALONE && n_paths != 1)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid, and a Gaussian scene, is drawn by itself",
                       paths[0]);

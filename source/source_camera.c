@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "conic/source.h"
+#include "raster/view/drawing_frame.h"
 #include "source/source_kind.h"
 #include "source/source_samples.h"
 #include "source/upright.h"
@@ -46,7 +47,7 @@ conic_status conic_source_stand(conic_source *source) {
   if (status == CONIC_OK)
     status = find_outline(source, &camera, 1.5f, &outline);
   if (status == CONIC_OK)
-    status = conic_upright_look(source->context, &outline, &scale->up_basis);
+    status = conic_upright_look(source->context, &source->shares, &outline, &scale->up_basis);
   if (scale->up_basis != CONIC_UP_HABIT)
     memcpy(scale->up, (const double[3]){0.0, 0.0, 1.0}, sizeof scale->up);
   return status;
@@ -68,6 +69,7 @@ conic_status conic_source_fit(conic_source *source, const conic_framing *framing
   own.zoom = zoom;
   if (source->kind->draw)
     cutoff = 0.0f; /* samples are places, as wide as a pixel of theirs */
-  return status == CONIC_OK ? conic_drawing_frame(source->context, &outline, cutoff, &own, n_turns, camera, near_z)
+  return status == CONIC_OK ? conic_drawing_frame_shared(source->context, &source->shares, &outline, cutoff, &own,
+                                                         n_turns, camera, near_z)
                             : status;
 }

@@ -4,6 +4,7 @@
 
 #include "conic/source.h"
 #include "core/pictures/georeference.h"
+#include "core/splats/shares.h"
 #include "source/facts.h"
 #include "source/source_parts.h"
 
@@ -81,13 +82,21 @@ struct conic_source {
   double world_from_rest[3][4]; /* of one that is carried and moved */
   conic_splats outline;         /* conic_source_take_samples', where they were asked for */
   double tolerance;             /* by which splats made of meshes are off these; 0: none are */
+  conic_splats_shares shares;   /* where a team has the splats among it, what of them is chosen to be looked at */
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
-    conic_source_kind_hybrid, conic_source_kind_patches, conic_source_kind_gaussians;
+    conic_source_kind_hybrid, conic_source_kind_patches, conic_source_kind_gaussians, conic_source_kind_shared;
+
+/* Of a source's facts: the object "skipped". */
+void conic_facts_add_repairs(conic_facts *facts, const conic_repairs *repairs);
 
 /* The kind of a file that only one reads; null: it is read as a model. */
 const conic_source_kind *conic_source_kind_of_file(const char *path);
+
+/* Which kind these files become. */
+const conic_source_kind *conic_source_kind_find(const char *const *paths, size_t n_paths,
+                                                const conic_source_options *options);
 
 /* A source of a kind, opened as that; and one that is zeroed, but for the name. */
 conic_status conic_source_open_kind(conic_context *context, const conic_source_kind *kind, const char *const *paths,

@@ -35,6 +35,15 @@ void conic_source_windows_end(conic_source_windows *windows) {
   windows->own = NULL;
 }
 
+int conic_source_windows_are_dealt(const conic_source_windows *w) {
+  return w->source->kind->windowing->deal != NULL;
+}
+
+conic_status conic_source_windows_deal(conic_source_windows *w, const conic_window *list, size_t n, int is_in_order,
+                                       int *owners) {
+  return w->source->kind->windowing->deal(w, list, n, is_in_order, owners);
+}
+
 conic_status conic_source_windows_draw(conic_source_windows *w, const conic_window *window, conic_image *image,
                                        conic_render_statistics *statistics) {
   conic_status status = w->source->kind->windowing->draw(w, window, image, statistics);

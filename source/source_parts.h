@@ -38,6 +38,8 @@ typedef struct conic_source_windowing {
                        conic_render_statistics *statistics);
   conic_status (*count)(const conic_source_windows *windows, conic_render_statistics *statistics); /* null: nothing */
   void (*weigh)(const conic_source_windows *windows, const conic_window *list, size_t n, double *weights);
+  conic_status (*deal)(conic_source_windows *windows, const conic_window *list, size_t n, int is_in_order,
+                       int *owners); /* null: who draws a window is not the kind's to say */
 } conic_source_windowing;
 
 /* Of what is chosen before it is drawn. */
@@ -50,6 +52,15 @@ conic_status conic_source_windows_begin(conic_source *source, conic_renderer *re
                                         const conic_render_options *render, const conic_source_view *view,
                                         unsigned planes, conic_source_windows *windows);
 void conic_source_windows_end(conic_source_windows *windows);
+
+/* Whether a process only draws windows that are dealt to it: the source is a team's, and nobody has all of it. */
+int conic_source_windows_are_dealt(const conic_source_windows *windows);
+
+/* Collective, of such a source, once it has begun: deals the windows of a list, which all have alike, and gives this
+ * process what its own need. owners[i] becomes who draws window i, the first process the first. Where they are wanted
+ * `is_in_order`, everybody gets some of the first ones. Errors: MEMORY, CANCELLED. */
+conic_status conic_source_windows_deal(conic_source_windows *windows, const conic_window *list, size_t n,
+                                       int is_in_order, int *owners);
 
 /* Draws the window's pixels into an image of its size. Of `statistics`, fragments and pixels are the window's, all else
  * the band's, or the window's part of the picture's. Windows are best drawn band by band. Errors: as conic_source_draw.

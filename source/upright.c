@@ -41,13 +41,11 @@ static void add_patch(samples *s, const double place[3], const double area[3]) {
   s->count++;
 }
 
-static size_t stride_of(size_t count) {
-  return 1 + count / MOST_SAMPLES;
-}
-
-static void take_splat_samples(samples *s, const conic_splats *splats) {
+/* Of splats that are shared, those of all processes. */
+static void take_splat_samples(samples *s, const conic_splats_shares *shares, const conic_splats *splats) {
   double u[3], v[3], place[3], area[3];
-  for (size_t i = 0; splats->tangent_u[0] && i < splats->count; i += stride_of(splats->count)) {
+  size_t stride = conic_shares_stride(shares, splats, MOST_SAMPLES), first = conic_shares_first(shares, stride);
+  for (size_t i = first; splats->tangent_u[0] && i < splats->count; i += stride) {
     for (int axis = 0; axis < 3; axis++) {
       u[axis] = (double)splats->tangent_u[axis][i];
       v[axis] = (double)splats->tangent_v[axis][i];
@@ -56,11 +54,14 @@ static void take_splat_samples(samples *s, const conic_splats *splats) {
     conic_cross(u, v, area);
     add_patch(s, place, area);
   }
+  size_t n = 3 * s->count;
+  conic_shares_gather(shares, s->place[0], n, s->place[0]);
+  s->count = conic_shares_gather(shares, s->area[0], n, s->area[0]) / 3;
 }
 
 static void take_triangle_samples(samples *s, const conic_triangles *t) {
   double corner[3][3], side[2][3], place[3], area[3];
-  for (size_t i = 0; i < t->count; i += stride_of(t->count)) {
+  for (size_t i = 0; i < t->count; i += 1 + t->count / MOST_SAMPLES) {
     for (int axis = 0; axis < 3; axis++) {
       for (int k = 0; k < 3; k++)
         corner[k][axis] = (double)t->position[axis][t->corners[i][k]];
@@ -149,15 +150,16 @@ static conic_up_basis look_at_samples(const samples *s, int is_mesh) {
   return is_base ? CONIC_UP_BASE : CONIC_UP_HABIT;
 }
 
-conic_status conic_upright_look(conic_context *context, const conic_drawing *drawing, conic_up_basis *basis) {
+conic_status conic_upright_look(conic_context *context, const conic_splats_shares *shares, const conic_drawing *drawing,
+                                conic_up_basis *basis) {
   size_t most = 2 * (size_t)MOST_SAMPLES + 2;
   samples s = {.place = conic_memory_allocate(context, most, sizeof *s.place),
                .area = conic_memory_allocate(context, most, sizeof *s.area),
                .sorted = conic_memory_allocate(context, most, sizeof *s.sorted)};
-  conic_status status = s.place && s.area && s.sorted ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status = conic_team_agree(shares->team, s.place && s.area && s.sorted ? CONIC_OK : CONIC_ERROR_MEMORY);
   *basis = CONIC_UP_HABIT;
   if (status == CONIC_OK) {
-    take_splat_samples(&s, drawing->splats);
+    take_splat_samples(&s, shares, drawing->splats);
     take_triangle_samples(&s, drawing->triangles);
     *basis = s.count < LEAST_SAMPLES ? CONIC_UP_HABIT : look_at_samples(&s, drawing->triangles->count > 0);
   }

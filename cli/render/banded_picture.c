@@ -18,8 +18,9 @@
 #include "core/image/image_common.h"
 #include "core/pictures/image_exr_bands.h"
 
-/* How many strips may be drawn, a process, before the first that is missing: they wait in a file. */
-enum { STRIPS_AHEAD = 6 };
+/* How many strips may be drawn, a process, before the first that is missing: they wait in a file. And how many each
+ * gets where they are dealt out, if they can be so small. */
+enum { STRIPS_AHEAD = 6, DEALT_EACH = 4 };
 
 typedef struct banded {
   cli_session *session;
@@ -33,6 +34,7 @@ typedef struct banded {
   size_t n;
   size_t *drawn; /* of these, those that are drawn */
   size_t n_drawn;
+  int *owners;     /* of those; null: they are not dealt out */
   unsigned planes; /* as bits */
   conic_exr_bands *packer;
   cli_window_counts counts;
@@ -212,18 +214,23 @@ static conic_status draw_strip(banded *b, size_t i_strip) {
 
 /* The first is the first process's, which then knows what the header says. */
 static conic_status draw_strips(banded *b) {
+  const size_t n = b->n_drawn;
   uint64_t unit;
   if (b->team)
-    b->team->share((uint64_t)b->n_drawn - (b->n_drawn > 0), b->team->index == 0 ? take_piece_of_strip : NULL, b);
-  conic_status status = b->n_drawn > 0 && (!b->team || b->team->index == 0) ? draw_strip(b, b->drawn[0]) : CONIC_OK;
-  for (size_t i = 1; i < b->n_drawn && !b->team && status == CONIC_OK; i++)
-    status = draw_strip(b, b->drawn[i]);
-  while (b->team && status == CONIC_OK && (unit = b->team->next()) != CLI_NO_UNIT)
+    b->team->share(b->owners || !n ? 0 : (uint64_t)n - 1, b->team->index == 0 ? take_piece_of_strip : NULL, b);
+  conic_status status = n > 0 && (!b->team || b->team->index == 0) ? draw_strip(b, b->drawn[0]) : CONIC_OK;
+  for (size_t i = 1; i < n && (!b->team || b->owners) && status == CONIC_OK; i++)
+    status = !b->team || b->owners[i] == b->team->index ? draw_strip(b, b->drawn[i]) : CONIC_OK;
+  while (b->team && !b->owners && status == CONIC_OK && (unit = b->team->next()) != CLI_NO_UNIT)
     status = draw_strip(b, b->drawn[unit + 1]);
   return status;
 }
 
 /* --- which strips --- */
+
+static conic_status agree(const banded *b, conic_status status) {
+  return b->team ? cli_sharing_end(b->session, b->job, status) : status;
+}
 
 static int is_writing(const banded *b) {
   return !b->team || b->team->index == 0;
@@ -252,6 +259,9 @@ static conic_status list_kept(const banded *b, cli_strip **kept, size_t *n) {
 static conic_status list_strips(banded *b) {
   int step = CONIC_EXR_BAND, n_processes = b->team ? b->team->cut_for : 1;
   uint64_t row = conic_planes_pixel_bytes(b->planes) * (uint64_t)b->camera->width, rows = memory_for(b->job) / 4 / row;
+  uint64_t each = (uint64_t)b->camera->height / (uint64_t)(DEALT_EACH * n_processes);
+  int is_even = conic_source_windows_are_dealt(&b->windows); /* no process knows how much there is in each */
+  rows = is_even && rows > each ? each : rows;
   while (step % b->windows.step)
     step += CONIC_EXR_BAND;
   rows = rows < (uint64_t)step ? (uint64_t)step : rows / (uint64_t)step * (uint64_t)step;
@@ -260,7 +270,7 @@ static conic_status list_strips(banded *b) {
   size_t n_kept;
   conic_status status = list_kept(b, &kept, &n_kept);
   if (status == CONIC_OK)
-    status = cli_list_strips(&b->windows, kept, n_kept, step, most, n_processes, &b->strips, &b->n);
+    status = cli_list_strips(&b->windows, kept, n_kept, step, most, is_even ? 1 : n_processes, &b->strips, &b->n);
   conic_memory_release(b->session->context, kept);
   return status;
 }
@@ -271,6 +281,18 @@ static conic_status list_drawn(banded *b) {
     if (!b->strips[i].is_kept)
       b->drawn[b->n_drawn++] = i;
   return b->drawn ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+/* Those that are drawn, where the source wants it. */
+static conic_status deal_strips(banded *b) {
+  conic_window *list = calloc(b->n_drawn + 1, sizeof *list);
+  for (size_t i = 0; list && i < b->n_drawn; i++)
+    list[i] = (conic_window){0, b->camera->width, b->strips[b->drawn[i]].y_begin, b->strips[b->drawn[i]].y_end};
+  conic_status status = agree(b, list ? CONIC_OK : CONIC_ERROR_MEMORY);
+  if (status == CONIC_OK && b->n_drawn > 0)
+    status = cli_windows_deal(b->session, &b->windows, list, b->n_drawn, 1, &b->owners);
+  free(list);
+  return status;
 }
 
 /* To all what the first, which alone knows what is kept, has listed. */
@@ -382,10 +404,6 @@ static conic_status begin_banded(banded *b, int i_frame) {
   return status == CONIC_OK && b->is_kept && is_writing(b) ? take_kept_strips(b) : status;
 }
 
-static conic_status agree(const banded *b, conic_status status) {
-  return b->team ? cli_sharing_end(b->session, b->job, status) : status;
-}
-
 /* What is finished stands under its name; what was kept of it is no more of use. */
 static conic_status end_banded(banded *b, conic_status status) {
   status = cli_strips_writer_end(&b->writer, status == CONIC_OK ? b->writer.status : status);
@@ -400,6 +418,7 @@ static void release_banded(banded *b) {
   conic_source_windows_end(&b->windows);
   free(b->strips);
   conic_memory_release(context, b->drawn);
+  free(b->owners);
   free(b->piece);
   free(b->path);
   free(b->list_path);
@@ -428,6 +447,8 @@ conic_status cli_render_banded(cli_session *session, cli_render_job *job, int i_
   if (status == CONIC_OK)
     status = agree(&b, list_drawn(&b));
   b.writer.strips = b.strips;
+  if (status == CONIC_OK && b.team)
+    status = deal_strips(&b);
   if (status == CONIC_OK)
     status = agree(&b, draw_strips(&b));
   status = end_banded(&b, status);

@@ -5,11 +5,14 @@
 
 #include "cli/host_keeps.h"
 #include "cli/render/frames.h"
+#include "cli/render/sharing.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/projection.h"
 #include "cli/scene/stereo.h"
 #include "cli/scene/views.h"
+#include "cli/session_team.h"
 #include "core/files/file.h"
+#include "source/shared_source.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
   return job->view.error_px > 0.0 || job->budget > 0;
@@ -86,12 +89,20 @@ static conic_status stand_upright(cli_session *session, cli_render_job *job) {
   return status;
 }
 
+static conic_status open_source(cli_session *session, cli_render_job *job) {
+  conic_context *context = session->context;
+  size_t n = (size_t)job->n_inputs;
+  if (!cli_sharing_may_part_source(session, job))
+    return conic_source_open(context, job->inputs, n, &job->opening, &job->source);
+  const conic_team *team = cli_team_of_library(session, &job->library_team);
+  return cli_sharing_tell(session,
+                          conic_source_open_shared(context, team, job->inputs, n, &job->opening, &job->source));
+}
+
 conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   cli_deadline_open(job);
   job->source = cli_kept_source(session);
-  conic_status status = job->source ? CONIC_OK
-                                    : conic_source_open(session->context, job->inputs, (size_t)job->n_inputs,
-                                                        &job->opening, &job->source);
+  conic_status status = job->source ? CONIC_OK : open_source(session, job);
   if (status == CONIC_OK)
     cli_keep_source(session, job->source);
   if (status == CONIC_OK)

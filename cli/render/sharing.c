@@ -4,6 +4,7 @@
 
 #include "cli/render/frames.h"
 #include "cli/render/kept_frames.h"
+#include "cli/render/lit_picture.h"
 #include "cli/session_team.h"
 #include "source/source_parts.h"
 
@@ -37,6 +38,25 @@ int cli_sharing_choose(const cli_session *session, cli_render_job *job) {
   if (job->sharing == CLI_SHARES_SAMPLES && job->accumulating.preview_seconds > 0.0)
     cli_note(session, "--preview: the samples come together at the end only");
   return job->sharing == CLI_SHARES_NOTHING ? CLI_DONE : check_streams(job);
+}
+
+/* What else looks at a scene than the windows of its pictures. */
+static int looks_at_all(const cli_render_job *job) {
+  int has_spacings =
+      job->epsilon.is_in_spacings || job->near_z.is_in_spacings || job->accumulating.width.is_in_spacings;
+  return has_spacings || job->is_transparent || job->has_mattes || job->deep_path || job->boxes_path ||
+         job->clusters_path || job->progressive_path || cli_light_is_wanted(job) || job->accumulating.n_samples;
+}
+
+int cli_sharing_may_part_source(const cli_session *session, const cli_render_job *job) {
+  return job->sharing == CLI_SHARES_WINDOWS && !session->host && conic_renderer_has_parts(job->renderer) &&
+         !looks_at_all(job);
+}
+
+conic_status cli_sharing_tell(const cli_session *session, conic_status status) {
+  if (status != CONIC_OK)
+    cli_team_exit(session, status);
+  return status;
 }
 
 void cli_sharing_settle(cli_render_job *job) {

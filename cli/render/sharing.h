@@ -15,6 +15,14 @@ typedef struct cli_frame_turns {
 /* Decides what is shared, once the views are known. Wrong usage where the team cannot do what is asked for. */
 int cli_sharing_choose(const cli_session *session, cli_render_job *job);
 
+/* Whether each process may open the part of the scene that it reads, and what its windows see, in the place of all of
+ * it: nothing is asked for but pictures in windows. */
+int cli_sharing_may_part_source(const cli_session *session, const cli_render_job *job);
+
+/* Of what a team's processes did together in the library, and of which all know whether it failed: tells it. Hands the
+ * status on. */
+conic_status cli_sharing_tell(const cli_session *session, conic_status status);
+
 /* Once the source is open: what is not drawn in windows is not shared. */
 void cli_sharing_settle(cli_render_job *job);
 

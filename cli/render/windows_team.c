@@ -10,8 +10,8 @@
 #include "source/source_parts.h"
 
 /* Windows a process: so many that those who are early have something to take, so few that the splats, which each
- * projects, are not most of the work. */
-enum { WINDOWS_EACH = 6, LEAST_SIDE = 64 };
+ * projects, are not most of the work. Where they are dealt out nobody takes more, and each has to get as much to do. */
+enum { WINDOWS_EACH = 6, DEALT_EACH = 16, LEAST_SIDE = 64 };
 
 /* What is handed over before a window's pixels. */
 typedef struct window_result {
@@ -31,6 +31,7 @@ typedef struct window_work {
   conic_source_windows windows;
   conic_window *list; /* the hardest first */
   double *weights;
+  int *owners; /* null: they are not dealt out */
   size_t n;
   unsigned planes;
   conic_image *image; /* of the first process: the whole */
@@ -88,12 +89,12 @@ static void order_windows(window_work *w) {
 
 static conic_status choose_windows(window_work *w) {
   const conic_camera *camera = &w->windows.camera;
-  double pixels = (double)camera->width * (double)camera->height / (double)(w->team->cut_for * WINDOWS_EACH),
-         side = 1.0;
+  int each = conic_source_windows_are_dealt(&w->windows) ? DEALT_EACH : WINDOWS_EACH;
+  double pixels = (double)camera->width * (double)camera->height / (double)(w->team->cut_for * each), side = 1.0;
   while (side * side < pixels)
     side += CONIC_WINDOW_STEP;
   conic_status status = list_windows(w, round_to_step(side, w->windows.step));
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && !conic_source_windows_are_dealt(&w->windows))
     order_windows(w);
   return status;
 }
@@ -155,6 +156,23 @@ static conic_status hand_window(const window_work *w, size_t i_window, const con
   w->team->hand(bytes, n_bytes);
   free(bytes);
   return CONIC_OK;
+}
+
+/* --- dealing --- */
+
+conic_status cli_windows_deal(cli_session *session, conic_source_windows *windows, const conic_window *list, size_t n,
+                              int is_in_order, int **owners) {
+  conic_team team;
+  *owners = NULL;
+  if (!conic_source_windows_are_dealt(windows))
+    return CONIC_OK;
+  conic_moment start = conic_moment_now();
+  *owners = calloc(n, sizeof **owners);
+  conic_status status = conic_team_agree(cli_team_of_library(session, &team), *owners ? CONIC_OK : CONIC_ERROR_MEMORY);
+  if (status == CONIC_OK)
+    status = conic_source_windows_deal(windows, list, n, is_in_order, *owners);
+  cli_team_trace(session, "open", "splats", 0, start, 0);
+  return cli_sharing_tell(session, status);
 }
 
 /* --- what is counted --- */
@@ -225,16 +243,20 @@ static conic_status draw_given_window(window_work *w, size_t i_window) {
   return status;
 }
 
+static conic_status draw_next(window_work *w, size_t i_window) {
+  conic_status status = conic_progress(w->session->context, "draw", (double)i_window / (double)w->n);
+  return status == CONIC_OK ? draw_given_window(w, i_window) : status;
+}
+
 /* The first one is the first process's: what stands for all in its statistics is the picture's. */
 static conic_status draw_given(window_work *w) {
   uint64_t unit;
-  w->team->share((uint64_t)w->n - 1, w->team->index == 0 ? take_window : NULL, w);
+  w->team->share(w->owners ? 0 : (uint64_t)w->n - 1, w->team->index == 0 ? take_window : NULL, w);
   conic_status status = w->team->index == 0 ? draw_given_window(w, 0) : CONIC_OK;
-  while (status == CONIC_OK && (unit = w->team->next()) != CLI_NO_UNIT) {
-    status = conic_progress(w->session->context, "draw", (double)(unit + 1) / (double)w->n);
-    if (status == CONIC_OK)
-      status = draw_given_window(w, (size_t)unit + 1);
-  }
+  for (size_t i = 1; w->owners && i < w->n && status == CONIC_OK; i++)
+    status = w->owners[i] == w->team->index ? draw_next(w, i) : CONIC_OK;
+  while (!w->owners && status == CONIC_OK && (unit = w->team->next()) != CLI_NO_UNIT)
+    status = draw_next(w, (size_t)unit + 1);
   return status;
 }
 
@@ -254,6 +276,8 @@ conic_status cli_draw_together(cli_session *session, cli_render_job *job, const 
   cli_team_trace(session, "open", "picture", 0, start, 0);
   status = cli_sharing_end(session, job, status);
   if (status == CONIC_OK)
+    status = cli_windows_deal(session, &w.windows, w.list, w.n, 0, &w.owners);
+  if (status == CONIC_OK)
     status = cli_sharing_end(session, job, draw_given(&w));
   if (status == CONIC_OK)
     status = cli_windows_sum(session->team, &w.windows, &w.counts);
@@ -262,5 +286,6 @@ conic_status cli_draw_together(cli_session *session, cli_render_job *job, const 
   statistics->ms.frame = 1e3 * (cli_seconds() - start.clock_s);
   free(w.list);
   free(w.weights);
+  free(w.owners);
   return status;
 }

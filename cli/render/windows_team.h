@@ -16,6 +16,11 @@ typedef struct cli_window_counts {
   conic_render_statistics statistics;
 } cli_window_counts;
 
+/* Collective, with a team: where the source deals out windows, who draws each of the list, which the caller frees, also
+ * after a failure, that all then know; else null. */
+conic_status cli_windows_deal(cli_session *session, conic_source_windows *windows, const conic_window *list, size_t n,
+                              int is_in_order, int **owners);
+
 void cli_windows_count(const conic_source_windows *windows, const conic_render_statistics *drawn,
                        cli_window_counts *counts);
 /* Collective, with a team; once all are drawn. The first process's counts become the picture's. */

@@ -9,6 +9,7 @@
 #include "cli/scene/lamp_job.h"
 #include "cli/scene/top_job.h"
 #include "cli/team_shares.h"
+#include "core/base/team.h"
 #include "core/files/sha256.h"
 #include "core/pictures/cryptomatte.h"
 
@@ -129,7 +130,8 @@ typedef struct cli_render_job {
 
   /* Of a team. */
   cli_sharing sharing;
-  uint64_t n_units; /* that this process did, */
+  conic_team library_team; /* the same, as the source may have it */
+  uint64_t n_units;        /* that this process did, */
   double busy_seconds;
   cli_team_shares shares;           /* what all did */
   char kept_key[CONIC_SHA256_ROOM]; /* what decides the bits, where --resumable or --resume keep frames or strips */

@@ -52,16 +52,24 @@ static int has_bad_color(const conic_splats *points, size_t point) {
                                conic_is_finite(points->color[2][point]));
 }
 
+/* A colour that is none becomes what absence means: white. */
+static void whiten_bad_colors(conic_splats *points) {
+  for (size_t i = 0; i < points->count; i++)
+    if (has_bad_color(points, i))
+      for (int channel = 0; channel < 3; channel++)
+        points->color[channel][i] = 1.0f;
+}
+
+static conic_point_state classify_point(const conic_splats *points, size_t i) {
+  int is_somewhere = conic_is_finite(points->position[0][i]) && conic_is_finite(points->position[1][i]) &&
+                     conic_is_finite(points->position[2][i]);
+  return !is_somewhere ? CONIC_POINT_NOWHERE : has_good_axes(points, i) ? CONIC_POINT_KEPT : CONIC_POINT_RAW;
+}
+
 static void classify_points(void *data, size_t begin, size_t end) {
   conic_estimate *estimate = data;
-  const conic_splats *points = &estimate->model->points;
-  for (size_t i = begin; i < end; i++) {
-    int is_somewhere = conic_is_finite(points->position[0][i]) && conic_is_finite(points->position[1][i]) &&
-                       conic_is_finite(points->position[2][i]);
-    estimate->states[i] = (uint8_t)(!is_somewhere              ? CONIC_POINT_NOWHERE
-                                    : has_good_axes(points, i) ? CONIC_POINT_KEPT
-                                                               : CONIC_POINT_RAW);
-  }
+  for (size_t i = begin; i < end; i++)
+    estimate->states[i] = (uint8_t)classify_point(&estimate->model->points, i);
 }
 
 /* The normal that a point has before any is guessed: of its axes, else of the file. */
@@ -224,11 +232,20 @@ static void hand_over_axes(conic_estimate *estimate, conic_model *model) {
       }
     }
   hand_over_dots(estimate, model);
-  /* A colour that is none becomes what absence means: white. */
-  for (size_t i = 0; i < model->points.count; i++)
-    if (has_bad_color(&model->points, i))
-      for (int channel = 0; channel < 3; channel++)
-        model->points.color[channel][i] = 1.0f;
+  whiten_bad_colors(&model->points);
+}
+
+int conic_splats_repair_alone(conic_splats *splats, size_t *n_nowhere) {
+  for (size_t i = 0; i < splats->count; i++) {
+    conic_point_state state = classify_point(splats, i);
+    if (state == CONIC_POINT_RAW)
+      return 0;
+    for (int axis = 0; axis < 3 && state == CONIC_POINT_NOWHERE; axis++)
+      splats->tangent_u[axis][i] = splats->tangent_v[axis][i] = NAN;
+    *n_nowhere += state == CONIC_POINT_NOWHERE;
+  }
+  whiten_bad_colors(splats);
+  return 1;
 }
 
 static conic_status allocate_estimate(conic_context *context, int finds_dots, conic_estimate *estimate) {

@@ -38,6 +38,10 @@ typedef struct conic_estimate {
 /* Whether conic_model_to_splats, without faces or features, would leave a set as it is, whatever its options. */
 int conic_splats_need_no_repair(conic_context *context, const conic_splats *splats);
 
+/* Does what conic_model_to_splats would to a set with axes and without clip lines, if no splat of it needs its
+ * neighbours; else returns 0. Adds how many are nowhere. */
+int conic_splats_repair_alone(conic_splats *splats, size_t *n_nowhere);
+
 /* The unit vector along vector i of three arrays; 0 where there is none. */
 int conic_unit_vector(float *const arrays[3], size_t i, double unit[3]);
 

@@ -16,6 +16,7 @@ typedef struct conic_model_shape {
   int is_raw;        /* points without normals and axes */
   int needs_survey;  /* what its colours mean is known once all have been looked at */
   uint64_t n_points; /* wanted or not */
+  unsigned fields;   /* bits of conic_splats_field, if nothing but such points is made of the file; else 0 */
 } conic_model_shape;
 
 /* What is known of points once all have been looked at; zeroed: of none. */

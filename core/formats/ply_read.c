@@ -281,6 +281,14 @@ conic_status conic_ply_read(conic_input *input, const conic_read_options *option
   return status;
 }
 
+static int has_faces(const conic_ply_header *header) {
+  for (size_t i = 0; i < header->n_elements; i++)
+    if (header->elements[i].count > 0 &&
+        (strcmp(header->elements[i].name, "face") == 0 || strcmp(header->elements[i].name, "tristrips") == 0))
+      return 1;
+  return 0;
+}
+
 conic_status conic_ply_look(conic_input *input, const conic_read_options *options, conic_model_shape *shape) {
   conic_ply_header header;
   conic_ply_layout layout;
@@ -292,7 +300,8 @@ conic_status conic_ply_look(conic_input *input, const conic_read_options *option
     status = conic_ply_layout_find(input, &header, vertices, options, 0, &layout);
     *shape = (conic_model_shape){.can_part = status == CONIC_OK,
                                  .is_raw = !(layout.fields & (CONIC_SPLATS_TANGENTS | CONIC_SPLATS_NORMALS)),
-                                 .n_points = vertices->count};
+                                 .n_points = vertices->count,
+                                 .fields = has_faces(&header) || layout.has_harmonics ? 0 : layout.fields};
   }
   conic_ply_header_release(input->context, &header);
   return status;

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <string.h>
 
 #include "conic/splats.h"
 #include "core/base/memory.h"
@@ -7,6 +8,7 @@
 #include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/splats/columns.h"
+#include "core/splats/shares.h"
 
 enum { CHUNK = 65536 };
 
@@ -40,22 +42,53 @@ static void length_chunk(void *data, size_t i_chunk, int i_thread) {
     list->bits[i] = length_bits(list->splats, i);
 }
 
+/* conic_bits_of_rank of what all processes have: one byte after the other, from how often each begins it. */
+static uint32_t bits_of_rank_among_shares(const conic_splats_shares *shares, const uint32_t *bits, size_t n,
+                                          uint64_t rank) {
+  uint64_t counts[256], found = 0;
+  for (int shift = 24; shift >= 0; shift -= 8) {
+    size_t byte = 0;
+    memset(counts, 0, sizeof counts);
+    for (size_t i = 0; i < n; i++)
+      counts[bits[i] >> shift & 255] += (uint64_t)bits[i] >> (shift + 8) == found;
+    conic_shares_take_sums(shares, counts, 256);
+    while (rank >= counts[byte])
+      rank -= counts[byte++];
+    found = found << 8 | byte;
+  }
+  return (uint32_t)found;
+}
+
 /* The median of those that are usable. */
-static conic_status find_length(conic_context *context, const conic_splats *splats, double *length) {
-  size_t n = splats->count, n_unusable = 0;
+static conic_status find_length(conic_context *context, const conic_splats_shares *shares, const conic_splats *splats,
+                                double *length) {
+  size_t n = splats->count;
+  uint64_t counts[2] = {n, 0}; /* of all, and of the unusable */
   length_list list = {splats, conic_memory_allocate(context, n, sizeof *list.bits)};
-  if (!list.bits)
-    return CONIC_ERROR_MEMORY;
-  conic_parallel_for(context, (n + CHUNK - 1) / CHUNK, length_chunk, &list);
-  for (size_t i = 0; i < n; i++)
-    n_unusable += list.bits[i] == 0;
-  if (n > n_unusable) /* those stand first */
-    *length = (double)conic_float_of_bits(conic_bits_of_rank(list.bits, n, n_unusable + (n - n_unusable - 1) / 2));
+  conic_status status = conic_team_agree(shares->team, list.bits ? CONIC_OK : CONIC_ERROR_MEMORY);
+  if (status == CONIC_OK) {
+    conic_parallel_for(context, (n + CHUNK - 1) / CHUNK, length_chunk, &list);
+    for (size_t i = 0; i < n; i++)
+      counts[1] += list.bits[i] == 0;
+    conic_shares_take_sums(shares, counts, 2);
+  }
+  if (status == CONIC_OK && counts[0] > counts[1]) { /* those stand first */
+    uint64_t rank = counts[1] + (counts[0] - counts[1] - 1) / 2;
+    *length = (double)conic_float_of_bits(shares->team ? bits_of_rank_among_shares(shares, list.bits, n, rank)
+                                                       : conic_bits_of_rank(list.bits, n, (size_t)rank));
+  }
   conic_memory_release(context, list.bits);
-  return CONIC_OK;
+  return status;
+}
+
+conic_status conic_shares_length(conic_context *context, const conic_splats_shares *shares, const conic_splats *splats,
+                                 double *length) {
+  *length = 0.0;
+  return find_length(context, shares, splats, length);
 }
 
 conic_status conic_splats_length(conic_context *context, const conic_splats *splats, double *length) {
+  static const conic_splats_shares alone = {.team = NULL};
   conic_splats close;
   float *block;
   *length = 0.0;
@@ -63,7 +96,7 @@ conic_status conic_splats_length(conic_context *context, const conic_splats *spl
   if (status == CONIC_OK && !close.tangent_u[0])
     status = conic_fail(context, CONIC_ERROR_ARGUMENT, "the splats have no tangent axes");
   if (status == CONIC_OK)
-    status = find_length(context, &close, length);
+    status = find_length(context, &alone, &close, length);
   conic_memory_release(context, block);
   return status;
 }

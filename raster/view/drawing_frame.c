@@ -1,15 +1,17 @@
 /* Cameras that a drawing just fits: how far its outline reaches along the planes through the eye and the picture's
  * sides says where the eye has to be. */
+#include "raster/view/drawing_frame.h"
+
 #include <math.h>
 #include <stdlib.h>
 
-#include "conic/triangles.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
 #include "core/image/framing.h"
 #include "core/splats/columns.h"
+#include "core/splats/near.h"
 
 enum {
   MEASURED_TOGETHER = 1 << 15, /* points */
@@ -20,6 +22,7 @@ enum {
 /* How far points within a box reach along `n` directions from `center`. */
 typedef struct reach {
   const conic_drawing *drawing;
+  const conic_splats_shares *shares; /* of its splats */
   double cutoff, center[3];
   double low[3], high[3]; /* from the center */
   size_t n, n_splat_tasks;
@@ -99,20 +102,29 @@ static size_t tasks_for(size_t count) {
   return (count + MEASURED_TOGETHER - 1) / MEASURED_TOGETHER;
 }
 
+static conic_status measure_own_reach(conic_context *context, size_t n_tasks, reach *r) {
+  conic_memory_release(context, r->farthest);
+  r->farthest = conic_memory_allocate(context, (n_tasks ? n_tasks : 1) * r->n, sizeof *r->farthest);
+  if (!r->farthest)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < r->n; i++) /* of nothing */
+    r->farthest[i] = -HUGE_VAL;
+  return conic_parallel_told(context, "frame", 0.0, 1.0, n_tasks, measure_reach_of_task, r);
+}
+
 /* The farthest of all, into the first task's place. */
 static conic_status measure_reach(conic_context *context, reach *r) {
   r->n_splat_tasks = tasks_for(r->drawing->splats->count);
   size_t n_tasks = r->n_splat_tasks + tasks_for(r->drawing->triangles->count);
-  conic_memory_release(context, r->farthest);
-  r->farthest = conic_memory_allocate(context, n_tasks * r->n, sizeof *r->farthest);
-  if (!r->farthest)
-    return CONIC_ERROR_MEMORY;
-  conic_status status = conic_parallel_told(context, "frame", 0.0, 1.0, n_tasks, measure_reach_of_task, r);
-  for (size_t task = 1; task < n_tasks && status == CONIC_OK; task++)
+  conic_status status = conic_team_agree(r->shares->team, measure_own_reach(context, n_tasks, r));
+  if (status != CONIC_OK)
+    return status;
+  for (size_t task = 1; task < n_tasks; task++)
     for (size_t i = 0; i < r->n; i++)
       if (r->farthest[task * r->n + i] > r->farthest[i])
         r->farthest[i] = r->farthest[task * r->n + i];
-  return status;
+  conic_shares_take_greatest(r->shares, r->farthest, r->n);
+  return CONIC_OK;
 }
 
 /* A point (x, y, z) of camera axes about the centre, seen from z = -d, is left of the side of tangent t where
@@ -197,12 +209,13 @@ static int compare_reach(const void *a, const void *b) {
 }
 
 /* Some of a component of all places, in order; returns how many. */
-static size_t sort_places(const conic_drawing *drawing, int axis, double *sorted) {
+static size_t sort_places(const conic_splats_shares *shares, const conic_drawing *drawing, int axis, double *sorted) {
   const conic_splats *s = drawing->splats;
   const conic_triangles *t = drawing->triangles;
-  size_t n = 0, stride = 1 + s->count / MOST_PLACES;
-  for (size_t i = 0; i < s->count; i += stride)
+  size_t n = 0, stride = conic_shares_stride(shares, s, MOST_PLACES);
+  for (size_t i = conic_shares_first(shares, stride); i < s->count; i += stride)
     sorted[n++] = (double)s->position[axis][i] + s->origin[axis];
+  n = conic_shares_gather(shares, sorted, n, sorted);
   stride = 1 + t->count / MOST_PLACES;
   for (size_t i = 0; i < t->count; i += stride)
     sorted[n++] = (double)t->position[axis][t->corners[i][0]] + t->origin[axis];
@@ -216,14 +229,17 @@ static size_t sort_places(const conic_drawing *drawing, int axis, double *sorted
 
 /* Fewer than one in a hundred on either side, farther out than four times what the others span, are strays: a point
  * that a scanner threw to the origin would else be all there is to see. */
-static conic_status leave_out_strays(conic_context *context, const conic_drawing *drawing, double low[3],
-                                     double high[3]) {
+static conic_status leave_out_strays(conic_context *context, const conic_splats_shares *shares,
+                                     const conic_drawing *drawing, double low[3], double high[3]) {
   static const double stray_spans = 4.0;
   double *sorted = conic_memory_allocate(context, 2 * (size_t)MOST_PLACES + 2, sizeof *sorted);
-  if (!sorted)
-    return CONIC_ERROR_MEMORY;
+  conic_status status = conic_team_agree(shares->team, sorted ? CONIC_OK : CONIC_ERROR_MEMORY);
+  if (status != CONIC_OK) {
+    conic_memory_release(context, sorted);
+    return status;
+  }
   for (int axis = 0; axis < 3; axis++) {
-    size_t n = sort_places(drawing, axis, sorted), n_out = n / 100;
+    size_t n = sort_places(shares, drawing, axis, sorted), n_out = n / 100;
     if (n_out == 0)
       continue;
     double first = sorted[n_out], last = sorted[n - 1 - n_out], most = stray_spans * (last - first);
@@ -234,15 +250,24 @@ static conic_status leave_out_strays(conic_context *context, const conic_drawing
   return CONIC_OK;
 }
 
-static conic_status frame_entered(conic_context *context, const conic_drawing *drawing, float cutoff,
-                                  const conic_framing *framing, size_t n_turns, conic_camera *camera, double *near_z) {
+/* conic_drawing_bounds of what all processes have. */
+static size_t find_shared_bounds(const conic_splats_shares *shares, const conic_drawing *drawing, double low[3],
+                                 double high[3]) {
+  return shares->team ? conic_shares_bounds(shares, drawing->splats, low, high)
+                      : conic_drawing_bounds(drawing, low, high);
+}
+
+static conic_status frame_entered(conic_context *context, const conic_splats_shares *shares,
+                                  const conic_drawing *drawing, float cutoff, const conic_framing *framing,
+                                  size_t n_turns, conic_camera *camera, double *near_z) {
   double low[3], high[3], diagonal[3], rows[3][3];
   stand found;
-  reach r = {.drawing = drawing, .cutoff = (double)cutoff, .n = n_turns * N_SIDES};
-  *near_z = conic_drawing_near(drawing);
-  if (conic_drawing_bounds(drawing, low, high) == 0)
+  reach r = {.drawing = drawing, .shares = shares, .cutoff = (double)cutoff, .n = n_turns * N_SIDES};
+  size_t n_finite = find_shared_bounds(shares, drawing, low, high);
+  *near_z = conic_near_of_box(low, high);
+  if (n_finite == 0)
     return conic_camera_frame(context, framing, low, high, camera);
-  conic_status status = leave_out_strays(context, drawing, low, high);
+  conic_status status = leave_out_strays(context, shares, drawing, low, high);
   if (status != CONIC_OK)
     return status;
   conic_subtract(high, low, diagonal);
@@ -252,11 +277,11 @@ static conic_status frame_entered(conic_context *context, const conic_drawing *d
     r.low[i] = low[i] - r.center[i] - margin;
     r.high[i] = high[i] - r.center[i] + margin;
   }
-  r.directions = conic_memory_allocate(context, r.n, sizeof *r.directions);
-  if (!r.directions)
-    return CONIC_ERROR_MEMORY;
   double size = conic_length(diagonal);
-  status = find_eye(context, framing, n_turns, size > 0.0 ? 0.05 * size : 1.0, &r, &found);
+  r.directions = conic_memory_allocate(context, r.n, sizeof *r.directions);
+  status = conic_team_agree(shares->team, r.directions ? CONIC_OK : CONIC_ERROR_MEMORY);
+  if (status == CONIC_OK)
+    status = find_eye(context, framing, n_turns, size > 0.0 ? 0.05 * size : 1.0, &r, &found);
   if (status == CONIC_OK) {
     const double at[3] = {-found.beside[0], -found.beside[1], found.distance};
     conic_framing_rotation(framing, rows);
@@ -268,8 +293,9 @@ static conic_status frame_entered(conic_context *context, const conic_drawing *d
   return status;
 }
 
-conic_status conic_drawing_frame(conic_context *context, const conic_drawing *drawing, float cutoff,
-                                 const conic_framing *given, int n_turns, conic_camera *camera, double *near_z) {
+conic_status conic_drawing_frame_shared(conic_context *context, const conic_splats_shares *shares,
+                                        const conic_drawing *drawing, float cutoff, const conic_framing *given,
+                                        int n_turns, conic_camera *camera, double *near_z) {
   conic_framing framing;
   conic_entered_drawing entered;
   double unused;
@@ -278,12 +304,18 @@ conic_status conic_drawing_frame(conic_context *context, const conic_drawing *dr
   conic_status status = conic_framing_take(context, given, &framing);
   if (status != CONIC_OK)
     return status;
-  status = conic_drawing_enter(context, "frame", drawing, &entered);
+  status = conic_team_agree(shares->team, conic_drawing_enter(context, "frame", drawing, &entered));
   if (status == CONIC_OK) {
     const conic_drawing close = {&entered.splats, &entered.triangles};
     size_t n_seen = n_turns < MOST_TURNS ? (size_t)n_turns : MOST_TURNS;
-    status = frame_entered(context, &close, cutoff, &framing, n_seen, camera, near_z ? near_z : &unused);
+    status = frame_entered(context, shares, &close, cutoff, &framing, n_seen, camera, near_z ? near_z : &unused);
   }
   conic_drawing_leave(context, &entered);
   return status;
+}
+
+conic_status conic_drawing_frame(conic_context *context, const conic_drawing *drawing, float cutoff,
+                                 const conic_framing *framing, int n_turns, conic_camera *camera, double *near_z) {
+  static const conic_splats_shares alone = {.team = NULL};
+  return conic_drawing_frame_shared(context, &alone, drawing, cutoff, framing, n_turns, camera, near_z);
 }

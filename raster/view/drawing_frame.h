@@ -1,0 +1,14 @@
+/* conic_drawing_frame of a drawing of which a team's processes have parts. */
+#ifndef CONIC_DRAWING_FRAME_H
+#define CONIC_DRAWING_FRAME_H
+
+#include "conic/triangles.h"
+#include "core/splats/shares.h"
+
+/* Collective where there is a team; then `drawing` is this process's splats, and there are no triangles. Errors: as
+ * conic_drawing_frame, CANCELLED. */
+conic_status conic_drawing_frame_shared(conic_context *context, const conic_splats_shares *shares,
+                                        const conic_drawing *drawing, float cutoff, const conic_framing *given,
+                                        int n_turns, conic_camera *camera, double *near_z);
+
+#endif
