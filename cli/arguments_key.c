@@ -61,7 +61,7 @@ static int is_written(const char *argument) {
   return 0;
 }
 
-void cli_arguments_key_add(conic_sha256 *sum, int n_arguments, char *const *arguments) {
+void cli_arguments_key_add(conic_sha256 *sum, int n_arguments, char *const *arguments, int with_files) {
   cli_arguments_key_add_text(sum, conic_version());
   for (int i = 1, n; i < n_arguments; i += n ? n : 1) {
     const char *argument = arguments[i], *equals = strchr(argument, '=');
@@ -69,6 +69,8 @@ void cli_arguments_key_add(conic_sha256 *sum, int n_arguments, char *const *argu
     if (n)
       continue;
     cli_arguments_key_add_text(sum, argument);
+    if (!with_files)
+      continue;
     if (!is_written(argument)) {
       cli_arguments_key_add_file(sum, argument);
       cli_arguments_key_add_file(sum, argument[0] == '-' && equals ? equals + 1 : "");

@@ -138,7 +138,7 @@ static conic_status write_list(const cli_kept_frames *kept, const char *key, int
 static void make_key(const cli_session *session, const cli_render_job *job, char key[CONIC_SHA256_ROOM]) {
   conic_sha256 sum;
   conic_sha256_begin(&sum);
-  cli_arguments_key_add(&sum, job->n_arguments, job->arguments);
+  cli_arguments_key_add(&sum, job->n_arguments, job->arguments, 1);
   cli_arguments_key_add_number(&sum, conic_guard_bytes(session->context));
   conic_sha256_add(&sum, &job->options.exposure, sizeof job->options.exposure); /* which may be automatic */
   conic_sha256_end(&sum, key);

@@ -7,12 +7,20 @@
 #include "conic/layers.h"
 #include "core/base/team.h"
 
+/* What is kept beside the file while it is built (layers_kept.h), so that it can be gone on with after any end. */
+typedef struct conic_layers_keeping {
+  const char *key; /* 64 hex digits: of all that decides bytes of the file; it must outlive the builder */
+  int goes_on;     /* with what is kept of that key; else it is forgotten */
+  int may_begin;   /* where nothing is */
+} conic_layers_keeping;
+
 /* As conic_layers_builder_open, in every process of a team, which may be null. Each appends its own samples, and then
  * all finish. Whoever has failed abandons the builder, at which the others fail when they finish, with CANCELLED. The
- * statistics are whole in the first process. Collective: where it fails in one process, it does in all. */
+ * statistics are whole in the first process. `keeping`, the same in all, may be null: nothing is kept. Collective:
+ * where it fails in one process, it does in all. Errors: also INPUT (what is kept is of another key, or not there). */
 conic_status conic_layers_builder_open_team(conic_context *context, const char *path,
                                             const conic_layers_options *options, const conic_team *team,
-                                            conic_layers_builder **builder);
+                                            const conic_layers_keeping *keeping, conic_layers_builder **builder);
 
 /* Whether all samples have colours, as the first batch of all has them; `batch` is the first one of this process, and
  * may have to wait for the processes before. Errors: MEMORY, CANCELLED. */
