@@ -11,12 +11,18 @@
 static const char *const payload_words[] = {"plain", "full", NULL};
 enum { PLAIN, FULL };
 
+static void report_finished_samples(cli_json *json, const cli_layer_job *job) {
+  if (job->is_resumable || job->resume_path)
+    cli_json_count(json, "samples_finished", job->n_finished);
+}
+
 static void report_layers(cli_json *json, const void *cookie) {
   const cli_layer_job *job = cookie;
   const conic_layers_statistics *s = &job->statistics;
   const conic_repairs repairs = {.nan = (size_t)s->n_nan, .zero = (size_t)s->n_zero};
   cli_json_count(json, "points_in", s->n_in);
   cli_json_count(json, "points_out", s->n_samples);
+  report_finished_samples(json, job);
   cli_json_count(json, "clouds", s->n_clouds);
   cli_json_count(json, "levels", (uint64_t)s->n_levels);
   cli_json_count(json, "bytes", s->n_bytes);
@@ -33,6 +39,9 @@ static void report_layers(cli_json *json, const void *cookie) {
 static void tell_layers(const void *cookie) {
   const cli_layer_job *job = cookie;
   const conic_layers_statistics *s = &job->statistics;
+  if (job->n_finished)
+    cli_note(job->base.session, "%llu of %llu samples were in finished branches", (unsigned long long)job->n_finished,
+             (unsigned long long)s->n_samples);
   conic_log(job->base.session->context, CONIC_LOG_INFO,
             "%s: %llu points in; %llu samples in %llu clouds and %d levels out, %.1f MiB; a sample every %.4g, in "
             "steps of %.4g",
@@ -100,6 +109,7 @@ static int make_layers(void *cookie) {
     status = conic_layers_builder_open_team(session->context, job->base.output, &job->options, job->share.team,
                                             keeps ? &keeping : NULL, &job->builder);
   if (status == CONIC_OK) {
+    job->n_finished = conic_layers_builder_finished(job->builder);
     status = cli_layer_read_share(job, &options);
     if (status == CONIC_OK)
       status = conic_layers_builder_finish(job->builder, &job->statistics);

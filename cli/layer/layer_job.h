@@ -32,8 +32,8 @@ typedef struct cli_layer_job {
   conic_layers_builder *builder;
   conic_layers_statistics statistics;
   int may_read_again, has_begun, is_raw, is_counting;
-  int has_points, has_colors; /* of all inputs up to here */
-  uint64_t n_points, n_pieces;
+  int has_points, has_colors;              /* of all inputs up to here */
+  uint64_t n_points, n_pieces, n_finished; /* the last: samples, before it began */
   double busy_seconds;
   cli_team_shares shares;
 } cli_layer_job;

@@ -121,7 +121,7 @@ static conic_status find_frames(cli_kept_frames *kept, int n_frames) {
 }
 
 /* Writes the list anew, with the frames that are finished; whole or not at all. */
-static conic_status write_list(const cli_kept_frames *kept, const char *key, int n_frames) {
+static conic_status write_frame_list(const cli_kept_frames *kept, const char *key, int n_frames) {
   conic_output *output;
   conic_status status = conic_output_open(kept->context, kept->path, &output);
   if (status != CONIC_OK)
@@ -157,7 +157,7 @@ static conic_status open_list(cli_session *session, cli_render_job *job) {
   if (status == CONIC_OK)
     status = find_frames(kept, job->n_frames);
   if (status == CONIC_OK)
-    status = write_list(kept, key, job->n_frames);
+    status = write_frame_list(kept, key, job->n_frames);
   if (status != CONIC_OK)
     return status;
   kept->stream = conic_disk_open_stream(kept->path, "ab");

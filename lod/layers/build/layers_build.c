@@ -172,6 +172,10 @@ void conic_layers_builder_abandon(conic_layers_builder *builder) {
   conic_memory_release(builder->context, builder);
 }
 
+uint64_t conic_layers_builder_finished(const conic_layers_builder *builder) {
+  return builder->kept.n_samples;
+}
+
 conic_status conic_layers_builder_append(conic_layers_builder *builder, const conic_splats *batch) {
   conic_splats close;
   float *block;

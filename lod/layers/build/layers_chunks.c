@@ -195,7 +195,7 @@ static int is_whole_place(const growing *g, const layers_part *p) {
 }
 
 /* Of what has grown. */
-static conic_status keep_part(growing *g, const layers_part *p, hand *h) {
+static conic_status keep_grown_part(growing *g, const layers_part *p, hand *h) {
   uint64_t differing = p->branch->first_key ^ p->branch->last_key;
   unsigned n_bits = differing ? 64u - (unsigned)__builtin_clzll(differing) : 0u;
   const conic_layers_kept_branch place = {p->branch->first_key >> n_bits << n_bits, p->branch->n_place, n_bits};
@@ -248,7 +248,7 @@ static conic_status grow_part(growing *g, layers_part *p, hand *h) {
   if (p->n_nodes > 0)
     memcpy(p->nodes, h->shelf.nodes, p->n_nodes * sizeof *p->nodes);
   h->shelf.n_nodes = h->shelf.n_put = 0;
-  return is_kept ? keep_part(g, p, h) : CONIC_OK;
+  return is_kept ? keep_grown_part(g, p, h) : CONIC_OK;
 }
 
 /* Of the parts that grow now, one after the other. The calling thread tells of the progress before each of its own. */

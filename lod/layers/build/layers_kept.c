@@ -24,7 +24,7 @@ static char *allocate_name(const conic_layers_kept *kept) {
   return conic_memory_allocate(kept->context, kept->n_folder + NAME_ROOM, 1);
 }
 
-static void list_of(const conic_layers_kept *kept, int rank, char *path) {
+static void path_of_list(const conic_layers_kept *kept, int rank, char *path) {
   char name[32];
   snprintf(name, sizeof name, "%d.%s", rank, list_ending);
   name_in_folder(kept, name, path);
@@ -103,7 +103,7 @@ static conic_status find_lists(conic_layers_kept *kept, const conic_layers_keepi
   conic_status status = keeping->goes_on ? read_lists(kept, path, &n_lists) : CONIC_OK;
   if (status != CONIC_OK || n_lists > 0)
     return status;
-  list_of(kept, 0, path);
+  path_of_list(kept, 0, path);
   if (keeping->goes_on && !keeping->may_begin)
     return conic_finished_read(kept->context, path, list_name, kept->key, &none); /* which says why not */
   return clear_folder(kept, path);
@@ -191,7 +191,7 @@ static conic_status write_found(const conic_layers_kept *kept, const unsigned ch
   conic_output *output;
   conic_finished_part part;
   char own[32];
-  list_of(kept, 0, path);
+  path_of_list(kept, 0, path);
   conic_status status = conic_output_open(kept->context, path, &output);
   if (status != CONIC_OK)
     return status;
@@ -251,10 +251,10 @@ static conic_status find_branches(conic_layers_kept *kept, char *path) {
 
 /* --- beginning and end --- */
 
-static conic_status open_list(conic_layers_kept *kept, char *path) {
+static conic_status open_own_list(conic_layers_kept *kept, char *path) {
   int index = kept->team ? kept->team->index : 0;
   conic_status status = CONIC_OK;
-  list_of(kept, index, path);
+  path_of_list(kept, index, path);
   if (index > 0) {
     conic_output *output;
     status = conic_output_open(kept->context, path, &output);
@@ -296,7 +296,7 @@ conic_status conic_layers_kept_begin(conic_context *context, const char *path, c
   if (status == CONIC_OK)
     status = find_branches(kept, name);
   if (status == CONIC_OK)
-    status = conic_team_agree(team, open_list(kept, name));
+    status = conic_team_agree(team, open_own_list(kept, name));
   conic_memory_release(context, name);
   return status;
 }

@@ -33,8 +33,8 @@ static size_t record_bytes(const record_head *head) {
          (size_t)head->n_counts * sizeof(outline_count) + (size_t)(head->parcel_bytes + head->cloud_bytes);
 }
 
-static conic_status fill_record(const conic_layers_grown *grown, const conic_pile *clouds, const record_head *head,
-                                const unsigned char *parcel, unsigned char *at) {
+static conic_status fill_branch_record(const conic_layers_grown *grown, const conic_pile *clouds,
+                                       const record_head *head, const unsigned char *parcel, unsigned char *at) {
   conic_status status = CONIC_OK;
   uint64_t offset = 0;
   memcpy(at, head, sizeof *head);
@@ -70,7 +70,7 @@ conic_status conic_layers_record_pack(const conic_layers_plan *plan, const conic
     record_head head = describe_record(grown, parcel_bytes);
     *n_bytes = record_bytes(&head);
     *bytes = conic_memory_allocate(plan->context, *n_bytes, 1);
-    status = *bytes ? fill_record(grown, clouds, &head, parcel, *bytes) : CONIC_ERROR_MEMORY;
+    status = *bytes ? fill_branch_record(grown, clouds, &head, parcel, *bytes) : CONIC_ERROR_MEMORY;
   }
   conic_memory_release(plan->context, parcel);
   return status;
@@ -100,8 +100,8 @@ static int are_nodes_sound(const record_head *head, const unsigned char *nodes, 
   return offset == head->cloud_bytes && head->n_nodes % 2 == 0 && n_waiting == (is_leaf ? 0 : 1);
 }
 
-static conic_status add_counts(conic_layers_worker *worker, conic_context *context, const record_head *head,
-                               const unsigned char *counts) {
+static conic_status add_outline_counts(conic_layers_worker *worker, conic_context *context, const record_head *head,
+                                       const unsigned char *counts) {
   uint64_t *outlines = conic_memory_allocate_zeroed(context, CONIC_LAYERS_OUTLINES, sizeof *outlines);
   conic_status status = outlines ? CONIC_OK : CONIC_ERROR_MEMORY;
   for (uint64_t i = 0; i < head->n_counts && status == CONIC_OK; i++) {
@@ -163,7 +163,7 @@ conic_status conic_layers_record_unpack(conic_layers_worker *worker, const unsig
   if (status == CONIC_OK && !(is_of_place(*branch, place) && are_nodes_sound(&head, nodes, (*branch)->is_leaf)))
     status = CONIC_ERROR_INPUT;
   if (status == CONIC_OK)
-    status = add_counts(worker, shelf->context, &head, counts);
+    status = add_outline_counts(worker, shelf->context, &head, counts);
   if (status == CONIC_OK)
     status = shelve_nodes(shelf, &head, nodes, parcel + head.parcel_bytes);
   if (status == CONIC_OK)

@@ -101,7 +101,7 @@ static conic_status count_sample(void *to, const conic_layers_sample *sample) {
 }
 
 /* A kept branch has only to be read. It counts in one cell, so that it is not parted, however many its place has. */
-static void count_kept(sharing *s, const conic_layers_kept *kept) {
+static void count_kept_branches(sharing *s, const conic_layers_kept *kept) {
   for (size_t i = 0; i < kept->n && s->shares->team->index == 0; i++)
     s->counts[cell_of_key(s->shares, kept->branches[i].key)] += 1 + kept->branches[i].n_samples / SAMPLES_AS_ONE_KEPT;
 }
@@ -115,7 +115,7 @@ static conic_status count_share_cells(sharing *s, const conic_layers_placing *pl
   s->counts = conic_memory_allocate_zeroed(shares->context, n, sizeof *s->counts);
   conic_status status = all && s->counts ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
-    count_kept(s, placing->kept);
+    count_kept_branches(s, placing->kept);
     status = conic_layers_place_all(placing, count_sample, s);
   }
   status = conic_team_agree(team, status);

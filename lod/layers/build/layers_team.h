@@ -22,6 +22,9 @@ conic_status conic_layers_builder_open_team(conic_context *context, const char *
                                             const conic_layers_options *options, const conic_team *team,
                                             const conic_layers_keeping *keeping, conic_layers_builder **builder);
 
+/* How many samples are in branches that were finished when it was opened. */
+uint64_t conic_layers_builder_finished(const conic_layers_builder *builder);
+
 /* Whether all samples have colours, as the first batch of all has them; `batch` is the first one of this process, and
  * may have to wait for the processes before. Errors: MEMORY, CANCELLED. */
 conic_status conic_layers_builder_meet(conic_layers_builder *builder, const conic_splats *batch, int *has_colors);
