@@ -79,10 +79,12 @@ static size_t bytes_in_chunk(const conic_layers_plan *plan) {
   return 2 * plan->sample_bytes + 2 * sizeof(uint64_t) + (plan->has_bare ? 28 : 0);
 }
 
-/* What is kept is grown in branches of seconds, and of no more than the fraction that one may lose. */
-static uint64_t most_in_kept(const conic_layers_builder *builder) {
-  enum { MOST = 1 << 18, BRANCHES_A_PROCESS = 64 };
-  uint64_t n = builder->plan.n_samples / (BRANCHES_A_PROCESS * (builder->team ? (uint64_t)builder->team->count : 1));
+/* Of branches that are kept: no more than what takes seconds, nor than the fraction that one may lose; and enough for
+ * all threads. Of smaller ones, more would be kept for each sample. */
+static uint64_t most_in_kept(const conic_layers_builder *builder, uint64_t n_workers) {
+  enum { MOST = 1 << 19, LEAST_BRANCHES = 32, BRANCHES_A_THREAD = 8 };
+  uint64_t n_branches = BRANCHES_A_THREAD * n_workers > LEAST_BRANCHES ? BRANCHES_A_THREAD * n_workers : LEAST_BRANCHES;
+  uint64_t n = builder->plan.n_samples / (n_branches * (builder->team ? (uint64_t)builder->team->count : 1));
   return n < MOST ? n : MOST;
 }
 
@@ -96,8 +98,8 @@ static conic_layers_growth plan_growth(conic_layers_builder *builder) {
   n_workers = n_workers < n_threads ? n_workers : n_threads;
   n_workers = n_workers ? n_workers : 1;
   uint64_t left = bytes / n_workers > worker ? bytes / n_workers - worker : 0, most = left / sample;
-  if (builder->kept.key && most > most_in_kept(builder))
-    most = most_in_kept(builder);
+  if (builder->kept.key && most > most_in_kept(builder, n_workers))
+    most = most_in_kept(builder, n_workers);
   return (conic_layers_growth){.n_workers = (int)n_workers,
                                .most = most > least ? most : least,
                                .kept = &builder->kept,
