@@ -10,7 +10,8 @@
 #include "core/files/sha256.h"
 
 typedef struct cli_layer_job {
-  cli_build base; /* its input is the one that is being read */
+  cli_build base; /* its input is the one that is being read, */
+  int i_input;    /* of this number */
   const char *const *inputs;
   int n_inputs;
   conic_layers_options options;
@@ -48,6 +49,9 @@ conic_status cli_layer_open_input(cli_layer_job *job, const char *path, conic_la
 int cli_layer_check_keeping(const cli_layer_job *job);
 /* What decides the bytes of the file, once the inputs are listed. Collective. Errors: MEMORY, CANCELLED. */
 conic_status cli_layer_make_key(const cli_layer_job *job, char key[CONIC_SHA256_ROOM]);
+/* As conic_model_to_splats of the input that is being read, of which the axes that are made are kept, or taken from
+ * what is. Errors: also IO. */
+conic_status cli_layer_estimate(cli_layer_job *job, conic_model *model, conic_repairs *repairs);
 /* The two options, in the commands' tables. */
 #define CLI_LAYER_KEEPING(job)                                                                                         \
   {"resumable", CLI_FLAG, &(job).is_resumable, NULL,                                                                   \

@@ -3,6 +3,8 @@
 #include "cli/arguments_key.h"
 #include "cli/layer/layer_job.h"
 #include "core/base/memory.h"
+#include "core/estimate/estimate.h"
+#include "lod/layers/build/layers_team.h"
 
 int cli_layer_check_keeping(const cli_layer_job *job) {
   const char *command = job->base.session->command;
@@ -70,4 +72,68 @@ conic_status cli_layer_make_key(const cli_layer_job *job, char key[CONIC_SHA256_
   conic_memory_release(context, hashes);
   conic_memory_release(context, all);
   return status;
+}
+
+/* --- axes --- */
+
+enum { AXES = 6 }; /* columns, and one that says which points are dots, if any are */
+
+/* From a stream that has n + 1 columns, the last of which is the dots'; fewer of another length have another n. */
+static conic_status read_axes(conic_context *context, FILE *stream, size_t count, int n, float *columns[AXES + 1]) {
+  for (int i = 0; i < n; i++) {
+    columns[i] = conic_memory_allocate(context, count, sizeof(float));
+    if (!columns[i])
+      return CONIC_ERROR_MEMORY;
+    if (fread(columns[i], sizeof(float), count, stream) != count)
+      return CONIC_ERROR_IO;
+  }
+  return CONIC_OK;
+}
+
+/* Whether they were there. */
+static conic_status take_axes_kept(cli_layer_job *job, conic_model *model, int *are_there) {
+  conic_context *context = job->base.session->context;
+  size_t count = model->points.count;
+  float *columns[AXES + 1] = {NULL};
+  conic_status status = CONIC_OK;
+  *are_there = 0;
+  for (int n = AXES; n <= AXES + 1 && !*are_there && status == CONIC_OK; n++) {
+    FILE *stream = conic_layers_builder_open_kept(job->builder, (uint64_t)job->i_input,
+                                                  (uint64_t)count * (uint64_t)n * sizeof(float));
+    if (!stream)
+      continue;
+    status = read_axes(context, stream, count, n, columns);
+    fclose(stream);
+    *are_there = status == CONIC_OK;
+  }
+  if (*are_there)
+    status = conic_model_take_axes(context, model, columns, columns + 3, columns[AXES]);
+  for (int i = 0; i <= AXES && (status != CONIC_OK || !*are_there); i++)
+    conic_memory_release(context, columns[i]);
+  if (status == CONIC_ERROR_IO) /* somebody takes them away: they are made again */
+    status = CONIC_OK;
+  return status;
+}
+
+static conic_status keep_axes(cli_layer_job *job, const conic_splats *points) {
+  conic_layers_piece pieces[AXES + 1];
+  int n = points->dot ? AXES + 1 : AXES;
+  for (int axis = 0; axis < 3; axis++) {
+    pieces[axis].bytes = points->tangent_u[axis];
+    pieces[axis + 3].bytes = points->tangent_v[axis];
+  }
+  pieces[AXES].bytes = points->dot;
+  for (int i = 0; i < n; i++)
+    pieces[i].n_bytes = points->count * sizeof(float);
+  return conic_layers_builder_keep(job->builder, (uint64_t)job->i_input, pieces, (size_t)n);
+}
+
+conic_status cli_layer_estimate(cli_layer_job *job, conic_model *model, conic_repairs *repairs) {
+  int are_there = 0, is_raw = !model->points.tangent_u[0] && !model->points.dot;
+  conic_status status = is_raw ? take_axes_kept(job, model, &are_there) : CONIC_OK;
+  *repairs = (conic_repairs){0};
+  if (status != CONIC_OK || are_there)
+    return status;
+  status = conic_model_to_splats(job->base.session->context, &job->estimate, model, repairs);
+  return status == CONIC_OK && is_raw ? keep_axes(job, &model->points) : status;
 }

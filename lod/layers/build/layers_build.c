@@ -178,6 +178,15 @@ uint64_t conic_layers_builder_finished(const conic_layers_builder *builder) {
   return builder->kept.n_samples;
 }
 
+conic_status conic_layers_builder_keep(conic_layers_builder *builder, uint64_t input, const conic_layers_piece *pieces,
+                                       size_t n_pieces) {
+  return builder->kept.key ? conic_layers_kept_add_input(&builder->kept, input, pieces, n_pieces) : CONIC_OK;
+}
+
+FILE *conic_layers_builder_open_kept(const conic_layers_builder *builder, uint64_t input, uint64_t n_bytes) {
+  return conic_layers_kept_open_input(&builder->kept, input, n_bytes);
+}
+
 conic_status conic_layers_builder_append(conic_layers_builder *builder, const conic_splats *batch) {
   conic_splats close;
   float *block;
@@ -328,7 +337,7 @@ static conic_status feed_samples(conic_layers_builder *builder, conic_layers_pla
   return status;
 }
 
-static int compare_cuts(const void *a, const void *b) {
+static int compare_own_cuts(const void *a, const void *b) {
   uint64_t first = *(const uint64_t *)a, second = *(const uint64_t *)b;
   return (first > second) - (first < second);
 }
@@ -353,7 +362,7 @@ static conic_status find_own(const conic_layers_builder *builder, const conic_la
     (*keys)[(*n_keys)++] = branch->key;
     (*keys)[(*n_keys)++] = branch->key + (UINT64_C(1) << branch->n_bits);
   }
-  qsort(*keys, *n_keys, sizeof **keys, compare_cuts);
+  qsort(*keys, *n_keys, sizeof **keys, compare_own_cuts);
   return CONIC_OK;
 }
 

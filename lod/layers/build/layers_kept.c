@@ -11,7 +11,7 @@
 
 enum { NAME_ROOM = 1100, LINE_ROOM = CONIC_FINISHED_HEAD_ROOM + 256 };
 
-static const char list_name[] = "branches", list_ending[] = "list", branch_ending[] = "branch";
+static const char list_name[] = "branches", list_ending[] = "list", branch_ending[] = "branch", input_ending[] = "axes";
 
 /* --- names --- */
 
@@ -52,10 +52,15 @@ static void remove_files(const conic_layers_kept *kept, const char *ending, cons
   conic_disk_close_folder(&folder);
 }
 
-static conic_status clear_folder(const conic_layers_kept *kept, char *path) {
-  conic_disk_entry entry;
+static void remove_all(const conic_layers_kept *kept, char *path) {
   remove_files(kept, list_ending, NULL, path); /* first: they name the others */
   remove_files(kept, branch_ending, NULL, path);
+  remove_files(kept, input_ending, NULL, path);
+}
+
+static conic_status clear_folder(const conic_layers_kept *kept, char *path) {
+  conic_disk_entry entry;
+  remove_all(kept, path);
   if (!conic_disk_make_folder(kept->folder) && !(conic_disk_look(kept->folder, &entry) && entry.is_folder))
     return cannot_keep(kept, kept->folder);
   return CONIC_OK;
@@ -141,6 +146,10 @@ static int parse_branch(const conic_finished_part *part, conic_layers_kept_branc
   return numbers[0] >> 63 == 0 && (numbers[0] & ((UINT64_C(1) << numbers[1]) - 1)) == 0;
 }
 
+static int is_of_input(const conic_finished_part *part, uint64_t *number) {
+  return conic_finished_numbers(part, input_ending, number, 1);
+}
+
 /* Whether the file of a branch, which has the name that it should have, is as it was written. */
 static int is_branch_whole(const conic_layers_kept *kept, const conic_finished_part *part,
                            const conic_layers_kept_branch *branch) {
@@ -152,16 +161,18 @@ static int is_branch_whole(const conic_layers_kept *kept, const conic_finished_p
          memcmp(file.name, name, file.n_name) == 0 && conic_finished_is_there(kept->folder, &file);
 }
 
-/* The lists' branches, each looked at by one process. `is_whole` has room for all. */
+/* The lists' branches, each looked at by one process; inputs are when they are needed. `is_whole` has room for all. */
 static conic_status look_at_branches(conic_layers_kept *kept, size_t n, unsigned char *is_whole) {
   int index = kept->team ? kept->team->index : 0, count = kept->team ? kept->team->count : 1;
   conic_finished_part part;
   conic_layers_kept_branch branch;
   conic_status status = CONIC_OK;
+  uint64_t number;
   size_t i = 0;
   for (size_t at = 0; status == CONIC_OK && conic_finished_next(&kept->found, &at, &part); i++)
     if ((int)(i % (size_t)count) == index) {
-      is_whole[i] = (unsigned char)(parse_branch(&part, &branch) && is_branch_whole(kept, &part, &branch));
+      is_whole[i] = (unsigned char)(is_of_input(&part, &number) ||
+                                    (parse_branch(&part, &branch) && is_branch_whole(kept, &part, &branch)));
       status = conic_progress(kept->context, "look", (double)i / (double)n);
     }
   return status;
@@ -208,18 +219,33 @@ static conic_status write_found(const conic_layers_kept *kept, const unsigned ch
   return status;
 }
 
+static conic_status take_branch(conic_layers_kept *kept, const conic_layers_kept_branch *branch) {
+  conic_status status =
+      conic_memory_reserve(kept->context, &kept->branches, kept->n, kept->n + 1, &kept->room, sizeof *kept->branches);
+  if (status == CONIC_OK)
+    kept->branches[kept->n++] = *branch;
+  return status;
+}
+
+static conic_status take_input(conic_layers_kept *kept, uint64_t number, size_t file_at) {
+  conic_status status = conic_memory_reserve(kept->context, &kept->inputs, kept->n_inputs, kept->n_inputs + 1,
+                                             &kept->input_room, sizeof *kept->inputs);
+  if (status == CONIC_OK)
+    kept->inputs[kept->n_inputs++] = (conic_layers_kept_input){number, file_at};
+  return status;
+}
+
 static conic_status take_whole(conic_layers_kept *kept, const unsigned char *is_whole) {
   conic_finished_part part;
   conic_layers_kept_branch branch;
   conic_status status = CONIC_OK;
+  uint64_t number;
   size_t i = 0;
   for (size_t at = 0; status == CONIC_OK && conic_finished_next(&kept->found, &at, &part); i++)
-    if (is_whole[i] && parse_branch(&part, &branch)) {
-      status = conic_memory_reserve(kept->context, &kept->branches, kept->n, kept->n + 1, &kept->room,
-                                    sizeof *kept->branches);
-      if (status == CONIC_OK)
-        kept->branches[kept->n++] = branch;
-    }
+    if (is_whole[i] && is_of_input(&part, &number))
+      status = take_input(kept, number, part.files_at);
+    else if (is_whole[i] && parse_branch(&part, &branch))
+      status = take_branch(kept, &branch);
   if (status == CONIC_OK)
     drop_overlapping(kept);
   return status;
@@ -308,6 +334,7 @@ void conic_layers_kept_end(conic_layers_kept *kept) {
     fclose(kept->stream);
   conic_finished_release(kept->context, &kept->found);
   conic_memory_release(kept->context, kept->branches);
+  conic_memory_release(kept->context, kept->inputs);
   conic_memory_release(kept->context, kept->folder);
   memset(kept, 0, sizeof *kept);
 }
@@ -321,8 +348,7 @@ void conic_layers_kept_remove(conic_layers_kept *kept) {
   char *path = !kept->team || kept->team->index == 0 ? allocate_name(kept) : NULL;
   if (!path)
     return;
-  remove_files(kept, list_ending, NULL, path);
-  remove_files(kept, branch_ending, NULL, path);
+  remove_all(kept, path);
   conic_disk_remove_folder(kept->folder);
   conic_memory_release(kept->context, path);
 }
@@ -341,37 +367,79 @@ const conic_layers_kept_branch *conic_layers_kept_find(const conic_layers_kept *
   return low > 0 && key <= last_key_of(&kept->branches[low - 1]) ? &kept->branches[low - 1] : NULL;
 }
 
-static conic_status write_branch(const conic_layers_kept *kept, const char *path, const unsigned char *bytes,
-                                 size_t n_bytes) {
+static conic_status write_pieces(const conic_layers_kept *kept, const char *path, const conic_layers_piece *pieces,
+                                 size_t n_pieces, uint64_t *n_bytes, char hash[CONIC_SHA256_ROOM]) {
   conic_output *output;
+  conic_sha256 sum;
   conic_status status = conic_output_open(kept->context, path, &output);
   if (status != CONIC_OK)
     return status;
-  fwrite(bytes, 1, n_bytes, conic_output_stream(output));
+  conic_sha256_begin(&sum);
+  for (size_t i = 0; i < n_pieces; i++) {
+    conic_sha256_add(&sum, pieces[i].bytes, pieces[i].n_bytes);
+    fwrite(pieces[i].bytes, 1, pieces[i].n_bytes, conic_output_stream(output)); /* commit says what failed */
+  }
+  *n_bytes = sum.n_bytes;
+  conic_sha256_end(&sum, hash);
   return conic_output_commit(output);
+}
+
+/* A file, and then, once it is whole, its lines. */
+static conic_status add_part(conic_layers_kept *kept, const char *name, const char *words,
+                             const conic_layers_piece *pieces, size_t n_pieces) {
+  char hash[CONIC_SHA256_ROOM], line[LINE_ROOM];
+  uint64_t n_bytes;
+  char *path = allocate_name(kept);
+  if (!path)
+    return CONIC_ERROR_MEMORY;
+  name_in_folder(kept, name, path);
+  conic_status status = write_pieces(kept, path, pieces, n_pieces, &n_bytes, hash);
+  if (status == CONIC_OK) {
+    size_t n = conic_finished_file_head(hash, n_bytes, line);
+    n += (size_t)snprintf(line + n, sizeof line - n, "%s\n%s\n", name, words);
+    if (fwrite(line, 1, n, kept->stream) != n || fflush(kept->stream) != 0) /* as one: of several threads */
+      status = cannot_keep(kept, kept->folder);
+  }
+  conic_memory_release(kept->context, path);
+  return status;
 }
 
 conic_status conic_layers_kept_add(conic_layers_kept *kept, const conic_layers_kept_branch *branch,
                                    const unsigned char *bytes, size_t n_bytes) {
-  char name[64], hash[CONIC_SHA256_ROOM], line[LINE_ROOM];
-  conic_sha256 sum;
-  char *path = allocate_name(kept);
-  if (!path)
-    return CONIC_ERROR_MEMORY;
-  conic_sha256_begin(&sum);
-  conic_sha256_add(&sum, bytes, n_bytes);
-  conic_sha256_end(&sum, hash);
+  char name[64], words[128];
+  const conic_layers_piece piece = {bytes, n_bytes};
   file_of_branch(branch, name);
+  snprintf(words, sizeof words, "branch %llu %u %llu", (unsigned long long)branch->key, branch->n_bits,
+           (unsigned long long)branch->n_samples);
+  return add_part(kept, name, words, &piece, 1);
+}
+
+conic_status conic_layers_kept_add_input(conic_layers_kept *kept, uint64_t number, const conic_layers_piece *pieces,
+                                         size_t n_pieces) {
+  char name[64], words[64];
+  snprintf(name, sizeof name, "%llu.%s", (unsigned long long)number, input_ending);
+  snprintf(words, sizeof words, "%s %llu", input_ending, (unsigned long long)number);
+  return add_part(kept, name, words, pieces, n_pieces);
+}
+
+FILE *conic_layers_kept_open_input(const conic_layers_kept *kept, uint64_t number, uint64_t n_bytes) {
+  char name[64], *path;
+  conic_finished_file file;
+  size_t i = kept->n_inputs;
+  while (i > 0 && kept->inputs[i - 1].number != number)
+    i--;
+  if (i == 0)
+    return NULL;
+  size_t at = kept->inputs[i - 1].file_at;
+  int n = snprintf(name, sizeof name, "%llu.%s", (unsigned long long)number, input_ending);
+  if (!conic_finished_next_file(&kept->found, &at, &file) || file.n_bytes != n_bytes || file.n_name != (size_t)n ||
+      memcmp(file.name, name, file.n_name) != 0 || !conic_finished_is_there(kept->folder, &file) ||
+      !(path = allocate_name(kept)))
+    return NULL;
   name_in_folder(kept, name, path);
-  conic_status status = write_branch(kept, path, bytes, n_bytes);
-  size_t n = conic_finished_file_head(hash, n_bytes, line);
-  n += (size_t)snprintf(line + n, sizeof line - n, "%s\nbranch %llu %u %llu\n", name, (unsigned long long)branch->key,
-                        branch->n_bits, (unsigned long long)branch->n_samples);
-  if (status == CONIC_OK &&
-      (fwrite(line, 1, n, kept->stream) != n || fflush(kept->stream) != 0)) /* as one, of threads */
-    status = cannot_keep(kept, kept->folder);
+  FILE *stream = conic_disk_open_stream(path, "rb");
   conic_memory_release(kept->context, path);
-  return status;
+  return stream;
 }
 
 conic_status conic_layers_kept_read(const conic_layers_kept *kept, const conic_layers_kept_branch *branch,

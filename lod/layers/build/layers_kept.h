@@ -3,6 +3,7 @@
  * list of those that it has grown (core/files/finished.h), in parts named
  *
  *   branch KEY BITS SAMPLES     the place, and how many samples it holds
+ *   axes INPUT                  what has been estimated of an input's points, which may take as long as growing
  */
 #ifndef CONIC_LAYERS_KEPT_H
 #define CONIC_LAYERS_KEPT_H
@@ -18,6 +19,12 @@ typedef struct conic_layers_kept_branch {
   unsigned n_bits;
 } conic_layers_kept_branch;
 
+/* What is kept of an input, by its number, and where the line of its file is. */
+typedef struct conic_layers_kept_input {
+  uint64_t number;
+  size_t file_at;
+} conic_layers_kept_input;
+
 typedef struct conic_layers_kept {
   conic_context *context;
   const conic_team *team;
@@ -28,7 +35,9 @@ typedef struct conic_layers_kept {
   size_t n, room;
   conic_layers_kept_branch *branches; /* that were there, whole, ascending by key; no two overlap */
   uint64_t n_samples;                 /* in these */
-  FILE *stream;                       /* of this process's list */
+  size_t n_inputs, input_room;
+  conic_layers_kept_input *inputs; /* of two with one number the latter holds; nobody has looked whether it is whole */
+  FILE *stream;                    /* of this process's list */
 } conic_layers_kept;
 
 /* Finds what is kept beside PATH and can be used, the same in all processes, and begins the lists anew with it, or, as
@@ -47,6 +56,12 @@ const conic_layers_kept_branch *conic_layers_kept_find(const conic_layers_kept *
 /* Keeps a branch, as bytes; several threads may. It is on the list once its file is whole. Errors: MEMORY, IO. */
 conic_status conic_layers_kept_add(conic_layers_kept *kept, const conic_layers_kept_branch *branch,
                                    const unsigned char *bytes, size_t n_bytes);
+
+/* Keeps bytes of an input, in so many pieces; and opens what is kept of one for reading, where it has so many bytes and
+ * is whole: else null. Errors: MEMORY, IO. */
+conic_status conic_layers_kept_add_input(conic_layers_kept *kept, uint64_t number, const conic_layers_piece *pieces,
+                                         size_t n_pieces);
+FILE *conic_layers_kept_open_input(const conic_layers_kept *kept, uint64_t number, uint64_t n_bytes);
 
 /* The bytes of one, which the caller releases. Errors: MEMORY, IO. */
 conic_status conic_layers_kept_read(const conic_layers_kept *kept, const conic_layers_kept_branch *branch,

@@ -4,6 +4,8 @@
 #ifndef CONIC_LAYERS_TEAM_H
 #define CONIC_LAYERS_TEAM_H
 
+#include <stdio.h>
+
 #include "conic/layers.h"
 #include "core/base/team.h"
 
@@ -13,6 +15,12 @@ typedef struct conic_layers_keeping {
   int goes_on;     /* with what is kept of that key; else it is forgotten */
   int may_begin;   /* where nothing is */
 } conic_layers_keeping;
+
+/* Some of the bytes that are kept. */
+typedef struct conic_layers_piece {
+  const void *bytes;
+  size_t n_bytes;
+} conic_layers_piece;
 
 /* As conic_layers_builder_open, in every process of a team, which may be null. Each appends its own samples, and then
  * all finish. Whoever has failed abandons the builder, at which the others fail when they finish, with CANCELLED. The
@@ -24,6 +32,13 @@ conic_status conic_layers_builder_open_team(conic_context *context, const char *
 
 /* How many samples are in branches that were finished when it was opened. */
 uint64_t conic_layers_builder_finished(const conic_layers_builder *builder);
+
+/* Keeps what has been made of an input, by its number, with the branches; nothing is done where these are not kept.
+ * Errors: MEMORY, IO. */
+conic_status conic_layers_builder_keep(conic_layers_builder *builder, uint64_t input, const conic_layers_piece *pieces,
+                                       size_t n_pieces);
+/* Opens what is kept of an input for reading, if it is so many bytes, as they were written; else null. */
+FILE *conic_layers_builder_open_kept(const conic_layers_builder *builder, uint64_t input, uint64_t n_bytes);
 
 /* Whether all samples have colours, as the first batch of all has them; `batch` is the first one of this process, and
  * may have to wait for the processes before. Errors: MEMORY, CANCELLED. */
