@@ -54,6 +54,10 @@ branch=$(ls out.lpc.branches/*.branch | head -n 1)
 printf x | dd of="$branch" bs=1 seek=500 conv=notrunc 2> dd.err
 run_as_typed 3 layer large.ply -o out.lpc --cloud-size 65 "${both[@]}"
 grep -q '^conic: error: out.lpc.branches/0.list: cannot go on: it was begun with other' err || fail "another key: $(cat err)"
+cp large.ply before.ply
+printf x | dd of=large.ply bs=1 seek=99999 conv=notrunc 2> dd.err
+run_as_typed 3 layer large.ply -o out.lpc "${small[@]}" "${both[@]}"
+mv before.ply large.ply
 touch -d @1 large.ply # which is small, so that its time is of no matter
 run_as_typed 0 layer large.ply -o out.lpc --cloud-size 64 --threads 2 "${both[@]}"
 is_done whole.lpc

@@ -1,8 +1,7 @@
 /* Lists of what is finished. What is read can be written, and read again to the same. */
-#include <stdio.h>
+#include "tests/fuzz/fuzz.h"
 
 #include "core/files/finished.h"
-#include "tests/fuzz/fuzz.h"
 
 static const char key[] = "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef";
 static const char written[] = "written.frames";

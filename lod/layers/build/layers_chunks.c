@@ -406,7 +406,8 @@ static conic_status list_all_parts(growing *g) {
   g->n_samples = samples_in_buckets(g, 0, buckets->n);
   uint64_t even = g->n_samples / (PARTS_A_THREAD * (uint64_t)g->growth->n_workers);
   g->most_in_part = even < MOST_IN_PART ? even : MOST_IN_PART;
-  g->most_in_part = g->most_in_part > g->growth->most ? g->most_in_part : g->growth->most;
+  if (g->growth->kept->key || g->most_in_part < g->growth->most)
+    g->most_in_part = g->growth->most;
   g->limb_ends = conic_memory_allocate(g->plan->context, shares->n_own, sizeof *g->limb_ends);
   if (!g->limb_ends)
     return CONIC_ERROR_MEMORY;

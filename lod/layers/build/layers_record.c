@@ -122,8 +122,10 @@ static conic_status shelve_nodes(conic_layers_shelf *shelf, const record_head *h
                                  const unsigned char *clouds) {
   uint64_t at = 0;
   size_t n = (size_t)head->n_nodes;
+  if (n == 0) /* a leaf, whose cloud waits, too */
+    return CONIC_OK;
   conic_status status = conic_layers_shelf_flush(shelf);
-  if (status == CONIC_OK && head->cloud_bytes)
+  if (status == CONIC_OK)
     status = conic_pile_append(shelf->clouds, clouds, (size_t)head->cloud_bytes, &at);
   if (status == CONIC_OK)
     status = conic_memory_reserve(shelf->context, &shelf->nodes, shelf->n_nodes, shelf->n_nodes + n, &shelf->node_room,

@@ -70,7 +70,7 @@ static void build_rows(const conic_team *team, void *cookie) {
   conic_context_destroy(context);
 }
 
-static size_t read_file(const char *path, unsigned char **bytes) {
+static size_t read_whole_bytes(const char *path, unsigned char **bytes) {
   FILE *file = fopen(path, "rb");
   *bytes = NULL;
   if (!file)
@@ -85,9 +85,9 @@ static size_t read_file(const char *path, unsigned char **bytes) {
   return n;
 }
 
-static int are_same(const char *a, const char *b) {
+static int are_same_files(const char *a, const char *b) {
   unsigned char *first, *second;
-  size_t n = read_file(a, &first), n_second = read_file(b, &second);
+  size_t n = read_whole_bytes(a, &first), n_second = read_whole_bytes(b, &second);
   int same = n > 0 && n == n_second && memcmp(first, second, n) == 0;
   free(first);
   free(second);
@@ -134,7 +134,7 @@ static void check_goes(const char *whole, kept_case *c, const go *goes) {
     CHECK(list_files(folder, ".branch", file, sizeof file) > 0);
   }
   CHECK(access(folder, F_OK) != 0);
-  CHECK(are_same(whole, c->path));
+  CHECK(are_same_files(whole, c->path));
   CHECK(unlink(c->path) == 0);
 }
 
@@ -169,7 +169,7 @@ static void test_goes(conic_context *context) {
 }
 
 /* Points that get their normals from their neighbours; so many coincide that they are parted, one lies far out. */
-static void test_bare(conic_context *context) {
+static void test_points_that_coincide(conic_context *context) {
   static const go goes[] = {{1, "build", 0.4}, {3, "build", 0.5}, {2, NULL, 0.0}};
   const char *whole = files_path("whole.lpc");
   conic_splats splats;
@@ -190,8 +190,18 @@ static void append_text(const char *path, const char *text) {
   CHECK(file && fputs(text, file) >= 0 && fclose(file) == 0);
 }
 
+static void copy_list(const char *list, const char *folder) {
+  unsigned char *bytes;
+  char path[FOLDER_ROOM + 512];
+  size_t n = read_whole_bytes(list, &bytes);
+  snprintf(path, sizeof path, "%s/7.list", folder);
+  FILE *file = fopen(path, "wb");
+  CHECK(file && fwrite(bytes, 1, n, file) == n && fclose(file) == 0);
+  free(bytes);
+}
+
 /* What is not as it was written is made again; what is of another key, or not there, is told of and left alone. */
-static void test_damage(conic_context *context) {
+static void test_damaged_branches(conic_context *context) {
   static const go stopped = {2, "build", 0.5}, alone = {1, NULL, 0.0};
   char folder[FOLDER_ROOM + 128], file[FOLDER_ROOM + 512], list[FOLDER_ROOM + 512];
   const char *whole = files_path("whole.lpc");
@@ -212,6 +222,7 @@ static void test_damage(conic_context *context) {
   int byte = fgetc(stream);
   CHECK(fseek(stream, 500, SEEK_SET) == 0 && fputc(byte ^ 1, stream) != EOF && fclose(stream) == 0);
   CHECK(list_files(folder, ".list", list, sizeof list) == 1);
+  copy_list(list, folder); /* as where a run was ended that had put lists together */
   append_text(list, "file 0123456789abcdef0123456789abcdef0123456789abcdef0123456789ab");
   key[0] = 'f';
   take_go(&c, alone, 1, 1);
@@ -220,14 +231,14 @@ static void test_damage(conic_context *context) {
   take_go(&c, alone, 1, 1);
   CHECK_OK(c.statuses[0]);
   CHECK(c.n_finished > 0 && c.n_finished < n_finished);
-  CHECK(are_same(whole, c.path));
+  CHECK(are_same_files(whole, c.path));
 
   take_go(&c, stopped, 0, 1);
   take_go(&c, (go){3, "sort", 0.0}, 0, 1); /* begins anew: nothing of before is left */
   CHECK(c.n_finished == 0 && list_files(folder, ".branch", file, sizeof file) == 0);
   take_go(&c, alone, 0, 1);
   CHECK_OK(c.statuses[0]);
-  CHECK(access(folder, F_OK) != 0 && are_same(whole, c.path));
+  CHECK(access(folder, F_OK) != 0 && are_same_files(whole, c.path));
   CHECK(unlink(c.path) == 0 && unlink(whole) == 0);
   conic_splats_release(context, &splats);
 }
@@ -235,8 +246,8 @@ static void test_damage(conic_context *context) {
 int main(void) {
   conic_context *context = files_context();
   test_goes(context);
-  test_bare(context);
-  test_damage(context);
+  test_points_that_coincide(context);
+  test_damaged_branches(context);
   files_end(context);
   return check_result();
 }
