@@ -61,16 +61,16 @@ static void add_branch_seed(seed_set *set, const conic_finished *list, const con
   unsigned char bytes[1 << 16];
   uint64_t place[3];
   conic_finished_file file;
-  char name[64], path[512];
+  char name[16], path[128];
   size_t at = part->files_at;
   CHECK(conic_finished_numbers(part, "branch", place, 3) && conic_finished_next_file(list, &at, &file));
-  snprintf(path, sizeof path, "seed.lpc.branches/%.*s", (int)file.n_name, file.name);
+  snprintf(path, sizeof path, "seed.lpc.branches/%.*s", (int)(file.n_name % 64), file.name);
   memcpy(bytes, place, sizeof place);
   FILE *stream = fopen(files_path(path), "rb");
   size_t n = stream ? fread(bytes + sizeof place, 1, sizeof bytes - sizeof place, stream) : 0;
   if (stream)
     fclose(stream);
-  snprintf(name, sizeof name, "branch%d", i);
+  snprintf(name, sizeof name, "branch%d", i % 10);
   seeds_add(set, "branch", name, 1, bytes, n + sizeof place);
 }
 
