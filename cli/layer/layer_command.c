@@ -11,12 +11,18 @@
 static const char *const payload_words[] = {"plain", "full", NULL};
 enum { PLAIN, FULL };
 
+static void report_finished_samples(cli_json *json, const cli_layer_job *job) {
+  if (job->is_resumable || job->resume_path)
+    cli_json_count(json, "samples_finished", job->n_finished);
+}
+
 static void report_layers(cli_json *json, const void *cookie) {
   const cli_layer_job *job = cookie;
   const conic_layers_statistics *s = &job->statistics;
   const conic_repairs repairs = {.nan = (size_t)s->n_nan, .zero = (size_t)s->n_zero};
   cli_json_count(json, "points_in", s->n_in);
   cli_json_count(json, "points_out", s->n_samples);
+  report_finished_samples(json, job);
   cli_json_count(json, "clouds", s->n_clouds);
   cli_json_count(json, "levels", (uint64_t)s->n_levels);
   cli_json_count(json, "bytes", s->n_bytes);
@@ -33,6 +39,9 @@ static void report_layers(cli_json *json, const void *cookie) {
 static void tell_layers(const void *cookie) {
   const cli_layer_job *job = cookie;
   const conic_layers_statistics *s = &job->statistics;
+  if (job->n_finished)
+    cli_note(job->base.session, "%llu of %llu samples were in finished branches", (unsigned long long)job->n_finished,
+             (unsigned long long)s->n_samples);
   conic_log(job->base.session->context, CONIC_LOG_INFO,
             "%s: %llu points in; %llu samples in %llu clouds and %d levels out, %.1f MiB; a sample every %.4g, in "
             "steps of %.4g",
@@ -91,10 +100,16 @@ static int make_layers(void *cookie) {
   cli_session *session = job->base.session;
   conic_read_options options;
   conic_status status = plan_layers(job, &options);
+  char key[CONIC_SHA256_ROOM];
+  const conic_layers_keeping keeping = {key, job->resume_path != NULL, job->is_resumable};
+  int keeps = job->is_resumable || job->resume_path;
+  if (status == CONIC_OK && keeps)
+    status = cli_layer_make_key(job, key);
   if (status == CONIC_OK)
     status = conic_layers_builder_open_team(session->context, job->base.output, &job->options, job->share.team,
-                                            &job->builder);
+                                            keeps ? &keeping : NULL, &job->builder);
   if (status == CONIC_OK) {
+    job->n_finished = conic_layers_builder_finished(job->builder);
     status = cli_layer_read_share(job, &options);
     if (status == CONIC_OK)
       status = conic_layers_builder_finish(job->builder, &job->statistics);
@@ -140,12 +155,15 @@ static int check_layer_arguments(cli_layer_job *job) {
   int answer = cli_coloring_check(job->base.session, &job->coloring);
   if (answer != CLI_DONE)
     return answer;
-  return cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc");
+  answer = cli_layer_check_keeping(job);
+  return answer == CLI_DONE ? cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc") : answer;
 }
 
 static int run_layer(cli_session *session, int argc, char **argv) {
   static const cli_build_steps steps = {make_layers, tell_layers, report_layers, release_layers};
   cli_layer_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}},
+                       .n_arguments = argc,
+                       .arguments = argv,
                        .cloud_size = 2048,
                        .memory_mib = 1024.0,
                        .cutoff = 1.5,
@@ -176,6 +194,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
        "which values of the points are kept, for --color-by and --where: intensity,gps_time or all [none]"},
       {"append", CLI_FLAG, &job.is_appending, NULL,
        "add to the OUT.lpc that there is; its samples stay where they are"},
+      CLI_LAYER_KEEPING(job),
       CLI_WHERE(&job.base.where),
       CLI_COLUMNS(&job.base.columns),
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
@@ -208,19 +227,24 @@ static int check_merge_arguments(cli_layer_job *job) {
   if (!job->base.output)
     return cli_usage("merge: no output given (-o OUT.lpc)");
   job->options.memory_bytes = (uint64_t)(job->memory_mib * 1048576.0);
-  return cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc");
+  int answer = cli_layer_check_keeping(job);
+  return answer == CLI_DONE ? cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc") : answer;
 }
 
 static int run_merge(cli_session *session, int argc, char **argv) {
   static const cli_build_steps steps = {make_layers, tell_layers, report_layers, release_layers};
-  cli_layer_job job = {
-      .base = {session, .stages = {{"read"}, {"work"}, {"write"}}}, .memory_mib = 1024.0, .is_merging = 1};
+  cli_layer_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}},
+                       .n_arguments = argc,
+                       .arguments = argv,
+                       .memory_mib = 1024.0,
+                       .is_merging = 1};
   const char *positional[argc];
   conic_layers_options_init(&job.options);
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.lpc", "the file to write"},
       {"memory", CLI_NUMBER, &job.memory_mib, "MIB",
        "what building may take in memory; what does not fit goes to files beside the output [1024]", 16, 1e9},
+      CLI_LAYER_KEEPING(job),
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &job.n_inputs);

@@ -91,7 +91,7 @@ static conic_status read_whole_file(cli_layer_job *job, const conic_read_options
   if (status != CONIC_OK)
     return status;
   cli_build_hint_faces(&job->base, &model);
-  status = conic_model_to_splats(context, &job->estimate, &model, &repairs);
+  status = cli_layer_estimate(job, &model, &repairs);
   if (status == CONIC_OK)
     conic_repairs_log(job->base.session->context, job->base.input, &repairs);
   if (status == CONIC_OK)
@@ -154,6 +154,7 @@ conic_status cli_layer_read_share(cli_layer_job *job, conic_read_options *option
   for (size_t i = 0; i < job->share.n && status == CONIC_OK; i++) {
     const cli_points_piece *piece = &job->share.pieces[i];
     conic_moment start = conic_moment_now();
+    job->i_input = piece->input;
     job->base.input = job->share.inputs[piece->input];
     status =
         piece->input < job->n_continued ? read_continued(job, job->base.input) : read_layer_piece(job, piece, options);

@@ -4,15 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/arguments_key.h"
 #include "cli/render/banded_picture.h"
 #include "cli/render/frames.h"
-#include "cli/render/frames_file.h"
 #include "cli/render/sharing.h"
 #include "cli/session_team.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
+#include "core/files/finished.h"
+#include "core/files/guard.h"
 
 /* Text that grows. */
 typedef struct growing_text {
@@ -22,14 +24,15 @@ typedef struct growing_text {
 
 struct cli_kept_frames {
   conic_context *context;
-  char *path;            /* OUT.frames */
-  FILE *stream;          /* of it, in the first process */
-  cli_frames_file found; /* when it began */
-  growing_text names;    /* of the files of the frame that is drawn, each with a zero behind it */
-  growing_text lines;    /* of the frame that is finished */
-  int n_finished;        /* in the first process: frames that were there */
-  int error;             /* and what became of writing: an errno, or 0 */
-  conic_status status;   /* of noting names */
+  char *path;                  /* OUT.frames */
+  FILE *stream;                /* of it, in the first process */
+  conic_finished found;        /* when it began */
+  conic_finished_part *frames; /* of it, by number; without words: it is not finished */
+  growing_text names;          /* of the files of the frame that is drawn, each with a zero behind it */
+  growing_text lines;          /* of the frame that is finished */
+  int n_finished;              /* in the first process: frames that were there */
+  int error;                   /* and what became of writing: an errno, or 0 */
+  conic_status status;         /* of noting names */
 };
 
 /* --- the options --- */
@@ -93,12 +96,11 @@ static void note_name(void *cookie, const char *path) {
 }
 
 static conic_status add_file_line(cli_kept_frames *kept, const char *name) {
-  char hash[CONIC_SHA256_ROOM], head[CONIC_SHA256_ROOM + 40];
+  char hash[CONIC_SHA256_ROOM], head[CONIC_FINISHED_HEAD_ROOM];
   uint64_t n_bytes;
-  if (cli_file_hash(name, &n_bytes, hash) != CONIC_OK)
+  if (conic_file_hash(name, &n_bytes, hash) != CONIC_OK)
     return conic_fail(kept->context, CONIC_ERROR_IO, "%s: cannot read what was written: %s", name, strerror(errno));
-  int n = snprintf(head, sizeof head, "file %s %llu ", hash, (unsigned long long)n_bytes);
-  conic_status status = add_bytes(kept->context, &kept->lines, head, (size_t)n);
+  conic_status status = add_bytes(kept->context, &kept->lines, head, conic_finished_file_head(hash, n_bytes, head));
   if (status == CONIC_OK)
     status = add_bytes(kept->context, &kept->lines, name, strlen(name));
   return status == CONIC_OK ? add_bytes(kept->context, &kept->lines, "\n", 1) : status;
@@ -119,6 +121,43 @@ static char *name_list(const cli_render_job *job) {
   return path;
 }
 
+/* Of two frames with one number the latter holds. */
+static conic_status find_frames(cli_kept_frames *kept, int n_frames) {
+  conic_finished_part part;
+  uint64_t number;
+  kept->frames = conic_memory_allocate_zeroed(kept->context, (size_t)n_frames, sizeof *kept->frames);
+  if (!kept->frames)
+    return CONIC_ERROR_MEMORY;
+  for (size_t at = 0; conic_finished_next(&kept->found, &at, &part);)
+    if (conic_finished_numbers(&part, "frame", &number, 1) && number < (uint64_t)n_frames)
+      kept->frames[number] = part;
+  return CONIC_OK;
+}
+
+/* Writes the list anew, with the frames that are finished; whole or not at all. */
+static conic_status write_frame_list(const cli_kept_frames *kept, const char *key, int n_frames) {
+  conic_output *output;
+  conic_status status = conic_output_open(kept->context, kept->path, &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *stream = conic_output_stream(output);
+  conic_finished_write_head(stream, "frames", key); /* the stream remembers what fails, and commit says so */
+  for (int i = 0; i < n_frames; i++)
+    if (kept->frames[i].n_words)
+      conic_finished_write_part(stream, &kept->found, &kept->frames[i]);
+  return conic_output_commit(output);
+}
+
+/* Of files that others lead to, how long they are together. */
+static void make_key(const cli_session *session, const cli_render_job *job, char key[CONIC_SHA256_ROOM]) {
+  conic_sha256 sum;
+  conic_sha256_begin(&sum);
+  cli_arguments_key_add(&sum, job->n_arguments, job->arguments, 1);
+  cli_arguments_key_add_number(&sum, conic_guard_bytes(session->context));
+  conic_sha256_add(&sum, &job->options.exposure, sizeof job->options.exposure); /* which may be automatic */
+  conic_sha256_end(&sum, key);
+}
+
 /* In the first process. */
 static conic_status open_list(cli_session *session, cli_render_job *job) {
   cli_kept_frames *kept = job->kept;
@@ -126,11 +165,11 @@ static conic_status open_list(cli_session *session, cli_render_job *job) {
   conic_disk_entry entry;
   conic_status status = CONIC_OK;
   if (own->resume_path && (!own->is_resumable || conic_disk_look(kept->path, &entry)))
-    status = cli_frames_file_read(session->context, kept->path, job->kept_key, job->n_frames, &kept->found);
-  else
-    status = cli_frames_file_parse(session->context, NULL, 0, job->n_frames, &kept->found);
+    status = conic_finished_read(session->context, kept->path, "frames", job->kept_key, &kept->found);
   if (status == CONIC_OK)
-    status = cli_frames_file_write(session->context, kept->path, job->kept_key, &kept->found);
+    status = find_frames(kept, job->n_frames);
+  if (status == CONIC_OK)
+    status = write_frame_list(kept, job->kept_key, job->n_frames);
   if (status != CONIC_OK)
     return status;
   kept->stream = conic_disk_open_stream(kept->path, "ab");
@@ -143,18 +182,17 @@ static conic_status open_list(cli_session *session, cli_render_job *job) {
 static conic_status spread_list(cli_session *session, cli_render_job *job) {
   cli_kept_frames *kept = job->kept;
   uint64_t n_bytes = kept->found.n_bytes;
-  char *text = kept->found.text;
   session->team->broadcast(&n_bytes, sizeof n_bytes);
-  if (!cli_team_is_first(session))
-    text = conic_memory_allocate(session->context, (size_t)n_bytes, 1);
-  int has_room = text || !n_bytes;
+  if (!cli_team_is_first(session)) {
+    kept->found.text = conic_memory_allocate(session->context, (size_t)n_bytes, 1);
+    kept->found.n_bytes = kept->found.text ? (size_t)n_bytes : 0;
+  }
+  int has_room = kept->found.text || !n_bytes;
   conic_status status = cli_sharing_end(session, job, has_room ? CONIC_OK : CONIC_ERROR_MEMORY);
   if (status == CONIC_OK)
-    session->team->broadcast(text, (size_t)n_bytes);
+    session->team->broadcast(kept->found.text, (size_t)n_bytes);
   if (!cli_team_is_first(session) && status == CONIC_OK)
-    status = cli_frames_file_parse(session->context, text, (size_t)n_bytes, job->n_frames, &kept->found);
-  else if (!cli_team_is_first(session))
-    conic_memory_release(session->context, text);
+    status = find_frames(kept, job->n_frames);
   return cli_sharing_end(session, job, status);
 }
 
@@ -164,7 +202,7 @@ conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job) {
   if ((!own->is_resumable && !own->resume_path) || (!is_several && own->n_samples))
     return CONIC_OK;
   if (cli_team_is_first(session))
-    cli_frames_key(session, job, job->kept_key);
+    make_key(session, job, job->kept_key);
   if (job->sharing != CLI_SHARES_NOTHING)
     session->team->broadcast(job->kept_key, sizeof job->kept_key);
   if (!is_several)
@@ -190,7 +228,8 @@ void cli_kept_frames_release(cli_session *session, cli_render_job *job) {
   conic_outputs_watch(session->context, NULL, NULL);
   if (kept->stream)
     fclose(kept->stream);
-  cli_frames_file_release(session->context, &kept->found);
+  conic_finished_release(session->context, &kept->found);
+  conic_memory_release(session->context, kept->frames);
   conic_memory_release(session->context, kept->names.bytes);
   conic_memory_release(session->context, kept->lines.bytes);
   free(kept->path);
@@ -200,26 +239,13 @@ void cli_kept_frames_release(cli_session *session, cli_render_job *job) {
 
 /* --- frames --- */
 
-static int is_as_noted(const cli_finished_file *file) {
-  char path[4096], hash[CONIC_SHA256_ROOM];
-  conic_disk_entry entry;
-  uint64_t n_bytes;
-  if (file->n_name >= sizeof path)
-    return 0;
-  memcpy(path, file->name, file->n_name);
-  path[file->n_name] = '\0';
-  return conic_disk_look(path, &entry) && entry.is_file && entry.n_bytes == file->n_bytes &&
-         cli_file_hash(path, &n_bytes, hash) == CONIC_OK && n_bytes == file->n_bytes &&
-         memcmp(hash, file->hash, CONIC_SHA256_ROOM - 1) == 0;
-}
-
 static int is_frame_there(const cli_kept_frames *kept, int i_frame) {
-  size_t at = kept->found.begins[i_frame];
-  cli_finished_file file;
-  if (at == SIZE_MAX)
+  size_t at = kept->frames[i_frame].files_at;
+  conic_finished_file file;
+  if (!kept->frames[i_frame].n_words)
     return 0;
-  while (cli_frames_file_next(&kept->found, &at, &file))
-    if (!is_as_noted(&file))
+  while (conic_finished_next_file(&kept->found, &at, &file))
+    if (!conic_finished_is_there("", &file))
       return 0;
   return 1;
 }

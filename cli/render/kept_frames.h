@@ -1,11 +1,10 @@
-/* --resumable and --resume of several frames: which are finished stands in OUT.frames (cli/render/frames_file.h),
+/* --resumable and --resume of several frames: which are finished stands in OUT.frames (core/files/finished.h),
  * which the first process of a team writes for all. A frame is finished when its files are there and have the hashes
  * that they were written with. */
 #ifndef CONIC_KEPT_FRAMES_H
 #define CONIC_KEPT_FRAMES_H
 
 #include "cli/scene/render_job.h"
-#include "core/files/sha256.h"
 
 typedef struct cli_kept_frames cli_kept_frames;
 
@@ -33,10 +32,5 @@ void cli_kept_frames_release(cli_session *session, cli_render_job *job);
 
 /* Of one picture: wrong usage where it is drawn at once, so that nothing of it could be kept. */
 conic_status cli_refuse_kept_picture(const cli_render_job *job);
-
-/* What decides the bits of the frames: the program's version, the options, and what the files hold that they name. Of
- * a file of over 64 MiB, 64 pieces, its length and its time; of files that these lead to, how long they are together.
- */
-void cli_frames_key(const cli_session *session, const cli_render_job *job, char key[CONIC_SHA256_ROOM]);
 
 #endif

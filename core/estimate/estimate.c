@@ -301,6 +301,21 @@ static conic_status estimate_plain(conic_context *context, const conic_estimate_
   return status;
 }
 
+conic_status conic_model_take_axes(conic_context *context, conic_model *model, float *const tangent_u[3],
+                                   float *const tangent_v[3], float *dot) {
+  conic_estimate estimate = {.model = model};
+  estimate.states = conic_memory_allocate_zeroed(context, model->points.count, sizeof *estimate.states);
+  if (!estimate.states)
+    return CONIC_ERROR_MEMORY;
+  memcpy(estimate.tangent_u, tangent_u, sizeof estimate.tangent_u);
+  memcpy(estimate.tangent_v, tangent_v, sizeof estimate.tangent_v);
+  drop_clips(&estimate, &model->points);
+  hand_over_axes(&estimate, model);
+  model->points.dot = dot ? dot : model->points.dot;
+  conic_memory_release(context, estimate.states);
+  return CONIC_OK;
+}
+
 static int is_dot(const void *cookie, uint32_t splat) {
   return ((const float *)cookie)[splat] != 0.0f;
 }

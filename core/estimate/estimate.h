@@ -42,6 +42,12 @@ int conic_splats_need_no_repair(conic_context *context, const conic_splats *spla
  * neighbours; else returns 0. Adds how many are nowhere. */
 int conic_splats_repair_alone(conic_splats *splats, size_t *n_nowhere);
 
+/* Gives points without axes those that conic_model_to_splats has made of the same model, without features: three of
+ * each array, which the model takes over, and which of them are dots, where any is; else null. On failure the caller
+ * still has them. Errors: MEMORY. */
+conic_status conic_model_take_axes(conic_context *context, conic_model *model, float *const tangent_u[3],
+                                   float *const tangent_v[3], float *dot);
+
 /* The unit vector along vector i of three arrays; 0 where there is none. */
 int conic_unit_vector(float *const arrays[3], size_t i, double unit[3]);
 

@@ -59,6 +59,7 @@ void conic_disk_give_back(void *bytes, size_t n_bytes);
 int conic_disk_rename(const char *from, const char *to);
 int conic_disk_remove(const char *path);
 int conic_disk_make_folder(const char *path);
+int conic_disk_remove_folder(const char *path); /* which is empty */
 
 /* Where a symbolic link leads, without a zero, and how long that is; 0: it is no link, or it leads too far. */
 size_t conic_disk_read_link(const char *path, char *target, size_t room);

@@ -147,6 +147,10 @@ int conic_disk_make_folder(const char *path) {
   return mkdir(path, 0777) == 0;
 }
 
+int conic_disk_remove_folder(const char *path) {
+  return rmdir(path) == 0;
+}
+
 size_t conic_disk_read_link(const char *path, char *target, size_t room) {
   ssize_t length = readlink(path, target, room);
   return length > 0 && (size_t)length < room ? (size_t)length : 0;

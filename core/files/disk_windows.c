@@ -289,6 +289,16 @@ int conic_disk_remove(const char *path) {
   return 0;
 }
 
+int conic_disk_remove_folder(const char *path) {
+  wchar_t wide[LONGEST_PATH];
+  if (!widen(path, wide))
+    return 0;
+  if (RemoveDirectoryW(wide))
+    return 1;
+  note_error();
+  return 0;
+}
+
 int conic_disk_make_folder(const char *path) {
   wchar_t wide[LONGEST_PATH];
   if (!widen(path, wide))

@@ -19,6 +19,16 @@ static uint32_t turned_right(uint32_t x, int n) {
   return x >> n | x << (32 - n);
 }
 
+/* One of the 64 steps: of eight numbers two change, and where each stands turns with the step's number. */
+static inline void take_step(uint32_t s[8], int i, uint32_t added) {
+  const uint32_t a = s[-i & 7], b = s[(1 - i) & 7], c = s[(2 - i) & 7], e = s[(4 - i) & 7], f = s[(5 - i) & 7],
+                 g = s[(6 - i) & 7];
+  uint32_t *h = &s[(7 - i) & 7];
+  uint32_t t = *h + (turned_right(e, 6) ^ turned_right(e, 11) ^ turned_right(e, 25)) + ((e & f) ^ (~e & g)) + added;
+  s[(3 - i) & 7] += t;
+  *h = t + (turned_right(a, 2) ^ turned_right(a, 13) ^ turned_right(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
+}
+
 static void mix_block(conic_sha256 *sum) {
   uint32_t w[64], s[8];
   for (int i = 0; i < 16; i++)
@@ -29,14 +39,15 @@ static void mix_block(conic_sha256 *sum) {
            (turned_right(b, 17) ^ turned_right(b, 19) ^ b >> 10);
   }
   memcpy(s, sum->state, sizeof s);
-  for (int i = 0; i < 64; i++) {
-    uint32_t t = s[7] + (turned_right(s[4], 6) ^ turned_right(s[4], 11) ^ turned_right(s[4], 25)) +
-                 ((s[4] & s[5]) ^ (~s[4] & s[6])) + round_constants[i] + w[i];
-    uint32_t u = (turned_right(s[0], 2) ^ turned_right(s[0], 13) ^ turned_right(s[0], 22)) +
-                 ((s[0] & s[1]) ^ (s[0] & s[2]) ^ (s[1] & s[2]));
-    memmove(s + 1, s, 7 * sizeof *s);
-    s[4] += t;
-    s[0] = t + u;
+  for (int i = 0; i < 64; i += 8) { /* so that all of s stays in registers */
+    take_step(s, 0, round_constants[i] + w[i]);
+    take_step(s, 1, round_constants[i + 1] + w[i + 1]);
+    take_step(s, 2, round_constants[i + 2] + w[i + 2]);
+    take_step(s, 3, round_constants[i + 3] + w[i + 3]);
+    take_step(s, 4, round_constants[i + 4] + w[i + 4]);
+    take_step(s, 5, round_constants[i + 5] + w[i + 5]);
+    take_step(s, 6, round_constants[i + 6] + w[i + 6]);
+    take_step(s, 7, round_constants[i + 7] + w[i + 7]);
   }
   for (int i = 0; i < 8; i++)
     sum->state[i] += s[i];

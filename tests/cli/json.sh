@@ -251,7 +251,7 @@ if [[ $has_zstd -eq 1 ]]; then
   write cut cut cut knot.lpc --box -9,-9,9,9 -o cut.lpc
   write layer-colored layer layer knot.ply -o colored.lpc --color-by x
   write merge layer merge knot.lpc colored.lpc -o merged.lpc
-  write layer-kept layer layer knot.ply -o kept.lpc --keep x --up z
+  write layer-kept layer layer knot.ply -o kept.lpc --keep x --up z --resumable
   write info-kept info_layers info kept.lpc
   write render-layers render_layers render knot.lpc -o layers.exr --error 4 --size 512x512
   write render-progressive render_layers render knot.lpc -o layers.exr --error 4 --size 64x64 --progressive pictures

@@ -1,8 +1,11 @@
 /* Writes the seeds of every fuzz target: FOLDER/TARGET/NAME. */
 #include "tests/support/seeds.h"
 #include "conic/accumulate.h"
+#include "core/files/finished.h"
 #include "core/image/image_common.h"
+#include "lod/layers/build/layers_team.h"
 #include "tests/fuzz/strips_example.h"
+#include "tests/support/layers_fixture.h"
 #include "tests/support/suite_example.h"
 
 static void write_seed(const char *folder, const seed *from) {
@@ -83,6 +86,69 @@ static void seeds_sums(seed_set *set, conic_context *context) {
   conic_image_release(context, &image);
 }
 
+static int stop_in_crown(void *cookie, const char *task, double fraction) {
+  return *(const int *)cookie && strcmp(task, "build") == 0 && fraction >= 1.0;
+}
+
+/* A kept branch, behind its place, and its file's end. */
+static void add_branch_seed(seed_set *set, const conic_finished *list, const conic_finished_part *part, int i) {
+  unsigned char bytes[1 << 16];
+  uint64_t place[3];
+  conic_finished_file file;
+  char name[16], path[128];
+  size_t at = part->files_at;
+  CHECK(conic_finished_numbers(part, "branch", place, 3) && conic_finished_next_file(list, &at, &file));
+  snprintf(path, sizeof path, "seed.lpc.branches/%.*s", (int)(file.n_name % 64), file.name);
+  memcpy(bytes, place, sizeof place);
+  FILE *stream = fopen(files_path(path), "rb");
+  size_t n = stream ? fread(bytes + sizeof place, 1, sizeof bytes - sizeof place, stream) : 0;
+  if (stream)
+    fclose(stream);
+  snprintf(name, sizeof name, "branch%d", i % 10);
+  seeds_add(set, "branch", name, 1, bytes, n + sizeof place);
+}
+
+/* Branches of a build that ended when all had grown, and then goes on. */
+static void seeds_branches(seed_set *set) {
+  static const char key[] = "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef";
+  conic_layers_keeping keeping = {.key = key};
+  conic_context_options options;
+  conic_context *context;
+  conic_layers_options own;
+  conic_layers_builder *builder;
+  conic_finished list;
+  conic_finished_part part;
+  conic_splats splats;
+  int is_stopped = 1;
+  conic_context_options_init(&options);
+  options.threads = 1;
+  options.log = NULL;
+  options.progress = stop_in_crown;
+  options.progress_cookie = &is_stopped;
+  CHECK_OK(conic_context_create(&options, &context));
+  layers_scene(context, CONIC_SCENE_KNOT, 7000, 0.0, &splats);
+  conic_layers_options_init(&own);
+  own.cloud_size = 64;
+  conic_status status = conic_layers_builder_open_team(context, files_path("seed.lpc"), &own, NULL, &keeping, &builder);
+  if (status == CONIC_OK) { /* else it is built without zstd */
+    CHECK_OK(conic_layers_builder_append(builder, &splats));
+    CHECK(conic_layers_builder_finish(builder, NULL) == CONIC_ERROR_CANCELLED);
+    CHECK_OK(conic_finished_read(context, files_path("seed.lpc.branches/0.list"), "branches", key, &list));
+    size_t at = 0;
+    for (int i = 0; i < 6 && conic_finished_next(&list, &at, &part); i++)
+      add_branch_seed(set, &list, &part, i);
+    conic_finished_release(context, &list);
+    is_stopped = 0;
+    keeping.goes_on = 1;
+    CHECK_OK(conic_layers_builder_open_team(context, files_path("seed.lpc"), &own, NULL, &keeping, &builder));
+    CHECK_OK(conic_layers_builder_append(builder, &splats));
+    CHECK_OK(conic_layers_builder_finish(builder, NULL));
+    CHECK(unlink(files_path("seed.lpc")) == 0);
+  }
+  conic_splats_release(context, &splats);
+  conic_context_destroy(context);
+}
+
 int main(int argc, char **argv) {
   if (argc != 2) {
     fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
@@ -96,6 +162,7 @@ int main(int argc, char **argv) {
   seeds_all_references(set);
   seeds_sums(set, context);
   seeds_strips(set, context);
+  seeds_branches(set);
   seeds_text(set, "motion", "json",
              "[{\"frame\": 1, \"matrix\": [[1,0,0,0.25],[0,1,0,0],[0,0,1,0],[0,0,0,1]]},\n"
              " {\"input\": 2, \"frame\": -1.5, \"file\": \"walk.0001.ply\"}]\n");
@@ -108,6 +175,10 @@ int main(int argc, char **argv) {
              "conic frames 1\nkey 0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef\n"
              "file 82907b05ff270d1cb93fab619df708504259a9aa9214808f6563f59d1076fe3c 5831 a/f.0001.exr\nframe 0\n"
              "file 46e96ae1ec3d53ce1900ceecd503c342834f51d9fdd5dd8315fc8f8934906eed 57 b.exr\nframe 15\nfile 4");
+  seeds_text(set, "frames", "branches",
+             "conic frames 1\nkey 0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef\n"
+             "file 82907b05ff270d1cb93fab619df708504259a9aa9214808f6563f59d1076fe3c 5831 1073741824-30.branch\n"
+             "branch 1073741824 30 500\n");
   seeds_text(set, "filter", "lists", "classification = 2, 9 and not (intensity < 100 or z > 50)");
   seeds_text(set, "filter", "chain", "x >= -1.5e3 and y <= .5 or return_number != 1, 2, 3 and user_data = 7");
   for (int i = 0; i < set->n; i++)

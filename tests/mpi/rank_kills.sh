@@ -8,6 +8,6 @@ if ! command -v python3 > /dev/null || ! "$conic" --version | grep '^In this bui
   echo "skipped: there is no python3, or this build is without OpenEXR"
   exit 77
 fi
-python3 "$1/tests/mpi/rank_kills.py" "$conic_mpi" 2 "${launcher[@]}" > table || fail "$(grep -v '^    ' table)"
+python3 "$1/tests/mpi/rank_kills.py" "$conic_mpi" 3 "${launcher[@]}" > table || fail "$(grep -v '^    ' table)"
 tail -n 1 table
 [[ $failures -eq 0 ]]

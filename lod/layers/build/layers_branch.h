@@ -22,14 +22,16 @@ typedef struct conic_layers_facet {
 
 struct conic_layers_branch {
   conic_layers_branch *children[2]; /* as far down as bounds look */
-  int is_leaf;
-  uint64_t first_key, last_key, n_place;
-  size_t n_drawn, stride;
+  size_t stride;
   conic_layers_waiting *waiting;
   unsigned char *samples;     /* those drawn, until the parent has chosen; null: put away */
   uint64_t *keys;             /* of these; null: put away */
   conic_layers_facet *facets; /* likewise */
   uint64_t samples_at, keys_at, facets_at;
+  /* From here on it is sent and kept as it is (layers_parcel.h). */
+  uint64_t first_key, last_key, n_place;
+  size_t n_drawn;
+  int is_leaf;
   double area;              /* of the surface: of each sample the square of the spacing about it */
   double distance;          /* between the chosen, as conic_thinner_choose has it; 0: a leaf */
   double covering, radius;  /* in steps of the grid, as the next; and the greatest outline with which any is drawn */

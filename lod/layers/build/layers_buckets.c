@@ -252,6 +252,27 @@ conic_status conic_layers_buckets_fill(conic_context *context, const char *path,
   return status;
 }
 
+conic_status conic_layers_buckets_add(conic_layers_buckets *buckets, const conic_layers_kept_branch *const *kept,
+                                      size_t n) {
+  size_t left = buckets->n, at = left + n;
+  conic_status status =
+      conic_memory_reserve(buckets->context, &buckets->buckets, left, at, &buckets->room, sizeof *buckets->buckets);
+  if (status != CONIC_OK)
+    return status;
+  buckets->n = at;
+  while (n > 0) { /* from the end on, so that each goes where nothing is any more */
+    const conic_layers_kept_branch *last = kept[n - 1];
+    if (left > 0 && buckets->buckets[left - 1].key > last->key)
+      buckets->buckets[--at] = buckets->buckets[--left];
+    else {
+      n--;
+      buckets->buckets[--at] = (conic_layers_bucket){
+          .key = last->key, .count = last->n_samples, .n_bits = (uint8_t)last->n_bits, .kept = last};
+    }
+  }
+  return CONIC_OK;
+}
+
 enum { DIGIT_BITS = 11, N_DIGITS = 1 << DIGIT_BITS };
 
 /* Stable, by so many bits of the key from `shift` on. */

@@ -1,6 +1,7 @@
 /* Building a layered point cloud in bounded memory: samples are put aside as they come, sorted roughly by where they
  * are, grown into a tree piece by piece, and written (docs/reference/layers.md). */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "conic/layers.h"
@@ -23,6 +24,7 @@ struct conic_layers_builder {
   conic_layers_options options;
   const conic_team *team; /* null: one process builds all */
   int has_united;
+  conic_layers_kept kept;
   conic_layers_intake intake;
   conic_layers_shares shares;
   conic_layers_arrivals arrivals;
@@ -77,8 +79,17 @@ static size_t bytes_in_chunk(const conic_layers_plan *plan) {
   return 2 * plan->sample_bytes + 2 * sizeof(uint64_t) + (plan->has_bare ? 28 : 0);
 }
 
+/* Of branches that are kept: no more than what takes seconds, nor than the fraction that one may lose; and enough for
+ * all threads. Of smaller ones, more would be kept for each sample. */
+static uint64_t most_in_kept(const conic_layers_builder *builder, uint64_t n_workers) {
+  enum { MOST = 1 << 19, LEAST_BRANCHES = 32, BRANCHES_A_THREAD = 8 };
+  uint64_t n_branches = BRANCHES_A_THREAD * n_workers > LEAST_BRANCHES ? BRANCHES_A_THREAD * n_workers : LEAST_BRANCHES;
+  uint64_t n = builder->plan.n_samples / (n_branches * (builder->team ? (uint64_t)builder->team->count : 1));
+  return n < MOST ? n : MOST;
+}
+
 /* As many workers as there are threads, if there is memory for them; and the larger chunks the more there is. */
-static conic_layers_growth plan_growth(const conic_layers_builder *builder) {
+static conic_layers_growth plan_growth(conic_layers_builder *builder) {
   const conic_layers_plan *plan = &builder->plan;
   uint64_t n_threads = (uint64_t)conic_context_threads(builder->context), least = least_in_chunk(plan);
   uint64_t bytes = eighths_of_memory(builder, 5), worker = conic_layers_worker_bytes(plan),
@@ -86,16 +97,19 @@ static conic_layers_growth plan_growth(const conic_layers_builder *builder) {
   uint64_t n_workers = bytes / (worker + least * sample);
   n_workers = n_workers < n_threads ? n_workers : n_threads;
   n_workers = n_workers ? n_workers : 1;
-  uint64_t left = bytes / n_workers > worker ? bytes / n_workers - worker : 0;
+  uint64_t left = bytes / n_workers > worker ? bytes / n_workers - worker : 0, most = left / sample;
+  if (builder->kept.key && most > most_in_kept(builder, n_workers))
+    most = most_in_kept(builder, n_workers);
   return (conic_layers_growth){.n_workers = (int)n_workers,
-                               .most = left / sample > least ? left / sample : least,
+                               .most = most > least ? most : least,
+                               .kept = &builder->kept,
                                .waiting_bytes = eighths_of_memory(builder, 1),
                                .node_bytes = eighths_of_memory(builder, 1) / 2};
 }
 
 conic_status conic_layers_builder_open(conic_context *context, const char *path, const conic_layers_options *options,
                                        conic_layers_builder **builder) {
-  return conic_layers_builder_open_team(context, path, options, NULL, builder);
+  return conic_layers_builder_open_team(context, path, options, NULL, NULL, builder);
 }
 
 static conic_status open_builder(conic_context *context, const char *path, const conic_layers_options *options,
@@ -131,9 +145,11 @@ static conic_status open_builder(conic_context *context, const char *path, const
 
 conic_status conic_layers_builder_open_team(conic_context *context, const char *path,
                                             const conic_layers_options *options, const conic_team *team,
-                                            conic_layers_builder **builder) {
+                                            const conic_layers_keeping *keeping, conic_layers_builder **builder) {
   *builder = NULL;
   conic_status status = conic_team_agree(team, open_builder(context, path, options, team, builder));
+  if (status == CONIC_OK)
+    status = conic_layers_kept_begin(context, (*builder)->path, team, keeping, &(*builder)->kept);
   if (status == CONIC_OK) {
     (*builder)->team = team;
     return CONIC_OK;
@@ -153,8 +169,22 @@ void conic_layers_builder_abandon(conic_layers_builder *builder) {
   conic_layers_intake_end(&builder->intake);
   conic_layers_buckets_end(&builder->buckets);
   conic_layers_forest_end(&builder->forest);
+  conic_layers_kept_end(&builder->kept);
   conic_memory_release(builder->context, builder->path);
   conic_memory_release(builder->context, builder);
+}
+
+uint64_t conic_layers_builder_finished(const conic_layers_builder *builder) {
+  return builder->kept.n_samples;
+}
+
+conic_status conic_layers_builder_keep(conic_layers_builder *builder, uint64_t input, const conic_layers_piece *pieces,
+                                       size_t n_pieces) {
+  return builder->kept.key ? conic_layers_kept_add_input(&builder->kept, input, pieces, n_pieces) : CONIC_OK;
+}
+
+FILE *conic_layers_builder_open_kept(const conic_layers_builder *builder, uint64_t input, uint64_t n_bytes) {
+  return conic_layers_kept_open_input(&builder->kept, input, n_bytes);
 }
 
 conic_status conic_layers_builder_append(conic_layers_builder *builder, const conic_splats *batch) {
@@ -293,9 +323,9 @@ static conic_status feed_samples(conic_layers_builder *builder, conic_layers_pla
                                  conic_layers_feed *feed) {
   const conic_layers_plan *plan = &builder->plan;
   conic_moment start = conic_moment_now();
-  conic_layers_placing_init(&builder->intake, plan, builder->header.origin, "sort", placing);
+  conic_layers_placing_init(&builder->intake, plan, builder->header.origin, &builder->kept, "sort", placing);
   conic_status status = conic_layers_shares_find(builder->team, placing, plan, least_in_chunk(plan), &builder->shares);
-  *feed = (conic_layers_feed){conic_layers_place_all, placing, builder->intake.n_samples};
+  *feed = (conic_layers_feed){conic_layers_place_all, placing, builder->intake.n_samples - builder->kept.n_samples};
   if (status != CONIC_OK || !builder->team)
     return status;
   start = conic_team_note(builder->team, "share", start, builder->intake.n_own);
@@ -307,15 +337,59 @@ static conic_status feed_samples(conic_layers_builder *builder, conic_layers_pla
   return status;
 }
 
+static int compare_own_cuts(const void *a, const void *b) {
+  uint64_t first = *(const uint64_t *)a, second = *(const uint64_t *)b;
+  return (first > second) - (first < second);
+}
+
+/* Where buckets have to end, and what of that is kept: `own` and `keys` are to be released, on failure too. */
+static conic_status find_own(const conic_layers_builder *builder, const conic_layers_kept_branch ***own, size_t *n_own,
+                             uint64_t **keys, size_t *n_keys) {
+  const conic_layers_kept *kept = &builder->kept;
+  const conic_layers_shares *shares = &builder->shares;
+  *own = conic_memory_allocate(builder->context, kept->n, sizeof **own);
+  *keys = conic_memory_allocate(builder->context, 2 * kept->n + shares->n_own, sizeof **keys);
+  *n_own = *n_keys = 0;
+  if (!*own || !*keys)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < shares->n_own; i++)
+    (*keys)[(*n_keys)++] = shares->own_keys[i];
+  for (size_t i = 0; i < kept->n; i++) {
+    const conic_layers_kept_branch *branch = &kept->branches[i];
+    if (builder->team && conic_layers_shares_owner(shares, branch->key) != builder->team->index)
+      continue;
+    (*own)[(*n_own)++] = branch;
+    (*keys)[(*n_keys)++] = branch->key;
+    (*keys)[(*n_keys)++] = branch->key + (UINT64_C(1) << branch->n_bits);
+  }
+  qsort(*keys, *n_keys, sizeof **keys, compare_own_cuts);
+  return CONIC_OK;
+}
+
+static conic_status fill_buckets(conic_layers_builder *builder, const conic_layers_growth *growth,
+                                 const conic_layers_feed *feed) {
+  const conic_layers_kept_branch **own;
+  uint64_t *keys;
+  size_t n_own, n_keys;
+  conic_status status = find_own(builder, &own, &n_own, &keys, &n_keys);
+  const conic_layers_cuts cuts = {keys, n_keys};
+  if (status == CONIC_OK)
+    status = conic_layers_buckets_fill(builder->context, builder->path, feed, &builder->plan, &cuts,
+                                       eighths_of_memory(builder, 3) / 2, growth->most, &builder->buckets);
+  if (status == CONIC_OK)
+    status = conic_layers_buckets_add(&builder->buckets, own, n_own);
+  conic_memory_release(builder->context, own);
+  conic_memory_release(builder->context, keys);
+  return status;
+}
+
 static conic_status sort_samples(conic_layers_builder *builder, const conic_layers_growth *growth) {
   conic_layers_placing placing;
   conic_layers_feed feed;
   conic_status status = feed_samples(builder, &placing, &feed);
-  const conic_layers_cuts cuts = {builder->shares.own_keys, builder->shares.n_own};
   conic_moment start = conic_moment_now();
   if (status == CONIC_OK)
-    status = conic_layers_buckets_fill(builder->context, builder->path, &feed, &builder->plan, &cuts,
-                                       eighths_of_memory(builder, 3) / 2, growth->most, &builder->buckets);
+    status = fill_buckets(builder, growth, &feed);
   conic_team_note(builder->team, "sort", start, feed.n_samples);
   conic_layers_intake_end(&builder->intake);
   conic_layers_arrivals_end(&builder->arrivals);
@@ -365,8 +439,14 @@ conic_status conic_layers_builder_finish(conic_layers_builder *builder, conic_la
   double begun = conic_seconds_now();
   conic_status status = build_layers(builder);
   double built = conic_seconds_now();
-  if (status == CONIC_OK)
+  int is_built = status == CONIC_OK;
+  if (is_built)
     status = conic_layers_write(builder->context, builder->path, builder->team, &builder->forest, &builder->header);
+  if (builder->kept.key && is_built) {
+    status = conic_team_agree(builder->team, status);
+    if (status == CONIC_OK)
+      conic_layers_kept_remove(&builder->kept);
+  }
   if (status == CONIC_OK && statistics) {
     fill_statistics(builder, begun, built);
     *statistics = builder->statistics;

@@ -8,6 +8,7 @@
 #include "core/base/message.h"
 #include "core/base/threads.h"
 #include "lod/layers/build/layers_crown.h"
+#include "lod/layers/build/layers_record.h"
 #include "lod/layers/build/layers_waiting.h"
 #include "lod/layers/format/layers_axes.h"
 
@@ -47,6 +48,8 @@ typedef struct hand {
   conic_layers_shelf shelf;
   unsigned char *samples, *scratch; /* of a chunk */
   stack waiting;
+  uint64_t *outlines; /* counted before the part that grows; null: nothing is kept */
+  uint64_t part_bytes[CONIC_LAYERS_MOST_ATTRIBUTES];
 } hand;
 
 typedef struct growing {
@@ -104,10 +107,18 @@ static uint64_t samples_in_buckets(const growing *g, size_t first, size_t end) {
   return n_samples;
 }
 
+/* Whether some buckets in a row are to be parted: there are too many samples, or what has grown before. */
+static int is_too_much(const growing *g, size_t first, size_t end, uint64_t most) {
+  int has_kept = 0;
+  for (size_t i = first; i < end && !has_kept; i++)
+    has_kept = g->buckets->buckets[i].kept != NULL;
+  return end - first > 1 && (has_kept || samples_in_buckets(g, first, end) > most);
+}
+
 /* The largest places of the tree that hold no more samples than a chunk may; a leaf is never parted. */
 static conic_status list_chunks(growing *g, size_t first, size_t end) {
   uint64_t n_samples = samples_in_buckets(g, first, end);
-  if (n_samples <= g->growth->most || end - first == 1)
+  if (!is_too_much(g, first, end, g->growth->most))
     return add_chunk(g, first, end, n_samples);
   size_t middle = split_buckets(g->buckets->buckets, first, end);
   conic_status status = list_chunks(g, first, middle);
@@ -120,7 +131,7 @@ static conic_status list_chunks(growing *g, size_t first, size_t end) {
 
 static conic_status list_parts(growing *g, size_t first, size_t end) {
   uint64_t n_samples = samples_in_buckets(g, first, end);
-  if (n_samples > g->most_in_part && end - first > 1) {
+  if (is_too_much(g, first, end, g->most_in_part)) {
     size_t middle = split_buckets(g->buckets->buckets, first, end);
     conic_status status = list_parts(g, first, middle);
     if (status == CONIC_OK)
@@ -160,9 +171,56 @@ static conic_status push_branch(growing *g, const hand *with, stack *s, conic_la
   return status;
 }
 
+/* What has grown before. */
+static conic_status read_kept(growing *g, const conic_layers_kept_branch *kept, hand *h, conic_layers_branch **branch) {
+  unsigned char *bytes;
+  size_t n_bytes;
+  conic_status status = conic_layers_kept_read(g->growth->kept, kept, &bytes, &n_bytes);
+  if (status == CONIC_OK) {
+    status = conic_layers_record_unpack(h->worker, bytes, n_bytes, kept, &h->shelf, branch);
+    if (status == CONIC_ERROR_INPUT)
+      conic_fail(g->plan->context, status, "%s: cannot go on: it has another content than it had a while ago",
+                 g->growth->kept->folder);
+  }
+  conic_memory_release(g->plan->context, bytes);
+  return status;
+}
+
+/* Whether the part has all samples of a place: of those that coincide it may have a half. */
+static int is_whole_place(const growing *g, const layers_part *p) {
+  const conic_layers_bucket *buckets = g->buckets->buckets;
+  size_t first = g->chunks[p->first].first, end = g->chunks[p->end - 1].end;
+  return (first == 0 || buckets[first - 1].key != buckets[first].key) &&
+         (end == g->buckets->n || buckets[end - 1].key != buckets[end].key);
+}
+
+/* Of what has grown. */
+static conic_status keep_grown_part(growing *g, const layers_part *p, hand *h) {
+  uint64_t differing = p->branch->first_key ^ p->branch->last_key;
+  unsigned n_bits = differing ? 64u - (unsigned)__builtin_clzll(differing) : 0u;
+  const conic_layers_kept_branch place = {p->branch->first_key >> n_bits << n_bits, p->branch->n_place, n_bits};
+  conic_layers_grown grown = {.branch = p->branch, .nodes = p->nodes, .n_nodes = p->n_nodes, .outlines = h->outlines};
+  unsigned char *bytes;
+  size_t n_bytes;
+  for (size_t i = 0; i < CONIC_LAYERS_OUTLINES; i++)
+    h->outlines[i] = conic_layers_worker_outlines(h->worker)[i] - h->outlines[i];
+  for (int k = 0; k < CONIC_LAYERS_MOST_ATTRIBUTES; k++)
+    grown.part_bytes[k] = h->shelf.part_bytes[k] - h->part_bytes[k];
+  conic_status status = conic_layers_record_pack(g->plan, &grown, &g->forest->clouds, &bytes, &n_bytes);
+  if (status == CONIC_OK)
+    status = conic_layers_kept_add(g->growth->kept, &place, bytes, n_bytes);
+  conic_memory_release(g->plan->context, bytes);
+  return status;
+}
+
 static conic_status grow_chunk(growing *g, const chunk *c, hand *h) {
   conic_layers_branch *branch;
   unsigned char *sorted;
+  const conic_layers_kept_branch *kept = g->buckets->buckets[c->first].kept;
+  if (kept) {
+    conic_status read = read_kept(g, kept, h, &branch);
+    return read == CONIC_OK ? push_branch(g, h, &h->waiting, branch, c->n_joins, 0, &h->shelf) : read;
+  }
   conic_status status = conic_layers_buckets_load(g->buckets, c->first, c->end, h->samples, h->scratch, &sorted);
   if (status == CONIC_OK)
     status = conic_layers_grow(h->worker, sorted, (size_t)c->n_samples, &h->shelf, &branch);
@@ -171,6 +229,11 @@ static conic_status grow_chunk(growing *g, const chunk *c, hand *h) {
 
 static conic_status grow_part(growing *g, layers_part *p, hand *h) {
   conic_status status = CONIC_OK;
+  int is_kept = h->outlines && !g->buckets->buckets[g->chunks[p->first].first].kept && is_whole_place(g, p);
+  if (is_kept) {
+    memcpy(h->outlines, conic_layers_worker_outlines(h->worker), CONIC_LAYERS_OUTLINES * sizeof *h->outlines);
+    memcpy(h->part_bytes, h->shelf.part_bytes, sizeof h->part_bytes);
+  }
   for (size_t i = p->first; i < p->end && status == CONIC_OK; i++)
     status = grow_chunk(g, &g->chunks[i], h);
   if (status == CONIC_OK)
@@ -185,7 +248,7 @@ static conic_status grow_part(growing *g, layers_part *p, hand *h) {
   if (p->n_nodes > 0)
     memcpy(p->nodes, h->shelf.nodes, p->n_nodes * sizeof *p->nodes);
   h->shelf.n_nodes = h->shelf.n_put = 0;
-  return CONIC_OK;
+  return is_kept ? keep_grown_part(g, p, h) : CONIC_OK;
 }
 
 /* Of the parts that grow now, one after the other. The calling thread tells of the progress before each of its own. */
@@ -287,7 +350,8 @@ static conic_status create_hands(growing *g) {
   conic_status status = CONIC_OK;
   uint64_t most = 0;
   for (size_t i = 0; i < g->n_chunks; i++)
-    most = g->chunks[i].n_samples > most ? g->chunks[i].n_samples : most;
+    if (!g->buckets->buckets[g->chunks[i].first].kept)
+      most = g->chunks[i].n_samples > most ? g->chunks[i].n_samples : most;
   g->hands = conic_memory_allocate_zeroed(context, (size_t)g->growth->n_workers, sizeof *g->hands);
   if (!g->hands)
     return CONIC_ERROR_MEMORY;
@@ -297,7 +361,9 @@ static conic_status create_hands(growing *g) {
     status = conic_layers_worker_create(g->plan, &g->waiting, &h->worker);
     h->samples = conic_memory_allocate(context, (size_t)most, g->plan->sample_bytes);
     h->scratch = conic_memory_allocate(context, (size_t)most, g->plan->sample_bytes);
-    if (!h->samples || !h->scratch)
+    if (g->growth->kept->key)
+      h->outlines = conic_memory_allocate(context, CONIC_LAYERS_OUTLINES, sizeof *h->outlines);
+    if (!h->samples || !h->scratch || (g->growth->kept->key && !h->outlines))
       status = CONIC_ERROR_MEMORY;
   }
   return status;
@@ -322,6 +388,7 @@ static void release_growing(growing *g) {
     conic_layers_shelf_release(&h->shelf);
     conic_memory_release(context, h->samples);
     conic_memory_release(context, h->scratch);
+    conic_memory_release(context, h->outlines);
   }
   release_stack(context, &g->crown);
   conic_memory_release(context, g->hands);
@@ -339,7 +406,8 @@ static conic_status list_all_parts(growing *g) {
   g->n_samples = samples_in_buckets(g, 0, buckets->n);
   uint64_t even = g->n_samples / (PARTS_A_THREAD * (uint64_t)g->growth->n_workers);
   g->most_in_part = even < MOST_IN_PART ? even : MOST_IN_PART;
-  g->most_in_part = g->most_in_part > g->growth->most ? g->most_in_part : g->growth->most;
+  if (g->growth->kept->key || g->most_in_part < g->growth->most)
+    g->most_in_part = g->growth->most;
   g->limb_ends = conic_memory_allocate(g->plan->context, shares->n_own, sizeof *g->limb_ends);
   if (!g->limb_ends)
     return CONIC_ERROR_MEMORY;
@@ -367,7 +435,7 @@ conic_status conic_layers_forest_grow(const conic_layers_plan *plan, const conic
   conic_spool_begin(plan->context, buckets->spool.path, growth->node_bytes, &forest->nodes);
   status = conic_pile_begin(plan->context, buckets->spool.path, &forest->clouds);
   if (status == CONIC_OK)
-    status = conic_layers_waiting_begin(plan->context, buckets->spool.path, growth->waiting_bytes, &g->waiting);
+    status = conic_layers_waiting_begin(plan, buckets->spool.path, growth->waiting_bytes, &g->waiting);
   if (status == CONIC_OK)
     status = list_all_parts(g);
   if (status == CONIC_OK)

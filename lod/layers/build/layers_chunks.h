@@ -21,6 +21,7 @@ typedef struct conic_layers_growth {
   uint64_t most;        /* samples of a chunk, where a leaf has no more */
   size_t waiting_bytes; /* of branches that wait, beyond which they go to a file */
   size_t node_bytes;    /* likewise nodes */
+  conic_layers_kept *kept;
 } conic_layers_growth;
 
 /* Where the number of the process stands in an offset. */

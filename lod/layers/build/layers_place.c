@@ -8,13 +8,14 @@
 #include "lod/layers/format/layers_key.h"
 
 void conic_layers_placing_init(const conic_layers_intake *intake, const conic_layers_plan *plan, const double origin[3],
-                               const char *task, conic_layers_placing *placing) {
+                               const conic_layers_kept *kept, const char *task, conic_layers_placing *placing) {
   *placing = (conic_layers_placing){.intake = intake,
                                     .origin = {origin[0], origin[1], origin[2]},
                                     .quantum = plan->quantum,
                                     .last = (double)((UINT64_C(1) << plan->bits) - 1),
                                     .sample_bytes = plan->sample_bytes,
-                                    .task = task};
+                                    .task = task,
+                                    .kept = kept};
 }
 
 /* Of a distance from the low corner, in steps: which one it lies in. */
@@ -57,7 +58,8 @@ static conic_status place_written_block(const conic_layers_placing *grid, const 
                                     .color = {raw->color[0], raw->color[1], raw->color[2]}};
     memcpy(sample + 1, raw + 1, intake->extra_bytes);
     place_sample(grid, block, raw, sample);
-    status = take(to, sample);
+    if (grid->kept->n == 0 || !conic_layers_kept_find(grid->kept, sample->key))
+      status = take(to, sample);
   }
   return status;
 }

@@ -3,6 +3,7 @@
 #define CONIC_LAYERS_PLACE_H
 
 #include "lod/layers/build/layers_intake.h"
+#include "lod/layers/build/layers_kept.h"
 #include "lod/layers/build/layers_tree.h"
 
 /* Takes a sample, which is followed by its own bytes and valid during the call only. */
@@ -20,11 +21,12 @@ typedef struct conic_layers_placing {
   const conic_layers_intake *intake;
   double origin[3], quantum, last; /* the greatest step of an axis */
   size_t sample_bytes;
-  const char *task; /* that progress is of */
+  const char *task;              /* that progress is of */
+  const conic_layers_kept *kept; /* samples in its branches are left out */
 } conic_layers_placing;
 
 void conic_layers_placing_init(const conic_layers_intake *intake, const conic_layers_plan *plan, const double origin[3],
-                               const char *task, conic_layers_placing *placing);
+                               const conic_layers_kept *kept, const char *task, conic_layers_placing *placing);
 
 /* About the key of a place in world units. */
 uint64_t conic_layers_key_about(const conic_layers_placing *placing, const double position[3]);

@@ -10,6 +10,9 @@
  * the more branches are joined one after the other. */
 enum { PARTS_A_RANK = 16, CELLS_A_PART = 4 };
 
+/* Reading a kept branch takes so much less time than growing it, about. */
+enum { SAMPLES_AS_ONE_KEPT = 64 };
+
 /* Cells in a row whose samples go to one process. */
 typedef struct shared_part {
   uint64_t key;
@@ -97,6 +100,12 @@ static conic_status count_sample(void *to, const conic_layers_sample *sample) {
   return CONIC_OK;
 }
 
+/* A kept branch has only to be read. It counts in one cell, so that it is not parted, however many its place has. */
+static void count_kept_branches(sharing *s, const conic_layers_kept *kept) {
+  for (size_t i = 0; i < kept->n && s->shares->team->index == 0; i++)
+    s->counts[cell_of_key(s->shares, kept->branches[i].key)] += 1 + kept->branches[i].n_samples / SAMPLES_AS_ONE_KEPT;
+}
+
 /* Of every cell, how many samples all have of it. Cells that hold none are left out. */
 static conic_status count_share_cells(sharing *s, const conic_layers_placing *placing) {
   conic_layers_shares *shares = s->shares;
@@ -105,8 +114,10 @@ static conic_status count_share_cells(sharing *s, const conic_layers_placing *pl
   uint64_t *all = conic_memory_allocate(shares->context, n, (size_t)team->count * sizeof *all);
   s->counts = conic_memory_allocate_zeroed(shares->context, n, sizeof *s->counts);
   conic_status status = all && s->counts ? CONIC_OK : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK)
+  if (status == CONIC_OK) {
+    count_kept_branches(s, placing->kept);
     status = conic_layers_place_all(placing, count_sample, s);
+  }
   status = conic_team_agree(team, status);
   if (status == CONIC_OK)
     conic_team_collect(team, s->counts, n * sizeof *s->counts, all);

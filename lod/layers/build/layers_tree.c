@@ -65,6 +65,10 @@ void conic_layers_worker_destroy(conic_layers_worker *worker) {
   conic_memory_release(context, worker);
 }
 
+conic_layers_waiting *conic_layers_worker_waiting(const conic_layers_worker *worker) {
+  return worker->waiting;
+}
+
 const uint64_t *conic_layers_worker_outlines(const conic_layers_worker *worker) {
   return worker->outlines;
 }

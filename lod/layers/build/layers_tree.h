@@ -56,6 +56,8 @@ conic_status conic_layers_worker_create(const conic_layers_plan *plan, struct co
                                         conic_layers_worker **worker);
 void conic_layers_worker_destroy(conic_layers_worker *worker);
 
+struct conic_layers_waiting *conic_layers_worker_waiting(const conic_layers_worker *worker);
+
 /* How many samples have which outline at full resolution, by conic_layers_code_size: CONIC_LAYERS_OUTLINES counts. */
 enum { CONIC_LAYERS_OUTLINES = 1 << 15 };
 const uint64_t *conic_layers_worker_outlines(const conic_layers_worker *worker);

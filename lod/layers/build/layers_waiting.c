@@ -4,12 +4,15 @@
 
 #include "core/base/memory.h"
 
-conic_status conic_layers_waiting_begin(conic_context *context, const char *path, size_t memory_bytes,
+conic_status conic_layers_waiting_begin(const conic_layers_plan *plan, const char *path, size_t memory_bytes,
                                         conic_layers_waiting *waiting) {
-  waiting->context = context;
+  waiting->context = plan->context;
+  waiting->sample_bytes = plan->sample_bytes;
+  waiting->most_drawn = conic_layers_most_in_leaf(plan);
+  waiting->key_bits = 3 * plan->bits;
   atomic_init(&waiting->n_held, 0);
   waiting->most_held = memory_bytes;
-  return conic_pile_begin(context, path, &waiting->pile);
+  return conic_pile_begin(plan->context, path, &waiting->pile);
 }
 
 void conic_layers_waiting_end(conic_layers_waiting *waiting) {

@@ -8,13 +8,15 @@
 
 struct conic_layers_waiting {
   conic_context *context;
+  size_t sample_bytes, most_drawn; /* of a branch's samples */
+  unsigned key_bits;
   conic_pile pile;
   atomic_size_t n_held; /* bytes in memory */
   size_t most_held;
 };
 
 /* `path`: beside which the file lies; it must outlive this. Errors: MEMORY, IO. */
-conic_status conic_layers_waiting_begin(conic_context *context, const char *path, size_t memory_bytes,
+conic_status conic_layers_waiting_begin(const conic_layers_plan *plan, const char *path, size_t memory_bytes,
                                         conic_layers_waiting *waiting);
 void conic_layers_waiting_end(conic_layers_waiting *waiting); /* zero is allowed */
 

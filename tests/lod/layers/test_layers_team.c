@@ -59,7 +59,7 @@ static void build_part(const conic_team *team, void *cookie) {
     exit(1);
   conic_layers_options own = c->options;
   own.cloud_size = c->refused > 0 && c->refused == team->index ? 1 : own.cloud_size;
-  conic_status status = conic_layers_builder_open_team(context, c->path, &own, team, &builder);
+  conic_status status = conic_layers_builder_open_team(context, c->path, &own, team, NULL, &builder);
   size_t first = start_of(c, team->index, team->count), end = start_of(c, team->index + 1, team->count), n;
   for (; first < end && status == CONIC_OK; first += n) {
     n = end - first < 700 ? end - first : 700;

@@ -1,0 +1,139 @@
+#include <string.h>
+
+#include "cli/arguments_key.h"
+#include "cli/layer/layer_job.h"
+#include "core/base/memory.h"
+#include "core/estimate/estimate.h"
+#include "lod/layers/build/layers_team.h"
+
+int cli_layer_check_keeping(const cli_layer_job *job) {
+  const char *command = job->base.session->command;
+  if (!job->is_resumable && !job->resume_path)
+    return CLI_DONE;
+  if (job->resume_path && strcmp(job->resume_path, job->base.output) != 0)
+    return cli_usage("%s: --resume goes on with a file where it is; give -o %s, too", command, job->resume_path);
+  for (int i = 0; i < job->n_inputs; i++)
+    if (strcmp(job->inputs[i], "-") == 0)
+      return cli_usage("%s: standard input cannot be gone on with; give files", command);
+  return CLI_DONE;
+}
+
+/* What an input holds; of a hierarchy its first file. */
+static void hash_input(const char *path, char hash[CONIC_SHA256_ROOM]) {
+  static const char *const first_files[] = {"ept.json", "metadata.json"};
+  conic_sha256 sum;
+  char name[4096];
+  conic_sha256_begin(&sum);
+  cli_arguments_key_add_file(&sum, path);
+  for (int i = 0; i < 2; i++)
+    if (snprintf(name, sizeof name, "%s/%s", path, first_files[i]) < (int)sizeof name)
+      cli_arguments_key_add_file(&sum, name);
+  conic_sha256_end(&sum, hash);
+}
+
+/* The inputs are shared out, since there may be many. */
+static conic_status hash_inputs(const cli_layer_job *job, char (*hashes)[CONIC_SHA256_ROOM],
+                                char (*all)[CONIC_SHA256_ROOM]) {
+  const cli_points_share *share = &job->share;
+  size_t n = (size_t)share->n_inputs, index = share->team ? (size_t)share->team->index : 0,
+         count = share->team ? (size_t)share->team->count : 1;
+  conic_status status = CONIC_OK;
+  for (size_t i = index; i < n && status == CONIC_OK; i += count) {
+    hash_input(share->inputs[i], hashes[i]);
+    status = conic_progress(job->base.session->context, "look", (double)i / (double)n);
+  }
+  status = conic_team_agree(share->team, status);
+  if (status != CONIC_OK || !share->team)
+    return status;
+  conic_team_collect(share->team, hashes, n * sizeof *hashes, all);
+  for (size_t i = 0; i < n; i++)
+    memcpy(hashes[i], all[i % count * n + i], sizeof *hashes);
+  return CONIC_OK;
+}
+
+conic_status cli_layer_make_key(const cli_layer_job *job, char key[CONIC_SHA256_ROOM]) {
+  conic_context *context = job->base.session->context;
+  size_t n = (size_t)job->share.n_inputs, count = job->share.team ? (size_t)job->share.team->count : 1;
+  conic_sha256 sum;
+  char(*hashes)[CONIC_SHA256_ROOM] = conic_memory_allocate_zeroed(context, n, sizeof *hashes);
+  char(*all)[CONIC_SHA256_ROOM] = conic_memory_allocate(context, n * count, sizeof *all);
+  conic_status status = conic_team_agree(job->share.team, hashes && all ? CONIC_OK : CONIC_ERROR_MEMORY);
+  if (status == CONIC_OK)
+    status = hash_inputs(job, hashes, all);
+  if (status == CONIC_OK) {
+    conic_sha256_begin(&sum);
+    cli_arguments_key_add(&sum, job->n_arguments, job->arguments, 0);
+    for (size_t i = 0; i < n; i++) {
+      cli_arguments_key_add_text(&sum, job->share.inputs[i]);
+      cli_arguments_key_add_text(&sum, hashes[i]);
+    }
+    conic_sha256_end(&sum, key);
+  }
+  conic_memory_release(context, hashes);
+  conic_memory_release(context, all);
+  return status;
+}
+
+/* --- axes --- */
+
+enum { AXES = 6 }; /* columns, and one that says which points are dots, if any are */
+
+/* From a stream that has n + 1 columns, the last of which is the dots'; fewer of another length have another n. */
+static conic_status read_axes(conic_context *context, FILE *stream, size_t count, int n, float *columns[AXES + 1]) {
+  for (int i = 0; i < n; i++) {
+    columns[i] = conic_memory_allocate(context, count, sizeof(float));
+    if (!columns[i])
+      return CONIC_ERROR_MEMORY;
+    if (fread(columns[i], sizeof(float), count, stream) != count)
+      return CONIC_ERROR_IO;
+  }
+  return CONIC_OK;
+}
+
+/* Whether they were there. */
+static conic_status take_axes_kept(cli_layer_job *job, conic_model *model, int *are_there) {
+  conic_context *context = job->base.session->context;
+  size_t count = model->points.count;
+  float *columns[AXES + 1] = {NULL};
+  conic_status status = CONIC_OK;
+  *are_there = 0;
+  for (int n = AXES; n <= AXES + 1 && !*are_there && status == CONIC_OK; n++) {
+    FILE *stream = conic_layers_builder_open_kept(job->builder, (uint64_t)job->i_input,
+                                                  (uint64_t)count * (uint64_t)n * sizeof(float));
+    if (!stream)
+      continue;
+    status = read_axes(context, stream, count, n, columns);
+    fclose(stream);
+    *are_there = status == CONIC_OK;
+  }
+  if (*are_there)
+    status = conic_model_take_axes(context, model, columns, columns + 3, columns[AXES]);
+  for (int i = 0; i <= AXES && (status != CONIC_OK || !*are_there); i++)
+    conic_memory_release(context, columns[i]);
+  if (status == CONIC_ERROR_IO) /* somebody takes them away: they are made again */
+    status = CONIC_OK;
+  return status;
+}
+
+static conic_status keep_axes(cli_layer_job *job, const conic_splats *points) {
+  conic_layers_piece pieces[AXES + 1];
+  int n = points->dot ? AXES + 1 : AXES;
+  for (int axis = 0; axis < 3; axis++) {
+    pieces[axis].bytes = points->tangent_u[axis];
+    pieces[axis + 3].bytes = points->tangent_v[axis];
+  }
+  pieces[AXES].bytes = points->dot;
+  for (int i = 0; i < n; i++)
+    pieces[i].n_bytes = points->count * sizeof(float);
+  return conic_layers_builder_keep(job->builder, (uint64_t)job->i_input, pieces, (size_t)n);
+}
+
+conic_status cli_layer_estimate(cli_layer_job *job, conic_model *model, conic_repairs *repairs) {
+  int are_there = 0, is_raw = !model->points.tangent_u[0] && !model->points.dot;
+  conic_status status = is_raw ? take_axes_kept(job, model, &are_there) : CONIC_OK;
+  *repairs = (conic_repairs){0};
+  if (status != CONIC_OK || are_there)
+    return status;
+  status = conic_model_to_splats(job->base.session->context, &job->estimate, model, repairs);
+  return status == CONIC_OK && is_raw ? keep_axes(job, &model->points) : status;
+}
