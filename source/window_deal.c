@@ -9,13 +9,13 @@
  * to finish a pixel's sample. */
 enum { OF_SPLAT = 32, OF_SAMPLE = 1, OF_PIXEL = 4 };
 
-/* The windows' edges cut the picture into cells, each within one window. */
+/* The windows' edges cut the picture into cells, each within one window or none. */
 typedef struct cell_grid {
   size_t n[2];       /* columns, rows */
   int length[2];     /* of the picture, in samples */
   uint16_t *cell[2]; /* of each column and row of samples: that of cells */
   int *first[2];     /* of each column and row of cells: where it begins; and the end */
-  uint32_t *window;  /* of each cell */
+  uint32_t *window;  /* of each cell; how many windows there are: it is in none */
 } cell_grid;
 
 /* Cells that a splat may cover, from begin to before end. */
@@ -44,8 +44,10 @@ static conic_status cut_into_cells(conic_context *context, const conic_dealing *
   grid->first[axis] = conic_memory_allocate(context, (size_t)length + 1, sizeof *grid->first[axis]);
   if (!grid->cell[axis] || !grid->first[axis])
     return CONIC_ERROR_MEMORY;
+  grid->cell[axis][0] = 1;
   for (size_t i = 0; i < d->n; i++)
-    grid->cell[axis][d->samples * window_begin(&d->list[i], axis)] = 1;
+    grid->cell[axis][d->samples * window_begin(&d->list[i], axis)] =
+        grid->cell[axis][d->samples * window_end(&d->list[i], axis)] = 1;
   size_t n = 0;
   for (int at = 0; at < length; at++) {
     if (grid->cell[axis][at])
@@ -68,9 +70,11 @@ static void cells_between(const cell_grid *grid, int axis, int low, int high, ce
 }
 
 static conic_status name_cells(conic_context *context, const conic_dealing *d, cell_grid *grid) {
-  grid->window = conic_memory_allocate_zeroed(context, grid->n[0] * grid->n[1], sizeof *grid->window);
+  grid->window = conic_memory_allocate(context, grid->n[0] * grid->n[1], sizeof *grid->window);
   if (!grid->window)
     return CONIC_ERROR_MEMORY;
+  for (size_t k = 0; k < grid->n[0] * grid->n[1]; k++)
+    grid->window[k] = (uint32_t)d->n;
   for (size_t i = 0; i < d->n; i++) {
     cells_range range;
     for (int axis = 0; axis < 2; axis++)
@@ -172,7 +176,7 @@ static void weigh_windows(const conic_dealing *d, const uint64_t *weights, weigh
 conic_status conic_windows_deal(conic_context *context, const conic_dealing *d, int *owners) {
   const conic_splats_shares all = {.team = d->team};
   cell_grid grid;
-  uint64_t *weights = conic_memory_allocate_zeroed(context, d->n, sizeof *weights);
+  uint64_t *weights = conic_memory_allocate_zeroed(context, d->n + 1, sizeof *weights); /* the last of no window */
   uint64_t *loads = conic_memory_allocate_zeroed(context, (size_t)d->team->count, sizeof *loads);
   weighed_window *windows = conic_memory_allocate(context, d->n, sizeof *windows);
   conic_status status = begin_grid(context, d, &grid);
@@ -210,8 +214,9 @@ static void list_splats_once(const splat_lister *l) {
       continue;
     for (size_t y = range.begin[1]; y < range.end[1]; y++)
       for (size_t x = range.begin[0]; x < range.end[0]; x++) {
-        int owner = l->owners[l->grid->window[y * l->grid->n[0] + x]];
-        if (l->last[owner] == i + 1)
+        uint32_t window = l->grid->window[y * l->grid->n[0] + x];
+        int owner = window < l->dealing->n ? l->owners[window] : -1;
+        if (owner < 0 || l->last[owner] == i + 1)
           continue;
         l->last[owner] = i + 1;
         if (l->list)

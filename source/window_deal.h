@@ -10,7 +10,7 @@ typedef struct conic_dealing {
   const conic_team *team;
   const conic_box *boxes; /* of this process's splats, in samples: what they may cover */
   size_t n_splats;
-  const conic_window *list; /* the windows, which cover the picture, in pixels; all processes have the same */
+  const conic_window *list; /* the windows that are drawn, in pixels; all processes have the same */
   size_t n;
   int samples;     /* N × N a pixel */
   int margin;      /* boxes may be short by so many samples */
