@@ -53,7 +53,8 @@ static void add_picture(conic_splats *samples, const conic_camera *camera, const
   }
 }
 
-static conic_status draw_around(conic_source *source, conic_renderer *renderer, conic_image *image,
+/* From some of the sides. */
+static conic_status draw_around(conic_source *source, conic_renderer *renderer, conic_image *image, int begin, int end,
                                 conic_splats *samples) {
   conic_render_options render;
   conic_source_view view;
@@ -66,7 +67,7 @@ static conic_status draw_around(conic_source *source, conic_renderer *renderer, 
   render.cull_back = 1; /* so that normals are the surface's own, and what is open is seen to be */
   render.shading = CONIC_SHADE_NONE;
   view.error_px = sample_error_px;
-  for (int i = 0; i < N_VIEWS && status == CONIC_OK; i++) {
+  for (int i = begin; i < end && status == CONIC_OK; i++) {
     conic_camera camera;
     framing.azimuth_deg = directions[i][0];
     framing.elevation_deg = directions[i][1];
@@ -79,7 +80,7 @@ static conic_status draw_around(conic_source *source, conic_renderer *renderer, 
   return status;
 }
 
-conic_status conic_source_take_samples(conic_source *source, conic_splats *samples) {
+static conic_status take_samples(conic_source *source, int begin, int end, conic_splats *samples) {
   conic_context *context = source->context;
   conic_renderer *renderer = NULL;
   conic_image image;
@@ -95,10 +96,49 @@ conic_status conic_source_take_samples(conic_source *source, conic_splats *sampl
     status = conic_image_allocate(context, SIDE, SIDE,
                                   1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ID, &image);
   if (status == CONIC_OK)
-    status = draw_around(source, renderer, &image, samples);
+    status = draw_around(source, renderer, &image, begin, end, samples);
   conic_image_release(context, &image);
   conic_renderer_destroy(renderer);
   if (status != CONIC_OK)
     conic_splats_release(context, samples);
   return status;
+}
+
+conic_status conic_source_take_samples(conic_source *source, conic_splats *samples) {
+  return take_samples(source, 0, N_VIEWS, samples);
+}
+
+/* Puts those of all processes, which are in the order of the sides, in the place of this one's. */
+static void collect_samples(const conic_team *team, conic_splats *samples) {
+  size_t sizes[CONIC_MOST_IN_TEAM], n_bytes = 0;
+  for (int k = 0; k < 9; k++) {
+    float *const *arrays = k < 3 ? samples->position : k < 6 ? samples->tangent_u : samples->tangent_v;
+    void *all = team->collect(team->data, arrays[k % 3], samples->count * sizeof(float), sizes);
+    n_bytes = 0;
+    for (int i = 0; i < team->count; i++)
+      n_bytes += sizes[i];
+    memcpy(arrays[k % 3], all, n_bytes);
+    team->release(team->data, all);
+  }
+  samples->count = n_bytes / sizeof(float);
+}
+
+conic_status conic_source_share_samples(conic_source *source, const conic_team *team, conic_status status) {
+  if (!team)
+    return status;
+  int is_wanted = status == CONIC_OK && source->kind->draw && source->outline.count == 0,
+      begin = N_VIEWS * team->index / team->count, end = N_VIEWS * (team->index + 1) / team->count;
+  conic_splats samples;
+  conic_status own = is_wanted ? take_samples(source, begin, end, &samples) : status;
+  status = conic_team_agree(team, own);
+  if (!is_wanted || own != CONIC_OK)
+    return status;
+  if (status != CONIC_OK) {
+    conic_splats_release(source->context, &samples);
+    return status;
+  }
+  collect_samples(team, &samples);
+  conic_splats_release(source->context, &source->outline);
+  source->outline = samples;
+  return CONIC_OK;
 }

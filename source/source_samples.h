@@ -2,9 +2,15 @@
 #ifndef CONIC_SOURCE_SAMPLES_H
 #define CONIC_SOURCE_SAMPLES_H
 
+#include "core/base/team.h"
 #include "source/source_kind.h"
 
 /* Discs about what is seen of it from six sides. On success the caller releases them. Errors: as conic_source_draw. */
 conic_status conic_source_take_samples(conic_source *source, conic_splats *samples);
+
+/* Collective, once each process of a team has opened the source, or failed to with `status`: takes the samples that
+ * conic_source_stand and conic_source_fit will look at, each process those of some sides. Nothing where the source
+ * hands all over, or the team is null. Errors: as those of conic_source_take_samples, CANCELLED. */
+conic_status conic_source_share_samples(conic_source *source, const conic_team *team, conic_status status);
 
 #endif

@@ -13,6 +13,7 @@
 #include "cli/session_team.h"
 #include "core/files/file.h"
 #include "source/shared_source.h"
+#include "source/source_samples.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
   return job->view.error_px > 0.0 || job->budget > 0;
@@ -73,6 +74,11 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job) {
   return status;
 }
 
+/* Whether what a source looks like all around decides the camera. */
+static int is_seen_around(const cli_render_job *job) {
+  return !job->is_plain && job->deadline <= 0.0 && (!job->camera_path || job->is_turntable);
+}
+
 /* Finds out which way is up, and says so where that was a guess. */
 static conic_status stand_upright(cli_session *session, cli_render_job *job) {
   static const char *const reasons[] = {[CONIC_UP_KIND] = NULL,
@@ -80,7 +86,7 @@ static conic_status stand_upright(cli_session *session, cli_render_job *job) {
                                         [CONIC_UP_OPEN] = "as its surface is open below",
                                         [CONIC_UP_BASE] = "as it stands on a flat base",
                                         [CONIC_UP_FACING] = "so that the drawing is seen from its front"};
-  if (job->is_plain || job->is_up_given || job->deadline > 0.0 || (job->camera_path && !job->is_turntable))
+  if (job->is_up_given || !is_seen_around(job))
     return CONIC_OK;
   conic_status status = conic_source_stand(job->source);
   const char *reason = reasons[conic_source_measure(job->source)->up_basis];
@@ -110,6 +116,10 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   if (status == CONIC_OK)
     conic_source_settle(job->source, &job->options);
   double start = cli_seconds();
+  conic_team team;
+  if (is_seen_around(job) && job->sharing != CLI_SHARES_NOTHING && !session->host)
+    status =
+        cli_sharing_tell(session, conic_source_share_samples(job->source, cli_team_of_library(session, &team), status));
   if (status == CONIC_OK)
     status = stand_upright(session, job);
   job->camera_ms += 1e3 * (cli_seconds() - start);

@@ -35,6 +35,12 @@ run_as_typed 0 "${cloud[@]}" --budget 5000 --cull back --samples 2 --occlusion o
 ranks 2 0 "${cloud[@]}" --budget 5000 --cull back --samples 2 --occlusion on -o together.exr --json together.json
 same "a budget on two ranks" alone.json together.json alone.exr together.exr
 
+# What is seen all around, from which the camera follows, each rank draws from other sides.
+seen=(render gyroid.lpc --size 200x130 --error 1 --threads 1)
+run_as_typed 0 "${seen[@]}" -o alone.exr --json alone.json
+ranks 4 0 "${seen[@]}" -o together.exr --json together.json
+same "a camera that four ranks find" alone.json together.json alone.exr together.exr
+
 # Strip by strip, where half of the memory would not hold the planes: alone, and over ranks that come out of turn
 large=(render gyroid.lpc --plain --size 300x300 --error 2 --occlusion off --threads 1)
 run_as_typed 0 "${large[@]}" -o whole.exr --json whole.json
