@@ -3,14 +3,18 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "mpi/ranks.h"
 
 /* What rank 0 takes to answer who wants a unit. */
 static const double answer_s = 1e-6;
 
-/* A rank's next message to rank 0, and when it leaves. */
+/* A rank that has done a unit. */
 typedef struct rank_turn {
-  double at;
-  uint64_t unit; /* that is done, and whose result is handed over; all ones: none, a first one is wanted */
+  double at;       /* when */
+  double taken_s;  /* and when rank 0 will have taken the result of the one before */
+  int is_first;    /* it is rank 0, */
+  double joined_s; /* which has been held up by so much of what its thread has worked */
+  uint64_t unit;   /* all ones: none, a first one is wanted */
 } rank_turn;
 
 static const uint64_t no_unit = UINT64_MAX;
@@ -33,38 +37,73 @@ typedef struct rank_run {
   rank_turn *turns;
   size_t n_ranks;
   uint64_t n_units, next;
-  double first_free;       /* when rank 0's thread is */
-  double waited_s, done_s; /* of all ranks: for rank 0; and when they are done */
+  double all_bytes;                  /* of the trace's units */
+  double answers_free, results_free; /* when rank 0 can answer the next one, and take the next result */
+  double joined_s;                   /* what rank 0's thread has worked */
+  double waited_s, done_s;           /* of all ranks: for rank 0; and when they are done */
   double last_s;
 } rank_run;
 
-/* Rank 0 takes a result, which then joins the others, and answers. Returns when the answer is there. */
-static double serve_turn(rank_run *run, const rank_turn *turn) {
-  double arrived = turn->at + run->line->latency_s, begun = arrived > run->first_free ? arrived : run->first_free;
-  double received = begun;
-  run->first_free = begun;
-  if (turn->unit != no_unit) {
-    const cli_rank_unit *unit = &run->trace->units[turn->unit % run->trace->n_units];
-    received += unit->bytes / run->line->bytes_per_s;
-    run->first_free = received + run->trace->join_s / (double)run->trace->n_units;
-  }
-  run->first_free += answer_s;
-  double answered = run->first_free + run->line->latency_s;
+static double later(double a, double b) {
+  return a > b ? a : b;
+}
+
+/* Rank 0 takes the result, which then joins the others, after those that came before. Returns how long that takes. */
+static double take_result(rank_run *run, rank_turn *turn) {
+  const cli_rank_trace *trace = run->trace;
+  double bytes = trace->units[turn->unit % trace->n_units].bytes;
+  double part = run->all_bytes > 0.0 ? bytes / run->all_bytes : 1.0 / (double)trace->n_units;
+  double lasts = trace->join_s * part + (turn->is_first ? 0.0 : bytes / run->line->bytes_per_s);
+  turn->taken_s = later(turn->at + run->line->latency_s, run->results_free) + lasts;
+  run->results_free = turn->taken_s;
+  run->joined_s += lasts;
+  return lasts;
+}
+
+/* Rank 0 answers who wants a unit once it is done with the message at hand: before it takes other results. Returns when
+ * the answer is there. */
+static double serve_turn(rank_run *run, rank_turn *turn) {
+  double arrived = turn->at + run->line->latency_s, at_hand = run->results_free - arrived;
+  double lasts = turn->unit == no_unit ? 0.0 : take_result(run, turn);
+  if (at_hand > 0.0)
+    arrived += at_hand < lasts ? at_hand : lasts;
+  run->answers_free = later(arrived, run->answers_free) + answer_s;
+  double answered = run->answers_free + run->line->latency_s;
   run->waited_s += answered - turn->at;
   return answered;
+}
+
+/* A rank whose result before waits to be taken goes no further, and rank 0 has been held up by what its thread worked
+ * meanwhile. Returns for how long; 0: it is done. */
+static double hold_up(rank_run *run, rank_turn *turn) {
+  double begun = turn->at, joined_s = run->joined_s - turn->joined_s;
+  turn->joined_s = run->joined_s;
+  turn->at = turn->is_first ? begun + joined_s : later(begun, turn->taken_s);
+  run->waited_s += turn->at - begun;
+  return turn->at - begun;
+}
+
+/* As conic-mpi does: so rank 0 is not the last to end. */
+static int leaves_rest(const rank_run *run, const rank_turn *turn) {
+  double left = (double)(run->n_units - run->next);
+  return turn->is_first && left * turn->at < RANKS_REST * run->joined_s * (double)run->n_ranks;
 }
 
 static void run_units(rank_run *run) {
   size_t n = run->n_ranks;
   while (n > 0) {
     rank_turn *first = &run->turns[0];
+    if (hold_up(run, first) > 0.0) {
+      sink_turn(run->turns, n);
+      continue;
+    }
     double answered = serve_turn(run, first);
-    if (run->next < run->n_units) {
+    if (run->next < run->n_units && (run->n_ranks == 1 || !leaves_rest(run, first))) {
       first->unit = run->next++;
       first->at = answered + run->trace->units[first->unit % run->trace->n_units].seconds;
     } else {
       run->done_s += answered;
-      run->last_s = answered > run->last_s ? answered : run->last_s;
+      run->last_s = later(run->last_s, later(answered, first->taken_s));
       *first = run->turns[--n];
     }
     sink_turn(run->turns, n);
@@ -93,7 +132,9 @@ conic_status cli_rank_schedule(conic_context *context, const cli_rank_trace *tra
   if (!run.turns)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < run.n_ranks; i++)
-    run.turns[i] = (rank_turn){0.0, no_unit};
+    run.turns[i] = (rank_turn){.unit = no_unit, .is_first = i == 0};
+  for (size_t i = 0; i < trace->n_units; i++)
+    run.all_bytes += trace->units[i].bytes;
   run_units(&run);
   conic_memory_release(context, run.turns);
   for (size_t i = 0; i < trace->n_units; i++)

@@ -110,7 +110,8 @@ typedef struct cli_rank_estimate {
 enum { CLI_MOST_RANKS = 65536 };
 
 /* The job on 1 to CLI_MOST_RANKS ranks, with its units so many `times`. Units are taken in order, each by the first
- * rank that is free. Rank 0 gives them out and takes results one at a time, beside its own units. Errors: MEMORY. */
+ * rank that is free. Rank 0 gives them out and takes results one at a time, beside its own units; and a rank goes on
+ * while its last result waits to be taken. Errors: MEMORY. */
 conic_status cli_rank_schedule(conic_context *context, const cli_rank_trace *trace, const cli_rank_line *line,
                                int n_ranks, uint64_t times, cli_rank_estimate *estimate);
 

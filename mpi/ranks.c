@@ -3,12 +3,14 @@
 #include <mpi.h>
 #include <pthread.h>
 #include <sched.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
 #include "core/base/clock.h"
+#include "mpi/hands.h"
 
 /* Counts of MPI are ints: what is longer goes in pieces. */
 enum { PIECE_BYTES = 1 << 28 };
@@ -24,14 +26,17 @@ static pthread_t service;
 static struct {
   pthread_mutex_t lock;
   uint64_t next, end, allowed;
+  double begun_s, busy_s; /* since when, and how long the thread has taken what was handed over */
   ranks_take *take;
   void *cookie;
   int *waiting; /* ranks that want a unit that is not allowed yet */
   int n_waiting;
+  atomic_int is_wanted; /* rank 0 itself wants the lock, which the thread would else take again at once */
 } work = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
 static pthread_mutex_t traffic_lock = PTHREAD_MUTEX_INITIALIZER;
 static ranks_traffic traffic;
+static _Thread_local int is_beside; /* the thread, whose waiting holds nothing up */
 
 static void fail(const char *what) {
   fprintf(stderr, "conic: error: rank %d: %s\n", own_index, what);
@@ -49,7 +54,7 @@ static void count_traffic(uint64_t sent_bytes, uint64_t received_bytes, double w
   pthread_mutex_lock(&traffic_lock);
   traffic.sent_bytes += sent_bytes;
   traffic.received_bytes += received_bytes;
-  traffic.waited_seconds += waited_seconds;
+  traffic.waited_seconds += is_beside ? 0.0 : waited_seconds;
   pthread_mutex_unlock(&traffic_lock);
 }
 
@@ -155,10 +160,12 @@ static void give_units(void) {
 }
 
 static void take_hand(int from, uint64_t n_bytes) {
+  double start = conic_seconds_now();
   void *bytes = receive_pieces(from, (size_t)n_bytes, TAG_HAND_PIECE, service_line);
   if (work.take)
     work.take(work.cookie, from, bytes, (size_t)n_bytes);
   free(bytes);
+  work.busy_s += conic_seconds_now() - start;
 }
 
 /* Under the lock. Whether the thread goes on. */
@@ -174,6 +181,16 @@ static int heed(MPI_Message *message, const MPI_Status *status) {
   return status->MPI_TAG != TAG_END;
 }
 
+/* Whoever wants a unit does nothing until it has one; what is handed over can wait. No piece is found: those come only
+ * after their size was matched, to who waits for them. */
+static int find_message(MPI_Message *message, MPI_Status *status) {
+  int is_found = 0;
+  MPI_Improbe(MPI_ANY_SOURCE, TAG_NEXT, service_line, &is_found, message, status);
+  if (!is_found)
+    MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, service_line, &is_found, message, status);
+  return is_found;
+}
+
 /* A message is matched under the lock: who holds the lock knows that what was sent has been dealt with. */
 static void *serve(void *unused) {
   int is_going_on = 1, n_dozes = 0;
@@ -182,12 +199,13 @@ static void *serve(void *unused) {
     MPI_Message message;
     MPI_Status status;
     pthread_mutex_lock(&work.lock);
-    int is_found = 0; /* no piece: those come only after their size was matched, to who waits for them */
-    MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, service_line, &is_found, &message, &status);
+    int is_found = find_message(&message, &status);
     if (is_found)
       is_going_on = heed(&message, &status);
     give_units();
     pthread_mutex_unlock(&work.lock);
+    while (atomic_load(&work.is_wanted))
+      sched_yield();
     if (is_found)
       n_dozes = 0;
     else
@@ -222,6 +240,7 @@ void ranks_begin(int *argc, char ***argv) {
 }
 
 void ranks_end(void) {
+  hands_end();
   if (n_ranks > 1) {
     ranks_barrier();
     if (own_index == 0) {
@@ -263,6 +282,12 @@ void ranks_library(char *text, size_t room) {
 
 /* --- units --- */
 
+static void lock_of_first(void) {
+  atomic_store(&work.is_wanted, 1);
+  pthread_mutex_lock(&work.lock);
+  atomic_store(&work.is_wanted, 0);
+}
+
 void ranks_share(uint64_t n, ranks_take *take, void *cookie) {
   if (n_ranks > 1)
     ranks_barrier();
@@ -271,6 +296,8 @@ void ranks_share(uint64_t n, ranks_take *take, void *cookie) {
     work.next = 0;
     work.end = n;
     work.allowed = UINT64_MAX;
+    work.begun_s = conic_seconds_now();
+    work.busy_s = 0.0;
     work.take = take;
     work.cookie = cookie;
     pthread_mutex_unlock(&work.lock);
@@ -279,12 +306,18 @@ void ranks_share(uint64_t n, ranks_take *take, void *cookie) {
     ranks_barrier();
 }
 
+/* Under the lock. */
+static int leaves_rest(void) {
+  double left = work.end > work.next ? (double)(work.end - work.next) : 0.0;
+  return left * (conic_seconds_now() - work.begun_s) < RANKS_REST * work.busy_s * n_ranks;
+}
+
 static uint64_t next_of_first(void) {
   uint64_t unit = RANKS_NO_UNIT;
   int n_dozes = 0, is_known;
   do {
-    pthread_mutex_lock(&work.lock);
-    is_known = take_unit(&unit);
+    lock_of_first();
+    is_known = leaves_rest() || take_unit(&unit);
     pthread_mutex_unlock(&work.lock);
     if (!is_known)
       doze(&n_dozes);
@@ -315,15 +348,30 @@ void ranks_allow(uint64_t end) {
   work.allowed = end; /* by `take`, which is called under the lock, or before any unit is taken */
 }
 
+static void send_hand(const void *bytes, size_t n_bytes) {
+  is_beside = 1;
+  send_blob(0, bytes, n_bytes, TAG_HAND, TAG_HAND_PIECE, service_line);
+}
+
+/* All that this rank has handed over is rank 0's, or on its way to the one thread that takes it. */
+static void finish_hands(void) {
+  double start = conic_seconds_now();
+  hands_wait();
+  count_traffic(0, 0, conic_seconds_now() - start);
+}
+
 void ranks_hand(const void *bytes, size_t n_bytes) {
   if (own_index > 0) {
-    send_blob(0, bytes, n_bytes, TAG_HAND, TAG_HAND_PIECE, service_line);
+    double start = conic_seconds_now();
+    if (!hands_put(bytes, n_bytes, send_hand))
+      fail("out of memory");
+    count_traffic(0, 0, conic_seconds_now() - start);
     return;
   }
   void *copy = take_memory(n_bytes);
   if (n_bytes)
     memcpy(copy, bytes, n_bytes);
-  pthread_mutex_lock(&work.lock);
+  lock_of_first();
   if (work.take)
     work.take(work.cookie, 0, copy, n_bytes);
   pthread_mutex_unlock(&work.lock);
@@ -359,6 +407,7 @@ int ranks_agree(int code, char *message, size_t room) {
   } own = {code, own_index}, worst = own;
   if (n_ranks == 1)
     return code;
+  finish_hands();
   MPI_Request request;
   MPI_Iallreduce(&own, &worst, 1, MPI_2INT, MPI_MAXLOC, main_line, &request);
   wait_for(&request);

@@ -27,14 +27,20 @@ void ranks_library(char *text, size_t room);
 typedef void ranks_take(void *cookie, int from, void *bytes, size_t n_bytes);
 
 /* Collective: ranks_next gives the units from 0 to before `n` from now on, each to one rank, and ranks_hand hands to
- * `take` of rank 0, which may be null. The last ranks_agree must have come after all units and hands before. */
+ * `take` of rank 0, which may be null. The last ranks_agree must have come after all units and hands before.
+ *
+ * While its thread takes what others hand over, rank 0 gets on more slowly, and should not be the last to end. So it
+ * leaves the rest to them once there are fewer units for each than RANKS_REST times the part of its time that went so.
+ */
+enum { RANKS_REST = 8 };
 void ranks_share(uint64_t n, ranks_take *take, void *cookie);
 uint64_t ranks_next(void);
 /* Nobody is given any more. */
 void ranks_stop(void);
 /* On rank 0: units from `end` on are not given yet, and who wants one waits. */
 void ranks_allow(uint64_t end);
-/* Hands bytes to rank 0; they may change when it returns. Any number of them: they go in pieces. */
+/* Hands bytes to rank 0; they may change when it returns. Any number of them: they go in pieces, and up to HANDS_ROOM
+ * (mpi/hands.h) while the rank goes on. */
 void ranks_hand(const void *bytes, size_t n_bytes);
 
 /* Collective: the greatest code of all ranks, and in `message` the text of the first rank that has it. What was handed
