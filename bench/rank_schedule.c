@@ -83,10 +83,10 @@ static double hold_up(rank_run *run, rank_turn *turn) {
   return turn->at - begun;
 }
 
-/* As conic-mpi does: so rank 0 is not the last to end. */
 static int leaves_rest(const rank_run *run, const rank_turn *turn) {
-  double left = (double)(run->n_units - run->next);
-  return turn->is_first && left * turn->at < RANKS_REST * run->joined_s * (double)run->n_ranks;
+  int hands_over = run->all_bytes > 0.0 || run->trace->join_s > 0.0;
+  return turn->is_first && hands_over &&
+         ranks_leave_rest((double)(run->n_units - run->next), (int)run->n_ranks, run->joined_s, turn->at);
 }
 
 static void run_units(rank_run *run) {
@@ -98,7 +98,7 @@ static void run_units(rank_run *run) {
       continue;
     }
     double answered = serve_turn(run, first);
-    if (run->next < run->n_units && (run->n_ranks == 1 || !leaves_rest(run, first))) {
+    if (run->next < run->n_units && !leaves_rest(run, first)) {
       first->unit = run->next++;
       first->at = answered + run->trace->units[first->unit % run->trace->n_units].seconds;
     } else {

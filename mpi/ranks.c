@@ -309,7 +309,7 @@ void ranks_share(uint64_t n, ranks_take *take, void *cookie) {
 /* Under the lock. */
 static int leaves_rest(void) {
   double left = work.end > work.next ? (double)(work.end - work.next) : 0.0;
-  return left * (conic_seconds_now() - work.begun_s) < RANKS_REST * work.busy_s * n_ranks;
+  return work.take && ranks_leave_rest(left, n_ranks, work.busy_s, conic_seconds_now() - work.begun_s);
 }
 
 static uint64_t next_of_first(void) {

@@ -20,6 +20,14 @@ int ranks_on_machine(void);
 /* "Open MPI v4.1.4 …", one line. */
 void ranks_library(char *text, size_t room);
 
+/* While its thread takes what others hand over, rank 0 gets on more slowly, and should not be the last to end. So it
+ * leaves the rest to them once there are fewer units for each than eight times the part of its time that went so. That
+ * part is not known before the first results come, so it is taken to be n_ranks / 64 at least. */
+static inline int ranks_leave_rest(double n_left, int n_ranks, double busy_s, double of_s) {
+  double part = of_s > 0.0 ? busy_s / of_s : 0.0, least = n_ranks / 64.0;
+  return n_left < 8.0 * n_ranks * (part > least ? part : least);
+}
+
 /* Past the last unit. */
 #define RANKS_NO_UNIT UINT64_MAX
 
@@ -27,12 +35,7 @@ void ranks_library(char *text, size_t room);
 typedef void ranks_take(void *cookie, int from, void *bytes, size_t n_bytes);
 
 /* Collective: ranks_next gives the units from 0 to before `n` from now on, each to one rank, and ranks_hand hands to
- * `take` of rank 0, which may be null. The last ranks_agree must have come after all units and hands before.
- *
- * While its thread takes what others hand over, rank 0 gets on more slowly, and should not be the last to end. So it
- * leaves the rest to them once there are fewer units for each than RANKS_REST times the part of its time that went so.
- */
-enum { RANKS_REST = 8 };
+ * `take` of rank 0, which may be null. The last ranks_agree must have come after all units and hands before. */
 void ranks_share(uint64_t n, ranks_take *take, void *cookie);
 uint64_t ranks_next(void);
 /* Nobody is given any more. */

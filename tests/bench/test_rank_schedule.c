@@ -199,7 +199,7 @@ static void test_rank_schedule(conic_context *context) {
   check_near(estimate(context, &heavy, 3, 1).seconds, 96.0 / 2.6, 1.5);         /* and the last ten to others */
   check_near(estimate(context, &heavy, 12, 8).seconds, 1.0 + 768.0 * 0.2, 0.8); /* it leaves all to the others, */
   CHECK(estimate(context, &heavy, 12, 8).lost_s[CLI_RANK_FIRST] > 80.0);        /* which wait for it */
-  check_near(estimate(context, &heavy, 96, 1).seconds, 1.0 + 95.0 * 0.2, 1e-2);
+  check_near(estimate(context, &heavy, 96, 1).seconds, 1.0 + 96.0 * 0.2, 1e-2); /* rank 0 has none of its own */
   CHECK(estimate(context, &heavy, 96, 1).lost_s[CLI_RANK_UNEVEN] > 17.0);
   for (size_t i = 0; i < 96; i++)
     heavy.units[i] = i < 80 ? (cli_rank_unit){1.0, 5e7} : (cli_rank_unit){0.05, 1e6};
