@@ -69,12 +69,12 @@ static float part_of_places(const parting *p, const float turn[2], float enough)
   return farthest;
 }
 
-/* Places that come near to the most have others looked at between them, of the same polygon turned: between two
- * corners there may be a tenth more. */
+/* Where others between them could come to more than enough, these are looked at, too, of the same polygon turned: they
+ * lie within a fifth of the radius of its corners, so that nothing else decides whether one counts. */
 static float part_of_more_places(const parting *p, float enough) {
   static const float turns[4][2] = {
       {1.0f, 0.0f}, {0.99518473f, 0.09801714f}, {0.98078528f, 0.19509032f}, {0.95694034f, 0.29028468f}};
-  float nearly = 0.9f * enough, farthest = part_of_places(p, turns[0], nearly);
+  float nearly = enough - 0.2f * p->disc->radius, farthest = part_of_places(p, turns[0], nearly);
   for (int i = 1; i < 4 && farthest > nearly; i++) {
     float part = part_of_places(p, turns[i], enough);
     farthest = part > farthest ? part : farthest;
@@ -88,6 +88,7 @@ static float part_of_disc(parting *p, float enough, uint32_t *last) {
   float least = part_from_one(p, *last, 1);
   if (least <= enough)
     return least;
+  least = HUGE_VALF; /* which is of this disc, whatever came before */
   for (int is_wide = 0; is_wide < 2; is_wide++) {
     p->n_beside = conic_thinner_beside(p->standing->thinner, p->disc->center, is_wide, p->beside, MOST_BESIDE);
     for (size_t i = 0; i < p->n_beside; i++) {
@@ -99,7 +100,9 @@ static float part_of_disc(parting *p, float enough, uint32_t *last) {
       least = part < least ? part : least;
     }
   }
-  float measured = p->n_beside ? part_of_more_places(p, enough) : least;
+  if (p->n_beside == 0)
+    return part_from_one(p, 0, 1);
+  float measured = part_of_more_places(p, enough);
   return measured < least ? measured : least;
 }
 
