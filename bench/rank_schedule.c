@@ -83,7 +83,7 @@ static double hold_up(rank_run *run, rank_turn *turn) {
   return turn->at - begun;
 }
 
-static int leaves_rest(const rank_run *run, const rank_turn *turn) {
+static int is_left_to_others(const rank_run *run, const rank_turn *turn) {
   int hands_over = run->all_bytes > 0.0 || run->trace->join_s > 0.0;
   return turn->is_first && hands_over &&
          ranks_leave_rest((double)(run->n_units - run->next), (int)run->n_ranks, run->joined_s, turn->at);
@@ -98,7 +98,7 @@ static void run_units(rank_run *run) {
       continue;
     }
     double answered = serve_turn(run, first);
-    if (run->next < run->n_units && !leaves_rest(run, first)) {
+    if (run->next < run->n_units && !is_left_to_others(run, first)) {
       first->unit = run->next++;
       first->at = answered + run->trace->units[first->unit % run->trace->n_units].seconds;
     } else {

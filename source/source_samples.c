@@ -80,7 +80,7 @@ static conic_status draw_around(conic_source *source, conic_renderer *renderer, 
   return status;
 }
 
-static conic_status take_samples(conic_source *source, int begin, int end, conic_splats *samples) {
+static conic_status sample_sides(conic_source *source, int begin, int end, conic_splats *samples) {
   conic_context *context = source->context;
   conic_renderer *renderer = NULL;
   conic_image image;
@@ -105,7 +105,7 @@ static conic_status take_samples(conic_source *source, int begin, int end, conic
 }
 
 conic_status conic_source_take_samples(conic_source *source, conic_splats *samples) {
-  return take_samples(source, 0, N_VIEWS, samples);
+  return sample_sides(source, 0, N_VIEWS, samples);
 }
 
 /* Puts those of all processes, which are in the order of the sides, in the place of this one's. */
@@ -129,7 +129,7 @@ conic_status conic_source_share_samples(conic_source *source, const conic_team *
   int is_wanted = status == CONIC_OK && source->kind->draw && source->outline.count == 0,
       begin = N_VIEWS * team->index / team->count, end = N_VIEWS * (team->index + 1) / team->count;
   conic_splats samples;
-  conic_status own = is_wanted ? take_samples(source, begin, end, &samples) : status;
+  conic_status own = is_wanted ? sample_sides(source, begin, end, &samples) : status;
   status = conic_team_agree(team, own);
   if (!is_wanted || own != CONIC_OK)
     return status;

@@ -116,7 +116,7 @@ static conic_status take_axes_kept(cli_layer_job *job, conic_model *model, int *
 }
 
 static conic_status keep_axes(cli_layer_job *job, const conic_splats *points) {
-  conic_layers_piece pieces[AXES + 1];
+  conic_layers_kept_bytes pieces[AXES + 1];
   int n = points->dot ? AXES + 1 : AXES;
   for (int axis = 0; axis < 3; axis++) {
     pieces[axis].bytes = points->tangent_u[axis];

@@ -50,7 +50,7 @@ static size_t check_strips(int height, int band_rows, int most_rows, int n_proce
   return n - n_kept;
 }
 
-static void check_sizes(void) {
+static void check_all_sizes(void) {
   static const cli_strip kept[] = {{0, 64, 1}, {64, 128, 1}, {304, 336, 1}, {2992, 3000, 1}}, all[] = {{0, 3000, 1}};
   for (int n_processes = 1; n_processes <= 64; n_processes *= 4) {
     CHECK(check_strips(3000, 3000, 3000, n_processes, NULL, 0) >= (size_t)n_processes);
@@ -77,7 +77,7 @@ static void check_end(void) {
 }
 
 int main(void) {
-  check_sizes();
+  check_all_sizes();
   check_end();
   return check_result();
 }

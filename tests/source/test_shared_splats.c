@@ -30,7 +30,7 @@ typedef struct shared_case {
   uint64_t loads[THREAD_TEAM_MOST];
 } shared_case;
 
-static double draw_random(size_t i, int dimension) {
+static double draw_one(size_t i, int dimension) {
   return conic_random_uniform(5, i, (uint64_t)dimension);
 }
 
@@ -44,14 +44,14 @@ static void scatter_splats(conic_context *context, shared_case *c) {
   for (size_t i = 0; i < COUNT; i++) {
     int is_stray = i % 300 == 7;
     for (int axis = 0; axis < 3; axis++) {
-      s->position[axis][i] = (float)((axis == 2 ? 0.1 : 1.0 + axis) * (draw_random(i, axis) + (is_stray ? 900.0 : 0)));
-      s->tangent_u[axis][i] = axis == 0 ? (float)draw_random(i, 3) : 0.0f;
-      s->tangent_v[axis][i] = axis == 1 ? (float)draw_random(i, 4) : 0.0f;
+      s->position[axis][i] = (float)((axis == 2 ? 0.1 : 1.0 + axis) * (draw_one(i, axis) + (is_stray ? 900.0 : 0)));
+      s->tangent_u[axis][i] = axis == 0 ? (float)draw_one(i, 3) : 0.0f;
+      s->tangent_v[axis][i] = axis == 1 ? (float)draw_one(i, 4) : 0.0f;
     }
     s->opacity[i] = (float)i;
     if (i % 1000 == 3)
       s->position[i % 3][i] = (float)INFINITY;
-    int x = (int)(draw_random(i, 5) * 400.0), y = (int)(draw_random(i, 6) * 240.0), side = i % 5000 ? 3 : 200;
+    int x = (int)(draw_one(i, 5) * 400.0), y = (int)(draw_one(i, 6) * 240.0), side = i % 5000 ? 3 : 200;
     if (i % 4) /* the others are not drawn */
       c->boxes[i] = (conic_box){(uint16_t)x, (uint16_t)(x + side), (uint16_t)y, (uint16_t)(y + side)};
   }
@@ -69,7 +69,7 @@ static conic_splats part_of_splats(const conic_splats *all, size_t first, size_t
   return part;
 }
 
-static findings find_all(conic_context *context, const conic_splats_shares *shares, const conic_splats *splats) {
+static findings find_together(conic_context *context, const conic_splats_shares *shares, const conic_splats *splats) {
   findings found;
   conic_framing framing;
   const conic_drawing drawing = {splats, &no_triangles};
@@ -86,7 +86,7 @@ static findings find_all(conic_context *context, const conic_splats_shares *shar
 
 /* --- windows --- */
 
-static int meets(const shared_case *c, size_t i_window, size_t i_splat) {
+static int meets_window(const shared_case *c, size_t i_window, size_t i_splat) {
   const conic_window *w = &c->windows[i_window];
   const conic_box *b = &c->boxes[i_splat];
   return b->x_begin < b->x_end && b->x_begin - c->margin < SAMPLES * w->x_end &&
@@ -101,7 +101,7 @@ static void check_held(const shared_case *c, int index, const int *owners, const
   for (size_t i = 0; i < COUNT; i++) {
     int is_met = 0;
     for (size_t k = 0; k < c->n && !is_met; k++)
-      is_met = owners[k] == index && meets(c, k, i);
+      is_met = owners[k] == index && meets_window(c, k, i);
     if (!is_met)
       continue;
     if (next < held->count)
@@ -150,14 +150,14 @@ static void do_part(const conic_team *team, void *cookie) {
   const conic_splats_shares shares = {team, first, COUNT};
   const conic_splats part = part_of_splats(&c->splats, first, end);
   CHECK_OK(conic_context_create(NULL, &context));
-  findings found = find_all(context, &shares, &part);
+  findings found = find_together(context, &shares, &part);
   CHECK(memcmp(&found, &c->found, sizeof found) == 0);
   deal_windows(context, c, &shares, &part);
   conic_context_destroy(context);
 }
 
 /* But for every other row, as if these were kept. */
-static void list_windows(shared_case *c, int without_rows) {
+static void list_test_windows(shared_case *c, int without_rows) {
   c->n = 0;
   for (int i = 0; i < WINDOWS; i++)
     if (!without_rows || i / COLUMNS % 2)
@@ -171,9 +171,9 @@ int main(void) {
   conic_context *context;
   CHECK_OK(conic_context_create(NULL, &context));
   scatter_splats(context, &c);
-  c.found = find_all(context, &alone, &c.splats);
+  c.found = find_together(context, &alone, &c.splats);
   CHECK(c.found.basis == CONIC_UP_FLAT);
-  list_windows(&c, 0);
+  list_test_windows(&c, 0);
   for (int count = 1; count <= 5; count += 2) {
     uint64_t least = COUNT, most = 0;
     c.margin = count;
@@ -185,7 +185,7 @@ int main(void) {
     }
     CHECK(4 * most <= 5 * least);
   }
-  list_windows(&c, 1);
+  list_test_windows(&c, 1);
   thread_team_run(3, do_part, &c);
   conic_splats_release(context, &c.splats);
   free(c.boxes);

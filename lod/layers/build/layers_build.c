@@ -178,8 +178,8 @@ uint64_t conic_layers_builder_finished(const conic_layers_builder *builder) {
   return builder->kept.n_samples;
 }
 
-conic_status conic_layers_builder_keep(conic_layers_builder *builder, uint64_t input, const conic_layers_piece *pieces,
-                                       size_t n_pieces) {
+conic_status conic_layers_builder_keep(conic_layers_builder *builder, uint64_t input,
+                                       const conic_layers_kept_bytes *pieces, size_t n_pieces) {
   return builder->kept.key ? conic_layers_kept_add_input(&builder->kept, input, pieces, n_pieces) : CONIC_OK;
 }
 

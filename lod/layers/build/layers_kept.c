@@ -367,7 +367,7 @@ const conic_layers_kept_branch *conic_layers_kept_find(const conic_layers_kept *
   return low > 0 && key <= last_key_of(&kept->branches[low - 1]) ? &kept->branches[low - 1] : NULL;
 }
 
-static conic_status write_pieces(const conic_layers_kept *kept, const char *path, const conic_layers_piece *pieces,
+static conic_status write_pieces(const conic_layers_kept *kept, const char *path, const conic_layers_kept_bytes *pieces,
                                  size_t n_pieces, uint64_t *n_bytes, char hash[CONIC_SHA256_ROOM]) {
   conic_output *output;
   conic_sha256 sum;
@@ -386,7 +386,7 @@ static conic_status write_pieces(const conic_layers_kept *kept, const char *path
 
 /* A file, and then, once it is whole, its lines. */
 static conic_status add_part(conic_layers_kept *kept, const char *name, const char *words,
-                             const conic_layers_piece *pieces, size_t n_pieces) {
+                             const conic_layers_kept_bytes *pieces, size_t n_pieces) {
   char hash[CONIC_SHA256_ROOM], line[LINE_ROOM];
   uint64_t n_bytes;
   char *path = allocate_name(kept);
@@ -407,15 +407,15 @@ static conic_status add_part(conic_layers_kept *kept, const char *name, const ch
 conic_status conic_layers_kept_add(conic_layers_kept *kept, const conic_layers_kept_branch *branch,
                                    const unsigned char *bytes, size_t n_bytes) {
   char name[64], words[128];
-  const conic_layers_piece piece = {bytes, n_bytes};
+  const conic_layers_kept_bytes piece = {bytes, n_bytes};
   file_of_branch(branch, name);
   snprintf(words, sizeof words, "branch %llu %u %llu", (unsigned long long)branch->key, branch->n_bits,
            (unsigned long long)branch->n_samples);
   return add_part(kept, name, words, &piece, 1);
 }
 
-conic_status conic_layers_kept_add_input(conic_layers_kept *kept, uint64_t number, const conic_layers_piece *pieces,
-                                         size_t n_pieces) {
+conic_status conic_layers_kept_add_input(conic_layers_kept *kept, uint64_t number,
+                                         const conic_layers_kept_bytes *pieces, size_t n_pieces) {
   char name[64], words[64];
   snprintf(name, sizeof name, "%llu.%s", (unsigned long long)number, input_ending);
   snprintf(words, sizeof words, "%s %llu", input_ending, (unsigned long long)number);

@@ -59,8 +59,8 @@ conic_status conic_layers_kept_add(conic_layers_kept *kept, const conic_layers_k
 
 /* Keeps bytes of an input, in so many pieces; and opens what is kept of one for reading, where it has so many bytes and
  * is whole: else null. Errors: MEMORY, IO. */
-conic_status conic_layers_kept_add_input(conic_layers_kept *kept, uint64_t number, const conic_layers_piece *pieces,
-                                         size_t n_pieces);
+conic_status conic_layers_kept_add_input(conic_layers_kept *kept, uint64_t number,
+                                         const conic_layers_kept_bytes *pieces, size_t n_pieces);
 FILE *conic_layers_kept_open_input(const conic_layers_kept *kept, uint64_t number, uint64_t n_bytes);
 
 /* The bytes of one, which the caller releases. Errors: MEMORY, IO. */

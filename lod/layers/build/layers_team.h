@@ -17,10 +17,10 @@ typedef struct conic_layers_keeping {
 } conic_layers_keeping;
 
 /* Some of the bytes that are kept. */
-typedef struct conic_layers_piece {
+typedef struct conic_layers_kept_bytes {
   const void *bytes;
   size_t n_bytes;
-} conic_layers_piece;
+} conic_layers_kept_bytes;
 
 /* As conic_layers_builder_open, in every process of a team, which may be null. Each appends its own samples, and then
  * all finish. Whoever has failed abandons the builder, at which the others fail when they finish, with CANCELLED. The
@@ -35,8 +35,8 @@ uint64_t conic_layers_builder_finished(const conic_layers_builder *builder);
 
 /* Keeps what has been made of an input, by its number, with the branches; nothing is done where these are not kept.
  * Errors: MEMORY, IO. */
-conic_status conic_layers_builder_keep(conic_layers_builder *builder, uint64_t input, const conic_layers_piece *pieces,
-                                       size_t n_pieces);
+conic_status conic_layers_builder_keep(conic_layers_builder *builder, uint64_t input,
+                                       const conic_layers_kept_bytes *pieces, size_t n_pieces);
 /* Opens what is kept of an input for reading, if it is so many bytes, as they were written; else null. */
 FILE *conic_layers_builder_open_kept(const conic_layers_builder *builder, uint64_t input, uint64_t n_bytes);
 

@@ -9,11 +9,11 @@ enum { N = 400, STANDING = 60, N_ORDERS = 8, N_SCENES = 200 };
 /* Many discs reach little past those that stand, which are wide: by how they are turned, and so between corners. */
 static const double height = 2.0, tilt = 1.0, most_radius = 60.0, standing_radius = 200.0;
 
-static double draw_random(uint64_t scene, uint64_t i, uint64_t dimension) {
+static double draw_uniform(uint64_t scene, uint64_t i, uint64_t dimension) {
   return conic_random_uniform(scene, i, dimension);
 }
 
-static int compare_keys(const void *a, const void *b) {
+static int order_keys(const void *a, const void *b) {
   uint64_t first = *(const uint64_t *)a, second = *(const uint64_t *)b;
   return (first > second) - (first < second);
 }
@@ -22,16 +22,16 @@ static int compare_keys(const void *a, const void *b) {
 static void scatter_keys(uint64_t scene, uint64_t keys[N]) {
   for (uint64_t i = 0; i < N; i++)
     keys[i] =
-        conic_layers_key((uint32_t)(1000.0 * draw_random(scene, i, 0)), (uint32_t)(1000.0 * draw_random(scene, i, 1)),
-                         500 + (uint32_t)(height * draw_random(scene, i, 2)));
-  qsort(keys, N, sizeof *keys, compare_keys);
+        conic_layers_key((uint32_t)(1000.0 * draw_uniform(scene, i, 0)), (uint32_t)(1000.0 * draw_uniform(scene, i, 1)),
+                         500 + (uint32_t)(height * draw_uniform(scene, i, 2)));
+  qsort(keys, N, sizeof *keys, order_keys);
 }
 
 static conic_layers_disc disc_at(uint64_t scene, uint64_t key, double radius) {
   conic_layers_disc disc = {.radius = (float)radius};
   double length2 = 0.0, normal[3];
   for (int axis = 0; axis < 3; axis++) {
-    normal[axis] = (axis == 2) + tilt * (draw_random(scene, key, 4 + (uint64_t)axis) - 0.5);
+    normal[axis] = (axis == 2) + tilt * (draw_uniform(scene, key, 4 + (uint64_t)axis) - 0.5);
     length2 += normal[axis] * normal[axis];
     disc.center[axis] = (float)conic_layers_step(key, axis);
   }
@@ -53,7 +53,7 @@ static double part_in_order(const conic_layers_standing *standing, const conic_l
   return part;
 }
 
-static void check_scene(conic_context *context, uint64_t scene) {
+static void check_sheet(conic_context *context, uint64_t scene) {
   static uint64_t keys[N];
   static conic_layers_disc discs[N], drawn[N], standing_discs[N];
   static uint8_t is_chosen[N];
@@ -66,7 +66,7 @@ static void check_scene(conic_context *context, uint64_t scene) {
   conic_thinner_load(thinner, keys, sizeof *keys, N);
   conic_thinner_choose(thinner, STANDING, 2 * STANDING, &distance, is_chosen);
   for (size_t i = 0; i < N; i++) {
-    discs[i] = disc_at(scene, keys[i], most_radius * draw_random(scene, i, 9));
+    discs[i] = disc_at(scene, keys[i], most_radius * draw_uniform(scene, i, 9));
     if (is_chosen[i])
       drawn[n_drawn++] = disc_at(scene, keys[i], standing_radius);
   }
@@ -89,7 +89,7 @@ static void check_scene(conic_context *context, uint64_t scene) {
 int main(void) {
   conic_context *context = check_context(1);
   for (uint64_t scene = 0; scene < N_SCENES; scene++)
-    check_scene(context, scene);
+    check_sheet(context, scene);
   conic_context_destroy(context);
   return check_result();
 }
