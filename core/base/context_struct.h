@@ -40,7 +40,7 @@ struct conic_context {
   size_t n_inputs, inputs_room;
   conic_file_identity replaceable;
   pthread_mutex_t outputs_lock;
-  struct conic_output *outputs; /* core/files/file.h: those with temporary files */
+  struct conic_output *outputs;                          /* core/files/file.h: those with temporary files */
   void (*watch_outputs)(void *cookie, const char *path); /* null: nobody does */
   void *watch_cookie;
   conic_loan *loans;

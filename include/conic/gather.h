@@ -41,8 +41,8 @@ typedef struct conic_gather_options {
   void *cookie;
   /* Draws all planes of the view's image, the depth being that of a pinhole. What it returns other than OK ends all. */
   conic_status (*draw)(void *cookie, const conic_gather_view *view, conic_image *image);
-  int edge; /* an orthographic camera's views have at most so many pixels a side, 32 to 4096: their rays are off by up to
-             * half a view's diagonal / 2048 */
+  int edge; /* an orthographic camera's views have at most so many pixels a side, 32 to 4096: their rays are off by up
+             * to half a view's diagonal / 2048 */
 } conic_gather_options;
 
 /* One sample, fineness 2, the eye in its place, an edge of 256. */
@@ -51,8 +51,9 @@ CONIC_API void conic_gather_options_init_sized(conic_gather_options *options, si
 
 /* Draws the views that the camera needs, one after the other, and fills the image's planes from them: Z and medianZ
  * are depths as the camera's kind has them (conic_camera_rays.h: along the ray for fisheyes and panoramas), inverseZ
- * is 1 over that, and all else is as the views have it. Several samples are of drawn planes and clusters alone. The same bits
- * whatever the threads, as far as `draw` has them. Errors: ARGUMENT, MEMORY, CANCELLED, and what `draw` returns. */
+ * is 1 over that, and all else is as the views have it. Several samples are of drawn planes and clusters alone. The
+ * same bits whatever the threads, as far as `draw` has them. Errors: ARGUMENT, MEMORY, CANCELLED, and what `draw`
+ * returns. */
 CONIC_API conic_status conic_gather(conic_context *context, const conic_gather_options *options, conic_image *image);
 
 #ifdef __cplusplus
