@@ -1,7 +1,8 @@
 /* Finished strips of a picture. Whatever a list of them says, those that count are the picture's, do not overlap, and
  * can be read; and read again they are the same. Checks are made right, as nobody guesses them. */
-#include "core/image/image_common.h"
 #include "tests/fuzz/fuzz.h"
+
+#include "core/image/image_common.h"
 #include "tests/fuzz/strips_example.h"
 
 /* The picture as far as it is written: zeros. */

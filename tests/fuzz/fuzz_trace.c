@@ -1,6 +1,7 @@
 /* Traces of jobs. What is read can be scheduled. */
-#include "bench/rank_schedule.h"
 #include "tests/fuzz/fuzz.h"
+
+#include "bench/rank_schedule.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
   cli_rank_trace trace;
