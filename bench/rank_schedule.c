@@ -2,8 +2,8 @@
 
 #include <string.h>
 
+#include "cli/session_team.h"
 #include "core/base/memory.h"
-#include "mpi/ranks.h"
 
 /* What rank 0 takes to answer who wants a unit. */
 static const double answer_s = 1e-6;
@@ -86,7 +86,7 @@ static double hold_up(rank_run *run, rank_turn *turn) {
 static int is_left_to_others(const rank_run *run, const rank_turn *turn) {
   int hands_over = run->all_bytes > 0.0 || run->trace->join_s > 0.0;
   return turn->is_first && hands_over &&
-         ranks_leave_rest((double)(run->n_units - run->next), (int)run->n_ranks, run->joined_s, turn->at);
+         cli_team_leaves_rest((double)(run->n_units - run->next), (int)run->n_ranks, run->joined_s, turn->at);
 }
 
 static void run_units(rank_run *run) {

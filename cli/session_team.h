@@ -53,6 +53,14 @@ typedef struct cli_team {
                 uint64_t sent_bytes);
 } cli_team;
 
+/* While its thread takes what others hand over, the first process gets on more slowly, and should not be the last to
+ * end. So it leaves the rest to them once there are fewer units for each than eight times the part of its time that
+ * went so. That part is not known before the first results come, so it is taken to be n_processes / 64 at least. */
+static inline int cli_team_leaves_rest(double n_left, int n_processes, double busy_s, double of_s) {
+  double part = of_s > 0.0 ? busy_s / of_s : 0.0, least = n_processes / 64.0;
+  return n_left < 8.0 * n_processes * (part > least ? part : least);
+}
+
 /* The team of this process from now on, whose messages it keeps; null: it is alone. */
 void cli_team_join(cli_team *team);
 /* Whether the message is not to be printed here and now: an error is printed once all have agreed, what else others

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "cli/session_team.h"
 #include "core/base/clock.h"
 #include "mpi/hands.h"
 
@@ -309,7 +310,7 @@ void ranks_share(uint64_t n, ranks_take *take, void *cookie) {
 /* Under the lock. */
 static int leaves_rest(void) {
   double left = work.end > work.next ? (double)(work.end - work.next) : 0.0;
-  return work.take && ranks_leave_rest(left, n_ranks, work.busy_s, conic_seconds_now() - work.begun_s);
+  return work.take && cli_team_leaves_rest(left, n_ranks, work.busy_s, conic_seconds_now() - work.begun_s);
 }
 
 static uint64_t next_of_first(void) {

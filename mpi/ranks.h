@@ -20,14 +20,6 @@ int ranks_on_machine(void);
 /* "Open MPI v4.1.4 …", one line. */
 void ranks_library(char *text, size_t room);
 
-/* While its thread takes what others hand over, rank 0 gets on more slowly, and should not be the last to end. So it
- * leaves the rest to them once there are fewer units for each than eight times the part of its time that went so. That
- * part is not known before the first results come, so it is taken to be n_ranks / 64 at least. */
-static inline int ranks_leave_rest(double n_left, int n_ranks, double busy_s, double of_s) {
-  double part = of_s > 0.0 ? busy_s / of_s : 0.0, least = n_ranks / 64.0;
-  return n_left < 8.0 * n_ranks * (part > least ? part : least);
-}
-
 /* Past the last unit. */
 #define RANKS_NO_UNIT UINT64_MAX
 
