@@ -39,6 +39,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
     FUZZ_CHECK(conic_finished_read(input.context, written, "frames", key, &again) == CONIC_OK);
     FUZZ_CHECK(count_files(&again) == count_files(&list));
     conic_finished_release(input.context, &again);
+    remove(written);
   }
   conic_finished_release(input.context, &list);
   fuzz_close(&input, status, 1);
