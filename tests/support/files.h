@@ -74,4 +74,20 @@ static inline void files_check_failed(const char *what, conic_status status, ...
   files_message[0] = 0;
 }
 
+/* Its bytes, which the caller frees, and how many; 0 and null: it is not there. */
+static inline size_t files_read(const char *path, unsigned char **bytes) {
+  FILE *file = fopen(path, "rb");
+  *bytes = NULL;
+  if (!file)
+    return 0;
+  fseek(file, 0, SEEK_END);
+  size_t n = (size_t)ftell(file);
+  rewind(file);
+  *bytes = malloc(n + 1);
+  if (!*bytes || fread(*bytes, 1, n, file) != n)
+    exit(1);
+  fclose(file);
+  return n;
+}
+
 #endif

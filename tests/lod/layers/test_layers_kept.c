@@ -70,24 +70,9 @@ static void build_rows(const conic_team *team, void *cookie) {
   conic_context_destroy(context);
 }
 
-static size_t read_whole_bytes(const char *path, unsigned char **bytes) {
-  FILE *file = fopen(path, "rb");
-  *bytes = NULL;
-  if (!file)
-    return 0;
-  fseek(file, 0, SEEK_END);
-  size_t n = (size_t)ftell(file);
-  rewind(file);
-  *bytes = malloc(n + 1);
-  if (!*bytes || fread(*bytes, 1, n, file) != n)
-    exit(1);
-  fclose(file);
-  return n;
-}
-
 static int are_same_files(const char *a, const char *b) {
   unsigned char *first, *second;
-  size_t n = read_whole_bytes(a, &first), n_second = read_whole_bytes(b, &second);
+  size_t n = files_read(a, &first), n_second = files_read(b, &second);
   int same = n > 0 && n == n_second && memcmp(first, second, n) == 0;
   free(first);
   free(second);
@@ -204,7 +189,7 @@ static void append_text(const char *path, const char *text) {
 static void copy_list(const char *list, const char *folder) {
   unsigned char *bytes;
   char path[FOLDER_ROOM + 512];
-  size_t n = read_whole_bytes(list, &bytes);
+  size_t n = files_read(list, &bytes);
   snprintf(path, sizeof path, "%s/7.list", folder);
   FILE *file = fopen(path, "wb");
   CHECK(file && fwrite(bytes, 1, n, file) == n && fclose(file) == 0);

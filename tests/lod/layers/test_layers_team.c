@@ -75,32 +75,18 @@ static void build_part(const conic_team *team, void *cookie) {
   free(values);
 }
 
-static size_t read_bytes(const char *path, unsigned char **bytes) {
-  FILE *file = fopen(path, "rb");
-  if (!file)
-    return 0;
-  fseek(file, 0, SEEK_END);
-  size_t n = (size_t)ftell(file);
-  rewind(file);
-  *bytes = malloc(n + 1);
-  if (!*bytes || fread(*bytes, 1, n, file) != n)
-    exit(1);
-  fclose(file);
-  return n;
-}
-
 /* Against what one process builds, by several. */
 static void check_case(conic_context *context, team_case *c, const int *counts) {
   unsigned char *alone = NULL, *together = NULL;
   conic_layers_statistics statistics;
   const char *path = files_path("alone.lpc");
   CHECK_OK(layers_build(context, c->splats, path, &c->options, &statistics));
-  size_t n_alone = read_bytes(path, &alone);
+  size_t n_alone = files_read(path, &alone);
   CHECK(n_alone > 0);
   c->path = files_path("together.lpc");
   for (; *counts; counts++) {
     thread_team_run(*counts, build_part, c);
-    size_t n = read_bytes(c->path, &together);
+    size_t n = files_read(c->path, &together);
     for (int i = 0; i < *counts; i++)
       CHECK_OK(c->statuses[i]);
     CHECK(n == n_alone && memcmp(alone, together, n) == 0);
@@ -193,8 +179,8 @@ static void test_values(conic_context *context) {
   CHECK_OK(conic_layers_builder_finish(builder, NULL));
   c.path = files_path("together.lpc");
   thread_team_run(3, build_part, &c);
-  size_t n = read_bytes(path, &alone);
-  CHECK(n > 0 && read_bytes(c.path, &together) == n && memcmp(alone, together, n) == 0);
+  size_t n = files_read(path, &alone);
+  CHECK(n > 0 && files_read(c.path, &together) == n && memcmp(alone, together, n) == 0);
   CHECK(unlink(path) == 0 && unlink(c.path) == 0);
   free(alone);
   free(together);
