@@ -9,6 +9,7 @@
 #include "core/base/random.h"
 #include "core/base/vectors.h"
 #include "core/files/file.h"
+#include "shots/way.h"
 
 /* The camera of the rates that are quoted: the unit sphere from a little above, some 900 pixels across. */
 static const double focal_px = 1406.708438760767; /* for 1024 pixels */
@@ -285,7 +286,10 @@ void cli_bench_camera_resize(conic_camera *camera, int width, int height) {
 
 void cli_bench_scene_turn(const cli_bench_scene *scene, double turns, conic_camera *camera) {
   const conic_source_scale *scale = conic_source_measure(scene->source);
-  cli_camera_orbit(scale, scale->up, turns, camera);
+  double center[3];
+  for (int axis = 0; axis < 3; axis++)
+    center[axis] = 0.5 * scale->minimum[axis] + 0.5 * scale->maximum[axis];
+  conic_camera_orbit(center, scale->up, turns, camera);
 }
 
 conic_status cli_bench_scene_camera(const cli_bench_scene *scene, int width, int height, conic_camera *camera) {

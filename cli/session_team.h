@@ -12,9 +12,7 @@
 
 #include "cli/session.h"
 #include "core/base/team.h"
-
-/* No unit is left. */
-#define CLI_NO_UNIT UINT64_MAX
+#include "shots/executor.h"
 
 typedef struct cli_team {
   int index, count;
@@ -25,7 +23,7 @@ typedef struct cli_team {
    * process's `take`, one call at a time, on any thread, until the next `agree` has returned; null: nothing is handed.
    */
   void (*share)(uint64_t n, void (*take)(void *cookie, int from, void *bytes, size_t n_bytes), void *cookie);
-  /* Takes the next unit: each is given to one process; CLI_NO_UNIT when there is none. */
+  /* Takes the next unit: each is given to one process; CONIC_NO_UNIT when there is none. */
   uint64_t (*next)(void);
   /* Nobody is given any more: something failed. */
   void (*stop)(void);

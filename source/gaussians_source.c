@@ -5,6 +5,7 @@
 #include "core/base/loan_find.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
 #include "gaussians/draw/gaussian_parts.h"
@@ -92,6 +93,14 @@ static conic_status open_gaussians(conic_source *source, const char *const *path
 
 const conic_gaussians *conic_source_gaussians(const conic_source *source) {
   return source->kind == &conic_source_kind_gaussians ? &((const gaussians_source *)source)->gaussians : NULL;
+}
+
+conic_status conic_source_composite_by(conic_source *source, const conic_gaussian_options *options) {
+  gaussians_source *g = (gaussians_source *)source;
+  if (source->kind == &conic_source_kind_gaussians && !conic_options_take(&g->options, options))
+    return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: the options of Gaussian scenes are none",
+                      source->name);
+  return CONIC_OK;
 }
 
 static void close_gaussians(conic_source *source) {

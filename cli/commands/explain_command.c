@@ -312,7 +312,7 @@ static conic_status draw(cli_session *session, explain_job *job) {
       conic_image_allocate(session->context, job->camera.width, job->camera.height, planes, &job->image);
   if (status == CONIC_OK)
     status = conic_render_drawing(session->context, job->scene.renderer, job->drawing, &job->camera,
-                                  &job->scene.options, 1, &job->image, NULL);
+                                  &job->scene.shot.render, 1, &job->image, NULL);
   if (status == CONIC_OK)
     conic_source_name_image(job->scene.source, &job->image);
   return status;
@@ -334,12 +334,12 @@ static int check_questions(const explain_job *job) {
 static int answer(cli_session *session, explain_job *job) {
   conic_status status = cli_sample_camera(session, &job->scene, &job->camera);
   if (status == CONIC_OK) /* where something is chosen, that is what is drawn, and explained */
-    status = conic_source_choose(job->scene.source, &job->camera, &job->scene.options, &job->scene.view);
+    status = conic_source_choose(job->scene.source, &job->camera, &job->scene.shot.render, &job->scene.shot.view);
   job->drawing = &conic_source_chosen(job->scene.source)->drawing;
   int exit_code = status == CONIC_OK ? check_questions(job) : cli_exit_of(status);
   if (exit_code != CLI_DONE)
     return exit_code;
-  status = conic_contributions_create_drawing(session->context, job->drawing, &job->camera, &job->scene.options,
+  status = conic_contributions_create_drawing(session->context, job->drawing, &job->camera, &job->scene.shot.render,
                                               &job->contributions);
   if (status == CONIC_OK)
     status = draw(session, job);
@@ -372,7 +372,7 @@ static int explain(cli_session *session, explain_job *job) {
 static int check(cli_session *session, explain_job *job) {
   if (!job->is_pixel_given && !job->is_splat_given && !job->dump_path)
     return cli_usage("explain: nothing is asked; give --pixel X,Y, --splat I or --dump-projection FILE");
-  if (job->scene.view.samples > 1)
+  if (job->scene.shot.view.samples > 1)
     return cli_usage("explain: it explains pixels, not --samples");
   if (cli_is_composited(&job->scene) && (job->is_splat_given || job->dump_path))
     return cli_usage("explain: --splat and --dump-projection are of splats; give --profile surface, too");

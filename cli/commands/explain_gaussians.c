@@ -108,7 +108,7 @@ static int write_explanation(cli_session *session, const cli_render_job *scene, 
   cli_json *json = cli_json_open(session, &file, &exit_code);
   if (!json)
     return exit_code;
-  cli_json_text(json, "profile", conic_gaussian_profile_name(scene->gaussians.profile));
+  cli_json_text(json, "profile", conic_gaussian_profile_name(scene->shot.gaussians.profile));
   cli_json_count(json, "width", (uint64_t)image->width);
   cli_json_count(json, "height", (uint64_t)image->height);
   write_list(json, "pixel", pixel, 2);
@@ -131,7 +131,7 @@ int cli_explain_composited(cli_session *session, cli_render_job *scene, int x, i
   if (status == CONIC_OK)
     status = conic_image_allocate(session->context, camera.width, camera.height, planes, &image);
   if (status == CONIC_OK)
-    status = conic_source_draw(scene->source, scene->renderer, &camera, &scene->options, &scene->view, &image,
+    status = conic_source_draw(scene->source, scene->renderer, &camera, &scene->shot.render, &scene->shot.view, &image,
                                &scene->statistics);
   if (status == CONIC_OK)
     status = conic_gaussian_explain(session->context, conic_source_gaussians(scene->source), &camera, &options, NULL, x,

@@ -70,7 +70,7 @@ static int report_gradient(cli_session *session, const gradient_job *job) {
   cli_json *json = cli_json_open(session, &file, &exit_code);
   if (!json)
     return exit_code;
-  cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.gaussians.profile));
+  cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.shot.gaussians.profile));
   cli_json_text(json, "parameters", g->is_raw ? "raw" : "activated");
   cli_json_count(json, "width", (uint64_t)job->weights.width);
   cli_json_count(json, "height", (uint64_t)job->weights.height);
@@ -118,7 +118,8 @@ static conic_status differentiate(cli_session *session, gradient_job *job) {
   conic_camera camera;
   conic_gradient_options how;
   conic_float_model model;
-  conic_status status = cli_scene_camera(&job->scene, 0, &camera);
+  conic_status status = cli_scene_camera(session, &job->scene, 0);
+  camera = job->scene.shot.camera;
   if (status == CONIC_OK)
     status = check_weight_size(job, &camera);
   conic_gradient_options_init(&how);
@@ -167,11 +168,12 @@ static int check_gradient(cli_session *session, const gradient_job *job) {
     return cli_usage("gradient: nothing to write; give -o G.ply or --json FILE");
   if (!cli_is_composited(scene))
     return cli_usage("gradient: it is of Gaussian scenes by a profile; surfels have none yet");
-  if (!conic_gradient_has_profile(scene->gaussians.profile))
-    return cli_usage("gradient: the profile %s has none yet", conic_gaussian_profile_name(scene->gaussians.profile));
-  if (scene->gaussians.prefilter != 0.0)
+  if (!conic_gradient_has_profile(scene->shot.gaussians.profile))
+    return cli_usage("gradient: the profile %s has none yet",
+                     conic_gaussian_profile_name(scene->shot.gaussians.profile));
+  if (scene->shot.gaussians.prefilter != 0.0)
     return cli_usage("gradient: a picture under --prefilter has none yet");
-  if (scene->view.samples > 1)
+  if (scene->shot.view.samples > 1)
     return cli_usage("gradient: it is of one sample a pixel");
   int exit_code = cli_check_outputs(session, outputs, 1);
   if (exit_code == CLI_DONE)

@@ -30,12 +30,12 @@ static conic_status get_image(cli_session *session, verify_job *job, const conic
   if (job->image_path) /* it was read before the scene */
     return CONIC_OK;
   conic_status status =
-      conic_image_allocate(session->context, camera->width, camera->height, job->scene.planes, &job->image);
+      conic_image_allocate(session->context, camera->width, camera->height, job->scene.shot.planes, &job->image);
   if (status != CONIC_OK)
     return status;
   double start = cli_seconds();
-  status = conic_render_drawing(session->context, job->scene.renderer, drawing, camera, &job->scene.options,
-                                job->scene.view.samples, &job->image, &job->scene.statistics);
+  status = conic_render_drawing(session->context, job->scene.renderer, drawing, camera, &job->scene.shot.render,
+                                job->scene.shot.view.samples, &job->image, &job->scene.statistics);
   job->render_ms = 1e3 * (cli_seconds() - start);
   return status;
 }
@@ -45,7 +45,7 @@ static conic_status compare(cli_session *session, verify_job *job) {
   conic_camera camera;
   conic_status status = cli_sample_camera(session, &job->scene, &camera);
   if (status == CONIC_OK) /* the oracle judges how what is chosen is drawn, not the choice */
-    status = conic_source_choose(job->scene.source, &camera, &job->scene.options, &job->scene.view);
+    status = conic_source_choose(job->scene.source, &camera, &job->scene.shot.render, &job->scene.shot.view);
   if (status == CONIC_OK)
     status = get_image(session, job, &choice->drawing, &camera);
   if (status == CONIC_OK)
@@ -97,7 +97,7 @@ static void report_pixels(cli_json *json, const verify_job *job) {
   cli_json_count(json, "compared_pixels", verdict->compared_pixels);
   cli_json_count(json, "unstable_pixels", verdict->unstable_pixels);
   cli_json_count(json, "covered_pixels", verdict->covered_pixels);
-  if (job->scene.view.samples > 1) {
+  if (job->scene.shot.view.samples > 1) {
     cli_json_count(json, "unstable_samples", reference->unstable_samples);
     cli_json_count(json, "covered_samples", reference->covered_samples);
   }
@@ -146,8 +146,8 @@ static int write_statistics(cli_session *session, const verify_job *job) {
     return exit_code;
   cli_json_text(json, "against", conic_oracle_question_name((conic_oracle_question)job->question));
   cli_json_text(json, "method", cli_method_name(&job->scene));
-  if (job->scene.view.samples > 1)
-    cli_json_count(json, "samples", (uint64_t)job->scene.view.samples);
+  if (job->scene.shot.view.samples > 1)
+    cli_json_count(json, "samples", (uint64_t)job->scene.shot.view.samples);
   report_samples(json, job);
   report_planes(json, job);
   report_pixels(json, job);
@@ -167,7 +167,7 @@ static void print_unstable(const verify_job *job) {
   double covered = verdict->covered_pixels ? (double)verdict->covered_pixels : 1.0;
   printf("unstable  %zu of %zu covered pixels (%.3f %%)", verdict->unstable_pixels, verdict->covered_pixels,
          100.0 * (double)verdict->unstable_pixels / covered);
-  if (job->scene.view.samples > 1)
+  if (job->scene.shot.view.samples > 1)
     printf(", %zu of %zu samples", reference->unstable_samples, reference->covered_samples);
   const char *separator = ": ";
   for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)
@@ -271,9 +271,9 @@ static int check_samples(const cli_session *session, verify_job *job) {
   if (job->question == CONIC_ORACLE_EXACT || cli_is_composited(&job->scene))
     return cli_usage("verify: --accumulate judges means of splats and triangles by their method; give --sample I");
   const unsigned normals = 1u << CONIC_PLANE_NORMAL; /* of which the picture has the direction of the sum */
-  if (job->scene.is_aov_given && job->scene.planes & normals)
+  if (job->scene.is_aov_given && job->scene.shot.planes & normals)
     return cli_usage("verify: of N, a mean of samples is not judged; --sample I judges that of a sample");
-  job->scene.planes &= ~normals;
+  job->scene.shot.planes &= ~normals;
   return CLI_DONE;
 }
 
@@ -284,12 +284,12 @@ static int check_judged_planes(verify_job *job) {
                               (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT));
   int is_composited = cli_is_composited(&job->scene);
   if (is_composited && !job->scene.is_aov_given)
-    job->scene.planes = composited;
-  if (is_composited && job->scene.planes & ~composited)
+    job->scene.shot.planes = composited;
+  if (is_composited && job->scene.shot.planes & ~composited)
     return cli_usage("verify: of a Gaussian scene, it judges rgba, Z, N, count, id, T, medianZ, inverseZ and last");
   if (is_composited && job->question == CONIC_ORACLE_EXACT)
     return cli_usage("verify: a Gaussian scene is judged by its profile, and --against exact is of splats");
-  if (!is_composited && job->scene.planes & ~CONIC_DRAWN_PLANES)
+  if (!is_composited && job->scene.shot.planes & ~CONIC_DRAWN_PLANES)
     return cli_usage("verify: the planes cluster and P are made of id and Z; the oracle knows what is drawn");
   return CLI_DONE;
 }
@@ -298,7 +298,7 @@ static int run(cli_session *session, int argc, char **argv) {
   static const char *const questions[] = {"method", "exact", NULL};
   verify_job job = {.question = CONIC_ORACLE_METHOD};
   cli_scene_defaults(&job.scene);
-  job.scene.planes = CONIC_DRAWN_PLANES;
+  job.scene.shot.planes = CONIC_DRAWN_PLANES;
   job.scene.may_composite = 1;
   const cli_option own[] = {
       {"against", CLI_CHOICE, &job.question, "WHAT",

@@ -20,14 +20,14 @@ int cli_is_composited(const cli_render_job *scene) {
 }
 
 conic_gaussian_options cli_gaussian_options(const cli_render_job *scene) {
-  conic_gaussian_options options = scene->gaussians;
+  conic_gaussian_options options = scene->shot.gaussians;
   for (int c = 0; c < 3; c++)
-    options.background[c] = scene->options.has_background ? scene->options.background[c] : 0.0f;
+    options.background[c] = scene->shot.render.has_background ? scene->shot.render.background[c] : 0.0f;
   return options;
 }
 
 static const char *profile_of(const cli_render_job *scene) {
-  return conic_gaussian_profile_name(scene->gaussians.profile);
+  return conic_gaussian_profile_name(scene->shot.gaussians.profile);
 }
 
 static void write_by_doubt(cli_json *json, const char *key, const size_t *counts) {
@@ -104,9 +104,10 @@ static void print_verdict(const gaussian_report *r) {
 static conic_status draw_composited(cli_session *session, cli_render_job *scene, const conic_camera *camera,
                                     conic_image *image, double *ms) {
   double start = cli_seconds();
-  conic_status status = conic_image_allocate(session->context, camera->width, camera->height, scene->planes, image);
+  conic_status status =
+      conic_image_allocate(session->context, camera->width, camera->height, scene->shot.planes, image);
   if (status == CONIC_OK)
-    status = conic_source_draw(scene->source, scene->renderer, camera, &scene->options, &scene->view, image,
+    status = conic_source_draw(scene->source, scene->renderer, camera, &scene->shot.render, &scene->shot.view, image,
                                &scene->statistics);
   *ms = 1e3 * (cli_seconds() - start);
   return status;
@@ -134,8 +135,8 @@ int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_
   const conic_gaussian_options options = cli_gaussian_options(scene);
   conic_gaussian_judging_init(&r.judging);
   r.judging.n_pixels = n_pixels;
-  r.judging.samples = scene->view.samples;
-  r.judging.is_opaque = scene->options.has_background;
+  r.judging.samples = scene->shot.view.samples;
+  r.judging.is_opaque = scene->shot.render.has_background;
   conic_status status = cli_sample_camera(session, scene, &camera);
   if (status == CONIC_OK && !image_path)
     status = draw_composited(session, scene, &camera, image, &r.render_ms);

@@ -3,7 +3,9 @@
 #include <string.h>
 
 #include "cli/commands/verify_reference.h"
+#include "cli/render/fill_shot.h"
 #include "cli/render/sample_options.h"
+#include "shots/way.h"
 
 enum {
   MEANS = 1 << CONIC_PLANE_RGBA | 1 << CONIC_PLANE_ALBEDO | 1 << CONIC_PLANE_WEIGHT,
@@ -34,7 +36,7 @@ static conic_status draw_judged(mean_work *work, const conic_camera *camera, con
   double start = cli_seconds();
   conic_status status =
       conic_render_drawing(work->session->context, scene->renderer, &conic_source_chosen(scene->source)->drawing,
-                           camera, &scene->options, 1, image, &scene->statistics);
+                           camera, &scene->shot.render, 1, image, &scene->statistics);
   work->result->render_ms += 1e3 * (cli_seconds() - start);
   return status;
 }
@@ -54,13 +56,13 @@ static conic_status judge_middle(mean_work *work) {
   conic_reference reference;
   conic_camera camera;
   memset(&reference, 0, sizeof reference);
-  conic_status status = cli_accumulate_camera(work->session, scene, cli_sample_frame(scene), &camera);
+  conic_status status = conic_shot_camera(context, &scene->shot, 0.5, &camera);
   if (status == CONIC_OK)
-    status = cli_accumulate_move_middle(work->session, scene, cli_sample_frame(scene));
+    status = conic_shot_move(&scene->shot, scene->source, 0.5);
   if (status == CONIC_OK)
-    status = conic_source_choose(scene->source, &camera, &scene->options, &scene->view);
+    status = conic_source_choose(scene->source, &camera, &scene->shot.render, &scene->shot.view);
   if (status == CONIC_OK && !work->image_path)
-    status = conic_image_allocate(context, camera.width, camera.height, scene->planes, work->image);
+    status = conic_image_allocate(context, camera.width, camera.height, scene->shot.planes, work->image);
   if (status == CONIC_OK && !work->image_path)
     status = draw_judged(work, &camera, work->image);
   if (status == CONIC_OK)
@@ -70,7 +72,7 @@ static conic_status judge_middle(mean_work *work) {
   const conic_image drawn = only(work->image, OF_THE_MIDDLE);
   if (status == CONIC_OK)
     status = conic_oracle_compare(context, &reference, &drawn, &work->result->verdict);
-  cli_accumulate_rest(scene);
+  conic_shot_rest(&scene->shot, scene->source);
   conic_reference_release(context, &reference);
   return status;
 }
@@ -89,15 +91,15 @@ static conic_status judge_sample(mean_work *work, uint64_t index, const conic_re
   return conic_accumulation_add(work->sums, &work->sample);
 }
 
-static conic_status add_sample(mean_work *work, const cli_sample_way *way, uint64_t index) {
+static conic_status add_sample(mean_work *work, uint64_t index) {
   cli_render_job *scene = work->scene;
   conic_context *context = work->session->context;
   conic_reference reference;
   conic_sample place;
   memset(&reference, 0, sizeof reference);
-  conic_status status = cli_accumulate_place(way, index, &place);
+  conic_status status = conic_shot_sample(scene->source, &scene->shot, index, &place);
   if (status == CONIC_OK)
-    status = conic_source_choose(scene->source, &place.camera, &scene->options, &scene->view);
+    status = conic_source_choose(scene->source, &place.camera, &scene->shot.render, &scene->shot.view);
   if (status == CONIC_OK && work->sums)
     status = draw_judged(work, &place.camera, &work->sample);
   if (status == CONIC_OK)
@@ -113,7 +115,7 @@ static conic_status add_sample(mean_work *work, const cli_sample_way *way, uint6
 /* Room for samples, where these are drawn here. */
 static conic_status begin_samples(mean_work *work, const conic_camera *camera) {
   conic_context *context = work->session->context;
-  unsigned planes = work->scene->planes;
+  unsigned planes = work->scene->shot.planes;
   if (work->image_path || !(planes & CONIC_ACCUMULATED_PLANES))
     return CONIC_OK;
   conic_status status = conic_accumulation_create(context, camera->width, camera->height, planes, 0, &work->sums);
@@ -143,17 +145,18 @@ conic_status cli_verify_mean(cli_session *session, cli_render_job *scene, size_t
                              conic_image *image, cli_mean_verdict *result) {
   int n_samples = (int)scene->accumulating.n_samples;
   mean_work work = {.session = session, .scene = scene, .n_pixels = n_pixels, .image_path = image_path, .image = image};
-  cli_sample_way way;
   memset(result, 0, sizeof *result);
   work.result = result;
-  conic_status status = judge_middle(&work);
+  conic_status status = cli_shot_fill(session, scene, cli_sample_frame(scene));
   if (status == CONIC_OK)
-    status = cli_accumulate_begin(session, scene, cli_sample_frame(scene), &way);
+    status = judge_middle(&work);
   if (status == CONIC_OK)
-    status = begin_samples(&work, &way.frame_camera);
+    status = conic_shot_focus(scene->source, scene->renderer, &scene->shot);
+  if (status == CONIC_OK)
+    status = begin_samples(&work, &scene->shot.camera);
   for (int i = 0; i < n_samples && status == CONIC_OK; i++) {
     cli_session_part(session, "sample", i + 1, n_samples);
-    status = add_sample(&work, &way, (uint64_t)i);
+    status = add_sample(&work, (uint64_t)i);
   }
   if (status == CONIC_OK && work.sums)
     status = conic_accumulation_resolve(work.sums, image);

@@ -26,14 +26,14 @@ conic_status cli_reference_draw(cli_session *session, const cli_render_job *scen
                                 int is_from_file, conic_reference *reference) {
   const conic_source_choice *choice = conic_source_chosen(scene->source);
   const conic_splats *splats = choice->drawing.splats;
-  conic_render_options options = scene->options;
+  conic_render_options options = scene->shot.render;
   int is_at_rest = !scene->accumulating.motion; /* what moves keeps the length that it has there */
   if (choice->is_all && !(splats && splats->dot) && is_at_rest)
     options.splat_length = 0.0; /* the oracle sees all splats as they are kept, and measures them by itself */
   conic_oracle_asking asking;
   conic_oracle_asking_init(&asking);
   asking.question = question;
-  asking.samples = scene->view.samples;
+  asking.samples = scene->shot.view.samples;
   asking.n_pixels = n_pixels;
   asking.floats = floats;
   conic_status status =

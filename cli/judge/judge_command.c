@@ -16,7 +16,7 @@ static const unsigned gaussian_planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLA
 
 static unsigned judged_planes(const cli_judge_job *job) {
   unsigned planes = cli_is_composited(&job->scene) ? gaussian_planes : CONIC_DRAWN_PLANES;
-  return job->scene.is_aov_given ? planes & job->scene.planes : planes;
+  return job->scene.is_aov_given ? planes & job->scene.shot.planes : planes;
 }
 
 /* Conic's own EXRs say how many samples a pixel has. */
@@ -26,7 +26,7 @@ static void take_samples_of_picture(cli_judge_job *job) {
     const conic_attribute *a = &image->attributes[i];
     if (strcmp(a->name, "conicSamples") == 0 && a->type == CONIC_ATTRIBUTE_DOUBLE && a->values[0] >= 1.0 &&
         a->values[0] <= CONIC_MAX_SAMPLES)
-      job->scene.view.samples = (int)a->values[0];
+      job->scene.shot.view.samples = (int)a->values[0];
   }
 }
 
@@ -67,7 +67,8 @@ static conic_status make_ready(cli_session *session, cli_judge_job *job) {
   if (status == CONIC_OK)
     status = cli_scene_open(session, &job->scene);
   if (status == CONIC_OK)
-    status = cli_scene_camera(&job->scene, 0, &job->camera);
+    status = cli_scene_camera(session, &job->scene, 0);
+  job->camera = job->scene.shot.camera;
   if (status == CONIC_OK)
     status = cli_reference_check_size(job->picture_path, &job->picture.image, &job->camera);
   pass_stage(job, CLI_JUDGE_OPEN, at);

@@ -7,8 +7,8 @@ static conic_status diagnose_gaussians(cli_session *session, cli_judge_job *job,
   const conic_gaussian_options options = cli_gaussian_options(&job->scene);
   conic_gaussian_judging judging;
   conic_gaussian_judging_init(&judging);
-  judging.samples = job->scene.view.samples;
-  judging.is_opaque = job->scene.options.has_background;
+  judging.samples = job->scene.shot.view.samples;
+  judging.is_opaque = job->scene.shot.render.has_background;
   judging.greatest = greatest;
   return conic_gaussian_diagnose(session->context, conic_source_gaussians(job->scene.source), &job->camera, &options,
                                  &judging, &job->picture.image, job->classes, job->found.faults, CLI_JUDGE_MOST_FAULTS,
@@ -20,9 +20,9 @@ static conic_status diagnose_splats(cli_session *session, cli_judge_job *job, co
   conic_oracle_judging judging;
   conic_oracle_judging_init(&judging);
   judging.greatest = greatest;
-  return conic_drawing_diagnose(session->context, &choice->drawing, &job->camera, &job->scene.options,
-                                job->scene.view.samples, &judging, &job->picture.image, job->classes, job->found.faults,
-                                CLI_JUDGE_MOST_FAULTS, &job->found.n_faults);
+  return conic_drawing_diagnose(session->context, &choice->drawing, &job->camera, &job->scene.shot.render,
+                                job->scene.shot.view.samples, &judging, &job->picture.image, job->classes,
+                                job->found.faults, CLI_JUDGE_MOST_FAULTS, &job->found.n_faults);
 }
 
 static int is_blank(const conic_image *image) {

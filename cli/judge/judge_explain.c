@@ -104,7 +104,7 @@ static conic_status explain_splat_pixels(cli_session *session, cli_judge_job *jo
   conic_contributions *contributions = NULL;
   conic_status status =
       conic_contributions_create_drawing(session->context, &conic_source_chosen(job->scene.source)->drawing,
-                                         &job->camera, &job->scene.options, &contributions);
+                                         &job->camera, &job->scene.shot.render, &contributions);
   for (int k = 0; k < job->found.n_worst && status == CONIC_OK; k++)
     status = explain_splat_pixel(contributions, &job->found.worst[k]);
   conic_contributions_destroy(contributions);

@@ -59,7 +59,7 @@ static int write_gradient_verdict(cli_session *session, const gradients_job *job
   if (!json)
     return exit_code;
   cli_json_text(json, "verdict", is_gradient_right(job) ? "right" : "wrong");
-  cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.gaussians.profile));
+  cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.shot.gaussians.profile));
   cli_json_text(json, "parameters", job->files.is_raw ? "raw" : "activated");
   cli_json_object(json, "gaussians");
   for (int k = 0; k < CONIC_N_GAUSSIAN_CLASSES; k++)
@@ -129,7 +129,8 @@ static conic_status judge_gradient(cli_session *session, gradients_job *job) {
   conic_float_model_init(&model, (conic_float_kind)job->floats);
   how.model = &model;
   how.is_raw = job->files.is_raw != 0;
-  conic_status status = cli_scene_camera(&job->scene, 0, &camera);
+  conic_status status = cli_scene_camera(session, &job->scene, 0);
+  camera = job->scene.shot.camera;
   if (status == CONIC_OK)
     status = check_gradient_files(job, &camera, scene);
   const double start = cli_seconds();
@@ -170,13 +171,13 @@ static int judge_gradient_files(cli_session *session, gradients_job *job) {
 static int check_gradient_judging(cli_session *session, const gradients_job *job) {
   const char *const inputs[] = {job->files.gradients, job->files.weights};
   const cli_render_job *scene = &job->scene;
-  const conic_gaussian_profile profile = scene->gaussians.profile;
+  const conic_gaussian_profile profile = scene->shot.gaussians.profile;
   if (!job->files.weights)
     return cli_usage("judge: --gradients needs --weights W.exr");
   if (!cli_is_composited(scene) || !conic_gradient_has_profile(profile) || profile == CONIC_PROFILE_EXACT)
     return cli_usage("judge: --gradients is of Gaussian scenes by the profiles inria-2023, gsplat-1.5, gsplat-1.6 "
                      "(and -aa) and khr-2026; give --profile");
-  if (scene->view.samples > 1 || scene->gaussians.prefilter != 0.0)
+  if (scene->shot.view.samples > 1 || scene->shot.gaussians.prefilter != 0.0)
     return cli_usage("judge: --gradients is of one sample a pixel, without a prefilter");
   int exit_code = cli_check_outputs(session, NULL, 0);
   if (exit_code == CLI_DONE)

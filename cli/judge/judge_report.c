@@ -15,8 +15,8 @@ conic_status cli_judge_draw(cli_session *session, cli_judge_job *job) {
   const conic_camera *camera = &job->camera;
   conic_status status = conic_image_allocate(session->context, camera->width, camera->height, 1u, &job->ours);
   if (status == CONIC_OK)
-    status = conic_source_draw(job->scene.source, job->scene.renderer, camera, &job->scene.options, &job->scene.view,
-                               &job->ours, &job->scene.statistics);
+    status = conic_source_draw(job->scene.source, job->scene.renderer, camera, &job->scene.shot.render,
+                               &job->scene.shot.view, &job->ours, &job->scene.statistics);
   return status;
 }
 
@@ -237,11 +237,11 @@ static void put_origin(const cli_page *page, const cli_judge_job *job) {
   fprintf(page->to, "</code></p>\n<p>conic %s, %d &times; %d pixels, ", conic_version(), job->camera.width,
           job->camera.height);
   if (cli_is_composited(&job->scene))
-    fprintf(page->to, "profile %s, ", conic_gaussian_profile_name(job->scene.gaussians.profile));
+    fprintf(page->to, "profile %s, ", conic_gaussian_profile_name(job->scene.shot.gaussians.profile));
   else
     fprintf(page->to, "method %s, ", cli_method_name(&job->scene));
-  fprintf(page->to, "%d &times; %d samples a pixel, judged in %.1f s.</p>\n</body></html>\n", job->scene.view.samples,
-          job->scene.view.samples, job->seconds[CLI_JUDGE_JUDGE]);
+  fprintf(page->to, "%d &times; %d samples a pixel, judged in %.1f s.</p>\n</body></html>\n",
+          job->scene.shot.view.samples, job->scene.shot.view.samples, job->seconds[CLI_JUDGE_JUDGE]);
 }
 
 static conic_status put_pictures(const cli_page *page, const cli_judge_job *job, const report_pictures *pictures) {

@@ -26,8 +26,8 @@ conic_status cli_judge_gaussians(cli_session *session, cli_judge_job *job) {
   conic_gaussian_judging_init(&judging);
   judging.model = &model;
   judging.n_pixels = (size_t)job->n_pixels;
-  judging.samples = job->scene.view.samples;
-  judging.is_opaque = job->scene.options.has_background;
+  judging.samples = job->scene.shot.view.samples;
+  judging.is_opaque = job->scene.shot.render.has_background;
   judging.greatest = greatest_in(job);
   conic_status status = conic_gaussian_judge(session->context, conic_source_gaussians(job->scene.source), &job->camera,
                                              &options, &judging, &job->picture.image, job->classes, &verdict);
@@ -54,7 +54,8 @@ conic_status cli_judge_splats(cli_session *session, cli_judge_job *job) {
   conic_reference reference = {.width = 0};
   conic_oracle_judging_init(&judging);
   judging.greatest = greatest_in(job);
-  conic_status status = conic_source_choose(job->scene.source, &job->camera, &job->scene.options, &job->scene.view);
+  conic_status status =
+      conic_source_choose(job->scene.source, &job->camera, &job->scene.shot.render, &job->scene.shot.view);
   if (status == CONIC_OK)
     status = cli_reference_draw(session, &job->scene, &job->camera, CONIC_ORACLE_METHOD, (conic_float_kind)job->floats,
                                 (size_t)job->n_pixels, 1, &reference);

@@ -101,8 +101,8 @@ void cli_judge_print(const cli_judge_job *job) {
   if (found->judged < found->n_whole)
     printf(" (the picture has %zu)", found->n_whole);
   printf("\nby %s %s, %s floats, %d x %d samples a pixel", is_composited ? "the profile" : "the method",
-         is_composited ? conic_gaussian_profile_name(job->scene.gaussians.profile) : cli_method_name(&job->scene),
-         float_words[job->floats], job->scene.view.samples, job->scene.view.samples);
+         is_composited ? conic_gaussian_profile_name(job->scene.shot.gaussians.profile) : cli_method_name(&job->scene),
+         float_words[job->floats], job->scene.shot.view.samples, job->scene.shot.view.samples);
   printf("\n%zu equal, %zu within rounding, %zu explained, %zu wrong\n", found->pixels[CONIC_PIXEL_EQUAL],
          found->pixels[CONIC_PIXEL_ROUNDED], found->pixels[CONIC_PIXEL_EXPLAINED], found->pixels[CONIC_PIXEL_WRONG]);
   print_explained(found);
@@ -212,11 +212,11 @@ int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
     cli_json_count(json, found->reasons[k], found->explained_by[k]);
   cli_json_close(json);
   if (cli_is_composited(&job->scene))
-    cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.gaussians.profile));
+    cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.shot.gaussians.profile));
   else
     cli_json_text(json, "method", cli_method_name(&job->scene));
   cli_json_text(json, "floats", float_words[job->floats]);
-  cli_json_count(json, "samples", (uint64_t)job->scene.view.samples);
+  cli_json_count(json, "samples", (uint64_t)job->scene.shot.view.samples);
   write_picture(json, job);
   write_worst(json, found);
   write_diagnosis(json, found);

@@ -8,14 +8,14 @@
 int cli_parse_focus(const char *text, void *value) {
   cli_focus *focus = value;
   if (strcmp(text, "auto") == 0) {
-    focus->kind = CLI_FOCUS_AUTO;
+    focus->kind = CONIC_FOCUS_MIDDLE;
     return 1;
   }
   if (cli_parse_number(text, &focus->depth)) {
-    focus->kind = CLI_FOCUS_DEPTH;
+    focus->kind = CONIC_FOCUS_DEPTH;
     return focus->depth > 0.0 && focus->depth < 1e30;
   }
-  focus->kind = CLI_FOCUS_PIXEL;
+  focus->kind = CONIC_FOCUS_PIXEL;
   return cli_parse_pair(text, ',', focus->pixel) && focus->pixel[0] >= 0.0 && focus->pixel[1] >= 0.0;
 }
 
@@ -29,7 +29,7 @@ int cli_parse_shutter(const char *text, void *value) {
 static const float sample_prefilter = 0.0625f;
 
 static int check_company(const cli_render_job *job) {
-  if (job->view.samples > 1)
+  if (job->shot.view.samples > 1)
     return cli_usage("render: --accumulate places its samples itself: not with --samples");
   if (job->repeat > 1 || job->progressive_path || job->deadline > 0.0 || job->deep_path || job->has_mattes)
     return cli_usage("render: not --accumulate with --repeat, --progressive, --deadline, --deep or --cryptomatte");
@@ -48,13 +48,13 @@ int cli_accumulate_settle(const cli_session *session, cli_render_job *job) {
     return cli_usage("%s: --shutter wants a way of the camera, --turntable or --camera with several, or --motion",
                      session->command);
   if (!job->is_prefilter_given)
-    job->options.prefilter = sample_prefilter;
+    job->shot.render.prefilter = sample_prefilter;
   return CLI_DONE;
 }
 
 int cli_accumulate_check(const cli_session *session, cli_render_job *job) {
   cli_accumulate_job *own = &job->accumulating;
-  if (!own->n_samples && job->planes & (1u << CONIC_PLANE_SAMPLES | 1u << CONIC_PLANE_VARIANCE))
+  if (!own->n_samples && job->shot.planes & (1u << CONIC_PLANE_SAMPLES | 1u << CONIC_PLANE_VARIANCE))
     return cli_usage("render: the planes samples and variance are --accumulate's");
   if (!own->n_samples)
     return own->is_given || own->is_lens_given || own->is_shutter_given || own->motion_path
@@ -66,9 +66,9 @@ int cli_accumulate_check(const cli_session *session, cli_render_job *job) {
     answer = cli_accumulate_settle(session, job);
   if (answer != CLI_DONE)
     return answer;
-  if (own->width.value > 0.0 && own->focus.kind != CLI_FOCUS_DEPTH)
-    job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_Z;
-  job->planes |= job->unwritten_planes;
+  if (own->width.value > 0.0 && own->focus.kind != CONIC_FOCUS_DEPTH) /* which is known before the lens is */
+    job->unwritten_planes |= ~job->shot.planes & 1u << CONIC_PLANE_Z;
+  job->shot.planes |= job->unwritten_planes;
   return CLI_DONE;
 }
 
@@ -87,8 +87,8 @@ void cli_accumulate_describe(const cli_render_job *job, conic_image *image) {
   if (!own->n_samples)
     return;
   add_number(image, "conicAccumulated", (double)own->facts.end_sample);
-  if (own->aperture > 0.0) {
-    add_number(image, "conicAperture", own->aperture);
+  if (job->shot.aperture.diameter > 0.0) {
+    add_number(image, "conicAperture", job->shot.aperture.diameter);
     add_number(image, "conicFocus", own->focus_depth);
   }
 }
@@ -102,7 +102,7 @@ void cli_accumulate_report(cli_json *json, const cli_render_job *job) {
   cli_json_count(json, "resumed", own->n_resumed);
   if (own->reached_noise >= 0.0)
     cli_json_number(json, "noise", own->reached_noise);
-  if (own->aperture > 0.0)
+  if (job->shot.aperture.diameter > 0.0)
     cli_json_number(json, "focus", own->focus_depth);
   cli_json_close(json);
 }

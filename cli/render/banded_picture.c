@@ -5,11 +5,9 @@
 #include <strings.h>
 
 #include "cli/render/frames.h"
-#include "cli/render/gather_picture.h"
-#include "cli/render/lit_picture.h"
 #include "cli/render/sharing.h"
 #include "cli/render/strips_writer.h"
-#include "cli/render/windows_team.h"
+#include "cli/session_team.h"
 #include "core/base/machine.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
@@ -17,6 +15,7 @@
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 #include "core/pictures/image_exr_bands.h"
+#include "shots/windows.h"
 
 /* How many strips may be drawn, a process, before the first that is missing: they wait in a file. And how many each
  * gets where they are dealt out, if they can be so small. */
@@ -26,6 +25,7 @@ typedef struct banded {
   cli_session *session;
   cli_team *team; /* null: alone */
   cli_render_job *job;
+  conic_shot_work work; /* as the library has it */
   const conic_camera *camera;
   char *path, *list_path, *part_path; /* OUT, and where it is kept OUT.strips and OUT.part */
   int is_kept;
@@ -37,7 +37,7 @@ typedef struct banded {
   int *owners;     /* of those; null: they are not dealt out */
   unsigned planes; /* as bits */
   conic_exr_bands *packer;
-  cli_window_counts counts;
+  conic_window_counts counts;
   const conic_image *pixels; /* of the strip at hand, */
   const cli_strip *strip;
   char *piece; /* and what is handed over of it */
@@ -49,7 +49,7 @@ typedef struct banded {
 /* --- which pictures --- */
 
 static uint64_t picture_bytes(const cli_render_job *job, const conic_camera *camera) {
-  return conic_planes_pixel_bytes(job->planes) * (uint64_t)camera->width * (uint64_t)camera->height;
+  return conic_planes_pixel_bytes(job->shot.planes) * (uint64_t)camera->width * (uint64_t)camera->height;
 }
 
 /* What is said of memory; where nothing is, pictures of what is read whole may have a gibibyte. */
@@ -63,19 +63,20 @@ static int is_plain_exr(const cli_session *session, const cli_render_job *job) {
   const char *path = job->n_outputs == 1 ? job->outputs[0] : "";
   const char *ending = *conic_file_ending(path) ? conic_file_ending(path) : job->writing.format;
   int has_more = job->deep_path || job->overdraw_path || job->clusters_path || job->boxes_path || job->legend_path ||
-                 job->has_legend || job->progressive_path || job->backdrop.is_given;
+                 job->has_legend || job->progressive_path || job->shot.has_backdrop;
   return ending && strcasecmp(ending, "exr") == 0 && !has_more && !session->host &&
-         !(job->planes & ~(unsigned)CLI_WINDOWS_PLANES);
+         !(job->shot.planes & ~(unsigned)CONIC_WINDOWS_PLANES);
 }
 
 int cli_may_be_banded(const cli_session *session, const cli_render_job *job) {
   return is_plain_exr(session, job) && job->repeat == 1 && !job->top.is_wanted && !job->accumulating.n_samples &&
-         !job->is_exposure_automatic && !cli_light_is_wanted(job) && !job->view.may_be_coarser;
+         !job->is_exposure_automatic && !conic_shot_is_lit(&job->shot) && !job->shot.view.may_be_coarser;
 }
 
 int cli_is_banded(const cli_session *session, const cli_render_job *job, const conic_camera *camera) {
   return picture_bytes(job, camera) > memory_for(job) / 2 && cli_may_be_banded(session, job) &&
-         !cli_is_gathered(job, camera) && conic_source_has_windows(job->source, job->renderer, job->is_transparent);
+         !conic_shot_is_gathered(&job->shot, job->abilities, camera) &&
+         conic_source_has_windows(job->source, job->renderer, job->is_transparent);
 }
 
 conic_status cli_refuse_too_large(const cli_session *session, const cli_render_job *job, const conic_camera *camera) {
@@ -198,7 +199,7 @@ static conic_status draw_strip(banded *b, size_t i_strip) {
   memcpy(tallies, b->windows.tallies, sizeof tallies);
   status = conic_source_windows_draw(&b->windows, &window, &pixels, &drawn);
   if (status == CONIC_OK) {
-    cli_windows_count(&b->windows, &drawn, &b->counts);
+    conic_windows_count(&b->windows, &drawn, &b->counts);
     b->job->statistics = drawn; /* which the file's header tells of */
     if (i_strip == 0)
       status = cli_strips_writer_open(&b->writer, pixels.is_display != 0);
@@ -221,7 +222,7 @@ static conic_status draw_strips(banded *b) {
   conic_status status = n > 0 && (!b->team || b->team->index == 0) ? draw_strip(b, b->drawn[0]) : CONIC_OK;
   for (size_t i = 1; i < n && (!b->team || b->owners) && status == CONIC_OK; i++)
     status = !b->team || b->owners[i] == b->team->index ? draw_strip(b, b->drawn[i]) : CONIC_OK;
-  while (b->team && !b->owners && status == CONIC_OK && (unit = b->team->next()) != CLI_NO_UNIT)
+  while (b->team && !b->owners && status == CONIC_OK && (unit = b->team->next()) != CONIC_NO_UNIT)
     status = draw_strip(b, b->drawn[unit + 1]);
   return status;
 }
@@ -290,7 +291,7 @@ static conic_status deal_strips(banded *b) {
     list[i] = (conic_window){0, b->camera->width, b->strips[b->drawn[i]].y_begin, b->strips[b->drawn[i]].y_end};
   conic_status status = agree(b, list ? CONIC_OK : CONIC_ERROR_MEMORY);
   if (status == CONIC_OK && b->n_drawn > 0)
-    status = cli_windows_deal(b->session, &b->windows, list, b->n_drawn, 1, &b->owners);
+    status = conic_shot_windows_deal(&b->work, &b->windows, list, b->n_drawn, 1, &b->owners);
   free(list);
   return status;
 }
@@ -355,9 +356,10 @@ static conic_status take_kept_strips(banded *b) {
     status = cli_strips_file_get(kept, &kept->found[i], &end);
     if (status != CONIC_OK)
       break;
-    end.statistics.isa = conic_isa_name(b->job->options.isa == CONIC_ISA_AUTO ? conic_isa_best() : b->job->options.isa);
+    end.statistics.isa =
+        conic_isa_name(b->job->shot.render.isa == CONIC_ISA_AUTO ? conic_isa_best() : b->job->shot.render.isa);
     end.statistics.threads = conic_context_threads(b->session->context);
-    cli_windows_count(&b->windows, &end.statistics, &b->counts);
+    conic_windows_count(&b->windows, &end.statistics, &b->counts);
     for (int k = 0; k < CONIC_SOURCE_TALLIES; k++)
       b->windows.tallies[k] += end.tallies[k];
     b->job->statistics = end.statistics;
@@ -390,10 +392,10 @@ static conic_status begin_banded(banded *b, int i_frame) {
     return CONIC_ERROR_MEMORY;
   for (int i = 0; i < CONIC_N_PLANES; i++)
     job->hashes[i] = b->writer.is_hashed && b->writer.written >> i & 1 ? CONIC_IMAGE_HASH_START : 0;
-  conic_source_view view = job->view;
+  conic_source_view view = job->shot.view;
   view.occlusion = CONIC_OCCLUSION_OFF; /* which needs to hold how deep every pixel hides */
-  conic_status status =
-      conic_source_windows_begin(job->source, job->renderer, b->camera, &job->options, &view, b->planes, &b->windows);
+  conic_status status = conic_source_windows_begin(job->source, job->renderer, b->camera, &job->shot.render, &view,
+                                                   b->planes, &b->windows);
   if (status == CONIC_OK)
     status = begin_pieces(b);
   if (status == CONIC_OK && b->is_kept && is_writing(b))
@@ -418,7 +420,7 @@ static void release_banded(banded *b) {
   conic_source_windows_end(&b->windows);
   free(b->strips);
   conic_memory_release(context, b->drawn);
-  free(b->owners);
+  conic_memory_release(context, b->owners);
   free(b->piece);
   free(b->path);
   free(b->list_path);
@@ -428,15 +430,21 @@ static void release_banded(banded *b) {
 conic_status cli_render_banded(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
                                conic_render_statistics *statistics) {
   banded b = {.session = session,
-              .team = job->sharing == CLI_SHARES_WINDOWS ? session->team : NULL,
+              .team = job->sharing == CONIC_UNITS_WINDOWS ? session->team : NULL,
               .job = job,
               .camera = camera,
               .is_kept = *job->kept_key != 0,
-              .planes = job->planes};
+              .planes = job->shot.planes};
+  b.work = (conic_shot_work){.context = session->context,
+                             .source = job->source,
+                             .renderer = job->renderer,
+                             .shot = &job->shot,
+                             .executor = b.team ? cli_sharing_executor(job) : NULL,
+                             .units = job->sharing};
   b.writer = (cli_strips_writer){.session = session,
                                  .job = job,
                                  .camera = camera,
-                                 .written = job->planes & ~job->unwritten_planes,
+                                 .written = job->shot.planes & ~job->unwritten_planes,
                                  .is_hashed = session->json_path != NULL};
   conic_moment start = conic_moment_now();
   conic_status status = begin_banded(&b, i_frame);
@@ -453,7 +461,7 @@ conic_status cli_render_banded(cli_session *session, cli_render_job *job, int i_
     status = agree(&b, draw_strips(&b));
   status = end_banded(&b, status);
   if (status == CONIC_OK)
-    status = cli_windows_sum(b.team, &b.windows, &b.counts);
+    status = conic_windows_sum(&b.work, &b.windows, &b.counts);
   job->banded_planes = b.writer.written;
   *statistics = b.counts.statistics;
   statistics->ms.frame = 1e3 * (cli_seconds() - start.clock_s);

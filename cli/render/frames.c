@@ -181,9 +181,3 @@ int cli_frames_check(const cli_session *session, cli_render_job *job, const char
   }
   return answer;
 }
-
-void cli_frame_orbit(const cli_render_job *job, int i_frame, conic_camera *camera) {
-  const conic_source_scale *scale = conic_source_measure(job->source);
-  cli_camera_orbit(scale, job->is_up_given ? job->framing.up : scale->up, (double)i_frame / (double)job->n_frames,
-                   camera);
-}

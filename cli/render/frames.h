@@ -28,7 +28,4 @@ int cli_frames_count(const cli_render_job *job);
  * counted from 0, and of these "%s.exr" is the view's own name. Of two eyes, cli_stereo_name comes on top. */
 char *cli_frame_name(const cli_render_job *job, const char *path, int i_frame);
 
-/* Turns a camera about the source's centre and what points up, as far as frame `i_frame` of the turntable. */
-void cli_frame_orbit(const cli_render_job *job, int i_frame, conic_camera *camera);
-
 #endif

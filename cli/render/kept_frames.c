@@ -154,7 +154,7 @@ static void make_key(const cli_session *session, const cli_render_job *job, char
   conic_sha256_begin(&sum);
   cli_arguments_key_add(&sum, job->n_arguments, job->arguments, 1);
   cli_arguments_key_add_number(&sum, conic_guard_bytes(session->context));
-  conic_sha256_add(&sum, &job->options.exposure, sizeof job->options.exposure); /* which may be automatic */
+  conic_sha256_add(&sum, &job->shot.render.exposure, sizeof job->shot.render.exposure); /* which may be automatic */
   conic_sha256_end(&sum, key);
 }
 
@@ -203,7 +203,7 @@ conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job) {
     return CONIC_OK;
   if (cli_team_is_first(session))
     make_key(session, job, job->kept_key);
-  if (job->sharing != CLI_SHARES_NOTHING)
+  if (job->sharing != CONIC_UNITS_NONE)
     session->team->broadcast(job->kept_key, sizeof job->kept_key);
   if (!is_several)
     return CONIC_OK;
@@ -218,7 +218,7 @@ conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job) {
   }
   own->is_resumable = 1; /* also of who goes on */
   status = cli_sharing_end(session, job, status);
-  return status == CONIC_OK && job->sharing != CLI_SHARES_NOTHING ? spread_list(session, job) : status;
+  return status == CONIC_OK && job->sharing != CONIC_UNITS_NONE ? spread_list(session, job) : status;
 }
 
 void cli_kept_frames_release(cli_session *session, cli_render_job *job) {
@@ -261,7 +261,7 @@ void cli_kept_frames_take(void *cookie, int from, void *bytes, size_t n_bytes) {
 }
 
 static void hand_lines(cli_session *session, cli_render_job *job, const growing_text *lines) {
-  if (job->sharing == CLI_SHARES_FRAMES)
+  if (job->sharing == CONIC_UNITS_FRAMES)
     session->team->hand(lines->bytes, lines->n);
   else
     cli_kept_frames_take(job->kept, 0, lines->bytes, lines->n);
@@ -282,7 +282,7 @@ conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int
   conic_status status = conic_progress(session->context, "draw", 0.0);
   if (cli_sharing_has_picture(session, job))
     *is_finished = status == CONIC_OK && is_frame_there(kept, i_frame);
-  if (job->sharing > CLI_SHARES_FRAMES)
+  if (job->sharing > CONIC_UNITS_FRAMES)
     session->team->broadcast(is_finished, sizeof *is_finished);
   if (*is_finished && cli_sharing_has_picture(session, job))
     hand_lines(session, job, &nothing);

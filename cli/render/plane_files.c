@@ -71,7 +71,7 @@ int cli_planes_check(const cli_session *session, const cli_render_job *job) {
 conic_status cli_planes_check_formats(cli_session *session, const cli_render_job *job) {
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
-    unsigned set = set_of(job, job->outputs[i]), planes = set ? set & RGBA ? RGBA : set & (~set + 1) : job->planes;
+    unsigned set = set_of(job, job->outputs[i]), planes = set ? set & RGBA ? RGBA : set & (~set + 1) : job->shot.planes;
     if (set && holds(job, job->outputs[i]) == HOLDS_LOOKS)
       planes = RGBA; /* which is made of the others */
     status = conic_image_check_output_as(session->context, job->outputs[i], planes, &job->writing);

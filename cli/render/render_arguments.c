@@ -2,12 +2,13 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/render/fill_shot.h"
 #include "cli/render/kept_frames.h"
-#include "cli/render/lit_picture.h"
 #include "cli/render/sample_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/shell.h"
 #include "core/files/file.h"
+#include "shots/shot_plan.h"
 
 static const char *const overdraw_words[] = {"log", "confetti", NULL};
 static const char *const exr_words[] = {"float", "half", NULL};
@@ -34,7 +35,7 @@ static int check_deep(const cli_render_job *job) {
   const char *dot = strrchr(job->deep_path, '.');
   if (!dot || strcmp(dot, ".exr") != 0)
     return cli_usage("%s: a deep image is an .exr", job->deep_path);
-  if (job->view.samples > 1)
+  if (job->shot.view.samples > 1)
     return cli_usage("render: --deep lists the splats of pixels, not of --samples");
   return CLI_DONE;
 }
@@ -53,6 +54,16 @@ static int check_streaming(const cli_render_job *job, const int is_given[2]) {
   return CLI_DONE;
 }
 
+static int check_light(const cli_render_job *job) {
+  if (job->sky_path && job->n_directions == 0)
+    return cli_usage("render: the light of %s comes from so many directions as --ao says; give it, too", job->sky_path);
+  if (conic_shot_is_lit(&job->shot) && job->abilities & CONIC_SOURCE_COMPOSITES)
+    return cli_usage("render: --ao, --shadow and lamps are of surfaces; give --profile surface, too");
+  if (conic_shot_is_lit(&job->shot) && job->top.is_wanted)
+    return cli_usage("render: --ao, --shadow and lamps are not of --camera top");
+  return CLI_DONE;
+}
+
 static int check_transparency(cli_render_job *job) {
   if (job->abilities & CONIC_SOURCE_COMPOSITES)
     return cli_usage("render: a Gaussian scene lets light through as it is; --transparency is of its splats, by "
@@ -62,9 +73,9 @@ static int check_transparency(cli_render_job *job) {
                      "mesh");
   if (job->deep_path || job->has_mattes || job->top.is_wanted)
     return cli_usage("render: not --transparency with --deep, --cryptomatte or --camera top");
-  if (job->options.passes != 3)
+  if (job->shot.render.passes != 3)
     return cli_usage("render: --transparency is of surfaces that blend: not with --passes 1");
-  job->view.transparency = CONIC_TRANSPARENCY_LAYERS;
+  job->shot.view.transparency = CONIC_TRANSPARENCY_LAYERS;
   job->opening.keeps_alpha = 1;
   return CLI_DONE;
 }
@@ -112,7 +123,7 @@ static int check_outputs(const cli_session *session, cli_render_job *job, const 
     return cli_usage("render: --method patch draws samples of its own: not with --deep");
   answer = check_streaming(job, is_given);
   if (answer == CLI_DONE)
-    answer = cli_light_check(job);
+    answer = check_light(job);
   if (answer == CLI_DONE && job->is_transparent)
     answer = check_transparency(job);
   if (answer == CLI_DONE && job->top.is_wanted)
@@ -131,6 +142,22 @@ static int check_outputs(const cli_session *session, cli_render_job *job, const 
     return answer;
   list_frame_paths(job, paths);
   return cli_frames_check(session, job, paths, N_PATHS);
+}
+
+/* The planes that are drawn for what else is asked for. */
+static void want_planes(cli_render_job *job) {
+  enum { USUAL_DIRECTIONS = 64 };
+  unsigned planes = job->shot.planes;
+  if (planes & 1u << CONIC_PLANE_AO && job->n_directions == 0)
+    job->n_directions = USUAL_DIRECTIONS;
+  if (planes & 1u << CONIC_PLANE_SHADOW)
+    job->has_shadows = 1;
+  cli_shot_take_options(job);
+  planes = conic_shot_needs(&job->shot, planes);
+  if (job->deep_path)
+    planes |= 1u << CONIC_PLANE_RGBA; /* which its samples make */
+  job->unwritten_planes = planes & ~job->shot.planes;
+  job->shot.planes = planes;
 }
 
 int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
@@ -229,7 +256,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        .group = "clouds in levels (.lpc, COPC, EPT, Potree 2)"},
       {"deadline", CLI_NUMBER, &job->deadline, "S",
        "of a cloud in levels, no more is read after so many seconds; what is missing is drawn coarser", 0.001, 1e6},
-      {"tolerate", CLI_FLAG, &job->view.tolerates_damage, NULL,
+      {"tolerate", CLI_FLAG, &job->shot.view.tolerates_damage, NULL,
        "of a cloud in levels, what is damaged or does not come is drawn coarser, with a warning",
        .is_given = &is_given[0]},
       {"memory", CLI_INT, &memory_mib, "MiB",
@@ -255,29 +282,24 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
   job->writing.compression = (conic_compression)compression;
-  job->asked_planes = job->is_aov_given ? job->planes : 0;
+  job->asked_planes = job->is_aov_given ? job->shot.planes : 0;
   if (job->is_memory_given)
     job->access.memory_bytes = (uint64_t)memory_mib << 20;
   if (memory_mib < USUAL_MIB && !session->host)
     cli_shell_give_back_memory();
   job->access.connect_seconds = job->access.stall_seconds;
-  job->view.occlusion = (conic_occlusion)occlusion;
-  job->view.may_be_coarser = job->progressive_path || job->deadline > 0.0 || job->view.tolerates_damage;
-  cli_light_want_planes(job);
-  if (job->deep_path)
-    job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_RGBA; /* which its samples make */
-  if (job->planes & 1u << CONIC_PLANE_POSITION)
-    job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_Z; /* by which places are found */
-  job->planes |= job->unwritten_planes;
+  job->shot.view.occlusion = (conic_occlusion)occlusion;
+  job->shot.view.may_be_coarser = job->progressive_path || job->deadline > 0.0 || job->shot.view.tolerates_damage;
+  want_planes(job);
   if (job->overdraw_path)
-    job->planes |= 1u << CONIC_PLANE_COUNT;
+    job->shot.planes |= 1u << CONIC_PLANE_COUNT;
   if (job->clusters_path)
-    job->planes |= 1u << CONIC_PLANE_CLUSTER | 1u << CONIC_PLANE_RGBA;
+    job->shot.planes |= 1u << CONIC_PLANE_CLUSTER | 1u << CONIC_PLANE_RGBA;
   if (job->boxes_path)
-    job->planes |= 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_ID;
-  if (job->planes & 1u << CONIC_PLANE_CLUSTER)
-    job->planes |= 1u << CONIC_PLANE_ID;
+    job->shot.planes |= 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_ID;
+  if (job->shot.planes & 1u << CONIC_PLANE_CLUSTER)
+    job->shot.planes |= 1u << CONIC_PLANE_ID;
   if (job->has_mattes)
-    job->planes |= CONIC_MATTE_PLANES;
+    job->shot.planes |= CONIC_MATTE_PLANES;
   return answer == CLI_DONE ? check_outputs(session, job, is_given) : answer;
 }

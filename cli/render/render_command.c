@@ -5,16 +5,15 @@
 #include "cli/command.h"
 #include "cli/host_keeps.h"
 #include "cli/render/banded_picture.h"
+#include "cli/render/fill_shot.h"
 #include "cli/render/frames.h"
-#include "cli/render/gather_picture.h"
 #include "cli/render/kept_frames.h"
-#include "cli/render/lit_picture.h"
 #include "cli/render/sharing.h"
-#include "cli/scene/backdrop.h"
+#include "cli/scene/background_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/session_team.h"
-#include "conic/gaussian_judge.h"
 #include "core/base/message.h"
+#include "shots/shot_plan.h"
 
 static int compare_frames(const void *a, const void *b) {
   const conic_render_statistics *first = a, *second = b;
@@ -67,11 +66,12 @@ void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, c
   name_attribute(image, "conicEpsilonMode", s->epsilon_is_fixed ? "fixed" : "auto", 0);
   name_attribute(image, "conicEpsilon", NULL, s->epsilon);
   name_attribute(image, "conicNear", NULL, s->near_z);
-  name_attribute(image, "conicCutoff", NULL, (double)job->options.kernel.cutoff);
+  name_attribute(image, "conicCutoff", NULL, (double)job->shot.render.kernel.cutoff);
   name_attribute(image, "conicPrefilter", NULL,
-                 job->abilities & CONIC_SOURCE_COMPOSITES ? job->gaussians.prefilter : (double)job->options.prefilter);
-  name_attribute(image, "conicExposure", NULL, job->options.exposure);
-  name_attribute(image, "conicSamples", NULL, (double)job->view.samples);
+                 job->abilities & CONIC_SOURCE_COMPOSITES ? job->shot.gaussians.prefilter
+                                                          : (double)job->shot.render.prefilter);
+  name_attribute(image, "conicExposure", NULL, job->shot.render.exposure);
+  name_attribute(image, "conicSamples", NULL, (double)job->shot.view.samples);
   name_attribute(image, "conicFx", NULL, camera->fx);
   name_attribute(image, "conicFy", NULL, camera->fy);
   name_attribute(image, "conicCx", NULL, camera->cx);
@@ -105,7 +105,7 @@ conic_status cli_frame_write(cli_session *session, cli_render_job *job, const co
     free(path);
   }
   job->write_ms += 1e3 * (cli_seconds() - start.clock_s);
-  if (job->sharing != CLI_SHARES_FRAMES) /* whose units write */
+  if (job->sharing != CONIC_UNITS_FRAMES) /* whose units write */
     cli_team_trace(session, "write", "picture", (uint64_t)i_frame, start, 0);
   return status;
 }
@@ -168,7 +168,7 @@ static conic_status write_deep(cli_session *session, cli_render_job *job, const 
     return CONIC_OK;
   char *path = cli_frame_name(job, job->deep_path, i_frame);
   conic_status status =
-      path ? conic_contributions_create_drawing(session->context, drawing, camera, &job->options, &contributions)
+      path ? conic_contributions_create_drawing(session->context, drawing, camera, &job->shot.render, &contributions)
            : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     status = conic_contributions_write(contributions, path, image);
@@ -199,11 +199,11 @@ static void warn_of_empty(cli_session *session, cli_render_job *job) {
  * was asked, may stand out by more than a pixel. */
 static void warn_of_error(cli_session *session, cli_render_job *job) {
   const conic_source_choice *choice = conic_source_chosen(job->source);
-  double wanted = job->view.error_px, reached = choice->error_px;
+  double wanted = job->shot.view.error_px, reached = choice->error_px;
   const char *const kinds[] = {"--only triangles ", "--only surfels "};
-  const char *kind = job->view.only_kind < 0 ? "it " : kinds[job->view.only_kind];
-  int is_asked = wanted > 0.0, is_free = !is_asked && job->view.budget == 0,
-      is_faded = is_asked && choice->color_error > job->view.color_error;
+  const char *kind = job->shot.view.only_kind < 0 ? "it " : kinds[job->shot.view.only_kind];
+  int is_asked = wanted > 0.0, is_free = !is_asked && job->shot.view.budget == 0,
+      is_faded = is_asked && choice->color_error > job->shot.view.color_error;
   if (job->is_error_warned || (reached <= (is_asked ? wanted : 1.0) && !is_faded))
     return;
   if (is_asked && reached > wanted)
@@ -212,8 +212,8 @@ static void warn_of_error(cli_session *session, cli_render_job *job) {
   else if (is_faded)
     conic_log(session->context, CONIC_LOG_WARNING,
               "%s: %scannot keep --color-error %g: colours are up to %.3g steps off", job->inputs[0], kind,
-              job->view.color_error, choice->color_error);
-  else if (is_free && job->view.only_kind == CONIC_HYBRID_SURFELS)
+              job->shot.view.color_error, choice->color_error);
+  else if (is_free && job->shot.view.only_kind == CONIC_HYBRID_SURFELS)
     conic_log(session->context, CONIC_LOG_WARNING,
               "%s: --only surfels stand out from the mesh: the picture is up to %.3g pixels off", job->inputs[0],
               reached);
@@ -233,43 +233,44 @@ static void warn_of_alpha(cli_session *session, cli_render_job *job) {
             job->inputs[0]);
 }
 
-/* The plane doubt is not the renderer's, but the oracle's about what it may have drawn. */
-static conic_status find_doubts(cli_session *session, const cli_render_job *job, const conic_camera *camera,
-                                conic_image *image) {
-  conic_gaussian_judging judging;
-  if (!image->planes[CONIC_PLANE_DOUBT])
-    return CONIC_OK;
-  conic_gaussian_judging_init(&judging);
-  judging.samples = job->view.samples;
-  return conic_gaussian_find_doubts(session->context, conic_source_gaussians(job->source), camera, &job->gaussians,
-                                    &judging, image);
-}
-
 /* Fragments are counted once, and where somebody asks for them: what is hidden needs no look otherwise. */
-static conic_status render_repeats(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
-                                   conic_image *image, conic_render_statistics *repeats) {
+static conic_status render_repeats(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
+                                   conic_render_statistics *repeats) {
+  conic_shot_outcome outcome;
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++) {
-    job->options.skip_hidden = i > 0 || !session->json_path;
-    status = job->accumulating.n_samples ? cli_accumulate_picture(session, job, i_frame, camera, image, &repeats[i])
-             : job->progressive_path     ? cli_render_levels(session, job, camera, image, &repeats[i])
-                                         : cli_render_picture(session, job, camera, image, &repeats[i]);
+    job->shot.render.skip_hidden = i > 0 || !session->json_path;
+    status = job->shot.n_samples     ? cli_accumulate_picture(session, job, i_frame, image, &outcome)
+             : job->progressive_path ? cli_render_levels(session, job, image, &outcome)
+                                     : cli_render_picture(job, image, &outcome);
+    repeats[i] = outcome.statistics;
     repeats[i].fragments = repeats[0].fragments;
+    job->light_ms += outcome.light_ms;
   }
   return status;
 }
 
 /* Of windows, the picture comes together in the first process; others need it where it is gathered or lit, for all go
  * along to draw views and maps. */
-static int needs_image(const cli_session *session, const cli_render_job *job, const conic_camera *camera) {
-  return job->sharing != CLI_SHARES_WINDOWS || cli_sharing_has_picture(session, job) || cli_is_gathered(job, camera) ||
-         cli_light_is_wanted(job);
+static int needs_image(const cli_session *session, const cli_render_job *job, int is_gathered) {
+  return job->sharing != CONIC_UNITS_WINDOWS || cli_sharing_has_picture(session, job) || is_gathered ||
+         conic_shot_is_lit(&job->shot);
+}
+
+/* What lists splats of a picture, or shows it while it comes, is of one pinhole. */
+static conic_status check_gathered(const cli_render_job *job, int is_gathered) {
+  if (!is_gathered ||
+      !(job->progressive_path || job->deadline > 0.0 || job->deep_path || job->boxes_path || job->has_mattes))
+    return CONIC_OK;
+  cli_usage("render: --progressive, --deadline, --deep, --boxes and --cryptomatte want a perspective camera without a "
+            "lens that distorts");
+  return CONIC_ERROR_ARGUMENT;
 }
 
 /* One that is written while it is drawn. */
 static conic_status render_banded(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
                                   conic_render_statistics *statistics) {
-  job->options.skip_hidden = !session->json_path;
+  job->shot.render.skip_hidden = !session->json_path;
   conic_status status = cli_render_banded(session, job, i_frame, camera, statistics);
   if (status != CONIC_OK || !cli_sharing_has_picture(session, job))
     return status;
@@ -285,11 +286,17 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
                                  conic_render_statistics *repeats) {
   conic_camera camera;
   double start = cli_seconds();
-  conic_status status = cli_accumulate_camera(session, job, i_frame, &camera);
+  conic_status status = cli_shot_fill(session, job, i_frame);
+  if (status == CONIC_OK)
+    status = conic_shot_camera(session->context, &job->shot, 0.5, &camera);
+  if (status != CONIC_OK)
+    return status;
+  int is_gathered = conic_shot_is_gathered(&job->shot, job->abilities, &camera);
   job->last_camera = camera;
   job->camera_ms += 1e3 * (cli_seconds() - start);
+  status = check_gathered(job, is_gathered);
   if (status == CONIC_OK)
-    status = cli_choose_exposure(session, job, &camera);
+    status = cli_choose_exposure(job);
   if (session->host || image->width != camera.width || image->height != camera.height)
     cli_host_release_image(session, image);
   if (status == CONIC_OK && cli_is_banded(session, job, &camera))
@@ -298,19 +305,14 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     status = cli_refuse_kept_picture(job);
   if (status == CONIC_OK)
     status = cli_refuse_too_large(session, job, &camera);
-  if (status == CONIC_OK && !conic_image_planes(image) && needs_image(session, job, &camera))
-    status = cli_host_allocate_image(session, camera.width, camera.height, job->planes, image);
+  if (status == CONIC_OK && !conic_image_planes(image) && needs_image(session, job, is_gathered))
+    status = cli_host_allocate_image(session, camera.width, camera.height, job->shot.planes, image);
   if (status == CONIC_OK)
-    status = render_repeats(session, job, i_frame, &camera, image, repeats);
+    status = render_repeats(session, job, i_frame, image, repeats);
   if (status != CONIC_OK || !cli_sharing_has_picture(session, job))
     return status;
   for (int i = 0; i < job->repeat; i++)
     job->frames_ms += repeats[i].ms.frame;
-  status = conic_image_locate(session->context, &camera, job->view.samples, image);
-  if (status == CONIC_OK)
-    status = find_doubts(session, job, &camera, image);
-  if (status != CONIC_OK)
-    return status;
   take_medians(job, repeats, (size_t)job->repeat);
   warn_of_empty(session, job);
   warn_of_error(session, job);
@@ -347,18 +349,17 @@ static void hash_image(const cli_session *session, cli_render_job *job, const co
 
 /* That of all frames is the first one's, whoever draws that. */
 static conic_status choose_first_exposure(cli_session *session, cli_render_job *job) {
-  conic_camera camera;
   conic_status status = CONIC_OK;
-  if ((job->sharing == CLI_SHARES_NOTHING && !cli_frames_are_several(job)) || !job->is_exposure_automatic)
+  if ((job->sharing == CONIC_UNITS_NONE && !cli_frames_are_several(job)) || !job->is_exposure_automatic)
     return CONIC_OK;
-  if (cli_team_is_first(session) || job->sharing == CLI_SHARES_WINDOWS) { /* of which all draw some */
-    status = cli_accumulate_camera(session, job, job->frames.first - 1, &camera);
+  if (cli_team_is_first(session) || job->sharing == CONIC_UNITS_WINDOWS) { /* of which all draw some */
+    status = cli_shot_fill(session, job, job->frames.first - 1);
     if (status == CONIC_OK)
-      status = cli_choose_exposure(session, job, &camera);
+      status = cli_choose_exposure(job);
   }
   status = cli_sharing_end(session, job, status);
-  if (status == CONIC_OK && job->sharing != CLI_SHARES_NOTHING)
-    session->team->broadcast(&job->options.exposure, sizeof job->options.exposure);
+  if (status == CONIC_OK && job->sharing != CONIC_UNITS_NONE)
+    session->team->broadcast(&job->shot.render.exposure, sizeof job->shot.render.exposure);
   job->is_exposure_automatic = 0;
   return status;
 }
@@ -384,7 +385,7 @@ static conic_status render_frames(cli_session *session, cli_render_job *job, con
     }
     if (status == CONIC_OK)
       status = cli_kept_frames_add(session, job, i_frame);
-    if (job->sharing == CLI_SHARES_FRAMES)
+    if (job->sharing == CONIC_UNITS_FRAMES)
       cli_sharing_note(session, job, "frame", (uint64_t)i, start, 0);
   }
   return status;
@@ -437,6 +438,7 @@ static int run(cli_session *session, int argc, char **argv) {
   double start = cli_seconds();
   int exit_code = cli_render_parse(session, argc, argv, &job);
   enum { MANY = 16 };
+  job.session = session;
   job.start_seconds = start;
   job.n_arguments = argc;
   job.arguments = argv;

@@ -2,11 +2,9 @@
 #include <errno.h>
 #include <string.h>
 
-#include "cli/render/gather_picture.h"
-#include "cli/render/lit_picture.h"
 #include "cli/render/sharing.h"
-#include "cli/scene/backdrop.h"
 #include "core/files/disk.h"
+#include "shots/stage.h"
 
 /* The deadline counts from the start of the program's work, not of this picture. */
 static double seconds_left(const cli_render_job *job) {
@@ -19,17 +17,18 @@ void cli_deadline_open(cli_render_job *job) {
     job->access.seconds = seconds_left(job);
 }
 
-conic_status cli_render_picture(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                                conic_image *image, conic_render_statistics *statistics) {
+static void begin_deadline(cli_render_job *job) {
   if (job->deadline > 0.0)
-    job->view.seconds = seconds_left(job);
-  const cli_looking looking = {camera, &job->options, &job->view, NULL};
-  conic_status status = cli_draw_looking(session, job, &looking, image, statistics);
-  if (status == CONIC_OK)
-    status = cli_light_picture(session, job, camera, image);
-  if (status == CONIC_OK && cli_sharing_has_picture(session, job))
-    cli_backdrop_show(job, image);
-  return status;
+    job->shot.view.seconds = seconds_left(job);
+}
+
+conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_shot_outcome *outcome) {
+  conic_shot_work drawing;
+  begin_deadline(job);
+  conic_status status = conic_shot_work_begin(job->source, job->renderer, &job->shot, &drawing);
+  drawing.executor = cli_sharing_executor(job);
+  drawing.units = job->sharing;
+  return status == CONIC_OK ? conic_shot_work_draw(&drawing, image, outcome) : status;
 }
 
 static conic_status write_progress(cli_session *session, const cli_render_job *job, int i_picture,
@@ -49,13 +48,13 @@ static conic_status make_folder(const char *path) {
 }
 
 /* A picture of the first level, of the first two, …, as long as one more level makes a finer one. */
-conic_status cli_render_levels(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                               conic_image *image, conic_render_statistics *statistics) {
+conic_status cli_render_levels(cli_session *session, cli_render_job *job, conic_image *image,
+                               conic_shot_outcome *outcome) {
   int n_levels = conic_source_measure(job->source)->n_levels;
   conic_status status = make_folder(job->progressive_path);
   for (int level = 1; level <= n_levels && status == CONIC_OK; level++) {
-    job->view.most_levels = level;
-    status = cli_render_picture(session, job, camera, image, statistics);
+    job->shot.view.most_levels = level;
+    status = cli_render_picture(job, image, outcome);
     if (status == CONIC_OK)
       status = write_progress(session, job, level, image);
     if (conic_source_chosen(job->source)->n_levels < level || (job->deadline > 0.0 && seconds_left(job) <= 1e-3))

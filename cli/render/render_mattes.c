@@ -92,7 +92,7 @@ static conic_status list_clusters(matte_pass *pass, const conic_image *fine) {
 static void rank_row(void *data, size_t i_row, int i_thread) {
   const matte_pass *pass = data;
   uint32_t bits[MOST_SAMPLES];
-  size_t samples = (size_t)pass->job->view.samples, fine_width = (size_t)pass->fine->width;
+  size_t samples = (size_t)pass->job->shot.view.samples, fine_width = (size_t)pass->fine->width;
   size_t width = (size_t)pass->image->width;
   const uint32_t *names = pass->fine->planes[pass->naming];
   (void)i_thread;
@@ -113,7 +113,7 @@ static conic_status take_band(void *cookie, conic_image *fine, int first_row) {
   pass->first_row = (size_t)first_row;
   conic_status status = pass->naming == CONIC_PLANE_CLUSTER ? list_clusters(pass, fine) : CONIC_OK;
   if (status == CONIC_OK)
-    conic_parallel_for(pass->context, (size_t)(fine->height / pass->job->view.samples), rank_row, pass);
+    conic_parallel_for(pass->context, (size_t)(fine->height / pass->job->shot.view.samples), rank_row, pass);
   return status;
 }
 
@@ -143,8 +143,8 @@ conic_status cli_mattes_fill(cli_session *session, cli_render_job *job, const co
   conic_cryptomatte_manifest_release(session->context, &job->manifest);
   conic_status status = is_hybrid ? CONIC_OK : list_up_to(&pass, (size_t)job->n_inputs);
   if (status == CONIC_OK)
-    status = conic_render_bands(session->context, job->renderer, drawing, camera, &job->options, job->view.samples,
-                                1u << CONIC_PLANE_ID | 1u << pass.naming, take_band, &pass);
+    status = conic_render_bands(session->context, job->renderer, drawing, camera, &job->shot.render,
+                                job->shot.view.samples, 1u << CONIC_PLANE_ID | 1u << pass.naming, take_band, &pass);
   if (status == CONIC_OK)
     status = write_manifest(&pass, &job->manifest);
   image->manifest = job->manifest.text;

@@ -1,4 +1,4 @@
-#include "cli/scene/backdrop.h"
+#include "cli/scene/background_options.h"
 #include <string.h>
 
 #include "cli/color_options.h"
@@ -119,8 +119,8 @@ static conic_status report_counts(cli_json *json, const cli_render_job *job) {
     if (splats_by_formula(s, i))
       cli_json_count(json, formula_name(i), splats_by_formula(s, i));
   cli_json_close(json);
-  if (job->view.error_px > 0.0)
-    cli_json_number(json, "error_px_asked", job->view.error_px);
+  if (job->shot.view.error_px > 0.0)
+    cli_json_number(json, "error_px_asked", job->shot.view.error_px);
   return report_source(json, job);
 }
 
@@ -155,9 +155,9 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_text(json, "isa", s->isa);
   cli_json_count(json, "threads", (uint64_t)s->threads);
   cli_json_count(json, "tile", (uint64_t)s->tile);
-  cli_json_count(json, "samples", (uint64_t)job->view.samples);
+  cli_json_count(json, "samples", (uint64_t)job->shot.view.samples);
   cli_accumulate_report(json, job);
-  cli_json_number(json, "exposure", job->options.exposure);
+  cli_json_number(json, "exposure", job->shot.render.exposure);
   cli_json_text(json, "tone", conic_tone_name((conic_tone)job->tone));
   cli_json_text(json, "epsilon_mode", s->epsilon_is_fixed ? "fixed" : "auto");
   cli_json_number(json, "epsilon", s->epsilon);

@@ -1,26 +1,26 @@
 /* A scene as the commands that draw one take it: opened, measured, framed. */
 #include <errno.h>
-#include <math.h>
 #include <string.h>
 
 #include "cli/host_keeps.h"
 #include "cli/render/frames.h"
 #include "cli/render/sharing.h"
 #include "cli/scene/light_options.h"
-#include "cli/scene/projection.h"
+#include "cli/scene/scene_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/scene/views.h"
 #include "cli/session_team.h"
 #include "core/files/file.h"
+#include "shots/way.h"
 #include "source/shared_source.h"
 #include "source/source_samples.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
-  return job->view.error_px > 0.0 || job->budget > 0;
+  return job->shot.view.error_px > 0.0 || job->budget > 0;
 }
 
 const char *cli_method_name(const cli_render_job *job) {
-  return job->is_patch ? "patch" : conic_method_name(job->options.method);
+  return job->is_patch ? "patch" : conic_method_name(job->shot.render.method);
 }
 
 static conic_status read_views(cli_session *session, cli_render_job *job) {
@@ -36,7 +36,7 @@ static conic_status read_views(cli_session *session, cli_render_job *job) {
 
 conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
   const char *texture_path = job->opening.texture_path;
-  if (cli_isa_check(session, job->options.isa) != CLI_DONE)
+  if (cli_isa_check(session, job->shot.render.isa) != CLI_DONE)
     return CONIC_ERROR_UNSUPPORTED;
   errno = 0;
   if (texture_path && !conic_file_is_there(texture_path)) {
@@ -67,10 +67,10 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job) {
   if (has_spacings)
     status = conic_source_spacing(job->source, &spacing);
   if (job->epsilon.value >= 0.0)
-    job->options.epsilon = job->epsilon.value * (job->epsilon.is_in_spacings ? spacing : 1.0);
+    job->shot.render.epsilon = job->epsilon.value * (job->epsilon.is_in_spacings ? spacing : 1.0);
   if (job->near_z.value >= 0.0)
-    job->options.near_z = job->near_z.value * (job->near_z.is_in_spacings ? spacing : 1.0);
-  job->accumulating.aperture = lens->value * (lens->is_in_spacings ? spacing : 1.0);
+    job->shot.render.near_z = job->near_z.value * (job->near_z.is_in_spacings ? spacing : 1.0);
+  job->shot.aperture.diameter = lens->value * (lens->is_in_spacings ? spacing : 1.0);
   return status;
 }
 
@@ -114,10 +114,10 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   if (status == CONIC_OK)
     status = resolve_lengths(session, job);
   if (status == CONIC_OK)
-    conic_source_settle(job->source, &job->options);
+    conic_source_settle(job->source, &job->shot.render);
   double start = cli_seconds();
   conic_team team;
-  if (is_seen_around(job) && job->sharing != CLI_SHARES_NOTHING && !session->host)
+  if (is_seen_around(job) && job->sharing != CONIC_UNITS_NONE && !session->host)
     status =
         cli_sharing_tell(session, conic_source_share_samples(job->source, cli_team_of_library(session, &team), status));
   if (status == CONIC_OK)
@@ -131,29 +131,42 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
 void cli_scene_release(cli_session *session, cli_render_job *job) {
   conic_cameras_release(session->context, &job->cameras);
   conic_sky_destroy(job->sky);
-  cli_accumulate_rest(job);
+  conic_shot_rest(&job->shot, job->source);
   conic_motion_destroy(job->accumulating.motion);
   cli_keep_renderer(session, &job->device, job->renderer);
   if (!cli_source_is_kept(session, job->source))
     conic_source_close(job->source);
 }
 
-/* What lies flat shows more of itself from higher up. */
-static double elevation_for(const conic_source_scale *scale, const double up[3]) {
-  static const double flat_part = 0.33, flat_elevation_deg = 35.0, elevation_deg = 15.0;
-  double height = 0.0, ground = HUGE_VAL;
-  for (int axis = 0; axis < 3; axis++) {
-    double extent = scale->maximum[axis] - scale->minimum[axis];
-    if (up[axis] != 0.0)
-      height = extent;
-    else
-      ground = extent < ground ? extent : ground;
-  }
-  return height > 0.0 && height < flat_part * ground ? flat_elevation_deg : elevation_deg;
+/* What the options say of a camera that sees all of the scene. */
+static conic_shot_framing framing_of(const cli_render_job *job, int i_frame) {
+  conic_shot_framing framing;
+  conic_shot_framing_init(&framing);
+  framing.framing = job->framing;
+  framing.kind = (conic_camera_kind)job->projection;
+  framing.finds_up = !job->is_up_given;
+  framing.finds_elevation = !job->is_elevation_given;
+  framing.is_plain = job->is_plain || job->deadline > 0.0; /* to find the outline takes time */
+  framing.has_eye = job->is_eye_given;
+  memcpy(framing.eye, job->eye, sizeof framing.eye);
+  framing.i_turn = i_frame;
+  framing.n_turns = job->n_frames;
+  framing.finds_near = job->near_z.value < 0.0;
+  return framing;
 }
 
-static conic_status find_camera(cli_render_job *job, int i_frame, conic_camera *camera) {
-  conic_framing framing = job->framing;
+/* Of a turntable around a camera of a file. */
+static void orbit(const cli_render_job *job, int i_frame, conic_camera *camera) {
+  const conic_source_scale *scale = conic_source_measure(job->source);
+  double center[3];
+  for (int axis = 0; axis < 3; axis++)
+    center[axis] = 0.5 * scale->minimum[axis] + 0.5 * scale->maximum[axis];
+  conic_camera_orbit(center, job->is_up_given ? job->framing.up : scale->up, (double)i_frame / (double)job->n_frames,
+                     camera);
+}
+
+static conic_status find_camera(cli_render_job *job, int i_frame) {
+  conic_camera *camera = &job->shot.camera;
   if (job->is_every_view) {
     job->i_view = (size_t)i_frame;
     *camera = job->camera = job->cameras.cameras[i_frame];
@@ -162,32 +175,15 @@ static conic_status find_camera(cli_render_job *job, int i_frame, conic_camera *
   }
   if (job->camera_path) {
     *camera = job->camera;
-    cli_frame_orbit(job, i_frame, camera);
+    orbit(job, i_frame, camera);
     return CONIC_OK;
   }
-  if (!job->is_up_given)
-    memcpy(framing.up, conic_source_measure(job->source)->up, sizeof framing.up);
-  if (!job->is_elevation_given && (job->is_eye_given || job->projection >= CONIC_CAMERA_EQUIRECTANGULAR))
-    framing.elevation_deg = 0.0; /* of who stands in it */
-  else if (!job->is_plain && !job->is_elevation_given)
-    framing.elevation_deg = elevation_for(conic_source_measure(job->source), framing.up);
-  framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
-  conic_framing pinhole = framing;
-  cli_project_frame(job, &pinhole);
-  double near_z = HUGE_VAL;
-  conic_status status =
-      job->is_plain || job->deadline > 0.0 /* to find the outline takes time */
-          ? conic_source_frame(job->source, &pinhole, camera)
-          : conic_source_fit(job->source, &pinhole, job->options.kernel.cutoff, job->n_frames, camera, &near_z);
-  if (status == CONIC_OK)
-    cli_project(job, &framing, camera);
-  /* Strays, which are not framed, are no reason to cut off what is. */
-  if (status == CONIC_OK && job->near_z.value < 0.0 && near_z < job->options.near_z)
-    job->options.near_z = near_z;
-  return status;
+  const conic_shot_framing framing = framing_of(job, i_frame);
+  return conic_shot_frame(job->source, &framing, &job->shot);
 }
 
-conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *camera) {
-  conic_status status = find_camera(job, i_frame, camera);
-  return status == CONIC_OK ? cli_stereo_move(job, camera) : status;
+conic_status cli_scene_camera(cli_session *session, cli_render_job *job, int i_frame) {
+  conic_status status = find_camera(job, i_frame);
+  const conic_stereo_eye eye = cli_stereo_eye(job);
+  return status == CONIC_OK ? conic_camera_move_eye(session->context, &eye, &job->shot.camera) : status;
 }

@@ -34,13 +34,13 @@ static int is_tiff(const char *path) {
 static const char *find_stranger(const cli_render_job *job) {
   if (job->view_name || job->is_turntable || job->frames.is_given)
     return "--view, --turntable and --frames";
-  if (job->progressive_path || job->deadline > 0.0 || job->view.tolerates_damage)
+  if (job->progressive_path || job->deadline > 0.0 || job->shot.view.tolerates_damage)
     return "--progressive, --deadline and --tolerate";
   if (job->deep_path || job->overdraw_path || job->clusters_path || job->boxes_path)
     return "--deep, --overdraw, --clusters and --boxes";
   if (job->has_legend || job->legend_path || job->has_mattes)
     return "--legend and --cryptomatte";
-  if (job->is_exposure_automatic || job->backdrop.is_given || job->tone != CONIC_TONE_SRGB)
+  if (job->is_exposure_automatic || job->shot.has_backdrop || job->tone != CONIC_TONE_SRGB)
     return "--exposure auto, --tone and a background of two colours";
   if (job->repeat > 1 || job->budget || job->is_patch)
     return "--repeat, --budget and --method patch";
@@ -59,7 +59,7 @@ int cli_top_check(const cli_session *session, const cli_render_job *job) {
     return cli_usage("render: --camera top draws Gaussian scenes as surfaces; give --profile surface, too");
   if (job->abilities & CONIC_SOURCE_CLUSTERS)
     return cli_usage("render: --camera top draws points, splats and triangles, not hybrids");
-  if (job->view.error_px > 0.0 && !(job->abilities & CONIC_SOURCE_STREAMS))
+  if (job->shot.view.error_px > 0.0 && !(job->abilities & CONIC_SOURCE_STREAMS))
     return cli_usage("render: --error of --camera top is of .lpc, COPC, EPT and Potree");
   if (job->n_outputs == 0)
     return cli_usage("render: --camera top needs an output; give one with -o OUT.tif, OUT.png, …");
@@ -80,7 +80,7 @@ conic_status cli_top_check_formats(conic_context *context, const cli_render_job 
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++)
     if (!is_tiff(job->outputs[i]))
-      status = conic_image_check_output_as(context, job->outputs[i], job->planes, &job->writing);
+      status = conic_image_check_output_as(context, job->outputs[i], job->shot.planes, &job->writing);
   return status;
 }
 
@@ -206,8 +206,9 @@ static conic_status open_files(top_picture *p) {
                         "%s: %d x %d pixels are too many for it; a .tif may have them", job->outputs[0], job->top.width,
                         job->top.height);
   if (status == CONIC_OK && has_others)
-    status = conic_image_allocate(p->session->context, job->top.width, job->top.height, job->planes, &p->whole);
-  return status == CONIC_OK ? conic_image_allocate(p->session->context, BLOCK, BLOCK, job->planes, &p->block) : status;
+    status = conic_image_allocate(p->session->context, job->top.width, job->top.height, job->shot.planes, &p->whole);
+  return status == CONIC_OK ? conic_image_allocate(p->session->context, BLOCK, BLOCK, job->shot.planes, &p->block)
+                            : status;
 }
 
 /* Ends the TIFFs, with their world files. */
@@ -292,9 +293,9 @@ static conic_status open_view(top_picture *p) {
   const cli_render_job *job = p->job;
   const conic_top_options options = {.pixel = job->top.gsd,
                                      .heights = {job->top.box.low[2], job->top.box.high[2]},
-                                     .render = &job->options,
-                                     .samples = job->view.samples,
-                                     .error_px = job->view.error_px};
+                                     .render = &job->shot.render,
+                                     .samples = job->shot.view.samples,
+                                     .error_px = job->shot.view.error_px};
   return conic_top_view_open(job->source, job->renderer, &options, &p->view);
 }
 
@@ -310,9 +311,9 @@ static conic_status make_picture(top_picture *p) {
     return status;
   describe_camera(job, p->corner);
   if (!job->is_shade_given && conic_source_measure(job->source)->has_colors)
-    job->options.shading = CONIC_SHADE_NONE; /* photographs have their light already */
+    job->shot.render.shading = CONIC_SHADE_NONE; /* photographs have their light already */
   if (!job->is_samples_given && conic_source_measure(job->source)->n_triangles)
-    job->view.samples = 2; /* whose edges nothing else softens */
+    job->shot.view.samples = 2; /* whose edges nothing else softens */
   double start = cli_seconds();
   status = open_view(p);
   if (status == CONIC_OK)

@@ -1,5 +1,7 @@
 #include "cli/render/sample_options.h"
 
+#include "cli/render/fill_shot.h"
+
 int cli_sample_frame(const cli_render_job *job) {
   return job->frames.first - 1;
 }
@@ -24,20 +26,23 @@ int cli_sample_check(const cli_session *session, cli_render_job *job) {
                : CLI_DONE;
   if (own->n_samples && own->is_sample_given)
     return cli_usage("%s: --sample asks for one of the samples, --accumulate for all; give one of both", command);
-  if (job->view.samples > 1)
+  if (job->shot.view.samples > 1)
     return cli_usage("%s: a sample is one a pixel: not with --samples", command);
+  cli_shot_take_options(job);
   return cli_accumulate_settle(session, job);
 }
 
 conic_status cli_sample_camera(cli_session *session, cli_render_job *job, conic_camera *camera) {
   const cli_accumulate_job *own = &job->accumulating;
-  cli_sample_way way;
   conic_sample sample;
-  if (!own->is_sample_given)
-    return cli_scene_camera(job, cli_sample_frame(job), camera);
-  conic_status status = cli_accumulate_begin(session, job, cli_sample_frame(job), &way);
+  conic_status status = cli_shot_fill(session, job, cli_sample_frame(job));
+  if (status != CONIC_OK || !own->is_sample_given) {
+    *camera = job->shot.camera;
+    return status;
+  }
+  status = conic_shot_focus(job->source, job->renderer, &job->shot);
   if (status == CONIC_OK)
-    status = cli_accumulate_place(&way, own->i_sample, &sample);
+    status = conic_shot_sample(job->source, &job->shot, own->i_sample, &sample);
   *camera = sample.camera;
   return status;
 }

@@ -29,6 +29,9 @@ void cli_sharing_settle(cli_render_job *job);
 /* Whether this process has nothing to do with the render, as the first does it alone. */
 int cli_sharing_is_idle(const cli_session *session, const cli_render_job *job);
 
+/* The team as what draws shots by it; null: this process is alone. */
+const conic_executor *cli_sharing_executor(cli_render_job *job);
+
 /* Whether a picture that is drawn comes together in this process, which writes it. */
 int cli_sharing_has_picture(const cli_session *session, const cli_render_job *job);
 

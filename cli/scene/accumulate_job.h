@@ -7,14 +7,12 @@
 #include "cli/session.h"
 #include "conic/accumulate.h"
 #include "conic/motion.h"
+#include "conic/shot.h"
 
 struct cli_render_job;
 
-/* Where all is sharp. */
-typedef enum cli_focus_kind { CLI_FOCUS_AUTO, CLI_FOCUS_DEPTH, CLI_FOCUS_PIXEL } cli_focus_kind;
-
 typedef struct cli_focus {
-  int kind; /* a cli_focus_kind */
+  int kind; /* a conic_focus_kind */
   double depth;
   double pixel[2];
 } cli_focus;
@@ -41,7 +39,6 @@ typedef struct cli_accumulate_job {
   conic_accumulation_facts facts;
   uint64_t n_resumed;
   double reached_noise; /* below 0: not known */
-  double aperture;      /* the width in world units */
   double focus_depth;
 } cli_accumulate_job;
 
@@ -54,30 +51,9 @@ int cli_accumulate_check(const cli_session *session, struct cli_render_job *job)
 /* The same of those that a sample has, too; and what it is drawn with, unless it is said otherwise. */
 int cli_accumulate_settle(const cli_session *session, struct cli_render_job *job);
 
-/* The camera in the middle of the shutter, which stands for the frame. */
-conic_status cli_accumulate_camera(cli_session *session, struct cli_render_job *job, int i_frame, conic_camera *camera);
-
-/* The way of a frame's camera through its samples. */
-typedef struct cli_sample_way {
-  cli_session *session;
-  struct cli_render_job *job;
-  int i_frame;
-  conic_camera frame_camera; /* of the frame itself, at the shutter's 0 */
-} cli_sample_way;
-
-/* Finds the way, and where it is sharp, which may take a picture of the middle. */
-conic_status cli_accumulate_begin(cli_session *session, struct cli_render_job *job, int i_frame, cli_sample_way *way);
-/* Where a sample is taken from, as cli_accumulate_picture has it; the scene is then as at its moment. */
-conic_status cli_accumulate_place(const cli_sample_way *way, uint64_t index, conic_sample *sample);
-
-/* Brings the scene to the middle of the shutter, or to rest. */
-conic_status cli_accumulate_move_middle(cli_session *session, struct cli_render_job *job, int i_frame);
-void cli_accumulate_rest(struct cli_render_job *job);
-
-/* Draws the picture of a frame; its camera is cli_accumulate_camera's. */
-conic_status cli_accumulate_picture(cli_session *session, struct cli_render_job *job, int i_frame,
-                                    const conic_camera *camera, conic_image *image,
-                                    conic_render_statistics *statistics);
+/* Draws the shot of a frame, and keeps its sums where that is wanted. */
+conic_status cli_accumulate_picture(cli_session *session, struct cli_render_job *job, int i_frame, conic_image *image,
+                                    conic_shot_outcome *outcome);
 
 /* Removes what a frame's sums were kept in, if they were: it is finished. */
 void cli_accumulate_forget(const struct cli_render_job *job, int i_frame);

@@ -30,10 +30,6 @@ int cli_lamps_are_soft(const struct cli_render_job *job);
 /* Turns flat lamps upright by what points up. */
 void cli_lamps_turn(struct cli_render_job *job);
 
-/* The lights of sample i of a picture. Errors: none that the options let through. */
-conic_status cli_lamps_sample(cli_session *session, const struct cli_render_job *job, uint64_t i_sample,
-                              conic_lighting *lighting);
-
 /* Says, once, what of the options about light changes nothing. */
 void cli_lamps_warn(cli_session *session, struct cli_render_job *job);
 

@@ -7,6 +7,7 @@
 #include "core/base/message.h"
 #include "core/base/vectors.h"
 #include "lighting/light_axes.h"
+#include "shots/shot_plan.h"
 
 /* R, or WxH. */
 static int parse_lamp_size(const char *text, double size[2], int *is_flat) {
@@ -78,7 +79,7 @@ int cli_parse_sun_radius(const char *text, float *radius_deg) {
 
 static int has_soft_sun(const cli_render_job *job) {
   int n = 0;
-  for (int i = 0; i < job->options.lighting.n_lights; i++)
+  for (int i = 0; i < job->shot.render.lighting.n_lights; i++)
     n += job->lamps.sun_radius_deg[i] > 0.0f;
   return n > 0;
 }
@@ -95,7 +96,7 @@ void cli_lamps_turn(cli_render_job *job) {
   for (int i = 0; i < own->n_lamps; i++) {
     const double *ahead = own->ahead[i];
     double right[3], down[3], rows[3][3];
-    conic_cross(ahead, job->options.lighting.up, right);
+    conic_cross(ahead, job->shot.render.lighting.up, right);
     if (conic_dot(right, right) < 1e-12 || !conic_normalize(right)) {
       conic_light_axes(ahead, rows);
       memcpy(right, rows[0], sizeof right);
@@ -108,17 +109,9 @@ void cli_lamps_turn(cli_render_job *job) {
   }
 }
 
-conic_status cli_lamps_sample(cli_session *session, const cli_render_job *job, uint64_t i_sample,
-                              conic_lighting *lighting) {
-  *lighting = job->options.lighting;
-  return has_soft_sun(job) ? conic_lighting_sample(session->context, &job->options.lighting, job->lamps.sun_radius_deg,
-                                                   i_sample, lighting)
-                           : CONIC_OK;
-}
-
 /* Those at your eye cast none that you see. */
 static int casts_shadows(const cli_render_job *job) {
-  const conic_lighting *lighting = &job->options.lighting;
+  const conic_lighting *lighting = &job->shot.render.lighting;
   int n = job->lamps.n_lamps;
   for (int i = 0; i < lighting->n_lights; i++)
     n += lighting->lights[i].frame != CONIC_LIGHT_HEAD;
@@ -126,10 +119,10 @@ static int casts_shadows(const cli_render_job *job) {
 }
 
 static const char *what_changes_nothing(const cli_render_job *job) {
-  int is_shown = (job->n_directions && job->planes & 1u << CONIC_PLANE_AO) ||
-                 (job->has_shadows && job->planes & 1u << CONIC_PLANE_SHADOW);
-  int is_lit = job->n_directions || job->has_shadows || job->lamps.n_lamps;
-  if (job->options.shading == CONIC_SHADE_NONE)
+  int is_shown = (job->n_directions && job->shot.planes & 1u << CONIC_PLANE_AO) ||
+                 (job->has_shadows && job->shot.planes & 1u << CONIC_PLANE_SHADOW);
+  int is_lit = conic_shot_is_lit(&job->shot);
+  if (job->shot.render.shading == CONIC_SHADE_NONE)
     return is_lit && !is_shown ? "--ao, --shadow and lamps change nothing where there is no light (--shade none)"
                                : NULL;
   if (job->has_shadows && !is_shown && !casts_shadows(job))

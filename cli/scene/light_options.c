@@ -39,7 +39,7 @@ int cli_parse_color(const char *text, size_t length, float color[3]) {
 
 /* Room for one more; null: there are as many as there may be. */
 static conic_light *next_light(cli_render_job *job) {
-  conic_lighting *lighting = &job->options.lighting;
+  conic_lighting *lighting = &job->shot.render.lighting;
   return lighting->n_lights < CONIC_MAX_LIGHTS ? &lighting->lights[lighting->n_lights++] : NULL;
 }
 
@@ -79,9 +79,9 @@ static int parse_looks(const char *text, cli_render_job *job, conic_light *light
   size_t length = strcspn(text, ":");
   if (!cli_parse_color(text, length, light->color))
     return 0;
-  return !text[length] ||
-         (light->frame != CONIC_LIGHT_HEAD &&
-          cli_parse_sun_radius(text + length + 1, &job->lamps.sun_radius_deg[light - job->options.lighting.lights]));
+  return !text[length] || (light->frame != CONIC_LIGHT_HEAD &&
+                           cli_parse_sun_radius(text + length + 1,
+                                                &job->lamps.sun_radius_deg[light - job->shot.render.lighting.lights]));
 }
 
 int cli_parse_light(const char *text, void *value) {
@@ -103,7 +103,7 @@ int cli_parse_light(const char *text, void *value) {
 
 int cli_parse_sky(const char *text, void *value) {
   cli_render_job *job = value;
-  conic_lighting *lighting = &job->options.lighting;
+  conic_lighting *lighting = &job->shot.render.lighting;
   size_t length = strcspn(text, ":");
   const char *ground = text[length] ? text + length + 1 : text;
   job->is_sky_given = 1;
@@ -124,12 +124,12 @@ static void find_up(const cli_render_job *job, double up[3]) {
 }
 
 void cli_lights_turn(cli_render_job *job) {
-  find_up(job, job->options.lighting.up);
+  find_up(job, job->shot.render.lighting.up);
   cli_lamps_turn(job);
 }
 
 void cli_lights_settle(cli_render_job *job) {
-  conic_lighting *lighting = &job->options.lighting;
+  conic_lighting *lighting = &job->shot.render.lighting;
   if (!job->is_light_given)
     (void)(job->is_plain ? cli_parse_light("head", job) : add_studio(job));
   /* What has no colours of its own is white, which no material is: the lights stand back as far as plaster is darker.
@@ -159,8 +159,8 @@ void cli_report_color(cli_json *json, const char *key, const float color[3]) {
 void cli_lights_report(cli_json *json, const cli_render_job *job) {
   static const char *const frames[] = {
       [CONIC_LIGHT_WORLD] = "world", [CONIC_LIGHT_CAMERA] = "camera", [CONIC_LIGHT_HEAD] = "head"};
-  const conic_lighting *lighting = &job->options.lighting;
-  if (job->options.shading == CONIC_SHADE_NONE)
+  const conic_lighting *lighting = &job->shot.render.lighting;
+  if (job->shot.render.shading == CONIC_SHADE_NONE)
     return;
   cli_json_array(json, "lights");
   for (int i = 0; i < lighting->n_lights; i++) {

@@ -51,12 +51,18 @@ int cli_parse_up(const char *text, void *value) {
   return cli_parse_vector(text, up) && (up[0] != 0.0 || up[1] != 0.0 || up[2] != 0.0);
 }
 
+const char *const cli_projection_words[] = {"perspective", "fisheye", "orthographic", "panorama", "cube", NULL};
+
+int cli_parse_eye(const char *text, void *eye) {
+  return cli_parse_vector(text, eye);
+}
+
 int cli_parse_exposure(const char *text, void *value) {
   cli_render_job *job = value;
   job->is_exposure_automatic = strcmp(text, "auto") == 0;
-  job->options.exposure = 0.0;
-  return job->is_exposure_automatic || (cli_parse_number(text, &job->options.exposure) &&
-                                        job->options.exposure >= -100.0 && job->options.exposure <= 100.0);
+  job->shot.render.exposure = 0.0;
+  return job->is_exposure_automatic || (cli_parse_number(text, &job->shot.render.exposure) &&
+                                        job->shot.render.exposure >= -100.0 && job->shot.render.exposure <= 100.0);
 }
 
 /* Of those that --aov may name. */

@@ -9,25 +9,18 @@
 #include "cli/scene/lamp_job.h"
 #include "cli/scene/top_job.h"
 #include "cli/team_shares.h"
+#include "conic/shot.h"
 #include "core/base/team.h"
 #include "core/files/sha256.h"
 #include "core/pictures/cryptomatte.h"
+#include "shots/executor.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
-
-/* A gradient from top to bottom, in linear colours (cli/scene/backdrop.h). */
-typedef struct cli_backdrop {
-  int is_given;
-  float top[3], bottom[3];
-} cli_backdrop;
 
 /* Of a turntable or of all views, those that are drawn: numbers from 1. */
 typedef struct cli_frames {
   int first, last, step, is_given;
 } cli_frames;
-
-/* What of a render a team shares (cli/render/sharing.h), and what each process had to do with it. */
-typedef enum cli_sharing { CLI_SHARES_NOTHING, CLI_SHARES_FRAMES, CLI_SHARES_SAMPLES, CLI_SHARES_WINDOWS } cli_sharing;
 
 /* Two eyes. */
 typedef struct cli_stereo {
@@ -38,7 +31,10 @@ typedef struct cli_stereo {
 } cli_stereo;
 
 typedef struct cli_render_job {
-  /* What was asked for. */
+  /* The picture: what the options say of it, and for each frame what is open (cli/render/fill_shot.h). */
+  conic_shot shot;
+
+  /* What else was asked for. */
   int n_arguments;
   char **arguments; /* as they were given, the command's name first */
   const char **inputs;
@@ -70,14 +66,12 @@ typedef struct cli_render_job {
   int is_shade_given;
   int is_plain; /* --plain: nothing is chosen by what looks best */
   int is_background_given;
-  cli_backdrop backdrop;                       /* --background with two colours */
   int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/scene/light_options.h) */
   cli_lamp_job lamps;                          /* of these, the lamps, and how large the others are */
   const char *sky_path;                        /* --sky with a picture; null: none */
   int n_directions, has_shadows;               /* --ao, --shadow */
   conic_sky *sky;                              /* of the picture, once it is read */
   int is_transparent;                          /* --transparency */
-  uint64_t i_light_map;                        /* of those that show it: which sample of its chances is next */
   int n_frames;                                /* of a turntable, or views; else 1 */
   int is_turntable;
   cli_top_job top; /* --camera top */
@@ -86,7 +80,6 @@ typedef struct cli_render_job {
   int is_error_warned; /* that --error is not kept */
   int is_alpha_warned; /* that alpha is not shown */
   int repeat;
-  unsigned planes; /* bits 1 << conic_plane */
   int is_aov_given, is_samples_given, is_prefilter_given;
   cli_stereo stereo;               /* --stereo */
   cli_accumulate_job accumulating; /* --accumulate */
@@ -97,8 +90,7 @@ typedef struct cli_render_job {
   int tone;                        /* --tone: a conic_tone */
   int is_patch;                    /* --method patch: options.method draws its samples */
   int is_exposure_automatic;       /* until it is found */
-  conic_render_options options;    /* but for the two lengths, which the scene has to be known for: */
-  cli_length epsilon, near_z;      /* below 0: automatic */
+  cli_length epsilon, near_z;      /* below 0: automatic; the scene has to be known for them */
   cli_device device;               /* what draws: */
   conic_renderer *renderer;
   unsigned long long budget; /* the view's */
@@ -108,15 +100,13 @@ typedef struct cli_render_job {
 
   /* What is drawn. */
   conic_source_options opening;
-  conic_gaussian_options gaussians; /* the opening's, unless they are drawn as splats */
-  conic_patches_options patches;    /* the opening's, as is the next */
+  conic_patches_options patches; /* the opening's, as is the next */
   conic_layers_access access;
   conic_coloring_options coloring; /* the opening's, if it has one; `by` null: not given */
   int is_for_looking;              /* the command makes pictures, several samples a pixel unless said otherwise */
   int may_composite;               /* or asks about such pictures: Gaussian scenes stay what they are */
   int may_stream;                  /* the command draws without having to know what */
   unsigned abilities;              /* what the source can do, bits of conic_source_ability; known before it is open */
-  conic_source_view view;
   conic_source *source;
 
   /* What came of it. */
@@ -129,9 +119,11 @@ typedef struct cli_render_job {
   unsigned banded_planes;              /* of a picture that nobody held: its planes; 0: it was held */
 
   /* Of a team. */
-  cli_sharing sharing;
+  conic_shared_units sharing;
   conic_team library_team; /* the same, as the source may have it */
-  uint64_t n_units;        /* that this process did, */
+  conic_executor executor; /* the same, as shots are drawn by it */
+  const cli_session *session;
+  uint64_t n_units; /* that this process did, */
   double busy_seconds;
   cli_team_shares shares;           /* what all did */
   char kept_key[CONIC_SHA256_ROOM]; /* what decides the bits, where --resumable or --resume keep frames or strips */
@@ -163,16 +155,15 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job);
 void cli_scene_release(cli_session *session, cli_render_job *job);
 /* --view all: sees to it that the views that are asked for can be drawn and written, once they are known. */
 int cli_render_views_check(const cli_session *session, cli_render_job *job);
-/* The camera of a frame. */
-conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *camera);
+/* The shot's camera becomes that of a frame. */
+conic_status cli_scene_camera(cli_session *session, cli_render_job *job, int i_frame);
 
 /* --progressive: a picture of each level, of which the last stays in `image`. */
-conic_status cli_render_levels(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                               conic_image *image, conic_render_statistics *statistics);
-/* Opening, and one picture, within what is left of the deadline. */
+conic_status cli_render_levels(cli_session *session, cli_render_job *job, conic_image *image,
+                               conic_shot_outcome *outcome);
+/* Opening, and one picture, get what is left of the deadline. */
 void cli_deadline_open(cli_render_job *job);
-conic_status cli_render_picture(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                                conic_image *image, conic_render_statistics *statistics);
+conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_shot_outcome *outcome);
 
 /* Wrong usage where a plane that was asked for goes into no file. */
 int cli_planes_check(const cli_session *session, const cli_render_job *job);
@@ -189,9 +180,6 @@ conic_image_options cli_picture_writing(const cli_render_job *job);
 /* Says in a picture's header what it is, and writes it to all outputs. */
 void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, conic_image *image);
 conic_status cli_frame_write(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame);
-
-/* --exposure auto: finds it where it is still to be found, for this frame and those that follow. */
-conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, const conic_camera *camera);
 
 /* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
 conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,

@@ -3,9 +3,8 @@
 #include <string.h>
 
 #include "cli/color_options.h"
-#include "cli/scene/backdrop.h"
+#include "cli/scene/background_options.h"
 #include "cli/scene/light_options.h"
-#include "cli/scene/projection.h"
 #include "cli/scene/scene_options.h"
 #include "cli/scene/views.h"
 
@@ -37,12 +36,12 @@ static library_words find_words(void) {
 void cli_scene_defaults(cli_render_job *job) {
   memset(job, 0, sizeof *job);
   conic_framing_init(&job->framing);
-  conic_render_options_init(&job->options);
+  conic_render_options_init(&job->shot.render);
   conic_source_options_init(&job->opening);
-  conic_gaussian_options_init(&job->gaussians);
+  conic_gaussian_options_init(&job->shot.gaussians);
   conic_patches_options_init(&job->patches);
   conic_layers_access_init(&job->access);
-  conic_source_view_init(&job->view);
+  conic_source_view_init(&job->shot.view);
   conic_coloring_options_init(&job->coloring);
   job->coloring.by = NULL;
   job->opening.patches = &job->patches;
@@ -50,7 +49,7 @@ void cli_scene_defaults(cli_render_job *job) {
   job->epsilon.value = job->near_z.value = -1.0;
   job->n_frames = job->repeat = 1;
   job->device.name = "cpu";
-  job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
+  job->shot.planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
   cli_cut_region_init(&job->top.box);
 }
 
@@ -86,16 +85,16 @@ static void choose_quality(const cli_scene_words *raw, cli_render_job *job, int 
     *method = raw->quality == CLI_QUALITY_DRAFT ? CONIC_METHOD_CONIC : CONIC_METHOD_AUTO;
   if (is_wanted && !raw->is_samples_given && !job->accumulating.n_samples && !job->accumulating.is_sample_given &&
       (raw->is_quality_given || is_picture(raw, job)))
-    job->view.samples = samples[raw->quality];
+    job->shot.view.samples = samples[raw->quality];
 }
 
 int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int argc, char **argv,
                     cli_render_job *job) {
   cli_scene_words raw = {.quality = CLI_QUALITY_GOOD,
                          .passes = 3,
-                         .cutoff = (double)job->options.kernel.cutoff,
-                         .prefilter = (double)job->options.prefilter};
-  conic_render_options *o = &job->options;
+                         .cutoff = (double)job->shot.render.kernel.cutoff,
+                         .prefilter = (double)job->shot.render.prefilter};
+  conic_render_options *o = &job->shot.render;
   conic_framing *view = &job->framing;
   int method = (int)o->method, shading = (int)o->shading, ignores_center = 0;
   const library_words words = find_words();
@@ -140,18 +139,18 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        90, .is_given = &raw.is_crease_given},
       CLI_COLOR_OPTIONS(&job->coloring),
       CLI_WHERE(&job->opening.where),
-      {"error", CLI_NUMBER, &job->view.error_px, "PX",
+      {"error", CLI_NUMBER, &job->shot.view.error_px, "PX",
        "of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all "
        "[0]",
        0, 65536, .group = "levels of detail"},
-      {"color-error", CLI_NUMBER, &job->view.color_error, "STEPS",
+      {"color-error", CLI_NUMBER, &job->shot.view.color_error, "STEPS",
        "with --error, of a .chy, by how much colours may differ at any place: black and white do by 100 steps, and 2 "
        "are just visible [2]",
        0.01, 1000},
       {"budget", CLI_COUNT, &job->budget, "N",
        "of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]", 1,
        4294967294.0},
-      {"only", CLI_CHOICE, &job->view.only_kind, "KIND",
+      {"only", CLI_CHOICE, &job->shot.view.only_kind, "KIND",
        "of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]", .choices = only_words},
       {"method", CLI_CHOICE, &method, "NAME",
        "how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where that is "
@@ -182,7 +181,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "auto [auto]",
        .parse = cli_parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend the splats of a surface; 1: the nearest splat wins [3]", 1, 3},
-      {"samples", CLI_INT, &job->view.samples, "N",
+      {"samples", CLI_INT, &job->shot.view.samples, "N",
        "average N x N samples in each pixel, which makes silhouettes soft [2; 1 with --profile, --repeat or --deep]", 1,
        CONIC_MAX_SAMPLES, .is_given = &raw.is_samples_given},
       {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "back: leave out what faces away; or none [none]",
@@ -212,7 +211,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"exposure", CLI_PARSED, job, "EV",
        "stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near white [0]",
        .parse = cli_parse_exposure},
-      {"aov", CLI_PARSED, &job->planes, "LIST",
+      {"aov", CLI_PARSED, &job->shot.planes, "LIST",
        "planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place in the "
        "world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow, what light "
        "arrives [rgba,Z]",
@@ -246,24 +245,24 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
     return answer;
   choose_quality(&raw, job, &method);
   if (cli_scene_is_top(job) && !raw.is_samples_given && !raw.is_quality_given)
-    job->view.samples = 1; /* that is drawn in bounded memory, and pixels are filtered anyway */
+    job->shot.view.samples = 1; /* that is drawn in bounded memory, and pixels are filtered anyway */
   job->is_samples_given = raw.is_samples_given || raw.is_quality_given;
   job->is_patch = method == CONIC_N_METHODS;
   if (!job->is_patch)
     o->method = (conic_method)method;
-  job->gaussians.profile = (conic_gaussian_profile)raw.profile;
-  job->gaussians.prefilter = raw.is_prefilter_given ? raw.prefilter : 0.0;
-  job->gaussians.ignores_center = (uint32_t)ignores_center;
+  job->shot.gaussians.profile = (conic_gaussian_profile)raw.profile;
+  job->shot.gaussians.prefilter = raw.is_prefilter_given ? raw.prefilter : 0.0;
+  job->shot.gaussians.ignores_center = (uint32_t)ignores_center;
   if (raw.profile < CONIC_N_GAUSSIAN_PROFILES &&
       (raw.is_profile_given || ((job->is_for_looking || job->may_composite) && !job->is_plain)))
-    job->opening.gaussians = &job->gaussians;
+    job->opening.gaussians = &job->shot.gaussians;
   o->shading = (conic_shading)shading;
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;
   job->is_prefilter_given = raw.is_prefilter_given;
   o->passes = raw.passes;
   o->isa = session->isa = (conic_isa)raw.isa;
-  job->view.budget = job->budget;
+  job->shot.view.budget = job->budget;
   job->opening.cutoff = o->kernel.cutoff;
   raw.as = raw.is_as_given ? (int)as_values[raw.as] : job->is_plain ? CONIC_AS_POINTS : CONIC_AS_AUTO;
   if (!job->is_plain && !raw.is_crease_given && !job->opening.is_smooth)

@@ -3,7 +3,6 @@
 
 #include "cli/color_options.h"
 #include "cli/outputs.h"
-#include "cli/scene/projection.h"
 #include "cli/scene/scene_options.h"
 #include "cli/scene/views.h"
 #include "conic/layers_draw.h"
@@ -36,7 +35,7 @@ static int check_colors(const cli_session *session, cli_render_job *job, int as)
 static int check_choice(const cli_session *session, const cli_render_job *job, int as) {
   const char *command = session->command;
   int is_hybrid = (job->abilities & CONIC_SOURCE_CLUSTERS) != 0;
-  if (job->view.error_px > 0.0 && job->budget > 0)
+  if (job->shot.view.error_px > 0.0 && job->budget > 0)
     return cli_usage("%s: --error and --budget are two ways to choose; give one of both", command);
   if (job->is_patch && ((as != CONIC_AS_POINTS && as != CONIC_AS_AUTO) || is_hybrid))
     return cli_usage("%s: --method patch draws points; not with --as mesh, nor hybrids", command);
@@ -45,7 +44,7 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
   if (job->boxes_path && job->abilities != CONIC_SOURCE_CHOOSES)
     return cli_usage("%s: --boxes shows the nodes of a single .cot (conic octree makes one), not with --color-by",
                      command);
-  int is_exact = job->abilities & CONIC_SOURCE_COMPOSITES && job->gaussians.profile == CONIC_PROFILE_EXACT;
+  int is_exact = job->abilities & CONIC_SOURCE_COMPOSITES && job->shot.gaussians.profile == CONIC_PROFILE_EXACT;
   int is_profiled = job->abilities & CONIC_SOURCE_COMPOSITES && !is_exact && job->projection != CONIC_CAMERA_CUBE;
   if (job->projection != CONIC_CAMERA_PERSPECTIVE && (is_profiled || (!job->is_for_looking && !is_exact)))
     return cli_usage("%s: --projection %s is of pictures by conic render, and of Gaussian scenes by --profile exact",
@@ -53,21 +52,21 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
   if (job->projection == CONIC_CAMERA_CUBE && job->framing.height != 6 * job->framing.width)
     return cli_usage("%s: --projection cube is six times as high as wide", command);
   if ((job->projection == CONIC_CAMERA_FISHEYE || job->projection == CONIC_CAMERA_EQUIRECTANGULAR) &&
-      job->gaussians.prefilter > 0.0)
+      job->shot.gaussians.prefilter > 0.0)
     return cli_usage("%s: --prefilter is of perspective and orthographic pictures of Gaussian scenes", command);
   if (is_hybrid)
     return job->n_inputs == 1 ? CLI_DONE : cli_usage("%s: a hybrid is drawn by itself, and made of one file", command);
   if (job->abilities & CONIC_SOURCE_COMPOSITES && (job->deep_path || job->has_mattes || job->is_exposure_automatic))
     return cli_usage("%s: --deep, --cryptomatte and --exposure auto are of splats; give --profile surface, too",
                      command);
-  if (job->abilities & CONIC_SOURCE_COMPOSITES && job->gaussians.prefilter > 0.0 &&
-      job->gaussians.profile != CONIC_PROFILE_EXACT)
+  if (job->abilities & CONIC_SOURCE_COMPOSITES && job->shot.gaussians.prefilter > 0.0 &&
+      job->shot.gaussians.profile != CONIC_PROFILE_EXACT)
     return cli_usage("%s: --prefilter is of splats and of --profile exact; the others have what they have", command);
   if (job->abilities & CONIC_SOURCE_COMPOSITES && !job->is_for_looking && !job->may_composite)
     return cli_usage("%s: it takes splats apart; give --profile surface, or none", command);
-  if (job->planes & CONIC_GAUSSIAN_PLANES && !(job->abilities & CONIC_SOURCE_COMPOSITES))
+  if (job->shot.planes & CONIC_GAUSSIAN_PLANES && !(job->abilities & CONIC_SOURCE_COMPOSITES))
     return cli_usage("%s: the planes T, medianZ, inverseZ, last and doubt are of Gaussian scenes", command);
-  if (job->view.only_kind >= 0 || job->clusters_path || job->planes & 1u << CONIC_PLANE_CLUSTER)
+  if (job->shot.view.only_kind >= 0 || job->clusters_path || job->shot.planes & 1u << CONIC_PLANE_CLUSTER)
     return cli_usage("%s: --only, --clusters and the plane cluster are of hybrids: a .chy, or --as hybrid", command);
   if (job->abilities & CONIC_SOURCE_STREAMS && cli_lod_is_wanted(job) && !job->may_stream)
     return cli_usage("%s: of an .lpc it takes all; --error and --budget choose of one in conic render", command);
@@ -131,7 +130,7 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
     return cli_usage("%s: --smooth rounds all edges, --crease those up to an angle; give one of both", command);
   if (!job->is_patch && words->is_patch_given)
     return cli_usage("%s: --degree and --h are of patches; give --method patch, too", command);
-  if (job->backdrop.is_given && !job->is_for_looking)
+  if (job->shot.has_backdrop && !job->is_for_looking)
     return cli_usage("%s: --background takes two colours in conic render; here it takes one", command);
   if ((job->lamps.n_lamps || cli_lamps_are_soft(job)) && !job->is_for_looking)
     return cli_usage("%s: lamps, and lights with a radius, are of conic render", command);
@@ -139,7 +138,7 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
     return cli_usage("%s: --exposure auto is of conic render, which says in --json what it chose", command);
   if (words->passes != 1 && words->passes != 3)
     return cli_usage("%s: --passes takes 3 or 1", command);
-  if (job->options.tile & (job->options.tile - 1))
+  if (job->shot.render.tile & (job->shot.render.tile - 1))
     return cli_usage("%s: --tile takes 8, 16, 32 or 64", command);
   int colors = check_colors(session, job, words->as);
   if (colors != CLI_DONE)

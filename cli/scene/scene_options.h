@@ -21,6 +21,9 @@ typedef struct cli_scene_words {
   cli_length h;
 } cli_scene_words;
 
+/* The words of --projection, in the order of conic_camera_kind. */
+extern const char *const cli_projection_words[];
+
 /* Parsers of values, as cli_option has them; what `value` points to is said at each. Parsed:
  * gauss, hat, box, or confetti:A,B,N into a conic_kernel, */
 int cli_parse_kernel(const char *text, void *value);
@@ -31,6 +34,8 @@ int cli_parse_near(const char *text, void *value);
 int cli_parse_up(const char *text, void *value);
 /* a number of stops, or auto, into a job's exposure, */
 int cli_parse_exposure(const char *text, void *value);
+/* X,Y,Z into a double[3], */
+int cli_parse_eye(const char *text, void *eye);
 /* rgba,Z,N … or all into bits of planes. */
 int cli_parse_planes(const char *text, void *value);
 

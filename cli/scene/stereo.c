@@ -26,31 +26,14 @@ void cli_stereo_begin(cli_render_job *job, int i_eye) {
   job->stereo.side = job->stereo.distance > 0.0 ? 2 * i_eye - 1 : 0;
 }
 
-/* The depth at which both pictures agree; 0: nowhere. */
-static double convergence_of(const cli_render_job *job, const conic_camera *camera) {
+conic_stereo_eye cli_stereo_eye(const cli_render_job *job) {
   const conic_source_scale *scale = conic_source_measure(job->source);
-  double depth = camera->cam_from_world[2][3];
-  if (job->stereo.is_convergence_given)
-    return job->stereo.convergence;
+  conic_stereo_eye eye = {.shift = 0.5 * job->stereo.distance * job->stereo.side,
+                          .convergence = job->stereo.convergence,
+                          .finds_convergence = !job->stereo.is_convergence_given};
   for (int axis = 0; axis < 3; axis++)
-    depth += camera->cam_from_world[2][axis] * (0.5 * scale->minimum[axis] + 0.5 * scale->maximum[axis]);
-  return depth > 0.0 && !camera->kind && !camera->lens ? depth : 0.0;
-}
-
-conic_status cli_stereo_move(const cli_render_job *job, conic_camera *camera) {
-  double moved = 0.5 * job->stereo.distance * job->stereo.side;
-  if (job->stereo.side == 0)
-    return CONIC_OK;
-  double depth = convergence_of(job, camera);
-  if ((camera->kind != CONIC_CAMERA_PERSPECTIVE && camera->kind != CONIC_CAMERA_FISHEYE) ||
-      (depth > 0.0 && (camera->kind || camera->lens))) {
-    cli_usage("render: --stereo is of perspective and fisheye cameras; two that distort are parallel: --convergence 0");
-    return CONIC_ERROR_ARGUMENT;
-  }
-  camera->cam_from_world[0][3] -= moved;
-  if (depth > 0.0)
-    camera->cx += camera->fx * (moved / depth);
-  return CONIC_OK;
+    eye.center[axis] = 0.5 * scale->minimum[axis] + 0.5 * scale->maximum[axis];
+  return eye;
 }
 
 char *cli_stereo_name(const cli_render_job *job, char *name) {

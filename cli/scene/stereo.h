@@ -11,8 +11,8 @@ int cli_stereo_check(const cli_session *session, const cli_render_job *job);
 int cli_stereo_eyes(const cli_render_job *job);
 void cli_stereo_begin(cli_render_job *job, int i_eye);
 
-/* Moves a camera to the eye that is drawn. Errors: ARGUMENT (of such a camera there are no two eyes). */
-conic_status cli_stereo_move(const cli_render_job *job, conic_camera *camera);
+/* The eye that is drawn. */
+conic_stereo_eye cli_stereo_eye(const cli_render_job *job);
 
 /* Of a name that malloc gave and that this takes, the eye's: left or right in the place of %V, or before the ending.
  * Null without memory. */

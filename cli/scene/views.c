@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#include "core/base/trigonometry.h"
-#include "core/base/vectors.h"
 #include "core/files/file.h"
 
 int cli_views_are_all(const char *view) {
@@ -74,27 +72,4 @@ void cli_camera_write(cli_json *json, const conic_camera *camera) {
     cli_json_close(json);
   }
   cli_json_close(json);
-}
-
-/* By Rodrigues' formula: against the clock as seen from where the axis, which is unit, points to. */
-static void turn_about(const double axis[3], double cosine, double sine, double v[3]) {
-  double across[3], along = conic_dot(axis, v) * (1.0 - cosine);
-  conic_cross(axis, v, across);
-  for (int i = 0; i < 3; i++)
-    v[i] = v[i] * cosine + across[i] * sine + axis[i] * along;
-}
-
-void cli_camera_orbit(const conic_source_scale *scale, const double up[3], double turns, conic_camera *camera) {
-  double angle = conic_radians(360.0 * turns), length = conic_length(up);
-  const double axis[3] = {up[0] / length, up[1] / length, up[2] / length};
-  double center[3];
-  if (turns == 0.0)
-    return;
-  for (int i = 0; i < 3; i++)
-    center[i] = 0.5 * scale->minimum[i] + 0.5 * scale->maximum[i];
-  for (int i = 0; i < 3; i++) {
-    double *row = camera->cam_from_world[i], to_center = conic_dot(row, center);
-    turn_about(axis, conic_cos(angle), conic_sin(angle), row);
-    row[3] += to_center - conic_dot(row, center);
-  }
 }

@@ -29,7 +29,4 @@ void cli_view_stem(const conic_cameras *cameras, size_t i_view, char *stem, size
 /* A camera's members, as a file of one has them. */
 void cli_camera_write(cli_json *json, const conic_camera *camera);
 
-/* Turns a camera by a part of a turn about a scene's centre and what points up; not at all: to the bit as it is. */
-void cli_camera_orbit(const conic_source_scale *scale, const double up[3], double turns, conic_camera *camera);
-
 #endif

@@ -47,6 +47,7 @@
 #include "conic/picture.h"
 #include "conic/render.h"
 #include "conic/scene.h"
+#include "conic/shot.h"
 #include "conic/source.h"
 #include "conic/splats.h"
 #include "conic/status.h"

@@ -98,6 +98,10 @@ CONIC_API const conic_octree *conic_source_octree(const conic_source *source);
 /* The Gaussians that a source composites; null where it does not. */
 CONIC_API const conic_gaussians *conic_source_gaussians(const conic_source *source);
 
+/* How Gaussians are composited from the next picture on, in the place of what they were opened with; other sources stay
+ * as they are. Errors: ARGUMENT. */
+CONIC_API conic_status conic_source_composite_by(conic_source *source, const conic_gaussian_options *options);
+
 CONIC_API conic_status conic_source_of_octree(conic_context *context, conic_octree *octree, conic_source **source);
 CONIC_API conic_status conic_source_of_hybrid(conic_context *context, conic_hybrid *hybrid, conic_source **source);
 

@@ -5,7 +5,7 @@ use strict;
 use warnings;
 
 my ($root, $most_repeated) = @ARGV;
-my @engine = qw(include core raster oracle lod surface judge lighting accumulation gathering source opencl bench cli mpi);
+my @engine = qw(include core raster oracle lod surface judge lighting accumulation gathering source shots opencl bench cli mpi);
 my $most_in_room = 45;
 
 sub files_in {

@@ -19,13 +19,14 @@ my %may_include = (
   lighting => [qw(conic core raster lod gaussians accumulation)],
   source => [qw(conic core raster lod surface gaussians)],
   opencl => [qw(conic core raster lod gaussians)],
-  cli => [qw(conic core raster lod surface gaussians lighting judge source opencl accumulation gathering)],
-  bench => [qw(conic core raster lod surface gaussians lighting source opencl accumulation gathering cli tests)],
-  mpi => [qw(conic core cli)],
+  shots => [qw(conic core raster lighting source accumulation gathering)],
+  cli => [qw(conic core raster lod surface gaussians lighting judge source opencl accumulation gathering shots)],
+  bench => [qw(conic core raster lod surface gaussians lighting source opencl accumulation gathering shots cli tests)],
+  mpi => [qw(conic core shots cli)],
   examples => [qw(conic)],
-  tests => [qw(conic core raster oracle lod surface gaussians lighting judge source opencl accumulation gathering cli mpi bench)],
+  tests => [qw(conic core raster oracle lod surface gaussians lighting judge source opencl accumulation gathering shots cli mpi bench)],
 );
-my @library = qw(include core raster oracle lod surface gaussians lighting judge source opencl accumulation gathering);
+my @library = qw(include core raster oracle lod surface gaussians lighting judge source opencl accumulation gathering shots);
 my %is_folder = map { s{.*/}{}r => 1 } keys %may_include;
 
 # Rooms that still include each other in a circle. A circle that is gone must leave the list.

@@ -1,10 +1,9 @@
-#include "cli/render/windows_team.h"
+#include "shots/windows.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-#include "cli/render/sharing.h"
-#include "cli/session_team.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 #include "core/image/image_common.h"
 #include "raster/frame/statistics.h"
 #include "source/source_parts.h"
@@ -25,9 +24,8 @@ typedef struct window_sum {
 } window_sum;
 
 typedef struct window_work {
-  cli_session *session;
-  cli_team *team;
-  cli_render_job *job;
+  const conic_shot_work *work;
+  const conic_executor *executor;
   conic_source_windows windows;
   conic_window *list; /* the hardest first */
   double *weights;
@@ -35,7 +33,7 @@ typedef struct window_work {
   size_t n;
   unsigned planes;
   conic_image *image; /* of the first process: the whole */
-  cli_window_counts counts;
+  conic_window_counts counts;
 } window_work;
 
 /* --- the list --- */
@@ -52,8 +50,8 @@ static conic_status list_windows(window_work *w, int side) {
   int rows = w->windows.band_rows;
   size_t columns = (size_t)((camera->width + side - 1) / side), n_bands = (size_t)((camera->height + rows - 1) / rows),
          most = columns * n_bands * (size_t)((rows + side - 1) / side);
-  w->list = calloc(most, sizeof *w->list);
-  w->weights = calloc(most, sizeof *w->weights);
+  w->list = conic_memory_allocate(w->work->context, most, sizeof *w->list);
+  w->weights = conic_memory_allocate_zeroed(w->work->context, most, sizeof *w->weights);
   if (!w->list || !w->weights)
     return CONIC_ERROR_MEMORY;
   for (int band = 0; band < camera->height; band += rows) {
@@ -90,7 +88,7 @@ static void order_windows(window_work *w) {
 static conic_status choose_windows(window_work *w) {
   const conic_camera *camera = &w->windows.camera;
   int each = conic_source_windows_are_dealt(&w->windows) ? DEALT_EACH : WINDOWS_EACH;
-  double pixels = (double)camera->width * (double)camera->height / (double)(w->team->cut_for * each), side = 1.0;
+  double pixels = (double)camera->width * (double)camera->height / (double)(w->executor->cut_for * each), side = 1.0;
   while (side * side < pixels)
     side += CONIC_WINDOW_STEP;
   conic_status status = list_windows(w, round_to_step(side, w->windows.step));
@@ -128,7 +126,7 @@ static void take_window(void *cookie, int from, void *bytes, size_t n_bytes) {
       place_plane(w, window, (conic_plane)i, pixels);
       pixels += n * conic_planes_pixel_bytes(1u << i);
     }
-  cli_team_trace(w->session, "join", "window", result.i_window, start, n_bytes);
+  conic_work_trace(w->work, "join", "window", result.i_window, start, n_bytes);
   (void)from;
 }
 
@@ -137,14 +135,14 @@ static void keep_window(const window_work *w, size_t i_window, const conic_image
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (w->planes >> i & 1)
       place_plane(w, &w->list[i_window], (conic_plane)i, pixels->planes[i]);
-  cli_team_trace(w->session, "join", "window", i_window, start, window_bytes(w, &w->list[i_window]));
+  conic_work_trace(w->work, "join", "window", i_window, start, window_bytes(w, &w->list[i_window]));
 }
 
 static conic_status hand_window(const window_work *w, size_t i_window, const conic_image *pixels) {
   window_result result = {i_window};
   size_t at = sizeof result, n = conic_image_pixels(pixels);
   size_t n_bytes = sizeof result + window_bytes(w, &w->list[i_window]);
-  char *bytes = malloc(n_bytes);
+  char *bytes = conic_memory_allocate(w->work->context, n_bytes, 1);
   if (!bytes)
     return CONIC_ERROR_MEMORY;
   memcpy(bytes, &result, sizeof result);
@@ -153,32 +151,31 @@ static conic_status hand_window(const window_work *w, size_t i_window, const con
       memcpy(bytes + at, pixels->planes[i], n * conic_planes_pixel_bytes(1u << i));
       at += n * conic_planes_pixel_bytes(1u << i);
     }
-  w->team->hand(bytes, n_bytes);
-  free(bytes);
+  w->executor->hand(w->executor->data, bytes, n_bytes);
+  conic_memory_release(w->work->context, bytes);
   return CONIC_OK;
 }
 
 /* --- dealing --- */
 
-conic_status cli_windows_deal(cli_session *session, conic_source_windows *windows, const conic_window *list, size_t n,
-                              int is_in_order, int **owners) {
-  conic_team team;
+conic_status conic_shot_windows_deal(const conic_shot_work *work, conic_source_windows *windows,
+                                     const conic_window *list, size_t n, int is_in_order, int **owners) {
   *owners = NULL;
   if (!conic_source_windows_are_dealt(windows))
     return CONIC_OK;
   conic_moment start = conic_moment_now();
-  *owners = calloc(n, sizeof **owners);
-  conic_status status = conic_team_agree(cli_team_of_library(session, &team), *owners ? CONIC_OK : CONIC_ERROR_MEMORY);
+  *owners = conic_memory_allocate_zeroed(work->context, n, sizeof **owners);
+  conic_status status = conic_work_agree(work, *owners ? CONIC_OK : CONIC_ERROR_MEMORY);
   if (status == CONIC_OK)
     status = conic_source_windows_deal(windows, list, n, is_in_order, *owners);
-  cli_team_trace(session, "open", "splats", 0, start, 0);
-  return cli_sharing_tell(session, status);
+  conic_work_trace(work, "open", "splats", 0, start, 0);
+  return conic_work_agree(work, status);
 }
 
 /* --- what is counted --- */
 
-void cli_windows_count(const conic_source_windows *windows, const conic_render_statistics *drawn,
-                       cli_window_counts *counts) {
+void conic_windows_count(const conic_source_windows *windows, const conic_render_statistics *drawn,
+                         conic_window_counts *counts) {
   counts->n_windows++;
   if (windows->is_summed)
     conic_statistics_add(drawn, &counts->statistics);
@@ -187,31 +184,33 @@ void cli_windows_count(const conic_source_windows *windows, const conic_render_s
 }
 
 /* Times stay the first process's, as does what is not in the memory of both. */
-static void add_window_sum(conic_source_windows *windows, const window_sum *other, cli_window_counts *counts) {
+static void add_window_sum(conic_source_windows *windows, const window_sum *other, conic_window_counts *counts) {
   conic_render_statistics part = other->statistics;
   if (!other->n_windows)
     return;
   memset(&part.ms, 0, sizeof part.ms);
   part.isa = counts->statistics.isa;
   part.threads = counts->statistics.threads;
-  cli_windows_count(windows, &part, counts);
+  conic_windows_count(windows, &part, counts);
   for (int i = 0; i < CONIC_SOURCE_TALLIES; i++)
     windows->tallies[i] += other->tallies[i];
 }
 
-conic_status cli_windows_sum(cli_team *team, conic_source_windows *windows, cli_window_counts *counts) {
+conic_status conic_windows_sum(const conic_shot_work *work, conic_source_windows *windows,
+                               conic_window_counts *counts) {
+  const conic_team *team = work->executor ? work->executor->team : NULL;
   window_sum own = {.n_windows = counts->n_windows, .statistics = counts->statistics};
   memcpy(own.tallies, windows->tallies, sizeof own.tallies);
   if (team) {
-    size_t *sizes = calloc((size_t)team->count, sizeof *sizes);
-    window_sum *all = sizes ? team->gather(&own, sizeof own, sizes) : NULL;
-    int is_there = team->index > 0 || all;
-    for (int i = 1; all && i < team->count; i++)
+    window_sum *all = conic_memory_allocate(work->context, (size_t)team->count, sizeof *all);
+    conic_status status = conic_work_agree(work, all ? CONIC_OK : CONIC_ERROR_MEMORY);
+    if (status == CONIC_OK)
+      conic_team_collect(team, &own, sizeof own, all);
+    for (int i = 1; status == CONIC_OK && team->index == 0 && i < team->count; i++)
       add_window_sum(windows, &all[i], counts);
-    free(all);
-    free(sizes);
-    if (team->index > 0 || !is_there)
-      return is_there ? CONIC_OK : CONIC_ERROR_MEMORY;
+    conic_memory_release(work->context, all);
+    if (status != CONIC_OK || team->index > 0)
+      return status;
   }
   return conic_source_windows_count(windows, &counts->statistics);
 }
@@ -220,7 +219,7 @@ conic_status cli_windows_sum(cli_team *team, conic_source_windows *windows, cli_
 
 static conic_status draw_given_window(window_work *w, size_t i_window) {
   const conic_window *window = &w->list[i_window];
-  conic_context *context = w->session->context;
+  conic_context *context = w->work->context;
   conic_image pixels;
   conic_moment start = conic_moment_now();
   conic_status status = conic_image_allocate(context, window->x_end - window->x_begin, window->y_end - window->y_begin,
@@ -232,60 +231,61 @@ static conic_status draw_given_window(window_work *w, size_t i_window) {
   if (w->image)
     w->image->is_display = pixels.is_display;
   if (status == CONIC_OK) {
-    cli_windows_count(&w->windows, &drawn, &w->counts);
-    if (w->team->index > 0)
+    conic_windows_count(&w->windows, &drawn, &w->counts);
+    if (w->executor->index > 0)
       status = hand_window(w, i_window, &pixels);
     else
       keep_window(w, i_window, &pixels);
   }
   conic_image_release(context, &pixels);
-  cli_sharing_note(w->session, w->job, "window", i_window, start, window_bytes(w, window));
+  w->executor->did(w->executor->data, "window", i_window, start, window_bytes(w, window));
   return status;
 }
 
 static conic_status draw_next(window_work *w, size_t i_window) {
-  conic_status status = conic_progress(w->session->context, "draw", (double)i_window / (double)w->n);
+  conic_status status = conic_progress(w->work->context, "draw", (double)i_window / (double)w->n);
   return status == CONIC_OK ? draw_given_window(w, i_window) : status;
 }
 
 /* The first one is the first process's: what stands for all in its statistics is the picture's. */
 static conic_status draw_given(window_work *w) {
   uint64_t unit;
-  w->team->share(w->owners ? 0 : (uint64_t)w->n - 1, w->team->index == 0 ? take_window : NULL, w);
-  conic_status status = w->team->index == 0 ? draw_given_window(w, 0) : CONIC_OK;
+  const conic_executor *executor = w->executor;
+  executor->share(executor->data, w->owners ? 0 : (uint64_t)w->n - 1, executor->index == 0 ? take_window : NULL, w);
+  conic_status status = w->executor->index == 0 ? draw_given_window(w, 0) : CONIC_OK;
   for (size_t i = 1; w->owners && i < w->n && status == CONIC_OK; i++)
-    status = w->owners[i] == w->team->index ? draw_next(w, i) : CONIC_OK;
-  while (!w->owners && status == CONIC_OK && (unit = w->team->next()) != CLI_NO_UNIT)
+    status = w->owners[i] == w->executor->index ? draw_next(w, i) : CONIC_OK;
+  while (!w->owners && status == CONIC_OK && (unit = executor->next(executor->data)) != CONIC_NO_UNIT)
     status = draw_next(w, (size_t)unit + 1);
   return status;
 }
 
-conic_status cli_draw_together(cli_session *session, cli_render_job *job, const cli_looking *looking,
-                               conic_image *image, conic_render_statistics *statistics) {
-  window_work w = {.session = session, .team = session->team, .job = job, .image = image};
+conic_status conic_windows_draw_together(const conic_shot_work *work, const conic_look *look, conic_image *image,
+                                         conic_render_statistics *statistics) {
+  window_work w = {.work = work, .executor = work->executor, .image = image};
   conic_moment start = conic_moment_now();
-  const conic_camera *camera = looking->camera;
-  w.planes = (conic_image_planes(image) ? conic_image_planes(image) : job->planes) & CLI_WINDOWS_PLANES;
-  conic_status status = conic_source_windows_begin(job->source, job->renderer, camera, looking->options, looking->view,
-                                                   w.planes, &w.windows);
-  w.windows.other_bytes = session->team->index == 0
+  const conic_camera *camera = look->camera;
+  w.planes = (conic_image_planes(image) ? conic_image_planes(image) : work->planes) & CONIC_WINDOWS_PLANES;
+  conic_status status =
+      conic_source_windows_begin(work->source, work->renderer, camera, look->render, look->view, w.planes, &w.windows);
+  w.windows.other_bytes = w.executor->index == 0
                               ? conic_planes_pixel_bytes(w.planes) * (uint64_t)camera->width * (uint64_t)camera->height
                               : 0;
   if (status == CONIC_OK)
     status = choose_windows(&w);
-  cli_team_trace(session, "open", "picture", 0, start, 0);
-  status = cli_sharing_end(session, job, status);
+  conic_work_trace(work, "open", "picture", 0, start, 0);
+  status = conic_work_agree(work, status);
   if (status == CONIC_OK)
-    status = cli_windows_deal(session, &w.windows, w.list, w.n, 0, &w.owners);
+    status = conic_shot_windows_deal(work, &w.windows, w.list, w.n, 0, &w.owners);
   if (status == CONIC_OK)
-    status = cli_sharing_end(session, job, draw_given(&w));
+    status = conic_work_agree(work, draw_given(&w));
   if (status == CONIC_OK)
-    status = cli_windows_sum(session->team, &w.windows, &w.counts);
+    status = conic_windows_sum(work, &w.windows, &w.counts);
   conic_source_windows_end(&w.windows);
   *statistics = w.counts.statistics;
-  statistics->ms.frame = 1e3 * (cli_seconds() - start.clock_s);
-  free(w.list);
-  free(w.weights);
-  free(w.owners);
+  statistics->ms.frame = 1e3 * (conic_seconds_now() - start.clock_s);
+  conic_memory_release(work->context, w.list);
+  conic_memory_release(work->context, w.weights);
+  conic_memory_release(work->context, w.owners);
   return status;
 }

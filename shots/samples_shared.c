@@ -1,19 +1,16 @@
-#include "cli/render/accumulate_team.h"
+#include "shots/samples_shared.h"
 
 #include <pthread.h>
 
 #include "accumulation/scattered.h"
-#include "cli/render/sharing.h"
-#include "cli/session_team.h"
 
 enum { LEAST_SAMPLES = 16, UNITS_EACH = 4 };
 
 typedef struct together {
-  cli_session *session;
-  cli_team *team;
-  cli_render_job *job;
+  const conic_shot_work *work;
+  const conic_executor *executor;
   const conic_accumulate_options *options;
-  cli_sums_keeper *keep;
+  const conic_sums_keeper *keeper; /* null: nobody keeps */
   conic_accumulation *sums;
 } together;
 
@@ -22,19 +19,20 @@ static uint64_t stage_end(const together *t, uint64_t begin) {
   uint64_t end = LEAST_SAMPLES;
   while (end <= begin)
     end *= 2;
-  return (t->options->noise > 0.0 || t->keep) && end < t->options->end_sample ? end : t->options->end_sample;
+  return (t->options->noise > 0.0 || t->keeper) && end < t->options->end_sample ? end : t->options->end_sample;
 }
 
 /* Of the samples from `begin` to before `end` those that this process is given. */
 static conic_status add_given(const together *t, uint64_t begin, uint64_t end) {
-  uint64_t count = (uint64_t)t->team->cut_for, each = (end - begin) / (count * UNITS_EACH) + 1, unit;
+  const conic_executor *executor = t->executor;
+  uint64_t count = (uint64_t)executor->cut_for, each = (end - begin) / (count * UNITS_EACH) + 1, unit;
   conic_status status = CONIC_OK;
-  t->team->share((end - begin + each - 1) / each, NULL, NULL);
-  while (status == CONIC_OK && (unit = t->team->next()) != CLI_NO_UNIT) {
+  executor->share(executor->data, (end - begin + each - 1) / each, NULL, NULL);
+  while (status == CONIC_OK && (unit = executor->next(executor->data)) != CONIC_NO_UNIT) {
     conic_moment start = conic_moment_now();
     uint64_t from = begin + unit * each, to = from + each < end ? from + each : end;
-    status = conic_accumulate_range(t->session->context, t->options, from, to, t->sums);
-    cli_sharing_note(t->session, t->job, "samples", from, start, 0);
+    status = conic_accumulate_range(t->work->context, t->options, from, to, t->sums);
+    executor->did(executor->data, "samples", from, start, 0);
   }
   return status;
 }
@@ -118,27 +116,26 @@ static conic_status take_all_parts(const together *t, const conic_team *team) {
 }
 
 /* Of the swap, what is no waiting. */
-static void trace_joining(const cli_session *session, const conic_moment *took) {
+static void trace_joining(const conic_shot_work *work, const conic_moment *took) {
   conic_moment now = conic_moment_now();
-  cli_team_trace(session, "join", "sums", 0,
-                 (conic_moment){now.clock_s - took->clock_s, now.processor_s - took->processor_s}, 0);
+  conic_work_trace(work, "join", "sums", 0,
+                   (conic_moment){now.clock_s - took->clock_s, now.processor_s - took->processor_s}, 0);
 }
 
 /* Two by two again and again, everything would go over the line as often as the logarithm of their number says; so it
  * goes twice. */
 static conic_status join_all_sums(const together *t) {
-  conic_team room;
-  const conic_team *team = cli_team_of_library(t->session, &room);
+  const conic_team *team = t->executor->team;
   conic_moment start = conic_moment_now(), joining = {0.0, 0.0};
   size_t n_bytes, n_own;
   conic_accumulation_part(t->sums, 0, 1, &n_bytes);
   conic_accumulation_part(t->sums, team->index, team->count, &n_own);
   conic_status status = join_own_part(t, team, &joining);
-  cli_team_trace(t->session, "join", "swap", 0, start, n_bytes - n_own);
-  trace_joining(t->session, &joining);
+  conic_work_trace(t->work, "join", "swap", 0, start, n_bytes - n_own);
+  trace_joining(t->work, &joining);
   start = conic_moment_now();
   conic_status taken = take_all_parts(t, team);
-  cli_team_trace(t->session, "join", "parts", 0, start, team->index ? n_own : 0);
+  conic_work_trace(t->work, "join", "parts", 0, start, team->index ? n_own : 0);
   if (team->index == 0)
     conic_accumulation_joined(t->sums, 0);
   else
@@ -147,29 +144,30 @@ static conic_status join_all_sums(const together *t) {
 }
 
 static conic_status run_stage(const together *t, uint64_t begin) {
-  conic_status status = cli_sharing_end(t->session, t->job, add_given(t, begin, stage_end(t, begin)));
+  conic_status status = conic_work_agree(t->work, add_given(t, begin, stage_end(t, begin)));
   if (status == CONIC_OK)
     status = join_all_sums(t);
-  if (status == CONIC_OK && t->keep && t->team->index == 0)
-    status = t->keep(t->options->cookie, t->sums);
-  return cli_sharing_end(t->session, t->job, status);
+  if (status == CONIC_OK && t->keeper && t->executor->index == 0)
+    status = t->keeper->keep(t->keeper->cookie, t->sums);
+  return conic_work_agree(t->work, status);
 }
 
-conic_status cli_accumulate_together(cli_session *session, cli_render_job *job, const conic_accumulate_options *options,
-                                     cli_sums_keeper *keep, conic_accumulation *sums) {
-  together t = {session, session->team, job, options, keep, sums};
+conic_status conic_accumulate_together(const conic_shot_work *work, const conic_accumulate_options *options,
+                                       conic_accumulation *sums) {
+  const conic_executor *executor = work->executor;
+  together t = {work, executor, options, work->keeper && work->keeper->keep ? work->keeper : NULL, sums};
   struct {
     uint64_t begin, is_enough;
   } next = {0, 0};
   conic_accumulation_facts facts;
   conic_accumulation_inspect(sums, &facts);
-  conic_status status = facts.end_sample > 0 ? conic_accumulate_check_key(session->context, options, sums) : CONIC_OK;
-  status = cli_sharing_end(session, job, status);
+  conic_status status = facts.end_sample > 0 ? conic_accumulate_check_key(work->context, options, sums) : CONIC_OK;
+  status = conic_work_agree(work, status);
   while (status == CONIC_OK) {
     conic_accumulation_inspect(sums, &facts);
     next.begin = facts.end_sample;
     next.is_enough = (uint64_t)conic_accumulate_is_enough(options, sums);
-    t.team->broadcast(&next, sizeof next);
+    executor->broadcast(executor->data, &next, sizeof next);
     if (next.is_enough)
       break;
     status = run_stage(&t, next.begin);

@@ -1,14 +1,11 @@
 /* What is behind a picture, besides the one colour that the renderer puts there: a gradient from top to bottom. */
-#ifndef CONIC_BACKDROP_H
-#define CONIC_BACKDROP_H
+#ifndef CONIC_BACKGROUND_OPTIONS_H
+#define CONIC_BACKGROUND_OPTIONS_H
 
 #include "cli/scene/render_job.h"
 
 /* A parser of values, into a cli_render_job: COLOR, COLOR:COLOR of the top and the bottom, or none. */
 int cli_parse_background(const char *text, void *value);
-
-/* Puts the gradient that was asked for behind the picture, in all its outputs. */
-void cli_backdrop_show(const cli_render_job *job, conic_image *image);
 
 /* cli_planes_write; where nobody chose a background, and PATH is a picture to look at, with one. */
 conic_status cli_backdrop_write(cli_session *session, const cli_render_job *job, const char *path,

@@ -1,0 +1,105 @@
+/* A camera that sees all of a source. */
+#include <math.h>
+#include <string.h>
+
+#include "conic/shot.h"
+#include "core/base/message.h"
+#include "core/base/options.h"
+#include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
+#include "source/source_kind.h"
+
+void conic_shot_framing_init_sized(conic_shot_framing *framing, size_t size) {
+  conic_shot_framing own;
+  memset(&own, 0, sizeof own);
+  own.size = sizeof own;
+  own.finds_up = own.finds_elevation = own.finds_near = own.n_turns = 1;
+  conic_framing_init(&own.framing);
+  conic_options_give(framing, size, &own);
+}
+
+/* What lies flat shows more of itself from higher up. */
+static double elevation_for(const conic_source_scale *scale, const double up[3]) {
+  static const double flat_part = 0.33, flat_elevation_deg = 35.0, elevation_deg = 15.0;
+  double height = 0.0, ground = HUGE_VAL;
+  for (int axis = 0; axis < 3; axis++) {
+    double extent = scale->maximum[axis] - scale->minimum[axis];
+    if (up[axis] != 0.0)
+      height = extent;
+    else
+      ground = extent < ground ? extent : ground;
+  }
+  return height > 0.0 && height < flat_part * ground ? flat_elevation_deg : elevation_deg;
+}
+
+/* A pinhole so far off that what it frames is what parallel rays do. */
+static const double parallel_fov_deg = 0.5;
+
+/* What of the framing is found, and the turn. */
+static conic_framing settle(const conic_source_scale *scale, const conic_shot_framing *given) {
+  conic_framing framing = given->framing;
+  if (given->finds_up)
+    memcpy(framing.up, scale->up, sizeof framing.up);
+  if (given->finds_elevation && (given->has_eye || given->kind >= CONIC_CAMERA_EQUIRECTANGULAR))
+    framing.elevation_deg = 0.0; /* of who stands in it */
+  else if (given->finds_elevation && !given->is_plain)
+    framing.elevation_deg = elevation_for(scale, framing.up);
+  framing.azimuth_deg += 360.0 * (double)given->i_turn / (double)given->n_turns;
+  return framing;
+}
+
+static void stand_at(const double eye[3], conic_camera *camera) {
+  for (int row = 0; row < 3; row++)
+    camera->cam_from_world[row][3] = -conic_dot(camera->cam_from_world[row], eye);
+}
+
+/* Makes of the pinhole that frames the scene a camera of its kind. */
+static void project(const conic_source_scale *scale, const conic_shot_framing *given, const conic_framing *framing,
+                    conic_camera *camera) {
+  const double shorter = camera->width < camera->height ? camera->width : camera->height;
+  double center[3], distance = camera->cam_from_world[2][3];
+  for (int axis = 0; axis < 3; axis++) {
+    center[axis] = 0.5 * scale->minimum[axis] + 0.5 * scale->maximum[axis];
+    distance += camera->cam_from_world[2][axis] * center[axis];
+  }
+  camera->kind = (uint32_t)given->kind;
+  if (given->kind == CONIC_CAMERA_ORTHOGRAPHIC) { /* as large as the pinhole draws what is at the centre */
+    camera->fx = camera->fy = camera->fx / distance;
+    camera->cam_from_world[2][3] +=
+        0.5 * framing->zoom * shorter / (camera->fx * conic_tan(conic_radians(0.5 * framing->fov_deg))) - distance;
+  } else if (given->kind == CONIC_CAMERA_FISHEYE)
+    camera->fx = camera->fy = framing->zoom * shorter / conic_radians(framing->fov_deg);
+  else if (given->kind == CONIC_CAMERA_EQUIRECTANGULAR) { /* all around, from amid the scene */
+    camera->fx = camera->fy = framing->zoom * camera->width / (2.0 * CONIC_PI);
+    stand_at(center, camera);
+  } else if (given->kind == CONIC_CAMERA_CUBE) { /* likewise; the picture is as wide as one of its sides */
+    camera->fx = camera->fy = camera->cx = camera->cy = 0.5 * camera->width;
+    stand_at(center, camera);
+  }
+  if (given->has_eye)
+    stand_at(given->eye, camera);
+}
+
+conic_status conic_shot_frame(conic_source *source, const conic_shot_framing *given, conic_shot *shot) {
+  conic_shot_framing own;
+  conic_shot_framing_init(&own);
+  if (given && !conic_options_take(&own, given))
+    return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: the framing was not initialised", source->name);
+  const conic_source_scale *scale = conic_source_measure(source);
+  const conic_framing framing = settle(scale, &own);
+  conic_framing pinhole = framing;
+  if (own.kind == CONIC_CAMERA_ORTHOGRAPHIC)
+    pinhole.fov_deg = parallel_fov_deg;
+  double near_z = HUGE_VAL;
+  conic_status status = own.is_plain ? conic_source_frame(source, &pinhole, &shot->camera)
+                                     : conic_source_fit(source, &pinhole, shot->render.kernel.cutoff, own.n_turns,
+                                                        &shot->camera, &near_z);
+  if (status != CONIC_OK)
+    return status;
+  project(scale, &own, &framing, &shot->camera);
+  if (shot->render.near_z == 0.0)
+    shot->render.near_z = scale->near_z;
+  if (own.finds_near && near_z < shot->render.near_z) /* strays, which are not framed, cut nothing off that is */
+    shot->render.near_z = near_z;
+  return CONIC_OK;
+}

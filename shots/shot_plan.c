@@ -1,0 +1,83 @@
+#include "shots/shot_plan.h"
+
+#include "core/base/message.h"
+#include "source/source_kind.h"
+
+enum { RGBA = 1u << CONIC_PLANE_RGBA, Z = 1u << CONIC_PLANE_Z, NORMAL = 1u << CONIC_PLANE_NORMAL };
+
+int conic_shot_is_lit(const conic_shot *shot) {
+  return shot->light.n_directions > 0 || shot->light.has_shadows || shot->light.n_lamps > 0;
+}
+
+/* Whether the depth of the picture says where it is sharp. */
+static int is_focus_seen(const conic_shot *shot) {
+  return shot->n_samples > 0 && shot->aperture.diameter > 0.0 && shot->focus_kind != CONIC_FOCUS_DEPTH;
+}
+
+unsigned conic_shot_needs(const conic_shot *shot, unsigned planes) {
+  if (conic_shot_is_lit(shot))
+    planes |= Z | NORMAL | (planes & RGBA ? 1u << CONIC_PLANE_ALBEDO : 0);
+  if (planes & 1u << CONIC_PLANE_POSITION || is_focus_seen(shot))
+    planes |= Z;
+  if (planes & 1u << CONIC_PLANE_CLUSTER)
+    planes |= 1u << CONIC_PLANE_ID;
+  return planes;
+}
+
+/* Gaussians have pictures of their own for what a profile defines, but not through a lens, nor of all directions at
+ * once. */
+static int draws_itself(const conic_shot *shot, unsigned abilities, const conic_camera *camera) {
+  int has_lens = shot->n_samples > 0 && shot->aperture.diameter > 0.0;
+  if (!(abilities & CONIC_SOURCE_COMPOSITES))
+    return 0;
+  return camera->kind != CONIC_CAMERA_CUBE && (shot->gaussians.profile != CONIC_PROFILE_EXACT || !has_lens);
+}
+
+int conic_shot_is_gathered(const conic_shot *shot, unsigned abilities, const conic_camera *camera) {
+  return (camera->kind || camera->lens) && !draws_itself(shot, abilities, camera);
+}
+
+/* Samples of gathered pictures, and sides that no one camera sees together, are lit view by view. */
+static conic_lit lit_how(const conic_shot *shot, int is_gathered) {
+  if (!conic_shot_is_lit(shot))
+    return CONIC_LIT_NOT;
+  if (is_gathered && (shot->n_samples > 0 || shot->camera.kind == CONIC_CAMERA_CUBE))
+    return CONIC_LIT_BY_VIEW;
+  return shot->n_samples > 0 ? CONIC_LIT_BY_SAMPLE : CONIC_LIT_WHOLE;
+}
+
+/* What is wrong with it; null: nothing. */
+static const char *find_fault(const conic_shot *shot, unsigned abilities) {
+  const unsigned of_means = 1u << CONIC_PLANE_SAMPLES | 1u << CONIC_PLANE_VARIANCE;
+  if (shot->light.n_lamps < 0 || shot->light.n_lamps > CONIC_MAX_LAMPS)
+    return "more lamps than there may be";
+  if (shot->n_samples > CONIC_MAX_ACCUMULATED)
+    return "more samples than there may be";
+  if (shot->n_samples > 0 && shot->view.samples > 1)
+    return "means of samples draw one sample a pixel at a time: view.samples is 1";
+  if (!shot->n_samples && shot->planes & of_means)
+    return "the planes samples and variance are of means: n_samples is above 0";
+  if (!shot->n_samples && (shot->aperture.diameter > 0.0 || shot->is_shutter_open || shot->motion))
+    return "a lens, a shutter and motion are of means: n_samples is above 0";
+  if (conic_shot_is_lit(shot) && abilities & CONIC_SOURCE_COMPOSITES)
+    return "light is hidden from surfaces, not from Gaussians that are composited";
+  if (shot->planes & CONIC_GAUSSIAN_PLANES && !(abilities & CONIC_SOURCE_COMPOSITES))
+    return "the planes T, medianZ, inverseZ, last and doubt are of Gaussians that are composited";
+  if (shot->planes & 1u << CONIC_PLANE_CLUSTER && !(abilities & CONIC_SOURCE_CLUSTERS))
+    return "the plane cluster is of hybrids";
+  return NULL;
+}
+
+conic_status conic_shot_plan_make(const conic_source *source, const conic_renderer *renderer, const conic_shot *shot,
+                                  conic_shot_plan *plan) {
+  const unsigned abilities = source->scale.abilities;
+  const char *fault = find_fault(shot, abilities);
+  if (fault)
+    return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: the shot cannot be drawn: %s", source->name, fault);
+  plan->is_accumulated = shot->n_samples > 0;
+  plan->is_gathered = conic_shot_is_gathered(shot, abilities, &shot->camera);
+  plan->lit = lit_how(shot, plan->is_gathered);
+  plan->planes = conic_shot_needs(shot, shot->planes);
+  plan->has_windows = conic_source_has_windows(source, renderer, shot->view.transparency != CONIC_TRANSPARENCY_NONE);
+  return CONIC_OK;
+}
