@@ -161,7 +161,7 @@ CONIC_API void conic_estimate_options_init_sized(conic_estimate_options *options
 #define conic_estimate_options_init(options) conic_estimate_options_init_sized(options, sizeof *(options))
 
 /* Gives every point of the model tangent axes, in place: from the faces where there are any, else from the k nearest
- * neighbours (Confetti §4.3 with the corrections of docs/reference/errata.md); a set that has axes keeps them, and only
+ * neighbours (Confetti §4.3 with the corrections of docs/notes/errata.md); a set that has axes keeps them, and only
  * its zero and non-finite ones are repaired. Missing normals come from the covariance of the neighbours and are
  * oriented consistently. Points that can't be repaired get NaN axes, which the renderer skips and counts, so that
  * indices stay those of the file. The result is the same for any number of threads. `repairs` may be null. Errors:

@@ -1,5 +1,5 @@
 /* Scenes that break other renderers: surfaces nearer to each other than the depth tolerance, tolerances of all sizes,
- * dust, other orders of the same splats, other places and scales of the same scene (docs/reference/stability.md). */
+ * dust, other orders of the same splats, other places and scales of the same scene (docs/reference/accuracy.md). */
 #include "tests/support/stability.h"
 
 static const float red[3] = {1, 0, 0};

@@ -54,7 +54,7 @@ static void sums_at(conic_near *near, const conic_weighing *weighing, double a, 
   kernels.plane(near, weighing, tilted, t, sums);
 }
 
-/* The derivative by t is Eq. 6 as corrected (docs/reference/errata.md): with the printed sign and exponent this fails.
+/* The derivative by t is Eq. 6 as corrected (docs/notes/errata.md): with the printed sign and exponent this fails.
  */
 static void check_derivatives(void) {
   conic_near near = allocate();
