@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/image/image_common.h"
 #include "raster/project/clip_lines.h"
 #include "raster/project/projected.h"
 #include "raster/view/method.h"
@@ -85,11 +86,6 @@ static conic_status write_directions(const conic_frame *f, int buffer, int n_til
   return status;
 }
 
-static size_t plane_bytes(const conic_image *image, int plane) {
-  return (size_t)image->width * (size_t)image->height * 4 *
-         (size_t)conic_plane_describe((conic_plane)plane)->n_channels;
-}
-
 conic_status conic_frame_open_plane(const conic_frame *f, int buffer, void *plane, size_t bytes) {
   conic_opencl *opencl = f->opencl;
   if (!plane)
@@ -124,8 +120,8 @@ static void *drawn_plane(const conic_frame *f, int plane) {
 static conic_status open_planes(const conic_frame *f) {
   conic_status status = CONIC_OK;
   for (int plane = 0; plane < CONIC_N_DRAWN_PLANES && status == CONIC_OK; plane++)
-    status =
-        conic_frame_open_plane(f, CONIC_BUFFER_PLANES + plane, drawn_plane(f, plane), plane_bytes(f->image, plane));
+    status = conic_frame_open_plane(f, CONIC_BUFFER_PLANES + plane, drawn_plane(f, plane),
+                                    conic_image_plane_bytes(f->image, plane));
   return status;
 }
 
@@ -201,8 +197,8 @@ conic_status conic_frame_end(conic_frame *f, uint64_t *n_covered) {
   if (f->is_hiding)
     return end_hiding(f, n_covered);
   for (int plane = 0; plane < CONIC_N_DRAWN_PLANES && status == CONIC_OK; plane++)
-    status =
-        conic_frame_close_plane(f, CONIC_BUFFER_PLANES + plane, drawn_plane(f, plane), plane_bytes(f->image, plane));
+    status = conic_frame_close_plane(f, CONIC_BUFFER_PLANES + plane, drawn_plane(f, plane),
+                                     conic_image_plane_bytes(f->image, plane));
   return status == CONIC_OK ? conic_frame_add_tiles(f, CONIC_BUFFER_N_COVERED, n_covered) : status;
 }
 

@@ -73,7 +73,7 @@ static inline void *cross_calloc(size_t bytes) {
 /* Zeroed, of the desk's from now on. */
 static inline void *cross_room(cross_desk *desk, const char *name, size_t bytes) {
   cross_arena *a = &desk->arenas[desk->n_arenas++];
-  size_t whole = (bytes + 2 * CROSS_GUARD + 63) / 64 * 64;
+  size_t whole = conic_memory_rounded(bytes + 2 * CROSS_GUARD);
   *a = (cross_arena){.name = name, .held = cross_calloc(whole + 64), .bytes = bytes, .compared = bytes};
   a->memory = (unsigned char *)a->held + (64 - (uintptr_t)a->held % 64);
   a->inside = a->memory + CROSS_GUARD;

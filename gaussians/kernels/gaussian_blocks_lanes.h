@@ -6,23 +6,24 @@
 #include "gaussians/draw/gaussian_tile.h"
 
 /* A footprint as a tile sees it: a line of the cache. */
-typedef struct record {
+typedef struct gaussian_record {
   float x, y; /* from the footprint's pixel to the tile's first */
   float dx, dy, form[3], opacity, z, color[3];
   float first[2], last[2]; /* of its box, from the tile's first pixel */
-} record;
+} gaussian_record;
 
-CONIC_INLINE record record_of(const conic_gaussian_tile *tile, const CONIC_STORED conic_gaussian_footprint *f) {
-  return (record){(float)(tile->x - f->x),
-                  (float)(tile->y - f->y),
-                  f->dx,
-                  f->dy,
-                  {f->form[0], f->form[1], f->form[2]},
-                  f->opacity,
-                  f->z,
-                  {f->color[0], f->color[1], f->color[2]},
-                  {(float)((int)f->box[0][0] - tile->x), (float)((int)f->box[0][1] - tile->y)},
-                  {(float)((int)f->box[1][0] - tile->x), (float)((int)f->box[1][1] - tile->y)}};
+CONIC_INLINE gaussian_record record_of(const conic_gaussian_tile *tile,
+                                       const CONIC_STORED conic_gaussian_footprint *f) {
+  return (gaussian_record){(float)(tile->x - f->x),
+                           (float)(tile->y - f->y),
+                           f->dx,
+                           f->dy,
+                           {f->form[0], f->form[1], f->form[2]},
+                           f->opacity,
+                           f->z,
+                           {f->color[0], f->color[1], f->color[2]},
+                           {(float)((int)f->box[0][0] - tile->x), (float)((int)f->box[0][1] - tile->y)},
+                           {(float)((int)f->box[1][0] - tile->x), (float)((int)f->box[1][1] - tile->y)}};
 }
 
 /* The pixels of a vector, from the tile's first. */
@@ -35,7 +36,7 @@ CONIC_INLINE places places_at(size_t pixel) {
                   lanes_of_ints(lanes_rows() + conic_gaussian_row(pixel))};
 }
 
-CONIC_INLINE lanes_mask within_box(const record *r, places at) {
+CONIC_INLINE lanes_mask within_box(const gaussian_record *r, places at) {
   return lanes_at_least(at.column, lanes_of(r->first[0])) & lanes_at_least(lanes_of(r->last[0]), at.column) &
          lanes_at_least(at.row, lanes_of(r->first[1])) & lanes_at_least(lanes_of(r->last[1]), at.row);
 }
@@ -59,7 +60,7 @@ CONIC_INLINE unsigned blocks_of_box(const conic_gaussian_tile *tile, const CONIC
 /* Those of them in which half_q may come down to `half_reach`. It is convex, so that its gradient at the block's middle
  * tells what it is at least; what the roundings of all that can be is well below 2⁻¹⁸ of the terms. Not a number, or an
  * ellipse of zeros, leaves out none. */
-CONIC_INLINE unsigned blocks_of_ellipse(const record *r, float half_reach) {
+CONIC_INLINE unsigned blocks_of_ellipse(const gaussian_record *r, float half_reach) {
   const float half = 0.5f * (CONIC_GAUSSIAN_BLOCK - 1);
   unsigned met = 0;
   for (int first = 0; first < CONIC_GAUSSIAN_BLOCKS; first += CONIC_LANES) {

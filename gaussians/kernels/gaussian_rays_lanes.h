@@ -5,8 +5,9 @@
 
 #include "gaussians/kernels/gaussian_blocks_lanes.h"
 #include "gaussians/kernels/gaussian_pixels_lanes.h"
+#include "gaussians/kernels/ray_meetings_lanes.h"
 
-CONIC_INLINE lanes lanes_alpha(const scene *s, const record *r, lanes half_q) {
+CONIC_INLINE lanes lanes_alpha(const scene *s, const gaussian_record *r, lanes half_q) {
   return lanes_min(r->opacity * lanes_exp_negative(-half_q), s->most);
 }
 
@@ -17,14 +18,6 @@ CONIC_INLINE void add_planes_of_footprint(const conic_gaussian_list *list, uint3
 }
 
 enum { BATCH = 256, RAYS_AHEAD = 6 }; /* entries that are taken at a time; how far memory is asked for */
-
-#ifdef CONIC_ON_DEVICE
-typedef struct meeting_lanes {
-  lanes half_q, z;
-} meeting_lanes;
-#else
-#include "gaussians/kernels/ray_meetings_lanes.h"
-#endif
 
 CONIC_INLINE meeting_lanes meet_lanes(const CONIC_STORED conic_gaussian_ray *r, lanes dx, lanes dy) {
   lanes g[3], c[3];
@@ -41,7 +34,7 @@ CONIC_INLINE meeting_lanes meet_lanes(const CONIC_STORED conic_gaussian_ray *r, 
 #ifndef CONIC_ON_DEVICE /* which has opencl/gaussian_rays.cl */
 #include "gaussians/kernels/gaussian_order_lanes.h"
 
-CONIC_INLINE meeting_lanes meet_by_shape(const conic_gaussian_list *list, uint32_t footprint, const record *r,
+CONIC_INLINE meeting_lanes meet_by_shape(const conic_gaussian_list *list, uint32_t footprint, const gaussian_record *r,
                                          size_t pixel, conic_gaussian_shape shape) {
   const places at = places_at(pixel);
   if (shape == CONIC_SHAPE_FILTERED)
@@ -59,10 +52,10 @@ typedef struct look {
 
 /* Arrays of the room of a list. */
 typedef struct meetings {
-  record *records;
+  gaussian_record *records;
   uint32_t *blocks;
   float *bounds;           /* of each batch: no z that follows it is below */
-  size_t n_taken;          /* entries that have a record */
+  size_t n_taken;          /* entries that have a gaussian_record */
   look *looks;             /* of the Gaussians that meet a ray of the vector, */
   lanes_row *z, *alpha;    /* where they do; alpha 0: not that ray */
   lanes_row *keys;         /* which of them wait, nearest first */
@@ -88,7 +81,7 @@ static void take_records(const conic_gaussian_list *list, const conic_gaussian_t
     return;
   for (; m->n_taken < end; m->n_taken++) {
     const conic_gaussian_footprint *f = footprint_of_entry(list, m->n_taken);
-    record *r = &m->records[m->n_taken];
+    gaussian_record *r = &m->records[m->n_taken];
     *r = record_of(tile, f);
     m->blocks[m->n_taken] = blocks_of_box(tile, f) & blocks_of_ellipse(r, f->half_reach);
   }
@@ -101,7 +94,7 @@ CONIC_INLINE void meet_listed(const scene *s, meetings *m, size_t first, const u
   const places at = places_at(pixel);
   const conic_gaussian_list *list = s->list;
   for (size_t i = 0; i < n_listed; i++) {
-    const record *r = &m->records[first + listed[i]];
+    const gaussian_record *r = &m->records[first + listed[i]];
     const uint32_t footprint = list->entries[first + listed[i]];
     if (shape == CONIC_SHAPE_RAY && i + RAYS_AHEAD < n_listed) { /* a ray takes two lines of the cache */
       const char *next = (const char *)&list->rays[list->entries[first + listed[i + RAYS_AHEAD]]];

@@ -9,6 +9,8 @@ typedef struct meeting_lanes {
   lanes half_q, z, opacity; /* half_q below 0: nowhere; the opacity is that of CONIC_SHAPE_FILTERED */
 } meeting_lanes;
 
+#ifndef CONIC_ON_DEVICE /* which draws neither */
+
 CONIC_INLINE lanes lanes_dot_of_self(const lanes a[3]) {
   return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
 }
@@ -50,4 +52,5 @@ CONIC_INLINE meeting_lanes meet_sight_lanes(const conic_gaussian_list *list, uin
                          .z = (r->e[0] + r->e[1] * d[0] + r->e[2] * d[1] + r->e[3] * d[2]) * one_over};
 }
 
+#endif
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/base/vectors.h"
+#include "core/splats/float_vectors.h"
 #include "lod/octree/octree_measure_body.h"
 #include "lod/octree/outline_corners.h"
 
@@ -17,18 +18,6 @@ typedef struct flat_node {
   const conic_node_disc *disc;
   float u[3], v[3], major, minor, gap;
 } flat_node;
-
-static float dot_floats(const float a[3], const float b[3]) {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
-
-/* Unit vector; returns the length it had. */
-static float unit_of(const float a[3], float unit[3]) {
-  float length = sqrtf(dot_floats(a, a)), scale = length > 0.0f ? 1.0f / length : 0.0f;
-  for (int axis = 0; axis < 3; axis++)
-    unit[axis] = a[axis] * scale;
-  return length;
-}
 
 static int reaches_into(float *const center[3], float *const half[3], size_t i, const reach_box *box) {
   int is_in = 1;
@@ -46,23 +35,24 @@ static float error_of_sample(const flat_node *node, const conic_discs *discs, si
     u[axis] = discs->u[axis][k];
     v[axis] = discs->v[axis][k];
   }
-  float ux = dot_floats(u, node->u), uy = dot_floats(u, node->v), vx = dot_floats(v, node->u),
-        vy = dot_floats(v, node->v);
+  float ux = conic_float_dot(u, node->u), uy = conic_float_dot(u, node->v), vx = conic_float_dot(v, node->u),
+        vy = conic_float_dot(v, node->v);
   float determinant = ux * vy - uy * vx, sum = (ux * ux + uy * uy) + (vx * vx + vy * vy);
   float root = sqrtf(sum), scale = 1.0f / determinant, area = fabsf(determinant);
   int is_flat = sum * 1e-3f < area; /* one seen from its edge counts by its centre */
   float point = 1.0f / (root * 1e-3f + 1e-30f);
   const float inverse[4] = {is_flat ? vy * scale : point, is_flat ? -vx * scale : 0.0f, is_flat ? -uy * scale : 0.0f,
                             is_flat ? ux * scale : point};
-  float uz = is_flat ? dot_floats(u, node->disc->n) : 0.0f, vz = is_flat ? dot_floats(v, node->disc->n) : 0.0f;
+  float uz = is_flat ? conic_float_dot(u, node->disc->n) : 0.0f,
+        vz = is_flat ? conic_float_dot(v, node->disc->n) : 0.0f;
   float slope_x = uz * inverse[0] + vz * inverse[2], slope_y = uz * inverse[1] + vz * inverse[3];
   float lift = sqrtf(slope_x * slope_x + slope_y * slope_y) * node->gap, minor = is_flat ? area / root : 0.0f;
 
-  float dx = x - dot_floats(apart, node->u), dy = y - dot_floats(apart, node->v);
+  float dx = x - conic_float_dot(apart, node->u), dy = y - conic_float_dot(apart, node->v);
   float a = dx * inverse[0] + dy * inverse[1], b = dx * inverse[2] + dy * inverse[3];
   float out = sqrtf(a * a + b * b), inside = 1.0f / (out > 1.0f ? out : 1.0f), beyond = 1.0f - inside;
   float outside2 = (dx * dx + dy * dy) * (beyond * beyond);
-  float z = inside * (a * uz + b * vz) + dot_floats(apart, node->disc->n), distance = sqrtf(outside2 + z * z);
+  float z = inside * (a * uz + b * vz) + conic_float_dot(apart, node->disc->n), distance = sqrtf(outside2 + z * z);
   float within = (1.0f - out > 0.0f ? 1.0f - out : 0.0f) * minor, rest = node->gap - within;
   float around = (distance + (rest > 0.0f ? rest : 0.0f)) + (out < 1.0f ? lift : 0.0f);
   float weighted = distance * CONIC_COVER_WEIGHT;
@@ -94,8 +84,8 @@ static float plain_cover(const conic_disc_samples *samples, const conic_discs *d
                          conic_near_discs *near, const conic_node_disc *disc) {
   float x[CONIC_DISC_SAMPLES], y[CONIC_DISC_SAMPLES], nearest[CONIC_DISC_SAMPLES], enough = disc->enough;
   flat_node node = {.disc = disc};
-  node.major = unit_of(disc->u, node.u);
-  node.minor = unit_of(disc->v, node.v);
+  node.major = conic_float_unit(disc->u, node.u);
+  node.minor = conic_float_unit(disc->v, node.v);
   node.gap = (float)CONIC_DISC_GAP * (node.major > node.minor ? node.major : node.minor);
   for (int i = 0; i < CONIC_DISC_SAMPLES; i++) {
     x[i] = samples->x[i] * node.major;

@@ -2,26 +2,23 @@
 
 #include <string.h>
 
+#include "core/base/memory.h"
 #include "raster/project/clip_lines.h"
 #include "raster/tiles/bins_tiles.h"
 #include "raster/tiles/tile_kernels.h"
 
-static size_t rounded(size_t bytes) {
-  return (bytes + 63) / 64 * 64;
-}
-
 size_t conic_sorter_bytes(const conic_bins *bins, size_t chunk_size, int has_clips) {
   size_t n = chunk_size + CONIC_PROJECT_SLACK;
-  return rounded(n * sizeof(conic_footprint)) + rounded(n * sizeof(conic_projected_surface)) +
-         rounded(n * sizeof(conic_box)) + 4 * rounded(n * sizeof(uint32_t)) +
-         2 * rounded((bins->n_tiles + 1) * sizeof(uint32_t)) +
-         (has_clips ? rounded(chunk_size * sizeof(conic_clip_record)) : 0);
+  return conic_memory_rounded(n * sizeof(conic_footprint)) + conic_memory_rounded(n * sizeof(conic_projected_surface)) +
+         conic_memory_rounded(n * sizeof(conic_box)) + 4 * conic_memory_rounded(n * sizeof(uint32_t)) +
+         2 * conic_memory_rounded((bins->n_tiles + 1) * sizeof(uint32_t)) +
+         (has_clips ? conic_memory_rounded(chunk_size * sizeof(conic_clip_record)) : 0);
 }
 
 /* Takes so many bytes from what is left of the memory. */
 static void *take(char **memory, size_t bytes) {
   void *taken = *memory;
-  *memory += rounded(bytes);
+  *memory += conic_memory_rounded(bytes);
   return taken;
 }
 

@@ -36,10 +36,6 @@ void conic_triangle_frame_tiles(conic_triangle_frame *frame, int tile) {
   frame->n_tiles = (size_t)frame->n_tiles_x * (size_t)((frame->view->height + tile - 1) / tile);
 }
 
-static size_t rounded(size_t bytes) {
-  return (bytes + 63) / 64 * 64;
-}
-
 static conic_status plan(conic_triangle_frame *frame) {
   conic_context *context = frame->context;
   conic_kept_memory *memory = frame->memory;
@@ -50,8 +46,9 @@ static conic_status plan(conic_triangle_frame *frame) {
   frame->chunk_size = size;
   frame->n_chunks = (n + size - 1) / size;
   size_t most = CONIC_TRIANGLE_PIECES_MOST * (size < n ? size : n) + 1;
-  frame->sorter_bytes = rounded(most * sizeof(conic_triangle_record)) + rounded(most * sizeof(conic_triangle_piece)) +
-                        rounded(frame->n_tiles * sizeof(uint32_t));
+  frame->sorter_bytes = conic_memory_rounded(most * sizeof(conic_triangle_record)) +
+                        conic_memory_rounded(most * sizeof(conic_triangle_piece)) +
+                        conic_memory_rounded(frame->n_tiles * sizeof(uint32_t));
   frame->vertices =
       conic_keep_room(context, &memory[CONIC_TRIANGLE_VERTICES], frame->triangles->n_vertices, sizeof *frame->vertices);
   frame->chunks = conic_keep_room(context, &memory[CONIC_TRIANGLE_CHUNKS], frame->n_chunks, sizeof *frame->chunks);
@@ -158,9 +155,9 @@ static void triangles_task(void *data, size_t i_chunk, int i_thread) {
   size_t n = frame->triangles->count, begin = i_chunk * frame->chunk_size, end = begin + frame->chunk_size;
   size_t most = CONIC_TRIANGLE_PIECES_MOST * (frame->chunk_size < n ? frame->chunk_size : n) + 1;
   sorter.records = (conic_triangle_record *)(void *)memory;
-  memory += rounded(most * sizeof *sorter.records);
+  memory += conic_memory_rounded(most * sizeof *sorter.records);
   sorter.pieces = (conic_triangle_piece *)(void *)memory;
-  sorter.next = (uint32_t *)(void *)(memory + rounded(most * sizeof *sorter.pieces));
+  sorter.next = (uint32_t *)(void *)(memory + conic_memory_rounded(most * sizeof *sorter.pieces));
   conic_triangle_set_up(frame, begin, end < n ? end : n, &sorter, &frame->chunks[i_chunk]);
   hand_over_records(frame, &sorter, i_chunk);
 }

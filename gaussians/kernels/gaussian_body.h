@@ -2,20 +2,21 @@
  * Includes what fills the table. C and OpenCL C share this text, and what it includes. */
 #include "gaussians/kernels/gaussian_rays_lanes.h"
 
-typedef struct batch {
-  record records[BATCH];
+typedef struct gaussian_batch {
+  gaussian_record records[BATCH];
   uint32_t blocks[BATCH]; /* that each may cover, as bits */
   uint32_t footprints[BATCH];
   size_t n;
   uint32_t listed[BATCH + CONIC_LANES];                       /* those of one block */
   unsigned goes_on[CONIC_GAUSSIAN_TILE_PIXELS / CONIC_LANES]; /* which pixels of each vector */
-} batch;
+} gaussian_batch;
 
-static void take_batch(const conic_gaussian_list *list, const conic_gaussian_tile *tile, size_t first, batch *b) {
+static void take_batch(const conic_gaussian_list *list, const conic_gaussian_tile *tile, size_t first,
+                       gaussian_batch *b) {
   b->n = 0;
   for (size_t i = first; i < list->n && i < first + BATCH; i++) {
     const CONIC_STORED conic_gaussian_footprint *f = footprint_of_entry(list, i);
-    record *r = &b->records[b->n];
+    gaussian_record *r = &b->records[b->n];
     *r = record_of(tile, f);
     b->blocks[b->n] = blocks_of_box(tile, f) & blocks_of_ellipse(r, f->half_reach);
     b->footprints[b->n] = list->entries[i];
@@ -24,20 +25,20 @@ static void take_batch(const conic_gaussian_list *list, const conic_gaussian_til
   memset(b->blocks + b->n, 0, (BATCH - b->n) * sizeof *b->blocks);
 }
 
-CONIC_INLINE lanes half_q_of_ellipse(const record *r, places at) {
+CONIC_INLINE lanes half_q_of_ellipse(const gaussian_record *r, places at) {
   lanes dx = (at.column + r->x) + r->dx, dy = (at.row + r->y) + r->dy;
   return 0.5f * (r->form[0] * dx * dx + r->form[2] * dy * dy) + r->form[1] * dx * dy;
 }
 
 /* The lesser of the plane's and the dot's. */
-CONIC_INLINE meeting_lanes meet_disc(const record *r, const CONIC_STORED conic_gaussian_ray *ray, places at) {
+CONIC_INLINE meeting_lanes meet_disc(const gaussian_record *r, const CONIC_STORED conic_gaussian_ray *ray, places at) {
   lanes x = at.column + r->x, y = at.row + r->y, dx = x + r->dx, dy = y + r->dy;
   meeting_lanes m = meet_lanes(ray, x, y);
   m.half_q = lanes_min(m.half_q, dx * dx + dy * dy);
   return m;
 }
 
-CONIC_INLINE response respond(const scene *s, const record *r, uint32_t footprint, places at,
+CONIC_INLINE response respond(const scene *s, const gaussian_record *r, uint32_t footprint, places at,
                               conic_gaussian_shape shape) {
   const conic_gaussian_list *list = s->list;
   const float near_z = list->rules->disc_near;
@@ -58,13 +59,13 @@ CONIC_INLINE response respond(const scene *s, const record *r, uint32_t footprin
   return to;
 }
 
-CONIC_INLINE void composite_vector(const scene *s, batch *b, size_t n_listed, size_t pixel, conic_gaussian_shape shape,
-                                   int wants_all) {
+CONIC_INLINE void composite_vector(const scene *s, gaussian_batch *b, size_t n_listed, size_t pixel,
+                                   conic_gaussian_shape shape, int wants_all) {
   const conic_gaussian_list *list = s->list;
   const places at = places_at(pixel);
   pixels p = take_pixels(s->tile, b->goes_on[pixel / CONIC_LANES], pixel, wants_all);
   for (size_t i = 0; i < n_listed && lanes_any(p.goes_on); i++) {
-    const record *r = &b->records[b->listed[i]];
+    const gaussian_record *r = &b->records[b->listed[i]];
     const uint32_t footprint = b->footprints[b->listed[i]];
     response to = respond(s, r, footprint, at, shape);
     if (!lanes_any(to.covered))
@@ -78,7 +79,7 @@ CONIC_INLINE void composite_vector(const scene *s, batch *b, size_t n_listed, si
 }
 
 /* Returns 0 where compositing has ended at all pixels. */
-CONIC_INLINE int composite_batch(const scene *s, batch *b, conic_gaussian_shape shape, int wants_all) {
+CONIC_INLINE int composite_batch(const scene *s, gaussian_batch *b, conic_gaussian_shape shape, int wants_all) {
   unsigned going = 0;
   for (int block = 0; block < CONIC_GAUSSIAN_BLOCKS; block++) {
     size_t n_listed = list_block(b->blocks, b->n, block, b->listed);
@@ -95,7 +96,7 @@ CONIC_INLINE int composite_batch(const scene *s, batch *b, conic_gaussian_shape 
 CONIC_INLINE void composite_in_order(const conic_gaussian_list *list, conic_gaussian_tile *tile,
                                      conic_gaussian_shape shape, int wants_all) {
   const scene s = scene_of(list, tile);
-  batch b;
+  gaussian_batch b;
   for (size_t i = 0; i < CONIC_GAUSSIAN_TILE_PIXELS / CONIC_LANES; i++)
     b.goes_on[i] = (1u << CONIC_LANES) - 1;
   for (size_t first = 0; first < list->n; first += BATCH) {
