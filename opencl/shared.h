@@ -11,8 +11,9 @@
 #define kernel reconstruction
 #define constant constant_part
 #define half half_part
-/* and a function that it has already: */
+/* and functions that it has already: */
 #define rotate conic_rotate
+#define dot conic_dot_of_floats
 
 /* Where a profile's table is: core/splats/profile.h. */
 #define CONIC_FAR __global

@@ -6,7 +6,7 @@
 #include "bench/kernels/cross.h"
 #include "raster/tiles/lights.h"
 
-enum { N_SPLATS = 2501, N_KERNELS = 4, GREATEST_LIST = 1 << 15, MOST_TILES = 16 };
+enum { N_SPLATS = 2501, GREATEST_LIST = 1 << 15, MOST_TILES = 16 };
 
 /* The desk's arenas, in this order; the image's planes follow. */
 enum {
@@ -112,7 +112,7 @@ static inline conic_lighting colored_lights(int number) {
 static inline void choose(fixture *f, int number) {
   conic_render_options_init(&f->options);
   f->options.method = (conic_method)(number % CONIC_N_METHODS);
-  f->options.kernel.type = (conic_kernel_type)(number / CONIC_N_METHODS % N_KERNELS);
+  f->options.kernel.type = (conic_kernel_type)(number / CONIC_N_METHODS % CONIC_N_KERNELS);
   f->options.shading = (conic_shading)(number % 2 ? CONIC_SHADE_PHONG : number % 3);
   f->options.has_light = number % 4 == 1;
   f->options.light[2] = 1.0;

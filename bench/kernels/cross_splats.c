@@ -432,7 +432,7 @@ static void compare_all(const cross *c, fixture *f) {
   splat_desk *desks[CONIC_N_ISAS];
   uint64_t state = c->seed;
   fixture_camera(f, 90, 86, 70.0); /* no multiple of a block */
-  for (int i = 0; i < 4 * CONIC_N_METHODS * N_KERNELS; i += STEP) {
+  for (int i = 0; i < 4 * CONIC_N_METHODS * CONIC_N_KERNELS; i += STEP) {
     int number = i / 2;
     choose(f, number);
     fill(f, &state, number % 4 == 3 ? 0.1 : 4.0, i % 2 ? 0.02 : 0.0);
@@ -476,12 +476,11 @@ static double time_slot(const slot *at, const cross_tables *plain, const cross_t
 
 static void bench_slot(cross *c, const fixture *f, const slot *at) {
   static const char *const unit_names[] = {"splat", "record", "index", "fragment", "pixel"};
-  static const char *const kernel_names[] = {"gauss", "confetti", "hat", "box"};
   splat_desk *desks[CONIC_N_ISAS];
   char variant[32];
   double plain = 0.0;
   snprintf(variant, sizeof variant, "%s %s", at->has_methods ? conic_method_name(f->options.method) : "-",
-           at->has_kernels ? kernel_names[f->options.kernel.type] : "-");
+           at->has_kernels ? conic_kernel_type_name(f->options.kernel.type) : "-");
   const cross_slot line = {.name = at->name, .variant = variant, .unit = unit_names[at->unit]};
   open_desks(c, f, 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_WEIGHT, desks);
   compare_slot(c, 0, at, desks);
@@ -499,7 +498,7 @@ static void bench_all(cross *c, fixture *f) {
   f->camera.cam_from_world[2][3] = 3.2;
   fixture_scene(f, CONIC_SCENE_SPHERE, 40000);
   for (int i = 0; i < N_SLOTS; i++)
-    for (int number = 0; number < CONIC_N_METHODS * N_KERNELS && !slots[i].is_not_timed; number++) {
+    for (int number = 0; number < CONIC_N_METHODS * CONIC_N_KERNELS && !slots[i].is_not_timed; number++) {
       int method = number % CONIC_N_METHODS, kernel = number / CONIC_N_METHODS;
       if ((method && !slots[i].has_methods) || (kernel && !slots[i].has_kernels))
         continue;

@@ -28,15 +28,21 @@ typedef struct profile_table {
   float values[CONIC_PROFILE_FLOATS];
 } profile_table;
 
+#define KERNEL_VALUE value_in_doubles
+#define KERNEL_INLINE static
+#define KERNEL_NUMBER double
+#define KERNEL_REAL double
+#define KERNEL_OF(x) ((double)(x))
+#define KERNEL_SQRT(x) sqrt(x)
+#define KERNEL_EXP(x) conic_gaussian_exp(x)
+#define KERNEL_ABOVE_0(x, y) ((x) > 0.0 ? (y) : 0.0)
+#define KERNEL_GAUSS_OF(kernel, q) conic_gaussian_exp(-0.5 * (q))
+#include "core/splats/kernel_body.h"
+
+/* Beyond its end, too. */
 static double plain_kernel(const conic_kernel *kernel, double r) {
-  double power = 1.0;
-  if (kernel->type == CONIC_KERNEL_BOX)
-    return 1.0;
-  if (kernel->type == CONIC_KERNEL_HAT)
-    return r < (double)kernel->cutoff ? 1.0 - r / (double)kernel->cutoff : 0.0;
-  for (int i = 0; i < kernel->n; i++)
-    power *= r / (double)kernel->b;
-  return power < 1.0 ? conic_gaussian_exp(-(double)kernel->a * power / (1.0 - power)) : 0.0;
+  double value = value_in_doubles(kernel, r * r);
+  return value > 0.0 ? value : 0.0;
 }
 
 /* The normal distribution and its integral, at multiples of 1/64. */
@@ -201,7 +207,8 @@ static void write_polynomial(const double nodes[TERMS], int is_turned, int i_rad
 }
 
 static double end_of_kernel(const conic_kernel *kernel) {
-  double cutoff = (double)kernel->cutoff, end = kernel->type == CONIC_KERNEL_CONFETTI ? (double)kernel->b : cutoff;
+  double cutoff = (double)kernel->cutoff;
+  double end = conic_kernel_traits(kernel) & CONIC_HAS_PARAMETERS ? (double)kernel->b : cutoff;
   return end < 4.0 * cutoff ? end : 4.0 * cutoff;
 }
 
@@ -214,7 +221,7 @@ static conic_profile reading(const conic_kernel *kernel, const float *table) {
     integral += plain_kernel(kernel, r) * r * (end / (double)N_RINGS);
   }
   float narrowing = (float)(1.0 / integral - 1.0);
-  if (kernel->type == CONIC_KERNEL_BOX)
+  if (conic_kernel_traits(kernel) & CONIC_IS_FLAT)
     return (conic_profile){1.0f, -by_q, narrowing, 1, table};
   return (conic_profile){0.0f, by_q, narrowing, 0, table};
 }
@@ -278,7 +285,7 @@ static void fill_level(void *data, size_t i_level, int i_thread) {
 
 static int is_same_kernel(const conic_kernel *a, const conic_kernel *b) {
   return a->type == b->type && a->cutoff == b->cutoff &&
-         (a->type != CONIC_KERNEL_CONFETTI || (a->a == b->a && a->b == b->b && a->n == b->n));
+         (!(conic_kernel_traits(a) & CONIC_HAS_PARAMETERS) || (a->a == b->a && a->b == b->b && a->n == b->n));
 }
 
 conic_status conic_profile_make(conic_context *context, const conic_kernel *kernel, conic_profile *profile) {

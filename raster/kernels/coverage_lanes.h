@@ -172,25 +172,23 @@ typedef enum kernel_kind { KERNEL_NARROW_GAUSS, KERNEL_GAUSS, KERNEL_OTHER, KERN
 static kernel_kind kind_of(const conic_kernel *kernel) {
   if (conic_kernel_is_narrow(kernel))
     return KERNEL_NARROW_GAUSS;
-  return kernel->type == CONIC_KERNEL_GAUSS ? KERNEL_GAUSS : KERNEL_OTHER;
+  return conic_kernel_traits(kernel) & CONIC_IS_GAUSSIAN ? KERNEL_GAUSS : KERNEL_OTHER;
 }
 
 static kernel_kind kind_of_view(const conic_view *view) {
   return view->profile.table ? KERNEL_PROFILE : kind_of(&view->kernel);
 }
 
-/* conic_kernel_value of core/splats/kernel.h, for kernels that are no Gaussian. */
-CONIC_INLINE lanes other_kernel(const conic_kernel *kernel, lanes q) {
-  if (kernel->type == CONIC_KERNEL_HAT)
-    return 1.0f - lanes_sqrt(q) / kernel->cutoff;
-  if (kernel->type == CONIC_KERNEL_BOX)
-    return lanes_of(1.0f);
-  lanes r = lanes_sqrt(q) / kernel->b, power = r;
-  for (int i = 1; i < kernel->n; i++)
-    power *= r;
-  lanes rest = 1.0f - power;
-  return lanes_keep(lanes_less(lanes_of(0.0f), rest), lanes_exp_negative(-kernel->a * power / rest));
-}
+#define KERNEL_VALUE other_kernel
+#define KERNEL_INLINE CONIC_INLINE
+#define KERNEL_NUMBER float
+#define KERNEL_REAL lanes
+#define KERNEL_OF(x) lanes_of(x)
+#define KERNEL_SQRT(x) lanes_sqrt(x)
+#define KERNEL_EXP(x) lanes_exp_negative(x)
+#define KERNEL_ABOVE_0(x, y) lanes_keep(lanes_less(lanes_of(0.0f), x), y)
+#define KERNEL_GAUSS_OF(kernel, q) lanes_exp_negative(-0.5f * (q)) /* which kernel_value sees to */
+#include "core/splats/kernel_body.h"
 
 /* conic_kernel_value in every lane below the support; beyond it, a kernel need not have a value. */
 CONIC_INLINE lanes kernel_value(const conic_view *view, lanes q, kernel_kind kind) {

@@ -549,8 +549,9 @@ static void accumulate(conic_band *band) {
   case KERNEL_PROFILE:
     accumulate_with(band, KERNEL_PROFILE);
     break;
-  default:
+  case KERNEL_OTHER:
     accumulate_with(band, KERNEL_OTHER);
+    break;
   }
 }
 

@@ -1,13 +1,16 @@
 /* The names of methods, kernels and shadings, and what of a frame was drawn by which method. */
 #include "raster/view/method.h"
 
+#include "core/splats/kernel.h"
+
 const char *conic_method_name(conic_method method) {
   static const char *const names[CONIC_N_METHODS] = {"conic", "ray", "affine", "point", "disc", "auto"};
   return (unsigned)method < CONIC_N_METHODS ? names[method] : NULL;
 }
 
 const char *conic_kernel_type_name(conic_kernel_type type) {
-  static const char *const names[CONIC_N_KERNELS] = {"gauss", "confetti", "hat", "box"};
+#define WORD_OF_KERNEL(type, word, traits) [type] = word,
+  static const char *const names[CONIC_N_KERNELS] = {CONIC_FOR_KERNELS(WORD_OF_KERNEL)};
   return (unsigned)type < CONIC_N_KERNELS ? names[type] : NULL;
 }
 

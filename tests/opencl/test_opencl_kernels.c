@@ -288,10 +288,10 @@ static void check_scan(conic_context *context, uint64_t *state) {
 static size_t check_functions(fixture *f, workbench *d) {
   uint64_t state = 11;
   size_t n_wrong = 0, n_covered = 0;
-  for (int number = 0; number < 2 * CONIC_N_METHODS * N_KERNELS; number += CONIC_N_METHODS) {
+  for (int number = 0; number < 2 * CONIC_N_METHODS * CONIC_N_KERNELS; number += CONIC_N_METHODS) {
     conic_view view;
     choose(f, number);
-    f->options.kernel.cutoff = number < CONIC_N_METHODS * N_KERNELS ? 1.5f : 3.0f;
+    f->options.kernel.cutoff = number < CONIC_N_METHODS * CONIC_N_KERNELS ? 1.5f : 3.0f;
     CHECK_OK(conic_view_init(f->context, &f->splats, &f->camera, &f->options, 1e-3, 0.01, &view));
     n_wrong += try_functions(d, &view, &state);
     n_wrong += try_fragments(d, &view, &state, &n_covered);
