@@ -31,11 +31,11 @@ conic_status conic_frame_give(const conic_frame *f, int buffer, const void *from
   return CONIC_OK;
 }
 
-conic_status conic_frame_run(const conic_frame *f, conic_stage stage, conic_kernel_name kernel,
+conic_status conic_frame_run(const conic_frame *f, conic_stage stage, conic_entry_name entry,
                              const conic_argument *arguments, int n_arguments, size_t n_items) {
   int is_alone = f->opencl->device.is_cpu || f->opencl->work == CONIC_OPENCL_WORK_TILES;
   const size_t items[2] = {n_items, 1}, group[2] = {is_alone ? 1 : 64, 1};
-  return conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[kernel], arguments, n_arguments, items, group);
+  return conic_queue_run(&f->opencl->queue, stage, f->opencl->entries[entry], arguments, n_arguments, items, group);
 }
 
 conic_status conic_frame_scan(const conic_frame *f, conic_stage stage, uint32_t n, int numbers, int places,
@@ -46,12 +46,12 @@ conic_status conic_frame_scan(const conic_frame *f, conic_stage stage, uint32_t 
   const conic_argument first[] = {CONIC_ARGUMENT(n), of, sums}, second[] = {CONIC_ARGUMENT(n_sums), sums};
   const conic_argument third[] = {CONIC_ARGUMENT(n), of, sums, conic_frame_argument(f, places)};
   if (status == CONIC_OK)
-    status = conic_frame_run(f, stage, CONIC_KERNEL_SCAN_SUMS, first, 3, n_sums);
+    status = conic_frame_run(f, stage, CONIC_ENTRY_SCAN_SUMS, first, 3, n_sums);
   if (status == CONIC_OK)
-    status = conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[CONIC_KERNEL_SCAN_TOPS], second, 2,
+    status = conic_queue_run(&f->opencl->queue, stage, f->opencl->entries[CONIC_ENTRY_SCAN_TOPS], second, 2,
                              (const size_t[2]){1, 1}, (const size_t[2]){1, 1});
   if (status == CONIC_OK)
-    status = conic_frame_run(f, stage, CONIC_KERNEL_SCAN_PLACES, third, 4, n_sums);
+    status = conic_frame_run(f, stage, CONIC_ENTRY_SCAN_PLACES, third, 4, n_sums);
   if (status == CONIC_OK)
     status = conic_queue_read(&f->opencl->queue, &f->opencl->buffers[places], n * sizeof *total, total, sizeof *total);
   return status;

@@ -1,7 +1,7 @@
 /* The splats' passes a tile a work-item, a block's 16 pixels a vector: for CPUs. */
 #include "opencl/lanes_tile.cl"
 
-#include "raster/kernels/coverage_lanes.h"
+#include "raster/loops/coverage_lanes.h"
 
 /* So many references ahead records are called for. */
 #define LANES_AHEAD 12

@@ -1,4 +1,4 @@
-/* Visibility and accumulation of a tile's splats, one row of its blocks after the other: raster/kernels/pass_body.h in
+/* Visibility and accumulation of a tile's splats, one row of its blocks after the other: raster/loops/pass_body.h in
  * its order of arithmetic. */
 
 /* The fragments of so many splats are kept for a block from the first pass to the second; those of further ones, and

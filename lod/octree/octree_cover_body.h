@@ -5,7 +5,7 @@
 
 #include "core/lanes/lanes.h"
 #include "core/splats/float_vectors.h"
-#include "lod/octree/octree_kernels.h"
+#include "lod/octree/octree_loops.h"
 
 /* A disc seen along the node's normal: an ellipse, and what takes it to the unit circle. */
 enum {

@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "raster/triangles/triangle_kernels.h"
+#include "raster/triangles/triangle_loops.h"
 #include "raster/triangles/triangle_sort.h"
 
 /* Vertices that a task projects, and triangles that one sets up, unless their tables would be too many. */
@@ -13,7 +13,7 @@ enum { VERTICES_TOGETHER = 8192, TRIANGLES_TOGETHER = 8192 };
 
 typedef struct preparation {
   conic_triangle_frame *frame;
-  const conic_triangle_kernels *kernels;
+  const conic_triangle_loops *loops;
 } preparation;
 
 void conic_triangle_frame_begin(conic_triangle_frame *frame, conic_context *context, const conic_triangles *triangles,
@@ -77,7 +77,7 @@ static void vertices_task(void *data, size_t i_item, int i_thread) {
   preparation *p = data;
   size_t n = p->frame->triangles->n_vertices, begin = i_item * VERTICES_TOGETHER, end = begin + VERTICES_TOGETHER;
   (void)i_thread;
-  p->kernels->vertices(p->frame, begin, end < n ? end : n, p->frame->vertices);
+  p->loops->vertices(p->frame, begin, end < n ? end : n, p->frame->vertices);
 }
 
 /* The tiles that a box touches. */
@@ -162,8 +162,8 @@ static void triangles_task(void *data, size_t i_chunk, int i_thread) {
   hand_over_records(frame, &sorter, i_chunk);
 }
 
-conic_status conic_triangle_frame_prepare(conic_triangle_frame *frame, const conic_triangle_kernels *kernels) {
-  preparation p = {frame, kernels};
+conic_status conic_triangle_frame_prepare(conic_triangle_frame *frame, const conic_triangle_loops *loops) {
+  preparation p = {frame, loops};
   size_t n = frame->triangles->count, n_vertices = frame->triangles->n_vertices;
   conic_status status = plan(frame);
   if (status == CONIC_OK)

@@ -47,7 +47,7 @@ static float thin_variance(const conic_render_options *options) {
   return (h > 1.0f ? h : 1.0f) / 64.0f;
 }
 
-/* The eye, and from where on float tells which side of it a plane is on (raster/kernels/project_body.h). */
+/* The eye, and from where on float tells which side of it a plane is on (raster/loops/project_body.h). */
 static void place_eye(conic_view *view) {
   const double(*m)[3] = (const double(*)[3])view->rotation;
   double reach = 0.0, farthest_from_rotation = 0.0;
