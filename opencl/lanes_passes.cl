@@ -20,7 +20,7 @@ typedef struct lanes_kept {
   uint n, not_kept; /* of the row's list: the first that covers a pixel here and is not kept */
 } lanes_kept;
 
-/* Of a tile's references those that meet a row of its blocks, in order. */
+/* A tile's references that meet a row of its blocks, in order. */
 typedef struct lanes_list {
   __global uint *footprints, *blocks;
   uint n;

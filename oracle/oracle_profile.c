@@ -114,7 +114,7 @@ static void blur_all_round(workshop *w, double blur) {
     w->known[i] = blur_even(w, row_places, rows, w->reach * i / KNOWN, blur);
 }
 
-/* The convolution at q, of which a share is across, over that of a Gaussian. */
+/* The convolution at q over a Gaussian's peak. `across` is the share of q that lies across the splat. */
 static double convolve(const workshop *w, const double share[2], double q, double across) {
   double x = sqrt(q * (1.0 - across) / (1.0 - share[0])), y = sqrt(q * across / (1.0 - share[1]));
   double more = share[1] / (1.0 - share[1]) - share[0] / (1.0 - share[0]), places[PARTS + 1], values[PARTS + 1];
@@ -138,7 +138,8 @@ static double smooth_place(int i) {
   return part * part * (3.0 - 2.0 * part);
 }
 
-/* The terms of the smooth polynomial, 7, 4, 3 and 2 of each power of what is across; q is over the support. */
+/* The terms of the smooth polynomial: to the powers 0 to 3 of `across` 7, 4, 3 and 2 powers of q. Both are over the
+ * support. */
 static void smooth_terms(double q, double across, double terms[TERMS]) {
   static const int n_powers[] = {7, 4, 3, 2};
   double factor = 1.0;

@@ -374,7 +374,7 @@ static void compare_records(const cross *c, const slot *at, splat_desk **desks) 
   }
 }
 
-/* What records are turned into, of those that plain C made. */
+/* Plain C makes the records; each instruction set turns them into keys, entries and an order. */
 static void compare_turned(const cross *c, const slot *at, splat_desk **desks) {
   for (int i = 0; i < c->n_tables; i++) {
     clear_arenas(desks[i], TILES, IMAGE);

@@ -77,7 +77,7 @@ static double normal_integral(const normal_table *table, double z) {
   return z < 0.0 ? sum - size : sum;
 }
 
-/* The integral from 0 to `half` of what a Gaussian of deviation `blur` at y sees of a box of that half width. */
+/* A Gaussian of deviation `blur` at y sees a part of a box; the integral of that part over half widths 0 to `half`. */
 static double integral_of_boxes(const normal_table *normal, double half, double y, double blur) {
   return blur * (normal_integral(normal, (half + y) / blur) + normal_integral(normal, (half - y) / blur)) - half;
 }
@@ -118,7 +118,7 @@ static double half_chord(double r, double x) {
   return r > x ? sqrt((r - x) * (r + x)) : 0.0;
 }
 
-/* The kernel on the line at x, in places half of which are where it may be steep. */
+/* The kernel on the line at x. Half of the places lie where it may be steep. */
 static void cut_line(const round_kernel *k, double x, double places[PARTS + 1], double values[PARTS + 1]) {
   double steep = k->end - 3.0 * k->blur, first = half_chord(steep > 0.0 ? steep : 0.0, x), last;
   if (!(k->blur > 0.0))
@@ -131,7 +131,7 @@ static void cut_line(const round_kernel *k, double x, double places[PARTS + 1], 
   }
 }
 
-/* Fills what is known of `blurred`, of the plain kernel blurred along x and y. */
+/* Fills the known values of `blurred`: the plain kernel, blurred along x and then along y. */
 static void blur_round(const round_kernel *plain, round_kernel *blurred) {
   double places[PARTS + 1], values[PARTS + 1], rows[PARTS + 1], row_places[PARTS + 1];
   for (int i = 0; i <= PARTS; i++) {
@@ -156,7 +156,7 @@ static double filter_of(double t) {
   return t / (1.0 - t);
 }
 
-/* What the filter makes of the kernel at q, of which a part is across; the axis 0 has the lesser share. */
+/* What the filter makes of the kernel at q. `across` is the part of q along axis 1, which has the greater share. */
 static double filter_kernel(const round_kernel *k, const double share[2], double q, double across) {
   double more = filter_of(share[1]) - filter_of(share[0]), places[PARTS + 1], values[PARTS + 1];
   double x = sqrt(q * (1.0 - across) / (1.0 - share[0])), y = sqrt(q * across / (1.0 - share[1]));

@@ -128,9 +128,9 @@ static void draw_blended(conic_tile *tile, const conic_raster_loops *loops, cons
   }
 }
 
-/* Four rows a strip where that is cheaper, as the tile's first splats tell: a register of 16 pixels then has four
- * columns and four rows, which most splats of up to four columns meet two of; and eight columns of two rows else, which
- * is better the wider they are. Fewer pixels are never better off with four rows. */
+/* A register of 16 pixels holds four rows of four columns, or two rows of eight. Four rows are cheaper for splats of up
+ * to four columns, most of which meet two such registers; two rows are the better the wider splats are. The tile's
+ * first splats tell which. Narrower registers are never better off with four rows. */
 static int choose_strip(const conic_band *band, int n_lanes) {
   enum { LOOKED_AT = 64 };
   size_t n = band->n_entries < LOOKED_AT ? band->n_entries : LOOKED_AT, n_narrow = 0;

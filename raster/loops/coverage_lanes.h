@@ -17,18 +17,17 @@ typedef struct fragments {
   lanes scale;
 } fragments;
 
-/* How a splat is evaluated: by its ellipse alone, of which wide ones hide otherwise, and smooth ones have a polynomial
- * in place of the kernel; or whatever it is, without the kernel, or with its profile in the scale. */
+/* How a splat is evaluated. */
 typedef enum splat_kind {
-  SPLAT_USUAL = 0,
-  SPLAT_WIDE = 1,
-  SPLAT_SMOOTH = 2,
-  SPLAT_SPECIAL = 3,
-  SPLAT_PROFILED = 4
+  SPLAT_USUAL = 0,   /* by its ellipse alone */
+  SPLAT_WIDE = 1,    /* likewise, but it hides in another way */
+  SPLAT_SMOOTH = 2,  /* likewise, but a polynomial takes the kernel's place */
+  SPLAT_SPECIAL = 3, /* whatever it is, without the kernel */
+  SPLAT_PROFILED = 4 /* whatever it is; the scale has its profile */
 } splat_kind;
 
-/* What of a splat's evaluation does not depend on the column, each in all lanes of a register: to fetch it anew for
- * every block would be most of what the loops read. */
+/* The part of a splat's evaluation that does not depend on the column. Each number stands in all lanes of a register:
+ * most of what the loops read would else be these numbers, anew for every block. */
 typedef struct splat_rows {
   lanes dy, q_offset, q_rest, iz_offset, plane_offset;
   lanes x, dx0, s1, iz_dx, plane_dx, iz_far, iz_near;
@@ -166,7 +165,7 @@ CONIC_INLINE void fragments_at(const conic_view *view, float support, const coni
     f->covered &= clip_keeps(&clips[i_clip], dx, rows->dy);
 }
 
-/* Which kernel a loop is made for; that of a profile is in the scale already. */
+/* Which kernel a loop is made for. A profile's is in the scale already. */
 typedef enum kernel_kind { KERNEL_NARROW_GAUSS, KERNEL_GAUSS, KERNEL_OTHER, KERNEL_PROFILE } kernel_kind;
 
 static kernel_kind kind_of(const conic_kernel *kernel) {

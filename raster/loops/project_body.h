@@ -13,8 +13,8 @@ enum { BATCH = 512 };
 /* The columns of a splat set that set-up reads. */
 enum { POSITION, TANGENT_U = 3, TANGENT_V = 6, COLOR = 9, OPACITY = 12, N_COLUMNS };
 
-/* The splats of a batch that may be drawn, after those that the one before it left over, which were too few for a
- * group; with room for a last group's spare lanes. */
+/* A batch begins with what the one before left over, because it was too few for a group. Behind it come this one's
+ * splats that may be drawn, and room for the last group's spare lanes. */
 enum { BATCH_ROOM = BATCH + 2 * CONIC_LANES };
 
 typedef struct batch {

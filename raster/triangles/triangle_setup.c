@@ -72,7 +72,7 @@ static fate add(const conic_triangle_frame *frame, const conic_screen_vertex *co
   return DRAWN;
 }
 
-/* A triangle with corners that have no place: the fan of what is left of it. */
+/* Some corners have no place on the screen. What clipping leaves of the triangle is drawn as a fan. */
 static fate add_clipped(const conic_triangle_frame *frame, size_t i, conic_triangle_sorter *sorter) {
   conic_clip_corner corners[CONIC_CLIPPED_CORNERS];
   conic_screen_vertex places[CONIC_CLIPPED_CORNERS];

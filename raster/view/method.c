@@ -1,4 +1,4 @@
-/* The names of methods, kernels and shadings, and what of a frame was drawn by which method. */
+/* The names of methods, kernels and shadings, and which method drew how much of a frame. */
 #include "raster/view/method.h"
 
 #include "core/splats/kernel.h"
