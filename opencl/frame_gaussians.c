@@ -12,7 +12,7 @@
 enum { N_PLANES = 9 };
 
 typedef struct gaussian_frame {
-  conic_frame frame; /* of which the stages' common functions look at the device alone */
+  conic_frame frame; /* for the stages' common functions, which look at its device alone */
   const conic_gaussian_composition *composition;
   conic_device_gaussians picture;
   void *planes[N_PLANES];

@@ -35,7 +35,7 @@ CONIC_INLINE void sort_together(lanes_row *keys) {
     lanes_store(keys[i], k[i]);
 }
 
-/* Sixteen of which each half is no more than what follows, by halves. */
+/* Sorts sixteen that rise and then fall, or the other way round, by halves. */
 CONIC_INLINE void merge_together(lanes_row *keys) {
   lanes k[CONIC_SORTED_TOGETHER];
 #pragma GCC unroll 16
@@ -59,7 +59,7 @@ CONIC_INLINE void put_rows_in_order(lanes_row *keys, size_t i, size_t j) {
 }
 
 /* Merges sorted runs of `length` by two: their greatest with their least, outside in, then by halves. n is a multiple
- * of what is sorted together; what would lie behind is greater than all. */
+ * of CONIC_SORTED_TOGETHER. Whatever would lie behind the last counts as greater than all. */
 static void merge_runs(lanes_row *keys, size_t n, size_t length) {
   for (size_t begin = 0; begin + length < n; begin += 2 * length)
     for (size_t i = begin + 2 * length > n ? begin + 2 * length - n : 0; i < length; i++)

@@ -1,5 +1,5 @@
-/* Gaussians along the rays of pixels, ordered pixel by pixel: of a vector of pixels first where all meet it, then those
- * in their order. */
+/* Gaussians along the rays of pixels, ordered pixel by pixel. A vector of pixels first finds where its rays meet each
+ * Gaussian, then goes through the meetings in each ray's order. */
 #ifndef CONIC_GAUSSIAN_RAYS_LANES_H
 #define CONIC_GAUSSIAN_RAYS_LANES_H
 
