@@ -174,9 +174,10 @@ static double transferred(conic_planted_transfer transfer, double v) {
     return conic_power(above, 1.0 / 2.2);
   case CONIC_TRANSFER_ENCODED_TWICE:
     return conic_srgb_encode(conic_srgb_encode(v));
-  default:
-    return v;
+  case CONIC_TRANSFER_OWN:
+    break;
   }
+  return v;
 }
 
 float conic_planted_transferred(conic_planted_transfer transfer, float value) {
@@ -194,9 +195,10 @@ static float alpha_factor(conic_planted_alpha alpha, const conic_channels v) {
     return w;
   case CONIC_ALPHA_WEIGHTED_LIMITED:
     return w < 1.0f ? w : 1.0f;
-  default:
-    return 1.0f;
+  case CONIC_ALPHA_OWN:
+    break;
   }
+  return 1.0f;
 }
 
 void conic_planted_finish(const conic_planted *p, size_t n, conic_channels *values) {

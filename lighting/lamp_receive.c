@@ -66,7 +66,7 @@ static void receive_side(void *data, size_t i_item, int i_thread) {
     }
     places[n++] = i;
   }
-  work->room->kernels.receive(work->map, &near_lamp, 0, n, 1, visible, facing);
+  work->room->loops.receive(work->map, &near_lamp, 0, n, 1, visible, facing);
   for (size_t i = 0; i < n; i++)
     work->visible[places[i]] = visible[i];
 }

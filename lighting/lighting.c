@@ -27,7 +27,7 @@ static void receive_light(void *data, size_t i_item, int i_thread) {
   size_t begin = i_item * CONIC_RECEIVED_TOGETHER, end = begin + CONIC_RECEIVED_TOGETHER;
   end = end < r->l->receivers.count ? end : r->l->receivers.count;
   (void)i_thread;
-  r->l->room.kernels.receive(r->map, &r->l->receivers, begin, end, 1, r->l->visible + begin, facing);
+  r->l->room.loops.receive(r->map, &r->l->receivers, begin, end, 1, r->l->visible + begin, facing);
 }
 
 static void hide_row(void *data, size_t y, int i_thread) {

@@ -46,7 +46,7 @@ conic_status conic_map_room_init(conic_context *context, const char *who, const 
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: %s", who, fault);
   conic_status status = conic_isa_choose(context, options->isa, &isa);
   if (status == CONIC_OK)
-    conic_lighting_kernels_init(&room->kernels, isa);
+    conic_lighting_loops_init(&room->loops, isa);
   return status;
 }
 
@@ -127,7 +127,7 @@ static void add_sky_light(void *data, size_t i_item, int i_thread) {
   float visible[CONIC_RECEIVED_TOGETHER], facing[CONIC_RECEIVED_TOGETHER];
   size_t begin = (a->first_item + i_item) * CONIC_RECEIVED_TOGETHER, count = end_of_receivers(a->room, begin) - begin;
   (void)i_thread;
-  a->room->kernels.receive(a->map, a->room->receivers, begin, begin + count, 0, visible, facing);
+  a->room->loops.receive(a->map, a->room->receivers, begin, begin + count, 0, visible, facing);
   for (size_t i = 0; i < count && reached; i++)
     visible[i] = reached[i / 8] >> i % 8 & 1 ? 1.0f : 0.0f;
   for (size_t i = 0; i < count; i++) {
@@ -206,7 +206,7 @@ static void look_into_map(void *data, size_t i_item, int i_thread) {
   size_t begin = i_item * CONIC_RECEIVED_TOGETHER, end = end_of_receivers(w->room, begin);
   (void)i_thread;
   memset(reached, 0, BYTES_OF_ITEM);
-  w->room->kernels.receive(&w->map, w->room->receivers, begin, end, 0, visible, facing);
+  w->room->loops.receive(&w->map, w->room->receivers, begin, end, 0, visible, facing);
   for (size_t i = 0; i < end - begin; i++)
     reached[i / 8] |= (unsigned char)((visible[i] > 0.0f) << i % 8);
 }

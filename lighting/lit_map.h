@@ -3,14 +3,14 @@
 #define CONIC_LIT_MAP_H
 
 #include "lighting/light_sharing.h"
-#include "lighting/lighting_kernels.h"
+#include "lighting/lighting_loops.h"
 
 /* What maps are drawn into and received by. */
 typedef struct conic_map_room {
   conic_context *context;
   const conic_casters *casters;
   const conic_receivers *receivers;
-  conic_lighting_kernels kernels;
+  conic_lighting_loops loops;
   double texel; /* in world units, wanted */
   int most_texels;
   float *z;

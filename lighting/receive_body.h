@@ -1,7 +1,7 @@
 /* What lighting/light_map.h says of receiving: plain C, which compilers put in lanes. */
 #include <math.h>
 
-#include "lighting/lighting_kernels.h"
+#include "lighting/lighting_loops.h"
 
 /* A receiver as the map sees it. */
 typedef struct received {

@@ -6,8 +6,8 @@
 
 #include "core/base/vectors.h"
 #include "surface/creases.h"
-#include "surface/kernels/weight.h"
 #include "surface/least_spread.h"
+#include "surface/loops/weight.h"
 
 enum { MAX_NEAR = 512, N_BUCKETS = 256, MAX_PIECES = 4, LEAST_SAMPLES = 6, N_ROUNDS = 3, N_TERMS = 6 };
 

@@ -42,8 +42,7 @@ conic_surface_outcome conic_surface_fit(const conic_surface *surface, double h, 
                                         double frame[3][3], double t, conic_fit *fit) {
   double before2[CONIC_MAX_COLUMNS];
   int n = conic_n_coefficients(surface->options.degree);
-  surface->kernels.factor(&workspace->near, frame, t, 1.0 / h, surface->options.degree, fit->upper, fit->norms2,
-                          before2);
+  surface->loops.factor(&workspace->near, frame, t, 1.0 / h, surface->options.degree, fit->upper, fit->norms2, before2);
   for (int k = 0; k < n; k++)
     if (!(fit->norms2[k] > LEAST_SHARE * before2[k]))
       return CONIC_SURFACE_ILL_CONDITIONED;

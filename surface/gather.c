@@ -1,4 +1,4 @@
-/* Who is near a point: from the tree to the arrays that the kernels sum over. */
+/* Who is near a point: from the tree to the arrays that the loops sum over. */
 #include <math.h>
 #include <string.h>
 

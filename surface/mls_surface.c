@@ -12,7 +12,7 @@
 #include "core/splats/columns.h"
 #include "surface/clusters.h"
 #include "surface/creases.h"
-#include "surface/kernels/weight.h"
+#include "surface/loops/weight.h"
 
 enum { CHUNK = 1024, CHUNKS_A_REPORT = 16 };
 
@@ -224,7 +224,7 @@ conic_status conic_surface_create(conic_context *context, const conic_splats *po
     return CONIC_ERROR_MEMORY;
   made->context = context;
   made->options = *options;
-  conic_surface_kernels_init(&made->kernels, isa);
+  conic_surface_loops_init(&made->loops, isa);
   made->weighing.weight = options->weight;
   made->weighing.end = options->neglect * options->neglect;
   made->weighing.edge = conic_weight_exp(made->weighing.end);

@@ -4,7 +4,7 @@
 
 #include "conic/surface.h"
 #include "core/estimate/neighbours.h"
-#include "surface/kernels/surface_kernels.h"
+#include "surface/loops/surface_loops.h"
 
 /* Cells of the tree summed as one sample each (PSS §3.4.2); made where they are asked for. */
 typedef struct conic_surface_clusters {
@@ -25,7 +25,7 @@ typedef struct conic_surface_creases {
 struct conic_surface {
   conic_context *context;
   conic_surface_options options;
-  conic_surface_kernels kernels;
+  conic_surface_loops loops;
   conic_weighing weighing;
   conic_splats points; /* a copy: positions, unit normals and colours, by point */
   conic_neighbours tree;

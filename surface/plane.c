@@ -24,7 +24,7 @@ conic_surface_outcome conic_surface_first_plane(const conic_surface *surface, si
                                                 conic_workspace *workspace, double frame[3][3], double *height) {
   static const double origin[3] = {0.0, 0.0, 0.0};
   double sums[CONIC_N_MOMENTS], mean[3], covariance[6];
-  surface->kernels.moments(&workspace->near, &surface->weighing, origin, sums);
+  surface->loops.moments(&workspace->near, &surface->weighing, origin, sums);
   if (!(sums[CONIC_MOMENT_COUNT] >= (double)n_least))
     return CONIC_SURFACE_TOO_FEW;
   double inverse = 1.0 / sums[0];
@@ -48,7 +48,7 @@ static well look_at_well(const conic_surface *surface, const conic_workspace *wo
                          double t) {
   double sums[CONIC_N_PLANE_SUMS], inverse = 1.0 / h, inverse2 = inverse * inverse;
   well here;
-  surface->kernels.plane(&workspace->near, &surface->weighing, frame, t, sums);
+  surface->loops.plane(&workspace->near, &surface->weighing, frame, t, sums);
   here.misfit[0] = sums[0] * inverse;
   here.misfit[1] = sums[1] * inverse;
   here.misfit[2] = sums[2];
@@ -137,7 +137,7 @@ static int search_along(const conic_surface *surface, double h, double margin, c
 static void turn_normal(const conic_surface *surface, conic_workspace *workspace, double frame[3][3], double t) {
   double sums[CONIC_N_MOMENTS];
   const double q[3] = {t * frame[2][0], t * frame[2][1], t * frame[2][2]};
-  surface->kernels.moments(&workspace->near, &surface->weighing, q, sums);
+  surface->loops.moments(&workspace->near, &surface->weighing, q, sums);
   conic_least_spread(sums + 4, frame);
 }
 

@@ -31,7 +31,7 @@ static conic_surface_outcome climb(const conic_surface *surface, double h, conic
   conic_fit *fit = &workspace->fit;
   for (int axis = 0; axis < 3; axis++)
     q[axis] = t * frame[2][axis];
-  surface->kernels.moments(&workspace->near, &surface->weighing, q, sums);
+  surface->loops.moments(&workspace->near, &surface->weighing, q, sums);
   projection->n_neighbours = (int)sums[CONIC_MOMENT_COUNT];
   if (projection->n_neighbours < conic_n_coefficients(surface->options.degree))
     return CONIC_SURFACE_TOO_FEW;

@@ -53,7 +53,7 @@ conic_surface_outcome conic_surface_find_sphere(const conic_surface *surface, do
   for (int i = 0; i < MAX_ROUNDS; i++) {
     fitted_sphere s;
     double from[3], step[3];
-    surface->kernels.sphere(&workspace->near, &surface->weighing, foot, sums);
+    surface->loops.sphere(&workspace->near, &surface->weighing, foot, sums);
     if (!(sums[9] >= (double)LEAST_SAMPLES))
       return CONIC_SURFACE_TOO_FEW;
     for (int axis = 0; axis < 3; axis++)

@@ -153,9 +153,11 @@ static conic_status act(mls_job *job) {
     return thin(job);
   case MLS_DENSIFY:
     return densify(job);
-  default:
-    return project_all_points(job);
+  case MLS_PROJECT:
+  case N_MLS_ACTIONS: /* which is none */
+    break;
   }
+  return project_all_points(job);
 }
 
 static conic_status work(mls_job *job) {

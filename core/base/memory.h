@@ -27,6 +27,11 @@ conic_status conic_memory_reserve(conic_context *context, void *array, size_t us
 void conic_memory_advise_large_pages(void *pointer, size_t bytes);
 void conic_memory_prefer_large_pages(const conic_context *context, void *pointer, size_t bytes);
 
+/* Up to the next multiple of that alignment: what an array takes that another follows in the same block. */
+static inline size_t conic_memory_rounded(size_t bytes) {
+  return (bytes + 63) / 64 * 64;
+}
+
 /* Releases what allocate gave; null is allowed. */
 void conic_memory_release(conic_context *context, void *pointer);
 

@@ -1,4 +1,5 @@
-/* Floating-point numbers as they are kept: whether they are finite, their bits, and their order for qsort. */
+/* Floating-point numbers as they are kept: whether they are finite, their bits, and their order for qsort. The lesser
+ * and the greater of two whole numbers. */
 #ifndef CONIC_REAL_H
 #define CONIC_REAL_H
 
@@ -43,6 +44,14 @@ static inline double conic_power_of_two(int exponent) {
 static inline int conic_compare_doubles(const void *a, const void *b) {
   const double *first = a, *second = b;
   return (*first > *second) - (*first < *second);
+}
+
+static inline int conic_least(int a, int b) {
+  return a < b ? a : b;
+}
+
+static inline int conic_greatest(int a, int b) {
+  return a > b ? a : b;
 }
 
 #endif

@@ -210,12 +210,8 @@ int conic_json_next_item(conic_json *json) {
   return next_part(json, ']');
 }
 
-static int is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 static const char *skip_digits(const char *c, const char *end) {
-  while (c < end && is_digit(*c))
+  while (c < end && conic_is_digit(*c))
     c++;
   return c;
 }
@@ -334,7 +330,7 @@ conic_status conic_json_skip(conic_json *json) {
       conic_json_skip(json);
   } else if (c == '"')
     return read_string(json, key, sizeof key);
-  else if (c == '-' || is_digit(c))
+  else if (c == '-' || conic_is_digit(c))
     return conic_json_number(json, &number);
   else
     return skip_word(json);

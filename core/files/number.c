@@ -163,10 +163,6 @@ static double convert(const decimal *source) {
   return convert_exactly(source);
 }
 
-static int is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /* How much of `text` is the word, in any case; 0 where it is another. `word` is in lower case. */
 static size_t match_word(const char *text, size_t length, const char *word) {
   size_t n = strlen(word);
@@ -208,9 +204,9 @@ static const char *parse_exponent(const char *text, const char *end, int64_t *ex
   is_negative = c < end && *c == '-';
   if (c < end && (*c == '-' || *c == '+'))
     c++;
-  if (c == end || !is_digit(*c))
+  if (c == end || !conic_is_digit(*c))
     return text;
-  for (; c < end && is_digit(*c); c++)
+  for (; c < end && conic_is_digit(*c); c++)
     if (*exponent < INT64_C(1) << 50)
       *exponent = *exponent * 10 + (*c - '0');
   if (is_negative)
@@ -228,7 +224,7 @@ static const char *parse_digits(const char *text, const char *end, decimal *foun
       has_point = 1;
       continue;
     }
-    if (!is_digit(*c))
+    if (!conic_is_digit(*c))
       break;
     has_digit = 1;
     if (!found->digits) {
@@ -306,11 +302,11 @@ static size_t print_digits(char text[CONIC_NUMBER_ROOM], double value, int preci
   snprintf(scientific, sizeof scientific, "%.*e", precision - 1, value < 0.0 ? -value : value);
   const char *c = scientific;
   for (; *c && *c != 'e'; c++)
-    if (is_digit(*c))
+    if (conic_is_digit(*c))
       digits[n++] = *c;
   for (; *c; c++) {
     is_negative |= *c == '-';
-    if (is_digit(*c))
+    if (conic_is_digit(*c))
       exponent = exponent * 10 + (*c - '0');
   }
   return lay_out_digits(text, value < 0.0, digits, n, is_negative ? -exponent : exponent);

@@ -4,6 +4,10 @@
 
 #include <stddef.h>
 
+static inline int conic_is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
 /* Reads the number that `text` of `length` bytes begins with: sign, digits with an optional point, optional exponent;
  * or nan, inf, infinity in any case. Rounded to nearest, ties to even; too large gives infinity. Returns how many bytes
  * were read, 0 where there is no number. */

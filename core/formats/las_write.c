@@ -10,6 +10,7 @@
 #include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
+#include "core/files/las_user.h"
 #include "core/formats/las_fields.h"
 #include "core/splats/point_fields.h"
 #include "core/splats/point_values.h"
@@ -65,11 +66,6 @@ struct conic_las_writer {
 
 /* --- what the source says --- */
 
-/* Whether a record is one of a user's. */
-static int is_of_user(const unsigned char *record, const char *user) {
-  return strncmp((const char *)record + 2, user, 16) == 0;
-}
-
 static void put_letters(unsigned char *to, const char *letters) {
   while (*letters)
     *to++ = (unsigned char)*letters++;
@@ -87,7 +83,8 @@ static conic_status keep_records(conic_las_writer *w, const unsigned char *head,
     unsigned number = conic_load_16(record + 18);
     if (n_bytes > n - at)
       break;
-    if (is_of_user(record, "LASF_Projection") && ((number >= KEYS && number <= TEXT) || number == WELL_KNOWN_TEXT)) {
+    if (conic_las_is_of_user(record, "LASF_Projection") &&
+        ((number >= KEYS && number <= TEXT) || number == WELL_KNOWN_TEXT)) {
       memcpy(w->records + w->n_record_bytes, record, n_bytes);
       w->n_record_bytes += n_bytes;
       w->n_records++;

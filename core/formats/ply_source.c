@@ -218,8 +218,11 @@ static void convert_integers(const unsigned char *bytes, size_t stride, size_t n
     case CONIC_PLY_UINT32:
       values[i] = (double)load_32(bytes, is_big);
       break;
-    default:
+    case CONIC_PLY_UINT8:
+    case CONIC_PLY_FLOAT: /* which is no integer */
+    case CONIC_PLY_DOUBLE:
       values[i] = (double)bytes[0];
+      break;
     }
 }
 

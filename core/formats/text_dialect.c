@@ -104,13 +104,10 @@ typedef struct comma_census {
   int is_padded;                      /* parted by commas, a value is 0 and digits, and it is every second one */
 } comma_census;
 
-static int is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /* Three digits and no more. */
 static int is_thousand(const char *c, const char *end) {
-  return end - c >= 3 && is_digit(c[0]) && is_digit(c[1]) && is_digit(c[2]) && (end - c == 3 || !is_digit(c[3]));
+  return end - c >= 3 && conic_is_digit(c[0]) && conic_is_digit(c[1]) && conic_is_digit(c[2]) &&
+         (end - c == 3 || !conic_is_digit(c[3]));
 }
 
 static void count_word(conic_text_word word, comma_census *census) {
@@ -120,7 +117,7 @@ static void count_word(conic_text_word word, comma_census *census) {
     census->has_points |= *c == '.';
     if (*c != ',')
       continue;
-    int is_inner = c > word.text && c + 1 < end && is_digit(c[-1]) && is_digit(c[1]);
+    int is_inner = c > word.text && c + 1 < end && conic_is_digit(c[-1]) && conic_is_digit(c[1]);
     n_inner += (size_t)is_inner;
     census->has_edges |= !is_inner;
     census->is_all_thousands &= !is_inner || is_thousand(c + 1, end);
@@ -131,8 +128,8 @@ static void count_word(conic_text_word word, comma_census *census) {
 
 static int is_number_in_quotes(const char *c, const char *end) {
   int n_digits = 0;
-  for (; c < end && (is_digit(*c) || strchr("+-., eE", *c)); c++)
-    n_digits += is_digit(*c);
+  for (; c < end && (conic_is_digit(*c) || strchr("+-., eE", *c)); c++)
+    n_digits += conic_is_digit(*c);
   return c == end && n_digits > 0;
 }
 
@@ -160,7 +157,7 @@ static int is_padded(conic_text_word row) {
   conic_text_dialect_begin(CONIC_TEXT_COMMAS, &commas);
   size_t n = conic_text_split(&commas, row, words, MOST_VALUES, &is_open);
   for (size_t i = 0; i < n; i++) {
-    int has_zero = words[i].length > 1 && words[i].text[0] == '0' && is_digit(words[i].text[1]);
+    int has_zero = words[i].length > 1 && words[i].text[0] == '0' && conic_is_digit(words[i].text[1]);
     if (has_zero && i % 2 == 0)
       return 0;
     answer |= has_zero;

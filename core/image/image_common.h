@@ -17,6 +17,10 @@ static inline size_t conic_image_pixels(const conic_image *image) {
 /* Of all of the planes together, bytes a pixel. */
 size_t conic_planes_pixel_bytes(unsigned planes);
 
+static inline size_t conic_image_plane_bytes(const conic_image *image, int plane) {
+  return conic_image_pixels(image) * conic_planes_pixel_bytes(1u << plane);
+}
+
 /* Tells -0 from 0, and a NaN from itself only where it is another one. */
 static inline int conic_same_bits(float a, float b) {
   uint32_t bits_a, bits_b;

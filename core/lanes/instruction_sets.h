@@ -1,7 +1,7 @@
-/* Which instruction sets kernels are written for, and which of them this build and this machine have: the one place
+/* Which instruction sets loops are written for, and which of them this build and this machine have: the one place
  * that knows.
  *
- * A family of kernels is a table, a struct of functions, which has one text in plain C and one in lanes (core/lanes/
+ * A family of loops is a table, a struct of functions, which has one text in plain C and one in lanes (core/lanes/
  * lanes.h), compiled once an instruction set. FAMILY_init fills a table with plain C; each instruction set that is
  * allowed, the narrowest first, then overwrites the slots that it has. */
 #ifndef CONIC_INSTRUCTION_SETS_H
@@ -26,36 +26,36 @@ int conic_isa_is_here(conic_isa isa);
 conic_status conic_isa_choose(conic_context *context, conic_isa asked, conic_isa *chosen);
 
 /* NOLINTBEGIN(bugprone-macro-parentheses): types and names, which stand bare */
-#define CONIC_DECLARE_KERNELS_OF(family, NAME, name) void family##_##name(family *kernels);
-#define CONIC_OVERWRITE_KERNELS(family, NAME, name)                                                                    \
+#define CONIC_DECLARE_LOOPS_OF(family, NAME, name) void family##_##name(family *loops);
+#define CONIC_OVERWRITE_LOOPS(family, NAME, name)                                                                      \
   if (isa >= CONIC_ISA_##NAME)                                                                                         \
-    family##_##name(kernels);
+    family##_##name(loops);
 
 /* Declares what fills the tables of a family, a type, and FAMILY_init, which does so for an instruction set that is
  * here, CONIC_ISA_AUTO for the best. */
-#define CONIC_DECLARE_KERNELS(family)                                                                                  \
-  void family##_scalar(family *kernels);                                                                               \
-  CONIC_FOR_ISAS(CONIC_DECLARE_KERNELS_OF, family)                                                                     \
-  void family##_init(family *kernels, conic_isa isa)
+#define CONIC_DECLARE_LOOPS(family)                                                                                    \
+  void family##_scalar(family *loops);                                                                                 \
+  CONIC_FOR_ISAS(CONIC_DECLARE_LOOPS_OF, family)                                                                       \
+  void family##_init(family *loops, conic_isa isa)
 
-#define CONIC_DEFINE_KERNELS(family)                                                                                   \
-  void family##_init(family *kernels, conic_isa isa) {                                                                 \
+#define CONIC_DEFINE_LOOPS(family)                                                                                     \
+  void family##_init(family *loops, conic_isa isa) {                                                                   \
     isa = isa == CONIC_ISA_AUTO ? conic_isa_best() : isa;                                                              \
-    family##_scalar(kernels);                                                                                          \
-    CONIC_FOR_ISAS(CONIC_OVERWRITE_KERNELS, family)                                                                    \
+    family##_scalar(loops);                                                                                            \
+    CONIC_FOR_ISAS(CONIC_OVERWRITE_LOOPS, family)                                                                      \
   }
 
 /* Begins what fills a table in a file that is compiled for one instruction set. */
-#define CONIC_FILL_KERNELS_BY(family, name) void family##_##name(family *kernels)
+#define CONIC_FILL_LOOPS_BY(family, name) void family##_##name(family *loops)
 /* NOLINTEND(bugprone-macro-parentheses) */
 #if defined(__AVX512F__)
-#define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, avx512)
+#define CONIC_FILL_LOOPS(family) CONIC_FILL_LOOPS_BY(family, avx512)
 #elif defined(__AVX2__)
-#define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, avx2)
+#define CONIC_FILL_LOOPS(family) CONIC_FILL_LOOPS_BY(family, avx2)
 #elif defined(__aarch64__)
-#define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, neon)
+#define CONIC_FILL_LOOPS(family) CONIC_FILL_LOOPS_BY(family, neon)
 #else
-#define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, sse2)
+#define CONIC_FILL_LOOPS(family) CONIC_FILL_LOOPS_BY(family, sse2)
 #endif
 
 #endif

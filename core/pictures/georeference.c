@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
+#include "core/files/las_user.h"
 
 /* GeoKeys: what the system is (1: projected, 2: geographic), what a pixel is (1: an area), and the systems' codes. */
 enum { KEY_MODEL = 1024, KEY_RASTER = 1025, KEY_GEOGRAPHIC = 2048, KEY_PROJECTED = 3072, USER_DEFINED = 32767 };
@@ -149,13 +150,9 @@ typedef struct las_records {
   las_record keys, numbers, text, wkt;
 } las_records;
 
-static int is_of_user(const unsigned char *record, const char *user) {
-  return strncmp((const char *)record + 2, user, 16) == 0;
-}
-
 static void note_record(const unsigned char *head, const unsigned char *bytes, size_t n_bytes, las_records *found) {
   las_record *to = NULL;
-  if (!is_of_user(head, "LASF_Projection"))
+  if (!conic_las_is_of_user(head, "LASF_Projection"))
     return;
   switch (conic_load_16(head + 18)) {
   case RECORD_KEYS:

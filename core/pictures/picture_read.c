@@ -244,7 +244,7 @@ conic_status conic_picture_read(conic_context *context, const char *path, unsign
   case EVIDENCE_FLOATS: /* or what is wrong with it */
     status = conic_image_read(context, path, &image);
     break;
-  default:
+  case EVIDENCE_NONE:
     return conic_fail(context, CONIC_ERROR_INPUT,
                       "%s: its values are not known to be kept; EXR, PFM, NPY, NPZ and PNG keep them (at byte 0)",
                       path);

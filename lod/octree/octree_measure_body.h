@@ -1,7 +1,7 @@
 /* What octree_view.h says of measuring: plain C, which compilers put in lanes. */
 #include <math.h>
 
-#include "lod/octree/octree_kernels.h"
+#include "lod/octree/octree_loops.h"
 
 /* A displacement by e of what is at X changes its projection by no more than f·e·|X|/z²: the greatest factor of the
  * projection's derivative is f·|X|/z². All that a node is about, from its leaves' discs to its own, lies in its sphere,

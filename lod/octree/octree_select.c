@@ -5,7 +5,7 @@
 #include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
-#include "lod/octree/octree_kernels.h"
+#include "lod/octree/octree_loops.h"
 
 /* What becomes part of the selection, in the order of the hierarchy. */
 typedef struct selection_piece {
@@ -268,10 +268,10 @@ conic_status conic_octree_select(conic_octree *octree, const conic_camera *camer
   if (wrong)
     return conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong);
   octree_selecting s = {.octree = octree, .selection = selection, .error_px = (float)options.error_px};
-  conic_octree_kernels kernels;
+  conic_octree_loops loops;
   status = conic_isa_choose(octree->context, render.isa, &render.isa);
-  conic_octree_kernels_init(&kernels, render.isa);
-  s.put = kernels.put;
+  conic_octree_loops_init(&loops, render.isa);
+  s.put = loops.put;
   if (status == CONIC_OK)
     status = conic_octree_decode_all(octree);
   if (status == CONIC_OK)

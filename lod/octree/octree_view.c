@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/image/viewpoint.h"
-#include "lod/octree/octree_kernels.h"
+#include "lod/octree/octree_loops.h"
 
 void conic_octree_view_init(const conic_octree *octree, const conic_camera *camera, const conic_render_options *render,
                             double near_z, conic_octree_view *view) {
@@ -27,7 +27,7 @@ void conic_octree_view_init(const conic_octree *octree, const conic_camera *came
   view->slack = 1e-6f;
   view->slack_offset = (float)(1e-6 * farthest);
   view->cull_back = render->cull_back;
-  conic_octree_kernels kernels;
-  conic_octree_kernels_init(&kernels, render->isa);
-  view->measure = kernels.measure;
+  conic_octree_loops loops;
+  conic_octree_loops_init(&loops, render->isa);
+  view->measure = loops.measure;
 }

@@ -1,7 +1,7 @@
 /* A patch on a grid, by forward differences (PSS §6.2). */
 #include <math.h>
 
-#include "surface/kernels/weight.h"
+#include "surface/loops/weight.h"
 #include "surface/patches/patch.h"
 
 #define TWO_PI 6.283185307179586

@@ -87,7 +87,7 @@ static void compare(fixture *f, int n_ways, const char *scene) {
 /* Every second pair of a method and a kernel, from the first on; the rest of the options as it comes. */
 static void check_hostile(fixture *f, int first, double share_of_specials, double decades) {
   uint64_t state = 7;
-  for (int number = first; number < CONIC_N_METHODS * N_KERNELS; number += 2)
+  for (int number = first; number < CONIC_N_METHODS * CONIC_N_KERNELS; number += 2)
     for (int passes = 1; passes <= 3; passes += 2) {
       fill(f, &state, decades, share_of_specials);
       if (number / 2 % 2)
@@ -116,7 +116,7 @@ static void check_small(fixture *f) {
     opencl_add_clips(f, &state);
     f->splats.count = 80;
     f->splats.n_clips = 30;
-    choose(f, number + CONIC_N_METHODS * (number % N_KERNELS));
+    choose(f, number + CONIC_N_METHODS * (number % CONIC_N_KERNELS));
     f->options.passes = number % 3 ? 3 : 1;
     f->options.light[2] = -1.0;
     f->options.near_z = 1e-3;

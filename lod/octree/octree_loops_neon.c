@@ -1,0 +1,5 @@
+#if defined(__aarch64__)
+#include "lod/octree/octree_loops_body.h"
+#else
+typedef int conic_not_this_machine;
+#endif

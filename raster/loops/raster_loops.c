@@ -1,0 +1,3 @@
+#include "raster/loops/raster_loops.h"
+
+CONIC_DEFINE_LOOPS(conic_raster_loops)
