@@ -8,6 +8,7 @@
 #include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
+#include "lod/layers/build/layers_node.h"
 
 enum { NAME_ROOM = 1100, LINE_ROOM = CONIC_FINISHED_HEAD_ROOM + 256 };
 
@@ -24,9 +25,9 @@ static char *allocate_name(const conic_layers_kept *kept) {
   return conic_memory_allocate(kept->context, kept->n_folder + NAME_ROOM, 1);
 }
 
-static void path_of_list(const conic_layers_kept *kept, int rank, char *path) {
+static void path_of_list(const conic_layers_kept *kept, int index, char *path) {
   char name[32];
-  snprintf(name, sizeof name, "%d.%s", rank, list_ending);
+  snprintf(name, sizeof name, "%d.%s", index, list_ending);
   name_in_folder(kept, name, path);
 }
 
@@ -356,14 +357,7 @@ void conic_layers_kept_remove(conic_layers_kept *kept) {
 /* --- while it is built --- */
 
 const conic_layers_kept_branch *conic_layers_kept_find(const conic_layers_kept *kept, uint64_t key) {
-  size_t low = 0, high = kept->n; /* of those that begin no later than the key */
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (kept->branches[middle].key <= key)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  size_t low = conic_layers_count_to(kept->branches, sizeof *kept->branches, kept->n, key);
   return low > 0 && key <= last_key_of(&kept->branches[low - 1]) ? &kept->branches[low - 1] : NULL;
 }
 

@@ -1,5 +1,4 @@
-#include "lod/layers/build/layers_normals.h"
-
+/* Normals for samples that came without. */
 #include <math.h>
 #include <string.h>
 
@@ -8,6 +7,7 @@
 #include "core/base/trigonometry.h"
 #include "core/estimate/estimate.h"
 #include "core/estimate/voronoi_cell.h"
+#include "lod/layers/build/layers_node.h"
 #include "lod/layers/format/layers_axes.h"
 #include "lod/layers/format/layers_key.h"
 

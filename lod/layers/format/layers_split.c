@@ -281,7 +281,7 @@ void conic_layers_split(const conic_layers_schema *schema, uint32_t i, const uns
     n_bytes[k] = k ? n_lines : n;
 }
 
-const char *conic_layers_unite(const conic_layers_schema *schema, uint32_t i, size_t n,
+const char *conic_layers_join(const conic_layers_schema *schema, uint32_t i, size_t n,
                                const unsigned char *const *streams, unsigned char *samples) {
   const conic_layers_attribute *attribute = &schema->list[i];
   switch (attribute->kind) {

@@ -1,6 +1,6 @@
 /* How far discs are from those that stand for them: the greatest of all, in whichever order they are looked at. */
 #include "core/base/random.h"
-#include "lod/layers/build/layers_part.h"
+#include "lod/layers/build/layers_thin.h"
 #include "lod/layers/format/layers_key.h"
 #include "tests/support/check.h"
 
@@ -41,12 +41,12 @@ static conic_layers_disc disc_at(uint64_t scene, uint64_t key, double radius) {
 }
 
 /* Some at a time, from one on and round. */
-static double part_in_order(const conic_layers_standing *standing, const conic_layers_disc *discs, size_t first,
+static double part_in_order(const conic_layers_chosen *standing, const conic_layers_disc *discs, size_t first,
                             size_t some) {
   double part = 0.0;
   for (size_t done = 0, at = first; done < N;) {
     size_t n = N - at < some ? N - at : some;
-    part = conic_layers_part(standing, discs + at, n, 0.0, part);
+    part = conic_layers_disc_error(standing, discs + at, n, 0.0, part);
     done += n;
     at = (at + n) % N;
   }
@@ -70,14 +70,14 @@ static void check_sheet(conic_context *context, uint64_t scene) {
     if (is_chosen[i])
       drawn[n_drawn++] = disc_at(scene, keys[i], standing_radius);
   }
-  size_t n = conic_thinner_ranks(thinner, ranks);
+  size_t n = conic_thinner_numbers(thinner, ranks);
   CHECK(n == n_drawn && n > STANDING / 2);
   for (size_t k = 0; k < n; k++)
     standing_discs[k] = drawn[ranks[k]];
-  const conic_layers_standing standing = {thinner, standing_discs};
+  const conic_layers_chosen standing = {thinner, standing_discs};
   double part = part_in_order(&standing, discs, 0, N), most = 0.0;
   for (size_t i = 0; i < N; i++) {
-    double own = conic_layers_part(&standing, &discs[i], 1, 0.0, 0.0);
+    double own = conic_layers_disc_error(&standing, &discs[i], 1, 0.0, 0.0);
     most = own > most ? own : most;
   }
   CHECK(part == most && part > 0.0);
