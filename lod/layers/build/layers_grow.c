@@ -430,7 +430,7 @@ conic_status conic_layers_tree_grow(const conic_layers_plan *plan, const conic_l
     add_up(g);
     if (status == CONIC_OK)
       conic_layers_merge_counts(parts->team, g->growers[0].worker, tree);
-    conic_team_note(parts->team, "merged", start, parts->n);
+    conic_team_note(parts->team, "crown", start, parts->n);
   }
   if (status == CONIC_OK)
     tree->outline = median_outline(g);
