@@ -5,8 +5,8 @@
 #include "conic/triangles.h"
 #include "lod/mesh/mesh_clusters.h"
 
-/* Splats that are drawn as what they are, beside a surface: they are its last faces, two each, a rectangle about the
- * ellipse; and clusters have faces of one kind only. */
+/* Splats that are drawn as what they are, beside a surface. In the mesh they are the last faces, two each: a rectangle
+ * about the ellipse. A cluster has faces of one kind only. */
 typedef struct conic_kept_splats {
   size_t n_surface;  /* faces before them */
   size_t n, n_discs; /* dots come after those */
@@ -45,15 +45,15 @@ double conic_cluster_edge_length(const conic_clustered_mesh *mesh, uint32_t clus
 /* Unit normal of a face's plane, on the side that its neighbours agree upon; zero where it has no area. */
 void conic_cluster_face_normal(const conic_clustered_mesh *mesh, uint32_t face, double normal[3]);
 
-/* At barycentric coordinates of a face: the place (from the origin), the normal that it is shaded with, not unit, on
- * the side of `facing`, and the colour without the texture. */
+/* What a face has at barycentric coordinates: the place (from the origin); the normal that it is shaded with, not unit,
+ * on the side of `facing`; and the colour without the texture. */
 void conic_cluster_place(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double place[3]);
 void conic_cluster_normal(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], const double facing[3],
                           double normal[3]);
 void conic_cluster_color(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double color[3]);
 
-/* What the texture multiplies the colour with at a place, filtered over a square of that side on the face: white
- * where there is none. */
+/* The texture at a place, with which the colour is multiplied. It is filtered over a square of that side on the face,
+ * and white where there is no texture. */
 void conic_cluster_texel(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double side,
                          double color[3]);
 

@@ -1,5 +1,5 @@
-/* Chains: where two clusters meet, from one corner that more than they have to the next. A simpler cluster may leave
- * out what lies between a chain's ends; its neighbour, if it is finer, puts into both what it still has. */
+/* Chains: where two clusters meet, from one corner that a third has too to the next. A simpler cluster may leave out
+ * what lies between a chain's ends. What a finer neighbour still has of it is put into both when they are drawn. */
 #ifndef CONIC_CLUSTER_CHAINS_H
 #define CONIC_CLUSTER_CHAINS_H
 
@@ -18,7 +18,7 @@ typedef struct conic_cluster_chains {
   size_t n_chains, n_slots;
   conic_chain *chains; /* each has something between its ends */
   conic_cluster_slot *slots;
-  uint32_t *of_vertex; /* of each place between a chain's ends: its slot; else CONIC_NO_SLOT */
+  uint32_t *of_vertex; /* the slot of each place between a chain's ends; else CONIC_NO_SLOT */
 } conic_cluster_chains;
 
 /* Finds the chains between clusters of one region; what lies between regions is not simplified. `region` is by cluster.

@@ -13,15 +13,15 @@ void conic_site_note_color(conic_site *site, const double color[3]);
 /* Takes the diagonal of the box as the site's contrast, in steps of 1: black and white. */
 void conic_site_end_contrast(conic_site *site);
 
-/* How colours differ in what a site stands for from its own, which is in the middle of them, and how far they are
- * smeared: as far as it reaches. */
+/* How the colours that a site stands for differ from its own, which is in their middle. They are smeared as far as it
+ * reaches. */
 conic_seen_change conic_site_change(const conic_site *site);
 
-/* Of all sites, in the root mean square, or what is known where that is more. */
+/* The root mean square over all sites, or what is known where that is more. */
 conic_seen_change conic_sites_change(const conic_sampler *sampler, conic_seen_change known);
 
-/* Fills in the contrasts of the sites that are not settled: how far the colours of the places that they own, and of
- * details between these, are apart. */
+/* Fills in the contrasts of the sites that are not settled: how far apart the colours are of the places that they own,
+ * and of details between these. */
 void conic_cluster_find_contrasts(conic_sampler *sampler);
 
 #endif

@@ -7,8 +7,8 @@
 /* Puts this pass's lattices, owners and sites aside, as the last one's. */
 void conic_cluster_end_pass(conic_sampler *sampler);
 
-/* After new sites and owners were found: a site is settled where everything that it stands for, and whatever lies on
- * the same faces, belongs to the same sites as in the last pass. It then has all that it had there. */
+/* Called when new sites and owners have been found. A site is settled where all that it stands for, and all that lies
+ * on the same faces, belongs to the same sites as in the last pass. It then takes over all that it had there. */
 void conic_cluster_settle_sites(conic_sampler *sampler);
 
 #endif

@@ -7,8 +7,8 @@
 #include "lod/clusters/cluster_sample.h"
 #include "lod/clusters/place_table.h"
 
-/* Every face is looked at through a lattice that parts its sides into `sides` pieces: places, and the small triangles
- * between them. */
+/* Every face is looked at through a lattice of places, and small triangles between them. It splits each side of the
+ * face into `sides` pieces. */
 typedef struct conic_face_lattice {
   uint32_t face;
   int sides, depth; /* how often the spacing is halved here */
@@ -43,9 +43,9 @@ typedef struct conic_site {
   double lowest_seen[3], highest_seen[3], contrast; /* of the colours that it stands for: a box in OKLab */
   size_t n_supports, first_support;                 /* in the sampler's `of_sites` */
   double lowest, highest;                           /* of what it stands for, above the plane through its place */
-  double height;                                    /* of that, from its plane along a face's normal, the most */
+  double height;                                    /* the most of that, from its plane along a face's normal */
   double foot[3];        /* the place where it was chosen, from which its supports are seen */
-  double least_error;    /* what of the error needs no look at the mesh */
+  double least_error;    /* the part of the error that needs no look at the mesh */
   double error;          /* conic_site_error of it, from the tolerance on */
   double error_bound;    /* no less than that error, also below the tolerance */
   int is_drawn;          /* it stands for something that has an area */
@@ -59,7 +59,7 @@ typedef struct conic_support {
   double at[2];                   /* in the plane */
 } conic_support;
 
-/* Of a pass: what the next one may look up. */
+/* What the next pass may look up of the last. */
 typedef struct conic_sampling_pass {
   size_t n_sites, lattices_room, owner_room, sites_room;
   conic_face_lattice *lattices;
@@ -98,7 +98,7 @@ static inline double conic_spacing_at(const conic_sampler *sampler, int depth) {
   return sampler->job->spacing / (double)(1 << depth);
 }
 
-/* Of a place on a side that two faces of the cluster share, only the one answers other than 0. */
+/* Whether a place is this lattice's. Where two faces of the cluster share a side, only one has its places. */
 int conic_face_lattice_is_own(const conic_clustered_mesh *mesh, const conic_face_lattice *lattice, int i, int j);
 
 /* Fills in lattices, sites and owners. Errors: MEMORY. */

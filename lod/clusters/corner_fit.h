@@ -1,4 +1,4 @@
-/* Values at the corners of triangles that fit what is known at places on them, in the sense of least squares. */
+/* Values at the corners of triangles that fit best, by least squares, what is known at places on these. */
 #ifndef CONIC_CORNER_FIT_H
 #define CONIC_CORNER_FIT_H
 
@@ -12,8 +12,8 @@ typedef struct conic_corner_fit {
   conic_context *context;
   size_t n_triangles, n_unknowns;
   int n_values;
-  uint32_t (*unknowns)[3]; /* which a triangle's corners have; the caller's to fill in. None: no such triangle */
-  double (*squares)[6];    /* of each triangle: what the system has of its corners 00, 01, 02, 11, 12, 22 */
+  uint32_t (*unknowns)[3]; /* of a triangle's corners; the caller fills them in. None: no such triangle */
+  double (*squares)[6];    /* of each triangle, the system's entries for its corners 00, 01, 02, 11, 12, 22 */
   double *right[3], *solution;
   double *work; /* four arrays */
 } conic_corner_fit;
@@ -23,11 +23,11 @@ conic_status conic_corner_fit_init(conic_context *context, size_t n_triangles, s
                                    conic_corner_fit *fit);
 void conic_corner_fit_release(conic_corner_fit *fit);
 
-/* At a place the sum of the corners' values times `parts` should be these, `weight` saying by how much it matters. */
+/* Asks that at a place the sum of the corners' values times `parts` be `values`. `weight` says how much it matters. */
 void conic_corner_fit_add(conic_corner_fit *fit, size_t triangle, const double parts[3], const double *values,
                           double weight);
 
-/* What is best of one of the values, which is small where nothing is known: fit->solution, until the next is solved. */
+/* Finds the best of one of the values: fit->solution, until the next is solved. It is small where nothing is known. */
 void conic_corner_fit_solve(conic_corner_fit *fit, int value);
 
 #endif

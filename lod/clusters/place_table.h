@@ -1,4 +1,4 @@
-/* Places of a cluster, by where they are, each with the nearest of the sites that were put so far. */
+/* Places of a cluster, found by where they are. Each has the nearest of the sites that were put so far. */
 #ifndef CONIC_PLACE_TABLE_H
 #define CONIC_PLACE_TABLE_H
 
@@ -26,25 +26,25 @@ typedef struct conic_places {
   int coarsest, finest;      /* depths that there are */
 } conic_places;
 
-/* Each depth has cells of its own, and what lies in a cell is next to each other, so that few cells are looked at and
- * those fast. Zero before the first use. */
+/* Each depth has cells of its own, so that few are looked at. What lies in a cell is next to each other, so that they
+ * are looked at fast. Zero before the first use. */
 typedef struct conic_place_table {
   conic_places places;
   uint32_t *owner;
   size_t room, starts_room, mask;
-  uint32_t *starts; /* of each cell, by its hash, in what follows; of each depth mask + 1 */
+  uint32_t *starts; /* of each cell in `place` and `at`, by its hash; mask + 1 for each depth */
   uint32_t *place;  /* its number */
   double *at[3];
-  double *nearest2; /* the squared distance of its owner; of none, as far as one may be */
+  double *nearest2; /* the squared distance of its owner; without one, as far as one may be */
 } conic_place_table;
 
-/* Takes the places in, for use as long as the arrays behind them last, and sets all of their owners, room for which is
- * the caller's, to NO_SITE. Errors: MEMORY. */
+/* Takes the places in; their arrays must last as long as the table is used. Sets all owners, for which the caller has
+ * room, to NO_SITE. Errors: MEMORY. */
 conic_status conic_place_table_fill(conic_context *context, conic_place_table *table, const conic_places *places,
                                     uint32_t *owner);
 
-/* Puts a site there, their numbers ascending: of the places from number `first` on it becomes the owner where it is no
- * farther than the spacing, faces alike, and is nearer than the owner. */
+/* Puts a site there; their numbers ascend. Among the places from number `first` on, it becomes the owner of those that
+ * are no farther than the spacing, face alike, and have no owner as near. */
 void conic_place_table_put(conic_place_table *table, uint32_t site, const double at[3], const double facing[3],
                            size_t first);
 

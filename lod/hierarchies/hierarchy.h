@@ -1,10 +1,10 @@
-/* Hierarchies of points as others write them: octrees whose nodes hold points, and index them page by page. A kind is a
- * file that fills a table of functions, and a line in the list of hierarchy.c; lod/layers/draw makes of it what it
- * draws.
+/* Hierarchies of points as others write them: octrees whose nodes hold points, with an index that is read page by page.
+ * A kind is a file that fills a table of functions, and a line in the list of hierarchy.c. lod/layers/draw makes of it
+ * what it draws.
  *
- * A node's place is a cell of the octree: the root's, or an eighth of its parent's. It is named by the 63-bit Morton
- * code of its low corner (lod/layers/format/layers_key.h) and its level. What is drawn in a place are the points there
- * of its node and of all nodes above it. */
+ * A node's place is a cell of the octree: the root's, or an eighth of its parent's. Its name is the 63-bit Morton code
+ * of its low corner (lod/layers/format/layers_key.h), and its level. The points of its node and of all nodes above it
+ * that lie in a place are drawn there. */
 #ifndef CONIC_HIERARCHY_H
 #define CONIC_HIERARCHY_H
 
@@ -21,7 +21,7 @@ enum {
 
 typedef struct conic_hierarchy_node {
   uint64_t key;
-  uint64_t offset;  /* of its points, or, where only that is known yet, of the page that tells of it */
+  uint64_t offset;  /* of its points; or of the page that tells of it, where only that is known yet */
   uint64_t n_bytes; /* likewise; 0 where they are a file of their own */
   uint32_t n_points;
   uint8_t level;
@@ -43,27 +43,27 @@ typedef struct conic_hierarchy {
   double spacing;                 /* of the root's points; every level halves it */
   uint64_t n_points;              /* of all nodes, as the file says */
   int has_colors;                 /* or an intensity */
-  conic_hierarchy_node *nodes;    /* those that are known: in no order; the first is the root's page, or what it told */
+  conic_hierarchy_node *nodes;    /* those that are known, in no order; the first: the root's page, or the root */
   size_t n_nodes, nodes_room;
   conic_point_layout layout;
   conic_georeference reference; /* all zero: the file does not say */
   void *own;                    /* the kind's; null, or released as one block */
 } conic_hierarchy;
 
-/* Any name of a function that returns text says what is wrong, or null. */
+/* Functions that return text say what is wrong, or null. */
 struct conic_hierarchy_kind {
   const char *name;
   /* Whether a file that begins with these bytes is one, by its name too. */
   int (*is_one)(const char *name, const unsigned char *head, size_t n_head);
-  /* Fills in the rest of a hierarchy of which context to access are given, pages the same as ranges, and adds the node
-   * of the root's page. What it made is closed on failure, too. */
+  /* Opens a hierarchy: its members from context to access are given, and `pages` is `ranges`. Fills in the rest, and
+   * adds the node of the root's page. What it made is closed on failure, too. */
   conic_status (*open)(conic_hierarchy *hierarchy);
-  /* Which bytes hold a node's page or points: of `pages` or of `ranges`. */
+  /* Finds the bytes that hold a node's page, in `pages`, or its points, in `ranges`. */
   void (*locate)(const conic_hierarchy *hierarchy, const conic_hierarchy_node *node, conic_range *range);
   /* Adds the nodes that a page tells of; the page's own node goes. */
   const char *(*take_page)(conic_hierarchy *hierarchy, const conic_hierarchy_node *page, const unsigned char *bytes,
                            size_t n_bytes);
-  /* Unpacks a node's points, of which there are points->n. Any thread. */
+  /* Unpacks a node's points->n points. Any thread. */
   const char *(*decode)(const conic_hierarchy *hierarchy, const conic_hierarchy_node *node, const unsigned char *bytes,
                         size_t n_bytes, conic_hierarchy_points *points);
 };
@@ -72,8 +72,8 @@ struct conic_hierarchy_kind {
 enum { CONIC_HIERARCHY_HEAD_BYTES = 429 };
 const conic_hierarchy_kind *conic_hierarchy_kind_of(const char *name, const unsigned char *head, size_t n_head);
 
-/* The file that is opened: `path`, or, where that is a folder with an EPT or a Potree 2 in it, the first of these. 0:
- * it takes more than `room`. */
+/* Finds the file that is opened: `path`, or the first EPT or Potree 2 in it where that is a folder. 0: it takes more
+ * than `room`. */
 enum { CONIC_HIERARCHY_PATH_ROOM = 4096 };
 int conic_hierarchy_find_file(const char *path, char *file, size_t room);
 
@@ -90,7 +90,9 @@ conic_status conic_hierarchy_open(conic_context *context, const conic_hierarchy_
                                   conic_hierarchy **hierarchy);
 void conic_hierarchy_close(conic_hierarchy *hierarchy);
 
-/* For kinds. The first is for what a kind knows of itself while it opens: "NAME: what is wrong". */
+/* --- for kinds --- */
+
+/* Fails while a kind opens: "NAME: what is wrong". */
 conic_status conic_hierarchy_wrong(const conic_hierarchy *hierarchy, const char *what);
 /* Reads bytes of the opened file. Errors: as conic_ranges_read. */
 conic_status conic_hierarchy_read(const conic_hierarchy *hierarchy, uint64_t offset, size_t n_bytes,

@@ -22,7 +22,7 @@ typedef struct conic_point_layout {
 typedef struct conic_hierarchy_points {
   size_t n;
   double *position[3]; /* in world units */
-  uint16_t *color[3];  /* as they stand in the file; null: not wanted. Where there are none, the intensity thrice */
+  uint16_t *color[3];  /* as in the file, or else the intensity thrice; null: not wanted */
 } conic_hierarchy_points;
 
 /* Whether a number can be such a field. */

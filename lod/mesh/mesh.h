@@ -1,4 +1,4 @@
-/* Triangles as the hybrid models' steps look at them: who lies beside whom, and which of them are of use. */
+/* Triangles as the steps of hybrid models look at them: which lie side by side, and which are of use. */
 #ifndef CONIC_MESH_H
 #define CONIC_MESH_H
 
@@ -14,7 +14,7 @@ typedef struct conic_mesh {
   const uint32_t (*faces)[3];
 } conic_mesh;
 
-/* Two faces that share an edge (or more than one: then the length is that of all). */
+/* Two faces that share one edge or more. `length` is that of all of these. */
 typedef struct conic_joint {
   uint32_t faces[2];
   double length;
@@ -38,7 +38,7 @@ typedef struct conic_mesh_oddities {
 typedef struct conic_adjacency {
   uint32_t *place;  /* of each vertex: the first vertex at the same position */
   int8_t *side;     /* of each face: 1; -1 where it is wound against its neighbours; 0 where it is of no use */
-  uint32_t *across; /* of each face's edges, 3 · face + the corner where it begins: that of the other face, or OPEN or
+  uint32_t *across; /* of each edge, 3 · face + the corner where it begins: the same edge of the other face, or OPEN or
                        CROWDED */
   size_t n_joints;
   conic_joint *joints;

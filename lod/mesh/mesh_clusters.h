@@ -1,4 +1,4 @@
-/* Clusters of faces: first what is flat together, then what is small is gathered (HQP §3.2). */
+/* Clusters of faces. At first what is flat together is joined, and then what is small is gathered (HQP §3.2). */
 #ifndef CONIC_MESH_CLUSTERS_H
 #define CONIC_MESH_CLUSTERS_H
 
@@ -7,8 +7,8 @@
 #define CONIC_NO_CLUSTER UINT32_MAX
 
 typedef struct conic_clustering_options {
-  double phase1;    /* fit + direction + shape up to which clusters are joined first */
-  double phase2;    /* shape + size up to which they are joined then */
+  double phase1;    /* at first clusters are joined up to this fit + direction + shape */
+  double phase2;    /* and then up to this shape + size */
   double most_area; /* no cluster of the first phase has a larger share of the whole area */
 } conic_clustering_options;
 

@@ -1,6 +1,6 @@
-/* The leaves of a quantised octree: 12 bytes each, 3 more with colours, 1 more with opacities, and 24 for every 64
- * leaves, which share a box that their positions are counted in. Neighbours in the order of the tree are neighbours in
- * space, so the boxes are small. */
+/* The leaves of a quantised octree: 12 bytes each, 3 more with colours, 1 more with opacities, and 24 for each block of
+ * 64 leaves. A block's leaves share a box in which their positions are counted. Neighbours in the order of the tree are
+ * neighbours in space, so the boxes are small. */
 #ifndef CONIC_LEAF_CODE_H
 #define CONIC_LEAF_CODE_H
 

@@ -1,13 +1,13 @@
-/* Sums over a set of splats, which a node gets from its children by merging theirs: the generic homogeneous covariance
- * of Confetti (§4.2), and the averages beside it. */
+/* Sums over a set of splats: the generic homogeneous covariance of Confetti (§4.2), and the averages beside it. A node
+ * gets them by merging its children's. */
 #ifndef CONIC_MOMENTS_H
 #define CONIC_MOMENTS_H
 
 #include "conic/splats.h"
 
 /* The homogeneous matrix Σ p'p'ᵀ holds the count, Σ p and Σ ppᵀ. It is kept translated to the set's own mean, as Eq. 3
- * allows at any time: about a distant origin Σ ppᵀ cancels where the covariance is read from it. A splat adds its own
- * extent, t_u t_uᵀ + t_v t_vᵀ, so that one splat and splats in a row have a shape too. */
+ * allows at any time; about a distant origin, the covariance would cancel in Σ ppᵀ. A splat adds its own extent,
+ * t_u t_uᵀ + t_v t_vᵀ, so that one splat and splats in a row have a shape too. */
 typedef struct conic_moments {
   double count;
   double mean[3];
@@ -18,10 +18,10 @@ typedef struct conic_moments {
   double color[3];   /* Σ opacity·|t_u × t_v|·colour */
 } conic_moments;
 
-/* Of splat i alone, relative to the set's origin. */
+/* The sums of splat i alone, relative to the set's origin. */
 void conic_moments_of_splat(const conic_splats *splats, size_t i, conic_moments *moments);
 
-/* Adds those of another set; `sum` may be all zero. */
+/* Adds the sums of another set; `sum` may be all zero. */
 void conic_moments_merge(conic_moments *sum, const conic_moments *more);
 
 #endif

@@ -1,4 +1,4 @@
-/* What a backend of lod/ranges/ranges.h is: a struct that begins with a conic_ranges. */
+/* A backend of lod/ranges/ranges.h. Its struct begins with a conic_ranges. */
 #ifndef CONIC_RANGES_BACKEND_H
 #define CONIC_RANGES_BACKEND_H
 

@@ -5,8 +5,8 @@
 #include "lod/clusters/cluster_sample.h"
 #include "lod/hybrid/model/hybrid_model.h"
 
-/* Puts the splats that are kept into clusters of their own, of up to 64 that lie near each other, in place of those of
- * their faces. Errors: MEMORY. */
+/* Puts the kept splats into clusters of their own, of up to 64 that lie near each other, in place of their faces'
+ * clusters. Errors: MEMORY. */
 conic_status conic_hybrid_group_kept(conic_context *context, const conic_kept_splats *kept,
                                      conic_mesh_clusters *clusters);
 

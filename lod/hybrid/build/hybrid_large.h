@@ -4,7 +4,7 @@
 
 #include "conic/hybrid.h"
 
-/* About as many as are simplified together. */
+/* About so many faces are simplified together. */
 enum { CONIC_HYBRID_CELL_FACES = 200000 };
 
 /* conic_hybrid_build_file with cells of about `most_faces`, on which the model depends. */

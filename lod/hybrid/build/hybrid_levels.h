@@ -28,15 +28,16 @@ typedef struct conic_ways_job {
   conic_context *context;
   const conic_clustered_mesh *mesh;
   const conic_hybrid_options *options;
-  size_t n_clusters;        /* the first ones are the model's; what others there are lies beside them and stays */
-  conic_face_tree tree;     /* private, */
-  double most_out;          /* and how far surfels as built may stand out from the mesh; infinite: by any length */
+  size_t n_clusters;        /* the first ones are the model's; the others lie beside them and stay */
+  conic_face_tree tree;     /* private */
+  double most_out;          /* private: how far surfels as built may stand out from the mesh; infinite: by any length */
   conic_cluster_ways *ways; /* of each cluster; zero before */
+  /* The caller releases these four by conic_nodes_release. */
   size_t n_nodes;
-  conic_hybrid_node *nodes; /* over the clusters, with their points but not yet with levels; the caller's to release, */
-  conic_node_ways *node_ways;  /* by conic_nodes_release, and these; null where nodes have none */
-  conic_cluster_levels whole;  /* simpler triangles of all clusters as one, for the root; released with these */
-  conic_cluster_chains chains; /* between simpler triangles of clusters; the caller's to release, on failure too */
+  conic_hybrid_node *nodes;    /* over the clusters, with their points but not yet with levels */
+  conic_node_ways *node_ways;  /* null where nodes have none */
+  conic_cluster_levels whole;  /* simpler triangles of all clusters as one, for the root */
+  conic_cluster_chains chains; /* between simpler triangles of clusters; the caller releases them, on failure too */
   double sample_seconds, simplify_seconds;
 } conic_ways_job;
 

@@ -4,9 +4,9 @@
 
 #include "lod/hybrid/build/hybrid_levels.h"
 
-/* Makes job->nodes over the clusters, whose ways are known; and, but for single levels and boxes, for each node its
- * point and surfels that stand for all of its clusters: of the clusters' own surfels, some of them close together at a
- * time, each what the surfels of a cluster are to its faces. The caller releases both, on failure too. Errors: MEMORY,
+/* Makes job->nodes over the clusters, whose ways are known. But for single levels and boxes, each node gets its point,
+ * and surfels that stand for all of its clusters. A node's surfel stands for some of the clusters' surfels that are
+ * close together, as a cluster's surfel does for faces. The caller releases all, on failure too. Errors: MEMORY,
  * CANCELLED. */
 conic_status conic_find_nodes(conic_ways_job *job);
 void conic_nodes_release(conic_ways_job *job);

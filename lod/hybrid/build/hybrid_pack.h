@@ -4,8 +4,8 @@
 
 #include "lod/hybrid/build/hybrid_levels.h"
 
-/* From all that was found. What there is of *hybrid is the caller's, on failure too. Errors: ARGUMENT (too much for a
- * file), MEMORY. */
+/* Makes the model of all that was found. The caller owns what there is of *hybrid, on failure too. Errors: ARGUMENT
+ * (too much for a file), MEMORY. */
 conic_status conic_hybrid_pack(const conic_ways_job *ways, conic_hybrid **hybrid);
 
 #endif

@@ -4,8 +4,8 @@
 
 #include "lod/hybrid/draw/hybrid_offers.h"
 
-/* How many pixels places of the node may be off where its point stands for them: infinite where its sphere reaches
- * near, or there is no point. */
+/* How many pixels off the node's point may draw its places; infinite where its sphere reaches the near plane, or there
+ * is no point. */
 double conic_hybrid_point_error_px(const conic_hybrid_camera *view, const conic_hybrid_node *node);
 
 /* What drawing it may take, in nanoseconds of one core. */

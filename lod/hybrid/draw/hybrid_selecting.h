@@ -5,9 +5,9 @@
 #include "core/base/kept_memory.h"
 #include "lod/hybrid/draw/hybrid_choose.h"
 
-/* A cluster that is drawn, or, after all clusters by its number, a node; and where its parts go. The level is among all
- * of the model's; a node's point is none of them. While choosing, a node that stands at once is its first cluster, and
- * the level is the node's. */
+/* A cluster that is drawn, or a node, and where its parts go. The numbers of nodes follow those of clusters. The level
+ * is counted among all of the model's; a node's point is none of them. While choosing, a node that stands at once has
+ * the number of its first cluster, and its own level. */
 typedef struct hybrid_choice {
   uint32_t cluster, level;
   uint32_t node; /* that stands at once, or NO_NODE */
@@ -19,7 +19,7 @@ typedef struct hybrid_choice {
 typedef struct hybrid_scratch {
   hybrid_choice *choices;
   size_t n_choices, choices_room;
-  uint32_t *seen; /* nodes in sight, but for those that stand at once and what is below these */
+  uint32_t *seen; /* nodes in sight that neither stand at once nor lie below one that does */
   size_t n_seen;
   conic_kept_memory seen_memory;
   uint32_t *stages;   /* of each cluster of the hybrid: that of its level */
@@ -32,7 +32,7 @@ typedef struct hybrid_scratch {
   uint32_t *triangles; /* corners, clusters and materials of triangles_room triangles */
   size_t triangles_room;
   conic_kept_memory chunks_memory;
-  uint32_t *frames, *chunks; /* chunks that are held: frames of clusters in sight, and what some choices are drawn of */
+  uint32_t *frames, *chunks; /* held: frames of clusters in sight, and what some choices are drawn of */
   size_t n_frames, n_chunks;
   uint64_t frames_bytes;
 } hybrid_scratch;

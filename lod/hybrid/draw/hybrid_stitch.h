@@ -1,4 +1,5 @@
-/* Clusters side by side at different levels: what the one has along their border and the other has not is put in. */
+/* Clusters side by side at different levels: vertices that one has along their border, and the other has not, are put
+ * in. */
 #ifndef CONIC_HYBRID_STITCH_H
 #define CONIC_HYBRID_STITCH_H
 
@@ -7,12 +8,12 @@
 /* A cluster that is not drawn: nothing has to fit it. */
 #define CONIC_HYBRID_HIDDEN UINT32_MAX
 
-/* Where a level's triangles lie in those of a picture, and which of the latter's arrays are next to be filled. */
+/* Where a level's triangles lie in those of a picture, and where the picture's next triangle and vertex go. */
 typedef struct conic_hybrid_stitching {
   const conic_hybrid *hybrid;
   uint32_t cluster;
   const conic_hybrid_level *level;
-  const uint32_t *stages; /* of each cluster as drawn: 0 with all vertices of its borders; or HIDDEN */
+  const uint32_t *stages; /* of each cluster as drawn, 0: with all vertices of its borders; or HIDDEN */
   conic_triangles *to;
   size_t first_triangle;      /* of the level */
   size_t triangle, vertex;    /* the next */
@@ -20,14 +21,14 @@ typedef struct conic_hybrid_stitching {
   conic_hybrid_vertices ends; /* private */
 } conic_hybrid_stitching;
 
-/* How many vertices are put into a level of a cluster, of which the frame must be there; each makes one more triangle.
+/* How many vertices are put into a level of a cluster; each makes one more triangle. The cluster's frame must be there.
  */
 size_t conic_hybrid_count_stitches(const conic_hybrid *hybrid, uint32_t cluster, const conic_hybrid_level *level,
                                    const uint32_t *stages);
 
-/* Fans the triangles along the level's borders to the vertices that the clusters across still have. Corners, clusters
- * and materials of the level's own are there already; of vertices the position, normal, colour and texture coordinates
- * are filled in. The cluster's frame and ends must be there. */
+/* Fans the triangles along the level's borders to the vertices that the clusters across still have. The level's own
+ * corners, clusters and materials are there already. Positions, normals, colours and texture coordinates of the new
+ * vertices are filled in. The cluster's frame and ends must be there. */
 void conic_hybrid_stitch(conic_hybrid_stitching *stitching);
 
 #endif

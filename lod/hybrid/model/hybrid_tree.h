@@ -7,14 +7,14 @@
 /* The most clusters in a node without children. */
 enum { CONIC_HYBRID_LEAF = 4 };
 
-/* Where n clusters are parted, those in the first half. */
+/* How many of n clusters are in the first half, where they are split. */
 size_t conic_hybrid_half(size_t n);
 
 /* How many nodes there are over so many clusters. */
 size_t conic_hybrid_count_nodes(size_t n_clusters);
 
-/* Brings clusters with the given bounds in an order in which neighbours are near each other: order[k] is the number of
- * the k-th. Where `kinds` is not null, those of kind 0 come before those of kind 1. Errors: MEMORY. */
+/* Orders clusters with the given bounds so that neighbours are near each other; order[k] is the number of the k-th.
+ * Where `kinds` is not null, those of kind 0 come before those of kind 1. Errors: MEMORY. */
 conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, const uint8_t *kinds,
                                 size_t n_clusters, uint32_t *order);
 

@@ -1,4 +1,4 @@
-/* A picture, or a window of it, in bands, or parts of them, each with no more splats than memory holds. */
+/* A picture, or a window of it, drawn in bands, or in parts of bands, each with no more splats than memory holds. */
 #ifndef CONIC_LAYERS_BANDS_H
 #define CONIC_LAYERS_BANDS_H
 
@@ -14,7 +14,7 @@ typedef struct conic_layers_band_drawing {
   int samples;
   conic_transparency transparency; /* NONE where the samples keep no opacities */
   double chance;
-  conic_window window;    /* of the picture's pixels, which the image has: all, or within one of its bands */
+  conic_window window;    /* the picture's pixels that the image has: all, or some within one of its bands */
   const uint32_t *chosen; /* places of the cut, ascending: those that the window may show */
   size_t n_chosen;
   const unsigned char *is_counted; /* a place of the cut: 0 where another window counts what becomes of its splats */
@@ -22,11 +22,11 @@ typedef struct conic_layers_band_drawing {
   conic_layers_set *set;
   void (*is_gathered)(void *data); /* called where nothing more will be read; null: nothing */
   void *data;
-  uint64_t *n_turned; /* grows by: samples that face away and were left out */
+  uint64_t *n_turned; /* grows by the samples that face away and were left out */
 } conic_layers_band_drawing;
 
 /* Draws the chosen places that are not hidden, in as many bands as memory asks for. *statistics become those of the
- * whole picture, whatever the bands, or its share of them that is the window's. Errors: as conic_layers_draw. */
+ * whole picture, whatever the bands; or, for a window, its share of them. Errors: as conic_layers_draw. */
 conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, conic_render_statistics *statistics,
                                      int *n_bands);
 

@@ -1,5 +1,5 @@
-/* Which way the samples of a layered point cloud face, in 1024 sets: those of a place that all face away are left out
- * together. */
+/* Which way the samples of a layered point cloud face, in 1024 sets. A set whose samples in a place all face away is
+ * left out at once. */
 #ifndef CONIC_LAYERS_FACING_H
 #define CONIC_LAYERS_FACING_H
 
@@ -11,7 +11,7 @@ typedef struct conic_layers_facings {
   float axis[3][CONIC_LAYERS_FACINGS], cosine[CONIC_LAYERS_FACINGS], sine[CONIC_LAYERS_FACINGS];
 } conic_layers_facings;
 
-/* Whether a set's samples face away wherever they lie in a place. */
+/* For each set, whether its samples face away wherever they lie in a place. */
 typedef struct conic_layers_turned {
   uint32_t bits[CONIC_LAYERS_FACINGS / 32];
   int is_any;

@@ -1,17 +1,17 @@
-/* A picture parted into windows that few enough splats meet. */
+/* A picture split into windows that few enough splats meet. */
 #ifndef CONIC_LAYERS_PARTING_H
 #define CONIC_LAYERS_PARTING_H
 
 #include "lod/layers/draw/layers_cut.h"
 
-/* What is parted: of a picture of `samples` × as many pixels as the cut's sights tell of, all of it or a part, which is
- * drawn in bands of so many rows, each by a camera of its own. */
+/* What is split: a picture, or a part of it, that is drawn in bands of band_rows rows, each by a camera of its own. On
+ * a side, it has `samples` times as many pixels as the cut's sights tell of. */
 typedef struct conic_layers_parting {
   const conic_layers *layers;
   const conic_layers_cut *cut;
-  conic_window part; /* from where a band begins to where one ends, or within one */
+  conic_window part; /* from the begin of a band to the end of one, or within one */
   int band_rows, samples;
-  double most_pixels; /* of a window with more than one sample a pixel, where a cell has no more */
+  double most_pixels; /* of a window, with more than one sample a pixel; a window has a cell at least */
   double most;        /* splats that may meet a window, if each place's are spread evenly */
   double margin_px;   /* how far from its middle a splat is taken to reach */
 } conic_layers_parting;
@@ -31,7 +31,7 @@ typedef struct conic_layers_windows {
 conic_status conic_layers_windows_plan(const conic_layers_parting *parting, conic_layers_windows *windows);
 void conic_layers_windows_release(conic_context *context, conic_layers_windows *windows);
 
-/* How many splats a place gives, about: of a grazing one few. */
+/* About how many splats a place gives; a grazing one gives few. */
 double conic_layers_place_weight(const conic_layers *layers, const conic_layers_place *place);
 
 /* The row of cells that has the part's row of pixels. */

@@ -1,4 +1,4 @@
-/* What is gathered to be drawn: splats, their numbers in the file, and of which pieces of clouds they are. */
+/* What is gathered to be drawn: splats, their numbers in the file, and the pieces of clouds that they come from. */
 #ifndef CONIC_LAYERS_SET_H
 #define CONIC_LAYERS_SET_H
 
@@ -7,11 +7,11 @@
 /* What a cloud has in a place of the cut. */
 typedef struct conic_layers_piece {
   uint32_t cloud, i_place;
-  uint32_t first, end;  /* its samples, */
-  uint32_t n_chosen;    /* of which so many are to be drawn, */
-  uint32_t n_turned;    /* while so many face away, and are culled, */
-  uint32_t n_elsewhere; /* and so many meet no pixel of the part that is gathered for, */
-  size_t at;            /* from here on in the set */
+  uint32_t first, end;  /* its samples */
+  uint32_t n_chosen;    /* of these, to be drawn: in the set, from `at` on */
+  uint32_t n_turned;    /* facing away, and culled */
+  uint32_t n_elsewhere; /* meeting no pixel of the part that is gathered for */
+  size_t at;
 } conic_layers_piece;
 
 /* Splats to draw. Zero before the first use; the memory is kept from set to set. */
@@ -23,14 +23,14 @@ struct conic_layers_set {
   size_t clips_room;
   float *arrays;                    /* conic_layers_set_arrays, each of `room` */
   struct conic_point_values *named; /* the splats' values, where some are kept */
-  conic_layers_piece *pieces;       /* of the clouds that were in memory last, in the order of the file */
+  conic_layers_piece *pieces;       /* those of the last clouds in memory, in the order of the file */
   size_t n_pieces, pieces_room;
   uint64_t n_chosen, n_turned; /* of all pieces since gathering began */
   int is_cut_short;            /* there were more splats than asked for at most */
 };
 typedef struct conic_layers_set conic_layers_set;
 
-/* Bytes that drawing takes for a splat of a set, the set's own and room to grow included. */
+/* Bytes that drawing takes for a splat of a set, with those in the set and with room to grow. */
 enum { CONIC_LAYERS_SPLAT_BYTES = 176 };
 
 /* Empties the set, and names the values that its splats are to have. Errors: MEMORY. */

@@ -8,14 +8,14 @@
 /* Packs clouds, one after the other; each thread has its own. */
 typedef struct conic_layers_coder conic_layers_coder;
 
-/* For clouds of up to `most_samples` with the attributes of `schema`, which is copied: to unpack those for which
- * `is_wanted` is not 0, the first among them, or, where it is null, to pack. Errors: MEMORY, UNSUPPORTED (built without
- * zstd). */
+/* For clouds of up to `most_samples` with the attributes of `schema`, which is copied. With `is_wanted` it unpacks the
+ * attributes for which that is not 0, the first always among them; where it is null, it packs. Errors: MEMORY,
+ * UNSUPPORTED (built without zstd). */
 conic_status conic_layers_coder_create(conic_context *context, size_t most_samples, const conic_layers_schema *schema,
                                        const unsigned char *is_wanted, conic_layers_coder **coder);
 void conic_layers_coder_destroy(conic_layers_coder *coder);
 
-/* Packs records, ascending by key, of a place that begins with `first_key`. Returns how many bytes it came to; *bytes
+/* Packs records, ascending by key, of a place that begins with `first_key`. Returns how many bytes they became; *bytes
  * is valid until the next call. Adds to the sizes of the attributes. */
 size_t conic_layers_encode(conic_layers_coder *coder, const unsigned char *samples, size_t n, uint64_t first_key,
                            const unsigned char **bytes, uint64_t attribute_bytes[CONIC_LAYERS_MOST_ATTRIBUTES]);
