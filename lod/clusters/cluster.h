@@ -1,6 +1,8 @@
-/* The clusters of a mesh, one by one, and what their surface is at a place. */
+/* The clusters of a mesh: what their surface is at a place, and where they meet. */
 #ifndef CONIC_CLUSTER_H
 #define CONIC_CLUSTER_H
+
+#include <stdint.h>
 
 #include "conic/triangles.h"
 #include "lod/mesh/mesh_clusters.h"
@@ -56,5 +58,47 @@ void conic_cluster_color(const conic_clustered_mesh *mesh, uint32_t face, const 
  * and white where there is no texture. */
 void conic_cluster_texel(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double side,
                          double color[3]);
+
+/* --- where clusters meet --- */
+
+/* A vertex where two clusters meet. Each cluster has one of its own there; the lower cluster's is the first. `stage` is
+ * the last stage of simplification at which it is still there. */
+typedef struct conic_cluster_slot {
+  uint32_t vertices[2], stage;
+} conic_cluster_slot;
+
+#define CONIC_CLUSTER_ALWAYS UINT32_MAX
+
+/* An edge of a level's triangle along which vertices were left out. Where the cluster across still has some of them,
+ * they are put in when both are drawn. */
+typedef struct conic_cluster_border {
+  uint32_t edge;     /* 4 · triangle, from the level's first, + the corner where the edge begins */
+  uint32_t from, to; /* slots of its two ends, in a model of the cluster's own; what was left out is between */
+  uint32_t across;   /* the other cluster */
+} conic_cluster_border;
+
+/* --- chains --- */
+
+#define CONIC_NO_SLOT UINT32_MAX
+
+/* A chain is where two clusters meet, from one corner that a third has too to the next. Its vertices are slots[first …
+ * first + n), the ends among them. A closed one ends in the vertex where it begins. */
+typedef struct conic_chain {
+  uint32_t first, n;
+  uint32_t clusters[2];
+} conic_chain;
+
+typedef struct conic_cluster_chains {
+  size_t n_chains, n_slots;
+  conic_chain *chains; /* each has something between its ends */
+  conic_cluster_slot *slots;
+  uint32_t *of_vertex; /* the slot of each place between a chain's ends; else CONIC_NO_SLOT */
+} conic_cluster_chains;
+
+/* Finds the chains between clusters of one region; what lies between regions is not simplified. `region` is by cluster.
+ * All slots last for ever at first. On success the caller releases *chains; on failure it is empty. Errors: MEMORY. */
+conic_status conic_cluster_chains_find(conic_context *context, const conic_clustered_mesh *mesh, const uint32_t *region,
+                                       conic_cluster_chains *chains);
+void conic_cluster_chains_release(conic_context *context, conic_cluster_chains *chains);
 
 #endif

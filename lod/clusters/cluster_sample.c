@@ -6,10 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/real.h"
-#include "lod/clusters/cluster_contrast.h"
-#include "lod/clusters/cluster_error.h"
-#include "lod/clusters/cluster_reuse.h"
-#include "lod/clusters/cluster_shape.h"
+#include "lod/clusters/cluster_sites.h"
 
 conic_status conic_sampler_create(conic_context *context, conic_sampler **sampler) {
   *sampler = conic_memory_allocate_zeroed(context, 1, sizeof **sampler);
@@ -149,8 +146,7 @@ static double error_to_part(const conic_sampler *s) {
   return HUGE_VAL;
 }
 
-/* Halves the spacing on the faces of which a site with a larger error stands for something. Returns whether there are
- * any. */
+/* Halves the spacing on the faces for which a site with a larger error stands. Returns whether there are any. */
 static int refine_faces(conic_sampler *s, double limit) {
   int is_any = 0;
   for (size_t k = 0; k < s->n_lattices; k++) {
@@ -184,8 +180,8 @@ static int has_texture(const conic_triangles *t) {
   return is_any;
 }
 
-/* Whether a wider spacing would give the same sites: faces have no places but their corners, each of which is near
- * every other, and nothing is to be parted. (Of textures a wider one sees less.) */
+/* Whether a wider spacing would give the same sites. Then faces have no places but their corners, all of them near each
+ * other, and nothing is to be split. (A wider spacing sees less of textures.) */
 static int is_coarsest(const conic_sampler *s) {
   double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, square = 0.0;
   int is_plain = s->finest == 0 && !has_texture(s->job->mesh->triangles);

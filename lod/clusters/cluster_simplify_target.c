@@ -154,8 +154,8 @@ static int is_alike(const conic_simplifier *s, uint32_t a, uint32_t b) {
          conic_simplifier_material(s, first) == conic_simplifier_material(s, second);
 }
 
-/* Of the mesh's vertices at v that triangles have, the one whose normal is the nearest to that of a slot's: where all
- * that differs along seams are normals, as at creases, they hold up nothing that is one. */
+/* Among the mesh's vertices at v that triangles have, the one whose normal is nearest to that of a slot's. Where only
+ * normals differ along seams, as at creases, they hold up nothing that is one. */
 static uint32_t nearest_normal(const conic_simplifier *s, uint32_t v, uint32_t slot) {
   const conic_triangles *mesh = s->mesh->triangles;
   uint32_t own = s->originals[slot / 3][slot % 3], nearest = CONIC_NONE;

@@ -8,9 +8,51 @@
 #ifndef CONIC_HIERARCHY_H
 #define CONIC_HIERARCHY_H
 
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/files/json_read.h"
 #include "core/pictures/georeference.h"
-#include "lod/hierarchies/point_layout.h"
 #include "lod/ranges/ranges.h"
+
+/* --- points in records --- */
+
+/* A number in a record. */
+typedef struct conic_point_field {
+  uint32_t at;
+  uint8_t n_bytes; /* 0: there is none */
+  char type;       /* 'i': two's complement, 'u': unsigned, 'f': IEEE 754 */
+} conic_point_field;
+
+typedef struct conic_point_layout {
+  uint32_t n_bytes; /* of a record */
+  conic_point_field position[3], color[3], intensity;
+  double scale[3], offset[3]; /* a position is its number · scale + offset */
+} conic_point_layout;
+
+/* Points as they come: each array has room for all of a node. */
+typedef struct conic_hierarchy_points {
+  size_t n;
+  double *position[3]; /* in world units */
+  uint16_t *color[3];  /* as in the file, or else the intensity thrice; null: not wanted */
+} conic_hierarchy_points;
+
+/* Whether a number can be such a field. */
+int conic_point_field_is_good(const conic_point_field *field);
+
+/* Whether points of this layout have colours, or an intensity in place of them. */
+int conic_point_layout_has_colors(const conic_point_layout *layout);
+
+/* Takes points->n of them from as many records. */
+void conic_point_layout_take(const conic_point_layout *layout, const unsigned char *records,
+                             conic_hierarchy_points *points);
+
+/* The same of nothing but colours, or the intensity. */
+void conic_point_layout_take_colors(const conic_point_layout *layout, const unsigned char *records,
+                                    conic_hierarchy_points *points);
+
+/* Where LAS 1.4 has these in a record of a point format, 0 to 10; 0 where there is no such format. */
+int conic_point_layout_of_las(unsigned format, uint32_t n_bytes, conic_point_layout *layout);
 
 enum {
   CONIC_HIERARCHY_LEVELS = 21,             /* at most */
@@ -110,5 +152,33 @@ const char *conic_hierarchy_take_records(const conic_hierarchy *hierarchy, const
 const char *conic_hierarchy_check(const conic_hierarchy *hierarchy);
 
 extern const conic_hierarchy_kind conic_hierarchy_kind_copc, conic_hierarchy_kind_ept, conic_hierarchy_kind_potree;
+
+/* --- JSON --- */
+
+/* Whether a name ends with this file; what a URL has from "?" on does not count. */
+int conic_hierarchy_is_named(const char *name, const char *file);
+
+/* Reads all of the opened file into *json, which the caller closes. Errors: as conic_ranges_read. */
+conic_status conic_hierarchy_read_json(const conic_hierarchy *hierarchy, conic_json *json);
+
+/* Reads the array that comes next, of exactly n numbers. */
+conic_status conic_hierarchy_numbers(conic_json *json, double *values, size_t n);
+
+/* A whole number from 0 to `most`. */
+conic_status conic_hierarchy_count(conic_json *json, uint64_t most, uint64_t *count);
+
+/* --- LAZ --- */
+
+/* Finds how points are packed in a file's bytes up to the points, and keeps it as the hierarchy's own. Errors: INPUT,
+ * MEMORY. */
+conic_status conic_hierarchy_find_laz(conic_hierarchy *hierarchy, const unsigned char *bytes, size_t n_bytes);
+
+/* Points of one chunk, packed as was found; null, or what is wrong with it. */
+const char *conic_hierarchy_take_chunk(const conic_hierarchy *hierarchy, const unsigned char *bytes, size_t n_bytes,
+                                       conic_hierarchy_points *points);
+
+/* The same of a whole .laz, or .las, of so many points. */
+const char *conic_hierarchy_take_laz(conic_context *context, const unsigned char *bytes, size_t n_bytes,
+                                     conic_hierarchy_points *points);
 
 #endif

@@ -1,4 +1,5 @@
-#include "lod/hierarchies/hierarchy_json.h"
+/* What the JSON of hierarchies has in common. */
+#include "lod/hierarchies/hierarchy.h"
 
 #include <string.h>
 

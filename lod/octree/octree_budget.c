@@ -44,7 +44,7 @@ static size_t list_openings(const conic_octree *octree, const conic_octree_view 
   return n;
 }
 
-/* By falling pixels; keeps the order of equals. `other` has room for as many. */
+/* Sorts by falling pixels, and keeps the order of equals. `other` has room for as many. */
 static void sort_openings(opening *openings, opening *other, size_t n) {
   enum { DIGIT_BITS = 11, N_DIGITS = 1 << DIGIT_BITS };
   for (int shift = 0; shift < 33; shift += DIGIT_BITS) {

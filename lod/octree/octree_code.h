@@ -5,6 +5,8 @@
 
 #include <stdint.h>
 
+#include "conic/splats.h"
+
 enum { CONIC_NODE_BYTES = 19, CONIC_NODE_FANOUT = 8 };
 
 /* The scales that the codes of one file are relative to, and what decoding looks up. */
@@ -93,5 +95,20 @@ void conic_code_direction_of(uint8_t code, double direction[2]);
 /* A factor in 8 bits, 16 steps an octave, 2^-10 to 2^6; 0 for nothing. */
 uint8_t conic_code_factor(const conic_code_scale *scale, double factor);
 float conic_code_factor_of(const conic_code_scale *scale, uint8_t code);
+
+/* --- leaves of a quantised octree --- */
+
+enum { CONIC_LEAF_BLOCK = 64, CONIC_LEAF_BLOCK_BYTES = 24 };
+
+/* The bytes of one leaf, and of all: the blocks' first, then the leaves'. */
+size_t conic_leaf_code_bytes(int has_colors, int has_opacities);
+size_t conic_leaf_codes_bytes(size_t n_leaves, int has_colors, int has_opacities);
+
+/* Encodes all leaves in the arrays. */
+void conic_leaf_encode(conic_context *context, const conic_code_scale *scale, const conic_splats *leaves,
+                       unsigned char *codes);
+/* Fills the arrays with what the codes give. */
+void conic_leaf_decode(conic_context *context, const conic_code_scale *scale, const unsigned char *codes,
+                       conic_splats *leaves);
 
 #endif

@@ -1,6 +1,6 @@
-/* The errors of inner nodes: how far their discs reach past the surface that is there. What a disc lacks cover by is
- * sought among the leaves, its own and those around, or, of large nodes, among small ones and their errors. So nodes
- * are taken in classes by their size; what a class looks at belongs to the classes below. */
+/* The errors of inner nodes: how far their discs reach past the surface that is there. What covers a disc is sought
+ * among the leaves, its own and those around, or, for large nodes, among small nodes and their errors. So nodes are
+ * taken in classes by their size. What a class looks at belongs to the classes below. */
 #include <math.h>
 #include <string.h>
 

@@ -2,6 +2,9 @@
 #ifndef CONIC_OCTREE_NODES_H
 #define CONIC_OCTREE_NODES_H
 
+#include <stdint.h>
+
+#include "conic/context.h"
 #include "conic/octree.h"
 #include "core/files/mapping.h"
 #include "lod/octree/octree_code.h"
@@ -110,5 +113,18 @@ static inline void conic_octree_place(const conic_octree *octree, size_t i_leaf,
   for (int axis = 0; axis < 3; axis++)
     place[axis] = (double)octree->leaves.position[axis][i_leaf];
 }
+
+/* --- structure --- */
+
+typedef struct conic_split {
+  float *position[3]; /* of n points; brought into the order of the leaves */
+  uint32_t *index;    /* goes along */
+  size_t n;
+  uint8_t *children; /* result: of each inner node in preorder, n_direct | n_inner << 4; room for n */
+  size_t n_nodes;
+} conic_split;
+
+/* Errors: MEMORY, CANCELLED. */
+conic_status conic_octree_split(conic_context *context, conic_split *split);
 
 #endif

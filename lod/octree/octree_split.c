@@ -1,4 +1,5 @@
-#include "lod/octree/octree_split.h"
+/* The structure of a point-octree: space split at the mean of each node's points (Confetti §3.2). */
+#include "lod/octree/octree_nodes.h"
 
 #include <string.h>
 

@@ -1,4 +1,5 @@
-#include "lod/ranges/range_queue.h"
+/* Ranges that wait, the first by priority first. */
+#include "lod/ranges/ranges_backend.h"
 
 #include <string.h>
 

@@ -1,4 +1,5 @@
-#include "lod/hybrid/build/hybrid_pack.h"
+/* From the ways to draw each cluster to a model, all in one piece of memory. */
+#include "lod/hybrid/build/hybrid_build.h"
 
 #include <math.h>
 #include <string.h>

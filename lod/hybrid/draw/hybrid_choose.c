@@ -175,7 +175,8 @@ static int is_mixed(const hybrid_planning *p) {
   return 0;
 }
 
-/* What a picture of both kinds takes more than its parts; clusters share tiles, of which there are no more than all. */
+/* How much more a picture of both kinds takes than its parts. Clusters share tiles, and there are no more of these than
+ * all. */
 static double mixing(const hybrid_planning *p) {
   double n_pixels = 0.0;
   for (size_t i = 0; i < p->n; i++)
@@ -240,7 +241,7 @@ static void keep_if_less(hybrid_planning *p, double sum, double *least) {
     p->kinds[i] = p->candidates[i].kind;
 }
 
-/* From what each would be by itself; or triangles alone, or surfels wherever they are good enough. */
+/* Begins with what each would be by itself; or with triangles alone, or surfels wherever they are good enough. */
 static void settle(hybrid_planning *p) {
   double least = HUGE_VAL;
   improve(p);

@@ -1,4 +1,5 @@
-#include "lod/hybrid/draw/hybrid_cut.h"
+/* Which nodes stand for all of their clusters. */
+#include "lod/hybrid/draw/hybrid_choose.h"
 
 static double sum_clusters(const conic_hybrid_cutting *c, const conic_hybrid_node *node) {
   double sum = 0.0;
@@ -30,7 +31,7 @@ static void cut_node(const conic_hybrid_cutting *c, size_t i, uint32_t *nodes) {
   }
 }
 
-/* Of the k-th node that is looked at: all are, where there is no list. */
+/* The number of the k-th node that is looked at. All are, where there is no list. */
 static size_t seen_node(const uint32_t *seen, size_t k) {
   return seen ? seen[k] : k;
 }

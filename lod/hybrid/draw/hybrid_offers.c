@@ -6,7 +6,6 @@
 
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
-#include "lod/hybrid/draw/hybrid_point.h"
 
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
  * holds a pixel's centre, and a pixel of the cluster; a surfel, and a pixel of its outline

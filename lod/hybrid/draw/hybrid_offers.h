@@ -74,4 +74,28 @@ void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *
 /* The finest level of that kind, from the cluster's first; below 0: of either. The first of all where there is none. */
 uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_cluster *cluster, int only_kind);
 
+/* --- nodes as points --- */
+
+/* How many pixels off the node's point may draw its places; infinite where its sphere reaches the near plane, or there
+ * is no point. */
+double conic_hybrid_point_error_px(const conic_hybrid_camera *view, const conic_hybrid_node *node);
+
+/* What drawing it may take, in nanoseconds of one core. */
+double conic_hybrid_point_cost(const conic_hybrid_camera *view, const conic_hybrid_node *node);
+
+/* Its splat: position, t_u, t_v and colour. `cutoff` is where it ends. */
+void conic_hybrid_point_splat(const conic_hybrid_camera *view, const conic_hybrid_node *node, double cutoff,
+                              float values[12]);
+
+/* --- nodes that stand at once --- */
+
+/* The least that a cluster takes, whatever it is drawn as: to look at it, to copy it, and to draw one primitive. */
+#define CONIC_HYBRID_LEAST_NS 250.0
+
+/* Whether a node lies wholly within the picture, is good enough, and takes no more than its clusters would, whatever
+ * they were drawn as. Then *offer is what it is drawn as, and *saved_ns grows by the least that it saves. */
+int conic_hybrid_stands_at_once(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
+                                const conic_hybrid_node *node, double error_px, conic_hybrid_offer *offer,
+                                double *saved_ns);
+
 #endif

@@ -1,4 +1,5 @@
-#include "lod/hybrid/draw/hybrid_point.h"
+/* A node of a hybrid model as a point: one disc that faces the camera and hides the node's sphere. */
+#include "lod/hybrid/draw/hybrid_offers.h"
 
 #include <math.h>
 

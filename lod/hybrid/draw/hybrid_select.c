@@ -7,11 +7,9 @@
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
 #include "lod/clusters/cluster_seen.h"
-#include "lod/hybrid/draw/hybrid_budget.h"
-#include "lod/hybrid/draw/hybrid_point.h"
+#include "lod/hybrid/draw/hybrid_choose.h"
+#include "lod/hybrid/draw/hybrid_offers.h"
 #include "lod/hybrid/draw/hybrid_selecting.h"
-#include "lod/hybrid/draw/hybrid_sight.h"
-#include "lod/hybrid/draw/hybrid_stitch.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/model/hybrid_store.h"
 

@@ -1,4 +1,5 @@
-#include "lod/hybrid/draw/hybrid_sight.h"
+/* Which nodes stand for all of their clusters before any of the clusters is looked at. */
+#include "lod/hybrid/draw/hybrid_offers.h"
 
 /* All of the sphere: what reaches out of the picture has clusters that take nothing. */
 static int is_all_in_sight(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {

@@ -4,7 +4,7 @@
 #ifndef CONIC_HYBRID_CHUNKS_H
 #define CONIC_HYBRID_CHUNKS_H
 
-#include "lod/clusters/cluster_border.h"
+#include "lod/clusters/cluster.h"
 #include "lod/hybrid/model/hybrid_model.h"
 
 enum { CONIC_HYBRID_UNIT = 64, CONIC_HYBRID_SUM_BYTES = 8, CONIC_HYBRID_NARROW = 65536 };
@@ -81,7 +81,7 @@ void conic_hybrid_seal_chunk(unsigned char *bytes, size_t n_bytes);
 /* What is wrong with a chunk as it stands in a file, or null; then it stands as it does in memory. */
 const char *conic_hybrid_take_chunk(const conic_hybrid *hybrid, uint32_t chunk, unsigned char *bytes);
 
-/* What is wrong between a cluster's chunks, all of which are there. */
+/* What is wrong between a cluster's chunks. All of them must be there. */
 const char *conic_hybrid_cluster_fault(const conic_hybrid *hybrid, uint32_t cluster);
 
 #endif

@@ -9,8 +9,8 @@
 #include "core/base/vectors.h"
 #include "lod/layers/build/layers_node.h"
 #include "lod/layers/format/layers_axes.h"
+#include "lod/layers/format/layers_code.h"
 #include "lod/layers/format/layers_key.h"
-#include "lod/layers/format/layers_split.h"
 
 enum { SOME_KEYS = 512, N_PROBES = 32, N_NEAREST = 8, LEAST_TO_TELL = 32 };
 
@@ -277,7 +277,7 @@ static void reach_out(void *data, size_t i_item, int i_thread) {
   raise_most(b, most);
 }
 
-/* With what a sample is drawn where the node is the finest, in steps. */
+/* The outline with which a sample is drawn where the node is the finest, in steps. */
 static double outline_in(const conic_layers_node *node, double own) {
   return larger(own, node->is_leaf ? 0.0 : node->covering);
 }
@@ -336,7 +336,8 @@ static double find_most(conic_context *context, int is_alone, bounding *b, conic
   return most_so_far(b);
 }
 
-/* With what the samples are drawn at most, and how far that is past what full resolution draws of them. */
+/* Finds the largest outline with which samples are drawn, and how far any is past what full resolution draws of its
+ * sample. */
 static void find_past(const bounding *b) {
   conic_layers_node *node = b->node;
   node->radius = node->past = 0.0;

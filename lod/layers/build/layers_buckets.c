@@ -4,7 +4,7 @@
 
 #include "core/base/memory.h"
 
-/* So many bits of the keys part the samples at a time, fewer where there is little memory for open blocks. */
+/* So many bits of the keys split the samples at a time, fewer where there is little memory for open blocks. */
 enum { MOST_SPLIT_BITS = 12, LEAST_SPLIT_BITS = 4, LEAST_BLOCK = 32, MOST_BLOCK = 1024 };
 
 #define NO_BLOCK UINT64_MAX
@@ -59,7 +59,7 @@ static void clear_cells(split *parts) {
                                             .is_reversed = parts->is_reversed};
 }
 
-/* Of all samples, or of a bucket's, so that cells hold few more than `most`, or a fraction of it. */
+/* Begins to split all samples, or a bucket's, so that cells hold few more than `most`, or a fraction of it. */
 static void begin_split(split *parts, uint64_t key, unsigned n_key_bits, uint64_t count, uint64_t most) {
   unsigned n = parts->n_most_bits;
   while (n > 1 && count >> (n - 3) < most && n > 3)
@@ -71,7 +71,7 @@ static void begin_split(split *parts, uint64_t key, unsigned n_key_bits, uint64_
   clear_cells(parts);
 }
 
-/* Of a bucket whose samples coincide: into halves of halves, as the tree parts them. */
+/* Begins to split a bucket whose samples coincide: into halves of halves, as the tree does. */
 static void begin_halving(split *parts, const conic_layers_bucket *bucket, uint64_t most) {
   parts->n_bits = 1;
   while (parts->n_bits < parts->n_most_bits && bucket->count >> parts->n_bits > most)
@@ -121,8 +121,8 @@ static size_t cell_of_key(const split *parts, uint64_t key) {
   return (size_t)((key - parts->key) >> parts->shift);
 }
 
-/* Puts what is left in open blocks away and hands the buckets that hold any over, in place of number `at`, which is
- * dropped; or at the end. */
+/* Puts what is left in open blocks away. The buckets that hold any take the place of number `at`, which is dropped, or
+ * go to the end. */
 static conic_status end_split(split *parts, size_t at) {
   conic_layers_buckets *all = parts->all;
   conic_status status = CONIC_OK;
@@ -175,7 +175,7 @@ typedef struct refining {
   uint64_t n_done; /* samples, of those that coincide */
 } refining;
 
-/* From the last on: so each refining turns their order around. */
+/* Goes from the last on, so that each refining turns their order around. */
 static conic_status refine_block(void *data, const unsigned char *samples, size_t n) {
   refining *r = data;
   split *parts = r->parts;

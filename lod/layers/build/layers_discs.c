@@ -5,7 +5,7 @@
 
 enum { MOST_BESIDE = 256, N_CORNERS = 16 };
 
-/* A disc that is held against those that stand about it. */
+/* A disc that is held against the chosen ones about it. */
 typedef struct disc_search {
   const conic_layers_chosen *chosen;
   const conic_layers_disc *disc;
@@ -13,8 +13,8 @@ typedef struct disc_search {
   size_t n_beside;
 } disc_search;
 
-/* All of the disc is no farther than this from one that stands: by how high it lies above that, how much it is turned
- * against it, or may be, and how far it reaches past it. */
+/* All of the disc is no farther than this from one that was chosen: by how high it lies above that, how much it is or
+ * may be turned against it, and how far it reaches past it. */
 static float error_from_one(const disc_search *p, uint32_t i_chosen, int is_turn_known) {
   const conic_layers_disc *disc = p->disc, *s = &p->chosen->discs[i_chosen];
   float height = 0.0f, way2 = 0.0f, turn = 1.0f;
@@ -32,7 +32,7 @@ static float error_from_one(const disc_search *p, uint32_t i_chosen, int is_turn
   return fabsf(height) + disc->radius * turn + (past > 0.0f ? past : 0.0f);
 }
 
-/* From the discs beside, of a place; or no more than `enough`. */
+/* How far a place is from the discs beside; or no more than `enough`. */
 static float error_from_nearest(const disc_search *p, const float at[3], float enough) {
   float nearest2 = HUGE_VALF, enough2 = enough > 0.0f ? enough * enough : 0.0f;
   for (size_t i = 0; i < p->n_beside && !(nearest2 <= enough2); i++) {
@@ -50,7 +50,7 @@ static float error_from_nearest(const disc_search *p, const float at[3], float e
   return sqrtf(nearest2);
 }
 
-/* The farthest of the disc's middle and the corners of a polygon around it, which is turned by an angle. */
+/* The farthest of the disc's middle and the corners of a polygon around it. The polygon is turned by an angle. */
 static float error_of_places(const disc_search *p, const float turn[2], float enough) {
   static const float corners[4][2] = {
       {1.0f, 0.19891237f}, {0.84775907f, 0.56645450f}, {0.56645450f, 0.84775907f}, {0.19891237f, 1.0f}};
@@ -70,8 +70,8 @@ static float error_of_places(const disc_search *p, const float turn[2], float en
   return farthest;
 }
 
-/* Where others between them could come to more than enough, these are looked at, too, of the same polygon turned: they
- * lie within a fifth of the radius of its corners, so that nothing else decides whether one counts. */
+/* Looks also at corners of the same polygon turned, where places between the corners could come to more than enough.
+ * They lie within a fifth of the radius of its corners, so that nothing else decides whether one counts. */
 static float error_of_more_places(const disc_search *p, float enough) {
   static const float turns[4][2] = {
       {1.0f, 0.0f}, {0.99518473f, 0.09801714f}, {0.98078528f, 0.19509032f}, {0.95694034f, 0.29028468f}};
@@ -83,8 +83,8 @@ static float error_of_more_places(const disc_search *p, float enough) {
   return farthest;
 }
 
-/* How far the disc is from those that stand; `enough`, or less, where it is no more than that. *last is one that may
- * do, and then the one that did. */
+/* How far the disc is from the chosen ones; `enough`, or less, where it is no more than that. *last is one that may do,
+ * and then the one that did. */
 static float error_of_disc(disc_search *p, float enough, uint32_t *last) {
   float least = error_from_one(p, *last, 1);
   if (least <= enough)

@@ -102,7 +102,7 @@ static conic_status read_lists(conic_layers_kept *kept, char *path, int *n_lists
   return status;
 }
 
-/* In the first process. */
+/* Finds the lists, in the first process. */
 static conic_status find_lists(conic_layers_kept *kept, const conic_layers_keeping *keeping, char *path) {
   conic_finished none;
   int n_lists = 0;
@@ -162,7 +162,8 @@ static int is_branch_whole(const conic_layers_kept *kept, const conic_finished_p
          memcmp(file.name, name, file.n_name) == 0 && conic_finished_is_there(kept->folder, &file);
 }
 
-/* The lists' branches, each looked at by one process; inputs are when they are needed. `is_whole` has room for all. */
+/* Looks at the lists' branches, each in one process. Inputs are looked at when they are needed. `is_whole` has room for
+ * all. */
 static conic_status look_at_branches(conic_layers_kept *kept, size_t n, unsigned char *is_whole) {
   int index = kept->team ? kept->team->index : 0, count = kept->team ? kept->team->count : 1;
   conic_finished_part part;
@@ -198,7 +199,7 @@ static void drop_overlapping(conic_layers_kept *kept) {
     kept->n_samples += kept->branches[i].n_samples;
 }
 
-/* In the first process: the list of what was there and is whole; the others' go. */
+/* In the first process: writes the list of what was there and is whole. The other lists go. */
 static conic_status write_found(const conic_layers_kept *kept, const unsigned char *is_whole, char *path) {
   conic_output *output;
   conic_finished_part part;

@@ -10,9 +10,9 @@ typedef struct pending_node {
   uint32_t level, number;
 } pending_node;
 
-/* From the last node to the first. Behind each pair of siblings, looked at so, comes all that is below the second, then
- * all that is below the first: so the next pair's parent is the last of those that still want children, and each level
- * is passed through from its end. */
+/* Entries are looked at from the last to the first. Looked at so, behind each pair of siblings comes all that is below
+ * the second, then all that is below the first. So the next pair's parent is the last node that still wants children,
+ * and each level is passed through from its end. */
 typedef struct order_walk {
   conic_layers_order *order;
   const conic_layers_tree *tree;
@@ -97,7 +97,7 @@ static conic_status walk_all(order_walk *w) {
   return status;
 }
 
-/* From how many nodes the levels have to where they end. */
+/* Turns how many nodes the levels have into where they end. */
 static void lay_out_levels(order_walk *w) {
   uint64_t n = 0;
   for (uint32_t i = 0; i < CONIC_LAYERS_MOST_LEVELS; i++) {

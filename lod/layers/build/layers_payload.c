@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/real.h"
 #include "lod/layers/build/layers_raws.h"
-#include "lod/layers/format/layers_split.h"
+#include "lod/layers/format/layers_code.h"
 
 /* How many of a length's 23 bits of fraction are kept. */
 enum { AXES_KEPT = 12, MOST_OF_SIZE = 4, FRACTION_BITS = 23 };

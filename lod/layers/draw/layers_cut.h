@@ -2,7 +2,6 @@
 #ifndef CONIC_LAYERS_CUT_H
 #define CONIC_LAYERS_CUT_H
 
-#include "lod/layers/draw/layers_facing.h"
 #include "lod/layers/draw/layers_scene.h"
 #include "lod/layers/draw/layers_view.h"
 

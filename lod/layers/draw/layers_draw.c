@@ -10,11 +10,10 @@
 #include "core/base/options.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
-#include "lod/layers/draw/layers_bands.h"
-#include "lod/layers/draw/layers_hidden.h"
+#include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_octree.h"
-#include "lod/layers/draw/layers_parting.h"
 #include "lod/layers/draw/layers_picture.h"
+#include "lod/layers/draw/layers_spill.h"
 
 /* Where fewer surfaces than this lie behind each other, finding out what is hidden takes longer than drawing it. */
 static const double deep = 4.0;
@@ -318,7 +317,7 @@ static int is_in_window(const conic_window *window, int x, int y) {
   return x >= window->x_begin && x < window->x_end && y >= window->y_begin && y < window->y_end;
 }
 
-/* Of one place only the first is given what lies above, so those of one place go together. */
+/* What lies above a place is given only to the first node there, so those of one place go together. */
 static size_t choose_places(conic_layers_picture *d, const conic_window *window) {
   const conic_layers_place *places = d->cut.places;
   const conic_layers_entry *entries = d->layers->entries;

@@ -1,4 +1,6 @@
-#include "lod/layers/draw/layers_facing.h"
+/* Which way the samples of a layered point cloud face, in 1024 sets. A set whose samples in a place all face away is
+ * left out at once. */
+#include "lod/layers/draw/layers_view.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-#include "lod/layers/draw/layers_hidden.h"
+/* Occlusion culling: which places of a cut are hidden by others. No bit of the picture changes by it. */
+#include "lod/layers/draw/layers_gather.h"
 
 #include <math.h>
 #include <string.h>
@@ -133,7 +134,7 @@ static size_t choose_next(hiding *h, size_t begin, uint64_t most, size_t *n_chos
   return begin;
 }
 
-/* Draws shares as long as they hide more than they cost: of the last two, one has to. */
+/* Draws shares as long as they hide more than they cost. One of the last two must. */
 static conic_status draw_shares(hiding *h, uint32_t *spare) {
   conic_status status = CONIC_OK;
   uint64_t room = conic_layers_drawing_bytes(h->layers) / CONIC_LAYERS_SPLAT_BYTES + 1;

@@ -74,4 +74,17 @@ const char *conic_layers_octree_decode(const conic_layers *layers, uint32_t entr
 /* Where an entry's bytes are. */
 void conic_layers_octree_locate(const conic_layers *layers, uint32_t entry, conic_range *range);
 
+/* --- entries and pages --- */
+
+/* How far a point may lie outside its cell, as a share of the cell's edge. */
+#define CONIC_OCTREE_SLACK 0.03125
+
+/* Makes the entries anew, of all nodes that are known. Nothing is held of the cache. Errors: INPUT (they are no tree),
+ * MEMORY. */
+conic_status conic_layers_octree_index(conic_layers *layers);
+
+/* Reads the pages of these entries. The nodes that they tell of replace the entries. Errors: as expansion. */
+conic_status conic_layers_octree_read_pages(conic_layers *layers, const uint32_t *entries, size_t n,
+                                            conic_layers_expansion *expansion);
+
 #endif

@@ -1,4 +1,5 @@
-#include "lod/layers/draw/layers_octree_index.h"
+/* From a hierarchy's nodes to the entries that drawing knows, and reading its pages. */
+#include "lod/layers/draw/layers_octree.h"
 
 #include <math.h>
 #include <stdlib.h>

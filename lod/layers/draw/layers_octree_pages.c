@@ -5,7 +5,7 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "lod/layers/draw/layers_octree_index.h"
+#include "lod/layers/draw/layers_octree.h"
 
 enum { OCTREE_PAGE_DONE = 2 };
 

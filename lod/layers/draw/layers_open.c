@@ -194,7 +194,7 @@ static conic_status open_kind(conic_layers *layers) {
   return kind ? conic_layers_octree_open(layers, kind) : read_header_and_index(layers);
 }
 
-/* Of a folder, the file in it that is opened. */
+/* The file that is opened, where a folder is given. */
 static conic_status take_name(conic_layers *layers, const char *name) {
   char file[CONIC_HIERARCHY_PATH_ROOM];
   if (!layers->is_remote && conic_hierarchy_find_file(name, file, sizeof file))

@@ -1,4 +1,5 @@
-#include "lod/layers/draw/layers_parting.h"
+/* A picture split into windows that few enough splats meet. */
+#include "lod/layers/draw/layers_spill.h"
 
 #include "core/base/memory.h"
 

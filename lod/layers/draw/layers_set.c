@@ -1,4 +1,5 @@
-#include "lod/layers/draw/layers_set.h"
+/* What is gathered to be drawn: splats, their numbers in the file, and the pieces of clouds that they come from. */
+#include "lod/layers/draw/layers_gather.h"
 
 #include <string.h>
 

@@ -271,7 +271,7 @@ conic_status conic_layers_spill_close(conic_layers_spill *spill) {
 
 /* --- taking back --- */
 
-/* Of a block's first splats, those that may meet the part. */
+/* Lists those of a block's first splats that may meet the part. */
 static size_t choose_of_block(const conic_layers_spill *spill, const unsigned char *block, size_t n,
                               const conic_window *part, uint32_t chosen[MOST_BLOCK]) {
   size_t at_boxes = conic_layers_set_arrays(spill->layers) * sizeof(float) + sizeof(uint32_t), n_chosen = 0;
@@ -302,7 +302,7 @@ static void take_of_block(const conic_layers_spill *spill, const unsigned char *
   }
 }
 
-/* From the last block to the first, which fills the set from its end. Returns where what was taken begins, or
+/* Goes from the last block to the first, and fills the set from its end. Returns where what was taken begins, or
  * SIZE_MAX where there is no room for all. */
 static conic_status take_blocks(conic_layers_spill *spill, size_t i_window, const conic_window *part, size_t *at) {
   const conic_layers_heap *heap = &spill->heaps[i_window];

@@ -32,9 +32,9 @@ void conic_layers_view_init(const conic_layers_header *header, const conic_camer
   view->near_z = near_z;
   view->cull_back = render->cull_back;
   view->is_exact_outline = conic_method_has_exact_outline(render->method);
-  /* Within the outline that is widened by the prefilter, a plane is no farther from its disc than that, on the screen.
-   * Laplace's splats are bounded by the box of the outline only: by its diagonal, that is. Points and discs have no
-   * plane but the one across the line of sight. */
+  /* Within the outline, widened by the prefilter, a plane is on the screen no farther from its disc than that.
+   * Laplace's splats are bounded by the box of the outline only, so by its diagonal. Points and discs have no plane but
+   * the one across the line of sight. */
   view->grows_with_size = render->method == CONIC_METHOD_AUTO;
   view->beyond_px = view->grows_with_size ? 1.5 * widening : widening;
   view->is_flat = conic_method_is_dot(render->method);
@@ -45,8 +45,8 @@ static double padded_radius(const conic_layers_entry *entry, const double p[3]) 
   return (double)entry->sphere * (1.0 + slack) + 1e-6 * conic_length(p);
 }
 
-/* Where the sphere, all of it before the eye, ends on the screen along an axis: the tangents from the eye to the circle
- * that its shadow on the plane of that axis and z is. */
+/* Where the sphere ends on the screen along an axis; all of it is before the eye. On the plane of that axis and z its
+ * shadow is a circle, and these are the tangents from the eye to that. */
 static void project_sphere(double p, double z, double radius, double focal, double center, double *low, double *high) {
   double along = sqrt(p * p + z * z - radius * radius);
   *low = center + focal * (p * along - z * radius) / (z * along + p * radius);
@@ -75,9 +75,9 @@ static int set_pixels(const conic_layers_view *view, const conic_layers_entry *e
   return sight->pixels.x_begin < sight->pixels.x_end && sight->pixels.y_begin < sight->pixels.y_end;
 }
 
-/* The cosine and the sine of the angle between the cone's axis and the ray to the sphere's centre, and those of the sum
- * of the cone's half opening and the angle under which the sphere's radius is seen, with slack. 0 where that sum is a
- * right angle or more. */
+/* The cosine and the sine of two angles, with slack: the one between the cone's axis and the ray to the sphere's
+ * centre; and the sum of the cone's half opening and the angle under which the sphere's radius is seen. 0 where that
+ * sum is a right angle or more. */
 static int cone_angles(const conic_layers_view *view, const conic_layers_entry *entry, double cosine[2],
                        double sine[2]) {
   double to[3], along = 0.0;

@@ -7,6 +7,7 @@
 #include "conic/camera.h"
 #include "conic/render.h"
 #include "core/image/viewpoint.h"
+#include "lod/layers/format/layers_decode.h"
 #include "lod/layers/format/layers_format.h"
 #include "raster/view/part.h"
 
@@ -67,5 +68,27 @@ double conic_layers_least_offset(const conic_layers_view *view, const conic_laye
  * the eye than this. Infinite where that cannot be said of any. */
 double conic_layers_hidden_offset(const conic_layers_view *view, const conic_layers_entry *entry,
                                   const conic_layers_sight *sight, double hiding);
+
+/* --- which way samples face --- */
+
+/* The cone of each set: unit axis, and cosine and sine of half its opening. */
+typedef struct conic_layers_facings {
+  float axis[3][CONIC_LAYERS_FACINGS], cosine[CONIC_LAYERS_FACINGS], sine[CONIC_LAYERS_FACINGS];
+} conic_layers_facings;
+
+/* For each set, whether its samples face away wherever they lie in a place. */
+typedef struct conic_layers_turned {
+  uint32_t bits[CONIC_LAYERS_FACINGS / 32];
+  int is_any;
+} conic_layers_turned;
+
+void conic_layers_facings_init(conic_layers_facings *facings);
+
+void conic_layers_find_turned(const conic_layers_facings *facings, const conic_layers_view *view,
+                              const conic_layers_entry *entry, conic_layers_turned *turned);
+
+static inline int conic_layers_is_turned(const conic_layers_turned *turned, uint16_t facing) {
+  return (int)(turned->bits[facing >> 5] >> (facing & 31) & 1);
+}
 
 #endif

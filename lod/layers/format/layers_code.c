@@ -5,7 +5,6 @@
 #include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "lod/layers/format/layers_key.h"
-#include "lod/layers/format/layers_split.h"
 
 /* The first two streams are the keys'. */
 enum {

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "conic/context.h"
+#include "core/files/mapping.h"
 #include "lod/layers/format/layers_schema.h"
 
 enum {
@@ -112,5 +113,19 @@ static inline uint64_t conic_layers_last_key(const conic_layers_header *header, 
 
 /* How far rounding moved a sample at most. */
 double conic_layers_position_error(const conic_layers_header *header);
+
+/* --- a whole file in memory --- */
+
+typedef struct conic_layers_file {
+  conic_context *context;
+  const char *name; /* for messages */
+  conic_mapping mapping;
+  conic_layers_header header;
+  conic_layers_entry *entries;
+} conic_layers_file;
+
+/* Maps the file and checks header and index; `path` must outlive the file. Errors: INPUT, MEMORY. */
+conic_status conic_layers_file_open(conic_context *context, const char *path, conic_layers_file *file);
+void conic_layers_file_close(conic_layers_file *file);
 
 #endif
