@@ -19,18 +19,10 @@ conic_status conic_sampler_create(conic_context *context, conic_sampler **sample
 void conic_sampler_destroy(conic_sampler *sampler) {
   if (!sampler)
     return;
-  conic_memory_release(sampler->context, sampler->last.lattices);
-  conic_memory_release(sampler->context, sampler->last.owner);
-  conic_memory_release(sampler->context, sampler->last.sites);
-  conic_memory_release(sampler->context, sampler->lattices);
-  conic_memory_release(sampler->context, sampler->facing);
-  conic_memory_release(sampler->context, sampler->depth);
-  conic_memory_release(sampler->context, sampler->places);
-  conic_memory_release(sampler->context, sampler->lattice_of);
-  conic_memory_release(sampler->context, sampler->owner);
-  conic_memory_release(sampler->context, sampler->candidates);
-  conic_memory_release(sampler->context, sampler->seeds);
-  conic_memory_release(sampler->context, sampler->sites);
+  void *const owned[] = {sampler->last.lattices, sampler->last.owner, sampler->last.sites, sampler->lattices,
+                         sampler->facing,        sampler->depth,      sampler->places,     sampler->lattice_of,
+                         sampler->owner,         sampler->candidates, sampler->seeds,      sampler->sites};
+  conic_memory_release_all(sampler->context, owned, sizeof owned / sizeof *owned);
   conic_place_table_release(sampler->context, &sampler->table);
   conic_memory_release(sampler->context, sampler->supports);
   conic_memory_release(sampler->context, sampler->of_sites);

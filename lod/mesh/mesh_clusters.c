@@ -239,15 +239,9 @@ static conic_status begin_joining(joining *j, const conic_mesh *mesh, const coni
 }
 
 static void end_joining(joining *j) {
-  conic_memory_release(j->context, j->joints);
-  conic_memory_release(j->context, j->keys);
-  conic_memory_release(j->context, j->queue.slots);
-  conic_memory_release(j->context, j->sums);
-  conic_memory_release(j->context, j->ring);
-  conic_memory_release(j->context, j->parent);
-  conic_memory_release(j->context, j->degree);
-  conic_memory_release(j->context, j->grown);
-  conic_memory_release(j->context, j->is_new);
+  void *const owned[] = {j->joints, j->keys,   j->queue.slots, j->sums,  j->ring,
+                         j->parent, j->degree, j->grown,       j->is_new};
+  conic_memory_release_all(j->context, owned, sizeof owned / sizeof *owned);
 }
 
 static uint32_t root_of(joining *j, uint32_t i) {

@@ -330,13 +330,9 @@ static size_t count_parts(const conic_octree *octree, size_t root, size_t part) 
 
 static void release_around(const neighbourhood *around) {
   conic_context *context = around->pass->octree->context;
-  conic_memory_release(context, around->numbers);
-  conic_memory_release(context, around->first_leaf);
-  conic_memory_release(context, around->members);
-  conic_memory_release(context, around->near_numbers);
-  conic_memory_release(context, around->near_blocks);
-  conic_memory_release(context, around->near.flat);
-  conic_memory_release(context, around->near.are_flat);
+  void *const owned[] = {around->numbers,     around->first_leaf, around->members,      around->near_numbers,
+                         around->near_blocks, around->near.flat,  around->near.are_flat};
+  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
 }
 
 /* Lays out the arrays of discs: `stride` of each number, and a block's. */

@@ -139,11 +139,8 @@ static conic_status order_clusters(building *b) {
         b->clusters.of_face[i] = rank[b->clusters.of_face[i]];
     sort_faces(b);
   }
-  conic_memory_release(b->context, is_kept);
-  conic_memory_release(b->context, is_gathered);
-  conic_memory_release(b->context, rank);
-  conic_memory_release(b->context, order);
-  conic_memory_release(b->context, bounds);
+  void *const owned[] = {is_kept, is_gathered, rank, order, bounds};
+  conic_memory_release_all(b->context, owned, sizeof owned / sizeof *owned);
   return status;
 }
 

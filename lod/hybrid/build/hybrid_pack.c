@@ -510,7 +510,6 @@ conic_status conic_hybrid_pack(const conic_ways_job *ways, conic_hybrid **hybrid
   }
   void *const parts[] = {p.local,       p.listed,  p.corners,      p.faces.corners, p.faces.face,
                          p.first_slots, p.of_slot, p.chain_starts, p.chains_by};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
-    conic_memory_release(context, parts[i]);
+  conic_memory_release_all(context, parts, sizeof parts / sizeof *parts);
   return status;
 }

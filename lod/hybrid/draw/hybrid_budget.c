@@ -303,7 +303,6 @@ conic_status conic_hybrid_fit_budget(const conic_hybrid *hybrid, const conic_hyb
     status = fit_kinds(&f, budget, levels, nodes);
   void *parts[] = {f.errors_px, f.node_errors, f.first_errors, f.nodes, f.below,
                    f.standing,  f.counts,      f.stages,       f.levels};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
-    conic_memory_release(hybrid->context, parts[i]);
+  conic_memory_release_all(hybrid->context, parts, sizeof parts / sizeof *parts);
   return status;
 }

@@ -103,11 +103,8 @@ static conic_status list_chunks(growing *g, size_t first, size_t end) {
       g->chunks[g->n_chunks - 1].n_merges++;
     return status;
   }
-  conic_status status = conic_memory_reserve(g->plan->context, &g->chunks, g->n_chunks, g->n_chunks + 1, &g->chunk_room,
-                                             sizeof *g->chunks);
-  if (status == CONIC_OK)
-    g->chunks[g->n_chunks++] = (chunk){.first = first, .end = end, .n_samples = n_samples};
-  return status;
+  const chunk made = {.first = first, .end = end, .n_samples = n_samples};
+  return conic_memory_append(g->plan->context, &g->chunks, &g->n_chunks, &g->chunk_room, &made, sizeof made);
 }
 
 static conic_status list_groups(growing *g, size_t first, size_t end) {
@@ -121,25 +118,22 @@ static conic_status list_groups(growing *g, size_t first, size_t end) {
       g->groups[g->n_groups - 1].n_merges++;
     return status;
   }
-  size_t first_chunk = g->n_chunks;
-  conic_status status = conic_memory_reserve(g->plan->context, &g->groups, g->n_groups, g->n_groups + 1, &g->group_room,
-                                             sizeof *g->groups);
-  if (status == CONIC_OK)
-    status = list_chunks(g, first, end);
-  if (status == CONIC_OK)
-    g->groups[g->n_groups++] = (chunk_group){.first = first_chunk, .end = g->n_chunks, .n_samples = n_samples};
-  return status;
+  chunk_group made = {.first = g->n_chunks, .n_samples = n_samples};
+  conic_status status = list_chunks(g, first, end);
+  made.end = g->n_chunks;
+  return status == CONIC_OK
+             ? conic_memory_append(g->plan->context, &g->groups, &g->n_groups, &g->group_room, &made, sizeof made)
+             : status;
 }
 
 /* Adds a node, which the stack takes over, and then merges the last two as often as it is due. */
 static conic_status push_node(growing *g, const grower *with, stack *s, conic_layers_node *node, unsigned n_merges,
                               int is_alone, conic_layers_packed *packed) {
-  conic_status status = conic_memory_reserve(g->plan->context, &s->nodes, s->n, s->n + 1, &s->room, sizeof(void *));
+  conic_status status = conic_memory_append(g->plan->context, &s->nodes, &s->n, &s->room, &node, sizeof node);
   if (status != CONIC_OK) {
     conic_layers_node_destroy(node);
     return status;
   }
-  s->nodes[s->n++] = node;
   status = conic_layers_put_away(s->nodes, s->n);
   for (; n_merges > 0 && status == CONIC_OK; n_merges--) {
     s->n -= 2;

@@ -221,33 +221,20 @@ static conic_status write_found(const conic_layers_kept *kept, const unsigned ch
   return status;
 }
 
-static conic_status take_branch(conic_layers_kept *kept, const conic_layers_kept_branch *branch) {
-  conic_status status =
-      conic_memory_reserve(kept->context, &kept->branches, kept->n, kept->n + 1, &kept->room, sizeof *kept->branches);
-  if (status == CONIC_OK)
-    kept->branches[kept->n++] = *branch;
-  return status;
-}
-
-static conic_status take_input(conic_layers_kept *kept, uint64_t number, size_t file_at) {
-  conic_status status = conic_memory_reserve(kept->context, &kept->inputs, kept->n_inputs, kept->n_inputs + 1,
-                                             &kept->input_room, sizeof *kept->inputs);
-  if (status == CONIC_OK)
-    kept->inputs[kept->n_inputs++] = (conic_layers_kept_input){number, file_at};
-  return status;
-}
-
 static conic_status take_whole(conic_layers_kept *kept, const unsigned char *is_whole) {
   conic_finished_part part;
   conic_layers_kept_branch branch;
+  conic_layers_kept_input input;
   conic_status status = CONIC_OK;
-  uint64_t number;
   size_t i = 0;
-  for (size_t at = 0; status == CONIC_OK && conic_finished_next(&kept->found, &at, &part); i++)
-    if (is_whole[i] && is_of_input(&part, &number))
-      status = take_input(kept, number, part.files_at);
+  for (size_t at = 0; status == CONIC_OK && conic_finished_next(&kept->found, &at, &part); i++) {
+    input.file_at = part.files_at;
+    if (is_whole[i] && is_of_input(&part, &input.number))
+      status =
+          conic_memory_append(kept->context, &kept->inputs, &kept->n_inputs, &kept->input_room, &input, sizeof input);
     else if (is_whole[i] && parse_branch(&part, &branch))
-      status = take_branch(kept, &branch);
+      status = conic_memory_append(kept->context, &kept->branches, &kept->n, &kept->room, &branch, sizeof branch);
+  }
   if (status == CONIC_OK)
     drop_overlapping(kept);
   return status;

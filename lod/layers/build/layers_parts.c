@@ -52,13 +52,8 @@ int conic_layers_parts_owner(const conic_layers_parts *parts, uint64_t key) {
 static conic_status list_cells(dividing *s, uint64_t first, unsigned n_bits, const uint64_t *keys, size_t n,
                                size_t most) {
   conic_layers_parts *parts = s->parts;
-  if (n <= most || n_bits == 0) {
-    conic_status status = conic_memory_reserve(parts->context, &parts->cells, parts->n_cells, parts->n_cells + 1,
-                                               &s->cell_room, sizeof *parts->cells);
-    if (status == CONIC_OK)
-      parts->cells[parts->n_cells++] = first;
-    return status;
-  }
+  if (n <= most || n_bits == 0)
+    return conic_memory_append(parts->context, &parts->cells, &parts->n_cells, &s->cell_room, &first, sizeof first);
   uint64_t middle = first + (UINT64_C(1) << (n_bits - 1));
   size_t n_first = 0;
   while (n_first < n && keys[n_first] < middle)
@@ -133,18 +128,13 @@ static conic_status list_part_pieces(dividing *s, size_t first, size_t end, uint
     conic_status status = list_part_pieces(s, first, middle, n_before);
     return status == CONIC_OK ? list_part_pieces(s, middle, end, n_before) : status;
   }
-  conic_status status =
-      conic_memory_reserve(parts->context, &s->pieces, s->n_pieces, s->n_pieces + 1, &s->piece_room, sizeof *s->pieces);
-  if (status != CONIC_OK)
-    return status;
   int n_processes = parts->team->count;
   int owner = (int)((double)*n_before * (double)n_processes / (double)s->n_samples);
-  s->pieces[s->n_pieces++] =
-      (piece){.key = parts->cells[first], .owner = owner < n_processes ? owner : n_processes - 1};
+  const piece made = {.key = parts->cells[first], .owner = owner < n_processes ? owner : n_processes - 1};
   for (size_t i = first; i < end; i++)
-    parts->owners[i] = s->pieces[s->n_pieces - 1].owner;
+    parts->owners[i] = made.owner;
   *n_before += n;
-  return CONIC_OK;
+  return conic_memory_append(parts->context, &s->pieces, &s->n_pieces, &s->piece_room, &made, sizeof made);
 }
 
 static conic_status list_parts(dividing *s, size_t first, size_t end) {
@@ -158,11 +148,8 @@ static conic_status list_parts(dividing *s, size_t first, size_t end) {
       parts->list[parts->n - 1].n_merges++;
     return status;
   }
-  conic_status status =
-      conic_memory_reserve(parts->context, &parts->list, parts->n, parts->n + 1, &parts->room, sizeof *parts->list);
-  if (status == CONIC_OK)
-    parts->list[parts->n++] = (conic_layers_part){.key = s->pieces[first].key, .owner = s->pieces[first].owner};
-  return status;
+  const conic_layers_part part = {.key = s->pieces[first].key, .owner = s->pieces[first].owner};
+  return conic_memory_append(parts->context, &parts->list, &parts->n, &parts->room, &part, sizeof part);
 }
 
 static conic_status list_own_keys(conic_layers_parts *parts) {
@@ -238,12 +225,10 @@ void conic_layers_received_end(conic_layers_received *received) {
 static conic_status keep_received(conic_layers_received *a, int from, const void *samples, size_t n) {
   if (n == 0)
     return CONIC_OK;
-  conic_status status = conic_memory_reserve(a->context, &a->list, a->n, a->n + 1, &a->room, sizeof *a->list);
-  if (status != CONIC_OK)
-    return status;
-  a->list[a->n++] = (conic_layers_message){from, conic_spool_bytes(&a->spool), n};
+  const conic_layers_message message = {from, conic_spool_bytes(&a->spool), n};
+  conic_status status = conic_memory_append(a->context, &a->list, &a->n, &a->room, &message, sizeof message);
   a->n_samples += n;
-  return conic_spool_append(&a->spool, samples, n * a->sample_bytes);
+  return status == CONIC_OK ? conic_spool_append(&a->spool, samples, n * a->sample_bytes) : status;
 }
 
 static unsigned char *message_for(const sending *e, int to) {

@@ -77,12 +77,9 @@ conic_status conic_thinner_create(conic_context *context, size_t most_points, co
 void conic_thinner_destroy(conic_context *context, conic_thinner *thinner) {
   if (!thinner)
     return;
-  conic_memory_release(context, thinner->points);
-  conic_memory_release(context, thinner->order);
-  conic_memory_release(context, thinner->chosen);
-  conic_memory_release(context, thinner->number);
-  conic_memory_release(context, thinner->links);
-  conic_memory_release(context, thinner->cells);
+  void *const owned[] = {thinner->points, thinner->order, thinner->chosen,
+                         thinner->number, thinner->links, thinner->cells};
+  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
   conic_memory_release(context, thinner);
 }
 

@@ -25,6 +25,12 @@ typedef struct conic_layers_place {
   conic_layers_sight sight;
 } conic_layers_place;
 
+/* The pixels that a place may cover in a picture of n × as many, a side. */
+static inline conic_window conic_layers_fine_pixels(const conic_layers_place *place, int n) {
+  const conic_window *in = &place->sight.pixels;
+  return (conic_window){n * in->x_begin, n * in->x_end, n * in->y_begin, n * in->y_end};
+}
+
 /* Places in the order of their keys. Zero before the first use; the memory is kept. */
 typedef struct conic_layers_cut {
   conic_layers_place *places;
@@ -54,6 +60,9 @@ uint64_t conic_layers_fit_budget(const conic_layers *layers, const conic_layers_
                                  uint64_t budget, double *error_px);
 
 void conic_layers_cut_release(conic_context *context, conic_layers_cut *cut);
+
+/* Marks the clouds that a place needs: its own and all above it. Returns how many were not marked before. */
+size_t conic_layers_mark_needed(const conic_layers *layers, const conic_layers_place *place, unsigned char *needed);
 
 /* Finds the clouds that are needed for the cut's places in the states up to `last`: needed[c] becomes 1 for them, and 0
  * for all others. Returns how many there are. */

@@ -337,17 +337,6 @@ static size_t choose_places(conic_layers_picture *d, const conic_window *window)
   return n;
 }
 
-/* Those that the chosen places draw of. */
-static void list_needed(conic_layers_picture *d, size_t n_chosen) {
-  memset(d->needed, 0, d->layers->header.n_clouds);
-  for (size_t k = 0; k < n_chosen; k++)
-    for (uint32_t node = d->cut.places[d->chosen[k]].node; !d->needed[node]; node = d->layers->entries[node].parent) {
-      d->needed[node] = 1;
-      if (node == 0)
-        break;
-    }
-}
-
 static uint64_t count_received(const conic_layers *layers) {
   return conic_ranges_received(layers->ranges) + conic_layers_octree_received(layers);
 }
@@ -362,7 +351,9 @@ conic_status conic_layers_picture_draw(conic_layers_picture *d, const conic_wind
   int n_bands, is_whole = image->width == d->camera.width && image->height == d->camera.height;
   size_t n_chosen = choose_places(d, window);
   layers->picture_bytes = bytes_of_picture(image) + other_bytes;
-  list_needed(d, n_chosen);
+  memset(d->needed, 0, layers->header.n_clouds);
+  for (size_t k = 0; k < n_chosen; k++)
+    conic_layers_mark_needed(layers, &d->cut.places[d->chosen[k]], d->needed);
   conic_status status = measure_needed(d);
   if (status != CONIC_OK)
     return status;

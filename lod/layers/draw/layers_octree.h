@@ -11,6 +11,9 @@
 
 #define CONIC_NO_NODE UINT32_MAX
 
+/* A page whose nodes are known: it is one no more. */
+enum { CONIC_OCTREE_PAGE_DONE = 2 };
+
 /* The normals of a node's samples in 4 × 4 × 4 parts of its place, for samples below it that have too few neighbours.
  * They are in the order of the keys, in units of 1/127, and zero where nothing near has any. */
 typedef struct conic_layers_guide {

@@ -247,11 +247,8 @@ void conic_layers_close(conic_layers *layers) {
   conic_renderer_destroy(layers->hider);
   if (layers->set)
     conic_layers_set_release(context, layers->set);
-  conic_memory_release(context, layers->set);
-  conic_memory_release(context, layers->facings);
-  conic_memory_release(context, layers->entries);
-  conic_memory_release(context, layers->first_sample);
-  conic_memory_release(context, layers->name);
+  void *const owned[] = {layers->set, layers->facings, layers->entries, layers->first_sample, layers->name};
+  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
   conic_memory_release(context, layers);
 }
 

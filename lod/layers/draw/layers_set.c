@@ -7,11 +7,8 @@
 #include "core/splats/point_values.h"
 
 void conic_layers_set_release(conic_context *context, conic_layers_set *set) {
-  conic_memory_release(context, set->arrays);
-  conic_memory_release(context, set->ids);
-  conic_memory_release(context, set->lines);
-  conic_memory_release(context, set->splats.clips);
-  conic_memory_release(context, set->pieces);
+  void *const owned[] = {set->arrays, set->ids, set->lines, set->splats.clips, set->pieces};
+  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
   conic_point_values_destroy(context, set->named);
   memset(set, 0, sizeof *set);
 }
