@@ -4,12 +4,12 @@
 
 #include "source/source_kind.h"
 
-/* conic_source_move of poses that have been checked, null: at rest. Errors: UNSUPPORTED (the inputs move in different
+/* conic_source_move with poses that have been checked; null: at rest. Errors: UNSUPPORTED (the inputs move in different
  * ways, one turns and shifts and does something else, or one has another shape). */
 conic_status conic_carried_move(conic_source *source, const conic_source_pose *poses, size_t n_poses);
 
-/* What sees of the source at rest what the camera sees of it where it is; and the options that light it so there. Both
- * may be what they were made of. */
+/* Makes the camera that sees the source at rest as `camera` sees it where it is, and the options that light it in the
+ * same way. The results may be where `camera` and `render` are. */
 void conic_carried_look(const conic_source *source, const conic_camera *camera, const conic_render_options *render,
                         conic_camera *rest_camera, conic_render_options *rest_render);
 

@@ -9,7 +9,7 @@
 #include "lod/hierarchies/hierarchy.h"
 #include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_picture.h"
-#include "lod/layers/format/layers_read.h"
+#include "lod/layers/format/layers_format.h"
 #include "raster/frame/samples.h"
 #include "source/source_kind.h"
 

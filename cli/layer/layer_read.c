@@ -21,7 +21,7 @@ static conic_status append_colored(cli_layer_job *job, const conic_splats *batch
   conic_context *context = job->base.session->context;
   conic_status status = CONIC_OK;
   if (!job->has_points)
-    status = conic_layers_builder_meet(job->builder, batch, &job->has_colors);
+    status = conic_layers_builder_agree(job->builder, batch, &job->has_colors);
   job->has_points = 1;
   if (status == CONIC_OK)
     status = cli_build_check_reach(&job->base, batch);

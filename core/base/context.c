@@ -132,12 +132,27 @@ conic_status conic_memory_reserve(conic_context *context, void *array, size_t us
   return status;
 }
 
+conic_status conic_memory_append(conic_context *context, void *array, size_t *n, size_t *room, const void *element,
+                                 size_t size) {
+  unsigned char *elements;
+  conic_status status = conic_memory_reserve(context, array, *n, *n + 1, room, size);
+  memcpy(&elements, array, sizeof elements);
+  if (status == CONIC_OK)
+    memcpy(elements + (*n)++ * size, element, size);
+  return status;
+}
+
 void conic_memory_release(conic_context *context, void *pointer) {
   if (!pointer)
     return;
   void *raw;
   memcpy(&raw, (char *)pointer - sizeof raw, sizeof raw);
   context->options.release(context->options.allocator_cookie, raw);
+}
+
+void conic_memory_release_all(conic_context *context, void *const *pointers, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    conic_memory_release(context, pointers[i]);
 }
 
 void conic_memory_prefer_large_pages(const conic_context *context, void *pointer, size_t bytes) {

@@ -22,6 +22,10 @@ conic_status conic_memory_grow(conic_context *context, void *array, size_t used,
 conic_status conic_memory_reserve(conic_context *context, void *array, size_t used, size_t wanted, size_t *room,
                                   size_t size);
 
+/* Adds an element of `size` bytes to such an array of *n. On failure all stays as it was. */
+conic_status conic_memory_append(conic_context *context, void *array, size_t *n, size_t *room, const void *element,
+                                 size_t size);
+
 /* Asks the system for large pages, wherever one lies wholly within a block that is to be used from end to end; the
  * second only where the context has large_pages. Where the system has none, nothing happens. Thread-safe. */
 void conic_memory_advise_large_pages(void *pointer, size_t bytes);
@@ -34,5 +38,8 @@ static inline size_t conic_memory_rounded(size_t bytes) {
 
 /* Releases what allocate gave; null is allowed. */
 void conic_memory_release(conic_context *context, void *pointer);
+
+/* Releases n of them. */
+void conic_memory_release_all(conic_context *context, void *const *pointers, size_t n);
 
 #endif

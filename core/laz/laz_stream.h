@@ -35,7 +35,7 @@ static inline void conic_laz_refill(conic_laz_stream *stream) {
   stream->next += n_bits >> 3;
 }
 
-/* Makes what was found, between x and y, the interval, and counts. */
+/* Makes the symbol that was found, between x and y, the interval, and counts it. */
 static inline void conic_laz_settle(conic_laz_stream *stream, conic_laz_model *model, unsigned symbol, uint32_t x,
                                     uint32_t y) {
   stream->value -= x;
@@ -46,7 +46,7 @@ static inline void conic_laz_settle(conic_laz_stream *stream, conic_laz_model *m
     conic_laz_model_update(model);
 }
 
-/* A symbol of a model of n, which begins by it where it has not; n is the same at every call. */
+/* Decodes a symbol of a model of n symbols. The first call for a model begins it; n is the same at every call. */
 static inline unsigned conic_laz_symbol(conic_laz_stream *stream, conic_laz_model *model, unsigned n) {
   unsigned symbol = 0;
   if (!model->bound && !conic_laz_model_begin(model, stream->arena, n))
@@ -106,8 +106,8 @@ static inline uint32_t conic_laz_bits(conic_laz_stream *stream, unsigned n_bits)
   return conic_laz_few_bits(stream, n_bits - 16) << 16 | low;
 }
 
-/* What an integer is off its prediction: the number k of bits by a model of its context, then the bits, the highest
- * eight by a model of that k. */
+/* How an integer's difference from its prediction is coded: the number k of its bits by a model of its context, then
+ * its bits, the highest eight of them by a model of that k. */
 enum { CONIC_LAZ_MOST_CONTEXTS = 22 };
 
 typedef struct conic_laz_integer {

@@ -1,5 +1,5 @@
-/* Hybrid models: of a mesh, clusters that are drawn as triangles where the surface is flat and as surfels where it is
- * not (docs/reference/hybrid.md). */
+/* Hybrid models: clusters of a mesh, drawn as triangles where the surface is flat and as surfels where it is not
+ * (docs/reference/hybrid.md). */
 #ifndef CONIC_HYBRID_H
 #define CONIC_HYBRID_H
 
@@ -86,8 +86,8 @@ CONIC_API conic_status conic_hybrid_build_file(conic_context *context, const cha
                                                const conic_hybrid_options *options,
                                                const conic_hybrid_streaming *streaming, conic_hybrid **hybrid,
                                                conic_hybrid_report *report);
-/* The same of splats, which have tangent axes and no strides: triangles where they lie as a surface does, and the
- * others as what they are, but for clip lines and opacities, which are left out. The set is taken over: *splats is
+/* Builds a model of splats, which must have tangent axes and no strides. Where they lie as a surface does, they become
+ * triangles; the others stay what they are. Clip lines and opacities are left out. The set is taken over: *splats is
  * empty afterwards, on failure too. n_faces counts the triangles that were made. Errors: ARGUMENT, INPUT (nothing to
  * draw), MEMORY, CANCELLED. */
 CONIC_API conic_status conic_hybrid_build_points(conic_context *context, conic_splats *splats,
@@ -104,16 +104,16 @@ CONIC_API conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path
  * must not outlive the context. The file must not be changed while it is in use. Errors: INPUT, IO, MEMORY. */
 CONIC_API conic_status conic_hybrid_read(conic_context *context, const char *path, conic_hybrid **hybrid);
 
-/* Opens a path or a URL: reads and checks all but the chunks, of which pictures read what they show
- * (docs/reference/format-chy.md). `access` bounds the memory that index, chunks and what is drawn take, if memory_bytes
- * are not 0, and says how a URL is read; null: the defaults of conic_layers_access_init, without a bound. A picture may
- * fail for what of the file is damaged then, or cannot be had. On success the caller owns *hybrid, which must not
- * outlive the context, and which one thread at a time may use. Errors: INPUT, IO, UNSUPPORTED (a URL, without libcurl),
- * MEMORY, CANCELLED. */
+/* Opens a path or a URL: reads and checks all but the chunks; a picture reads the chunks that it shows
+ * (docs/reference/format-chy.md). `access` says how a URL is read, and bounds the memory of index, chunks and what is
+ * drawn unless memory_bytes is 0; null: the defaults of conic_layers_access_init, without a bound. A picture may fail
+ * later where the file is damaged, or cannot be had. On success the caller owns *hybrid, which must not outlive the
+ * context. One thread at a time may use it. Errors: INPUT, IO, UNSUPPORTED (a URL, without libcurl), MEMORY, CANCELLED.
+ */
 CONIC_API conic_status conic_hybrid_open(conic_context *context, const char *name, const conic_layers_access *access,
                                          conic_hybrid **hybrid);
 
-/* Whether a name is a URL of which the path ends in .chy. */
+/* Whether a name is a URL whose path ends in .chy. */
 CONIC_API int conic_hybrid_is_url(const char *name);
 
 /* Whether a file that can be read begins like a .chy. */
@@ -136,7 +136,7 @@ typedef struct conic_hybrid_info {
 
 CONIC_API conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info *info);
 
-/* What of a hybrid model is not as it must be. */
+/* What is not as it must be in a hybrid model. */
 typedef struct conic_hybrid_defects {
   size_t values;  /* numbers that are not finite */
   size_t spheres; /* clusters and nodes that reach out of theirs, and points that do not hide all of their node */
@@ -184,8 +184,8 @@ typedef struct conic_hybrid_selection {
                          that is not drawn by its own triangles reaches the near distance */
   void *scratch;      /* private */
   double color_error; /* nor do colours differ by more than this from what is there, in steps as those of the view */
-  /* Of a model that was opened, not read: chunks that this picture took; those that were read since the opening, all
-   * bytes that were, those that came over the network, and those of chunks that are kept. */
+  /* For a model that was opened, not read: chunks that this picture took; and, since the opening, chunks that were
+   * read, bytes that were read, bytes that came over the network, and bytes of chunks that are kept. */
   uint64_t n_chunks, n_chunks_read, n_bytes_read, n_bytes_received, n_bytes_kept;
   uint64_t reserved[2];
 } conic_hybrid_selection;

@@ -1,5 +1,5 @@
-/* Layered point clouds: samples of any number in a file (.lpc) that is built once in bounded memory, and of which a
- * picture needs only the clouds that it can show (docs/reference/layers.md, docs/reference/format-lpc.md). */
+/* Layered point clouds: samples of any number in a file (.lpc). It is built once, in bounded memory, and a picture
+ * needs only those of its clouds that it can show (docs/reference/layers.md, docs/reference/format-lpc.md). */
 #ifndef CONIC_LAYERS_H
 #define CONIC_LAYERS_H
 
@@ -21,8 +21,9 @@ typedef struct conic_layers_options {
   int quantum_in_spacings;
   float cutoff;  /* F_g of the kernel that will draw */
   int keeps_all; /* ellipses, opacities, dots and clip lines are kept, finely */
-  /* What goes on with a file that there is (conic_layers_continue): steps, whose length is `quantum` then, count from
-   * this corner or, where samples lie below it, from one that is whole steps away; and normals have no side. */
+  /* Set where a file is gone on with (conic_layers_continue). With has_corner, `quantum` is a length, and steps count
+   * from this corner, or, where samples lie below it, from one that is whole steps away. is_unoriented: normals have no
+   * side. */
   int has_corner, is_unoriented;
   double corner[3];
   double up[3]; /* the direction that points up, of any length; zero: it is not known */
@@ -52,9 +53,9 @@ typedef struct conic_layers_statistics {
 CONIC_API conic_status conic_layers_builder_open(conic_context *context, const char *path,
                                                  const conic_layers_options *options, conic_layers_builder **builder);
 /* Hands over a batch, of any size; it is copied. All batches have colours or none has. A sample is a position, a normal
- * (the batch's, or t_u × t_v) and a size, the outline's, of which those without axes get one from their neighbours.
- * With `keeps_all` it is an ellipse with its opacity and clip lines. Values that the batch has by name are kept, those
- * of the first one. Errors: ARGUMENT, MEMORY, IO, CANCELLED. */
+ * (the batch's, or t_u × t_v) and the size of its outline; without axes, it gets a size from its neighbours. With
+ * `keeps_all` it is an ellipse with its opacity and clip lines. Of the values by name, those of the first batch are
+ * kept. Errors: ARGUMENT, MEMORY, IO, CANCELLED. */
 CONIC_API conic_status conic_layers_builder_append(conic_layers_builder *builder, const conic_splats *batch);
 /* Builds and writes the file, and releases the builder, on failure too. The file depends on the samples in their order
  * and on cloud_size and quantum alone: not on threads or memory. `statistics` may be null. Errors: INPUT (nothing to
@@ -90,7 +91,7 @@ typedef struct conic_layers_info {
 /* Reads and checks header and index. Errors: INPUT, MEMORY. */
 CONIC_API conic_status conic_layers_describe(conic_context *context, const char *path, conic_layers_info *info);
 
-/* What of a file is not as it must be: how many clouds are not within their bounds. */
+/* What is not as it must be in a file: how many clouds are not within their bounds. */
 typedef struct conic_layers_defects {
   uint64_t clouds;   /* bytes that are not those that were written, or no cloud */
   uint64_t coverage; /* a sample of its place is farther from those drawn than its covering radius */

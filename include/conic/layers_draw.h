@@ -1,4 +1,4 @@
-/* Drawing layered point clouds: of a file or a URL, a picture reads and draws no more clouds than it shows, in bounded
+/* Drawing layered point clouds from a file or a URL. A picture reads and draws no more clouds than it shows, in bounded
  * memory (docs/reference/layers.md). */
 #ifndef CONIC_LAYERS_DRAW_H
 #define CONIC_LAYERS_DRAW_H
@@ -53,12 +53,12 @@ CONIC_API conic_status conic_layers_open(conic_context *context, const char *nam
 /* Null is allowed. */
 CONIC_API void conic_layers_close(conic_layers *layers);
 
-/* Makes colours of a value that the samples have by name, and leaves out those that `where` does not pass (as
- * conic_read_options has it); either may be null. By "auto" the intensity makes the colours of samples that have none.
- * Of the colours *done, which may be null, says what they mean. To be called before anything is drawn; clouds that are
- * in the cache are dropped. With a filter, what is drawn of a coarse place is what passes of its samples: each is
- * within the error of itself at full resolution, but there may be more that passes than is seen. Errors: ARGUMENT,
- * INPUT (the samples have no such value), MEMORY. */
+/* Makes colours of a value that the samples have by name, and leaves out samples that `where` does not pass (as in
+ * conic_read_options). Either may be null. With "auto", the intensity makes the colours of samples that have none.
+ * *done, which may be null, says what the colours mean. Call this before anything is drawn; clouds in the cache are
+ * dropped. With a filter, those samples of a coarse place are drawn that pass. Each is within the error of itself at
+ * full resolution, but more may pass than are seen. Errors: ARGUMENT, INPUT (the samples have no such value), MEMORY.
+ */
 CONIC_API conic_status conic_layers_choose(conic_layers *layers, const conic_coloring_options *coloring,
                                            const char *where, conic_coloring *done);
 
@@ -144,17 +144,17 @@ CONIC_API conic_status conic_layers_draw(conic_layers *layers, conic_renderer *r
  * Errors: as conic_layers_draw. */
 CONIC_API conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splats *splats);
 
-/* Of a hierarchy of another kind than .lpc (conic_layers_is_hierarchy), all points as they are there, node by node:
- * with positions and, where it has them, colours. Errors: INPUT, IO, MEMORY, UNSUPPORTED (a .lpc), CANCELLED, the
- * receiver's. */
+/* Hands over all points of a hierarchy of another kind than .lpc (conic_layers_is_hierarchy), as they are there, node
+ * by node: with positions and, where it has them, colours. Errors: INPUT, IO, MEMORY, UNSUPPORTED (a .lpc), CANCELLED,
+ * the receiver's. */
 CONIC_API conic_status conic_layers_stream(conic_layers *layers, conic_batch_receiver *receive, void *cookie);
 
 /* Reads all of such a hierarchy, and counts the nodes and pages that are damaged; 0 of a .lpc. Errors: IO, MEMORY,
  * CANCELLED. */
 CONIC_API conic_status conic_layers_count_damaged(conic_layers *layers, uint64_t *n_damaged);
 
-/* Which samples are read, and how finely: places that lie outside of the box are left out, but of those at its borders
- * there are samples outside of it. Where a place's error is no greater than the one asked for, it is read no finer. */
+/* Which samples are read, and how finely. Places outside of the box are left out. A place at its border is read whole,
+ * with samples outside of the box. Where a place's error is no greater than the one asked for, it is read no finer. */
 typedef struct conic_layers_region {
   size_t size;            /* sizeof(conic_layers_region), set by the init function */
   double low[3], high[3]; /* in world units; infinite: no bound */
@@ -175,8 +175,8 @@ CONIC_API conic_status conic_layers_read_samples(conic_layers *layers, float cut
 /* The i-th of the values that the samples have by name; 0: there are no more. */
 CONIC_API int conic_layers_value(const conic_layers *layers, size_t i, conic_model_field *field);
 
-/* Sets `options` so that what is built of these samples and others has a grid on which these stay where they are, and
- * keeps as much of each, and stands as they do. */
+/* Sets `options` to build a file of these samples and others. On its grid these samples stay where they are. It keeps
+ * as much of each sample, and the same points up. */
 CONIC_API void conic_layers_continue(const conic_layers *layers, conic_layers_options *options);
 
 #ifdef __cplusplus

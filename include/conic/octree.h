@@ -68,7 +68,7 @@ typedef struct conic_octree_info {
 
 CONIC_API conic_status conic_octree_describe(const conic_octree *octree, conic_octree_info *info);
 
-/* What of an octree is not as it must be: how many inner nodes are not within their bounds. */
+/* What is not as it must be in an octree: how many inner nodes are not within their bounds. */
 typedef struct conic_octree_defects {
   size_t ellipses; /* a leaf's disc, seen along the normal, reaches out of the node's */
   size_t spheres;  /* a leaf's disc, or the node's own, reaches out of the sphere */
@@ -115,10 +115,10 @@ typedef struct conic_selection {
   uint64_t reserved[8];
 } conic_selection;
 
-/* Chooses what to draw: of every leaf in sight, itself or one of the nodes above it, the first from the root whose
- * error is at most so many pixels wherever in its sphere it is projected, and more where it is seen from its side. The
- * kernel's cutoff must be the octree's. Errors: ARGUMENT, MEMORY, UNSUPPORTED (the options' instruction set is not
- * here). */
+/* Chooses what to draw. Every leaf in sight is drawn itself or as one of the nodes above it: the first from the root
+ * whose error is at most so many pixels wherever in its sphere it is projected, and more where it is seen from its
+ * side. The kernel's cutoff must be the octree's. Errors: ARGUMENT, MEMORY, UNSUPPORTED (the options' instruction set
+ * is not here). */
 CONIC_API conic_status conic_octree_select(conic_octree *octree, const conic_camera *camera,
                                            const conic_render_options *render, const conic_selection_options *options,
                                            conic_selection *selection);

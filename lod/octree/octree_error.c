@@ -1,6 +1,6 @@
-/* The errors of inner nodes: how far their discs reach past the surface that is there. What a disc lacks cover by is
- * sought among the leaves, its own and those around, or, of large nodes, among small ones and their errors. So nodes
- * are taken in classes by their size; what a class looks at belongs to the classes below. */
+/* The errors of inner nodes: how far their discs reach past the surface that is there. What covers a disc is sought
+ * among the leaves, its own and those around, or, for large nodes, among small nodes and their errors. So nodes are
+ * taken in classes by their size. What a class looks at belongs to the classes below. */
 #include <math.h>
 #include <string.h>
 
@@ -330,13 +330,9 @@ static size_t count_parts(const conic_octree *octree, size_t root, size_t part) 
 
 static void release_around(const neighbourhood *around) {
   conic_context *context = around->pass->octree->context;
-  conic_memory_release(context, around->numbers);
-  conic_memory_release(context, around->first_leaf);
-  conic_memory_release(context, around->members);
-  conic_memory_release(context, around->near_numbers);
-  conic_memory_release(context, around->near_blocks);
-  conic_memory_release(context, around->near.flat);
-  conic_memory_release(context, around->near.are_flat);
+  void *const owned[] = {around->numbers,     around->first_leaf, around->members,      around->near_numbers,
+                         around->near_blocks, around->near.flat,  around->near.are_flat};
+  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
 }
 
 /* Lays out the arrays of discs: `stride` of each number, and a block's. */

@@ -7,8 +7,8 @@
 #include "lod/octree/octree_fit.h"
 #include "lod/octree/octree_view.h"
 
-/* Puts the n chosen at `place` of a selection: leaves by their numbers, nodes with a bit more. With an eye, nodes are
- * turned towards it. */
+/* Puts n sources at `place` of a selection: leaves by their numbers, nodes by theirs with NODE_BIT. With an eye, nodes
+ * are turned towards it. */
 #define CONIC_NODE_BIT (UINT32_C(1) << 31)
 typedef void conic_put_function(const conic_octree *octree, const uint32_t *sources, size_t n, const float *eye,
                                 const conic_splats *to, uint32_t *ids, size_t place);

@@ -53,11 +53,8 @@ void conic_selection_release(conic_context *context, conic_selection *selection)
 
 static conic_status add_selection_piece(octree_selecting *s, selection_piece added) {
   octree_scratch *kept = s->scratch;
-  if (conic_memory_reserve(s->octree->context, &kept->pieces, kept->n_pieces, kept->n_pieces + 1, &kept->pieces_room,
-                           sizeof *kept->pieces) != CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  kept->pieces[kept->n_pieces++] = added;
-  return CONIC_OK;
+  return conic_memory_append(s->octree->context, &kept->pieces, &kept->n_pieces, &kept->pieces_room, &added,
+                             sizeof added);
 }
 
 /* Walks the nodes whose subtrees are larger than a block one by one; the blocks are left for later. */

@@ -1,10 +1,10 @@
-#include "lod/layers/build/layers_buckets.h"
+#include "lod/layers/build/layers_parts.h"
 
 #include <string.h>
 
 #include "core/base/memory.h"
 
-/* So many bits of the keys part the samples at a time, fewer where there is little memory for open blocks. */
+/* So many bits of the keys split the samples at a time, fewer where there is little memory for open blocks. */
 enum { MOST_SPLIT_BITS = 12, LEAST_SPLIT_BITS = 4, LEAST_BLOCK = 32, MOST_BLOCK = 1024 };
 
 #define NO_BLOCK UINT64_MAX
@@ -27,8 +27,8 @@ typedef struct split {
   conic_layers_buckets *all;
   unsigned n_most_bits, n_bits;
   uint64_t key;
-  unsigned shift;  /* bits of the key below the cells' own */
-  uint64_t n_rank; /* of so many that coincide; 0: they do not */
+  unsigned shift;        /* bits of the key below the cells' own */
+  uint64_t n_coincident; /* of so many that coincide; 0: they do not */
   uint8_t is_reversed;
   conic_layers_bucket *cells;
   unsigned char *open; /* blocks */
@@ -59,7 +59,7 @@ static void clear_cells(split *parts) {
                                             .is_reversed = parts->is_reversed};
 }
 
-/* Of all samples, or of a bucket's, so that cells hold few more than `most`, or a fraction of it. */
+/* Begins to split all samples, or a bucket's, so that cells hold few more than `most`, or a fraction of it. */
 static void begin_split(split *parts, uint64_t key, unsigned n_key_bits, uint64_t count, uint64_t most) {
   unsigned n = parts->n_most_bits;
   while (n > 1 && count >> (n - 3) < most && n > 3)
@@ -67,31 +67,31 @@ static void begin_split(split *parts, uint64_t key, unsigned n_key_bits, uint64_
   parts->n_bits = n < n_key_bits ? n : n_key_bits;
   parts->key = key;
   parts->shift = n_key_bits - parts->n_bits;
-  parts->n_rank = 0;
+  parts->n_coincident = 0;
   clear_cells(parts);
 }
 
-/* Of a bucket whose samples coincide: into halves of halves, as the tree parts them. */
+/* Begins to split a bucket whose samples coincide: into halves of halves, as the tree does. */
 static void begin_halving(split *parts, const conic_layers_bucket *bucket, uint64_t most) {
   parts->n_bits = 1;
   while (parts->n_bits < parts->n_most_bits && bucket->count >> parts->n_bits > most)
     parts->n_bits++;
   parts->key = bucket->key;
   parts->shift = 0;
-  parts->n_rank = bucket->count;
+  parts->n_coincident = bucket->count;
   clear_cells(parts);
   for (size_t i = 0; i < (size_t)1 << parts->n_bits; i++)
     parts->cells[i].key = bucket->key;
 }
 
-static size_t cell_of_rank(const split *parts, uint64_t rank) {
+static size_t cell_of_number(const split *parts, uint64_t number) {
   size_t cell = 0;
-  uint64_t n = parts->n_rank;
+  uint64_t n = parts->n_coincident;
   for (unsigned i = 0; i < parts->n_bits; i++) {
     uint64_t half = n / 2;
-    int is_second = rank >= half;
+    int is_second = number >= half;
     cell = 2 * cell + (size_t)is_second;
-    rank -= is_second ? half : 0;
+    number -= is_second ? half : 0;
     n = is_second ? n - half : half;
   }
   return cell;
@@ -121,8 +121,8 @@ static size_t cell_of_key(const split *parts, uint64_t key) {
   return (size_t)((key - parts->key) >> parts->shift);
 }
 
-/* Puts what is left in open blocks away and hands the buckets that hold any over, in place of number `at`, which is
- * dropped; or at the end. */
+/* Puts what is left in open blocks away. The buckets that hold any take the place of number `at`, which is dropped, or
+ * go to the end. */
 static conic_status end_split(split *parts, size_t at) {
   conic_layers_buckets *all = parts->all;
   conic_status status = CONIC_OK;
@@ -175,16 +175,17 @@ typedef struct refining {
   uint64_t n_done; /* samples, of those that coincide */
 } refining;
 
-/* From the last on: so each refining turns their order around. */
+/* Goes from the last on, so that each refining turns their order around. */
 static conic_status refine_block(void *data, const unsigned char *samples, size_t n) {
   refining *r = data;
   split *parts = r->parts;
   conic_status status = CONIC_OK;
   for (size_t i = n; i > 0 && status == CONIC_OK; i--) {
     const conic_layers_sample *sample = conic_layers_sample_at(samples, parts->all->sample_bytes, i - 1);
-    uint64_t rank = r->n_done++;
-    size_t cell = parts->n_rank == 0 ? cell_of_key(parts, sample->key)
-                                     : cell_of_rank(parts, parts->is_reversed ? parts->n_rank - 1 - rank : rank);
+    uint64_t number = r->n_done++;
+    size_t cell = parts->n_coincident == 0
+                      ? cell_of_key(parts, sample->key)
+                      : cell_of_number(parts, parts->is_reversed ? parts->n_coincident - 1 - number : number);
     status = add_to_cell(parts, cell, sample);
   }
   return status;
@@ -202,27 +203,20 @@ static conic_status refine(split *parts, size_t at, uint64_t most, unsigned char
   return status == CONIC_OK ? end_split(parts, at) : status;
 }
 
-/* Whether a place in which a bucket has to end lies within it. */
-static int is_cut(const conic_layers_bucket *bucket, const conic_layers_cuts *cuts) {
-  size_t low = 0, high = cuts->n; /* of those not above the bucket's first key */
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (cuts->keys[middle] <= bucket->key)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low < cuts->n && cuts->keys[low] - bucket->key < UINT64_C(1) << bucket->n_bits;
+/* Whether a key at which a bucket has to end lies within it. */
+static int has_border(const conic_layers_bucket *bucket, const conic_layers_borders *borders) {
+  size_t low = conic_layers_count_to(borders->keys, sizeof *borders->keys, borders->n, bucket->key);
+  return low < borders->n && borders->keys[low] - bucket->key < UINT64_C(1) << bucket->n_bits;
 }
 
-static conic_status refine_all(split *parts, uint64_t most, const conic_layers_cuts *cuts) {
+static conic_status refine_all(split *parts, uint64_t most, const conic_layers_borders *borders) {
   conic_layers_buckets *all = parts->all;
   conic_status status = CONIC_OK;
   unsigned char *block = conic_memory_allocate(all->context, block_bytes(all, all->block_samples), 1);
   if (!block)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < all->n && status == CONIC_OK;)
-    if (all->buckets[i].count > most || is_cut(&all->buckets[i], cuts))
+    if (all->buckets[i].count > most || has_border(&all->buckets[i], borders))
       status = refine(parts, i, most, block);
     else
       i++;
@@ -231,7 +225,7 @@ static conic_status refine_all(split *parts, uint64_t most, const conic_layers_c
 }
 
 conic_status conic_layers_buckets_fill(conic_context *context, const char *path, const conic_layers_feed *feed,
-                                       const conic_layers_plan *plan, const conic_layers_cuts *cuts,
+                                       const conic_layers_plan *plan, const conic_layers_borders *borders,
                                        size_t memory_bytes, uint64_t most, conic_layers_buckets *buckets) {
   size_t open_bytes = memory_bytes / 4;
   split parts;
@@ -247,7 +241,7 @@ conic_status conic_layers_buckets_fill(conic_context *context, const char *path,
   if (status == CONIC_OK)
     status = end_split(&parts, 0);
   if (status == CONIC_OK)
-    status = refine_all(&parts, most, cuts);
+    status = refine_all(&parts, most, borders);
   release_split(&parts);
   return status;
 }

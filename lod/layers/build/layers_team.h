@@ -42,6 +42,6 @@ FILE *conic_layers_builder_open_kept(const conic_layers_builder *builder, uint64
 
 /* Whether all samples have colours, as the first batch of all has them; `batch` is the first one of this process, and
  * may have to wait for the processes before. Errors: MEMORY, CANCELLED. */
-conic_status conic_layers_builder_meet(conic_layers_builder *builder, const conic_splats *batch, int *has_colors);
+conic_status conic_layers_builder_agree(conic_layers_builder *builder, const conic_splats *batch, int *has_colors);
 
 #endif

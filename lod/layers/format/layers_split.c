@@ -1,4 +1,5 @@
-#include "lod/layers/format/layers_split.h"
+/* Splits each attribute of a cloud's records into streams of bytes that are alike, and joins them again. */
+#include "lod/layers/format/layers_code.h"
 
 #include <string.h>
 
@@ -6,11 +7,12 @@
 #include "core/base/real.h"
 #include "lod/layers/format/layers_axes.h"
 
-/* Of a float's 23 bits of fraction the last are dropped: of the axes' lengths so many, of sizes those beyond `type`. */
+/* How many of a float's 23 bits of fraction are dropped, the last ones: so many of the axes' lengths, and those of
+ * sizes beyond `type`. */
 enum { AXES_DROPPED = 11, FRACTION_BITS = 23 };
 
-/* Numbers of so many bytes, of which each becomes a byte in each stream: its difference to the one before, modulo
- * 2^(8 bytes), with the sign as the lowest bit; the lowest byte comes first. */
+/* Numbers of so many bytes as streams, one for each byte, the lowest first. Coded is the difference of a number to the
+ * one before, modulo 2^(8 bytes), with the sign as the lowest bit. */
 typedef struct byte_planes {
   unsigned n_bytes;
   uint64_t before;
@@ -281,8 +283,8 @@ void conic_layers_split(const conic_layers_schema *schema, uint32_t i, const uns
     n_bytes[k] = k ? n_lines : n;
 }
 
-const char *conic_layers_unite(const conic_layers_schema *schema, uint32_t i, size_t n,
-                               const unsigned char *const *streams, unsigned char *samples) {
+const char *conic_layers_join(const conic_layers_schema *schema, uint32_t i, size_t n,
+                              const unsigned char *const *streams, unsigned char *samples) {
   const conic_layers_attribute *attribute = &schema->list[i];
   switch (attribute->kind) {
   case CONIC_LAYERS_NORMAL:
