@@ -156,7 +156,7 @@ write prepare-baked prepare prepare knot.ply -o baked.ply --bake color --directi
 write prepare-colored prepare prepare knot.ply -o colored.ply --color-by x
 write octree-colored octree octree colored.ply -o colored.cot --color-by height
 write hybrid-colored hybrid hybrid tent.obj -o colored.chy --color-by height
-write hybrid-points hybrid hybrid knot.ply -o knot.chy
+write hybrid-points hybrid hybrid thinner.ply -o knot.chy
 write diff diff diff knot.exr lod.exr
 write diff-sizes diff diff knot.exr triangle.exr
 mkdir first second

@@ -223,9 +223,10 @@ static void check_kept_splats(fixture *f) {
 }
 
 static void check_all(fixture *f) {
-  fixture_camera(f, 230, 170, 160.0);
+  fixture_camera(f, 131, 94, 91.0);
   check_hostile(f, 0, 0.0, 1.5);
   check_hostile(f, 1, 0.01, 3.0);
+  fixture_camera(f, 230, 170, 160.0);
   check_scene(f, CONIC_SCENE_KNOT, 20000, 2.2, "knot");
   fixture_camera(f, 23, 17, 16.0);
   check_scene(f, CONIC_SCENE_KNOT, 20000, 2.2, "crowd"); /* more splats on a block than are kept */
