@@ -184,7 +184,7 @@ static int check(conic_context *context, const seed *from, const unsigned char *
 /* So many places of a file are spoiled, and cut at: of small files each; fewer under a sanitizer, which takes ten times
  * as long. Of large files it spoils others, so that both together try more. Fuzzing tries more still. */
 #ifdef __SANITIZE_ADDRESS__
-enum { N_PLACES = 100, N_CUTS = 200, IS_SANITIZED = 1 };
+enum { N_PLACES = 70, N_CUTS = 150, IS_SANITIZED = 1 };
 #else
 enum { N_PLACES = 130, N_CUTS = 1000, IS_SANITIZED = 0 };
 #endif
