@@ -1,4 +1,4 @@
-/* What each rank did and when, for --trace: events in Chrome's format, which conic simulate and browsers read. */
+/* What each rank did and when, for --trace: events in Chrome's format, which scripts/simulate and browsers read. */
 #ifndef CONIC_TIMELINE_H
 #define CONIC_TIMELINE_H
 

@@ -167,10 +167,6 @@ int main(int argc, char **argv) {
              "[{\"frame\": 1, \"matrix\": [[1,0,0,0.25],[0,1,0,0],[0,0,1,0],[0,0,0,1]]},\n"
              " {\"input\": 2, \"frame\": -1.5, \"file\": \"walk.0001.ply\"}]\n");
   seeds_text(set, "suite", "json", SUITE_EXAMPLE);
-  seeds_text(set, "trace", "json",
-             "{\"traceEvents\": [{\"name\": \"window 0\", \"cat\": \"unit\", \"ph\": \"X\", \"ts\": 1.5, \"dur\": 20, "
-             "\"pid\": 1, \"tid\": 0, \"args\": {\"sent_bytes\": 64}}, {\"name\": \"sums\", \"cat\": \"join\", "
-             "\"ts\": 22, \"dur\": 3, \"pid\": 0}], \"displayTimeUnit\": \"ms\"}");
   seeds_text(set, "frames", "frames",
              "conic frames 1\nkey 0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef\n"
              "file 82907b05ff270d1cb93fab619df708504259a9aa9214808f6563f59d1076fe3c 5831 a/f.0001.exr\nframe 0\n"
