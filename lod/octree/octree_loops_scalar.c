@@ -307,6 +307,8 @@ static void plain_put(const conic_octree *octree, const uint32_t *sources, size_
   }
 }
 
+CONIC_DEFINE_LOOPS(conic_octree_loops)
+
 void conic_octree_loops_scalar(conic_octree_loops *loops) {
   *loops = (conic_octree_loops){plain_cover, plain_find_near, plain_add_reach, plain_choose_ratio, measure, plain_put};
 }

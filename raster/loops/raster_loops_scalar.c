@@ -203,6 +203,8 @@ static void take_nearest(conic_band *band) {
   }
 }
 
+CONIC_DEFINE_LOOPS(conic_raster_loops)
+
 void conic_raster_loops_scalar(conic_raster_loops *loops) {
   *loops = (conic_raster_loops){
       .project = {.project = conic_project_range},

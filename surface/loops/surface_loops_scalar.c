@@ -122,6 +122,8 @@ static void sphere(conic_near *near, const conic_weighing *weighing, const doubl
   totals(partials, CONIC_N_SPHERE_SUMS, sums);
 }
 
+CONIC_DEFINE_LOOPS(conic_surface_loops)
+
 void conic_surface_loops_scalar(conic_surface_loops *loops) {
   *loops = (conic_surface_loops){moments, plane, factor, sphere};
 }

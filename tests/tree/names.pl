@@ -82,9 +82,6 @@ for my $folder (@engine, qw(tests examples)) {
   }
 }
 
-# What the builds of loops leave behind where there is nothing for this machine.
-delete @types{qw(conic_not_this_machine)};
-
 sub twice {
   my ($what, $names) = @_;
   push @found, map { "$what $_ stands in @{$names->{$_}}" } grep { @{$names->{$_}} > 1 } sort keys %$names;
