@@ -39,6 +39,7 @@ enum cli_fact {
   CLI_FACT_KERNEL,     /* splats fade by a kernel */
   CLI_FACT_FILTERED,   /* and are filtered for the pixels */
   CLI_FACT_BLENDED,    /* by 3 passes */
+  CLI_FACT_SHAPED,     /* normals are to be seen, in shades or planes */
   CLI_FACT_LIT,        /* surfaces have a shade */
   CLI_FACT_UNSETTLED,  /* --quality decides something */
   CLI_FACT_OWN_CENTER, /* the profile takes the picture's middle for the principal point */

@@ -96,7 +96,7 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   conic_estimate_options_init(&estimate);
   if (options->projects_degrees && model->n_triangles == 0)
     project_degrees(context, path, &model->points);
-  if (!model->points.tangent_u[0])
+  if (!model->points.tangent_u[0] && !model->n_triangles)
     d->base.traits |= CONIC_TRAIT_RAW;
   estimate.cutoff = options->cutoff;
   estimate.n_neighbours = options->n_neighbours;

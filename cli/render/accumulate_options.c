@@ -49,6 +49,8 @@ int cli_accumulate_check(const cli_session *session, cli_render_job *job) {
   int answer = own->n_samples ? cli_accumulate_settle(session, job) : CLI_DONE;
   if (answer != CLI_DONE || !own->n_samples)
     return answer;
+  if (own->noise > 0.0 && own->n_samples <= 16)
+    cli_warn(session, "%s: --noise has no effect: it looks at 16 samples, and then at more", session->command);
   if (own->width.value > 0.0 && own->focus.kind != CONIC_FOCUS_DEPTH) /* which is known before the lens is */
     job->unwritten_planes |= ~job->shot.planes & 1u << CONIC_PLANE_Z;
   job->shot.planes |= job->unwritten_planes;

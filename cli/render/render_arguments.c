@@ -106,7 +106,7 @@ int cli_render_views_check(const cli_session *session, cli_render_job *job) {
 }
 
 /* What render's own options mean. */
-static int check_outputs(const cli_session *session, cli_render_job *job) {
+static int check_outputs(const cli_session *session, cli_render_job *job, int is_colors_given) {
   const char *paths[N_PATHS];
   int answer = CLI_DONE;
   if (!session->host && job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path &&
@@ -121,7 +121,7 @@ static int check_outputs(const cli_session *session, cli_render_job *job) {
     return answer;
   if (job->deep_path && !conic_file_has_ending(job->deep_path, "exr"))
     return cli_usage("%s: a deep image is an .exr", job->deep_path);
-  if ((job->is_overdraw_confetti && !job->overdraw_path) || (job->box_level >= 0 && !job->boxes_path))
+  if ((is_colors_given && !job->overdraw_path) || (job->box_level >= 0 && !job->boxes_path))
     return cli_usage("render: --overdraw-colors and --box-level are of --show overdraw-confetti:OUT and boxes@N:OUT");
   if (answer == CLI_DONE && job->top.is_wanted)
     answer = cli_top_check(session, job);
@@ -166,7 +166,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
     tone_words[i] = conic_tone_name((conic_tone)i);
   int compression = -1;
   enum { USUAL_MIB = 512 };
-  int memory_mib = USUAL_MIB, occlusion = CONIC_OCCLUSION_AUTO;
+  int memory_mib = USUAL_MIB, occlusion = CONIC_OCCLUSION_AUTO, is_colors_given = 0;
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT",
        "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; may be repeated",
@@ -281,7 +281,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        .now = "--exr zip, or with a type, --exr half,zip", .acts = {.needs = CLI_FACT(EXR), .is_warned = 1}},
       {"overdraw", CLI_TEXT, &job->overdraw_path, "OUT", "a file", .now = "--show overdraw:OUT"},
       {"overdraw-colors", CLI_CHOICE, &job->is_overdraw_confetti, "NAME", "its colours", .choices = overdraw_words,
-       .now = "--show overdraw-confetti:OUT"},
+       .is_given = &is_colors_given, .now = "--show overdraw-confetti:OUT"},
       {"legend", CLI_FLAG, &job->has_legend, NULL, "in the picture", .now = "--show legend"},
       {"legend-out", CLI_TEXT, &job->legend_path, "OUT", "a file", .now = "--show legend:OUT"},
       {"cryptomatte", CLI_FLAG, &job->has_mattes, NULL, "mattes", .now = "--aov cryptomatte"},
@@ -317,5 +317,5 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
     job->shot.planes |= 1u << CONIC_PLANE_ID;
   if (job->has_mattes)
     job->shot.planes |= CONIC_MATTE_PLANES;
-  return answer == CLI_DONE ? check_outputs(session, job) : answer;
+  return answer == CLI_DONE ? check_outputs(session, job, is_colors_given) : answer;
 }

@@ -12,54 +12,55 @@
 
 typedef unsigned long long facts;
 
-/* What each fact is called: in the help, and in messages that begin with "it changes nothing without"; what is to be
- * done is behind it. Facts that are only looked at for what cannot be together have no words. */
+/* What each fact is called in the help, and in messages behind "it acts on" and "it needs". Facts that are only looked
+ * at for what cannot be together have no words. */
 static const struct {
   const char *name, *words;
 } fact_words[CLI_N_FACTS] = {
-    [CLI_FACT_COMPOSITED] = {"composited", "a Gaussian scene that is composited"},
-    [CLI_FACT_GAUSSIANS] = {"gaussians", "a Gaussian scene (.splat, .spz, .sog, or a .ply with the columns scale_0, "
+    [CLI_FACT_COMPOSITED] = {"composited", "Gaussian scenes that are composited"},
+    [CLI_FACT_GAUSSIANS] = {"gaussians", "Gaussian scenes (.splat, .spz, .sog, or a .ply with the columns scale_0, "
                                          "rot_0, opacity and f_dc_0)"},
     [CLI_FACT_SPLATS] = {"splats", "splats"},
     [CLI_FACT_TRIANGLES] = {"triangles", "triangles"},
-    [CLI_FACT_FACES] = {"faces", "a file that has faces"},
+    [CLI_FACT_FACES] = {"faces", "files that have faces"},
     [CLI_FACT_EDGES] = {"edges", "triangles whose file has no normals"},
-    [CLI_FACT_RAW] = {"raw", "points whose sizes are not in the file"},
-    [CLI_FACT_TEXT] = {"text", "a file of text"},
-    [CLI_FACT_ALPHA] = {"alpha", "splats or materials that let light through"},
-    [CLI_FACT_VALUED] = {"values", "colours that are made of values: give --color-by, too"},
-    [CLI_FACT_HYBRID] = {"hybrids", "a hybrid: a .chy, or a mesh with --as hybrid"},
-    [CLI_FACT_LEVELS] = {"levels", "a single cloud in levels: .lpc (conic layer makes one), COPC, EPT or Potree 2"},
-    [CLI_FACT_NODES] = {"nodes", "a single .cot (conic octree makes one), with its own colours"},
+    [CLI_FACT_RAW] = {"raw", "points whose sizes are not in their file"},
+    [CLI_FACT_TEXT] = {"text", "files of text"},
+    [CLI_FACT_ALPHA] = {"alpha", "splats and materials that let light through"},
+    [CLI_FACT_VALUED] = {"values", "colours that are made of values, as by --color-by"},
+    [CLI_FACT_HYBRID] = {"hybrids", "hybrids (a .chy, or a mesh with --as hybrid)"},
+    [CLI_FACT_LEVELS] = {"levels", "a single cloud in levels (.lpc, which conic layer makes, COPC, EPT, Potree 2)"},
+    [CLI_FACT_NODES] = {"nodes", "a single .cot (conic octree makes one) with its own colours"},
     [CLI_FACT_CHOOSES] = {"hierarchies", "a single .cot, .lpc or .chy (conic octree, conic layer and conic hybrid make "
-                                         "them), or --as hybrid"},
-    [CLI_FACT_URL] = {"urls", "a URL"},
+                                         "them), and meshes with --as hybrid"},
+    [CLI_FACT_URL] = {"urls", "URLs"},
     [CLI_FACT_ACCUMULATED] = {"accumulated", "--accumulate N"},
     [CLI_FACT_SAMPLE] = {"sample", "--sample I"},
-    [CLI_FACT_LENS] = {"lens", "a lens: give its --aperture, too"},
+    [CLI_FACT_LENS] = {"lens", "a lens, by --aperture D"},
     [CLI_FACT_WAY] = {"way", "a way of the camera, --turntable or --camera with several, or --motion"},
-    [CLI_FACT_FRAMED] = {"framed", "a camera that is framed: --camera does it itself"},
-    [CLI_FACT_FIELD] = {"field", "a camera that is framed and does not look all around"},
-    [CLI_FACT_CAMERAS] = {"cameras", "a file of cameras: give --camera, too"},
+    [CLI_FACT_FRAMED] = {"framed", "a camera that frames the scene, and --camera does it itself"},
+    [CLI_FACT_FIELD] = {"field", "a camera that frames the scene and has a field of view, and --camera does it itself"},
+    [CLI_FACT_CAMERAS] = {"cameras", "a file of cameras, by --camera FILE"},
     [CLI_FACT_UPRIGHT] = {"upright", "lights, heights or a framed camera that stand upright"},
-    [CLI_FACT_TURNTABLE] = {"turntable", "--turntable"},
+    [CLI_FACT_TURNTABLE] = {"turntable", "--turntable N"},
     [CLI_FACT_EVERY_VIEW] = {"views", "--view all"},
     [CLI_FACT_MAP] = {"map", "--camera top"},
-    [CLI_FACT_STEREO] = {"stereo", "two eyes: give --stereo, too"},
+    [CLI_FACT_STEREO] = {"stereo", "two eyes, by --stereo E"},
     [CLI_FACT_ERROR] = {"error", "--error"},
     [CLI_FACT_BUDGET] = {"budget", "--budget"},
     [CLI_FACT_PATCH] = {"patch", "--method patch"},
     [CLI_FACT_KERNEL] = {"kernel", "a --method by which splats fade"},
     [CLI_FACT_FILTERED] = {"filtered", "a --method by which splats are filtered"},
     [CLI_FACT_BLENDED] = {"blended", "--passes 3"},
-    [CLI_FACT_LIT] = {"lit", "a shade: not with --shade none"},
-    [CLI_FACT_UNSETTLED] = {"unsettled", "something that is still open: --method and --samples go first"},
+    [CLI_FACT_SHAPED] = {"shaped", "another --shade than none, or --aov N"},
+    [CLI_FACT_LIT] = {"lit", "another --shade than none"},
+    [CLI_FACT_UNSETTLED] = {"unsettled", "that --method and --samples do not say it all"},
     [CLI_FACT_OWN_CENTER] = {"center", "--profile inria-2023 or 2dgs-2024"},
     [CLI_FACT_EXR] = {"exr", "an .exr"},
     [CLI_FACT_CODES] = {"codes", "a file of 8 or 16 bits, such as .png"},
     [CLI_FACT_NAMELESS] = {"nameless", "standard output or a name without an ending"},
     [CLI_FACT_OPENCL] = {"opencl", "--device opencl"},
-    [CLI_FACT_EXACT] = {"exact", "a Gaussian scene by --profile exact, as the others have a filter of their own"},
+    [CLI_FACT_EXACT] = {"exact", "Gaussian scenes by --profile exact (the others have a filter of their own)"},
 };
 
 const char *cli_fact_name(int fact) {
@@ -174,6 +175,18 @@ static void guess_source(cli_render_job *job) {
     own->possible = SOURCE_FACTS; /* opening it is to say more */
 }
 
+/* Whether the points of an octree let light through. */
+static int has_faint_points(const cli_render_job *job) {
+  conic_splats leaves;
+  const conic_drawing drawing = {.splats = &leaves};
+  const conic_octree *octree = conic_source_octree(job->source);
+  if (!octree || conic_octree_leaves(octree, &leaves) != CONIC_OK)
+    return 0;
+  int is_faint = conic_drawing_is_transparent(&drawing);
+  conic_splats_release(job->source->context, &leaves);
+  return is_faint;
+}
+
 /* Once it is open. */
 static void know_source(cli_render_job *job) {
   cli_effects_job *own = &job->effects;
@@ -183,9 +196,13 @@ static void know_source(cli_render_job *job) {
   const facts traits[] = {F(FACES), F(EDGES), F(RAW), F(TEXT), F(ALPHA)}; /* as conic_source_trait has its bits */
   for (int i = 0; i < 5; i++)
     own->possible &= ~when(job->source->no_traits >> i & 1, traits[i]);
+  if (job->is_transparent && own->possible & F(NODES) && !has_faint_points(job))
+    own->possible &= ~F(ALPHA);
   own->possible &= ~(when(!(can & CONIC_SOURCE_COMPOSITES), F(COMPOSITED)) |
                      when(!(can & CONIC_SOURCE_CLUSTERS), F(HYBRID)) | when(!(can & CONIC_SOURCE_STREAMS), F(LEVELS)) |
                      when(can != CONIC_SOURCE_CHOOSES, F(NODES)) | when(!(can & CONIC_SOURCE_CHOOSES), F(CHOOSES)));
+  if (job->top.is_wanted && !job->is_shade_given && scale->has_colors) /* it is then drawn as it is */
+    own->asked &= ~(F(LIT) | F(SHAPED));
   own->possible &= ~(when(!scale->n_splats, F(SPLATS)) | when(!scale->n_triangles, F(TRIANGLES)) |
                      when(!coloring || !coloring->field[0], F(VALUED)));
 }
@@ -216,7 +233,8 @@ static facts ask_of_camera(const cli_render_job *job) {
   const cli_accumulate_job *sums = &job->accumulating;
   int is_map = job->top.is_wanted, is_framed = !job->camera_path && !is_map, kind = job->projection;
   int sees_all_around = kind == CONIC_CAMERA_EQUIRECTANGULAR || kind == CONIC_CAMERA_CUBE;
-  return when(is_framed, F(FRAMED)) | when(is_framed && !sees_all_around, F(FIELD)) |
+  return when(is_framed, F(FRAMED)) |
+         when(is_framed && !sees_all_around && kind != CONIC_CAMERA_ORTHOGRAPHIC, F(FIELD)) |
          when(job->camera_path != NULL, F(CAMERAS)) | when(is_map, F(MAP)) | when(job->is_turntable, F(TURNTABLE)) |
          when(job->is_every_view, F(EVERY_VIEW)) | when(job->stereo.distance > 0.0, F(STEREO)) |
          when(sums->n_samples > 0, F(ACCUMULATED)) | when(sums->is_sample_given, F(SAMPLE)) |
@@ -226,21 +244,28 @@ static facts ask_of_camera(const cli_render_job *job) {
          when(kind == CONIC_CAMERA_FISHEYE || kind == CONIC_CAMERA_EQUIRECTANGULAR, F(CURVED));
 }
 
+/* Whether a quality does. */
+static int chooses_samples(const cli_render_job *job, const cli_scene_words *words) {
+  return !words->is_samples_given && !job->accumulating.n_samples && !job->accumulating.is_sample_given;
+}
+
 static facts ask_of_drawing(const cli_render_job *job, const cli_scene_words *words) {
   const conic_render_options *render = &job->shot.render;
   const conic_gaussian_profile profile = job->shot.gaussians.profile;
   const int method = (int)render->method, is_composited = (job->abilities & CONIC_SOURCE_COMPOSITES) != 0;
   const unsigned planes = job->is_aov_given ? job->shot.planes : 0;
   int is_lit = render->shading != CONIC_SHADE_NONE && !is_composited;
-  int has_samples = words->is_samples_given || job->accumulating.n_samples || job->accumulating.is_sample_given;
+  int is_rough = words->quality == CLI_QUALITY_DRAFT && !words->is_method_given && !is_composited;
   int is_masked = job->n_directions || job->has_shadows || job->lamps.n_lamps ||
                   planes & (1u << CONIC_PLANE_AO | 1u << CONIC_PLANE_SHADOW);
   return when(job->shot.view.error_px > 0.0, F(ERROR)) | when(job->budget > 0, F(BUDGET)) |
          when(job->is_patch, F(PATCH)) | when(method != CONIC_METHOD_POINT || job->is_patch, F(KERNEL)) |
          when(method != CONIC_METHOD_POINT && method != CONIC_METHOD_DISC, F(FILTERED)) |
          when(words->passes == 3, F(BLENDED)) | when(is_lit, F(LIT)) |
+         when(is_lit || is_masked || planes & 1u << CONIC_PLANE_NORMAL || cli_color_is_asked(&job->coloring),
+              F(SHAPED)) |
          when(is_lit || !job->camera_path || job->is_turntable || cli_color_is_asked(&job->coloring), F(UPRIGHT)) |
-         when(!has_samples || (!words->is_method_given && !is_composited), F(UNSETTLED)) |
+         when(chooses_samples(job, words) || is_rough, F(UNSETTLED)) |
          when(profile == CONIC_PROFILE_INRIA_2023 || profile == CONIC_PROFILE_2DGS_2024, F(OWN_CENTER)) |
          when(strcmp(job->device.name, "cpu") != 0, F(OPENCL)) | when(!job->is_for_looking, F(ASKING)) |
          when(!job->is_for_looking && !job->may_composite, F(TAKES_APART)) | when(!job->may_stream, F(UNSTREAMED)) |
@@ -273,6 +298,7 @@ void cli_effects_note(cli_effects_job *own, const cli_option *table, int n, cons
 static void note_parts(cli_render_job *job, const cli_scene_words *words) {
   const cli_accumulate_job *sums = &job->accumulating;
   const unsigned planes = job->is_aov_given ? job->shot.planes : 0;
+  int is_model = words->as == CONIC_AS_MESH || words->as == CONIC_AS_HYBRID;
   const struct {
     int is_given;
     const char *name;
@@ -294,6 +320,9 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
       {job->shot.gaussians.ignores_center != 0,
        "profile NAME:ignore-center",
        {.on = F(COMPOSITED), .needs = F(OWN_CENTER)}},
+      {words->is_as_given && !is_model, "as", {.on = F(FACES), .is_warned = 1}},
+      {words->is_as_given && is_model, "as mesh or hybrid", {.on = F(FACES)}},
+      {words->is_quality_given && !chooses_samples(job, words), "quality", {.on = F(SPLATS), .is_warned = 1}},
       {words->is_patch_given, "method patch:D:H", {.needs = F(PATCH)}},
       {words->is_smooth, "crease all", {.on = F(TRIANGLES)}},
       {job->stereo.is_convergence_given, "stereo E:Z", {.needs = F(STEREO)}},
@@ -334,23 +363,23 @@ static int check_one(const cli_session *session, const cli_render_job *job, cons
   const cli_effect *acts = &option->acts;
   const facts known = own->possible | own->asked;
   int is_lacking = acts->needs && !(acts->needs & known), is_foreign = acts->on && !(acts->on & known);
-  char words[768];
+  char words[1024];
   if (acts->apart & (own->certain | own->asked)) {
     put_words(acts->apart & (own->certain | own->asked), words, sizeof words);
-    return cli_usage("%s: %s%s is not of %s", session->command, option->dashes, option->name, words);
+    return cli_usage("%s: %s%s does not go with %s", session->command, option->dashes, option->name, words);
   }
   if (!is_lacking && !is_foreign)
     return CLI_DONE;
   const facts lacked = is_foreign ? acts->on : acts->needs;
   int is_source = (lacked & SOURCE_FACTS) != 0;
-  const char *of = is_source ? job->inputs[0] : "", *is = is_source ? " is not " : "it is of ";
-  const char *remedy = is_source ? find_remedy(job, acts->on) : "";
   put_words(lacked, words, sizeof words);
+  if (is_source)
+    snprintf(words + strlen(words), sizeof words - strlen(words), ", not on %s%s", job->inputs[0],
+             find_remedy(job, lacked));
+  const char *verb = is_source ? "acts on" : "needs";
   if (!acts->is_warned)
-    return cli_usage("%s: %s%s changes nothing here: %s%s%s%s", session->command, option->dashes, option->name, of, is,
-                     words, remedy);
-  cli_warn(session, "%s: %s%s changes nothing here: %s%s%s%s", session->command, option->dashes, option->name, of, is,
-           words, remedy);
+    return cli_usage("%s: %s%s has no effect: it %s %s", session->command, option->dashes, option->name, verb, words);
+  cli_warn(session, "%s: %s%s has no effect: it %s %s", session->command, option->dashes, option->name, verb, words);
   return CLI_DONE;
 }
 
