@@ -57,6 +57,8 @@ static conic_status take_triangles(drawing_source *d, const char *path, const co
   conic_status status = conic_triangles_take(context, model, &triangles);
   if (status == CONIC_OK)
     status = conic_mesh_check(context, path, &triangles);
+  if (!triangles.normal[0])
+    d->base.traits |= CONIC_TRAIT_EDGES;
   if (status == CONIC_OK && !options->is_smooth)
     status = conic_mesh_round(context, 0, options->crease_deg, &triangles);
   if (status == CONIC_OK)
@@ -94,6 +96,8 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   conic_estimate_options_init(&estimate);
   if (options->projects_degrees && model->n_triangles == 0)
     project_degrees(context, path, &model->points);
+  if (!model->points.tangent_u[0] && !model->n_triangles)
+    d->base.traits |= CONIC_TRAIT_RAW;
   estimate.cutoff = options->cutoff;
   estimate.n_neighbours = options->n_neighbours;
   estimate.finds_dots = options->finds_dots;
@@ -147,6 +151,8 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   if (status != CONIC_OK)
     return status;
   double start = conic_seconds_now();
+  d->base.traits |=
+      (model.n_triangles ? CONIC_TRAIT_FACES : 0) | (model.kind == CONIC_MODEL_XYZ ? CONIC_TRAIT_TEXT : 0);
   memcpy(up, model.up, sizeof model.up);
   if (conic_splats_bounds(&model.points, low, high) == 0)
     status = conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,
@@ -171,6 +177,7 @@ static conic_status read_into_drawing(drawing_source *d, const char *path, const
   conic_splats splats;
   if (!special || !special->take_splats)
     return read_model(d, path, options, up);
+  d->base.traits |= CONIC_TRAIT_RAW; /* as may be */
   conic_read_options reading;
   conic_read_options_init(&reading);
   conic_coloring_read(options->coloring, &reading);
@@ -382,7 +389,12 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
   }
   if (status == CONIC_OK)
     status = conic_source_color(source, options, &d->splats, &d->triangles);
-  return status == CONIC_OK ? measure_drawing(d) : status;
+  if (status != CONIC_OK)
+    return status;
+  const conic_drawing all = {&d->splats, &d->triangles};
+  source->traits |= conic_drawing_is_transparent(&all) ? CONIC_TRAIT_ALPHA : 0;
+  source->no_traits = ~source->traits;
+  return measure_drawing(d);
 }
 
 conic_status conic_source_of_drawing(conic_context *context, conic_splats *splats, conic_triangles *triangles,

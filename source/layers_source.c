@@ -58,6 +58,8 @@ static conic_status open_layers(conic_source *source, const char *const *paths, 
   scale->n_splats = found.n_samples;
   scale->n_levels = found.n_levels;
   scale->has_colors = found.has_colors;
+  if (conic_layers_schema_find(&l->layers->header.schema, CONIC_LAYERS_OPACITY) < 0)
+    source->no_traits = CONIC_TRAIT_ALPHA;
   if (found.up[0] != 0.0 || found.up[1] != 0.0 || found.up[2] != 0.0) {
     memcpy(scale->up, found.up, sizeof scale->up);
     scale->up_basis = CONIC_UP_KIND;

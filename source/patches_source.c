@@ -50,6 +50,8 @@ static conic_status open_patches(conic_source *source, const char *const *paths,
   source->scale = *conic_source_measure(p->points);
   source->scale.abilities = abilities;
   source->coloring = p->points->coloring;
+  source->traits = p->points->traits;
+  source->no_traits = p->points->no_traits;
   double start = conic_seconds_now();
   status = lay_patches(p, options);
   source->scale.estimate_seconds += conic_seconds_now() - start;

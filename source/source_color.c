@@ -21,8 +21,9 @@ conic_status conic_coloring_refuse(conic_context *context, const char *path, con
 /* Heights need to know which way is up, and so does the front of normals. */
 static conic_status find_upright(conic_source *source, conic_splats *splats, conic_triangles *triangles) {
   static conic_splats no_splats;
+  static conic_triangles no_triangles;
   conic_source_scale *scale = &source->scale;
-  const conic_drawing drawing = {splats ? splats : &no_splats, triangles};
+  const conic_drawing drawing = {splats ? splats : &no_splats, triangles ? triangles : &no_triangles};
   if (scale->up_basis != CONIC_UP_HABIT)
     return CONIC_OK;
   conic_status status = conic_upright_look(source->context, &source->shares, &drawing, &scale->up_basis);

@@ -8,6 +8,15 @@
 #include "source/facts.h"
 #include "source/source_parts.h"
 
+/* What a source was made of, which its scale does not say, as bits. */
+typedef enum conic_source_trait {
+  CONIC_TRAIT_FACES = 1, /* a file has faces, whatever became of them */
+  CONIC_TRAIT_EDGES = 2, /* triangles whose file has no normals */
+  CONIC_TRAIT_RAW = 4,   /* points whose sizes were estimated */
+  CONIC_TRAIT_TEXT = 8,  /* a file of text */
+  CONIC_TRAIT_ALPHA = 16 /* it lets light through */
+} conic_source_trait;
+
 typedef enum conic_source_company {
   CONIC_SOURCE_SINGLE, /* takes the only input; beside others its splats are taken */
   CONIC_SOURCE_ALONE,  /* refuses to stand beside others */
@@ -80,7 +89,9 @@ struct conic_source {
   int is_moved;            /* what is drawn has another box than the scale's: */
   double moved_minimum[3], moved_maximum[3];
   double world_from_rest[3][4]; /* of one that is carried and moved */
+  unsigned traits, no_traits;   /* bits of conic_source_trait: what it has, and what it is known not to have */
   conic_splats outline;         /* conic_source_take_samples', where they were asked for */
+  double samples_until;         /* on the clock: no more is read for the outline from then on; 0: no limit */
   double tolerance;             /* by which splats made of meshes are off these; 0: none are */
   conic_splats_shares shares;   /* where a team has the splats among it, what of them is chosen to be looked at */
 };

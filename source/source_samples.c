@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/clock.h"
 #include "core/base/vectors.h"
 
 enum { SIDE = 96, N_VIEWS = 6 };
@@ -53,6 +54,10 @@ static void add_picture(conic_splats *samples, const conic_camera *camera, const
   }
 }
 
+void conic_source_limit_samples(conic_source *source, double seconds) {
+  source->samples_until = conic_seconds_now() + seconds;
+}
+
 /* From some of the sides. */
 static conic_status draw_around(conic_source *source, conic_renderer *renderer, conic_image *image, int begin, int end,
                                 conic_splats *samples) {
@@ -67,8 +72,11 @@ static conic_status draw_around(conic_source *source, conic_renderer *renderer, 
   render.cull_back = 1; /* so that normals are the surface's own, and what is open is seen to be */
   render.shading = CONIC_SHADE_NONE;
   view.error_px = sample_error_px;
+  view.may_be_coarser = source->samples_until > 0.0;
   for (int i = begin; i < end && status == CONIC_OK; i++) {
     conic_camera camera;
+    if (view.may_be_coarser)
+      view.seconds = fmax(source->samples_until - conic_seconds_now(), 1e-3); /* 0 would be no limit */
     framing.azimuth_deg = directions[i][0];
     framing.elevation_deg = directions[i][1];
     status = conic_source_frame(source, &framing, &camera);

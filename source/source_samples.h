@@ -8,6 +8,9 @@
 /* Discs about what is seen of it from six sides. On success the caller releases them. Errors: as conic_source_draw. */
 conic_status conic_source_take_samples(conic_source *source, conic_splats *samples);
 
+/* From now on samples are taken of what is there within so many seconds: what comes later is left coarser. */
+void conic_source_limit_samples(conic_source *source, double seconds);
+
 /* Collective, once each process of a team has opened the source, or failed to with `status`: takes the samples that
  * conic_source_stand and conic_source_fit will look at, each process those of some sides. Nothing where the source
  * hands all over, or the team is null. Errors: as those of conic_source_take_samples, CANCELLED. */

@@ -54,7 +54,7 @@ int cli_help_next(const cli_option_table *table, int *i, cli_help_entry *entry) 
     const cli_option *row = is_common ? &table->common[*i - table->n_own] : &table->own[*i];
     if (row->group || *i == table->n_own)
       entry->group = row->group ? row->group : "options of every command";
-    if (row->help && !(is_common && is_replaced(table, row)))
+    if (row->help && !row->now && !(is_common && is_replaced(table, row)))
       option = row;
   }
   if (!option)

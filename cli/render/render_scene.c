@@ -76,7 +76,7 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job) {
 
 /* Whether what a source looks like all around decides the camera. */
 static int is_seen_around(const cli_render_job *job) {
-  return !job->is_plain && job->deadline <= 0.0 && (!job->camera_path || job->is_turntable);
+  return !job->is_plain && (!job->camera_path || job->is_turntable);
 }
 
 /* Finds out which way is up, and says so where that was a guess. */
@@ -115,6 +115,8 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
     status = resolve_lengths(session, job);
   if (status == CONIC_OK)
     conic_source_settle(job->source, &job->shot.render);
+  if (status == CONIC_OK && job->deadline > 0.0)
+    conic_source_limit_samples(job->source, cli_seconds_left(job));
   double start = cli_seconds();
   conic_team team;
   if (is_seen_around(job) && job->sharing != CONIC_UNITS_NONE && !session->host)
@@ -125,6 +127,8 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   job->camera_ms += 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)
     cli_lights_settle(job);
+  if (status == CONIC_OK && cli_effects_check_open(session, job) != CLI_DONE)
+    status = CONIC_ERROR_ARGUMENT;
   return status;
 }
 
@@ -146,7 +150,7 @@ static conic_shot_framing framing_of(const cli_render_job *job, int i_frame) {
   framing.kind = (conic_camera_kind)job->projection;
   framing.finds_up = !job->is_up_given;
   framing.finds_elevation = !job->is_elevation_given;
-  framing.is_plain = job->is_plain || job->deadline > 0.0; /* to find the outline takes time */
+  framing.is_plain = job->is_plain;
   framing.has_eye = job->is_eye_given;
   memcpy(framing.eye, job->eye, sizeof framing.eye);
   framing.i_turn = i_frame;

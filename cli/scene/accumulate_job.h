@@ -28,9 +28,9 @@ typedef struct cli_accumulate_job {
   cli_length width; /* of the lens */
   cli_focus focus;
   int n_blades;
-  double shutter[2];                             /* frames, from the one that is drawn */
-  int is_shutter_given, is_lens_given, is_given; /* is_lens_given: --focus or --blades */
-  unsigned long long i_sample;                   /* --sample: of commands that ask about one */
+  double shutter[2]; /* frames, from the one that is drawn */
+  int is_shutter_given;
+  unsigned long long i_sample; /* --sample: of commands that ask about one */
   int is_sample_given;
   const char *motion_path; /* null: the scene stands still */
   conic_motion *motion;    /* once it is read */
@@ -44,6 +44,7 @@ typedef struct cli_accumulate_job {
 
 /* Parsers of values: auto, a depth or X,Y in pixels, into a cli_focus; A:B into a double[2]. */
 int cli_parse_focus(const char *text, void *value);
+int cli_parse_blades(const char *text, void *value); /* into a cli_accumulate_job */
 int cli_parse_shutter(const char *text, void *value);
 
 /* What the options mean together with the others. */

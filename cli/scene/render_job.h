@@ -7,6 +7,7 @@
 #include "cli/json_write.h"
 #include "cli/scene/accumulate_job.h"
 #include "cli/scene/lamp_job.h"
+#include "cli/scene/option_effects.h"
 #include "cli/scene/top_job.h"
 #include "cli/team_shares.h"
 #include "conic/shot.h"
@@ -35,6 +36,7 @@ typedef struct cli_render_job {
   conic_shot shot;
 
   /* What else was asked for. */
+  cli_effects_job effects;
   int n_arguments;
   char **arguments; /* as they were given, the command's name first */
   const char **inputs;
@@ -80,7 +82,7 @@ typedef struct cli_render_job {
   int is_error_warned; /* that --error is not kept */
   int is_alpha_warned; /* that alpha is not shown */
   int repeat;
-  int is_aov_given, is_samples_given, is_prefilter_given;
+  int is_aov_given, is_samples_given, is_prefilter_given, is_color_error_given;
   cli_stereo stereo;               /* --stereo */
   cli_accumulate_job accumulating; /* --accumulate */
   struct cli_kept_frames *kept;    /* --resumable and --resume, of several frames (cli/render/kept_frames.h) */
@@ -163,6 +165,7 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, conic_
                                conic_shot_outcome *outcome);
 /* Opening, and one picture, get what is left of the deadline. */
 void cli_deadline_open(cli_render_job *job);
+double cli_seconds_left(const cli_render_job *job); /* of the deadline; above 0 */
 conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_shot_outcome *outcome);
 
 /* Wrong usage where a plane that was asked for goes into no file. */
@@ -185,9 +188,8 @@ conic_status cli_frame_write(cli_session *session, cli_render_job *job, const co
 conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,
                                 const conic_image *image);
 
-/* --cryptomatte: wrong usage where there is nothing to name, or nowhere to write it. */
-int cli_mattes_check(const cli_render_job *job);
-/* Fills the image's matte planes, and names the mattes in job->manifest, which the image then has. */
+/* --aov cryptomatte. Fills the image's matte planes, and names the mattes in job->manifest, which the image then has.
+ */
 conic_status cli_mattes_fill(cli_session *session, cli_render_job *job, const conic_camera *camera, conic_image *image);
 
 /* --legend, --legend-out: what the colours mean, over the image and by itself. */

@@ -13,7 +13,6 @@ struct cli_render_job;
 /* What was asked for, and what became of it. */
 typedef struct cli_top_job {
   int is_wanted;
-  int is_given;       /* an option that means nothing without it */
   double gsd;         /* a pixel's edge in world units; 0: the points' spacing */
   cli_cut_region box; /* infinite: all there is */
   int epsg;           /* 0: as the file says */
