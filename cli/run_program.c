@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/session_team.h"
 #include "core/base/nearest_word.h"
 
 static const cli_command *const commands[] = {&cli_make,     &cli_prepare,     &cli_octree, &cli_layer,   &cli_merge,
@@ -56,7 +55,7 @@ static int print_version(void) {
   return CLI_DONE;
 }
 
-static int run_command(int argc, char **argv, cli_team *team) {
+static int run_command(int argc, char **argv, const struct conic_executor *team) {
   const cli_command *command = cli_find_command(argv[0]);
   if (!command)
     return cli_refuse_command(argv[0]);
@@ -66,7 +65,7 @@ static int run_command(int argc, char **argv, cli_team *team) {
   return exit_code;
 }
 
-static int run(int argc, char **argv, cli_team *team) {
+static int run(int argc, char **argv, const struct conic_executor *team) {
   if (argc < 2) {
     cli_help_usage(stderr);
     return CLI_USAGE;
@@ -78,7 +77,7 @@ static int run(int argc, char **argv, cli_team *team) {
   return run_command(argc - 1, argv + 1, team);
 }
 
-int cli_program(int argc, char **argv, cli_team *team) {
+int cli_program(int argc, char **argv, const struct conic_executor *team) {
   int exit_code = run(argc, argv, team);
   errno = 0;
   if ((fflush(stdout) != 0 || ferror(stdout)) && exit_code < CLI_USAGE)

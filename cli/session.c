@@ -47,6 +47,10 @@ unsigned long long cli_peak_rss_bytes(void) {
   return cli_shell_peak_bytes();
 }
 
+int cli_session_speaks(const cli_session *session) {
+  return !session->team || session->team->index == 0;
+}
+
 static void erase_bar(void) {
   if (bar_is_shown)
     fputs("\r\033[K", stderr);
@@ -289,7 +293,7 @@ int cli_session_open(cli_session *session) {
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
   conic_guard_inputs(session->context, session->replaced_path);
-  session->has_bar = !session->is_quiet && cli_shell_has_cursor() && cli_team_is_first(session);
+  session->has_bar = !session->is_quiet && cli_shell_has_cursor() && cli_session_speaks(session);
   cli_stopper_begin(session->context, session->command);
   cli_shell_catch(on_interrupt, on_closed_pipe);
   return CLI_DONE;

@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "cli/render/frames.h"
-#include "cli/render/sharing.h"
-#include "cli/session_team.h"
+#include "cli/render/units.h"
 #include "cli/stopper.h"
 #include "core/files/disk.h"
 #include "shots/stage.h"
@@ -127,7 +126,7 @@ static char *resumed_name(const kept_sums *work, conic_status *status) {
   const cli_render_job *job = work->job;
   const cli_accumulate_job *own = &job->accumulating;
   conic_disk_entry entry;
-  if (!own->resume_path || !cli_team_is_first(work->session))
+  if (!own->resume_path || !cli_session_speaks(work->session))
     return NULL;
   char *name = job->kept ? sums_name(job, work->i_frame) : malloc(strlen(own->resume_path) + 8);
   if (!name) {
@@ -193,8 +192,7 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
   if (i_frame == job->frames.first - 1)
     tell_wide_lens(session, job);
   conic_status status = conic_shot_work_begin(job->source, job->renderer, &job->shot, &drawing);
-  drawing.executor = cli_sharing_executor(job);
-  drawing.units = job->sharing;
+  cli_units_join(job, &drawing);
   drawing.keeper = &keeper;
   drawing.seconds = own->seconds;
   if (status == CONIC_OK)

@@ -2,7 +2,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "cli/render/sharing.h"
+#include "cli/render/units.h"
 #include "core/files/disk.h"
 #include "shots/stage.h"
 
@@ -26,8 +26,7 @@ conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_s
   conic_shot_work drawing;
   begin_deadline(job);
   conic_status status = conic_shot_work_begin(job->source, job->renderer, &job->shot, &drawing);
-  drawing.executor = cli_sharing_executor(job);
-  drawing.units = job->sharing;
+  cli_units_join(job, &drawing);
   return status == CONIC_OK ? conic_shot_work_draw(&drawing, image, outcome) : status;
 }
 

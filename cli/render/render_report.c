@@ -4,7 +4,7 @@
 #include "cli/color_options.h"
 #include "cli/render/frames.h"
 #include "cli/render/kept_frames.h"
-#include "cli/render/sharing.h"
+#include "cli/render/units.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/views.h"
 #include "cli/source_facts.h"
@@ -217,7 +217,7 @@ int cli_render_report(cli_session *session, const cli_render_job *job, const con
   report_hashes(json, job, image);
   if (job->kept)
     cli_json_count(json, "frames_finished", (uint64_t)cli_kept_frames_count(job));
-  cli_sharing_report(json, job);
+  cli_units_report(json, job);
   report_times(json, job);
   exit_code = cli_json_finish(file);
   return status == CONIC_OK ? exit_code : cli_exit_of(status);

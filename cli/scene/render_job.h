@@ -9,12 +9,10 @@
 #include "cli/scene/lamp_job.h"
 #include "cli/scene/option_effects.h"
 #include "cli/scene/top_job.h"
-#include "cli/team_shares.h"
+#include "cli/team_report.h"
 #include "conic/shot.h"
-#include "core/base/team.h"
 #include "core/files/sha256.h"
 #include "core/pictures/cryptomatte.h"
-#include "shots/executor.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
@@ -120,14 +118,11 @@ typedef struct cli_render_job {
   uint64_t hashes[CONIC_N_PLANES];     /* of the last image, where they are reported */
   unsigned banded_planes;              /* of a picture that nobody held: its planes; 0: it was held */
 
-  /* Of a team. */
-  conic_shared_units sharing;
-  conic_team library_team; /* the same, as the source may have it */
-  conic_executor executor; /* the same, as shots are drawn by it */
-  const cli_session *session;
-  uint64_t n_units; /* that this process did, */
-  double busy_seconds;
-  cli_team_shares shares;           /* what all did */
+  /* Of a team (cli/render/units.h). */
+  conic_shared_units units;
+  const conic_executor *executor; /* by which they are shared: the team's, or */
+  conic_alone alone;
+  cli_team_report team;             /* what all did */
   char kept_key[CONIC_SHA256_ROOM]; /* what decides the bits, where --resumable or --resume keep frames or strips */
 } cli_render_job;
 
