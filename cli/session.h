@@ -40,6 +40,8 @@ typedef struct cli_session {
 int cli_session_open(cli_session *session);
 /* From now on what this thread prints for people is said to the session's host, if it has one; null: no longer. */
 void cli_session_host(cli_session *session);
+/* From now on `hold` sees what this process would print for people, and keeps it where it returns 1. */
+void cli_session_hold(int (*hold)(conic_log_level level, const char *message));
 /* Ends the context; fine where it was never made. */
 void cli_session_close(cli_session *session);
 

@@ -10,7 +10,8 @@ static int is_agreeing, agreed_failure;
 static char first_error[2048];
 static cli_team_work units, stages;
 
-int cli_team_keeps(conic_log_level level, const char *message) {
+/* An error is printed once all have agreed; what else others than the first process say is not printed. */
+static int hold_message(conic_log_level level, const char *message) {
   if (!own_team || own_team->count < 2 || is_agreeing)
     return 0;
   if (level != CONIC_LOG_ERROR)
@@ -118,6 +119,7 @@ void cli_team_watch(conic_executor *alone) {
 
 void cli_team_join(conic_executor *team) {
   own_team = team;
+  cli_session_hold(hold_message);
   team->agree = agree_statuses;
   team->did = note_unit;
   if (!team->team)

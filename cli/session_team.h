@@ -13,9 +13,6 @@
 /* The team of this process from now on, which is to stay, and whose messages it keeps. Fills in what the program has to
  * say: its `agree` and `did`, and the library's `note`. */
 void cli_team_join(conic_executor *team);
-/* Whether the message is not to be printed here and now: an error is printed once all have agreed, what else others
- * than the first process say is not printed. */
-int cli_team_keeps(conic_log_level level, const char *message);
 
 /* Whether there are others to share the work with. */
 int cli_team_is_shared(const cli_session *session);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/arguments_key.h"
+#include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/strip_pictures.h"
 #include "cli/render/units.h"
@@ -286,7 +287,7 @@ conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int
     hand_lines(job, &nothing);
   if (!*is_finished && !job->accumulating.resume_path &&
       cli_units_make_picture(session, job)) /* sums of another time */
-    cli_accumulate_forget(job, i_frame);
+    cli_sums_forget(job, i_frame);
   return status;
 }
 
@@ -305,7 +306,7 @@ conic_status cli_kept_frames_add(cli_session *session, cli_render_job *job, int 
     status = add_bytes(kept->context, &kept->lines, last, (size_t)n);
   if (status == CONIC_OK) {
     hand_lines(job, &kept->lines);
-    cli_accumulate_forget(job, i_frame);
+    cli_sums_forget(job, i_frame);
   }
   return status == CONIC_OK ? tell_error(kept) : status;
 }

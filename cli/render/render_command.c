@@ -5,11 +5,11 @@
 #include "cli/command.h"
 #include "cli/host_keeps.h"
 #include "cli/render/fill_shot.h"
+#include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/kept_frames.h"
 #include "cli/render/strip_pictures.h"
 #include "cli/render/units.h"
-#include "cli/scene/background_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/session_team.h"
 #include "core/base/message.h"
@@ -45,138 +45,6 @@ static void take_medians(cli_render_job *job, conic_render_statistics *frames, s
   ms.resolve = median_of(frames, n, offsetof(conic_render_milliseconds, resolve));
   job->statistics = last;
   job->statistics.ms = ms;
-}
-
-static void name_attribute(conic_image *image, const char *name, const char *text, double value) {
-  conic_attribute *attribute = &image->attributes[image->n_attributes++];
-  memset(attribute, 0, sizeof *attribute);
-  snprintf(attribute->name, sizeof attribute->name, "%s", name);
-  attribute->type = text ? CONIC_ATTRIBUTE_TEXT : CONIC_ATTRIBUTE_DOUBLE;
-  if (text)
-    snprintf(attribute->text, sizeof attribute->text, "%s", text);
-  attribute->values[0] = value;
-}
-
-/* What the picture says of itself in its header. */
-void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, conic_image *image) {
-  const conic_render_statistics *s = &job->statistics;
-  image->n_attributes = 0;
-  name_attribute(image, "conicVersion", conic_version(), 0);
-  name_attribute(image, "conicMethod", cli_method_name(job), 0);
-  name_attribute(image, "conicEpsilonMode", s->epsilon_is_fixed ? "fixed" : "auto", 0);
-  name_attribute(image, "conicEpsilon", NULL, s->epsilon);
-  name_attribute(image, "conicNear", NULL, s->near_z);
-  name_attribute(image, "conicCutoff", NULL, (double)job->shot.render.kernel.cutoff);
-  name_attribute(image, "conicPrefilter", NULL,
-                 job->abilities & CONIC_SOURCE_COMPOSITES ? job->shot.gaussians.prefilter
-                                                          : (double)job->shot.render.prefilter);
-  name_attribute(image, "conicExposure", NULL, job->shot.render.exposure);
-  name_attribute(image, "conicSamples", NULL, (double)job->shot.view.samples);
-  name_attribute(image, "conicFx", NULL, camera->fx);
-  name_attribute(image, "conicFy", NULL, camera->fy);
-  name_attribute(image, "conicCx", NULL, camera->cx);
-  name_attribute(image, "conicCy", NULL, camera->cy);
-  conic_attribute *matrix = &image->attributes[image->n_attributes++];
-  memset(matrix, 0, sizeof *matrix);
-  snprintf(matrix->name, sizeof matrix->name, "conicWorldToCamera");
-  matrix->type = CONIC_ATTRIBUTE_MATRIX;
-  memcpy(matrix->values, camera->cam_from_world, sizeof camera->cam_from_world);
-  matrix->values[15] = 1.0;
-  cli_accumulate_describe(job, image);
-  conic_image_describe_camera(image, camera);
-}
-
-/* Display values are past all curves. */
-static void check_tone(const cli_session *session, cli_render_job *job, const conic_image *image) {
-  if (job->tone == CONIC_TONE_SRGB || !image->is_display)
-    return;
-  conic_log(session->context, CONIC_LOG_WARNING, "%s: no --tone: the colours are display values, not linear",
-            job->inputs[0]);
-  job->tone = CONIC_TONE_SRGB; /* said once */
-}
-
-conic_status cli_frame_write(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
-  conic_moment start = conic_moment_now();
-  conic_status status = CONIC_OK;
-  check_tone(session, job, image);
-  for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
-    char *path = cli_frame_name(job, job->outputs[i], i_frame);
-    status = path ? cli_backdrop_write(session, job, path, image) : CONIC_ERROR_MEMORY;
-    free(path);
-  }
-  job->write_ms += 1e3 * (cli_seconds() - start.clock_s);
-  if (job->units != CONIC_UNITS_FRAMES) /* whose units write */
-    cli_team_trace(session, "write", "picture", (uint64_t)i_frame, start, 0);
-  return status;
-}
-
-/* A picture beside the frame's, which it releases, where `status` says that it was made, from `start` on. */
-static conic_status write_beside(cli_session *session, cli_render_job *job, const char *name, int i_frame, double start,
-                                 conic_status status, conic_image *map) {
-  char *path = status == CONIC_OK ? cli_frame_name(job, name, i_frame) : NULL;
-  if (status == CONIC_OK) {
-    status = path ? conic_image_write_as(session->context, path, map, &job->writing) : CONIC_ERROR_MEMORY;
-    conic_image_release(session->context, map);
-  }
-  free(path);
-  job->write_ms += 1e3 * (cli_seconds() - start);
-  return status;
-}
-
-/* --overdraw: the count plane in false colours. */
-static conic_status write_overdraw(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
-  conic_image map;
-  double start = cli_seconds();
-  if (!job->overdraw_path)
-    return CONIC_OK;
-  conic_status status = job->is_overdraw_confetti ? conic_image_overdraw_confetti(session->context, image, &map)
-                                                  : conic_image_overdraw(session->context, image, &map);
-  return write_beside(session, job, job->overdraw_path, i_frame, start, status, &map);
-}
-
-/* --clusters: the clusters of a hybrid in false colours. */
-static conic_status write_clusters(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
-  double start = cli_seconds();
-  if (!job->clusters_path)
-    return CONIC_OK;
-  char *path = cli_frame_name(job, job->clusters_path, i_frame);
-  conic_status status = path ? cli_clusters_write(session, job, path, image) : CONIC_ERROR_MEMORY;
-  free(path);
-  job->write_ms += 1e3 * (cli_seconds() - start);
-  return status;
-}
-
-/* --boxes: the nodes of an octree. */
-static conic_status write_boxes(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                                const conic_image *image, int i_frame) {
-  const conic_octree *octree = job->boxes_path ? conic_source_octree(job->source) : NULL;
-  conic_image map;
-  double start = cli_seconds();
-  if (!octree)
-    return CONIC_OK;
-  conic_status status = conic_octree_draw_boxes(octree, camera, job->box_level, image, &map);
-  return write_beside(session, job, job->boxes_path, i_frame, start, status, &map);
-}
-
-/* --deep: what is behind the picture's pixels. */
-static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                               const conic_image *image, int i_frame) {
-  const conic_drawing *drawing = &conic_source_chosen(job->source)->drawing;
-  conic_contributions *contributions;
-  double start = cli_seconds();
-  if (!job->deep_path)
-    return CONIC_OK;
-  char *path = cli_frame_name(job, job->deep_path, i_frame);
-  conic_status status =
-      path ? conic_contributions_create_drawing(session->context, drawing, camera, &job->shot.render, &contributions)
-           : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK) {
-    status = conic_contributions_write(contributions, path, image);
-    conic_contributions_destroy(contributions);
-  }
-  free(path);
-  job->write_ms += 1e3 * (cli_seconds() - start);
-  return status;
 }
 
 /* A picture without anything in it is more often a mistaken camera than what was wanted. */
@@ -317,22 +185,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   warn_of_empty(session, job);
   warn_of_error(session, job);
   warn_of_alpha(session, job);
-  cli_frame_describe(job, &camera, image);
-  if (job->has_mattes)
-    status = cli_mattes_fill(session, job, &camera, image);
-  if (status != CONIC_OK)
-    return status;
-  status = cli_legend_show(session, job, image);
-  if (status == CONIC_OK)
-    status = cli_frame_write(session, job, image, i_frame);
-  if (status == CONIC_OK)
-    status = write_overdraw(session, job, image, i_frame);
-  if (status == CONIC_OK)
-    status = write_clusters(session, job, image, i_frame);
-  if (status == CONIC_OK)
-    status = write_boxes(session, job, &camera, image, i_frame);
-  if (status == CONIC_OK)
-    status = write_deep(session, job, &camera, image, i_frame);
+  status = cli_frame_files_write(session, job, &camera, image, i_frame);
   if (status == CONIC_OK)
     cli_host_take(session, i_frame, job->cameras.count ? job->cameras.names[job->i_view] : "", image, &camera);
   return status;

@@ -149,6 +149,21 @@ static void report_camera(cli_json *json, const cli_render_job *job) {
   cli_json_close(json);
 }
 
+static void report_top(cli_json *json, const cli_top_job *top) {
+  cli_json_object(json, "top");
+  cli_json_number(json, "gsd", top->gsd);
+  cli_json_count(json, "width", (uint64_t)top->width);
+  cli_json_count(json, "height", (uint64_t)top->height);
+  cli_json_array(json, "corner");
+  cli_json_number(json, NULL, (double)top->column * top->gsd);
+  cli_json_number(json, NULL, -(double)top->row * top->gsd);
+  cli_json_close(json);
+  if (top->found_epsg)
+    cli_json_count(json, "epsg", top->found_epsg);
+  cli_json_count(json, "blocks", top->n_blocks);
+  cli_json_close(json);
+}
+
 static void report_settings(cli_json *json, const cli_render_job *job) {
   const conic_render_statistics *s = &job->statistics;
   cli_json_text(json, "device", job->device.used);
@@ -164,7 +179,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_number(json, "near", s->near_z);
   report_camera(json, job);
   if (job->top.is_wanted)
-    cli_top_report(json, &job->top);
+    report_top(json, &job->top);
   cli_lights_report(json, job);
   cli_backdrop_report(json, job);
   cli_json_count(json, "frames", (uint64_t)cli_frames_count(job));

@@ -12,14 +12,6 @@
 #include "core/files/file.h"
 #include "shots/way.h"
 
-int cli_lod_is_wanted(const cli_render_job *job) {
-  return job->shot.view.error_px > 0.0 || job->budget > 0;
-}
-
-const char *cli_method_name(const cli_render_job *job) {
-  return job->is_patch ? "patch" : conic_method_name(job->shot.render.method);
-}
-
 static conic_status read_views(cli_session *session, cli_render_job *job) {
   const cli_views_wish wish = {job->camera_path, job->view_name, job->camera_size[0], job->camera_size[1]};
   conic_status status = cli_views_read(session, &wish, &job->cameras, &job->i_view);

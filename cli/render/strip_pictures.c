@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <strings.h>
 
+#include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/units.h"
 #include "core/base/machine.h"

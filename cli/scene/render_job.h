@@ -175,21 +175,6 @@ conic_status cli_planes_write(cli_session *session, const cli_render_job *job, c
 /* How rgba is written: with the tone. */
 conic_image_options cli_picture_writing(const cli_render_job *job);
 
-/* Says in a picture's header what it is, and writes it to all outputs. */
-void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, conic_image *image);
-conic_status cli_frame_write(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame);
-
-/* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
-conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,
-                                const conic_image *image);
-
-/* --aov cryptomatte. Fills the image's matte planes, and names the mattes in job->manifest, which the image then has.
- */
-conic_status cli_mattes_fill(cli_session *session, cli_render_job *job, const conic_camera *camera, conic_image *image);
-
-/* --legend, --legend-out: what the colours mean, over the image and by itself. */
-conic_status cli_legend_show(cli_session *session, cli_render_job *job, conic_image *image);
-
 /* Says what was drawn, and what it took. */
 void cli_render_tell(cli_session *session, const cli_render_job *job);
 /* Writes the statistics of the finished job to the session's --json file, if any. Returns the exit code. */
