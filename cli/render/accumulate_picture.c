@@ -174,8 +174,7 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
   own->n_resumed = 0;
   if (i_frame == job->frames.first - 1)
     tell_wide_lens(session, job);
-  conic_status status = conic_shot_work_begin(job->source, job->renderer, &job->shot, &drawing);
-  cli_units_join(job, &drawing);
+  conic_status status = cli_shot_begin(job, &drawing);
   drawing.keeper = &keeper;
   drawing.seconds = own->seconds;
   if (status == CONIC_OK)

@@ -25,8 +25,7 @@ static void begin_deadline(cli_render_job *job) {
 conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_shot_outcome *outcome) {
   conic_shot_work drawing;
   begin_deadline(job);
-  conic_status status = conic_shot_work_begin(job->source, job->renderer, &job->shot, &drawing);
-  cli_units_join(job, &drawing);
+  conic_status status = cli_shot_begin(job, &drawing);
   return status == CONIC_OK ? conic_shot_work_draw(&drawing, image, outcome) : status;
 }
 

@@ -90,8 +90,7 @@ conic_status cli_render_in_strips(cli_session *session, cli_render_job *job, int
                                   .goes_on = own->resume_path != NULL,
                                   .may_begin = own->is_resumable};
   conic_shot_work work;
-  conic_status status = conic_shot_work_begin(job->source, job->renderer, &job->shot, &work);
-  cli_units_join(job, &work);
+  conic_status status = cli_shot_begin(job, &work);
   if (!path || status != CONIC_OK)
     status = work.executor->agree(work.executor->data, path ? status : CONIC_ERROR_MEMORY);
   else

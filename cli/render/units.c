@@ -99,12 +99,14 @@ int cli_units_make_picture(const cli_session *session, const cli_render_job *job
   return job->units <= CONIC_UNITS_FRAMES || cli_session_speaks(session);
 }
 
-void cli_units_join(const cli_render_job *job, conic_shot_work *work) {
+conic_status cli_shot_begin(const cli_render_job *job, conic_shot_work *work) {
+  conic_status status = conic_shot_work_begin(job->source, job->renderer, &job->shot, work);
   work->units = job->units;
   if (job->units > CONIC_UNITS_FRAMES)
     work->executor = job->executor;
   else
     cli_team_watch(&work->alone.executor);
+  return status;
 }
 
 conic_status cli_units_agree(const cli_render_job *job, conic_status status) {

@@ -26,8 +26,9 @@ int cli_units_are_others(const cli_session *session, const cli_render_job *job);
 /* Whether a picture that is drawn comes together in this process, which writes it. */
 int cli_units_make_picture(const cli_session *session, const cli_render_job *job);
 
-/* The work is done by the team, where it shares units of one picture; a drawing of the job's that has begun. */
-void cli_units_join(const cli_render_job *job, conic_shot_work *work);
+/* Begins to draw the job's shot: by this process, or by all that share units of a picture. Errors: as
+ * conic_shot_work_begin; the work then still says who draws. */
+conic_status cli_shot_begin(const cli_render_job *job, conic_shot_work *work);
 
 /* Collective, where anything is shared: what all came to. Alone, the status itself. */
 conic_status cli_units_agree(const cli_render_job *job, conic_status status);
