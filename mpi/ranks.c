@@ -312,10 +312,14 @@ static void share_units(void *unused, uint64_t n, conic_unit_taker *take, void *
     ranks_barrier();
 }
 
-/* Under the lock. */
+/* Under the lock. While its thread takes what others hand over, rank 0 gets on more slowly, and should not be the last
+ * to end. So it leaves the rest to them once there are fewer units for each than eight times the part of its time that
+ * went so. That part is not known before the first results come, so it is taken to be n_ranks / 64 at least. */
 static int leaves_rest(void) {
-  double left = work.end > work.next ? (double)(work.end - work.next) : 0.0;
-  return work.take && conic_executor_leaves_rest(left, n_ranks, work.busy_s, conic_seconds_now() - work.begun_s);
+  double left = work.end > work.next ? (double)(work.end - work.next) : 0.0,
+         lasted_s = conic_seconds_now() - work.begun_s, part = lasted_s > 0.0 ? work.busy_s / lasted_s : 0.0,
+         least = n_ranks / 64.0;
+  return work.take && left < 8.0 * n_ranks * (part > least ? part : least);
 }
 
 static uint64_t next_of_first(void) {

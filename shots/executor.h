@@ -62,14 +62,6 @@ typedef struct conic_alone {
 /* Makes it; `alone` is to stay where it is. What its `did` and `trace` are to do may be set afterwards. */
 void conic_executor_alone(conic_alone *alone);
 
-/* While it takes what others hand over, the first process gets on more slowly, and should not be the last to end. So it
- * leaves the rest to them once there are fewer units for each than eight times the part of its time that went so. That
- * part is not known before the first results come, so it is taken to be n_processes / 64 at least. */
-static inline int conic_executor_leaves_rest(double n_left, int n_processes, double busy_s, double of_s) {
-  double part = of_s > 0.0 ? busy_s / of_s : 0.0, least = n_processes / 64.0;
-  return n_left < 8.0 * n_processes * (part > least ? part : least);
-}
-
 /* Which kind of unit several processes share. */
 typedef enum conic_shared_units {
   CONIC_UNITS_NONE = 0, /* one process does all */

@@ -11,6 +11,7 @@
 #include "cli/scene/views.h"
 #include "core/files/file.h"
 #include "shots/way.h"
+#include "source/source_samples.h"
 
 static conic_status read_views(cli_session *session, cli_render_job *job) {
   const cli_views_wish wish = {job->camera_path, job->view_name, job->camera_size[0], job->camera_size[1]};
