@@ -157,10 +157,6 @@ static int is_within_limits(const cli_option *option, double value) {
   return (option->minimum == 0.0 && option->maximum == 0.0) || (value >= option->minimum && value <= option->maximum);
 }
 
-const char *cli_dashes(const cli_option *option) {
-  return option->dashes ? option->dashes : option->name[1] ? "--" : "-";
-}
-
 static int refuse_range(const cli_session *session, const cli_option *option, const char *text) {
   return cli_usage("%s: %s%s: %s is not between %.10g and %.10g", session->command, cli_dashes(option), option->name,
                    text, option->minimum, option->maximum);

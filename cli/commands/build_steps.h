@@ -4,9 +4,8 @@
 
 #include "cli/arguments.h"
 #include "cli/json_write.h"
-#include "cli/team_shares.h"
+#include "cli/team_report.h"
 #include "cli/tell.h"
-#include "core/base/team.h"
 
 /* The first member of a command's job. */
 typedef struct cli_build {
@@ -17,8 +16,8 @@ typedef struct cli_build {
   int is_in_place;     /* the output is the input */
   cli_stage stages[6]; /* in the order in which they are told; their number is that of the names */
   double total_seconds;
-  conic_team team; /* of the processes that share it, if there are more than one */
-  cli_team_shares shares;
+  int is_shared; /* several processes make it, which did: */
+  cli_team_report team;
 } cli_build;
 
 /* What a command does; each function gets the job. */

@@ -6,7 +6,6 @@
 #include "cli/commands/mls_cells.h"
 #include "cli/commands/mls_sizes.h"
 #include "cli/device_option.h"
-#include "cli/session_team.h"
 #include "core/base/message.h"
 #include "core/splats/repairs_log.h"
 
@@ -305,7 +304,7 @@ static int make_points(void *cookie) {
   if (status == CONIC_OK)
     status = work(job);
   status = cli_build_part(&job->base, status);
-  return status == CONIC_OK && cli_team_is_first(job->base.session) ? write_points(job) : cli_exit_of(status);
+  return status == CONIC_OK && cli_session_speaks(job->base.session) ? write_points(job) : cli_exit_of(status);
 }
 
 static void release_points(void *cookie) {

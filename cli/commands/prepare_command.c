@@ -6,7 +6,6 @@
 #include "cli/commands/build_steps.h"
 #include "cli/commands/prepare_bake.h"
 #include "cli/points/points_input.h"
-#include "cli/session_team.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
@@ -154,7 +153,7 @@ static int make_prepared(void *cookie) {
   status = cli_build_part(&job->base, status);
   start = cli_build_end_stage(&stages[WORK], start);
   int exit_code = cli_exit_of(status);
-  if (exit_code == CLI_DONE && cli_team_is_first(job->base.session))
+  if (exit_code == CLI_DONE && cli_session_speaks(job->base.session))
     exit_code = write_splats(job);
   cli_build_end_stage(&stages[WRITE], start);
   return exit_code;

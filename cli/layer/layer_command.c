@@ -33,7 +33,7 @@ static void report_layers(cli_json *json, const void *cookie) {
   cli_build_report_seconds(json, &job->base, "points_per_s", (double)s->n_in / job->base.total_seconds);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
   cli_json_skipped(json, &repairs);
-  cli_team_shares_report(json, "points", &job->shares);
+  cli_team_report_write(json, "points", &job->team);
 }
 
 static void tell_layers(const void *cookie) {
@@ -121,7 +121,7 @@ static int make_layers(void *cookie) {
   job->base.stages[2].seconds = job->statistics.write_seconds;
   int exit_code = cli_team_exit(session, status);
   if (exit_code == CLI_DONE && job->share.team)
-    cli_team_shares_gather(session, job->n_pieces, job->busy_seconds, &job->shares);
+    cli_team_report_gather(session, (cli_team_work){job->n_pieces, job->busy_seconds}, &job->team);
   return exit_code;
 }
 
@@ -130,7 +130,7 @@ static void release_layers(void *cookie) {
   if (job->continued)
     conic_memory_release(job->base.session->context, job->continued);
   cli_points_share_end(&job->share);
-  cli_team_shares_release(&job->shares);
+  cli_team_report_release(&job->team);
 }
 
 static int check_layer_arguments(cli_layer_job *job) {

@@ -5,7 +5,7 @@
 #include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
 #include "cli/points/points_share.h"
-#include "cli/team_shares.h"
+#include "cli/team_report.h"
 #include "conic/layers.h"
 #include "core/files/sha256.h"
 
@@ -36,7 +36,7 @@ typedef struct cli_layer_job {
   int has_points, has_colors;              /* of all inputs up to here */
   uint64_t n_points, n_pieces, n_finished; /* the last: samples, before it began */
   double busy_seconds;
-  cli_team_shares shares;
+  cli_team_report team;
 } cli_layer_job;
 
 /* Of the .lpc files that go on: the grid is the first one's, and what they keep of points is what all keep. Errors: as

@@ -41,9 +41,9 @@ static conic_status list_own(cli_points_share *share, const char *const *inputs,
 /* The first process's list is all's, whatever others see of a folder. */
 static conic_status send_names(cli_points_share *share, size_t n_bytes) {
   uint64_t facts[2] = {n_bytes, (uint64_t)share->are_surveys};
-  const cli_team *team = share->session->team;
+  const conic_executor *team = share->session->team;
   conic_status status = CONIC_OK;
-  team->broadcast(facts, sizeof facts);
+  team->broadcast(team->data, facts, sizeof facts);
   share->are_surveys = (int)facts[1];
   if (team->index > 0) {
     share->names = conic_memory_allocate(share->session->context, (size_t)facts[0], 1);
@@ -51,17 +51,17 @@ static conic_status send_names(cli_points_share *share, size_t n_bytes) {
   }
   status = conic_team_agree(share->team, status);
   if (status == CONIC_OK)
-    team->broadcast(share->names, (size_t)facts[0]);
+    team->broadcast(team->data, share->names, (size_t)facts[0]);
   return status == CONIC_OK && team->index > 0 ? count_names(share, (size_t)facts[0]) : status;
 }
 
 conic_status cli_points_share_list(cli_session *session, const char *const *inputs, int n_inputs, int n_uncut,
                                    cli_points_share *share) {
   *share = (cli_points_share){.session = session, .n_uncut = n_uncut};
-  share->team = cli_team_of_library(session, &share->of_session);
+  share->team = cli_team_of(session);
   conic_status status = CONIC_OK;
   size_t n_bytes = 0;
-  if (cli_team_is_first(session)) {
+  if (cli_session_speaks(session)) {
     status = list_own(share, inputs, n_inputs, &n_bytes);
     if (status == CONIC_OK)
       status = count_names(share, n_bytes);
@@ -240,7 +240,8 @@ conic_status cli_points_share_out(cli_points_share *share, const conic_read_opti
   status = conic_team_agree(share->team, status);
   if (status != CONIC_OK)
     return status;
-  share->session->team->broadcast(share->cuts, (n_shares + 1) * sizeof *share->cuts);
+  const conic_executor *team = share->session->team;
+  team->broadcast(team->data, share->cuts, (n_shares + 1) * sizeof *share->cuts);
   status = conic_team_agree(share->team, list_share_pieces(share));
   return status == CONIC_OK ? settle_parts(share, options, most_whole) : status;
 }

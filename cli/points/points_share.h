@@ -24,7 +24,6 @@ typedef struct cli_points_cut {
 typedef struct cli_points_share {
   cli_session *session;
   const conic_team *team; /* null: alone */
-  conic_team of_session;
   char *names;
   const char **inputs; /* of all; a folder stands for its files */
   int n_inputs, n_uncut, are_surveys;
