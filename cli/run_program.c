@@ -27,6 +27,9 @@ static int run_command(int argc, char **argv, const struct conic_executor *team)
     return cli_refuse_command(argv[0]);
   cli_session session = {.command = command->name, .team = team};
   int exit_code = command->run(&session, argc, argv);
+  for (int i = 0; i < 8 && exit_code < CLI_USAGE && session.old_spellings[i].name; i++)
+    cli_note(&session, "%s: --%s is now %s", session.command, session.old_spellings[i].name,
+             session.old_spellings[i].now);
   cli_session_close(&session);
   return exit_code;
 }
