@@ -1,6 +1,6 @@
 /* Two shots of any file that conic reads. The first is a fisheye's, the mean of 16 samples, each of them darker where
  * less light from all around arrives, and with a lamp that casts a soft shadow; the second an EXR of any size, of which
- * no more than 64 MiB are in memory: shot IN OUT STRIPS.exr */
+ * no more than 64 MiB are in memory: lit_shot IN OUT STRIPS.exr */
 #include <conic/conic.h>
 
 int main(int argc, char **argv) {

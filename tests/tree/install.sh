@@ -126,7 +126,7 @@ done
 # Shots are what the program draws: the mean of a fisheye's lit samples to the byte, and what goes into strips.
 conic=$work/prefix/bin/conic
 "$conic" make knot -n 4000 -o "$work/knot.ply"
-"$work/by_package/shot" "$work/knot.ply" "$work/lit.pfm" "$work/strips.exr" || { echo "shot fails"; exit 1; }
+"$work/by_package/lit_shot" "$work/knot.ply" "$work/lit.pfm" "$work/strips.exr" || { echo "lit_shot fails"; exit 1; }
 "$conic" render "$work/knot.ply" --projection fisheye --size 256x256 --accumulate 16 --ao 16 --light head \
   --light lamp:0.5,0.5,2:2,1.5,1:0.25 -o "$work/lit_by_program.pfm"
 cmp "$work/lit.pfm" "$work/lit_by_program.pfm"
