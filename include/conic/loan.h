@@ -1,5 +1,5 @@
-/* Loans: what lies in a program's memory, under a name that functions take in place of a file's. So arrays can be drawn
- * as a source, judged or built upon like whatever is read from a disk. */
+/* Loans: sets in a program's memory get a name, which functions take in the place of a file's name. So arrays can be
+ * drawn as a source, judged, or built upon, as files can. */
 #ifndef CONIC_LOAN_H
 #define CONIC_LOAN_H
 
