@@ -87,8 +87,8 @@ struct conic_source {
   double world_from_rest[3][4]; /* of a source that is moved as one piece */
   conic_splats outline;         /* from conic_source_take_samples, if it was called */
   double tolerance;             /* how far splats made of meshes are off these; 0: there are none */
-  conic_splats_shares shares;   /* where a team shares the splats: the ones of this process, for functions that look at
-                                   all */
+  conic_splats_shares shares;   /* the team that shares the splats; the choice then holds this process's part for
+                                   functions that look at all */
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
