@@ -43,7 +43,7 @@ static void hide_row(void *data, size_t y, int i_thread) {
   }
 }
 
-/* Adds the hidden part of the given lights, of which the pixels get l->spread.filled. */
+/* Adds the hidden part of the given lights: pixels get only l->spread.filled of their light. */
 static void hide_lights(conic_light_work *l, const conic_finish_lights *lights) {
   if (!l->hidden)
     return;

@@ -50,7 +50,7 @@ static void write_vector(cli_json *json, const char *key, const float vector[3])
   write_numbers(json, key, wide, 3);
 }
 
-/* Names a splat of the drawing, and what it was chosen for. */
+/* A splat's number in the drawing; and the point, node or cluster that it was chosen for. */
 static void write_splat_name(cli_json *json, const explain_job *job, uint32_t splat) {
   uint32_t number;
   const char *name = conic_source_name_splat(job->scene.source, splat, &number);

@@ -117,7 +117,7 @@ typedef struct conic_layers_drawn {
   uint64_t n_places_hidden;  /* of n_places, wholly hidden: nothing of them was drawn */
   uint64_t n_places_grazing; /* hidden except for splats seen nearly from their edge, which were drawn */
   uint64_t n_places_coarser; /* for want of clouds */
-  uint64_t n_clouds;         /* of which samples were drawn */
+  uint64_t n_clouds;         /* drawn, in whole or in part */
   uint64_t n_clouds_grazing; /* of n_clouds: only such splats were drawn, in all its places */
   uint64_t n_clouds_culled;  /* out of sight, or hidden */
   uint64_t n_clouds_missing; /* could not be read, or not in time */

@@ -37,7 +37,7 @@ typedef struct conic_material {
   uint64_t reserved[2];
 } conic_material;
 
-/* As conic_splats_strides, of the arrays of floats. */
+/* Strides as in conic_splats_strides, for the arrays of floats. */
 typedef struct conic_triangles_strides {
   size_t position, color, normal, texture_coordinate, scalar;
 } conic_triangles_strides;
