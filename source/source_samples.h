@@ -5,7 +5,8 @@
 #include "core/base/team.h"
 #include "source/source_kind.h"
 
-/* Discs about what is seen of it from six sides. On success the caller releases them. Errors: as conic_source_draw. */
+/* Takes discs of what is seen of the source from six sides. On success the caller releases them. Errors: as
+ * conic_source_draw. */
 conic_status conic_source_take_samples(conic_source *source, conic_splats *samples);
 
 /* From now on samples are taken of what is there within so many seconds: what comes later is left coarser. */

@@ -26,7 +26,7 @@ void cli_build_share(cli_build *build) {
 
 conic_status cli_build_part(cli_build *build, conic_status status) {
   status = conic_context_part(build->session->context, status);
-  cli_team_exit(build->session, status); /* what is told of a failure is told now */
+  cli_team_exit(build->session, status); /* messages of a failure appear now */
   return status;
 }
 
@@ -92,7 +92,7 @@ static int write_report(cli_build *build, const cli_build_steps *steps) {
   return cli_json_finish(file);
 }
 
-/* What all came to. The first process alone then has something to say. */
+/* Agrees on all processes' exit code. Only the first process reports anything afterwards. */
 static int agree_on_build(cli_build *build, conic_moment start, int exit_code) {
   if (!build->is_shared)
     return exit_code;

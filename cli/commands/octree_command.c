@@ -1,4 +1,4 @@
-/* conic octree: splats, raw points or a mesh in, a point-octree out. */
+/* conic octree: makes a point-octree from splats, raw points or a mesh. */
 #include <string.h>
 
 #include "cli/command.h"

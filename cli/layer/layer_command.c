@@ -1,4 +1,4 @@
-/* conic layer: samples in, of any number; a layered point cloud out. */
+/* conic layer: makes a layered point cloud from any number of samples. */
 #include <string.h>
 
 #include "cli/command.h"
@@ -55,7 +55,8 @@ static void tell_layers(const void *cookie) {
               (unsigned long long)s->n_zero);
 }
 
-/* What points up: as is said, or as in the files that go on, or as surveys have it; else nobody knows. */
+/* Finds what points up: by the options, by the files that are continued, or by the habit of surveys; else it is
+ * unknown. */
 static void settle_up(cli_layer_job *job) {
   static const double survey_up[3] = {0.0, 0.0, 1.0};
   if (job->coloring.is_up_given)
@@ -64,7 +65,7 @@ static void settle_up(cli_layer_job *job) {
     memcpy(job->options.up, survey_up, sizeof job->options.up);
 }
 
-/* The files that go on come before what is added to them, as inputs that are read in another way. */
+/* Files that are continued come before the added ones, as inputs that are read differently. */
 static conic_status list_layer_inputs(cli_layer_job *job) {
   cli_session *session = job->base.session;
   const char *all[job->n_inputs + 1];
@@ -76,7 +77,7 @@ static conic_status list_layer_inputs(cli_layer_job *job) {
   return cli_points_share_list(session, all, n + job->n_inputs, job->n_continued, &job->share);
 }
 
-/* All that is settled before samples come, the same in every process. */
+/* Settles everything before samples come, the same in every process. */
 static conic_status plan_layers(cli_layer_job *job, conic_read_options *options) {
   conic_moment start = conic_moment_now();
   conic_status status = list_layer_inputs(job);

@@ -6,19 +6,19 @@
 
 #include "conic/context.h"
 
-/* Room for `count` elements of `size` bytes, aligned to 64 bytes, contents undefined; null where memory or the limit
- * is exceeded, which is then already logged. Zero elements give a valid pointer. Thread-safe. */
+/* Room for `count` elements of `size` bytes, aligned to 64 bytes, contents undefined. Null where memory or the limit is
+ * exceeded, which is logged then. Zero elements give a valid pointer. Thread-safe. */
 void *conic_memory_allocate(conic_context *context, size_t count, size_t size);
 
-/* The same, all bytes zero. */
+/* conic_memory_allocate with all bytes zero. */
 void *conic_memory_allocate_zeroed(conic_context *context, size_t count, size_t size);
 
 /* Moves `used` elements of an array into room for `count` (not below `used`) and releases the old; `array` is the
  * address of the pointer to it. On failure the array stays as it was. */
 conic_status conic_memory_grow(conic_context *context, void *array, size_t used, size_t count, size_t size);
 
-/* The same for an array that has room for *room elements, where `wanted` are more: it becomes larger by half than that,
- * so that adding one by one takes little time. On failure the array and *room stay as they were. */
+/* conic_memory_grow for an array with room for *room elements, if `wanted` are more: it gets half as much more than it
+ * had, so that adding one by one takes little time. On failure the array and *room stay as they were. */
 conic_status conic_memory_reserve(conic_context *context, void *array, size_t used, size_t wanted, size_t *room,
                                   size_t size);
 
