@@ -81,7 +81,7 @@ static conic_ray_meeting meet_kept(const conic_planted_frame *frame, const conic
   case CONIC_SHAPE_FILTERED:
     return conic_meet_filtered(&list, 0, x, y);
   case CONIC_SHAPE_SIGHT:
-  case CONIC_N_SHAPES: /* which is none */
+  case CONIC_N_SHAPES: /* not a shape */
     list.tile_rays =
         &frame->view->rays->tiles[(size_t)(y / CONIC_GAUSSIAN_TILE) * (size_t)frame->view->rays->n_tiles[0] +
                                   (size_t)(x / CONIC_GAUSSIAN_TILE)];

@@ -11,7 +11,7 @@ typedef struct conic_map_room {
   const conic_casters *casters;
   const conic_receivers *receivers;
   conic_lighting_loops loops;
-  double texel; /* in world units, wanted */
+  double texel; /* the wanted one, in world units */
   int most_texels;
   float *z;
   size_t n_room;                /* floats that it has room for */

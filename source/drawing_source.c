@@ -177,7 +177,7 @@ static conic_status read_into_drawing(drawing_source *d, const char *path, const
   conic_splats splats;
   if (!special || !special->take_splats)
     return read_model(d, path, options, up);
-  d->base.traits |= CONIC_TRAIT_RAW; /* as may be */
+  d->base.traits |= CONIC_TRAIT_RAW; /* sizes may be estimated */
   conic_read_options reading;
   conic_read_options_init(&reading);
   conic_coloring_read(options->coloring, &reading);

@@ -8,13 +8,13 @@
 #include "source/facts.h"
 #include "source/source_parts.h"
 
-/* What a source was made of, which its scale does not say, as bits. */
+/* Facts about a source's origin that its scale does not hold, as bits. */
 typedef enum conic_source_trait {
-  CONIC_TRAIT_FACES = 1, /* a file has faces, whatever became of them */
+  CONIC_TRAIT_FACES = 1, /* a file has faces, whatever they became */
   CONIC_TRAIT_EDGES = 2, /* triangles whose file has no normals */
   CONIC_TRAIT_RAW = 4,   /* points whose sizes were estimated */
   CONIC_TRAIT_TEXT = 8,  /* a file of text */
-  CONIC_TRAIT_ALPHA = 16 /* it lets light through */
+  CONIC_TRAIT_ALPHA = 16 /* something lets light through */
 } conic_source_trait;
 
 typedef enum conic_source_company {
@@ -93,12 +93,13 @@ struct conic_source {
   uint64_t splats_version; /* for conic_render_options, in pictures of the whole source; 0: the splats may change */
   int is_moved;            /* what is drawn has another box than the scale's: */
   double moved_minimum[3], moved_maximum[3];
-  double world_from_rest[3][4]; /* of one that is carried and moved */
-  unsigned traits, no_traits;   /* bits of conic_source_trait: what it has, and what it is known not to have */
-  conic_splats outline;         /* conic_source_take_samples', where they were asked for */
-  double samples_until;         /* on the clock: no more is read for the outline from then on; 0: no limit */
-  double tolerance;             /* by which splats made of meshes are off these; 0: none are */
-  conic_splats_shares shares;   /* where a team has the splats among it, what of them is chosen to be looked at */
+  double world_from_rest[3][4]; /* of a source that is moved as one piece */
+  unsigned traits, no_traits;   /* bits of conic_source_trait: those that it has, and those that it surely lacks */
+  conic_splats outline;         /* from conic_source_take_samples, if it was called */
+  double samples_until;         /* by the clock: after this nothing is read for the outline; 0: no limit */
+  double tolerance;             /* how far splats made of meshes are off these; 0: there are none */
+  conic_splats_shares shares;   /* the team that shares the splats; the choice then holds this process's part for
+                                   functions that look at all */
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,

@@ -58,7 +58,7 @@ void conic_source_limit_samples(conic_source *source, double seconds) {
   source->samples_until = conic_seconds_now() + seconds;
 }
 
-/* From some of the sides. */
+/* Draws the sides from `begin` to before `end`. */
 static conic_status draw_around(conic_source *source, conic_renderer *renderer, conic_image *image, int begin, int end,
                                 conic_splats *samples) {
   conic_render_options render;

@@ -1,4 +1,4 @@
-/* The samples near a point: from the tree into the arrays that the kernels sum over. */
+/* The samples near a point: from the tree into the arrays that the loops sum over. */
 #include <math.h>
 #include <string.h>
 

@@ -16,7 +16,7 @@ typedef struct cli_build {
   int is_in_place;     /* the output replaces the input */
   cli_stage stages[6]; /* in the order of the report; the names end their number */
   double total_seconds;
-  int is_shared; /* several processes make it, which did: */
+  int is_shared; /* several processes make it; the report on them is: */
   cli_team_report team;
 } cli_build;
 

@@ -153,7 +153,7 @@ static conic_status act(mls_job *job) {
   case MLS_DENSIFY:
     return densify(job);
   case MLS_PROJECT:
-  case N_MLS_ACTIONS: /* which is none */
+  case N_MLS_ACTIONS: /* not an action */
     break;
   }
   return project_all_points(job);

@@ -23,7 +23,7 @@ typedef struct cli_points_cut {
 
 typedef struct cli_points_share {
   cli_session *session;
-  const conic_team *team; /* null: alone */
+  const conic_team *team; /* null: this process is alone */
   char *names;
   const char **inputs; /* all inputs; a folder is replaced by its files */
   int n_inputs, n_uncut, are_surveys;

@@ -22,16 +22,17 @@ conic_status conic_memory_grow(conic_context *context, void *array, size_t used,
 conic_status conic_memory_reserve(conic_context *context, void *array, size_t used, size_t wanted, size_t *room,
                                   size_t size);
 
-/* Adds an element of `size` bytes to such an array of *n. On failure all stays as it was. */
+/* Appends an element of `size` bytes to such an array of *n elements. On failure the array, *n and *room stay as they
+ * were. */
 conic_status conic_memory_append(conic_context *context, void *array, size_t *n, size_t *room, const void *element,
                                  size_t size);
 
-/* Asks the system for large pages, wherever one lies wholly within a block that is to be used from end to end; the
- * second only where the context has large_pages. Where the system has none, nothing happens. Thread-safe. */
+/* Asks the system for large pages wherever one lies wholly within a block that will be used from end to end; the second
+ * function only where the context has large_pages. Without support nothing happens. Thread-safe. */
 void conic_memory_advise_large_pages(void *pointer, size_t bytes);
 void conic_memory_prefer_large_pages(const conic_context *context, void *pointer, size_t bytes);
 
-/* Up to the next multiple of that alignment: what an array takes that another follows in the same block. */
+/* Rounded up to the alignment: the bytes of an array that another one follows in the same block. */
 static inline size_t conic_memory_rounded(size_t bytes) {
   return (bytes + 63) / 64 * 64;
 }
@@ -39,7 +40,7 @@ static inline size_t conic_memory_rounded(size_t bytes) {
 /* Releases what allocate gave; null is allowed. */
 void conic_memory_release(conic_context *context, void *pointer);
 
-/* Releases n of them. */
+/* Releases n blocks; null ones are allowed. */
 void conic_memory_release_all(conic_context *context, void *const *pointers, size_t n);
 
 #endif

@@ -162,7 +162,7 @@ static double convert(const decimal *source) {
   return convert_exactly(source);
 }
 
-/* How much of `text` is the word, in any case; 0 where it is another. `word` is in lower case. */
+/* How many bytes of `text` are the word, in any case; 0 for another word. `word` is in lower case. */
 static size_t match_word(const char *text, size_t length, const char *word) {
   size_t n = strlen(word);
   if (length < n)

@@ -8,9 +8,9 @@ static inline int conic_is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/* Reads the number that `text` of `length` bytes begins with: sign, digits with an optional point, optional exponent;
- * or nan, inf, infinity in any case. Rounded to nearest, ties to even; too large gives infinity. Returns how many bytes
- * were read, 0 where there is no number. */
+/* Reads the number at the start of `text`, which has `length` bytes: sign, digits with an optional point, optional
+ * exponent; or nan, inf, infinity in any case. Rounds to nearest, ties to even; too large a number gives infinity.
+ * Returns how many bytes were read, 0 where there is no number. */
 size_t conic_number_parse(const char *text, size_t length, double *value);
 
 enum { CONIC_NUMBER_ROOM = 32 };

@@ -219,7 +219,7 @@ static void convert_integers(const unsigned char *bytes, size_t stride, size_t n
       values[i] = (double)load_32(bytes, is_big);
       break;
     case CONIC_PLY_UINT8:
-    case CONIC_PLY_FLOAT: /* which is no integer */
+    case CONIC_PLY_FLOAT: /* not an integer */
     case CONIC_PLY_DOUBLE:
       values[i] = (double)bytes[0];
       break;

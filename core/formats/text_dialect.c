@@ -104,7 +104,7 @@ typedef struct comma_census {
   int is_padded;                      /* if commas separate, every second value may have a needless leading 0 */
 } comma_census;
 
-/* Three digits and no more. */
+/* Exactly three digits. */
 static int is_thousand(const char *c, const char *end) {
   return end - c >= 3 && conic_is_digit(c[0]) && conic_is_digit(c[1]) && conic_is_digit(c[2]) &&
          (end - c == 3 || !conic_is_digit(c[3]));

@@ -21,7 +21,7 @@ static inline size_t conic_image_plane_bytes(const conic_image *image, int plane
   return conic_image_pixels(image) * conic_planes_pixel_bytes(1u << plane);
 }
 
-/* Tells -0 from 0, and a NaN from itself only where it is another one. */
+/* Whether two floats have the same bits: -0 differs from 0, and a NaN equals itself. */
 static inline int conic_same_bits(float a, float b) {
   uint32_t bits_a, bits_b;
   memcpy(&bits_a, &a, sizeof a);

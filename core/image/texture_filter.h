@@ -1,5 +1,5 @@
 /* The constants of elliptical texture filtering (docs/reference/picture.md, Textures), shared by plain C, device
- * programs and the lanes of raster/kernels/texture_body.h. */
+ * programs and the lanes of raster/loops/texture_body.h. */
 #ifndef CONIC_TEXTURE_FILTER_H
 #define CONIC_TEXTURE_FILTER_H
 

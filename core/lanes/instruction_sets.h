@@ -1,7 +1,7 @@
-/* Which instruction sets loops are written for, and which of them this build and this machine have: the one place
- * that knows.
+/* Which instruction sets loops are written for, and which of them this build and this machine have: the one place that
+ * knows.
  *
- * A family of kernels is a table, a struct of functions. It has one text in plain C and one in lanes
+ * A family of loops is a table, a struct of functions. It has one text in plain C and one in lanes
  * (core/lanes/lanes.h), which is compiled once for each instruction set. FAMILY_init fills a table with plain C; then
  * each allowed instruction set, the narrowest first, overwrites the slots that it has. */
 #ifndef CONIC_INSTRUCTION_SETS_H
@@ -32,8 +32,8 @@ conic_status conic_isa_choose(conic_context *context, conic_isa asked, conic_isa
   if (isa >= CONIC_ISA_##NAME)                                                                                         \
     family##_##name(loops);
 
-/* Declares what fills the tables of a family, a type, and FAMILY_init, which does so for an instruction set that is
- * here, CONIC_ISA_AUTO for the best. */
+/* Declares the functions that fill the tables of a family (a type), and FAMILY_init, which fills one for an instruction
+ * set that is here; CONIC_ISA_AUTO is the best. */
 #define CONIC_DECLARE_LOOPS(family)                                                                                    \
   void family##_scalar(family *loops);                                                                                 \
   CONIC_FOR_ISAS(CONIC_DECLARE_LOOPS_OF, family)                                                                       \
@@ -46,7 +46,7 @@ conic_status conic_isa_choose(conic_context *context, conic_isa asked, conic_isa
     CONIC_FOR_ISAS(CONIC_OVERWRITE_LOOPS, family)                                                                      \
   }
 
-/* Begins what fills a table in a file that is compiled for one instruction set. */
+/* Begins the function that fills a table, in a file that is compiled for one instruction set. */
 #define CONIC_FILL_LOOPS_BY(family, name) void family##_##name(family *loops)
 /* NOLINTEND(bugprone-macro-parentheses) */
 #if defined(__AVX512F__)

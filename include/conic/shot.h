@@ -122,10 +122,10 @@ typedef struct conic_shot_outcome {
 CONIC_API conic_status conic_shot_draw(conic_source *source, conic_renderer *renderer, const conic_shot *shot,
                                        conic_image *image, conic_shot_outcome *outcome);
 
-/* Draws a shot and writes it into an EXR file of 32-bit floats, strip by strip, so that no more than `most_bytes` of
- * pixels are in memory at a time. The file is to the byte the one that conic_shot_draw and conic_image_write would
- * write. Errors: as conic_shot_draw; UNSUPPORTED where the picture is made of more than what is drawn (lit, gathered, a
- * mean, with a backdrop, or of a source without windows); IO. */
+/* Draws a shot and writes it into an EXR file of 32-bit floats, strip by strip, so that at most `most_bytes` of pixels
+ * are in memory at a time. The file has the bytes that conic_shot_draw and conic_image_write would write. Errors: as
+ * conic_shot_draw; UNSUPPORTED for a picture that is not simply drawn (lit, gathered, a mean, with a backdrop, or of a
+ * source without windows); IO. */
 CONIC_API conic_status conic_shot_write_strips(conic_source *source, conic_renderer *renderer, const conic_shot *shot,
                                                const char *path, uint64_t most_bytes, conic_shot_outcome *outcome);
 

@@ -1,7 +1,7 @@
 /* The sums over a point's neighbours, which take most of a projection's time; once in plain C and once in vectors.
  *
- * Every sum is of eight partial ones: neighbour i is added to number i mod 8, and these are added as
- * ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)). So vectors of any width give the plain loop's bits. */
+ * Every sum has eight partial sums: neighbour i is added to number i mod 8, and these are added as ((0 + 4) + (2 + 6))
+ * + ((1 + 5) + (3 + 7)). So vectors of any width give the plain loop's bits. */
 #ifndef CONIC_SURFACE_LOOPS_H
 #define CONIC_SURFACE_LOOPS_H
 
@@ -41,8 +41,8 @@ enum { CONIC_N_PLANE_SUMS = 12 };
 enum { CONIC_N_SPHERE_SUMS = 10 };
 
 typedef struct conic_surface_loops {
-  /* Weights about q (relative to r), and the sums of w, w·d (3), w·d·dᵀ (xx xy xz yy yz zz) with d from q, and how many
-   * weigh something. */
+  /* Fills in the weights about q (relative to r), and sums of w, w·d (3) and w·d·dᵀ (xx xy xz yy yz zz), d being
+   * relative to q, and the number of neighbours with weight. */
   void (*moments)(conic_near *near, const conic_weighing *weighing, const double q[3], double sums[CONIC_N_MOMENTS]);
   /* For the plane through q = t·n, with n the frame's third row, sums the functions that must vanish: G, the derivative
    * of the energy by tilts of n with q and the weights fixed, and K, -½ of its derivative by t. Then their derivatives

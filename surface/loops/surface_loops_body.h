@@ -1,6 +1,6 @@
-/* The kernels in vectors as wide as a register; each instruction set's file includes this. A total has eight partial
- * sums at any width: a narrow vector goes through all neighbours once for each part of the eight. Each lane does what
- * surface/kernels/surface_kernels_scalar.c and surface/kernels/weight.h do, in their order. */
+/* The loops in vectors as wide as a register; each instruction set's file includes this. A total has eight partial sums
+ * at any width: a narrow vector goes through all neighbours once for each part of the eight. Each lane does what
+ * surface/loops/surface_loops_scalar.c and surface/loops/weight.h do, in their order. */
 #include "core/lanes/lanes_double.h"
 #include "surface/loops/surface_loops.h"
 #include "surface/loops/weight.h"
