@@ -70,7 +70,7 @@ enum cli_fact {
   CLI_FACT_BACKDROP, /* of two colours */
   CLI_FACT_LAMPS,    /* lights with a place or a size */
   CLI_FACT_MASKED,   /* light that is hidden is taken away */
-  CLI_FACT_BARE_SKY, /* a picture of a sky, and no number of directions */
+  CLI_FACT_SHOWN,    /* a picture by --show, or a legend */
   CLI_FACT_STREAM,   /* pictures go to standard output, to a host, or on with others */
   CLI_N_FACTS
 };
@@ -78,6 +78,11 @@ enum cli_fact {
 #define CLI_FACT(name) (1ull << CLI_FACT_##name)
 /* What is drawn and not composited. */
 #define CLI_SURFACES (CLI_FACT(SPLATS) | CLI_FACT(TRIANGLES))
+/* What looks at more of a scene than the pixels of one picture; and what is written beside its planes, or into them. */
+#define CLI_LOOKS_AROUND                                                                                               \
+  (CLI_FACT(TRANSPARENT) | CLI_FACT(MATTES) | CLI_FACT(DEEP) | CLI_FACT(PROGRESSIVE) | CLI_FACT(MASKED) |              \
+   CLI_FACT(ACCUMULATED))
+#define CLI_WRITES_MORE (CLI_FACT(DEEP) | CLI_FACT(SHOWN) | CLI_FACT(PROGRESSIVE) | CLI_FACT(BACKDROP))
 #define CLI_CHOSEN (CLI_FACT(ERROR) | CLI_FACT(BUDGET))
 #define CLI_SAMPLES (CLI_FACT(ACCUMULATED) | CLI_FACT(SAMPLE))
 

@@ -70,6 +70,7 @@ const char *cli_fact_name(int fact) {
 /* --- what cannot be together --- */
 
 #define F(name) CLI_FACT(name)
+_Static_assert(CLI_N_FACTS <= 64, "facts are bits of an unsigned long long");
 #define SOURCE_FACTS (F(ACCUMULATED) - 1)
 
 static const struct {
@@ -108,13 +109,12 @@ static const struct {
      "--camera top is without --exposure auto, a background of two colours, --method patch and --device opencl"},
     {F(MAP) | F(MASKED), 0, 0, "--ao, --shadow and lamps are not of --camera top"},
     {F(MASKED) | F(COMPOSITED), 0, 0, "--ao, --shadow and lamps are of surfaces; give --profile surface, too"},
-    {F(BARE_SKY), 0, 0, "the light of a picture of the sky comes from so many directions as --ao says; give it, too"},
     {F(DEEP) | F(SAMPLED), 0, 0, "--deep lists the splats of pixels, not of --samples"},
     {F(DEEP), CLI_CHOSEN, F(HYBRID),
      "--deep lists the splats of the input, not those that --error and --budget choose"},
     {F(DEEP) | F(LEVELS), 0, 0, "--deep lists the splats of inputs that are read whole, not of an .lpc"},
-    {F(MATTES) | F(LEVELS), 0, 0, "mattes name what is read whole, not an .lpc"},
-    {F(MATTES), 0, F(EXR), "mattes go into an .exr; give -o OUT.exr"},
+    {F(MATTES) | F(LEVELS), 0, 0, "cryptomatte names what is read whole, not an .lpc"},
+    {F(MATTES), 0, F(EXR), "cryptomatte goes into an .exr; give -o OUT.exr"},
     {F(PROGRESSIVE), F(TURNTABLE) | F(REPEATED), 0,
      "--progressive writes the pictures of one frame, not of a turntable or of --repeat"},
     {F(TRANSPARENT) | F(COMPOSITED), 0, 0,
@@ -279,12 +279,13 @@ static facts ask_of_drawing(const cli_render_job *job, const cli_scene_words *wo
          when(job->repeat > 1, F(REPEATED)) | when(job->is_exposure_automatic, F(EXPOSED)) |
          when(job->shot.has_backdrop, F(BACKDROP)) | when(job->lamps.n_lamps || cli_lamps_are_soft(job), F(LAMPS)) |
          when(is_masked, F(MASKED)) |
-         when(job->sky_path && !job->n_directions && !(planes & 1u << CONIC_PLANE_AO), F(BARE_SKY));
+         when(job->overdraw_path || job->clusters_path || job->boxes_path || job->legend_path || job->has_legend,
+              F(SHOWN));
 }
 
 /* --- what was given --- */
 
-static void note(cli_effects_job *own, const char *dashes, const char *name, const cli_effect *acts) {
+static void note_given(cli_effects_job *own, const char *dashes, const char *name, const cli_effect *acts) {
   if (own->n_given < CLI_MOST_GIVEN)
     own->given[own->n_given++] = (cli_given){dashes, name, *acts};
 }
@@ -292,7 +293,14 @@ static void note(cli_effects_job *own, const char *dashes, const char *name, con
 void cli_effects_note(cli_effects_job *own, const cli_option *table, int n, const char *const *values) {
   for (int i = 0; i < n; i++)
     if (values[i] && !table[i].now)
-      note(own, cli_dashes(&table[i]), table[i].name, &table[i].acts);
+      note_given(own, cli_dashes(&table[i]), table[i].name, &table[i].acts);
+}
+
+/* --timeout, where it is known to be of what can be read in parts. */
+static int is_waited_for(const cli_render_job *job) {
+  conic_layers_access usual;
+  conic_layers_access_init(&usual);
+  return job->access.stall_seconds != usual.stall_seconds && job->effects.certain & (F(LEVELS) | F(HYBRID));
 }
 
 /* Parts of values: pictures that --show names, planes of --aov, and what stands behind a colon. */
@@ -325,6 +333,7 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
       {words->is_as_given && !is_model, "as", {.on = F(FACES), .is_warned = 1}},
       {words->is_as_given && is_model, "as mesh or hybrid", {.on = F(FACES)}},
       {words->is_quality_given && !chooses_samples(job, words), "quality", {.on = F(SPLATS), .is_warned = 1}},
+      {is_waited_for(job), "timeout", {.on = F(URL), .is_warned = 1}},
       {words->is_patch_given, "method patch:D:H", {.needs = F(PATCH)}},
       {words->is_smooth, "crease all", {.on = F(TRIANGLES)}},
       {job->stereo.is_convergence_given, "stereo E:Z", {.needs = F(STEREO)}},
@@ -333,13 +342,13 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
   };
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
     if (parts[i].is_given)
-      note(&job->effects, "--", parts[i].name, &parts[i].acts);
+      note_given(&job->effects, "--", parts[i].name, &parts[i].acts);
 }
 
 /* --- the check --- */
 
 /* The facts of a set in words, joined by "or". */
-static void put_words(facts set, char *text, size_t room) {
+static void join_facts(facts set, char *text, size_t room) {
   size_t used = 0;
   text[0] = '\0';
   for (int i = 0; i < CLI_N_FACTS && used < room; i++)
@@ -360,21 +369,21 @@ static const char *find_remedy(const cli_render_job *job, facts on) {
 }
 
 /* Of one option. */
-static int check_one(const cli_session *session, const cli_render_job *job, const cli_given *option) {
+static int check_one_given(const cli_session *session, const cli_render_job *job, const cli_given *option) {
   const cli_effects_job *own = &job->effects;
   const cli_effect *acts = &option->acts;
   const facts known = own->possible | own->asked;
   int is_lacking = acts->needs && !(acts->needs & known), is_foreign = acts->on && !(acts->on & known);
   char words[1024];
   if (acts->apart & (own->certain | own->asked)) {
-    put_words(acts->apart & (own->certain | own->asked), words, sizeof words);
+    join_facts(acts->apart & (own->certain | own->asked), words, sizeof words);
     return cli_usage("%s: %s%s does not go with %s", session->command, option->dashes, option->name, words);
   }
   if (!is_lacking && !is_foreign)
     return CLI_DONE;
   const facts lacked = is_foreign ? acts->on : acts->needs;
   int is_source = (lacked & SOURCE_FACTS) != 0;
-  put_words(lacked, words, sizeof words);
+  join_facts(lacked, words, sizeof words);
   if (is_source)
     snprintf(words + strlen(words), sizeof words - strlen(words), ", not on %s%s", job->inputs[0],
              find_remedy(job, lacked));
@@ -386,14 +395,14 @@ static int check_one(const cli_session *session, const cli_render_job *job, cons
 }
 
 /* Each option once: what is wrong or warned of is not said again when more is known. */
-static int check_all(const cli_session *session, cli_render_job *job) {
+static int check_given(const cli_session *session, cli_render_job *job) {
   cli_effects_job *own = &job->effects;
   int answer = CLI_DONE, n = 0;
   for (int i = 0; i < own->n_given && answer == CLI_DONE; i++) {
     const cli_effect *acts = &own->given[i].acts;
     int is_said = (acts->on && !(acts->on & (own->possible | own->asked))) ||
                   (acts->needs && !(acts->needs & (own->possible | own->asked)));
-    answer = check_one(session, job, &own->given[i]);
+    answer = check_one_given(session, job, &own->given[i]);
     if (!is_said)
       own->given[n++] = own->given[i];
   }
@@ -411,10 +420,10 @@ int cli_effects_check(const cli_session *session, const cli_scene_words *words, 
   for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
     if ((held & pairs[i].all) == pairs[i].all && (!pairs[i].any || held & pairs[i].any) && !(held & pairs[i].unless))
       return cli_usage("%s: %s", session->command, pairs[i].why);
-  return check_all(session, job);
+  return check_given(session, job);
 }
 
 int cli_effects_check_open(const cli_session *session, cli_render_job *job) {
   know_source(job);
-  return check_all(session, job);
+  return check_given(session, job);
 }

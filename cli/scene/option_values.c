@@ -77,7 +77,7 @@ static int find_plane(const char *name, size_t length) {
   return -1;
 }
 
-static int is_word(const char *text, size_t length, const char *word) {
+static int is_plane_word(const char *text, size_t length, const char *word) {
   return strlen(word) == length && strncmp(text, word, length) == 0;
 }
 
@@ -88,10 +88,10 @@ int cli_parse_planes(const char *text, void *value) {
   *planes = 0;
   while (*text) {
     size_t length = strcspn(text, ",");
-    int plane = find_plane(text, length), is_all = is_word(text, length, "all"), is_aov = plane >= 0 || is_all;
+    int plane = find_plane(text, length), is_all = is_plane_word(text, length, "all"), is_aov = plane >= 0 || is_all;
     if (is_aov)
       *planes |= is_all ? CONIC_DRAWN_PLANES : 1u << plane;
-    else if (job->is_for_looking && is_word(text, length, "cryptomatte"))
+    else if (job->is_for_looking && is_plane_word(text, length, "cryptomatte"))
       job->has_mattes = 1;
     else
       return 0;

@@ -144,19 +144,19 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "or all [the only one]",
        .is_usual = 1, .acts = {.needs = CLI_FACT(CAMERAS), .apart = CLI_FACT(MAP)}},
       {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG",
-       "the camera's place around the scene: 0 in front, 90 to the right of that [30]", -1e6, 1e6,
-       .is_given = &raw.is_framing_given, .is_usual = 1, .acts = {.needs = CLI_FACT(FRAMED)}},
+       "the camera's place around the scene: 0 in front, 90 to the right of that [30]", -1e6, 1e6, .is_usual = 1,
+       .acts = {.needs = CLI_FACT(FRAMED)}},
       {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG",
        "the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]", -90, 90,
        .is_given = &job->is_elevation_given, .is_usual = 1, .acts = {.needs = CLI_FACT(FRAMED)}},
       {"fov", CLI_NUMBER, &view->fov_deg, "DEG", "field of view across the shorter side [40]", 0.001, 179.9,
-       .is_given = &raw.is_framing_given, .acts = {.needs = CLI_FACT(FIELD)}},
+       .acts = {.needs = CLI_FACT(FIELD), .is_warned = 1}},
       {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length: 2 shows the middle, twice as large [1]",
-       1e-6, 1e6, .is_given = &raw.is_framing_given, .is_usual = 1, .acts = {.needs = CLI_FACT(FRAMED)}},
+       1e-6, 1e6, .is_usual = 1, .acts = {.needs = CLI_FACT(FRAMED)}},
       {"projection", CLI_CHOICE, &job->projection, "HOW",
        "perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one below the other) "
        "[perspective]",
-       .choices = cli_projection_words, .is_given = &raw.is_framing_given, .acts = {.needs = CLI_FACT(FRAMED)}},
+       .choices = cli_projection_words, .acts = {.needs = CLI_FACT(FRAMED)}},
       {"eye", CLI_PARSED, job->eye, "X,Y,Z",
        "the place from which the camera looks [where it sees all of the scene; a panorama's and a cube's: the scene's "
        "middle]",
@@ -195,7 +195,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by polynomials of "
        "degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]",
        .choices = words.methods, .is_given = &raw.is_method_given, .group = "how splats are drawn",
-       .intro = "Kernels, filters and samples, and the profiles of Gaussian scenes.", .parse_tail = parse_patch, .tail = &raw, .acts = {.on = CLI_FACT(SPLATS)}},
+       .intro = "Kernels, filters and samples, and the profiles of Gaussian scenes.", .parse_tail = parse_patch,
+       .tail = &raw, .acts = {.on = CLI_FACT(SPLATS)}},
       {"profile", CLI_CHOICE, &raw.profile, "NAME",
        "how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5, gsplat-1.5-aa, "
        "gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque splats; inria-2023 and "
@@ -265,7 +266,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .is_usual = 1},
       {"k", CLI_INT, &job->opening.n_neighbours, "K",
        "how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]", 6, 64,
-       .group = "raw points", .intro = "What files of points leave out.", .acts = {.on = CLI_FACT(RAW)}},
+       .group = "raw points", .intro = "What files of points leave out.",
+       .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
       CLI_COLUMNS(&job->opening.columns),
       {"tile", CLI_INT, &o->tile, "N",
        "the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it [64]", 8,
@@ -334,6 +336,5 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
     view->height = view->width / 2;
   else if (job->projection == CONIC_CAMERA_CUBE)
     view->height = 6 * (view->width /= 2);
-  raw.is_framing_given |= job->is_elevation_given || job->is_eye_given;
   return cli_scene_check(session, &raw, job);
 }

@@ -44,12 +44,15 @@ static int settle_top(const cli_session *session, cli_render_job *job) {
 }
 
 /* Values that are none, whatever else is given. */
-static int check_values(const cli_session *session, const cli_scene_words *words, const cli_render_job *job) {
+static int check_each_value(const cli_session *session, const cli_scene_words *words, const cli_render_job *job) {
   const char *command = session->command;
   if (job->n_inputs == 0)
     return cli_usage("%s: no input; see conic help %s", command, command);
   if (words->is_smooth && words->is_crease_given)
     return cli_usage("%s: --crease all rounds all edges, and a number those up to an angle; give one of both", command);
+  if (job->sky_path && !job->n_directions && !(job->is_aov_given && job->shot.planes & 1u << CONIC_PLANE_AO))
+    return cli_usage("%s: the light of %s comes from so many directions as --ao says; give it, too", command,
+                     job->sky_path);
   if (words->passes != 1 && words->passes != 3)
     return cli_usage("%s: --passes takes 3 or 1", command);
   if (job->shot.render.tile & (job->shot.render.tile - 1))
@@ -60,7 +63,7 @@ static int check_values(const cli_session *session, const cli_scene_words *words
 }
 
 int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_render_job *job) {
-  int answer = check_values(session, words, job);
+  int answer = check_each_value(session, words, job);
   if (answer == CLI_DONE)
     answer = settle_top(session, job);
   if (answer == CLI_DONE)

@@ -9,7 +9,7 @@ enum cli_quality { CLI_QUALITY_DRAFT = 0, CLI_QUALITY_GOOD = 1, CLI_QUALITY_FINA
 
 /* Options that mean something only when all have been read. */
 typedef struct cli_scene_words {
-  int size[2], is_size_given, is_framing_given;
+  int size[2], is_size_given;
   int quality; /* a cli_quality */
   int profile; /* a conic_gaussian_profile, or beyond these "surface" */
   int is_quality_given, is_method_given, is_samples_given, is_profile_given, is_prefilter_given;

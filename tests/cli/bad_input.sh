@@ -183,7 +183,7 @@ run_wrong 3 damaged.chy ': is damaged' render damaged.chy -o outputs/a.pfm
 run_wrong 3 damaged.chy ': has a chunk that is damaged (at byte [0-9]*)$' info damaged.chy --check
 run_wrong 3 damaged.chy ': cannot read chunk [0-9]*: a chunk that is damaged (at byte [0-9]*)$' render damaged.chy \
   -o outputs/a.pfm
-run_wrong 2 render 'is for a single .lpc or .chy, or the URL of one$' render partly.obj -o outputs/a.pfm --timeout 9
+run_wrong 2 render 'acts on .*clouds\? in levels.*, not on partly.obj$' render partly.obj -o outputs/a.pfm --timeout 9
 
 printf '5000000000\n0 0 0\n' > huge.pts
 wrong_model huge.pts 'number of points.*line 1'

@@ -46,7 +46,7 @@ says 'colmap: it has 3 views: in/one.png, in/two.png, wide.png; give --view INDE
 run 2 render sphere.ply --camera colmap --view three -o a.pfm
 says 'colmap: there is no view three; there are 3, from in/one.png to wide.png'
 run 2 render sphere.ply --view one -o a.pfm
-says '--view is of a file of cameras'
+says '--view has no effect: it needs a file of cameras'
 run 2 render sphere.ply --camera colmap --view all --turntable 3 -o a.pfm
 run 2 explain sphere.ply --camera colmap --view all --pixel 1,1
 says 'it takes one view'

@@ -1,4 +1,6 @@
 /* Reading arguments: what is understood, what is refused, and which name a mistyped one is near. */
+#include <string.h>
+
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
@@ -52,6 +54,30 @@ static int parse(settings *to, const char *line) {
   }
   return cli_parse(&to->session, options, (int)(sizeof options / sizeof options[0]), argc, argv, to->positional,
                    &to->n_positional);
+}
+
+static int parse_tail(const char *text, void *value) {
+  return cli_parse_number(text, value);
+}
+
+/* What stands behind a colon, old spellings, and which options were given. */
+static void check_noted(void) {
+  char *argv[] = {"test", "--size=3:4", "--loud", "--loud", "in"}, *wrong[] = {"test", "--size=3:x"};
+  const char *positional[8], *values[3];
+  double size = 0.0, tail = 0.0;
+  int is_loud = 0, n_positional;
+  cli_session session = {.command = "test"};
+  const cli_option options[] = {
+      {.name = "size", .type = CLI_NUMBER, .value = &size, .argument = "N", .parse_tail = parse_tail, .tail = &tail},
+      {.name = "loud", .type = CLI_FLAG, .value = &is_loud, .now = "--noise 9"},
+      {.name = "noise", .type = CLI_NUMBER, .value = &size, .argument = "N"},
+  };
+  CHECK(cli_parse_noting(&session, options, 3, 5, argv, positional, &n_positional, values) == CLI_DONE);
+  CHECK(size == 3.0 && tail == 4.0 && is_loud && n_positional == 1);
+  CHECK(values[0] && strcmp(values[0], "3:4") == 0 && values[1] && !values[2]);
+  CHECK(session.old_spellings[0].name && strcmp(session.old_spellings[0].now, "--noise 9") == 0);
+  CHECK(!session.old_spellings[1].name);
+  CHECK(cli_parse_noting(&session, options, 3, 2, wrong, positional, &n_positional, values) == CLI_USAGE);
 }
 
 static void check_understood(void) {
@@ -152,6 +178,7 @@ static void test_lengths(void) {
 }
 
 int main(void) {
+  check_noted();
   check_understood();
   check_counts();
   check_refused();
