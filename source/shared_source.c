@@ -184,6 +184,7 @@ static conic_status measure_shared(shared_source *s) {
   scale->near_z = conic_near_of_box(scale->minimum, scale->maximum);
   scale->n_splats = shares->count;
   scale->has_colors = s->part.color[0] != NULL;
+  s->base.no_traits = CONIC_TRAIT_FACES | CONIC_TRAIT_EDGES | CONIC_TRAIT_RAW | CONIC_TRAIT_TEXT;
   return conic_shares_length(s->base.context, shares, &s->part, &scale->splat_length);
 }
 

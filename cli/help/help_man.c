@@ -222,10 +222,10 @@ void cli_help_man_program(void) {
     put_sentence(cli_command_at(i)->summary, ".");
   }
   puts(".TP\n.B conic help");
-  put_paragraph(
-      "prints the options of a command. --format says in which form: text, man, bash, zsh or fish (completion), or "
-      "json.",
-      0);
+  put_paragraph("prints the options of a command; with --all, of render more than most pictures need. --format says in "
+                "which form: text, man, bash, zsh or fish (completion), or "
+                "json.",
+                0);
   put_exit_codes();
   puts(".SH ENVIRONMENT");
   for (int i = 0; cli_help_variable(i, &meaning); i++)

@@ -204,8 +204,10 @@ static void know_source(cli_render_job *job) {
                      when(can != CONIC_SOURCE_CHOOSES, F(NODES)) | when(!(can & CONIC_SOURCE_CHOOSES), F(CHOOSES)));
   if (job->top.is_wanted && !job->is_shade_given && scale->has_colors) /* it is then drawn as it is */
     own->asked &= ~(F(LIT) | F(SHAPED));
-  own->possible &= ~(when(!scale->n_splats, F(SPLATS)) | when(!scale->n_triangles, F(TRIANGLES)) |
-                     when(!coloring || !coloring->field[0], F(VALUED)));
+  int is_chosen = job->shot.view.only_kind >= 0 || own->asked & CLI_CHOSEN; /* of a hybrid, which may be either kind */
+  if (!(own->certain & F(HYBRID) && is_chosen))
+    own->possible &= ~(when(!scale->n_splats, F(SPLATS)) | when(!scale->n_triangles, F(TRIANGLES)));
+  own->possible &= ~when(!coloring || !coloring->field[0], F(VALUED));
 }
 
 static int is_ended(const cli_render_job *job, const char *path, const char *const *endings) {
