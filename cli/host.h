@@ -13,7 +13,7 @@ typedef struct cli_loan {
   const void *what;
 } cli_loan;
 
-/* What lasts from one run to the next: a context, a renderer, and an opened source. One run at a time. */
+/* What lasts from one run to the next: a context, a renderer, and a few opened sources. One run at a time. */
 typedef struct cli_kept cli_kept;
 
 /* Null without memory. */
@@ -35,8 +35,8 @@ typedef struct cli_host {
   void (*take)(void *cookie, int i_frame, const char *view, const conic_image *image, const conic_camera *camera);
   const cli_loan *loans;
   size_t n_loans;
-  cli_kept *kept;         /* null: nothing is kept */
-  const char *source_key; /* of what is opened: a source is used again by a run of the same key. Null: it is not kept */
+  cli_kept *kept;   /* null: nothing is kept */
+  int keeps_source; /* so is what is opened: whoever opens the same files to be read alike has it again */
 
   /* What came of it. */
   int status;        /* a conic_status: of the failure, where the exit code is above 1 */

@@ -11,6 +11,7 @@
 #include "core/base/machine.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/threads.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
@@ -358,7 +359,7 @@ static conic_status take_kept_strips(banded *b) {
       break;
     end.statistics.isa =
         conic_isa_name(b->job->shot.render.isa == CONIC_ISA_AUTO ? conic_isa_best() : b->job->shot.render.isa);
-    end.statistics.threads = conic_context_threads(b->session->context);
+    end.statistics.threads = conic_parallel_threads(b->session->context);
     conic_windows_count(&b->windows, &end.statistics, &b->counts);
     for (int k = 0; k < CONIC_SOURCE_TALLIES; k++)
       b->windows.tallies[k] += end.tallies[k];

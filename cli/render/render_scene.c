@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/host_keeps.h"
+#include "cli/opening_key.h"
 #include "cli/render/frames.h"
 #include "cli/render/sharing.h"
 #include "cli/scene/light_options.h"
@@ -106,11 +107,15 @@ static conic_status open_source(cli_session *session, cli_render_job *job) {
 }
 
 conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
+  char key[CONIC_SHA256_ROOM];
   cli_deadline_open(job);
-  job->source = cli_kept_source(session);
+  cli_opening_key(job->inputs, (size_t)job->n_inputs, &job->opening, job->abilities, key);
+  job->source = cli_kept_source(session, key, job->opening.cutoff);
   conic_status status = job->source ? CONIC_OK : open_source(session, job);
   if (status == CONIC_OK)
-    cli_keep_source(session, job->source);
+    cli_keep_source(session, key, job->opening.cutoff, job->source);
+  if (status == CONIC_OK && job->opening.gaussians)
+    status = conic_source_composite_by(job->source, job->opening.gaussians);
   if (status == CONIC_OK)
     status = resolve_lengths(session, job);
   if (status == CONIC_OK)

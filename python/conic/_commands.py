@@ -6,7 +6,6 @@ sequences of numbers, and True for what is a flag; where a word is Python's own,
 from __future__ import annotations
 
 import ctypes
-import json
 import os
 import tempfile
 from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
@@ -24,10 +23,6 @@ from .errors import ArgumentError
 Loans = List[Tuple[str, ctypes.Structure]]
 AnyCamera = Union[Camera, PathLike]
 Options = Any
-
-# What may differ between pictures of one source that is open.
-_OF_THE_VIEW = {"size", "camera", "view", "azimuth", "elevation", "fov", "zoom", "eye", "samples", "aov", "o", "frames",
-                "turntable", "repeat", "format", "exr", "compression"}
 _REPEATED = {"light", "o"}
 
 
@@ -68,7 +63,6 @@ class _Call:
 
     def __init__(self, command: str) -> None:
         self.words: List[str] = [command, "--quiet"]
-        self.key: List[str] = [command]
         self.inputs: List[str] = []
         self.loans: Loans = []
         self.scene: Optional[Scene] = None
@@ -94,8 +88,6 @@ class _Call:
             if name == "o" and words[-1] == "-":
                 raise ArgumentError("output: pictures are returned; - is for a shell")
             self.words += words
-            if name not in _OF_THE_VIEW:
-                self.key += words
 
     def options(self, options: Dict[str, Any]) -> None:
         for name, value in options.items():
@@ -172,14 +164,14 @@ class _Call:
         if threads:
             self.words.append(f"--threads={int(threads)}")
         kept: Optional[Kept] = None
-        key = None
-        if keeps and self.scene and len(self.inputs) == len(self.scene.paths):
-            kept, key = self.scene._kept, json.dumps(self.key)
+        is_of_scene = self.scene is not None and len(self.inputs) == len(self.scene.paths)
+        if keeps and self.scene and is_of_scene:
+            kept = self.scene._kept
         elif keeps:
             kept = kept_of_thread()
         try:
             return run([*self.words, "--", *self.inputs], loans=self.loans, progress=progress, frames=frames, kept=kept,
-                       source_key=key, files=self._files)
+                       keeps_source=is_of_scene, files=self._files)
         finally:
             if self._folder:
                 self._folder.cleanup()

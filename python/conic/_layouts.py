@@ -83,7 +83,8 @@ class Model(ctypes.Structure):
         ("up", c_double * 3),
         ("fields", c_void_p),
         ("n_fields", c_size_t),
-        ("reserved", c_uint64 * 3),
+        ("follows_cutoff", c_uint64),
+        ("reserved", c_uint64 * 2),
     ]
 
 
@@ -225,7 +226,7 @@ class Host(ctypes.Structure):
         ("loans", POINTER(Loan)),
         ("n_loans", c_size_t),
         ("kept", c_void_p),
-        ("source_key", c_char_p),
+        ("keeps_source", c_int),
         ("status", c_int),
         ("json", c_void_p),
         ("json_bytes", c_size_t),

@@ -370,7 +370,7 @@ class Frames:
 
 def run(arguments: Sequence[str], *, loans: Sequence[Tuple[str, ctypes.Structure]] = (), progress: Any = None,
         frames: Optional[Frames] = None, kept: Optional[Kept] = None,
-        source_key: Optional[str] = None, files: Sequence[str] = ()) -> Tuple[int, dict[str, Any]]:
+        keeps_source: bool = False, files: Sequence[str] = ()) -> Tuple[int, dict[str, Any]]:
     """Runs a command of the program; its exit code (0 or 1), and its JSON. The GIL is released meanwhile."""
     ear, watch = _Ear([name for name, _ in loans], files), _Watch(progress)
     host = layouts.Host()
@@ -382,8 +382,7 @@ def run(arguments: Sequence[str], *, loans: Sequence[Tuple[str, ctypes.Structure
     lent = (layouts.Loan * max(1, len(loans)))(
         *[layouts.Loan(name.encode(), ctypes.addressof(what)) for name, what in loans])
     host.loans, host.n_loans = lent, len(loans)
-    if source_key is not None:
-        host.source_key = os.fsencode(source_key)
+    host.keeps_source = int(keeps_source)
     encoded = [os.fsencode(argument) for argument in arguments]
     argv = (ctypes.c_char_p * (len(encoded) + 1))(*encoded, None)
     with (kept.lock if kept else contextlib.nullcontext()):
