@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "cli/opening_key.h"
-#include "cli/shell.h"
 #include "core/base/context_struct.h"
 #include "core/base/machine.h"
 #include "core/base/threads.h"
@@ -180,21 +179,34 @@ void cli_keep_renderer(const cli_session *session, const cli_device *device, con
     conic_renderer_destroy(renderer);
 }
 
-/* --- pictures and JSON --- */
+/* --- pictures and facts --- */
 
-FILE *cli_host_open_json(cli_host *host) {
-  cli_host_release(host);
-  return cli_shell_open_memory(&host->json, &host->json_bytes);
-}
-
-int cli_host_close_json(cli_host *host, FILE *json) {
-  return cli_shell_close_memory(json, &host->json, &host->json_bytes);
+void cli_host_note(cli_host *host, char type, const char *key, const void *value, size_t n_bytes) {
+  const size_t n_key = type == 'e' ? 0 : key ? strlen(key) + 1 : 1, n = 1 + n_key + n_bytes;
+  if (host->n_facts_bytes + n > host->facts_room) {
+    const size_t room = 2 * host->facts_room + n + 4096;
+    char *larger = realloc(host->facts, room);
+    if (!larger) {
+      host->facts_are_lost = 1;
+      return;
+    }
+    host->facts = larger;
+    host->facts_room = room;
+  }
+  char *to = host->facts + host->n_facts_bytes;
+  *to++ = type;
+  if (n_key)
+    memcpy(to, key ? key : "", n_key);
+  if (n_bytes)
+    memcpy(to + n_key, value, n_bytes);
+  host->n_facts_bytes += n;
 }
 
 void cli_host_release(cli_host *host) {
-  free(host->json);
-  host->json = NULL;
-  host->json_bytes = 0;
+  free(host->facts);
+  host->facts = NULL;
+  host->n_facts_bytes = host->facts_room = 0;
+  host->facts_are_lost = 0;
 }
 
 conic_status cli_host_allocate_image(cli_session *session, int width, int height, unsigned planes, conic_image *image) {
@@ -216,9 +228,8 @@ void cli_host_release_image(cli_session *session, conic_image *image) {
     conic_image_release(session->context, image);
 }
 
-void cli_host_take(const cli_session *session, int i_frame, const char *view, const conic_image *image,
-                   const conic_camera *camera) {
+void cli_host_take(const cli_session *session, const cli_drawn *drawn) {
   const cli_host *host = session->host;
   if (host && host->take)
-    host->take(host->cookie, i_frame, view, image, camera);
+    host->take(host->cookie, drawn);
 }

@@ -282,6 +282,18 @@ static conic_status render_banded(cli_session *session, cli_render_job *job, int
   return CONIC_OK;
 }
 
+static void hand_over(const cli_session *session, const cli_render_job *job, int i_frame, const conic_camera *camera,
+                      const conic_image *image) {
+  const cli_drawn drawn = {.i_frame = i_frame,
+                           .view = job->cameras.count ? job->cameras.names[job->i_view] : "",
+                           .image = image,
+                           .camera = camera,
+                           .shot = &job->shot,
+                           .sky_path = job->sky ? job->sky_path : NULL,
+                           .motion_path = job->accumulating.motion ? job->accumulating.motion_path : NULL};
+  cli_host_take(session, &drawn);
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
@@ -334,7 +346,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   if (status == CONIC_OK)
     status = write_deep(session, job, &camera, image, i_frame);
   if (status == CONIC_OK)
-    cli_host_take(session, i_frame, job->cameras.count ? job->cameras.names[job->i_view] : "", image, &camera);
+    hand_over(session, job, i_frame, &camera, image);
   return status;
 }
 
