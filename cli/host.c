@@ -1,10 +1,9 @@
 #include "cli/host.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "cli/command.h"
-#include "cli/scene/render_job.h"
+#include "cli/host_keeps.h"
+#include "cli/opening_key.h"
+#include "shots/way.h"
 
 int cli_host_run(cli_host *host, int argc, char **argv) {
   const cli_command *command = argc > 0 ? cli_find_command(argv[0]) : NULL;
@@ -23,66 +22,76 @@ int cli_host_run(cli_host *host, int argc, char **argv) {
 /* --- a picture that is a shot already --- */
 
 typedef struct shot_request {
+  const char **inputs;
+  size_t n_inputs;
+  const conic_source_options *opening;
   conic_shot shot;
   const char *sky_path, *motion_path;
   conic_image *image;
   conic_shot_outcome *outcome;
 } shot_request;
 
-static conic_status draw_shot(cli_session *session, cli_render_job *job, shot_request *wish) {
-  conic_shot *shot = &job->shot; /* whose motion, and sky, go with the job */
-  *shot = wish->shot;
-  shot->light.sky = NULL;
-  shot->motion = NULL;
+static conic_status open_again(cli_session *session, const shot_request *wish, conic_source **source) {
+  char key[CONIC_SHA256_ROOM];
+  const float cutoff = wish->opening->cutoff;
+  const unsigned abilities = cli_kept_abilities(session, wish->inputs, wish->n_inputs, wish->opening);
+  cli_opening_key(wish->inputs, wish->n_inputs, wish->opening, abilities, key);
+  *source = cli_kept_source(session, key, cutoff);
+  if (*source)
+    return CONIC_OK;
+  conic_status status = conic_source_open(session->context, wish->inputs, wish->n_inputs, wish->opening, source);
+  if (status == CONIC_OK)
+    cli_keep_source(session, key, cutoff, *source);
+  return status;
+}
+
+static conic_status draw_shot(cli_session *session, conic_source *source, conic_renderer *renderer,
+                              shot_request *wish) {
+  conic_shot *shot = &wish->shot;
+  conic_sky *sky = NULL;
+  conic_motion *motion = NULL;
   conic_status status = CONIC_OK;
   if (wish->sky_path)
-    status = conic_sky_read(session->context, wish->sky_path, shot->render.lighting.up, &job->sky);
-  shot->light.sky = job->sky;
+    status = conic_sky_read(session->context, wish->sky_path, shot->render.lighting.up, &sky);
   if (status == CONIC_OK && wish->motion_path)
-    status = conic_motion_read(session->context, wish->motion_path, (size_t)job->n_inputs, &job->opening,
-                               &job->accumulating.motion);
-  shot->motion = job->accumulating.motion;
-  return status == CONIC_OK ? conic_shot_draw(job->source, job->renderer, shot, wish->image, wish->outcome) : status;
+    status = conic_motion_read(session->context, wish->motion_path, wish->n_inputs, wish->opening, &motion);
+  shot->light.sky = sky;
+  shot->motion = motion;
+  if (status == CONIC_OK)
+    status = conic_shot_draw(source, renderer, shot, wish->image, wish->outcome);
+  conic_shot_rest(shot, source);
+  conic_motion_destroy(motion);
+  conic_sky_destroy(sky);
+  return status;
 }
 
-static int run_shot(cli_session *session, int argc, char **argv, shot_request *wish) {
-  cli_render_job job;
-  int exit_code = cli_render_parse(session, argc, argv, &job);
-  job.session = session;
-  if (exit_code == CLI_DONE)
-    exit_code = cli_session_open(session);
-  if (exit_code == CLI_DONE) {
-    conic_status status = cli_scene_begin(session, &job);
-    if (status == CONIC_OK)
-      status = cli_scene_open(session, &job);
-    if (status == CONIC_OK)
-      status = draw_shot(session, &job, wish);
-    exit_code = cli_exit_of(status);
-    cli_scene_release(session, &job);
-  }
-  free(job.inputs);
-  return exit_code;
+static conic_status run_shot(cli_session *session, shot_request *wish) {
+  cli_device device = {.name = "cpu"};
+  conic_source *source = NULL;
+  conic_renderer *renderer = NULL;
+  conic_status status =
+      cli_kept_renderer(session, &device, &renderer) ? CONIC_OK : conic_renderer_create(session->context, &renderer);
+  if (status == CONIC_OK)
+    status = open_again(session, wish, &source);
+  if (status == CONIC_OK)
+    status = draw_shot(session, source, renderer, wish);
+  cli_keep_renderer(session, &device, renderer);
+  if (!cli_source_is_kept(session, source))
+    conic_source_close(source);
+  return status;
 }
 
-int cli_host_draw(cli_host *host, int n_inputs, char **inputs, const conic_shot *shot, const char *sky_path,
-                  const char *motion_path, conic_image *image, conic_shot_outcome *outcome) {
-  cli_session session = {.command = "render", .host = host};
-  shot_request wish = {*shot, sky_path, motion_path, image, outcome};
-  static char command[] = "render", end[] = "--";
-  char **argv = calloc((size_t)n_inputs + 3, sizeof *argv);
+int cli_host_draw(cli_host *host, int n_inputs, const char **inputs, const conic_source_options *opening,
+                  const conic_shot *shot, const char *sky_path, const char *motion_path, int threads,
+                  conic_image *image, conic_shot_outcome *outcome) {
+  cli_session session = {.command = "render", .host = host, .threads = threads, .isa = shot->render.isa};
+  shot_request wish = {inputs, (size_t)n_inputs, opening, *shot, sky_path, motion_path, image, outcome};
   host->status = CONIC_OK;
   cli_session_host(&session);
-  int exit_code = CLI_RESOURCE;
-  if (argv) {
-    argv[0] = command;
-    argv[1] = end;
-    memcpy(argv + 2, inputs, (size_t)n_inputs * sizeof *argv);
-    exit_code = run_shot(&session, n_inputs + 2, argv, &wish);
-    cli_session_close(&session);
-  }
-  if (exit_code == CLI_RESOURCE && host->status == CONIC_OK)
-    host->status = argv ? CONIC_ERROR_IO : CONIC_ERROR_MEMORY;
+  int exit_code = cli_session_open(&session);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_exit_of(run_shot(&session, &wish));
+  cli_session_close(&session);
   cli_session_host(NULL);
-  free(argv);
   return exit_code;
 }

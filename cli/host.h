@@ -48,9 +48,10 @@ typedef struct cli_drawn {
   const char *view; /* its name in the file of cameras; else empty */
   const conic_image *image;
   const conic_camera *camera;
-  const conic_shot *shot;  /* that conic_shot_draw had; null: it is no single picture of a camera */
-  const char *sky_path;    /* where the shot's sky was read; null: it has none */
-  const char *motion_path; /* likewise its motion */
+  const conic_shot *shot;              /* what was drawn */
+  const conic_source_options *opening; /* how its inputs were read */
+  const char *sky_path;                /* where the shot's sky was read; null: it has none */
+  const char *motion_path;             /* likewise its motion */
 } cli_drawn;
 
 /* Functions may be null. They are called on the caller's thread, but for `say`, which any of the context's may call.
@@ -59,6 +60,9 @@ typedef struct cli_host {
   void *cookie;
   /* As the context's options have it: not 0 cancels. */
   int (*progress)(void *cookie, const char *task, double fraction);
+  double progress_seconds; /* it is called no more often than once in so many; 0: whenever there is something to tell */
+  double told_at;          /* the run's own, as is the next */
+  int is_stopped;          /* by what it returned */
   /* A line of a conic_log_level. */
   void (*say)(void *cookie, int level, const char *line);
   /* Asks for arrays for the planes of a frame, with anything in them; not 0: there is no memory. Null: render has no
@@ -89,10 +93,11 @@ CONIC_API int cli_host_run(cli_host *host, int argc, char **argv);
 /* Releases the facts. */
 CONIC_API void cli_host_release(cli_host *host);
 
-/* Draws a shot of inputs, which render's options in the host's values say how to read, into the planes that `image`
- * has: opens or finds again what is kept, and calls conic_shot_draw. Sky and motion are read from their paths, if these
- * are not null; the shot's own are not looked at. Returns an exit code. */
-CONIC_API int cli_host_draw(cli_host *host, int n_inputs, char **inputs, const conic_shot *shot, const char *sky_path,
-                            const char *motion_path, conic_image *image, conic_shot_outcome *outcome);
+/* Draws a shot of inputs, read as the options say, into the planes that `image` has: opens them or finds them again,
+ * and calls conic_shot_draw. Sky and motion are read from their paths, if these are not null; the shot's own are not
+ * looked at. Of the host's values, none are. Returns an exit code. */
+CONIC_API int cli_host_draw(cli_host *host, int n_inputs, const char **inputs, const conic_source_options *opening,
+                            const conic_shot *shot, const char *sky_path, const char *motion_path, int threads,
+                            conic_image *image, conic_shot_outcome *outcome);
 
 #endif

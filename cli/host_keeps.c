@@ -151,7 +151,9 @@ unsigned cli_kept_abilities(const cli_session *session, const char *const *paths
   char key[CONIC_SHA256_ROOM];
   if (!kept)
     return conic_source_abilities(paths, n_paths, options);
-  cli_opening_key(paths, n_paths, options, 0, key);
+  conic_source_options told = *options;
+  told.keeps_alpha = 0; /* which decides nothing here */
+  cli_opening_key(paths, n_paths, &told, 0, key);
   for (int i = 0; i < MOST_FACTS; i++)
     if (strcmp(kept->facts[i].key, key) == 0)
       return kept->facts[i].abilities;

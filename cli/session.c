@@ -200,12 +200,21 @@ static void show_progress(cli_session *session, const char *task, double fractio
     draw_bar(session, fraction, now);
 }
 
+static int tell_host(cli_session *session, cli_host *host, const char *task, double fraction) {
+  const double now = host->progress_seconds > 0.0 ? cli_seconds() : 0.0;
+  if (session->part)
+    fraction = share_of_parts(session, fraction);
+  if (!host->progress || (host->told_at > 0.0 && now - host->told_at < host->progress_seconds))
+    return host->is_stopped;
+  host->told_at = now;
+  host->is_stopped |= host->progress(host->cookie, session->part ? session->part : task, fraction) != 0;
+  return host->is_stopped;
+}
+
 static int on_progress(void *cookie, const char *task, double fraction) {
   cli_session *session = cookie;
-  const cli_host *host = session->host;
-  if (host)
-    return host->progress && host->progress(host->cookie, session->part ? session->part : task,
-                                            session->part ? share_of_parts(session, fraction) : fraction);
+  if (session->host)
+    return tell_host(session, session->host, task, fraction);
   if (session->has_bar) {
     pthread_mutex_lock(&screen);
     show_progress(session, task, fraction);

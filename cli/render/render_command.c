@@ -289,6 +289,7 @@ static void hand_over(const cli_session *session, const cli_render_job *job, int
                            .image = image,
                            .camera = camera,
                            .shot = &job->shot,
+                           .opening = &job->opening,
                            .sky_path = job->sky ? job->sky_path : NULL,
                            .motion_path = job->accumulating.motion ? job->accumulating.motion_path : NULL};
   cli_host_take(session, &drawn);
