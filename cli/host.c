@@ -9,13 +9,13 @@ int cli_host_run(cli_host *host, int argc, char **argv) {
   const cli_command *command = argc > 0 ? cli_find_command(argv[0]) : NULL;
   cli_session session = {.command = command ? command->name : "conic", .host = host, .json_path = "-"};
   host->status = CONIC_OK;
-  cli_session_host(&session);
+  cli_host *before = cli_session_host(host);
   int exit_code =
       command ? command->run(&session, argc, argv) : cli_usage("there is no command '%s'", argc > 0 ? argv[0] : "");
   if (exit_code == CLI_RESOURCE && host->status == CONIC_OK)
     host->status = CONIC_ERROR_IO; /* outputs that cannot be written are found before the library is asked */
   cli_session_close(&session);
-  cli_session_host(NULL);
+  cli_session_host(before);
   return exit_code;
 }
 
@@ -87,11 +87,11 @@ int cli_host_draw(cli_host *host, int n_inputs, const char **inputs, const conic
   cli_session session = {.command = "render", .host = host, .threads = threads, .isa = shot->render.isa};
   shot_request wish = {inputs, (size_t)n_inputs, opening, *shot, sky_path, motion_path, image, outcome};
   host->status = CONIC_OK;
-  cli_session_host(&session);
+  cli_host *before = cli_session_host(host);
   int exit_code = cli_session_open(&session);
   if (exit_code == CLI_DONE)
     exit_code = cli_exit_of(run_shot(&session, &wish));
   cli_session_close(&session);
-  cli_session_host(NULL);
+  cli_session_host(before);
   return exit_code;
 }

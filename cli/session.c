@@ -30,8 +30,10 @@ static atomic_int closed_pipe_signal; /* what is written to a pipe has no reader
 /* Of the run that this thread is in; null: the program's own. */
 static _Thread_local cli_host *thread_host;
 
-void cli_session_host(cli_session *session) {
-  thread_host = session ? session->host : NULL;
+cli_host *cli_session_host(cli_host *host) {
+  cli_host *before = thread_host;
+  thread_host = host;
+  return before;
 }
 
 static void say_to_host(const cli_host *host, conic_log_level level, const char *message) {

@@ -150,9 +150,9 @@ class Kernel(_Struct):
     _words: ClassVar[Dict[str, Sequence[str]]] = {"type": words_of("conic_kernel_type_name")}
     type: str = "gauss"
     cutoff: float = 1.5
-    a: float = 0.0
-    b: float = 0.0
-    n: int = 0
+    a: float = 4.0
+    b: float = 1.5
+    n: int = 5
 
 
 @dataclass
