@@ -33,15 +33,14 @@ typedef struct shot_request {
 
 static conic_status open_again(cli_session *session, const shot_request *wish, conic_source **source) {
   char key[CONIC_SHA256_ROOM];
-  const float cutoff = wish->opening->cutoff;
   const unsigned abilities = cli_kept_abilities(session, wish->inputs, wish->n_inputs, wish->opening);
   cli_opening_key(wish->inputs, wish->n_inputs, wish->opening, abilities, key);
-  *source = cli_kept_source(session, key, cutoff);
+  *source = cli_kept_source(session, key, wish->opening);
   if (*source)
     return CONIC_OK;
   conic_status status = conic_source_open(session->context, wish->inputs, wish->n_inputs, wish->opening, source);
   if (status == CONIC_OK)
-    cli_keep_source(session, key, cutoff, *source);
+    cli_keep_source(session, key, wish->opening, *source);
   return status;
 }
 

@@ -12,7 +12,7 @@ enum { MOST_SOURCES = 4, MOST_FACTS = 16 };
 
 typedef struct kept_source {
   char key[CONIC_SHA256_ROOM];
-  float cutoff; /* that it was opened with */
+  cli_opened opened;
   conic_source *source;
   uint64_t last_used;
 } kept_source;
@@ -109,22 +109,20 @@ static cli_kept *keeper_of_sources(const cli_session *session) {
   return kept && session->host->keeps_source ? kept : NULL;
 }
 
-static int is_opened_alike(const kept_source *kept, const char *key, float cutoff) {
-  return kept->source && strcmp(kept->key, key) == 0 &&
-         (kept->cutoff == cutoff || !conic_source_measure(kept->source)->follows_cutoff);
-}
-
-conic_source *cli_kept_source(const cli_session *session, const char *key, float cutoff) {
+conic_source *cli_kept_source(const cli_session *session, const char *key, const conic_source_options *options) {
   cli_kept *kept = keeper_of_sources(session);
-  for (int i = 0; kept && i < MOST_SOURCES; i++)
-    if (is_opened_alike(&kept->sources[i], key, cutoff)) {
-      kept->sources[i].last_used = ++kept->n_uses;
-      return kept->sources[i].source;
+  for (int i = 0; kept && i < MOST_SOURCES; i++) {
+    kept_source *one = &kept->sources[i];
+    if (one->source && strcmp(one->key, key) == 0 && cli_is_opened_alike(one->source, &one->opened, options)) {
+      one->last_used = ++kept->n_uses;
+      return one->source;
     }
+  }
   return NULL;
 }
 
-void cli_keep_source(const cli_session *session, const char *key, float cutoff, conic_source *source) {
+void cli_keep_source(const cli_session *session, const char *key, const conic_source_options *options,
+                     conic_source *source) {
   cli_kept *kept = keeper_of_sources(session);
   if (!kept || cli_source_is_kept(session, source))
     return;
@@ -133,7 +131,7 @@ void cli_keep_source(const cli_session *session, const char *key, float cutoff, 
     if (kept->sources[i].last_used < place->last_used)
       place = &kept->sources[i];
   drop_source(place);
-  *place = (kept_source){.cutoff = cutoff, .source = source, .last_used = ++kept->n_uses};
+  *place = (kept_source){.opened = cli_opened_with(options), .source = source, .last_used = ++kept->n_uses};
   snprintf(place->key, sizeof place->key, "%s", key);
 }
 

@@ -5,6 +5,7 @@
 
 #include "cli/device_option.h"
 #include "cli/host.h"
+#include "cli/opening_key.h"
 #include "cli/session.h"
 
 /* Adds a record to the host's facts. */
@@ -23,8 +24,9 @@ void cli_kept_leave(cli_kept *kept, conic_context *context);
 
 /* The kept source of a key (cli/opening_key.h), or null; keeps one, which stays what it is for this run; whether one
  * is. A few are kept, those that were used last. */
-conic_source *cli_kept_source(const cli_session *session, const char *key, float cutoff);
-void cli_keep_source(const cli_session *session, const char *key, float cutoff, conic_source *source);
+conic_source *cli_kept_source(const cli_session *session, const char *key, const conic_source_options *options);
+void cli_keep_source(const cli_session *session, const char *key, const conic_source_options *options,
+                     conic_source *source);
 int cli_source_is_kept(const cli_session *session, const conic_source *source);
 
 /* conic_source_abilities, told from the files once. */

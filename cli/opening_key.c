@@ -53,8 +53,6 @@ static void add_coloring(conic_sha256 *sum, const conic_coloring_options *colori
     add_number(sum, coloring->minimum);
     add_number(sum, coloring->maximum);
   }
-  for (int axis = 0; axis < 3; axis++)
-    add_number(sum, coloring->up[axis]);
 }
 
 void cli_opening_key(const char *const *paths, size_t n_paths, const conic_source_options *options, unsigned abilities,
@@ -85,4 +83,19 @@ void cli_opening_key(const char *const *paths, size_t n_paths, const conic_sourc
   if (options->patches && options->as == CONIC_AS_PATCHES)
     add_patches(&sum, options->patches, options->h_in_spacings);
   conic_sha256_end(&sum, key);
+}
+
+cli_opened cli_opened_with(const conic_source_options *options) {
+  cli_opened opened = {.cutoff = options->cutoff};
+  if (options->coloring)
+    memcpy(opened.up, options->coloring->up, sizeof opened.up);
+  return opened;
+}
+
+int cli_is_opened_alike(const conic_source *source, const cli_opened *opened, const conic_source_options *options) {
+  const cli_opened wanted = cli_opened_with(options);
+  const conic_coloring *coloring = conic_source_coloring(source);
+  const int is_height = coloring && strcmp(coloring->field, "height") == 0;
+  return (wanted.cutoff == opened->cutoff || !conic_source_measure(source)->follows_cutoff) &&
+         (memcmp(wanted.up, opened->up, sizeof wanted.up) == 0 || !is_height);
 }

@@ -110,10 +110,10 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   char key[CONIC_SHA256_ROOM];
   cli_deadline_open(job);
   cli_opening_key(job->inputs, (size_t)job->n_inputs, &job->opening, job->abilities, key);
-  job->source = cli_kept_source(session, key, job->opening.cutoff);
+  job->source = cli_kept_source(session, key, &job->opening);
   conic_status status = job->source ? CONIC_OK : open_source(session, job);
   if (status == CONIC_OK)
-    cli_keep_source(session, key, job->opening.cutoff, job->source);
+    cli_keep_source(session, key, &job->opening, job->source);
   if (status == CONIC_OK && job->opening.gaussians)
     status = conic_source_composite_by(job->source, job->opening.gaussians);
   if (status == CONIC_OK)

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import copy
 import ctypes
+import inspect
 import os
+import re
 import tempfile
 from typing import Any, Dict, List, Optional, Sequence, Set, Tuple, Union
 
@@ -238,9 +240,9 @@ def render(scene: AnyScene, camera: Union[None, AnyCamera, Shot] = None, *, plan
     `scene`: what :func:`open` gives, :class:`Splats`, :class:`Mesh`, :class:`Gaussians`, a path, or a list of these.
     `camera`: a :class:`Camera`, or a file of cameras, of which `view` names one; without, all of the scene is framed.
     `planes`: of "rgba", "Z", "N", "albedo", "weight", "count", "id", "P", of Gaussian scenes "T", "medianZ",
-    "inverseZ", "last", "doubt"; "ao", "shadow" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`: files to write,
-    besides. `progress`: True, a function of a task's name and the share of it that is done, or a tqdm bar. All
-    other options of `conic help render` are taken by their names.
+    "inverseZ", "last", "doubt"; "ao", "shadow" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`:
+    files to write, besides. `progress`: True, a function of a task's name and the share of it that is done, or a tqdm
+    bar. All other options of `conic help render` are taken by their names.
 
     A :class:`Shot` in the place of the camera is drawn as it is, and takes no options but `progress` and `threads`.
 
@@ -446,3 +448,28 @@ def gradient(scene: AnyScene, camera: AnyCamera, weights: Any, output: Optional[
     call.camera(camera)
     call.add("weights", call.evidence(weights, (3, 4, 5)))
     return _build(call, output, "ply", options, progress, threads)
+
+
+# --- signatures ---
+
+
+def _tell_signatures(path: str) -> None:
+    """Gives the functions the signatures and the descriptions of their options that _commands.pyi has, which is made of
+    the program's table: help(), and who completes what is typed, look at the functions."""
+    kinds = inspect.Parameter
+    with open(path, encoding="utf-8") as file:
+        parts = file.read().split("\ndef ")[1:]
+    for part in parts:
+        name, rest = part.split("(", 1)
+        head, tail = rest.split("\n) -> ", 1)
+        function, names = globals()[name], re.findall(r"^    (\w+):", head, re.MULTILINE)
+        if function.__kwdefaults__ is None or not names or "**" in head:
+            continue
+        known = inspect.signature(function).parameters
+        function.__signature__ = inspect.Signature(
+            [known[key] if key in known else kinds(key, kinds.KEYWORD_ONLY, default=None) for key in names])
+        function.__doc__ = tail.split('"""', 2)[1]
+
+
+if os.path.exists(_SIGNATURES := os.path.splitext(__file__)[0] + ".pyi"):
+    _tell_signatures(_SIGNATURES)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import ctypes
 import itertools
@@ -360,10 +361,41 @@ def _progress_of(progress: Any) -> Optional[Callable[[str, float], Any]]:
     return progress
 
 
-def _has_died() -> bool:
-    """Whether Ctrl-C has ended the main thread, which then waits for the others."""
-    last = getattr(sys, "last_type", None)
-    return last is not None and not threading.main_thread().is_alive() and issubclass(last, KeyboardInterrupt)
+class _Ending:
+    """The interpreter's end, which must not come while the library is to call it back: runs of other threads that
+    nobody waits for are stopped. So are those of threads for which a main thread waits that Ctrl-C has ended."""
+
+    PATIENCE = 10.0
+
+    def __init__(self) -> None:
+        self._is_here = False
+        self._runs = 0
+        self._lock = threading.Lock()
+        atexit.register(self._come)
+
+    @contextlib.contextmanager
+    def awaits(self) -> Iterator[None]:
+        with self._lock:
+            self._runs += 1
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._runs -= 1
+
+    def _come(self) -> None:
+        self._is_here = True
+        until = time.monotonic() + self.PATIENCE
+        while self._runs and time.monotonic() < until:
+            time.sleep(0.005)
+
+    def stops_others(self) -> bool:
+        last = getattr(sys, "last_type", None)
+        is_killed = last is not None and issubclass(last, KeyboardInterrupt)
+        return self._is_here or (is_killed and not threading.main_thread().is_alive())
+
+
+_ending = _Ending()
 
 
 class _Watch:
@@ -402,7 +434,7 @@ class _Watch:
 
     def progress(self, _cookie: Any, task: bytes, fraction: float) -> int:
         try:
-            if not self._is_main and _has_died():
+            if not self._is_main and _ending.stops_others():
                 return 1
             if self.tell and self._failure is None:
                 with self._kept.calling() if self._kept else contextlib.nullcontext():
@@ -537,7 +569,7 @@ def _host(call: Callable[[Any], int], ear: "_Ear", progress: Any, loans: Sequenc
     host.loans, host.n_loans = lent, len(loans)
     host.values, host.n_values = _values_of(pairs), len(pairs)
     host.keeps_source = int(keeps_source)
-    with kept.held() if kept else contextlib.nullcontext() as held:
+    with _ending.awaits(), kept.held() if kept else contextlib.nullcontext() as held:
         host.kept = held.pointer() if held else None
         with watch.over(held):
             exit_code = call(ctypes.byref(host))
