@@ -362,7 +362,7 @@ static int store_numbers(const cli_option *option, const cli_value *value) {
   return 1;
 }
 
-static int is_in_range(const cli_option *option) {
+static int is_stored_in_range(const cli_option *option) {
   switch (option->type) {
   case CLI_INT:
     return is_within_limits(option, *(int *)option->value);
@@ -392,7 +392,7 @@ static int take_value(const cli_session *session, const option_set *set, cli_val
                      option->argument);
   if (is_flag || !store_numbers(option, value))
     return store_value(session, option, is_flag ? NULL : say_numbers(value));
-  if (!is_in_range(option))
+  if (!is_stored_in_range(option))
     return refuse_range(session, option, say_numbers(value));
   if (option->is_given)
     *option->is_given = 1;

@@ -82,28 +82,28 @@ void cli_json_begin(cli_json *json, FILE *to) {
 }
 
 /* What a host is told in the place of text; 0: there is none. */
-static int is_noted(const cli_json *json, char type, const char *key, const void *value, size_t n_bytes) {
+static int is_told_to_host(const cli_json *json, char type, const char *key, const void *value, size_t n_bytes) {
   if (json->host)
     cli_host_note(json->host, type, key, value, n_bytes);
   return json->host != NULL;
 }
 
 void cli_json_object(cli_json *json, const char *key) {
-  if (is_noted(json, 'o', key, NULL, 0))
+  if (is_told_to_host(json, 'o', key, NULL, 0))
     return;
   begin_item(json, key, 1);
   open_level(json, '{', 0);
 }
 
 void cli_json_array(cli_json *json, const char *key) {
-  if (is_noted(json, 'a', key, NULL, 0))
+  if (is_told_to_host(json, 'a', key, NULL, 0))
     return;
   begin_item(json, key, 0);
   open_level(json, '[', IS_ARRAY);
 }
 
 void cli_json_close(cli_json *json) {
-  if (is_noted(json, 'e', NULL, NULL, 0))
+  if (is_told_to_host(json, 'e', NULL, NULL, 0))
     return;
   int state = json->has_items[--json->depth];
   if (state & HAS_LINES)
@@ -119,7 +119,7 @@ int cli_json_end(cli_json *json) {
 }
 
 void cli_json_text(cli_json *json, const char *key, const char *value) {
-  if (is_noted(json, value ? 't' : 'z', key, value, value ? strlen(value) + 1 : 0))
+  if (is_told_to_host(json, value ? 't' : 'z', key, value, value ? strlen(value) + 1 : 0))
     return;
   begin_item(json, key, 0);
   if (value)
@@ -131,7 +131,7 @@ void cli_json_text(cli_json *json, const char *key, const char *value) {
 void cli_json_number(cli_json *json, const char *key, double value) {
   char text[40];
   const int is_finite = value - value == 0.0;
-  if (is_noted(json, is_finite ? 'n' : 'z', key, &value, is_finite ? sizeof value : 0))
+  if (is_told_to_host(json, is_finite ? 'n' : 'z', key, &value, is_finite ? sizeof value : 0))
     return;
   begin_item(json, key, 0);
   if (!is_finite) {
@@ -147,7 +147,7 @@ void cli_json_number(cli_json *json, const char *key, double value) {
 }
 
 void cli_json_count(cli_json *json, const char *key, uint64_t value) {
-  if (is_noted(json, 'c', key, &value, sizeof value))
+  if (is_told_to_host(json, 'c', key, &value, sizeof value))
     return;
   begin_item(json, key, 0);
   fprintf(json->to, "%" PRIu64, value);
@@ -155,7 +155,7 @@ void cli_json_count(cli_json *json, const char *key, uint64_t value) {
 
 void cli_json_bool(cli_json *json, const char *key, int value) {
   const char truth = value != 0;
-  if (is_noted(json, 'b', key, &truth, 1))
+  if (is_told_to_host(json, 'b', key, &truth, 1))
     return;
   begin_item(json, key, 0);
   fputs(value ? "true" : "false", json->to);

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-static void add_number(conic_sha256 *sum, double number) {
+static void add_double(conic_sha256 *sum, double number) {
   conic_sha256_add(sum, &number, sizeof number);
 }
 
@@ -21,10 +21,10 @@ static void add_text(conic_sha256 *sum, const char *text) {
  * decides whether the source is looked at all around. */
 static void add_access(conic_sha256 *sum, const conic_layers_access *access) {
   add_count(sum, access->memory_bytes);
-  add_number(sum, access->connect_seconds);
-  add_number(sum, access->stall_seconds);
+  add_double(sum, access->connect_seconds);
+  add_double(sum, access->stall_seconds);
   add_count(sum, (uint64_t)access->n_retries);
-  add_number(sum, access->pause_seconds);
+  add_double(sum, access->pause_seconds);
   add_count(sum, (uint64_t)access->n_connections);
   add_count(sum, access->seconds > 0.0);
 }
@@ -35,13 +35,13 @@ static void add_patches(conic_sha256 *sum, const conic_patches_options *patches,
   add_count(sum, (uint64_t)surface->plane);
   add_count(sum, (uint64_t)surface->weight);
   add_count(sum, (uint64_t)surface->degree);
-  add_number(sum, surface->h);
-  add_number(sum, surface->neglect);
+  add_double(sum, surface->h);
+  add_double(sum, surface->neglect);
   add_count(sum, (uint64_t)surface->n_local);
-  add_number(sum, surface->cluster);
+  add_double(sum, surface->cluster);
   add_count(sum, surface->is_sharp);
-  add_number(sum, patches->step_px);
-  add_number(sum, patches->most_off);
+  add_double(sum, patches->step_px);
+  add_double(sum, patches->most_off);
   add_count(sum, (uint64_t)h_in_spacings);
 }
 
@@ -50,8 +50,8 @@ static void add_coloring(conic_sha256 *sum, const conic_coloring_options *colori
   add_text(sum, coloring->ramp);
   add_count(sum, (uint64_t)coloring->has_range);
   if (coloring->has_range) {
-    add_number(sum, coloring->minimum);
-    add_number(sum, coloring->maximum);
+    add_double(sum, coloring->minimum);
+    add_double(sum, coloring->maximum);
   }
 }
 
@@ -68,7 +68,7 @@ void cli_opening_key(const char *const *paths, size_t n_paths, const conic_sourc
   add_count(&sum, (uint64_t)options->n_neighbours);
   add_text(&sum, options->texture_path);
   add_count(&sum, (uint64_t)options->is_smooth);
-  add_number(&sum, options->crease_deg);
+  add_double(&sum, options->crease_deg);
   add_count(&sum, (uint64_t)options->projects_degrees);
   add_count(&sum, (uint64_t)options->finds_dots);
   add_text(&sum, options->columns);

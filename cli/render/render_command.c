@@ -282,8 +282,8 @@ static conic_status render_banded(cli_session *session, cli_render_job *job, int
   return CONIC_OK;
 }
 
-static void hand_over(const cli_session *session, const cli_render_job *job, int i_frame, const conic_camera *camera,
-                      const conic_image *image) {
+static void hand_picture_over(const cli_session *session, const cli_render_job *job, int i_frame,
+                              const conic_camera *camera, const conic_image *image) {
   const cli_drawn drawn = {.i_frame = i_frame,
                            .view = job->cameras.count ? job->cameras.names[job->i_view] : "",
                            .image = image,
@@ -347,7 +347,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   if (status == CONIC_OK)
     status = write_deep(session, job, &camera, image, i_frame);
   if (status == CONIC_OK)
-    hand_over(session, job, i_frame, &camera, image);
+    hand_picture_over(session, job, i_frame, &camera, image);
   return status;
 }
 

@@ -234,7 +234,8 @@ def render(scene: AnyScene, camera: Union[None, AnyCamera, Shot] = None, *, plan
            profile: Optional[str] = None, method: Optional[str] = None, quality: Optional[str] = None,
            samples: Optional[int] = None, as_: Optional[str] = None, shade: Optional[str] = None,
            background: Any = None, exposure: Any = None, azimuth: Optional[float] = None,
-           elevation: Optional[float] = None, turntable: Optional[int] = None, **options: Options) -> Any:
+           elevation: Optional[float] = None, turntable: Optional[int] = None, in_memory: bool = True,
+           **options: Options) -> Any:
     """Draws a scene; with the same options, the bits are those of `conic render`.
 
     `scene`: what :func:`open` gives, :class:`Splats`, :class:`Mesh`, :class:`Gaussians`, a path, or a list of these.
@@ -243,6 +244,9 @@ def render(scene: AnyScene, camera: Union[None, AnyCamera, Shot] = None, *, plan
     "inverseZ", "last", "doubt"; "ao", "shadow" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`:
     files to write, besides. `progress`: True, a function of a task's name and the share of it that is done, or a tqdm
     bar. All other options of `conic help render` are taken by their names.
+
+    Without `in_memory`, pictures go to `output` alone, and an .exr that is larger than half of `memory` is drawn and
+    written strip by strip.
 
     A :class:`Shot` in the place of the camera is drawn as it is, and takes no options but `progress` and `threads`.
 
@@ -265,7 +269,9 @@ def render(scene: AnyScene, camera: Union[None, AnyCamera, Shot] = None, *, plan
         call.add("aov", asked)
     wanted = None if asked is None or "all" in asked.split(",") else set(asked.split(","))
     frames = Frames(lambda arrays, drawn: _taken(arrays, drawn, wanted))
-    _, told = call.run(progress=progress, frames=frames, keeps=True, threads=threads)
+    if not in_memory and output is None:
+        raise ArgumentError("in_memory: without it, output has to name a file")
+    _, told = call.run(progress=progress, frames=frames if in_memory else None, keeps=True, threads=threads)
     for picture in frames.pictures:
         picture._told = lambda: read_facts(told)
     is_many = view == "all" or turntable is not None or bool(options.get("stereo"))

@@ -32,6 +32,7 @@ def render(
     azimuth: Optional[float] = None,
     elevation: Optional[float] = None,
     turntable: Optional[Union[str, float, Sequence[float]]] = None,
+    in_memory: bool = True,
     format: Optional[PathLike] = None,
     exr: Optional[Literal["float", "half"]] = None,
     compression: Optional[Literal["zip", "none", "rle", "zips", "piz", "pxr24"]] = None,
@@ -117,6 +118,9 @@ def render(
     "inverseZ", "last", "doubt"; "ao", "shadow" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`:
     files to write, besides. `progress`: True, a function of a task's name and the share of it that is done, or a tqdm
     bar. All other options of `conic help render` are taken by their names.
+
+    Without `in_memory`, pictures go to `output` alone, and an .exr that is larger than half of `memory` is drawn and
+    written strip by strip.
 
     A :class:`Shot` in the place of the camera is drawn as it is, and takes no options but `progress` and `threads`.
 

@@ -496,8 +496,8 @@ class Reading(ctypes.Structure):
 
 class Milliseconds(ctypes.Structure):
     C_NAME = "conic_render_milliseconds"
-    _fields_ = [(name, c_double) for name in ("lod", "setup", "bin", "visibility", "accumulate", "resolve", "frame")] + [
-        ("reserved", c_uint64 * 8)]
+    _fields_ = [*((name, c_double) for name in ("lod", "setup", "bin", "visibility", "accumulate", "resolve", "frame")),
+                ("reserved", c_uint64 * 8)]
 
 
 class Statistics(ctypes.Structure):

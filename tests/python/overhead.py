@@ -1,6 +1,7 @@
 """What drawing from Python takes more than the library itself does: prints the medians of pictures that are drawn in
 turns by conic_render_samples, which keeps its renderer and its image, and by conic.render. The same arrays, the same
-camera, the same bits. Run by hand: CONIC_LIBRARY=…/libconic-hosted.so PYTHONPATH=python python3 tests/python/overhead.py
+camera, the same bits. Run by hand:
+CONIC_LIBRARY=…/libconic-hosted.so PYTHONPATH=python python3 tests/python/overhead.py [SPLATS]
 
 Times are the process's, of all its threads: what else the machine does hardly counts."""
 

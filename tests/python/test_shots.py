@@ -56,8 +56,8 @@ OPTIONS = (
 )
 
 # Of these, what is drawn of what was read for the first picture.
-OF_THE_PICTURE = [options for options, _ in OPTIONS if not set(options) & {"color_by", "transparency", "plain", "degree",
-                                                                         "cutoff"}]
+OTHERWISE_READ = {"color_by", "transparency", "plain", "degree", "cutoff"}
+OF_THE_PICTURE = [options for options, _ in OPTIONS if not set(options) & OTHERWISE_READ]
 
 NESTED = """
 import conic
@@ -187,8 +187,8 @@ class Shots(unittest.TestCase):
     def test_other_sources(self):
         mesh = conic.open(self.path("mesh.obj"))
         tree = conic.octree(self.scene, self.path("knot.cot"))
-        for scene, options in ((mesh, {}), (mesh, {"as_": "points"}), (mesh, {"smooth": True}), (mesh, {"as_": "hybrid"}),
-                               (tree, {}), (tree, {"error": 2}), (tree, {"budget": 500}),
+        for scene, options in ((mesh, {}), (mesh, {"as_": "points"}), (mesh, {"smooth": True}),
+                               (mesh, {"as_": "hybrid"}), (tree, {}), (tree, {"error": 2}), (tree, {"budget": 500}),
                                (self.gaussians, {"profile": "gsplat-1.6"}), (self.gaussians, {"profile": "surface"}),
                                (self.gaussians, {"planes": ["rgba", "T", "medianZ"]}),
                                ([self.scene, mesh], {}), (self.scene.splats(), {"ao": 4})):
@@ -291,6 +291,19 @@ class Shots(unittest.TestCase):
         done = run(OTHERS)
         self.assertEqual(done.stdout, "cancelled\n")
         self.assertIn("KeyboardInterrupt", done.stderr)
+
+    def test_example(self):
+        example = os.path.join(os.path.dirname(__file__), "../../python/examples/final_picture.py")
+        done = subprocess.run([sys.executable, example, self.scene.path, self.folder.name], capture_output=True,
+                              text=True, check=True)
+        wanted = hashes(self.scene.path, "--size", "200x200", "--projection", "fisheye", "--fov", "150", "--ao", "8",
+                        "--shadow", "--accumulate", "8")
+        self.assertEqual(done.stdout.strip(), wanted["rgba"])
+        conic.render(self.scene, size=(1200, 900), samples=1, output=self.path("whole.exr"))
+        with open(self.path("strips.exr"), "rb") as strips, open(self.path("whole.exr"), "rb") as whole:
+            self.assertEqual(strips.read(), whole.read())
+        with self.assertRaisesRegex(conic.ArgumentError, "in_memory"):
+            conic.render(self.scene, in_memory=False)
 
     def test_signatures(self):
         parameters = inspect.signature(conic.render).parameters
