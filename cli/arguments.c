@@ -363,18 +363,12 @@ static int store_numbers(const cli_option *option, const cli_value *value) {
 }
 
 static int is_stored_in_range(const cli_option *option) {
-  switch (option->type) {
-  case CLI_INT:
-    return is_within_limits(option, *(int *)option->value);
-  case CLI_COUNT:
-    return is_within_limits(option, (double)*(unsigned long long *)option->value);
-  case CLI_NUMBER:
-    return is_within_limits(option, *(double *)option->value);
-  case CLI_SIZE:
-    return is_within_limits(option, ((int *)option->value)[0]) && is_within_limits(option, ((int *)option->value)[1]);
-  default:
-    return 1;
-  }
+  const int *whole = option->value;
+  if (option->type == CLI_SIZE)
+    return is_within_limits(option, whole[0]) && is_within_limits(option, whole[1]);
+  return is_within_limits(option, option->type == CLI_INT     ? *whole
+                                  : option->type == CLI_COUNT ? (double)*(unsigned long long *)option->value
+                                                              : *(double *)option->value);
 }
 
 static int take_value(const cli_session *session, const option_set *set, cli_value *value) {
@@ -385,15 +379,19 @@ static int take_value(const cli_session *session, const option_set *set, cli_val
   if (!option)
     return refuse_option(session, set, value->name);
   const int is_flag = option->type == CLI_FLAG, is_set = value->type == CLI_VALUE_SET;
+  const char *said = is_flag ? option->name : is_set ? NULL : say_numbers(value);
+  if (option->now && !*former)
+    cli_note(session, "%s: %s%s is now %s", session->command, cli_dashes(option), option->name, option->now);
   if (is_flag && !is_set)
     return cli_usage("%s: %s%s takes no value", session->command, cli_dashes(option), option->name);
   if (is_set && !is_flag)
     return cli_usage("%s: %s%s needs a value: %s", session->command, cli_dashes(option), option->name,
                      option->argument);
+  *former = said;
   if (is_flag || !store_numbers(option, value))
-    return store_value(session, option, is_flag ? NULL : say_numbers(value));
+    return store_value(session, option, is_flag ? NULL : said);
   if (!is_stored_in_range(option))
-    return refuse_range(session, option, say_numbers(value));
+    return refuse_range(session, option, said);
   if (option->is_given)
     *option->is_given = 1;
   return CLI_DONE;

@@ -34,35 +34,25 @@ def render(
     turntable: Optional[Union[str, float, Sequence[float]]] = None,
     in_memory: bool = True,
     format: Optional[PathLike] = None,
-    exr: Optional[Literal["float", "half"]] = None,
-    compression: Optional[Literal["zip", "none", "rle", "zips", "piz", "pxr24"]] = None,
+    exr: Optional[Union[str, float, Sequence[float]]] = None,
     tone: Optional[Literal["srgb", "filmic", "aces", "agx"]] = None,
     deep: Optional[PathLike] = None,
-    overdraw: Optional[PathLike] = None,
-    overdraw_colors: Optional[Literal["log", "confetti"]] = None,
-    legend: Optional[bool] = None,
-    legend_out: Optional[PathLike] = None,
-    cryptomatte: Optional[bool] = None,
+    show: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     frames: Optional[Union[str, float, Sequence[float]]] = None,
     resumable: Optional[bool] = None,
     resume: Optional[PathLike] = None,
     stereo: Optional[float] = None,
-    convergence: Optional[float] = None,
     accumulate: Optional[Union[int, str]] = None,
     time: Optional[float] = None,
     noise: Optional[float] = None,
     preview: Optional[float] = None,
     aperture: Optional[Union[str, float, Sequence[float]]] = None,
     focus: Optional[Union[str, float, Sequence[float]]] = None,
-    blades: Optional[int] = None,
     shutter: Optional[Union[str, float, Sequence[float]]] = None,
     motion: Optional[PathLike] = None,
     gsd: Optional[float] = None,
     box: Optional[Union[str, float, Sequence[float]]] = None,
     epsg: Optional[int] = None,
-    boxes: Optional[PathLike] = None,
-    box_level: Optional[int] = None,
-    clusters: Optional[PathLike] = None,
     progressive: Optional[PathLike] = None,
     deadline: Optional[float] = None,
     tolerate: Optional[bool] = None,
@@ -80,17 +70,13 @@ def render(
     up: Optional[Union[str, float, Sequence[float]]] = None,
     texture: Optional[PathLike] = None,
     max_texture: Optional[int] = None,
-    smooth: Optional[bool] = None,
-    crease: Optional[float] = None,
+    crease: Optional[Union[str, float, Sequence[float]]] = None,
     color_by: Optional[PathLike] = None,
-    ramp: Optional[PathLike] = None,
-    color_range: Optional[Union[str, float, Sequence[float]]] = None,
+    ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
     error: Optional[float] = None,
-    color_error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
-    ignore_center: Optional[bool] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
     prefilter: Optional[float] = None,
@@ -100,13 +86,10 @@ def render(
     near: Optional[Union[str, float, Sequence[float]]] = None,
     light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     sky: Optional[Union[str, float, Sequence[float]]] = None,
-    degree: Optional[int] = None,
-    h: Optional[Union[str, float, Sequence[float]]] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     tile: Optional[int] = None,
-    device: Optional[PathLike] = None,
-    allow_inexact: Optional[bool] = None,
+    device: Optional[Union[str, float, Sequence[float]]] = None,
     plain: Optional[bool] = None,
     isa: Optional[Literal["auto", "scalar", "sse2", "avx2", "avx512", "neon"]] = None,
 ) -> Any:
@@ -131,17 +114,16 @@ def render(
 
     output: where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; may be repeated
     format: the kind of what goes to standard output or to a name without an ending: png, exr, pfm … [png]
-    exr: numbers of an .exr: float, or half for rgba, N and albedo [float]
-    compression: of an .exr: zip, none, rle, zips, piz; pxr24 loses bits of floats [zip]
+    exr: numbers of an .exr: float, or half for rgba, N and albedo; and how it is compressed: zip, none, rle,
+        zips, piz, or pxr24, which loses bits of floats, as in half,piz [float,zip]
     tone: how files of 8 and 16 bits show what is brighter than white: srgb (as white), filmic (Hable's curve),
         aces (Hill's fit) or agx (Sobotka's); .exr, .pfm and .hdr stay linear [srgb]
     deep: every splat and triangle of every pixel, as a deep image: colour, depth, id, weight
-    overdraw: how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64
-    overdraw_colors: of --overdraw: log, or confetti: blue 1, green 8, red 16 [log]
-    legend: what the colours mean, in the picture's lower right corner
-    legend_out: the same as a picture of its own
-    cryptomatte: into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name in Nuke
-        or Blender
+    show: a picture of what was drawn: overdraw:OUT.png, how many splats each pixel blends (blue 1, red 4,
+        yellow 16, white 64), or overdraw-confetti:OUT.png (blue 1, green 8, red 16); clusters:OUT.png, of a
+        .chy each patch in a colour of its own; boxes:OUT.png, of a .cot the nodes of a level with their boxes,
+        boxes@3:OUT.png those of level 3 from the root; legend:OUT.png, what the colours mean, or legend, in the
+        picture itself
     turntable: N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says
     frames: only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from
         0 [all]
@@ -152,19 +134,16 @@ def render(
         stopped; with --resumable, too, where there is none begin
     stereo: two pictures, of eyes that are E apart, in world units: OUT.left.exr and OUT.right.exr, or left and
         right in the place of %V [one]
-    convergence: of --stereo: the depth that both eyes see at the same place; 0: they are parallel [the depth of
-        the scene's middle; 0 of lenses that distort and of fisheyes]
     accumulate: the mean of N whole pictures, each with its own place in the pixel, point on the lens and moment
         [none: drawn at once]
     time: no sample is begun after S seconds [no limit]
     noise: 16, 32, 64 … samples are enough when their two halves say that the picture is E from its end, in
         luminance [none]
     preview: write the picture as it is every S seconds, too [only at the end]
-    aperture: the diameter of the lens: a length, also in spacings (2x); what is out of focus blurs [0: a
-        pinhole]
+    aperture: the diameter of the lens: a length, also in spacings (2x); what is out of focus blurs; of one that
+        is not round the number of its corners behind it [0: a pinhole]
     focus: the depth at which all is sharp; X,Y: what is at that pixel; auto: what is in the picture's middle
         [auto]
-    blades: the corners of the lens; 0: it is round [0]
     shutter: open from A to B, in frames from the one drawn, along a --turntable, the cameras of a file or
         --motion: 0:0.5 blurs half the way to the next; up to 100000 either way [closed]
     motion: where the inputs are at which frame, as matrices, or what shape they have, as files (JSON) [they
@@ -172,9 +151,6 @@ def render(
     gsd: of --camera top: a pixel's edge on the ground, in the unit of the points [their typical distance]
     box: of --camera top: the part of the ground that is drawn; X0,Y0,X1,Y1 for all heights [all]
     epsg: of --camera top: the coordinate system that is noted in a .tif, by its EPSG code [the file's]
-    boxes: of a .cot, the nodes of one level in false colours, with their boxes
-    box_level: the level that --boxes shows; 0 is the root [the deepest of at most 64 nodes]
-    clusters: of a .chy, each patch in a colour of its own
     progressive: of a cloud in levels, also a picture after each level that has been read: DIR/0001.exr …
     deadline: of a cloud in levels, no more is read after so many seconds; what is missing is drawn coarser
     tolerate: of a cloud in levels, what is damaged or does not come is drawn coarser, with a warning
@@ -208,28 +184,26 @@ def render(
         [auto]
     texture: the picture on a mesh's surface [as its materials say]
     max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
-    smooth: a mesh's triangles look smooth everywhere: each vertex gets the mean normal of its faces
-    crease: triangles without normals look smooth over edges up to this angle, in degrees; 0: every face is flat
-        [30]
+    crease: triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is
+        flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes [what suits]
-    color_range: the values at the two ends of the ramp [the 2nd and 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
+        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     error: of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0:
-        draw all [0]
-    color_error: with --error, of a .chy, by how much colours may differ at any place: black and white do by 100
-        steps, and 2 are just visible [2]
+        draw all; of a .chy, also by how many steps colours may differ: black and white do by 100, and 2 are
+        just visible [0:2]
     budget: of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
-        that is exact enough, else ray; patch: as part of a smooth surface through the points [auto]
+        that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
+        polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats [exact]
-    ignore_center: of --profile inria-2023 and 2dgs-2024: take the picture's middle for the camera's principal
-        point, as these do
+        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
+        camera's principal point, as these do [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -260,16 +234,15 @@ def render(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives [rgba,Z]
-    degree: the degree of the surface's polynomials, 1 to 4 [3]
-    h: what is smaller is smoothed away: a length, also in spacings (2x) [as the points lie]
+        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
+        picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     tile: the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it
         [64]
     device: what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go
-        about it as on a GPU and :lanes as on a CPU; changes no bit of the picture [cpu]
-    allow_inexact: also take an OpenCL device whose rounding makes the picture another one
+        about it as on a GPU and :lanes as on a CPU; changes no bit of the picture; with :inexact behind it also
+        one whose rounding makes the picture another one [cpu]
     plain: draw as the library does by default: of a mesh the vertices, framed by a sphere, with a headlight and
         one sample
     isa: the processor's instructions: auto, scalar, sse2, avx2, avx512, neon; changes no bit of the picture
@@ -290,7 +263,6 @@ def verify(
     sample: Optional[Union[int, str]] = None,
     aperture: Optional[Union[str, float, Sequence[float]]] = None,
     focus: Optional[Union[str, float, Sequence[float]]] = None,
-    blades: Optional[int] = None,
     shutter: Optional[Union[str, float, Sequence[float]]] = None,
     motion: Optional[PathLike] = None,
     turntable: Optional[Union[str, float, Sequence[float]]] = None,
@@ -308,20 +280,16 @@ def verify(
     as_: Optional[Literal["auto", "points", "mesh", "hybrid"]] = None,
     texture: Optional[PathLike] = None,
     max_texture: Optional[int] = None,
-    smooth: Optional[bool] = None,
-    crease: Optional[float] = None,
+    crease: Optional[Union[str, float, Sequence[float]]] = None,
     color_by: Optional[PathLike] = None,
-    ramp: Optional[PathLike] = None,
-    color_range: Optional[Union[str, float, Sequence[float]]] = None,
+    ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
     error: Optional[float] = None,
-    color_error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
-    ignore_center: Optional[bool] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -337,13 +305,10 @@ def verify(
     background: Optional[Union[str, float, Sequence[float]]] = None,
     exposure: Optional[Union[str, float, Sequence[float]]] = None,
     planes: Optional[Union[str, float, Sequence[float]]] = None,
-    degree: Optional[int] = None,
-    h: Optional[Union[str, float, Sequence[float]]] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     tile: Optional[int] = None,
-    device: Optional[PathLike] = None,
-    allow_inexact: Optional[bool] = None,
+    device: Optional[Union[str, float, Sequence[float]]] = None,
     plain: Optional[bool] = None,
     isa: Optional[Literal["auto", "scalar", "sse2", "avx2", "avx512", "neon"]] = None,
 ) -> Dict[str, Any]:
@@ -357,11 +322,10 @@ def verify(
     image: the picture to verify, of whatever renderer [drawn anew]
     pixels: judge this many pixels, spread evenly; always the same ones [all]
     sample: of conic render --accumulate, sample I, from 0, instead of a picture that is drawn at once
-    aperture: the diameter of the lens: a length, also in spacings (2x); what is out of focus blurs [0: a
-        pinhole]
+    aperture: the diameter of the lens: a length, also in spacings (2x); what is out of focus blurs; of one that
+        is not round the number of its corners behind it [0: a pinhole]
     focus: the depth at which all is sharp; X,Y: what is at that pixel; auto: what is in the picture's middle
         [auto]
-    blades: the corners of the lens; 0: it is round [0]
     shutter: open from A to B, in frames from the one drawn, along a --turntable, the cameras of a file or
         --motion: 0:0.5 blurs half the way to the next; up to 100000 either way [closed]
     motion: where the inputs are at which frame, as matrices, or what shape they have, as files (JSON) [they
@@ -389,28 +353,26 @@ def verify(
         [auto]
     texture: the picture on a mesh's surface [as its materials say]
     max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
-    smooth: a mesh's triangles look smooth everywhere: each vertex gets the mean normal of its faces
-    crease: triangles without normals look smooth over edges up to this angle, in degrees; 0: every face is flat
-        [30]
+    crease: triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is
+        flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes [what suits]
-    color_range: the values at the two ends of the ramp [the 2nd and 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
+        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     error: of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0:
-        draw all [0]
-    color_error: with --error, of a .chy, by how much colours may differ at any place: black and white do by 100
-        steps, and 2 are just visible [2]
+        draw all; of a .chy, also by how many steps colours may differ: black and white do by 100, and 2 are
+        just visible [0:2]
     budget: of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
-        that is exact enough, else ray; patch: as part of a smooth surface through the points [auto]
+        that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
+        polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats [exact]
-    ignore_center: of --profile inria-2023 and 2dgs-2024: take the picture's middle for the camera's principal
-        point, as these do
+        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
+        camera's principal point, as these do [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -441,16 +403,15 @@ def verify(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives [rgba,Z]
-    degree: the degree of the surface's polynomials, 1 to 4 [3]
-    h: what is smaller is smoothed away: a length, also in spacings (2x) [as the points lie]
+        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
+        picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     tile: the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it
         [64]
     device: what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go
-        about it as on a GPU and :lanes as on a CPU; changes no bit of the picture [cpu]
-    allow_inexact: also take an OpenCL device whose rounding makes the picture another one
+        about it as on a GPU and :lanes as on a CPU; changes no bit of the picture; with :inexact behind it also
+        one whose rounding makes the picture another one [cpu]
     plain: draw as the library does by default: of a mesh the vertices, framed by a sphere, with a headlight and
         one sample
     isa: the processor's instructions: auto, scalar, sse2, avx2, avx512, neon; changes no bit of the picture
@@ -496,20 +457,16 @@ def judge(
     as_: Optional[Literal["auto", "points", "mesh", "hybrid"]] = None,
     texture: Optional[PathLike] = None,
     max_texture: Optional[int] = None,
-    smooth: Optional[bool] = None,
-    crease: Optional[float] = None,
+    crease: Optional[Union[str, float, Sequence[float]]] = None,
     color_by: Optional[PathLike] = None,
-    ramp: Optional[PathLike] = None,
-    color_range: Optional[Union[str, float, Sequence[float]]] = None,
+    ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
     error: Optional[float] = None,
-    color_error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
-    ignore_center: Optional[bool] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -525,13 +482,10 @@ def judge(
     background: Optional[Union[str, float, Sequence[float]]] = None,
     exposure: Optional[Union[str, float, Sequence[float]]] = None,
     planes: Optional[Union[str, float, Sequence[float]]] = None,
-    degree: Optional[int] = None,
-    h: Optional[Union[str, float, Sequence[float]]] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     tile: Optional[int] = None,
-    device: Optional[PathLike] = None,
-    allow_inexact: Optional[bool] = None,
+    device: Optional[Union[str, float, Sequence[float]]] = None,
     plain: Optional[bool] = None,
     isa: Optional[Literal["auto", "scalar", "sse2", "avx2", "avx512", "neon"]] = None,
 ) -> Dict[str, Any]:
@@ -583,28 +537,26 @@ def judge(
         [auto]
     texture: the picture on a mesh's surface [as its materials say]
     max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
-    smooth: a mesh's triangles look smooth everywhere: each vertex gets the mean normal of its faces
-    crease: triangles without normals look smooth over edges up to this angle, in degrees; 0: every face is flat
-        [30]
+    crease: triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is
+        flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes [what suits]
-    color_range: the values at the two ends of the ramp [the 2nd and 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
+        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     error: of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0:
-        draw all [0]
-    color_error: with --error, of a .chy, by how much colours may differ at any place: black and white do by 100
-        steps, and 2 are just visible [2]
+        draw all; of a .chy, also by how many steps colours may differ: black and white do by 100, and 2 are
+        just visible [0:2]
     budget: of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
-        that is exact enough, else ray; patch: as part of a smooth surface through the points [auto]
+        that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
+        polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats [exact]
-    ignore_center: of --profile inria-2023 and 2dgs-2024: take the picture's middle for the camera's principal
-        point, as these do
+        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
+        camera's principal point, as these do [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -635,16 +587,15 @@ def judge(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives [rgba,Z]
-    degree: the degree of the surface's polynomials, 1 to 4 [3]
-    h: what is smaller is smoothed away: a length, also in spacings (2x) [as the points lie]
+        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
+        picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     tile: the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it
         [64]
     device: what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go
-        about it as on a GPU and :lanes as on a CPU; changes no bit of the picture [cpu]
-    allow_inexact: also take an OpenCL device whose rounding makes the picture another one
+        about it as on a GPU and :lanes as on a CPU; changes no bit of the picture; with :inexact behind it also
+        one whose rounding makes the picture another one [cpu]
     plain: draw as the library does by default: of a mesh the vertices, framed by a sphere, with a headlight and
         one sample
     isa: the processor's instructions: auto, scalar, sse2, avx2, avx512, neon; changes no bit of the picture
@@ -665,7 +616,6 @@ def explain(
     sample: Optional[Union[int, str]] = None,
     aperture: Optional[Union[str, float, Sequence[float]]] = None,
     focus: Optional[Union[str, float, Sequence[float]]] = None,
-    blades: Optional[int] = None,
     shutter: Optional[Union[str, float, Sequence[float]]] = None,
     motion: Optional[PathLike] = None,
     turntable: Optional[Union[str, float, Sequence[float]]] = None,
@@ -682,20 +632,16 @@ def explain(
     as_: Optional[Literal["auto", "points", "mesh", "hybrid"]] = None,
     texture: Optional[PathLike] = None,
     max_texture: Optional[int] = None,
-    smooth: Optional[bool] = None,
-    crease: Optional[float] = None,
+    crease: Optional[Union[str, float, Sequence[float]]] = None,
     color_by: Optional[PathLike] = None,
-    ramp: Optional[PathLike] = None,
-    color_range: Optional[Union[str, float, Sequence[float]]] = None,
+    ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
     error: Optional[float] = None,
-    color_error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
-    ignore_center: Optional[bool] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -711,13 +657,10 @@ def explain(
     background: Optional[Union[str, float, Sequence[float]]] = None,
     exposure: Optional[Union[str, float, Sequence[float]]] = None,
     planes: Optional[Union[str, float, Sequence[float]]] = None,
-    degree: Optional[int] = None,
-    h: Optional[Union[str, float, Sequence[float]]] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     tile: Optional[int] = None,
-    device: Optional[PathLike] = None,
-    allow_inexact: Optional[bool] = None,
+    device: Optional[Union[str, float, Sequence[float]]] = None,
     plain: Optional[bool] = None,
     isa: Optional[Literal["auto", "scalar", "sse2", "avx2", "avx512", "neon"]] = None,
 ) -> Dict[str, Any]:
@@ -729,11 +672,10 @@ def explain(
     splat: where splat I of the input lies on the screen
     dump_projection: where every splat does, as a table (CSV)
     sample: of conic render --accumulate, sample I, from 0, instead of a picture that is drawn at once
-    aperture: the diameter of the lens: a length, also in spacings (2x); what is out of focus blurs [0: a
-        pinhole]
+    aperture: the diameter of the lens: a length, also in spacings (2x); what is out of focus blurs; of one that
+        is not round the number of its corners behind it [0: a pinhole]
     focus: the depth at which all is sharp; X,Y: what is at that pixel; auto: what is in the picture's middle
         [auto]
-    blades: the corners of the lens; 0: it is round [0]
     shutter: open from A to B, in frames from the one drawn, along a --turntable, the cameras of a file or
         --motion: 0:0.5 blurs half the way to the next; up to 100000 either way [closed]
     motion: where the inputs are at which frame, as matrices, or what shape they have, as files (JSON) [they
@@ -759,28 +701,26 @@ def explain(
         [auto]
     texture: the picture on a mesh's surface [as its materials say]
     max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
-    smooth: a mesh's triangles look smooth everywhere: each vertex gets the mean normal of its faces
-    crease: triangles without normals look smooth over edges up to this angle, in degrees; 0: every face is flat
-        [30]
+    crease: triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is
+        flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes [what suits]
-    color_range: the values at the two ends of the ramp [the 2nd and 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
+        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     error: of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0:
-        draw all [0]
-    color_error: with --error, of a .chy, by how much colours may differ at any place: black and white do by 100
-        steps, and 2 are just visible [2]
+        draw all; of a .chy, also by how many steps colours may differ: black and white do by 100, and 2 are
+        just visible [0:2]
     budget: of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
-        that is exact enough, else ray; patch: as part of a smooth surface through the points [auto]
+        that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
+        polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats [exact]
-    ignore_center: of --profile inria-2023 and 2dgs-2024: take the picture's middle for the camera's principal
-        point, as these do
+        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
+        camera's principal point, as these do [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -811,16 +751,15 @@ def explain(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives [rgba,Z]
-    degree: the degree of the surface's polynomials, 1 to 4 [3]
-    h: what is smaller is smoothed away: a length, also in spacings (2x) [as the points lie]
+        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
+        picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     tile: the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it
         [64]
     device: what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go
-        about it as on a GPU and :lanes as on a CPU; changes no bit of the picture [cpu]
-    allow_inexact: also take an OpenCL device whose rounding makes the picture another one
+        about it as on a GPU and :lanes as on a CPU; changes no bit of the picture; with :inexact behind it also
+        one whose rounding makes the picture another one [cpu]
     plain: draw as the library does by default: of a mesh the vertices, framed by a sphere, with a headlight and
         one sample
     isa: the processor's instructions: auto, scalar, sse2, avx2, avx512, neon; changes no bit of the picture
@@ -968,8 +907,7 @@ def prepare(
     bake: Optional[Union[str, float, Sequence[float]]] = None,
     directions: Optional[int] = None,
     color_by: Optional[PathLike] = None,
-    ramp: Optional[PathLike] = None,
-    color_range: Optional[Union[str, float, Sequence[float]]] = None,
+    ramp: Optional[Union[str, float, Sequence[float]]] = None,
     up: Optional[Union[str, float, Sequence[float]]] = None,
 ) -> Scene:
     """Points or a mesh become splats: normals, sizes, thinning (`count`), sharp edges (`features`).
@@ -993,8 +931,8 @@ def prepare(
     directions: of --bake: from so many directions [256]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes [what suits]
-    color_range: the values at the two ends of the ramp [the 2nd and 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
+        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     up: what points up, for --color-by height and in a .lpc: x, y, z, -x … or X,Y,Z [y; z for surveys]
     threads: how many threads compute; the results never depend on it [0: all]
     """
@@ -1012,8 +950,7 @@ def octree(
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
     color_by: Optional[PathLike] = None,
-    ramp: Optional[PathLike] = None,
-    color_range: Optional[Union[str, float, Sequence[float]]] = None,
+    ramp: Optional[Union[str, float, Sequence[float]]] = None,
     up: Optional[Union[str, float, Sequence[float]]] = None,
 ) -> Scene:
     """Builds an octree (.cot), of which `error=` and `budget=` of :func:`render` choose.
@@ -1029,8 +966,8 @@ def octree(
         [all]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes [what suits]
-    color_range: the values at the two ends of the ramp [the 2nd and 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
+        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     up: what points up, for --color-by height and in a .lpc: x, y, z, -x … or X,Y,Z [y; z for surveys]
     threads: how many threads compute; the results never depend on it [0: all]
     """
@@ -1055,8 +992,7 @@ def layers(
     where: Optional[PathLike] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     color_by: Optional[PathLike] = None,
-    ramp: Optional[PathLike] = None,
-    color_range: Optional[Union[str, float, Sequence[float]]] = None,
+    ramp: Optional[Union[str, float, Sequence[float]]] = None,
     up: Optional[Union[str, float, Sequence[float]]] = None,
 ) -> Scene:
     """Builds a layered point cloud (.lpc) of one or more files, out of core.
@@ -1082,8 +1018,8 @@ def layers(
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes [what suits]
-    color_range: the values at the two ends of the ramp [the 2nd and 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
+        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     up: what points up, for --color-by height and in a .lpc: x, y, z, -x … or X,Y,Z [y; z for surveys]
     threads: how many threads compute; the results never depend on it [0: all]
     """
@@ -1161,8 +1097,7 @@ def hybrid(
     memory: Optional[int] = None,
     single: Optional[bool] = None,
     color_by: Optional[PathLike] = None,
-    ramp: Optional[PathLike] = None,
-    color_range: Optional[Union[str, float, Sequence[float]]] = None,
+    ramp: Optional[Union[str, float, Sequence[float]]] = None,
     up: Optional[Union[str, float, Sequence[float]]] = None,
 ) -> Scene:
     """Builds a hybrid model (.chy) of a mesh or of points: triangles where it is flat, surfels where it is detailed.
@@ -1190,8 +1125,8 @@ def hybrid(
     single: without the simpler levels that --error chooses from
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes [what suits]
-    color_range: the values at the two ends of the ramp [the 2nd and 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
+        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     up: what points up, for --color-by height and in a .lpc: x, y, z, -x … or X,Y,Z [y; z for surveys]
     threads: how many threads compute; the results never depend on it [0: all]
     """
@@ -1252,20 +1187,16 @@ def gradient(
     as_: Optional[Literal["auto", "points", "mesh", "hybrid"]] = None,
     texture: Optional[PathLike] = None,
     max_texture: Optional[int] = None,
-    smooth: Optional[bool] = None,
-    crease: Optional[float] = None,
+    crease: Optional[Union[str, float, Sequence[float]]] = None,
     color_by: Optional[PathLike] = None,
-    ramp: Optional[PathLike] = None,
-    color_range: Optional[Union[str, float, Sequence[float]]] = None,
+    ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
     error: Optional[float] = None,
-    color_error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
-    ignore_center: Optional[bool] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -1281,13 +1212,10 @@ def gradient(
     background: Optional[Union[str, float, Sequence[float]]] = None,
     exposure: Optional[Union[str, float, Sequence[float]]] = None,
     planes: Optional[Union[str, float, Sequence[float]]] = None,
-    degree: Optional[int] = None,
-    h: Optional[Union[str, float, Sequence[float]]] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     tile: Optional[int] = None,
-    device: Optional[PathLike] = None,
-    allow_inexact: Optional[bool] = None,
+    device: Optional[Union[str, float, Sequence[float]]] = None,
     plain: Optional[bool] = None,
     isa: Optional[Literal["auto", "scalar", "sse2", "avx2", "avx512", "neon"]] = None,
 ) -> Scene:
@@ -1321,28 +1249,26 @@ def gradient(
         [auto]
     texture: the picture on a mesh's surface [as its materials say]
     max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
-    smooth: a mesh's triangles look smooth everywhere: each vertex gets the mean normal of its faces
-    crease: triangles without normals look smooth over edges up to this angle, in degrees; 0: every face is flat
-        [30]
+    crease: triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is
+        flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes [what suits]
-    color_range: the values at the two ends of the ramp [the 2nd and 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
+        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     error: of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0:
-        draw all [0]
-    color_error: with --error, of a .chy, by how much colours may differ at any place: black and white do by 100
-        steps, and 2 are just visible [2]
+        draw all; of a .chy, also by how many steps colours may differ: black and white do by 100, and 2 are
+        just visible [0:2]
     budget: of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
-        that is exact enough, else ray; patch: as part of a smooth surface through the points [auto]
+        that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
+        polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats [exact]
-    ignore_center: of --profile inria-2023 and 2dgs-2024: take the picture's middle for the camera's principal
-        point, as these do
+        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
+        camera's principal point, as these do [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -1373,16 +1299,15 @@ def gradient(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives [rgba,Z]
-    degree: the degree of the surface's polynomials, 1 to 4 [3]
-    h: what is smaller is smoothed away: a length, also in spacings (2x) [as the points lie]
+        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
+        picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     tile: the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it
         [64]
     device: what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go
-        about it as on a GPU and :lanes as on a CPU; changes no bit of the picture [cpu]
-    allow_inexact: also take an OpenCL device whose rounding makes the picture another one
+        about it as on a GPU and :lanes as on a CPU; changes no bit of the picture; with :inexact behind it also
+        one whose rounding makes the picture another one [cpu]
     plain: draw as the library does by default: of a mesh the vertices, framed by a sphere, with a headlight and
         one sample
     isa: the processor's instructions: auto, scalar, sse2, avx2, avx512, neon; changes no bit of the picture
