@@ -150,8 +150,8 @@ unsigned cli_kept_abilities(const cli_session *session, const char *const *paths
   if (!kept)
     return conic_source_abilities(paths, n_paths, options);
   conic_source_options told = *options;
-  told.keeps_alpha = 0; /* which decides nothing here */
-  cli_opening_key(paths, n_paths, &told, 0, key);
+  told.keeps_alpha = 0;                                              /* which decides nothing here */
+  cli_opening_key(paths, n_paths, &told, CONIC_SOURCE_CHOOSES, key); /* whether it is read whole decides it, too */
   for (int i = 0; i < MOST_FACTS; i++)
     if (strcmp(kept->facts[i].key, key) == 0)
       return kept->facts[i].abilities;

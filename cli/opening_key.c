@@ -57,13 +57,14 @@ static void add_coloring(conic_sha256 *sum, const conic_coloring_options *colori
 
 void cli_opening_key(const char *const *paths, size_t n_paths, const conic_source_options *options, unsigned abilities,
                      char key[CONIC_SHA256_ROOM]) {
+  const unsigned in_parts = CONIC_SOURCE_CHOOSES | CONIC_SOURCE_STREAMS;
   conic_sha256 sum;
   conic_sha256_begin(&sum);
   add_count(&sum, n_paths);
   for (size_t i = 0; i < n_paths; i++)
     add_text(&sum, paths[i]);
   add_count(&sum, (uint64_t)options->as);
-  add_count(&sum, (uint64_t)options->is_whole);
+  add_count(&sum, !options->is_whole && abilities & in_parts && !(abilities & CONIC_SOURCE_CLUSTERS));
   add_count(&sum, (uint64_t)options->n_neighbours);
   add_text(&sum, options->texture_path);
   add_count(&sum, (uint64_t)options->is_smooth);

@@ -122,7 +122,7 @@ try:
         elif work == "read":
             conic.render(conic.open({path!r}), size=(16, 16), as_="points")
         else:
-            conic.render(scene.splats(), size=(16, 16), k=6 + int(time.time()) % 50)
+            conic.render(conic.Splats(scene.splats().position), size=(16, 16))
 except KeyboardInterrupt:
     print("interrupted", time.process_time() - at[0])
 """
