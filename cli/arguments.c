@@ -159,10 +159,6 @@ static int is_within_limits(const cli_option *option, double value) {
   return (option->minimum == 0.0 && option->maximum == 0.0) || (value >= option->minimum && value <= option->maximum);
 }
 
-const char *cli_dashes(const cli_option *option) {
-  return option->dashes ? option->dashes : option->name[1] ? "--" : "-";
-}
-
 static int refuse_range(const cli_session *session, const cli_option *option, const char *text) {
   return cli_usage("%s: %s%s: %s is not between %.10g and %.10g", session->command, cli_dashes(option), option->name,
                    text, option->minimum, option->maximum);
@@ -287,8 +283,20 @@ static int refuse_option(const cli_session *session, const option_set *set, cons
   return cli_usage("%s: unknown option %s; see conic help %s", session->command, argument, session->command);
 }
 
+/* To be told when all is well. */
+static void note_old(cli_session *session, const cli_option *option) {
+  const int most = (int)(sizeof session->old_spellings / sizeof *session->old_spellings);
+  int i = 0;
+  while (i < most && session->old_spellings[i].name)
+    i++;
+  if (i < most) {
+    session->old_spellings[i].name = option->name;
+    session->old_spellings[i].now = option->now;
+  }
+}
+
 /* Reads the option at argv[*i] and its value, which may be the next argument; *i moves to the last one used. */
-static int parse_option(const cli_session *session, const option_set *set, int argc, char **argv, int *i) {
+static int parse_option(cli_session *session, const option_set *set, int argc, char **argv, int *i) {
   const char *argument = argv[*i], *value = NULL, **former;
   int is_long = argument[1] == '-';
   const char *name = argument + 1 + is_long;
@@ -299,7 +307,7 @@ static int parse_option(const cli_session *session, const option_set *set, int a
   if (name[length])
     value = name + length + is_long; /* behind the equals sign, or a short option's rest */
   if (option->now && !*former)
-    cli_note(session, "%s: %s%s is now %s", session->command, cli_dashes(option), option->name, option->now);
+    note_old(session, option);
   if (option->type == CLI_FLAG) {
     *former = option->name;
     return value ? cli_usage("%s: %s%s takes no value", session->command, cli_dashes(option), option->name)

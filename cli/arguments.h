@@ -54,7 +54,9 @@ typedef struct cli_option_table {
 } cli_option_table;
 
 /* What stands before an option's name. */
-const char *cli_dashes(const cli_option *option);
+static inline const char *cli_dashes(const cli_option *option) {
+  return option->dashes ? option->dashes : option->name[1] ? "--" : "-";
+}
 
 /* Reads arguments into the options' values, and what is no option into positional[0 … *n_positional); --threads,
  * --json, --quiet, --verbose (and --help), and -q -v -h, are understood for every command. Returns CLI_DONE, or

@@ -9,11 +9,11 @@
 
 #include "cli/host.h"
 #include "cli/host_keeps.h"
-#include "cli/session_team.h"
 #include "cli/shell.h"
 #include "cli/stopper.h"
 #include "core/base/clock.h"
 #include "core/files/guard.h"
+#include "shots/executor.h"
 
 /* Messages may come from any of the context's threads, and each must first take the progress bar off the screen. */
 static pthread_mutex_t screen = PTHREAD_MUTEX_INITIALIZER;
@@ -36,6 +36,13 @@ cli_host *cli_session_host(cli_host *host) {
   return before;
 }
 
+/* Takes messages in the place of the screen; null: nobody does. */
+static int (*holds)(conic_log_level level, const char *message);
+
+void cli_session_hold(int (*hold)(conic_log_level level, const char *message)) {
+  holds = hold;
+}
+
 static void say_to_host(const cli_host *host, conic_log_level level, const char *message) {
   if (host->say)
     host->say(host->cookie, (int)level, message);
@@ -47,6 +54,10 @@ double cli_seconds(void) {
 
 unsigned long long cli_peak_rss_bytes(void) {
   return cli_shell_peak_bytes();
+}
+
+int cli_session_speaks(const cli_session *session) {
+  return !session->team || session->team->index == 0;
 }
 
 static void erase_bar(void) {
@@ -67,7 +78,7 @@ static void print_message(conic_log_level level, const char *format, va_list arg
     say_to_host(thread_host, level, message);
     return;
   }
-  if (cli_team_keeps(level, message))
+  if (holds && holds(level, message))
     return;
   pthread_mutex_lock(&screen);
   erase_bar();
@@ -235,7 +246,7 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
     return;
   if (level == CONIC_LOG_ERROR && atomic_exchange(&has_failed, 1) && !session->is_verbose)
     return;
-  if (cli_team_keeps(level, message))
+  if (holds && holds(level, message))
     return;
   const char *label = level == CONIC_LOG_ERROR ? "error: " : level == CONIC_LOG_WARNING ? "warning: " : "";
   pthread_mutex_lock(&screen);
@@ -266,6 +277,10 @@ static void on_interrupt(int signal_number) {
 /* The write fails, after which is cleaned up as after any other failure. */
 static void on_closed_pipe(int signal_number) {
   atomic_store(&closed_pipe_signal, signal_number);
+}
+
+static int stopped_exit_code(void) {
+  return cli_exit_after_signals(CLI_RESOURCE);
 }
 
 /* A host's runs leave the process as it is: its signals, its terminal. */
@@ -300,8 +315,8 @@ int cli_session_open(cli_session *session) {
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
   conic_guard_inputs(session->context, session->replaced_path);
-  session->has_bar = !session->is_quiet && cli_shell_has_cursor() && cli_team_is_first(session);
-  cli_stopper_begin(session->context, session->command);
+  session->has_bar = !session->is_quiet && cli_shell_has_cursor() && cli_session_speaks(session);
+  cli_stopper_begin(session->context, session->command, stopped_exit_code);
   cli_shell_catch(on_interrupt, on_closed_pipe);
   return CLI_DONE;
 }

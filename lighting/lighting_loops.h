@@ -1,4 +1,4 @@
-/* The loop that takes the time of receiving light. */
+/* The loop that takes most of the time of receiving light. */
 #ifndef CONIC_LIGHTING_LOOPS_H
 #define CONIC_LIGHTING_LOOPS_H
 

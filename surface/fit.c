@@ -1,13 +1,13 @@
-/* The polynomial over the local plane (PSS Eq. 3), by orthogonal columns and never by normal equations. */
+/* The polynomial over the local plane (PSS Eq. 3), by orthogonal columns instead of normal equations. */
 #include <string.h>
 
 #include "surface/mls_surface.h"
 
-/* What must be left of a monomial, as a share of its square, when the ones before it are taken out. */
+/* The least share of a monomial's square that must remain when the ones before it are taken out. */
 static const double LEAST_SHARE = 1e-9;
 
-/* How much a sample's error may grow in the value at the origin, squared: where the samples lie to one side, the
- * polynomial is led by what it was not told. */
+/* The most that a sample's error may grow in the value at the origin, squared: where the samples lie to one side, the
+ * polynomial follows no data. */
 static const double MOST_GAIN = 4.0;
 
 double conic_fit_gain(const conic_fit *fit, int degree, double x, double y) {

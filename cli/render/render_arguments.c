@@ -170,7 +170,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT",
        "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; may be repeated",
-       .parse = parse_output, .may_repeat = 1, .group = "output", .intro = "What becomes files, and which.",
+       .parse = parse_output, .may_repeat = 1, .group = "output", .intro = "Where pictures go, and how they are written.",
        .is_usual = 1},
       {"format", CLI_TEXT, &job->writing.format, "NAME",
        "the kind of what goes to standard output or to a name without an ending: png, exr, pfm … [png]",
@@ -195,7 +195,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "level 3 from the root; legend:OUT.png, what the colours mean, or legend, in the picture itself",
        .parse = parse_show, .may_repeat = 1, .choices = show_words},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says",
-       .parse = cli_parse_turntable, .group = "several pictures", .intro = "More than one picture of a scene.",
+       .parse = cli_parse_turntable, .group = "several pictures", .intro = "Turns around the scene, parts of them, and both eyes.",
        .is_usual = 1, .acts = {.apart = CLI_FACT(MAP)}},
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP",
        "only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from 0 [all]",

@@ -2,7 +2,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "cli/render/sharing.h"
+#include "cli/render/units.h"
 #include "core/files/disk.h"
 #include "shots/stage.h"
 
@@ -25,9 +25,7 @@ static void begin_deadline(cli_render_job *job) {
 conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_shot_outcome *outcome) {
   conic_shot_work drawing;
   begin_deadline(job);
-  conic_status status = conic_shot_work_begin(job->source, job->renderer, &job->shot, &drawing);
-  drawing.executor = cli_sharing_executor(job);
-  drawing.units = job->sharing;
+  conic_status status = cli_shot_begin(job, &drawing);
   return status == CONIC_OK ? conic_shot_work_draw(&drawing, image, outcome) : status;
 }
 

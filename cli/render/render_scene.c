@@ -5,24 +5,14 @@
 #include "cli/host_keeps.h"
 #include "cli/opening_key.h"
 #include "cli/render/frames.h"
-#include "cli/render/sharing.h"
+#include "cli/render/units.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/scene_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/scene/views.h"
-#include "cli/session_team.h"
 #include "core/files/file.h"
 #include "shots/way.h"
-#include "source/shared_source.h"
 #include "source/source_samples.h"
-
-int cli_lod_is_wanted(const cli_render_job *job) {
-  return job->shot.view.error_px > 0.0 || job->budget > 0;
-}
-
-const char *cli_method_name(const cli_render_job *job) {
-  return job->is_patch ? "patch" : conic_method_name(job->shot.render.method);
-}
 
 static conic_status read_views(cli_session *session, cli_render_job *job) {
   const cli_views_wish wish = {job->camera_path, job->view_name, job->camera_size[0], job->camera_size[1]};
@@ -96,22 +86,12 @@ static conic_status stand_upright(cli_session *session, cli_render_job *job) {
   return status;
 }
 
-static conic_status open_source(cli_session *session, cli_render_job *job) {
-  conic_context *context = session->context;
-  size_t n = (size_t)job->n_inputs;
-  if (!cli_sharing_may_part_source(session, job))
-    return conic_source_open(context, job->inputs, n, &job->opening, &job->source);
-  const conic_team *team = cli_team_of_library(session, &job->library_team);
-  return cli_sharing_tell(session,
-                          conic_source_open_shared(context, team, job->inputs, n, &job->opening, &job->source));
-}
-
 conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   char key[CONIC_SHA256_ROOM];
   cli_deadline_open(job);
   cli_opening_key(job->inputs, (size_t)job->n_inputs, &job->opening, job->abilities, key);
   job->source = cli_kept_source(session, key, &job->opening);
-  conic_status status = job->source ? CONIC_OK : open_source(session, job);
+  conic_status status = job->source ? CONIC_OK : cli_units_open_source(session, job);
   if (status == CONIC_OK)
     cli_keep_source(session, key, &job->opening, job->source);
   if (status == CONIC_OK && job->opening.gaussians)
@@ -123,10 +103,8 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   if (status == CONIC_OK && job->deadline > 0.0)
     conic_source_limit_samples(job->source, cli_seconds_left(job));
   double start = cli_seconds();
-  conic_team team;
-  if (is_seen_around(job) && job->sharing != CONIC_UNITS_NONE && !session->host)
-    status =
-        cli_sharing_tell(session, conic_source_share_samples(job->source, cli_team_of_library(session, &team), status));
+  if (is_seen_around(job))
+    status = cli_units_share_samples(session, job, status);
   if (status == CONIC_OK)
     status = stand_upright(session, job);
   job->camera_ms += 1e3 * (cli_seconds() - start);

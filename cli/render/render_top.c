@@ -327,18 +327,3 @@ int cli_top_render(cli_session *session, cli_render_job *job) {
   conic_georeference_release(session->context, &p.reference);
   return exit_code;
 }
-
-void cli_top_report(cli_json *json, const cli_top_job *top) {
-  cli_json_object(json, "top");
-  cli_json_number(json, "gsd", top->gsd);
-  cli_json_count(json, "width", (uint64_t)top->width);
-  cli_json_count(json, "height", (uint64_t)top->height);
-  cli_json_array(json, "corner");
-  cli_json_number(json, NULL, (double)top->column * top->gsd);
-  cli_json_number(json, NULL, -(double)top->row * top->gsd);
-  cli_json_close(json);
-  if (top->found_epsg)
-    cli_json_count(json, "epsg", top->found_epsg);
-  cli_json_count(json, "blocks", top->n_blocks);
-  cli_json_close(json);
-}

@@ -56,9 +56,6 @@ int cli_accumulate_settle(const cli_session *session, struct cli_render_job *job
 conic_status cli_accumulate_picture(cli_session *session, struct cli_render_job *job, int i_frame, conic_image *image,
                                     conic_shot_outcome *outcome);
 
-/* Removes what a frame's sums were kept in, if they were: it is finished. */
-void cli_accumulate_forget(const struct cli_render_job *job, int i_frame);
-
 /* Says in the picture's header what it is the mean of. */
 void cli_accumulate_describe(const struct cli_render_job *job, conic_image *image);
 

@@ -198,7 +198,8 @@ static void know_source(cli_render_job *job) {
     own->possible &= ~when(job->source->no_traits >> i & 1, traits[i]);
   if (job->is_transparent && own->possible & F(NODES) && !has_faint_points(job))
     own->possible &= ~F(ALPHA);
-  own->possible &= ~(when(!(can & CONIC_SOURCE_COMPOSITES), F(COMPOSITED)) |
+  own->possible &= own->certain |
+                   ~(when(!(can & CONIC_SOURCE_COMPOSITES), F(COMPOSITED)) |
                      when(!(can & CONIC_SOURCE_CLUSTERS), F(HYBRID)) | when(!(can & CONIC_SOURCE_STREAMS), F(LEVELS)) |
                      when(can != CONIC_SOURCE_CHOOSES, F(NODES)) | when(!(can & CONIC_SOURCE_CHOOSES), F(CHOOSES)));
   if (job->top.is_wanted && !job->is_shade_given && scale->has_colors) /* it is then drawn as it is */
@@ -307,7 +308,8 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
       {job->overdraw_path != NULL, "show overdraw", {.apart = F(MAP)}},
       {job->clusters_path != NULL, "show clusters", {.on = F(HYBRID), .apart = F(MAP)}},
       {job->boxes_path != NULL, "show boxes", {.on = F(NODES), .apart = F(MAP)}},
-      {job->has_legend || job->legend_path, "show legend", {.on = F(VALUED), .apart = F(MAP)}},
+      {job->legend_path != NULL, "show legend:OUT", {.on = F(VALUED), .apart = F(MAP)}},
+      {job->has_legend, "show legend", {.apart = F(MAP)}}, /* which a warning says, where there is none */
       {job->has_mattes, "aov cryptomatte", {.on = CLI_SURFACES, .apart = F(MAP)}},
       {(planes & CONIC_GAUSSIAN_PLANES) != 0,
        "aov with the planes T, medianZ, inverseZ, last and doubt",

@@ -195,7 +195,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by polynomials of "
        "degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]",
        .choices = words.methods, .is_given = &raw.is_method_given, .group = "how splats are drawn",
-       .intro = "How splats become pixels.", .parse_tail = parse_patch, .tail = &raw, .acts = {.on = CLI_FACT(SPLATS)}},
+       .intro = "Kernels, filters and samples, and the profiles of Gaussian scenes.", .parse_tail = parse_patch, .tail = &raw, .acts = {.on = CLI_FACT(SPLATS)}},
       {"profile", CLI_CHOICE, &raw.profile, "NAME",
        "how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5, gsplat-1.5-aa, "
        "gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque splats; inria-2023 and "
@@ -261,7 +261,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name "
        "in "
        "Nuke or Blender [rgba,Z]",
-       .parse = cli_parse_planes, .group = "planes", .intro = "What else is drawn, beside colours and depths.",
+       .parse = cli_parse_planes, .group = "planes", .intro = "What is known of each pixel beside its colour.",
        .is_usual = 1},
       {"k", CLI_INT, &job->opening.n_neighbours, "K",
        "how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]", 6, 64,

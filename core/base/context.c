@@ -160,7 +160,7 @@ void conic_memory_prefer_large_pages(const conic_context *context, void *pointer
     conic_memory_advise_large_pages(pointer, bytes);
 }
 
-/* A message is one line. Names and words out of files may hold what ends lines, or what terminals obey. */
+/* A message is one line. Names and words from files may hold line ends or commands to terminals. */
 static void blank_controls(char *message) {
   for (char *c = message; *c; c++)
     if ((unsigned char)*c < 0x20 || *c == 0x7F)

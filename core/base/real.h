@@ -1,17 +1,16 @@
-/* Floating-point numbers as they are kept: whether they are finite, their bits, and their order for qsort. The lesser
- * and the greater of two whole numbers. */
+/* Floating-point numbers as they are stored: whether they are finite, their bits, and their order for qsort. */
 #ifndef CONIC_REAL_H
 #define CONIC_REAL_H
 
 #include <stdint.h>
 #include <string.h>
 
-/* Also of floats, and of products that may have become infinite. */
+/* Also for floats, and for products that may have become infinite. */
 static inline int conic_is_finite(double value) {
   return value - value == 0.0;
 }
 
-/* Of numbers that are not negative, the bits are in the numbers' order. */
+/* The bits of numbers that are not negative have the numbers' order. */
 static inline uint64_t conic_bits_of_double(double value) {
   uint64_t bits;
   memcpy(&bits, &value, sizeof bits);

@@ -1,12 +1,11 @@
-/* The loops in vectors as wide as a register: included by one file an instruction set. Eight
- * partial sums a total, whatever the width: a narrow vector goes through all neighbours once for each part of the
- * eight. Each lane does what surface/loops/surface_loops_scalar.c and surface/loops/weight.h do, in their order.
- */
+/* The loops in vectors as wide as a register; each instruction set's file includes this. A total has eight partial sums
+ * at any width: a narrow vector goes through all neighbours once for each part of the eight. Each lane does what
+ * surface/loops/surface_loops_scalar.c and surface/loops/weight.h do, in their order. */
 #include "core/lanes/lanes_double.h"
 #include "surface/loops/surface_loops.h"
 #include "surface/loops/weight.h"
 
-/* The order that every total has. */
+/* The order in which every total is added. */
 CONIC_INLINE double total(const double partial[CONIC_NEAR_LANES]) {
   return ((partial[0] + partial[4]) + (partial[2] + partial[6])) +
          ((partial[1] + partial[5]) + (partial[3] + partial[7]));
@@ -68,7 +67,7 @@ CONIC_INLINE wide_theta wide_weight(const conic_weighing *weighing, wide s, coni
   return theta;
 }
 
-/* Sums of so many terms: partial sums `lane` to lane + CONIC_WIDE_LANES of each. */
+/* Partial sums of several terms: numbers `lane` to lane + CONIC_WIDE_LANES - 1 of each. */
 typedef double partial_sums[CONIC_NEAR_LANES];
 
 CONIC_INLINE void store_parts(const wide *parts, int n, partial_sums *partials, size_t lane) {

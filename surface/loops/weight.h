@@ -1,4 +1,4 @@
-/* θ, a sample's weight, and its derivatives: the plain code that the vector bodies repeat operation by operation. */
+/* θ, a sample's weight, and its derivatives: plain code that the vector bodies repeat operation by operation. */
 #ifndef CONIC_WEIGHT_H
 #define CONIC_WEIGHT_H
 
@@ -14,7 +14,7 @@
 #define CONIC_WEIGHT_LN2_HIGH 0x1.62e42fee00000p-1
 #define CONIC_WEIGHT_LN2_LOW 0x1.a39ef35793c76p-33
 
-/* Taylor's series of the exponential: on |r| < 0.347 what is left out is under 7e-15, 9e-15 of the least value. */
+/* Taylor's series of the exponential: for |r| < 0.347 the omitted terms are under 7e-15, 9e-15 of the least value. */
 #define CONIC_EXP_2 (1.0 / 2.0)
 #define CONIC_EXP_3 (1.0 / 6.0)
 #define CONIC_EXP_4 (1.0 / 24.0)
@@ -26,14 +26,14 @@
 #define CONIC_EXP_10 (1.0 / 3628800.0)
 #define CONIC_EXP_11 (1.0 / 39916800.0)
 
-/* Below this, the second derivative of the compact weight, which grows without bound, is kept. */
+/* The compact weight's second derivative grows without bound; below this it stays constant. */
 #define CONIC_WEIGHT_LEAST 1e-30
 
 typedef struct conic_theta {
   double value, first, second; /* derivatives by s */
 } conic_theta;
 
-/* e^-s for 0 ≤ s ≤ 700; relative error under 1e-14 (the series leaves out 9e-15). */
+/* e^-s for 0 ≤ s ≤ 700; relative error under 1e-14 (the series omits 9e-15). */
 static inline double conic_weight_exp(double s) {
   double x = -s, k = x * CONIC_WEIGHT_LOG2E + CONIC_WEIGHT_ROUND;
   uint64_t k_bits, bits;
@@ -77,7 +77,7 @@ static inline conic_theta conic_weight_flat(const conic_weighing *weighing, doub
   return theta;
 }
 
-/* All zero from `end` on. */
+/* θ at s; zero from `end` on. */
 static inline conic_theta conic_weight_at(const conic_weighing *weighing, double s) {
   double inner = s < weighing->end ? s : weighing->end;
   conic_theta theta = weighing->weight == CONIC_WEIGHT_COMPACT ? conic_weight_compact(weighing, inner)

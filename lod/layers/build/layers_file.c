@@ -265,7 +265,7 @@ static conic_status write_clouds(writing *w, size_t n) {
                             : status;
 }
 
-/* Tells everybody where its clouds go. */
+/* Tells every process where its clouds go. */
 static conic_status move_clouds(writing *w, size_t n) {
   cloud_move moves[CONIC_LAYERS_SOME_ENTRIES];
   for (size_t i = 0; i < n; i++) {

@@ -1,4 +1,4 @@
-#include "cli/render/strips_file.h"
+#include "shots/strips_file.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -17,23 +17,24 @@ static const char first_line[] = "conic strips 1\n";
 
 /* --- records --- */
 
-static uint64_t head_check(const cli_strip_piece *piece) {
+static uint64_t head_check(const conic_strip_piece *piece) {
   return conic_hash_bytes((const char *)piece + sizeof piece->check, sizeof *piece - sizeof piece->check);
 }
 
-static uint64_t following_bytes(const cli_strip_piece *piece) {
+static uint64_t following_bytes(const conic_strip_piece *piece) {
   return (piece->place ? 0 : piece->packed_bytes) + piece->pixel_bytes;
 }
 
-conic_status cli_strips_file_add(cli_strips_file *file, const cli_strip_piece *piece, const void *bytes, uint64_t *at) {
-  cli_strip_piece head = *piece;
+conic_status conic_strips_file_add(conic_strips_file *file, const conic_strip_piece *piece, const void *bytes,
+                                   uint64_t *at) {
+  conic_strip_piece head = *piece;
   head.check = head_check(&head);
   conic_status status = conic_pile_append(&file->list, &head, sizeof head, at);
   return status == CONIC_OK ? conic_pile_append(&file->list, bytes, (size_t)following_bytes(&head), at) : status;
 }
 
-conic_status cli_strips_file_get(const cli_strips_file *file, const cli_strip_record *record, void *bytes) {
-  const cli_strip_piece *piece = &record->piece;
+conic_status conic_strips_file_get(const conic_strips_file *file, const conic_strip_record *record, void *bytes) {
+  const conic_strip_piece *piece = &record->piece;
   conic_status status = CONIC_OK;
   char *to = bytes;
   if (piece->place)
@@ -46,22 +47,22 @@ conic_status cli_strips_file_get(const cli_strips_file *file, const cli_strip_re
 
 typedef struct strips_reading {
   conic_context *context;
-  cli_strips_file *file;
-  const cli_strips_size *size;
+  conic_strips_file *file;
+  const conic_strips_size *size;
   uint64_t list_bytes, part_bytes;
-  cli_strip_record *records; /* all */
+  conic_strip_record *records; /* all */
   size_t n, room, found_room;
   char *bytes; /* of a record */
 } strips_reading;
 
 /* Whether a strip may begin or end there. */
-static int is_place_of_strip(const cli_strips_size *size, int y) {
+static int is_place_of_strip(const conic_strips_size *size, int y) {
   return y == size->height || (y >= 0 && y < size->height && y % size->band_rows % size->step == 0);
 }
 
 /* Rows that are not packed lie between two multiples of those that are packed together. */
-static int is_record_sound(const strips_reading *r, const cli_strip_piece *p) {
-  const cli_strips_size *size = r->size;
+static int is_record_sound(const strips_reading *r, const conic_strip_piece *p) {
+  const conic_strips_size *size = r->size;
   uint64_t row_bytes = (uint64_t)p->n_rows * size->row_bytes;
   if (!is_place_of_strip(size, p->y_begin) || !is_place_of_strip(size, p->y_end) || p->y_begin >= p->y_end ||
       p->y < p->y_begin || p->n_rows < 0 || p->n_rows > CONIC_EXR_BAND || p->y > p->y_end - p->n_rows)
@@ -69,7 +70,7 @@ static int is_record_sound(const strips_reading *r, const cli_strip_piece *p) {
   if (p->packed_bytes > size->most_bytes || p->pixel_bytes > size->most_bytes - p->packed_bytes)
     return 0;
   if (p->n_rows == 0)
-    return p->y == p->y_end && !p->packed_bytes && !p->place && p->pixel_bytes == sizeof(cli_strip_end);
+    return p->y == p->y_end && !p->packed_bytes && !p->place && p->pixel_bytes == sizeof(conic_strip_end);
   if (p->place &&
       (!p->packed_bytes || p->pixel_bytes || p->place > r->part_bytes || p->packed_bytes > r->part_bytes - p->place))
     return 0;
@@ -78,7 +79,7 @@ static int is_record_sound(const strips_reading *r, const cli_strip_piece *p) {
   return p->pixel_bytes == row_bytes || (p->packed_bytes && !p->pixel_bytes);
 }
 
-static conic_status add_record(strips_reading *r, const cli_strip_record *record) {
+static conic_status add_record(strips_reading *r, const conic_strip_record *record) {
   conic_status status = conic_memory_reserve(r->context, &r->records, r->n, r->n + 1, &r->room, sizeof *r->records);
   if (status == CONIC_OK)
     r->records[r->n++] = *record;
@@ -88,7 +89,7 @@ static conic_status add_record(strips_reading *r, const cli_strip_record *record
 static conic_status list_strip_records(strips_reading *r) {
   uint64_t at = HEAD_BYTES;
   conic_status status = CONIC_OK;
-  cli_strip_record record;
+  conic_strip_record record;
   while (status == CONIC_OK && at <= r->list_bytes && r->list_bytes - at >= sizeof record.piece) {
     status = conic_pile_read(&r->file->list, at, &record.piece, sizeof record.piece);
     record.at = at + sizeof record.piece;
@@ -107,7 +108,7 @@ static conic_status list_strip_records(strips_reading *r) {
 
 /* Strip by strip from the top, and of one in the order in which they came. */
 static int compare_strip_records(const void *a, const void *b) {
-  const cli_strip_record *first = a, *second = b;
+  const conic_strip_record *first = a, *second = b;
   if (first->piece.y_begin != second->piece.y_begin)
     return first->piece.y_begin < second->piece.y_begin ? -1 : 1;
   if (first->piece.y_end != second->piece.y_end)
@@ -115,9 +116,9 @@ static int compare_strip_records(const void *a, const void *b) {
   return (first->i > second->i) - (first->i < second->i);
 }
 
-static int is_record_whole(const strips_reading *r, const cli_strip_record *record) {
-  const cli_strip_piece *p = &record->piece;
-  return cli_strips_file_get(r->file, record, r->bytes) == CONIC_OK &&
+static int is_record_whole(const strips_reading *r, const conic_strip_record *record) {
+  const conic_strip_piece *p = &record->piece;
+  return conic_strips_file_get(r->file, record, r->bytes) == CONIC_OK &&
          conic_hash_bytes(r->bytes, (size_t)p->packed_bytes) == p->checks[0] &&
          conic_hash_bytes(r->bytes + p->packed_bytes, (size_t)p->pixel_bytes) == p->checks[1];
 }
@@ -125,7 +126,7 @@ static int is_record_whole(const strips_reading *r, const cli_strip_record *reco
 /* Whether the records from `first` to `end`, the strip's last, are whole; and the hashes known, where they are needed.
  */
 static int is_strip_there(const strips_reading *r, size_t first, size_t end) {
-  cli_strip_end about;
+  conic_strip_end about;
   int has_pixels = 1;
   for (size_t i = first; i <= end; i++) {
     if (!is_record_whole(r, &r->records[i]))
@@ -137,7 +138,7 @@ static int is_strip_there(const strips_reading *r, size_t first, size_t end) {
 }
 
 static conic_status keep_strip(strips_reading *r, size_t first, size_t end) {
-  cli_strips_file *file = r->file;
+  conic_strips_file *file = r->file;
   size_t n = end + 1 - first;
   conic_status status = conic_memory_reserve(r->context, &file->found, file->n_found, file->n_found + n, &r->found_room,
                                              sizeof *file->found);
@@ -156,7 +157,7 @@ static conic_status find_strips(strips_reading *r) {
   if (r->n)
     qsort(r->records, r->n, sizeof *r->records, compare_strip_records);
   for (size_t i = 0; i < r->n && status == CONIC_OK; i++) {
-    const cli_strip_piece *p = &r->records[i].piece, *before = i ? &r->records[i - 1].piece : NULL;
+    const conic_strip_piece *p = &r->records[i].piece, *before = i ? &r->records[i - 1].piece : NULL;
     int is_next = first != SIZE_MAX && before->y_begin == p->y_begin && before->y_end == p->y_end &&
                   before->y + before->n_rows == p->y && before->n_rows > 0;
     if (!is_next)
@@ -170,10 +171,10 @@ static conic_status find_strips(strips_reading *r) {
 }
 
 /* Of the picture as far as it was written stays what belongs to finished strips. */
-static uint64_t part_in_use(const cli_strips_file *file) {
+static uint64_t part_in_use(const conic_strips_file *file) {
   uint64_t end = 0;
   for (size_t i = 0; i < file->n_found; i++) {
-    const cli_strip_piece *p = &file->found[i].piece;
+    const conic_strip_piece *p = &file->found[i].piece;
     if (p->place && p->place + p->packed_bytes > end)
       end = p->place + p->packed_bytes;
   }
@@ -227,7 +228,7 @@ static conic_status cut_kept_file(const conic_scratch *file, uint64_t n_bytes) {
              : conic_fail(file->context, CONIC_ERROR_IO, "%s: cannot write: %s", file->path, strerror(errno));
 }
 
-static conic_status begin_strips_list(cli_strips_file *file, const char *key) {
+static conic_status begin_strips_list(conic_strips_file *file, const char *key) {
   char head[HEAD_BYTES] = "";
   uint64_t at;
   snprintf(head, sizeof head, "%s%s\n", first_line, key);
@@ -235,8 +236,8 @@ static conic_status begin_strips_list(cli_strips_file *file, const char *key) {
   return conic_pile_append(&file->list, head, sizeof head, &at);
 }
 
-conic_status cli_strips_file_begin(conic_context *context, const char *list, const char *part, const char *key,
-                                   const cli_strips_size *size, int is_going_on, cli_strips_file *file) {
+conic_status conic_strips_file_begin(conic_context *context, const char *list, const char *part, const char *key,
+                                     const conic_strips_size *size, int is_going_on, conic_strips_file *file) {
   strips_reading r = {.context = context, .file = file, .size = size};
   conic_disk_entry entry;
   memset(file, 0, sizeof *file);
@@ -257,7 +258,7 @@ conic_status cli_strips_file_begin(conic_context *context, const char *list, con
   return status == CONIC_OK ? cut_kept_file(&file->part, part_in_use(file)) : status;
 }
 
-void cli_strips_file_end(conic_context *context, cli_strips_file *file) {
+void conic_strips_file_end(conic_context *context, conic_strips_file *file) {
   conic_pile_end(&file->list);
   conic_scratch_close(&file->part);
   conic_memory_release(context, file->found);
