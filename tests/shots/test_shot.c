@@ -188,6 +188,13 @@ static void test_pieces(conic_context *context, int scene) {
   static const conic_camera_kind kinds[] = {CONIC_CAMERA_PERSPECTIVE, CONIC_CAMERA_FISHEYE,
                                             CONIC_CAMERA_EQUIRECTANGULAR};
   enum { N_LIGHTS = 4, N_ALL = 3 * N_LIGHTS * 2 };
+  const conic_lighting lighting = {
+      /* which turns with the camera, but not with the views of one picture */
+      .is_given = 1,
+      .n_lights = 1,
+      .sky = {0.3f, 0.3f, 0.4f},
+      .ground = {0.3f, 0.3f, 0.4f},
+      .lights = {{.frame = CONIC_LIGHT_CAMERA, .direction = {0.5f, 0.7f, 0.3f}, .color = {1.0f, 0.9f, 0.8f}}}};
   pieces p = {.context = context, .source = shot_open(context, scene)};
   uint64_t hashes[N_ALL];
   CHECK_OK(conic_renderer_create(context, &p.renderer));
@@ -199,6 +206,8 @@ static void test_pieces(conic_context *context, int scene) {
     shot.light.n_lamps = i_light >> 1;
     shot.light.lamps[0] = (conic_lamp){.position = {0.5, 1.5, 0.4}, .color = {2.0f, 1.0f, 0.5f}, .radius = 0.2};
     shot.n_samples = i / (3 * N_LIGHTS) ? N_SAMPLES : 0;
+    shot.view.samples = shot.n_samples ? 1 : 2;
+    shot.render.lighting = lighting;
     uint64_t by_pieces = hash_both(&p, &shot, CONIC_PLANE_RGBA, &hashes[i]);
     if (by_pieces != hashes[i])
       fprintf(stderr, "scene %d, picture %d\n", scene, i);
