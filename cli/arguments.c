@@ -1,10 +1,12 @@
 #include "cli/arguments.h"
 
+#include <inttypes.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/host.h"
 #include "core/base/nearest_word.h"
 #include "core/files/disk.h"
 #include "core/formats/text_columns.h"
@@ -321,6 +323,88 @@ static int parse_option(cli_session *session, const option_set *set, int argc, c
   return store_value(session, option, value);
 }
 
+/* --- values of a host's --- */
+
+/* Numbers as they read back the same, for options that take words, and for messages. */
+static const char *say_numbers(cli_value *value) {
+  size_t used = 0;
+  if (value->type == CLI_VALUE_TEXT)
+    return value->text;
+  if (value->type == CLI_VALUE_WHOLE) {
+    snprintf(value->said, sizeof value->said, "%" PRId64, value->whole);
+    return value->said;
+  }
+  for (int i = 0; i < value->n_numbers; i++) {
+    char number[40];
+    for (int digits = 15; digits <= 17; digits++) {
+      snprintf(number, sizeof number, "%.*g", digits, value->numbers[i]);
+      if (strtod(number, NULL) == value->numbers[i])
+        break;
+    }
+    used += (size_t)snprintf(value->said + used, sizeof value->said - used, "%s%s", i ? "," : "", number);
+  }
+  return value->said;
+}
+
+/* Numbers go where they belong as they are. 1: done; 0: the option takes words, or something else than these. */
+static int store_numbers(const cli_option *option, const cli_value *value) {
+  const int is_whole = value->type == CLI_VALUE_WHOLE, n = is_whole ? 1 : value->n_numbers;
+  const double number = is_whole ? (double)value->whole : value->numbers[0];
+  if (option->type == CLI_INT && is_whole && value->whole >= INT_MIN && value->whole <= INT_MAX)
+    *(int *)option->value = (int)value->whole;
+  else if (option->type == CLI_COUNT && is_whole && value->whole >= 0)
+    *(unsigned long long *)option->value = (unsigned long long)value->whole;
+  else if (option->type == CLI_NUMBER && n == 1 && number - number == 0.0)
+    *(double *)option->value = number;
+  else if (option->type == CLI_VECTOR && n == 3)
+    memcpy(option->value, value->numbers, 3 * sizeof *value->numbers);
+  else if (option->type == CLI_SIZE && n == 2)
+    for (int i = 0; i < 2; i++) {
+      const double edge = value->numbers[i];
+      if (!(edge >= 0.0 && edge <= INT_MAX) || edge != (double)(int)edge)
+        return 0;
+      ((int *)option->value)[i] = (int)edge;
+    }
+  else
+    return 0;
+  return 1;
+}
+
+static int is_stored_in_range(const cli_option *option) {
+  const int *whole = option->value;
+  if (option->type == CLI_SIZE)
+    return is_within_limits(option, whole[0]) && is_within_limits(option, whole[1]);
+  return is_within_limits(option, option->type == CLI_INT     ? *whole
+                                  : option->type == CLI_COUNT ? (double)*(unsigned long long *)option->value
+                                                              : *(double *)option->value);
+}
+
+static int take_value(const cli_session *session, const option_set *set, cli_value *value) {
+  const char **former;
+  const cli_option *option = NULL;
+  for (int is_long = 1; !option && is_long >= 0; is_long--)
+    option = find_option(set, value->name, strlen(value->name), is_long, &former);
+  if (!option)
+    return refuse_option(session, set, value->name);
+  const int is_flag = option->type == CLI_FLAG, is_set = value->type == CLI_VALUE_SET;
+  const char *said = is_flag ? option->name : is_set ? NULL : say_numbers(value);
+  if (option->now && !*former)
+    cli_note(session, "%s: %s%s is now %s", session->command, cli_dashes(option), option->name, option->now);
+  if (is_flag && !is_set)
+    return cli_usage("%s: %s%s takes no value", session->command, cli_dashes(option), option->name);
+  if (is_set && !is_flag)
+    return cli_usage("%s: %s%s needs a value: %s", session->command, cli_dashes(option), option->name,
+                     option->argument);
+  *former = said;
+  if (is_flag || !store_numbers(option, value))
+    return store_value(session, option, is_flag ? NULL : said);
+  if (!is_stored_in_range(option))
+    return refuse_range(session, option, said);
+  if (option->is_given)
+    *option->is_given = 1;
+  return CLI_DONE;
+}
+
 /* Whether a flag is given anywhere, whatever else is wrong with the arguments. */
 static int asks_for(int argc, char **argv, const char *name, const char *letter) {
   for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
@@ -360,5 +444,7 @@ int cli_parse_noting(cli_session *session, const cli_option *options, int n_opti
     else
       exit_code = parse_option(session, &set, argc, argv, &i);
   }
+  for (size_t i = 0; session->host && i < session->host->n_values && exit_code == CLI_DONE; i++)
+    exit_code = take_value(session, &set, &session->host->values[i]);
   return exit_code;
 }

@@ -80,17 +80,30 @@ void cli_json_begin(cli_json *json, FILE *to) {
   open_level(json, '{', 0);
 }
 
+/* What a host is told in the place of text; 0: there is none. */
+static int is_told_to_host(const cli_json *json, char type, const char *key, const void *value, size_t n_bytes) {
+  if (json->host)
+    cli_host_note(json->host, type, key, value, n_bytes);
+  return json->host != NULL;
+}
+
 void cli_json_object(cli_json *json, const char *key) {
+  if (is_told_to_host(json, 'o', key, NULL, 0))
+    return;
   begin_item(json, key, 1);
   open_level(json, '{', 0);
 }
 
 void cli_json_array(cli_json *json, const char *key) {
+  if (is_told_to_host(json, 'a', key, NULL, 0))
+    return;
   begin_item(json, key, 0);
   open_level(json, '[', IS_ARRAY);
 }
 
 void cli_json_close(cli_json *json) {
+  if (is_told_to_host(json, 'e', NULL, NULL, 0))
+    return;
   int state = json->has_items[--json->depth];
   if (state & HAS_LINES)
     new_line(json);
@@ -105,6 +118,8 @@ int cli_json_end(cli_json *json) {
 }
 
 void cli_json_text(cli_json *json, const char *key, const char *value) {
+  if (is_told_to_host(json, value ? 't' : 'z', key, value, value ? strlen(value) + 1 : 0))
+    return;
   begin_item(json, key, 0);
   if (value)
     print_text(json->to, value);
@@ -114,8 +129,11 @@ void cli_json_text(cli_json *json, const char *key, const char *value) {
 
 void cli_json_number(cli_json *json, const char *key, double value) {
   char text[40];
+  const int is_finite = value - value == 0.0;
+  if (is_told_to_host(json, is_finite ? 'n' : 'z', key, &value, is_finite ? sizeof value : 0))
+    return;
   begin_item(json, key, 0);
-  if (!(value - value == 0.0)) {
+  if (!is_finite) {
     fputs("null", json->to);
     return;
   }
@@ -128,24 +146,28 @@ void cli_json_number(cli_json *json, const char *key, double value) {
 }
 
 void cli_json_count(cli_json *json, const char *key, uint64_t value) {
+  if (is_told_to_host(json, 'c', key, &value, sizeof value))
+    return;
   begin_item(json, key, 0);
   fprintf(json->to, "%" PRIu64, value);
 }
 
 void cli_json_bool(cli_json *json, const char *key, int value) {
+  const char truth = value != 0;
+  if (is_told_to_host(json, 'b', key, &truth, 1))
+    return;
   begin_item(json, key, 0);
   fputs(value ? "true" : "false", json->to);
 }
 
 void cli_json_hash(cli_json *json, const char *key, uint64_t value) {
-  begin_item(json, key, 0);
-  fprintf(json->to, "\"%016" PRIx64 "\"", value);
+  char text[17];
+  snprintf(text, sizeof text, "%016" PRIx64, value);
+  cli_json_text(json, key, text);
 }
 
 struct cli_json_file {
-  conic_output *output; /* null: of a host's run, */
-  cli_host *host;       /* null: a file */
-  FILE *memory;         /* the host's, which gets it as text */
+  conic_output *output; /* null: a host's run */
   cli_json json;
 };
 
@@ -160,16 +182,18 @@ cli_json *cli_json_open(cli_session *session, cli_json_file **file, int *exit_co
   }
   conic_status status = CONIC_OK;
   memset(made, 0, sizeof *made);
-  if (session->host)
-    made->memory = cli_host_open_json(made->host = session->host);
-  else
+  if (!session->host)
     status = conic_output_open(session->context, session->json_path, &made->output);
-  if (status != CONIC_OK || (session->host && !made->memory)) {
+  if (status != CONIC_OK) {
     free(made);
-    *exit_code = status == CONIC_OK ? cli_error(CLI_RESOURCE, "out of memory") : cli_exit_of(status);
+    *exit_code = cli_exit_of(status);
     return NULL;
   }
-  cli_json_begin(&made->json, made->memory ? made->memory : conic_output_stream(made->output));
+  if (session->host) {
+    cli_host_release(session->host);
+    made->json.host = session->host;
+  } else
+    cli_json_begin(&made->json, conic_output_stream(made->output));
   *file = made;
   return &made->json;
 }
@@ -177,12 +201,13 @@ cli_json *cli_json_open(cli_session *session, cli_json_file **file, int *exit_co
 int cli_json_finish(cli_json_file *file) {
   if (!file)
     return CLI_DONE;
-  int is_whole = cli_json_end(&file->json); /* what it says of a file's stream, commit finds again */
   conic_status status = CONIC_OK;
-  if (file->memory)
-    status = cli_host_close_json(file->host, file->memory) == 0 && is_whole ? CONIC_OK : CONIC_ERROR_MEMORY;
-  else
+  if (file->json.host)
+    status = file->json.host->facts_are_lost ? CONIC_ERROR_MEMORY : CONIC_OK;
+  else {
+    cli_json_end(&file->json); /* what it says of a file's stream, commit finds again */
     status = conic_output_commit(file->output);
+  }
   free(file);
   return cli_exit_of(status);
 }

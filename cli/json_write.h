@@ -8,8 +8,11 @@
 
 #include "conic/model.h"
 
+struct cli_host;
+
 typedef struct cli_json {
   FILE *to;
+  struct cli_host *host; /* null, or who gets records in the place of text (cli/host.h) */
   int depth, has_items[32];
 } cli_json;
 

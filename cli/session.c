@@ -30,15 +30,17 @@ static atomic_int closed_pipe_signal; /* what is written to a pipe has no reader
 /* Of the run that this thread is in; null: the program's own. */
 static _Thread_local cli_host *thread_host;
 
+cli_host *cli_session_host(cli_host *host) {
+  cli_host *before = thread_host;
+  thread_host = host;
+  return before;
+}
+
 /* Takes messages in the place of the screen; null: nobody does. */
 static int (*holds)(conic_log_level level, const char *message);
 
 void cli_session_hold(int (*hold)(conic_log_level level, const char *message)) {
   holds = hold;
-}
-
-void cli_session_host(cli_session *session) {
-  thread_host = session ? session->host : NULL;
 }
 
 static void say_to_host(const cli_host *host, conic_log_level level, const char *message) {
@@ -211,12 +213,21 @@ static void show_progress(cli_session *session, const char *task, double fractio
     draw_bar(session, fraction, now);
 }
 
+static int tell_host(cli_session *session, cli_host *host, const char *task, double fraction) {
+  const double now = host->progress_seconds > 0.0 ? cli_seconds() : 0.0;
+  if (session->part)
+    fraction = share_of_parts(session, fraction);
+  if (!host->progress || (host->told_at > 0.0 && now - host->told_at < host->progress_seconds))
+    return host->is_stopped;
+  host->told_at = now;
+  host->is_stopped |= host->progress(host->cookie, session->part ? session->part : task, fraction) != 0;
+  return host->is_stopped;
+}
+
 static int on_progress(void *cookie, const char *task, double fraction) {
   cli_session *session = cookie;
-  const cli_host *host = session->host;
-  if (host)
-    return host->progress && host->progress(host->cookie, session->part ? session->part : task,
-                                            session->part ? share_of_parts(session, fraction) : fraction);
+  if (session->host)
+    return tell_host(session, session->host, task, fraction);
   if (session->has_bar) {
     pthread_mutex_lock(&screen);
     show_progress(session, task, fraction);

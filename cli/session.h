@@ -42,8 +42,9 @@ typedef struct cli_session {
 
 /* Makes the context. Returns CLI_DONE or, after an error message, the exit code. */
 int cli_session_open(cli_session *session);
-/* From now on what this thread prints for people is said to the session's host, if it has one; null: no longer. */
-void cli_session_host(cli_session *session);
+/* From now on what this thread prints for people is said to a host; null: to nobody but these. Returns who was told it
+ * before: a host's functions may run commands themselves. */
+struct cli_host *cli_session_host(struct cli_host *host);
 /* From now on `hold` sees what this process would print for people, and keeps it where it returns 1. */
 void cli_session_hold(int (*hold)(conic_log_level level, const char *message));
 /* Ends the context; fine where it was never made. */

@@ -34,9 +34,4 @@ void cli_shell_give_back_memory(void);
 /* Every name that a pattern with *, ? and [ … ] is of, until `take` returns 0. Returns 0 without memory. */
 int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *path), void *cookie);
 
-/* A stream into memory, which is malloc's, and has a zero behind its *n_bytes, once it is closed; null on failure.
- * Closing it returns 0 where all is there. */
-FILE *cli_shell_open_memory(char **bytes, size_t *n_bytes);
-int cli_shell_close_memory(FILE *stream, char **bytes, size_t *n_bytes);
-
 #endif

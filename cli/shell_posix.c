@@ -112,12 +112,3 @@ int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *p
   globfree(&found);
   return result != GLOB_NOSPACE;
 }
-
-FILE *cli_shell_open_memory(char **bytes, size_t *n_bytes) {
-  return open_memstream(bytes, n_bytes);
-}
-
-int cli_shell_close_memory(FILE *stream, char **bytes, size_t *n_bytes) {
-  (void)bytes, (void)n_bytes;
-  return fclose(stream);
-}

@@ -168,23 +168,3 @@ int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *p
   free(path);
   return 1;
 }
-
-/* By way of a file. */
-FILE *cli_shell_open_memory(char **bytes, size_t *n_bytes) {
-  *bytes = NULL;
-  *n_bytes = 0;
-  return conic_disk_open_nameless();
-}
-
-int cli_shell_close_memory(FILE *stream, char **bytes, size_t *n_bytes) {
-  const off_t n = ferror(stream) ? -1 : ftello(stream);
-  int is_whole = 0;
-  *bytes = n >= 0 ? malloc((size_t)n + 1) : NULL;
-  if (*bytes) {
-    rewind(stream);
-    *n_bytes = fread(*bytes, 1, (size_t)n, stream);
-    (*bytes)[*n_bytes] = '\0';
-    is_whole = *n_bytes == (size_t)n;
-  }
-  return fclose(stream) == 0 && is_whole ? 0 : EOF;
-}

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/threads.h"
 #include "core/base/options.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
@@ -314,7 +315,7 @@ static conic_status take_kept_strips(banded *b) {
     if (status != CONIC_OK)
       break;
     end.statistics.isa = conic_isa_name(isa == CONIC_ISA_AUTO ? conic_isa_best() : isa);
-    end.statistics.threads = conic_context_threads(b->context);
+    end.statistics.threads = conic_parallel_threads(b->context);
     conic_windows_count(&b->windows, &end.statistics, &b->counts);
     for (int k = 0; k < CONIC_SOURCE_TALLIES; k++)
       b->windows.tallies[k] += end.tallies[k];

@@ -98,6 +98,7 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
     project_degrees(context, path, &model->points);
   if (!model->points.tangent_u[0] && !model->n_triangles)
     d->base.traits |= CONIC_TRAIT_RAW;
+  d->base.scale.follows_cutoff |= !model->points.tangent_u[0] || model->follows_cutoff;
   estimate.cutoff = options->cutoff;
   estimate.n_neighbours = options->n_neighbours;
   estimate.finds_dots = options->finds_dots;
@@ -191,6 +192,7 @@ static conic_status read_into_drawing(drawing_source *d, const char *path, const
   if (status != CONIC_OK)
     return status;
   status = special->take_splats(part, &splats);
+  d->base.scale.follows_cutoff |= part->scale.follows_cutoff;
   conic_source_close(part);
   return status == CONIC_OK ? append_to_drawing(d, &splats) : status;
 }

@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/base/threads.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
 #include "gaussians/draw/gaussian_parts.h"
@@ -242,7 +243,7 @@ static void tell_drawing(const gaussians_source *g, uint64_t n_covered, conic_re
   statistics->splats_culled = s->gaussians_culled;
   statistics->splats_skipped = s->gaussians_skipped;
   statistics->pixels_covered = n_covered;
-  statistics->threads = s->device_units ? (int)s->device_units : conic_context_threads(g->base.context);
+  statistics->threads = s->device_units ? (int)s->device_units : conic_parallel_threads(g->base.context);
   statistics->tile = s->tile;
   statistics->isa = s->device_units ? "opencl" : conic_isa_name(s->isa);
   statistics->ms.setup = 1e3 * s->seconds_setup;

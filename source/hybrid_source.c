@@ -61,6 +61,7 @@ static conic_status open_hybrid(conic_source *source, const char *const *paths, 
   hybrid_source *h = (hybrid_source *)source;
   (void)n_paths;
   h->is_opened = is_hybrid_name(paths[0]);
+  source->scale.follows_cutoff = !h->is_opened;
   if (h->is_opened && conic_coloring_is_asked(options))
     return conic_coloring_refuse(source->context, paths[0], options);
   conic_status status = h->is_opened ? conic_hybrid_open(source->context, paths[0], options->access, &h->hybrid)

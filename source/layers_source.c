@@ -65,6 +65,7 @@ static conic_status open_layers(conic_source *source, const char *const *paths, 
     scale->up_basis = CONIC_UP_KIND;
   }
   l->cutoff = options->cutoff;
+  scale->follows_cutoff = 1;
   l->n_clouds = found.n_clouds;
   l->may_pass_none = options->where != NULL;
   return CONIC_OK;

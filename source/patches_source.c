@@ -49,6 +49,7 @@ static conic_status open_patches(conic_source *source, const char *const *paths,
   unsigned abilities = source->scale.abilities;
   source->scale = *conic_source_measure(p->points);
   source->scale.abilities = abilities;
+  source->scale.follows_cutoff = 1;
   source->coloring = p->points->coloring;
   source->traits = p->points->traits;
   source->no_traits = p->points->no_traits;

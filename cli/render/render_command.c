@@ -150,6 +150,19 @@ static conic_status render_in_strips(cli_session *session, cli_render_job *job, 
   return CONIC_OK;
 }
 
+static void hand_picture_over(const cli_session *session, const cli_render_job *job, int i_frame,
+                              const conic_camera *camera, const conic_image *image) {
+  const cli_drawn drawn = {.i_frame = i_frame,
+                           .view = job->cameras.count ? job->cameras.names[job->i_view] : "",
+                           .image = image,
+                           .camera = camera,
+                           .shot = &job->shot,
+                           .opening = &job->opening,
+                           .sky_path = job->sky ? job->sky_path : NULL,
+                           .motion_path = job->accumulating.motion ? job->accumulating.motion_path : NULL};
+  cli_host_take(session, &drawn);
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
@@ -187,7 +200,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   warn_of_alpha(session, job);
   status = cli_frame_files_write(session, job, &camera, image, i_frame);
   if (status == CONIC_OK)
-    cli_host_take(session, i_frame, job->cameras.count ? job->cameras.names[job->i_view] : "", image, &camera);
+    hand_picture_over(session, job, i_frame, &camera, image);
   return status;
 }
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/host_keeps.h"
+#include "cli/opening_key.h"
 #include "cli/render/frames.h"
 #include "cli/render/units.h"
 #include "cli/scene/light_options.h"
@@ -86,11 +87,15 @@ static conic_status stand_upright(cli_session *session, cli_render_job *job) {
 }
 
 conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
+  char key[CONIC_SHA256_ROOM];
   cli_deadline_open(job);
-  job->source = cli_kept_source(session);
+  cli_opening_key(job->inputs, (size_t)job->n_inputs, &job->opening, job->abilities, key);
+  job->source = cli_kept_source(session, key, &job->opening);
   conic_status status = job->source ? CONIC_OK : cli_units_open_source(session, job);
   if (status == CONIC_OK)
-    cli_keep_source(session, job->source);
+    cli_keep_source(session, key, &job->opening, job->source);
+  if (status == CONIC_OK && job->opening.gaussians)
+    status = conic_source_composite_by(job->source, job->opening.gaussians);
   if (status == CONIC_OK)
     status = resolve_lengths(session, job);
   if (status == CONIC_OK)

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <strings.h>
 
+#include "cli/host.h"
 #include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/units.h"
@@ -29,7 +30,7 @@ static int is_plain_exr(const cli_session *session, const cli_render_job *job) {
   const char *ending = *conic_file_ending(path) ? conic_file_ending(path) : job->writing.format;
   int has_more = job->deep_path || job->overdraw_path || job->clusters_path || job->boxes_path || job->legend_path ||
                  job->has_legend || job->progressive_path || job->shot.has_backdrop;
-  return ending && strcasecmp(ending, "exr") == 0 && !has_more && !session->host &&
+  return ending && strcasecmp(ending, "exr") == 0 && !has_more && !(session->host && session->host->lay_out) &&
          !(job->shot.planes & ~(unsigned)CONIC_WINDOWS_PLANES);
 }
 

@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "cli/color_options.h"
+#include "cli/host_keeps.h"
 #include "cli/scene/scene_options.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
@@ -129,8 +130,7 @@ static const struct {
      "not --accumulate with --repeat, --progressive, --deadline, --deep or mattes"},
     {F(ACCUMULATED) | F(MAP), 0, 0, "--camera top filters its pixels itself: not with --accumulate"},
     {F(STEREO), F(STREAM) | F(MAP) | F(PROGRESSIVE), 0,
-     "--stereo writes two files: not to standard output, with --camera top, --progressive or --resume, nor from "
-     "Python"},
+     "--stereo writes two files: not to standard output, nor with --camera top, --progressive or --resume"},
 };
 
 /* --- facts --- */
@@ -140,21 +140,21 @@ static facts when(int holds, facts fact) {
 }
 
 /* However it is drawn. */
-static int is_gaussian(const cli_render_job *job) {
+static int is_gaussian(const cli_session *session, const cli_render_job *job) {
   conic_source_options opening = job->opening;
   opening.gaussians = &job->shot.gaussians;
-  return (conic_source_abilities(job->inputs, (size_t)job->n_inputs, &opening) & CONIC_SOURCE_COMPOSITES) != 0;
+  return (cli_kept_abilities(session, job->inputs, (size_t)job->n_inputs, &opening) & CONIC_SOURCE_COMPOSITES) != 0;
 }
 
 /* Before it is open: what is certain, and what else there may be. */
-static void guess_source(cli_render_job *job) {
+static void guess_source(const cli_session *session, cli_render_job *job) {
   cli_effects_job *own = &job->effects;
   const unsigned can = job->abilities;
   const facts read = CLI_SURFACES | F(FACES) | F(EDGES) | F(RAW) | F(TEXT) | F(ALPHA) | F(VALUED);
   int is_hybrid = (can & CONIC_SOURCE_CLUSTERS) != 0, is_mesh = job->opening.as == CONIC_AS_HYBRID;
   own->certain = when(can & CONIC_SOURCE_COMPOSITES, F(COMPOSITED)) | when(is_hybrid, F(HYBRID)) |
                  when(can & CONIC_SOURCE_STREAMS, F(LEVELS)) | when(can == CONIC_SOURCE_CHOOSES, F(NODES)) |
-                 when(can & CONIC_SOURCE_CHOOSES, F(CHOOSES)) | when(is_gaussian(job), F(GAUSSIANS));
+                 when(can & CONIC_SOURCE_CHOOSES, F(CHOOSES)) | when(is_gaussian(session, job), F(GAUSSIANS));
   if (own->certain & F(COMPOSITED))
     own->certain |= when(job->shot.gaussians.profile == CONIC_PROFILE_EXACT, F(EXACT));
   for (int i = 0; i < job->n_inputs; i++)
@@ -414,9 +414,9 @@ static int check_given(const cli_session *session, cli_render_job *job) {
 
 int cli_effects_check(const cli_session *session, const cli_scene_words *words, cli_render_job *job) {
   cli_effects_job *own = &job->effects;
-  guess_source(job);
+  guess_source(session, job);
   own->asked = ask_of_outputs(job) | ask_of_camera(job) | ask_of_drawing(job, words) |
-               when(session->host || job->accumulating.resume_path, F(STREAM));
+               when(job->accumulating.resume_path != NULL, F(STREAM));
   note_parts(job, words);
   const facts held = own->certain | own->asked;
   for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)

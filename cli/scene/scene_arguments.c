@@ -305,7 +305,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   job->is_patch = method == CONIC_N_METHODS;
   if (!job->is_patch)
     o->method = (conic_method)method;
-  job->shot.gaussians.profile = (conic_gaussian_profile)raw.profile;
+  if (raw.profile < CONIC_N_GAUSSIAN_PROFILES) /* else "surface", which is none */
+    job->shot.gaussians.profile = (conic_gaussian_profile)raw.profile;
   job->shot.gaussians.prefilter = raw.is_prefilter_given ? raw.prefilter : 0.0;
   job->shot.gaussians.ignores_center = (uint32_t)ignores_center;
   if (raw.profile < CONIC_N_GAUSSIAN_PROFILES &&

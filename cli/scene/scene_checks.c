@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "cli/color_options.h"
+#include "cli/host_keeps.h"
 #include "cli/outputs.h"
 #include "cli/scene/scene_options.h"
 #include "cli/scene/views.h"
@@ -73,7 +74,7 @@ int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_rend
   job->is_every_view = cli_views_are_all(job->view_name);
   job->opening.as = job->is_patch ? CONIC_AS_PATCHES : (conic_representation)words->as;
   job->opening.is_whole = words->is_colored_whole;
-  job->abilities = conic_source_abilities(job->inputs, (size_t)job->n_inputs, &job->opening);
+  job->abilities = cli_kept_abilities(session, job->inputs, (size_t)job->n_inputs, &job->opening);
   if (job->abilities & CONIC_SOURCE_CLUSTERS) /* of which any part may be drawn, unless --memory says less */
     job->access.memory_bytes = 0;
   job->opening.is_whole =

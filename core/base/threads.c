@@ -25,6 +25,7 @@ struct conic_pool {
   pthread_mutex_t mutex;
   pthread_cond_t work_done;
   int n_workers, n_called;   /* n_called: workers needed for the items */
+  int n_used;                /* conic_parallel_limit: threads that may work, with the calling one */
   conic_region_watch *watch; /* null: not told */
   void *watch_cookie;
 
@@ -127,7 +128,7 @@ conic_status conic_pool_create(conic_context *context, conic_pool **pool) {
   pthread_cond_init(&made->work_done, NULL);
   while (made->n_workers < n_wanted && start_worker(made))
     ;
-  context->options.threads = made->n_workers + 1; /* those that the system gave */
+  context->options.threads = made->n_used = made->n_workers + 1; /* those that the system gave */
   *pool = made;
   return CONIC_OK;
 }
@@ -173,9 +174,18 @@ void conic_parallel_plan(conic_context *context, int threads, conic_region_watch
   context->pool->watch_cookie = cookie;
 }
 
+void conic_parallel_limit(conic_context *context, int threads) {
+  const int n_all = context->pool->n_workers + 1;
+  context->pool->n_used = threads < 1 || threads > n_all ? n_all : threads;
+}
+
+int conic_parallel_threads(const conic_context *context) {
+  return context->pool->watch ? context->options.threads : context->pool->n_used;
+}
+
 void conic_parallel_region(conic_context *context, const char *name, size_t n_items, conic_task *task, void *data) {
   conic_pool *pool = context->pool;
-  if (n_items <= 1 || pool->n_workers == 0) {
+  if (n_items <= 1 || pool->n_used <= 1) {
     do_items_alone(pool, name, n_items, task, data);
     return;
   }
@@ -183,7 +193,7 @@ void conic_parallel_region(conic_context *context, const char *name, size_t n_it
   pool->task = task;
   pool->data = data;
   pool->n_items = n_items;
-  pool->n_called = n_items - 1 < (size_t)pool->n_workers ? (int)(n_items - 1) : pool->n_workers;
+  pool->n_called = n_items < (size_t)pool->n_used ? (int)(n_items - 1) : pool->n_used - 1;
   atomic_store_explicit(&pool->next_item, 0, memory_order_relaxed);
   atomic_store(&pool->door, generation << GENERATION_SHIFT);
   call_two(pool, 0, generation);

@@ -25,6 +25,12 @@ conic_status conic_parallel_runs(conic_context *context, const char *name, doubl
 conic_status conic_parallel_told(conic_context *context, const char *name, double from, double to, size_t n_items,
                                  conic_task *task, void *data);
 
+/* From now on no more threads than so many work at a time, the calling one among them; below 1: all. Those beside them
+ * sleep, and conic_context_threads, by which memory is laid out, stays what it is. Not within a region. */
+void conic_parallel_limit(conic_context *context, int threads);
+/* How many work. */
+int conic_parallel_threads(const conic_context *context);
+
 /* Is told of a region of n_items > 0 items: before its first item (n_done 0) and after each. */
 typedef void conic_region_watch(void *cookie, const char *name, size_t n_items, size_t n_done);
 

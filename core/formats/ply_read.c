@@ -264,6 +264,7 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
     status = read_elements(reader, header, vertices);
   if (status == CONIC_OK)
     status = conic_builder_deliver(&builder, 1);
+  model->follows_cutoff = reader->layout.form == CONIC_PLY_CIRCLES;
   if (reader->layout.has_harmonics)
     model->up[1] = -1.0; /* Gaussians are trained in the frame of the first camera, or of COLMAP: y points down */
   conic_memory_release(input->context, reader);

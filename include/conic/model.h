@@ -55,7 +55,8 @@ typedef struct conic_model {
   double up[3];              /* the direction that points up by the file or its kind; zero where neither says */
   conic_model_field *fields; /* the other values that the points have by name, in the file's order */
   size_t n_fields;
-  uint64_t reserved[3];
+  uint64_t follows_cutoff; /* 1: the axes were made of radii, by the cutoff that it was read with */
+  uint64_t reserved[2];
 } conic_model;
 
 typedef struct conic_read_options {

@@ -131,6 +131,7 @@ typedef struct conic_source_scale {
   int has_colors;
   double read_seconds, estimate_seconds; /* what opening it took */
   conic_up_basis up_basis;               /* of `up`: KIND, or HABIT until conic_source_stand has looked */
+  int follows_cutoff;                    /* 1: opened with another cutoff it would be another source */
 } conic_source_scale;
 
 /* The source's own; stays until it is closed. */

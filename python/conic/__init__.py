@@ -8,10 +8,11 @@ Functions are the program's commands, and their keywords the commands' options; 
 """
 
 from ._camera import Camera, list_cameras
-from ._commands import (command, conformance, convert, devices, diff, explain, gradient, hybrid, info, judge, layers, make, mls,
-                        octree, prepare, render, verify)
+from ._commands import (command, conformance, convert, devices, diff, explain, gradient, hybrid, info, judge, layers, make,
+                        mls, octree, prepare, render, verify)
 from ._library import features, release, version
 from ._picture import Picture
+from ._shot import Shot
 from ._scene import Gaussians, Mesh, Scene, Splats, open
 from .errors import (ArgumentError, Cancelled, ConicWarning, Error, InputError, OutOfMemoryError, OutputError,
                      UnsupportedError)
@@ -20,7 +21,7 @@ __version__ = version()
 
 __all__ = [
     "ArgumentError", "Camera", "Cancelled", "ConicWarning", "Error", "Gaussians", "InputError", "Mesh",
-    "OutOfMemoryError", "OutputError", "Picture", "Scene", "Splats", "UnsupportedError", "command", "conformance", "convert",
-    "devices", "diff", "explain", "features", "gradient", "hybrid", "info", "judge", "layers", "list_cameras", "make",
-    "mls", "octree", "open", "prepare", "release", "render", "verify", "version"
+    "OutOfMemoryError", "OutputError", "Picture", "Scene", "Shot", "Splats", "UnsupportedError", "command",
+    "conformance", "convert", "devices", "diff", "explain", "features", "gradient", "hybrid", "info", "judge",
+    "layers", "list_cameras", "make", "mls", "octree", "open", "prepare", "release", "render", "verify", "version"
 ]

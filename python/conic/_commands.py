@@ -5,46 +5,46 @@ sequences of numbers, and True for what is a flag; where a word is Python's own,
 
 from __future__ import annotations
 
+import copy
 import ctypes
-import json
+import inspect
 import os
+import re
 import tempfile
-from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Set, Tuple, Union
 
 import numpy
 
 from . import _layouts as layouts
 from ._arrays import as_numpy
 from ._camera import Camera, PathLike
-from ._library import Frames, Kept, kept_of_thread, run
-from ._picture import Hashes, Picture, encode_png
+from ._library import Frames, Kept, draw, kept_of_thread, read_facts, run
+from ._picture import Picture, encode_png
 from ._scene import AnyScene, Scene, _InMemory
+from ._shot import Shot, Sketch, structs_of
 from .errors import ArgumentError
 
 Loans = List[Tuple[str, ctypes.Structure]]
 AnyCamera = Union[Camera, PathLike]
 Options = Any
-
-# What may differ between pictures of one source that is open.
-_OF_THE_VIEW = {"size", "camera", "view", "azimuth", "elevation", "fov", "zoom", "eye", "samples", "aov", "o", "frames",
-                "turntable", "repeat", "format", "exr", "compression"}
 _REPEATED = {"light", "o"}
 
 
-def _value(name: str, value: Any) -> str:
+def _value(name: str, value: Any) -> Any:
+    """A whole number, a number, a tuple of numbers, or a word."""
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
-    if isinstance(value, (bool, int, numpy.integer)):
-        return str(int(value))
+    if isinstance(value, (bool, int, numpy.integer, numpy.bool_)):
+        return int(value)
     if isinstance(value, (float, numpy.floating)):
-        return repr(float(value))
+        return float(value)
     parts = as_numpy(value, name).tolist() if not isinstance(value, (list, tuple)) else value
     if not isinstance(parts, (list, tuple)):  # of an array without dimensions
         return _value(name, parts)
-    if name == "size" and len(parts) == 2:
-        return "x".join(_value(name, int(part) if isinstance(part, float) and part.is_integer() else part)
-                        for part in parts)
-    return ",".join(_value(name, part) for part in parts)
+    found = [_value(name, part) for part in parts]
+    if 0 < len(found) <= layouts.MOST_NUMBERS and all(isinstance(part, (int, float)) for part in found):
+        return tuple(float(part) for part in found)
+    return ",".join(",".join(map(str, part)) if isinstance(part, tuple) else str(part) for part in found)
 
 
 def _whole(array: Any, name: str) -> numpy.ndarray:
@@ -67,8 +67,8 @@ class _Call:
     """The arguments of a run, and what it is lent."""
 
     def __init__(self, command: str) -> None:
-        self.words: List[str] = [command, "--quiet"]
-        self.key: List[str] = [command]
+        self.command = command
+        self.values: List[Tuple[str, Any]] = []
         self.inputs: List[str] = []
         self.loans: Loans = []
         self.scene: Optional[Scene] = None
@@ -88,14 +88,10 @@ class _Call:
         is_list = name in _REPEATED and isinstance(value, (list, tuple)) and not all(
             isinstance(part, (int, float)) for part in value)
         for part in value if is_list else [value]:
-            dashed = f"--{name}" if len(name) > 1 or name == "h" else f"-{name}"
-            words = [dashed] if part is True else [f"{dashed}={_value(name, part)}"] if dashed[1] == "-" else [
-                dashed, _value(name, part)]
-            if name == "o" and words[-1] == "-":
+            given = True if part is True else _value(name, part)
+            if name == "o" and given == "-":
                 raise ArgumentError("output: pictures are returned; - is for a shell")
-            self.words += words
-            if name not in _OF_THE_VIEW:
-                self.key += words
+            self.values.append((name, given))
 
     def options(self, options: Dict[str, Any]) -> None:
         for name, value in options.items():
@@ -120,9 +116,9 @@ class _Call:
 
     def camera(self, camera: Optional[AnyCamera]) -> None:
         if isinstance(camera, Camera):
-            self.words.append("--camera=" + self.lend("camera", camera._struct))
+            self.values.append(("camera", self.lend("camera", camera._struct)))
         elif isinstance(camera, (str, os.PathLike)):
-            self.words.append(f"--camera={os.fspath(camera)}")
+            self.values.append(("camera", os.fspath(camera)))
         elif camera is not None:
             raise ArgumentError(f"camera: a Camera or a file of cameras is needed, not {type(camera)}")
 
@@ -167,60 +163,135 @@ class _Call:
         self._files.append(os.path.join(self._folder.name, f"picture{len(self._files)}.{ending}"))
         return self._files[-1]
 
+    def keeper(self) -> Tuple[Optional[Kept], bool]:
+        """Who keeps what the run opens, and whether sources are among that: those of a scene are."""
+        if self.scene is not None and len(self.inputs) == len(self.scene.paths):
+            return self.scene._kept, True
+        return kept_of_thread(), False
+
     def run(self, *, progress: Any = None, frames: Optional[Frames] = None, keeps: bool = False,
-            threads: Optional[int] = None) -> Tuple[int, Dict[str, Any]]:
+            threads: Optional[int] = None) -> Tuple[int, bytes]:
         if threads:
-            self.words.append(f"--threads={int(threads)}")
-        kept: Optional[Kept] = None
-        key = None
-        if keeps and self.scene and len(self.inputs) == len(self.scene.paths):
-            kept, key = self.scene._kept, json.dumps(self.key)
-        elif keeps:
-            kept = kept_of_thread()
+            self.values.append(("threads", int(threads)))
+        kept, keeps_source = self.keeper() if keeps else (None, False)
         try:
-            return run([*self.words, "--", *self.inputs], loans=self.loans, progress=progress, frames=frames, kept=kept,
-                       source_key=key, files=self._files)
+            return run([self.command, "--", *self.inputs], self.values, loans=self.loans, progress=progress,
+                       frames=frames, kept=kept, keeps_source=keeps_source, files=self._files)
         finally:
             if self._folder:
                 self._folder.cleanup()
 
+    def ask(self, **how: Any) -> Dict[str, Any]:
+        """The answer of a command that has one."""
+        return read_facts(self.run(**how)[1])
 
-def render(scene: AnyScene, camera: Optional[AnyCamera] = None, *, planes: Optional[Sequence[str]] = None,
+
+def _draw(scene: AnyScene, shot: Shot, progress: Any, threads: Optional[int]) -> Picture:
+    """A shot, by conic_shot_draw."""
+    call = _Call("render")
+    call.input(scene)
+    made, reading, alive = structs_of(shot)
+    frames = Frames(lambda arrays, _: arrays)
+    image = layouts.Image()
+    image.width, image.height = made.camera.width, made.camera.height
+    arrays = frames.arrays_for(image.width, image.height, made.planes, image.planes)
+    kept, keeps_source = call.keeper()
+    outcome = draw(call.inputs, made, reading, image, sky=shot.light.sky, motion=shot.motion, threads=threads,
+                   loans=call.loans, progress=progress, kept=kept, keeps_source=keeps_source)
+    del alive
+    picture = Picture(arrays, image, shot.camera)
+    picture._shot = copy.deepcopy(shot)
+    picture._told = lambda: _statistics_of(outcome)
+    return picture
+
+
+def _statistics_of(outcome: layouts.Outcome) -> Dict[str, Any]:
+    """By the names that the program's JSON has."""
+    s = outcome.statistics
+    said: Dict[str, Any] = {name: getattr(s, name) for name in (
+        "splats_in", "splats_culled", "splats_skipped", "splats_drawn", "splats_fallback", "fragments",
+        "pixels_covered")}
+    if s.triangles_in:
+        said.update({name: getattr(s, name) for name in ("triangles_in", "triangles_culled", "triangles_skipped",
+                                                         "triangles_drawn", "triangle_fragments")})
+    said.update(overdraw=s.fragments / s.pixels_covered if s.pixels_covered else 0.0, isa=(s.isa or b"").decode(),
+                threads=s.threads, tile=s.tile, epsilon_mode="fixed" if s.epsilon_is_fixed else "auto",
+                epsilon=s.epsilon, near=s.near_z)
+    if outcome.samples.end_sample:
+        said["accumulated"] = {"samples": outcome.samples.end_sample}
+        if outcome.noise >= 0.0:
+            said["accumulated"]["noise"] = outcome.noise
+        if outcome.focus_depth > 0.0:
+            said["accumulated"]["focus"] = outcome.focus_depth
+    said["ms"] = {name: getattr(s.ms, name) for name, _ in layouts.Milliseconds._fields_ if name != "reserved"}
+    said["ms"]["light"] = outcome.light_ms
+    return said
+
+
+def render(scene: AnyScene, camera: Union[None, AnyCamera, Shot] = None, *, planes: Optional[Sequence[str]] = None,
            output: Union[None, PathLike, Sequence[PathLike]] = None, progress: Any = None,
            threads: Optional[int] = None, view: Union[None, int, str] = None, size: Optional[Sequence[int]] = None,
            profile: Optional[str] = None, method: Optional[str] = None, quality: Optional[str] = None,
            samples: Optional[int] = None, as_: Optional[str] = None, shade: Optional[str] = None,
            background: Any = None, exposure: Any = None, azimuth: Optional[float] = None,
-           elevation: Optional[float] = None, turntable: Optional[int] = None, **options: Options) -> Any:
+           elevation: Optional[float] = None, turntable: Optional[int] = None, in_memory: bool = True,
+           **options: Options) -> Any:
     """Draws a scene; with the same options, the bits are those of `conic render`.
 
     `scene`: what :func:`open` gives, :class:`Splats`, :class:`Mesh`, :class:`Gaussians`, a path, or a list of these.
     `camera`: a :class:`Camera`, or a file of cameras, of which `view` names one; without, all of the scene is framed.
     `planes`: of "rgba", "Z", "N", "albedo", "weight", "count", "id", "P", of Gaussian scenes "T", "medianZ",
-    "inverseZ", "last", "doubt"; "ao", "shadow" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`: files to write,
-    besides. `progress`: True, a function of a task's name and the share of it that is done, or a tqdm bar. All
-    other options of `conic help render` are taken by their names.
+    "inverseZ", "last", "doubt"; "ao", "shadow" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`:
+    files to write, besides. `progress`: True, a function of a task's name and the share of it that is done, or a tqdm
+    bar. All other options of `conic help render` are taken by their names.
+
+    Without `in_memory`, pictures go to `output` alone, and an .exr that is larger than half of `memory` is drawn and
+    written strip by strip.
+
+    A :class:`Shot` in the place of the camera is drawn as it is, and takes no options but `progress` and `threads`.
 
     Returns a :class:`Picture`: a dict of arrays by plane, (H, W, 4) for rgba and (H, W) for Z, and "statistics"; for
-    `view="all"` and `turntable=N` a list of them."""
+    `view="all"`, `turntable=N` and `stereo=E` a list of them."""
+    given = dict(output=output, view=view, size=size, profile=profile, method=method, quality=quality, samples=samples,
+                 as_=as_, shade=shade, background=background, exposure=exposure, azimuth=azimuth, elevation=elevation,
+                 turntable=turntable, **options)
+    if isinstance(camera, Shot):
+        others = [name for name, value in {"planes": planes, **given}.items() if value is not None]
+        if others:
+            raise ArgumentError(f"{others[0]}: a shot says it already; dataclasses.replace makes another shot")
+        return _draw(scene, camera, progress, threads)
     call = _Call("render")
     call.input(scene)
     call.camera(camera)
-    call.options({**dict(output=output, view=view, size=size, profile=profile, method=method, quality=quality,
-                         samples=samples, as_=as_, shade=shade, background=background, exposure=exposure,
-                         azimuth=azimuth, elevation=elevation, turntable=turntable), **options})
-    if planes is not None:
-        call.add("aov", planes if isinstance(planes, str) else ",".join(planes))
-    frames = Frames(lambda arrays, name, image, drawn_by: Picture(arrays, image, Camera(drawn_by, name)))
-    _, statistics = call.run(progress=progress, frames=frames, keeps=True, threads=threads)
-    asked = None if planes is None else set((planes if isinstance(planes, str) else ",".join(planes)).split(","))
+    call.options(given)
+    asked = None if planes is None else planes if isinstance(planes, str) else ",".join(planes)
+    if asked is not None:
+        call.add("aov", asked)
+    wanted = None if asked is None or "all" in asked.split(",") else set(asked.split(","))
+    frames = Frames(lambda arrays, drawn: _taken(arrays, drawn, wanted))
+    if not in_memory and output is None:
+        raise ArgumentError("in_memory: without it, output has to name a file")
+    _, told = call.run(progress=progress, frames=frames if in_memory else None, keeps=True, threads=threads)
     for picture in frames.pictures:
-        for name in picture.planes:
-            if asked is not None and name not in asked and "all" not in asked:
-                del picture[name]  # drawn for what else was asked for
-        picture["statistics"] = {**statistics, "hash": Hashes(picture)}
-    is_many = view == "all" or turntable is not None
-    return frames.pictures if is_many else frames.pictures[0]
+        picture._told = lambda: read_facts(told)
+    is_many = view == "all" or turntable is not None or bool(options.get("stereo"))
+    return frames.pictures if is_many else frames.pictures[0] if frames.pictures else _empty(told)
+
+
+def _empty(told: bytes) -> Picture:
+    """Of a run that drew into files alone, as maps are."""
+    picture = Picture({})
+    picture._told = lambda: read_facts(told)
+    return picture
+
+
+def _taken(arrays: Dict[str, numpy.ndarray], drawn: layouts.Drawn, wanted: Optional[Set[str]]) -> Picture:
+    """A picture of what was drawn, without the planes that were drawn for others."""
+    arrays = {name: array for name, array in arrays.items() if wanted is None or name in wanted}
+    picture = Picture(arrays, drawn.image.contents,
+                      Camera(drawn.camera.contents, drawn.view.decode(errors="replace")))
+    picture._sketch = Sketch(drawn, list(arrays))
+    return picture
 
 
 def verify(scene: AnyScene, camera: Optional[AnyCamera] = None, *, image: Any = None, progress: Any = None,
@@ -233,7 +304,7 @@ def verify(scene: AnyScene, camera: Optional[AnyCamera] = None, *, image: Any = 
     if image is not None:
         call.add("image", call.picture(image, is_display=True))
     call.options(options)
-    return call.run(progress=progress, threads=threads)[1]
+    return call.ask(keeps=True, progress=progress, threads=threads)
 
 
 def judge(scene: AnyScene, camera: AnyCamera, picture: Any, *, progress: Any = None, threads: Optional[int] = None,
@@ -248,7 +319,7 @@ def judge(scene: AnyScene, camera: AnyCamera, picture: Any, *, progress: Any = N
     call.camera(camera)
     call.add("picture", call.evidence(picture))
     call.options(options)
-    return call.run(progress=progress, threads=threads)[1]
+    return call.ask(keeps=True, progress=progress, threads=threads)
 
 
 def explain(scene: AnyScene, camera: Optional[AnyCamera] = None, pixel: Optional[Sequence[int]] = None, *,
@@ -258,7 +329,7 @@ def explain(scene: AnyScene, camera: Optional[AnyCamera] = None, pixel: Optional
     call.input(scene)
     call.camera(camera)
     call.options({**options, "pixel": pixel})
-    return call.run(progress=progress, threads=threads)[1]
+    return call.ask(keeps=True, progress=progress, threads=threads)
 
 
 def diff(a: Any, b: Any, *, progress: Any = None, threads: Optional[int] = None, **options: Options) -> Dict[str, Any]:
@@ -267,7 +338,7 @@ def diff(a: Any, b: Any, *, progress: Any = None, threads: Optional[int] = None,
     call = _Call("diff")
     call.inputs = [call.picture(a), call.picture(b)]
     call.options(options)
-    return call.run(progress=progress, threads=threads)[1]
+    return call.ask(progress=progress, threads=threads)
 
 
 def info(path: PathLike, *, check: bool = False, **options: Options) -> Dict[str, Any]:
@@ -275,12 +346,12 @@ def info(path: PathLike, *, check: bool = False, **options: Options) -> Dict[str
     call = _Call("info")
     call.input(path)
     call.options({"check": check, **options})
-    return call.run()[1]
+    return call.ask()
 
 
 def devices() -> Dict[str, Any]:
     """The OpenCL devices of this machine, for `device=` of :func:`render`."""
-    return run(["devices", "--quiet"])[1]
+    return _Call("devices").ask()
 
 
 def conformance(folder: PathLike, *, progress: Any = None, threads: Optional[int] = None,
@@ -289,7 +360,7 @@ def conformance(folder: PathLike, *, progress: Any = None, threads: Optional[int
     call = _Call("conformance")
     call.inputs = [os.fspath(folder)]
     call.options(options)
-    return call.run(progress=progress, threads=threads)[1]
+    return call.ask(progress=progress, threads=threads)
 
 
 def command(name: str, *arguments: str, progress: Any = None, **options: Options) -> Dict[str, Any]:
@@ -297,7 +368,7 @@ def command(name: str, *arguments: str, progress: Any = None, **options: Options
     call = _Call(name)
     call.inputs = [os.fspath(argument) for argument in arguments]
     call.options(options)
-    return call.run(progress=progress)[1]
+    return call.ask(progress=progress)
 
 
 # --- what makes files ---
@@ -313,7 +384,7 @@ def _build(call: _Call, output: Optional[PathLike], ending: str, options: Dict[s
     scene = Scene([path] if path is not None else call.inputs[-1:], folder=folder)  # which removes it after a failure
     call.add("o", path)
     call.options(options)
-    scene.statistics = call.run(progress=progress, threads=threads)[1]
+    scene.statistics = call.ask(progress=progress, threads=threads)
     return scene
 
 
@@ -383,3 +454,28 @@ def gradient(scene: AnyScene, camera: AnyCamera, weights: Any, output: Optional[
     call.camera(camera)
     call.add("weights", call.evidence(weights, (3, 4, 5)))
     return _build(call, output, "ply", options, progress, threads)
+
+
+# --- signatures ---
+
+
+def _tell_signatures(path: str) -> None:
+    """Gives the functions the signatures and the descriptions of their options that _commands.pyi has, which is made of
+    the program's table: help(), and who completes what is typed, look at the functions."""
+    kinds = inspect.Parameter
+    with open(path, encoding="utf-8") as file:
+        parts = file.read().split("\ndef ")[1:]
+    for part in parts:
+        name, rest = part.split("(", 1)
+        head, tail = rest.split("\n) -> ", 1)
+        function, names = globals()[name], re.findall(r"^    (\w+):", head, re.MULTILINE)
+        if function.__kwdefaults__ is None or not names or "**" in head:
+            continue
+        known = inspect.signature(function).parameters
+        function.__signature__ = inspect.Signature(
+            [known[key] if key in known else kinds(key, kinds.KEYWORD_ONLY, default=None) for key in names])
+        function.__doc__ = tail.split('"""', 2)[1]
+
+
+if os.path.exists(_SIGNATURES := os.path.splitext(__file__)[0] + ".pyi"):
+    _tell_signatures(_SIGNATURES)

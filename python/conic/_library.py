@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import ctypes
 import itertools
-import json
 import logging
 import os
 import signal
+import struct
+import sys
 import threading
+import time
 import warnings
 from pathlib import Path
 from typing import Any, Callable, Iterator, List, Optional, Sequence, Tuple
@@ -51,14 +54,21 @@ def _load() -> ctypes.CDLL:
         ("conic_image_hash", ctypes.c_uint64, [pointer, ctypes.c_int]),
         ("conic_image_options_init_sized", None, [pointer, size]),
         ("conic_image_write_as", ctypes.c_int, [pointer, ctypes.c_char_p, pointer, pointer]),
-        ("conic_tone_name", ctypes.c_char_p, [ctypes.c_int]),
         ("conic_image_read", ctypes.c_int, [pointer, ctypes.c_char_p, pointer]),
         ("conic_image_release", None, [pointer, pointer]),
         ("conic_gaussians_read", ctypes.c_int, [pointer, ctypes.c_char_p, pointer, pointer]),
         ("conic_gaussians_release", None, [pointer, pointer]),
         ("conic_gaussians_read_model", ctypes.c_int, [pointer, ctypes.c_char_p, pointer, pointer]),
         ("conic_model_release", None, [pointer, pointer]),
+        ("conic_shot_init_sized", None, [pointer, size]),
+        ("conic_source_options_init_sized", None, [pointer, size]),
+        ("conic_layers_access_init_sized", None, [pointer, size]),
+        ("conic_patches_options_init_sized", None, [pointer, size]),
+        ("conic_coloring_options_init_sized", None, [pointer, size]),
+        ("conic_gaussian_options_init_sized", None, [pointer, size]),
         ("cli_host_run", ctypes.c_int, [pointer, ctypes.c_int, pointer]),
+        ("cli_host_draw", ctypes.c_int, [pointer, ctypes.c_int, pointer, pointer, pointer, ctypes.c_char_p,
+                                         ctypes.c_char_p, ctypes.c_int, pointer, pointer]),
         ("cli_host_release", None, [pointer]),
         ("cli_kept_create", pointer, []),
         ("cli_kept_destroy", None, [pointer]),
@@ -95,14 +105,17 @@ PLANES = _list_planes()
 PLANE_BY_NAME = {plane.name: plane for plane in PLANES}
 
 
-def _list_tones() -> List[str]:
+def words_of(function: str) -> Tuple[str, ...]:
+    """The words of an enumeration, by the library's function that names its numbers."""
+    call = getattr(library, function)
+    call.restype, call.argtypes = ctypes.c_char_p, [ctypes.c_int]
     found: List[str] = []
-    while name := library.conic_tone_name(len(found)):
+    while name := call(len(found)):
         found.append(name.decode())
-    return found
+    return tuple(found)
 
 
-TONES = _list_tones()
+TONES = words_of("conic_tone_name")
 
 
 def version() -> str:
@@ -160,8 +173,6 @@ class _Ear:
 
 def _frames_to_caller() -> int:
     """How far up the stack the code outside of this package is."""
-    import sys
-
     here, depth = os.path.dirname(__file__), 1
     frame = sys._getframe(1)
     while frame.f_back and os.path.dirname(frame.f_code.co_filename) == here:
@@ -197,30 +208,90 @@ def context() -> Iterator[Tuple[int, Callable[[int], None]]]:
 
 
 class Kept:
-    """A context, a renderer and an opened source. One run at a time, which the lock sees to."""
+    """A context, a renderer and a few opened sources, with which one run works at a time.
+
+    Others wait for it, but nobody waits for Python code that a run has called: from within that, and beside it where it
+    takes long, runs get a spare."""
+
+    _PATIENCE = 0.5  # seconds that called code may take before others no longer wait
 
     def __init__(self) -> None:
-        self.lock = threading.Lock()
+        self._begin()
+
+    def _begin(self) -> None:
         self._process = os.getpid()
+        self._lock = threading.Lock()
         self._pointer: Optional[int] = None
+        self._owner: Optional[int] = None
+        self._called_since: Optional[float] = None
+        self._goes = False
+        self._spare: Optional[Kept] = None
+
+    @contextlib.contextmanager
+    def held(self) -> Iterator["Kept"]:
+        """What a run of this thread may use: this, or a spare."""
+        if self._process != os.getpid():  # after a fork the context's threads, and those that held it, are gone
+            self._begin()
+        if not self._acquire():
+            if self._spare is None:
+                self._spare = Kept()
+            with self._spare.held() as spare:
+                yield spare
+            return
+        try:
+            self._owner = threading.get_ident()
+            yield self
+        finally:
+            self._owner = self._called_since = None
+            if self._goes:
+                self._destroy()
+            self._lock.release()
+
+    def _acquire(self) -> bool:
+        me = threading.get_ident()
+        while self._owner != me:
+            if self._lock.acquire(timeout=0.05):
+                return True
+            since = self._called_since
+            if since is not None and time.monotonic() - since > self._PATIENCE:
+                return False
+        return False
+
+    @contextlib.contextmanager
+    def calling(self) -> Iterator[None]:
+        """While code is called that is not this package's."""
+        before, self._called_since = self._called_since, time.monotonic()
+        try:
+            yield
+        finally:
+            self._called_since = before
 
     def pointer(self) -> Optional[int]:
-        if self._process != os.getpid():  # after a fork the context's threads are gone
-            self._process, self._pointer = os.getpid(), None
         if self._pointer is None:
             self._pointer = library.cli_kept_create()
         return self._pointer
 
+    def _destroy(self) -> None:
+        pointer, self._pointer, self._goes = self._pointer, None, False
+        if pointer is not None and self._process == os.getpid():
+            library.cli_kept_destroy(pointer)
+
     def drop(self) -> None:
-        with self.lock:
-            if self._pointer is not None and self._process == os.getpid():
-                library.cli_kept_destroy(self._pointer)
-            self._pointer = None
+        """Forgets all, or does so when the run that uses it ends."""
+        spare = self._spare
+        if self._process != os.getpid():
+            self._begin()
+        elif self._lock.acquire(blocking=False):
+            self._destroy()
+            self._lock.release()
+        else:
+            self._goes = True
+        if spare is not None:
+            spare.drop()
 
     def __del__(self) -> None:
-        if getattr(self, "_pointer", None) is not None and self._process == os.getpid():
-            library.cli_kept_destroy(self._pointer)
-            self._pointer = None
+        if getattr(self, "_pointer", None) is not None:
+            self._destroy()
 
 
 class _PerThread(threading.local):
@@ -290,45 +361,93 @@ def _progress_of(progress: Any) -> Optional[Callable[[str, float], Any]]:
     return progress
 
 
+class _Ending:
+    """The interpreter's end, which must not come while the library is to call it back: runs of other threads that
+    nobody waits for are stopped. So are those of threads for which a main thread waits that Ctrl-C has ended."""
+
+    PATIENCE = 10.0
+
+    def __init__(self) -> None:
+        self._is_here = False
+        self._runs = 0
+        self._lock = threading.Lock()
+        atexit.register(self._come)
+
+    @contextlib.contextmanager
+    def awaits(self) -> Iterator[None]:
+        with self._lock:
+            self._runs += 1
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._runs -= 1
+
+    def _come(self) -> None:
+        self._is_here = True
+        until = time.monotonic() + self.PATIENCE
+        while self._runs and time.monotonic() < until:
+            time.sleep(0.005)
+
+    def stops_others(self) -> bool:
+        last = getattr(sys, "last_type", None)
+        is_killed = last is not None and issubclass(last, KeyboardInterrupt)
+        return self._is_here or (is_killed and not threading.main_thread().is_alive())
+
+
+_ending = _Ending()
+
+
 class _Watch:
-    """Progress of a run, and Ctrl-C: the run is asked to stop, and the exception raised when it has."""
+    """Progress of a run, and Ctrl-C: the run is asked to stop, and what the signal's handler raises is raised when it
+    has. A run in another thread ends with a main thread that Ctrl-C has ended."""
+
+    SECONDS = 0.05  # from one look to the next, where nobody wants to hear of progress
 
     def __init__(self, progress: Any) -> None:
-        self._tell = _progress_of(progress)
-        self._is_interrupted = False
+        self.tell = _progress_of(progress)
+        self._kept: Optional[Kept] = None
         self._failure: Optional[BaseException] = None
         self._handler: Any = None
+        self._is_main = threading.current_thread() is threading.main_thread()
 
-    def __enter__(self) -> "_Watch":
-        if (threading.current_thread() is threading.main_thread()
-                and signal.getsignal(signal.SIGINT) is signal.default_int_handler):
-            self._handler = signal.signal(signal.SIGINT, self._interrupt)
-        return self
+    @contextlib.contextmanager
+    def over(self, kept: Optional[Kept]) -> Iterator[None]:
+        self._kept = kept
+        handler = signal.getsignal(signal.SIGINT) if self._is_main else None
+        if callable(handler):
+            self._handler = handler
+            signal.signal(signal.SIGINT, self._interrupt)
+        try:
+            yield
+        finally:
+            if self._handler is not None:
+                signal.signal(signal.SIGINT, self._handler)
+            if isinstance(self.tell, _Bar):
+                self.tell.close()
 
-    def __exit__(self, *_: Any) -> None:
-        if self._handler is not None:
-            signal.signal(signal.SIGINT, self._handler)
-        close = getattr(self._tell, "close", None)
-        if close and isinstance(self._tell, _Bar):
-            close()
-
-    def _interrupt(self, _number: int, _frame: Any) -> None:
-        self._is_interrupted = True
+    def _interrupt(self, number: int, frame: Any) -> None:
+        try:
+            self._handler(number, frame)
+        except BaseException as failure:  # pylint: disable=broad-except
+            self._failure = self._failure or failure
 
     def progress(self, _cookie: Any, task: bytes, fraction: float) -> int:
         try:
-            if self._tell and not self._is_interrupted and self._tell(task.decode(), fraction) is True:
+            if not self._is_main and _ending.stops_others():
                 return 1
+            if self.tell and self._failure is None:
+                with self._kept.calling() if self._kept else contextlib.nullcontext():
+                    if self.tell(task.decode(), fraction) is True:
+                        return 1
         except BaseException as failure:  # pylint: disable=broad-except
-            self._failure = failure
-        return int(self._is_interrupted or self._failure is not None)
+            self._failure = self._failure or failure
+        return int(self._failure is not None)
 
     def settle(self) -> None:
         """Raises what stopped the run, if anything did."""
         if self._failure is not None:
             raise self._failure
-        if self._is_interrupted:
-            raise KeyboardInterrupt
 
 
 # --- running ---
@@ -344,37 +463,103 @@ class Frames:
         self._shelf = shelf_of_thread()
         self._arrays: dict[str, Any] = {}
 
+    def arrays_for(self, width: int, height: int, planes: int, places: Any) -> dict[str, Any]:
+        """Arrays for planes, which are bits, and where they lie."""
+        found: dict[str, Any] = {}
+        for plane in PLANES:
+            if not planes >> plane.number & 1:
+                continue
+            shape = (height, width) if plane.channels == 1 else (height, width, plane.channels)
+            array = self._shelf.take(plane.name, shape, plane.dtype)
+            places[plane.number] = array.ctypes.data
+            found[plane.name] = array
+        return found
+
     def lay_out(self, _cookie: Any, width: int, height: int, planes: int, places: Any) -> int:
         try:
             self._arrays = {}
-            for plane in PLANES:
-                if not planes >> plane.number & 1:
-                    continue
-                shape = (height, width) if plane.channels == 1 else (height, width, plane.channels)
-                array = self._shelf.take(plane.name, shape, plane.dtype)
-                places[plane.number] = array.ctypes.data
-                self._arrays[plane.name] = array
+            self._arrays = self.arrays_for(width, height, planes, places)
             return 0
         except BaseException as failure:  # pylint: disable=broad-except
             self.failure = failure
             return 1
 
-    def take(self, _cookie: Any, i_frame: int, view: bytes, image: Any, camera: Any) -> None:
+    def take(self, _cookie: Any, drawn: Any) -> None:
         try:
-            self.pictures.append(self._make(self._arrays, view.decode(errors="replace"), image.contents,
-                                            camera.contents))
+            self.pictures.append(self._make(self._arrays, drawn.contents))
         except BaseException as failure:  # pylint: disable=broad-except
             self.failure = failure
         self._arrays = {}
 
 
-def run(arguments: Sequence[str], *, loans: Sequence[Tuple[str, ctypes.Structure]] = (), progress: Any = None,
-        frames: Optional[Frames] = None, kept: Optional[Kept] = None,
-        source_key: Optional[str] = None, files: Sequence[str] = ()) -> Tuple[int, dict[str, Any]]:
-    """Runs a command of the program; its exit code (0 or 1), and its JSON. The GIL is released meanwhile."""
-    ear, watch = _Ear([name for name, _ in loans], files), _Watch(progress)
+Pairs = Sequence[Tuple[str, Any]]
+
+
+def _values_of(pairs: Pairs) -> Any:
+    """Options and what they are given, as the library takes them."""
+    values = (layouts.Value * max(1, len(pairs)))()
+    for value, (name, given) in zip(values, pairs):
+        value.name = name.encode()
+        if given is True:
+            value.type = layouts.VALUE_SET
+        elif isinstance(given, int) and -1 << 63 <= given < 1 << 63:
+            value.type, value.whole = layouts.VALUE_WHOLE, given
+        elif isinstance(given, (float, tuple)):
+            numbers = given if isinstance(given, tuple) else (given,)
+            value.type, value.n_numbers = layouts.VALUE_NUMBERS, len(numbers)
+            value.numbers[:len(numbers)] = numbers
+        else:
+            value.type, value.text = layouts.VALUE_TEXT, os.fsencode(str(given))
+    return values
+
+
+_NUMBER = struct.Struct("=d")
+_COUNT = struct.Struct("=Q")
+
+
+def read_facts(said: bytes) -> dict[str, Any]:
+    """The records that a run has told: cli/host.h says how they lie."""
+    whole: dict[str, Any] = {}
+    open_ones: List[Any] = [whole]
+    at = 0
+    while at < len(said):
+        kind = said[at:at + 1]
+        if kind == b"e":
+            open_ones.pop()
+            at += 1
+            continue
+        end = said.index(0, at)
+        key, at = said[at + 1:end].decode(), end + 1
+        value: Any
+        if kind in b"oa":
+            value = {} if kind == b"o" else []
+        elif kind == b"t":
+            end = said.index(0, at)
+            value, at = said[at:end].decode(errors="replace"), end + 1
+        elif kind == b"n":
+            value, at = _NUMBER.unpack_from(said, at)[0], at + 8
+        elif kind == b"c":
+            value, at = _COUNT.unpack_from(said, at)[0], at + 8
+        elif kind == b"b":
+            value, at = said[at] != 0, at + 1
+        else:
+            value = None
+        if isinstance(open_ones[-1], list):
+            open_ones[-1].append(value)
+        else:
+            open_ones[-1][key] = value
+        if kind in b"oa":
+            open_ones.append(value)
+    return whole
+
+
+def _host(call: Callable[[Any], int], ear: "_Ear", progress: Any, loans: Sequence[Tuple[str, ctypes.Structure]],
+          kept: Optional[Kept], keeps_source: bool, frames: Optional[Frames], pairs: Pairs) -> Tuple[int, bytes]:
+    """Calls what takes a host; its exit code, 0 or 1, and the records of its facts. The GIL is released meanwhile."""
+    watch = _Watch(progress)
     host = layouts.Host()
     host.progress = layouts.ProgressFunction(watch.progress)
+    host.progress_seconds = 0.0 if watch.tell else watch.SECONDS
     host.say = layouts.LogFunction(ear.hear)
     if frames is not None:
         host.lay_out = layouts.LayOutFunction(frames.lay_out)
@@ -382,15 +567,13 @@ def run(arguments: Sequence[str], *, loans: Sequence[Tuple[str, ctypes.Structure
     lent = (layouts.Loan * max(1, len(loans)))(
         *[layouts.Loan(name.encode(), ctypes.addressof(what)) for name, what in loans])
     host.loans, host.n_loans = lent, len(loans)
-    if source_key is not None:
-        host.source_key = os.fsencode(source_key)
-    encoded = [os.fsencode(argument) for argument in arguments]
-    argv = (ctypes.c_char_p * (len(encoded) + 1))(*encoded, None)
-    with (kept.lock if kept else contextlib.nullcontext()):
-        host.kept = kept.pointer() if kept else None
-        with watch:
-            exit_code = library.cli_host_run(ctypes.byref(host), len(encoded), argv)
-            told = ctypes.string_at(host.json, host.json_bytes) if host.json else b"{}"
+    host.values, host.n_values = _values_of(pairs), len(pairs)
+    host.keeps_source = int(keeps_source)
+    with _ending.awaits(), kept.held() if kept else contextlib.nullcontext() as held:
+        host.kept = held.pointer() if held else None
+        with watch.over(held):
+            exit_code = call(ctypes.byref(host))
+            told = ctypes.string_at(host.facts, host.n_facts_bytes) if host.facts else b""
             status = host.status
             library.cli_host_release(ctypes.byref(host))
     watch.settle()
@@ -399,4 +582,29 @@ def run(arguments: Sequence[str], *, loans: Sequence[Tuple[str, ctypes.Structure
     ear.warn()
     if exit_code not in (0, 1):
         raise ear.failure(status or Cancelled.status)
-    return exit_code, json.loads(told or b"{}")
+    return exit_code, told
+
+
+def run(arguments: Sequence[str], pairs: Pairs = (), *, loans: Sequence[Tuple[str, ctypes.Structure]] = (),
+        progress: Any = None, frames: Optional[Frames] = None, kept: Optional[Kept] = None, keeps_source: bool = False,
+        files: Sequence[str] = ()) -> Tuple[int, bytes]:
+    """Runs a command of the program on inputs, with options by name."""
+    encoded = [os.fsencode(argument) for argument in arguments]
+    argv = (ctypes.c_char_p * (len(encoded) + 1))(*encoded, None)
+    return _host(lambda host: library.cli_host_run(host, len(encoded), argv), _Ear([name for name, _ in loans], files),
+                 progress, loans, kept, keeps_source, frames, pairs)
+
+
+def draw(inputs: Sequence[str], shot: Any, reading: Any, image: Any, *, sky: Optional[str] = None,
+         motion: Optional[str] = None, threads: Optional[int] = None,
+         loans: Sequence[Tuple[str, ctypes.Structure]] = (), progress: Any = None, kept: Optional[Kept] = None,
+         keeps_source: bool = False) -> Any:
+    """Draws a shot into an image's planes; what came of it."""
+    encoded = [os.fsencode(name) for name in inputs]
+    names = (ctypes.c_char_p * (len(encoded) + 1))(*encoded, None)
+    outcome = layouts.Outcome()
+    paths = [None if path is None else os.fsencode(path) for path in (sky, motion)]
+    _host(lambda host: library.cli_host_draw(host, len(encoded), names, ctypes.byref(reading), ctypes.byref(shot),
+                                             *paths, int(threads or 0), ctypes.byref(image), ctypes.byref(outcome)),
+          _Ear([name for name, _ in loans]), progress, loans, kept, keeps_source, None, ())
+    return outcome

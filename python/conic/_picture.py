@@ -62,6 +62,9 @@ class Picture(Dict[str, Any]):
                  camera: Optional[Camera] = None) -> None:
         super().__init__(planes)
         self.camera = camera  #: from which it was drawn
+        self._told: Any = None  # makes the statistics
+        self._sketch: Any = None  # makes the shot
+        self._shot: Any = None
         self._header = layouts.Image()
         if image is not None:
             self._header.n_attributes = image.n_attributes
@@ -69,12 +72,58 @@ class Picture(Dict[str, Any]):
             self._header.is_display = image.is_display
 
     def __reduce__(self) -> Any:
-        return _picture_again, (dict(self), bytes(self._header), self.camera)
+        self._tell()
+        return _picture_again, (dict(self), bytes(self._header), self.camera, self.shot)
+
+    # "statistics" are made when somebody asks for them.
+
+    def _tell(self) -> None:
+        told, self._told = self._told, None
+        if told is not None:
+            super().__setitem__("statistics", {**told(), "hash": Hashes(self)})
+
+    def __missing__(self, key: str) -> Any:
+        if key != "statistics" or self._told is None:
+            raise KeyError(key)
+        self._tell()
+        return self[key]
+
+    def __contains__(self, key: object) -> bool:
+        return super().__contains__(key) or (key == "statistics" and self._told is not None)
+
+    def __iter__(self) -> Any:
+        self._tell()
+        return super().__iter__()
+
+    def __len__(self) -> int:
+        return super().__len__() + (self._told is not None)
+
+    def get(self, key: str, default: Any = None) -> Any:
+        return self[key] if key in self else default
+
+    def keys(self) -> Any:
+        self._tell()
+        return super().keys()
+
+    def items(self) -> Any:
+        self._tell()
+        return super().items()
+
+    def values(self) -> Any:
+        self._tell()
+        return super().values()
+
+    @property
+    def shot(self) -> Any:
+        """The :class:`conic.Shot` that it was drawn by; None of pictures that were not drawn here."""
+        if self._sketch is not None:
+            self._shot, self._sketch = self._sketch.shot(), None
+        return self._shot
 
     @property
     def planes(self) -> List[str]:
         """The names of the planes that there are."""
-        return [name for name in self if name != "statistics"]
+        return [name for name in super().keys() if name != "statistics"]
 
     @property
     def statistics(self) -> Dict[str, Any]:
@@ -140,9 +189,11 @@ class Picture(Dict[str, Any]):
         return f"<conic.Picture {shapes}>"
 
 
-def _picture_again(planes: Dict[str, Any], header: bytes, camera: Optional[Camera]) -> Picture:
+def _picture_again(planes: Dict[str, Any], header: bytes, camera: Optional[Camera], shot: Any) -> Picture:
     """A picture that was pickled."""
-    return Picture(planes, layouts.Image.from_buffer_copy(header), camera)
+    made = Picture(planes, layouts.Image.from_buffer_copy(header), camera)
+    made._shot = shot
+    return made
 
 
 def _codes(values: numpy.ndarray) -> numpy.ndarray:

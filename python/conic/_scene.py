@@ -12,7 +12,7 @@ import numpy
 from . import _layouts as layouts
 from ._arrays import add_origin, as_floats, as_numpy, columns_of, side_by_side, split_origin
 from ._camera import PathLike
-from ._library import Kept, context, library, run
+from ._library import Kept, context, library, read_facts, run
 from .errors import ArgumentError
 
 
@@ -233,7 +233,10 @@ class Gaussians(_InMemory):
 class Scene:
     """Files of any kind that conic draws, as one scene: see :func:`conic.open`.
 
-    What was read for a picture stays for the next one, for as long as only the camera differs."""
+    What was read for a picture stays for the next ones, whatever these show of it. Other ways of reading are read by
+    themselves: `as_`, `method="patch"`, `profile="surface"`, `plain`, `color_by` and `ramp`, `where`, `columns`, `k`,
+    `texture`, `smooth`, `crease`, `transparency`; of hierarchies `error` or `budget`, and `memory`; and `cutoff` of
+    what has no axes of its own. The four ways that were drawn last stay."""
 
     def __init__(self, paths: Sequence[PathLike], *, folder: Optional[str] = None) -> None:
         self.paths = [os.fspath(path) for path in paths]
@@ -248,7 +251,7 @@ class Scene:
 
     def info(self, *, check: bool = False) -> Dict[str, Any]:
         """What `conic info` says of the file; with `check`, also what in it cannot be drawn."""
-        return run(["info", "--quiet", *(["--check"] if check else []), "--", self.path])[1]
+        return read_facts(run(["info", "--", self.path], [("check", True)] if check else [])[1])
 
     def gaussians(self) -> Gaussians:
         """The Gaussians of the file, as arrays."""

@@ -4,6 +4,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/message.h"
+#include "core/base/threads.h"
 #include "core/splats/near.h"
 #include "raster/frame/raster_frame.h"
 #include "raster/view/method.h"
@@ -74,7 +75,7 @@ void conic_raster_frame_count(const conic_raster_frame *f, conic_render_statisti
     take_out_others(f, options->method, statistics);
   if (f->triangles)
     conic_triangle_frame_count(f->triangles, statistics);
-  statistics->threads = conic_context_threads(f->renderer->context);
+  statistics->threads = conic_parallel_threads(f->renderer->context);
   statistics->tile = f->bins.tile;
   statistics->isa = conic_isa_name(f->isa);
   note_settings(f, statistics);

@@ -24,6 +24,9 @@ def lines_of_c(layouts):
                    f"sizeof((({name} *)0)->{member}));")
     yield f'  printf("planes %d\\n", CONIC_MAX_PLANES == {layouts.MAX_PLANES});'
     yield f'  printf("attributes %d\\n", CONIC_MAX_ATTRIBUTES == {layouts.MAX_ATTRIBUTES});'
+    yield f'  printf("lights %d\\n", CONIC_MAX_LIGHTS == {layouts.MAX_LIGHTS});'
+    yield f'  printf("lamps %d\\n", CONIC_MAX_LAMPS == {layouts.MAX_LAMPS});'
+    yield f'  printf("methods %d\\n", CONIC_MAX_METHODS == {layouts.MAX_METHODS});'
     yield "  return 0;\n}"
 
 
@@ -34,6 +37,9 @@ def lines_of_python(layouts):
             yield f"{struct.C_NAME} {i} {member} {getattr(struct, member).offset} {ctypes.sizeof(kind)}"
     yield "planes 1"
     yield "attributes 1"
+    yield "lights 1"
+    yield "lamps 1"
+    yield "methods 1"
 
 
 def main():

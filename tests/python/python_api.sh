@@ -3,4 +3,4 @@
 set -euo pipefail
 source "$(dirname "$0")/../support/python.bash"
 cd "$1/tests/python"
-with_conic "$python" -W error::ResourceWarning -m unittest -q test_arrays test_commands test_judge test_runs
+with_conic "$python" -W error::ResourceWarning -m unittest -q test_arrays test_commands test_judge test_runs test_shots

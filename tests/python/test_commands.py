@@ -52,6 +52,7 @@ class Commands(unittest.TestCase):
         for scene in kinds:
             with self.subTest(path=scene.path):
                 self.assert_drawn_alike(scene)
+        self.assert_drawn_alike(kinds[1], "-k", "12", k=12)
         self.assert_drawn_alike(conic.open(self.path("torus.cot")), "--error", "2", error=2)
         self.assert_drawn_alike(conic.open(self.path("torus.ply"), self.path("square.obj")))
 
@@ -61,7 +62,7 @@ class Commands(unittest.TestCase):
                                (("--epsilon", "2x", "--samples", "3"), {"epsilon": "2x", "samples": 3}),
                                (("--background", "0.1,0.2,0.3"), {"background": (0.1, 0.2, 0.3)}),
                                (("--exposure", "auto"), {"exposure": "auto"}), (("--plain",), {"plain": True}),
-                               (("--elevation", "-20"), {"elevation": -20}), (("-k", "12"), {"k": 12}),
+                               (("--elevation", "-20"), {"elevation": -20}),
                                (("--color-by", "height"), {"color_by": "height"})):
             with self.subTest(words=words):
                 self.assert_drawn_alike(self.splats, *words, **options)

@@ -1,0 +1,100 @@
+"""What drawing from Python takes more than the library itself does: prints the medians of pictures that are drawn in
+turns by conic_render_samples, which keeps its renderer and its image, and by conic.render. The same arrays, the same
+camera, the same bits. Run by hand:
+CONIC_LIBRARY=…/libconic-hosted.so PYTHONPATH=python python3 tests/python/overhead.py [SPLATS]
+
+Times are the process's, of all its threads: what else the machine does hardly counts."""
+
+import ctypes
+import gc
+import os
+import sys
+import time
+
+import numpy
+
+import conic
+from conic import _layouts as layouts
+from conic._library import library
+
+ROUNDS = int(os.environ.get("CONIC_ROUNDS", "15"))
+
+
+class RenderOptions(ctypes.Structure):
+    """As conic_render_options: large enough, and filled by the library."""
+    _fields_ = [("size", ctypes.c_size_t), ("method", ctypes.c_int), ("rest", ctypes.c_char * 4096)]
+
+
+class Library:
+    """The pictures of a C program."""
+
+    def __init__(self, threads):
+        options = layouts.ContextOptions()
+        library.conic_context_options_init_sized(ctypes.byref(options), ctypes.c_size_t(ctypes.sizeof(options)))
+        options.threads = threads
+        self.context, self.renderer = ctypes.c_void_p(), ctypes.c_void_p()
+        assert library.conic_context_create(ctypes.byref(options), ctypes.byref(self.context)) == 0
+        assert library.conic_renderer_create(self.context, ctypes.byref(self.renderer)) == 0
+        self.options = RenderOptions()
+        library.conic_render_options_init_sized(ctypes.byref(self.options), ctypes.c_size_t(1024))
+        self.options.method = 0  # conic
+
+    def draw(self, splats, camera, image):
+        status = library.conic_render_samples(self.context, self.renderer, ctypes.byref(splats._struct),
+                                              ctypes.byref(camera._struct), ctypes.byref(self.options), 1,
+                                              ctypes.byref(image), None)
+        assert status == 0
+
+
+def median_of_turns(draws):
+    times = [[] for _ in draws]
+    for _ in range(ROUNDS):
+        for i, draw in enumerate(draws):
+            begun = time.process_time()
+            draw()
+            times[i].append(time.process_time() - begun)
+    return [1e3 * sorted(found)[len(found) // 2] for found in times]
+
+
+def compare(name, splats, size, threads):
+    camera = conic.render(splats, size=size, plain=True).camera
+    arrays = {"rgba": numpy.empty((size[1], size[0], 4), "f4"), "Z": numpy.empty((size[1], size[0]), "f4")}
+    image = conic.Picture(arrays).image()
+    c = Library(threads)
+
+    def draw():
+        return conic.render(splats, camera, plain=True, method="conic", samples=1, threads=threads)
+
+    shot = draw().shot if hasattr(conic, "Shot") else None
+    draws = [lambda: c.draw(splats, camera, image), draw]
+    if shot is not None:
+        draws.append(lambda: conic.render(splats, shot, threads=threads))
+    for call in draws:
+        call()
+    assert conic.Picture(arrays).hash() == draw().hash()
+    gc.collect()
+    took = median_of_turns(draws)
+    said = "".join(f"   by a shot {took[2]:9.3f}  {took[2] / took[0]:5.3f}" if shot is not None else "")
+    print(f"{name:28} {threads} threads   C {took[0]:9.3f} ms   Python {took[1]:9.3f}  {took[1] / took[0]:5.3f}{said}",
+          flush=True)
+
+
+def columns_of(splats):
+    return [numpy.ascontiguousarray(getattr(splats, name)) for name in ("position", "tangent_u", "tangent_v", "color")]
+
+
+def main():
+    library.conic_render_samples.argtypes = [ctypes.c_void_p] * 5 + [ctypes.c_int] + [ctypes.c_void_p] * 2
+    n = int(float(sys.argv[1])) if len(sys.argv) > 1 else 1000000
+    rows = columns_of(conic.make("sphere", n=n).splats())
+    columns = [tuple(numpy.ascontiguousarray(part) for part in array.T) for array in rows]
+    together = numpy.concatenate([*rows, numpy.zeros((n, 4), "f4")], axis=1)
+    for threads in (1, 2):
+        for name, arrays in (("an array a component", columns), ("(N, 3) rows", rows),
+                             ("columns of (N, 16)", [together[:, 3 * i:3 * i + 3] for i in range(4)])):
+            compare(name, conic.Splats(*arrays), (1024, 1024), threads)
+    compare("300 splats, 64 x 48", conic.Splats(*[array[::max(1, n // 300)] for array in rows]), (64, 48), 1)
+
+
+if __name__ == "__main__":
+    main()

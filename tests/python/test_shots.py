@@ -1,0 +1,323 @@
+"""Shots: pictures as one value, what a scene keeps, calls within calls, and Ctrl-C."""
+
+import copy
+import ctypes
+import dataclasses
+import inspect
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+import warnings
+
+import numpy
+
+import conic
+from conic import _layouts as layouts
+from conic._library import library
+from drawn_by_program import hashes
+
+SIZE = (48, 40)
+WORDS = ("--size", "48x40")
+
+# What a picture may be asked for, and the same for the program.
+OPTIONS = (
+    ({}, ()),
+    ({"azimuth": 40.5, "zoom": 2}, ("--azimuth", "40.5", "--zoom", "2")),
+    ({"fov": numpy.float32(30), "elevation": -12}, ("--fov", "30", "--elevation", "-12")),
+    ({"samples": numpy.int64(1), "exposure": 0.1}, ("--samples", "1", "--exposure", "0.1")),
+    ({"exposure": "auto"}, ("--exposure", "auto")),
+    ({"background": (0.1, 0.2, 0.7)}, ("--background", "0.1,0.2,0.7")),
+    ({"background": "0.1:0.5"}, ("--background", "0.1:0.5")),
+    ({"method": "conic", "kernel": "hat"}, ("--method", "conic", "--kernel", "hat")),
+    ({"shade": "lambert", "light": [(1, 2, 3), "head:1,0.5,0"]},
+     ("--shade", "lambert", "--light", "1,2,3", "--light", "head:1,0.5,0")),
+    ({"light": "lamp:3,3,3:9,9,9", "shadow": True}, ("--light", "lamp:3,3,3:9,9,9", "--shadow")),
+    ({"ao": 8, "sky": (0.1, 0.2, 0.3)}, ("--ao", "8", "--sky", "0.1,0.2,0.3")),
+    ({"accumulate": 3, "aperture": 0.1}, ("--accumulate", "3", "--aperture", "0.1")),
+    ({"accumulate": "2", "aperture": "3x", "blades": 5, "focus": "20,20"},
+     ("--accumulate", "2", "--aperture", "3x", "--blades", "5", "--focus", "20,20")),
+    ({"cull": "back", "near": 0.1}, ("--cull", "back", "--near", "0.1")),
+    ({"epsilon": "2x", "cutoff": 2}, ("--epsilon", "2x", "--cutoff", "2")),
+    ({"projection": "panorama"}, ("--projection", "panorama")),
+    ({"projection": "fisheye", "fov": 150, "ao": 4, "accumulate": 2},
+     ("--projection", "fisheye", "--fov", "150", "--ao", "4", "--accumulate", "2")),
+    ({"eye": (1, 2, 3), "up": "z"}, ("--eye", "1,2,3", "--up", "z")),
+    ({"up": (0.1, 1, 0)}, ("--up", "0.1,1,0")),
+    ({"planes": ["N", "id", "P"]}, ("--aov", "N,id,P")),
+    ({"color_by": "height", "legend": None}, ("--color-by", "height")),
+    ({"transparency": True}, ("--transparency",)),
+    ({"plain": True}, ("--plain",)),
+    ({"passes": 1, "prefilter": 0.5}, ("--passes", "1", "--prefilter", "0.5")),
+    ({"method": "patch", "degree": 2}, ("--method", "patch", "--degree", "2")),
+)
+
+# Of these, what is drawn of what was read for the first picture.
+OTHERWISE_READ = {"color_by", "transparency", "plain", "degree", "cutoff"}
+OF_THE_PICTURE = [options for options, _ in OPTIONS if not set(options) & OTHERWISE_READ]
+
+NESTED = """
+import conic
+scene = conic.make("sphere", n=500)
+splats = scene.splats()
+wanted = {}
+for what in (scene, splats):
+    wanted[id(what)] = conic.render(what, size=(32, 24)).hash()
+depth = [0]
+found = []
+def tell(task, done):
+    if depth[0] < 2 and len(found) < 8:
+        depth[0] += 1
+        for what in (scene, splats):
+            found.append(conic.render(what, size=(32, 24), progress=tell).hash() == wanted[id(what)])
+        conic.release()
+        depth[0] -= 1
+for what in (scene, splats):
+    found.clear()
+    assert conic.render(what, size=(32, 24), progress=tell).hash() == wanted[id(what)]
+    assert len(found) >= 4 and all(found), found
+print("all drawn")
+"""
+
+# A thread's picture waits, in what it has called, for one that another draws of the same scene.
+BESIDE = """
+import conic, threading
+scene = conic.make("sphere", n=500)
+wanted = conic.render(scene, size=(32, 24)).hash()
+found = []
+def draw():
+    found.append(conic.render(scene, size=(32, 24)).hash() == wanted)
+def tell(task, done):
+    if not found:
+        other = threading.Thread(target=draw)
+        other.start()
+        other.join()
+conic.render(scene, size=(32, 24), progress=tell)
+assert found == [True], found
+scene.close()
+print("all drawn")
+"""
+
+# Signals itself, and says how long its processors worked until the call came back: what else the machine does hardly
+# counts.
+INTERRUPTED = """
+import conic, os, signal, sys, threading, time
+work = {work!r}
+scene = conic.open({path!r})
+at = []
+def shoot():
+    time.sleep({wait})
+    at.append(time.process_time())
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Thread(target=shoot, daemon=True).start()
+try:
+    while True:
+        if work == "draw":
+            conic.render(scene, size=(3000, 3000), accumulate=1000)
+        elif work == "light":
+            conic.render(scene, size=(900, 900), ao=65536)
+        elif work == "read":
+            conic.render(conic.open({path!r}), size=(16, 16), as_="points")
+        else:
+            conic.render(conic.Splats(scene.splats().position), size=(16, 16))
+except KeyboardInterrupt:
+    print("interrupted", time.process_time() - at[0])
+"""
+
+# Ctrl-C ends the main thread, and with it what others draw.
+OTHERS = """
+import conic, os, signal, threading, time
+scene = conic.make("sphere", n=2000)
+def draw():
+    try:
+        conic.render(scene, size=(3000, 3000), accumulate=100000)
+    except conic.Cancelled:
+        os.write(1, b"cancelled")
+thread = threading.Thread(target=draw)
+thread.start()
+time.sleep(1)
+threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+{wait}
+"""
+
+
+def run(program, seconds=60):
+    return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=seconds, check=False)
+
+
+class Shots(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.scene = conic.make("knot", cls.path("knot.ply"), n=3000)
+        with open(cls.path("mesh.obj"), "w", encoding="utf-8") as file:
+            file.write("v 0 0 0\nv 1 0 0\nv 1 1 0.2\nv 0 1 0\nf 1 2 3 4\n")
+        cls.gaussians = conic.make("gaussians", cls.path("gaussians.ply"), n=300)
+        warnings.simplefilter("ignore", conic.ConicWarning)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+        warnings.resetwarnings()
+
+    @classmethod
+    def path(cls, name):
+        return os.path.join(cls.folder.name, name)
+
+    def assert_drawn_again(self, scene, picture):
+        again = conic.render(scene, picture.shot)
+        self.assertEqual(again.planes, picture.planes)
+        self.assertEqual(again.statistics["hash"], picture.statistics["hash"])
+        self.assertEqual(again.shot, picture.shot)
+        self.assertEqual(again.is_display, picture.is_display)
+        return again
+
+    def test_options_and_their_shots(self):
+        for options, words in OPTIONS:
+            with self.subTest(options=options):
+                picture = conic.render(self.scene, size=SIZE, **options)
+                wanted = hashes(self.scene.path, *WORDS, *words)  # also of planes that are drawn for others
+                self.assertEqual(picture.statistics["hash"], {name: wanted[name] for name in picture.planes})
+                self.assert_drawn_again(self.scene, picture)
+
+    def test_other_sources(self):
+        mesh = conic.open(self.path("mesh.obj"))
+        tree = conic.octree(self.scene, self.path("knot.cot"))
+        for scene, options in ((mesh, {}), (mesh, {"as_": "points"}), (mesh, {"smooth": True}),
+                               (mesh, {"as_": "hybrid"}), (tree, {}), (tree, {"error": 2}), (tree, {"budget": 500}),
+                               (self.gaussians, {"profile": "gsplat-1.6"}), (self.gaussians, {"profile": "surface"}),
+                               (self.gaussians, {"planes": ["rgba", "T", "medianZ"]}),
+                               ([self.scene, mesh], {}), (self.scene.splats(), {"ao": 4})):
+            with self.subTest(scene=scene, options=options):
+                self.assert_drawn_again(scene, conic.render(scene, size=SIZE, **options))
+        views = conic.render(self.scene, size=SIZE, turntable=3, accumulate=2, shutter="0:0.5")
+        eyes = conic.render(self.scene, size=SIZE, stereo=0.2)
+        self.assertEqual((len(views), len(eyes)), (3, 2))
+        self.assertNotEqual(eyes[0].statistics["hash"]["rgba"], conic.render(self.scene, size=SIZE).hash())
+        for picture in views + eyes:
+            self.assert_drawn_again(self.scene, picture)
+
+    def test_sky_of_a_picture(self):
+        conic.render(self.scene, size=(32, 16), projection="panorama", output=self.path("sky.exr"))
+        picture = conic.render(self.scene, size=SIZE, sky=self.path("sky.exr"), ao=8)
+        self.assertEqual(picture.shot.light.sky, self.path("sky.exr"))
+        self.assert_drawn_again(self.scene, picture)
+
+    def test_shots_are_values(self):
+        picture = conic.render(self.scene, size=SIZE, light=["head", "lamp:3,3,3:9,9,9"])
+        shot = picture.shot
+        self.assertEqual([shot.camera, shot.planes, len(shot.render.lighting.lights), len(shot.light.lamps)],
+                         [picture.camera, tuple(picture.planes), 1, 1])
+        for again in (copy.deepcopy(shot), pickle.loads(pickle.dumps(shot)), pickle.loads(pickle.dumps(picture)).shot):
+            self.assertEqual(again, shot)
+        brighter = dataclasses.replace(shot, render=dataclasses.replace(shot.render, exposure=1.0))
+        self.assertNotEqual(brighter, shot)
+        bright, wanted = conic.render(self.scene, brighter), conic.render(self.scene, size=SIZE, exposure=1,
+                                                                          light=["head", "lamp:3,3,3:9,9,9"])
+        self.assertEqual(bright.hash(), wanted.hash())
+        for name, value in (("focus_kind", "nowhere"), ("camera", None), ("planes", ("nothing",)),
+                            ("shutter", (1.0,)), ("n_samples", "many")):
+            with self.assertRaises(conic.ArgumentError):
+                conic.render(self.scene, dataclasses.replace(shot, **{name: value}))
+        with self.assertRaisesRegex(conic.ArgumentError, "exposure: a shot says it already"):
+            conic.render(self.scene, shot, exposure=1)
+        said = conic.render(self.scene, shot).statistics
+        for name in ("splats_in", "splats_drawn", "pixels_covered", "near", "epsilon_mode", "overdraw"):
+            self.assertEqual(said[name], picture.statistics[name])
+
+    def test_defaults_are_the_library_s(self):
+        made = layouts.Shot()
+        library.conic_shot_init_sized(ctypes.byref(made), ctypes.sizeof(made))
+        camera = conic.Camera(made.camera)
+        self.assertEqual(conic.Shot._of(made), conic.Shot(camera))
+
+    def test_statistics_come_when_asked_for(self):
+        picture = conic.render(self.scene, size=SIZE)
+        self.assertIsNotNone(picture._told)
+        self.assertIn("statistics", picture)
+        self.assertEqual((len(picture), sorted(picture)), (3, ["Z", "rgba", "statistics"]))
+        self.assertEqual(picture.get("statistics"), picture.statistics)
+        with self.assertRaises(KeyError):
+            picture["N"]  # pylint: disable=pointless-statement
+
+    def test_a_scene_is_read_once(self):
+        scene, hidden = conic.make("knot", self.path("read.ply"), n=2000), self.path("hidden.ply")
+        wanted = [conic.render(self.path("read.ply"), size=SIZE, **options).hash() if "planes" not in options else None
+                  for options in OF_THE_PICTURE]
+        first = conic.render(scene, size=SIZE, threads=1)
+        os.rename(self.path("read.ply"), hidden)
+        for options, known in zip(OF_THE_PICTURE, wanted):
+            with self.subTest(options=options):
+                drawn = conic.render(scene, size=SIZE, threads=1 + len(options) % 2, **options)
+                self.assertIn(known, (None, drawn.hash() if known else None))
+        self.assertEqual(len(conic.render(scene, size=SIZE, stereo=0.1)), 2)
+        for options in ({"isa": "scalar"}, {"threads": 2}, {"tone": "agx"}):
+            self.assertEqual(conic.render(scene, size=SIZE, **options).hash(), first.hash())
+        self.assert_drawn_again(scene, first)
+        with self.assertRaises(conic.InputError):  # read in another way
+            conic.render(scene, size=SIZE, as_="hybrid")
+        os.rename(hidden, self.path("read.ply"))
+        self.assertEqual(conic.render(scene, size=SIZE).hash(), first.hash())
+
+    def test_a_gaussian_scene_is_read_once(self):
+        path, hidden = self.path("scene.ply"), self.path("away.ply")
+        scene = conic.make("gaussians", path, n=200)
+        profiles = ("exact", "gsplat-1.6", "inria-2023", "exact", "khr-2026")
+        wanted = [conic.render(path, size=SIZE, profile=profile).hash() for profile in profiles]
+        conic.render(scene, size=SIZE)
+        os.rename(path, hidden)
+        for profile, known in zip(profiles, wanted):
+            self.assertEqual(conic.render(scene, size=SIZE, profile=profile).hash(), known)
+        picture = conic.render(scene, size=SIZE, profile="gsplat-1.6")
+        self.assertEqual(conic.judge(scene, picture.camera, picture["rgba"], profile="gsplat-1.6")["verdict"], "right")
+        self.assertTrue(conic.verify(scene, picture.camera, profile="gsplat-1.6")["pass"])
+
+    def test_calls_within_calls(self):
+        for program in (NESTED, BESIDE):
+            done = run(program)
+            self.assertEqual((done.stdout, done.stderr), ("all drawn\n", ""))
+
+    def test_interrupts(self):
+        splats = conic.make("sphere", self.path("large.ply"), n=400000)
+        for work, wait in (("draw", 1.0), ("light", 1.0), ("read", 0.7), ("estimate", 1.5)):
+            with self.subTest(work=work):
+                done = run(INTERRUPTED.format(work=work, path=splats.path, wait=wait))
+                self.assertEqual(done.stdout.split()[:1], ["interrupted"], done.stderr)
+                self.assertLess(float(done.stdout.split()[1]), 0.6)
+        for wait in ("time.sleep(60)", "thread.join()"):
+            with self.subTest(wait=wait):
+                done = run(OTHERS.format(wait=wait))
+                self.assertEqual(done.returncode, -signal.SIGINT, done.stderr)
+                self.assertIn("KeyboardInterrupt", done.stderr)
+                if "join" not in wait:  # whose end Python 3.11 takes for the thread's
+                    self.assertEqual(done.stdout, "cancelled")
+
+    def test_example(self):
+        example = os.path.join(os.path.dirname(__file__), "../../python/examples/final_picture.py")
+        done = subprocess.run([sys.executable, example, self.scene.path, self.folder.name], capture_output=True,
+                              text=True, check=True)
+        wanted = hashes(self.scene.path, "--size", "200x200", "--projection", "fisheye", "--fov", "150", "--ao", "8",
+                        "--shadow", "--accumulate", "8")
+        self.assertEqual(done.stdout.strip(), wanted["rgba"])
+        conic.render(self.scene, size=(1200, 900), samples=1, output=self.path("whole.exr"))
+        with open(self.path("strips.exr"), "rb") as strips, open(self.path("whole.exr"), "rb") as whole:
+            self.assertEqual(strips.read(), whole.read())
+        with self.assertRaisesRegex(conic.ArgumentError, "in_memory"):
+            conic.render(self.scene, in_memory=False)
+
+    def test_signatures(self):
+        parameters = inspect.signature(conic.render).parameters
+        for name in ("fov", "exposure", "as_", "planes", "output", "accumulate"):
+            self.assertEqual(parameters[name].kind, inspect.Parameter.KEYWORD_ONLY)
+            self.assertIn(f"    {name}: ", conic.render.__doc__)
+        self.assertEqual(parameters["scene"].kind, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+        self.assertIn("max_wrong", inspect.signature(conic.judge).parameters)
+
+
+if __name__ == "__main__":
+    unittest.main()
