@@ -9,6 +9,7 @@
 #include "cli/render/frames.h"
 #include "cli/render/kept_frames.h"
 #include "cli/render/sharing.h"
+#include "cli/render/shot_record.h"
 #include "cli/scene/background_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/session_team.h"
@@ -440,8 +441,6 @@ static int run(cli_session *session, int argc, char **argv) {
   enum { MANY = 16 };
   job.session = session;
   job.start_seconds = start;
-  job.n_arguments = argc;
-  job.arguments = argv;
   if (exit_code == CLI_DONE) {
     session->draws_many_frames = job.is_every_view || (double)job.repeat * cli_frames_count(&job) >= MANY;
     exit_code = cli_session_open(session);
@@ -466,6 +465,7 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = cli_exit_of(status);
     if (status == CONIC_OK && !cli_sharing_is_idle(session, &job))
       exit_code = job.top.is_wanted ? cli_top_render(session, &job) : render_scene(session, &job);
+    cli_shot_release(session, &job);
     cli_scene_release(session, &job);
     cli_sharing_release(&job);
   }

@@ -11,6 +11,7 @@
 #include "cli/scene/views.h"
 #include "cli/session_team.h"
 #include "core/files/file.h"
+#include "core/files/guard.h"
 #include "shots/way.h"
 #include "source/shared_source.h"
 #include "source/source_samples.h"
@@ -107,6 +108,7 @@ static conic_status open_source(cli_session *session, cli_render_job *job) {
 
 conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   cli_deadline_open(job);
+  conic_guard_go_on(session->context); /* cameras were read; what comes now is of the scene */
   job->source = cli_kept_source(session);
   conic_status status = job->source ? CONIC_OK : open_source(session, job);
   if (status == CONIC_OK)
