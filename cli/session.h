@@ -33,6 +33,8 @@ typedef struct cli_session {
   void (*show_help)(struct cli_session *session, const struct cli_option_table *table);
   void *help;
   struct cli_host *host; /* cli/host.h: what runs the command within itself; null: a shell */
+  struct cli_shot_again
+      *again;            /* cli/render/shot_again.h: what the arguments that are read draw again; null: nothing */
   struct cli_team *team; /* cli/session_team.h: the processes that run it together; null: this one is alone */
 } cli_session;
 

@@ -47,9 +47,12 @@ static const char *plane_word(int i) {
 /* --- rows --- */
 
 #define AT(member) #member, offsetof(S, member), sizeof(((S *)0)->member)
-#define SIZE_ROW {CONIC_ROW_LEFT_OUT, AT(size), .meaning = "the length of the struct, by which versions are told apart"}
-#define RESERVED(member) {CONIC_ROW_RESERVED, AT(member)}
-#define ISA_ROW {CONIC_ROW_LEFT_OUT, AT(isa), .meaning = "all instruction sets draw the same bits"}
+#define SIZE_ROW                                                                                                       \
+  { CONIC_ROW_LEFT_OUT, AT(size), .meaning = "the length of the struct, by which versions are told apart" }
+#define RESERVED(member)                                                                                               \
+  { CONIC_ROW_RESERVED, AT(member) }
+#define ISA_ROW                                                                                                        \
+  { CONIC_ROW_LEFT_OUT, AT(isa), .meaning = "all instruction sets draw the same bits" }
 #define TABLE(table, standard)                                                                                         \
   static const conic_rows table##_rows = {#table, sizeof(S), table##_list, sizeof table##_list / sizeof *table##_list, \
                                           standard};
@@ -108,10 +111,9 @@ TABLE(kernel, NULL)
 #undef S
 
 #define S conic_light
-static const conic_row light_list[] = {
-    {CONIC_ROW_WORD, AT(frame), NULL, "what the light moves with", light_frame_word},
-    {CONIC_ROW_FLOAT, AT(color), "linear", "red, green, blue"},
-    {CONIC_ROW_DOUBLE, AT(direction), NULL, "towards the light"}};
+static const conic_row light_list[] = {{CONIC_ROW_WORD, AT(frame), NULL, "what the light moves with", light_frame_word},
+                                       {CONIC_ROW_FLOAT, AT(color), "linear", "red, green, blue"},
+                                       {CONIC_ROW_DOUBLE, AT(direction), NULL, "towards the light"}};
 TABLE(light, NULL)
 #undef S
 
@@ -218,12 +220,11 @@ TABLE(shot_light, NULL)
 #undef S
 
 #define S conic_aperture
-static const conic_row aperture_list[] = {
-    {CONIC_ROW_DOUBLE, AT(diameter), "world", "of the lens; 0: a pinhole"},
-    {CONIC_ROW_DOUBLE, AT(focus), "world", "the depth at which all is sharp"},
-    {CONIC_ROW_INT, AT(n_blades), NULL, "corners of the lens; 0: it is round"},
-    RESERVED(reserved_int),
-    RESERVED(reserved)};
+static const conic_row aperture_list[] = {{CONIC_ROW_DOUBLE, AT(diameter), "world", "of the lens; 0: a pinhole"},
+                                          {CONIC_ROW_DOUBLE, AT(focus), "world", "the depth at which all is sharp"},
+                                          {CONIC_ROW_INT, AT(n_blades), NULL, "corners of the lens; 0: it is round"},
+                                          RESERVED(reserved_int),
+                                          RESERVED(reserved)};
 TABLE(aperture, NULL)
 #undef S
 
@@ -388,11 +389,27 @@ static const conic_row file_list[] = {
 const conic_rows conic_shot_file_rows = {"file", sizeof(conic_shot_file), file_list,
                                          sizeof file_list / sizeof *file_list, set_file};
 
-const conic_rows *const conic_all_shot_rows[] = {
-    &conic_shot_file_rows, &shot_rows,     &camera_rows,   &way_rows,     &eye_rows,      &render_rows,
-    &kernel_rows,          &lighting_rows, &light_rows,    &view_rows,    &gaussians_rows, &shot_light_rows,
-    &lamp_rows,            &aperture_rows, &reading_rows,  &patches_rows, &surface_rows,  &coloring_rows,
-    &map_rows,             &writing_rows,  NULL};
+const conic_rows *const conic_all_shot_rows[] = {&conic_shot_file_rows,
+                                                 &shot_rows,
+                                                 &camera_rows,
+                                                 &way_rows,
+                                                 &eye_rows,
+                                                 &render_rows,
+                                                 &kernel_rows,
+                                                 &lighting_rows,
+                                                 &light_rows,
+                                                 &view_rows,
+                                                 &gaussians_rows,
+                                                 &shot_light_rows,
+                                                 &lamp_rows,
+                                                 &aperture_rows,
+                                                 &reading_rows,
+                                                 &patches_rows,
+                                                 &surface_rows,
+                                                 &coloring_rows,
+                                                 &map_rows,
+                                                 &writing_rows,
+                                                 NULL};
 
 void conic_shot_file_init_sized(conic_shot_file *file, size_t size) {
   conic_shot_file own;

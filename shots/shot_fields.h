@@ -12,12 +12,12 @@ typedef enum conic_row_kind {
   CONIC_ROW_UINT64,
   CONIC_ROW_FLOAT,
   CONIC_ROW_DOUBLE,
-  CONIC_ROW_TRUTH,  /* int, other than 0: true */
-  CONIC_ROW_WORD,   /* int or uint32_t, by `word` */
-  CONIC_ROW_PLANES, /* unsigned: bits of planes, as a list of their names */
-  CONIC_ROW_TEXT,   /* const char *, null: none */
-  CONIC_ROW_HAS,    /* a pointer: whether it is null */
-  CONIC_ROW_STRUCT, /* of `of` */
+  CONIC_ROW_TRUTH,   /* int, other than 0: true */
+  CONIC_ROW_WORD,    /* int or uint32_t, by `word` */
+  CONIC_ROW_PLANES,  /* unsigned: bits of planes, as a list of their names */
+  CONIC_ROW_TEXT,    /* const char *, null: none */
+  CONIC_ROW_HAS,     /* a pointer: whether it is null */
+  CONIC_ROW_STRUCT,  /* of `of` */
   CONIC_ROW_POINTER, /* to one of `of`; null: the defaults */
   CONIC_ROW_LIST,    /* an array of `of`, of which as many count as the member at `length` says; is_apart: by pointer */
   /* No fields: */
@@ -35,7 +35,7 @@ typedef struct conic_row {
   const char *unit, *meaning;
   const char *(*word)(int i); /* null beyond the last */
   const conic_rows *of;
-  size_t length;   /* of a list: the offset of its length, */
+  size_t length;    /* of a list: the offset of its length, */
   int length_is_64; /* which is a uint64_t, else an int */
   int is_apart;
   int columns; /* a matrix has so many; 0: it is none */

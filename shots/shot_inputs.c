@@ -135,8 +135,8 @@ static int find_hierarchy_folder(const char *path, char folder[PATH_ROOM]) {
   if (!conic_disk_look(path, &entry) || !conic_hierarchy_find_file(path, first, sizeof first))
     return 0;
   const char *name = conic_file_name(first);
-  if (!entry.is_folder && ((strcmp(name, "ept.json") != 0 && strcmp(name, "metadata.json") != 0) ||
-                           !conic_hierarchy_is_file(path)))
+  if (!entry.is_folder &&
+      ((strcmp(name, "ept.json") != 0 && strcmp(name, "metadata.json") != 0) || !conic_hierarchy_is_file(path)))
     return 0;
   int n = entry.is_folder ? snprintf(folder, PATH_ROOM, "%s", path)
                           : snprintf(folder, PATH_ROOM, "%.*s.", (int)(name - first), first);
@@ -166,8 +166,8 @@ conic_status conic_shot_input_look(conic_context *context, const char *path, con
 static conic_status add_input(conic_context *context, conic_shot_inputs *inputs, const char *path, const char *name,
                               conic_shot_role role) {
   size_t n = strlen(name) + 1;
-  conic_status status = conic_memory_reserve(context, &inputs->inputs, inputs->n, inputs->n + 1, &inputs->room,
-                                             sizeof *inputs->inputs);
+  conic_status status =
+      conic_memory_reserve(context, &inputs->inputs, inputs->n, inputs->n + 1, &inputs->room, sizeof *inputs->inputs);
   char *copy = status == CONIC_OK ? conic_memory_allocate(context, n, 1) : NULL;
   if (!copy)
     return CONIC_ERROR_MEMORY;

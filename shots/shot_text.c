@@ -8,7 +8,9 @@
 #include "core/files/number.h"
 
 void conic_text_add(conic_text *text, const char *bytes, size_t n) {
-  if (text->status == CONIC_OK)
+  if (!text->context && text->n + n + 1 > text->room)
+    text->status = CONIC_ERROR_MEMORY;
+  if (text->status == CONIC_OK && text->context)
     text->status = conic_memory_reserve(text->context, &text->bytes, text->n, text->n + n + 1, &text->room, 1);
   if (text->status != CONIC_OK)
     return;

@@ -5,8 +5,8 @@
 #include "shots/shot_fields.h"
 
 typedef struct conic_text {
-  conic_context *context;
-  char *bytes; /* zero at the end; null where there is nothing yet */
+  conic_context *context; /* null: there is no more room than `room`, at `bytes` */
+  char *bytes;            /* zero at the end; null where there is nothing yet */
   size_t n, room;
   conic_status status; /* of all that was added: OK, MEMORY */
 } conic_text;

@@ -63,7 +63,7 @@ static conic_status add_reading(const cli_layer_job *job, conic_sha256 *sum) {
 
 /* What the options say of the file: neither threads nor memory change a byte of it. */
 static conic_status add_layer_options(const cli_layer_job *job, conic_sha256 *sum) {
-  const int numbers[] = {job->is_merging, job->is_appending,         job->cloud_size,
+  const int numbers[] = {job->is_merging, job->is_appending,           job->cloud_size,
                          job->payload,    job->options.keeps_all != 0, job->quantum.is_in_spacings};
   const double reals[] = {job->quantum.value, job->coloring.options.up[0], job->coloring.options.up[1],
                           job->coloring.options.up[2]};

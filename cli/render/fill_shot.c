@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/render/sharing.h"
+#include "cli/render/shot_again.h"
 #include "cli/scene/stereo.h"
 #include "shots/stage.h"
 
@@ -69,7 +70,9 @@ conic_status cli_shot_fill(cli_session *session, cli_render_job *job, int i_fram
   memcpy(shot->light.lamps, job->lamps.lamps, sizeof shot->light.lamps);
   if (status == CONIC_OK)
     status = read_sky(session, job);
-  return status == CONIC_OK ? read_motion(session, job) : status;
+  if (status == CONIC_OK)
+    status = read_motion(session, job);
+  return status == CONIC_OK ? cli_shot_again_fill(session, job) : status;
 }
 
 conic_status cli_choose_exposure(cli_render_job *job) {

@@ -5,6 +5,7 @@
 #include "cli/render/fill_shot.h"
 #include "cli/render/kept_frames.h"
 #include "cli/render/sample_options.h"
+#include "cli/render/shot_again.h"
 #include "cli/scene/stereo.h"
 #include "cli/shell.h"
 #include "core/files/file.h"
@@ -81,10 +82,10 @@ static int check_transparency(cli_render_job *job) {
 }
 
 /* Everything that a frame writes; null: nothing. */
-enum { N_PATHS = CLI_MAX_OUTPUTS + 5 };
+enum { N_PATHS = CLI_MAX_OUTPUTS + 6 };
 static void list_frame_paths(const cli_render_job *job, const char *paths[N_PATHS]) {
   const char *const beside[] = {job->deep_path, job->overdraw_path, job->clusters_path, job->legend_path,
-                                job->boxes_path};
+                                job->boxes_path, job->making.save_path};
   memset(paths, 0, N_PATHS * sizeof *paths);
   memcpy(paths, job->outputs, (size_t)job->n_outputs * sizeof *paths);
   memcpy(paths + CLI_MAX_OUTPUTS, beside, sizeof beside);
@@ -101,7 +102,7 @@ static int check_outputs(const cli_session *session, cli_render_job *job, const 
   const char *paths[N_PATHS];
   int answer = CLI_DONE;
   if (!session->host && job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path &&
-      !job->boxes_path && !job->progressive_path)
+      !job->boxes_path && !job->progressive_path && !job->making.save_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
     answer = check_output(job, job->outputs[i]);
@@ -165,6 +166,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   job->may_stream = job->is_for_looking = 1;
   job->box_level = -1;
   conic_image_options_init(&job->writing);
+  cli_shot_again_begin(session, job);
   const char *compression_words[CONIC_N_COMPRESSIONS + 1] = {NULL};
   for (int i = 0; i < CONIC_N_COMPRESSIONS; i++)
     compression_words[i] = conic_compression_name((conic_compression)i);
@@ -196,6 +198,13 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"overdraw-colors", CLI_CHOICE, &job->is_overdraw_confetti, "NAME",
        "of --overdraw: log, or confetti: blue 1, green 8, red 16 [log]", .choices = overdraw_words},
       {"legend", CLI_FLAG, &job->has_legend, NULL, "what the colours mean, in the picture's lower right corner"},
+      {"save-shot", CLI_TEXT, &job->making.save_path, "OUT.shot.json",
+       "all that decides the picture, as text by which conic render draws it again"},
+      {"no-shot", CLI_FLAG, &job->making.is_left_out, NULL,
+       "leave out of .exr, .png and .tif what they say of how they were made"},
+      {"again", CLI_TEXT, &job->making.again_path, "PICTURE",
+       "draw again what a picture says that it was drawn from, to the bit; other options change that. Inputs are looked "
+       "for beside it, here, and among those that are given"},
       {"legend-out", CLI_TEXT, &job->legend_path, "OUT.png", "the same as a picture of its own"},
       {"cryptomatte", CLI_FLAG, &job->has_mattes, NULL,
        "into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name in Nuke or Blender"},
@@ -281,6 +290,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        .group = "measuring"},
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
+  if (answer == CLI_AGAIN)
+    return cli_shot_again_parse(session, argc, argv, job);
   job->writing.compression = (conic_compression)compression;
   job->asked_planes = job->is_aov_given ? job->shot.planes : 0;
   if (job->is_memory_given)

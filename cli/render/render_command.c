@@ -83,6 +83,7 @@ void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, c
   matrix->type = CONIC_ATTRIBUTE_MATRIX;
   memcpy(matrix->values, camera->cam_from_world, sizeof camera->cam_from_world);
   matrix->values[15] = 1.0;
+  image->shot = job->making.text;
   cli_accumulate_describe(job, image);
   conic_image_describe_camera(image, camera);
 }
@@ -272,7 +273,12 @@ static conic_status check_gathered(const cli_render_job *job, int is_gathered) {
 static conic_status render_banded(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
                                   conic_render_statistics *statistics) {
   job->shot.render.skip_hidden = !session->json_path;
-  conic_status status = cli_render_banded(session, job, i_frame, camera, statistics);
+  conic_status status = cli_sharing_has_picture(session, job) ? cli_shot_describe(session, job) : CONIC_OK;
+  status = cli_sharing_end(session, job, status);
+  if (status == CONIC_OK)
+    status = cli_render_banded(session, job, i_frame, camera, statistics);
+  if (status == CONIC_OK && cli_sharing_has_picture(session, job))
+    status = cli_shot_save(session, job, i_frame);
   if (status != CONIC_OK || !cli_sharing_has_picture(session, job))
     return status;
   job->frames_ms += statistics->ms.frame;
@@ -318,6 +324,9 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   warn_of_empty(session, job);
   warn_of_error(session, job);
   warn_of_alpha(session, job);
+  status = cli_shot_describe(session, job);
+  if (status != CONIC_OK)
+    return status;
   cli_frame_describe(job, &camera, image);
   if (job->has_mattes)
     status = cli_mattes_fill(session, job, &camera, image);
@@ -334,6 +343,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     status = write_boxes(session, job, &camera, image, i_frame);
   if (status == CONIC_OK)
     status = write_deep(session, job, &camera, image, i_frame);
+  if (status == CONIC_OK)
+    status = cli_shot_save(session, job, i_frame);
   if (status == CONIC_OK)
     cli_host_take(session, i_frame, job->cameras.count ? job->cameras.names[job->i_view] : "", image, &camera);
   return status;
@@ -465,10 +476,10 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = cli_exit_of(status);
     if (status == CONIC_OK && !cli_sharing_is_idle(session, &job))
       exit_code = job.top.is_wanted ? cli_top_render(session, &job) : render_scene(session, &job);
-    cli_shot_release(session, &job);
     cli_scene_release(session, &job);
     cli_sharing_release(&job);
   }
+  cli_shot_release(session, &job);
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;
 }

@@ -141,7 +141,7 @@ static void report_camera(cli_json *json, const cli_render_job *job) {
   cli_json_object(json, "camera");
   cli_camera_write(json, &job->last_camera);
   cli_json_close(json);
-  if (!job->camera_path)
+  if (!job->cameras.count)
     return;
   cli_json_object(json, "view");
   cli_json_count(json, "index", job->i_view);

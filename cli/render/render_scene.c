@@ -5,6 +5,7 @@
 #include "cli/host_keeps.h"
 #include "cli/render/frames.h"
 #include "cli/render/sharing.h"
+#include "cli/render/shot_again.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/scene_options.h"
 #include "cli/scene/stereo.h"
@@ -47,7 +48,7 @@ conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
   conic_status status = cli_kept_renderer(session, &job->device, &job->renderer)
                             ? CONIC_OK
                             : cli_device_open(session, &job->device, &job->renderer);
-  if (status == CONIC_OK && job->camera_path)
+  if (status == CONIC_OK && job->camera_path && !cli_shot_again_take_camera(job))
     status = read_views(session, job);
   return status;
 }

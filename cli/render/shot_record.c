@@ -1,10 +1,14 @@
 #include "cli/render/shot_record.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
+#include "cli/render/frames.h"
+#include "cli/render/shot_again.h"
 #include "cli/scene/background_options.h"
 #include "conic/version.h"
-#include "core/base/memory.h"
+#include "core/files/file.h"
 #include "shots/shot_key.h"
 
 /* What lens and shutter do not have is not there. */
@@ -18,8 +22,6 @@ static void plain_samples(conic_shot *shot) {
     memset(&shot->aperture, 0, sizeof shot->aperture);
     shot->focus_kind = CONIC_FOCUS_MIDDLE;
   }
-  if (shot->focus_kind != CONIC_FOCUS_PIXEL)
-    memset(shot->focus_pixel, 0, sizeof shot->focus_pixel);
   if (!shot->is_shutter_open) {
     memset(&shot->way, 0, sizeof shot->way);
     memset(shot->shutter, 0, sizeof shot->shutter);
@@ -36,8 +38,16 @@ static void record_shot(const cli_render_job *job, conic_shot_file *file) {
   *shot = job->shot;
   shot->planes &= ~job->unwritten_planes;
   plain_samples(shot);
+  if (shot->aperture.diameter > 0.0 && job->accumulating.focus_depth > 0.0) { /* it is found */
+    shot->focus_kind = CONIC_FOCUS_DEPTH;
+    shot->aperture.focus = job->accumulating.focus_depth;
+  }
   if (shot->focus_kind != CONIC_FOCUS_DEPTH)
     shot->aperture.focus = 0.0;
+  if (shot->focus_kind != CONIC_FOCUS_PIXEL)
+    memset(shot->focus_pixel, 0, sizeof shot->focus_pixel);
+  if (job->progressive_path)
+    shot->view.most_levels = 0; /* the last picture has all */
   if (!job->accumulating.motion_path)
     shot->frame = 0.0;
   if (!shot->has_backdrop) {
@@ -119,8 +129,8 @@ static void add_path(conic_sha256 *sum, const char *path) {
 
 /* What the frames become. */
 static void add_products(conic_sha256 *sum, const cli_render_job *job) {
-  const char *const beside[] = {job->deep_path, job->overdraw_path, job->clusters_path, job->boxes_path,
-                                job->legend_path, job->making.save_path};
+  const char *const beside[] = {job->deep_path,  job->overdraw_path, job->clusters_path,
+                                job->boxes_path, job->legend_path,   job->making.save_path};
   for (int i = 0; i < job->n_outputs; i++)
     add_path(sum, job->outputs[i]);
   for (size_t i = 0; i < sizeof beside / sizeof *beside; i++)
@@ -184,8 +194,47 @@ conic_status cli_shot_report(cli_session *session, cli_json *json, cli_render_jo
   return status;
 }
 
+/* Whether any file that is written can say how it was made. */
+static int is_carried(const cli_session *session, const cli_render_job *job) {
+  static const char *const endings[] = {"exr", "png", "tif", "tiff"};
+  int n = job->deep_path != NULL;
+  for (int i = 0; i < job->n_outputs; i++) {
+    const char *ending = conic_file_ending(job->outputs[i]);
+    if (!*ending)
+      ending = job->writing.format ? job->writing.format : "png";
+    for (size_t j = 0; j < sizeof endings / sizeof *endings; j++)
+      n += strcasecmp(ending, endings[j]) == 0;
+  }
+  return n > 0 && !job->making.is_left_out && !session->host;
+}
+
+conic_status cli_shot_describe(cli_session *session, cli_render_job *job) {
+  conic_shot_file file;
+  conic_shot_text_release(session->context, job->making.text);
+  job->making.text = NULL;
+  if (!is_carried(session, job))
+    return CONIC_OK;
+  conic_status status = cli_shot_record(session, job, &file);
+  return status == CONIC_OK ? conic_shot_file_print(session->context, &file, CONIC_SHOT_IN_PICTURE, &job->making.text)
+                            : status;
+}
+
+conic_status cli_shot_save(cli_session *session, cli_render_job *job, int i_frame) {
+  conic_shot_file file;
+  if (!job->making.save_path)
+    return CONIC_OK;
+  char *path = cli_frame_name(job, job->making.save_path, i_frame);
+  conic_status status = path ? cli_shot_record(session, job, &file) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = conic_shot_file_write(session->context, &file, path);
+  free(path);
+  return status;
+}
+
 void cli_shot_release(cli_session *session, cli_render_job *job) {
+  cli_shot_again_release(session, job->making.again);
+  job->making.again = NULL;
   conic_shot_inputs_release(session->context, &job->making.inputs);
-  conic_memory_release(session->context, job->making.text);
+  conic_shot_text_release(session->context, job->making.text);
   job->making.text = NULL;
 }

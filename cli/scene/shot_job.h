@@ -6,12 +6,13 @@
 
 /* Part of a cli_render_job. */
 typedef struct cli_shot_job {
-  const char *save_path;          /* --save-shot; null: none */
-  int is_left_out;                /* --no-shot: pictures do not carry it */
-  int has_inputs;                 /* the next are known: */
-  conic_shot_inputs inputs;       /* of all frames */
-  char *text;                     /* of the frame that is drawn, for pictures; the context's memory */
-  struct cli_shot_again *again;   /* what is drawn again (cli/render/shot_again.h); null: nothing */
+  const char *save_path;        /* --save-shot; null: none */
+  int is_left_out;              /* --no-shot: pictures do not carry it */
+  int has_inputs;               /* the next are known: */
+  conic_shot_inputs inputs;     /* of all frames */
+  char *text;                   /* of the frame that is drawn, for pictures; the context's memory */
+  const char *again_path;       /* --again; null: none */
+  struct cli_shot_again *again; /* what is drawn again (cli/render/shot_again.h); null: nothing */
 } cli_shot_job;
 
 #endif

@@ -24,11 +24,12 @@ typedef enum conic_shot_role {
 
 /* A file, a folder or a URL that a picture is made of. */
 typedef struct conic_shot_input {
-  const char *name; /* as it was given; of a part, from the folder of the first file of the scene, where it lies below */
+  const char
+      *name; /* as it was given; of a part, from the folder of the first file of the scene, where it lies below */
   conic_shot_role role;
-  int is_sampled;    /* it is larger than 64 MiB: the hash is of its size, its time and 64 pieces */
-  uint64_t n_bytes;  /* 0: not known, as of standard input */
-  char sha256[72];   /* 64 digits; empty: not known, as of a URL */
+  int is_sampled;   /* it is larger than 64 MiB: the hash is of its size, its time and 64 pieces */
+  uint64_t n_bytes; /* 0: not known, as of standard input */
+  char sha256[72];  /* 64 digits; empty: not known, as of a URL */
   uint64_t reserved[4];
 } conic_shot_input;
 
@@ -73,6 +74,47 @@ enum { CONIC_SHOT_KEY_ROOM = 65 };
 CONIC_API conic_status conic_shot_file_key(conic_context *context, const conic_shot_file *file,
                                            char key[CONIC_SHOT_KEY_ROOM]);
 
+/* --- as text --- */
+
+/* What text to write. */
+typedef enum conic_shot_text {
+  CONIC_SHOT_WHOLE = 0,      /* inputs by the names that they were given by */
+  CONIC_SHOT_IN_PICTURE = 1, /* without their folders: the same wherever the picture was drawn */
+  CONIC_SHOT_COMPLETE = 2    /* also what is as it is by default */
+} conic_shot_text;
+
+/* The file's text, with zero at its end, which the caller releases by conic_shot_text_release. Numbers read back to the
+ * bit; what is as by default is left out, but for the camera. Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_shot_file_print(conic_context *context, const conic_shot_file *file, conic_shot_text what,
+                                             char **text);
+CONIC_API void conic_shot_text_release(conic_context *context, char *text);
+
+/* Writes it to PATH, which appears when it is whole. Errors: as before, IO. */
+CONIC_API conic_status conic_shot_file_write(conic_context *context, const conic_shot_file *file, const char *path);
+
+/* Reads the text in memory; `name` is for messages. On success the caller owns *file and destroys it before the
+ * context. Sky and motion are null in it, and a texture's name, too: they are among the inputs. Errors: INPUT (a key
+ * that is none, a later version, a value that cannot be), MEMORY. */
+CONIC_API conic_status conic_shot_file_parse(conic_context *context, const char *name, const char *text, size_t n_bytes,
+                                             conic_shot_file **file);
+/* The same of a file, or of a picture that carries one: an EXR, a PNG or a TIFF. Errors: as before; INPUT (there is no
+ * such file, or the picture carries none). */
+CONIC_API conic_status conic_shot_file_read(conic_context *context, const char *path, conic_shot_file **file);
+/* Null is allowed. */
+CONIC_API void conic_shot_file_destroy(conic_context *context, conic_shot_file *file);
+
+/* Whether a file that can be read is a shot by itself; whether a picture carries one is not looked at. */
+CONIC_API int conic_shot_is_file(const char *path);
+
+/* A field that two shots differ in: what it is in each, as JSON; null: one of them has no such field. */
+typedef void conic_shot_difference(void *cookie, const char *field, const char *a, const char *b);
+/* Tells of each, in the order of the table, then of inputs, as "inputs[0]". Errors: MEMORY. */
+CONIC_API conic_status conic_shot_file_compare(conic_context *context, const conic_shot_file *a,
+                                               const conic_shot_file *b, conic_shot_difference *receive, void *cookie);
+
+/* The JSON schema of the text, as it stands in docs/reference/shot.schema.json. Errors: MEMORY. */
+CONIC_API conic_status conic_shot_schema_print(conic_context *context, char **text);
+
 /* --- the table of fields --- */
 
 typedef enum conic_shot_field_kind {
@@ -91,11 +133,11 @@ typedef enum conic_shot_field_kind {
 typedef struct conic_shot_field {
   char path[96]; /* "view.samples"; of each member of a list "render.lighting.lights[].color" */
   conic_shot_field_kind kind;
-  int count;              /* of numbers */
-  const char *unit;       /* null: none */
-  const char *meaning;    /* a line */
+  int count;                               /* of numbers */
+  const char *unit;                        /* null: none */
+  const char *meaning;                     /* a line */
   const char *words[CONIC_MAX_SHOT_WORDS]; /* null after the last */
-  char standard[160]; /* what it is unless it is said, as JSON; empty: it has to be said */
+  char standard[160];                      /* what it is unless it is said, as JSON; empty: it has to be said */
 } conic_shot_field;
 
 /* The fields from 0 on; returns 0 after the last. */
