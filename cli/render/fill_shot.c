@@ -68,11 +68,12 @@ conic_status cli_shot_fill(cli_session *session, cli_render_job *job, int i_fram
   shot->eye = cli_stereo_eye(job);
   shot->frame = (double)i_frame;
   memcpy(shot->light.lamps, job->lamps.lamps, sizeof shot->light.lamps);
+  cli_shot_again_fill(job);
   if (status == CONIC_OK)
     status = read_sky(session, job);
   if (status == CONIC_OK)
     status = read_motion(session, job);
-  return status == CONIC_OK ? cli_shot_again_fill(session, job) : status;
+  return status == CONIC_OK ? cli_shot_again_check(session, job) : status;
 }
 
 conic_status cli_choose_exposure(cli_render_job *job) {

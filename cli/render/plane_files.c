@@ -112,6 +112,7 @@ static conic_status write_plane(cli_session *session, const cli_render_job *job,
     return conic_image_write_as(session->context, path, &alone, &writing);
   }
   conic_status status = show_plane(session, image, plane, &alone);
+  alone.shot = image->shot;
   if (status == CONIC_OK)
     status = conic_image_write_as(session->context, path, &alone, &job->writing);
   conic_image_release(session->context, &alone);

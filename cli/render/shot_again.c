@@ -402,11 +402,14 @@ static void begin_light(const cli_shot_again *again, cli_render_job *job) {
   memcpy(job->lamps.sun_radius_deg, shot->light.sun_radius_deg, sizeof job->lamps.sun_radius_deg);
 }
 
+/* What is drawn where nobody asks for planes. */
+enum { USUAL_PLANES = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z };
+
 /* The planes that the outputs can hold: what an EXR has in it does not keep a PNG from being made. */
 static unsigned planes_for(const cli_shot_again *again, unsigned planes) {
   enum { LOOKED_AT = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO };
   planes &= ~(unsigned)CONIC_MATTE_PLANES;
-  return again->holds_all || !(planes & LOOKED_AT) ? planes : planes & LOOKED_AT;
+  return again->holds_all || planes == USUAL_PLANES || !(planes & LOOKED_AT) ? planes : planes & LOOKED_AT;
 }
 
 static void begin_reading(const cli_shot_again *again, cli_render_job *job) {
@@ -461,7 +464,8 @@ void cli_shot_again_begin(cli_session *session, cli_render_job *job) {
   memcpy(job->shot.backdrop_top, shot->backdrop_top, sizeof shot->backdrop_top);
   memcpy(job->shot.backdrop_bottom, shot->backdrop_bottom, sizeof shot->backdrop_bottom);
   job->shot.planes = planes_for(again, shot->planes);
-  job->is_aov_given = job->is_shade_given = 1;
+  job->is_aov_given = job->shot.planes != USUAL_PLANES;
+  job->is_shade_given = 1;
   job->camera_path = again->has_camera ? again->path : NULL;
   job->framing.width = shot->camera.width ? shot->camera.width : job->framing.width;
   job->framing.height = shot->camera.height ? shot->camera.height : job->framing.height;
@@ -509,10 +513,11 @@ static const conic_shot_input *find_part(const conic_shot_input *inputs, size_t 
   return NULL;
 }
 
-/* What the inputs led to, now that all of it is read. */
-static conic_status check_parts(cli_session *session, cli_render_job *job) {
+conic_status cli_shot_again_check(cli_session *session, cli_render_job *job) {
   cli_shot_again *again = job->making.again;
   conic_shot_file now;
+  if (!again || again->is_checked)
+    return CONIC_OK;
   conic_status status = cli_shot_record(session, job, &now);
   again->is_checked = 1;
   for (size_t i = 0; i < again->file->n_inputs && status == CONIC_OK; i++) {
@@ -531,13 +536,13 @@ static conic_status check_parts(cli_session *session, cli_render_job *job) {
   return status;
 }
 
-conic_status cli_shot_again_fill(cli_session *session, cli_render_job *job) {
+void cli_shot_again_fill(cli_render_job *job) {
   static const char *const moving[] = {"turntable", "stereo", "camera", NULL};
   static const char *const coming[] = {"progressive", "deadline", "tolerate", NULL};
-  cli_shot_again *again = job->making.again;
+  const cli_shot_again *again = job->making.again;
   conic_shot *shot = &job->shot;
   if (!again)
-    return CONIC_OK;
+    return;
   const conic_shot *was = &again->file->shot;
   if (again->has_camera && !gives_one(again, moving)) {
     shot->way = was->way;
@@ -552,5 +557,4 @@ conic_status cli_shot_again_fill(cli_session *session, cli_render_job *job) {
   if (!gives_one(again, coming))
     shot->view.may_be_coarser = was->view.may_be_coarser;
   fill_lighting(again, shot);
-  return again->is_checked ? CONIC_OK : check_parts(session, job);
 }

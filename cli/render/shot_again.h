@@ -23,9 +23,11 @@ void cli_shot_again_begin(cli_session *session, cli_render_job *job);
 /* Whether the shot's camera counts, of this size; then it becomes the job's. */
 int cli_shot_again_take_camera(cli_render_job *job);
 
-/* Puts into a filled shot what no option has said. The first time, sees to it that what the inputs led to is what it
- * was. Errors: INPUT, MEMORY, CANCELLED. */
-conic_status cli_shot_again_fill(cli_session *session, cli_render_job *job);
+/* Puts into a frame's shot, whose camera is there, what no option has said. */
+void cli_shot_again_fill(cli_render_job *job);
+
+/* Once all inputs are read: what they led to has to be what it was. Errors: INPUT, MEMORY, CANCELLED. */
+conic_status cli_shot_again_check(cli_session *session, cli_render_job *job);
 
 void cli_shot_again_release(cli_session *session, cli_shot_again *again);
 

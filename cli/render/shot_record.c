@@ -219,11 +219,31 @@ conic_status cli_shot_describe(cli_session *session, cli_render_job *job) {
                             : status;
 }
 
+/* OUT.shot.json becomes OUT.0001.shot.json. */
+static char *name_shot(const cli_render_job *job, int i_frame) {
+  static const char ending[] = ".shot.json";
+  const char *path = job->making.save_path;
+  size_t n = strlen(path), n_ending = sizeof ending - 1;
+  if (n <= n_ending || strcmp(path + n - n_ending, ending) != 0)
+    return cli_frame_name(job, path, i_frame);
+  char *stem = malloc(n + 1), *name, *whole = NULL;
+  if (!stem)
+    return NULL;
+  snprintf(stem, n + 1, "%.*s.json", (int)(n - n_ending), path);
+  name = cli_frame_name(job, stem, i_frame);
+  if (name && (whole = realloc(name, strlen(name) + n_ending + 1)))
+    strcpy(whole + strlen(whole) - strlen(".json"), ending);
+  else
+    free(name);
+  free(stem);
+  return whole;
+}
+
 conic_status cli_shot_save(cli_session *session, cli_render_job *job, int i_frame) {
   conic_shot_file file;
   if (!job->making.save_path)
     return CONIC_OK;
-  char *path = cli_frame_name(job, job->making.save_path, i_frame);
+  char *path = name_shot(job, i_frame);
   conic_status status = path ? cli_shot_record(session, job, &file) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     status = conic_shot_file_write(session->context, &file, path);
