@@ -418,8 +418,9 @@ conic_status conic_shot_file_parse(conic_context *context, const char *name, con
   if (!r.owned)
     return CONIC_ERROR_MEMORY;
   conic_shot_file_init(&r.owned->file);
-  conic_status status = conic_json_take(context, name, text, n_bytes, &r.json);
+  conic_status status = conic_json_take(context, name ? name : "shot", text, n_bytes, &r.json);
   if (status == CONIC_OK) {
+    r.json.is_silent = !name;
     status = read_file(&r);
     conic_json_close(&r.json);
   }

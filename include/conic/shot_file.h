@@ -92,7 +92,7 @@ CONIC_API void conic_shot_text_release(conic_context *context, char *text);
 /* Writes it to PATH, which appears when it is whole. Errors: as before, IO. */
 CONIC_API conic_status conic_shot_file_write(conic_context *context, const conic_shot_file *file, const char *path);
 
-/* Reads the text in memory; `name` is for messages. On success the caller owns *file and destroys it before the
+/* Reads the text in memory; `name` is for messages; null: nothing is said of what is wrong with it. On success the caller owns *file and destroys it before the
  * context. Sky and motion are null in it, and a texture's name, too: they are among the inputs. Errors: INPUT (a key
  * that is none, a later version, a value that cannot be), MEMORY. */
 CONIC_API conic_status conic_shot_file_parse(conic_context *context, const char *name, const char *text, size_t n_bytes,
