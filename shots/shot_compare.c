@@ -5,7 +5,7 @@
 #include "shots/shot_text.h"
 
 /* Keeps a path and a value, each with a zero behind it. */
-static void keep_field(void *cookie, const conic_field_visit *visit) {
+static void keep_field_text(void *cookie, const conic_field_visit *visit) {
   conic_text *text = cookie;
   conic_text_add(text, visit->path, strlen(visit->path) + 1);
   conic_text_value(text, visit->row, visit->value);
@@ -13,7 +13,7 @@ static void keep_field(void *cookie, const conic_field_visit *visit) {
 }
 
 /* The value of a field from a place on, which is where most are; null: there is none. */
-static const char *find_value(const conic_text *text, const char *path, size_t *at) {
+static const char *find_field_value(const conic_text *text, const char *path, size_t *at) {
   for (int i = 0; i < 2; i++) {
     size_t end = text->n;
     for (size_t from = i == 0 ? *at : 0; from < end;) {
@@ -36,7 +36,7 @@ typedef struct comparing {
 /* Tells of those of `a` that differ; of the second of two shots, of those that the first has not. */
 static void compare_texts(const comparing *c, const conic_text *a, const conic_text *b, int is_second) {
   for (size_t from = 0, at = 0; from < a->n;) {
-    const char *path = a->bytes + from, *value = path + strlen(path) + 1, *other = find_value(b, path, &at);
+    const char *path = a->bytes + from, *value = path + strlen(path) + 1, *other = find_field_value(b, path, &at);
     from = (size_t)(value - a->bytes) + strlen(value) + 1;
     if (is_second && !other)
       c->receive(c->cookie, path, NULL, value);
@@ -82,8 +82,8 @@ conic_status conic_shot_file_compare(conic_context *context, const conic_shot_fi
                                      conic_shot_difference *receive, void *cookie) {
   const comparing c = {receive, cookie};
   conic_text first = {.context = context}, second = {.context = context};
-  conic_fields_visit(a, keep_field, &first);
-  conic_fields_visit(b, keep_field, &second);
+  conic_fields_visit(a, keep_field_text, &first);
+  conic_fields_visit(b, keep_field_text, &second);
   conic_status status = first.status != CONIC_OK ? first.status : second.status;
   if (status == CONIC_OK) {
     compare_texts(&c, &first, &second, 0);

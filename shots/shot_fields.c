@@ -54,11 +54,11 @@ static const char *plane_word(int i) {
 #define ISA_ROW                                                                                                        \
   { CONIC_ROW_LEFT_OUT, AT(isa), .meaning = "all instruction sets draw the same bits" }
 #define TABLE(table, standard)                                                                                         \
-  static const conic_rows table##_rows = {#table, sizeof(S), table##_list, sizeof table##_list / sizeof *table##_list, \
-                                          standard};
+  static const conic_shot_rows table##_rows = {#table, sizeof(S), table##_list,                                        \
+                                               sizeof table##_list / sizeof *table##_list, standard};
 
 #define S conic_camera
-static const conic_row camera_list[] = {
+static const conic_shot_row camera_list[] = {
     {CONIC_ROW_INT, AT(width), "px", "the picture's width", .is_said = 1},
     {CONIC_ROW_INT, AT(height), "px", "the picture's height", .is_said = 1},
     {CONIC_ROW_DOUBLE, AT(fx), "px", "the focal length to the right", .is_said = 1},
@@ -75,7 +75,7 @@ TABLE(camera, NULL)
 #undef S
 
 #define S conic_camera_way
-static const conic_row way_list[] = {
+static const conic_shot_row way_list[] = {
     {CONIC_ROW_WORD, AT(kind), NULL, "how the camera goes on while the shutter is open", way_word},
     RESERVED(reserved_int),
     {CONIC_ROW_DOUBLE, AT(frames_a_turn), "frames", "of an orbit: how long a turn takes"},
@@ -90,7 +90,7 @@ TABLE(way, NULL)
 #undef S
 
 #define S conic_stereo_eye
-static const conic_row eye_list[] = {
+static const conic_shot_row eye_list[] = {
     {CONIC_ROW_DOUBLE, AT(shift), "world", "how far to the right the eye is from the middle of two; the camera has it"},
     {CONIC_ROW_DOUBLE, AT(convergence), "world", "the depth at which both eyes agree; 0: they are parallel"},
     {CONIC_ROW_DOUBLE, AT(center), "world", "whose depth it is, where it is found"},
@@ -101,7 +101,7 @@ TABLE(eye, NULL)
 #undef S
 
 #define S conic_kernel
-static const conic_row kernel_list[] = {
+static const conic_shot_row kernel_list[] = {
     {CONIC_ROW_WORD, AT(type), NULL, "how a splat fades from its centre to its edge", kernel_word},
     {CONIC_ROW_FLOAT, AT(cutoff), "sigma", "where a splat ends"},
     {CONIC_ROW_FLOAT, AT(a), NULL, "confetti's a"},
@@ -111,14 +111,15 @@ TABLE(kernel, NULL)
 #undef S
 
 #define S conic_light
-static const conic_row light_list[] = {{CONIC_ROW_WORD, AT(frame), NULL, "what the light moves with", light_frame_word},
-                                       {CONIC_ROW_FLOAT, AT(color), "linear", "red, green, blue"},
-                                       {CONIC_ROW_DOUBLE, AT(direction), NULL, "towards the light"}};
+static const conic_shot_row light_list[] = {
+    {CONIC_ROW_WORD, AT(frame), NULL, "what the light moves with", light_frame_word},
+    {CONIC_ROW_FLOAT, AT(color), "linear", "red, green, blue"},
+    {CONIC_ROW_DOUBLE, AT(direction), NULL, "towards the light"}};
 TABLE(light, NULL)
 #undef S
 
 #define S conic_lighting
-static const conic_row lighting_list[] = {
+static const conic_shot_row lighting_list[] = {
     {CONIC_ROW_TRUTH, AT(is_given), NULL, "these lights count, and not the one of the options"},
     {CONIC_ROW_LENGTH, AT(n_lights)},
     {CONIC_ROW_LIST, AT(lights), NULL, "lights without a place", .of = &light_rows, .length = offsetof(S, n_lights)},
@@ -134,7 +135,7 @@ static void set_render(void *value) {
 }
 
 #define S conic_render_options
-static const conic_row render_list[] = {
+static const conic_shot_row render_list[] = {
     SIZE_ROW,
     {CONIC_ROW_WORD, AT(method), NULL, "how a splat becomes pixels", method_word},
     {CONIC_ROW_STRUCT, AT(kernel), NULL, "how a splat fades", .of = &kernel_rows},
@@ -163,7 +164,7 @@ static void set_view(void *value) {
 }
 
 #define S conic_source_view
-static const conic_row view_list[] = {
+static const conic_shot_row view_list[] = {
     SIZE_ROW,
     {CONIC_ROW_DOUBLE, AT(error_px), "px", "how far off the picture of a hierarchy may be; 0: all is drawn"},
     {CONIC_ROW_UINT64, AT(budget), NULL, "or the best of so many splats and triangles"},
@@ -185,7 +186,7 @@ static void set_gaussians(void *value) {
 }
 
 #define S conic_gaussian_options
-static const conic_row gaussians_list[] = {
+static const conic_shot_row gaussians_list[] = {
     SIZE_ROW,
     {CONIC_ROW_WORD, AT(profile), NULL, "whose way of compositing", profile_word},
     {CONIC_ROW_FLOAT, AT(background), "display", "what is behind: red, green, blue"},
@@ -197,7 +198,7 @@ TABLE(gaussians, set_gaussians)
 #undef S
 
 #define S conic_lamp
-static const conic_row lamp_list[] = {
+static const conic_shot_row lamp_list[] = {
     {CONIC_ROW_WORD, AT(kind), NULL, "what gives the light", lamp_word},
     {CONIC_ROW_FLOAT, AT(color), "linear", "of what faces it at distance 1"},
     {CONIC_ROW_DOUBLE, AT(position), "world", "its middle"},
@@ -208,7 +209,7 @@ TABLE(lamp, NULL)
 #undef S
 
 #define S conic_shot_light
-static const conic_row shot_light_list[] = {
+static const conic_shot_row shot_light_list[] = {
     {CONIC_ROW_UINT64, AT(n_directions), NULL, "from which light of all around may be hidden; 0: it is not"},
     {CONIC_ROW_TRUTH, AT(has_shadows), NULL, "lights with a direction cast shadows"},
     {CONIC_ROW_LENGTH, AT(n_lamps)},
@@ -220,20 +221,21 @@ TABLE(shot_light, NULL)
 #undef S
 
 #define S conic_aperture
-static const conic_row aperture_list[] = {{CONIC_ROW_DOUBLE, AT(diameter), "world", "of the lens; 0: a pinhole"},
-                                          {CONIC_ROW_DOUBLE, AT(focus), "world", "the depth at which all is sharp"},
-                                          {CONIC_ROW_INT, AT(n_blades), NULL, "corners of the lens; 0: it is round"},
-                                          RESERVED(reserved_int),
-                                          RESERVED(reserved)};
+static const conic_shot_row aperture_list[] = {
+    {CONIC_ROW_DOUBLE, AT(diameter), "world", "of the lens; 0: a pinhole"},
+    {CONIC_ROW_DOUBLE, AT(focus), "world", "the depth at which all is sharp"},
+    {CONIC_ROW_INT, AT(n_blades), NULL, "corners of the lens; 0: it is round"},
+    RESERVED(reserved_int),
+    RESERVED(reserved)};
 TABLE(aperture, NULL)
 #undef S
 
-static void set_surface(void *value) {
+static void set_surface_standard(void *value) {
   conic_surface_options_init((conic_surface_options *)value);
 }
 
 #define S conic_surface_options
-static const conic_row surface_list[] = {
+static const conic_shot_row surface_list[] = {
     SIZE_ROW,
     {CONIC_ROW_WORD, AT(type), NULL, "polynomials or spheres", surface_word},
     {CONIC_ROW_WORD, AT(plane), NULL, "which plane polynomials stand over", surface_plane_word},
@@ -246,7 +248,7 @@ static const conic_row surface_list[] = {
     ISA_ROW,
     {CONIC_ROW_UINT64, AT(is_sharp), NULL, "1: creases stay sharp"},
     RESERVED(reserved)};
-TABLE(surface, set_surface)
+TABLE(surface, set_surface_standard)
 #undef S
 
 static void set_patches(void *value) {
@@ -254,7 +256,7 @@ static void set_patches(void *value) {
 }
 
 #define S conic_patches_options
-static const conic_row patches_list[] = {
+static const conic_shot_row patches_list[] = {
     SIZE_ROW,
     {CONIC_ROW_STRUCT, AT(surface), NULL, "the polynomials", .of = &surface_rows},
     {CONIC_ROW_LEFT_OUT, AT(cutoff), .meaning = "a source puts that of its reading in its place"},
@@ -268,7 +270,7 @@ static void set_coloring(void *value) {
 }
 
 #define S conic_coloring_options
-static const conic_row coloring_list[] = {
+static const conic_shot_row coloring_list[] = {
     SIZE_ROW,
     {CONIC_ROW_TEXT, AT(by), NULL, "what colours are made of"},
     {CONIC_ROW_TEXT, AT(ramp), NULL, "by which ramp; none: the one that suits"},
@@ -284,7 +286,7 @@ static void set_reading(void *value) {
 }
 
 #define S conic_source_options
-static const conic_row reading_list[] = {
+static const conic_shot_row reading_list[] = {
     SIZE_ROW,
     {CONIC_ROW_WORD, AT(as), NULL, "what a file becomes that does not say by itself", as_word},
     {CONIC_ROW_TRUTH, AT(is_whole), NULL, "of a hierarchy every splat is read"},
@@ -307,7 +309,7 @@ TABLE(reading, set_reading)
 #undef S
 
 #define S conic_shot_map
-static const conic_row map_list[] = {
+static const conic_shot_row map_list[] = {
     {CONIC_ROW_TRUTH, AT(is_wanted), NULL, "it is a map, whose camera follows from the scene"},
     {CONIC_ROW_INT, AT(epsg), NULL, "its coordinate system; 0: the file's"},
     {CONIC_ROW_DOUBLE, AT(pixel), "world", "a pixel's edge; 0: the spacing of the points"},
@@ -328,11 +330,11 @@ TABLE(map, set_map)
 #undef S
 
 #define S conic_shot_writing
-static const conic_row writing_list[] = {
+static const conic_shot_row writing_list[] = {
     {CONIC_ROW_WORD, AT(tone), NULL, "how files of 8 and 16 bits show what is brighter than white", tone_word},
     {CONIC_ROW_WORD, AT(compression), NULL, "of an EXR", compression_word},
     {CONIC_ROW_TRUTH, AT(is_half), NULL, "colours and directions of an EXR are half floats"},
-    {CONIC_ROW_TRUTH, AT(has_studio), NULL, "files to look at have dark greys behind the picture"},
+    {CONIC_ROW_TRUTH, AT(is_bare), NULL, "files to look at have no dark greys behind the picture"},
     {CONIC_ROW_TRUTH, AT(has_legend), NULL, "the picture says what its colours mean"},
     {CONIC_ROW_TRUTH, AT(has_mattes), NULL, "an EXR has mattes"},
     RESERVED(reserved)};
@@ -344,7 +346,7 @@ static void set_shot(void *value) {
 }
 
 #define S conic_shot
-static const conic_row shot_list[] = {
+static const conic_shot_row shot_list[] = {
     SIZE_ROW,
     {CONIC_ROW_STRUCT, AT(camera), NULL, "where it is seen from", .of = &camera_rows},
     {CONIC_ROW_STRUCT, AT(way), NULL, "where the camera goes", .of = &way_rows},
@@ -376,7 +378,7 @@ static void set_file(void *value) {
 }
 
 #define S conic_shot_file
-static const conic_row file_list[] = {
+static const conic_shot_row file_list[] = {
     SIZE_ROW,
     {CONIC_ROW_STRUCT, AT(shot), NULL, "the shot", .of = &shot_rows},
     {CONIC_ROW_STRUCT, AT(reading), NULL, "how files become what is drawn", .of = &reading_rows},
@@ -386,30 +388,30 @@ static const conic_row file_list[] = {
     {CONIC_ROW_LEFT_OUT, AT(n_inputs), .meaning = "how many these are"}};
 #undef S
 
-const conic_rows conic_shot_file_rows = {"file", sizeof(conic_shot_file), file_list,
-                                         sizeof file_list / sizeof *file_list, set_file};
+const conic_shot_rows conic_shot_file_rows = {"file", sizeof(conic_shot_file), file_list,
+                                              sizeof file_list / sizeof *file_list, set_file};
 
-const conic_rows *const conic_all_shot_rows[] = {&conic_shot_file_rows,
-                                                 &shot_rows,
-                                                 &camera_rows,
-                                                 &way_rows,
-                                                 &eye_rows,
-                                                 &render_rows,
-                                                 &kernel_rows,
-                                                 &lighting_rows,
-                                                 &light_rows,
-                                                 &view_rows,
-                                                 &gaussians_rows,
-                                                 &shot_light_rows,
-                                                 &lamp_rows,
-                                                 &aperture_rows,
-                                                 &reading_rows,
-                                                 &patches_rows,
-                                                 &surface_rows,
-                                                 &coloring_rows,
-                                                 &map_rows,
-                                                 &writing_rows,
-                                                 NULL};
+const conic_shot_rows *const conic_all_shot_rows[] = {&conic_shot_file_rows,
+                                                      &shot_rows,
+                                                      &camera_rows,
+                                                      &way_rows,
+                                                      &eye_rows,
+                                                      &render_rows,
+                                                      &kernel_rows,
+                                                      &lighting_rows,
+                                                      &light_rows,
+                                                      &view_rows,
+                                                      &gaussians_rows,
+                                                      &shot_light_rows,
+                                                      &lamp_rows,
+                                                      &aperture_rows,
+                                                      &reading_rows,
+                                                      &patches_rows,
+                                                      &surface_rows,
+                                                      &coloring_rows,
+                                                      &map_rows,
+                                                      &writing_rows,
+                                                      NULL};
 
 void conic_shot_file_init_sized(conic_shot_file *file, size_t size) {
   conic_shot_file own;
@@ -421,7 +423,7 @@ void conic_shot_file_init_sized(conic_shot_file *file, size_t size) {
   conic_options_give(file, size, &own);
 }
 
-size_t conic_row_count(const conic_row *row) {
+size_t conic_row_count(const conic_shot_row *row) {
   switch (row->kind) {
   case CONIC_ROW_INT:
   case CONIC_ROW_TRUTH:
@@ -439,7 +441,7 @@ size_t conic_row_count(const conic_row *row) {
   }
 }
 
-size_t conic_row_length(const conic_row *row, const void *value) {
+size_t conic_row_length(const conic_shot_row *row, const void *value) {
   uint64_t length = 0;
   int n = 0;
   if (row->length_is_64)
@@ -450,7 +452,7 @@ size_t conic_row_length(const conic_row *row, const void *value) {
   return !row->is_apart && found > most ? most : found;
 }
 
-void conic_rows_standard(const conic_rows *rows, conic_standard *standard) {
+void conic_rows_standard(const conic_shot_rows *rows, conic_standard *standard) {
   memset(standard, 0, sizeof *standard);
   if (rows->set_standard)
     rows->set_standard(standard->bytes);

@@ -6,7 +6,7 @@
 
 #include "conic/shot_file.h"
 
-typedef enum conic_row_kind {
+typedef enum conic_shot_row_kind {
   CONIC_ROW_INT,
   CONIC_ROW_UINT32,
   CONIC_ROW_UINT64,
@@ -24,47 +24,47 @@ typedef enum conic_row_kind {
   CONIC_ROW_LENGTH, /* of a list */
   CONIC_ROW_RESERVED,
   CONIC_ROW_LEFT_OUT /* `meaning` says why */
-} conic_row_kind;
+} conic_shot_row_kind;
 
-typedef struct conic_rows conic_rows;
+typedef struct conic_shot_rows conic_shot_rows;
 
-typedef struct conic_row {
-  conic_row_kind kind;
+typedef struct conic_shot_row {
+  conic_shot_row_kind kind;
   const char *name;
   size_t offset, bytes;
   const char *unit, *meaning;
   const char *(*word)(int i); /* null beyond the last */
-  const conic_rows *of;
+  const conic_shot_rows *of;
   size_t length;    /* of a list: the offset of its length, */
   int length_is_64; /* which is a uint64_t, else an int */
   int is_apart;
   int columns; /* a matrix has so many; 0: it is none */
   int is_said; /* it stands in every file */
-} conic_row;
+} conic_shot_row;
 
-struct conic_rows {
+struct conic_shot_rows {
   const char *name;
   size_t size;
-  const conic_row *rows;
+  const conic_shot_row *rows;
   size_t n_rows;
   void (*set_standard)(void *value); /* null: all zero */
 };
 
 /* Of a conic_shot_file: the members of its shot, then `reading`, `map` and `writing`. */
-extern const conic_rows conic_shot_file_rows;
+extern const conic_shot_rows conic_shot_file_rows;
 /* Every table, null after the last. */
-extern const conic_rows *const conic_all_shot_rows[];
+extern const conic_shot_rows *const conic_all_shot_rows[];
 
 /* Numbers, or other things, that a row has. */
-size_t conic_row_count(const conic_row *row);
+size_t conic_row_count(const conic_shot_row *row);
 /* How many members a list has. */
-size_t conic_row_length(const conic_row *row, const void *value);
+size_t conic_row_length(const conic_shot_row *row, const void *value);
 /* What a row's struct, or each member of its list, is unless it is said; of no use for longer than to look at. */
 enum { CONIC_STANDARD_ROOM = 2048 };
 typedef union conic_standard {
   double aligned;
   unsigned char bytes[CONIC_STANDARD_ROOM];
 } conic_standard;
-void conic_rows_standard(const conic_rows *rows, conic_standard *standard);
+void conic_rows_standard(const conic_shot_rows *rows, conic_standard *standard);
 
 #endif

@@ -10,29 +10,30 @@
 #include "shots/shot_roles.h"
 #include "shots/shot_text.h"
 
-typedef struct writing {
+typedef struct shot_writer {
   conic_text text;
   conic_shot_text what;
   int has_members; /* of the object at hand */
-} writing;
+} shot_writer;
 
-static void begin_member(writing *w, const char *name, int depth) {
+static void begin_member(shot_writer *w, const char *name, int depth) {
   conic_text_print(&w->text, "%s\n%*s\"%s\": ", w->has_members ? "," : "", 2 * depth, "", name);
   w->has_members = 1;
 }
 
-static void write_rows(writing *w, const conic_rows *rows, const void *value, const void *standard, int depth);
+static void write_fields(shot_writer *w, const conic_shot_rows *rows, const void *value, const void *standard,
+                         int depth);
 
 /* Writes an object, or, if it has no members, and nobody needs it, nothing. Returns whether it did. */
-static int write_object(writing *w, const char *name, const conic_rows *rows, const void *value, const void *standard,
-                        int depth) {
+static int write_object(shot_writer *w, const char *name, const conic_shot_rows *rows, const void *value,
+                        const void *standard, int depth) {
   size_t n_before = w->text.n;
   int had_members = w->has_members;
   if (name)
     begin_member(w, name, depth);
   conic_text_say(&w->text, "{");
   w->has_members = 0;
-  write_rows(w, rows, value, standard, depth + 1);
+  write_fields(w, rows, value, standard, depth + 1);
   int has_members = w->has_members;
   if (has_members)
     conic_text_print(&w->text, "\n%*s", 2 * depth, "");
@@ -45,7 +46,7 @@ static int write_object(writing *w, const char *name, const conic_rows *rows, co
   return 0;
 }
 
-static void write_list(writing *w, const conic_row *row, const void *value, int depth) {
+static void write_field_list(shot_writer *w, const conic_shot_row *row, const void *value, int depth) {
   conic_standard standard;
   const char *first = (const char *)value + row->offset;
   size_t n = conic_row_length(row, value);
@@ -62,7 +63,7 @@ static void write_list(writing *w, const conic_row *row, const void *value, int 
   conic_text_print(&w->text, "\n%*s]", 2 * depth, "");
 }
 
-static void write_pointer(writing *w, const conic_row *row, const void *value, int depth) {
+static void write_pointer(shot_writer *w, const conic_shot_row *row, const void *value, int depth) {
   conic_standard standard;
   const void *to;
   memcpy(&to, (const char *)value + row->offset, sizeof to);
@@ -72,23 +73,24 @@ static void write_pointer(writing *w, const conic_row *row, const void *value, i
 }
 
 /* Of a map there is no camera yet. */
-static int is_missing_camera(const conic_row *row, const void *value) {
+static int is_missing_camera(const conic_shot_row *row, const void *value) {
   const conic_camera *camera = value;
   return strcmp(row->name, "camera") == 0 && camera->width == 0;
 }
 
-static void write_rows(writing *w, const conic_rows *rows, const void *value, const void *standard, int depth) {
+static void write_fields(shot_writer *w, const conic_shot_rows *rows, const void *value, const void *standard,
+                         int depth) {
   for (size_t i = 0; i < rows->n_rows; i++) {
-    const conic_row *row = &rows->rows[i];
+    const conic_shot_row *row = &rows->rows[i];
     const char *at = (const char *)value + row->offset, *like = (const char *)standard + row->offset;
     if (row->kind >= CONIC_ROW_LENGTH)
       continue;
     if (row->kind == CONIC_ROW_LIST) {
-      write_list(w, row, value, depth);
+      write_field_list(w, row, value, depth);
     } else if (row->kind == CONIC_ROW_POINTER) {
       write_pointer(w, row, value, depth);
     } else if (row->kind == CONIC_ROW_STRUCT && rows == &conic_shot_file_rows && i == 1) {
-      write_rows(w, row->of, at, like, depth);
+      write_fields(w, row->of, at, like, depth);
     } else if (row->kind == CONIC_ROW_STRUCT) {
       if (!is_missing_camera(row, at))
         write_object(w, row->name, row->of, at, like, depth);
@@ -99,19 +101,19 @@ static void write_rows(writing *w, const conic_rows *rows, const void *value, co
   }
 }
 
-static const char *name_of(const writing *w, const conic_shot_input *input) {
+static const char *name_of_input(const shot_writer *w, const conic_shot_input *input) {
   int is_plain = w->what == CONIC_SHOT_IN_PICTURE && input->role != CONIC_SHOT_PART && !strstr(input->name, "://");
   return is_plain ? conic_file_name(input->name) : input->name;
 }
 
-static void write_inputs(writing *w, const conic_shot_file *file) {
+static void write_inputs(shot_writer *w, const conic_shot_file *file) {
   if (file->n_inputs == 0)
     return;
   begin_member(w, "inputs", 1);
   for (size_t i = 0; i < file->n_inputs; i++) {
     const conic_shot_input *input = &file->inputs[i];
     conic_text_print(&w->text, "%s\n    {\"name\": ", i ? "," : "[");
-    conic_text_quote(&w->text, name_of(w, input));
+    conic_text_quote(&w->text, name_of_input(w, input));
     if (input->role != CONIC_SHOT_SCENE)
       conic_text_print(&w->text, ", \"as\": \"%s\"", conic_shot_role_name(input->role));
     if (input->n_bytes)
@@ -125,7 +127,7 @@ static void write_inputs(writing *w, const conic_shot_file *file) {
 
 conic_status conic_shot_file_print(conic_context *context, const conic_shot_file *file, conic_shot_text what,
                                    char **text) {
-  writing w = {.text = {.context = context}, .what = what};
+  shot_writer w = {.text = {.context = context}, .what = what};
   conic_shot_file standard;
   *text = NULL;
   if (!file || file->size != sizeof *file)
@@ -137,7 +139,7 @@ conic_status conic_shot_file_print(conic_context *context, const conic_shot_file
   begin_member(&w, "conic", 1);
   conic_text_quote(&w.text, conic_version());
   write_inputs(&w, file);
-  write_rows(&w, &conic_shot_file_rows, file, &standard, 1);
+  write_fields(&w, &conic_shot_file_rows, file, &standard, 1);
   conic_text_say(&w.text, "\n}\n");
   if (w.text.status == CONIC_OK)
     *text = w.text.bytes;

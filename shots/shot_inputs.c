@@ -5,13 +5,13 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "conic/layers.h"
 #include "conic/layers_draw.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
-#include "lod/hierarchies/hierarchy.h"
 #include "shots/shot_key.h"
 
 enum { PIECE_BYTES = 1 << 20, MOST_PIECES = 64, PATH_ROOM = 4096 };
@@ -20,7 +20,7 @@ static const uint64_t most_whole_bytes = (uint64_t)MOST_PIECES * PIECE_BYTES;
 /* --- what a file holds --- */
 
 /* Adds a whole file, or pieces of one that is large. */
-static conic_status add_file(conic_context *context, conic_sha256 *sum, const char *path, int is_sampled) {
+static conic_status hash_file_into(conic_context *context, conic_sha256 *sum, const char *path, int is_sampled) {
   conic_disk_entry entry;
   conic_status status = CONIC_OK;
   int descriptor = conic_file_is_there(path) ? conic_disk_open(path) : -1;
@@ -75,7 +75,7 @@ static conic_status add_to_folder_list(folder_list *list, const char *path, cons
   return CONIC_OK;
 }
 
-static conic_status list_folder(folder_list *list, const char *folder, int depth) {
+static conic_status list_folder_files(folder_list *list, const char *folder, int depth) {
   conic_disk_folder listing;
   conic_status status = CONIC_OK;
   const char *name;
@@ -89,7 +89,7 @@ static conic_status list_folder(folder_list *list, const char *folder, int depth
         !conic_disk_look(path, &entry))
       continue;
     if (entry.is_folder)
-      status = list_folder(list, path, depth + 1);
+      status = list_folder_files(list, path, depth + 1);
     else if (entry.is_file)
       status = add_to_folder_list(list, path, &entry);
   }
@@ -105,7 +105,7 @@ static int compare_folder_files(const void *a, const void *b) {
 static conic_status look_at_folder(conic_context *context, const char *folder, conic_shot_input *input) {
   folder_list list = {.context = context};
   conic_sha256 sum;
-  conic_status status = list_folder(&list, folder, 0);
+  conic_status status = list_folder_files(&list, folder, 0);
   size_t n_folder = strlen(folder);
   if (list.n)
     qsort(list.files, list.n, sizeof *list.files, compare_folder_files);
@@ -119,7 +119,7 @@ static conic_status look_at_folder(conic_context *context, const char *folder, c
     if (input->is_sampled)
       conic_key_add_number(&sum, (uint64_t)file->modified_seconds);
     if (!input->is_sampled || i % (list.n / MOST_PIECES + 1) == 0)
-      status = add_file(context, &sum, file->path, file->n_bytes > most_whole_bytes);
+      status = hash_file_into(context, &sum, file->path, file->n_bytes > most_whole_bytes);
   }
   conic_sha256_end(&sum, input->sha256);
   for (size_t i = 0; i < list.n; i++)
@@ -130,16 +130,15 @@ static conic_status look_at_folder(conic_context *context, const char *folder, c
 
 /* The folder that a hierarchy of files is in: as it was named, or its first file. */
 static int find_hierarchy_folder(const char *path, char folder[PATH_ROOM]) {
-  char first[PATH_ROOM];
   conic_disk_entry entry;
-  if (!conic_disk_look(path, &entry) || !conic_hierarchy_find_file(path, first, sizeof first))
-    return 0;
-  const char *name = conic_file_name(first);
-  if (!entry.is_folder &&
-      ((strcmp(name, "ept.json") != 0 && strcmp(name, "metadata.json") != 0) || !conic_hierarchy_is_file(path)))
+  const char *name = conic_file_name(path);
+  int is_first_file = strcmp(name, "ept.json") == 0 || strcmp(name, "metadata.json") == 0;
+  if (!conic_disk_look(path, &entry) || (!entry.is_folder && !is_first_file) || !conic_layers_is_hierarchy(path))
     return 0;
   int n = entry.is_folder ? snprintf(folder, PATH_ROOM, "%s", path)
-                          : snprintf(folder, PATH_ROOM, "%.*s.", (int)(name - first), first);
+                          : snprintf(folder, PATH_ROOM, "%.*s.", (int)(name - path), path);
+  if (n < 0 || n >= PATH_ROOM)
+    return 0;
   while (entry.is_folder && n > 1 && conic_disk_is_separator(folder[n - 1]))
     folder[--n] = '\0';
   return 1;
@@ -156,7 +155,7 @@ conic_status conic_shot_input_look(conic_context *context, const char *path, con
   input->n_bytes = entry.n_bytes;
   input->is_sampled = entry.n_bytes > most_whole_bytes;
   conic_sha256_begin(&sum);
-  conic_status status = add_file(context, &sum, path, input->is_sampled);
+  conic_status status = hash_file_into(context, &sum, path, input->is_sampled);
   conic_sha256_end(&sum, input->sha256);
   return status;
 }
@@ -179,7 +178,7 @@ static conic_status add_input(conic_context *context, conic_shot_inputs *inputs,
   return conic_shot_input_look(context, path, input);
 }
 
-static int is_same_file(const char *a, const char *b) {
+static int are_one_file(const char *a, const char *b) {
   conic_disk_entry first, second;
   if (!a || !b)
     return 0;
@@ -195,7 +194,7 @@ static int is_named(const conic_shot_names *names, const char *path) {
   const char *const others[] = {names->texture, names->sky, names->motion};
   for (size_t i = 0; i < names->n_scene; i++) {
     const char *scene = names->scene[i];
-    if (is_same_file(scene, path))
+    if (are_one_file(scene, path))
       return 1;
     if (find_hierarchy_folder(scene, folder)) {
       size_t n = strlen(folder);
@@ -206,7 +205,7 @@ static int is_named(const conic_shot_names *names, const char *path) {
     }
   }
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-    if (is_same_file(others[i], path))
+    if (are_one_file(others[i], path))
       return 1;
   return 0;
 }

@@ -19,14 +19,14 @@ void conic_key_add_number(conic_sha256 *sum, uint64_t number) {
   conic_key_add_text(sum, digits);
 }
 
-typedef struct adding {
+typedef struct key_adding {
   conic_sha256 *sum;
   conic_text text; /* of the field at hand */
   const char *part;
-} adding;
+} key_adding;
 
 static void add_field(void *cookie, const conic_field_visit *visit) {
-  adding *a = cookie;
+  key_adding *a = cookie;
   int is_wanted = a->part ? strncmp(visit->path, a->part, strlen(a->part)) == 0
                           : strncmp(visit->path, "writing.", strlen("writing.")) != 0;
   if (!is_wanted || conic_row_is_same(visit->row, visit->value, visit->standard))
@@ -40,7 +40,7 @@ static void add_field(void *cookie, const conic_field_visit *visit) {
 
 conic_status conic_key_add_fields(conic_context *context, conic_sha256 *sum, const conic_shot_file *file,
                                   const char *part) {
-  adding a = {.sum = sum, .text = {.context = context}, .part = part};
+  key_adding a = {.sum = sum, .text = {.context = context}, .part = part};
   conic_fields_visit(file, add_field, &a);
   conic_text_release(&a.text);
   return a.text.status;

@@ -25,20 +25,20 @@ typedef struct owned_shot {
   size_t n_blocks, room;
 } owned_shot;
 
-typedef struct reading {
+typedef struct shot_reader {
   conic_context *context;
   conic_json json;
   owned_shot *owned;
-} reading;
+} shot_reader;
 
-static conic_status fail_field(reading *r, const char *format, const char *a, const char *b) {
+static conic_status fail_field(shot_reader *r, const char *format, const char *a, const char *b) {
   char what[256];
   snprintf(what, sizeof what, format, a, b);
   return conic_json_wrong(&r->json, what);
 }
 
 /* Memory that goes with the file, all zero. */
-static void *own_block(reading *r, size_t count, size_t size) {
+static void *own_block(shot_reader *r, size_t count, size_t size) {
   owned_shot *owned = r->owned;
   conic_status status = conic_memory_reserve(r->context, &owned->blocks, owned->n_blocks, owned->n_blocks + 1,
                                              &owned->room, sizeof *owned->blocks);
@@ -50,7 +50,7 @@ static void *own_block(reading *r, size_t count, size_t size) {
 
 /* --- values --- */
 
-static int hex_digit(char c) {
+static int hex_value(char c) {
   return c >= '0' && c <= '9'   ? c - '0'
          : c >= 'a' && c <= 'f' ? c - 'a' + 10
          : c >= 'A' && c <= 'F' ? c - 'A' + 10
@@ -82,7 +82,7 @@ static size_t put_escape(char *to, const char *from, size_t n, size_t *n_read) {
   *n_read = n ? 1 : 0;
   if (n >= 5 && from[0] == 'u') {
     for (int i = 1; i < 5; i++)
-      code = code << 4 | (unsigned)(hex_digit(from[i]) & 15);
+      code = code << 4 | (unsigned)(hex_value(from[i]) & 15);
     *n_read = 5;
     return put_character(to, code ? code : '?');
   }
@@ -91,7 +91,7 @@ static size_t put_escape(char *to, const char *from, size_t n, size_t *n_read) {
 }
 
 /* A text of any length, which goes with the file. */
-static conic_status read_words(reading *r, const char **words) {
+static conic_status read_owned_text(shot_reader *r, const char **words) {
   const char *raw;
   size_t n_raw, n = 0;
   conic_status status = conic_json_raw_text(&r->json, &raw, &n_raw);
@@ -112,11 +112,11 @@ static conic_status read_words(reading *r, const char **words) {
   return CONIC_OK;
 }
 
-static conic_status read_truth(reading *r, int *truth) {
+static conic_status read_truth(shot_reader *r, int *truth) {
   return conic_json_truth(&r->json, truth);
 }
 
-static conic_status read_word(reading *r, const conic_row *row, char *at) {
+static conic_status read_field_word(shot_reader *r, const conic_shot_row *row, char *at) {
   char word[64];
   conic_status status = conic_json_text(&r->json, word, sizeof word);
   for (int i = 0; status == CONIC_OK && row->word(i); i++)
@@ -127,12 +127,12 @@ static conic_status read_word(reading *r, const conic_row *row, char *at) {
   return status == CONIC_OK ? fail_field(r, "%s cannot be '%s'", row->name, word) : status;
 }
 
-static conic_status read_planes(reading *r, const conic_row *row, char *at) {
+static conic_status read_plane_words(shot_reader *r, const conic_shot_row *row, char *at) {
   unsigned bits = 0;
   conic_status status = conic_json_begin_array(&r->json);
   while (status == CONIC_OK && conic_json_next_item(&r->json)) {
     int i = 0;
-    status = read_word(r, row, (char *)&i);
+    status = read_field_word(r, row, (char *)&i);
     bits |= 1u << i;
   }
   memcpy(at, &bits, sizeof bits);
@@ -140,7 +140,7 @@ static conic_status read_planes(reading *r, const conic_row *row, char *at) {
 }
 
 /* A number into the member's own type; NaN, which null is, leaves it as it is. */
-static conic_status put_number(reading *r, const conic_row *row, double value, char *at) {
+static conic_status put_field_number(shot_reader *r, const conic_shot_row *row, double value, char *at) {
   float rounded = (float)value;
   int is_whole = value >= -9007199254740992.0 && value <= 9007199254740992.0 && value == (double)(int64_t)value;
   if (value != value)
@@ -163,7 +163,7 @@ static conic_status put_number(reading *r, const conic_row *row, double value, c
   return CONIC_OK;
 }
 
-static conic_status read_numbers(reading *r, const conic_row *row, char *at) {
+static conic_status read_field_numbers(shot_reader *r, const conic_shot_row *row, char *at) {
   double values[MOST_NUMBERS];
   size_t n = conic_row_count(row), n_read = 0, columns = row->columns ? (size_t)row->columns : n;
   conic_status status = CONIC_OK;
@@ -185,15 +185,15 @@ static conic_status read_numbers(reading *r, const conic_row *row, char *at) {
   if (status == CONIC_OK && n > 1 && n_read != n)
     return fail_field(r, "%s has another number of values%s", row->name, "");
   for (size_t i = 0; i < n && status == CONIC_OK; i++)
-    status = put_number(r, row, values[i], at + i * (row->bytes / n));
+    status = put_field_number(r, row, values[i], at + i * (row->bytes / n));
   return status;
 }
 
 /* --- structs --- */
 
-static conic_status read_rows(reading *r, const conic_rows *rows, char *value);
+static conic_status read_fields(shot_reader *r, const conic_shot_rows *rows, char *value);
 
-static conic_status read_pointer(reading *r, const conic_row *row, char *at) {
+static conic_status read_pointer(shot_reader *r, const conic_shot_row *row, char *at) {
   conic_standard standard;
   char *to = own_block(r, 1, row->of->size);
   if (!to)
@@ -201,10 +201,10 @@ static conic_status read_pointer(reading *r, const conic_row *row, char *at) {
   conic_rows_standard(row->of, &standard);
   memcpy(to, standard.bytes, row->of->size);
   memcpy(at, &to, sizeof to);
-  return read_rows(r, row->of, to);
+  return read_fields(r, row->of, to);
 }
 
-static conic_status read_list(reading *r, const conic_row *row, char *value) {
+static conic_status read_list(shot_reader *r, const conic_shot_row *row, char *value) {
   conic_standard standard;
   const size_t size = row->of->size, most = row->is_apart ? MOST_MEMBERS : row->bytes / size;
   char *members = NULL, *at = value + row->offset;
@@ -218,7 +218,7 @@ static conic_status read_list(reading *r, const conic_row *row, char *value) {
       status = conic_memory_reserve(r->context, &members, n, n + 1, &room, size);
     if (status == CONIC_OK) {
       memcpy(members + n * size, standard.bytes, size);
-      status = read_rows(r, row->of, members + n++ * size);
+      status = read_fields(r, row->of, members + n++ * size);
     }
   }
   if (status == CONIC_OK)
@@ -243,7 +243,7 @@ static conic_status read_list(reading *r, const conic_row *row, char *value) {
 }
 
 /* Whether it is null is all that there is to know. */
-static conic_status read_presence(reading *r, char *at) {
+static conic_status read_presence(shot_reader *r, char *at) {
   int is_there = 0;
   conic_status status = read_truth(r, &is_there);
   const void *to = is_there ? (const void *)r->owned : NULL;
@@ -251,22 +251,22 @@ static conic_status read_presence(reading *r, char *at) {
   return status;
 }
 
-static conic_status read_field(reading *r, const conic_row *row, char *value) {
+static conic_status read_field(shot_reader *r, const conic_shot_row *row, char *value) {
   char *at = value + row->offset;
   const char *words;
   int truth;
   conic_status status;
   switch (row->kind) {
   case CONIC_ROW_STRUCT:
-    return read_rows(r, row->of, at);
+    return read_fields(r, row->of, at);
   case CONIC_ROW_POINTER:
     return read_pointer(r, row, at);
   case CONIC_ROW_LIST:
     return read_list(r, row, value);
   case CONIC_ROW_WORD:
-    return read_word(r, row, at);
+    return read_field_word(r, row, at);
   case CONIC_ROW_PLANES:
-    return read_planes(r, row, at);
+    return read_plane_words(r, row, at);
   case CONIC_ROW_HAS:
     return read_presence(r, at);
   case CONIC_ROW_TRUTH:
@@ -274,26 +274,26 @@ static conic_status read_field(reading *r, const conic_row *row, char *value) {
     memcpy(at, &truth, status == CONIC_OK ? sizeof truth : 0);
     return status;
   case CONIC_ROW_TEXT:
-    status = read_words(r, &words);
+    status = read_owned_text(r, &words);
     memcpy(at, &words, status == CONIC_OK ? sizeof words : 0);
     return status;
   default:
-    return read_numbers(r, row, at);
+    return read_field_numbers(r, row, at);
   }
 }
 
-static const conic_row *find_row(const conic_rows *rows, const char *key) {
+static const conic_shot_row *find_shot_row(const conic_shot_rows *rows, const char *key) {
   for (size_t i = 0; i < rows->n_rows; i++)
     if (rows->rows[i].kind < CONIC_ROW_LENGTH && strcmp(rows->rows[i].name, key) == 0)
       return &rows->rows[i];
   return NULL;
 }
 
-static conic_status read_rows(reading *r, const conic_rows *rows, char *value) {
+static conic_status read_fields(shot_reader *r, const conic_shot_rows *rows, char *value) {
   char key[CONIC_JSON_KEY_ROOM];
   conic_status status = conic_json_begin_object(&r->json);
   while (status == CONIC_OK && conic_json_next_member(&r->json, key)) {
-    const conic_row *row = find_row(rows, key);
+    const conic_shot_row *row = find_shot_row(rows, key);
     status = row ? read_field(r, row, value) : fail_field(r, "there is no field '%s'%s", key, "");
   }
   return status == CONIC_OK ? r->json.status : status;
@@ -301,12 +301,12 @@ static conic_status read_rows(reading *r, const conic_rows *rows, char *value) {
 
 /* --- the file --- */
 
-static conic_status read_input_member(reading *r, const char *key, conic_shot_input *input) {
+static conic_status read_input_member(shot_reader *r, const char *key, conic_shot_input *input) {
   char word[CONIC_JSON_KEY_ROOM];
   double number = 0.0;
   conic_status status;
   if (strcmp(key, "name") == 0)
-    return read_words(r, &input->name);
+    return read_owned_text(r, &input->name);
   if (strcmp(key, "sampled") == 0)
     return read_truth(r, &input->is_sampled);
   if (strcmp(key, "sha256") == 0)
@@ -327,7 +327,7 @@ static conic_status read_input_member(reading *r, const char *key, conic_shot_in
   return status == CONIC_OK ? fail_field(r, "an input cannot be '%s'%s", word, "") : status;
 }
 
-static conic_status read_input(reading *r, conic_shot_input *input) {
+static conic_status read_shot_input(shot_reader *r, conic_shot_input *input) {
   char key[CONIC_JSON_KEY_ROOM];
   memset(input, 0, sizeof *input);
   conic_status status = conic_json_begin_object(&r->json);
@@ -338,7 +338,7 @@ static conic_status read_input(reading *r, conic_shot_input *input) {
   return status == CONIC_OK && !input->name ? fail_field(r, "an input has no name%s%s", "", "") : status;
 }
 
-static conic_status read_inputs(reading *r) {
+static conic_status read_inputs(shot_reader *r) {
   conic_shot_input *inputs = NULL;
   size_t n = 0, room = 0;
   conic_status status = conic_json_begin_array(&r->json);
@@ -346,7 +346,7 @@ static conic_status read_inputs(reading *r) {
     status = n == MOST_MEMBERS ? fail_field(r, "there are too many inputs%s%s", "", "")
                                : conic_memory_reserve(r->context, &inputs, n, n + 1, &room, sizeof *inputs);
     if (status == CONIC_OK)
-      status = read_input(r, &inputs[n++]);
+      status = read_shot_input(r, &inputs[n++]);
   }
   if (status == CONIC_OK)
     status = r->json.status;
@@ -361,7 +361,7 @@ static conic_status read_inputs(reading *r) {
   return status;
 }
 
-static conic_status read_version(reading *r, int *has_version) {
+static conic_status read_version(shot_reader *r, int *has_version) {
   double version;
   conic_status status = conic_json_number(&r->json, &version);
   *has_version = 1;
@@ -375,8 +375,8 @@ static conic_status read_version(reading *r, int *has_version) {
 }
 
 /* Members of the shot stand beside those of the file. */
-static conic_status read_member(reading *r, const char *key, int *has_version) {
-  const conic_row *shot = &conic_shot_file_rows.rows[1], *row;
+static conic_status read_shot_member(shot_reader *r, const char *key, int *has_version) {
+  const conic_shot_row *shot = &conic_shot_file_rows.rows[1], *row;
   char *file = (char *)&r->owned->file;
   char word[CONIC_JSON_KEY_ROOM];
   if (strcmp(key, "conic_shot") == 0)
@@ -387,18 +387,18 @@ static conic_status read_member(reading *r, const char *key, int *has_version) {
     return conic_json_text(&r->json, word, sizeof word);
   if (strcmp(key, "inputs") == 0)
     return read_inputs(r);
-  if ((row = find_row(shot->of, key)))
+  if ((row = find_shot_row(shot->of, key)))
     return read_field(r, row, file + shot->offset);
-  row = find_row(&conic_shot_file_rows, key);
+  row = find_shot_row(&conic_shot_file_rows, key);
   return row && row != shot ? read_field(r, row, file) : fail_field(r, "there is no field '%s'%s", key, "");
 }
 
-static conic_status read_file(reading *r) {
+static conic_status read_shot(shot_reader *r) {
   char key[CONIC_JSON_KEY_ROOM];
   int has_version = 0;
   conic_status status = conic_json_begin_object(&r->json);
   while (status == CONIC_OK && conic_json_next_member(&r->json, key))
-    status = read_member(r, key, &has_version);
+    status = read_shot_member(r, key, &has_version);
   if (status == CONIC_OK)
     status = r->json.status;
   if (status == CONIC_OK)
@@ -412,7 +412,7 @@ static conic_status read_file(reading *r) {
 
 conic_status conic_shot_file_parse(conic_context *context, const char *name, const char *text, size_t n_bytes,
                                    conic_shot_file **file) {
-  reading r = {.context = context};
+  shot_reader r = {.context = context};
   *file = NULL;
   r.owned = conic_memory_allocate_zeroed(context, 1, sizeof *r.owned);
   if (!r.owned)
@@ -421,7 +421,7 @@ conic_status conic_shot_file_parse(conic_context *context, const char *name, con
   conic_status status = conic_json_take(context, name ? name : "shot", text, n_bytes, &r.json);
   if (status == CONIC_OK) {
     r.json.is_silent = !name;
-    status = read_file(&r);
+    status = read_shot(&r);
     conic_json_close(&r.json);
   }
   if (status == CONIC_OK)

@@ -7,13 +7,13 @@
 
 /* --- one by one --- */
 
-typedef struct finding {
+typedef struct field_finding {
   size_t left; /* fields to pass over */
   conic_shot_field *field;
   int is_found;
-} finding;
+} field_finding;
 
-static conic_shot_field_kind kind_of(const conic_row *row) {
+static conic_shot_field_kind kind_of_field(const conic_shot_row *row) {
   switch (row->kind) {
   case CONIC_ROW_TRUTH:
   case CONIC_ROW_HAS:
@@ -33,13 +33,13 @@ static conic_shot_field_kind kind_of(const conic_row *row) {
   }
 }
 
-static void take_field(finding *f, const char *path, const conic_row *row, const void *standard) {
+static void take_field(field_finding *f, const char *path, const conic_shot_row *row, const void *standard) {
   if (f->is_found || f->left-- > 0)
     return;
   f->is_found = 1;
   memset(f->field, 0, sizeof *f->field);
   snprintf(f->field->path, sizeof f->field->path, "%s", path);
-  f->field->kind = kind_of(row);
+  f->field->kind = kind_of_field(row);
   f->field->count = (int)conic_row_count(row);
   f->field->unit = row->unit;
   f->field->meaning = row->meaning;
@@ -50,9 +50,9 @@ static void take_field(finding *f, const char *path, const conic_row *row, const
     conic_text_value(&standard_text, row, standard);
 }
 
-static void find_in_rows(finding *f, const conic_rows *rows, const void *standard, const char *before) {
+static void find_in_rows(field_finding *f, const conic_shot_rows *rows, const void *standard, const char *before) {
   for (size_t i = 0; i < rows->n_rows && !f->is_found; i++) {
-    const conic_row *row = &rows->rows[i];
+    const conic_shot_row *row = &rows->rows[i];
     conic_standard own;
     char path[96];
     if (row->kind >= CONIC_ROW_LENGTH)
@@ -72,7 +72,7 @@ static void find_in_rows(finding *f, const conic_rows *rows, const void *standar
 
 int conic_shot_field_at(size_t i, conic_shot_field *field) {
   conic_shot_file standard;
-  finding f = {.left = i, .field = field};
+  field_finding f = {.left = i, .field = field};
   conic_shot_file_init(&standard);
   find_in_rows(&f, &conic_shot_file_rows, &standard, "");
   return f.is_found;
@@ -80,9 +80,9 @@ int conic_shot_field_at(size_t i, conic_shot_field *field) {
 
 /* --- as a schema --- */
 
-static void add_schema(conic_text *text, const conic_rows *rows, const void *standard, int depth);
+static void add_schema(conic_text *text, const conic_shot_rows *rows, const void *standard, int depth);
 
-static void add_type(conic_text *text, const conic_row *row) {
+static void add_type(conic_text *text, const conic_shot_row *row) {
   static const char *const types[] = {[CONIC_SHOT_FIELD_TRUTH] = "\"type\": \"boolean\"",
                                       [CONIC_SHOT_FIELD_INTEGER] = "\"type\": \"integer\"",
                                       [CONIC_SHOT_FIELD_FLOAT] = "\"type\": [\"number\", \"null\"]",
@@ -103,12 +103,12 @@ static void add_type(conic_text *text, const conic_row *row) {
     conic_text_print(text, "\"type\": \"array\", \"minItems\": %d, \"maxItems\": %d, \"items\": {",
                      left == n ? n / columns == 1 ? n : n / columns : columns,
                      left == n ? n / columns == 1 ? n : n / columns : columns);
-  conic_text_say(text, types[kind_of(row)]);
+  conic_text_say(text, types[kind_of_field(row)]);
   for (int left = n; left > 1; left = left == n && columns < n ? columns : 1)
     conic_text_say(text, "}");
 }
 
-static void begin_property(conic_text *text, const conic_row *row, int is_first, int depth) {
+static void begin_property(conic_text *text, const conic_shot_row *row, int is_first, int depth) {
   conic_text_print(text, "%s\n%*s", is_first ? "" : ",", 2 * depth, "");
   conic_text_quote(text, row->name);
   conic_text_say(text, ": {\"description\": ");
@@ -118,9 +118,10 @@ static void begin_property(conic_text *text, const conic_row *row, int is_first,
   conic_text_say(text, ", ");
 }
 
-static void add_properties(conic_text *text, const conic_rows *rows, const void *standard, int depth, int is_first) {
+static void add_properties(conic_text *text, const conic_shot_rows *rows, const void *standard, int depth,
+                           int is_first) {
   for (size_t i = 0; i < rows->n_rows; i++) {
-    const conic_row *row = &rows->rows[i];
+    const conic_shot_row *row = &rows->rows[i];
     const char *at = (const char *)standard + row->offset;
     conic_standard own;
     if (row->kind >= CONIC_ROW_LENGTH)
@@ -151,7 +152,7 @@ static void add_properties(conic_text *text, const conic_rows *rows, const void 
   }
 }
 
-static void add_schema(conic_text *text, const conic_rows *rows, const void *standard, int depth) {
+static void add_schema(conic_text *text, const conic_shot_rows *rows, const void *standard, int depth) {
   conic_text_say(text, "\"type\": \"object\", \"additionalProperties\": false, \"properties\": {");
   add_properties(text, rows, standard, depth + 1, 1);
   conic_text_print(text, "\n%*s}", 2 * depth, "");

@@ -53,7 +53,7 @@ void conic_text_release(conic_text *text) {
 
 /* --- values --- */
 
-static void add_real(conic_text *text, const conic_row *row, const char *at) {
+static void add_real(conic_text *text, const conic_shot_row *row, const char *at) {
   char digits[CONIC_NUMBER_ROOM] = "null";
   double value;
   float number;
@@ -75,7 +75,7 @@ static int int_at(const char *at) {
   return value;
 }
 
-static void add_word(conic_text *text, const conic_row *row, const char *at) {
+static void add_one_word(conic_text *text, const conic_shot_row *row, const char *at) {
   const char *word = row->word(int_at(at));
   if (word)
     conic_text_quote(text, word);
@@ -83,7 +83,7 @@ static void add_word(conic_text *text, const conic_row *row, const char *at) {
     conic_text_print(text, "%d", int_at(at));
 }
 
-static void add_planes(conic_text *text, const conic_row *row, const char *at) {
+static void add_plane_words(conic_text *text, const conic_shot_row *row, const char *at) {
   unsigned bits = (unsigned)int_at(at);
   const char *between = "";
   conic_text_say(text, "[");
@@ -98,13 +98,13 @@ static void add_planes(conic_text *text, const conic_row *row, const char *at) {
   conic_text_say(text, "]");
 }
 
-static const char *text_at(const conic_row *row, const void *value) {
+static const char *text_at(const conic_shot_row *row, const void *value) {
   const char *words;
   memcpy(&words, (const char *)value + row->offset, sizeof words);
   return words;
 }
 
-static void add_one(conic_text *text, const conic_row *row, const char *at) {
+static void add_one(conic_text *text, const conic_shot_row *row, const char *at) {
   uint64_t number;
   uint32_t small;
   switch (row->kind) {
@@ -127,13 +127,13 @@ static void add_one(conic_text *text, const conic_row *row, const char *at) {
   }
 }
 
-void conic_text_value(conic_text *text, const conic_row *row, const void *value) {
+void conic_text_value(conic_text *text, const conic_shot_row *row, const void *value) {
   const char *at = (const char *)value + row->offset;
   size_t n = conic_row_count(row), columns = (size_t)row->columns;
   if (row->kind == CONIC_ROW_WORD) {
-    add_word(text, row, at);
+    add_one_word(text, row, at);
   } else if (row->kind == CONIC_ROW_PLANES) {
-    add_planes(text, row, at);
+    add_plane_words(text, row, at);
   } else if (row->kind == CONIC_ROW_HAS) {
     conic_text_say(text, text_at(row, value) ? "true" : "false");
   } else if (row->kind == CONIC_ROW_TEXT) {
@@ -155,7 +155,7 @@ void conic_text_value(conic_text *text, const conic_row *row, const void *value)
   }
 }
 
-int conic_row_is_same(const conic_row *row, const void *a, const void *b) {
+int conic_row_is_same(const conic_shot_row *row, const void *a, const void *b) {
   if (row->kind == CONIC_ROW_TEXT) {
     const char *first = text_at(row, a), *second = text_at(row, b);
     return first == second || (first && second && strcmp(first, second) == 0);
@@ -177,9 +177,10 @@ typedef struct visiting {
   char path[PATH_ROOM];
 } visiting;
 
-static void visit_rows(visiting *v, const conic_rows *rows, const void *value, const void *standard, size_t n_path);
+static void visit_rows(visiting *v, const conic_shot_rows *rows, const void *value, const void *standard,
+                       size_t n_path);
 
-static void visit_list(visiting *v, const conic_row *row, const void *value, size_t n_path) {
+static void visit_list(visiting *v, const conic_shot_row *row, const void *value, size_t n_path) {
   conic_standard standard;
   const char *first = (const char *)value + row->offset;
   if (row->is_apart)
@@ -191,7 +192,7 @@ static void visit_list(visiting *v, const conic_row *row, const void *value, siz
   }
 }
 
-static void visit_pointer(visiting *v, const conic_row *row, const void *value, size_t n_path) {
+static void visit_pointer(visiting *v, const conic_shot_row *row, const void *value, size_t n_path) {
   conic_standard standard;
   const void *to = text_at(row, value);
   int n = snprintf(v->path + n_path, sizeof v->path - n_path, "%s.", row->name);
@@ -199,9 +200,10 @@ static void visit_pointer(visiting *v, const conic_row *row, const void *value, 
   visit_rows(v, row->of, to ? to : standard.bytes, standard.bytes, n_path + (size_t)n);
 }
 
-static void visit_rows(visiting *v, const conic_rows *rows, const void *value, const void *standard, size_t n_path) {
+static void visit_rows(visiting *v, const conic_shot_rows *rows, const void *value, const void *standard,
+                       size_t n_path) {
   for (size_t i = 0; i < rows->n_rows; i++) {
-    const conic_row *row = &rows->rows[i];
+    const conic_shot_row *row = &rows->rows[i];
     int is_shot = rows == &conic_shot_file_rows && i == 1; /* whose members stand beside the other parts */
     if (row->kind >= CONIC_ROW_LENGTH)
       continue;

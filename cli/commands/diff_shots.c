@@ -3,7 +3,7 @@
 #include "core/base/memory.h"
 #include "core/pictures/picture_shot.h"
 
-static conic_status read_shot(const cli_session *session, const char *path, conic_shot_file **shot) {
+static conic_status read_picture_shot(const cli_session *session, const char *path, conic_shot_file **shot) {
   conic_context *context = session->context;
   char *text;
   size_t n_bytes;
@@ -18,7 +18,7 @@ static conic_status read_shot(const cli_session *session, const char *path, coni
 conic_status cli_diff_shots_read(const cli_session *session, const char *const paths[2], cli_diff_shots *shots) {
   conic_status status = CONIC_OK;
   for (int i = 0; i < 2 && status == CONIC_OK; i++)
-    status = read_shot(session, paths[i], &shots->shots[i]);
+    status = read_picture_shot(session, paths[i], &shots->shots[i]);
   if (!shots->shots[0] || !shots->shots[1])
     cli_diff_shots_release(session, shots);
   return status;

@@ -49,18 +49,9 @@ static int gives_one(const cli_shot_again *again, const char *const *names) {
 static const char *const framing_options[] = {"azimuth",    "elevation", "fov",    "zoom",
                                               "projection", "eye",       "camera", NULL};
 
-int cli_shot_again_is_wanted(const cli_session *session, const cli_render_job *job) {
-  if (!job->is_for_looking || session->again || session->host)
-    return 0;
-  for (int i = 0; i < job->n_inputs; i++)
-    if (conic_shot_is_file(job->inputs[i]))
-      return 1;
-  return job->making.again_path != NULL;
-}
-
 /* --- words --- */
 
-static void add_word(cli_shot_again *again, const char *word) {
+static void add_argument(cli_shot_again *again, const char *word) {
   if (again->n_words + 1 >= again->room) {
     int room = 2 * again->room + 32;
     char **words = realloc(again->words, (size_t)room * sizeof *words);
@@ -76,20 +67,20 @@ static void add_word(cli_shot_again *again, const char *word) {
 }
 
 /* An option, unless the user gives it, or one that goes first. */
-static void say(cli_shot_again *again, const char *name, const char *value, const char *first) {
+static void say_option(cli_shot_again *again, const char *name, const char *value, const char *first) {
   char word[64];
   if (gives(again, name) || (first && gives(again, first)))
     return;
   snprintf(word, sizeof word, "--%s", name);
-  add_word(again, word);
+  add_argument(again, word);
   if (value)
-    add_word(again, value);
+    add_argument(again, value);
 }
 
 static void say_number(cli_shot_again *again, const char *name, double value, const char *unit, const char *first) {
   char text[48];
   snprintf(text, sizeof text, "%.17g%s", value, unit);
-  say(again, name, text, first);
+  say_option(again, name, text, first);
 }
 
 static int is_gaussian_file(const cli_shot_again *again) {
@@ -106,19 +97,19 @@ static void say_drawing(cli_shot_again *again, int is_plain) {
   const conic_source_options *reading = &again->file->reading;
   int composites = reading->gaussians != NULL, is_patch = reading->as == CONIC_AS_PATCHES;
   if (is_patch)
-    say(again, "method", "patch", "quality");
+    say_option(again, "method", "patch", "quality");
   else if (!composites && shot->render.method != CONIC_METHOD_AUTO)
-    say(again, "method", conic_method_name(shot->render.method), "quality");
+    say_option(again, "method", conic_method_name(shot->render.method), "quality");
   if (shot->n_samples == 0)
     say_number(again, "samples", shot->view.samples, "", gives(again, "accumulate") ? "accumulate" : "quality");
   if (shot->render.passes == 1)
-    say(again, "passes", "1", NULL);
+    say_option(again, "passes", "1", NULL);
   if (composites && (is_plain || shot->gaussians.profile != CONIC_PROFILE_EXACT))
-    say(again, "profile", conic_gaussian_profile_name(shot->gaussians.profile), NULL);
+    say_option(again, "profile", conic_gaussian_profile_name(shot->gaussians.profile), NULL);
   if (!composites && !is_plain && is_gaussian_file(again))
-    say(again, "profile", "surface", NULL);
+    say_option(again, "profile", "surface", NULL);
   if (shot->gaussians.ignores_center)
-    say(again, "ignore-center", NULL, "profile");
+    say_option(again, "ignore-center", NULL, "profile");
   if (shot->gaussians.prefilter > 0.0)
     say_number(again, "prefilter", shot->gaussians.prefilter, "", "profile");
 }
@@ -132,9 +123,9 @@ static void say_reading(cli_shot_again *again, int is_plain) {
   const conic_source_options *reading = &again->file->reading;
   int standard = is_plain ? CONIC_AS_POINTS : CONIC_AS_AUTO;
   if ((int)reading->as != standard && as[reading->as])
-    say(again, "as", as[reading->as], NULL);
+    say_option(again, "as", as[reading->as], NULL);
   if (reading->is_smooth)
-    say(again, "smooth", NULL, "crease");
+    say_option(again, "smooth", NULL, "crease");
   else if (reading->crease_deg != (is_plain ? 0.0 : 30.0) && (reading->as != CONIC_AS_POINTS || !is_plain))
     say_number(again, "crease", reading->crease_deg, "", "smooth");
   if (reading->as == CONIC_AS_PATCHES && reading->patches && reading->patches->surface.h > 0.0)
@@ -145,14 +136,14 @@ static void say_reading(cli_shot_again *again, int is_plain) {
 static void say_shot(cli_shot_again *again, const cli_render_job *first) {
   int is_plain = !again->file->reading.finds_dots;
   if (is_plain)
-    say(again, "plain", NULL, NULL);
+    say_option(again, "plain", NULL, NULL);
   say_drawing(again, is_plain);
   say_reading(again, is_plain);
   if (again->file->map.is_wanted && !gives(again, "camera"))
-    say(again, "camera", "top", NULL);
+    say_option(again, "camera", "top", NULL);
   for (int i = 0; i < first->n_outputs; i++)
     if (conic_file_has_ending(first->outputs[i], "exr") && again->file->writing.compression != CONIC_COMPRESSION_ZIP) {
-      say(again, "compression", conic_compression_name(again->file->writing.compression), NULL);
+      say_option(again, "compression", conic_compression_name(again->file->writing.compression), NULL);
       break;
     }
 }
@@ -196,7 +187,7 @@ static conic_status look_at_place(cli_shot_again *again, char *path, looking_for
 }
 
 /* Among the inputs that were given, by its name; beside the shot; in the folder that one is in. */
-static conic_status look_around(cli_shot_again *again, const cli_render_job *first, looking_for *looking) {
+static conic_status look_for_input(cli_shot_again *again, const cli_render_job *first, looking_for *looking) {
   const char *name = looking->input->name, *base = conic_file_name(name);
   size_t n_folder = (size_t)(conic_file_name(again->path) - again->path);
   conic_status status = CONIC_OK;
@@ -225,7 +216,7 @@ static int find_input(cli_shot_again *again, const cli_render_job *first, const 
     return CLI_DONE;
   if (!*input->sha256)
     return cli_error(CLI_INPUT, "%s: %s was drawn from what cannot be read again", input->name, again->path);
-  conic_status status = look_around(again, first, &looking);
+  conic_status status = look_for_input(again, first, &looking);
   if (status != CONIC_OK)
     return cli_exit_of(status);
   *path = looking.found;
@@ -284,7 +275,7 @@ static void tell_of_shot(void *cookie, conic_log_level level, const char *messag
     cli_error(CLI_INPUT, "%s", message);
 }
 
-static int read_again(cli_shot_again *again) {
+static int read_named_shot(cli_shot_again *again) {
   conic_context_options options;
   conic_context_options_init(&options);
   options.log = tell_of_shot;
@@ -304,7 +295,7 @@ static int is_input(const cli_render_job *first, const char *argument) {
 
 /* The command's name, what the shot says, what the user says besides, and the inputs. */
 static void make_words(cli_shot_again *again, const cli_render_job *first) {
-  add_word(again, again->argv[0]);
+  add_argument(again, again->argv[0]);
   say_shot(again, first);
   for (int i = 1; i < again->argc; i++) {
     const char *argument = again->argv[i];
@@ -312,11 +303,11 @@ static void make_words(cli_shot_again *again, const cli_render_job *first) {
       i++;
     else if (strncmp(argument, "--again=", strlen("--again=")) != 0 && strcmp(argument, "--") != 0 &&
              !is_input(first, argument))
-      add_word(again, argument);
+      add_argument(again, argument);
   }
-  add_word(again, "--");
+  add_argument(again, "--");
   for (size_t i = 0; i < again->n_scene; i++)
-    add_word(again, again->scene[i]);
+    add_argument(again, again->scene[i]);
 }
 
 int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
@@ -330,7 +321,7 @@ int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render
     for (int i = 0; i < first.n_inputs && !again->path; i++)
       if (conic_shot_is_file(first.inputs[i]))
         again->path = first.inputs[i];
-    answer = read_again(again);
+    answer = read_named_shot(again);
   }
   if (answer == CLI_DONE)
     answer = check_given(again, &first);
@@ -375,7 +366,7 @@ void cli_shot_again_release(cli_session *session, cli_shot_again *again) {
 
 /* --- values --- */
 
-static void begin_samples(const conic_shot *shot, cli_accumulate_job *own) {
+static void begin_accumulation(const conic_shot *shot, cli_accumulate_job *own) {
   own->n_samples = shot->n_samples;
   own->noise = shot->noise;
   own->width = (cli_length){shot->aperture.diameter, 0};
@@ -445,7 +436,7 @@ static void begin_writing(const conic_shot_writing *writing, cli_render_job *job
   job->writing.is_half = writing->is_half;
   job->has_legend = writing->has_legend;
   job->has_mattes = writing->has_mattes;
-  job->is_background_given = !writing->has_studio;
+  job->is_background_given = writing->is_bare;
 }
 
 void cli_shot_again_begin(cli_session *session, cli_render_job *job) {
@@ -470,7 +461,7 @@ void cli_shot_again_begin(cli_session *session, cli_render_job *job) {
   job->framing.width = shot->camera.width ? shot->camera.width : job->framing.width;
   job->framing.height = shot->camera.height ? shot->camera.height : job->framing.height;
   job->accumulating.motion_path = again->motion;
-  begin_samples(shot, &job->accumulating);
+  begin_accumulation(shot, &job->accumulating);
   begin_light(again, job);
   begin_reading(again, job);
   begin_map(&again->file->map, &job->top);
@@ -506,7 +497,7 @@ static void fill_lighting(const cli_shot_again *again, conic_shot *shot) {
     memcpy(lighting->up, was->up, sizeof lighting->up);
 }
 
-static const conic_shot_input *find_part(const conic_shot_input *inputs, size_t n, const conic_shot_input *part) {
+static const conic_shot_input *find_recorded(const conic_shot_input *inputs, size_t n, const conic_shot_input *part) {
   for (size_t i = 0; i < n; i++)
     if (inputs[i].role == part->role && strcmp(inputs[i].name, part->name) == 0)
       return &inputs[i];
@@ -522,7 +513,7 @@ conic_status cli_shot_again_check(cli_session *session, cli_render_job *job) {
   again->is_checked = 1;
   for (size_t i = 0; i < again->file->n_inputs && status == CONIC_OK; i++) {
     const conic_shot_input *was = &again->file->inputs[i];
-    const conic_shot_input *is = find_part(now.inputs, now.n_inputs, was);
+    const conic_shot_input *is = find_recorded(now.inputs, now.n_inputs, was);
     if (was->role != CONIC_SHOT_PART || (is && strcmp(is->sha256, was->sha256) == 0))
       continue;
     if (is)

@@ -6,13 +6,7 @@
 
 #include "cli/scene/render_job.h"
 
-/* What cli_scene_parse returns where the arguments name a shot, so that they have to be read again with it. */
-enum { CLI_AGAIN = -2 };
-
 typedef struct cli_shot_again cli_shot_again;
-
-/* Whether they do, now that they are read once. */
-int cli_shot_again_is_wanted(const cli_session *session, const cli_render_job *job);
 
 /* Reads the shot that they name, finds its inputs, and reads the arguments anew. Returns as cli_render_parse. */
 int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render_job *job);

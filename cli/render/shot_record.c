@@ -90,7 +90,7 @@ static void record_writing(const cli_render_job *job, conic_shot_writing *writin
   writing->tone = is_display ? CONIC_TONE_SRGB : (conic_tone)job->tone;
   writing->compression = job->writing.compression;
   writing->is_half = job->writing.is_half;
-  writing->has_studio = cli_backdrop_is_studio(job);
+  writing->is_bare = !cli_backdrop_is_studio(job);
   writing->has_legend = job->has_legend;
   writing->has_mattes = job->has_mattes;
 }
@@ -208,15 +208,30 @@ static int is_carried(const cli_session *session, const cli_render_job *job) {
   return n > 0 && !job->making.is_left_out && !session->host;
 }
 
+static void release_texts(cli_session *session, cli_shot_job *making) {
+  conic_shot_text_release(session->context, making->text);
+  conic_shot_text_release(session->context, making->shown_text);
+  making->text = making->shown_text = NULL;
+}
+
+/* A file says what decides itself: so files that are the same say the same. */
 conic_status cli_shot_describe(cli_session *session, cli_render_job *job) {
   conic_shot_file file;
-  conic_shot_text_release(session->context, job->making.text);
-  job->making.text = NULL;
+  release_texts(session, &job->making);
   if (!is_carried(session, job))
     return CONIC_OK;
   conic_status status = cli_shot_record(session, job, &file);
-  return status == CONIC_OK ? conic_shot_file_print(session->context, &file, CONIC_SHOT_IN_PICTURE, &job->making.text)
-                            : status;
+  const conic_shot_writing writing = file.writing;
+  file.writing.tone = CONIC_TONE_SRGB;
+  file.writing.is_bare = 0;
+  if (status == CONIC_OK)
+    status = conic_shot_file_print(session->context, &file, CONIC_SHOT_IN_PICTURE, &job->making.text);
+  file.writing = writing;
+  file.writing.compression = CONIC_COMPRESSION_ZIP;
+  file.writing.is_half = file.writing.has_mattes = 0;
+  if (status == CONIC_OK)
+    status = conic_shot_file_print(session->context, &file, CONIC_SHOT_IN_PICTURE, &job->making.shown_text);
+  return status;
 }
 
 /* OUT.shot.json becomes OUT.0001.shot.json. */
@@ -255,6 +270,5 @@ void cli_shot_release(cli_session *session, cli_render_job *job) {
   cli_shot_again_release(session, job->making.again);
   job->making.again = NULL;
   conic_shot_inputs_release(session->context, &job->making.inputs);
-  conic_shot_text_release(session->context, job->making.text);
-  job->making.text = NULL;
+  release_texts(session, &job->making);
 }

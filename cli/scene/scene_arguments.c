@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "cli/color_options.h"
-#include "cli/render/shot_again.h"
 #include "cli/scene/background_options.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/scene_options.h"
@@ -64,7 +63,7 @@ static int parse_all(cli_session *session, const cli_option *own, int n_own, con
     memcpy(table, own, (size_t)n_own * sizeof *table);
     memcpy(table + n_own, scene, (size_t)n_scene * sizeof *table);
     answer = cli_parse(session, table, n_own + n_scene, argc, argv, job->inputs, &job->n_inputs);
-    if (answer == CLI_DONE && cli_shot_again_is_wanted(session, job))
+    if (answer == CLI_DONE && cli_shot_is_again(session, job))
       answer = CLI_AGAIN;
   } else
     cli_error(CLI_RESOURCE, "%s: out of memory", session->command);

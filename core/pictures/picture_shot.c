@@ -20,7 +20,7 @@ typedef struct text_search {
 } text_search;
 
 /* A copy of what is found. */
-static conic_status take_text(text_search *s, const void *bytes, size_t n) {
+static conic_status take_found_text(text_search *s, const void *bytes, size_t n) {
   if (n == 0 || n > LONGEST_TEXT)
     return CONIC_OK;
   s->text = conic_memory_allocate(s->context, n + 1, 1);
@@ -56,7 +56,7 @@ static conic_status search_exr(text_search *s) {
     const unsigned char *value = s->bytes + length + 4;
     if (n_name == KEYWORD && memcmp(s->bytes + at, CONIC_SHOT_KEYWORD, KEYWORD) == 0 && n_type == 6 &&
         memcmp(s->bytes + type, "string", 6) == 0)
-      return take_text(s, value, n_value);
+      return take_found_text(s, value, n_value);
     at = length + 4 + n_value;
   }
 }
@@ -64,7 +64,7 @@ static conic_status search_exr(text_search *s) {
 /* --- PNG: chunks of length, name, data and sum --- */
 
 /* What zlib packed: two bytes before what is deflated. How long it becomes is not said. */
-static conic_status take_packed(text_search *s, const unsigned char *packed, size_t n) {
+static conic_status take_packed_text(text_search *s, const unsigned char *packed, size_t n) {
   size_t room = 1 << 16;
   unsigned char *text = NULL;
   for (; n > 2 && room <= LONGEST_TEXT; room *= 4) {
@@ -75,7 +75,7 @@ static conic_status take_packed(text_search *s, const unsigned char *packed, siz
     size_t n_text = conic_inflate(CONIC_DEFLATE_BARE, packed + 2, n - 2, text, room, NULL);
     if (n_text == room)
       continue;
-    conic_status status = take_text(s, text, n_text);
+    conic_status status = take_found_text(s, text, n_text);
     conic_memory_release(s->context, text);
     return status;
   }
@@ -88,9 +88,9 @@ static conic_status take_packed(text_search *s, const unsigned char *packed, siz
 static conic_status take_chunk(text_search *s, const unsigned char *name, const unsigned char *data, size_t n) {
   size_t at = KEYWORD + 1;
   if (memcmp(name, "tEXt", 4) == 0)
-    return take_text(s, data + at, n - at);
+    return take_found_text(s, data + at, n - at);
   if (memcmp(name, "zTXt", 4) == 0 && n - at > 1)
-    return take_packed(s, data + at + 1, n - at - 1);
+    return take_packed_text(s, data + at + 1, n - at - 1);
   if (memcmp(name, "iTXt", 4) != 0 || n - at < 4)
     return CONIC_OK;
   int is_packed = data[at] != 0;
@@ -101,7 +101,7 @@ static conic_status take_chunk(text_search *s, const unsigned char *name, const 
       return CONIC_OK;
     at = (size_t)(zero - data) + 1;
   }
-  return is_packed ? take_packed(s, data + at, n - at) : take_text(s, data + at, n - at);
+  return is_packed ? take_packed_text(s, data + at, n - at) : take_found_text(s, data + at, n - at);
 }
 
 static conic_status search_png(text_search *s) {
@@ -146,7 +146,7 @@ static conic_status search_tiff(text_search *s) {
       to = tiff_number(s, (size_t)to, word);
     if (to > s->n || n > s->n - to || n == 0 || s->bytes[to] != '{')
       return CONIC_OK;
-    return take_text(s, s->bytes + to, (size_t)n - (s->bytes[to + n - 1] == 0));
+    return take_found_text(s, s->bytes + to, (size_t)n - (s->bytes[to + n - 1] == 0));
   }
   return CONIC_OK;
 }
@@ -165,7 +165,7 @@ conic_status conic_picture_shot_text(conic_context *context, const char *path, c
   else if (s.n >= 4 && (memcmp(s.bytes, "II", 2) == 0 || memcmp(s.bytes, "MM", 2) == 0))
     status = search_tiff(&s);
   else if (s.n && s.bytes[0] == '{')
-    status = take_text(&s, s.bytes, s.n);
+    status = take_found_text(&s, s.bytes, s.n);
   conic_mapping_close(context, &file);
   *text = s.text;
   *n_bytes = s.n_text;

@@ -47,7 +47,7 @@ typedef struct conic_shot_writing {
   conic_tone tone;               /* of files of 8 and 16 bits */
   conic_compression compression; /* of an EXR */
   int is_half;                   /* of an EXR */
-  int has_studio;                /* files to look at have dark greys behind the picture */
+  int is_bare;                   /* files to look at have nothing behind the picture that it has not itself */
   int has_legend, has_mattes;
   uint64_t reserved[4];
 } conic_shot_writing;
@@ -92,9 +92,9 @@ CONIC_API void conic_shot_text_release(conic_context *context, char *text);
 /* Writes it to PATH, which appears when it is whole. Errors: as before, IO. */
 CONIC_API conic_status conic_shot_file_write(conic_context *context, const conic_shot_file *file, const char *path);
 
-/* Reads the text in memory; `name` is for messages; null: nothing is said of what is wrong with it. On success the caller owns *file and destroys it before the
- * context. Sky and motion are null in it, and a texture's name, too: they are among the inputs. Errors: INPUT (a key
- * that is none, a later version, a value that cannot be), MEMORY. */
+/* Reads the text in memory; `name` is for messages; null: nothing is said of what is wrong with it. On success the
+ * caller owns *file and destroys it before the context. Sky and motion are null in it, and a texture's name, too: they
+ * are among the inputs. Errors: INPUT (a key that is none, a later version, a value that cannot be), MEMORY. */
 CONIC_API conic_status conic_shot_file_parse(conic_context *context, const char *name, const char *text, size_t n_bytes,
                                              conic_shot_file **file);
 /* The same of a file, or of a picture that carries one: an EXR, a PNG or a TIFF. Errors: as before; INPUT (there is no

@@ -8,12 +8,12 @@
 /* --- coverage --- */
 
 static int compare_rows(const void *a, const void *b) {
-  const conic_row *first = *(const conic_row *const *)a, *second = *(const conic_row *const *)b;
+  const conic_shot_row *first = *(const conic_shot_row *const *)a, *second = *(const conic_shot_row *const *)b;
   return (first->offset > second->offset) - (first->offset < second->offset);
 }
 
 /* What a member is aligned to, as far as its length tells. */
-static size_t alignment_of(const conic_row *row) {
+static size_t alignment_of(const conic_shot_row *row) {
   size_t element = row->of && row->kind != CONIC_ROW_POINTER ? sizeof(double) : row->bytes / conic_row_count(row);
   if (row->kind == CONIC_ROW_STRUCT && row->bytes % sizeof(double))
     return sizeof(int);
@@ -41,14 +41,14 @@ static int is_hole(const char *rows, const char *before) {
   return 0;
 }
 
-static void check_coverage(const conic_rows *rows) {
-  const conic_row *sorted[64];
+static void check_coverage(const conic_shot_rows *rows) {
+  const conic_shot_row *sorted[64];
   size_t end = 0;
   for (size_t i = 0; i < rows->n_rows; i++)
     sorted[i] = &rows->rows[i];
   qsort(sorted, rows->n_rows, sizeof *sorted, compare_rows);
   for (size_t i = 0; i <= rows->n_rows; i++) {
-    const conic_row *row = i < rows->n_rows ? sorted[i] : NULL;
+    const conic_shot_row *row = i < rows->n_rows ? sorted[i] : NULL;
     size_t begin = row ? row->offset : rows->size, alignment = row ? alignment_of(row) : sizeof(double);
     int is_close = begin == end || (begin > end && begin - end < alignment && begin % alignment == 0);
     if (begin != end && (!is_close || !is_hole(rows->name, row ? row->name : NULL))) {
@@ -59,7 +59,7 @@ static void check_coverage(const conic_rows *rows) {
     end = row ? row->offset + row->bytes : end;
   }
   for (size_t i = 0; i < rows->n_rows; i++) {
-    const conic_row *row = &rows->rows[i];
+    const conic_shot_row *row = &rows->rows[i];
     CHECK(row->meaning || row->kind == CONIC_ROW_LENGTH || row->kind == CONIC_ROW_RESERVED);
     CHECK((row->of != NULL) ==
           (row->kind == CONIC_ROW_STRUCT || row->kind == CONIC_ROW_POINTER || row->kind == CONIC_ROW_LIST));
@@ -71,27 +71,27 @@ static void check_coverage(const conic_rows *rows) {
 /* --- values --- */
 
 static uint64_t random_state = 1;
-static double draw(void) { /* 0 to 1 */
+static double draw_real(void) { /* 0 to 1 */
   random_state = random_state * 6364136223846793005u + 1442695040888963407u;
   return (double)(random_state >> 11) * 0x1p-53;
 }
 
-static void fill_rows(const conic_rows *rows, char *value);
+static void fill_rows(const conic_shot_rows *rows, char *value);
 
-static void fill_word(const conic_row *row, char *at) {
+static void fill_word(const conic_shot_row *row, char *at) {
   int n = 0;
   while (row->word(n))
     n++;
-  int word = (int)(draw() * n);
+  int word = (int)(draw_real() * n);
   memcpy(at, &word, sizeof word);
 }
 
-static void fill_number(const conic_row *row, char *at) {
-  double real = (draw() - 0.5) * pow(10.0, 20.0 * draw() - 8.0);
+static void fill_number(const conic_shot_row *row, char *at) {
+  double real = (draw_real() - 0.5) * pow(10.0, 20.0 * draw_real() - 8.0);
   float rounded = (float)real;
-  int whole = (int)(1e6 * (draw() - 0.5));
-  uint32_t small = (uint32_t)(4e9 * draw());
-  uint64_t large = (uint64_t)(9e15 * draw());
+  int whole = (int)(1e6 * (draw_real() - 0.5));
+  uint32_t small = (uint32_t)(4e9 * draw_real());
+  uint64_t large = (uint64_t)(9e15 * draw_real());
   if (row->kind == CONIC_ROW_DOUBLE)
     memcpy(at, &real, sizeof real);
   else if (row->kind == CONIC_ROW_FLOAT)
@@ -108,12 +108,12 @@ static conic_patches_options patches;
 static conic_coloring_options coloring;
 static conic_camera cameras[3];
 
-static void fill_row(const conic_row *row, char *value) {
+static void fill_row(const conic_shot_row *row, char *value) {
   static const char words[] = "a \"b\" \\ \xc3\xa9\n";
   char *at = value + row->offset;
   const void *to = words;
-  int truth = draw() < 0.5, n;
-  unsigned planes = (unsigned)(draw() * (1u << CONIC_N_PLANES));
+  int truth = draw_real() < 0.5, n;
+  unsigned planes = (unsigned)(draw_real() * (1u << CONIC_N_PLANES));
   switch (row->kind) {
   case CONIC_ROW_STRUCT:
     fill_rows(row->of, at);
@@ -156,7 +156,7 @@ static void fill_row(const conic_row *row, char *value) {
   }
 }
 
-static void fill_rows(const conic_rows *rows, char *value) {
+static void fill_rows(const conic_shot_rows *rows, char *value) {
   for (size_t i = 0; i < rows->n_rows; i++)
     fill_row(&rows->rows[i], value);
 }
