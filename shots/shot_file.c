@@ -94,7 +94,7 @@ static void write_fields(shot_writer *w, const conic_shot_rows *rows, const void
     } else if (row->kind == CONIC_ROW_STRUCT) {
       if (!is_missing_camera(row, at))
         write_object(w, row->name, row->of, at, like, depth);
-    } else if (row->is_said || w->what == CONIC_SHOT_COMPLETE || !conic_row_is_same(row, value, standard)) {
+    } else if (row->is_said || (w->what == CONIC_SHOT_COMPLETE && row->kind != CONIC_ROW_TEXT) || !conic_row_is_same(row, value, standard)) {
       begin_member(w, row->name, depth);
       conic_text_value(&w->text, row, value);
     }

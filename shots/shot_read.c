@@ -145,6 +145,8 @@ static conic_status put_field_number(shot_reader *r, const conic_shot_row *row, 
   int is_whole = value >= -9007199254740992.0 && value <= 9007199254740992.0 && value == (double)(int64_t)value;
   if (value != value)
     return CONIC_OK;
+  if (value - value != 0.0 || (row->kind == CONIC_ROW_FLOAT && rounded - rounded != 0.0f))
+    return fail_field(r, "%s is too large%s", row->name, "");
   if (row->kind == CONIC_ROW_FLOAT) {
     memcpy(at, &rounded, sizeof rounded);
   } else if (row->kind == CONIC_ROW_DOUBLE) {

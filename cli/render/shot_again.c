@@ -446,6 +446,7 @@ void cli_shot_again_begin(cli_session *session, cli_render_job *job) {
   const conic_shot *shot = &again->file->shot;
   job->shot.render = shot->render;
   job->shot.render.epsilon = -1.0;
+  job->shot.render.splat_length = 0.0; /* the source says it again */
   job->epsilon = (cli_length){shot->render.epsilon >= 0.0 ? shot->render.epsilon : -1.0, 0};
   job->shot.view = shot->view;
   job->shot.view.most_levels = 0;
@@ -543,7 +544,7 @@ void cli_shot_again_fill(cli_render_job *job) {
   }
   if (!job->is_turntable)
     shot->frame = was->frame;
-  if (!gives(again, "prefilter"))
+  if (!gives(again, "prefilter") && !(gives(again, "accumulate") && was->n_samples == 0)) /* whose samples are it */
     shot->render.prefilter = was->render.prefilter;
   if (!gives_one(again, coming))
     shot->view.may_be_coarser = was->view.may_be_coarser;

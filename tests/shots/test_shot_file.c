@@ -293,6 +293,8 @@ static void check_refused(conic_context *context) {
       {"{\"conic_shot\": 1, \"planes\": [\"rgb\"]}", "planes cannot be 'rgb'"},
       {"{\"conic_shot\": 1, \"view\": {\"samples\": 1.5}}", "samples is a whole number"},
       {"{\"conic_shot\": 1, \"view\": {\"budget\": -1}}", "budget is a whole number"},
+      {"{\"conic_shot\": 1, \"noise\": 1e999}", "noise is too large"},
+      {"{\"conic_shot\": 1, \"render\": {\"prefilter\": 1e39}}", "prefilter is too large"},
       {"{\"conic_shot\": 1, \"render\": {\"background\": [1, 2]}}", "background has another number of values"},
       {"{\"conic_shot\": 1, \"camera\": {\"cam_from_world\": [[1, 2, 3, 4], [1, 2, 3], [1]]}}",
        "another number of values"},
