@@ -44,11 +44,14 @@ for command in "$1"/refimages/*/cmd; do
     here=$source_folder/refimages
     source "$here/common.bash"
     draw() {
+      local argument inputs=()
+      for argument in "$@"; do # which are beside no picture
+        [[ $argument != "$data"/* ]] || inputs+=("$argument")
+      done
       rm -f drawn.json
       run_as_typed 0 render --plain "$@" --quiet -o a.exr --save-shot a.shot.json --json drawn.json
-      is_drawn_again "$name" a.exr a.shot.json "${@:1:1}"
+      is_drawn_again "$name" a.exr a.shot.json "${inputs[@]}"
     }
-    export CONIC=$conic
     if [[ $name == confetti-18 ]]; then # which writes a file of its own, and makes colours of it
       "$conic" make knot -n 20000 --quiet -o knot.ply
       draw knot.ply --size 256x256 --aov count
