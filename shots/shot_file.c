@@ -6,6 +6,7 @@
 #include "conic/version.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/files/file.h"
 #include "shots/shot_roles.h"
 #include "shots/shot_text.h"
@@ -74,8 +75,7 @@ static void write_pointer(shot_writer *w, const conic_shot_row *row, const void 
 
 /* Of a map there is no camera yet. */
 static int is_missing_camera(const conic_shot_row *row, const void *value) {
-  const conic_camera *camera = value;
-  return strcmp(row->name, "camera") == 0 && camera->width == 0;
+  return strcmp(row->name, "camera") == 0 && conic_is_zero(value, sizeof(conic_camera));
 }
 
 static void write_fields(shot_writer *w, const conic_shot_rows *rows, const void *value, const void *standard,
@@ -94,7 +94,8 @@ static void write_fields(shot_writer *w, const conic_shot_rows *rows, const void
     } else if (row->kind == CONIC_ROW_STRUCT) {
       if (!is_missing_camera(row, at))
         write_object(w, row->name, row->of, at, like, depth);
-    } else if (row->is_said || (w->what == CONIC_SHOT_COMPLETE && row->kind != CONIC_ROW_TEXT) || !conic_row_is_same(row, value, standard)) {
+    } else if (row->is_said || (w->what == CONIC_SHOT_COMPLETE && row->kind != CONIC_ROW_TEXT) ||
+               !conic_row_is_same(row, value, standard)) {
       begin_member(w, row->name, depth);
       conic_text_value(&w->text, row, value);
     }

@@ -311,8 +311,11 @@ static conic_status read_input_member(shot_reader *r, const char *key, conic_sho
     return read_owned_text(r, &input->name);
   if (strcmp(key, "sampled") == 0)
     return read_truth(r, &input->is_sampled);
-  if (strcmp(key, "sha256") == 0)
-    return conic_json_text(&r->json, input->sha256, sizeof input->sha256);
+  if (strcmp(key, "sha256") == 0) {
+    status = conic_json_text(&r->json, input->sha256, sizeof input->sha256);
+    int is_hash = strspn(input->sha256, "0123456789abcdef") == 64 && !input->sha256[64];
+    return status == CONIC_OK && !is_hash ? fail_field(r, "%s has 64 digits%s", key, "") : status;
+  }
   if (strcmp(key, "bytes") == 0) {
     status = conic_json_number(&r->json, &number);
     input->n_bytes = number >= 0.0 && number < 0x1p63 ? (uint64_t)number : 0;

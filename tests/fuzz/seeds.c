@@ -169,7 +169,8 @@ int main(int argc, char **argv) {
   seeds_text(
       set, "shot", "json",
       "{\"conic_shot\": 1, \"conic\": \"0.6.0\", \"inputs\": [{\"name\": \"a \\\"b\\\".ply\", \"bytes\": 12, "
-      "\"sha256\": \"01\"}, {\"name\": \"m.mtl\", \"as\": \"part\", \"sampled\": true}],\n"
+      "\"sha256\": \"82907b05ff270d1cb93fab619df708504259a9aa9214808f6563f59d1076fe3c\"}, {\"name\": \"m.mtl\", "
+      "\"as\": \"part\", \"sampled\": true}],\n"
       "\"camera\": {\"width\": 6, \"height\": 4, \"fx\": 8.25, \"cam_from_world\": [[1, 0, 0, 0.1], [0, 1, 0, 0], "
       "[0, 0, 1, -3e-5]], \"kind\": \"fisheye\"}, \"planes\": [\"rgba\", \"id\"],\n"
       "\"render\": {\"method\": \"ray\", \"lighting\": {\"is_given\": true, \"lights\": [{\"frame\": \"head\", "

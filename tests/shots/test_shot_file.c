@@ -168,9 +168,17 @@ static void count_difference(void *cookie, const char *field, const char *a, con
 
 static void check_round_trip(conic_context *context) {
   static const conic_shot_input inputs[] = {
-      {.name = "a \"b\".ply", .n_bytes = 123456789012, .sha256 = "0123", .is_sampled = 1},
-      {.name = "/x/sky.exr", .role = CONIC_SHOT_SKY, .sha256 = "4567"},
-      {.name = "textures/c.png", .role = CONIC_SHOT_PART, .n_bytes = 5, .sha256 = "89ab"}};
+      {.name = "a \"b\".ply",
+       .n_bytes = 123456789012,
+       .sha256 = "0123012301230123012301230123012301230123012301230123012301230123",
+       .is_sampled = 1},
+      {.name = "/x/sky.exr",
+       .role = CONIC_SHOT_SKY,
+       .sha256 = "4567456745674567456745674567456745674567456745674567456745674567"},
+      {.name = "textures/c.png",
+       .role = CONIC_SHOT_PART,
+       .n_bytes = 5,
+       .sha256 = "89ab89ab89ab89ab89ab89ab89ab89ab89ab89ab89ab89ab89ab89ab89ab89ab"}};
   conic_shot_file file, *read;
   char *text, key[CONIC_SHOT_KEY_ROOM], again[CONIC_SHOT_KEY_ROOM];
   for (int i = 0; i < 20; i++) {
@@ -304,6 +312,7 @@ static void check_refused(conic_context *context) {
       {"{\"conic_shot\": 1, \"render\": {\"lighting\": {\"lights\": [{},{},{},{},{},{},{},{},{}]}}}",
        "too many members"},
       {"{\"conic_shot\": 1} x", ""},
+      {"{\"conic_shot\": 1, \"inputs\": [{\"name\": \"a\", \"sha256\": \"12\"}]}", "sha256 has 64 digits"},
       {"{}", "it is no shot"},
       {"[]", ""}};
   conic_shot_file *file;
