@@ -36,7 +36,8 @@ static conic_status hash_file_into(conic_context *context, conic_sha256 *sum, co
     conic_key_add_number(sum, (uint64_t)entry.modified_seconds);
   }
   for (uint64_t i = 0; i < n && status == CONIC_OK; i++) {
-    ptrdiff_t n_read = conic_disk_read_at(descriptor, piece, PIECE_BYTES, i * step);
+    uint64_t at = is_sampled && i == MOST_PIECES - 1 ? entry.n_bytes - PIECE_BYTES : i * step;
+    ptrdiff_t n_read = conic_disk_read_at(descriptor, piece, PIECE_BYTES, at);
     conic_sha256_add(sum, piece, n_read > 0 ? (size_t)n_read : 0);
     status = conic_progress(context, "look", (double)i / (double)n);
   }

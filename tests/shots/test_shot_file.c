@@ -2,6 +2,7 @@
  * another key, and is named where two shots differ. */
 #include "conic/shot_file.h"
 #include "shots/shot_fields.h"
+#include "shots/shot_inputs.h"
 #include "shots/shot_text.h"
 #include "tests/support/files.h"
 
@@ -330,6 +331,36 @@ static void check_refused(conic_context *context) {
   }
 }
 
+/* --- inputs --- */
+
+static void look(conic_context *context, const char *path, conic_shot_input *input) {
+  memset(input, 0, sizeof *input);
+  input->name = path;
+  CHECK_OK(conic_shot_input_look(context, path, input));
+}
+
+/* Of a large file the hash is of pieces and its time, and it says so; of a folder, of all that is in it. */
+static void check_inputs(conic_context *context) {
+  conic_shot_input small, large, later;
+  const char *path = files_write("small", "abc");
+  look(context, path, &small);
+  CHECK(small.n_bytes == 3 && !small.is_sampled);
+  CHECK(strcmp(small.sha256, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad") == 0);
+  CHECK(truncate(path, (64 << 20)) == 0);
+  look(context, path, &large);
+  CHECK(large.n_bytes == 64 << 20 && !large.is_sampled);
+  CHECK(truncate(path, (64 << 20) + 1) == 0);
+  look(context, path, &large);
+  CHECK(large.n_bytes == (64 << 20) + 1 && large.is_sampled && strlen(large.sha256) == 64);
+  FILE *file = fopen(path, "r+b");
+  CHECK(file && fseek(file, -1, SEEK_END) == 0 && fputc('x', file) == 'x' && fclose(file) == 0);
+  look(context, path, &later);
+  CHECK(later.is_sampled && strcmp(large.sha256, later.sha256) != 0);
+  unlink(path);
+  look(context, files_path("none"), &small);
+  CHECK(!small.n_bytes && !small.sha256[0]);
+}
+
 int main(int argc, char **argv) {
   conic_context *context = files_context();
   for (size_t i = 0; conic_all_shot_rows[i]; i++)
@@ -341,6 +372,7 @@ int main(int argc, char **argv) {
   check_fields();
   check_schema(context, argc > 1 ? argv[1] : ".");
   check_refused(context);
+  check_inputs(context);
   files_end(context);
   return check_result();
 }
