@@ -1,4 +1,4 @@
-/* Sample after sample, until there are enough. */
+/* Adds sample after sample, until there are enough. */
 #include <string.h>
 
 #include "accumulation/accumulation_struct.h"
@@ -29,14 +29,14 @@ static conic_status draw_sample(conic_context *context, const conic_accumulate_o
 }
 
 static uint64_t key_of_first(const conic_accumulation *sums, const conic_image *first) {
-  conic_image known = *first; /* without the planes that were drawn for `shade` alone */
+  conic_image known = *first; /* without the planes drawn only for `shade` */
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (!(sums->planes >> i & 1))
       known.planes[i] = NULL;
   return conic_sample_key(&known);
 }
 
-/* Sees to it that the samples that are there, if any, are of this picture: its sample 0 says so. */
+/* Checks that existing samples, if any, are of this picture: sample 0 tells. */
 static conic_status settle_key(conic_context *context, const conic_accumulate_options *options,
                                conic_accumulation *sums, conic_image *image) {
   conic_status status = draw_sample(context, options, 0, image);
@@ -50,7 +50,7 @@ static conic_status settle_key(conic_context *context, const conic_accumulate_op
   return CONIC_OK;
 }
 
-/* Whether the samples that there are are enough, or take too long. */
+/* Whether the existing samples are enough, or took too long. */
 static int is_enough(const conic_accumulate_options *options, const conic_accumulation *sums, double start) {
   uint64_t end = sums->first_sample + sums->n_samples;
   enum { LEAST_SAMPLES = 16 };
@@ -105,7 +105,7 @@ static conic_status add_missing_samples(conic_context *context, const conic_accu
   while (status == CONIC_OK && !is_enough(options, sums, start)) {
     uint64_t index = sums->first_sample + sums->n_samples;
     status = conic_progress(context, "accumulate", (double)index / (double)options->end_sample);
-    if (status == CONIC_OK && index > 0) /* which is drawn already */
+    if (status == CONIC_OK && index > 0) /* sample 0 is drawn already */
       status = draw_sample(context, options, index, image);
     if (status == CONIC_OK)
       status = conic_accumulation_add(sums, image);

@@ -16,8 +16,8 @@ size_t conic_accumulation_channel(unsigned planes, conic_plane plane) {
   return n;
 }
 
-/* Whether a sample is in the half that is summed apart too. Every run of two samples has one; and this dimension's
- * halves are as even in pixel and lens as any two halves of the sequence are. */
+/* Whether a sample is in the half that is also summed separately. Every run of two samples has one in it; and the
+ * halves of this dimension are as even in pixel and lens as any halves of the sequence. */
 static int is_in_half(uint64_t i_sample) {
   return conic_sequence_at(i_sample, CONIC_SEQUENCE_HALF) < 0.5;
 }
@@ -175,7 +175,7 @@ static int has_noise(const conic_accumulation *a) {
   return (a->planes & 1u << CONIC_PLANE_RGBA) && a->n_half > 0 && a->n_half < a->n_samples;
 }
 
-/* Half the difference between the luminance of the samples in the half and that of the others. */
+/* Half the difference between the luminance of the half's samples and that of the others. */
 static double half_difference(const conic_accumulation *a, const conic_exact_sum *pixel) {
   size_t first = conic_accumulation_channel(a->planes, CONIC_PLANE_RGBA);
   double channels[3], half = conic_exact_value(pixel[a->n_channels - 1]);

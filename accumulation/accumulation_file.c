@@ -57,7 +57,7 @@ conic_status conic_accumulation_write(const conic_accumulation *sums, const char
   FILE *stream = conic_output_stream(output);
   store_head(sums, head);
   uint64_t hash = hash_head(head);
-  fwrite(head, 1, sizeof head, stream); /* the stream remembers what fails, and commit says so */
+  fwrite(head, 1, sizeof head, stream); /* the stream remembers failures, and commit reports them */
   for (size_t first = 0; first < n; first += WORDS_TOGETHER) {
     size_t n_now = n - first < WORDS_TOGETHER ? n - first : WORDS_TOGETHER;
     for (size_t i = 0; i < n_now; i++) {
@@ -73,7 +73,7 @@ conic_status conic_accumulation_write(const conic_accumulation *sums, const char
   return conic_output_end(output, CONIC_OK);
 }
 
-/* The sums that a head speaks of, which has as many bytes behind it as they need; null after a message. */
+/* Makes the sums that a head describes, whose bytes must follow it; null after a message. */
 static conic_status make_from_head(conic_context *context, const char *path, const uint8_t head[HEAD_BYTES],
                                    uint64_t n_bytes, conic_accumulation **made) {
   uint32_t width = conic_load_32(head + 12), height = conic_load_32(head + 16), planes = conic_load_32(head + 20);

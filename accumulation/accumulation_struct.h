@@ -1,4 +1,4 @@
-/* What the sums of a run of samples are. */
+/* The members of the sums of a run of samples. */
 #ifndef CONIC_ACCUMULATION_STRUCT_H
 #define CONIC_ACCUMULATION_STRUCT_H
 
@@ -9,10 +9,10 @@ struct conic_accumulation {
   conic_context *context;
   int width, height;
   unsigned planes;
-  size_t n_channels;     /* of all planes, and that of the half */
-  conic_exact_sum *sums; /* a row after the other, in it pixel by pixel, in it channel by channel */
+  size_t n_channels;     /* of all planes, and one for the half */
+  conic_exact_sum *sums; /* row after row, in a row pixel by pixel, in a pixel channel by channel */
   uint64_t first_sample, n_samples;
-  uint64_t n_half; /* of these, those that are in the half */
+  uint64_t n_half; /* samples in the half */
   uint64_t key;
 };
 

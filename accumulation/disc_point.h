@@ -1,9 +1,9 @@
-/* Points of a disc by two numbers of the sequence: a lens, the sun. */
+/* Points of a disc (a lens, the sun) from two numbers of the sequence. */
 #ifndef CONIC_DISC_POINT_H
 #define CONIC_DISC_POINT_H
 
-/* Of the unit disc, by squares about its centre that become circles, which keeps areas and what is near (Shirley and
- * Chiu, "A low distortion map between disk and square", 1997). u and v are in [0, 1). */
+/* A point of the unit disc. Squares about the square's centre become circles; areas and neighbourhoods are kept
+ * (Shirley and Chiu, "A low distortion map between disk and square", 1997). u and v are in [0, 1). */
 void conic_disc_point(double u, double v, double point[2]);
 
 #endif

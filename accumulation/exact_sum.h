@@ -1,6 +1,6 @@
-/* Sums of floats without rounding: fixed-point numbers of 128 bits, half of them behind the point. Additions of
- * integers are associative, so the order of a sum decides nothing. A float of magnitude 2⁻⁴⁰ to 2³⁸ is held exactly;
- * bits below 2⁻⁶⁴ are cut off towards 0. 2²⁴ summands of up to 2³⁸ fit. */
+/* Sums of floats without rounding: fixed-point numbers of 128 bits, half of them behind the point. Adding integers is
+ * associative, so the order of a sum does not matter. A float of magnitude 2⁻⁴⁰ to 2³⁸ is held exactly; bits below 2⁻⁶⁴
+ * are cut off towards 0. There is room for 2²⁴ summands of up to 2³⁸. */
 #ifndef CONIC_EXACT_SUM_H
 #define CONIC_EXACT_SUM_H
 

@@ -13,9 +13,9 @@
 struct conic_motion {
   conic_context *context;
   conic_motion_keys keys;
-  conic_source **shapes; /* of each key; null: it is a pose */
+  conic_source **shapes; /* of each key; null: the key is a pose */
   size_t n_inputs;
-  conic_source_pose *poses; /* of each input, at the last moment */
+  conic_source_pose *poses; /* of each input, at the latest moment */
 };
 
 /* --- reading --- */
@@ -81,13 +81,13 @@ void conic_motion_destroy(conic_motion *motion) {
 
 /* --- moving --- */
 
-/* Keys before and after a moment; null: there is none. */
+/* The keys before and after a moment; null: none. */
 typedef struct two_keys {
   const conic_motion_key *before, *after;
   double part;
 } two_keys;
 
-/* Of an input's own poses, or shapes; `input` may be all. */
+/* Finds keys among an input's poses, or its shapes; `input` may be CONIC_MOTION_ALL. */
 static two_keys find_keys(const conic_motion *motion, int input, int is_shape, double frame) {
   two_keys found = {NULL, NULL, 0.0};
   for (size_t i = 0; i < motion->keys.count; i++) {
@@ -104,7 +104,7 @@ static two_keys find_keys(const conic_motion *motion, int input, int is_shape, d
   return found;
 }
 
-/* Whether the matrix turns and shifts, and does nothing else. */
+/* Whether the matrix only turns and shifts. */
 static int is_rigid(const double m[3][4]) {
   double across[3];
   int is_good = 1;
@@ -115,7 +115,7 @@ static int is_rigid(const double m[3][4]) {
   return is_good && conic_dot(across, m[2]) > 0.0;
 }
 
-/* The camera whose place in the world the matrix is; and back. */
+/* The inverse of a rigid matrix: a place in the world becomes a camera, and a camera a place. */
 static void invert_rigid(const double m[3][4], double inverse[3][4]) {
   for (int row = 0; row < 3; row++) {
     for (int column = 0; column < 3; column++)
@@ -128,7 +128,8 @@ static conic_status matrix_between(conic_context *context, const two_keys *keys,
   const conic_motion_key *only = !keys->after || keys->part == 0.0 ? keys->before : NULL;
   if (!keys->before)
     only = keys->after;
-  if (only || memcmp(keys->before->matrix, keys->after->matrix, sizeof keys->after->matrix) == 0) { /* to the bit */
+  if (only || memcmp(keys->before->matrix, keys->after->matrix, sizeof keys->after->matrix) == 0) { /* the matrix stays,
+                                                                                                       to the bit */
     memcpy(matrix, only ? only->matrix : keys->before->matrix, sizeof keys->before->matrix);
     return CONIC_OK;
   }
@@ -162,7 +163,7 @@ static void consider_shape(double frame, conic_source *shape, double moment, sha
     *after = (shape_key){frame, shape, 1};
 }
 
-/* The input's own file is its shape at frame 0, unless a key has another there. */
+/* An input's shape at frame 0 is its own file, unless a key has another shape there. */
 static void find_shapes(const conic_motion *motion, int input, double moment, conic_source_pose *pose) {
   shape_key before = {.is_there = 0}, after = {.is_there = 0};
   consider_shape(0.0, NULL, moment, &before, &after);
@@ -174,13 +175,14 @@ static void find_shapes(const conic_motion *motion, int input, double moment, co
     return;
   }
   double part = (moment - before.frame) / (after.frame - before.frame);
-  int is_to_own = after.shape == NULL; /* which only the first of the two can say: the same way, seen from there */
+  int is_to_own = after.shape == NULL; /* only the first shape can be the input's own: goes the same way, from the other
+                                          end */
   pose->shapes[0] = is_to_own ? after.shape : before.shape;
   pose->shapes[1] = is_to_own ? before.shape : after.shape;
   pose->part = is_to_own ? 1.0 - part : part;
 }
 
-/* What all do after what an input does by itself. */
+/* Adds the motion of all inputs after an input's own. */
 static void follow_all(const double all[3][4], double matrix[3][4]) {
   double own[3][4];
   memcpy(own, matrix, sizeof own);

@@ -71,7 +71,7 @@ static void read_key(conic_context *context, conic_json *json, conic_motion_key 
     conic_json_wrong(json, "a file is the shape of one input: say which");
 }
 
-/* Few, and mostly in order. */
+/* A simple sort: keys are few, and mostly in order. */
 static void sort_keys(conic_motion_keys *keys) {
   for (size_t i = 1; i < keys->count; i++) {
     conic_motion_key key = keys->keys[i];

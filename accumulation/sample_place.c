@@ -1,4 +1,4 @@
-/* Where a sample looks from: its place in the pixel and on the lens, and a camera on its way. */
+/* Where a sample looks from: its place in the pixel and on the lens; and cameras between two others. */
 #include <math.h>
 #include <string.h>
 
@@ -13,8 +13,8 @@ double conic_sample_time(uint64_t index) {
   return conic_sequence_at(index, CONIC_SEQUENCE_SHUTTER);
 }
 
-/* The polygon whose corners are on the unit circle, the first at the top: a triangle about its centre for each side,
- * in each of which areas are kept. */
+/* A point of the polygon with corners on the unit circle, the first at the top. It has a triangle about its centre for
+ * each side; the map keeps areas within each. */
 static void point_on_polygon(int n_corners, double u, double v, double point[2]) {
   int corner = (int)(u * n_corners);
   double part = u * n_corners - corner, radius = sqrt(v), step = 2.0 * CONIC_PI / n_corners;
@@ -40,8 +40,8 @@ static conic_status check_aperture(conic_context *context, const conic_camera *c
   return conic_view_camera_check(context, "lens", camera);
 }
 
-/* A disc's point becomes one in the ball that looks like that disc from all sides: a point of the sphere in four
- * dimensions, seen without the fourth. */
+/* Turns a disc's point into a point of the ball that looks like that disc from all sides: a point of the sphere in four
+ * dimensions, without its fourth coordinate. */
 static double point_in_ball(const double point[2], double w) {
   double left = 1.0 - (point[0] * point[0] + point[1] * point[1]);
   return left > 0.0 ? sqrt(left) * conic_cos(2.0 * CONIC_PI * w) : 0.0;
@@ -76,7 +76,7 @@ conic_status conic_sample_place(conic_context *context, const conic_camera *came
   if (sees_all_around(camera))
     sample->lens_forward =
         0.5 * lens->diameter * point_in_ball(point, conic_sequence_at(index, CONIC_SEQUENCE_LENS_DEPTH));
-  if (camera->kind || camera->lens) /* no camera shows it: who gathers looks from there */
+  if (camera->kind || camera->lens) /* no camera can hold it: gathering moves the eye */
     return CONIC_OK;
   for (int axis = 0; axis < 2; axis++)
     sample->camera.cam_from_world[axis][3] -= sample->lens[axis];
@@ -87,7 +87,8 @@ conic_status conic_sample_place(conic_context *context, const conic_camera *came
 
 /* --- on the way --- */
 
-/* Of a rotation's rows; w, x, y, z, by the largest of the four, so that nothing small is divided by (Shepperd 1978). */
+/* The quaternion w, x, y, z of a rotation's rows, from the largest of the four, so that nothing is divided by a small
+ * number (Shepperd 1978). */
 static void quaternion_of(const double m[3][4], double q[4]) {
   double squares[4] = {m[0][0] + m[1][1] + m[2][2], m[0][0] - m[1][1] - m[2][2], m[1][1] - m[0][0] - m[2][2],
                        m[2][2] - m[0][0] - m[1][1]};
@@ -150,7 +151,7 @@ conic_status conic_camera_between(conic_context *context, const conic_camera *fr
   eye_of_camera(from, eyes[0]);
   eye_of_camera(to, eyes[1]);
   conic_camera between = *from;
-  if (part == 0.0 || part == 1.0) { /* to the bit */
+  if (part == 0.0 || part == 1.0) { /* stays, to the bit */
     *camera = part == 0.0 ? *from : *to;
     return CONIC_OK;
   }

@@ -10,7 +10,7 @@ static size_t sums_bytes(const conic_accumulation *sums) {
   return (size_t)sums->width * (size_t)sums->height * sums->n_channels * sizeof *sums->sums;
 }
 
-/* A part goes from a sum to before another one. */
+/* A part is the sums from its begin to before the next part's. */
 static size_t part_begin(const conic_accumulation *sums, int i, int n) {
   uint64_t n_sums = sums_bytes(sums) / sizeof *sums->sums;
   return (size_t)(n_sums / (uint64_t)n * (uint64_t)i + n_sums % (uint64_t)n * (uint64_t)i / (uint64_t)n);

@@ -6,7 +6,7 @@
 
 #include "core/base/random.h"
 
-/* The scramble is one of 400: the one by which edges, in a pixel, out of focus and in motion, came out best. */
+/* One of 400 scrambles: the one with which edges in a pixel, out of focus and in motion came out best. */
 enum { N_BITS = 32, MOST_DEGREE = 6, SCRAMBLE = 63 };
 
 /* A primitive polynomial over two elements, its inner coefficients as bits, and the first direction numbers. */
@@ -16,8 +16,8 @@ typedef struct sobol_dimension {
   uint32_t first[MOST_DEGREE];
 } sobol_dimension;
 
-/* In the order of our dimensions: those that are used as pairs are such whose projections are good nets together
- * (Joe and Kuo's dimensions 1 and 2, 3 and 4, 6 and 8, 9 and 16, 10 and 15). */
+/* In the order of our dimensions. Dimensions used as pairs are those whose projections together are good nets (Joe and
+ * Kuo's dimensions 1 and 2, 3 and 4, 6 and 8, 9 and 16, 10 and 15). */
 static const sobol_dimension dimensions[CONIC_N_SEQUENCE_DIMENSIONS] = {
     {0, 0, {0}},                    /* 1: the bits of the index, mirrored */
     {1, 0, {1}},                    /* 2 */
@@ -57,7 +57,7 @@ static uint32_t sobol_point(const sobol_dimension *dimension, uint32_t index) {
   return point;
 }
 
-/* Owen's scramble: each bit is flipped or not by what the bits above it are. */
+/* Owen's scramble: the bits above each bit decide whether it is flipped. */
 static uint32_t nested_scramble(uint32_t point, uint64_t seed, int dimension) {
   uint32_t scrambled = 0;
   for (int i = 0; i < N_BITS; i++) {

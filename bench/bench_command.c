@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "bench/bench_job.h"
-#include "bench/kernels/cross_all.h"
+#include "bench/loops/cross_all.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/outputs.h"

@@ -6,6 +6,7 @@
 #include "bench/bench.h"
 #include "cli/shell.h"
 #include "core/base/real.h"
+#include "core/image/image_common.h"
 
 const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS] = {
     {"conic", CONIC_METHOD_CONIC, 3},  {"ray", CONIC_METHOD_RAY, 3},   {"affine", CONIC_METHOD_AFFINE, 3},
@@ -29,16 +30,11 @@ double cli_bench_median(double *values, size_t n, double quartiles[2]) {
   return quantile(values, n, 0.5);
 }
 
-static size_t plane_bytes(const conic_image *image, int plane) {
-  return (size_t)image->width * (size_t)image->height * 4 *
-         (size_t)conic_plane_describe((conic_plane)plane)->n_channels;
-}
-
 int cli_bench_difference(const conic_image *a, const conic_image *b) {
   for (int plane = 0; plane < CONIC_N_PLANES; plane++)
     if (a->planes[plane] && b->planes[plane] &&
         (a->width != b->width || a->height != b->height ||
-         memcmp(a->planes[plane], b->planes[plane], plane_bytes(a, plane)) != 0))
+         memcmp(a->planes[plane], b->planes[plane], conic_image_plane_bytes(a, plane)) != 0))
       return plane;
   return -1;
 }
@@ -47,7 +43,7 @@ int cli_bench_difference(const conic_image *a, const conic_image *b) {
 static void spoil(conic_image *image) {
   for (int plane = 0; plane < CONIC_N_PLANES; plane++)
     if (image->planes[plane])
-      memset(image->planes[plane], 0x5a, plane_bytes(image, plane));
+      memset(image->planes[plane], 0x5a, conic_image_plane_bytes(image, plane));
 }
 
 static void note_difference(const conic_image *reference, const conic_image *drawn, cli_bench_line *line) {

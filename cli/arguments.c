@@ -19,17 +19,30 @@ static void list_common(cli_session *session, int *is_help, cli_option common[N_
        .value = &session->threads,
        .argument = "N",
        .maximum = 1024,
-       .help = "how many threads compute; the results never depend on it [0: all]"},
+       .help = "how many threads compute; the results never depend on it [0: all]",
+       .is_usual = 1,
+       .acts.is_work = 1},
       {.name = "json",
        .type = CLI_TEXT,
        .value = &session->json_path,
        .argument = "FILE",
-       .help = "write statistics of the run as JSON; - is standard output"},
-      {.name = "quiet", .type = CLI_FLAG, .value = &session->is_quiet, .help = "no progress bar, no warnings"},
+       .help = "write statistics of the run as JSON; - is standard output",
+       .is_usual = 1,
+       .acts.is_work = 1},
+      {.name = "quiet",
+       .type = CLI_FLAG,
+       .value = &session->is_quiet,
+       .help = "no progress bar, no warnings",
+       .is_usual = 1,
+       .acts.is_work = 1},
       {.name = "q", .type = CLI_FLAG, .value = &session->is_quiet},
-      {.name = "verbose", .type = CLI_FLAG, .value = &session->is_verbose, .help = "say more on standard error"},
+      {.name = "verbose",
+       .type = CLI_FLAG,
+       .value = &session->is_verbose,
+       .help = "say more on standard error",
+       .acts.is_work = 1},
       {.name = "v", .type = CLI_FLAG, .value = &session->is_verbose},
-      {.name = "help", .type = CLI_FLAG, .value = is_help, .help = "this text"},
+      {.name = "help", .type = CLI_FLAG, .value = is_help, .help = "this text", .is_usual = 1, .acts.is_work = 1},
       {.name = "h", .type = CLI_FLAG, .value = is_help},
   };
   memcpy(common, list, sizeof list);
@@ -144,10 +157,6 @@ static int is_within_limits(const cli_option *option, double value) {
   return (option->minimum == 0.0 && option->maximum == 0.0) || (value >= option->minimum && value <= option->maximum);
 }
 
-const char *cli_dashes(const cli_option *option) {
-  return option->dashes ? option->dashes : option->name[1] ? "--" : "-";
-}
-
 static int refuse_range(const cli_session *session, const cli_option *option, const char *text) {
   return cli_usage("%s: %s%s: %s is not between %.10g and %.10g", session->command, cli_dashes(option), option->name,
                    text, option->minimum, option->maximum);
@@ -174,6 +183,14 @@ static int is_too_large(const cli_option *option, const char *text) {
 /* Reads one value; CLI_DONE or CLI_USAGE after a message. */
 static int store_value(const cli_session *session, const cli_option *option, const char *text) {
   int is_understood = 1, is_in_range = 1;
+  const char *whole = text, *colon = option->parse_tail ? strchr(text, ':') : NULL;
+  char head[64];
+  if (colon) {
+    snprintf(head, sizeof head, "%.*s", (int)(colon - text), text);
+    if (colon - text >= (int)sizeof head || !option->parse_tail(colon + 1, option->tail))
+      return refuse_text(session, option, whole);
+    text = head;
+  }
   switch (option->type) {
   case CLI_FLAG:
     *(int *)option->value = 1;
@@ -211,7 +228,7 @@ static int store_value(const cli_session *session, const cli_option *option, con
     break;
   }
   if (!is_understood)
-    return refuse_text(session, option, text);
+    return refuse_text(session, option, whole);
   if (!is_in_range)
     return refuse_range(session, option, text);
   if (option->is_given)
@@ -254,7 +271,7 @@ static int refuse_option(const cli_session *session, const option_set *set, cons
            argument + strspn(argument, "-"));
   for (int table = 0; table < 2; table++)
     for (int i = 0; i < set->counts[table]; i++)
-      if (set->tables[table][i].name[1])
+      if (set->tables[table][i].name[1] && !set->tables[table][i].now)
         nearest = conic_nearer_word(name, nearest, set->tables[table][i].name);
   conic_disk_entry entry;
   if (conic_disk_look(argument, &entry))
@@ -264,8 +281,20 @@ static int refuse_option(const cli_session *session, const option_set *set, cons
   return cli_usage("%s: unknown option %s; see conic help %s", session->command, argument, session->command);
 }
 
+/* To be told when all is well. */
+static void note_old(cli_session *session, const cli_option *option) {
+  const int most = (int)(sizeof session->old_spellings / sizeof *session->old_spellings);
+  int i = 0;
+  while (i < most && session->old_spellings[i].name)
+    i++;
+  if (i < most) {
+    session->old_spellings[i].name = option->name;
+    session->old_spellings[i].now = option->now;
+  }
+}
+
 /* Reads the option at argv[*i] and its value, which may be the next argument; *i moves to the last one used. */
-static int parse_option(const cli_session *session, const option_set *set, int argc, char **argv, int *i) {
+static int parse_option(cli_session *session, const option_set *set, int argc, char **argv, int *i) {
   const char *argument = argv[*i], *value = NULL, **former;
   int is_long = argument[1] == '-';
   const char *name = argument + 1 + is_long;
@@ -275,9 +304,13 @@ static int parse_option(const cli_session *session, const option_set *set, int a
     return refuse_option(session, set, argument);
   if (name[length])
     value = name + length + is_long; /* behind the equals sign, or a short option's rest */
-  if (option->type == CLI_FLAG)
+  if (option->now && !*former)
+    note_old(session, option);
+  if (option->type == CLI_FLAG) {
+    *former = option->name;
     return value ? cli_usage("%s: %s%s takes no value", session->command, cli_dashes(option), option->name)
                  : store_value(session, option, NULL);
+  }
   if (!value && (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0))
     return cli_usage("%s: %s%s needs a value: %s", session->command, cli_dashes(option), option->name,
                      option->argument);
@@ -298,6 +331,12 @@ static int asks_for(int argc, char **argv, const char *name, const char *letter)
 
 int cli_parse(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
               const char **positional, int *n_positional) {
+  const char *values[n_options + 1];
+  return cli_parse_noting(session, options, n_options, argc, argv, positional, n_positional, values);
+}
+
+int cli_parse_noting(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
+                     const char **positional, int *n_positional, const char **values) {
   int is_help = 0, exit_code = CLI_DONE, is_over = 0;
   cli_option common[N_COMMON];
   list_common(session, &is_help, common);
@@ -308,9 +347,9 @@ int cli_parse(cli_session *session, const cli_option *options, int n_options, in
     return -1;
   }
   session->is_quiet = asks_for(argc, argv, "--quiet", "-q"); /* about the other arguments, too */
-  const char *values[n_options + N_COMMON];
-  memset(values, 0, sizeof values);
-  option_set set = {{options, common}, {n_options, N_COMMON}, {values, values + n_options}};
+  const char *common_values[N_COMMON] = {NULL};
+  memset(values, 0, (size_t)n_options * sizeof *values);
+  option_set set = {{options, common}, {n_options, N_COMMON}, {values, common_values}};
   for (int i = 1; i < argc && exit_code == CLI_DONE; i++) {
     if (!is_over && strcmp(argv[i], "--") == 0)
       is_over = 1;

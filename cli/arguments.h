@@ -2,6 +2,7 @@
 #ifndef CONIC_ARGUMENTS_H
 #define CONIC_ARGUMENTS_H
 
+#include "cli/option_facts.h"
 #include "cli/session.h"
 
 typedef enum cli_option_type {
@@ -16,6 +17,14 @@ typedef enum cli_option_type {
   CLI_PARSED  /* any: by `parse` */
 } cli_option_type;
 
+/* What an option has an effect on, as bits CLI_FACT(NAME) (cli/option_facts.h). Zeros: on everything. */
+typedef struct cli_effect {
+  unsigned long long on, needs; /* of each, what is drawn and what is asked for, any one has to hold, */
+  unsigned long long apart;     /* and none of these */
+  int is_work;                  /* it decides time, memory or what is said, and no bit of what is made */
+  int is_warned;                /* where it has no effect that is a warning; else wrong usage */
+} cli_effect;
+
 typedef struct cli_option {
   const char *name; /* without the dashes; one letter means a short option, unless `dashes` says more */
   cli_option_type type;
@@ -29,6 +38,13 @@ typedef struct cli_option {
   const char *dashes;                          /* null: one before a name of one letter, else two */
   int may_repeat;                              /* `parse` takes every value; else the last one holds */
   const char *group;                           /* heads this option and those below, up to the next; null: goes on */
+  const char *intro;                           /* of the group, one line; null: none */
+  /* What may stand behind a colon of the value: a parser, and what it is handed. */
+  int (*parse_tail)(const char *text, void *tail);
+  void *tail;
+  int is_usual;    /* the short help has it, too */
+  const char *now; /* an old spelling, which no help shows: what to write in its place. Null: it is none */
+  cli_effect acts;
 } cli_option;
 
 /* The options that a command understands: its own, and those of every command. */
@@ -38,19 +54,26 @@ typedef struct cli_option_table {
 } cli_option_table;
 
 /* What stands before an option's name. */
-const char *cli_dashes(const cli_option *option);
+static inline const char *cli_dashes(const cli_option *option) {
+  return option->dashes ? option->dashes : option->name[1] ? "--" : "-";
+}
 
 /* Reads arguments into the options' values, and what is no option into positional[0 … *n_positional); --threads,
  * --json, --quiet, --verbose (and --help), and -q -v -h, are understood for every command. Returns CLI_DONE, or
  * CLI_USAGE after a message; -1 when help was asked for and given (cli/help/help.h). `positional` has room for argc. */
 int cli_parse(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
               const char **positional, int *n_positional);
+/* The same, which notes each option's last value in values[0 … n_options): null where it was not given, and the name of
+ * a flag that was. */
+int cli_parse_noting(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
+                     const char **positional, int *n_positional, const char **values);
 
 /* For commands that read textures. */
 #define CLI_TEXTURE_BOUND(session)                                                                                     \
   {                                                                                                                    \
     "max-texture", CLI_INT, &(session)->max_texture_mib, "MiB",                                                        \
-        "what textures may take in memory together; one more is refused before it is decoded [4096]", 1, 1 << 20       \
+        "what textures may take in memory together; one more is refused before it is decoded [4096]", 1, 1 << 20,      \
+        .acts.is_work = 1                                                                                              \
   }
 
 /* A length: in world units, or with an x behind it ("0.5x") in median sample spacings of the scene. */
@@ -67,7 +90,9 @@ int cli_parse_length(const char *text, void *length);
   {                                                                                                                    \
     "columns", CLI_PARSED, to, "NAMES",                                                                                \
         "what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]",                        \
-        .parse = cli_parse_columns                                                                                     \
+        .parse = cli_parse_columns, .acts = {                                                                          \
+          .on = CLI_FACT(TEXT)                                                                                         \
+        }                                                                                                              \
   }
 int cli_parse_columns(const char *text, void *columns);
 
@@ -75,7 +100,10 @@ int cli_parse_columns(const char *text, void *columns);
 #define CLI_WHERE(to)                                                                                                  \
   {                                                                                                                    \
     "where", CLI_TEXT, to, "WHAT",                                                                                     \
-        "which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)' [all]"  \
+        "which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)' [all]", \
+        .acts = {                                                                                                      \
+          .on = CLI_FACT(SPLATS) | CLI_FACT(LEVELS)                                                                    \
+        }                                                                                                              \
   }
 
 /* Parses a count as CLI_COUNT does: 100000, 10k, 2M, 1e6; 0 where it is none. */

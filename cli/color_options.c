@@ -19,6 +19,18 @@ int cli_parse_color_range(const char *text, void *value) {
   return extent > 0.0 && extent - extent == 0.0;
 }
 
+int cli_parse_ramp(const char *text, void *value) {
+  conic_coloring_options *coloring = value;
+  size_t length = strcspn(text, ":");
+  if (*text && strchr("+-.0123456789", *text))
+    return cli_parse_color_range(text, value);
+  coloring->ramp = text;
+  for (int i = 0; conic_ramp_name(i); i++)
+    if (strlen(conic_ramp_name(i)) == length && strncmp(conic_ramp_name(i), text, length) == 0)
+      coloring->ramp = conic_ramp_name(i);
+  return *text && (!text[length] || cli_parse_color_range(text + length + 1, value));
+}
+
 static int check_ramp(const cli_session *session, const char *ramp) {
   const char *nearest = NULL, *name;
   for (int i = 0; (name = conic_ramp_name(i)); i++) {
@@ -36,7 +48,7 @@ int cli_color_check(const cli_session *session, conic_coloring_options *coloring
   if (!coloring->by && is_auto)
     coloring->by = "auto";
   if (!coloring->by && (coloring->ramp || coloring->has_range))
-    return cli_usage("%s: --ramp and --color-range are about --color-by; give it, too", session->command);
+    return cli_usage("%s: --ramp is about --color-by; give it, too", session->command);
   return coloring->ramp ? check_ramp(session, coloring->ramp) : CLI_DONE;
 }
 

@@ -17,20 +17,29 @@ extern const char *const cli_color_words[], *const cli_ramp_words[]; /* for comp
    "what the points' colours are made of: rgb, intensity, height, classification, normal, or a value in the file "     \
    "by its name; auto: rgb, or else intensity [auto]",                                                                 \
    .choices = cli_color_words,                                                                                         \
-   .group = "colours made of values"},                                                                                 \
+   .is_usual = 1,                                                                                                      \
+   .acts = {.on = CLI_SURFACES},                                                                                       \
+   .group = "colours made of values",                                                                                  \
+   .intro = "Colours of what scans and simulations measure."},                                                         \
       {"ramp",                                                                                                         \
-       CLI_TEXT,                                                                                                       \
-       &(coloring)->ramp,                                                                                              \
-       "NAME",                                                                                                         \
-       "the colours of --color-by: sequential, grey, heat, diverging, terrain or classes [what suits]",                \
-       .choices = cli_ramp_words},                                                                                     \
+       CLI_PARSED,                                                                                                     \
+       (coloring),                                                                                                     \
+       "NAME:A,B",                                                                                                     \
+       "the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its two ends " \
+       "behind it, or alone [what suits, from the 2nd to the 98th percentile]",                                        \
+       .choices = cli_ramp_words,                                                                                      \
+       .parse = cli_parse_ramp,                                                                                        \
+       .acts = {.on = CLI_FACT(VALUED)}},                                                                              \
   {                                                                                                                    \
-    "color-range", CLI_PARSED, (coloring), "A,B",                                                                      \
-        "the values at the two ends of the ramp [the 2nd and 98th percentile]", .parse = cli_parse_color_range         \
+    "color-range", CLI_PARSED, (coloring), "A,B", "the values at the two ends of the ramp",                            \
+        .parse = cli_parse_color_range, .now = "--ramp A,B, or behind its name, --ramp heat:A,B", .acts = {            \
+          .on = CLI_FACT(VALUED)                                                                                       \
+        }                                                                                                              \
   }
 
-/* "A,B" into a conic_coloring_options. */
+/* "A,B" into a conic_coloring_options; and NAME, NAME:A,B or A,B, where any name is taken until cli_color_check. */
 int cli_parse_color_range(const char *text, void *value);
+int cli_parse_ramp(const char *text, void *value);
 
 /* Whether the options make sense; where `by` is not given it becomes "auto" if that is the default, or else stays null.
  * Returns CLI_DONE, or CLI_USAGE after a message. */

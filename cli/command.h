@@ -4,7 +4,7 @@
 
 #include "cli/session.h"
 
-struct cli_team;
+struct conic_executor;
 
 /* Whatever a scene is read from. */
 #define CLI_READABLE                                                                                                   \
@@ -37,10 +37,10 @@ typedef struct cli_command {
 
 extern const cli_command cli_make, cli_prepare, cli_octree, cli_layer, cli_merge, cli_cut, cli_mls, cli_hybrid,
     cli_render, cli_diff, cli_info, cli_verify, cli_judge, cli_explain, cli_gradient, cli_conformance, cli_chart,
-    cli_bench, cli_simulate, cli_devices, cli_convert;
+    cli_bench, cli_devices, cli_convert;
 
 /* Runs what the arguments say, argv[0] being the program's name. Returns its exit code. */
-int cli_program(int argc, char **argv, struct cli_team *team);
+int cli_program(int argc, char **argv, const struct conic_executor *team);
 /* The command of that name, or null. */
 const cli_command *cli_find_command(const char *name);
 /* The i-th command; null past the last. */

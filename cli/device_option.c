@@ -6,6 +6,18 @@
 #include "core/lanes/instruction_sets.h"
 #include "opencl/device_name.h"
 
+int cli_parse_device(const char *text, void *value) {
+  static const char inexact[] = ":inexact";
+  cli_device *device = value;
+  size_t length = strlen(text), n = length > sizeof inexact - 1 ? length - (sizeof inexact - 1) : length;
+  device->name = text;
+  if (strcmp(text + n, inexact) != 0)
+    return *text != '\0';
+  snprintf(device->own, sizeof device->own, "%.*s", (int)n, text);
+  device->name = device->own;
+  return device->allow_inexact = 1;
+}
+
 int cli_device_check(const cli_session *session, const cli_device *device) {
   conic_device_name name;
   if (strcmp(device->name, "cpu") == 0 || conic_device_name_read(device->name, &name))

@@ -7,9 +7,12 @@
 typedef struct cli_device {
   const char *name; /* cpu, or opencl[:P.D][:gather|:lanes] */
   int allow_inexact;
+  char own[64];  /* the name, where what was given has more */
   char used[32]; /* "cpu", "opencl:0.0": what it turned out to be */
 } cli_device;
 
+/* A parser of values, into a cli_device: NAME, or NAME:inexact. */
+int cli_parse_device(const char *text, void *value);
 /* CLI_DONE where the name is one, or CLI_USAGE after a message. */
 int cli_device_check(const cli_session *session, const cli_device *device);
 

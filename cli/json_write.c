@@ -6,7 +6,6 @@
 
 #include "cli/host_keeps.h"
 #include "cli/session.h"
-#include "cli/session_team.h"
 #include "core/files/file.h"
 
 /* What has_items remembers of each open object or array. */
@@ -157,7 +156,7 @@ struct cli_json_file {
 
 cli_json *cli_json_open(cli_session *session, cli_json_file **file, int *exit_code) {
   *file = NULL;
-  if (!session->json_path || !cli_team_is_first(session))
+  if (!session->json_path || !cli_session_speaks(session))
     return NULL;
   cli_json_file *made = malloc(sizeof *made);
   if (!made) {

@@ -3,39 +3,6 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/session_team.h"
-#include "core/base/nearest_word.h"
-
-static const cli_command *const commands[] = {
-    &cli_make,    &cli_prepare,  &cli_octree,      &cli_layer, &cli_merge, &cli_cut,      &cli_mls,
-    &cli_hybrid,  &cli_convert,  &cli_render,      &cli_diff,  &cli_info,  &cli_verify,   &cli_judge,
-    &cli_explain, &cli_gradient, &cli_conformance, &cli_chart, &cli_bench, &cli_simulate, &cli_devices};
-
-enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
-
-const cli_command *cli_find_command(const char *name) {
-  for (int i = 0; i < N_COMMANDS; i++)
-    if (strcmp(commands[i]->name, name) == 0)
-      return commands[i];
-  return NULL;
-}
-
-const cli_command *cli_command_at(int i) {
-  return i < N_COMMANDS ? commands[i] : NULL;
-}
-
-int cli_refuse_command(const char *name) {
-  int is_option = name[0] == '-';
-  const char *kind = is_option ? "option" : "command";
-  const char *nearest = conic_nearer_word(name, NULL, is_option ? "--version" : "help");
-  if (is_option)
-    nearest = conic_nearer_word(name, nearest, "--help");
-  for (int i = 0; i < N_COMMANDS && !is_option; i++)
-    nearest = conic_nearer_word(name, nearest, commands[i]->name);
-  if (nearest)
-    return cli_usage("unknown %s %s; did you mean %s?", kind, name, nearest);
-  return cli_usage("unknown %s %s; see conic help", kind, name);
-}
 
 static void print_features(const char *label, int available) {
   fputs(label, stdout);
@@ -54,17 +21,20 @@ static int print_version(void) {
   return CLI_DONE;
 }
 
-static int run_command(int argc, char **argv, cli_team *team) {
+static int run_command(int argc, char **argv, const struct conic_executor *team) {
   const cli_command *command = cli_find_command(argv[0]);
   if (!command)
     return cli_refuse_command(argv[0]);
   cli_session session = {.command = command->name, .team = team};
   int exit_code = command->run(&session, argc, argv);
+  for (int i = 0; i < 8 && exit_code < CLI_USAGE && session.old_spellings[i].name; i++)
+    cli_note(&session, "%s: --%s is now %s", session.command, session.old_spellings[i].name,
+             session.old_spellings[i].now);
   cli_session_close(&session);
   return exit_code;
 }
 
-static int run(int argc, char **argv, cli_team *team) {
+static int run(int argc, char **argv, const struct conic_executor *team) {
   if (argc < 2) {
     cli_help_usage(stderr);
     return CLI_USAGE;
@@ -76,7 +46,7 @@ static int run(int argc, char **argv, cli_team *team) {
   return run_command(argc - 1, argv + 1, team);
 }
 
-int cli_program(int argc, char **argv, cli_team *team) {
+int cli_program(int argc, char **argv, const struct conic_executor *team) {
   int exit_code = run(argc, argv, team);
   errno = 0;
   if ((fflush(stdout) != 0 || ferror(stdout)) && exit_code < CLI_USAGE)

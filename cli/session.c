@@ -9,11 +9,11 @@
 
 #include "cli/host.h"
 #include "cli/host_keeps.h"
-#include "cli/session_team.h"
 #include "cli/shell.h"
 #include "cli/stopper.h"
 #include "core/base/clock.h"
 #include "core/files/guard.h"
+#include "shots/executor.h"
 
 /* Messages may come from any of the context's threads, and each must first take the progress bar off the screen. */
 static pthread_mutex_t screen = PTHREAD_MUTEX_INITIALIZER;
@@ -30,6 +30,13 @@ static atomic_int closed_pipe_signal; /* what is written to a pipe has no reader
 /* Of the run that this thread is in; null: the program's own. */
 static _Thread_local cli_host *thread_host;
 
+/* Takes messages in the place of the screen; null: nobody does. */
+static int (*holds)(conic_log_level level, const char *message);
+
+void cli_session_hold(int (*hold)(conic_log_level level, const char *message)) {
+  holds = hold;
+}
+
 void cli_session_host(cli_session *session) {
   thread_host = session ? session->host : NULL;
 }
@@ -45,6 +52,10 @@ double cli_seconds(void) {
 
 unsigned long long cli_peak_rss_bytes(void) {
   return cli_shell_peak_bytes();
+}
+
+int cli_session_speaks(const cli_session *session) {
+  return !session->team || session->team->index == 0;
 }
 
 static void erase_bar(void) {
@@ -65,7 +76,7 @@ static void print_message(conic_log_level level, const char *format, va_list arg
     say_to_host(thread_host, level, message);
     return;
   }
-  if (cli_team_keeps(level, message))
+  if (holds && holds(level, message))
     return;
   pthread_mutex_lock(&screen);
   erase_bar();
@@ -224,7 +235,7 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
     return;
   if (level == CONIC_LOG_ERROR && atomic_exchange(&has_failed, 1) && !session->is_verbose)
     return;
-  if (cli_team_keeps(level, message))
+  if (holds && holds(level, message))
     return;
   const char *label = level == CONIC_LOG_ERROR ? "error: " : level == CONIC_LOG_WARNING ? "warning: " : "";
   pthread_mutex_lock(&screen);
@@ -255,6 +266,10 @@ static void on_interrupt(int signal_number) {
 /* The write fails, after which is cleaned up as after any other failure. */
 static void on_closed_pipe(int signal_number) {
   atomic_store(&closed_pipe_signal, signal_number);
+}
+
+static int stopped_exit_code(void) {
+  return cli_exit_after_signals(CLI_RESOURCE);
 }
 
 /* A host's runs leave the process as it is: its signals, its terminal. */
@@ -289,8 +304,8 @@ int cli_session_open(cli_session *session) {
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
   conic_guard_inputs(session->context, session->replaced_path);
-  session->has_bar = !session->is_quiet && cli_shell_has_cursor() && cli_team_is_first(session);
-  cli_stopper_begin(session->context, session->command);
+  session->has_bar = !session->is_quiet && cli_shell_has_cursor() && cli_session_speaks(session);
+  cli_stopper_begin(session->context, session->command, stopped_exit_code);
   cli_shell_catch(on_interrupt, on_closed_pipe);
   return CLI_DONE;
 }

@@ -32,22 +32,31 @@ typedef struct cli_session {
   /* How cli_parse answers --help; null: as text. `help` is its own. */
   void (*show_help)(struct cli_session *session, const struct cli_option_table *table);
   void *help;
-  struct cli_host *host; /* cli/host.h: what runs the command within itself; null: a shell */
+  int is_help_whole; /* --all: of commands that have a short one */
+  struct {
+    const char *name, *now;
+  } old_spellings[8]; /* of options that were given, and what they are now; names null: no more */
   struct cli_shot_again
       *again;            /* cli/render/shot_again.h: what the arguments that are read draw again; null: nothing */
-  struct cli_team *team; /* cli/session_team.h: the processes that run it together; null: this one is alone */
+  struct cli_host *host; /* cli/host.h: what runs the command within itself; null: a shell */
+  const struct conic_executor *team; /* the processes that run it together (cli/session_team.h); null: it is alone */
 } cli_session;
 
 /* Makes the context. Returns CLI_DONE or, after an error message, the exit code. */
 int cli_session_open(cli_session *session);
 /* From now on what this thread prints for people is said to the session's host, if it has one; null: no longer. */
 void cli_session_host(cli_session *session);
+/* From now on `hold` sees what this process would print for people, and keeps it where it returns 1. */
+void cli_session_hold(int (*hold)(conic_log_level level, const char *message));
 /* Ends the context; fine where it was never made. */
 void cli_session_close(cli_session *session);
 
 /* Says that what follows is part `i_part` of `n_parts`, from 1, of one long work, say a turntable's frame 3 of 36: the
  * progress bar then is about all of them. `name` is to stay. */
 void cli_session_part(cli_session *session, const char *name, int i_part, int n_parts);
+
+/* Whether this process says and writes what comes of the command: it is alone, or the first of several. */
+int cli_session_speaks(const cli_session *session);
 
 /* The exit code that stands for a status; the message has been printed by the context's log. */
 int cli_exit_of(conic_status status);

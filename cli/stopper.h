@@ -5,8 +5,9 @@
 
 #include "conic/conic.h"
 
-/* Begins to watch over a run of `command`, which is to stay; without threads to spare nobody does. */
-void cli_stopper_begin(conic_context *context, const char *command);
+/* Begins to watch over a run of `command`, which is to stay; without threads to spare nobody does. A run that is ended
+ * has the code that `exit_code` returns. */
+void cli_stopper_begin(conic_context *context, const char *command, int (*exit_code)(void));
 
 /* Stops watching; before the context ends. */
 void cli_stopper_end(void);

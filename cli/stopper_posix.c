@@ -8,7 +8,6 @@
 #include <stdatomic.h>
 #include <unistd.h>
 
-#include "cli/session.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
 
@@ -17,6 +16,7 @@ static const char asked = 'a', over = 'o';
 
 static conic_context *watched;
 static const char *watched_command;
+static int (*watched_exit_code)(void);
 static int words[2]; /* a pipe, as handlers may write to it */
 static pthread_t thread;
 static atomic_int is_watching;
@@ -37,14 +37,15 @@ static void *watch(void *nothing) {
     return nothing;
   conic_outputs_give_up(watched);
   conic_fail(watched, CONIC_ERROR_CANCELLED, "%s: cancelled", watched_command);
-  _exit(cli_exit_after_signals(CLI_RESOURCE));
+  _exit(watched_exit_code());
 }
 
 /* The thread catches no signals: they are to wake who waits for a pipe. */
-void cli_stopper_begin(conic_context *context, const char *command) {
+void cli_stopper_begin(conic_context *context, const char *command, int (*exit_code)(void)) {
   sigset_t all, before;
   watched = context;
   watched_command = command;
+  watched_exit_code = exit_code;
   if (atomic_load(&is_watching) || pipe(words) != 0)
     return;
   fcntl(words[1], F_SETFL, O_NONBLOCK);

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <windows.h>
 
-#include "cli/session.h"
 #include "cli/stopper.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
@@ -12,6 +11,7 @@ enum { PATIENCE_MS = 300 };
 
 static conic_context *watched;
 static const char *watched_command;
+static int (*watched_exit_code)(void);
 static HANDLE over, asked;
 static pthread_t thread;
 static atomic_int is_watching;
@@ -26,12 +26,13 @@ static void *watch(void *nothing) {
     return nothing;
   conic_outputs_give_up(watched);
   conic_fail(watched, CONIC_ERROR_CANCELLED, "%s: cancelled", watched_command);
-  _exit(cli_exit_after_signals(CLI_RESOURCE));
+  _exit(watched_exit_code());
 }
 
-void cli_stopper_begin(conic_context *context, const char *command) {
+void cli_stopper_begin(conic_context *context, const char *command, int (*exit_code)(void)) {
   watched = context;
   watched_command = command;
+  watched_exit_code = exit_code;
   if (atomic_load(&is_watching))
     return;
   over = over ? over : CreateEventW(NULL, FALSE, FALSE, NULL);

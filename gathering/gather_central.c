@@ -1,5 +1,5 @@
-/* Pictures of cameras that see all from one eye: each sample looks up, in the sides of a cube or in one wide view, the
- * pixel that its ray goes through. */
+/* Pictures of cameras that see everything from one eye: each sample takes the pixel that its ray goes through, from the
+ * sides of a cube or from one wide view. */
 #include <math.h>
 #include <string.h>
 
@@ -11,19 +11,20 @@
 #include "gathering/gather_views.h"
 #include "raster/frame/samples.h"
 
-/* So many samples are looked up at a time, or one row of pixels, and views have no more pixels but in jest. */
+/* So many samples, or one row of pixels, are looked up at a time; a view with more pixels than the second is
+ * refused. */
 enum { BAND_SAMPLES = 1 << 22, MOST_VIEW_PIXELS = 1 << 28 };
 enum { NO_SIDE = 255 };
 
-/* One view may take the place of three sides of a cube, each of 4 square units at the distance 1. */
+/* One view may replace up to three sides of a cube, each of which has 4 square units at the distance 1. */
 static const double widest_area = 12.0;
 
-/* Where a sample's ray meets a view, in the plane at the depth 1. */
+/* Where a sample's ray meets a view: in the plane at the depth 1. */
 typedef struct gather_place {
   float at[2];
 } gather_place;
 
-/* The places that are wanted of a side. */
+/* The wanted places of a side. */
 typedef struct gather_box {
   float low[2], high[2];
 } gather_box;
@@ -31,14 +32,14 @@ typedef struct gather_box {
 typedef struct gather_band {
   const conic_gathering *g;
   conic_camera_rays rays;
-  int is_one_view;        /* rather than sides */
+  int is_one_view;        /* else sides of a cube */
   double pixels_per_unit; /* of the views, at the depth 1 */
   size_t first_row, n_rows, width, samples;
   unsigned char *side; /* of each sample, or NO_SIDE */
   gather_place *place;
-  gather_box *boxes; /* of each row of samples, its sides' */
-  conic_image *fine; /* of the band's samples; where there is one a pixel, the picture itself */
-  /* the view that is being taken from */
+  gather_box *boxes; /* of each side, for each row of samples */
+  conic_image *fine; /* the band's samples; with one a pixel, the picture itself */
+  /* the current view */
   int i_side;
   long left, top; /* its first pixel in the side's grid */
   const conic_image *view;
@@ -46,7 +47,7 @@ typedef struct gather_band {
 
 /* --- rays --- */
 
-/* The direction, seen from the eye's place on the lens, of what is in focus; 0: there is none. */
+/* The direction, from the eye's place on the lens, to what is in focus at a place; returns 0 where there is none. */
 static int ray_of_place(const gather_band *b, double x_px, double y_px, double direction[3]) {
   const conic_gather_options *o = b->g->options;
   double origin[3];
@@ -58,13 +59,13 @@ static int ray_of_place(const gather_band *b, double x_px, double y_px, double d
 }
 
 static int side_of_ray(const double d[3]) {
-  static const unsigned char sides[3][2] = {{1, 0}, {3, 2}, {4, 5}}; /* by axis; the second where it is negative */
+  static const unsigned char sides[3][2] = {{1, 0}, {3, 2}, {4, 5}}; /* by axis; the second for negative directions */
   int axis = fabs(d[1]) > fabs(d[0]) ? 1 : 0;
   axis = fabs(d[2]) >= fabs(d[axis]) ? 2 : axis;
   return sides[axis][d[axis] < 0.0];
 }
 
-/* The side that the ray of a place goes through, and where. */
+/* The side that the ray of a place goes through, and where it does. */
 static int find_view_place(const gather_band *b, double x_px, double y_px, double at[2]) {
   double d[3];
   if (!ray_of_place(b, x_px, y_px, d))
@@ -86,7 +87,7 @@ static double step_between(const double a[2], const double b[2]) {
   return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]));
 }
 
-/* The larger edge of a pixel at a place, in the side's plane; infinite where it is none. */
+/* The larger edge of a pixel at a place, in the side's plane; infinite where there is no ray. */
 static double view_pixel_at(const gather_band *b, double x, double y) {
   double here[2], right[2], below[2];
   int side = find_view_place(b, x, y, here);
@@ -96,7 +97,7 @@ static double view_pixel_at(const gather_band *b, double x, double y) {
   return across > down ? across : down;
 }
 
-/* Looks at places all over the picture: whether one view is enough, and the finest pixel. */
+/* Checks places all over the picture: whether one view is enough, and how small the smallest pixel is. */
 static conic_status plan_views(gather_band *b) {
   const conic_gather_options *o = b->g->options;
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, finest = HUGE_VAL;
@@ -152,12 +153,12 @@ static void look_up_row(void *data, size_t i_row, int i_thread) {
   }
 }
 
-/* Of a place, its pixel in the side's grid. */
+/* A place's pixel in the side's grid. */
 static long grid_pixel(const gather_band *b, int axis, float at) {
   return (long)floor((double)at * b->pixels_per_unit + b->g->options->shift[axis]);
 }
 
-/* What depths of a view are times this: the way to the pixel's middle, by the depth in the view. */
+/* The factor of a view's depths: the distance to the pixel's middle over its depth in the view. */
 static double depth_factor(const gather_band *b, long column, long row) {
   const conic_gather_options *o = b->g->options;
   const double(*side)[3] = conic_cube_sides[b->i_side];
@@ -195,7 +196,7 @@ static void gather_row(void *data, size_t i_row, int i_thread) {
   }
 }
 
-/* Where no direction is seen, nothing is. */
+/* Clears samples whose camera sees no direction. */
 static void empty_row(void *data, size_t i_row, int i_thread) {
   const gather_band *b = data;
   size_t fine_row = b->fine == b->g->image ? b->first_row + i_row : i_row;
@@ -272,7 +273,7 @@ static conic_status gather_band_rows(gather_band *b) {
   return CONIC_OK;
 }
 
-/* As many rows as a band has, or fewer at the end. */
+/* For as many rows as a band has, or fewer at the end. */
 static conic_status allocate_band(gather_band *b, size_t n_rows, conic_image *fine) {
   conic_context *context = b->g->context;
   size_t n_fine_rows = n_rows * b->samples, n = n_fine_rows * b->width;

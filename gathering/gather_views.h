@@ -1,4 +1,4 @@
-/* What gathering a picture is made of: the grid of each view, and pictures that are views. */
+/* Parts of gathering a picture: the grid of each view, and pictures that consist of views. */
 #ifndef CONIC_GATHER_VIEWS_H
 #define CONIC_GATHER_VIEWS_H
 
@@ -11,7 +11,7 @@ typedef struct conic_gathering {
   conic_image *image;
 } conic_gathering;
 
-/* The camera of a side, whose eye has moved in camera space; its inner numbers are still to be set. */
+/* The camera of a side, with its eye moved in camera space; its inner numbers are left to the caller. */
 conic_camera conic_gather_side_camera(const conic_camera *camera, const double side[3][3], const double eye[3]);
 
 /* Draws a view of the size of its camera into planes that the caller releases. */
@@ -20,11 +20,11 @@ conic_status conic_gather_draw(const conic_gathering *g, const conic_gather_view
 /* Whether a plane holds depths, or 1 over them. */
 int conic_gather_is_depth(conic_plane plane);
 
-/* Pictures that consist of views, pixel by pixel: of a cube, and of an orthographic camera. */
+/* Gathers pictures that consist of views, pixel by pixel: of a cube, and of an orthographic camera. */
 conic_status conic_gather_cube(const conic_gathering *g);
 conic_status conic_gather_parallel(const conic_gathering *g);
 
-/* All others. */
+/* Gathers all other pictures. */
 conic_status conic_gather_central(const conic_gathering *g);
 
 #endif

@@ -1,4 +1,4 @@
-/* Pictures that consist of views, pixel by pixel: the sides of a cube, and what is seen from far away. */
+/* Pictures that consist of views, pixel by pixel: the sides of a cube, and views from far away. */
 #include <math.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "core/image/image_common.h"
 #include "gathering/gather_views.h"
 
-/* Copies a view to its place in the picture; where something is, depths grow by `deeper`. */
+/* Copies a view to its place in the picture; depths grow by `deeper` where something is. */
 static void put_view(const conic_gathering *g, const conic_image *view, size_t x, size_t y, double deeper) {
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     const conic_plane plane = (conic_plane)i;
@@ -23,7 +23,7 @@ static void put_view(const conic_gathering *g, const conic_image *view, size_t x
   }
 }
 
-/* All sides are seen from one eye; where it moves forward, the side widens so that the plane in focus stays. */
+/* All sides are seen from one eye. If it moves forward, the side widens so that the plane in focus stays. */
 static conic_camera cube_side_camera(const conic_gather_options *o, int i_side) {
   const conic_camera *camera = &o->camera;
   conic_camera turned = conic_gather_side_camera(camera, conic_cube_sides[i_side], o->lens);
@@ -71,8 +71,8 @@ static void find_far_depths(const conic_gather_options *o, double depths[2]) {
   }
 }
 
-/* The eye stands so far off that rays through a view's corner leave the parallel ones by 1/2048 of the pixels to the
- * middle over all depths there are, while floats still tell depths apart by that. */
+/* The eye is so far away that rays through a view's corner differ from parallel ones by at most 1/2048 of the pixels to
+ * the middle, over all depths; floats still tell depths apart by that. */
 static double find_far_distance(const conic_gather_options *o, const double depths[2]) {
   const double across = o->edge / (o->camera.fx < o->camera.fy ? o->camera.fx : o->camera.fy);
   double by_depth = 2048.0 * 0.5 * (depths[1] - depths[0]), by_width = 256.0 * across;

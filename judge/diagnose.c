@@ -1,4 +1,4 @@
-/* Which mistake explains a picture: docs/reference/diagnosis.md. */
+/* Finds the mistake that explains a picture: docs/reference/diagnosis.md. */
 #include <math.h>
 #include <string.h>
 
@@ -21,7 +21,7 @@ static conic_status draw_gaussian_world(void *data, const conic_planted *planted
   return conic_planted_gaussians_draw(w->context, w->gaussians, planted, w->samples, samples, values);
 }
 
-/* The camera of `samples` × `samples` samples a pixel. */
+/* The camera for `samples` × `samples` samples a pixel. */
 static conic_camera fine_camera_of(const conic_camera *camera, int samples) {
   conic_camera fine = *camera;
   const double n = samples;
@@ -62,7 +62,7 @@ static conic_status check_diagnosis(conic_context *context, const conic_camera *
   return CONIC_OK;
 }
 
-/* As many as take about the time of those of one sample a pixel. */
+/* As many cells as take about the time of the usual number with one sample a pixel. */
 static size_t cells_of(int samples) {
   size_t n = CONIC_MOST_CELLS / ((size_t)samples * (size_t)samples);
   return n > 8 ? n : 8;

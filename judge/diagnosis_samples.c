@@ -50,7 +50,7 @@ static size_t cell_of_sample(const conic_image *image, size_t pixel) {
   return pixel / width / CONIC_CELL * across + pixel % width / CONIC_CELL;
 }
 
-/* Cells of wrong pixels that are as far apart in the order of all wrong ones. */
+/* Chooses cells of wrong pixels, evenly spaced in the order of all wrong pixels. */
 static void choose_cells(const conic_image *image, const uint8_t *classes, size_t n_wrong, size_t most_cells,
                          uint8_t *is_chosen, conic_diagnosis_samples *s) {
   const size_t n = (size_t)image->width * (size_t)image->height;
@@ -127,7 +127,7 @@ void conic_diagnosis_samples_release(conic_diagnosis_samples *s) {
   memset(s, 0, sizeof *s);
 }
 
-/* At most 1. What is no number in the picture says nothing. */
+/* At most 1; 0 where the picture has NaN. */
 static double channel_distance(int channel, float low, float high, float value) {
   double scale = 1.0, d = 0.0;
   if (low != low || high != high)
@@ -151,7 +151,7 @@ static double pixel_distance(const conic_diagnosis_samples *s, size_t i, const c
 
 double conic_diagnosis_distance(const conic_diagnosis_samples *s, const conic_channels *values,
                                 const conic_channels *ours) {
-  static const double far = 1e-2; /* a decision that went the other way */
+  static const double far = 1e-2; /* this far off, a decision went the other way */
   double sum = 0.0;
   for (size_t i = 0; i < s->n; i++)
     if (s->is_wrong[i] || !ours || pixel_distance(s, i, ours[i]) < far)
@@ -174,9 +174,10 @@ static double transferred(conic_planted_transfer transfer, double v) {
     return conic_power(above, 1.0 / 2.2);
   case CONIC_TRANSFER_ENCODED_TWICE:
     return conic_srgb_encode(conic_srgb_encode(v));
-  default:
-    return v;
+  case CONIC_TRANSFER_OWN:
+    break;
   }
+  return v;
 }
 
 float conic_planted_transferred(conic_planted_transfer transfer, float value) {
@@ -194,9 +195,10 @@ static float alpha_factor(conic_planted_alpha alpha, const conic_channels v) {
     return w;
   case CONIC_ALPHA_WEIGHTED_LIMITED:
     return w < 1.0f ? w : 1.0f;
-  default:
-    return 1.0f;
+  case CONIC_ALPHA_OWN:
+    break;
   }
+  return 1.0f;
 }
 
 void conic_planted_finish(const conic_planted *p, size_t n, conic_channels *values) {

@@ -5,19 +5,19 @@
 #include "conic/gaussian_judge.h"
 #include "judge/planted.h"
 
-/* What of a pixel is compared. */
+/* The compared values of a pixel. */
 enum {
   CONIC_CHANNEL_A = 3,
   CONIC_CHANNEL_T = 4,
   CONIC_CHANNEL_WEIGHT = 5,
   CONIC_CHANNEL_ALBEDO = 6, /* 3 */
   CONIC_CHANNEL_NORMAL = 9, /* 3 */
-  CONIC_CHANNEL_Z = 12,     /* this and the next by their ratio */
+  CONIC_CHANNEL_Z = 12,     /* this and the next are compared by their ratio */
   CONIC_CHANNEL_MEDIAN_Z = 13,
   CONIC_CHANNEL_INVERSE_Z = 14,
   CONIC_CHANNEL_COUNT = 15,
   CONIC_N_COMPARED_CHANNELS = 16,
-  CONIC_CHANNEL_GLOSS = 16, /* 3: highlights, which are in no channel of colour until the picture is finished */
+  CONIC_CHANNEL_GLOSS = 16, /* 3: highlights, which are added to the colour when the picture is finished */
   CONIC_N_CHANNELS = 20
 };
 
@@ -25,7 +25,7 @@ typedef float conic_channels[CONIC_N_CHANNELS];
 
 enum { CONIC_CELL = 8, CONIC_MOST_CELLS = 96 };
 
-/* Samples first … first + n lie in the cell whose first pixel is (x, y). */
+/* Samples first … first + n are in the cell whose first pixel is (x, y). */
 typedef struct conic_sample_cell {
   size_t first, n;
   int x, y;
@@ -37,29 +37,28 @@ typedef struct conic_diagnosis_samples {
   size_t n, n_cells;
   uint16_t (*places)[2];
   uint8_t *is_wrong;
-  conic_channels *low, *high; /* what the picture's values stand for */
-  unsigned channels;          /* that the picture has, as bits */
+  conic_channels *low, *high; /* the range that the picture's values stand for */
+  unsigned channels;          /* the picture's, as bits */
   conic_sample_cell cells[CONIC_MOST_CELLS];
 } conic_diagnosis_samples;
 
-/* Chooses at most `most_cells` cells, where pixels are wrong. Without wrong ones, none. `greatest` may be null, as in
- * conic_gaussian_judging. On failure *samples is to be released, too. Errors: MEMORY. */
+/* Chooses at most `most_cells` cells with wrong pixels; none where no pixel is wrong. `greatest` may be null, as in
+ * conic_gaussian_judging. The caller releases *samples, on failure too. Errors: MEMORY. */
 conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_image *image,
                                             const conic_image *greatest, const uint8_t *classes, size_t most_cells,
                                             conic_diagnosis_samples *samples);
 void conic_diagnosis_samples_release(conic_diagnosis_samples *samples);
 
-/* The channels of an image at a pixel; those that it lacks are 0. */
+/* The channels of an image at a pixel; missing ones are 0. */
 void conic_channels_of_image(const conic_image *image, size_t pixel, conic_channels channels);
 
-/* The sum of the differences, each of at most 1. What is right, and yet far from `ours` (null: nothing is), is left
- * out. */
+/* The sum of the differences, each at most 1. Right pixels that are far from `ours` (null: none is) are left out. */
 double conic_diagnosis_distance(const conic_diagnosis_samples *samples, const conic_channels *values,
                                 const conic_channels *ours);
 
 float conic_planted_transferred(conic_planted_transfer transfer, float value);
 
-/* What is done to the finished picture at the samples. */
+/* Applies the mistakes in finishing a picture to the samples. */
 void conic_planted_finish(const conic_planted *planted, size_t n, conic_channels *values);
 
 #endif

@@ -1,4 +1,4 @@
-/* What the names of mistakes stand for; docs/reference/diagnosis.md says more. */
+/* The meanings of the names of mistakes; docs/reference/diagnosis.md says more. */
 #include <string.h>
 
 #include "conic/diagnosis.h"

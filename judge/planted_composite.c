@@ -7,7 +7,7 @@
 #include "gaussians/draw/ray_meetings.h"
 #include "gaussians/draw/view_rays.h"
 
-/* A fine pixel while Gaussians are composited. */
+/* A fine pixel during compositing. */
 typedef struct composite_sums {
   float T, color[3], weight, z, median_z, inverse_z, normal[3], count;
 } composite_sums;
@@ -25,7 +25,7 @@ void conic_planted_place(const conic_planted_frame *frame, const uint16_t place[
   }
 }
 
-/* Where a pixel of a tile of 16 × 16 stands in its order (gaussians/draw/gaussian_tile.h). */
+/* A pixel's place in the order of its tile of 16 × 16 (gaussians/draw/gaussian_tile.h). */
 static size_t place_in_tile(int x, int y) {
   return (size_t)(((y >> 2 & 3) * 4 + (x >> 2 & 3)) * 16 + (x & 3) * 4 + (y & 3));
 }
@@ -42,7 +42,7 @@ static conic_ray_meeting meet_plain_ray(const conic_kept_gaussian *k, float dx, 
                              (r->e[0] + r->e[1] * dx + r->e[2] * dy) * one_over, k->footprint.opacity};
 }
 
-/* Whether a pixel lies within 3 standard deviations, as others' programs cut them off. */
+/* Whether a pixel is within 3 standard deviations, as other programs cut them off. */
 static int is_in_extent(conic_planted_extent extent, const conic_gaussian_footprint *f, float dx, float dy) {
   const float determinant = f->form[0] * f->form[2] - f->form[1] * f->form[1];
   float xx = f->form[2] / determinant, yy = f->form[0] / determinant, half = 0.5f * (xx + yy);
@@ -58,7 +58,7 @@ static int is_in_extent(conic_planted_extent extent, const conic_gaussian_footpr
   return fabsf(dx) <= x && fabsf(dy) <= y;
 }
 
-/* Half of q, the depth and the opacity there. */
+/* Half of q, the depth and the opacity at the pixel. */
 static conic_ray_meeting meet_kept(const conic_planted_frame *frame, const conic_kept_gaussian *k, int x, int y) {
   const conic_gaussian_footprint *f = &k->footprint;
   const float across = (float)(x - f->x) - frame->planted->shift_px[0];
@@ -80,7 +80,8 @@ static conic_ray_meeting meet_kept(const conic_planted_frame *frame, const conic
     break;
   case CONIC_SHAPE_FILTERED:
     return conic_meet_filtered(&list, 0, x, y);
-  default:
+  case CONIC_SHAPE_SIGHT:
+  case CONIC_N_SHAPES: /* not a shape */
     list.tile_rays =
         &frame->view->rays->tiles[(size_t)(y / CONIC_GAUSSIAN_TILE) * (size_t)frame->view->rays->n_tiles[0] +
                                   (size_t)(x / CONIC_GAUSSIAN_TILE)];
@@ -92,7 +93,7 @@ static conic_ray_meeting meet_kept(const conic_planted_frame *frame, const conic
   return m;
 }
 
-/* Returns α, or a number below 0 where nothing is composited. */
+/* Returns α, or a negative number where nothing is composited. */
 static float planted_alpha(const conic_planted_frame *frame, const conic_ray_meeting *m) {
   const conic_planted *p = frame->planted;
   const conic_gaussian_rules *rules = &p->rules;
@@ -131,7 +132,7 @@ static int composite_kept(const conic_gaussian_rules *rules, const conic_kept_ga
   return 1;
 }
 
-/* By z, of equal ones in their order: Shell's sort, since a wrong scene may be in no order at all. */
+/* Sorts by z, equal ones in their order. Shell's sort, because a wrong scene may be in no order at all. */
 static void sort_planted_hits(conic_planted_hit *hits, size_t n) {
   size_t gap = 1;
   while (gap < n / 3)
@@ -181,7 +182,7 @@ static void composite_fine(const conic_planted_frame *frame, const conic_composi
       return;
 }
 
-/* What the middle sample of a pixel gives; of an even number the one before. */
+/* The values of a pixel's middle sample; of an even number, the one before the middle. */
 static void put_single_values(const composite_sums *s, conic_channels v) {
   v[CONIC_CHANNEL_Z] = s->weight > 0.0f ? s->z / s->weight : 0.0f;
   v[CONIC_CHANNEL_MEDIAN_Z] = s->median_z;

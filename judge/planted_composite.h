@@ -1,11 +1,11 @@
-/* Samples composited one by one. */
+/* Composites samples one by one. */
 #ifndef CONIC_PLANTED_COMPOSITE_H
 #define CONIC_PLANTED_COMPOSITE_H
 
 #include "gaussians/draw/gaussian_footprint.h"
 #include "judge/diagnosis_samples.h"
 
-/* A Gaussian that may reach a sample, set up. */
+/* A Gaussian, set up, that may reach a sample. */
 typedef struct conic_kept_gaussian {
   conic_gaussian_footprint footprint;
   conic_gaussian_ray ray;
@@ -22,7 +22,7 @@ typedef struct conic_planted_frame {
   conic_gaussian_shape shape;
   int samples; /* N × N a pixel */
   size_t n;
-  const conic_kept_gaussian *const *kept; /* in their order */
+  const conic_kept_gaussian *const *kept; /* in compositing order */
   const uint16_t (*boxes)[2][2];
 } conic_planted_frame;
 
@@ -31,13 +31,13 @@ typedef struct conic_planted_hit {
   uint32_t kept;
 } conic_planted_hit;
 
-/* Room for all that are kept. */
+/* Room for all kept Gaussians. */
 typedef struct conic_composite_scratch {
   uint32_t *listed;
   conic_planted_hit *hits;
 } conic_composite_scratch;
 
-/* The fine pixels of a sample, first and last in x and y: of a mirrored picture, those on the other side. */
+/* The fine pixels of a sample, first and last in x and y; in a mirrored picture, those on the other side. */
 void conic_planted_place(const conic_planted_frame *frame, const uint16_t place[2], int box[2][2]);
 
 void conic_planted_composite(const conic_planted_frame *frame, const conic_diagnosis_samples *at,

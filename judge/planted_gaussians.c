@@ -16,11 +16,11 @@
 
 enum { GRID_SHIFT = 4, RUN_TASKS = 64 };
 
-/* Gaussians that a thread has set up and that may reach a sample. */
+/* Gaussians that a thread has set up, and that may reach a sample. */
 typedef struct kept_room {
   conic_kept_gaussian *kept;
   size_t n, room;
-  int is_full; /* memory */
+  int is_full; /* memory ran out */
   conic_planted_run *run;
 } kept_room;
 
@@ -33,11 +33,11 @@ typedef struct planted_job {
   conic_planted_frame frame;
   conic_gaussian_view view;
   conic_view_rays rays;
-  uint32_t *grid; /* how many blocks of 16 × 16 with samples there are above and to the left */
+  uint32_t *grid; /* how many blocks of 16 × 16 above and to the left have samples */
   size_t grid_width, grid_height;
-  kept_room *rooms; /* a thread */
+  kept_room *rooms; /* one for each thread */
   conic_kept_gaussian *all;
-  conic_composite_scratch *scratch; /* a thread */
+  conic_composite_scratch *scratch; /* one for each thread */
 } planted_job;
 
 static conic_status make_sample_grid(planted_job *j) {
@@ -69,7 +69,7 @@ static int meets_sample(const planted_job *j, const conic_gaussian_footprint *f)
   return j->grid[y1 * w + x1] + j->grid[y0 * w + x0] - j->grid[y0 * w + x1] - j->grid[y1 * w + x0] != 0;
 }
 
-/* A pixel more on each side, but beyond no border of the tiles that are covered. */
+/* Grows the box by a pixel on each side, without crossing a border of the covered tiles. */
 static void grow_box(const conic_planted *p, conic_gaussian_footprint *f) {
   const int size[2] = {p->camera.width, p->camera.height}, tile = CONIC_GAUSSIAN_TILE;
   const int is_tiled = p->rules.coverage != CONIC_COVERAGE_ALPHA;
@@ -95,7 +95,7 @@ static double distance_of_mean(const planted_job *j, const conic_gaussians *set,
   return conic_length(from_eye);
 }
 
-/* What is composited first has the least. */
+/* The least key is composited first. */
 static uint64_t planted_key(const planted_job *j, const conic_gaussians *set, size_t i, float own) {
   const conic_planted *p = j->planted;
   float key = p->order == CONIC_ORDER_Z          ? (float)depth_of_mean(j, set, i)
@@ -107,7 +107,7 @@ static uint64_t planted_key(const planted_job *j, const conic_gaussians *set, si
   return p->is_reversed ? (uint32_t)~bits : bits;
 }
 
-/* Spread over the plane so that it is as heavy as any other. */
+/* Scales the opacity so that the Gaussian's integral over the plane is the same for all. */
 static void give_unit_volume(conic_gaussian_footprint *f) {
   float determinant = f->form[0] * f->form[2] - f->form[1] * f->form[1];
   f->opacity *= sqrtf(determinant) * 0.15915494f;
@@ -166,7 +166,7 @@ static conic_status keep_all(planted_job *j) {
   return CONIC_OK;
 }
 
-/* In the order of compositing, whichever thread set them up. */
+/* Sorts into compositing order, independent of the threads. */
 static conic_status order_kept(planted_job *j) {
   const size_t n = j->frame.n;
   conic_radix_item *items = conic_memory_allocate(j->context, n, sizeof *items);
@@ -237,7 +237,7 @@ static void release_planted(planted_job *j) {
   conic_view_rays_release(j->context, &j->rays);
 }
 
-/* As conic_gaussians_render does. */
+/* Sets up the view as conic_gaussians_render does. */
 static void look(planted_job *j, int is_affine) {
   const conic_planted *p = j->planted;
   const double(*rows)[4] = p->camera.cam_from_world;

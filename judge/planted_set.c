@@ -8,7 +8,7 @@
 static float planted_scale(conic_planted_reading reading, const conic_gaussians *from, int axis, size_t i) {
   float scale = from->scale[axis][i];
   switch (reading) {
-  case CONIC_READING_RAW: /* its square is all that is seen */
+  case CONIC_READING_RAW: /* only its square is visible */
     return fabsf(conic_gaussians_log_scale(from, axis, i));
   case CONIC_READING_TWICE:
     return conic_scale_of_log(scale);
@@ -17,9 +17,12 @@ static float planted_scale(conic_planted_reading reading, const conic_gaussians 
       scale =
           k == 0 ? from->rotation[0][i] * from->rotation[0][i] : scale + from->rotation[k][i] * from->rotation[k][i];
     return scale * from->scale[axis][i];
-  default:
-    return scale;
+  case CONIC_READING_OWN:
+  case CONIC_READING_RAW_LIMITED:
+  case CONIC_READING_CONJUGATE:
+    break;
   }
+  return scale;
 }
 
 static float planted_opacity(conic_planted_reading reading, const conic_gaussians *from, size_t i) {
@@ -32,12 +35,15 @@ static float planted_opacity(conic_planted_reading reading, const conic_gaussian
     return raw > 0.0f ? (raw < 1.0f ? raw : 1.0f) : 0.0f;
   case CONIC_READING_TWICE:
     return conic_opacity_of_logit(from->opacity[i]);
-  default:
-    return from->opacity[i];
+  case CONIC_READING_OWN:
+  case CONIC_READING_LENGTH_SQUARED:
+  case CONIC_READING_CONJUGATE:
+    break;
   }
+  return from->opacity[i];
 }
 
-/* Where the coefficient k of channel c is read from, both of the n above degree 0. */
+/* Where coefficient k of channel c is read from; there are n above degree 0. */
 static size_t place_of_harmonic(conic_planted_reading reading, size_t n, size_t k, size_t c) {
   size_t raw = reading == CONIC_READING_RAW ? 3 * k + c : n * c + k;
   if (reading == CONIC_READING_RAW) /* of a file that has channel by channel */

@@ -1,4 +1,4 @@
-/* Gaussians as a reader has them that makes a mistake. */
+/* Gaussians as a reader with a mistake reads them. */
 #ifndef CONIC_PLANTED_SET_H
 #define CONIC_PLANTED_SET_H
 
@@ -13,7 +13,7 @@ typedef struct conic_planted_run {
   float sh[CONIC_PLANTED_RUN * CONIC_MOST_HARMONICS];
 } conic_planted_run;
 
-/* Gaussians first … first + n - 1 as a set of their own, which refers to the scene and to `room`. */
+/* Gaussians first … first + n - 1 as their own set, which refers to the scene and to `room`. */
 conic_gaussians conic_planted_read(const conic_planted *planted, const conic_gaussians *gaussians, size_t first,
                                    size_t n, conic_planted_run *room);
 

@@ -35,7 +35,7 @@ void conic_planted_drawing_end(conic_planted_drawing *w) {
     conic_renderer_destroy(w->renderer);
 }
 
-/* Axes so many times as long, in arrays of their own. Errors: MEMORY. */
+/* Multiplies the axes by a factor, in arrays of their own. Errors: MEMORY. */
 static conic_status lengthen_axes(conic_context *context, double factor, conic_splats *splats, float **room) {
   const size_t n = splats->count;
   const size_t strides[2] = {splats->strides.tangent_u, splats->strides.tangent_v};

@@ -1,4 +1,4 @@
-/* The mistakes that are looked for, each in all its likely readings. */
+/* The mistakes that are tried, each in all its likely readings. */
 #include <math.h>
 #include <string.h>
 
@@ -18,7 +18,7 @@ enum {
   OF_RAW_ROTATION,
   OF_SCALE,
   OF_OPACITY,
-  OF_SHIFT, /* in pixels; of the camera's principal point, */
+  OF_SHIFT, /* in pixels; then of the camera's principal point */
   OF_CENTER_SHIFT,
   OF_CAMERA_MIRROR,
   OF_CENTER,
@@ -167,7 +167,10 @@ static const conic_suspect of_all[] = {
 
 static void change_focal(conic_camera *camera, int how) {
   const double fx = camera->fx, fy = camera->fy, width = camera->width, height = camera->height;
-  camera->fx = how == 1 ? fy : how == 2 ? fy * width / height : fx; /* one angle for both, in pixels or of sides */
+  camera->fx = how == 1   ? fy
+               : how == 2 ? fy * width / height
+                          : fx; /* one angle for both sides, in pixels or by the
+                                   sides */
   camera->fy = how == 0 ? fx : how == 3 ? fx * height / width : fy;
 }
 
@@ -199,14 +202,15 @@ static void plant_extent(conic_planted *p, conic_planted_extent extent) {
   }
 }
 
-/* `how`: of surfels, times what is right. */
+/* With `how`, for surfels, `factor` multiplies the right value; else it is the value. */
 static void plant_near(conic_planted *p, int how, double factor) {
   const double value = how ? factor * p->options.near_z : factor;
   p->rules.near_z = p->least_z = p->options.near_z = value;
   p->rules.disc_near = p->rules.disc_near > 0.0f ? (float)(value > 0.0 ? value : 1e-6) : 0.0f;
 }
 
-/* About the principal point. The renderer of surfels takes no camera that mirrors, but its picture can be turned. */
+/* Mirrors about the principal point. The renderer of surfels refuses a camera that mirrors, but its picture can be
+ * mirrored. */
 static void plant_mirror(conic_planted *p, int axis) {
   conic_camera *camera = &p->camera;
   for (int k = 0; k < 4 && !p->is_of_surfels; k++)
@@ -346,7 +350,7 @@ int conic_suspect_is_profile(const conic_suspect *suspect) {
 
 static int has_other_center(const conic_camera *c, int how) {
   int across = fabs(c->cx - 0.5 * c->width) > 1e-6, down = fabs(c->cy - 0.5 * c->height) > 1e-6;
-  return how == 3 ? across || down : across && down && how; /* alone only where both would be moved */
+  return how == 3 ? across || down : across && down && how; /* a single axis only where both would be moved */
 }
 
 static int changes_focal(const conic_camera *camera, int how) {
@@ -355,7 +359,7 @@ static int changes_focal(const conic_camera *camera, int how) {
   return fabs(other.fx - camera->fx) > 1e-9 * camera->fx || fabs(other.fy - camera->fy) > 1e-9 * camera->fy;
 }
 
-/* Whether the rules are such that the mistake would be one. */
+/* Whether it would be a mistake under these rules. */
 static int is_mistake(const conic_planted *right, const conic_suspect *s) {
   const conic_gaussian_rules *rules = &right->rules;
   const int is_ray = rules->shape == CONIC_SHAPE_RAY, is_ellipse = rules->shape == CONIC_SHAPE_ELLIPSE;

@@ -6,12 +6,12 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 
-/* What takes less than half of the difference away says nothing. */
+/* A mistake that explains less than half of the difference says nothing. */
 static const double least_share = 0.5;
-/* What leaves less than this is explained, and what leaves less than the next is, but for something small: what is
- * tried beside others is tried beside it alone. */
+/* A picture is explained if less than the first is left. If less than the second is left, it is explained except for
+ * something small: then second mistakes are only tried beside that one. */
 static const double least_left = 2e-5, little_left = 0.02;
-/* A second mistake has to take this much of what the first leaves. */
+/* A second mistake must explain this part of what the first leaves. */
 static const double second_share = 0.6;
 
 enum { MOST_FIRST = 8, MOST_REMEMBERED = 64, NARROWINGS = 4, NARROWER = 9, MOST_TURNS = 4 };
@@ -24,8 +24,8 @@ typedef struct trial {
 typedef struct trial_run {
   conic_trials *t;
   conic_channels *ours, *drawn, *finished;
-  double whole;      /* difference of what is right from the picture */
-  int drawn_suspect; /* that `drawn` has alone; -1: none, it is right; -2: nothing yet */
+  double whole;      /* the difference between the right picture and the judged one */
+  int drawn_suspect; /* the only mistake in `drawn`; -1: none, it is right; -2: nothing is drawn yet */
   size_t n_done, n_planned;
   double from, to; /* of progress */
 } trial_run;
@@ -46,7 +46,7 @@ static conic_status tell_trial(trial_run *r) {
   return conic_progress(r->t->context, "diagnose", r->from + (r->to - r->from) * (done < 1.0 ? done : 1.0));
 }
 
-/* What is drawn anew is that of the parts that are none of the finished picture. */
+/* Draws only if a mistake is not one of finishing the picture. */
 static conic_status try_planted(trial_run *r, trial *tried) {
   const conic_suspect *a = tried->first >= 0 ? &r->t->suspects[tried->first] : NULL;
   const conic_suspect *b = tried->second >= 0 ? &r->t->suspects[tried->second] : NULL;
@@ -84,11 +84,11 @@ static int is_same_name(const conic_trials *t, int a, int b) {
 
 /* Trials, the best first. */
 typedef struct trial_list {
-  int n, most, a_name; /* so many readings of a name are kept */
+  int n, most, a_name; /* a_name: how many readings of a name are kept */
   trial trials[MOST_REMEMBERED + 1];
 } trial_list;
 
-/* Of equal ones the first that was tried stays first. */
+/* Among equal trials, the first one stays first. */
 static void remember_trial(const conic_trials *t, const trial *new, trial_list *list) {
   trial *trials = list->trials;
   int n_alike = 0, worst = -1, at = list->n;
@@ -112,7 +112,7 @@ static void remember_trial(const conic_trials *t, const trial *new, trial_list *
 
 static conic_status try_all_alone(trial_run *r, trial_list *best, trial_list *first) {
   conic_status status = CONIC_OK;
-  /* Those of the finished picture first, while what is right is drawn. */
+  /* Mistakes in finishing come first, while the right picture is drawn. */
   for (int pass = 0; pass < 2; pass++)
     for (int i = 0; i < r->t->n_suspects && status == CONIC_OK; i++) {
       trial new = {.first = i, .second = -1};
@@ -127,7 +127,7 @@ static conic_status try_all_alone(trial_run *r, trial_list *best, trial_list *fi
   return status;
 }
 
-/* Tries a value between those that are listed. */
+/* Tries a value between the listed ones. */
 static conic_status try_value(trial_run *r, const conic_suspect *like, double value, trial *new) {
   conic_trials *t = r->t;
   t->suspects[t->n_suspects] = *like;
@@ -136,7 +136,7 @@ static conic_status try_value(trial_run *r, const conic_suspect *like, double va
   return try_planted(r, new);
 }
 
-/* Narrows the value of a mistake that may have any, about the best of those that were tried. */
+/* Narrows the value of a mistake that may have any value, around the best one tried. */
 static conic_status narrow_value(trial_run *r, trial_list *best, trial_list *first, int which) {
   const conic_suspect found = r->t->suspects[best->trials[which].first];
   double low = 0.0, high = 4.0 * found.value, at = found.value;
@@ -172,14 +172,14 @@ static int has_profile(const conic_trials *t, const trial *pair) {
          (conic_suspect_is_profile(&t->suspects[pair->first]) || conic_suspect_is_profile(&t->suspects[pair->second]));
 }
 
-/* Two mistakes before a profile where they explain the same. */
+/* Two mistakes win over a profile that explains the same. */
 static int is_better_pair(const conic_trials *t, const trial *new, const trial *old) {
   const double slack = old->first >= 0 ? 1e-5 + 0.1 * old->left : 0.0;
   const int gained = has_profile(t, old) - has_profile(t, new);
   return new->left < (gained > 0 ? old->left + slack : gained < 0 ? old->left - slack : old->left);
 }
 
-/* All others beside one of them; those of the finished picture first, while that one is drawn. */
+/* Tries all others beside one; mistakes in finishing come first, while the first one's picture is drawn. */
 static conic_status try_beside(trial_run *r, int first, trial *pair) {
   conic_status status = CONIC_OK;
   for (int pass = 0; pass < 2; pass++)
@@ -195,7 +195,7 @@ static conic_status try_beside(trial_run *r, int first, trial *pair) {
   return status;
 }
 
-/* Two of the finished picture, for which nothing is drawn but what is right. */
+/* Tries two mistakes in finishing, for which only the right picture is drawn. */
 static conic_status try_finishes(trial_run *r, trial *pair) {
   conic_status status = CONIC_OK;
   for (int i = 0; i < r->t->n_suspects; i++)
@@ -211,7 +211,7 @@ static conic_status try_finishes(trial_run *r, trial *pair) {
   return status;
 }
 
-/* Beside each of the best; then beside each of the two that were found, as long as that finds better ones: a mistake
+/* Tries all beside each of the best; then beside each of the two that were found, as long as that improves. A mistake
  * that explains nothing alone may be one of two. */
 static conic_status try_all_pairs(trial_run *r, const trial_list *list, trial *pair) {
   conic_status status = CONIC_OK;
@@ -236,7 +236,7 @@ static conic_status try_all_pairs(trial_run *r, const trial_list *list, trial *p
   return status;
 }
 
-/* Mistakes before profiles where they explain the same. */
+/* Mistakes win over profiles that explain the same. */
 static void settle_ties(const conic_trials *t, trial_list *list) {
   trial *best = list->trials;
   for (int i = 1; i < list->n; i++)

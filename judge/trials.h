@@ -1,4 +1,4 @@
-/* Mistakes, tried one by one and in pairs. */
+/* Tries mistakes one by one and in pairs. */
 #ifndef CONIC_TRIALS_H
 #define CONIC_TRIALS_H
 
@@ -19,7 +19,7 @@ typedef struct conic_trials {
   conic_suspect suspects[CONIC_MOST_SUSPECTS];
 } conic_trials;
 
-/* As conic_gaussian_diagnose. */
+/* Finds explanations as conic_gaussian_diagnose says. */
 conic_status conic_trials_run(conic_trials *trials, conic_diagnosis *found, int room, int *n_found);
 
 #endif

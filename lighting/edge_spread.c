@@ -13,7 +13,7 @@ static size_t pixel_at(const conic_edge_spread *s, size_t x, size_t y) {
   return y * (size_t)s->image->width + x;
 }
 
-/* How much deeper a neighbour may be that is still the same surface. */
+/* How much deeper a neighbour on the same surface may be. */
 static float depth_of_step(const conic_edge_spread *s, size_t x, size_t y) {
   static const float steps = 4.0f, least_cosine = 0.03f;
   const float *n = (const float *)s->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel_at(s, x, y);
@@ -24,9 +24,9 @@ static float depth_of_step(const conic_edge_spread *s, size_t x, size_t y) {
   return steps * (s->epsilon + (float)s->receivers->spacing / cosine);
 }
 
-/* The pixels at most so many away as splats stick out, at the picture's edges fewer. */
+/* The pixels at most so many away as splats stick out, without those beyond the picture's edges. */
 typedef struct pixel_range {
-  size_t left, right, top, bottom; /* the second and the fourth past the last */
+  size_t left, right, top, bottom; /* right and bottom are one past the last */
 } pixel_range;
 
 static pixel_range pixels_about(const conic_edge_spread *s, size_t x, size_t y) {
@@ -35,9 +35,9 @@ static pixel_range pixels_about(const conic_edge_spread *s, size_t x, size_t y) 
                        y + reach < height ? y + reach + 1 : height};
 }
 
-/* Splats stick out where a surface turns away, and what of its far side does so is seen from behind: it takes the side
- * that it shows for its outer one, on which there is no light. And of samples on two surfaces, the mean normal is of
- * neither. */
+/* Whether a pixel is at an edge, where it should not use its own light. Splats stick out where a surface turns away.
+ * Those of the far side are then seen from behind: they take the visible side for their outer one, on which there is no
+ * light. And several samples on two surfaces have a mean normal that is neither's. */
 static int is_at_edge(const conic_edge_spread *s, size_t x, size_t y) {
   const float *z = s->image->planes[CONIC_PLANE_Z];
   float here = z[pixel_at(s, x, y)], step = depth_of_step(s, x, y);
@@ -66,7 +66,8 @@ static void name_receivers(conic_edge_spread *s) {
     s->kind[s->receivers->pixel[i]] = RECEIVER;
 }
 
-/* The mean over the pixels about one that are of a kind, and no nearer nor deeper; below 0 where none is. */
+/* The mean over the pixels around one that are of a kind, with depths from nearest to deepest; below 0 where there are
+ * none. */
 static float mean_about(const conic_edge_spread *s, size_t x, size_t y, unsigned char kind, float nearest,
                         float deepest) {
   const float *z = s->image->planes[CONIC_PLANE_Z];
@@ -83,8 +84,8 @@ static float mean_about(const conic_edge_spread *s, size_t x, size_t y, unsigned
   return n > 0.0f ? sum / n : -1.0f;
 }
 
-/* What a pixel gets: a receiver its own, one at an edge what its surface gets beside it, and what is none, but has been
- * drawn at its border, what is about it. */
+/* What a pixel gets: a receiver its own value; a receiver at an edge the mean of its surface's receivers around it; a
+ * pixel that is no receiver, but at the border of what is drawn, the mean of the receivers around it. */
 static float spread_at(const conic_edge_spread *s, size_t x, size_t y) {
   size_t pixel = pixel_at(s, x, y);
   if (s->kind[pixel] == RECEIVER)

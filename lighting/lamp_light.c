@@ -1,4 +1,4 @@
-/* What a picture gets of lamps. */
+/* The light that a picture gets from lamps. */
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -10,12 +10,12 @@
 
 typedef struct lamp_lighting {
   conic_light_work *l;
-  float *depth; /* of each pixel, that beside a surface its neighbours'; 0: nothing is about it */
+  float *depth; /* of each pixel; beside a surface its neighbours'; 0: nothing is near */
   double offset;
   conic_lamp_point point, middle; /* where the lamp shines from in this picture, and its middle */
 } lamp_lighting;
 
-/* What the lamp adds to the pixel's colour, where it is not hidden. */
+/* Adds the lamp's unhidden light to the pixel's colour. */
 static void add_color(const lamp_lighting *work, size_t x, size_t y, const double towards[3], float strength) {
   const conic_light_work *l = work->l;
   const conic_lamp *lamp = work->point.lamp;
@@ -36,8 +36,8 @@ static void add_color(const lamp_lighting *work, size_t x, size_t y, const doubl
     rgba[c] += part * shaded[c];
 }
 
-/* Of the power that comes from the lamp's middle, what arrives. A sphere's points shine to one side each, which on the
- * mean is as much as the middle does. */
+/* Adds the arriving part of the power from the lamp's middle. Each point of a sphere shines to one side; the mean over
+ * its points is as much as the middle's. */
 static void add_power(const lamp_lighting *work, size_t pixel, const double at[3], double strength) {
   const conic_light_work *l = work->l;
   const conic_lamp *lamp = work->point.lamp;
@@ -89,7 +89,7 @@ static conic_status light_lamp(lamp_lighting *work, const conic_lamp *lamp) {
   return CONIC_OK;
 }
 
-/* A pixel at the border of what is drawn may have a colour, but no depth. */
+/* A pixel at the border of what is drawn may have a colour but no depth. */
 static conic_status find_lamp_depths(lamp_lighting *work) {
   conic_light_work *l = work->l;
   const float *z = l->image->planes[CONIC_PLANE_Z];

@@ -13,7 +13,7 @@ int conic_lamp_side_of(const float position[3]) {
   return 2 * axis + (position[axis] < 0.0f);
 }
 
-/* The side looks along its axis, to the right along the next one. */
+/* The side's camera looks along the side's axis, with the next axis to the right. */
 static void rows_of_side(int i_side, double rows[3][3]) {
   int axis = i_side / 2;
   memset(rows, 0, 9 * sizeof(double));
@@ -55,15 +55,16 @@ void conic_lamp_side_join(conic_lamp_side *side, const conic_lamp_side *other) {
   side->count += other->count;
 }
 
-/* Of splats, those do not hide that the lamp is as good as in. And what a float cannot tell apart is not asked of it.
- */
+/* The near distance of a side. Splats that practically contain the lamp do not hide anything; and floats cannot tell
+ * smaller distances apart. */
 static double near_of_side(double epsilon, const conic_lamp_side *side) {
   double smallest = 1e-4 * side->farthest, near_z = epsilon > smallest ? epsilon : smallest;
   near_z = near_z < 0.5 * side->nearest ? near_z : 0.5 * side->nearest;
   return near_z > 1e-7 * side->farthest ? near_z : 1e-7 * side->farthest;
 }
 
-/* One edge of the map: how many texels, and where its middle lies. Two texels on each side are beyond all points. */
+/* One edge of the map: its number of texels, and the place of its middle. Two texels on each side are beyond all
+ * points. */
 static int set_edge(double low, double high, double focal, int most, double *center) {
   double texels = (high - low) * focal + 4.0;
   int n = texels < (double)most ? (int)ceil(texels) : most;

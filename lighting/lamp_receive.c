@@ -1,4 +1,4 @@
-/* What of a lamp's light nothing hides: receivers side by side, each side by a map of its own. */
+/* The part of a lamp's light that nothing hides: many receivers at a time, with one map for each side. */
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -6,15 +6,15 @@
 #include "lighting/lamp_map.h"
 #include "lighting/lamps.h"
 
-/* So many receivers are one thread's at a time, copied to where they are measured from the lamp. */
+/* A thread takes so many receivers at a time, and copies them with positions measured from the lamp. */
 enum { TOGETHER = 512 };
 
 typedef struct lamp_receiving {
   const conic_map_room *room;
-  double from_origin[3]; /* the lamp, from where receivers are measured */
+  double from_origin[3]; /* from the receivers' origin to the lamp */
   unsigned char *side;   /* of each receiver */
   conic_lamp_side (*of_items)[CONIC_LAMP_SIDES];
-  int i_side; /* the one at hand */
+  int i_side; /* the current one */
   const conic_light_map *map;
   float *visible;
 } lamp_receiving;
@@ -66,7 +66,7 @@ static void receive_side(void *data, size_t i_item, int i_thread) {
     }
     places[n++] = i;
   }
-  work->room->kernels.receive(work->map, &near_lamp, 0, n, 1, visible, facing);
+  work->room->loops.receive(work->map, &near_lamp, 0, n, 1, visible, facing);
   for (size_t i = 0; i < n; i++)
     work->visible[places[i]] = visible[i];
 }

@@ -44,8 +44,8 @@ const char *conic_lamps_fault(const conic_lighting_options *options) {
   return fault;
 }
 
-/* A point of the sphere, each part of which has its share. Heights are along the way to `onto`: on the mean of few
- * samples, what is sent there is as much as it should be. */
+/* A point of the sphere; equal areas are equally likely. Heights are measured towards `onto`, so that even few samples
+ * send the right amount of light there, on average. */
 static void shine_from_sphere(double u, double v, const double onto[3], conic_lamp_point *point) {
   double height = 1.0 - 2.0 * u, around = sqrt((1.0 - height) * (1.0 + height)), angle = 2.0 * CONIC_PI * v;
   double way[3], rows[3][3];
@@ -97,6 +97,6 @@ double conic_lamp_strength(const conic_lamp_point *point, const double at[3], do
   if (point->lamp->kind == CONIC_LAMP_SPHERE && point->is_middle)
     return 1.0 / square;
   cosine = -conic_dot(point->normal, towards);
-  /* The mean of a sphere's cosines, those below 0 taken as 0, is a quarter. */
+  /* On a sphere, the mean of the cosines, with negative ones as 0, is a quarter. */
   return cosine > 0.0 ? cosine * (point->lamp->kind == CONIC_LAMP_SPHERE ? 4.0 : 1.0) / square : 0.0;
 }

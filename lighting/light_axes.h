@@ -1,4 +1,4 @@
-/* The axes of who looks along a light. */
+/* The axes of a camera that looks along a light. */
 #ifndef CONIC_LIGHT_AXES_H
 #define CONIC_LIGHT_AXES_H
 
@@ -6,8 +6,8 @@
 
 #include "core/base/vectors.h"
 
-/* Right, down and forward, which is away from the unit direction towards the light; right is at a right angle to the
- * world's axis that it is farthest from. */
+/* Right, down and forward. Forward is opposite to the unit direction towards the light; right is at a right angle to
+ * the world's axis that is farthest from the light's direction. */
 static inline void conic_light_axes(const double direction[3], double rows[3][3]) {
   int axis = 0;
   double helper[3] = {0.0, 0.0, 0.0};

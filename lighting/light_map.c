@@ -6,8 +6,8 @@
 #include "core/base/vectors.h"
 #include "lighting/light_axes.h"
 
-/* The light stands so many times as far away as the receivers reach from their middle: its rays meet at 0.2°, less than
- * the sun's own disc, and a float still tells depths apart by a fiftieth of a texel. */
+/* The light's distance in units of the receivers' reach from their middle. Its rays then meet at 0.2°, less than the
+ * sun's own disc, and floats still tell depths apart by a fiftieth of a texel. */
 static const double far_away = 256.0;
 
 /* How far a box reaches along a direction from its middle. */
@@ -15,7 +15,7 @@ static double reach_along(const double half[3], const double direction[3]) {
   return (half[0] * fabs(direction[0]) + half[1] * fabs(direction[1])) + half[2] * fabs(direction[2]);
 }
 
-/* How far the box of the casters reaches towards the light from the receivers' middle. */
+/* How far the casters' box reaches towards the light from the receivers' middle. */
 static double casters_reach(const conic_casters *casters, const double origin[3], const double direction[3]) {
   double middle[3], half[3];
   for (int i = 0; i < 3; i++) {
@@ -55,7 +55,7 @@ void conic_light_map_place(const conic_casters *casters, const conic_receivers *
     }
     camera->cam_from_world[i][3] = (i == 2 ? distance : 0.0) - conic_dot(rows[i], receivers->origin);
   }
-  /* The receivers measure z from where the camera has it, to the bit. */
+  /* Receivers measure z from the same place as the camera, to the bit. */
   map->distance = (float)distance;
   camera->cam_from_world[2][3] += (double)map->distance - distance;
   *near_z = 0.5 * (distance - reach);

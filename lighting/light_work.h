@@ -14,16 +14,16 @@ typedef struct conic_light_work {
   conic_image *image;
   conic_finish finish;
   conic_finish_lights lights; /* all of them */
-  conic_finish_lights one;    /* the one at hand */
+  conic_finish_lights one;    /* the current one */
   conic_receivers receivers;
   conic_map_room room;
   conic_edge_spread spread;
-  float *hidden;  /* of each pixel the colour, unexposed, that hidden lights would make; null: no colours */
+  float *hidden;  /* of each pixel: the unexposed colour that hidden lights would make; null: no colours */
   float *visible; /* of each receiver */
   conic_sky_sums sums;
   float *sums_block;
   double power;      /* Σ of the luminances of the lights so far */
-  float *lamp_power; /* of each pixel, likewise of lamps; null: there are none */
+  float *lamp_power; /* of each pixel: the same sum over lamps; null: there are no lamps */
 } conic_light_work;
 
 static inline size_t conic_light_pixel(const conic_light_work *l, size_t x, size_t y) {
@@ -34,13 +34,14 @@ static inline float conic_light_luminance(const float color[3]) {
   return (0.2126f * color[0] + 0.7152f * color[1]) + 0.0722f * color[2];
 }
 
-/* How much of the pixel is something, where its background is nothing. */
+/* How much of the pixel is covered; its background is not. */
 static inline float conic_light_coverage(const conic_light_work *l, size_t pixel) {
   float alpha = ((const float *)l->image->planes[CONIC_PLANE_RGBA])[4 * pixel + 3];
   return l->render->has_background || !(alpha < 1.0f) ? 1.0f : alpha;
 }
 
-/* The colour of what is seen, as if it covered the pixel, by the lights of `finish`; 0: nothing is. */
+/* The colour of what the pixel shows, as if it covered the pixel, by the lights of `finish`; returns 0 where it shows
+ * nothing. */
 static inline int conic_light_shade(const conic_light_work *l, const conic_finish *finish, size_t x, size_t y,
                                     float shaded[3]) {
   size_t pixel = conic_light_pixel(l, x, y);
@@ -56,8 +57,8 @@ static inline int conic_light_shade(const conic_light_work *l, const conic_finis
   return 1;
 }
 
-/* Adds what arrives of the options' lamps to the picture's colours, and to its shadow, which is not divided by the
- * power yet. Errors: MEMORY, CANCELLED, the drawer's. */
+/* Adds the arriving light of the options' lamps to the picture's colours, and to its shadow, which is divided by the
+ * power later. Errors: MEMORY, CANCELLED, the drawer's. */
 conic_status conic_light_add_lamps(conic_light_work *l);
 
 #endif

@@ -1,4 +1,4 @@
-/* What of its light a drawn picture does not get. */
+/* Takes from a drawn picture the light that does not arrive. */
 #include "conic/lighting.h"
 
 #include <string.h>
@@ -27,7 +27,7 @@ static void receive_light(void *data, size_t i_item, int i_thread) {
   size_t begin = i_item * CONIC_RECEIVED_TOGETHER, end = begin + CONIC_RECEIVED_TOGETHER;
   end = end < r->l->receivers.count ? end : r->l->receivers.count;
   (void)i_thread;
-  r->l->room.kernels.receive(r->map, &r->l->receivers, begin, end, 1, r->l->visible + begin, facing);
+  r->l->room.loops.receive(r->map, &r->l->receivers, begin, end, 1, r->l->visible + begin, facing);
 }
 
 static void hide_row(void *data, size_t y, int i_thread) {
@@ -43,7 +43,7 @@ static void hide_row(void *data, size_t y, int i_thread) {
   }
 }
 
-/* Adds what of the given lights does not come to pixels that get only l->spread.filled of it. */
+/* Adds the hidden part of the given lights: pixels get only l->spread.filled of their light. */
 static void hide_lights(conic_light_work *l, const conic_finish_lights *lights) {
   if (!l->hidden)
     return;
@@ -51,8 +51,8 @@ static void hide_lights(conic_light_work *l, const conic_finish_lights *lights) 
   conic_parallel_for(l->context, (size_t)l->image->height, hide_row, l);
 }
 
-/* Of what all lights make of a pixel, the part that is hidden is taken. It is a part, and no difference: where normals
- * cancel, the picture is darker than its planes tell (conic_shade). */
+/* Takes the hidden part of what all lights make of a pixel. It multiplies by a part, and does not subtract a
+ * difference: where normals cancel, the picture is darker than its planes tell (conic_shade). */
 static void take_row(void *data, size_t y, int i_thread) {
   const conic_light_work *l = data;
   float shaded[3];
@@ -94,12 +94,12 @@ static conic_status cast_shadow(conic_light_work *l, const conic_finish_light *l
 static conic_status cast_shadows(conic_light_work *l) {
   conic_status status = CONIC_OK;
   for (int i = 0; i < l->lights.n_lights && l->options->has_shadows && status == CONIC_OK; i++)
-    if (!l->lights.lights[i].is_head) /* what it lights is what the viewer sees */
+    if (!l->lights.lights[i].is_head) /* a head light lights exactly what the viewer sees */
       status = cast_shadow(l, &l->lights.lights[i]);
   return status;
 }
 
-/* Of the power that arrives, the part. */
+/* Divides the arriving power by the whole. */
 static void divide_shadow(conic_light_work *l) {
   float *shadow = l->image->planes[CONIC_PLANE_SHADOW];
   for (size_t i = 0; shadow && i < conic_image_pixels(l->image); i++) {
@@ -110,7 +110,7 @@ static void divide_shadow(conic_light_work *l) {
 
 /* --- light from all around --- */
 
-/* What a white sky's light of one direction is multiplied by, for the lights' sky. */
+/* The lights' sky in one direction, as a factor of a white sky's light. */
 static void light_of_sky(const void *cookie, const double direction[3], double light[3]) {
   const conic_finish_lights *lights = cookie;
   double up = 0.0;
@@ -120,7 +120,7 @@ static void light_of_sky(const void *cookie, const double direction[3], double l
     light[c] *= (double)lights->ambient[c] + (up > 0.0 ? (double)lights->slope[c] : -(double)lights->slope[c]);
 }
 
-/* The sums of one colour, made what a white surface reflects at each pixel. */
+/* Turns the sums of one colour into what a white surface reflects at each pixel. */
 static void reflect_sky(conic_light_work *l, size_t c) {
   const conic_sky_sums *sums = &l->sums;
   float n = (float)l->options->n_directions, white = 4.0f; /* of each direction's light (conic_sky_direction) */
@@ -131,7 +131,7 @@ static void reflect_sky(conic_light_work *l, size_t c) {
   conic_edge_spread_fill(&l->spread, l->visible, 1.0f);
 }
 
-/* What is hidden of the lights' sky and ground. */
+/* Hides the part of the lights' sky and ground that does not arrive. */
 static void hide_sky(conic_light_work *l) {
   const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
   for (size_t c = 0; c < 3; c++) {
@@ -142,7 +142,7 @@ static void hide_sky(conic_light_work *l) {
   }
 }
 
-/* Adds what arrives of a sky that the picture was drawn without. */
+/* Adds the arriving light of a sky that the picture was drawn without. */
 static void add_sky(conic_light_work *l) {
   const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
   float *rgba = l->image->planes[CONIC_PLANE_RGBA];
@@ -154,7 +154,7 @@ static void add_sky(conic_light_work *l) {
   }
 }
 
-/* All of the lights' sky and ground is hidden, so that what arrives can take its place. */
+/* Hides all of the lights' sky and ground, so that the arriving light can replace it. */
 static void hide_whole_sky(conic_light_work *l) {
   l->one = l->lights;
   l->one.n_lights = 0;
@@ -162,7 +162,7 @@ static void hide_whole_sky(conic_light_work *l) {
   hide_lights(l, &l->one);
 }
 
-/* Of a sample's one direction, what on the mean is its share. */
+/* The arriving part: of a sample's one direction, its share of the mean. */
 static float arriving_part(const conic_light_work *l, size_t i) {
   float part = 4.0f * l->sums.visible[i] / (float)l->options->n_directions;
   return l->options->is_sample ? part : conic_sky_sums_share(&l->sums, i);

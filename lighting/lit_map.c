@@ -11,7 +11,7 @@
 #include "core/splats/columns.h"
 #include "lighting/lamps.h"
 
-/* Of bits, one a receiver. */
+/* Bytes of bits, one for each receiver. */
 enum { BYTES_OF_ITEM = CONIC_RECEIVED_TOGETHER / 8 };
 
 void conic_lighting_options_init_sized(conic_lighting_options *options, size_t size) {
@@ -46,7 +46,7 @@ conic_status conic_map_room_init(conic_context *context, const char *who, const 
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: %s", who, fault);
   conic_status status = conic_isa_choose(context, options->isa, &isa);
   if (status == CONIC_OK)
-    conic_lighting_kernels_init(&room->kernels, isa);
+    conic_lighting_loops_init(&room->loops, isa);
   return status;
 }
 
@@ -105,12 +105,13 @@ conic_status conic_map_room_agree(const conic_map_room *room, conic_status statu
   return status;
 }
 
-/* One direction's light, added to the sums of the receivers of items from `first_item` on. */
+/* Adds one direction's light to the sums of the receivers of items from `first_item` on. */
 typedef struct sky_adding {
   const conic_map_room *room;
   const conic_light_map *map;
   size_t first_item;
-  const unsigned char *reached; /* a bit a receiver, of these: whoever drew the map has looked; null: nobody has */
+  const unsigned char *reached; /* a bit for each of these receivers, from the process that drew the map; null: to be
+                                   looked up here */
   float light[3];
   const conic_sky_sums *sums;
 } sky_adding;
@@ -127,7 +128,7 @@ static void add_sky_light(void *data, size_t i_item, int i_thread) {
   float visible[CONIC_RECEIVED_TOGETHER], facing[CONIC_RECEIVED_TOGETHER];
   size_t begin = (a->first_item + i_item) * CONIC_RECEIVED_TOGETHER, count = end_of_receivers(a->room, begin) - begin;
   (void)i_thread;
-  a->room->kernels.receive(a->map, a->room->receivers, begin, begin + count, 0, visible, facing);
+  a->room->loops.receive(a->map, a->room->receivers, begin, begin + count, 0, visible, facing);
   for (size_t i = 0; i < count && reached; i++)
     visible[i] = reached[i / 8] >> i % 8 & 1 ? 1.0f : 0.0f;
   for (size_t i = 0; i < count; i++) {
@@ -151,7 +152,7 @@ typedef struct sky_walk {
   conic_light_map map;
 } sky_walk;
 
-/* What comes from direction i. */
+/* The light from direction i. */
 static void turn_to_direction(sky_walk *w, uint64_t i, double direction[3]) {
   double from_there[3];
   conic_sky_direction(w->options->sky, w->options->first_direction + i, direction, from_there);
@@ -180,14 +181,14 @@ static conic_status walk_alone(sky_walk *w) {
 
 /* --- by several processes --- */
 
-/* At a time each process draws one direction's map, in which the nearest texel's answer is yes or no: it tells each
- * other one by bits which of that one's receivers the light reaches. All add, in the order of directions, as sums of
- * floats depend on it, what reaches their own. */
+/* Each process draws the map of one direction at a time, and looks up in its nearest texels which receivers the light
+ * reaches. It sends every other process these answers as bits, for that process's receivers. Each process then adds the
+ * light for its own receivers, in the order of the directions, on which sums of floats depend. */
 typedef struct sky_team {
   sky_walk *walk;
   const conic_team *team;
   unsigned char *drawn;  /* of all receivers, by this process's map */
-  unsigned char *theirs; /* by process, of this one's receivers */
+  unsigned char *theirs; /* of this process's receivers, by process */
 } sky_team;
 
 static size_t first_item(const sky_team *s, int index) {
@@ -206,7 +207,7 @@ static void look_into_map(void *data, size_t i_item, int i_thread) {
   size_t begin = i_item * CONIC_RECEIVED_TOGETHER, end = end_of_receivers(w->room, begin);
   (void)i_thread;
   memset(reached, 0, BYTES_OF_ITEM);
-  w->room->kernels.receive(&w->map, w->room->receivers, begin, end, 0, visible, facing);
+  w->room->loops.receive(&w->map, w->room->receivers, begin, end, 0, visible, facing);
   for (size_t i = 0; i < end - begin; i++)
     reached[i / 8] |= (unsigned char)((visible[i] > 0.0f) << i % 8);
 }
@@ -241,7 +242,7 @@ static void swap_bits(const sky_team *s) {
   }
 }
 
-/* A map in which nothing hides anything: how receivers face the light, without looking. */
+/* A map in which nothing hides anything: gives how receivers face the light, without looking up. */
 static void open_map(conic_light_map *map) {
   static const float nothing;
   map->z = &nothing;
@@ -280,7 +281,7 @@ static conic_status walk_rounds(sky_team *s) {
   return status;
 }
 
-/* What each has of one sum. */
+/* Brings every process's part of a sum to all. */
 static void bring_sum(const sky_team *s, float *sum) {
   const conic_team *team = s->team;
   size_t sizes[CONIC_MOST_IN_TEAM], count = s->walk->room->receivers->count;
@@ -326,7 +327,7 @@ conic_status conic_sky_sums_add(conic_map_room *room, const conic_lighting_optio
   return room->sharing ? walk_together(&walk) : walk_alone(&walk);
 }
 
-/* By the context's team, if it has one, whose processes draw maps apart. */
+/* By the context's team, if it has one; its processes draw different maps. */
 static conic_status find_visible(conic_map_room *room, const conic_lighting_options *options, float *ao) {
   conic_context *context = room->context;
   conic_light_sharing sharing = {.team = conic_context_join(context, NULL)};
@@ -347,7 +348,7 @@ static conic_status find_visible(conic_map_room *room, const conic_lighting_opti
   return status;
 }
 
-/* A surface sees one half of all directions: of what has no normal, that much counts as all. */
+/* A surface sees half of all directions: for a splat without a normal, that much counts as all. */
 static float share_of_splat(const conic_receivers *r, float share, size_t i) {
   int has_none = r->normal[0][i] == 0.0f && r->normal[1][i] == 0.0f && r->normal[2][i] == 0.0f;
   return !has_none ? share : share < 0.5f ? 2.0f * share : 1.0f;

@@ -1,18 +1,18 @@
-/* What lighting/light_map.h says of receiving: plain C, which compilers put in lanes. */
+/* The receiving of lighting/light_map.h in plain C, which compilers put in lanes. */
 #include <math.h>
 
-#include "lighting/lighting_kernels.h"
+#include "lighting/lighting_loops.h"
 
 /* A receiver as the map sees it. */
 typedef struct received {
   float column, row;   /* in the map, in texels */
-  float height, texel; /* its z from the map's distance on, and a texel's edge at its place */
-  float n[3];          /* the normal in the map's camera space; z is below 0 where it faces the light */
+  float height, texel; /* its z from the map's distance on, and the length of a texel's edge there */
+  float n[3];          /* the normal in the map's camera space; z is below 0 for a receiver that faces the light */
   float bias;
 } received;
 
-/* Whether the light of one texel's ray reaches the plane of the receiver: it is where that ray meets the plane that is
- * compared, so that no slope hides itself, and no contact has to be let through for that. */
+/* Whether the light of one texel's ray reaches the plane of the receiver. The depths are compared where that ray meets
+ * the plane. So slopes do not hide themselves, and need no tolerance that would let light through at contacts. */
 static inline float ray_reaches_plane(const conic_light_map *map, const received *r, float column, float row) {
   float x = column > 0.0f ? column : 0.0f, y = row > 0.0f ? row : 0.0f;
   float last_x = (float)(map->width - 1), last_y = (float)(map->height - 1);
@@ -49,12 +49,12 @@ static inline float clamp_to_map(float place, int size) {
   return place < last ? place : last;
 }
 
-/* How far along a ray what a map shows may lie off the surface that it shows, by the tangent of the slope. */
+/* How far, along a ray, the map's depth may be off its surface; `slope` is the tangent of the slope. */
 static inline float bias_of(const conic_light_map *map, float texel, float slope) {
   return (map->flat_epsilon + texel * CONIC_LIGHT_MAP_FLAT) + (map->epsilon + texel) * (CONIC_LIGHT_MAP_SLOPE * slope);
 }
 
-/* How the receiver faces the parallel rays of a map, and how far it may lie off its plane along them. */
+/* How the receiver faces the parallel rays of a map, and its tolerance along them. */
 static inline float face_sun(const conic_light_map *map, received *r) {
   float cosine = -r->n[2], flat = cosine > CONIC_LIGHT_MAP_GRAZING ? cosine : CONIC_LIGHT_MAP_GRAZING;
   float slope = sqrtf(r->n[0] * r->n[0] + r->n[1] * r->n[1]) / flat;
@@ -62,7 +62,7 @@ static inline float face_sun(const conic_light_map *map, received *r) {
   return cosine;
 }
 
-/* Likewise of the ray to `at`, which is longer than its z. */
+/* The same for the ray to `at`, which is longer than its z. */
 static inline float face_lamp(const conic_light_map *map, const float at[3], received *r) {
   float distance = sqrtf((at[0] * at[0] + at[1] * at[1]) + at[2] * at[2]);
   float cosine = -((r->n[0] * at[0] + r->n[1] * at[1]) + r->n[2] * at[2]) / distance;

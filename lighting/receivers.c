@@ -10,16 +10,16 @@
 #include "core/image/camera_rays.h"
 #include "core/image/image_common.h"
 
-/* One row of a picture's receivers. */
+/* The receivers in one row of a picture. */
 typedef struct receiver_row {
   size_t first, count;
-  double low[3], high[3], spacing; /* the last: the sum */
+  double low[3], high[3], spacing; /* spacing: the sum */
 } receiver_row;
 
 typedef struct receiver_rows {
   const conic_camera *camera;
   conic_camera_rays rays;
-  double offset; /* of the sample that Z is of, from the pixel's centre */
+  double offset; /* from the pixel's centre to the sample whose depth Z is */
   const float *z, *normal;
   receiver_row *rows;
   conic_receivers *to;
@@ -94,7 +94,7 @@ static void set_receivers_box(const double low[3], const double high[3], conic_r
   }
 }
 
-/* Sums up the rows. */
+/* Adds up the rows. */
 static void plan_receivers(receiver_rows *r) {
   receiver_row all = {.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
   for (int y = 0; y < r->camera->height; y++) {
@@ -133,7 +133,7 @@ conic_status conic_receivers_of_image(conic_context *context, const conic_camera
   return status;
 }
 
-/* The splat's unit normal; 0: it has none. */
+/* The splat's unit normal; returns 0 where it has none. */
 static int splat_normal(const conic_splats *s, size_t i, double normal[3]) {
   double u[3], v[3];
   for (int axis = 0; axis < 3; axis++) {

@@ -1,4 +1,4 @@
-/* Directions of the sequence, spread over the sphere evenly or as a sky's picture is bright. */
+/* Directions of the sequence, spread evenly over the sphere or as a sky's picture is bright. */
 #include <math.h>
 #include <string.h>
 
@@ -12,15 +12,15 @@
 #include "core/image/framing.h"
 #include "core/image/image_common.h"
 
-/* The rows' and, within each, the pixels' power, summed up and divided by the whole: of a pixel its greatest colour
- * times its solid angle. */
+/* The sky's power as running sums: over the rows, and in each row over its pixels, divided by the whole. A pixel's
+ * power is its greatest colour times its solid angle. */
 struct conic_sky {
   conic_context *context;
   int width, height;
   double rows[3][3]; /* right, down and forward in the world */
-  double whole;      /* Σ power of all pixels, over 4π·pixels: in units of a white sky's */
+  double whole;      /* Σ power of all pixels, over 4π·pixels: in units of a white sky's power */
   double *row_sums;  /* height + 1, from 0 to 1 */
-  float *pixel_sums; /* (width + 1) a row, likewise */
+  float *pixel_sums; /* (width + 1) a row, from 0 to 1 */
   float *color;      /* 3 a pixel */
 };
 
@@ -36,12 +36,12 @@ static int take_sky_colors(const conic_image *image, conic_sky *sky) {
       float value = rgba[4 * i + c];
       if (!(value < 1e12f) || !(value > -1e12f))
         return 0;
-      sky->color[3 * i + c] = value > 0.0f ? value : 0.0f; /* what filters leave below 0 is no light */
+      sky->color[3 * i + c] = value > 0.0f ? value : 0.0f; /* negative values, which filters leave, are no light */
     }
   return 1;
 }
 
-/* Rows hold as much as lies between their two latitudes. */
+/* A row's area is that between its two latitudes. */
 static double row_area(const conic_sky *sky, int y) {
   return 0.5 * (conic_cos(CONIC_PI * y / sky->height) - conic_cos(CONIC_PI * (y + 1) / sky->height));
 }
@@ -142,7 +142,7 @@ void conic_sky_destroy(conic_sky *sky) {
   conic_memory_release(sky->context, sky);
 }
 
-/* Between which two of the ascending sums `u` lies, and how far it is from the first to the second. */
+/* Finds the two ascending sums between which `u` lies; *u becomes its place between them, 0 to 1. */
 static int find_row(const double *sums, int n, double *u) {
   int low = 0, high = n;
   while (high - low > 1) {
@@ -169,7 +169,7 @@ static int find_pixel(const float *sums, int n, double *u) {
   return low;
 }
 
-/* A unit vector at a height from -1 to 1 above the plane of the first and the third row, so far about it. */
+/* A unit vector at a height from -1 to 1 above the plane of the first and the third row, and at that angle about it. */
 static void set_direction(double height, double angle, double direction[3]) {
   double around = sqrt((1.0 - height) * (1.0 + height));
   direction[0] = around * conic_cos(angle);
@@ -182,7 +182,7 @@ void conic_sky_direction(const conic_sky *sky, uint64_t i, double direction[3], 
          from_sky[3];
   if (!sky) {
     set_direction(1.0 - 2.0 * u, 2.0 * CONIC_PI * v, direction);
-    light[0] = light[1] = light[2] = 4.0; /* the mean of the cosine over all directions is a quarter */
+    light[0] = light[1] = light[2] = 4.0; /* the mean over all directions of the cosine is a quarter */
     return;
   }
   int y = find_row(sky->row_sums, sky->height, &u);

@@ -1,4 +1,4 @@
-/* Suns: lights with a direction that are discs. */
+/* Suns: discs of light, with a direction. */
 #include <math.h>
 
 #include "accumulation/disc_point.h"
@@ -9,7 +9,8 @@
 #include "core/base/vectors.h"
 #include "lighting/light_axes.h"
 
-/* The cap of a sphere about `direction`, each part of which has its share of the disc's area. */
+/* Turns the direction to a point of a cap of the sphere about it; equal areas of the disc become equal areas of the
+ * cap. */
 static void turn_in_disc(double direction[3], double radius_rad, const double disc[2]) {
   double square = disc[0] * disc[0] + disc[1] * disc[1], axes[3][3];
   double fallen = square * (1.0 - conic_cos(radius_rad)), sideways = square > 0.0 ? sqrt(fallen * (2.0 - fallen)) : 0.0;

@@ -19,13 +19,6 @@ static int is_shared(int argc, char **argv) {
   return command && command->is_shared;
 }
 
-static void tell_traffic(uint64_t *sent_bytes, uint64_t *received_bytes, double *waited_seconds) {
-  ranks_traffic traffic = ranks_traffic_now();
-  *sent_bytes = traffic.sent_bytes;
-  *received_bytes = traffic.received_bytes;
-  *waited_seconds = traffic.waited_seconds;
-}
-
 /* "--trace FILE" or "--trace=FILE", which is then gone from the arguments; null where there is none. */
 static const char *take_option(int *argc, char **argv, const char *name) {
   const char *value = NULL;
@@ -43,7 +36,7 @@ static const char *take_option(int *argc, char **argv, const char *name) {
 }
 
 /* How many ranks work is cut for. */
-static int settle_cut(const char *text, const char *trace_path, cli_team *team) {
+static int settle_cut(const char *text, const char *trace_path, conic_executor *team) {
   unsigned long long n;
   if (!text)
     return CLI_DONE;
@@ -56,22 +49,11 @@ static int settle_cut(const char *text, const char *trace_path, cli_team *team) 
 static int run(int argc, char **argv) {
   const char *trace_path = take_option(&argc, argv, "--trace"), *cut = take_option(&argc, argv, "--trace-ranks");
   int threads = conic_machine_threads() / ranks_on_machine();
-  cli_team team = {.index = ranks_index(),
-                   .count = ranks_count(),
-                   .cut_for = ranks_count(),
-                   .threads = threads > 0 ? threads : 1,
-                   .share = ranks_share,
-                   .next = ranks_next,
-                   .stop = ranks_stop,
-                   .allow = ranks_allow,
-                   .hand = ranks_hand,
-                   .agree = ranks_agree,
-                   .broadcast = ranks_broadcast,
-                   .gather = ranks_gather,
-                   .send = ranks_send,
-                   .receive = ranks_receive,
-                   .count_traffic = tell_traffic,
-                   .trace = timeline_note};
+  conic_executor team;
+  conic_team members;
+  ranks_fill(&team, &members);
+  team.threads = threads > 0 ? threads : 1;
+  team.trace = timeline_note;
   const cli_session session = {.team = &team};
   cli_team_join(&team);
   int exit_code = settle_cut(cut, trace_path, &team);

@@ -9,9 +9,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "cli/session_team.h"
 #include "core/base/clock.h"
-#include "mpi/hands.h"
+#include "mpi/outbox.h"
 
 /* Counts of MPI are ints: what is longer goes in pieces. */
 enum { PIECE_BYTES = 1 << 28 };
@@ -28,7 +27,7 @@ static struct {
   pthread_mutex_t lock;
   uint64_t next, end, allowed;
   double begun_s, busy_s; /* since when, and how long the thread has taken what was handed over */
-  ranks_take *take;
+  conic_unit_taker *take;
   void *cookie;
   int *waiting; /* ranks that want a unit that is not allowed yet */
   int n_waiting;
@@ -36,7 +35,10 @@ static struct {
 } work = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
 static pthread_mutex_t traffic_lock = PTHREAD_MUTEX_INITIALIZER;
-static ranks_traffic traffic;
+static struct {
+  uint64_t sent_bytes, received_bytes;
+  double waited_seconds;
+} traffic;
 static _Thread_local int is_beside; /* the thread, whose waiting holds nothing up */
 
 static void fail(const char *what) {
@@ -59,11 +61,13 @@ static void count_traffic(uint64_t sent_bytes, uint64_t received_bytes, double w
   pthread_mutex_unlock(&traffic_lock);
 }
 
-ranks_traffic ranks_traffic_now(void) {
+static void tell_traffic(void *unused, uint64_t *sent_bytes, uint64_t *received_bytes, double *waited_seconds) {
+  (void)unused;
   pthread_mutex_lock(&traffic_lock);
-  ranks_traffic now = traffic;
+  *sent_bytes = traffic.sent_bytes;
+  *received_bytes = traffic.received_bytes;
+  *waited_seconds = traffic.waited_seconds;
   pthread_mutex_unlock(&traffic_lock);
-  return now;
 }
 
 /* --- waiting asleep --- */
@@ -146,10 +150,10 @@ static void *receive_pieces(int from, size_t n_bytes, int piece_tag, MPI_Comm li
 
 /* Under the lock. Whether the next unit, or that there is none, is known. */
 static int take_unit(uint64_t *unit) {
-  *unit = work.next < work.end ? work.next : RANKS_NO_UNIT;
-  if (*unit != RANKS_NO_UNIT && *unit >= work.allowed)
+  *unit = work.next < work.end ? work.next : CONIC_NO_UNIT;
+  if (*unit != CONIC_NO_UNIT && *unit >= work.allowed)
     return 0;
-  work.next += *unit != RANKS_NO_UNIT;
+  work.next += *unit != CONIC_NO_UNIT;
   return 1;
 }
 
@@ -241,7 +245,7 @@ void ranks_begin(int *argc, char ***argv) {
 }
 
 void ranks_end(void) {
-  hands_end();
+  outbox_end();
   if (n_ranks > 1) {
     ranks_barrier();
     if (own_index == 0) {
@@ -289,7 +293,8 @@ static void lock_of_first(void) {
   atomic_store(&work.is_wanted, 0);
 }
 
-void ranks_share(uint64_t n, ranks_take *take, void *cookie) {
+static void share_units(void *unused, uint64_t n, conic_unit_taker *take, void *cookie) {
+  (void)unused;
   if (n_ranks > 1)
     ranks_barrier();
   if (own_index == 0) {
@@ -307,14 +312,18 @@ void ranks_share(uint64_t n, ranks_take *take, void *cookie) {
     ranks_barrier();
 }
 
-/* Under the lock. */
+/* Under the lock. While its thread takes what others hand over, rank 0 gets on more slowly, and should not be the last
+ * to end. So it leaves the rest to them once there are fewer units for each than eight times the part of its time that
+ * went so. That part is not known before the first results come, so it is taken to be n_ranks / 64 at least. */
 static int leaves_rest(void) {
-  double left = work.end > work.next ? (double)(work.end - work.next) : 0.0;
-  return work.take && cli_team_leaves_rest(left, n_ranks, work.busy_s, conic_seconds_now() - work.begun_s);
+  double left = work.end > work.next ? (double)(work.end - work.next) : 0.0,
+         lasted_s = conic_seconds_now() - work.begun_s, part = lasted_s > 0.0 ? work.busy_s / lasted_s : 0.0,
+         least = n_ranks / 64.0;
+  return work.take && left < 8.0 * n_ranks * (part > least ? part : least);
 }
 
 static uint64_t next_of_first(void) {
-  uint64_t unit = RANKS_NO_UNIT;
+  uint64_t unit = CONIC_NO_UNIT;
   int n_dozes = 0, is_known;
   do {
     lock_of_first();
@@ -326,8 +335,9 @@ static uint64_t next_of_first(void) {
   return unit;
 }
 
-uint64_t ranks_next(void) {
+static uint64_t next_unit(void *unused) {
   uint64_t unit;
+  (void)unused;
   if (own_index == 0)
     return next_of_first();
   tell_service(TAG_NEXT);
@@ -335,7 +345,8 @@ uint64_t ranks_next(void) {
   return unit;
 }
 
-void ranks_stop(void) {
+/* Nobody is given any more. */
+static void stop_units(void) {
   if (own_index > 0) {
     tell_service(TAG_STOP);
     return;
@@ -345,7 +356,8 @@ void ranks_stop(void) {
   pthread_mutex_unlock(&work.lock);
 }
 
-void ranks_allow(uint64_t end) {
+static void allow_units(void *unused, uint64_t end) {
+  (void)unused;
   work.allowed = end; /* by `take`, which is called under the lock, or before any unit is taken */
 }
 
@@ -355,28 +367,25 @@ static void send_hand(const void *bytes, size_t n_bytes) {
 }
 
 /* All that this rank has handed over is rank 0's, or on its way to the one thread that takes it. */
-static void finish_hands(void) {
+static void empty_outbox(void) {
   double start = conic_seconds_now();
-  hands_wait();
+  outbox_wait();
   count_traffic(0, 0, conic_seconds_now() - start);
 }
 
-void ranks_hand(const void *bytes, size_t n_bytes) {
+static void hand_to_first(void *unused, const void *bytes, size_t n_bytes) {
+  (void)unused;
   if (own_index > 0) {
     double start = conic_seconds_now();
-    if (!hands_put(bytes, n_bytes, send_hand))
+    if (!outbox_put(bytes, n_bytes, send_hand))
       fail("out of memory");
     count_traffic(0, 0, conic_seconds_now() - start);
     return;
   }
-  void *copy = take_memory(n_bytes);
-  if (n_bytes)
-    memcpy(copy, bytes, n_bytes);
   lock_of_first();
   if (work.take)
-    work.take(work.cookie, 0, copy, n_bytes);
+    work.take(work.cookie, 0, bytes, n_bytes);
   pthread_mutex_unlock(&work.lock);
-  free(copy);
 }
 
 /* --- among each other --- */
@@ -398,17 +407,21 @@ static void broadcast_from(int root, void *bytes, size_t n_bytes) {
   count_traffic(own_index == root ? n_bytes : 0, own_index == root ? 0 : n_bytes, 0.0);
 }
 
-void ranks_broadcast(void *bytes, size_t n_bytes) {
+static void broadcast(void *unused, void *bytes, size_t n_bytes) {
+  (void)unused;
   broadcast_from(0, bytes, n_bytes);
 }
 
-int ranks_agree(int code, char *message, size_t room) {
+static int worst_of_ranks(void *unused, int code, char *message, size_t room) {
   struct {
     int code, rank;
   } own = {code, own_index}, worst = own;
+  (void)unused;
   if (n_ranks == 1)
     return code;
-  finish_hands();
+  if (code > 0)
+    stop_units();
+  empty_outbox();
   MPI_Request request;
   MPI_Iallreduce(&own, &worst, 1, MPI_2INT, MPI_MAXLOC, main_line, &request);
   wait_for(&request);
@@ -420,12 +433,14 @@ int ranks_agree(int code, char *message, size_t room) {
   return worst.code;
 }
 
-void ranks_send(int to, const void *bytes, size_t n_bytes) {
+static void send_bytes(void *unused, int to, const void *bytes, size_t n_bytes) {
+  (void)unused;
   send_blob(to, bytes, n_bytes, TAG_BLOB, TAG_PIECE, main_line);
 }
 
-void *ranks_receive(int from, size_t *n_bytes) {
+static void *receive_bytes(void *unused, int from, size_t *n_bytes) {
   uint64_t size;
+  (void)unused;
   receive_once(&size, sizeof size, from, TAG_BLOB, main_line);
   *n_bytes = (size_t)size;
   return receive_pieces(from, (size_t)size, TAG_PIECE, main_line);
@@ -433,7 +448,7 @@ void *ranks_receive(int from, size_t *n_bytes) {
 
 void *ranks_gather(const void *bytes, size_t n_bytes, size_t *sizes) {
   if (own_index > 0) {
-    ranks_send(0, bytes, n_bytes);
+    send_bytes(NULL, 0, bytes, n_bytes);
     return NULL;
   }
   size_t total = n_bytes;
@@ -442,7 +457,7 @@ void *ranks_gather(const void *bytes, size_t n_bytes, size_t *sizes) {
     memcpy(all, bytes, n_bytes);
   sizes[0] = n_bytes;
   for (int from = 1; from < n_ranks; from++) {
-    void *part = ranks_receive(from, &sizes[from]);
+    void *part = receive_bytes(NULL, from, &sizes[from]);
     char *longer = all ? realloc(all, total + sizes[from] + 1) : NULL;
     if (longer)
       memcpy(longer + total, part, sizes[from]);
@@ -453,4 +468,45 @@ void *ranks_gather(const void *bytes, size_t n_bytes, size_t *sizes) {
     free(part);
   }
   return all;
+}
+
+static void release_bytes(void *unused, void *bytes) {
+  (void)unused;
+  free(bytes);
+}
+
+/* Gathered on rank 0, and from there to all. */
+static void *collect_bytes(void *unused, const void *bytes, size_t n_bytes, size_t *sizes) {
+  size_t total = 0;
+  char *all = ranks_gather(bytes, n_bytes, sizes);
+  (void)unused;
+  broadcast_from(0, sizes, (size_t)n_ranks * sizeof *sizes);
+  for (int i = 0; i < n_ranks; i++)
+    total += sizes[i];
+  if (own_index > 0)
+    all = take_memory(total);
+  else if (!all)
+    fail("out of memory");
+  broadcast_from(0, all, total);
+  return all;
+}
+
+void ranks_fill(conic_executor *executor, conic_team *team) {
+  *team = (conic_team){.index = own_index,
+                       .count = n_ranks,
+                       .send = send_bytes,
+                       .receive = receive_bytes,
+                       .release = release_bytes,
+                       .collect = collect_bytes};
+  *executor = (conic_executor){.index = own_index,
+                               .count = n_ranks,
+                               .cut_for = n_ranks,
+                               .team = n_ranks > 1 ? team : NULL,
+                               .share = share_units,
+                               .next = next_unit,
+                               .allow = allow_units,
+                               .hand = hand_to_first,
+                               .worst = worst_of_ranks,
+                               .broadcast = broadcast,
+                               .count_traffic = tell_traffic};
 }

@@ -1,4 +1,4 @@
-/* What each rank did and when, for --trace: events in Chrome's format, which conic simulate and browsers read. */
+/* What each rank did and when, for --trace: events in Chrome's format, which scripts/simulate and browsers read. */
 #ifndef CONIC_TIMELINE_H
 #define CONIC_TIMELINE_H
 
@@ -8,8 +8,8 @@
 
 /* Collective: from now on events are noted, and now is time 0. */
 void timeline_begin(void);
-/* A cli_team's `trace`, on any thread. */
-void timeline_note(const char *kind, const char *name, uint64_t number, conic_moment from, conic_moment to,
+/* A conic_executor's `trace`, on any thread. */
+void timeline_note(void *unused, const char *kind, const char *name, uint64_t number, conic_moment from,
                    uint64_t sent_bytes);
 /* Collective: rank 0 writes the events of all. Returns the exit code. */
 int timeline_write(const char *path);

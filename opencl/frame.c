@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/image/image_common.h"
 #include "raster/project/clip_lines.h"
 #include "raster/project/projected.h"
 #include "raster/view/method.h"
@@ -30,11 +31,11 @@ conic_status conic_frame_give(const conic_frame *f, int buffer, const void *from
   return CONIC_OK;
 }
 
-conic_status conic_frame_run(const conic_frame *f, conic_stage stage, conic_kernel_name kernel,
+conic_status conic_frame_run(const conic_frame *f, conic_stage stage, conic_entry_name entry,
                              const conic_argument *arguments, int n_arguments, size_t n_items) {
   int is_alone = f->opencl->device.is_cpu || f->opencl->work == CONIC_OPENCL_WORK_TILES;
   const size_t items[2] = {n_items, 1}, group[2] = {is_alone ? 1 : 64, 1};
-  return conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[kernel], arguments, n_arguments, items, group);
+  return conic_queue_run(&f->opencl->queue, stage, f->opencl->entries[entry], arguments, n_arguments, items, group);
 }
 
 conic_status conic_frame_scan(const conic_frame *f, conic_stage stage, uint32_t n, int numbers, int places,
@@ -45,12 +46,12 @@ conic_status conic_frame_scan(const conic_frame *f, conic_stage stage, uint32_t 
   const conic_argument first[] = {CONIC_ARGUMENT(n), of, sums}, second[] = {CONIC_ARGUMENT(n_sums), sums};
   const conic_argument third[] = {CONIC_ARGUMENT(n), of, sums, conic_frame_argument(f, places)};
   if (status == CONIC_OK)
-    status = conic_frame_run(f, stage, CONIC_KERNEL_SCAN_SUMS, first, 3, n_sums);
+    status = conic_frame_run(f, stage, CONIC_ENTRY_SCAN_SUMS, first, 3, n_sums);
   if (status == CONIC_OK)
-    status = conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[CONIC_KERNEL_SCAN_TOPS], second, 2,
+    status = conic_queue_run(&f->opencl->queue, stage, f->opencl->entries[CONIC_ENTRY_SCAN_TOPS], second, 2,
                              (const size_t[2]){1, 1}, (const size_t[2]){1, 1});
   if (status == CONIC_OK)
-    status = conic_frame_run(f, stage, CONIC_KERNEL_SCAN_PLACES, third, 4, n_sums);
+    status = conic_frame_run(f, stage, CONIC_ENTRY_SCAN_PLACES, third, 4, n_sums);
   if (status == CONIC_OK)
     status = conic_queue_read(&f->opencl->queue, &f->opencl->buffers[places], n * sizeof *total, total, sizeof *total);
   return status;
@@ -83,11 +84,6 @@ static conic_status write_directions(const conic_frame *f, int buffer, int n_til
   conic_status status = conic_frame_copy(f, buffer, directions, n * sizeof *directions);
   conic_memory_release(f->opencl->context, directions);
   return status;
-}
-
-static size_t plane_bytes(const conic_image *image, int plane) {
-  return (size_t)image->width * (size_t)image->height * 4 *
-         (size_t)conic_plane_describe((conic_plane)plane)->n_channels;
 }
 
 conic_status conic_frame_open_plane(const conic_frame *f, int buffer, void *plane, size_t bytes) {
@@ -124,8 +120,8 @@ static void *drawn_plane(const conic_frame *f, int plane) {
 static conic_status open_planes(const conic_frame *f) {
   conic_status status = CONIC_OK;
   for (int plane = 0; plane < CONIC_N_DRAWN_PLANES && status == CONIC_OK; plane++)
-    status =
-        conic_frame_open_plane(f, CONIC_BUFFER_PLANES + plane, drawn_plane(f, plane), plane_bytes(f->image, plane));
+    status = conic_frame_open_plane(f, CONIC_BUFFER_PLANES + plane, drawn_plane(f, plane),
+                                    conic_image_plane_bytes(f->image, plane));
   return status;
 }
 
@@ -201,8 +197,8 @@ conic_status conic_frame_end(conic_frame *f, uint64_t *n_covered) {
   if (f->is_hiding)
     return end_hiding(f, n_covered);
   for (int plane = 0; plane < CONIC_N_DRAWN_PLANES && status == CONIC_OK; plane++)
-    status =
-        conic_frame_close_plane(f, CONIC_BUFFER_PLANES + plane, drawn_plane(f, plane), plane_bytes(f->image, plane));
+    status = conic_frame_close_plane(f, CONIC_BUFFER_PLANES + plane, drawn_plane(f, plane),
+                                     conic_image_plane_bytes(f->image, plane));
   return status == CONIC_OK ? conic_frame_add_tiles(f, CONIC_BUFFER_N_COVERED, n_covered) : status;
 }
 

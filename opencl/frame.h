@@ -63,22 +63,22 @@ static inline conic_argument conic_frame_argument(const conic_frame *frame, int 
 conic_status conic_frame_room(const conic_frame *frame, int buffer, size_t count, size_t size);
 /* Copies bytes to a buffer, which gets room for them. */
 conic_status conic_frame_copy(const conic_frame *frame, int buffer, const void *from, size_t bytes);
-/* The same of what a kernel only reads: a CPU's device reads it where it is. No bytes: the buffer is absent. */
+/* The same of what an entry only reads: a CPU's device reads it where it is. No bytes: the buffer is absent. */
 conic_status conic_frame_give(const conic_frame *frame, int buffer, const void *from, size_t bytes);
 /* A picture's plane (null: it is not wanted, and the buffer absent): a CPU's device draws into it itself, another into
  * memory of its own, from which closing brings it. */
 conic_status conic_frame_open_plane(const conic_frame *frame, int buffer, void *plane, size_t bytes);
 conic_status conic_frame_close_plane(const conic_frame *frame, int buffer, void *plane, size_t bytes);
-/* Runs a kernel over a row of work-items; one is a group on a CPU and by tiles, where each has much to do. */
-conic_status conic_frame_run(const conic_frame *frame, conic_stage stage, conic_kernel_name kernel,
+/* Runs an entry over a row of work-items; one is a group on a CPU and by tiles, where each has much to do. */
+conic_status conic_frame_run(const conic_frame *frame, conic_stage stage, conic_entry_name entry,
                              const conic_argument *arguments, int n_arguments, size_t n_items);
 /* places[i] = the sum of numbers[0 … i - 1], by the buffers' names; places[n] is the total, which comes back. */
 conic_status conic_frame_scan(const conic_frame *frame, conic_stage stage, uint32_t n, int numbers, int places,
                               uint64_t *total);
-/* Runs a kernel of the raster: a tile or a pixel a work-item. */
-conic_status conic_frame_run_raster(const conic_frame *frame, conic_stage stage, conic_kernel_name kernel,
+/* Runs an entry of the raster: a tile or a pixel a work-item. */
+conic_status conic_frame_run_raster(const conic_frame *frame, conic_stage stage, conic_entry_name entry,
                                     const conic_argument *arguments, int n_arguments);
-/* Tells the raster's kernels about the frame and the part of its splats that is on the device. */
+/* Tells the raster's entries about the frame and the part of its splats that is on the device. */
 conic_status conic_frame_write_constants(conic_frame *frame);
 /* The arguments for the image's planes, and how many they are. */
 enum { CONIC_FRAME_PLANE_ARGUMENTS = 3 + CONIC_N_DRAWN_PLANES };

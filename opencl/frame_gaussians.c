@@ -12,7 +12,7 @@
 enum { N_PLANES = 9 };
 
 typedef struct gaussian_frame {
-  conic_frame frame; /* of which the stages' common functions look at the device alone */
+  conic_frame frame; /* for the stages' common functions, which look at its device alone */
   const conic_gaussian_composition *composition;
   conic_device_gaussians picture;
   void *planes[N_PLANES];
@@ -124,7 +124,7 @@ static conic_status draw_gaussian_band(gaussian_frame *g, size_t first, size_t e
   for (int i = 0; i < N_ARGUMENTS; i++)
     arguments[i] = conic_frame_argument(&g->frame, CONIC_BUFFER_GAUSSIAN_PICTURE + i);
   if (status == CONIC_OK)
-    status = conic_queue_run(&opencl->queue, CONIC_STAGE_ACCUMULATE, opencl->kernels[CONIC_KERNEL_GAUSSIANS], arguments,
+    status = conic_queue_run(&opencl->queue, CONIC_STAGE_ACCUMULATE, opencl->entries[CONIC_ENTRY_GAUSSIANS], arguments,
                              N_ARGUMENTS, items, group);
   return status == CONIC_OK ? conic_queue_finish(&opencl->queue) : status;
 }

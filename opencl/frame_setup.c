@@ -110,8 +110,8 @@ static conic_status project_on_device(conic_frame *f) {
   for (int buffer = CONIC_BUFFER_CLIPS; buffer <= CONIC_BUFFER_COUNTS; buffer++)
     arguments[n++] = conic_frame_argument(f, buffer);
   int is_in_lanes = f->opencl->work == CONIC_OPENCL_WORK_TILES && !conic_method_is_dot(f->view->method);
-  return conic_frame_run(f, CONIC_STAGE_SETUP, is_in_lanes ? CONIC_KERNEL_PROJECT_LANES : CONIC_KERNEL_PROJECT,
-                         arguments, n, f->n_items);
+  return conic_frame_run(f, CONIC_STAGE_SETUP, is_in_lanes ? CONIC_ENTRY_PROJECT_LANES : CONIC_ENTRY_PROJECT, arguments,
+                         n, f->n_items);
 }
 
 static conic_status compact(conic_frame *f) {
@@ -124,7 +124,7 @@ static conic_status compact(conic_frame *f) {
   const conic_argument arguments[] = {
       CONIC_ARGUMENT(f->n_items), CONIC_ARGUMENT(f->splats_per_item), conic_frame_argument(f, CONIC_BUFFER_N_DRAWN),
       conic_frame_argument(f, CONIC_BUFFER_PLACES), conic_frame_argument(f, CONIC_BUFFER_ORDER)};
-  return conic_frame_run(f, CONIC_STAGE_SETUP, CONIC_KERNEL_COMPACT, arguments, 5, f->n_items);
+  return conic_frame_run(f, CONIC_STAGE_SETUP, CONIC_ENTRY_COMPACT, arguments, 5, f->n_items);
 }
 
 conic_status conic_frame_project(conic_frame *f, size_t first, size_t n) {

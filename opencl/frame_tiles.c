@@ -42,9 +42,9 @@ conic_status conic_frame_bin(conic_frame *f, int *fits) {
                                       conic_frame_argument(f, CONIC_BUFFER_TILE_COUNTS),
                                       conic_frame_argument(f, CONIC_BUFFER_TILE_TOTALS)};
   if (status == CONIC_OK)
-    status = conic_frame_run(f, CONIC_STAGE_BIN, CONIC_KERNEL_COUNT_TILES, arguments, 8, n_chunks);
+    status = conic_frame_run(f, CONIC_STAGE_BIN, CONIC_ENTRY_COUNT_TILES, arguments, 8, n_chunks);
   if (status == CONIC_OK)
-    status = conic_frame_run(f, CONIC_STAGE_BIN, CONIC_KERNEL_PLACE_CHUNKS, of_places, 4, f->n_tiles);
+    status = conic_frame_run(f, CONIC_STAGE_BIN, CONIC_ENTRY_PLACE_CHUNKS, of_places, 4, f->n_tiles);
   if (status == CONIC_OK)
     status = conic_frame_scan(f, CONIC_STAGE_BIN, f->n_tiles, CONIC_BUFFER_TILE_TOTALS, CONIC_BUFFER_TILE_BEGIN,
                               &f->n_references);
@@ -56,11 +56,11 @@ conic_status conic_frame_bin(conic_frame *f, int *fits) {
   status = conic_frame_room(f, CONIC_BUFFER_REFERENCES, f->n_references, sizeof(conic_device_reference));
   if (status == CONIC_OK && f->opencl->work == CONIC_OPENCL_WORK_TILES)
     status = conic_frame_room(f, CONIC_BUFFER_SELECTED, f->n_references, sizeof(conic_device_reference));
-  return status == CONIC_OK ? conic_frame_run(f, CONIC_STAGE_BIN, CONIC_KERNEL_FILL_TILES, arguments, 10, n_chunks)
+  return status == CONIC_OK ? conic_frame_run(f, CONIC_STAGE_BIN, CONIC_ENTRY_FILL_TILES, arguments, 10, n_chunks)
                             : status;
 }
 
-/* What every kernel of the raster reads. */
+/* What every entry of the raster reads. */
 static int records(const conic_frame *f, conic_argument *to) {
   const int buffers[ARGUMENTS_OF_RECORDS] = {
       CONIC_BUFFER_VIEW,       CONIC_BUFFER_FRAME,        CONIC_BUFFER_TILE_BEGIN,
@@ -81,14 +81,14 @@ int conic_frame_planes(const conic_frame *f, conic_argument *to) {
 }
 
 /* A tile or a pixel a work-item. */
-conic_status conic_frame_run_raster(const conic_frame *f, conic_stage stage, conic_kernel_name kernel,
+conic_status conic_frame_run_raster(const conic_frame *f, conic_stage stage, conic_entry_name entry,
                                     const conic_argument *arguments, int n_arguments) {
   if (f->opencl->work == CONIC_OPENCL_WORK_TILES)
-    return conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[kernel], arguments, n_arguments,
+    return conic_queue_run(&f->opencl->queue, stage, f->opencl->entries[entry], arguments, n_arguments,
                            (const size_t[2]){f->n_tiles, 1}, (const size_t[2]){1, 1});
   const size_t items[2] = {(size_t)(f->constants.n_tiles_x * f->opencl->tile),
                            (size_t)(f->constants.n_tiles_y * f->opencl->tile)};
-  return conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[kernel], arguments, n_arguments, items,
+  return conic_queue_run(&f->opencl->queue, stage, f->opencl->entries[entry], arguments, n_arguments, items,
                          (const size_t[2]){CONIC_DEVICE_GROUP, CONIC_DEVICE_GROUP});
 }
 
@@ -125,7 +125,7 @@ static conic_status walk_tiles(conic_frame *f, conic_stage stage, int32_t walks)
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_SUMS);
   n += conic_frame_planes(f, arguments + n);
   if (status == CONIC_OK)
-    status = conic_frame_run_raster(f, stage, CONIC_KERNEL_ACCUMULATE, arguments, n);
+    status = conic_frame_run_raster(f, stage, CONIC_ENTRY_ACCUMULATE, arguments, n);
   return status == CONIC_OK && walks & CONIC_WALK_VISIBILITY
              ? conic_frame_add_tiles(f, CONIC_BUFFER_N_FRAGMENTS, &f->n_fragments)
              : status;
@@ -144,7 +144,7 @@ conic_status conic_frame_visibility(conic_frame *f) {
   if (status == CONIC_OK)
     status = conic_frame_clear_tiles(f, CONIC_BUFFER_N_FRAGMENTS);
   if (status == CONIC_OK)
-    status = conic_frame_run_raster(f, CONIC_STAGE_VISIBILITY, CONIC_KERNEL_VISIBILITY, arguments, n);
+    status = conic_frame_run_raster(f, CONIC_STAGE_VISIBILITY, CONIC_ENTRY_VISIBILITY, arguments, n);
   return status == CONIC_OK ? conic_frame_add_tiles(f, CONIC_BUFFER_N_FRAGMENTS, &f->n_fragments) : status;
 }
 
@@ -164,8 +164,8 @@ conic_status conic_frame_accumulate(conic_frame *f) {
   if (status == CONIC_OK)
     status = conic_frame_clear_tiles(f, CONIC_BUFFER_N_COVERED);
   if (status == CONIC_OK)
-    status = conic_frame_run_raster(f, CONIC_STAGE_ACCUMULATE,
-                                    is_single ? CONIC_KERNEL_NEAREST : CONIC_KERNEL_ACCUMULATE, arguments, n);
+    status = conic_frame_run_raster(f, CONIC_STAGE_ACCUMULATE, is_single ? CONIC_ENTRY_NEAREST : CONIC_ENTRY_ACCUMULATE,
+                                    arguments, n);
   return status == CONIC_OK && is_single ? conic_frame_add_tiles(f, counts, &f->n_fragments) : status;
 }
 

@@ -7,12 +7,12 @@
 #include "core/base/message.h"
 #include "core/image/texture_levels.h"
 #include "opencl/frame.h"
-#include "raster/kernels/raster_kernels.h"
+#include "raster/loops/raster_loops.h"
 #include "raster/triangles/triangle_frame.h"
 
 _Static_assert(CONIC_DEVICE_TEXTURE_LEVELS == CONIC_TEXTURE_LEVELS, "a device's texture has all levels");
 
-/* An array of the host's that a kernel reads; no bytes: absent. */
+/* An array of the host's that an entry reads; no bytes: absent. */
 typedef struct host_array {
   int buffer;
   const void *from;
@@ -176,16 +176,16 @@ static void set_constants(conic_frame *f) {
 
 conic_status conic_frame_set_up_triangles(conic_frame *f, conic_isa isa) {
   host_array arrays[N_ARRAYS];
-  conic_raster_kernels kernels;
+  conic_raster_loops loops;
   conic_status status = conic_opencl_need_triangles(f->opencl);
   if (status == CONIC_OK)
     status = conic_isa_choose(f->opencl->context, isa, &isa);
   if (status != CONIC_OK)
     return status;
-  conic_raster_kernels_init(&kernels, isa);
+  conic_raster_loops_init(&loops, isa);
   double start = conic_seconds_now();
   conic_triangle_frame_tiles(f->triangles, f->opencl->tile);
-  status = conic_triangle_frame_prepare(f->triangles, &kernels.triangles);
+  status = conic_triangle_frame_prepare(f->triangles, &loops.triangles);
   if (status != CONIC_OK)
     return status;
   list_arrays(f->triangles, arrays);
@@ -242,7 +242,7 @@ conic_status conic_frame_draw_triangles(conic_frame *f) {
   if (status == CONIC_OK)
     status = conic_frame_write_constants(f);
   take_arguments(f, buffers, N, arguments);
-  return status == CONIC_OK ? conic_frame_run_raster(f, CONIC_STAGE_VISIBILITY, CONIC_KERNEL_TRIANGLES, arguments, N)
+  return status == CONIC_OK ? conic_frame_run_raster(f, CONIC_STAGE_VISIBILITY, CONIC_ENTRY_TRIANGLES, arguments, N)
                             : status;
 }
 
@@ -257,9 +257,8 @@ conic_status conic_frame_add_triangles(conic_frame *f) {
   n += take_arguments(f, after, sizeof after / sizeof after[0], arguments + n);
   n += conic_frame_planes(f, arguments + n);
   conic_status status = conic_frame_clear_tiles(f, CONIC_BUFFER_N_COVERED);
-  return status == CONIC_OK
-             ? conic_frame_run_raster(f, CONIC_STAGE_ACCUMULATE, CONIC_KERNEL_ADD_TRIANGLES, arguments, n)
-             : status;
+  return status == CONIC_OK ? conic_frame_run_raster(f, CONIC_STAGE_ACCUMULATE, CONIC_ENTRY_ADD_TRIANGLES, arguments, n)
+                            : status;
 }
 
 conic_status conic_frame_count_triangles(const conic_frame *f, conic_render_statistics *statistics) {

@@ -1,4 +1,4 @@
-/* The splats' passes a pixel a work-item, 16 × 16 of them a group: for GPUs. raster/kernels/raster_kernels_scalar.c in the same
+/* The splats' passes a pixel a work-item, 16 × 16 of them a group: for GPUs. raster/loops/raster_loops_scalar.c in the same
  * order of arithmetic. */
 #include "opencl/gather_resolve.cl"
 
@@ -30,7 +30,7 @@ static int gather_fragment(const conic_view *view, conic_device_reference refere
   return conic_variance_fragment(view, footprint, dx, dy, fragment);
 }
 
-/* The names that every kernel here has for what it reads. */
+/* The names that every entry here has for what it reads. */
 #define GATHER_RECORDS                                                                                                 \
   __constant conic_view *frame_view, __constant conic_device_frame *frame_constants, __global const ulong *tile_begin, \
       __global const conic_device_reference *references, __global const conic_footprint *footprints,                   \

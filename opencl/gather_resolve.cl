@@ -1,4 +1,4 @@
-/* Where a pixel is a work-item: what it has added up, and pass 3 (raster/kernels/resolve.c). */
+/* Where a pixel is a work-item: what it has added up, and pass 3 (raster/loops/resolve.c). */
 
 /* All that a work-item knows of its pixel. */
 typedef struct gather_pixel {

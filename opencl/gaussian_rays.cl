@@ -36,7 +36,7 @@ static size_t meet_block(const scene *s, const ray_lists *to, uint block) {
     if (!(to->blocks[i] >> block & 1))
       continue;
     const uint footprint = list->entries[i];
-    const record r = record_of(s->tile, &list->footprints[footprint]);
+    const gaussian_record r = record_of(s->tile, &list->footprints[footprint]);
     const meeting_lanes m = meet_lanes(&list->rays[footprint], at.column + r.x, at.row + r.y);
     const lanes alpha = lanes_alpha(s, &r, m.half_q);
     const lanes_mask covered = within_box(&r, at) & lanes_less(lanes_of(0.0f), m.z) &
@@ -98,7 +98,7 @@ static void composite_rays_by_blocks(const conic_gaussian_list *list, conic_gaus
   lists.blocks = lists.which + CONIC_LANES * list->n;
   for (size_t i = 0; i < list->n; i++) {
     __global const conic_gaussian_footprint *f = footprint_of_entry(list, i);
-    const record r = record_of(tile, f);
+    const gaussian_record r = record_of(tile, f);
     lists.blocks[i] = blocks_of_box(tile, f) & blocks_of_ellipse(&r, f->half_reach);
   }
   for (uint block = 0; block < CONIC_GAUSSIAN_BLOCKS; block++) {

@@ -2,7 +2,7 @@
 #include "opencl/gaussians.cl"
 #include "opencl/lanes_words.cl"
 
-#include "gaussians/kernels/gaussian_lanes.h"
+#include "gaussians/loops/gaussian_loops_body.h"
 
 #include "opencl/gaussian_rays.cl"
 

@@ -1,4 +1,4 @@
-/* A tile of Gaussians on a device: what lies where, and its list, for the kernels of gaussian_tiles.cl and
+/* A tile of Gaussians on a device: what lies where, and its list, for the entries of gaussian_tiles.cl and
  * gaussian_pixels.cl. How Gaussians meet pixels, and are composited, is plain C's own text. */
 #define double ulong /* of rules and scenes: never looked at */
 #define CONIC_STORED __global

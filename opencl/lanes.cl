@@ -1,7 +1,7 @@
 /* The splats' passes a tile a work-item, a block's 16 pixels a vector: for CPUs. */
 #include "opencl/lanes_tile.cl"
 
-#include "raster/kernels/coverage_lanes.h"
+#include "raster/loops/coverage_lanes.h"
 
 /* So many references ahead records are called for. */
 #define LANES_AHEAD 12
@@ -160,7 +160,7 @@ lanes_passes(GATHER_RECORDS, __global lanes *thresholds, __global uint *n_fragme
   n_covered[t.index] = covered;
 }
 
-/* The nearest splats' own sums, in place of those of what was nearest in the parts before. */
+/* The nearest splats' own sums. They take the place of what earlier parts of the splats left there. */
 static void lanes_take_nearest(const conic_view *view, const conic_device_frame *frame,
                                __global const conic_footprint *footprints, __global const conic_projected_surface *surfaces,
                                const lanes *q, const lanes *scale, int x, int y, lanes_sums *s) {

@@ -1,4 +1,4 @@
-/* Visibility and accumulation of a tile's splats, one row of its blocks after the other: raster/kernels/pass_body.h in
+/* Visibility and accumulation of a tile's splats, one row of its blocks after the other: raster/loops/pass_body.h in
  * its order of arithmetic. */
 
 /* The fragments of so many splats are kept for a block from the first pass to the second; those of further ones, and
@@ -20,7 +20,7 @@ typedef struct lanes_kept {
   uint n, not_kept; /* of the row's list: the first that covers a pixel here and is not kept */
 } lanes_kept;
 
-/* Of a tile's references those that meet a row of its blocks, in order. */
+/* A tile's references that meet a row of its blocks, in order. */
 typedef struct lanes_list {
   __global uint *footprints, *blocks;
   uint n;

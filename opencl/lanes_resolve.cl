@@ -1,6 +1,6 @@
-/* Pass 3 in lanes, a block at a time: raster/kernels/resolve.c and raster/tiles/shade.c in their order of arithmetic. */
+/* Pass 3 in lanes, a block at a time: raster/loops/resolve.c and raster/tiles/shade.c in their order of arithmetic. */
 
-#include "raster/kernels/shade_lanes.h"
+#include "raster/loops/shade_lanes.h"
 
 /* A block's finished pixels. */
 typedef struct lanes_pixels {

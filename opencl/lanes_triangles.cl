@@ -1,4 +1,4 @@
-/* Triangles a tile a work-item: raster/kernels/triangle_body.h in its order of arithmetic. */
+/* Triangles a tile a work-item: raster/loops/triangle_body.h in its order of arithmetic. */
 
 #include "raster/triangles/draw_lanes.h"
 #include "raster/triangles/look_lanes.h"

@@ -81,7 +81,7 @@ typedef struct conic_device_material {
 /* What is done with a part of the splats where tiles are work-items, as bits. */
 enum { CONIC_WALK_VISIBILITY = 1, CONIC_WALK_ACCUMULATE = 2 };
 
-/* The frame as the raster's kernels want it. */
+/* The frame as the raster's entries want it. */
 typedef struct conic_device_frame {
   int32_t width, height;
   int32_t n_blocks_x; /* of all tiles, so that every tile has 4 × 4 of them */

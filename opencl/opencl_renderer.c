@@ -9,25 +9,25 @@
 #include "opencl/frame.h"
 #include "opencl/program.h"
 
-static const char *kernel_name(const conic_opencl *opencl, int kernel) {
+static const char *entry_name(const conic_opencl *opencl, int entry) {
   static const char *const names[] = {"project", "lanes_project", "scan_sums",    "scan_tops", "scan_places",
                                       "compact", "count_tiles",   "place_chunks", "fill_tiles"};
   static const char *const of_tiles[] = {"lanes_passes",    "lanes_passes",        "lanes_nearest",
                                          "lanes_triangles", "lanes_add_triangles", "tiles_composite"};
   static const char *const of_pixels[] = {"gather_visibility", "gather_accumulate",    "gather_nearest",
                                           "gather_triangles",  "gather_add_triangles", "pixels_composite"};
-  if (kernel < CONIC_KERNEL_VISIBILITY)
-    return names[kernel];
-  int i = kernel - CONIC_KERNEL_VISIBILITY;
+  if (entry < CONIC_ENTRY_VISIBILITY)
+    return names[entry];
+  int i = entry - CONIC_ENTRY_VISIBILITY;
   return opencl->work == CONIC_OPENCL_WORK_TILES ? of_tiles[i] : of_pixels[i];
 }
 
-/* The kernels first … end - 1 of a program. */
-static conic_status make_kernels(conic_opencl *opencl, cl_program program, int first, int end) {
+/* The entries first … end - 1 of a program. */
+static conic_status make_entries(conic_opencl *opencl, cl_program program, int first, int end) {
   conic_status status = CONIC_OK;
   for (int i = first; i < end && status == CONIC_OK; i++) {
     cl_int answer;
-    opencl->kernels[i] = clCreateKernel(program, kernel_name(opencl, i), &answer);
+    opencl->entries[i] = clCreateKernel(program, entry_name(opencl, i), &answer);
     status = conic_opencl_check(opencl->context, answer, "clCreateKernel");
   }
   return status;
@@ -37,14 +37,14 @@ static int tile_bits_of(const conic_opencl *opencl) {
   return opencl->work == CONIC_OPENCL_WORK_TILES ? CONIC_TILE_BITS_OF_TILES : CONIC_TILE_BITS_OF_PIXELS;
 }
 
-/* Builds a program and makes its kernels first … end - 1. */
+/* Builds a program and makes its entries first … end - 1. */
 static conic_status make_program(conic_opencl *opencl, const conic_opencl_text *text, int first, int end,
                                  cl_program *program) {
   if (*program) /* from an attempt that failed */
     clReleaseProgram(*program);
   conic_status status = conic_opencl_build(opencl->context, opencl->queue.cl, opencl->id, &opencl->device,
                                            tile_bits_of(opencl), text, opencl->cache_folder, program);
-  return status == CONIC_OK ? make_kernels(opencl, *program, first, end) : status;
+  return status == CONIC_OK ? make_entries(opencl, *program, first, end) : status;
 }
 
 static conic_status keep_folder(conic_opencl *opencl, const char *folder) {
@@ -81,33 +81,32 @@ static conic_status open_device(conic_opencl *opencl, const conic_opencl_options
 
 conic_status conic_opencl_need_splats(conic_opencl *opencl) {
   conic_status status = CONIC_OK;
-  if (!opencl->projects_on_host && !opencl->kernels[CONIC_KERNEL_SCAN_SUMS - 1])
+  if (!opencl->projects_on_host && !opencl->entries[CONIC_ENTRY_SCAN_SUMS - 1])
+    status = make_program(opencl, &conic_opencl_setup_text, CONIC_ENTRY_PROJECT, CONIC_ENTRY_SCAN_SUMS, &opencl->setup);
+  if (status == CONIC_OK && !opencl->entries[CONIC_ENTRY_TRIANGLES - 1])
     status =
-        make_program(opencl, &conic_opencl_setup_text, CONIC_KERNEL_PROJECT, CONIC_KERNEL_SCAN_SUMS, &opencl->setup);
-  if (status == CONIC_OK && !opencl->kernels[CONIC_KERNEL_TRIANGLES - 1])
-    status = make_program(opencl, &conic_opencl_raster_text, CONIC_KERNEL_SCAN_SUMS, CONIC_KERNEL_TRIANGLES,
-                          &opencl->raster);
+        make_program(opencl, &conic_opencl_raster_text, CONIC_ENTRY_SCAN_SUMS, CONIC_ENTRY_TRIANGLES, &opencl->raster);
   return status;
 }
 
 conic_status conic_opencl_need_triangles(conic_opencl *opencl) {
   const conic_opencl_device *device = &opencl->device;
-  if (opencl->kernels[CONIC_KERNEL_ADD_TRIANGLES])
+  if (opencl->entries[CONIC_ENTRY_ADD_TRIANGLES])
     return CONIC_OK;
   if (!device->has_double)
     return conic_fail(opencl->context, CONIC_ERROR_UNSUPPORTED,
                       "opencl:%d.%d: %s has no double precision, which triangles need", device->i_platform,
                       device->i_device, device->name);
-  return make_program(opencl, &conic_opencl_triangles_text, CONIC_KERNEL_TRIANGLES, CONIC_KERNEL_GAUSSIANS,
+  return make_program(opencl, &conic_opencl_triangles_text, CONIC_ENTRY_TRIANGLES, CONIC_ENTRY_GAUSSIANS,
                       &opencl->triangles);
 }
 
 conic_status conic_opencl_need_gaussians(conic_opencl *opencl) {
   const conic_opencl_text *text =
       opencl->work == CONIC_OPENCL_WORK_TILES ? &conic_opencl_gaussian_tiles_text : &conic_opencl_gaussian_pixels_text;
-  if (opencl->kernels[CONIC_KERNEL_GAUSSIANS])
+  if (opencl->entries[CONIC_ENTRY_GAUSSIANS])
     return CONIC_OK;
-  return make_program(opencl, text, CONIC_KERNEL_GAUSSIANS, CONIC_N_KERNEL_NAMES, &opencl->gaussians);
+  return make_program(opencl, text, CONIC_ENTRY_GAUSSIANS, CONIC_N_ENTRY_NAMES, &opencl->gaussians);
 }
 
 static void destroy_backend(conic_backend *backend) {
@@ -135,9 +134,9 @@ void conic_opencl_close(conic_opencl *opencl) {
     return;
   for (int i = 0; i < CONIC_N_BUFFER_NAMES; i++)
     conic_queue_release(&opencl->queue, &opencl->buffers[i]);
-  for (int i = 0; i < CONIC_N_KERNEL_NAMES; i++)
-    if (opencl->kernels[i])
-      clReleaseKernel(opencl->kernels[i]);
+  for (int i = 0; i < CONIC_N_ENTRY_NAMES; i++)
+    if (opencl->entries[i])
+      clReleaseKernel(opencl->entries[i]);
   if (opencl->setup)
     clReleaseProgram(opencl->setup);
   if (opencl->raster)

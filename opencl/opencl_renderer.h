@@ -1,4 +1,4 @@
-/* A device that is ready to draw: its queue, its programs' kernels, its memory. */
+/* A device that is ready to draw: its queue, its programs' entries, its memory. */
 #ifndef CONIC_OPENCL_RENDERER_H
 #define CONIC_OPENCL_RENDERER_H
 
@@ -6,26 +6,26 @@
 #include "opencl/queue.h"
 #include "raster/frame/backend.h"
 
-/* Those of setup.cl, of raster.cl, of triangles.cl and of gaussians.cl; of VISIBILITY and what follows, the kind that
- * suits the device. */
-typedef enum conic_kernel_name {
-  CONIC_KERNEL_PROJECT,
-  CONIC_KERNEL_PROJECT_LANES,
-  CONIC_KERNEL_SCAN_SUMS,
-  CONIC_KERNEL_SCAN_TOPS,
-  CONIC_KERNEL_SCAN_PLACES,
-  CONIC_KERNEL_COMPACT,
-  CONIC_KERNEL_COUNT_TILES,
-  CONIC_KERNEL_PLACE_CHUNKS,
-  CONIC_KERNEL_FILL_TILES,
-  CONIC_KERNEL_VISIBILITY,
-  CONIC_KERNEL_ACCUMULATE,
-  CONIC_KERNEL_NEAREST,
-  CONIC_KERNEL_TRIANGLES,
-  CONIC_KERNEL_ADD_TRIANGLES,
-  CONIC_KERNEL_GAUSSIANS,
-  CONIC_N_KERNEL_NAMES
-} conic_kernel_name;
+/* What a program can be entered by (OpenCL calls it a kernel): those of setup.cl, of raster.cl, of triangles.cl and of
+ * gaussians.cl; of VISIBILITY and what follows, the kind that suits the device. */
+typedef enum conic_entry_name {
+  CONIC_ENTRY_PROJECT,
+  CONIC_ENTRY_PROJECT_LANES,
+  CONIC_ENTRY_SCAN_SUMS,
+  CONIC_ENTRY_SCAN_TOPS,
+  CONIC_ENTRY_SCAN_PLACES,
+  CONIC_ENTRY_COMPACT,
+  CONIC_ENTRY_COUNT_TILES,
+  CONIC_ENTRY_PLACE_CHUNKS,
+  CONIC_ENTRY_FILL_TILES,
+  CONIC_ENTRY_VISIBILITY,
+  CONIC_ENTRY_ACCUMULATE,
+  CONIC_ENTRY_NEAREST,
+  CONIC_ENTRY_TRIANGLES,
+  CONIC_ENTRY_ADD_TRIANGLES,
+  CONIC_ENTRY_GAUSSIANS,
+  CONIC_N_ENTRY_NAMES
+} conic_entry_name;
 
 /* Of a splat set: position, tangent_u, tangent_v, colour, opacity. */
 enum { CONIC_N_COLUMNS = 13 };
@@ -110,7 +110,7 @@ typedef struct conic_opencl {
   cl_device_id id;
   char *cache_folder; /* null: built programs are kept nowhere */
   cl_program setup, raster, triangles, gaussians;
-  cl_kernel kernels[CONIC_N_KERNEL_NAMES];
+  cl_kernel entries[CONIC_N_ENTRY_NAMES];
   conic_buffer buffers[CONIC_N_BUFFER_NAMES];
   conic_splats_on_device kept;
 } conic_opencl;

@@ -110,12 +110,12 @@ conic_status conic_queue_finish(conic_queue *queue) {
   return conic_opencl_check(queue->context, answer, "clFinish");
 }
 
-conic_status conic_queue_run(conic_queue *queue, conic_stage stage, cl_kernel kernel, const conic_argument *arguments,
+conic_status conic_queue_run(conic_queue *queue, conic_stage stage, cl_kernel entry, const conic_argument *arguments,
                              int n_arguments, const size_t items[2], const size_t group[2]) {
   size_t whole[2];
   cl_int answer = CL_SUCCESS;
   for (int i = 0; i < n_arguments && answer == CL_SUCCESS; i++)
-    answer = clSetKernelArg(kernel, (cl_uint)i, arguments[i].bytes, arguments[i].value);
+    answer = clSetKernelArg(entry, (cl_uint)i, arguments[i].bytes, arguments[i].value);
   conic_status status = conic_opencl_check(queue->context, answer, "clSetKernelArg");
   if (status == CONIC_OK && queue->n_events == CONIC_QUEUE_EVENTS)
     status = conic_queue_finish(queue);
@@ -125,8 +125,7 @@ conic_status conic_queue_run(conic_queue *queue, conic_stage stage, cl_kernel ke
     whole[i] = (items[i] + group[i] - 1) / group[i] * group[i];
   if (whole[0] == 0 || whole[1] == 0)
     return CONIC_OK;
-  answer =
-      clEnqueueNDRangeKernel(queue->queue, kernel, 2, NULL, whole, group, 0, NULL, &queue->events[queue->n_events]);
+  answer = clEnqueueNDRangeKernel(queue->queue, entry, 2, NULL, whole, group, 0, NULL, &queue->events[queue->n_events]);
   if (answer == CL_SUCCESS)
     queue->stages[queue->n_events++] = stage;
   return conic_opencl_check(queue->context, answer, "clEnqueueNDRangeKernel");

@@ -1,4 +1,4 @@
-/* A device's queue: its kernels, memory that grows, and how long each stage took. */
+/* A device's queue: its work, memory that grows, and how long each stage took. */
 #ifndef CONIC_QUEUE_H
 #define CONIC_QUEUE_H
 
@@ -34,7 +34,7 @@ typedef struct conic_buffer {
   void *own; /* where a CPU's is, which so has the pages that the context asks for */
 } conic_buffer;
 
-/* A kernel's argument. */
+/* An entry's argument. */
 typedef struct conic_argument {
   size_t bytes;
   const void *value;
@@ -63,9 +63,9 @@ conic_status conic_queue_write_at(conic_queue *queue, const conic_buffer *buffer
 conic_status conic_queue_read(conic_queue *queue, const conic_buffer *buffer, size_t at, void *to, size_t bytes);
 conic_status conic_queue_fill_zero(conic_queue *queue, const conic_buffer *buffer, size_t bytes);
 
-/* Enqueues a kernel over items[0] × items[1] work-items, in groups of group[0] × group[1]; the items are rounded up to
+/* Enqueues an entry over items[0] × items[1] work-items, in groups of group[0] × group[1]; the items are rounded up to
  * whole groups. */
-conic_status conic_queue_run(conic_queue *queue, conic_stage stage, cl_kernel kernel, const conic_argument *arguments,
+conic_status conic_queue_run(conic_queue *queue, conic_stage stage, cl_kernel entry, const conic_argument *arguments,
                              int n_arguments, const size_t items[2], const size_t group[2]);
 
 /* Waits for all, and adds the commands' times to ms. */

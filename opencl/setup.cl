@@ -1,4 +1,4 @@
-/* Set-up on a device: the very text of raster/project/project_splats.c and its neighbours, and the kernel that hands it splats. */
+/* Set-up on a device: the very text of raster/project/project_splats.c and its neighbours, and the entry that hands it splats. */
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #include "opencl/shared.h"
 

@@ -136,7 +136,7 @@ static void pack_facing(const conic_view *view, const splat_columns *from, uint 
   }
 }
 
-/* The same as the kernel `project`, of all methods but point and disc. */
+/* The same as the entry `project`, of all methods but point and disc. */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_project(SETUP_ARGUMENTS) {
   conic_view view = *frame_view;
   uint item = (uint)get_global_id(0), begin = item * splats_per_item, own[CONIC_DEVICE_N_COUNTS] = {0};

@@ -207,7 +207,7 @@ static int find_triangles(const row *r, worker *w, const area *a) {
   return status == CONIC_OK;
 }
 
-/* Replaces the method's weights of what is visible by the exact ones. */
+/* Gives the visible fragments their exact weights in place of the method's. */
 static void weigh_exactly(const oracle_job *j, worker *w, double x, double y, size_t n_fragments) {
   for (size_t i = 0; i < n_fragments; i++) {
     oracle_fragment *f = &w->fragments[i];

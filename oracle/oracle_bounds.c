@@ -246,8 +246,8 @@ static void sort_fragments(const bounding_search *s, int by_nearness) {
   }
 }
 
-/* Some of the ordered fragments, one of which is what hides most of all: it hides what is seen below a place that lies
- * between `low` and `high`. */
+/* Some of the ordered fragments. One of them hides the most of all fragments: all that is seen below a place, which
+ * lies between `low` and `high`. */
 typedef struct surface {
   size_t begin, end;
   double low, high;
@@ -270,7 +270,7 @@ static conic_status add_surface(bounding_search *s, const surface *front) {
   return mixture.n ? add_mixture(s, &mixture, 0) : CONIC_OK;
 }
 
-/* One alternative for every surface that may be the foremost; those whose places overlap are one. */
+/* One alternative for every surface that may be the foremost. Surfaces whose places overlap count as one. */
 static conic_status add_surfaces(bounding_search *s) {
   conic_status status = CONIC_OK;
   const uint32_t *order = s->room->order;

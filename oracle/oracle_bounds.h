@@ -20,7 +20,7 @@ typedef struct oracle_mixture {
 /* The least and greatest Σ w (n·d) / Σ w over all weights and normals that the parts may have. */
 void conic_oracle_mean_along(const oracle_mixture *mixture, const double d[3], double range[2]);
 
-/* Ranges of what shading looks at: [0] the least and [1] the greatest of each component. */
+/* Ranges of the values that shading looks at: [0] the least and [1] the greatest of each component. */
 typedef struct oracle_surface_range {
   double albedo[2][3], mean_normal[2][3], normal[2][3];
 } oracle_surface_range;

@@ -21,9 +21,7 @@ oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_opt
   oracle_view view = {*camera, near_z, options->kernel};
   view.floats = conic_oracle_floats(floats);
   view.cutoff = (double)options->kernel.cutoff;
-  double limit = view.cutoff;
-  if (options->kernel.type == CONIC_KERNEL_CONFETTI)
-    limit = oracle_min(limit, (double)options->kernel.b);
+  double limit = oracle_min(view.cutoff, conic_oracle_kernel_facts(&options->kernel).end);
   view.support = limit * limit;
   view.prefilter = (double)options->prefilter;
   view.reach_px = view.cutoff * sqrt(view.prefilter);

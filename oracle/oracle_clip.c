@@ -63,8 +63,8 @@ static void add_chord(const oracle_view *view, const oracle_placed *s, const dou
 static void find_corner_places(const oracle_view *view, const oracle_placed *s, clipped_part *part) {
   part->n_points = 0;
   for (int axis = 0; axis < 2; axis++) {
-    /* The lines of all columns run through the point of the plane at which x and z are 0, in homogeneous coordinates;
-     * those that touch the outline do so on its polar. */
+    /* In homogeneous coordinates the lines of all columns run through one point of the plane, where x and z are 0. The
+     * lines among them that touch the outline do so on that point's polar. */
     const double column[3] = {s->tu[axis], s->tv[axis], s->p[axis]}, depth[3] = {s->tu[2], s->tv[2], s->p[2]};
     double pole[3], f = view->cutoff;
     oracle_cross(column, depth, pole);
@@ -81,7 +81,7 @@ static void find_corner_places(const oracle_view *view, const oracle_placed *s, 
   }
 }
 
-/* The box of what the lines leave of the disc before near, all of them or, one by one, either. */
+/* The box of the part of the disc, before near, that the lines leave: that all of them keep, or that either keeps. */
 static void set_box(const oracle_view *view, const oracle_placed *s, const conic_clip *given, oracle_clip *clip) {
   double lines[2][3];
   int n_lines = 0;

@@ -46,17 +46,11 @@ typedef struct judged {
 
 /* What a difference in a plane is measured by. */
 static double scale_of(const conic_reference *reference, conic_plane plane, double expected) {
-  switch (plane) {
-  case CONIC_PLANE_Z:
+  if (plane == CONIC_PLANE_Z)
     return expected != 0.0 ? fabs(expected) : 1.0;
-  case CONIC_PLANE_RGBA:
+  if (plane == CONIC_PLANE_RGBA)
     return reference->white * oracle_max(1.0, fabs(expected) / reference->white);
-  case CONIC_PLANE_ALBEDO:
-  case CONIC_PLANE_WEIGHT:
-    return oracle_max(1.0, fabs(expected));
-  default:
-    return 1.0;
-  }
+  return plane == CONIC_PLANE_ALBEDO || plane == CONIC_PLANE_WEIGHT ? oracle_max(1.0, fabs(expected)) : 1.0;
 }
 
 static int is_admissible(const judged *j, double id) {

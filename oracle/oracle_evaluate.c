@@ -2,24 +2,6 @@
 #include "oracle/oracle_profile.h"
 #include "oracle/oracle_splat.h"
 
-double conic_oracle_kernel(const conic_kernel *kernel, double q) {
-  double r = sqrt(q), power = 1.0;
-  switch (kernel->type) {
-  case CONIC_KERNEL_CONFETTI:
-    if (!(r < (double)kernel->b))
-      return 0.0;
-    for (int i = 0; i < kernel->n; i++)
-      power *= r / (double)kernel->b;
-    return conic_oracle_exp(-(double)kernel->a * power / (1.0 - power));
-  case CONIC_KERNEL_HAT:
-    return oracle_max(1.0 - r / (double)kernel->cutoff, 0.0);
-  case CONIC_KERNEL_BOX:
-    return r < (double)kernel->cutoff ? 1.0 : 0.0;
-  default:
-    return conic_oracle_exp(-0.5 * q);
-  }
-}
-
 static double clamp_to(const double range[2], double x) {
   return oracle_min(oracle_max(x, range[0]), range[1]);
 }

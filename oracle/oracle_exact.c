@@ -107,7 +107,7 @@ static double integrand(const grid *g, double i, double j) {
   for (int c = 0; c < 2; c++)
     u[c] = (rows[0][c] * at[0] + rows[1][c] * at[1] + rows[2][c]) / iz;
   double q = u[0] * u[0] + u[1] * u[1], filter = -0.5 * squared / g->view->prefilter;
-  if (g->view->kernel.type == CONIC_KERNEL_GAUSS)
+  if (conic_oracle_kernel_facts(&g->view->kernel).is_gaussian)
     return conic_oracle_exp(filter - 0.5 * q);
   return conic_oracle_exp(filter) * conic_oracle_kernel(&g->view->kernel, q);
 }
@@ -165,7 +165,7 @@ double conic_oracle_exact_weight(const oracle_view *view, const oracle_exact *ex
     spot s = look_at_spot(exact, x, y);
     return s.iz > 0.0 ? conic_oracle_kernel(&view->kernel, s.u[0] * s.u[0] + s.u[1] * s.u[1]) : 0.0;
   }
-  int is_smooth = view->kernel.type == CONIC_KERNEL_GAUSS;
+  int is_smooth = conic_oracle_kernel_facts(&view->kernel).is_gaussian;
   double tolerance = is_smooth ? 1e-8 : 1e-5, step = 1.0, axes[2][2], result = 0.0;
   spot mode = find_mode(exact, place, view->prefilter);
   if (!(depth_of(&mode, place, view->prefilter) < 700.0))

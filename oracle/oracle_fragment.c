@@ -14,9 +14,12 @@ static int is_set_up_in_float(const oracle_view *view, const oracle_splat *splat
     return 1;
   case ORACLE_RAY:
     return conic_oracle_is_before_near(view, &splat->placed);
-  default:
-    return 0;
+  case ORACLE_SEGMENT:
+  case ORACLE_POINT:
+  case ORACLE_NOT_DRAWN:
+    break;
   }
+  return 0;
 }
 
 void conic_oracle_candidate(const oracle_view *view, const oracle_splat *splat, oracle_candidate *candidate) {

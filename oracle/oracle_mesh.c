@@ -111,7 +111,7 @@ static int add_seen_piece(const oracle_mesh *mesh, const oracle_view *view, cons
          t->box[0][0] <= 256.0 * c->width && t->box[1][1] >= 0.0 && t->box[0][1] <= 256.0 * c->height;
 }
 
-/* Appends what of triangle i may be seen, at most six pieces. */
+/* Appends the part of triangle i that may be seen, at most six pieces. */
 static void add_seen_triangle(oracle_mesh *mesh, const oracle_view *view, size_t i) {
   const conic_triangles *set = mesh->triangles;
   corner polygon[MOST_CORNERS];

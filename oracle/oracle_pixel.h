@@ -55,7 +55,7 @@ typedef struct oracle_pixel {
   unsigned doubt;
 } oracle_pixel;
 
-/* Blends the visible fragments, of which there is at least one. `passes` as in the options; with `is_exact` nothing is
+/* Blends the visible fragments; there is at least one. `passes` as in the options; with `is_exact` nothing is
  * said about precision. */
 void conic_oracle_blend(const oracle_fragment *fragments, size_t n, int passes, int is_exact, oracle_pixel *pixel);
 

@@ -22,13 +22,17 @@ typedef struct workshop {
   double end, blur, reach, known[KNOWN + 1]; /* of the kernel, blurred in all directions */
 } workshop;
 
+static int is_flat(const oracle_view *view) {
+  return conic_oracle_kernel_facts(&view->kernel).is_flat;
+}
+
 static double level_share(int level) {
   double s = ((double)(1 << level) - 1.0) / 16384.0;
   return 4.0 * s / (1.0 + 3.0 * s);
 }
 
 static double bend_of(const oracle_view *view, const double share[2]) {
-  return view->kernel.type == CONIC_KERNEL_BOX ? sqrt((share[0] + 0.007) / (share[1] + 0.007)) : 1.0;
+  return is_flat(view) ? sqrt((share[0] + 0.007) / (share[1] + 0.007)) : 1.0;
 }
 
 /* By the series of the distribution's odd part. */
@@ -73,7 +77,7 @@ static double blur_even(const workshop *w, const double *places, const double *v
 }
 
 static double round_kernel(const workshop *w, double r) {
-  if (w->blur == 0.0 && w->view->kernel.type == CONIC_KERNEL_BOX)
+  if (w->blur == 0.0 && is_flat(w->view))
     return 1.0;
   if (w->blur == 0.0)
     return conic_oracle_kernel(&w->view->kernel, r * r);
@@ -110,7 +114,7 @@ static void blur_all_round(workshop *w, double blur) {
     w->known[i] = blur_even(w, row_places, rows, w->reach * i / KNOWN, blur);
 }
 
-/* The convolution at q, of which a share is across, over that of a Gaussian. */
+/* The convolution at q over a Gaussian's peak. `across` is the share of q that lies across the splat. */
 static double convolve(const workshop *w, const double share[2], double q, double across) {
   double x = sqrt(q * (1.0 - across) / (1.0 - share[0])), y = sqrt(q * across / (1.0 - share[1]));
   double more = share[1] / (1.0 - share[1]) - share[0] / (1.0 - share[0]), places[PARTS + 1], values[PARTS + 1];
@@ -123,7 +127,7 @@ static double convolve(const workshop *w, const double share[2], double q, doubl
 
 static double node(const workshop *w, const double share[2], double narrowing, double radius, double direction) {
   double support = w->view->support, bend = bend_of(w->view, share);
-  double q = w->view->kernel.type == CONIC_KERNEL_BOX ? support * (1.0 - radius * radius) : support * radius * radius;
+  double q = is_flat(w->view) ? support * (1.0 - radius * radius) : support * radius * radius;
   double across = direction * bend / (direction * bend + (1.0 - direction));
   return convolve(w, share, q, across) * sqrt((1.0 + narrowing * share[0]) * (1.0 + narrowing * share[1]));
 }
@@ -134,7 +138,8 @@ static double smooth_place(int i) {
   return part * part * (3.0 - 2.0 * part);
 }
 
-/* The terms of the smooth polynomial, 7, 4, 3 and 2 of each power of what is across; q is over the support. */
+/* The terms of the smooth polynomial: to the powers 0 to 3 of `across` 7, 4, 3 and 2 powers of q. Both are over the
+ * support. */
 static void smooth_terms(double q, double across, double terms[TERMS]) {
   static const int n_powers[] = {7, 4, 3, 2};
   double factor = 1.0;
@@ -199,7 +204,7 @@ static double narrowing_of(const workshop *w) {
   double integral = 0.0;
   for (int i = 0; i < 1024; i++) {
     double r = w->end * (i + 0.5) / 1024.0;
-    integral += (w->view->kernel.type == CONIC_KERNEL_BOX ? 1.0 : conic_oracle_kernel(&w->view->kernel, r * r)) * r;
+    integral += (is_flat(w->view) ? 1.0 : conic_oracle_kernel(&w->view->kernel, r * r)) * r;
   }
   return 1.0 / (integral * w->end / 1024.0) - 1.0;
 }
@@ -207,15 +212,13 @@ static double narrowing_of(const workshop *w) {
 conic_status conic_oracle_profile_create(conic_context *context, oracle_view *view) {
   const conic_kernel *kernel = &view->kernel;
   view->profile = NULL;
-  if (kernel->type == CONIC_KERNEL_GAUSS || !(view->prefilter > 0.0) || view->method == CONIC_METHOD_DISC ||
+  if (conic_oracle_kernel_facts(kernel).is_gaussian || !(view->prefilter > 0.0) || view->method == CONIC_METHOD_DISC ||
       view->method == CONIC_METHOD_POINT)
     return CONIC_OK;
   struct oracle_profile *profile = conic_memory_allocate(context, 1, sizeof *profile);
   if (!profile)
     return CONIC_ERROR_MEMORY;
-  workshop w = {.view = view, .end = view->cutoff};
-  if (kernel->type == CONIC_KERNEL_CONFETTI)
-    w.end = oracle_min((double)kernel->b, 4.0 * view->cutoff);
+  workshop w = {.view = view, .end = oracle_min(conic_oracle_kernel_facts(kernel).end, 4.0 * view->cutoff)};
   tabulate_normal(&w);
   w.reach = w.end;
   profile->narrowing = narrowing_of(&w);
@@ -279,7 +282,7 @@ static double smooth_response(const oracle_view *view, const double share[2], do
 static double steep_response(const oracle_view *view, const double share[2], double direction, double q) {
   const struct oracle_profile *p = view->profile;
   double part = oracle_min(oracle_max(q / view->support, 0.0), 1.0), level_part[2], sum = 0.0, peak = 1.0;
-  double place = (RADII - 1) * sqrt(view->kernel.type == CONIC_KERNEL_BOX ? 1.0 - part : part);
+  double place = (RADII - 1) * sqrt(is_flat(view) ? 1.0 - part : part);
   int i_radius = (int)oracle_min(place, RADII - 2.0), level[2];
   for (int i = 0; i < 2; i++) {
     double s = 1.0 + 16384.0 * share[i] / (4.0 - 3.0 * share[i]);

@@ -162,7 +162,7 @@ static void add_other(oracle_splat *splat, oracle_formula formula) {
     splat->others[splat->n_others++] = formula;
 }
 
-/* Chooses the formula, and those that it might be if one of the answers were rounded to the other side. */
+/* Chooses the formula, and every formula that it would be with one of the answers rounded to the other side. */
 static void choose_splats(const oracle_view *view, oracle_splat *splat) {
   double answers[ORACLE_N_QUESTIONS], errors[ORACLE_N_QUESTIONS];
   int is_so[ORACLE_N_QUESTIONS];

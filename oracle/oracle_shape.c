@@ -137,7 +137,8 @@ int conic_oracle_is_before_near(const oracle_view *view, const oracle_placed *s)
   return s->p[2] - view->cutoff * sqrt(s->tu[2] * s->tu[2] + s->tv[2] * s->tv[2]) > view->near_z;
 }
 
-/* Pixels are counted from p's place, or, where the disc reaches near, from the middle of what of the box is seen. */
+/* Pixels are counted from p's place. Where the disc reaches near, they are counted from the middle of the part of the
+ * box that lies in the picture. */
 static void set_ray_reference(const oracle_view *view, const oracle_placed *s, oracle_shape *shape) {
   const conic_camera *c = &view->camera;
   const double size[2] = {c->width, c->height}, focal[2] = {c->fx, c->fy}, principal[2] = {c->cx, c->cy};
@@ -214,8 +215,8 @@ static int set_segment(const oracle_view *view, const oracle_placed *s, oracle_s
   return 1;
 }
 
-/* By how much of itself the distance may change from p's to the pixels': with the depth of the disc, with its plane
- * within the filter's reach, and with the length of d, of which all that is not known is |d_p| ≥ 1. */
+/* The share of itself by which the distance may change from p's to the pixels'. It changes with the depth of the disc,
+ * with its plane within the filter's reach, and with the length of d, which is at least 1 at p. */
 static double greatest_change(const oracle_view *view, const oracle_placed *s, const oracle_shape *shape) {
   const conic_camera *c = &view->camera;
   const double focal[2] = {c->fx, c->fy}, principal[2] = {c->cx, c->cy};

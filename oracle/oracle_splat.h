@@ -155,6 +155,15 @@ static inline int conic_oracle_covers(const double values[ORACLE_N_VALUES]) {
 /* The kernel at the squared distance q, wherever it is not cut off; and without its cutoff. */
 double conic_oracle_kernel(const conic_kernel *kernel, double q);
 
+/* What else there is to know of a kernel. */
+typedef struct oracle_kernel_facts {
+  double end;      /* the radius from which on it is 0: the cutoff, unless it has an end of its own */
+  int is_gaussian; /* a prefilter leaves it one */
+  int is_flat;     /* 1 up to its end, the end included where it is blurred */
+} oracle_kernel_facts;
+
+oracle_kernel_facts conic_oracle_kernel_facts(const conic_kernel *kernel);
+
 /* The box of the disc's outline u² + v² = F², clipped at near, along one direction e of the screen: the extremes of e·x
  * and the places (x, y) and inverse depths where they are. 0 where nothing is in front of near. */
 typedef struct oracle_extreme {

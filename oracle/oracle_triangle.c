@@ -193,9 +193,9 @@ static double cosine_between(const double a[3], const double b[3]) {
   return oracle_dot(a, b) / (oracle_length(a) * oracle_length(b));
 }
 
-/* World, unit: on the side of the face that is seen, and mirrored along the ray where it leans away even so. `cosines`
- * are those by which the two questions of sides were decided, of which `turned`, as bits, are to be answered the other
- * way. Returns the length of the corners' mean, 1 for a face's normal. */
+/* World, unit: on the side of the face that is seen, and mirrored along the ray where it leans away even so. Two
+ * questions of sides are decided on the way, by the signs of `cosines`. The bits of `turned` name the questions that
+ * are answered the other way. Returns the length of the corners' mean, 1 for a face's normal. */
 static double find_shading_normal(const conic_triangles *set, const oracle_triangle *t, const conic_camera *camera,
                                   double x, double y, unsigned turned, double normal[3], double cosines[2]) {
   double at[2], ray[3] = {(x / 256.0 - camera->cx) / camera->fx, (y / 256.0 - camera->cy) / camera->fy, 1.0};

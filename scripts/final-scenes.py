@@ -7,6 +7,9 @@ import os
 import struct
 import sys
 
+if "--help" in sys.argv:
+    print(__doc__)
+    sys.exit()
 folder, data = sys.argv[1:3]
 
 # Of each axis that points up: right, forward and up, as a camera at azimuth 0 has them.

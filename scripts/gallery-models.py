@@ -7,6 +7,9 @@ import random
 import struct
 import sys
 
+if "--help" in sys.argv:
+    print(__doc__)
+    sys.exit()
 folder = sys.argv[1]
 chance = random.Random(19)
 

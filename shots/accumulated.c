@@ -68,8 +68,7 @@ static conic_status begin_sums(const accumulating *a, conic_accumulation **sums)
   const conic_sums_keeper *keeper = a->work->keeper;
   unsigned planes = (a->work->planes | 1u << CONIC_PLANE_RGBA) & CONIC_ACCUMULATED_PLANES;
   conic_status status = CONIC_OK;
-  int is_first = !a->work->executor || a->work->executor->index == 0;
-  if (keeper && keeper->find && is_first)
+  if (keeper && keeper->find && a->work->executor->index == 0)
     status = keeper->find(keeper->cookie, camera, planes, sums);
   if (status == CONIC_OK && !*sums)
     status = conic_accumulation_create(a->work->context, camera->width, camera->height, planes, 0, sums);

@@ -95,7 +95,7 @@ static void send_receivers(const conic_executor *executor, conic_image *image) {
 static conic_status light_whole(map_drawer *drawer, const conic_lighter *lighter, const conic_look *look,
                                 conic_status status, conic_image *image) {
   const conic_shot_work *work = drawer->stage->work;
-  conic_light_sharing sharing = {.team = work->executor ? work->executor->team : NULL};
+  conic_light_sharing sharing = {.team = work->executor->team};
   if (work->units == CONIC_UNITS_WINDOWS) {
     status = conic_work_agree(work, status);
     drawer->sharing = &sharing;

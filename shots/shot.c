@@ -50,13 +50,12 @@ int conic_work_has_picture(const conic_shot_work *work) {
 }
 
 conic_status conic_work_agree(const conic_shot_work *work, conic_status status) {
-  return work->executor ? work->executor->agree(work->executor->data, status) : status;
+  return work->executor->agree(work->executor->data, status);
 }
 
 void conic_work_trace(const conic_shot_work *work, const char *kind, const char *name, uint64_t number,
                       conic_moment since, uint64_t bytes) {
-  if (work->executor)
-    work->executor->trace(work->executor->data, kind, name, number, since, bytes);
+  work->executor->trace(work->executor->data, kind, name, number, since, bytes);
 }
 
 /* --- drawing --- */
@@ -69,6 +68,8 @@ conic_status conic_shot_work_begin(conic_source *source, conic_renderer *rendere
   work->renderer = renderer;
   work->shot = shot;
   work->noise = -1.0;
+  conic_executor_alone(&work->alone);
+  work->executor = &work->alone.executor;
   conic_status status = conic_shot_plan_make(source, renderer, shot, &work->plan);
   work->planes = work->plan.planes;
   return status == CONIC_OK ? conic_source_composite_by(source, &shot->gaussians) : status;

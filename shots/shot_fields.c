@@ -436,9 +436,19 @@ size_t conic_row_count(const conic_shot_row *row) {
     return row->bytes / sizeof(float);
   case CONIC_ROW_DOUBLE:
     return row->bytes / sizeof(double);
-  default:
-    return 1;
+  case CONIC_ROW_WORD:
+  case CONIC_ROW_PLANES:
+  case CONIC_ROW_TEXT:
+  case CONIC_ROW_HAS:
+  case CONIC_ROW_STRUCT:
+  case CONIC_ROW_POINTER:
+  case CONIC_ROW_LIST:
+  case CONIC_ROW_LENGTH:
+  case CONIC_ROW_RESERVED:
+  case CONIC_ROW_LEFT_OUT:
+    break;
   }
+  return 1;
 }
 
 size_t conic_row_length(const conic_shot_row *row, const void *value) {

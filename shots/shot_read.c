@@ -279,9 +279,17 @@ static conic_status read_field(shot_reader *r, const conic_shot_row *row, char *
     status = read_owned_text(r, &words);
     memcpy(at, &words, status == CONIC_OK ? sizeof words : 0);
     return status;
-  default:
-    return read_field_numbers(r, row, at);
+  case CONIC_ROW_INT:
+  case CONIC_ROW_UINT32:
+  case CONIC_ROW_UINT64:
+  case CONIC_ROW_FLOAT:
+  case CONIC_ROW_DOUBLE:
+  case CONIC_ROW_LENGTH:
+  case CONIC_ROW_RESERVED:
+  case CONIC_ROW_LEFT_OUT:
+    break;
   }
+  return read_field_numbers(r, row, at);
 }
 
 static const conic_shot_row *find_shot_row(const conic_shot_rows *rows, const char *key) {

@@ -28,9 +28,18 @@ static conic_shot_field_kind kind_of_field(const conic_shot_row *row) {
     return CONIC_SHOT_FIELD_WORDS;
   case CONIC_ROW_TEXT:
     return CONIC_SHOT_FIELD_TEXT;
-  default:
-    return CONIC_SHOT_FIELD_INTEGER;
+  case CONIC_ROW_INT:
+  case CONIC_ROW_UINT32:
+  case CONIC_ROW_UINT64:
+  case CONIC_ROW_STRUCT:
+  case CONIC_ROW_POINTER:
+  case CONIC_ROW_LIST:
+  case CONIC_ROW_LENGTH:
+  case CONIC_ROW_RESERVED:
+  case CONIC_ROW_LEFT_OUT:
+    break;
   }
+  return CONIC_SHOT_FIELD_INTEGER;
 }
 
 static void take_field(field_finding *f, const char *path, const conic_shot_row *row, const void *standard) {

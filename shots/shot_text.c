@@ -122,7 +122,18 @@ static void add_one(conic_text *text, const conic_shot_row *row, const char *at)
     memcpy(&number, at, sizeof number);
     conic_text_print(text, "%llu", (unsigned long long)number);
     break;
-  default:
+  case CONIC_ROW_FLOAT:
+  case CONIC_ROW_DOUBLE:
+  case CONIC_ROW_WORD:
+  case CONIC_ROW_PLANES:
+  case CONIC_ROW_TEXT:
+  case CONIC_ROW_HAS:
+  case CONIC_ROW_STRUCT:
+  case CONIC_ROW_POINTER:
+  case CONIC_ROW_LIST:
+  case CONIC_ROW_LENGTH:
+  case CONIC_ROW_RESERVED:
+  case CONIC_ROW_LEFT_OUT:
     add_real(text, row, at);
   }
 }

@@ -41,7 +41,8 @@ typedef struct conic_shot_work {
   conic_renderer *renderer;
   const conic_shot *shot;
   conic_shot_plan plan;
-  const conic_executor *executor;  /* null: this process is alone */
+  const conic_executor *executor;  /* at first the next: */
+  conic_alone alone;               /* this process by itself */
   conic_shared_units units;        /* that it shares */
   const conic_sums_keeper *keeper; /* null: nobody keeps or watches */
   double seconds;                  /* above 0: no sample is begun after so many */
@@ -78,9 +79,9 @@ const conic_shot_stage *conic_stages_chain(conic_shot_work *work, conic_shot_sta
 
 /* Whether this process has the picture at the end. */
 int conic_work_has_picture(const conic_shot_work *work);
-/* executor->agree; alone, the status itself. */
+/* executor->agree. */
 conic_status conic_work_agree(const conic_shot_work *work, conic_status status);
-/* executor->trace; alone, nothing. */
+/* executor->trace. */
 void conic_work_trace(const conic_shot_work *work, const char *kind, const char *name, uint64_t number,
                       conic_moment since, uint64_t bytes);
 

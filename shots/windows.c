@@ -113,7 +113,7 @@ static void place_plane(const window_work *w, const conic_window *window, conic_
            row, n_bytes);
 }
 
-static void take_window(void *cookie, int from, void *bytes, size_t n_bytes) {
+static void take_window(void *cookie, int from, const void *bytes, size_t n_bytes) {
   window_work *w = cookie;
   window_result result;
   conic_moment start = conic_moment_now();
@@ -198,7 +198,7 @@ static void add_window_sum(conic_source_windows *windows, const window_sum *othe
 
 conic_status conic_windows_sum(const conic_shot_work *work, conic_source_windows *windows,
                                conic_window_counts *counts) {
-  const conic_team *team = work->executor ? work->executor->team : NULL;
+  const conic_team *team = work->executor->team;
   window_sum own = {.n_windows = counts->n_windows, .statistics = counts->statistics};
   memcpy(own.tallies, windows->tallies, sizeof own.tallies);
   if (team) {

@@ -21,7 +21,7 @@ static const char *find_carry_fault(const conic_source_pose *poses, size_t n_pos
              : NULL;
 }
 
-/* The box of the corners of the box at rest. */
+/* The box around the moved corners of the box at rest. */
 static void carry_box(conic_source *source) {
   const conic_source_scale *scale = &source->scale;
   for (int row = 0; row < 3; row++) {

@@ -1,4 +1,4 @@
-/* Windows of what is chosen before it is drawn: splats and triangles. */
+/* Windows of sources that choose before they draw: splats and triangles. */
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -9,9 +9,9 @@
 
 /* The band that is set up. */
 typedef struct choice_band {
-  int first_row; /* -1: none is */
+  int first_row; /* -1: none */
   conic_prepared *prepared;
-  conic_transparent_windows *transparent; /* in its place */
+  conic_transparent_windows *transparent; /* in place of `prepared` */
 } choice_band;
 
 static void leave_band(choice_band *band) {
@@ -51,7 +51,8 @@ static conic_status begin_choice_windows(conic_source_windows *w) {
     return CONIC_ERROR_MEMORY;
   *band = (choice_band){.first_row = -1};
   w->own = band;
-  /* Of several each one that is drawn in; and nothing before there is all that is drawn. */
+  /* With several bands, each is set up when it is drawn in. Without all splats here, nothing is set up before they
+   * arrive. */
   int is_later = w->band_rows < w->camera.height || conic_source_windows_are_dealt(w);
   return is_later ? CONIC_OK : enter_band(w, 0, band);
 }
@@ -61,7 +62,7 @@ static void end_choice_windows(conic_source_windows *w) {
   conic_memory_release(w->source->context, w->own);
 }
 
-/* Of the band's picture. */
+/* Draws a window of the band's picture. */
 static conic_status draw_in_band(choice_band *band, const conic_window *window, conic_image *image,
                                  conic_render_statistics *statistics) {
   return band->transparent ? conic_transparent_windows_draw(band->transparent, window, image, statistics)
@@ -100,7 +101,7 @@ static conic_status draw_choice_window(conic_source_windows *w, const conic_wind
 
 static conic_status count_choice_windows(const conic_source_windows *w, conic_render_statistics *statistics) {
   if (w->band_rows >= w->camera.height)
-    return CONIC_OK; /* each window counts all */
+    return CONIC_OK; /* each window counts everything */
   conic_camera whole = conic_samples_camera(&w->camera, w->samples, 0, w->camera.height);
   return conic_samples_count_drawing(w->source->context, &w->source->choice.drawing, &whole, &w->render, statistics);
 }

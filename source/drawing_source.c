@@ -1,4 +1,4 @@
-/* Splats and triangles in memory: of any number of files, or of a caller's arrays. */
+/* Splats and triangles in memory: from any number of files, or from a caller's arrays. */
 #include <string.h>
 
 #include "core/base/clock.h"
@@ -18,17 +18,17 @@
 typedef struct drawing_source {
   conic_source base;
   conic_splats splats;
-  int is_lent;      /* the splats are a caller's, */
-  float *unstrided; /* but for arrays with strides, of which this holds copies */
+  int is_lent;      /* the splats are a caller's … */
+  float *unstrided; /* … except for copies, in here, of arrays with strides */
   conic_triangles triangles;
-  conic_repairs repairs; /* of all inputs */
-  size_t *ends;          /* of each input, the splats of it and those before it; likewise the triangles, */
+  conic_repairs repairs; /* the sum over all inputs */
+  size_t *ends;          /* of each input: where its splats, triangles, vertices and normals end */
   size_t n_inputs;       /* the vertices and the normals */
   size_t n_dots;
-  conic_splats facing; /* the same with the dots turned to the camera: axes of its own, where there are dots */
-  int has_moved;       /* something did, so that there is room for */
-  conic_splats moved;  /* the same, where they are now: places and axes of its own, */
-  conic_triangles moved_triangles; /* and normals */
+  conic_splats facing; /* the splats with dots turned to the camera; it has axes of its own if there are dots */
+  int has_moved;       /* something has moved, so that there is room for: */
+  conic_splats moved;  /* the splats in their present places, with places and axes of its own */
+  conic_triangles moved_triangles; /* the triangles in their present places, with places and normals of its own */
 } drawing_source;
 
 static int takes_drawing(const char *path, const conic_source_options *options) {
@@ -39,7 +39,7 @@ static int takes_drawing(const char *path, const conic_source_options *options) 
 
 static conic_status append_to_drawing(drawing_source *d, conic_splats *more) {
   conic_status status = CONIC_OK;
-  if (d->splats.count == 0) { /* the first input's arrays are taken over, not copied */
+  if (d->splats.count == 0) { /* the first input's arrays are taken over without a copy */
     conic_splats_release(d->base.context, &d->splats);
     d->splats = *more;
     memset(more, 0, sizeof *more);
@@ -57,6 +57,8 @@ static conic_status take_triangles(drawing_source *d, const char *path, const co
   conic_status status = conic_triangles_take(context, model, &triangles);
   if (status == CONIC_OK)
     status = conic_mesh_check(context, path, &triangles);
+  if (!triangles.normal[0])
+    d->base.traits |= CONIC_TRAIT_EDGES;
   if (status == CONIC_OK && !options->is_smooth)
     status = conic_mesh_round(context, 0, options->crease_deg, &triangles);
   if (status == CONIC_OK)
@@ -65,7 +67,7 @@ static conic_status take_triangles(drawing_source *d, const char *path, const co
   return status;
 }
 
-/* Ground in degrees becomes ground in metres, before it is asked how the points lie to each other. */
+/* Turns ground in degrees into ground in metres, before distances between points matter. */
 static void project_degrees(conic_context *context, const char *path, conic_splats *points) {
   double middle[2];
   if (points->tangent_u[0] || !conic_points_are_degrees(points))
@@ -94,6 +96,8 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   conic_estimate_options_init(&estimate);
   if (options->projects_degrees && model->n_triangles == 0)
     project_degrees(context, path, &model->points);
+  if (!model->points.tangent_u[0] && !model->n_triangles)
+    d->base.traits |= CONIC_TRAIT_RAW;
   estimate.cutoff = options->cutoff;
   estimate.n_neighbours = options->n_neighbours;
   estimate.finds_dots = options->finds_dots;
@@ -108,7 +112,7 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   return append_to_drawing(d, &model->points);
 }
 
-/* As fits: the faces that there are, and the points beside them. */
+/* As fits: the file's faces, and the points beside them. */
 static conic_status take_as_fits(drawing_source *d, const char *path, const conic_source_options *options,
                                  conic_model *model) {
   conic_context *context = d->base.context;
@@ -130,7 +134,7 @@ static conic_status take_as_fits(drawing_source *d, const char *path, const coni
   return status;
 }
 
-/* `up` is the model's, where its file or its kind says it. */
+/* `up` is the model's, where its file or its kind says so. */
 static conic_status read_model(drawing_source *d, const char *path, const conic_source_options *options, double up[3]) {
   conic_context *context = d->base.context;
   conic_read_options reading;
@@ -147,6 +151,8 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   if (status != CONIC_OK)
     return status;
   double start = conic_seconds_now();
+  d->base.traits |=
+      (model.n_triangles ? CONIC_TRAIT_FACES : 0) | (model.kind == CONIC_MODEL_XYZ ? CONIC_TRAIT_TEXT : 0);
   memcpy(up, model.up, sizeof model.up);
   if (conic_splats_bounds(&model.points, low, high) == 0)
     status = conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,
@@ -171,6 +177,7 @@ static conic_status read_into_drawing(drawing_source *d, const char *path, const
   conic_splats splats;
   if (!special || !special->take_splats)
     return read_model(d, path, options, up);
+  d->base.traits |= CONIC_TRAIT_RAW; /* sizes may be estimated */
   conic_read_options reading;
   conic_read_options_init(&reading);
   conic_coloring_read(options->coloring, &reading);
@@ -188,7 +195,7 @@ static conic_status read_into_drawing(drawing_source *d, const char *path, const
   return status == CONIC_OK ? append_to_drawing(d, &splats) : status;
 }
 
-/* What the options say of triangles. */
+/* Applies the options for triangles. */
 static conic_status dress(drawing_source *d, const conic_source_options *options) {
   conic_context *context = d->base.context;
   conic_status status = CONIC_OK;
@@ -206,7 +213,7 @@ static conic_status dress(drawing_source *d, const conic_source_options *options
              : status;
 }
 
-/* Dots need axes that can change from picture to picture. */
+/* Gives dots axes that can change from picture to picture. */
 static conic_status copy_axes(drawing_source *d) {
   size_t n_bytes = d->splats.count * sizeof(float);
   d->n_dots = conic_splats_count_dots(&d->splats);
@@ -239,7 +246,7 @@ static conic_status choose_in_drawing(conic_source *source, const conic_camera *
                    : CONIC_OK;
 }
 
-/* Which of all splats, vertices and normals are an input's. */
+/* The range of all splats, vertices and normals that an input has. */
 static conic_drawing_range range_of_input(const drawing_source *d, size_t i) {
   const size_t *vertices = d->ends + 2 * d->n_inputs,
                *normals = d->triangles.normal_corners ? vertices + d->n_inputs : vertices;
@@ -281,7 +288,7 @@ static conic_status move_drawing(conic_source *source, const conic_source_pose *
     is_still &= is_at_rest(&poses[i]);
   if (poses)
     status = check_pose_shapes(d, poses);
-  if (status == CONIC_OK && is_still && source->is_moved) /* what was kept of it is of another picture */
+  if (status == CONIC_OK && is_still && source->is_moved) /* what was kept of it belongs to another picture */
     source->splats_version = d->is_lent || d->n_dots ? 0 : conic_context_next_version(source->context);
   if (status != CONIC_OK || is_still) {
     source->is_moved &= status != CONIC_OK;
@@ -327,7 +334,7 @@ static conic_status measure_drawing(drawing_source *d) {
   return status;
 }
 
-/* What is lent and needs no repair is drawn where it lies. */
+/* Lent splats that need no repair are drawn where they are. */
 static conic_status borrow_splats(drawing_source *d, const char *path, const conic_source_options *options) {
   conic_context *context = d->base.context;
   const conic_splats *lent = conic_loan_find(context, path, "splats");
@@ -347,7 +354,7 @@ static conic_status borrow_splats(drawing_source *d, const char *path, const con
   return CONIC_OK;
 }
 
-/* What there is now is that of the inputs up to this one. */
+/* The arrays now end with this input. */
 static void end_input(drawing_source *d, size_t i) {
   d->ends[i] = d->splats.count;
   d->ends[d->n_inputs + i] = d->triangles.count;
@@ -371,7 +378,7 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
     double own[3] = {0.0, 0.0, 0.0};
     status = read_into_drawing(d, paths[i], options, own);
     end_input(d, i);
-    for (int axis = 0; axis < 3; axis++) /* what not all say is not known */
+    for (int axis = 0; axis < 3; axis++) /* a direction that not all inputs state is unknown */
       up[axis] = i == 0 || up[axis] == own[axis] ? own[axis] : 0.0;
   }
   if (status == CONIC_OK)
@@ -382,7 +389,12 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
   }
   if (status == CONIC_OK)
     status = conic_source_color(source, options, &d->splats, &d->triangles);
-  return status == CONIC_OK ? measure_drawing(d) : status;
+  if (status != CONIC_OK)
+    return status;
+  const conic_drawing all = {&d->splats, &d->triangles};
+  source->traits |= conic_drawing_is_transparent(&all) ? CONIC_TRAIT_ALPHA : 0;
+  source->no_traits = ~source->traits;
+  return measure_drawing(d);
 }
 
 conic_status conic_source_of_drawing(conic_context *context, conic_splats *splats, conic_triangles *triangles,
@@ -430,7 +442,7 @@ static void close_drawing(conic_source *source) {
   conic_memory_release(source->context, d->ends);
 }
 
-/* Inputs are appended in their order, and the triangles' ids follow those of all splats. */
+/* Inputs are appended in their order; the ids of triangles follow those of all splats. */
 static size_t find_drawing_input(const conic_source *source, uint32_t id) {
   const drawing_source *d = (const drawing_source *)source;
   int is_triangle = id >= d->splats.count;

@@ -1,4 +1,4 @@
-/* Facts, as they are put together: CONIC_ADD_FACTS(facts, CONIC_COUNT("points", n), …). */
+/* Putting facts together: CONIC_ADD_FACTS(facts, CONIC_COUNT("points", n), …). */
 #ifndef CONIC_FACTS_H
 #define CONIC_FACTS_H
 
@@ -28,13 +28,13 @@ struct conic_facts {
   conic_fact list[CONIC_MOST_FACTS];
 };
 
-/* Leaves out what no longer fits. */
+/* Leaves out facts that no longer fit. */
 void conic_facts_add(conic_facts *facts, const conic_fact *more, size_t n);
 #define CONIC_ADD_FACTS(facts, ...)                                                                                    \
   conic_facts_add(facts, (const conic_fact[]){__VA_ARGS__},                                                            \
                   sizeof((const conic_fact[]){__VA_ARGS__}) / sizeof(conic_fact))
 
-/* The object "bounds", and the line. */
+/* The object "bounds", and its line. */
 void conic_facts_add_bounds(conic_facts *facts, const double low[3], const double high[3]);
 
 #endif

@@ -1,4 +1,4 @@
-/* What a Gaussian scene holds, and what of it cannot be drawn. */
+/* The contents of a Gaussian scene, and the Gaussians that cannot be drawn. */
 #include "conic/gaussians.h"
 #include "source/source_kind.h"
 

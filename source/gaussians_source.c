@@ -1,4 +1,4 @@
-/* Gaussian scenes: drawn by themselves, composited by alpha. */
+/* Gaussian scenes: they draw themselves, composited by alpha. */
 #include <string.h>
 
 #include "conic/opencl.h"
@@ -16,16 +16,16 @@
 typedef struct gaussians_source {
   conic_source base;
   conic_gaussians gaussians;
-  int is_lent; /* and not the source's to release */
+  int is_lent; /* the Gaussians are a caller's */
   conic_gaussian_options options;
   conic_gaussian_statistics drawn;
 } gaussians_source;
 
-/* What is fainter says little of where the scene is. */
+/* Fainter Gaussians say little about where the scene is. */
 static const float least_opacity = 0.1f;
 
 static int takes_gaussians(const char *path, const conic_source_options *options) {
-  conic_context *context; /* of its own, which says nothing: whether it is one is no more than a question */
+  conic_context *context; /* a context of its own, without messages: it is only a question whether a file is a scene */
   conic_context_options quiet;
   conic_context_options_init(&quiet);
   quiet.threads = 1;
@@ -36,7 +36,7 @@ static int takes_gaussians(const char *path, const conic_source_options *options
   return is_one;
 }
 
-/* A dot for every Gaussian that is not faint: what the camera frames. */
+/* A dot for every Gaussian that is not faint, for framing by the camera. */
 static conic_status outline_means(gaussians_source *g) {
   const conic_gaussians *set = &g->gaussians;
   conic_splats *outline = &g->base.outline;
@@ -57,12 +57,12 @@ static conic_status outline_means(gaussians_source *g) {
     }
     outline->count++;
   }
-  if (outline->count == 0) /* all is faint: its picture will tell */
+  if (outline->count == 0) /* all Gaussians are faint: the picture will show it */
     conic_splats_release(g->base.context, outline);
   return CONIC_OK;
 }
 
-/* A frame's letters say where its axes point; up is the one that has u, or against the one that has d. */
+/* A frame's letters say where its axes point: up is the axis of u, or opposite to the axis of d. */
 static void up_of_frame(const char *frame, double up[3]) {
   for (int axis = 0; axis < 3; axis++)
     up[axis] = frame[axis] == 'u' ? 1.0 : frame[axis] == 'd' ? -1.0 : 0.0;
@@ -112,7 +112,7 @@ static void close_gaussians(conic_source *source) {
 /* A window of the picture with several samples a pixel. */
 typedef struct fine_picture {
   conic_gaussian_planes planes;
-  int samples, is_opaque; /* a background is behind */
+  int samples, is_opaque; /* is_opaque: there is a background */
 } fine_picture;
 
 static int wants(const conic_image *image, conic_plane plane) {
@@ -151,7 +151,7 @@ static void release_planes(conic_context *context, fine_picture *fine) {
     conic_memory_release(context, all[i]);
 }
 
-/* The sample nearest to the pixel's centre, of four the upper left. */
+/* The sample nearest to the pixel's centre; of four the upper left. */
 static size_t middle_sample(const fine_picture *fine, size_t x, size_t y) {
   size_t n = (size_t)fine->samples, middle = (n - 1) / 2;
   return (y * n + middle) * (size_t)fine->planes.width + x * n + middle;
@@ -187,7 +187,7 @@ static uint32_t greatest_count(const fine_picture *fine, size_t x, size_t y) {
   return greatest;
 }
 
-/* One pixel of each n × n samples, as docs/reference/picture.md has it. Returns whether anything is there. */
+/* Makes one pixel of n × n samples, as docs/reference/picture.md defines it. Returns whether it shows anything. */
 static int reduce_pixel(const fine_picture *fine, size_t x, size_t y, size_t pixel, const conic_image *image) {
   const conic_gaussian_planes *p = &fine->planes;
   const size_t middle = middle_sample(fine, x, y);
@@ -223,7 +223,7 @@ static uint64_t reduce_samples(const fine_picture *fine, const conic_image *imag
   return n_covered;
 }
 
-/* What compositing does not make is 0, whatever was in the caller's arrays. */
+/* Clears the planes that compositing does not fill. */
 static void clear_other_planes(const conic_image *image) {
   const unsigned made = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_TRANSPARENCY | 1u << CONIC_PLANE_Z |
                         1u << CONIC_PLANE_MEDIAN_Z | 1u << CONIC_PLANE_INVERSE_Z | 1u << CONIC_PLANE_ID |
@@ -318,7 +318,7 @@ static const conic_source_windowing gaussian_windowing = {.begin = begin_gaussia
                                                           .draw = draw_gaussian_window,
                                                           .weigh = weigh_gaussian_windows};
 
-/* All in one. */
+/* Draws the whole picture. */
 static conic_status draw_gaussians(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
                                    const conic_render_options *render, const conic_source_view *view,
                                    conic_image *image, conic_render_statistics *statistics) {

@@ -1,4 +1,4 @@
-/* What hybrid models are made of: a mesh, or splats. */
+/* The input of hybrid models: a mesh, or splats. */
 #ifndef CONIC_HYBRID_INPUT_H
 #define CONIC_HYBRID_INPUT_H
 
@@ -6,13 +6,13 @@
 #include "conic/hybrid.h"
 
 typedef struct conic_hybrid_input {
-  int is_points; /* splats; else the mesh */
+  int is_points; /* the input is splats; else the mesh */
   conic_triangles mesh;
   conic_splats splats;
-  double up[3]; /* what the file says of points; zero: nothing */
+  double up[3]; /* the direction that the file states for points; zero: none */
 } conic_hybrid_input;
 
-/* How to read: null pointers and zeros are the defaults. */
+/* How the input is read: null pointers and zeros are the defaults. */
 typedef struct conic_hybrid_reading {
   const char *texture_path;
   const conic_coloring_options *coloring;
@@ -22,8 +22,9 @@ typedef struct conic_hybrid_reading {
   int n_neighbours;
 } conic_hybrid_reading;
 
-/* Reads a mesh and gives it normals, or, of a file without faces, points, which get sizes where they have none. On
- * success the caller releases *input, or builds of it. Errors: as conic_mesh_read's and conic_model_to_splats's. */
+/* Reads a mesh and gives it normals; or, from a file without faces, points, which get sizes where they have none. On
+ * success the caller releases *input, or builds a model of it. Errors: as conic_mesh_read's and
+ * conic_model_to_splats's. */
 conic_status conic_hybrid_input_read(conic_context *context, const char *path, const conic_hybrid_reading *reading,
                                      conic_hybrid_input *input);
 void conic_hybrid_input_release(conic_context *context, conic_hybrid_input *input);

@@ -1,4 +1,4 @@
-/* Hybrid models: a .chy, or a mesh that is made one. */
+/* Hybrid models: a .chy, or a model built from a mesh. */
 #include <string.h>
 
 #include "conic/hybrid.h"
@@ -11,7 +11,7 @@ typedef struct hybrid_source {
   conic_hybrid *hybrid;
   conic_hybrid_info info;
   conic_hybrid_selection selection;
-  int is_opened; /* not built */
+  int is_opened; /* from a .chy, not built */
 } hybrid_source;
 
 static int is_hybrid_name(const char *path) {

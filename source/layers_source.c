@@ -1,4 +1,4 @@
-/* Layered point clouds: a .lpc or its URL, drawn by itself, in bounded memory. */
+/* Layered point clouds: a .lpc or its URL, which draws itself in bounded memory. */
 #include <inttypes.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "lod/hierarchies/hierarchy.h"
 #include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_picture.h"
-#include "lod/layers/format/layers_read.h"
+#include "lod/layers/format/layers_format.h"
 #include "raster/frame/samples.h"
 #include "source/source_kind.h"
 
@@ -18,7 +18,7 @@ typedef struct layers_source {
   conic_layers *layers;
   float cutoff;
   uint64_t n_clouds;
-  int may_pass_none; /* nothing that passes the filter has been seen yet */
+  int may_pass_none; /* so far no sample is known to pass the filter */
   conic_layers_drawn drawn;
 } layers_source;
 
@@ -58,6 +58,8 @@ static conic_status open_layers(conic_source *source, const char *const *paths, 
   scale->n_splats = found.n_samples;
   scale->n_levels = found.n_levels;
   scale->has_colors = found.has_colors;
+  if (conic_layers_schema_find(&l->layers->header.schema, CONIC_LAYERS_OPACITY) < 0)
+    source->no_traits = CONIC_TRAIT_ALPHA;
   if (found.up[0] != 0.0 || found.up[1] != 0.0 || found.up[2] != 0.0) {
     memcpy(scale->up, found.up, sizeof scale->up);
     scale->up_basis = CONIC_UP_KIND;
@@ -75,10 +77,11 @@ static void close_layers(conic_source *source) {
 static conic_status see_sample(void *cookie, const conic_splats *batch) {
   (void)batch;
   ((layers_source *)cookie)->may_pass_none = 0;
-  return CONIC_ERROR_CANCELLED; /* one is enough */
+  return CONIC_ERROR_CANCELLED; /* one sample is enough */
 }
 
-/* Of a picture that is empty: whether any sample passes the filter. All of the file is read for it, at most. */
+/* After an empty picture: finds out whether any sample passes the filter, for which it may have to read the whole
+ * file. */
 static conic_status refuse_none(layers_source *l) {
   conic_status status = conic_layers_read_samples(l->layers, l->cutoff, NULL, see_sample, l);
   if (!l->may_pass_none)
@@ -190,7 +193,7 @@ static void tell_layers_rest(const conic_source *source, conic_facts *facts) {
   CONIC_ADD_FACTS(facts, CONIC_END);
 }
 
-/* Of another kind's hierarchy, or one on a web server: what opening it finds out. */
+/* Facts of another kind's hierarchy, or of one on a web server: opening it finds them. */
 static conic_status tell_hierarchy(conic_source *source, conic_facts *facts) {
   conic_layers *layers;
   conic_layers_scale found;
@@ -220,7 +223,7 @@ static conic_status tell_hierarchy_defects(conic_source *source, conic_facts *fa
   return status;
 }
 
-/* What --color-by and --where take. */
+/* The values that --color-by and --where take. */
 static conic_status tell_layers_values(conic_source *source, conic_facts *facts) {
   conic_layers_file file;
   int n_told = 0;
@@ -293,7 +296,7 @@ static conic_status tell_layers_defects(conic_source *source, conic_facts *facts
   return status;
 }
 
-/* What is gathered is copied once more to be drawn. */
+/* Gathered splats are copied once more for drawing. */
 static conic_status gather_layers(conic_source *source, const conic_layers_region *part, int may_cut,
                                   const conic_splats **splats, int *is_cut_short) {
   enum { COPY_BYTES = 14 * sizeof(float) };
@@ -310,7 +313,7 @@ static conic_status find_layers_georeference(const conic_source *source, conic_g
   return conic_layers_find_georeference(((const layers_source *)source)->layers, reference);
 }
 
-/* Measured from the world's origin, whatever the file's. */
+/* Measures positions from the world's origin, not the file's. */
 static conic_status take_layers_splats(conic_source *source, conic_splats *splats) {
   const layers_source *l = (layers_source *)source;
   conic_splats samples;

@@ -36,7 +36,8 @@ int conic_mesh_has_face(const conic_model *model) {
 conic_status conic_mesh_gather_loose(conic_context *context, const conic_model *model, conic_splats *loose) {
   size_t n = model->points.count, n_loose = 0;
   memset(loose, 0, sizeof *loose);
-  uint32_t *list = conic_memory_allocate_zeroed(context, n, sizeof *list); /* first whether each is in a triangle */
+  uint32_t *list = conic_memory_allocate_zeroed(context, n, sizeof *list); /* at first, whether each vertex is in a
+                                                                              triangle */
   if (!list)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < 3 * model->n_triangles; i++)

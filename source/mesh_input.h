@@ -1,4 +1,4 @@
-/* Meshes from files: what any must have, and the texture that may lie on it in place of its own. */
+/* Meshes from files: what every mesh needs, and a texture in place of its own. */
 #ifndef CONIC_MESH_INPUT_H
 #define CONIC_MESH_INPUT_H
 
@@ -6,24 +6,24 @@
 #include "conic/model.h"
 #include "conic/triangles.h"
 
-/* Reads a mesh; `texture_path` may be null, and so may `coloring`, which names the scalar that its vertices get. On
- * success the caller releases *triangles. Errors: as conic_triangles_read's; INPUT where nothing of it could be drawn.
- */
+/* Reads a mesh. `texture_path` may be null, and so may `coloring`, which names the scalar that its vertices get. On
+ * success the caller releases *triangles. Errors: as conic_triangles_read's; INPUT where nothing could be drawn. */
 conic_status conic_mesh_read(conic_context *context, const char *path, const char *texture_path,
                              const conic_coloring_options *coloring, conic_triangles *triangles);
 
 /* Whether any of a model's triangles has three finite corners at three places. */
 int conic_mesh_has_face(const conic_model *model);
 
-/* Copies the vertices of no triangle; none where they are leftovers. On success the caller releases *loose. Errors:
+/* Copies the vertices without a triangle, unless they are leftovers. On success the caller releases *loose. Errors:
  * MEMORY. */
 conic_status conic_mesh_gather_loose(conic_context *context, const conic_model *model, conic_splats *loose);
 
-/* Refuses a mesh without a face that has an area, by name: INPUT. */
+/* Refuses a mesh without a face that has an area. Errors: INPUT. */
 conic_status conic_mesh_check(conic_context *context, const char *path, const conic_triangles *triangles);
 
-/* Gives a mesh normals: of each vertex the mean of its faces', or where it has none, round over edges up to the angle
- * (degrees; 0: none). Errors: as conic_triangles_smooth's and conic_triangles_crease's. */
+/* Gives a mesh normals: with `is_smooth`, each vertex gets the mean of its faces'. Else a mesh without normals gets
+ * normals that are round over edges up to the angle (degrees; 0: none). Errors: as conic_triangles_smooth's and
+ * conic_triangles_crease's. */
 conic_status conic_mesh_round(conic_context *context, int is_smooth, double crease_deg, conic_triangles *triangles);
 
 /* Lays a picture on the triangles. Errors: INPUT (they have no texture coordinates), UNSUPPORTED, MEMORY. */

@@ -1,4 +1,4 @@
-/* What the points of a file have by name, for conic info. */
+/* The values that a file's points have by name, for conic info. */
 #include <stdio.h>
 #include <string.h>
 
@@ -25,7 +25,7 @@ static conic_status widen_values(void *cookie, const conic_splats *batch) {
   return CONIC_OK;
 }
 
-/* Reads the file once more, for one field; nothing is told of it that has been before. */
+/* Reads the file once more for one field, without repeating its messages. */
 static conic_status find_range(conic_context *context, const char *path, const char *name, value_range *range) {
   conic_read_options options;
   conic_delivery delivery = {.receive = widen_values, .cookie = range, .batch = BATCH, .is_again = 1};

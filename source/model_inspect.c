@@ -1,4 +1,4 @@
-/* What a file of points or of a mesh holds, and what of it cannot be drawn. */
+/* The contents of a file of points or of a mesh, and what of it cannot be drawn. */
 #include <stdio.h>
 
 #include "conic/model.h"
@@ -20,7 +20,7 @@ static int is_direction(float *const vector[3], size_t i) {
 
 typedef int value_test(float *const vector[3], size_t i);
 
-/* How many of an array's vectors are not as they should be; none of one that is not there. */
+/* How many of an array's vectors fail the test; 0 for a missing array. */
 static size_t count_wrong(const conic_splats *points, float *const vector[3], value_test *is_sound) {
   size_t n_wrong = 0;
   for (size_t i = 0; vector[0] && i < points->count; i++)
@@ -54,7 +54,7 @@ static void tell_defects(const conic_splats *points, conic_facts *facts) {
 
 static void tell_fields(unsigned fields, conic_facts *facts) {
   static const char *const names[] = {"axes",      "normals",    "colors",
-                                      "opacities", "clip lines", "dots"}; /* as the bits go */
+                                      "opacities", "clip lines", "dots"}; /* in the order of the bits */
   char text[96] = "positions";
   size_t length = sizeof "positions" - 1;
   CONIC_ADD_FACTS(facts, CONIC_ARRAY("fields"));

@@ -65,11 +65,11 @@ int conic_moved_fits(const conic_drawing_range *range, const conic_drawing *shap
 
 /* --- moving --- */
 
-/* One kind of what is moved: `from` at rest, `first` and `second` the shapes, `to` what comes of it. */
+/* One array to be moved: `from` at rest, `first` and `second` in the shapes, `to` the result. */
 typedef struct moving {
   const conic_source_pose *pose;
   double normal_from_rest[3][3];
-  const conic_splats *rest, *shapes[2]; /* splats; null shapes: as at rest */
+  const conic_splats *rest, *shapes[2]; /* splats; null shapes stand for `rest` */
   const conic_splats *to;
   const conic_triangles *rest_triangles, *triangle_shapes[2], *to_triangles;
   size_t begin, end; /* of the range */
@@ -110,8 +110,8 @@ static void put_moved_place(const moving *work, const double place[3], const dou
   store_vector(arrays, i, at);
 }
 
-/* Turns, or mirrors, the axes of an ellipse within it, to where they are nearest to another's: what is estimated of
- * points has its axes anywhere. The turn whose sum of products of new and old axes is the greatest. */
+/* Turns or mirrors the axes of an ellipse within it to where they are nearest to another ellipse's: estimated axes may
+ * have any angle. The turn with the greatest sum of products of new and other axes is taken. */
 static void meet_axes(const double u[3], const double v[3], double other_u[3], double other_v[3]) {
   double uu = conic_dot(u, other_u), uv = conic_dot(u, other_v), vu = conic_dot(v, other_u), vv = conic_dot(v, other_v);
   double turned[2] = {uu + vv, uv - vu}, mirrored[2] = {uu - vv, uv + vu};
@@ -174,7 +174,7 @@ static void move_corners(void *data, size_t i_chunk, int i_thread) {
   }
 }
 
-/* Of any length, so that only their mean's direction counts. */
+/* Normals may have any length: only the direction of their mean counts. */
 static void move_normals(void *data, size_t i_chunk, int i_thread) {
   const moving *work = data;
   const conic_triangles *next = work->triangle_shapes[1],
@@ -223,7 +223,7 @@ void conic_moved_put(conic_context *context, const conic_drawing *rest, const co
       work.shapes[i] = shape->splats;
       work.triangle_shapes[i] = shape->triangles;
     }
-  for (int row = 0; row < 3; row++) { /* the cofactors: what turns areas */
+  for (int row = 0; row < 3; row++) { /* the cofactors, which turn areas */
     const double *a = pose->world_from_rest[(row + 1) % 3], *b = pose->world_from_rest[(row + 2) % 3];
     conic_cross(a, b, work.normal_from_rest[row]);
   }

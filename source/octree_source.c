@@ -1,4 +1,4 @@
-/* Octrees: of a .cot, what the error or the budget asks for; without either, its leaves. */
+/* Octrees: from a .cot, the nodes that the error or the budget asks for; without either, its leaves. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,7 +13,7 @@ typedef struct octree_source {
   conic_octree *octree;
   conic_octree_info info;
   conic_selection selection;
-  conic_splats leaves; /* empty until all of them are asked for */
+  conic_splats leaves; /* empty until all of them are needed */
 } octree_source;
 
 static int takes_octree(const char *path, const conic_source_options *options) {
@@ -72,7 +72,7 @@ static conic_status find_octree_spacing(conic_source *source, double *spacing) {
   return status == CONIC_OK ? conic_splats_spacing(source->context, &o->leaves, spacing) : status;
 }
 
-/* What nodes have for opacities says how much their leaves weigh, not how far light comes through. */
+/* The opacities of nodes tell how much their leaves weigh, not how much light they let through. */
 static conic_status settle_transparency(octree_source *o) {
   conic_status status = need_leaves(o);
   const conic_drawing leaves = {.splats = &o->leaves};
@@ -122,13 +122,14 @@ static const char *name_octree_splat(const conic_source *source, uint32_t splat,
 static void tell_octree_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
   const conic_selection *selection = &((const octree_source *)source)->selection;
   (void)n_splats;
-  CONIC_ADD_FACTS(facts, CONIC_COUNT("leaves", selection->splats.count - selection->n_inner), /* handed over */
+  CONIC_ADD_FACTS(facts, CONIC_COUNT("leaves", selection->splats.count - selection->n_inner), /* leaves that are handed
+                                                                                                 over */
                   CONIC_COUNT("inner_nodes", selection->n_inner));
 }
 
 /* --- files --- */
 
-/* Half the opening of a cone whose cosine is given: twice the angle of the tangent √((1 - c) / (1 + c)). */
+/* Half the opening of a cone from its cosine: twice the angle whose tangent is √((1 - c) / (1 + c)). */
 static double cone_degrees(double cosine) {
   double low = 0.0, high = 0.5 * CONIC_PI, tangent_squared = fmax(1.0 - cosine, 0.0) / fmax(1.0 + cosine, 0.0);
   for (int i = 0; i < 60; i++) {

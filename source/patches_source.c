@@ -1,4 +1,4 @@
-/* Points that are drawn as part of a smooth surface: the samples of the polynomials about them. */
+/* Points drawn as part of a smooth surface, by samples of the polynomials about them. */
 #include "conic/patches.h"
 
 #include "core/base/clock.h"
@@ -17,7 +17,7 @@ static int takes_patches(const char *path, const conic_source_options *options) 
   return options->as == CONIC_AS_PATCHES;
 }
 
-/* ε goes with the points, and not with their samples. */
+/* ε depends on the points, not on their samples. */
 static conic_status lay_patches(patches_source *p, const conic_source_options *options) {
   const conic_splats *splats = conic_source_chosen(p->points)->drawing.splats;
   conic_patches_options laying;
@@ -50,6 +50,8 @@ static conic_status open_patches(conic_source *source, const char *const *paths,
   source->scale = *conic_source_measure(p->points);
   source->scale.abilities = abilities;
   source->coloring = p->points->coloring;
+  source->traits = p->points->traits;
+  source->no_traits = p->points->no_traits;
   double start = conic_seconds_now();
   status = lay_patches(p, options);
   source->scale.estimate_seconds += conic_seconds_now() - start;
@@ -89,7 +91,7 @@ static size_t find_patches_input(const conic_source *source, uint32_t id) {
   return conic_source_input_of(((const patches_source *)source)->points, id);
 }
 
-/* Of what was handed over to be drawn. */
+/* Facts of what was handed over for drawing. */
 static void tell_patches_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
   const conic_patch_selection *selection = &((const patches_source *)source)->selection;
   *n_splats = selection->n_splats;

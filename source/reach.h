@@ -1,10 +1,10 @@
-/* How far out points may be where a scene is framed or kept. */
+/* How far out points may be for a scene to be framed or kept. */
 #ifndef CONIC_REACH_H
 #define CONIC_REACH_H
 
 #include "conic/splats.h"
 
-/* Whether the box can be framed: the camera's numbers then stay well within those that drawing takes. */
+/* Whether the box can be framed: the camera's numbers then stay well within the limits of drawing. */
 static inline int conic_is_in_reach(const double low[3], const double high[3]) {
   for (int axis = 0; axis < 3; axis++)
     if (!(low[axis] > -1e20 && high[axis] < 1e20))
@@ -12,7 +12,7 @@ static inline int conic_is_in_reach(const double low[3], const double high[3]) {
   return 1;
 }
 
-/* Why a camera cannot be put before the points, in words; null where it can. */
+/* Why no camera can be placed before the points, in words; null where one can. */
 static inline const char *conic_why_out_of_reach(const conic_splats *points) {
   double low[3], high[3];
   if (conic_splats_bounds(points, low, high) == 0)

@@ -21,11 +21,11 @@
 
 typedef struct shared_source {
   conic_source base;
-  conic_splats part; /* that this process has read, */
-  conic_splats held; /* and that its windows meet: of one picture */
-  uint32_t *ids;     /* of these, their places among all */
+  conic_splats part; /* the splats that this process has read … */
+  conic_splats held; /* … and those that its windows of one picture need */
+  uint32_t *ids;     /* the places of the held ones among all splats */
   conic_repairs repairs;
-  conic_render_statistics census; /* what becomes of all splats in the picture */
+  conic_render_statistics census; /* counts over all splats in the picture */
 } shared_source;
 
 static const conic_triangles no_triangles;
@@ -41,7 +41,7 @@ typedef struct files_look {
 
 enum { NEEDED = CONIC_SPLATS_TANGENTS, HANDED = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES };
 
-/* Whether nothing but the splats' own axes decides what they are. */
+/* Whether the splats depend on nothing but their own axes. */
 static int wants_splats(const char *const *paths, size_t n_paths, const conic_source_options *options) {
   int is_plain = (options->as == CONIC_AS_POINTS || options->as == CONIC_AS_AUTO) && !options->where &&
                  !options->texture_path && !options->columns && !conic_coloring_is_asked(options);
@@ -58,7 +58,7 @@ static int colors_may_be_made(const conic_source_options *options) {
   return options->coloring && options->coloring->by && strcmp(options->coloring->by, "auto") == 0;
 }
 
-/* The points of each file go to n_points. */
+/* Finds the number of points of each file, into n_points. */
 static conic_status look_at_files(conic_context *context, const char *const *paths, size_t n_paths,
                                   const conic_source_options *options, files_look *look, uint64_t *n_points) {
   conic_read_options reading;
@@ -81,11 +81,11 @@ static conic_status look_at_files(conic_context *context, const char *const *pat
 
 /* --- reading a part --- */
 
-/* Splats of one file, on their way into the part. */
+/* Reading the splats of one file into the part. */
 typedef struct part_reading {
   shared_source *source;
   const char *path;
-  double origin[3]; /* of the file */
+  double origin[3]; /* the file's */
   size_t first, end, next;
 } part_reading;
 
@@ -121,7 +121,7 @@ static conic_status read_piece_of_file(const conic_source_options *options, cons
              : status;
 }
 
-/* Everybody reads the next splats after those of the process before. */
+/* Each process reads the splats after those of the process before it. */
 static conic_status read_part_of_files(shared_source *s, const char *const *paths, size_t n_paths,
                                        const uint64_t *n_points, const conic_source_options *options,
                                        part_reading *pieces) {
@@ -140,7 +140,7 @@ static conic_status read_part_of_files(shared_source *s, const char *const *path
   return status;
 }
 
-/* All are measured from where the first file's are. */
+/* Measures all splats from the first file's origin. */
 static void rebase_part(shared_source *s, const part_reading *pieces, size_t n_paths) {
   const conic_team *team = s->base.shares.team;
   double origins[CONIC_MOST_IN_TEAM][3];
@@ -155,8 +155,8 @@ static void rebase_part(shared_source *s, const part_reading *pieces, size_t n_p
     }
 }
 
-/* Whether the splats of all processes are what they are without their neighbours; those of each file that are nowhere
- * are counted. */
+/* Whether the splats of all processes need no neighbours for repairs. Counts the splats of each file that have no
+ * finite place. */
 static int repair_parts(shared_source *s, const part_reading *pieces, size_t n_paths, uint64_t *n_nowhere) {
   uint64_t n_needy = 0;
   for (size_t k = 0; k < n_paths; k++) {
@@ -176,7 +176,7 @@ static int repair_parts(shared_source *s, const part_reading *pieces, size_t n_p
   return n_needy == 0;
 }
 
-/* As the whole drawing is measured. */
+/* Measures the parts together as a whole drawing is measured. */
 static conic_status measure_shared(shared_source *s) {
   conic_source_scale *scale = &s->base.scale;
   const conic_splats_shares *shares = &s->base.shares;
@@ -187,7 +187,7 @@ static conic_status measure_shared(shared_source *s) {
   return conic_shares_length(s->base.context, shares, &s->part, &scale->splat_length);
 }
 
-/* Opens it; *is_shared: all that was read is of use so. */
+/* Opens this process's part; *is_shared: the files can be used in parts. */
 static conic_status open_part(shared_source *s, const char *const *paths, size_t n_paths,
                               const conic_source_options *options, const files_look *look, const uint64_t *n_points,
                               int *is_shared) {
@@ -217,7 +217,7 @@ static conic_status open_part(shared_source *s, const char *const *paths, size_t
     conic_repairs_log(context, paths[k], &repairs);
     s->repairs.nan += repairs.nan;
   }
-  if (status == CONIC_OK) /* without a place there is none, and the whole says what is wrong */
+  if (status == CONIC_OK) /* a part without a place gives none; reading the whole reports what is wrong */
     *is_shared &= s->repairs.nan < look->n_splats;
   s->base.scale.estimate_seconds = conic_seconds_now() - start;
   conic_memory_release(context, n_nowhere);
@@ -225,7 +225,7 @@ static conic_status open_part(shared_source *s, const char *const *paths, size_t
   return status;
 }
 
-/* What the first process found, to all. */
+/* Sends the first process's findings to all. */
 static void tell_look(const conic_team *team, files_look *look, uint64_t *n_points, size_t n_paths) {
   size_t sizes[CONIC_MOST_IN_TEAM];
   void *first = team->collect(team->data, look, team->index == 0 ? sizeof *look : 0, sizes);
@@ -287,7 +287,7 @@ static void release_held(shared_source *s) {
   s->ids = NULL;
 }
 
-/* What is looked at from outside is the part. */
+/* From outside, only the part can be looked at. */
 static conic_status choose_part(conic_source *source, const conic_camera *camera, const conic_render_options *render,
                                 const conic_source_view *view) {
   shared_source *s = (shared_source *)source;
@@ -298,7 +298,7 @@ static conic_status choose_part(conic_source *source, const conic_camera *camera
   return CONIC_OK;
 }
 
-/* Sums over the processes. */
+/* Sums the counts over all processes. */
 static void add_censuses(shared_source *s) {
   conic_render_statistics *census = &s->census;
   uint64_t counts[5 + CONIC_MAX_METHODS] = {census->splats_culled, census->splats_skipped, census->splats_drawn,
@@ -314,7 +314,8 @@ static void add_censuses(shared_source *s) {
   memcpy(census->splats_by_method, counts + 5, sizeof census->splats_by_method);
 }
 
-/* Where bands are set up by cameras of their own, places on the screen are rounded otherwise than here. */
+/* Finds the splats' boxes on the screen. Bands have cameras of their own, whose rounding differs from that of the whole
+ * picture's camera here. */
 static conic_status find_own_boxes(conic_source_windows *w, conic_box *boxes) {
   shared_source *s = (shared_source *)w->source;
   conic_camera fine = w->samples == 1 ? w->camera : conic_samples_camera(&w->camera, w->samples, 0, w->camera.height);
@@ -418,7 +419,7 @@ static void tell_shared_rest(const conic_source *source, conic_facts *facts) {
   conic_facts_add_repairs(facts, &((const shared_source *)source)->repairs);
 }
 
-/* No file becomes it by itself. */
+/* No file becomes this kind by itself. */
 const conic_source_kind conic_source_kind_shared = {
     .size = sizeof(shared_source),
     .company = CONIC_SOURCE_MANY,

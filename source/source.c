@@ -1,4 +1,4 @@
-/* What all sources share: which kind takes which input, the box and the camera, and the frame around a kind's own
+/* What all sources share: which kind takes which input, the box and the camera, and the steps around a kind's own
  * functions. */
 #include "conic/source.h"
 
@@ -14,7 +14,7 @@
 #include "source/reach.h"
 #include "source/source_kind.h"
 
-/* Every kind, in the order in which they are asked; the last takes whatever is left. */
+/* Every kind, in the order in which they are asked; the last takes all remaining inputs. */
 static const conic_source_kind *const kinds[] = {&conic_source_kind_gaussians, &conic_source_kind_layers,
                                                  &conic_source_kind_hybrid,    &conic_source_kind_patches,
                                                  &conic_source_kind_octree,    &conic_source_kind_drawing};
@@ -174,7 +174,7 @@ void conic_source_pose_init(conic_source_pose *pose) {
     pose->world_from_rest[axis][axis] = 1.0;
 }
 
-/* NaN fails all of this. */
+/* NaN fails every test here. */
 static int is_pose(const conic_source_pose *pose) {
   double across[3];
   const double(*m)[4] = (const double(*)[4])pose->world_from_rest;
@@ -205,7 +205,7 @@ const conic_source_choice *conic_source_chosen(const conic_source *source) {
   return &source->choice;
 }
 
-/* Transparency is of surfaces that keep their opacities. */
+/* Transparency needs surfaces that keep their opacities. */
 static conic_status check_opacities(conic_source *source) {
   const unsigned abilities = source->scale.abilities;
   const char *fault = abilities & CONIC_SOURCE_COMPOSITES ? "a Gaussian scene is composited by its opacities already"
@@ -255,7 +255,7 @@ conic_status conic_source_choose(conic_source *source, const conic_camera *camer
   return status == CONIC_OK ? conic_source_choose_settled(source, &picture.camera, &picture.render) : status;
 }
 
-/* What a kind does not draw by itself. */
+/* Draws for kinds that do not draw themselves. */
 static conic_status draw_from_choice(conic_source *source, conic_renderer *renderer, conic_source_picture *picture,
                                      conic_image *image, conic_render_statistics *statistics) {
   const conic_source_kind *kind = source->kind;

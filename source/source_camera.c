@@ -1,4 +1,4 @@
-/* How a source is looked at: a camera that its outline just fits, and which way it stands. */
+/* Cameras for a source: one that its outline just fits; and which way is up. */
 #include <string.h>
 
 #include "conic/source.h"
@@ -7,10 +7,10 @@
 #include "source/source_samples.h"
 #include "source/upright.h"
 
-/* A hierarchy's outline is known well enough from what this error leaves, in pixels of the framed picture. */
+/* The outline of a hierarchy is known well enough with this error, in pixels of the framed picture. */
 static const double outline_error_px = 1.0;
 
-/* Hands over what is seen of it from where all of it is seen. */
+/* Chooses what a camera sees that sees the whole source. */
 static conic_status choose_outline(conic_source *source, const conic_camera *camera, float cutoff) {
   conic_render_options render;
   conic_source_view view;
@@ -21,7 +21,7 @@ static conic_status choose_outline(conic_source *source, const conic_camera *cam
   return conic_source_choose(source, camera, &render, &view);
 }
 
-/* The same of any source: what streams is drawn instead, once. */
+/* Finds the outline of any source: one that streams is drawn once instead. */
 static conic_status find_outline(conic_source *source, const conic_camera *camera, float cutoff,
                                  conic_drawing *outline) {
   static const conic_triangles no_triangles;
@@ -62,13 +62,13 @@ conic_status conic_source_fit(conic_source *source, const conic_framing *framing
   if (framing)
     own = *framing;
   double zoom = own.zoom;
-  own.zoom = 1.0; /* what lies outside a picture that is zoomed into counts as well */
+  own.zoom = 1.0; /* parts outside of a zoomed picture count, too */
   conic_status status = conic_source_frame(source, &own, camera);
   if (status == CONIC_OK)
     status = find_outline(source, camera, cutoff, &outline);
   own.zoom = zoom;
   if (source->kind->draw)
-    cutoff = 0.0f; /* samples are places, as wide as a pixel of theirs */
+    cutoff = 0.0f; /* samples have no outlines: each is as wide as its pixel */
   return status == CONIC_OK ? conic_drawing_frame_shared(source->context, &source->shares, &outline, cutoff, &own,
                                                          n_turns, camera, near_z)
                             : status;

@@ -1,4 +1,4 @@
-/* Colours of a source that are made of what its points hold. */
+/* Colours of a source, made from what its points hold. */
 #include <string.h>
 
 #include "core/base/message.h"
@@ -18,11 +18,12 @@ conic_status conic_coloring_refuse(conic_context *context, const char *path, con
                     path, options->coloring->by);
 }
 
-/* Heights need to know which way is up, and so does the front of normals. */
+/* Finds which way is up, which heights and the front of normals need. */
 static conic_status find_upright(conic_source *source, conic_splats *splats, conic_triangles *triangles) {
   static conic_splats no_splats;
+  static conic_triangles no_triangles;
   conic_source_scale *scale = &source->scale;
-  const conic_drawing drawing = {splats ? splats : &no_splats, triangles};
+  const conic_drawing drawing = {splats ? splats : &no_splats, triangles ? triangles : &no_triangles};
   if (scale->up_basis != CONIC_UP_HABIT)
     return CONIC_OK;
   conic_status status = conic_upright_look(source->context, &source->shares, &drawing, &scale->up_basis);

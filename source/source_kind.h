@@ -8,63 +8,77 @@
 #include "source/facts.h"
 #include "source/source_parts.h"
 
+/* Facts about a source's origin that its scale does not hold, as bits. */
+typedef enum conic_source_trait {
+  CONIC_TRAIT_FACES = 1, /* a file has faces, whatever they became */
+  CONIC_TRAIT_EDGES = 2, /* triangles whose file has no normals */
+  CONIC_TRAIT_RAW = 4,   /* points whose sizes were estimated */
+  CONIC_TRAIT_TEXT = 8,  /* a file of text */
+  CONIC_TRAIT_ALPHA = 16 /* something lets light through */
+} conic_source_trait;
+
 typedef enum conic_source_company {
-  CONIC_SOURCE_SINGLE, /* takes the only input; beside others its splats are taken */
-  CONIC_SOURCE_ALONE,  /* refuses to stand beside others */
+  CONIC_SOURCE_SINGLE, /* takes an input that is the only one; beside others, its splats are read */
+  CONIC_SOURCE_ALONE,  /* refuses other inputs beside it */
   CONIC_SOURCE_MANY
 } conic_source_company;
 
-/* Any function may be null unless it says otherwise. */
+/* Any function may be null unless its comment says otherwise. */
 typedef struct conic_source_kind {
   size_t size; /* of the kind's own struct, which begins with a conic_source */
   unsigned abilities;
   conic_source_company company;
 
-  /* Whether an input becomes this kind; never null. Of the list's kinds the first that says so has it. */
+  /* Whether an input becomes this kind; never null. The first kind of the list that says so takes the input. */
   int (*takes)(const char *path, const conic_source_options *options);
-  /* Fills in a zeroed source and its scale; of the times only what was not reading. What is there after a failure is
-   * closed like any other. Never null. */
+  /* Fills in a zeroed source and its scale; of the times, only those other than reading. After a failure it is closed
+   * as usual. Never null. */
   conic_status (*open)(conic_source *source, const char *const *paths, size_t n_paths,
                        const conic_source_options *options);
   void (*close)(conic_source *source); /* never null */
   conic_status (*find_spacing)(conic_source *source, double *spacing);
 
-  /* conic_source_move of poses that have been checked, as many as inputs; null: at rest. Where it is null, the source
-   * is carried as one piece (source/carried.h). */
+  /* conic_source_move with checked poses, one for each input; null poses: at rest. If the function is null, the source
+   * moves as one piece (source/carried.h). */
   conic_status (*move)(conic_source *source, const conic_source_pose *poses, size_t n_poses);
 
-  /* Fills in the choice, which is two empty sets; null: it stays as opening set it. */
+  /* Fills in the choice, which begins as two empty sets; null: the choice stays as opening set it. */
   conic_status (*choose)(conic_source *source, const conic_camera *camera, const conic_render_options *render,
                          const conic_source_view *view);
-  /* In place of choosing and rendering. */
+  /* Draws by itself, in place of choosing and rendering. */
   conic_status (*draw)(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
                        const conic_render_options *render, const conic_source_view *view, conic_image *image,
                        conic_render_statistics *statistics);
-  const conic_source_windowing *windowing; /* null: it is not drawn in windows */
+  const conic_source_windowing *windowing; /* null: not drawn in windows */
   void (*name_image)(const conic_source *source, conic_image *image);
   const char *(*name_splat)(const conic_source *source, uint32_t splat, uint32_t *number);
-  /* Which input has an id; null: the first. */
+  /* Which input has an id; null: the first one. */
   size_t (*input_of)(const conic_source *source, uint32_t id);
 
-  /* Of the last picture: adds to the object "primitives", where *n_splats is what drawing counted; and what follows. */
+  /* Add facts of the last picture: to the object "primitives", where *n_splats is the number that drawing counted; and
+   * after it. */
   void (*tell_primitives)(const conic_source *source, conic_facts *facts, uint64_t *n_splats);
   void (*tell_rest)(const conic_source *source, conic_facts *facts);
 
-  /* Whether a file begins like the kind's; the next three are null only where this is. */
+  /* Whether a file begins as the kind's files do. Where this is not null, `name`, tell_file and tell_defects are not
+   * null, either. */
   int (*is_file)(const char *path);
   const char *name;
-  const char *(*name_file)(const char *path); /* where a file's own kind has another */ /* of the kind of file */
-  /* What the file that a source was created for holds, which it may open; and then the object "defects". */
+  const char *(*name_file)(const char *path); /* the kind of a file, where files of this kind differ; null: `name` is
+                                                 the kind of all */
+  /* Add facts of the file that a source was created for, which they may open: its contents; and the object
+   * "defects". */
   conic_status (*tell_file)(conic_source *source, conic_facts *facts);
   conic_status (*tell_defects)(conic_source *source, conic_facts *facts);
-  /* All of an open source, as it is kept, dots not turned; or else the splats those of a part, as
-   * conic_layers_gather_part has them: with may_cut no more than there is memory for. */
+  /* All of an open source, as it is kept, without turning dots; or else the splats of a region, as
+   * conic_layers_gather_part gives them: with may_cut, no more than memory holds. */
   conic_drawing (*list_all)(const conic_source *source);
   conic_status (*gather)(conic_source *source, const conic_layers_region *part, int may_cut,
                          const conic_splats **splats, int *is_cut_short);
-  /* Which world its coordinates are of, which the caller releases; null: what its first file says as a LAS. */
+  /* The coordinate system of its positions, which the caller releases; null: the first file's, if it states one as a
+   * LAS does. */
   conic_status (*find_georeference)(const conic_source *source, conic_georeference *reference);
-  /* Every splat of an open source, which the caller releases. */
+  /* All splats of an open source, which the caller releases. */
   conic_status (*take_splats)(conic_source *source, conic_splats *splats);
 } conic_source_kind;
 
@@ -76,44 +90,47 @@ struct conic_source {
   conic_source_choice choice;
   conic_source_view view; /* of the last picture */
   conic_coloring coloring;
-  uint64_t splats_version; /* conic_render_options' for pictures of all that there is; 0: the splats may change */
+  uint64_t splats_version; /* for conic_render_options, in pictures of the whole source; 0: the splats may change */
   int is_moved;            /* what is drawn has another box than the scale's: */
   double moved_minimum[3], moved_maximum[3];
-  double world_from_rest[3][4]; /* of one that is carried and moved */
-  conic_splats outline;         /* conic_source_take_samples', where they were asked for */
-  double tolerance;             /* by which splats made of meshes are off these; 0: none are */
-  conic_splats_shares shares;   /* where a team has the splats among it, what of them is chosen to be looked at */
+  double world_from_rest[3][4]; /* of a source that is moved as one piece */
+  unsigned traits, no_traits;   /* bits of conic_source_trait: those that it has, and those that it surely lacks */
+  conic_splats outline;         /* from conic_source_take_samples, if it was called */
+  double samples_until;         /* by the clock: after this nothing is read for the outline; 0: no limit */
+  double tolerance;             /* how far splats made of meshes are off these; 0: there are none */
+  conic_splats_shares shares;   /* the team that shares the splats; the choice then holds this process's part for
+                                   functions that look at all */
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
     conic_source_kind_hybrid, conic_source_kind_patches, conic_source_kind_gaussians, conic_source_kind_shared;
 
-/* Of a source's facts: the object "skipped". */
+/* Adds the object "skipped" to a source's facts. */
 void conic_facts_add_repairs(conic_facts *facts, const conic_repairs *repairs);
 
-/* The kind of a file that only one reads; null: it is read as a model. */
+/* The kind of a file that only one kind reads; null: the file is read as a model. */
 const conic_source_kind *conic_source_kind_of_file(const char *path);
 
-/* Which kind these files become. */
+/* The kind that these files become. */
 const conic_source_kind *conic_source_kind_find(const char *const *paths, size_t n_paths,
                                                 const conic_source_options *options);
 
-/* A source of a kind, opened as that; and one that is zeroed, but for the name. */
+/* A source of a kind, opened; and one that is zeroed except for its name. */
 conic_status conic_source_open_kind(conic_context *context, const conic_source_kind *kind, const char *const *paths,
                                     size_t n_paths, const conic_source_options *options, conic_source **source);
 conic_status conic_source_create(conic_context *context, const conic_source_kind *kind, const char *name,
                                  conic_source **source);
-/* Where `status` is a failure, closes what was made so far. Hands it on. */
+/* After a failure closes the source; returns `status`. */
 conic_status conic_source_finish(conic_status status, conic_source **source);
 
-/* A picture as it is chosen and drawn: where the source is carried, of the source at rest. */
+/* How a picture is chosen and drawn: if the source moves as one piece, as a picture of the source at rest. */
 typedef struct conic_source_picture {
   conic_camera camera;
   conic_render_options render;
   int is_carried;
 } conic_source_picture;
 
-/* The view becomes the source's, and the options are filled in. Errors: ARGUMENT, UNSUPPORTED (transparency). */
+/* Makes the view the source's, and fills in the options. Errors: ARGUMENT, UNSUPPORTED (transparency). */
 conic_status conic_source_begin_picture(conic_source *source, const conic_camera *camera,
                                         const conic_render_options *render, const conic_source_view *view,
                                         conic_source_picture *picture);
@@ -121,16 +138,17 @@ conic_status conic_source_begin_picture(conic_source *source, const conic_camera
 conic_status conic_source_choose_settled(conic_source *source, const conic_camera *camera,
                                          const conic_render_options *render);
 
-/* Whether colours are to be made of something else than the file's. */
+/* Whether colours are wanted that are not the file's own. */
 int conic_coloring_is_asked(const conic_source_options *options);
-/* Of a file that keeps no fields. Errors: INPUT. */
+/* Refuses such colours for a file that keeps no fields. Errors: INPUT. */
 conic_status conic_coloring_refuse(conic_context *context, const char *path, const conic_source_options *options);
-/* Colours what a source was read as, as its options say; where heights need it, finds which way is up. Errors: as
+/* Colours the sets that a source was read as, as its options say; if heights need it, finds which way is up. Errors: as
  * conic_drawing_color. */
 conic_status conic_source_color(conic_source *source, const conic_source_options *options, conic_splats *splats,
                                 conic_triangles *triangles);
 
-/* conic_source_inspect of a file that is read as a model; and of that the values that its points have by name. */
+/* conic_source_inspect of a file that is read as a model; and the part of it about the values that the points have by
+ * name. */
 conic_status conic_model_tell_fields(conic_context *context, const char *path, const conic_model *model, int is_checked,
                                      conic_facts *facts);
 conic_status conic_model_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts);

@@ -59,7 +59,7 @@ conic_status conic_source_windows_count(const conic_source_windows *w, conic_ren
 
 /* --- weights --- */
 
-/* Where a place lies, as a pinhole would see it; 0 where it is not in front. */
+/* The pixel of a place, as a pinhole sees it; returns 0 where the place is not in front. */
 static int find_place_pixel(const conic_source_windows *w, const double place[3], double pixel[2]) {
   double at[3];
   for (int row = 0; row < 3; row++) {
@@ -93,7 +93,7 @@ void conic_source_windows_weigh_places(const conic_source_windows *w, float *con
 }
 
 void conic_source_windows_weigh(const conic_source_windows *w, const conic_window *list, size_t n, double *weights) {
-  static const double splats_a_pixel = 0.25; /* so much work is a pixel that nothing covers */
+  static const double splats_a_pixel = 0.25; /* a pixel that nothing covers takes as much work as so many splats */
   for (size_t k = 0; k < n; k++)
     weights[k] = splats_a_pixel * (double)(list[k].x_end - list[k].x_begin) * (double)(list[k].y_end - list[k].y_begin);
   w->source->kind->windowing->weigh(w, list, n, weights);

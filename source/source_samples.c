@@ -1,21 +1,22 @@
-/* What a source that streams looks like all around: small pictures of it, from six sides, become splats again. Coarse
- * parts are enough for them, so that little is read. */
+/* What a source that streams looks like from all around: small pictures of it, from six sides, become splats again.
+ * Coarse parts are enough for them, so little is read. */
 #include "source/source_samples.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "core/base/clock.h"
 #include "core/base/vectors.h"
 
 enum { SIDE = 96, N_VIEWS = 6 };
 
-/* Of azimuth and elevation in degrees. */
+/* Azimuth and elevation in degrees. */
 static const double directions[N_VIEWS][2] = {{0, 0}, {90, 0}, {180, 0}, {270, 0}, {0, 90}, {0, -90}};
 
 /* In pixels of the small pictures. */
 static const double sample_error_px = 1.0;
 
-/* A disc of a pixel's size on the surface: at the distance z, with the normal n, seen at (dx, dy). */
+/* Adds a disc of a pixel's size on the surface: at the depth z, with the normal n, seen at (dx, dy). */
 static void add_disc(conic_splats *samples, const conic_camera *camera, double dx, double dy, double z,
                      const float normal[3]) {
   double seen[3] = {dx * z, dy * z, z}, place[3] = {0.0, 0.0, 0.0}, ray[3] = {0.0, 0.0, 0.0}, n[3], u[3], v[3];
@@ -53,7 +54,11 @@ static void add_picture(conic_splats *samples, const conic_camera *camera, const
   }
 }
 
-/* From some of the sides. */
+void conic_source_limit_samples(conic_source *source, double seconds) {
+  source->samples_until = conic_seconds_now() + seconds;
+}
+
+/* Draws the sides from `begin` to before `end`. */
 static conic_status draw_around(conic_source *source, conic_renderer *renderer, conic_image *image, int begin, int end,
                                 conic_splats *samples) {
   conic_render_options render;
@@ -64,11 +69,14 @@ static conic_status draw_around(conic_source *source, conic_renderer *renderer, 
   conic_source_view_init(&view);
   conic_framing_init(&framing);
   framing.width = framing.height = SIDE;
-  render.cull_back = 1; /* so that normals are the surface's own, and what is open is seen to be */
+  render.cull_back = 1; /* so that normals are the surface's own, and open surfaces are seen to be open */
   render.shading = CONIC_SHADE_NONE;
   view.error_px = sample_error_px;
+  view.may_be_coarser = source->samples_until > 0.0;
   for (int i = begin; i < end && status == CONIC_OK; i++) {
     conic_camera camera;
+    if (view.may_be_coarser)
+      view.seconds = fmax(source->samples_until - conic_seconds_now(), 1e-3); /* 0 would be no limit */
     framing.azimuth_deg = directions[i][0];
     framing.elevation_deg = directions[i][1];
     status = conic_source_frame(source, &framing, &camera);
@@ -108,7 +116,7 @@ conic_status conic_source_take_samples(conic_source *source, conic_splats *sampl
   return sample_sides(source, 0, N_VIEWS, samples);
 }
 
-/* Puts those of all processes, which are in the order of the sides, in the place of this one's. */
+/* Replaces this process's samples by those of all processes, in the order of the sides. */
 static void collect_samples(const conic_team *team, conic_splats *samples) {
   size_t sizes[CONIC_MOST_IN_TEAM], n_bytes = 0;
   for (int k = 0; k < 9; k++) {

@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "core/splats/columns.h"
 
-/* Splats that are handed over at a time. */
+/* Splats sent at a time. */
 enum { PARCEL = 1 << 16, FIELDS = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES };
 
 typedef struct splat_exchange {
@@ -13,7 +13,7 @@ typedef struct splat_exchange {
   const conic_splats *from;
   const size_t *begin;
   const uint32_t *list;
-  size_t *received; /* from each process: where its splats go; and the end */
+  size_t *received; /* where the splats from each process go; and the end */
   uint32_t *ids;
   float *own[CONIC_SPLATS_COLUMNS], *got[CONIC_SPLATS_COLUMNS];
   size_t n_columns;
@@ -31,7 +31,7 @@ static size_t list_floats(const conic_splats *splats, float *floats[CONIC_SPLATS
   return n;
 }
 
-/* Everybody tells everybody how many come. */
+/* Every process tells every other how many splats it sends. */
 static void swap_counts(splat_exchange *e) {
   const conic_team *team = e->shares->team;
   size_t *counts = e->received + 1;
@@ -55,7 +55,7 @@ static size_t parcel_of(size_t first, size_t end) {
   return first >= end ? 0 : end - first < PARCEL ? end - first : PARCEL;
 }
 
-/* Column by column, the places first. */
+/* Packs column by column, the places first. */
 static void pack_splats(const splat_exchange *e, size_t first, size_t n, uint32_t *to) {
   const uint32_t *list = e->list + first;
   for (size_t i = 0; i < n; i++)

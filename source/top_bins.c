@@ -7,16 +7,16 @@
 #include "core/splats/columns.h"
 #include "source/top_lift.h"
 
-/* No list: the splat is not finite. */
+/* Marks a splat that is not finite, which is in no list. */
 #define NOWHERE SIZE_MAX
 
-enum { MOST_LISTS = 10 }; /* three by three squares, and what reaches far */
+enum { MOST_LISTS = 10 }; /* three by three squares, and the far-reaching splats */
 
 static double ground_of(const conic_splats *splats, int axis, size_t i) {
   return splats->origin[axis] + (double)conic_column_at(splats->position[axis], splats->strides.position, i);
 }
 
-/* The square that a place is in along an axis; places beyond the squares count to the last ones. */
+/* The square of a place along an axis; places beyond the squares belong to the last ones. */
 static size_t bin_square_of(double place, double low, double edge, size_t n) {
   double at = (place - low) / edge;
   return at > 0.0 ? at < (double)n ? (size_t)at : n - 1 : 0;
@@ -32,7 +32,7 @@ static size_t list_of(const conic_top_bins *bins, const conic_splats *splats, fl
          bin_square_of(x, bins->low[0], bins->edge, bins->n_columns);
 }
 
-/* As many squares as there are splats, or thousands, are enough. */
+/* Takes at most as many squares as there are splats, or thousands. */
 static void choose_squares(const conic_splats *splats, double edge, conic_top_bins *bins) {
   double low[3], high[3], most = splats->count > 4096 ? (double)splats->count : 4096.0;
   conic_splats_bounds(splats, low, high);
@@ -67,12 +67,12 @@ conic_status conic_top_bins_make(conic_context *context, const conic_splats *spl
   }
   for (size_t k = 0; k < n_lists; k++)
     bins->starts[k + 1] += bins->starts[k];
-  for (size_t i = 0; i < splats->count; i++) { /* a list's start moves to its end, which is the next one's start, */
+  for (size_t i = 0; i < splats->count; i++) { /* a list's start moves to its end, where the next one starts … */
     size_t list = list_of(bins, splats, cutoff, i);
     if (list != NOWHERE)
       bins->members[bins->starts[list]++] = (uint32_t)i;
   }
-  memmove(bins->starts + 1, bins->starts, n_lists * sizeof *bins->starts); /* and is moved back */
+  memmove(bins->starts + 1, bins->starts, n_lists * sizeof *bins->starts); /* … and is moved back */
   bins->starts[0] = 0;
   return CONIC_OK;
 }
@@ -81,7 +81,7 @@ typedef struct span {
   const uint32_t *next, *end;
 } span;
 
-/* The lists of the squares that a box, wider by half a square, meets. */
+/* The lists of the squares that a box, widened by half a square, meets. */
 static size_t list_spans(const conic_top_bins *bins, const double low[2], const double high[2],
                          span spans[MOST_LISTS]) {
   double half = 0.5 * bins->edge;

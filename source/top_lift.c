@@ -25,7 +25,7 @@ static void place_lifted_arrays(conic_top_set *set) {
   s->dot = set->fields & CONIC_SPLATS_DOTS ? next : NULL;
 }
 
-/* Room for one more chunk of splats, with what there is kept. */
+/* Makes room for one more chunk of splats, keeping those that there are. */
 static conic_status make_lifted_room(conic_context *context, conic_top_set *set, size_t wanted) {
   if (wanted <= set->room)
     return CONIC_OK;
@@ -49,7 +49,7 @@ void conic_top_set_release(conic_context *context, conic_top_set *set) {
 }
 
 double conic_top_reach(const conic_splats *splats, size_t i, float cutoff) {
-  const double widening = 1.5; /* of splats that are bounded by the box of their outline */
+  const double widening = 1.5; /* for splats that are bounded by the box of their outline */
   double sum = 0.0;
   for (int axis = 0; axis < 3; axis++) {
     double u = (double)conic_column_at(splats->tangent_u[axis], splats->strides.tangent_u, i);
@@ -64,7 +64,7 @@ static void read_vector(float *const arrays[3], size_t stride, size_t i, double 
     vector[axis] = (double)conic_column_at(arrays[axis], stride, i);
 }
 
-/* Whether a splat is wanted, and where it is; what is not finite is not. */
+/* Whether a splat is wanted, and its place; splats that are not finite are not wanted. */
 static int is_wanted(const conic_top_place *place, const conic_splats *splats, size_t i, double p[3]) {
   double reach = conic_top_reach(splats, i, place->cutoff);
   read_vector(splats->position, splats->strides.position, i, p);
@@ -103,7 +103,7 @@ static void lift_one(const conic_top_place *place, const conic_splats *from, siz
     to->dot[k] = conic_column_at(from->dot, from->strides.dot, i);
 }
 
-/* The clip lines of splat i, which has become the last. `next` is the first record that may be its. */
+/* Takes the clip lines of splat i, which is now the last one. `next` is the first record that may be its own. */
 static conic_status take_clip(conic_context *context, const conic_splats *from, size_t i, size_t *next,
                               conic_top_set *set) {
   conic_splats *to = &set->splats;

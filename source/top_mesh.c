@@ -14,7 +14,7 @@ void conic_top_mesh_release(conic_context *context, conic_top_mesh *mesh) {
   memset(mesh, 0, sizeof *mesh);
 }
 
-/* Room for all triangles, once. */
+/* Makes room for all triangles, once. */
 static conic_status begin_mesh(conic_context *context, const conic_triangles *from, conic_top_mesh *mesh) {
   conic_triangles *to = &mesh->triangles;
   uint32_t(*const wanted[3])[3] = {from->corners, from->normal_corners, from->texture_corners};
@@ -44,7 +44,7 @@ static void place_vertex(const conic_top_place *place, const conic_triangles *fr
               place->origin[axis];
 }
 
-/* Whether a triangle may show; what is not finite does not. */
+/* Whether a triangle may show; triangles that are not finite do not. */
 static int reaches_in(const conic_top_place *place, const double corner[3][3]) {
   const double low[3] = {place->low[0], place->low[1], place->heights[0] - place->origin[2]};
   const double high[3] = {place->high[0], place->high[1], place->heights[1] - place->origin[2]};

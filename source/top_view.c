@@ -21,14 +21,14 @@ struct conic_top_view {
   conic_render_options render;
   double pixel, error, distance, top_z, heights[2];
   int samples;
-  const conic_splats *splats;       /* all of them; null: the source gathers */
+  const conic_splats *splats;       /* all of the source's; null: it gathers splats */
   const conic_triangles *triangles; /* null: none */
   conic_top_bins bins;
   conic_top_set set;
   conic_top_mesh mesh;
 };
 
-/* The block that is being drawn. */
+/* The current block. */
 typedef struct top_block {
   conic_top_view *top;
   conic_top_place place;
@@ -42,9 +42,9 @@ conic_status conic_source_georeference(const conic_source *source, conic_georefe
                                          : conic_georeference_read(source->context, source->name, reference);
 }
 
-/* How high the camera stands: so that normals, which the lift turns a little, turn by no more than 1/256 at a block's
- * border, and depths stay well apart in floats. Within a triangle, which may be large, heights are off by the square of
- * how high it is over four times this. */
+/* The camera's height. At this height the normals, which lifting turns a little, turn by at most 1/256 at a block's
+ * border, and floats still tell depths well apart. Within a large triangle, heights are off by the square of its height
+ * over four times this. */
 static double choose_distance(const conic_source_scale *scale, double pixel) {
   double relief = scale->maximum[2] - scale->minimum[2], across = 0.5 * BLOCK * pixel;
   return fmax((scale->n_triangles ? 512.0 : 64.0) * relief, 256.0 * across);
@@ -107,7 +107,8 @@ void conic_top_view_close(conic_top_view *top) {
   conic_memory_release(top->context, top);
 }
 
-/* Straight down from above the block's middle, with y up in the picture: the world's axes, turned half about x. */
+/* The camera looks straight down from above the block's middle, with y up in the picture: the world's axes after half a
+ * turn about x. */
 static void place_camera(top_block *b) {
   conic_camera *camera = &b->camera;
   memset(camera, 0, sizeof *camera);
@@ -119,12 +120,12 @@ static void place_camera(top_block *b) {
   camera->cam_from_world[2][3] = b->top->distance;
 }
 
-/* What a splat gets around it by the filter, in pixels, and one for what is rounded. */
+/* How many pixels the filter adds around a splat, and one for rounding. */
 static double filter_pixels(const conic_render_options *render) {
   return 1.5 * (double)render->kernel.cutoff * sqrt((double)render->prefilter) + 2.0;
 }
 
-/* The ground that shows in a window, and what around it may. */
+/* The ground in a window, and how far around it splats may be wanted. */
 static void place_window(top_block *b, const conic_window *window) {
   double pixel = b->top->pixel, margin = filter_pixels(&b->top->render) * pixel;
   b->place.low[0] = (window->x_begin - 0.5 * BLOCK) * pixel - margin;
@@ -133,7 +134,7 @@ static void place_window(top_block *b, const conic_window *window) {
   b->place.high[1] = (0.5 * BLOCK - window->y_begin) * pixel + margin;
 }
 
-/* Lifts what shows in a window. *is_cut_short: there is too much of it. */
+/* Lifts what shows in a window. *is_cut_short: there is more than may be gathered. */
 static conic_status gather_top_block(top_block *b, int may_cut, int *is_cut_short) {
   conic_top_view *top = b->top;
   const conic_top_place *place = &b->place;
@@ -163,7 +164,7 @@ static conic_status gather_top_block(top_block *b, int may_cut, int *is_cut_shor
              : status;
 }
 
-/* The picture's tiles, or smaller ones that a window is made of. */
+/* The picture's tile, or a smaller one that divides the window. */
 static int tile_of(const conic_window *window, int tile) {
   while (tile > window->x_end - window->x_begin || tile > window->y_end - window->y_begin)
     tile /= 2;
@@ -179,7 +180,7 @@ static conic_status draw_lifted(top_block *b, const conic_window *window) {
   render.tile = tile_of(window, render.tile);
   const conic_drawing drawing = {splats, top->triangles ? &top->mesh.triangles : NULL};
   if (splats->count == 0 && top->mesh.triangles.count == 0 && !top->render.has_background)
-    return CONIC_OK; /* planes are zero */
+    return CONIC_OK; /* the planes are zero already */
   if (splats->dot)
     status = conic_splats_face(top->context, splats, &b->camera, splats->tangent_u, splats->tangent_v);
   if (status == CONIC_OK && top->samples == 1 && !top->triangles && conic_renderer_has_parts(top->renderer))
@@ -193,7 +194,7 @@ static conic_status draw_lifted(top_block *b, const conic_window *window) {
   return status;
 }
 
-/* Both halves of a window; 0: it is too small. */
+/* Divides a window in two; returns 0 if it is too small. */
 static int part_window(const conic_window *window, conic_window *first, conic_window *second) {
   int width = window->x_end - window->x_begin, height = window->y_end - window->y_begin;
   *first = *second = *window;
@@ -206,7 +207,7 @@ static int part_window(const conic_window *window, conic_window *first, conic_wi
   return 1;
 }
 
-/* A window, in parts where there is more in it than there is memory for. */
+/* Draws a window, in parts if memory does not hold its contents. */
 static conic_status draw_top_window(top_block *b, const conic_window *window) {
   conic_top_view *top = b->top;
   conic_window first = *window, second = *window;
@@ -220,7 +221,7 @@ static conic_status draw_top_window(top_block *b, const conic_window *window) {
   return status == CONIC_OK ? draw_top_window(b, &second) : status;
 }
 
-/* Depths below the camera become heights. */
+/* Turns depths below the camera into heights. */
 static void take_heights(const top_block *b) {
   float *z = b->image->planes[CONIC_PLANE_Z];
   for (size_t i = 0; z && i < (size_t)BLOCK * BLOCK; i++)

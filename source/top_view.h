@@ -1,9 +1,8 @@
 /* A source seen from straight above by a parallel projection, north up: an orthophoto, drawn in blocks.
  *
  * Pixels are squares of the ground, counted from the world's origin: column c is x from c·pixel to (c+1)·pixel, row r
- * is y from -r·pixel down to -(r+1)·pixel. Blocks are squares of them, counted likewise. What a block shows depends on
- * the source, the pixel and the options alone, so that any two pictures have the same bits where they show the same
- * ground, whatever else they show. */
+ * is y from -r·pixel down to -(r+1)·pixel. Blocks are squares of pixels, counted the same way. A block depends on the
+ * source, the pixel and the options alone. So two pictures have the same bits wherever they show the same ground. */
 #ifndef CONIC_TOP_VIEW_H
 #define CONIC_TOP_VIEW_H
 
@@ -14,27 +13,26 @@ enum { CONIC_TOP_BLOCK = 256 }; /* the edge of a block in pixels */
 
 typedef struct conic_top_view conic_top_view;
 
-/* Which world the coordinates of an open source are of, as far as its file says so; the caller releases it. Errors:
- * MEMORY. */
+/* The coordinate system of an open source, if its file states one; the caller releases it. Errors: MEMORY. */
 conic_status conic_source_georeference(const conic_source *source, conic_georeference *reference);
 
 typedef struct conic_top_options {
   double pixel;                       /* world units */
-  double heights[2];                  /* only splats whose centre is between these are drawn; infinite: no bound */
-  const conic_render_options *render; /* lights and what follows are as in other pictures, in the world */
+  double heights[2];                  /* only splats with their centre between these are drawn; infinite: no bound */
+  const conic_render_options *render; /* lights and later members count as in other pictures, in the world */
   int samples;                        /* N × N a pixel */
-  double error_px;                    /* of sources in levels; 0: full detail */
+  double error_px;                    /* for sources with levels; 0: full detail */
 } conic_top_options;
 
-/* On success the caller owns *top, which must not outlive source and renderer. Errors: ARGUMENT, UNSUPPORTED (the
- * source hands nothing over), MEMORY. */
+/* Opens the view. On success the caller owns *top, which must not outlive source and renderer. Errors: ARGUMENT,
+ * UNSUPPORTED (the source hands nothing over), MEMORY. */
 conic_status conic_top_view_open(conic_source *source, conic_renderer *renderer, const conic_top_options *options,
                                  conic_top_view **top);
 /* Null is allowed. */
 void conic_top_view_close(conic_top_view *top);
 
-/* Draws a block into the planes rgba and Z that an image of a block's size has. Z becomes the height in world units,
- * and NaN where nothing is. Counts are added to *sum, in which a splat of several blocks counts in each. Errors: as
+/* Draws a block into the planes rgba and Z of an image of a block's size. Z becomes the height in world units, NaN
+ * where nothing is. Counts are added to *sum; a splat in several blocks counts in each. Errors: as
  * conic_source_draw. */
 conic_status conic_top_view_draw(conic_top_view *top, int64_t column, int64_t row, conic_image *image,
                                  conic_render_statistics *sum);

@@ -1,6 +1,6 @@
-/* A measured guess at which way up a model stands. Files say it seldom, and half of the world has y up and half z: so
- * the two are what is told apart, by what survey data, scans and parts have in common. The limits were found on some
- * sixty files whose way up is known: each is where no file is laid on its back by it. */
+/* A measured guess at which way up a model stands. Files seldom say it, and half of the world has y up and half z. So
+ * the guess is between these two, by what survey data, scans and parts have in common. The limits were found on some
+ * sixty files whose up is known: with them no file is laid on its back. */
 #include "source/upright.h"
 
 #include <math.h>
@@ -9,21 +9,21 @@
 #include "core/base/memory.h"
 #include "core/base/vectors.h"
 
-/* So many splats and triangles are looked at; fewer than the least say nothing. */
+/* The most splats and triangles to look at; fewer than the least tell nothing. */
 enum { MOST_SAMPLES = 20000, LEAST_SAMPLES = 30 };
 
-/* What lies flat is lower than this part of both extents of the ground. A mesh in a plane, which is thinner still, is a
- * drawing, and is looked at from its front; points in a plane are a floor. */
+/* A flat model is lower than this part of both its ground extents. A mesh in a plane, which is thinner still, is a
+ * drawing, to be looked at from its front; points in a plane are a floor. */
 static const double flat_part = 0.33, planar_part = 1e-4;
 
-/* An open surface is missing where nobody looked or nothing is: below. The mean of its normals by area is at least so
- * long, and is mostly vertical. */
+/* An open surface is open below, where nobody looked or nothing is. The mean of its normals by area is at least this
+ * long, and mostly vertical. */
 static const double open_length = 0.2;
 
-/* A base is so much of the area, at the lower end of what stands at least so tall beside its other extent. */
+/* A base has this share of the area, at the lower end of a model that is at least this tall beside its other extent. */
 static const double base_share = 0.03, base_ratio = 2.0, standing_part = 0.8, base_height = 0.03;
 
-/* Patches of surface: where they are, and their normals by area. */
+/* Patches of surface: their places, and their normals by area. */
 typedef struct samples {
   size_t count;
   double (*place)[3], (*area)[3];
@@ -41,7 +41,7 @@ static void add_patch(samples *s, const double place[3], const double area[3]) {
   s->count++;
 }
 
-/* Of splats that are shared, those of all processes. */
+/* Takes samples of splats; of shared ones, from all processes. */
 static void take_splat_samples(samples *s, const conic_splats_shares *shares, const conic_splats *splats) {
   double u[3], v[3], place[3], area[3];
   size_t stride = conic_shares_stride(shares, splats, MOST_SAMPLES), first = conic_shares_first(shares, stride);
@@ -79,7 +79,7 @@ static int compare_heights(const void *a, const void *b) {
   return (*first > *second) - (*first < *second);
 }
 
-/* Without the outermost hundredth on either side, which stray points may be. */
+/* The extent without the outermost hundredth on either side, which may be stray points. */
 static void find_extent(const samples *s, double low[3], double high[3]) {
   for (int axis = 0; axis < 3; axis++) {
     for (size_t i = 0; i < s->count; i++)
@@ -102,7 +102,7 @@ static conic_up_basis look_at_box(const double minimum[3], const double maximum[
   return extent[2] < flat_part * across ? CONIC_UP_FLAT : CONIC_UP_HABIT;
 }
 
-/* Whether the mean normal is vertical: +z, and then +y, as the first two of an answer; 0: neither. */
+/* Whether the mean normal is vertical: +z and +y are the first two answers; 0: neither. */
 static int opens_along(const double mean[3]) {
   int greatest = 0;
   for (int axis = 1; axis < 3; axis++)
@@ -111,7 +111,7 @@ static int opens_along(const double mean[3]) {
   return fabs(mean[greatest]) > open_length ? greatest : 0;
 }
 
-/* The share of the area that lies flat at one end of an axis. */
+/* The share of the area that is flat at one end of an axis. */
 static double share_at(const samples *s, int axis, double end, double height, double total) {
   double sum = 0.0;
   for (size_t i = 0; i < s->count; i++) {

@@ -5,20 +5,20 @@
 
 #include "core/base/memory.h"
 
-/* About how long the work takes, in some unit: to set up and sort a splat, to look at a sample that it may cover, and
- * to finish a pixel's sample. */
+/* Rough costs, in one unit: setting up and sorting a splat, a sample that it may cover, and finishing a pixel's
+ * sample. */
 enum { OF_SPLAT = 32, OF_SAMPLE = 1, OF_PIXEL = 4 };
 
-/* The windows' edges cut the picture into cells, each within one window or none. */
+/* The windows' edges divide the picture into cells, each in one window or in none. */
 typedef struct cell_grid {
   size_t n[2];       /* columns, rows */
   int length[2];     /* of the picture, in samples */
-  uint16_t *cell[2]; /* of each column and row of samples: that of cells */
-  int *first[2];     /* of each column and row of cells: where it begins; and the end */
-  uint32_t *window;  /* of each cell; how many windows there are: it is in none */
+  uint16_t *cell[2]; /* of each column and row of samples: its column or row of cells */
+  int *first[2];     /* where each column and row of cells begins; and the end */
+  uint32_t *window;  /* of each cell: its window; the number of windows: none */
 } cell_grid;
 
-/* Cells that a splat may cover, from begin to before end. */
+/* The cells that a splat may cover, from begin to before end. */
 typedef struct cells_range {
   size_t begin[2], end[2];
   int low[2], high[2]; /* in samples */
@@ -59,7 +59,7 @@ static conic_status cut_into_cells(conic_context *context, const conic_dealing *
   return CONIC_OK;
 }
 
-/* From begin to before end of an axis in samples, as cells; nothing where that is none. */
+/* The cells from `low` to before `high` of an axis, in samples; empty where that is nothing. */
 static void cells_between(const cell_grid *grid, int axis, int low, int high, cells_range *range) {
   low = low < 0 ? 0 : low;
   high = high < grid->length[axis] ? high : grid->length[axis];
@@ -95,7 +95,7 @@ static void release_grid(conic_context *context, cell_grid *grid) {
   conic_memory_release(context, grid->window);
 }
 
-/* Whoever begins one releases it, on failure too. */
+/* The caller releases the grid, on failure too. */
 static conic_status begin_grid(conic_context *context, const conic_dealing *d, cell_grid *grid) {
   conic_status status = CONIC_OK;
   memset(grid, 0, sizeof *grid);
@@ -104,7 +104,7 @@ static conic_status begin_grid(conic_context *context, const conic_dealing *d, c
   return status == CONIC_OK ? name_cells(context, d, grid) : status;
 }
 
-/* Whether splat i may cover any. */
+/* Finds the cells that splat i may cover; returns whether there are any. */
 static int cells_of_splat(const conic_dealing *d, const cell_grid *grid, size_t i, cells_range *range) {
   const conic_box *box = &d->boxes[i];
   if (conic_box_is_empty(box))
@@ -150,7 +150,8 @@ static int compare_windows(const void *a, const void *b) {
   return first->index < second->index ? -1 : 1;
 }
 
-/* Each goes to who has the least so far: the heaviest first, so that the last ones make up for what is uneven. */
+/* Gives each window to the process with the least work so far: the heaviest first, so that the last ones even out the
+ * rest. */
 static void give_windows(const conic_dealing *d, weighed_window *windows, uint64_t *loads, int *owners) {
   owners[0] = 0;
   loads[0] = windows[0].weight;
@@ -176,7 +177,8 @@ static void weigh_windows(const conic_dealing *d, const uint64_t *weights, weigh
 conic_status conic_windows_deal(conic_context *context, const conic_dealing *d, int *owners) {
   const conic_splats_shares all = {.team = d->team};
   cell_grid grid;
-  uint64_t *weights = conic_memory_allocate_zeroed(context, d->n + 1, sizeof *weights); /* the last of no window */
+  uint64_t *weights = conic_memory_allocate_zeroed(context, d->n + 1, sizeof *weights); /* the last is for cells without
+                                                                                           a window */
   uint64_t *loads = conic_memory_allocate_zeroed(context, (size_t)d->team->count, sizeof *loads);
   weighed_window *windows = conic_memory_allocate(context, d->n, sizeof *windows);
   conic_status status = begin_grid(context, d, &grid);
@@ -196,14 +198,14 @@ conic_status conic_windows_deal(conic_context *context, const conic_dealing *d, 
 
 /* --- whose splats --- */
 
-/* Calls for each process that is to draw some of what a splat may cover: once. */
+/* Lists, for each process, the splats that may cover some of its windows, each once. */
 typedef struct splat_lister {
   const conic_dealing *dealing;
   const cell_grid *grid;
   const int *owners;
-  size_t *last;   /* of a process: the splat that it was given last, and one */
-  size_t *next;   /* of a process: where the next one is listed */
-  uint32_t *list; /* null: only counted */
+  size_t *last;   /* of a process: 1 + the splat listed last */
+  size_t *next;   /* of a process: where its next splat goes */
+  uint32_t *list; /* null: only counts */
 } splat_lister;
 
 static void list_splats_once(const splat_lister *l) {

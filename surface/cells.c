@@ -37,7 +37,7 @@ int conic_cells_locate(const conic_cells *cells, const float place[3], int32_t a
   return 1;
 }
 
-/* Where the table has the cell, or its first free place for it. */
+/* The cell's place in the table, or the first free place for it. */
 static size_t look_up(const conic_cells *cells, const int32_t at[3]) {
   uint64_t hash = (uint32_t)at[0];
   for (int axis = 1; axis < 3; axis++)
@@ -77,7 +77,7 @@ static conic_status grow(conic_cells *cells) {
   return CONIC_OK;
 }
 
-/* The number of the part that a place lies in. */
+/* The number of the part that holds a place. */
 static int part_of_cell(const conic_cells *cells, const int32_t at[3], const float place[3]) {
   int number = 0;
   for (int axis = 0; axis < 3; axis++) {
@@ -127,7 +127,7 @@ const conic_cell *conic_cells_neighbour(const conic_cells *cells, const conic_ce
   int32_t at[3], step = i;
   if (i == 0)
     return cell;
-  step = i <= 13 ? i - 1 : i; /* the middle one of 27 is the cell */
+  step = i <= 13 ? i - 1 : i; /* the middle one of 27 is the cell itself */
   for (int axis = 2; axis >= 0; axis--, step /= 3)
     at[axis] = cell->at[axis] + step % 3 - 1;
   return conic_cells_find(cells, at);

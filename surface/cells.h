@@ -1,4 +1,4 @@
-/* The cells of a lattice that hold something, and how much. */
+/* The cells of a lattice that hold points, and how many. */
 #ifndef CONIC_CELLS_H
 #define CONIC_CELLS_H
 
@@ -10,17 +10,17 @@
 typedef struct conic_cell {
   int32_t at[3];
   uint64_t count;  /* points in it */
-  uint64_t start;  /* of its points among all, cell by cell */
-  uint64_t filled; /* of them so far */
-  uint64_t parts;  /* as bits: which of 4 × 4 × 4 parts of it hold any */
+  uint64_t start;  /* where its points begin among all, cell by cell */
+  uint64_t filled; /* points put there so far */
+  uint64_t parts;  /* as bits: which of its 4 × 4 × 4 parts hold points */
 } conic_cell;
 
 typedef struct conic_cells {
   conic_context *context;
   double side;
-  conic_cell *cells; /* in the order of x, y, z once they are sorted */
+  conic_cell *cells; /* sorted by x, y, z by conic_cells_sort */
   size_t n, room;
-  uint32_t *table; /* a hash table: 1 + number of a cell, 0 where there is none */
+  uint32_t *table; /* a hash table: 1 + number of a cell; 0: empty */
   size_t table_size;
 } conic_cells;
 
@@ -28,19 +28,19 @@ typedef struct conic_cells {
 conic_status conic_cells_begin(conic_context *context, double side, conic_cells *cells);
 void conic_cells_end(conic_cells *cells);
 
-/* The cell of a place; 0 where that is not finite, or its number does not fit. */
+/* The cell of a place; returns 0 where the place is not finite, or the cell's number does not fit. */
 int conic_cells_locate(const conic_cells *cells, const float place[3], int32_t at[3]);
 
-/* The cell there; null: none. */
+/* The cell at these numbers; null: none. */
 conic_cell *conic_cells_find(const conic_cells *cells, const int32_t at[3]);
 
-/* Counts a point at a place of that cell. Errors: MEMORY. */
+/* Counts a point of that cell at a place. Errors: MEMORY. */
 conic_status conic_cells_count(conic_cells *cells, const int32_t at[3], const float place[3]);
 
-/* Orders them, and gives each its place among all points. */
+/* Sorts the cells, and gives each its place among all points. */
 void conic_cells_sort(conic_cells *cells);
 
-/* A cell's neighbours, 27 with itself, which is the first; null where there is none. */
+/* A cell's neighbours: 27, of which the cell itself is the first; null where there is none. */
 enum { CONIC_CELL_NEIGHBOURS = 27 };
 const conic_cell *conic_cells_neighbour(const conic_cells *cells, const conic_cell *cell, int i);
 

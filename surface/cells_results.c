@@ -2,7 +2,7 @@
 
 #include "core/base/memory.h"
 
-/* Results that are sent at a time. */
+/* Results sent at a time. */
 enum { SENT_RESULTS = 1 << 16 };
 
 typedef struct sent_result {
@@ -40,7 +40,7 @@ conic_status conic_cells_results_keep(conic_cells_results *results, uint64_t fir
   return conic_store_write(&results->store, results->n_sent - n, n, sent);
 }
 
-/* Pages of results, and one without. */
+/* Sends pages of results, and an empty one at the end. */
 static conic_status send_results(const conic_cells_results *results) {
   const conic_team *team = results->team;
   sent_result *page = conic_memory_allocate(results->context, SENT_RESULTS, sizeof *page);
@@ -56,7 +56,7 @@ static conic_status send_results(const conic_cells_results *results) {
   return status;
 }
 
-/* Numbers that follow each other go together. */
+/* Keeps runs of consecutive numbers together. */
 static conic_status keep_sent(conic_cells_results *results, const sent_result *sent, size_t n) {
   conic_cell_result run[CONIC_RESULTS_RUN];
   conic_status status = CONIC_OK;
@@ -71,7 +71,7 @@ static conic_status keep_sent(conic_cells_results *results, const sent_result *s
   return status;
 }
 
-/* Goes on after a failure, too, as the others send all that they have. */
+/* Continues after a failure, too, because the other processes send all they have. */
 conic_status conic_cells_results_bring(conic_cells_results *results) {
   const conic_team *team = results->team;
   conic_status status = CONIC_OK;

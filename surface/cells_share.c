@@ -2,7 +2,7 @@
 
 #include "core/base/memory.h"
 
-/* What a point takes beside what its neighbours do, as so many points of its part more. */
+/* The cost of a point without its neighbours' cost, which is the number of points in its part. */
 static const double POINT_COST = 300.0;
 
 static int count_set_bits(uint64_t bits) {
@@ -12,13 +12,14 @@ static int count_set_bits(uint64_t bits) {
   return n;
 }
 
-/* How long the cell may take: its points have the more neighbours the more of them share a part. */
+/* The time that a cell may take: the more of its points share a part, the more neighbours they have. */
 static double cell_cost(const conic_cell *cell) {
   double a_part = (double)cell->count / (double)count_set_bits(cell->parts);
   return (double)cell->count * (a_part + POINT_COST);
 }
 
-/* How many of a cell's points are before a place in the row of all work, whose part from `begin` on the cell is. */
+/* How many of a cell's points come before `place` in the row of all work; the cell's part of the row begins at
+ * `begin`. */
 static uint64_t points_before(const conic_cell *cell, double begin, double cost, double place) {
   double share = (place - begin) / cost;
   return share <= 0.0 ? 0 : share >= 1.0 ? cell->count : (uint64_t)(share * (double)cell->count);

@@ -1,4 +1,4 @@
-/* A surface's own points, projected: leaf by leaf of the tree, whose points share their candidates. */
+/* Projects a surface's own points, leaf by leaf of the tree: a leaf's points share their candidates. */
 #include <math.h>
 #include <string.h>
 
@@ -12,16 +12,16 @@ enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
 typedef struct points_cleaning {
   const conic_surface *surface;
   conic_own_points *own;
-  uint64_t n_points;           /* whose slots are wanted */
-  size_t first_leaf, end_leaf; /* those are in */
+  uint64_t n_points;           /* the slots of so many first points are wanted */
+  size_t first_leaf, end_leaf; /* the leaves with these slots */
   conic_workspace *workspaces;
 } points_cleaning;
 
-/* Of two sheets the polynomial's residuals are two heaps: their fourth moment is little more than the square of the
- * second, where noise has three times that. The heaps must be so far apart as a share of h, too. */
+/* With two sheets, the polynomial's residuals are in two heaps. Their fourth moment is then little more than the square
+ * of the second, where noise has three times that. The heaps must also be apart by a share of h. */
 static const double TWO_HEAPS = 1.5, LEAST_GAP = 0.1;
 
-/* Whether the samples of the point that was projected last lie in two sheets. */
+/* Whether the samples of the last projected point lie in two sheets. */
 static int is_between_sheets(const conic_surface *surface, const conic_workspace *workspace,
                              const conic_landing *projection) {
   const conic_near *near = &workspace->near;
@@ -111,7 +111,7 @@ static conic_status clean_leaves(points_cleaning *work, double begin, double end
   return conic_team_runs(work->surface->context, &loop);
 }
 
-/* The leaves of the wanted slots. */
+/* Finds the leaves of the wanted slots. */
 static void find_own_leaves(points_cleaning *work, const conic_own_range *wanted) {
   const conic_neighbours *tree = &work->surface->tree;
   uint64_t n = 0;
@@ -173,7 +173,7 @@ void conic_own_points_release(conic_context *context, conic_own_points *own) {
   memset(own, 0, sizeof *own);
 }
 
-/* Counts every point, so that duplicates count as often as they are there. */
+/* Counts every point, so that duplicates count each time. */
 static void report_points(const conic_surface *surface, const conic_own_points *own, conic_surface_report *report) {
   const conic_neighbours *tree = &surface->tree;
   double sum2 = 0.0, greatest2 = 0.0, neighbours = 0.0;

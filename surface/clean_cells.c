@@ -1,6 +1,6 @@
-/* Projecting sets larger than memory: points are put in order of the cells of a lattice, each cell is projected as a
- * set of its own together with what reaches into it, and the results are put back into the points' old order. Of a team
- * each process keeps the cells that it projects points of and those about them, and the first gets all results. */
+/* Projects sets larger than memory. Points are put in the order of a lattice's cells; each cell is projected as a set
+ * of its own, together with the points that reach into it; and the results are put back into the old order. In a team,
+ * each process keeps the cells of its own points and those around them, and the first process gets all results. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,14 +16,15 @@
 #include "surface/cells_share.h"
 #include "surface/own_points.h"
 
-/* A side in h: what lies about a cell and is looked at with it then is little beside it. */
+/* A cell's side in h: so large that the points around it are few beside its own. */
 static const double CELL_SIDE = 64.0;
 
-/* Feet are looked for within half of h, and found again from the point, which hardly ever is farther off than h. */
+/* Feet are looked for within half of h, and found again from the projected point, which is hardly ever farther off than
+ * h. */
 static const double HALO = 1.5;
 
-/* What a point of a cell takes while that is projected, the same where its normals are found first, and what everything
- * else takes. */
+/* The bytes that a point of a cell takes during projection, without and with finding its normals, and the bytes of
+ * everything else. */
 enum { BYTES_A_POINT = 192, BYTES_WITH_NORMALS = 320, OTHER_BYTES = 12 << 20 };
 
 /* Records that are handled at a time. */
@@ -35,10 +36,10 @@ typedef struct record {
   uint64_t index; /* in the set */
 } record;
 
-/* What is told of the points, the same whoever projected which: whole numbers. */
+/* Sums over the points as whole numbers, so that they do not depend on the processes. */
 typedef struct cells_sums {
   uint64_t outcomes[CONIC_N_SURFACE_OUTCOMES], n_merged, n_evaluations, neighbours;
-  uint64_t moved2[2]; /* in units of h² / 2^24, and what is left in 2^-30 of that */
+  uint64_t moved2[2]; /* in units of h² / 2^24, and the rest in 2^-30 of that */
   double moved2_most;
 } cells_sums;
 
@@ -52,9 +53,9 @@ typedef struct cleaning {
   conic_cells_results results;
   uint64_t n_points, n_finite, n_placed;
   double origin[3];
-  unsigned fields; /* of the points: normals (also those of axes) and colours */
+  unsigned fields; /* normals (of either kind) and colours of the points */
   record *page;    /* BATCH of them */
-  uint64_t *keys;  /* likewise: cell and number in a batch */
+  uint64_t *keys;  /* BATCH of them: cell and number in a batch */
   conic_splats subset;
   size_t subset_room;
   cells_sums sums;
@@ -69,8 +70,8 @@ static const char *name_of(const cleaning *work) {
   return work->options->name ? work->options->name : "surface";
 }
 
-/* Spheres lean on normals: where the points have none, each cell finds its own. Their sides may be others in the next
- * cell, which changes no sphere; so the results get none. */
+/* Spheres need normals: where the points have none, each cell finds its own. Their sides may differ in the next cell,
+ * which changes no sphere; so the results get no normals. */
 static int finds_normals(const cleaning *work) {
   return work->options->surface.type == CONIC_SURFACE_APSS && !(work->fields & CONIC_SPLATS_NORMALS);
 }
@@ -153,7 +154,7 @@ static int compare_keys(const void *a, const void *b) {
   return (first > second) - (first < second);
 }
 
-/* Points first … first + n - 1 of a batch; those that are not finite go straight to the results. */
+/* Places points first … first + n - 1 of a batch; those that are not finite go straight to the results. */
 static conic_status place_points(cleaning *work, const conic_splats *batch, size_t first, size_t n) {
   size_t n_keys = 0;
   conic_status status = CONIC_OK;
@@ -203,7 +204,7 @@ static conic_status place_batch(void *cookie, const conic_splats *batch) {
 
 /* --- a cell --- */
 
-/* Whether so many points may be in memory with what they take. */
+/* Whether so many points, with the memory that they take, fit. */
 static conic_status check_room(const cleaning *work, uint64_t n) {
   uint64_t bytes = n * bytes_a_point(work) + OTHER_BYTES;
   if (work->options->memory_bytes && bytes > work->options->memory_bytes)
@@ -236,7 +237,7 @@ static int is_record_within(const record *r, const double low[3], const double h
   return is_inside;
 }
 
-/* The cell's points, and behind them those about it. */
+/* Gathers the cell's points, then those around it. */
 static conic_status gather_cell(cleaning *work, const conic_cell *cell) {
   const conic_surface_options *surface = &work->options->surface;
   double halo = (surface->neglect + HALO) * surface->h, low[3], high[3];
@@ -261,7 +262,7 @@ static conic_status gather_cell(cleaning *work, const conic_cell *cell) {
   return status;
 }
 
-/* A sum that does not depend on the order. */
+/* Adds to a sum whose bits do not depend on the order. */
 static void add_move(cleaning *work, double moved2) {
   double h = work->options->surface.h, units = moved2 / (h * h) * 0x1p24;
   units = units < 0x1p40 ? units : 0x1p40;
@@ -311,7 +312,7 @@ static conic_status keep_cell(cleaning *work, const conic_cell *cell, const coni
   return status;
 }
 
-/* The surface of the cell's points and those about it. */
+/* Makes the surface of the cell's points and those around it. */
 static conic_status create_cell_surface(cleaning *work, conic_surface **surface) {
   conic_estimate_options options;
   conic_model model = {.n_triangles = 0};
@@ -349,7 +350,7 @@ static conic_status clean_cell(cleaning *work, const conic_cell *cell, const con
 
 /* --- the whole --- */
 
-/* The most points that any cell has. */
+/* The most points in a cell. */
 static uint64_t most_in(const cleaning *work) {
   uint64_t most = 0;
   for (size_t i = 0; i < work->cells.n; i++)
@@ -357,7 +358,7 @@ static uint64_t most_in(const cleaning *work) {
   return most;
 }
 
-/* Once it is known how many there are: room for one cell, and where the others are put. */
+/* Once the number of points is known: makes room for one cell, and for storing the others. */
 static conic_status reserve_page(cleaning *work) {
   const conic_clean_options *o = work->options;
   const conic_cells_share *share = &work->share;
@@ -399,7 +400,7 @@ static void sum_up(cleaning *work) {
   }
 }
 
-/* Whatever this process keeps: its cells, one after the other. */
+/* Projects this process's cells, one after the other. */
 static conic_status clean_own(cleaning *work) {
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < work->cells.n && status == CONIC_OK; i++) {
@@ -446,7 +447,7 @@ static void add_sums(cells_sums *sums, const cells_sums *other) {
   sums->moved2_most = other->moved2_most > sums->moved2_most ? other->moved2_most : sums->moved2_most;
 }
 
-/* Collective, whatever came of the work here: the first process then has all results, and every one the sums. */
+/* Collective, after success or failure here: the first process then has all results, and every process the sums. */
 static conic_status bring_together(cleaning *work, conic_status status) {
   const conic_team *team = work->team;
   size_t sizes[CONIC_MOST_IN_TEAM];
@@ -461,7 +462,7 @@ static conic_status bring_together(cleaning *work, conic_status status) {
   return conic_team_agree(team, conic_cells_results_bring(&work->results));
 }
 
-/* Hands over what is DONE, in the old order. */
+/* Hands over the DONE points, in the old order. */
 static conic_status deliver(cleaning *work, const conic_points_sink *sink) {
   conic_splats batch;
   conic_status status = conic_splats_allocate(work->context, PAGE, work->fields, &batch);

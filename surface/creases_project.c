@@ -1,36 +1,36 @@
 /* Projection where pieces of a surface meet. Each piece is fitted by its own samples alone. Its point counts up to
- * where another piece cuts it off; beyond, the edge between them does, or the corner of three. The nearest of these is
- * the place's point. */
+ * where another piece cuts it off; beyond, the point is on the edge between them, or on the corner of three. The
+ * nearest of these points is the result. */
 #include <math.h>
 #include <string.h>
 
 #include "core/base/vectors.h"
 #include "surface/creases.h"
-#include "surface/kernels/weight.h"
 #include "surface/least_spread.h"
+#include "surface/loops/weight.h"
 
 enum { MAX_NEAR = 512, N_BUCKETS = 256, MAX_PIECES = 4, LEAST_SAMPLES = 6, N_ROUNDS = 3, N_TERMS = 6 };
 
-/* A piece has samples on one side only, and so looks this much farther. */
+/* A piece has samples on one side only, so it looks this much farther. */
 static const double WIDER = 2.0;
 
-/* Samples are of one piece where they are linked: not farther apart than so many spacings, and turned by no more than
- * 20°. There is a crease only where a sample is turned from the nearest one by over 30°. */
+/* Two samples belong to one piece if they are linked: at most so many spacings apart, with normals at most 20° apart.
+ * There is a crease only where a sample's normal is over 30° from the nearest one's. */
 static const double LINK = 1.8, LINKED_COSINE = 0.93969262078590838, CREASE_COSINE = 0.86602540378443865;
 
-/* A piece is bent where a bend takes out more of what is left than noise would. */
+/* A piece is bent if a quadratic fit reduces the residual by more than noise would. */
 static const double BENT = 4.0;
 
 /* A place that moves by less than this many h has settled. */
 static const double SETTLED = 2e-3;
 
-/* A piece whose samples are off the nearest of larger ones by so many spacings, rms, is a part of those. */
+/* A piece is part of larger ones if its samples are off the nearest of them by so many spacings, rms. */
 static const double IN_OTHERS = 0.5;
 
-/* An edge or corner farther away than so many spacings is not the place's. */
+/* Edges and corners farther away than so many spacings are ignored. */
 static const double FARTHEST_EDGE = 3.0;
 
-/* The samples about a place, relative to it, and the pieces that they are of. */
+/* The samples near a place, relative to it, and their pieces. */
 typedef struct crease_scene {
   const conic_surface *surface;
   const conic_near *near;
@@ -38,12 +38,13 @@ typedef struct crease_scene {
   double spacing, from_place2[MAX_NEAR];
   int8_t piece[MAX_NEAR];                    /* -1: none yet */
   int32_t cells[MAX_NEAR][3];                /* with sides as long as links */
-  uint16_t heads[N_BUCKETS], next[MAX_NEAR]; /* those in no piece by cell, hashed: lists of 1 + number; 0: the end */
+  uint16_t heads[N_BUCKETS], next[MAX_NEAR]; /* samples without a piece, by hashed cell: lists of 1 + number; 0: the
+                                                end */
   uint16_t by_distance[MAX_NEAR];
   int n_pieces;
   uint16_t members[MAX_NEAR];    /* the samples of the pieces, piece by piece */
   size_t starts[MAX_PIECES + 1]; /* in `members` */
-  double weights[MAX_NEAR];      /* of the members of a piece about a place */
+  double weights[MAX_NEAR];      /* of a piece's members, about a place */
 } crease_scene;
 
 /* A point of a piece. */
@@ -89,9 +90,9 @@ static void sort_into_link_cells(crease_scene *scene) {
   }
 }
 
-/* The nearest first. */
+/* Sorts by distance, the nearest first. */
 static void sort_by_distance(crease_scene *scene) {
-  for (size_t gap = scene->n / 2; gap; gap /= 2) /* by shells, from how they are gathered */
+  for (size_t gap = scene->n / 2; gap; gap /= 2) /* a shell sort: the gathered order is nearly sorted */
     for (size_t i = gap; i < scene->n; i++) {
       uint16_t moving = scene->by_distance[i];
       size_t at = i;
@@ -105,8 +106,8 @@ static int are_linked(const crease_scene *scene, size_t i, size_t j) {
   return apart2(scene, i, j) <= LINK * LINK * scene->spacing * scene->spacing && turned(scene, i, j) >= LINKED_COSINE;
 }
 
-/* Gives all that hangs together with sample `first` the number, if they are enough, else that of strays. Returns
- * whether they are. */
+/* Gives all samples linked to `first` the number, if they are enough, else the strays' number. Returns whether they are
+ * enough. */
 static int grow_piece(crease_scene *scene, size_t first, int8_t number) {
   uint16_t queue[MAX_NEAR];
   size_t n = 0;
@@ -137,7 +138,7 @@ static int grow_piece(crease_scene *scene, size_t first, int8_t number) {
   return n >= LEAST_SAMPLES;
 }
 
-/* Whether a sample weighs something for the place on a surface that is not sharp. */
+/* Whether a sample would have weight for the place on a surface that is not sharp. */
 static int is_in_reach(const crease_scene *scene, size_t i) {
   return scene->from_place2[i] * scene->near->inverse_h2[i] < scene->surface->weighing.end;
 }
@@ -153,7 +154,7 @@ static void list_piece_members(crease_scene *scene) {
   scene->starts[scene->n_pieces] = n;
 }
 
-/* Splits the samples; 0 where those in reach are of one piece. */
+/* Splits the samples into pieces; returns 0 where those in reach are one piece. */
 static int split(crease_scene *scene) {
   int has_crease = 0, is_mixed = 0;
   size_t first = 0;
@@ -191,7 +192,7 @@ static double weight_at(const crease_scene *scene, size_t i, const double at[3])
   return conic_weight_at(&scene->surface->weighing, s).value * near->mass[i];
 }
 
-/* Solves the n by n system in place by elimination without a choice of pivots, as for sums of squares; 0 where there is
+/* Solves the n by n system in place by elimination without pivoting, as sums of squares allow; returns 0 where there is
  * no solution. */
 static int solve(int n, double m[N_TERMS][N_TERMS], double x[N_TERMS]) {
   for (int i = 0; i < n; i++) {
@@ -212,8 +213,8 @@ static int solve(int n, double m[N_TERMS][N_TERMS], double x[N_TERMS]) {
   return 1;
 }
 
-/* Heights over a frame at a place, by least squares: 1, x, y, and x², xy, y² where n is 6, in units of `unit`. Returns
- * the weighted mean of the squares that are left, or infinity. */
+/* Fits heights over a frame at a place, by least squares: 1, x, y, and for n = 6 also x², xy, y², in units of `unit`.
+ * Returns the weighted mean square of the residuals, or infinity. */
 static double fit_heights(const crease_scene *scene, int piece, const double at[3], double frame[3][3], double unit,
                           int n, double solution[N_TERMS]) {
   double m[N_TERMS][N_TERMS] = {{0.0}}, right[N_TERMS] = {0.0}, squares = 0.0, sum = 0.0;
@@ -249,8 +250,8 @@ static double fit_heights(const crease_scene *scene, int piece, const double at[
   return squares > 0.0 ? squares / sum : 0.0;
 }
 
-/* The weights of a piece about a place, and the frame across which it spreads least there. Returns how many samples
- * weigh something there. */
+/* Finds a piece's weights about a place, and the frame whose normal is the direction of least spread. Returns how many
+ * samples have weight. */
 static size_t frame_of(crease_scene *scene, int piece, const double at[3], double frame[3][3]) {
   double sum = 0.0, mean[3] = {0.0}, products[6] = {0.0};
   size_t count = 0;
@@ -280,7 +281,7 @@ static size_t frame_of(crease_scene *scene, int piece, const double at[3], doubl
   return count;
 }
 
-/* The piece's point for a place: over the plane of its samples, or where that is not enough, on a bent one. */
+/* The piece's point for a place: on the plane of its samples, or, where that fits badly, on a bent surface. */
 static piece_point land_on(crease_scene *scene, int piece, const double from[3], double h) {
   piece_point point = {.is_there = 0};
   memcpy(point.place, from, sizeof point.place);
@@ -315,7 +316,7 @@ static size_t n_members(const crease_scene *scene, int piece) {
   return scene->starts[piece + 1] - scene->starts[piece];
 }
 
-/* The planes of all pieces that are larger than this one, beside its middle. */
+/* Finds the planes of all larger pieces near this one's middle. */
 static void land_larger(crease_scene *scene, int piece, double h, piece_point planes[MAX_PIECES]) {
   double middle[3] = {0.0};
   for (size_t k = scene->starts[piece]; k < scene->starts[piece + 1]; k++)
@@ -328,7 +329,7 @@ static void land_larger(crease_scene *scene, int piece, double h, piece_point pl
   }
 }
 
-/* Gives the samples of a piece to larger ones where they lie in those: then their sides are mistaken, as noise has them
+/* Gives the samples of a piece to larger pieces if they lie in those: then noise has given them wrong sides, as happens
  * near an edge. Returns whether it did. */
 static int give_away(crease_scene *scene, int piece, double h) {
   piece_point planes[MAX_PIECES];
@@ -355,7 +356,7 @@ static int give_away(crease_scene *scene, int piece, double h) {
   return 1;
 }
 
-/* Leaves the pieces that others do not hold; returns whether these are more than one. */
+/* Keeps the pieces that others do not contain; returns whether there are several. */
 static int join_pieces(crease_scene *scene, double h) {
   for (int piece = scene->n_pieces - 1; piece >= 0 && scene->n_pieces > 1; piece--) {
     if (!give_away(scene, piece, h))
@@ -369,7 +370,7 @@ static int join_pieces(crease_scene *scene, double h) {
   return scene->n_pieces > 1;
 }
 
-/* On which side of another piece's plane the samples of a piece lie: a sum of heights. */
+/* On which side of another piece's plane the samples of a piece are, as a sum of heights. */
 static double lean(const crease_scene *scene, int piece, const piece_point *other) {
   double sum = 0.0;
   for (size_t k = scene->starts[piece]; k < scene->starts[piece + 1]; k++) {
@@ -381,7 +382,7 @@ static double lean(const crease_scene *scene, int piece, const piece_point *othe
   return sum;
 }
 
-/* Moves a place the shortest way onto the planes of n points, 1 to 3 of them; 0 where they do not meet. */
+/* Moves a place the shortest way onto 1 to 3 planes; returns 0 where they do not meet. */
 static int meet_planes(const piece_point *const planes[3], int n, double place[3]) {
   double m[N_TERMS][N_TERMS] = {{0.0}}, x[N_TERMS] = {0.0};
   for (int i = 0; i < n; i++) {
@@ -392,7 +393,7 @@ static int meet_planes(const piece_point *const planes[3], int n, double place[3
       m[i][k] = conic_dot(planes[i]->normal, planes[k]->normal);
     m[i][i] += 1e-9;
   }
-  for (int i = 1; i < n; i++) /* nearly the same plane twice */
+  for (int i = 1; i < n; i++) /* two planes are nearly the same */
     for (int k = 0; k < i; k++)
       if (fabs(m[i][k]) > LINKED_COSINE)
         return 0;
@@ -404,7 +405,7 @@ static int meet_planes(const piece_point *const planes[3], int n, double place[3
   return 1;
 }
 
-/* The point of a piece as far as no other cuts it off there: else of the edge, or the corner. */
+/* The piece's own point, if no other piece cuts it off there; else a point of the edge, or the corner. */
 static piece_point land_within(crease_scene *scene, int piece, double h) {
   static const double origin[3] = {0.0, 0.0, 0.0};
   piece_point points[MAX_PIECES], result = land_on(scene, piece, origin, h);
@@ -434,7 +435,7 @@ static piece_point land_within(crease_scene *scene, int piece, double h) {
     for (int turn = 0; turn < 2; turn++) {
       if (!meet_planes(cutting, n_cutting, place))
         break;
-      for (int i = 0; i < MAX_PIECES && turn == 0; i++) /* bent pieces have other planes there */
+      for (int i = 0; i < MAX_PIECES && turn == 0; i++) /* the planes of bent pieces differ there */
         if (i == piece || is_cutting[i]) {
           piece_point there = land_on(scene, i, place, h);
           points[i] = there.is_there ? there : points[i];

@@ -1,5 +1,5 @@
-/* The side of a crease that each sample lies on. A plane through the neighbours of a sample near a crease is blunt; so
- * such a sample takes over the flattest plane about it in which it lies, too: that of a neighbour farther inside. */
+/* Which side of a crease each sample is on. A plane through all neighbours of a sample near a crease is blunt. So such
+ * a sample takes over the flattest nearby plane in which it lies: that of a neighbour farther inside. */
 #include <math.h>
 #include <string.h>
 
@@ -11,13 +11,13 @@
 
 enum { CHUNK = 256, CHUNKS_A_REPORT = 16, N_WINDOW = 32 };
 
-/* A plane is taken over where the own one is rougher than so many spacings (a bend of 30° is), by one that is flatter
- * by this factor and passes the sample within as many spacings. */
+/* A plane is taken over if the own one is rougher than so many spacings (as a bend of 30° is), and the other is flatter
+ * by this factor and passes the sample within so many spacings. */
 static const double ROUGH = 0.4, FLATTER = 0.6, IN_PLANE = 0.75;
 
 typedef struct window_plane {
   double normal[3], mean[3];
-  double roughness; /* the deviation from it */
+  double roughness; /* deviation of the neighbours from the plane */
 } window_plane;
 
 typedef struct sides_search {

@@ -11,11 +11,11 @@ enum { N_COVERS = 32 };
 /* The lattice's step, as a share of the radius. */
 static const double STEP = 0.25;
 
-/* A corner at the distance d sees a place d² / 2R below its tangent plane where the surface's radius is R, which is
- * half of how far the plane through the corners lies below it. */
+/* On a surface of radius R, a corner at the distance d sees a place d² / 2R below its tangent plane; that is half of
+ * how far the plane through the corners is below it. */
 static const double LIFT = 0.5;
 
-/* What rounding may take from a radius, as a share of it. */
+/* The share of a radius that rounding may take. */
 static const double SAFETY = 1e-6;
 
 conic_status conic_dart_board_begin(conic_context *context, double radius, size_t n_expected, conic_dart_board *board) {
@@ -33,7 +33,7 @@ void conic_dart_board_end(conic_dart_board *board) {
   memset(board, 0, sizeof *board);
 }
 
-/* The number of a cell's column along an axis; what is beyond all numbers shares the last. */
+/* The number of a cell's column along an axis; columns beyond all numbers share the last. */
 static int64_t dart_column(double scaled) {
   double column = floor(scaled);
   return column > -4e18 && column < 4e18 ? (int64_t)column : INT64_MAX / 2;
@@ -81,7 +81,7 @@ int conic_dart_board_covers(conic_dart_board *board, const double place[3]) {
   if (board->last < board->n && is_near_dart(board, board->last, place))
     return 1;
   int64_t first[3];
-  for (int axis = 0; axis < 3; axis++) /* a radius is half a side: two columns along each axis hold all */
+  for (int axis = 0; axis < 3; axis++) /* a radius is half a side: two columns along each axis hold all neighbours */
     first[axis] = dart_column(place[axis] * board->inverse_side - 0.5);
   for (int i = 0; i < 8; i++) {
     size_t head = head_of(board, first[0] + (i & 1), first[1] + (i >> 1 & 1), first[2] + (i >> 2));
@@ -116,7 +116,7 @@ double conic_dart_reach(const conic_dart_triangle *triangle) {
   return circle < jung ? circle : jung;
 }
 
-/* The place with these shares of the corners. */
+/* The place with these shares of the corners, lifted where the triangle is bent. */
 static void place_in(const conic_dart_triangle *triangle, const double shares[3], double place[3]) {
   double flat[3], lift[3] = {0.0, 0.0, 0.0};
   for (int axis = 0; axis < 3; axis++)
@@ -133,8 +133,8 @@ static void place_in(const conic_dart_triangle *triangle, const double shares[3]
     place[axis] = flat[axis] + lift[axis];
 }
 
-/* How far place_in may lift a place of the triangle: of each two corners by the product of their shares, and these
- * products come to 1/3 at most. */
+/* The most that place_in lifts a place of the triangle. Each pair of corners lifts by the product of their shares;
+ * these products add up to at most 1/3. */
 static double greatest_lift(const conic_dart_triangle *triangle) {
   double greatest = 0.0;
   for (int i = 0; i < 3 && triangle->is_bent; i++) {
@@ -146,7 +146,8 @@ static double greatest_lift(const conic_dart_triangle *triangle) {
   return LIFT * greatest / 3.0;
 }
 
-/* How many steps from `from`, a place of the flat triangle, all lie within `reach` of `center`; 0 where it does not. */
+/* How many steps from `from`, a place of the flat triangle, stay within `reach` of `center`; 0 where it is not within
+ * reach itself. */
 static double steps_within(const double from[3], const double step[3], const double center[3], double reach) {
   double d[3], step2 = conic_dot(step, step);
   conic_subtract(from, center, d);
@@ -154,10 +155,10 @@ static double steps_within(const double from[3], const double step[3], const dou
   return reach > 0.0 && rest > 0.0 && step2 > 0.0 ? floor((sqrt(along * along + step2 * rest) - along) / step2) : 0.0;
 }
 
-/* Places that covered some of a triangle: its corners, and the latest others. */
+/* Places that covered parts of a triangle: its corners, and the latest others. */
 typedef struct triangle_covers {
   double places[N_COVERS][3];
-  int n, last; /* how many there are; which was used last */
+  int n, last; /* how many there are, and the one used last */
 } triangle_covers;
 
 static void add_cover(triangle_covers *covers, const double place[3]) {
@@ -165,7 +166,7 @@ static void add_cover(triangle_covers *covers, const double place[3]) {
   memcpy(covers->places[covers->last], place, sizeof covers->places[0]);
 }
 
-/* Whether the place is covered: by what covered others of its triangle, which is soon looked through, or at all. */
+/* Whether the place is covered: first by places that covered others in its triangle, which is quick, then by any. */
 static int is_covered_here(conic_dart_board *board, const double place[3], triangle_covers *covers) {
   if (is_dart_within(covers->places[covers->last], place, board->radius))
     return 1;
@@ -197,7 +198,7 @@ static conic_status throw_at(conic_dart_board *board, const conic_dart_triangle 
 conic_status conic_darts_throw(conic_dart_board *board, const conic_dart_triangle *triangle, uint32_t number,
                                size_t limit, conic_darts *darts) {
   double edges[3] = {edge_of(triangle, 0), edge_of(triangle, 1), edge_of(triangle, 2)}, step = STEP * board->radius;
-  /* Rows along the longest edge, from corner a to b, and up to c. */
+  /* Rows are parallel to the longest edge, which is from corner a to b, and go up to c. */
   int a = edges[0] >= edges[1] ? (edges[0] >= edges[2] ? 0 : 2) : (edges[1] >= edges[2] ? 1 : 2);
   int b = (a + 1) % 3, c = (a + 2) % 3;
   conic_status status = CONIC_OK;

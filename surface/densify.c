@@ -1,9 +1,9 @@
-/* Densifying (PSS §5.2): points of the surface wherever a circle of a certain radius is empty, the widest circles
+/* Densifying (PSS §5.2): adds points of the surface wherever a circle of a certain radius is empty, the widest circles
  * first.
  *
- * The points' own triangles, or those that each makes with its neighbours (Delaunay's), say where there is surface. In
- * passes, each with a smaller radius than the last, a dart is thrown at every place of them that no point is near, and
- * the darts are projected. */
+ * Triangles say where there is surface: the set's own, or those that each point makes with its neighbours (Delaunay's).
+ * In passes with ever smaller radii, a dart is thrown at every place of the triangles without a point nearby, and the
+ * darts are projected. */
 #include <math.h>
 #include <string.h>
 
@@ -20,7 +20,7 @@
 
 enum { TRIANGLES_A_REPORT = 4096 };
 
-/* Darts fly closer together than is asked for: by what the lattice of places may miss, and projecting moves. */
+/* Darts are thrown at this share of the radius: the lattice may miss places, and projection moves darts. */
 static const double RADIUS_SHARE = 0.97;
 
 /* Each pass's radius, as a share of the last. */
@@ -39,8 +39,8 @@ typedef struct densifying {
   conic_densify_triangles triangles;
   conic_workspace *workspaces;
   conic_darts darts;
-  conic_landing_places landed; /* of the darts */
-  uint8_t *is_moved;           /* by triangle: a dart of it came down elsewhere, or nowhere */
+  conic_landing_places landed; /* where the darts landed */
+  uint8_t *is_moved;           /* by triangle: a dart of it landed elsewhere, or nowhere */
   size_t n_flat, n_evaluations;
 } densifying;
 
@@ -58,7 +58,7 @@ static conic_status set_up_board(const densifying *work, double radius, conic_da
   return status;
 }
 
-/* Throws darts at all triangles, or at those that are marked as moved. */
+/* Throws darts at all triangles, or, the second time, at those marked as moved. */
 static conic_status throw_darts(densifying *work, conic_dart_board *board, int is_second, double from, double to) {
   const conic_densify_triangles *triangles = &work->triangles;
   conic_status status = CONIC_OK;
@@ -90,8 +90,8 @@ static conic_status append_landed(densifying *work, size_t i) {
   return CONIC_OK;
 }
 
-/* Appends the darts that landed, as far as there is room; of too many, some everywhere. *is_full says that there were.
- * In the second throw of a radius, one that came down beside a point is left out. */
+/* Appends the landed darts, as far as there is room; if there are too many, an even choice, and *is_full is set. In the
+ * second throw of a radius, darts that landed beside a point are left out. */
 static conic_status append_darts(densifying *work, double radius, int is_second, int *is_full) {
   conic_context *context = work->surface->context;
   size_t n = work->darts.n, room = work->limit > work->points->count ? work->limit - work->points->count : 0;
@@ -132,7 +132,7 @@ static conic_status throw_once(densifying *work, double radius, int is_second, d
   return status == CONIC_OK ? append_darts(work, radius, is_second, is_full) : status;
 }
 
-/* Passes from the widest circle down; *left gets the radius down to which none is empty. */
+/* Makes passes from the widest circle down; *left is the greatest radius of a circle that may still be empty. */
 static conic_status run_passes(densifying *work, double *left) {
   double least = RADIUS_SHARE * work->options->spacing, radius = least;
   int n_passes = 1, is_full = 0;

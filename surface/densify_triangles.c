@@ -8,13 +8,14 @@
 #include "core/base/vectors.h"
 #include "surface/fan.h"
 
-/* In leaves, and in points. */
+/* Chunks of leaves, and of points. */
 enum { CHUNK = 16, FANS = 64, CHUNKS_A_REPORT = 256 };
 
-/* Circles up to this many h are no holes, where it is not said what is: the outlines of splats close those. */
+/* If the caller sets no hole, circles up to this many h are none: the outlines of splats close them. */
 static const double HOLE = 1.25;
 
-/* The least cosine between the normals of a triangle and of a corner where the triangle can stand for the surface. */
+/* The least cosine between the normals of a triangle and of a corner for which the triangle can stand for the
+ * surface. */
 static const double LEAST_AGREEMENT = 0.5;
 
 typedef struct triangle_search {
@@ -26,7 +27,7 @@ typedef struct triangle_search {
 
 /* --- normals --- */
 
-/* The surface's normal at a slot; where nothing can be projected, the sample's. */
+/* The surface's normal at a slot, or the sample's where nothing can be projected. */
 static void find_normal(triangle_search *search, uint32_t slot, conic_workspace *workspace) {
   const conic_surface *surface = search->found->surface;
   const conic_neighbours *tree = &surface->tree;
@@ -87,7 +88,7 @@ static int has_triangle(const conic_fan *fan, uint32_t a, uint32_t b) {
   return 0;
 }
 
-/* Whether this slot is the one to list a triangle of its fan: the first of the corners that has it. */
+/* Whether this slot lists a triangle of its fan: it is the first corner whose fan has it. */
 static int lists(const triangle_search *search, uint32_t slot, const uint32_t pair[2]) {
   for (int i = 0; i < 2; i++)
     if (pair[i] < slot && has_triangle(&search->fans[pair[i]], slot, pair[1 - i]))

@@ -1,4 +1,4 @@
-/* How far one surface lies from another, at its points. */
+/* How far one surface is from another, measured at its points. */
 #include <math.h>
 #include <string.h>
 
@@ -8,13 +8,13 @@
 
 enum { CHUNK = 256, CHUNKS_A_REPORT = 64 };
 
-/* In place of a distance: the point is not on its own surface; or the other has nothing there. */
+/* Instead of a distance: the point is not on its own surface; or the other surface has nothing there. */
 static const double NOWHERE = -1.0, LOST = -2.0;
 
 typedef struct measuring {
   const conic_surface *from, *to;
   const conic_own_points *own;
-  double *distances2; /* by slot; NOWHERE, or LOST */
+  double *distances2; /* by slot: squared distance, NOWHERE or LOST */
   conic_workspace *workspaces;
 } measuring;
 

@@ -8,20 +8,20 @@
 
 enum { N_NEIGHBOURS = 24 };
 
-/* Corners are as far from the neighbours that made them as from the point, up to rounding. */
+/* Up to rounding, a corner of the cell is as far from the neighbours that made it as from the point. */
 static const double SAME_DISTANCE = 1e-7;
 
-/* Normals that are turned away by more than this (107°) are of the other side of something thin. */
+/* Normals turned by more than this (107°) belong to the other side of a thin part. */
 static const double LEAST_COSINE = -0.3;
 
-/* Neighbours in the tangent plane, about the point. */
+/* The neighbours in the tangent plane, about the point. */
 typedef struct outlook {
   size_t n;
   double places[N_NEIGHBOURS][2];
   uint32_t slots[N_NEIGHBOURS];
 } outlook;
 
-/* Two axes across a unit normal. */
+/* Two axes perpendicular to a unit normal. */
 static void make_axes(const double n[3], double u[3], double v[3]) {
   int least = fabs(n[0]) <= fabs(n[1]) ? (fabs(n[0]) <= fabs(n[2]) ? 0 : 2) : (fabs(n[1]) <= fabs(n[2]) ? 1 : 2);
   double along = n[least], length2 = 0.0;
@@ -41,8 +41,8 @@ static int is_other_side(float *const normals[3], uint32_t slot, uint32_t other)
   return along < LEAST_COSINE;
 }
 
-/* Neighbours as they lie in the plane, at their distance in space: those on the other side of a bend or of a thin part
- * are not drawn near by being flattened. */
+/* Lays the neighbours into the plane at their distance in space, so that those on the other side of a bend or of a thin
+ * part do not come near. */
 static void look_around(const conic_neighbours *tree, float *const normals[3], uint32_t slot, const double normal[3],
                         double limit, outlook *around) {
   uint32_t slots[N_NEIGHBOURS];

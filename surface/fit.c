@@ -1,13 +1,13 @@
-/* The polynomial over the local plane (PSS Eq. 3), by orthogonal columns and never by normal equations. */
+/* The polynomial over the local plane (PSS Eq. 3), by orthogonal columns instead of normal equations. */
 #include <string.h>
 
 #include "surface/mls_surface.h"
 
-/* What must be left of a monomial, as a share of its square, when the ones before it are taken out. */
+/* The least share of a monomial's square that must remain when the ones before it are taken out. */
 static const double LEAST_SHARE = 1e-9;
 
-/* How much a sample's error may grow in the value at the origin, squared: where the samples lie to one side, the
- * polynomial is led by what it was not told. */
+/* The most that a sample's error may grow in the value at the origin, squared: where the samples lie to one side, the
+ * polynomial follows no data. */
 static const double MOST_GAIN = 4.0;
 
 double conic_fit_gain(const conic_fit *fit, int degree, double x, double y) {
@@ -42,8 +42,7 @@ conic_surface_outcome conic_surface_fit(const conic_surface *surface, double h, 
                                         double frame[3][3], double t, conic_fit *fit) {
   double before2[CONIC_MAX_COLUMNS];
   int n = conic_n_coefficients(surface->options.degree);
-  surface->kernels.factor(&workspace->near, frame, t, 1.0 / h, surface->options.degree, fit->upper, fit->norms2,
-                          before2);
+  surface->loops.factor(&workspace->near, frame, t, 1.0 / h, surface->options.degree, fit->upper, fit->norms2, before2);
   for (int k = 0; k < n; k++)
     if (!(fit->norms2[k] > LEAST_SHARE * before2[k]))
       return CONIC_SURFACE_ILL_CONDITIONED;

@@ -1,4 +1,4 @@
-/* Who is near a point: from the tree to the arrays that the kernels sum over. */
+/* The samples near a point: from the tree into the arrays that the loops sum over. */
 #include <math.h>
 #include <string.h>
 
@@ -44,7 +44,7 @@ conic_status conic_workspaces_count(conic_context *context, conic_workspace *wor
   return status;
 }
 
-/* Room for `n` neighbours and what pads them: one block, the arrays side by side. */
+/* Makes room for `n` neighbours and their padding: one block, the arrays side by side. */
 static int reserve_near(conic_workspace *workspace, size_t n) {
   enum { N_ARRAYS = 9 };
   conic_near *near = &workspace->near;
@@ -153,7 +153,7 @@ void conic_surface_share_leaf(const conic_surface *surface, size_t i_leaf, conic
   conic_surface_gather(surface, box, margin, workspace, &workspace->shared);
 }
 
-/* Where a candidate is, its scale and mass. */
+/* A candidate's place, scale and mass. */
 static inline void look_up(const conic_surface *surface, uint32_t source, double place[3], double *h, double *mass) {
   if (source & CONIC_CLUSTER_BIT) {
     size_t i = source & ~CONIC_CLUSTER_BIT;
@@ -187,7 +187,7 @@ static void fetch_normals(const conic_surface *surface, conic_near *near) {
   }
 }
 
-/* Normals that are turned away by more than this (107°) are of the other side of something thin. */
+/* Normals turned by more than this (107°) belong to the other side of a thin part. */
 static const double LEAST_COSINE = -0.3;
 
 static void drop_backs(const conic_surface *surface, const float side[3], conic_near *near) {
@@ -226,7 +226,7 @@ void conic_surface_select(const conic_surface *surface, const conic_candidates *
     near->mass[n] = mass;
     near->inverse_h2[n] = h;
     near->sources[n] = source;
-    n += (x * x + y * y) + z * z < reach * reach && source != except; /* never for a scale that is NaN */
+    n += (x * x + y * y) + z * z < reach * reach && source != except; /* false for a scale that is NaN */
   }
   near->n = n;
   if (workspace->side)

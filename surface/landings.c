@@ -12,14 +12,14 @@ enum { CHUNK = 64, CHUNKS_A_REPORT = 64, MOST_SHARING = 24 };
 /* Darts share their candidates within a box of this many h. */
 static const double SHARED_BOX = 0.5;
 
-/* How far from its place a dart may come down: as a share of the longest edge of a mesh's triangle; among points, of
- * that or h, whichever is longer. Beyond, it has met another sheet. */
+/* How far from its place a dart may land: in a mesh, a share of the triangle's longest edge; among points, of that or
+ * of h, whichever is longer. Beyond, it has met another sheet. */
 static const double STRAY_IN_MESH = 0.35, STRAY_AMONG_POINTS = 0.5;
 
 /* The least cosine between the normals of a triangle and of the surface over it. */
 static const double LEAST_AGREEMENT = 0.5;
 
-/* One that moves along its triangle by more than this share of the longest edge may leave a gap. */
+/* A dart that moves along its triangle by more than this share of the longest edge may leave a gap. */
 static const double ASIDE = 0.25;
 
 typedef struct landing_work {
@@ -38,7 +38,7 @@ static double scale_at(const landing_work *work, const conic_dart *dart) {
   return (double)work->surface->h[corners[nearest]];
 }
 
-/* Whether the corners face the same way, as on both sides of a step. */
+/* Whether the corners face the same way, unlike the two sides of a step. */
 static int do_corners_agree(const conic_dart_triangle *triangle) {
   int do_agree = 1;
   for (int k = 0; k < 3; k++)
@@ -46,7 +46,7 @@ static int do_corners_agree(const conic_dart_triangle *triangle) {
   return do_agree;
 }
 
-/* The mean of the corners' attributes by the dart's shares. */
+/* Takes the mean of the corners' attributes, by the dart's shares. */
 static void stay_in_triangle(const landing_work *work, const conic_dart *dart, const conic_dart_triangle *triangle,
                              conic_landed *landed) {
   const conic_surface *surface = work->surface;
@@ -76,7 +76,7 @@ static double longest_edge(const conic_dart_triangle *triangle) {
   return sqrt(longest2);
 }
 
-/* Whether a dart came down on the sheet that it was thrown at. */
+/* Whether a dart landed on the sheet that it was thrown at. */
 static int is_on_sheet(const landing_work *work, const conic_dart_triangle *triangle, const conic_landing *landing) {
   double edge = longest_edge(triangle), moved = conic_length(landing->offset), h = landing->h;
   double farthest = work->triangles->are_given ? STRAY_IN_MESH * edge : STRAY_AMONG_POINTS * (edge > h ? edge : h);
@@ -95,7 +95,7 @@ static void land(const landing_work *work, size_t i, double h, conic_workspace *
   edge = longest_edge(&triangle);
   const float across[3] = {(float)triangle.across[0], (float)triangle.across[1], (float)triangle.across[2]};
   workspace->side = work->surface->normal[0] ? across : NULL;
-  workspace->is_trusting = 1; /* is_on_sheet looks at what is found */
+  workspace->is_trusting = 1; /* is_on_sheet checks the result instead */
   conic_surface_project_one(work->surface, dart->place, h, CONIC_NO_SLOT, 1, workspace, &landing);
   workspace->is_trusting = 0;
   workspace->side = NULL;
@@ -114,7 +114,7 @@ static void land(const landing_work *work, size_t i, double h, conic_workspace *
   }
 }
 
-/* Makes the box hold the place, unless that makes it longer than `most`. */
+/* Grows the box to hold the place, unless it would become longer than `most`. */
 static int grow_landing_box(const double place[3], double most, double box[6]) {
   double grown[6];
   for (int axis = 0; axis < 3; axis++) {
@@ -127,7 +127,8 @@ static int grow_landing_box(const double place[3], double most, double box[6]) {
   return 1;
 }
 
-/* Gathers the candidates of the darts from i on whose places lie close enough together; returns how many do. */
+/* Gathers candidates for the darts from i on whose places are close enough together; returns how many darts those
+ * are. */
 static size_t share(const landing_work *work, size_t i, size_t end, conic_workspace *workspace) {
   const conic_dart *first = &work->darts->list[i];
   double greatest_h = scale_at(work, first), box[6];

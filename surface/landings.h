@@ -6,8 +6,8 @@
 
 typedef enum conic_landed_how {
   CONIC_LANDED_WELL,  /* on the surface, where it was thrown */
-  CONIC_LANDED_ASIDE, /* on the surface, but beside that place */
-  CONIC_LANDED_FLAT,  /* there is no surface: it stays in its triangle */
+  CONIC_LANDED_ASIDE, /* on the surface, but beside its place */
+  CONIC_LANDED_FLAT,  /* there is no surface, so it stays in its triangle */
   CONIC_LANDED_NOWHERE
 } conic_landed_how;
 

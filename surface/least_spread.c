@@ -7,11 +7,11 @@
 
 enum { MAX_STEPS = 24 };
 
-/* The eigenvalues' gaps multiplied, with their sum as unit: below this, the cross products lose too many digits. */
+/* The product of the eigenvalues' gaps, with their sum as unit: below this, the cross products lose too many digits. */
 static const double LEAST_GAPS = 1e-5;
 
-/* The least root of the characteristic polynomial of a matrix with trace 1: from 0 on, Newton's steps climb to it and
- * never pass it, as the polynomial is convex there. */
+/* The least root of the characteristic polynomial of a matrix with trace 1. Newton's steps climb from 0 and never pass
+ * it, because the polynomial is convex there. */
 static double least_eigenvalue(const double m[6]) {
   double minors = (m[0] * m[3] - m[1] * m[1]) + (m[0] * m[5] - m[2] * m[2]) + (m[3] * m[5] - m[4] * m[4]);
   double determinant =
@@ -28,7 +28,8 @@ static double least_eigenvalue(const double m[6]) {
   return value;
 }
 
-/* Across the rows of the matrix less the eigenvalue, which span a plane; the two that do so best. 0 where none do. */
+/* The rows of the matrix less the eigenvalue span a plane; finds its normal from the best two of them. Returns 0 where
+ * none will do. */
 static int find_least_axis(const double m[6], double normal[3]) {
   double value = least_eigenvalue(m), best2 = LEAST_GAPS * LEAST_GAPS;
   const double rows[3][3] = {{m[0] - value, m[1], m[2]}, {m[1], m[3] - value, m[4]}, {m[2], m[4], m[5] - value}};

@@ -1,9 +1,9 @@
-/* Across which way samples spread least. */
+/* The direction in which samples spread least. */
 #ifndef CONIC_LEAST_SPREAD_H
 #define CONIC_LEAST_SPREAD_H
 
 /* A right-handed frame whose third row is the unit eigenvector of the least eigenvalue of the covariance {xx, xy, xz,
- * yy, yz, zz}. Where two eigenvalues are the same it is one of those that there are. */
+ * yy, yz, zz}. For equal eigenvalues it is any of their eigenvectors. */
 void conic_least_spread(const double covariance[6], double frame[3][3]);
 
 #endif

@@ -12,7 +12,7 @@
 #include "core/splats/columns.h"
 #include "surface/clusters.h"
 #include "surface/creases.h"
-#include "surface/kernels/weight.h"
+#include "surface/loops/weight.h"
 
 enum { CHUNK = 1024, CHUNKS_A_REPORT = 16 };
 
@@ -98,7 +98,7 @@ static int allocate_slots(conic_surface *surface) {
   return is_whole;
 }
 
-/* Coincident points are one slot: it weighs as much as they do, and has their mean colour and normal. */
+/* Coincident points are one slot, which has their weight together, and their mean colour and normal. */
 static void fill_slots(conic_surface *surface) {
   const conic_neighbours *tree = &surface->tree;
   for (size_t i = 0; i < tree->n_points; i++) {
@@ -115,7 +115,7 @@ static void fill_slots(conic_surface *surface) {
   }
 }
 
-/* A slot's own scale: its n_local-th neighbour lies at the neglect distance. */
+/* A slot's own scale, with which its n_local-th neighbour lies at the neglect distance. */
 static void find_local_h(void *data, size_t i_item, int i_thread) {
   conic_surface *surface = data;
   const conic_neighbours *tree = &surface->tree;
@@ -139,7 +139,7 @@ static void find_median_h(conic_surface *surface) {
   surface->median_h = (double)conic_float_of_rank(surface->h, n, (n - 1) / 2);
 }
 
-/* The least float that is not below a double. */
+/* The least float that is at least a double. */
 static float float_above(double value) {
   float rounded = (float)value;
   return (double)rounded < value ? rounded * (1.0f + 0x1p-22f) : rounded;
@@ -224,7 +224,7 @@ conic_status conic_surface_create(conic_context *context, const conic_splats *po
     return CONIC_ERROR_MEMORY;
   made->context = context;
   made->options = *options;
-  conic_surface_kernels_init(&made->kernels, isa);
+  conic_surface_loops_init(&made->loops, isa);
   made->weighing.weight = options->weight;
   made->weighing.end = options->neglect * options->neglect;
   made->weighing.edge = conic_weight_exp(made->weighing.end);

@@ -1,12 +1,12 @@
 /* The local reference plane (PSS §3.1, step 1): n and t such that, for q = r + t·n,
  *   - among all planes through q, with weights about q, that across n has the least energy, and
  *   - along n, q is at a local minimum of the energy.
- * Eq. 2 as printed, minimised over n and t together, lets q swing about r: its minimum depends on r and not on q alone,
- * and projecting twice moves a point again (docs/notes/surfaces-measured.md has how far). The two conditions are
- * Levin's; they know nothing of r but that it lies on the line through q along n, so what they define is a projection.
+ * Eq. 2 as printed, minimised over n and t together, lets q swing about r: its minimum depends on r, not on q alone,
+ * and projecting twice moves a point again (docs/notes/surfaces-measured.md says how far). The two conditions are
+ * Levin's. They use r only as a point on the line through q along n, so they define a projection.
  *
- * Newton steps in all three unknowns reach the last digits in a few sums. Where they can't be trusted, the paper's
- * turns are taken: a safeguarded search along n by Eq. 6 (corrected), then a new normal by the covariance about q. */
+ * Newton steps in all three unknowns reach the last digits in a few sums. Where they cannot be trusted, the paper's two
+ * steps alternate: a safeguarded search along n by Eq. 6 (corrected), then a new normal by the covariance about q. */
 #include <math.h>
 #include <string.h>
 
@@ -16,15 +16,15 @@
 
 enum { MAX_STEPS = 40, MAX_TURNS = 30, MAX_SEARCH = 40 };
 
-/* In units of h: a Newton step shorter than the first is the last, as the next would square what is left; one longer
- * than the second is not trusted; a search along the normal ends at the third. */
+/* In units of h: a Newton step shorter than the first is the last one, because the next would square the error; one
+ * longer than the second is not trusted; a search along the normal ends at the third. */
 static const double LAST_STEP = 1e-6, LONGEST_STEP = 0.25, SEARCHED = 1e-3;
 
 conic_surface_outcome conic_surface_first_plane(const conic_surface *surface, size_t n_least,
                                                 conic_workspace *workspace, double frame[3][3], double *height) {
   static const double origin[3] = {0.0, 0.0, 0.0};
   double sums[CONIC_N_MOMENTS], mean[3], covariance[6];
-  surface->kernels.moments(&workspace->near, &surface->weighing, origin, sums);
+  surface->loops.moments(&workspace->near, &surface->weighing, origin, sums);
   if (!(sums[CONIC_MOMENT_COUNT] >= (double)n_least))
     return CONIC_SURFACE_TOO_FEW;
   double inverse = 1.0 / sums[0];
@@ -38,7 +38,7 @@ conic_surface_outcome conic_surface_first_plane(const conic_surface *surface, si
   return CONIC_SURFACE_DONE;
 }
 
-/* What must vanish about a plane, and how it changes; lengths in units of h. */
+/* The functions that must vanish at a plane, and their derivatives; lengths in units of h. */
 typedef struct well {
   double misfit[3];
   double slope[3][3];
@@ -48,11 +48,11 @@ static well look_at_well(const conic_surface *surface, const conic_workspace *wo
                          double t) {
   double sums[CONIC_N_PLANE_SUMS], inverse = 1.0 / h, inverse2 = inverse * inverse;
   well here;
-  surface->kernels.plane(&workspace->near, &surface->weighing, frame, t, sums);
+  surface->loops.plane(&workspace->near, &surface->weighing, frame, t, sums);
   here.misfit[0] = sums[0] * inverse;
   here.misfit[1] = sums[1] * inverse;
   here.misfit[2] = sums[2];
-  here.slope[0][0] = sums[3] * inverse2; /* a tilt of 1 moves what is h away by h */
+  here.slope[0][0] = sums[3] * inverse2; /* a tilt of 1 moves a sample at distance h by h */
   here.slope[0][1] = here.slope[1][0] = sums[4] * inverse2;
   here.slope[1][1] = sums[5] * inverse2;
   here.slope[0][2] = sums[6] * inverse;
@@ -63,13 +63,13 @@ static well look_at_well(const conic_surface *surface, const conic_workspace *wo
   return here;
 }
 
-/* Whether the energy has a minimum here, were the misfit zero: by the tilts, and along n. */
+/* Whether the energy would have a minimum here if the misfit were zero: by tilts, and along n. */
 static int is_hollow(const well *here) {
   double determinant = here->slope[0][0] * here->slope[1][1] - here->slope[0][1] * here->slope[1][0];
   return here->slope[0][0] > 0.0 && determinant > 0.0 && here->slope[2][2] < 0.0;
 }
 
-/* Newton's step by Cramer's rule; 0 where there is none. */
+/* Newton's step by Cramer's rule; returns 0 where there is none. */
 static int newton_step(const well *here, double step[3]) {
   const double(*m)[3] = here->slope;
   double minors[3][3], determinant = 0.0;
@@ -104,15 +104,15 @@ static void tilt(double frame[3][3], double a, double b) {
   conic_cross(frame[2], frame[0], frame[1]);
 }
 
-/* The local minimum along n that is downhill from t, within the margin: Newton's steps, halvings where those leave what
- * brackets it. 0 where there is none. */
+/* The local minimum along n that is downhill from t, within the margin: by Newton's steps, or halvings where these
+ * leave the bracket. Returns 0 where there is none. */
 static int search_along(const conic_surface *surface, double h, double margin, const conic_workspace *workspace,
                         double frame[3][3], double *t) {
   double low = -margin, high = margin;
   int is_low_sure = 0, is_high_sure = 0;
   for (int i = 0; i < MAX_SEARCH; i++) {
     well here = look_at_well(surface, workspace, h, frame, *t);
-    double downhill = here.misfit[2]; /* K: -½ of the energy's derivative, so that it points down */
+    double downhill = here.misfit[2]; /* K: -½ of the energy's derivative, which points down */
     if (downhill > 0.0) {
       low = *t;
       is_low_sure = 1;
@@ -133,15 +133,15 @@ static int search_along(const conic_surface *surface, double h, double margin, c
   return 0;
 }
 
-/* Across the least spread of the neighbours about q, which stays. */
+/* Turns n to the neighbours' direction of least spread about q, which stays. */
 static void turn_normal(const conic_surface *surface, conic_workspace *workspace, double frame[3][3], double t) {
   double sums[CONIC_N_MOMENTS];
   const double q[3] = {t * frame[2][0], t * frame[2][1], t * frame[2][2]};
-  surface->kernels.moments(&workspace->near, &surface->weighing, q, sums);
+  surface->loops.moments(&workspace->near, &surface->weighing, q, sums);
   conic_least_spread(sums + 4, frame);
 }
 
-/* The paper's turns, until they change little. 0 where the search finds no minimum. */
+/* Alternates the paper's steps until they change little. Returns 0 where the search finds no minimum. */
 static int take_turns(const conic_surface *surface, double h, double margin, conic_workspace *workspace,
                       double frame[3][3], double *t) {
   for (int i = 0; i < MAX_TURNS; i++) {
@@ -152,7 +152,7 @@ static int take_turns(const conic_surface *surface, double h, double margin, con
     turn_normal(surface, workspace, frame, *t);
     for (int axis = 0; axis < 3; axis++)
       agreed += before[axis] * frame[2][axis];
-    if (agreed < 0.0) { /* the same line, looked at from the other end */
+    if (agreed < 0.0) { /* the same line, seen from the other end */
       for (int axis = 0; axis < 3; axis++)
         frame[2][axis] = -frame[2][axis];
       conic_cross(frame[2], frame[0], frame[1]);
@@ -165,7 +165,7 @@ static int take_turns(const conic_surface *surface, double h, double margin, con
   return 1;
 }
 
-/* Newton's steps from a plane near by. DONE, or NO_MINIMUM where they don't close in on one. */
+/* Newton's steps from a nearby plane. DONE, or NO_MINIMUM where they do not converge. */
 static conic_surface_outcome close_in(const conic_surface *surface, double h, double margin,
                                       const conic_workspace *workspace, double frame[3][3], double *t) {
   double before = LONGEST_STEP;

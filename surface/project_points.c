@@ -6,7 +6,7 @@
 
 enum { CHUNK = 256, CHUNKS_A_REPORT = 64 };
 
-/* Feet are looked for within half of h (PSS §3.3); most are found much nearer, among fewer neighbours. */
+/* Feet are looked for within half of h (PSS §3.3); most are found much nearer, with fewer neighbours. */
 static const double FIRST_MARGIN = 0.125, LAST_MARGIN = 0.5;
 
 /* Feet nearer than this, in units of h, are the same. */
@@ -31,7 +31,7 @@ static conic_surface_outcome climb(const conic_surface *surface, double h, conic
   conic_fit *fit = &workspace->fit;
   for (int axis = 0; axis < 3; axis++)
     q[axis] = t * frame[2][axis];
-  surface->kernels.moments(&workspace->near, &surface->weighing, q, sums);
+  surface->loops.moments(&workspace->near, &surface->weighing, q, sums);
   projection->n_neighbours = (int)sums[CONIC_MOMENT_COUNT];
   if (projection->n_neighbours < conic_n_coefficients(surface->options.degree))
     return CONIC_SURFACE_TOO_FEW;
@@ -51,7 +51,7 @@ static int is_full(const conic_surface *surface) {
   return surface->options.type == CONIC_SURFACE_MLS && surface->options.plane == CONIC_PLANE_FULL;
 }
 
-/* The plane for the point that the workspace's neighbours are about. */
+/* The plane for the point of the workspace's neighbours. */
 static conic_surface_outcome find_plane(const conic_surface *surface, double h, double margin,
                                         conic_workspace *workspace, double frame[3][3], double *t) {
   size_t n_least = (size_t)conic_n_coefficients(surface->options.degree);
@@ -66,14 +66,14 @@ static conic_surface_outcome find_plane(const conic_surface *surface, double h, 
   return conic_surface_find_plane(surface, h, margin, workspace, frame, t);
 }
 
-/* A point that is to be projected. */
+/* A point to be projected. */
 typedef struct projection_start {
   double r[3], h;
   uint32_t except;
-  const conic_candidates *candidates; /* null: gathered for it alone */
+  const conic_candidates *candidates; /* null: gathered for this point alone */
 } projection_start;
 
-/* The plane (or sphere) for a place: among what is near first, then among all within LAST_MARGIN. */
+/* Finds the plane (or sphere) for a place: first among near samples, then among all within LAST_MARGIN. */
 static conic_surface_outcome find_foot(const conic_surface *surface, const projection_start *at,
                                        conic_workspace *workspace, double frame[3][3], double *t,
                                        conic_landing *sphere) {
@@ -91,7 +91,7 @@ static conic_surface_outcome find_foot(const conic_surface *surface, const proje
                   : find_plane(surface, at->h, margin, workspace, frame, t);
     if (outcome != CONIC_SURFACE_NO_MINIMUM || !(margin > 0.0))
       break;
-    margin = LAST_MARGIN * at->h; /* it may lie farther out */
+    margin = LAST_MARGIN * at->h; /* its foot may be farther out */
     candidates = NULL;
   }
   return outcome;
@@ -103,8 +103,8 @@ static void swap_near(conic_workspace *workspace) {
   workspace->other_near = near;
 }
 
-/* Whether the point found is found again from itself. Where the samples lie in several layers there are several minima,
- * and it may be another one: such a point is not of the surface. */
+/* Whether the found point is projected to itself. Where the samples lie in several layers there are several minima, and
+ * the projection may find another one: such a point is not on the surface. */
 static int is_found_again(const conic_surface *surface, const projection_start *at, conic_workspace *workspace,
                           const conic_landing *projection) {
   projection_start again = *at;
@@ -114,7 +114,7 @@ static int is_found_again(const conic_surface *surface, const projection_start *
     moved2 += projection->offset[axis] * projection->offset[axis];
   }
   if (moved2 > margin * margin)
-    again.candidates = NULL; /* it may have left what they were gathered for */
+    again.candidates = NULL; /* it may have left the box that they were gathered for */
   swap_near(workspace);
   conic_surface_outcome outcome = find_foot(surface, &again, workspace, frame, &t, NULL);
   swap_near(workspace);
@@ -137,8 +137,7 @@ static conic_surface_outcome project_place(const conic_surface *surface, const p
     return outcome;
   outcome = climb(surface, at->h, workspace, frame, t, projection);
   if (outcome != CONIC_SURFACE_DONE || !is_full(surface) || workspace->is_trusting || surface->clusters.mass)
-    return outcome; /* clusters are others about every point: what they stand for is not found again to the last digits
-                     */
+    return outcome; /* clusters differ about every point, so their results do not repeat to the last digits */
   return is_found_again(surface, at, workspace, projection) ? CONIC_SURFACE_DONE : CONIC_SURFACE_NO_MINIMUM;
 }
 
@@ -160,7 +159,7 @@ void conic_surface_project_one(const conic_surface *surface, const double r[3], 
   projection->outcome = outcome;
 }
 
-/* --- points that a caller brings --- */
+/* --- a caller's points --- */
 
 typedef struct projecting {
   conic_surface *surface;
@@ -170,7 +169,7 @@ typedef struct projecting {
   conic_workspace *workspaces;
 } projecting;
 
-/* The surface's normal on the samples' side. */
+/* Turns the surface's normal to the samples' side. */
 static void turn_to(const double side[3], double normal[3]) {
   if (side[0] * normal[0] + side[1] * normal[1] + side[2] * normal[2] < 0.0)
     for (int axis = 0; axis < 3; axis++)

@@ -1,5 +1,6 @@
-/* Algebraic point-set surfaces (Guennebaud and Gross 2007): a sphere u₀ + u·x + u₄ x·x = 0 fitted to the samples'
- * places and normals, on which the point finds its foot; weights about the foot, until both agree. */
+/* Algebraic point-set surfaces (Guennebaud and Gross 2007): a sphere u₀ + u·x + u₄ x·x = 0 is fitted to the samples'
+ * places and normals, and the point's foot on it is found. The weights are about the foot; both steps repeat until they
+ * agree. */
 #include <math.h>
 
 #include "core/base/vectors.h"
@@ -7,8 +8,8 @@
 
 enum { MAX_ROUNDS = 100, LEAST_SAMPLES = 4 };
 
-/* In units of h: a step shorter than this is the last; a mean sample farther from the foot than this lies to one side,
- * and the sphere there is led by what it was not told. */
+/* In units of h: a step shorter than this is the last one; if the samples' mean is farther from the foot than this,
+ * they lie to one side, and the sphere there follows no data. */
 static const double SETTLED = 1e-10, FARTHEST_MEAN = 0.75;
 
 typedef struct fitted_sphere {
@@ -28,7 +29,7 @@ static int fit_sphere(const double sums[CONIC_N_SPHERE_SUMS], fitted_sphere *s) 
   return conic_dot(s->linear, s->linear) - 4.0 * s->constant * s->square > 0.0;
 }
 
-/* From `from` along the sphere's gradient to its surface; 0 where there is none. */
+/* Moves from `from` along the sphere's gradient to its surface; returns 0 where there is none. */
 static int drop_to_sphere(const fitted_sphere *s, const double from[3], double foot[3], double normal[3]) {
   double gradient[3], value = s->constant + conic_dot(s->linear, from) + s->square * conic_dot(from, from);
   for (int axis = 0; axis < 3; axis++)
@@ -53,11 +54,11 @@ conic_surface_outcome conic_surface_find_sphere(const conic_surface *surface, do
   for (int i = 0; i < MAX_ROUNDS; i++) {
     fitted_sphere s;
     double from[3], step[3];
-    surface->kernels.sphere(&workspace->near, &surface->weighing, foot, sums);
+    surface->loops.sphere(&workspace->near, &surface->weighing, foot, sums);
     if (!(sums[9] >= (double)LEAST_SAMPLES))
       return CONIC_SURFACE_TOO_FEW;
     for (int axis = 0; axis < 3; axis++)
-      from[axis] = -foot[axis]; /* the point itself, seen from the foot */
+      from[axis] = -foot[axis]; /* the point itself, relative to the foot */
     if (!fit_sphere(sums, &s) || !drop_to_sphere(&s, from, step, normal))
       return CONIC_SURFACE_NO_MINIMUM;
     double moved = conic_length(step);

@@ -10,11 +10,11 @@
 typedef struct conic_store {
   conic_context *context;
   size_t record_bytes;
-  unsigned char *memory; /* null: in the file */
+  unsigned char *memory; /* null: the records are in the file */
   conic_scratch file;
 } conic_store;
 
-/* Room for `count` records, contents undefined, in a file beside `path`, or where that is null in memory. On failure
+/* Makes room for `count` records, contents undefined, in a file beside `path`, or for a null path in memory. On failure
  * the store is empty. Errors: MEMORY, IO. */
 conic_status conic_store_begin(conic_context *context, const char *path, uint64_t count, size_t record_bytes,
                                conic_store *store);

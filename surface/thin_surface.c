@@ -1,8 +1,8 @@
-/* Thinning (PSS §5.1): the point that lies nearest to the surface of the others goes first.
+/* Thinning (PSS §5.1): removes the point that lies nearest to the surface of the others first.
  *
- * Removing a point changes what its neighbours contribute. They are marked, and measured anew when they come to the
- * front of the queue, so none is removed on an old measure; as a point's distance from the surface of the others mostly
- * grows when there are fewer of them, hardly any comes too late to the front. */
+ * Removing a point changes its neighbours' contributions. The neighbours are marked, and measured anew when they come
+ * to the front of the queue, so that none is removed on an old measure. A point's distance from the surface of the
+ * others mostly grows when these become fewer, so hardly any comes to the front too late. */
 #include <math.h>
 #include <string.h>
 
@@ -14,14 +14,15 @@
 #include "core/splats/splats_gather.h"
 #include "surface/mls_surface.h"
 
-/* Points that are measured at a time: a fixed number, so that the order never depends on the threads. */
+/* Points measured together: a fixed number, so that the order does not depend on the threads. */
 enum { BATCH = 64, REMOVALS_A_REPORT = 512, BATCHES_A_REPORT = 32 };
 
-/* Tries to find the limit for a point that keeps the whole within its own, once one does, and the first one's share. */
+/* The limit for single removals that keeps the whole within its own is searched: so many tries, or more until one
+ * succeeds. The first try takes this share of the whole limit. */
 enum { MAX_TRIES = 5 };
 static const double FIRST_SHARE = 0.3;
 
-/* A stage ends when so many are left of its points: neighbours, scales and tree are then found anew. */
+/* A stage ends when this share of its points is left: neighbours, scales and tree are then found anew. */
 static const double STAGE_SHARE = 0.6;
 
 void conic_thin_options_init_sized(conic_thin_options *options, size_t size) {
@@ -30,7 +31,7 @@ void conic_thin_options_init_sized(conic_thin_options *options, size_t size) {
 }
 
 typedef struct thinning {
-  conic_surface *surface; /* its h becomes NaN where a slot is gone */
+  conic_surface *surface; /* its h is NaN for removed slots */
   conic_workspace *workspaces;
   conic_heap heap;
   uint8_t *is_stale;
@@ -39,7 +40,7 @@ typedef struct thinning {
   size_t n_evaluations;
 } thinning;
 
-/* How far the slot lies from the surface of the others; infinite where that has none there. */
+/* How far the slot is from the surface of the others; infinite where they have no surface there. */
 static double contribution(const thinning *work, uint32_t slot, conic_workspace *workspace) {
   const conic_surface *surface = work->surface;
   const double r[3] = {(double)surface->tree.position[0][slot], (double)surface->tree.position[1][slot],
@@ -66,7 +67,7 @@ static void measure_quarter(void *data, size_t i_item, int i_thread) {
       work->heap.keys[work->batch[i]] = contribution(work, work->batch[i], &work->workspaces[i_thread]);
 }
 
-/* Measures the stale ones at the front of the queue anew. Those that have no measure any more never go. */
+/* Measures the stale slots at the front of the queue anew. Slots that can no longer be measured are never removed. */
 static void refresh_front(thinning *work) {
   uint32_t batch[BATCH];
   size_t n = 0;
@@ -83,7 +84,7 @@ static void refresh_front(thinning *work) {
   }
 }
 
-/* Takes the slot away, and marks all that it weighed something for. */
+/* Removes the slot, and marks all slots that it had weight for. */
 static void remove_slot(thinning *work, uint32_t slot) {
   conic_surface *surface = work->surface;
   conic_workspace *workspace = &work->workspaces[0];
@@ -109,7 +110,8 @@ static int allocate_thinning(thinning *work) {
   return work->heap.slots && work->heap.keys && work->is_stale;
 }
 
-/* Removes slots until `n_wanted` are left or the next one's contribution passes the limit; *n_left says how many. */
+/* Removes slots until `n_wanted` are left or the next one's contribution exceeds the limit; *n_left says how many are
+ * left. */
 static conic_status remove_slots(thinning *work, size_t n_wanted, double max_error, size_t *n_left) {
   conic_context *context = work->surface->context;
   size_t n = work->surface->tree.n_slots;
@@ -145,7 +147,7 @@ static conic_status remove_slots(thinning *work, size_t n_wanted, double max_err
   return conic_workspaces_check(context, work->workspaces);
 }
 
-/* The points of the slots that are left, one a slot, in their old order. */
+/* Copies the points of the remaining slots, one a slot, in their old order. */
 static conic_status copy_left(const conic_surface *surface, size_t n_left, conic_splats *left) {
   const conic_neighbours *tree = &surface->tree;
   uint32_t *points = conic_memory_allocate(surface->context, n_left, sizeof *points);
@@ -162,7 +164,7 @@ static conic_status copy_left(const conic_surface *surface, size_t n_left, conic
   return status;
 }
 
-/* One stage: from `points` to what is left of them. */
+/* One stage of thinning: from `points` to the remaining ones. */
 static conic_status thin_stage(conic_context *context, const conic_surface_options *options,
                                const conic_thin_options *wanted, const conic_splats *points, conic_splats *left,
                                conic_surface_report *report) {
@@ -193,7 +195,7 @@ static conic_status thin_stage(conic_context *context, const conic_surface_optio
   return status;
 }
 
-/* Stage after stage, until there are `count` or a stage removes nothing. */
+/* Runs stages until `count` points are left or a stage removes nothing. */
 static conic_status thin_once(const conic_surface *surface, const conic_thin_options *wanted, conic_splats *thinned,
                               conic_surface_report *report) {
   conic_context *context = surface->context;
@@ -201,7 +203,7 @@ static conic_status thin_once(const conic_surface *surface, const conic_thin_opt
   conic_splats now = surface->points, next;
   conic_status status = CONIC_OK;
   int is_own = 0;
-  stage_options.cluster = 0.0; /* cells have no way to lose a point */
+  stage_options.cluster = 0.0; /* clusters cannot lose a point */
   for (size_t before = SIZE_MAX; now.count < before && (now.count > wanted->count || !is_own);) {
     before = now.count;
     status = thin_stage(context, &stage_options, wanted, &now, &next, report);
@@ -230,16 +232,16 @@ static conic_status measure_both(conic_surface *surface, const conic_splats *thi
   return status;
 }
 
-/* Whether the two surfaces are as near to each other as they are to be; a few points in a thousand may have nothing of
- * the other about them where it has a border. */
+/* Whether the two surfaces are as near as wanted; a few points in a thousand may have nothing of the other surface near
+ * them where it has a border. */
 static int is_near_enough(const conic_surface_report *report, double max_error) {
   const conic_surface_distance *there = &report->there, *back = &report->back;
   return there->max <= max_error && back->max <= max_error && there->n_failed <= there->n_measured / 250 &&
          back->n_failed <= back->n_measured / 250;
 }
 
-/* Each removal is measured against what is left, so that errors add up to an unknown sum: the limit for each is
- * searched for that keeps the measured sum below the one that is asked for, and the fewest points win. */
+/* Each removal is measured against the remaining points, so errors add up to an unknown sum. Searches for the limit of
+ * single removals that keeps the measured sum within the wanted limit with the fewest points. */
 static conic_status thin_within(conic_surface *surface, const conic_thin_options *options, conic_splats *thinned,
                                 conic_surface_report *report) {
   conic_context *context = surface->context;

@@ -54,7 +54,8 @@ static conic_status sample_pieces(const cli_points_share *share, const conic_rea
   return status;
 }
 
-/* Those of all, which is every so many-th of all values: the second time it is known which these are. */
+/* Makes one sample of all processes' values: every so many-th value of all. A second reading takes these values, once
+ * their number is known. */
 static conic_status sample_together(const cli_points_share *share, const conic_read_options *reading,
                                     range_search *search) {
   conic_value_sample *sample = search->sample;

@@ -1,4 +1,4 @@
-/* Colours that a command makes and keeps in what it writes. */
+/* Colours that a command makes and keeps in its output. */
 #ifndef CONIC_BUILD_COLORING_H
 #define CONIC_BUILD_COLORING_H
 
@@ -8,8 +8,8 @@
 #include "conic/coloring.h"
 
 typedef struct cli_coloring {
-  conic_coloring_options options; /* `by` null: colours stay */
-  int is_up_given, keeps_up;      /* what points up is written, too */
+  conic_coloring_options options; /* `by` null: colours stay as they are */
+  int is_up_given, keeps_up;      /* keeps_up: the output says what points up, too */
   conic_coloring done;
 } cli_coloring;
 
@@ -25,15 +25,15 @@ void cli_coloring_init(cli_coloring *coloring);
 /* Returns CLI_DONE, or CLI_USAGE after a message. */
 int cli_coloring_check(const cli_session *session, cli_coloring *coloring);
 
-/* What is to be read. */
+/* Sets what must be read for the colours. */
 void cli_coloring_read(const cli_coloring *coloring, conic_read_options *reading);
 
-/* Colours splats or triangles, of which either may be null; `up` is what their file says, or zero. Errors: as
+/* Colours splats or triangles, either of which may be null; `up` is what their file says, or zero. Errors: as
  * conic_drawing_color. */
 conic_status cli_coloring_apply(cli_session *session, cli_coloring *coloring, const double up[3], conic_splats *splats,
                                 conic_triangles *triangles);
 
-/* Of inputs that are coloured a batch at a time: reads them once to find the range, or, several processes, twice.
+/* For inputs that are coloured batch by batch: reads them once to find the range; several processes read them twice.
  * Collective. Errors: as conic_model_stream. */
 conic_status cli_coloring_find_range(cli_coloring *coloring, const cli_points_share *share,
                                      const conic_read_options *reading);

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "cli/outputs.h"
-#include "cli/session_team.h"
 #include "core/base/message.h"
 #include "core/base/team_runs.h"
 #include "source/reach.h"
@@ -21,12 +20,13 @@ int cli_build_check(const cli_build *build, const char *const *inputs, int n_inp
 }
 
 void cli_build_share(cli_build *build) {
-  conic_context_join(build->session->context, cli_team_of_library(build->session, &build->team));
+  build->is_shared = cli_team_is_shared(build->session);
+  conic_context_join(build->session->context, cli_team_of(build->session));
 }
 
 conic_status cli_build_part(cli_build *build, conic_status status) {
   status = conic_context_part(build->session->context, status);
-  cli_team_exit(build->session, status); /* what is told of a failure is told now */
+  cli_team_exit(build->session, status); /* messages of a failure appear now */
   return status;
 }
 
@@ -88,22 +88,18 @@ static int write_report(cli_build *build, const cli_build_steps *steps) {
   if (!json)
     return exit_code;
   steps->report(json, build);
-  cli_team_shares_report(json, "points", &build->shares);
+  cli_team_report_write(json, "points", &build->team);
   return cli_json_finish(file);
 }
 
-/* What all came to. The first process alone then has something to say. */
+/* Agrees on all processes' exit code. Only the first process reports anything afterwards. */
 static int agree_on_build(cli_build *build, conic_moment start, int exit_code) {
-  if (!build->team.count)
+  if (!build->is_shared)
     return exit_code;
   cli_team_trace(build->session, "build", build->session->command, 0, start, 0);
   exit_code = cli_team_agree(build->session, exit_code);
-  if (exit_code == CLI_DONE) {
-    uint64_t n_stages;
-    double busy_seconds;
-    cli_team_count_stages(&n_stages, &busy_seconds);
-    cli_team_shares_gather(build->session, n_stages, busy_seconds, &build->shares);
-  }
+  if (exit_code == CLI_DONE)
+    cli_team_report_gather(build->session, cli_team_stages(), &build->team);
   return exit_code;
 }
 
@@ -117,14 +113,14 @@ int cli_build_run(void *job, const cli_build_steps *steps, int parsed) {
     return exit_code;
   exit_code = agree_on_build(build, start, steps->make(job));
   build->total_seconds = cli_seconds() - start.clock_s;
-  if (exit_code == CLI_DONE && cli_team_is_first(build->session)) {
+  if (exit_code == CLI_DONE && cli_session_speaks(build->session)) {
     steps->tell(job);
     cli_tell_run(build->session, build->stages, count_stages(build), build->total_seconds);
     exit_code = write_report(build, steps);
   }
   if (steps->release)
     steps->release(job);
-  cli_team_shares_release(&build->shares);
+  cli_team_report_release(&build->team);
   return exit_code;
 }
 

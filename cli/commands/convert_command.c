@@ -1,4 +1,4 @@
-/* conic convert: a Gaussian scene in, the same in another format out, and what of it was lost. */
+/* conic convert: writes a Gaussian scene in another format, and says what was lost. */
 #include <stdio.h>
 #include <string.h>
 
@@ -11,12 +11,12 @@
 typedef struct convert_job {
   cli_build base;
   conic_gaussians_write_options write;
-  const char *frame; /* null: the output's own; "keep": the input's */
+  const char *frame; /* null: the frame of the output's kind; "keep": the input's */
   const char *from_frame;
-  int to, keeps_order, is_reordered; /* to: of --to, the kind + 1 */
+  int to, keeps_order, is_reordered; /* to: the kind of --to, plus 1 */
   int sh_bits;
 
-  conic_gaussians scene, written; /* as it was read, turned and ordered; and as it is read again */
+  conic_gaussians scene, written; /* scene: as it was read, turned and ordered; written: as it is read back */
   char frame_in[4];
   conic_gaussian_kind kind_in;
   int is_checked, is_lossless;
@@ -29,7 +29,7 @@ enum { READ, WORK, WRITE, CHECK };
 
 static const char *const kind_names[] = {"auto", "ply", "compressed-ply", "splat", "spz", "sog", "gltf", "glb", NULL};
 
-/* Chunks and pictures of neighbours are smaller, and rounded less. */
+/* With neighbours together, chunks and pictures are smaller, and less rounded. */
 static int wants_neighbours(conic_gaussian_kind kind) {
   return kind == CONIC_GAUSSIANS_COMPRESSED_PLY || kind == CONIC_GAUSSIANS_SOG;
 }
@@ -56,7 +56,7 @@ static void add_loss(convert_job *job, const char *format, double value) {
   snprintf(job->losses + n, sizeof job->losses - n, format, value);
 }
 
-/* In words, what is not as it was. */
+/* Says in words what has changed. */
 static void find_losses(convert_job *job) {
   const conic_gaussians_differences *apart = &job->differences;
   const conic_gaussians *from = &job->scene, *to = &job->written;
@@ -86,7 +86,7 @@ static void find_losses(convert_job *job) {
     add_loss(job, "quaternions have other lengths", 0.0);
 }
 
-/* Reads the output, and compares. */
+/* Reads the output back, and compares. */
 static conic_status read_again(convert_job *job) {
   conic_context *context = job->base.session->context;
   conic_gaussians_read_options options;
@@ -94,7 +94,7 @@ static conic_status read_again(convert_job *job) {
   options.keeps_source = 1;
   options.is_splat = job->write.kind == CONIC_GAUSSIANS_SPLAT;
   conic_status status = conic_gaussians_read(context, job->base.output, &options, &job->written);
-  memcpy(job->written.frame, job->scene.frame, sizeof job->written.frame); /* files do not say theirs */
+  memcpy(job->written.frame, job->scene.frame, sizeof job->written.frame); /* files do not state their frame */
   if (status == CONIC_OK)
     status = conic_gaussians_compare(context, &job->scene, &job->written, &job->differences);
   job->is_checked = status == CONIC_OK;

@@ -1,4 +1,4 @@
-/* conic cut: a part of a cloud, from a file or a web server, as a cloud of its own. */
+/* conic cut: makes a cloud from a part of a cloud in a file or on a web server. */
 #include <string.h>
 
 #include "cli/command.h"
@@ -17,13 +17,13 @@ typedef struct cut_job {
   cli_cut_region region;
   conic_layers_region part;
   conic_layers_options building;
-  const char *polygons, *keep; /* which values are kept; null: all that there are */
+  const char *polygons, *keep; /* keep: which values are kept; null: all */
   double memory_mib, cutoff;
   int is_layered, is_las; /* the output is a .lpc, or a .las */
 
   conic_splats_writer *writer;
   conic_layers_builder *builder;
-  conic_las_writer *las; /* none of them: points are counted */
+  conic_las_writer *las; /* without any output, points are only counted */
   unsigned fields;
   uint64_t n_in, n_out;
 } cut_job;
@@ -52,12 +52,12 @@ static conic_status take_cut_batch(void *cookie, const conic_splats *batch) {
   return status;
 }
 
-/* The values that are asked for; null: none. */
+/* The names of the kept values; null: none. */
 static const char *kept_names(const cut_job *job) {
   return !job->keep ? "all" : strcmp(job->keep, "none") == 0 ? NULL : job->keep;
 }
 
-/* A COPC on disk is a LAZ too, of whose points more is known. */
+/* A COPC on disk is also a LAZ, which holds more about its points. */
 static int is_in_layers(const cut_job *job) {
   const char *path = job->base.input;
   int wants_more = job->base.where || (job->keep && kept_names(job));
@@ -65,7 +65,7 @@ static int is_in_layers(const cut_job *job) {
   return conic_layers_is_url(path) || conic_layers_is_file(path) || (conic_layers_is_hierarchy(path) && !is_las);
 }
 
-/* Opens a layered cloud, with what is chosen of it. */
+/* Opens a layered cloud, with the wanted part. */
 static conic_status open_cut_layers(const cut_job *job, conic_layers **layers) {
   conic_layers_access access;
   conic_layers_access_init(&access);
@@ -96,7 +96,7 @@ static conic_status stream_part(cut_job *job) {
   return conic_model_stream(context, job->base.input, &options, take_cut_batch, job);
 }
 
-/* The first reading, of which *end is when it ended. */
+/* Reads for the first time; *end is when that ended. */
 static conic_status read_part(cut_job *job, double *end) {
   double start = cli_seconds();
   conic_status status = stream_part(job);
@@ -107,7 +107,7 @@ static conic_status read_part(cut_job *job, double *end) {
   return status;
 }
 
-/* A PLY says first how many points it has, so they are read twice. */
+/* A PLY begins with the number of its points, so they are read twice. */
 static conic_status cut_to_ply(cut_job *job) {
   conic_write_options options;
   conic_write_options_init(&options);
@@ -127,7 +127,7 @@ static conic_status cut_to_ply(cut_job *job) {
   return status;
 }
 
-/* Samples of a .lpc stay on its grid. */
+/* Keeps the samples of a .lpc on its grid. */
 static conic_status plan_to_layers(cut_job *job) {
   conic_layers *layers;
   job->building.memory_bytes = (uint64_t)(job->memory_mib * 1048576.0);
@@ -157,7 +157,7 @@ static conic_status cut_to_layers(cut_job *job) {
   return status;
 }
 
-/* The header of a LAS is written once more at the end. */
+/* The header of a LAS is written again at the end. */
 static conic_status cut_to_las(cut_job *job) {
   conic_context *context = job->base.session->context;
   conic_status status = conic_las_writer_open(context, job->base.output, job->base.input, &job->las);

@@ -1,4 +1,4 @@
-/* conic devices: what there is to draw on. */
+/* conic devices: lists the devices that can draw. */
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json_write.h"

@@ -48,7 +48,7 @@ static void print_lone_planes(const cli_diff_job *job, const conic_image images[
   putchar('\n');
 }
 
-/* What of a plane was compared. */
+/* Which channels of a plane were compared. */
 static const char *name_of_compared(const conic_difference *difference, int plane) {
   return plane == CONIC_PLANE_RGBA && difference->lacks_alpha ? "rgb" : conic_plane_describe((conic_plane)plane)->name;
 }

@@ -1,4 +1,4 @@
-/* conic diff of two folders: the table of views and means that papers have. */
+/* conic diff of two folders: a table of views and means, as papers have it. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 
 static const char *const match_names[] = {"", "name", "number", "order"};
 
-/* A table's columns: what is summed up over the views. */
+/* The columns of a table that are averaged over the views. */
 enum { PSNR, SSIM, SSIM_PADDED, FLIP, N_MEASURES };
 static const char *const measure_names[N_MEASURES] = {"psnr", "ssim", "ssim_padded", "flip"};
 
@@ -17,7 +17,7 @@ static double measure_of(const conic_difference *difference, int i) {
   return difference->has_color ? measures[i] : NAN;
 }
 
-/* Over the views whose pictures have colour; NaN where there is none. */
+/* The mean over the views with colour; NaN where there are none. */
 static double mean_over_views(const cli_diff_views *views, int i) {
   double sum = 0.0, n = 0.0;
   for (size_t k = 0; k < views->n; k++) {
@@ -93,7 +93,7 @@ static int report_views(const cli_diff_job *job, const cli_diff_views *views) {
 
 /* --- CSV --- */
 
-/* As RFC 4180 has it. */
+/* Text as in RFC 4180. */
 static void write_csv_text(FILE *to, const char *text) {
   fputc('"', to);
   for (; *text; text++) {
@@ -173,7 +173,7 @@ static void print_views(const cli_diff_job *job, const cli_diff_views *views) {
 
 /* --- the work --- */
 
-/* "H.png" becomes "H.NAME.png"; null without memory, or where there is to be none. */
+/* "H.png" becomes "H.NAME.png"; null without memory, or if no heat map is wanted. */
 static char *heatmap_name(const cli_diff_job *job, const cli_diff_file *file) {
   const char *path = job->heatmap_path;
   if (!path)

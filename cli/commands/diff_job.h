@@ -1,11 +1,11 @@
-/* One `conic diff`: of two images, or of two folders of them, view by view. */
+/* One `conic diff`: of two images, or of two folders of images, view by view. */
 #ifndef CONIC_DIFF_JOB_H
 #define CONIC_DIFF_JOB_H
 
 #include "cli/json_write.h"
 #include "cli/session.h"
 
-/* Which of the images hold display values, whatever they say themselves. */
+/* Which of the images hold display values, even if they say otherwise. */
 typedef enum cli_diff_display {
   CLI_DISPLAY_AUTO,
   CLI_DISPLAY_NONE,
@@ -14,7 +14,7 @@ typedef enum cli_diff_display {
   CLI_DISPLAY_BOTH
 } cli_diff_display;
 
-/* How views find each other; auto is by name, or else by number or order. */
+/* How the views of both folders are matched; AUTO: by name, else by number, else by order. */
 typedef enum cli_diff_match { CLI_MATCH_AUTO, CLI_MATCH_NAME, CLI_MATCH_NUMBER, CLI_MATCH_ORDER } cli_diff_match;
 
 typedef struct cli_diff_limits {
@@ -30,22 +30,23 @@ typedef struct cli_diff_job {
   cli_diff_limits limits;
 } cli_diff_job;
 
-/* What `job` measures of two files, whose images the caller releases, and its heat map into `heatmap_path`, which may
- * be null. With `needs_size`, images of different sizes are an error, which names them. Errors: INPUT, IO, MEMORY,
+/* Compares two files as `job` says. The caller releases the images. Writes a heat map to `heatmap_path`, which may be
+ * null. With `needs_size`, images of different sizes are an error that names them. Errors: INPUT, IO, MEMORY,
  * UNSUPPORTED. */
 conic_status cli_diff_measure(const cli_diff_job *job, const char *const paths[2], const char *heatmap_path,
                               int needs_size, conic_image images[2], conic_difference *difference);
 
-/* Whether both images have a plane that max_abs looks at. */
+/* Whether both images have a plane that counts for max_abs. */
 int cli_diff_has_values(const conic_difference *difference);
 
-/* Past a limit, or, where none is given, not identical. A limit cannot be kept by what is not there to be measured. */
+/* Whether the difference exceeds a limit or, without limits, the images are not identical. A limit on something that
+ * cannot be measured is exceeded. */
 int cli_diff_is_past(const cli_diff_limits *limits, const conic_difference *difference);
 
-/* The keys of a comparison but the planes'; what could not be measured is null. */
+/* Writes the keys of a comparison, without those of the planes; null for what could not be measured. */
 void cli_diff_report(cli_json *json, const conic_difference *difference);
 
-/* Whether what a user names is a folder, or a pattern with * or ?. */
+/* Whether an argument is a folder, or a pattern with * or ?. */
 int cli_diff_is_many(const char *path);
 
 /* Compares two folders or patterns. Returns the exit code, after a message. The session is open. */

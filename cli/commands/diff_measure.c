@@ -1,4 +1,4 @@
-/* What conic diff measures of two files, and what it says of that. */
+/* Measures two files for conic diff, and reports the result. */
 #include <math.h>
 
 #include "cli/commands/diff_job.h"
@@ -53,7 +53,7 @@ void cli_diff_report(cli_json *json, const conic_difference *difference) {
   cli_json_bool(json, "display_values", difference->is_display != 0);
 }
 
-/* Files of floats hold what was written into them, and all others hold codes for a screen. */
+/* Files of floats hold the values that were written; all others hold codes for a screen. */
 static void set_display(const cli_diff_job *job, int i, const char *path, conic_image *image) {
   static const char *const float_endings[] = {"exr", "pfm", "hdr"};
   int is_asked = job->display == CLI_DISPLAY_BOTH || job->display == (i ? CLI_DISPLAY_B : CLI_DISPLAY_A);
@@ -66,14 +66,14 @@ static void set_display(const cli_diff_job *job, int i, const char *path, conic_
     conic_image_encode(image);
 }
 
-/* Whether a picture of the size of `small` is what `large` looks like with fewer pixels, to a rounding of the sides. */
+/* Whether a picture of the size of `small` has the proportions of `large`, up to rounding of the sides. */
 static int is_smaller(const conic_image *small, const conic_image *large) {
   long long across = (long long)large->width * small->height, down = (long long)small->width * large->height;
   long long off = across > down ? across - down : down - across;
   return small->width <= large->width && small->height <= large->height && (off < large->width || off < large->height);
 }
 
-/* --reduce: of display values, as photographs are scaled where they are photographs no more. */
+/* --reduce: averages display values, as programs that scale photographs do. */
 static conic_status reduce_larger(const cli_diff_job *job, const char *const paths[2], conic_image images[2]) {
   conic_context *context = job->session->context;
   conic_image reduced, *large = &images[0], *small = &images[1];

@@ -18,7 +18,7 @@ int cli_diff_is_many(const char *path) {
 
 /* --- names --- */
 
-/* The ending of a picture at the end of the first n letters of a name, with its dot; 0: none. */
+/* The length of a picture's ending, with its dot, at the end of the first n letters of a name; 0: none. */
 static int picture_ending(const char *name, int n) {
   static const char *const endings[] = {"exr", "pfm", "png", "jpg", "jpeg", "tif", "tiff", "hdr", "webp", "tga", "bmp"};
   char stem[256];
@@ -31,7 +31,7 @@ static int picture_ending(const char *name, int n) {
   return 0;
 }
 
-/* Of "name.0012" 12, else -1. */
+/* 12 for "name.0012"; -1 for other names. */
 static long frame_number(const char *stem, int n) {
   int n_digits = 0;
   while (n_digits < n && stem[n - n_digits - 1] >= '0' && stem[n - n_digits - 1] <= '9')
@@ -45,7 +45,7 @@ static int is_decimal(char c) {
   return c >= '0' && c <= '9';
 }
 
-/* By letters, and by the value of numbers among them: frame9 comes before frame10. */
+/* Orders names by letters, and numbers in them by value: frame9 comes before frame10. */
 static int compare_by_nature(const void *first, const void *second) {
   const char *a = ((const cli_diff_file *)first)->name, *b = ((const cli_diff_file *)second)->name;
   while (*a && *b) {
@@ -85,7 +85,7 @@ static int no_room(void) {
   return cli_error(CLI_RESOURCE, "diff: out of memory");
 }
 
-/* Adds a file, which from now on is an input; other things that have names are none. */
+/* Adds a file, which is an input from now on; folders and other things are left out. */
 static int add_file(const cli_diff_job *job, cli_diff_list *list, const char *folder, const char *name) {
   conic_disk_entry found;
   size_t room = strlen(folder) + strlen(name) + 2;
@@ -98,7 +98,7 @@ static int add_file(const cli_diff_job *job, cli_diff_list *list, const char *fo
     free(file.path);
     return CLI_DONE;
   }
-  if ((list->n & (list->n - 1)) == 0) { /* room for as many again */
+  if ((list->n & (list->n - 1)) == 0) { /* doubles the room */
     cli_diff_file *files = realloc(list->files, (list->n ? 2 * list->n : 1) * sizeof *files);
     if (!files) {
       free(file.path);
@@ -206,7 +206,7 @@ static int is_numbered(const cli_diff_list *list) {
   return n == list->n;
 }
 
-/* Frames with frames of the same number; or, as --view all numbers views, with the pictures at these places, from 0. */
+/* Matches frames with frames of the same number; or pictures by their place, as --view all numbers views, from 0. */
 static int match_by_number(cli_diff_views *views) {
   int is_a = is_numbered(&views->lists[0]), is_b = is_numbered(&views->lists[1]);
   const cli_diff_list *numbered = &views->lists[is_a ? 0 : 1], *other = &views->lists[is_a ? 1 : 0];
@@ -234,7 +234,7 @@ static int match_in_order(const cli_diff_job *job, cli_diff_views *views) {
   return CLI_DONE;
 }
 
-/* By what is asked for, or by the first way that finds any. */
+/* Matches in the requested way, or in the first way that finds any matches. */
 static int match_views(const cli_diff_job *job, cli_diff_views *views) {
   int exit_code = CLI_DONE, is_auto = job->match == CLI_MATCH_AUTO;
   for (int match = CLI_MATCH_NAME; match <= CLI_MATCH_ORDER && views->n == 0 && exit_code == CLI_DONE; match++) {

@@ -1,4 +1,4 @@
-/* conic explain: why a pixel is as it is, and where a splat lies on the screen. */
+/* conic explain: tells why a pixel is as it is, and where a splat is on the screen. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +21,7 @@ typedef struct explain_job {
   conic_camera camera;
   const conic_drawing *drawing;
   conic_contributions *contributions;
-  conic_image image; /* all planes, where a pixel is asked for */
+  conic_image image; /* all planes, if a pixel is asked about */
 } explain_job;
 
 /* X,Y */
@@ -50,7 +50,7 @@ static void write_vector(cli_json *json, const char *key, const float vector[3])
   write_numbers(json, key, wide, 3);
 }
 
-/* Which splat it is of what is drawn; and of what that was chosen. */
+/* A splat's number in the drawing; and the point, node or cluster that it was chosen for. */
 static void write_splat_name(cli_json *json, const explain_job *job, uint32_t splat) {
   uint32_t number;
   const char *name = conic_source_name_splat(job->scene.source, splat, &number);
@@ -65,7 +65,7 @@ static void write_triangle_name(cli_json *json, const explain_job *job, uint32_t
     cli_json_count(json, "cluster", job->drawing->triangles->cluster[triangle]);
 }
 
-/* What a splat is on the screen, whatever the pixel. */
+/* A splat on the screen, for any pixel. */
 static void write_projection(cli_json *json, const explain_job *job, const conic_projection *p) {
   write_splat_name(json, job, p->splat);
   cli_json_text(json, "fate", conic_fate_name(p->fate));
@@ -86,7 +86,7 @@ static void write_projection(cli_json *json, const explain_job *job, const conic
   write_vector(json, "normal", p->normal);
 }
 
-/* What is in reach of the pixel. */
+/* What reaches the pixel. */
 typedef struct at_pixel {
   const conic_contribution *list;
   const conic_triangle_contribution *triangles;
@@ -119,7 +119,7 @@ static conic_status write_contribution(cli_json *json, const explain_job *job, c
   return CONIC_OK;
 }
 
-/* What is blended, in the order of the sums: splats as they come, and the triangle last. */
+/* Writes what is blended, in the order of the sums: splats in their order, and the triangle last. */
 static void write_blended(cli_json *json, const explain_job *job, const at_pixel *at) {
   cli_json_array(json, "blended");
   for (size_t i = 0; i < at->n; i++)
@@ -163,7 +163,7 @@ static void write_triangles(cli_json *json, const explain_job *job, const conic_
   cli_json_close(json);
 }
 
-/* The pixel as it is drawn. */
+/* Writes the pixel as drawn. */
 static void write_planes(cli_json *json, const explain_job *job) {
   size_t at = (size_t)job->pixel[1] * (size_t)job->image.width + (size_t)job->pixel[0];
   cli_json_object(json, "planes");
@@ -277,7 +277,7 @@ static void write_row(FILE *to, const conic_projection *p) {
   fprintf(to, ",%.17g,%.17g,%.17g,%.17g\n", p->amplitude, p->nearest_z, p->farthest_z, p->nearness);
 }
 
-/* A line a splat, with the names of the columns above. */
+/* Writes a line for each splat, below the names of the columns. */
 static conic_status dump_projection(cli_session *session, const explain_job *job, size_t n_splats) {
   conic_output *output;
   if (!job->dump_path)
@@ -318,7 +318,7 @@ static conic_status draw(cli_session *session, explain_job *job) {
   return status;
 }
 
-/* What was asked about is there: only now is it known what there is. */
+/* Checks that the splat and pixel that were asked about exist, which is known only now. */
 static int check_questions(const explain_job *job) {
   size_t n_splats = job->drawing->splats->count;
   if (job->is_splat_given && n_splats == 0)
@@ -333,7 +333,7 @@ static int check_questions(const explain_job *job) {
 
 static int answer(cli_session *session, explain_job *job) {
   conic_status status = cli_sample_camera(session, &job->scene, &job->camera);
-  if (status == CONIC_OK) /* where something is chosen, that is what is drawn, and explained */
+  if (status == CONIC_OK) /* a choice is what is drawn, and what is explained */
     status = conic_source_choose(job->scene.source, &job->camera, &job->scene.shot.render, &job->scene.shot.view);
   job->drawing = &conic_source_chosen(job->scene.source)->drawing;
   int exit_code = status == CONIC_OK ? check_questions(job) : cli_exit_of(status);
@@ -368,7 +368,7 @@ static int explain(cli_session *session, explain_job *job) {
   return exit_code;
 }
 
-/* The answer goes to standard output, unless --json says where else. */
+/* The answer goes to standard output, unless --json names a file. */
 static int check(cli_session *session, explain_job *job) {
   if (!job->is_pixel_given && !job->is_splat_given && !job->dump_path)
     return cli_usage("explain: nothing is asked; give --pixel X,Y, --splat I or --dump-projection FILE");

@@ -1,5 +1,5 @@
-/* conic explain of a Gaussian scene: what a pixel is composited of, and which decisions rounding may take either way.
- */
+/* conic explain for a Gaussian scene: what a pixel is composited of, and which decisions rounding may turn either
+ * way. */
 #include "cli/commands/gaussian_commands.h"
 #include "cli/render/sample_options.h"
 #include "conic/source.h"
@@ -15,7 +15,7 @@ static void write_list(cli_json *json, const char *key, const double *values, in
   cli_json_close(json);
 }
 
-/* The pixel as it is drawn. */
+/* Writes the pixel as drawn. */
 static void write_drawn(cli_json *json, const conic_image *image, size_t at) {
   cli_json_object(json, "planes");
   for (int i = 0; i < CONIC_N_PLANES; i++) {
@@ -30,7 +30,7 @@ static void write_drawn(cli_json *json, const conic_image *image, size_t at) {
   cli_json_close(json);
 }
 
-/* What floats may make of it. */
+/* Writes the range that floats may give. */
 static void write_bounds(cli_json *json, const conic_gaussian_bound *b) {
   static const struct {
     const char *name;

@@ -1,5 +1,4 @@
-/* conic gradient: the derivative of a Gaussian scene's picture, by everything that the scene and the camera consist of.
- */
+/* conic gradient: the derivative of a Gaussian scene's picture by all numbers of the scene and the camera. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,7 +36,7 @@ static void write_camera_gradient(cli_json *json, const conic_gaussian_gradient 
   cli_json_close(json);
 }
 
-/* The largest number of a group of parameters. */
+/* The largest number in a group of parameters. */
 static double greatest_in_columns(const double *const *columns, int n_columns, size_t n) {
   double greatest = 0.0;
   for (int k = 0; k < n_columns; k++)
@@ -104,7 +103,7 @@ static void tell_gradient(const cli_session *session, const gradient_job *job) {
   printf(" (%.0f ms)\n", job->ms);
 }
 
-/* Weights of another size are an input that can't be used. */
+/* Weights of another size cannot be used. */
 static conic_status check_weight_size(const gradient_job *job, const conic_camera *camera) {
   if (job->weights.width == camera->width && job->weights.height == camera->height)
     return CONIC_OK;

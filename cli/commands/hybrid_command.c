@@ -1,4 +1,4 @@
-/* conic hybrid: a mesh in, clusters of triangles and of surfels out. */
+/* conic hybrid: turns a mesh into clusters of triangles and of surfels. */
 #include "cli/command.h"
 #include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
@@ -24,7 +24,7 @@ typedef struct hybrid_job {
 
 enum { READ, CLUSTER, SAMPLE, SIMPLIFY, WORK, WRITE };
 
-/* Of what is read whole. */
+/* Builds from an input that is read whole. */
 static conic_status build_whole(hybrid_job *job) {
   conic_context *context = job->base.session->context;
   conic_hybrid_input input;
@@ -92,7 +92,7 @@ static void write_counts(cli_json *json, const hybrid_job *job) {
   cli_json_count(json, "bytes", job->info.n_bytes);
 }
 
-/* What the mesh has that a closed surface has not. */
+/* Writes what keeps the mesh from being a closed surface. */
 static void write_oddities(cli_json *json, const conic_hybrid_report *r) {
   cli_json_object(json, "skipped");
   cli_json_count(json, "nan", r->nan);

@@ -1,4 +1,4 @@
-/* conic info: what a file holds, and whether it is sound. */
+/* conic info: tells what a file holds, and whether it is sound. */
 #include <errno.h>
 #include <inttypes.h>
 #include <string.h>
@@ -16,8 +16,8 @@ typedef struct info_job {
   int is_check;
   int has_bytes;
   uint64_t bytes;
-  int is_cameras, size[2]; /* --cameras, or they are all that the file has; --size of their pictures */
-  conic_facts *facts;      /* null: it is an image, or cameras */
+  int is_cameras, size[2]; /* is_cameras: --cameras, or the file has only cameras; size: of their pictures, by --size */
+  conic_facts *facts;      /* null for an image or cameras */
   conic_cameras cameras;
   conic_image image;
   size_t n_wrong_samples;
@@ -45,7 +45,8 @@ static int parse(cli_session *session, int argc, char **argv, info_job *job) {
   return exit_code == CLI_DONE ? cli_check_inputs_stay(session, &job->path, 1, NULL, 0) : exit_code;
 }
 
-/* Told by content, so that a wrong ending does not mislead. A pipe, which can be read only once, is a model. */
+/* Judges by content, so that a wrong ending does not mislead. A pipe, which can be read only once, counts as a
+ * model. */
 static int is_exr(const char *path) {
   return conic_file_begins_with(path, "\x76\x2f\x31\x01", 4);
 }
@@ -106,7 +107,7 @@ static void print_image(const info_job *job) {
     printf("  %zu samples that are not finite\n", job->n_wrong_samples);
 }
 
-/* The file's size over its points; 0 where either is not known. */
+/* The file's size over its points; 0 where either is unknown. */
 static double bytes_per_point(const info_job *job) {
   const conic_fact *fact;
   for (size_t i = 0; job->facts && job->has_bytes && (fact = conic_facts_at(job->facts, i)); i++)

@@ -9,7 +9,7 @@
 #include "core/base/nearest_word.h"
 #include "gaussians/scene/made_gaussians.h"
 
-/* Splats that are in memory at a time. */
+/* Splats in memory at a time. */
 #define BATCH ((size_t)1 << 20)
 
 typedef struct make_job {
@@ -122,7 +122,7 @@ static int parse_scene(int argc, char **argv, make_job *job) {
   scene->count = (size_t)job->count;
   scene->seed = job->seed;
   job->write.encoding = job->is_ascii ? CONIC_PLY_ASCII : CONIC_PLY_BINARY;
-  job->write.circles = 1; /* a normal and a radius say all of a circle, in 8 bytes less than two axes */
+  job->write.circles = 1; /* a normal and a radius describe a circle in 8 bytes less than two axes */
   job->write.cutoff = scene->cutoff;
   return exit_code;
 }
@@ -199,7 +199,7 @@ static int make_scene(void *cookie) {
 
 static void report_scene(cli_json *json, const void *cookie) {
   const make_job *job = cookie;
-  const conic_repairs none = {0}; /* what is made is sound; the keys are those of every command that builds */
+  const conic_repairs none = {0}; /* what is made is sound, but the keys are those of every command that builds */
   cli_json_text(json, "scene", job->is_gaussians ? gaussians_name : conic_scene_name(job->scene.type));
   cli_json_count(json, "points_in", job->scene.count);
   cli_json_count(json, "points_out", job->scene.count);

@@ -1,4 +1,4 @@
-/* conic mls: point-set surfaces. Points in; cleaner, fewer or more of them out. */
+/* conic mls: point-set surfaces. Makes cleaner, fewer or more points from points. */
 #include <string.h>
 
 #include "cli/command.h"
@@ -6,7 +6,6 @@
 #include "cli/commands/mls_cells.h"
 #include "cli/commands/mls_sizes.h"
 #include "cli/device_option.h"
-#include "cli/session_team.h"
 #include "core/base/message.h"
 #include "core/splats/repairs_log.h"
 
@@ -21,7 +20,7 @@ static const char *const isa_names[] = {"auto", "scalar", "sse2", "avx2", "avx51
 typedef struct mls_job {
   cli_build base;
   mls_action action;
-  int type, plane, weight, isa; /* indices of the words above, which are in the order of the enumerations */
+  int type, plane, weight, isa; /* indices of the words above, in the order of the enumerations */
   conic_surface_options options;
   cli_length h, max_error, spacing, hole;
   unsigned long long count;
@@ -35,15 +34,15 @@ typedef struct mls_job {
   conic_surface_report report;
   conic_repairs repairs;
   size_t n_in, n_out;
-  double unit; /* the median spacing, where a length is in it */
+  double unit; /* the median spacing, if a length is given in it */
 } mls_job;
 
 enum { READ, ESTIMATE, WORK, WRITE };
 
-/* Where nothing is said of how many are to stay, one in so many does. */
+/* Without a number of points to keep, one in so many is kept. */
 enum { THINNED_TO = 10 };
 
-/* Where a length is in spacings: the median one of the points. */
+/* Finds the points' median spacing, if a length is given in spacings. */
 static conic_status find_unit(mls_job *job) {
   if (!job->h.is_in_spacings && !job->max_error.is_in_spacings && !job->spacing.is_in_spacings &&
       !job->hole.is_in_spacings)
@@ -55,7 +54,7 @@ static conic_status find_unit(mls_job *job) {
   return CONIC_ERROR_INPUT;
 }
 
-/* Spheres lean on normals, and surfaces are given sides by them: where the file has none, they are estimated. */
+/* Spheres need normals, and normals tell the sides of surfaces: where the file has none, they are estimated. */
 static conic_status read_points(mls_job *job) {
   conic_context *context = job->base.session->context;
   double start = cli_seconds();
@@ -66,7 +65,7 @@ static conic_status read_points(mls_job *job) {
   start = cli_build_end_stage(&job->base.stages[READ], start);
   if (status != CONIC_OK)
     return status;
-  if (job->action != MLS_DENSIFY) /* there they say where the surface is */
+  if (job->action != MLS_DENSIFY) /* densifying needs them: they say where the surface is */
     cli_build_hint_faces(&job->base, &job->model);
   conic_splats *points = &job->model.points;
   double low[3], high[3];
@@ -125,7 +124,7 @@ static conic_status project_all_points(mls_job *job) {
   return conic_surface_clean(job->surface, &job->result, &job->report);
 }
 
-/* One h for all: cell by cell, which needs not all of them at a time. */
+/* Works cell by cell, if all points have one h: then not all of them are needed at once. */
 static int is_by_cells(const mls_job *job) {
   return job->action == MLS_PROJECT && job->h.value > 0.0 && job->options.cluster == 0.0 && !job->is_sharp;
 }
@@ -153,9 +152,11 @@ static conic_status act(mls_job *job) {
     return thin(job);
   case MLS_DENSIFY:
     return densify(job);
-  default:
-    return project_all_points(job);
+  case MLS_PROJECT:
+  case N_MLS_ACTIONS: /* not an action */
+    break;
   }
+  return project_all_points(job);
 }
 
 static conic_status work(mls_job *job) {
@@ -179,7 +180,7 @@ static conic_status work(mls_job *job) {
   return status;
 }
 
-/* Points that have no surface about them are left out: some always are, many mean that h is too small. */
+/* Points without a surface around them are left out. There are always some; many mean that h is too small. */
 static void warn(const mls_job *job) {
   const size_t *outcomes = job->report.outcomes;
   size_t n_lost = job->action == MLS_PROJECT ? job->n_in - job->n_out : 0;
@@ -226,7 +227,7 @@ static int write_points(mls_job *job) {
     return cli_error(CLI_INPUT, "%s: no point has a surface about it (%zu too few neighbours, %zu no minimum)",
                      job->base.input, job->report.outcomes[CONIC_SURFACE_TOO_FEW],
                      job->report.outcomes[CONIC_SURFACE_NO_MINIMUM]);
-  if (is_by_cells(job)) /* it is written */
+  if (is_by_cells(job)) /* the output is written already */
     return CLI_DONE;
   int exit_code = cli_exit_of(conic_splats_write(job->base.session->context, job->base.output, &job->result, NULL));
   cli_build_end_stage(&job->base.stages[WRITE], start);
@@ -303,7 +304,7 @@ static int make_points(void *cookie) {
   if (status == CONIC_OK)
     status = work(job);
   status = cli_build_part(&job->base, status);
-  return status == CONIC_OK && cli_team_is_first(job->base.session) ? write_points(job) : cli_exit_of(status);
+  return status == CONIC_OK && cli_session_speaks(job->base.session) ? write_points(job) : cli_exit_of(status);
 }
 
 static void release_points(void *cookie) {

@@ -10,22 +10,22 @@
 #include "core/estimate/neighbours.h"
 #include "core/splats/splats_gather.h"
 
-/* Dense points lie so evenly that few neighbours bound their cells. */
+/* Dense points are so even that few neighbours bound their cells. */
 enum { CHUNK = 256, N_DIRECTIONS = 6, N_NEIGHBOURS = 12 };
 
-/* Where about a point its old outline is looked after: this share of the way to its rim. */
+/* Where a point's old outline is tested: this share of the way to its rim. */
 static const double TO_RIM = 0.9;
 
-/* How far over the surface that may be, as a share of its distance from the point. */
+/* How far a tested place may be above the surface, as a share of its distance from the point. */
 static const double MOST_LIFT = 0.7;
 
-/* Of 30°. */
+/* The cosine of 30°. */
 static const double CREASE_COSINE = 0.86602540378443865;
 
 typedef struct outline_keeping {
-  const conic_splats *from; /* the old points with the ellipses that they had */
+  const conic_splats *from; /* the old points with their old ellipses */
   conic_splats *dense;
-  conic_neighbours tree; /* of the dense ones */
+  conic_neighbours tree; /* of the dense points */
   double cutoff;
   uint8_t *is_kept; /* by old point */
 } outline_keeping;
@@ -40,8 +40,8 @@ static double outline_radius(const outline_keeping *work, size_t i) {
   return work->cutoff * sqrt(u2 > v2 ? u2 : v2);
 }
 
-/* Whether another of the dense points covers the place, or lies under it by no more than `most`: the old outline is a
- * disc, which leaves a surface that is bent. */
+/* Whether another dense point covers the place, which may be off that point's plane by up to `most`: the old outline is
+ * a flat disc, which leaves a bent surface. */
 static int is_covered(const outline_keeping *work, const double place[3], double most, uint32_t own_slot) {
   uint32_t slot;
   double distance2, u[3], v[3], normal[3], offset[3];
@@ -61,7 +61,7 @@ static int is_covered(const outline_keeping *work, const double place[3], double
   return fabs(up) <= most && distance2 - up * up <= radius * radius;
 }
 
-/* An old point keeps its ellipse where that covers what no point covers now, as at a border or beside a slit. */
+/* An old point keeps its ellipse if that covers a place that no point covers now, as at a border or beside a slit. */
 static int keeps_outline(const outline_keeping *work, size_t i) {
   static const double turns[N_DIRECTIONS][2] = {{1.0, 0.0},  {0.5, 0.8660254037844386},   {-0.5, 0.8660254037844386},
                                                 {-1.0, 0.0}, {-0.5, -0.8660254037844386}, {0.5, -0.8660254037844386}};
@@ -75,7 +75,7 @@ static int keeps_outline(const outline_keeping *work, size_t i) {
       place[axis] = (double)from->position[axis][i] + to_rim[axis];
     }
     if (place[0] + place[1] + place[2] - (place[0] + place[1] + place[2]) != 0.0)
-      return 0; /* it had none */
+      return 0; /* it had no ellipse */
     if (!is_covered(work, place, MOST_LIFT * conic_length(to_rim), slot))
       return 1;
   }

@@ -1,17 +1,17 @@
-/* Ellipses for what conic mls writes. */
+/* Ellipses for the points that conic mls writes. */
 #ifndef CONIC_MLS_SIZES_H
 #define CONIC_MLS_SIZES_H
 
 #include "conic/model.h"
 
-/* Gives `dense`, of which the first points are those of `from`, its ellipses. Those of `from` keep the ones that its
- * own picture has, dots or not, where they cover what the new points do not. No other becomes a dot, as points that
- * lie close together on something thin would. Errors: MEMORY, CANCELLED. */
+/* Gives the points of `dense` ellipses. Its first points are those of `from`. An old point keeps the ellipse, or dot,
+ * of its own picture if that covers a place that the new points do not. No other point becomes a dot, though points
+ * close together on a thin part would. Errors: MEMORY, CANCELLED. */
 conic_status cli_mls_size_dense(conic_context *context, const conic_model *from, conic_splats *dense);
 
-/* Gives `thinned`, points of `from` in its order, ellipses: each covers the outlines of the points of `from` that it is
- * the nearest to, on its side of what is thin, and a dot has the area of all dots that it stands for. Errors: MEMORY,
- * CANCELLED. */
+/* Gives the points of `thinned`, which are some of `from` in its order, ellipses. Each ellipse covers the outlines of
+ * the points of `from` to which its point is the nearest, on the same side of a thin part. A dot has the area of all
+ * dots that it replaces. Errors: MEMORY, CANCELLED. */
 conic_status cli_mls_size_thinned(conic_context *context, const conic_model *from, conic_splats *thinned);
 
 /* Gives points their ellipses, with clip lines at creases over 30°. Errors: MEMORY, CANCELLED. */

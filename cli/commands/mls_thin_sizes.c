@@ -1,5 +1,5 @@
-/* Ellipses of points that were chosen from more: each covers, in its plane, the outlines of all points that it stands
- * for, so that the chosen ones cover what all did and end where those do. */
+/* Ellipses of points chosen from more. Each covers, in its plane, the outlines of all points that it stands for, so
+ * that the chosen points cover what all points did, and end where those do. */
 #include <math.h>
 #include <string.h>
 
@@ -14,25 +14,25 @@
 
 enum { CHUNK = 256, N_DIRECTIONS = 6, N_OWNERS = 8 };
 
-/* A point stands for another where that lies less than 60° off its plane, and their normals less than 78° apart. */
+/* A point can stand for another that is less than 60° off its plane, if their normals differ by less than 78°. */
 static const double GREATEST_SLOPE = 0.866, LEAST_COSINE = 0.2;
 
-/* The ellipse of an even cluster reaches no farther than this many times its farthest place. */
+/* The ellipse of an even cluster reaches at most so many times as far as its farthest place. */
 static const double GREATEST_REACH = 1.1;
 
-/* How much of the way to a point's rim must be covered: outlines overlap. */
+/* The part of the way to a point's rim that must be covered: outlines overlap. */
 static const double TO_RIM = 0.8;
 
 typedef struct thin_sizing {
   const conic_splats *whole; /* with ellipses */
   conic_splats *thinned;
-  conic_neighbours tree; /* of the thinned ones */
+  conic_neighbours tree; /* of the thinned points */
   double cutoff;
-  uint32_t *origins; /* by thinned point: which of the whole it is */
-  uint32_t *owners;  /* by point of the whole: the thinned one that stands for it; CONIC_NO_SLOT: none does */
-  uint32_t *starts;  /* by thinned point: its first one in `owned` */
+  uint32_t *origins; /* by thinned point: its number in the whole set */
+  uint32_t *owners;  /* by point of the whole set: the thinned point that stands for it; CONIC_NO_SLOT: none */
+  uint32_t *starts;  /* by thinned point: where its points begin in `owned` */
   uint32_t *owned;
-  double (*places)[2]; /* of each thread, the outlines of the largest cluster */
+  double (*places)[2]; /* for each thread: the outlines of the largest cluster */
   size_t n_largest;
 } thin_sizing;
 
@@ -40,7 +40,7 @@ static int stands_as_dot(const conic_splats *splats, size_t i) {
   return splats->dot && splats->dot[i] != 0.0f;
 }
 
-/* A splat's axes and unit normal; 0 where they span no ellipse. */
+/* A splat's axes and unit normal; returns 0 where they span no ellipse. */
 static int axes_of(const conic_splats *splats, size_t i, double u[3], double v[3], double normal[3]) {
   for (int axis = 0; axis < 3; axis++) {
     u[axis] = (double)splats->tangent_u[axis][i];
@@ -55,7 +55,7 @@ static void vector_between(const conic_splats *splats, size_t from, size_t to, d
     d[axis] = (double)splats->position[axis][to] - (double)splats->position[axis][from];
 }
 
-/* The points that are left are some of the whole, in its order. */
+/* The thinned points are some of the whole set, in its order. */
 static void find_origins(thin_sizing *work) {
   const conic_splats *whole = work->whole, *thinned = work->thinned;
   for (size_t i = 0, j = 0; i < thinned->count; i++, j++) {
@@ -67,7 +67,7 @@ static void find_origins(thin_sizing *work) {
   }
 }
 
-/* Whether a point that is left lies on the same sheet as this one, or both are dots. */
+/* Whether a thinned point is on the same sheet as this point, or both are dots. */
 static int can_own(const conic_splats *whole, size_t origin, size_t i, const double normal[3]) {
   double u[3], v[3], own[3], d[3];
   if (stands_as_dot(whole, i) || stands_as_dot(whole, origin))
@@ -79,7 +79,7 @@ static int can_own(const conic_splats *whole, size_t origin, size_t i, const dou
   return height * height <= GREATEST_SLOPE * GREATEST_SLOPE * conic_dot(d, d);
 }
 
-/* Of the nearest points that are left, the first on the same sheet, else the very nearest. */
+/* The nearest thinned point on the same sheet, else the very nearest. */
 static uint32_t owner_of(const thin_sizing *work, size_t i) {
   const conic_splats *whole = work->whole;
   uint32_t slots[N_OWNERS];
@@ -104,13 +104,13 @@ static void find_owners(void *data, size_t i_item, int i_thread) {
     work->owners[i] = owner_of(work, i);
 }
 
-/* Lists what each owns, in the order of the whole. */
+/* Lists the points that each owns, in the order of the whole set. */
 static void list_owned(thin_sizing *work) {
   size_t n = work->thinned->count;
   for (size_t i = 0; i < work->whole->count; i++)
     if (work->owners[i] != CONIC_NO_SLOT)
       work->starts[work->owners[i]]++;
-  for (size_t i = 0; i <= n; i++) { /* now where each one's list ends; then, backwards, where it begins */
+  for (size_t i = 0; i <= n; i++) { /* first where each list ends; then, going backwards, where it begins */
     work->n_largest = work->starts[i] > work->n_largest ? work->starts[i] : work->n_largest;
     work->starts[i] += i ? work->starts[i - 1] : 0;
   }
@@ -119,7 +119,7 @@ static void list_owned(thin_sizing *work) {
       work->owned[--work->starts[work->owners[i]]] = (uint32_t)i;
 }
 
-/* The outline of a point, seen along the normal of the plane of (u, v) about the origin. */
+/* A point's outline, projected along the normal onto the plane of (u, v) about the origin. */
 static size_t lay_outline(const thin_sizing *work, size_t origin, size_t i, const double u[3], const double v[3],
                           double (*places)[2]) {
   static const double turns[N_DIRECTIONS][2] = {{1.0, 0.0},  {0.5, 0.8660254037844386},   {-0.5, 0.8660254037844386},
@@ -170,7 +170,7 @@ static void size_point(const thin_sizing *work, size_t i, double (*places)[2]) {
     return;
   }
   if (work->starts[i + 1] - work->starts[i] < 2)
-    return; /* it stands for itself alone */
+    return; /* it stands only for itself */
   conic_tangent_basis(normal, u, v);
   for (uint32_t k = work->starts[i]; k < work->starts[i + 1]; k++)
     n += lay_outline(work, origin, work->owned[k], u, v, places + n);
@@ -214,7 +214,7 @@ static conic_status size_all(conic_context *context, thin_sizing *work) {
   return CONIC_OK;
 }
 
-/* The whole, with the ellipses that its own picture has. */
+/* Gives the whole set the ellipses of its own picture. */
 static conic_status size_whole(conic_context *context, const conic_model *from, const conic_estimate_options *options,
                                conic_model *whole) {
   whole->triangles = from->triangles;

@@ -1,10 +1,9 @@
-/* conic octree: splats, raw points or a mesh in, a point-octree out. */
+/* conic octree: makes a point-octree from splats, raw points or a mesh. */
 #include <string.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
-#include "cli/session_team.h"
 #include "core/base/message.h"
 #include "core/splats/repairs_log.h"
 #include "source/reach.h"
@@ -63,7 +62,7 @@ static int make_octree(void *cookie) {
   cli_build_share(&job->base);
   conic_status status = cli_build_part(&job->base, build_from_model(job));
   double start = cli_seconds();
-  if (!cli_team_is_first(job->base.session))
+  if (!cli_session_speaks(job->base.session))
     return cli_exit_of(status);
   if (status == CONIC_OK)
     status = conic_octree_describe(job->octree, &job->info);

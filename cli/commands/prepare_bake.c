@@ -11,7 +11,7 @@ int cli_bake_parse(const char *text, void *value) {
   return *bake != CLI_BAKE_NONE;
 }
 
-/* What draws the maps. */
+/* Draws the maps. */
 typedef struct bake_drawer {
   conic_context *context;
   conic_renderer *renderer;
@@ -54,7 +54,7 @@ static conic_status occlude(conic_context *context, int n_directions, float cuto
   return status;
 }
 
-/* As the only value that the points have by name. */
+/* Keeps ao as the only named value of the points. */
 static conic_status keep_ao(conic_context *context, const float *ao, conic_splats *splats) {
   conic_point_values *values = conic_memory_allocate_zeroed(context, 1, sizeof *values);
   if (!values)

@@ -1,4 +1,4 @@
-/* conic prepare --bake: light from all around, worked out at the points themselves. */
+/* conic prepare --bake: computes the light from all around at the points themselves. */
 #ifndef CONIC_PREPARE_BAKE_H
 #define CONIC_PREPARE_BAKE_H
 
@@ -6,11 +6,11 @@
 
 typedef enum cli_bake { CLI_BAKE_NONE, CLI_BAKE_AO, CLI_BAKE_COLOR } cli_bake;
 
-/* Parser of --bake's value, into a cli_bake. */
+/* Parses --bake's value into a cli_bake. */
 int cli_bake_parse(const char *text, void *value);
 
-/* Gives splats with axes the value "ao" of that name, and darkens their colours by it where that is wanted, too.
- * Errors: as conic_splats_occlude. */
+/* Gives splats with axes the named value "ao", and darkens their colours by it if wanted. Errors: as
+ * conic_splats_occlude. */
 conic_status cli_bake_splats(conic_context *context, cli_bake bake, int n_directions, float cutoff,
                              conic_splats *splats);
 

@@ -1,4 +1,4 @@
-/* conic prepare: raw points or a mesh in, splats out. */
+/* conic prepare: makes splats from raw points or a mesh. */
 #include <string.h>
 
 #include "cli/command.h"
@@ -6,7 +6,6 @@
 #include "cli/commands/build_steps.h"
 #include "cli/commands/prepare_bake.h"
 #include "cli/points/points_input.h"
-#include "cli/session_team.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
@@ -34,9 +33,9 @@ static int parse_ellipse(const char *text, void *value) {
   return *rule == CONIC_ELLIPSE_BOUNDING || strcmp(text, "voronoi") == 0;
 }
 
-/* Makes normals of a set's axes, so that its sizes can be found anew. */
+/* Turns a set's axes into normals, so that sizes can be estimated anew. */
 static void forget_axes(conic_context *context, conic_splats *splats) {
-  splats->n_clips = 0; /* lines in units of the old axes */
+  splats->n_clips = 0; /* lines are in units of the old axes */
   for (size_t i = 0; i < splats->count; i++) {
     double u[3], v[3], normal[3];
     for (int axis = 0; axis < 3; axis++) {
@@ -56,8 +55,8 @@ static void forget_axes(conic_context *context, conic_splats *splats) {
   }
 }
 
-/* Thins before the sizes are found, so that they fit what is left. Faces and axes of the whole set then only tell
- * the normals. */
+/* Thins before sizes are estimated, so that they fit the remaining points. Faces and axes of the whole set then only
+ * give the normals. */
 static conic_status thin_model(prepare_job *job) {
   conic_context *context = job->base.session->context;
   conic_model *model = &job->model;
@@ -154,7 +153,7 @@ static int make_prepared(void *cookie) {
   status = cli_build_part(&job->base, status);
   start = cli_build_end_stage(&stages[WORK], start);
   int exit_code = cli_exit_of(status);
-  if (exit_code == CLI_DONE && cli_team_is_first(job->base.session))
+  if (exit_code == CLI_DONE && cli_session_speaks(job->base.session))
     exit_code = write_splats(job);
   cli_build_end_stage(&stages[WRITE], start);
   return exit_code;

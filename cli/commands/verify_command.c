@@ -1,4 +1,4 @@
-/* conic verify: how far a picture is from what the oracle says it should be. */
+/* conic verify: how far a picture is from the oracle's reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,19 +15,19 @@
 typedef struct verify_job {
   cli_render_job scene;
   int question;
-  const char *image_path;      /* null: drawn here */
+  const char *image_path;      /* null: the picture is drawn here */
   unsigned long long n_pixels; /* 0: all */
 
   conic_image image;
   conic_reference reference;
   conic_oracle_verdict verdict;
   double render_ms, oracle_ms;
-  cli_mean_verdict mean; /* with --accumulate; its reference and verdict are those above */
+  cli_mean_verdict mean; /* with --accumulate; its reference and verdict are copied to those above */
 } verify_job;
 
 static conic_status get_image(cli_session *session, verify_job *job, const conic_drawing *drawing,
                               const conic_camera *camera) {
-  if (job->image_path) /* it was read before the scene */
+  if (job->image_path) /* the image was read before the scene */
     return CONIC_OK;
   conic_status status =
       conic_image_allocate(session->context, camera->width, camera->height, job->scene.shot.planes, &job->image);
@@ -44,7 +44,7 @@ static conic_status compare(cli_session *session, verify_job *job) {
   const conic_source_choice *choice = conic_source_chosen(job->scene.source);
   conic_camera camera;
   conic_status status = cli_sample_camera(session, &job->scene, &camera);
-  if (status == CONIC_OK) /* the oracle judges how what is chosen is drawn, not the choice */
+  if (status == CONIC_OK) /* the oracle judges how the choice is drawn, not the choice itself */
     status = conic_source_choose(job->scene.source, &camera, &job->scene.shot.render, &job->scene.shot.view);
   if (status == CONIC_OK)
     status = get_image(session, job, &choice->drawing, &camera);
@@ -113,7 +113,7 @@ static void report_pixels(cli_json *json, const verify_job *job) {
     cli_report_fault(json, "worst", &verdict->worst);
 }
 
-/* Which samples were judged, too. */
+/* Reports which samples were judged, too. */
 static void report_samples(cli_json *json, const verify_job *job) {
   const cli_accumulate_job *asked = &job->scene.accumulating;
   if (asked->is_sample_given)
@@ -263,21 +263,21 @@ static int verify(cli_session *session, verify_job *job) {
   return exit_code;
 }
 
-/* What of a final picture can be judged. */
+/* Checks that the final picture can be judged. */
 static int check_samples(const cli_session *session, verify_job *job) {
   int answer = cli_sample_check(session, &job->scene);
   if (answer != CLI_DONE || !job->scene.accumulating.n_samples)
     return answer;
   if (job->question == CONIC_ORACLE_EXACT || cli_is_composited(&job->scene))
     return cli_usage("verify: --accumulate judges means of splats and triangles by their method; give --sample I");
-  const unsigned normals = 1u << CONIC_PLANE_NORMAL; /* of which the picture has the direction of the sum */
+  const unsigned normals = 1u << CONIC_PLANE_NORMAL; /* the picture has the direction of the sum of normals */
   if (job->scene.is_aov_given && job->scene.shot.planes & normals)
     return cli_usage("verify: of N, a mean of samples is not judged; --sample I judges that of a sample");
   job->scene.shot.planes &= ~normals;
   return CLI_DONE;
 }
 
-/* Which planes can be judged. */
+/* Checks which planes can be judged. */
 static int check_judged_planes(verify_job *job) {
   const unsigned composited = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL |
                               1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_ID |

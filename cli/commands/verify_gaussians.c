@@ -1,4 +1,4 @@
-/* conic verify of a Gaussian scene: a picture held against the bounds of what floats may make of its profile. */
+/* conic verify for a Gaussian scene: compares a picture with the bounds of what floats may make of its profile. */
 #include <string.h>
 
 #include "cli/commands/gaussian_commands.h"
@@ -100,7 +100,7 @@ static void print_verdict(const gaussian_report *r) {
   puts(v->pass ? "pass" : "FAILED");
 }
 
-/* The picture that is judged, where none is given. */
+/* Draws the picture to judge, if none is given. */
 static conic_status draw_composited(cli_session *session, cli_render_job *scene, const conic_camera *camera,
                                     conic_image *image, double *ms) {
   double start = cli_seconds();

@@ -22,7 +22,7 @@ typedef struct mean_work {
   cli_mean_verdict *result;
 } mean_work;
 
-/* The image without other planes. */
+/* The image with only these planes. */
 static conic_image only(const conic_image *image, unsigned planes) {
   conic_image some = *image;
   for (int i = 0; i < CONIC_N_PLANES; i++)
@@ -49,7 +49,7 @@ static conic_status ask_oracle(mean_work *work, const conic_camera *camera, coni
   return status;
 }
 
-/* What is seen through the pixels' centres: the planes that have no means. */
+/* Judges the planes without means, which show what is seen through the pixels' centres. */
 static conic_status judge_middle(mean_work *work) {
   cli_render_job *scene = work->scene;
   conic_context *context = work->session->context;
@@ -112,7 +112,7 @@ static conic_status add_sample(mean_work *work, uint64_t index) {
   return status;
 }
 
-/* Room for samples, where these are drawn here. */
+/* Makes room for samples, if they are drawn here. */
 static conic_status begin_samples(mean_work *work, const conic_camera *camera) {
   conic_context *context = work->session->context;
   unsigned planes = work->scene->shot.planes;
@@ -123,7 +123,7 @@ static conic_status begin_samples(mean_work *work, const conic_camera *camera) {
                             : status;
 }
 
-/* Puts the verdict on the means beside that on the middle. */
+/* Adds the verdict on the means to that on the middle. */
 static conic_status judge_mean(mean_work *work) {
   conic_oracle_verdict *all = &work->result->verdict, verdict;
   const conic_image means = only(work->image, MEANS);

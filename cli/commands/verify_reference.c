@@ -8,7 +8,7 @@ conic_status cli_reference_check_size(const char *path, const conic_image *image
   return CONIC_ERROR_INPUT;
 }
 
-/* A picture from a file has the names of what was chosen, where the oracle counts. */
+/* A picture from a file has the names of the choice, where the oracle has indices. */
 static void name_reference(const conic_source_choice *choice, conic_reference *r) {
   const uint32_t *names = choice->ids;
   size_t n_names = choice->drawing.splats->count;
@@ -27,9 +27,9 @@ conic_status cli_reference_draw(cli_session *session, const cli_render_job *scen
   const conic_source_choice *choice = conic_source_chosen(scene->source);
   const conic_splats *splats = choice->drawing.splats;
   conic_render_options options = scene->shot.render;
-  int is_at_rest = !scene->accumulating.motion; /* what moves keeps the length that it has there */
+  int is_at_rest = !scene->accumulating.motion; /* moving splats keep their length at rest */
   if (choice->is_all && !(splats && splats->dot) && is_at_rest)
-    options.splat_length = 0.0; /* the oracle sees all splats as they are kept, and measures them by itself */
+    options.splat_length = 0.0; /* the oracle gets all splats as they are kept, and measures them itself */
   conic_oracle_asking asking;
   conic_oracle_asking_init(&asking);
   asking.question = question;

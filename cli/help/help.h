@@ -18,7 +18,7 @@ typedef enum cli_value_kind {
 /* An option as the pages show it. */
 typedef struct cli_help_entry {
   const cli_option *option, *alias; /* the alias, its other name, may be null */
-  const char *group;                /* the heading, where a group begins here; else null */
+  const char *group, *intro;        /* the heading, and a line about it, where a group begins here; else null */
   char text[1024], fallback[256];   /* the table's help without the default; the default, empty where there is none */
   cli_value_kind kind;
 } cli_help_entry;

@@ -40,7 +40,7 @@ const char *cli_help_variable(int i, const char **meaning) {
 void cli_help_usage(FILE *to) {
   fputs("conic draws point-sampled surfaces as splats.\n\n"
         "usage: conic COMMAND [arguments]\n"
-        "       conic help [--format text|man|bash|zsh|fish|json] [COMMAND]\n"
+        "       conic help [--all] [--format text|man|bash|zsh|fish|json] [COMMAND]\n"
         "       conic --version, -V\n\n"
         "commands:\n",
         to);
@@ -77,11 +77,11 @@ static const help_format formats[] = {
 enum { N_FORMATS = sizeof formats / sizeof *formats };
 
 /* A command is asked as its user asks it, so that what is shown is the table by which it reads its arguments. */
-static int show_command(const help_format *format, const cli_command *command, cli_json *json) {
+static int show_command(const help_format *format, const cli_command *command, cli_json *json, int is_whole) {
   char ask[] = "--help", name[32];
   snprintf(name, sizeof name, "%s", command->name);
   char *arguments[] = {name, ask, NULL};
-  cli_session session = {.command = command->name, .show_help = format->show, .help = json};
+  cli_session session = {.command = command->name, .show_help = format->show, .help = json, .is_help_whole = is_whole};
   return command->run(&session, 2, arguments);
 }
 
@@ -97,7 +97,7 @@ static int show_commands(const help_format *format, const cli_command *only) {
   }
   for (int i = 0; cli_command_at(i) && answer == CLI_DONE; i++)
     if (!only || only == cli_command_at(i))
-      answer = show_command(format, cli_command_at(i), &json);
+      answer = show_command(format, cli_command_at(i), &json, 1);
   if (is_json) {
     cli_json_close(&json);
     cli_json_end(&json);
@@ -107,7 +107,7 @@ static int show_commands(const help_format *format, const cli_command *only) {
   return answer;
 }
 
-static int show_help(const help_format *format, const char *name) {
+static int show_help(const help_format *format, const char *name, int is_whole) {
   const cli_command *command = NULL;
   if (name && strcmp(name, "help") != 0) {
     command = cli_find_command(name);
@@ -120,12 +120,13 @@ static int show_help(const help_format *format, const char *name) {
     format->program();
     return CLI_DONE;
   }
-  return format->program ? show_command(format, command, NULL) : show_commands(format, command);
+  return format->program ? show_command(format, command, NULL, is_whole) : show_commands(format, command);
 }
 
 int cli_help(int argc, char **argv) {
   const help_format *format = &formats[0];
   const char *name = NULL, *word = NULL;
+  int is_whole = 0;
   for (int i = 1; i < argc; i++) {
     if (strcmp(argv[i], "--format") == 0 || strncmp(argv[i], "--format=", 9) == 0) {
       word = argv[i][8] ? argv[i] + 9 : i + 1 < argc ? argv[++i] : "";
@@ -135,8 +136,10 @@ int cli_help(int argc, char **argv) {
           format = &formats[j];
       if (!format)
         return cli_usage("help: --format: \"%s\" is not understood; it takes text, man, bash, zsh, fish, json", word);
-    } else if (argv[i][0] != '-' && !name)
+    } else if (strcmp(argv[i], "--all") == 0)
+      is_whole = 1;
+    else if (argv[i][0] != '-' && !name)
       name = argv[i];
   }
-  return show_help(format, name);
+  return show_help(format, name, is_whole);
 }

@@ -49,12 +49,15 @@ int cli_help_next(const cli_option_table *table, int *i, cli_help_entry *entry) 
   int n_all = table->n_own + table->n_common;
   const cli_option *option = NULL;
   entry->group = *i == 0 ? "options" : NULL;
+  entry->intro = NULL;
   for (; *i < n_all && !option; ++*i) {
     int is_common = *i >= table->n_own;
     const cli_option *row = is_common ? &table->common[*i - table->n_own] : &table->own[*i];
-    if (row->group || *i == table->n_own)
+    if (row->group || *i == table->n_own) {
       entry->group = row->group ? row->group : "options of every command";
-    if (row->help && !(is_common && is_replaced(table, row)))
+      entry->intro = row->intro;
+    }
+    if (row->help && !row->now && !(is_common && is_replaced(table, row)))
       option = row;
   }
   if (!option)

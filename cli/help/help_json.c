@@ -1,12 +1,22 @@
 /* The table of options as JSON, for programs that are to know them all. */
 #include "cli/help/help.h"
 #include "cli/json_write.h"
+#include "cli/scene/option_effects.h"
 
 static void write_name(cli_json *json, const char *key, const cli_option *option) {
   char name[64];
   if (option)
     snprintf(name, sizeof name, "%s%s", cli_dashes(option), option->name);
   cli_json_text(json, key, option ? name : NULL);
+}
+
+/* The facts of a set by name. */
+static void write_facts(cli_json *json, const char *key, unsigned long long facts) {
+  cli_json_array(json, key);
+  for (int i = 0; i < CLI_N_FACTS; i++)
+    if (facts >> i & 1 && cli_fact_name(i))
+      cli_json_text(json, NULL, cli_fact_name(i));
+  cli_json_close(json);
 }
 
 static void write_option(cli_json *json, const char *group, const cli_help_entry *entry) {
@@ -33,6 +43,10 @@ static void write_option(cli_json *json, const char *group, const cli_help_entry
     cli_json_close(json);
   }
   cli_json_bool(json, "repeatable", option->may_repeat);
+  cli_json_bool(json, "usual", option->is_usual);
+  cli_json_bool(json, "is_work", option->acts.is_work); /* no bit of a picture depends on it */
+  write_facts(json, "acts_on", option->acts.on);
+  write_facts(json, "needs", option->acts.needs);
   cli_json_close(json);
 }
 
@@ -51,6 +65,15 @@ void cli_help_json(cli_session *session, const cli_option_table *table) {
     group = entry.group ? entry.group : group;
     write_option(json, group, &entry);
   }
+  cli_json_close(json);
+  cli_json_array(json, "old_spellings");
+  for (int i = 0; i < table->n_own; i++)
+    if (table->own[i].now) {
+      cli_json_object(json, NULL);
+      write_name(json, "name", &table->own[i]);
+      cli_json_text(json, "now", table->own[i].now);
+      cli_json_close(json);
+    }
   cli_json_close(json);
   cli_json_array(json, "examples");
   for (int i = 0; i < 4 && command->examples[i].command; i++)

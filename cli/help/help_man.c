@@ -185,6 +185,8 @@ void cli_help_man(cli_session *session, const cli_option_table *table) {
   for (int i = 0; cli_help_next(table, &i, &entry);) {
     if (entry.group && strcmp(entry.group, "options") != 0)
       put_heading(".SS", entry.group);
+    if (entry.intro)
+      put_paragraph(entry.intro, 0);
     put_option(&entry);
   }
   put_exit_codes();

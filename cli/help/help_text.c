@@ -56,17 +56,30 @@ static void print_list(const cli_words *list) {
 void cli_help_text(cli_session *session, const cli_option_table *table) {
   const cli_command *command = cli_find_command(session->command);
   cli_help_entry entry;
+  const char *group = NULL, *intro = NULL;
+  int n = 0, n_usual = 0;
+  for (int i = 0; cli_help_next(table, &i, &entry); n++)
+    n_usual += entry.option->is_usual && i <= table->n_own;
+  int is_short = n_usual && !session->is_help_whole;
   if (command)
     printf("%s\n\nusage: %s\n\n", command->summary, command->usage);
   if (command && command->description) {
     print_words(command->description, 0);
     putchar('\n');
   }
-  for (int i = 0, is_first = 1; cli_help_next(table, &i, &entry); is_first = 0) {
-    if (entry.group)
-      printf("%s%s:\n", is_first ? "" : "\n", entry.group);
+  for (int i = 0, is_first = 1; cli_help_next(table, &i, &entry);) {
+    group = entry.group ? entry.group : group;
+    intro = entry.group ? entry.intro : intro;
+    if (is_short && !entry.option->is_usual)
+      continue;
+    if (group)
+      printf("%s%s:%s%s\n", is_first ? "" : "\n", group, intro ? " " : "", intro ? intro : "");
     print_option(&entry);
+    group = intro = NULL;
+    is_first = 0;
   }
+  if (is_short)
+    printf("\nMost pictures need no more; conic help %s --all shows all %d options.\n", session->command, n);
   if (command && command->words)
     print_list(command->words);
   for (int i = 0; command && i < 4 && command->examples[i].command; i++)

@@ -1,4 +1,4 @@
-/* conic conformance: writes a suite by which any renderer of Gaussian scenes can be judged (docs/reference/
+/* conic conformance: writes a suite with which any renderer of Gaussian scenes can be judged (docs/reference/
  * conformance.md). */
 #include <errno.h>
 #include <string.h>
@@ -32,7 +32,7 @@ typedef struct conformance_job {
   int floats;        /* 0: fast, 1: strict */
   int n_cases;
   suite_case cases[MOST_CASES];
-  struct { /* of each scene of the table */
+  struct { /* for each scene of the table */
     size_t n_records;
     int sh_degree;
   } about[64];
@@ -270,7 +270,7 @@ static void describe_suite(cli_json *json, const conformance_job *job) {
   cli_json_close(json);
 }
 
-/* Last, so that a folder with a manifest is a whole suite. */
+/* Written last, so that a folder with a manifest is a complete suite. */
 static conic_status write_suite_manifest(const conformance_job *job) {
   char full[4096];
   cli_json json;
@@ -286,7 +286,7 @@ static conic_status write_suite_manifest(const conformance_job *job) {
   return conic_output_commit(output);
 }
 
-/* A line a case, for runners that would rather not read JSON. */
+/* A line for each case, for runners that do not read JSON. */
 static conic_status write_case_list(const conformance_job *job) {
   char name[SUITE_PATH_ROOM], line[8 * SUITE_PATH_ROOM];
   size_t n = 0, room = (size_t)job->n_cases * sizeof line + 1;
@@ -308,7 +308,7 @@ static conic_status write_case_list(const conformance_job *job) {
 
 /* --- the command --- */
 
-/* Nothing but an earlier suite is written over. */
+/* Only an earlier suite may be overwritten. */
 static int check_suite_folder(const char *folder) {
   char manifest[4096];
   conic_disk_entry found;
@@ -327,7 +327,7 @@ static int check_suite_folder(const char *folder) {
   return cli_usage("conformance: %s: the folder is neither empty nor an earlier suite; give another name", folder);
 }
 
-/* A folder without a manifest is no suite, until the new one stands there. */
+/* Removes the old manifest first: without one the folder is no suite until the new one is written. */
 static conic_status make_suite_folders(suite_files *files) {
   char full[4096];
   conic_status status = cli_suite_make_folder(files, "");

@@ -1,4 +1,4 @@
-/* conic judge: whether a picture that somebody drew is right, pixel by pixel, and if not, where and why. */
+/* conic judge: tells whether somebody's picture is right, pixel by pixel, and if not, where and why. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,7 +19,7 @@ static unsigned judged_planes(const cli_judge_job *job) {
   return job->scene.is_aov_given ? planes & job->scene.shot.planes : planes;
 }
 
-/* Conic's own EXRs say how many samples a pixel has. */
+/* conic's own EXRs state how many samples a pixel has. */
 static void take_samples_of_picture(cli_judge_job *job) {
   const conic_image *image = &job->picture.image;
   for (int i = 0; i < image->n_attributes && !job->scene.is_samples_given; i++) {
@@ -49,7 +49,7 @@ static conic_status take_picture_in(cli_session *session, cli_judge_job *job) {
   return status;
 }
 
-/* What the times of the stages are taken with. */
+/* Takes the times of the stages. */
 static double pass_stage(cli_judge_job *job, int stage, double start) {
   double now = cli_seconds();
   job->seconds[stage] += now - start;
@@ -148,7 +148,7 @@ static int check_judge(cli_session *session, cli_judge_job *job) {
     return cli_usage("judge: no picture; give --picture FILE");
   if (job->scene.is_aov_given && !judged_planes(job))
     return cli_usage("judge: none of these planes is judged of such a scene");
-  if (!job->is_transfer_given) /* of Gaussians, pictures hold display values */
+  if (!job->is_transfer_given) /* pictures of Gaussians hold display values */
     job->transfer = !cli_is_composited(&job->scene);
   job->reading.is_srgb = job->transfer;
   int exit_code = cli_check_ending(job->report_path, "html");
@@ -164,10 +164,10 @@ static int run_judge(cli_session *session, int argc, char **argv) {
                            *const roundings[] = {"either", "nearest", "down", NULL};
   cli_judge_job job = {.floats = CONIC_FLOATS_FAST, .argc = argc, .argv = argv};
   int rounding = CONIC_CODES_EITHER;
-  suite_run suite = {.most_level = 0}; /* not here: its options are for the help */
+  suite_run suite = {.most_level = 0}; /* unused here: its options are for the help */
   if (cli_suite_has_option(argc, argv))
     return cli_suite_run(session, argc, argv);
-  cli_gradient_files gradients = {NULL}; /* nor here */
+  cli_gradient_files gradients = {NULL}; /* unused here, too */
   if (cli_gradients_has_option(argc, argv))
     return cli_gradients_run(session, argc, argv);
   conic_picture_options_init(&job.reading);

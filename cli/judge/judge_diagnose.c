@@ -1,4 +1,4 @@
-/* Which fault would explain the wrong pixels. */
+/* Finds the fault that would explain the wrong pixels. */
 #include "cli/commands/gaussian_commands.h"
 #include "cli/judge/judge_job.h"
 #include "conic/source.h"

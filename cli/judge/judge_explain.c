@@ -1,4 +1,4 @@
-/* What the worst pixels are made of: the contributions that weigh most there. */
+/* The contributions that weigh most in the worst pixels. */
 #include <string.h>
 
 #include "cli/commands/gaussian_commands.h"

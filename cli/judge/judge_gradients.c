@@ -101,7 +101,7 @@ static void print_gradient_verdict(const gradients_job *job) {
   puts(is_gradient_right(job) ? "right" : "WRONG");
 }
 
-/* What does not fit the scene is an input that can't be used. */
+/* Files that do not fit the scene cannot be used. */
 static conic_status check_gradient_files(const gradients_job *job, const conic_camera *camera,
                                          const conic_gaussians *scene) {
   const cli_gradient_files *files = &job->files;

@@ -1,4 +1,4 @@
-/* conic judge --gradients: somebody's derivative of a picture. */
+/* conic judge --gradients: judges another program's derivative of a picture. */
 #ifndef CONIC_JUDGE_GRADIENTS_H
 #define CONIC_JUDGE_GRADIENTS_H
 

@@ -1,4 +1,4 @@
-/* One `conic judge`: what was asked for, and what came of it. */
+/* One `conic judge`: its arguments and its results. */
 #ifndef CONIC_JUDGE_JOB_H
 #define CONIC_JUDGE_JOB_H
 
@@ -8,7 +8,7 @@
 
 enum { CLI_JUDGE_MOST_REASONS = CONIC_MAX_UNSTABLE_REASONS, CLI_JUDGE_MOST_PARTS = 4, CLI_JUDGE_MOST_FAULTS = 8 };
 
-/* The stages whose times are told. */
+/* The stages whose times are reported. */
 enum {
   CLI_JUDGE_READ,
   CLI_JUDGE_OPEN,
@@ -29,7 +29,7 @@ typedef struct cli_judge_part {
   const char *doubt; /* what is in doubt about it; null: nothing */
 } cli_judge_part;
 
-/* A wrong pixel, and what matters there, the heaviest first. */
+/* A wrong pixel, and its contributions, the heaviest first. */
 typedef struct cli_judge_worst {
   conic_oracle_fault fault;
   cli_judge_part parts[CLI_JUDGE_MOST_PARTS];
@@ -37,10 +37,10 @@ typedef struct cli_judge_worst {
   size_t n_blended;
 } cli_judge_worst;
 
-/* What was found, of either kind of scene. */
+/* The findings, for either kind of scene. */
 typedef struct cli_judgement {
   size_t pixels[CONIC_N_PIXEL_CLASSES], judged, covered, doubtful, n_whole;
-  size_t vague; /* of a Gaussian scene: pixels whose colours may be anything within more than 1/255 */
+  size_t vague; /* of a Gaussian scene: pixels whose colours have a range wider than 1/255 */
   const char *reasons[CLI_JUDGE_MOST_REASONS]; /* null past the last */
   size_t explained_by[CLI_JUDGE_MOST_REASONS];
   conic_oracle_plane_verdict planes[CONIC_MAX_PLANES];
@@ -48,11 +48,11 @@ typedef struct cli_judgement {
   int n_worst;
   conic_diagnosis faults[CLI_JUDGE_MOST_FAULTS]; /* that would explain the wrong pixels, the best first */
   int n_faults;
-  int is_blank; /* the picture's colours are one everywhere, which has many causes and is not diagnosed */
+  int is_blank; /* the picture has one colour everywhere, which has many causes and is not diagnosed */
 } cli_judgement;
 
 typedef struct cli_judge_job {
-  /* What was asked for. */
+  /* The arguments. */
   cli_render_job scene;
   const char *picture_path, *map_path, *report_path; /* null: none */
   unsigned long long n_pixels, max_wrong;            /* n_pixels 0: all */
@@ -63,45 +63,45 @@ typedef struct cli_judge_job {
   int argc; /* the command line, for the report */
   char **argv;
 
-  /* What came of it. */
+  /* The results. */
   conic_picture picture;
   conic_camera camera;
-  uint8_t *classes; /* of each pixel; of one that was not judged CONIC_N_PIXEL_CLASSES */
+  uint8_t *classes; /* of each pixel; CONIC_N_PIXEL_CLASSES if it was not judged */
   cli_judgement found;
-  conic_image ours; /* what conic draws, where it is shown */
+  conic_image ours; /* conic's own picture, if it is shown */
   double seconds[CLI_JUDGE_N_STAGES];
 } cli_judge_job;
 
-/* Whether no more pixels are wrong than may be. */
+/* Whether no more pixels are wrong than allowed. */
 int cli_judge_is_right(const cli_judge_job *job);
 /* "stage", for --time and --json. */
 const char *cli_judge_stage_name(int stage);
 
-/* The picture held against a Gaussian scene's profile, or against what a method makes of splats and triangles. The
- * scene is open and its camera known. */
+/* Compare the picture with a Gaussian scene's profile, or with a method's reference of splats and triangles. The scene
+ * is open and its camera known. */
 conic_status cli_judge_gaussians(cli_session *session, cli_judge_job *job);
 conic_status cli_judge_splats(cli_session *session, cli_judge_job *job);
 
-/* Says of the worst pixels what they are made of. */
+/* Finds what the worst pixels are made of. */
 conic_status cli_judge_explain(cli_session *session, cli_judge_job *job);
 
-/* Looks for the fault that explains the wrong pixels best: job->found.faults. Called where there are any. */
+/* Finds the fault that explains the wrong pixels best, into job->found.faults. Called if there are any. */
 conic_status cli_judge_diagnose(cli_session *session, cli_judge_job *job);
 
-/* Draws what conic makes of it: job->ours. */
+/* Draws conic's own picture, into job->ours. */
 conic_status cli_judge_draw(cli_session *session, cli_judge_job *job);
 
-/* The classes in false colours, with a legend; the caller releases *map. */
+/* Draws the classes in false colours, with a legend; the caller releases *map. */
 conic_status cli_judge_map(cli_session *session, const cli_judge_job *job, conic_image *map);
 
-/* Writes the page. */
+/* Writes the report's page. */
 conic_status cli_judge_report(cli_session *session, cli_judge_job *job);
 
 /* The verdict for people, and as the session's JSON. The second returns an exit code. */
 void cli_judge_print(const cli_judge_job *job);
 int cli_judge_write_json(cli_session *session, const cli_judge_job *job);
 
-/* A fault's value: "R", "Z", "N.x" …; and what it is and may be, in one line. */
+/* The name of a fault's value, "R", "Z", "N.x" …; and what it is and may be, in one line. */
 const char *cli_judge_channel_name(const conic_oracle_fault *fault);
 void cli_judge_describe(const cli_judge_job *job, const conic_oracle_fault *fault, char *text, size_t room);
 void cli_judge_describe_part(const cli_judge_part *part, char *text, size_t room);

@@ -1,14 +1,14 @@
-/* The class of every pixel in false colours, and under it what they mean. */
+/* The class of every pixel in false colours, with a legend below. */
 #include <string.h>
 
 #include "cli/judge/judge_job.h"
 #include "core/coloring/legend.h"
 
-/* By class, then of what was not judged; linear. What is wrong is to be seen from afar. */
+/* By class, then for pixels that were not judged; linear. Wrong pixels must be visible from afar. */
 static const float class_colors[CONIC_N_PIXEL_CLASSES + 1][3] = {
     {0.03f, 0.08f, 0.03f}, {0.05f, 0.30f, 0.10f}, {0.85f, 0.55f, 0.02f}, {1.00f, 0.02f, 0.05f}, {0.02f, 0.02f, 0.02f}};
 
-/* The second picture under the first. */
+/* Puts the second picture under the first. */
 static conic_status stack_pictures(cli_session *session, const conic_image *above, const conic_image *below,
                                    conic_image *both) {
   int width = above->width > below->width ? above->width : below->width;

@@ -1,4 +1,4 @@
-/* A page of HTML in one file: text that is escaped, and pictures inside as PNG. */
+/* A page of HTML in one file, with escaped text, and pictures inside as PNG. */
 #ifndef CONIC_JUDGE_PAGE_H
 #define CONIC_JUDGE_PAGE_H
 
@@ -9,11 +9,11 @@ typedef struct cli_page {
   FILE *to;
 } cli_page;
 
-/* Text with what HTML takes for its own in words. */
+/* Text with HTML's special characters escaped. */
 void cli_page_text(const cli_page *page, const char *text);
 
-/* <figure> of an rgba image, as it is sRGB-encoded, so many pixels of the screen across; small ones a whole number of
- * times as large as they are. */
+/* A <figure> of an rgba image, sRGB-encoded, so many screen pixels wide; small images are enlarged by a whole
+ * number. */
 conic_status cli_page_picture(const cli_page *page, const conic_image *image, int screen_px, const char *caption);
 
 #endif

@@ -1,4 +1,4 @@
-/* The page that tells all: pictures, counts, the worst pixels, and how it was found out. */
+/* The report's page: pictures, counts, the worst pixels, and how the verdict was found. */
 #include <math.h>
 #include <string.h>
 
@@ -20,12 +20,12 @@ conic_status cli_judge_draw(cli_session *session, cli_judge_job *job) {
   return status;
 }
 
-/* Whether colours are display values as they are. */
+/* Whether the colours are display values already. */
 static int shows_display(const cli_judge_job *job) {
   return cli_is_composited(&job->scene);
 }
 
-/* A value of the picture to be looked at: between what it may stand for, over black. */
+/* A value of the picture to be shown: the middle of the range that it stands for, over black. */
 static float shown_value(const cli_judge_job *job, size_t at) {
   double low = (double)((const float *)job->picture.image.planes[CONIC_PLANE_RGBA])[at], high = low;
   if (job->picture.greatest.width)
@@ -35,7 +35,7 @@ static float shown_value(const cli_judge_job *job, size_t at) {
   return low > -HUGE_VAL ? (float)(0.5 * (low + high)) : (float)high;
 }
 
-/* The picture that is judged. What is no number is magenta. */
+/* The judged picture. NaN is magenta. */
 static conic_status show_theirs(cli_session *session, const cli_judge_job *job, conic_image *theirs) {
   conic_status status = conic_image_allocate(session->context, job->camera.width, job->camera.height, 1u, theirs);
   if (status != CONIC_OK)
@@ -56,14 +56,14 @@ static conic_status show_theirs(cli_session *session, const cli_judge_job *job, 
   return CONIC_OK;
 }
 
-/* Over black: whatever alpha is, both are seen alike. */
+/* Puts the image over black, so that both look alike whatever their alpha. */
 static void cover_with_black(conic_image *image) {
   float *rgba = image->planes[CONIC_PLANE_RGBA];
   for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
     rgba[4 * i + 3] = 1.0f;
 }
 
-/* A part of an image about a pixel; beyond the border it is grey. */
+/* A part of an image around a pixel; grey beyond the border. */
 static conic_status cut_out(cli_session *session, const conic_image *from, int x, int y, int size, conic_image *part) {
   conic_status status = conic_image_allocate(session->context, size, size, 1u, part);
   if (status != CONIC_OK)
@@ -81,7 +81,7 @@ static conic_status cut_out(cli_session *session, const conic_image *from, int x
   return CONIC_OK;
 }
 
-/* What is shown side by side. */
+/* The pictures shown side by side. */
 typedef struct report_pictures {
   conic_image theirs, difference, map;
 } report_pictures;

@@ -1,4 +1,4 @@
-/* The two kinds of scene that a picture is judged by, and what is found in one form. */
+/* The two kinds of scenes that pictures are judged by, with their findings in one form. */
 #include <string.h>
 
 #include "cli/commands/gaussian_commands.h"

@@ -1,11 +1,11 @@
-/* The verdict, for people and as JSON. */
+/* The verdict, in words and as JSON. */
 #include <string.h>
 
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_fault.h"
 #include "cli/judge/judge_job.h"
 
-/* As JSON has them, in the order of conic_pixel_class. */
+/* Keys in JSON, in the order of conic_pixel_class. */
 static const char *const class_keys[CONIC_N_PIXEL_CLASSES] = {"equal", "rounding", "explained", "wrong"};
 
 static const char *const float_words[CONIC_N_FLOAT_KINDS] = {"own", "strict", "fast"};
@@ -23,7 +23,7 @@ const char *cli_judge_channel_name(const conic_oracle_fault *fault) {
   return conic_plane_describe((conic_plane)fault->plane)->channels[fault->channel];
 }
 
-/* Where ids are named, "nothing" is one, too. */
+/* Among ids, "nothing" is a value, too. */
 static void spell_value(const conic_oracle_fault *fault, double value, char text[32]) {
   int is_name = fault->plane == CONIC_PLANE_ID || fault->plane == CONIC_PLANE_LAST;
   if (is_name && value == (double)CONIC_NO_ID)
@@ -57,7 +57,7 @@ void cli_judge_describe_part(const cli_judge_part *p, char *text, size_t room) {
     snprintf(text + n, room - (size_t)n, ", in doubt: %s", p->doubt);
 }
 
-/* Of the worst pixels; JSON and the report have them all. */
+/* The number of worst pixels that are printed; JSON and the report have them all. */
 enum { MOST_PRINTED = 4 };
 
 static void print_worst(const cli_judge_job *job) {

@@ -1,4 +1,4 @@
-/* conic judge --suite: the pictures of a whole suite. */
+/* conic judge --suite: judges the pictures of a whole suite. */
 #include <errno.h>
 #include <string.h>
 
@@ -25,7 +25,7 @@ static int is_chosen_case(const suite_run *run, const suite_entry *entry) {
   return !run->is_profile_given && entry->level <= run->most_level;
 }
 
-/* Whether a file is named after a case, be it its picture or a plane beside it. */
+/* Whether a file is named after a case: its picture, or a plane beside it. */
 static int is_of_case(const suite_run *run, const char *name) {
   for (size_t i = 0; i < run->manifest.n_cases; i++) {
     size_t n = strlen(run->manifest.cases[i].name);
@@ -35,7 +35,7 @@ static int is_of_case(const suite_run *run, const char *name) {
   return 0;
 }
 
-/* A picture that is no case's is a name that was mistyped, or an old one. */
+/* A picture that belongs to no case has a mistyped name, or is an old one. */
 static void find_extra_pictures(suite_run *run) {
   conic_disk_folder entries;
   conic_disk_open_folder(run->judging.pictures, &entries);

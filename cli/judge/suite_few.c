@@ -6,13 +6,13 @@
 #include "core/base/real.h"
 #include "gaussians/scene/gaussian_set.h"
 
-/* A Gaussian as it is written down here; its colour is that of degree 0, as displayed. */
+/* A Gaussian as it is written below; its colour is that of degree 0, as displayed. */
 typedef struct suite_one {
   double mean[3], scale[3], rotation[4], opacity, color[3];
 } suite_one;
 
-/* Every scene's axes are the camera's: x right, y down, z forward. AHEAD cameras stand 4 before the origin, and a pixel
- * there is 1/8 wide; the picture's middle is a corner of four pixels. */
+/* Every scene's axes are the camera's: x right, y down, z forward. AHEAD cameras are 4 before the origin, where a pixel
+ * is 1/8 wide; the picture's middle is a corner of four pixels. */
 #define ROUND(size) .scale = {size, size, size}, .rotation = {1.0, 0.0, 0.0, 0.0}
 
 static void put_one(conic_gaussians *set, size_t i, const suite_one *one) {
@@ -27,7 +27,7 @@ static void put_one(conic_gaussians *set, size_t i, const suite_one *one) {
   set->opacity[i] = (float)one->opacity;
 }
 
-/* Harmonics above degree 0: all of them, and none like another. */
+/* Harmonics above degree 0: all of them, each different. */
 static void put_all_degrees(conic_gaussians *set, size_t i) {
   size_t n = conic_harmonics_of_degree(set->sh_degree);
   for (size_t k = 3; k < n; k++)
@@ -90,14 +90,14 @@ conic_status cli_suite_overlap(conic_context *context, conic_gaussians *gaussian
       {.mean = {-0.3, 0.1, -0.5}, ROUND(0.4), .opacity = 0.6, .color = {0.1, 0.9, 0.1}},
       {.mean = {0.0, -0.2, 1.5}, ROUND(0.9), .opacity = 0.95, .color = {0.1, 0.2, 0.9}},
       {.mean = {0.1, 0.3, 0.0}, ROUND(0.3), .opacity = 0.8, .color = {0.9, 0.9, 0.2}},
-      /* Of these two, the first is nearer by z and farther by distance. */
+      /* Of the next two, the first is nearer by z and farther by distance. */
       {.mean = {-1.9, 0.0, 0.0}, ROUND(0.4), .opacity = 0.7, .color = {0.9, 0.5, 0.1}},
       {.mean = {-1.3, 0.1, 0.15}, ROUND(0.4), .opacity = 0.7, .color = {0.1, 0.5, 0.9}},
   };
   return put_few(context, few, COUNT(few), 0, 0, gaussians);
 }
 
-/* From behind to the front, so that an order by file is the wrong way round. */
+/* From back to front, so that the file's order is the wrong way round. */
 conic_status cli_suite_faint(conic_context *context, conic_gaussians *gaussians) {
   static const double opacities[] = {0.99, 0.8, 0.003, 0.9, 0.95, 0.02, 0.97, 0.5, 0.005, 0.9, 0.3, 0.1};
   enum { N = sizeof opacities / sizeof *opacities };
@@ -110,7 +110,7 @@ conic_status cli_suite_faint(conic_context *context, conic_gaussians *gaussians)
   return put_few(context, few, N, 0, 0, gaussians);
 }
 
-/* Six about the origin, of degree 2. */
+/* Six Gaussians around the origin, of degree 2. */
 conic_status cli_suite_ring(conic_context *context, conic_gaussians *gaussians) {
   static const double places[6][2] = {{0.9, 0.0}, {0.45, 0.7}, {-0.45, 0.7}, {-0.9, 0.0}, {-0.45, -0.7}, {0.45, -0.7}};
   suite_one few[6];
@@ -159,8 +159,8 @@ conic_status cli_suite_extremes(conic_context *context, conic_gaussians *gaussia
   return put_few(context, few, COUNT(few), 0, 0, gaussians);
 }
 
-/* Every third pixel in both directions, the opacity off 1/255 by −8 to 8 parts in ten million and, at the ends, by a
- * hundredth. */
+/* One at every third pixel in both directions. The opacity is off 1/255 by −8 to 8 parts in ten million and, at the
+ * ends, by a hundredth. */
 conic_status cli_suite_least(conic_context *context, conic_gaussians *gaussians) {
   enum { COLUMNS = 11, ROWS = 5, N = COLUMNS * ROWS };
   suite_one few[N];
@@ -175,7 +175,7 @@ conic_status cli_suite_least(conic_context *context, conic_gaussians *gaussians)
   return put_few(context, few, N, 0, 0, gaussians);
 }
 
-/* Two piles of four whose alphas are 0.9, and two of 0.99 behind one another; what comes last is bright. */
+/* Two piles of four with alphas of 0.9, and two of 0.99 behind one another; the last one is bright. */
 conic_status cli_suite_end(conic_context *context, conic_gaussians *gaussians) {
   enum { DEEP = 6, N = 3 * DEEP };
   static const double opacities[3][DEEP] = {
@@ -193,7 +193,7 @@ conic_status cli_suite_end(conic_context *context, conic_gaussians *gaussians) {
   return put_few(context, few, N, 0, 0, gaussians);
 }
 
-/* Depths of 4 exactly in floats: 2⁻²¹ is a float's step there, 2⁻²³ a quarter of it. */
+/* Depths of exactly 4 in floats: there 2⁻²¹ is a float's step, and 2⁻²³ a quarter of it. */
 conic_status cli_suite_ties(conic_context *context, conic_gaussians *gaussians) {
   static const suite_one few[] = {
       {.mean = {-1.25, 0.0, 0.0}, ROUND(0.3), .opacity = 0.8, .color = {0.9, 0.1, 0.1}},
@@ -219,7 +219,7 @@ conic_status cli_suite_quaternions(conic_context *context, conic_gaussians *gaus
   return put_few(context, few, 5, 0, 0, gaussians);
 }
 
-/* Each second record lacks something. */
+/* Every second record lacks something. */
 conic_status cli_suite_broken(conic_context *context, conic_gaussians *gaussians) {
   suite_one few[16];
   for (int i = 0; i < 16; i++)
@@ -253,7 +253,7 @@ conic_status cli_suite_far_away(conic_context *context, conic_gaussians *gaussia
   return status;
 }
 
-/* The camera stands at the origin, so that a float's z is the mean's. */
+/* The camera is at the origin, so that a float's z is the mean's. */
 conic_status cli_suite_near(conic_context *context, conic_gaussians *gaussians) {
   static const float near[2] = {0.2f, 0.01f};
   suite_one few[10];
@@ -285,7 +285,7 @@ conic_status cli_suite_aside(conic_context *context, conic_gaussians *gaussians)
   return put_few(context, few, COUNT(few), 0, 0, gaussians);
 }
 
-/* Turned about y by a quarter, and by what is missing to it. */
+/* Turned about y by nearly a quarter of a turn, each by another remainder. */
 conic_status cli_suite_edge_on(conic_context *context, conic_gaussians *gaussians) {
   static const double missing[] = {0.0, 1e-6, 1e-3, 0.03, 0.2};
   suite_one few[5];

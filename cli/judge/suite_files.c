@@ -58,7 +58,7 @@ conic_status cli_suite_add_file(suite_files *suite, const char *path) {
   return status;
 }
 
-/* Opens a file of the suite. */
+/* Opens a file of the suite for writing. */
 static conic_status open_suite_file(suite_files *suite, const char *path, conic_output **output) {
   char full[4096];
   conic_status status = cli_suite_join(suite->context, suite->folder, path, full, sizeof full);
@@ -87,7 +87,7 @@ static float to_steps(double value, double steps, double offset, double most) {
   return (float)(code / steps + offset);
 }
 
-/* Of a unit quaternion the three smaller components become codes of 9 bits, and the largest follows. */
+/* Rounds the three smaller components of a unit quaternion to codes of 9 bits; the largest follows from them. */
 static void settle_rotation(conic_gaussians *set, size_t i) {
   double q[4], sum = 0.0;
   int largest = 0;
@@ -107,7 +107,7 @@ static void settle_rotation(conic_gaussians *set, size_t i) {
     set->rotation[k][i] = (float)q[k];
 }
 
-/* Moves what a scene of degree 0 holds to the nearest that an .spz can hold, so that both files mean the same. */
+/* Moves the numbers of a scene of degree 0 to the nearest that an .spz can hold, so that both files mean the same. */
 static void settle_for_spz(conic_gaussians *set) {
   for (size_t i = 0; i < set->count; i++) {
     settle_rotation(set, i);
@@ -122,7 +122,7 @@ static void settle_for_spz(conic_gaussians *set) {
   }
 }
 
-/* As gzip that is stored, since what zlib makes of it differs from version to version. */
+/* Writes gzip that is stored, not packed, since zlib's packing differs between versions. */
 static void put_stored_gzip(FILE *to, const unsigned char *bytes, size_t n) {
   static const unsigned char head[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};
   unsigned char tail[8];
@@ -178,7 +178,7 @@ void cli_suite_release_content(conic_context *context, suite_content *content) {
   conic_model_release(context, &content->model);
 }
 
-/* The .ply, and what it holds. */
+/* Writes the .ply, and reads back its contents. */
 static conic_status write_gaussian_scene(suite_files *suite, const suite_scene *scene, const char *path,
                                          const char *full, suite_content *content) {
   conic_gaussians made;
@@ -242,7 +242,7 @@ static conic_status write_own_camera(suite_files *suite, const suite_scene *scen
   return end_suite_file(suite, path, output);
 }
 
-/* The columns of the camera's turn that point up and backwards, as OpenGL has them, are the negated ones of y and z. */
+/* OpenGL's camera has y up and z backwards: these columns of the camera's rotation are negated. */
 static conic_status write_transforms(suite_files *suite, const suite_scene *scene, const conic_camera *camera) {
   char path[SUITE_PATH_ROOM];
   conic_output *output;

@@ -1,4 +1,4 @@
-/* The files of a suite: what is written, and the list of all with sizes and hashes. */
+/* The files of a suite: writing them, and the list of all with sizes and hashes. */
 #ifndef CONIC_SUITE_FILES_H
 #define CONIC_SUITE_FILES_H
 
@@ -21,19 +21,19 @@ typedef struct suite_files {
   suite_file files[SUITE_MOST_FILES];
 } suite_files;
 
-/* FOLDER/PATH into `room`. Errors: ARGUMENT (it is too long). */
+/* FOLDER/PATH into `full`, which has `room` bytes. Errors: ARGUMENT (it is too long). */
 conic_status cli_suite_join(conic_context *context, const char *folder, const char *path, char *full, size_t room);
 
-/* Makes a folder, which may be there. Errors: IO. */
+/* Makes a folder, which may exist already. Errors: IO. */
 conic_status cli_suite_make_folder(suite_files *suite, const char *path);
 
-/* Adds a file that was written to the list, by what stands on the disk. Errors: IO. */
+/* Adds a written file to the list, by its bytes on the disk. Errors: IO. */
 conic_status cli_suite_add_file(suite_files *suite, const char *path);
 
-/* Writes a text, and adds it. Errors: as conic_output_open and _end. */
+/* Writes a text file, and adds it. Errors: as conic_output_open and _end. */
 conic_status cli_suite_write_text(suite_files *suite, const char *path, const char *text);
 
-/* What a scene's .ply holds: one of them. */
+/* The contents of a scene's .ply, of one of these kinds. */
 typedef struct suite_content {
   conic_gaussians gaussians;
   conic_model model; /* surface splats */
@@ -41,8 +41,9 @@ typedef struct suite_content {
 
 void cli_suite_release_content(conic_context *context, suite_content *content);
 
-/* Writes a scene in all its formats to scenes/, its camera in all conventions to cameras/, and adds them. On success
- * the caller releases *content. Errors: as conic_gaussians_write, conic_splats_write, and what reads them. */
+/* Writes a scene in all its formats to scenes/ and its camera in all conventions to cameras/, and adds the files. On
+ * success the caller releases *content. Errors: as conic_gaussians_write, conic_splats_write, and the readers of the
+ * files. */
 conic_status cli_suite_write_scene(suite_files *suite, const suite_scene *scene, suite_content *content);
 conic_status cli_suite_write_camera(suite_files *suite, const suite_scene *scene);
 

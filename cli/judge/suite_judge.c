@@ -1,5 +1,5 @@
-/* A case is judged by the bounds that stand in the suite: the verdict then depends on no more than the suite's bytes,
- * whatever version of conic looks, and anybody else can compute it from the same files. */
+/* A case is judged by the bounds in the suite. So the verdict depends only on the suite's bytes, not on the version of
+ * conic, and anybody can compute it from the same files. */
 #include "cli/judge/suite_judge.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@ const char *const cli_suite_outcome_names[SUITE_OUTCOMES] = {"right", "wrong", "
 
 static const unsigned suite_plane_bits = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
 
-/* The case's expectations, whose hash is right. */
+/* Reads the case's expectations, and checks their hash. */
 static conic_status read_expected(conic_context *context, const char *folder, const suite_entry *entry,
                                   suite_planes *planes) {
   char path[4096], found[CONIC_SHA256_ROOM];
@@ -40,7 +40,7 @@ static conic_status read_expected(conic_context *context, const char *folder, co
   return status;
 }
 
-/* What the picture's number stands for: 0 where it has none. */
+/* The range that a number of the picture stands for; returns 0 where there is none. */
 static int find_suite_number(const conic_picture *picture, size_t pixel, int channel, double *from, double *to) {
   const int plane = channel == 4 ? CONIC_PLANE_Z : CONIC_PLANE_RGBA;
   const size_t at = channel == 4 ? pixel : 4 * pixel + (size_t)channel;
@@ -56,7 +56,7 @@ static int has_common(double from, double to, float low, float high) {
   return from <= (double)high && to >= (double)low;
 }
 
-/* How far a number is off its range. Colours say more to who looks for a mistake than depths do. */
+/* How far a number is outside of its range. Colours count more than depths, as they tell more about a mistake. */
 static double find_distance(double from, double to, double low, double high, int channel) {
   double off = from > high ? from - high : to < low ? low - to : INFINITY;
   return channel == 4 && off < INFINITY ? 1e-30 * off : off;
@@ -108,7 +108,7 @@ static void judge_suite_picture(const conic_picture *picture, const suite_planes
              verdict->y, cli_suite_channel_names[verdict->channel], verdict->found, verdict->low, verdict->high);
 }
 
-/* Finds the case's picture; 0 where there is none. */
+/* Finds the case's picture; returns 0 where there is none. */
 static int find_suite_picture(const suite_judging *judging, suite_verdict *verdict, char *path, size_t room) {
   static const char *const endings[] = {"exr", "pfm", "npy", "npz", "png"};
   for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {

@@ -1,4 +1,4 @@
-/* conic judge --suite: pictures of a suite's cases, held against the bounds that the suite has. */
+/* conic judge --suite: compares pictures of a suite's cases with the suite's bounds. */
 #ifndef CONIC_SUITE_JUDGE_H
 #define CONIC_SUITE_JUDGE_H
 
@@ -15,26 +15,26 @@ extern const char *const cli_suite_outcome_names[SUITE_OUTCOMES];
 typedef struct suite_verdict {
   const suite_entry *entry;
   suite_outcome outcome;
-  const char *ending;                   /* of the picture's name; null: there is none */
-  size_t pixels[CONIC_N_PIXEL_CLASSES]; /* all 0 where it could not be judged */
-  int x, y, channel;                    /* the value that is farthest off, where pixels are wrong; channel: SUITE_… */
+  const char *ending;                   /* of the picture's name; null: there is no picture */
+  size_t pixels[CONIC_N_PIXEL_CLASSES]; /* all 0 if it could not be judged */
+  int x, y, channel;                    /* the value that is farthest off, if pixels are wrong; channel: SUITE_… */
   double found, low, high;
-  char message[160]; /* what is wrong; empty where nothing is */
+  char message[160]; /* the fault; empty if there is none */
   double seconds;
 } suite_verdict;
 
 typedef struct suite_judging {
   const char *suite, *pictures; /* folders */
-  unsigned long long max_wrong; /* pixels of a case */
+  unsigned long long max_wrong; /* wrong pixels that a case may have */
   conic_picture_options reading;
 } suite_judging;
 
-/* Judges the picture of a case. What is wrong with the picture is told in the verdict. Errors: INPUT (the suite's own
- * file), MEMORY, CANCELLED. */
+/* Judges the picture of a case. Faults of the picture go into the verdict. Errors: INPUT (the suite's own file),
+ * MEMORY, CANCELLED. */
 conic_status cli_suite_judge_case(conic_context *context, const suite_judging *judging, const suite_entry *entry,
                                   suite_verdict *verdict);
 
-/* What a run found. */
+/* The result of a run. */
 typedef struct suite_run {
   cli_session *session;
   suite_judging judging;
@@ -43,22 +43,22 @@ typedef struct suite_run {
   unsigned profiles; /* as bits */
   int is_profile_given;
   suite_manifest manifest;
-  suite_verdict *verdicts; /* of the cases that were chosen, in the manifest's order */
+  suite_verdict *verdicts; /* of the chosen cases, in the manifest's order */
   size_t n;
-  size_t n_extra; /* pictures that are no case's */
+  size_t n_extra; /* pictures that belong to no case */
   char extra[3][SUITE_NAME_ROOM];
 } suite_run;
 
 size_t cli_suite_count(const suite_run *run, int level, suite_outcome outcome); /* level 0: all */
 int cli_suite_is_right(const suite_run *run);
 
-/* The table, and the session's JSON; the latter returns an exit code. */
+/* The table, and the session's JSON; the second returns an exit code. */
 void cli_suite_print(const suite_run *run);
 int cli_suite_write_json(const suite_run *run);
 /* JUnit's XML, as CI systems take it. Errors: as conic_output_open and _end. */
 conic_status cli_suite_write_junit(const suite_run *run);
 
-/* The options that only a suite has: into a suite_run. */
+/* The options that only suites have, into a suite_run. */
 #define CLI_SUITE_OPTIONS(run)                                                                                         \
   {"suite", CLI_TEXT, &(run).judging.suite, "FOLDER", "judge what conic conformance wrote, in the place of a scene"},  \
       {"pictures", CLI_TEXT, &(run).judging.pictures, "FOLDER",                                                        \

@@ -6,7 +6,7 @@
 
 enum { SUITE_MOST_LEVELS = 99, SUITE_MOST_ENTRIES = 4096 };
 
-/* A scene of the manifest, or a file. */
+/* A scene or a file of the manifest. */
 typedef struct manifest_scene {
   char name[SUITE_WORD_ROOM], ply[2 * SUITE_NAME_ROOM], camera[2 * SUITE_NAME_ROOM];
   int width, height;
@@ -26,7 +26,7 @@ typedef struct manifest_reader {
   int has_format;
 } manifest_reader;
 
-/* Whether a text is made of such names, with slashes between where it may be a path. */
+/* Whether a text consists of plain names, with slashes between them if it may be a path. */
 static int is_plain_path(const char *text, int may_have_folders) {
   int is_start = 1;
   for (const char *c = text; *c; c++) {
@@ -39,7 +39,7 @@ static int is_plain_path(const char *text, int may_have_folders) {
   return !is_start;
 }
 
-/* A text that fits, and is plain. */
+/* Reads a plain text that fits. */
 static conic_status read_plain(conic_json *json, char *text, size_t room, int may_have_folders) {
   const char *raw;
   size_t length;
@@ -72,7 +72,7 @@ static int is_key(const char *key, const char *name) {
   return strcmp(key, name) == 0;
 }
 
-/* The member `wanted` of the object that comes next, as a path. */
+/* Reads the member `wanted` of the next object, as a path. */
 static void read_member_path(conic_json *json, const char *wanted, char *path, size_t room) {
   char key[CONIC_JSON_KEY_ROOM];
   conic_json_begin_object(json);
@@ -144,7 +144,7 @@ static void read_file_entry(manifest_reader *r, manifest_file *file) {
     conic_json_wrong(json, "a file lacks its path, its bytes or its sha256");
 }
 
-/* Room for one more, which is zero; null after a failure. */
+/* Makes room for one more entry, which is zero; null after a failure. */
 static void *add_entry(manifest_reader *r, void *array, size_t *n, size_t *room, size_t size) {
   void **entries = array;
   if (*n == SUITE_MOST_ENTRIES)

@@ -1,4 +1,4 @@
-/* The manifest of a suite, as far as judging needs it. */
+/* A suite's manifest, as far as judging needs it. */
 #ifndef CONIC_SUITE_MANIFEST_H
 #define CONIC_SUITE_MANIFEST_H
 
@@ -7,14 +7,14 @@
 
 enum { SUITE_NAME_ROOM = 96, SUITE_WORD_ROOM = 64 };
 
-/* Names are of letters, digits, points, hyphens and underscores; paths of such names, none of which begins with a
- * point. */
+/* A case. Names consist of letters, digits, points, hyphens and underscores; paths of such names, none of which begins
+ * with a point. */
 typedef struct suite_entry {
   char name[SUITE_NAME_ROOM], scene[SUITE_WORD_ROOM], profile[SUITE_WORD_ROOM], npy[2 * SUITE_NAME_ROOM];
-  char ply[2 * SUITE_NAME_ROOM], camera[2 * SUITE_NAME_ROOM]; /* the scene's, and its camera in conic's own JSON */
+  char ply[2 * SUITE_NAME_ROOM], camera[2 * SUITE_NAME_ROOM]; /* of the scene; and of its camera in conic's own JSON */
   int level, width, height;
   uint64_t bytes;                 /* of the .npy */
-  char sha256[CONIC_SHA256_ROOM]; /* and its hash */
+  char sha256[CONIC_SHA256_ROOM]; /* of the .npy */
 } suite_entry;
 
 typedef struct suite_manifest {
@@ -23,8 +23,8 @@ typedef struct suite_manifest {
   suite_entry *cases; /* in the file's order */
 } suite_manifest;
 
-/* On success the caller releases *manifest; on failure it is empty. Errors: INPUT (also a version that this one does
- * not know), MEMORY. */
+/* Reads a manifest. On success the caller releases it; on failure it is empty. Errors: INPUT (also an unknown version),
+ * MEMORY. */
 conic_status cli_suite_read_manifest(conic_context *context, const char *path, suite_manifest *manifest);
 void cli_suite_release_manifest(conic_context *context, suite_manifest *manifest);
 

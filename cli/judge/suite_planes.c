@@ -13,7 +13,7 @@
 const char *const cli_suite_channel_names[SUITE_CHANNELS] = {"R", "G", "B", "A", "Z"};
 const char *const cli_suite_range_names[SUITE_RANGES] = {"value", "low", "high", "least", "most"};
 
-/* What underflow may leave of a number. */
+/* The most that underflow may leave of a number. */
 static const double nothing = 1e-37, float_unit = 0x1p-24;
 
 typedef struct channel_range {
@@ -24,14 +24,14 @@ static channel_range range_of_bound(const conic_gaussian_bound *b, int i) {
   return (channel_range){{b->value[i], b->low[i], b->high[i], b->least[i], b->most[i]}};
 }
 
-/* Of a number that is rounded to float once more, as it is written or put over the background. */
+/* The range of a number after one more rounding to float, when it is written or put over the background. */
 static channel_range range_once_more(channel_range r) {
   for (int k = SUITE_LOW; k < SUITE_RANGES; k++)
     r.of[k] += (k == SUITE_LOW || k == SUITE_LEAST ? -1.0 : 1.0) * float_unit * fabs(r.of[k]);
   return r;
 }
 
-/* 1 − T, or Σ w, in which each Gaussian leaves a rounding of T, of 1 − α, of w and of the sum. */
+/* The range of 1 − T, or of Σ w. Each Gaussian adds four roundings: of T, of 1 − α, of w and of the sum. */
 static channel_range range_of_opacity(const conic_gaussian_bound *b) {
   const channel_range T = range_once_more(range_of_bound(b, CONIC_BOUND_T));
   const double spread = 4.0 * float_unit * b->most[CONIC_BOUND_COUNT];
@@ -46,7 +46,7 @@ static channel_range range_of_channel(const conic_gaussian_bound *b, int channel
                         : range_of_bound(b, CONIC_BOUND_Z);
 }
 
-/* Ends of ranges to the float beyond them; an end that could not be computed is none. */
+/* Rounds the end of a range to the next float outside; an end that could not be computed is none. */
 static float rounded_outwards(double value, int range) {
   if (range == SUITE_VALUE)
     return (float)value;
@@ -81,7 +81,7 @@ conic_status cli_suite_take_bounds(conic_context *context, const conic_gaussian_
   return CONIC_OK;
 }
 
-/* Of surface splats, what docs/reference/oracle.md lets floats be off by. */
+/* The errors that docs/reference/oracle.md allows floats for surface splats. */
 static const double surface_color_bound = 1e-4, surface_depth_bound = 1e-5;
 
 static void widen_surface_range(channel_range *r, int channel) {
@@ -92,7 +92,7 @@ static void widen_surface_range(channel_range *r, int channel) {
   }
 }
 
-/* Where there are alternatives, the least and the most of all of them. */
+/* With alternatives, the range reaches from the least to the greatest of all. */
 static channel_range range_of_surface(const conic_reference *reference, size_t pixel, int channel,
                                       const conic_alternative *alternatives, size_t n) {
   const double value = channel == 4 ? reference->planes[CONIC_PLANE_Z][pixel]
@@ -125,7 +125,7 @@ conic_status cli_suite_take_reference(conic_context *context, const conic_refere
   return CONIC_OK;
 }
 
-/* --- files: little-endian, whatever the machine is --- */
+/* --- files, always little-endian --- */
 
 static void put_number(FILE *to, uint64_t value, int n_bytes) {
   unsigned char bytes[8];
@@ -137,14 +137,14 @@ static void put_bits(FILE *to, float value) {
   put_number(to, conic_bits_of_float(value), 4);
 }
 
-/* The head of an attribute whose value has so many bytes. */
+/* The head of an attribute with a value of so many bytes. */
 static void put_attribute_head(FILE *to, const char *name, const char *type, size_t n_bytes) {
   fwrite(name, 1, strlen(name) + 1, to);
   fwrite(type, 1, strlen(type) + 1, to);
   put_number(to, n_bytes, 4);
 }
 
-/* Where the k-th channel of an EXR comes from: they stand in the order of their names' bytes. */
+/* Which number is the k-th channel of an EXR: channels are in the order of their names' bytes. */
 static void find_exr_channel(int k, int *range, int *channel, char name[16]) {
   static const int ranges[SUITE_RANGES] = {SUITE_VALUE, SUITE_HIGH, SUITE_LEAST, SUITE_LOW, SUITE_MOST};
   static const int channels[SUITE_CHANNELS] = {3, 2, 1, 0, 4};
@@ -170,7 +170,7 @@ static void put_exr_channels(FILE *to) {
     fwrite(name, 1, strlen(name) + 1, to);
     put_number(to, 2, 4); /* floats */
     put_number(to, 0, 4);
-    put_number(to, 1, 4); /* every pixel has one, in x and in y */
+    put_number(to, 1, 4); /* every pixel has a sample, in x and in y */
     put_number(to, 1, 4);
   }
   fputc(0, to);
@@ -231,7 +231,7 @@ conic_status cli_suite_write_exr(conic_context *context, const char *path, const
 }
 
 conic_status cli_suite_write_npy(conic_context *context, const char *path, const suite_planes *planes) {
-  char head[118]; /* with the ten bytes before it, a multiple of 64 */
+  char head[118]; /* makes a multiple of 64 with the ten bytes before it */
   conic_output *output;
   conic_status status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)

@@ -1,4 +1,4 @@
-/* The table of the suite's scenes. Those of few Gaussians are written out in suite_few.c. */
+/* The table of the suite's scenes. The scenes of few Gaussians are in suite_few.c. */
 #include "cli/judge/suite_scenes.h"
 
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "gaussians/scene/gaussian_set.h"
 #include "gaussians/scene/made_gaussians.h"
 
-/* What a profile's bit is, and the groups of those that draw the same scenes. */
+/* A profile's bit, and groups of profiles that draw the same scenes. */
 #define BIT(profile) (1u << CONIC_PROFILE_##profile)
 #define BLURRED (BIT(INRIA_2023) | BIT(GSPLAT_1_5) | BIT(GSPLAT_1_6))
 #define ANTIALIASED (BIT(GSPLAT_1_5_AA) | BIT(GSPLAT_1_6_AA))
@@ -16,7 +16,7 @@
 #define SOLIDS (BLURRED | ANTIALIASED | OTHERS)
 #define DISCS (BIT(2DGS_2024) | BIT(2DGS_GSPLAT) | BIT(EXACT))
 
-/* How a scene is seen: small pictures, of which no side is a multiple of a tile, and that are not square. */
+/* How a scene is seen: small pictures that are not square, and whose sides are no multiples of a tile. */
 #define SMALL .width = 36, .height = 20, .center = {18.0, 10.0}
 #define MIDDLE .width = 50, .height = 38, .center = {25.0, 19.0}
 #define AHEAD .rotation = {1.0, 0.0, 0.0, 0.0}, .eye = {0.0, 0.0, -4.0}, .focal = {32.0, 32.0}
@@ -31,7 +31,7 @@ static conic_status make_crowd(conic_context *context, conic_gaussians *gaussian
   return conic_gaussians_make(context, 4000, 1, 2, gaussians);
 }
 
-/* The room's, of which the third axis is left out. */
+/* The room without its third axis. */
 static conic_status make_flat_room(conic_context *context, conic_gaussians *gaussians) {
   conic_gaussians solid;
   conic_status status = conic_gaussians_make(context, 300, 1, 3, &solid);
@@ -78,7 +78,7 @@ const suite_scene cli_suite_scenes[] = {
      .formats = SUITE_GLB, .make = make_trained},
     {"room-of-discs", "300 2D Gaussians", 3, MIDDLE, TURNED, .profiles = DISCS, .make = make_flat_room},
 
-    /* khr-2026 has no near plane, so that what is next to the eye has no bounds to speak of. */
+    /* khr-2026 has no near plane, so Gaussians next to the eye have no useful bounds. */
     {"crowd", "4000 Gaussians about the eye: the near plane, what is behind, and the borders", 4, MIDDLE,
      .rotation = {8.0, 2.0, -1.0, 1.0}, .eye = {-0.75, -0.75, -1.75}, .focal = {30.0, 30.0},
      .profiles = SOLIDS & ~BIT(KHR_2026), .make = make_crowd},

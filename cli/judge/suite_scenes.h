@@ -1,4 +1,4 @@
-/* The scenes of the conformance suite: what each is about, how it is seen, and whose profiles draw it. */
+/* The scenes of the conformance suite: what each tests, how it is seen, and which profiles draw it. */
 #ifndef CONIC_SUITE_SCENES_H
 #define CONIC_SUITE_SCENES_H
 
@@ -7,7 +7,7 @@
 
 enum { SUITE_LEVELS = 6 };
 
-/* The profiles, as numbers of conic_gaussian_profile, and after them "surface": surface splats by the method conic. */
+/* The profiles: the numbers of conic_gaussian_profile, then "surface": surface splats by the method conic. */
 enum { SUITE_SURFACE = CONIC_N_GAUSSIAN_PROFILES, SUITE_PROFILES };
 
 const char *cli_suite_profile_name(int profile);
@@ -26,13 +26,13 @@ typedef struct suite_scene {
   unsigned profiles; /* bits 1 << profile */
   unsigned formats;
   conic_status (*make)(conic_context *context, conic_gaussians *gaussians);
-  conic_status (*make_splats)(conic_context *context, conic_splats *splats); /* of the profile surface; else null */
+  conic_status (*make_splats)(conic_context *context, conic_splats *splats); /* for the profile surface; else null */
 } suite_scene;
 
 extern const suite_scene cli_suite_scenes[];
 extern const int cli_n_suite_scenes;
 
-/* What a level asks of a renderer, in a few words. */
+/* What a level tests in a renderer, in a few words. */
 const char *cli_suite_level_about(int level);
 
 void cli_suite_camera(const suite_scene *scene, conic_camera *camera);

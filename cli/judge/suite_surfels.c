@@ -2,7 +2,7 @@
 
 #include "core/base/color.h"
 
-/* Colours are those of 8-bit codes, as files of splats mostly have them. */
+/* Colours are those of 8-bit codes, as in most files of splats. */
 static void put_surfel(conic_splats *splats, size_t i, const double center[3], const double u[3], const double v[3]) {
   for (int axis = 0; axis < 3; axis++) {
     splats->position[axis][i] = (float)center[axis];
@@ -17,7 +17,7 @@ static conic_status allocate_surfels(conic_context *context, size_t n, conic_spl
   return conic_splats_allocate(context, n, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS, splats);
 }
 
-/* A sheet of 7 × 5 from `from` on, a step along `along` and one along `down`; splats reach over their neighbours. */
+/* A sheet of 7 × 5 splats from `from` on, in steps of `along` and `down`; splats overlap their neighbours. */
 static void put_surfel_sheet(conic_splats *splats, size_t first, const double from[3], const double along[3],
                              const double down[3]) {
   for (size_t i = 0; i < 35; i++) {
@@ -47,7 +47,7 @@ conic_status cli_suite_sheet(conic_context *context, conic_splats *splats) {
   return status;
 }
 
-/* Two sheets, one before the other, by more than a splat's depth tolerance and, where they meet, by less. */
+/* Two sheets, one before the other: by more than a splat's depth tolerance, and by less where they meet. */
 conic_status cli_suite_corner(conic_context *context, conic_splats *splats) {
   static const double from[3] = {-1.6, -0.9, -0.8}, along[3] = {0.4, 0.02, 0.3}, down[3] = {0.0, 0.45, 0.03};
   static const double other_from[3] = {-0.9, -0.8, 1.1}, other_along[3] = {0.42, 0.0, -0.3},
@@ -60,7 +60,7 @@ conic_status cli_suite_corner(conic_context *context, conic_splats *splats) {
   return status;
 }
 
-/* A floor that is seen from near and low, where perspective is strong within a splat. */
+/* A floor seen from a low and near place, where perspective is strong within a splat. */
 conic_status cli_suite_steep(conic_context *context, conic_splats *splats) {
   static const double from[3] = {-1.2, 0.35, -3.2}, along[3] = {0.4, 0.0, 0.0}, down[3] = {0.0, 0.01, 0.8};
   conic_status status = allocate_surfels(context, 35, splats);

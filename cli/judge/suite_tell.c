@@ -1,4 +1,4 @@
-/* What came of a suite: a table for people, JSON for scripts, JUnit's XML for CI systems. */
+/* The result of a suite: a table for people, JSON for scripts, JUnit's XML for CI systems. */
 #include <string.h>
 
 #include "cli/json_write.h"
@@ -34,12 +34,12 @@ static size_t count_of_level(const suite_run *run, int level) {
   return n;
 }
 
-/* What a level is about; of suites that have more of them, nothing is known. */
+/* What a level tests; unknown for suites with more levels. */
 static const char *about_level(int level) {
   return level <= SUITE_LEVELS ? cli_suite_level_about(level) : "";
 }
 
-/* The level's case that has the largest share of wrong pixels; null where none is wrong. */
+/* The level's case with the largest share of wrong pixels; null where no pixel is wrong. */
 static const suite_verdict *worst_of_level(const suite_run *run, int level) {
   const suite_verdict *worst = NULL;
   double most = -1.0;
@@ -66,7 +66,7 @@ static void print_levels(const suite_run *run) {
   }
 }
 
-/* The first cases of an outcome, and how many more there are. */
+/* The first cases with an outcome, and how many more there are. */
 static void print_cases(const suite_run *run, suite_outcome outcome) {
   size_t n = 0;
   for (size_t i = 0; i < run->n; i++) {
@@ -80,7 +80,7 @@ static void print_cases(const suite_run *run, suite_outcome outcome) {
     printf("         and %zu more\n", n - SUITE_PRINTED);
 }
 
-/* How to go on from the simplest case that is wrong. */
+/* How to continue from the simplest wrong case. */
 static void print_advice(const suite_run *run) {
   for (size_t i = 0; i < run->n; i++) {
     const suite_verdict *v = &run->verdicts[i];
@@ -171,7 +171,7 @@ int cli_suite_write_json(const suite_run *run) {
 
 /* --- JUnit --- */
 
-/* Names are plain words, and messages of ours; but a folder's name may hold anything. */
+/* Names are plain words, and messages are ours; but a folder's name may hold anything. */
 static void put_xml_text(FILE *to, const char *text) {
   for (const char *c = text; *c; c++)
     if (strchr("<>&\"", *c))

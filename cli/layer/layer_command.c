@@ -1,4 +1,4 @@
-/* conic layer: samples in, of any number; a layered point cloud out. */
+/* conic layer: makes a layered point cloud from any number of samples. */
 #include <string.h>
 
 #include "cli/command.h"
@@ -33,7 +33,7 @@ static void report_layers(cli_json *json, const void *cookie) {
   cli_build_report_seconds(json, &job->base, "points_per_s", (double)s->n_in / job->base.total_seconds);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
   cli_json_skipped(json, &repairs);
-  cli_team_shares_report(json, "points", &job->shares);
+  cli_team_report_write(json, "points", &job->team);
 }
 
 static void tell_layers(const void *cookie) {
@@ -55,7 +55,8 @@ static void tell_layers(const void *cookie) {
               (unsigned long long)s->n_zero);
 }
 
-/* What points up: as is said, or as in the files that go on, or as surveys have it; else nobody knows. */
+/* Finds what points up: by the options, by the files that are continued, or by the habit of surveys; else it is
+ * unknown. */
 static void settle_up(cli_layer_job *job) {
   static const double survey_up[3] = {0.0, 0.0, 1.0};
   if (job->coloring.is_up_given)
@@ -64,7 +65,7 @@ static void settle_up(cli_layer_job *job) {
     memcpy(job->options.up, survey_up, sizeof job->options.up);
 }
 
-/* The files that go on come before what is added to them, as inputs that are read in another way. */
+/* Files that are continued come before the added ones, as inputs that are read differently. */
 static conic_status list_layer_inputs(cli_layer_job *job) {
   cli_session *session = job->base.session;
   const char *all[job->n_inputs + 1];
@@ -76,7 +77,7 @@ static conic_status list_layer_inputs(cli_layer_job *job) {
   return cli_points_share_list(session, all, n + job->n_inputs, job->n_continued, &job->share);
 }
 
-/* All that is settled before samples come, the same in every process. */
+/* Settles everything before samples come, the same in every process. */
 static conic_status plan_layers(cli_layer_job *job, conic_read_options *options) {
   conic_moment start = conic_moment_now();
   conic_status status = list_layer_inputs(job);
@@ -121,7 +122,7 @@ static int make_layers(void *cookie) {
   job->base.stages[2].seconds = job->statistics.write_seconds;
   int exit_code = cli_team_exit(session, status);
   if (exit_code == CLI_DONE && job->share.team)
-    cli_team_shares_gather(session, job->n_pieces, job->busy_seconds, &job->shares);
+    cli_team_report_gather(session, (cli_team_work){job->n_pieces, job->busy_seconds}, &job->team);
   return exit_code;
 }
 
@@ -130,7 +131,7 @@ static void release_layers(void *cookie) {
   if (job->continued)
     conic_memory_release(job->base.session->context, job->continued);
   cli_points_share_end(&job->share);
-  cli_team_shares_release(&job->shares);
+  cli_team_report_release(&job->team);
 }
 
 static int check_layer_arguments(cli_layer_job *job) {

@@ -13,7 +13,7 @@ conic_status cli_layer_open_input(cli_layer_job *job, const char *path, conic_la
   return conic_layers_open(job->base.session->context, path, &access, layers);
 }
 
-/* The values of a file that goes on become those of all. */
+/* The values of a continued file become those of the whole. */
 static conic_status take_value_names(cli_layer_job *job, const conic_layers *layers) {
   conic_context *context = job->base.session->context;
   conic_model_field field;
@@ -31,7 +31,7 @@ static conic_status take_value_names(cli_layer_job *job, const conic_layers *lay
   return CONIC_OK;
 }
 
-/* Whether the values of a file are those of the first one, in any order. */
+/* Whether a file has the same values as the first one, in any order. */
 static conic_status check_value_names(const cli_layer_job *job, const conic_layers *layers, const conic_layers *first) {
   const conic_layers *pairs[2][2] = {{first, layers}, {layers, first}};
   for (int k = 0; k < 2; k++) {
@@ -51,7 +51,7 @@ static conic_status check_value_names(const cli_layer_job *job, const conic_laye
 
 conic_status cli_layer_continue(cli_layer_job *job, const char *const *paths, int n_paths) {
   conic_layers_options first = job->options;
-  conic_layers *opened = NULL; /* the first */
+  conic_layers *opened = NULL; /* the first file */
   conic_status status = CONIC_OK;
   for (int i = 0; i < n_paths && status == CONIC_OK; i++) {
     conic_layers *layers;
@@ -61,7 +61,8 @@ conic_status cli_layer_continue(cli_layer_job *job, const char *const *paths, in
     conic_layers_continue(layers, &job->options);
     if (i == 0)
       first = job->options;
-    else if (memcmp(first.up, job->options.up, sizeof first.up) != 0) /* what not all say is not known */
+    else if (memcmp(first.up, job->options.up, sizeof first.up) != 0) /* a direction that not all files state is
+                                                                         unknown */
       memset(first.up, 0, sizeof first.up);
     first.is_unoriented = job->options.is_unoriented;
     first.keeps_all = job->options.keeps_all;

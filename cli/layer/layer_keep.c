@@ -27,7 +27,7 @@ static conic_status hash_input(conic_context *context, const char *path, char ha
   return status;
 }
 
-/* The inputs are shared out, since there may be many. */
+/* The team shares the inputs, since there may be many. */
 static conic_status hash_inputs(const cli_layer_job *job, char (*hashes)[CONIC_SHA256_ROOM],
                                 char (*all)[CONIC_SHA256_ROOM]) {
   const cli_points_share *share = &job->share;
@@ -102,9 +102,9 @@ conic_status cli_layer_make_key(const cli_layer_job *job, char key[CONIC_SHA256_
 
 /* --- axes --- */
 
-enum { AXES = 6 }; /* columns, and one that says which points are dots, if any are */
+enum { AXES = 6 }; /* columns, and one more for the dots, if there are any */
 
-/* From a stream that has n + 1 columns, the last of which is the dots'; fewer of another length have another n. */
+/* Reads n columns; with n = AXES + 1, the last one tells which points are dots. */
 static conic_status read_axes(conic_context *context, FILE *stream, size_t count, int n, float *columns[AXES + 1]) {
   for (int i = 0; i < n; i++) {
     columns[i] = conic_memory_allocate(context, count, sizeof(float));
@@ -116,7 +116,7 @@ static conic_status read_axes(conic_context *context, FILE *stream, size_t count
   return CONIC_OK;
 }
 
-/* Whether they were there. */
+/* Takes the axes if they were kept; *are_there says so. */
 static conic_status take_axes_kept(cli_layer_job *job, conic_model *model, int *are_there) {
   conic_context *context = job->base.session->context;
   size_t count = model->points.count;
@@ -136,7 +136,7 @@ static conic_status take_axes_kept(cli_layer_job *job, conic_model *model, int *
     status = conic_model_take_axes(context, model, columns, columns + 3, columns[AXES]);
   for (int i = 0; i <= AXES && (status != CONIC_OK || !*are_there); i++)
     conic_memory_release(context, columns[i]);
-  if (status == CONIC_ERROR_IO) /* somebody takes them away: they are made again */
+  if (status == CONIC_ERROR_IO) /* the file was removed meanwhile: the axes are made again */
     status = CONIC_OK;
   return status;
 }

@@ -9,19 +9,19 @@
 #include "core/splats/repairs_log.h"
 #include "lod/layers/build/layers_team.h"
 
-/* Estimating from the whole file takes about so much. */
+/* Bytes a point for estimating from the whole file, about. */
 enum { ESTIMATE_BYTES_A_POINT = 250 };
 
 uint64_t cli_layer_most_whole(const cli_layer_job *job) {
   return job->options.memory_bytes / ESTIMATE_BYTES_A_POINT;
 }
 
-/* Of several inputs some may have colours; where the first has, what has none is white, as in pictures. */
+/* Only some inputs may have colours. If the first has, inputs without are white, as in pictures. */
 static conic_status append_colored(cli_layer_job *job, const conic_splats *batch) {
   conic_context *context = job->base.session->context;
   conic_status status = CONIC_OK;
   if (!job->has_points)
-    status = conic_layers_builder_meet(job->builder, batch, &job->has_colors);
+    status = conic_layers_builder_agree(job->builder, batch, &job->has_colors);
   job->has_points = 1;
   if (status == CONIC_OK)
     status = cli_build_check_reach(&job->base, batch);
@@ -45,7 +45,7 @@ static conic_status append_colored(cli_layer_job *job, const conic_splats *batch
   return status;
 }
 
-/* A batch's arrays are the reader's: colours go with a copy. */
+/* The batch's arrays are the reader's: colours go into a copy. */
 static conic_status append_layer_batch(cli_layer_job *job, const conic_splats *batch) {
   conic_context *context = job->base.session->context;
   conic_splats own;
@@ -67,8 +67,8 @@ static conic_status append_layer_batch(cli_layer_job *job, const conic_splats *b
   return status;
 }
 
-/* Points without normals and axes: where the whole file fits into memory, they are estimated from it, as elsewhere; the
- * others get their normals while the cloud is built. */
+/* Points without normals and axes: if the whole file fits into memory, they are estimated from it, as in other
+ * commands; else they get their normals while the cloud is built. */
 static conic_status take_layer_batch(void *cookie, const conic_splats *batch) {
   cli_layer_job *job = cookie;
   int is_raw = !batch->tangent_u[0] && !batch->normal[0];
@@ -130,7 +130,7 @@ static conic_status read_layer_piece(cli_layer_job *job, const cli_points_piece 
   return job->is_raw ? read_raw(job, options) : status;
 }
 
-/* A batch of a .lpc that goes on: it is as it was, and its colours too. */
+/* A batch of a continued .lpc: samples and colours stay as they are. */
 static conic_status take_old_samples(void *cookie, const conic_splats *batch) {
   return append_colored(cookie, batch);
 }

@@ -32,7 +32,7 @@ static int compare_file_names(const void *a, const void *b) {
   return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* The names that stand in a row, sorted. */
+/* Sorts consecutive names. */
 static conic_status sort_names(conic_context *context, char *row, size_t n_bytes, size_t n) {
   const char **names = conic_memory_allocate(context, n, sizeof *names);
   char *sorted = conic_memory_allocate(context, n_bytes, 1), *at = row;

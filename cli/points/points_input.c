@@ -6,7 +6,7 @@
 #include "core/base/message.h"
 #include "core/files/file.h"
 
-/* A COPC on disk is a LAZ too, of which more can be read. */
+/* A COPC on disk is also a LAZ, which gives more values. */
 int cli_points_are_hierarchy(const char *path) {
   int may_be_copc = conic_file_is_there(path) && !conic_file_has_ending(path, "json");
   return conic_layers_is_url(path) || (!may_be_copc && conic_layers_is_hierarchy(path));
@@ -20,7 +20,7 @@ int cli_points_are_surveys(const char *const *paths, int n_paths) {
   return n_paths > 0 && n_surveys == n_paths;
 }
 
-/* Only places and colours come from a hierarchy, so what asks for more would be passed over in silence. */
+/* A hierarchy gives only places and colours; options that need more are refused, not ignored. */
 static conic_status stream_hierarchy(conic_context *context, const char *path, const conic_read_options *options,
                                      conic_batch_receiver *receive, void *cookie) {
   conic_layers *layers;

@@ -1,14 +1,14 @@
-/* Points to build from: of a model, or of another kind's hierarchy, which may lie on a web server. */
+/* Points to build from: a model's, or those of another kind's hierarchy, which may be on a web server. */
 #ifndef CONIC_POINTS_INPUT_H
 #define CONIC_POINTS_INPUT_H
 
 #include "conic/gaussians.h"
 #include "conic/model.h"
 
-/* Whether it is read as another kind's hierarchy, of which only places and colours come. */
+/* Whether it is read as another kind's hierarchy, which gives only places and colours. */
 int cli_points_are_hierarchy(const char *path);
 
-/* Whether all are surveys, in which z points up. */
+/* Whether all are surveys, whose z points up. */
 int cli_points_are_surveys(const char *const *paths, int n_paths);
 
 /* As conic_model_stream. */

@@ -8,7 +8,7 @@
 #include "core/base/message.h"
 #include "core/files/disk.h"
 
-/* A cut no farther from an end of an input than this of a share is at that end. */
+/* A cut nearer to an end of an input than this part of a share is moved to that end. */
 static const double sliver = 1.0 / 32.0;
 
 /* --- the list --- */
@@ -38,12 +38,12 @@ static conic_status list_own(cli_points_share *share, const char *const *inputs,
   return status;
 }
 
-/* The first process's list is all's, whatever others see of a folder. */
+/* The first process's list counts for all, whatever other processes see in a folder. */
 static conic_status send_names(cli_points_share *share, size_t n_bytes) {
   uint64_t facts[2] = {n_bytes, (uint64_t)share->are_surveys};
-  const cli_team *team = share->session->team;
+  const conic_executor *team = share->session->team;
   conic_status status = CONIC_OK;
-  team->broadcast(facts, sizeof facts);
+  team->broadcast(team->data, facts, sizeof facts);
   share->are_surveys = (int)facts[1];
   if (team->index > 0) {
     share->names = conic_memory_allocate(share->session->context, (size_t)facts[0], 1);
@@ -51,17 +51,17 @@ static conic_status send_names(cli_points_share *share, size_t n_bytes) {
   }
   status = conic_team_agree(share->team, status);
   if (status == CONIC_OK)
-    team->broadcast(share->names, (size_t)facts[0]);
+    team->broadcast(team->data, share->names, (size_t)facts[0]);
   return status == CONIC_OK && team->index > 0 ? count_names(share, (size_t)facts[0]) : status;
 }
 
 conic_status cli_points_share_list(cli_session *session, const char *const *inputs, int n_inputs, int n_uncut,
                                    cli_points_share *share) {
   *share = (cli_points_share){.session = session, .n_uncut = n_uncut};
-  share->team = cli_team_of_library(session, &share->of_session);
+  share->team = cli_team_of(session);
   conic_status status = CONIC_OK;
   size_t n_bytes = 0;
-  if (cli_team_is_first(session)) {
+  if (cli_session_speaks(session)) {
     status = list_own(share, inputs, n_inputs, &n_bytes);
     if (status == CONIC_OK)
       status = count_names(share, n_bytes);
@@ -91,7 +91,7 @@ static double bytes_of_input(const char *path) {
   return conic_disk_look(path, &found) && found.is_file ? (double)found.n_bytes + 1.0 : 1.0;
 }
 
-/* At so much of an input; at one of its ends, if that is near or the input cannot be parted. */
+/* A cut after that fraction of an input; it moves to an end that is near, or if the input cannot be read in parts. */
 static conic_status find_cut(const cli_points_share *share, const conic_read_options *options, int can_part,
                              uint64_t most_whole, double fraction, cli_points_cut *cut) {
   conic_status status = CONIC_OK;
@@ -101,7 +101,7 @@ static conic_status find_cut(const cli_points_share *share, const conic_read_opt
   can_part = can_part && shape->can_part && !(shape->is_raw && shape->n_points <= most_whole);
   uint64_t n_steps = shape->n_points / CONIC_PART_STEP;
   cut->point = can_part ? (uint64_t)(fraction * (double)n_steps + 0.5) * CONIC_PART_STEP : 0;
-  if (can_part && cut->input == 0 && cut->point == 0) /* the first process has something */
+  if (can_part && cut->input == 0 && cut->point == 0) /* the first process gets at least something */
     cut->point = CONIC_PART_STEP;
   if ((can_part && cut->point >= shape->n_points) || (!can_part && (fraction >= 0.5 || cut->input == 0)))
     *cut = (cli_points_cut){.input = cut->input + 1};
@@ -156,7 +156,7 @@ static conic_status list_share_pieces(cli_points_share *share) {
   return CONIC_OK;
 }
 
-/* Of the first and the last of its pieces, which alone can be parts. */
+/* The facts of this process's first and last piece; only these can be parts of an input. */
 typedef struct part_facts {
   int input[2];
   conic_model_survey survey[2];
@@ -193,7 +193,7 @@ static void add_facts_of(cli_points_piece *piece, const part_facts *all, int cou
       conic_model_survey_add(&piece->survey, &all[i / 2].survey[i % 2]);
 }
 
-/* What turns out to be little is not parted after all: the process before the first cut has it. */
+/* Undoes the cuts of an input with few wanted points: the process before its first cut takes it whole. */
 static int mend_cuts(cli_points_share *share, const conic_read_options *options, const part_facts *all,
                      uint64_t most_whole) {
   int is_mended = 0;
@@ -240,7 +240,8 @@ conic_status cli_points_share_out(cli_points_share *share, const conic_read_opti
   status = conic_team_agree(share->team, status);
   if (status != CONIC_OK)
     return status;
-  share->session->team->broadcast(share->cuts, (n_shares + 1) * sizeof *share->cuts);
+  const conic_executor *team = share->session->team;
+  team->broadcast(team->data, share->cuts, (n_shares + 1) * sizeof *share->cuts);
   status = conic_team_agree(share->team, list_share_pieces(share));
   return status == CONIC_OK ? settle_parts(share, options, most_whole) : status;
 }

@@ -19,6 +19,13 @@ int cli_parse_focus(const char *text, void *value) {
   return cli_parse_pair(text, ',', focus->pixel) && focus->pixel[0] >= 0.0 && focus->pixel[1] >= 0.0;
 }
 
+int cli_parse_blades(const char *text, void *value) {
+  unsigned long long n;
+  int is_number = cli_parse_count(text, &n) && n <= CONIC_MAX_BLADES;
+  ((cli_accumulate_job *)value)->n_blades = is_number ? (int)n : 0;
+  return is_number;
+}
+
 int cli_parse_shutter(const char *text, void *value) {
   double *shutter = value;
   return cli_parse_pair(text, ':', shutter) && shutter[0] <= shutter[1] && fabs(shutter[0]) <= 1e5 &&
@@ -28,25 +35,10 @@ int cli_parse_shutter(const char *text, void *value) {
 /* What a sample is drawn with, unless it is said otherwise: the samples are the filter. */
 static const float sample_prefilter = 0.0625f;
 
-static int check_company(const cli_render_job *job) {
-  if (job->shot.view.samples > 1)
-    return cli_usage("render: --accumulate places its samples itself: not with --samples");
-  if (job->repeat > 1 || job->progressive_path || job->deadline > 0.0 || job->deep_path || job->has_mattes)
-    return cli_usage("render: not --accumulate with --repeat, --progressive, --deadline, --deep or --cryptomatte");
-  if (job->top.is_wanted)
-    return cli_usage("render: --camera top filters its pixels itself: not with --accumulate");
-  return CLI_DONE;
-}
-
 int cli_accumulate_settle(const cli_session *session, cli_render_job *job) {
   const cli_accumulate_job *own = &job->accumulating;
-  if (own->is_lens_given && own->width.value <= 0.0)
-    return cli_usage("%s: --focus and --blades are of a lens; give its --aperture, too", session->command);
   if (own->n_blades == 1 || own->n_blades == 2)
-    return cli_usage("%s: --blades is 0, for a round lens, or 3 at least", session->command);
-  if (own->is_shutter_given && !job->is_turntable && !job->camera_path && !own->motion_path)
-    return cli_usage("%s: --shutter wants a way of the camera, --turntable or --camera with several, or --motion",
-                     session->command);
+    return cli_usage("%s: a lens has 3 blades at least, or is round", session->command);
   if (!job->is_prefilter_given)
     job->shot.render.prefilter = sample_prefilter;
   return CLI_DONE;
@@ -54,18 +46,11 @@ int cli_accumulate_settle(const cli_session *session, cli_render_job *job) {
 
 int cli_accumulate_check(const cli_session *session, cli_render_job *job) {
   cli_accumulate_job *own = &job->accumulating;
-  if (!own->n_samples && job->shot.planes & (1u << CONIC_PLANE_SAMPLES | 1u << CONIC_PLANE_VARIANCE))
-    return cli_usage("render: the planes samples and variance are --accumulate's");
-  if (!own->n_samples)
-    return own->is_given || own->is_lens_given || own->is_shutter_given || own->motion_path
-               ? cli_usage("render: --time, --noise, --preview, --aperture, --focus, --blades, --shutter and "
-                           "--motion want --accumulate N")
-               : CLI_DONE;
-  int answer = check_company(job);
-  if (answer == CLI_DONE)
-    answer = cli_accumulate_settle(session, job);
-  if (answer != CLI_DONE)
+  int answer = own->n_samples ? cli_accumulate_settle(session, job) : CLI_DONE;
+  if (answer != CLI_DONE || !own->n_samples)
     return answer;
+  if (own->noise > 0.0 && own->n_samples <= 16)
+    cli_warn(session, "%s: --noise has no effect: it looks at 16 samples, and then at more", session->command);
   if (own->width.value > 0.0 && own->focus.kind != CONIC_FOCUS_DEPTH) /* which is known before the lens is */
     job->unwritten_planes |= ~job->shot.planes & 1u << CONIC_PLANE_Z;
   job->shot.planes |= job->unwritten_planes;

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
-#include "cli/render/sharing.h"
 #include "cli/render/shot_record.h"
-#include "cli/session_team.h"
+#include "cli/render/units.h"
 #include "cli/stopper.h"
 #include "core/files/disk.h"
 #include "shots/stage.h"
@@ -33,33 +33,15 @@ typedef struct kept_sums {
   double shown_seconds; /* when a preview was written last */
 } kept_sums;
 
-/* Of a frame's sums, which the caller frees; null without memory. */
-static char *sums_name(const cli_render_job *job, int i_frame) {
-  char *picture = cli_frame_name(job, job->outputs[0], i_frame);
-  size_t room = picture ? strlen(picture) + 8 : 0;
-  char *name = picture ? malloc(room) : NULL;
-  if (name)
-    snprintf(name, room, "%s.sums", picture);
-  free(picture);
-  return name;
-}
-
 static conic_status keep_sums(void *cookie, const conic_accumulation *sums) {
   kept_sums *work = cookie;
   const cli_render_job *job = work->job;
   if (!job->accumulating.is_resumable)
     return CONIC_OK;
-  char *path = sums_name(job, work->i_frame);
+  char *path = cli_sums_name(job, work->i_frame);
   conic_status status = path ? conic_accumulation_write(sums, path) : CONIC_ERROR_MEMORY;
   free(path);
   return status;
-}
-
-void cli_accumulate_forget(const cli_render_job *job, int i_frame) {
-  char *path = job->accumulating.n_samples ? sums_name(job, i_frame) : NULL;
-  if (path)
-    conic_disk_remove(path);
-  free(path);
 }
 
 /* A run that is stopped keeps the samples that it has, for --resume. Sums are large: nobody watches how long that
@@ -130,9 +112,9 @@ static char *resumed_name(const kept_sums *work, conic_status *status) {
   const cli_render_job *job = work->job;
   const cli_accumulate_job *own = &job->accumulating;
   conic_disk_entry entry;
-  if (!own->resume_path || !cli_team_is_first(work->session))
+  if (!own->resume_path || !cli_session_speaks(work->session))
     return NULL;
-  char *name = job->kept ? sums_name(job, work->i_frame) : malloc(strlen(own->resume_path) + 8);
+  char *name = job->kept ? cli_sums_name(job, work->i_frame) : malloc(strlen(own->resume_path) + 8);
   if (!name) {
     *status = CONIC_ERROR_MEMORY;
     return NULL;
@@ -196,9 +178,7 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
   own->focus_depth = 0.0;
   if (i_frame == job->frames.first - 1)
     tell_wide_lens(session, job);
-  conic_status status = conic_shot_work_begin(job->source, job->renderer, &job->shot, &drawing);
-  drawing.executor = cli_sharing_executor(job);
-  drawing.units = job->sharing;
+  conic_status status = cli_shot_begin(job, &drawing);
   drawing.keeper = &keeper;
   drawing.seconds = own->seconds;
   if (status == CONIC_OK)

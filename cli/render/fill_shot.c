@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "cli/render/sharing.h"
 #include "cli/render/shot_again.h"
 #include "cli/scene/stereo.h"
 #include "shots/stage.h"
@@ -80,8 +79,7 @@ conic_status cli_choose_exposure(cli_render_job *job) {
   if (!job->is_exposure_automatic)
     return CONIC_OK;
   double start = cli_seconds();
-  conic_status status =
-      conic_shot_expose_together(job->source, job->renderer, cli_sharing_executor(job), job->sharing, &job->shot);
+  conic_status status = conic_shot_expose_together(job->source, job->renderer, job->executor, job->units, &job->shot);
   if (status == CONIC_OK)
     job->is_exposure_automatic = 0; /* kept for all frames */
   job->frames_ms += 1e3 * (cli_seconds() - start);

@@ -38,20 +38,6 @@ int cli_parse_frames(const char *text, void *value) {
   return *text == '\0' && text[-1] != ':' && numbers[0] >= 0 && numbers[0] <= numbers[1] && numbers[2] > 0;
 }
 
-int cli_frames_are_many(const cli_render_job *job) {
-  return job->is_turntable || job->is_every_view;
-}
-
-int cli_frames_are_several(const cli_render_job *job) {
-  const cli_frames *frames = &job->frames;
-  int is_one = frames->is_given ? frames->last - frames->first < frames->step : job->is_turntable && job->n_frames == 1;
-  return cli_frames_are_many(job) && !is_one;
-}
-
-int cli_frames_count(const cli_render_job *job) {
-  return (job->frames.last - job->frames.first) / job->frames.step + 1;
-}
-
 /* --- names --- */
 
 /* The first %d or %0Nd of a name, with its length and N; null: there is none. Any other % is a letter like others. */

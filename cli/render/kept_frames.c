@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/render/banded_picture.h"
 #include "cli/render/fill_shot.h"
+#include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
-#include "cli/render/sharing.h"
 #include "cli/render/shot_record.h"
-#include "cli/session_team.h"
+#include "cli/render/strip_pictures.h"
+#include "cli/render/units.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/disk.h"
@@ -62,7 +62,7 @@ int cli_kept_frames_check(const cli_session *session, const cli_render_job *job)
   int is_placed = is_several || !own->n_samples;
   if (!own->is_resumable && !own->resume_path)
     return CLI_DONE;
-  if (is_placed && !is_several && !cli_may_be_banded(session, job))
+  if (is_placed && !is_several && !cli_may_be_in_strips(session, job))
     return refuse_kept();
   if ((own->is_resumable || is_placed) && !has_file)
     return cli_usage("render: --resumable keeps what is finished beside the picture; give a file with -o");
@@ -151,13 +151,13 @@ static conic_status write_frame_list(const cli_kept_frames *kept, const char *ke
 /* By the shot of the first frame, after which all inputs have been read. */
 static conic_status make_key(cli_session *session, cli_render_job *job) {
   conic_status status = CONIC_OK;
-  if (cli_team_is_first(session) || job->sharing == CONIC_UNITS_WINDOWS)
+  if (cli_session_speaks(session) || job->units == CONIC_UNITS_WINDOWS)
     status = cli_shot_fill(session, job, job->frames.first - 1);
-  if (status == CONIC_OK && cli_team_is_first(session))
+  if (status == CONIC_OK && cli_session_speaks(session))
     status = cli_shot_kept_key(session, job, job->kept_key);
-  status = cli_sharing_end(session, job, status);
-  if (status == CONIC_OK && job->sharing != CONIC_UNITS_NONE)
-    session->team->broadcast(job->kept_key, sizeof job->kept_key);
+  status = cli_units_agree(job, status);
+  if (status == CONIC_OK)
+    cli_units_broadcast(job, job->kept_key, sizeof job->kept_key);
   return status;
 }
 
@@ -185,18 +185,18 @@ static conic_status open_list(cli_session *session, cli_render_job *job) {
 static conic_status spread_list(cli_session *session, cli_render_job *job) {
   cli_kept_frames *kept = job->kept;
   uint64_t n_bytes = kept->found.n_bytes;
-  session->team->broadcast(&n_bytes, sizeof n_bytes);
-  if (!cli_team_is_first(session)) {
+  cli_units_broadcast(job, &n_bytes, sizeof n_bytes);
+  if (!cli_session_speaks(session)) {
     kept->found.text = conic_memory_allocate(session->context, (size_t)n_bytes, 1);
     kept->found.n_bytes = kept->found.text ? (size_t)n_bytes : 0;
   }
   int has_room = kept->found.text || !n_bytes;
-  conic_status status = cli_sharing_end(session, job, has_room ? CONIC_OK : CONIC_ERROR_MEMORY);
+  conic_status status = cli_units_agree(job, has_room ? CONIC_OK : CONIC_ERROR_MEMORY);
   if (status == CONIC_OK)
-    session->team->broadcast(kept->found.text, (size_t)n_bytes);
-  if (!cli_team_is_first(session) && status == CONIC_OK)
+    cli_units_broadcast(job, kept->found.text, (size_t)n_bytes);
+  if (!cli_session_speaks(session) && status == CONIC_OK)
     status = find_frames(kept, job->n_frames);
-  return cli_sharing_end(session, job, status);
+  return cli_units_agree(job, status);
 }
 
 conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job) {
@@ -212,12 +212,12 @@ conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job) {
     status = CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     job->kept->context = session->context;
-    status = cli_team_is_first(session) ? open_list(session, job) : CONIC_OK;
+    status = cli_session_speaks(session) ? open_list(session, job) : CONIC_OK;
     conic_outputs_watch(session->context, note_name, job->kept);
   }
   own->is_resumable = 1; /* also of who goes on */
-  status = cli_sharing_end(session, job, status);
-  return status == CONIC_OK && job->sharing != CONIC_UNITS_NONE ? spread_list(session, job) : status;
+  status = cli_units_agree(job, status);
+  return status == CONIC_OK && job->units != CONIC_UNITS_NONE ? spread_list(session, job) : status;
 }
 
 void cli_kept_frames_release(cli_session *session, cli_render_job *job) {
@@ -250,7 +250,7 @@ static int is_frame_there(const cli_kept_frames *kept, int i_frame) {
 }
 
 /* In the first process, one call at a time: the lines of a finished frame; none: it was there. */
-void cli_kept_frames_take(void *cookie, int from, void *bytes, size_t n_bytes) {
+void cli_kept_frames_take(void *cookie, int from, const void *bytes, size_t n_bytes) {
   cli_kept_frames *kept = cookie;
   (void)from;
   if (!n_bytes)
@@ -259,9 +259,9 @@ void cli_kept_frames_take(void *cookie, int from, void *bytes, size_t n_bytes) {
     kept->error = errno ? errno : EIO;
 }
 
-static void hand_lines(cli_session *session, cli_render_job *job, const growing_text *lines) {
-  if (job->sharing == CONIC_UNITS_FRAMES)
-    session->team->hand(lines->bytes, lines->n);
+static void hand_lines(const cli_render_job *job, const growing_text *lines) {
+  if (job->units == CONIC_UNITS_FRAMES)
+    job->executor->hand(job->executor->data, lines->bytes, lines->n);
   else
     cli_kept_frames_take(job->kept, 0, lines->bytes, lines->n);
 }
@@ -279,22 +279,22 @@ conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int
   if (!kept)
     return CONIC_OK;
   conic_status status = conic_progress(session->context, "draw", 0.0);
-  if (cli_sharing_has_picture(session, job))
+  if (cli_units_make_picture(session, job))
     *is_finished = status == CONIC_OK && is_frame_there(kept, i_frame);
-  if (job->sharing > CONIC_UNITS_FRAMES)
-    session->team->broadcast(is_finished, sizeof *is_finished);
-  if (*is_finished && cli_sharing_has_picture(session, job))
-    hand_lines(session, job, &nothing);
+  if (job->units > CONIC_UNITS_FRAMES)
+    cli_units_broadcast(job, is_finished, sizeof *is_finished);
+  if (*is_finished && cli_units_make_picture(session, job))
+    hand_lines(job, &nothing);
   if (!*is_finished && !job->accumulating.resume_path &&
-      cli_sharing_has_picture(session, job)) /* sums of another time */
-    cli_accumulate_forget(job, i_frame);
+      cli_units_make_picture(session, job)) /* sums of another time */
+    cli_sums_forget(job, i_frame);
   return status;
 }
 
 conic_status cli_kept_frames_add(cli_session *session, cli_render_job *job, int i_frame) {
   cli_kept_frames *kept = job->kept;
   char last[32];
-  if (!kept || !cli_sharing_has_picture(session, job))
+  if (!kept || !cli_units_make_picture(session, job))
     return CONIC_OK;
   conic_status status = kept->status;
   kept->lines.n = 0;
@@ -305,8 +305,8 @@ conic_status cli_kept_frames_add(cli_session *session, cli_render_job *job, int 
   if (status == CONIC_OK)
     status = add_bytes(kept->context, &kept->lines, last, (size_t)n);
   if (status == CONIC_OK) {
-    hand_lines(session, job, &kept->lines);
-    cli_accumulate_forget(job, i_frame);
+    hand_lines(job, &kept->lines);
+    cli_sums_forget(job, i_frame);
   }
   return status == CONIC_OK ? tell_error(kept) : status;
 }
@@ -321,5 +321,5 @@ conic_status cli_kept_frames_end(cli_session *session, cli_render_job *job) {
     return CONIC_OK;
   if (kept->n_finished)
     cli_note(session, "%d of %d frames were finished", kept->n_finished, cli_frames_count(job));
-  return cli_sharing_end(session, job, tell_error(kept));
+  return cli_units_agree(job, tell_error(kept));
 }

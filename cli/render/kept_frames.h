@@ -16,8 +16,8 @@ int cli_kept_frames_check(const cli_session *session, const cli_render_job *job)
  * options), IO, MEMORY. */
 conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job);
 
-/* What a team's `share` is given for the frames, so that the first process notes those of all. */
-void cli_kept_frames_take(void *cookie, int from, void *bytes, size_t n_bytes);
+/* What takes what is handed over of frames, so that the first process notes those of all. */
+void cli_kept_frames_take(void *cookie, int from, const void *bytes, size_t n_bytes);
 
 /* Whether a frame, from 0, is finished; collective where all processes draw it. Errors: CANCELLED. */
 conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int i_frame, int *is_finished);

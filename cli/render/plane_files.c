@@ -46,14 +46,6 @@ static int is_single(unsigned planes) {
   return (planes & (planes - 1)) == 0;
 }
 
-int cli_mattes_check(const cli_render_job *job) {
-  if (best_of(job) != HOLDS_ALL)
-    return cli_usage("render: --cryptomatte goes into an .exr; give -o OUT.exr");
-  if (job->abilities & CONIC_SOURCE_STREAMS)
-    return cli_usage("render: --cryptomatte names what is read whole, not an .lpc");
-  return CLI_DONE;
-}
-
 int cli_planes_check(const cli_session *session, const cli_render_job *job) {
   const file_holds best = best_of(job);
   unsigned lost = best >= HOLDS_ONE ? 0 : job->asked_planes & ~(unsigned)(best == HOLDS_LOOKS ? LOOKED_AT : RGBA);

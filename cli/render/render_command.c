@@ -4,13 +4,13 @@
 
 #include "cli/command.h"
 #include "cli/host_keeps.h"
-#include "cli/render/banded_picture.h"
 #include "cli/render/fill_shot.h"
+#include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/kept_frames.h"
-#include "cli/render/sharing.h"
 #include "cli/render/shot_record.h"
-#include "cli/scene/background_options.h"
+#include "cli/render/strip_pictures.h"
+#include "cli/render/units.h"
 #include "cli/scene/stereo.h"
 #include "cli/session_team.h"
 #include "core/base/message.h"
@@ -46,139 +46,6 @@ static void take_medians(cli_render_job *job, conic_render_statistics *frames, s
   ms.resolve = median_of(frames, n, offsetof(conic_render_milliseconds, resolve));
   job->statistics = last;
   job->statistics.ms = ms;
-}
-
-static void name_attribute(conic_image *image, const char *name, const char *text, double value) {
-  conic_attribute *attribute = &image->attributes[image->n_attributes++];
-  memset(attribute, 0, sizeof *attribute);
-  snprintf(attribute->name, sizeof attribute->name, "%s", name);
-  attribute->type = text ? CONIC_ATTRIBUTE_TEXT : CONIC_ATTRIBUTE_DOUBLE;
-  if (text)
-    snprintf(attribute->text, sizeof attribute->text, "%s", text);
-  attribute->values[0] = value;
-}
-
-/* What the picture says of itself in its header. */
-void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, conic_image *image) {
-  const conic_render_statistics *s = &job->statistics;
-  image->n_attributes = 0;
-  name_attribute(image, "conicVersion", conic_version(), 0);
-  name_attribute(image, "conicMethod", cli_method_name(job), 0);
-  name_attribute(image, "conicEpsilonMode", s->epsilon_is_fixed ? "fixed" : "auto", 0);
-  name_attribute(image, "conicEpsilon", NULL, s->epsilon);
-  name_attribute(image, "conicNear", NULL, s->near_z);
-  name_attribute(image, "conicCutoff", NULL, (double)job->shot.render.kernel.cutoff);
-  name_attribute(image, "conicPrefilter", NULL,
-                 job->abilities & CONIC_SOURCE_COMPOSITES ? job->shot.gaussians.prefilter
-                                                          : (double)job->shot.render.prefilter);
-  name_attribute(image, "conicExposure", NULL, job->shot.render.exposure);
-  name_attribute(image, "conicSamples", NULL, (double)job->shot.view.samples);
-  name_attribute(image, "conicFx", NULL, camera->fx);
-  name_attribute(image, "conicFy", NULL, camera->fy);
-  name_attribute(image, "conicCx", NULL, camera->cx);
-  name_attribute(image, "conicCy", NULL, camera->cy);
-  conic_attribute *matrix = &image->attributes[image->n_attributes++];
-  memset(matrix, 0, sizeof *matrix);
-  snprintf(matrix->name, sizeof matrix->name, "conicWorldToCamera");
-  matrix->type = CONIC_ATTRIBUTE_MATRIX;
-  memcpy(matrix->values, camera->cam_from_world, sizeof camera->cam_from_world);
-  matrix->values[15] = 1.0;
-  image->shot = job->making.text;
-  cli_accumulate_describe(job, image);
-  conic_image_describe_camera(image, camera);
-}
-
-/* Display values are past all curves. */
-static void check_tone(const cli_session *session, cli_render_job *job, const conic_image *image) {
-  if (job->tone == CONIC_TONE_SRGB || !image->is_display)
-    return;
-  conic_log(session->context, CONIC_LOG_WARNING, "%s: no --tone: the colours are display values, not linear",
-            job->inputs[0]);
-  job->tone = CONIC_TONE_SRGB; /* said once */
-}
-
-conic_status cli_frame_write(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
-  conic_moment start = conic_moment_now();
-  conic_status status = CONIC_OK;
-  check_tone(session, job, image);
-  for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
-    char *path = cli_frame_name(job, job->outputs[i], i_frame);
-    status = path ? cli_backdrop_write(session, job, path, image) : CONIC_ERROR_MEMORY;
-    free(path);
-  }
-  job->write_ms += 1e3 * (cli_seconds() - start.clock_s);
-  if (job->sharing != CONIC_UNITS_FRAMES) /* whose units write */
-    cli_team_trace(session, "write", "picture", (uint64_t)i_frame, start, 0);
-  return status;
-}
-
-/* A picture beside the frame's, which it releases, where `status` says that it was made, from `start` on. */
-static conic_status write_beside(cli_session *session, cli_render_job *job, const char *name, int i_frame, double start,
-                                 conic_status status, conic_image *map) {
-  char *path = status == CONIC_OK ? cli_frame_name(job, name, i_frame) : NULL;
-  if (status == CONIC_OK) {
-    status = path ? conic_image_write_as(session->context, path, map, &job->writing) : CONIC_ERROR_MEMORY;
-    conic_image_release(session->context, map);
-  }
-  free(path);
-  job->write_ms += 1e3 * (cli_seconds() - start);
-  return status;
-}
-
-/* --overdraw: the count plane in false colours. */
-static conic_status write_overdraw(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
-  conic_image map;
-  double start = cli_seconds();
-  if (!job->overdraw_path)
-    return CONIC_OK;
-  conic_status status = job->is_overdraw_confetti ? conic_image_overdraw_confetti(session->context, image, &map)
-                                                  : conic_image_overdraw(session->context, image, &map);
-  return write_beside(session, job, job->overdraw_path, i_frame, start, status, &map);
-}
-
-/* --clusters: the clusters of a hybrid in false colours. */
-static conic_status write_clusters(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
-  double start = cli_seconds();
-  if (!job->clusters_path)
-    return CONIC_OK;
-  char *path = cli_frame_name(job, job->clusters_path, i_frame);
-  conic_status status = path ? cli_clusters_write(session, job, path, image) : CONIC_ERROR_MEMORY;
-  free(path);
-  job->write_ms += 1e3 * (cli_seconds() - start);
-  return status;
-}
-
-/* --boxes: the nodes of an octree. */
-static conic_status write_boxes(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                                const conic_image *image, int i_frame) {
-  const conic_octree *octree = job->boxes_path ? conic_source_octree(job->source) : NULL;
-  conic_image map;
-  double start = cli_seconds();
-  if (!octree)
-    return CONIC_OK;
-  conic_status status = conic_octree_draw_boxes(octree, camera, job->box_level, image, &map);
-  return write_beside(session, job, job->boxes_path, i_frame, start, status, &map);
-}
-
-/* --deep: what is behind the picture's pixels. */
-static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                               const conic_image *image, int i_frame) {
-  const conic_drawing *drawing = &conic_source_chosen(job->source)->drawing;
-  conic_contributions *contributions;
-  double start = cli_seconds();
-  if (!job->deep_path)
-    return CONIC_OK;
-  char *path = cli_frame_name(job, job->deep_path, i_frame);
-  conic_status status =
-      path ? conic_contributions_create_drawing(session->context, drawing, camera, &job->shot.render, &contributions)
-           : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK) {
-    status = conic_contributions_write(contributions, path, image);
-    conic_contributions_destroy(contributions);
-  }
-  free(path);
-  job->write_ms += 1e3 * (cli_seconds() - start);
-  return status;
 }
 
 /* A picture without anything in it is more often a mistaken camera than what was wanted. */
@@ -255,7 +122,7 @@ static conic_status render_repeats(cli_session *session, cli_render_job *job, in
 /* Of windows, the picture comes together in the first process; others need it where it is gathered or lit, for all go
  * along to draw views and maps. */
 static int needs_image(const cli_session *session, const cli_render_job *job, int is_gathered) {
-  return job->sharing != CONIC_UNITS_WINDOWS || cli_sharing_has_picture(session, job) || is_gathered ||
+  return job->units != CONIC_UNITS_WINDOWS || cli_units_make_picture(session, job) || is_gathered ||
          conic_shot_is_lit(&job->shot);
 }
 
@@ -270,16 +137,16 @@ static conic_status check_gathered(const cli_render_job *job, int is_gathered) {
 }
 
 /* One that is written while it is drawn. */
-static conic_status render_banded(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
-                                  conic_render_statistics *statistics) {
+static conic_status render_in_strips(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
+                                     conic_render_statistics *statistics) {
   job->shot.render.skip_hidden = !session->json_path;
-  conic_status status = cli_sharing_has_picture(session, job) ? cli_shot_describe(session, job) : CONIC_OK;
-  status = cli_sharing_end(session, job, status);
+  conic_status status = cli_units_make_picture(session, job) ? cli_shot_describe(session, job) : CONIC_OK;
+  status = cli_units_agree(job, status);
   if (status == CONIC_OK)
-    status = cli_render_banded(session, job, i_frame, camera, statistics);
-  if (status == CONIC_OK && cli_sharing_has_picture(session, job))
+    status = cli_render_in_strips(session, job, i_frame, camera, statistics);
+  if (status == CONIC_OK && cli_units_make_picture(session, job))
     status = cli_shot_save(session, job, i_frame);
-  if (status != CONIC_OK || !cli_sharing_has_picture(session, job))
+  if (status != CONIC_OK || !cli_units_make_picture(session, job))
     return status;
   job->frames_ms += statistics->ms.frame;
   take_medians(job, statistics, 1);
@@ -306,8 +173,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     status = cli_choose_exposure(job);
   if (session->host || image->width != camera.width || image->height != camera.height)
     cli_host_release_image(session, image);
-  if (status == CONIC_OK && cli_is_banded(session, job, &camera))
-    return render_banded(session, job, i_frame, &camera, repeats);
+  if (status == CONIC_OK && cli_is_in_strips(session, job, &camera))
+    return render_in_strips(session, job, i_frame, &camera, repeats);
   if (status == CONIC_OK)
     status = cli_refuse_kept_picture(job);
   if (status == CONIC_OK)
@@ -316,7 +183,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     status = cli_host_allocate_image(session, camera.width, camera.height, job->shot.planes, image);
   if (status == CONIC_OK)
     status = render_repeats(session, job, i_frame, image, repeats);
-  if (status != CONIC_OK || !cli_sharing_has_picture(session, job))
+  if (status != CONIC_OK || !cli_units_make_picture(session, job))
     return status;
   for (int i = 0; i < job->repeat; i++)
     job->frames_ms += repeats[i].ms.frame;
@@ -325,24 +192,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   warn_of_error(session, job);
   warn_of_alpha(session, job);
   status = cli_shot_describe(session, job);
-  if (status != CONIC_OK)
-    return status;
-  cli_frame_describe(job, &camera, image);
-  if (job->has_mattes)
-    status = cli_mattes_fill(session, job, &camera, image);
-  if (status != CONIC_OK)
-    return status;
-  status = cli_legend_show(session, job, image);
   if (status == CONIC_OK)
-    status = cli_frame_write(session, job, image, i_frame);
-  if (status == CONIC_OK)
-    status = write_overdraw(session, job, image, i_frame);
-  if (status == CONIC_OK)
-    status = write_clusters(session, job, image, i_frame);
-  if (status == CONIC_OK)
-    status = write_boxes(session, job, &camera, image, i_frame);
-  if (status == CONIC_OK)
-    status = write_deep(session, job, &camera, image, i_frame);
+    status = cli_frame_files_write(session, job, &camera, image, i_frame);
   if (status == CONIC_OK)
     status = cli_shot_save(session, job, i_frame);
   if (status == CONIC_OK)
@@ -362,16 +213,16 @@ static void hash_image(const cli_session *session, cli_render_job *job, const co
 /* That of all frames is the first one's, whoever draws that. */
 static conic_status choose_first_exposure(cli_session *session, cli_render_job *job) {
   conic_status status = CONIC_OK;
-  if ((job->sharing == CONIC_UNITS_NONE && !cli_frames_are_several(job)) || !job->is_exposure_automatic)
+  if ((job->units == CONIC_UNITS_NONE && !cli_frames_are_several(job)) || !job->is_exposure_automatic)
     return CONIC_OK;
-  if (cli_team_is_first(session) || job->sharing == CONIC_UNITS_WINDOWS) { /* of which all draw some */
+  if (cli_session_speaks(session) || job->units == CONIC_UNITS_WINDOWS) { /* of which all draw some */
     status = cli_shot_fill(session, job, job->frames.first - 1);
     if (status == CONIC_OK)
       status = cli_choose_exposure(job);
   }
-  status = cli_sharing_end(session, job, status);
-  if (status == CONIC_OK && job->sharing != CONIC_UNITS_NONE)
-    session->team->broadcast(&job->shot.render.exposure, sizeof job->shot.render.exposure);
+  status = cli_units_agree(job, status);
+  if (status == CONIC_OK)
+    cli_units_broadcast(job, &job->shot.render.exposure, sizeof job->shot.render.exposure);
   job->is_exposure_automatic = 0;
   return status;
 }
@@ -381,8 +232,8 @@ static conic_status render_frames(cli_session *session, cli_render_job *job, con
                                   conic_render_statistics *repeats) {
   cli_frame_turns turns;
   conic_status status = CONIC_OK;
-  cli_frame_turns_begin(session, job, &turns);
-  for (int i; status == CONIC_OK && (i = cli_frame_turns_next(session, job, &turns)) >= 0;) {
+  cli_frame_turns_begin(job, job->kept ? cli_kept_frames_take : NULL, job->kept, &turns);
+  for (int i; status == CONIC_OK && (i = cli_frame_turns_next(&turns)) >= 0;) {
     conic_moment start = conic_moment_now();
     int i_frame = job->frames.first - 1 + i * job->frames.step, is_finished = 0;
     if (cli_frames_are_many(job))
@@ -397,8 +248,7 @@ static conic_status render_frames(cli_session *session, cli_render_job *job, con
     }
     if (status == CONIC_OK)
       status = cli_kept_frames_add(session, job, i_frame);
-    if (job->sharing == CONIC_UNITS_FRAMES)
-      cli_sharing_note(session, job, "frame", (uint64_t)i, start, 0);
+    cli_frame_turns_did(&turns, i, start);
   }
   return status;
 }
@@ -409,18 +259,18 @@ static int render_scene(cli_session *session, cli_render_job *job) {
   memset(&image, 0, sizeof image);
   conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
   conic_status status = repeats ? CONIC_OK : CONIC_ERROR_MEMORY;
-  status = cli_sharing_end(session, job, status);
+  status = cli_units_agree(job, status);
   if (status == CONIC_OK)
     status = choose_first_exposure(session, job);
   if (status == CONIC_OK)
     status = cli_kept_frames_begin(session, job);
   if (status == CONIC_OK)
-    status = cli_sharing_end(session, job, render_frames(session, job, &image, repeats));
+    status = cli_units_agree(job, render_frames(session, job, &image, repeats));
   if (status == CONIC_OK)
     status = cli_kept_frames_end(session, job);
   if (status == CONIC_OK)
-    cli_sharing_gather(session, job);
-  if (status == CONIC_OK && cli_team_is_first(session)) {
+    cli_units_gather(session, job);
+  if (status == CONIC_OK && cli_session_speaks(session)) {
     hash_image(session, job, &image);
     job->total_ms = 1e3 * (cli_seconds() - job->start_seconds);
     if (conic_image_planes(&image))
@@ -450,7 +300,6 @@ static int run(cli_session *session, int argc, char **argv) {
   double start = cli_seconds();
   int exit_code = cli_render_parse(session, argc, argv, &job);
   enum { MANY = 16 };
-  job.session = session;
   job.start_seconds = start;
   if (exit_code == CLI_DONE) {
     session->draws_many_frames = job.is_every_view || (double)job.repeat * cli_frames_count(&job) >= MANY;
@@ -462,22 +311,22 @@ static int run(cli_session *session, int argc, char **argv) {
     if (status == CONIC_OK)
       status = cli_scene_begin(session, &job);
     if (status == CONIC_OK &&
-        (cli_render_views_check(session, &job) != CLI_DONE || cli_sharing_choose(session, &job) != CLI_DONE))
+        (cli_render_views_check(session, &job) != CLI_DONE || cli_units_choose(session, &job) != CLI_DONE))
       status = CONIC_ERROR_ARGUMENT;
     conic_moment begun = conic_moment_now();
     job.begun_seconds = begun.clock_s;
-    if (status == CONIC_OK && !cli_sharing_is_idle(session, &job))
+    if (status == CONIC_OK && !cli_units_are_others(session, &job))
       status = cli_scene_open(session, &job);
     if (status == CONIC_OK)
-      cli_sharing_settle(&job);
+      cli_units_settle(&job);
     if (status == CONIC_OK)
       cli_lamps_warn(session, &job);
     cli_team_trace(session, "open", "scene", 0, begun, 0);
     exit_code = cli_exit_of(status);
-    if (status == CONIC_OK && !cli_sharing_is_idle(session, &job))
+    if (status == CONIC_OK && !cli_units_are_others(session, &job))
       exit_code = job.top.is_wanted ? cli_top_render(session, &job) : render_scene(session, &job);
     cli_scene_release(session, &job);
-    cli_sharing_release(&job);
+    cli_team_report_release(&job.team);
   }
   cli_shot_release(session, &job);
   free(job.inputs);

@@ -2,32 +2,30 @@
 #include <errno.h>
 #include <string.h>
 
-#include "cli/render/sharing.h"
+#include "cli/render/units.h"
 #include "core/files/disk.h"
 #include "shots/stage.h"
 
 /* The deadline counts from the start of the program's work, not of this picture. */
-static double seconds_left(const cli_render_job *job) {
+double cli_seconds_left(const cli_render_job *job) {
   double left = job->start_seconds + job->deadline - cli_seconds();
   return left > 1e-3 ? left : 1e-3; /* 0 would be no limit */
 }
 
 void cli_deadline_open(cli_render_job *job) {
   if (job->deadline > 0.0)
-    job->access.seconds = seconds_left(job);
+    job->access.seconds = cli_seconds_left(job);
 }
 
 static void begin_deadline(cli_render_job *job) {
   if (job->deadline > 0.0)
-    job->shot.view.seconds = seconds_left(job);
+    job->shot.view.seconds = cli_seconds_left(job);
 }
 
 conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_shot_outcome *outcome) {
   conic_shot_work drawing;
   begin_deadline(job);
-  conic_status status = conic_shot_work_begin(job->source, job->renderer, &job->shot, &drawing);
-  drawing.executor = cli_sharing_executor(job);
-  drawing.units = job->sharing;
+  conic_status status = cli_shot_begin(job, &drawing);
   return status == CONIC_OK ? conic_shot_work_draw(&drawing, image, outcome) : status;
 }
 
@@ -57,7 +55,7 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, conic_
     status = cli_render_picture(job, image, outcome);
     if (status == CONIC_OK)
       status = write_progress(session, job, level, image);
-    if (conic_source_chosen(job->source)->n_levels < level || (job->deadline > 0.0 && seconds_left(job) <= 1e-3))
+    if (conic_source_chosen(job->source)->n_levels < level || (job->deadline > 0.0 && cli_seconds_left(job) <= 1e-3))
       break;
   }
   return status;

@@ -4,8 +4,8 @@
 #include "cli/color_options.h"
 #include "cli/render/frames.h"
 #include "cli/render/kept_frames.h"
-#include "cli/render/sharing.h"
 #include "cli/render/shot_record.h"
+#include "cli/render/units.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/views.h"
 #include "cli/source_facts.h"
@@ -150,6 +150,21 @@ static void report_camera(cli_json *json, const cli_render_job *job) {
   cli_json_close(json);
 }
 
+static void report_top(cli_json *json, const cli_top_job *top) {
+  cli_json_object(json, "top");
+  cli_json_number(json, "gsd", top->gsd);
+  cli_json_count(json, "width", (uint64_t)top->width);
+  cli_json_count(json, "height", (uint64_t)top->height);
+  cli_json_array(json, "corner");
+  cli_json_number(json, NULL, (double)top->column * top->gsd);
+  cli_json_number(json, NULL, -(double)top->row * top->gsd);
+  cli_json_close(json);
+  if (top->found_epsg)
+    cli_json_count(json, "epsg", top->found_epsg);
+  cli_json_count(json, "blocks", top->n_blocks);
+  cli_json_close(json);
+}
+
 static void report_settings(cli_json *json, const cli_render_job *job) {
   const conic_render_statistics *s = &job->statistics;
   cli_json_text(json, "device", job->device.used);
@@ -165,7 +180,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_number(json, "near", s->near_z);
   report_camera(json, job);
   if (job->top.is_wanted)
-    cli_top_report(json, &job->top);
+    report_top(json, &job->top);
   cli_lights_report(json, job);
   cli_backdrop_report(json, job);
   cli_json_count(json, "frames", (uint64_t)cli_frames_count(job));
@@ -220,7 +235,7 @@ int cli_render_report(cli_session *session, cli_render_job *job, const conic_ima
   report_hashes(json, job, image);
   if (job->kept)
     cli_json_count(json, "frames_finished", (uint64_t)cli_kept_frames_count(job));
-  cli_sharing_report(json, job);
+  cli_units_report(json, job);
   report_times(json, job);
   exit_code = cli_json_finish(file);
   return status == CONIC_OK ? exit_code : cli_exit_of(status);

@@ -4,26 +4,16 @@
 
 #include "cli/host_keeps.h"
 #include "cli/render/frames.h"
-#include "cli/render/sharing.h"
 #include "cli/render/shot_again.h"
+#include "cli/render/units.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/scene_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/scene/views.h"
-#include "cli/session_team.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
 #include "shots/way.h"
-#include "source/shared_source.h"
 #include "source/source_samples.h"
-
-int cli_lod_is_wanted(const cli_render_job *job) {
-  return job->shot.view.error_px > 0.0 || job->budget > 0;
-}
-
-const char *cli_method_name(const cli_render_job *job) {
-  return job->is_patch ? "patch" : conic_method_name(job->shot.render.method);
-}
 
 static conic_status read_views(cli_session *session, cli_render_job *job) {
   const cli_views_wish wish = {job->camera_path, job->view_name, job->camera_size[0], job->camera_size[1]};
@@ -78,7 +68,7 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job) {
 
 /* Whether what a source looks like all around decides the camera. */
 static int is_seen_around(const cli_render_job *job) {
-  return !job->is_plain && job->deadline <= 0.0 && (!job->camera_path || job->is_turntable);
+  return !job->is_plain && (!job->camera_path || job->is_turntable);
 }
 
 /* Finds out which way is up, and says so where that was a guess. */
@@ -97,37 +87,29 @@ static conic_status stand_upright(cli_session *session, cli_render_job *job) {
   return status;
 }
 
-static conic_status open_source(cli_session *session, cli_render_job *job) {
-  conic_context *context = session->context;
-  size_t n = (size_t)job->n_inputs;
-  if (!cli_sharing_may_part_source(session, job))
-    return conic_source_open(context, job->inputs, n, &job->opening, &job->source);
-  const conic_team *team = cli_team_of_library(session, &job->library_team);
-  return cli_sharing_tell(session,
-                          conic_source_open_shared(context, team, job->inputs, n, &job->opening, &job->source));
-}
-
 conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   cli_deadline_open(job);
   conic_guard_go_on(session->context); /* cameras were read; what comes now is of the scene */
   job->source = cli_kept_source(session);
-  conic_status status = job->source ? CONIC_OK : open_source(session, job);
+  conic_status status = job->source ? CONIC_OK : cli_units_open_source(session, job);
   if (status == CONIC_OK)
     cli_keep_source(session, job->source);
   if (status == CONIC_OK)
     status = resolve_lengths(session, job);
   if (status == CONIC_OK)
     conic_source_settle(job->source, &job->shot.render);
+  if (status == CONIC_OK && job->deadline > 0.0)
+    conic_source_limit_samples(job->source, cli_seconds_left(job));
   double start = cli_seconds();
-  conic_team team;
-  if (is_seen_around(job) && job->sharing != CONIC_UNITS_NONE && !session->host)
-    status =
-        cli_sharing_tell(session, conic_source_share_samples(job->source, cli_team_of_library(session, &team), status));
+  if (is_seen_around(job))
+    status = cli_units_share_samples(session, job, status);
   if (status == CONIC_OK)
     status = stand_upright(session, job);
   job->camera_ms += 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)
     cli_lights_settle(job);
+  if (status == CONIC_OK && cli_effects_check_open(session, job) != CLI_DONE)
+    status = CONIC_ERROR_ARGUMENT;
   return status;
 }
 
@@ -149,7 +131,7 @@ static conic_shot_framing framing_of(const cli_render_job *job, int i_frame) {
   framing.kind = (conic_camera_kind)job->projection;
   framing.finds_up = !job->is_up_given;
   framing.finds_elevation = !job->is_elevation_given;
-  framing.is_plain = job->is_plain || job->deadline > 0.0; /* to find the outline takes time */
+  framing.is_plain = job->is_plain;
   framing.has_eye = job->is_eye_given;
   memcpy(framing.eye, job->eye, sizeof framing.eye);
   framing.i_turn = i_frame;

@@ -32,36 +32,11 @@ static int is_tiff(const char *path) {
 
 /* --- what is asked for --- */
 
-static const char *find_stranger(const cli_render_job *job) {
-  if (job->view_name || job->is_turntable || job->frames.is_given)
-    return "--view, --turntable and --frames";
-  if (job->progressive_path || job->deadline > 0.0 || job->shot.view.tolerates_damage)
-    return "--progressive, --deadline and --tolerate";
-  if (job->deep_path || job->overdraw_path || job->clusters_path || job->boxes_path)
-    return "--deep, --overdraw, --clusters and --boxes";
-  if (job->has_legend || job->legend_path || job->has_mattes)
-    return "--legend and --cryptomatte";
-  if (job->is_exposure_automatic || job->shot.has_backdrop || job->tone != CONIC_TONE_SRGB)
-    return "--exposure auto, --tone and a background of two colours";
-  if (job->repeat > 1 || job->budget || job->is_patch)
-    return "--repeat, --budget and --method patch";
-  return job->device.name && strcmp(job->device.name, "cpu") != 0 ? "--device" : NULL;
-}
-
 int cli_top_check(const cli_session *session, const cli_render_job *job) {
-  const char *stranger = find_stranger(job);
   int has_tiff = 0;
   unsigned others = job->is_aov_given ? job->asked_planes & ~(unsigned)(RGBA | HEIGHTS) : 0;
-  if (stranger)
-    return cli_usage("render: --camera top is without %s", stranger);
   if (others)
     return cli_usage("render: --camera top has the planes rgba and Z, which is the height");
-  if (job->abilities & CONIC_SOURCE_COMPOSITES)
-    return cli_usage("render: --camera top draws Gaussian scenes as surfaces; give --profile surface, too");
-  if (job->abilities & CONIC_SOURCE_CLUSTERS)
-    return cli_usage("render: --camera top draws points, splats and triangles, not hybrids");
-  if (job->shot.view.error_px > 0.0 && !(job->abilities & CONIC_SOURCE_STREAMS))
-    return cli_usage("render: --error of --camera top is of .lpc, COPC, EPT and Potree");
   if (job->n_outputs == 0)
     return cli_usage("render: --camera top needs an output; give one with -o OUT.tif, OUT.png, …");
   for (int i = 0; i < job->n_outputs; i++)
@@ -358,19 +333,4 @@ int cli_top_render(cli_session *session, cli_render_job *job) {
   conic_image_release(session->context, &p.block);
   conic_georeference_release(session->context, &p.reference);
   return exit_code;
-}
-
-void cli_top_report(cli_json *json, const cli_top_job *top) {
-  cli_json_object(json, "top");
-  cli_json_number(json, "gsd", top->gsd);
-  cli_json_count(json, "width", (uint64_t)top->width);
-  cli_json_count(json, "height", (uint64_t)top->height);
-  cli_json_array(json, "corner");
-  cli_json_number(json, NULL, (double)top->column * top->gsd);
-  cli_json_number(json, NULL, -(double)top->row * top->gsd);
-  cli_json_close(json);
-  if (top->found_epsg)
-    cli_json_count(json, "epsg", top->found_epsg);
-  cli_json_count(json, "blocks", top->n_blocks);
-  cli_json_close(json);
 }

@@ -19,15 +19,7 @@ int cli_sample_check(const cli_session *session, cli_render_job *job) {
   if (cli_frames_count(job) != 1)
     return cli_usage("%s: it looks at one picture; --frames takes one number here", command);
   if (!is_one_of_many)
-    return own->is_given || own->is_lens_given || own->is_shutter_given || own->motion_path
-               ? cli_usage(
-                     "%s: --aperture, --focus, --blades, --shutter and --motion are of samples; give --sample I, too",
-                     command)
-               : CLI_DONE;
-  if (own->n_samples && own->is_sample_given)
-    return cli_usage("%s: --sample asks for one of the samples, --accumulate for all; give one of both", command);
-  if (job->shot.view.samples > 1)
-    return cli_usage("%s: a sample is one a pixel: not with --samples", command);
+    return CLI_DONE;
   cli_shot_take_options(job);
   return cli_accumulate_settle(session, job);
 }

@@ -9,25 +9,28 @@
   {"aperture",                                                                                                         \
    CLI_PARSED,                                                                                                         \
    &(own)->width,                                                                                                      \
-   "D",                                                                                                                \
-   "the diameter of the lens: a length, also in spacings (2x); what is out of focus blurs [0: a pinhole]",             \
+   "D[:BLADES]",                                                                                                       \
+   "the diameter of the lens: a length, also in spacings (2x); what is out of focus blurs; of one that is not round "  \
+   "the number of its corners behind it [0: a pinhole]",                                                               \
    .parse = cli_parse_length,                                                                                          \
-   .is_given = &(own)->is_given},                                                                                      \
+   .parse_tail = cli_parse_blades,                                                                                     \
+   .tail = (own),                                                                                                      \
+   .acts = {.needs = CLI_SAMPLES}},                                                                                    \
       {"focus",                                                                                                        \
        CLI_PARSED,                                                                                                     \
        &(own)->focus,                                                                                                  \
        "Z",                                                                                                            \
        "the depth at which all is sharp; X,Y: what is at that pixel; auto: what is in the picture's middle [auto]",    \
        .parse = cli_parse_focus,                                                                                       \
-       .is_given = &(own)->is_lens_given},                                                                             \
+       .acts = {.on = CLI_SAMPLES, .needs = CLI_FACT(LENS)}},                                                          \
       {"blades",                                                                                                       \
        CLI_INT,                                                                                                        \
        &(own)->n_blades,                                                                                               \
        "N",                                                                                                            \
-       "the corners of the lens; 0: it is round [0]",                                                                  \
+       "the corners of the lens",                                                                                      \
        0,                                                                                                              \
        CONIC_MAX_BLADES,                                                                                               \
-       .is_given = &(own)->is_lens_given},                                                                             \
+       .now = "--aperture D:BLADES"},                                                                                  \
       {"shutter",                                                                                                      \
        CLI_PARSED,                                                                                                     \
        (own)->shutter,                                                                                                 \
@@ -36,11 +39,15 @@
        "0:0.5 "                                                                                                        \
        "blurs half the way to the next; up to 100000 either way [closed]",                                             \
        .parse = cli_parse_shutter,                                                                                     \
-       .is_given = &(own)->is_shutter_given},                                                                          \
+       .is_given = &(own)->is_shutter_given,                                                                           \
+       .acts = {.on = CLI_SAMPLES, .needs = CLI_FACT(WAY)}},                                                           \
   {                                                                                                                    \
     "motion", CLI_TEXT, &(own)->motion_path, "FILE",                                                                   \
         "where the inputs are at which frame, as matrices, or what shape they have, as files (JSON) [they stand "      \
-        "still]"                                                                                                       \
+        "still]",                                                                                                      \
+        .acts = {                                                                                                      \
+          .needs = CLI_SAMPLES                                                                                         \
+        }                                                                                                              \
   }
 
 /* The same with the sample's number, and the frame whose sample it is; `job` is a cli_render_job's address. */

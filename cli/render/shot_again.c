@@ -133,7 +133,7 @@ static void say_reading(cli_shot_again *again, int is_plain) {
 }
 
 /* What the shot says, in words, as far as options take values of their own for them. */
-static void say_shot(cli_shot_again *again, const cli_render_job *first) {
+static void say_shot(cli_shot_again *again) {
   int is_plain = !again->file->reading.finds_dots;
   if (is_plain)
     say_option(again, "plain", NULL, NULL);
@@ -141,11 +141,6 @@ static void say_shot(cli_shot_again *again, const cli_render_job *first) {
   say_reading(again, is_plain);
   if (again->file->map.is_wanted && !gives(again, "camera"))
     say_option(again, "camera", "top", NULL);
-  for (int i = 0; i < first->n_outputs; i++)
-    if (conic_file_has_ending(first->outputs[i], "exr") && again->file->writing.compression != CONIC_COMPRESSION_ZIP) {
-      say_option(again, "compression", conic_compression_name(again->file->writing.compression), NULL);
-      break;
-    }
 }
 
 /* --- inputs --- */
@@ -296,7 +291,7 @@ static int is_input(const cli_render_job *first, const char *argument) {
 /* The command's name, what the shot says, what the user says besides, and the inputs. */
 static void make_words(cli_shot_again *again, const cli_render_job *first) {
   add_argument(again, again->argv[0]);
-  say_shot(again, first);
+  say_shot(again);
   for (int i = 1; i < again->argc; i++) {
     const char *argument = again->argv[i];
     if (strcmp(argument, "--again") == 0)
@@ -424,7 +419,6 @@ static void begin_reading(const cli_shot_again *again, cli_render_job *job) {
 static void begin_map(const conic_shot_map *map, cli_top_job *top) {
   if (!map->is_wanted)
     return;
-  top->is_given = 1;
   top->gsd = map->pixel;
   top->epsg = map->epsg;
   memcpy(top->box.low, map->minimum, sizeof top->box.low);
@@ -434,6 +428,7 @@ static void begin_map(const conic_shot_map *map, cli_top_job *top) {
 static void begin_writing(const conic_shot_writing *writing, cli_render_job *job) {
   job->tone = (int)writing->tone;
   job->writing.is_half = writing->is_half;
+  job->writing.compression = writing->compression;
   job->has_legend = writing->has_legend;
   job->has_mattes = writing->has_mattes;
   job->is_background_given = writing->is_bare;

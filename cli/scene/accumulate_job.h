@@ -28,9 +28,9 @@ typedef struct cli_accumulate_job {
   cli_length width; /* of the lens */
   cli_focus focus;
   int n_blades;
-  double shutter[2];                             /* frames, from the one that is drawn */
-  int is_shutter_given, is_lens_given, is_given; /* is_lens_given: --focus or --blades */
-  unsigned long long i_sample;                   /* --sample: of commands that ask about one */
+  double shutter[2]; /* frames, from the one that is drawn */
+  int is_shutter_given;
+  unsigned long long i_sample; /* --sample: of commands that ask about one */
   int is_sample_given;
   const char *motion_path; /* null: the scene stands still */
   conic_motion *motion;    /* once it is read */
@@ -44,6 +44,7 @@ typedef struct cli_accumulate_job {
 
 /* Parsers of values: auto, a depth or X,Y in pixels, into a cli_focus; A:B into a double[2]. */
 int cli_parse_focus(const char *text, void *value);
+int cli_parse_blades(const char *text, void *value); /* into a cli_accumulate_job */
 int cli_parse_shutter(const char *text, void *value);
 
 /* What the options mean together with the others. */
@@ -54,9 +55,6 @@ int cli_accumulate_settle(const cli_session *session, struct cli_render_job *job
 /* Draws the shot of a frame, and keeps its sums where that is wanted. */
 conic_status cli_accumulate_picture(cli_session *session, struct cli_render_job *job, int i_frame, conic_image *image,
                                     conic_shot_outcome *outcome);
-
-/* Removes what a frame's sums were kept in, if they were: it is finished. */
-void cli_accumulate_forget(const struct cli_render_job *job, int i_frame);
 
 /* Says in the picture's header what it is the mean of. */
 void cli_accumulate_describe(const struct cli_render_job *job, conic_image *image);

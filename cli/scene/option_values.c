@@ -77,19 +77,29 @@ static int find_plane(const char *name, size_t length) {
   return -1;
 }
 
-/* rgba,Z,N … or all. */
+static int is_word(const char *text, size_t length, const char *word) {
+  return strlen(word) == length && strncmp(text, word, length) == 0;
+}
+
+/* rgba,Z,N … or all. Mattes are no plane of their own, and leave the others as they are by default. */
 int cli_parse_planes(const char *text, void *value) {
-  unsigned *planes = value;
+  cli_render_job *job = value;
+  unsigned *planes = &job->shot.planes, usual = *planes;
   *planes = 0;
   while (*text) {
     size_t length = strcspn(text, ",");
-    int plane = find_plane(text, length), is_all = length == 3 && strncmp(text, "all", 3) == 0;
-    if (plane < 0 && !is_all)
+    int plane = find_plane(text, length), is_all = is_word(text, length, "all"), is_aov = plane >= 0 || is_all;
+    if (is_aov)
+      *planes |= is_all ? CONIC_DRAWN_PLANES : 1u << plane;
+    else if (job->is_for_looking && is_word(text, length, "cryptomatte"))
+      job->has_mattes = 1;
+    else
       return 0;
-    *planes |= is_all ? CONIC_DRAWN_PLANES : 1u << plane;
+    job->is_aov_given |= is_aov;
     text += length;
     if (*text == ',' && text[1])
       text++;
   }
-  return *planes != 0;
+  *planes = *planes ? *planes : usual;
+  return job->is_aov_given || job->has_mattes;
 }

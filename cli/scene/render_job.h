@@ -7,14 +7,13 @@
 #include "cli/json_write.h"
 #include "cli/scene/accumulate_job.h"
 #include "cli/scene/lamp_job.h"
+#include "cli/scene/option_effects.h"
 #include "cli/scene/shot_job.h"
 #include "cli/scene/top_job.h"
-#include "cli/team_shares.h"
+#include "cli/team_report.h"
 #include "conic/shot.h"
-#include "core/base/team.h"
 #include "core/files/sha256.h"
 #include "core/pictures/cryptomatte.h"
-#include "shots/executor.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
@@ -36,6 +35,7 @@ typedef struct cli_render_job {
   conic_shot shot;
 
   /* What else was asked for. */
+  cli_effects_job effects;
   const char **inputs;
   int n_inputs;
   const char *outputs[CLI_MAX_OUTPUTS];
@@ -79,7 +79,7 @@ typedef struct cli_render_job {
   int is_error_warned; /* that --error is not kept */
   int is_alpha_warned; /* that alpha is not shown */
   int repeat;
-  int is_aov_given, is_samples_given, is_prefilter_given;
+  int is_aov_given, is_samples_given, is_prefilter_given, is_color_error_given;
   cli_stereo stereo;               /* --stereo */
   cli_accumulate_job accumulating; /* --accumulate */
   struct cli_kept_frames *kept;    /* --resumable and --resume, of several frames (cli/render/kept_frames.h) */
@@ -118,14 +118,11 @@ typedef struct cli_render_job {
   uint64_t hashes[CONIC_N_PLANES];     /* of the last image, where they are reported */
   unsigned banded_planes;              /* of a picture that nobody held: its planes; 0: it was held */
 
-  /* Of a team. */
-  conic_shared_units sharing;
-  conic_team library_team; /* the same, as the source may have it */
-  conic_executor executor; /* the same, as shots are drawn by it */
-  const cli_session *session;
-  uint64_t n_units; /* that this process did, */
-  double busy_seconds;
-  cli_team_shares shares;           /* what all did */
+  /* Of a team (cli/render/units.h). */
+  conic_shared_units units;
+  const conic_executor *executor; /* by which they are shared: the team's, or */
+  conic_alone alone;
+  cli_team_report team;             /* what all did */
   char kept_key[CONIC_SHA256_ROOM]; /* what decides the bits, where --resumable or --resume keep frames or strips */
 } cli_render_job;
 
@@ -163,6 +160,7 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, conic_
                                conic_shot_outcome *outcome);
 /* Opening, and one picture, get what is left of the deadline. */
 void cli_deadline_open(cli_render_job *job);
+double cli_seconds_left(const cli_render_job *job); /* of the deadline; above 0 */
 conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_shot_outcome *outcome);
 
 /* Wrong usage where a plane that was asked for goes into no file. */
@@ -176,22 +174,6 @@ conic_status cli_planes_write(cli_session *session, const cli_render_job *job, c
 
 /* How rgba is written: with the tone. */
 conic_image_options cli_picture_writing(const cli_render_job *job);
-
-/* Says in a picture's header what it is, and writes it to all outputs. */
-void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, conic_image *image);
-conic_status cli_frame_write(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame);
-
-/* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
-conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,
-                                const conic_image *image);
-
-/* --cryptomatte: wrong usage where there is nothing to name, or nowhere to write it. */
-int cli_mattes_check(const cli_render_job *job);
-/* Fills the image's matte planes, and names the mattes in job->manifest, which the image then has. */
-conic_status cli_mattes_fill(cli_session *session, cli_render_job *job, const conic_camera *camera, conic_image *image);
-
-/* --legend, --legend-out: what the colours mean, over the image and by itself. */
-conic_status cli_legend_show(cli_session *session, cli_render_job *job, conic_image *image);
 
 /* Says what was drawn, and what it took. */
 void cli_render_tell(cli_session *session, const cli_render_job *job);

@@ -53,16 +53,49 @@ void cli_scene_defaults(cli_render_job *job) {
   cli_cut_region_init(&job->top.box);
 }
 
+/* --- values with several parts --- */
+
+static int parse_color_error(const char *text, void *value) {
+  cli_render_job *job = value;
+  double *steps = &job->shot.view.color_error;
+  job->is_color_error_given = 1;
+  return cli_parse_number(text, steps) && *steps >= 0.01 && *steps <= 1000.0;
+}
+
+static int parse_ignore_center(const char *text, void *value) {
+  return *(int *)value = strcmp(text, "ignore-center") == 0;
+}
+
+/* Of patches: D, or D:H. */
+static int parse_patch(const char *text, void *value) {
+  cli_scene_words *words = value;
+  words->is_patch_given = 1;
+  words->degree = text[0] - '0';
+  return words->degree >= 1 && words->degree <= CONIC_SURFACE_MAX_DEGREE &&
+         (!text[1] || (text[1] == ':' && cli_parse_length(text + 2, &words->h)));
+}
+
+static int parse_crease(const char *text, void *value) {
+  cli_scene_words *words = value;
+  if (strcmp(text, "all") == 0)
+    return words->is_smooth = 1;
+  words->is_crease_given = 1;
+  return cli_parse_number(text, &words->crease_deg) && words->crease_deg >= 0.0 && words->crease_deg <= 90.0;
+}
+
 /* The command's own options, then those of the scene. */
 static int parse_all(cli_session *session, const cli_option *own, int n_own, const cli_option *scene, int n_scene,
                      int argc, char **argv, cli_render_job *job) {
   cli_option *table = calloc((size_t)n_own + (size_t)n_scene, sizeof *table);
   job->inputs = calloc((size_t)argc + 1, sizeof *job->inputs);
+  const char *values[n_own + n_scene];
   int answer = CLI_RESOURCE;
   if (table && job->inputs) {
     memcpy(table, own, (size_t)n_own * sizeof *table);
     memcpy(table + n_own, scene, (size_t)n_scene * sizeof *table);
-    answer = cli_parse(session, table, n_own + n_scene, argc, argv, job->inputs, &job->n_inputs);
+    answer = cli_parse_noting(session, table, n_own + n_scene, argc, argv, job->inputs, &job->n_inputs, values);
+    if (answer == CLI_DONE)
+      cli_effects_note(&job->effects, table, n_own + n_scene, values);
     if (answer == CLI_DONE && cli_shot_is_again(session, job))
       answer = CLI_AGAIN;
   } else
@@ -94,6 +127,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
                     cli_render_job *job) {
   cli_scene_words raw = {.quality = CLI_QUALITY_GOOD,
                          .passes = 3,
+                         .degree = job->patches.surface.degree,
                          .cutoff = (double)job->shot.render.kernel.cutoff,
                          .prefilter = (double)job->shot.render.prefilter};
   conic_render_options *o = &job->shot.render;
@@ -103,97 +137,107 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   const cli_option table[] = {
       {"size", CLI_SIZE, raw.size, "WxH",
        "the picture's width and height in pixels; cameras of a file are scaled to it [1024x1024, or the file's]", 1,
-       65535, .is_given = &raw.is_size_given, .group = "camera"},
-      {"camera", CLI_TEXT, &job->camera_path, "FILE", CLI_CAMERA_HELP},
+       65535, .is_given = &raw.is_size_given, .group = "camera",
+       .intro = "From where the scene is looked at: framed by these, or by a file of cameras.", .is_usual = 1,
+       .acts = {.apart = CLI_FACT(MAP)}},
+      {"camera", CLI_TEXT, &job->camera_path, "FILE", CLI_CAMERA_HELP, .is_usual = 1},
       {"view", CLI_TEXT, &job->view_name, "VIEW",
        "which of the cameras of --camera: a number from 0, the name of an image with or without its folder and ending, "
-       "or all [the only one]"},
+       "or all [the only one]",
+       .is_usual = 1, .acts = {.needs = CLI_FACT(CAMERAS), .apart = CLI_FACT(MAP)}},
       {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG",
        "the camera's place around the scene: 0 in front, 90 to the right of that [30]", -1e6, 1e6,
-       .is_given = &raw.is_framing_given},
+       .is_given = &raw.is_framing_given, .is_usual = 1, .acts = {.needs = CLI_FACT(FRAMED)}},
       {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG",
        "the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]", -90, 90,
-       .is_given = &job->is_elevation_given},
+       .is_given = &job->is_elevation_given, .is_usual = 1, .acts = {.needs = CLI_FACT(FRAMED)}},
       {"fov", CLI_NUMBER, &view->fov_deg, "DEG", "field of view across the shorter side [40]", 0.001, 179.9,
-       .is_given = &raw.is_framing_given},
+       .is_given = &raw.is_framing_given, .acts = {.needs = CLI_FACT(FIELD)}},
       {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length: 2 shows the middle, twice as large [1]",
-       1e-6, 1e6, .is_given = &raw.is_framing_given},
+       1e-6, 1e6, .is_given = &raw.is_framing_given, .is_usual = 1, .acts = {.needs = CLI_FACT(FRAMED)}},
       {"projection", CLI_CHOICE, &job->projection, "HOW",
        "perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one below the other) "
        "[perspective]",
-       .choices = cli_projection_words, .is_given = &raw.is_framing_given},
+       .choices = cli_projection_words, .is_given = &raw.is_framing_given, .acts = {.needs = CLI_FACT(FRAMED)}},
       {"eye", CLI_PARSED, job->eye, "X,Y,Z",
        "the place from which the camera looks [where it sees all of the scene; a panorama's and a cube's: the scene's "
        "middle]",
-       .parse = cli_parse_eye, .is_given = &job->is_eye_given},
+       .parse = cli_parse_eye, .is_given = &job->is_eye_given, .acts = {.needs = CLI_FACT(FRAMED)}},
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [the file's, or by its shape]",
-       .parse = cli_parse_up, .is_given = &job->is_up_given},
+       .parse = cli_parse_up, .is_given = &job->is_up_given, .is_usual = 1, .acts = {.needs = CLI_FACT(UPRIGHT)}},
       {"as", CLI_CHOICE, &raw.as, "WHAT",
        "what a mesh is drawn as: auto (triangles), points (splats of the vertices), mesh or hybrid (both) [auto]",
-       .choices = as_words, .is_given = &raw.is_as_given, .group = "meshes"},
+       .choices = as_words, .is_given = &raw.is_as_given, .group = "meshes",
+       .intro = "What becomes of files that have faces.", .is_usual = 1},
       {"texture", CLI_TEXT, &job->opening.texture_path, "FILE",
-       "the picture on a mesh's surface [as its materials say]"},
+       "the picture on a mesh's surface [as its materials say]",
+       .acts = {.on = CLI_FACT(FACES), .needs = CLI_FACT(TRIANGLES)}},
       CLI_TEXTURE_BOUND(session),
-      {"smooth", CLI_FLAG, &job->opening.is_smooth, NULL,
-       "a mesh's triangles look smooth everywhere: each vertex gets the mean normal of its faces"},
-      {"crease", CLI_NUMBER, &job->opening.crease_deg, "DEG",
-       "triangles without normals look smooth over edges up to this angle, in degrees; 0: every face is flat [30]", 0,
-       90, .is_given = &raw.is_crease_given},
+      {"crease", CLI_PARSED, &raw, "DEG",
+       "triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is flat; "
+       "all: "
+       "any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]",
+       .parse = parse_crease, .acts = {.on = CLI_FACT(EDGES), .needs = CLI_FACT(SHAPED)}},
       CLI_COLOR_OPTIONS(&job->coloring),
       CLI_WHERE(&job->opening.where),
-      {"error", CLI_NUMBER, &job->shot.view.error_px, "PX",
-       "of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all "
-       "[0]",
-       0, 65536, .group = "levels of detail"},
-      {"color-error", CLI_NUMBER, &job->shot.view.color_error, "STEPS",
-       "with --error, of a .chy, by how much colours may differ at any place: black and white do by 100 steps, and 2 "
-       "are just visible [2]",
-       0.01, 1000},
+      {"error", CLI_NUMBER, &job->shot.view.error_px, "PX[:STEPS]",
+       "of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; "
+       "of a .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]",
+       0, 65536, .group = "levels of detail",
+       .intro = "Fewer primitives where that is enough: of .cot, .lpc, .chy and other hierarchies.", .is_usual = 1,
+       .acts = {.on = CLI_FACT(CHOOSES)}, .parse_tail = parse_color_error, .tail = job},
       {"budget", CLI_COUNT, &job->budget, "N",
        "of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]", 1,
-       4294967294.0},
+       4294967294.0, .is_usual = 1, .acts = {.on = CLI_FACT(CHOOSES), .apart = CLI_FACT(MAP)}},
       {"only", CLI_CHOICE, &job->shot.view.only_kind, "KIND",
-       "of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]", .choices = only_words},
+       "of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]", .choices = only_words,
+       .acts = {.on = CLI_FACT(HYBRID)}},
       {"method", CLI_CHOICE, &method, "NAME",
        "how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where that is "
-       "exact enough, else ray; patch: as part of a smooth surface through the points [auto]",
-       .choices = words.methods, .is_given = &raw.is_method_given, .group = "how splats are drawn"},
+       "exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by polynomials of "
+       "degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]",
+       .choices = words.methods, .is_given = &raw.is_method_given, .group = "how splats are drawn",
+       .intro = "Kernels, filters and samples, and the profiles of Gaussian scenes.", .parse_tail = parse_patch, .tail = &raw, .acts = {.on = CLI_FACT(SPLATS)}},
       {"profile", CLI_CHOICE, &raw.profile, "NAME",
        "how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5, gsplat-1.5-aa, "
-       "gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque splats [exact]",
-       .choices = words.profiles, .is_given = &raw.is_profile_given},
-      {"ignore-center", CLI_FLAG, &ignores_center, NULL,
-       "of --profile inria-2023 and 2dgs-2024: take the picture's middle for the camera's principal point, as these "
-       "do"},
+       "gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque splats; inria-2023 and "
+       "2dgs-2024 with :ignore-center "
+       "behind them take the picture's middle for the camera's principal point, as these do [exact]",
+       .choices = words.profiles, .is_given = &raw.is_profile_given, .is_usual = 1, .parse_tail = parse_ignore_center,
+       .tail = &ignores_center, .acts = {.on = CLI_FACT(GAUSSIANS)}},
       {"quality", CLI_CHOICE, &raw.quality, "HOW",
        "draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and --samples go "
        "first [good]",
-       .choices = quality_words, .is_given = &raw.is_quality_given},
+       .choices = quality_words, .is_given = &raw.is_quality_given, .is_usual = 1,
+       .acts = {.needs = CLI_FACT(UNSETTLED), .is_warned = 1}},
       {"kernel", CLI_PARSED, &o->kernel, "NAME",
        "how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N [gauss]",
-       .parse = cli_parse_kernel},
+       .parse = cli_parse_kernel, .acts = {.on = CLI_FACT(SPLATS), .needs = CLI_FACT(KERNEL)}},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "at how many standard deviations from its centre a splat ends [1.5]",
-       0.25, 5},
+       0.25, 5, .acts = {.on = CLI_FACT(SPLATS), .needs = CLI_FACT(KERNEL)}},
       {"prefilter", CLI_NUMBER, &raw.prefilter, "V",
        "the variance, in square pixels, of the blur that keeps small splats from flickering; 0: none [1; 0 of Gaussian "
        "scenes]",
-       0, 10000, .is_given = &raw.is_prefilter_given},
+       0, 10000, .is_given = &raw.is_prefilter_given,
+       .acts = {.on = CLI_FACT(SPLATS) | CLI_FACT(EXACT), .needs = CLI_FACT(FILTERED)}},
       {"epsilon", CLI_PARSED, &job->epsilon, "E",
        "splats so near to each other along the ray are blended as one surface: a length, also in spacings (2x), or "
        "auto [auto]",
-       .parse = cli_parse_epsilon},
-      {"passes", CLI_INT, &raw.passes, "N", "3: blend the splats of a surface; 1: the nearest splat wins [3]", 1, 3},
+       .parse = cli_parse_epsilon, .acts = {.on = CLI_FACT(SPLATS), .needs = CLI_FACT(BLENDED)}},
+      {"passes", CLI_INT, &raw.passes, "N", "3: blend the splats of a surface; 1: the nearest splat wins [3]", 1, 3,
+       .acts = {.on = CLI_FACT(SPLATS)}},
       {"samples", CLI_INT, &job->shot.view.samples, "N",
        "average N x N samples in each pixel, which makes silhouettes soft [2; 1 with --profile, --repeat or --deep]", 1,
        CONIC_MAX_SAMPLES, .is_given = &raw.is_samples_given},
       {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "back: leave out what faces away; or none [none]",
-       .choices = cull_words},
+       .choices = cull_words, .acts = {.on = CLI_SURFACES}},
       {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]",
-       .parse = cli_parse_near},
+       .parse = cli_parse_near, .acts = {.on = CLI_SURFACES, .apart = CLI_FACT(MAP)}},
       {"shade", CLI_CHOICE, &shading, "HOW",
        "none (colours as they are), lambert (matt) or phong (with a highlight) [phong; none for maps of what has "
        "colours]",
-       .choices = words.shadings, .is_given = &job->is_shade_given, .group = "light and background"},
+       .choices = words.shadings, .is_given = &job->is_shade_given, .group = "light and background",
+       .intro = "What shines on surfaces, and what is behind them.", .is_usual = 1, .acts = {.on = CLI_SURFACES}},
       {"light", CLI_PARSED, job, "LIGHT",
        "a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the camera "
        "(right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without, and a direction "
@@ -201,46 +245,55 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z, a place, with :R,G,B of "
        "which a surface at distance 1 is lit, then :RADIUS of a ball, then :X,Y,Z where to it shines, for a disc or, "
        "with :WxH, a rectangle; studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]",
-       .parse = cli_parse_light, .may_repeat = 1},
+       .parse = cli_parse_light, .may_repeat = 1, .is_usual = 1, .acts = {.on = CLI_SURFACES, .needs = CLI_FACT(LIT)}},
       {"sky", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "light from all around; of two colours, the first falls on what faces up, the second on what faces down [the "
        "studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao",
-       .parse = cli_parse_sky},
+       .parse = cli_parse_sky, .acts = {.on = CLI_SURFACES, .needs = CLI_FACT(LIT)}},
       {"background", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in PNG and JPEG, "
        "else none]",
-       .parse = cli_parse_background},
+       .parse = cli_parse_background, .is_usual = 1},
       {"exposure", CLI_PARSED, job, "EV",
        "stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near white [0]",
-       .parse = cli_parse_exposure},
-      {"aov", CLI_PARSED, &job->shot.planes, "LIST",
+       .parse = cli_parse_exposure, .acts = {.on = CLI_SURFACES}},
+      {"aov", CLI_PARSED, job, "LIST",
        "planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place in the "
        "world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow, what light "
-       "arrives [rgba,Z]",
-       .parse = cli_parse_planes, .is_given = &job->is_aov_given, .group = "planes"},
-      {"degree", CLI_INT, &job->patches.surface.degree, "D", "the degree of the surface's polynomials, 1 to 4 [3]", 1,
-       CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given, .group = "method patch"},
-      {"h", CLI_PARSED, &raw.h, "H",
-       "what is smaller is smoothed away: a length, also in spacings (2x) [as the points lie]",
-       .parse = cli_parse_length, .is_given = &raw.is_patch_given, .dashes = "--"},
+       "arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name "
+       "in "
+       "Nuke or Blender [rgba,Z]",
+       .parse = cli_parse_planes, .group = "planes", .intro = "What is known of each pixel beside its colour.",
+       .is_usual = 1},
       {"k", CLI_INT, &job->opening.n_neighbours, "K",
        "how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]", 6, 64,
-       .group = "raw points"},
+       .group = "raw points", .intro = "What files of points leave out.", .acts = {.on = CLI_FACT(RAW)}},
       CLI_COLUMNS(&job->opening.columns),
       {"tile", CLI_INT, &o->tile, "N",
        "the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it [64]", 8,
-       64, .group = "what draws"},
-      {"device", CLI_TEXT, &job->device.name, "NAME",
+       64, .group = "what draws", .intro = "On what, and how, it is computed; the picture stays the same.",
+       .acts.is_work = 1},
+      {"device", CLI_PARSED, &job->device, "NAME",
        "what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go about it "
-       "as on a GPU and :lanes as on a CPU; changes no bit of the picture [cpu]"},
-      {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL,
-       "also take an OpenCL device whose rounding makes the picture another one"},
+       "as on a GPU and :lanes as on a CPU; changes no bit of the picture; with :inexact behind it also one whose "
+       "rounding makes the picture another one [cpu]",
+       .parse = cli_parse_device, .acts.is_work = 1},
       {"plain", CLI_FLAG, &job->is_plain, NULL,
        "draw as the library does by default: of a mesh the vertices, framed by a sphere, with a headlight and one "
        "sample"},
       {"isa", CLI_CHOICE, &raw.isa, "NAME",
        "the processor's instructions: auto, scalar, sse2, avx2, avx512, neon; changes no bit of the picture [auto]",
-       .choices = words.isas},
+       .choices = words.isas, .acts.is_work = 1},
+      /* Old spellings. */
+      {"smooth", CLI_FLAG, &raw.is_smooth, NULL, "like --crease all", .now = "--crease all"},
+      {"color-error", CLI_NUMBER, &job->shot.view.color_error, "STEPS", "of a .chy", 0.01, 1000,
+       .is_given = &job->is_color_error_given, .now = "--error PX:STEPS"},
+      {"ignore-center", CLI_FLAG, &ignores_center, NULL, "of a profile", .now = "--profile NAME:ignore-center"},
+      {"degree", CLI_INT, &raw.degree, "D", "1 to 4", 1, CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given,
+       .now = "--method patch:D"},
+      {"h", CLI_PARSED, &raw.h, "H", "a length", .parse = cli_parse_length, .is_given = &raw.is_patch_given,
+       .dashes = "--", .now = "--method patch:D:H"},
+      {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL, "of a device", .now = "--device NAME:inexact"},
   };
   int answer = parse_all(session, own, n_own, table, (int)(sizeof table / sizeof table[0]), argc, argv, job);
   if (answer != CLI_DONE)
@@ -267,12 +320,13 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   job->shot.view.budget = job->budget;
   job->opening.cutoff = o->kernel.cutoff;
   raw.as = raw.is_as_given ? (int)as_values[raw.as] : job->is_plain ? CONIC_AS_POINTS : CONIC_AS_AUTO;
-  if (!job->is_plain && !raw.is_crease_given && !job->opening.is_smooth)
-    job->opening.crease_deg = 30.0;
+  job->opening.is_smooth = raw.is_smooth;
+  job->opening.crease_deg = raw.is_crease_given ? raw.crease_deg : job->is_plain || raw.is_smooth ? 0.0 : 30.0;
   job->opening.projects_degrees = !job->is_plain && !cli_scene_is_top(job);
   job->opening.finds_dots = !job->is_plain;
   job->opening.h_in_spacings = raw.h.is_in_spacings;
   job->patches.surface.h = raw.h.value;
+  job->patches.surface.degree = raw.degree;
   job->patches.surface.isa = o->isa;
   if (raw.is_size_given) {
     view->width = raw.size[0];

@@ -17,7 +17,9 @@ typedef struct cli_scene_words {
   double cutoff, prefilter;
   int passes, is_patch_given;
   int as, is_as_given; /* a conic_representation */
-  int is_crease_given;
+  int is_smooth, is_crease_given, is_colored_whole;
+  double crease_deg;
+  int degree; /* of patches, and */
   cli_length h;
 } cli_scene_words;
 
@@ -36,13 +38,13 @@ int cli_parse_up(const char *text, void *value);
 int cli_parse_exposure(const char *text, void *value);
 /* X,Y,Z into a double[3], */
 int cli_parse_eye(const char *text, void *eye);
-/* rgba,Z,N … or all into bits of planes. */
+/* rgba,Z,N … or all, and in pictures cryptomatte, into a job. */
 int cli_parse_planes(const char *text, void *value);
 
 /* --camera top, which is no file. */
 int cli_scene_is_top(const cli_render_job *job);
 
 /* What the options of the scene and the drawing mean together. */
-int cli_scene_check(const cli_session *session, const cli_scene_words *words, cli_render_job *job);
+int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_render_job *job);
 
 #endif

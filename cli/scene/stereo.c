@@ -5,17 +5,10 @@
 
 #include "core/files/file.h"
 
-int cli_stereo_check(const cli_session *session, const cli_render_job *job) {
-  const cli_stereo *stereo = &job->stereo;
-  if (!(stereo->distance > 0.0))
-    return stereo->is_convergence_given ? cli_usage("render: --convergence is of two eyes; give --stereo, too")
-                                        : CLI_DONE;
-  if (session->host || job->top.is_wanted || job->progressive_path || job->accumulating.resume_path)
-    return cli_usage("render: --stereo writes files: not with --camera top, --progressive, --resume, nor from Python");
-  for (int i = 0; i < job->n_outputs; i++)
-    if (strcmp(job->outputs[i], "-") == 0)
-      return cli_usage("render: --stereo writes two files, and standard output is one");
-  return CLI_DONE;
+int cli_parse_convergence(const char *text, void *value) {
+  cli_stereo *stereo = value;
+  stereo->is_convergence_given = 1;
+  return cli_parse_number(text, &stereo->convergence) && stereo->convergence >= 0.0 && stereo->convergence <= 1e29;
 }
 
 int cli_stereo_eyes(const cli_render_job *job) {

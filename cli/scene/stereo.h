@@ -4,8 +4,8 @@
 
 #include "cli/scene/render_job.h"
 
-/* Wrong usage where it does not go with other options. */
-int cli_stereo_check(const cli_session *session, const cli_render_job *job);
+/* A parser of the depth at which both eyes look, into a cli_stereo. */
+int cli_parse_convergence(const char *text, void *value);
 
 /* How many pictures a frame is; begins the one of an eye, from 0. */
 int cli_stereo_eyes(const cli_render_job *job);

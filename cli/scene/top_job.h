@@ -13,7 +13,6 @@ struct cli_render_job;
 /* What was asked for, and what became of it. */
 typedef struct cli_top_job {
   int is_wanted;
-  int is_given;       /* an option that means nothing without it */
   double gsd;         /* a pixel's edge in world units; 0: the points' spacing */
   cli_cut_region box; /* infinite: all there is */
   int epsg;           /* 0: as the file says */
@@ -30,7 +29,5 @@ int cli_top_check(const cli_session *session, const struct cli_render_job *job);
 conic_status cli_top_check_formats(conic_context *context, const struct cli_render_job *job);
 /* Draws and writes the pictures of an open scene, and reports. Returns the exit code. */
 int cli_top_render(cli_session *session, struct cli_render_job *job);
-/* The object "top" of the statistics. */
-void cli_top_report(cli_json *json, const cli_top_job *top);
 
 #endif

@@ -21,7 +21,7 @@ conic_status cli_top_tiff_open(conic_context *context, const char *path, const c
   return status == CONIC_OK ? CONIC_OK : cli_top_tiff_end(file, status);
 }
 
-/* The block's pixels as they are in the file. */
+/* Encodes the block's pixels as the file has them. */
 static void encode_block(cli_top_tiff *file, const conic_image *block) {
   const conic_samples_layout bytes = {.n_channels = 4, .sample_bytes = 1, .is_straight = 1};
   const float *z = block->planes[CONIC_PLANE_Z];
@@ -42,7 +42,7 @@ conic_status cli_top_tiff_put(cli_top_tiff *file, const conic_image *block, cons
   return status;
 }
 
-/* A tile of the row of tiles that begins at row y. What is outside of the picture is zero. */
+/* Writes a tile of the row of tiles that begins at row y. Pixels outside of the picture are zero. */
 static conic_status write_tile(cli_top_tiff *file, size_t x, size_t y) {
   const conic_tiff_layout *layout = &file->layout;
   size_t pixel_bytes = conic_tiff_pixel_bytes(layout);

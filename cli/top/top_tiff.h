@@ -1,4 +1,4 @@
-/* One TIFF of an orthophoto: blocks of pixels in, from the left and from the top, and tiles out. */
+/* One TIFF of an orthophoto: takes blocks of pixels, from the left and from the top, and writes tiles. */
 #ifndef CONIC_TOP_TIFF_H
 #define CONIC_TOP_TIFF_H
 
@@ -15,23 +15,23 @@ typedef struct cli_top_tiff {
   conic_tiff *tiff;
   cli_top_store store;
   unsigned char *pixels; /* a block's, or a tile's */
-  size_t n_rows_done;    /* that are tiles already */
+  size_t n_rows_done;    /* rows that were written as tiles */
 } cli_top_tiff;
 
-/* Where a block lies in a picture: x, y of the picture's pixel that begins it, and the block's pixel there. */
+/* Where a block is in a picture: x, y of its first pixel in the picture, and that pixel within the block. */
 typedef struct cli_top_cut {
   size_t x, y, width, height;
   size_t block_x, block_y;
 } cli_top_cut;
 
-/* What is kept of rows takes up to most_bytes of memory. `path` must stay. Errors: as conic_tiff_open. */
+/* Opens the file. Kept rows take up to most_bytes of memory. `path` must outlive it. Errors: as conic_tiff_open. */
 conic_status cli_top_tiff_open(conic_context *context, const char *path, const conic_tiff_layout *layout,
                                uint64_t most_bytes, cli_top_tiff *file);
-/* Takes the plane that is wanted of a block: rgba, or Z, NaN where nothing is. Errors: MEMORY, IO. */
+/* Takes the wanted plane of a block: rgba, or Z, NaN where nothing is. Errors: MEMORY, IO. */
 conic_status cli_top_tiff_put(cli_top_tiff *file, const conic_image *block, const cli_top_cut *cut);
 /* Writes the tiles of the rows above n_rows. Errors: MEMORY, IO. */
 conic_status cli_top_tiff_advance(cli_top_tiff *file, size_t n_rows);
-/* Where `status` is OK, ends the file; else drops it. Releases what there is; returns `status`, or what went wrong. */
+/* Ends the file if `status` is OK, else drops it. Releases everything; returns `status`, or what went wrong. */
 conic_status cli_top_tiff_end(cli_top_tiff *file, conic_status status);
 
 #endif

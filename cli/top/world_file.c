@@ -7,7 +7,7 @@
 #include "core/files/file.h"
 #include "core/files/number.h"
 
-/* The fewest digits that are read as the same number again. */
+/* The fewest digits that read back as the same number. */
 static void put_line(FILE *file, double number) {
   char digits[40];
   for (int n = 1; n <= 17; n++) {

@@ -1,4 +1,4 @@
-/* What Assimp has read, as records: the scene's meshes where their nodes place them. */
+/* Assimp's scene as records: the meshes where their nodes place them. */
 #include "core/assimp/assimp_bridge.h"
 
 #include <assimp/cimport.h>
@@ -15,7 +15,7 @@
 
 enum { BLOCK = 1024, MOST_NOTES = 4 };
 
-/* Rows of world from mesh, in double; and of what turns normals. */
+/* Rows of world from mesh, in double, and the rows that turn normals. */
 typedef struct placement {
   double rows[3][4], normal_rows[3][3];
   int is_mirrored;
@@ -37,8 +37,8 @@ static placement place_below(const placement *parent, const struct aiMatrix4x4 *
   return product;
 }
 
-/* Normals go by the cofactors. Where the mesh is mirrored its corners turn the other way, and those would point to the
- * other side. */
+/* Normals are turned by the cofactors. A mirrored mesh has its corners turned round, so its normals change sign,
+ * too. */
 static void find_normal_rows(placement *place) {
   double determinant = 0.0;
   for (int i = 0; i < 3; i++)
@@ -98,7 +98,7 @@ static void send_coordinates(conic_assimp_writer *w, const struct aiMesh *mesh, 
 
 static void send_colors(conic_assimp_writer *w, const struct aiMesh *mesh) {
   float block[BLOCK][3];
-  int may_be_unset = strcmp(w->request->ending, "amf") == 0; /* there transparent black is no colour at all */
+  int may_be_unset = strcmp(w->request->ending, "amf") == 0; /* transparent black means no colour in these files */
   for (unsigned done = 0, m; done < mesh->mNumVertices; done += m) {
     m = mesh->mNumVertices - done < BLOCK ? mesh->mNumVertices - done : BLOCK;
     for (unsigned i = 0; i < m; i++) {
@@ -160,7 +160,7 @@ static void send_mesh(conic_assimp_writer *w, const struct aiMesh *mesh, const p
                                 .n_triangles = n_triangles,
                                 .i_material = w->request->keeps_faces ? conic_assimp_material(w, mesh) : UINT32_MAX};
   int has_normals =
-      mesh->mNormals && strcmp(w->request->ending, "stl") != 0; /* there the faces' own, and seldom right */
+      mesh->mNormals && strcmp(w->request->ending, "stl") != 0; /* an STL has the faces' own, which are seldom right */
   int has_alphas = w->request->keeps_alpha && mesh->mColors[0] &&
                    (strcmp(w->request->ending, "gltf") == 0 || strcmp(w->request->ending, "glb") == 0);
   record.fields = (has_normals ? CONIC_ASSIMP_NORMALS : 0u) | (coordinates ? CONIC_ASSIMP_COORDINATES : 0u) |
@@ -195,7 +195,7 @@ static int find_number(const struct aiMetadata *data, const char *key, int none)
   return none;
 }
 
-/* Which way is up as Assimp leaves it: DAE, 3DS and DXF are turned by it. */
+/* Which way is up in Assimp's scene: Assimp has turned DAE, 3DS and DXF by it already. */
 static void find_scene_up(const conic_assimp_writer *w, double up[3]) {
   static const char *const z_up[] = {"stl", "3mf", "amf"};
   int axis = 1;
@@ -232,7 +232,7 @@ static void send_scene(conic_assimp_writer *w) {
   free(w->sent);
 }
 
-/* Of all that Assimp says, what tells that something of the file is left out; and what may not be. */
+/* Listens to Assimp's messages for those that say that part of the file is left out, or may not be. */
 static void hear(const char *message, char *cookie) {
   static const char *const told[] = {"drop", "nvalid", "incorrect", "unexpected", "empty", "unknown type: 3D/Objects/"};
   conic_assimp_writer *w = (conic_assimp_writer *)cookie;
@@ -252,7 +252,7 @@ static void hear(const char *message, char *cookie) {
     }
 }
 
-/* Assimp multiplies a node's translation and rotation of glTF 1 the wrong way round, and nobody can tell afterwards. */
+/* Assimp multiplies a node's translation and rotation of glTF 1 in the wrong order; the result does not tell. */
 static void warn_of_gltf_1(conic_assimp_writer *w) {
   static const char note[] = "this is glTF 1, of which parts that are moved and turned may stand in wrong places";
   const struct aiMetadata *data = w->scene->mMetaData;

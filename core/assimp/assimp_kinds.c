@@ -5,7 +5,7 @@
 #include "core/base/byte_order.h"
 #include "core/files/file.h"
 
-/* How a file of a kind begins, and what it has besides within the first bytes; empty: nothing more. */
+/* How a file of a kind begins, and what else stands within its first bytes; empty: nothing. */
 typedef struct content {
   conic_model_kind kind;
   const char *start, *within, *also;
@@ -48,7 +48,7 @@ static uint64_t number_at(const char *bytes, size_t at) {
   return conic_load_32(bytes + at);
 }
 
-/* Whether the faces that are there have normals, of length 1 or 0, and places within reach. */
+/* Whether the faces read have normals of length 1 or 0, and places within reach. */
 static int has_stl_faces(const char *bytes, size_t n) {
   for (size_t at = 84; at + 50 <= n; at += 50) {
     float values[12];
@@ -64,7 +64,7 @@ static int has_stl_faces(const char *bytes, size_t n) {
   return 1;
 }
 
-/* Whether a file of that size is a binary STL, which says how many faces it has; of a pipe, whether it may be. */
+/* Whether a file of that size is a binary STL, which says how many faces it has; for a pipe, whether it may be one. */
 static int is_stl(const char *bytes, size_t n, uint64_t size) {
   if (n < 134 || number_at(bytes, 80) == 0)
     return 0;
@@ -75,7 +75,7 @@ int conic_assimp_is_binary(const void *bytes, uint64_t n) {
   return is_stl(bytes, n < 134 ? 0 : 134, n);
 }
 
-/* Binary files of which the length must be what they say. */
+/* Binary files whose length must be what they say. */
 static int has_length(const char *bytes, size_t n, uint64_t size, conic_model_kind *kind) {
   if (is_stl(bytes, n, size))
     *kind = CONIC_MODEL_STL;
@@ -86,7 +86,7 @@ static int has_length(const char *bytes, size_t n, uint64_t size, conic_model_ki
   return 1;
 }
 
-/* What other kinds of files begin with too. */
+/* Beginnings that other kinds of files share. */
 static int is_wrapped(conic_model_kind kind, const char *bytes, size_t n) {
   if (kind == CONIC_MODEL_3MF)
     return n >= 4 && memcmp(bytes, "PK\x03\x04", 4) == 0;

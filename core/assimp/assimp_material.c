@@ -16,10 +16,10 @@
 
 enum { LONGEST_PATH = 2 * CONIC_INPUT_LONGEST_WORD };
 
-/* What is said while a picture is read becomes a warning of the model: a mesh can be drawn without it. */
+/* Messages while a picture is read become warnings of the model, which can be drawn without it. */
 typedef struct picture_log {
   conic_context *context;
-  const char *model, *path; /* of the picture, where the message begins with it; and what it is called instead: */
+  const char *model, *path; /* the picture's path, which messages begin with, is replaced by: */
   const char *name;
 } picture_log;
 
@@ -32,7 +32,7 @@ static void warn_of_picture(void *cookie, conic_log_level level, const char *mes
   conic_log(log->context, CONIC_LOG_WARNING, "%s: the texture %s is left out: %s", log->model, log->name, message);
 }
 
-/* The picture in a file, or no texture. Errors: MEMORY, CANCELLED. */
+/* The picture in a file; null where it cannot be read. Errors: MEMORY, CANCELLED. */
 static conic_status read_texture_file(const conic_input *input, const char *path, const char *name,
                                       conic_texture_wrap wrap, conic_texture **texture) {
   conic_context *context = input->context, told = *context;
@@ -48,7 +48,7 @@ static conic_status read_texture_file(const conic_input *input, const char *path
   return conic_texture_take(context, &image, wrap, texture);
 }
 
-/* A name as files have it: of a URI, with %20 and the like; of Windows, with \. */
+/* A name as files spell it: of a URI, with %20 and the like; of Windows, with \. */
 static void make_plain(char *name) {
   char *to = name;
   if (strncmp(name, "file://", 7) == 0)
@@ -63,7 +63,7 @@ static void make_plain(char *name) {
   *to = '\0';
 }
 
-/* As the file names it, or beside the model, since such names are often those of another machine. */
+/* Looks at the file's own path first, then beside the model, since such paths are often another machine's. */
 static int find_texture_file(const conic_input *input, const char *name, char path[LONGEST_PATH]) {
   char plain[CONIC_INPUT_LONGEST_WORD];
   snprintf(plain, sizeof plain, "%s", name);
@@ -90,7 +90,7 @@ static conic_status take_path(const conic_input *input, conic_assimp_process *pr
   return CONIC_OK;
 }
 
-/* Pictures are read from files, and this is one in another. */
+/* Pictures are read from files, but this one lies within another file. */
 static conic_status read_embedded(const conic_input *input, const void *bytes, size_t n_bytes, const char *name,
                                   conic_texture_wrap wrap, conic_texture **texture) {
   const char *folder = getenv("TMPDIR");

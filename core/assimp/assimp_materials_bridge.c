@@ -15,7 +15,7 @@ static const char *name_in(const char *path) {
   return name;
 }
 
-/* A texture that the file holds: "*I", or by its name; null where it is a file of its own. */
+/* A texture within the file: "*I", or by its name; null where it is a file of its own. */
 static const struct aiTexture *find_embedded(const struct aiScene *scene, const char *path) {
   if (path[0] == '*') {
     unsigned long i = strtoul(path + 1, NULL, 10);
@@ -48,7 +48,7 @@ static void send_texels(conic_assimp_writer *w, conic_assimp_record record, cons
   }
 }
 
-/* Of the kinds of textures, the first that there is of those that are the surface's own colour. */
+/* The first of the kinds of textures that give the surface's own colour. */
 static int find_texture(const struct aiMaterial *material, struct aiString *path, unsigned *i_coordinate,
                         int *is_clamped) {
   static const enum aiTextureType types[] = {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE};
@@ -66,12 +66,12 @@ static int find_texture(const struct aiMaterial *material, struct aiString *path
   return 0;
 }
 
-/* What Assimp fills in where a file says nothing is white. */
+/* Where a file says nothing, Assimp fills in white. */
 static int is_default(const conic_assimp_writer *w, const struct aiMaterial *material) {
   struct aiString name = {0};
   aiGetMaterialString(material, AI_MATKEY_NAME, &name);
   if (strcmp(w->request->ending, "stl") == 0)
-    return 0; /* here that name is the file's own colour */
+    return 0; /* in this format that name is the file's own colour */
   return strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0 || strcmp(w->request->ending, "off") == 0;
 }
 
@@ -79,7 +79,7 @@ static int is_gltf(const conic_assimp_writer *w) {
   return strcmp(w->request->ending, "gltf") == 0 || strcmp(w->request->ending, "glb") == 0;
 }
 
-/* A texture takes the place of a colour, but for glTF, where it is multiplied. */
+/* A texture replaces the colour; in glTF it is multiplied with it. */
 static void find_material_color(const conic_assimp_writer *w, const struct aiMaterial *material, int has_texture,
                                 float color[3]) {
   struct aiColor4D found = {1.0f, 1.0f, 1.0f, 1.0f};
@@ -94,7 +94,8 @@ static void find_material_color(const conic_assimp_writer *w, const struct aiMat
   color[2] = (float)found.b;
 }
 
-/* Of the modes, glTF says which; elsewhere alpha is what it is. A wholly invisible material is a file's mistake. */
+/* glTF states the mode; in other formats alpha is taken as it is. A wholly invisible material is a mistake of the
+ * file. */
 static void find_alpha_mode(const conic_assimp_writer *w, const struct aiMaterial *material,
                             conic_assimp_record *record) {
   struct aiString mode = {0};

@@ -7,7 +7,7 @@
 #include "core/base/message.h"
 #include "core/base/vectors.h"
 
-/* A part's arrays as they come, and which point each vertex has become. */
+/* A part's arrays as they come, and which point each vertex became. */
 typedef struct assimp_part {
   size_t n_vertices, n_triangles;
   double (*position)[3];
@@ -20,7 +20,7 @@ float conic_assimp_decode(const conic_assimp_part_builder *parts, float value) {
   if (parts->is_linear)
     return value;
   double code = 255.0 * (double)value, whole = code >= 0.0 && code <= 255.0 ? (double)(int)(code + 0.5) : -1.0;
-  int is_code = code - whole < 1e-4 && whole - code < 1e-4; /* of 8 bits, before it became a float */
+  int is_code = code - whole < 1e-4 && whole - code < 1e-4; /* an 8-bit code before it became a float */
   return (float)conic_srgb_decode(is_code ? whole / 255.0 : (double)value);
 }
 
@@ -53,7 +53,7 @@ static void release_part(conic_context *context, assimp_part *taken) {
   conic_memory_release(context, taken->point);
 }
 
-/* One of its arrays; null where there is none. */
+/* Takes one of its arrays; null where there is none. */
 static conic_status take_array(conic_assimp_process *process, int is_there, size_t n, size_t size, void *array) {
   void *bytes = is_there ? conic_memory_allocate(process->context, n, size) : NULL;
   memcpy(array, &bytes, sizeof bytes);
@@ -86,7 +86,7 @@ static conic_status take_part_arrays(conic_assimp_process *process, const conic_
   return status;
 }
 
-/* The bits of a number of which there is only one zero. */
+/* The bits of a number, with -0 as 0. */
 static uint32_t bits_of(float value) {
   uint32_t bits;
   memcpy(&bits, &value, sizeof bits);
@@ -127,7 +127,7 @@ static uint32_t *find_slot(const conic_assimp_part_builder *parts, size_t i) {
   return &parts->slots[slot];
 }
 
-/* Room for so many points at half load. Points of parts without triangles are in no slot. */
+/* Makes room for so many points at half load. Points of parts without triangles have no slot. */
 static conic_status reserve_slots(conic_assimp_part_builder *parts, size_t count) {
   size_t n_slots = 1024, n_old = parts->n_slots;
   uint32_t *old = parts->slots;
@@ -147,7 +147,7 @@ static conic_status reserve_slots(conic_assimp_part_builder *parts, size_t count
   return CONIC_OK;
 }
 
-/* The point that a vertex is: an earlier one, or the model's next. */
+/* The point of a vertex: an earlier one, or a new one of the model. */
 static uint32_t add_vertex(conic_assimp_part_builder *parts, const assimp_part *taken, size_t i) {
   conic_splats *points = &parts->builder.model->points;
   size_t next = points->count;
@@ -210,7 +210,7 @@ static conic_status add_normals(conic_assimp_part_builder *parts, const assimp_p
   return CONIC_OK;
 }
 
-/* What the corners have, which all keep for themselves. */
+/* The corners' attributes, which each corner keeps for itself. */
 static conic_status add_attributes(conic_assimp_part_builder *parts, const assimp_part *taken) {
   conic_status status = CONIC_OK;
   for (size_t i = 0; status == CONIC_OK && taken->normal && i < taken->n_vertices; i++) {

@@ -1,5 +1,5 @@
-/* The parts of a model that Assimp has read, put together. Vertices at one place and of one colour and alpha become
- * one, as other files have them, whatever else their corners differ in. */
+/* Puts together the parts of a model that Assimp reads. Vertices with the same place, colour and alpha become one, as
+ * in other files, even if their corners differ in other attributes. */
 #ifndef CONIC_ASSIMP_PART_H
 #define CONIC_ASSIMP_PART_H
 
@@ -11,12 +11,12 @@ typedef struct conic_assimp_part_builder {
   conic_context *context;
   const char *name; /* of the file, for messages */
   conic_builder builder;
-  conic_faces *faces; /* the model's, where those are kept */
-  int is_linear;      /* the file's colours, which are else encoded as sRGB */
+  conic_faces *faces; /* the model's, where faces are kept */
+  int is_linear;      /* the file's colours are linear; else they are sRGB-encoded */
   uint32_t *slots;    /* by place, colour and alpha: a point + 1; 0: none */
   size_t n_slots;     /* a power of two */
   double (*normals)[3];
-  size_t normal_room; /* sums of the corners' normals, of each point */
+  size_t normal_room; /* for the sums of the corners' normals at each point */
   int has_normals;
 } conic_assimp_part_builder;
 
@@ -25,14 +25,14 @@ conic_status conic_assimp_parts_begin(conic_context *context, const char *name, 
                                       const conic_read_options *options, conic_model *model,
                                       conic_assimp_part_builder *parts);
 
-/* Takes what follows a part's record. Errors: INPUT, MEMORY, CANCELLED. */
+/* Takes the data after a part's record. Errors: INPUT, MEMORY, CANCELLED. */
 conic_status conic_assimp_take_part(conic_assimp_process *process, const conic_assimp_record *record,
                                     conic_assimp_part_builder *parts);
 
 /* Gives the points their normals. Errors: MEMORY. */
 conic_status conic_assimp_parts_end(conic_assimp_part_builder *parts);
 
-/* What is not the model's. */
+/* Releases what the model has not taken. */
 void conic_assimp_parts_release(conic_assimp_part_builder *parts);
 
 /* The linear value of one of the file's colours. */

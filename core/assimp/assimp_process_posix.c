@@ -25,7 +25,7 @@ conic_status conic_assimp_process_start(conic_context *context, const char *name
   if (id == 0) {
     close(ends[0]);
     request.descriptor = ends[1];
-    bridge->read(&request); /* and that is its end */
+    bridge->read(&request); /* and that ends the process */
   }
   close(ends[1]);
   if (id < 0) {
@@ -37,7 +37,7 @@ conic_status conic_assimp_process_start(conic_context *context, const char *name
   return CONIC_OK;
 }
 
-/* Why there is no more to read. */
+/* Says why there is no more to read. */
 static conic_status explain_end(conic_assimp_process *process) {
   int state = 0;
   pid_t ended = 0;

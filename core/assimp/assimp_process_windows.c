@@ -1,4 +1,4 @@
-/* No process can go on here as a copy of this one: files that may break down Assimp are not read. */
+/* Windows cannot fork a process, so Assimp reads no files here: they might crash it. */
 #include "core/assimp/assimp_process.h"
 
 #include "core/base/message.h"

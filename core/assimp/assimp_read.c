@@ -55,7 +55,7 @@ typedef struct assimp_reader {
   conic_assimp_part_builder parts;
 } assimp_reader;
 
-/* A text of the process, without what ends lines or sentences. */
+/* A text from the process, without ends of lines or sentences. */
 static conic_status take_text(assimp_reader *reader, const conic_assimp_record *record, char text[LONGEST_TEXT]) {
   size_t n = record->n_bytes < LONGEST_TEXT ? (size_t)record->n_bytes : LONGEST_TEXT - 1;
   conic_status status = conic_assimp_process_take(reader->process, text, n);
@@ -82,7 +82,7 @@ static conic_status pass_note_on(assimp_reader *reader, const conic_assimp_recor
   return status;
 }
 
-/* A file that was read besides. */
+/* Notes another file that was read. */
 static conic_status note_opened(assimp_reader *reader, const conic_assimp_record *record) {
   char path[LONGEST_TEXT];
   conic_status status = take_text(reader, record, path);
@@ -133,7 +133,7 @@ conic_status conic_assimp_read_records(const conic_input *input, conic_assimp_pr
   return status;
 }
 
-/* Texts of which Assimp reads what there is: the word that the last bytes have. */
+/* Assimp reads cut texts as far as they go: warns where the last bytes lack the closing word. */
 static void warn_if_cut(const conic_input *input, conic_model_kind kind, const whole_file *file) {
   static const struct {
     conic_model_kind kind;

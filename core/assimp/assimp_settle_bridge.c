@@ -7,7 +7,7 @@
 
 #include "core/assimp/assimp_writer_bridge.h"
 
-/* What any file may take beyond what it takes by its size. */
+/* Any file may take so much; larger ones may take more, by their size. */
 static const uint64_t least_memory_bytes = UINT64_C(1) << 30, least_seconds = 60;
 static const uint64_t memory_per_byte = 256, bytes_per_second = 100000;
 
@@ -19,7 +19,7 @@ static void set_limit(int resource, uint64_t most) {
   setrlimit(resource, &limit);
 }
 
-/* Address space that is there already (a sanitizer has much); 0 where it cannot be told. */
+/* Address space that is taken already (a sanitizer takes much); 0 where it is not known. */
 static uint64_t own_address_space(void) {
   unsigned long long pages = 0;
   FILE *file = fopen("/proc/self/statm", "r");
@@ -31,14 +31,15 @@ static uint64_t own_address_space(void) {
 
 void conic_assimp_settle(conic_assimp_request *request) {
   static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE, SIGXCPU, SIGALRM, SIGCHLD};
-  static const int wishes[] = {SIGINT, SIGTERM, SIGHUP}; /* for the parent, with which this ends */
+  static const int wishes[] = {SIGINT, SIGTERM, SIGHUP}; /* signals to the parent, with which this process ends */
   uint64_t address_space = own_address_space(), n_bytes = request->n_bytes;
   for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++)
     signal(faults[i], SIG_DFL);
   for (size_t i = 0; i < sizeof wishes / sizeof wishes[0]; i++)
     signal(wishes[i], SIG_IGN);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  request->descriptor = fcntl(request->descriptor, F_DUPFD, 3); /* none of those that lead nowhere from here on */
+  request->descriptor = fcntl(request->descriptor, F_DUPFD, 3); /* not one of the standard streams, which lead nowhere
+                                                                   from here on */
   int nowhere = open("/dev/null", O_RDWR);
   for (int descriptor = 0; descriptor < 3; descriptor++)
     dup2(nowhere, descriptor);

@@ -1,5 +1,5 @@
-/* Numbers as bytes: the one place that knows which way round this machine has them. Files are little-endian unless
- * their format says otherwise; on a machine that is so, too, each of these is a plain load or store. */
+/* Numbers as bytes: the one place that knows this machine's byte order. Files are little-endian unless their format
+ * says otherwise; on a little-endian machine each of these is a plain load or store. */
 #ifndef CONIC_BYTE_ORDER_H
 #define CONIC_BYTE_ORDER_H
 

@@ -1,4 +1,4 @@
-/* The time that passes, and that is worked: for statistics and limits of time, never for what is computed. */
+/* Time that passes, and time that threads work: for statistics and time limits, never for results. */
 #ifndef CONIC_CLOCK_H
 #define CONIC_CLOCK_H
 
@@ -11,7 +11,7 @@ static inline double conic_seconds_now(void) {
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* When something is, and what the calling thread has worked until then. */
+/* A moment, and how long the calling thread has worked until then. */
 typedef struct conic_moment {
   double clock_s, processor_s;
 } conic_moment;

@@ -134,6 +134,16 @@ conic_status conic_memory_reserve(conic_context *context, void *array, size_t us
   return status;
 }
 
+conic_status conic_memory_append(conic_context *context, void *array, size_t *n, size_t *room, const void *element,
+                                 size_t size) {
+  unsigned char *elements;
+  conic_status status = conic_memory_reserve(context, array, *n, *n + 1, room, size);
+  memcpy(&elements, array, sizeof elements);
+  if (status == CONIC_OK)
+    memcpy(elements + (*n)++ * size, element, size);
+  return status;
+}
+
 void conic_memory_release(conic_context *context, void *pointer) {
   if (!pointer)
     return;
@@ -142,12 +152,17 @@ void conic_memory_release(conic_context *context, void *pointer) {
   context->options.release(context->options.allocator_cookie, raw);
 }
 
+void conic_memory_release_all(conic_context *context, void *const *pointers, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    conic_memory_release(context, pointers[i]);
+}
+
 void conic_memory_prefer_large_pages(const conic_context *context, void *pointer, size_t bytes) {
   if (context->options.large_pages)
     conic_memory_advise_large_pages(pointer, bytes);
 }
 
-/* A message is one line. Names and words out of files may hold what ends lines, or what terminals obey. */
+/* A message is one line. Names and words from files may hold line ends or commands to terminals. */
 static void blank_controls(char *message) {
   for (char *c = message; *c; c++)
     if ((unsigned char)*c < 0x20 || *c == 0x7F)

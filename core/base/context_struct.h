@@ -1,4 +1,4 @@
-/* The context's inside. */
+/* The context's members. */
 #ifndef CONIC_CONTEXT_STRUCT_H
 #define CONIC_CONTEXT_STRUCT_H
 
@@ -12,7 +12,7 @@
 
 typedef struct conic_pool conic_pool;
 
-/* What the system calls a file, whatever its names. */
+/* The system's identity of a file, whatever its names. */
 typedef struct conic_file_identity {
   int is_there;
   uint64_t device, number, n_bytes;
@@ -25,7 +25,7 @@ typedef struct conic_noted_file {
   int phase; /* when it was noted last */
 } conic_noted_file;
 
-/* What begins a block of memory that lasts as long as the context. */
+/* Header of a block of memory that lasts as long as the context. */
 typedef struct conic_lasting {
   struct conic_lasting *next;
 } conic_lasting;
@@ -40,16 +40,16 @@ struct conic_context {
   conic_context_options options; /* allocate, release and threads are set */
   conic_pool *pool;
   _Atomic(conic_lasting *) lasting; /* the newest first */
-  size_t texture_bytes;             /* of all textures that there are */
-  int reads_texture;                /* the picture that is read is to become one */
-  int guards_inputs;                /* core/files/guard.h; the next are its own */
-  conic_noted_file *inputs;         /* which were read */
+  size_t texture_bytes;             /* of all textures that exist */
+  int reads_texture;                /* the picture that is read will become a texture */
+  int guards_inputs;                /* core/files/guard.h; so are the next members */
+  conic_noted_file *inputs;         /* files that were read */
   size_t n_inputs, inputs_room;
   int inputs_phase;
   conic_file_identity replaceable;
   pthread_mutex_t outputs_lock;
-  struct conic_output *outputs;                          /* core/files/file.h: those with temporary files */
-  void (*watch_outputs)(void *cookie, const char *path); /* null: nobody does */
+  struct conic_output *outputs;                          /* core/files/file.h: outputs with temporary files */
+  void (*watch_outputs)(void *cookie, const char *path); /* null: not called */
   void *watch_cookie;
   conic_loan *loans;
   size_t n_loans, loans_room;
@@ -57,10 +57,10 @@ struct conic_context {
   const struct conic_team *team; /* core/base/team_runs.h; null: there is none */
 };
 
-/* A number for conic_render_options.splats_version, above all that a caller may give and another for each call. */
+/* A number for conic_render_options.splats_version: above all that a caller may give, and new in each call. */
 uint64_t conic_context_next_version(conic_context *context);
 
-/* Starts the threads beside the calling one; fewer where the system gives fewer, and counts them. Errors: MEMORY. */
+/* Starts the threads beside the calling one, or as many as the system gives, and counts them. Errors: MEMORY. */
 conic_status conic_pool_create(conic_context *context, conic_pool **pool);
 void conic_pool_destroy(conic_context *context, conic_pool *pool);
 

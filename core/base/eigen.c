@@ -7,7 +7,7 @@ void conic_eigen2(double xx, double xy, double yy, double values[2], double majo
   double radius = sqrt(half_difference * half_difference + xy * xy);
   values[0] = middle + radius;
   values[1] = middle - radius;
-  /* Of the two rows' vectors, the one that doesn't cancel. */
+  /* Take the row whose vector does not cancel. */
   double x = half_difference >= 0.0 ? half_difference + radius : xy;
   double y = half_difference >= 0.0 ? xy : radius - half_difference;
   double length = sqrt(x * x + y * y);
@@ -69,7 +69,7 @@ void conic_eigen3(const double matrix[6], double values[3], double vectors[3][3]
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       vectors[i][j] = i == j ? 1.0 : 0.0;
-  /* Converges quadratically: what is left after a few sweeps is below the diagonal's last bit. */
+  /* Converges quadratically: after a few sweeps the rest is below the diagonal's last bit. */
   for (int sweep = 0; sweep < 12; sweep++) {
     double off = fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]);
     double diagonal = fabs(m[0][0]) + fabs(m[1][1]) + fabs(m[2][2]);

@@ -8,7 +8,7 @@ double conic_gaussian_exp(double x);
 /* 1 / (1 + e^-x). */
 double conic_gaussian_opacity(double logit);
 
-/* The linear colour of the constant spherical harmonic's coefficient; what is below black is black. */
+/* The linear colour of the constant spherical harmonic's coefficient, at least 0. */
 double conic_gaussian_color(double harmonic);
 
 /* Tangent axes of an ellipsoid (n_scales 3: the two longer axes; the shortest is the normal, the first of equals) or of

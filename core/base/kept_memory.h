@@ -9,7 +9,7 @@ typedef struct conic_kept_memory {
   size_t bytes;
 } conic_kept_memory;
 
-/* Room for count × size bytes; null where there is none. What was in it is gone if it had to grow. The caller releases
+/* Room for count × size bytes; null where there is no memory. If it grows, its contents are lost. The caller releases
  * the pointer in the end. */
 static inline void *conic_keep_room(conic_context *context, conic_kept_memory *memory, size_t count, size_t size) {
   if (memory->pointer && count <= memory->bytes / size)

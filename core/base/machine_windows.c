@@ -13,7 +13,7 @@ uint64_t conic_machine_memory(void) {
   return GlobalMemoryStatusEx(&found) ? found.ullTotalPhys : 0;
 }
 
-/* Which would need a right of the user's, and memory that is never paged out. */
+/* They would need a user's right, and memory that is never paged out. */
 void conic_memory_advise_large_pages(void *pointer, size_t bytes) {
   (void)pointer;
   (void)bytes;

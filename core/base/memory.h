@@ -6,28 +6,41 @@
 
 #include "conic/context.h"
 
-/* Room for `count` elements of `size` bytes, aligned to 64 bytes, contents undefined; null where memory or the limit
- * is exceeded, which is then already logged. Zero elements give a valid pointer. Thread-safe. */
+/* Room for `count` elements of `size` bytes, aligned to 64 bytes, contents undefined. Null where memory or the limit is
+ * exceeded, which is logged then. Zero elements give a valid pointer. Thread-safe. */
 void *conic_memory_allocate(conic_context *context, size_t count, size_t size);
 
-/* The same, all bytes zero. */
+/* conic_memory_allocate with all bytes zero. */
 void *conic_memory_allocate_zeroed(conic_context *context, size_t count, size_t size);
 
 /* Moves `used` elements of an array into room for `count` (not below `used`) and releases the old; `array` is the
  * address of the pointer to it. On failure the array stays as it was. */
 conic_status conic_memory_grow(conic_context *context, void *array, size_t used, size_t count, size_t size);
 
-/* The same for an array that has room for *room elements, where `wanted` are more: it becomes larger by half than that,
- * so that adding one by one takes little time. On failure the array and *room stay as they were. */
+/* conic_memory_grow for an array with room for *room elements, if `wanted` are more: it gets half as much more than it
+ * had, so that adding one by one takes little time. On failure the array and *room stay as they were. */
 conic_status conic_memory_reserve(conic_context *context, void *array, size_t used, size_t wanted, size_t *room,
                                   size_t size);
 
-/* Asks the system for large pages, wherever one lies wholly within a block that is to be used from end to end; the
- * second only where the context has large_pages. Where the system has none, nothing happens. Thread-safe. */
+/* Appends an element of `size` bytes to such an array of *n elements. On failure the array, *n and *room stay as they
+ * were. */
+conic_status conic_memory_append(conic_context *context, void *array, size_t *n, size_t *room, const void *element,
+                                 size_t size);
+
+/* Asks the system for large pages wherever one lies wholly within a block that will be used from end to end; the second
+ * function only where the context has large_pages. Without support nothing happens. Thread-safe. */
 void conic_memory_advise_large_pages(void *pointer, size_t bytes);
 void conic_memory_prefer_large_pages(const conic_context *context, void *pointer, size_t bytes);
 
+/* Rounded up to the alignment: the bytes of an array that another one follows in the same block. */
+static inline size_t conic_memory_rounded(size_t bytes) {
+  return (bytes + 63) / 64 * 64;
+}
+
 /* Releases what allocate gave; null is allowed. */
 void conic_memory_release(conic_context *context, void *pointer);
+
+/* Releases n blocks; null ones are allowed. */
+void conic_memory_release_all(conic_context *context, void *const *pointers, size_t n);
 
 #endif

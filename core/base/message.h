@@ -6,7 +6,7 @@
 
 #include "conic/context.h"
 
-/* Functions whose arguments are printf's. MinGW has two of those, and ours is the standard's. */
+/* Functions with printf's arguments. MinGW has two kinds; ours is the standard's. */
 #if defined(__MINGW_PRINTF_FORMAT)
 #define CONIC_AS_PRINTF(format_at, first_at) __attribute__((format(__MINGW_PRINTF_FORMAT, format_at, first_at)))
 #else
@@ -14,7 +14,7 @@
 #endif
 
 /* Logs the formatted line as an error and returns `status`: `return conic_fail(context, CONIC_ERROR_INPUT, "%s: …",
- * …);` Understands %s %d %u %zu %lld %llu %g as printf does. */
+ * …);` %s %d %u %zu %lld %llu %g work as in printf. */
 conic_status conic_fail(conic_context *context, conic_status status, const char *format, ...) CONIC_AS_PRINTF(3, 4);
 
 /* Logs at another level. */

@@ -1,6 +1,6 @@
 /* Finds and loads modules. They lie in a known place beside the file that this code was linked into (the program,
- * libconic.so), so that an installation may be moved; a program of somebody else's that is linked to libconic.a finds
- * them by its run path, as the dynamic linker finds a library. */
+ * libconic.so), so that an installation may be moved. Another program that is linked to libconic.a finds them by its
+ * run path, as the dynamic linker finds a library. */
 #include "core/base/module.h"
 
 #include <dlfcn.h>
@@ -19,8 +19,8 @@ static const char *const places[] = {CONIC_MODULES_FROM_PROGRAM, "conic"};
 
 static const char address_here;
 
-/* The file that this code was linked into. What the dynamic linker calls the program is the word that it was started
- * with, which may be no path at all. */
+/* The file that this code was linked into. For a program, the dynamic linker has only the word that started it, which
+ * may be no path. */
 static int find_own_file(char path[PATH_MAX]) {
   const char *name = NULL;
   Dl_info about;
@@ -57,7 +57,7 @@ static int find_module(const char *name, char path[PATH_MAX]) {
   return 0;
 }
 
-/* It stays loaded, as some libraries have threads of their own; loading it again only finds it. */
+/* The module stays loaded, as some libraries have threads of their own; loading it again only finds it. */
 static void *open_module(const char *name) {
   char path[PATH_MAX];
   return dlopen(find_module(name, path) ? path : name, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);

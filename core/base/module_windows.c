@@ -1,4 +1,4 @@
-/* No library that is loaded when it is needed has been tried on Windows. */
+/* Loading libraries when they are needed has not been tried on Windows. */
 #include "core/base/module.h"
 
 #include <stdio.h>

@@ -3,11 +3,9 @@
 #include <stddef.h>
 #include <string.h>
 
-enum { MAX_LETTERS = 40 };
+#include "core/base/real.h"
 
-static int least(int a, int b) {
-  return a < b ? a : b;
-}
+enum { MAX_LETTERS = 40 };
 
 int conic_word_distance(const char *a, const char *b) {
   int cost[MAX_LETTERS + 1][MAX_LETTERS + 1]; /* of the first i letters of a against the first j of b */
@@ -21,9 +19,9 @@ int conic_word_distance(const char *a, const char *b) {
         continue;
       }
       int replaced = cost[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
-      cost[i][j] = least(replaced, least(cost[i - 1][j], cost[i][j - 1]) + 1);
+      cost[i][j] = conic_least(replaced, conic_least(cost[i - 1][j], cost[i][j - 1]) + 1);
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        cost[i][j] = least(cost[i][j], cost[i - 2][j - 2] + 1);
+        cost[i][j] = conic_least(cost[i][j], cost[i - 2][j - 2] + 1);
     }
   }
   return cost[n_a][n_b];

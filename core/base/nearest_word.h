@@ -1,11 +1,12 @@
-/* What a mistyped word may have meant. */
+/* The word that a mistyped word may have meant. */
 #ifndef CONIC_NEAREST_WORD_H
 #define CONIC_NEAREST_WORD_H
 
-/* How many letters must be inserted, left out, replaced or swapped with their neighbour to make one of the other. */
+/* How many letters must be inserted, left out, replaced or swapped with their neighbour to turn one word into the
+ * other. */
 int conic_word_distance(const char *a, const char *b);
 
-/* The name nearest to `word` so far, for a loop over candidates: `best` or `candidate`, and null while none is near
+/* The better match of `word` so far, `best` or `candidate`, for a loop over candidates; null while none is near
  * enough. */
 const char *conic_nearer_word(const char *word, const char *best, const char *candidate);
 

@@ -1,9 +1,9 @@
-/* Logarithms, powers and cube roots in double with the same bits on every machine; the C library's differ from one to
- * the next. Only + − × ÷ and changes of the exponent are used. */
+/* Logarithms, powers and cube roots in double with the same bits on every machine; C libraries differ. Only + − × ÷ and
+ * changes of the exponent are used. */
 #ifndef CONIC_POWER_H
 #define CONIC_POWER_H
 
-/* ln v for a finite v > 0, within 1e-15 of 1 or relative, whichever is larger. */
+/* ln v for a finite v > 0, with an absolute or relative error of 1e-15, whichever is larger. */
 double conic_logarithm(double v);
 
 /* base^exponent for a finite base ≥ 0 and a finite exponent > 0; relative error under 2e-15·(1 + |exponent·ln base|).

@@ -4,7 +4,7 @@
 
 #include "core/base/memory.h"
 
-/* Of few items it takes longer to go through the digits that there may be than through them. */
+/* For few items, going through all possible digits would take longer than going through the items. */
 enum { DIGIT_BITS = 11, DIGIT_BITS_OF_FEW = 8, FEW = 2048 };
 
 static void sort_by_digit(const conic_radix_item *from, conic_radix_item *to, size_t n, int shift, int n_bits) {

@@ -1,5 +1,5 @@
-/* Random numbers by number: what is drawn depends on the seed, the index and the dimension, never on what was drawn
- * before, so that any part of a sequence can be made by itself, on any thread. */
+/* Random numbers by number: each depends on the seed, the index and the dimension, never on numbers drawn before, so
+ * that any part of a sequence can be made by itself, on any thread. */
 #ifndef CONIC_RANDOM_H
 #define CONIC_RANDOM_H
 
@@ -22,8 +22,8 @@ static inline double conic_random_uniform(uint64_t seed, uint64_t index, uint64_
   return (double)(conic_random_bits(seed, index, dimension) >> 11) * 0x1p-53;
 }
 
-/* Mean 0, variance 1, within ±6: the sum of twelve 16-bit uniforms, which leaves the Gaussian by under 0.0024 in its
- * distribution function. Uses three dimensions, from `dimension` on. */
+/* Mean 0, variance 1, within ±6: the sum of twelve 16-bit uniforms, whose distribution function is off the Gaussian's
+ * by under 0.0024. Uses three dimensions, from `dimension` on. */
 static inline double conic_random_gaussian(uint64_t seed, uint64_t index, uint64_t dimension) {
   uint64_t sum = 0;
   for (uint64_t i = 0; i < 3; i++) {

@@ -4,14 +4,14 @@
 
 #include "core/base/real.h"
 
-/* Digits from the highest on; below each, only the numbers that have it and all before it count. */
+/* Digits are found from the highest down; at each, only numbers that share the higher digits count. */
 enum { RANK_DIGIT_BITS = 11, N_RANK_DIGITS = 1 << RANK_DIGIT_BITS };
 
 static uint32_t keep_number(uint32_t bits) {
   return bits;
 }
 
-/* Bits that order as floats do. */
+/* Bits in the order of the floats. */
 static uint32_t order_float(uint32_t bits) {
   return bits >> 31 ? ~bits : bits | UINT32_C(0x80000000);
 }

@@ -1,16 +1,16 @@
-/* Floating-point numbers as they are kept: whether they are finite, their bits, and their order for qsort. */
+/* Floating-point numbers as they are stored: whether they are finite, their bits, and their order for qsort. */
 #ifndef CONIC_REAL_H
 #define CONIC_REAL_H
 
 #include <stdint.h>
 #include <string.h>
 
-/* Also of floats, and of products that may have become infinite. */
+/* Also for floats, and for products that may have become infinite. */
 static inline int conic_is_finite(double value) {
   return value - value == 0.0;
 }
 
-/* Of numbers that are not negative, the bits are in the numbers' order. */
+/* The bits of numbers that are not negative have the numbers' order. */
 static inline uint64_t conic_bits_of_double(double value) {
   uint64_t bits;
   memcpy(&bits, &value, sizeof bits);
@@ -43,6 +43,14 @@ static inline double conic_power_of_two(int exponent) {
 static inline int conic_compare_doubles(const void *a, const void *b) {
   const double *first = a, *second = b;
   return (*first > *second) - (*first < *second);
+}
+
+static inline int conic_least(int a, int b) {
+  return a < b ? a : b;
+}
+
+static inline int conic_greatest(int a, int b) {
+  return a > b ? a : b;
 }
 
 #endif

@@ -6,8 +6,8 @@
 #include "core/base/context_struct.h"
 #include "core/base/memory.h"
 
-/* Each process gets so many blocks of items, spread over the whole loop, as what lies together takes as long. Of their
- * values so many bytes are exchanged at a time. */
+/* Each process gets so many blocks of items, spread over the whole loop, because neighbouring items take about the same
+ * time. So many bytes of their values are exchanged at a time. */
 enum { BLOCKS_A_PROCESS = 32, EXCHANGED_BYTES = 64 << 20 };
 
 const conic_team *conic_context_join(conic_context *context, const conic_team *team) {
@@ -20,7 +20,7 @@ conic_status conic_context_part(conic_context *context, conic_status status) {
   return conic_team_agree(conic_context_join(context, NULL), status);
 }
 
-/* After a failure, of whomever, nobody comes to what is collective any more. */
+/* After any process failed, none calls collective functions any more. */
 static conic_status agree_on(conic_context *context, conic_status status) {
   status = conic_team_agree(context->team, status);
   if (status != CONIC_OK)
@@ -28,7 +28,7 @@ static conic_status agree_on(conic_context *context, conic_status status) {
   return status;
 }
 
-/* Block i is process i % count's. */
+/* Process i % count does block i. */
 typedef struct team_blocks {
   const conic_team *team;
   const conic_team_loop *loop;
@@ -82,7 +82,7 @@ static void copy_column(const conic_team_column *column, size_t begin, size_t n,
   }
 }
 
-/* Copies a block's values out of the columns, or back into them, unless there are no bytes; returns their size. */
+/* Copies a block's values out of the columns, or back into them, unless `bytes` is null; returns their size. */
 static size_t copy_block_values(const team_blocks *blocks, size_t i_block, char *bytes, int is_back) {
   const conic_team_loop *loop = blocks->loop;
   size_t n_bytes = 0;
@@ -99,7 +99,7 @@ static size_t copy_block_values(const team_blocks *blocks, size_t i_block, char 
   return n_bytes;
 }
 
-/* The blocks of one process among those from `first` on and before `end`. */
+/* Copies the blocks of one process from `first` to before `end`. */
 static size_t copy_blocks(const team_blocks *blocks, size_t first, size_t end, int index, char *bytes, int is_back) {
   size_t n_bytes = 0;
   for (size_t i = first + (size_t)index; i < end; i += (size_t)blocks->team->count)
@@ -107,7 +107,7 @@ static size_t copy_blocks(const team_blocks *blocks, size_t first, size_t end, i
   return n_bytes;
 }
 
-/* Where the blocks end that are exchanged at a time with the `first`, which is process 0's. */
+/* Where the blocks end that are exchanged together, from `first` on, which is process 0's. */
 static size_t end_of_round(const team_blocks *blocks, size_t first) {
   size_t n_bytes = 0, end = first, count = (size_t)blocks->team->count;
   while (end < blocks->n_blocks && n_bytes < EXCHANGED_BYTES) {
@@ -118,7 +118,7 @@ static size_t end_of_round(const team_blocks *blocks, size_t first) {
   return lesser_count(end, blocks->n_blocks);
 }
 
-/* The most bytes that this process gives at a time. */
+/* The most bytes that this process sends at a time. */
 static size_t most_own_bytes(const team_blocks *blocks) {
   size_t most = 0;
   for (size_t first = 0, end; first < blocks->n_blocks; first = end) {

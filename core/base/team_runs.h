@@ -1,5 +1,5 @@
-/* Loops whose items a team shares. Its processes do the same with their contexts, on the same data, so that each can do
- * some of a loop's items and get from the others what those made. */
+/* Loops whose items a team shares. Its processes run the same work with their own contexts, on the same data. Each does
+ * some of a loop's items and gets the values of the others' items from them. */
 #ifndef CONIC_TEAM_RUNS_H
 #define CONIC_TEAM_RUNS_H
 
@@ -8,40 +8,40 @@
 #include "core/base/team.h"
 #include "core/base/threads.h"
 
-/* From now on the context's work is shared with the team, which stays where it is; null: no longer. Returns whom it was
- * shared with before. */
+/* From now on the team, which must stay, shares the context's work; null: no team does. Returns the team before. */
 const conic_team *conic_context_join(conic_context *context, const conic_team *team);
 
-/* Collective, at the end of what is shared, whatever came of it: as conic_team_agree, of the context's team. From then
- * on nothing is shared. Between the two whoever fails may leave at any place: it comes here, and the others learn of it
- * at the next collective function. */
+/* Collective: ends the sharing, with success or failure, and agrees on a status as conic_team_agree of the context's
+ * team. Between joining and this call, a process that fails may leave at any place and come here; the others learn of
+ * it at the next collective function. */
 conic_status conic_context_part(conic_context *context, conic_status status);
 
-/* Where items leave what they make. */
+/* Where items leave their values. */
 typedef struct conic_team_column {
   void *values; /* null: there is none */
   size_t value_bytes;
-  const uint32_t *places; /* where value i stands; null: at i */
-  int is_by_item;         /* each item makes one value, whatever it makes of the others */
+  const uint32_t *places; /* the places of the values; null: value i is at i */
+  int is_by_item;         /* each item makes one value here, however many it makes in the other columns */
 } conic_team_column;
 
 enum { CONIC_TEAM_COLUMNS = 16 };
 
 typedef struct conic_team_loop {
-  const char *name; /* of the progress, between two fractions, */
+  const char *name; /* of the progress, which runs between two fractions … */
   double from, to;
-  size_t n_items, n_a_run; /* which is reported before so many items; 0: before each, as conic_parallel_told does */
+  size_t n_items, n_a_run; /* … and is reported before every n_a_run items; 0: before each item, as in
+                              conic_parallel_told */
   conic_task *task;
   void *data;
-  /* Each item makes so many values of every column, the last one those that are left of all, and changes nothing else
-   * that is looked at later. Where items make different numbers, `first_of` gives an item's first, and of n_items their
-   * number. */
+  /* Each item makes n_an_item values of every column, the last item the remaining ones of n_values, and changes nothing
+   * else that is used later. Where items make different numbers, first_of(data, i) is the first value of item i, and
+   * first_of(data, n_items) the number of all. */
   size_t n_an_item, n_values;
   size_t (*first_of)(const void *data, size_t i_item);
   conic_team_column columns[CONIC_TEAM_COLUMNS];
 } conic_team_loop;
 
-/* The loop over n_values that make up items of n_an_item each, without columns yet. */
+/* A loop over n_values, n_an_item in each item, without columns yet. */
 static inline conic_team_loop conic_team_loop_of(const char *name, double from, double to, size_t n_values,
                                                  size_t n_an_item, size_t n_a_run, conic_task *task, void *data) {
   size_t n_items = (n_values + n_an_item - 1) / n_an_item;
@@ -49,11 +49,11 @@ static inline conic_team_loop conic_team_loop_of(const char *name, double from, 
       name, from, to, n_items, n_a_run, task, data, n_an_item, n_values, NULL, {{NULL, 0, NULL, 0}}};
 }
 
-/* conic_parallel_runs or conic_parallel_told, which is all of it where the context has no team. Else collective: each
- * process does some of the items, and all then have all values. Errors: CANCELLED, MEMORY. */
+/* conic_parallel_runs or conic_parallel_told, and nothing more where the context has no team. With a team it is
+ * collective: each process does some of the items, and in the end all have all values. Errors: CANCELLED, MEMORY. */
 conic_status conic_team_runs(conic_context *context, const conic_team_loop *loop);
 
-/* Collective: makes it the sum of what all have. Errors: CANCELLED. */
+/* Collective: replaces *count by the sum over all processes. Errors: CANCELLED. */
 conic_status conic_team_total(conic_context *context, size_t *count);
 
 #endif

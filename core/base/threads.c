@@ -17,23 +17,23 @@ typedef struct pool_worker {
   pthread_t thread;
   pthread_mutex_t mutex;
   pthread_cond_t work_ready;
-  uint64_t wanted; /* the generation that it is called to */
+  uint64_t wanted; /* the generation that it was called for */
   int stop;
 } pool_worker;
 
 struct conic_pool {
   pthread_mutex_t mutex;
   pthread_cond_t work_done;
-  int n_workers, n_called;   /* of the workers as many as there are items for */
-  conic_region_watch *watch; /* null: nobody */
+  int n_workers, n_called;   /* n_called: workers needed for the items */
+  conic_region_watch *watch; /* null: not told */
   void *watch_cookie;
 
   conic_task *task;
   void *data;
   size_t n_items;
   _Alignas(LINE_BYTES) atomic_size_t next_item;
-  /* Generation, DOOR_CLOSED, and how many workers are in it. Who comes when it is closed stays out, so nobody waits for
-   * those that wake late. */
+  /* Generation, DOOR_CLOSED, and how many workers are inside. Workers that come when it is closed stay out, so nobody
+   * waits for late ones. */
   _Alignas(LINE_BYTES) _Atomic(uint64_t) door;
 
   pool_worker workers[];
@@ -68,7 +68,7 @@ static void leave_region(conic_pool *pool) {
   pthread_mutex_unlock(&pool->mutex);
 }
 
-/* Each thread wakes two more, so that the last begins after as many steps as the binary logarithm of their number. */
+/* Each thread wakes two more, so that the last one starts after log2(threads) steps. */
 static void call_two(conic_pool *pool, int i_thread, uint64_t generation) {
   for (int i = 2 * i_thread; i < 2 * i_thread + 2 && i < pool->n_called; i++) {
     pool_worker *worker = &pool->workers[i];
@@ -79,7 +79,7 @@ static void call_two(conic_pool *pool, int i_thread, uint64_t generation) {
   }
 }
 
-/* The next generation that the worker is called to; 0: it is to end. */
+/* The next generation that the worker is called for; 0: it is to end. */
 static uint64_t wait_for_call(pool_worker *self, uint64_t seen) {
   pthread_mutex_lock(&self->mutex);
   while (!self->stop && self->wanted == seen)
@@ -127,7 +127,7 @@ conic_status conic_pool_create(conic_context *context, conic_pool **pool) {
   pthread_cond_init(&made->work_done, NULL);
   while (made->n_workers < n_wanted && start_worker(made))
     ;
-  context->options.threads = made->n_workers + 1; /* those that there are */
+  context->options.threads = made->n_workers + 1; /* those that the system gave */
   *pool = made;
   return CONIC_OK;
 }

@@ -15,21 +15,21 @@ typedef void conic_task(void *data, size_t i_item, int i_thread);
 #define conic_parallel_for(context, n_items, task, data) conic_parallel_region(context, #task, n_items, task, data)
 void conic_parallel_region(conic_context *context, const char *name, size_t n_items, conic_task *task, void *data);
 
-/* The same for what takes longer than a user who wants to stop it should wait: in runs of `n_a_run` items, before each
- * of which the progress of `name` is reported, between the two fractions. Errors: CANCELLED. */
+/* conic_parallel_for for work that a user may want to stop: in runs of `n_a_run` items. The progress of `name` is
+ * reported before each run, between the two fractions. Errors: CANCELLED. */
 conic_status conic_parallel_runs(conic_context *context, const char *name, double from, double to, size_t n_items,
                                  size_t n_a_run, conic_task *task, void *data);
 
-/* The same for items that take long each: the calling thread reports the progress of `name`, between the two fractions,
- * before each of its own; nobody begins another where that was to stop. Errors: CANCELLED. */
+/* conic_parallel_for for items that take long each: before each of its items, the calling thread reports the progress
+ * of `name`, between the two fractions. If that cancels, no thread begins another item. Errors: CANCELLED. */
 conic_status conic_parallel_told(conic_context *context, const char *name, double from, double to, size_t n_items,
                                  conic_task *task, void *data);
 
-/* What is told of a region of n_items > 0 items: before its first, where n_done is 0, and after each. */
+/* Is told of a region of n_items > 0 items: before its first item (n_done 0) and after each. */
 typedef void conic_region_watch(void *cookie, const char *name, size_t n_items, size_t n_done);
 
-/* From now on all work is shared out as for so many threads, but done by the calling one, in order. The context has no
- * other thread. */
+/* From now on all work is shared out as for so many threads, but the calling thread does it, in order. The context has
+ * no other thread. */
 void conic_parallel_plan(conic_context *context, int threads, conic_region_watch *watch, void *cookie);
 
 #endif

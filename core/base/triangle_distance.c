@@ -2,7 +2,7 @@
 
 #include "core/base/vectors.h"
 
-/* From p - a and the side b - a, of which `along` is the product; it lies between the ends. */
+/* From p - a and the side b - a; `along` is their dot product, and the foot lies between the ends. */
 static double distance2_to_side(const double way[3], const double side[3], double along) {
   double length2 = conic_dot(side, side), t = length2 > 0.0 ? along / length2 : 0.0, sum = 0.0;
   for (int axis = 0; axis < 3; axis++) {
@@ -12,8 +12,8 @@ static double distance2_to_side(const double way[3], const double side[3], doubl
   return sum;
 }
 
-/* By regions: what is nearest is a corner, a side, or the inside; the products with the sides tell which (Ericson,
- * Real- Time Collision Detection, §5.1.5). */
+/* By regions: the nearest place is a corner, on a side, or inside; the products with the sides tell which (Ericson,
+ * Real-Time Collision Detection, §5.1.5). */
 double conic_distance2_to_triangle(const double p[3], const double a[3], const double b[3], const double c[3]) {
   double ab[3], ac[3], ap[3], bp[3], cp[3], bc[3], normal[3];
   conic_subtract(b, a, ab);

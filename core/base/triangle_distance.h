@@ -2,7 +2,7 @@
 #ifndef CONIC_TRIANGLE_DISTANCE_H
 #define CONIC_TRIANGLE_DISTANCE_H
 
-/* The squared distance of p from the triangle a, b, c, its border included; not a number where that has no area. */
+/* The squared distance of p from the triangle a, b, c with its border; NaN for a triangle without area. */
 double conic_distance2_to_triangle(const double p[3], const double a[3], const double b[3], const double c[3]);
 
 #endif

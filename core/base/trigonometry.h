@@ -1,5 +1,5 @@
-/* Sine, cosine, tangent in double with the same bits on every machine; the C library's differ from one to the next.
- * Error at most 1 ulp of 1 for |x| up to 1e5 radians; only + − × ÷ are used. NaN and infinity give NaN. */
+/* Sine, cosine, tangent in double with the same bits on every machine; C libraries differ. The error is at most 1 ulp
+ * of 1 for |x| up to 1e5 radians; only + − × ÷ are used. NaN and infinity give NaN. */
 #ifndef CONIC_TRIGONOMETRY_H
 #define CONIC_TRIGONOMETRY_H
 

@@ -1,5 +1,5 @@
-/* Vectors of three doubles. Sums go from the first component to the last, so that what is made of them is the same to
- * the bit wherever it is made. */
+/* Vectors of three doubles. Sums go from the first component to the last, so that results have the same bits
+ * everywhere. */
 #ifndef CONIC_VECTORS_H
 #define CONIC_VECTORS_H
 
@@ -25,7 +25,7 @@ static inline void conic_subtract(const double a[3], const double b[3], double d
     difference[axis] = a[axis] - b[axis];
 }
 
-/* Makes v a unit vector; 0, and v zero, where it has no direction. */
+/* Makes v a unit vector. Returns 0, with v zero, where it has no direction. */
 static inline int conic_normalize(double v[3]) {
   double length = conic_length(v);
   int is_good = length > 0.0 && length - length == 0.0;

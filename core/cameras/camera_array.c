@@ -1,4 +1,4 @@
-/* cameras.json of 3D Gaussian splatting: an array of cameras by their places in the world, centred. */
+/* cameras.json of 3D Gaussian splatting: an array of centred cameras with their places in the world. */
 #include <string.h>
 
 #include "core/cameras/camera_list.h"

@@ -170,7 +170,7 @@ static conic_status link_nodes(gltf_camera_reader *reader) {
   return CONIC_OK;
 }
 
-/* What a node does to points: three rows. */
+/* A node's transformation of points: three rows. */
 static int find_node_matrix(const gltf_camera_node *node, double rows[3][4]) {
   const double quaternion[4] = {node->rotation[3], node->rotation[0], node->rotation[1], node->rotation[2]};
   double turn[3][3];
@@ -193,7 +193,7 @@ static void join_matrices(const double outer[3][4], double inner[3][4]) {
   memcpy(inner, joined, sizeof joined);
 }
 
-/* Where a camera stands: its axes in the world, whose lengths do not matter to it. */
+/* A camera's place: its axes in the world, of any length. */
 static conic_status find_camera_place(const gltf_camera_reader *reader, const gltf_camera_node *node,
                                       double place[3][4]) {
   static const char no_rotation[] = "a node's rotation is none";
@@ -210,9 +210,9 @@ static conic_status find_camera_place(const gltf_camera_reader *reader, const gl
   }
   for (int k = 0; k < 3; k++) {
     double column[3] = {place[0][k], place[1][k], place[2][k]}, length = conic_length(column);
-    int is_unit = fabs(length - 1.0) < 1e-12; /* to the bit as it is */
+    int is_unit = fabs(length - 1.0) < 1e-12; /* then it stays, to the bit */
     for (int row = 0; row < 3 && !is_unit; row++)
-      place[row][k] /= length; /* NaN of nothing, which is refused */
+      place[row][k] /= length; /* NaN for zero length, which is refused */
   }
   return CONIC_OK;
 }

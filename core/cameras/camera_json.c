@@ -24,7 +24,7 @@ static conic_status read_size(conic_json *json, int *size) {
   return CONIC_OK;
 }
 
-/* What a camera may be is what drawing takes. */
+/* Drawing takes cameras within these limits. */
 static const double largest_pixel_value = 1e12, largest_matrix_value = 1e30;
 
 static conic_status read_bounded(conic_json *json, double limit, double *value) {

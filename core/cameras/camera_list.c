@@ -142,7 +142,7 @@ int conic_camera_pixels(double value) {
   return value >= 1.0 && value <= 65535.0 && value == (double)(int)value ? (int)value : 0;
 }
 
-/* 0 where it is more than a picture has. */
+/* 0 where it is more than pictures have. */
 static int load_png_side(const unsigned char bytes[4]) {
   uint32_t side = conic_load_big_32(bytes);
   return side < 65536 ? (int)side : 0;
@@ -199,7 +199,7 @@ static int is_called(const char *name, const char *wanted, int how) {
   return length == n_wanted && memcmp(name + begin, wanted, length) == 0;
 }
 
-/* The index that a text is; `none` where it is no number, or one with needless zeros. */
+/* The index in a text; `none` where it is no number, or has leading zeros. */
 static size_t take_view_index(const char *text, size_t none) {
   size_t value = 0, n = strlen(text);
   if (n == 0 || n > 9 || strspn(text, "0123456789") != n || (*text == '0' && n > 1))

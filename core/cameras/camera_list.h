@@ -9,15 +9,15 @@ enum { CONIC_CAMERA_NAME_ROOM = 1024 };
 typedef struct conic_camera_list {
   conic_context *context;
   const char *name; /* of the file, for messages */
-  const char *path; /* beside which its pictures are; null: nowhere */
+  const char *path; /* the pictures lie beside it; null: there are none */
   conic_cameras_options options;
-  uint64_t line, byte; /* that is being read; of a line 0, the byte holds */
+  uint64_t line, byte; /* of the value that is being read; with line 0 the byte counts */
   conic_cameras *cameras;
   size_t camera_room, name_room;
 } conic_camera_list;
 
-/* Adds a camera, whose size is the file's, in the size that is asked for. The name need not be
- * ended. Errors: INPUT (it is none to look through), MEMORY. */
+/* Adds a camera, given in the file's size, in the requested size. The name needs no terminating zero. Errors: INPUT
+ * (nobody can look through it), MEMORY. */
 conic_status conic_camera_list_add(conic_camera_list *list, const conic_camera *given, const char *name, size_t n_name);
 
 /* Logs "FILE: what is wrong (line N)". Returns INPUT. */
@@ -26,26 +26,26 @@ conic_status conic_camera_list_wrong(const conic_camera_list *list, const char *
 /* A copy that can be printed; null without memory. */
 char *conic_camera_text(conic_context *context, const char *name, size_t n_name);
 
-/* The size of a picture of which the file says none: that of the file `picture`, which may be null, beside the list's,
- * or what was asked for; names without an ending are tried with those of pictures. Errors: INPUT. */
+/* The size of a picture for which the file gives none: the requested one, or that of the file `picture` (may be null)
+ * beside the list's. Names without an ending are tried with pictures' endings. Errors: INPUT. */
 conic_status conic_camera_list_size(conic_camera_list *list, const char *picture, int *width, int *height);
 
-/* A whole number of pixels, 1 to 65535; 0 where it is none. */
+/* A whole number of pixels, 1 to 65535; 0 for any other number. */
 int conic_camera_pixels(double value);
 
-/* A camera looks along −z with y up, as OpenGL has it, from what places it in the world: rows of three numbers and the
- * position. */
+/* Places a camera that looks along −z with y up, as OpenGL's do, by its matrix in the world: rows of three numbers and
+ * the position. */
 void conic_camera_place_opengl(const double world_from_camera[3][4], conic_camera *camera);
-/* The same of one that looks along z with y down. */
+/* Places a camera that looks along z with y down. */
 void conic_camera_place(const double world_from_camera[3][4], conic_camera *camera);
 
-/* Of a quaternion w, x, y, z of any length; 0 where it has none. */
+/* The rotation of a quaternion w, x, y, z of any length; returns 0 where it has none. */
 int conic_camera_rotation(const double quaternion[4], double rows[3][3]);
 
-/* A lens that does nothing is none. */
+/* Makes a lens that changes nothing CONIC_LENS_NONE. */
 void conic_camera_settle_lens(conic_camera *camera);
 
-/* The readers. Bytes are those of a whole file. */
+/* The readers of all formats. `bytes` are a whole file. */
 conic_status conic_camera_json_read(conic_camera_list *list, const unsigned char *bytes, size_t n_bytes);
 conic_status conic_camera_array_read(conic_camera_list *list, const unsigned char *bytes, size_t n_bytes);
 conic_status conic_camera_transforms_read(conic_camera_list *list, const unsigned char *bytes, size_t n_bytes);

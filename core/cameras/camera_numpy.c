@@ -40,7 +40,7 @@ static conic_status open_npz_part(npz_reader *reader, const conic_zip *zip, int 
                             : status;
 }
 
-/* Whether an array is of `n` items of such a shape, or of one for all; of n = 0, how many there are is found. */
+/* Whether an array holds `n` items of such a shape, or one for all; n = 0 is replaced by the number found. */
 static int has_npz_shape(const conic_numpy_array *array, size_t *n, size_t rows, size_t columns) {
   int n_axes = (rows > 0) + (columns > 0), first = array->n_axes - n_axes;
   if (first < 0 || first > 1 || (rows && array->shape[first] != rows) ||

@@ -1,4 +1,4 @@
-/* Which kind of camera file it is, and where in a folder it lies. */
+/* Finds the kind of a camera file, and the file in a folder. */
 #include <stdio.h>
 #include <string.h>
 
@@ -50,7 +50,7 @@ static int find_colmap(const char *path, colmap_paths *paths) {
   return 0;
 }
 
-/* Either file of a model stands for both. */
+/* Either file of a model names the model. */
 static int is_colmap_file(const char *path) {
   static const char *const names[] = {"cameras.bin", "images.bin", "cameras.txt", "images.txt"};
   for (int i = 0; i < 4; i++)
@@ -78,13 +78,13 @@ static int find_json_in(const char *folder, char path[PATH_ROOM]) {
 
 enum { NO_CAMERAS = CONIC_N_CAMERA_FILES };
 
-/* The keys of JSON as far down as they tell what it is, whatever else it is: whoever reads it says what is wrong. */
+/* The keys of JSON, as far as they tell its kind. Faults are left to the reader of that kind. */
 typedef struct key_scan {
   const unsigned char *next, *end;
   int depth;
 } key_scan;
 
-/* Past a string; *length is 0 where it has escapes, as no key has that matters. */
+/* Past a string; *length is 0 for one with escapes, which no known key has. */
 static const unsigned char *scan_text(key_scan *scan, size_t *length) {
   const unsigned char *start = ++scan->next;
   int is_plain = 1;
@@ -163,7 +163,7 @@ static conic_status read_colmap_paths(conic_camera_list *list, const colmap_path
   return status;
 }
 
-/* What is no kind that is known is read as conic's own, which says what it lacks. */
+/* An unknown kind is read as conic's own, whose reader says what is missing. */
 static conic_status read_camera_bytes(conic_camera_list *list, const unsigned char *bytes, size_t n_bytes) {
   size_t n_mark = 0;
   conic_status status = conic_text_byte_order_mark(list->context, list->name, bytes, n_bytes, &n_mark);

@@ -11,7 +11,7 @@
 
 enum { MOST_PARAMETERS = 16, WORDS_OF_IMAGE = 9 };
 
-/* After one or two focal lengths and the centre come the lens's numbers, in conic's order. */
+/* One or two focal lengths and the centre come first, then the lens's numbers, in conic's order. */
 typedef struct colmap_model {
   const char *name;
   int n_focal, n_lens;
@@ -19,7 +19,7 @@ typedef struct colmap_model {
   conic_lens lens;
 } colmap_model;
 
-/* By their numbers. */
+/* By COLMAP's numbers. */
 static const colmap_model models[] = {
     {"SIMPLE_PINHOLE", 1, 0, CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_NONE},
     {"PINHOLE", 2, 0, CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_NONE},
@@ -50,14 +50,14 @@ typedef struct colmap_camera {
 
 typedef struct colmap_image {
   double quaternion[4], translation[3];
-  uint64_t camera, line, byte; /* the last two: where it stands */
+  uint64_t camera, line, byte; /* line, byte: where it is in the file */
   const char *name;
   size_t n_name;
 } colmap_image;
 
 typedef struct colmap_reader {
   conic_camera_list *list;
-  const conic_colmap_file *file; /* the one that is read */
+  const conic_colmap_file *file; /* the one being read */
   size_t at, line;               /* of text: the line from 1, or 0 */
   size_t line_end;               /* of text */
   colmap_camera *cameras;
@@ -87,7 +87,7 @@ static conic_status add_colmap_camera(colmap_reader *reader, uint64_t id, const 
     return colmap_wrong(reader, "a picture is 1 to 65535 pixels wide and high", "");
   camera.kind = model->kind;
   camera.lens = model->lens;
-  if (model->kind == CONIC_CAMERA_EQUIRECTANGULAR) { /* all around, whatever its numbers */
+  if (model->kind == CONIC_CAMERA_EQUIRECTANGULAR) { /* it sees all around, whatever its numbers */
     camera.fx = camera.width / (2.0 * CONIC_PI);
     camera.fy = camera.height / CONIC_PI;
     camera.cx = 0.5 * camera.width;
@@ -196,7 +196,7 @@ static conic_status read_binary_images(colmap_reader *reader) {
 
 /* --- text --- */
 
-/* To the start of the next line, whatever it is; 0 at the end. */
+/* To the start of the next line, of any kind; 0 at the end. */
 static int next_text_line(colmap_reader *reader) {
   if (reader->line)
     reader->at = reader->line_end + 1;
@@ -225,7 +225,7 @@ static const char *next_text_word(colmap_reader *reader, size_t *length) {
   return (const char *)bytes + start;
 }
 
-/* To the next line that says something: neither empty nor a remark. */
+/* To the next line with content: neither empty nor a comment. */
 static int next_statement(colmap_reader *reader) {
   size_t length;
   while (next_text_line(reader)) {
@@ -238,7 +238,7 @@ static int next_statement(colmap_reader *reader) {
   return 0;
 }
 
-/* Up to `most` numbers of the line; one more than that where there are others, -1 where a word is no number. */
+/* Up to `most` numbers of the line; returns most + 1 where there are more, -1 where a word is no number. */
 static int take_line_numbers(colmap_reader *reader, double *numbers, int most) {
   size_t length;
   for (int n = 0;; n++) {
@@ -309,7 +309,7 @@ static conic_status read_text_image(colmap_reader *reader) {
   return add_colmap_image(reader, &image);
 }
 
-/* The line after an image's has its points, and may be empty. */
+/* The line after an image's lists its points, and may be empty. */
 static conic_status read_text_images(colmap_reader *reader) {
   conic_status status = CONIC_OK;
   while (status == CONIC_OK && next_statement(reader)) {
@@ -326,7 +326,7 @@ static int compare_ids(const void *a, const void *b) {
   return (first->id > second->id) - (first->id < second->id);
 }
 
-/* Equal names stay in the file's order, in which they stand in memory. */
+/* Equal names keep the file's order, which is their order in memory. */
 static int compare_image_names(const void *a, const void *b) {
   const colmap_image *first = a, *second = b;
   size_t n = first->n_name < second->n_name ? first->n_name : second->n_name;

@@ -6,7 +6,7 @@
 #include "core/cameras/camera_list.h"
 #include "core/files/json_read.h"
 
-/* Numbers that stand at a frame, or for all of them. */
+/* Numbers given with a frame, or for all frames. */
 typedef enum frame_number {
   W,
   H,
@@ -59,7 +59,7 @@ typedef struct transforms_frame {
 typedef struct transforms_reader {
   conic_camera_list *list;
   conic_json json;
-  frame_numbers shared; /* which may stand behind the frames */
+  frame_numbers shared; /* they may come after the frames */
   transforms_frame *frames;
   size_t n_frames, frame_room;
   int has_frames;
@@ -76,7 +76,7 @@ static void read_frame_model(transforms_reader *reader, frame_numbers *numbers) 
     conic_json_wrong(&reader->json, "its camera_model is not read");
 }
 
-/* Whether the member is one of a camera's numbers, which is then read. */
+/* Whether the member is one of a camera's numbers; if so, it is read. */
 static int read_frame_number(transforms_reader *reader, const char *key, frame_numbers *numbers) {
   int is_fisheye;
   for (int i = 0; i < N_FRAME_NUMBERS; i++)
@@ -168,7 +168,7 @@ static conic_status read_transforms(transforms_reader *reader) {
   return status;
 }
 
-/* What stands at the frame goes before what stands for all. */
+/* A frame's own numbers win over shared ones. */
 static void merge_numbers(const frame_numbers *shared, frame_numbers *own) {
   for (int i = 0; i < N_FRAME_NUMBERS; i++)
     if (!own->is_given[i] && shared->is_given[i]) {
@@ -179,7 +179,7 @@ static void merge_numbers(const frame_numbers *shared, frame_numbers *own) {
     own->model = shared->model ? shared->model : &models[0];
 }
 
-/* From half the angle across `length`; a camera that is wrong where that is no angle. */
+/* The focal length for half the angle across `length`; makes the camera invalid where that is no angle. */
 static double focal_of_angle(double angle_rad, double length) {
   return angle_rad > 0.0 && angle_rad < CONIC_PI ? 0.5 * length / conic_tan(0.5 * angle_rad) : 0.0;
 }
@@ -191,7 +191,7 @@ static void take_focal_lengths(const frame_numbers *n, conic_camera *camera) {
   camera->fy = n->is_given[FL_Y]      ? n->numbers[FL_Y]
                : n->is_given[ANGLE_Y] ? focal_of_angle(n->numbers[ANGLE_Y], camera->height)
                                       : camera->fx;
-  if (camera->kind == CONIC_CAMERA_EQUIRECTANGULAR) { /* where a focal length is the pixels of half a turn */
+  if (camera->kind == CONIC_CAMERA_EQUIRECTANGULAR) { /* its focal length is the pixels of half a turn */
     camera->fx /= CONIC_PI;
     camera->fy /= CONIC_PI;
   }
@@ -206,7 +206,7 @@ static void take_lens(const frame_numbers *n, conic_camera *camera) {
     memcpy(camera->distortion, radial, sizeof radial);
     return;
   }
-  /* all four are of the polynomial, which OPENCV's fourth is not */
+  /* all four are the polynomial's; OPENCV's fourth is not */
   camera->lens = radial[3] != 0.0 || camera->kind == CONIC_CAMERA_FISHEYE ? CONIC_LENS_THIN_PRISM : CONIC_LENS_OPENCV;
   const double distortion[6] = {radial[0], radial[1], n->numbers[P1], n->numbers[P2], radial[2], radial[3]};
   memcpy(camera->distortion, distortion, sizeof distortion);
@@ -223,7 +223,7 @@ static conic_status add_frame(conic_camera_list *list, const frame_numbers *shar
     status = conic_camera_list_size(list, frame->name, &camera.width, &camera.height);
   if (status != CONIC_OK)
     return status;
-  if (camera.width && camera.height) /* else it is told when it is added */
+  if (camera.width && camera.height) /* else the size is found when it is added */
     take_focal_lengths(&n, &camera);
   if (n.model->has_lens)
     take_lens(&n, &camera);

@@ -6,7 +6,7 @@
 
 enum { N_KNOTS = 9 };
 
-/* Lightness, and towards red and yellow; equally far from one to the next. */
+/* Lightness, and the axes towards red and yellow; knots are equally far apart. */
 static const double knots[CONIC_RAMP_CLASSES][N_KNOTS][3] = {
     [CONIC_RAMP_SEQUENTIAL] = {{0.320, 0.075, -0.130},
                                {0.397, 0.016, -0.149},
@@ -83,7 +83,7 @@ void conic_ramp_color(conic_ramp ramp, double t, float linear[3]) {
   linear_of_oklab(lab, linear);
 }
 
-/* Those of LAS 1.4, table 17, with colours as maps have them; sRGB codes. */
+/* The classes of LAS 1.4, table 17, with colours as on maps; sRGB codes. */
 static const struct {
   const char *name;
   uint8_t code[3];

@@ -1,5 +1,5 @@
 /* Colour ramps: a line through a few colours of OKLab (Ottosson, 2020), where equal steps look equally large; and a
- * palette of classes. Linear RGB from 0 to 1, by + − × ÷ alone. */
+ * palette of classes. Linear RGB from 0 to 1, computed by + − × ÷ alone. */
 #ifndef CONIC_COLOR_RAMP_H
 #define CONIC_COLOR_RAMP_H
 
@@ -8,20 +8,20 @@
 typedef enum conic_ramp {
   CONIC_RAMP_SEQUENTIAL = 0, /* dark violet to light yellow */
   CONIC_RAMP_GREY = 1,
-  CONIC_RAMP_HEAT = 2,      /* black to yellow, over red */
-  CONIC_RAMP_DIVERGING = 3, /* blue to red, over white */
-  CONIC_RAMP_TERRAIN = 4,   /* green to white, over brown */
-  CONIC_RAMP_CLASSES = 5,   /* no ramp: a colour a whole number, those of LAS (ASPRS) up to 22 */
+  CONIC_RAMP_HEAT = 2,      /* black to yellow through red */
+  CONIC_RAMP_DIVERGING = 3, /* blue to red through white */
+  CONIC_RAMP_TERRAIN = 4,   /* green to white through brown */
+  CONIC_RAMP_CLASSES = 5,   /* no ramp: a colour for each whole number, as in LAS (ASPRS) up to 22 */
   CONIC_N_RAMPS = 6
 } conic_ramp;
 
-/* At t from 0 to 1; what is outside has the nearer end's colour. Not for classes. */
+/* At t from 0 to 1; beyond, the nearer end's colour. Not for classes. */
 void conic_ramp_color(conic_ramp ramp, double t, float linear[3]);
 
-/* The colour of a class; from 23 on one of eight, by turns. */
+/* The colour of a class; from 23 on, eight colours in turn. */
 void conic_class_color(uint32_t number, float linear[3]);
 
-/* A colour for a number: bright, and unlike those of its neighbours. */
+/* A bright colour for a number, unlike its neighbours' colours. */
 void conic_number_color(uint32_t number, float linear[3]);
 
 /* "ground", "water" …; null from 23 on. */

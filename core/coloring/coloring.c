@@ -16,17 +16,17 @@
 
 static const char *const ramp_names[CONIC_N_RAMPS] = {"sequential", "grey", "heat", "diverging", "terrain", "classes"};
 
-/* What `by` says, other than "rgb". */
+/* What `by` says, if it is not "rgb". */
 typedef enum coloring_kind { BY_VALUE, BY_HEIGHT, BY_NORMAL } coloring_kind;
 
-/* The vertices of either set; arrays are those of the set. */
+/* The vertices of either set; the arrays belong to the set. */
 typedef struct vertices {
   size_t count;
   const double *origin;
   float *const *position;
   float **color, **scalar;
-  const conic_splats *splats; /* null: triangles' */
-  float *normal[3];           /* of triangles, when colours go by it */
+  const conic_splats *splats; /* null for triangles */
+  float *normal[3];           /* of triangles, if colours show normals */
 } vertices;
 
 typedef struct painting {
@@ -116,8 +116,8 @@ static void normal_at_vertex(const vertices *set, size_t i, double normal[3]) {
     conic_cross(u, v, normal);
 }
 
-/* Which side is the front of a scanned surface is a guess, the same for all of it: where more than half of the normals
- * point steeply down, it was the wrong one. */
+/* Which side of a scanned surface is the front is a guess, the same for all of it. If more than half of the normals
+ * point steeply down, the guess was wrong. */
 static double front_of(const painting *p, const vertices *set) {
   size_t n_down = 0;
   double normal[3];
@@ -128,7 +128,7 @@ static double front_of(const painting *p, const vertices *set) {
   return n_down > set->count / 2 ? -1.0 : 1.0;
 }
 
-/* From −1 … 1 to what a picture shows from black to white. */
+/* Maps −1 … 1 to what a picture shows from black to white. */
 static void paint_normal(double normal[3], double front, float linear[3]) {
   if (!conic_normalize(normal)) {
     paint_unknown(linear);
@@ -156,7 +156,7 @@ static void paint_vertices(const painting *p, const vertices *set) {
 
 /* --- what there is --- */
 
-/* All three or none. */
+/* All three components or none. */
 static conic_status need_colors(conic_context *context, const vertices *set) {
   float *color[3] = {NULL, NULL, NULL};
   if (set->color[0] || set->count == 0)
@@ -173,7 +173,7 @@ static conic_status need_colors(conic_context *context, const vertices *set) {
   return CONIC_OK;
 }
 
-/* Those of the vertices, whatever the corners have. */
+/* Takes the vertices' normals, not the corners'. */
 static conic_status need_normals(painting *p, const conic_triangles *triangles) {
   conic_triangles smooth = *triangles;
   if (p->kind != BY_NORMAL || triangles->count == 0)
@@ -207,7 +207,7 @@ static conic_status find_limits(const painting *p, double *minimum, double *maxi
   return CONIC_OK;
 }
 
-/* Of classes every one counts, however few points it has. */
+/* Every class counts, however few points it has. */
 static void list_classes(const painting *p) {
   conic_coloring *c = p->coloring;
   int is_first = 1;
@@ -240,7 +240,7 @@ static void name_coloring(painting *p, coloring_kind kind, const char *field, co
   c->is_root = kind == BY_VALUE && is_intensity;
 }
 
-/* Sets what the ends of the ramp mean. */
+/* Sets the values of the ramp's ends. */
 static conic_status scale_coloring(painting *p, const conic_coloring_options *options) {
   conic_coloring *c = p->coloring;
   if (p->kind == BY_NORMAL)
@@ -254,7 +254,7 @@ static conic_status scale_coloring(painting *p, const conic_coloring_options *op
   return options->has_range ? CONIC_OK : find_limits(p, &c->minimum, &c->maximum);
 }
 
-/* Intensity, else height, else nothing: what differs between points. */
+/* Takes the intensity, else the height, else nothing: the first that differs between points. */
 static conic_status choose_by_itself(painting *p, const conic_coloring_options *options) {
   conic_coloring *c = p->coloring;
   conic_status status = CONIC_OK;

@@ -14,8 +14,8 @@ enum { MARGIN = 5, TITLE = 12, BAR_WIDTH = 10, BAR_HEIGHT = 90, TICK = 3, ROW = 
 
 typedef struct legend_row {
   char text[40];
-  float color[3]; /* of a swatch; of a bar's tick none */
-  double at;      /* of a tick: from 0, below, to 1 */
+  float color[3]; /* of a swatch; unused for a bar's tick */
+  double at;      /* of a tick: 0 at the bottom to 1 */
 } legend_row;
 
 typedef struct legend {
@@ -28,7 +28,7 @@ typedef struct legend {
 
 typedef struct canvas {
   conic_image *image;
-  int x, y, unit; /* of the legend's corner in the picture, and the pixels of a unit */
+  int x, y, unit; /* x, y: the legend's corner in the picture; unit: pixels of a unit */
 } canvas;
 
 static const float ink[3] = {0.85f, 0.85f, 0.85f}, paper[3] = {0.012f, 0.012f, 0.014f};
@@ -41,7 +41,7 @@ static legend_row *add_legend_row(legend *l, const char *text) {
   return row;
 }
 
-/* Those that there are, as many as there is room for. */
+/* The classes that there are, as many as fit. */
 static void list_class_rows(legend *l) {
   char number[40];
   for (uint32_t i = 0; i < 256 && l->n_rows < MOST_ROWS; i++) {
@@ -62,7 +62,7 @@ static void list_axes(legend *l) {
   }
 }
 
-/* The least of 1, 2 and 5 times a power of ten of which no more than five fit into the extent. */
+/* The least of 1, 2 and 5 times a power of ten that fits no more than five times into the extent. */
 static double tick_step(double extent, int *n_decimals) {
   static const double steps[] = {1.0, 2.0, 5.0};
   double power = 1.0;
@@ -105,7 +105,7 @@ static int legend_text_width(const char *text) {
   return (int)strlen(text) * CONIC_GLYPH_STEP - 1;
 }
 
-/* How large it is, once its rows are known. */
+/* Finds its size, once its rows are known. */
 static void size_legend(legend *l) {
   int indent = l->has_bar ? BAR_WIDTH + TICK + 2 : SWATCH + 3, widest = legend_text_width(l->title);
   for (int i = 0; i < l->n_rows; i++)
@@ -130,7 +130,7 @@ static void lay_out_legend(const conic_coloring *coloring, legend *l) {
 
 /* --- drawing it --- */
 
-/* A rectangle from there on, in pixels of the picture. */
+/* Fills a rectangle, in pixels of the picture. */
 static void fill_rectangle(const conic_image *image, const int x[2], const int y[2], const float color[3],
                            float alpha) {
   float *rgba = image->planes[CONIC_PLANE_RGBA];
@@ -159,7 +159,7 @@ static void draw_text(const canvas *to, int x, int y, const char *text) {
   }
 }
 
-/* Each row of the picture has its own colour. */
+/* Each pixel row has its own colour. */
 static void draw_ramp_bar(const canvas *to, const conic_coloring *coloring) {
   int n = BAR_HEIGHT * to->unit, top = to->y + (MARGIN + TITLE) * to->unit;
   const int columns[2] = {to->x + MARGIN * to->unit, to->x + (MARGIN + BAR_WIDTH) * to->unit};

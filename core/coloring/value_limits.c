@@ -16,7 +16,7 @@ void conic_value_sample_add(conic_value_sample *sample, double value) {
     sample->stride = 1;
   if (sample->n_seen++ % sample->stride)
     return;
-  if (sample->n == CONIC_MOST_VALUES) { /* every other, from now on; this one is at an even place */
+  if (sample->n == CONIC_MOST_VALUES) { /* from now on only every other value is kept; this one is at an even place */
     for (size_t i = 0; i < CONIC_MOST_VALUES / 2; i++)
       sample->values[i] = sample->values[2 * i];
     sample->n /= 2;

@@ -1,11 +1,11 @@
-/* How points spread about a slot: their covariance, summed about the slot itself, where the numbers are small. */
+/* The spread of points about a slot: their covariance, summed about the slot itself, where the numbers are small. */
 #ifndef CONIC_COVARIANCE_H
 #define CONIC_COVARIANCE_H
 
 #include "core/estimate/neighbourhood.h"
 
 typedef struct conic_covariance {
-  double origin[3]; /* the slot's position; it adds nothing to the sums but to their number */
+  double origin[3]; /* the slot's position; it adds only to the sums' number */
   double count, sum[3], products[6];
 } conic_covariance;
 

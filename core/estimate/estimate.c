@@ -1,5 +1,5 @@
-/* From a model to splats: what came with good axes keeps them, vertices take theirs from their faces, and the rest from
- * its neighbours. All is computed beside the model, which changes only when nothing can fail any more. */
+/* From a model to splats. Points with good axes keep them, vertices get theirs from their faces, and the rest from the
+ * neighbours. Everything is computed beside the model, which changes only when nothing can fail any more. */
 #include "core/estimate/estimate.h"
 #include "core/base/options.h"
 #include "core/splats/columns.h"
@@ -40,7 +40,7 @@ static int axes_normal(float *const tangent_u[3], float *const tangent_v[3], siz
 }
 
 /* Axes that span no ellipse but are not zero, such as two parallel ones, are the file's own and kept: the renderer
- * draws what it can of them. */
+ * draws them as far as it can. */
 static int has_good_axes(const conic_splats *points, size_t point) {
   double unit[3];
   return points->tangent_u[0] && conic_unit_vector(points->tangent_u, point, unit) &&
@@ -52,7 +52,7 @@ static int has_bad_color(const conic_splats *points, size_t point) {
                                conic_is_finite(points->color[2][point]));
 }
 
-/* A colour that is none becomes what absence means: white. */
+/* An invalid colour becomes white, as a missing one is. */
 static void whiten_bad_colors(conic_splats *points) {
   for (size_t i = 0; i < points->count; i++)
     if (has_bad_color(points, i))
@@ -72,7 +72,7 @@ static void classify_points(void *data, size_t begin, size_t end) {
     estimate->states[i] = (uint8_t)classify_point(&estimate->model->points, i);
 }
 
-/* The normal that a point has before any is guessed: of its axes, else of the file. */
+/* The normal that a point has before any is guessed: its axes', else the file's. */
 static int known_normal(const conic_estimate *estimate, size_t point, double normal[3]) {
   const conic_splats *points = &estimate->model->points;
   int state = estimate->states[point];
@@ -110,7 +110,7 @@ static int mark_slots(const conic_estimate *estimate, conic_neighbourhood *neigh
   return is_any_guessed;
 }
 
-/* Neighbours of the wanted slots, and of their neighbours, whose spacings are asked for too. */
+/* Finds the neighbours of the wanted slots, and of their neighbours, whose spacings are needed, too. */
 static conic_status find_neighbours(conic_context *context, conic_neighbourhood *neighbourhood) {
   conic_status status = conic_neighbourhood_list(context, neighbourhood, CONIC_SLOT_WANTED, 0.1, 0.4);
   if (status != CONIC_OK)
@@ -162,7 +162,7 @@ static size_t count_states(const conic_estimate *estimate, conic_point_state sta
   return n;
 }
 
-/* Points whose file had axes, or else normals, but none that could be used. */
+/* Points whose file had axes, or normals, but no usable ones. */
 static size_t count_zero(const conic_estimate *estimate) {
   const conic_splats *points = &estimate->model->points;
   size_t n = 0;
@@ -194,14 +194,14 @@ static int has_new_axes(const void *cookie, uint32_t splat) {
   return ((const conic_estimate *)cookie)->states[splat] != CONIC_POINT_KEPT;
 }
 
-/* Lines are given in units of the axes: with others they mean nothing. Returns how many records were wrong. */
+/* Lines are in units of the axes, and mean nothing with other axes. Returns how many records were wrong. */
 static size_t drop_clips(const conic_estimate *estimate, conic_splats *points) {
   size_t n_wrong = conic_splats_repair_clips(points), n = points->n_clips;
   conic_clip_filter(points, has_new_axes, estimate);
   return n_wrong + n - points->n_clips;
 }
 
-/* Likewise which splats are dots, where any is one. */
+/* Says which splats are dots, where any is one. */
 static void hand_over_dots(conic_estimate *estimate, conic_model *model) {
   float *own = model->points.dot;
   for (size_t i = 0; own && estimate->dot && i < model->points.count; i++)
@@ -212,8 +212,8 @@ static void hand_over_dots(conic_estimate *estimate, conic_model *model) {
   }
 }
 
-/* Gives the model its axes. Cannot fail: a set with axes gets the new ones among its own, another one takes the arrays.
- */
+/* Gives the model its axes. Cannot fail: a set with axes gets the new ones among its own, a set without takes the
+ * arrays. */
 static void hand_over_axes(conic_estimate *estimate, conic_model *model) {
   for (int axis = 0; axis < 3; axis++)
     for (int i_tangent = 0; i_tangent < 2; i_tangent++) {
@@ -320,7 +320,7 @@ static int is_dot(const void *cookie, uint32_t splat) {
   return ((const float *)cookie)[splat] != 0.0f;
 }
 
-/* Points: their splats are made as ever, in a copy, and then sharpened; dots have no edges. */
+/* Points: their splats are estimated as usual, in a copy, and then sharpened; dots have no edges. */
 static conic_status estimate_sharp_points(conic_context *context, const conic_estimate_options *options, double cosine,
                                           conic_model *model, conic_repairs *repairs) {
   conic_model copy = {.kind = model->kind, .triangles = model->triangles, .n_triangles = model->n_triangles};
@@ -339,13 +339,13 @@ static conic_status estimate_sharp_points(conic_context *context, const conic_es
   return status;
 }
 
-/* A set, and what has been found in it. */
+/* A set, and the findings in it. */
 typedef struct sound_search {
   const conic_splats *splats;
   atomic_int is_unsound;
 } sound_search;
 
-/* Two floats at once, as the bits that they are: this is done for every picture of a caller's arrays. */
+/* Two floats at once, as bits: this runs for every picture of a caller's arrays. */
 static uint64_t two_floats(const float *column, size_t i) {
   uint64_t bits;
   memcpy(&bits, column + i, sizeof bits);
@@ -357,7 +357,7 @@ static uint64_t two_not_finite(uint64_t two) {
   return two + UINT64_C(0x0080000000800000);
 }
 
-/* Likewise whether it is zero. */
+/* The uppermost bit of each half says whether that float is zero. */
 static uint64_t two_zeros(uint64_t two) {
   return ~(two + UINT64_C(0x7FFFFFFF7FFFFFFF));
 }
@@ -378,7 +378,7 @@ static void look_for_unsound(void *data, size_t begin, size_t end) {
   float *const *colors = s->color[0] ? s->color : s->position;
   uint64_t found = 0;
   for (size_t at = begin; at < end; at += 2) {
-    size_t i = at + 1 < end ? at : end - 2; /* of an odd number the last but one is looked at twice */
+    size_t i = at + 1 < end ? at : end - 2; /* with an odd number, the last but one is checked twice */
     found |= two_unsound_axes(s->tangent_u, i) | two_unsound_axes(s->tangent_v, i) |
              two_unsound_points(s->position, i) | two_unsound_points(colors, i);
   }

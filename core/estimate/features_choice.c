@@ -1,4 +1,4 @@
-/* Which clip lines a splat gets, if several creases are near it. */
+/* Which clip lines a splat gets, where several creases are near. */
 #include <math.h>
 #include <string.h>
 
@@ -6,7 +6,7 @@
 
 enum { MAX_CANDIDATES = 16 };
 
-/* Lines whose directions are less than 15° apart are taken for one crease. */
+/* Lines whose directions differ by less than 15° are one crease. */
 #define SAME_DIRECTION 0.966
 
 static double length_of_line(const float line[3]) {
@@ -48,7 +48,7 @@ static int keeps_all(const conic_clip_choice *choice, const conic_clip *clip, co
   return (double)n_lost <= choice->lost_share * (double)n_places;
 }
 
-/* Whether places are kept that either of two lines keeps; not where the lines face each other and keep all there is. */
+/* Whether every place is kept by one of two lines; not where the lines face each other and keep everything. */
 static int keeps_either(const conic_clip_choice *choice, const conic_clip *clip, const double (*places)[2],
                         size_t n_places, double slack) {
   const float *a = clip->lines[0], *b = clip->lines[1];

@@ -1,6 +1,6 @@
-/* Creases among points. A normal that was found from all neighbours is blunt near a crease, where they lie on both
- * sides. So each place is fitted a small plane of its own, and a point near a crease takes over the flattest plane of a
- * neighbour that it lies in too; where the planes of neighbours then meet sharply, both sides are clipped. */
+/* Creases among points. A normal from all neighbours is blunt near a crease, where they lie on both sides. So a small
+ * plane is fitted at each place, and a point near a crease takes over the flattest plane of a neighbour in which it
+ * lies, too. Where the planes of neighbours then meet sharply, both sides are clipped. */
 #include <math.h>
 #include <string.h>
 
@@ -12,24 +12,24 @@
 #include "core/splats/clip.h"
 #include "core/splats/ellipse.h"
 
-/* Neighbours that a small plane is fitted to, and of which the spacing is told. */
+/* A small plane is fitted to so many neighbours, which also give the spacing. */
 enum { FEW = 9 };
-/* A neighbour's plane is flatter than one's own where it is rough by less than half of it and this. */
+/* A neighbour's plane is flatter than the own one if its roughness is below half of that one's, plus this. */
 #define FLATTER 0.01
-/* A point lies in a plane that it is nearer to than this many spacings, or than this many times the plane's own
+/* A point lies in a plane if it is nearer to it than this many spacings, or than this many times the plane's own
  * roughness. */
 #define IN_PLANE 0.15
 #define IN_ROUGH 3.0
-/* Splats nearer to a crease than this many spacings have to cover all up to it. */
+/* Splats nearer to a crease than this many spacings must cover everything up to it. */
 #define BORDER 2.0
 /* Lines within this many times the outline count. */
 #define REACH 2.0
 
-/* Of planes that are given. */
+/* The roughness of planes that are given. */
 #define SIDE_ROUGHNESS 0.1f
 #define SAME_SIDE_COSINE 0.8
 
-/* Then this share of the neighbours in a plane may be cut off: noise has moved them over the edge. */
+/* For given planes, this share of the neighbours in a plane may be cut off: noise has moved them over the edge. */
 #define LOST_SHARE 0.2
 
 /* A slot's plane: through its position. */
@@ -44,9 +44,9 @@ typedef struct feature_search {
   const conic_splats *splats;
   const conic_neighbourhood *neighbourhood;
   double cosine, cutoff;
-  int are_sides; /* the splats' normals are those of the sides that they lie on */
+  int are_sides; /* the splats' normals are those of their sides */
   slot_plane *small, *final;
-  conic_clip *clips; /* by slot, those of its point; n_lines 0: none */
+  conic_clip *clips; /* by slot, of its point; n_lines 0: none */
 } feature_search;
 
 static void normal_of(const slot_plane *plane, double normal[3]) {
@@ -66,7 +66,8 @@ static size_t n_few(const feature_search *s) {
   return s->neighbourhood->n_neighbours < FEW ? s->neighbourhood->n_neighbours : FEW;
 }
 
-/* The plane of the nearest few: the direction in which they and the slot spread least about their mean. */
+/* The plane of the nearest few neighbours: across the direction in which they and the slot spread least about their
+ * mean. */
 static void fit_small(const feature_search *s, size_t slot, slot_plane *plane) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, slot);
   size_t n = n_few(s);
@@ -114,7 +115,7 @@ static int is_in_plane(const slot_plane *plane, const double d[3]) {
   return height_over(plane, d) <= (own > rough ? own : rough);
 }
 
-/* How rough the splat's own plane is, among all the neighbours. */
+/* The roughness of the splat's own plane among all the neighbours. */
 static double wide_roughness(const feature_search *s, size_t slot, const double normal[3]) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, slot);
   double across = 0.0, all = 0.0;
@@ -127,7 +128,7 @@ static double wide_roughness(const feature_search *s, size_t slot, const double 
   return all > 0.0 ? sqrt(across / all) : 0.0;
 }
 
-/* The plane across the mean of the normals of those neighbours that are on the slot's side, by their own. */
+/* The plane across the mean normal of the neighbours whose normals put them on the slot's side. */
 static void average_side(const feature_search *s, size_t slot, slot_plane *plane) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, slot);
   const float *own = s->neighbourhood->normals[slot];
@@ -144,11 +145,12 @@ static void average_side(const feature_search *s, size_t slot, slot_plane *plane
   plane->roughness = SIDE_ROUGHNESS;
 }
 
-/* The plane that a slot's splat is to lie in: that of its axes, where it is flat; else the flattest about. */
+/* The plane in which a slot's splat will lie: that of its axes, where it is flat; else the flattest near it. */
 static void choose_plane(const feature_search *s, size_t slot, slot_plane *plane) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, slot);
   const slot_plane *flattest = &s->small[slot];
-  const float *outward = s->neighbourhood->normals[slot]; /* where it is flat, the splat's own normal is sure */
+  const float *outward = s->neighbourhood->normals[slot]; /* where the surface is flat, the splat's own normal is
+                                                             reliable */
   double own[3], best[3], least = (double)flattest->roughness;
   *plane = s->small[slot];
   for (int axis = 0; axis < 3; axis++)
@@ -190,11 +192,11 @@ static void choose_planes(void *data, size_t begin, size_t end) {
 /* A slot's splat in hand. */
 typedef struct slot_splat {
   size_t slot, point;
-  double normal[3], u[3], v[3]; /* u and v: of length 1 */
+  double normal[3], u[3], v[3]; /* u and v are unit */
   double spacing, radius;       /* of the outline */
-  size_t n_places;              /* the neighbours in the same plane, half way to them */
+  size_t n_places;              /* half way to the neighbours in the same plane */
   double places[CONIC_MAX_NEIGHBOURS][2];
-  double middle[2]; /* of these: says which side is the splat's own, if it lies on a crease */
+  double middle[2]; /* of the places: tells the splat's own side if it lies on a crease */
 } slot_splat;
 
 static double axis_length(float *const axes[3], size_t i) {
@@ -214,8 +216,7 @@ static slot_splat place_of_slot(const feature_search *s, size_t slot) {
   return p;
 }
 
-/* Where the neighbour's plane meets the slot's: the line keeps the slot's own side, on which its like are. In units of
- * the unit axes. */
+/* The line where the neighbour's plane meets the slot's; it keeps the slot's own side. In units of the unit axes. */
 static int meet(const feature_search *s, const slot_splat *p, size_t mate, double line[3]) {
   double normal[3], d[3];
   normal_of(&s->final[mate], normal);
@@ -231,13 +232,13 @@ static int meet(const feature_search *s, const slot_splat *p, size_t mate, doubl
   double length = sqrt(line[0] * line[0] + line[1] * line[1]);
   for (int i = 0; i < 3; i++)
     line[i] /= length;
-  /* What the planes may be off by, both sides overlap by. */
+  /* Both sides overlap by as much as the planes may be off. */
   line[2] += 0.5 * p->spacing * ((double)s->final[mate].roughness + (double)s->final[p->slot].roughness);
   return length > 0.0;
 }
 
 /* Notes the creases with the neighbours' planes; returns the distance of the nearest, or infinity. Only flat planes
- * count: what is still blunt says nothing. */
+ * count: blunt ones say nothing. */
 static double find_lines(const feature_search *s, const slot_splat *p, double reach, conic_clip_choice *choice) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, p->slot);
   double nearest = HUGE_VAL;
@@ -271,7 +272,7 @@ static void find_slot_places(const feature_search *s, slot_splat *p) {
   }
 }
 
-/* Writes the splat anew as a circle in its plane, and its lines in units of that. */
+/* Makes the splat a circle in its plane, with its lines in units of the circle's axes. */
 static void write_circle(const feature_search *s, const slot_splat *p, double radius) {
   double sigma = radius / s->cutoff;
   for (int axis = 0; axis < 3; axis++) {
@@ -299,7 +300,7 @@ static void clip_slot(const feature_search *s, size_t slot) {
   conic_clip_choice choice = {.n = 0, .lost_share = s->are_sides ? LOST_SHARE : 0.0};
   conic_clip *clip = &s->clips[slot];
   *clip = (conic_clip){.splat = (uint32_t)p.point};
-  if (!(p.radius > 0.0) || !(p.radius * 0.0 == 0.0)) /* no splat */
+  if (!(p.radius > 0.0) || !(p.radius * 0.0 == 0.0)) /* not a splat */
     return;
   double reach = REACH * p.radius, border = BORDER * p.spacing;
   find_slot_places(s, &p);
@@ -312,7 +313,7 @@ static void clip_slot(const feature_search *s, size_t slot) {
     double least = sqrt(nearest * nearest + 1.5 * p.spacing * p.spacing);
     radius = radius > least ? radius : least;
   }
-  int is_near_crease = nearest < HUGE_VAL; /* else it was turned by noise or a slight bend, and stays as it was */
+  int is_near_crease = nearest < HUGE_VAL; /* else noise or a slight bend turned it, and it stays as it was */
   if ((s->final[slot].is_turned && is_near_crease) || radius > p.radius)
     write_circle(s, &p, radius);
   scale_lines(s, &p, clip);
@@ -324,7 +325,7 @@ static void clip_slots(void *data, size_t begin, size_t end) {
     clip_slot(s, slot);
 }
 
-/* The normals of the splats, for the slots that stand for them. */
+/* Sets the slots' normals to those of their splats. */
 static void set_normals(const conic_splats *splats, conic_neighbourhood *neighbourhood) {
   for (size_t slot = 0; slot < neighbourhood->tree.n_slots; slot++) {
     size_t i = neighbourhood->tree.point_of_slot[slot];
@@ -341,7 +342,7 @@ static void set_normals(const conic_splats *splats, conic_neighbourhood *neighbo
   }
 }
 
-/* A point that coincides with an earlier one becomes like it where that has become sharp. Returns its slot, or
+/* A point at the place of an earlier one becomes like that one where it has become sharp. Returns its slot, or
  * CONIC_NO_SLOT where it has no clip lines. */
 static size_t follow_slot(const feature_search *s, size_t point) {
   const conic_neighbours *tree = &s->neighbourhood->tree;
@@ -355,7 +356,7 @@ static size_t follow_slot(const feature_search *s, size_t point) {
   return s->clips[slot].n_lines ? slot : CONIC_NO_SLOT;
 }
 
-/* Slots are in the tree's order, records in that of the splats. */
+/* Slots have the tree's order, records the splats'. */
 static conic_status hand_over_slots(conic_context *context, const feature_search *s, conic_splats *splats) {
   size_t n = 0;
   for (size_t i = 0; i < splats->count; i++)
@@ -391,7 +392,7 @@ static conic_status run_passes(conic_context *context, feature_search *s, conic_
     status = conic_neighbourhood_list(context, neighbourhood, CONIC_SLOT_WANTED, 0.0, 0.6);
   if (status == CONIC_OK)
     status = conic_slots_for(context, n, fit_slots, s, 0.6, 0.8);
-  /* Twice, so that a clean plane also reaches the tip where three faces meet, from beyond the nearest neighbours. */
+  /* Twice, so that a flat plane also reaches a tip where three faces meet, from beyond the nearest neighbours. */
   for (int pass = 0; status == CONIC_OK && pass < 2; pass++) {
     slot_plane *chosen = s->final;
     s->final = pass ? s->small : s->final;

@@ -16,7 +16,8 @@ static conic_status check_triangles(conic_context *context, const conic_model *m
   return CONIC_OK;
 }
 
-/* A counting sort of the triangles' corners by vertex. starts[i + 1] is first where the next one of vertex i goes. */
+/* A counting sort of the triangles' corners by vertex. While it runs, starts[i + 1] is where the next corner of vertex
+ * i goes. */
 static void sort_corners(const conic_model *model, conic_incidence *incidence) {
   size_t *starts = incidence->starts;
   for (size_t i = 0; i < model->n_triangles; i++)

@@ -1,4 +1,4 @@
-/* Which triangles a mesh's vertices are in. */
+/* Which triangles the vertices of a mesh belong to. */
 #ifndef CONIC_INCIDENCE_H
 #define CONIC_INCIDENCE_H
 
@@ -10,8 +10,8 @@ typedef struct conic_incidence {
   uint32_t *triangles;
 } conic_incidence;
 
-/* On success the caller releases it; on failure it is empty. Errors: ARGUMENT (more than `most` triangles, an index out
- * of range), MEMORY. */
+/* Lists the triangles by vertex. On success the caller releases it; on failure it is empty. Errors: ARGUMENT (more than
+ * `most` triangles, an index out of range), MEMORY. */
 conic_status conic_incidence_create(conic_context *context, const conic_model *model, size_t most,
                                     conic_incidence *incidence);
 void conic_incidence_release(conic_context *context, conic_incidence *incidence);

@@ -1,6 +1,6 @@
 /* Keeps a mesh's splats at the mesh. An ellipse in a vertex's tangent plane leaves the surface where that bends or
- * ends; where it does so by more than anybody would see, the vertex becomes one splat for each of its triangles, in the
- * triangle's plane and clipped at the two edges that meet there. */
+ * ends. Where this could be seen, the vertex becomes one splat for each of its triangles, in the triangle's plane and
+ * clipped at the two edges that meet there. */
 #include <math.h>
 
 #include "core/base/memory.h"
@@ -11,20 +11,22 @@
 #include "core/splats/ellipse.h"
 #include "core/splats/splats_gather.h"
 
-/* What a splat may stand out, as a part of the mesh's diagonal: not a pixel where a picture of 1024 shows all of it. */
+/* How far a splat may stand out, as a part of the mesh's diagonal: less than a pixel where a picture of 1024 pixels
+ * shows the whole mesh. */
 #define TOLERANCE 6e-4
 
-/* The outline of a triangle's splat about one of its corners, in units of the side of an equilateral triangle, as which
- * the ellipse sees any. From 0.577 on the three cover all of it, up to 0.866 none of them crosses the opposite side. */
+/* The outline of a triangle's splat about one of its corners. The ellipse maps the triangle to an equilateral one; the
+ * unit is a side of that. From 0.577 on the three outlines cover the triangle; up to 0.866 none crosses the opposite
+ * side. */
 #define CORNER_OUTLINE 0.65
 
-/* The least ratio of such an ellipse's axes: slivers are no worse than that for a float. */
+/* The least ratio of such an ellipse's axes: floats hold slivers no better. */
 #define LEAST_RATIO 1e-5
 
-/* A vertex of more triangles is not looked at in detail: all who stand around it would look at all of them. */
+/* A vertex of more triangles is not checked in detail: each vertex around it would check all of them. */
 enum { MOST_TRIANGLES = 64 };
 
-/* A splat that stays as it is. */
+/* Marks a splat that stays as it is. */
 #define NO_TRIANGLE UINT32_MAX
 
 typedef struct mesh_bounding {
@@ -32,8 +34,8 @@ typedef struct mesh_bounding {
   double cutoff, cosine, tolerance2;
   conic_incidence ring;
   uint8_t *is_off;               /* of each vertex */
-  size_t n_splats;               /* afterwards, */
-  uint32_t *sources, *triangles; /* each with its vertex, and the triangle that it is for */
+  size_t n_splats;               /* after the replacement, … */
+  uint32_t *sources, *triangles; /* … each with its vertex and its triangle */
 } mesh_bounding;
 
 static void read_place(const conic_splats *points, size_t i, double at[3]) {
@@ -41,7 +43,7 @@ static void read_place(const conic_splats *points, size_t i, double at[3]) {
     at[axis] = (double)points->position[axis][i];
 }
 
-/* The vertices of a triangle from `vertex` on, and what it spans; returns 0 where that is nothing. */
+/* Reads the corners of a triangle from `vertex` on, and its normal; returns 0 for a triangle without area. */
 static int read_triangle(const conic_model *model, const uint32_t triangle[3], size_t vertex, double corners[3][3],
                          double normal[3]) {
   double edges[2][3];
@@ -54,11 +56,11 @@ static int read_triangle(const conic_model *model, const uint32_t triangle[3], s
   return conic_normalize(normal);
 }
 
-/* --- what is off --- */
+/* --- splats off the mesh --- */
 
-/* The triangles around a vertex; those without an area are near nothing. */
+/* The triangles around a vertex; those without an area are left out. */
 typedef struct triangle_fan {
-  size_t n, last; /* the one that was near the last place */
+  size_t n, last; /* last: the one that was near the last place */
   double corners[MOST_TRIANGLES][3][3];
 } triangle_fan;
 
@@ -81,7 +83,7 @@ static int is_near_fan(const mesh_bounding *in, triangle_fan *fan, const double 
   return 0;
 }
 
-/* Around the vertex, which `fan` has, then around its neighbours. */
+/* Looks around the vertex, whose triangles are in `fan`, then around its neighbours. */
 static int is_near_mesh(const mesh_bounding *in, size_t vertex, triangle_fan *fan, const double at[3]) {
   triangle_fan next;
   if (is_near_fan(in, fan, at))
@@ -98,7 +100,7 @@ static int is_near_mesh(const mesh_bounding *in, size_t vertex, triangle_fan *fa
   return 0;
 }
 
-/* Whether sixteen places on the outline are all at the mesh; its middle is. */
+/* Whether sixteen places on the outline are all at the mesh, as its middle is. */
 static int is_at_mesh(const mesh_bounding *in, size_t vertex) {
   static const double circle[4][2] = {{1.0, 0.0},
                                       {0.92387953251128674, 0.38268343236508977},
@@ -150,7 +152,7 @@ static void find_off(void *data, size_t begin, size_t end) {
   }
 }
 
-/* --- what takes its place --- */
+/* --- their replacement --- */
 
 /* The line through the centre along `edge`, keeping the side of `inside`, in units of the axes. */
 static void lay_line(const double u[3], const double v[3], const double edge[3], const double inside[3],
@@ -164,7 +166,7 @@ static void lay_line(const double u[3], const double v[3], const double edge[3],
   line[2] = 0.0f;
 }
 
-/* Splat `i`, which stands at the first corner, becomes the triangle's: its axes, its lines, its normal. */
+/* Splat `i`, at the triangle's first corner, gets the axes, lines and normal for the triangle. */
 static void lay_corner(const mesh_bounding *in, size_t i, conic_splats *points, conic_clip *clip) {
   static const double root_third = 0.57735026918962576;
   double corners[3][3], edges[2][3], normal[3], u[3], v[3], covariance[3] = {0.0, 0.0, 0.0};
@@ -195,7 +197,7 @@ static void lay_corner(const mesh_bounding *in, size_t i, conic_splats *points, 
   lay_line(u, v, edges[1], edges[0], clip->lines[1]);
 }
 
-/* The first of an off vertex's triangles takes its place, the others come after all vertices. */
+/* An off vertex's first triangle takes its place; the others come after all vertices. */
 static void list_fan_splats(mesh_bounding *in) {
   const conic_model *model = in->model;
   double corners[3][3], normal[3];
@@ -233,7 +235,7 @@ static conic_status make_fan_splats(conic_context *context, const mesh_bounding 
   return CONIC_OK;
 }
 
-/* Returns how many vertices of no triangle there are; they get no splat where they are leftovers. */
+/* Returns how many vertices have no triangle; if they are leftovers they get no splat. */
 static size_t drop_leftovers(const mesh_bounding *in, conic_splats *splats) {
   const size_t *starts = in->ring.starts;
   size_t n = in->model->points.count, n_loose = 0;

@@ -1,6 +1,6 @@
-/* Ellipses of a mesh's vertices. The corners of a vertex's share of a triangle are the vertex, the middles of its two
- * edges and the triangle's middle; an ellipse around these for all the triangles of a vertex covers its share of the
- * surface, and all ellipses together cover all of it. */
+/* Ellipses of a mesh's vertices. A vertex's share of a triangle has four corners: the vertex, the middles of its two
+ * edges and the triangle's middle. An ellipse around these corners for all triangles of a vertex covers its share of
+ * the surface; all ellipses together cover the whole surface. */
 #include <math.h>
 #include <string.h>
 
@@ -10,20 +10,20 @@
 #include "core/estimate/incidence.h"
 #include "core/splats/ellipse.h"
 
-/* The cosine from which on a face is steep in a vertex's tangent plane: 60°. */
+/* With a lesser cosine a face is steep in a vertex's tangent plane: 60°. */
 #define STEEP 0.5
 
 typedef struct spreading {
   conic_estimate *estimate;
   conic_incidence ring;
-  double (*normals)[3]; /* of each vertex: unit, or not finite where it has no face */
+  double (*normals)[3]; /* of each vertex: unit, or not finite for a vertex without a face */
 } spreading;
 
 /* A triangle as seen from one of its vertices. */
 typedef struct vertex_triangle {
-  size_t vertices[3]; /* this one, the next, the one after it */
+  size_t vertices[3]; /* the vertex, the next one, the one after */
   double edges[2][3]; /* to the next vertex and to the one after it */
-  double cross[3];    /* of the edges: along the normal, twice the area long */
+  double cross[3];    /* of the edges: along the normal, with the length of twice the area */
   double cross2;
 } vertex_triangle;
 
@@ -41,8 +41,8 @@ static int view_corner(const conic_model *model, const uint32_t triangle[3], siz
   return c->cross2 > 0.0 && c->cross2 * 0.0 == 0.0;
 }
 
-/* The faces' normals, each weighted by sine over the product of the edges' lengths: exact on a sphere (Max 1999), and
- * no angle is needed. */
+/* The vertex's normal from its faces', each weighted by sine over the product of the edges' lengths: exact on a sphere
+ * (Max 1999), without any angle. */
 static int normal_of_vertex(const spreading *in, size_t vertex, double normal[3]) {
   const conic_model *model = in->estimate->model;
   double sum[3] = {0.0, 0.0, 0.0};
@@ -59,8 +59,8 @@ static int normal_of_vertex(const spreading *in, size_t vertex, double normal[3]
   return length > 0.0 && length * 0.0 == 0.0;
 }
 
-/* Where the tip of `d` comes to lie in the tangent plane (u, v). Along the face's normal, so that what is seen straight
- * on the face is covered; from a face steeper than 60° as if it had 60°; or else straight down. */
+/* Where the tip of `d` goes in the tangent plane (u, v). It goes along the face's normal, so that everything seen
+ * straight on the face is covered; from a face steeper than 60° as if it had 60°; or else straight down. */
 static void meet_plane(const vertex_triangle *c, const double d[3], const double normal[3], const double u[3],
                        const double v[3], int is_straight, double met[2]) {
   double length = sqrt(c->cross2), cosine = conic_dot(c->cross, normal) / length, way = 0.0;
@@ -78,7 +78,7 @@ static int is_steep(const spreading *in, const vertex_triangle *c, int i) {
 enum { MAX_SUPPORT = 5 };
 
 /* What the vertex's ellipse must cover for this triangle, in its tangent plane. Where the triangle is steep for a
- * vertex (the tip of a horn), the share of that vertex goes to the others, and its own ellipse only closes the end. */
+ * vertex (the tip of a horn), the others take over its share, and its own ellipse only closes the end. */
 static int view_support(const spreading *in, const vertex_triangle *c, const double u[3], const double v[3],
                         double support[MAX_SUPPORT][2]) {
   const double *normal = in->normals[c->vertices[0]];
@@ -126,7 +126,7 @@ static void spread_vertex(const spreading *in, size_t vertex) {
       }
     }
   /* For blending an outline grows less where the surface is sharp and the ellipse stands out from it: no farther than
-   * it may; and to twice what it must cover at most: on a fan of slivers it would grow without end. */
+   * allowed, and at most to twice the radius that it must cover; on a fan of slivers it would grow without end. */
   double steepness = sqrt(1.0 - flatness * flatness), most = 2.0 * sqrt(greatest2);
   most = most * steepness > in->estimate->tolerance ? in->estimate->tolerance / steepness : most;
   conic_ellipse_overlap(&ellipse, area, CONIC_OUTLINE_COVER, CONIC_OUTLINE_BLEND * flatness, most);
@@ -145,7 +145,7 @@ static void spread_vertices(void *data, size_t begin, size_t end) {
       spread_vertex(in, vertex);
 }
 
-/* The normals of all vertices with a face: of the file where it has one, else of the faces. */
+/* The normals of all vertices with a face: the file's where it has one, else the faces'. */
 static void find_normals(void *data, size_t begin, size_t end) {
   const spreading *in = data;
   float *const *given = in->estimate->model->points.normal;

@@ -5,7 +5,7 @@
 
 #include "core/base/memory.h"
 
-/* Slots that one call of a task does, and calls between two reports of progress. */
+/* Slots in one call of a task, and calls between two reports of progress. */
 enum { CHUNK = 1024, CHUNKS_A_REPORT = 64 };
 
 typedef struct slots_work {

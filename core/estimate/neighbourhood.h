@@ -1,4 +1,4 @@
-/* A set's points with their neighbours and normals, slot by slot: what ellipses are estimated from. */
+/* A set's points with their neighbours and normals, slot by slot, from which ellipses are estimated. */
 #ifndef CONIC_NEIGHBOURHOOD_H
 #define CONIC_NEIGHBOURHOOD_H
 
@@ -9,25 +9,25 @@
 
 enum { CONIC_MAX_NEIGHBOURS = 64 };
 
-/* What is asked of a slot, as bits. */
+/* Flags of a slot, as bits. */
 enum {
-  CONIC_SLOT_WANTED = 1,     /* its ellipse is to be estimated */
+  CONIC_SLOT_WANTED = 1,     /* its ellipse will be estimated */
   CONIC_SLOT_LISTED = 2,     /* its neighbours are known */
   CONIC_SLOT_GUESSED = 4,    /* its normal comes from the neighbours' positions */
-  CONIC_SLOT_NEAR = 8,       /* a neighbour of one that is wanted */
-  CONIC_SLOT_SCATTERED = 16, /* there is no surface about it */
+  CONIC_SLOT_NEAR = 8,       /* a neighbour of a WANTED slot */
+  CONIC_SLOT_SCATTERED = 16, /* no surface is near it */
 };
 
 typedef struct conic_neighbourhood {
   conic_neighbours tree;
-  size_t n_neighbours;  /* of each slot: those asked for, or all others where there are fewer */
+  size_t n_neighbours;  /* of each slot: the requested number, or all others where there are fewer */
   uint32_t *neighbours; /* of slot i from [i · n_neighbours] on, nearest first; valid where LISTED */
   uint8_t *flags;       /* by slot */
   float (*normals)[3];  /* by slot: unit; zero where not known */
 } conic_neighbourhood;
 
-/* Builds the tree, with room for the rest; flags and normals are zero. On success the caller owns it; on failure it is
- * empty. Errors: ARGUMENT, MEMORY. */
+/* Builds the tree, with room for the rest; flags and normals are zero. On success the caller releases it; on failure it
+ * is empty. Errors: ARGUMENT, MEMORY. */
 conic_status conic_neighbourhood_create(conic_context *context, const float *const positions[3], size_t count,
                                         size_t n_neighbours, conic_neighbourhood *neighbourhood);
 void conic_neighbourhood_release(conic_context *context, conic_neighbourhood *neighbourhood);
@@ -47,7 +47,7 @@ typedef void conic_slots_task(void *data, size_t begin, size_t end);
 conic_status conic_slots_for(conic_context *context, size_t n_slots, conic_slots_task *task, void *data, double from,
                              double to);
 
-/* Likewise what takes long: a team shares it, which makes for each slot the values of n columns
+/* conic_slots_for for long work, which a team shares: the task makes for each slot the values of n columns
  * (core/base/team_runs.h), and changes nothing else. Errors: CANCELLED, MEMORY. */
 conic_status conic_slots_share(conic_context *context, size_t n_slots, conic_slots_task *task, void *data, double from,
                                double to, const conic_team_column *columns, size_t n);

@@ -4,8 +4,8 @@
 
 enum { MAX_DEPTH = 34 };
 
-/* Two doubles at a time: one of each of two boxes that lie side by side. What is compared cannot be foreseen, so
- * nothing here branches. */
+/* Two doubles at a time, one for each of two neighbouring boxes. Comparisons cannot be predicted, so nothing here
+ * branches. */
 typedef double box_pair __attribute__((vector_size(16)));
 typedef int64_t box_pair_mask __attribute__((vector_size(16)));
 
@@ -35,8 +35,8 @@ static int lies_before(const conic_neighbours *tree, size_t a, size_t b) {
   return 0;
 }
 
-/* Slots that may be among the nearest are put together unsorted. Of half as many again as are wanted, and some more,
- * only those are kept that are. */
+/* Candidates for the nearest slots are collected unsorted. When there are half as many again as wanted, and some more,
+ * only the nearest are kept. */
 enum {
   MOST_BESIDE = CONIC_MOST_NEAREST / 2 + 4,
   MOST_CANDIDATES = CONIC_MOST_NEAREST + MOST_BESIDE + CONIC_LEAF_SLOTS,
@@ -48,12 +48,13 @@ typedef struct neighbour_search {
   double query[3];
   uint32_t except;
   size_t k, n;   /* candidates */
-  double limit2; /* what is farther is not wanted: the limit, later the distance of the last of those that were kept */
+  double limit2; /* farther slots are not wanted: first the caller's limit, later the distance of the last slot that was
+                    kept */
   double distances2[MOST_CANDIDATES];
   uint32_t slots[MOST_CANDIDATES];
 } neighbour_search;
 
-/* The squared distances as floats, whole blocks of them, and how many others each is above. */
+/* The squared distances as floats, in whole blocks, and how many others each exceeds. */
 typedef float key_four __attribute__((vector_size(16)));
 typedef int32_t place_four __attribute__((vector_size(16)));
 typedef struct candidate_order {
@@ -61,7 +62,7 @@ typedef struct candidate_order {
   int32_t places[MOST_CANDIDATES + BLOCK_KEYS];
 } candidate_order;
 
-/* Each is compared with each: that is quicker than to sort so few, whose comparisons cannot be foreseen. */
+/* Compares each with each: for so few, that is quicker than sorting with its unpredictable comparisons. */
 static void rank_block(candidate_order *order, size_t begin, size_t n) {
   key_four keys[BLOCK_KEYS / 4];
   place_four places[BLOCK_KEYS / 4] = {{0}};
@@ -77,14 +78,15 @@ static int is_candidate_nearer(const neighbour_search *s, size_t a, size_t b) {
          (s->distances2[a] == s->distances2[b] && lies_before(s->tree, s->slots[a], s->slots[b]));
 }
 
-/* Lists the candidates, nearest first. Those with the same key share a place, from which on they are put in order. */
+/* Lists the candidates, nearest first. Candidates with the same key share a place, from which on they are put in
+ * order. */
 static void sort_candidates(const neighbour_search *s, uint8_t sorted[MOST_CANDIDATES]) {
   candidate_order order;
   uint8_t n_at[MOST_CANDIDATES] = {0};
   for (size_t i = 0; i < s->n; i++)
     order.keys[i] = (float)s->distances2[i];
   for (size_t i = s->n; i % BLOCK_KEYS != 0; i++)
-    order.keys[i] = 0.0f; /* some number */
+    order.keys[i] = 0.0f; /* any number */
   for (size_t begin = 0; begin < s->n; begin += BLOCK_KEYS)
     rank_block(&order, begin, s->n);
   for (size_t i = 0; i < s->n; i++) {
@@ -95,7 +97,7 @@ static void sort_candidates(const neighbour_search *s, uint8_t sorted[MOST_CANDI
   }
 }
 
-/* Writes the k nearest candidates, or all, nearest first. Returns how many. */
+/* Writes the k nearest candidates, or all if there are fewer, nearest first. Returns how many. */
 static size_t take_candidates(const neighbour_search *s, uint32_t *slots, double *distances2) {
   uint8_t sorted[MOST_CANDIDATES];
   size_t n = s->n < s->k ? s->n : s->k;
@@ -107,7 +109,7 @@ static size_t take_candidates(const neighbour_search *s, uint32_t *slots, double
   return n;
 }
 
-/* Keeps the k nearest, of more than that. */
+/* Keeps the k nearest of more candidates. */
 static void cut_candidates(neighbour_search *s) {
   double distances2[CONIC_MOST_NEAREST];
   uint32_t slots[CONIC_MOST_NEAREST];

@@ -1,8 +1,8 @@
-/* Who is near whom: a kd-tree over a set's positions, and exact nearest neighbours.
+/* Nearest neighbours: a kd-tree over a set's positions, with exact answers.
  *
- * The tree keeps the points in its own order, by *slots*: what is near in space is near in memory, so that
- * whoever works slot by slot works in the cache. Coincident points are one slot, which stands for the first of them;
- * points that are not finite have none. The order and every answer depend on the positions and indices only. */
+ * The tree keeps the points in its own order, by *slots*: slots near in space are near in memory, so that work slot by
+ * slot stays in the cache. Coincident points are one slot, which stands for the first of them; points that are not
+ * finite have none. The order and every answer depend only on the positions and indices. */
 #ifndef CONIC_NEIGHBOURS_H
 #define CONIC_NEIGHBOURS_H
 
@@ -13,7 +13,7 @@
 
 #define CONIC_NO_SLOT UINT32_MAX
 
-/* No leaf has more slots. */
+/* The most slots of a leaf. */
 #define CONIC_LEAF_SLOTS 12
 
 typedef struct conic_neighbours {
@@ -26,13 +26,13 @@ typedef struct conic_neighbours {
   float (*boxes)[6];       /* of each node: least x, y, z, greatest x, y, z */
 } conic_neighbours;
 
-/* Builds the tree over positions[axis][0 … count). On success the caller owns what is in *tree; on failure it is
- * empty. Errors: ARGUMENT (over 2³² - 2 points), MEMORY, CANCELLED. */
+/* Builds the tree over positions[axis][0 … count). On success the caller releases *tree; on failure it is empty.
+ * Errors: ARGUMENT (over 2³² - 2 points), MEMORY, CANCELLED. */
 conic_status conic_neighbours_build(conic_context *context, const float *const positions[3], size_t count,
                                     conic_neighbours *tree);
 void conic_neighbours_release(conic_context *context, conic_neighbours *tree);
 
-/* No more can be asked for. */
+/* The most neighbours that a query may ask for. */
 enum { CONIC_MOST_NEAREST = 64 };
 
 /* The k slots nearest to `query` among those whose squared distance is at most `limit2` (HUGE_VAL: no limit), without
@@ -49,12 +49,12 @@ static inline double conic_neighbours_distance2(const conic_neighbours *tree, si
   return x * x + y * y + z * z;
 }
 
-/* How far the n-th neighbour of `slot` is at most, squared, from the n nearest of a slot near by: as far as the
- * farthest of these, the slot itself replaced by the other one. */
+/* A bound of the squared distance from `slot` to its n-th neighbour, from the n nearest of a nearby slot `other`: the
+ * distance to the farthest of these, with `slot` replaced by `other`. */
 double conic_neighbours_bound2(const conic_neighbours *tree, const uint32_t *nearest, size_t n, size_t other,
                                size_t slot);
 
-/* The slots of the leaf `i_leaf`: from the returned one to that of the next leaf. */
+/* The first slot of leaf `i_leaf`; the leaf ends where the next one begins. */
 static inline size_t conic_neighbours_leaf_begin(const conic_neighbours *tree, size_t i_leaf) {
   return (size_t)((uint64_t)i_leaf * (uint64_t)tree->n_slots / (uint64_t)tree->n_leaves);
 }

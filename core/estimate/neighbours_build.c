@@ -1,4 +1,4 @@
-/* How the kd-tree comes to be: coincident points are joined, then ranges are halved across their longest side. */
+/* Builds the kd-tree: coincident points are joined, then ranges are halved across their longest side. */
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -9,7 +9,7 @@
 
 enum { SHARED_LEVELS = 6 };
 
-/* Building the tree of so many takes long enough to be reported. */
+/* A tree of so many takes long enough to report progress. */
 enum { MANY_SLOTS = 1 << 18, SUBTREES_A_REPORT = 4 };
 
 typedef struct point_record {
@@ -21,7 +21,7 @@ static int is_finite(const point_record *r) {
   return r->position[0] * 0.0f == 0.0f && r->position[1] * 0.0f == 0.0f && r->position[2] * 0.0f == 0.0f;
 }
 
-/* Positions that are equal as numbers have equal hashes: adding zero makes -0 to 0. */
+/* Equal positions have equal hashes: adding zero turns -0 into 0. */
 static uint64_t hash_position(const float position[3]) {
   uint32_t bits[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -35,8 +35,8 @@ static int same_position(const float a[3], const float b[3]) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* Gathers the finite positions into `records`, coincident ones once; slot_of_point becomes the number of the point's
- * record, for the time being. */
+/* Gathers the finite positions into `records`, coincident ones once; for now, slot_of_point is the number of the
+ * point's record. */
 static conic_status gather_points(conic_context *context, const float *const positions[3], conic_neighbours *tree,
                                   point_record *records) {
   size_t n_buckets = 16;
@@ -69,7 +69,7 @@ static conic_status gather_points(conic_context *context, const float *const pos
   return CONIC_OK;
 }
 
-/* A strict order of the records: by the axis, then the next ones, so that what goes left of a split is settled. */
+/* A strict order of the records: by the axis, then by the next ones, so that splits are unique. */
 static int comes_before(const point_record *a, const point_record *b, int axis) {
   if (a->position[axis] != b->position[axis])
     return a->position[axis] < b->position[axis];
@@ -90,8 +90,8 @@ static point_record median_of_three(const point_record *a, const point_record *b
   return comes_before(b, c, axis) ? *b : comes_before(a, c, axis) ? *c : *a;
 }
 
-/* Reorders so that the first n_left records come before all others along the axis (Hoare's FIND). Pivots are drawn
- * from places that no common arrangement of points conspires against. */
+/* Reorders so that the first n_left records come before all others along the axis (Hoare's FIND). Pivots come from
+ * places that no usual arrangement of points defeats. */
 static void partition(point_record *records, size_t n, size_t n_left, int axis) {
   ptrdiff_t begin = 0, last = (ptrdiff_t)n - 1, wanted = (ptrdiff_t)n_left;
   while (begin < last) {
@@ -177,7 +177,7 @@ static void make_level_subtree(void *data, size_t i_item, int i_thread) {
   make_subtree(b, b->n_level_nodes - 1 + i_item, i_item * n_leaves, n_leaves);
 }
 
-/* The nodes of the top levels one level after the other, then the subtrees below them. */
+/* Makes the nodes of the top levels level by level, then the subtrees below them. */
 static conic_status make_tree(conic_context *context, build *b) {
   int is_reported = b->tree->n_slots >= MANY_SLOTS;
   b->n_level_nodes = 1;
@@ -195,7 +195,7 @@ static conic_status make_tree(conic_context *context, build *b) {
   return CONIC_OK;
 }
 
-/* Takes the positions in their final order, and turns record numbers into slots by way of `slot_of_record`. */
+/* Takes the positions in their final order, and turns record numbers into slots with `slot_of_record`. */
 static void settle(conic_neighbours *tree, const point_record *records, uint32_t *slot_of_record) {
   for (size_t slot = 0; slot < tree->n_slots; slot++) {
     for (int axis = 0; axis < 3; axis++)

@@ -32,9 +32,9 @@ conic_status conic_normals_guess(conic_context *context, conic_neighbourhood *ne
   return conic_slots_share(context, neighbourhood->tree.n_slots, guess_slots, neighbourhood, from, to, &column, 1);
 }
 
-/* How two neighbours' normals belong together: the other one is mirrored in the plane half way between the points, as
- * if both lay on one arc; that keeps to the surface across sharp edges and thin walls alike. 1 or -1: surely with the
- * same or with opposite signs; 0: can't tell. */
+/* How two neighbours' normals belong together. The other one is mirrored in the plane half way between the points, as
+ * if both lay on one arc; that follows the surface across sharp edges and thin walls alike. 1 or -1: surely with the
+ * same or with opposite signs; 0: unknown. */
 static double agreement(const conic_neighbourhood *neighbourhood, size_t a, size_t b) {
   const float *na = neighbourhood->normals[a], *nb = neighbourhood->normals[b];
   double cosine = 0.0, a_along = 0.0, b_along = 0.0, length2 = 0.0;
@@ -51,7 +51,7 @@ static double agreement(const conic_neighbourhood *neighbourhood, size_t a, size
 /* A slot has links to its first LINKS neighbours, which are sorted by doubt in steps of 1/STEPS. */
 enum { LINKS = 8, STEPS = 65535, LINKS_A_REPORT = 1 << 18 };
 
-/* Two slots; the higher one first where they belong together with opposite signs. */
+/* Two slots; the higher one comes first where they belong together with opposite signs. */
 typedef struct normal_link {
   uint32_t ends[2];
 } normal_link;
@@ -60,8 +60,9 @@ typedef struct linking {
   conic_neighbourhood *neighbourhood;
   size_t n_links;               /* of each slot */
   uint16_t *doubt;              /* of each link */
-  uint8_t *opposite, *left_out; /* of each slot: bits of its links: whether signs are opposite; what joins nothing */
-  uint32_t *parent; /* of each slot in the forest of what hangs together; the last stands for all given normals */
+  uint8_t *opposite, *left_out; /* of each slot, bits of its links: whether signs are opposite; which links join
+                                   nothing */
+  uint32_t *parent; /* of each slot, in the forest of connected parts; the last stands for all given normals */
   uint8_t *flip;    /* whether a slot's sign is opposite to its parent's */
 } linking;
 
@@ -84,7 +85,7 @@ static void doubt_slots(void *data, size_t begin, size_t end) {
   }
 }
 
-/* Sorts the links of the guessed slots by doubt, stably: `order` gets them, n · LINKS at most. Returns how many. */
+/* Sorts the links of the guessed slots by doubt, stably, into `order`, n · LINKS at most. Returns how many. */
 static size_t sort_links(const linking *l, size_t *starts, normal_link *order) {
   size_t n_slots = l->neighbourhood->tree.n_slots;
   for (size_t slot = 0; slot < n_slots; slot++)
@@ -108,7 +109,7 @@ static size_t sort_links(const linking *l, size_t *starts, normal_link *order) {
   return n;
 }
 
-/* The root of what the slot hangs together with; *flip becomes whether the signs are opposite. Shortens the way. */
+/* The root of the slot's connected part; *flip says whether the signs are opposite. Shortens the path. */
 static uint32_t find_root(linking *l, uint32_t slot, unsigned *flip) {
   uint32_t root = slot;
   unsigned whole = 0;
@@ -126,8 +127,8 @@ static uint32_t find_root(linking *l, uint32_t slot, unsigned *flip) {
   return root;
 }
 
-/* Joins what two slots hang together with, so that their signs are as wanted; the given normals stay the root, else the
- * lower slot. */
+/* Joins the connected parts of two slots, so that their signs are as wanted. The given normals stay the root, else the
+ * lower slot becomes it. */
 static void join_parts(linking *l, uint32_t a, uint32_t b, unsigned is_opposite) {
   unsigned flip_a, flip_b;
   uint32_t root_a = find_root(l, a, &flip_a), root_b = find_root(l, b, &flip_b);
@@ -161,7 +162,7 @@ static void turn(conic_neighbourhood *neighbourhood, size_t slot) {
     neighbourhood->normals[slot][axis] = -neighbourhood->normals[slot][axis];
 }
 
-/* Seen flatter than this, a plane may lean either way. */
+/* Seen flatter than this, a plane may be tilted either way. */
 static const double least_facing = 0.2;
 
 void conic_normals_turn_to_sights(conic_neighbourhood *neighbourhood, float *const sight[3]) {
@@ -180,14 +181,14 @@ void conic_normals_turn_to_sights(conic_neighbourhood *neighbourhood, float *con
   }
 }
 
-/* What hangs together, at its root: the middle, and how much its normals point away from there. */
+/* A connected part, at its root: the middle, and how much its normals point away from there. */
 typedef struct connected_part {
   double middle[3];
   double count, outwards;
 } connected_part;
 
-/* Turns every guessed normal to its root's sign, and then whole parts that point inwards: the sum of n · (p - middle)
- * is three times the volume of a closed surface, so its sign is safe from single points and their noise. */
+/* Turns every guessed normal to its root's sign, and then whole parts that point inwards. The sum of n · (p - middle)
+ * is three times the volume of a closed surface, so single points and their noise do not change its sign. */
 static void settle_signs(linking *l, connected_part *parts) {
   conic_neighbourhood *neighbourhood = l->neighbourhood;
   size_t n_slots = neighbourhood->tree.n_slots;

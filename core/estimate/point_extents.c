@@ -1,6 +1,6 @@
-/* Ellipses of points without faces: around the part of the tangent plane that is nearer to the point than to its
- * neighbours. Such cells leave no gap, however unevenly a scanner has sampled; cut off at a radius, they close nothing
- * that was not seen. */
+/* Ellipses of points without faces, around the part of the tangent plane that is nearer to the point than to its
+ * neighbours. Such cells leave no gap, however unevenly a scanner sampled; they are cut off at a radius, so that they
+ * close no hole. */
 #include <math.h>
 #include <string.h>
 
@@ -10,25 +10,24 @@
 #include "core/estimate/voronoi_cell.h"
 #include "core/splats/ellipse.h"
 
-/* The cell's radius in local spacings; times CONIC_OUTLINE_COVER, half the width of a gap that closes. */
+/* The cell's radius in local spacings; times CONIC_OUTLINE_COVER, it is half the width of the gaps that close. */
 #define CELL_RADIUS 1.5
-/* The ellipse around a cell reaches no farther than this many of its radii: one that kept the ratio of a long cell
- * would point far out of it. */
+/* The ellipse around a cell reaches no farther than this many of the cell's radii: with a long cell's ratio it would
+ * point far out of the cell. */
 #define GREATEST_REACH 1.1
-/* A neighbour belongs to the same surface where its direction is less than 60° off the tangent plane, and the normals
- * are not turned away from each other by more than 107°. */
+/* A neighbour is on the same surface if its direction is less than 60° off the tangent plane, and the normals differ by
+ * at most 107°. */
 #define GREATEST_SLOPE 0.866
 #define LEAST_COSINE (-0.3)
-/* A spacing is at most this many times the median of the neighbours'. */
+/* The most that a spacing may exceed the median of the neighbours', as a factor. */
 #define GREATEST_GROWTH 1.35
-/* A point is isolated where its nearest neighbour is farther than this many times the median of the neighbours'
- * spacings; its outline then is half such a spacing. */
+/* A point is isolated if its nearest neighbour is farther than this many times the median of the neighbours' spacings;
+ * its outline is then half such a spacing. */
 #define ISOLATION 4.0
 #define ISOLATED_OUTLINE 0.5
-/* Without any neighbour there is no scale to go by but the unit: pictures frame such a point as a sphere of radius 1.
- */
+/* Without any neighbour only the unit gives a scale: pictures frame such a point as a sphere of radius 1. */
 #define LONE_OUTLINE 0.01
-/* The density is told by the nearest few neighbours of the surface, and by all. */
+/* The density comes from the nearest few neighbours on the surface, and from all. */
 #define NEAREST_FEW 8
 
 #define PI 3.14159265358979323846
@@ -40,7 +39,7 @@ typedef struct tangent_origin {
   double position[3], normal[3];
 } tangent_origin;
 
-/* The vector to a neighbour, and whether it is on the same surface. */
+/* Finds the vector to a neighbour, and whether the neighbour is on the same surface. */
 static int view_neighbour(const tangent_origin *p, uint32_t slot, double d[3], double *distance2) {
   const float *normal = p->neighbourhood->normals[slot];
   double cosine = 0.0, height = 0.0;
@@ -63,8 +62,8 @@ static tangent_origin place_at(const conic_neighbourhood *neighbourhood, size_t 
   return p;
 }
 
-/* The side of a square whose area is one sample's: n samples lie in a disc that reaches to the n-th neighbour. Of the
- * nearest few and of all, the denser estimate: a cluster's edge must not make it sparse. */
+/* The side of a square with the area of one sample: n samples lie in a disc that reaches to the n-th neighbour. The
+ * denser estimate counts, from the nearest few or from all: a cluster's edge must not make it sparse. */
 static double spacing_of(const conic_neighbourhood *neighbourhood, size_t slot) {
   tangent_origin p = place_at(neighbourhood, slot);
   double d[3], distance2 = 0.0, few = HUGE_VAL, all = HUGE_VAL;
@@ -115,8 +114,8 @@ static double median_spacing(const tangent_origin *p, const double *spacings) {
   return sorted[n / 2];
 }
 
-/* The cell among the neighbours on the same surface. They are turned into the tangent plane, at their true distance:
- * where the surface bends away, a projection would shorten them and the cell with them. */
+/* Cuts the cell by the neighbours on the same surface. They are turned into the tangent plane, at their true distance:
+ * where the surface bends away, a projection would shorten the distance and the cell. */
 static void cut_cell(const tangent_origin *p, const double u[3], const double v[3], double radius,
                      conic_voronoi_cell *cell) {
   conic_voronoi_cell_begin(cell, radius);
@@ -124,7 +123,7 @@ static void cut_cell(const tangent_origin *p, const double u[3], const double v[
     double d[3], distance2, x = 0.0, y = 0.0;
     int is_same_surface = view_neighbour(p, p->list[i], d, &distance2);
     if (0.25 * distance2 >= cell->greatest2)
-      return; /* and so are all after it */
+      return; /* and so do all after it */
     if (!is_same_surface)
       continue;
     for (int axis = 0; axis < 3; axis++) {
@@ -136,7 +135,7 @@ static void cut_cell(const tangent_origin *p, const double u[3], const double v[
   }
 }
 
-/* Whether the cell is open on two opposite sides: then nothing tells how wide the surface is here, as on a cable. */
+/* Whether the cell is open on two opposite sides: then the width of the surface is unknown, as on a cable. */
 static int is_open_across(const conic_voronoi_cell *cell, double radius) {
   for (int i = 0; i < cell->n_corners; i++)
     for (int j = 0; j < i; j++)
@@ -151,7 +150,7 @@ static conic_ellipse circle(double radius) {
   return ellipse;
 }
 
-/* Confetti's own (§4.3): around all neighbours, seen along the normal, whatever surface they are on. */
+/* Confetti's ellipse (§4.3): around all neighbours, seen along the normal, on any surface. */
 static conic_ellipse bound_neighbours(const tangent_origin *p, const double u[3], const double v[3]) {
   double points[CONIC_MAX_NEIGHBOURS][2];
   int n = (int)p->neighbourhood->n_neighbours;
@@ -164,7 +163,7 @@ static conic_ellipse bound_neighbours(const tangent_origin *p, const double u[3]
   return conic_ellipse_bound((const double(*)[2])points, n, CONIC_OUTLINE_RATIO);
 }
 
-/* The outline at a place, and what it means for the point. */
+/* The outline at a place, and the point's state that follows. */
 static conic_point_state outline(const tangent_origin *p, size_t slot, const double *spacings, const double u[3],
                                  const double v[3], conic_ellipse *ellipse) {
   conic_voronoi_cell cell;
@@ -195,7 +194,7 @@ static conic_point_state outline(const tangent_origin *p, size_t slot, const dou
   return CONIC_POINT_SPREAD;
 }
 
-/* Where there is no surface: a small round outline; its normal is the file's, else outwards. */
+/* Where there is no surface: a small round outline. Its normal is the file's, else points outwards. */
 static void make_dot(conic_estimate *estimate, tangent_origin *p, size_t point, size_t slot, int has_normal,
                      conic_ellipse *ellipse) {
   *ellipse = circle(conic_scatter_reach(p->neighbourhood, slot));
@@ -252,7 +251,7 @@ static void spread_slots(void *data, size_t begin, size_t end) {
   }
 }
 
-/* Points that coincide with an earlier one: each by its own normal. */
+/* Points at the place of an earlier one: each by its own normal. */
 static void spread_duplicates(void *data, size_t begin, size_t end) {
   const spread_work *work = data;
   for (size_t point = begin; point < end; point++)

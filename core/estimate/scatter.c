@@ -1,6 +1,5 @@
-/* A slot's score says how little of a surface its neighbourhood is; the mean of the scores round about decides, so that
- * a leaf among leaves goes with them, and a sharp corner with its faces. docs/notes/estimation.md has the
- * measurements. */
+/* A slot's score says how little its neighbourhood is like a surface. The mean of the scores around it decides, so that
+ * a leaf follows the leaves around it, and a sharp corner its faces. docs/notes/estimation.md has the measurements. */
 #include "core/estimate/scatter.h"
 
 #include <math.h>
@@ -10,24 +9,25 @@
 #include "core/base/vectors.h"
 #include "core/estimate/covariance.h"
 
-/* The scatter is the least of the covariance's eigenvalues over the sum of the lesser two: 0 in a plane, 0.22 on a
- * sharp edge and in a cube's corner, about 0.4 where points fill a space or a stick, half at most. Of the neighbours,
- * where a bent surface has little, and of the neighbours' neighbours, where a noisy one and thin walls have. */
+/* The scatter is the least eigenvalue of the covariance over the sum of the lesser two: 0 in a plane, 0.22 on a sharp
+ * edge and in a cube's corner, about 0.4 where points fill a space or a stick, at most ½. It is taken of the
+ * neighbours, where a bent surface has little, and of the neighbours' neighbours, where noisy surfaces and thin walls
+ * have little. */
 #define FULL_SCATTER 0.3
-/* How little the neighbours' normals agree, one less the mean of |n · n'|: half where they are drawn at random. */
+/* How little the neighbours' normals agree, 1 less the mean of |n · n'|: ½ for random ones. */
 #define FULL_DISAGREEMENT 0.15
-/* A score is the least of the three, in parts of the full values; below the least it is none. */
+/* A score is the least of the three, relative to the full values; below LEAST_SCORE it counts as 0. */
 #define LEAST_SCORE 0.25
 #define GREATEST_SCORE 2.0
 #define SCATTERED_SCORE 0.6
-/* A line is where the second eigenvalue is less than this part of the first: along no more than a seventh as wide as
- * long. Twice as many neighbours must make one still; else it is a line of a scanner's, with others beside it. */
+/* The neighbours make a line if the second eigenvalue is less than this part of the first: at most a seventh as wide as
+ * long. Twice as many neighbours must make a line, too; else it is a scan line with others beside it. */
 #define LINE_WIDTH2 0.02
 /* How often scores are spread to the neighbours. */
 #define N_MEANS 3
 
-/* Of a dot in spacings, which are the distances to the second neighbour; and where there are so few points that they
- * tell of no surface: the corners of a cube are eight places, not a blob. */
+/* A dot's reach in spacings, which are the distances to the second neighbour; and the reach where too few points show a
+ * surface: the corners of a cube are eight places, not a blob. */
 #define DOT_REACH 0.65
 #define LONE_REACH 0.12
 enum { FEWEST_IN_SURFACE = 20 };
@@ -46,7 +46,7 @@ static double trace_of(const double matrix[6]) {
   return matrix[0] + matrix[3] + matrix[5];
 }
 
-/* By the sum of the products of two eigenvalues each, which needs none of them. */
+/* By the sum of the products of two eigenvalues each, which the matrix gives without them. */
 static int is_wire(const double m[6]) {
   double pairs = m[0] * m[3] - m[1] * m[1] + (m[0] * m[5] - m[2] * m[2]) + (m[3] * m[5] - m[4] * m[4]),
          trace = trace_of(m);
@@ -72,7 +72,7 @@ static double scatter_of(const double matrix[6]) {
   return values[1] > 0.0 ? values[2] / (values[1] + values[2]) : 0.0;
 }
 
-/* The neighbours' neighbours, as often as they are that. */
+/* Adds the neighbours' neighbours, as often as they occur. */
 static void add_second_ring(const conic_neighbourhood *neighbourhood, size_t slot, conic_covariance *covariance) {
   const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot);
   for (size_t i = 0; i < neighbourhood->n_neighbours; i++)
@@ -122,7 +122,7 @@ static void score_slots(void *data, size_t begin, size_t end) {
     work->to[slot] = (float)(is_listed(work->neighbourhood, slot) ? score_of(work->neighbourhood, slot) : 0.0);
 }
 
-/* The mean of the slot and its neighbours that are listed too. */
+/* The mean over the slot and its LISTED neighbours. */
 static void average_slots(void *data, size_t begin, size_t end) {
   const scatter_work *work = data;
   for (size_t slot = begin; slot < end; slot++) {
@@ -176,7 +176,7 @@ conic_status conic_scatter_find(conic_context *context, conic_neighbourhood *nei
   return status;
 }
 
-/* --- what a dot is given --- */
+/* --- the shape of a dot --- */
 
 static double spacing_about(const conic_neighbourhood *neighbourhood, size_t slot) {
   const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot);
@@ -185,7 +185,8 @@ static double spacing_about(const conic_neighbourhood *neighbourhood, size_t slo
   return sqrt(conic_neighbours_distance2(&neighbourhood->tree, list[neighbourhood->n_neighbours > 1], position));
 }
 
-/* So few points are to be seen from where all of them are: as dots of a hundredth of their extent at least. */
+/* So few points must be visible where the picture shows all of them: their dots are at least a hundredth of their
+ * extent. */
 static double lone_reach(const conic_neighbourhood *neighbourhood, size_t slot, double spacing) {
   static const double least_part = 0.005;
   double position[3], farthest2 = 0.0;

@@ -4,12 +4,11 @@
 
 #include "core/estimate/neighbourhood.h"
 
-/* Makes the LISTED slots about which there is no surface SCATTERED. Their normals are to be known, up to the sign.
- * Errors: MEMORY, CANCELLED. */
+/* Marks LISTED slots without a surface around them as SCATTERED. Their normals must be known, up to the sign. Errors:
+ * MEMORY, CANCELLED. */
 conic_status conic_scatter_find(conic_context *context, conic_neighbourhood *neighbourhood, double from, double to);
 
-/* What a dot at a slot is given: how far it reaches, and where the outside is, as the normal; zero where the neighbours
- * do not tell. */
+/* The reach of a dot at a slot, and its normal, which points outwards; zero where the neighbours do not tell. */
 double conic_scatter_reach(const conic_neighbourhood *neighbourhood, size_t slot);
 void conic_scatter_outside(const conic_neighbourhood *neighbourhood, size_t slot, double normal[3]);
 

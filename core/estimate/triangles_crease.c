@@ -9,7 +9,7 @@
 #include "core/estimate/neighbourhood.h"
 #include "core/splats/columns.h"
 
-/* Where more corners meet, all of them are as flat as their faces: each would look at all others. */
+/* Where more corners meet, all get their faces' normals: each would have to look at all others. */
 enum { MOST_CORNERS = 256 };
 
 /* Corners are numbered by triangle, three each. Those at one place belong together, whichever vertices they name. */
@@ -117,7 +117,7 @@ static void gather_corner(const creasing *c, size_t corner, corner_fan *fan, siz
   fan->group[i] = (uint16_t)i;
 }
 
-/* Faces without an area are smooth with any. */
+/* Faces without an area are smooth with any face. */
 static int is_smooth(const creasing *c, const corner_fan *fan, size_t i, size_t j) {
   const uint32_t *a = fan->others[i], *b = fan->others[j];
   if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1])
@@ -143,7 +143,7 @@ static void number_groups(corner_fan *fan) {
   }
 }
 
-/* Returns 0 where there are too many corners, each a group. */
+/* Returns 0 where there are too many corners, each of which is then a group. */
 static int gather_fan(const creasing *c, size_t place, corner_fan *fan) {
   fan->n = c->starts[place + 1] - c->starts[place];
   fan->corners = c->corners + c->starts[place];
@@ -172,7 +172,7 @@ static void store_normal(const creasing *c, size_t at, double sum[3]) {
     c->normal[axis][at] = (float)sum[axis];
 }
 
-/* The mean of each group, by area. */
+/* Lays down the mean of each group, by area. */
 static void lay_fan(const creasing *c, size_t place, const corner_fan *fan) {
   double sums[MOST_CORNERS][3];
   memset(sums, 0, (size_t)fan->n_groups * sizeof *sums);

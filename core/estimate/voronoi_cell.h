@@ -14,7 +14,7 @@ typedef struct conic_voronoi_cell {
 /* The regular polygon with corners at `radius`. */
 void conic_voronoi_cell_begin(conic_voronoi_cell *cell, double radius);
 
-/* Cuts away what is nearer to (x, y) than to the origin. (x, y) must not be the origin. */
+/* Cuts off the part that is nearer to (x, y) than to the origin. (x, y) must not be the origin. */
 void conic_voronoi_cell_cut(conic_voronoi_cell *cell, double x, double y);
 
 double conic_voronoi_cell_area(const conic_voronoi_cell *cell);

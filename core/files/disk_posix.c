@@ -62,7 +62,7 @@ int conic_disk_open_to_change(const char *path) {
 }
 
 /* Linux makes files that never had a name, so that nothing is left of a process that is killed at that moment. Disks
- * that cannot, and other systems, give one for a moment. */
+ * that cannot, and other systems, give them a name for a moment. */
 static int create_unnamed(char *pattern) {
 #ifdef O_TMPFILE
   char *name = strrchr(pattern, '/');
@@ -121,8 +121,7 @@ int64_t conic_disk_position(int descriptor) {
 }
 
 void *conic_disk_map(int descriptor, size_t n_bytes) {
-  const int access =
-      PROT_READ | (CONIC_IS_BIG_ENDIAN ? PROT_WRITE : 0); /* what is read may be turned around in place */
+  const int access = PROT_READ | (CONIC_IS_BIG_ENDIAN ? PROT_WRITE : 0); /* records may be turned round in place */
   void *bytes = mmap(NULL, n_bytes, access, MAP_PRIVATE, descriptor, 0);
   return bytes == MAP_FAILED ? NULL : bytes;
 }

@@ -56,7 +56,7 @@ static int widen(const char *path, wchar_t wide[LONGEST_PATH]) {
   return 0;
 }
 
-/* Folders can be opened, too, so that they can be looked at, and told from files. */
+/* Opens folders, too, so that they can be told from files. */
 static HANDLE open_handle(const char *path, DWORD access, DWORD how, DWORD flags) {
   wchar_t wide[LONGEST_PATH];
   if (!widen(path, wide))
@@ -188,7 +188,7 @@ FILE *conic_disk_open_nameless(void) {
   return stream;
 }
 
-/* What a file here permits is a list, which a new one has of its folder. */
+/* Permissions here are a list, which a new file has from its folder. */
 void conic_disk_permit(int descriptor, unsigned permissions) {
   (void)descriptor, (void)permissions;
 }
@@ -204,7 +204,7 @@ static OVERLAPPED place(uint64_t at) {
   return place;
 }
 
-/* Not by _read, which would take standard input for text. */
+/* Not by _read, which would convert standard input as text. */
 static ptrdiff_t read_some(int descriptor, void *bytes, size_t n_bytes, OVERLAPPED *at) {
   DWORD n = 0;
   if (ReadFile(handle_of(descriptor), bytes, at_once(n_bytes), &n, at) || GetLastError() == ERROR_HANDLE_EOF ||
@@ -266,7 +266,7 @@ void conic_disk_unmap(void *bytes, size_t n_bytes) {
 }
 
 void conic_disk_give_back(void *bytes, size_t n_bytes) {
-  VirtualUnlock(bytes, n_bytes); /* which fails, as they are not locked, and gives them back all the same */
+  VirtualUnlock(bytes, n_bytes); /* fails, as the pages are not locked, but gives them back */
 }
 
 int conic_disk_rename(const char *from, const char *to) {
@@ -309,7 +309,7 @@ int conic_disk_make_folder(const char *path) {
   return 0;
 }
 
-/* Where it leads in the end. */
+/* Follows the link to its end. */
 size_t conic_disk_read_link(const char *path, char *target, size_t room) {
   wchar_t wide[LONGEST_PATH];
   DWORD attributes = widen(path, wide) ? GetFileAttributesW(wide) : INVALID_FILE_ATTRIBUTES;

@@ -17,10 +17,10 @@ struct conic_output {
   conic_context *context;
   FILE *stream;
   char *path;           /* for messages */
-  char *target;         /* what the path leads to */
-  char *temporary_path; /* null for standard output and for what is no regular file */
-  int is_kept;          /* that stays, whatever comes */
-  conic_output *next;   /* of the context's */
+  char *target;         /* the file that the path leads to */
+  char *temporary_path; /* null for standard output, devices and pipes */
+  int is_kept;          /* the temporary file stays, whatever happens */
+  conic_output *next;   /* next of the context's outputs */
 };
 
 static char *copy_text(conic_context *context, const char *text) {
@@ -69,7 +69,7 @@ int conic_file_follow(const char *path, char *target, size_t room) {
   return 0;
 }
 
-/* A name "name.ext" of two parts: "name", of as many bytes as leave room for what a temporary name adds, and ".ext". */
+/* A name "name.ext" in two parts: "name", cut so that a temporary name has room, and ".ext". */
 typedef struct name_parts {
   const char *stem, *ending;
   int n_stem;
@@ -86,7 +86,7 @@ static name_parts split_name(const char *name) {
   return parts;
 }
 
-/* PATH "dir/name.ext" is written as "dir/.name.PID-N.ext": hidden, beside it, with its ending. */
+/* PATH "dir/name.ext" is first written as "dir/.name.PID-N.ext": hidden, in the same folder, with the same ending. */
 static char *temporary_name(conic_context *context, const char *path, int attempt) {
   const char *name = conic_file_name(path);
   const name_parts parts = split_name(name);
@@ -98,10 +98,10 @@ static char *temporary_name(conic_context *context, const char *path, int attemp
   return temporary;
 }
 
-/* Makes the temporary file if nothing has its name. An output that has one is on the context's list. */
+/* Creates the temporary file if nothing has its name. Outputs with a temporary file are on the context's list. */
 static int begin_temporary(conic_output *output) {
   conic_context *context = output->context;
-  pthread_mutex_lock(&context->outputs_lock); /* whoever gives up keeps it for good */
+  pthread_mutex_lock(&context->outputs_lock); /* conic_outputs_give_up locks this and never unlocks it */
   int descriptor = output->is_kept ? conic_disk_open_to_change(output->temporary_path)
                                    : conic_disk_create(output->temporary_path),
       error = errno;
@@ -114,7 +114,7 @@ static int begin_temporary(conic_output *output) {
   return descriptor;
 }
 
-/* Renames the temporary file, where that is wanted, or removes it. Whether it is now under the output's name. */
+/* Renames the temporary file if `is_wanted`, else removes it. Returns whether it now has the output's name. */
 static int end_temporary(conic_output *output, int is_wanted) {
   conic_context *context = output->context;
   pthread_mutex_lock(&context->outputs_lock);
@@ -184,7 +184,7 @@ static conic_status open_temporary(conic_output *output) {
   return conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: %s", output->path, strerror(errno));
 }
 
-/* A file that is there, or a device or a pipe, which is written as it is. */
+/* A file, device or pipe that exists: devices and pipes are written directly. */
 static conic_status open_existing(conic_output *output, const conic_disk_entry *existing) {
   conic_status status = conic_guard_check(output->context, output->path, existing);
   if (status != CONIC_OK)
@@ -291,7 +291,7 @@ conic_status conic_output_end(conic_output *output, conic_status status) {
   return status;
 }
 
-/* Whether "NAME" is ".STEM.PID-N.EXT" of a process that is no more, or a scratch file that kept its name. */
+/* Whether "NAME" is ".STEM.PID-N.EXT" of a process that has ended, or a scratch file that kept its name. */
 static int is_left_over(const char *name, const char *stem, size_t n_stem, const char *ending) {
   char *end;
   if (strncmp(name, CONIC_SCRATCH_START, strlen(CONIC_SCRATCH_START)) == 0)

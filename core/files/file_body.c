@@ -8,7 +8,7 @@
 #include "core/base/threads.h"
 #include "core/files/file.h"
 
-/* What is turned around on its way is so by pieces, of whole records. */
+/* The byte order is changed in pieces of whole records. */
 enum { ALIGNMENT = 64, PIECE = 4096, MOST_AT_ONCE = CONIC_IS_BIG_ENDIAN ? PIECE : 1 << 24 };
 
 void conic_file_add_array(conic_file_layout *layout, size_t n_bytes, conic_file_record record) {
@@ -34,7 +34,7 @@ static void turn_records(conic_file_record record, unsigned char *bytes, size_t 
       conic_turn_words(bytes, 1, (size_t)(*member - '0'));
 }
 
-/* A piece of an array as it stands in the file, itself or a copy. */
+/* A piece of an array as it is in the file: the piece itself or a copy. */
 static const unsigned char *as_in_file(const conic_file_array *array, const unsigned char *bytes, size_t n_bytes,
                                        unsigned char piece[PIECE]) {
   if (!CONIC_IS_BIG_ENDIAN || strcmp(array->record, "1") == 0)
@@ -47,7 +47,7 @@ static const unsigned char *as_in_file(const conic_file_array *array, const unsi
 typedef struct sum_job {
   const conic_file_layout *layout;
   const void *const *arrays;
-  int is_file; /* the arrays are as they stand in the file */
+  int is_file; /* the arrays are in the file's byte order */
   uint64_t sums[CONIC_FILE_MOST_ARRAYS];
 } sum_job;
 
@@ -95,7 +95,7 @@ uint64_t conic_file_sum_bytes(conic_context *context, const conic_file_layout *l
   return sum_all(context, &job);
 }
 
-/* Where what follows the array begins. */
+/* Where the next array begins. */
 static size_t end_of_array(const conic_file_layout *layout, int i) {
   return i + 1 < layout->n ? layout->arrays[i + 1].offset : layout->n_bytes;
 }

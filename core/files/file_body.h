@@ -10,8 +10,8 @@
 
 enum { CONIC_FILE_MOST_ARRAYS = 40 };
 
-/* What an array's records are made of: the bytes of each member, "4" for floats, "1" for bytes, "422444444" … Several
- * members together are a power of two. */
+/* The members of an array's records, in bytes: "4" for floats, "1" for bytes, "422444444" …. The sizes add up to a
+ * power of two. */
 typedef const char *conic_file_record;
 
 typedef struct conic_file_array {
@@ -19,7 +19,7 @@ typedef struct conic_file_array {
   conic_file_record record;
 } conic_file_array;
 
-/* Where everything is. Begins as {.n_bytes = CONIC_FILE_HEADER_BYTES}. */
+/* The places of all arrays. Begins as {.n_bytes = CONIC_FILE_HEADER_BYTES}. */
 typedef struct conic_file_layout {
   int n;
   conic_file_array arrays[CONIC_FILE_MOST_ARRAYS];
@@ -28,29 +28,29 @@ typedef struct conic_file_layout {
 
 void conic_file_add_array(conic_file_layout *layout, size_t n_bytes, conic_file_record record);
 
-/* Where the arrays are in the bytes of a whole file. */
+/* Finds the arrays in the bytes of a whole file. */
 void conic_file_list_arrays(const conic_file_layout *layout, const unsigned char *bytes,
                             const void *arrays[CONIC_FILE_MOST_ARRAYS]);
 
 /* The sum over the sums of arrays in memory. */
 uint64_t conic_file_sum_arrays(conic_context *context, const conic_file_layout *layout, const void *const *arrays);
-/* Over those in the bytes of a whole file; without a context, on this thread. */
+/* The same of the arrays in the bytes of a whole file; without a context, on this thread. */
 uint64_t conic_file_sum_bytes(conic_context *context, const conic_file_layout *layout, const unsigned char *bytes);
 
 /* Writes a file of header and arrays. Errors: MEMORY, IO, CANCELLED. */
 conic_status conic_file_write_arrays(conic_context *context, const char *path, const conic_file_kind *kind,
                                      const void *numbers, const conic_file_layout *layout, const void *const *arrays);
 
-/* Writes header and arrays to a stream, whose failures are seen by its owner. Errors: CANCELLED. */
+/* Writes header and arrays to a stream, whose owner checks for failures. Errors: CANCELLED. */
 conic_status conic_file_put_arrays(conic_context *context, FILE *stream, const conic_file_kind *kind,
                                    const void *numbers, const conic_file_layout *layout, const void *const *arrays);
 
-/* Turns the arrays in the bytes of a file between its order and the machine's. */
+/* Turns the arrays in a file's bytes between the file's byte order and the machine's. */
 void conic_file_turn_arrays(const conic_file_layout *layout, unsigned char *bytes);
 
-/* Whether the file is as long as its layout tells, has nothing between its arrays, and has that sum. Then its arrays
- * can be used as they lie: where files are the other way round than memory, the mapping, which is private, is turned
- * around. Errors: INPUT. */
+/* Checks that the file has the length of its layout, zeros between its arrays, and that sum. The arrays can then be
+ * used where they are: if the byte orders differ, the mapping, which is private, is converted in place. Errors:
+ * INPUT. */
 conic_status conic_file_take_arrays(conic_context *context, const char *path, conic_mapping *file,
                                     const conic_file_layout *layout, uint64_t sum);
 

@@ -1,14 +1,14 @@
-/* Structures in files: members in the order of a table, little-endian, one after the other. What is written and what is
- * read so cannot differ. */
+/* Structures in files: members in the order of a table, little-endian, one after the other. One table serves reading
+ * and writing, so that they cannot differ. */
 #ifndef CONIC_FILE_FIELDS_H
 #define CONIC_FILE_FIELDS_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-/* A member by its place in memory. */
+/* A member, by its place in memory. */
 typedef struct conic_file_field {
-  size_t offset, n_bytes, word_bytes; /* which are turned around as one; an array is several */
+  size_t offset, n_bytes, word_bytes; /* word_bytes: turned round together; an array has several words */
 } conic_file_field;
 
 #define CONIC_FILE_FIELD(type, member)                                                                                 \

@@ -11,7 +11,7 @@ enum { N_DIGITS = CONIC_SHA256_ROOM - 1, MOST_BYTES = 1 << 30 };
 
 /* --- lines --- */
 
-/* From *text, past its end; 0 where there is none or it is past all bounds. */
+/* Reads digits from *text and moves it past them; 0 where there are none or the number is too large. */
 static int take_digits(const char **text, const char *end, uint64_t *number) {
   const char *c = *text;
   for (*number = 0; c < end && *c >= '0' && *c <= '9' && *number < UINT64_MAX / 10; c++)

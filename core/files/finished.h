@@ -20,7 +20,7 @@ typedef struct conic_finished {
   size_t n_bytes;
 } conic_finished;
 
-/* A part, and where the lines of its files are. */
+/* A part, and the place of its files' lines. */
 typedef struct conic_finished_part {
   size_t files_at;
   const char *words;
@@ -28,34 +28,34 @@ typedef struct conic_finished_part {
 } conic_finished_part;
 
 typedef struct conic_finished_file {
-  const char *hash, *name; /* 64 digits; as long as n_name */
+  const char *hash, *name; /* hash: 64 digits; name: n_name bytes */
   size_t n_name;
   uint64_t n_bytes;
 } conic_finished_file;
 
-/* Reads PATH, which is there. Errors: INPUT, MEMORY; also where it is of another key. */
+/* Reads PATH, which exists. Errors: INPUT (also another key), MEMORY. */
 conic_status conic_finished_read(conic_context *context, const char *path, const char *what, const char *key,
                                  conic_finished *list);
 void conic_finished_release(conic_context *context, conic_finished *list);
 
-/* The next part from *at on, which is 0 at first. 0: there is no more. */
+/* The next part from *at on, which is 0 at first; returns 0 past the last. */
 int conic_finished_next(const conic_finished *list, size_t *at, conic_finished_part *part);
-/* The next file of a part: *at is its `files_at` at first. 0: there is no more. */
+/* The next file of a part: *at is the part's `files_at` at first; returns 0 past the last. */
 int conic_finished_next_file(const conic_finished *list, size_t *at, conic_finished_file *file);
 
-/* A part's "WORD NUMBER NUMBER …", with so many of them; whether it is that. */
+/* Reads a part "WORD NUMBER NUMBER …" with n_numbers numbers; returns 0 where it is something else. */
 int conic_finished_numbers(const conic_finished_part *part, const char *word, uint64_t *numbers, int n_numbers);
 
-/* What a list begins with, and a part of another. The stream remembers what fails. */
+/* Writes the beginning of a list, and a part of another list. The stream remembers failures. */
 void conic_finished_write_head(FILE *stream, const char *what, const char *key);
 void conic_finished_write_part(FILE *stream, const conic_finished *list, const conic_finished_part *part);
 
-/* Room for what is before a name in its line, and that, of a file of so many bytes. Returns how long it is. */
+/* Writes what precedes the name in a line for a file of so many bytes; returns its length. The room is enough for
+ * any. */
 enum { CONIC_FINISHED_HEAD_ROOM = CONIC_SHA256_ROOM + 40 };
 size_t conic_finished_file_head(const char *hash, uint64_t n_bytes, char head[CONIC_FINISHED_HEAD_ROOM]);
 
-/* Whether a file has the length and the hash that are noted; its name is of the folder, which is empty or ends in a
- * separator. */
+/* Whether a file has the noted length and hash. Its name is within `folder`, which is empty or ends in a separator. */
 int conic_finished_is_there(const char *folder, const conic_finished_file *file);
 
 /* The length and SHA-256 of a file. Errors: IO, without a message. */

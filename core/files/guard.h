@@ -1,18 +1,18 @@
-/* What a context has read, so that a program never writes over it, whatever names a file has and whoever named it. */
+/* Notes what a context has read, so that a program never writes over it, whatever names the files have. */
 #ifndef CONIC_GUARD_H
 #define CONIC_GUARD_H
 
 #include "conic/context.h"
 #include "core/files/disk.h"
 
-/* From now on, as if nothing had been read before, what is opened for reading is noted, and opening it for writing
- * fails; but for what `replaceable`, which may be null, is now the name of. */
+/* From now on every file opened for reading is noted, and cannot be opened for writing; earlier ones are forgotten. The
+ * file that `replaceable` (may be null) now names is exempt. */
 void conic_guard_inputs(conic_context *context, const char *replaceable);
 
 /* Notes a file that is open for reading, or is about to be, and the name by which it was opened. Errors: MEMORY. */
 conic_status conic_guard_note(conic_context *context, const char *path, const conic_disk_entry *read);
 
-/* The same of a file by its name; one that is not there is no input. */
+/* Notes a file by its name; a missing file is no input. */
 conic_status conic_guard_note_path(conic_context *context, const char *path);
 /* And of a URL of so many bytes, over which nothing can be written. */
 conic_status conic_guard_note_url(conic_context *context, const char *url, uint64_t n_bytes);
@@ -28,7 +28,7 @@ typedef struct conic_guarded {
 /* The next one from *at on, which is 0 at first; 0: there is no more. */
 int conic_guard_next(const conic_context *context, size_t *at, conic_guarded *read);
 
-/* Whether a file that is there may be written over: not if it was read. Errors: ARGUMENT. */
+/* Whether an existing file may be written over: not if it was read. Errors: ARGUMENT. */
 conic_status conic_guard_check(conic_context *context, const char *path, const conic_disk_entry *existing);
 
 #endif

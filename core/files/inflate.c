@@ -62,7 +62,7 @@ conic_status conic_gzip(conic_context *context, const unsigned char *from, size_
   *to = NULL;
   if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) != Z_OK)
     return CONIC_ERROR_MEMORY;
-  size_t room = n_from + n_from / 1000 + 1024; /* more than zlib ever makes of it */
+  size_t room = n_from + n_from / 1000 + 1024; /* more than zlib ever makes of n_from bytes */
   *to = conic_memory_allocate(context, room, 1);
   stream.next_out = *to;
   while (*to && code == Z_OK) {

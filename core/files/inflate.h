@@ -1,4 +1,4 @@
-/* Unpacking what was deflated, through zlib where it is there. */
+/* Unpacking deflated data, with zlib where it is there. */
 #ifndef CONIC_INFLATE_H
 #define CONIC_INFLATE_H
 
@@ -8,14 +8,13 @@
 
 typedef enum conic_deflate_wrapping { CONIC_DEFLATE_BARE, CONIC_DEFLATE_GZIP } conic_deflate_wrapping;
 
-/* More than so many bytes cannot come of n: a match of 258 takes two bits. */
+/* The most bytes that n bytes can unpack to: a match of 258 takes two bits. */
 static inline double conic_inflate_most_bytes(size_t n) {
   return 1032.0 * (double)n + 1032.0;
 }
 
-/* Unpacks up to n_bytes; returns how many there were, or less where the data are spoiled or zlib is not there. Where
- * is_whole is not null, it says whether the data go on to their end, past what is wanted, and have the sum that stands
- * there. */
+/* Unpacks up to n_bytes; returns how many there were, or fewer where the data are spoiled or zlib is not there.
+ * *is_whole, if not null, says whether the data go on to their end, beyond n_bytes, with the right sum. */
 size_t conic_inflate(conic_deflate_wrapping wrapping, const unsigned char *from, size_t n_from, unsigned char *to,
                      size_t n_bytes, int *is_whole);
 

@@ -85,7 +85,7 @@ conic_status conic_input_fill(conic_input *input, size_t count) {
   input->next = 0;
   while (input->filled < count && !input->is_at_end) {
     ptrdiff_t n = read_on(input, CONIC_INPUT_WINDOW - input->filled);
-    if (n < 0 && errno == EINTR) { /* whoever waits for a pipe may have been told to stop */
+    if (n < 0 && errno == EINTR) { /* a signal may ask to stop while a pipe is waited for */
       conic_status status = conic_progress(input->context, "read", 0.0);
       if (status != CONIC_OK)
         return status;
@@ -122,7 +122,7 @@ uint64_t conic_input_remaining_bytes(const conic_input *input) {
   return offset < input->size_bytes ? input->size_bytes - offset : 0;
 }
 
-/* Past what need not be read. */
+/* Jumps over bytes that need not be read. */
 static void jump(conic_input *input, uint64_t count) {
   input->window_offset += input->next + count;
   input->next = input->filled = 0;
@@ -219,7 +219,7 @@ conic_status conic_input_line(conic_input *input, const char **text, size_t *len
              : CONIC_OK;
 }
 
-/* The length of a \ and line end, 0 where the text at `c` is something else. */
+/* The length of a \ and line end; 0 where something else is at `c`. */
 static size_t continuation(const conic_input *input, const char *c, const char *end) {
   if (!input->continues_lines || *c != '\\')
     return 0;
@@ -232,7 +232,7 @@ static int is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
-/* To the next byte that is neither blank nor continuation. */
+/* To the next byte that is neither blank nor part of a continuation. */
 static conic_status skip_blanks(conic_input *input) {
   for (;;) {
     conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD + 4);

@@ -8,24 +8,24 @@
 #include "conic/context.h"
 #include "core/base/message.h"
 
-/* No more bytes than this can be asked for at once. */
+/* The most bytes that can be asked for at once. */
 enum { CONIC_INPUT_WINDOW = 256 * 1024, CONIC_INPUT_LONGEST_WORD = 4096, CONIC_INPUT_LONGEST_LINE = 65536 };
 
 typedef struct conic_input {
   conic_context *context;
   const char *name; /* for messages */
   int descriptor;
-  int has_size;          /* size_bytes is known: no pipe or terminal */
+  int has_size;          /* size_bytes is known: the input is no pipe or terminal */
   uint64_t size_bytes;   /* from the first byte read */
-  uint64_t start_bytes;  /* which stands so far in the file */
-  unsigned char *window; /* the bytes from `next` to before `filled` are there */
+  uint64_t start_bytes;  /* where that byte is in the file */
+  unsigned char *window; /* the bytes from `next` to before `filled` are valid */
   size_t next, filled;
   uint64_t window_offset;  /* of window[0] in the file */
   uint64_t reported_bytes; /* when progress was reported last */
-  uint64_t line;           /* of the next byte, from 1; counted by the functions for text only */
+  uint64_t line;           /* of the next byte, from 1; only the functions for text count it */
   int is_at_end;           /* nothing follows the window's bytes */
-  int has_jumped;          /* the descriptor reads on elsewhere than the window does */
-  int continues_lines;     /* text: a line that ends with \ goes on in the next */
+  int has_jumped;          /* the descriptor's place is not behind the window */
+  int continues_lines;     /* text: a line that ends with \ continues in the next one */
 } conic_input;
 
 /* Opens PATH ("-" is standard input) for reading; `path` must outlive *input. On success the caller ends it with
@@ -33,8 +33,8 @@ typedef struct conic_input {
 conic_status conic_input_open(conic_context *context, const char *path, conic_input *input);
 void conic_input_close(conic_input *input);
 
-/* Reads on until `count` bytes are in the window; fewer are there afterwards only where the file ends. Errors: INPUT
- * (reading failed), CANCELLED. */
+/* Reads on until `count` bytes are in the window, or fewer at the end of the file. Errors: INPUT (reading failed),
+ * CANCELLED. */
 conic_status conic_input_fill(conic_input *input, size_t count);
 
 static inline size_t conic_input_available(const conic_input *input) {
@@ -45,12 +45,12 @@ static inline const unsigned char *conic_input_bytes(const conic_input *input) {
   return input->window + input->next;
 }
 
-/* Takes the rest of the file into memory, no more than `most` bytes; the caller releases *bytes, on failure too, which
- * begins null. Errors: as fill, and INPUT (there are more), MEMORY. */
+/* Takes the rest of the file into memory, at most `most` bytes. The caller releases *bytes, on failure too; it begins
+ * null. Errors: as fill, and INPUT (there are more), MEMORY. */
 conic_status conic_input_take_rest(conic_input *input, uint64_t most, unsigned char **bytes, size_t *n_bytes);
 
-/* Copies n bytes from an offset of a file that has_size, wherever the next byte is; fewer are there where the file
- * ends. Errors: INPUT (reading failed). */
+/* Copies n bytes from an offset of a file that has_size, without moving the next byte; fewer at the end of the file.
+ * Errors: INPUT (reading failed). */
 conic_status conic_input_read_at(const conic_input *input, uint64_t offset, void *bytes, size_t n, size_t *n_read);
 
 /* The offset of the next byte. */
@@ -58,50 +58,49 @@ static inline uint64_t conic_input_offset(const conic_input *input) {
   return input->window_offset + input->next;
 }
 
-/* Bytes from the next one to the end; UINT64_MAX where that is not known. */
+/* Bytes from the next one to the end; UINT64_MAX if not known. */
 uint64_t conic_input_remaining_bytes(const conic_input *input);
 
-/* Passes over `count` bytes, or to the end where there are fewer; *skipped says how many. Errors: as fill. */
+/* Skips `count` bytes, or all up to the end; *skipped says how many. Errors: as fill. */
 conic_status conic_input_skip(conic_input *input, uint64_t count, uint64_t *skipped);
 
-/* How long the byte-order mark of UTF-8 is at the start of text: 0 or 3. Errors: INPUT (UTF-16). */
+/* The length of UTF-8's byte-order mark at the start of text: 0 or 3. Errors: INPUT (UTF-16). */
 conic_status conic_text_byte_order_mark(conic_context *context, const char *name, const unsigned char *bytes,
                                         size_t n_bytes, size_t *n_mark);
 
-/* Of text at its start: passes over the byte-order mark of UTF-8. Errors: as fill, and INPUT (UTF-16). */
+/* Skips UTF-8's byte-order mark at the start of text. Errors: as fill, and INPUT (UTF-16). */
 conic_status conic_input_skip_mark(conic_input *input);
 
-/* The rest of the line without its end, which is not passed over: conic_input_next_line does that. Valid until the next
- * call. Errors: as fill, and INPUT (longer than CONIC_INPUT_LONGEST_LINE). */
+/* The rest of the line without its end, which conic_input_next_line skips. Valid until the next call. Errors: as fill,
+ * and INPUT (longer than CONIC_INPUT_LONGEST_LINE). */
 conic_status conic_input_line(conic_input *input, const char **text, size_t *length);
 
-/* The next word of the line and past it; *length 0 where the line (or file) ends. Valid until the next call. Words are
- * parted by blanks and carriage returns. Errors: as fill, and INPUT (longer than
- * CONIC_INPUT_LONGEST_WORD). */
+/* Takes the next word of the line; *length is 0 where the line (or file) ends. Valid until the next call. Blanks and
+ * carriage returns separate words. Errors: as fill, and INPUT (longer than CONIC_INPUT_LONGEST_WORD). */
 conic_status conic_input_word(conic_input *input, const char **word, size_t *length);
 
-/* Logs "FILE: what is wrong (line N)" of the line that is being read, and returns INPUT. */
+/* Logs "FILE: what is wrong (line N)" for the current line, and returns INPUT. */
 conic_status conic_input_wrong(const conic_input *input, const char *format, ...) CONIC_AS_PRINTF(2, 3);
 
-/* "FOLDER/file" beside the file that is read, or `file` itself where that begins at the root; 0 where the room is too
- * small, else the length. */
+/* "FOLDER/file" beside the file that is read, or `file` itself if it begins at the root. Returns the length, or 0 where
+ * the room is too small. */
 size_t conic_input_beside(const conic_input *input, const char *file, size_t length, char *path, size_t room);
 
-/* What is done from after a line's first word on. */
+/* What is done after a line's first word. */
 typedef struct conic_input_statement {
   const char *keyword;
   conic_status (*read)(void *reader);
 } conic_input_statement;
 
-/* Whether the word is that one. */
+/* Whether the word is `keyword`. */
 int conic_input_is(const char *word, size_t length, const char *keyword);
 
-/* Reads to the end: of each line the statement whose keyword is its first word; other lines are passed over. Errors: as
- * fill, and the statements'. */
+/* Reads to the end. Each line whose first word is a statement's keyword goes to that statement; other lines are
+ * skipped. Errors: as fill, and the statements'. */
 conic_status conic_input_read_statements(conic_input *input, const conic_input_statement *statements, size_t n,
                                          void *reader);
 
-/* To the start of the next line; *is_done where the file ends before one. Errors: as fill. */
+/* To the start of the next line; *is_done where the file ends before. Errors: as fill. */
 conic_status conic_input_next_line(conic_input *input, int *is_done);
 
 #endif

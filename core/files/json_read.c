@@ -122,7 +122,7 @@ conic_status conic_json_begin_array(conic_json *json) {
   return begin_text(json, '[', "an array is expected");
 }
 
-/* Past the comma to the next part of an object or array, or past its end. */
+/* Past the comma to the next member or item, or past the closing character. */
 static int next_part(conic_json *json, char closing) {
   if (json->status != CONIC_OK)
     return 0;
@@ -147,8 +147,8 @@ static int hex_digit(char c) {
   return c >= '0' && c <= '9' ? c - '0' : (c | 0x20) >= 'a' && (c | 0x20) <= 'f' ? (c | 0x20) - 'a' + 10 : -1;
 }
 
-/* One character of a string, escaped or not, as one byte; what is not ASCII is of no use in keys, and becomes '?' where
- * it is escaped. Returns -1 after a message. */
+/* One character of a string, escaped or not, as one byte. Escaped characters beyond ASCII, which no key needs, become
+ * '?'. Returns -1 after a message. */
 static int read_character(conic_json *json) {
   static const char escapes[] = "\"\\/bfnrt", meanings[] = "\"\\/\b\f\n\r\t";
   unsigned char c = (unsigned char)*json->next++;
@@ -210,12 +210,8 @@ int conic_json_next_item(conic_json *json) {
   return next_part(json, ']');
 }
 
-static int is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 static const char *skip_digits(const char *c, const char *end) {
-  while (c < end && is_digit(*c))
+  while (c < end && conic_is_digit(*c))
     c++;
   return c;
 }
@@ -334,7 +330,7 @@ conic_status conic_json_skip(conic_json *json) {
       conic_json_skip(json);
   } else if (c == '"')
     return read_string(json, key, sizeof key);
-  else if (c == '-' || is_digit(c))
+  else if (c == '-' || conic_is_digit(c))
     return conic_json_number(json, &number);
   else
     return skip_word(json);

@@ -1,5 +1,5 @@
-/* A strict reader of JSON files, value by value in the file's order. Once something was wrong, every call says so again
- * (with one message), so that callers may check at the end. */
+/* A strict reader of JSON files, value by value in the file's order. After an error every call fails (with one message
+ * in all), so that callers may check at the end. */
 #ifndef CONIC_JSON_READ_H
 #define CONIC_JSON_READ_H
 
@@ -17,15 +17,15 @@ typedef struct conic_json {
   const char *next, *end;
   uint64_t line;
   int depth;
-  int is_first[CONIC_JSON_DEPTH]; /* nothing has been read of the object or array at that depth */
+  int is_first[CONIC_JSON_DEPTH]; /* nothing has been read yet of the object or array at that depth */
   conic_status status;
-  int is_silent; /* for a caller that says itself what is wrong; 0 at first */
+  int is_silent; /* for a caller that reports errors itself; 0 at first */
 } conic_json;
 
 /* Reads the whole file, of at most 16 MiB ("-" is standard input); `path` must outlive *json. On success the caller
  * ends it with conic_json_close. Errors: INPUT, MEMORY. */
 conic_status conic_json_open(conic_context *context, const char *path, conic_json *json);
-/* The same for JSON that is in memory, of which a copy is made; `name` is for messages. Errors: INPUT, MEMORY. */
+/* The same for JSON in memory, which is copied; `name` is for messages. Errors: INPUT, MEMORY. */
 conic_status conic_json_take(conic_context *context, const char *name, const void *bytes, size_t n_bytes,
                              conic_json *json);
 void conic_json_close(conic_json *json);
@@ -34,37 +34,35 @@ void conic_json_close(conic_json *json);
 conic_status conic_json_begin_object(conic_json *json);
 conic_status conic_json_begin_array(conic_json *json);
 
-/* To the next member's value; 0 at the end of the object, which is then left, and after an error. Keys are cut to the
- * room. */
+/* To the next member's value. Returns 0 at the end of the object, which is then left, and after an error. Keys are cut
+ * to the room. */
 int conic_json_next_member(conic_json *json, char key[CONIC_JSON_KEY_ROOM]);
 
-/* To the next item's value; 0 at the end of the array, which is then left, and after an error. */
+/* To the next item's value. Returns 0 at the end of the array, which is then left, and after an error. */
 int conic_json_next_item(conic_json *json);
 
-/* The value that comes next, which must be a number. */
+/* The next value, which must be a number. */
 conic_status conic_json_number(conic_json *json, double *value);
 
-/* The value that comes next, which must be a string, cut to the room; characters beyond ASCII that are escaped become
- * '?'. */
+/* The next value, which must be a string; it is cut to the room. Escaped characters beyond ASCII become '?'. */
 conic_status conic_json_text(conic_json *json, char *text, size_t room);
 
-/* The same where it may be long, or should not be copied: its bytes as they stand in the file, escapes and all. */
+/* A string that may be long, without a copy: its bytes as in the file, with escapes. */
 conic_status conic_json_raw_text(conic_json *json, const char **text, size_t *length);
 
-/* Up to n numbers of the array that comes next, null being NaN; others are passed over. *n_read says how many it has.
- */
+/* Up to n numbers of the next array, with NaN for null; others are skipped. *n_read says how many it has. */
 conic_status conic_json_numbers(conic_json *json, double *values, size_t n, size_t *n_read);
 
-/* The value that comes next, which must be true or false. */
+/* The next value, which must be true or false. */
 conic_status conic_json_truth(conic_json *json, int *is_true);
 
-/* Passes over the value that comes next, whatever it is. */
+/* Skips the next value, of any kind. */
 conic_status conic_json_skip(conic_json *json);
 
 /* Nothing may follow. */
 conic_status conic_json_end(conic_json *json);
 
-/* Logs "FILE: what (line N)" unless something was wrong before. */
+/* Logs "FILE: what (line N)", unless something was wrong before. */
 conic_status conic_json_wrong(conic_json *json, const char *what);
 
 #endif

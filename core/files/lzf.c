@@ -22,7 +22,7 @@ int conic_lzf_unpack(const unsigned char *packed, size_t n_packed, unsigned char
     distance = ((head & 31) << 8) + packed[from++] + 1;
     if (distance > to || length > n_bytes - to)
       return 0;
-    for (size_t i = 0; i < length; i++) /* which may copy what it has just written */
+    for (size_t i = 0; i < length; i++) /* which may read what it has just written */
       bytes[to + i] = bytes[to + i - distance];
     to += length;
   }

@@ -11,7 +11,7 @@
 #include "core/files/disk.h"
 #include "core/files/guard.h"
 
-/* What cannot be mapped is read to its end. */
+/* Reads a file that cannot be mapped to its end. */
 static conic_status read_all(conic_context *context, const char *name, int descriptor, conic_mapping *mapping) {
   size_t room = 0;
   for (;;) {
@@ -77,7 +77,8 @@ void conic_mapping_close(conic_context *context, conic_mapping *mapping) {
 }
 
 static uint64_t mix_word(uint64_t sum, uint64_t word) {
-  sum = (sum ^ word) * UINT64_C(0x9e3779b97f4a7c15); /* both steps can be undone, so no word's change is lost */
+  sum = (sum ^ word) * UINT64_C(0x9e3779b97f4a7c15); /* both steps can be undone, so that every change of a word
+                                                        shows */
   return sum << 29 | sum >> 35;
 }
 

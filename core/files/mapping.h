@@ -10,17 +10,17 @@
 typedef struct conic_mapping {
   unsigned char *bytes;
   size_t n_bytes;
-  int is_mapped; /* or allocated, where the file is a pipe */
+  int is_mapped; /* else allocated: the file is a pipe */
 } conic_mapping;
 
 /* "-" is standard input. The caller closes it. Errors: INPUT, MEMORY. */
 conic_status conic_mapping_open(conic_context *context, const char *path, conic_mapping *mapping);
 void conic_mapping_close(conic_context *context, conic_mapping *mapping);
 
-/* 64 bits that change with any word of the bytes, at the speed of memory. */
+/* 64 bits that change with any word of the bytes, computed at the speed of memory. */
 unsigned long long conic_checksum(const unsigned char *bytes, size_t n_bytes);
 
-/* The same of bytes that come in pieces. */
+/* The same for bytes that come in pieces. */
 typedef struct conic_checksumming {
   uint64_t n_bytes, lanes[4];
   unsigned char rest[32];

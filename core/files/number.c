@@ -10,8 +10,8 @@
 static const double exact_powers[23] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                         1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
-/* A decimal number as it was found: the digits from `digits` on, of which the first is not zero, stand before and after
- * the point; value = 0.d₁d₂d₃… × 10^magnitude. */
+/* A decimal number as found: value = 0.d₁d₂d₃… × 10^magnitude. Its digits begin at `digits`, the first one not zero,
+ * and stand before and after the point. */
 typedef struct decimal {
   const char *digits, *end;
   int64_t magnitude;
@@ -19,7 +19,7 @@ typedef struct decimal {
   int64_t n_digits;
 } decimal;
 
-/* A natural number, least significant word first. 800 digits shifted by 4100 bits fit. */
+/* A natural number, least significant word first. There is room for 800 digits shifted by 4100 bits. */
 enum { MAX_WORDS = 256, MAX_DIGITS = 800 };
 
 typedef struct natural {
@@ -57,8 +57,8 @@ static void shift_left_words(natural *number, int n_words) {
   number->n += n_words;
 }
 
-/* The number's most significant 64 bits, the highest of them set, and how many bits lie below them (negative where
- * there are fewer than 64); *has_rest where a bit below is set. */
+/* The number's most significant 64 bits, with the highest set; *n_below: how many bits are below them (negative for a
+ * number of fewer than 64 bits); *has_rest: one of those is set. */
 static uint64_t leading_bits(const natural *number, int *n_below, int *has_rest) {
   uint64_t bits = 0;
   int taken = 0, i_word = number->n - 1, shift = 0;
@@ -90,8 +90,7 @@ static double infinity(void) {
   return power_of_two(1023) * 2.0;
 }
 
-/* (bits + a little, where has_rest) × 2^exponent, rounded to the 53 bits of a double or the fewer of a subnormal one.
- */
+/* (bits + a little, if has_rest) × 2^exponent, rounded to the 53 bits of a double, or fewer for a subnormal one. */
 static double round_to_double(uint64_t bits, int exponent, int has_rest) {
   int dropped = exponent + 11 < -1074 ? -1074 - exponent : 11;
   if (dropped > 64)
@@ -113,7 +112,7 @@ static natural natural_of_digits(const decimal *source, int64_t *n_digits) {
   for (const char *c = source->digits; c < source->end; c++) {
     if (*c == '.')
       continue;
-    if (*n_digits == MAX_DIGITS) { /* what follows can only break a tie */
+    if (*n_digits == MAX_DIGITS) { /* later digits can only break a tie */
       if (*c == '0')
         continue;
       multiply_add(&number, 10, 1);
@@ -126,7 +125,7 @@ static natural natural_of_digits(const decimal *source, int64_t *n_digits) {
   return number;
 }
 
-/* Exact for any number of digits: as a quotient of natural numbers, rounded once. */
+/* Exact for any number of digits: a quotient of natural numbers, rounded once. */
 static double convert_exactly(const decimal *source) {
   int64_t n_digits;
   int n_below, has_rest = 0, n_shifted_words = 0;
@@ -163,11 +162,7 @@ static double convert(const decimal *source) {
   return convert_exactly(source);
 }
 
-static int is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-/* How much of `text` is the word, in any case; 0 where it is another. `word` is in lower case. */
+/* How many bytes of `text` are the word, in any case; 0 for another word. `word` is in lower case. */
 static size_t match_word(const char *text, size_t length, const char *word) {
   size_t n = strlen(word);
   if (length < n)
@@ -197,7 +192,7 @@ static size_t parse_named(const char *text, size_t length, double *value) {
   return n;
 }
 
-/* The exponent after the digits, bounded so that sums with it cannot overflow. Returns past it. */
+/* The exponent after the digits, limited so that sums with it cannot overflow. Returns past it. */
 static const char *parse_exponent(const char *text, const char *end, int64_t *exponent) {
   const char *c = text;
   int is_negative;
@@ -208,9 +203,9 @@ static const char *parse_exponent(const char *text, const char *end, int64_t *ex
   is_negative = c < end && *c == '-';
   if (c < end && (*c == '-' || *c == '+'))
     c++;
-  if (c == end || !is_digit(*c))
+  if (c == end || !conic_is_digit(*c))
     return text;
-  for (; c < end && is_digit(*c); c++)
+  for (; c < end && conic_is_digit(*c); c++)
     if (*exponent < INT64_C(1) << 50)
       *exponent = *exponent * 10 + (*c - '0');
   if (is_negative)
@@ -228,7 +223,7 @@ static const char *parse_digits(const char *text, const char *end, decimal *foun
       has_point = 1;
       continue;
     }
-    if (!is_digit(*c))
+    if (!conic_is_digit(*c))
       break;
     has_digit = 1;
     if (!found->digits) {
@@ -269,7 +264,7 @@ size_t conic_number_parse(const char *text, size_t length, double *value) {
   return (size_t)(after - text);
 }
 
-/* `n` digits, the first worth 10^exponent, as text: plainly where that is short, else with an exponent. */
+/* `n` digits, the first worth 10^exponent, as text: without an exponent if that is short. */
 static size_t lay_out_digits(char *text, int is_negative, const char *digits, int n, int exponent) {
   char *c = text;
   while (n > 1 && digits[n - 1] == '0')
@@ -298,19 +293,19 @@ static size_t lay_out_digits(char *text, int is_negative, const char *digits, in
   return (size_t)(c - text);
 }
 
-/* `value` to `precision` significant digits. The C library's decimal point may be any; all that is no digit is left
- * out. */
+/* `value` to `precision` significant digits. The C library's decimal point may be any character; only digits are
+ * kept. */
 static size_t print_digits(char text[CONIC_NUMBER_ROOM], double value, int precision) {
   char scientific[64], digits[24];
   int n = 0, exponent = 0, is_negative = 0;
   snprintf(scientific, sizeof scientific, "%.*e", precision - 1, value < 0.0 ? -value : value);
   const char *c = scientific;
   for (; *c && *c != 'e'; c++)
-    if (is_digit(*c))
+    if (conic_is_digit(*c))
       digits[n++] = *c;
   for (; *c; c++) {
     is_negative |= *c == '-';
-    if (is_digit(*c))
+    if (conic_is_digit(*c))
       exponent = exponent * 10 + (*c - '0');
   }
   return lay_out_digits(text, value < 0.0, digits, n, is_negative ? -exponent : exponent);
@@ -338,7 +333,8 @@ size_t conic_number_print(char text[CONIC_NUMBER_ROOM], double value) {
   return n;
 }
 
-/* Floats of everyday size by exact integers in double: a candidate that reads back is right, however it was found. */
+/* Floats of ordinary size, by exact integers in double. A candidate that reads back as `value` is right, however it was
+ * found. */
 static size_t print_float_fast(char text[CONIC_NUMBER_ROOM], float value) {
   double size = value < 0.0f ? -(double)value : (double)value;
   char digits[12];

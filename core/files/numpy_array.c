@@ -10,7 +10,7 @@ typedef struct npy_text {
   size_t n;
 } npy_text;
 
-/* What follows 'key': in the header, past blanks; empty where it is not there. */
+/* The text after 'key': in the header, without blanks; empty where the key is missing. */
 static npy_text find_npy_value(npy_text header, const char *key) {
   size_t n_key = strlen(key);
   for (size_t i = 0; i + n_key <= header.n; i++)

@@ -17,7 +17,7 @@ typedef struct conic_numpy_array {
 conic_status conic_numpy_array_open(conic_context *context, const char *file, const char *name,
                                     const unsigned char *bytes, size_t n_bytes, conic_numpy_array *array);
 
-/* A number by its place in the order of C, whatever the file's is; it must be there. */
+/* Number i, which must exist, in C's order, whatever the file's order is. */
 double conic_numpy_array_at(const conic_numpy_array *array, size_t i);
 
 #endif

@@ -1,4 +1,4 @@
-/* Bytes that several threads put aside at a time, and read again: in a file without a name. */
+/* Bytes that several threads at once append and read again, in a file without a name. */
 #ifndef CONIC_PILE_H
 #define CONIC_PILE_H
 
@@ -15,10 +15,10 @@ typedef struct conic_pile {
 conic_status conic_pile_begin(conic_context *context, const char *path, conic_pile *pile);
 void conic_pile_end(conic_pile *pile); /* zero is allowed */
 
-/* Puts bytes down; *at is where. Errors: IO. */
+/* Appends bytes; *at says where. Errors: IO. */
 conic_status conic_pile_append(conic_pile *pile, const void *bytes, size_t n_bytes, uint64_t *at);
 
-/* Copies bytes that are there. Errors: IO. */
+/* Copies bytes that were appended. Errors: IO. */
 conic_status conic_pile_read(const conic_pile *pile, uint64_t at, void *bytes, size_t n_bytes);
 
 #endif

@@ -1,4 +1,4 @@
-/* A file without a name, which the system takes away however the program ends. */
+/* A file without a name, which the system removes however the program ends. */
 #ifndef CONIC_SCRATCH_H
 #define CONIC_SCRATCH_H
 
@@ -7,14 +7,14 @@
 
 #include "conic/context.h"
 
-/* Where files must have a name, they have one that begins so, for a moment. */
+/* Where files must have a name for a moment, it begins so. */
 #define CONIC_SCRATCH_START ".conic-spool-"
 
 typedef struct conic_scratch {
   conic_context *context;
-  const char *path; /* beside which it lies, on the disk that has to hold the result; for messages too */
+  const char *path; /* the file lies beside it, on the disk that will hold the result; for messages too */
   int descriptor;   /* -1: not open */
-  int is_named;     /* it has that path itself, of whoever opened it */
+  int is_named;     /* the file has that path; whoever opened it owns it */
 } conic_scratch;
 
 /* `path` must outlive the file. Errors: MEMORY, IO. */

@@ -20,7 +20,7 @@ static uint32_t turned_right(uint32_t x, int n) {
   return x >> n | x << (32 - n);
 }
 
-/* One of the 64 steps: of eight numbers two change, and where each stands turns with the step's number. */
+/* One of the 64 steps. Two of the eight numbers change; their places turn with the step's number. */
 static inline void take_step(uint32_t s[8], int i, uint32_t added) {
   const uint32_t a = s[-i & 7], b = s[(1 - i) & 7], c = s[(2 - i) & 7], e = s[(4 - i) & 7], f = s[(5 - i) & 7],
                  g = s[(6 - i) & 7];
@@ -40,7 +40,7 @@ static void mix_block(uint32_t state[8], const unsigned char block[64]) {
            (turned_right(b, 17) ^ turned_right(b, 19) ^ b >> 10);
   }
   memcpy(s, state, sizeof s);
-  for (int i = 0; i < 64; i += 8) { /* so that all of s stays in registers */
+  for (int i = 0; i < 64; i += 8) { /* in eights, so that all of s stays in registers */
     take_step(s, 0, round_constants[i] + w[i]);
     take_step(s, 1, round_constants[i + 1] + w[i + 1]);
     take_step(s, 2, round_constants[i + 2] + w[i + 2]);
@@ -58,7 +58,7 @@ static void mix_block(uint32_t state[8], const unsigned char block[64]) {
 enum { MANY_BYTES = 4096 };
 
 void conic_sha256_begin(conic_sha256 *sum) {
-  /* Those of the square roots of the first 8. */
+  /* The fractions of the square roots of the first 8 primes. */
   static const uint32_t first[8] = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
                                     0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
   memcpy(sum->state, first, sizeof first);

@@ -1,4 +1,4 @@
-/* SHA-256 (FIPS 180-4), by which others can check a file. */
+/* SHA-256 (FIPS 180-4), with which others can check a file. */
 #ifndef CONIC_SHA256_H
 #define CONIC_SHA256_H
 

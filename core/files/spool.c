@@ -12,7 +12,7 @@ void conic_spool_begin(conic_context *context, const char *path, size_t memory_b
   spool->most_held = memory_bytes;
 }
 
-/* All but so many. */
+/* Releases all but so many. */
 static void release_slabs(conic_spool *spool, size_t n_kept) {
   while (spool->n_slabs > n_kept)
     conic_memory_release(spool->context, spool->held[--spool->n_slabs]);
@@ -38,7 +38,7 @@ static conic_status write_to_file(conic_spool *spool, const void *bytes, size_t 
   return status;
 }
 
-/* Writes to the file what is held and gives its memory back, but for a slab. */
+/* Writes the held bytes to the file and gives their memory back, except for one slab. */
 static conic_status flush(conic_spool *spool) {
   conic_status status = CONIC_OK;
   for (size_t i = 0, left = spool->n_held; left > 0 && status == CONIC_OK; i++) {
@@ -76,7 +76,7 @@ static conic_status hold(conic_spool *spool, const unsigned char *bytes, size_t 
   return CONIC_OK;
 }
 
-/* Once there is a file, no more than a slab is held: so few bytes are not written one by one. */
+/* Once there is a file, one slab is held, so that few bytes are not written one by one. */
 static int fits(const conic_spool *spool, size_t n_bytes) {
   size_t most = spool->most_held;
   if (spool->file_bytes && most > CONIC_SPOOL_SLAB)

@@ -7,10 +7,10 @@
 #include "core/base/message.h"
 #include "core/files/inflate.h"
 
-/* Bytes of the records, without the names and what follows these. */
+/* Bytes of the records, without names and what follows them. */
 enum { END = 22, ENTRY = 46, LOCAL = 30, STORED = 0, DEFLATED = 8 };
 
-/* A remainder by the polynomial 0x04c11db7, its bits reversed. */
+/* The CRC: a remainder by the polynomial 0x04c11db7, with its bits reversed. */
 uint32_t conic_zip_sum(const unsigned char *bytes, size_t n) {
   uint32_t table[256], sum = 0xffffffff;
   for (uint32_t i = 0; i < 256; i++) {
@@ -46,7 +46,7 @@ conic_status conic_zip_open(conic_context *context, const char *name, const unsi
 
 static const size_t none = (size_t)-1;
 
-/* Where the entry of that file begins, or `none`; 0 where the list is spoiled there. */
+/* Finds the entry of that file, or `none`; returns 0 where the list is spoiled. */
 static int find_entry(const conic_zip *zip, const char *file, size_t *found) {
   size_t n_file = strlen(file), at = zip->directory;
   for (size_t i = 0; i < zip->n_entries; i++) {
@@ -71,7 +71,7 @@ int conic_zip_has(const conic_zip *zip, const char *file) {
   return find_entry(zip, file, &found) && found != none;
 }
 
-/* Where the packed bytes begin, past the record that stands before them; `none` where they are not all there. */
+/* Where the packed bytes begin, after their record; `none` where some are missing. */
 static size_t find_packed(const conic_zip *zip, size_t local, size_t n_packed) {
   if (local > zip->n_bytes || zip->n_bytes - local < LOCAL || memcmp(zip->bytes + local, "PK\3\4", 4) != 0)
     return none;
@@ -126,11 +126,11 @@ conic_status conic_zip_read(const conic_zip *zip, const char *file, size_t most_
   return status;
 }
 
-/* What both records say of a file, from "version needed" on. */
+/* The facts of a file in both records, from "version needed" on. */
 static void put_facts(const conic_zip_writer *writer, int i, unsigned char facts[26]) {
   memset(facts, 0, 26);
   conic_store_bits(facts, 2, 10);
-  conic_store_bits(facts + 8, 2, 0x21); /* the first day that can be said */
+  conic_store_bits(facts + 8, 2, 0x21); /* the first day that a date can hold */
   conic_store_32(facts + 10, writer->files[i].sum);
   conic_store_32(facts + 14, writer->files[i].n_bytes);
   conic_store_32(facts + 18, writer->files[i].n_bytes);

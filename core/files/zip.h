@@ -1,4 +1,4 @@
-/* ZIP archives in memory: a file in one by its name; and writing one, of files that are stored as they are. */
+/* ZIP archives in memory: finding a file by its name; and writing an archive of files that are stored unpacked. */
 #ifndef CONIC_ZIP_H
 #define CONIC_ZIP_H
 
@@ -11,27 +11,27 @@ typedef struct conic_zip {
   conic_context *context;
   const char *name; /* for messages */
   const unsigned char *bytes;
-  size_t n_bytes, directory, n_entries; /* where the list of its files begins, and how many there are */
+  size_t n_bytes, directory, n_entries; /* directory: where the list of its n_entries files begins */
 } conic_zip;
 
-/* Looks for the list at the archive's end; `bytes` must outlive *zip. Errors: INPUT. */
+/* Finds the list at the archive's end; `bytes` must outlive *zip. Errors: INPUT. */
 conic_status conic_zip_open(conic_context *context, const char *name, const unsigned char *bytes, size_t n_bytes,
                             conic_zip *zip);
 
-/* Whether the archive has a file of that name, whatever folder it lies in. */
+/* Whether the archive has a file of that name, in any folder. */
 int conic_zip_has(const conic_zip *zip, const char *file);
 
-/* Its contents, whose sum is right, in a block that the caller releases; no more than `most_bytes`. Errors: INPUT,
+/* Its contents, with their sum checked, in a block that the caller releases; at most `most_bytes`. Errors: INPUT,
  * MEMORY, UNSUPPORTED (it is deflated, and zlib is not there). */
 conic_status conic_zip_read(const conic_zip *zip, const char *file, size_t most_bytes, unsigned char **contents,
                             size_t *n_contents);
 
-/* The sum of ZIP, gzip and PNG. */
+/* The CRC-32 of ZIP, gzip and PNG. */
 uint32_t conic_zip_sum(const unsigned char *bytes, size_t n);
 
 enum { CONIC_ZIP_MOST_FILES = 16 };
 
-/* An archive that is being written to a stream from its start; begins as {.to = stream}. */
+/* An archive that is written to a stream from its start; begins as {.to = stream}. */
 typedef struct conic_zip_writer {
   FILE *to;
   uint32_t offset;

@@ -7,7 +7,7 @@
 
 #include <zstd.h>
 
-/* What is packed is short and has no repetitions to look for; higher levels find nothing more. */
+/* The data are short and without repetitions; higher levels find nothing more. */
 enum { LEVEL = 3 };
 
 struct conic_zstd {

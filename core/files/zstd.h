@@ -6,7 +6,7 @@
 
 #include "conic/context.h"
 
-/* What one thread needs for it; zstd takes that memory itself. */
+/* One thread's state for zstd, which allocates that memory itself. */
 typedef struct conic_zstd conic_zstd;
 
 /* For packing and unpacking. Errors: MEMORY, UNSUPPORTED (not in this build). */
@@ -19,13 +19,13 @@ void conic_zstd_set_level(conic_zstd *zstd, int level);
 /* Room that packing may need for so many bytes. */
 size_t conic_zstd_bound(size_t n_bytes);
 
-/* Packs; returns how many bytes it came to, 0 where that are not fewer than before. */
+/* Packs; returns the number of bytes, or 0 where they are not fewer than before. */
 size_t conic_zstd_pack(conic_zstd *zstd, const unsigned char *from, size_t n_bytes, unsigned char *to);
 
-/* The same whatever it comes to; 0 where memory failed. */
+/* Packs even if the bytes become more; 0 where memory failed. */
 size_t conic_zstd_pack_whole(conic_zstd *zstd, const unsigned char *from, size_t n_bytes, unsigned char *to);
 
-/* Unpacks; whether it came to n_bytes exactly. */
+/* Unpacks; returns whether that gives exactly n_bytes. */
 int conic_zstd_unpack(conic_zstd *zstd, const unsigned char *from, size_t n_packed, unsigned char *to, size_t n_bytes);
 
 #endif

@@ -15,7 +15,7 @@ const char conic_readable_kinds[] =
 #define PICTURE_REMEDY "give a scene; a picture is for conic diff or --texture"
 #define BYTES(text) text, sizeof(text) - 1
 
-/* Longer beginnings come before those that they begin with. */
+/* A longer beginning comes before one that it starts with. */
 static const conic_foreign_kind kinds[] = {
     {"a point-octree", "conic render and conic info take it, by its path", NULL, BYTES("CONICOT\n"), 0},
     {"a layered point cloud", "conic render and conic info take it, by its path", NULL, BYTES("CONICLP\n"), 0},
@@ -103,7 +103,7 @@ const conic_foreign_kind *conic_foreign_kind_find(const char *path, const char *
     const conic_foreign_kind *kind = &kinds[i];
     if (!kind->bytes || n < kind->at + kind->n_bytes || memcmp(bytes + kind->at, kind->bytes, kind->n_bytes) != 0)
       continue;
-    /* an archive whose ending says what is packed in it is called by that */
+    /* an archive is named after its contents if the ending tells them */
     return is_archive(kind) && by_ending && !is_archive(by_ending) ? by_ending : kind;
   }
   return NULL;

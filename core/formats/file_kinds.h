@@ -1,5 +1,5 @@
-/* What a file is that is not read as a model: told by its first bytes, or by the ending of its name, with what would
- * make it readable. */
+/* Kinds of files that are not read as models, told by their first bytes or the ending of their name, and what would
+ * make them readable. */
 #ifndef CONIC_FILE_KINDS_H
 #define CONIC_FILE_KINDS_H
 
@@ -8,16 +8,16 @@
 typedef struct conic_foreign_kind {
   const char *name;    /* "an HDF5 file" */
   const char *remedy;  /* what to do about it, as a request */
-  const char *endings; /* "fls rcs": a name that ends so is such a file if no bytes say otherwise; null: none */
-  const char *bytes;   /* how such a file begins, from byte `at` on; null: any way */
+  const char *endings; /* "fls rcs": the kind of a name that ends so, if no bytes say otherwise; null: none */
+  const char *bytes;   /* how such a file begins, from byte `at` on; null: not known */
   size_t n_bytes, at;
 } conic_foreign_kind;
 
-/* The kind of a file that begins with these bytes and has that name; null: none that is known. Those that bytes tell
- * are looked at where `by_bytes`, and else those that endings tell. */
+/* The kind of a file with these first bytes and that name; null: none is known. With `by_bytes` the bytes decide, else
+ * the ending. */
 const conic_foreign_kind *conic_foreign_kind_find(const char *path, const char *bytes, size_t n, int by_bytes);
 
-/* Everything that is read, for messages. */
+/* All kinds that are read, for messages. */
 extern const char conic_readable_kinds[];
 
 #endif

@@ -13,7 +13,7 @@
 #include "core/splats/point_fields.h"
 #include "core/splats/raw_colors.h"
 
-/* Where the fields of the public header stand. */
+/* Where the fields are in the public header. */
 enum {
   AT_MAJOR = 24,
   AT_MINOR = 25,
@@ -25,15 +25,15 @@ enum {
   AT_N_POINTS_32 = 107,
   AT_SCALE = 131,
   AT_OFFSET = 155,
-  AT_WAVEFORMS = 227,    /* since 1.3: where they begin */
-  AT_LATE_RECORDS = 235, /* since 1.4: where records begin that follow the points */
+  AT_WAVEFORMS = 227,    /* since 1.3: where waveforms begin */
+  AT_LATE_RECORDS = 235, /* since 1.4: where the records after the points begin */
   AT_N_POINTS_64 = 247,
 };
 
 enum { LEAST_HEADER_BYTES = 227, HEADER_BYTES_1_4 = 375, RECORD_HEADER_BYTES = 54, BLOCK = 256 };
 
-/* The fewest bytes of a point, and where its colour stands in them; 0: it has none. What formats 4, 5, 9 and 10 say of
- * waveforms comes last. */
+/* The fewest bytes of a point, and where its colour is in them; 0: no colour. Formats 4, 5, 9 and 10 have their
+ * waveforms last. */
 static const struct {
   int n_bytes, color;
 } formats[] = {{20, 0}, {28, 0}, {26, 20}, {34, 28}, {57, 0}, {63, 28}, {30, 0}, {36, 30}, {38, 30}, {59, 0}, {67, 30}};
@@ -42,7 +42,7 @@ enum { N_FORMATS = sizeof formats / sizeof *formats };
 
 typedef struct las_reader {
   conic_input *input;
-  int is_again; /* the file has been read before, and its faults have been told */
+  int is_again; /* the file is read once more; its faults are logged already */
   unsigned char header[HEADER_BYTES_1_4];
   unsigned format;
   int is_packed; /* LAZ */
@@ -72,7 +72,7 @@ static void warn(const las_reader *reader, const char *what) {
     conic_log(reader->input->context, CONIC_LOG_WARNING, "%s: %s", reader->input->name, what);
 }
 
-/* Copies what there is of the public header. Some writers leave out what their version has added; it counts as 0. */
+/* Copies the bytes of the public header. Fields of its version that a writer left out count as 0. */
 static conic_status read_las_header(las_reader *reader) {
   conic_status status = conic_input_fill(reader->input, HEADER_BYTES_1_4);
   size_t available = conic_input_available(reader->input);
@@ -125,8 +125,8 @@ static conic_status read_scale(las_reader *reader) {
   return CONIC_OK;
 }
 
-/* How many points there are, by the file's size. The header is right where more may follow the points; where neither
- * waveforms nor records do, whole points that follow have not been counted, as by a writer that was stopped. */
+/* Finds how many points there are, by the file's size. The header is right where waveforms or records may follow the
+ * points. Where neither do, further whole points were not counted, as by a writer that was stopped. */
 static void count_points(las_reader *reader, uint64_t remaining) {
   uint64_t declared = reader->n_points, n_bytes = remaining - reader->points_offset;
   uint64_t present = n_bytes / reader->point_bytes;
@@ -141,8 +141,8 @@ static void count_points(las_reader *reader, uint64_t remaining) {
               reader->input->name, (unsigned long long)declared, (unsigned long long)reader->n_points);
 }
 
-/* Every size that the header states, against each other and the file. Since 1.4 the number of points has 64 bits; the
- * older field still stands for it where a writer has left the new one 0. */
+/* Checks every size in the header against the others and the file. Since 1.4 the number of points has 64 bits; where a
+ * writer left it 0, the older field counts. */
 static conic_status check_sizes(las_reader *reader) {
   uint64_t header_bytes = unsigned_at(reader, AT_HEADER_BYTES, 2), n_records = unsigned_at(reader, AT_N_RECORDS, 4);
   uint64_t remaining = conic_input_remaining_bytes(reader->input);
@@ -174,7 +174,7 @@ static conic_status skip_to(las_reader *reader, uint64_t offset) {
              : status;
 }
 
-/* Past the header and its records, which name fields. */
+/* Skips the header and its records, which name fields. */
 static conic_status skip_to_points(las_reader *reader, const conic_read_options *options) {
   unsigned format = reader->format;
   uint64_t n_records = unsigned_at(reader, AT_N_RECORDS, 4);
@@ -198,7 +198,7 @@ static void convert(las_reader *reader, const unsigned char *records, size_t ste
     conic_ply_convert(records + i * step, reader->point_bytes, n, type, CONIC_PLY_LITTLE_ENDIAN, reader->block[i]);
 }
 
-/* The file's first point is the origin, whichever are read. */
+/* The file's first point is the origin, whichever points are read. */
 static void take_first(las_reader *reader, const unsigned char *record) {
   double *origin = reader->builder.model->points.origin;
   convert(reader, record, 4, CONIC_PLY_INT32, 1);
@@ -239,7 +239,7 @@ static void store_records(las_reader *reader, const unsigned char *records, size
   points->count += n;
 }
 
-/* Adds records, a block of them at a time. */
+/* Adds records, one block at a time. */
 static conic_status take_las_records(void *cookie, const unsigned char *records, size_t n) {
   las_reader *reader = cookie;
   conic_status status = CONIC_OK;
@@ -256,7 +256,7 @@ static conic_status take_las_records(void *cookie, const unsigned char *records,
   return status;
 }
 
-/* To the first point that is read, past the first of the file. */
+/* To the first point to be read; the first of the file gives the origin. */
 static conic_status begin_plain_las(las_reader *reader) {
   uint64_t left = reader->begin * reader->point_bytes, skipped;
   if (reader->begin == 0 || reader->begin >= reader->end)
@@ -277,7 +277,7 @@ static conic_status read_plain_las(las_reader *reader) {
     size_t n = conic_input_available(input) / reader->point_bytes;
     if (status != CONIC_OK)
       break;
-    if (n == 0) { /* behind a pipe nobody could tell before */
+    if (n == 0) { /* nobody could tell before where the input is a pipe */
       warn(reader, "the file ends before all of its points");
       break;
     }
@@ -288,7 +288,7 @@ static conic_status read_plain_las(las_reader *reader) {
   return status;
 }
 
-/* Only the layers are unpacked that hold what is wanted. */
+/* Unpacks only the layers with wanted fields. */
 static conic_status read_packed_las(las_reader *reader) {
   const conic_las_fields *fields = &reader->fields;
   conic_input *input = reader->input;
@@ -309,8 +309,8 @@ static conic_status read_packed_las(las_reader *reader) {
                             : status;
 }
 
-/* Room for all at once, where the file's size bears out their number. What is packed may be far less: then room grows
- * with what is there. */
+/* Takes room for all points at once, where the file's size confirms their number. A packed file may be far smaller:
+ * then room grows with the points. */
 static conic_status read_points(las_reader *reader) {
   conic_builder *builder = &reader->builder;
   uint64_t n_sure = reader->is_packed ? reader->input->size_bytes / 2 : reader->n_points;

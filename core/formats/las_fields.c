@@ -22,7 +22,7 @@ static void add_flag(conic_las_fields *fields, const char *name, size_t at, unsi
   add_las_field(fields, name, at, CONIC_PLY_UINT8, bit, 1);
 }
 
-/* The byte of flags, and what else is in the one of the class or of the returns. */
+/* Adds the byte of flags, and the other bits in the byte of the class or of the returns. */
 static void add_flags(conic_las_fields *fields, int is_new) {
   size_t at = is_new ? 15 : 14, at_class = 15;
   unsigned bit = is_new ? 0 : 5;
@@ -37,7 +37,7 @@ static void add_flags(conic_las_fields *fields, int is_new) {
   add_las_field(fields, "scanner_channel", 15, CONIC_PLY_UINT8, 4, 3);
 }
 
-/* Where the points of each format have what not all have; 0: they have not. */
+/* Where each format has the fields that not all formats have; 0: it lacks them. */
 static const struct {
   unsigned char gps_time, colors, nir, wave;
 } places[] = {{0, 0, 0, 0},  {20, 0, 0, 0},  {0, 20, 0, 0},   {20, 28, 0, 0}, {20, 0, 0, 28},  {20, 28, 0, 34},
@@ -78,11 +78,11 @@ void conic_las_fields_of_format(unsigned format, conic_las_fields *fields) {
     add_wave(fields, places[format].wave);
 }
 
-/* How an extra byte's type is stored: those from 11 on are two or three of one, and 0 is not described. */
+/* How an extra byte's type is stored: from 11 on, two or three numbers of one type; 0 has no description. */
 typedef struct extra_kind {
   conic_ply_type type;
   conic_las_integer_64 integer_64;
-  size_t n_bytes, n; /* of a number, and numbers; 0: nothing that has a value */
+  size_t n_bytes, n; /* bytes of a number, and how many numbers; 0: no value */
 } extra_kind;
 
 static extra_kind find_extra_kind(unsigned number, unsigned options) {
@@ -99,7 +99,7 @@ static extra_kind find_extra_kind(unsigned number, unsigned options) {
                       conic_ply_type_bytes(types[i]), (number - 1) / 10 + 1};
 }
 
-/* What can be shown of a name, which a number may follow: "name", "name[1]". */
+/* A name as it can be shown, with a number where there are several: "name", "name[1]". */
 static void copy_extra_name(const unsigned char *bytes, int i_of_some, char name[CONIC_LAS_NAME_ROOM]) {
   size_t n = 0;
   for (; n < 32 && bytes[n]; n++)
@@ -112,7 +112,8 @@ static void copy_extra_name(const unsigned char *bytes, int i_of_some, char name
   name[n] = 0;
 }
 
-/* One description; where the next one's bytes begin. Scale and offset are those of each of several numbers. */
+/* Reads one description; returns where the next one's bytes begin. Each of several numbers has its own scale and
+ * offset. */
 static size_t describe_extra(const unsigned char *bytes, size_t at, size_t point_bytes, conic_las_fields *fields) {
   unsigned options = bytes[3];
   extra_kind kind = find_extra_kind(bytes[2], options);

@@ -10,11 +10,12 @@
 #include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
+#include "core/files/las_user.h"
 #include "core/formats/las_fields.h"
 #include "core/splats/point_fields.h"
 #include "core/splats/point_values.h"
 
-/* Where the header has what is written, and how long it and other parts are. */
+/* Where the header has its fields, and the lengths of its parts. */
 enum {
   AT_ENCODING = 6,
   AT_VERSION = 24,
@@ -44,7 +45,7 @@ enum { AT_RETURN = 14, AT_COLOR = 30, POINT_BYTES = 30, COLOR_BYTES = 6 };
 typedef struct las_column {
   char name[CONIC_LAS_NAME_ROOM];
   conic_las_field field;
-  const double *values; /* of the batch that is written; null: it has none */
+  const double *values; /* in the current batch; null: it lacks them */
 } las_column;
 
 struct conic_las_writer {
@@ -53,7 +54,7 @@ struct conic_las_writer {
   conic_output *output;
   FILE *file;
   unsigned char header[HEADER];
-  unsigned char *records; /* about the coordinate system, as the source has them */
+  unsigned char *records; /* the source's, about the coordinate system */
   size_t n_record_bytes;
   uint32_t n_records;
   int has_begun, has_source, has_colors, has_returns;
@@ -63,19 +64,14 @@ struct conic_las_writer {
   las_column columns[CONIC_MOST_POINT_VALUES];
 };
 
-/* --- what the source says --- */
-
-/* Whether a record is one of a user's. */
-static int is_of_user(const unsigned char *record, const char *user) {
-  return strncmp((const char *)record + 2, user, 16) == 0;
-}
+/* --- the source's head --- */
 
 static void put_letters(unsigned char *to, const char *letters) {
   while (*letters)
     *to++ = (unsigned char)*letters++;
 }
 
-/* Keeps the records about the coordinate system of a head of n bytes. */
+/* Keeps the records about the coordinate system from a head of n bytes. */
 static conic_status keep_records(conic_las_writer *w, const unsigned char *head, size_t n) {
   size_t at = conic_load_16(head + AT_OWN_BYTES);
   w->records = conic_memory_allocate(w->context, n, 1);
@@ -87,7 +83,8 @@ static conic_status keep_records(conic_las_writer *w, const unsigned char *head,
     unsigned number = conic_load_16(record + 18);
     if (n_bytes > n - at)
       break;
-    if (is_of_user(record, "LASF_Projection") && ((number >= KEYS && number <= TEXT) || number == WELL_KNOWN_TEXT)) {
+    if (conic_las_is_of_user(record, "LASF_Projection") &&
+        ((number >= KEYS && number <= TEXT) || number == WELL_KNOWN_TEXT)) {
       memcpy(w->records + w->n_record_bytes, record, n_bytes);
       w->n_record_bytes += n_bytes;
       w->n_records++;
@@ -179,9 +176,11 @@ static void choose_las_columns(conic_las_writer *w, const conic_point_values *va
   }
 }
 
-/* What of a point its format does not have. */
+/* The record that describes the values beyond the format's. */
 static void put_extra_record(conic_las_writer *w) {
-  static const unsigned char numbers[] = {2, 1, 4, 3, 6, 5, 9, 10}; /* of types in the order of conic_ply_type */
+  static const unsigned char numbers[] = {2, 1, 4, 3, 6,
+                                          5, 9, 10}; /* numbers of the types, in the order of
+                                                        conic_ply_type */
   unsigned char record[RECORD] = {0}, extra[EXTRA];
   put_letters(record + 2, "LASF_Spec");
   conic_store_bits(record + 18, 2, EXTRA_BYTES);
@@ -189,7 +188,7 @@ static void put_extra_record(conic_las_writer *w) {
   fwrite(record, 1, sizeof record, w->file);
   for (size_t k = 0; k < w->n_columns; k++) {
     const las_column *column = &w->columns[k];
-    if (column->field.name[0]) /* the format's own */
+    if (column->field.name[0]) /* a field of the format */
       continue;
     memset(extra, 0, sizeof extra);
     extra[2] = numbers[column->field.type];
@@ -250,7 +249,7 @@ static void begin_las(conic_las_writer *w, const conic_splats *first) {
 
 /* --- points --- */
 
-/* Whether a point can be written: it is finite. Positions become steps. */
+/* Positions become steps. Returns whether the point can be written: it is finite. */
 static conic_status put_place(conic_las_writer *w, const conic_splats *batch, size_t i, unsigned char *point,
                               int *is_there) {
   double place[3];
@@ -273,7 +272,7 @@ static conic_status put_place(conic_las_writer *w, const conic_splats *batch, si
   return CONIC_OK;
 }
 
-/* A value into its bits or bytes; what they do not hold becomes the nearest that they do. */
+/* Puts a value into its bits or bytes, rounded to the nearest that they hold. */
 static void put_las_value(const conic_las_field *field, double value, unsigned char *point) {
   if (field->mask) {
     double most = (double)field->mask;

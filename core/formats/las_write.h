@@ -1,4 +1,4 @@
-/* Points as LAS 1.4, of point format 6, or 7 where they have colours. */
+/* Points as LAS 1.4, in point format 6, or 7 with colours. */
 #ifndef CONIC_LAS_WRITE_H
 #define CONIC_LAS_WRITE_H
 
@@ -6,15 +6,15 @@
 
 typedef struct conic_las_writer conic_las_writer;
 
-/* Starts a file that appears under its name when it is whole. Where `source` (null is fine) is a LAS or LAZ, the steps
- * of the positions, the kind of times and the records about the coordinate system are those of it; else steps are
- * 0.001, or 1e-7 where the first point may be longitude and latitude. On success the caller owns *writer and ends it
- * with finish or abandon. Errors: ARGUMENT (standard output), MEMORY, IO. */
+/* Starts a file that appears under its name when it is whole. If `source` (may be null) is a LAS or LAZ, the steps of
+ * the positions, the kind of times and the records about the coordinate system are the source's. Else steps are 0.001,
+ * or 1e-7 where the first point may be longitude and latitude. On success the caller owns *writer and ends it with
+ * finish or abandon. Errors: ARGUMENT (standard output), MEMORY, IO. */
 conic_status conic_las_writer_open(conic_context *context, const char *path, const char *source,
                                    conic_las_writer **writer);
-/* Appends places, colours and the values by name that the first batch has: those that the format has by that name as it
- * has them, others as extra bytes. Positions that are not finite are left out. Errors: MEMORY, IO, UNSUPPORTED (a
- * position is too far out for its steps). */
+/* Appends places, colours and the named values that the first batch has: as fields of the format where it has that
+ * name, else as extra bytes. Positions that are not finite are left out. Errors: MEMORY, IO, UNSUPPORTED (a position is
+ * too far out for its steps). */
 conic_status conic_las_writer_append(conic_las_writer *writer, const conic_splats *batch);
 /* Completes the file and releases the writer, on failure too. Errors: IO. */
 conic_status conic_las_writer_finish(conic_las_writer *writer);

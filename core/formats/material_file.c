@@ -15,8 +15,8 @@
 typedef struct material_reader {
   conic_input input;
   const conic_texts *names;
-  conic_material *materials, *current; /* null: one that nobody uses */
-  conic_texture **alphas;              /* a material: its map_d; null: none */
+  conic_material *materials, *current; /* current is null for a material that nobody uses */
+  conic_texture **alphas;              /* a material's map_d; null: none */
 } material_reader;
 
 static conic_status read_name(void *data) {
@@ -54,7 +54,7 @@ static conic_status read_color(void *data) {
   return CONIC_OK;
 }
 
-/* A number from 0 to 1; what is none, such as -halo, says nothing. */
+/* A number from 0 to 1; a word that is none, such as -halo, has no effect. */
 static conic_status read_material_part(material_reader *reader, int is_opacity) {
   const char *word;
   size_t length;
@@ -75,7 +75,7 @@ static conic_status read_transparency(void *data) {
   return read_material_part(data, 0);
 }
 
-/* [-option value …] FILE: the file is the last word; `-clamp on` is the one option that matters here. An empty path
+/* [-option value …] FILE: the file is the last word; of the options only `-clamp on` matters here. The path is empty
  * where there is no such file. */
 static conic_status read_path(material_reader *reader, conic_texture_wrap *wrap,
                               char path[2 * CONIC_INPUT_LONGEST_WORD]) {
@@ -118,7 +118,7 @@ static conic_status read_map(void *data) {
   return conic_texture_read(reader->input.context, path, wrap, &reader->current->texture);
 }
 
-/* A picture of alpha: its own, or how bright it is where it has none. White otherwise. */
+/* A picture of alpha: its own alpha, or its brightness where it has none. Its colour is white. */
 static conic_status read_alpha_picture(conic_context *context, const char *path, conic_texture_wrap wrap,
                                        conic_texture **texture) {
   conic_image image;
@@ -135,7 +135,7 @@ static conic_status read_alpha_picture(conic_context *context, const char *path,
   return conic_texture_take(context, &image, wrap, texture);
 }
 
-/* map_d: in place of the alpha of map_Kd, which may come later. */
+/* map_d replaces the alpha of map_Kd, which may come later. */
 static conic_status read_alpha_map(void *data) {
   material_reader *reader = data;
   char path[2 * CONIC_INPUT_LONGEST_WORD];
@@ -147,7 +147,7 @@ static conic_status read_alpha_map(void *data) {
   return *alpha ? CONIC_OK : read_alpha_picture(reader->input.context, path, wrap, alpha);
 }
 
-/* A material without a picture has that of its alpha. */
+/* A material without a picture takes the picture of its alpha. */
 static conic_status join_alphas(material_reader *reader) {
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < reader->names->count; i++) {

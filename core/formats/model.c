@@ -155,8 +155,19 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     status = conic_ptx_read(input, options, delivery, model);
     model->up[2] = 1.0;
     break;
-  default:
+  case CONIC_MODEL_STL:
+  case CONIC_MODEL_OFF:
+  case CONIC_MODEL_3MF:
+  case CONIC_MODEL_GLTF:
+  case CONIC_MODEL_GLB:
+  case CONIC_MODEL_DAE:
+  case CONIC_MODEL_FBX:
+  case CONIC_MODEL_3DS:
+  case CONIC_MODEL_DXF:
+  case CONIC_MODEL_AMF:
+  case CONIC_MODEL_X3D:
     status = conic_assimp_read(input, kind, options, model);
+    break;
   }
   model->kind = kind;
   return status == CONIC_OK ? conic_fields_check(input->context, input->name, options, model) : status;

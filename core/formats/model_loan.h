@@ -7,8 +7,8 @@
 /* Whether splats or triangles are lent under a name. */
 int conic_model_is_lent(const conic_context *context, const char *name);
 
-/* Copies them, as conic_model_read would read a PLY of them; *model is empty before, and on failure holds what is to be
- * released. Errors: ARGUMENT, INPUT (a face index, no such field), MEMORY. */
+/* Copies a lent set, as conic_model_read would read a PLY of it. *model is empty before; on failure the caller releases
+ * it. Errors: ARGUMENT, INPUT (a face index, no such field), MEMORY. */
 conic_status conic_model_copy_lent(conic_context *context, const char *name, const conic_read_options *options,
                                    conic_model *model);
 

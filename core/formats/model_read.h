@@ -7,16 +7,16 @@
 #include "core/files/input.h"
 #include "core/splats/builder.h"
 
-/* The format of a file that stands at its start. Errors: INPUT, CANCELLED. */
+/* Finds the format of a file at its start. Errors: INPUT, CANCELLED. */
 conic_status conic_model_find_kind(conic_input *input, const char *path, conic_model_kind *kind);
 
-/* Reads the file; with a delivery the points go there, but for an OBJ's. On failure *model is for the caller to
+/* Reads the file; with a delivery the points go there, except for an OBJ's. On failure *model is for the caller to
  * release. Errors: INPUT, MEMORY, CANCELLED, the receiver's. */
 conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, const conic_read_options *options,
                                    const conic_delivery *delivery, conic_model *model);
 
-/* Hands a PLY's points over as conic_model_stream does, and its triangles, polygons being fans, in their order, some at
- * a time. Errors: as conic_model_stream; INPUT (no PLY). */
+/* Hands over a PLY's points as conic_model_stream does, and its triangles in their order, some at a time; polygons
+ * become fans. Errors: as conic_model_stream; INPUT (not a PLY). */
 conic_status conic_mesh_stream(conic_context *context, const char *path, conic_batch_receiver *receive,
                                conic_status (*receive_faces)(void *cookie, const uint32_t (*corners)[3], size_t n),
                                void *cookie);
@@ -25,7 +25,7 @@ conic_status conic_mesh_stream(conic_context *context, const char *path, conic_b
 conic_status conic_read_options_check(conic_context *context, const char *path, const conic_read_options *options,
                                       conic_read_options *settings);
 
-/* conic_triangles_read with these options, which then keep faces. */
+/* conic_triangles_read with these options, which are set to keep faces. */
 conic_status conic_triangles_read_model(conic_context *context, const char *path, conic_read_options *options,
                                         conic_triangles *triangles);
 

@@ -11,7 +11,7 @@
 #include "core/formats/ply_read.h"
 #include "core/splats/raw_colors.h"
 
-/* What stands between the reader and the receiver: colours whose scale only the whole file tells. */
+/* State between the reader and the receiver, for colours whose scale only the whole file tells. */
 typedef struct streaming {
   conic_context *context;
   const conic_read_options *options;
@@ -30,7 +30,7 @@ static conic_status see_colors(void *cookie, const conic_splats *batch) {
   return CONIC_OK;
 }
 
-/* The batch is the reader's own, whose colours may be changed. */
+/* The batch belongs to the reader, and its colours may be changed. */
 static conic_status decode_batch(void *cookie, const conic_splats *batch) {
   streaming *s = cookie;
   conic_splats decoded = *batch;
@@ -42,7 +42,7 @@ static conic_status decode_batch(void *cookie, const conic_splats *batch) {
   return s->receive(s->cookie, &decoded);
 }
 
-/* Reads on from where the input stands, handing batches to `receive`. */
+/* Reads from where the input is, and hands batches to `receive`. */
 static conic_status pass(streaming *s, conic_input *input, conic_batch_receiver *receive, void *cookie) {
   conic_delivery delivery = {.receive = receive,
                              .cookie = cookie,
@@ -66,7 +66,7 @@ static conic_status read_whole_stream(streaming *s, conic_input *input) {
   return status;
 }
 
-/* A first pass finds what the colours are fractions of, a second hands over. */
+/* A first pass finds the scale of the colours, a second hands over the points. */
 static conic_status pass_twice(streaming *s, conic_input *input, const char *path) {
   conic_input again;
   int may_be_fractions = s->kind == CONIC_MODEL_XYZ || s->kind == CONIC_MODEL_PCD;

@@ -11,12 +11,12 @@
 #include "core/splats/faces.h"
 #include "core/splats/polygon.h"
 
-/* A corner of a face that names a normal. Which normal it is may be read later. */
+/* A face's corner that names a normal; the normal may be read later. */
 typedef struct obj_corner {
   uint32_t i_vertex, i_normal;
 } obj_corner;
 
-/* The largest index that faces use, and the first line that does: whether there is such a line is known at the end. */
+/* The largest index that faces use, and the first line that uses it: only the end tells whether it exists. */
 typedef struct largest_index {
   uint64_t index, line;
 } largest_index;
@@ -34,13 +34,13 @@ typedef struct obj_reader {
   size_t normal_capacity;
   obj_corner *corners;
   size_t n_corners, corner_capacity;
-  conic_faces *faces; /* the model's, where the reader keeps what faces have besides vertices */
+  conic_faces *faces; /* the model's, if the reader keeps faces' other attributes */
 } obj_reader;
 
-/* A corner's vertex, texture coordinate and normal; CONIC_NO_CORNER where it has none. */
+/* A corner's vertex, texture coordinate and normal; CONIC_NO_CORNER where it lacks one. */
 typedef uint32_t face_corner[3];
 
-/* The numbers up to the end of the line; more than `room` of them are wrong. */
+/* The numbers up to the end of the line; more than `room` are an error. */
 static conic_status read_numbers(const obj_reader *reader, double *numbers, int room, int *n) {
   for (*n = 0;;) {
     const char *word;
@@ -59,7 +59,7 @@ static conic_status read_numbers(const obj_reader *reader, double *numbers, int 
   }
 }
 
-/* v x y z, then nothing, a weight (of no use here), r g b, or r g b a. Colours are sRGB-encoded, 0 to 1. */
+/* v x y z, then nothing, a weight (unused), r g b, or r g b a. Colours are sRGB-encoded, 0 to 1. */
 static conic_status read_vertex(void *data) {
   obj_reader *reader = data;
   double values[7];
@@ -105,7 +105,7 @@ static conic_status read_normal(void *data) {
   return status;
 }
 
-/* Texture coordinates are counted, so that indices can be checked, and kept only where that is asked for. */
+/* Texture coordinates are counted, to check indices, and kept only on request. */
 static conic_status read_texture(void *data) {
   obj_reader *reader = data;
   double values[3] = {0.0, 0.0, 0.0};
@@ -138,7 +138,7 @@ static const char *parse_index(const char *text, const char *end, int64_t *index
   return c;
 }
 
-/* From the file's numbering, from 1 or back from the last, to indices from 0. */
+/* Turns the file's numbers, from 1 or back from the last, into indices from 0. */
 static conic_status resolve_index(obj_reader *reader, int kind, int64_t index, uint32_t *resolved) {
   uint64_t count = reader->counts[kind];
   if (index < 0 && (uint64_t)-index > count)
@@ -168,7 +168,7 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
         return conic_input_wrong(reader->input, "a face's corner is v, v/t, v//n or v/t/n");
       if (kind == TEXTURE && c < end && *c == '/')
         continue;
-      if (kind == NORMAL && c == end) /* v/t/ is written, too */
+      if (kind == NORMAL && c == end) /* v/t/ exists, too */
         break;
     }
     c = parse_index(c, end, &index);
@@ -257,7 +257,7 @@ static conic_status read_libraries(void *data) {
   }
 }
 
-/* Said once of a file. */
+/* Said once for a file. */
 static conic_status leave_out_line(void *data) {
   obj_reader *reader = data;
   if (reader->n_lines++ == 0)
@@ -282,7 +282,7 @@ static conic_status check_indices(const obj_reader *reader) {
   return CONIC_OK;
 }
 
-/* A vertex's normal is the sum over all corners, in the file's order, made unit; zero where no corner names one. */
+/* A vertex's normal is the unit sum over all corners, in the file's order; zero where no corner names one. */
 static conic_status gather_normals(obj_reader *reader) {
   conic_splats *points = &reader->builder.model->points;
   if (reader->n_corners == 0)

@@ -19,14 +19,14 @@ typedef struct pcd_reader {
   conic_input *input;
   conic_builder builder;
   conic_pcd_header header;
-  int field_of[N_SLOTS]; /* by meaning, the packed colour, and values that are asked for; -1: none */
+  int field_of[N_SLOTS]; /* by meaning; the packed colour; requested values; -1: none */
   int n_slots;
   int has_origin, is_origin_set;
   int is_again;
   double block[N_SLOTS][BLOCK];
 } pcd_reader;
 
-/* Which fields are read, and whether their positions may need more digits than a float has. */
+/* Chooses the fields to read, and finds whether positions may need more digits than a float's. */
 static conic_status choose_fields(pcd_reader *reader) {
   const conic_pcd_header *header = &reader->header;
   conic_status status = CONIC_OK;
@@ -47,7 +47,7 @@ static conic_status choose_fields(pcd_reader *reader) {
   return status;
 }
 
-/* Every field of one number is listed, but for the padding, which has no name. */
+/* Lists every field of one number, without the padding, which has no name. */
 static conic_status choose_values(pcd_reader *reader, const conic_read_options *options) {
   const conic_pcd_header *header = &reader->header;
   size_t listed[CONIC_TEXT_MOST_COLUMNS], n = 0;
@@ -69,7 +69,7 @@ static conic_status choose_values(pcd_reader *reader, const conic_read_options *
   return status;
 }
 
-/* The bytes of a packed colour, as codes of 16 bits, so that nothing takes them for fractions. */
+/* The bytes of packed colours, as codes of 16 bits, so that they are not taken for fractions. */
 static void unpack_colors(const pcd_reader *reader, size_t n, conic_splats *points) {
   for (size_t i = 0; i < n; i++) {
     uint32_t bits = (uint32_t)reader->block[PACKED][i];
@@ -119,7 +119,7 @@ static conic_status append_rows(pcd_reader *reader, size_t n) {
 
 /* --- ascii --- */
 
-/* A packed colour is the bits of a float, or an integer. */
+/* A packed colour is a float's bits, or an integer. */
 static double packed_bits(const conic_pcd_field *field, double value) {
   float as_float = (float)value;
   uint32_t bits = 0;
@@ -155,7 +155,7 @@ static conic_status read_text_row(pcd_reader *reader, conic_text_word line, size
       continue;
     int is_number = conic_number_parse(words[slot].text, words[slot].length, value) == words[slot].length;
     if (slot >= VALUES && !is_number)
-      *value = (double)NAN; /* nobody would mind, had it not been asked for */
+      *value = (double)NAN; /* only a requested value may be missing */
     else if (!is_number)
       return conic_input_wrong(reader->input, "a value is not a number");
     if (slot == PACKED)
@@ -186,8 +186,8 @@ static conic_status read_text_rows(pcd_reader *reader) {
 
 /* --- binary --- */
 
-/* n points into the block, whose rows begin at `bytes`; where `n_all` is not 0, all values of a field stand together,
- * and these are those of so many points from `first` on. */
+/* Converts n points into the block. Their rows begin at `bytes`. If `n_all` is not 0, each field's values for all n_all
+ * points are together, and the points begin at `first`. */
 static void convert_points(pcd_reader *reader, const unsigned char *bytes, size_t n_all, size_t first, size_t n) {
   for (int slot = 0; slot < reader->n_slots; slot++) {
     if (reader->field_of[slot] < 0)
@@ -223,7 +223,7 @@ static conic_status wrong_bytes(const pcd_reader *reader, const char *what) {
                     (unsigned long long)conic_input_offset(reader->input));
 }
 
-/* So many bytes of the file; the memory grows with what has really come where its size is not known. */
+/* Reads so many bytes of the file; where its size is not known, the memory grows with the bytes that come. */
 static conic_status read_bytes(pcd_reader *reader, uint64_t n_bytes, unsigned char **bytes) {
   conic_input *input = reader->input;
   size_t n = 0, capacity = 0;
@@ -257,7 +257,7 @@ static conic_status append_unpacked(pcd_reader *reader, const unsigned char *byt
   return status;
 }
 
-/* Two sizes, and what they are of. */
+/* Two sizes, then the packed bytes. */
 static conic_status read_compressed(pcd_reader *reader) {
   conic_input *input = reader->input;
   unsigned char *packed = NULL, *bytes = NULL;

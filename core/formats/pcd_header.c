@@ -14,7 +14,7 @@ typedef struct header_reader {
 
 enum { MOST_ROW_BYTES = CONIC_INPUT_WINDOW / 4 };
 
-/* The rest of a line, word by word, each of them with its number; *n how many there were. */
+/* Reads the rest of a line word by word, each with its number; *n is how many there were. */
 typedef conic_status word_reader(header_reader *reader, size_t i, const char *word, size_t length);
 
 static conic_status read_words(header_reader *reader, word_reader *read, size_t *n) {
@@ -64,7 +64,7 @@ static conic_status read_count(header_reader *reader, size_t i, const char *word
   return CONIC_OK;
 }
 
-/* The names are all needed at once: they lie in the input's window, one after the other in the line. */
+/* All names are needed at once: they are in the input's window, one after the other in the line. */
 static conic_status read_names(header_reader *reader) {
   conic_text_word line, names[CONIC_TEXT_MOST_COLUMNS + 1];
   conic_text_dialect blanks;
@@ -155,7 +155,7 @@ static int is_packed(const conic_pcd_header *header, size_t i) {
   return (strcmp(name, "rgb") == 0 || strcmp(name, "rgba") == 0) && field->n_bytes == 4 && field->is_known;
 }
 
-/* Where the fields begin, and whether those that mean something can be read. */
+/* Finds where the fields begin, and whether the known ones can be read. */
 static conic_status lay_out(header_reader *reader) {
   conic_pcd_header *header = reader->header;
   header->i_packed = -1;

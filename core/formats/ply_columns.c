@@ -9,8 +9,8 @@
 #include "core/splats/ellipse.h"
 #include "core/splats/point_fields.h"
 
-/* What properties are called, those of consecutive columns in their order. Where a file has several names of one
- * column, the first listed here is taken. */
+/* The properties' names, for consecutive columns in their order. Where a file has several names for one column, the
+ * first one listed here counts. */
 static const struct {
   conic_ply_column first;
   const char *names[4];
@@ -40,7 +40,7 @@ static void drop_columns(conic_ply_layout *layout, conic_ply_column first, int n
     layout->property[(int)first + i] = -1;
 }
 
-/* Whether the vertices have a value of that name; which property it is. */
+/* Whether the vertices have a value of that name, and which property it is. */
 static int find_value(const conic_ply_header *header, const conic_ply_element *vertices, const char *name,
                       int *i_property) {
   *i_property = conic_ply_find_property(header, vertices, name);
@@ -64,7 +64,7 @@ static void find_columns(const conic_ply_header *header, const conic_ply_element
     }
 }
 
-/* The first pair of names of which both are there. */
+/* The first pair of names that are both there. */
 static void find_coordinates(const conic_ply_header *header, const conic_ply_element *vertices,
                              conic_ply_layout *layout) {
   static const char *const pairs[][2] = {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}};
@@ -79,7 +79,7 @@ static void find_coordinates(const conic_ply_header *header, const conic_ply_ele
   }
 }
 
-/* Clip lines are given in units of the tangent axes, and so need them. */
+/* Clip lines are in units of the tangent axes, and need them. */
 static void find_clip_lists(const conic_ply_header *header, const conic_ply_element *vertices,
                             conic_ply_layout *layout) {
   static const char *const list_names[2] = {[CONIC_CLIP_AND] = "clip_and", [CONIC_CLIP_OR] = "clip_or"};
@@ -92,8 +92,8 @@ static void find_clip_lists(const conic_ply_header *header, const conic_ply_elem
   }
 }
 
-/* An opacity is a logit beside scales and rotations, a factor beside axes or radii if it is no integer, and elsewhere
- * nothing that is known. */
+/* An opacity is a logit beside scales and rotations, and a factor beside axes or radii if it is no integer. Elsewhere
+ * its meaning is not known. */
 static void choose_opacity(conic_ply_layout *layout) {
   int is_factor = (layout->form == CONIC_PLY_AXES || layout->form == CONIC_PLY_CIRCLES) &&
                   !conic_ply_type_is_integer(layout->type[CONIC_PLY_OPACITY]);
@@ -101,7 +101,7 @@ static void choose_opacity(conic_ply_layout *layout) {
     drop_columns(layout, CONIC_PLY_OPACITY, 1);
 }
 
-/* In place of an opacity that is none. */
+/* Takes alpha where there is no opacity. */
 static void use_alpha(const conic_ply_header *header, const conic_ply_element *vertices, conic_ply_layout *layout) {
   int i_property;
   if (layout->form == CONIC_PLY_GAUSSIANS || has_columns(layout, CONIC_PLY_OPACITY, 1) ||
@@ -139,7 +139,7 @@ static void choose_form(conic_ply_layout *layout) {
   choose_opacity(layout);
 }
 
-/* A float holds no double and no 32-bit integer: such positions are kept from an origin near them. */
+/* A float cannot hold a double or a 32-bit integer: such positions are measured from an origin near them. */
 static int needs_origin(conic_ply_type type) {
   return type == CONIC_PLY_DOUBLE || type == CONIC_PLY_INT32 || type == CONIC_PLY_UINT32;
 }
@@ -244,7 +244,7 @@ static void store_axes(conic_splats *points, size_t i, const double tangent_u[3]
   }
 }
 
-/* Zero axes, which are repaired later, where the normal or the radius cannot be used. */
+/* Stores zero axes, to be repaired later, where the normal or the radius cannot be used. */
 static void store_circles(const conic_ply_layout *layout, const conic_ply_block block, size_t n, size_t first,
                           conic_splats *points) {
   for (size_t i = 0; i < n; i++) {
@@ -273,7 +273,7 @@ static void store_gaussians(const conic_ply_layout *layout, const conic_ply_bloc
   }
 }
 
-/* Integers are sRGB codes, of 16 bits or else of 8; floats are linear. */
+/* Integers are sRGB codes, of 16 bits or of 8; floats are linear. */
 static void store_colors(const conic_ply_layout *layout, const double *values, size_t n, conic_ply_type type,
                          float *to) {
   for (size_t i = 0; i < n; i++) {

@@ -6,7 +6,7 @@
 #include "core/formats/ply_header.h"
 #include "core/splats/builder.h"
 
-/* What a vertex property can mean. Three-component ones are consecutive. */
+/* The meanings of vertex properties. Those of three components are consecutive. */
 typedef enum conic_ply_column {
   CONIC_PLY_X = 0,
   CONIC_PLY_TANGENT_U = 3,
@@ -18,52 +18,51 @@ typedef enum conic_ply_column {
   CONIC_PLY_SCALE = 17,
   CONIC_PLY_ROTATION = 20,
   CONIC_PLY_HARMONIC = 24,
-  CONIC_PLY_COORDINATE = 27, /* of a texture: two */
+  CONIC_PLY_COORDINATE = 27, /* two texture coordinates */
   CONIC_PLY_DOT = 29,
-  CONIC_PLY_FIELD = 30, /* those that are asked for */
+  CONIC_PLY_FIELD = 30, /* the requested ones */
   CONIC_PLY_N_COLUMNS = CONIC_PLY_FIELD + CONIC_MOST_POINT_VALUES
 } conic_ply_column;
 
-/* Rows that are converted at a time, column by column. */
+/* Rows that are converted together, column by column. */
 enum { CONIC_PLY_BLOCK = 256 };
 
 typedef double conic_ply_block[CONIC_PLY_N_COLUMNS][CONIC_PLY_BLOCK];
 
-/* Which of the known ways the file describes splats in. */
+/* The ways in which files describe splats. */
 typedef enum conic_ply_form {
   CONIC_PLY_POINTS,   /* positions */
-  CONIC_PLY_NORMALS,  /* and normals */
+  CONIC_PLY_NORMALS,  /* positions and normals */
   CONIC_PLY_CIRCLES,  /* normal and radius */
   CONIC_PLY_AXES,     /* tangent axes */
   CONIC_PLY_GAUSSIANS /* scales and rotation */
 } conic_ply_form;
 
 typedef struct conic_ply_layout {
-  int property[CONIC_PLY_N_COLUMNS]; /* the property, counted within the element, that is read into the column; -1: none
-                                      */
+  int property[CONIC_PLY_N_COLUMNS]; /* by column: the property, counted within the element; -1: none */
   conic_ply_type type[CONIC_PLY_N_COLUMNS];
   conic_ply_form form;
   unsigned fields;     /* of the splat set, bits of conic_splats_field */
-  int has_coordinates; /* of textures, which are not converted */
+  int has_coordinates; /* texture coordinates, which are not converted */
   int n_scales;        /* of GAUSSIANS: 2 or 3 */
   int has_harmonics, has_origin_positions;
   int is_origin_set;
   int is_alpha;                              /* the opacity is coded as colours are */
-  int n_values;                              /* that are asked for, and for each: */
-  int value_column[CONIC_MOST_POINT_VALUES]; /* where it is read, its own or that of a property which means more; −1:
-                                                nowhere */
+  int n_values;                              /* requested values, and for each: */
+  int value_column[CONIC_MOST_POINT_VALUES]; /* its column, which may be that of a property with another meaning, too;
+                                                −1: none */
   int clip_property[2];                      /* the lists of clip lines, by conic_clip_operator; -1: none */
   float cutoff;
   float srgb[256]; /* linear values of 8-bit codes */
 } conic_ply_layout;
 
-/* Finds what the vertices hold; the options' cutoff turns radii into standard deviations. Texture coordinates are left
- * out unless `keeps_coordinates`, and alpha unless the options keep it. Errors: INPUT (no x, y, z). */
+/* Finds what the vertices hold. The options' cutoff turns radii into standard deviations. Texture coordinates are left
+ * out unless `keeps_coordinates`, alpha unless the options keep it. Errors: INPUT (no x, y, z). */
 conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *header,
                                    const conic_ply_element *vertices, const conic_read_options *options,
                                    int keeps_coordinates, conic_ply_layout *layout);
 
-/* Lists the vertices' properties as fields, and finds those that are asked for. Errors: as conic_fields_choose. */
+/* Lists the vertices' properties as fields, and finds the requested ones. Errors: as conic_fields_choose. */
 conic_status conic_ply_layout_choose_fields(conic_input *input, const conic_ply_header *header,
                                             const conic_ply_element *vertices, const conic_read_options *options,
                                             conic_builder *builder, conic_ply_layout *layout);

@@ -13,7 +13,8 @@ typedef struct triangulation {
   uint64_t n_vertices;
   int is_strip;
   uint64_t n_seen;   /* indices since the start of the polygon or strip */
-  uint32_t first[2]; /* of a polygon: the corner of all its triangles, and the last one; of a strip: the last two */
+  uint32_t first[2]; /* of a polygon: the corner that all its triangles share, and the last one; of a strip: the last
+                        two */
   conic_ply_face_texture texture;
 } triangulation;
 
@@ -25,7 +26,7 @@ static conic_status wrong_index(const triangulation *faces, double index) {
   return conic_ply_wrong(faces->source, what);
 }
 
-/* Every other triangle of a strip is wound the other way round; those with a vertex twice only bridge gaps. */
+/* Every other triangle of a strip is wound the other way round. Triangles with a vertex twice only bridge gaps. */
 static conic_status continue_strip(triangulation *strip, uint32_t index) {
   uint32_t a = strip->first[0], b = strip->first[1];
   int is_odd = (int)(strip->n_seen & 1);
@@ -96,8 +97,7 @@ static conic_status read_face_row(triangulation *faces, const conic_ply_property
   return status == CONIC_OK ? conic_ply_end_row(faces->source) : status;
 }
 
-/* Triangles that are not kept go, where they are enough for a batch, or all the same if `is_last`; then there are none.
- */
+/* Hands over triangles that are not kept, if they fill a batch or `is_last`, and drops them. */
 static conic_status deliver_faces(conic_builder *builder, int is_last) {
   conic_model *model = builder->model;
   const conic_delivery *delivery = builder->delivery;
@@ -124,7 +124,7 @@ conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_head
                       "%s: the element '%s' has no list of integers vertex_indices (line %llu)", source->input->name,
                       element->name, (unsigned long long)element->line);
   conic_ply_face_texture_find(header, element, builder->model, &faces.texture);
-  if (builder->delivery) /* so that no polygon is settled by a part of the vertices */
+  if (builder->delivery) /* so that no polygon is settled with only a part of the vertices */
     status = conic_builder_deliver(builder, 1);
   for (uint64_t i = 0; status == CONIC_OK && i < element->count; i++) {
     status = read_face_row(&faces, properties, (size_t)i_indices);

@@ -26,7 +26,7 @@ static const type_description types[] = {
 
 enum { N_TYPES = sizeof types / sizeof *types, WORDS_PER_LINE = 5, WORD_ROOM = 128 };
 
-/* One line of the header: its first words, cut to WORD_ROOM, and how many there are in all. */
+/* One line of the header: its first words, cut to WORD_ROOM, and the number of all words. */
 typedef struct header_line {
   char words[WORDS_PER_LINE][WORD_ROOM];
   int n_words;
@@ -87,7 +87,7 @@ static int is_word(const header_line *line, int i_word, const char *word) {
   return i_word < line->n_words && strcmp(line->words[i_word], word) == 0;
 }
 
-/* What a comment says does not matter, nor how long it is, but for one that names a texture. */
+/* Comments are ignored, however long, unless they name a texture. */
 static int is_comment(const header_line *line) {
   return line->n_words == 0 || is_word(line, 0, "comment") || is_word(line, 0, "obj_info");
 }
@@ -101,7 +101,7 @@ static int is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';
 }
 
-/* Whether a comment begins with that word and a blank; it then stands after them. */
+/* Whether a comment begins with that word and a blank; *c then moves past them. */
 static int has_keyword(const char **c, const char *end, const char *keyword) {
   size_t n = strlen(keyword);
   if ((size_t)(end - *c) <= n || memcmp(*c, keyword, n) != 0 || !is_blank((*c)[n]))

@@ -18,7 +18,7 @@ typedef enum conic_ply_type {
   CONIC_PLY_DOUBLE
 } conic_ply_type;
 
-/* Longer names are cut: none that means anything here is that long. */
+/* Longer names are cut; no known name is that long. */
 enum { CONIC_PLY_NAME_ROOM = 40 };
 
 typedef struct conic_ply_property {
@@ -31,13 +31,13 @@ typedef struct conic_ply_property {
 
 typedef struct conic_ply_element {
   char name[CONIC_PLY_NAME_ROOM];
-  uint64_t count, line; /* line: where it is declared */
+  uint64_t count, line; /* line: of its declaration */
   size_t first_property, n_properties;
   int has_lists;
-  size_t least_row_bytes; /* of a binary row whose lists are empty: its exact size where there are none */
+  size_t least_row_bytes; /* of a binary row with empty lists; the exact size where there are no lists */
 } conic_ply_element;
 
-/* How Gaussians were trained, where a file says it. */
+/* How Gaussians were trained, where a file says so. */
 typedef enum conic_ply_splat_mode { CONIC_PLY_MODE_PLAIN, CONIC_PLY_MODE_MIP, CONIC_PLY_MODE_2D } conic_ply_splat_mode;
 
 typedef struct conic_ply_header {
@@ -63,11 +63,10 @@ int conic_ply_find_property(const conic_ply_header *header, const conic_ply_elem
 size_t conic_ply_type_bytes(conic_ply_type type);
 /* "uint8", "float" … */
 const char *conic_ply_type_name(conic_ply_type type);
-/* And back, of either of its names, double where it is none; and the older name, which all programs know. */
+/* The type of either of its names; double for an unknown name. And the older name, which all programs know. */
 conic_ply_type conic_ply_type_of(const char *name);
 const char *conic_ply_type_word(conic_ply_type type);
-/* Of the numbers that a type holds the nearest; of an integer, what is no number becomes the least. And that,
- * little-endian. */
+/* The nearest number that a type holds; for integers, NaN becomes the least. And its bytes, little-endian. */
 double conic_ply_nearest(conic_ply_type type, double value);
 void conic_ply_store(conic_ply_type type, double value, void *to);
 int conic_ply_type_is_integer(conic_ply_type type);

@@ -7,7 +7,7 @@
 #include "core/formats/ply_columns.h"
 #include "core/formats/ply_texture.h"
 
-/* What the reading of the vertices shares. */
+/* State of reading the vertices. */
 typedef struct vertex_reader {
   conic_ply_source *source;
   const conic_ply_property *properties;
@@ -31,8 +31,8 @@ static conic_status keep_coordinates(const vertex_reader *reader, size_t n) {
   return status;
 }
 
-/* Appends the block's first `n` rows to the points. A known file size has shown that all rows can be there; behind a
- * pipe the arrays grow with what has really come. */
+/* Appends the block's first `n` rows to the points. A known file size has shown that all rows can be there; for a pipe,
+ * the arrays grow with the rows that come. */
 static conic_status append_block(vertex_reader *reader, size_t n) {
   conic_splats *points = &reader->builder->model->points;
   conic_status status = conic_builder_reserve_points(reader->builder, points->count + n);
@@ -44,7 +44,7 @@ static conic_status append_block(vertex_reader *reader, size_t n) {
   return status == CONIC_OK ? conic_builder_deliver(reader->builder, 0) : status;
 }
 
-/* The next rows up to before `end`, straight from the window into the block. */
+/* Reads the next rows, up to before `end`, straight from the window into the block. */
 static conic_status read_ply_block(vertex_reader *reader, uint64_t end, size_t *n_rows) {
   conic_ply_source *source = reader->source;
   conic_input *input = source->input;
@@ -74,7 +74,7 @@ static void pass_ply_block(const vertex_reader *reader, size_t n) {
   source->i_row += n;
 }
 
-/* Past rows that are not wanted, of which the first finite position is still the origin. */
+/* Skips rows that are not wanted; their first finite position is still the origin. */
 static conic_status pass_rows(vertex_reader *reader, uint64_t end) {
   conic_ply_source *source = reader->source;
   conic_splats *points = &reader->builder->model->points;
@@ -116,7 +116,7 @@ static conic_status read_blocks(vertex_reader *reader) {
   return status;
 }
 
-/* A list of clip lines, three values each, into the row's record. Both of a row's lists may be there, but one of them
+/* Reads a list of clip lines, three values each, into the row's record. A row may have both lists if one of them is
  * empty. */
 static conic_status read_clip_list(vertex_reader *reader, const conic_ply_property *property,
                                    conic_clip_operator operation, conic_clip *clip) {
@@ -192,7 +192,7 @@ static conic_status read_rows(vertex_reader *reader) {
   return status;
 }
 
-/* Whether each row is where their number says. */
+/* Whether the number of a row tells its place. */
 static int is_plain(conic_ply_format format, const conic_ply_element *element) {
   return format != CONIC_PLY_TEXT && !element->has_lists && element->least_row_bytes <= CONIC_INPUT_WINDOW;
 }
@@ -210,7 +210,7 @@ static conic_status read_vertices(vertex_reader *reader) {
   return is_plain(source->format, element) ? read_blocks(reader) : read_rows(reader);
 }
 
-/* Elements stand in the file in the header's order; those that mean nothing here are passed over. */
+/* Elements are in the header's order; unknown ones are skipped. */
 static conic_status read_elements(vertex_reader *reader, const conic_ply_header *header,
                                   const conic_ply_element *vertices) {
   conic_ply_source *source = reader->source;
@@ -228,7 +228,7 @@ static conic_status read_elements(vertex_reader *reader, const conic_ply_header 
     else
       status = conic_ply_skip_element(source, header);
     if (element == vertices && source->i_row < element->count)
-      return status; /* what follows is for who reads the last part */
+      return status; /* the reader of the last part takes what follows */
   }
   return status;
 }

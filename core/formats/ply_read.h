@@ -13,10 +13,10 @@
 conic_status conic_ply_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
                             conic_model *model);
 
-/* What the header says of a file that stands at its start. Errors: INPUT, MEMORY, CANCELLED. */
+/* Reads the shape from the header of a file at its start. Errors: INPUT, MEMORY, CANCELLED. */
 conic_status conic_ply_look(conic_input *input, const conic_read_options *options, conic_model_shape *shape);
 
-/* Reads the elements `face` and `tristrips`: the source stands at the start of the element's rows. Errors: as above. */
+/* Reads the elements `face` and `tristrips`; the source is at the start of the element's rows. Errors: as above. */
 conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_header *header, uint64_t n_vertices,
                                   conic_builder *builder);
 

@@ -25,7 +25,7 @@ conic_status conic_ply_truncated(const conic_ply_source *source) {
                     (unsigned long long)(is_text ? input->line : conic_input_offset(input)));
 }
 
-/* The fewest bytes of a row: in ascii a digit and a blank for each value. */
+/* The fewest bytes of a row: in ascii, a digit and a blank for each value. */
 static uint64_t least_row_bytes(const conic_ply_source *source, const conic_ply_element *element) {
   return source->format == CONIC_PLY_TEXT ? 2 * (uint64_t)element->n_properties : (uint64_t)element->least_row_bytes;
 }
@@ -55,7 +55,7 @@ conic_status conic_ply_begin_row(conic_ply_source *source) {
     if (status != CONIC_OK)
       return status;
     if (length > 0) {
-      input->next -= length; /* is read again as the row's first value */
+      input->next -= length; /* it is read again as the row's first value */
       break;
     }
     status = conic_input_next_line(input, &is_done);
@@ -218,8 +218,11 @@ static void convert_integers(const unsigned char *bytes, size_t stride, size_t n
     case CONIC_PLY_UINT32:
       values[i] = (double)load_32(bytes, is_big);
       break;
-    default:
+    case CONIC_PLY_UINT8:
+    case CONIC_PLY_FLOAT: /* not an integer */
+    case CONIC_PLY_DOUBLE:
       values[i] = (double)bytes[0];
+      break;
     }
 }
 

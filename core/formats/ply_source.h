@@ -1,4 +1,4 @@
-/* The values behind a PLY file's header, one at a time and whatever the encoding. */
+/* The values after a PLY file's header, one at a time, in any encoding. */
 #ifndef CONIC_PLY_SOURCE_H
 #define CONIC_PLY_SOURCE_H
 
@@ -7,21 +7,21 @@
 typedef struct conic_ply_source {
   conic_input *input;
   conic_ply_format format;
-  const conic_ply_element *element; /* the one that is being read, for messages */
+  const conic_ply_element *element; /* the current one, for messages */
   uint64_t i_row;
 } conic_ply_source;
 
-/* Starts with the element; refuses more rows than the rest of the file can hold. Errors: INPUT. */
+/* Begins the element; refuses more rows than the rest of the file can hold. Errors: INPUT. */
 conic_status conic_ply_begin_element(conic_ply_source *source, const conic_ply_element *element);
 
-/* Around every row. An ascii row is one line. Errors: INPUT, CANCELLED. */
+/* Called before and after every row. An ascii row is one line. Errors: INPUT, CANCELLED. */
 conic_status conic_ply_begin_row(conic_ply_source *source);
 conic_status conic_ply_end_row(conic_ply_source *source);
 
 /* The next value as a double, which holds every type exactly. Errors: INPUT, CANCELLED. */
 conic_status conic_ply_read_value(conic_ply_source *source, conic_ply_type type, double *value);
 
-/* The next list's length; refuses what the rest of the file can't hold. Errors: INPUT, CANCELLED. */
+/* The next list's length; refuses lengths that the rest of the file cannot hold. Errors: INPUT, CANCELLED. */
 conic_status conic_ply_read_list_length(conic_ply_source *source, const conic_ply_property *property, uint64_t *length);
 
 /* Passes over `count` values. Errors: INPUT, CANCELLED. */

@@ -4,7 +4,7 @@
 
 #include "core/splats/builder.h"
 
-/* The property of that name which is a list, or which is none; -1 where there is none such. */
+/* The property of that name that is a list, or is none; -1 where there is no such property. */
 static int find(const conic_ply_header *header, const conic_ply_element *element, const char *name, int is_list) {
   int i = conic_ply_find_property(header, element, name);
   return i >= 0 && header->properties[element->first_property + (size_t)i].is_list == is_list ? i : -1;
@@ -42,7 +42,7 @@ conic_status conic_ply_begin_textures(const conic_input *input, const conic_ply_
   return status;
 }
 
-/* If any triangle of the model is noted down, all are. */
+/* If any triangle of the model is noted, all are. */
 static int has_notes(const conic_ply_header *header) {
   int has = conic_ply_has_texture_corners(header);
   for (size_t i = 0; i < header->n_elements; i++)
@@ -82,7 +82,7 @@ static conic_status read_coordinates(conic_ply_source *source, const conic_ply_p
   return status;
 }
 
-/* A number that no texture has stands for none. */
+/* A number that no texture has means no texture. */
 static conic_status read_picture(conic_ply_source *source, const conic_ply_property *property, conic_faces *faces) {
   double number, count = (double)faces->pictures.count;
   conic_status status = conic_ply_read_value(source, property->type, &number);

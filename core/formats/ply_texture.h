@@ -1,35 +1,35 @@
-/* What a PLY file says of textures, for those who keep what faces have besides vertices. */
+/* Textures in PLY files, for readers that keep faces' other attributes. */
 #ifndef CONIC_PLY_TEXTURE_H
 #define CONIC_PLY_TEXTURE_H
 
 #include "conic/model.h"
 #include "core/formats/ply_source.h"
 
-/* What the rows of an element tell of their triangles; -1: nothing. */
+/* Where an element's rows tell about textures; -1: nowhere. */
 typedef struct conic_ply_face_texture {
-  conic_faces *faces;       /* null: what there is is passed over */
+  conic_faces *faces;       /* null: skipped */
   int coordinates, picture; /* the list `texcoord`, and `texnumber` */
-  size_t first, n_values;   /* of the row that is being read: its first coordinate, and the list's length */
+  size_t first, n_values;   /* of the current row: its first coordinate, and the list's length */
 } conic_ply_face_texture;
 
-/* Whether faces have texture coordinates, or pictures, of their own. */
+/* Whether faces have their own texture coordinates or pictures. */
 int conic_ply_has_texture_corners(const conic_ply_header *header);
 
-/* Gives the model its faces, and the textures that the header names. Errors: INPUT, MEMORY. */
+/* Gives the model faces, with the textures that the header names. Errors: INPUT, MEMORY. */
 conic_status conic_ply_begin_textures(const conic_input *input, const conic_ply_header *header, conic_model *model);
 
-/* What of an element is kept for the model. */
+/* Finds what is kept of an element for the model. */
 void conic_ply_face_texture_find(const conic_ply_header *header, const conic_ply_element *element, conic_model *model,
                                  conic_ply_face_texture *texture);
 
 void conic_ply_face_texture_begin_row(conic_ply_face_texture *texture);
 
-/* Reads property i of the row, if it is about textures; else *is_read is 0. Errors: INPUT, MEMORY. */
+/* Reads property i of the row if it concerns textures; else *is_read is 0. Errors: INPUT, MEMORY. */
 conic_status conic_ply_face_texture_read(conic_ply_source *source, const conic_ply_property *properties, size_t i,
                                          conic_ply_face_texture *texture, int *is_read);
 
-/* Notes down the triangles that a row of `n_corners` has become: a fan, if it has coordinates. Errors: INPUT (their
- * number is not that of the corners), MEMORY. */
+/* Notes the triangles of a row of `n_corners`, a fan if it has coordinates. Errors: INPUT (their number is not that of
+ * the corners), MEMORY. */
 conic_status conic_ply_face_texture_end_row(const conic_ply_source *source, uint64_t n_corners, size_t n_triangles,
                                             const conic_ply_face_texture *texture);
 

@@ -17,7 +17,7 @@
 #include "core/splats/point_fields.h"
 #include "core/splats/point_values.h"
 
-/* Rows that are laid out at a time, and the most values and bytes of one. */
+/* Rows that are laid out together, and the most values and bytes of one. */
 enum {
   BLOCK = 256,
   MAX_VALUES = 25,
@@ -31,15 +31,15 @@ struct conic_splats_writer {
   char *path; /* for messages */
   conic_write_options options;
   size_t count, written;
-  size_t next_clip; /* of the batch that is being written */
+  size_t next_clip; /* of the current batch */
   unsigned fields;
   int has_header, has_double_positions, has_byte_colors;
   float srgb[256], thresholds[255];
   char *rows;      /* BLOCK of them */
-  size_t n_values; /* by name, of the first batch */
+  size_t n_values; /* named values of the first batch */
   conic_model_field values[CONIC_MOST_POINT_VALUES];
   conic_ply_type value_types[CONIC_MOST_POINT_VALUES];
-  const double *columns[CONIC_MOST_POINT_VALUES]; /* of the batch that is being written; null: it has none */
+  const double *columns[CONIC_MOST_POINT_VALUES]; /* of the current batch; null: it lacks them */
 };
 
 /* Where the next value of a row goes. */
@@ -81,7 +81,7 @@ conic_status conic_splats_writer_open(conic_context *context, const char *path, 
   made->options = settings;
   made->count = count;
   made->fields = fields;
-  if (fields & CONIC_SPLATS_CLIPS) /* lines are given in units of the axes, which circles do not keep */
+  if (fields & CONIC_SPLATS_CLIPS) /* lines are in units of the axes, which circles do not keep */
     made->options.circles = 0;
   conic_srgb_decode_table(made->srgb);
   conic_srgb_thresholds(made->thresholds);
@@ -127,7 +127,7 @@ static void print_properties(FILE *to, const char *type, const char *names) {
   }
 }
 
-/* A name's words are joined, as a header's are parted by blanks. */
+/* Joins a name's words, because blanks separate those of a header. */
 static void print_value(FILE *to, const char *type, const char *name) {
   fprintf(to, "property %s ", type);
   for (const char *c = name; *c; c++)
@@ -161,7 +161,7 @@ static void print_header(const conic_splats_writer *writer) {
   fprintf(to, "end_header\n");
 }
 
-/* The values that are written, and room for them in a row. */
+/* Finds the values to write, and makes room for them in a row. */
 static conic_status begin_values(conic_splats_writer *writer, const conic_point_values *values) {
   int is_text = writer->options.encoding == CONIC_PLY_ASCII;
   for (size_t k = 0; values && k < values->n; k++) {
@@ -180,7 +180,7 @@ static conic_status begin_values(conic_splats_writer *writer, const conic_point_
   return writer->rows ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-/* Where the values of a batch are. */
+/* Finds the values of a batch. */
 static void find_columns(conic_splats_writer *writer, const conic_point_values *values) {
   for (size_t k = 0; k < writer->n_values; k++) {
     writer->columns[k] = NULL;
@@ -190,7 +190,7 @@ static void find_columns(conic_splats_writer *writer, const conic_point_values *
   }
 }
 
-/* The first batch decides how positions and colours are stored; there may be none. */
+/* The first batch, which may be missing, decides how positions and colours are stored. */
 static void begin_rows(conic_splats_writer *writer, const conic_splats *first) {
   writer->has_double_positions = writer->options.double_positions != 0;
   for (int axis = 0; first && axis < 3; axis++)
@@ -236,8 +236,8 @@ static void put_vector(row_cursor *row, float *const vector[3], size_t i) {
     put_float(row, vector[axis][i]);
 }
 
-/* The normal t_u × t_v, unit, and the outline's radius. Zero axes give zeros, NaN gives NaN: both read back as what has
- * to be repaired. */
+/* The unit normal t_u × t_v, and the outline's radius. Zero axes give zeros, NaN gives NaN: both are repaired when they
+ * are read. */
 static void put_circle(row_cursor *row, const conic_splats *batch, size_t i, float cutoff) {
   double u[3], v[3], normal[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -262,7 +262,7 @@ static void put_value(row_cursor *row, conic_ply_type type, double value) {
   }
 }
 
-/* The two lists of splat i's clip lines: one of them is empty, if not both. */
+/* The two lists of splat i's clip lines; at least one is empty. */
 static void put_clip(conic_splats_writer *writer, row_cursor *row, const conic_splats *batch, size_t i) {
   const conic_clip *clip = NULL;
   while (writer->next_clip < batch->n_clips && batch->clips[writer->next_clip].splat < i)

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What a meaning is called, letters and digits only; what comes first is taken first. */
+/* Names of a meaning, letters and digits only; earlier ones win. */
 static const char *const names_of[CONIC_TEXT_N_MEANINGS][16] = {
     {"x", "xcoordinate", "xcoord", "coordinatex", "coordx", "positionx", "posx", "px", "points0", "easting", "east",
      "longitude", "lon", "lng", "e"},
@@ -19,7 +19,7 @@ static const char *const names_of[CONIC_TEXT_N_MEANINGS][16] = {
     {"nz", "normalz", "znormal", "normal2", "normals2"},
 };
 
-/* Small letters and digits, up to a bracket with a unit: "Pos. X (m)" becomes "posx". */
+/* Lower-case letters and digits, up to a bracket with a unit: "Pos. X (m)" becomes "posx". */
 static void reduce(conic_text_word name, char reduced[CONIC_TEXT_NAME_ROOM]) {
   size_t n = 0;
   for (size_t i = 0; i < name.length && n + 1 < CONIC_TEXT_NAME_ROOM; i++) {
@@ -33,7 +33,7 @@ static void reduce(conic_text_word name, char reduced[CONIC_TEXT_NAME_ROOM]) {
   reduced[n] = 0;
 }
 
-/* Gives the meaning to the first column with the first of its names that is there. */
+/* Gives the meaning to the column with the first of its names that exists. */
 static int find_meaning(const char (*reduced)[CONIC_TEXT_NAME_ROOM], int meaning, conic_text_columns *columns) {
   for (int i_name = 0; i_name < 16 && names_of[meaning][i_name]; i_name++)
     for (size_t i = 0; i < columns->n; i++)
@@ -44,7 +44,7 @@ static int find_meaning(const char (*reduced)[CONIC_TEXT_NAME_ROOM], int meaning
   return 0;
 }
 
-/* Three columns have their meaning together or not at all. */
+/* Three columns get their meaning together or not at all. */
 static int find_three(const char (*reduced)[CONIC_TEXT_NAME_ROOM], int first, conic_text_columns *columns) {
   int n_found = 0;
   for (int i = 0; i < 3; i++)
@@ -86,8 +86,7 @@ static int is_any_of(const char *reduced, int first) {
   return 0;
 }
 
-/* Of names that somebody gave for this: a part of a colour or a normal that stands alone, or a name that comes twice.
- */
+/* Checks names that the caller gave: a part of a colour or normal alone, or a name that comes twice. */
 static const char *check_names(const conic_text_columns *columns) {
   for (size_t i = 0; i < columns->n; i++) {
     char reduced[CONIC_TEXT_NAME_ROOM];
@@ -131,7 +130,7 @@ static int looks_like_normals(const double (*rows)[CONIC_TEXT_MOST_GUESSED], siz
   return n_unit > 0 && n_other == 0;
 }
 
-/* Whether three columns are normals of length 1, or codes of 8 bits, in every row. */
+/* Whether three columns are unit normals, or 8-bit codes, in every row. */
 static int is_unit(const double (*rows)[CONIC_TEXT_MOST_GUESSED], size_t n_rows, size_t first) {
   for (size_t i = 0; i < n_rows; i++) {
     const double *v = rows[i] + first;
@@ -163,7 +162,7 @@ static void set_three(conic_text_columns *columns, size_t at, int first) {
   columns->has_normals |= first == CONIC_TEXT_NORMAL;
 }
 
-/* Of any number of columns the first three that can hardly be anything else. */
+/* Finds, in any number of columns, the first three that can hardly be anything else. */
 static void guess_many(const double (*rows)[CONIC_TEXT_MOST_GUESSED], size_t n_rows, conic_text_columns *columns) {
   size_t n = columns->n < CONIC_TEXT_MOST_GUESSED ? columns->n : CONIC_TEXT_MOST_GUESSED;
   for (size_t at = 3; at + 3 <= n;) {

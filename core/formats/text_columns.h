@@ -1,4 +1,4 @@
-/* What the columns of text mean: by names, which a header or the caller gives, or else by their number and values. */
+/* The meaning of text columns: by names, which a header or the caller gives, else by their number and values. */
 #ifndef CONIC_TEXT_COLUMNS_H
 #define CONIC_TEXT_COLUMNS_H
 
@@ -9,33 +9,34 @@ typedef enum conic_text_meaning {
   CONIC_TEXT_RED = 3,
   CONIC_TEXT_NORMAL = 6,
   CONIC_TEXT_N_MEANINGS = 9,
-  CONIC_TEXT_SCALAR = -1 /* whatever else */
+  CONIC_TEXT_SCALAR = -1 /* anything else */
 } conic_text_meaning;
 
-/* Longer names are cut. Columns that nobody names are looked at up to a number. */
+/* Longer names are cut. Without names, so many columns are looked at. */
 enum { CONIC_TEXT_MOST_COLUMNS = 200, CONIC_TEXT_NAME_ROOM = 40, CONIC_TEXT_MOST_GUESSED = 16 };
 
 typedef struct conic_text_columns {
   size_t n;
   int has_colors, has_normals;
-  int meaning[CONIC_TEXT_MOST_COLUMNS];                     /* of conic_text_meaning; those of three values count on */
+  int meaning[CONIC_TEXT_MOST_COLUMNS];                     /* of conic_text_meaning; the three of a vector are
+                                                               consecutive */
   char name[CONIC_TEXT_MOST_COLUMNS][CONIC_TEXT_NAME_ROOM]; /* as given; "-": no name */
 } conic_text_columns;
 
-/* Columns by their names; whether x, y and z are among them. */
+/* Columns by their names; returns whether x, y and z are among them. */
 int conic_text_columns_name(const conic_text_word *names, size_t n, conic_text_columns *columns);
 
-/* Columns from "x,y,z,intensity,-,r,g,b", or with blanks in place of all commas; null, or what is wrong with that. */
+/* Columns from "x,y,z,intensity,-,r,g,b", or the same with blanks for commas; returns null, or what is wrong. */
 const char *conic_text_columns_parse(const char *list, conic_text_columns *columns);
 
-/* Columns of `n` values from their number and those of the first rows. */
+/* Guesses columns of `n` values from their number and those of the first rows. */
 void conic_text_columns_guess(const double (*rows)[CONIC_TEXT_MOST_GUESSED], size_t n_rows, size_t n,
                               conic_text_columns *columns);
 
-/* The column of that name; -1: there is none. */
+/* The column of that name; -1: none. */
 int conic_text_columns_find(const conic_text_columns *columns, const char *name);
 
-/* "x y z - red green blue", as much as there is room for. */
+/* "x y z - red green blue", as much as fits. */
 void conic_text_columns_list(const conic_text_columns *columns, char *text, size_t room);
 
 #endif

@@ -19,7 +19,7 @@ void conic_text_dialect_begin(unsigned marks, conic_text_dialect *dialect) {
     dialect->kind['\t'] = PARTING;
 }
 
-/* The word that begins at `c`, and past it. */
+/* Finds the word that begins at `c`; returns past it. */
 static const char *take_word(const conic_text_dialect *dialect, const char *c, const char *end, conic_text_word *word) {
   if (*c == '"') {
     const char *quote = memchr(c + 1, '"', (size_t)(end - c - 1));
@@ -31,7 +31,7 @@ static const char *take_word(const conic_text_dialect *dialect, const char *c, c
     return c;
   }
   const char *first = c;
-  int last = dialect->marks & CONIC_TEXT_BLANKS ? INK : BLANK; /* the last kind that is part of a word */
+  int last = dialect->marks & CONIC_TEXT_BLANKS ? INK : BLANK; /* characters up to this kind are part of a word */
   while (c < end && dialect->kind[(unsigned char)*c] <= last)
     c++;
   const char *stop = c;
@@ -93,24 +93,21 @@ int conic_text_is_numbers(conic_text_word line) {
 
 /* --- commas --- */
 
-/* What can be told of the commas of some rows. */
+/* What some rows tell about their commas. */
 typedef struct comma_census {
-  size_t least_words;                 /* of a row that commas do not part */
-  size_t most_inner;                  /* commas between two digits of a word */
-  int has_commas, has_points;         /* at all */
-  int has_edges;                      /* commas that are not between digits */
-  int is_all_inner, is_all_thousands; /* every word has a comma within; three digits follow on each comma within */
-  int is_quoted;                      /* numbers in quotes have commas */
-  int is_padded;                      /* parted by commas, a value is 0 and digits, and it is every second one */
+  size_t least_words;                 /* the fewest words of a row if commas do not separate them */
+  size_t most_inner;                  /* the most commas between digits in a word */
+  int has_commas, has_points;         /* anywhere */
+  int has_edges;                      /* there are commas that are not between digits */
+  int is_all_inner, is_all_thousands; /* every word has a comma between digits; three digits follow each such comma */
+  int is_quoted;                      /* quoted numbers have commas */
+  int is_padded;                      /* if commas separate, every second value may have a needless leading 0 */
 } comma_census;
 
-static int is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-/* Three digits and no more. */
+/* Exactly three digits. */
 static int is_thousand(const char *c, const char *end) {
-  return end - c >= 3 && is_digit(c[0]) && is_digit(c[1]) && is_digit(c[2]) && (end - c == 3 || !is_digit(c[3]));
+  return end - c >= 3 && conic_is_digit(c[0]) && conic_is_digit(c[1]) && conic_is_digit(c[2]) &&
+         (end - c == 3 || !conic_is_digit(c[3]));
 }
 
 static void count_word(conic_text_word word, comma_census *census) {
@@ -120,7 +117,7 @@ static void count_word(conic_text_word word, comma_census *census) {
     census->has_points |= *c == '.';
     if (*c != ',')
       continue;
-    int is_inner = c > word.text && c + 1 < end && is_digit(c[-1]) && is_digit(c[1]);
+    int is_inner = c > word.text && c + 1 < end && conic_is_digit(c[-1]) && conic_is_digit(c[1]);
     n_inner += (size_t)is_inner;
     census->has_edges |= !is_inner;
     census->is_all_thousands &= !is_inner || is_thousand(c + 1, end);
@@ -131,12 +128,12 @@ static void count_word(conic_text_word word, comma_census *census) {
 
 static int is_number_in_quotes(const char *c, const char *end) {
   int n_digits = 0;
-  for (; c < end && (is_digit(*c) || strchr("+-., eE", *c)); c++)
-    n_digits += is_digit(*c);
+  for (; c < end && (conic_is_digit(*c) || strchr("+-., eE", *c)); c++)
+    n_digits += conic_is_digit(*c);
   return c == end && n_digits > 0;
 }
 
-/* Of a row with quotes only what stands within them is looked at. */
+/* In a row with quotes, only the quoted words count. */
 static void count_quoted(conic_text_word row, comma_census *census) {
   const char *end = row.text + row.length, *c = memchr(row.text, '"', row.length);
   while (c) {
@@ -152,7 +149,8 @@ static void count_quoted(conic_text_word row, comma_census *census) {
   }
 }
 
-/* Of whole numbers in pairs that commas part, no second one begins with a needless 0, unless it follows a point. */
+/* Whether leading zeros come only in every second of six or more values that commas separate: then the pairs look like
+ * numbers with a decimal comma. */
 static int is_padded(conic_text_word row) {
   conic_text_dialect commas;
   conic_text_word words[MOST_VALUES];
@@ -160,7 +158,7 @@ static int is_padded(conic_text_word row) {
   conic_text_dialect_begin(CONIC_TEXT_COMMAS, &commas);
   size_t n = conic_text_split(&commas, row, words, MOST_VALUES, &is_open);
   for (size_t i = 0; i < n; i++) {
-    int has_zero = words[i].length > 1 && words[i].text[0] == '0' && is_digit(words[i].text[1]);
+    int has_zero = words[i].length > 1 && words[i].text[0] == '0' && conic_is_digit(words[i].text[1]);
     if (has_zero && i % 2 == 0)
       return 0;
     answer |= has_zero;
@@ -192,7 +190,8 @@ const char *conic_text_dialect_find(const conic_text_word *rows, size_t n_rows, 
   comma_census census = {.least_words = (size_t)-1, .is_all_inner = 1, .is_all_thousands = 1};
   for (size_t i = 0; i < n_rows; i++)
     count_row(rows[i], &census);
-  int is_parted = census.least_words >= 3 && census.most_inner > 0; /* without commas, which stand in its values */
+  int is_parted = census.least_words >= 3 && census.most_inner > 0; /* blanks alone separate the values, which have
+                                                                       commas */
   conic_text_dialect_begin(marks | CONIC_TEXT_COMMAS, dialect);
   if (!census.has_commas)
     return NULL;

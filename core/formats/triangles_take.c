@@ -40,7 +40,8 @@ static void take_arrays(conic_model *model, conic_triangles *triangles) {
   model->n_triangles = 0;
 }
 
-/* Structures of one array a component, from an array of `n` of so many; `none` is added for corners without. */
+/* Splits an array of n vectors into arrays of one component, with one more, `none`, for corners without the
+ * attribute. */
 static conic_status split(conic_context *context, const float *values, size_t n, int n_components, float **arrays) {
   for (int c = 0; c < n_components; c++) {
     arrays[c] = conic_memory_allocate(context, n + 1, sizeof(float));
@@ -53,7 +54,7 @@ static conic_status split(conic_context *context, const float *values, size_t n,
   return CONIC_OK;
 }
 
-/* Corners without an attribute get the one after all. */
+/* Corners without the attribute get the value after all others. */
 static void name_none(uint32_t (*corners)[3], size_t count, size_t none) {
   for (size_t i = 0; i < count; i++)
     for (int k = 0; k < 3; k++)
@@ -61,7 +62,7 @@ static void name_none(uint32_t (*corners)[3], size_t count, size_t none) {
         corners[i][k] = (uint32_t)none;
 }
 
-/* Those without a texture coordinate get their vertices'. */
+/* Corners without a texture coordinate get their vertex's. */
 static void name_vertices(uint32_t (*corners)[3], const conic_triangles *triangles, size_t first) {
   for (size_t i = 0; i < triangles->count; i++)
     for (int k = 0; k < 3; k++)
@@ -111,7 +112,7 @@ static conic_status allocate_materials(conic_context *context, size_t n, conic_t
   return CONIC_OK;
 }
 
-/* What a material file that is not there would have said is white. */
+/* White stands for what a missing material file would have said. */
 static conic_status take_named_materials(conic_context *context, conic_faces *faces, conic_triangles *triangles) {
   size_t n = faces->material_names.count;
   if (n < 2)
@@ -134,7 +135,7 @@ static conic_status take_named_materials(conic_context *context, conic_faces *fa
   return CONIC_OK;
 }
 
-/* Without corners of their own, all triangles have the first picture. */
+/* Without texture corners, all triangles have the first picture. */
 static conic_status take_pictures(conic_context *context, conic_faces *faces, conic_triangles *triangles) {
   size_t n = faces->pictures.count;
   if (n == 0 || !triangles->texture_coordinate[0])
@@ -154,7 +155,7 @@ static conic_status take_pictures(conic_context *context, conic_faces *faces, co
   return status;
 }
 
-/* One more, white, is for triangles without any. */
+/* One more material, white, is for triangles without any. */
 static conic_status take_made(conic_context *context, conic_faces *faces, conic_triangles *triangles) {
   size_t n = faces->n_made;
   if (n == 0)

@@ -14,8 +14,8 @@ typedef struct xyz_reader {
   conic_builder builder;
   conic_xyz_heading heading;
   int is_origin_set;
-  unsigned char is_asked[CONIC_TEXT_MOST_COLUMNS]; /* columns that values come from */
-  uint64_t n_odd, odd_line; /* lines that have other values than the header says, and the first of them */
+  unsigned char is_asked[CONIC_TEXT_MOST_COLUMNS]; /* columns that are read */
+  uint64_t n_odd, odd_line; /* lines with another number of values than the header has, and the first of them */
 } xyz_reader;
 
 static void find_origin(xyz_reader *reader, const double *p) {
@@ -64,7 +64,7 @@ static conic_status take_odd_line(xyz_reader *reader, size_t n) {
   return CONIC_OK;
 }
 
-/* Columns that somebody has named and that mean nothing may hold anything. */
+/* Named columns without a meaning may hold anything. */
 static conic_status read_row(xyz_reader *reader, conic_text_word line) {
   const conic_text_columns *columns = &reader->heading.columns;
   conic_text_word words[CONIC_TEXT_MOST_COLUMNS];
@@ -93,7 +93,7 @@ static conic_status read_row(xyz_reader *reader, conic_text_word line) {
   return append_point(reader, values, numbers);
 }
 
-/* Every column is a field, and one without a name goes by its number, from 1. */
+/* Every column is a field; one without a name is called by its number, from 1. */
 static conic_status choose_field(xyz_reader *reader, const conic_read_options *options) {
   const conic_text_columns *columns = &reader->heading.columns;
   conic_status status = CONIC_OK;

@@ -1,10 +1,10 @@
 /* The reader of text with a point a line: XYZ, PTS, CSV and whatever else people call it. docs/reference/formats.md
  * says what is understood.
  *
- * What the lines before the first point say (names of columns, the number of points) and the first 256 points tell the
- * dialect (core/formats/text_dialect.h) and the columns (core/formats/text_columns.h); then line by line is read. A
- * colour is sRGB-encoded; the largest value of the whole file tells whether it is a fraction of 1, a code of 8 bits or
- * one of 16 (core/splats/raw_colors.h). Positions are kept in double, from the first finite one as the origin. */
+ * The lines before the first point (names of columns, the number of points) and the first 256 points tell the dialect
+ * (core/formats/text_dialect.h) and the columns (core/formats/text_columns.h). The rest is read line by line. A colour
+ * is sRGB-encoded; the largest value of the whole file tells whether it is a fraction of 1, a code of 8 bits or one of
+ * 16 (core/splats/raw_colors.h). Positions are kept in double, from the first finite one as the origin. */
 #ifndef CONIC_XYZ_H
 #define CONIC_XYZ_H
 

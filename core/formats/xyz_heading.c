@@ -8,7 +8,7 @@
 
 enum { N_STUDIED = 256 };
 
-/* The first points' lines. */
+/* The lines of the first points. */
 typedef struct studied_rows {
   conic_text_word lines[N_STUDIED];
   size_t n;
@@ -69,14 +69,15 @@ conic_status conic_xyz_take_count(const conic_input *input, conic_text_word word
   return CONIC_OK;
 }
 
-/* Two counts are columns and rows, which no other kind begins with. */
+/* Two counts are columns and rows; no other kind begins so. */
 static conic_status take_first_count(const conic_input *input, conic_text_word word, conic_xyz_heading *heading) {
   if (heading->has_count)
     return conic_input_wrong(input, "two counts begin a PTX scan, but the head of one does not go on after them");
   return conic_xyz_take_count(input, word, heading);
 }
 
-/* Whether the caller's columns x, y and z are numbers here; else the line is a header that the caller speaks for. */
+/* Whether the caller's columns x, y and z are numbers here; else the line is a header, which the caller's columns
+ * replace. */
 static int has_callers_position(conic_text_word line, const conic_text_columns *columns) {
   conic_text_dialect any;
   conic_text_word words[CONIC_TEXT_MOST_COLUMNS];
@@ -90,7 +91,7 @@ static int has_callers_position(conic_text_word line, const conic_text_columns *
   return n_numbers == 3;
 }
 
-/* A line before the first point; *is_point where that is it. */
+/* Takes a line before the first point; *is_point if it is that point. */
 static conic_status take_line(const conic_input *input, conic_text_word line, conic_xyz_heading *heading,
                               int *is_point) {
   conic_text_dialect any;
@@ -123,7 +124,7 @@ static conic_status take_line(const conic_input *input, conic_text_word line, co
   return CONIC_OK;
 }
 
-/* The lines from here on that are wholly in the window, without comments and counts. */
+/* Takes the lines from here on that are wholly in the window, without comments and counts. */
 static void study(const conic_input *input, studied_rows *rows) {
   const char *c = (const char *)conic_input_bytes(input), *end = c + conic_input_available(input);
   for (rows->n = 0; rows->n < N_STUDIED && c < end;) {
@@ -149,14 +150,14 @@ static conic_status find_dialect(const conic_input *input, const studied_rows *r
   conic_text_word words[CONIC_TEXT_MOST_COLUMNS];
   unsigned marks = heading->names == CONIC_XYZ_IN_HEADER ? heading->marks : (unsigned)CONIC_TEXT_BLANKS;
   const char *why = conic_text_dialect_find(rows->lines, rows->n, marks, &heading->dialect);
-  /* lines whose values blanks part under a header with other marks */
+  /* blanks may separate the values although the header has other marks */
   if (!why && !(marks & CONIC_TEXT_BLANKS) && rows->n && conic_xyz_split(heading, rows->lines[0], words) == 1)
     why = conic_text_dialect_find(rows->lines, rows->n, CONIC_TEXT_BLANKS, &heading->dialect);
   return why ? conic_input_wrong(input, "%s", why) : CONIC_OK;
 }
 
-/* Names in a comment hold where there are as many values, or where they are of the first ones and say something else
- * than x y z, which goes without saying. */
+/* Names in a comment count if there are as many as values, or if they are fewer and say more than "x y z", which needs
+ * no saying. */
 static int holds_comment(const conic_text_columns *columns, size_t n) {
   int is_plain = columns->n >= 3 && columns->meaning[0] == 0 && columns->meaning[1] == 1 && columns->meaning[2] == 2;
   return columns->n == n || (columns->n < n && !is_plain);
@@ -192,7 +193,7 @@ static conic_status find_named_columns(const conic_input *input, const studied_r
   conic_text_columns *columns = &heading->columns;
   size_t n = 0, n_named = heading->names == CONIC_XYZ_UNNAMED ? 0 : columns->n;
   int is_named = 0;
-  for (size_t i = rows->n; i-- > 0;) { /* to the first line */
+  for (size_t i = rows->n; i-- > 0;) { /* back to the first line */
     n = conic_xyz_split(heading, rows->lines[i], words);
     is_named |= n == n_named;
   }

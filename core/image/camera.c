@@ -48,7 +48,7 @@ conic_status conic_framing_take(conic_context *context, const conic_framing *giv
   return CONIC_OK;
 }
 
-/* The smallest rotation that takes y to `up`, which is unit: azimuth 0 then looks along what it takes z to. */
+/* The smallest rotation that takes y to `up`, which is unit; at azimuth 0 the camera looks along the image of z. */
 static void rotation_from_y(const double up[3], double rotation[3][3]) {
   double c = 1.0 + up[1];
   if (c < 1e-12) { /* straight down: half a turn around z */
@@ -75,7 +75,7 @@ void conic_framing_rotation(const conic_framing *framing, double rows[3][3]) {
   double azimuth = conic_radians(framing->azimuth_deg), elevation = conic_radians(framing->elevation_deg);
   double sin_a = conic_sin(azimuth), cos_a = conic_cos(azimuth);
   double sin_e = conic_sin(elevation), cos_e = conic_cos(elevation);
-  /* The camera's axes in a frame with y up; y of the camera points down, z into the scene. */
+  /* The camera's axes in a frame with y up; the camera's y points down, its z into the scene. */
   const double axes[3][3] = {
       {cos_a, 0.0, -sin_a}, {sin_a * sin_e, -cos_e, cos_a * sin_e}, {-sin_a * cos_e, -sin_e, -cos_a * cos_e}};
   for (int i = 0; i < 3; i++)
@@ -123,7 +123,7 @@ conic_status conic_camera_frame(conic_context *context, const conic_framing *giv
   double radius = 0.5 * sqrt(diagonal_squared);
   if (!(radius > 0.0))
     radius = 1.0;
-  /* of the angle under which the sphere's radius is seen */
+  /* tangent of the angle of the sphere's radius */
   double tan_sphere = CONIC_FRAMING_PART * conic_tan(conic_radians(0.5 * framing.fov_deg));
   double distance = radius * sqrt(1.0 + tan_sphere * tan_sphere) / tan_sphere;
   conic_framing_camera(&framing, rows, center, (const double[3]){0.0, 0.0, distance}, camera);

@@ -14,7 +14,7 @@ static void append(conic_image *image, const char *name, conic_attribute_type ty
   memcpy(attribute->values, values, n * sizeof *values);
 }
 
-/* Points stand to the left of the file's matrices: what is a row for us is a column there. */
+/* The file's matrices multiply row vectors: our rows are columns there. */
 static void add_matrix(conic_image *image, const char *name, const double rows[4][4]) {
   double values[16];
   for (int row = 0; row < 4; row++)
@@ -33,7 +33,7 @@ void conic_image_describe_camera(conic_image *image, const conic_camera *camera)
   for (int i = 0; i < 4; i++) {
     const double x = camera->cam_from_world[0][i], y = camera->cam_from_world[1][i], z = camera->cam_from_world[2][i];
     to_camera[0][i] = x;
-    to_camera[1][i] = -y; /* which points up there */
+    to_camera[1][i] = -y; /* y points up there */
     to_camera[2][i] = z;
     to_ndc[0][i] = (camera->fx * x + camera->cx * z) / width;
     to_ndc[1][i] = (camera->fy * y + camera->cy * z) / height;
@@ -41,7 +41,7 @@ void conic_image_describe_camera(conic_image *image, const conic_camera *camera)
     to_ndc[3][i] = z;
   }
   add_matrix(image, "worldToCamera", (const double(*)[4])to_camera);
-  if (!camera->kind && !camera->lens) { /* what no matrix and no window says is left out */
+  if (!camera->kind && !camera->lens) { /* attributes cannot describe other kinds and lenses */
     add_matrix(image, "worldToNDC", (const double(*)[4])to_ndc);
     append(image, "screenWindowCenter", CONIC_ATTRIBUTE_FLOAT_PAIR, center, 2);
     append(image, "screenWindowWidth", CONIC_ATTRIBUTE_FLOAT, &window_width, 1);

@@ -29,8 +29,8 @@ static double polynomial_slope(const double *coefficients, int n, double s) {
   return sum;
 }
 
-/* Where a polynomial of n coefficients changes its sign between 0 and the limit, in order: between two turns, once at
- * most. */
+/* The places between 0 and the limit where a polynomial of n coefficients changes its sign, in order: at most one
+ * between two turning points. */
 static int find_sign_changes(const double *coefficients, int n, double limit, double *places) {
   double slope[FOLD], turns[FOLD + 1];
   int n_places = 0, n_turns = 0;
@@ -54,7 +54,8 @@ static int find_sign_changes(const double *coefficients, int n, double limit, do
   return n_places;
 }
 
-/* The radius up to which radius·top/bottom grows: its slope is (top + 2s·top')·bottom − 2s·top·bottom' over bottom². */
+/* Finds the radius up to which radius·top/bottom grows: its slope is (top + 2s·top')·bottom − 2s·top·bottom' over
+ * bottom². */
 static void find_growth(conic_camera_rays *r, double limit) {
   double fold[FOLD] = {0.0}, places[FOLD + 1], s = limit * limit;
   for (int i = 0; i < TOP; i++)
@@ -87,7 +88,7 @@ void conic_camera_rays_init(const conic_camera *camera, conic_camera_rays *r) {
   find_growth(r, is_fisheye ? CONIC_PI : greatest_slope);
 }
 
-/* The radius whose distorted one is `place`: Newton's steps, or halves of the bracket where these leave it. */
+/* The radius that is distorted to `place`: by Newton's steps, or by halving the bracket where these leave it. */
 static double undistort_radius(const conic_camera_rays *r, double place) {
   double low = 0.0, high = r->most_radius, radius = place < high ? place : high;
   for (int step = 0; step < 100; step++) {
@@ -105,7 +106,7 @@ static double undistort_radius(const conic_camera_rays *r, double place) {
   return radius;
 }
 
-/* What the lens makes of a place, less what it should be; and the four derivatives of it. */
+/* What the lens makes of a place, minus the wanted one; and the four derivatives. */
 static void distort_place(const conic_camera_rays *r, const double at[2], const double wanted[2], double apart[2],
                           double by[2][2]) {
   double a = at[0], b = at[1], s = a * a + b * b, p1 = r->tangential[0], p2 = r->tangential[1];
@@ -120,7 +121,7 @@ static void distort_place(const conic_camera_rays *r, const double at[2], const 
   by[1][1] = grown + 2.0 * b * b * slope + 6.0 * p1 * b + 2.0 * p2 * a + 2.0 * r->prism[1] * b;
 }
 
-/* Newton's steps from where the lens without its tangential part would have come from. */
+/* Newton's steps, starting from the solution for the lens without its tangential part. */
 static int undistort_bent(const conic_camera_rays *r, const double wanted[2], double at[2]) {
   enum { STEPS = 20 };
   double apart[2], by[2][2], area = 0.0, size = 1.0 + fabs(wanted[0]) + fabs(wanted[1]);

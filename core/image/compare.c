@@ -8,13 +8,13 @@
 #include "core/base/power.h"
 #include "core/image/image_common.h"
 
-/* The sums of one plane, or of several. */
+/* The sums of one or several planes. */
 typedef struct plane_sums {
   double max_abs, sum_of_squares;
   double n_samples;
 } plane_sums;
 
-/* Row by row, so that the rounding of the sums is the same whatever the rows' number; marks the pixels that differ. */
+/* Sums row by row, so that rounding does not depend on how rows are grouped; marks the pixels that differ. */
 static plane_sums compare_plane(const conic_image *a, const conic_image *b, conic_plane plane, unsigned char *differs) {
   const conic_plane_description *description = conic_plane_describe(plane);
   size_t n_channels = (size_t)description->n_channels, width = (size_t)a->width;

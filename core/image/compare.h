@@ -28,13 +28,13 @@ static inline double conic_sample_difference(uint32_t a_bits, uint32_t b_bits, i
   return difference >= 0.0 ? difference : (double)INFINITY;
 }
 
-/* Of a plane's channels, the first ones, which both images have. */
+/* How many of a plane's first channels both images have. */
 static inline size_t conic_compared_channels(const conic_image *a, const conic_image *b, int plane) {
   int is_without_alpha = plane == CONIC_PLANE_RGBA && (a->lacks_alpha || b->lacks_alpha);
   return (size_t)conic_plane_describe((conic_plane)plane)->n_channels - (size_t)is_without_alpha;
 }
 
-/* A colour, linear or a display value, as a screen shows it, 0 to 1; NaN is -1, which no colour is. */
+/* A colour, linear or a display value, as a screen shows it, 0 to 1; NaN becomes -1, which is no colour. */
 static inline double conic_screen_value(float value, int is_display) {
   if (!(value > 0.0f))
     return value <= 0.0f ? 0.0 : -1.0;
@@ -43,8 +43,8 @@ static inline double conic_screen_value(float value, int is_display) {
   return is_display ? (double)value : conic_srgb_encode((double)value);
 }
 
-/* Two images whose colours are of one kind: where only one's are display values, the other one's are encoded in a copy.
- * The other planes are the images' own. */
+/* Two images with colours of one kind. If only one has display values, the other's colours are encoded in a copy. The
+ * other planes are the images' own. */
 typedef struct conic_image_pair {
   conic_image a, b;
   float *copy; /* null: none was needed */
@@ -55,10 +55,10 @@ conic_status conic_pair_begin(conic_context *context, const conic_image *a, cons
                               conic_image_pair *pair);
 void conic_pair_end(conic_context *context, conic_image_pair *pair);
 
-/* What is compared of two images of one kind of colour and one size. */
+/* How the colours of two images of one size and one kind of colour differ. */
 typedef struct conic_color_difference {
   double sum_of_squares;    /* of R, G and B */
-  double ssim, ssim_padded; /* their means */
+  double ssim, ssim_padded; /* the means over the windows */
 } conic_color_difference;
 
 static inline void conic_add_weighted(double *restrict sum, const double *restrict values, double weight, size_t n) {
@@ -66,17 +66,17 @@ static inline void conic_add_weighted(double *restrict sum, const double *restri
     sum[i] += weight * values[i];
 }
 
-/* Both images have rgba of one kind, and one size. Errors: MEMORY. */
+/* Compares two images with rgba of one kind and one size. Errors: MEMORY. */
 conic_status conic_compare_color(conic_context *context, const conic_image *a, const conic_image *b,
                                  conic_color_difference *difference);
 
-/* The mean of ꟻLIP over the pixels, and its value at each into `map`, which may be null. Both images have rgba of one
+/* The mean of ꟻLIP over the pixels; `map`, which may be null, gets its value at each. Both images have rgba of one
  * kind, and one size. Errors: MEMORY. */
 conic_status conic_compare_flip(conic_context *context, const conic_image *a, const conic_image *b, float *map,
                                 double *mean);
 
-/* The 99.9th percentile over the pixels of the largest difference in the planes of `planes` (bits), to the precision of
- * a float; both images have them and one size. */
+/* The 99.9th percentile over the pixels of the largest difference in `planes` (bits), to a float's precision. Both
+ * images have these planes, and one size. */
 double conic_compare_p999(const conic_image *a, const conic_image *b, unsigned planes);
 
 /* Pixels where R, G or B, as a screen shows them, differ by more than 8-bit rounding: 1.001/255. Both images have rgba
@@ -86,8 +86,8 @@ size_t conic_compare_codes(const conic_image *a, const conic_image *b);
 /* Pixels of the largest 4-connected set covered in `a` and not in `b`. Errors: MEMORY. */
 conic_status conic_largest_hole(conic_context *context, const conic_image *a, const conic_image *b, size_t *n_pixels);
 
-/* A picture of rgba with fewer pixels, each the mean over the part of `image` that it covers, of the numbers as they
- * are. Allocated; `width` and `height` are at most the image's. Errors: ARGUMENT (there is no rgba), MEMORY. */
+/* A smaller rgba picture. Each pixel is the mean over the area of `image` that it covers, of the numbers as they are.
+ * Allocated; `width` and `height` are at most the image's. Errors: ARGUMENT (there is no rgba), MEMORY. */
 conic_status conic_image_reduce(conic_context *context, const conic_image *image, int width, int height,
                                 conic_image *reduced);
 

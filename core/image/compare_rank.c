@@ -1,5 +1,5 @@
-/* Percentiles and counts of the pixels' differences, without memory for them: what is not negative is ordered as the
- * bits of its float are, so that three counts, of 2¹¹ classes each, find a rank exactly. */
+/* Percentiles and counts of the pixels' differences, without memory for them. The bits of floats that are not negative
+ * have the floats' order, so that three counts, of 2¹¹ classes each, find a rank exactly. */
 #include "core/base/color.h"
 #include "core/base/real.h"
 #include "core/image/compare.h"
@@ -30,7 +30,7 @@ static float pixel_difference(const conic_image *a, const conic_image *b, unsign
   return (float)largest;
 }
 
-/* The class in which the rank falls; *rank becomes its rank in there. */
+/* The class that holds the rank; *rank becomes the rank within it. */
 static uint32_t find_class(const size_t *counts, size_t *rank) {
   uint32_t i = 0;
   for (; i < N_CLASSES - 1 && counts[i] <= *rank; i++)

@@ -5,8 +5,8 @@
 #include "core/image/compare.h"
 #include "core/image/image_common.h"
 
-/* Of a colour in front of black. Without alpha there is nothing to divide by, and nothing comes of it in a file either:
- * light that adds without covering is encoded as it is. */
+/* For a colour in front of black. Light that adds without covering has no alpha to divide by: it is encoded as it is,
+ * and files show nothing of it. */
 static void encode_pixels(const float *linear, size_t n_pixels, float *display) {
   for (size_t i = 0; i < n_pixels; i++, linear += 4, display += 4) {
     double alpha = linear[3] > 0.0f ? (double)linear[3] : 1.0;

@@ -5,10 +5,10 @@
 /* In eighths of a stop. */
 enum { DARKEST = -128, BRIGHTEST = 128, N_STEPS = BRIGHTEST - DARKEST + 1, STEPS_A_STOP = 8 };
 
-/* What counts as nearly white: 2^(-3/8), which sRGB shows as 227 of 255; and of how many covered pixels one may be. */
+/* Nearly white: 2^(-3/8), which sRGB shows as 227 of 255; one covered pixel in so many may be nearly white. */
 enum { WHITE_STEPS = -3, ONE_IN = 20 };
 
-/* The first step with which a pixel becomes nearly white; N_STEPS: none does. */
+/* The first step at which a pixel becomes nearly white; N_STEPS: none. */
 static int whitening_step(const float limits[N_STEPS], double luminance, double alpha) {
   int low = 0, high = N_STEPS;
   while (low < high) {

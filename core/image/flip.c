@@ -1,7 +1,7 @@
-/* ꟻLIP for pictures of low dynamic range (Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild 2020): how
- * much of a difference someone sees who flips between two pictures on a screen at arm's length. docs/reference/diff.md
- * tells it in words. All filters are sums of products of two one-dimensional ones; a tile is filtered across row by row
- * as the rows come, and down over the last rows. */
+/* ꟻLIP for pictures of low dynamic range (Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild 2020): the
+ * difference that is visible when one flips between two pictures on a screen at arm's length. docs/reference/diff.md
+ * describes it. All filters are sums of products of two one-dimensional ones. A tile's rows are filtered across one by
+ * one, and down over the last rows. */
 #include <math.h>
 #include <string.h>
 
@@ -20,10 +20,10 @@
 enum { RADIUS = 10, FEATURE_RADIUS = 9, HALO = 2 * RADIUS, N_TAPS = HALO + 1 };
 enum { TILE_WIDTH = 256, TILE_HEIGHT = 64, PADDED_WIDTH = TILE_WIDTH + HALO };
 
-/* What a row is filtered with: the eye's sensitivity to Y, Cx and Cz, whose filter is a sum of two Gaussians, and a
- * Gaussian with its first two derivatives, which finds edges and points in Y. */
+/* Filters of a row: the eye's sensitivity to Y, Cx and Cz, whose filter is a sum of two Gaussians; and a Gaussian with
+ * its first two derivatives, which finds edges and points in Y. */
 enum { SPATIAL_Y, SPATIAL_CX, SPATIAL_CZ1, SPATIAL_CZ2, SMOOTH, SLOPE, BEND, N_FILTERS };
-/* What comes of it after filtering down as well. */
+/* The results after filtering down as well. */
 enum { SLOPE_X = SMOOTH, BEND_X, SLOPE_Y, BEND_Y, N_SUMS };
 
 static const int filter_source[N_FILTERS] = {0, 1, 2, 2, 0, 0, 0}; /* of Y, Cx, Cz */
@@ -33,7 +33,7 @@ typedef struct flip_tile {
   double across[N_TAPS][N_FILTERS][TILE_WIDTH]; /* the last rows, filtered across */
 } flip_tile;
 
-/* What a thread works in: the two pictures' tile, and a row of each, filtered down too. */
+/* A thread's buffers: a tile of both pictures, and one row of each, filtered down too. */
 typedef struct flip_buffers {
   flip_tile tiles[2];
   double sums[2][N_SUMS][TILE_WIDTH];
@@ -69,7 +69,7 @@ static void scale(double weights[N_TAPS], double factor) {
     weights[i] *= factor;
 }
 
-/* The positive weights then sum to 1, and the negative ones to −1. */
+/* Scales the positive weights to the sum 1, and the negative ones to −1. */
 static void balance(double weights[N_TAPS]) {
   double positive = 0.0, negative = 0.0;
   for (int i = 0; i < N_TAPS; i++) {
@@ -104,7 +104,7 @@ static void set_filters(double weights[N_FILTERS][N_TAPS]) {
   balance(weights[BEND]);
 }
 
-/* Of linear RGB, relative to the white point: X/X_w, Y, Z/Z_w. */
+/* XYZ of linear RGB, relative to the white point: X/X_w, Y, Z/Z_w. */
 static void xyz_of(const double rgb[3], double xyz[3]) {
   xyz[0] = (10135552.0 * rgb[0] + 8788810.0 * rgb[1] + 4435075.0 * rgb[2]) / (24577794.0 * 0.950428545);
   xyz[1] = (2613072.0 * rgb[0] + 8788810.0 * rgb[1] + 887015.0 * rgb[2]) / 12288897.0;
@@ -160,7 +160,7 @@ static double length_of_slope(double x, double y) {
   return sqrt(x * x + y * y) / 116.0; /* Y is 116 wide */
 }
 
-/* How much more of an edge or a point one picture has than the other. */
+/* How much stronger an edge or a point is in one picture than in the other. */
 static double feature_difference(const flip_buffers *buffers, size_t x) {
   double edges[2], points[2];
   for (int k = 0; k < 2; k++) {
@@ -212,7 +212,7 @@ static void filter_across(const flip_work *work, flip_tile *tile, size_t i_row, 
   }
 }
 
-/* The row whose filters reach from i_row of the tile's rows on. */
+/* Filters down to the row whose filters begin at row i_row of the tile. */
 static void filter_down(const flip_work *work, const flip_tile *tile, size_t i_row, size_t n,
                         double sums[N_SUMS][TILE_WIDTH]) {
   static const struct {
@@ -233,7 +233,7 @@ static void filter_down(const flip_work *work, const flip_tile *tile, size_t i_r
   }
 }
 
-/* Whether a channel is NaN in one picture only, which no filtering may soften. */
+/* Whether a channel is NaN in one picture only; filtering must not soften that. */
 static int differs_by_nan(const flip_work *work, size_t i_pixel) {
   const float *a = (const float *)work->images[0]->planes[CONIC_PLANE_RGBA] + 4 * i_pixel;
   const float *b = (const float *)work->images[1]->planes[CONIC_PLANE_RGBA] + 4 * i_pixel;

@@ -8,11 +8,11 @@
 #include "core/image/compare.h"
 #include "core/image/image_common.h"
 
-/* The smallest difference that is told from the next: 2^-20, a millionth. */
+/* The smallest difference that is not black: 2^-20, a millionth. */
 enum { DARKEST_EXPONENT = -20 };
 
-/* How far `difference` is from that power of two (0) to 1 and beyond (1) by its logarithm, taken as straight between
- * powers of two: that needs no logarithm and no one sees the difference. Infinity and NaN are 1. */
+/* The position of `difference` on a logarithmic scale, from that power of two (0) to 1 and beyond (1). Between powers
+ * of two it is linear, which needs no logarithm and is not visible. Infinity and NaN are 1. */
 static float scale_position(double difference, int darkest_exponent) {
   int exponent;
   if (!(difference < 1.0))
@@ -23,7 +23,7 @@ static float scale_position(double difference, int darkest_exponent) {
   return position > 0.0 ? (float)position : 0.0f;
 }
 
-/* From blue over red and yellow to white. */
+/* Colours from blue over red and yellow to white. */
 static void paint(float position, float pixel[4]) {
   static const float stops[4][3] = {{0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}};
   float scaled = position * 3.0f;
@@ -33,7 +33,7 @@ static void paint(float position, float pixel[4]) {
     pixel[c] = stops[i][c] + part * (stops[i + 1][c] - stops[i][c]);
 }
 
-/* The largest channel's difference; NaN where a channel's is none. Equal bits differ by nothing. */
+/* The largest difference of a channel; NaN where one is NaN. Equal bits do not differ. */
 static double pixel_difference(const float *a, const float *b, size_t n_channels) {
   double largest = 0.0;
   for (size_t c = 0; c < n_channels; c++) {

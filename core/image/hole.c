@@ -1,4 +1,4 @@
-/* The largest hole: what the first image covers and the second does not. */
+/* The largest hole: pixels that the first image covers and the second does not. */
 
 #include "core/base/memory.h"
 #include "core/image/compare.h"
@@ -22,7 +22,8 @@ static int is_covered(const conic_image *image, conic_plane plane, size_t i) {
   return 0;
 }
 
-/* The plane that tells what is covered: the first of these that both images have; negative where there is none. */
+/* The plane that tells which pixels are covered: the first of these that both images have; negative where there is
+ * none. */
 static int covering_plane(const conic_image *a, const conic_image *b) {
   static const conic_plane order[CONIC_N_PLANES] = {
       CONIC_PLANE_RGBA,         CONIC_PLANE_ID,       CONIC_PLANE_Z,         CONIC_PLANE_WEIGHT,
@@ -46,7 +47,7 @@ static size_t push(unsigned char *is_hole, uint32_t *stack, size_t n_stack, size
   return n_stack;
 }
 
-/* The size of the hole that pixel `first` is in, which is then no longer on the map. */
+/* The size of the hole around pixel `first`, which it takes off the map. */
 static size_t fill_hole(unsigned char *is_hole, uint32_t *stack, size_t width, size_t height, size_t first) {
   size_t n_filled = 0, n_stack = push(is_hole, stack, 0, first);
   while (n_stack > 0) {

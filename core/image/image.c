@@ -119,7 +119,7 @@ void conic_image_release(conic_context *context, conic_image *image) {
   memset(image, 0, sizeof *image);
 }
 
-/* By words whose bytes may stand the other way round in memory: the last bits of a byte's place are turned. */
+/* Hashes words whose bytes may be in another order in memory: `turned` flips the last bits of a byte's place. */
 static uint64_t hash_words(uint64_t hash, const uint8_t *byte, size_t n_bytes, size_t turned) {
   for (size_t i = 0; i < n_bytes; i++)
     hash = (hash ^ byte[i ^ turned]) * UINT64_C(0x100000001b3);

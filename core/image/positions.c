@@ -1,4 +1,4 @@
-/* Where what a pixel shows lies in the world: by its depth and the camera. */
+/* The world position of what a pixel shows, from its depth and the camera. */
 #include "conic/image.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
@@ -7,12 +7,12 @@
 typedef struct positions {
   const conic_camera *camera;
   conic_camera_rays rays;
-  double offset; /* of the sample that Z is of, from the pixel's centre */
+  double offset; /* from the pixel's centre to the sample whose depth Z is */
   const float *z;
   float *to;
 } positions;
 
-/* For cameras that are no pinholes. */
+/* For cameras other than pinholes. */
 static void locate_on_ray(const positions *work, double x_px, double y_px, double z, double there[3]) {
   double origin[3], direction[3];
   conic_camera_ray(&work->rays, x_px, y_px, origin, direction);

@@ -1,4 +1,4 @@
-/* Fewer pixels by means over boxes, whose edges may cut pixels; first across, then down. */
+/* Reduces pictures by means over boxes, whose edges may cut pixels: first across, then down. */
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -10,7 +10,7 @@
 typedef struct shrinking {
   const conic_image *from;
   conic_image *to;
-  double *rows; /* of the whole image, but as wide as the reduced one */
+  double *rows; /* as many as the image has, but as wide as the reduced image's */
 } shrinking;
 
 /* The part [*begin, *end) of n_from units that is unit i of n_to. */

@@ -1,5 +1,5 @@
-/* Structural similarity (Wang, Bovik, Sheikh, Simoncelli 2004) and squared differences of the colour as a
- * screen shows it, a channel at a time, row by row in memory of a few rows. */
+/* Structural similarity (Wang, Bovik, Sheikh, Simoncelli 2004) and squared differences of the colour as a screen shows
+ * it, channel by channel, in memory for a few rows. */
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -15,19 +15,19 @@ static const double window_weight[WINDOW] = {0.00102838008447911,  0.00759875813
                                              0.2130055377112537,   0.10936068950970002,  0.03600077212843083,
                                              0.007598758135239185, 0.00102838008447911};
 
-/* What one channel needs and gives. */
+/* Buffers and results of one channel. */
 typedef struct channel_work {
   double *a, *b;    /* a row's encoded values */
-  double *moments;  /* of a row, before filtering: a, b, a², b², ab, one array after the other, each between zeros */
-  double *filtered; /* WINDOW rows of them, filtered across; row y is at y mod WINDOW */
-  double *windows;  /* filtered down too: one about each pixel */
+  double *moments;  /* of a row, before filtering: a, b, a², b², ab, one array after the other, with zeros between */
+  double *filtered; /* WINDOW rows of moments, filtered across; row y is at y mod WINDOW */
+  double *windows;  /* filtered down too: the moments about each pixel */
   conic_color_difference found;
 } channel_work;
 
 typedef struct color_work {
   const conic_image *a, *b;
   size_t width, height;
-  int is_window; /* smaller than a window: it is one, with equal weights */
+  int is_window; /* the picture is smaller than a window, and is one window with equal weights */
   int is_display;
   channel_work channels[3];
 } color_work;
@@ -77,7 +77,7 @@ static void filter_across(const color_work *work, const channel_work *buffers, s
       conic_add_weighted(row + m * n, buffers->moments + m * padded_width(work) + k, window_weight[k], n);
 }
 
-/* The windows about the pixels of row y. */
+/* Fills the windows about the pixels of row y. */
 static void filter_down(const color_work *work, const channel_work *buffers, size_t y) {
   size_t n = N_MOMENTS * work->width;
   memset(buffers->windows, 0, n * sizeof *buffers->windows);
@@ -141,7 +141,7 @@ static void compare_channel(void *data, size_t i_item, int i_thread) {
     buffers->found.ssim /= (double)((work->width + 1 - WINDOW) * (work->height + 1 - WINDOW));
 }
 
-/* One block for the three channels; each has its rows in it. */
+/* Allocates one block for the rows of all three channels. */
 static double *allocate_rows(conic_context *context, color_work *work) {
   size_t n_windows = N_MOMENTS * work->width;
   size_t n = 2 * work->width + N_MOMENTS * padded_width(work) + (WINDOW + 1) * n_windows;

@@ -7,8 +7,8 @@
 #include "core/base/message.h"
 #include "core/image/image_common.h"
 
-/* What an old row or column of `n` texels gives to texel i of a new one of `m`: the overlaps of the old texels with the
- * new one's place, which add up to 1. Returns how many there are, 2 or 3; *first is the first. */
+/* The shares of an old row or column of `n` texels in texel i of a new one of `m`: how much each old texel overlaps the
+ * new one. They add up to 1. Returns how many there are, 2 or 3; *first is the first old texel. */
 static int shares_of(int i, int n, int m, int *first, double shares[3]) {
   double scale = (double)n / (double)m, begin = (double)i * scale, end = (double)(i + 1) * scale;
   int count = 0;
@@ -45,7 +45,7 @@ static size_t level_bytes(int width, int height) {
   return (size_t)width * (size_t)height * 4 * sizeof(conic_texel);
 }
 
-/* Of all levels. */
+/* Bytes of all levels. */
 static size_t pyramid_bytes(int width, int height) {
   size_t n = level_bytes(width, height);
   while (width > 1 || height > 1) {
@@ -85,7 +85,7 @@ static float alpha_of_texel(const float *texel) {
   return texel[3] > 0.0f ? texel[3] < 1.0f ? texel[3] : 1.0f : 0.0f;
 }
 
-/* Colour without its alpha, and alpha; what is no usable number is black. */
+/* Divides colours by alpha; numbers that cannot be used become black. */
 static void make_texels(const conic_texture_level *level) {
   for (size_t i = 0; i < (size_t)level->width * (size_t)level->height; i++) {
     float *texel = level->texels + 4 * i, alpha = texel[3];
@@ -97,7 +97,7 @@ static void make_texels(const conic_texture_level *level) {
   }
 }
 
-/* Makes all levels of the first one's `texels`, which become the texture's, on failure, too. */
+/* Makes all levels from the first level's `texels`, which the texture owns afterwards, on failure, too. */
 static conic_status make_levels(conic_context *context, float *texels, int width, int height, conic_texture_wrap wrap,
                                 conic_texture **texture) {
   conic_texture *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
@@ -123,7 +123,7 @@ static conic_status make_levels(conic_context *context, float *texels, int width
   return status;
 }
 
-/* Makes the cover of the texels' colours and alphas; null where all are opaque. */
+/* Makes the cover from the texels' colours and alphas; null where all are opaque. */
 static conic_status make_cover(conic_context *context, const float *texels, int width, int height,
                                conic_texture_wrap wrap, conic_texture **cover) {
   size_t n = (size_t)width * (size_t)height, i = 0;
@@ -144,7 +144,7 @@ static conic_status make_cover(conic_context *context, const float *texels, int 
   return make_levels(context, covering, width, height, wrap, cover);
 }
 
-/* `texels`, the image's colour, becomes the first level, on failure, too. */
+/* Makes `texels`, the image's colours, the first level; the texture owns them, on failure, too. */
 static conic_status make_texture(conic_context *context, float *texels, int width, int height, conic_texture_wrap wrap,
                                  conic_texture **texture) {
   const conic_texture_level first = {width, height, texels};
@@ -169,7 +169,7 @@ static int is_as_large(const conic_texture *a, const conic_texture *b) {
   return a->levels[0].width == b->levels[0].width && a->levels[0].height == b->levels[0].height;
 }
 
-/* Texel by texel, or where they are others, the other picture is looked at through a texel. */
+/* Takes alpha texel by texel, or, where the sizes differ, samples the other picture over each texel. */
 conic_status conic_texture_take_alpha(conic_texture *texture, const conic_texture *other) {
   const conic_texture_level *level = &texture->levels[0];
   const float along[2] = {1.0f / (float)level->width, 0.0f}, across[2] = {0.0f, 1.0f / (float)level->height};

@@ -22,7 +22,7 @@ static float side_of(float value, int size) {
   return side < CONIC_TEXTURE_WIDEST ? side : CONIC_TEXTURE_WIDEST;
 }
 
-/* The place in [0, 1). */
+/* The place within the picture, in [0, 1). */
 static float place_in(float value, conic_texture_wrap wrap) {
   value = finite_or_zero(value);
   if (wrap == CONIC_WRAP_REPEAT)
@@ -63,8 +63,8 @@ static footprint footprint_of(const conic_texture_level *level, const float alon
   return v;
 }
 
-/* The filter on one level. Where a side of the picture is one texel already, all texels along it are the same, and it
- * is of no matter that the footprint goes on shrinking. */
+/* Filters on one level. Where the picture is one texel wide, all texels along that side are the same, and a shrinking
+ * footprint does no harm. */
 static void filter(const conic_texture *texture, int i_level, const float place[2], const footprint *of_pixel,
                    float color[4]) {
   const conic_texture_level *level = &texture->levels[i_level];
@@ -102,7 +102,7 @@ static void filter(const conic_texture *texture, int i_level, const float place[
     color[channel] = sum[channel] / weights;
 }
 
-/* The level on which the footprint is as wide as it should be, and how far it is to the one after. */
+/* The level on which the footprint is wide enough, and how far it is to the next one. */
 static int level_of(const conic_texture *texture, const footprint *v, float *beyond) {
   float greater, smaller;
   extents_of(v, &greater, &smaller);

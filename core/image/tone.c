@@ -1,5 +1,5 @@
-/* Tone curves: light without bound, as colours that a screen can show. Only + − × ÷ √, so that the bits are the same
- * everywhere. */
+/* Tone curves: map light without bound to colours that a screen can show. Only + − × ÷ √ are used, so that the bits are
+ * the same everywhere. */
 #include <float.h>
 #include <stdint.h>
 #include <string.h>
@@ -23,7 +23,7 @@ static double hable(double x) {
 }
 
 static void map_filmic(double color[3]) {
-  enum { EXPOSURE = 2 }; /* before the curve, and 11.2 after that is white: both as he has it */
+  enum { EXPOSURE = 2 }; /* exposure before the curve; after that, 11.2 is white: both are Hable's */
   for (int c = 0; c < 3; c++)
     color[c] = hable(EXPOSURE * color[c]) / hable(11.2);
 }
@@ -47,8 +47,8 @@ static void map_aces(double color[3]) {
   multiply_color(to_screen, color);
 }
 
-/* The base-2 logarithm of a normal number above 0, to 1e-13: with m from √½ to √2, 2·(t + t³/3 + …) of
- * t = (m - 1)/(m + 1) is that of e to m. */
+/* The base-2 logarithm of a normal number above 0, to 1e-13: with m from √½ to √2, the logarithm of m to base e is 2·(t
+ * + t³/3 + …), t = (m - 1)/(m + 1). */
 static double stops_of(double x) {
   static const double root = 1.4142135623730951, stops_of_e = 1.4426950408889634;
   uint64_t bits;
@@ -66,8 +66,8 @@ static double stops_of(double x) {
   return whole + 2.0 * stops_of_e * (t * sum);
 }
 
-/* Sobotka's AgX: stops about middle grey along Wrensch's polynomial for its sigmoid, between matrices by which bright
- * colours go towards white. What it gives are the screen's codes. */
+/* Sobotka's AgX: stops about middle grey go through Wrensch's polynomial for its sigmoid, between matrices that move
+ * bright colours towards white. The results are screen codes. */
 static void map_agx(double color[3]) {
   static const double inset[3][3] = {{0.842479062253094, 0.0784335999999992, 0.0792237451477643},
                                      {0.0423282422610123, 0.878468636469772, 0.0791661274605434},
@@ -94,7 +94,7 @@ void conic_tone_map(conic_tone tone, const float linear[3], float mapped[3]) {
     memmove(mapped, linear, 3 * sizeof *mapped);
     return;
   }
-  for (int c = 0; c < 3; c++) /* NaN is 0, and no infinities, whose quotient would be none */
+  for (int c = 0; c < 3; c++) /* NaN becomes 0; infinities, whose quotient is NaN, become the largest float */
     color[c] = linear[c] > 0.0f ? linear[c] < FLT_MAX ? (double)linear[c] : (double)FLT_MAX : 0.0;
   maps[tone](color);
   for (int c = 0; c < 3; c++)

@@ -1,4 +1,4 @@
-/* A camera for whoever chooses what to draw: where places are in its space, and which spheres are in its picture. */
+/* A camera for choosing what to draw: transforms places into its space, and tests which spheres are in its picture. */
 #ifndef CONIC_VIEWPOINT_H
 #define CONIC_VIEWPOINT_H
 
@@ -6,12 +6,12 @@
 #include "core/base/vectors.h"
 
 typedef struct conic_viewpoint {
-  double rotation[3][3], translation[3]; /* camera space from places relative to an origin */
+  double rotation[3][3], translation[3]; /* from places relative to an origin to camera space */
   double eye[3];                         /* relative to the origin */
   double side[4][3]; /* planes of the picture's sides, in camera space: unit normals, inwards, through the eye */
 } conic_viewpoint;
 
-/* The sides lie so many pixels out of the picture. */
+/* The tested sides lie so many pixels outside of the picture. */
 void conic_viewpoint_init(conic_viewpoint *from, const conic_camera *camera, const double origin[3], double margin_px);
 
 static inline void conic_viewpoint_move(const conic_viewpoint *from, const double place[3], double p[3]) {
@@ -24,7 +24,7 @@ static inline void conic_viewpoint_move_floats(const conic_viewpoint *from, cons
   conic_viewpoint_move(from, moved, p);
 }
 
-/* Whether a sphere about p, in camera space, lies wholly beyond one of the sides. */
+/* Whether a sphere about p, in camera space, is wholly beyond a side. */
 static inline int conic_viewpoint_misses(const conic_viewpoint *from, const double p[3], double radius) {
   int is_beyond = 0;
   for (int i = 0; i < 4; i++)

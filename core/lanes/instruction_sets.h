@@ -1,15 +1,16 @@
-/* Which instruction sets kernels are written for, and which of them this build and this machine have: the one place
- * that knows.
+/* Which instruction sets loops are written for, and which of them this build and this machine have: the one place that
+ * knows.
  *
- * A family of kernels is a table, a struct of functions, which has one text in plain C and one in lanes (core/lanes/
- * lanes.h), compiled once an instruction set. FAMILY_init fills a table with plain C; each instruction set that is
- * allowed, the narrowest first, then overwrites the slots that it has. */
+ * A family of loops is a table, a struct of functions. It has one text in plain C and one in lanes
+ * (core/lanes/lanes.h), which is compiled once for each instruction set. FAMILY_init fills a table with plain C; then
+ * each allowed instruction set, the narrowest first, overwrites the slots that it has. */
 #ifndef CONIC_INSTRUCTION_SETS_H
 #define CONIC_INSTRUCTION_SETS_H
 
 #include "conic/context.h"
 
-/* DO for each of this build besides plain C, the narrowest first: with the family, its name in capitals, in small. */
+/* DO for each instruction set of this build besides plain C, the narrowest first: with the family, the set's name in
+ * capitals, and in lower case. */
 #if defined(__x86_64__)
 #define CONIC_FOR_ISAS(DO, family) DO(family, SSE2, sse2) DO(family, AVX2, avx2) DO(family, AVX512, avx512)
 #elif defined(__aarch64__)
@@ -18,44 +19,44 @@
 #define CONIC_FOR_ISAS(DO, family)
 #endif
 
-/* Whether this build and this machine have it; CONIC_ISA_AUTO they always have. */
+/* Whether this build and this machine have it; CONIC_ISA_AUTO is always there. */
 int conic_isa_is_here(conic_isa isa);
 
-/* What `asked` stands for: of CONIC_ISA_AUTO, the context's choice, and if that is it, too, the best. Errors:
- * UNSUPPORTED, where it is not here; then it is plain C. */
+/* Finds the set that `asked` stands for: CONIC_ISA_AUTO means the context's choice, and if that is AUTO, too, the best.
+ * Errors: UNSUPPORTED where it is not here; *chosen is then plain C. */
 conic_status conic_isa_choose(conic_context *context, conic_isa asked, conic_isa *chosen);
 
 /* NOLINTBEGIN(bugprone-macro-parentheses): types and names, which stand bare */
-#define CONIC_DECLARE_KERNELS_OF(family, NAME, name) void family##_##name(family *kernels);
-#define CONIC_OVERWRITE_KERNELS(family, NAME, name)                                                                    \
+#define CONIC_DECLARE_LOOPS_OF(family, NAME, name) void family##_##name(family *loops);
+#define CONIC_OVERWRITE_LOOPS(family, NAME, name)                                                                      \
   if (isa >= CONIC_ISA_##NAME)                                                                                         \
-    family##_##name(kernels);
+    family##_##name(loops);
 
-/* Declares what fills the tables of a family, a type, and FAMILY_init, which does so for an instruction set that is
- * here, CONIC_ISA_AUTO for the best. */
-#define CONIC_DECLARE_KERNELS(family)                                                                                  \
-  void family##_scalar(family *kernels);                                                                               \
-  CONIC_FOR_ISAS(CONIC_DECLARE_KERNELS_OF, family)                                                                     \
-  void family##_init(family *kernels, conic_isa isa)
+/* Declares the functions that fill the tables of a family (a type), and FAMILY_init, which fills one for an instruction
+ * set that is here; CONIC_ISA_AUTO is the best. */
+#define CONIC_DECLARE_LOOPS(family)                                                                                    \
+  void family##_scalar(family *loops);                                                                                 \
+  CONIC_FOR_ISAS(CONIC_DECLARE_LOOPS_OF, family)                                                                       \
+  void family##_init(family *loops, conic_isa isa)
 
-#define CONIC_DEFINE_KERNELS(family)                                                                                   \
-  void family##_init(family *kernels, conic_isa isa) {                                                                 \
+#define CONIC_DEFINE_LOOPS(family)                                                                                     \
+  void family##_init(family *loops, conic_isa isa) {                                                                   \
     isa = isa == CONIC_ISA_AUTO ? conic_isa_best() : isa;                                                              \
-    family##_scalar(kernels);                                                                                          \
-    CONIC_FOR_ISAS(CONIC_OVERWRITE_KERNELS, family)                                                                    \
+    family##_scalar(loops);                                                                                            \
+    CONIC_FOR_ISAS(CONIC_OVERWRITE_LOOPS, family)                                                                      \
   }
 
-/* Begins what fills a table in a file that is compiled for one instruction set. */
-#define CONIC_FILL_KERNELS_BY(family, name) void family##_##name(family *kernels)
+/* Begins the function that fills a table, in a file that is compiled for one instruction set. */
+#define CONIC_FILL_LOOPS_BY(family, name) void family##_##name(family *loops)
 /* NOLINTEND(bugprone-macro-parentheses) */
 #if defined(__AVX512F__)
-#define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, avx512)
+#define CONIC_FILL_LOOPS(family) CONIC_FILL_LOOPS_BY(family, avx512)
 #elif defined(__AVX2__)
-#define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, avx2)
+#define CONIC_FILL_LOOPS(family) CONIC_FILL_LOOPS_BY(family, avx2)
 #elif defined(__aarch64__)
-#define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, neon)
+#define CONIC_FILL_LOOPS(family) CONIC_FILL_LOOPS_BY(family, neon)
 #else
-#define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, sse2)
+#define CONIC_FILL_LOOPS(family) CONIC_FILL_LOOPS_BY(family, sse2)
 #endif
 
 #endif

@@ -1,8 +1,8 @@
 /* Lanes: several pixels at a time, as wide as the instruction set that the including file is compiled for. Every lane
  * does exactly what scalar code would, so that no width changes a bit.
  *
- * A part of a block is 4 rows of pixels, column by column: lane l is column l / 4, row l % 4. Floats take + - × ÷ as
- * they are. lanes_max(a, b) is a > b ? a : b, lanes_min(a, b) is a < b ? a : b: where a is not a number, b. */
+ * A part of a block is 4 rows of pixels, column by column: lane l is column l / 4, row l % 4. Operators + - × ÷ work on
+ * float lanes. lanes_max(a, b) is a > b ? a : b, lanes_min(a, b) is a < b ? a : b: both are b where a is NaN. */
 #ifndef CONIC_LANES_H
 #define CONIC_LANES_H
 
@@ -23,7 +23,7 @@
 #endif
 
 #define CONIC_BLOCK_ROWS 4
-/* A block of 4 × 4 pixels is so many vectors. */
+/* The number of vectors for a block of 4 × 4 pixels. */
 #define CONIC_PARTS (CONIC_BLOCK_ROWS * 4 / CONIC_LANES)
 
 #define CONIC_INLINE static inline __attribute__((always_inline))
@@ -152,7 +152,7 @@ CONIC_INLINE lanes_mask lanes_has_bits(index_lanes value, uint32_t mask) {
   return _mm512_test_epi32_mask((__m512i)value, _mm512_set1_epi32((int)mask));
 }
 
-/* Writes the masked values one after the other, and whatever follows up to CONIC_LANES; returns how many. */
+/* Writes the masked values one after the other, then anything up to CONIC_LANES; returns how many are masked. */
 CONIC_INLINE size_t lanes_append(uint32_t *to, lanes_mask mask, index_lanes value) {
   _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(mask, (__m512i)value));
   return (size_t)__builtin_popcount(mask);
@@ -282,7 +282,7 @@ CONIC_INLINE unsigned lanes_bits(lanes_mask mask) {
 
 CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
   unsigned bits = lanes_bits(mask);
-  return (unsigned)(UINT64_C(0x4332322132212110) >> (4 * bits)) & 7u; /* how many bits, for each of 16 patterns */
+  return (unsigned)(UINT64_C(0x4332322132212110) >> (4 * bits)) & 7u; /* number of bits of each of 16 patterns */
 }
 
 CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
@@ -345,7 +345,7 @@ CONIC_INLINE lanes lanes_absolute(lanes value) {
 #define CONIC_ODD_LANES 1, 3, 5, 7
 #endif
 
-/* Pairs of values to the first and the second of each. */
+/* Splits pairs of values into the first and the second of each. */
 CONIC_INLINE void lanes_load_pairs(const uint32_t *from, index_lanes *first, index_lanes *second) {
   index_lanes low = lanes_load_indices(from), high = lanes_load_indices(from + CONIC_LANES);
   *first = __builtin_shufflevector(low, high, CONIC_EVEN_LANES);
@@ -362,7 +362,7 @@ CONIC_INLINE void lanes_load_pairs(const uint32_t *from, index_lanes *first, ind
 
 typedef float half_lanes __attribute__((vector_size(2 * CONIC_LANES)));
 
-/* Half the lanes from each, pairs by turns. */
+/* Takes half the lanes from each, in alternating pairs. */
 CONIC_INLINE lanes lanes_of_pairs(const float *a, const float *b) {
   half_lanes of_a, of_b;
   memcpy(&of_a, a, sizeof of_a);
@@ -374,7 +374,8 @@ CONIC_INLINE lanes lanes_of_pairs(const float *a, const float *b) {
 CONIC_INLINE index_lanes lanes_ascending(uint32_t first) {
   index_lanes ascending = {0};
   for (int lane = 0; lane < CONIC_LANES; lane++)
-    ascending[lane] = (uint32_t)lane; /* a constant: `first` in it would be put together lane by lane */
+    ascending[lane] = (uint32_t)lane; /* a constant, to which `first` is added: else the compiler would build it lane by
+                                         lane */
   return ascending + first;
 }
 

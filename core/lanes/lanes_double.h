@@ -1,4 +1,4 @@
-/* Doubles: a native vector of them, `wide`, and as many as there are lanes, which are two of these. */
+/* Doubles: a native vector of them, `wide`, and one for each lane, `doubles`, which is two of these. */
 #ifndef CONIC_LANES_DOUBLE_H
 #define CONIC_LANES_DOUBLE_H
 
@@ -31,7 +31,7 @@ typedef struct doubles {
 
 #if defined(__AVX512F__)
 
-/* By name: gcc 12 would take them apart into quarters. */
+/* Both halves by name: gcc 12 would split them into quarters. */
 CONIC_INLINE wide half_of(lanes value, int half) {
   __m256d part = half == 0 ? _mm512_castpd512_pd256((__m512d)value) : _mm512_extractf64x4_pd((__m512d)value, 1);
   return (wide)_mm512_cvtps_pd((__m256)part);
@@ -125,8 +125,7 @@ CONIC_INLINE int wide_any(wide_mask mask) {
 #endif
 }
 
-/* a > b ? a : b and a < b ? a : b; the square root; which lanes have a > b, a ≤ b being false where one is not a
- * number. */
+/* a > b ? a : b and a < b ? a : b; the square root; in which lanes a > b holds. a ≤ b is false where one is NaN. */
 #if defined(__AVX512F__)
 
 CONIC_INLINE wide wide_max(wide a, wide b) {

@@ -1,5 +1,5 @@
-/* From channels in lanes to pixels in rows: a part of a block is 4 rows, lane l is column l / 4, row l % 4. In each
- * 128 bits a column, so that a transposition within them gives rows of pixels. */
+/* From channels in lanes to pixels in rows. A part of a block is 4 rows; lane l is column l / 4, row l % 4. Each column
+ * is 128 bits, so that transposing within them gives rows of pixels. */
 #ifndef CONIC_LANES_STORE_H
 #define CONIC_LANES_STORE_H
 
@@ -8,7 +8,7 @@
 
 typedef float quad __attribute__((vector_size(16)));
 
-/* Copies half a cache line or a whole one, both so aligned, past the caches. */
+/* Copies half a cache line or a whole one, aligned so, past the caches. */
 CONIC_INLINE void lanes_stream(void *to, const void *from, size_t bytes) {
 #if defined(__AVX512F__)
   if (bytes == 64) {
@@ -32,7 +32,7 @@ CONIC_INLINE quad lanes_column(lanes value, int column) {
   return rows;
 }
 
-/* Copies a row of pixels past the caches, whole lines where it can. */
+/* Copies a row of pixels past the caches, in whole lines where possible. */
 CONIC_INLINE void lanes_stream_row(float *to, const float *from, size_t n) {
   size_t i = 0;
 #if defined(__AVX512F__)
@@ -45,7 +45,7 @@ CONIC_INLINE void lanes_stream_row(float *to, const float *from, size_t n) {
   conic_stream_copy(to + i, from + i, (n - i) * sizeof *to);
 }
 
-/* a[0…3] become rows of four. */
+/* Transposes a[0…3] into rows of four. */
 CONIC_INLINE void quad_transpose(quad a[4]) {
   quad low01 = __builtin_shufflevector(a[0], a[1], 0, 4, 1, 5),
        high01 = __builtin_shufflevector(a[0], a[1], 2, 6, 3, 7);
@@ -71,7 +71,7 @@ CONIC_INLINE void lanes_pixels(const lanes channels[4], __m512 rows[4]) {
   rows[3] = _mm512_shuffle_ps(high01, high23, 0xee);
 }
 
-/* Eight fields of the records that the lanes name. */
+/* Loads eight fields of the records with the lanes' numbers. */
 CONIC_INLINE void lanes_gather_records(const float *records, const uint32_t *indices, lanes fields[8]) {
   for (int half = 0; half < 2; half++) {
     lanes quads[4];
@@ -147,8 +147,8 @@ CONIC_INLINE void lanes_half_records(const lanes *fields, __m256 records[16]) {
   }
 }
 
-/* Records of 16 or 8 fields: record l of lane l, those of `drawn` one after the other; something may be written to the
- * place behind the last of them. */
+/* Stores records of 16 or 8 fields, lane l's being record l: those of `drawn`, one after the other. One place after the
+ * last may be written, too. */
 CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsigned drawn, float *to) {
   __m512 whole[16];
   __m256 half[16];
@@ -173,7 +173,7 @@ CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsi
   }
 }
 
-/* Pairs of the masked values, one after the other, and whatever follows up to CONIC_LANES pairs. */
+/* Writes pairs of the masked values, one after the other, then anything up to CONIC_LANES pairs. */
 CONIC_INLINE void lanes_append_pairs(uint32_t *to, lanes_mask mask, index_lanes first, index_lanes second) {
   const __m512i low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
   const __m512i high = _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
@@ -196,7 +196,7 @@ CONIC_INLINE void lanes_gather_records(const float *records, const uint32_t *ind
 
 CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsigned drawn, float *to) {
   float packed[CONIC_LANES][16];
-  int are_all = drawn == (1u << CONIC_LANES) - 1; /* then they go where they belong at once */
+  int are_all = drawn == (1u << CONIC_LANES) - 1; /* then each goes straight to its place */
   float *records = are_all ? to : packed[0];
   size_t stride = are_all ? n_fields : 16;
   for (size_t first = 0; first < n_fields; first += 4)

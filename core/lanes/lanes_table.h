@@ -1,4 +1,4 @@
-/* Tables of 16 numbers in registers, which every lane looks up at a place of its own. */
+/* Tables of 16 numbers in registers; every lane looks up its own place. */
 #ifndef CONIC_LANES_TABLE_H
 #define CONIC_LANES_TABLE_H
 

@@ -1,4 +1,4 @@
-/* Copies that go past the caches, for what is written once and not read soon: an image's rows. */
+/* Copies past the caches, for data that are written once and not read soon: an image's rows. */
 #ifndef CONIC_STREAM_H
 #define CONIC_STREAM_H
 
@@ -20,7 +20,7 @@ static inline void conic_stream_copy(void *to, const void *from, size_t bytes) {
   memcpy((char *)to + done, (const char *)from + done, bytes - done);
 }
 
-/* Before other threads may read what was streamed. */
+/* Must be called before other threads read streamed data. */
 static inline void conic_stream_fence(void) {
 #if defined(__SSE2__)
   _mm_sfence();

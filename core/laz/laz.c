@@ -9,7 +9,7 @@
 
 enum { RECORD_BYTES = 34, ITEM_BYTES = 6, MOST_ITEMS = 5 };
 
-/* The kinds of items by their numbers in the record. */
+/* Kinds of items, by their numbers in the record. */
 enum {
   BYTES = 0,
   POINT10 = 6,
@@ -34,14 +34,14 @@ struct conic_laz_decoder {
   conic_laz_layered *layered;
 };
 
-/* --- what the file's record says: the header's byte 104 says that there is one --- */
+/* --- the file's record; the header's byte 104 says that there is one --- */
 
 typedef struct packed_item {
   unsigned kind;
   size_t n_bytes;
 } packed_item;
 
-/* The items that points of a format have, extra bytes aside. */
+/* The items of a point format, without extra bytes. */
 static size_t list_items(unsigned point_format, packed_item items[MOST_ITEMS]) {
   size_t n = 0;
   int is_new = point_format >= 6;

@@ -1,8 +1,8 @@
 /* LAZ, the packed points of LASzip: a decoder of chunks that lie in memory.
  *
  * Points come out as the records of a LAS file, byte for byte. Formats 0 to 5 are packed point after point (LASzip's
- * compressors 1 and 2, items of version 2, waveforms of version 1), 6 to 10 in layers (compressor 3, items of versions
- * 3 and 4), of which those that nobody wants are passed over. What a spoiled chunk decodes to means nothing, but it
+ * compressors 1 and 2, items of version 2, waveforms of version 1). Formats 6 to 10 are packed in layers (compressor 3,
+ * items of versions 3 and 4); unwanted layers are skipped. The result of a spoiled chunk means nothing, but decoding
  * ends, and memory is bounded by the chunk's own size. */
 #ifndef CONIC_LAZ_H
 #define CONIC_LAZ_H
@@ -12,25 +12,25 @@
 
 #include "conic/context.h"
 
-/* Where the points of chunks of several sizes are counted: in the table. */
+/* Chunks have several sizes: the table counts their points. */
 #define CONIC_LAZ_VARIABLE UINT32_MAX
 
-/* How a file's points are packed: what its record of LASzip's says ("laszip encoded", 22204). */
+/* How a file's points are packed, from LASzip's record ("laszip encoded", 22204). */
 typedef struct conic_laz_format {
   unsigned compressor;   /* 1: one chunk, 2: chunks, 3: chunks of layers */
   unsigned point_format; /* of LAS, 0 to 10 */
   size_t point_bytes, n_extra;
   uint32_t chunk_points; /* or CONIC_LAZ_VARIABLE; the last chunk may have fewer */
-  unsigned point_version, color_version, wave_version, extra_version; /* of the items, 3 or 4, of layers */
+  unsigned point_version, color_version, wave_version, extra_version; /* versions of the items in layers, 3 or 4 */
 } conic_laz_format;
 
-/* Reads that record, without its header, for points of that format. What is wrong with it stands in the log, after
- * `name`; null: nothing is said. Errors: INPUT. */
+/* Reads that record, without its header, for points of that format. Faults are logged after `name`; null: not logged.
+ * Errors: INPUT. */
 conic_status conic_laz_format_read(conic_context *context, const char *name, const unsigned char *record,
                                    size_t n_bytes, unsigned point_format, size_t point_bytes, conic_laz_format *format);
 
-/* What is wanted of points in layers besides x, y and the returns: whatever else is packed in them stays as the chunk's
- * first point has it. */
+/* Wanted fields of points in layers, besides x, y and the returns. All other fields keep the values of the chunk's
+ * first point. */
 enum {
   CONIC_LAZ_Z = 1,
   CONIC_LAZ_CLASSIFICATION = 2,
@@ -47,39 +47,40 @@ enum {
   CONIC_LAZ_ALL = 4095
 };
 
-/* The state of decoding one chunk, and memory that is kept for the next. One thread at a time uses it. */
+/* The state of decoding one chunk, and memory that the next chunk uses again. One thread at a time. */
 typedef struct conic_laz_decoder conic_laz_decoder;
 
-/* On success the caller destroys *decoder; null is allowed there. Errors: MEMORY. */
+/* On success the caller destroys *decoder. Destroying null is allowed. Errors: MEMORY. */
 conic_status conic_laz_decoder_create(conic_context *context, conic_laz_decoder **decoder);
 void conic_laz_decoder_destroy(conic_laz_decoder *decoder);
 
-/* Begins with a chunk of so many points. Format and bytes must outlive the decoding. Nothing is logged but want of
- * memory. Errors: INPUT (the chunk is spoiled), MEMORY. */
+/* Begins a chunk of so many points. Format and bytes must outlive the decoding. Only lack of memory is logged. Errors:
+ * INPUT (the chunk is spoiled), MEMORY. */
 conic_status conic_laz_begin(conic_laz_decoder *decoder, const conic_laz_format *format, const unsigned char *bytes,
                              size_t n_bytes, uint64_t n_points, unsigned wanted);
 
-/* The next n points, of as many as are left at most, as records of format->point_bytes. Errors: as begin. */
+/* Decodes the next n points, at most as many as are left, into records of format->point_bytes. Errors: as begin. */
 conic_status conic_laz_next(conic_laz_decoder *decoder, size_t n, unsigned char *records);
 
-/* begin, and next for all of them. Errors: as begin. */
+/* Decodes a whole chunk: begin, and next for all points. Errors: as begin. */
 conic_status conic_laz_decode(conic_laz_decoder *decoder, const conic_laz_format *format, const unsigned char *bytes,
                               size_t n_bytes, size_t n_points, unsigned wanted, unsigned char *records);
 
-/* Where no table says how long a chunk is. The bytes of it that have been used: what follows the last point's is the
- * next chunk. */
+/* For files without a table: how many bytes of the chunk have been used. After the last point, the next chunk begins
+ * there. */
 size_t conic_laz_taken(const conic_laz_decoder *decoder);
 
-/* Of points that do not lie in layers: goes on with other bytes, the first of which is the first that has not been
- * used. conic_laz_taken counts from there. */
+/* For points that are not in layers: continues with other bytes, which begin at the first unused one. conic_laz_taken
+ * counts from there. */
 void conic_laz_feed(conic_laz_decoder *decoder, const unsigned char *bytes, size_t n_bytes);
 
-/* How many bytes of such a chunk n points take at most. */
+/* The most bytes that n points of such a chunk take. */
 static inline size_t conic_laz_most_bytes(const conic_laz_format *format, size_t n) {
   return (n + 1) * (2 * format->point_bytes + 64);
 }
 
-/* Of points in layers: how long a chunk is whose first bytes these are, head included: conic_laz_head_bytes of them. */
+/* For points in layers: the length of a chunk's head; and, from the bytes of that head, the whole chunk's length and
+ * its number of points. */
 size_t conic_laz_head_bytes(const conic_laz_format *format);
 uint64_t conic_laz_layered_bytes(const conic_laz_format *format, const unsigned char *head);
 uint32_t conic_laz_layered_points(const conic_laz_format *format, const unsigned char *head);

@@ -12,8 +12,8 @@ const char conic_laz_returns_6[16][17] = {
 
 /* --- times --- */
 
-/* Multiples of the last step, as symbols: 0 is none, up to 500 they are themselves, then come −1 to −10, a time that is
- * written whole, and three for the other sequences. */
+/* Multiples of the last step, as symbols: 0 is no multiple; 1 to 500 are themselves; then come −1 to −10, a time that
+ * is written whole, and three for the other sequences. */
 enum { MOST_MULTIPLE = 500, LEAST_MULTIPLE = -10, WHOLE = MOST_MULTIPLE - LEAST_MULTIPLE + 1, MOST_SWITCHES = 8 };
 
 static void add_time_step(conic_laz_times *times, int32_t step) {
@@ -30,7 +30,7 @@ static void read_whole_time(conic_laz_stream *stream, conic_laz_times *times) {
   times->step[times->last] = times->n_extreme[times->last] = 0;
 }
 
-/* Steps beyond the multiples become the step to compare with when there have been some. */
+/* A step beyond the multiples becomes the last step, once there have been several. */
 static void read_multiple(conic_laz_stream *stream, conic_laz_times *times, unsigned symbol) {
   static const struct {
     unsigned below, context;
@@ -50,7 +50,7 @@ static void read_multiple(conic_laz_stream *stream, conic_laz_times *times, unsi
   add_time_step(times, step);
 }
 
-/* 0 where the symbol led to another sequence, which is read next. */
+/* Returns 0 where the symbol led to another sequence, which is read next. */
 static int read_time(conic_laz_stream *stream, conic_laz_times *times, int may_be_same) {
   unsigned same = (unsigned)may_be_same, last = times->last;
   int is_first = times->step[last] == 0;
@@ -59,7 +59,7 @@ static int read_time(conic_laz_stream *stream, conic_laz_times *times, int may_b
   unsigned unchanged = is_first ? 0 : WHOLE, whole = is_first ? 1 : WHOLE;
   if (same && symbol == unchanged)
     return 1;
-  symbol -= same && symbol > unchanged; /* now as where there is no such symbol */
+  symbol -= same && symbol > unchanged; /* numbered as if there were no symbol for an unchanged time */
   if (symbol > whole) {
     times->last = (last + symbol - whole) & 3;
     return 0;
@@ -90,13 +90,13 @@ static unsigned to_byte(int value) {
   return value < 0 ? 0 : value > 255 ? 255 : (unsigned)value;
 }
 
-/* A byte that changed by what its symbol says. */
+/* A byte that may have changed; its symbol says by how much. */
 static unsigned read_byte(conic_laz_stream *stream, conic_laz_model *model, int has_changed, unsigned predicted,
                           unsigned last) {
   return has_changed ? (predicted + conic_laz_symbol(stream, model, 256)) & 255 : last;
 }
 
-/* One byte of each channel. Green is thought to change as red does, blue as both do in the mean. */
+/* One byte of each channel. Green is predicted to change as red does, blue as both do on average. */
 static void read_others(conic_laz_stream *stream, conic_laz_colors *colors, unsigned changed, const int last[3],
                         int which, unsigned value[3]) {
   int step = (int)value[0] - last[0];

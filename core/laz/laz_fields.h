@@ -1,12 +1,12 @@
-/* What the two ways of packing share: predictions of differences, tables of returns, and the codes of times, colours
- * and waveforms. */
+/* Shared by both ways of packing: predictions of differences, tables of returns, and the codes of times, colours and
+ * waveforms. */
 #ifndef CONIC_LAZ_FIELDS_H
 #define CONIC_LAZ_FIELDS_H
 
 #include "core/laz/laz_stream.h"
 
-/* The median of the last five, more or less: of which the largest and the smallest make room by turns. All zero at
- * first, but `drops_largest`. */
+/* Roughly the median of the last five values: a new value replaces the largest or the smallest, in turn. All zero at
+ * first, except `drops_largest`. */
 typedef struct conic_laz_median {
   int32_t sorted[5];
   int drops_largest;
@@ -25,7 +25,7 @@ static inline int32_t conic_laz_greater(int32_t a, int32_t b) {
   return a > b ? a : b;
 }
 
-/* Puts a value among the four that stay. */
+/* Replaces the largest or smallest value by a new one. */
 static inline void conic_laz_median_add(conic_laz_median *median, int32_t value) {
   int32_t *s = median->sorted, middle = s[2];
   const int32_t *stay = median->drops_largest ? s : s + 1;
@@ -38,7 +38,7 @@ static inline void conic_laz_median_add(conic_laz_median *median, int32_t value)
   median->drops_largest = median->drops_largest ? value < middle : value <= middle;
 }
 
-/* A coordinate that goes on as such a median says; what it is off has contexts. */
+/* The step of a coordinate, predicted by such a median; the error's code depends on the context. */
 static inline int32_t conic_laz_step(conic_laz_stream *stream, conic_laz_integer *integer, conic_laz_median *median,
                                      unsigned context) {
   int32_t step = conic_laz_integer_32(stream, integer, median->sorted[2], context);
@@ -46,21 +46,21 @@ static inline int32_t conic_laz_step(conic_laz_stream *stream, conic_laz_integer
   return step;
 }
 
-/* Contexts by how many bits the coordinates before were off, two by two. */
+/* A context from how many bits the previous coordinates' errors had, in steps of two. */
 static inline unsigned conic_laz_context(unsigned k, unsigned most, int is_single) {
   return (k < most ? k & ~1u : most) + (unsigned)is_single;
 }
 
-/* Which of the returns' contexts n returns and the r-th of them are: 16 of point formats up to 5, 6 of the others. */
+/* The context of the r-th of n returns: one of 16 in point formats up to 5, one of 6 in the others. */
 extern const char conic_laz_returns_16[8][9], conic_laz_returns_6[16][17];
 
-/* How far below the first, or above it where counts are mixed up. */
+/* How far a return is below the first, or above it where counts are mixed up. */
 static inline unsigned conic_laz_level(unsigned n, unsigned r) {
   unsigned level = n > r ? n - r : r - n;
   return level < 7 ? level : 7;
 }
 
-/* Four interleaved sequences of times, whose differences are multiples of the last one. */
+/* Four interleaved sequences of times. The differences are multiples of the last one. */
 typedef struct conic_laz_times {
   unsigned last, next;
   uint64_t time[4];
@@ -69,7 +69,7 @@ typedef struct conic_laz_times {
   conic_laz_integer off;
 } conic_laz_times;
 
-/* All else is zero. */
+/* Begins the sequences with the first time; everything else is zero. */
 static inline void conic_laz_times_begin(conic_laz_times *times, uint64_t first) {
   times->time[0] = first;
 }
@@ -77,12 +77,12 @@ static inline void conic_laz_times_begin(conic_laz_times *times, uint64_t first)
 /* The next time; in point formats up to 5 it may be the same as before. */
 uint64_t conic_laz_time(conic_laz_stream *stream, conic_laz_times *times, int may_be_same);
 
-/* Which bytes of a colour are new, and by how much. All zero at first. */
+/* Codes which bytes of a colour are new, and by how much they changed. All zero at first. */
 typedef struct conic_laz_colors {
   conic_laz_model changed, off[6];
 } conic_laz_colors;
 
-/* The colour after `last`, both three numbers of 16 bits as they stand in a record, maybe at the same place. */
+/* Decodes the colour after `last`. Both are three numbers of 16 bits, as in a record; they may be at the same place. */
 void conic_laz_color(conic_laz_stream *stream, conic_laz_colors *colors, const unsigned char *last,
                      unsigned char *color);
 
@@ -101,7 +101,7 @@ typedef struct conic_laz_waves {
   int32_t last_step;
 } conic_laz_waves;
 
-/* The description of a waveform after `last`, maybe at the same place. */
+/* Decodes the description of a waveform after `last`; they may be at the same place. */
 void conic_laz_wave(conic_laz_stream *stream, conic_laz_waves *waves, const unsigned char *last, unsigned char *wave);
 
 #endif

@@ -1,5 +1,5 @@
-/* Points in layers: those of point formats 6 to 10. Every attribute has bytes and models of its own, and four scanner
- * channels have models each. The layers are decoded one after the other, some points at a time. */
+/* Points in layers: point formats 6 to 10. Every attribute has its own bytes and models, and each of four scanner
+ * channels has its own models. The layers are decoded one after the other, some points at a time. */
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -8,7 +8,7 @@
 
 enum { CHANNELS = 4, RUN = 512, POINT_BYTES = 30 };
 
-/* The layers in their order; of extra bytes, one a byte follows. */
+/* The layers in their order; extra bytes follow, with a layer for each byte. */
 enum { XY, Z, CLASS, FLAGS, INTENSITY, ANGLE, USER, SOURCE, TIME, COLOR, NIR, WAVE, N_LAYERS };
 
 static const unsigned wanted_bits[N_LAYERS] = {~0u,
@@ -24,9 +24,9 @@ static const unsigned wanted_bits[N_LAYERS] = {~0u,
                                                CONIC_LAZ_NIR,
                                                CONIC_LAZ_WAVE_PACKET};
 
-/* What the first layer says of a point to the others. */
+/* What the first layer tells the others about a point. */
 typedef struct point_hints {
-  unsigned char channel, item_channel; /* the latter of colours and all that follows */
+  unsigned char channel, item_channel; /* item_channel: for colours and all items after them */
   unsigned char z_context;
   unsigned char has_new_time, has_new_angle, has_new_source;
 } point_hints;
@@ -47,14 +47,14 @@ typedef struct z_state {
   conic_laz_integer off;
 } z_state;
 
-/* Classes, flags and user data: a byte by the one before. */
+/* Classes, flags and user data: a byte, predicted from the one before. */
 typedef struct byte_state {
   int is_used;
   unsigned last;
   conic_laz_model models[64];
 } byte_state;
 
-/* Intensities, angles and sources: 16 bits by those before. */
+/* Intensities, angles and sources: 16 bits, predicted from those before. */
 typedef struct number_state {
   int is_used;
   uint32_t last[8];
@@ -66,7 +66,7 @@ typedef struct time_state {
   conic_laz_times times;
 } time_state;
 
-/* Of colours and what follows: which channel's last item the next one is compared with. */
+/* For colours and later items: the channel whose last item the next one is compared with. */
 typedef struct item_turn {
   unsigned current;
   unsigned char is_used[CHANNELS];
@@ -82,13 +82,13 @@ struct conic_laz_layered {
   int is_there[N_LAYERS];
   unsigned channel;
   point_hints hints[RUN];
-  unsigned char *first, *last; /* records: the chunk's first, and the one before */
+  unsigned char *first, *last; /* records: the chunk's first, and the previous one */
   /* extra bytes */
   size_t extra_room;
   conic_laz_stream *extra_streams;
   conic_laz_model (*extra_models)[CHANNELS];
   unsigned char (*extra_last)[CHANNELS];
-  /* of channels */
+  /* one for each channel */
   xy_state xy[CHANNELS];
   z_state z[CHANNELS];
   byte_state class[CHANNELS], flags[CHANNELS], user[CHANNELS];
@@ -168,7 +168,7 @@ size_t conic_laz_count_layers(const conic_laz_format *format) {
   return n;
 }
 
-/* A layer of no bytes holds nothing new in the whole chunk. */
+/* Begins a layer. A layer without bytes changes nothing in the whole chunk. */
 static void begin_layer(conic_laz_layered *l, conic_laz_stream *stream, int is_wanted, const unsigned char **at,
                         size_t n_bytes, int *is_there) {
   *is_there = is_wanted && n_bytes > 0;
@@ -178,7 +178,7 @@ static void begin_layer(conic_laz_layered *l, conic_laz_stream *stream, int is_w
   *at += n_bytes;
 }
 
-/* Number of points, sizes of all layers, layers. */
+/* A chunk is the number of points, the sizes of all layers, and the layers. */
 static conic_status find_layers(conic_laz_layered *l, unsigned wanted, const unsigned char *bytes, size_t n_bytes) {
   const conic_laz_format *format = l->format;
   size_t n_head = 4 + 4 * conic_laz_count_layers(format);
@@ -257,7 +257,7 @@ static unsigned ends_of(unsigned n, unsigned r) {
   return (unsigned)(r == 1) + 2u * (unsigned)(r >= n);
 }
 
-/* The channel and its state, after a symbol that says what has changed. */
+/* Finds the channel and its state, from a symbol that says what has changed. */
 static xy_state *turn_channel(conic_laz_layered *l, unsigned changed, point_hints *hints) {
   xy_state *s = &l->xy[l->channel];
   unsigned item_channel = l->format->point_version == 4 ? l->channel : 0;
@@ -268,7 +268,7 @@ static xy_state *turn_channel(conic_laz_layered *l, unsigned changed, point_hint
     l->channel = item_channel = channel;
   }
   hints->channel = (unsigned char)l->channel;
-  hints->item_channel = (unsigned char)item_channel; /* what version 3 takes where the channel stays is always 0 */
+  hints->item_channel = (unsigned char)item_channel; /* in version 3 it is 0 whenever the channel stays */
   return &l->xy[l->channel];
 }
 
@@ -356,7 +356,7 @@ static void read_class(conic_laz_layered *l, const point_hints *hints, const uns
   record[16] = (unsigned char)s->last;
 }
 
-/* Of a record: the channel stands between them. */
+/* The flags of a record's byte; the channel is between them. */
 static unsigned flags_of(unsigned byte) {
   return (byte & 15) | (byte >> 6) << 4;
 }
@@ -427,7 +427,7 @@ static void read_time_layer(conic_laz_layered *l, const point_hints *hints, cons
   conic_store_64(record + 22, time);
 }
 
-/* The first point's channel begins with it, whenever the next point of it comes. */
+/* The first point starts its channel, whenever that channel's next point comes. */
 static void begin_channel(conic_laz_layered *l) {
   const unsigned char *first = l->first;
   z_state_of(l->z, l->channel, first);
@@ -445,8 +445,9 @@ typedef void layer_reader(conic_laz_layered *l, const point_hints *hints, const 
 
 /* --- items that follow the point --- */
 
-/* Whose last item the next one is compared with. A channel that is new begins with a copy of another's, `*from`, which
- * else is the channel itself. Version 3 compares with the channel before whenever a known one comes back. */
+/* Finds the channel whose last item the next one is compared with. A new channel begins with a copy of the previous
+ * channel's item: *from is that channel; else it is `channel`. Version 3 compares with the previous channel's item
+ * whenever it changes to a known channel. */
 static unsigned take_turn(item_turn *turn, unsigned channel, unsigned version, unsigned *from) {
   unsigned before = turn->current;
   *from = channel;
@@ -493,7 +494,7 @@ static void read_wave_layer(conic_laz_layered *l, const point_hints *hints, cons
          CONIC_LAZ_WAVE_BYTES);
 }
 
-/* A byte of n points. The turns are the same for all of them. */
+/* Reads one extra byte of n points. The turns of channels are the same for all extra bytes. */
 static void read_extra_layer(conic_laz_layered *l, size_t i_extra, item_turn turn, size_t n, unsigned char *byte) {
   const conic_laz_format *format = l->format;
   conic_laz_stream *stream = &l->extra_streams[i_extra];
@@ -509,7 +510,7 @@ static void read_extra_layer(conic_laz_layered *l, size_t i_extra, item_turn tur
 
 /* --- all layers of some points --- */
 
-/* What is in no layer is the first point's. */
+/* Fields without a layer are the first point's. */
 static void fill_from_first(const conic_laz_layered *l, size_t n, unsigned char *records) {
   size_t point_bytes = l->format->point_bytes;
   for (size_t i = 0; i < n; i++)
@@ -529,7 +530,7 @@ static void read_extra_layers(conic_laz_layered *l, size_t n, unsigned char *rec
     }
 }
 
-/* A layer of a run, each in a loop of its own. */
+/* Reads a layer of a run of points, each layer in a loop of its own. */
 static inline void read_layer(conic_laz_layered *l, int layer, layer_reader *read_one, size_t n,
                               unsigned char *records) {
   size_t point_bytes = l->format->point_bytes;

@@ -46,7 +46,7 @@ uint16_t *conic_laz_arena_take(conic_laz_arena *arena, size_t n) {
   return numbers;
 }
 
-/* The last places are those of quotients that a length's remainder makes larger than all probabilities. */
+/* The last places are for quotients that the remainder of a length makes larger than all probabilities. */
 static size_t count_places(unsigned n) {
   return n > CONIC_LAZ_SMALL_MODEL ? (1u << CONIC_LAZ_PROBABILITY_BITS >> conic_laz_table_shift(n)) + 2 : 0;
 }
@@ -68,7 +68,7 @@ int conic_laz_model_begin(conic_laz_model *model, conic_laz_arena *arena, unsign
   return 1;
 }
 
-/* Symbols that were seen long ago count half. */
+/* Halves the counts, so that old symbols matter less. */
 static void halve_counts(conic_laz_model *model) {
   model->total = 0;
   for (unsigned i = 0; i < model->n; i++) {
@@ -77,7 +77,7 @@ static void halve_counts(conic_laz_model *model) {
   }
 }
 
-/* Of each place, the last symbol whose bound is not above the place's beginning. */
+/* Each place gets the last symbol whose bound is not above the place's beginning. */
 static void fill_model_table(conic_laz_model *model) {
   unsigned shift = conic_laz_table_shift(model->n), below = (1u << shift) - 1, half = model->n > 256;
   size_t i_place = 0;

@@ -1,8 +1,8 @@
-/* The adaptive models of LASzip's arithmetic coding, and where their numbers lie.
+/* The adaptive models of LASzip's arithmetic coding, and their memory.
  *
  * The coding is Said's (Introduction to Arithmetic Coding, HPL-2004-76): a model counts symbols and takes its
- * probabilities, of 15 bits, from the counts every now and then. A model begins when it is first used, so that those
- * that a chunk does not use cost nothing. */
+ * probabilities, of 15 bits, from the counts every now and then. A model begins when it is first used, so that unused
+ * models cost nothing. */
 #ifndef CONIC_LAZ_MODELS_H
 #define CONIC_LAZ_MODELS_H
 
@@ -17,39 +17,39 @@ enum { CONIC_LAZ_PROBABILITY_BITS = 15, CONIC_LAZ_BIT_PROBABILITY_BITS = 13, CON
 typedef struct conic_laz_arena {
   conic_context *context;
   unsigned char **blocks;
-  size_t n_blocks, room; /* blocks that are there, and that the list has room for */
-  size_t i_block, used;  /* the block that is filled, and how much of it is */
-  int is_out;            /* there was no more memory */
+  size_t n_blocks, room; /* existing blocks, and the room of their list */
+  size_t i_block, used;  /* the block that is being filled, and how far */
+  int is_out;            /* memory ran out */
 } conic_laz_arena;
 
 void conic_laz_arena_rewind(conic_laz_arena *arena);
 void conic_laz_arena_release(conic_laz_arena *arena);
 
-/* n numbers of 16 bits, undefined; null where there is no memory. At most CONIC_LAZ_ARENA_MOST. */
+/* Takes n numbers of 16 bits, undefined, at most CONIC_LAZ_ARENA_MOST; null where there is no memory. */
 enum { CONIC_LAZ_ARENA_MOST = 4096 };
 uint16_t *conic_laz_arena_take(conic_laz_arena *arena, size_t n);
 
-/* Of n symbols, 2 to 1024. All zero: not begun. */
+/* A model of n symbols, 2 to 1024. All zero: not begun. */
 typedef struct conic_laz_model {
-  uint16_t *bound; /* n + 1: the sum of the probabilities before each symbol, and a last one above all */
+  uint16_t *bound; /* n + 1: the sum of the probabilities before each symbol, and one last bound above all */
   uint16_t *count; /* n */
-  uint8_t *table;  /* of more than CONIC_LAZ_SMALL_MODEL symbols: where to begin to look in `bound`; of more than 256
-                      the half of that */
+  uint8_t *table;  /* for more than CONIC_LAZ_SMALL_MODEL symbols: where to start searching in `bound`; halved for more
+                      than 256 */
   uint32_t n, total, cycle, until_update;
 } conic_laz_model;
 
-/* The probabilities from one place of the table to the next, as bits: so few that hardly any bound is between. */
+/* The bits of probability between two places of the table: so few that hardly any bound lies between. */
 static inline unsigned conic_laz_table_shift(unsigned n) {
   return n <= 64 ? 6 : 5;
 }
 
-/* Every symbol is as likely; 0 where there is no memory. */
+/* Begins with equal probabilities; returns 0 where there is no memory. */
 int conic_laz_model_begin(conic_laz_model *model, conic_laz_arena *arena, unsigned n);
 
-/* When `until_update` has come to 0. */
+/* To be called when `until_update` is 0. */
 void conic_laz_model_update(conic_laz_model *model);
 
-/* Of two symbols. All zero: not begun. */
+/* A model of two symbols. All zero: not begun. */
 typedef struct conic_laz_bit_model {
   uint32_t zeros, total, probability, cycle, until_update;
 } conic_laz_bit_model;

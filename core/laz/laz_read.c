@@ -8,8 +8,8 @@
 #include "core/laz/laz_stream.h"
 #include "core/laz/laz_table.h"
 
-/* Chunks of up to so many bytes of records, and of no more than so many times their own, are decoded at once, beside
- * others; of others, a piece at a time. */
+/* Chunks of up to so many bytes of records, and of no more than so many times their packed bytes, are decoded whole,
+ * several at once; larger ones in pieces. */
 enum {
   MOST_AT_ONCE = 1 << 23,
   USUAL_BYTES = 1 << 21,
@@ -22,21 +22,21 @@ enum {
 /* The file's bytes, wherever they are. */
 typedef struct packed_bytes {
   conic_input *input;
-  unsigned char *held; /* of a pipe: all from `start` on */
+  unsigned char *held; /* of a pipe: all bytes from `start` on */
   size_t room;
-  uint64_t start, end; /* offsets in the file: of the points, and of the file's end */
+  uint64_t start, end; /* offsets in the file: where the points begin, and where the file ends */
 } packed_bytes;
 
 typedef struct laz_reading {
   conic_context *context;
   const conic_laz_format *format;
   packed_bytes from;
-  uint64_t n_points, n_read; /* n_read: also those that are passed over */
-  uint64_t first, end;       /* that are handed over */
+  uint64_t n_points, n_read; /* n_read: including skipped ones */
+  uint64_t first, end;       /* the points to hand over */
   unsigned wanted;
-  size_t piece; /* points */
+  size_t piece; /* in points */
   int is_again, n_threads;
-  int is_spoiled; /* the chunk that is read */
+  int is_spoiled; /* the current chunk is */
   conic_laz_receiver *receive;
   void *cookie;
   conic_laz_chunk *chunks;
@@ -92,7 +92,7 @@ static conic_status laz_spoiled(const laz_reading *r, uint64_t offset, uint64_t 
                     (unsigned long long)i_chunk, (unsigned long long)offset);
 }
 
-/* Of the decoder's answers. What else is wrong with the input has been told. */
+/* Notes a decoder's INPUT status as a spoiled chunk. Other faults of the input are logged already. */
 static conic_status note_spoiled(laz_reading *r, conic_status status) {
   r->is_spoiled |= status == CONIC_ERROR_INPUT;
   return status;
@@ -105,7 +105,8 @@ static void laz_warn(const laz_reading *r, const char *what) {
 
 /* --- the table --- */
 
-/* Where the table is: before the first chunk, or, of a file that was written to a pipe, at the very end; 0: nowhere. */
+/* Finds the table: its offset is before the first chunk, or, in a file written to a pipe, at the very end; 0: there is
+ * no table. */
 static conic_status find_table(laz_reading *r, uint64_t *offset) {
   unsigned char bytes[8];
   size_t n;
@@ -123,7 +124,7 @@ static conic_status find_table(laz_reading *r, uint64_t *offset) {
   return status;
 }
 
-/* The table's bytes end where the file does, or where no more than these can be. */
+/* The table ends where the file does, or where it cannot be longer. */
 static conic_status unpack_table(laz_reading *r, uint64_t table, uint64_t n_chunks) {
   size_t room = (size_t)n_chunks * 20 + 64, n;
   unsigned char *bytes = conic_memory_allocate(r->context, room, 1);
@@ -138,7 +139,7 @@ static conic_status unpack_table(laz_reading *r, uint64_t table, uint64_t n_chun
   return status;
 }
 
-/* No chunks are listed where there is no table, or none that can be believed. */
+/* Lists no chunks where there is no table, or a wrong one. */
 static conic_status read_table(laz_reading *r) {
   unsigned char head[CONIC_LAZ_TABLE_HEAD_BYTES];
   uint64_t offset, n_chunks = 0;
@@ -183,12 +184,12 @@ static int is_for_group(const laz_reading *r, size_t i) {
          r->chunks[i].n_bytes <= conic_laz_most_bytes(r->format, most);
 }
 
-/* Chunks of no bytes, which damaged files have, have an address, too. */
+/* Chunks without bytes, which damaged files have, need an address, too. */
 static conic_status reserve_room(laz_reading *r, unsigned char **bytes, size_t *room, size_t wanted) {
   return wanted < *room ? CONIC_OK : conic_memory_reserve(r->context, bytes, 0, wanted + 1, room, 1);
 }
 
-/* As many as keep all threads busy for a while, where the chunks are of the usual size. */
+/* Takes as many chunks of the usual size as keep all threads busy for a while. */
 static conic_status plan_group(laz_reading *r, laz_group *group) {
   size_t n_packed = 0, n_records = 0, most = (size_t)r->n_threads * CHUNKS_A_THREAD;
   for (group->n = 0; group->n < GROUP && is_for_group(r, group->first + group->n); group->n++) {
@@ -236,7 +237,7 @@ static conic_status read_group(laz_reading *r, laz_group *group) {
 
 /* --- a chunk in pieces --- */
 
-/* The next n points of the chunk that the first decoder is in. */
+/* Decodes the next n points of the first decoder's chunk. */
 static conic_status decode_piece(laz_reading *r, size_t n) {
   conic_status status = note_spoiled(r, conic_laz_next(r->decoders[0], n, r->records));
   if (status == CONIC_OK)
@@ -244,7 +245,7 @@ static conic_status decode_piece(laz_reading *r, size_t n) {
   return status == CONIC_OK ? hand_over(r, r->records, n) : status;
 }
 
-/* In a window that moves through the file. *n_bytes is how many the chunk took. */
+/* Decodes in a window that moves through the file. *n_bytes is how many the chunk took. */
 static conic_status read_serial(laz_reading *r, uint64_t offset, uint64_t n_points, uint64_t *n_bytes) {
   const conic_laz_format *format = r->format;
   conic_laz_decoder *decoder = r->decoders[0];
@@ -280,7 +281,7 @@ static conic_status decode_pieces(laz_reading *r, size_t n_bytes, uint64_t n_poi
   return status;
 }
 
-/* All of whose bytes are needed at once. `n_points` is 0 where the chunk's head tells it. */
+/* Needs all bytes of the chunk at once. With `n_points` 0 the chunk's head tells the number. */
 static conic_status read_layered(laz_reading *r, uint64_t offset, uint64_t n_points, uint64_t *n_bytes) {
   const conic_laz_format *format = r->format;
   size_t n_head = conic_laz_head_bytes(format), n;
@@ -331,7 +332,8 @@ static conic_status read_listed(laz_reading *r) {
   return status;
 }
 
-/* One after the other, each where the one before ends. Where the file ends within one, what is whole has been read. */
+/* Reads chunks one after the other, each from where the one before ends. If the file ends within a chunk, the whole
+ * chunks have been read. */
 static conic_status read_unlisted(laz_reading *r, uint64_t offset) {
   const conic_laz_format *format = r->format;
   int is_counted = format->chunk_points != CONIC_LAZ_VARIABLE;

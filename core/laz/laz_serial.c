@@ -1,4 +1,4 @@
-/* Points one after the other: those of point formats 0 to 5. */
+/* Points one after the other: point formats 0 to 5. */
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -7,12 +7,12 @@
 
 enum { POINT_BYTES = 20, MOST_EXTRA = 65536, CORE_BYTES = 63 };
 
-/* What the point before left, and how likely it is that the next differs. */
+/* State after the previous point, and the models of the next one's changes. */
 struct conic_laz_serial {
   conic_context *context;
   const conic_laz_format *format;
   conic_laz_stream stream;
-  unsigned char *last; /* the record before, with what comes before the extra bytes */
+  unsigned char *last; /* the previous record, with room before the extra bytes */
   conic_laz_model *extra;
   size_t extra_room;
   int has_times, has_colors, has_waves;
@@ -65,7 +65,8 @@ conic_status conic_laz_serial_begin(conic_laz_serial *serial, const conic_laz_fo
   if (format->n_extra)
     memset(serial->extra, 0, format->n_extra * sizeof *serial->extra);
   memcpy(serial->last, first, format->point_bytes);
-  conic_store_bits(serial->last + 12, 2, 0); /* intensities are compared with those of the same kind of return */
+  conic_store_bits(serial->last + 12, 2, 0); /* an intensity is compared with that of the last return of the same
+                                                kind */
   conic_laz_median_begin(s->x_step, 16);
   conic_laz_median_begin(s->y_step, 16);
   conic_laz_times_begin(&s->times, serial->has_times ? conic_load_64(first + POINT_BYTES) : 0);
@@ -77,7 +78,7 @@ static void read_into(conic_laz_stream *stream, conic_laz_model *models, unsigne
   *byte = (unsigned char)conic_laz_symbol(stream, &models[*byte], 256);
 }
 
-/* What else has changed, once the returns are known. */
+/* Reads the other changes, once the returns are known. */
 static void read_serial_attributes(conic_laz_serial *serial, unsigned changed, unsigned context) {
   struct serial_state *s = &serial->state;
   conic_laz_stream *stream = &serial->stream;
@@ -119,7 +120,7 @@ static void read_point(conic_laz_serial *serial) {
     read_into(stream, s->returns, p + 14);
   unsigned r = p[14] & 7u, n = p[14] >> 3 & 7u;
   unsigned digit = (unsigned char)conic_laz_returns_16[n][r], context = digit <= '9' ? digit - '0' : digit - 'A' + 10;
-  /* where nothing has changed the intensity stays, too, even if the last of this kind of return had another */
+  /* without changes the intensity stays, too, even if the last return of this kind had another */
   if (changed)
     read_serial_attributes(serial, changed, context);
   read_serial_position(serial, context, conic_laz_level(n, r), n == 1);

@@ -27,7 +27,7 @@ void conic_laz_refill_at_end(conic_laz_stream *stream, unsigned n_bits) {
   }
 }
 
-/* A k of n stands for −(2^n − 1) … 2^n without what smaller k's stand for. */
+/* With k bits the numbers go from −(2^k − 1) to 2^k, without those of fewer bits. */
 int32_t conic_laz_off(conic_laz_stream *stream, conic_laz_integer *integer, unsigned context, unsigned n_bits) {
   unsigned k = n_bits == 32 ? conic_laz_symbol(stream, &integer->n_bits[context], 33)
                             : conic_laz_symbol(stream, &integer->n_bits[context], 17);
@@ -45,5 +45,5 @@ int32_t conic_laz_off(conic_laz_stream *stream, conic_laz_integer *integer, unsi
     off = conic_laz_symbol(stream, &integer->high[k], 1u << HIGH_BITS) << (k - HIGH_BITS);
     off |= conic_laz_bits(stream, k - HIGH_BITS);
   }
-  return (int32_t)(off + 1 - ((off >> (k - 1) ^ 1u) << k)); /* the upper half is positive: no branch to guess wrong */
+  return (int32_t)(off + 1 - ((off >> (k - 1) ^ 1u) << k)); /* the upper half is positive; without a branch */
 }

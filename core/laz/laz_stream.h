@@ -1,7 +1,7 @@
-/* Symbols, bits and integers out of arithmetically coded bytes.
+/* Reads symbols, bits and integers from arithmetically coded bytes.
  *
- * `value` is below `length` always, whatever the bytes are, so that every symbol is one of its model's. What is missing
- * at the end reads as zeros and is noted. */
+ * `value` is always below `length`, whatever the bytes are, so that every symbol is one of its model's. Bytes missing
+ * at the end read as zeros, which is noted. */
 #ifndef CONIC_LAZ_STREAM_H
 #define CONIC_LAZ_STREAM_H
 
@@ -12,16 +12,16 @@ typedef struct conic_laz_stream {
   const unsigned char *next, *end;
   uint32_t value, length;
   int is_spoiled;
-  conic_laz_arena *arena; /* of models that begin */
+  conic_laz_arena *arena; /* where new models get their memory */
 } conic_laz_stream;
 
 void conic_laz_stream_begin(conic_laz_stream *stream, conic_laz_arena *arena, const unsigned char *bytes,
                             size_t n_bytes);
 
-/* Shifts `n_bits` in, byte by byte up to the end. */
+/* Shifts `n_bits` in, byte by byte, near the end of the bytes. */
 void conic_laz_refill_at_end(conic_laz_stream *stream, unsigned n_bits);
 
-/* Brings the length back to 2^24 or more, by whole bytes. It is not zero. */
+/* Brings `length`, which is not 0, back to 2^24 or more, by whole bytes. */
 static inline void conic_laz_refill(conic_laz_stream *stream) {
   unsigned n_bits = (unsigned)__builtin_clz(stream->length) & 24u;
   if (stream->end - stream->next < 4) {
@@ -35,7 +35,7 @@ static inline void conic_laz_refill(conic_laz_stream *stream) {
   stream->next += n_bits >> 3;
 }
 
-/* Makes what was found, between x and y, the interval, and counts. */
+/* Narrows the interval to the symbol's, from x to y, and counts the symbol. */
 static inline void conic_laz_settle(conic_laz_stream *stream, conic_laz_model *model, unsigned symbol, uint32_t x,
                                     uint32_t y) {
   stream->value -= x;
@@ -46,7 +46,7 @@ static inline void conic_laz_settle(conic_laz_stream *stream, conic_laz_model *m
     conic_laz_model_update(model);
 }
 
-/* A symbol of a model of n, which begins by it where it has not; n is the same at every call. */
+/* The next symbol, by a model of n symbols. The first call begins the model; n must be the same in every call. */
 static inline unsigned conic_laz_symbol(conic_laz_stream *stream, conic_laz_model *model, unsigned n) {
   unsigned symbol = 0;
   if (!model->bound && !conic_laz_model_begin(model, stream->arena, n))
@@ -88,7 +88,7 @@ static inline unsigned conic_laz_bit(conic_laz_stream *stream, conic_laz_bit_mod
   return bit;
 }
 
-/* 1 to 19 bits that no model describes. */
+/* 1 to 19 bits without a model. */
 static inline uint32_t conic_laz_few_bits(conic_laz_stream *stream, unsigned n_bits) {
   stream->length >>= n_bits;
   uint32_t bits = stream->value / stream->length;
@@ -98,7 +98,7 @@ static inline uint32_t conic_laz_few_bits(conic_laz_stream *stream, unsigned n_b
   return bits & ((1u << n_bits) - 1);
 }
 
-/* 1 to 32 bits, the lower 16 of more than 19 first. */
+/* 1 to 32 bits without a model; of more than 19, the lower 16 come first. */
 static inline uint32_t conic_laz_bits(conic_laz_stream *stream, unsigned n_bits) {
   if (n_bits <= 19)
     return conic_laz_few_bits(stream, n_bits);
@@ -106,12 +106,12 @@ static inline uint32_t conic_laz_bits(conic_laz_stream *stream, unsigned n_bits)
   return conic_laz_few_bits(stream, n_bits - 16) << 16 | low;
 }
 
-/* What an integer is off its prediction: the number k of bits by a model of its context, then the bits, the highest
- * eight by a model of that k. */
+/* An integer's difference from its prediction. First comes its number of bits k, by a model for the context; then come
+ * the bits, the highest eight by a model for that k. */
 enum { CONIC_LAZ_MOST_CONTEXTS = 22 };
 
 typedef struct conic_laz_integer {
-  unsigned k; /* of the last one */
+  unsigned k; /* of the last integer */
   conic_laz_model n_bits[CONIC_LAZ_MOST_CONTEXTS];
   conic_laz_bit_model one;
   conic_laz_model high[33];
@@ -119,13 +119,13 @@ typedef struct conic_laz_integer {
 
 int32_t conic_laz_off(conic_laz_stream *stream, conic_laz_integer *integer, unsigned context, unsigned n_bits);
 
-/* An integer of 32 bits that was predicted. */
+/* An integer of 32 bits, from its prediction. */
 static inline int32_t conic_laz_integer_32(conic_laz_stream *stream, conic_laz_integer *integer, int32_t predicted,
                                            unsigned context) {
   return (int32_t)((uint32_t)predicted + (uint32_t)conic_laz_off(stream, integer, context, 32));
 }
 
-/* One of 16, which goes around. */
+/* An integer of 16 bits, from its prediction, modulo 2^16. */
 static inline uint32_t conic_laz_integer_16(conic_laz_stream *stream, conic_laz_integer *integer, uint32_t predicted,
                                             unsigned context) {
   return (predicted + (uint32_t)conic_laz_off(stream, integer, context, 16)) & 0xffffu;

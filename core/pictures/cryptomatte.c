@@ -22,7 +22,7 @@ uint32_t conic_cryptomatte_hash(const char *text) {
   uint32_t hash = 0;
   for (size_t i = 0; i + 4 <= n; i += 4)
     hash = turn_left(hash ^ stir(conic_load_32(bytes + i)), 13) * 5 + 0xe6546b64u;
-  hash ^= stir((uint32_t)conic_load_bits(bytes + n - rest, rest)); /* which of nothing is nothing */
+  hash ^= stir((uint32_t)conic_load_bits(bytes + n - rest, rest)); /* a rest of no bytes stirs to 0 */
   hash ^= (uint32_t)n;
   hash = (hash ^ hash >> 16) * 0x85ebca6bu;
   hash = (hash ^ hash >> 13) * 0xc2b2ae35u;
@@ -34,7 +34,7 @@ uint32_t conic_cryptomatte_bits(const char *name) {
   return exponent == 0 || exponent == 0xff ? hash ^ 1u << 23 : hash;
 }
 
-/* One of the things in a pixel. */
+/* A thing in a pixel, and its coverage. */
 typedef struct matte {
   uint32_t bits;
   unsigned n_samples;
@@ -83,7 +83,7 @@ void conic_cryptomatte_rank(const uint32_t *bits, size_t n_samples, conic_image 
   }
 }
 
-/* A byte as it stands in a JSON text; returns the bytes that takes, at most 6. */
+/* Writes a byte as a JSON text has it; returns how many bytes that takes, at most 6. */
 static size_t write_byte(unsigned char byte, char *to) {
   char escaped[8];
   size_t n = 1;

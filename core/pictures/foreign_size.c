@@ -1,4 +1,5 @@
-/* How large a picture says that it is, in formats that OpenImageIO decodes, or makes room for, where it opens them. */
+/* The size that a picture's header gives, in formats that OpenImageIO decodes, or takes memory for, as soon as it opens
+ * them. */
 #include <stdio.h>
 #include <string.h>
 
@@ -6,7 +7,7 @@
 #include "core/files/disk.h"
 #include "core/pictures/image_foreign.h"
 
-/* Segment after segment up to the frame's header: markers C0 to CF but for C4 (tables), C8 and CC. */
+/* Goes from segment to segment up to the frame's header: markers C0 to CF without C4 (tables), C8 and CC. */
 static int find_jpeg_size(FILE *file, int *width, int *height) {
   unsigned char segment[9]; /* FF, marker, length of the rest, bits of a sample, height, width */
   long at = 2;
@@ -19,7 +20,7 @@ static int find_jpeg_size(FILE *file, int *width, int *height) {
       *width = conic_load_big_16(segment + 7);
       return 1;
     }
-    if (marker == 0xff) /* a byte that fills */
+    if (marker == 0xff) /* a fill byte */
       at++;
     else
       at += 2 + (marker == 0x01 || (marker >= 0xd0 && marker <= 0xd8) ? 0 : conic_load_big_16(segment + 2));
@@ -27,7 +28,7 @@ static int find_jpeg_size(FILE *file, int *width, int *height) {
   return 0;
 }
 
-/* Its first chunk: lossy, lossless, or extended, which says the size of the whole. */
+/* The first chunk is lossy, lossless, or extended; an extended one gives the size of the whole. */
 static int find_webp_size(const unsigned char *start, int *width, int *height) {
   const unsigned char *chunk = start + 12, *data = chunk + 8;
   if (memcmp(chunk, "VP8 ", 4) == 0) {

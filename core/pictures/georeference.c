@@ -6,13 +6,14 @@
 #include "core/base/memory.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
+#include "core/files/las_user.h"
 
-/* GeoKeys: what the system is (1: projected, 2: geographic), what a pixel is (1: an area), and the systems' codes. */
+/* GeoKeys: the kind of system (1: projected, 2: geographic), the kind of pixel (1: an area), and the systems' codes. */
 enum { KEY_MODEL = 1024, KEY_RASTER = 1025, KEY_GEOGRAPHIC = 2048, KEY_PROJECTED = 3072, USER_DEFINED = 32767 };
 
 enum { KEY_NUMBERS = 4 }; /* of the directory's head, and of a key */
 
-/* Where the header of a LAS has what is needed here, and what its records have before their bytes. */
+/* Fields of a LAS header that are needed here, and the size of the head of its records. */
 enum {
   AT_HEAD_BYTES = 94,
   AT_POINTS_BEGIN = 96,
@@ -31,7 +32,7 @@ void conic_georeference_release(conic_context *context, conic_georeference *refe
   memset(reference, 0, sizeof *reference);
 }
 
-/* Room for so many of each; numbers first, for their alignment. */
+/* Makes room for so many of each; numbers first, for their alignment. */
 static conic_status make_key_room(conic_context *context, size_t n_numbers, size_t n_keys, size_t n_text,
                                   conic_georeference *reference) {
   size_t n_bytes = n_numbers * sizeof(double) + n_keys * sizeof(uint16_t) + n_text;
@@ -69,7 +70,7 @@ static void put_key(uint16_t *to, unsigned key, unsigned value) {
 }
 
 conic_status conic_georeference_of_epsg(conic_context *context, unsigned epsg, conic_georeference *reference) {
-  const int is_geographic = epsg >= 4000 && epsg < 5000; /* EPSG keeps these for them */
+  const int is_geographic = epsg >= 4000 && epsg < 5000; /* EPSG reserves these codes for geographic systems */
   conic_status status = make_key_room(context, 0, (size_t)4 * KEY_NUMBERS, 0, reference);
   if (status != CONIC_OK)
     return status;
@@ -84,7 +85,7 @@ conic_status conic_georeference_of_epsg(conic_context *context, unsigned epsg, c
 
 /* --- well-known text --- */
 
-/* Where the bracket of the first of some elements opens; null: there is none. Names in quotes are passed over. */
+/* Where the bracket of the first of these elements opens; null: there is none. Quoted names are skipped. */
 static const char *find_element(const char *at, const char *end, const char *const *names) {
   int is_quoted = 0;
   for (; at < end; at++) {
@@ -98,7 +99,7 @@ static const char *find_element(const char *at, const char *end, const char *con
   return NULL;
 }
 
-/* The number behind what a code begins with; 0: it begins otherwise. */
+/* The number after `beginning`; 0: the code begins otherwise. */
 static unsigned take_code(const char *at, const char *end, const char *beginning) {
   size_t n = strlen(beginning);
   unsigned code = 0;
@@ -111,7 +112,7 @@ static unsigned take_code(const char *at, const char *end, const char *beginning
   return code < 65536 ? code : 0;
 }
 
-/* The code of an element, of its own and not of one within it. */
+/* The code of the element itself, not of an element within it. */
 static unsigned find_own_code(const char *open, const char *end) {
   int depth = 0, is_quoted = 0;
   for (const char *at = open; at < end; at++) {
@@ -141,7 +142,7 @@ unsigned conic_georeference_find_epsg(const char *text, size_t n_bytes) {
 /* --- the records of a LAS --- */
 
 typedef struct las_record {
-  const unsigned char *bytes; /* null: there is none */
+  const unsigned char *bytes; /* null: missing */
   size_t n_bytes;
 } las_record;
 
@@ -149,13 +150,9 @@ typedef struct las_records {
   las_record keys, numbers, text, wkt;
 } las_records;
 
-static int is_of_user(const unsigned char *record, const char *user) {
-  return strncmp((const char *)record + 2, user, 16) == 0;
-}
-
 static void note_record(const unsigned char *head, const unsigned char *bytes, size_t n_bytes, las_records *found) {
   las_record *to = NULL;
-  if (!is_of_user(head, "LASF_Projection"))
+  if (!conic_las_is_of_user(head, "LASF_Projection"))
     return;
   switch (conic_load_16(head + 18)) {
   case RECORD_KEYS:
@@ -190,7 +187,7 @@ static las_records list_world_records(const unsigned char *head, size_t n_bytes)
   return found;
 }
 
-/* Whether a directory's keys are all there, and point to what is there. */
+/* Whether all of a directory's keys are there, and point to existing values. */
 static int keys_are_sound(const las_records *found) {
   size_t n = found->keys.n_bytes / sizeof(uint16_t);
   const unsigned char *bytes = found->keys.bytes;
@@ -207,11 +204,11 @@ static int keys_are_sound(const las_records *found) {
   return 1;
 }
 
-/* The file's keys in their order, with the one that makes pixels areas. */
+/* Takes the file's keys in their order, and adds the one that makes pixels areas. */
 static conic_status take_keys(conic_context *context, const las_records *found, conic_georeference *reference) {
   size_t n = conic_load_16(found->keys.bytes + 6), n_numbers = found->numbers.n_bytes / sizeof(double), n_put = 0;
   size_t n_text = found->text.n_bytes;
-  while (n_text > 0 && found->text.bytes[n_text - 1] == 0) /* one is put at the end */
+  while (n_text > 0 && found->text.bytes[n_text - 1] == 0) /* one zero is put at the end */
     n_text--;
   conic_status status = make_key_room(context, n_numbers, KEY_NUMBERS * (n + 2), n_text + 1, reference);
   int has_raster = 0;
@@ -263,7 +260,7 @@ conic_status conic_georeference_of_las(conic_context *context, const unsigned ch
   return take_las(context, &found, reference);
 }
 
-/* The well-known text that stands behind the points; what cannot be read is none. */
+/* Reads the well-known text after the points; text that cannot be read counts as none. */
 static conic_status read_late_text(conic_context *context, FILE *file, const unsigned char *head,
                                    conic_georeference *reference) {
   uint64_t at = conic_load_64(head + AT_LATE);

@@ -1,5 +1,5 @@
-/* Which world coordinates are measured in, as GeoTIFF says it (OGC 19-008r4) and LAS files keep it: numbered keys, or
- * an EPSG code from which such keys are made. */
+/* The coordinate system of world coordinates, as GeoTIFF states it (OGC 19-008r4) and LAS files keep it: numbered keys,
+ * or an EPSG code from which such keys are made. */
 #ifndef CONIC_GEOREFERENCE_H
 #define CONIC_GEOREFERENCE_H
 
@@ -8,7 +8,7 @@
 
 #include "conic/context.h"
 
-/* All zero: not known. The arrays are of one block, which conic_georeference_release gives back. */
+/* All zero: not known. The arrays share one block, which conic_georeference_release gives back. */
 typedef struct conic_georeference {
   uint16_t *keys;  /* GeoKeyDirectoryTag: a head of four numbers, then four a key; pixels are areas */
   double *numbers; /* GeoDoubleParamsTag */
@@ -17,16 +17,16 @@ typedef struct conic_georeference {
   unsigned epsg; /* of the projected system, or else of the geographic one; 0: it has no code */
 } conic_georeference;
 
-/* A system by its code, 1 to 65535. Errors: MEMORY. */
+/* A system from its code, 1 to 65535. Errors: MEMORY. */
 conic_status conic_georeference_of_epsg(conic_context *context, unsigned epsg, conic_georeference *reference);
 /* The code of the horizontal system in well-known text of either version, or in "EPSG:26910"; 0: it names none. */
 unsigned conic_georeference_find_epsg(const char *text, size_t n_bytes);
-/* What the head of a LAS says: its header and the records before the points, as far as they are within n_bytes. What
- * says nothing leaves *reference zero. Errors: MEMORY. */
+/* Reads the head of a LAS: its header and the records before the points, as far as n_bytes hold them. Without a system
+ * *reference is zero. Errors: MEMORY. */
 conic_status conic_georeference_of_las(conic_context *context, const unsigned char *head, size_t n_bytes,
                                        conic_georeference *reference);
-/* The same of a file that can be read; also of records behind its points. Of other kinds *reference is zero. Errors:
- * MEMORY. */
+/* Reads the system of a file that can be read, also from records after its points. For other kinds of files *reference
+ * is zero. Errors: MEMORY. */
 conic_status conic_georeference_read(conic_context *context, const char *path, conic_georeference *reference);
 /* Errors: MEMORY. */
 conic_status conic_georeference_copy(conic_context *context, const conic_georeference *from, conic_georeference *to);

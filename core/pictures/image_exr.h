@@ -1,5 +1,5 @@
-/* OpenEXR files through OpenEXRCore. Where that is not built in, conic_exr_write is UNSUPPORTED; then, and where it
- * cannot decompress the file (before version 3.2 DWAA and DWAB), conic_exr_read leaves it to OpenImageIO.
+/* OpenEXR files through OpenEXRCore. Without it, conic_exr_write is UNSUPPORTED, and conic_exr_read leaves the file to
+ * OpenImageIO. It also does so where OpenEXRCore cannot decompress the file (before version 3.2 DWAA and DWAB).
  *
  * Written: one part of scanlines, the channels of conic_plane_describe in alphabetical order, FLOAT (or HALF) and UINT,
  * the attributes, and colorInteropID where colours are display values. Read: the first part, scanlines or tiles, any
@@ -9,7 +9,7 @@
 
 #include "conic/image.h"
 
-/* Whether this build writes EXR; it holds every plane. Errors: UNSUPPORTED, ARGUMENT (mattes by a compression that
+/* Whether this build writes EXR, which holds every plane. Errors: UNSUPPORTED, ARGUMENT (mattes with a compression that
  * changes their bits). */
 conic_status conic_exr_check(conic_context *context, const char *path, unsigned planes,
                              const conic_image_options *options);

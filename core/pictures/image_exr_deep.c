@@ -25,7 +25,7 @@ struct conic_deep_writer {
   int next_y;
 };
 
-/* In the order of their names, in which a file has them. */
+/* Adds the channels in the order of their names, which is a file's order. */
 static exr_result_t add_channels(exr_context_t file) {
   static const char *const names[] = {"A", "B", "G", "R", "Z", "id", "weight"};
   exr_result_t result = EXR_ERR_SUCCESS;

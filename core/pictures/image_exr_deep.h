@@ -10,14 +10,14 @@ typedef struct conic_deep_sample {
   uint32_t id;
 } conic_deep_sample;
 
-/* A line of a deep picture: pixel x has counts[x] samples; those of the line lie one after the other. */
+/* A line of a deep picture: pixel x has counts[x] samples; all samples of the line are one after the other. */
 typedef struct conic_deep_line {
   const uint32_t *counts;
   size_t n_samples;
   const conic_deep_sample *samples;
 } conic_deep_line;
 
-/* A line as it stands in the file. It begins as zeros, and its memory serves line after line. */
+/* A line as the file holds it. Begins as zeros; its memory serves line after line. */
 typedef struct conic_deep_packed {
   unsigned char *ends, *samples, *scratch;
   size_t n_ends, n_samples, n_unpacked; /* bytes */
@@ -26,11 +26,10 @@ typedef struct conic_deep_packed {
 
 typedef struct conic_deep_writer conic_deep_writer;
 
-/* Begins a deep scanline EXR, channels R, G, B, A, Z, id and weight, compressed (ZIPS) where the build has zlib; no
- * pixel has more than `most_samples`. `header` gives the attributes and may be null; `path` stays the caller's and must
+/* Begins a deep scanline EXR with channels R, G, B, A, Z, id and weight, compressed (ZIPS) where the build has zlib. No
+ * pixel has more than `most_samples`. `header` gives the attributes and may be null; the caller owns `path`, which must
  * outlive the writer. On success the caller owns *writer, and ends it with finish or abandon. Errors: ARGUMENT (an
- * attribute that the format refuses), UNSUPPORTED (a build without OpenEXR), MEMORY, IO.
- */
+ * attribute that the format refuses), UNSUPPORTED (a build without OpenEXR), MEMORY, IO. */
 conic_status conic_deep_open(conic_context *context, const char *path, int width, int height, uint32_t most_samples,
                              const conic_image *header, conic_deep_writer **writer);
 /* Packs a line, on any thread. Errors: UNSUPPORTED (more samples than a file can hold), MEMORY. */

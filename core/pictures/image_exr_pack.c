@@ -1,5 +1,5 @@
-/* A line of a deep EXR as it stands in the file: its channels one after the other, compressed as by ZIPS. The library
- * writes such lines, and leaves making them to others. */
+/* Packs a line of a deep EXR as the file holds it: its channels one after the other, compressed as by ZIPS. The library
+ * can write such lines but cannot make them. */
 #include <stddef.h>
 #include <string.h>
 
@@ -11,11 +11,11 @@
 #if CONIC_HAVE_ZLIB
 #include <zlib.h>
 
-/* Of a picture of splats, higher levels take twice as long for files that are smaller by 3 %. */
+/* For pictures of splats, higher levels take twice as long for files that are 3 % smaller. */
 enum { ZIP_LEVEL = 2 };
 #endif
 
-/* Where the channels of a sample are, in the order of their names: A, B, G, R, Z, id, weight. */
+/* Where a sample's channels are, in the order of their names: A, B, G, R, Z, id, weight. */
 static const size_t channels[] = {offsetof(conic_deep_sample, rgba) + 3 * sizeof(float),
                                   offsetof(conic_deep_sample, rgba) + 2 * sizeof(float),
                                   offsetof(conic_deep_sample, rgba) + sizeof(float),
@@ -25,7 +25,7 @@ static const size_t channels[] = {offsetof(conic_deep_sample, rgba) + 3 * sizeof
                                   offsetof(conic_deep_sample, weight)};
 enum { N_CHANNELS = sizeof channels / sizeof channels[0] };
 
-/* Room for n bytes, and for what zlib may make of bytes that it cannot compress. */
+/* Makes room for n bytes, and for zlib's overhead if they cannot be compressed. */
 static int make_room(conic_context *context, unsigned char **bytes, size_t *room, size_t n) {
   if (*bytes && n <= *room)
     return 1;
@@ -39,7 +39,8 @@ static int make_room(conic_context *context, unsigned char **bytes, size_t *room
 
 #if CONIC_HAVE_ZLIB
 
-/* Even bytes first, then odd ones, and of each the difference from the one before: what ZIPS compresses. */
+/* Arranges bytes as ZIPS compresses them: even bytes first, then odd ones, each as its difference from the one
+ * before. */
 static void rearrange(const unsigned char *bytes, size_t n, unsigned char *to) {
   unsigned char before = 0;
   for (size_t i = 0; i < n; i++)
@@ -51,7 +52,7 @@ static void rearrange(const unsigned char *bytes, size_t n, unsigned char *to) {
   }
 }
 
-/* What does not become smaller stays as it is. */
+/* Bytes that do not become fewer stay as they are. */
 static int compress_bytes(conic_context *context, conic_deep_packed *packed, unsigned char *bytes, size_t *n) {
   uLongf n_smaller = compressBound((uLong)*n);
   if (!make_room(context, &packed->scratch, &packed->scratch_room, *n + n_smaller))

@@ -30,8 +30,8 @@ typedef struct exr_reader {
   unsigned half_planes;
   exr_decode_pipeline_t *pipelines; /* one a thread */
   atomic_int result;
-  atomic_ullong failed_bytes; /* what the chunk that could not be decoded is unpacked to */
-  int is_for_others;          /* the library cannot decode it, and another one may */
+  atomic_ullong failed_bytes; /* unpacked bytes of the chunk that could not be decoded */
+  int is_for_others;          /* the library cannot decode it, but another one may */
 } exr_reader;
 
 static int has_channel(const exr_attr_chlist_t *channels, const char *name) {
@@ -41,7 +41,7 @@ static int has_channel(const exr_attr_chlist_t *channels, const char *name) {
   return 0;
 }
 
-/* Which planes the file's channels make. */
+/* Finds the planes that the file's channels make. */
 static conic_status choose_planes(conic_context *context, exr_reader *reader, unsigned *planes, int *has_alpha) {
   const exr_attr_chlist_t *channels;
   const char *path = reader->stream.path;
@@ -74,7 +74,7 @@ static conic_status choose_planes(conic_context *context, exr_reader *reader, un
   return CONIC_OK;
 }
 
-/* How the part is cut into chunks. */
+/* Finds how the part is divided into chunks. */
 static exr_result_t read_layout(exr_reader *reader) {
   exr_result_t result = exr_get_data_window(reader->file, 0, &reader->window);
   int width = reader->window.max.x - reader->window.min.x + 1, height = reader->window.max.y - reader->window.min.y + 1;
@@ -152,8 +152,8 @@ static void decode_chunk(void *data, size_t i_item, int i_thread) {
   }
 }
 
-/* Some decoders say that memory is out where it is data that run past their room. Then there is memory. Errors: INPUT,
- * MEMORY. */
+/* Some decoders report lack of memory for data that run past their room. If there is memory, the data are at fault.
+ * Errors: INPUT, MEMORY. */
 static conic_status doubt_memory(conic_context *context, const exr_reader *reader) {
   void *room = conic_memory_allocate(context, 4, (size_t)atomic_load(&reader->failed_bytes));
   if (!room)
@@ -189,7 +189,7 @@ static void take_floats(conic_attribute *to, conic_attribute_type type, const vo
     to->values[i] = (double)values[i];
 }
 
-/* Whether it is of a type that conic writes. */
+/* Returns whether the attribute is of a type that conic writes. */
 static int take_attribute(const exr_attribute_t *from, conic_attribute *to) {
   if (from->type == EXR_ATTR_STRING && from->string->str && strlen(from->string->str) < sizeof to->text) {
     to->type = CONIC_ATTRIBUTE_TEXT;
@@ -237,7 +237,7 @@ static int says_display(const exr_reader *reader) {
          space->type == EXR_ATTR_STRING && space->string->str && strcmp(space->string->str, CONIC_EXR_DISPLAY) == 0;
 }
 
-/* The file is open and its header parsed. */
+/* Reads the part; the file is open and its header parsed. */
 static conic_status read_part(conic_context *context, exr_reader *reader) {
   unsigned planes = 0;
   int has_alpha = 0;

@@ -17,7 +17,7 @@ static conic_exr_stream *stream_of(exr_const_context_t file) {
   return data;
 }
 
-/* Called on whichever thread failed, so the message is kept and logged by the calling one. */
+/* Called on the thread that failed; the message is kept, and the calling thread logs it. */
 static void keep_message(exr_const_context_t file, exr_result_t code, const char *message) {
   conic_exr_stream *stream = stream_of(file);
   (void)code;
@@ -140,7 +140,7 @@ static exr_result_t add_attribute(exr_context_t file, const conic_attribute *att
   return EXR_ERR_INVALID_ARGUMENT;
 }
 
-/* Names over 31 bytes make a file that old readers refuse, so the flag is set only where one is. */
+/* Old readers refuse files with names over 31 bytes, which need a flag: it is set only for such names. */
 static int has_long_name(const conic_image *image) {
   for (int i = 0; i < image->n_attributes; i++)
     if (strlen(image->attributes[i].name) > 31)

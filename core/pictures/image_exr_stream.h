@@ -1,4 +1,4 @@
-/* What the EXR writers and the reader share: file access by our own functions, the library's message kept for the end,
+/* Shared by the EXR writers and the reader: file access by our own functions, the library's message kept for the end,
  * and an image's attributes. */
 #ifndef CONIC_IMAGE_EXR_STREAM_H
 #define CONIC_IMAGE_EXR_STREAM_H
@@ -12,31 +12,31 @@
 
 #include "conic/image.h"
 
-/* The attribute that names a colour space, and the name of the one in which colours are display values. */
+/* The attribute that names a colour space, and the name of the space whose colours are display values. */
 #define CONIC_EXR_COLOR_SPACE "colorInteropID"
 #define CONIC_EXR_DISPLAY "srgb_rec709_display"
 
 typedef struct conic_exr_stream {
   conic_context *context;
   const char *path;
-  FILE *file;       /* of the caller; null: what is written goes nowhere */
+  FILE *file;       /* the caller's; null: written bytes go nowhere */
   int64_t position; /* of `file`, for writing */
-  int64_t length;   /* of what was written to it */
+  int64_t length;   /* of the written bytes */
   int error;        /* errno of the first failed access */
   atomic_flag has_message;
-  char message[200]; /* the library's first, as its later ones only repeat that something failed */
+  char message[200]; /* the library's first; later ones only repeat that something failed */
 } conic_exr_stream;
 
 /* Fills `stream`, and `settings` with the functions that work on it. */
 void conic_exr_stream_init(conic_exr_stream *stream, conic_context *context, const char *path, FILE *file,
                            exr_context_initializer_t *settings);
 
-/* Logs what `result` means and returns the status: MEMORY, UNSUPPORTED, or IO where access to the file failed while
- * `doing` ("write"), else `otherwise`. */
+/* Logs what `result` means and returns the status: MEMORY; UNSUPPORTED; IO where access to the file failed while
+ * `doing` ("write"); else `otherwise`. */
 conic_status conic_exr_fail(conic_exr_stream *stream, exr_result_t result, const char *doing, conic_status otherwise);
 
-/* For the header of a file that is being written: before the part is added, what the names of the image's attributes
- * need; and after the required attributes are set, the attributes. */
+/* For the header of a file that is being written: the first, before the part is added, prepares it for the names of the
+ * image's attributes; the second adds them after the required attributes are set. */
 exr_result_t conic_exr_prepare_attributes(exr_context_t file, const conic_image *image);
 exr_result_t conic_exr_add_attributes(exr_context_t file, const conic_image *image);
 

@@ -17,13 +17,13 @@
 #include "core/pictures/image_channels.h"
 #include "core/pictures/image_exr_stream.h"
 
-/* Chunks that are compressed side by side take no more than this of pixels, where they are so small. */
+/* Chunks of small pictures that are compressed side by side hold no more than so many bytes of pixels. */
 enum { CHUNKS_BYTES = 1 << 25 };
 
 /* zlib's level. 4, the library's default, makes files at most 5 % smaller and takes up to a half longer. */
 enum { ZIP_LEVEL = 2 };
 
-/* One chunk of scanlines on its way: compressed on any thread, written in order by the calling one. */
+/* A chunk of scanlines: any thread compresses it, the calling one writes it in order. */
 typedef struct exr_chunk {
   exr_encode_pipeline_t pipeline; /* its buffers serve chunk after chunk */
   exr_chunk_info_t info;
@@ -37,15 +37,15 @@ struct conic_exr_bands {
   conic_image_options options;
   unsigned planes;
   int width, height;
-  conic_output *output; /* null: there is none to write */
-  FILE *spool;          /* what is written to, where the output cannot be gone back in; null: the output */
+  conic_output *output; /* null: nothing to write */
+  FILE *spool;          /* takes the bytes where the output cannot seek; null: the output does */
   conic_exr_stream stream;
   exr_context_t file;
   exr_chunk *chunks;
   size_t n_chunks;
-  int next_y;              /* of the picture, the first row that is missing */
-  const conic_image *band; /* the one at hand, */
-  int band_y;              /* and its first row */
+  int next_y;              /* the first missing row of the picture */
+  const conic_image *band; /* the current one … */
+  int band_y;              /* … and its first row */
 };
 
 static exr_compression_t compression_of(const conic_image_options *options) {
@@ -76,7 +76,7 @@ static exr_result_t add_channels(const conic_exr_bands *bands) {
   return EXR_ERR_SUCCESS;
 }
 
-/* What readers of a Cryptomatte look for. */
+/* Adds the attributes that readers of a Cryptomatte look for. */
 static exr_result_t describe_mattes(exr_context_t file, const conic_image *image) {
   const char *const values[][2] = {{"name", CONIC_CRYPTOMATTE_NAME},
                                    {"hash", "MurmurHash3_32"},
@@ -93,7 +93,7 @@ static exr_result_t describe_mattes(exr_context_t file, const conic_image *image
   return result;
 }
 
-/* By the attribute of OpenEXR 3.4 that names a colour space; linear colours have their chromaticities. */
+/* Marks display values by OpenEXR 3.4's attribute for a colour space; linear colours have their chromaticities. */
 static exr_result_t describe_display(const conic_exr_bands *bands, const conic_image *header) {
   if (!header->is_display || !(bands->planes & 1u << CONIC_PLANE_RGBA))
     return EXR_ERR_SUCCESS;
@@ -158,7 +158,7 @@ static void encode_chunk(void *data, size_t i_item, int i_thread) {
     chunk->result = exr_encoding_run(bands->file, 0, &chunk->pipeline);
 }
 
-/* Compresses the next chunks before `end` side by side. Returns how many. */
+/* Compresses the next chunks before `end` side by side; returns how many. */
 static size_t pack_next_chunks(conic_exr_bands *bands, int *y, int end, int is_alone, exr_result_t *result) {
   size_t n = 0;
   for (*result = EXR_ERR_SUCCESS; n < bands->n_chunks && *y < end && *result == EXR_ERR_SUCCESS; n++) {
@@ -227,7 +227,7 @@ conic_status conic_exr_bands_append(conic_exr_bands *bands, const conic_image *b
   return conic_exr_pack(bands, band, bands->next_y, bands->next_y, end, 0, append_next, bands);
 }
 
-/* An EXR's beginning says where its parts are, which cannot be gone back to in what is like a pipe. */
+/* An EXR's beginning says where its parts are, and must be written last; a pipe cannot go back to it. */
 static conic_status choose_stream(conic_exr_bands *bands, FILE **stream) {
   *stream = conic_output_stream(bands->output);
   if (*stream != stdout && ftello(*stream) == 0)
@@ -239,7 +239,7 @@ static conic_status choose_stream(conic_exr_bands *bands, FILE **stream) {
                                    bands->path, strerror(errno));
 }
 
-/* Pixels of a chunk. */
+/* Bytes of the pixels of a chunk. */
 static uint64_t chunk_bytes(const conic_exr_bands *bands) {
   conic_compression compression = bands->options.compression;
   uint64_t n_rows = compression == CONIC_COMPRESSION_PIZ                                             ? 32
@@ -248,7 +248,7 @@ static uint64_t chunk_bytes(const conic_exr_bands *bands) {
   return conic_planes_pixel_bytes(bands->planes) * n_rows * (uint64_t)bands->width;
 }
 
-/* The pixels in the file's order, and compressed, and what that takes. */
+/* The pixels in the file's order, the compressed ones, and the memory of compressing. */
 uint64_t conic_exr_packer_bytes(const conic_exr_bands *bands) {
   return 3 * bands->n_chunks * chunk_bytes(bands);
 }
@@ -318,7 +318,7 @@ static conic_status copy_spool(conic_exr_bands *bands) {
   rewind(bands->spool);
   for (size_t n; (n = fread(bytes, 1, sizeof bytes, bands->spool)) > 0;)
     if (fwrite(bytes, 1, n, to) != n)
-      break; /* the stream remembers, and the output's end says so */
+      break; /* the stream remembers; ending the output reports it */
   if (ferror(bands->spool))
     status =
         conic_fail(bands->context, CONIC_ERROR_IO, "%s: cannot write: the temporary file cannot be read", bands->path);

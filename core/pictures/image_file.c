@@ -1,4 +1,4 @@
-/* Which format an image is written in, by the ending of its name; and read in, by the file's first bytes. */
+/* Chooses an image's format: for writing by the ending of its name, for reading by the file's first bytes. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -37,7 +37,7 @@ static conic_status check_image(conic_context *context, const char *path, const 
   return CONIC_OK;
 }
 
-/* Which kind of file PATH means. */
+/* Which kind of file PATH stands for. */
 static conic_status find_format(conic_context *context, const char *path, const conic_image_options *options,
                                 const char **format) {
   if (!path || !*path)
@@ -134,7 +134,7 @@ conic_status conic_image_read(conic_context *context, const char *path, conic_im
   if (lent)
     return copy_lent(context, path, lent, image);
   conic_disk_entry found;
-  if (conic_disk_look(path, &found) && !found.is_file) /* which might not end, or never begin */
+  if (conic_disk_look(path, &found) && !found.is_file) /* a device or pipe might not end, or never begin */
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: it is %s", path,
                       found.is_folder ? "a directory" : "no regular file");
   FILE *file = conic_disk_open_stream(path, "rb");

@@ -11,7 +11,7 @@
 #include "core/pictures/image_samples.h"
 #include "core/pictures/openimageio_bridge.h"
 
-/* OpenImageIO writes EXR too, but would leave out all but rgba. */
+/* OpenImageIO writes EXR too, but only its rgba. */
 static int is_float_format(const char *format) {
   return strcmp(format, "hdr") == 0 || strcmp(format, "zfile") == 0 || strcmp(format, "openexr") == 0;
 }
@@ -49,7 +49,7 @@ static conic_status write_samples(conic_context *context, const conic_bridge *br
   return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: %s", path, message);
 }
 
-/* The format that the ending means, if it holds one of these planes. */
+/* The format of the ending, if it holds one of these planes. */
 static conic_status find_writer(conic_context *context, const char *path, const char *ending, unsigned planes,
                                 const conic_bridge **bridge, conic_bridge_writer *writer) {
   char message[CONIC_BRIDGE_MESSAGE] = "";
@@ -123,7 +123,7 @@ static void *make_room_for_picture(void *cookie, const conic_bridge_picture *pic
   return work->samples;
 }
 
-/* Whether the file begins as an image of a well-known format does: then it is the build that lacks something. */
+/* Whether the file begins as an image of a well-known format: then the build lacks something. */
 static int is_known_image(const char *path) {
   static const struct {
     const char *bytes;
@@ -136,7 +136,7 @@ static int is_known_image(const char *path) {
   return 0;
 }
 
-/* The samples and the picture's layout, or why not. */
+/* Reads the samples and the picture's layout, or says why not. */
 static conic_status read_samples(conic_context *context, const char *path, conic_bridge_picture *picture,
                                  reading *work) {
   char message[CONIC_BRIDGE_MESSAGE] = "";
@@ -185,7 +185,7 @@ static int has_channel(const conic_bridge_picture *picture, const char *name) {
   return 0;
 }
 
-/* Channel `i` of the samples, into the plane that it belongs to, if any. */
+/* Puts channel `i` of the samples into its plane, if it has one. */
 static void take_channel(const conic_bridge_picture *picture, const unsigned char *samples, int i, conic_channel to,
                          const conic_image *image) {
   const conic_plane_description *plane = conic_plane_describe((conic_plane)to.plane);
@@ -200,7 +200,7 @@ static void take_channel(const conic_bridge_picture *picture, const unsigned cha
   }
 }
 
-/* An EXR's planes, as conic_exr_read would have them. */
+/* Takes an EXR's planes as conic_exr_read would. */
 static conic_status take_channels(conic_context *context, const char *path, const conic_bridge_picture *picture,
                                   const void *samples, conic_image *image) {
   conic_channel to[CONIC_BRIDGE_CHANNELS];

@@ -81,7 +81,7 @@ static void take_numpy_plane(const numpy_pixels *p, conic_plane plane, size_t fi
     image->half_planes |= 1u << plane;
 }
 
-/* Puts an array into the image, which takes its size where it has none. */
+/* Puts an array into the image. An image without a size takes the array's. */
 static conic_status put_numpy_plane(conic_context *context, const char *path, const char *name,
                                     const conic_numpy_array *array, conic_plane plane, size_t first,
                                     conic_image *image) {
@@ -116,7 +116,7 @@ static conic_status put_numpy_plane(conic_context *context, const char *path, co
   return CONIC_OK;
 }
 
-/* A name of an array in an .npz, and what it is. */
+/* An array's name in an .npz, and its plane. */
 typedef struct numpy_name {
   const char *name;
   conic_plane plane;

@@ -1,9 +1,9 @@
 /* Pictures as NumPy writes them: an array in an .npy, or several, by their names, in an .npz.
  *
- * A lone array is (H, W) or (H, W, 1) grey, (H, W, 3) colour or (H, W, 4) with alpha, premultiplied; axes of one item
- * before these are passed over, and (3, H, W) is read, too. In an .npz each array is a plane by its name, "rgba", "Z",
- * "N" …; "rgb", "image", "colors", "render" and "renders" are colours, too, and "A", "alpha" and "alphas" their alpha.
- * Floats are taken as they are, and bytes and words divided by the greatest code. */
+ * A lone array is (H, W) or (H, W, 1) grey, (H, W, 3) colour or (H, W, 4) with alpha, premultiplied; leading axes of
+ * one item are ignored, and (3, H, W) is read, too. In an .npz each array is a plane by its name, "rgba", "Z", "N" …;
+ * "rgb", "image", "colors", "render" and "renders" are colours, too, and "A", "alpha" and "alphas" their alpha. Floats
+ * are taken as they are, and bytes and words divided by the greatest code. */
 #ifndef CONIC_IMAGE_NUMPY_H
 #define CONIC_IMAGE_NUMPY_H
 
@@ -12,10 +12,12 @@
 /* *most_code: 255 or 65535 where the colours are bytes or words, else 0. Errors: INPUT, UNSUPPORTED, MEMORY. */
 conic_status conic_numpy_image_read(conic_context *context, const char *path, conic_image *image, unsigned *most_code);
 
-/* An .npy as that plane of an image that has its size, or, where it is empty, takes it. Errors: as there. */
+/* Reads an .npy as that plane. An image without a size takes the array's; else the sizes must agree. Errors: as
+ * there. */
 conic_status conic_numpy_plane_read(conic_context *context, const char *path, conic_plane plane, conic_image *image);
 
-/* A number as a file of floats tells of it: -1 is CONIC_NO_ID, and what is no whole number is one that nothing has. */
+/* A whole number as a file of floats holds it: -1 is CONIC_NO_ID; a float that is not whole gives a number that nothing
+ * has. */
 uint32_t conic_numpy_whole_number(double value);
 
 #endif

@@ -11,10 +11,10 @@
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 
-/* The largest of the whole numbers up to which floats hold every one. */
+/* Up to this number, floats hold every whole number. */
 enum { MOST_NUMBER = 1 << 24 };
 
-/* The samples of a pixel that go into the file: without alpha, and numbers as floats, -1 where nothing is. */
+/* The samples of a pixel that the file takes: without alpha; whole numbers as floats, -1 where nothing is. */
 static void take_pixel(const void *plane, const conic_plane_description *description, size_t i_pixel, float *to) {
   size_t n = (size_t)description->n_channels, first = i_pixel * n;
   for (size_t c = 0; c < n && c < 3; c++) {
@@ -45,7 +45,7 @@ static conic_status write_rows(conic_context *context, FILE *stream, const conic
   return CONIC_OK;
 }
 
-/* The plane of these that goes into the file; CONIC_N_PLANES: none can. */
+/* Which of these planes the file takes; CONIC_N_PLANES: none. */
 static conic_plane choose_plane(unsigned planes) {
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (planes == 1u << i || (i == CONIC_PLANE_RGBA && planes & 1u))
@@ -91,8 +91,8 @@ static int is_space(int c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r';
 }
 
-/* The next word of the header, with the one white space after it; 0 where it is longer than the room or the file ends.
- */
+/* Reads the next word of the header, with the one white space after it; 0 where it exceeds the room or the file
+ * ends. */
 static int read_word(FILE *file, char word[32]) {
   int c = getc(file), n = 0;
   while (is_space(c))
@@ -116,7 +116,7 @@ static int parse_size(const char *word) {
   return value;
 }
 
-/* -1 (little-endian) or 1 by the sign of a decimal number; 0 where it is none, or zero. */
+/* -1 (little-endian) or 1, the sign of a decimal number; 0 where it is zero or no number. */
 static int parse_scale_sign(const char *word) {
   int sign = 1, n_digits = 0, is_zero = 1;
   if (*word == '-' || *word == '+')
@@ -160,7 +160,7 @@ static conic_status read_rows(conic_context *context, const char *path, FILE *fi
   return status;
 }
 
-/* A hostile header must not make us allocate what the file cannot fill. */
+/* A false header must not make us allocate more than the file can fill. */
 static int is_long_enough(FILE *file, int width, int height, int n_channels) {
   long long here = ftello(file);
   if (here < 0 || fseeko(file, 0, SEEK_END) != 0)

@@ -1,8 +1,8 @@
 /* Portable float maps: linear floats without compression, no library needed.
  *
- * Written: rgba as colour (R, G, B as they are, over black); without rgba, a lone other plane, as colour or as grey.
- * Numbers become floats, as long as these hold them, and -1 where nothing is. Little-endian, rows from the bottom.
- * Read: either byte order; the size of the scale is not looked at; grey goes to R, G and B; A is 1. */
+ * Written: rgba as colour (R, G, B as they are, over black); without rgba, a single other plane, as colour or as grey.
+ * Whole numbers become floats if floats hold them, and -1 where nothing is. Little-endian, rows from the bottom. Read:
+ * either byte order; the scale's size is ignored; grey goes to R, G and B; A is 1. */
 #ifndef CONIC_IMAGE_PFM_H
 #define CONIC_IMAGE_PFM_H
 
@@ -11,7 +11,7 @@
 /* Whether a plane of these (bits) can be written. Errors: ARGUMENT. */
 conic_status conic_pfm_check(conic_context *context, const char *path, unsigned planes);
 
-/* Errors: ARGUMENT (no plane that it can hold), UNSUPPORTED (numbers that no float holds), MEMORY, IO. */
+/* Errors: ARGUMENT (no plane that it can hold), UNSUPPORTED (numbers that floats cannot hold), MEMORY, IO. */
 conic_status conic_pfm_write(conic_context *context, const char *path, const conic_image *image);
 
 /* Errors: INPUT, MEMORY. */

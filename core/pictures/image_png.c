@@ -17,13 +17,13 @@
 #include "core/pictures/image_samples.h"
 #include "core/pictures/picture_shot.h"
 
-/* zlib's level, and the rows' filter. Of 1024² pixels of the lion that takes 12 ms; all filters and level 6 make a file
- * that is smaller by an eighth in 64 ms, and no filter one that is larger by a third in 14 ms. */
+/* zlib's level, and the rows' filter. 1024² pixels of the lion take 12 ms so; all filters and level 6 make a file an
+ * eighth smaller in 64 ms, no filter a third larger in 14 ms. */
 enum { ZIP_LEVEL = 1, FILTERS = PNG_FILTER_UP };
 
 enum { ROWS_A_REPORT = 64 };
 
-/* A file on its way in or out. libpng leaves by longjmp: what is to be released lies here, not in variables. */
+/* A file being read or written. libpng leaves by longjmp: memory to release is noted here, not in variables. */
 typedef struct png_work {
   conic_context *context;
   const char *path;
@@ -45,7 +45,7 @@ static void keep_error(png_structp png, png_const_charp message) {
   png_longjmp(png, 1);
 }
 
-/* What it goes on after is no more than noted, if at all. */
+/* Warnings, after which libpng continues, are at most noted. */
 static void keep_quiet(png_structp png, png_const_charp message) {
   png_work *work = png_get_error_ptr(png);
   conic_log(work->context, CONIC_LOG_INFO, "%s: %s", work->path, message);
@@ -84,7 +84,7 @@ static void write_shot(png_work *work) {
   png_set_text(work->png, work->info, &text, 1);
 }
 
-/* 0 where libpng gave up, or the caller. */
+/* Returns 0 where libpng or the caller gave up. */
 static int encode(png_work *work) {
   if (setjmp(png_jmpbuf(work->png)))
     return 0;
@@ -183,7 +183,7 @@ static void read_png(png_structp png, png_bytep bytes, size_t n_bytes) {
   png_longjmp(png, 1);
 }
 
-/* 0 where libpng gave up. */
+/* Returns 0 where libpng gave up. */
 static int decode_header(png_work *work) {
   if (setjmp(png_jmpbuf(work->png)))
     return 0;
@@ -218,7 +218,7 @@ static conic_status fail_to_read(const png_work *work) {
   return conic_fail(work->context, CONIC_ERROR_INPUT, "%s: cannot read: %s", work->path, work->message);
 }
 
-/* The size of the picture is looked at before there is room for it. */
+/* The size is checked before memory is taken for the picture. */
 static conic_status read_samples(png_work *work, conic_image *image) {
   conic_context *context = work->context;
   if (!decode_header(work))

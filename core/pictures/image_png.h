@@ -1,7 +1,7 @@
 /* PNG files through libpng. A build without it leaves them to OpenImageIO, which gives the same samples.
  *
- * Written: rgba, 8 bits, sRGB-encoded and said to be so, the colour divided by alpha. Read: any kind; grey, palettes
- * and transparent colours become channels, and colours are sRGB-encoded whatever the file says of its gamma. */
+ * Written: rgba, 8 bits, sRGB-encoded and marked so, the colour divided by alpha. Read: any kind; grey, palettes and
+ * transparent colours become channels, and colours are sRGB-encoded whatever the file says of its gamma. */
 #ifndef CONIC_IMAGE_PNG_H
 #define CONIC_IMAGE_PNG_H
 
@@ -9,20 +9,21 @@
 
 #include "conic/image.h"
 
-/* Whether this build writes PNG, and these planes (bits) have what it holds. Errors: ARGUMENT, UNSUPPORTED, MEMORY. */
+/* Whether this build writes PNG, and one of these planes (bits) is one that a PNG holds. Errors: ARGUMENT, UNSUPPORTED,
+ * MEMORY. */
 conic_status conic_png_check(conic_context *context, const char *path, unsigned planes);
 
 /* Errors: ARGUMENT (no rgba), UNSUPPORTED, MEMORY, IO. */
 conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image, conic_tone tone);
 
-/* The same without a curve to a stream, which the caller looks at for errors of writing. Errors: ARGUMENT, UNSUPPORTED,
+/* conic_png_write to a stream, without a curve; the caller checks the stream for errors. Errors: ARGUMENT, UNSUPPORTED,
  * MEMORY. */
 conic_status conic_png_write_to(conic_context *context, FILE *stream, const conic_image *image);
 
 /* Errors: INPUT, UNSUPPORTED, MEMORY. */
 conic_status conic_png_read(conic_context *context, const char *path, conic_image *image);
 
-/* The same of the codes as they are, each divided by *most_code, the greatest that there may be: 255 or 65535. */
+/* Reads the codes without decoding, each divided by *most_code, the greatest possible code: 255 or 65535. */
 conic_status conic_png_read_codes(conic_context *context, const char *path, conic_image *image, unsigned *most_code);
 
 #endif

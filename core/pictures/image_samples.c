@@ -5,8 +5,8 @@
 #include "core/base/color.h"
 #include "core/base/threads.h"
 
-/* conic_srgb_code in one look and about one step: `first` holds the code at the foot of each of N_STEPS equal steps of
- * linear light. The steps are a power of two, so that finding the step is exact. */
+/* conic_srgb_code by one look-up and about one step: `first` holds the code at the lower end of each of N_STEPS equal
+ * steps of linear light. The number of steps is a power of two, so that the step is found exactly. */
 enum { N_STEPS = 4096 };
 
 typedef struct sample_tables {
@@ -48,7 +48,7 @@ static unsigned quantize(double value, double scale) {
   return value >= 1.0 ? (unsigned)scale : (unsigned)(value * scale + 0.5);
 }
 
-/* The colour as the layout wants it, still linear. */
+/* The colour as the layout needs it, still linear. */
 static void arrange_pixel(const float rgba[4], int is_straight, float color[4]) {
   float alpha = rgba[3];
   memcpy(color, rgba, 4 * sizeof *color);

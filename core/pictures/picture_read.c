@@ -1,4 +1,4 @@
-/* A picture that is to be judged: read, and what its values stand for. */
+/* Reads a picture to be judged, and the ranges that its values stand for. */
 #include "conic/picture.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@
 #include "core/pictures/image_numpy.h"
 #include "core/pictures/image_png.h"
 
-/* A value on its way to a code is a float, whose rounding may carry it over a border. */
+/* A value is a float before it becomes a code, and its rounding may carry it over a border. */
 #define CODE_SLACK 0x1p-22
 
 const char *conic_code_rounding_name(conic_code_rounding rounding) {
@@ -35,7 +35,7 @@ void conic_picture_release(conic_context *context, conic_picture *picture) {
   memset(picture, 0, sizeof *picture);
 }
 
-/* The values that become a code; beyond the first and the last, all. */
+/* The range of values that become a code; the first and the last code stand for all values beyond, too. */
 static void range_of_code(double code, double most, const conic_picture_options *o, int is_color, double range[2]) {
   double below = o->rounding == CONIC_CODES_DOWN ? 0.0 : 0.5, above = o->rounding == CONIC_CODES_NEAREST ? 0.5 : 1.0;
   for (int side = 0; side < 2; side++) {
@@ -49,7 +49,7 @@ static void range_of_code(double code, double most, const conic_picture_options 
     range[1] = HUGE_VAL;
 }
 
-/* Rounded to the nearest half float or to that towards zero. */
+/* The range of values that become a half float, rounded to nearest or towards zero. */
 static void range_of_half(double value, double range[2]) {
   double step = fabs(value) * 0x1p-10 + 0x1p-24;
   range[0] = value - step;
@@ -60,7 +60,7 @@ static float outward_float(double x, int is_up) {
   return (float)(x + (is_up ? 1.0 : -1.0) * fabs(x) * 0x1p-24);
 }
 
-/* A colour that is multiplied by an alpha of that range; where alpha may be nothing, so may the code of the colour. */
+/* Multiplies a colour's range by alpha's. Where alpha may be 0, the colour's code may be anything. */
 static void multiply_by_alpha(const double alpha[2], double color[2]) {
   if (!(alpha[0] > 0.0)) {
     color[0] = -HUGE_VAL;
@@ -92,7 +92,7 @@ static void spread_pixel(float *low, float *high, unsigned most_code, const coni
   }
 }
 
-/* An opaque picture's alpha says nothing: whoever writes codes over a background fills it in. */
+/* An opaque picture's alpha says nothing: writers of codes over a background fill it in. */
 static int is_alpha_full(const conic_image *image) {
   const float *rgba = image->planes[CONIC_PLANE_RGBA];
   for (size_t i = 0; i < conic_image_pixels(image); i++)
@@ -112,7 +112,7 @@ static void spread_halves(conic_picture *picture, int plane) {
   }
 }
 
-/* `greatest` becomes a copy of the image, and both move apart. */
+/* Copies the image to `greatest`, and moves both to the ends of the ranges. */
 static conic_status spread_picture(conic_context *context, unsigned most_code, const conic_picture_options *o,
                                    conic_picture *picture) {
   conic_image *image = &picture->image;
@@ -138,7 +138,7 @@ static conic_status spread_picture(conic_context *context, unsigned most_code, c
   return status;
 }
 
-/* The options as this version has them. Errors: ARGUMENT. */
+/* Takes the options as this version has them. Errors: ARGUMENT. */
 static conic_status take_picture_options(conic_context *context, const conic_picture_options *options,
                                          conic_picture_options *own) {
   conic_picture_options_init(own);
@@ -164,7 +164,7 @@ conic_status conic_picture_take(conic_context *context, conic_image *image, unsi
   return status;
 }
 
-/* A PFM's only plane, which its reader takes for colours, as what it is. */
+/* Moves a PFM's only plane, which its reader takes for colours, to its own place. */
 static conic_status take_pfm_plane(conic_context *context, const char *path, conic_plane plane, conic_image *image) {
   const conic_plane_description *about = conic_plane_describe(plane);
   conic_image read, made;
@@ -191,7 +191,7 @@ static conic_status take_pfm_plane(conic_context *context, const char *path, con
   return status;
 }
 
-/* The planes in files beside P.pfm or P.npy. */
+/* Reads the planes in files beside P.pfm or P.npy. */
 static conic_status read_planes_beside(conic_context *context, const char *path, unsigned planes, conic_image *image) {
   const char *dot = strrchr(conic_file_name(path), '.');
   conic_status status = CONIC_OK;
@@ -207,7 +207,7 @@ static conic_status read_planes_beside(conic_context *context, const char *path,
   return status;
 }
 
-/* What reads the file, by its first bytes. */
+/* The reader for a file, by its first bytes. */
 typedef enum evidence_kind { EVIDENCE_NONE, EVIDENCE_PNG, EVIDENCE_NUMPY, EVIDENCE_FLOATS } evidence_kind;
 
 static evidence_kind find_evidence_kind(const char *path) {
@@ -241,10 +241,10 @@ conic_status conic_picture_read(conic_context *context, const char *path, unsign
   case EVIDENCE_NUMPY:
     status = conic_numpy_image_read(context, path, &image, &most_code);
     break;
-  case EVIDENCE_FLOATS: /* or what is wrong with it */
+  case EVIDENCE_FLOATS: /* its reader also says what is wrong with a file */
     status = conic_image_read(context, path, &image);
     break;
-  default:
+  case EVIDENCE_NONE:
     return conic_fail(context, CONIC_ERROR_INPUT,
                       "%s: its values are not known to be kept; EXR, PFM, NPY, NPZ and PNG keep them (at byte 0)",
                       path);

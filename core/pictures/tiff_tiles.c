@@ -18,11 +18,11 @@ enum { TILE = CONIC_TIFF_TILE };
 /* TIFF's types of numbers, and their bytes. */
 typedef enum tiff_type { ASCII = 2, SHORT = 3, LONG = 4, DOUBLE = 12, LONG8 = 16 } tiff_type;
 
-/* Numbers as they are in the file; what they stand for is said where they are used. */
+/* Numbers in the file; their meaning is noted where they are used. */
 enum { COMPRESSION_NONE = 1, COMPRESSION_DEFLATE = 8, PREDICTOR_NONE = 1, PREDICTOR_HORIZONTAL = 2 };
 enum { RGB = 2, BLACK_IS_ZERO = 1, UNASSOCIATED_ALPHA = 2, SAMPLES_ARE_FLOATS = 3 };
 
-/* What may come of a picture in a file whose offsets have 32 bits: some is left for tags and the worst of packing. */
+/* The most bytes of a picture with offsets of 32 bits; the rest is for tags and the worst of packing. */
 #define MOST_CLASSIC_BYTES UINT64_C(0xE0000000)
 
 struct conic_tiff {
@@ -33,8 +33,8 @@ struct conic_tiff {
   FILE *file;
   int is_big;        /* BigTIFF: offsets of 64 bits */
   uint64_t at;       /* bytes written */
-  uint64_t *offsets; /* of each tile, */
-  uint64_t *n_bytes; /* and how long it is */
+  uint64_t *offsets; /* of each tile … */
+  uint64_t *n_bytes; /* … and its length */
   size_t n_tiles, next_tile;
   unsigned char *packed; /* room for a tile */
   size_t packed_room;
@@ -46,7 +46,7 @@ size_t conic_tiff_pixel_bytes(const conic_tiff_layout *layout) {
 
 static void put_bytes(conic_tiff *tiff, const void *bytes, size_t n_bytes) {
   if (n_bytes)
-    fwrite(bytes, 1, n_bytes, tiff->file); /* what fails is said at the end, by the stream */
+    fwrite(bytes, 1, n_bytes, tiff->file); /* the stream reports failures at the end */
   tiff->at += n_bytes;
 }
 
@@ -106,7 +106,7 @@ conic_status conic_tiff_open(conic_context *context, const char *path, const con
 
 #if CONIC_HAVE_ZLIB
 
-/* Of bytes, each pixel becomes its difference from the one to its left. */
+/* Replaces each pixel's bytes by their differences from the pixel to the left. */
 static void take_differences(const conic_tiff *tiff, unsigned char *pixels) {
   for (size_t y = 0; y < TILE && !tiff->layout.is_elevation; y++) {
     unsigned char *row = pixels + (size_t)4 * TILE * y;
@@ -153,13 +153,13 @@ conic_status conic_tiff_append(conic_tiff *tiff, void *pixels) {
 
 /* --- tags --- */
 
-/* A tag's numbers lie in the directory where they fit, else in the file before it: where they are is noted as they are
+/* A tag's numbers are in the directory if they fit, else before it in the file; their place is noted as they are
  * written. */
 typedef struct tiff_tag {
   uint16_t tag;
   tiff_type type;
   uint64_t count;
-  unsigned char bytes[8]; /* the numbers, or where they are */
+  unsigned char bytes[8]; /* the numbers, or their place */
 } tiff_tag;
 
 enum { MOST_TAGS = 24 };
@@ -174,7 +174,7 @@ static size_t type_bytes(tiff_type type) {
   return type == ASCII ? 1 : type == SHORT ? 2 : type == LONG ? 4 : 8;
 }
 
-/* Adds a tag whose numbers are in the machine's order: of uint8_t, uint16_t, uint32_t or 64 bits. */
+/* Adds a tag; its numbers are in the machine's order, of uint8_t, uint16_t, uint32_t or 64 bits. */
 static void add_tag(tiff_directory *d, unsigned tag, tiff_type type, size_t count, const void *numbers) {
   conic_tiff *tiff = d->tiff;
   size_t step = type_bytes(type), room = tiff->is_big ? 8 : 4;
@@ -193,7 +193,7 @@ static void add_tag(tiff_directory *d, unsigned tag, tiff_type type, size_t coun
       put_bytes(tiff, bytes, step);
   }
   if (!is_within && tiff->at % 2)
-    put_tiff_number(tiff, 0, 1); /* what follows begins at an even byte */
+    put_tiff_number(tiff, 0, 1); /* the next data begin at an even byte */
 }
 
 static void add_short(tiff_directory *d, unsigned tag, unsigned value) {
@@ -206,7 +206,7 @@ static void add_long(tiff_directory *d, unsigned tag, uint64_t value) {
   add_tag(d, tag, LONG, 1, &number);
 }
 
-/* Where the tiles are, in as many bits as the file has. */
+/* Adds the tiles' places or lengths, in the file's number of bits. */
 static void add_table(tiff_directory *d, unsigned tag, uint64_t *table) {
   size_t n = d->tiff->n_tiles;
   uint32_t *narrow = (uint32_t *)table;
@@ -243,7 +243,7 @@ static void add_pixel_tags(tiff_directory *d) {
     add_short(d, 338, UNASSOCIATED_ALPHA);
 }
 
-/* The picture's upper left corner is at `corner`, and pixels are areas of so many units. */
+/* The place of the picture's upper left corner, and the size of its pixels, which are areas. */
 static void add_place_tags(tiff_directory *d) {
   const conic_tiff_layout *layout = &d->tiff->layout;
   const conic_georeference *reference = layout->reference;
@@ -270,7 +270,7 @@ static void put_directory(const tiff_directory *d) {
     put_tiff_number(tiff, tag->count, tiff->is_big ? 8 : 4);
     put_bytes(tiff, tag->bytes, tiff->is_big ? 8 : 4);
   }
-  put_tiff_number(tiff, 0, tiff->is_big ? 8 : 4); /* no other picture follows */
+  put_tiff_number(tiff, 0, tiff->is_big ? 8 : 4); /* there is no other picture */
 }
 
 static void put_tags(conic_tiff *tiff) {

@@ -12,7 +12,7 @@
 #include "core/splats/point_fields.h"
 #include "core/splats/raw_colors.h"
 
-/* What a reader makes of a scan's columns. */
+/* The meanings of a scan's columns. */
 enum {
   PLACE,
   COLOR = 3,
@@ -20,7 +20,7 @@ enum {
   POINT_INVALID = 9,
   COLOR_INVALID,
   INTENSITY_INVALID,
-  VALUES, /* that are asked for */
+  VALUES, /* the requested ones */
   N_SLOTS = VALUES + CONIC_MOST_POINT_VALUES
 };
 
@@ -30,11 +30,11 @@ static const char *const others[] = {"colorRed", "colorGreen", "colorBlue", "nor
 
 typedef struct e57_reader {
   conic_e57_file *file;
-  const conic_e57_scan *scan; /* that is being read */
+  const conic_e57_scan *scan; /* the current one */
   conic_builder builder;
   int n_slots;
   int is_spherical, has_sights;
-  int columns[N_SLOTS]; /* −1: the scan has it not */
+  int columns[N_SLOTS]; /* −1: the scan lacks it */
   double rotation[3][3], color_low, color_high;
   double block[N_SLOTS][CONIC_E57_BLOCK];
   uint64_t n_done, n_all;
@@ -49,7 +49,7 @@ static int has_all(const conic_e57_scan *scan, const char *const names[3]) {
          conic_e57_column_find(scan, names[2]) >= 0;
 }
 
-/* Clouds that were put together from others have no pose, and were not seen from their origin. */
+/* Clouds that were merged from others have no pose, and were not seen from their origin. */
 static int has_station(const conic_e57_scan *scan) {
   return scan->has_pose || has_all(scan, spherical) ||
          (conic_e57_column_find(scan, "rowIndex") >= 0 && conic_e57_column_find(scan, "columnIndex") >= 0);
@@ -65,7 +65,7 @@ static void find_scan_rotation(e57_reader *reader) {
   memcpy(reader->rotation, rotation, sizeof rotation);
 }
 
-/* The limits that the scan states, else those of the column's type. */
+/* Takes the limits that the scan states, else those of the column's type. */
 static void find_color_scale(e57_reader *reader) {
   const conic_e57_column *red = &reader->scan->columns[reader->columns[COLOR]];
   const conic_e57_limits *stated = &reader->scan->color;
@@ -82,7 +82,7 @@ static const char *name_of_field(const e57_reader *reader, int field) {
   return reader->builder.model->fields[field].name;
 }
 
-/* Which columns the slots are. */
+/* Finds the columns of the slots. */
 static conic_status choose_columns(e57_reader *reader) {
   const conic_e57_scan *scan = reader->scan;
   reader->is_spherical = !has_all(scan, cartesian);
@@ -107,7 +107,7 @@ static conic_status choose_columns(e57_reader *reader) {
   return CONIC_OK;
 }
 
-/* Otherwise a few bytes could claim any number of points. */
+/* Without this check a few bytes could claim any number of points. */
 static conic_status check_size(const e57_reader *reader) {
   unsigned bits = 0;
   for (int i = 0; i < reader->n_slots; i++)
@@ -205,7 +205,7 @@ static conic_status read_scan_records(e57_reader *reader, conic_e57_records *rec
   while (status == CONIC_OK && n > 0) {
     status = conic_e57_records_fill(records, &n);
     for (int slot = 0; slot < reader->n_slots && status == CONIC_OK && n > 0; slot++) {
-      int first = 0; /* a column may be in two slots, and is taken once */
+      int first = 0; /* a column may be in two slots, and is read once */
       while (reader->columns[first] != reader->columns[slot])
         first++;
       if (first < slot)

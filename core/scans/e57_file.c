@@ -29,7 +29,7 @@ static uint32_t page_sum(const unsigned char *bytes, uint64_t n) {
   return ~sum;
 }
 
-/* The sum of a page stands in the order of bytes that is not the rest's. */
+/* A page's sum has the other byte order than the rest of the file. */
 static conic_status check_page(conic_e57_file *file, uint64_t page) {
   const unsigned char *bytes = file->bytes + page * file->page_bytes, *sum = bytes + file->page_bytes - SUM_BYTES;
   uint32_t stated = (uint32_t)sum[0] << 24 | (uint32_t)sum[1] << 16 | (uint32_t)sum[2] << 8 | sum[3];
@@ -41,7 +41,7 @@ static conic_status check_page(conic_e57_file *file, uint64_t page) {
   return CONIC_OK;
 }
 
-/* How much of the page's content follows an offset; 0 where that is in a sum or past the end. */
+/* How many bytes of the page's content follow an offset; 0 where that is in a sum or past the end. */
 static uint64_t content_after(const conic_e57_file *file, uint64_t offset) {
   uint64_t in_page = offset % file->page_bytes, end = file->page_bytes - SUM_BYTES;
   return offset < file->n_bytes && in_page < end ? end - in_page : 0;

@@ -27,7 +27,7 @@ void conic_e57_records_close(conic_e57_records *records) {
     conic_memory_release(records->file->context, records->streams[i].bytes);
 }
 
-/* Appends n bytes to what is left of a stream. */
+/* Appends n bytes to the unused ones of a stream. */
 static conic_status feed_stream(conic_e57_records *records, conic_e57_stream *stream, uint64_t *at, size_t n) {
   size_t used = (size_t)(stream->bit / 8);
   if (!stream->is_wanted || n == 0)
@@ -45,7 +45,7 @@ static conic_status feed_stream(conic_e57_records *records, conic_e57_stream *st
   return status;
 }
 
-/* The sizes of all streams' bytes, and then these. */
+/* A packet has the sizes of all streams' bytes, and then the bytes. */
 static conic_status feed_streams(conic_e57_records *records, uint64_t at, size_t n_bytes) {
   unsigned char sizes[2 * CONIC_E57_MOST_COLUMNS + 2];
   size_t n = records->scan->n_columns, n_used = PACKET_BYTES + 2 + 2 * n;

@@ -27,7 +27,7 @@ void conic_e57_tree_release(conic_context *context, conic_e57_tree *tree) {
 #include "core/base/real.h"
 #include "core/files/number.h"
 
-/* The points are not in it: what is longer is no description of scans. */
+/* The XML does not hold the points: a longer one is no description of scans. */
 static const uint64_t most_xml_bytes = 64 << 20;
 
 typedef struct tree_reader {
@@ -59,7 +59,7 @@ static const char *attribute_of(const xmlNode *node, const char *name) {
   return NULL;
 }
 
-/* The number that a text is but for blanks about it; `absent` where there is none. */
+/* The number in a text, which may have blanks around it; `absent` where there is none. */
 static double number_in(const char *text, double absent) {
   double value = absent;
   while (text && *text && strchr(" \t\r\n", *text))
@@ -84,7 +84,7 @@ static int take_integer(const char *text, int64_t *value) {
     return 0;
   for (; *text; text++) {
     if (*text < '0' || *text > '9' || sum > (most - (uint64_t)(*text - '0')) / 10) {
-      if (is_negative && strcmp(text, "8") == 0 && sum == most / 10) { /* the least of all */
+      if (is_negative && strcmp(text, "8") == 0 && sum == most / 10) { /* the least number */
         *value = INT64_MIN;
         return 1;
       }
@@ -220,7 +220,7 @@ static conic_status take_tree(tree_reader *reader, const xmlDoc *document) {
   return status;
 }
 
-/* Nothing outside of the file is looked for, and no entity is put in. */
+/* Loads nothing from outside of the file, and expands no entity. */
 static conic_status parse_xml(tree_reader *reader, const char *xml, size_t n_bytes) {
   xmlInitParser();
   xmlDoc *document =

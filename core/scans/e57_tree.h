@@ -1,4 +1,4 @@
-/* What the XML of an E57 file says of its scans. */
+/* The description of an E57 file's scans, from its XML. */
 #ifndef CONIC_E57_TREE_H
 #define CONIC_E57_TREE_H
 
@@ -8,8 +8,8 @@ enum { CONIC_E57_MOST_COLUMNS = 64, CONIC_E57_NAME_ROOM = 40 };
 
 typedef enum conic_e57_type { CONIC_E57_INTEGER, CONIC_E57_SCALED, CONIC_E57_SINGLE, CONIC_E57_DOUBLE } conic_e57_type;
 
-/* A value that every record of a scan has: `bits` of the column's own stream, which are a float, or how much an
- * integer is above `low`; a scaled one times `scale` and after `offset`. */
+/* A value that every record of a scan has, in `bits` of the column's own stream: a float, or an integer's difference
+ * from `low`; a scaled integer is multiplied by `scale`, then `offset` is added. */
 typedef struct conic_e57_column {
   char name[CONIC_E57_NAME_ROOM]; /* "cartesianX", "intensity" …; cut */
   conic_e57_type type;
@@ -18,20 +18,20 @@ typedef struct conic_e57_column {
   double scale, offset;
 } conic_e57_column;
 
-/* Values that a scan's colours or intensities are said to lie between. */
+/* The range that a scan states for its colours or intensities. */
 typedef struct conic_e57_limits {
   int is_there;
   double low, high;
 } conic_e57_limits;
 
 typedef struct conic_e57_scan {
-  uint64_t records_offset; /* of the section of its points, in the file; 0: it has none */
+  uint64_t records_offset; /* of the section with its points, in the file; 0: it has none */
   uint64_t n_records;
   int has_pose;
   double rotation[4];    /* w, x, y, z; unit */
   double translation[3]; /* where the scanner stood */
   conic_e57_limits color;
-  size_t first_column, n_columns; /* of the tree's, CONIC_E57_MOST_COLUMNS at most */
+  size_t first_column, n_columns; /* in the tree's columns, CONIC_E57_MOST_COLUMNS at most */
   const conic_e57_column *columns;
 } conic_e57_scan;
 
@@ -46,7 +46,7 @@ typedef struct conic_e57_tree {
 conic_status conic_e57_tree_read(conic_e57_file *file, conic_e57_tree *tree);
 void conic_e57_tree_release(conic_context *context, conic_e57_tree *tree);
 
-/* The column of that name; -1: there is none. */
+/* The column of that name; -1: none. */
 int conic_e57_column_find(const conic_e57_scan *scan, const char *name);
 
 #endif

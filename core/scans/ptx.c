@@ -10,8 +10,8 @@
 #include "core/splats/point_fields.h"
 #include "core/splats/raw_colors.h"
 
-/* Lines before the points: columns, rows, where the scanner is, its three axes, and the rows of a matrix that a point
- * is multiplied with from the left. */
+/* Lines before the points: columns, rows, the scanner's place, its three axes, and the rows of a matrix that multiplies
+ * points from the right. */
 enum { HEAD_LINES = 10, MOST_VALUES = 7 };
 
 static const size_t values_in_head[HEAD_LINES] = {1, 1, 3, 3, 3, 3, 4, 4, 4, 4};
@@ -23,7 +23,7 @@ typedef struct ptx_reader {
   size_t n_values; /* of a point: 4, or 7 with a colour; 0: not known yet */
 } ptx_reader;
 
-/* The numbers of a line, parted by blanks; MOST_VALUES + 1 where there are more, or something is none. */
+/* The numbers of a line, separated by blanks; MOST_VALUES + 1 where there are more, or a word is no number. */
 static size_t split_numbers(const char *text, size_t length, double values[MOST_VALUES]) {
   size_t n = 0;
   for (const char *end = text + length; text < end;) {
@@ -53,7 +53,7 @@ int conic_ptx_is_likely(const char *bytes, size_t n) {
   return 1;
 }
 
-/* The next line that is not empty; *n 0 where the file ends. */
+/* The next line that is not empty; *n is 0 where the file ends. */
 static conic_status next_numbers(ptx_reader *reader, double values[MOST_VALUES], size_t *n, int *is_done) {
   conic_status status = CONIC_OK;
   *n = 0;
@@ -71,7 +71,7 @@ static conic_status next_numbers(ptx_reader *reader, double values[MOST_VALUES],
   return status;
 }
 
-/* *has_scan 0: the file ends before another. */
+/* *has_scan is 0 where the file ends without another scan. */
 static conic_status read_head(ptx_reader *reader, int *has_scan, int *is_done) {
   for (int i = 0; i < HEAD_LINES; i++) {
     double values[MOST_VALUES];
@@ -100,7 +100,7 @@ static conic_status read_head(ptx_reader *reader, int *has_scan, int *is_done) {
   return CONIC_OK;
 }
 
-/* What a place of the grid holds where no light came back. */
+/* Whether a place of the grid holds no point: no light came back. */
 static int is_empty_place(const double values[MOST_VALUES]) {
   return values[0] == 0.0 && values[1] == 0.0 && values[2] == 0.0;
 }
@@ -119,12 +119,12 @@ static void store_values(ptx_reader *reader, const double values[MOST_VALUES]) {
       points->color[axis][points->count] = reader->n_values == MOST_VALUES ? (float)values[4 + axis] : 255.0f;
   }
   for (size_t k = 0; k < conic_builder_columns(&reader->builder); k++)
-    if (conic_builder_column_field(&reader->builder, k) >= 0) /* there is one */
+    if (conic_builder_column_field(&reader->builder, k) >= 0) /* it is a field */
       *conic_builder_column(&reader->builder, k) = values[3];
   points->count++;
 }
 
-/* The file's first point says whether there are colours. */
+/* The file's first point tells whether there are colours. */
 static conic_status take_layout(ptx_reader *reader, size_t n) {
   int is_first = reader->n_values == 0;
   if (n != 4 && n != MOST_VALUES)

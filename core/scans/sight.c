@@ -2,7 +2,7 @@
 
 #include "core/base/vectors.h"
 
-/* In metres: three times what the farthest terrestrial scanners reach. Files without the scanner's place have 0 for it,
+/* In metres: three times the reach of the best terrestrial scanners. Files without the scanner's place have 0 for it,
  * and map coordinates for the points. */
 static const double farthest = 20000.0;
 

@@ -27,7 +27,7 @@ static const conic_scene_kind *const kinds[CONIC_N_SCENES] = {
 /* Dimensions of the random numbers; the Gaussian takes three. */
 enum { DIMENSION_JITTER_RADIUS = 0, DIMENSION_JITTER_ANGLE = 1, DIMENSION_NOISE = 2 };
 
-/* Jitter and noise in spacings: more than anyone means, less than a float overflows at. */
+/* Limit of jitter and noise, in spacings: more than anyone needs, and too little for floats to overflow. */
 #define MAX_SPACINGS 1e6
 
 /* Samples that one task places. */
@@ -116,7 +116,7 @@ void *conic_scene_surface(conic_scene *scene, size_t bytes) {
 
 void conic_scene_golden(uint64_t i, uint64_t n, double *u, double *v) {
   *u = ((double)i + 0.5) / (double)n;
-  /* 2⁶⁴/φ and 2⁶³: the sum wraps as the turns do. */
+  /* 2⁶⁴/φ and 2⁶³: the sum wraps around as turns do. */
   *v = (double)((i * UINT64_C(0x9e3779b97f4a7c15) + UINT64_C(0x8000000000000000)) >> 11) * 0x1p-53;
 }
 
@@ -136,7 +136,7 @@ void conic_scene_blend(const uint8_t (*stops)[3], int n, double t, uint8_t color
     color[c] = (uint8_t)((double)stops[i][c] * (1.0 - part) + (double)stops[i + 1][c] * part + 0.5);
 }
 
-/* Moves the place by jitter and noise, and makes it splat `at` of the set. */
+/* Moves the place by jitter and noise, and stores it as splat `at` of the set. */
 static void finish_splat(const conic_scene *scene, uint64_t i, const conic_scene_point *point, conic_splats *splats,
                          size_t at) {
   const conic_scene_options *options = &scene->options;
@@ -181,7 +181,7 @@ static void place_chunk(void *data, size_t i_item, int i_thread) {
 
 typedef struct slab_sampling {
   const sampling *work;
-  uint64_t n_found, n_kept; /* points of the lattice before the next one */
+  uint64_t n_found, n_kept; /* points of the lattice so far */
 } slab_sampling;
 
 static void sample_lattice_point(void *cookie, const double start[3]) {

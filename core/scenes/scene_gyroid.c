@@ -3,19 +3,19 @@
 #include "core/base/trigonometry.h"
 #include "core/scenes/scene_kind.h"
 
-/* sin x cos y + sin y cos z + sin z cos x = 0 with so many periods along an edge of the cube that a picture of it has,
- * on average over its pixels, more than 20 sheets one behind the other. */
+/* sin x cos y + sin y cos z + sin z cos x = 0, with so many periods along an edge of the cube that its picture has more
+ * than 20 sheets behind each other, on average over the pixels. */
 enum { PERIODS = 22 };
 #define WAVE_NUMBER (PERIODS * CONIC_PI) /* a period is 2 / PERIODS wide */
 
 /* The area in a cube of one period, over the period squared. */
 #define AREA_OF_PERIOD 3.0915
 
-/* With fewer cells the layer that the lattice fills would reach from one sheet to the next. */
+/* With fewer cells, the lattice's layer would reach from one sheet to the next. */
 enum { MIN_CELLS = 4 * PERIODS };
 
-/* Cells along the edge of the tiles that a slab is walked in, so that sines are taken once an edge and not once a cell.
- */
+/* Cells along the edge of the tiles that a slab is walked in, so that sines are computed once an edge, not once a
+ * cell. */
 enum { TILE = 512 };
 
 /* From the middle of the cube outwards: ember, apricot, sand, sage, deep blue. */
@@ -43,7 +43,7 @@ static void fill_waves(const conic_lattice *lattice, size_t first, waves *w) {
   }
 }
 
-/* One row along x: which cells are nearer than half a spacing, |f| < |∇f|·spacing/2 with everything squared. */
+/* Tests a row along x: a cell is nearer than half a spacing if |f| < |∇f|·spacing/2; both sides are squared. */
 static void test_row(const waves *x, double sy, double cy, double sz, double cz, double bound, unsigned char *is_near) {
   double sy_cz = sy * cz, cy_cz = cy * cz, sy_sz = sy * sz;
   for (int i = 0; i < x->n; i++) {
@@ -98,7 +98,7 @@ static double evaluate_gyroid(const double phase[3], double gradient[3]) {
   return sx * cy + sy * cz + sz * cx;
 }
 
-/* Newton's iteration along the gradient; it starts less than a radian away. */
+/* Newton's iteration along the gradient, from less than a radian away. */
 static void project_on_gyroid(const void *surface, const double start[3], conic_scene_point *point) {
   double phase[3], gradient[3], squared = 1.0;
   (void)surface;

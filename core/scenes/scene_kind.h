@@ -1,9 +1,8 @@
-/* What a scene's surface has to give, and what is done with it.
+/* The interface of a scene's surface.
  *
- * A surface is sampled in one of two ways. `place` puts sample i of n where a formula says (an even lattice carried
- * onto the surface by a map that keeps areas). Where no such map is known, the scene has a lattice
- * (core/scenes/scene_lattice.h) instead, and `walk` and `project` find its points near the surface and carry them
- * there. */
+ * A surface is sampled in one of two ways. `place` puts sample i of n where a formula says: an even lattice, carried
+ * onto the surface by a map that keeps areas. Without such a map the scene has a lattice (core/scenes/scene_lattice.h);
+ * `walk` and `project` find its points near the surface and carry them there. */
 #ifndef CONIC_SCENE_KIND_H
 #define CONIC_SCENE_KIND_H
 
@@ -21,7 +20,7 @@ struct conic_scene_point {
 
 enum { CONIC_SCENE_MAX_EDGES = 2 };
 
-/* The sharp edges of a flat face that a splat has to be clipped at. */
+/* The sharp edges of a flat face at which a splat has to be clipped. */
 typedef struct conic_scene_edges {
   int n;
   conic_clip_operator operation;
@@ -32,14 +31,15 @@ typedef struct conic_scene_edges {
 typedef struct conic_scene_kind {
   const char *name, *summary;
 
-  /* Makes scene->surface where the kind needs one, sets scene->area, and scene->lattice where `place` is null. What it
-   * has made on failure is released by conic_scene_destroy. */
+  /* Sets scene->area; scene->surface, where the kind needs one; and scene->lattice, where `place` is null.
+   * conic_scene_destroy releases them, on failure, too. */
   conic_status (*prepare)(conic_scene *scene);
 
-  /* Sample i of scene->options.count; null: by the lattice. */
+  /* Places sample i of scene->options.count; null: the lattice does. */
   void (*place)(const conic_scene *scene, uint64_t i, conic_scene_point *point);
 
-  /* The edges near a place on the face of sample i, whose outline has that radius; null: a surface without edges. */
+  /* Finds the edges near a place on the face of sample i, whose outline has that radius; null: a surface without
+   * edges. */
   void (*edges)(const conic_scene *scene, uint64_t i, const double position[3], double radius,
                 conic_scene_edges *edges);
 
@@ -54,7 +54,7 @@ struct conic_scene {
   double area;
   double spacing;    /* sqrt(area / count) */
   float decode[256]; /* linear values of colour codes */
-  void *surface;     /* the kind's own, one allocation; may be null */
+  void *surface;     /* the kind's own data, in one allocation; may be null */
   conic_lattice lattice;
 };
 
@@ -68,8 +68,8 @@ void *conic_scene_surface(conic_scene *scene, size_t bytes);
  * It stays even when the square is stretched to a rectangle of any shape and the same area. */
 void conic_scene_golden(uint64_t i, uint64_t n, double *u, double *v);
 
-/* The angle ψ with ψ − e·sin ψ = 2π·turns (Kepler's equation), |e| ≤ 0.7, to 1e-7: where the circumference of a bent
- * tube has to be cut so that the pieces have equal areas. */
+/* The angle ψ with ψ − e·sin ψ = 2π·turns (Kepler's equation), |e| ≤ 0.7, to 1e-7. It divides the circumference of a
+ * bent tube into pieces of equal area. */
 double conic_scene_equal_area_angle(double turns, double e);
 
 /* A colour `t` (clamped to 0 … 1) of the way through n ≥ 2 equally spaced colours. */

@@ -9,7 +9,7 @@
 #define WINDING_RADIUS 0.45
 #define TUBE_RADIUS 0.26
 
-/* The curve's parameter goes from 0 to 2π, and repeats every third of that but for a rotation. */
+/* The curve's parameter goes from 0 to 2π; after every third of that the curve repeats, rotated. */
 enum { NODES = 3 * 1024 };
 
 /* The parameter at even steps of arc length. */
@@ -23,7 +23,7 @@ static const uint8_t palette[][3] = {
 
 enum { RIBS = 96 }; /* darker rings along the tube */
 
-/* Along the curve the speed has a part around the axis and a part around the ring, at right angles. */
+/* The curve's speed has two parts at right angles: around the axis, and around the ring. */
 static double speed(double parameter) {
   double around_axis = 2.0 * (RING_RADIUS + WINDING_RADIUS * conic_cos(3.0 * parameter));
   return sqrt(around_axis * around_axis + 9.0 * WINDING_RADIUS * WINDING_RADIUS);
@@ -51,7 +51,7 @@ static conic_status prepare_knot(conic_scene *scene) {
   }
   for (; i_node <= NODES; i_node++)
     made->parameters[i_node] = 2.0 * CONIC_PI;
-  scene->area = 2.0 * CONIC_PI * TUBE_RADIUS * length; /* what the bends add outside they take inside */
+  scene->area = 2.0 * CONIC_PI * TUBE_RADIUS * length; /* the bends add as much outside as they take inside */
   return CONIC_OK;
 }
 

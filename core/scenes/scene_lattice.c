@@ -6,14 +6,14 @@
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 
-/* found · n_wanted / n_found, rounded: found minus its share of the surplus. The surplus is small where the numbers are
- * large, so the product stays below 2⁶⁴. */
+/* found · n_wanted / n_found, rounded, computed as found minus its share of the surplus. The surplus is small where the
+ * numbers are large, so the product stays below 2⁶⁴. */
 uint64_t conic_lattice_kept(const conic_lattice *lattice, uint64_t found) {
   uint64_t surplus = lattice->n_found - lattice->n_wanted;
   return found - (2 * found * surplus + lattice->n_found - 1) / (2 * lattice->n_found);
 }
 
-/* The slab whose points bring the number of kept points over `i`. */
+/* The slab whose points raise the number of kept points above `i`. */
 static size_t slab_of(const conic_lattice *lattice, uint64_t i) {
   size_t low = 0, high = lattice->n_cells - 1;
   while (low < high) {
@@ -85,7 +85,7 @@ conic_status conic_lattice_fit(conic_context *context, conic_lattice_walk *walk,
     conic_lattice_release(context, lattice);
     if (status != CONIC_OK)
       return status;
-    /* As many more cells as the shortfall asks for, and at least one. */
+    /* Adds cells in proportion to the shortfall, and at least one. */
     double shortfall = (double)n_wanted / (double)(lattice->n_found ? lattice->n_found : 1);
     size_t next = (size_t)ceil((double)n_cells * (shortfall < 4.0 ? sqrt(shortfall) : 2.0));
     n_cells = next > n_cells ? next : n_cells + 1;

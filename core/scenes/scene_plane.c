@@ -5,7 +5,7 @@
 /* A checkerboard of 8 × 8: white, and a grey of code 32; the square at (-½, -½) is dark. */
 enum { SQUARES = 8, WHITE = 255, DARK = 32 };
 
-/* The edge of the count as a square number, or 0. */
+/* The square root of the count, if it is a whole number; else 0. */
 static uint64_t exact_root(uint64_t count) {
   uint64_t root = (uint64_t)(sqrt((double)count) + 0.5);
   return root * root == count ? root : 0;

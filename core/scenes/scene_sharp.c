@@ -1,16 +1,16 @@
-/* Scenes of flat faces that meet in sharp edges: a cube, and a cube that lacks an octant. All faces are across an axis.
- */
+/* Scenes of flat faces that meet in sharp edges: a cube, and a cube without an octant. Every face is perpendicular to
+ * an axis. */
 
 #include "core/scenes/scene_kind.h"
 
-/* A face at axis = level, facing ±axis: the square [low, high]² of the two axes that follow, without its quarter of
- * positive coordinates where it is notched. */
+/* A face at axis = level, facing ±axis: the square [low, high]² of the next two axes, without its positive quarter
+ * where it is notched. */
 typedef struct box_face {
   int axis, is_notched;
   double side, level, low, high;
 } box_face;
 
-/* A rectangle of a face, which is sampled by itself; its area in 24ths of the whole. */
+/* A rectangle of a face, sampled by itself; its area in 24ths of the whole. */
 typedef struct box_piece {
   int i_face;
   double low[2], high[2];
@@ -75,11 +75,11 @@ static const sharp_box *box_of(const conic_scene *scene) {
 }
 
 static conic_status prepare_box(conic_scene *scene) {
-  scene->area = 6.0; /* an octant takes three quarters from the outside and adds three inside */
+  scene->area = 6.0; /* without the octant, the outside has three quarters less, and the inside three more */
   return CONIC_OK;
 }
 
-/* The piece of sample i, and which of its n samples that is. */
+/* The piece of sample i, and the sample's number among the piece's n. */
 static const box_piece *piece_at(const conic_scene *scene, uint64_t i, uint64_t *i_in_piece, uint64_t *n) {
   const sharp_box *b = box_of(scene);
   uint64_t count = scene->options.count, area = 0, first = 0;
@@ -123,8 +123,8 @@ static void add_edge(conic_scene_edges *edges, const box_face *face, int k, doub
   edges->n++;
 }
 
-/* The edges nearer than `reach`. At the notch's tip the face is what lies before either of its edges; past the tip the
- * other edge does not concern the splat. Returns 0 where that is more than clip lines can say. */
+/* Finds the edges nearer than `reach`. At the notch's tip the face is the side before either of its edges; past the tip
+ * the other edge does not concern the splat. Returns 0 where clip lines cannot express that. */
 static int find_edges(const box_face *face, const double at[2], double reach, conic_scene_edges *edges) {
   edges->n = 0;
   edges->operation = CONIC_CLIP_AND;
@@ -147,8 +147,8 @@ static int find_edges(const box_face *face, const double at[2], double reach, co
   return edges->n <= CONIC_SCENE_MAX_EDGES && !(n_of_notch == 2 && edges->n > 2);
 }
 
-/* All edges that a splat twice as large would touch, so that what the prefilter widens stays within its face too;
- * where these are too many, only those that it touches itself. */
+/* Finds all edges that a splat twice as large would touch, so that the prefilter does not widen it beyond its face; if
+ * these are too many, only those that it touches itself. */
 static void edges_at(const conic_scene *scene, uint64_t i, const double position[3], double radius,
                      conic_scene_edges *edges) {
   uint64_t i_in_piece, n;

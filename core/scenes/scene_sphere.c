@@ -8,7 +8,7 @@ enum { MERIDIANS = 24, PARALLELS = 12 };
 
 static const uint8_t ivory[3] = {0xf4, 0xe9, 0xd3}, teal[3] = {0x1c, 0x5d, 0x6b};
 
-/* The heights of the parallels, from the north pole's side; height 1 itself left out. */
+/* The heights of the parallels from the north pole on, without height 1. */
 typedef struct scene_sphere {
   double parallels[PARALLELS - 1];
 } scene_sphere;
@@ -23,8 +23,8 @@ static conic_status prepare_sphere(conic_scene *scene) {
   return CONIC_OK;
 }
 
-/* The Fibonacci lattice: heights in even steps (a zone's area is its height's), longitudes turning by the golden ratio.
- */
+/* The Fibonacci lattice: heights in even steps (a zone's area is proportional to its height), longitudes turning by the
+ * golden ratio. */
 static void place_on_sphere(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
   const scene_sphere *surface = scene->surface;
   uint64_t n = scene->options.count;

@@ -12,17 +12,17 @@ enum { OCTAVES = 10 };
 
 #define FIRST_FREQUENCY 1.37 /* noise cells per unit */
 #define RELIEF 0.95          /* height of the first octave */
-#define PERSISTENCE 0.48     /* of the next one over the one before */
-#define EROSION 1.2          /* how much steep ground keeps finer octaves away */
+#define PERSISTENCE 0.48     /* height of an octave relative to the one before */
+#define EROSION 1.2          /* how strongly steep ground suppresses finer octaves */
 #define UPLIFT 0.24          /* lifts the island's middle */
 #define SEA_FLOOR 0.10       /* depth of the ground along the border */
 
-/* The sum of the octaves, and its gradient. Where the octaves so far have made the ground steep, finer ones count less:
- * as if rain had washed the slopes smooth and left the valleys and the ridges rough. */
+/* The sum of the octaves, and its gradient. Where the octaves so far are steep, finer ones count less: as if rain had
+ * smoothed the slopes and left valleys and ridges rough. */
 static void mountains(uint64_t seed, double x, double z, double *height, double slope[2], double *ruggedness) {
   /* Noise coordinates are (a·x + b·z, −b·x + a·z): turned by the 3-4-5 angle and doubled with each octave. */
   double a = FIRST_FREQUENCY, b = 0.0, amplitude = RELIEF;
-  conic_jet steep = {0}; /* its gradient: the octaves' slopes so far, each in its own scale; xx, xy, yy: derivatives */
+  conic_jet steep = {0}; /* gradient: the octaves' slopes so far, each in its own scale; xx, xy, yy: its derivatives */
   *height = slope[0] = slope[1] = 0.0;
   for (int octave = 0; octave < OCTAVES; octave++) {
     conic_jet n;
@@ -52,7 +52,7 @@ static void mountains(uint64_t seed, double x, double z, double *height, double 
 void conic_terrain_at(uint64_t seed, double x, double z, conic_terrain_place *place) {
   double height, slope[2];
   mountains(seed, x, z, &height, slope, &place->ruggedness);
-  /* 1 in the middle, 0 with zero slope along the square's border. */
+  /* 1 in the middle; 0 with zero slope at the square's border. */
   double x_part = 1.0 - x * x, z_part = 1.0 - z * z;
   double island = x_part * x_part * z_part * z_part;
   double island_x = -4.0 * x * x_part * z_part * z_part, island_z = -4.0 * z * z_part * x_part * x_part;
@@ -145,8 +145,8 @@ static double clamp_to_square(double t) {
   return t > -1.0 ? t < 1.0 ? t : 1.0 : -1.0;
 }
 
-/* The column over a cell cuts the layer in an interval of heights, half open so that on flat ground it always holds one
- * point. Projections start at the foot of the point on the tangent plane at the column. */
+/* The column over a cell cuts the layer in an interval of heights. It is half open, so that on flat ground it always
+ * holds one point. Projections start at the point's foot on the tangent plane at the column. */
 static void walk(const void *surface, const conic_lattice *lattice, size_t i_slab, conic_lattice_visit *visit,
                  void *cookie) {
   const terrain *self = surface;
@@ -165,7 +165,7 @@ static void walk(const void *surface, const conic_lattice *lattice, size_t i_sla
   }
 }
 
-/* Up onto the surface. */
+/* Moves the place up or down onto the surface. */
 static void project_on_terrain(const void *surface, const double start[3], conic_scene_point *point) {
   const terrain *self = surface;
   conic_terrain_place place;

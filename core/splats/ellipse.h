@@ -1,4 +1,4 @@
-/* Ellipses in tangent planes that bound given points (Confetti §4.3, with the corrections of docs/reference/errata.md).
+/* Ellipses in tangent planes that bound given points (Confetti §4.3, with the corrections of docs/notes/errata.md).
  */
 #ifndef CONIC_ELLIPSE_H
 #define CONIC_ELLIPSE_H

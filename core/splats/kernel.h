@@ -43,37 +43,50 @@ static inline float conic_gauss_narrow(float q) {
   return (a + t2 * b) + t4 * (c + t2 * d);
 }
 
-/* Confetti Eq. 10, corrected: exp(-a (r/b)ⁿ / (1 - (r/b)ⁿ)) for q < b². */
-static inline float conic_kernel_confetti(const conic_kernel *kernel, float q) {
-  float r = sqrtf(q) / kernel->b, power = r;
-  for (int i = 1; i < kernel->n; i++)
-    power *= r;
-  float rest = 1.0f - power;
-  return rest > 0.0f ? conic_exp_negative(-kernel->a * power / rest) : 0.0f;
+/* What kernels differ in besides their values. */
+#define CONIC_IS_GAUSSIAN 1u    /* blurred by the prefilter it is one again: it needs no profile */
+#define CONIC_HAS_PARAMETERS 2u /* a, b and n count, and it ends at b */
+#define CONIC_IS_FLAT 4u        /* no lower at its rim: its profile is known from there inwards */
+
+/* All kernels: DO with the constant, the option's word, and that. */
+#define CONIC_FOR_KERNELS(DO)                                                                                          \
+  DO(CONIC_KERNEL_GAUSS, "gauss", CONIC_IS_GAUSSIAN)                                                                   \
+  DO(CONIC_KERNEL_CONFETTI, "confetti", CONIC_HAS_PARAMETERS)                                                          \
+  DO(CONIC_KERNEL_HAT, "hat", 0u)                                                                                      \
+  DO(CONIC_KERNEL_BOX, "box", CONIC_IS_FLAT)
+
+#define CONIC_COUNT_KERNEL(type, word, traits) +1
+_Static_assert(CONIC_N_KERNELS == CONIC_FOR_KERNELS(CONIC_COUNT_KERNEL), "CONIC_N_KERNELS is not how many there are");
+
+static inline unsigned conic_kernel_traits(const conic_kernel *kernel) {
+#define CONIC_TRAITS_OF_KERNEL(type, word, traits)                                                                     \
+  case type:                                                                                                           \
+    return traits;
+  switch (kernel->type) { CONIC_FOR_KERNELS(CONIC_TRAITS_OF_KERNEL) }
+  return 0u;
 }
 
 static inline int conic_kernel_is_narrow(const conic_kernel *kernel) {
-  return kernel->type == CONIC_KERNEL_GAUSS && kernel->cutoff * kernel->cutoff <= CONIC_NARROW_SUPPORT;
+  return (conic_kernel_traits(kernel) & CONIC_IS_GAUSSIAN) && kernel->cutoff * kernel->cutoff <= CONIC_NARROW_SUPPORT;
 }
 
-/* The kernel at q, 0 ≤ q < conic_kernel_support. */
-static inline float conic_kernel_value(const conic_kernel *kernel, float q) {
-  switch (kernel->type) {
-  case CONIC_KERNEL_CONFETTI:
-    return conic_kernel_confetti(kernel, q);
-  case CONIC_KERNEL_HAT:
-    return 1.0f - sqrtf(q) / kernel->cutoff;
-  case CONIC_KERNEL_BOX:
-    return 1.0f;
-  default:
-    return conic_kernel_is_narrow(kernel) ? conic_gauss_narrow(q) : conic_exp_negative(-0.5f * q);
-  }
-}
+#define KERNEL_VALUE conic_kernel_value
+#define KERNEL_INLINE static inline
+#define KERNEL_NUMBER float
+#define KERNEL_REAL float
+#define KERNEL_OF(x) (x)
+#define KERNEL_SQRT(x) sqrtf(x)
+#define KERNEL_EXP(x) conic_exp_negative(x)
+#define KERNEL_ABOVE_0(x, y) ((x) > 0.0f ? (y) : 0.0f)
+#define KERNEL_GAUSS_OF(kernel, q)                                                                                     \
+  (conic_kernel_is_narrow(kernel) ? conic_gauss_narrow(q) : conic_exp_negative(-0.5f * (q)))
+#include "core/splats/kernel_body.h"
 
-/* A pixel is covered where q is below this: the square of the cutoff, or of Confetti's b where that is smaller. */
+/* A pixel is covered where q is below this: the square of the cutoff, or of b where a kernel has that and it is
+ * smaller. */
 static inline float conic_kernel_support(const conic_kernel *kernel) {
   float support = kernel->cutoff;
-  if (kernel->type == CONIC_KERNEL_CONFETTI && kernel->b < support)
+  if ((conic_kernel_traits(kernel) & CONIC_HAS_PARAMETERS) && kernel->b < support)
     support = kernel->b;
   return support * support;
 }

@@ -69,7 +69,7 @@ static int is_same_corner(const polygon *p, uint32_t a, uint32_t b) {
   return p->at[a][0] == p->at[b][0] && p->at[a][1] == p->at[b][1];
 }
 
-/* Whether corner k of those that are left makes a triangle with its neighbours in which no other one lies. */
+/* Whether corner k of the corners left makes a triangle with its neighbours, and no other corner lies in it. */
 static int is_ear(const polygon *p, const uint32_t *left, uint32_t n_left, uint32_t k) {
   uint32_t a = left[(k + n_left - 1) % n_left], b = left[k], c = left[(k + 1) % n_left];
   if (!(area_of_corners(p, a, b, c) > 0.0))

@@ -28,15 +28,21 @@ typedef struct profile_table {
   float values[CONIC_PROFILE_FLOATS];
 } profile_table;
 
+#define KERNEL_VALUE value_in_doubles
+#define KERNEL_INLINE static
+#define KERNEL_NUMBER double
+#define KERNEL_REAL double
+#define KERNEL_OF(x) ((double)(x))
+#define KERNEL_SQRT(x) sqrt(x)
+#define KERNEL_EXP(x) conic_gaussian_exp(x)
+#define KERNEL_ABOVE_0(x, y) ((x) > 0.0 ? (y) : 0.0)
+#define KERNEL_GAUSS_OF(kernel, q) conic_gaussian_exp(-0.5 * (q))
+#include "core/splats/kernel_body.h"
+
+/* Beyond its end, too. */
 static double plain_kernel(const conic_kernel *kernel, double r) {
-  double power = 1.0;
-  if (kernel->type == CONIC_KERNEL_BOX)
-    return 1.0;
-  if (kernel->type == CONIC_KERNEL_HAT)
-    return r < (double)kernel->cutoff ? 1.0 - r / (double)kernel->cutoff : 0.0;
-  for (int i = 0; i < kernel->n; i++)
-    power *= r / (double)kernel->b;
-  return power < 1.0 ? conic_gaussian_exp(-(double)kernel->a * power / (1.0 - power)) : 0.0;
+  double value = value_in_doubles(kernel, r * r);
+  return value > 0.0 ? value : 0.0;
 }
 
 /* The normal distribution and its integral, at multiples of 1/64. */
@@ -71,7 +77,7 @@ static double normal_integral(const normal_table *table, double z) {
   return z < 0.0 ? sum - size : sum;
 }
 
-/* The integral from 0 to `half` of what a Gaussian of deviation `blur` at y sees of a box of that half width. */
+/* A Gaussian of deviation `blur` at y sees a part of a box; the integral of that part over half widths 0 to `half`. */
 static double integral_of_boxes(const normal_table *normal, double half, double y, double blur) {
   return blur * (normal_integral(normal, (half + y) / blur) + normal_integral(normal, (half - y) / blur)) - half;
 }
@@ -112,7 +118,7 @@ static double half_chord(double r, double x) {
   return r > x ? sqrt((r - x) * (r + x)) : 0.0;
 }
 
-/* The kernel on the line at x, in places half of which are where it may be steep. */
+/* The kernel on the line at x. Half of the places lie where it may be steep. */
 static void cut_line(const round_kernel *k, double x, double places[PARTS + 1], double values[PARTS + 1]) {
   double steep = k->end - 3.0 * k->blur, first = half_chord(steep > 0.0 ? steep : 0.0, x), last;
   if (!(k->blur > 0.0))
@@ -125,7 +131,7 @@ static void cut_line(const round_kernel *k, double x, double places[PARTS + 1], 
   }
 }
 
-/* Fills what is known of `blurred`, of the plain kernel blurred along x and y. */
+/* Fills the known values of `blurred`: the plain kernel, blurred along x and then along y. */
 static void blur_round(const round_kernel *plain, round_kernel *blurred) {
   double places[PARTS + 1], values[PARTS + 1], rows[PARTS + 1], row_places[PARTS + 1];
   for (int i = 0; i <= PARTS; i++) {
@@ -150,7 +156,7 @@ static double filter_of(double t) {
   return t / (1.0 - t);
 }
 
-/* What the filter makes of the kernel at q, of which a part is across; the axis 0 has the lesser share. */
+/* What the filter makes of the kernel at q. `across` is the part of q along axis 1, which has the greater share. */
 static double filter_kernel(const round_kernel *k, const double share[2], double q, double across) {
   double more = filter_of(share[1]) - filter_of(share[0]), places[PARTS + 1], values[PARTS + 1];
   double x = sqrt(q * (1.0 - across) / (1.0 - share[0])), y = sqrt(q * across / (1.0 - share[1]));
@@ -201,7 +207,8 @@ static void write_polynomial(const double nodes[TERMS], int is_turned, int i_rad
 }
 
 static double end_of_kernel(const conic_kernel *kernel) {
-  double cutoff = (double)kernel->cutoff, end = kernel->type == CONIC_KERNEL_CONFETTI ? (double)kernel->b : cutoff;
+  double cutoff = (double)kernel->cutoff;
+  double end = conic_kernel_traits(kernel) & CONIC_HAS_PARAMETERS ? (double)kernel->b : cutoff;
   return end < 4.0 * cutoff ? end : 4.0 * cutoff;
 }
 
@@ -214,7 +221,7 @@ static conic_profile reading(const conic_kernel *kernel, const float *table) {
     integral += plain_kernel(kernel, r) * r * (end / (double)N_RINGS);
   }
   float narrowing = (float)(1.0 / integral - 1.0);
-  if (kernel->type == CONIC_KERNEL_BOX)
+  if (conic_kernel_traits(kernel) & CONIC_IS_FLAT)
     return (conic_profile){1.0f, -by_q, narrowing, 1, table};
   return (conic_profile){0.0f, by_q, narrowing, 0, table};
 }
@@ -278,7 +285,7 @@ static void fill_level(void *data, size_t i_level, int i_thread) {
 
 static int is_same_kernel(const conic_kernel *a, const conic_kernel *b) {
   return a->type == b->type && a->cutoff == b->cutoff &&
-         (a->type != CONIC_KERNEL_CONFETTI || (a->a == b->a && a->b == b->b && a->n == b->n));
+         (!(conic_kernel_traits(a) & CONIC_HAS_PARAMETERS) || (a->a == b->a && a->b == b->b && a->n == b->n));
 }
 
 conic_status conic_profile_make(conic_context *context, const conic_kernel *kernel, conic_profile *profile) {

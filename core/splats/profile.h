@@ -31,7 +31,7 @@ enum {
 };
 
 #define CONIC_PROFILE_PLACES 16384.0f
-#define CONIC_PROFILE_ROUND 0x1p-12f     /* of what is nearly round, no rounding is to choose the direction */
+#define CONIC_PROFILE_ROUND 0x1p-12f     /* keeps roundings from choosing the direction of a nearly round splat */
 #define CONIC_PROFILE_LAST 0x1.dffffep3f /* the last place between the radii */
 #define CONIC_PROFILE_BEND 0.007f        /* added to the shares of a bent direction */
 
@@ -50,10 +50,10 @@ conic_status conic_profile_make(conic_context *context, const conic_kernel *kern
 typedef struct conic_aim {
   int is_smooth;
   float n_xx, n_xy, n_yy; /* two quadratic forms, whose ratio is the direction: 0 along the splat's longer axis, … */
-  float d_xx, d_xy, d_yy; /* … 1 across it; of what is smooth, one alone: q's part across */
+  float d_xx, d_xy, d_yy; /* … 1 across it; a smooth one has the first alone: q's part across */
   int level[2];
   float part[2]; /* of the way to the next level */
-  float peak;    /* what the table is over; likewise not of what is smooth */
+  float peak;    /* the table's values are over it; a smooth one has none */
 } conic_aim;
 
 /* The share of the prefilter as a level; what is no number counts as all. */

@@ -29,10 +29,10 @@ conic_status conic_raw_colors_scale(conic_context *context, const conic_raw_rang
 /* Decodes n values in place. */
 void conic_raw_colors_apply(const conic_raw_scale *scale, float *values, size_t n);
 
-/* Decodes sRGB values in place, by the largest of them: up to 1 are fractions (where `may_be_fractions`), up to 255
- * codes of 8 bits, up to 4095 of 12, beyond that of 16, as are codes of 8 that stand in both bytes. Codes of 16 bits
- * that are all multiples of 256 are codes of 8 bits in the upper half, of which 255 × 256 is white. Where the largest
- * is 0 nobody has filled them in, and they are dropped: the points are white. Errors: MEMORY. */
+/* Decodes sRGB values in place. The largest of them tells what they are: up to 1 fractions (where `may_be_fractions`),
+ * up to 255 codes of 8 bits, up to 4095 codes of 12, beyond that codes of 16. Codes of 8 bits that stand in both bytes
+ * count as 16. Where all are multiples of 256, they are codes of 8 bits in the upper half, and 255 × 256 is white.
+ * Where the largest is 0, nobody has filled them in: they are dropped, and the points are white. Errors: MEMORY. */
 conic_status conic_raw_colors_decode(conic_context *context, conic_splats *points, int may_be_fractions);
 
 #endif

@@ -44,7 +44,7 @@ size_t conic_shares_gather(const conic_splats_shares *shares, const double *valu
   return n_bytes / sizeof *all;
 }
 
-/* The least are the greatest of what is negated; of a process without a finite centre, nothing is. */
+/* The least values are the greatest of the negated ones. A process without a finite centre takes no part. */
 size_t conic_shares_bounds(const conic_splats_shares *shares, const conic_splats *splats, double minimum[3],
                            double maximum[3]) {
   uint64_t n = conic_splats_bounds(splats, minimum, maximum);

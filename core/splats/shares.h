@@ -1,5 +1,5 @@
-/* A set of splats of which each process of a team has a part: what holds of all of them, to the bits that one process
- * finds which has them all. */
+/* Each process of a team has a part of one set of splats. These functions find what holds of the whole set, to the bits
+ * that a single process finds. */
 #ifndef CONIC_SHARES_H
 #define CONIC_SHARES_H
 
@@ -12,8 +12,8 @@ typedef struct conic_splats_shares {
   uint64_t first, count;  /* else its first splat's place among all, and their number */
 } conic_splats_shares;
 
-/* The next functions are collective where there is a team, and can then not fail: whoever may have failed before agrees
- * first. */
+/* The next functions are collective where there is a team. They cannot fail then, so processes agree beforehand on
+ * whether one has failed. */
 
 /* Makes each value the greatest of all processes'; of equal ones, the first process's. */
 void conic_shares_take_greatest(const conic_splats_shares *shares, double *values, size_t n);
@@ -29,11 +29,11 @@ size_t conic_shares_gather(const conic_splats_shares *shares, const double *valu
 size_t conic_shares_bounds(const conic_splats_shares *shares, const conic_splats *splats, double minimum[3],
                            double maximum[3]);
 
-/* conic_splats_length of all, of which this process's have axes. Errors: MEMORY, CANCELLED. */
+/* conic_splats_length of all; this process's splats have axes. Errors: MEMORY, CANCELLED. */
 conic_status conic_shares_length(conic_context *context, const conic_splats_shares *shares, const conic_splats *splats,
                                  double *length);
 
-/* Of samples that are taken of all splats, about `most`: how far they lie apart, and the first of this process's. */
+/* About `most` samples are taken of all splats: how far apart they lie, and which of this process's is the first. */
 static inline size_t conic_shares_stride(const conic_splats_shares *shares, const conic_splats *splats, size_t most) {
   return 1 + (shares->team ? (size_t)shares->count : splats->count) / most;
 }

@@ -1,5 +1,5 @@
-/* The polynomial of what is smooth in a kernel's profile (docs/reference/picture.md, Profile): of q and its part
- * across, by least squares. */
+/* The smooth part of a kernel's profile as a polynomial of q and of q's part across, by least squares
+ * (docs/reference/picture.md, Profile). */
 #ifndef CONIC_SMOOTH_FIT_H
 #define CONIC_SMOOTH_FIT_H
 
@@ -20,7 +20,7 @@ double conic_smooth_place(int i_place);
 
 void conic_smooth_fit_begin(const double directions[CONIC_SMOOTH_DIRECTIONS], conic_smooth_fit *fit);
 
-/* The coefficients of what has the values, place by place, where q ends at the support. */
+/* Finds the coefficients of the polynomial from its values, place by place. q ends at the support. */
 void conic_smooth_fit_solve(const conic_smooth_fit *fit, const double values[CONIC_SMOOTH_NODES], double support,
                             float coefficients[CONIC_PROFILE_SMOOTH_TERMS]);
 

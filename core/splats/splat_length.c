@@ -42,7 +42,7 @@ static void length_chunk(void *data, size_t i_chunk, int i_thread) {
     list->bits[i] = length_bits(list->splats, i);
 }
 
-/* conic_bits_of_rank of what all processes have: one byte after the other, from how often each begins it. */
+/* conic_bits_of_rank over all processes' bits: byte by byte, from how often each value of a byte occurs. */
 static uint32_t bits_of_rank_among_shares(const conic_splats_shares *shares, const uint32_t *bits, size_t n,
                                           uint64_t rank) {
   uint64_t counts[256], found = 0;
@@ -59,7 +59,7 @@ static uint32_t bits_of_rank_among_shares(const conic_splats_shares *shares, con
   return (uint32_t)found;
 }
 
-/* The median of those that are usable. */
+/* The median of the usable lengths. */
 static conic_status find_length(conic_context *context, const conic_splats_shares *shares, const conic_splats *splats,
                                 double *length) {
   size_t n = splats->count;

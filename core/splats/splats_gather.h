@@ -9,9 +9,9 @@
 conic_status conic_splats_gather(conic_context *context, const conic_splats *from, const uint32_t *sources,
                                  size_t count, conic_splats *gathered);
 
-/* Moves the splats into arrays for `capacity` of them, no fewer than there are, with the optional arrays of `fields`:
- * those that are new hold what their absence meant. Clip lines, which are no array a splat, stay. On failure all is as
- * it was. Errors: MEMORY. */
+/* Moves the splats into arrays for `capacity` of them, no fewer than there are, with the optional arrays of `fields`. A
+ * new array holds what its absence meant. Clip lines have no array a splat, and stay. On failure all is as it was.
+ * Errors: MEMORY. */
 conic_status conic_splats_resize(conic_context *context, conic_splats *splats, size_t capacity, unsigned fields);
 
 /* The bounds of the finite ones of n points, those of `indices` or, where that is null, the first; returns how many are

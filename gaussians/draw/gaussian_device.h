@@ -1,4 +1,4 @@
-/* What composites in the place of the processor's kernels: another device. */
+/* What composites in the place of the processor's loops: another device. */
 #ifndef CONIC_GAUSSIAN_DEVICE_H
 #define CONIC_GAUSSIAN_DEVICE_H
 

@@ -22,7 +22,7 @@ struct conic_gaussian_picture {
   conic_gaussian_options options;
   conic_camera camera;
   conic_gaussian_view view;
-  conic_gaussian_kernels kernels;
+  conic_gaussian_loops loops;
   conic_gaussian_statistics statistics;
   conic_gaussian_shape shape;
   conic_view_rays view_rays; /* of CONIC_SHAPE_SIGHT */
@@ -159,7 +159,7 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
                               .entries = f->bins.entries + f->bins.tile_begin[i_tile],
                               .n = f->bins.tile_begin[i_tile + 1] - f->bins.tile_begin[i_tile],
                               .room = f->rooms ? f->rooms[i_thread] : NULL};
-  f->kernels.composite[f->shape](&list, &tile);
+  f->loops.composite[f->shape](&list, &tile);
   tile.x -= f->window->begin[0]; /* where the planes begin */
   tile.y -= f->window->begin[1];
   conic_gaussian_tile_end(&target, &tile);
@@ -322,7 +322,7 @@ static void look_at_scene(frame *f, conic_isa isa) {
   f->statistics.isa = isa;
   f->statistics.device_units = own->device ? (uint64_t)own->device->n_units : 0;
   f->statistics.tile = CONIC_GAUSSIAN_TILE;
-  conic_gaussian_kernels_init(&f->kernels, isa);
+  conic_gaussian_loops_init(&f->loops, isa);
   look_through(camera, &f->view);
 }
 

@@ -24,9 +24,9 @@ typedef struct conic_gaussian_placed {
 int conic_gaussian_project(const conic_gaussian_view *view, conic_gaussian_placed *p, double reach, double least[2],
                            double most[2]);
 
-/* Gives a footprint of CONIC_SHAPE_RAY, which has its box, the ellipse beyond which q is above reach as floats have it,
- * too; of what comes up to the plane of the eye, a smaller box. Where that is not certain, nothing. Its ray was divided
- * by `unit_of`. Returns 0 where no box is left. */
+/* A footprint of CONIC_SHAPE_RAY has its box. Gives it the ellipse, too, beyond which q is above reach, as floats have
+ * q. A Gaussian that comes up to the plane of the eye gets a smaller box instead. Where neither is certain, nothing
+ * changes. The ray was divided by `unit_of`. Returns 0 where no box is left. */
 int conic_gaussian_find_outline(const conic_gaussian_view *view, const conic_gaussian_placed *p, double reach,
                                 const conic_gaussian_ray *ray, double unit_of, conic_gaussian_footprint *f);
 

@@ -23,7 +23,7 @@ conic_status conic_gaussian_picture_begin(conic_context *context, const conic_ga
 conic_status conic_gaussian_picture_draw(conic_gaussian_picture *picture, const conic_gaussian_window *window,
                                          conic_gaussian_planes *planes);
 
-/* What was drawn and how long it took so far; its counts are those of the whole picture from the beginning on. */
+/* What was drawn so far, and how long it took. The counts are the whole picture's from the beginning on. */
 const conic_gaussian_statistics *conic_gaussian_picture_statistics(const conic_gaussian_picture *picture);
 
 /* Null is allowed. */

@@ -36,15 +36,15 @@ typedef struct conic_gaussian_rules {
   double compensation_least; /* the opacity is multiplied by √max(this, det/det′); negative: it is not */
   double slope_margin;       /* x/z and y/z of the Jacobian are clamped so far beyond the picture, as a share of half
                                 its width; negative: not */
-  float greatest_half_q;     /* beyond which nothing is; 0: no such border */
-  int takes_rotation_as_is;  /* quaternions that are of length 1 but for roundings; 2: of any length; 3: and along
-                                rays by the inverse of what they make, not by its transpose */
+  float greatest_half_q;     /* nothing lies beyond; 0: no such border */
+  int takes_rotation_as_is;  /* 0: quaternions are normalised; 1: but for those of length 1 up to roundings; 2: none is;
+                                3: likewise, and rays meet the inverse of their matrix, not its transpose */
   int takes_middle;          /* the middle of the picture in place of the principal point */
   int orders_by_distance;
   int has_float_eye;
   int has_late_median; /* the median is the last with T > ½ before it */
   double disc_cutoff, disc_extent;
-  float disc_near; /* of the place on the disc; 0: no such border, and depths are those of means */
+  float disc_near; /* the least depth of a place on the disc; 0: no such border, and the mean's depth counts */
 } conic_gaussian_rules;
 
 #ifndef CONIC_ON_DEVICE

@@ -218,8 +218,8 @@ static void find_filter(const conic_gaussian_view *view, const double g[3][3], c
   filter->area = (float)(view->prefilter * (conic_dot(g[0], area) / unit_of));
 }
 
-/* What tells how far along each axis a place is: of unit axes these themselves, but of what quaternions of any length
- * make of a disc those at right angles to the other two. */
+/* The vectors whose products with a place tell how far along each axis it is. Unit axes are these vectors themselves.
+ * Quaternions of any length give a disc other axes: there each vector is at right angles to the other two axes. */
 static void find_inverse_axes(const conic_gaussian_view *view, const conic_gaussian_placed *p, double inverse[3][3]) {
   memcpy(inverse, p->unit, sizeof p->unit);
   const int as_is = view->rules->takes_rotation_as_is;

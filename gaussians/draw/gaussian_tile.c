@@ -170,13 +170,13 @@ static void composite_sights(const conic_gaussian_list *list, conic_gaussian_til
   composite_meetings(list, tile, 0);
 }
 
-CONIC_DEFINE_KERNELS(conic_gaussian_kernels)
+CONIC_DEFINE_LOOPS(conic_gaussian_loops)
 
-void conic_gaussian_kernels_scalar(conic_gaussian_kernels *kernels) {
-  kernels->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses;
-  kernels->composite[CONIC_SHAPE_RAY] = composite_rays;
-  kernels->composite[CONIC_SHAPE_DISC] = composite_discs;
-  kernels->composite[CONIC_SHAPE_FILTERED] = composite_filtered;
-  kernels->composite[CONIC_SHAPE_SIGHT] = composite_sights;
+void conic_gaussian_loops_scalar(conic_gaussian_loops *loops) {
+  loops->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses;
+  loops->composite[CONIC_SHAPE_RAY] = composite_rays;
+  loops->composite[CONIC_SHAPE_DISC] = composite_discs;
+  loops->composite[CONIC_SHAPE_FILTERED] = composite_filtered;
+  loops->composite[CONIC_SHAPE_SIGHT] = composite_sights;
 }
 #endif

@@ -69,11 +69,11 @@ typedef struct conic_gaussian_list {
 
 #ifndef CONIC_ON_DEVICE /* where no pointer is to a function */
 /* One slot a shape: composites the list in the tile, whose sums and T's begin. */
-typedef struct conic_gaussian_kernels {
+typedef struct conic_gaussian_loops {
   void (*composite[CONIC_N_SHAPES])(const conic_gaussian_list *list, conic_gaussian_tile *tile);
-} conic_gaussian_kernels;
+} conic_gaussian_loops;
 
-CONIC_DECLARE_KERNELS(conic_gaussian_kernels);
+CONIC_DECLARE_LOOPS(conic_gaussian_loops);
 #endif
 
 #endif

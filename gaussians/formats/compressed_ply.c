@@ -158,8 +158,8 @@ static conic_status read_packed(compressed_reader *reader) {
   return status;
 }
 
-/* The bytes of `element sh`: a channel after the other, each code in the middle of what it stands for but for the first
- * and last. */
+/* The bytes of `element sh`, a channel after the other. A code stands for the middle of its interval, the first and the
+ * last code for the interval's end. */
 static conic_status read_harmonics(compressed_reader *reader, size_t n_of_file) {
   conic_gaussians *gaussians = reader->gaussians;
   size_t n_kept = conic_harmonics_of_degree(gaussians->sh_degree) / 3 - 1;

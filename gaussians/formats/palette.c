@@ -4,7 +4,7 @@
 #include "core/base/message.h"
 #include "gaussians/formats/codebook.h"
 
-/* Vectors order[first] … of which the squares of what they are off their mean add up to `squares`. */
+/* The vectors order[first] … Their squared distances from their mean add up to `squares`. */
 typedef struct palette_group {
   size_t first, count;
   int widest;

@@ -26,7 +26,7 @@ conic_status conic_splat_file_read(const conic_gaussian_bytes *file, conic_gauss
   return status;
 }
 
-/* Whether a rotation is what such a file can hold, of whatever length. */
+/* Whether such a file can hold the rotation as it is. */
 static int is_coded(const conic_gaussians *gaussians, size_t i) {
   for (int k = 0; k < 4; k++) {
     float code = gaussians->rotation[k][i] * 128.0f;

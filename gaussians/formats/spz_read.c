@@ -50,7 +50,7 @@ static conic_status unpack_spz_stream(const conic_gaussian_bytes *file, conic_zs
   return CONIC_OK;
 }
 
-/* Version 4: a table of the streams' sizes, and the streams, of which empty ones are left out. */
+/* Version 4: a table of the streams' sizes, and the streams that are not empty. */
 static conic_status unpack_streams(const conic_gaussian_bytes *file, spz_header *header, unsigned char *to) {
   conic_zstd *zstd;
   size_t at = header->table + 16 * (size_t)header->n_streams, i_of_file = 0;

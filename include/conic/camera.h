@@ -2,8 +2,9 @@
  *
  * Camera space: x right, y down, z forward (COLMAP, OpenCV, gsplat); pixel (i, j) covers [i, i+1) × [j, j+1) and its
  * centre is at (i + 0.5, j + 0.5). A point at camera coordinates (x, y, z) projects to (fx·a + cx, fy·b + cy), where
- * (a, b) is what the camera's kind makes of the point, distorted by its lens. A camera that is zero there is a pinhole:
- * (a, b) = (x/z, y/z), which everything can draw. What cannot draw another kind or lens refuses it: ARGUMENT. */
+ * (a, b) is what the camera's kind makes of the point, distorted by its lens. Where kind and lens are zero, the camera
+ * is a pinhole: (a, b) = (x/z, y/z). Everything can draw a pinhole; a function that cannot draw another kind or lens
+ * refuses it: ARGUMENT. */
 #ifndef CONIC_CAMERA_H
 #define CONIC_CAMERA_H
 
@@ -38,7 +39,7 @@ typedef enum conic_lens {
 } conic_lens;
 
 /* "perspective", "fisheye", "orthographic", "equirectangular", "cube"; and "none", "radial", "opencv", "thin-prism",
- * "fov"; null for a number that is none of them. */
+ * "fov"; null for an unknown number. */
 CONIC_API const char *conic_camera_kind_name(conic_camera_kind kind);
 CONIC_API const char *conic_lens_name(conic_lens lens);
 

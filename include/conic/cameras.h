@@ -46,25 +46,25 @@ typedef struct conic_cameras_options {
 CONIC_API void conic_cameras_options_init_sized(conic_cameras_options *options, size_t size);
 #define conic_cameras_options_init(options) conic_cameras_options_init_sized(options, sizeof *(options))
 
-/* Reads the cameras of a file, told by its content, or of a folder that holds one: COLMAP's (also in sparse/0, sparse
- * or colmap/sparse/0), transforms.json or cameras.json. "-" is standard input. A size that is asked for scales the
- * cameras (conic_camera_resize), or is the pictures' where the file does not say it; a file that says none then has it
- * from the pictures beside it. On success the caller owns *cameras, of at least one camera that conic draws or refuses
- * by its kind or lens; on failure it is empty. Null options are the defaults. Errors: ARGUMENT, INPUT, MEMORY,
- * UNSUPPORTED (zlib is not there). */
+/* Reads the cameras of a file, whose kind its content tells, or of a folder that holds one: COLMAP's (also in sparse/0,
+ * sparse or colmap/sparse/0), transforms.json or cameras.json. "-" is standard input. A requested size scales the
+ * cameras (conic_camera_resize). Where the file has no size, the requested one is the pictures'; without a request, the
+ * size comes from the pictures beside the file. On success the caller owns *cameras, of at least one camera, whose kind
+ * or lens conic may refuse to draw; on failure it is empty. Null options are the defaults. Errors: ARGUMENT, INPUT,
+ * MEMORY, UNSUPPORTED (zlib is not there). */
 CONIC_API conic_status conic_cameras_read(conic_context *context, const char *path,
                                           const conic_cameras_options *options, conic_cameras *cameras);
 CONIC_API void conic_cameras_release(conic_context *context, conic_cameras *cameras);
 
-/* Whether a file or folder holds cameras and nothing else that conic reads; a glTF is a model. Says nothing. */
+/* Whether a file or folder holds cameras and nothing else that conic reads; a glTF counts as a model. Logs nothing. */
 CONIC_API int conic_cameras_is_file(conic_context *context, const char *path);
 
-/* The camera that is meant by a number from 0, without needless zeros, or by a name: as the file has it, without its
- * folder, or without folder and ending. Errors: ARGUMENT (there is none, or there are several). */
+/* The camera of a number from 0, without leading zeros, or of a name: as the file has it, without its folder, or
+ * without folder and ending. Errors: ARGUMENT (there is none, or there are several). */
 CONIC_API conic_status conic_cameras_find(conic_context *context, const conic_cameras *cameras, const char *name,
                                           size_t *i_camera);
 
-/* The same view in another size: focal lengths and centre grow as the picture does, each axis by itself. */
+/* The same view in another size: focal lengths and centre scale with the picture, each axis by itself. */
 CONIC_API void conic_camera_resize(conic_camera *camera, int width, int height);
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-/* Colours made of what points hold: a value of the file (intensity, classification, …), the height, or the normal
+/* Colours made from what points hold: a value of the file (intensity, classification, …), the height, or the normal
  * (docs/reference/formats.md, Colours). */
 #ifndef CONIC_COLORING_H
 #define CONIC_COLORING_H
@@ -18,13 +18,13 @@ extern "C" {
 typedef struct conic_coloring_options {
   size_t size; /* sizeof(conic_coloring_options), set by the init function */
 
-  /* "rgb": the colours that there are. "height", along `up`. "normal": its x, y, z as red, green, blue. "auto": the
-   * colours that there are, else the intensity where the file has one, else, where that is the same everywhere, the
-   * height. Any other word: the file's value of that name. */
+  /* "rgb": the file's colours. "height", along `up`. "normal": its x, y, z as red, green, blue. "auto": the file's
+   * colours; without colours, the intensity; without an intensity, or with the same one everywhere, the height. Any
+   * other word: the file's value of that name. */
   const char *by;
-  const char *ramp; /* one of conic_ramp_name; null: the one that suits */
+  const char *ramp; /* one of conic_ramp_name; null: the one that suits the values */
 
-  /* What the ramp's two ends mean; without, the 2nd and the 98th percentile. */
+  /* What the ramp's two ends mean; if has_range is 0, the 2nd and the 98th percentile. */
   int has_range;
   double minimum, maximum;
 
@@ -41,23 +41,24 @@ CONIC_API const char *conic_ramp_name(int i);
 /* What the colours mean. */
 typedef struct conic_coloring {
   char field[40];          /* "height", "normal", or the value's name; empty: the colours are the file's */
-  const char *ramp;        /* null: of normals */
+  const char *ramp;        /* null for normals */
   double minimum, maximum; /* of the ramp's ends */
-  int is_root;             /* the ramp goes with the square root of the value above the minimum: for intensities */
-  uint32_t classes[8];     /* of "classes", which there are below 256, as bits */
+  int is_root;             /* the ramp follows the square root of the value above the minimum: for intensities */
+  uint32_t classes[8];     /* for "classes": which classes below 256 there are, as bits */
   uint64_t reserved[8];
 } conic_coloring;
 
-/* The linear colour that stands for a value; one that is not finite is grey. */
+/* The linear colour of a value; grey for a value that is not finite. */
 CONIC_API void conic_coloring_color(const conic_coloring *coloring, double value, float linear[3]);
 
-/* Sets what is to be read so that colours can be made as the options say: `field` and `field_is_optional`. Null options
- * ask for nothing. */
+/* Sets `field` and `field_is_optional` so that reading keeps what the colours are made of. Null options ask for
+ * nothing. */
 CONIC_API void conic_coloring_read(const conic_coloring_options *options, conic_read_options *reading);
 
-/* Gives the vertices of a drawing their colours, in place, by one scale for all of it, and releases the scalars that
- * they are made of. Triangles lose their textures and their materials' colours, unless the colours stay as they are.
- * Normals need tangent axes. Either set may be null or empty. Errors: ARGUMENT, MEMORY, INPUT (no scalar was read). */
+/* Gives the vertices of a drawing their colours, in place, by one scale for all of it. Releases the scalars that the
+ * colours are made of. Triangles lose their textures and their materials' colours, unless the colours stay as they are.
+ * Colours from normals need tangent axes. Either set may be null or empty. Errors: ARGUMENT, MEMORY, INPUT (no scalar
+ * was read). */
 CONIC_API conic_status conic_drawing_color(conic_context *context, const conic_coloring_options *options,
                                            conic_splats *splats, conic_triangles *triangles, conic_coloring *coloring);
 

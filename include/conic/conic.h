@@ -1,19 +1,20 @@
 /* conic: a software rasteriser for surface splatting. This header brings in the whole public API.
  *
- * What holds everywhere: pointers are not null unless a function says that they may be. What is made with a context is
- * used by one thread at a time, as the context is, unless it says otherwise. Functions that make something set what
- * they hand out to null, or empty it, before they can fail; on failure nothing is left that would have to be released.
- * Functions that end something (destroy, close, abandon) allow null; those that release a set leave it empty, and a set
- * of zero bytes is one already. Functions that take a set over empty it on failure too, unless they refuse its arrays.
- * Lengths are in world units unless it says otherwise, and colours linear.
+ * What holds everywhere: pointers are not null unless a function says that they may be. An object made with a context
+ * is used by one thread at a time, as the context is, unless its comment says otherwise. Functions that make something
+ * set their result to null, or empty it, before they can fail; after a failure there is nothing to release. Functions
+ * that end something (destroy, close, abandon) allow null; those that release a set leave it empty, and a set of zero
+ * bytes is one already. Functions that take a set over empty it on failure too, unless they refuse its arrays. Lengths
+ * are in world units unless a comment says otherwise. Colours are linear.
  *
- * Structs grow in two ways, so that a program and a library of different versions never write or read past each
- * other's. Options, which an init function fills, begin with their size and grow at their end: members that a caller's
- * struct lacks have their defaults. It is an ARGUMENT error if no init function has set the size, or if a member that
- * this version does not know is not zero. The init functions are macros for functions that are told the size; programs
- * in other languages call these. All other structs keep their size: later members take the place of `reserved`, and of
- * elements of arrays from CONIC_N_… up to CONIC_MAX_…. Whoever fills such a struct leaves zeros there, as initialisers
- * do; what draws refuses other values. Structs without reserved words never change, unless the library owns them. */
+ * Structs grow in two ways, so that a program and a library of different versions never read or write past the end of
+ * each other's structs. Options, which an init function fills, begin with their size and grow at their end: members
+ * that a caller's struct lacks have their defaults. It is an ARGUMENT error if no init function has set the size, or if
+ * a member that this version does not know is not zero. The init functions are macros for functions that are told the
+ * size; programs in other languages call these functions. All other structs keep their size: later members take the
+ * place of `reserved`, and of elements of arrays from CONIC_N_… up to CONIC_MAX_…. Whoever fills such a struct leaves
+ * zeros there, as initialisers do; drawing refuses other values. Structs without reserved words never change, unless
+ * the library owns them. */
 #ifndef CONIC_CONIC_H
 #define CONIC_CONIC_H
 

@@ -33,7 +33,7 @@ typedef struct conic_context_options {
   void *allocator_cookie;
 
   /* Messages, in UTF-8 and without a newline. `message` is valid during the call only. Called on the thread that has
-   * something to say, which may be any of the context's, and several at a time. Default: dropped. */
+   * the message: any of the context's, and several at a time. Default: dropped. */
   void (*log)(void *cookie, conic_log_level level, const char *message);
   void *log_cookie;
 
@@ -47,19 +47,19 @@ typedef struct conic_context_options {
   int threads;
 
   /* Not 0: splats, records and pictures ask the system for pages of 2 MiB (Linux: madvise). Frames of large models are
-   * some 5 % faster; the first use of memory is, too, or slower by as much as a virtual machine needs to give large
-   * pages: for whoever draws many frames. */
+   * some 5 % faster. The first use of memory is faster too, or slower where a virtual machine takes long to give large
+   * pages. For programs that draw many frames. */
   int large_pages;
 
   /* No single allocation is larger than this; 0: no limit. */
   size_t max_allocation_bytes;
 
-  /* Of all loops, but those of calls whose own options name another. One that is not here makes these calls fail with
-   * UNSUPPORTED. */
+  /* The instruction set of all loops, except in calls whose own options name another. A set that is not here makes
+   * these calls fail with UNSUPPORTED. */
   conic_isa isa;
 
-  /* The textures of files take no more memory than this together; one more makes the call that reads it fail with
-   * INPUT before it is decoded. 0: no limit. */
+  /* The textures of files together take no more memory than this. A call that would read one more fails with INPUT
+   * before it is decoded. 0: no limit. */
   size_t max_texture_bytes;
 } conic_context_options;
 

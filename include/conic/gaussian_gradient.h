@@ -1,8 +1,8 @@
-/* The derivative of a picture of a Gaussian scene, in double precision: what the backward pass of a differentiable
- * renderer should have been. docs/reference/gradient.md says what of, and how it is found.
+/* The derivative of a picture of a Gaussian scene, in double precision: the reference for the backward pass of a
+ * differentiable renderer. docs/reference/gradient.md says with respect to what, and how it is found.
  *
- * Of weights W for the numbers of each pixel, L = Σ W·C is a number, and this is its gradient. Decisions (which
- * Gaussians a pixel shows, and in which order) are those of the double run, and do not change. */
+ * With weights W for the numbers of each pixel, L = Σ W·C is a number; this is its gradient. Decisions (which Gaussians
+ * a pixel shows, and in which order) are those of the double run, and do not change. */
 #ifndef CONIC_GAUSSIAN_GRADIENT_H
 #define CONIC_GAUSSIAN_GRADIENT_H
 
@@ -22,16 +22,16 @@ typedef struct conic_gaussian_weights {
 } conic_gaussian_weights;
 
 /* Reads weights: the channels R, G, B, A and Z of a picture, as conic_image_read takes it, or a NumPy array (.npy) of
- * the shape (height, width, n), n being 3 (R, G, B), 4 (and A) or 5 (and Z). What is not there is 0. On success the
- * caller owns *weights; on failure it is empty. Errors: INPUT (also a number that is not finite), MEMORY, UNSUPPORTED.
- */
+ * the shape (height, width, n), n being 3 (R, G, B), 4 (and A) or 5 (and Z). Missing channels are 0. On success the
+ * caller owns *weights; on failure it is empty. Errors: INPUT (also a number that is not finite), MEMORY,
+ * UNSUPPORTED. */
 CONIC_API conic_status conic_gaussian_weights_read(conic_context *context, const char *path,
                                                    conic_gaussian_weights *weights);
 CONIC_API void conic_gaussian_weights_release(conic_context *context, conic_gaussian_weights *weights);
 
 /* What makes a derivative doubtful: the decisions of conic_gaussian_doubt, and clamps beyond which it is 0. */
 enum {
-  CONIC_DOUBT_COLOR = CONIC_N_GAUSSIAN_DOUBTS, /* a channel, which is 0 at least */
+  CONIC_DOUBT_COLOR = CONIC_N_GAUSSIAN_DOUBTS, /* a channel, which is at least 0 */
   CONIC_DOUBT_SLOPE,                           /* x/z or y/z of the Jacobian */
   CONIC_DOUBT_COMPENSATION,                    /* the least share of the opacity */
   CONIC_N_GRADIENT_DOUBTS
@@ -42,12 +42,12 @@ CONIC_API const char *conic_gradient_doubt_name(int doubt);
 
 typedef struct conic_gradient_options {
   size_t size;                    /* sizeof(conic_gradient_options), set by the init function */
-  const conic_float_model *model; /* whose roundings decisions may be in doubt by; null: those of strict floats */
+  const conic_float_model *model; /* its roundings put decisions in doubt; null: those of strict floats */
   uint32_t is_raw;                /* with respect to ln s and logit o */
-  uint32_t leaves_doubts;         /* they are not looked for */
+  uint32_t leaves_doubts;         /* do not look for doubts */
 } conic_gradient_options;
 
-/* Strict floats, activated values, doubts are found. */
+/* Strict floats, activated values, doubts are looked for. */
 CONIC_API void conic_gradient_options_init_sized(conic_gradient_options *options, size_t size);
 #define conic_gradient_options_init(options) conic_gradient_options_init_sized(options, sizeof *(options))
 
@@ -65,22 +65,23 @@ typedef enum conic_gradient_kind {
 /* "mean", "scale", "rotation", "opacity", "sh"; null for a number that is none. */
 CONIC_API const char *conic_gradient_kind_name(conic_gradient_kind kind);
 
-/* Arrays of one number a Gaussian, and the harmonics as conic_gaussians has them. */
+/* Arrays of one number a Gaussian; the harmonics are laid out as in conic_gaussians. */
 typedef struct conic_gaussian_gradient {
   size_t count;
   int sh_degree, is_raw;
   double *mean[3];     /* by the mean in the world */
-  double *scale[3];    /* scale[2] is null of a set of 2D Gaussians */
-  double *rotation[4]; /* by w, x, y, z as they are given; they are divided by their length, which is differentiated */
+  double *scale[3];    /* scale[2] is null for a set of 2D Gaussians */
+  double *rotation[4]; /* by w, x, y, z as given; the division by their length is differentiated, too */
   double *opacity, *sh;
-  double *place[2];            /* by the centre on the screen, in pixels; of `exact` 0 */
-  uint32_t *doubt;             /* bits 1 << CONIC_DOUBT_…: what is in doubt of this Gaussian, where W is not 0 */
+  double *place[2];            /* by the centre on the screen, in pixels; 0 for `exact` */
+  uint32_t *doubt;             /* bits 1 << CONIC_DOUBT_…: the doubts about this Gaussian, where W is not 0 */
   double cam_from_world[3][4]; /* by the camera's matrix, each number by itself; the eye is −R⁻¹t */
-  double fx, fy, cx, cy;       /* cx and cy are 0 of profiles that ignore them */
+  double fx, fy, cx, cy;       /* cx and cy are 0 for profiles that ignore them */
   double loss;                 /* L */
   size_t n_shown, n_doubtful;  /* Gaussians composited where W is not 0; those with a doubt */
   size_t doubtful[16];         /* by CONIC_DOUBT_… */
-  uint64_t lacks;              /* of a file: bits 1 << conic_gradient_kind of what is not there, and 0 here */
+  uint64_t lacks;              /* of a file: bits 1 << conic_gradient_kind of the kinds that it lacks, which are 0
+                                  here */
   uint64_t reserved[7];
 } conic_gaussian_gradient;
 
@@ -98,21 +99,21 @@ CONIC_API void conic_gaussian_gradient_release(conic_context *context, conic_gau
 /* Whether gradients of the profile are found. */
 CONIC_API int conic_gradient_has_profile(conic_gaussian_profile profile);
 
-/* Writes a .ply of doubles, whose properties are those of the scenes of 3D Gaussian splatting, then place_x, place_y
- * and doubt. The file appears under its name only when it is whole. Errors: MEMORY, IO. */
+/* Writes a .ply of doubles. Its properties are those of 3D Gaussian splatting's scenes, then place_x, place_y and
+ * doubt. The file appears under its name only when it is whole. Errors: MEMORY, IO. */
 CONIC_API conic_status conic_gaussian_gradient_write(conic_context *context, const char *path,
                                                      const conic_gaussian_gradient *gradient);
 
-/* Reads somebody's gradient: a .ply with these properties, or an .npz with arrays of as many rows as there are
- * Gaussians, by the names means, quats (w, x, y, z), scales, opacities, and sh of (n, harmonics, 3). On success the
- * caller owns *gradient; on failure it is empty. Errors: INPUT, MEMORY, CANCELLED, UNSUPPORTED. */
+/* Reads another program's gradient: a .ply with these properties, or an .npz with one row a Gaussian in each array:
+ * means, quats (w, x, y, z), scales, opacities, and sh of (n, harmonics, 3). On success the caller owns *gradient; on
+ * failure it is empty. Errors: INPUT, MEMORY, CANCELLED, UNSUPPORTED. */
 CONIC_API conic_status conic_gaussian_gradient_read(conic_context *context, const char *path,
                                                     conic_gaussian_gradient *gradient);
 
-/* A number that is wrong, the farthest off of its Gaussian. */
+/* A wrong number: the one of its Gaussian that is farthest off. */
 typedef struct conic_gradient_fault {
   size_t gaussian;
-  int kind, number; /* number: of that kind, as x, y, z; of the harmonics as conic_gaussians has them */
+  int kind, number; /* number: within the kind, as x, y, z; harmonics as in conic_gaussians */
   double found, value, low, high;
 } conic_gradient_fault;
 
@@ -120,17 +121,18 @@ typedef struct conic_gradient_verdict {
   size_t gaussians[4];                           /* by conic_gaussian_class */
   size_t wrong[CONIC_N_GRADIENT_KINDS];          /* Gaussians with a wrong number of a kind */
   double greatest[CONIC_N_GRADIENT_KINDS];       /* of the right numbers */
-  double max_abs[CONIC_N_GRADIENT_KINDS];        /* of the differences; infinite where one is no number */
-  double share_of_bound[CONIC_N_GRADIENT_KINDS]; /* the greatest share of what roundings may do that was met, of what
-                                                    is within that */
+  double max_abs[CONIC_N_GRADIENT_KINDS];        /* of the differences; infinite where one is NaN */
+  double share_of_bound[CONIC_N_GRADIENT_KINDS]; /* the greatest share of its rounding bound that a number used, among
+                                                    the numbers within it */
   conic_gradient_fault worst[CONIC_MAX_FAULTS];  /* the Gaussians that are farthest off, the worst first */
-  int n_worst, pass;                             /* pass: none is wrong */
+  int n_worst, pass;                             /* pass: no number is wrong */
   uint64_t reserved[6];
 } conic_gradient_verdict;
 
-/* Judges somebody's gradient, number by number, as floats of `how->model` (null: those of a GPU's fast mathematics) may
- * have it: docs/reference/gradient.md. `classes` takes a class for each Gaussian, the worst of its numbers', and may be
- * null. Errors: as conic_gaussian_gradient_find; ARGUMENT also where the counts differ; UNSUPPORTED of `exact`. */
+/* Judges another program's gradient, number by number, against what floats of `how->model` (null: those of a GPU's fast
+ * mathematics) may give: docs/reference/gradient.md. `classes` takes the worst class of each Gaussian's numbers, and
+ * may be null. Errors: as conic_gaussian_gradient_find; ARGUMENT also where the counts differ; UNSUPPORTED for
+ * `exact`. */
 CONIC_API conic_status conic_gaussian_gradient_judge(conic_context *context, const conic_gaussians *gaussians,
                                                      const conic_camera *camera, const conic_gaussian_options *options,
                                                      const conic_gaussian_weights *weights,

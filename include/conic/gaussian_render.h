@@ -15,8 +15,8 @@
 extern "C" {
 #endif
 
-/* What a renderer does with a Gaussian. A profile that is named after a program draws what that version of it draws;
- * it never changes. */
+/* What a renderer does with a Gaussian. A profile that is named after a program draws what that version of the program
+ * draws; it never changes. */
 typedef enum conic_gaussian_profile {
   CONIC_PROFILE_EXACT = 0, /* the response along each pixel's own ray, in the order along that ray */
   CONIC_PROFILE_INRIA_2023 = 1,
@@ -42,7 +42,8 @@ typedef struct conic_gaussian_options {
   conic_gaussian_profile profile;
   float background[3];           /* behind the Gaussians: colour · T is added to R, G, B */
   conic_isa isa;                 /* as the context has it */
-  uint32_t ignores_center;       /* where the profile does, and would else refuse a camera that is not centred */
+  uint32_t ignores_center;       /* ignore the camera's centre where the profile ignores it; else such a profile refuses
+                                    a camera that is not centred */
   conic_gaussian_device *device; /* composites in the place of the processor; null: none. No bit depends on it. */
   double prefilter; /* of `exact`: the variance of the filter on the screen, h, in square pixels, 0 to 10000 */
 } conic_gaussian_options;
@@ -56,12 +57,13 @@ typedef struct conic_gaussian_planes {
   int width, height;
   float *rgb;          /* 3: display values over the background, as the profile composites them */
   float *transparency; /* T: what is left of the light from behind */
-  float *z; /* Σ w·z / Σ w, z of the mean, of the hit or of the greatest response by the profile; 0: nothing */
-  float *median_z;  /* of the Gaussian with which T comes to ½; 0 where it does not */
+  float *z; /* Σ w·z / Σ w, where z is of the mean, of the hit or of the greatest response, by the profile; 0: no
+               Gaussian */
+  float *median_z;  /* of the Gaussian at which T falls to ½; 0 where it stays above */
   float *inverse_z; /* Σ w/z */
   float *normal;    /* 3: Σ w·n in the world, n the shortest axis, towards the eye */
   uint32_t *count;  /* Gaussians composited */
-  uint32_t *id;     /* the one with the largest w, of equal ones the first; CONIC_NO_ID: nothing */
+  uint32_t *id;     /* the Gaussian with the largest w, the first of equal ones; CONIC_NO_ID: none */
   uint32_t *last;   /* the last one composited */
   uint64_t reserved[8];
 } conic_gaussian_planes;
@@ -72,13 +74,13 @@ typedef struct conic_gaussian_statistics {
   double seconds_setup, seconds_sort, seconds_bin, seconds_composite;
   conic_isa isa;         /* what the hot loops used */
   int tile;              /* edge in pixels */
-  uint64_t device_units; /* that compute, of the device that composited; 0: the processor did */
+  uint64_t device_units; /* compute units of the device that composited; 0: the processor did */
   uint64_t reserved[7];
 } conic_gaussian_statistics;
 
-/* Draws into the planes that are there. The same bits for any number of threads and every instruction set. Null options
- * are the defaults; statistics may be null. Errors: ARGUMENT, MEMORY, CANCELLED, UNSUPPORTED (the instruction set, or
- * the device cannot). */
+/* Draws into the planes that are there. The bits are the same for any number of threads and every instruction set. Null
+ * options are the defaults; statistics may be null. Errors: ARGUMENT, MEMORY, CANCELLED, UNSUPPORTED (the instruction
+ * set, or the device cannot). */
 CONIC_API conic_status conic_gaussians_render(conic_context *context, const conic_gaussians *gaussians,
                                               const conic_camera *camera, const conic_gaussian_options *options,
                                               conic_gaussian_planes *planes, conic_gaussian_statistics *statistics);

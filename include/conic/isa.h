@@ -8,9 +8,9 @@
 extern "C" {
 #endif
 
-/* Of one machine, each has all that those before it have. */
+/* On one machine, each set includes all sets before it. */
 typedef enum conic_isa {
-  CONIC_ISA_AUTO = 0,   /* the context's; as one of these, the widest that this machine has */
+  CONIC_ISA_AUTO = 0,   /* the context's; for the context itself, the widest that this machine has */
   CONIC_ISA_SCALAR = 1, /* plain C, the reference of all others */
   CONIC_ISA_SSE2 = 2,
   CONIC_ISA_AVX2 = 3,
@@ -20,7 +20,7 @@ typedef enum conic_isa {
 
 #define CONIC_N_ISAS 6
 
-/* "auto", "scalar", "sse2" …; null for a number that is none. */
+/* "auto", "scalar", "sse2" …; null for a number that is no set. */
 CONIC_API const char *conic_isa_name(conic_isa isa);
 
 /* The widest that this machine has. */

@@ -1,7 +1,7 @@
 /* Rendering: splats and a camera in, an image and its statistics out.
  *
- * What a picture is, is defined in docs/reference/picture.md. It has one set of bits: threads, tile size, compiler and
- * machine change none of them. */
+ * docs/reference/picture.md defines the picture. It has one set of bits: threads, tile size, compiler and machine
+ * change none of them. */
 #ifndef CONIC_RENDER_H
 #define CONIC_RENDER_H
 
@@ -25,7 +25,7 @@ typedef enum conic_method {
   CONIC_METHOD_AFFINE = 2, /* EWA with the Jacobian at the splat's centre (HQP §3.4) */
   CONIC_METHOD_POINT = 3,  /* the pixel that holds the projected centre */
   CONIC_METHOD_DISC = 4,   /* a circle on the screen about the projected centre (QSplat) */
-  CONIC_METHOD_AUTO = 5    /* conic where the bound of its error is small, else more than ray (picture.md, Laplace) */
+  CONIC_METHOD_AUTO = 5    /* conic where the bound of its error is small, else ray or better (picture.md, Laplace) */
 } conic_method;
 
 #define CONIC_N_METHODS 6
@@ -84,14 +84,15 @@ typedef struct conic_lighting {
   int is_given; /* 0: one white light, as has_light and light say, and 0.05 from all around */
   int n_lights; /* 0 to CONIC_MAX_LIGHTS */
   conic_light lights[CONIC_MAX_LIGHTS];
-  float sky[3], ground[3]; /* linear RGB, 0 to 1e6: what falls on that which faces up, and that which faces down … */
+  float sky[3], ground[3]; /* linear RGB, 0 to 1e6: the light on a surface that faces up, and on one that faces down
+                              … */
   double up[3];            /* … in the world, any length but zero; unused where the two are equal */
   uint64_t reserved[4];
 } conic_lighting;
 
-/* In the place of the number of passes: the plane Z alone, the only one that the image may have. It is how deep a pixel
- * begins to hide: the least depth of a triangle, or of a splat with its ε behind it; of a splat 1 over what
- * docs/reference/picture.md, "Visible", compares with. What is less deep is hidden by nothing. */
+/* Given as the number of passes: draws the plane Z alone, and the image may have no other. Z is then the depth at which
+ * a pixel begins to hide: the least depth of a triangle, or of a splat with its ε behind it. For a splat it is 1 over
+ * the number that docs/reference/picture.md, "Visible", compares with. Surfaces at a smaller depth are not hidden. */
 #define CONIC_PASS_OF_HIDING 2
 
 typedef struct conic_render_options {
@@ -100,25 +101,25 @@ typedef struct conic_render_options {
   conic_kernel kernel;
   float prefilter; /* low-pass variance h in pixels², 0 or more */
   double epsilon;  /* depth tolerance along the ray in world units; negative: from the splat sizes */
-  int passes;      /* 3: blend what belongs to one surface; 1: the nearest splat wins; or CONIC_PASS_OF_HIDING */
+  int passes;      /* 3: blend the splats of one surface; 1: the nearest splat wins; or CONIC_PASS_OF_HIDING */
   int cull_back;   /* leave out splats that face away */
   double near_z;   /* nothing nearer in camera-space z is drawn; 0: 1e-4 × the diagonal of the finite centres' box */
-  double splat_length; /* what conic_splats_length gives; 0: found anew by every call */
+  double splat_length; /* conic_splats_length's result; 0: every call finds it anew */
   conic_shading shading;
   int has_light;   /* 0: headlight, from the viewer */
   double light[3]; /* direction towards the light, world coordinates, any length but zero */
   int has_background;
-  float background[3]; /* linear RGB behind the picture, which then is opaque */
+  float background[3]; /* linear RGB behind the picture, which is then opaque */
   double exposure;     /* in stops: the colour is multiplied by 2^exposure */
   int tile;            /* tile edge in pixels: 8, 16, 32 or 64; changes no bit of the image */
   conic_isa isa;
   conic_lighting lighting; /* in the place of has_light and light */
-  /* Names what the splats are, from 1 to 2⁶³ - 1: a renderer on another device keeps its copy of them, and draws that
-   * where the next picture has the same number and the same arrays. Who changes a splat changes the number. 0: the
-   * splats are looked at anew for every picture. A processor's renderer does so in any case. */
+  /* Names the splats, from 1 to 2⁶³ - 1. A renderer on another device keeps its copy of them, and draws the copy as
+   * long as the number and the arrays stay the same. Whoever changes a splat changes the number. 0: the splats are read
+   * anew for every picture; a processor's renderer always does so. */
   uint64_t splats_version;
-  int skip_hidden; /* what is surely hidden is left out as soon as that is known: the same picture, sooner where many
-                    * surfaces lie behind each other; fragments are then not counted, and 0 in the statistics */
+  int skip_hidden; /* leaves out what is surely hidden as soon as that is known: the same picture, sooner where many
+                      surfaces lie behind each other. Fragments are then not counted, and 0 in the statistics */
 } conic_render_options;
 
 /* auto, Gaussian with cutoff 1.5, prefilter 1, automatic ε, 3 passes, no culling, Phong with a headlight, no
@@ -127,7 +128,7 @@ CONIC_API void conic_render_options_init_sized(conic_render_options *options, si
 #define conic_render_options_init(options) conic_render_options_init_sized(options, sizeof *(options))
 
 typedef struct conic_render_milliseconds {
-  double lod; /* left at 0: whoever chooses what to draw (conic/octree.h) may add it, to frame too */
+  double lod; /* 0 at first: whoever chooses what to draw (conic/octree.h) may add its time, to frame too */
   double setup, bin, visibility, accumulate, resolve, frame;
   uint64_t reserved[8];
 } conic_render_milliseconds;
@@ -137,7 +138,7 @@ typedef struct conic_render_statistics {
   uint64_t splats_culled;  /* behind near, off-screen, back-facing */
   uint64_t splats_skipped; /* not finite, or without area where nothing widens them */
   uint64_t splats_drawn;
-  uint64_t splats_fallback;                     /* of the drawn: not by the method's own formula */
+  uint64_t splats_fallback;                     /* of the drawn: by another formula than the method's own */
   uint64_t splats_by_method[CONIC_MAX_METHODS]; /* of the drawn, by the formula used */
   uint64_t fragments;                           /* splat–pixel pairs inside a cutoff */
   uint64_t pixels_covered;
@@ -152,11 +153,11 @@ typedef struct conic_render_statistics {
   int threads, tile;
   const char *isa;              /* what the hot loops used; static */
   conic_render_milliseconds ms; /* wall-clock; visibility, accumulate and resolve are shares of the tiles' time */
-  uint64_t splats_by_laplace;   /* of those that splats_by_method counts as ray: by Laplace's method */
+  uint64_t splats_by_laplace;   /* of the splats that splats_by_method counts as ray: by Laplace's method */
   uint64_t reserved[15];
 } conic_render_statistics;
 
-/* The near distance that near_z = 0 stands for. Looks at every centre; who draws many frames asks once. */
+/* The near distance that near_z = 0 stands for. It reads every centre: to draw many frames, ask once. */
 CONIC_API double conic_default_near(const conic_splats *splats);
 
 /* A renderer keeps the memory of a frame from one frame to the next. One thread at a time. */
@@ -175,11 +176,11 @@ CONIC_API conic_status conic_render(conic_renderer *renderer, const conic_splats
 
 #define CONIC_MAX_SAMPLES 16
 
-/* The same with samples × samples samples a pixel (docs/reference/picture.md): the picture is drawn so many times as
- * wide and as high, the prefilter in px² of that, and reduced. 1 is conic_render itself; samples times the image's size
- * is 65535 at most. Needs memory for up to 2²⁴ samples or one row of the image's, whichever is more, at 4 bytes a
- * channel, beside the renderer's. In `statistics`, fragments and pixels_covered count samples. `context` is the
- * renderer's. */
+/* conic_render with samples × samples samples a pixel (docs/reference/picture.md): the picture is drawn `samples` times
+ * as wide and as high, with the prefilter in px² of that picture, and reduced. 1 is conic_render itself; samples times
+ * the image's size is 65535 at most. Besides the renderer's memory it needs room for up to 2²⁴ samples or one row of
+ * the image's, whichever is more, at 4 bytes a channel. In `statistics`, fragments and pixels_covered count samples.
+ * `context` is the renderer's. */
 CONIC_API conic_status conic_render_samples(conic_context *context, conic_renderer *renderer,
                                             const conic_splats *splats, const conic_camera *camera,
                                             const conic_render_options *options, int samples, conic_image *image,

@@ -54,15 +54,15 @@ CONIC_API void conic_scene_options_init_sized(conic_scene_options *options, size
 /* A scene that is ready to be sampled; any split into batches gives the same splats. */
 typedef struct conic_scene conic_scene;
 
-/* Prepares the scene, in memory that grows with the square root of the count at most. On success the caller owns
+/* Prepares the scene, in memory that grows at most with the square root of the count. On success the caller owns
  * *scene, which must not outlive the context; on failure it is null. Errors: ARGUMENT, MEMORY, CANCELLED. */
 CONIC_API conic_status conic_scene_create(conic_context *context, const conic_scene_options *options,
                                           conic_scene **scene);
 
-/* Samples `n` splats of the scene from number `first` on into `splats`, which the caller has allocated with the
- * arrays of conic_scene_fields for at least n and which gets the count n; other arrays are left as they are. Clip lines
- * are made for every splat that a sharp edge is nearer to than twice its outline's radius. Circles: outline radius 1.5
- * × sqrt(area / count). Errors: ARGUMENT, CANCELLED. */
+/* Samples `n` splats of the scene, from number `first` on, into `splats`. The caller has allocated it with the arrays
+ * of conic_scene_fields for at least n splats; its count becomes n, and other arrays stay as they are. A splat gets
+ * clip lines where a sharp edge is nearer than twice its outline's radius. Circles: outline radius 1.5 × sqrt(area /
+ * count). Errors: ARGUMENT, CANCELLED. */
 CONIC_API conic_status conic_scene_sample(conic_scene *scene, size_t first, size_t n, conic_splats *splats);
 
 /* Null is allowed. */

@@ -1,8 +1,8 @@
 /* Shots: a picture as one value. A shot holds every number that decides a bit of the picture, and nothing else: no
- * names of outputs, no threads, no state and no results. conic_shot_draw makes the picture of it: accumulated, lit,
- * gathered from views and moved, as the shot says.
+ * names of outputs, no threads, no state and no results. conic_shot_draw makes its picture: accumulated, lit, gathered
+ * from views and moved, as the shot says.
  *
- * Whoever makes a shot fills it in: by hand, by the functions below, which look at the source, or from a file
+ * To make a shot, fill it in by hand, with the functions below, which look at the source, or from a file
  * (conic/shot_file.h). From then on it is constant. */
 #ifndef CONIC_SHOT_H
 #define CONIC_SHOT_H
@@ -48,8 +48,8 @@ typedef struct conic_camera_way {
 typedef struct conic_stereo_eye {
   double shift;          /* from the camera to the right, in world units; 0: the camera itself */
   double convergence;    /* the depth at which both eyes' pictures agree; 0: they look in parallel */
-  double center[3];      /* in the place of the convergence, where finds_convergence is set: the depth of this point */
-  int finds_convergence; /* 1; of cameras that distort it is then parallel */
+  double center[3];      /* used in place of `convergence` where finds_convergence is set: the depth of this point */
+  int finds_convergence; /* 1: the depth of `center`; cameras that distort then look in parallel */
   int reserved_int;
   uint64_t reserved[2];
 } conic_stereo_eye;
@@ -89,7 +89,7 @@ typedef struct conic_shot {
 
   /* The rest is of pictures that are means of samples. */
   uint64_t n_samples;      /* 0: the picture is drawn at once */
-  double noise;            /* above 0: fewer samples are enough when the picture is so near to its end */
+  double noise;            /* above 0: the noise that is good enough, so that fewer samples may do */
   conic_aperture aperture; /* its focus is the depth, where focus_kind says DEPTH */
   conic_focus_kind focus_kind;
   int is_shutter_open;   /* 0: all samples are of the same moment */
@@ -100,27 +100,34 @@ typedef struct conic_shot {
   uint64_t reserved[8];
 } conic_shot;
 
-/* The library's defaults: colour and depth of 1024 × 1024 pixels, of a camera that is still to be filled in. */
+/* The library's defaults: colour and depth of 1024 × 1024 pixels; the camera must be filled in. */
 CONIC_API void conic_shot_init_sized(conic_shot *shot, size_t size);
 #define conic_shot_init(shot) conic_shot_init_sized(shot, sizeof *(shot))
 
-/* What came of a picture. */
+/* What is known of a drawn picture. */
 typedef struct conic_shot_outcome {
-  conic_render_statistics statistics; /* of the picture; of means, of that through the middle of lens and shutter */
-  double light_ms;                    /* what hiding light took */
-  conic_accumulation_facts samples;   /* of means: which samples they are of */
-  double noise;                       /* of means: how far they are from their end; below 0: it is not known */
-  double focus_depth;                 /* of a lens: where it is sharp */
+  conic_render_statistics statistics; /* of the picture; for a mean, of the sample through the middle of lens and
+                                         shutter */
+  double light_ms;                    /* the time of hiding light */
+  conic_accumulation_facts samples;   /* of means: the samples they are of */
+  double noise;                       /* of means: how far they are from their end; below 0: not known */
+  double focus_depth;                 /* of a lens: the depth at which it is sharp */
   uint64_t reserved[8];
 } conic_shot_outcome;
 
 /* Draws a shot of a source into the planes that `image` has; they should be the shot's, and its size is the camera's.
- * One set of bits comes out, whatever the threads and the machine. What the source says that it chose is the picture's
- * afterwards, but of means and of pictures that are gathered. `outcome` may be null. Errors: ARGUMENT (the shot holds
- * what cannot be, or what the source cannot draw), UNSUPPORTED, INPUT, MEMORY, CANCELLED; the image's contents are then
- * undefined. */
+ * One set of bits comes out, whatever the threads and the machine. Afterwards the source's choice is the picture's,
+ * except for means and gathered pictures. `outcome` may be null. Errors: ARGUMENT (the shot holds impossible values, or
+ * the source cannot draw it), UNSUPPORTED, INPUT, MEMORY, CANCELLED; the image's contents are then undefined. */
 CONIC_API conic_status conic_shot_draw(conic_source *source, conic_renderer *renderer, const conic_shot *shot,
                                        conic_image *image, conic_shot_outcome *outcome);
+
+/* Draws a shot and writes it into an EXR file of 32-bit floats, strip by strip, so that at most `most_bytes` of pixels
+ * are in memory at a time. The file has the bytes that conic_shot_draw and conic_image_write would write. Errors: as
+ * conic_shot_draw; UNSUPPORTED for a picture that is not simply drawn (lit, gathered, a mean, with a backdrop, or of a
+ * source without windows); IO. */
+CONIC_API conic_status conic_shot_write_strips(conic_source *source, conic_renderer *renderer, const conic_shot *shot,
+                                               const char *path, uint64_t most_bytes, conic_shot_outcome *outcome);
 
 /* --- functions that fill in what a shot leaves open --- */
 
@@ -130,8 +137,8 @@ typedef struct conic_shot_framing {
   conic_framing framing; /* its up and elevation unless they are found */
   conic_camera_kind kind;
   int finds_up;        /* 1: the source's `up` is up */
-  int finds_elevation; /* 1: 35 degrees of what lies flat, 0 of who stands within the scene, else 15 */
-  int is_plain;        /* 1: the sphere about the source's box is framed, which takes no look at the source */
+  int finds_elevation; /* 1: 35 degrees for a flat scene, 0 for a camera within the scene, else 15 */
+  int is_plain;        /* 1: the sphere about the source's box is framed, without a look at the source */
   int has_eye; /* 1: the camera stands at `eye`; else where it sees all, or in the middle if it looks all around */
   double eye[3];
   int i_turn, n_turns; /* picture i_turn of n_turns around the scene, whose cameras differ in the azimuth alone */
@@ -155,9 +162,9 @@ CONIC_API conic_status conic_shot_expose(conic_source *source, conic_renderer *r
  * ARGUMENT (the pixel lies outside), and as conic_source_draw. */
 CONIC_API conic_status conic_shot_focus(conic_source *source, conic_renderer *renderer, conic_shot *shot);
 
-/* --- parts of a shot, for who looks at one of them --- */
+/* --- parts of a shot, for callers that need one of them --- */
 
-/* Where sample `index` is taken from, of a shot whose focus is set. The source's inputs are then where they are at its
+/* Where sample `index` is taken from, in a shot whose focus is set. Moves the source's inputs to where they are at its
  * moment. Errors: as conic_shot_camera, conic_motion_apply and conic_sample_place. */
 CONIC_API conic_status conic_shot_sample(conic_source *source, const conic_shot *shot, uint64_t index,
                                          conic_sample *sample);

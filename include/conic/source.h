@@ -1,6 +1,6 @@
-/* Sources: whatever can be drawn, behind one interface. Splat files and raw points, meshes, octrees (.cot), layered
- * point clouds (.lpc, files or URLs), hybrid models (.chy), and polynomial patches about points: who opens one asks
- * what it can do, never what it is. */
+/* Sources: everything that can be drawn, behind one interface. Splat files and raw points, meshes, octrees (.cot),
+ * layered point clouds (.lpc, files or URLs), hybrid models (.chy), and polynomial patches about points. Whoever opens
+ * a source asks what it can do, never what it is. */
 #ifndef CONIC_SOURCE_H
 #define CONIC_SOURCE_H
 
@@ -28,78 +28,78 @@ extern "C" {
 /* What is drawn, and the memory that drawing it keeps. One thread at a time. */
 typedef struct conic_source conic_source;
 
-/* What a file becomes that does not say by itself. */
+/* What a file becomes if it does not say so itself. */
 typedef enum conic_representation {
-  CONIC_AS_POINTS = 0,  /* splats: of a mesh, one a vertex */
+  CONIC_AS_POINTS = 0,  /* splats; a mesh becomes one a vertex */
   CONIC_AS_MESH = 1,    /* triangles, where there are faces */
   CONIC_AS_HYBRID = 2,  /* a mesh becomes a hybrid model */
   CONIC_AS_PATCHES = 3, /* points become samples of the polynomials about them */
-  CONIC_AS_AUTO = 4     /* each file as fits: triangles where it has faces, beside them its points of no face where
-                           these are no leftovers; else splats */
+  CONIC_AS_AUTO = 4     /* each file as fits: with faces, triangles, and the points without a face unless they are
+                           leftovers; else splats */
 } conic_representation;
 
 /* What a source can do besides being drawn, as bits. */
 typedef enum conic_source_ability {
-  CONIC_SOURCE_CHOOSES = 1,  /* draws less than everything: by an error, or within a budget */
-  CONIC_SOURCE_CLUSTERS = 2, /* draws clusters of two kinds: only_kind, and the image's cluster plane */
-  CONIC_SOURCE_STREAMS = 4,  /* draws by itself what it reads meanwhile: levels, deadline, occlusion; and hands nothing
-                                over unless it is opened whole */
+  CONIC_SOURCE_CHOOSES = 1,     /* draws less than everything: by an error, or within a budget */
+  CONIC_SOURCE_CLUSTERS = 2,    /* draws clusters of two kinds: only_kind, and the image's cluster plane */
+  CONIC_SOURCE_STREAMS = 4,     /* draws by itself, and reads meanwhile: levels, deadline, occlusion; hands nothing over
+                                   unless it is opened whole */
   CONIC_SOURCE_COMPOSITES = 8,  /* draws Gaussians, composited by alpha: display values, and planes of its own. Of the
-                                  render options, the background and the instruction set count; nothing is handed over */
-  CONIC_SOURCE_READS_PARTS = 16 /* reads of a file or a URL what it draws, by the options' access */
+                                   render options, the background and the instruction set count; nothing is handed
+                                   over */
+  CONIC_SOURCE_READS_PARTS = 16 /* reads those parts of a file or a URL that it draws, by the options' access */
 } conic_source_ability;
 
 typedef struct conic_source_options {
   size_t size; /* sizeof(conic_source_options), set by the init function */
   conic_representation as;
-  int is_whole;                      /* read every splat of a hierarchy, so that it is handed over, and choose none */
-  float cutoff;                      /* F_g of the kernel that will draw */
-  int n_neighbours;                  /* that a raw point's size is estimated from, 6 to 64 */
-  const char *texture_path;          /* a picture that lies on the mesh in place of its own; null: none */
-  int is_smooth;                     /* a mesh that is drawn as one, or a hybrid, gets vertex normals from its faces */
-  const conic_layers_access *access; /* of what reads parts; null: the defaults */
-  const conic_patches_options *patches; /* but for the cutoff; null: the defaults */
+  int is_whole;                         /* read every splat of a hierarchy and hand all over, without choosing */
+  float cutoff;                         /* F_g of the kernel that will draw */
+  int n_neighbours;                     /* from so many a raw point's size is estimated, 6 to 64 */
+  const char *texture_path;             /* a picture that lies on the mesh in place of its own; null: none */
+  int is_smooth;                        /* a mesh, or a hybrid of one, gets vertex normals from its faces */
+  const conic_layers_access *access;    /* for sources that read parts; null: the defaults */
+  const conic_patches_options *patches; /* without its cutoff; null: the defaults */
   int h_in_spacings;                    /* the patches' surface.h is in median sample spacings */
-  int projects_degrees; /* raw points whose x and y are longitude and latitude are drawn in metres, and said to be */
-  int finds_dots;       /* raw points about which there is no surface become dots, which face each picture's camera */
+  int projects_degrees; /* raw points with longitude and latitude as x and y are drawn in metres, which is logged */
+  int finds_dots;       /* raw points without a surface around them become dots, which face each picture's camera */
 
-  /* What colours are made of; null: they are as the files have them. Heights and normals are of what is drawn whole;
-   * of a .cot, with is_whole; of a .lpc, the values that it keeps. */
+  /* What colours are made of; null: the files' colours. Heights and normals need a source that is drawn whole (a .cot
+   * with is_whole); a .lpc has the values that it keeps. */
   const conic_coloring_options *coloring;
-  const char *columns; /* of conic_read_options: what the columns of text are; null: its header says */
+  const char *columns; /* as in conic_read_options: the columns of text; null: its header says */
   double crease_deg;   /* above 0: triangles of a file without normals are round over edges up to this angle */
   const conic_gaussian_options *gaussians; /* how Gaussian scenes are composited; null: they are splats like others */
-  const char *where; /* which points are wanted, as conic_read_options has it, of files of points and .lpc; null: all */
-  int keeps_alpha;   /* of a file's vertices, as conic_read_options has it */
+  const char *where; /* which points are read, as in conic_read_options, from files of points and .lpc; null: all */
+  int keeps_alpha;   /* of a file's vertices, as in conic_read_options */
 } conic_source_options;
 
 /* Splats, cutoff 1.5, 20 neighbours, no dots, flat faces. */
 CONIC_API void conic_source_options_init_sized(conic_source_options *options, size_t size);
 #define conic_source_options_init(options) conic_source_options_init_sized(options, sizeof *(options))
 
-/* What a source of these files and options could do, told from their first bytes: bits of conic_source_ability. Null
+/* What a source of these files and options could do, judged by their first bytes: bits of conic_source_ability. Null
  * options are the defaults. */
 CONIC_API unsigned conic_source_abilities(const char *const *paths, size_t n_paths,
                                           const conic_source_options *options);
 
-/* Opens `n_paths` files, of any kinds, as one source, and measures it. A hybrid stands alone. Reports what was put
- * right in points to the log. On success the caller owns *source, which must not outlive the context. Null options are
- * the defaults. Errors: as those of the functions that read each kind; ARGUMENT; INPUT where nothing could be drawn. */
+/* Opens `n_paths` files, of any kinds, as one source, and measures it. A hybrid stands alone. Logs the repairs of
+ * points. On success the caller owns *source, which must not outlive the context. Null options are the defaults.
+ * Errors: those of the functions that read each kind; ARGUMENT; INPUT where nothing could be drawn. */
 CONIC_API conic_status conic_source_open(conic_context *context, const char *const *paths, size_t n_paths,
                                          const conic_source_options *options, conic_source **source);
 
-/* Sources of what is in memory already, which they take over: the arguments are empty afterwards, or no longer the
- * caller's, on failure too. `triangles` may be null; splats are to have tangent axes. Errors: ARGUMENT, MEMORY. */
+/* Makes a source from sets in memory, and takes them over: the arguments are empty afterwards, or no longer the
+ * caller's, on failure too. `triangles` may be null; splats must have tangent axes. Errors: ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_source_of_drawing(conic_context *context, conic_splats *splats, conic_triangles *triangles,
                                                conic_source **source);
-/* The octree that a source draws from; null where it is none. */
+/* The octree that a source draws from; null where there is none. */
 CONIC_API const conic_octree *conic_source_octree(const conic_source *source);
 
-/* The Gaussians that a source composites; null where it does not. */
+/* The Gaussians that a source composites; null where there are none. */
 CONIC_API const conic_gaussians *conic_source_gaussians(const conic_source *source);
 
-/* How Gaussians are composited from the next picture on, in the place of what they were opened with; other sources stay
- * as they are. Errors: ARGUMENT. */
+/* Sets how Gaussians are composited from the next picture on; other sources stay as they are. Errors: ARGUMENT. */
 CONIC_API conic_status conic_source_composite_by(conic_source *source, const conic_gaussian_options *options);
 
 CONIC_API conic_status conic_source_of_octree(conic_context *context, conic_octree *octree, conic_source **source);
@@ -108,7 +108,7 @@ CONIC_API conic_status conic_source_of_hybrid(conic_context *context, conic_hybr
 /* Null is allowed. */
 CONIC_API void conic_source_close(conic_source *source);
 
-/* How it is known which way is up. */
+/* How the source's `up` was found. */
 typedef enum conic_up_basis {
   CONIC_UP_HABIT = 0, /* nothing tells: +y, and +z for points in text and .pcd */
   CONIC_UP_KIND = 1,  /* the file, or its kind, says it */
@@ -118,16 +118,16 @@ typedef enum conic_up_basis {
   CONIC_UP_FACING = 5 /* it is a drawing in the plane of x and z, which is looked at from its front: +z */
 } conic_up_basis;
 
-/* What a picture depends on as a whole. */
+/* The measures of the source as a whole, by which pictures are drawn. */
 typedef struct conic_source_scale {
   unsigned abilities;             /* bits of conic_source_ability */
   double minimum[3], maximum[3];  /* box of the finite centres and corners */
   double up[3];                   /* +y; +z where all files are surveys (LAS) */
   double near_z, splat_length;    /* for conic_render_options */
-  double epsilon;                 /* likewise, where the source has one of its own; else negative: automatic */
+  double epsilon;                 /* for conic_render_options, where the source has its own; else negative: automatic */
   double spacing;                 /* the median sample spacing where it is known; else 0: conic_source_spacing */
   uint64_t n_splats, n_triangles; /* at full detail; of a hybrid, as built */
-  int n_levels;                   /* that can be drawn one after the other; 0: all comes at once */
+  int n_levels;                   /* that can be drawn one after the other; 0: everything is drawn at once */
   int has_colors;
   double read_seconds, estimate_seconds; /* what opening it took */
   conic_up_basis up_basis;               /* of `up`: KIND, or HABIT until conic_source_stand has looked */
@@ -136,24 +136,25 @@ typedef struct conic_source_scale {
 /* The source's own; stays until it is closed. */
 CONIC_API const conic_source_scale *conic_source_measure(const conic_source *source);
 
-/* What the colours were made of; null: they are as the files have them. The source's own. */
+/* What the colours were made of; null: the files' colours. The source's own. */
 CONIC_API const conic_coloring *conic_source_coloring(const conic_source *source);
 
-/* The median sample spacing, looked for where it is not known. Errors: ARGUMENT (a hybrid has none), MEMORY, CANCELLED.
- */
+/* The median sample spacing; it is computed if it is not known. Errors: ARGUMENT (a hybrid has none), MEMORY,
+ * CANCELLED. */
 CONIC_API conic_status conic_source_spacing(conic_source *source, double *spacing);
 
-/* A camera that sees all of it; null `framing` is the default one with the source's `up`. Errors: ARGUMENT, INPUT (it
- * reaches farther out than 1e20). */
+/* A camera that sees the whole source; null `framing` is the default one with the source's `up`. Errors: ARGUMENT,
+ * INPUT (it reaches farther out than 1e20). */
 CONIC_API conic_status conic_source_frame(const conic_source *source, const conic_framing *framing,
                                           conic_camera *camera);
 
 /* Where an input is, and what its shape is. */
 typedef struct conic_source_pose {
-  double world_from_rest[3][4]; /* affine: where what its file says goes; the determinant above 0 */
-  /* Shapes beside the input's own: sources of one file each, of as many splats, vertices and normals, which have to
-   * stay open. It is drawn with its places, axes and normals at `part` of the way from the first (null: its own) to the
-   * second (null: it stays). Axes of estimated splats are first turned to where they are nearest. */
+  double world_from_rest[3][4]; /* affine: from the file's coordinates to the world; the determinant is above 0 */
+  /* Other shapes of the input: sources of one file each, with as many splats, vertices and normals, which have to stay
+   * open. The input is drawn with its places, axes and normals at `part` of the way from the first shape (null: its
+   * own) to the second (null: it stays at the first). Axes of estimated splats are first turned to their nearest
+   * match. */
   const conic_source *shapes[2];
   double part; /* 0 to 1 */
   uint64_t reserved[4];
@@ -162,32 +163,32 @@ typedef struct conic_source_pose {
 /* At rest. */
 CONIC_API void conic_source_pose_init(conic_source_pose *pose);
 
-/* Draws input i as poses[i] says, from the next picture on; null: all are at rest, as at first. What is at rest is
- * drawn to the bit as without poses. The scale stays that of rest. A source that is not of splats and triangles in
- * memory takes one pose for all of it, which turns and shifts: its pictures are those of a camera, and of lights, that
- * move the other way, and what it hands over stays where its file says. Errors: ARGUMENT (another number of poses; a
- * pose that is none; a shape that does not fit), UNSUPPORTED (of such a source, anything else), MEMORY. */
+/* Draws input i as poses[i] says, from the next picture on; null: all are at rest, as at first. An input at rest is
+ * drawn as without poses, to the bit. The scale stays that of rest. A source that does not consist of splats and
+ * triangles in memory takes one pose for all of it, which may turn and shift it: its pictures are drawn with the camera
+ * and the lights moved the other way, and what it hands over stays at rest. Errors: ARGUMENT (another number of poses;
+ * a pose that is none; a shape that does not fit), UNSUPPORTED (any other pose of such a source), MEMORY. */
 CONIC_API conic_status conic_source_move(conic_source *source, const conic_source_pose *poses, size_t n_poses);
 
 /* The box of what is drawn: the scale's, unless something moves. */
 CONIC_API void conic_source_box(const conic_source *source, double minimum[3], double maximum[3]);
 
-/* Where no kind of file says which way is up, looks at the shape, and sets the scale's `up` and its basis. Errors: as
+/* Where no file's kind says which way is up, looks at the shape, and sets the scale's `up` and its basis. Errors: as
  * conic_source_choose. */
 CONIC_API conic_status conic_source_stand(conic_source *source);
 
-/* A camera that its outline just fits: conic_drawing_frame of the source, of a hierarchy as far as a pixel shows it.
- * What was chosen before is chosen anew by the next picture. What streams is drawn small from six
- * sides for it, which reads its coarse parts. Null
- * `framing` as there. Errors: as conic_source_frame, conic_source_choose and conic_drawing_frame. */
+/* A camera that just fits the source's outline: conic_drawing_frame of it, for a hierarchy as finely as a pixel shows
+ * it. A choice made before is dropped. A source that streams is drawn small from six sides for this, which reads its
+ * coarse parts. Null `framing` as in conic_source_frame. Errors: as conic_source_frame, conic_source_choose and
+ * conic_drawing_frame. */
 CONIC_API conic_status conic_source_fit(conic_source *source, const conic_framing *framing, float cutoff, int n_turns,
                                         conic_camera *camera, double *near_z);
 
-/* Fills in what the options leave open: near_z and splat_length where they are 0, an epsilon below 0 where the source
+/* Fills in what the options leave open: near_z and splat_length where they are 0, a negative epsilon where the source
  * has its own. Choosing and drawing do so by themselves. */
 CONIC_API void conic_source_settle(const conic_source *source, conic_render_options *render);
 
-/* How one picture is chosen. What a source cannot do is not looked at. */
+/* How one picture is chosen. A source ignores what it cannot do. */
 typedef struct conic_source_view {
   size_t size;                     /* sizeof(conic_source_view), set by the init function */
   double error_px;                 /* above 0: the greatest error on the screen; 0: full detail, a hybrid as built */
@@ -196,51 +197,52 @@ typedef struct conic_source_view {
   int samples;                     /* N × N a pixel */
   int most_levels;                 /* no more levels are drawn; 0: all */
   conic_occlusion occlusion;       /* leave out what is hidden */
-  int may_be_coarser;              /* what cannot be read, or not in time, is drawn coarser */
-  double seconds;                  /* with that: no more is read after so many; 0: no limit */
-  int tolerates_damage;            /* with that: so is what is damaged */
-  double color_error;              /* of a hybrid: as conic_hybrid_view has it */
-  conic_transparency transparency; /* as conic_render_transparent has it; of what keeps opacities: UNSUPPORTED of
-                                    hybrids, of Gaussian scenes, and of an octree that keeps some and draws less than
-                                    everything */
-  double chance;                   /* likewise */
+  int may_be_coarser;              /* parts that cannot be read, or not in time, are drawn coarser */
+  double seconds;                  /* with may_be_coarser: nothing is read after so many; 0: no limit */
+  int tolerates_damage;            /* with may_be_coarser: damaged parts are drawn coarser, too */
+  double color_error;              /* of a hybrid: as in conic_hybrid_view */
+  conic_transparency transparency; /* as in conic_render_transparent, for sources that keep opacities. UNSUPPORTED for
+                                      hybrids, for Gaussian scenes, and for an octree that keeps some and draws less
+                                      than everything */
+  double chance;                   /* as in conic_render_transparent */
 } conic_source_view;
 
 /* Full detail, either kind, one sample, colours by 2 steps. */
 CONIC_API void conic_source_view_init_sized(conic_source_view *view, size_t size);
 #define conic_source_view_init(view) conic_source_view_init_sized(view, sizeof *(view))
 
-/* What the last picture was, or is to be, drawn of. */
+/* The contents of the last picture, or of the next one. */
 typedef struct conic_source_choice {
-  conic_drawing drawing; /* the source's, until the next picture; both null where a source streams, else neither is */
-  const uint32_t *ids;   /* of every splat, what the image's id plane calls it; null: its index */
-  int is_all;            /* all that there is, in its own order: nothing was chosen */
-  double error_px;       /* asked for, or what the budget came to; 0 where nothing was chosen */
+  conic_drawing drawing; /* the source's, until the next picture; both sets are null where the source streams, else
+                            neither is */
+  const uint32_t *ids;   /* for every splat, its number in the image's id plane; null: its index */
+  int is_all;            /* everything, in its own order: nothing was chosen */
+  double error_px;       /* asked for, or what the budget led to; 0 where nothing was chosen */
   uint64_t n_culled;     /* parts that are out of sight */
-  int n_levels;          /* of a source with levels: that were drawn */
-  double color_error;    /* of a hybrid: as conic_hybrid_selection has it */
+  int n_levels;          /* of a source with levels: how many were drawn */
+  double color_error;    /* of a hybrid: as in conic_hybrid_selection */
 } conic_source_choice;
 
-/* Chooses what a camera sees, and hands it over by conic_source_chosen. Null `view` is the default. Errors: ARGUMENT,
- * UNSUPPORTED (it streams), MEMORY, CANCELLED. */
+/* Chooses what a camera sees; conic_source_chosen returns it. Null `view` is the default. Errors: ARGUMENT, UNSUPPORTED
+ * (it streams), MEMORY, CANCELLED. */
 CONIC_API conic_status conic_source_choose(conic_source *source, const conic_camera *camera,
                                            const conic_render_options *render, const conic_source_view *view);
 
 /* The source's own; stays until the next picture. */
 CONIC_API const conic_source_choice *conic_source_chosen(const conic_source *source);
 
-/* What else a splat of the choice is called: "point", "node" or "cluster", and its number; null: nothing. */
+/* What a splat of the choice is part of: "point", "node" or "cluster", and its number; null: nothing. */
 CONIC_API const char *conic_source_name_splat(const conic_source *source, uint32_t splat, uint32_t *number);
 
-/* Which of the files that were opened, from 0, has what an image's id plane calls `id`. What is no id gets a number,
+/* Which of the opened files, from 0, has what an image's id plane calls `id`. A number that is no id gets an answer,
  * too. */
 CONIC_API size_t conic_source_input_of(const conic_source *source, uint32_t id);
 
-/* Names what was chosen in an image that conic_render_drawing drew of it: in the planes id and cluster. */
+/* Puts the names of the choice into the planes id and cluster of an image that conic_render_drawing drew of it. */
 CONIC_API void conic_source_name_image(const conic_source *source, conic_image *image);
 
-/* Chooses, draws into the planes that `image` has, and names what was chosen in its planes id and cluster. What
- * choosing took is part of the statistics' times. Null `view` is the default, and `statistics` may be null. Errors: as
+/* Chooses, draws into the planes that `image` has, and fills in the names in its planes id and cluster. The time of
+ * choosing is part of the statistics. Null `view` is the default, and `statistics` may be null. Errors: as
  * conic_source_choose, conic_render_drawing and conic_layers_draw. */
 CONIC_API conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
                                          const conic_render_options *render, const conic_source_view *view,
@@ -253,12 +255,12 @@ typedef enum conic_fact_type {
   CONIC_FACT_NUMBER = 1,
   CONIC_FACT_TRUTH = 2, /* in `count` */
   CONIC_FACT_TEXT = 3,
-  CONIC_FACT_OBJECT = 4, /* what follows up to its end belongs to it */
-  CONIC_FACT_ARRAY = 5,  /* likewise; the items have no keys */
+  CONIC_FACT_OBJECT = 4, /* the facts up to its end belong to it */
+  CONIC_FACT_ARRAY = 5,  /* like OBJECT; the items have no keys */
   CONIC_FACT_END = 6,
   CONIC_FACT_LINE = 7,   /* for people: `key` is a label, and `text` says what other facts say in numbers */
-  CONIC_FACT_DEFECT = 8, /* `count` things that are wrong, which `text` describes */
-  CONIC_FACT_FAULT = 9   /* all of it cannot be drawn: `text` says why */
+  CONIC_FACT_DEFECT = 8, /* `count` defects, which `text` describes */
+  CONIC_FACT_FAULT = 9   /* the source cannot be drawn as a whole: `text` says why */
 } conic_fact_type;
 
 typedef struct conic_fact {
@@ -271,13 +273,13 @@ typedef struct conic_fact {
 
 typedef struct conic_facts conic_facts;
 
-/* Of the last picture: the object "primitives", what was culled, its error, and what else the source counts. On success
- * the caller owns *facts. Errors: MEMORY. */
+/* Facts of the last picture: the object "primitives", what was culled, its error, and the source's other counts. On
+ * success the caller owns *facts. Errors: MEMORY. */
 CONIC_API conic_status conic_source_describe(const conic_source *source, const conic_render_statistics *statistics,
                                              conic_facts **facts);
 
-/* Of a file, as it stands: first its kind, then what it holds; `is_checked`: also the object "defects", for which all
- * of it is looked at. On success the caller owns *facts. Errors: as those of the functions that read each kind. */
+/* Facts of a file: first its kind, then its contents; with `is_checked` also the object "defects", for which the whole
+ * file is read. On success the caller owns *facts. Errors: those of the functions that read each kind. */
 CONIC_API conic_status conic_source_inspect(conic_context *context, const char *path, int is_checked,
                                             conic_facts **facts);
 

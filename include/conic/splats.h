@@ -23,13 +23,12 @@ typedef enum conic_clip_operator {
   CONIC_CLIP_OR = 1   /* what either keeps: a concave one */
 } conic_clip_operator;
 
-/* The clip lines of one splat, in its own plane: a line (a, b, c) keeps the points p + u·t_u + v·t_v with
- * a·u + b·v + c ≥ 0. A line that is not finite, or whose a and b are both 0, is none, and is left out
- * (docs/reference/picture.md, Clip lines). */
+/* The clip lines of one splat, in its own plane: a line (a, b, c) keeps the points p + u·t_u + v·t_v with a·u + b·v + c
+ * ≥ 0. A line that is not finite, or whose a and b are both 0, is not drawn (docs/reference/picture.md, Clip lines). */
 typedef struct conic_clip {
   uint32_t splat;     /* its index in the set */
   uint16_t n_lines;   /* 1 or 2 */
-  uint16_t operation; /* conic_clip_operator; of two lines */
+  uint16_t operation; /* conic_clip_operator; used with two lines */
   float lines[2][3];
 } conic_clip;
 
@@ -40,13 +39,13 @@ typedef struct conic_splats_strides {
   size_t position, tangent_u, tangent_v, normal, color, opacity, dot, scalar, sight;
 } conic_splats_strides;
 
-/* May be filled by hand with pointers to the caller's own arrays (then never pass it to conic_splats_release), or
- * by a function of the library (then release it so). Optional arrays are null when absent. An optional
- * three-component array is there in all three components or in none, else the set is an ARGUMENT error.
+/* May be filled by hand with pointers to the caller's own arrays (then never pass it to conic_splats_release), or by a
+ * function of the library (then release it so). Optional arrays are null when absent. A three-component array has all
+ * three components or none; else the set is an ARGUMENT error.
  *
- * Functions that only read a set allow strides. Most copy such arrays side by side in every call: to draw a set many
- * times, append it to an empty one, and draw that. Functions that change a set or take it over refuse strides; sets
- * that the library fills have none. */
+ * Functions that only read a set allow strides. Most of them first copy such arrays side by side, in every call: to
+ * draw a set many times, append it to an empty set, and draw that one. Functions that change a set or take it over
+ * refuse strides. Sets that the library fills have none. */
 typedef struct conic_splats {
   size_t count;
 
@@ -59,7 +58,7 @@ typedef struct conic_splats {
   float *tangent_u[3];
   float *tangent_v[3];
 
-  /* Normals as read from the file, of any length; optional. Only looked at where tangent axes are missing. */
+  /* Normals as read from the file, of any length; optional. Used only where tangent axes are missing. */
   float *normal[3];
 
   /* Linear RGB, optional (null: white). */
@@ -69,26 +68,26 @@ typedef struct conic_splats {
   float *opacity;
 
   /* Clip lines, for the splats that have some; optional (null: none). Records in ascending order of `splat`, at most
-   * one a splat and all below `count`. */
+   * one a splat, all below `count`. */
   size_t n_clips;
   conic_clip *clips;
 
   conic_splats_strides strides;
 
-  /* Which splats are dots: other than 0 where one is; optional (null: none). Of a dot, the axes as kept give the size
-   * and the normal. The renderer does not look at this: see conic_splats_face. */
+  /* Which splats are dots: not 0 for a dot; optional (null: none). A dot's kept axes give its size and normal. The
+   * renderer ignores this array: see conic_splats_face. */
   float *dot;
 
-  /* One more value a splat, such as a scan's intensity, of which colours can be made (conic/coloring.h); optional, and
-   * of no matter to the picture. NaN where a splat has none. */
+  /* One more value a splat, such as a scan's intensity, from which colours can be made (conic/coloring.h); optional. It
+   * does not change the picture. NaN where a splat has none. */
   float *scalar;
 
-  /* From each point towards the scanner that saw it, of any length; optional. A normal that has to be guessed gets the
-   * sign that turns it there; nothing else looks at this, and zero says nothing. */
+  /* From each point towards the scanner that saw it, of any length; optional. It decides the sign of a normal that has
+   * to be guessed, and nothing else. Zero says nothing. */
   float *sight[3];
 
-  /* What the points of a file that was read have by name, where that was asked for (conic_read_options.keep); else
-   * null. The library's own; functions that make a set of another leave it out. */
+  /* The values that a file's points have by name, where they were asked for (conic_read_options.keep); else null. The
+   * library owns them. Functions that make one set from another leave them out. */
   struct conic_point_values *values;
   uint64_t reserved[3];
 } conic_splats;
@@ -106,7 +105,7 @@ typedef enum conic_splats_field {
 } conic_splats_field;
 
 /* Allocates a set of `count` splats with the optional arrays of `fields` (bits of conic_splats_field), contents
- * undefined, origin zero. Of clip lines there is room for one record a splat, and n_clips is 0. On failure *splats is
+ * undefined, origin zero. There is room for one record of clip lines a splat; n_clips is 0. On failure *splats is
  * empty. Errors: ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_splats_allocate(conic_context *context, size_t count, unsigned fields,
                                              conic_splats *splats);
@@ -114,7 +113,7 @@ CONIC_API conic_status conic_splats_allocate(conic_context *context, size_t coun
 /* Which optional arrays the set has, as bits of conic_splats_field. */
 CONIC_API unsigned conic_splats_fields(const conic_splats *splats);
 
-/* Appends `more` to `splats`, rebased to its origin. Arrays that only one of the two has are filled for the other
+/* Appends `more` to `splats`, rebased to its origin. Where only one of the two has an array, the other's part is filled
  * with what absence means (white, opacity 1; zero normals and axes, which conic_model_to_splats repairs; NaN scalars;
  * no clip lines). `more` is left as it was; on failure `splats` is too. Errors: MEMORY. */
 CONIC_API conic_status conic_splats_append(conic_context *context, conic_splats *splats, const conic_splats *more);
@@ -122,15 +121,15 @@ CONIC_API conic_status conic_splats_append(conic_context *context, conic_splats 
 /* How many of the splats are dots. */
 CONIC_API size_t conic_splats_count_dots(const conic_splats *splats);
 
-/* Writes the axes by which the dots look round to a camera, `count` floats in each array; those of other splats are
- * left as they are. A dot is seen as a disc whose radius is the longer of its axes, about its own normal (of both signs
- * the one that faces the camera) as far as that leans at most 60° away. The axes in the set stay as they are, so that
- * they serve the next camera. Errors: ARGUMENT (no tangent axes; two arrays of three components that are not there). */
+/* Writes the axes with which dots look round to a camera, `count` floats in each array; those of other splats stay. A
+ * dot is seen as a disc whose radius is the longer of its axes. The disc's normal is the dot's own, with the sign that
+ * faces the camera, if it leans at most 60° away; else it is tilted to 60°. The axes in the set stay, to serve the next
+ * camera. Errors: ARGUMENT (no tangent axes; two arrays of three components that are not there). */
 CONIC_API conic_status conic_splats_face(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                                          float *const tangent_u[3], float *const tangent_v[3]);
 
-/* Takes away the clip lines that are none, and those whose record is out of order, names no splat of the set or has no
- * or too many lines: what is left is what the renderer draws. Returns how many records were changed or dropped. */
+/* Takes away clip lines that the renderer does not draw, and records that are out of order, name no splat of the set,
+ * or have no or too many lines. Returns how many records were changed or dropped. */
 CONIC_API size_t conic_splats_repair_clips(conic_splats *splats);
 
 /* Releases the arrays and leaves an empty set; a set of zero bytes is allowed. */
@@ -140,12 +139,12 @@ CONIC_API void conic_splats_release(conic_context *context, conic_splats *splats
  * is 0, minimum and maximum are zero. */
 CONIC_API size_t conic_splats_bounds(const conic_splats *splats, double minimum[3], double maximum[3]);
 
-/* The lower median of max(|t_u|, |t_v|) over the splats whose centre and axes are finite and whose axes are not zero:
- * the scale of the automatic ε (docs/reference/picture.md). 0 where there is none. Errors: MEMORY. */
+/* The lower median of max(|t_u|, |t_v|) over the splats with finite centre and axes, and axes other than zero: the
+ * scale of the automatic ε (docs/reference/picture.md). 0 where there is none. Errors: MEMORY. */
 CONIC_API conic_status conic_splats_length(conic_context *context, const conic_splats *splats, double *length);
 
-/* The median sample spacing in world units: √(area a point), from each point's eight nearest neighbours. A unit for
- * lengths that fits any scan. 0 where there are not two points apart. Errors: ARGUMENT (over 2³² - 2 points), MEMORY,
+/* The median sample spacing in world units: √(area a point), from each point's eight nearest neighbours. Lengths in
+ * this unit fit any scan. 0 where no two points lie apart. Errors: ARGUMENT (over 2³² - 2 points), MEMORY,
  * CANCELLED. */
 CONIC_API conic_status conic_splats_spacing(conic_context *context, const conic_splats *splats, double *spacing);
 

@@ -14,7 +14,7 @@ extern "C" {
 /* The values are pinned: a later version adds to them and never renumbers. */
 typedef enum conic_status {
   CONIC_OK = 0,
-  /* The caller asked for something that has no meaning: a null pointer, a size out of range, an unknown name. */
+  /* The caller asked for something without meaning: a null pointer, a size out of range, an unknown name. */
   CONIC_ERROR_ARGUMENT = 10,
   /* An input cannot be used: missing, unreadable, malformed, or with nothing in it to draw. */
   CONIC_ERROR_INPUT = 20,

@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* What lies beyond the picture's borders. */
+/* What is seen beyond the picture's borders. */
 typedef enum conic_texture_wrap {
   CONIC_WRAP_REPEAT = 0, /* the picture again */
   CONIC_WRAP_CLAMP = 1   /* its outermost texels */
@@ -35,17 +35,17 @@ CONIC_API void conic_texture_destroy(conic_texture *texture);
 CONIC_API int conic_texture_width(const conic_texture *texture);
 CONIC_API int conic_texture_height(const conic_texture *texture);
 
-/* The linear colour at (u, v), filtered over the footprint that the parallelogram of `along` and `across` spans: how
- * (u, v) changes over the two sides of what is to be covered, a pixel or a sample's area. Zero sides give the bilinear
- * colour. What is not finite counts as 0. */
+/* The linear colour at (u, v), filtered over a parallelogram with the sides `along` and `across`: the changes of (u, v)
+ * over the two sides of the area to be covered, a pixel's or a sample's. Zero sides give the bilinear colour. Numbers
+ * that are not finite count as 0. */
 CONIC_API void conic_texture_sample(const conic_texture *texture, const float uv[2], const float along[2],
                                     const float across[2], float color[3]);
 
 /* Whether a texel's alpha is below 1. */
 CONIC_API int conic_texture_has_alpha(const conic_texture *texture);
 
-/* The same with alpha, each texel's colour in proportion to its own: rgba is not premultiplied, and black where alpha
- * is 0. Of a texture without alpha, conic_texture_sample's colour and 1. */
+/* conic_texture_sample with alpha. Each texel's colour weighs in proportion to its alpha; rgba is not premultiplied,
+ * and black where alpha is 0. A texture without alpha gives conic_texture_sample's colour and 1. */
 CONIC_API void conic_texture_sample_rgba(const conic_texture *texture, const float uv[2], const float along[2],
                                          const float across[2], float rgba[4]);
 

@@ -15,8 +15,8 @@ extern "C" {
 /* "0.6.0"; static. */
 CONIC_API const char *conic_version(void);
 
-/* A library that conic can use, and whether it does here: it was there when conic was built, and, for OpenImageIO
- * and Assimp, so is the module that leads to it. */
+/* A library that conic can use, and whether it does here. It does where the library was there when conic was built;
+ * OpenImageIO and Assimp also need the module that leads to them. */
 typedef struct conic_feature {
   const char *name; /* "OpenEXR", "OpenImageIO", "OpenCL", "zstd", "CURL", "libpng", "Assimp", "zlib", "libwebp",
                        "libxml2" */

@@ -1,12 +1,14 @@
-/* The clusters of a mesh, one by one, and what their surface is at a place. */
+/* The clusters of a mesh: what their surface is at a place, and where they meet. */
 #ifndef CONIC_CLUSTER_H
 #define CONIC_CLUSTER_H
+
+#include <stdint.h>
 
 #include "conic/triangles.h"
 #include "lod/mesh/mesh_clusters.h"
 
-/* Splats that are drawn as what they are, beside a surface: they are its last faces, two each, a rectangle about the
- * ellipse; and clusters have faces of one kind only. */
+/* Splats that are drawn as what they are, beside a surface. In the mesh they are the last faces, two each: a rectangle
+ * about the ellipse. A cluster has faces of one kind only. */
 typedef struct conic_kept_splats {
   size_t n_surface;  /* faces before them */
   size_t n, n_discs; /* dots come after those */
@@ -45,16 +47,58 @@ double conic_cluster_edge_length(const conic_clustered_mesh *mesh, uint32_t clus
 /* Unit normal of a face's plane, on the side that its neighbours agree upon; zero where it has no area. */
 void conic_cluster_face_normal(const conic_clustered_mesh *mesh, uint32_t face, double normal[3]);
 
-/* At barycentric coordinates of a face: the place (from the origin), the normal that it is shaded with, not unit, on
- * the side of `facing`, and the colour without the texture. */
+/* What a face has at barycentric coordinates: the place (from the origin); the normal that it is shaded with, not unit,
+ * on the side of `facing`; and the colour without the texture. */
 void conic_cluster_place(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double place[3]);
 void conic_cluster_normal(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], const double facing[3],
                           double normal[3]);
 void conic_cluster_color(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double color[3]);
 
-/* What the texture multiplies the colour with at a place, filtered over a square of that side on the face: white
- * where there is none. */
+/* The texture at a place, with which the colour is multiplied. It is filtered over a square of that side on the face,
+ * and white where there is no texture. */
 void conic_cluster_texel(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double side,
                          double color[3]);
+
+/* --- where clusters meet --- */
+
+/* A vertex where two clusters meet. Each cluster has one of its own there; the lower cluster's is the first. `stage` is
+ * the last stage of simplification at which it is still there. */
+typedef struct conic_cluster_slot {
+  uint32_t vertices[2], stage;
+} conic_cluster_slot;
+
+#define CONIC_CLUSTER_ALWAYS UINT32_MAX
+
+/* An edge of a level's triangle along which vertices were left out. Where the cluster across still has some of them,
+ * they are put in when both are drawn. */
+typedef struct conic_cluster_border {
+  uint32_t edge;     /* 4 · triangle, from the level's first, + the corner where the edge begins */
+  uint32_t from, to; /* slots of its two ends, in a model of the cluster's own; what was left out is between */
+  uint32_t across;   /* the other cluster */
+} conic_cluster_border;
+
+/* --- chains --- */
+
+#define CONIC_NO_SLOT UINT32_MAX
+
+/* A chain is where two clusters meet, from one corner that a third has too to the next. Its vertices are slots[first …
+ * first + n), the ends among them. A closed one ends in the vertex where it begins. */
+typedef struct conic_chain {
+  uint32_t first, n;
+  uint32_t clusters[2];
+} conic_chain;
+
+typedef struct conic_cluster_chains {
+  size_t n_chains, n_slots;
+  conic_chain *chains; /* each has something between its ends */
+  conic_cluster_slot *slots;
+  uint32_t *of_vertex; /* the slot of each place between a chain's ends; else CONIC_NO_SLOT */
+} conic_cluster_chains;
+
+/* Finds the chains between clusters of one region; what lies between regions is not simplified. `region` is by cluster.
+ * All slots last for ever at first. On success the caller releases *chains; on failure it is empty. Errors: MEMORY. */
+conic_status conic_cluster_chains_find(conic_context *context, const conic_clustered_mesh *mesh, const uint32_t *region,
+                                       conic_cluster_chains *chains);
+void conic_cluster_chains_release(conic_context *context, conic_cluster_chains *chains);
 
 #endif

@@ -1,4 +1,6 @@
-#include "lod/clusters/cluster_chains.h"
+/* Chains: where two clusters meet, from one corner that a third has too to the next. A simpler cluster may leave out
+ * what lies between a chain's ends. What a finer neighbour still has of it is put into both when they are drawn. */
+#include "lod/clusters/cluster.h"
 
 #include <string.h>
 
@@ -70,7 +72,7 @@ static void add_edge(finding *f, uint32_t face, int corner, uint32_t other) {
   }
 }
 
-/* Of two faces the first tells of their edge. Open and crowded edges, and those between regions, end all chains. */
+/* The first of two faces tells of their edge. Open and crowded edges, and those between regions, end all chains. */
 static void find_edges(finding *f) {
   size_t n_faces = f->mesh->starts[f->mesh->clusters->n_clusters];
   for (size_t i = 0; i < n_faces; i++)
@@ -110,7 +112,7 @@ static void put_slot(finding *f, uint32_t place, int is_between_ends) {
   c->slots[c->n_slots++] = (conic_cluster_slot){{vertices[0], vertices[1]}, CONIC_CLUSTER_ALWAYS};
 }
 
-/* From an edge back to the chain's beginning, then along all of it. A closed one begins where the edge does. */
+/* Goes from an edge back to the chain's beginning, then along all of it. A closed chain begins where the edge does. */
 static void trace(finding *f, uint32_t edge) {
   conic_cluster_chains *c = f->chains;
   uint32_t place = f->edges[edge].ends[0], first = edge, closed_at = place;

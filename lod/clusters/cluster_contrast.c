@@ -1,4 +1,5 @@
-#include "lod/clusters/cluster_contrast.h"
+/* How much the colours differ in what each site stands for. */
+#include "lod/clusters/cluster_sites.h"
 
 #include "core/base/color.h"
 #include "core/base/vectors.h"

@@ -1,4 +1,5 @@
-#include "lod/clusters/cluster_error.h"
+/* How far a site's surfel is from what it stands for, and from the mesh. */
+#include "lod/clusters/cluster_sites.h"
 
 #include <math.h>
 #include <string.h>
@@ -73,7 +74,7 @@ static int largest_of(const double bounds[N_ENDS]) {
   return largest;
 }
 
-/* Of place k of a site, the end of an axis that is nearest. */
+/* The end of an axis that is nearest to place k of a site. */
 static int end_of(int k) {
   return k < 16 ? (k + 2) / 4 % 4 : k - 16;
 }
@@ -111,8 +112,8 @@ static double greatest_way(const conic_site *site) {
   return (conic_length(d) + site->ellipse.reach) * rounding;
 }
 
-/* What is known without a look at the mesh: the foot lies on it, and so do the supports, of which nobody asks where the
- * foot is near enough. */
+/* What is known without a look at the mesh. The foot lies on it, and so do the supports, which nobody asks for where
+ * the foot is near enough. */
 static void begin_bounds(const conic_sampler *s, const conic_site *site, double enough, double bounds[N_ENDS]) {
   double way = s->job->is_off_mesh ? HUGE_VAL : greatest_way(site);
   for (int i = 0; i < N_ENDS; i++)
@@ -121,10 +122,10 @@ static void begin_bounds(const conic_sampler *s, const conic_site *site, double 
     bound_by_supports(s, site, way, bounds);
 }
 
-/* Of the places that are not known to be near enough, the one that may be farthest is measured first: that is soon far
- * enough from those before, or near enough to them, for the others to need no look. Most are near the face that was
- * nearest to one before, or on which the support lies that is farthest that way. Returns the largest distance, or
- * `known`. */
+/* Measures the places that are not known to be near enough, at first the one that may be farthest. That is soon far
+ * enough from those before, or near enough to them, so that the others need no look. Most are near the face that was
+ * nearest to the place before, or near the face of the support that is farthest that way. Returns the largest distance,
+ * or `known`. */
 static double measure_ends(const conic_sampler *s, const conic_site *site, double known, double bounds[N_ENDS]) {
   double at[N_ENDS][3];
   uint32_t near[4];

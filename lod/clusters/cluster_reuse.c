@@ -1,4 +1,5 @@
-#include "lod/clusters/cluster_reuse.h"
+/* What one pass over a cluster need not do again: sites whose surroundings are as they were in the last. */
+#include "lod/clusters/cluster_sites.h"
 
 void conic_cluster_end_pass(conic_sampler *s) {
   conic_sampling_pass now = {.n_sites = s->n_sites,

@@ -6,10 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/real.h"
-#include "lod/clusters/cluster_contrast.h"
-#include "lod/clusters/cluster_error.h"
-#include "lod/clusters/cluster_reuse.h"
-#include "lod/clusters/cluster_shape.h"
+#include "lod/clusters/cluster_sites.h"
 
 conic_status conic_sampler_create(conic_context *context, conic_sampler **sampler) {
   *sampler = conic_memory_allocate_zeroed(context, 1, sizeof **sampler);
@@ -22,18 +19,10 @@ conic_status conic_sampler_create(conic_context *context, conic_sampler **sample
 void conic_sampler_destroy(conic_sampler *sampler) {
   if (!sampler)
     return;
-  conic_memory_release(sampler->context, sampler->last.lattices);
-  conic_memory_release(sampler->context, sampler->last.owner);
-  conic_memory_release(sampler->context, sampler->last.sites);
-  conic_memory_release(sampler->context, sampler->lattices);
-  conic_memory_release(sampler->context, sampler->facing);
-  conic_memory_release(sampler->context, sampler->depth);
-  conic_memory_release(sampler->context, sampler->places);
-  conic_memory_release(sampler->context, sampler->lattice_of);
-  conic_memory_release(sampler->context, sampler->owner);
-  conic_memory_release(sampler->context, sampler->candidates);
-  conic_memory_release(sampler->context, sampler->seeds);
-  conic_memory_release(sampler->context, sampler->sites);
+  void *const owned[] = {sampler->last.lattices, sampler->last.owner, sampler->last.sites, sampler->lattices,
+                         sampler->facing,        sampler->depth,      sampler->places,     sampler->lattice_of,
+                         sampler->owner,         sampler->candidates, sampler->seeds,      sampler->sites};
+  conic_memory_release_all(sampler->context, owned, sizeof owned / sizeof *owned);
   conic_place_table_release(sampler->context, &sampler->table);
   conic_memory_release(sampler->context, sampler->supports);
   conic_memory_release(sampler->context, sampler->of_sites);
@@ -149,8 +138,7 @@ static double error_to_part(const conic_sampler *s) {
   return HUGE_VAL;
 }
 
-/* Halves the spacing on the faces of which a site with a larger error stands for something. Returns whether there are
- * any. */
+/* Halves the spacing on the faces for which a site with a larger error stands. Returns whether there are any. */
 static int refine_faces(conic_sampler *s, double limit) {
   int is_any = 0;
   for (size_t k = 0; k < s->n_lattices; k++) {
@@ -184,8 +172,8 @@ static int has_texture(const conic_triangles *t) {
   return is_any;
 }
 
-/* Whether a wider spacing would give the same sites: faces have no places but their corners, each of which is near
- * every other, and nothing is to be parted. (Of textures a wider one sees less.) */
+/* Whether a wider spacing would give the same sites. Then faces have no places but their corners, all of them near each
+ * other, and nothing is to be split. (A wider spacing sees less of textures.) */
 static int is_coarsest(const conic_sampler *s) {
   double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, square = 0.0;
   int is_plain = s->finest == 0 && !has_texture(s->job->mesh->triangles);

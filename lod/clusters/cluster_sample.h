@@ -15,7 +15,7 @@ typedef struct conic_surfel {
 typedef struct conic_surfels {
   size_t n, room;
   conic_surfel *items;
-  /* No point of the faces is farther from the surfel that stands for it; nor a surfel's outline from the mesh, as
+  /* No point of the faces is farther from the surfel that stands for it. Nor is a surfel's outline from the mesh, as
    * measured at forty places. */
   double error;
   double refined_error;     /* the same as measured at the twenty places by which surfels are laid closer or not */
@@ -34,7 +34,7 @@ typedef struct conic_sampling_job {
   double tolerance; /* surfels whose error is larger are made of closer ones, */
   size_t most;      /* as long as there are no more than these */
   double most_out;  /* how far outlines may be from the mesh; infinite: nobody asks */
-  size_t useful;    /* with more of them the caller has no use for them, and need not know how far they err */
+  size_t useful;    /* the caller has no use for more, and need not know how far these err */
   int is_coarser;   /* the job before was the same cluster's, at half the spacing */
   int is_off_mesh;  /* what sites stand for lies near the mesh, but not on it */
   double cutoff;    /* standard deviations at which a splat ends */
@@ -45,13 +45,13 @@ typedef struct conic_sampler conic_sampler;
 conic_status conic_sampler_create(conic_context *context, conic_sampler **sampler);
 void conic_sampler_destroy(conic_sampler *sampler);
 
-/* Area-weighted blue noise: places at random, none nearer to another than the spacing, until no more go in; those on
- * the cluster's border to triangles or to nothing first. Each stands for what is nearest to it, and its ellipse covers
- * that: together they cover every face, whole. Appends to *surfels. Errors: MEMORY. */
+/* Area-weighted blue noise: places at random, none nearer to another than the spacing, until no more go in. Those on
+ * the cluster's border to triangles or to nothing come first. Each stands for what is nearest to it, and its ellipse
+ * covers that. Together they cover every face whole. Appends to *surfels. Errors: MEMORY. */
 conic_status conic_cluster_sample(conic_sampler *sampler, const conic_sampling_job *job, conic_surfels *surfels);
 
-/* As in HQP §3.3.2: where the lines of a grid of that spacing, along each of the three axes, meet the faces; circles of
- * √3 spacings. For comparison. Appends to *surfels. Errors: MEMORY. */
+/* For comparison, surfels as in HQP §3.3.2: circles of √3 spacings, where the faces are met by the lines of a grid of
+ * that spacing along each of the three axes. Appends to *surfels. Errors: MEMORY. */
 conic_status conic_cluster_sample_box(conic_context *context, const conic_sampling_job *job, conic_surfels *surfels);
 
 /* Room for one more. Errors: MEMORY. */

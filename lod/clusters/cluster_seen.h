@@ -1,5 +1,5 @@
-/* Colours of a mesh as they are seen: in steps of a hundredth of the way from black to white in OKLab, of which two are
- * just visible. */
+/* Colours of a mesh as they are seen. A step is a hundredth of the way from black to white in OKLab; two steps are just
+ * visible. */
 #ifndef CONIC_CLUSTER_SEEN_H
 #define CONIC_CLUSTER_SEEN_H
 
@@ -15,7 +15,7 @@
 int conic_has_seen_colors(const conic_triangles *triangles);
 int conic_has_textures(const conic_triangles *triangles);
 
-/* A place of a triangle whose corners are vertices of the mesh, at most one of each place. */
+/* A place of a triangle. Its corners are vertices of the mesh at three different places. */
 typedef struct conic_seen_place {
   uint32_t corners[3], material;
   double bary[3];
@@ -24,12 +24,10 @@ typedef struct conic_seen_place {
 /* The colour there, in steps; of a texture unfiltered. */
 void conic_seen_color(const conic_triangles *triangles, const conic_seen_place *place, double steps[3]);
 
-/* The greatest difference of colours within a face, by its corners and what of its texture lies between. */
+/* The greatest difference of colours within a face, by its corners and by the texture between them. */
 double conic_seen_contrast(const conic_triangles *triangles, size_t face);
 
-/* What a place of the mesh has become on a triangle: by how many steps its colour differs, and that times the length
- * over which it does. `contrast` is that of its surroundings: a texture that slid by a length differs by as much along
- * its edges, over that length. */
+/* How a colour has changed: by how many steps it differs, and that times the length over which it does. */
 typedef struct conic_seen_change {
   double steps, smear;
 } conic_seen_change;
@@ -57,10 +55,12 @@ static inline conic_seen_change conic_seen_sums_change(const conic_seen_sums *su
   return (conic_seen_change){steps > known.steps ? steps : known.steps, smear > known.smear ? smear : known.smear};
 }
 
+/* What a place of the mesh has become on a triangle. `contrast` is that of its surroundings: along its edges, a texture
+ * that slid by a length differs by as much, over that length. */
 conic_seen_change conic_seen_change_of(const conic_triangles *triangles, const conic_seen_place *before,
                                        double contrast, const conic_seen_place *now);
 
-/* Where on a triangle it is nearest to a place: barycentric coordinates, and the squared distance, as
+/* The point of a triangle that is nearest to a place, in barycentric coordinates. Returns the squared distance, as
  * conic_distance2_to_triangle has it. */
 double conic_seen_nearest(const double at[3], const double *const corners[3], double bary[3]);
 

@@ -1,13 +1,11 @@
-#include "lod/clusters/cluster_shape.h"
+/* A plane for what each site stands for, and an ellipse that covers it. */
+#include "lod/clusters/cluster_sites.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/vectors.h"
-#include "lod/clusters/cluster_contrast.h"
-#include "lod/clusters/cluster_error.h"
-#include "lod/clusters/least_ellipse.h"
 
 /* How far an ellipse reaches beyond what it must cover, and how long it may be. */
 static const double cover = 1.1;
@@ -149,7 +147,8 @@ conic_status conic_cluster_note_support(conic_sampler *s, uint32_t i_site, const
   return CONIC_OK;
 }
 
-/* Where the side from one place to another passes from what is nearest to the one's owner to what is to the other's. */
+/* Finds the point on the way from one place to another that is as near to the owner of the one as to the owner of the
+ * other. */
 static void find_border(const conic_sampler *s, const small_triangle *t, int from, int to, double at[3]) {
   const conic_site *a = &s->sites[t->owners[from]], *b = &s->sites[t->owners[to]];
   double more = 0.0, slope = 0.0, share;

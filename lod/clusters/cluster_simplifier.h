@@ -3,10 +3,39 @@
 #ifndef CONIC_CLUSTER_SIMPLIFIER_H
 #define CONIC_CLUSTER_SIMPLIFIER_H
 
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
 #include "core/base/heap.h"
 #include "lod/clusters/cluster_seen.h"
 #include "lod/clusters/cluster_simplify.h"
 #include "lod/mesh/quadric.h"
+
+/* --- values at corners, by least squares --- */
+
+/* Up to three values at a time, that are fitted each by itself. */
+typedef struct conic_corner_fit {
+  conic_context *context;
+  size_t n_triangles, n_unknowns;
+  int n_values;
+  uint32_t (*unknowns)[3]; /* of a triangle's corners; the caller fills them in. None: no such triangle */
+  double (*squares)[6];    /* of each triangle, the system's entries for its corners 00, 01, 02, 11, 12, 22 */
+  double *right[3], *solution;
+  double *work; /* four arrays */
+} conic_corner_fit;
+
+/* Errors: MEMORY. The caller releases the fit, on failure too. */
+conic_status conic_corner_fit_init(conic_context *context, size_t n_triangles, size_t n_unknowns, int n_values,
+                                   conic_corner_fit *fit);
+void conic_corner_fit_release(conic_corner_fit *fit);
+
+/* Asks that at a place the sum of the corners' values times `parts` be `values`. `weight` says how much it matters. */
+void conic_corner_fit_add(conic_corner_fit *fit, size_t triangle, const double parts[3], const double *values,
+                          double weight);
+
+/* Finds the best of one of the values: fit->solution, until the next is solved. It is small where nothing is known. */
+void conic_corner_fit_solve(conic_corner_fit *fit, int value);
 
 #define CONIC_NONE UINT32_MAX
 
@@ -21,16 +50,16 @@ typedef struct conic_simplifier_vertex {
   uint32_t original;             /* in the mesh */
   uint32_t material;             /* of its faces */
   uint32_t ring;                 /* its first slot, 3 · triangle + corner, or none */
-  uint32_t target;               /* what it would best be drawn onto; of one that is gone: what it was drawn onto */
-  uint8_t kind, is_old, is_seam; /* is_seam: its attributes differ from face to face; it may go along where they do */
+  uint32_t target;               /* what it is best drawn onto; once it is gone, what it was drawn onto */
+  uint8_t kind, is_old, is_seam; /* is_seam: its attributes differ from face to face, and it may go along there */
   uint8_t is_gone;
   uint32_t moved;      /* the first of the moved vertices that a level has of it, or none yet */
   double at[3], to[3]; /* and where its target would be then */
   conic_quadric quadric;
-  double faded, fading; /* what was lost of the colours about it, as a quadric's value; and what its going adds */
+  double faded, fading; /* lost of the colours about it so far, as a quadric's value; and if it goes */
 } conic_simplifier_vertex;
 
-/* As long as a line of the cache; what walks do not ask for lies elsewhere. */
+/* As long as a line of the cache. What walks do not ask for lies elsewhere. */
 typedef struct conic_simplifier_triangle {
   double normal[3];    /* of the mesh's face */
   uint32_t corners[3]; /* vertices */
@@ -44,27 +73,27 @@ typedef struct conic_simplifier_triangle {
 typedef struct conic_simplifier_point {
   double at[3];
   uint32_t vertex;   /* that it was near at first */
-  uint32_t triangle; /* one that it lies on, and of which corners it is the middle, as bits; no corners: its colour */
-  uint32_t corners;  /* is not looked at */
+  uint32_t triangle; /* one that it lies on */
+  uint32_t corners;  /* of which of them it is the middle, as bits; none: its colour is not looked at */
 } conic_simplifier_point;
 
 /* The middle of a face of the mesh, and what is nearest to it. */
 typedef struct conic_simplifier_hit {
-  float area2, normal[3]; /* twice the face's area, and the mean of its corners' normals, if it has any */
+  float area2, normal[3]; /* twice the face's area; the mean of its corners' normals, if any */
   uint32_t triangle;      /* none: nothing that looks the same way */
   float bary[3], height;  /* how much of each corner is there, and how far the middle is over it */
 } conic_simplifier_hit;
 
-/* From a vertex that is to go to a neighbour. */
+/* A neighbour that a vertex may go to. */
 typedef struct conic_simplifier_spoke {
   uint32_t vertex;
-  uint32_t before, slot; /* of its triangle, if it has one: the corner before the vertex that goes, and the slot */
+  uint32_t before, slot; /* its triangle's, if any: the corner before the vertex that goes, and the slot */
   int is_common;         /* whether it neighbours the vertex that is looked at, too */
   double at[3];          /* where it would be when the vertex has gone to it */
   double cost, fading;   /* what colours add to it, once it was asked; else infinite */
 } conic_simplifier_spoke;
 
-/* Along it, vertices were left out. */
+/* An edge along which vertices were left out. */
 typedef struct conic_simplifier_border {
   conic_cluster_border of; /* the triangle's number is that in the region */
   uint32_t cluster;        /* from the region's first */
@@ -82,19 +111,19 @@ struct conic_simplifier {
   conic_simplifier_triangle *triangles;
   uint32_t (*originals)[3]; /* the triangles' vertices in the mesh: with their attributes */
   uint32_t *wedges;         /* of triangles about a vertex that goes: what its corner becomes */
-  uint32_t (*near)[4];      /* faces of the mesh that were near the middles of their edges, and near their own */
+  uint32_t (*near)[4];      /* faces of the mesh that were near the middles of their edges and their own */
   conic_simplifier_point *points;
   conic_simplifier_border *borders; /* of the stage that is to be taken */
-  size_t *point_starts[2];          /* of each cluster, and an end: its own, and those of its borders, after all own */
+  size_t *point_starts[2];          /* of each cluster, and an end: its own; then, after all own, its borders' */
   size_t *border_starts;            /* likewise */
   uint32_t *alive;                  /* triangles of each cluster */
   uint32_t *taken;                  /* of each cluster: triangles of its last level */
   double *errors2;                  /* of each cluster, squared, so far */
   conic_simplifier_hit *hits;       /* of the mesh's faces, where the region is one: what is nearest to their middles */
   conic_seen_sums *changes;         /* of each cluster's colours, in the stage that is measured */
-  float (*contrasts)[2];   /* of the triangles' faces of the mesh, and twice their area; null: all has one colour */
-  uint32_t stage;          /* the last one that is taken, or is to be */
-  size_t n_last, n_wanted; /* triangles: of the last stage, and of the next */
+  float (*contrasts)[2];            /* of the triangles' faces, and twice their area; null: all has one colour */
+  uint32_t stage;                   /* the last one that is taken, or is to be */
+  size_t n_last, n_wanted;          /* triangles: of the last stage, and of the next */
   int is_to_fit, is_to_take, is_over;
   int is_one;                     /* the region is simplified as one cluster in pieces */
   conic_cluster_levels *levels;   /* of the region's clusters */
@@ -103,7 +132,7 @@ struct conic_simplifier {
   conic_heap queue;
 };
 
-/* Walks a vertex's living triangles: slots, none at the end. */
+/* The slot of a vertex's next living triangle, from this one on; none at the end. */
 static inline uint32_t conic_simplifier_living(const conic_simplifier *s, uint32_t slot) {
   while (slot != CONIC_NONE && !s->triangles[slot / 3].is_alive)
     slot = s->triangles[slot / 3].next[slot % 3];
@@ -128,21 +157,22 @@ static inline uint32_t conic_simplifier_material(const conic_simplifier *s, cons
  * MEMORY. */
 conic_status conic_simplifier_load(conic_simplifier *s);
 
-/* What a corner of u becomes when u is drawn onto v: the mesh's vertex at v that a triangle beside their edge has,
- * which has the same at u; of the same cluster and material. NONE where there is none, or they differ. */
+/* What a corner of u becomes when u is drawn onto v. It is the mesh's vertex at v of a triangle beside their edge that
+ * has the same corner at u, and the same cluster and material. NONE where there is no such triangle, or they differ. */
 uint32_t conic_simplifier_wedge(const conic_simplifier *s, uint32_t u, uint32_t v, uint32_t slot);
 
-/* Where v is best when u has gone to it, both being the sum of their quadrics: at its own place, unless it may move. */
+/* Where v is best when u has gone to it: at its own place, unless it may move. `both` is the sum of their quadrics. */
 void conic_simplifier_find_place(const conic_simplifier *s, uint32_t u, uint32_t v, const conic_quadric *both,
                                  double at[3]);
 
-/* Whether the triangle of a slot neither turns over nor loses its area when that corner is somewhere else. */
+/* Whether the triangle of a slot neither turns over nor loses its area when that corner is at another place. */
 int conic_simplifier_keeps_facing(const conic_simplifier *s, uint32_t slot, const double at[3]);
 
 /* Sets the target of vertex u and its key, or neither where it may be drawn onto no neighbour. */
 void conic_simplifier_find_target(conic_simplifier *s, uint32_t u);
 
-/* What of the colours about vertex u is lost when it goes to v, as a quadric's value; colours are not all the same. */
+/* How much of the colours about vertex u is lost when it goes to v, as a quadric's value. Colours are not all the same.
+ */
 double conic_simplifier_fading(const conic_simplifier *s, uint32_t u, uint32_t v);
 
 /* Notes what a point of a cluster has become, being nearest to a triangle. */
@@ -154,23 +184,25 @@ static inline int conic_simplifier_is_worth_a_level(const conic_simplifier *s, u
   return s->is_one || 4 * (size_t)s->alive[cluster] <= 3 * (size_t)s->taken[cluster];
 }
 
-/* Makes what is alive one more stage, to be measured and then taken, if clusters would fit; else it is over. Errors:
- * MEMORY. */
+/* Makes what is alive one more stage, to be measured and then taken, if clusters would fit. Otherwise it is over.
+ * Errors: MEMORY. */
 conic_status conic_simplifier_begin_stage(conic_simplifier *s);
 
 /* The target of each vertex that is gone becomes what it is now. */
 void conic_simplifier_shorten_ways(conic_simplifier *s);
 
-/* Of what is one and has colours: moves the vertices along their normals to where they fit the mesh best, by what its
- * faces have been nearest to. Errors: MEMORY. */
+/* For a region that is one and has colours: moves the vertices along their normals to where they fit the mesh best, by
+ * what its faces have been nearest to. Errors: MEMORY. */
 conic_status conic_simplifier_fit_places(conic_simplifier *s);
 
-/* Of what is one: the normals of the triangles' corners that fit the mesh's best, and the number of each corner's; both
- * null where the mesh has none. The caller releases them, on failure too. Errors: MEMORY. */
+/* Normals of the triangles' corners, and the number of each corner's; both null where the mesh has none. */
 typedef struct conic_simplifier_normals {
   uint32_t (*of_corner)[3]; /* of triangles, as the simplifier has them */
   double (*normals)[3];     /* unit vectors */
 } conic_simplifier_normals;
+
+/* For a region that is one: the normals that fit the mesh's best. The caller releases them, on failure too. Errors:
+ * MEMORY. */
 conic_status conic_simplifier_fit_normals(const conic_simplifier *s, conic_simplifier_normals *normals);
 void conic_simplifier_normals_release(const conic_simplifier *s, conic_simplifier_normals *normals);
 

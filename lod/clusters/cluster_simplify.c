@@ -37,7 +37,7 @@ void conic_simplifier_destroy(conic_simplifier *s) {
 
 /* --- drawing together --- */
 
-/* Of a ring only what is alive is kept, so that walks stay short. */
+/* Keeps only what is alive of a ring, so that walks stay short. */
 static void prune_ring(conic_simplifier *s, uint32_t v) {
   uint32_t *link = &s->vertices[v].ring;
   for (uint32_t slot = conic_simplifier_living(s, *link); slot != CONIC_NONE; slot = conic_simplifier_after(s, slot)) {
@@ -47,7 +47,7 @@ static void prune_ring(conic_simplifier *s, uint32_t v) {
   *link = CONIC_NONE;
 }
 
-/* Of a vertex between two clusters: it is there up to the last stage that was taken. */
+/* Notes of a vertex between two clusters that it is there up to the last stage that was taken. */
 static void leave_slot(conic_simplifier *s, uint32_t u) {
   uint32_t slot = s->chains->of_vertex[s->mesh->adjacency->place[s->vertices[u].original]];
   if (slot != CONIC_NO_SLOT)
@@ -102,7 +102,7 @@ static void fill_queue(conic_simplifier *s) {
     }
 }
 
-/* What is one has levels close together, of which one is about as large as is asked for. */
+/* A region that is one has levels close together, so that one of them is about as large as is asked for. */
 static size_t wanted_after(const conic_simplifier *s) {
   if (s->is_one)
     return s->n_last - (s->n_last + 5) / 6;

@@ -2,7 +2,7 @@
 #ifndef CONIC_CLUSTER_SIMPLIFY_H
 #define CONIC_CLUSTER_SIMPLIFY_H
 
-#include "lod/clusters/cluster_chains.h"
+#include "lod/clusters/cluster.h"
 #include "lod/clusters/cluster_seen.h"
 #include "lod/mesh/face_tree.h"
 
@@ -15,18 +15,19 @@ typedef struct conic_cluster_level {
   uint32_t *face; /* of each: the face of the mesh that it came from */
   conic_cluster_border *borders;
   uint32_t stage;
-  double error; /* no vertex of the cluster, nor middle of an edge or a face, is farther from these triangles, those of
-                   the other clusters of the same stage beside them; nor are the middles of these and of their edges
-                   from the mesh, nor those of the fans that they become beside others; of what is one, a grid of
-                   places on each triangle */
+  /* No vertex of the cluster, nor middle of an edge or a face, is farther from these triangles and those of the other
+   * clusters' same stage beside them. Nor are the middles of these triangles, of their edges, and of the fans that they
+   * become beside others, from the mesh; where the region is one, nor a grid of places on each triangle. */
+  double error;
   conic_seen_change change; /* how colours of the cluster differ, in the root mean square */
 } conic_cluster_level;
 
-/* A vertex of the mesh as simplifying moved it: it has another place and another normal, and all else from there. */
+/* A vertex of the mesh that simplifying moved. It has another place and another normal, and all else of the original.
+ */
 typedef struct conic_moved_vertex {
   float at[3], normal[3];
   uint32_t original;
-  uint32_t of_normal, next; /* private: which of the normals that is, and what else lies there */
+  uint32_t of_normal, next; /* private: the normal's number, and the next vertex there */
 } conic_moved_vertex;
 
 typedef struct conic_cluster_levels {
@@ -42,30 +43,32 @@ conic_status conic_simplifier_create(conic_context *context, const conic_cluster
                                      const conic_face_tree *tree, conic_simplifier **simplifier);
 void conic_simplifier_destroy(conic_simplifier *simplifier);
 
-/* Draws edges together, the cheapest first by their quadrics (HQP §3.2.1), each onto one of its ends: what stays are
- * vertices of the mesh. Each stage has half as many triangles as the one before, as far as that is possible; a cluster
- * has a level of it where that is much simpler than its last. Vertices between the ends of chains may go along them,
- * and their slots then tell the last stage that has them; those on an open border along that, held by planes that stand
- * on its edges (§3.2.4). Vertices of another region stay, and of no cluster all triangles go. Region: the clusters
- * [begin, end), whose levels are levels[0 …], filled in by what follows. The caller ends the region, and releases the
- * levels, on failure too. Errors: MEMORY.
- * A region of which `most_at_first` is above 0 is simplified as one: the mesh says that there is but one cluster, so
- * that there are no chains, and its faces in pieces [begin, end), which are only measured one by one. All levels are
- * levels[0]'s. The first has at most so many triangles, and each further one five sixths of the one before. What stays
- * of an edge moves to where the quadric is least (Garland and Heckbert 1997); if the mesh has colours, all vertices
- * move along their normals at each stage, to fit the mesh's faces best by least squares. So do normals of corners. All
- * vertices of these levels are moved ones. */
+/* Begins a region: the clusters [begin, end). Their levels are levels[0 …], which the calls below fill in. The caller
+ * ends the region, and releases the levels, on failure too. Errors: MEMORY.
+ *
+ * Edges are drawn together, the cheapest first by their quadrics (HQP §3.2.1), each onto one of its ends, so that only
+ * vertices of the mesh stay. Each stage has half as many triangles as the one before, as far as that is possible. A
+ * cluster has a level of a stage that is much simpler than its last level. Vertices between the ends of chains may go
+ * along them; their slots then tell the last stage that has them. Vertices on an open border may go along that, held by
+ * planes that stand on its edges (§3.2.4). Vertices of another region stay. No cluster loses all of its triangles.
+ *
+ * A region with `most_at_first` above 0 is simplified as one. To the mesh it is one cluster, without chains; its faces
+ * are in pieces [begin, end), which are only measured one by one. All levels are levels[0]'s. The first has at most so
+ * many triangles, and each further one five sixths of the one before. What stays of an edge moves to where the quadric
+ * is least (Garland and Heckbert 1997). If the mesh has colours, all vertices move along their normals at each stage,
+ * to fit the mesh's faces best by least squares. So do normals of corners. All vertices of these levels are moved ones.
+ */
 conic_status conic_region_begin(conic_simplifier *simplifier, conic_cluster_chains *chains, uint32_t begin,
                                 uint32_t end, size_t most_at_first, conic_cluster_levels *levels);
 
-/* Takes the stage that was measured, if any, as levels, and goes on to the next: n_clusters are to be measured before
- * it is taken, those of what is one twice. None where all is done. Errors: MEMORY. */
+/* Takes the stage that was measured, if any, as levels, and goes on to the next. *n_clusters are to be measured before
+ * that is taken, twice where the region is one; 0: all is done. Errors: MEMORY. */
 conic_status conic_region_advance(conic_simplifier *simplifier, uint32_t *n_clusters);
 
 /* Measures one of them, the region's i-th. Clusters may be measured at the same time. */
 void conic_region_measure(conic_simplifier *simplifier, uint32_t cluster);
 
-/* The region is left: no place has a number any more. */
+/* Leaves the region: no place has a number any more. */
 void conic_region_end(conic_simplifier *simplifier);
 
 void conic_cluster_levels_release(conic_context *context, conic_cluster_levels *levels);

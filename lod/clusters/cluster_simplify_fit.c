@@ -5,7 +5,6 @@
 #include "core/base/memory.h"
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
-#include "lod/clusters/corner_fit.h"
 
 /* Numbers what is alive; none else. Returns how many there are. */
 static size_t number_alive(const conic_simplifier *s, uint32_t *numbers) {

@@ -4,7 +4,7 @@
 
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
-#include "lod/mesh/distance.h"
+#include "lod/mesh/mesh.h"
 
 /* The least cosine between a face and what stands for it where it is fitted. */
 static const double least_alike = 0.5;
@@ -60,9 +60,9 @@ static const conic_simplifier_triangle *known_near(const conic_simplifier *s, co
   return known != CONIC_NONE && s->triangles[known].is_alive ? &s->triangles[known] : NULL;
 }
 
-/* From what is known, or the triangles about the vertex that a point is near to, on to those that touch the nearest, as
- * long as that comes nearer: no nearer than the nearest of all. About the corners of the one before all were looked
- * at. */
+/* Begins with what is known, or with the triangles about the vertex that a point is near to. Goes on to those that
+ * touch the nearest, as long as that comes nearer, but no nearer than the nearest of all. About the corners of the
+ * triangle before, all have been looked at. */
 static double distance2_of(const conic_simplifier *s, const conic_simplifier_point *point, double enough2,
                            const conic_simplifier_triangle **nearest_of_all) {
   const conic_simplifier_vertex *own = &s->vertices[point->vertex];
@@ -157,8 +157,8 @@ static void measure_points(conic_simplifier *s, uint32_t cluster, const size_t *
 
 /* --- from the triangles to the mesh --- */
 
-/* From a face on to its neighbours, as long as they are nearer and it is not near enough: whether it is in the end. A
- * face without area may have no distance. */
+/* Goes from a face on to its neighbours, as long as they are nearer and it is not near enough. Returns whether it is in
+ * the end. A face without area may have no distance. */
 static int walk_near(const conic_simplifier *s, const double at[3], double enough2, uint32_t *face) {
   const conic_mesh *mesh = &s->mesh->mesh;
   double least2 = conic_distance2_to_face(mesh, *face, at);
@@ -194,9 +194,9 @@ static double farther(const conic_simplifier *s, const double *const places[3], 
   return farther_of_place(s, at, near, most);
 }
 
-/* Triangles of what is one may be large, and their corners lie off the mesh: they are measured on a grid. All together
- * it has twice as many places as the mesh has faces, or some 30,000, but at least the corners, thirds of the edges and
- * the middle of each. */
+/* Triangles of a region that is one may be large, and their corners lie off the mesh, so they are measured on a grid.
+ * All grids together have twice as many places as the mesh has faces, or some 30,000. Each has at least the corners,
+ * thirds of the edges and the middle. */
 enum { MOST_PLACES = 30000, LEAST_PARTS = 3, MOST_PARTS = 16 };
 
 static double measure_grid(const conic_simplifier *s, const double *const corners[3], uint32_t *near, double most) {

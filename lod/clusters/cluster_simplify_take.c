@@ -164,7 +164,8 @@ static conic_status move_level(const conic_simplifier *s, conic_cluster_levels *
   return status;
 }
 
-/* The cluster's triangles lie together; those of what is one are all, of which the pieces' measures are joined. */
+/* The cluster's triangles lie together. A region that is one has all of them, and the measures of its pieces are
+ * joined. */
 static conic_status take_cluster(const conic_simplifier *s, uint32_t cluster, conic_cluster_levels *levels) {
   const size_t *starts = s->mesh->starts + s->begin;
   const conic_simplifier_border *borders = s->borders + s->border_starts[cluster];

@@ -1,4 +1,5 @@
-#include "lod/clusters/corner_fit.h"
+/* Values at the corners of triangles that fit best, by least squares, what is known at places on these. */
+#include "lod/clusters/cluster_simplifier.h"
 
 #include <string.h>
 

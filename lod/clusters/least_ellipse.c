@@ -1,10 +1,11 @@
-#include "lod/clusters/least_ellipse.h"
+/* The smallest ellipse about points of a plane. */
+#include "lod/clusters/cluster_sites.h"
 
 /* Each round a point's weight is multiplied by what it wants of the ellipse (Titterington 1978): those on its border
  * come to hold all weight, the points within lose theirs. So many rounds leave a few per cent of the area to win. */
 enum { ROUNDS = 8 };
 
-/* Of points in a line the covariance says no more than that. */
+/* For points in a line, the covariance says no more than that. */
 static const double flattest = 1e-9;
 
 typedef struct weighing {

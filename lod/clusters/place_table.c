@@ -1,4 +1,5 @@
-#include "lod/clusters/place_table.h"
+/* Places of a cluster, found by where they are. Each has the nearest of the sites that were put so far. */
+#include "lod/clusters/cluster_sites.h"
 
 #include <string.h>
 
@@ -93,8 +94,8 @@ typedef struct newcomer {
   size_t first;
 } newcomer;
 
-/* Where a place is nearer to the newcomer than to its owner, and faces alike. Of two that are as near the owner stays.
- */
+/* Gives a place to the newcomer where that faces alike and is nearer than the owner. Where both are as near, the owner
+ * stays. */
 static void claim(conic_place_table *t, const newcomer *n, size_t slot, double distance2) {
   uint32_t place = t->place[slot];
   const double *facing = t->places.facing[t->places.group[place]];
@@ -106,7 +107,7 @@ static void claim(conic_place_table *t, const newcomer *n, size_t slot, double d
   }
 }
 
-/* Of so many places at a time those are found that are near enough, without branches, then who of them is claimed. */
+/* So many places are looked at together. Those that are near enough are found without branches, and then claimed. */
 enum { AT_A_TIME = 32 };
 
 static void claim_among(conic_place_table *t, const newcomer *n, size_t begin, size_t end) {

@@ -5,7 +5,6 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "lod/hierarchies/hierarchy.h"
-#include "lod/hierarchies/hierarchy_laz.h"
 
 enum {
   LAS_HEADER = 375,

@@ -6,8 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/zstd.h"
-#include "lod/hierarchies/hierarchy_json.h"
-#include "lod/hierarchies/hierarchy_laz.h"
+#include "lod/hierarchies/hierarchy.h"
 
 typedef enum ept_packing { EPT_LASZIP, EPT_BINARY, EPT_ZSTANDARD, EPT_UNKNOWN } ept_packing;
 

@@ -111,10 +111,9 @@ const char *conic_hierarchy_add(conic_hierarchy *hierarchy, const conic_hierarch
     return "there are too many nodes";
   if (node->n_bytes > UINT32_MAX || (node->is_page && node->n_bytes > CONIC_HIERARCHY_PAGE_BYTES))
     return "a node or page has too many bytes";
-  if (conic_memory_reserve(hierarchy->context, &hierarchy->nodes, hierarchy->n_nodes, hierarchy->n_nodes + 1,
-                           &hierarchy->nodes_room, sizeof *hierarchy->nodes) != CONIC_OK)
+  if (conic_memory_append(hierarchy->context, &hierarchy->nodes, &hierarchy->n_nodes, &hierarchy->nodes_room, node,
+                          sizeof *node) != CONIC_OK)
     return "there is no memory for it";
-  hierarchy->nodes[hierarchy->n_nodes++] = *node;
   return NULL;
 }
 
@@ -160,4 +159,44 @@ const char *conic_hierarchy_check(const conic_hierarchy *h) {
   if (!(h->spacing > 0.0) || !is_from_to(h->spacing, 0.0, farthest))
     return "the spacing is out of range";
   return h->n_points == 0 ? "it holds no point" : NULL;
+}
+
+/* --- JSON --- */
+
+/* Of any such file. */
+enum { MOST_BYTES = 1 << 24 };
+
+int conic_hierarchy_is_named(const char *name, const char *file) {
+  size_t n = conic_ranges_is_url(name) ? strcspn(name, "?#") : strlen(name), n_file = strlen(file);
+  return n >= n_file && memcmp(name + n - n_file, file, n_file) == 0 && (n == n_file || name[n - n_file - 1] == '/');
+}
+
+conic_status conic_hierarchy_read_json(const conic_hierarchy *hierarchy, conic_json *json) {
+  uint64_t size = conic_ranges_size(hierarchy->ranges);
+  unsigned char *bytes;
+  if (size > MOST_BYTES)
+    return conic_hierarchy_wrong(hierarchy, "the file is too large");
+  conic_status status = conic_hierarchy_read(hierarchy, 0, (size_t)size, &bytes);
+  if (status == CONIC_OK)
+    status = conic_json_take(hierarchy->context, hierarchy->name, bytes, (size_t)size, json);
+  conic_memory_release(hierarchy->context, bytes);
+  return status;
+}
+
+conic_status conic_hierarchy_numbers(conic_json *json, double *values, size_t n) {
+  size_t n_read = 0;
+  conic_status status = conic_json_numbers(json, values, n, &n_read);
+  return status == CONIC_OK && n_read != n ? conic_json_wrong(json, "not as many numbers as there should be") : status;
+}
+
+conic_status conic_hierarchy_count(conic_json *json, uint64_t most, uint64_t *count) {
+  double value = 0.0;
+  conic_status status = conic_json_number(json, &value);
+  *count = 0;
+  if (status != CONIC_OK)
+    return status;
+  if (!(value >= 0.0 && value <= (double)most) || value != (double)(uint64_t)value)
+    return conic_json_wrong(json, "no number of something");
+  *count = (uint64_t)value;
+  return CONIC_OK;
 }

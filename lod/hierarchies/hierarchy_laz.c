@@ -1,4 +1,5 @@
-#include "lod/hierarchies/hierarchy_laz.h"
+/* LAZ within hierarchies: a chunk, or a whole file, of points. */
+#include "lod/hierarchies/hierarchy.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* What the points of a node that come without normals and sizes are given, by their neighbours in the node. */
+/* Normals and sizes for points that come without: found from their neighbours in the node. */
 #ifndef CONIC_NODE_SHAPE_H
 #define CONIC_NODE_SHAPE_H
 
@@ -12,7 +12,7 @@ typedef struct conic_node_shape {
   const float *position[3];
   size_t n;
   double step;      /* of the keys, in the positions' units: no axis has a shorter one */
-  float *normal[3]; /* set: the direction of least spread, turned upwards; zero where the neighbours are in no plane */
+  float *normal[3]; /* set: the direction of least spread, turned upwards; zero where neighbours lie in no plane */
   float *spacing;   /* set: the distance of neighbours there, √(area a point); 0: there are none */
 } conic_node_shape;
 

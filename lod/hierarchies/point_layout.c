@@ -1,4 +1,5 @@
-#include "lod/hierarchies/point_layout.h"
+/* Where a point's position, colour and intensity stand in its record, and taking them from there. */
+#include "lod/hierarchies/hierarchy.h"
 
 #include <string.h>
 

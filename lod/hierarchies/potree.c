@@ -6,7 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/unbrotli.h"
-#include "lod/hierarchies/hierarchy_json.h"
+#include "lod/hierarchies/hierarchy.h"
 
 enum { POTREE_RECORD = 22, POTREE_PROXY = 2 };
 

@@ -1,4 +1,6 @@
-#include "lod/mesh/cluster_cost.h"
+/* Sums that describe a set of faces, and add up when two sets become one; and the cost of making them one (HQP §3.2.2).
+ * All lengths are in units of the longest side of the mesh's box, about its middle. */
+#include "lod/mesh/mesh_clusters.h"
 
 #include <math.h>
 #include <string.h>

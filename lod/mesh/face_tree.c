@@ -6,7 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/radix.h"
 #include "core/base/random.h"
-#include "lod/mesh/distance.h"
+#include "lod/mesh/mesh.h"
 
 enum { LEAF_FACES = 2, CODE_BITS = 10 };
 

@@ -1,4 +1,5 @@
-#include "lod/mesh/flat_mesh.h"
+/* Turns meshes whose attributes have indices of their own into ones with one index a corner. */
+#include "lod/mesh/mesh.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* Who lies beside whom in a mesh. */
+/* Which faces of a mesh lie side by side. */
 #include "lod/mesh/mesh.h"
 
 #include <string.h>

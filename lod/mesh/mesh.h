@@ -1,4 +1,4 @@
-/* Triangles as the hybrid models' steps look at them: who lies beside whom, and which of them are of use. */
+/* Triangles as the steps of hybrid models look at them: which lie side by side, and which are of use. */
 #ifndef CONIC_MESH_H
 #define CONIC_MESH_H
 
@@ -6,6 +6,8 @@
 #include <stdint.h>
 
 #include "conic/context.h"
+#include "conic/triangles.h"
+#include "core/base/triangle_distance.h"
 
 /* Borrowed arrays; every index of a face is below n_vertices. */
 typedef struct conic_mesh {
@@ -14,7 +16,7 @@ typedef struct conic_mesh {
   const uint32_t (*faces)[3];
 } conic_mesh;
 
-/* Two faces that share an edge (or more than one: then the length is that of all). */
+/* Two faces that share one edge or more. `length` is that of all of these. */
 typedef struct conic_joint {
   uint32_t faces[2];
   double length;
@@ -38,7 +40,7 @@ typedef struct conic_mesh_oddities {
 typedef struct conic_adjacency {
   uint32_t *place;  /* of each vertex: the first vertex at the same position */
   int8_t *side;     /* of each face: 1; -1 where it is wound against its neighbours; 0 where it is of no use */
-  uint32_t *across; /* of each face's edges, 3 · face + the corner where it begins: that of the other face, or OPEN or
+  uint32_t *across; /* of each edge, 3 · face + the corner where it begins: the same edge of the other face, or OPEN or
                        CROWDED */
   size_t n_joints;
   conic_joint *joints;
@@ -58,5 +60,22 @@ static inline void conic_mesh_corner(const conic_mesh *mesh, size_t i_face, int 
   for (int axis = 0; axis < 3; axis++)
     at[axis] = (double)mesh->position[axis][mesh->faces[i_face][corner]];
 }
+
+/* --- distance from a face --- */
+
+/* The squared distance of a place from a face of a mesh. */
+static inline double conic_distance2_to_face(const conic_mesh *mesh, uint32_t face, const double at[3]) {
+  double corners[3][3];
+  for (int corner = 0; corner < 3; corner++)
+    conic_mesh_corner(mesh, face, corner, corners[corner]);
+  return conic_distance2_to_triangle(at, corners[0], corners[1], corners[2]);
+}
+
+/* --- one index a corner --- */
+
+/* Gives *flat the triangles of `mesh`, which has been checked. Corners that share a place but differ in normal or
+ * texture coordinates get vertices of their own. Vertices that no triangle uses go. Materials stay with `mesh`. The
+ * caller releases *flat. Errors: ARGUMENT (over 2³¹ corners), MEMORY. */
+conic_status conic_flat_mesh(conic_context *context, const conic_triangles *mesh, conic_triangles *flat);
 
 #endif

@@ -66,11 +66,8 @@ void conic_mesh_cells_release(conic_mesh_cells *c) {
   conic_scratch_close(&c->vertices);
   conic_scratch_close(&c->faces);
   conic_pile_end(&c->buckets_file);
-  conic_memory_release(c->context, c->buckets);
-  conic_memory_release(c->context, c->filter);
-  conic_memory_release(c->context, c->shared);
-  conic_memory_release(c->context, c->planes);
-  conic_memory_release(c->context, c->nodes);
+  void *const owned[] = {c->buckets, c->filter, c->shared, c->planes, c->nodes};
+  conic_memory_release_all(c->context, owned, sizeof owned / sizeof *owned);
   conic_memory_release(c->context, c);
 }
 

@@ -1,10 +1,8 @@
-/* Joins faces to clusters, the cheapest joint first.
- *
- * A joint lies between two clusters and hangs in the ring of each. Joining two clusters moves the fewer joints to the
- * other's ring; of two joints to the same third cluster one goes on with the length of both. A joint's cost becomes old
- * when one of its clusters grows; that shows when its turn comes, and it goes back into the queue with its new cost.
- * Costs may fall when clusters grow (a shape becomes rounder), so whoever is still there at the end is asked again,
- * until nobody is left below the limit. */
+/* Joins faces to clusters, the cheapest joint first. A joint lies between two clusters, and is in the ring of each.
+ * Joining two clusters moves the fewer joints to the other's ring. Where two joints then lead to the same third
+ * cluster, one goes on with the length of both. A joint's cost becomes old when one of its clusters grows. That shows
+ * when its turn comes, and it goes back into the queue with its new cost. Costs may fall when clusters grow, as a shape
+ * becomes rounder. So the joints that are left at the end are asked again, until none is below the limit. */
 #include "lod/mesh/mesh_clusters.h"
 
 #include <math.h>
@@ -241,15 +239,9 @@ static conic_status begin_joining(joining *j, const conic_mesh *mesh, const coni
 }
 
 static void end_joining(joining *j) {
-  conic_memory_release(j->context, j->joints);
-  conic_memory_release(j->context, j->keys);
-  conic_memory_release(j->context, j->queue.slots);
-  conic_memory_release(j->context, j->sums);
-  conic_memory_release(j->context, j->ring);
-  conic_memory_release(j->context, j->parent);
-  conic_memory_release(j->context, j->degree);
-  conic_memory_release(j->context, j->grown);
-  conic_memory_release(j->context, j->is_new);
+  void *const owned[] = {j->joints, j->keys,   j->queue.slots, j->sums,  j->ring,
+                         j->parent, j->degree, j->grown,       j->is_new};
+  conic_memory_release_all(j->context, owned, sizeof owned / sizeof *owned);
 }
 
 static uint32_t root_of(joining *j, uint32_t i) {

@@ -1,4 +1,4 @@
-/* Sums of squared distances from planes, as a form in the place: vᵀAv + 2bᵀv + c (HQP Eq. 3.6). */
+/* Sums of squared distances from planes, as a quadratic form of the place: vᵀAv + 2bᵀv + c (HQP Eq. 3.6). */
 #ifndef CONIC_QUADRIC_H
 #define CONIC_QUADRIC_H
 

@@ -1,4 +1,7 @@
-#include "lod/octree/leaf_code.h"
+/* The leaves of a quantised octree: 12 bytes each, 3 more with colours, 1 more with opacities, and 24 for each block of
+ * 64 leaves. A block's leaves share a box in which their positions are counted. Neighbours in the order of the tree are
+ * neighbours in space, so the boxes are small. */
+#include "lod/octree/octree_code.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,6 @@
-#include "lod/octree/moments.h"
+/* Sums over a set of splats: the generic homogeneous covariance of Confetti (§4.2), and the averages beside it. A node
+ * gets them by merging its children's. */
+#include "lod/octree/octree_fit.h"
 
 #include <string.h>
 

@@ -6,9 +6,9 @@
 #include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/splats/columns.h"
-#include "lod/octree/leaf_code.h"
+#include "lod/octree/octree_code.h"
 #include "lod/octree/octree_fit.h"
-#include "lod/octree/octree_split.h"
+#include "lod/octree/octree_nodes.h"
 #include "raster/project/projected.h"
 
 /* Squares of what is farther out overflow a float. */

@@ -1,9 +1,11 @@
-/* The inner nodes of a point-octree as they are kept: 19 bytes each. What is rounded is rounded to the side on which
- * the bounds hold, and every bound is found for the numbers that the bytes give back (docs/reference/format-cot.md). */
+/* The inner nodes of a point-octree as they are kept: 19 bytes each. Numbers are rounded to the side on which the
+ * bounds hold, and every bound is found for the numbers that the bytes give back (docs/reference/format-cot.md). */
 #ifndef CONIC_OCTREE_CODE_H
 #define CONIC_OCTREE_CODE_H
 
 #include <stdint.h>
+
+#include "conic/splats.h"
 
 enum { CONIC_NODE_BYTES = 19, CONIC_NODE_FANOUT = 8 };
 
@@ -28,7 +30,7 @@ typedef struct conic_node {
   float position[3];
   float tangent_u[3], tangent_v[3]; /* t_u is the longer */
   float color[3];
-  float opacity;   /* what gives its kernel the integral that those of its leaves have together */
+  float opacity;   /* gives its kernel the integral that the kernels of its leaves have together */
   float radius;    /* of the sphere about the position that holds all the leaves' discs and the node's own */
   float error;     /* nothing of the node's disc and nothing of its leaves' is farther from the other */
   float normal[3]; /* the cone's axis, unit: t_u × t_v */
@@ -42,9 +44,9 @@ typedef struct conic_node_frame {
   double ratio;
 } conic_node_frame;
 
-/* Encodes where the node is, relative to its first leaf. */
+/* Encodes the node's place relative to its first leaf. */
 void conic_code_place(const conic_code_scale *scale, const double mean[3], const double first[3], uint8_t *code);
-/* Encodes which way it faces: a normal of any length but zero. */
+/* Encodes the normal, of any length but zero. */
 void conic_code_facing(const double normal[3], uint8_t *code);
 /* Encodes the direction (x, y) of the major axis in the facing's own basis, and the ratio. */
 void conic_code_axes(double x, double y, double ratio, uint8_t *code);
@@ -93,5 +95,20 @@ void conic_code_direction_of(uint8_t code, double direction[2]);
 /* A factor in 8 bits, 16 steps an octave, 2^-10 to 2^6; 0 for nothing. */
 uint8_t conic_code_factor(const conic_code_scale *scale, double factor);
 float conic_code_factor_of(const conic_code_scale *scale, uint8_t code);
+
+/* --- leaves of a quantised octree --- */
+
+enum { CONIC_LEAF_BLOCK = 64, CONIC_LEAF_BLOCK_BYTES = 24 };
+
+/* The bytes of one leaf, and of all: the blocks' first, then the leaves'. */
+size_t conic_leaf_code_bytes(int has_colors, int has_opacities);
+size_t conic_leaf_codes_bytes(size_t n_leaves, int has_colors, int has_opacities);
+
+/* Encodes all leaves in the arrays. */
+void conic_leaf_encode(conic_context *context, const conic_code_scale *scale, const conic_splats *leaves,
+                       unsigned char *codes);
+/* Fills the arrays with what the codes give. */
+void conic_leaf_decode(conic_context *context, const conic_code_scale *scale, const unsigned char *codes,
+                       conic_splats *leaves);
 
 #endif

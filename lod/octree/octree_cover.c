@@ -5,8 +5,8 @@
 #include "core/base/trigonometry.h"
 
 void conic_disc_samples_init(conic_disc_samples *samples) {
-  /* Rings, turned against each other; found by search, the gap is held by a test. The outermost, of which the most is
-   * to be found out, is whole lanes by itself. */
+  /* Rings that are turned against each other, found by search; a test holds the gap. The outermost, where most is to be
+   * found out, is whole lanes by itself. */
   static const struct {
     int n;
     double radius, turn;

@@ -4,7 +4,8 @@
 #include <string.h>
 
 #include "core/lanes/lanes.h"
-#include "lod/octree/octree_kernels.h"
+#include "core/splats/float_vectors.h"
+#include "lod/octree/octree_loops.h"
 
 /* A disc seen along the node's normal: an ellipse, and what takes it to the unit circle. */
 enum {
@@ -50,20 +51,8 @@ typedef struct search {
   unsigned lane;
 } search;
 
-static float dot(const float a[3], const float b[3]) {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
-
-/* Unit vector; returns the length it had. */
-static float normalize(const float a[3], float unit[3]) {
-  float length = sqrtf(dot(a, a)), scale = length > 0.0f ? 1.0f / length : 0.0f;
-  for (int axis = 0; axis < 3; axis++)
-    unit[axis] = a[axis] * scale;
-  return length;
-}
-
 static void begin_cover(const conic_disc_samples *samples, cover *c) {
-  float major = normalize(c->node->u, c->u), minor = normalize(c->node->v, c->v);
+  float major = conic_float_unit(c->node->u, c->u), minor = conic_float_unit(c->node->v, c->v);
   c->gap = (float)CONIC_DISC_GAP * (major > minor ? major : minor);
   for (int i = 0; i < CONIC_DISC_SAMPLES; i += CONIC_LANES) {
     lanes_store(c->x + i, lanes_load(samples->x + i) * major);

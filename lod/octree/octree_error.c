@@ -1,13 +1,13 @@
-/* The errors of inner nodes: how far their discs reach past the surface that is there. What a disc lacks cover by is
- * sought among the leaves, its own and those around, or, of large nodes, among small ones and their errors. So nodes
- * are taken in classes by their size; what a class looks at belongs to the classes below. */
+/* The errors of inner nodes: how far their discs reach past the surface that is there. What covers a disc is sought
+ * among the leaves, its own and those around, or, for large nodes, among small nodes and their errors. So nodes are
+ * taken in classes by their size. What a class looks at belongs to the classes below. */
 #include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/team_runs.h"
-#include "lod/octree/octree_kernels.h"
+#include "lod/octree/octree_loops.h"
 
 /* Subtrees with as many leaves are worked off at a time: their discs stay in the cache. */
 static const size_t task_leaves = 8192;
@@ -21,7 +21,7 @@ typedef struct size_class {
 typedef struct error_pass {
   conic_octree *octree;
   conic_disc_samples samples;
-  conic_octree_kernels kernels;
+  conic_octree_loops loops;
   size_class sizes;
   uint32_t *tasks; /* roots */
   conic_status *statuses;
@@ -288,7 +288,7 @@ static void find_near(neighbourhood *around, size_t begin, size_t end) {
     near->center[axis] = 0.5f * b.low[axis] + 0.5f * b.high[axis];
     near->half[axis] = 0.5f * b.high[axis] - 0.5f * b.low[axis];
   }
-  around->pass->kernels.find_near(&around->discs, near);
+  around->pass->loops.find_near(&around->discs, near);
 }
 
 static void find_error(neighbourhood *around, const member *m) {
@@ -296,7 +296,7 @@ static void find_error(neighbourhood *around, const member *m) {
   const conic_octree *octree = pass->octree;
   size_t begin = find_disc(around, octree->first_leaf[m->i_node]);
   size_t end = find_disc(around, octree->first_leaf[octree->end[m->i_node]]);
-  float error = pass->kernels.cover(&pass->samples, &around->discs, begin, end, &around->near, &m->disc);
+  float error = pass->loops.cover(&pass->samples, &around->discs, begin, end, &around->near, &m->disc);
   if (error > m->disc.enough) /* a hair more for the floats */
     conic_code_error(&octree->scale, (double)error * (1.0 + 1e-5), (double)m->radius,
                      octree->codes + (size_t)m->i_node * CONIC_NODE_BYTES);
@@ -330,13 +330,9 @@ static size_t count_parts(const conic_octree *octree, size_t root, size_t part) 
 
 static void release_around(const neighbourhood *around) {
   conic_context *context = around->pass->octree->context;
-  conic_memory_release(context, around->numbers);
-  conic_memory_release(context, around->first_leaf);
-  conic_memory_release(context, around->members);
-  conic_memory_release(context, around->near_numbers);
-  conic_memory_release(context, around->near_blocks);
-  conic_memory_release(context, around->near.flat);
-  conic_memory_release(context, around->near.are_flat);
+  void *const owned[] = {around->numbers,     around->first_leaf, around->members,      around->near_numbers,
+                         around->near_blocks, around->near.flat,  around->near.are_flat};
+  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
 }
 
 /* Lays out the arrays of discs: `stride` of each number, and a block's. */
@@ -476,7 +472,7 @@ conic_status conic_octree_find_errors(conic_octree *octree) {
   error_pass pass = {.octree = octree, .sizes = {1, 64, 1, 8192}, .from = 0.6, .to = 0.9};
   conic_isa isa;
   conic_status status = conic_isa_choose(octree->context, CONIC_ISA_AUTO, &isa);
-  conic_octree_kernels_init(&pass.kernels, isa);
+  conic_octree_loops_init(&pass.loops, isa);
   conic_disc_samples_init(&pass.samples);
   while (status == CONIC_OK && pass.sizes.above < octree->n_leaves) {
     status = run_pass(&pass);

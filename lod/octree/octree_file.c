@@ -6,7 +6,7 @@
 #include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/files/file_body.h"
-#include "lod/octree/leaf_code.h"
+#include "lod/octree/octree_code.h"
 #include "lod/octree/octree_nodes.h"
 
 enum { VERSION = 1 };

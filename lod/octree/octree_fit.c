@@ -7,7 +7,7 @@
 #include "core/base/message.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
-#include "lod/octree/octree_kernels.h"
+#include "lod/octree/octree_loops.h"
 
 /* Subtrees up to this size are fitted side by side; the leaves of the nodes above are scanned in such chunks. */
 static const size_t task_leaves = 32768, chunk_leaves = 8192;
@@ -28,7 +28,7 @@ typedef struct fitter {
   conic_octree *octree;
   fit_task *tasks;
   size_t n_tasks, next_task;
-  conic_octree_kernels kernels;
+  conic_octree_loops loops;
 } fitter;
 
 typedef struct scan {
@@ -44,8 +44,8 @@ static void scan_chunk(void *data, size_t i_chunk, int i_thread) {
   (void)i_thread;
   memset(&s->chunks[i_chunk], 0, sizeof *s->chunks);
   s->chunks[i_chunk].cosine = 1.0;
-  s->fitter->kernels.add_reach(&s->fitter->octree->leaves, begin, end, s->fitter->octree->scale.cutoff, s->frame,
-                               &s->chunks[i_chunk]);
+  s->fitter->loops.add_reach(&s->fitter->octree->leaves, begin, end, s->fitter->octree->scale.cutoff, s->frame,
+                             &s->chunks[i_chunk]);
 }
 
 /* The same for many leaves: chunk by chunk, side by side. Greatest and least do not ask for an order. */
@@ -102,8 +102,8 @@ static void choose_frame(const fitter *f, const conic_moments *moments, size_t b
                                 quadratic(moments->scatter, v, v)};
   conic_ellipse shape = conic_ellipse_shape(covariance, least_ratio);
   if (end - begin <= CONIC_FEW_LEAVES)
-    shape.ratio = f->kernels.choose_ratio(&octree->leaves, begin, end, octree->scale.cutoff, moments->mean, u, v,
-                                          &shape, least_ratio);
+    shape.ratio = f->loops.choose_ratio(&octree->leaves, begin, end, octree->scale.cutoff, moments->mean, u, v, &shape,
+                                        least_ratio);
   conic_code_axes(shape.major[0], shape.major[1], shape.ratio, code);
   conic_code_frame_in(&octree->scale, first, code, u, v, n, frame);
 }
@@ -128,7 +128,7 @@ static conic_status fit_node(const fitter *f, size_t i, const conic_moments *mom
   if (end - begin > task_leaves)
     status = scan_leaves(f, begin, end, &frame, &reach);
   else
-    f->kernels.add_reach(&octree->leaves, begin, end, octree->scale.cutoff, &frame, &reach);
+    f->loops.add_reach(&octree->leaves, begin, end, octree->scale.cutoff, &frame, &reach);
   const double hair = 1.0 + 1e-6; /* axes and radii are floats when they are used */
   double major = reach.reach * hair, radius = (reach.radius > major ? reach.radius : major) * hair;
   conic_code_extent(&octree->scale, &major, &radius, code);
@@ -204,7 +204,7 @@ conic_status conic_octree_fit(conic_octree *octree) {
   conic_status status = conic_isa_choose(octree->context, CONIC_ISA_AUTO, &isa);
   if (status != CONIC_OK || octree->n_nodes == 0)
     return status;
-  conic_octree_kernels_init(&f.kernels, isa);
+  conic_octree_loops_init(&f.loops, isa);
   f.n_tasks = list_tasks(octree, NULL);
   f.tasks = conic_memory_allocate(octree->context, f.n_tasks, sizeof *f.tasks);
   if (!f.tasks)

@@ -2,14 +2,14 @@
 #ifndef CONIC_OCTREE_FIT_H
 #define CONIC_OCTREE_FIT_H
 
+#include "conic/splats.h"
 #include "core/splats/ellipse.h"
-#include "lod/octree/moments.h"
 #include "lod/octree/octree_nodes.h"
 
-/* Fills in the codes of all nodes, whose structure and leaves are there. Errors: MEMORY, CANCELLED. */
+/* Fills in the codes of all nodes. Their structure and leaves must be there. Errors: MEMORY, CANCELLED. */
 conic_status conic_octree_fit(conic_octree *octree);
 
-/* How far a range of leaves reaches in a frame: what a node's bounds are made of. */
+/* How far a range of leaves reaches in a frame. A node's bounds are made of it. */
 typedef struct conic_leaf_reach {
   double reach;  /* the major half axis of an ellipse of the frame's directions and ratio that holds their outlines;
                     the least is smaller by 2 % at most */
@@ -22,15 +22,36 @@ typedef struct conic_leaf_reach {
 typedef void conic_add_reach_function(const conic_splats *leaves, size_t begin, size_t end, double cutoff,
                                       const conic_node_frame *frame, conic_leaf_reach *reach);
 
-/* The ratio whose ellipse around the outlines of a few leaves is the smallest: those near the shape's are tried, which
- * has its major direction in u, v. */
+/* The ratio whose ellipse around the outlines of a few leaves is the smallest. Ratios near the shape's are tried; the
+ * shape has its major direction in u, v. */
 enum { CONIC_FEW_LEAVES = 16 }; /* the more there are, the better the covariance's fits */
 typedef double conic_choose_ratio_function(const conic_splats *leaves, size_t begin, size_t end, double cutoff,
                                            const double place[3], const double u[3], const double v[3],
                                            const conic_ellipse *shape, double least_ratio);
 
-/* Raises the errors that conic_octree_fit has left, which tell of the leaves' heights and the node's size alone, to how
- * far its disc reaches past the surface. Errors: MEMORY, CANCELLED. */
+/* Raises errors to how far a node's disc reaches past the surface. Those that conic_octree_fit has left tell only of
+ * the leaves' heights and the node's size. Errors: MEMORY, CANCELLED. */
 conic_status conic_octree_find_errors(conic_octree *octree);
+
+/* --- moments --- */
+
+/* The homogeneous matrix Σ p'p'ᵀ holds the count, Σ p and Σ ppᵀ. It is kept translated to the set's own mean, as Eq. 3
+ * allows at any time; about a distant origin, the covariance would cancel in Σ ppᵀ. A splat adds its own extent,
+ * t_u t_uᵀ + t_v t_vᵀ, so that one splat and splats in a row have a shape too. */
+typedef struct conic_moments {
+  double count;
+  double mean[3];
+  double scatter[6]; /* Σ (p - mean)(p - mean)ᵀ + t_u t_uᵀ + t_v t_vᵀ: xx xy xz yy yz zz */
+  double area;       /* Σ |t_u × t_v| */
+  double normal[3];  /* Σ t_u × t_v */
+  double weight;     /* Σ opacity·|t_u × t_v|: what a splat's kernel integrates to, up to a constant */
+  double color[3];   /* Σ opacity·|t_u × t_v|·colour */
+} conic_moments;
+
+/* The sums of splat i alone, relative to the set's origin. */
+void conic_moments_of_splat(const conic_splats *splats, size_t i, conic_moments *moments);
+
+/* Adds the sums of another set; `sum` may be all zero. */
+void conic_moments_merge(conic_moments *sum, const conic_moments *more);
 
 #endif

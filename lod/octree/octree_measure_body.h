@@ -1,7 +1,7 @@
 /* What octree_view.h says of measuring: plain C, which compilers put in lanes. */
 #include <math.h>
 
-#include "lod/octree/octree_kernels.h"
+#include "lod/octree/octree_loops.h"
 
 /* A displacement by e of what is at X changes its projection by no more than f·e·|X|/z²: the greatest factor of the
  * projection's derivative is f·|X|/z². All that a node is about, from its leaves' discs to its own, lies in its sphere,
@@ -71,9 +71,9 @@ static inline float weight_of_tilt(float cosine, float root, float excess, float
   return weight < 1.0f ? weight : 1.0f;
 }
 
-/* With --cull back, nodes all of whose leaves face away are out of sight. Where some may and others do not, a part of
- * what the node shows is culled, and what is left of it may be at its other end: its error is its diameter, by somewhat
- * more than the root, as outlines are there. */
+/* With --cull back, nodes whose leaves all face away are out of sight. Where some may face away and others not, a part
+ * of what the node shows is culled, and what is left may be at its other end. So its error is its diameter, and
+ * somewhat more by the root, as outlines are there. */
 static inline void weigh_by_tilt(const conic_octree *octree, const conic_octree_view *view, size_t begin,
                                  float *pixels) {
   const float *x = octree->center[0] + begin, *y = octree->center[1] + begin, *z = octree->center[2] + begin;

@@ -20,19 +20,12 @@ void conic_octree_destroy(conic_octree *octree) {
     return;
   conic_context *context = octree->context;
   conic_splats_release(context, &octree->owned);
-  conic_memory_release(context, octree->owned_index);
-  conic_memory_release(context, octree->owned_clips);
-  conic_memory_release(context, octree->clip_of_point);
-  conic_memory_release(context, octree->owned_codes);
-  conic_memory_release(context, octree->owned_leaf_codes);
-  conic_memory_release(context, octree->drawn);
-  conic_memory_release(context, octree->drawn_leaves);
-  float *arrays[] = {octree->center[0], octree->center[1], octree->center[2], octree->radius,    octree->error,
-                     octree->cone,      octree->normal[0], octree->normal[1], octree->normal[2], octree->excess};
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-    conic_memory_release(context, arrays[i]);
-  conic_memory_release(context, octree->end);
-  conic_memory_release(context, octree->first_leaf);
+  void *const owned[] = {
+      octree->owned_index, octree->owned_clips,  octree->clip_of_point, octree->owned_codes, octree->owned_leaf_codes,
+      octree->drawn,       octree->drawn_leaves, octree->center[0],     octree->center[1],   octree->center[2],
+      octree->radius,      octree->error,        octree->cone,          octree->normal[0],   octree->normal[1],
+      octree->normal[2],   octree->excess,       octree->end,           octree->first_leaf};
+  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
   conic_mapping_close(context, &octree->mapping);
   conic_memory_release(context, octree);
 }
@@ -335,4 +328,40 @@ conic_status conic_octree_leaves(const conic_octree *octree, conic_splats *splat
     blank(splats, i);
   conic_parallel_for(octree->context, (leaves->count + chunk_nodes - 1) / chunk_nodes, copy_leaves, &copy);
   return CONIC_OK;
+}
+
+/* --- clip lines --- */
+
+static double dot_at(float *const a[3], size_t i, float *const b[3], size_t k) {
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    sum += (double)a[axis][i] * (double)b[axis][k];
+  return sum;
+}
+
+/* A line says where a·u + b·v + c is at least 0. In space that is a direction in the splat's plane and what it is at
+ * the centre; both are looked at from the rounded splat's centre and along its axes. */
+static void move_line(const conic_splats *before, const conic_splats *after, size_t i, float line[3]) {
+  double uu = dot_at(before->tangent_u, i, before->tangent_u, i),
+         vv = dot_at(before->tangent_v, i, before->tangent_v, i);
+  double uv = dot_at(before->tangent_u, i, before->tangent_v, i), determinant = uu * vv - uv * uv;
+  double along_u = ((double)line[0] * vv - (double)line[1] * uv) / determinant;
+  double along_v = ((double)line[1] * uu - (double)line[0] * uv) / determinant;
+  double moved[3] = {0.0, 0.0, (double)line[2]};
+  for (int axis = 0; axis < 3; axis++) {
+    double slope = along_u * (double)before->tangent_u[axis][i] + along_v * (double)before->tangent_v[axis][i];
+    moved[0] += slope * (double)after->tangent_u[axis][i];
+    moved[1] += slope * (double)after->tangent_v[axis][i];
+    moved[2] += slope * ((double)after->position[axis][i] - (double)before->position[axis][i]);
+  }
+  for (int k = 0; k < 3; k++)
+    line[k] = (float)moved[k];
+}
+
+void conic_octree_move_clips(conic_octree *octree, const conic_splats *before, const conic_splats *after) {
+  for (size_t i = 0; octree->n_clips && i < octree->n_leaves; i++) {
+    uint32_t i_clip = octree->clip_of_point[octree->index[i]];
+    for (int k = 0; i_clip != CONIC_NO_CLIP && k < octree->clips[i_clip].n_lines; k++)
+      move_line(before, after, i, octree->clips[i_clip].lines[k]);
+  }
 }

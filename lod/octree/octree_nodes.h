@@ -1,7 +1,10 @@
-/* The octree's inside: what its parts hand to each other. */
+/* The octree's inside, shared by its parts. */
 #ifndef CONIC_OCTREE_NODES_H
 #define CONIC_OCTREE_NODES_H
 
+#include <stdint.h>
+
+#include "conic/context.h"
 #include "conic/octree.h"
 #include "core/files/mapping.h"
 #include "lod/octree/octree_code.h"
@@ -11,14 +14,14 @@
 /* No inner node is deeper; splitting at the mean gives up well before (lod/octree/octree_split.c). */
 enum { CONIC_OCTREE_DEPTH = 128 };
 
-/* A quantised octree leaves out what cannot be drawn; were that more than this times what can, a small file would ask
- * for much memory. */
+/* A quantised octree leaves out what cannot be drawn. That may be at most so many times what can, since otherwise a
+ * small file would ask for much memory. */
 enum { CONIC_OCTREE_MOST_LEFT_OUT = 15 };
 
 /* Subtrees with no more inner nodes are walked by one thread. */
 enum { CONIC_OCTREE_BLOCK = 1024 };
 
-/* What of an inner node or a leaf is drawn: a line of the cache. */
+/* What is drawn of an inner node or a leaf: a line of the cache. */
 typedef struct conic_drawn_node {
   float position[3], tangent_u[3], tangent_v[3], color[3], opacity;
   uint32_t id; /* of a leaf, its index in the input; of a node, n_points + its number */
@@ -28,8 +31,8 @@ typedef struct conic_drawn_node {
 /* Measuring goes by groups of so many nodes; their arrays have room for a last one. */
 enum { CONIC_OCTREE_GROUP = 16 };
 
-/* Inner nodes are numbered in preorder, so that a subtree is a range; the leaves of a node are a range too: those that
- * hang on it directly first, then those of each inner child in turn. */
+/* Inner nodes are numbered in preorder, so that a subtree is a range. The leaves of a node are a range too: at first
+ * its direct ones, then those of each inner child in turn. */
 struct conic_octree {
   conic_context *context;
 
@@ -43,8 +46,8 @@ struct conic_octree {
 
   /* What the codes give, once it is asked for. */
   conic_drawn_node *drawn;
-  conic_drawn_node *drawn_leaves; /* the n_leaves again, for they are chosen one here, one there; only for choosing */
-  float *center[3], *radius, *error, *normal[3], *cone; /* what choosing looks at, apart from the rest */
+  conic_drawn_node *drawn_leaves; /* the n_leaves again, only for choosing, which takes one here, one there */
+  float *center[3], *radius, *error, *normal[3], *cone; /* apart from the rest, since choosing looks at them */
   float *excess;                                        /* the square of the error over what its size asks for */
   uint32_t *end;                                        /* the node after the subtree */
   uint32_t *first_leaf;                                 /* n_nodes + 1 */
@@ -57,7 +60,7 @@ struct conic_octree {
   double splat_length, position_error;
   const unsigned char *leaf_codes; /* a quantised octree's leaves as its file has them */
 
-  /* Where all that lies: in memory of its own, or in the file's. What is not in memory of its own is null here. */
+  /* Where all that lies: in memory of its own, or else in the file's; then these are null. */
   conic_splats owned;
   uint32_t *owned_index;
   conic_clip *owned_clips;
@@ -65,8 +68,8 @@ struct conic_octree {
   conic_mapping mapping;
 };
 
-/* Fills in what the codes give, from the leaves, where that has not been done: who only builds and writes does without,
- * which would else be two fifths of its memory. Errors: MEMORY. */
+/* Fills in what the codes give, from the leaves, where that has not been done. Building and writing do without, and
+ * save two fifths of the memory. Errors: MEMORY. */
 conic_status conic_octree_decode(conic_octree *octree);
 
 /* The same, and the leaves once more. Errors: MEMORY. */
@@ -81,7 +84,7 @@ conic_status conic_octree_check_colors(conic_octree *octree);
 /* Finds the clip lines of each point. Errors: MEMORY. */
 conic_status conic_octree_index_clips(conic_octree *octree);
 
-/* Lets the clip lines of leaves that were rounded lie where they lay. */
+/* Leaves the clip lines of leaves that were rounded where they lay. */
 void conic_octree_move_clips(conic_octree *octree, const conic_splats *before, const conic_splats *after);
 
 /* The clip lines of leaf i, or null. */
@@ -93,11 +96,12 @@ static inline const conic_clip *conic_octree_clip(const conic_octree *octree, si
 /* The size of the file that holds it. */
 uint64_t conic_octree_file_bytes(const conic_octree *octree);
 
-/* Makes the sums in a file's bytes right, where its header tells of arrays that are all there: for tests and fuzzing,
- * which would else see no further than the sums. */
+/* Makes the sums in a file's bytes right, where all arrays that its header tells of are there. Tests and fuzzing would
+ * otherwise see no further than the sums. */
 void conic_octree_mend(unsigned char *bytes, size_t n_bytes);
 
-/* Lays the codes' structure out: `end` and `first_leaf`; *wrong is what is wrong with it, or null. Errors: MEMORY. */
+/* Finds `end` and `first_leaf` from the codes. *wrong is what is wrong with their structure, or null. Errors: MEMORY.
+ */
 conic_status conic_octree_lay_out(conic_octree *octree, const char **wrong);
 
 static inline int conic_octree_n_direct(const conic_octree *octree, size_t i_node) {
@@ -109,5 +113,18 @@ static inline void conic_octree_place(const conic_octree *octree, size_t i_leaf,
   for (int axis = 0; axis < 3; axis++)
     place[axis] = (double)octree->leaves.position[axis][i_leaf];
 }
+
+/* --- structure --- */
+
+typedef struct conic_split {
+  float *position[3]; /* of n points; brought into the order of the leaves */
+  uint32_t *index;    /* goes along */
+  size_t n;
+  uint8_t *children; /* result: of each inner node in preorder, n_direct | n_inner << 4; room for n */
+  size_t n_nodes;
+} conic_split;
+
+/* Errors: MEMORY, CANCELLED. */
+conic_status conic_octree_split(conic_context *context, conic_split *split);
 
 #endif

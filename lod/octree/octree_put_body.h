@@ -1,7 +1,7 @@
 /* Takes chosen nodes and leaves, a line of the cache each, apart into the arrays of a set of splats, as many at a time
  * as there are lanes. */
 #include "core/lanes/lanes_store.h"
-#include "lod/octree/octree_kernels.h"
+#include "lod/octree/octree_loops.h"
 
 #if defined(__AVX512F__)
 typedef lanes group;

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/lanes/lanes_double.h"
-#include "lod/octree/octree_kernels.h"
+#include "lod/octree/octree_loops.h"
 #include "lod/octree/outline_corners.h"
 
 CONIC_INLINE double wide_greatest(wide a) {

@@ -5,7 +5,7 @@
 #include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
-#include "lod/octree/octree_kernels.h"
+#include "lod/octree/octree_loops.h"
 
 /* What becomes part of the selection, in the order of the hierarchy. */
 typedef struct selection_piece {
@@ -53,11 +53,8 @@ void conic_selection_release(conic_context *context, conic_selection *selection)
 
 static conic_status add_selection_piece(octree_selecting *s, selection_piece added) {
   octree_scratch *kept = s->scratch;
-  if (conic_memory_reserve(s->octree->context, &kept->pieces, kept->n_pieces, kept->n_pieces + 1, &kept->pieces_room,
-                           sizeof *kept->pieces) != CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  kept->pieces[kept->n_pieces++] = added;
-  return CONIC_OK;
+  return conic_memory_append(s->octree->context, &kept->pieces, &kept->n_pieces, &kept->pieces_room, &added,
+                             sizeof added);
 }
 
 /* Walks the nodes whose subtrees are larger than a block one by one; the blocks are left for later. */
@@ -268,10 +265,10 @@ conic_status conic_octree_select(conic_octree *octree, const conic_camera *camer
   if (wrong)
     return conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong);
   octree_selecting s = {.octree = octree, .selection = selection, .error_px = (float)options.error_px};
-  conic_octree_kernels kernels;
+  conic_octree_loops loops;
   status = conic_isa_choose(octree->context, render.isa, &render.isa);
-  conic_octree_kernels_init(&kernels, render.isa);
-  s.put = kernels.put;
+  conic_octree_loops_init(&loops, render.isa);
+  s.put = loops.put;
   if (status == CONIC_OK)
     status = conic_octree_decode_all(octree);
   if (status == CONIC_OK)

@@ -1,4 +1,5 @@
-#include "lod/octree/octree_split.h"
+/* The structure of a point-octree: space split at the mean of each node's points (Confetti §3.2). */
+#include "lod/octree/octree_nodes.h"
 
 #include <string.h>
 
@@ -196,10 +197,7 @@ static size_t split_subtree(splitter *s, size_t begin, size_t end, int depth, ui
 }
 
 static conic_status add_top(conic_context *context, splitter *s, const top_item *item) {
-  if (conic_memory_reserve(context, &s->top, s->n_top, s->n_top + 1, &s->top_room, sizeof *s->top) != CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  s->top[s->n_top++] = *item;
-  return CONIC_OK;
+  return conic_memory_append(context, &s->top, &s->n_top, &s->top_room, item, sizeof *item);
 }
 
 /* Splits the nodes that are too large for a task, and lists in preorder what is left. */

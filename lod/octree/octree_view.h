@@ -6,14 +6,15 @@
 
 typedef struct conic_octree_view conic_octree_view;
 
-/* For n nodes from `begin` on: pixels[k] is below 0 where nothing of node begin + k is in sight, else the most that its
- * error can be on the screen, less where the node is seen from its side, and infinite where it reaches the near plane;
- * with --cull back, that of its diameter where some of its leaves may face away. `pixels` has room for n rounded up to
- * whole groups. */
+/* Measures n nodes from `begin` on. pixels[k] is below 0 where nothing of node begin + k is in sight; infinite where it
+ * reaches the near plane; else the most that its error can be on the screen, less where it is seen from its side. With
+ * back culling it is that of the node's diameter where some of its leaves may face away. `pixels` has room for n
+ * rounded up to whole groups. */
 typedef void conic_measure_function(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t n,
                                     float *pixels);
 
-/* A camera in floats. What that loses is less than `slack` times the coordinates, and every sphere is that much larger.
+/* A camera in floats. That loses less than `slack` times the coordinates, and every sphere is taken to be that much
+ * larger.
  */
 struct conic_octree_view {
   float rotation[3][3], translation[3], eye[3];
@@ -26,7 +27,7 @@ struct conic_octree_view {
   conic_measure_function *measure;
 };
 
-/* The options' instruction set has to be here. */
+/* The machine must have the options' instruction set. */
 void conic_octree_view_init(const conic_octree *octree, const conic_camera *camera, const conic_render_options *render,
                             double near_z, conic_octree_view *view);
 
@@ -36,8 +37,8 @@ typedef struct conic_measured {
   float pixels[CONIC_OCTREE_GROUP];
 } conic_measured;
 
-/* What measuring gives for node i. Where that is not known yet, measures it and those after it: its whole
- * subtree, if that is small. `measured` is zero before the first use. */
+/* What measuring gives for node i. Where that is not known yet, the node and those after it are measured, which is its
+ * whole subtree if that is small. `measured` is zero before the first use. */
 static inline float conic_octree_look_up(const conic_octree *octree, const conic_octree_view *view, size_t i,
                                          conic_measured *measured) {
   if (i < measured->begin || i >= measured->end) {
@@ -49,7 +50,7 @@ static inline float conic_octree_look_up(const conic_octree *octree, const conic
   return measured->pixels[i - measured->begin];
 }
 
-/* The least error that `budget` splats can give: the least for which no more are chosen. Errors: MEMORY. */
+/* Finds the least error for which no more than `budget` splats are chosen. Errors: MEMORY. */
 conic_status conic_octree_fit_budget(const conic_octree *octree, const conic_octree_view *view, uint64_t budget,
                                      float *error_px);
 

@@ -1,4 +1,4 @@
-/* What plain C and lanes share where leaves' reach is looked for (octree_fit.h). */
+/* What plain C and lanes share to find the reach of leaves (octree_fit.h). */
 #ifndef CONIC_OUTLINE_CORNERS_H
 #define CONIC_OUTLINE_CORNERS_H
 

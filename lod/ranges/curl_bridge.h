@@ -1,11 +1,11 @@
-/* The bridge to libcurl, a module of its own: what libcurl is linked to takes longer to load than all else that the
+/* The bridge to libcurl, a module of its own: libcurl's own libraries take longer to load than all else that the
  * program needs, and most runs ask no server for anything. */
 #ifndef CONIC_CURL_BRIDGE_H
 #define CONIC_CURL_BRIDGE_H
 
 #include <curl/curl.h>
 
-/* What the module gives, as its one symbol, conic_curl_bridge: libcurl's functions without their "curl_". */
+/* The module's one symbol, conic_curl_bridge: libcurl's functions, named without "curl_". */
 typedef struct conic_curl_bridge_functions {
   const char *version; /* as of every module (core/base/module.h) */
 

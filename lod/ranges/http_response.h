@@ -1,4 +1,4 @@
-/* What the headers of a web server's response say of the file. */
+/* What the headers of a web server's response say about the file. */
 #ifndef CONIC_HTTP_RESPONSE_H
 #define CONIC_HTTP_RESPONSE_H
 

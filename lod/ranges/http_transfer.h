@@ -1,4 +1,4 @@
-/* A request for a part of a file on a web server: sent, and looked at as it is answered. */
+/* A request for a part of a file on a web server, and its answer as it comes. */
 #ifndef CONIC_HTTP_TRANSFER_H
 #define CONIC_HTTP_TRANSFER_H
 
@@ -16,14 +16,14 @@ enum {
   CONIC_HTTP_CONNECTIONS = 16       /* at most */
 };
 
-/* What arrived, shared by the answers that lie in it. */
+/* Bytes that arrived; the answers in them share them. */
 typedef struct conic_http_body {
   unsigned char *bytes;
   size_t n, room;
   int n_holders;
 } conic_http_body;
 
-/* Why a request failed, and what comes of it: `conic_http_fates` says. */
+/* Why a request failed. `conic_http_fates` says what comes of it. */
 typedef enum conic_http_fault {
   CONIC_HTTP_SILENCE, /* the server is not there, slow or busy, or ends early: there may be more in a while */
   CONIC_HTTP_WRONG,   /* what it sends is not what was asked for */
@@ -36,17 +36,17 @@ typedef struct conic_http_transfer {
   CURL *easy;
   int is_busy;
   int is_probe, is_whole; /* it began as the first request; the server sends the whole file */
-  int is_beside;          /* it is for the whole of another file, of n_expected bytes at most, */
-  char *own_url;          /* which is this one */
+  int is_beside;          /* it is for the whole of another file, of n_expected bytes at most */
+  char *own_url;          /* that file's */
   uint64_t offset;
   size_t n_expected;
   conic_http_body *body;
   conic_queued_range *parts;
   size_t n_parts, parts_room;
   conic_http_response response;
-  double window_s;        /* when it was last looked at whether it stalls, */
-  size_t window_n;        /* and what it had then */
-  conic_http_fault fault; /* of its failure, which the reason describes: empty, where there is none yet */
+  double window_s;        /* when it was last checked whether it stalls */
+  size_t window_n;        /* bytes that it had then */
+  conic_http_fault fault; /* of its failure, if `reason`, which describes it, is not empty */
   char reason[CURL_ERROR_SIZE];
   char words[CURL_ERROR_SIZE]; /* libcurl's own */
 } conic_http_transfer;
@@ -69,11 +69,11 @@ typedef struct conic_http_ranges {
   char tag[CONIC_HTTP_TAG];
   conic_http_ready *ready;
   size_t first_ready, n_ready, ready_room; /* those from first_ready on wait */
-  pthread_t pump;                          /* that lets them come while the caller does something else, */
-  atomic_int is_to_halt;                   /* until it is told */
+  pthread_t pump;                          /* lets answers come while the caller does something else */
+  atomic_int is_to_halt;                   /* tells the pump to end */
   int n_failures;                          /* of requests, since one succeeded */
   int is_dead;                             /* the server is given up, until nothing is asked for any more */
-  conic_http_fault fault;                  /* of which it died */
+  conic_http_fault fault;                  /* why it was given up */
   char reason[CURL_ERROR_SIZE];            /* of the last answer, or of the server's end */
 } conic_http_ranges;
 
@@ -83,20 +83,20 @@ extern const struct conic_http_fate {
   int most_repeats; /* of the request, if the options do not say less */
 } conic_http_fates[];
 
-/* 0: libcurl cannot. */
+/* Returns 0 where libcurl cannot. */
 int conic_http_transfer_set_up(conic_http_ranges *http, conic_http_transfer *t);
 
 /* Sends the transfer's request. On failure nothing is under way. */
 conic_status conic_http_transfer_begin(conic_http_transfer *t);
 void conic_http_transfer_end(conic_http_transfer *t);
 
-/* Whether hardly anything came for long. libcurl's own look at it takes some seconds more. */
+/* Whether hardly anything came for long. libcurl's own check takes some seconds more. */
 int conic_http_transfer_is_stalled(conic_http_transfer *t);
 
 /* Whether the transfer brought what it should. If not, its reason says why. */
 int conic_http_transfer_is_complete(conic_http_transfer *t, CURLcode code);
 
-/* Gives up one hold of what arrived, and it with the last. */
+/* Gives up one hold on bytes that arrived. The last hold releases them. */
 void conic_http_let_go(conic_http_ranges *http, conic_http_body *held);
 
 #endif

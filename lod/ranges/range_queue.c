@@ -1,4 +1,5 @@
-#include "lod/ranges/range_queue.h"
+/* Ranges that wait, the first by priority first. */
+#include "lod/ranges/ranges_backend.h"
 
 #include <string.h>
 
@@ -47,12 +48,10 @@ static void take_item(conic_range_queue *queue, size_t i, conic_queued_range *it
 }
 
 conic_status conic_range_queue_push(conic_context *context, conic_range_queue *queue, const conic_queued_range *item) {
-  if (conic_memory_reserve(context, &queue->items, queue->n, queue->n + 1, &queue->room, sizeof *queue->items) !=
-      CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  queue->items[queue->n++] = *item;
-  rise(queue, queue->n - 1);
-  return CONIC_OK;
+  conic_status status = conic_memory_append(context, &queue->items, &queue->n, &queue->room, item, sizeof *item);
+  if (status == CONIC_OK)
+    rise(queue, queue->n - 1);
+  return status;
 }
 
 /* Few ranges wait for their time, and only after failures: then all are looked through. */

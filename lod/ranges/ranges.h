@@ -1,8 +1,8 @@
-/* Bytes of a file, asked for by ranges and handed over as they come: from a memory map, or from a web server
- * (HTTP/1.1 range requests). Both answer in the same way, so that nothing above knows where a file lies.
+/* Bytes of a file, asked for by ranges and handed over as they come, from a memory map or from a web server (HTTP/1.1
+ * range requests). Both answer in the same way, so that nothing above knows where a file lies.
  *
- * Nothing happens between the calls: transfers go on within conic_ranges_next, several at a time, and after
- * conic_ranges_go_on. One thread at a time. */
+ * Transfers go on within conic_ranges_next, several at a time, and after conic_ranges_go_on; otherwise nothing happens
+ * between the calls. One thread at a time. */
 #ifndef CONIC_RANGES_H
 #define CONIC_RANGES_H
 
@@ -16,11 +16,11 @@ typedef struct conic_ranges conic_ranges;
 typedef struct conic_ranges_options {
   double connect_seconds;    /* a server that is not reached within these is tried again */
   double stall_seconds;      /* so is one that sends under 1 KiB/s for so long */
-  int n_retries;             /* so often, each time after a longer pause, before a range is given up */
+  int n_retries;             /* tries after the first, each after a longer pause, before a range is given up */
   double pause_seconds;      /* the first pause; each is twice the one before */
   int n_connections;         /* at a time */
-  uint64_t most_whole_bytes; /* of a server without ranges, a file up to this size is fetched as a whole */
-  double until_s;            /* by conic_seconds_now, opening ends; infinite: it takes as long as it takes */
+  uint64_t most_whole_bytes; /* up to this size, a file is fetched as a whole from a server without ranges */
+  double until_s;            /* when opening ends, by conic_seconds_now; infinite: it takes as long as it takes */
 } conic_ranges_options;
 
 /* 10 s, 15 s, 4 retries from 0.2 s on, 4 connections, 512 MiB, no end. */
@@ -48,11 +48,10 @@ enum { CONIC_RANGE_FILE = 56 };
 typedef struct conic_range {
   uint64_t offset;
   size_t n_bytes;
-  uint64_t
-      priority; /* the lowest is asked for first; neighbours in this order that lie together are asked for as one */
-  uint32_t id;  /* the caller's */
-  char file[CONIC_RANGE_FILE]; /* empty: the file that was opened; else a name beside it: all of that file is asked for,
-                                  which has n_bytes at most */
+  uint64_t priority;           /* the lowest is asked for first; neighbours in this order that lie together, as one */
+  uint32_t id;                 /* the caller's */
+  char file[CONIC_RANGE_FILE]; /* empty: the file that was opened; else the name of one beside it, of n_bytes at most,
+                                  all of which is asked for */
 } conic_range;
 
 /* Whether a range lies within the file, or is of another. */
@@ -70,7 +69,7 @@ typedef struct conic_range_answer {
   void *held;         /* private */
 } conic_range_answer;
 
-/* The next answer, in any order: 1, or 0 where none came within so many seconds or nothing is asked for. */
+/* Takes the next answer, in any order, and returns 1. 0: none came within so many seconds, or nothing is asked for. */
 int conic_ranges_next(conic_ranges *ranges, double wait_seconds, conic_range_answer *answer);
 
 /* Gives an answer's bytes back, before the ranges are closed. */
@@ -85,12 +84,12 @@ void conic_ranges_cancel(conic_ranges *ranges);
 /* How many ranges were asked for and not yet answered. */
 size_t conic_ranges_pending(const conic_ranges *ranges);
 
-/* Asks for a range and waits for it, until `until_s` by conic_seconds_now; nothing else may be pending. `name` is for
- * messages. The caller releases *bytes, which are 0 or more. Errors: INPUT, IO, MEMORY, CANCELLED. */
+/* Asks for a range and waits for it, until `until_s` by conic_seconds_now. Nothing else may be pending. `name` is for
+ * messages. The caller releases *bytes. Errors: INPUT, IO, MEMORY, CANCELLED. */
 conic_status conic_ranges_read(conic_ranges *ranges, const char *name, const conic_range *range, double until_s,
                                unsigned char **bytes, size_t *n_bytes);
 
-/* The name of a file beside another, which may be a URL, or of one in its place where `name` ends with a slash. The
+/* Makes the name of `file` in the folder of `name`, which may be a URL, or is a folder where it ends with a slash. The
  * caller releases *beside. Errors: MEMORY. */
 conic_status conic_ranges_name_beside(conic_context *context, const char *name, const char *file, char **beside);
 

@@ -207,7 +207,7 @@ static void take_median(const fork_job *j, const oracle_meeting *m, range before
     s->median = range_of(oracle_min(s->median.low, m->z[0]), v, oracle_max(s->median.high, m->z[1]));
 }
 
-/* T after all those that may come in any order with Gaussian i, and after it. */
+/* T after Gaussian i, and after all that may come in any order with it. */
 static double least_of_group(const fork_job *j, size_t i, double T) {
   for (T *= 1.0 - j->meetings[i].alpha[1]; ++i < j->n && !j->meetings[i].is_cut;)
     T *= 1.0 - j->meetings[i].alpha[1];

@@ -1,4 +1,4 @@
-/* Gaussians for the oracle: what each profile makes of one, and what of it a place of the screen sees. */
+/* Gaussians for the oracle: what each profile makes of one, and how much a place of the screen sees of it. */
 #include "oracle/gaussians/oracle_gaussian.h"
 
 #include <string.h>

@@ -59,8 +59,8 @@ typedef struct oracle_gradient_pixel {
   int goes_on; /* all are composited, whatever T is */
 } oracle_gradient_pixel;
 
-/* Composites what stands in its order, as far as it goes: fills in `before`, by_weight and by_z, and sets *n to how
- * many are composited. Returns the pixel's part of L; *behind becomes dL/dT of what is left. */
+/* Composites the list in its order, until it ends: fills in `before`, by_weight and by_z, and sets *n to how many are
+ * composited. Returns the pixel's part of L. *behind becomes the derivative of L by the T that is left. */
 double conic_oracle_gradient_forth(const oracle_gaussian_view *view, const oracle_gradient_pixel *pixel,
                                    const oracle_shown *const *shown, oracle_met *met, size_t *n, double *behind);
 

@@ -1,9 +1,9 @@
 /* How far off a program of floats may be in a pixel's part of the derivative.
  *
  * Roundings: an error of first order is carried from what the pixel sees of each Gaussian to α, from there to T and to
- * the light from behind, and from these to every term. Other programs find T of each Gaussian from what is left in the
- * end, by dividing by the 1 − α that they have multiplied by, so that only roundings come anew. Errors of different
- * Gaussians are independent, and add in squares; those of different pixels may not be, and add up.
+ * the light from behind, and from these to every term. Other programs begin with the T that is left in the end. They
+ * divide it by the 1 − α that they have multiplied by, so that only roundings come anew. Errors of different Gaussians
+ * are independent and add in squares. Errors of different pixels may depend on each other and add up.
  *
  * Decisions in doubt: each is followed the other way by itself, and what that changes is added up. */
 #include <stdlib.h>
@@ -19,7 +19,7 @@
 
 enum { MOST_VARIANTS = 24 };
 
-/* By which share of themselves α, and T before and after, may be off. */
+/* The shares of themselves by which α, and T before and after, may be off. */
 typedef struct met_error {
   double rho, tau, tau_after;
 } met_error;
@@ -187,7 +187,8 @@ static void admit_variant(pixel_bound *p, size_t n, int goes_on) {
   }
 }
 
-/* The list of those that cover, but for one that is asked about, of which it is the other way round. */
+/* Lists the Gaussians that cover the pixel. The one that is asked about counts the other way: it is listed where it
+ * does not cover, and left out where it does. */
 static size_t list_covering(const pixel_bound *p, size_t asked) {
   size_t n = 0;
   for (size_t i = 0; i < p->n_all; i++)

@@ -203,7 +203,7 @@ static void turn_back(const oracle_gaussian_view *view, const conic_gaussians *s
   quaternion_back(q, length, by_world, to->rotation);
 }
 
-/* Whether a channel of the colour is above 0 only, or not, by rounding: the sum of what it is of, by so many units. */
+/* Whether rounding decides if a channel of the colour is above 0. `size` is the sum of its terms' absolute values. */
 static int is_clamp_in_doubt(const conic_float_model *model, double sum, double size) {
   return model && fabs(sum) <= (16.0 * model->setup_roundoff + 24.0 * 0x1p-24) * size;
 }

@@ -61,9 +61,10 @@ static double number_in_gradient(const conic_gaussian_gradient *g, size_t i, siz
     return g->rotation[k][i];
   case CONIC_GRADIENT_OPACITY:
     return g->opacity[i];
-  default:
+  case CONIC_GRADIENT_SH:
     return k < n_sh ? g->sh[i * n_sh + k] : 0.0;
   }
+  return 0.0;
 }
 
 static double number_in_parameters(const oracle_parameters *p, size_t at) {
@@ -77,9 +78,10 @@ static double number_in_parameters(const oracle_parameters *p, size_t at) {
     return p->rotation[k];
   case CONIC_GRADIENT_OPACITY:
     return p->opacity;
-  default:
+  case CONIC_GRADIENT_SH:
     return p->sh[k];
   }
+  return 0.0;
 }
 
 /* What a number is multiplied by where stored values are meant. */

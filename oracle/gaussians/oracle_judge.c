@@ -76,22 +76,16 @@ static judged_range range_of_normal(const conic_gaussian_bound *b, int c) {
 }
 
 static judged_range range_in_plane(const judge_job *j, const conic_gaussian_bound *b, conic_plane plane, int channel) {
-  switch (plane) {
-  case CONIC_PLANE_RGBA:
+  if (plane == CONIC_PLANE_RGBA)
     return channel == 3 ? range_of_alpha(j, b) : rounded_range(range_at(b, CONIC_BOUND_RGB + channel));
-  case CONIC_PLANE_Z:
-    return range_at(b, CONIC_BOUND_Z);
-  case CONIC_PLANE_NORMAL:
-    return range_of_normal(b, channel);
-  case CONIC_PLANE_COUNT:
-    return range_at(b, CONIC_BOUND_COUNT);
-  case CONIC_PLANE_TRANSPARENCY:
+  if (plane == CONIC_PLANE_TRANSPARENCY)
     return rounded_range(range_at(b, CONIC_BOUND_T));
-  case CONIC_PLANE_MEDIAN_Z:
-    return range_at(b, CONIC_BOUND_MEDIAN_Z);
-  default:
-    return range_at(b, CONIC_BOUND_INVERSE_Z);
-  }
+  if (plane == CONIC_PLANE_NORMAL)
+    return range_of_normal(b, channel);
+  return range_at(b, plane == CONIC_PLANE_Z          ? CONIC_BOUND_Z
+                     : plane == CONIC_PLANE_COUNT    ? CONIC_BOUND_COUNT
+                     : plane == CONIC_PLANE_MEDIAN_Z ? CONIC_BOUND_MEDIAN_Z
+                                                     : CONIC_BOUND_INVERSE_Z);
 }
 
 static double unit_of_plane(conic_plane plane, double expected) {

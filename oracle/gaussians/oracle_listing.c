@@ -82,7 +82,7 @@ static void fill_entry(const oracle_doubting *d, const oracle_meeting *m, listin
   to->weight = m->alpha_v * to->before;
 }
 
-/* The bound of those that may cover, whose notes go back to all. */
+/* Bounds the meetings that may cover, and copies their notes back to the list of all. */
 static conic_status bound_meetings(const oracle_bound_request *b, oracle_meeting *meetings, size_t n,
                                    conic_gaussian_bound *bound) {
   oracle_meeting *those = conic_memory_allocate(b->context, n, sizeof *those);

@@ -36,8 +36,8 @@ static double factor_of(const conic_camera *camera, double s) {
   return below > 0.0 ? (1.0 + s * k[0] + s * s * k[1] + s * s * s * k[4]) / below : 0.0;
 }
 
-/* The least radius whose distorted one is `place`, as long as that grows; below 0 where there is none. Steps outwards,
- * each by a part of what has been gone, then halves. */
+/* The least radius that is distorted to `place`, as long as distorted radii grow; below 0 where there is none. Steps
+ * outwards, each step a part of the way so far, then halves. */
 static double find_radius(const conic_camera *camera, double place, double most) {
   double low = 0.0, step = place / 1024.0;
   for (double at_low = 0.0; low<most; step = low / 256.0> step ? low / 256.0 : step) {

@@ -1,19 +1,19 @@
-/* The set-up of a Gaussian with bounds of what roundings do to it.
+/* The set-up of a Gaussian, and how far roundings may take it.
  *
- * Conic's own floats come of a set-up in double, each result rounded once. Of another program all of it is taken to be
- * in float. Its covariance may come of products in space, Σ = R·S·Sᵀ·Rᵀ and J·V·Σ·Vᵀ·Jᵀ, in whatever order: these are
- * polynomials, and any order of evaluating one errs by at most the number of roundings of a term, times the unit, times
- * the sum of its terms' absolute values. */
+ * Conic's own set-up is in double, and each result is rounded to float once. Another program's is taken to be in float
+ * throughout. Its covariance may come of products in space, Σ = R·S·Sᵀ·Rᵀ and J·V·Σ·Vᵀ·Jᵀ, in whatever order. These are
+ * polynomials. However one is evaluated, it errs by at most the number of a term's roundings, times the unit, times the
+ * sum of its terms' absolute values. */
 #include <float.h>
 #include <string.h>
 
 #include "oracle/gaussians/oracle_uncertain.h"
 
-/* Of any term of the covariance: some 44, of which a step of the set-up counts as four: quaternions 12, rotations 6,
- * scales 2, view and Jacobian 12, sums 12. */
+/* The roundings of any term of the covariance are some 44: quaternions 12, rotations 6, scales 2, view and Jacobian 12,
+ * sums 12. A step of the set-up counts as four of them. */
 static const double n_covariance_roundings = 11.0;
 
-/* How much more than the formula says the reach is, in pixels. */
+/* The reach may be larger than the formula says, by so many pixels. */
 static const double reach_margin_px = 1.0;
 
 /* What set-up has of a Gaussian in camera space. */
@@ -216,7 +216,7 @@ static bounded determinant_in_float(const bounded c[3], double unit) {
   return bounded_subtract(bounded_multiply(c[0], c[2], unit), bounded_multiply(c[1], c[1], unit), unit);
 }
 
-/* The rows of J·V·R·S, and what of them another order needs. */
+/* The rows of J·V·R·S, and their parts that another order of evaluation needs. */
 static void bound_rows(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g, bounded rows[2][3],
                        double gain[2], double size_of_slope[2]) {
   const oracle_gaussian_rules *rules = d->view->rules;

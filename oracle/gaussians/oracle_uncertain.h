@@ -50,8 +50,8 @@ struct oracle_meeting {
   conic_gaussian_part part; /* what keeps it out */
   /* Filled in when it is composited: */
   unsigned noted;                      /* all that is in doubt about it there */
-  int is_cut;                          /* what stands before it comes before it and all behind */
-  const oracle_meeting *latest_before; /* of those that stand before it */
+  int is_cut;                          /* all that stands before it comes before it, and before all behind it */
+  const oracle_meeting *latest_before; /* among the meetings that stand before it */
 };
 
 void conic_oracle_uncertain_meet(const oracle_doubting *d, const oracle_uncertain *g, double x, double y,

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "raster/kernels/raster_kernels.h"
+#include "raster/loops/raster_loops.h"
 #include "raster/view/method.h"
 #include "raster/view/scene_scale.h"
 
@@ -32,15 +32,15 @@ conic_status conic_whole_drawing_scale(conic_context *context, const conic_whole
 conic_status conic_whole_drawing_prepare(conic_context *context, const conic_whole_drawing *drawing,
                                          const conic_view *view, const conic_camera *camera, conic_isa isa,
                                          conic_triangle_frame *frame) {
-  conic_raster_kernels kernels;
+  conic_raster_loops loops;
   conic_status status = conic_isa_choose(context, isa, &isa);
   if (status != CONIC_OK || !drawing->triangles)
     return status;
-  conic_raster_kernels_init(&kernels, isa);
+  conic_raster_loops_init(&loops, isa);
   conic_triangle_frame_begin(frame, context, drawing->triangles, view, camera);
   frame->first_id = (uint32_t)drawing->splats->count;
   conic_triangle_frame_tiles(frame, CONIC_GREATEST_TILE);
-  return conic_triangle_frame_prepare(frame, &kernels.triangles);
+  return conic_triangle_frame_prepare(frame, &loops.triangles);
 }
 
 conic_status conic_whole_drawing_count(conic_context *context, const conic_whole_drawing *drawing,

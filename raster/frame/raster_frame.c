@@ -100,7 +100,7 @@ static void project_task(void *data, size_t i_chunk, int i_thread) {
   conic_sorter_place(&f->bins, f->projected.chunk_size, f->splats->n_clips > 0, f->projected.rays,
                      f->sorters + (size_t)i_thread * f->sorter_bytes, &sorter);
   sorter.chunk.first_ray = begin;
-  f->kernels.project.project(&f->view, f->splats, begin, end, &sorter.projected, &sorter.chunk);
+  f->loops.project.project(&f->view, f->splats, begin, end, &sorter.projected, &sorter.chunk);
   if (sorter.projected.clips)
     conic_clip_chunk(&f->view, f->splats, begin, &sorter.projected, &sorter.chunk);
   if (f->part.is_counted)
@@ -109,7 +109,7 @@ static void project_task(void *data, size_t i_chunk, int i_thread) {
   if (f->is_part)
     conic_chunk_keep_window(&f->part.window, &sorter.projected, &sorter.chunk);
   uint64_t projected = conic_ticks();
-  conic_bins_sort(&f->bins, &f->kernels.bins, &sorter, i_chunk, &f->projected);
+  conic_bins_sort(&f->bins, &f->loops.bins, &sorter, i_chunk, &f->projected);
   f->times[i_thread].setup += projected - start;
   f->times[i_thread].sort += conic_ticks() - projected;
 }
@@ -164,7 +164,7 @@ conic_status conic_raster_frame_set_up(conic_raster_frame *f, unsigned planes, c
   double sorted = conic_seconds_now();
   share_out_chunks(f, 1e3 * (sorted - start), ms);
   if (f->triangles)
-    status = conic_triangle_frame_prepare(f->triangles, &f->kernels.triangles);
+    status = conic_triangle_frame_prepare(f->triangles, &f->loops.triangles);
   ms->setup += 1e3 * (conic_seconds_now() - sorted);
   return status;
 }
@@ -191,13 +191,13 @@ conic_status conic_raster_frame_begin(conic_raster_frame *f, const conic_whole_d
   conic_status status = conic_isa_choose(context, options->isa, &f->isa);
   if (status != CONIC_OK)
     return status;
-  conic_raster_kernels_init(&f->kernels, f->isa);
+  conic_raster_loops_init(&f->loops, f->isa);
   status = conic_whole_drawing_scale(context, drawing, &scaled);
   if (status == CONIC_OK)
     status = conic_view_init(context, f->splats, camera, options, scaled.near_z, scaled.splat_length, &f->view);
   f->view.slips = f->renderer->slips;
   if (f->view.slips)
-    f->kernels.project.project = conic_project_range;
+    f->loops.project.project = conic_project_range;
   if (status == CONIC_OK)
     status = conic_finish_init(context, camera, options, &f->lights, &f->finish);
   return status == CONIC_OK ? begin_triangles(f, drawing, camera, options) : status;

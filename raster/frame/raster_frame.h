@@ -31,7 +31,7 @@ typedef struct conic_raster_frame {
   conic_finish finish;
   conic_finish_lights lights;
   conic_isa isa;
-  conic_raster_kernels kernels;
+  conic_raster_loops loops;
   conic_image *image;
   conic_part part;         /* the pixels that the tiles are of */
   int is_part;             /* they are not the whole picture */

@@ -78,7 +78,7 @@ static void tile_task(void *data, size_t i_task, int i_thread) {
   uint64_t start = conic_ticks();
   begin_tile(f, i_tile, i_thread, &tile);
   tile.ticks = (conic_stage_ticks){.lists = conic_ticks() - start};
-  conic_tile_draw(&tile, &f->kernels, &f->finish, f->image, &report);
+  conic_tile_draw(&tile, &f->loops, &f->finish, f->image, &report);
   add_ticks(&tile.ticks, &f->times[i_thread]);
   f->n_fragments[i_tile] = report.n_fragments;
   f->n_covered[i_tile] = report.n_covered;

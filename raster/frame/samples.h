@@ -24,8 +24,8 @@ conic_camera conic_samples_camera(const conic_camera *camera, int samples, int f
 void conic_samples_reduce(conic_context *context, const conic_image *fine, int samples, int first_column, int first_row,
                           conic_image *image);
 
-/* What becomes of the splats in a picture, without drawing it, of those that `is_counted` is not 0 of (null: of all);
- * near_z and splat_length are given. Errors: MEMORY, CANCELLED. */
+/* Counts what a picture would make of the splats, without drawing it. Only splats whose `is_counted` is not 0 are
+ * counted (null: all are). near_z and splat_length are given. Errors: MEMORY, CANCELLED. */
 conic_status conic_samples_count(conic_context *context, const conic_splats *splats, const unsigned char *is_counted,
                                  const conic_camera *camera, const conic_render_options *options,
                                  conic_render_statistics *statistics);

@@ -6,7 +6,7 @@
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
 #include "raster/frame/drawing.h"
-#include "raster/kernels/raster_kernels.h"
+#include "raster/loops/raster_loops.h"
 #include "raster/view/view.h"
 
 /* Splats that are projected at a time: their records stay in a core's cache. */
@@ -23,7 +23,7 @@ typedef struct dropped_records {
 typedef struct box_search {
   const conic_splats *splats;
   conic_view view;
-  conic_raster_kernels kernels;
+  conic_raster_loops loops;
   conic_box *boxes;
   dropped_records *records; /* a thread */
   conic_chunk *counts;      /* likewise */
@@ -41,7 +41,7 @@ static void find_boxes_of_chunk(void *data, size_t i_chunk, int i_thread) {
                                .surfaces = r->surfaces,
                                .rays = r->rays};
   size_t begin = i_chunk * CHUNK, left = s->splats->count - begin, n = left < CHUNK ? left : CHUNK;
-  s->kernels.project.project(&s->view, s->splats, begin, begin + n, &projected, &chunk);
+  s->loops.project.project(&s->view, s->splats, begin, begin + n, &projected, &chunk);
   memset(s->boxes + begin, 0, n * sizeof *s->boxes);
   for (size_t i = 0; i < chunk.n_drawn; i++)
     s->boxes[r->surfaces[i].index] = r->boxes[i];
@@ -56,7 +56,7 @@ static conic_status begin_box_search(conic_context *context, const conic_camera 
     status = conic_view_init(context, s->splats, camera, options, options->near_z, options->splat_length, &s->view);
   if (status != CONIC_OK)
     return status;
-  conic_raster_kernels_init(&s->kernels, isa);
+  conic_raster_loops_init(&s->loops, isa);
   s->view.needs_nearness = options->passes != 1; /* what is not finite is skipped */
   s->view.needs_slope = options->passes != 1 || planes >> CONIC_PLANE_Z & 1;
   size_t n_threads = (size_t)conic_context_threads(context);

@@ -30,9 +30,9 @@ void conic_tile_place_scratch(conic_tile *tile, void *memory) {
 }
 
 /* The splats that meet row i_row of the tile's blocks. */
-static void select_band(const conic_tile *tile, const conic_raster_kernels *kernels, int i_row, conic_band *band) {
-  band->n = kernels->bins.select(tile->scratch.entries, tile->n_references, UINT32_C(0x10000) << i_row,
-                                 tile->scratch.indices, tile->scratch.words);
+static void select_band(const conic_tile *tile, const conic_raster_loops *loops, int i_row, conic_band *band) {
+  band->n = loops->bins.select(tile->scratch.entries, tile->n_references, UINT32_C(0x10000) << i_row,
+                               tile->scratch.indices, tile->scratch.words);
   band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
 }
 
@@ -49,11 +49,11 @@ static void raise_hiding(const conic_tile *tile, const conic_band *band) {
     }
 }
 
-static void hide(conic_tile *tile, const conic_raster_kernels *kernels, conic_band *band) {
+static void hide(conic_tile *tile, const conic_raster_loops *loops, conic_band *band) {
   uint64_t start = conic_ticks();
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
-    select_band(tile, kernels, i_row, band);
-    kernels->passes.visibility(band);
+    select_band(tile, loops, i_row, band);
+    loops->passes.visibility(band);
     raise_hiding(tile, band);
   }
   tile->ticks.visibility += conic_ticks() - start;
@@ -82,12 +82,12 @@ static unsigned write_hiding_row(const conic_tile *tile, const conic_band *band,
 }
 
 /* Visibility alone: Z is where hiding begins. Nothing is kept for blending. */
-static void draw_hiding(conic_tile *tile, const conic_raster_kernels *kernels, conic_band *band, conic_image *image) {
+static void draw_hiding(conic_tile *tile, const conic_raster_loops *loops, conic_band *band, conic_image *image) {
   uint64_t start = conic_ticks();
   band->keeps_indices = 1;
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
-    select_band(tile, kernels, i_row, band);
-    kernels->passes.visibility(band);
+    select_band(tile, loops, i_row, band);
+    loops->passes.visibility(band);
     begin_triangles(tile, i_row, band);
     for (int i = 0; i < CONIC_BLOCK_EDGE && band->y + i < tile->y_end; i++) {
       size_t row = (size_t)(band->y + i - band->first_row);
@@ -98,29 +98,29 @@ static void draw_hiding(conic_tile *tile, const conic_raster_kernels *kernels, c
   tile->ticks.visibility += conic_ticks() - start;
 }
 
-static void draw_triangles(conic_tile *tile, const conic_raster_kernels *kernels) {
+static void draw_triangles(conic_tile *tile, const conic_raster_loops *loops) {
   uint64_t start = conic_ticks();
-  kernels->triangles.draw(tile->triangles, tile->i_tile, tile->x_begin, tile->y_begin, tile->triangle_tile);
+  loops->triangles.draw(tile->triangles, tile->i_tile, tile->x_begin, tile->y_begin, tile->triangle_tile);
   tile->ticks.visibility += conic_ticks() - start;
 }
 
 /* Visibility and accumulation of all rows, each resolved at once. */
-static void draw_blended(conic_tile *tile, const conic_raster_kernels *kernels, const conic_finish *finish,
+static void draw_blended(conic_tile *tile, const conic_raster_loops *loops, const conic_finish *finish,
                          const conic_tile_rays *rays, conic_band *band, conic_image *image) {
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
     uint64_t start = conic_ticks();
-    select_band(tile, kernels, i_row, band);
+    select_band(tile, loops, i_row, band);
     uint64_t listed = conic_ticks();
-    kernels->passes.visibility(band);
+    loops->passes.visibility(band);
     begin_triangles(tile, i_row, band);
     if (band->triangles)
-      kernels->triangles.hide(band, rays);
+      loops->triangles.hide(band, rays);
     uint64_t seen = conic_ticks();
-    kernels->passes.accumulate(band);
+    loops->passes.accumulate(band);
     if (band->triangles)
-      kernels->triangles.add(band, finish, rays);
+      loops->triangles.add(band, finish, rays);
     uint64_t summed = conic_ticks();
-    kernels->resolve.resolve(band, finish, rays, image);
+    loops->resolve.resolve(band, finish, rays, image);
     tile->ticks.lists += listed - start;
     tile->ticks.visibility += seen - listed;
     tile->ticks.accumulate += summed - seen;
@@ -128,9 +128,9 @@ static void draw_blended(conic_tile *tile, const conic_raster_kernels *kernels, 
   }
 }
 
-/* Four rows a strip where that is cheaper, as the tile's first splats tell: a register of 16 pixels then has four
- * columns and four rows, which most splats of up to four columns meet two of; and eight columns of two rows else, which
- * is better the wider they are. Fewer pixels are never better off with four rows. */
+/* A register of 16 pixels holds four rows of four columns, or two rows of eight. Four rows are cheaper for splats of up
+ * to four columns, most of which meet two such registers; two rows are the better the wider splats are. The tile's
+ * first splats tell which. Narrower registers are never better off with four rows. */
 static int choose_strip(const conic_band *band, int n_lanes) {
   enum { LOOKED_AT = 64 };
   size_t n = band->n_entries < LOOKED_AT ? band->n_entries : LOOKED_AT, n_narrow = 0;
@@ -142,29 +142,29 @@ static int choose_strip(const conic_band *band, int n_lanes) {
 }
 
 /* The nearest splat alone: all rows in one go, since little is kept of it. */
-static void draw_nearest(conic_tile *tile, const conic_raster_kernels *kernels, const conic_finish *finish,
+static void draw_nearest(conic_tile *tile, const conic_raster_loops *loops, const conic_finish *finish,
                          const conic_tile_rays *rays, conic_band *band, conic_image *image) {
   uint64_t start = conic_ticks();
-  band->strip_rows = choose_strip(band, kernels->passes.n_lanes);
-  kernels->passes.nearest(band);
+  band->strip_rows = choose_strip(band, loops->passes.n_lanes);
+  loops->passes.nearest(band);
   uint64_t seen = conic_ticks();
   tile->ticks.visibility += seen - start;
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
     band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
     band->nearest_row = i_row * CONIC_BLOCK_EDGE;
-    kernels->passes.take_nearest(band);
+    loops->passes.take_nearest(band);
     begin_triangles(tile, i_row, band);
     if (band->triangles) {
       conic_triangles_win(band);
-      kernels->triangles.add(band, finish, rays);
+      loops->triangles.add(band, finish, rays);
     }
-    kernels->resolve.resolve(band, finish, rays, image);
+    loops->resolve.resolve(band, finish, rays, image);
   }
   tile->ticks.resolve += conic_ticks() - seen;
 }
 
-void conic_tile_draw(conic_tile *tile, const conic_raster_kernels *kernels, const conic_finish *finish,
-                     conic_image *image, conic_tile_report *report) {
+void conic_tile_draw(conic_tile *tile, const conic_raster_loops *loops, const conic_finish *finish, conic_image *image,
+                     conic_tile_report *report) {
   conic_tile_rays rays;
   conic_band band = {.view = tile->view,
                      .projected = tile->projected,
@@ -185,17 +185,17 @@ void conic_tile_draw(conic_tile *tile, const conic_raster_kernels *kernels, cons
                      .sums = tile->scratch.sums};
   conic_tile_rays_init(tile->view, tile->x_begin, tile->y_begin, &rays);
   if (tile->triangles)
-    draw_triangles(tile, kernels);
+    draw_triangles(tile, loops);
   if (tile->skips_hidden && (tile->hiding || finish->options->passes != 1))
-    conic_tile_leave_hidden_out(tile, kernels, &band);
+    conic_tile_leave_hidden_out(tile, loops, &band);
   if (tile->hiding)
-    hide(tile, kernels, &band);
+    hide(tile, loops, &band);
   else if (finish->options->passes == CONIC_PASS_OF_HIDING)
-    draw_hiding(tile, kernels, &band, image);
+    draw_hiding(tile, loops, &band, image);
   else if (finish->options->passes == 1)
-    draw_nearest(tile, kernels, finish, &rays, &band, image);
+    draw_nearest(tile, loops, finish, &rays, &band, image);
   else
-    draw_blended(tile, kernels, finish, &rays, &band, image);
+    draw_blended(tile, loops, finish, &rays, &band, image);
   conic_stream_fence();
   report->n_fragments = band.n_fragments;
   report->n_covered = band.n_covered;

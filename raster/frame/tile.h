@@ -2,7 +2,7 @@
 #ifndef CONIC_TILE_H
 #define CONIC_TILE_H
 
-#include "raster/kernels/raster_kernels.h"
+#include "raster/loops/raster_loops.h"
 
 /* What a thread's tiles work in. */
 typedef struct conic_tile_scratch {
@@ -47,7 +47,7 @@ size_t conic_tile_bytes(size_t n_references);
 void conic_tile_place_scratch(conic_tile *tile, void *memory);
 
 /* Draws the tile, whose entries are in its scratch, into the image. */
-void conic_tile_draw(conic_tile *tile, const conic_raster_kernels *kernels, const conic_finish *finish,
-                     conic_image *image, conic_tile_report *report);
+void conic_tile_draw(conic_tile *tile, const conic_raster_loops *loops, const conic_finish *finish, conic_image *image,
+                     conic_tile_report *report);
 
 #endif

@@ -72,12 +72,12 @@ static size_t choose_near_samples(const conic_tile *tile) {
 }
 
 /* Of a row of blocks. */
-static void find_thresholds(const conic_tile *tile, const conic_raster_kernels *kernels, size_t n_samples, int i_row,
+static void find_thresholds(const conic_tile *tile, const conic_raster_loops *loops, size_t n_samples, int i_row,
                             conic_band *band, hiders *h) {
-  band->n = kernels->bins.select(tile->scratch.samples, n_samples, UINT32_C(0x10000) << i_row, tile->scratch.indices,
-                                 tile->scratch.words);
+  band->n = loops->bins.select(tile->scratch.samples, n_samples, UINT32_C(0x10000) << i_row, tile->scratch.indices,
+                               tile->scratch.words);
   band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
-  kernels->passes.visibility(band);
+  loops->passes.visibility(band);
   for (int block = 0; block < band->n_blocks; block++) {
     h->thresholds[i_row][block] = least_threshold(band, block);
     h->least = h->thresholds[i_row][block] < h->least ? h->thresholds[i_row][block] : h->least;
@@ -131,21 +131,21 @@ static int hides_enough(const conic_tile *tile, int i_row, const hiders *h) {
 }
 
 /* Tried on the row in the middle, with every eighth splat. */
-static int are_worth_while(const conic_tile *tile, const conic_raster_kernels *kernels, conic_band *band) {
+static int are_worth_while(const conic_tile *tile, const conic_raster_loops *loops, conic_band *band) {
   enum { EVERY = 8 };
   const int middle = band->n_rows / 2;
   hiders h = {.least = HUGE_VALF};
   size_t n_samples = 0;
   for (size_t i = 0; i < tile->n_references; i += EVERY)
     tile->scratch.samples[n_samples++] = tile->scratch.entries[i];
-  find_thresholds(tile, kernels, n_samples, middle, band, &h);
+  find_thresholds(tile, loops, n_samples, middle, band, &h);
   return hides_enough(tile, middle, &h);
 }
 
-static void find_hiders(const conic_tile *tile, const conic_raster_kernels *kernels, conic_band *band, hiders *h) {
+static void find_hiders(const conic_tile *tile, const conic_raster_loops *loops, conic_band *band, hiders *h) {
   const size_t n_samples = choose_near_samples(tile);
   for (int i_row = 0; i_row < band->n_rows; i_row++)
-    find_thresholds(tile, kernels, n_samples, i_row, band, h);
+    find_thresholds(tile, loops, n_samples, i_row, band, h);
 }
 
 static void leave_hidden_out(conic_tile *tile, const hiders *h) {
@@ -162,14 +162,14 @@ static void leave_hidden_out(conic_tile *tile, const hiders *h) {
   tile->n_references = n_left;
 }
 
-void conic_tile_leave_hidden_out(conic_tile *tile, const conic_raster_kernels *kernels, const conic_band *band) {
+void conic_tile_leave_hidden_out(conic_tile *tile, const conic_raster_loops *loops, const conic_band *band) {
   conic_band trial = *band;
   hiders h = {.least = HUGE_VALF};
   if (!has_many_layers(tile, (size_t)band->n_rows * (size_t)band->n_blocks))
     return;
   uint64_t start = conic_ticks();
-  if (are_worth_while(tile, kernels, &trial)) {
-    find_hiders(tile, kernels, &trial, &h);
+  if (are_worth_while(tile, loops, &trial)) {
+    find_hiders(tile, loops, &trial, &h);
     leave_hidden_out(tile, &h);
   }
   tile->ticks.visibility += conic_ticks() - start;

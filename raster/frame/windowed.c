@@ -3,7 +3,7 @@
 #include "raster/frame/drawing.h"
 #include "raster/project/clip_lines.h"
 
-/* From begin to before end, of what lies between low and high, from low on. */
+/* Cuts a span off at low and high, and counts it from low on. */
 static void cut_off(int low, int high, uint16_t *begin, uint16_t *end) {
   int first = *begin > low ? *begin : low, last = *end < high ? *end : high;
   *begin = (uint16_t)(first - low);

@@ -4,8 +4,8 @@
 
 #include "raster/project/clip_disc.h"
 
-/* A part of the disc that lines bound: convex, so that on the screen its extremes are those of the outline, or corners
- * where the outline meets a line, or two lines meet. */
+/* A part of the disc that lines bound. It is convex: on the screen its extremes are the outline's, or corners where the
+ * outline meets a line, or two lines meet. */
 typedef struct part {
   const conic_view *view;
   const conic_disc *disc;

@@ -32,8 +32,8 @@ static inline int conic_spot_is_within(const conic_spot *spot, float limit) {
   return spot->iz > 0.0f && spot->u * spot->u + spot->v * spot->v <= limit;
 }
 
-/* The change of u and v by a pixel, and what the filter makes of it: S = I + h·JJᵀ and its determinant, by sums of what
- * is not negative. */
+/* The change of u and v by a pixel, and what the filter makes of it: S = I + h·JJᵀ and its determinant. No term of
+ * these sums is negative. */
 typedef struct conic_spread {
   float u_x, u_y, v_x, v_y, area;
   float uu, uv, vv, determinant;

@@ -1,4 +1,4 @@
-/* What set-up looks at: batches of splats without those that surely face away, packed column by column. Included by
+/* Batches of splats for set-up, packed column by column. Splats that surely face away are left out. Included by
  * project_body.h. */
 /* The columns of the splats from `first` on; null where the set has none. */
 CONIC_INLINE void find_columns(const conic_splats *splats, size_t first, const float *columns[N_COLUMNS]) {

@@ -385,7 +385,8 @@ static int is_wide(const splat_setup *s) {
   return !(change <= CONIC_NARROW_CHANGE) || conic_is_laplace(footprint);
 }
 
-/* Takes back what lowers the weights of what the prefilter widens; of a ray, as much as at its centre. */
+/* The prefilter lowers the weights of the splats that it widens. Takes that back; for a ray as much as at its centre.
+ */
 static void slip_amplitude(const splat_setup *s, const float tu[3], const float tv[3], conic_outcome outcome) {
   const conic_view *view = s->view;
   const double h = (double)view->prefilter, iz = s->inverse_z, focal[2] = {view->fx, view->fy};

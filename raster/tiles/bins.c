@@ -2,26 +2,23 @@
 
 #include <string.h>
 
+#include "core/base/memory.h"
 #include "raster/project/clip_lines.h"
 #include "raster/tiles/bins_tiles.h"
-#include "raster/tiles/tile_kernels.h"
-
-static size_t rounded(size_t bytes) {
-  return (bytes + 63) / 64 * 64;
-}
+#include "raster/tiles/tile_loops.h"
 
 size_t conic_sorter_bytes(const conic_bins *bins, size_t chunk_size, int has_clips) {
   size_t n = chunk_size + CONIC_PROJECT_SLACK;
-  return rounded(n * sizeof(conic_footprint)) + rounded(n * sizeof(conic_projected_surface)) +
-         rounded(n * sizeof(conic_box)) + 4 * rounded(n * sizeof(uint32_t)) +
-         2 * rounded((bins->n_tiles + 1) * sizeof(uint32_t)) +
-         (has_clips ? rounded(chunk_size * sizeof(conic_clip_record)) : 0);
+  return conic_memory_rounded(n * sizeof(conic_footprint)) + conic_memory_rounded(n * sizeof(conic_projected_surface)) +
+         conic_memory_rounded(n * sizeof(conic_box)) + 4 * conic_memory_rounded(n * sizeof(uint32_t)) +
+         2 * conic_memory_rounded((bins->n_tiles + 1) * sizeof(uint32_t)) +
+         (has_clips ? conic_memory_rounded(chunk_size * sizeof(conic_clip_record)) : 0);
 }
 
 /* Takes so many bytes from what is left of the memory. */
 static void *take(char **memory, size_t bytes) {
   void *taken = *memory;
-  *memory += rounded(bytes);
+  *memory += conic_memory_rounded(bytes);
   return taken;
 }
 
@@ -96,26 +93,26 @@ static void copy_clips(const conic_sorter *sorter, size_t first, conic_projected
       to->clips[first + at] = from->clips[sorter->order[at]];
 }
 
-size_t conic_sorter_count(const conic_bins *bins, const conic_bin_kernels *kernels, conic_sorter *sorter,
+size_t conic_sorter_count(const conic_bins *bins, const conic_bin_loops *loops, conic_sorter *sorter,
                           uint32_t *tile_begin) {
-  kernels->keys(sorter->projected.boxes, sorter->chunk.n_drawn, bins->tile_bits, bins->n_tiles_x, bins->by_pixels,
-                sorter->tile, sorter->word, sorter->beyond);
+  loops->keys(sorter->projected.boxes, sorter->chunk.n_drawn, bins->tile_bits, bins->n_tiles_x, bins->by_pixels,
+              sorter->tile, sorter->word, sorter->beyond);
   count(bins, sorter);
   return place(bins, sorter, tile_begin) + (size_t)1; /* one place behind all */
 }
 
-void conic_bins_sort(conic_bins *bins, const conic_bin_kernels *kernels, conic_sorter *sorter, size_t i_chunk,
+void conic_bins_sort(conic_bins *bins, const conic_bin_loops *loops, conic_sorter *sorter, size_t i_chunk,
                      conic_projected *projected) {
   conic_chunk *chunk = &projected->chunks[i_chunk];
   size_t first = atomic_fetch_add(&bins->n_records, sorter->chunk.n_drawn);
-  size_t n_entries = conic_sorter_count(bins, kernels, sorter, bins->tile_begin + i_chunk * (bins->n_tiles + 1));
+  size_t n_entries = conic_sorter_count(bins, loops, sorter, bins->tile_begin + i_chunk * (bins->n_tiles + 1));
   size_t begin = atomic_fetch_add(&bins->n_used, n_entries);
   *chunk = sorter->chunk;
   chunk->first = first;
   bins->chunk_begin[i_chunk] = begin;
   if (begin + n_entries > bins->n_room)
     return;
-  kernels->sort(bins, sorter, first, bins->entries + begin, &projected->footprints[first], &projected->surfaces[first]);
+  loops->sort(bins, sorter, first, bins->entries + begin, &projected->footprints[first], &projected->surfaces[first]);
   copy_clips(sorter, first, projected);
 }
 

@@ -7,7 +7,7 @@
 
 #include "raster/tiles/band.h"
 
-struct conic_bin_kernels;
+struct conic_bin_loops;
 
 typedef struct conic_bins {
   int tile;      /* edge in pixels */
@@ -67,12 +67,12 @@ void conic_sorter_place(const conic_bins *bins, size_t chunk_size, int has_clips
 
 /* Finds the sorter's keys and from them where each tile's records and entries begin: next_record, next_entry and the
  * n_tiles + 1 of tile_begin. Returns how many places the entries need. */
-size_t conic_sorter_count(const conic_bins *bins, const struct conic_bin_kernels *kernels, conic_sorter *sorter,
+size_t conic_sorter_count(const conic_bins *bins, const struct conic_bin_loops *loops, conic_sorter *sorter,
                           uint32_t *tile_begin);
 
-/* Copies the sorter's chunk to `projected`, in the order of the tiles, as chunk i_chunk, behind those that are there
- * already; and makes its entries. Where these have no room, nothing is written, and n_used tells what is needed. */
-void conic_bins_sort(conic_bins *bins, const struct conic_bin_kernels *kernels, conic_sorter *sorter, size_t i_chunk,
+/* Copies the sorter's chunk to `projected`, in the order of the tiles, as chunk i_chunk, behind the chunks that it has.
+ * Makes the chunk's entries, too. Where these have no room, nothing is written, and n_used tells what is needed. */
+void conic_bins_sort(conic_bins *bins, const struct conic_bin_loops *loops, conic_sorter *sorter, size_t i_chunk,
                      conic_projected *projected);
 
 /* Finds how many entries each tile has; returns the most. */

@@ -36,8 +36,8 @@ static inline uint32_t conic_word_in(const conic_bins *bins, const conic_box *bo
                        last_row / CONIC_BLOCK_EDGE);
 }
 
-/* The tiles beyond a record's home, the next in x, in y and in both; n_tiles for those that it does not meet. It is no
- * matter of branches, which could not foresee them. */
+/* The tiles beyond a record's home, the next in x, in y and in both. One that it does not meet is n_tiles. There are no
+ * branches, because no machine could foresee them. */
 static inline void conic_tiles_beyond(const conic_bins *bins, uint32_t home, uint32_t beyond, uint32_t tiles[3]) {
   uint32_t none = (uint32_t)bins->n_tiles, below = home + (uint32_t)bins->n_tiles_x;
   tiles[0] = beyond & CONIC_BEYOND_X ? home + 1 : none;

@@ -2,9 +2,7 @@
 
 #include <math.h>
 
-static float dot(const float a[3], const float b[3]) {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
+#include "core/splats/float_vectors.h"
 
 static float at_least_zero(float x) {
   return x > 0.0f ? x : 0.0f;
@@ -21,15 +19,15 @@ static float gloss(float x) {
 static void add_light(const conic_finish_light *light, conic_shading shading, const float normal[3],
                       const float mean_normal[3], const float viewer[3], float lit[3], float glossy[3]) {
   const float *towards = light->is_head ? viewer : light->towards;
-  float facing = at_least_zero(dot(mean_normal, towards)), along = dot(normal, towards);
+  float facing = at_least_zero(conic_float_dot(mean_normal, towards)), along = conic_float_dot(normal, towards);
   for (int i = 0; i < 3; i++)
     lit[i] += light->diffuse[i] * facing;
   if (shading != CONIC_SHADE_PHONG || !(along > 0.0f))
     return;
-  float reflected[3], agreement = dot(mean_normal, mean_normal);
+  float reflected[3], agreement = conic_float_dot(mean_normal, mean_normal);
   for (int i = 0; i < 3; i++)
     reflected[i] = 2.0f * along * normal[i] - towards[i];
-  float shine = gloss(at_least_zero(dot(reflected, viewer)));
+  float shine = gloss(at_least_zero(conic_float_dot(reflected, viewer)));
   for (int i = 0; i < 3; i++)
     glossy[i] += light->specular[i] * shine * agreement;
 }
@@ -48,7 +46,7 @@ void conic_shade(const conic_finish *finish, const float albedo[3], const float 
   const conic_finish_lights *lights = finish->lights;
   float lit[3] = {lights->ambient[0], lights->ambient[1], lights->ambient[2]}, glossy[3] = {0.0f, 0.0f, 0.0f};
   if (lights->has_sky) {
-    float upward = dot(mean_normal, lights->up);
+    float upward = conic_float_dot(mean_normal, lights->up);
     for (int i = 0; i < 3; i++)
       lit[i] += lights->slope[i] * upward;
   }
@@ -74,7 +72,7 @@ void conic_finish_covered(const conic_finish *finish, float weight, const float 
     pixel->albedo[axis] = color_sum[axis] * part;
     mean_normal[axis] = normal_sum[axis] * part;
   }
-  float norm = sqrtf(dot(mean_normal, mean_normal)), scale = 1.0f / norm;
+  float norm = sqrtf(conic_float_dot(mean_normal, mean_normal)), scale = 1.0f / norm;
   for (int axis = 0; axis < 3; axis++)
     pixel->normal[axis] = norm > 0.0f ? mean_normal[axis] * scale : heaviest_normal[axis];
   viewer_at(finish, dx, dy, viewer);

@@ -156,7 +156,7 @@ static void finish_sheet(const conic_pixel_sheets *sheets, const sums *s, float 
   sheet->id = s->id;
 }
 
-/* The visible ones are the first of those that are left: what is seen by less is behind all that is seen by more. */
+/* Whatever is seen by less lies behind all that is seen by more, so that the visible ones come first among the rest. */
 static void take_sheet(conic_pixel_sheets *sheets, float threshold, const conic_triangle_sight *sight, float alpha,
                        sums *s, float *iz) {
   size_t first = sheets->i;

@@ -11,8 +11,8 @@
 #include "raster/project/projected.h"
 #include "raster/tiles/band.h"
 
-/* Before the type of what a frame or a set of triangles holds: a device has a memory of its own for that, and names it
- * here (opencl/triangle_set.cl). */
+/* Stands before the type of whatever a frame or a set of triangles holds. A device has a memory of its own for it,
+ * which it names here (opencl/triangle_set.cl). */
 #ifndef CONIC_STORED
 #define CONIC_STORED
 #endif

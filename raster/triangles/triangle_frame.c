@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "raster/triangles/triangle_kernels.h"
+#include "raster/triangles/triangle_loops.h"
 #include "raster/triangles/triangle_sort.h"
 
 /* Vertices that a task projects, and triangles that one sets up, unless their tables would be too many. */
@@ -13,7 +13,7 @@ enum { VERTICES_TOGETHER = 8192, TRIANGLES_TOGETHER = 8192 };
 
 typedef struct preparation {
   conic_triangle_frame *frame;
-  const conic_triangle_kernels *kernels;
+  const conic_triangle_loops *loops;
 } preparation;
 
 void conic_triangle_frame_begin(conic_triangle_frame *frame, conic_context *context, const conic_triangles *triangles,
@@ -36,10 +36,6 @@ void conic_triangle_frame_tiles(conic_triangle_frame *frame, int tile) {
   frame->n_tiles = (size_t)frame->n_tiles_x * (size_t)((frame->view->height + tile - 1) / tile);
 }
 
-static size_t rounded(size_t bytes) {
-  return (bytes + 63) / 64 * 64;
-}
-
 static conic_status plan(conic_triangle_frame *frame) {
   conic_context *context = frame->context;
   conic_kept_memory *memory = frame->memory;
@@ -50,8 +46,9 @@ static conic_status plan(conic_triangle_frame *frame) {
   frame->chunk_size = size;
   frame->n_chunks = (n + size - 1) / size;
   size_t most = CONIC_TRIANGLE_PIECES_MOST * (size < n ? size : n) + 1;
-  frame->sorter_bytes = rounded(most * sizeof(conic_triangle_record)) + rounded(most * sizeof(conic_triangle_piece)) +
-                        rounded(frame->n_tiles * sizeof(uint32_t));
+  frame->sorter_bytes = conic_memory_rounded(most * sizeof(conic_triangle_record)) +
+                        conic_memory_rounded(most * sizeof(conic_triangle_piece)) +
+                        conic_memory_rounded(frame->n_tiles * sizeof(uint32_t));
   frame->vertices =
       conic_keep_room(context, &memory[CONIC_TRIANGLE_VERTICES], frame->triangles->n_vertices, sizeof *frame->vertices);
   frame->chunks = conic_keep_room(context, &memory[CONIC_TRIANGLE_CHUNKS], frame->n_chunks, sizeof *frame->chunks);
@@ -80,7 +77,7 @@ static void vertices_task(void *data, size_t i_item, int i_thread) {
   preparation *p = data;
   size_t n = p->frame->triangles->n_vertices, begin = i_item * VERTICES_TOGETHER, end = begin + VERTICES_TOGETHER;
   (void)i_thread;
-  p->kernels->vertices(p->frame, begin, end < n ? end : n, p->frame->vertices);
+  p->loops->vertices(p->frame, begin, end < n ? end : n, p->frame->vertices);
 }
 
 /* The tiles that a box touches. */
@@ -158,15 +155,15 @@ static void triangles_task(void *data, size_t i_chunk, int i_thread) {
   size_t n = frame->triangles->count, begin = i_chunk * frame->chunk_size, end = begin + frame->chunk_size;
   size_t most = CONIC_TRIANGLE_PIECES_MOST * (frame->chunk_size < n ? frame->chunk_size : n) + 1;
   sorter.records = (conic_triangle_record *)(void *)memory;
-  memory += rounded(most * sizeof *sorter.records);
+  memory += conic_memory_rounded(most * sizeof *sorter.records);
   sorter.pieces = (conic_triangle_piece *)(void *)memory;
-  sorter.next = (uint32_t *)(void *)(memory + rounded(most * sizeof *sorter.pieces));
+  sorter.next = (uint32_t *)(void *)(memory + conic_memory_rounded(most * sizeof *sorter.pieces));
   conic_triangle_set_up(frame, begin, end < n ? end : n, &sorter, &frame->chunks[i_chunk]);
   hand_over_records(frame, &sorter, i_chunk);
 }
 
-conic_status conic_triangle_frame_prepare(conic_triangle_frame *frame, const conic_triangle_kernels *kernels) {
-  preparation p = {frame, kernels};
+conic_status conic_triangle_frame_prepare(conic_triangle_frame *frame, const conic_triangle_loops *loops) {
+  preparation p = {frame, loops};
   size_t n = frame->triangles->count, n_vertices = frame->triangles->n_vertices;
   conic_status status = plan(frame);
   if (status == CONIC_OK)

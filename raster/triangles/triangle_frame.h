@@ -9,7 +9,7 @@
 #include "raster/tiles/band.h"
 #include "raster/triangles/triangle_samples.h"
 
-struct conic_triangle_kernels;
+struct conic_triangle_loops;
 
 enum {
   CONIC_TRIANGLE_VERTICES,
@@ -88,7 +88,7 @@ void conic_triangle_frame_begin(conic_triangle_frame *frame, conic_context *cont
 void conic_triangle_frame_tiles(conic_triangle_frame *frame, int tile);
 
 /* Projects, clips and sorts the frame's triangles. Errors: MEMORY. */
-conic_status conic_triangle_frame_prepare(conic_triangle_frame *frame, const struct conic_triangle_kernels *kernels);
+conic_status conic_triangle_frame_prepare(conic_triangle_frame *frame, const struct conic_triangle_loops *loops);
 
 void conic_triangle_frame_release(conic_context *context, conic_triangle_frame *frame);
 

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "core/splats/float_vectors.h"
 #include "raster/triangles/triangle_look.h"
 
 /* The weights of the triangle's second and third corner at a pixel of the block, and how they change from pixel to
@@ -52,10 +53,6 @@ static inline void conic_triangle_look_place(const conic_triangle_look *look, co
   }
 }
 
-static inline float conic_triangle_dot(const float a[3], const float b[3]) {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
-
 /* The unit normal, towards the viewer, who looks along (dx, dy, 1). Corners' normals lie on the side of the face that
  * is seen, and where their mean leans away even so, as near an outline, it is mirrored in the plane across the ray:
  * turned round it would point the other way at once, and light would jump. */
@@ -76,10 +73,10 @@ static inline void conic_triangle_look_normal(const conic_triangle_look *look, c
     for (int axis = 0; axis < 3 && squared > 1e-30f && squared < 1e30f; axis++)
       normal[axis] = mean[axis] * scale;
   }
-  int is_behind = conic_triangle_dot(look->face, ray) > 0.0f;
+  int is_behind = conic_float_dot(look->face, ray) > 0.0f;
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = is_behind ? -normal[axis] : normal[axis];
-  float away = conic_triangle_dot(normal, ray), part = 2.0f * away / conic_triangle_dot(ray, ray);
+  float away = conic_float_dot(normal, ray), part = 2.0f * away / conic_float_dot(ray, ray);
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = away > 0.0f ? normal[axis] - part * ray[axis] : normal[axis];
 }

@@ -1,15 +1,8 @@
 /* From vertices on the screen to records of what may cover a sample. */
+#include "core/base/real.h"
 #include "raster/triangles/triangle_sort.h"
 
 typedef enum fate { DRAWN, CULLED, SKIPPED } fate;
-
-static int least(int a, int b) {
-  return a < b ? a : b;
-}
-
-static int greatest(int a, int b) {
-  return a > b ? a : b;
-}
 
 /* The first pixel whose centre is not before the place, and the first whose centre is after it. */
 static int first_from(int32_t place) {
@@ -22,12 +15,14 @@ static int first_after(int32_t place) {
 
 /* Whether there are centres of the image's pixels in the triangle's box. */
 static int find_box(const conic_view *view, const int32_t x[3], const int32_t y[3], conic_box *box) {
-  int x_begin = first_from(least(least(x[0], x[1]), x[2])), x_end = first_after(greatest(greatest(x[0], x[1]), x[2]));
-  int y_begin = first_from(least(least(y[0], y[1]), y[2])), y_end = first_after(greatest(greatest(y[0], y[1]), y[2]));
-  x_begin = greatest(x_begin, 0);
-  y_begin = greatest(y_begin, 0);
-  x_end = least(x_end, view->width);
-  y_end = least(y_end, view->height);
+  int x_begin = first_from(conic_least(conic_least(x[0], x[1]), x[2])),
+      x_end = first_after(conic_greatest(conic_greatest(x[0], x[1]), x[2]));
+  int y_begin = first_from(conic_least(conic_least(y[0], y[1]), y[2])),
+      y_end = first_after(conic_greatest(conic_greatest(y[0], y[1]), y[2]));
+  x_begin = conic_greatest(x_begin, 0);
+  y_begin = conic_greatest(y_begin, 0);
+  x_end = conic_least(x_end, view->width);
+  y_end = conic_least(y_end, view->height);
   if (x_begin >= x_end || y_begin >= y_end)
     return 0;
   *box = (conic_box){(uint16_t)x_begin, (uint16_t)x_end, (uint16_t)y_begin, (uint16_t)y_end};
@@ -77,7 +72,7 @@ static fate add(const conic_triangle_frame *frame, const conic_screen_vertex *co
   return DRAWN;
 }
 
-/* A triangle with corners that have no place: the fan of what is left of it. */
+/* Some corners have no place on the screen. What clipping leaves of the triangle is drawn as a fan. */
 static fate add_clipped(const conic_triangle_frame *frame, size_t i, conic_triangle_sorter *sorter) {
   conic_clip_corner corners[CONIC_CLIPPED_CORNERS];
   conic_screen_vertex places[CONIC_CLIPPED_CORNERS];

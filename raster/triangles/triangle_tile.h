@@ -12,8 +12,8 @@ void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_t
 conic_triangle_canvas conic_triangle_canvas_of(const conic_triangle_frame *frame, int x, int y,
                                                conic_triangle_tile *tile);
 
-/* Finds out where visible triangles of a block are the heaviest and the nearest of what is visible, before they are
- * added to its sums. */
+/* Finds the pixels where a block's triangle is the heaviest or the nearest that is seen. This comes before the
+ * triangles are added to the block's sums. */
 void conic_triangle_rank_block(const conic_band *band, int block);
 
 /* Fetches what the look of a row's visible triangles is read from, where they are many. */

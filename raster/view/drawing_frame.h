@@ -1,4 +1,4 @@
-/* conic_drawing_frame of a drawing of which a team's processes have parts. */
+/* conic_drawing_frame of a drawing whose parts the processes of a team have. */
 #ifndef CONIC_DRAWING_FRAME_H
 #define CONIC_DRAWING_FRAME_H
 

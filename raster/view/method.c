@@ -1,5 +1,7 @@
-/* The names of methods, kernels and shadings, and what of a frame was drawn by which method. */
+/* The names of methods, kernels and shadings, and which method drew how much of a frame. */
 #include "raster/view/method.h"
+
+#include "core/splats/kernel.h"
 
 const char *conic_method_name(conic_method method) {
   static const char *const names[CONIC_N_METHODS] = {"conic", "ray", "affine", "point", "disc", "auto"};
@@ -7,7 +9,8 @@ const char *conic_method_name(conic_method method) {
 }
 
 const char *conic_kernel_type_name(conic_kernel_type type) {
-  static const char *const names[CONIC_N_KERNELS] = {"gauss", "confetti", "hat", "box"};
+#define WORD_OF_KERNEL(type, word, traits) [type] = word,
+  static const char *const names[CONIC_N_KERNELS] = {CONIC_FOR_KERNELS(WORD_OF_KERNEL)};
   return (unsigned)type < CONIC_N_KERNELS ? names[type] : NULL;
 }
 

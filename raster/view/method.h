@@ -4,7 +4,7 @@
 
 #include "conic/render.h"
 
-/* Whether a splat's shape on the screen is one that knows nothing of its tilt: a pixel or a circle. */
+/* Whether a splat is a pixel or a circle on the screen, whatever its tilt. */
 static inline int conic_method_is_dot(conic_method method) {
   return method == CONIC_METHOD_POINT || method == CONIC_METHOD_DISC;
 }
@@ -24,14 +24,15 @@ static inline int conic_method_has_exact_outline(conic_method method) {
   return method != CONIC_METHOD_AFFINE && !conic_method_is_dot(method);
 }
 
-/* The error in a weight (of a kernel of peak 1) at which `auto` hands over from conic to ray, and the bound of conic's,
- * 0.68·A·√q for a centre that is √q standard deviations from where it should be (docs/reference/picture.md, Auto). */
+/* `auto` hands over from conic to ray at the first error of a weight, for a kernel of peak 1. conic's error is at most
+ * the second times A·√q, where its centre is √q standard deviations off (docs/reference/picture.md, Auto). */
 #define CONIC_AUTO_ERROR 4e-3f
 #define CONIC_AUTO_STEEPNESS 0.68f
-/* By how much of itself inverse depth may change over the filter's standard deviation where `ray` is still good. */
+/* `ray` is good as long as inverse depth changes by no larger a share of itself over the filter's standard deviation.
+ */
 #define CONIC_AUTO_CHANGE 1e-2f
 
-/* Fills splats_by_method, once what was drawn and what of it by a fallback is counted. */
+/* Fills splats_by_method from the counts of what was drawn, and of what a fallback drew. */
 void conic_method_count(conic_method method, uint64_t n_rays, conic_render_statistics *statistics);
 
 #endif

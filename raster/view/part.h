@@ -35,10 +35,10 @@ typedef struct conic_part {
   const unsigned char *is_counted; /* a splat: 0 where another part counts it; null: all are counted */
 } conic_part;
 
-/* Draws the part of the picture that conic_render would draw, and leaves all around it alone: for pictures of more
- * splats than memory holds, of which each window is given those that may meet it, in their order. Of `statistics`,
- * fragments and pixels are the window's, all else those of the splats that are counted, in the whole picture. near_z
- * and, with an automatic ε, splat_length have to be given in the options, for no window knows the scene. Errors: as
+/* Draws the part of the picture that conic_render would draw, and leaves all around it alone. It serves pictures of
+ * more splats than memory holds: each window is given the splats that may meet it, in their order. The fragments and
+ * pixels in `statistics` are the window's. Its other counts are of the splats that are counted, in the whole picture.
+ * The options have to give near_z and, with an automatic ε, splat_length, for no window knows the scene. Errors: as
  * conic_render; UNSUPPORTED on another device than the processor. */
 conic_status conic_render_part(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
                                const conic_render_options *options, const conic_part *part, conic_image *image,

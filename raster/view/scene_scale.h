@@ -4,7 +4,7 @@
 
 #include "conic/render.h"
 
-/* Fills in what of near_z and splat_length is to be found from the splats, so that no frame of several finds it anew.
+/* Finds near_z and splat_length from the splats, where they are not given, so that several frames find them once.
  * Errors: MEMORY. */
 conic_status conic_scene_scale(conic_context *context, const conic_splats *splats, conic_render_options *options);
 

@@ -9,10 +9,10 @@
 static int kernel_makes_sense(const conic_kernel *kernel) {
   if (!(kernel->cutoff >= 0.25f && kernel->cutoff <= 5.0f))
     return 0;
-  if (kernel->type == CONIC_KERNEL_CONFETTI)
+  if (conic_kernel_traits(kernel) & CONIC_HAS_PARAMETERS)
     return kernel->a > 0.0f && kernel->a < 1e6f && kernel->b > 0.0f && kernel->b < 1e6f && kernel->n >= 1 &&
            kernel->n <= 16;
-  return kernel->type == CONIC_KERNEL_GAUSS || kernel->type == CONIC_KERNEL_HAT || kernel->type == CONIC_KERNEL_BOX;
+  return conic_kernel_type_name(kernel->type) != NULL;
 }
 
 static const char *what_of_camera_is_wrong(const conic_splats *splats, const conic_render_options *options) {
@@ -47,7 +47,7 @@ static float thin_variance(const conic_render_options *options) {
   return (h > 1.0f ? h : 1.0f) / 64.0f;
 }
 
-/* The eye, and from where on float tells which side of it a plane is on (raster/kernels/project_body.h). */
+/* The eye, and from where on float tells which side of it a plane is on (raster/loops/project_body.h). */
 static void place_eye(conic_view *view) {
   const double(*m)[3] = (const double(*)[3])view->rotation;
   double reach = 0.0, farthest_from_rotation = 0.0;
@@ -107,7 +107,8 @@ conic_status conic_view_init(conic_context *context, const conic_splats *splats,
     view->epsilon_cap = 4.0f * CONIC_EPSILON_C * view->cutoff * (float)splat_length;
   }
   view->needs_nearness = view->needs_slope = 1;
-  if (view->kernel.type == CONIC_KERNEL_GAUSS || !(view->prefilter > 0.0f) || conic_method_is_dot(view->method))
+  if ((conic_kernel_traits(&view->kernel) & CONIC_IS_GAUSSIAN) || !(view->prefilter > 0.0f) ||
+      conic_method_is_dot(view->method))
     return CONIC_OK;
   return conic_profile_make(context, &view->kernel, &view->profile);
 }

@@ -1,4 +1,4 @@
-/* A polynomial patch, and the grids that it is sampled on. */
+/* A polynomial patch, and the grids on which it is sampled. */
 #ifndef CONIC_PATCH_H
 #define CONIC_PATCH_H
 
@@ -8,29 +8,29 @@
 #include "surface/mls_surface.h"
 
 /* The place (s, t) of the unit disc is at center + s·along + t·across + g(s, t)·normal, relative to the set's origin,
- * with g = Σ c_k s^i t^j in world units, k counting 1, s, t, s², st, t² … `along` and `across` are as long as the
- * disc's radius, and normal is on the side of their cross product. */
+ * with g = Σ c_k s^i t^j in world units, k counting 1, s, t, s², st, t² …. `along` and `across` are as long as the
+ * disc's radius; the normal is on the side of their cross product. */
 typedef struct conic_patch {
   float center[3], along[3], across[3], normal[3];
   float coefficients[CONIC_MAX_COEFFICIENTS];
   float radius; /* 0: there is no patch */
-  float slope;  /* the greatest there may be, in any direction */
+  float slope;  /* a bound of the slope in any direction */
   float bend;   /* ½ of the greatest second derivative by (s, t), in world units */
-  float twist;  /* ½ of the greatest third one, over the radius */
-  float reach;  /* no place of the patch, nor its samples' outlines, are farther from the point itself */
+  float twist;  /* ½ of the greatest third derivative, over the radius */
+  float reach;  /* no place of the patch, nor an outline of its samples, is farther from the point */
 } conic_patch;
 
-/* Grids are square, n × n over the square about the disc, and hold those of their places that lie in the disc. */
+/* Grids are n × n over the square about the disc; only their places within the disc are sampled. */
 enum { CONIC_LEAST_GRID = 3, CONIC_GREATEST_GRID = 64 };
 
-/* Outlines of samples reach so far, in steps of their grid. √½ would just close it; here, with the cutoff of 1.5, what
- * they weigh together is most even: 6 % rms, where 0.9 has 17 % and 1.6, at twice the fragments, 5 %. */
+/* The reach of a sample's outline, in steps of its grid. √½ would just close the grid. With this and the cutoff of 1.5,
+ * the sum of the weights is most even: 6 % rms, where 0.9 has 17 %, and 1.6, with twice the fragments, 5 %. */
 #define CONIC_SAMPLE_OUTLINE 1.17
 
-/* The standard deviation of what is made of them, for the usual kernel. */
+/* The standard deviation of the blur by these samples, for the usual kernel. */
 #define CONIC_SAMPLE_BLUR 0.78
 
-/* Part of a grid: the rows [row, row + n_rows) and the columns likewise. */
+/* A part of a grid: the rows [row, row + n_rows), and columns alike. */
 typedef struct conic_grid_part {
   int64_t n; /* of the whole grid */
   int64_t row, column, n_rows, n_columns;
@@ -41,13 +41,13 @@ static inline conic_grid_part conic_grid_whole(int n) {
   return part;
 }
 
-/* How many samples lie in it. */
+/* How many samples a part has. */
 size_t conic_grid_count(const conic_grid_part *part);
 
-/* Where samples are written to. */
+/* The arrays that samples are written to. */
 typedef struct conic_grid_samples {
   float *position[3], *tangent_u[3], *tangent_v[3];
-  float *weight; /* greatest in the middle of the patch, where they add up to 1; little at its rim */
+  float *weight; /* greatest in the middle of the patch, where the weights add up to 1; small at its rim */
 } conic_grid_samples;
 
 /* Samples a part row by row. Returns how many there are. */

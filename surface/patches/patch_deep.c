@@ -1,4 +1,5 @@
-/* Patches near the eye: cut into cells, those out of sight left out, each sampled as finely as it is near. */
+/* Patches near the eye are divided into cells; cells out of sight are left out, and each other cell is sampled as
+ * finely as its nearness needs. */
 #include <math.h>
 
 #include "surface/patches/patch_set.h"
@@ -43,7 +44,7 @@ static void emit_cell(descent *d, const conic_grid_part *part) {
   d->n += conic_grid_count(part);
 }
 
-/* The cell in `row` and `column` of the 2^depth × 2^depth that the patch is cut into. */
+/* Samples, or divides further, the cell in `row` and `column` of the 2^depth × 2^depth cells of the patch. */
 static void descend(descent *d, int depth, int64_t row, int64_t column) {
   double half = 1.0 / (double)(INT64_C(1) << depth), p[3];
   double s = (double)(2 * column + 1) * half - 1.0, t = (double)(2 * row + 1) * half - 1.0;

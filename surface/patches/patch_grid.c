@@ -1,20 +1,20 @@
 /* A patch on a grid, by forward differences (PSS §6.2). */
 #include <math.h>
 
-#include "surface/kernels/weight.h"
+#include "surface/loops/weight.h"
 #include "surface/patches/patch.h"
 
 #define TWO_PI 6.283185307179586
 
 enum { N_DIFFERENCES = CONIC_SURFACE_MAX_DEGREE + 1, LONGEST_ROW = 64 };
 
-/* What a sample at the rim weighs of one in the middle: little, but enough where it is alone. */
+/* A sample's weight at the rim, relative to the middle: small, but enough where the sample is alone. */
 static const double LEAST_WEIGHT = 0x1p-10;
 
-/* The columns of a row whose places, at odd multiples of 1/n, lie in the unit disc: from *first to before *end. */
+/* The columns of a row whose places, at odd multiples of 1/n, are in the unit disc: from *first to before *end. */
 static void clip_row(int64_t n, int64_t row, int64_t *first, int64_t *end) {
   int64_t t = 2 * row + 1 - n, room = n * n - t * t;
-  int64_t half = (int64_t)sqrt((double)room); /* the greatest |2 i + 1 - n|, which has not n's parity */
+  int64_t half = (int64_t)sqrt((double)room); /* the greatest |2 i + 1 - n|; its parity is not n's */
   while (half * half > room)
     half--;
   while ((half + 1) * (half + 1) <= room)
@@ -24,7 +24,7 @@ static void clip_row(int64_t n, int64_t row, int64_t *first, int64_t *end) {
   *end = half < 0 ? 0 : (n - 1 + half) / 2 + 1;
 }
 
-/* The same within the part. */
+/* clip_row within the part. */
 static void clip_part(const conic_grid_part *part, int64_t row, int64_t *first, int64_t *end) {
   int64_t begin = part->column, stop = begin + part->n_columns;
   clip_row(part->n, row, first, end);
@@ -43,7 +43,7 @@ size_t conic_grid_count(const conic_grid_part *part) {
   return count;
 }
 
-/* A polynomial in one variable, and how it goes on from place to place. */
+/* A polynomial in one variable, as differences that carry it from place to place. */
 typedef struct polynomial_walk {
   double differences[N_DIFFERENCES];
 } polynomial_walk;
@@ -54,7 +54,7 @@ static polynomial_walk walk_from(const double a[N_DIFFERENCES], double from, dou
   polynomial_walk w;
   for (int i = 0; i < N_DIFFERENCES; i++)
     b[i] = a[i];
-  for (int i = 0; i < N_DIFFERENCES - 1; i++) /* Horner's scheme, over and over: the polynomial about `from` */
+  for (int i = 0; i < N_DIFFERENCES - 1; i++) /* Horner's scheme, repeated: the polynomial about `from` */
     for (int k = N_DIFFERENCES - 2; k >= i; k--)
       b[k] += from * b[k + 1];
   for (int i = 1; i < N_DIFFERENCES; i++)
@@ -89,7 +89,7 @@ static void collapse(const conic_patch *patch, int degree, double t, double heig
     along[i - 1] = (double)i * height[i];
 }
 
-/* From the unit disc to the world: places and tangent axes of one row. */
+/* Maps one row from the unit disc to the world: places and tangent axes. */
 static void place_row(const conic_patch *patch, double sigma, double peak, double t, const double *restrict s,
                       const double (*restrict g)[LONGEST_ROW], size_t n, size_t at, const conic_grid_samples *to) {
   for (int axis = 0; axis < 3; axis++) {
@@ -110,7 +110,8 @@ static void place_row(const conic_patch *patch, double sigma, double peak, doubl
   }
 }
 
-/* So that the samples in the middle together weigh 1, as a splat does there: their Gaussians' sum without it. */
+/* The peak with which the samples in the middle together weigh 1, as a splat does there: one over the sum of their
+ * Gaussians. */
 static double peak_of(double cutoff) {
   double outline2 = CONIC_SAMPLE_OUTLINE * CONIC_SAMPLE_OUTLINE, cutoff2 = cutoff * cutoff;
   return cutoff2 / (TWO_PI * outline2 * (1.0 - conic_weight_exp(0.5 * cutoff2)));

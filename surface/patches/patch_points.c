@@ -1,4 +1,4 @@
-/* Keeping patches at their points: a polynomial knows nothing of where the surface ends, splats may. */
+/* Keeps patches at their points: a polynomial does not know where the surface ends, but splats may. */
 #include <math.h>
 
 #include "core/base/vectors.h"
@@ -20,7 +20,7 @@ static int is_kept(const conic_splats *splats, size_t splat, double u, double v)
   return clip->operation == CONIC_CLIP_OR ? n_keeping > 0 : n_keeping == clip->n_lines;
 }
 
-/* Whether a splat, whose centre is at `to` from the place, is within most_off of that. */
+/* Whether a splat with its centre at `to` from the place is within most_off of the place. */
 static int is_at_splat(const conic_patches *patches, size_t splat, const double to[3]) {
   const conic_splats *splats = &patches->splats;
   double u[3], v[3], normal[3], limit = (double)patches->options.cutoff;
@@ -44,7 +44,7 @@ static double height_at(const conic_fit *fit, int degree, double x, double y) {
   return sum;
 }
 
-/* Whether the polynomial at (x, y), in units of h, is at a splat of the points near by. */
+/* Whether the polynomial at (x, y), in units of h, is at a splat of the nearby points. */
 static int is_at_points(const conic_patches *patches, const conic_workspace *workspace, int degree, double h, double x,
                         double y) {
   const conic_near *near = &workspace->near;

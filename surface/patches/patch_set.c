@@ -1,4 +1,4 @@
-/* Laying patches: a polynomial about every point, and how far it is to be trusted. */
+/* Lays patches: a polynomial about every point, with the radius up to which it can be trusted. */
 #include "surface/patches/patch_set.h"
 #include "core/base/options.h"
 #include "core/splats/columns.h"
@@ -13,14 +13,15 @@
 
 enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
 
-/* What a sample's error may grow to at a patch's rim, squared, and how steep the patch may be there. */
+/* The most that a sample's error may grow at a patch's rim, squared, and the greatest slope there. */
 static const double MOST_GAIN = 4.0, MOST_SLOPE = 3.0;
 
-/* A patch that is not sound to its rim is made smaller in such steps, down to this share of its splat's outline: there
- * it just covers the cell of the tangent plane that the splat was made for. */
+/* A patch that is not sound up to its rim shrinks in such steps, down to this share of its splat's outline: there it
+ * just covers the cell of the tangent plane that the splat was made for. */
 static const double SHRINKAGE = 0.85, LEAST_SHARE = 0.6;
 
-/* A flat patch of this share of a splat's outline reaches about as far as that, with the outlines of its samples. */
+/* A flat patch has this share of a splat's outline as radius: with the outlines of its samples it reaches about as
+ * far. */
 static const double FLAT_SHARE = 0.8;
 
 void conic_patches_options_init_sized(conic_patches_options *options, size_t size) {
@@ -47,7 +48,7 @@ typedef struct laying {
   uint8_t *outcomes; /* by slot */
 } laying;
 
-/* Fig. 10: the circle about q that holds what lies in a ball about it, seen from across. */
+/* Fig. 10: the circle about q that holds the samples in a ball about it, seen along the normal. */
 static double radius_of(const conic_workspace *workspace, double ball) {
   const conic_near *near = &workspace->near;
   const conic_fit *fit = &workspace->fit;
@@ -71,7 +72,7 @@ static double length_of_axis(float *const axes[3], size_t i) {
   return sqrt((x * x + y * y) + z * z);
 }
 
-/* How far a point's own splat reaches; 0 where that is no number. */
+/* How far a point's own splat reaches; 0 where that is not finite. */
 static double outline_of(const conic_patches *patches, size_t point) {
   double u = length_of_axis(patches->splats.tangent_u, point), v = length_of_axis(patches->splats.tangent_v, point);
   double outline = (double)patches->options.cutoff * (u > v ? u : v);
@@ -96,7 +97,7 @@ static double slope_at(const conic_fit *fit, int degree, double x, double y) {
   return sqrt(along * along + across * across);
 }
 
-/* Whether the polynomial is to be trusted on a circle: as far as at its middle, and not too steep. */
+/* Whether the polynomial can be trusted on a circle: as much as in its middle, and not too steep. */
 static int is_sound(const conic_fit *fit, int degree, double radius) {
   for (int i = 0; i < 8; i++) {
     double x = radius * conic_eight_directions[i][0], y = radius * conic_eight_directions[i][1];
@@ -106,7 +107,7 @@ static int is_sound(const conic_fit *fit, int degree, double radius) {
   return 1;
 }
 
-/* The greatest radius on which the polynomial is sound, of so many steps from `radius` down to `least`; 0: none. */
+/* The greatest radius on which the polynomial is sound, in steps from `radius` down to `least`; 0: none. */
 static double sound_radius(const conic_patches *patches, const conic_workspace *workspace, int degree, double h,
                            double radius, double least) {
   for (; radius >= least; radius *= SHRINKAGE)
@@ -116,7 +117,7 @@ static double sound_radius(const conic_patches *patches, const conic_workspace *
   return 0.0;
 }
 
-/* The patch of a fit about r; `sign` -1 turns it over, by mirroring it along its first axis. */
+/* Makes the patch of a fit about r; `sign` -1 turns it over, by mirroring it along its first axis. */
 static void set_patch(conic_patch *patch, const conic_fit *fit, int degree, const double r[3], double h, double radius,
                       double sign) {
   double scale = h, slopes = 0.0, bends = 0.0, twists = 0.0, heights = 0.0, foot2 = 0.0;
@@ -144,8 +145,8 @@ static void set_patch(conic_patch *patch, const conic_fit *fit, int degree, cons
   patch->radius = (float)radius;
 }
 
-/* The patch of a point about which no polynomial is sound: what its splat covers of its plane. None where the splat has
- * no axes or is a dot. Beside a mesh's faces, too, the splat stays. */
+/* Makes the patch of a point without a sound polynomial: the part of its plane that its splat covers. There is none
+ * where the splat has no axes or is a dot. Beside a mesh's faces, too, the splat stays. */
 static void set_flat_patch(const conic_patches *patches, size_t slot, const double r[3]) {
   const conic_splats *splats = &patches->splats;
   size_t point = patches->surface->tree.point_of_slot[slot];
@@ -190,7 +191,7 @@ static void lay_patch(laying *work, size_t slot, conic_workspace *workspace) {
     turn += (double)surface->normal[axis][slot] * fit->frame[2][axis];
   double radius = radius_of(workspace, h), least = LEAST_SHARE * outline;
   radius = radius > least ? radius : least;
-  for (int degree = surface->options.degree; degree > 1; degree--) { /* a plane is what the flat one has */
+  for (int degree = surface->options.degree; degree > 1; degree--) { /* degree 1 would be the flat patch */
     conic_fit_solve(fit, degree);
     double sound = sound_radius(patches, workspace, degree, h, radius, least);
     if (!(sound > 0.0))
@@ -224,7 +225,7 @@ static conic_status lay_all(laying *work) {
   return status;
 }
 
-/* Clip lines stand for creases, which no polynomial has. */
+/* Clip lines stand for creases, which polynomials do not have. */
 static void take_clipped_away(conic_patches *patches) {
   const conic_splats *splats = &patches->splats;
   for (size_t i = 0; i < splats->n_clips; i++)
@@ -235,7 +236,7 @@ static void take_clipped_away(conic_patches *patches) {
     }
 }
 
-/* Points at one place are one slot: it must reach as far as any of their splats. */
+/* Points at one place share a slot: it must reach as far as any of their splats. */
 static void reach_splats(conic_patches *patches) {
   const conic_neighbours *tree = &patches->surface->tree;
   for (size_t i = 0; i < tree->n_points; i++) {

@@ -1,4 +1,4 @@
-/* Who is drawn in a picture, and how finely: down the tree. */
+/* Decides, down the tree, which slots a picture draws, and how finely. */
 #include <math.h>
 #include <string.h>
 
@@ -9,10 +9,12 @@ const int conic_grid_sizes[CONIC_N_GRIDS] = {3, 4, 6, 8, 12, 16, 24, 32, 48, 64}
 
 enum { N_SUBTREES = 64 };
 
-/* A patch of fewer pixels than the first about its middle is its point's splat; from the second on it is itself. */
+/* A patch with a radius of fewer pixels than the first is drawn as its point's splat, from the second on as itself; in
+ * between, it fades. */
 static const double LEAST_RADIUS_PX = 4.0, SURE_RADIUS_PX = 6.0;
 
-/* No grid need be so fine that its samples are nearer to the surface, or to its slope, than this; nor coarser. */
+/* No grid needs finer steps than make its samples' distance from the surface, or from its slope, this small; nor fewer
+ * rows than this. */
 static const double OFF_PX = 0.25, OFF_SLOPE = 0.01, LEAST_ROWS = 6.0;
 
 typedef struct patches_planning {
@@ -22,12 +24,12 @@ typedef struct patches_planning {
   size_t first_subtree;
 } patches_planning;
 
-/* So many that samples are a step apart on the screen, or so many that they are as good as nearer ones. */
+/* So many rows that samples are a step apart on the screen, or so many that more would not be better. */
 double conic_patch_rows(const conic_patches_view *view, const conic_patch *patch, const double p[3], double around) {
   double across_px = 2.0 * conic_patches_pixels(view, p, around, (double)patch->radius);
   double bend_px = conic_patches_pixels(view, p, around, (double)patch->bend);
   double flat2 =
-      4.0 * CONIC_SAMPLE_OUTLINE * CONIC_SAMPLE_OUTLINE * bend_px / OFF_PX; /* a disc's rim off the surface */
+      4.0 * CONIC_SAMPLE_OUTLINE * CONIC_SAMPLE_OUTLINE * bend_px / OFF_PX; /* a disc's rim leaves the surface */
   double even2 = 4.0 * CONIC_SAMPLE_BLUR * CONIC_SAMPLE_BLUR * (double)patch->twist / OFF_SLOPE;
   double enough2 = flat2 > even2 ? flat2 : even2, enough = sqrt(enough2);
   enough = enough > LEAST_ROWS ? enough : LEAST_ROWS;
@@ -35,7 +37,7 @@ double conic_patch_rows(const conic_patches_view *view, const conic_patch *patch
   return fine < enough ? fine : enough;
 }
 
-/* Whether all of a patch turns its back to the eye. */
+/* Whether a whole patch faces away from the eye. */
 static int faces_away(const conic_patches_view *view, const conic_patch *patch, double around) {
   double center[3], p[3], normal[3], n[3], across2 = 0.0, along = 0.0, slope = (double)patch->slope;
   for (int axis = 0; axis < 3; axis++) {
@@ -52,7 +54,7 @@ static int faces_away(const conic_patches_view *view, const conic_patch *patch, 
   return along > 1.001 * (slope * sqrt(across2 > 0.0 ? across2 : 0.0) + around * (1.0 + slope));
 }
 
-/* A slot's place in camera space; returns how far it reaches. */
+/* A slot's place in camera space; returns its reach. */
 static double place_of_patch(const conic_patches *patches, const conic_patches_view *view, size_t slot, double p[3]) {
   const conic_neighbours *tree = &patches->surface->tree;
   const double place[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
@@ -100,7 +102,7 @@ static uint32_t deep_count(const patches_planning *work, size_t slot) {
   const conic_patches *patches = work->patches;
   size_t n = conic_patch_sample_deep(work->view, &patches->patches[slot], patches->options.surface.degree,
                                      (double)patches->options.cutoff, NULL);
-  return n < UINT32_MAX ? (uint32_t)n : UINT32_MAX; /* which is too many, and will be told */
+  return n < UINT32_MAX ? (uint32_t)n : UINT32_MAX; /* too many, which is reported later */
 }
 
 static void plan_all(patches_planning *work, size_t i_node, int is_splat) {
@@ -129,7 +131,7 @@ static void plan_node(patches_planning *work, size_t i_node) {
   double around = 1.001 * sqrt(half2) + (double)patches->node_reach[i_node];
   conic_viewpoint_move(&work->view->from, center, p);
   if (!conic_patches_sees(work->view, p, around))
-    return; /* culled, as it was set */
+    return; /* stays culled */
   if (conic_patches_pixels(work->view, p, around, (double)patches->node_radius[i_node]) <= LEAST_RADIUS_PX)
     plan_all(work, i_node, 1);
   else if (i_node >= tree->n_leaves - 1)

@@ -1,5 +1,5 @@
-/* The samples of a picture, in the order of the points. A grid that the last picture had as well is taken over: its
- * samples know no camera. */
+/* The samples of a picture, in the order of the points. Grids of the last picture are taken over if they are the same:
+ * samples do not depend on the camera. */
 #include <math.h>
 #include <string.h>
 
@@ -18,7 +18,7 @@ typedef struct patches_selecting {
   const conic_patches_frame *last;
   size_t grid_counts[CONIC_N_GRIDS];
   size_t n_chunks;
-  size_t *chunk_starts; /* where each chunk of points begins among the samples; one more than there are chunks */
+  size_t *chunk_starts; /* where each chunk of points begins among the samples, and one end */
   size_t *chunk_kept;   /* by chunk: samples taken over */
 } patches_selecting;
 
@@ -80,7 +80,7 @@ static void make_grid(const patches_selecting *work, uint32_t slot, size_t at) {
   conic_grid_sample(patch, degree, cutoff, &part, &to);
 }
 
-/* The samples of a point's patch, with the point's colour and opacity. */
+/* Puts the samples of a point's patch, with the point's colour and opacity. */
 static void put_grid(const patches_selecting *work, size_t point, uint32_t slot, size_t at, size_t n) {
   const conic_splats *from = &work->patches->splats;
   const conic_splats *to = &work->frame->splats;
@@ -92,7 +92,7 @@ static void put_grid(const patches_selecting *work, size_t point, uint32_t slot,
     to->opacity[i] *= from->opacity[point];
 }
 
-/* A patch that comes in beside its splat, which is the last of the n. */
+/* Puts a fading patch and its splat, which is the last of the n. */
 static void put_fading(const patches_selecting *work, size_t point, uint32_t slot, size_t at, size_t n) {
   const conic_splats *to = &work->frame->splats;
   double share = conic_patches_share(work->patches, &work->view, slot);
@@ -103,14 +103,14 @@ static void put_fading(const patches_selecting *work, size_t point, uint32_t slo
   to->opacity[at + n - 1] *= (float)(1.0 - share);
 }
 
-/* Whether the last picture has the very grid. Points that coincide with another are made anew: they have no start. */
+/* Whether the last picture had the same grid. Points that coincide with another have no start, and are sampled anew. */
 static int is_kept(const patches_selecting *work, size_t point, uint32_t slot) {
   uint8_t plan = work->frame->plans[slot];
   return plan >= CONIC_PLAN_GRID && plan < CONIC_PLAN_FADING && work->last->plans[slot] == plan &&
          work->patches->surface->tree.point_of_slot[slot] == point;
 }
 
-/* The samples of a point; those that are not finite are handed on too, so that the renderer counts them. */
+/* Puts the samples of a point. Those that are not finite are included, so that the renderer counts them. */
 static size_t put_point(const patches_selecting *work, size_t point, size_t at, size_t *n_kept) {
   uint32_t slot = work->patches->surface->tree.slot_of_point[point];
   size_t n = slot == CONIC_NO_SLOT ? 1 : count_of(work, slot);
@@ -142,7 +142,7 @@ static void fill_chunk(void *data, size_t i_item, int i_thread) {
   work->chunk_kept[i_item] = n_kept;
 }
 
-/* The clip lines of the splats that are drawn as such. */
+/* Puts the clip lines of the points drawn as splats. */
 static void put_clips(const patches_selecting *work, size_t n) {
   const conic_splats *from = &work->patches->splats;
   conic_splats *to = &work->frame->splats;
@@ -151,7 +151,7 @@ static void put_clips(const patches_selecting *work, size_t n) {
   to->n_clips = 0;
   for (size_t i = 0; i < from->n_clips; i++) {
     size_t end = n;
-    while (at < end) { /* the first sample whose point is not before */
+    while (at < end) { /* the first sample of this point or a later one */
       size_t middle = at + (end - at) / 2;
       if (points[middle] < from->clips[i].splat)
         at = middle + 1;
@@ -185,7 +185,7 @@ static conic_status reserve_samples(const patches_selecting *work, size_t n) {
   conic_context *context = work->patches->context;
   conic_patches_frame *frame = work->frame;
   unsigned fields = conic_splats_fields(&work->patches->splats) & (CONIC_SPLATS_COLORS | CONIC_SPLATS_CLIPS);
-  if (n <= frame->room && frame->points) /* with nothing in sight, too, the arrays are there */
+  if (n <= frame->room && frame->points) /* the arrays exist even with nothing in sight */
     return CONIC_OK;
   release_samples(context, frame);
   size_t room = n + n / 4 + 1;
@@ -200,7 +200,7 @@ static conic_status reserve_samples(const patches_selecting *work, size_t n) {
   return CONIC_OK;
 }
 
-/* Counts everyone's samples. */
+/* Counts all samples. */
 static conic_status count_samples(patches_selecting *work) {
   conic_context *context = work->patches->context;
   for (int i = 0; i < CONIC_N_GRIDS; i++) {
@@ -216,7 +216,7 @@ static conic_status count_samples(patches_selecting *work) {
   return reserve_samples(work, work->chunk_starts[work->n_chunks]);
 }
 
-/* By point, as points at one place are drawn each. */
+/* Counts by point, as points at one place are drawn separately. */
 static void describe_samples(const patches_selecting *work, conic_patch_selection *selection) {
   const conic_neighbours *tree = &work->patches->surface->tree;
   memset(selection, 0, sizeof *selection);
@@ -239,7 +239,7 @@ static conic_status select_samples(patches_selecting *work, conic_patch_selectio
   conic_patches_plan(patches, &work->view, work->frame->plans);
   conic_status status = count_samples(work);
   if (status != CONIC_OK) {
-    memset(work->frame->plans, CONIC_PLAN_CULLED, patches->surface->tree.n_slots); /* nothing to be taken over */
+    memset(work->frame->plans, CONIC_PLAN_CULLED, patches->surface->tree.n_slots); /* nothing can be taken over */
     return status;
   }
   conic_parallel_for(patches->context, work->n_chunks, fill_chunk, work);

@@ -1,4 +1,4 @@
-/* What a camera sees, for whoever chooses what to draw: spheres in sight, and lengths on the screen. */
+/* A camera for choosing patches: which spheres are in sight, and lengths on the screen. */
 #ifndef CONIC_PATCHES_VIEW_H
 #define CONIC_PATCHES_VIEW_H
 
@@ -7,13 +7,13 @@
 #include "core/image/viewpoint.h"
 
 typedef struct conic_patches_view {
-  conic_viewpoint from;    /* places from the set's origin; the sides as far out as the prefilter reaches */
+  conic_viewpoint from;    /* for places from the set's origin; its sides are as far out as the prefilter reaches */
   double near_z, focal_px; /* the longer focal length */
   double step_px;
   int cull_back;
 } conic_patches_view;
 
-/* `default_near` is for options without one. */
+/* `default_near` is used where the options have none. */
 void conic_patches_view_init(conic_patches_view *view, const conic_camera *camera, const conic_render_options *render,
                              const double origin[3], double default_near, double step_px);
 
@@ -22,7 +22,7 @@ static inline int conic_patches_sees(const conic_patches_view *view, const doubl
   return p[2] + radius > view->near_z && !conic_viewpoint_misses(&view->from, p, radius);
 }
 
-/* How many pixels a length takes at most, in a sphere about p. */
+/* The most pixels that a length takes in a sphere about p. */
 static inline double conic_patches_pixels(const conic_patches_view *view, const double p[3], double radius,
                                           double length) {
   double nearest = p[2] - radius;

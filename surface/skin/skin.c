@@ -33,7 +33,7 @@ void conic_skin_normal(const conic_skin_search *search, uint32_t slot, double no
     normal[axis] = (double)search->normal[axis][slot];
 }
 
-/* The unit normal of a splat that can be of a surface; 0 where it is a dot, or spans no plane. */
+/* The unit normal of a splat that can be part of a surface; returns 0 for a dot, or a splat that spans no plane. */
 static int find_splat_plane(const conic_splats *splats, size_t splat, double normal[3]) {
   double u[3], v[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -44,7 +44,7 @@ static int find_splat_plane(const conic_splats *splats, size_t splat, double nor
   return conic_normalize(normal) && !(splats->dot && splats->dot[splat] != 0.0f);
 }
 
-/* The tree of those that can be of a surface: for it, the others are nowhere. */
+/* Builds the tree of splats that can be part of a surface; for the tree, the others have no position. */
 static conic_status build_tree(conic_skin_search *search) {
   const conic_splats *splats = search->splats;
   size_t n = splats->count;
@@ -78,7 +78,7 @@ static conic_status find_own_normals(conic_skin_search *search) {
   return CONIC_OK;
 }
 
-/* Normals, colours and lifts; the normals are those that all goes by from here on. */
+/* Finds normals, colours and lifts; all later steps use these normals. */
 static conic_status look_all_over(conic_skin_search *search, conic_skin *skin) {
   size_t n = search->splats->count;
   skin->normal = conic_memory_allocate_zeroed(search->context, n, sizeof *skin->normal);

@@ -13,7 +13,7 @@ enum { SLOTS_A_TASK = 64 };
 /* The least cosine between the normals of a triangle and of a corner. */
 static const double LEAST_COSINE = 0.3;
 
-/* A triangle's circle has its middle within this many of its corners' ellipses. */
+/* The middle of a triangle's circle is within its corners' ellipses, enlarged by this. */
 static const double COVERED = 1.1;
 
 typedef struct fan_pass {
@@ -83,7 +83,7 @@ int conic_skin_is_covered(const conic_skin_search *search, double least_cosine, 
   return 1;
 }
 
-/* A triangle of a slot's fan, if this slot is the one to list it: the first of the corners that has it. */
+/* Takes a triangle of a slot's fan if this slot lists it: it is the first corner whose fan has it. */
 static int take_pair(const fan_pass *pass, uint32_t slot, const uint32_t pair[2], conic_skin_triangle *triangle) {
   const uint32_t all[3] = {slot, pair[0], pair[1]};
   int first = 0;

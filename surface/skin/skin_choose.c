@@ -1,4 +1,4 @@
-/* Of the triangles that corners would have, those that fit each other. */
+/* Chooses, among the candidate triangles, those that fit each other. */
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -9,7 +9,8 @@
 
 /* --- sectors --- */
 
-/* What a triangle takes of a corner's plane: from the first direction on to the second, less than half of it. */
+/* The part of a corner's plane that a triangle takes: from the first direction to the second, less than half of the
+ * plane. */
 typedef struct sector {
   uint32_t ends[2];
   double ways[2][2];
@@ -76,7 +77,7 @@ void conic_skin_take(conic_skin_search *search, uint32_t i) {
   }
 }
 
-/* Those that most corners have come first, of these the smallest circles. */
+/* Orders the candidates: those wanted by most corners first, among these the smallest circles. */
 static conic_status order_candidates(const conic_skin_search *search, conic_radix_item *items) {
   for (size_t i = 0; i < search->n_triangles; i++) {
     uint32_t bits;
@@ -86,7 +87,7 @@ static conic_status order_candidates(const conic_skin_search *search, conic_radi
   return conic_radix_sort(search->context, items, search->n_triangles, 34);
 }
 
-/* The candidates that are not taken stay, in no list. */
+/* Candidates that are not taken stay, outside of all lists. */
 conic_status conic_skin_choose(conic_skin_search *search) {
   conic_context *context = search->context;
   search->heads = conic_memory_allocate(context, search->tree.n_slots, sizeof *search->heads);

@@ -1,24 +1,25 @@
-/* Gaps between triangles: where those about a slot end at one neighbour and go on at another, one more fits between. */
+/* Closes gaps between triangles: where the triangles about a slot end at one neighbour and continue at another, one
+ * more fits between. */
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/radix.h"
 #include "surface/skin/skin_search.h"
 
-/* Rounds in which each gap gets smaller; loops of more edges than this many rounds close stay open. */
+/* Rounds, each of which makes the gaps smaller; loops of more edges than these rounds close stay open. */
 enum { ROUNDS = 16 };
 
-/* The least cosine to the corners' normals, and how much larger splats may be that meet in its middle: rougher than
- * the first, as there is nothing else. */
+/* The least cosine to the corners' normals, and how much the splats that meet in its middle may be enlarged: less
+ * strict than for candidates, as there is nothing else. */
 static const double LEAST_COSINE = 0.0, COVERED = 1.1;
 
 typedef struct skin_filling {
   conic_skin_search *search;
-  size_t n_first; /* of the triangles: those that this round adds come after them */
+  size_t n_first; /* the number of triangles before this round */
   size_t room;
 } skin_filling;
 
-/* Whether a triangle fits what there is: its edges have none on the same side. */
+/* Whether a triangle fits the existing ones: its edges have none on the same side. */
 static int has_free_edges(const conic_skin_search *search, const uint32_t slots[3]) {
   for (int k = 0; k < 3; k++)
     if (conic_skin_about(search, slots[k], 0, slots[(k + 1) % 3]) != CONIC_NO_TRIANGLE)
@@ -42,7 +43,7 @@ static conic_status offer_triangle(skin_filling *f, uint32_t slot, uint32_t from
   return status;
 }
 
-/* Each pair of open edges about a slot: from where a triangle ends to where one begins. */
+/* Offers a triangle for each pair of open edges about a slot, from where one triangle ends to where another begins. */
 static conic_status offer_about(skin_filling *f, uint32_t slot) {
   const conic_skin_search *search = f->search;
   conic_status status = CONIC_OK;
@@ -61,7 +62,7 @@ static conic_status offer_about(skin_filling *f, uint32_t slot) {
   return status;
 }
 
-/* Takes those that fit, the smallest first. Returns how many. */
+/* Takes the offered triangles that fit, the smallest first. *n_taken says how many. */
 static conic_status take_round(skin_filling *f, size_t *n_taken) {
   conic_skin_search *search = f->search;
   size_t n = search->n_triangles - f->n_first, at = f->n_first;

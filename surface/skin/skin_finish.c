@@ -1,4 +1,4 @@
-/* What is left of the triangles, and about whom they close. */
+/* Drops small pieces of the skin, and finds the splats that its triangles surround. */
 #include "core/base/memory.h"
 #include "surface/skin/skin_search.h"
 
@@ -7,8 +7,8 @@ enum { LEAST_PIECE = 256 };
 
 typedef struct skin_pieces {
   conic_skin_search *search;
-  uint32_t *parent; /* of each slot: one of its piece */
-  uint32_t *count;  /* of each slot that stands for a piece: its slots */
+  uint32_t *parent; /* of each slot: another slot of its piece */
+  uint32_t *count;  /* of each slot that stands for a piece: the piece's slots */
 } skin_pieces;
 
 static uint32_t piece_of(skin_pieces *p, uint32_t slot) {

@@ -1,4 +1,4 @@
-/* What the picture shows where a splat lies: all splats over it blend, and what it shows is their mean. */
+/* What the picture shows at a splat: all splats over it blend, and the picture shows their mean. */
 #include <math.h>
 
 #include "core/base/threads.h"
@@ -7,11 +7,12 @@
 
 enum { N_SEEN = 40, SPLATS_A_TASK = 64 };
 
-/* Normals turned away by more than this are of the other side of something thin; planes, of another side of an edge. */
+/* Normals turned by more than the first belong to the other side of a thin part; planes turned by more than the second,
+ * to another side of an edge. */
 static const double LEAST_COSINE = -0.3, LEAST_OF_PLANES = 0.5;
 
-/* How far a splat counts, squared, in outlines: for normals, as it blends; for colours; and for planes, of which those
- * are none that lie farther off than this many of their longer half axes. */
+/* How far a splat counts, squared, in outlines: for normals, as it blends; for colours; for planes. A plane farther off
+ * than FARTHEST of its splat's longer half axis does not count. */
 static const double NORMALS = 1.0, COLORS = 2.25, PLANES = 9.0, FARTHEST = 0.7;
 
 typedef struct look_pass {
@@ -19,7 +20,8 @@ typedef struct look_pass {
   conic_skin *skin;
 } look_pass;
 
-/* A splat from a place: q, below 1 within its outline, and how far along `normal` its plane is from there. */
+/* A splat seen from a place: q is below 1 within its outline; `lift` is how far along `normal` its plane is from the
+ * place. */
 typedef struct seen_splat {
   double facing[3], q, lift;
   int has_plane;
@@ -46,7 +48,7 @@ static double falling(double q, double end) {
   return rest > 0.0 ? rest * rest : 0.0;
 }
 
-/* The mean of the normals about a slot, or its own; 0 where it has none. */
+/* The mean normal about a slot, or its own; returns 0 where it has none. */
 static int find_mean_normal(const conic_skin_search *search, const uint32_t *near, size_t n, const double place[3],
                             double normal[3]) {
   double own[3], sum[3] = {0.0, 0.0, 0.0};

@@ -1,9 +1,9 @@
-/* Every slot of every family of kernels against plain C, bit for bit: on friendly and on hostile input, with guard
+/* Every slot of every family of loops against plain C, bit for bit: on friendly and on hostile input, with guard
  * bands around all that a slot may write.
  *
  *   cross FOLDER [SEED]      the seed is printed, and repeats a run
  *   cross FOLDER --bench     what `conic bench --kernels` prints */
-#include "bench/kernels/cross_all.h"
+#include "bench/loops/cross_all.h"
 #include "tests/support/check.h"
 
 int main(int argc, char **argv) {

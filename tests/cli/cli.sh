@@ -80,7 +80,7 @@ run_wrong 2 'needs an ending' render absent.ply -o outputs/a
 run_wrong 2 'camera' render absent.ply -o outputs/a.pfm --camera absent.json --zoom 2
 run_wrong 2 'planes: rgba' render absent.ply -o outputs/a.pfm --aov depth
 run_wrong 2 'no output holds the plane Z' render absent.ply -o outputs/a.png --aov rgba,Z
-run_wrong 2 'are of patches' render absent.ply -o outputs/a.pfm --degree 2
+run_wrong 2 'needs --method patch' render absent.ply -o outputs/a.pfm --degree 2
 run_wrong 4 'outputs/none/a.pfm: cannot write' render absent.ply -o outputs/none/a.pfm
 run_wrong 4 'outputs/none/a.json: cannot write' verify absent.ply --json outputs/none/a.json
 for command in prepare octree layer hybrid 'mls project'; do # $command is one or two words

@@ -156,7 +156,7 @@ write prepare-baked prepare prepare knot.ply -o baked.ply --bake color --directi
 write prepare-colored prepare prepare knot.ply -o colored.ply --color-by x
 write octree-colored octree octree colored.ply -o colored.cot --color-by height
 write hybrid-colored hybrid hybrid tent.obj -o colored.chy --color-by height
-write hybrid-points hybrid hybrid knot.ply -o knot.chy
+write hybrid-points hybrid hybrid thinner.ply -o knot.chy
 write diff diff diff knot.exr lod.exr
 write diff-sizes diff diff knot.exr triangle.exr
 mkdir first second
@@ -232,7 +232,8 @@ write chart-gaussians chart chart two.compressed.ply -o chart --quick --pixels 1
 write render-gaussians render render two.compressed.ply --profile gsplat-1.6 --size 64x64 -o two.exr --aov all
 write devices devices devices
 echo '{"traceEvents": [{"cat": "unit", "name": "frame 0", "ph": "X", "ts": 0, "dur": 9, "pid": 0, "args": {"sent_bytes": 8}}]}' > trace.json
-write simulate simulate simulate trace.json --ranks 1,8
+"$python" "$1/scripts/simulate" trace.json --ranks 1,8 --quiet --json runs/simulate.json || fail "a trace is not modelled"
+echo simulate > runs/simulate.definition
 write conformance conformance conformance suite --profile 2dgs-gsplat
 mkdir drawn
 run 0 render suite/scenes/disc.ply --profile 2dgs-gsplat --size 36x20 -o drawn/L1-disc-2dgs-gsplat.pfm

@@ -22,6 +22,8 @@ def check(is_right, message):
 
 options = {c["name"]: {n for o in c["options"] for n in (o["name"], o["alias"]) if n} for c in table["commands"]}
 every_option = set.union(*options.values())
+old = {c["name"]: {o["name"] for o in c["old_spellings"]} for c in table["commands"]}
+every_option |= set.union(*old.values())
 bash, zsh, fish = (text_of(f"completion.{shell}") for shell in ("bash", "zsh", "fish"))
 
 # Each option, with its value's name and its default, in each form.
@@ -77,7 +79,7 @@ def check_call(where, call):
     for word in words[2:]:
         named = re.match(r"\[?(--?[a-z][a-z0-9-]*)(?![\w,])", word)
         if named and not re.match(r"-[0-9]", word):
-            check(named.group(1) in options[words[1]], f"{where}: conic {words[1]} has no {named.group(1)}")
+            check(named.group(1) in options[words[1]] | old[words[1]], f"{where}: conic {words[1]} has no {named.group(1)}")
 
 
 for command in table["commands"]:

@@ -15,7 +15,7 @@ cp out table.json
 commands=$("$python" -c 'import json; print(*[c["name"] for c in json.load(open("table.json"))["commands"]])')
 [[ $(wc -w <<< "$commands") -gt 10 ]] || fail "there are only these commands: $commands"
 for command in $commands; do
-  run 0 help "$command"
+  run 0 help --all "$command"
   cp out "help/$command"
   run 0 help --format man "$command"
   cp out "man1/conic-$command.1"

@@ -13,7 +13,7 @@ static uint64_t check_of(const unsigned char *bytes, uint64_t room, uint64_t n) 
 }
 
 static void mend_checks(unsigned char *bytes, size_t n_bytes) {
-  cli_strip_piece p;
+  conic_strip_piece p;
   for (uint64_t at = STRIPS_EXAMPLE_HEAD; at + sizeof p <= n_bytes;) {
     unsigned char *following = bytes + at + sizeof p;
     uint64_t room = n_bytes - at - sizeof p;
@@ -29,35 +29,35 @@ static void mend_checks(unsigned char *bytes, size_t n_bytes) {
   }
 }
 
-static void check_found_strips(const cli_strips_file *file) {
+static void check_found_strips(const conic_strips_file *file) {
   unsigned char bytes[4096];
   int y = 0;
   for (size_t i = 0; i < file->n_found; i++) {
-    const cli_strip_piece *p = &file->found[i].piece;
+    const conic_strip_piece *p = &file->found[i].piece;
     FUZZ_CHECK(p->y >= y && p->y + p->n_rows <= p->y_end && p->y_end <= strips_example.height);
     FUZZ_CHECK(p->y == y || p->y == p->y_begin);
     y = p->y + p->n_rows;
-    FUZZ_CHECK(cli_strips_file_get(file, &file->found[i], bytes) == CONIC_OK);
+    FUZZ_CHECK(conic_strips_file_get(file, &file->found[i], bytes) == CONIC_OK);
   }
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
-  cli_strips_file file, again;
+  conic_strips_file file, again;
   unsigned char *mended = malloc(n_bytes + 1);
   FUZZ_CHECK(mended);
   memcpy(mended, bytes, n_bytes);
   mend_checks(mended, n_bytes);
   fuzz_input written = fuzz_open(part, sizeof part), input = fuzz_open(mended, n_bytes);
   conic_status status =
-      cli_strips_file_begin(input.context, input.path, written.path, STRIPS_EXAMPLE_KEY, &strips_example, 1, &file);
+      conic_strips_file_begin(input.context, input.path, written.path, STRIPS_EXAMPLE_KEY, &strips_example, 1, &file);
   if (status == CONIC_OK) {
     check_found_strips(&file);
-    FUZZ_CHECK(cli_strips_file_begin(input.context, input.path, written.path, STRIPS_EXAMPLE_KEY, &strips_example, 1,
+    FUZZ_CHECK(conic_strips_file_begin(input.context, input.path, written.path, STRIPS_EXAMPLE_KEY, &strips_example, 1,
                                      &again) == CONIC_OK);
     FUZZ_CHECK(again.n_found == file.n_found);
-    cli_strips_file_end(input.context, &again);
+    conic_strips_file_end(input.context, &again);
   }
-  cli_strips_file_end(input.context, &file);
+  conic_strips_file_end(input.context, &file);
   close(written.descriptor);
   fuzz_close(&input, status, 0);
   free(mended);

@@ -44,28 +44,28 @@ static void add_file(seed_set *set, const char *target, const char *path, unsign
 
 /* Two strips: one packed in its place and as pixels, and one that came before its turn. */
 static void seeds_strips(seed_set *set, conic_context *context) {
-  static const cli_strip_piece pieces[] = {
+  static const conic_strip_piece pieces[] = {
       {.packed_bytes = 300, .place = 200, .y_end = 48, .n_rows = 32},
       {.pixel_bytes = 64, .y_end = 48, .y = 32, .n_rows = 16},
-      {.pixel_bytes = sizeof(cli_strip_end), .y_end = 48, .y = 48},
+      {.pixel_bytes = sizeof(conic_strip_end), .y_end = 48, .y = 48},
       {.packed_bytes = 9, .pixel_bytes = 32, .y_begin = 192, .y_end = 200, .y = 192, .n_rows = 8},
-      {.pixel_bytes = sizeof(cli_strip_end), .y_begin = 192, .y_end = 200, .y = 200}};
+      {.pixel_bytes = sizeof(conic_strip_end), .y_begin = 192, .y_end = 200, .y = 200}};
   static unsigned char nothing[4096], bytes[8192];
-  const cli_strip_end end = {.has_hashes = 1};
+  const conic_strip_end end = {.has_hashes = 1};
   char part[4096];
   const char *path = files_path("seed.strips");
-  cli_strips_file file;
+  conic_strips_file file;
   uint64_t at;
   snprintf(part, sizeof part, "%s.part", path);
-  CHECK_OK(cli_strips_file_begin(context, path, part, STRIPS_EXAMPLE_KEY, &strips_example, 0, &file));
+  CHECK_OK(conic_strips_file_begin(context, path, part, STRIPS_EXAMPLE_KEY, &strips_example, 0, &file));
   for (size_t i = 0; i < sizeof pieces / sizeof *pieces; i++) {
-    cli_strip_piece piece = pieces[i];
+    conic_strip_piece piece = pieces[i];
     const void *following = piece.n_rows ? (const void *)nothing : (const void *)&end;
     piece.checks[0] = conic_hash_bytes(nothing, (size_t)piece.packed_bytes);
     piece.checks[1] = conic_hash_bytes(following, (size_t)piece.pixel_bytes);
-    CHECK_OK(cli_strips_file_add(&file, &piece, following, &at));
+    CHECK_OK(conic_strips_file_add(&file, &piece, following, &at));
   }
-  cli_strips_file_end(context, &file);
+  conic_strips_file_end(context, &file);
   unlink(part);
   add_file(set, "strips", path, bytes, sizeof bytes);
 }
@@ -177,10 +177,6 @@ int main(int argc, char **argv) {
       "\"color\": [1, 0.5, null]}]}}, \"reading\": {\"gaussians\": true, \"where\": \"z > 1\", \"patches\": "
       "{\"surface\": {\"degree\": 2}}}, \"way\": {\"kind\": \"cameras\", \"cameras\": [{\"width\": 1}]}}");
   seeds_text(set, "suite", "json", SUITE_EXAMPLE);
-  seeds_text(set, "trace", "json",
-             "{\"traceEvents\": [{\"name\": \"window 0\", \"cat\": \"unit\", \"ph\": \"X\", \"ts\": 1.5, \"dur\": 20, "
-             "\"pid\": 1, \"tid\": 0, \"args\": {\"sent_bytes\": 64}}, {\"name\": \"sums\", \"cat\": \"join\", "
-             "\"ts\": 22, \"dur\": 3, \"pid\": 0}], \"displayTimeUnit\": \"ms\"}");
   seeds_text(set, "frames", "frames",
              "conic frames 1\nkey 0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef\n"
              "file 82907b05ff270d1cb93fab619df708504259a9aa9214808f6563f59d1076fe3c 5831 a/f.0001.exr\nframe 0\n"

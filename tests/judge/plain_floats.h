@@ -106,9 +106,11 @@ static inline float plain_exponential(plain_floats *f, float x) {
     float power = (float)(exp2((double)(x * log2_of_e)) * (1.0 + off));
     return power < 0x1p-126f ? 0.0f : power;
   }
-  default:
-    return expf(x);
+  case PLAIN_EXP_LIBM:
+  case PLAIN_N_EXPS: /* which is none */
+    break;
   }
+  return expf(x);
 }
 
 /* A compiler and a device by chance. What is not `fast` keeps to what C's own mathematics does. */

@@ -62,8 +62,7 @@ grep -q '"shares": "points"' large-3.json || fail "the report does not say what 
 for stage in exchange grow crown write; do
   [[ $(grep -c "\"name\": \"$stage .*\"stage\"" trace.json) -eq 3 ]] || fail "the trace lacks $stage"
 done
-run_as_typed 0 simulate trace.json --ranks 1,3,64 --json model.json
-[[ $(grep -c '"rank_hours"' model.json) -eq 4 ]] || fail "a trace of building is not modelled"
+model 4 trace.json --ranks 1,3,64
 
 # What goes on is shared, too.
 cp tiles.lpc more.lpc

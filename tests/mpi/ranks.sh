@@ -101,13 +101,12 @@ grep -q '"shares": "windows"' together.json || fail "an octree is not drawn in w
 
 # A trace says what each rank did, and what more of them would do.
 ranks 2 0 "${octree[@]}" -o traced.exr --trace trace.json
-run_as_typed 0 simulate trace.json --ranks 1,2,64 --json model.json
+model 4 trace.json --ranks 1,2,64
 [[ $(grep -c '"cat": "open"' trace.json) -eq 4 ]] || fail "a trace lacks what a rank opened, or set up"
 grep -q '"cat": "unit".*"pid": 1.*"sent_bytes": [1-9]' trace.json || fail "a trace lacks the units of rank 1"
-[[ $(grep -c '"rank_hours"' model.json) -eq 4 ]] || fail "a trace is not modelled"
 run_as_typed 0 "${octree[@]}" --size 512x400 -o alone.exr
 ranks 2 0 "${octree[@]}" --size 512x400 -o cut.exr --trace cut.json --trace-ranks=64
-run_as_typed 0 simulate cut.json --processor --ranks 64 --json model.json
+model 2 cut.json --processor --ranks 64
 [[ $(grep -c '"cat": "unit"' cut.json) -eq 56 ]] || fail "the units are not cut for 64 ranks"
 cmp alone.exr cut.exr || fail "smaller windows have other bits"
 told_once err10 2 2 '--trace-ranks' render knot.ply --trace-ranks 8 -o a.pfm & jobs+=" $!"

@@ -87,7 +87,7 @@ static void compare(fixture *f, int n_ways, const char *scene) {
 /* Every second pair of a method and a kernel, from the first on; the rest of the options as it comes. */
 static void check_hostile(fixture *f, int first, double share_of_specials, double decades) {
   uint64_t state = 7;
-  for (int number = first; number < CONIC_N_METHODS * N_KERNELS; number += 2)
+  for (int number = first; number < CONIC_N_METHODS * CONIC_N_KERNELS; number += 2)
     for (int passes = 1; passes <= 3; passes += 2) {
       fill(f, &state, decades, share_of_specials);
       if (number / 2 % 2)
@@ -110,13 +110,13 @@ static void check_hostile(fixture *f, int first, double share_of_specials, doubl
 /* A few pictures of each method, small enough for a simulator (scripts/oclgrind). */
 static void check_small(fixture *f) {
   uint64_t state = 13;
-  fixture_camera(f, 38, 26, 30.0);
+  fixture_camera(f, 34, 18, 27.0);
   for (int number = 0; number < CONIC_N_METHODS; number++) {
     fill(f, &state, 1.5, 0.01);
     opencl_add_clips(f, &state);
     f->splats.count = 80;
     f->splats.n_clips = 30;
-    choose(f, number + CONIC_N_METHODS * (number % N_KERNELS));
+    choose(f, number + CONIC_N_METHODS * (number % CONIC_N_KERNELS));
     f->options.passes = number % 3 ? 3 : 1;
     f->options.light[2] = -1.0;
     f->options.near_z = 1e-3;
@@ -223,9 +223,10 @@ static void check_kept_splats(fixture *f) {
 }
 
 static void check_all(fixture *f) {
-  fixture_camera(f, 230, 170, 160.0);
+  fixture_camera(f, 131, 94, 91.0);
   check_hostile(f, 0, 0.0, 1.5);
   check_hostile(f, 1, 0.01, 3.0);
+  fixture_camera(f, 230, 170, 160.0);
   check_scene(f, CONIC_SCENE_KNOT, 20000, 2.2, "knot");
   fixture_camera(f, 23, 17, 16.0);
   check_scene(f, CONIC_SCENE_KNOT, 20000, 2.2, "crowd"); /* more splats on a block than are kept */

@@ -293,7 +293,7 @@ int main(void) {
     options.work = (conic_opencl_work)work;
     CHECK_OK(conic_opencl_open(f.context, &options, &opencl));
     CHECK_OK(conic_opencl_need_splats(opencl));
-    for (int number = 0; opencl && number < CONIC_N_METHODS * N_KERNELS; number++) {
+    for (int number = 0; opencl && number < CONIC_N_METHODS * CONIC_N_KERNELS; number++) {
       fill(&f, &state, 2.0, number % 3 ? 0.01 : 0.0);
       if (number % 4 != 1)
         opencl_add_clips(&f, &state);

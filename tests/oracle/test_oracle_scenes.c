@@ -69,6 +69,7 @@ static void test_hard_scenes(fixture *f) {
   check_agreement(f, "tiny", 0.005);
   fill_random(f, 60, 0.5, 4.0, 1.0, 30.0, 1.0);
   check_agreement(f, "huge", 0.02);
+  fixture_camera(f, 100, 75, 90.0); /* hundreds of splats a pixel */
   fill_random(f, 600, -0.3, 0.6, 0.02, 0.5, 1.0);
   check_agreement(f, "near", 0.02);
 }
@@ -137,7 +138,12 @@ static void test_options(fixture *f) {
   f->options.kernel.cutoff = 3.0f;
   f->options.kernel.type = CONIC_KERNEL_CONFETTI;
   f->options.kernel.b = 2.5f;
+  const conic_camera camera = f->camera;
+  fixture_camera(f, 80, 60, 55.0); /* its discs overlap four times as much */
+  memcpy(f->camera.cam_from_world, camera.cam_from_world, sizeof camera.cam_from_world);
   check_agreement(f, "confetti, lit from behind", 0.02);
+  fixture_camera(f, 160, 120, 110.0);
+  memcpy(f->camera.cam_from_world, camera.cam_from_world, sizeof camera.cam_from_world);
   f->options = plain;
   f->options.lighting = (conic_lighting){
       .is_given = 1,

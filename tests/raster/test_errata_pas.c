@@ -1,4 +1,4 @@
-/* Perspective Accurate Splatting as printed and as corrected: each row of docs/reference/errata.md is shown to be wrong
+/* Perspective Accurate Splatting as printed and as corrected: each row of docs/notes/errata.md is shown to be wrong
  * as printed and right as corrected, against sampled contours and a numerical convolution. Independent of the renderer.
  */
 #include "tests/support/check.h"

@@ -1,5 +1,5 @@
 /* Cameras that break other renderers: inside a model, close to it, far from it, narrow, wide, rolled, off-centre, of
- * odd shapes (docs/reference/stability.md). */
+ * odd shapes (docs/reference/accuracy.md). */
 #include "tests/support/stability.h"
 
 enum { N_SPHERE = 3000 };

@@ -1,6 +1,6 @@
 /* From frame to frame: how much a pixel may change when the camera pans by a fraction of a pixel, or slowly moves in. A
  * picture that flickers changes by as much however small the step is; one that does not changes less and less
- * (docs/reference/stability.md). */
+ * (docs/reference/accuracy.md). */
 #include "tests/support/stability.h"
 
 typedef void set_frame(fixture *f, double t);

@@ -1,4 +1,4 @@
-/* The splats that break other renderers (docs/reference/stability.md), each against the oracle and against what can be
+/* The splats that break other renderers (docs/reference/accuracy.md), each against the oracle and against what can be
  * said of it beforehand. */
 #include "tests/support/stability.h"
 

@@ -151,7 +151,11 @@ static void fill_row(const conic_shot_row *row, char *value) {
   case CONIC_ROW_RESERVED:
   case CONIC_ROW_LEFT_OUT:
     break;
-  default:
+  case CONIC_ROW_INT:
+  case CONIC_ROW_UINT32:
+  case CONIC_ROW_UINT64:
+  case CONIC_ROW_FLOAT:
+  case CONIC_ROW_DOUBLE:
     for (size_t i = 0; i < conic_row_count(row); i++)
       fill_number(row, at + i * (row->bytes / conic_row_count(row)));
   }

@@ -2,7 +2,7 @@
 #ifndef CONIC_BENT_SHEET_H
 #define CONIC_BENT_SHEET_H
 
-#include "surface/kernels/weight.h"
+#include "surface/loops/weight.h"
 #include "tests/support/random_numbers.h"
 
 static double bent_sheet_frame[3][3] = {{0.8, 0.0, -0.6}, {0.0, 1.0, 0.0}, {0.6, 0.0, 0.8}};

@@ -4,7 +4,7 @@
 
 #include "core/base/memory.h"
 #include "lod/layers/format/layers_decode.h"
-#include "lod/layers/format/layers_read.h"
+#include "lod/layers/format/layers_format.h"
 #include "tests/support/files.h"
 
 /* Splats of a scene, circles with colours. */

@@ -2,7 +2,7 @@
 #ifndef CONIC_OPENCL_FIXTURE_H
 #define CONIC_OPENCL_FIXTURE_H
 
-#include "bench/kernels/cross_desk.h"
+#include "bench/loops/cross_desk.h"
 
 /* Ends the program with a message where no OpenCL device is. */
 static inline void opencl_need_device(conic_context *context) {

@@ -23,6 +23,13 @@ ranks() {
   [[ $got -eq $wanted ]] || fail "$n ranks: conic-mpi ${*:3}: exit code $got instead of $wanted: $(head -c 600 "$to")"
   [[ $got -eq $wanted ]]
 }
+# What more ranks would do, by a trace: so many estimates, in model.json. Without Python nothing models it.
+simulator=$1/scripts/simulate
+model() { # ESTIMATES, TRACE, OPTIONS …
+  command -v python3 > /dev/null || return
+  python3 "$simulator" "${@:2}" --json model.json > out 2> err || fail "$2 is not modelled: $(cat err)"
+  [[ $(grep -c '"rank_hours"' model.json) -eq $1 ]] || fail "not $1 estimates by $2: $(cat model.json)"
+}
 hashes() { # JSON FILE: of all planes
   sed -n '/"hash": {/,/}/p' "$1"
 }

@@ -1,5 +1,5 @@
 /* What the stability tests share: sheets of discs, cameras anywhere, the comparison with the oracle over every method,
- * and the comparison of two pictures of one thing. Every case prints its figures, which docs/reference/stability.md
+ * and the comparison of two pictures of one thing. Every case prints its figures, which docs/reference/accuracy.md
  * quotes. */
 #ifndef CONIC_STABILITY_H
 #define CONIC_STABILITY_H

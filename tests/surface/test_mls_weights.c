@@ -49,12 +49,12 @@ static void sums_at(conic_near *near, const conic_weighing *weighing, double a, 
     int next = (axis + 1) % 3, last = (axis + 2) % 3;
     tilted[1][axis] = tilted[2][next] * tilted[0][last] - tilted[2][last] * tilted[0][next];
   }
-  conic_surface_kernels kernels;
-  conic_surface_kernels_init(&kernels, CONIC_ISA_SCALAR);
-  kernels.plane(near, weighing, tilted, t, sums);
+  conic_surface_loops loops;
+  conic_surface_loops_init(&loops, CONIC_ISA_SCALAR);
+  loops.plane(near, weighing, tilted, t, sums);
 }
 
-/* The derivative by t is Eq. 6 as corrected (docs/reference/errata.md): with the printed sign and exponent this fails.
+/* The derivative by t is Eq. 6 as corrected (docs/notes/errata.md): with the printed sign and exponent this fails.
  */
 static void check_derivatives(void) {
   conic_near near = allocate();

@@ -123,6 +123,16 @@ for file in "${files[@]}"; do
   not_black "$file.pfm" || { echo "any_file draws $file black"; exit 1; }
 done
 
+# Shots are what the program draws: the mean of a fisheye's lit samples to the byte, and what goes into strips.
+conic=$work/prefix/bin/conic
+"$conic" make knot -n 4000 -o "$work/knot.ply"
+"$work/by_package/lit_shot" "$work/knot.ply" "$work/lit.pfm" "$work/strips.exr" || { echo "lit_shot fails"; exit 1; }
+"$conic" render "$work/knot.ply" --projection fisheye --size 256x256 --accumulate 16 --ao 16 --light head \
+  --light lamp:0.5,0.5,2:2,1.5,1:0.25 -o "$work/lit_by_program.pfm"
+cmp "$work/lit.pfm" "$work/lit_by_program.pfm"
+"$conic" render "$work/knot.ply" --size 2048x2048 --samples 1 --light head -o "$work/whole.exr"
+"$conic" diff "$work/strips.exr" "$work/whole.exr" > /dev/null || { echo "a picture in strips is another one"; exit 1; }
+
 build_package "$work/static_project" by_package_static
 draw "$work/by_package_static/static"
 cmp "$work/by_package/minimal.pfm" "$work/by_package_static/static.pfm"

@@ -1,12 +1,14 @@
 #!/usr/bin/env perl
-# names.pl FOLDER MOST prints which names of a source tree mean two things: files, types, functions, header guards; and
-# which rooms are crowded. Of static functions no more than MOST names may stand in more than one file.
+# names.pl FOLDER prints which names of a source tree mean two things: files, types, functions, header guards; which
+# static functions of one name do the same; and which rooms are crowded.
 use strict;
 use warnings;
 
-my ($root, $most_repeated) = @ARGV;
-my @engine = qw(include core raster oracle lod surface judge lighting accumulation gathering source shots opencl bench cli mpi);
+my ($root) = @ARGV;
+my @engine = qw(include core raster oracle lod surface gaussians judge lighting accumulation gathering source shots opencl bench cli
+  mpi);
 my $most_in_room = 45;
+my $is_static = qr/\bstatic\b|\b(?:CONIC_)?INLINE\b/;
 
 sub files_in {
   my ($folder) = @_;
@@ -15,19 +17,34 @@ sub files_in {
   return map { -d "$folder/$_" ? files_in("$folder/$_") : "$folder/$_" } @names;
 }
 
-# A file without comments, texts and, but for those of its header guard, directives.
+# A file without comments and, but for those of its header guard, directives; texts are numbers in quotes.
 sub code_of {
   my ($path) = @_;
   open my $file, '<', "$root/$path" or die "$path: $!";
   local $/;
   my $code = <$file>;
-  $code =~ s{/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+'}{$& =~ m{^/} ? ' ' : '""'}gse;
+  $code =~ s{/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+'}{$& =~ m{^/} ? ' ' : '"' . unpack('H*', $&) . '"'}gse;
   my ($guard) = $code =~ /^\s*#ifndef (\w+)\n#define \1\n/;
+  my @macros = $code =~ /^[ \t]*#[ \t]*define[ \t]+(\w+)/mg;
   $code =~ s/^[ \t]*#(?:[^\n]*\\\n)*[^\n]*//mg;
-  return ($code, $guard);
+  return ($code, $guard, @macros);
 }
 
-my (%files, %rooms, %types, %functions, %guards, @found);
+# A function's parameters and body, whatever the parameters are called and however it is laid out.
+sub deed_of {
+  my ($parameters, $body) = @_;
+  my $i = 0;
+  for (split /,/, $parameters) {
+    my ($name) = /(\w+)\s*(?:\[[^\]]*\]\s*)*\)?\s*$/ or next;
+    my $place = '@' . $i++;
+    $parameters =~ s/\b$name\b(?=\s*[\[,)])/$place/;
+    $body =~ s/(?<![.>])\b$name\b/$place/g;
+  }
+  my $deed = "$parameters $body" =~ s/\s+/ /gr;
+  return $deed =~ s/(?<!\w) | (?!\w)//gr;
+}
+
+my (%files, %rooms, %types, %functions, %guards, %deeds, %own, @found);
 for my $folder (@engine, qw(tests examples)) {
   for my $path (map { substr $_, 1 + length $root } files_in("$root/$folder")) {
     my ($room, $name) = $path =~ m{(.*)/(.*)};
@@ -35,13 +52,18 @@ for my $folder (@engine, qw(tests examples)) {
     $rooms{$room}++ if $folder ne 'tests';
     next if $name !~ /\.(?:c|h|cpp)$/ || $path =~ m{^opencl/c_library/}; # stands for the C library where there is none
     next if $path =~ /^(.*)_windows\.c$/ && -f "$root/$1_posix.c"; # which it stands for
-    my ($code, $guard) = code_of($path);
+    my ($code, $guard, @macros) = code_of($path);
     if ($name =~ /\.h$/ && $name !~ /_body\.h$/) {
       my $wanted = 'CONIC_' . uc($name =~ s/\.h$//r) . '_H';
       push @found, "$path: its header guard is not $wanted" if ($guard // '') ne $wanted;
       push @{$guards{$guard}}, $path if defined $guard;
     }
     next if $folder eq "tests" || $folder eq "examples" || $path eq "opencl/absent.c";
+    while ($code =~ /(?:^|(?<=[;}]))([\w\s*]*?)\b(\w+)\s*(\([^;{}]*?\))\s*(\{(?:[^{}]++|(?4))*\})/g) {
+      my ($before, $function, $parameters, $body) = ($1, $2, $3, $4);
+      push @{$deeds{$function}{deed_of($parameters, $body)}}, $path if $before =~ $is_static;
+    }
+    $own{$path}{$_} = 1 for @macros, map { /\b([A-Z]\w*)\b/g } $code =~ /\benum\b[^{};]*\{([^}]*)\}/g;
     my %here = map { $_ => 1 } $code =~ /\b(?:struct|union|enum)\s+(\w+)\s*\{/g;
     1 while $code =~ s/\{[^{}]*\}/;BODY;/g;
     while ($code =~ /\btypedef\b((?:[^;]|;BODY;)*);/g) {
@@ -53,14 +75,12 @@ for my $folder (@engine, qw(tests examples)) {
     my %is_static;
     while ($code =~ /(?:^|;)([\w\s*]*?)\b(\w+)\s*\([^;]*?\)(?=\s*;BODY;)/g) {
       my ($before, $function) = ($1, $2);
-      $is_static{$function} = $before =~ /\bstatic\b|\b(?:CONIC_)?INLINE\b/ ? 1 : 0 if $before =~ /\w/;
+      $is_static{$function} = $before =~ $is_static ? 1 : 0 if $before =~ /\w/;
     }
     push @{$functions{$is_static{$_}}{$_}}, $path for grep { $_ ne "main" } keys %is_static;
+    $own{$path}{$_} = 1 for grep { $is_static{$_} } keys %is_static;
   }
 }
-
-# What the builds of kernels leave behind where there is nothing for this machine.
-delete @types{qw(conic_not_this_machine)};
 
 sub twice {
   my ($what, $names) = @_;
@@ -74,10 +94,16 @@ push @found, map { "the room $_ has $rooms{$_} files, more than $most_in_room" }
   grep { $rooms{$_} > $most_in_room } sort keys %rooms;
 
 my $static = $functions{1} // {};
-my @repeated = sort { @{$static->{$b}} <=> @{$static->{$a}} || $a cmp $b } grep { @{$static->{$_}} > 1 } keys %$static;
 push @found, map { "the function $_ is static in @{$static->{$_}}" } grep { $functions{0}{$_} } sort keys %$static;
-printf "%d of %d names of static functions stand more than once\n", scalar @repeated, scalar keys %$static;
-push @found, 'more than ' . $most_repeated . ', such as ' . join ', ', map { "$_ (" . @{$static->{$_}} . ')' } grep { defined } @repeated[0 .. 9]
-  if @repeated > $most_repeated;
+
+# One deed under one name in two files; but where it names what each file has for itself, it need not be one.
+for my $function (sort keys %deeds) {
+  for my $deed (sort keys %{$deeds{$function}}) {
+    my @paths = @{$deeds{$function}{$deed}};
+    my %named = map { $_ => 1 } $deed =~ /\b([A-Za-z_]\w*)\b/g;
+    my @shared = grep { my $path = $_; !grep { $own{$path}{$_} } keys %named } @paths;
+    push @found, "the function $function does the same in @shared" if @shared > 1;
+  }
+}
 print "$_\n" for @found;
 exit(@found > 0);

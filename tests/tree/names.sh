@@ -4,7 +4,6 @@ set -euo pipefail
 
 source_folder=$1
 names=$source_folder/tests/tree/names.pl
-most_repeated=223 # names of static functions that stand in more than one file: to be lowered, never raised
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 n_blind=0
@@ -16,7 +15,7 @@ put() { # FILE, LINES
 
 expect() { # breach or peace: what the rules say of the files that were put
   local said=breach
-  perl "$names" "$work" 0 > /dev/null && said=peace
+  perl "$names" "$work" > /dev/null && said=peace
   if [[ $said != "$1" ]]; then
     echo "says $said of:"
     find "$work" -type f -exec cat {} +
@@ -40,8 +39,26 @@ expect breach
 put core/a.c 'int both(int i) {' '  return i;' '}'
 put cli/b.c 'int both(void) {' '  return 1;' '}'
 expect breach
+put core/a.c 'static int one(int i) {' '  if (i) {' '    return i; /* i */' '  }' '  return 0;' '}'
+put cli/b.c 'static int one(int k) {' '  if (k) { return k; } return 0;' '}'
+expect breach
+put core/a.c 'static int one(int i) {' '  return i;' '}' 'static float two(const float a[3]) {' '  return a[0];' '}'
+put gaussians/b.h '#ifndef CONIC_B_H' '#define CONIC_B_H' 'static inline float two(const float v[3]) {' '  return v[0];' '}' '#endif'
+expect breach
 put core/a.c 'static int one(int i) {' '  if (i) {' '    return i;' '  }' '  return 0;' '}'
 put cli/b.c 'static int one(void) {' '  return 1;' '}'
+expect peace
+put core/a.c 'static const char *one(void) {' '  return "one {";' '}'
+put cli/b.c 'static const char *one(void) {' '  return "two {";' '}'
+expect peace
+put core/a.c 'static int size(float x) {' '  return sizeof x;' '}'
+put cli/b.c 'static int size(double x) {' '  return sizeof x;' '}'
+expect peace
+put core/a.c 'enum { N = 2 };' 'static int part(int i) {' '  return i / N;' '}'
+put cli/b.c 'enum { N = 3 };' 'static int part(int i) {' '  return i / N;' '}'
+expect peace
+put gaussians/scene/a.c 'int a;'
+put opencl/a.c 'int a;'
 expect breach
 put core/a.c 'static int one(void) {' '  return 1;' '}'
 put cli/b.c 'int one(void) {' '  return 1;' '}'
@@ -66,5 +83,5 @@ put core/a_posix.c 'int five(void) { return 1; }'
 put core/b_windows.c 'int five(void) { return 2; }'
 expect breach
 
-perl "$names" "$source_folder" "$most_repeated"
+perl "$names" "$source_folder"
 [[ $n_blind -eq 0 ]]

@@ -1,4 +1,4 @@
-/* From a mesh to a hybrid model: flat, who beside whom, clusters, ways to draw each. */
+/* From a mesh to a hybrid model: one index a corner, neighbours, clusters, and ways to draw each. */
 #include <string.h>
 
 #include "core/base/clock.h"
@@ -7,11 +7,8 @@
 #include "core/base/options.h"
 #include "core/splats/columns.h"
 #include "lod/hybrid/build/hybrid_build.h"
-#include "lod/hybrid/build/hybrid_kept.h"
-#include "lod/hybrid/build/hybrid_nodes.h"
-#include "lod/hybrid/build/hybrid_pack.h"
-#include "lod/hybrid/model/hybrid_tree.h"
-#include "lod/mesh/flat_mesh.h"
+#include "lod/hybrid/model/hybrid_model.h"
+#include "lod/mesh/mesh.h"
 
 void conic_hybrid_options_init_sized(conic_hybrid_options *options, size_t size) {
   static const conic_hybrid_options own = {
@@ -50,7 +47,8 @@ static void release_building(building *b) {
 
 /* --- clusters --- */
 
-/* Where none is given, a share that has some 2000 faces if they are of one size; of small meshes a fiftieth. */
+/* The share of the area where none is given: that of some 2000 faces if all are of one size; for small meshes a
+ * fiftieth. */
 static double most_area_of(const building *b) {
   double share = 2000.0 / (double)b->flat.count;
   return b->options->most_area > 0.0 ? b->options->most_area : share < 0.02 ? share : 0.02;
@@ -141,11 +139,8 @@ static conic_status order_clusters(building *b) {
         b->clusters.of_face[i] = rank[b->clusters.of_face[i]];
     sort_faces(b);
   }
-  conic_memory_release(b->context, is_kept);
-  conic_memory_release(b->context, is_gathered);
-  conic_memory_release(b->context, rank);
-  conic_memory_release(b->context, order);
-  conic_memory_release(b->context, bounds);
+  void *const owned[] = {is_kept, is_gathered, rank, order, bounds};
+  conic_memory_release_all(b->context, owned, sizeof owned / sizeof *owned);
   return status;
 }
 

@@ -1,9 +1,10 @@
-#include "lod/hybrid/build/hybrid_kept.h"
+/* Splats that a hybrid model keeps as what they are, beside the surface that others became. */
+#include "lod/hybrid/build/hybrid_build.h"
 
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "lod/hybrid/model/hybrid_tree.h"
+#include "lod/hybrid/model/hybrid_model.h"
 
 /* The most splats of a cluster. */
 enum { MOST_KEPT = 64 };

@@ -8,9 +8,8 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "lod/hybrid/build/hybrid_build.h"
-#include "lod/hybrid/build/hybrid_large.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
-#include "lod/hybrid/model/hybrid_pile.h"
+#include "lod/hybrid/model/hybrid_store.h"
 #include "lod/mesh/mesh_cells.h"
 
 /* What building takes for each face of a cell, and besides (docs/notes/hybrid-measured.md). */

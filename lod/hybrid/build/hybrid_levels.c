@@ -1,4 +1,5 @@
-#include "lod/hybrid/build/hybrid_levels.h"
+/* All ways to draw one cluster. */
+#include "lod/hybrid/build/hybrid_build.h"
 
 #include <math.h>
 #include <string.h>
@@ -8,7 +9,6 @@
 #include "core/base/radix.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
-#include "lod/hybrid/build/hybrid_nodes.h"
 
 void conic_cluster_ways_release(conic_context *context, conic_cluster_ways *ways) {
   conic_cluster_levels_release(context, &ways->triangles);
@@ -121,7 +121,7 @@ static double find_most_out(const conic_ways_job *job) {
   return tolerance_of_mesh * conic_length(sides);
 }
 
-/* With how many surfels the next level is worth one: a fourth less than the one before has. */
+/* The most surfels with which the next level is worth one: a fourth less than the one before has. */
 static size_t most_of_next(const conic_cluster_ways *ways) {
   return ways->n_surfels ? 3 * ways->surfels[ways->n_surfels - 1].n / 4 : SIZE_MAX;
 }

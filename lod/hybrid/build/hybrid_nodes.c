@@ -1,4 +1,5 @@
-#include "lod/hybrid/build/hybrid_nodes.h"
+/* The hierarchy over the clusters, and ways to draw many of them as one. */
+#include "lod/hybrid/build/hybrid_build.h"
 
 #include <math.h>
 #include <string.h>
@@ -8,16 +9,13 @@
 #include "core/base/threads.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
-#include "lod/clusters/cluster_contrast.h"
-#include "lod/clusters/cluster_error.h"
-#include "lod/clusters/cluster_shape.h"
-#include "lod/hybrid/model/hybrid_tree.h"
+#include "lod/clusters/cluster_sites.h"
+#include "lod/hybrid/model/hybrid_model.h"
 
 /* The most surfels of a level, above which its node's children do as well. */
 enum { MOST_SITES = 64 };
 
-/* The first level's spacing, in radii of the node's point, and how much smaller the surfels are of which one is
- * made. */
+/* The first level's spacing, in radii of the node's point; and how much smaller are the surfels that one is made of. */
 static const double first_spacing = 0.35, finer = 0.5;
 
 /* The same of splats that stay, in sides of the square that one has. */
@@ -69,7 +67,7 @@ static conic_status add_surfel_piece(const nodes_pass *pass, node_worker *w, con
   return CONIC_OK;
 }
 
-/* Of a cluster the coarsest surfels that are small beside the spacing, or its finest. */
+/* The coarsest surfels of a cluster that are small beside the spacing, or its finest. */
 static const conic_surfels *fine_enough(const conic_cluster_ways *ways, double spacing) {
   int k = ways->n_surfels - 1;
   while (k > 0 && ways->surfels[k].reach > finer * spacing)

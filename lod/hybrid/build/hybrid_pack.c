@@ -1,4 +1,5 @@
-#include "lod/hybrid/build/hybrid_pack.h"
+/* From the ways to draw each cluster to a model, all in one piece of memory. */
+#include "lod/hybrid/build/hybrid_build.h"
 
 #include <math.h>
 #include <string.h>
@@ -509,7 +510,6 @@ conic_status conic_hybrid_pack(const conic_ways_job *ways, conic_hybrid **hybrid
   }
   void *const parts[] = {p.local,       p.listed,  p.corners,      p.faces.corners, p.faces.face,
                          p.first_slots, p.of_slot, p.chain_starts, p.chains_by};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
-    conic_memory_release(context, parts[i]);
+  conic_memory_release_all(context, parts, sizeof parts / sizeof *parts);
   return status;
 }

@@ -7,7 +7,7 @@
 #include "core/base/options.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"
-#include "lod/hybrid/build/hybrid_kept.h"
+#include "lod/hybrid/build/hybrid_build.h"
 #include "surface/skin/skin.h"
 
 typedef struct points_job {

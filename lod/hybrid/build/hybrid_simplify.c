@@ -1,12 +1,12 @@
-/* Simpler triangles for all clusters: in regions, of which each goes on to its next stage on one thread; then all
- * threads measure all their clusters. */
+/* Simpler triangles for all clusters, in regions. Each region goes on to its next stage on one thread; then all threads
+ * measure the clusters of all regions. */
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "lod/hybrid/build/hybrid_levels.h"
-#include "lod/hybrid/model/hybrid_tree.h"
+#include "lod/hybrid/build/hybrid_build.h"
+#include "lod/hybrid/model/hybrid_model.h"
 
 /* A region has no more faces than this, or but one cluster. What lies between regions stays, so they are large. */
 enum { MOST_FACES = 250000 };
@@ -63,7 +63,7 @@ static void advance_task(void *data, size_t i_place, int i_thread) {
     place->status = conic_region_advance(place->simplifier, &place->n_clusters);
 }
 
-/* Of all that are to be measured the i-th. */
+/* Measures the i-th of all that are to be measured. */
 static void measure_task(void *data, size_t i, int i_thread) {
   const work_place *place = ((regions_job *)data)->places;
   (void)i_thread;

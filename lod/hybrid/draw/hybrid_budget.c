@@ -1,4 +1,5 @@
-#include "lod/hybrid/draw/hybrid_budget.h"
+/* The least error that so many primitives can give. */
+#include "lod/hybrid/draw/hybrid_choose.h"
 
 #include <math.h>
 #include <string.h>
@@ -6,8 +7,8 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/real.h"
-#include "lod/hybrid/draw/hybrid_point.h"
-#include "lod/hybrid/draw/hybrid_stitch.h"
+#include "lod/hybrid/draw/hybrid_offers.h"
+#include "lod/hybrid/draw/hybrid_selecting.h"
 
 /* Clusters in sight, and how far on the screen each of their levels is off. */
 typedef struct fitting {
@@ -54,7 +55,7 @@ static const double *errors_of_node(const fitting *f, const conic_hybrid_node *n
   return f->node_errors + f->first_errors[node - f->hybrid->nodes];
 }
 
-/* Of a node's triangles the most that the budget has room for: levels lie close together, and some err alike. */
+/* The most of a node's triangles that the budget has room for. Levels lie close together, and some err alike. */
 static int is_better_offer(const fitting *f, const conic_hybrid_level *level, conic_hybrid_offer best, int is_closer) {
   double n = level ? (double)level->count : 1.0;
   if (level ? !is_allowed(f, level) : f->only_kind == CONIC_HYBRID_TRIANGLES)
@@ -168,8 +169,8 @@ static conic_status measure_levels(fitting *f, const conic_hybrid_camera *view) 
   return CONIC_OK;
 }
 
-/* Where all is simplified as one, the greatest error is at few places: pictures are nearer to the mesh than those of
- * clusters that err by more than half of it (docs/notes/hybrid-measured.md). */
+/* Where all is simplified as one, the greatest error is at few places. Such pictures are nearer to the mesh than those
+ * of clusters that err by more than half of it (docs/notes/hybrid-measured.md). */
 static const double weight_of_whole = 0.5;
 
 static conic_status measure_nodes(fitting *f, const conic_hybrid_camera *view) {
@@ -235,9 +236,9 @@ static int halve_errors(fitting *f, double low_px, uint64_t budget, uint64_t *co
   return try_error(f, conic_double_of_bits(high), budget, count, greatest_px, &next_px);
 }
 
-/* With what fits them to each other the number may go up and down with the error; so from there on each is tried, but
- * no more of them than a frame has time for. Returns whether one was found, the number that it takes, or the coarsest,
- * and the error of what was chosen. */
+/* With what fits clusters to each other, the number may go up and down with the error. So from here on each error is
+ * tried, but no more of them than a frame has time for. Returns whether one was found, the number that it takes, or the
+ * coarsest does, and the error of what was chosen. */
 static int fit(fitting *f, uint64_t budget, uint64_t *count, double *greatest_px) {
   enum { ONE_BY_ONE = 64 };
   double next_px, error_px = 0.0;
@@ -253,7 +254,7 @@ static int fit(fitting *f, uint64_t budget, uint64_t *count, double *greatest_px
   return halve_errors(f, error_px, budget, count, greatest_px);
 }
 
-/* Of each cluster the level of fewest primitives; or of one kind alone, which may be fewer together. */
+/* Chooses for each cluster the level of fewest primitives; or of one kind alone, which may be fewer together. */
 static conic_status fit_kinds(fitting *f, uint64_t budget, uint32_t *levels, uint32_t *nodes) {
   uint64_t fewest_count = UINT64_MAX;
   double least_px = 0.0;
@@ -302,7 +303,6 @@ conic_status conic_hybrid_fit_budget(const conic_hybrid *hybrid, const conic_hyb
     status = fit_kinds(&f, budget, levels, nodes);
   void *parts[] = {f.errors_px, f.node_errors, f.first_errors, f.nodes, f.below,
                    f.standing,  f.counts,      f.stages,       f.levels};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
-    conic_memory_release(hybrid->context, parts[i]);
+  conic_memory_release_all(hybrid->context, parts, sizeof parts / sizeof *parts);
   return status;
 }

@@ -175,7 +175,8 @@ static int is_mixed(const hybrid_planning *p) {
   return 0;
 }
 
-/* What a picture of both kinds takes more than its parts; clusters share tiles, of which there are no more than all. */
+/* How much more a picture of both kinds takes than its parts. Clusters share tiles, and there are no more of these than
+ * all. */
 static double mixing(const hybrid_planning *p) {
   double n_pixels = 0.0;
   for (size_t i = 0; i < p->n; i++)
@@ -240,7 +241,7 @@ static void keep_if_less(hybrid_planning *p, double sum, double *least) {
     p->kinds[i] = p->candidates[i].kind;
 }
 
-/* From what each would be by itself; or triangles alone, or surfels wherever they are good enough. */
+/* Begins with what each would be by itself; or with triangles alone, or surfels wherever they are good enough. */
 static void settle(hybrid_planning *p) {
   double least = HUGE_VAL;
   improve(p);
@@ -344,12 +345,72 @@ conic_status conic_hybrid_choose_levels(const conic_hybrid_choosing *choosing, u
     cut_nodes(&p);
   for (size_t i = 0; i < p.n && status == CONIC_OK; i++)
     levels[i] = p.candidates[i].offers[p.candidates[i].kind].level;
-  conic_memory_release(context, p.links);
-  conic_memory_release(context, p.node_offers);
-  conic_memory_release(context, p.below);
-  conic_memory_release(context, p.amounts);
-  conic_memory_release(context, p.kinds);
-  conic_memory_release(context, p.of_cluster);
-  conic_memory_release(context, p.candidates);
+  void *const owned[] = {p.links, p.node_offers, p.below, p.amounts, p.kinds, p.of_cluster, p.candidates};
+  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
   return status;
+}
+
+/* --- nodes that stand for their clusters --- */
+
+static double sum_clusters(const conic_hybrid_cutting *c, const conic_hybrid_node *node) {
+  double sum = 0.0;
+  for (uint32_t i = node->begin; i < node->end; i++)
+    sum += c->amounts[i];
+  return sum;
+}
+
+/* A node's children come right after it, and end where it ends. */
+static double sum_children(const conic_hybrid_cutting *c, size_t node) {
+  double sum = 0.0;
+  for (size_t i = node + 1; i < c->hybrid->nodes[node].next; i = c->hybrid->nodes[i].next)
+    sum += c->below[i];
+  return sum;
+}
+
+/* A node by itself against the best of what is below it. */
+static void cut_node(const conic_hybrid_cutting *c, size_t i, uint32_t *nodes) {
+  const conic_hybrid_node *node = &c->hybrid->nodes[i];
+  double sum = node->next == i + 1 ? sum_clusters(c, node) : sum_children(c, i);
+  nodes[i] = CONIC_HYBRID_NO_NODE;
+  c->below[i] = sum;
+  if (!(sum > 0.0)) /* nothing is in sight, or something must stay */
+    return;
+  conic_hybrid_offer offer = c->offer(c->data, node);
+  if (offer.amount < sum) {
+    nodes[i] = offer.level;
+    c->below[i] = offer.amount;
+  }
+}
+
+/* The number of the k-th node that is looked at. All are, where there is no list. */
+static size_t seen_node(const uint32_t *seen, size_t k) {
+  return seen ? seen[k] : k;
+}
+
+double conic_hybrid_cut_seen(const conic_hybrid_cutting *c, const uint32_t *seen, size_t n_seen, uint32_t *nodes) {
+  const conic_hybrid *h = c->hybrid;
+  double less = 0.0;
+  for (size_t k = n_seen; k-- > 0;) /* from the leaves to the root */
+    cut_node(c, seen_node(seen, k), nodes);
+  for (size_t k = 0; k < n_seen;) {
+    size_t i = seen_node(seen, k++);
+    if (nodes[i] == CONIC_HYBRID_NO_NODE)
+      continue;
+    less += sum_clusters(c, &h->nodes[i]) - c->below[i];
+    for (; k < n_seen && seen_node(seen, k) < h->nodes[i].next; k++)
+      nodes[seen_node(seen, k)] = CONIC_HYBRID_NO_NODE;
+  }
+  return less;
+}
+
+double conic_hybrid_cut(const conic_hybrid_cutting *c, uint32_t *nodes) {
+  return conic_hybrid_cut_seen(c, NULL, c->hybrid->n_nodes, nodes);
+}
+
+void conic_hybrid_find_standing(const conic_hybrid *h, const uint32_t *nodes, uint32_t *standing) {
+  for (size_t i = 0; i < h->n_clusters; i++)
+    standing[i] = CONIC_HYBRID_NO_NODE;
+  for (uint32_t i = 0; i < h->n_nodes; i++)
+    for (uint32_t k = h->nodes[i].begin; k < h->nodes[i].end && nodes[i] != CONIC_HYBRID_NO_NODE; k++)
+      standing[k] = i;
 }

@@ -6,7 +6,7 @@
 
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
-#include "lod/hybrid/draw/hybrid_point.h"
+#include "core/splats/ellipse.h"
 
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
  * holds a pixel's centre, and a pixel of the cluster; a surfel, and a pixel of its outline
@@ -220,4 +220,71 @@ uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_clus
     if (hybrid->levels[cluster->first_level + k].kind == (uint32_t)only_kind)
       return k;
   return 0;
+}
+
+/* --- nodes as points --- */
+
+/* The way from the eye to the centre, and the radius of the disc there that hides the sphere: where the rays that touch
+ * the sphere pass. Returns infinity where the eye is in the sphere. */
+static double radius_of_disc(const conic_hybrid_camera *view, const conic_hybrid_node *node, double way[3],
+                             double *distance) {
+  double radius = (double)node->point.radius;
+  for (int axis = 0; axis < 3; axis++)
+    way[axis] = (double)node->bound.center[axis] - view->from.eye[axis];
+  *distance = conic_length(way);
+  return *distance > radius ? radius * *distance / sqrt(*distance * *distance - radius * radius) : HUGE_VAL;
+}
+
+double conic_hybrid_point_error_px(const conic_hybrid_camera *view, const conic_hybrid_node *node) {
+  double way[3], distance, disc = radius_of_disc(view, node, way, &distance);
+  if (!(node->point.radius > 0.0f) || !(disc < HUGE_VAL))
+    return HUGE_VAL;
+  /* the disc reaches out of the sphere by what it is larger */
+  double out = disc - (double)node->point.radius;
+  return ((double)node->point.error + out) * conic_hybrid_pixels_a_unit(view, &node->bound, out);
+}
+
+double conic_hybrid_point_cost(const conic_hybrid_camera *view, const conic_hybrid_node *node) {
+  double way[3], distance, disc = radius_of_disc(view, node, way, &distance);
+  double side = view->focal_px * disc / distance;
+  return conic_hybrid_disc_cost(view, side * side);
+}
+
+void conic_hybrid_point_splat(const conic_hybrid_camera *view, const conic_hybrid_node *node, double cutoff,
+                              float values[12]) {
+  double way[3], distance, u[3], v[3], sigma = radius_of_disc(view, node, way, &distance) / cutoff;
+  for (int axis = 0; axis < 3; axis++)
+    way[axis] /= -distance;
+  conic_tangent_basis(way, u, v);
+  for (int axis = 0; axis < 3; axis++) {
+    values[axis] = node->bound.center[axis];
+    values[3 + axis] = (float)(sigma * u[axis]);
+    values[6 + axis] = (float)(sigma * v[axis]);
+    values[9 + axis] = node->point.color[axis];
+  }
+}
+
+/* --- nodes that stand at once --- */
+
+/* All of the sphere: what reaches out of the picture has clusters that take nothing. */
+static int is_all_in_sight(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
+  double at[3], radius = (double)bound->radius * (1.0 + 1e-6);
+  int is_in = 1;
+  conic_viewpoint_move_floats(&view->from, bound->center, at);
+  for (int i = 0; i < 4; i++)
+    is_in &= conic_dot(view->from.side[i], at) >= radius;
+  return is_in && at[2] - radius > view->near_z;
+}
+
+int conic_hybrid_stands_at_once(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
+                                const conic_hybrid_node *node, double error_px, conic_hybrid_offer *offer,
+                                double *saved_ns) {
+  double least_ns = CONIC_HYBRID_LEAST_NS * (double)(node->end - node->begin);
+  if (!is_all_in_sight(view, &node->bound))
+    return 0;
+  *offer = conic_hybrid_node_offer(hybrid, view, node, error_px);
+  if (!(offer->amount <= least_ns))
+    return 0;
+  *saved_ns += least_ns - offer->amount;
+  return 1;
 }

@@ -3,9 +3,8 @@
 
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "lod/hybrid/draw/hybrid_point.h"
+#include "lod/hybrid/draw/hybrid_offers.h"
 #include "lod/hybrid/draw/hybrid_selecting.h"
-#include "lod/hybrid/draw/hybrid_stitch.h"
 
 enum { SPLAT_ARRAYS = 12, VERTEX_ARRAYS = 11, TRIANGLE_ARRAYS = 5, CHOICES_A_TASK = 16 };
 

@@ -7,11 +7,9 @@
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
 #include "lod/clusters/cluster_seen.h"
-#include "lod/hybrid/draw/hybrid_budget.h"
-#include "lod/hybrid/draw/hybrid_point.h"
+#include "lod/hybrid/draw/hybrid_choose.h"
+#include "lod/hybrid/draw/hybrid_offers.h"
 #include "lod/hybrid/draw/hybrid_selecting.h"
-#include "lod/hybrid/draw/hybrid_sight.h"
-#include "lod/hybrid/draw/hybrid_stitch.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/model/hybrid_store.h"
 
@@ -23,13 +21,14 @@ void conic_hybrid_view_init_sized(conic_hybrid_view *view, size_t size) {
 void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selection *selection) {
   hybrid_scratch *kept = selection->scratch;
   if (kept) {
-    conic_memory_release(context, kept->choices);
-    conic_memory_release(context, kept->seen_memory.pointer);
-    conic_memory_release(context, kept->stages_memory.pointer);
-    conic_memory_release(context, kept->splats_memory.pointer);
-    conic_memory_release(context, kept->vertices_memory.pointer);
-    conic_memory_release(context, kept->triangles_memory.pointer);
-    conic_memory_release(context, kept->chunks_memory.pointer);
+    void *const owned[] = {kept->choices,
+                           kept->seen_memory.pointer,
+                           kept->stages_memory.pointer,
+                           kept->splats_memory.pointer,
+                           kept->vertices_memory.pointer,
+                           kept->triangles_memory.pointer,
+                           kept->chunks_memory.pointer};
+    conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
   }
   conic_memory_release(context, kept);
   memset(selection, 0, sizeof *selection);
@@ -42,11 +41,8 @@ static int is_together(const conic_hybrid_view *view) {
 
 static conic_status add_choice(const hybrid_selecting *s, hybrid_choice added) {
   hybrid_scratch *kept = s->scratch;
-  if (conic_memory_reserve(s->hybrid->context, &kept->choices, kept->n_choices, kept->n_choices + 1,
-                           &kept->choices_room, sizeof *kept->choices) != CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  kept->choices[kept->n_choices++] = added;
-  return CONIC_OK;
+  return conic_memory_append(s->hybrid->context, &kept->choices, &kept->n_choices, &kept->choices_room, &added,
+                             sizeof added);
 }
 
 static conic_status add_cluster(const hybrid_selecting *s, uint32_t i_cluster) {

@@ -4,10 +4,11 @@
 
 #include "core/base/kept_memory.h"
 #include "lod/hybrid/draw/hybrid_choose.h"
+#include "lod/hybrid/model/hybrid_chunks.h"
 
-/* A cluster that is drawn, or, after all clusters by its number, a node; and where its parts go. The level is among all
- * of the model's; a node's point is none of them. While choosing, a node that stands at once is its first cluster, and
- * the level is the node's. */
+/* A cluster that is drawn, or a node, and where its parts go. The numbers of nodes follow those of clusters. The level
+ * is counted among all of the model's; a node's point is none of them. While choosing, a node that stands at once has
+ * the number of its first cluster, and its own level. */
 typedef struct hybrid_choice {
   uint32_t cluster, level;
   uint32_t node; /* that stands at once, or NO_NODE */
@@ -19,7 +20,7 @@ typedef struct hybrid_choice {
 typedef struct hybrid_scratch {
   hybrid_choice *choices;
   size_t n_choices, choices_room;
-  uint32_t *seen; /* nodes in sight, but for those that stand at once and what is below these */
+  uint32_t *seen; /* nodes in sight that neither stand at once nor lie below one that does */
   size_t n_seen;
   conic_kept_memory seen_memory;
   uint32_t *stages;   /* of each cluster of the hybrid: that of its level */
@@ -32,7 +33,7 @@ typedef struct hybrid_scratch {
   uint32_t *triangles; /* corners, clusters and materials of triangles_room triangles */
   size_t triangles_room;
   conic_kept_memory chunks_memory;
-  uint32_t *frames, *chunks; /* chunks that are held: frames of clusters in sight, and what some choices are drawn of */
+  uint32_t *frames, *chunks; /* held: frames of clusters in sight, and what some choices are drawn of */
   size_t n_frames, n_chunks;
   uint64_t frames_bytes;
 } hybrid_scratch;
@@ -67,5 +68,33 @@ void conic_hybrid_parts_copy(hybrid_selecting *s);
 
 /* Marks the dots among what was copied, and turns them to the camera. Errors: MEMORY. */
 conic_status conic_hybrid_parts_turn(const hybrid_selecting *s, const conic_camera *camera);
+
+/* --- clusters side by side at different levels --- */
+
+/* A cluster that is not drawn: nothing has to fit it. */
+#define CONIC_HYBRID_HIDDEN UINT32_MAX
+
+/* Where a level's triangles lie in those of a picture, and where the picture's next triangle and vertex go. */
+typedef struct conic_hybrid_stitching {
+  const conic_hybrid *hybrid;
+  uint32_t cluster;
+  const conic_hybrid_level *level;
+  const uint32_t *stages; /* of each cluster as drawn, 0: with all vertices of its borders; or HIDDEN */
+  conic_triangles *to;
+  size_t first_triangle;      /* of the level */
+  size_t triangle, vertex;    /* the next */
+  conic_hybrid_frame frame;   /* private */
+  conic_hybrid_vertices ends; /* private */
+} conic_hybrid_stitching;
+
+/* How many vertices are put into a level of a cluster; each makes one more triangle. The cluster's frame must be there.
+ */
+size_t conic_hybrid_count_stitches(const conic_hybrid *hybrid, uint32_t cluster, const conic_hybrid_level *level,
+                                   const uint32_t *stages);
+
+/* Fans the triangles along the level's borders to the vertices that the clusters across still have. The level's own
+ * corners, clusters and materials are there already. Positions, normals, colours and texture coordinates of the new
+ * vertices are filled in. The cluster's frame and ends must be there. */
+void conic_hybrid_stitch(conic_hybrid_stitching *stitching);
 
 #endif

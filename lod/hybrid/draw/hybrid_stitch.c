@@ -1,4 +1,6 @@
-#include "lod/hybrid/draw/hybrid_stitch.h"
+/* Clusters side by side at different levels: vertices that one has along their border, and the other has not, are put
+ * in. */
+#include "lod/hybrid/draw/hybrid_selecting.h"
 
 /* The next slot of a border after `slot` that the cluster across still has, or the border's end. */
 static uint32_t next_slot(const conic_hybrid_frame *frame, const conic_cluster_border *border, uint32_t stage,

@@ -1,10 +1,10 @@
-/* The chunks of a hybrid model, which are read one by one: what is drawn of each level, and of each cluster what fits
- * it to others. Levels have the first numbers, then come the clusters' frames, then their ends. Each begins with its
- * sum (docs/reference/format-chy.md). */
+/* The chunks of a hybrid model, which are read one by one. A level's chunk has what is drawn of it. A cluster's two
+ * chunks, frame and ends, have what fits it to others. Levels have the first numbers, then come all frames, then all
+ * ends. Each chunk begins with its sum (docs/reference/format-chy.md). */
 #ifndef CONIC_HYBRID_CHUNKS_H
 #define CONIC_HYBRID_CHUNKS_H
 
-#include "lod/clusters/cluster_border.h"
+#include "lod/clusters/cluster.h"
 #include "lod/hybrid/model/hybrid_model.h"
 
 enum { CONIC_HYBRID_UNIT = 64, CONIC_HYBRID_SUM_BYTES = 8, CONIC_HYBRID_NARROW = 65536 };
@@ -25,8 +25,8 @@ uint64_t conic_hybrid_level_bytes(uint32_t flags, const conic_hybrid_level *leve
 uint64_t conic_hybrid_frame_bytes(const conic_hybrid_cluster *cluster);
 uint64_t conic_hybrid_ends_bytes(uint32_t flags, const conic_hybrid_cluster *cluster);
 
-/* All chunks in the order in which they lie: frames, ends, the levels of nodes, and those of clusters, the coarsest of
- * all before the next finer. The caller releases *order, on failure too. Errors: MEMORY. */
+/* Lists all chunks in the order in which they lie: frames, ends, the levels of nodes, and those of clusters, the
+ * coarsest of every cluster before the next finer. The caller releases *order, on failure too. Errors: MEMORY. */
 conic_status conic_hybrid_order_chunks(const conic_hybrid *hybrid, uint32_t **order);
 
 /* Places chunks one behind the other in that order. The levels and clusters are those of `hybrid`. Errors: MEMORY. */
@@ -36,12 +36,12 @@ conic_status conic_hybrid_place_chunks(conic_hybrid *hybrid, conic_hybrid_level 
 /* Whether they lie so, and are all; *wrong is null then. Errors: MEMORY. */
 conic_status conic_hybrid_check_order(const conic_hybrid *hybrid, const char **wrong);
 
-/* Vertices of a level, or a cluster's where it meets others, by slot; what there is not is null. */
+/* Vertices of a level; or, by slot, those where a cluster meets others. What there is not is null. */
 typedef struct conic_hybrid_vertices {
   const float *position[3], *normal[3], *color[3], *texture_coordinate[2];
 } conic_hybrid_vertices;
 
-/* What a level is drawn of. Corners are narrow, or wide, where there are more than NARROW vertices. */
+/* What a level is drawn of. Corners are wide where there are more than NARROW vertices, else narrow. */
 typedef struct conic_hybrid_piece {
   conic_hybrid_vertices vertices;
   const uint32_t *material; /* of each triangle; or null */
@@ -65,8 +65,8 @@ conic_hybrid_piece conic_hybrid_piece_in(uint32_t flags, const conic_hybrid_leve
 conic_hybrid_vertices conic_hybrid_ends_in(uint32_t flags, const conic_hybrid_cluster *cluster,
                                            const unsigned char *chunk);
 
-/* Of chunks that are there, all of them of a model that was read as a whole, else those that are held; and the bytes of
- * one. */
+/* The bytes and the parts of a chunk that is there. Of a model that was read as a whole all are, else those that are
+ * held. */
 const unsigned char *conic_hybrid_chunk(const conic_hybrid *hybrid, uint32_t chunk);
 conic_hybrid_piece conic_hybrid_piece_of(const conic_hybrid *hybrid, uint32_t level);
 conic_hybrid_frame conic_hybrid_frame_of(const conic_hybrid *hybrid, uint32_t cluster);
@@ -81,7 +81,7 @@ void conic_hybrid_seal_chunk(unsigned char *bytes, size_t n_bytes);
 /* What is wrong with a chunk as it stands in a file, or null; then it stands as it does in memory. */
 const char *conic_hybrid_take_chunk(const conic_hybrid *hybrid, uint32_t chunk, unsigned char *bytes);
 
-/* What is wrong between a cluster's chunks, all of which are there. */
+/* What is wrong between a cluster's chunks. All of them must be there. */
 const char *conic_hybrid_cluster_fault(const conic_hybrid *hybrid, uint32_t cluster);
 
 #endif

@@ -8,7 +8,6 @@
 #include "core/files/file.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/model/hybrid_layout.h"
-#include "lod/hybrid/model/hybrid_pile.h"
 #include "lod/hybrid/model/hybrid_store.h"
 
 #define FIELD(member) CONIC_FILE_FIELD(conic_chy_header, member)
@@ -18,7 +17,7 @@ static const conic_file_field fields[] = {
     FIELD(n_clusters), FIELD(n_nodes), FIELD(n_materials),  FIELD(n_texels),    FIELD(n_data),    FIELD(origin),
     FIELD(low),        FIELD(high),    FIELD(splat_length), FIELD(cutoff),      FIELD(zero),      FIELD(body_sum)};
 
-/* Chunks begin at whole units, of which there are fewer than 2³². */
+/* Chunks begin at whole units, fewer than 2³². */
 static const uint64_t most_data = (uint64_t)UINT32_MAX * CONIC_HYBRID_UNIT;
 
 const char *conic_chy_header_fault(const void *numbers) {

@@ -1,4 +1,4 @@
-/* Where everything but the chunks is in a .chy file, and in the memory of a hybrid model, which is the same. */
+/* Where everything but the chunks is in a .chy file. In the memory of a hybrid model it lies in the same way. */
 #ifndef CONIC_HYBRID_LAYOUT_H
 #define CONIC_HYBRID_LAYOUT_H
 
@@ -38,14 +38,13 @@ enum {
   CONIC_CHY_N_ARRAYS
 };
 
-/* Of the arrays, behind which the chunks lie. Counts are below 2³² each. */
+/* The layout of the arrays; the chunks lie behind them. Counts are below 2³² each. */
 conic_file_layout conic_chy_lay_out(const conic_chy_header *header);
 
 /* Points the model's arrays into `bytes`, and takes the header's numbers. */
 void conic_chy_attach(const conic_chy_header *header, unsigned char *bytes, conic_hybrid *hybrid);
 
-/* Takes header and arrays of a file of n_bytes, which stand in `index`, and checks all but the chunks. Errors: INPUT,
- * MEMORY. */
+/* Takes header and arrays, in `index`, of a file of n_bytes, and checks all but the chunks. Errors: INPUT, MEMORY. */
 conic_status conic_chy_take_index(conic_hybrid *hybrid, const char *path, const conic_chy_header *h, uint64_t n_bytes,
                                   unsigned char *index);
 

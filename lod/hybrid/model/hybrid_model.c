@@ -5,7 +5,6 @@
 
 #include "core/base/memory.h"
 #include "lod/hybrid/model/hybrid_layout.h"
-#include "lod/hybrid/model/hybrid_pile.h"
 #include "lod/hybrid/model/hybrid_store.h"
 
 void conic_hybrid_destroy(conic_hybrid *hybrid) {

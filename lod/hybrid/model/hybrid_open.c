@@ -1,4 +1,4 @@
-/* Opening a hybrid model of which pictures read what they show: header and arrays, from wherever they lie. */
+/* Opening a hybrid model from wherever it lies: header and arrays. Pictures read the chunks that they show. */
 #include <math.h>
 #include <string.h>
 
@@ -41,7 +41,7 @@ static conic_status open_chy_ranges(chy_opening *o) {
   return conic_ranges_open(o->hybrid->context, o->name, &options, &o->ranges);
 }
 
-/* Reads `n_bytes` from the beginning of the file, of which `done` are there. */
+/* Reads `n_bytes` from the beginning of the file; the first `done` are there. */
 static conic_status read_to(chy_opening *o, uint64_t n_bytes, uint64_t done, unsigned char **bytes) {
   conic_context *context = o->hybrid->context;
   uint64_t room = done;

@@ -1,4 +1,5 @@
-#include "lod/hybrid/model/hybrid_pile.h"
+/* Models that are put together of others. Their chunks lie in a file without a name until they are written. */
+#include "lod/hybrid/model/hybrid_store.h"
 
 #include <math.h>
 #include <string.h>
@@ -8,7 +9,7 @@
 #include "core/base/vectors.h"
 #include "core/files/disk.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
-#include "lod/hybrid/model/hybrid_tree.h"
+#include "lod/hybrid/model/hybrid_model.h"
 
 /* Steps between black and white. */
 static const float all_steps = 100.0f;

@@ -8,7 +8,7 @@
 
 #define CONIC_NO_CHUNK UINT32_MAX
 
-/* Of a chunk. Those that are in memory and not held lie in a list, from the one that was let go last. */
+/* A chunk. Those that are in memory and not held are in a list, from the one that was let go last. */
 typedef struct chunk_slot {
   unsigned char *bytes; /* null: it is not there */
   uint32_t newer, older;

@@ -1,4 +1,5 @@
-#include "lod/hybrid/model/hybrid_tree.h"
+/* The hierarchy over the clusters. */
+#include "lod/hybrid/model/hybrid_model.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -6,7 +7,7 @@
 
 #include "core/base/memory.h"
 
-/* Where n clusters are parted: the halves then need no more levels than they must. */
+/* Halves like these need no more levels of nodes than they must. */
 size_t conic_hybrid_half(size_t n) {
   return (n + 1) / 2;
 }

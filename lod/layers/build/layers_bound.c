@@ -7,11 +7,10 @@
 #include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
-#include "lod/layers/build/layers_part.h"
-#include "lod/layers/build/layers_waiting.h"
+#include "lod/layers/build/layers_node.h"
 #include "lod/layers/format/layers_axes.h"
+#include "lod/layers/format/layers_code.h"
 #include "lod/layers/format/layers_key.h"
-#include "lod/layers/format/layers_split.h"
 
 enum { SOME_KEYS = 512, N_PROBES = 32, N_NEAREST = 8, LEAST_TO_TELL = 32 };
 
@@ -61,7 +60,7 @@ static double middle_of(double *values, size_t n) { /* sorts them; few */
 }
 
 /* The median of some; those at the border of the leaf, whose neighbours lie elsewhere, do not move it much. */
-static conic_status find_spacing(const conic_layers_plan *plan, const conic_layers_branch *leaf, double *spacing) {
+static conic_status find_spacing(const conic_layers_plan *plan, const conic_layers_node *leaf, double *spacing) {
   double spacings[N_PROBES];
   size_t n = leaf->n_drawn;
   *spacing = plan->spacing / plan->quantum;
@@ -95,7 +94,7 @@ static void fill_axes(const conic_layers_plan *plan, conic_layers_sample *sample
 }
 
 /* Gives the samples that have no size this one, and all the size that they will be read with. */
-static void settle_outlines(const conic_layers_plan *plan, conic_layers_branch *leaf, double outline) {
+static void settle_outlines(const conic_layers_plan *plan, conic_layers_node *leaf, double outline) {
   const conic_layers_schema *schema = plan->schema;
   int axes = conic_layers_schema_find(schema, CONIC_LAYERS_AXES);
   int size = conic_layers_schema_find(schema, CONIC_LAYERS_SIZE);
@@ -115,51 +114,51 @@ static void settle_outlines(const conic_layers_plan *plan, conic_layers_branch *
   leaf->radius = largest / plan->quantum;
 }
 
-static void find_branch_box(conic_layers_branch *branch) {
+static void find_node_box(conic_layers_node *node) {
   for (int axis = 0; axis < 3; axis++) {
-    branch->low[axis] = HUGE_VAL;
-    branch->high[axis] = -HUGE_VAL;
+    node->low[axis] = HUGE_VAL;
+    node->high[axis] = -HUGE_VAL;
   }
-  for (size_t i = 0; i < branch->n_drawn; i++) {
+  for (size_t i = 0; i < node->n_drawn; i++) {
     double at[3];
-    steps_of(branch->keys[i], at);
+    steps_of(node->keys[i], at);
     for (int axis = 0; axis < 3; axis++) {
-      branch->low[axis] = at[axis] < branch->low[axis] ? at[axis] : branch->low[axis];
-      branch->high[axis] = at[axis] > branch->high[axis] ? at[axis] : branch->high[axis];
+      node->low[axis] = at[axis] < node->low[axis] ? at[axis] : node->low[axis];
+      node->high[axis] = at[axis] > node->high[axis] ? at[axis] : node->high[axis];
     }
   }
 }
 
 /* About the middle of the box: to the farthest that is drawn, and from there on as far as these are off. */
-static void find_sphere(conic_layers_branch *branch) {
+static void find_sphere(conic_layers_node *node) {
   double farthest2 = 0.0, corner2 = 0.0;
   for (int axis = 0; axis < 3; axis++) {
-    double half = 0.5 * (branch->high[axis] - branch->low[axis]);
-    branch->center[axis] = branch->low[axis] + half;
+    double half = 0.5 * (node->high[axis] - node->low[axis]);
+    node->center[axis] = node->low[axis] + half;
     corner2 += half * half;
   }
-  for (size_t i = 0; i < branch->n_drawn; i++) {
+  for (size_t i = 0; i < node->n_drawn; i++) {
     double at[3], way[3];
-    steps_of(branch->keys[i], at);
-    conic_subtract(at, branch->center, way);
+    steps_of(node->keys[i], at);
+    conic_subtract(at, node->center, way);
     double distance2 = conic_dot(way, way);
     farthest2 = distance2 > farthest2 ? distance2 : farthest2;
   }
-  double reach = sqrt(farthest2) + branch->covering, corner = sqrt(corner2);
-  branch->sphere = reach < corner ? reach : corner;
+  double reach = sqrt(farthest2) + node->covering, corner = sqrt(corner2);
+  node->sphere = reach < corner ? reach : corner;
 }
 
-static void find_axis(conic_layers_branch *branch) {
+static void find_axis(conic_layers_node *node) {
   double sum[3] = {0.0, 0.0, 0.0};
-  for (size_t i = 0; i < branch->n_drawn; i++) {
+  for (size_t i = 0; i < node->n_drawn; i++) {
     float normal[3];
-    conic_layers_normal_of(conic_layers_drawn_at(branch, i)->normal, normal);
+    conic_layers_normal_of(conic_layers_drawn_at(node, i)->normal, normal);
     for (int axis = 0; axis < 3; axis++)
       sum[axis] += (double)normal[axis];
   }
   double length = conic_length(sum);
   for (int axis = 0; axis < 3; axis++)
-    branch->axis[axis] = length > 0.0 ? (double)(float)(sum[axis] / length) : axis == 2;
+    node->axis[axis] = length > 0.0 ? (double)(float)(sum[axis] / length) : axis == 2;
 }
 
 /* The cosine of the sum of two angles, given theirs; −1 where it is more than a half turn. */
@@ -172,7 +171,7 @@ static double cosine_of_sum(double a, double b) {
 }
 
 /* The normal with which a sample is drawn. */
-static void drawn_normal(const conic_layers_plan *plan, const conic_layers_branch *leaf, size_t i, int axes,
+static void drawn_normal(const conic_layers_plan *plan, const conic_layers_node *leaf, size_t i, int axes,
                          float normal[3]) {
   conic_layers_axes ellipse;
   if (axes < 0) {
@@ -184,7 +183,7 @@ static void drawn_normal(const conic_layers_plan *plan, const conic_layers_branc
 }
 
 /* Dots turn to whoever looks: nothing bounds their normals. */
-static double cone_of_leaf(const conic_layers_plan *plan, const conic_layers_branch *leaf) {
+static double cone_of_leaf(const conic_layers_plan *plan, const conic_layers_node *leaf) {
   int axes = conic_layers_schema_find(plan->schema, CONIC_LAYERS_AXES);
   int dot = conic_layers_schema_find(plan->schema, CONIC_LAYERS_DOT);
   double cone = 1.0;
@@ -200,35 +199,35 @@ static double cone_of_leaf(const conic_layers_plan *plan, const conic_layers_bra
   return cone;
 }
 
-conic_status conic_layers_bound_leaf(const conic_layers_plan *plan, conic_layers_branch *leaf) {
+conic_status conic_layers_bound_leaf(const conic_layers_plan *plan, conic_layers_node *leaf) {
   double spacing;
   conic_status status = find_spacing(plan, leaf, &spacing);
   leaf->area = spacing * spacing * (double)leaf->n_drawn;
   settle_outlines(plan, leaf, outline_over_spacing * spacing * plan->quantum);
-  find_branch_box(leaf);
+  find_node_box(leaf);
   find_sphere(leaf);
   find_axis(leaf);
   leaf->cone = cone_of_leaf(plan, leaf);
   return status;
 }
 
-typedef void visit(void *data, const conic_layers_branch *below);
+typedef void visit(void *data, const conic_layers_node *below);
 
 /* The nodes that bounds are found from. */
-static void visit_below(const conic_layers_branch *branch, uint64_t n_place, visit *visitor, void *data) {
-  if (!branch->children[0] || conic_layers_is_far_below(n_place, branch->n_place)) {
-    visitor(data, branch);
+static void visit_below(const conic_layers_node *node, uint64_t n_place, visit *visitor, void *data) {
+  if (!node->children[0] || conic_layers_is_far_below(n_place, node->n_place)) {
+    visitor(data, node);
     return;
   }
   for (int i = 0; i < 2; i++)
-    visit_below(branch->children[i], n_place, visitor, data);
+    visit_below(node->children[i], n_place, visitor, data);
 }
 
 typedef struct bounding {
-  conic_layers_branch *node;
+  conic_layers_node *node;
   const conic_thinner *thinner;
   size_t n_below;
-  const conic_layers_branch **below;
+  const conic_layers_node **below;
   conic_layers_disc *discs; /* the node's samples as they are drawn, in the order in which they were chosen */
   double quantum;           /* a step of the grid, as they have it */
   int is_cut;               /* full resolution may draw less of a sample than its outline */
@@ -236,12 +235,12 @@ typedef struct bounding {
   atomic_int status;
 } bounding;
 
-static void count_below(void *data, const conic_layers_branch *below) {
+static void count_below(void *data, const conic_layers_node *below) {
   (void)below;
   ((bounding *)data)->n_below++;
 }
 
-static void list_below(void *data, const conic_layers_branch *below) {
+static void list_below(void *data, const conic_layers_node *below) {
   bounding *b = data;
   b->below[b->n_below++] = below;
 }
@@ -262,7 +261,7 @@ static void raise_most(bounding *b, double value) {
 
 static void reach_out(void *data, size_t i_item, int i_thread) {
   bounding *b = data;
-  const conic_layers_branch *below = b->below[i_item];
+  const conic_layers_node *below = b->below[i_item];
   uint64_t keys[SOME_KEYS];
   double most = most_so_far(b);
   (void)i_thread;
@@ -278,12 +277,12 @@ static void reach_out(void *data, size_t i_item, int i_thread) {
   raise_most(b, most);
 }
 
-/* With what a sample is drawn where the node is the finest, in steps. */
-static double outline_in(const conic_layers_branch *node, double own) {
+/* The outline with which a sample is drawn where the node is the finest, in steps. */
+static double outline_in(const conic_layers_node *node, double own) {
   return larger(own, node->is_leaf ? 0.0 : node->covering);
 }
 
-static conic_layers_disc disc_in(const conic_layers_branch *node, uint64_t key, const conic_layers_facet *facet,
+static conic_layers_disc disc_in(const conic_layers_node *node, uint64_t key, const conic_layers_facet *facet,
                                  double quantum) {
   conic_layers_disc disc;
   double at[3];
@@ -295,10 +294,10 @@ static conic_layers_disc disc_in(const conic_layers_branch *node, uint64_t key, 
   return disc;
 }
 
-static void part_from(void *data, size_t i_item, int i_thread) {
+static void reach_discs(void *data, size_t i_item, int i_thread) {
   bounding *b = data;
-  const conic_layers_branch *below = b->below[i_item];
-  const conic_layers_standing standing = {b->thinner, b->discs};
+  const conic_layers_node *below = b->below[i_item];
+  const conic_layers_chosen chosen = {b->thinner, b->discs};
   uint64_t keys[SOME_KEYS];
   conic_layers_facet facets[SOME_KEYS];
   conic_layers_disc discs[SOME_KEYS];
@@ -315,12 +314,12 @@ static void part_from(void *data, size_t i_item, int i_thread) {
     }
     for (size_t i = 0; i < n; i++)
       discs[i] = disc_in(below, keys[i], &facets[i], b->quantum);
-    most = conic_layers_part(&standing, discs, n, below->part, most);
+    most = conic_layers_disc_error(&chosen, discs, n, below->error, most);
   }
   raise_most(b, most);
 }
 
-static void widen_cone(void *data, const conic_layers_branch *below) {
+static void widen_cone(void *data, const conic_layers_node *below) {
   bounding *b = data;
   double cosine = cosine_of_sum(conic_dot(b->node->axis, below->axis), below->cone);
   b->node->cone = cosine < b->node->cone ? cosine : b->node->cone;
@@ -337,9 +336,10 @@ static double find_most(conic_context *context, int is_alone, bounding *b, conic
   return most_so_far(b);
 }
 
-/* With what the samples are drawn at most, and how far that is past what full resolution draws of them. */
+/* Finds the largest outline with which samples are drawn, and how far any is past what full resolution draws of its
+ * sample. */
 static void find_past(const bounding *b) {
-  conic_layers_branch *node = b->node;
+  conic_layers_node *node = b->node;
   node->radius = node->past = 0.0;
   for (size_t i = 0; i < node->n_drawn; i++) {
     double own = (double)conic_layers_size_of(node->facets[i].size) / b->quantum, drawn = outline_in(node, own);
@@ -351,25 +351,25 @@ static void find_past(const bounding *b) {
 }
 
 /* How far what full resolution draws is from what is drawn, and the other way round. */
-static conic_status find_part(conic_context *context, int is_alone, bounding *b) {
-  conic_layers_branch *node = b->node;
-  uint32_t *ranks = conic_memory_allocate(context, node->n_drawn, sizeof *ranks);
+static conic_status find_node_error(conic_context *context, int is_alone, bounding *b) {
+  conic_layers_node *node = b->node;
+  uint32_t *numbers = conic_memory_allocate(context, node->n_drawn, sizeof *numbers);
   b->discs = conic_memory_allocate(context, node->n_drawn, sizeof *b->discs);
-  conic_status status = ranks && b->discs ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status = numbers && b->discs ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
-    size_t n = conic_thinner_ranks(b->thinner, ranks);
+    size_t n = conic_thinner_numbers(b->thinner, numbers);
     for (size_t i = 0; i < n; i++)
-      b->discs[i] = disc_in(node, node->keys[ranks[i]], &node->facets[ranks[i]], b->quantum);
-    node->part = find_most(context, is_alone, b, part_from, node->past);
+      b->discs[i] = disc_in(node, node->keys[numbers[i]], &node->facets[numbers[i]], b->quantum);
+    node->error = find_most(context, is_alone, b, reach_discs, node->past);
     status = (conic_status)atomic_load(&b->status);
   }
   conic_memory_release(context, b->discs);
-  conic_memory_release(context, ranks);
+  conic_memory_release(context, numbers);
   return status;
 }
 
 static conic_status find_outlines(conic_context *context, int is_alone, bounding *b) {
-  conic_layers_branch *node = b->node;
+  conic_layers_node *node = b->node;
   visit_below(node, node->n_place, count_below, b);
   b->below = conic_memory_allocate(context, b->n_below, sizeof(void *));
   conic_status status = b->below ? CONIC_OK : CONIC_ERROR_MEMORY;
@@ -380,15 +380,15 @@ static conic_status find_outlines(conic_context *context, int is_alone, bounding
     find_past(b);
     status = (conic_status)atomic_load(&b->status);
     if (status == CONIC_OK)
-      status = find_part(context, is_alone, b);
+      status = find_node_error(context, is_alone, b);
   }
   conic_memory_release(context, (void *)b->below);
   return status;
 }
 
 conic_status conic_layers_bound_node(const conic_layers_plan *plan, const conic_thinner *thinner, int is_alone,
-                                     conic_layers_branch *node) {
-  const conic_layers_branch *a = node->children[0], *b = node->children[1];
+                                     conic_layers_node *node) {
+  const conic_layers_node *a = node->children[0], *b = node->children[1];
   bounding bounds = {.node = node, .thinner = thinner, .quantum = plan->quantum};
   bounds.is_cut = conic_layers_schema_find(plan->schema, CONIC_LAYERS_AXES) >= 0;
   atomic_init(&bounds.most, 0);
@@ -411,30 +411,29 @@ static float rounded_up(double value) {
   return nextafterf((float)(value * (1.0 + 1e-6)), HUGE_VALF);
 }
 
-void conic_layers_describe_branch(const conic_layers_plan *plan, const conic_layers_branch *branch,
-                                  conic_layers_entry *entry) {
-  uint64_t differing = branch->first_key ^ branch->last_key;
-  unsigned n_below = differing ? 64u - (unsigned)__builtin_clzll(differing) : 0u;
+void conic_layers_describe_node(const conic_layers_plan *plan, const conic_layers_node *node,
+                                conic_layers_entry *entry) {
+  unsigned n_below = conic_layers_bits_below(node->first_key, node->last_key);
   double q = plan->quantum, rounding = (double)(UINT64_C(1) << plan->bits) * 0x1p-22; /* of positions as floats */
   memset(entry, 0, sizeof *entry);
   entry->depth = (uint16_t)(3 * plan->bits - n_below);
-  entry->key = branch->first_key >> n_below << n_below;
-  entry->n_place = branch->n_place;
-  entry->n_drawn = (uint32_t)branch->n_drawn;
-  entry->spacing = (float)(sqrt(branch->area / (double)branch->n_drawn) * q);
-  entry->covering = rounded_up((branch->covering + 2.0 * rounding) * q);
-  entry->radius = rounded_up((branch->radius + 2.0 * rounding) * q);
-  entry->growth = branch->is_leaf ? 1.0f : 0.0f;
-  entry->reach = branch->is_leaf ? 0.0f : entry->covering;
-  entry->error = branch->is_leaf ? 0.0f : rounded_up((branch->part + 3.0 * rounding) * q);
-  entry->sphere = rounded_up((branch->sphere + branch->radius + 2.0 * rounding) * q);
+  entry->key = node->first_key >> n_below << n_below;
+  entry->n_place = node->n_place;
+  entry->n_drawn = (uint32_t)node->n_drawn;
+  entry->spacing = (float)(sqrt(node->area / (double)node->n_drawn) * q);
+  entry->covering = rounded_up((node->covering + 2.0 * rounding) * q);
+  entry->radius = rounded_up((node->radius + 2.0 * rounding) * q);
+  entry->growth = node->is_leaf ? 1.0f : 0.0f;
+  entry->reach = node->is_leaf ? 0.0f : entry->covering;
+  entry->error = node->is_leaf ? 0.0f : rounded_up((node->error + 3.0 * rounding) * q);
+  entry->sphere = rounded_up((node->sphere + node->radius + 2.0 * rounding) * q);
   double slack = 2.0 * rounding * q;
   for (int axis = 0; axis < 3; axis++) {
-    double center = (branch->center[axis] + 0.5) * q;
+    double center = (node->center[axis] + 0.5) * q;
     entry->center[axis] = (float)center;
     slack += fabs((double)entry->center[axis] - center);
-    entry->axis[axis] = (float)branch->axis[axis];
+    entry->axis[axis] = (float)node->axis[axis];
   }
   entry->sphere = rounded_up((double)entry->sphere + slack);
-  entry->cone = plan->is_unoriented ? -1.0f : (float)larger(-1.0, branch->cone - 4e-6);
+  entry->cone = plan->is_unoriented ? -1.0f : (float)larger(-1.0, node->cone - 4e-6);
 }

@@ -1,10 +1,10 @@
-#include "lod/layers/build/layers_buckets.h"
+#include "lod/layers/build/layers_parts.h"
 
 #include <string.h>
 
 #include "core/base/memory.h"
 
-/* So many bits of the keys part the samples at a time, fewer where there is little memory for open blocks. */
+/* So many bits of the keys split the samples at a time, fewer where there is little memory for open blocks. */
 enum { MOST_SPLIT_BITS = 12, LEAST_SPLIT_BITS = 4, LEAST_BLOCK = 32, MOST_BLOCK = 1024 };
 
 #define NO_BLOCK UINT64_MAX
@@ -22,115 +22,115 @@ static size_t block_bytes(const conic_layers_buckets *all, size_t n_samples) {
   return sizeof(uint64_t) + n_samples * all->sample_bytes;
 }
 
-/* The cells that a cell's samples are parted into: each a bucket with a block that is being filled. */
+/* The cells that a cell's samples are split into: each a bucket with a block that is being filled. */
 typedef struct split {
   conic_layers_buckets *all;
   unsigned n_most_bits, n_bits;
   uint64_t key;
-  unsigned shift;  /* bits of the key below the cells' own */
-  uint64_t n_rank; /* of so many that coincide; 0: they do not */
+  unsigned shift;        /* bits of the key below the cells' own */
+  uint64_t n_coincident; /* of so many that coincide; 0: they do not */
   uint8_t is_reversed;
   conic_layers_bucket *cells;
   unsigned char *open; /* blocks */
 } split;
 
-static conic_status create_split(conic_layers_buckets *all, size_t memory_bytes, split *parts) {
+static conic_status create_split(conic_layers_buckets *all, size_t memory_bytes, split *s) {
   size_t n_samples = memory_bytes / all->sample_bytes, n_bits = MOST_SPLIT_BITS;
   while (n_bits > LEAST_SPLIT_BITS && n_samples >> n_bits < LEAST_BLOCK)
     n_bits--;
   size_t block = n_samples >> n_bits, n_cells = (size_t)1 << n_bits;
   all->block_samples = block < LEAST_BLOCK ? LEAST_BLOCK : block > MOST_BLOCK ? MOST_BLOCK : block;
-  *parts = (split){.all = all, .n_most_bits = (unsigned)n_bits};
-  parts->cells = conic_memory_allocate(all->context, n_cells, sizeof *parts->cells);
-  parts->open = conic_memory_allocate(all->context, n_cells, block_bytes(all, all->block_samples));
-  return parts->cells && parts->open ? CONIC_OK : CONIC_ERROR_MEMORY;
+  *s = (split){.all = all, .n_most_bits = (unsigned)n_bits};
+  s->cells = conic_memory_allocate(all->context, n_cells, sizeof *s->cells);
+  s->open = conic_memory_allocate(all->context, n_cells, block_bytes(all, all->block_samples));
+  return s->cells && s->open ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-static void release_split(split *parts) {
-  conic_memory_release(parts->all->context, parts->cells);
-  conic_memory_release(parts->all->context, parts->open);
+static void release_split(split *s) {
+  conic_memory_release(s->all->context, s->cells);
+  conic_memory_release(s->all->context, s->open);
 }
 
-static void clear_cells(split *parts) {
-  for (size_t i = 0; i < (size_t)1 << parts->n_bits; i++)
-    parts->cells[i] = (conic_layers_bucket){.key = parts->key + ((uint64_t)i << parts->shift),
-                                            .last_block = NO_BLOCK,
-                                            .n_bits = (uint8_t)parts->shift,
-                                            .is_reversed = parts->is_reversed};
+static void clear_cells(split *s) {
+  for (size_t i = 0; i < (size_t)1 << s->n_bits; i++)
+    s->cells[i] = (conic_layers_bucket){.key = s->key + ((uint64_t)i << s->shift),
+                                        .last_block = NO_BLOCK,
+                                        .n_bits = (uint8_t)s->shift,
+                                        .is_reversed = s->is_reversed};
 }
 
-/* Of all samples, or of a bucket's, so that cells hold few more than `most`, or a fraction of it. */
-static void begin_split(split *parts, uint64_t key, unsigned n_key_bits, uint64_t count, uint64_t most) {
-  unsigned n = parts->n_most_bits;
+/* Begins to split all samples, or a bucket's, so that cells hold few more than `most`, or a fraction of it. */
+static void begin_split(split *s, uint64_t key, unsigned n_key_bits, uint64_t count, uint64_t most) {
+  unsigned n = s->n_most_bits;
   while (n > 1 && count >> (n - 3) < most && n > 3)
     n--;
-  parts->n_bits = n < n_key_bits ? n : n_key_bits;
-  parts->key = key;
-  parts->shift = n_key_bits - parts->n_bits;
-  parts->n_rank = 0;
-  clear_cells(parts);
+  s->n_bits = n < n_key_bits ? n : n_key_bits;
+  s->key = key;
+  s->shift = n_key_bits - s->n_bits;
+  s->n_coincident = 0;
+  clear_cells(s);
 }
 
-/* Of a bucket whose samples coincide: into halves of halves, as the tree parts them. */
-static void begin_halving(split *parts, const conic_layers_bucket *bucket, uint64_t most) {
-  parts->n_bits = 1;
-  while (parts->n_bits < parts->n_most_bits && bucket->count >> parts->n_bits > most)
-    parts->n_bits++;
-  parts->key = bucket->key;
-  parts->shift = 0;
-  parts->n_rank = bucket->count;
-  clear_cells(parts);
-  for (size_t i = 0; i < (size_t)1 << parts->n_bits; i++)
-    parts->cells[i].key = bucket->key;
+/* Begins to split a bucket whose samples coincide: into halves of halves, as the tree does. */
+static void begin_halving(split *s, const conic_layers_bucket *bucket, uint64_t most) {
+  s->n_bits = 1;
+  while (s->n_bits < s->n_most_bits && bucket->count >> s->n_bits > most)
+    s->n_bits++;
+  s->key = bucket->key;
+  s->shift = 0;
+  s->n_coincident = bucket->count;
+  clear_cells(s);
+  for (size_t i = 0; i < (size_t)1 << s->n_bits; i++)
+    s->cells[i].key = bucket->key;
 }
 
-static size_t cell_of_rank(const split *parts, uint64_t rank) {
+static size_t cell_of_number(const split *s, uint64_t number) {
   size_t cell = 0;
-  uint64_t n = parts->n_rank;
-  for (unsigned i = 0; i < parts->n_bits; i++) {
+  uint64_t n = s->n_coincident;
+  for (unsigned i = 0; i < s->n_bits; i++) {
     uint64_t half = n / 2;
-    int is_second = rank >= half;
+    int is_second = number >= half;
     cell = 2 * cell + (size_t)is_second;
-    rank -= is_second ? half : 0;
+    number -= is_second ? half : 0;
     n = is_second ? n - half : half;
   }
   return cell;
 }
 
-static unsigned char *open_block(const split *parts, size_t cell) {
-  return parts->open + cell * block_bytes(parts->all, parts->all->block_samples);
+static unsigned char *open_block(const split *s, size_t cell) {
+  return s->open + cell * block_bytes(s->all, s->all->block_samples);
 }
 
 /* Puts the first samples of the open block away. */
-static conic_status close_block(split *parts, size_t i_cell, size_t n_samples) {
-  conic_layers_bucket *cell = &parts->cells[i_cell];
-  unsigned char *block = open_block(parts, i_cell);
+static conic_status close_block(split *s, size_t i_cell, size_t n_samples) {
+  conic_layers_bucket *cell = &s->cells[i_cell];
+  unsigned char *block = open_block(s, i_cell);
   memcpy(block, &cell->last_block, sizeof cell->last_block);
-  cell->last_block = conic_spool_bytes(&parts->all->spool);
-  return conic_spool_append(&parts->all->spool, block, block_bytes(parts->all, n_samples));
+  cell->last_block = conic_spool_bytes(&s->all->spool);
+  return conic_spool_append(&s->all->spool, block, block_bytes(s->all, n_samples));
 }
 
-static conic_status add_to_cell(split *parts, size_t i_cell, const conic_layers_sample *sample) {
-  conic_layers_bucket *cell = &parts->cells[i_cell];
-  size_t n_open = (size_t)(cell->count++ % parts->all->block_samples), n_bytes = parts->all->sample_bytes;
-  memcpy(open_block(parts, i_cell) + sizeof(uint64_t) + n_open * n_bytes, sample, n_bytes);
-  return n_open + 1 == parts->all->block_samples ? close_block(parts, i_cell, n_open + 1) : CONIC_OK;
+static conic_status add_to_cell(split *s, size_t i_cell, const conic_layers_sample *sample) {
+  conic_layers_bucket *cell = &s->cells[i_cell];
+  size_t n_open = (size_t)(cell->count++ % s->all->block_samples), n_bytes = s->all->sample_bytes;
+  memcpy(open_block(s, i_cell) + sizeof(uint64_t) + n_open * n_bytes, sample, n_bytes);
+  return n_open + 1 == s->all->block_samples ? close_block(s, i_cell, n_open + 1) : CONIC_OK;
 }
 
-static size_t cell_of_key(const split *parts, uint64_t key) {
-  return (size_t)((key - parts->key) >> parts->shift);
+static size_t cell_of_key(const split *s, uint64_t key) {
+  return (size_t)((key - s->key) >> s->shift);
 }
 
-/* Puts what is left in open blocks away and hands the buckets that hold any over, in place of number `at`, which is
- * dropped; or at the end. */
-static conic_status end_split(split *parts, size_t at) {
-  conic_layers_buckets *all = parts->all;
+/* Puts what is left in open blocks away. The buckets that hold any take the place of number `at`, which is dropped, or
+ * go to the end. */
+static conic_status end_split(split *s, size_t at) {
+  conic_layers_buckets *all = s->all;
   conic_status status = CONIC_OK;
-  size_t n_cells = (size_t)1 << parts->n_bits, n_new = 0, n_dropped = at < all->n;
+  size_t n_cells = (size_t)1 << s->n_bits, n_new = 0, n_dropped = at < all->n;
   for (size_t i = 0; i < n_cells && status == CONIC_OK; i++) {
-    size_t n_open = (size_t)(parts->cells[i].count % all->block_samples);
-    status = n_open ? close_block(parts, i, n_open) : CONIC_OK;
-    n_new += parts->cells[i].count > 0;
+    size_t n_open = (size_t)(s->cells[i].count % all->block_samples);
+    status = n_open ? close_block(s, i, n_open) : CONIC_OK;
+    n_new += s->cells[i].count > 0;
   }
   if (status == CONIC_OK)
     status =
@@ -140,15 +140,15 @@ static conic_status end_split(split *parts, size_t at) {
   if (all->n > at + n_dropped) /* there may be no room for none */
     memmove(all->buckets + at + n_new, all->buckets + at + n_dropped, (all->n - at - n_dropped) * sizeof *all->buckets);
   for (size_t i = 0, k = at; i < n_cells; i++)
-    if (parts->cells[i].count > 0)
-      all->buckets[k++] = parts->cells[i];
+    if (s->cells[i].count > 0)
+      all->buckets[k++] = s->cells[i];
   all->n += n_new - n_dropped;
   return CONIC_OK;
 }
 
 static conic_status take_placed(void *to, const conic_layers_sample *sample) {
-  split *parts = to;
-  return add_to_cell(parts, cell_of_key(parts, sample->key), sample);
+  split *s = to;
+  return add_to_cell(s, cell_of_key(s, sample->key), sample);
 }
 
 typedef conic_status take_block(void *data, const unsigned char *samples, size_t n);
@@ -171,59 +171,52 @@ static conic_status read_chain(const conic_layers_buckets *all, const conic_laye
 }
 
 typedef struct refining {
-  split *parts;
+  split *s;
   uint64_t n_done; /* samples, of those that coincide */
 } refining;
 
-/* From the last on: so each refining turns their order around. */
+/* Goes from the last on, so that each refining turns their order around. */
 static conic_status refine_block(void *data, const unsigned char *samples, size_t n) {
   refining *r = data;
-  split *parts = r->parts;
+  split *s = r->s;
   conic_status status = CONIC_OK;
   for (size_t i = n; i > 0 && status == CONIC_OK; i--) {
-    const conic_layers_sample *sample = conic_layers_sample_at(samples, parts->all->sample_bytes, i - 1);
-    uint64_t rank = r->n_done++;
-    size_t cell = parts->n_rank == 0 ? cell_of_key(parts, sample->key)
-                                     : cell_of_rank(parts, parts->is_reversed ? parts->n_rank - 1 - rank : rank);
-    status = add_to_cell(parts, cell, sample);
+    const conic_layers_sample *sample = conic_layers_sample_at(samples, s->all->sample_bytes, i - 1);
+    uint64_t number = r->n_done++;
+    size_t cell = s->n_coincident == 0 ? cell_of_key(s, sample->key)
+                                       : cell_of_number(s, s->is_reversed ? s->n_coincident - 1 - number : number);
+    status = add_to_cell(s, cell, sample);
   }
   return status;
 }
 
-static conic_status refine(split *parts, size_t at, uint64_t most, unsigned char *block) {
-  const conic_layers_bucket bucket = parts->all->buckets[at];
-  refining r = {.parts = parts};
-  parts->is_reversed = !bucket.is_reversed;
+static conic_status refine(split *s, size_t at, uint64_t most, unsigned char *block) {
+  const conic_layers_bucket bucket = s->all->buckets[at];
+  refining r = {.s = s};
+  s->is_reversed = !bucket.is_reversed;
   if (bucket.n_bits)
-    begin_split(parts, bucket.key, bucket.n_bits, bucket.count, most);
+    begin_split(s, bucket.key, bucket.n_bits, bucket.count, most);
   else
-    begin_halving(parts, &bucket, most);
-  conic_status status = read_chain(parts->all, &bucket, block, refine_block, &r);
-  return status == CONIC_OK ? end_split(parts, at) : status;
+    begin_halving(s, &bucket, most);
+  conic_status status = read_chain(s->all, &bucket, block, refine_block, &r);
+  return status == CONIC_OK ? end_split(s, at) : status;
 }
 
-/* Whether a place in which a bucket has to end lies within it. */
-static int is_cut(const conic_layers_bucket *bucket, const conic_layers_cuts *cuts) {
-  size_t low = 0, high = cuts->n; /* of those not above the bucket's first key */
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (cuts->keys[middle] <= bucket->key)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low < cuts->n && cuts->keys[low] - bucket->key < UINT64_C(1) << bucket->n_bits;
+/* Whether a key at which a bucket has to end lies within it. */
+static int has_border(const conic_layers_bucket *bucket, const conic_layers_borders *borders) {
+  size_t low = conic_layers_count_to(borders->keys, sizeof *borders->keys, borders->n, bucket->key);
+  return low < borders->n && borders->keys[low] - bucket->key < UINT64_C(1) << bucket->n_bits;
 }
 
-static conic_status refine_all(split *parts, uint64_t most, const conic_layers_cuts *cuts) {
-  conic_layers_buckets *all = parts->all;
+static conic_status refine_all(split *s, uint64_t most, const conic_layers_borders *borders) {
+  conic_layers_buckets *all = s->all;
   conic_status status = CONIC_OK;
   unsigned char *block = conic_memory_allocate(all->context, block_bytes(all, all->block_samples), 1);
   if (!block)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < all->n && status == CONIC_OK;)
-    if (all->buckets[i].count > most || is_cut(&all->buckets[i], cuts))
-      status = refine(parts, i, most, block);
+    if (all->buckets[i].count > most || has_border(&all->buckets[i], borders))
+      status = refine(s, i, most, block);
     else
       i++;
   conic_memory_release(all->context, block);
@@ -231,24 +224,24 @@ static conic_status refine_all(split *parts, uint64_t most, const conic_layers_c
 }
 
 conic_status conic_layers_buckets_fill(conic_context *context, const char *path, const conic_layers_feed *feed,
-                                       const conic_layers_plan *plan, const conic_layers_cuts *cuts,
+                                       const conic_layers_plan *plan, const conic_layers_borders *borders,
                                        size_t memory_bytes, uint64_t most, conic_layers_buckets *buckets) {
   size_t open_bytes = memory_bytes / 4;
-  split parts;
+  split s;
   memset(buckets, 0, sizeof *buckets);
   buckets->context = context;
   buckets->sample_bytes = plan->sample_bytes;
   conic_spool_begin(context, path, memory_bytes - open_bytes, &buckets->spool);
-  conic_status status = create_split(buckets, open_bytes, &parts);
+  conic_status status = create_split(buckets, open_bytes, &s);
   if (status == CONIC_OK) {
-    begin_split(&parts, 0, 3 * plan->bits, feed->n_samples, most);
-    status = feed->run(feed->from, take_placed, &parts);
+    begin_split(&s, 0, 3 * plan->bits, feed->n_samples, most);
+    status = feed->run(feed->from, take_placed, &s);
   }
   if (status == CONIC_OK)
-    status = end_split(&parts, 0);
+    status = end_split(&s, 0);
   if (status == CONIC_OK)
-    status = refine_all(&parts, most, cuts);
-  release_split(&parts);
+    status = refine_all(&s, most, borders);
+  release_split(&s);
   return status;
 }
 

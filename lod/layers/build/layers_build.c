@@ -12,24 +12,20 @@
 #include "core/base/vectors.h"
 #include "core/files/file.h"
 #include "core/splats/columns.h"
-#include "lod/layers/build/layers_exchange.h"
-#include "lod/layers/build/layers_file.h"
-#include "lod/layers/build/layers_intake.h"
-#include "lod/layers/build/layers_normals.h"
-#include "lod/layers/build/layers_team.h"
+#include "lod/layers/build/layers_grow.h"
 
 struct conic_layers_builder {
   conic_context *context;
   char *path;
   conic_layers_options options;
   const conic_team *team; /* null: one process builds all */
-  int has_united;
+  int has_combined;
   conic_layers_kept kept;
-  conic_layers_intake intake;
-  conic_layers_shares shares;
-  conic_layers_arrivals arrivals;
+  conic_layers_raws raws;
+  conic_layers_parts parts;
+  conic_layers_received received;
   conic_layers_buckets buckets;
-  conic_layers_forest forest;
+  conic_layers_tree tree;
   conic_layers_plan plan;
   conic_layers_header header;
   conic_layers_statistics statistics;
@@ -63,24 +59,26 @@ static size_t usable_bytes(const conic_layers_builder *builder) {
   return bytes < SIZE_MAX / 2 ? (size_t)bytes : SIZE_MAX / 2;
 }
 
-/* Of the memory that building may take, in eighths. First there is what comes in; then its rough order, two thirds of
- * which stay while it grows; then the workers, each with a chunk and room to sort it, branches that wait, and nodes. */
+/* A share of the memory that building may take. At first what comes in needs it. Then its rough order does, two thirds
+ * of which stay while the tree grows. Beside these there are the workers, each with a chunk and room to sort it, nodes
+ * that wait for their parents, and entries. */
 static size_t eighths_of_memory(const conic_layers_builder *builder, size_t n_eighths) {
   return usable_bytes(builder) / 8 * n_eighths;
 }
 
-/* How many samples are one chunk at least: a leaf is not parted, nor is what normals are found in. */
+/* How many samples are one chunk at least: neither a leaf is split, nor a patch in which normals are found. */
 static uint64_t least_in_chunk(const conic_layers_plan *plan) {
   return conic_layers_most_in_leaf(plan) * (plan->has_bare ? (uint64_t)CONIC_LAYERS_PATCH_LEAVES : 1);
 }
 
-/* A sample of a chunk, its copy for sorting, and keys of the nodes below; and where normals are found, their grid. */
+/* What a sample of a chunk takes: itself, its copy for sorting, keys of the nodes below, and the grid where normals are
+ * found. */
 static size_t bytes_in_chunk(const conic_layers_plan *plan) {
   return 2 * plan->sample_bytes + 2 * sizeof(uint64_t) + (plan->has_bare ? 28 : 0);
 }
 
-/* Of branches that are kept: no more than what takes seconds, nor than the fraction that one may lose; and enough for
- * all threads. Of smaller ones, more would be kept for each sample. */
+/* How many samples a kept branch has at most. It takes no more than seconds to grow, is no more than the fraction that
+ * may be lost, and leaves enough branches for all threads. Smaller branches would keep more for each sample. */
 static uint64_t most_in_kept(const conic_layers_builder *builder, uint64_t n_workers) {
   enum { MOST = 1 << 19, LEAST_BRANCHES = 32, BRANCHES_A_THREAD = 8 };
   uint64_t n_branches = BRANCHES_A_THREAD * n_workers > LEAST_BRANCHES ? BRANCHES_A_THREAD * n_workers : LEAST_BRANCHES;
@@ -88,7 +86,7 @@ static uint64_t most_in_kept(const conic_layers_builder *builder, uint64_t n_wor
   return n < MOST ? n : MOST;
 }
 
-/* As many workers as there are threads, if there is memory for them; and the larger chunks the more there is. */
+/* As many workers as there are threads, if there is memory for them. The more memory, the larger are the chunks. */
 static conic_layers_growth plan_growth(conic_layers_builder *builder) {
   const conic_layers_plan *plan = &builder->plan;
   uint64_t n_threads = (uint64_t)conic_context_threads(builder->context), least = least_in_chunk(plan);
@@ -103,8 +101,8 @@ static conic_layers_growth plan_growth(conic_layers_builder *builder) {
   return (conic_layers_growth){.n_workers = (int)n_workers,
                                .most = most > least ? most : least,
                                .kept = &builder->kept,
-                               .waiting_bytes = eighths_of_memory(builder, 1),
-                               .node_bytes = eighths_of_memory(builder, 1) / 2};
+                               .pool_bytes = eighths_of_memory(builder, 1),
+                               .entry_bytes = eighths_of_memory(builder, 1) / 2};
 }
 
 conic_status conic_layers_builder_open(conic_context *context, const char *path, const conic_layers_options *options,
@@ -136,8 +134,8 @@ static conic_status open_builder(conic_context *context, const char *path, const
     memcpy(made->path, path, n_path);
     if (!team || team->index == 0)
       conic_output_sweep(context, path);
-    status = conic_layers_intake_begin(context, made->path, eighths_of_memory(made, 3), made->options.cutoff,
-                                       made->options.keeps_all, team, &made->intake);
+    conic_layers_raws_begin(context, made->path, eighths_of_memory(made, 3), made->options.cutoff,
+                            made->options.keeps_all, team, &made->raws);
   }
   *builder = made;
   return status;
@@ -162,13 +160,13 @@ conic_status conic_layers_builder_open_team(conic_context *context, const char *
 void conic_layers_builder_abandon(conic_layers_builder *builder) {
   if (!builder)
     return;
-  if (builder->team && !builder->has_united)
-    conic_layers_intake_unite(&builder->intake, CONIC_ERROR_CANCELLED);
-  conic_layers_shares_end(&builder->shares);
-  conic_layers_arrivals_end(&builder->arrivals);
-  conic_layers_intake_end(&builder->intake);
+  if (builder->team && !builder->has_combined)
+    conic_layers_raws_combine(&builder->raws, CONIC_ERROR_CANCELLED);
+  conic_layers_parts_end(&builder->parts);
+  conic_layers_received_end(&builder->received);
+  conic_layers_raws_end(&builder->raws);
   conic_layers_buckets_end(&builder->buckets);
-  conic_layers_forest_end(&builder->forest);
+  conic_layers_tree_end(&builder->tree);
   conic_layers_kept_end(&builder->kept);
   conic_memory_release(builder->context, builder->path);
   conic_memory_release(builder->context, builder);
@@ -192,28 +190,28 @@ conic_status conic_layers_builder_append(conic_layers_builder *builder, const co
   float *block;
   conic_status status = conic_splats_enter(builder->context, "layers", batch, &close, &block);
   if (status == CONIC_OK)
-    status = conic_layers_intake_append(&builder->intake, &close);
+    status = conic_layers_raws_append(&builder->raws, &close);
   conic_memory_release(builder->context, block);
   return status;
 }
 
-conic_status conic_layers_builder_meet(conic_layers_builder *builder, const conic_splats *batch, int *has_colors) {
-  conic_status status = builder->team ? conic_layers_intake_meet(&builder->intake, batch, 0) : CONIC_OK;
-  *has_colors = builder->team ? builder->intake.has_colors : batch->color[0] != NULL;
+conic_status conic_layers_builder_agree(conic_layers_builder *builder, const conic_splats *batch, int *has_colors) {
+  conic_status status = builder->team ? conic_layers_raws_agree(&builder->raws, batch, 0) : CONIC_OK;
+  *has_colors = builder->team ? builder->raws.has_colors : batch->color[0] != NULL;
   return status;
 }
 
-/* The grid: steps of the quantum, as many as the box takes; it lies evenly about the box. Where there would be too
- * many, they are larger. */
+/* Lays the grid evenly about the box, in as many steps of the quantum as that takes. Where there would be too many, the
+ * steps are larger. */
 static void lay_grid(conic_layers_builder *builder, double quantum) {
-  const conic_layers_intake *intake = &builder->intake;
+  const conic_layers_facts *facts = &builder->raws.payload.facts;
   conic_layers_header *header = &builder->header;
   double extent = 0.0, magnitude = 0.0;
   for (int axis = 0; axis < 3; axis++) {
-    double length = intake->high[axis] - intake->low[axis];
+    double length = facts->high[axis] - facts->low[axis];
     extent = length > extent ? length : extent;
-    magnitude = fabs(intake->high[axis]) > magnitude ? fabs(intake->high[axis]) : magnitude;
-    magnitude = fabs(intake->low[axis]) > magnitude ? fabs(intake->low[axis]) : magnitude;
+    magnitude = fabs(facts->high[axis]) > magnitude ? fabs(facts->high[axis]) : magnitude;
+    magnitude = fabs(facts->low[axis]) > magnitude ? fabs(facts->low[axis]) : magnitude;
   }
   double least = extent * (1.0 + 0x1p-20) * 0x1p-21, finest = magnitude * 0x1p-45;
   header->quantum = quantum > least ? quantum : least;
@@ -229,21 +227,21 @@ static void lay_grid(conic_layers_builder *builder, double quantum) {
     header->bits++;
   double edge = header->quantum * (double)(UINT64_C(1) << header->bits);
   for (int axis = 0; axis < 3; axis++) {
-    header->low[axis] = intake->low[axis];
-    header->high[axis] = intake->high[axis];
-    header->origin[axis] = intake->low[axis] - 0.5 * (edge - (intake->high[axis] - intake->low[axis]));
+    header->low[axis] = facts->low[axis];
+    header->high[axis] = facts->high[axis];
+    header->origin[axis] = facts->low[axis] - 0.5 * (edge - (facts->high[axis] - facts->low[axis]));
   }
 }
 
-/* The grid of a file that there is, and as many whole steps more below it as the box takes. */
+/* Takes the grid of a file that there is, and adds as many whole steps below it as the box takes. */
 static conic_status continue_grid(conic_layers_builder *builder) {
   const conic_layers_options *options = &builder->options;
   conic_layers_header *header = &builder->header;
   double n_most = 2.0;
   header->quantum = options->quantum;
   for (int axis = 0; axis < 3; axis++) {
-    header->low[axis] = builder->intake.low[axis];
-    header->high[axis] = builder->intake.high[axis];
+    header->low[axis] = builder->raws.payload.facts.low[axis];
+    header->high[axis] = builder->raws.payload.facts.high[axis];
     double n_below = ceil((options->corner[axis] - header->low[axis]) / header->quantum);
     header->origin[axis] = options->corner[axis] - (n_below > 0.0 ? n_below * header->quantum : 0.0);
     double n_steps = floor((header->high[axis] - header->origin[axis]) / header->quantum) + 1.0;
@@ -269,11 +267,11 @@ static double near_of(const conic_layers_header *header) {
 
 static conic_status make_plan(conic_layers_builder *builder) {
   conic_layers_header *header = &builder->header;
-  const conic_layers_intake *intake = &builder->intake;
-  conic_status status = conic_layers_intake_spacing(&builder->intake, &header->spacing);
+  const conic_layers_raws *raws = &builder->raws;
+  conic_status status = conic_layers_raws_spacing(&builder->raws, &header->spacing);
   if (status != CONIC_OK)
     return status;
-  int is_unoriented = builder->options.is_unoriented || intake->n_unseen > 0;
+  int is_unoriented = builder->options.is_unoriented || raws->payload.facts.n_unseen > 0;
   double unit = builder->options.quantum_in_spacings ? header->spacing : 1.0;
   if (builder->options.has_corner)
     status = continue_grid(builder);
@@ -283,10 +281,10 @@ static conic_status make_plan(conic_layers_builder *builder) {
     return status;
   if (!(header->spacing > 0.0)) /* all coincide: something that can be seen */
     header->spacing = header->quantum;
-  conic_layers_payload_settle(&builder->intake.payload, header->spacing);
-  header->schema = intake->payload.schema;
+  conic_layers_payload_settle(&builder->raws.payload, header->spacing);
+  header->schema = raws->payload.schema;
   header->version = CONIC_LAYERS_VERSION;
-  header->flags = (intake->has_colors ? CONIC_LAYERS_COLORS : 0u) | (is_unoriented ? CONIC_LAYERS_UNORIENTED : 0u);
+  header->flags = (raws->has_colors ? CONIC_LAYERS_COLORS : 0u) | (is_unoriented ? CONIC_LAYERS_UNORIENTED : 0u);
   header->cloud_size = builder->options.cloud_size;
   double up[3] = {builder->options.up[0], builder->options.up[1], builder->options.up[2]};
   for (int axis = 0; axis < 3 && conic_normalize(up); axis++)
@@ -295,74 +293,70 @@ static conic_status make_plan(conic_layers_builder *builder) {
   builder->plan = (conic_layers_plan){.context = builder->context,
                                       .bits = header->bits,
                                       .cloud_size = header->cloud_size,
-                                      .n_samples = intake->n_samples,
+                                      .n_samples = raws->payload.facts.n_samples,
                                       .sample_bytes = header->schema.sample_bytes,
                                       .quantum = header->quantum,
                                       .spacing = header->spacing,
                                       .schema = &header->schema,
                                       .cutoff = builder->options.cutoff,
                                       .is_unoriented = is_unoriented,
-                                      .has_bare = intake->n_bare > 0};
+                                      .has_bare = raws->payload.facts.n_bare > 0};
   return CONIC_OK;
 }
 
 static conic_status refuse_nothing(const conic_layers_builder *builder) {
-  const conic_layers_intake *intake = &builder->intake;
-  if (intake->n_samples == 0)
+  const conic_layers_facts *facts = &builder->raws.payload.facts;
+  if (facts->n_samples == 0)
     return conic_fail(builder->context, CONIC_ERROR_INPUT, "%s: not written: there is no sample that can be drawn",
                       builder->path);
-  if (intake->n_bright > 0)
+  if (facts->n_bright > 0)
     conic_log(builder->context, CONIC_LOG_WARNING, "%s: %llu colours are brighter than white, and are kept as white",
-              builder->path, (unsigned long long)intake->n_bright);
+              builder->path, (unsigned long long)facts->n_bright);
   return CONIC_OK;
 }
 
-/* Where the samples come from that are sorted here: what was taken in, or, with a team, what has come then from all.
- */
-static conic_status feed_samples(conic_layers_builder *builder, conic_layers_placing *placing,
-                                 conic_layers_feed *feed) {
+/* Says where the samples come from that are sorted here: from what was taken in, or, with a team, from what all have
+ * sent. */
+static conic_status feed_samples(conic_layers_builder *builder, conic_layers_grid *grid, conic_layers_feed *feed) {
   const conic_layers_plan *plan = &builder->plan;
   conic_moment start = conic_moment_now();
-  conic_layers_placing_init(&builder->intake, plan, builder->header.origin, &builder->kept, "sort", placing);
-  conic_status status = conic_layers_shares_find(builder->team, placing, plan, least_in_chunk(plan), &builder->shares);
-  *feed = (conic_layers_feed){conic_layers_place_all, placing, builder->intake.n_samples - builder->kept.n_samples};
+  conic_layers_grid_init(&builder->raws, plan, builder->header.origin, &builder->kept, "sort", grid);
+  conic_status status = conic_layers_parts_find(builder->team, grid, plan, least_in_chunk(plan), &builder->parts);
+  *feed =
+      (conic_layers_feed){conic_layers_grid_run, grid, builder->raws.payload.facts.n_samples - builder->kept.n_samples};
   if (status != CONIC_OK || !builder->team)
     return status;
-  start = conic_team_note(builder->team, "share", start, builder->intake.n_own);
-  status = conic_layers_exchange(&builder->shares, placing, builder->path, eighths_of_memory(builder, 4),
-                                 &builder->arrivals);
-  conic_team_note(builder->team, "exchange", start, builder->arrivals.n_samples);
-  conic_layers_intake_end(&builder->intake);
-  *feed = (conic_layers_feed){conic_layers_arrivals_run, &builder->arrivals, builder->arrivals.n_samples};
+  start = conic_team_note(builder->team, "share", start, builder->raws.n_own);
+  status = conic_layers_send_samples(&builder->parts, grid, builder->path, eighths_of_memory(builder, 4),
+                                     &builder->received);
+  conic_team_note(builder->team, "exchange", start, builder->received.n_samples);
+  conic_layers_raws_end(&builder->raws);
+  *feed = (conic_layers_feed){conic_layers_received_run, &builder->received, builder->received.n_samples};
   return status;
 }
 
-static int compare_own_cuts(const void *a, const void *b) {
-  uint64_t first = *(const uint64_t *)a, second = *(const uint64_t *)b;
-  return (first > second) - (first < second);
-}
-
-/* Where buckets have to end, and what of that is kept: `own` and `keys` are to be released, on failure too. */
+/* Finds the keys at which buckets have to end, and the kept branches in the own parts. The caller releases `own` and
+ * `keys`, on failure too. */
 static conic_status find_own(const conic_layers_builder *builder, const conic_layers_kept_branch ***own, size_t *n_own,
                              uint64_t **keys, size_t *n_keys) {
   const conic_layers_kept *kept = &builder->kept;
-  const conic_layers_shares *shares = &builder->shares;
+  const conic_layers_parts *parts = &builder->parts;
   *own = conic_memory_allocate(builder->context, kept->n, sizeof **own);
-  *keys = conic_memory_allocate(builder->context, 2 * kept->n + shares->n_own, sizeof **keys);
+  *keys = conic_memory_allocate(builder->context, 2 * kept->n + parts->n_own, sizeof **keys);
   *n_own = *n_keys = 0;
   if (!*own || !*keys)
     return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < shares->n_own; i++)
-    (*keys)[(*n_keys)++] = shares->own_keys[i];
+  for (size_t i = 0; i < parts->n_own; i++)
+    (*keys)[(*n_keys)++] = parts->own_keys[i];
   for (size_t i = 0; i < kept->n; i++) {
     const conic_layers_kept_branch *branch = &kept->branches[i];
-    if (builder->team && conic_layers_shares_owner(shares, branch->key) != builder->team->index)
+    if (builder->team && conic_layers_parts_owner(parts, branch->key) != builder->team->index)
       continue;
     (*own)[(*n_own)++] = branch;
     (*keys)[(*n_keys)++] = branch->key;
     (*keys)[(*n_keys)++] = branch->key + (UINT64_C(1) << branch->n_bits);
   }
-  qsort(*keys, *n_keys, sizeof **keys, compare_own_cuts);
+  qsort(*keys, *n_keys, sizeof **keys, conic_layers_compare_keys);
   return CONIC_OK;
 }
 
@@ -372,9 +366,9 @@ static conic_status fill_buckets(conic_layers_builder *builder, const conic_laye
   uint64_t *keys;
   size_t n_own, n_keys;
   conic_status status = find_own(builder, &own, &n_own, &keys, &n_keys);
-  const conic_layers_cuts cuts = {keys, n_keys};
+  const conic_layers_borders borders = {keys, n_keys};
   if (status == CONIC_OK)
-    status = conic_layers_buckets_fill(builder->context, builder->path, feed, &builder->plan, &cuts,
+    status = conic_layers_buckets_fill(builder->context, builder->path, feed, &builder->plan, &borders,
                                        eighths_of_memory(builder, 3) / 2, growth->most, &builder->buckets);
   if (status == CONIC_OK)
     status = conic_layers_buckets_add(&builder->buckets, own, n_own);
@@ -384,15 +378,15 @@ static conic_status fill_buckets(conic_layers_builder *builder, const conic_laye
 }
 
 static conic_status sort_samples(conic_layers_builder *builder, const conic_layers_growth *growth) {
-  conic_layers_placing placing;
+  conic_layers_grid grid;
   conic_layers_feed feed;
-  conic_status status = feed_samples(builder, &placing, &feed);
+  conic_status status = feed_samples(builder, &grid, &feed);
   conic_moment start = conic_moment_now();
   if (status == CONIC_OK)
     status = fill_buckets(builder, growth, &feed);
   conic_team_note(builder->team, "sort", start, feed.n_samples);
-  conic_layers_intake_end(&builder->intake);
-  conic_layers_arrivals_end(&builder->arrivals);
+  conic_layers_raws_end(&builder->raws);
+  conic_layers_received_end(&builder->received);
   return conic_team_agree(builder->team, status);
 }
 
@@ -400,20 +394,20 @@ static conic_status build_layers(conic_layers_builder *builder) {
   conic_layers_growth growth;
   conic_status status = CONIC_OK;
   conic_moment start = conic_moment_now();
-  builder->has_united = 1;
+  builder->has_combined = 1;
   if (builder->team)
-    status = conic_layers_intake_unite(&builder->intake, CONIC_OK);
+    status = conic_layers_raws_combine(&builder->raws, CONIC_OK);
   if (status == CONIC_OK)
     status = conic_team_agree(builder->team, refuse_nothing(builder));
   if (status == CONIC_OK)
     status = make_plan(builder);
-  conic_team_note(builder->team, "measure", start, builder->intake.n_own);
+  conic_team_note(builder->team, "measure", start, builder->raws.n_own);
   if (status == CONIC_OK) {
     growth = plan_growth(builder);
     status = sort_samples(builder, &growth);
   }
   if (status == CONIC_OK)
-    status = conic_layers_forest_grow(&builder->plan, &builder->buckets, &builder->shares, &growth, &builder->forest);
+    status = conic_layers_tree_grow(&builder->plan, &builder->buckets, &builder->parts, &growth, &builder->tree);
   conic_layers_buckets_end(&builder->buckets);
   return status;
 }
@@ -421,9 +415,9 @@ static conic_status build_layers(conic_layers_builder *builder) {
 static void fill_statistics(conic_layers_builder *builder, double begun, double built) {
   conic_layers_statistics *s = &builder->statistics;
   const conic_layers_header *header = &builder->header;
-  s->n_in = builder->intake.n_in;
-  s->n_nan = builder->intake.n_nan;
-  s->n_zero = builder->intake.n_bare;
+  s->n_in = builder->raws.payload.facts.n_in;
+  s->n_nan = builder->raws.payload.facts.n_nan;
+  s->n_zero = builder->raws.payload.facts.n_bare;
   s->n_samples = header->n_samples;
   s->n_clouds = header->n_clouds;
   s->n_bytes = header->file_bytes;
@@ -441,7 +435,7 @@ conic_status conic_layers_builder_finish(conic_layers_builder *builder, conic_la
   double built = conic_seconds_now();
   int is_built = status == CONIC_OK;
   if (is_built)
-    status = conic_layers_write(builder->context, builder->path, builder->team, &builder->forest, &builder->header);
+    status = conic_layers_write(builder->context, builder->path, builder->team, &builder->tree, &builder->header);
   if (builder->kept.key && is_built) {
     status = conic_team_agree(builder->team, status);
     if (status == CONIC_OK)

@@ -1,56 +1,210 @@
-#include "lod/layers/build/layers_file.h"
-
+/* From a grown tree to a file. */
+#include <errno.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/mapping.h"
-#include "lod/layers/build/layers_moves.h"
-#include "lod/layers/build/layers_order.h"
+#include "lod/layers/build/layers_grow.h"
+
+/* What a message says. The first process's tells what comes, the others' only whether they have failed. */
+typedef enum message_kind { BEGIN, MOVE, END, FAILED } message_kind;
+
+enum { LONGEST_PATH = 4096 };
+
+/* A cloud's bytes: where they are, with the index of the process in the upper bits, and where in the file they go. */
+typedef struct cloud_move {
+  uint64_t from, to, n_bytes;
+} cloud_move;
+
+/* Clouds that several processes have packed, on their way into one file. */
+typedef struct cloud_moving {
+  conic_context *context;
+  const conic_team *team;
+  const char *path; /* for messages */
+  const conic_pile *clouds;
+  int descriptor; /* of the file */
+  int is_over;    /* nothing more is told */
+  unsigned char *bytes;
+  size_t room;
+} cloud_moving;
+
+typedef struct file_message {
+  uint64_t kind, n; /* moves */
+  union {
+    char path[LONGEST_PATH];
+    cloud_move moves[CONIC_LAYERS_SOME_ENTRIES];
+  } body;
+} file_message;
+
+/* Every process tells all others; *first becomes what the first process tells. Where one has failed, all have. */
+static conic_status tell_all(cloud_moving *m, conic_status status, file_message *first, size_t n_bytes) {
+  const conic_team *team = m->team;
+  size_t sizes[CONIC_MOST_IN_TEAM], at = 0;
+  if (status != CONIC_OK)
+    first->kind = FAILED;
+  char *all = team->collect(team->data, first, team->index == 0 ? n_bytes : sizeof first->kind, sizes);
+  for (int i = 0; i < team->count; at += sizes[i], i++) {
+    uint64_t kind;
+    memcpy(&kind, all + at, sizeof kind);
+    if (kind == FAILED && status == CONIC_OK)
+      status = CONIC_ERROR_CANCELLED;
+  }
+  memcpy(first, all, sizes[0]);
+  team->release(team->data, all);
+  m->is_over |= status != CONIC_OK;
+  return status;
+}
+
+static conic_status cannot_write(const cloud_moving *m) {
+  return conic_fail(m->context, CONIC_ERROR_IO, "%s: cannot write: %s", m->path, strerror(errno));
+}
+
+static conic_status move_one(cloud_moving *m, const cloud_move *move) {
+  const uint64_t in_pile = move->from & ((UINT64_C(1) << CONIC_LAYERS_TEAM_SHIFT) - 1);
+  conic_status status = conic_memory_reserve(m->context, &m->bytes, 0, (size_t)move->n_bytes, &m->room, 1);
+  if (status == CONIC_OK)
+    status = conic_pile_read(m->clouds, in_pile, m->bytes, (size_t)move->n_bytes);
+  for (size_t done = 0; done < move->n_bytes && status == CONIC_OK;) {
+    ptrdiff_t n = conic_disk_write_at(m->descriptor, m->bytes + done, (size_t)move->n_bytes - done, move->to + done);
+    if (n > 0)
+      done += (size_t)n;
+    else if (n == 0 || errno != EINTR)
+      status = cannot_write(m);
+  }
+  return status;
+}
+
+static conic_status move_own(cloud_moving *m, const cloud_move *moves, size_t n) {
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < n && status == CONIC_OK; i++)
+    if ((int)(moves[i].from >> CONIC_LAYERS_TEAM_SHIFT) == m->team->index)
+      status = move_one(m, &moves[i]);
+  return status;
+}
+
+/* In the first process, before anything else is told: tells under which name the file stands that all write to, and
+ * takes note where this one writes. Errors: IO (it has no name). */
+static conic_status begin_moves(cloud_moving *m, const char *temporary, int descriptor) {
+  file_message own = {.kind = BEGIN};
+  conic_status status = CONIC_OK;
+  m->descriptor = descriptor;
+  if (!temporary || strlen(temporary) >= LONGEST_PATH)
+    status =
+        conic_fail(m->context, CONIC_ERROR_IO, "%s: cannot write: several processes write to files alone", m->path);
+  else
+    memcpy(own.body.path, temporary, strlen(temporary));
+  return tell_all(m, status, &own, sizeof own);
+}
+
+/* In the first process: tells what is moved next, CONIC_LAYERS_SOME_ENTRIES at most, and moves its own. 0: there is no
+ * more, or, where `status` is a failure, there will not be. */
+static conic_status tell_moves(cloud_moving *m, conic_status status, const cloud_move *moves, size_t n) {
+  file_message own = {.kind = n ? MOVE : END, .n = n};
+  if (m->is_over)
+    return status;
+  if (n > 0)
+    memcpy(own.body.moves, moves, n * sizeof *moves);
+  status = tell_all(m, status, &own, sizeof own);
+  if (status == CONIC_OK && n > 0)
+    return move_own(m, moves, n);
+  if (status != CONIC_OK)
+    return status;
+  m->is_over = 1;
+  return conic_team_agree(m->team, CONIC_OK); /* now all is written */
+}
+
+/* Follows what the first process tells. A failure here is told the next time. */
+static conic_status follow_moves(cloud_moving *m, FILE **stream) {
+  conic_status status = CONIC_OK;
+  file_message *told = conic_memory_allocate(m->context, 1, sizeof *told);
+  file_message without = {.kind = FAILED};
+  if (!told) {
+    tell_all(m, CONIC_ERROR_MEMORY, &without, sizeof without);
+    return CONIC_ERROR_MEMORY;
+  }
+  while (!m->is_over) {
+    told->kind = MOVE;
+    status = tell_all(m, status, told, sizeof *told);
+    if (m->is_over)
+      break;
+    if (told->kind == BEGIN) {
+      *stream = conic_disk_open_stream(told->body.path, "r+b");
+      status = *stream ? CONIC_OK : cannot_write(m);
+      m->descriptor = *stream ? fileno(*stream) : -1;
+    } else if (told->kind == MOVE)
+      status = move_own(m, told->body.moves, (size_t)told->n);
+    else {
+      m->is_over = 1;
+      if (fclose(*stream) != 0)
+        status = cannot_write(m);
+      *stream = NULL;
+      status = conic_team_agree(m->team, status);
+    }
+  }
+  conic_memory_release(m->context, told);
+  return status;
+}
+
+/* In the others: moves what the first process tells of, until it is over. `status` is the first one's, which may have
+ * failed before it told of anything. */
+static conic_status end_moves(cloud_moving *m, conic_status status) {
+  FILE *stream = NULL;
+  if (m->team->index > 0)
+    status = follow_moves(m, &stream);
+  else if (!m->is_over)
+    status = tell_moves(m, status, NULL, 0);
+  if (stream)
+    fclose(stream);
+  conic_memory_release(m->context, m->bytes);
+  return status;
+}
 
 typedef struct writing {
   conic_context *context;
   const conic_team *team; /* null: one process writes all */
-  const conic_layers_forest *forest;
+  const conic_layers_tree *tree;
   conic_layers_header *header;
   conic_layers_order order;
-  conic_layers_entry *nodes; /* some at a time */
-  unsigned char *bytes;      /* of as many entries, or of a cloud */
-  uint64_t offset;           /* where the next cloud's bytes will be */
+  conic_layers_entry *entries; /* some at a time */
+  unsigned char *bytes;        /* of as many entries, or of a cloud */
+  uint64_t offset;             /* where the next cloud's bytes will be */
   conic_checksumming sum;
   FILE *stream;
-  conic_layers_moving *moving; /* null, too */
+  cloud_moving *moving; /* likewise */
 } writing;
 
-typedef conic_status take_nodes(writing *w, size_t n);
+typedef conic_status take_entries(writing *w, size_t n);
 
-static conic_status for_nodes(writing *w, take_nodes *take) {
+static conic_status for_entries(writing *w, take_entries *take) {
   conic_status status = CONIC_OK;
   w->offset = CONIC_LAYERS_HEADER_BYTES + conic_layers_index_bytes(w->header);
-  for (uint64_t first = 0; first < w->order.n && status == CONIC_OK; first += CONIC_LAYERS_SOME_NODES) {
+  for (uint64_t first = 0; first < w->order.n && status == CONIC_OK; first += CONIC_LAYERS_SOME_ENTRIES) {
     size_t n;
-    status = conic_layers_order_read(&w->order, first, w->nodes, &n);
+    status = conic_layers_order_read(&w->order, first, w->entries, &n);
     if (status == CONIC_OK)
       status = take(w, n);
   }
   return status;
 }
 
-/* The entries' bytes as they will be in the file. */
+/* Makes the bytes of entries as they will be in the file. */
 static void make_entries(writing *w, size_t n) {
   for (size_t i = 0; i < n; i++) {
-    w->nodes[i].offset = w->offset;
-    w->offset += w->nodes[i].n_bytes;
+    w->entries[i].offset = w->offset;
+    w->offset += w->entries[i].n_bytes;
   }
-  conic_layers_write_entries(w->nodes, n, w->bytes);
+  conic_layers_write_entries(w->entries, n, w->bytes);
 }
 
 static conic_status measure_clouds(writing *w, size_t n) {
   conic_layers_header *header = w->header;
   for (size_t i = 0; i < n; i++) {
-    const conic_layers_entry *entry = &w->nodes[i];
+    const conic_layers_entry *entry = &w->entries[i];
     header->n_samples += entry->n_samples;
     header->most_samples = entry->n_samples > header->most_samples ? entry->n_samples : header->most_samples;
     header->most_bytes = entry->n_bytes > header->most_bytes ? entry->n_bytes : header->most_bytes;
@@ -70,18 +224,18 @@ static void count_attribute(conic_layers_header *header, conic_layers_attribute 
     header->color_bytes = n_bytes;
 }
 
-/* All that header and index say. */
+/* Finds all that header and index say. */
 static conic_status measure_file(writing *w) {
   conic_layers_header *header = w->header;
   header->n_clouds = (uint32_t)w->order.n;
   header->n_levels = w->order.n_levels;
-  header->splat_radius = w->forest->outline;
+  header->splat_radius = w->tree->outline;
   for (uint32_t i = 0; i < header->schema.n; i++)
-    count_attribute(header, &header->schema.list[i], w->forest->part_bytes[i]);
+    count_attribute(header, &header->schema.list[i], w->tree->attribute_bytes[i]);
   conic_layers_write_table(header, w->bytes);
   conic_checksum_begin(&w->sum);
   conic_checksum_add(&w->sum, w->bytes, conic_layers_table_bytes(header));
-  conic_status status = for_nodes(w, measure_clouds);
+  conic_status status = for_entries(w, measure_clouds);
   if (status != CONIC_OK)
     return status;
   header->file_bytes = w->offset;
@@ -99,8 +253,8 @@ static conic_status write_entries(writing *w, size_t n) {
 static conic_status write_clouds(writing *w, size_t n) {
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < n && status == CONIC_OK; i++) {
-    const conic_layers_entry *entry = &w->nodes[i];
-    status = conic_pile_read(&w->forest->clouds, entry->offset, w->bytes, entry->n_bytes);
+    const conic_layers_entry *entry = &w->entries[i];
+    status = conic_pile_read(&w->tree->clouds, entry->offset, w->bytes, entry->n_bytes);
     if (status == CONIC_OK)
       fwrite(w->bytes, 1, entry->n_bytes, w->stream);
     w->offset += entry->n_bytes;
@@ -111,21 +265,21 @@ static conic_status write_clouds(writing *w, size_t n) {
                             : status;
 }
 
-/* Tells everybody where its clouds go. */
+/* Tells every process where its clouds go. */
 static conic_status move_clouds(writing *w, size_t n) {
-  conic_layers_move moves[CONIC_LAYERS_SOME_NODES];
+  cloud_move moves[CONIC_LAYERS_SOME_ENTRIES];
   for (size_t i = 0; i < n; i++) {
-    moves[i] = (conic_layers_move){w->nodes[i].offset, w->offset, w->nodes[i].n_bytes};
-    w->offset += w->nodes[i].n_bytes;
+    moves[i] = (cloud_move){w->entries[i].offset, w->offset, w->entries[i].n_bytes};
+    w->offset += w->entries[i].n_bytes;
   }
   conic_status status = conic_progress(w->context, "write", (double)w->offset / (double)w->header->file_bytes);
-  return conic_layers_moves_tell(w->moving, status, moves, n);
+  return tell_moves(w->moving, status, moves, n);
 }
 
 static conic_status write_clouds_together(writing *w) {
   conic_moment start = conic_moment_now();
-  conic_status status = fflush(w->stream) == 0 ? for_nodes(w, move_clouds) : CONIC_ERROR_IO;
-  status = conic_layers_moves_tell(w->moving, status, NULL, 0);
+  conic_status status = fflush(w->stream) == 0 ? for_entries(w, move_clouds) : CONIC_ERROR_IO;
+  status = tell_moves(w->moving, status, NULL, 0);
   conic_team_note(w->team, "write", start, w->header->file_bytes);
   return status;
 }
@@ -136,12 +290,12 @@ static conic_status write_file(writing *w) {
   conic_layers_write_table(w->header, w->bytes);
   fwrite(head, 1, sizeof head, w->stream);
   fwrite(w->bytes, 1, conic_layers_table_bytes(w->header), w->stream);
-  conic_status status = for_nodes(w, write_entries);
+  conic_status status = for_entries(w, write_entries);
   if (w->moving)
     return status == CONIC_OK ? write_clouds_together(w) : status;
   if (status == CONIC_OK)
     status = conic_memory_grow(w->context, &w->bytes, 0, w->header->most_bytes, 1);
-  return status == CONIC_OK ? for_nodes(w, write_clouds) : status;
+  return status == CONIC_OK ? for_entries(w, write_clouds) : status;
 }
 
 static conic_status write_measured(writing *w, const char *path) {
@@ -151,44 +305,44 @@ static conic_status write_measured(writing *w, const char *path) {
     return status;
   w->stream = conic_output_stream(output);
   if (w->moving)
-    status = conic_layers_moves_begin(w->moving, conic_output_temporary(output), fileno(w->stream));
+    status = begin_moves(w->moving, conic_output_temporary(output), fileno(w->stream));
   if (status == CONIC_OK)
     status = write_file(w);
   return ferror(w->stream) ? conic_output_commit(output) : conic_output_end(output, status);
 }
 
-static conic_status write_all_bytes(conic_context *context, const char *path, const conic_layers_forest *forest,
-                                    conic_layers_header *header, conic_layers_moving *moving) {
+static conic_status write_all_bytes(conic_context *context, const char *path, const conic_layers_tree *tree,
+                                    conic_layers_header *header, cloud_moving *together) {
   conic_moment start = conic_moment_now();
   writing w = {.context = context,
-               .team = moving ? moving->team : NULL,
-               .forest = forest,
+               .team = together ? together->team : NULL,
+               .tree = tree,
                .header = header,
-               .moving = moving,
-               .nodes = conic_memory_allocate(context, CONIC_LAYERS_SOME_NODES, sizeof *w.nodes),
-               .bytes = conic_memory_allocate(context, CONIC_LAYERS_SOME_NODES, CONIC_LAYERS_ENTRY_BYTES)};
-  conic_status status =
-      w.nodes && w.bytes ? conic_layers_order_nodes(context, forest->nodes.path, forest, &w.order) : CONIC_ERROR_MEMORY;
+               .moving = together,
+               .entries = conic_memory_allocate(context, CONIC_LAYERS_SOME_ENTRIES, sizeof *w.entries),
+               .bytes = conic_memory_allocate(context, CONIC_LAYERS_SOME_ENTRIES, CONIC_LAYERS_ENTRY_BYTES)};
+  conic_status status = w.entries && w.bytes ? conic_layers_order_entries(context, tree->entries.path, tree, &w.order)
+                                             : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     status = measure_file(&w);
   conic_team_note(w.team, "order", start, w.order.n);
   if (status == CONIC_OK)
     status = write_measured(&w, path);
   conic_layers_order_end(&w.order);
-  conic_memory_release(context, w.nodes);
+  conic_memory_release(context, w.entries);
   conic_memory_release(context, w.bytes);
   return status;
 }
 
 conic_status conic_layers_write(conic_context *context, const char *path, const conic_team *team,
-                                const conic_layers_forest *forest, conic_layers_header *header) {
-  conic_layers_moving moving = {.context = context, .team = team, .path = path, .clouds = &forest->clouds};
+                                const conic_layers_tree *tree, conic_layers_header *header) {
+  cloud_moving own = {.context = context, .team = team, .path = path, .clouds = &tree->clouds};
   if (!team)
-    return write_all_bytes(context, path, forest, header, NULL);
-  conic_status status = team->index == 0 ? write_all_bytes(context, path, forest, header, &moving) : CONIC_OK;
+    return write_all_bytes(context, path, tree, header, NULL);
+  conic_status status = team->index == 0 ? write_all_bytes(context, path, tree, header, &own) : CONIC_OK;
   conic_moment start = conic_moment_now();
-  status = conic_layers_moves_end(&moving, status);
+  status = end_moves(&own, status);
   if (team->index > 0)
-    conic_team_note(team, "write", start, conic_spool_bytes(&forest->nodes));
+    conic_team_note(team, "write", start, conic_spool_bytes(&tree->entries));
   return status;
 }

@@ -8,6 +8,7 @@
 #include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
+#include "lod/layers/build/layers_node.h"
 
 enum { NAME_ROOM = 1100, LINE_ROOM = CONIC_FINISHED_HEAD_ROOM + 256 };
 
@@ -24,9 +25,9 @@ static char *allocate_name(const conic_layers_kept *kept) {
   return conic_memory_allocate(kept->context, kept->n_folder + NAME_ROOM, 1);
 }
 
-static void path_of_list(const conic_layers_kept *kept, int rank, char *path) {
+static void path_of_list(const conic_layers_kept *kept, int index, char *path) {
   char name[32];
-  snprintf(name, sizeof name, "%d.%s", rank, list_ending);
+  snprintf(name, sizeof name, "%d.%s", index, list_ending);
   name_in_folder(kept, name, path);
 }
 
@@ -101,7 +102,7 @@ static conic_status read_lists(conic_layers_kept *kept, char *path, int *n_lists
   return status;
 }
 
-/* In the first process. */
+/* Finds the lists, in the first process. */
 static conic_status find_lists(conic_layers_kept *kept, const conic_layers_keeping *keeping, char *path) {
   conic_finished none;
   int n_lists = 0;
@@ -161,7 +162,8 @@ static int is_branch_whole(const conic_layers_kept *kept, const conic_finished_p
          memcmp(file.name, name, file.n_name) == 0 && conic_finished_is_there(kept->folder, &file);
 }
 
-/* The lists' branches, each looked at by one process; inputs are when they are needed. `is_whole` has room for all. */
+/* Looks at the lists' branches, each in one process. Inputs are looked at when they are needed. `is_whole` has room for
+ * all. */
 static conic_status look_at_branches(conic_layers_kept *kept, size_t n, unsigned char *is_whole) {
   int index = kept->team ? kept->team->index : 0, count = kept->team ? kept->team->count : 1;
   conic_finished_part part;
@@ -197,7 +199,7 @@ static void drop_overlapping(conic_layers_kept *kept) {
     kept->n_samples += kept->branches[i].n_samples;
 }
 
-/* In the first process: the list of what was there and is whole; the others' go. */
+/* In the first process: writes the list of what was there and is whole. The other lists go. */
 static conic_status write_found(const conic_layers_kept *kept, const unsigned char *is_whole, char *path) {
   conic_output *output;
   conic_finished_part part;
@@ -219,33 +221,20 @@ static conic_status write_found(const conic_layers_kept *kept, const unsigned ch
   return status;
 }
 
-static conic_status take_branch(conic_layers_kept *kept, const conic_layers_kept_branch *branch) {
-  conic_status status =
-      conic_memory_reserve(kept->context, &kept->branches, kept->n, kept->n + 1, &kept->room, sizeof *kept->branches);
-  if (status == CONIC_OK)
-    kept->branches[kept->n++] = *branch;
-  return status;
-}
-
-static conic_status take_input(conic_layers_kept *kept, uint64_t number, size_t file_at) {
-  conic_status status = conic_memory_reserve(kept->context, &kept->inputs, kept->n_inputs, kept->n_inputs + 1,
-                                             &kept->input_room, sizeof *kept->inputs);
-  if (status == CONIC_OK)
-    kept->inputs[kept->n_inputs++] = (conic_layers_kept_input){number, file_at};
-  return status;
-}
-
 static conic_status take_whole(conic_layers_kept *kept, const unsigned char *is_whole) {
   conic_finished_part part;
   conic_layers_kept_branch branch;
+  conic_layers_kept_input input;
   conic_status status = CONIC_OK;
-  uint64_t number;
   size_t i = 0;
-  for (size_t at = 0; status == CONIC_OK && conic_finished_next(&kept->found, &at, &part); i++)
-    if (is_whole[i] && is_of_input(&part, &number))
-      status = take_input(kept, number, part.files_at);
+  for (size_t at = 0; status == CONIC_OK && conic_finished_next(&kept->found, &at, &part); i++) {
+    input.file_at = part.files_at;
+    if (is_whole[i] && is_of_input(&part, &input.number))
+      status =
+          conic_memory_append(kept->context, &kept->inputs, &kept->n_inputs, &kept->input_room, &input, sizeof input);
     else if (is_whole[i] && parse_branch(&part, &branch))
-      status = take_branch(kept, &branch);
+      status = conic_memory_append(kept->context, &kept->branches, &kept->n, &kept->room, &branch, sizeof branch);
+  }
   if (status == CONIC_OK)
     drop_overlapping(kept);
   return status;
@@ -356,14 +345,7 @@ void conic_layers_kept_remove(conic_layers_kept *kept) {
 /* --- while it is built --- */
 
 const conic_layers_kept_branch *conic_layers_kept_find(const conic_layers_kept *kept, uint64_t key) {
-  size_t low = 0, high = kept->n; /* of those that begin no later than the key */
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (kept->branches[middle].key <= key)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  size_t low = conic_layers_count_to(kept->branches, sizeof *kept->branches, kept->n, key);
   return low > 0 && key <= last_key_of(&kept->branches[low - 1]) ? &kept->branches[low - 1] : NULL;
 }
 

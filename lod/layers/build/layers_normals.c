@@ -1,5 +1,4 @@
-#include "lod/layers/build/layers_normals.h"
-
+/* Normals for samples that came without. */
 #include <math.h>
 #include <string.h>
 
@@ -8,6 +7,7 @@
 #include "core/base/trigonometry.h"
 #include "core/estimate/estimate.h"
 #include "core/estimate/voronoi_cell.h"
+#include "lod/layers/build/layers_node.h"
 #include "lod/layers/format/layers_axes.h"
 #include "lod/layers/format/layers_key.h"
 
@@ -144,7 +144,7 @@ static void place_samples(const unsigned char *samples, size_t stride, size_t n,
 }
 
 /* How far the part of the plane reaches that is nearer to sample i than to its neighbours, with the overlap that other
- * outlines have; no farther than in core/estimate, as at a border. In steps. */
+ * outlines have. As at a border in core/estimate, it reaches no farther than a few spacings. In steps. */
 static double outline_among(const sample_grid *g, const neighbours *found, uint32_t i, const float normal[3]) {
   conic_voronoi_cell cell;
   float u[3], v[3];
@@ -165,7 +165,7 @@ static double outline_among(const sample_grid *g, const neighbours *found, uint3
   return CONIC_OUTLINE_COVER * sqrt(cell.greatest2);
 }
 
-/* Where a sample was seen from: a normal that looks away is turned, and one that was not found is that direction. */
+/* Turns a normal to where its sample was seen from. Where none was found, it is that direction. */
 static void turn_to_sight(const conic_layers_sample *sample, int is_found, float normal[3]) {
   float sight[3], along = 0.0f;
   if ((sample->bare & CONIC_LAYERS_SEEN) != CONIC_LAYERS_SEEN)

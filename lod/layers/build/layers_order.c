@@ -1,24 +1,24 @@
-#include "lod/layers/build/layers_order.h"
-
+/* The entries of a grown tree in the order of the file. */
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "lod/layers/build/layers_grow.h"
 
 /* A node whose children are yet to come. */
 typedef struct pending_node {
   uint32_t level, number;
 } pending_node;
 
-/* From the last node to the first. Behind each pair of siblings, looked at so, comes all that is below the second, then
- * all that is below the first: so the next pair's parent is the last of those that still want children, and each level
- * is passed through from its end. */
+/* Entries are looked at from the last to the first. Looked at so, behind each pair of siblings comes all that is below
+ * the second, then all that is below the first. So the next pair's parent is the last node that still wants children,
+ * and each level is passed through from its end. */
 typedef struct order_walk {
   conic_layers_order *order;
-  const conic_layers_forest *forest;
+  const conic_layers_tree *tree;
   uint64_t left; /* nodes not yet read */
   size_t n_read;
-  conic_layers_entry *nodes; /* CONIC_LAYERS_SOME_NODES */
+  conic_layers_entry *entries; /* CONIC_LAYERS_SOME_ENTRIES */
   size_t n_pending;
   pending_node pending[2 * CONIC_LAYERS_MOST_LEVELS];
   uint64_t ends[CONIC_LAYERS_MOST_LEVELS + 1];    /* of the levels: what is not numbered yet ends here */
@@ -29,11 +29,12 @@ typedef struct order_walk {
 static conic_status read_last(order_walk *w, conic_layers_entry **node) {
   conic_status status = CONIC_OK;
   if (w->n_read == 0) {
-    w->n_read = w->left < CONIC_LAYERS_SOME_NODES ? (size_t)w->left : CONIC_LAYERS_SOME_NODES;
+    w->n_read = w->left < CONIC_LAYERS_SOME_ENTRIES ? (size_t)w->left : CONIC_LAYERS_SOME_ENTRIES;
     w->left -= w->n_read;
-    status = conic_spool_read(&w->forest->nodes, w->left * sizeof *w->nodes, w->nodes, w->n_read * sizeof *w->nodes);
+    status =
+        conic_spool_read(&w->tree->entries, w->left * sizeof *w->entries, w->entries, w->n_read * sizeof *w->entries);
   }
-  *node = &w->nodes[w->n_read ? --w->n_read : 0];
+  *node = &w->entries[w->n_read ? --w->n_read : 0];
   return status;
 }
 
@@ -63,7 +64,7 @@ static conic_status visit_pair(order_walk *w) {
   pending_node parent = w->pending[--w->n_pending], found[2];
   int is_inner[2];
   if (parent.level + 1 >= CONIC_LAYERS_MOST_LEVELS)
-    return conic_fail(w->forest->nodes.context, CONIC_ERROR_INPUT, "%s: more than %d levels", w->order->file.path,
+    return conic_fail(w->tree->entries.context, CONIC_ERROR_INPUT, "%s: more than %d levels", w->order->file.path,
                       CONIC_LAYERS_MOST_LEVELS);
   for (int i = 1; i >= 0; i--) {
     conic_layers_entry *node;
@@ -96,7 +97,7 @@ static conic_status walk_all(order_walk *w) {
   return status;
 }
 
-/* From how many nodes the levels have to where they end. */
+/* Turns how many nodes the levels have into where they end. */
 static void lay_out_levels(order_walk *w) {
   uint64_t n = 0;
   for (uint32_t i = 0; i < CONIC_LAYERS_MOST_LEVELS; i++) {
@@ -107,19 +108,19 @@ static void lay_out_levels(order_walk *w) {
   memcpy(w->claimed, w->ends, sizeof w->claimed);
 }
 
-conic_status conic_layers_order_nodes(conic_context *context, const char *path, const conic_layers_forest *forest,
-                                      conic_layers_order *order) {
+conic_status conic_layers_order_entries(conic_context *context, const char *path, const conic_layers_tree *tree,
+                                        conic_layers_order *order) {
   memset(order, 0, sizeof *order);
-  order->n = conic_spool_bytes(&forest->nodes) / sizeof(conic_layers_entry);
+  order->n = conic_spool_bytes(&tree->entries) / sizeof(conic_layers_entry);
   if (order->n >= UINT32_MAX)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: not written: more clouds than a file may have", path);
   order_walk *w = conic_memory_allocate_zeroed(context, 1, sizeof *w);
-  conic_layers_entry *nodes = conic_memory_allocate(context, CONIC_LAYERS_SOME_NODES, sizeof *nodes);
-  conic_status status = w && nodes ? conic_scratch_open(context, path, &order->file) : CONIC_ERROR_MEMORY;
+  conic_layers_entry *entries = conic_memory_allocate(context, CONIC_LAYERS_SOME_ENTRIES, sizeof *entries);
+  conic_status status = w && entries ? conic_scratch_open(context, path, &order->file) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     w->order = order;
-    w->forest = forest;
-    w->nodes = nodes;
+    w->tree = tree;
+    w->entries = entries;
     status = walk_all(w);
   }
   if (status == CONIC_OK) {
@@ -127,7 +128,7 @@ conic_status conic_layers_order_nodes(conic_context *context, const char *path, 
     w->is_numbering = 1;
     status = walk_all(w);
   }
-  conic_memory_release(context, nodes);
+  conic_memory_release(context, entries);
   conic_memory_release(context, w);
   return status;
 }
@@ -136,8 +137,8 @@ void conic_layers_order_end(conic_layers_order *order) {
   conic_scratch_close(&order->file);
 }
 
-conic_status conic_layers_order_read(const conic_layers_order *order, uint64_t first, conic_layers_entry *nodes,
+conic_status conic_layers_order_read(const conic_layers_order *order, uint64_t first, conic_layers_entry *entries,
                                      size_t *n) {
-  *n = order->n - first < CONIC_LAYERS_SOME_NODES ? (size_t)(order->n - first) : CONIC_LAYERS_SOME_NODES;
-  return conic_scratch_read(&order->file, first * sizeof *nodes, nodes, *n * sizeof *nodes);
+  *n = order->n - first < CONIC_LAYERS_SOME_ENTRIES ? (size_t)(order->n - first) : CONIC_LAYERS_SOME_ENTRIES;
+  return conic_scratch_read(&order->file, first * sizeof *entries, entries, *n * sizeof *entries);
 }

@@ -1,13 +1,13 @@
-#include "lod/layers/build/layers_payload.h"
-
+/* What of a sample goes into the cloud beside place, normal, colour and size. */
 #include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/real.h"
-#include "lod/layers/format/layers_split.h"
+#include "lod/layers/build/layers_raws.h"
+#include "lod/layers/format/layers_code.h"
 
-/* Of a length's 23 bits of fraction so many are kept. */
+/* How many of a length's 23 bits of fraction are kept. */
 enum { AXES_KEPT = 12, MOST_OF_SIZE = 4, FRACTION_BITS = 23 };
 
 static conic_status add_values(conic_layers_payload *p, const conic_point_values *values) {
@@ -21,8 +21,6 @@ static conic_status add_values(conic_layers_payload *p, const conic_point_values
     p->seen[p->n_values] = conic_memory_allocate_zeroed(p->context, 1, sizeof **p->seen);
     if (!p->seen[p->n_values])
       return CONIC_ERROR_MEMORY;
-    p->low[p->n_values] = HUGE_VAL;
-    p->high[p->n_values] = -HUGE_VAL;
     p->value[p->n_values++] = p->schema.n - 1;
   }
   return CONIC_OK;
@@ -34,7 +32,7 @@ conic_status conic_layers_payload_begin(conic_context *context, const conic_spla
   memset(payload, 0, sizeof *payload);
   payload->context = context;
   payload->cutoff = cutoff;
-  payload->shortest = HUGE_VALF;
+  conic_layers_facts_init(&payload->facts);
   conic_layers_schema_add(schema, CONIC_LAYERS_POSITION, "position", 0);
   conic_layers_schema_add(schema, is_full ? CONIC_LAYERS_AXES : CONIC_LAYERS_NORMAL, is_full ? "axes" : "normal", 0);
   if (batch->color[0])
@@ -85,8 +83,8 @@ static void take_ellipse(conic_layers_payload *p, const conic_splats *batch, siz
   if (batch->tangent_u[0] && conic_layers_code_axes(u, v, &axes)) {
     for (int k = 0; k < 2; k++) {
       axes.length[k] = conic_layers_axis_length(axes.length[k]);
-      p->shortest = axes.length[k] < p->shortest ? axes.length[k] : p->shortest;
-      p->longest = axes.length[k] > p->longest ? axes.length[k] : p->longest;
+      p->facts.shortest = axes.length[k] < p->facts.shortest ? axes.length[k] : p->facts.shortest;
+      p->facts.longest = axes.length[k] > p->facts.longest ? axes.length[k] : p->facts.longest;
     }
   }
   memcpy(bytes_in_record(p, (uint32_t)p->axes, extra), &axes, sizeof axes);
@@ -104,7 +102,7 @@ static void take_clip_lines(conic_layers_payload *p, const conic_splats *batch, 
   const conic_clip *clip = conic_layers_payload_clip(p, batch, i);
   if (clip)
     conic_layers_code_lines(clip, &lines);
-  p->n_clips += lines.kind > 0;
+  p->facts.n_clips += lines.kind > 0;
   memcpy(bytes_in_record(p, (uint32_t)p->clip, extra), &lines, sizeof lines);
 }
 
@@ -123,8 +121,8 @@ static void take_named_values(conic_layers_payload *p, size_t i, void *extra) {
     conic_layers_number_put(&p->schema.list[p->value[k]], value, bytes_in_record(p, p->value[k], extra));
     conic_value_sample_add(p->seen[k], value);
     if (value - value == 0.0) {
-      p->low[k] = value < p->low[k] ? value : p->low[k];
-      p->high[k] = value > p->high[k] ? value : p->high[k];
+      p->facts.least[k] = value < p->facts.least[k] ? value : p->facts.least[k];
+      p->facts.greatest[k] = value > p->facts.greatest[k] ? value : p->facts.greatest[k];
     }
   }
 }
@@ -138,22 +136,20 @@ void conic_layers_payload_take(conic_layers_payload *payload, const conic_splats
     uint8_t dot = batch->dot && batch->dot[i] != 0.0f;
     take_ellipse(payload, batch, i, extra);
     take_clip_lines(payload, batch, i, extra);
-    payload->n_translucent += code != 65535;
-    payload->n_dots += dot;
+    payload->facts.n_translucent += code != 65535;
+    payload->facts.n_dots += dot;
     memcpy(bytes_in_record(payload, (uint32_t)payload->opacity, extra), bytes, sizeof bytes);
     memcpy(bytes_in_record(payload, (uint32_t)payload->dot, extra), &dot, sizeof dot);
   }
   take_named_values(payload, i, extra);
 }
 
-/* The upper bits of a float, those of its fraction that are dropped left out. */
+/* The bits of a float, without those of its fraction that are dropped. */
 static int64_t upper_bits(double length, unsigned n_kept) {
   return (int64_t)(conic_bits_of_float((float)length) >> (FRACTION_BITS - n_kept));
 }
 
-static void settle_sizes(conic_layers_payload *p, conic_layers_attribute *sizes, double spacing) {
-  double low = (double)p->shortest < spacing / 16.0 ? (double)p->shortest : spacing / 16.0;
-  double high = (double)p->longest > 16.0 * spacing ? (double)p->longest : 16.0 * spacing;
+static void settle_sizes(double low, double high, conic_layers_attribute *sizes) {
   unsigned n_kept = MOST_OF_SIZE;
   while (n_kept > 0 && upper_bits(high, n_kept) - upper_bits(low, n_kept) > 254)
     n_kept--;
@@ -162,36 +158,37 @@ static void settle_sizes(conic_layers_payload *p, conic_layers_attribute *sizes,
   sizes->error = 0.5 / (double)(1u << n_kept);
 }
 
-static void settle_axes(conic_layers_payload *p, conic_layers_attribute *axes, double spacing) {
-  double low = (double)p->shortest < spacing / 16.0 ? (double)p->shortest : spacing / 16.0;
-  double high = (double)p->longest > 16.0 * spacing ? (double)p->longest : 16.0 * spacing;
+static void settle_axes(double low, double high, float cutoff, conic_layers_attribute *axes) {
   int64_t first = upper_bits(low, AXES_KEPT), least = upper_bits(high, AXES_KEPT) - 65534;
   axes->offset = (double)(first > least ? first : least > 0 ? least : 0);
-  axes->scale = (double)p->cutoff;
+  axes->scale = (double)cutoff;
   axes->error = 0.5 / (double)(1 << AXES_KEPT);
 }
 
 void conic_layers_payload_settle(conic_layers_payload *payload, double spacing) {
   conic_layers_schema *schema = &payload->schema;
+  const conic_layers_facts *facts = &payload->facts;
+  double low = (double)facts->shortest < spacing / 16.0 ? (double)facts->shortest : spacing / 16.0;
+  double high = (double)facts->longest > 16.0 * spacing ? (double)facts->longest : 16.0 * spacing;
   for (size_t k = 0; k < payload->n_values; k++) {
     conic_layers_attribute *value = &schema->list[payload->value[k]];
-    if (payload->low[k] <= payload->high[k]) {
-      value->low = payload->low[k];
-      value->high = payload->high[k];
+    if (facts->least[k] <= facts->greatest[k]) {
+      value->low = facts->least[k];
+      value->high = facts->greatest[k];
     }
     conic_value_sample_limits(payload->seen[k], &value->typical[0], &value->typical[1]);
   }
   for (uint32_t i = 0; i < schema->n; i++)
     if (schema->list[i].kind == CONIC_LAYERS_SIZE)
-      settle_sizes(payload, &schema->list[i], spacing);
+      settle_sizes(low, high, &schema->list[i]);
     else if (schema->list[i].kind == CONIC_LAYERS_AXES)
-      settle_axes(payload, &schema->list[i], spacing);
+      settle_axes(low, high, payload->cutoff, &schema->list[i]);
   if (payload->axes) { /* from the last to the first, so that numbers stay */
-    if (!payload->n_dots)
+    if (!facts->n_dots)
       conic_layers_schema_drop(schema, (uint32_t)payload->dot);
-    if (!payload->n_clips)
+    if (!facts->n_clips)
       conic_layers_schema_drop(schema, (uint32_t)payload->clip);
-    if (!payload->n_translucent)
+    if (!facts->n_translucent)
       conic_layers_schema_drop(schema, (uint32_t)payload->opacity);
   }
 }

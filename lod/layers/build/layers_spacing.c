@@ -1,5 +1,5 @@
-/* The sampling distance of samples that do not fit into memory. A few of them, taken all over, give a guess; a pass
- * over all finds the true neighbours of some of these, which the guess says how far to look for. */
+/* The sampling distance of samples that do not fit into memory. A few of them, taken all over, give a guess of it. The
+ * guess says how far to look for the neighbours of some of the few, and a pass over all samples finds these. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/real.h"
-#include "lod/layers/build/layers_intake.h"
+#include "lod/layers/build/layers_raws.h"
 
 enum { N_PLACES = 256, N_NEAREST = 8, N_CELLS = 16384, MOST_PASSES = 6 };
 
@@ -56,14 +56,14 @@ static void mark_cells(spacing_search *s, uint32_t i_place) {
   }
 }
 
-static void lay_out_marks(const conic_layers_intake *intake, double edge, spacing_search *s) {
+static void lay_out_marks(const conic_layers_raws *raws, double edge, spacing_search *s) {
   s->edge = edge;
   s->n_marks = 0;
-  s->n_places = intake->n_some < N_PLACES ? intake->n_some : N_PLACES;
-  memcpy(s->low, intake->low, sizeof s->low);
+  s->n_places = raws->n_some < N_PLACES ? raws->n_some : N_PLACES;
+  memcpy(s->low, raws->payload.facts.low, sizeof s->low);
   memset(s->first, 0xff, sizeof s->first);
   for (size_t i = 0; i < s->n_places; i++) {
-    memcpy(s->places[i].at, intake->some[i * intake->n_some / s->n_places], sizeof s->places[i].at);
+    memcpy(s->places[i].at, raws->some[i * raws->n_some / s->n_places], sizeof s->places[i].at);
     for (int k = 0; k <= N_NEAREST; k++)
       s->places[i].nearest2[k] = HUGE_VAL;
     mark_cells(s, (uint32_t)i);
@@ -89,35 +89,31 @@ static void look_at_sample(spacing_search *s, const double position[3]) {
   }
 }
 
-static conic_status look_at_all(const conic_layers_intake *intake, unsigned char *samples, spacing_search *s) {
-  uint64_t offset = 0, n_done = 0;
-  conic_layers_block block;
-  int is_there = 1;
-  conic_status status = conic_layers_intake_read(intake, &offset, &block, samples, &is_there);
-  while (status == CONIC_OK && is_there) {
-    for (size_t i = 0; i < block.count; i++) {
-      double position[3];
-      for (int axis = 0; axis < 3; axis++)
-        position[axis] =
-            block.origin[axis] + (double)conic_layers_raw_at(samples, intake->raw_bytes, i)->position[axis];
-      look_at_sample(s, position);
-    }
-    n_done += block.count;
-    status = conic_progress(intake->context, "measure", (double)n_done / (double)intake->n_own);
-    if (status == CONIC_OK)
-      status = conic_layers_intake_read(intake, &offset, &block, samples, &is_there);
+typedef struct looking {
+  const conic_layers_raws *raws;
+  spacing_search *search;
+} looking;
+
+static conic_status look_at_block(void *data, const conic_layers_block *block, const unsigned char *samples) {
+  const looking *l = data;
+  for (size_t i = 0; i < block->count; i++) {
+    const conic_layers_raw *raw = conic_layers_raw_at(samples, l->raws->raw_bytes, i);
+    double position[3];
+    for (int axis = 0; axis < 3; axis++)
+      position[axis] = block->origin[axis] + (double)raw->position[axis];
+    look_at_sample(l->search, position);
   }
-  return status;
+  return CONIC_OK;
 }
 
-/* What the others of a team have found, too. */
-static conic_status unite_places(const conic_layers_intake *intake, spacing_search *s, conic_status status) {
+/* Adds what the others of a team have found. */
+static conic_status combine_places(const conic_layers_raws *raws, spacing_search *s, conic_status status) {
   enum { N = N_NEAREST + 1 };
-  const conic_team *team = intake->team;
+  const conic_team *team = raws->team;
   double own[N_PLACES][N], *all;
   if (!team)
     return status;
-  all = conic_memory_allocate(intake->context, (size_t)team->count, sizeof own);
+  all = conic_memory_allocate(raws->context, (size_t)team->count, sizeof own);
   status = conic_team_agree(team, status == CONIC_OK && !all ? CONIC_ERROR_MEMORY : status);
   for (size_t i = 0; i < s->n_places; i++)
     memcpy(own[i], s->places[i].nearest2, sizeof own[i]);
@@ -127,7 +123,7 @@ static conic_status unite_places(const conic_layers_intake *intake, spacing_sear
     for (int k = 0; k < N && (int)(i / s->n_places) != team->index; k++)
       if (all[i * N + (size_t)k] < s->places[i % s->n_places].nearest2[N_NEAREST])
         keep_distance(&s->places[i % s->n_places], all[i * N + (size_t)k]);
-  conic_memory_release(intake->context, all);
+  conic_memory_release(raws->context, all);
   return status;
 }
 
@@ -144,40 +140,40 @@ static double median_of_places(const spacing_search *s) {
   return spacings[(n - 1) / 2];
 }
 
-/* What the spacing of the few says of that of all. */
-static conic_status guess_spacing(const conic_layers_intake *intake, double *guess) {
+/* Guesses the spacing of all samples from that of the few. */
+static conic_status guess_spacing(const conic_layers_raws *raws, double *guess) {
+  const conic_layers_facts *facts = &raws->payload.facts;
   conic_splats few;
-  conic_status status = conic_splats_allocate(intake->context, intake->n_some, 0, &few);
+  conic_status status = conic_splats_allocate(raws->context, raws->n_some, 0, &few);
   if (status != CONIC_OK)
     return status;
-  memcpy(few.origin, intake->low, sizeof few.origin);
+  memcpy(few.origin, facts->low, sizeof few.origin);
   for (int axis = 0; axis < 3; axis++)
-    for (size_t i = 0; i < intake->n_some; i++)
-      few.position[axis][i] = (float)(intake->some[i][axis] - intake->low[axis]);
-  status = conic_splats_spacing(intake->context, &few, guess);
-  *guess *= sqrt((double)intake->n_some / (double)intake->n_samples);
-  conic_splats_release(intake->context, &few);
+    for (size_t i = 0; i < raws->n_some; i++)
+      few.position[axis][i] = (float)(raws->some[i][axis] - facts->low[axis]);
+  status = conic_splats_spacing(raws->context, &few, guess);
+  *guess *= sqrt((double)raws->n_some / (double)facts->n_samples);
+  conic_splats_release(raws->context, &few);
   return status;
 }
 
-conic_status conic_layers_intake_spacing(conic_layers_intake *intake, double *spacing) {
+conic_status conic_layers_raws_spacing(conic_layers_raws *raws, double *spacing) {
   *spacing = 0.0;
-  conic_status status = conic_team_agree(intake->team, guess_spacing(intake, spacing));
-  if (status != CONIC_OK || !(*spacing > 0.0) || intake->n_some == intake->n_samples)
+  conic_status status = conic_team_agree(raws->team, guess_spacing(raws, spacing));
+  if (status != CONIC_OK || !(*spacing > 0.0) || raws->n_some == raws->payload.facts.n_samples)
     return status; /* the few are all */
   double edge = 6.0 * *spacing, guess = *spacing;
-  spacing_search *s = conic_memory_allocate(intake->context, 1, sizeof *s);
-  unsigned char *samples = conic_memory_allocate(intake->context, CONIC_LAYERS_BLOCK, intake->raw_bytes);
-  status = conic_team_agree(intake->team, s && samples ? CONIC_OK : CONIC_ERROR_MEMORY);
+  spacing_search *s = conic_memory_allocate(raws->context, 1, sizeof *s);
+  looking all = {raws, s};
+  status = conic_team_agree(raws->team, s ? CONIC_OK : CONIC_ERROR_MEMORY);
   *spacing = 0.0;
   for (int i = 0; i < MOST_PASSES && status == CONIC_OK && !(*spacing > 0.0); i++, edge *= 3.0) {
-    lay_out_marks(intake, edge, s);
-    status = unite_places(intake, s, look_at_all(intake, samples, s));
+    lay_out_marks(raws, edge, s);
+    status = combine_places(raws, s, conic_layers_raws_visit(raws, "measure", look_at_block, &all));
     *spacing = median_of_places(s);
   }
   if (!(*spacing > 0.0))
     *spacing = guess;
-  conic_memory_release(intake->context, samples);
-  conic_memory_release(intake->context, s);
+  conic_memory_release(raws->context, s);
   return status;
 }

@@ -1,6 +1,5 @@
-/* Building one layered cloud by several processes, which all see the same disk: each takes in a part of the samples,
- * and grows a part of the tree. The file is the one that one process makes of all samples, those of the first process
- * first. */
+/* Building one layered cloud by a team of processes, which all see the same disk. Each takes in a part of the samples,
+ * and grows a part of the tree. The file is the same as one process makes of all samples, the first process's first. */
 #ifndef CONIC_LAYERS_TEAM_H
 #define CONIC_LAYERS_TEAM_H
 
@@ -9,11 +8,11 @@
 #include "conic/layers.h"
 #include "core/base/team.h"
 
-/* What is kept beside the file while it is built (layers_kept.h), so that it can be gone on with after any end. */
+/* How a file is kept while it is built (layers_kept.h), so that building can go on after any end. */
 typedef struct conic_layers_keeping {
-  const char *key; /* 64 hex digits: of all that decides bytes of the file; it must outlive the builder */
-  int goes_on;     /* with what is kept of that key; else it is forgotten */
-  int may_begin;   /* where nothing is */
+  const char *key; /* 64 hex digits of all that decides the file's bytes; it must outlive the builder */
+  int goes_on;     /* goes on with what is kept of that key; else that is forgotten */
+  int may_begin;   /* begins where nothing is kept */
 } conic_layers_keeping;
 
 /* Some of the bytes that are kept. */
@@ -23,9 +22,9 @@ typedef struct conic_layers_kept_bytes {
 } conic_layers_kept_bytes;
 
 /* As conic_layers_builder_open, in every process of a team, which may be null. Each appends its own samples, and then
- * all finish. Whoever has failed abandons the builder, at which the others fail when they finish, with CANCELLED. The
- * statistics are whole in the first process. `keeping`, the same in all, may be null: nothing is kept. Collective:
- * where it fails in one process, it does in all. Errors: also INPUT (what is kept is of another key, or not there). */
+ * all finish. A process that has failed abandons the builder; the others then fail with CANCELLED when they finish. The
+ * statistics are whole in the first process. `keeping` is the same in all; null: nothing is kept. Collective: where it
+ * fails in one process, it does in all. Errors: also INPUT (what is kept is of another key, or not there). */
 conic_status conic_layers_builder_open_team(conic_context *context, const char *path,
                                             const conic_layers_options *options, const conic_team *team,
                                             const conic_layers_keeping *keeping, conic_layers_builder **builder);
@@ -33,15 +32,14 @@ conic_status conic_layers_builder_open_team(conic_context *context, const char *
 /* How many samples are in branches that were finished when it was opened. */
 uint64_t conic_layers_builder_finished(const conic_layers_builder *builder);
 
-/* Keeps what has been made of an input, by its number, with the branches; nothing is done where these are not kept.
- * Errors: MEMORY, IO. */
+/* Keeps what has been made of an input, by its number, beside the branches, if these are kept. Errors: MEMORY, IO. */
 conic_status conic_layers_builder_keep(conic_layers_builder *builder, uint64_t input,
                                        const conic_layers_kept_bytes *pieces, size_t n_pieces);
-/* Opens what is kept of an input for reading, if it is so many bytes, as they were written; else null. */
+/* Opens what is kept of an input for reading. Null: it is not there, or not so many bytes as they were written. */
 FILE *conic_layers_builder_open_kept(const conic_layers_builder *builder, uint64_t input, uint64_t n_bytes);
 
-/* Whether all samples have colours, as the first batch of all has them; `batch` is the first one of this process, and
- * may have to wait for the processes before. Errors: MEMORY, CANCELLED. */
-conic_status conic_layers_builder_meet(conic_layers_builder *builder, const conic_splats *batch, int *has_colors);
+/* Says whether all samples have colours: whether the team's first batch has. `batch` is the first one of this process.
+ * It waits for the processes before. Errors: MEMORY, CANCELLED. */
+conic_status conic_layers_builder_agree(conic_layers_builder *builder, const conic_splats *batch, int *has_colors);
 
 #endif

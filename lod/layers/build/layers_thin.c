@@ -33,7 +33,7 @@ struct conic_thinner {
   size_t n_ordered;
   size_t n_chosen;
   uint32_t *chosen;    /* which, and */
-  uint32_t *rank;      /* of a point that is chosen, how many before it are */
+  uint32_t *number;    /* of a point that is chosen, how many before it are */
   chosen_point *links; /* where */
   size_t n_cells;      /* a power of two, over twice the chosen */
   cell *cells;
@@ -63,10 +63,10 @@ conic_status conic_thinner_create(conic_context *context, size_t most_points, co
   made->points = conic_memory_allocate(context, most_points, sizeof *made->points);
   made->order = conic_memory_allocate(context, most_points, sizeof *made->order);
   made->chosen = conic_memory_allocate(context, most_points, sizeof *made->chosen);
-  made->rank = conic_memory_allocate(context, most_points, sizeof *made->rank);
+  made->number = conic_memory_allocate(context, most_points, sizeof *made->number);
   made->links = conic_memory_allocate(context, most_points, sizeof *made->links);
   made->cells = conic_memory_allocate(context, n_cells, sizeof *made->cells);
-  if (made->points && made->order && made->chosen && made->rank && made->links && made->cells) {
+  if (made->points && made->order && made->chosen && made->number && made->links && made->cells) {
     *thinner = made;
     return CONIC_OK;
   }
@@ -77,12 +77,9 @@ conic_status conic_thinner_create(conic_context *context, size_t most_points, co
 void conic_thinner_destroy(conic_context *context, conic_thinner *thinner) {
   if (!thinner)
     return;
-  conic_memory_release(context, thinner->points);
-  conic_memory_release(context, thinner->order);
-  conic_memory_release(context, thinner->chosen);
-  conic_memory_release(context, thinner->rank);
-  conic_memory_release(context, thinner->links);
-  conic_memory_release(context, thinner->cells);
+  void *const owned[] = {thinner->points, thinner->order, thinner->chosen,
+                         thinner->number, thinner->links, thinner->cells};
+  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
   conic_memory_release(context, thinner);
 }
 
@@ -258,7 +255,7 @@ size_t conic_thinner_choose(conic_thinner *thinner, size_t target, size_t most, 
     is_chosen[thinner->chosen[i]] = 1;
   for (size_t i = 0, k = 0; i < thinner->n; i++)
     if (is_chosen[i])
-      thinner->rank[i] = (uint32_t)k++;
+      thinner->number[i] = (uint32_t)k++;
   *distance = best;
   return n;
 }
@@ -309,8 +306,8 @@ size_t conic_thinner_beside(const conic_thinner *thinner, const float at[3], int
   return n;
 }
 
-size_t conic_thinner_ranks(const conic_thinner *thinner, uint32_t *ranks) {
+size_t conic_thinner_numbers(const conic_thinner *thinner, uint32_t *numbers) {
   for (size_t i = 0; i < thinner->n_chosen; i++)
-    ranks[i] = thinner->rank[thinner->chosen[i]];
+    numbers[i] = thinner->number[thinner->chosen[i]];
   return thinner->n_chosen;
 }

@@ -19,23 +19,42 @@ void conic_thinner_destroy(conic_context *context, conic_thinner *thinner);
 /* What that takes. */
 size_t conic_thinner_bytes(size_t most_points);
 
-/* Makes the n points with these keys the ones that are chosen from; in the order in which they are given later. */
+/* Loads the n points with these keys, to choose from. Later calls speak of them in this order. */
 void conic_thinner_load(conic_thinner *thinner, const uint64_t *keys, size_t stride_bytes, size_t n);
 
-/* Chooses about `target` of the loaded points, and no more than `most`; *distance is a guess of the distance, and the
- * one that was taken. Returns how many; is_chosen[i] says which. They stay in the grid for conic_thinner_reach. */
+/* Chooses about `target` of the loaded points, and no more than `most`. *distance is a guess of the distance, and then
+ * the one that was taken. Returns how many; is_chosen[i] says which. They stay in the grid for conic_thinner_reach. */
 size_t conic_thinner_choose(conic_thinner *thinner, size_t target, size_t most, double *distance, uint8_t *is_chosen);
 
-/* How far the n points of these keys are at most from a chosen one, `beyond` added to each; `reach` where that is more.
- * The greatest of several is the same in whichever order they come; several threads may ask. */
+/* The greatest distance of the n points of these keys from a chosen one, plus `beyond`; or `reach` where that is more.
+ * The greatest of several sets is the same in whichever order they come. Several threads may ask. */
 double conic_thinner_reach(const conic_thinner *thinner, const uint64_t *keys, size_t n, double beyond, double reach);
 
-/* Chosen points about a place, by their numbers in the order in which they were chosen, up to `most`: all within the
- * distance of it, or, `is_wide`, all within twice that. Returns how many. */
+/* Lists up to `most` chosen points about a place, by their numbers in the order in which they were chosen: all within
+ * the distance of it, or, `is_wide`, all within twice that. Returns how many. */
 size_t conic_thinner_beside(const conic_thinner *thinner, const float at[3], int is_wide, uint32_t *list, size_t most);
 
-/* Of the chosen points, in the order in which they were, which each is in the order of the loaded ones. Returns how
- * many there are. */
-size_t conic_thinner_ranks(const conic_thinner *thinner, uint32_t *ranks);
+/* numbers[i] is how many chosen points were loaded before the one that was chosen as number i. Returns how many were
+ * chosen. */
+size_t conic_thinner_numbers(const conic_thinner *thinner, uint32_t *numbers);
+
+/* --- how far full resolution is from the discs that stand for it (layers_discs.c) --- */
+
+/* A sample as it is drawn; lengths in steps of the grid. */
+typedef struct conic_layers_disc {
+  float center[3], normal[3], radius;
+} conic_layers_disc;
+
+/* The discs of the points that a thinner has chosen, in the order in which they were; several threads may look. */
+typedef struct conic_layers_chosen {
+  const conic_thinner *thinner;
+  const conic_layers_disc *discs;
+} conic_layers_chosen;
+
+/* The greatest distance of the n discs from the chosen ones, plus `beyond`, by which they are off already; or `error`
+ * where that is more. It is a bound where one disc holds all of another; else it is measured at the middle and at 16
+ * places around it. The greatest of several sets is the same in whichever order they come. */
+double conic_layers_disc_error(const conic_layers_chosen *chosen, const conic_layers_disc *discs, size_t n,
+                               double beyond, double error);
 
 #endif

@@ -1,4 +1,5 @@
-#include "lod/layers/draw/layers_bands.h"
+/* A picture, or a window of it, drawn in bands, or in parts of bands, each with no more splats than memory holds. */
+#include "lod/layers/draw/layers_spill.h"
 
 #include <math.h>
 #include <string.h>
@@ -6,7 +7,6 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/image/image_common.h"
-#include "lod/layers/draw/layers_spill.h"
 #include "raster/frame/samples.h"
 #include "raster/frame/statistics.h"
 #include "raster/view/part.h"
@@ -128,7 +128,7 @@ static conic_status reserve_counted(bands *b) {
   return status;
 }
 
-/* Of a picture in several bands, what becomes of the splats of the pieces that have just come. */
+/* In a picture in several bands: finds what becomes of the splats of the pieces that have just come. */
 static conic_status count_part(bands *b, const conic_layers_set *set) {
   const unsigned char *is_place_counted = b->d->is_counted;
   conic_render_statistics counts = {.splats_in = 0};

@@ -53,14 +53,6 @@ static int next_place(tree_walk *w, uint32_t *node, conic_layers_sight *sight, v
   return 0;
 }
 
-static conic_status add_place(const conic_layers *layers, conic_layers_cut *cut, const conic_layers_place *place) {
-  if (conic_memory_reserve(layers->context, &cut->places, cut->n, cut->n + 1, &cut->room, sizeof *cut->places) !=
-      CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  cut->places[cut->n++] = *place;
-  return CONIC_OK;
-}
-
 static conic_status find_turned(const conic_layers *layers, const conic_layers_view *view, conic_layers_cut *cut) {
   if (!view->cull_back || !layers->facings)
     return CONIC_OK;
@@ -84,7 +76,7 @@ conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layer
   memset(&place, 0, sizeof place);
   begin_walk(&w);
   while (next_place(&w, &place.node, &place.sight, &why)) {
-    conic_status status = add_place(layers, cut, &place);
+    conic_status status = conic_memory_append(layers->context, &cut->places, &cut->n, &cut->room, &place, sizeof place);
     if (status != CONIC_OK)
       return status;
     cut->n_splats += layers->entries[place.node].n_drawn;
@@ -139,17 +131,19 @@ uint64_t conic_layers_fit_budget(const conic_layers *layers, const conic_layers_
   return 0;
 }
 
+size_t conic_layers_mark_needed(const conic_layers *layers, const conic_layers_place *place, unsigned char *needed) {
+  size_t n = 0;
+  for (uint32_t node = place->node; !needed[node]; node = layers->entries[node].parent, n++)
+    needed[node] = 1;
+  return n;
+}
+
 size_t conic_layers_needed(const conic_layers *layers, const conic_layers_cut *cut, conic_place_state last,
                            unsigned char *needed) {
   size_t n = 0;
   memset(needed, 0, layers->header.n_clouds);
-  for (size_t i = 0; i < cut->n; i++) {
-    if (cut->places[i].state > last)
-      continue;
-    for (uint32_t node = cut->places[i].node; !needed[node]; node = layers->entries[node].parent) {
-      needed[node] = 1;
-      n++;
-    }
-  }
+  for (size_t i = 0; i < cut->n; i++)
+    if (cut->places[i].state <= last)
+      n += conic_layers_mark_needed(layers, &cut->places[i], needed);
   return n;
 }

@@ -2,11 +2,11 @@
 #ifndef CONIC_LAYERS_CUT_H
 #define CONIC_LAYERS_CUT_H
 
-#include "lod/layers/draw/layers_facing.h"
 #include "lod/layers/draw/layers_scene.h"
 #include "lod/layers/draw/layers_view.h"
 
-/* Two nodes of one place that stand side by side split samples that coincide: what lies above both is drawn once. */
+/* Whether two nodes have one place. Where these stand side by side, they split samples that coincide, and what lies
+ * above both is drawn once. */
 static inline int conic_layers_is_same_place(const conic_layers_entry *a, const conic_layers_entry *b) {
   return a->key == b->key && a->depth == b->depth;
 }
@@ -25,38 +25,47 @@ typedef struct conic_layers_place {
   conic_layers_sight sight;
 } conic_layers_place;
 
+/* The pixels that a place may cover in a picture of n × as many, a side. */
+static inline conic_window conic_layers_fine_pixels(const conic_layers_place *place, int n) {
+  const conic_window *in = &place->sight.pixels;
+  return (conic_window){n * in->x_begin, n * in->x_end, n * in->y_begin, n * in->y_end};
+}
+
 /* Places in the order of their keys. Zero before the first use; the memory is kept. */
 typedef struct conic_layers_cut {
   conic_layers_place *places;
-  conic_layers_turned *turned; /* a place: what of it faces away and is to be culled; null: nothing is */
+  conic_layers_turned *turned; /* a place: its samples that face away and are to be culled; null: none are */
   size_t n, room, turned_room;
   uint64_t n_splats;  /* of all places together */
   uint64_t n_coarser; /* places that were to be finer */
   double coarser_px;  /* the greatest error among them */
-  uint64_t n_root;    /* of the root, the only place, so many samples are drawn; 0: all of them */
+  uint64_t n_root;    /* so many samples are drawn where the root is the only place; 0: all of them */
 } conic_layers_cut;
 
 typedef struct conic_layers_wish {
   double error_px;
   int most_levels;            /* 0: all */
-  const unsigned char *is_in; /* a cloud: it can be drawn of; null: all can */
+  const unsigned char *is_in; /* a cloud: whether it can be used; null: all can */
   uint64_t n_root;            /* as in a cut */
 } conic_layers_wish;
 
-/* From the root down: of what is in sight, the first node whose error is at most the one asked for, or below which
- * something is missing. Errors: MEMORY. */
+/* Finds the cut. On the way down from the root it takes, of what is in sight, the first node whose error is at most the
+ * one asked for, or below which a cloud is missing. Errors: MEMORY. */
 conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layers_view *view,
                                    const conic_layers_wish *wish, conic_layers_cut *cut);
 
-/* The least error for which the cut has no more than `budget` splats; infinite where the root alone has more, of which
- * so many are to be drawn then. Returns how many: 0 for all of the cut's. */
+/* Finds the least error for which the cut has no more than `budget` splats. Where the root alone has more, the error is
+ * infinite. Returns how many of the root's samples are to be drawn then; else 0, for all of the cut's. */
 uint64_t conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
                                  uint64_t budget, double *error_px);
 
 void conic_layers_cut_release(conic_context *context, conic_layers_cut *cut);
 
-/* The clouds that the cut's places in these states draw of: needed[c] becomes 1 for them, and 0 for all others. Returns
- * how many there are. */
+/* Marks the clouds that a place needs: its own and all above it. Returns how many were not marked before. */
+size_t conic_layers_mark_needed(const conic_layers *layers, const conic_layers_place *place, unsigned char *needed);
+
+/* Finds the clouds that are needed for the cut's places in the states up to `last`: needed[c] becomes 1 for them, and 0
+ * for all others. Returns how many there are. */
 size_t conic_layers_needed(const conic_layers *layers, const conic_layers_cut *cut, conic_place_state last,
                            unsigned char *needed);
 

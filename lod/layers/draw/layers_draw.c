@@ -10,11 +10,10 @@
 #include "core/base/options.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
-#include "lod/layers/draw/layers_bands.h"
-#include "lod/layers/draw/layers_hidden.h"
+#include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_octree.h"
-#include "lod/layers/draw/layers_parting.h"
 #include "lod/layers/draw/layers_picture.h"
+#include "lod/layers/draw/layers_spill.h"
 
 /* Where fewer surfaces than this lie behind each other, finding out what is hidden takes longer than drawing it. */
 static const double deep = 4.0;
@@ -318,7 +317,7 @@ static int is_in_window(const conic_window *window, int x, int y) {
   return x >= window->x_begin && x < window->x_end && y >= window->y_begin && y < window->y_end;
 }
 
-/* Of one place only the first is given what lies above, so those of one place go together. */
+/* What lies above a place is given only to the first node there, so those of one place go together. */
 static size_t choose_places(conic_layers_picture *d, const conic_window *window) {
   const conic_layers_place *places = d->cut.places;
   const conic_layers_entry *entries = d->layers->entries;
@@ -338,17 +337,6 @@ static size_t choose_places(conic_layers_picture *d, const conic_window *window)
   return n;
 }
 
-/* Those that the chosen places draw of. */
-static void list_needed(conic_layers_picture *d, size_t n_chosen) {
-  memset(d->needed, 0, d->layers->header.n_clouds);
-  for (size_t k = 0; k < n_chosen; k++)
-    for (uint32_t node = d->cut.places[d->chosen[k]].node; !d->needed[node]; node = d->layers->entries[node].parent) {
-      d->needed[node] = 1;
-      if (node == 0)
-        break;
-    }
-}
-
 static uint64_t count_received(const conic_layers *layers) {
   return conic_ranges_received(layers->ranges) + conic_layers_octree_received(layers);
 }
@@ -363,7 +351,9 @@ conic_status conic_layers_picture_draw(conic_layers_picture *d, const conic_wind
   int n_bands, is_whole = image->width == d->camera.width && image->height == d->camera.height;
   size_t n_chosen = choose_places(d, window);
   layers->picture_bytes = bytes_of_picture(image) + other_bytes;
-  list_needed(d, n_chosen);
+  memset(d->needed, 0, layers->header.n_clouds);
+  for (size_t k = 0; k < n_chosen; k++)
+    conic_layers_mark_needed(layers, &d->cut.places[d->chosen[k]], d->needed);
   conic_status status = measure_needed(d);
   if (status != CONIC_OK)
     return status;

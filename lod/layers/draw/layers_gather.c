@@ -79,11 +79,6 @@ static const conic_layers_cloud *cloud_of(const conic_layers *layers, const coni
   return layers->store.slots[piece->cloud].cloud;
 }
 
-static conic_window fine_pixels(const conic_layers_place *place, int n) {
-  const conic_window *in = &place->sight.pixels;
-  return (conic_window){n * in->x_begin, n * in->x_end, n * in->y_begin, n * in->y_end};
-}
-
 static int is_place_counted(const conic_layers_gathering *asked, uint32_t i_place) {
   return !asked->is_counted || asked->is_counted[i_place];
 }
@@ -91,7 +86,7 @@ static int is_place_counted(const conic_layers_gathering *asked, uint32_t i_plac
 double conic_layers_share_of_place(const conic_layers_gathering *asked, uint32_t i_place) {
   if (!asked->part_view || (asked->takes_counted && is_place_counted(asked, i_place)))
     return 1.0;
-  conic_window pixels = fine_pixels(&asked->cut->places[i_place], asked->samples),
+  conic_window pixels = conic_layers_fine_pixels(&asked->cut->places[i_place], asked->samples),
                in = conic_window_meet(&pixels, &asked->part);
   if (in.x_begin >= in.x_end || in.y_begin >= in.y_end)
     return 0.0;

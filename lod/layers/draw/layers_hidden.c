@@ -1,6 +1,8 @@
-#include "lod/layers/draw/layers_hidden.h"
+/* Occlusion culling: which places of a cut are hidden by others. No bit of the picture changes by it. */
+#include "lod/layers/draw/layers_gather.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -79,24 +81,17 @@ static void sort_by_depth(const conic_layers_place *places, uint32_t *order, uin
   memcpy(order, other, n * sizeof *order);
 }
 
-/* In the order of the cut, as gathering wants them. */
-static void sort_ascending(uint32_t *values, uint32_t *other, size_t n) {
-  if (n < 2)
-    return;
-  size_t half = n / 2, a = 0, b = half;
-  sort_ascending(values, other, half);
-  sort_ascending(values + half, other, n - half);
-  for (size_t i = 0; i < n; i++)
-    other[i] = b == n || (a < half && values[a] < values[b]) ? values[a++] : values[b++];
-  memcpy(values, other, n * sizeof *values);
+static int compare_place_numbers(const void *a, const void *b) {
+  uint32_t first = *(const uint32_t *)a, second = *(const uint32_t *)b;
+  return (first > second) - (first < second);
 }
 
-static conic_status draw_chosen(hiding *h, size_t n_chosen, uint32_t *spare) {
+static conic_status draw_chosen(hiding *h, size_t n_chosen) {
   conic_layers_gathering gathering = {
       .cut = h->cut, .chosen = h->chosen, .n_chosen = n_chosen, .view = h->view, .until_s = h->until_s};
   gathering.cutoff = h->render->kernel.cutoff;
   gathering.camera = h->camera;
-  sort_ascending(h->chosen, spare, n_chosen);
+  qsort(h->chosen, n_chosen, sizeof *h->chosen, compare_place_numbers); /* as they are in the cut */
   conic_status status = conic_layers_gather(h->layers, &gathering, h->set);
   if (status == CONIC_OK)
     status = conic_render_hiding(h->renderer, &h->set->splats, h->camera, h->render, h->horizon.pixels);
@@ -133,8 +128,8 @@ static size_t choose_next(hiding *h, size_t begin, uint64_t most, size_t *n_chos
   return begin;
 }
 
-/* Draws shares as long as they hide more than they cost: of the last two, one has to. */
-static conic_status draw_shares(hiding *h, uint32_t *spare) {
+/* Draws shares as long as they hide more than they cost. One of the last two must. */
+static conic_status draw_shares(hiding *h) {
   conic_status status = CONIC_OK;
   uint64_t room = conic_layers_drawing_bytes(h->layers) / CONIC_LAYERS_SPLAT_BYTES + 1;
   uint64_t rest = judge_rest(h, 0), n_splats;
@@ -143,7 +138,7 @@ static conic_status draw_shares(hiding *h, uint32_t *spare) {
   for (int i = 0; rest > 0 && n_useless < 2 && status == CONIC_OK; i++) {
     uint64_t most = h->cut->n_splats / (i ? NEXT_SHARE : FIRST_SHARE) + 1;
     begin = choose_next(h, begin, most < room ? most : room, &n_chosen, &n_splats);
-    status = draw_chosen(h, n_chosen, spare);
+    status = draw_chosen(h, n_chosen);
     uint64_t left = status == CONIC_OK ? judge_rest(h, begin) : 0, hidden = rest - n_splats - left;
     n_useless = (double)hidden < WORTHWHILE * (double)n_splats ? n_useless + 1 : 0;
     rest = left;
@@ -155,7 +150,7 @@ static conic_status hide(hiding *h, uint32_t *spare) {
   for (size_t i = 0; i < h->cut->n; i++)
     h->by_depth[i] = (uint32_t)i;
   sort_by_depth(h->cut->places, h->by_depth, spare, h->cut->n);
-  conic_status status = draw_shares(h, spare);
+  conic_status status = draw_shares(h);
   for (size_t i = 0; i < h->cut->n && status == CONIC_OK; i++)
     judge_place(h, &h->cut->places[i]);
   return status;

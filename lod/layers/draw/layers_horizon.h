@@ -1,4 +1,6 @@
-/* How deep a picture hides, at several resolutions: the least of any rectangle of pixels is found by a few looks. */
+/* How deep a picture hides, at several resolutions, so that the least of any rectangle of pixels is found by a few
+ * looks.
+ */
 #ifndef CONIC_LAYERS_HORIZON_H
 #define CONIC_LAYERS_HORIZON_H
 

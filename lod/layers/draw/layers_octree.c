@@ -8,7 +8,6 @@
 #include "core/base/message.h"
 #include "core/base/radix.h"
 #include "lod/hierarchies/node_shape.h"
-#include "lod/layers/draw/layers_octree_index.h"
 #include "lod/layers/format/layers_key.h"
 
 /* Outlines, in distances of neighbours; and no sample's is larger than so many medians of its node's. */
@@ -206,7 +205,7 @@ static int round_guide(float share) {
   return (int)(share * 127.0f + (share < 0.0f ? -0.5f : 0.5f));
 }
 
-/* Of each part its own mean, or the nearest part's. Whether there is any. */
+/* Takes for each part its own mean, or the nearest part's. Returns whether there is any. */
 static int fill_guide(float sums[64][3], conic_layers_guide *guide) {
   int n_found = 0;
   for (uint32_t part = 0; part < 64; part++) {

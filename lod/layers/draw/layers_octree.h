@@ -1,9 +1,9 @@
 /* Layered clouds whose index is a hierarchy of another kind (lod/hierarchies/hierarchy.h): its nodes as the entries
  * that drawing knows.
  *
- * A node with children has eight: those octants that have no node become entries without samples, in which what lies
- * above is drawn. Entries are numbered by level, then by key, of all nodes that are known; as more of the hierarchy is
- * read, they are numbered anew, and the cache with them. What an entry states depends on the nodes above it alone. */
+ * A node with children gets eight: octants without a node become entries without samples, in which what lies above is
+ * drawn. Entries of all known nodes are numbered by level, then by key. As more of the hierarchy is read, they are
+ * numbered anew, and the cache with them. What an entry states depends on the nodes above it alone. */
 #ifndef CONIC_LAYERS_OCTREE_H
 #define CONIC_LAYERS_OCTREE_H
 
@@ -11,8 +11,11 @@
 
 #define CONIC_NO_NODE UINT32_MAX
 
-/* The normals of a node's samples in 4 × 4 × 4 parts of its place, for samples below it that have too few neighbours:
- * in the order of the keys, in shares of 127; zero where nothing near has any. */
+/* A page whose nodes are known: it is one no more. */
+enum { CONIC_OCTREE_PAGE_DONE = 2 };
+
+/* The normals of a node's samples in 4 × 4 × 4 parts of its place, for samples below it that have too few neighbours.
+ * They are in the order of the keys, in units of 1/127, and zero where nothing near has any. */
 typedef struct conic_layers_guide {
   signed char normal[64][3];
 } conic_layers_guide;
@@ -29,8 +32,8 @@ typedef struct conic_layers_octree {
   conic_raw_scale colors;
 } conic_layers_octree;
 
-/* Opens the hierarchy: reads the root's page, and measures the root's points. The ranges are those of the layers, which
- * give them up. Errors: as conic_layers_open. */
+/* Opens the hierarchy: reads the root's page, and measures the root's points. It takes over the ranges of the layers.
+ * Errors: as conic_layers_open. */
 conic_status conic_layers_octree_open(conic_layers *layers, const conic_hierarchy_kind *kind);
 void conic_layers_octree_close(conic_layers *layers);
 
@@ -40,7 +43,7 @@ typedef struct conic_layers_expansion {
   int most_levels;
   double until_s;
   int may_miss, tolerates_damage;
-  uint64_t n_missing, n_damaged; /* set: pages that could not be read, and of these were wrong */
+  uint64_t n_missing, n_damaged; /* set: pages that could not be read; those of them that were wrong */
 } conic_layers_expansion;
 
 /* Reads the pages of all places that a picture of this error, or budget, shows; without a view, all there are. Errors:
@@ -51,20 +54,20 @@ conic_status conic_layers_octree_expand(conic_layers *layers, const conic_layers
 /* Bytes of pages that came over the network, where they are no part of the file of the clouds. */
 uint64_t conic_layers_octree_received(const conic_layers *layers);
 
-/* Whether an entry is but where a page would be. */
+/* Whether an entry only stands for a page that was not read. */
 int conic_layers_octree_is_page(const conic_layers *layers, uint32_t entry);
 
-/* Reads, once in the layers' life, what tells how large the samples of these entries and those above are: of those that
- * are 1 in `needed`. Errors: as conic_layers_store_load. */
+/* Finds how large the samples are of the entries that are 1 in `needed`, and of those above. Reads what tells so once
+ * in the layers' life. Errors: as conic_layers_store_load. */
 conic_status conic_layers_octree_measure(conic_layers *layers, const unsigned char *needed);
 
-/* Keeps what is to be known of a cloud that was unpacked, for as long as the layers are open. Errors: MEMORY. */
+/* Keeps, as long as the layers are open, what other clouds need to know of one that was unpacked. Errors: MEMORY. */
 conic_status conic_layers_octree_keep(conic_layers *layers, uint32_t entry, const conic_layers_cloud *cloud);
 
-/* The normal that the nodes above an entry have where a sample of this key is; 0 where they have none. */
+/* Finds the normal that the nodes above an entry have where a sample of this key is. 0: they have none. */
 int conic_layers_octree_guess(const conic_layers *layers, uint32_t entry, uint64_t key, float normal[3]);
 
-/* The outline of samples from above in the place of an entry that is the finest there. */
+/* The outline that samples from above get in the place of an entry, if that is the finest there. */
 float conic_layers_octree_outline(const conic_layers *layers, uint32_t entry);
 
 /* Unpacks an entry's samples; null, or what is wrong. Any thread. */
@@ -73,5 +76,18 @@ const char *conic_layers_octree_decode(const conic_layers *layers, uint32_t entr
 
 /* Where an entry's bytes are. */
 void conic_layers_octree_locate(const conic_layers *layers, uint32_t entry, conic_range *range);
+
+/* --- entries and pages --- */
+
+/* How far a point may lie outside its cell, as a share of the cell's edge. */
+#define CONIC_OCTREE_SLACK 0.03125
+
+/* Makes the entries anew, of all nodes that are known. Nothing is held of the cache. Errors: INPUT (they are no tree),
+ * MEMORY. */
+conic_status conic_layers_octree_index(conic_layers *layers);
+
+/* Reads the pages of these entries. The nodes that they tell of replace the entries. Errors: as expansion. */
+conic_status conic_layers_octree_read_pages(conic_layers *layers, const uint32_t *entries, size_t n,
+                                            conic_layers_expansion *expansion);
 
 #endif

@@ -1,4 +1,5 @@
-#include "lod/layers/draw/layers_octree_index.h"
+/* From a hierarchy's nodes to the entries that drawing knows, and reading its pages. */
+#include "lod/layers/draw/layers_octree.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -6,8 +7,6 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
-
-enum { PAGE_DONE = 2 }; /* a page whose nodes are known: it is one no more */
 
 /* A place of the index that is being made. */
 typedef struct octree_place {
@@ -40,7 +39,7 @@ static uint64_t parent_key(uint64_t key, uint8_t level) {
 
 static void list_nodes(const conic_hierarchy *h, octree_places *places) {
   for (size_t i = 0; i < h->n_nodes; i++)
-    if (h->nodes[i].is_page != PAGE_DONE)
+    if (h->nodes[i].is_page != CONIC_OCTREE_PAGE_DONE)
       places->list[places->n++] = (octree_place){h->nodes[i].key, (uint32_t)i, h->nodes[i].level, 0};
   qsort(places->list, places->n, sizeof *places->list, compare_octree_places);
 }

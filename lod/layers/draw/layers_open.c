@@ -194,7 +194,7 @@ static conic_status open_kind(conic_layers *layers) {
   return kind ? conic_layers_octree_open(layers, kind) : read_header_and_index(layers);
 }
 
-/* Of a folder, the file in it that is opened. */
+/* The file that is opened, where a folder is given. */
 static conic_status take_name(conic_layers *layers, const char *name) {
   char file[CONIC_HIERARCHY_PATH_ROOM];
   if (!layers->is_remote && conic_hierarchy_find_file(name, file, sizeof file))
@@ -247,11 +247,8 @@ void conic_layers_close(conic_layers *layers) {
   conic_renderer_destroy(layers->hider);
   if (layers->set)
     conic_layers_set_release(context, layers->set);
-  conic_memory_release(context, layers->set);
-  conic_memory_release(context, layers->facings);
-  conic_memory_release(context, layers->entries);
-  conic_memory_release(context, layers->first_sample);
-  conic_memory_release(context, layers->name);
+  void *const owned[] = {layers->set, layers->facings, layers->entries, layers->first_sample, layers->name};
+  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
   conic_memory_release(context, layers);
 }
 

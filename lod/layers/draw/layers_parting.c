@@ -1,13 +1,10 @@
-#include "lod/layers/draw/layers_parting.h"
+/* A picture split into windows that few enough splats meet. */
+#include "lod/layers/draw/layers_spill.h"
 
 #include "core/base/memory.h"
 
 /* No more cells than this along an axis, where the picture is not very long. */
 enum { MOST_CELLS = 256 };
-
-typedef struct cell_range {
-  int x_begin, x_end, y_begin, y_end;
-} cell_range;
 
 typedef struct window_plan {
   const conic_layers_parting *asked;
@@ -57,19 +54,16 @@ static double *corner_of(const window_plan *p, int column, int row) {
 /* Spreads a place's splats over the cells that it may meet. */
 static void spread_place(const window_plan *p, const conic_layers_place *place) {
   const conic_layers_windows *w = p->w;
-  const conic_window *pixels = &place->sight.pixels;
-  int n = p->asked->samples, x_begin = n * pixels->x_begin, x_end = n * pixels->x_end;
-  int y_begin = n * pixels->y_begin, y_end = n * pixels->y_end;
-  conic_window in = conic_window_meet(&w->part, &(conic_window){x_begin, x_end, y_begin, y_end});
+  conic_window pixels = conic_layers_fine_pixels(place, p->asked->samples), in = conic_window_meet(&w->part, &pixels);
   double weight = conic_layers_place_weight(p->asked->layers, place);
   if (in.x_begin >= in.x_end || in.y_begin >= in.y_end || weight == 0.0)
     return;
   int last_row = conic_layers_cell_row(w, in.y_end - 1), last_column = conic_layers_cell_column(w, in.x_end - 1);
   for (int row = conic_layers_cell_row(w, in.y_begin); row <= last_row; row++) {
-    double in_row = weight * share_between(y_begin, y_end, cell_top(w, row), cell_top(w, row + 1));
+    double in_row = weight * share_between(pixels.y_begin, pixels.y_end, cell_top(w, row), cell_top(w, row + 1));
     for (int column = conic_layers_cell_column(w, in.x_begin); column <= last_column; column++) {
       int left = w->part.x_begin + column * w->cell;
-      *corner_of(p, column + 1, row + 1) += in_row * share_between(x_begin, x_end, left, left + w->cell);
+      *corner_of(p, column + 1, row + 1) += in_row * share_between(pixels.x_begin, pixels.x_end, left, left + w->cell);
     }
   }
 }
@@ -83,19 +77,19 @@ static void sum_cells(const window_plan *p) {
           *corner_of(p, column - 1, row) + *corner_of(p, column, row - 1) - *corner_of(p, column - 1, row - 1);
 }
 
-static double sum_of(const window_plan *p, const cell_range *c) {
+static double sum_of(const window_plan *p, const conic_window *c) {
   return *corner_of(p, c->x_end, c->y_end) - *corner_of(p, c->x_begin, c->y_end) - *corner_of(p, c->x_end, c->y_begin) +
          *corner_of(p, c->x_begin, c->y_begin);
 }
 
-static conic_window pixels_of_cells(const conic_layers_windows *w, const cell_range *c) {
+static conic_window pixels_of_cells(const conic_layers_windows *w, const conic_window *c) {
   int x_end = w->part.x_begin + c->x_end * w->cell;
   return (conic_window){w->part.x_begin + c->x_begin * w->cell, x_end < w->part.x_end ? x_end : w->part.x_end,
                         cell_top(w, c->y_begin), cell_top(w, c->y_end)};
 }
 
 /* Those about the window reach into it. */
-static int is_small(const window_plan *p, const cell_range *c) {
+static int is_small(const window_plan *p, const conic_window *c) {
   conic_window pixels = pixels_of_cells(p->w, c);
   double width = (double)(pixels.x_end - pixels.x_begin), height = (double)(pixels.y_end - pixels.y_begin);
   double growth = (1.0 + 2.0 * p->asked->margin_px / width) * (1.0 + 2.0 * p->asked->margin_px / height);
@@ -103,7 +97,7 @@ static int is_small(const window_plan *p, const cell_range *c) {
 }
 
 /* Halves the longer side, so that each half has as many splats, about. */
-static void halve_cells(const window_plan *p, cell_range *first, cell_range *second) {
+static void halve_cells(const window_plan *p, conic_window *first, conic_window *second) {
   int is_along_x = first->x_end - first->x_begin >= first->y_end - first->y_begin;
   double half = 0.5 * sum_of(p, first);
   *second = *first;
@@ -113,32 +107,29 @@ static void halve_cells(const window_plan *p, cell_range *first, cell_range *sec
   *(is_along_x ? &second->x_begin : &second->y_begin) = *end;
 }
 
-static conic_status add_window(const window_plan *p, const cell_range *c) {
+static conic_status add_window(const window_plan *p, const conic_window *c) {
   conic_layers_windows *w = p->w;
-  conic_status status = conic_memory_reserve(p->asked->layers->context, &w->windows, w->n_windows, w->n_windows + 1,
-                                             &w->windows_room, sizeof *w->windows);
-  if (status != CONIC_OK)
-    return status;
+  const conic_window pixels = pixels_of_cells(w, c);
   for (int row = c->y_begin; row < c->y_end; row++)
     for (int column = c->x_begin; column < c->x_end; column++)
       w->window_of[(size_t)row * (size_t)w->n_columns + (size_t)column] = (uint32_t)w->n_windows;
-  w->windows[w->n_windows++] = pixels_of_cells(w, c);
-  return CONIC_OK;
+  return conic_memory_append(p->asked->layers->context, &w->windows, &w->n_windows, &w->windows_room, &pixels,
+                             sizeof pixels);
 }
 
-static conic_status part_cells(const window_plan *p, cell_range all) {
-  cell_range open[64];
+static conic_status part_cells(const window_plan *p, conic_window all) {
+  conic_window open[64];
   int n_open = 1;
   conic_status status = CONIC_OK;
   open[0] = all;
   while (n_open > 0 && status == CONIC_OK) {
-    cell_range *c = &open[n_open - 1];
+    conic_window *c = &open[n_open - 1];
     int is_one = c->x_end - c->x_begin == 1 && c->y_end - c->y_begin == 1;
     if (is_one || n_open == 64 || is_small(p, c)) {
       status = add_window(p, c);
       n_open--;
     } else {
-      cell_range second;
+      conic_window second;
       halve_cells(p, c, &second);
       open[n_open] = *c;
       open[n_open++ - 1] = second;
@@ -160,7 +151,7 @@ conic_status conic_layers_windows_plan(const conic_layers_parting *parting, coni
     sum_cells(&p);
   for (int row = 0; row < windows->n_rows && status == CONIC_OK; row += windows->rows_a_band) {
     int end = row + windows->rows_a_band;
-    status = part_cells(&p, (cell_range){0, windows->n_columns, row, end < windows->n_rows ? end : windows->n_rows});
+    status = part_cells(&p, (conic_window){0, windows->n_columns, row, end < windows->n_rows ? end : windows->n_rows});
   }
   conic_memory_release(context, p.sums);
   return status;

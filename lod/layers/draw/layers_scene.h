@@ -13,7 +13,7 @@ struct conic_layers {
   conic_context *context;
   char *name;
   conic_layers_access access;
-  double until_s; /* by conic_seconds_now, opening ends */
+  double until_s; /* when opening ends, by conic_seconds_now */
   int is_remote;
   conic_ranges *ranges;               /* of the clouds */
   struct conic_layers_octree *octree; /* null: a .lpc */
@@ -23,21 +23,21 @@ struct conic_layers {
   uint64_t *first_sample; /* number of each cloud's first, in the order of the file */
   conic_layers_choice choice;
   conic_layers_store store;
-  uint64_t picture_bytes;   /* what the image that is being drawn takes */
-  conic_renderer *hider;    /* draws how deep things hide, for other devices that do not; made when needed */
-  conic_camera last_camera; /* of the picture before; width 0: there was none */
+  uint64_t picture_bytes;               /* what the image that is being drawn takes */
+  conic_renderer *hider;                /* draws how deep things hide, for devices that cannot; made when needed */
+  conic_camera last_camera;             /* of the picture before; width 0: there was none */
   struct conic_layers_facings *facings; /* likewise */
   struct conic_layers_set *set;         /* what is gathered to be drawn; likewise */
 };
 
-/* Which values the samples that are gathered from now on have by name: as conic_layers_region's keep. Errors: INPUT,
- * MEMORY. */
+/* Says which values by name samples have that are gathered from now on, as conic_layers_region's `keep` does. Errors:
+ * INPUT, MEMORY. */
 conic_status conic_layers_keep(conic_layers *layers, const char *names);
 
 /* How its files are read. */
 void conic_layers_ranges_options(const conic_layers *layers, conic_ranges_options *options);
 
-/* How many children a node has that has any; they follow each other. */
+/* How many children an inner node has; they follow each other. */
 static inline uint32_t conic_layers_children(const conic_layers *layers) {
   return layers->octree ? 8 : 2;
 }
@@ -47,8 +47,9 @@ static inline int conic_layers_has_cloud(const conic_layers *layers, uint32_t cl
   return layers->store.slots[cloud].cloud || layers->entries[cloud].n_samples == 0;
 }
 
-/* What is left of the memory that a picture may take, once the program, the index and the image have theirs; an eighth
- * of all of it at least. */
+/* The memory that is left for a picture once the program, the index and the image have theirs: an eighth of all at
+ * least.
+ */
 static inline uint64_t conic_layers_free_bytes(const conic_layers *layers) {
   const uint64_t own_bytes = (UINT64_C(14) << 20) + ((uint64_t)conic_context_threads(layers->context) << 21);
   const uint64_t all = layers->access.memory_bytes;
@@ -57,8 +58,8 @@ static inline uint64_t conic_layers_free_bytes(const conic_layers *layers) {
   return all > taken + all / 8 ? all - taken : all / 8;
 }
 
-/* Shares of that: for the cache, and for what is gathered and drawn of it at a time. The rest is for what memory that
- * is taken and given back leaves unused. */
+/* Shares of that: for the cache, and for what is gathered and drawn at a time. The rest is for gaps that memory has
+ * when it is taken and given back. */
 static inline uint64_t conic_layers_cache_bytes(const conic_layers *layers) {
   return conic_layers_free_bytes(layers) / 4;
 }

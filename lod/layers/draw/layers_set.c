@@ -1,4 +1,5 @@
-#include "lod/layers/draw/layers_set.h"
+/* What is gathered to be drawn: splats, their numbers in the file, and the pieces of clouds that they come from. */
+#include "lod/layers/draw/layers_gather.h"
 
 #include <string.h>
 
@@ -6,11 +7,8 @@
 #include "core/splats/point_values.h"
 
 void conic_layers_set_release(conic_context *context, conic_layers_set *set) {
-  conic_memory_release(context, set->arrays);
-  conic_memory_release(context, set->ids);
-  conic_memory_release(context, set->lines);
-  conic_memory_release(context, set->splats.clips);
-  conic_memory_release(context, set->pieces);
+  void *const owned[] = {set->arrays, set->ids, set->lines, set->splats.clips, set->pieces};
+  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
   conic_point_values_destroy(context, set->named);
   memset(set, 0, sizeof *set);
 }

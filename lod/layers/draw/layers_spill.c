@@ -80,11 +80,8 @@ void conic_layers_spill_end(conic_layers_spill *spill) {
   if (spill->is_open)
     conic_pile_end(&spill->pile);
   release_parts(spill);
-  conic_memory_release(context, spill->path);
-  conic_memory_release(context, spill->heaps);
-  conic_memory_release(context, spill->blocks);
-  conic_memory_release(context, spill->read);
-  conic_memory_release(context, spill->boxes);
+  void *const owned[] = {spill->path, spill->heaps, spill->blocks, spill->read, spill->boxes};
+  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
 }
 
 /* --- putting aside --- */
@@ -95,13 +92,11 @@ static void find_boxes(void *data, size_t i_piece, int i_thread) {
   const conic_layers_piece *piece = &spill->set->pieces[i_piece];
   const conic_layers_place *place = &spill->cut->places[piece->i_place];
   const conic_splats *splats = &spill->set->splats;
-  const conic_window *sight = &place->sight.pixels;
   double radius = (double)spill->layers->entries[place->node].radius;
-  int n = spill->samples;
   (void)i_thread;
   for (size_t i = piece->at; i < piece->at + piece->n_chosen; i++) {
     const float position[3] = {splats->position[0][i], splats->position[1][i], splats->position[2][i]};
-    conic_window pixels = {n * sight->x_begin, n * sight->x_end, n * sight->y_begin, n * sight->y_end};
+    conic_window pixels = conic_layers_fine_pixels(place, spill->samples);
     spill->boxes[i] = (conic_box){0};
     if (conic_layers_narrow(spill->view, position, radius, &pixels))
       spill->boxes[i] = (conic_box){(uint16_t)pixels.x_begin, (uint16_t)pixels.x_end, (uint16_t)pixels.y_begin,
@@ -109,20 +104,17 @@ static void find_boxes(void *data, size_t i_piece, int i_thread) {
   }
 }
 
-typedef struct cell_visit {
-  int x_begin, x_end, y_begin, y_end; /* the cells that a box meets */
-} cell_visit;
-
-static inline cell_visit cells_of_box(const conic_layers_windows *w, const conic_box *box) {
+/* The cells that a box meets. */
+static inline conic_window cells_of_box(const conic_layers_windows *w, const conic_box *box) {
   conic_window in = conic_window_meet(&w->part, &(conic_window){box->x_begin, box->x_end, box->y_begin, box->y_end});
   if (in.x_begin >= in.x_end || in.y_begin >= in.y_end)
-    return (cell_visit){0, 0, 0, 0};
-  return (cell_visit){conic_layers_cell_column(w, in.x_begin), conic_layers_cell_column(w, in.x_end - 1) + 1,
-                      conic_layers_cell_row(w, in.y_begin), conic_layers_cell_row(w, in.y_end - 1) + 1};
+    return (conic_window){0, 0, 0, 0};
+  return (conic_window){conic_layers_cell_column(w, in.x_begin), conic_layers_cell_column(w, in.x_end - 1) + 1,
+                        conic_layers_cell_row(w, in.y_begin), conic_layers_cell_row(w, in.y_end - 1) + 1};
 }
 
 /* The window that has the cell, where the cell is the first of the visited ones in it; else none. */
-static inline uint32_t window_at(const conic_layers_windows *w, const cell_visit *v, int x, int y) {
+static inline uint32_t window_at(const conic_layers_windows *w, const conic_window *v, int x, int y) {
   size_t at = (size_t)y * (size_t)w->n_columns + (size_t)x;
   uint32_t i = w->window_of[at];
   if ((x > v->x_begin && w->window_of[at - 1] == i) || (y > v->y_begin && w->window_of[at - (size_t)w->n_columns] == i))
@@ -134,7 +126,7 @@ static inline uint32_t window_at(const conic_layers_windows *w, const cell_visit
 static void visit_windows(const conic_layers_spill *spill, int is_listing) {
   const conic_layers_windows *w = spill->windows;
   for (size_t i = 0; i < spill->set->splats.count; i++) {
-    cell_visit v = cells_of_box(w, &spill->boxes[i]);
+    conic_window v = cells_of_box(w, &spill->boxes[i]);
     for (int y = v.y_begin; y < v.y_end; y++)
       for (int x = v.x_begin; x < v.x_end; x++) {
         uint32_t window = window_at(w, &v, x, y);
@@ -271,7 +263,7 @@ conic_status conic_layers_spill_close(conic_layers_spill *spill) {
 
 /* --- taking back --- */
 
-/* Of a block's first splats, those that may meet the part. */
+/* Lists those of a block's first splats that may meet the part. */
 static size_t choose_of_block(const conic_layers_spill *spill, const unsigned char *block, size_t n,
                               const conic_window *part, uint32_t chosen[MOST_BLOCK]) {
   size_t at_boxes = conic_layers_set_arrays(spill->layers) * sizeof(float) + sizeof(uint32_t), n_chosen = 0;
@@ -302,7 +294,7 @@ static void take_of_block(const conic_layers_spill *spill, const unsigned char *
   }
 }
 
-/* From the last block to the first, which fills the set from its end. Returns where what was taken begins, or
+/* Goes from the last block to the first, and fills the set from its end. Returns where what was taken begins, or
  * SIZE_MAX where there is no room for all. */
 static conic_status take_blocks(conic_layers_spill *spill, size_t i_window, const conic_window *part, size_t *at) {
   const conic_layers_heap *heap = &spill->heaps[i_window];

@@ -11,7 +11,7 @@
 /* So many answers are decoded together. */
 enum { DECODED_TOGETHER = 64, BLOCK_STEP = 1 << 14 };
 
-/* Of a block, what tells where its arrays are. */
+/* The part of a block that tells where its arrays are. */
 enum { HEAD_BYTES = (sizeof(conic_layers_cloud) + 63) / 64 * 64 };
 
 /* A cloud on its way into memory. */
@@ -56,7 +56,7 @@ void conic_layers_store_close(conic_layers *layers) {
   memset(store, 0, sizeof *store);
 }
 
-/* Of few sizes, so that what one cloud leaves another can take. */
+/* There are few sizes, so that what one cloud leaves another can take. */
 static size_t bytes_of(const conic_layers *layers, uint32_t cloud) {
   size_t n_bytes = HEAD_BYTES + conic_layers_cloud_bytes(&layers->header, &layers->entries[cloud], &layers->choice);
   return (n_bytes + (BLOCK_STEP - 1)) / BLOCK_STEP * BLOCK_STEP;

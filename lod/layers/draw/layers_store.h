@@ -1,4 +1,4 @@
-/* The clouds of a file that are in memory, decoded: those last used, up to a bound. */
+/* The decoded clouds of a file that are in memory: those last used, up to a bound. */
 #ifndef CONIC_LAYERS_STORE_H
 #define CONIC_LAYERS_STORE_H
 
@@ -22,7 +22,7 @@ typedef struct conic_layers_store {
   uint64_t n_bytes;                /* of all blocks */
   uint64_t n_read;                 /* clouds decoded so far */
   uint64_t n_asked;                /* ahead of need, and not yet there */
-  uint64_t n_ahead;                /* clouds that came so far after they had been asked for ahead */
+  uint64_t n_ahead;                /* clouds that came so far because they had been asked for ahead */
   conic_layers_decoder **decoders; /* a thread; null until it is first needed */
 } conic_layers_store;
 
@@ -36,8 +36,8 @@ typedef struct conic_layers_loading {
   double until_s;       /* by conic_seconds_now; infinite: as long as it takes */
   int may_miss;         /* what does not come is left out, */
   int tolerates_damage; /* and so is what is wrong, after a warning */
-  uint64_t n_missing;   /* set: so many were, */
-  uint64_t n_damaged;   /* and of these, wrong */
+  uint64_t n_missing;   /* set: so many were left out */
+  uint64_t n_damaged;   /* set: so many of these were wrong */
 } conic_layers_loading;
 
 /* Brings clouds into memory, where they stay until conic_layers_store_unpin. On failure none is held. Errors: INPUT
@@ -45,8 +45,8 @@ typedef struct conic_layers_loading {
 conic_status conic_layers_store_load(conic_layers *layers, conic_layers_loading *loading);
 void conic_layers_store_unpin(conic_layers *layers, const conic_layers_loading *loading);
 
-/* Clouds get other numbers: the i-th becomes[i], in `slots`, which are zeroed, and are the store's then. Nothing is
- * held. */
+/* Gives clouds other numbers: number i becomes becomes[i]. The store takes over `slots`, which are zeroed. No cloud may
+ * be pinned. */
 void conic_layers_store_renumber(conic_layers *layers, const uint32_t *becomes, conic_layers_slot *slots);
 
 /* Asks for clouds that will be wanted, ascending, as many as the cache holds, and lets them come while the caller

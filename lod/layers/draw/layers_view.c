@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/vectors.h"
+#include "lod/layers/format/layers_code.h"
 
 /* Bounds are computed in double and kept apart by this share, which is more than all that drawing, in floats, rounds.
  */
@@ -32,9 +33,9 @@ void conic_layers_view_init(const conic_layers_header *header, const conic_camer
   view->near_z = near_z;
   view->cull_back = render->cull_back;
   view->is_exact_outline = conic_method_has_exact_outline(render->method);
-  /* Within the outline that is widened by the prefilter, a plane is no farther from its disc than that, on the screen.
-   * Laplace's splats are bounded by the box of the outline only: by its diagonal, that is. Points and discs have no
-   * plane but the one across the line of sight. */
+  /* Within the outline, widened by the prefilter, a plane is on the screen no farther from its disc than that.
+   * Laplace's splats are bounded by the box of the outline only, so by its diagonal. Points and discs have no plane but
+   * the one across the line of sight. */
   view->grows_with_size = render->method == CONIC_METHOD_AUTO;
   view->beyond_px = view->grows_with_size ? 1.5 * widening : widening;
   view->is_flat = conic_method_is_dot(render->method);
@@ -45,8 +46,8 @@ static double padded_radius(const conic_layers_entry *entry, const double p[3]) 
   return (double)entry->sphere * (1.0 + slack) + 1e-6 * conic_length(p);
 }
 
-/* Where the sphere, all of it before the eye, ends on the screen along an axis: the tangents from the eye to the circle
- * that its shadow on the plane of that axis and z is. */
+/* Where the sphere ends on the screen along an axis; all of it is before the eye. On the plane of that axis and z its
+ * shadow is a circle, and these are the tangents from the eye to that. */
 static void project_sphere(double p, double z, double radius, double focal, double center, double *low, double *high) {
   double along = sqrt(p * p + z * z - radius * radius);
   *low = center + focal * (p * along - z * radius) / (z * along + p * radius);
@@ -75,9 +76,9 @@ static int set_pixels(const conic_layers_view *view, const conic_layers_entry *e
   return sight->pixels.x_begin < sight->pixels.x_end && sight->pixels.y_begin < sight->pixels.y_end;
 }
 
-/* The cosine and the sine of the angle between the cone's axis and the ray to the sphere's centre, and those of the sum
- * of the cone's half opening and the angle under which the sphere's radius is seen, with slack. 0 where that sum is a
- * right angle or more. */
+/* The cosine and the sine of two angles, with slack: the one between the cone's axis and the ray to the sphere's
+ * centre; and the sum of the cone's half opening and the angle under which the sphere's radius is seen. 0 where that
+ * sum is a right angle or more. */
 static int cone_angles(const conic_layers_view *view, const conic_layers_entry *entry, double cosine[2],
                        double sine[2]) {
   double to[3], along = 0.0;
@@ -189,4 +190,60 @@ double conic_layers_hidden_offset(const conic_layers_view *view, const conic_lay
   double offset = (1.0 + 100.0 * slack) * beyond / (view->least_focal * gap);
   double least = least_slope * farthest * (1.0 + slack);
   return offset > least ? offset : least;
+}
+
+/* --- which way samples face --- */
+
+enum { CODES = 256, CODES_A_SET = CODES / CONIC_LAYERS_FACING_SIDE };
+
+/* All of this is computed in floats and kept apart by more than they round. */
+static const float facing_slack = 1e-3f;
+
+/* The codes of a set are a square. */
+static void find_cone(conic_layers_facings *facings, int i_set) {
+  int x = i_set / CONIC_LAYERS_FACING_SIDE * CODES_A_SET, y = i_set % CONIC_LAYERS_FACING_SIDE * CODES_A_SET;
+  float sum[3] = {0.0f, 0.0f, 0.0f}, least = 1.0f;
+  for (int pass = 0; pass < 2; pass++) {
+    for (int i = 0; i < CODES_A_SET * CODES_A_SET; i++) {
+      const uint8_t code[2] = {(uint8_t)(x + i / CODES_A_SET), (uint8_t)(y + i % CODES_A_SET)};
+      float normal[3];
+      conic_layers_normal_of(code, normal);
+      float cosine = normal[0] * sum[0] + normal[1] * sum[1] + normal[2] * sum[2];
+      least = pass && cosine < least ? cosine : least;
+      for (int axis = 0; axis < 3 && !pass; axis++)
+        sum[axis] += normal[axis];
+    }
+    float length = sqrtf(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    for (int axis = 0; axis < 3 && !pass; axis++)
+      facings->axis[axis][i_set] = sum[axis] /= length;
+  }
+  facings->cosine[i_set] = least;
+  facings->sine[i_set] = sqrtf(1.0f - least * least);
+}
+
+void conic_layers_facings_init(conic_layers_facings *facings) {
+  for (int i = 0; i < CONIC_LAYERS_FACINGS; i++)
+    find_cone(facings, i);
+}
+
+void conic_layers_find_turned(const conic_layers_facings *facings, const conic_layers_view *view,
+                              const conic_layers_entry *entry, conic_layers_turned *turned) {
+  float to[3], distance = 0.0f;
+  memset(turned, 0, sizeof *turned);
+  for (int axis = 0; axis < 3; axis++) {
+    to[axis] = (float)((double)entry->center[axis] - view->from.eye[axis]);
+    distance += to[axis] * to[axis];
+  }
+  distance = sqrtf(distance);
+  float sine = entry->sphere / distance + facing_slack; /* of the angle under which the sphere's radius is seen */
+  if (!(sine < 1.0f))
+    return;
+  float cosine = sqrtf(1.0f - sine * sine);
+  for (int i = 0; i < CONIC_LAYERS_FACINGS; i++) {
+    float along = (facings->axis[0][i] * to[0] + facings->axis[1][i] * to[1] + facings->axis[2][i] * to[2]) / distance;
+    int is_away = facings->cosine[i] * cosine > facings->sine[i] * sine + facing_slack &&
+                  along > facings->sine[i] * cosine + facings->cosine[i] * sine + facing_slack;
+    turned->bits[i / 32] |= (uint32_t)is_away << i % 32;
+    turned->is_any |= is_away;
+  }
 }

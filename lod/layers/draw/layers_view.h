@@ -7,6 +7,7 @@
 #include "conic/camera.h"
 #include "conic/render.h"
 #include "core/image/viewpoint.h"
+#include "lod/layers/format/layers_decode.h"
 #include "lod/layers/format/layers_format.h"
 #include "raster/view/part.h"
 
@@ -17,10 +18,10 @@ typedef struct conic_layers_view {
   double least_focal, greatest_focal;
   double near_z;
   double growth_px; /* how far the prefilter moves an outline, and a pixel for all that rounds */
-  double beyond_px; /* how far from its disc a pixel may lie at which a splat's plane counts; with grows_with_size the
-                       splat's own size is added */
+  double beyond_px; /* a splat's plane counts at pixels up to so far from its disc; with grows_with_size, farther by the
+                       splat's own size */
   int grows_with_size;
-  int is_exact_outline; /* discs are drawn within their projection, widened; else also where their Jacobian puts them */
+  int is_exact_outline; /* discs are drawn within their widened projection; else also where their Jacobian puts them */
   int is_flat;          /* splats have no plane but the one across the line of sight */
   int cull_back;
 } conic_layers_view;
@@ -39,16 +40,16 @@ typedef struct conic_layers_sight {
 /* 0 where nothing of the place can be in the picture. */
 int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *entry, conic_layers_sight *sight);
 
-/* Narrows a place's pixels to those that one of its splats, at a position relative to the origin, may cover. 0 where
- * there are none. */
+/* Narrows a place's pixels to those that one of its splats may cover. Its position is relative to the origin. 0: there
+ * are none. */
 int conic_layers_narrow(const conic_layers_view *view, const float position[3], double radius, conic_window *pixels);
 
-/* How far from where its centre is seen a splat of the place reaches at most, in pixels, so that narrowing comes to no
- * more; infinite where one may be close to the eye. */
+/* How many pixels a splat of the place reaches at most from where its centre is seen. Narrowing comes to no more.
+ * Infinite where a splat may be close to the eye. */
 double conic_layers_reach(const conic_layers_view *view, const conic_layers_entry *entry,
                           const conic_layers_sight *sight);
 
-/* 0 where a splat that reaches so far surely meets nothing of the window, nor do its pixels by narrowing. */
+/* 0 where neither a splat that reaches so far, nor its pixels by narrowing, can meet the window. */
 static inline int conic_layers_may_meet(const conic_layers_view *view, const float position[3], double reach_px,
                                         const conic_window *window) {
   double p[3];
@@ -60,12 +61,34 @@ static inline int conic_layers_may_meet(const conic_layers_view *view, const flo
          x + reach_px >= (double)window->x_begin && x - reach_px <= (double)window->x_end;
 }
 
-/* The least |n·p| of the place's splats: how far from the eye their planes are. 0 where that is not known. */
+/* The least |n·p| of the place's splats: their planes are at least so far from the eye. 0 where that is not known. */
 double conic_layers_least_offset(const conic_layers_view *view, const conic_layers_entry *entry);
 
-/* A splat of the place, whose plane is farther from the eye than this, is not seen where everything hides up to the
- * inverse depth `hiding`. Infinite where that cannot be said of any. */
+/* Where everything hides up to the inverse depth `hiding`, no splat of the place is seen whose plane is farther from
+ * the eye than this. Infinite where that cannot be said of any. */
 double conic_layers_hidden_offset(const conic_layers_view *view, const conic_layers_entry *entry,
                                   const conic_layers_sight *sight, double hiding);
+
+/* --- which way samples face --- */
+
+/* The cone of each set: unit axis, and cosine and sine of half its opening. */
+typedef struct conic_layers_facings {
+  float axis[3][CONIC_LAYERS_FACINGS], cosine[CONIC_LAYERS_FACINGS], sine[CONIC_LAYERS_FACINGS];
+} conic_layers_facings;
+
+/* For each set, whether its samples face away wherever they lie in a place. */
+typedef struct conic_layers_turned {
+  uint32_t bits[CONIC_LAYERS_FACINGS / 32];
+  int is_any;
+} conic_layers_turned;
+
+void conic_layers_facings_init(conic_layers_facings *facings);
+
+void conic_layers_find_turned(const conic_layers_facings *facings, const conic_layers_view *view,
+                              const conic_layers_entry *entry, conic_layers_turned *turned);
+
+static inline int conic_layers_is_turned(const conic_layers_turned *turned, uint16_t facing) {
+  return (int)(turned->bits[facing >> 5] >> (facing & 31) & 1);
+}
 
 #endif

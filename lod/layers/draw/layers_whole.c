@@ -80,24 +80,23 @@ static void release_finest(const conic_layers *layers, finest *list) {
   conic_layers_cut_release(layers->context, &list->cut);
 }
 
-/* Of an octree, all pages. */
+/* Reads all pages of an octree. */
 static conic_status expand_all(conic_layers *layers) {
   conic_layers_expansion all = {.until_s = HUGE_VAL};
   return layers->octree ? conic_layers_octree_expand(layers, NULL, &all) : CONIC_OK;
 }
 
-/* And the sizes of all nodes. */
-static conic_status prepare_all(conic_layers *layers) {
-  conic_status status = expand_all(layers);
+/* Finds how large the samples of an octree's places are. */
+static conic_status measure_cut(conic_layers *layers, const conic_layers_cut *cut) {
   if (!layers->octree)
-    return status;
+    return CONIC_OK;
   unsigned char *needed = conic_memory_allocate(layers->context, layers->header.n_clouds, 1);
-  if (status == CONIC_OK && needed) {
-    memset(needed, 1, layers->header.n_clouds);
-    status = conic_layers_octree_measure(layers, needed);
-  }
+  if (!needed)
+    return CONIC_ERROR_MEMORY;
+  conic_layers_needed(layers, cut, CONIC_PLACE_SHOWN, needed);
+  conic_status status = conic_layers_octree_measure(layers, needed);
   conic_memory_release(layers->context, needed);
-  return needed ? status : CONIC_ERROR_MEMORY;
+  return status;
 }
 
 conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splats *splats) {
@@ -107,10 +106,11 @@ conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splat
   conic_layers_region all;
   conic_layers_region_init(&all);
   memset(splats, 0, sizeof *splats);
-  conic_status status = prepare_all(layers);
-  if (status != CONIC_OK)
-    return status;
-  status = list_finest(layers, &all, 0.0, &list);
+  conic_status status = expand_all(layers);
+  if (status == CONIC_OK)
+    status = list_finest(layers, &all, 0.0, &list);
+  if (status == CONIC_OK)
+    status = measure_cut(layers, &list.cut);
   conic_layers_gathering gathering = {
       .cut = &list.cut, .chosen = list.chosen, .n_chosen = list.cut.n, .cutoff = cutoff, .until_s = HUGE_VAL};
   if (status == CONIC_OK)
@@ -125,19 +125,6 @@ conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splat
 
 /* So many leaves' samples are handed over together. */
 enum { LEAVES_A_BATCH = 16 };
-
-/* What tells how large the samples of an octree's places are. */
-static conic_status measure_cut(conic_layers *layers, const conic_layers_cut *cut) {
-  if (!layers->octree)
-    return CONIC_OK;
-  unsigned char *needed = conic_memory_allocate(layers->context, layers->header.n_clouds, 1);
-  if (!needed)
-    return CONIC_ERROR_MEMORY;
-  conic_layers_needed(layers, cut, CONIC_PLACE_SHOWN, needed);
-  conic_status status = conic_layers_octree_measure(layers, needed);
-  conic_memory_release(layers->context, needed);
-  return status;
-}
 
 static conic_status read_cut(conic_layers *layers, float cutoff, const conic_layers_cut *cut, const uint32_t *chosen,
                              conic_batch_receiver *receive, void *cookie) {

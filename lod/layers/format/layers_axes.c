@@ -9,7 +9,7 @@
 /* Codes 0 to twice the half are −1 to 1, so that the axes are exact. */
 enum { COARSE_HALF = 127, FINE_HALF = 32767, AXES_TURN_BITS = 16, LINE_BITS = 24 };
 
-/* Of c over the length of (a, b); farther out a line cuts nothing or all. */
+/* The most of c over the length of (a, b). Farther out a line cuts nothing or all. */
 static const double farthest_line = 8.0, most_of_line = 16777215.0;
 
 static int round_to_int(float value) {

@@ -5,7 +5,7 @@
 #include "conic/splats.h"
 #include "lod/layers/format/layers_schema.h"
 
-/* A normal of any length but zero as two codes of the octahedron, and the unit normal that they give. */
+/* Codes a normal of any length but zero as two coordinates of the octahedron; and finds the unit normal of a code. */
 void conic_layers_code_normal(const float normal[3], uint8_t code[2]);
 void conic_layers_normal_of(const uint8_t code[2], float normal[3]);
 
@@ -13,11 +13,11 @@ void conic_layers_normal_of(const uint8_t code[2], float normal[3]);
 void conic_layers_code_fine_normal(const float normal[3], uint16_t code[2]);
 void conic_layers_fine_normal_of(const uint16_t code[2], float normal[3]);
 
-/* Two unit vectors that make a frame with a unit normal anywhere: one rule for each half of the sphere, and nothing
- * cancels in its own. */
+/* Two unit vectors that make a frame with any unit normal. Each half of the sphere has a rule of its own, in which
+ * nothing cancels. */
 void conic_layers_frame(const float normal[3], float u[3], float v[3]);
 
-/* Both axes as lengths, normal and turn; 0 where they span no plane. The second becomes orthogonal to the first. */
+/* Codes both axes as lengths, normal and turn. The second becomes orthogonal to the first. 0: they span no plane. */
 int conic_layers_code_axes(const float u[3], const float v[3], conic_layers_axes *axes);
 
 /* Unit vectors along both axes. */

@@ -1,6 +1,6 @@
-/* Whether a file's clouds are whole, and within the bounds that its index states: every sample of every node. From the
- * root down, each node on the way keeps what is drawn in its place; a leaf's is all that is there, and is held against
- * every node above it. So memory does not grow with the file. */
+/* Whether a file's clouds are whole, and every sample of every node within the bounds that the index states. On the way
+ * down from the root, each node keeps what is drawn in its place. All samples of a leaf's place are held against every
+ * node above it. So memory does not grow with the file. */
 #include <math.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "lod/layers/format/layers_decode.h"
-#include "lod/layers/format/layers_read.h"
+#include "lod/layers/format/layers_format.h"
 
 /* A sample as it would be drawn. */
 typedef struct drawn_sample {

@@ -5,7 +5,6 @@
 #include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "lod/layers/format/layers_key.h"
-#include "lod/layers/format/layers_split.h"
 
 /* The first two streams are the keys'. */
 enum {
@@ -233,7 +232,7 @@ const char *conic_layers_unpack(conic_layers_coder *coder, const unsigned char *
     if (i == 0)
       wrong = join_keys(coder, n, first_key, last_key, samples);
     else if (!is_passed_over)
-      wrong = conic_layers_unite(schema, i, n, (const unsigned char *const *)&coder->streams[first], samples);
+      wrong = conic_layers_join(schema, i, n, (const unsigned char *const *)&coder->streams[first], samples);
   }
   return wrong;
 }

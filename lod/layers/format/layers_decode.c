@@ -9,7 +9,6 @@
 #include "core/splats/ellipse.h"
 #include "lod/layers/format/layers_code.h"
 #include "lod/layers/format/layers_key.h"
-#include "lod/layers/format/layers_split.h"
 
 struct conic_layers_decoder {
   conic_context *context;

@@ -7,13 +7,13 @@
 #include "lod/layers/format/layers_axes.h"
 #include "lod/layers/format/layers_format.h"
 
-/* The samples of a cloud, in ascending order of their keys, so that those in the place of a node below are a range
- * (conic_layers_range). All pointers lie in one block. */
+/* The samples of a cloud, ascending by key, so that those in the place of a node below are a range
+ * (conic_layers_range). All arrays lie in one block. */
 typedef struct conic_layers_cloud {
   size_t count;
   uint64_t *keys;
   float *position[3];         /* from the header's origin */
-  float *normal[3];           /* unit; zero, which a .lpc has not: it faces the eye */
+  float *normal[3];           /* unit; zero, but not in a .lpc: it faces the eye */
   float *color[3];            /* linear; null where the file has none */
   uint16_t *facing;           /* of each normal, conic_layers_facing; null where the file has ellipses, or is no .lpc */
   float *outline;             /* null where the file has none */
@@ -22,7 +22,7 @@ typedef struct conic_layers_cloud {
   float *dot;                 /* likewise, and null where none is one */
   conic_layers_lines *lines;  /* likewise */
   unsigned char *is_left_out; /* with a filter: a sample that does not pass */
-  double *values;             /* of the values that are kept, one after the other, those of all samples; else null */
+  double *values;             /* one kept value of all samples after the other; null: none is kept */
   float median_outline;       /* of another hierarchy's cloud: the lower median; more than 0 */
 } conic_layers_cloud;
 
@@ -33,20 +33,20 @@ static inline uint16_t conic_layers_facing(const uint8_t code[2]) {
   return (uint16_t)((code[0] >> 3) * CONIC_LAYERS_FACING_SIDE + (code[1] >> 3));
 }
 
-/* In place of an attribute: the place's x; y and z are one and two below. */
+/* In place of an attribute: the position's x; y and z are one and two below. */
 enum { CONIC_LAYERS_BY_X = -2 };
 
 /* What is made of the values that samples have by name. */
 typedef struct conic_layers_choice {
   int colored_by; /* an attribute; −1: the colours are the file's */
   conic_coloring coloring;
-  conic_filter *filter;                     /* null: all samples pass */
-  int filtered_by[CONIC_FILTER_MOST_NAMES]; /* attributes */
-  uint32_t n_kept;                          /* values that are handed on with the samples, and which attributes: */
-  uint8_t kept[CONIC_LAYERS_MOST_ATTRIBUTES];
+  conic_filter *filter;                       /* null: all samples pass */
+  int filtered_by[CONIC_FILTER_MOST_NAMES];   /* attributes */
+  uint32_t n_kept;                            /* values that are handed on with the samples */
+  uint8_t kept[CONIC_LAYERS_MOST_ATTRIBUTES]; /* their attributes */
 } conic_layers_choice;
 
-/* What a cloud's samples take, and laying them out in a block of so many bytes, aligned to 64. */
+/* How many bytes a cloud's samples take; and laying them out in a block of so many, aligned to 64. */
 size_t conic_layers_cloud_bytes(const conic_layers_header *header, const conic_layers_entry *entry,
                                 const conic_layers_choice *choice);
 void conic_layers_cloud_place(const conic_layers_header *header, const conic_layers_entry *entry,

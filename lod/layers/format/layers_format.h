@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "conic/context.h"
+#include "core/files/mapping.h"
 #include "lod/layers/format/layers_schema.h"
 
 enum {
@@ -41,12 +42,12 @@ typedef struct conic_layers_header {
   float up[3]; /* unit: what points up; zero: it is not known */
 } conic_layers_header;
 
-/* A cloud, and the node of the tree whose it is. Clouds are numbered in the order of the file: by level, then by key.
+/* A cloud, and the node of the tree that has it. Clouds are numbered in the order of the file: by level, then by key.
  *
- * A node's *place* is a cell of the grid: the samples, of its own and any other cloud, whose keys have its first
- * `depth` bits. What is drawn there, when it is the finest drawn, are the node's own samples and those of all nodes
- * above it that lie in its place: together T. Every sample is in exactly one cloud. Two nodes of one place are one
- * above the other, or split samples that coincide. */
+ * A node's *place* is a cell of the grid: all samples, of its own and any other cloud, whose keys begin with the same
+ * `depth` bits. Where the node is the finest drawn, its own samples are drawn there, and those of all nodes above it
+ * that lie in its place: together T. Every sample is in exactly one cloud. Two nodes of one place lie one above the
+ * other, or split samples that coincide. */
 typedef struct conic_layers_entry {
   uint64_t key;     /* first of its place: the 3B-bit Morton code's first `depth` bits, then zeros */
   uint64_t offset;  /* of its bytes in the file */
@@ -58,7 +59,7 @@ typedef struct conic_layers_entry {
   uint32_t n_drawn; /* |T| */
   uint16_t level;   /* 0: the root */
   uint16_t depth;   /* bits of the key that all of its place share, 0 to 3B */
-  float spacing;    /* mean distance between neighbours in T: LPC Eq. 2, with the place's own sampling distance */
+  float spacing;    /* mean distance between neighbours in T (LPC Eq. 2, with the place's own sampling distance) */
   float covering;   /* every sample of its place is at most so far from one of T */
   float radius;     /* no outline with which T is drawn, when it is the finest, is larger */
   float error;      /* nothing then drawn, and nothing that full resolution draws, is farther from the other */
@@ -94,11 +95,11 @@ void conic_layers_write_entries(const conic_layers_entry *entries, size_t n, uns
 void conic_layers_write_index(conic_layers_header *header, const conic_layers_entry *entries, unsigned char *bytes);
 void conic_layers_write_header(const conic_layers_header *header, unsigned char bytes[CONIC_LAYERS_HEADER_BYTES]);
 
-/* Makes the sums in a file's bytes right, where its header tells of an index and clouds that are all there: for tests
- * and fuzzing, which would else see no further than the sums. */
+/* Makes the sums in a file's bytes right, where all that its header tells of is there. Tests and fuzzing would
+ * otherwise see no further than the sums. */
 void conic_layers_mend(unsigned char *bytes, size_t n_bytes);
 
-/* With what outline a sample whose own is `outline` is drawn where the node is the finest. */
+/* The outline with which a sample is drawn where the node is the finest. `outline` is its own. */
 static inline float conic_layers_outline(const conic_layers_entry *entry, float outline) {
   float grown = entry->reach + entry->growth * outline;
   grown = grown > outline ? grown : outline;
@@ -110,7 +111,21 @@ static inline uint64_t conic_layers_last_key(const conic_layers_header *header, 
   return entry->key + ((UINT64_C(1) << (3 * header->bits - entry->depth)) - 1);
 }
 
-/* No sample was moved farther by rounding. */
+/* How far rounding moved a sample at most. */
 double conic_layers_position_error(const conic_layers_header *header);
+
+/* --- a whole file in memory --- */
+
+typedef struct conic_layers_file {
+  conic_context *context;
+  const char *name; /* for messages */
+  conic_mapping mapping;
+  conic_layers_header header;
+  conic_layers_entry *entries;
+} conic_layers_file;
+
+/* Maps the file and checks header and index; `path` must outlive the file. Errors: INPUT, MEMORY. */
+conic_status conic_layers_file_open(conic_context *context, const char *path, conic_layers_file *file);
+void conic_layers_file_close(conic_layers_file *file);
 
 #endif

@@ -1,4 +1,5 @@
-#include "lod/layers/format/layers_read.h"
+/* A whole .lpc file in memory: for looking at it, not for drawing. */
+#include "lod/layers/format/layers_format.h"
 
 #include <string.h>
 

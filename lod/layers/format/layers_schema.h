@@ -1,4 +1,4 @@
-/* What a sample of a layered point cloud has: the table of attributes that a file begins with, and where each of them
+/* What a sample of a layered point cloud has: the table of attributes at the begin of a file, and where each attribute
  * lies in a record in memory (docs/reference/format-lpc.md). */
 #ifndef CONIC_LAYERS_SCHEMA_H
 #define CONIC_LAYERS_SCHEMA_H
@@ -6,18 +6,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A sample while a file is built, and in its cloud: 16 bytes. In a row, each may be followed by its other attributes,
- * which nobody looks into but who codes them: samples are `stride` bytes apart, a multiple of 8. */
+/* The head of a sample, while a file is built and in its cloud: 16 bytes. Its other attributes may follow it; only
+ * their coders look into them. Samples are `stride` bytes apart, a multiple of 8. */
 typedef struct conic_layers_sample {
   uint64_t key;
   uint8_t normal[2]; /* octahedron */
   uint16_t size;     /* outline's radius: the upper half of a float's bits, rounded up; 0: not known */
   uint8_t color[3];  /* sRGB codes */
-  uint8_t bare;      /* of one that has no normal yet: conic_layers_bareness, and where in its step it is, in quarters,
-                        2 bits an axis; else 0 */
+  uint8_t bare;      /* without a normal yet: conic_layers_bareness, and where in its step it is, in quarters, 2 bits an
+                        axis; else 0 */
 } conic_layers_sample;
 
-/* SEEN: what stands in place of the normal is the direction to the scanner, to which that is to turn. */
+/* SEEN: `normal` is the direction to the scanner, to which the normal is to turn. */
 typedef enum conic_layers_bareness { CONIC_LAYERS_BARE = 64, CONIC_LAYERS_SEEN = 64 + 128 } conic_layers_bareness;
 
 static inline const conic_layers_sample *conic_layers_sample_at(const unsigned char *samples, size_t stride, size_t i) {
@@ -28,7 +28,7 @@ static inline conic_layers_sample *conic_layers_sample_in(unsigned char *samples
   return (conic_layers_sample *)(void *)(samples + i * stride);
 }
 
-/* How far samples that are each followed by so many bytes are apart. */
+/* From one sample to the next, where so many bytes follow each. */
 static inline size_t conic_layers_stride(size_t extra_bytes) {
   return (sizeof(conic_layers_sample) + extra_bytes + 7) / 8 * 8;
 }
@@ -46,7 +46,7 @@ typedef enum conic_layers_kind {
   CONIC_LAYERS_KINDS = 9
 } conic_layers_kind;
 
-/* Of an attribute: a reader that does not know it has to give the file up. */
+/* A flag of an attribute: a reader that does not know it has to give the file up. */
 enum { CONIC_LAYERS_NEEDED = 1 };
 
 /* How the numbers of a value are stored. */
@@ -82,15 +82,15 @@ typedef struct conic_layers_schema {
   conic_layers_attribute list[CONIC_LAYERS_MOST_ATTRIBUTES];
 } conic_layers_schema;
 
-/* An ellipse: the lengths of its axes, its normal as an octahedron of half 32767, and how far the first axis is turned:
- * the diamond angle, 65536 a turn, from the first axis that conic_layers_frame gives. */
+/* An ellipse: the lengths of its axes, its normal as an octahedron of half 32767, and how far its first axis is turned
+ * from the first axis of conic_layers_frame: the diamond angle, 65536 a turn. */
 typedef struct conic_layers_axes {
   float length[2];
   uint16_t normal[2], turn;
 } conic_layers_axes;
 
-/* Clip lines: 0, 1, or 2 of which both hold, or 3: either of two. Of each the diamond angle of (a, b), 2²⁴ a turn, and
- * c over its length, from −8 to 8. */
+/* Clip lines. `kind` is 0: none, 1: one, 2: two that both hold, 3: two of which either holds. A line is the diamond
+ * angle of (a, b), 2²⁴ a turn, and c over the length of (a, b), from −8 to 8. */
 typedef struct conic_layers_lines {
   uint32_t kind;
   uint32_t line[2][2]; /* 24 bits each */
@@ -100,7 +100,7 @@ typedef struct conic_layers_lines {
 conic_layers_attribute *conic_layers_schema_add(conic_layers_schema *schema, conic_layers_kind kind, const char *name,
                                                 unsigned type);
 
-/* Leaves one out; records stay as they are. */
+/* Takes an attribute out of the table; records stay as they are. */
 void conic_layers_schema_drop(conic_layers_schema *schema, uint32_t i);
 
 /* The first of its kind, as its number; −1: there is none. */
@@ -109,7 +109,7 @@ int conic_layers_schema_find(const conic_layers_schema *schema, conic_layers_kin
 /* The value that goes by a name, or by one that means the same; −1: there is none. */
 int conic_layers_schema_value(const conic_layers_schema *schema, const char *name);
 
-/* Lays records out without what is not wanted of them. */
+/* Lays records out without the attributes that are not wanted. */
 void conic_layers_schema_narrow(conic_layers_schema *schema, const unsigned char *is_wanted);
 
 /* Where attributes lie in records, for a table that was read. Null, or what is wrong with it. */

@@ -1,4 +1,5 @@
-#include "lod/layers/format/layers_split.h"
+/* Splits each attribute of a cloud's records into streams of bytes that are alike, and joins them again. */
+#include "lod/layers/format/layers_code.h"
 
 #include <string.h>
 
@@ -6,11 +7,12 @@
 #include "core/base/real.h"
 #include "lod/layers/format/layers_axes.h"
 
-/* Of a float's 23 bits of fraction the last are dropped: of the axes' lengths so many, of sizes those beyond `type`. */
+/* How many of a float's 23 bits of fraction are dropped, the last ones: so many of the axes' lengths, and those of
+ * sizes beyond `type`. */
 enum { AXES_DROPPED = 11, FRACTION_BITS = 23 };
 
-/* Numbers of so many bytes, of which each becomes a byte in each stream: its difference to the one before, modulo
- * 2^(8 bytes), with the sign as the lowest bit; the lowest byte comes first. */
+/* Numbers of so many bytes as streams, one for each byte, the lowest first. Coded is the difference of a number to the
+ * one before, modulo 2^(8 bytes), with the sign as the lowest bit. */
 typedef struct byte_planes {
   unsigned n_bytes;
   uint64_t before;
@@ -64,8 +66,8 @@ static void split_colors(const conic_layers_schema *schema, const unsigned char 
   }
 }
 
-static void unite_colors(const conic_layers_schema *schema, size_t n, const unsigned char *const *streams,
-                         unsigned char *samples) {
+static void rejoin_colors(const conic_layers_schema *schema, size_t n, const unsigned char *const *streams,
+                          unsigned char *samples) {
   uint8_t red = 0, green = 0, blue = 0;
   for (size_t i = 0; i < n; i++) {
     conic_layers_sample *sample = conic_layers_sample_in(samples, schema->sample_bytes, i);
@@ -88,8 +90,8 @@ static void split_normals(const conic_layers_schema *schema, const unsigned char
   }
 }
 
-static void unite_normals(const conic_layers_schema *schema, size_t n, const unsigned char *const *streams,
-                          unsigned char *samples) {
+static void rejoin_normals(const conic_layers_schema *schema, size_t n, const unsigned char *const *streams,
+                           unsigned char *samples) {
   uint8_t codes[2] = {0, 0};
   for (size_t i = 0; i < n; i++) {
     conic_layers_sample *sample = conic_layers_sample_in(samples, schema->sample_bytes, i);
@@ -130,8 +132,8 @@ static void split_sizes(const conic_layers_schema *schema, const conic_layers_at
   }
 }
 
-static void unite_sizes(const conic_layers_schema *schema, const conic_layers_attribute *attribute, size_t n,
-                        const unsigned char *const *streams, unsigned char *samples) {
+static void rejoin_sizes(const conic_layers_schema *schema, const conic_layers_attribute *attribute, size_t n,
+                         const unsigned char *const *streams, unsigned char *samples) {
   byte_planes p = {1, 0};
   for (size_t i = 0; i < n; i++) {
     float size = conic_layers_length_of(attribute, dropped_of_size(attribute), (uint32_t)get_folded(&p, i, streams));
@@ -155,8 +157,8 @@ static void split_axes(const conic_layers_schema *schema, uint32_t i_attribute, 
   }
 }
 
-static void unite_axes(const conic_layers_schema *schema, uint32_t i_attribute, size_t n,
-                       const unsigned char *const *streams, unsigned char *samples) {
+static void rejoin_axes(const conic_layers_schema *schema, uint32_t i_attribute, size_t n,
+                        const unsigned char *const *streams, unsigned char *samples) {
   const conic_layers_attribute *attribute = &schema->list[i_attribute];
   byte_planes p[5] = {{2, 0}, {2, 0}, {2, 0}, {2, 0}, {2, 0}};
   for (size_t i = 0; i < n; i++) {
@@ -201,8 +203,8 @@ static size_t split_lines(const conic_layers_schema *schema, uint32_t i_attribut
   return at;
 }
 
-static void unite_lines(const conic_layers_schema *schema, uint32_t i_attribute, size_t n,
-                        const unsigned char *const *streams, unsigned char *samples) {
+static void rejoin_lines(const conic_layers_schema *schema, uint32_t i_attribute, size_t n,
+                         const unsigned char *const *streams, unsigned char *samples) {
   byte_planes turn = {3, 0}, off = {3, 0};
   size_t at = 0;
   for (size_t i = 0; i < n; i++) {
@@ -242,8 +244,8 @@ static void split_bare_numbers(const conic_layers_schema *schema, uint32_t i_att
   }
 }
 
-static void unite_bare_numbers(const conic_layers_schema *schema, uint32_t i_attribute, size_t n,
-                               const unsigned char *const *streams, unsigned char *samples) {
+static void rejoin_bare_numbers(const conic_layers_schema *schema, uint32_t i_attribute, size_t n,
+                                const unsigned char *const *streams, unsigned char *samples) {
   const conic_layers_attribute *attribute = &schema->list[i_attribute];
   byte_planes p = {attribute->n_streams, 0};
   for (size_t i = 0; i < n; i++) {
@@ -281,27 +283,27 @@ void conic_layers_split(const conic_layers_schema *schema, uint32_t i, const uns
     n_bytes[k] = k ? n_lines : n;
 }
 
-const char *conic_layers_unite(const conic_layers_schema *schema, uint32_t i, size_t n,
-                               const unsigned char *const *streams, unsigned char *samples) {
+const char *conic_layers_join(const conic_layers_schema *schema, uint32_t i, size_t n,
+                              const unsigned char *const *streams, unsigned char *samples) {
   const conic_layers_attribute *attribute = &schema->list[i];
   switch (attribute->kind) {
   case CONIC_LAYERS_NORMAL:
-    unite_normals(schema, n, streams, samples);
+    rejoin_normals(schema, n, streams, samples);
     break;
   case CONIC_LAYERS_COLOR:
-    unite_colors(schema, n, streams, samples);
+    rejoin_colors(schema, n, streams, samples);
     break;
   case CONIC_LAYERS_SIZE:
-    unite_sizes(schema, attribute, n, streams, samples);
+    rejoin_sizes(schema, attribute, n, streams, samples);
     break;
   case CONIC_LAYERS_AXES:
-    unite_axes(schema, i, n, streams, samples);
+    rejoin_axes(schema, i, n, streams, samples);
     break;
   case CONIC_LAYERS_CLIP:
-    unite_lines(schema, i, n, streams, samples);
+    rejoin_lines(schema, i, n, streams, samples);
     break;
   default:
-    unite_bare_numbers(schema, i, n, streams, samples);
+    rejoin_bare_numbers(schema, i, n, streams, samples);
   }
   return NULL;
 }

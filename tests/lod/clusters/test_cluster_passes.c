@@ -1,9 +1,7 @@
 /* Sampling a cluster in passes: what one keeps from the last is what it would have found, errors are the same however
  * much of them is known before, and where wider spacings are said to give the same they do. */
 #include "core/base/memory.h"
-#include "lod/clusters/cluster_error.h"
-#include "lod/clusters/cluster_reuse.h"
-#include "lod/clusters/cluster_shape.h"
+#include "lod/clusters/cluster_sites.h"
 #include "tests/support/hybrid_fixture.h"
 
 /* A terrain that is one cluster. */

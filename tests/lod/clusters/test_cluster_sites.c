@@ -1,8 +1,7 @@
 /* What surfels are put on: sites by nearness, at several spacings at once, and ellipses that are nearly the smallest.
  */
 #include "core/splats/ellipse.h"
-#include "lod/clusters/least_ellipse.h"
-#include "lod/clusters/place_table.h"
+#include "lod/clusters/cluster_sites.h"
 #include "tests/support/hybrid_fixture.h"
 #include "tests/support/random_numbers.h"
 

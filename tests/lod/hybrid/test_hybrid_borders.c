@@ -1,8 +1,8 @@
 /* Clusters at any levels side by side fit to the bit: each edge of the triangles that are drawn has its like on the
  * other side, or is the mesh's own border; and no place of the mesh is farther from them than their errors allow, nor
  * they from it. */
-#include "lod/hybrid/draw/hybrid_stitch.h"
-#include "lod/mesh/distance.h"
+#include "lod/hybrid/draw/hybrid_selecting.h"
+#include "lod/mesh/mesh.h"
 #include "tests/support/hybrid_fixture.h"
 #include "tests/support/random_numbers.h"
 

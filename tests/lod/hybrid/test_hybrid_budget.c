@@ -2,8 +2,8 @@
 #include <stdatomic.h>
 
 #include "core/base/vectors.h"
-#include "lod/hybrid/draw/hybrid_point.h"
-#include "lod/hybrid/draw/hybrid_stitch.h"
+#include "lod/hybrid/draw/hybrid_offers.h"
+#include "lod/hybrid/draw/hybrid_selecting.h"
 #include "tests/support/hybrid_fixture.h"
 
 typedef struct spending {

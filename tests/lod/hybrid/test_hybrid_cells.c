@@ -1,7 +1,7 @@
 /* Models that are built in cells, of meshes that are read some faces at a time: of one cell they are those of the mesh
  * as a whole; the threads change nothing; and cells meet without a gap, whether their faces share vertices or only
  * places. */
-#include "lod/hybrid/build/hybrid_large.h"
+#include "lod/hybrid/build/hybrid_build.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/mesh/mesh_cells.h"
 #include "tests/support/files.h"

@@ -1,7 +1,7 @@
 /* Where both kinds are drawn: over ground that the camera stands on triangles in front and surfels behind, which a
  * cluster that surrounds the eye must not hide; and nodes that stand at once, which may only where they take less than
  * all of their clusters could. */
-#include "lod/hybrid/draw/hybrid_sight.h"
+#include "lod/hybrid/draw/hybrid_offers.h"
 #include "tests/support/hybrid_fixture.h"
 
 /* Low over the flat part of the terrain, along it. */

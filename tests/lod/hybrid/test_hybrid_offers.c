@@ -1,7 +1,6 @@
 /* What is chosen by: of a cluster that is called hidden no face within its cone, anywhere in its sphere, is turned to
  * the eye; and a point that stands for a node is off by its error, and by what its disc sticks out of the sphere. */
 #include "lod/hybrid/draw/hybrid_offers.h"
-#include "lod/hybrid/draw/hybrid_point.h"
 #include "lod/hybrid/model/hybrid_model.h"
 #include "tests/support/fixture.h"
 

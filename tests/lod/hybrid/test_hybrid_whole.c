@@ -4,7 +4,7 @@
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_seen.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
-#include "lod/mesh/distance.h"
+#include "lod/mesh/mesh.h"
 #include "tests/support/hybrid_fixture.h"
 #include "tests/support/random_numbers.h"
 

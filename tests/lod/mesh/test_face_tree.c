@@ -1,6 +1,6 @@
 /* How far places are from a mesh, by its tree and by asking every face; faces at the same places count once. */
-#include "lod/mesh/distance.h"
 #include "lod/mesh/face_tree.h"
+#include "lod/mesh/mesh.h"
 #include "tests/support/check.h"
 #include "tests/support/random_numbers.h"
 

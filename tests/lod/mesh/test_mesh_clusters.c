@@ -1,7 +1,7 @@
 /* Clusters of faces: every face of use in just one, whatever the mesh, and the sums that costs are made of, kept while
  * clusters grow, are those of the clusters as they are. */
 #include "core/base/vectors.h"
-#include "lod/mesh/flat_mesh.h"
+#include "lod/mesh/mesh.h"
 #include "lod/mesh/mesh_clusters.h"
 #include "tests/support/hybrid_fixture.h"
 #include "tests/support/random_numbers.h"

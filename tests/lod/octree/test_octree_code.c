@@ -1,6 +1,6 @@
 /* What the bytes of nodes and leaves give back: near what was put in, and never on the wrong side of a bound. */
 #include "core/base/color.h"
-#include "lod/octree/leaf_code.h"
+#include "lod/octree/octree_code.h"
 #include "lod/octree/octree_cover.h"
 #include "tests/support/fixture.h"
 

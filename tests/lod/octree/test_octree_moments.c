@@ -1,6 +1,6 @@
 /* Moments that are merged against moments that are computed at once, also in map coordinates; with the sums kept about
  * the world's origin, as Confetti has them, the latter would come out wrong. */
-#include "lod/octree/moments.h"
+#include "lod/octree/octree_fit.h"
 #include "tests/support/fixture.h"
 
 enum { N = 4000 };

@@ -1,0 +1,85 @@
+/* The sums over a point's neighbours: of a few and of many, by every weight and degree. */
+#include "bench/loops/cross.h"
+#include "surface/loops/weight.h"
+#include "tests/support/bent_sheet.h"
+
+typedef struct surface_desk {
+  cross_desk memory;
+  conic_near near;
+  conic_weighing weighing;
+  int degree;
+  double *moments, *plane, *sphere;
+  double (*upper)[CONIC_MAX_COLUMNS], *norms2, *before2;
+} surface_desk;
+
+static const double q[3] = {0.05, -0.1, 0.2};
+
+static surface_desk *open_sums(size_t n, int weight, double neglect, int degree, uint64_t seed) {
+  surface_desk *d = cross_calloc(sizeof *d);
+  size_t bytes = (n + 7) / 8 * 8 * sizeof(double);
+  for (int axis = 0; axis < 3; axis++) {
+    d->near.offset[axis] = cross_room(&d->memory, "offsets", bytes);
+    d->near.normal[axis] = cross_room(&d->memory, "normals", bytes);
+  }
+  d->near.mass = cross_room(&d->memory, "masses", bytes);
+  d->near.inverse_h2 = cross_room(&d->memory, "widths", bytes);
+  d->near.weights = cross_room(&d->memory, "weights", bytes);
+  d->near.columns = cross_room(&d->memory, "columns", bytes * CONIC_MAX_COLUMNS);
+  d->moments = cross_room(&d->memory, "moments", CONIC_N_MOMENTS * sizeof *d->moments);
+  d->plane = cross_room(&d->memory, "plane", CONIC_N_PLANE_SUMS * sizeof *d->plane);
+  d->sphere = cross_room(&d->memory, "sphere", CONIC_N_SPHERE_SUMS * sizeof *d->sphere);
+  d->upper = cross_room(&d->memory, "upper", CONIC_MAX_COLUMNS * sizeof *d->upper);
+  d->norms2 = cross_room(&d->memory, "norms", CONIC_MAX_COLUMNS * sizeof *d->norms2);
+  d->before2 = cross_room(&d->memory, "norms before", CONIC_MAX_COLUMNS * sizeof *d->before2);
+  d->weighing = bent_sheet_weighing((conic_surface_weight)weight, neglect);
+  d->degree = degree;
+  bent_sheet_fill(&d->near, n, seed);
+  return d;
+}
+
+static void run_moments(const cross_tables *tables, cross_desk *desk) {
+  surface_desk *d = (surface_desk *)(void *)desk;
+  tables->surface.moments(&d->near, &d->weighing, q, d->moments);
+}
+
+static void run_plane(const cross_tables *tables, cross_desk *desk) {
+  surface_desk *d = (surface_desk *)(void *)desk;
+  tables->surface.plane(&d->near, &d->weighing, bent_sheet_frame, 0.15, d->plane);
+}
+
+static void run_factor(const cross_tables *tables, cross_desk *desk) {
+  surface_desk *d = (surface_desk *)(void *)desk;
+  tables->surface.factor(&d->near, bent_sheet_frame, 0.15, 0.9, d->degree, d->upper, d->norms2, d->before2);
+}
+
+static void run_sphere(const cross_tables *tables, cross_desk *desk) {
+  surface_desk *d = (surface_desk *)(void *)desk;
+  tables->surface.sphere(&d->near, &d->weighing, q, d->sphere);
+}
+
+static void try_slots(cross *c, size_t n, int weight, double neglect, int degree, uint64_t seed) {
+  surface_desk *desks[CONIC_N_ISAS];
+  char variant[32];
+  const cross_slot slots[] = {{"surface plane", variant, run_plane, "neighbour", (double)n},
+                              {"surface sphere", variant, run_sphere, "neighbour", (double)n},
+                              {"surface moments", variant, run_moments, "neighbour", (double)n},
+                              {"surface factor", variant, run_factor, "neighbour", (double)n}};
+  snprintf(variant, sizeof variant, "w %d, d %d, %zu", weight, degree, n);
+  for (int i = 0; i < c->n_tables; i++)
+    desks[i] = open_sums(n, weight, neglect, degree, seed);
+  for (size_t i = 0; i < sizeof slots / sizeof slots[0]; i++)
+    cross_try(c, &slots[i], (cross_desk **)(void *)desks);
+  for (int i = 0; i < c->n_tables; i++)
+    cross_close(&desks[i]->memory);
+}
+
+int cli_cross_surface(cross *c) {
+  static const size_t counts[] = {1, 7, 8, 9, 26, 93};
+  if (c->is_bench)
+    try_slots(c, 64, CONIC_WEIGHT_GAUSS, 2.0, 3, c->seed);
+  for (int weight = CONIC_WEIGHT_GAUSS; weight <= CONIC_WEIGHT_FLAT && !c->is_bench; weight++)
+    for (int degree = 1; degree <= CONIC_SURFACE_MAX_DEGREE; degree++)
+      for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
+        try_slots(c, counts[i], weight, 1.5 + 0.5 * (double)i, degree, c->seed + 11 * i);
+  return check_failures;
+}

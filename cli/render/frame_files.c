@@ -1,0 +1,387 @@
+#include "cli/render/frame_files.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/render/frames.h"
+#include "cli/scene/background_options.h"
+#include "cli/session_team.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/coloring/color_ramp.h"
+#include "core/coloring/legend.h"
+#include "core/files/disk.h"
+#include "core/files/file.h"
+#include "raster/frame/samples.h"
+
+/* --- the picture --- */
+
+static void name_attribute(conic_image *image, const char *name, const char *text, double value) {
+  conic_attribute *attribute = &image->attributes[image->n_attributes++];
+  memset(attribute, 0, sizeof *attribute);
+  snprintf(attribute->name, sizeof attribute->name, "%s", name);
+  attribute->type = text ? CONIC_ATTRIBUTE_TEXT : CONIC_ATTRIBUTE_DOUBLE;
+  if (text)
+    snprintf(attribute->text, sizeof attribute->text, "%s", text);
+  attribute->values[0] = value;
+}
+
+/* What the picture says of itself in its header. */
+void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, conic_image *image) {
+  const conic_render_statistics *s = &job->statistics;
+  image->n_attributes = 0;
+  name_attribute(image, "conicVersion", conic_version(), 0);
+  name_attribute(image, "conicMethod", cli_method_name(job), 0);
+  name_attribute(image, "conicEpsilonMode", s->epsilon_is_fixed ? "fixed" : "auto", 0);
+  name_attribute(image, "conicEpsilon", NULL, s->epsilon);
+  name_attribute(image, "conicNear", NULL, s->near_z);
+  name_attribute(image, "conicCutoff", NULL, (double)job->shot.render.kernel.cutoff);
+  name_attribute(image, "conicPrefilter", NULL,
+                 job->abilities & CONIC_SOURCE_COMPOSITES ? job->shot.gaussians.prefilter
+                                                          : (double)job->shot.render.prefilter);
+  name_attribute(image, "conicExposure", NULL, job->shot.render.exposure);
+  name_attribute(image, "conicSamples", NULL, (double)job->shot.view.samples);
+  name_attribute(image, "conicFx", NULL, camera->fx);
+  name_attribute(image, "conicFy", NULL, camera->fy);
+  name_attribute(image, "conicCx", NULL, camera->cx);
+  name_attribute(image, "conicCy", NULL, camera->cy);
+  conic_attribute *matrix = &image->attributes[image->n_attributes++];
+  memset(matrix, 0, sizeof *matrix);
+  snprintf(matrix->name, sizeof matrix->name, "conicWorldToCamera");
+  matrix->type = CONIC_ATTRIBUTE_MATRIX;
+  memcpy(matrix->values, camera->cam_from_world, sizeof camera->cam_from_world);
+  matrix->values[15] = 1.0;
+  image->shot = job->making.text;
+  cli_accumulate_describe(job, image);
+  conic_image_describe_camera(image, camera);
+}
+
+/* Display values are past all curves. */
+static void check_tone(const cli_session *session, cli_render_job *job, const conic_image *image) {
+  if (job->tone == CONIC_TONE_SRGB || !image->is_display)
+    return;
+  conic_log(session->context, CONIC_LOG_WARNING, "%s: no --tone: the colours are display values, not linear",
+            job->inputs[0]);
+  job->tone = CONIC_TONE_SRGB; /* said once */
+}
+
+conic_status cli_frame_write(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
+  conic_moment start = conic_moment_now();
+  conic_status status = CONIC_OK;
+  check_tone(session, job, image);
+  for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
+    char *path = cli_frame_name(job, job->outputs[i], i_frame);
+    status = path ? cli_backdrop_write(session, job, path, image) : CONIC_ERROR_MEMORY;
+    free(path);
+  }
+  job->write_ms += 1e3 * (cli_seconds() - start.clock_s);
+  if (job->units != CONIC_UNITS_FRAMES) /* whose units write */
+    cli_team_trace(session, "write", "picture", (uint64_t)i_frame, start, 0);
+  return status;
+}
+
+/* --- its sums --- */
+
+char *cli_sums_name(const cli_render_job *job, int i_frame) {
+  char *picture = cli_frame_name(job, job->outputs[0], i_frame);
+  size_t room = picture ? strlen(picture) + 8 : 0;
+  char *name = picture ? malloc(room) : NULL;
+  if (name)
+    snprintf(name, room, "%s.sums", picture);
+  free(picture);
+  return name;
+}
+
+void cli_sums_forget(const cli_render_job *job, int i_frame) {
+  char *path = job->accumulating.n_samples ? cli_sums_name(job, i_frame) : NULL;
+  if (path)
+    conic_disk_remove(path);
+  free(path);
+}
+
+/* --- the legend --- */
+
+static conic_status write_legend(cli_session *session, const cli_render_job *job, const conic_coloring *coloring) {
+  conic_image legend;
+  conic_status status = conic_legend_make(session->context, coloring, &legend);
+  if (status != CONIC_OK)
+    return status;
+  const conic_image_options writing = cli_picture_writing(job);
+  status = conic_image_write_as(session->context, job->legend_path, &legend, &writing);
+  conic_image_release(session->context, &legend);
+  return status;
+}
+
+static conic_status show_legend(cli_session *session, cli_render_job *job, conic_image *image) {
+  const conic_coloring *coloring = conic_source_coloring(job->source);
+  conic_status status = CONIC_OK;
+  if (!job->has_legend && !job->legend_path)
+    return CONIC_OK;
+  if (!coloring) {
+    conic_log(session->context, CONIC_LOG_WARNING, "%s: no legend: the colours are the file's own", job->inputs[0]);
+    job->has_legend = 0; /* said once */
+    job->legend_path = NULL;
+    return CONIC_OK;
+  }
+  if (job->has_legend)
+    conic_legend_draw(coloring, image);
+  if (job->legend_path)
+    status = write_legend(session, job, coloring);
+  job->legend_path = NULL; /* once, however many frames */
+  return status;
+}
+
+/* --- pictures beside it --- */
+
+/* A picture beside the frame's, which it releases, where `status` says that it was made, from `start` on. */
+static conic_status write_beside(cli_session *session, cli_render_job *job, const char *name, int i_frame, double start,
+                                 conic_status status, conic_image *map) {
+  char *path = status == CONIC_OK ? cli_frame_name(job, name, i_frame) : NULL;
+  if (status == CONIC_OK) {
+    status = path ? conic_image_write_as(session->context, path, map, &job->writing) : CONIC_ERROR_MEMORY;
+    conic_image_release(session->context, map);
+  }
+  free(path);
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+/* --overdraw: the count plane in false colours. */
+static conic_status write_overdraw(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
+  conic_image map;
+  double start = cli_seconds();
+  if (!job->overdraw_path)
+    return CONIC_OK;
+  conic_status status = job->is_overdraw_confetti ? conic_image_overdraw_confetti(session->context, image, &map)
+                                                  : conic_image_overdraw(session->context, image, &map);
+  return write_beside(session, job, job->overdraw_path, i_frame, start, status, &map);
+}
+
+/* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in the picture. */
+static conic_status make_cluster_map(conic_context *context, const conic_image *image, conic_image *map) {
+  const uint32_t *cluster = image->planes[CONIC_PLANE_CLUSTER];
+  const float *from = image->planes[CONIC_PLANE_RGBA];
+  conic_status status = conic_image_allocate(context, image->width, image->height, 1u << CONIC_PLANE_RGBA, map);
+  if (status != CONIC_OK)
+    return status;
+  float *to = map->planes[CONIC_PLANE_RGBA];
+  for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) {
+    float color[3], light = (from[4 * i] + from[4 * i + 1] + from[4 * i + 2]) / 3.0f;
+    if (cluster[i] == CONIC_NO_ID)
+      continue;
+    conic_number_color(cluster[i], color);
+    for (int channel = 0; channel < 3; channel++)
+      to[4 * i + (size_t)channel] = color[channel] * light;
+    to[4 * i + 3] = 1.0f;
+  }
+  return CONIC_OK;
+}
+
+static conic_status write_clusters(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
+  conic_image map;
+  double start = cli_seconds();
+  if (!job->clusters_path)
+    return CONIC_OK;
+  return write_beside(session, job, job->clusters_path, i_frame, start, make_cluster_map(session->context, image, &map),
+                      &map);
+}
+
+/* --boxes: the nodes of an octree. */
+static conic_status write_boxes(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                                const conic_image *image, int i_frame) {
+  const conic_octree *octree = job->boxes_path ? conic_source_octree(job->source) : NULL;
+  conic_image map;
+  double start = cli_seconds();
+  if (!octree)
+    return CONIC_OK;
+  conic_status status = conic_octree_draw_boxes(octree, camera, job->box_level, image, &map);
+  return write_beside(session, job, job->boxes_path, i_frame, start, status, &map);
+}
+
+/* --deep: what is behind the picture's pixels. */
+static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                               const conic_image *image, int i_frame) {
+  const conic_drawing *drawing = &conic_source_chosen(job->source)->drawing;
+  conic_contributions *contributions;
+  double start = cli_seconds();
+  if (!job->deep_path)
+    return CONIC_OK;
+  char *path = cli_frame_name(job, job->deep_path, i_frame);
+  conic_status status =
+      path ? conic_contributions_create_drawing(session->context, drawing, camera, &job->shot.render, &contributions)
+           : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    status = conic_contributions_write(contributions, path, image);
+    conic_contributions_destroy(contributions);
+  }
+  free(path);
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+/* --- mattes --- */
+
+enum { MOST_SAMPLES = CONIC_MAX_SAMPLES * CONIC_MAX_SAMPLES };
+
+/* What can be picked: an input, or a cluster of a hybrid. */
+typedef struct pickable {
+  uint32_t bits; /* of its name */
+  int is_seen;
+} pickable;
+
+typedef struct matte_pass {
+  conic_context *context;
+  const cli_render_job *job;
+  conic_plane naming; /* the plane that tells things apart */
+  pickable *list;
+  size_t n, room;
+  const conic_image *fine; /* a band, */
+  size_t first_row;        /* which begins here */
+  conic_image *image;
+} matte_pass;
+
+/* The file's name without its folder and ending. */
+static const char *base_of(const char *path, size_t *length) {
+  const char *name = conic_file_name(path), *base = *name ? name : path, *dot = strrchr(base, '.');
+  *length = dot && dot != base ? (size_t)(dot - base) : strlen(base);
+  return base;
+}
+
+/* Files in several folders may have one name: those after the first have the path for theirs. */
+static int is_taken(const cli_render_job *job, size_t i_input) {
+  size_t length, own_length;
+  const char *own = base_of(job->inputs[i_input], &own_length);
+  for (size_t i = 0; i < i_input; i++) {
+    const char *other = base_of(job->inputs[i], &length);
+    if (length == own_length && memcmp(own, other, length) == 0)
+      return 1;
+  }
+  return 0;
+}
+
+/* The caller frees it. */
+static char *name_matte(const matte_pass *pass, size_t i) {
+  int is_cluster = pass->naming == CONIC_PLANE_CLUSTER;
+  const char *path = pass->job->inputs[is_cluster ? 0 : i];
+  size_t length, room = strlen(path) + 32;
+  const char *base = base_of(path, &length);
+  char *name = malloc(room);
+  if (name && is_cluster)
+    snprintf(name, room, "%.*s/%zu", (int)length, base, i);
+  else if (name)
+    snprintf(name, room, "%.*s", is_taken(pass->job, i) ? (int)strlen(path) : (int)length,
+             is_taken(pass->job, i) ? path : base);
+  return name;
+}
+
+/* Makes the list as long as that. */
+static conic_status list_up_to(matte_pass *pass, size_t n) {
+  conic_status status = CONIC_OK;
+  if (n > pass->room)
+    status = conic_memory_reserve(pass->context, &pass->list, pass->n, n, &pass->room, sizeof *pass->list);
+  for (; pass->n < n && status == CONIC_OK; pass->n++) {
+    char *name = name_matte(pass, pass->n);
+    pass->list[pass->n] = (pickable){name ? conic_cryptomatte_bits(name) : 0, pass->naming == CONIC_PLANE_ID};
+    if (!name)
+      status = CONIC_ERROR_MEMORY;
+    free(name);
+  }
+  return status;
+}
+
+static conic_status list_clusters(matte_pass *pass, const conic_image *fine) {
+  const uint32_t *clusters = fine->planes[CONIC_PLANE_CLUSTER];
+  for (size_t i = 0; i < (size_t)fine->width * (size_t)fine->height; i++) {
+    if (clusters[i] == CONIC_NO_ID || (clusters[i] < pass->n && pass->list[clusters[i]].is_seen))
+      continue;
+    conic_status status = list_up_to(pass, (size_t)clusters[i] + 1);
+    if (status != CONIC_OK)
+      return status;
+    pass->list[clusters[i]].is_seen = 1;
+  }
+  return CONIC_OK;
+}
+
+static void rank_row(void *data, size_t i_row, int i_thread) {
+  const matte_pass *pass = data;
+  uint32_t bits[MOST_SAMPLES];
+  size_t samples = (size_t)pass->job->shot.view.samples, fine_width = (size_t)pass->fine->width;
+  size_t width = (size_t)pass->image->width;
+  const uint32_t *names = pass->fine->planes[pass->naming];
+  (void)i_thread;
+  for (size_t x = 0; x < width; x++) {
+    for (size_t k = 0; k < samples * samples; k++) {
+      uint32_t name = names[(i_row * samples + k / samples) * fine_width + x * samples + k % samples];
+      size_t i = pass->naming == CONIC_PLANE_ID ? conic_source_input_of(pass->job->source, name) : name;
+      bits[k] = name == CONIC_NO_ID ? 0 : pass->list[i].bits;
+    }
+    conic_cryptomatte_rank(bits, samples * samples, pass->image, (pass->first_row + i_row) * width + x);
+  }
+}
+
+static conic_status take_band(void *cookie, conic_image *fine, int first_row) {
+  matte_pass *pass = cookie;
+  conic_source_name_image(pass->job->source, fine);
+  pass->fine = fine;
+  pass->first_row = (size_t)first_row;
+  conic_status status = pass->naming == CONIC_PLANE_CLUSTER ? list_clusters(pass, fine) : CONIC_OK;
+  if (status == CONIC_OK)
+    conic_parallel_for(pass->context, (size_t)(fine->height / pass->job->shot.view.samples), rank_row, pass);
+  return status;
+}
+
+/* All inputs, but only the clusters that are seen: of these there may be many. */
+static conic_status write_manifest(const matte_pass *pass, conic_cryptomatte_manifest *manifest) {
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < pass->n && status == CONIC_OK; i++) {
+    char *name = pass->list[i].is_seen ? name_matte(pass, i) : NULL;
+    if (name)
+      status = conic_cryptomatte_name(pass->context, manifest, name);
+    else if (pass->list[i].is_seen)
+      status = CONIC_ERROR_MEMORY;
+    free(name);
+  }
+  return status;
+}
+
+static conic_status fill_mattes(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                                conic_image *image) {
+  int is_hybrid = (job->abilities & CONIC_SOURCE_CLUSTERS) != 0;
+  const conic_drawing *drawing = &conic_source_chosen(job->source)->drawing;
+  matte_pass pass = {.context = session->context,
+                     .job = job,
+                     .naming = is_hybrid ? CONIC_PLANE_CLUSTER : CONIC_PLANE_ID,
+                     .image = image};
+  double start = cli_seconds();
+  conic_cryptomatte_manifest_release(session->context, &job->manifest);
+  conic_status status = is_hybrid ? CONIC_OK : list_up_to(&pass, (size_t)job->n_inputs);
+  if (status == CONIC_OK)
+    status = conic_render_bands(session->context, job->renderer, drawing, camera, &job->shot.render,
+                                job->shot.view.samples, 1u << CONIC_PLANE_ID | 1u << pass.naming, take_band, &pass);
+  if (status == CONIC_OK)
+    status = write_manifest(&pass, &job->manifest);
+  image->manifest = job->manifest.text;
+  conic_memory_release(session->context, pass.list);
+  job->frames_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+/* --- all of it --- */
+
+conic_status cli_frame_files_write(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                                   conic_image *image, int i_frame) {
+  cli_frame_describe(job, camera, image);
+  conic_status status = job->has_mattes ? fill_mattes(session, job, camera, image) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = show_legend(session, job, image);
+  if (status == CONIC_OK)
+    status = cli_frame_write(session, job, image, i_frame);
+  if (status == CONIC_OK)
+    status = write_overdraw(session, job, image, i_frame);
+  if (status == CONIC_OK)
+    status = write_clusters(session, job, image, i_frame);
+  if (status == CONIC_OK)
+    status = write_boxes(session, job, camera, image, i_frame);
+  return status == CONIC_OK ? write_deep(session, job, camera, image, i_frame) : status;
+}

@@ -1,5 +1,0 @@
-#if defined(__aarch64__)
-#include "gaussians/kernels/gaussian_lanes.h"
-#else
-typedef int conic_not_this_machine;
-#endif

@@ -1,0 +1,131 @@
+/* Compositing in lanes: block by block, in each the Gaussians of the list that may cover it, its pixels in registers.
+ * Includes what fills the table. C and OpenCL C share this text, and what it includes. */
+#include "gaussians/loops/gaussian_rays_lanes.h"
+
+typedef struct gaussian_batch {
+  gaussian_record records[BATCH];
+  uint32_t blocks[BATCH]; /* that each may cover, as bits */
+  uint32_t footprints[BATCH];
+  size_t n;
+  uint32_t listed[BATCH + CONIC_LANES];                       /* those of one block */
+  unsigned goes_on[CONIC_GAUSSIAN_TILE_PIXELS / CONIC_LANES]; /* which pixels of each vector */
+} gaussian_batch;
+
+static void take_batch(const conic_gaussian_list *list, const conic_gaussian_tile *tile, size_t first,
+                       gaussian_batch *b) {
+  b->n = 0;
+  for (size_t i = first; i < list->n && i < first + BATCH; i++) {
+    const CONIC_STORED conic_gaussian_footprint *f = footprint_of_entry(list, i);
+    gaussian_record *r = &b->records[b->n];
+    *r = record_of(tile, f);
+    b->blocks[b->n] = blocks_of_box(tile, f) & blocks_of_ellipse(r, f->half_reach);
+    b->footprints[b->n] = list->entries[i];
+    b->n += b->blocks[b->n] != 0;
+  }
+  memset(b->blocks + b->n, 0, (BATCH - b->n) * sizeof *b->blocks);
+}
+
+CONIC_INLINE lanes half_q_of_ellipse(const gaussian_record *r, places at) {
+  lanes dx = (at.column + r->x) + r->dx, dy = (at.row + r->y) + r->dy;
+  return 0.5f * (r->form[0] * dx * dx + r->form[2] * dy * dy) + r->form[1] * dx * dy;
+}
+
+/* The lesser of the plane's and the dot's. */
+CONIC_INLINE meeting_lanes meet_disc(const gaussian_record *r, const CONIC_STORED conic_gaussian_ray *ray, places at) {
+  lanes x = at.column + r->x, y = at.row + r->y, dx = x + r->dx, dy = y + r->dy;
+  meeting_lanes m = meet_lanes(ray, x, y);
+  m.half_q = lanes_min(m.half_q, dx * dx + dy * dy);
+  return m;
+}
+
+CONIC_INLINE response respond(const scene *s, const gaussian_record *r, uint32_t footprint, places at,
+                              conic_gaussian_shape shape) {
+  const conic_gaussian_list *list = s->list;
+  const float near_z = list->rules->disc_near;
+  response to = {.z = lanes_of(r->z), .color = {lanes_of(r->color[0]), lanes_of(r->color[1]), lanes_of(r->color[2])}};
+  meeting_lanes m;
+  if (shape == CONIC_SHAPE_DISC)
+    m = meet_disc(r, &list->rays[footprint], at);
+  else
+    m.half_q = half_q_of_ellipse(r, at);
+  to.alpha = lanes_alpha(s, r, m.half_q);
+  to.covered = within_box(r, at) & lanes_at_least(m.half_q, lanes_of(0.0f)) & lanes_at_least(to.alpha, s->least);
+  if (shape == CONIC_SHAPE_ELLIPSE && s->has_greatest)
+    to.covered = to.covered & lanes_at_least(s->greatest, m.half_q);
+  if (shape == CONIC_SHAPE_DISC && near_z > 0.0f) {
+    to.covered = to.covered & lanes_at_least(m.z, lanes_of(near_z));
+    to.z = m.z;
+  }
+  return to;
+}
+
+CONIC_INLINE void composite_vector(const scene *s, gaussian_batch *b, size_t n_listed, size_t pixel,
+                                   conic_gaussian_shape shape, int wants_all) {
+  const conic_gaussian_list *list = s->list;
+  const places at = places_at(pixel);
+  pixels p = take_pixels(s->tile, b->goes_on[pixel / CONIC_LANES], pixel, wants_all);
+  for (size_t i = 0; i < n_listed && lanes_any(p.goes_on); i++) {
+    const gaussian_record *r = &b->records[b->listed[i]];
+    const uint32_t footprint = b->footprints[b->listed[i]];
+    response to = respond(s, r, footprint, at, shape);
+    if (!lanes_any(to.covered))
+      continue;
+    if (wants_all)
+      add_planes_of_footprint(list, footprint, &to);
+    composite_lanes(s, &to, &p, wants_all);
+  }
+  put_pixels(s->tile, &p, pixel, wants_all);
+  b->goes_on[pixel / CONIC_LANES] = lanes_bits(p.goes_on);
+}
+
+/* Returns 0 where compositing has ended at all pixels. */
+CONIC_INLINE int composite_batch(const scene *s, gaussian_batch *b, conic_gaussian_shape shape, int wants_all) {
+  unsigned going = 0;
+  for (int block = 0; block < CONIC_GAUSSIAN_BLOCKS; block++) {
+    size_t n_listed = list_block(b->blocks, b->n, block, b->listed);
+    for (size_t pixel = (size_t)block * CONIC_GAUSSIAN_BLOCK_PIXELS;
+         pixel < (size_t)(block + 1) * CONIC_GAUSSIAN_BLOCK_PIXELS; pixel += CONIC_LANES) {
+      if (b->goes_on[pixel / CONIC_LANES])
+        composite_vector(s, b, n_listed, pixel, shape, wants_all);
+      going |= b->goes_on[pixel / CONIC_LANES];
+    }
+  }
+  return going != 0;
+}
+
+CONIC_INLINE void composite_in_order(const conic_gaussian_list *list, conic_gaussian_tile *tile,
+                                     conic_gaussian_shape shape, int wants_all) {
+  const scene s = scene_of(list, tile);
+  gaussian_batch b;
+  for (size_t i = 0; i < CONIC_GAUSSIAN_TILE_PIXELS / CONIC_LANES; i++)
+    b.goes_on[i] = (1u << CONIC_LANES) - 1;
+  for (size_t first = 0; first < list->n; first += BATCH) {
+    take_batch(list, tile, first, &b);
+    if (!composite_batch(&s, &b, shape, wants_all))
+      return;
+  }
+}
+
+static void composite_ellipses_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  if (list->wants_all)
+    composite_in_order(list, tile, CONIC_SHAPE_ELLIPSE, 1);
+  else
+    composite_in_order(list, tile, CONIC_SHAPE_ELLIPSE, 0);
+}
+
+static void composite_discs_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  if (list->wants_all)
+    composite_in_order(list, tile, CONIC_SHAPE_DISC, 1);
+  else
+    composite_in_order(list, tile, CONIC_SHAPE_DISC, 0);
+}
+
+#ifndef CONIC_ON_DEVICE
+CONIC_FILL_LOOPS(conic_gaussian_loops) {
+  loops->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses_in_lanes;
+  loops->composite[CONIC_SHAPE_RAY] = composite_rays_in_lanes;
+  loops->composite[CONIC_SHAPE_DISC] = composite_discs_in_lanes;
+  loops->composite[CONIC_SHAPE_FILTERED] = composite_filtered_in_lanes;
+  loops->composite[CONIC_SHAPE_SIGHT] = composite_sights_in_lanes;
+}
+#endif

@@ -1,3 +1,0 @@
-#include "lighting/lighting_kernels.h"
-
-CONIC_DEFINE_KERNELS(conic_lighting_kernels)

@@ -1,5 +1,0 @@
-#if defined(__x86_64__)
-#include "lod/octree/octree_kernels_body.h"
-#else
-typedef int conic_not_this_machine;
-#endif

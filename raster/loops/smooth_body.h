@@ -1,0 +1,72 @@
+/* The parts of smooth splats in the profile's table, several at a time: beside what one of them has in scalar code,
+ * that is a tenth of the work, and what is stored is in the cache when pixels read it number by number. Included by
+ * pass_body.h. */
+#ifndef CONIC_SMOOTH_BODY_H
+#define CONIC_SMOOTH_BODY_H
+
+#include "raster/loops/coverage_lanes.h"
+
+typedef struct smooth_group {
+  unsigned is_smooth; /* by bits: narrow ellipses without clip lines, of smooth shares */
+  smooth_part parts[CONIC_LANES];
+} smooth_group;
+
+/* What of the group is found in lanes. */
+typedef struct smooth_aims {
+  float s1[CONIC_LANES], s2[CONIC_LANES], s3[CONIC_LANES], nearness[CONIC_LANES];
+  float n_xx[CONIC_LANES], n_xy[CONIC_LANES], n_yy[CONIC_LANES];
+  uint32_t level[2][CONIC_LANES];
+  float part[2][CONIC_LANES];
+} smooth_aims;
+
+/* conic_profile_smooth_level, lane by lane. */
+CONIC_INLINE void put_smooth_level(lanes share, uint32_t *level, float *part) {
+  lanes place = lanes_min(share, lanes_of(1.0f)) * (float)CONIC_PROFILE_SMOOTH_LEVELS - 1.0f;
+  place = lanes_min(place, lanes_of(CONIC_PROFILE_LAST));
+  int_lanes whole = lanes_to_ints(lanes_max(place, lanes_of(0.0f)));
+  lanes_store_indices(level, indices_of_ints(whole));
+  lanes_store(part, place - lanes_of_ints(whole));
+}
+
+/* conic_variance_aim, lane by lane; returns which are smooth. */
+CONIC_INLINE unsigned find_smooth_aims(float h, smooth_aims *aims) {
+  lanes s1 = lanes_load(aims->s1), s2 = lanes_load(aims->s2), s3 = lanes_load(aims->s3), area = h * (s1 * s3);
+  lanes xx = h * (s1 * s1 + s2 * s2), xy = h * (s2 * s3), yy = h * (s3 * s3), determinant = area * area;
+  lanes difference = xx - yy, spread = lanes_sqrt(difference * difference + 4.0f * (xy * xy));
+  lanes high = 0.5f * ((xx + yy) + spread), low = determinant / high;
+  lanes scale = 1.0f / (spread + CONIC_PROFILE_ROUND * high);
+  lanes_store(aims->n_xx, scale * (xx - low));
+  lanes_store(aims->n_xy, scale * (2.0f * xy));
+  lanes_store(aims->n_yy, scale * (yy - low));
+  put_smooth_level(low, aims->level[0], aims->part[0]);
+  put_smooth_level(high, aims->level[1], aims->part[1]);
+  lanes usual = lanes_min(s3, lanes_load(aims->nearness));
+  return lanes_bits(lanes_less(lanes_of(0.0f), usual) &
+                    lanes_at_least(low, lanes_of(1.0f / (float)CONIC_PROFILE_SMOOTH_LEVELS)));
+}
+
+/* Of the band's splats from the first on. */
+CONIC_INLINE void find_smooth(const sources *from, size_t first, smooth_group *group) {
+  smooth_aims aims;
+  for (size_t i = 0; i < CONIC_LANES; i++) {
+    const size_t last = from->n - 1;
+    const conic_footprint *footprint = &from->footprints[from->indices[first + i < last ? first + i : last]];
+    aims.s1[i] = footprint->s1;
+    aims.s2[i] = footprint->s2;
+    aims.s3[i] = footprint->s3;
+    aims.nearness[i] = footprint->nearness;
+  }
+  group->is_smooth = find_smooth_aims(from->view->prefilter, &aims);
+  for (size_t i = 0; i < CONIC_LANES; i++) {
+    smooth_part *part = &group->parts[i];
+    if (!(group->is_smooth >> i & 1))
+      continue;
+    part->n_xx = aims.n_xx[i];
+    part->n_xy = aims.n_xy[i];
+    part->n_yy = aims.n_yy[i];
+    cut_smooth(&from->view->profile, (int)aims.level[0][i], (int)aims.level[1][i], aims.part[0][i], aims.part[1][i],
+               part);
+  }
+}
+
+#endif
