@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "core/base/byte_order.h"
-#include "core/files/sha256_x86.h"
 
 /* The first 32 bits of the fractions of the cube roots of the first 64 primes. */
 static const uint32_t round_constants[64] = {

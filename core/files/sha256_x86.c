@@ -1,4 +1,4 @@
-#include "core/files/sha256_x86.h"
+#include "core/files/sha256.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 
