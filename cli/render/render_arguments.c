@@ -199,7 +199,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"save-shot", CLI_TEXT, &job->making.save_path, "OUT.shot.json",
        "all that decides the picture, as text by which conic render draws it again"},
       {"no-shot", CLI_FLAG, &job->making.is_left_out, NULL,
-       "leave out of .exr, .png and .tif what they say of how they were made"},
+       "leave out of .exr, .png and .tif what they say of how they were made",
+       .acts = {.needs = CLI_FACT(EXR) | CLI_FACT(CODES), .is_warned = 1}},
       {"again", CLI_TEXT, &job->making.again_path, "PICTURE",
        "draw again what a picture says that it was drawn from, to the bit; other options change that. Inputs are looked "
        "for beside it, here, and among those that are given"},
