@@ -127,6 +127,11 @@ void cli_json_text(cli_json *json, const char *key, const char *value) {
     fputs("null", json->to);
 }
 
+void cli_json_value(cli_json *json, const char *key, const char *value) {
+  begin_item(json, key, 0);
+  fputs(value ? value : "null", json->to);
+}
+
 void cli_json_number(cli_json *json, const char *key, double value) {
   char text[40];
   const int is_finite = value - value == 0.0;

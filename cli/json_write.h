@@ -20,8 +20,9 @@ void cli_json_begin(cli_json *json, FILE *to);         /* opens the outermost ob
 int cli_json_end(cli_json *json);                      /* closes it with a newline; 0 where writing failed */
 void cli_json_object(cli_json *json, const char *key); /* key is null inside an array */
 void cli_json_array(cli_json *json, const char *key);
-void cli_json_close(cli_json *json);                                    /* the innermost object or array */
-void cli_json_text(cli_json *json, const char *key, const char *value); /* null becomes null */
+void cli_json_close(cli_json *json);                                     /* the innermost object or array */
+void cli_json_text(cli_json *json, const char *key, const char *value);  /* null becomes null */
+void cli_json_value(cli_json *json, const char *key, const char *value); /* which is JSON; null becomes null */
 void cli_json_number(cli_json *json, const char *key, double value);
 void cli_json_count(cli_json *json, const char *key, uint64_t value);
 void cli_json_bool(cli_json *json, const char *key, int value);

@@ -35,8 +35,10 @@ typedef struct cli_session {
   int is_help_whole; /* --all: of commands that have a short one */
   struct {
     const char *name, *now;
-  } old_spellings[8];                /* of options that were given, and what they are now; names null: no more */
-  struct cli_host *host;             /* cli/host.h: what runs the command within itself; null: a shell */
+  } old_spellings[8]; /* of options that were given, and what they are now; names null: no more */
+  struct cli_shot_again
+      *again;            /* cli/render/shot_again.h: what the arguments that are read draw again; null: nothing */
+  struct cli_host *host; /* cli/host.h: what runs the command within itself; null: a shell */
   const struct conic_executor *team; /* the processes that run it together (cli/session_team.h); null: it is alone */
 } cli_session;
 

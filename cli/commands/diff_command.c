@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/commands/diff_job.h"
+#include "cli/commands/diff_shots.h"
 #include "cli/outputs.h"
 
 static void write_planes(cli_json *json, const conic_difference *difference) {
@@ -21,7 +22,7 @@ static void write_planes(cli_json *json, const conic_difference *difference) {
   cli_json_close(json);
 }
 
-static int write_statistics(const cli_diff_job *job, const conic_difference *difference) {
+static int write_statistics(const cli_diff_job *job, const conic_difference *difference, const cli_diff_shots *shots) {
   int exit_code = CLI_DONE;
   cli_json_file *file;
   cli_json *json = cli_json_open(job->session, &file, &exit_code);
@@ -29,7 +30,11 @@ static int write_statistics(const cli_diff_job *job, const conic_difference *dif
     return exit_code;
   cli_diff_report(json, difference);
   write_planes(json, difference);
-  return cli_json_finish(file);
+  conic_status status = cli_diff_shots_report(json, job->session, shots);
+  if (status != CONIC_OK)
+    exit_code = cli_exit_of(status);
+  int finished = cli_json_finish(file);
+  return exit_code == CLI_DONE ? finished : exit_code;
 }
 
 static void print_lone_planes(const cli_diff_job *job, const conic_image images[2], int which) {
@@ -78,16 +83,22 @@ static int diff_files(const cli_diff_job *job) {
   const cli_session *session = job->session;
   conic_image images[2] = {{.width = 0}, {.width = 0}};
   conic_difference difference;
+  cli_diff_shots shots = {{NULL, NULL}};
   int exit_code = cli_exit_of(cli_diff_measure(job, job->paths, job->heatmap_path, 0, images, &difference));
   if (exit_code == CLI_DONE)
-    exit_code = write_statistics(job, &difference);
+    exit_code = cli_exit_of(cli_diff_shots_read(session, job->paths, &shots));
+  if (exit_code == CLI_DONE)
+    exit_code = write_statistics(job, &difference, &shots);
   if (exit_code == CLI_DONE) {
-    if (!session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0))
+    if (!session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0)) {
       print_result(job, images, &difference);
+      cli_diff_shots_print(session, &shots);
+    }
     exit_code = cli_diff_is_past(&job->limits, &difference) ? CLI_DIFFERENT : CLI_DONE;
   }
   for (int i = 0; i < 2; i++)
     conic_image_release(session->context, &images[i]);
+  cli_diff_shots_release(session, &shots);
   return exit_code;
 }
 

@@ -112,7 +112,7 @@ static int add_file(const cli_diff_job *job, cli_diff_list *list, const char *fo
     file.n_stem -= n;
   file.number = frame_number(file.name, file.n_stem);
   list->files[list->n++] = file;
-  return cli_exit_of(conic_guard_note(job->session->context, &found));
+  return cli_exit_of(conic_guard_note(job->session->context, file.path, &found));
 }
 
 static int list_folder(const cli_diff_job *job, const char *folder, cli_diff_list *list) {

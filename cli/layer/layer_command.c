@@ -163,8 +163,6 @@ static int check_layer_arguments(cli_layer_job *job) {
 static int run_layer(cli_session *session, int argc, char **argv) {
   static const cli_build_steps steps = {make_layers, tell_layers, report_layers, release_layers};
   cli_layer_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}},
-                       .n_arguments = argc,
-                       .arguments = argv,
                        .cloud_size = 2048,
                        .memory_mib = 1024.0,
                        .cutoff = 1.5,
@@ -235,8 +233,6 @@ static int check_merge_arguments(cli_layer_job *job) {
 static int run_merge(cli_session *session, int argc, char **argv) {
   static const cli_build_steps steps = {make_layers, tell_layers, report_layers, release_layers};
   cli_layer_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}},
-                       .n_arguments = argc,
-                       .arguments = argv,
                        .memory_mib = 1024.0,
                        .is_merging = 1};
   const char *positional[argc];

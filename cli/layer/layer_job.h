@@ -20,8 +20,6 @@ typedef struct cli_layer_job {
   int cloud_size;
   double memory_mib, cutoff;
   cli_length quantum;
-  int n_arguments;
-  char **arguments; /* as given, with the command's name first */
   int is_resumable;
   const char *resume_path; /* null: no build is resumed */
   int is_quantum_given, is_appending, is_merging, payload;

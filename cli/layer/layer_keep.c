@@ -1,10 +1,12 @@
 #include <string.h>
 
-#include "cli/arguments_key.h"
 #include "cli/layer/layer_job.h"
+#include "conic/version.h"
 #include "core/base/memory.h"
 #include "core/estimate/estimate.h"
 #include "lod/layers/build/layers_team.h"
+#include "shots/shot_inputs.h"
+#include "shots/shot_key.h"
 
 int cli_layer_check_keeping(const cli_layer_job *job) {
   const char *command = job->base.session->command;
@@ -18,17 +20,11 @@ int cli_layer_check_keeping(const cli_layer_job *job) {
   return CLI_DONE;
 }
 
-/* The hash of an input's bytes; for a hierarchy, of its first file. */
-static void hash_input(const char *path, char hash[CONIC_SHA256_ROOM]) {
-  static const char *const first_files[] = {"ept.json", "metadata.json"};
-  conic_sha256 sum;
-  char name[4096];
-  conic_sha256_begin(&sum);
-  cli_arguments_key_add_file(&sum, path);
-  for (int i = 0; i < 2; i++)
-    if (snprintf(name, sizeof name, "%s/%s", path, first_files[i]) < (int)sizeof name)
-      cli_arguments_key_add_file(&sum, name);
-  conic_sha256_end(&sum, hash);
+static conic_status hash_input(conic_context *context, const char *path, char hash[CONIC_SHA256_ROOM]) {
+  conic_shot_input input = {.name = path};
+  conic_status status = conic_shot_input_look(context, path, &input);
+  memcpy(hash, input.sha256, CONIC_SHA256_ROOM);
+  return status;
 }
 
 /* The team shares the inputs, since there may be many. */
@@ -39,8 +35,9 @@ static conic_status hash_inputs(const cli_layer_job *job, char (*hashes)[CONIC_S
          count = share->team ? (size_t)share->team->count : 1;
   conic_status status = CONIC_OK;
   for (size_t i = index; i < n && status == CONIC_OK; i += count) {
-    hash_input(share->inputs[i], hashes[i]);
-    status = conic_progress(job->base.session->context, "look", (double)i / (double)n);
+    status = hash_input(job->base.session->context, share->inputs[i], hashes[i]);
+    if (status == CONIC_OK)
+      status = conic_progress(job->base.session->context, "look", (double)i / (double)n);
   }
   status = conic_team_agree(share->team, status);
   if (status != CONIC_OK || !share->team)
@@ -49,6 +46,37 @@ static conic_status hash_inputs(const cli_layer_job *job, char (*hashes)[CONIC_S
   for (size_t i = 0; i < n; i++)
     memcpy(hashes[i], all[i % count * n + i], sizeof *hashes);
   return CONIC_OK;
+}
+
+/* How inputs are read, as that of pictures is. */
+static conic_status add_reading(const cli_layer_job *job, conic_sha256 *sum) {
+  conic_shot_file file;
+  conic_shot_file_init(&file);
+  file.reading.n_neighbours = job->estimate.n_neighbours;
+  file.reading.finds_dots = job->estimate.finds_dots;
+  file.reading.cutoff = (float)job->cutoff;
+  file.reading.columns = job->base.columns;
+  file.reading.where = job->base.where;
+  file.reading.coloring = job->coloring.options.by ? &job->coloring.options : NULL;
+  return conic_key_add_fields(job->base.session->context, sum, &file, "reading.");
+}
+
+/* What the options say of the file: neither threads nor memory change a byte of it. */
+static conic_status add_layer_options(const cli_layer_job *job, conic_sha256 *sum) {
+  const int numbers[] = {job->is_merging, job->is_appending,           job->cloud_size,
+                         job->payload,    job->options.keeps_all != 0, job->quantum.is_in_spacings};
+  const double reals[] = {job->quantum.value, job->coloring.options.up[0], job->coloring.options.up[1],
+                          job->coloring.options.up[2]};
+  const char *output = job->base.output;
+  while (output[0] == '.' && output[1] == '/')
+    output += 2;
+  conic_key_add_text(sum, conic_version());
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+    conic_key_add_number(sum, (uint64_t)numbers[i]);
+  conic_sha256_add(sum, reals, sizeof reals);
+  conic_key_add_text(sum, output);
+  conic_key_add_text(sum, job->keep ? job->keep : "");
+  return add_reading(job, sum);
 }
 
 conic_status cli_layer_make_key(const cli_layer_job *job, char key[CONIC_SHA256_ROOM]) {
@@ -62,11 +90,9 @@ conic_status cli_layer_make_key(const cli_layer_job *job, char key[CONIC_SHA256_
     status = hash_inputs(job, hashes, all);
   if (status == CONIC_OK) {
     conic_sha256_begin(&sum);
-    cli_arguments_key_add(&sum, job->n_arguments, job->arguments, 0);
-    for (size_t i = 0; i < n; i++) {
-      cli_arguments_key_add_text(&sum, job->share.inputs[i]);
-      cli_arguments_key_add_text(&sum, hashes[i]);
-    }
+    status = add_layer_options(job, &sum);
+    for (size_t i = 0; i < n; i++)
+      conic_key_add_text(&sum, hashes[i]);
     conic_sha256_end(&sum, key);
   }
   conic_memory_release(context, hashes);

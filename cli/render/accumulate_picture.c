@@ -6,6 +6,7 @@
 
 #include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
+#include "cli/render/shot_record.h"
 #include "cli/render/units.h"
 #include "cli/stopper.h"
 #include "core/files/disk.h"
@@ -74,6 +75,8 @@ static conic_status watch_sums(void *cookie, const conic_accumulation *sums, con
     return CONIC_OK;
   conic_status status = conic_sums_show(&job->shot, sums, image);
   job->statistics = *statistics; /* for the header */
+  if (status == CONIC_OK)
+    status = cli_shot_describe(work->session, job);
   if (status == CONIC_OK)
     cli_frame_describe(job, &job->last_camera, image);
   if (status == CONIC_OK)
@@ -172,6 +175,7 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
                                     .stopped = keep_stopped_sums};
   conic_shot_work drawing;
   own->n_resumed = 0;
+  own->focus_depth = 0.0;
   if (i_frame == job->frames.first - 1)
     tell_wide_lens(session, job);
   conic_status status = cli_shot_begin(job, &drawing);

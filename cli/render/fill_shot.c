@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "cli/render/shot_again.h"
 #include "cli/scene/stereo.h"
 #include "shots/stage.h"
 
@@ -66,9 +67,12 @@ conic_status cli_shot_fill(cli_session *session, cli_render_job *job, int i_fram
   shot->eye = cli_stereo_eye(job);
   shot->frame = (double)i_frame;
   memcpy(shot->light.lamps, job->lamps.lamps, sizeof shot->light.lamps);
+  cli_shot_again_fill(job);
   if (status == CONIC_OK)
     status = read_sky(session, job);
-  return status == CONIC_OK ? read_motion(session, job) : status;
+  if (status == CONIC_OK)
+    status = read_motion(session, job);
+  return status == CONIC_OK ? cli_shot_again_check(session, job) : status;
 }
 
 conic_status cli_choose_exposure(cli_render_job *job) {

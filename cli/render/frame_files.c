@@ -52,6 +52,7 @@ void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, c
   matrix->type = CONIC_ATTRIBUTE_MATRIX;
   memcpy(matrix->values, camera->cam_from_world, sizeof camera->cam_from_world);
   matrix->values[15] = 1.0;
+  image->shot = job->making.text;
   cli_accumulate_describe(job, image);
   conic_image_describe_camera(image, camera);
 }

@@ -4,9 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/arguments_key.h"
+#include "cli/render/fill_shot.h"
 #include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
+#include "cli/render/shot_record.h"
 #include "cli/render/strip_pictures.h"
 #include "cli/render/units.h"
 #include "core/base/memory.h"
@@ -14,7 +15,6 @@
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/finished.h"
-#include "core/files/guard.h"
 
 /* Text that grows. */
 typedef struct growing_text {
@@ -148,14 +148,17 @@ static conic_status write_frame_list(const cli_kept_frames *kept, const char *ke
   return conic_output_commit(output);
 }
 
-/* Of files that others lead to, how long they are together. */
-static void make_key(const cli_session *session, const cli_render_job *job, char key[CONIC_SHA256_ROOM]) {
-  conic_sha256 sum;
-  conic_sha256_begin(&sum);
-  cli_arguments_key_add(&sum, job->n_arguments, job->arguments, 1);
-  cli_arguments_key_add_number(&sum, conic_guard_bytes(session->context));
-  conic_sha256_add(&sum, &job->shot.render.exposure, sizeof job->shot.render.exposure); /* which may be automatic */
-  conic_sha256_end(&sum, key);
+/* By the shot of the first frame, after which all inputs have been read. */
+static conic_status make_key(cli_session *session, cli_render_job *job) {
+  conic_status status = CONIC_OK;
+  if (cli_session_speaks(session) || job->units == CONIC_UNITS_WINDOWS)
+    status = cli_shot_fill(session, job, job->frames.first - 1);
+  if (status == CONIC_OK && cli_session_speaks(session))
+    status = cli_shot_kept_key(session, job, job->kept_key);
+  status = cli_units_agree(job, status);
+  if (status == CONIC_OK)
+    cli_units_broadcast(job, job->kept_key, sizeof job->kept_key);
+  return status;
 }
 
 /* In the first process. */
@@ -201,12 +204,9 @@ conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job) {
   int is_several = cli_frames_are_several(job);
   if ((!own->is_resumable && !own->resume_path) || (!is_several && own->n_samples))
     return CONIC_OK;
-  if (cli_session_speaks(session))
-    make_key(session, job, job->kept_key);
-  cli_units_broadcast(job, job->kept_key, sizeof job->kept_key);
-  if (!is_several)
-    return CONIC_OK;
-  conic_status status = CONIC_OK;
+  conic_status status = make_key(session, job);
+  if (!is_several || status != CONIC_OK)
+    return status;
   job->kept = calloc(1, sizeof *job->kept);
   if (!job->kept || !(job->kept->path = name_list(job)))
     status = CONIC_ERROR_MEMORY;

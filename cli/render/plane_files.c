@@ -104,6 +104,7 @@ static conic_status write_plane(cli_session *session, const cli_render_job *job,
     return conic_image_write_as(session->context, path, &alone, &writing);
   }
   conic_status status = show_plane(session, image, plane, &alone);
+  alone.shot = job->making.text;
   if (status == CONIC_OK)
     status = conic_image_write_as(session->context, path, &alone, &job->writing);
   conic_image_release(session->context, &alone);
@@ -121,6 +122,8 @@ conic_status cli_planes_write(cli_session *session, const cli_render_job *job, c
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (job->unwritten_planes >> i & 1)
       kept.planes[i] = NULL;
+  if (holds(job, path) < HOLDS_ONE)
+    kept.shot = job->making.shown_text;
   if (!set) {
     const conic_image_options writing = cli_picture_writing(job);
     return conic_image_write_as(session->context, path, image, &writing);

@@ -5,6 +5,7 @@
 #include "cli/render/fill_shot.h"
 #include "cli/render/kept_frames.h"
 #include "cli/render/sample_options.h"
+#include "cli/render/shot_again.h"
 #include "cli/scene/stereo.h"
 #include "cli/shell.h"
 #include "core/files/file.h"
@@ -90,10 +91,10 @@ static int check_output(const cli_render_job *job, const char *path) {
 }
 
 /* Everything that a frame writes; null: nothing. */
-enum { N_PATHS = CLI_MAX_OUTPUTS + 5 };
+enum { N_PATHS = CLI_MAX_OUTPUTS + 6 };
 static void list_frame_paths(const cli_render_job *job, const char *paths[N_PATHS]) {
   const char *const beside[] = {job->deep_path, job->overdraw_path, job->clusters_path, job->legend_path,
-                                job->boxes_path};
+                                job->boxes_path, job->making.save_path};
   memset(paths, 0, N_PATHS * sizeof *paths);
   memcpy(paths, job->outputs, (size_t)job->n_outputs * sizeof *paths);
   memcpy(paths + CLI_MAX_OUTPUTS, beside, sizeof beside);
@@ -110,7 +111,7 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
   const char *paths[N_PATHS];
   int answer = CLI_DONE;
   if (!session->host && job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path &&
-      !job->boxes_path && !job->progressive_path)
+      !job->boxes_path && !job->progressive_path && !job->making.save_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
     answer = check_output(job, job->outputs[i]);
@@ -158,6 +159,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   job->may_stream = job->is_for_looking = 1;
   job->box_level = -1;
   conic_image_options_init(&job->writing);
+  cli_shot_again_begin(session, job);
   const char *exr_words[CONIC_N_COMPRESSIONS + 3] = {"float", "half"}, **compression_words = exr_words + 2;
   for (int i = 0; i < CONIC_N_COMPRESSIONS; i++)
     compression_words[i] = conic_compression_name((conic_compression)i);
@@ -194,6 +196,14 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "colour of its own; boxes:OUT.png, of a .cot the nodes of a level with their boxes, boxes@3:OUT.png those of "
        "level 3 from the root; legend:OUT.png, what the colours mean, or legend, in the picture itself",
        .parse = parse_show, .may_repeat = 1, .choices = show_words},
+      {"save-shot", CLI_TEXT, &job->making.save_path, "OUT.shot.json",
+       "all that decides the picture, as text by which conic render draws it again"},
+      {"no-shot", CLI_FLAG, &job->making.is_left_out, NULL,
+       "leave out of .exr, .png and .tif what they say of how they were made",
+       .acts = {.needs = CLI_FACT(EXR) | CLI_FACT(CODES), .is_warned = 1}},
+      {"again", CLI_TEXT, &job->making.again_path, "PICTURE",
+       "draw again what a picture says that it was drawn from, to the bit; other options change that. Inputs are looked "
+       "for beside it, here, and among those that are given"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says",
        .parse = cli_parse_turntable, .group = "several pictures",
        .intro = "Turns around the scene, parts of them, and both eyes.", .is_usual = 1,
@@ -293,6 +303,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"clusters", CLI_TEXT, &job->clusters_path, "OUT", "a file", .now = "--show clusters:OUT"},
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
+  if (answer == CLI_AGAIN)
+    return cli_shot_again_parse(session, argc, argv, job);
   if (compression >= 0)
     job->writing.compression = (conic_compression)compression;
   job->asked_planes = job->is_aov_given ? job->shot.planes : 0;

@@ -8,6 +8,7 @@
 #include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/kept_frames.h"
+#include "cli/render/shot_record.h"
 #include "cli/render/strip_pictures.h"
 #include "cli/render/units.h"
 #include "cli/scene/stereo.h"
@@ -139,7 +140,12 @@ static conic_status check_gathered(const cli_render_job *job, int is_gathered) {
 static conic_status render_in_strips(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
                                      conic_render_statistics *statistics) {
   job->shot.render.skip_hidden = !session->json_path;
-  conic_status status = cli_render_in_strips(session, job, i_frame, camera, statistics);
+  conic_status status = cli_units_make_picture(session, job) ? cli_shot_describe(session, job) : CONIC_OK;
+  status = cli_units_agree(job, status);
+  if (status == CONIC_OK)
+    status = cli_render_in_strips(session, job, i_frame, camera, statistics);
+  if (status == CONIC_OK && cli_units_make_picture(session, job))
+    status = cli_shot_save(session, job, i_frame);
   if (status != CONIC_OK || !cli_units_make_picture(session, job))
     return status;
   job->frames_ms += statistics->ms.frame;
@@ -198,7 +204,11 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   warn_of_empty(session, job);
   warn_of_error(session, job);
   warn_of_alpha(session, job);
-  status = cli_frame_files_write(session, job, &camera, image, i_frame);
+  status = cli_shot_describe(session, job);
+  if (status == CONIC_OK)
+    status = cli_frame_files_write(session, job, &camera, image, i_frame);
+  if (status == CONIC_OK)
+    status = cli_shot_save(session, job, i_frame);
   if (status == CONIC_OK)
     hand_picture_over(session, job, i_frame, &camera, image);
   return status;
@@ -304,8 +314,6 @@ static int run(cli_session *session, int argc, char **argv) {
   int exit_code = cli_render_parse(session, argc, argv, &job);
   enum { MANY = 16 };
   job.start_seconds = start;
-  job.n_arguments = argc;
-  job.arguments = argv;
   if (exit_code == CLI_DONE) {
     session->draws_many_frames = job.is_every_view || (double)job.repeat * cli_frames_count(&job) >= MANY;
     exit_code = cli_session_open(session);
@@ -333,6 +341,7 @@ static int run(cli_session *session, int argc, char **argv) {
     cli_scene_release(session, &job);
     cli_team_report_release(&job.team);
   }
+  cli_shot_release(session, &job);
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;
 }

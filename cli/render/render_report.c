@@ -4,6 +4,7 @@
 #include "cli/color_options.h"
 #include "cli/render/frames.h"
 #include "cli/render/kept_frames.h"
+#include "cli/render/shot_record.h"
 #include "cli/render/units.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/views.h"
@@ -140,7 +141,7 @@ static void report_camera(cli_json *json, const cli_render_job *job) {
   cli_json_object(json, "camera");
   cli_camera_write(json, &job->last_camera);
   cli_json_close(json);
-  if (!job->camera_path)
+  if (!job->cameras.count)
     return;
   cli_json_object(json, "view");
   cli_json_count(json, "index", job->i_view);
@@ -221,7 +222,7 @@ static void report_hashes(cli_json *json, const cli_render_job *job, const conic
   cli_json_close(json);
 }
 
-int cli_render_report(cli_session *session, const cli_render_job *job, const conic_image *image) {
+int cli_render_report(cli_session *session, cli_render_job *job, const conic_image *image) {
   cli_json_file *file;
   int exit_code = CLI_DONE;
   cli_json *json = cli_json_open(session, &file, &exit_code);
@@ -229,6 +230,8 @@ int cli_render_report(cli_session *session, const cli_render_job *job, const con
     return exit_code;
   conic_status status = report_counts(json, job);
   report_settings(json, job);
+  if (status == CONIC_OK)
+    status = cli_shot_report(session, json, job);
   report_hashes(json, job, image);
   if (job->kept)
     cli_json_count(json, "frames_finished", (uint64_t)cli_kept_frames_count(job));

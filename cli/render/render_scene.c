@@ -5,12 +5,14 @@
 #include "cli/host_keeps.h"
 #include "cli/opening_key.h"
 #include "cli/render/frames.h"
+#include "cli/render/shot_again.h"
 #include "cli/render/units.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/scene_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/scene/views.h"
 #include "core/files/file.h"
+#include "core/files/guard.h"
 #include "shots/way.h"
 #include "source/source_samples.h"
 
@@ -37,7 +39,7 @@ conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
   conic_status status = cli_kept_renderer(session, &job->device, &job->renderer)
                             ? CONIC_OK
                             : cli_device_open(session, &job->device, &job->renderer);
-  if (status == CONIC_OK && job->camera_path)
+  if (status == CONIC_OK && job->camera_path && !cli_shot_again_take_camera(job))
     status = read_views(session, job);
   return status;
 }
@@ -90,6 +92,7 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   char key[CONIC_SHA256_ROOM];
   cli_deadline_open(job);
   cli_opening_key(job->inputs, (size_t)job->n_inputs, &job->opening, job->abilities, key);
+  conic_guard_go_on(session->context); /* cameras were read; what comes now is of the scene */
   job->source = cli_kept_source(session, key, &job->opening);
   conic_status status = job->source ? CONIC_OK : cli_units_open_source(session, job);
   if (status == CONIC_OK)

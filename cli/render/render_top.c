@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/render/shot_record.h"
 #include "cli/scene/render_job.h"
 #include "cli/top/top_tiff.h"
 #include "cli/top/world_file.h"
@@ -150,7 +151,8 @@ static conic_status open_tiff(top_picture *p, const char *path, int is_elevation
                                     .nodata = CLI_TOP_NODATA,
                                     .pixel = top->gsd,
                                     .corner = {p->corner[0], p->corner[1]},
-                                    .reference = &p->reference};
+                                    .reference = &p->reference,
+                                    .description = p->job->making.text};
   char *name = name_tiff(path, is_beside);
   conic_status status = name ? cli_top_tiff_open(p->session->context, name, &layout, p->job->access.memory_bytes / 8,
                                                  &p->tiffs[p->n_tiffs])
@@ -290,14 +292,19 @@ static conic_status make_picture(top_picture *p) {
   if (!job->is_samples_given && conic_source_measure(job->source)->n_triangles)
     job->shot.view.samples = 2; /* whose edges nothing else softens */
   double start = cli_seconds();
-  status = open_view(p);
+  status = cli_shot_describe(p->session, job);
+  if (status == CONIC_OK)
+    status = open_view(p);
   if (status == CONIC_OK)
     status = open_files(p);
   if (status == CONIC_OK)
     status = draw_rows(p);
   job->frames_ms = 1e3 * (cli_seconds() - start);
   start = cli_seconds();
+  p->whole.shot = job->making.text;
   status = close_files(p, status);
+  if (status == CONIC_OK)
+    status = cli_shot_save(p->session, job, 0);
   job->write_ms = 1e3 * (cli_seconds() - start);
   return status;
 }

@@ -29,7 +29,7 @@ int cli_parse_background(const char *text, void *value) {
   return cli_parse_color(text, length, options->background);
 }
 
-static int uses_studio(const cli_render_job *job) {
+int cli_backdrop_is_studio(const cli_render_job *job) {
   return !job->is_plain && !job->is_background_given;
 }
 
@@ -47,7 +47,7 @@ conic_status cli_backdrop_write(cli_session *session, const cli_render_job *job,
                                 const conic_image *image) {
   const float *rgba = image->planes[CONIC_PLANE_RGBA];
   conic_image alone, shown = *image;
-  if (!uses_studio(job) || !is_to_look_at(job, path) || !rgba)
+  if (!cli_backdrop_is_studio(job) || !is_to_look_at(job, path) || !rgba)
     return cli_planes_write(session, job, path, image);
   conic_status status =
       conic_image_allocate(session->context, image->width, image->height, 1u << CONIC_PLANE_RGBA, &alone);
@@ -66,7 +66,7 @@ conic_status cli_backdrop_write(cli_session *session, const cli_render_job *job,
 
 void cli_backdrop_report(cli_json *json, const cli_render_job *job) {
   const conic_render_options *options = &job->shot.render;
-  int is_studio = uses_studio(job);
+  int is_studio = cli_backdrop_is_studio(job);
   const float *top = is_studio ? studio_top : job->shot.backdrop_top;
   const float *const colors[] = {options->has_background ? options->background : top,
                                  is_studio ? studio_bottom : job->shot.backdrop_bottom};

@@ -11,6 +11,9 @@ int cli_parse_background(const char *text, void *value);
 conic_status cli_backdrop_write(cli_session *session, const cli_render_job *job, const char *path,
                                 const conic_image *image);
 
+/* Whether files to look at get that background. */
+int cli_backdrop_is_studio(const cli_render_job *job);
+
 /* The key "background" of the statistics. */
 void cli_backdrop_report(cli_json *json, const cli_render_job *job);
 

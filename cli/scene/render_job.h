@@ -8,6 +8,7 @@
 #include "cli/scene/accumulate_job.h"
 #include "cli/scene/lamp_job.h"
 #include "cli/scene/option_effects.h"
+#include "cli/scene/shot_job.h"
 #include "cli/scene/top_job.h"
 #include "cli/team_report.h"
 #include "conic/shot.h"
@@ -35,8 +36,6 @@ typedef struct cli_render_job {
 
   /* What else was asked for. */
   cli_effects_job effects;
-  int n_arguments;
-  char **arguments; /* as they were given, the command's name first */
   const char **inputs;
   int n_inputs;
   const char *outputs[CLI_MAX_OUTPUTS];
@@ -91,6 +90,7 @@ typedef struct cli_render_job {
   int is_patch;                    /* --method patch: options.method draws its samples */
   int is_exposure_automatic;       /* until it is found */
   cli_length epsilon, near_z;      /* below 0: automatic; the scene has to be known for them */
+  cli_shot_job making;             /* what is written of the shot */
   cli_device device;               /* what draws: */
   conic_renderer *renderer;
   unsigned long long budget; /* the view's */
@@ -178,6 +178,6 @@ conic_image_options cli_picture_writing(const cli_render_job *job);
 /* Says what was drawn, and what it took. */
 void cli_render_tell(cli_session *session, const cli_render_job *job);
 /* Writes the statistics of the finished job to the session's --json file, if any. Returns the exit code. */
-int cli_render_report(cli_session *session, const cli_render_job *job, const conic_image *image);
+int cli_render_report(cli_session *session, cli_render_job *job, const conic_image *image);
 
 #endif

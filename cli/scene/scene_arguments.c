@@ -96,6 +96,8 @@ static int parse_all(cli_session *session, const cli_option *own, int n_own, con
     answer = cli_parse_noting(session, table, n_own + n_scene, argc, argv, job->inputs, &job->n_inputs, values);
     if (answer == CLI_DONE)
       cli_effects_note(&job->effects, table, n_own + n_scene, values);
+    if (answer == CLI_DONE && cli_shot_is_again(session, job))
+      answer = CLI_AGAIN;
   } else
     cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
   free(table);

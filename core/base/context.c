@@ -67,6 +67,8 @@ void conic_context_destroy(conic_context *context) {
     return;
   conic_pool_destroy(context, context->pool);
   conic_take_back_loans(context);
+  for (size_t i = 0; i < context->n_inputs; i++)
+    conic_memory_release(context, context->inputs[i].path);
   conic_memory_release(context, context->inputs);
   for (conic_lasting *block = context->lasting, *next; block; block = next) {
     next = block->next;

@@ -18,6 +18,13 @@ typedef struct conic_file_identity {
   uint64_t device, number, n_bytes;
 } conic_file_identity;
 
+/* A file that was read. */
+typedef struct conic_noted_file {
+  conic_file_identity file; /* of a URL, its size alone */
+  char *path;
+  int phase; /* when it was noted last */
+} conic_noted_file;
+
 /* Header of a block of memory that lasts as long as the context. */
 typedef struct conic_lasting {
   struct conic_lasting *next;
@@ -36,8 +43,9 @@ struct conic_context {
   size_t texture_bytes;             /* of all textures that exist */
   int reads_texture;                /* the picture that is read will become a texture */
   int guards_inputs;                /* core/files/guard.h; so are the next members */
-  conic_file_identity *inputs;      /* files that were read */
+  conic_noted_file *inputs;         /* files that were read */
   size_t n_inputs, inputs_room;
+  int inputs_phase;
   conic_file_identity replaceable;
   pthread_mutex_t outputs_lock;
   struct conic_output *outputs;                          /* core/files/file.h: outputs with temporary files */

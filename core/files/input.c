@@ -21,7 +21,7 @@ static conic_status check_kind(conic_input *input) {
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: %s", input->name, strerror(errno));
   if (found.is_folder)
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: it is a directory", input->name);
-  conic_status status = conic_guard_note(input->context, &found);
+  conic_status status = conic_guard_note(input->context, input->name, &found);
   if (status != CONIC_OK)
     return status;
   if (found.is_file) { /* standard input may be a file that was read in part */

@@ -39,7 +39,7 @@ static conic_status map(conic_context *context, const char *name, int descriptor
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", name, strerror(errno));
   if (found.is_folder)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: it is a directory", name);
-  conic_status status = conic_guard_note(context, &found);
+  conic_status status = conic_guard_note(context, name, &found);
   if (status != CONIC_OK)
     return status;
   if (!found.is_file || found.n_bytes == 0)

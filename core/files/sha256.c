@@ -29,16 +29,16 @@ static inline void take_step(uint32_t s[8], int i, uint32_t added) {
   *h = t + (turned_right(a, 2) ^ turned_right(a, 13) ^ turned_right(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
 }
 
-static void mix_block(conic_sha256 *sum) {
+static void mix_block(uint32_t state[8], const unsigned char block[64]) {
   uint32_t w[64], s[8];
   for (int i = 0; i < 16; i++)
-    w[i] = conic_load_big_32(&sum->block[4 * (size_t)i]);
+    w[i] = conic_load_big_32(&block[4 * (size_t)i]);
   for (int i = 16; i < 64; i++) {
     uint32_t a = w[i - 15], b = w[i - 2];
     w[i] = w[i - 16] + (turned_right(a, 7) ^ turned_right(a, 18) ^ a >> 3) + w[i - 7] +
            (turned_right(b, 17) ^ turned_right(b, 19) ^ b >> 10);
   }
-  memcpy(s, sum->state, sizeof s);
+  memcpy(s, state, sizeof s);
   for (int i = 0; i < 64; i += 8) { /* in eights, so that all of s stays in registers */
     take_step(s, 0, round_constants[i] + w[i]);
     take_step(s, 1, round_constants[i + 1] + w[i + 1]);
@@ -50,8 +50,11 @@ static void mix_block(conic_sha256 *sum) {
     take_step(s, 7, round_constants[i + 7] + w[i + 7]);
   }
   for (int i = 0; i < 8; i++)
-    sum->state[i] += s[i];
+    state[i] += s[i];
 }
+
+/* So many are worth a look at the processor. */
+enum { MANY_BYTES = 4096 };
 
 void conic_sha256_begin(conic_sha256 *sum) {
   /* The fractions of the square roots of the first 8 primes. */
@@ -63,6 +66,13 @@ void conic_sha256_begin(conic_sha256 *sum) {
 
 void conic_sha256_add(conic_sha256 *sum, const void *bytes, size_t n) {
   const unsigned char *from = bytes;
+  if (n >= MANY_BYTES && sum->n_bytes % 64 == 0 && conic_sha256_has_x86()) {
+    size_t n_blocks = n / 64;
+    conic_sha256_mix_x86(sum->state, round_constants, from, n_blocks);
+    sum->n_bytes += 64 * n_blocks;
+    from += 64 * n_blocks;
+    n -= 64 * n_blocks;
+  }
   while (n > 0) {
     size_t at = sum->n_bytes % 64, here = n < 64 - at ? n : 64 - at;
     memcpy(sum->block + at, from, here);
@@ -70,7 +80,7 @@ void conic_sha256_add(conic_sha256 *sum, const void *bytes, size_t n) {
     n -= here;
     sum->n_bytes += here;
     if (at + here == 64)
-      mix_block(sum);
+      mix_block(sum->state, sum->block);
   }
 }
 

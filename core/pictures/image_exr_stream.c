@@ -8,6 +8,7 @@
 
 #include "core/base/message.h"
 #include "core/image/image_common.h"
+#include "core/pictures/picture_shot.h"
 
 static conic_exr_stream *stream_of(exr_const_context_t file) {
   void *data = NULL;
@@ -155,6 +156,8 @@ exr_result_t conic_exr_add_attributes(exr_context_t file, const conic_image *ima
   exr_result_t result = EXR_ERR_SUCCESS;
   for (int i = 0; result == EXR_ERR_SUCCESS && i < image->n_attributes; i++)
     result = add_attribute(file, &image->attributes[i]);
+  if (result == EXR_ERR_SUCCESS && image->shot)
+    result = exr_attr_set_string(file, 0, CONIC_SHOT_KEYWORD, image->shot);
   return result;
 }
 

@@ -140,7 +140,7 @@ conic_status conic_image_read(conic_context *context, const char *path, conic_im
   FILE *file = conic_disk_open_stream(path, "rb");
   if (!file)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
-  conic_status status = conic_disk_look_at(fileno(file), &found) ? conic_guard_note(context, &found) : CONIC_OK;
+  conic_status status = conic_disk_look_at(fileno(file), &found) ? conic_guard_note(context, path, &found) : CONIC_OK;
   errno = 0;
   size_t n = fread(start, 1, sizeof start, file);
   int error = ferror(file) ? errno : 0;

@@ -85,7 +85,7 @@ conic_status conic_foreign_write(conic_context *context, const char *path, const
   layout.is_display = image->is_display != 0;
   layout.tone = tone;
   const conic_bridge_picture picture = {image->width, image->height, layout.n_channels, layout.sample_bytes,
-                                        layout.is_straight};
+                                        layout.is_straight, .description = image->shot};
   void *samples = conic_memory_allocate(context, conic_image_pixels(image),
                                         (size_t)layout.n_channels * (size_t)layout.sample_bytes);
   if (!samples)

@@ -68,6 +68,8 @@ OIIO::ImageSpec spec_of(const conic_bridge_picture &picture, const std::string &
   if (format == "tiff") {
     spec.attribute("compression", "zip");
     spec.attribute("DateTime", ""); // the same picture is the same file, whenever it is written
+    if (picture.description)
+      spec.attribute("ImageDescription", picture.description);
   }
   if (format == "jpeg") {
     spec.attribute("Compression", "jpeg:95");

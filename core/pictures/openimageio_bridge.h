@@ -24,6 +24,7 @@ typedef struct conic_bridge_picture {
   int is_straight;  /* the colour is not multiplied by alpha */
   int is_named;     /* its channels have names: an EXR that was read */
   conic_bridge_channel channels[CONIC_BRIDGE_CHANNELS];
+  const char *description; /* of a TIFF that is written; null: none */
 } conic_bridge_picture;
 
 typedef struct conic_bridge_writer {

@@ -228,6 +228,8 @@ static void add_pixel_tags(tiff_directory *d) {
   add_tag(d, 258, SHORT, is_elevation ? 1 : 4, is_elevation ? &thirty_two : eight); /* bits a sample */
   add_short(d, 259, compression);
   add_short(d, 262, is_elevation ? BLACK_IS_ZERO : RGB);
+  if (layout->description)
+    add_tag(d, 270, ASCII, strlen(layout->description) + 1, layout->description);
   add_short(d, 277, is_elevation ? 1 : 4); /* samples a pixel, */
   add_short(d, 284, 1);                    /* side by side */
   add_short(d, 317, is_packed && !is_elevation ? PREDICTOR_HORIZONTAL : PREDICTOR_NONE);

@@ -16,6 +16,7 @@ typedef struct conic_tiff_layout {
   double pixel;           /* a pixel's edge in world units */
   double corner[2];       /* x and y of the picture's upper left corner; x grows to the right, y upwards */
   const conic_georeference *reference; /* the coordinate system; null, or empty: not known */
+  const char *description;             /* how it was made; null: not said. It stays until the file is finished */
 } conic_tiff_layout;
 
 typedef struct conic_tiff conic_tiff;

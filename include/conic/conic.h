@@ -49,6 +49,7 @@
 #include "conic/render.h"
 #include "conic/scene.h"
 #include "conic/shot.h"
+#include "conic/shot_file.h"
 #include "conic/source.h"
 #include "conic/splats.h"
 #include "conic/status.h"

@@ -102,7 +102,8 @@ typedef struct conic_image {
   uint64_t is_display;  /* rgba are display values: files of 8 or 16 bits take them unchanged */
   const char *manifest; /* the names of a Cryptomatte in JSON, for an EXR's header; the caller's. Null: none */
   uint64_t half_planes; /* bits of the planes that were read from half floats, or from 24 bits */
-  uint64_t reserved[4];
+  const char *shot;     /* how it was made (conic/shot_file.h), for EXR, PNG and TIFF; the caller's. Null: not said */
+  uint64_t reserved[3];
 } conic_image;
 
 /* Allocates the planes of `planes` (bit 1 << plane), contents zero. On failure *image is empty. Sizes are 1 to 65535.

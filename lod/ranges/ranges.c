@@ -6,6 +6,7 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/files/guard.h"
 #include "lod/ranges/ranges_backend.h"
 
 void conic_ranges_options_init(conic_ranges_options *options) {
@@ -26,8 +27,12 @@ int conic_ranges_is_url(const char *name) {
 conic_status conic_ranges_open(conic_context *context, const char *name, const conic_ranges_options *options,
                                conic_ranges **ranges) {
   *ranges = NULL;
-  if (conic_ranges_is_url(name))
-    return conic_ranges_open_url(context, name, options, ranges);
+  if (conic_ranges_is_url(name)) {
+    conic_status status = conic_ranges_open_url(context, name, options, ranges);
+    if (status == CONIC_OK && (status = conic_guard_note_url(context, name, (*ranges)->size)) != CONIC_OK)
+      conic_ranges_close(*ranges);
+    return status;
+  }
   return conic_ranges_open_file(context, name, ranges);
 }
 

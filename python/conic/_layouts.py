@@ -164,7 +164,8 @@ class Image(ctypes.Structure):
         ("is_display", c_uint64),
         ("manifest", c_char_p),
         ("half_planes", c_uint64),
-        ("reserved", c_uint64 * 4),
+        ("shot", c_char_p),
+        ("reserved", c_uint64 * 3),
     ]
 
 

@@ -43,7 +43,7 @@ builder="points_in points_out seconds.read seconds.work seconds.write seconds.to
 render="splats_in splats_culled splats_skipped splats_drawn splats_fallback fragments pixels_covered overdraw method
   device isa threads tile epsilon_mode epsilon near primitives.splats clouds_culled hash.rgba hash.Z
   ms.read ms.estimate ms.lod ms.setup ms.bin ms.visibility ms.accumulate ms.resolve ms.write ms.frame ms.total
-  ms_first msplats_per_s drawn_msplats_per_s mfragments_per_s peak_rss_bytes"
+  ms_first msplats_per_s drawn_msplats_per_s mfragments_per_s peak_rss_bytes shot_key?"
 declare -A wanted=(
   [make]=$builder
   [prepare]=$builder

@@ -40,6 +40,12 @@ grep -q '"samples_finished": [1-9]' kept.json || fail "nothing of what was finis
 grep -q '^conic: [0-9]* of 60000 samples were in finished branches' err || fail "how much was finished: $(cat err)"
 is_done whole.lpc
 
+# However the options are spelled, and with more memory
+stop_at 300 layer large.ply -o out.lpc "${small[@]}" --resumable
+run_as_typed 0 layer --memory 512 -k 20 --cutoff 1.5 --cloud-size=64 ./large.ply --resume out.lpc -o out.lpc --json kept.json
+grep -q '"samples_finished": [1-9]' kept.json || fail "other words for the same are not gone on with"
+is_done whole.lpc
+
 # Killed, whatever it does then
 "$conic" layer large.ply -o out.lpc "${small[@]}" "${both[@]}" > out 2> err < /dev/null &
 sleep 0.3

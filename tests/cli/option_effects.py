@@ -101,6 +101,9 @@ CASES = {
     "--isa": [["--isa", "scalar"]],
     "--threads": [["--threads", "1"]],
     "--json": [["--json", "statistics.json"]],
+    "--save-shot": [["--save-shot", "p.shot.txt"]],
+    "--no-shot": [["--no-shot"]],
+    "--again": [["--again", "none.exr"]],
     "--quiet": [["--quiet"]],
     "--verbose": [["--verbose"]],
     "--help": [["--help"]],
@@ -258,6 +261,8 @@ def outcome(source, arguments):
     words = [str(folder / w) if w.endswith((".json", "texture.png")) and w != "statistics.json" else w for w in words]
     if "--size" not in words and "top" not in words:
         words += SIZE
+    # What a picture says of how it was made would be another whatever it shows; the option is tried the other way round.
+    words = [w for w in words if w != "--no-shot"] if "--no-shot" in words else words + ["--no-shot"]
     if "--threads" not in words:
         words += ["--threads", "1"]
     done = run("render", str(folder / source), *words, cwd=out)

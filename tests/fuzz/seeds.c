@@ -166,6 +166,16 @@ int main(int argc, char **argv) {
   seeds_text(set, "motion", "json",
              "[{\"frame\": 1, \"matrix\": [[1,0,0,0.25],[0,1,0,0],[0,0,1,0],[0,0,0,1]]},\n"
              " {\"input\": 2, \"frame\": -1.5, \"file\": \"walk.0001.ply\"}]\n");
+  seeds_text(
+      set, "shot", "json",
+      "{\"conic_shot\": 1, \"conic\": \"0.6.0\", \"inputs\": [{\"name\": \"a \\\"b\\\".ply\", \"bytes\": 12, "
+      "\"sha256\": \"82907b05ff270d1cb93fab619df708504259a9aa9214808f6563f59d1076fe3c\"}, {\"name\": \"m.mtl\", "
+      "\"as\": \"part\", \"sampled\": true}],\n"
+      "\"camera\": {\"width\": 6, \"height\": 4, \"fx\": 8.25, \"cam_from_world\": [[1, 0, 0, 0.1], [0, 1, 0, 0], "
+      "[0, 0, 1, -3e-5]], \"kind\": \"fisheye\"}, \"planes\": [\"rgba\", \"id\"],\n"
+      "\"render\": {\"method\": \"ray\", \"lighting\": {\"is_given\": true, \"lights\": [{\"frame\": \"head\", "
+      "\"color\": [1, 0.5, null]}]}}, \"reading\": {\"gaussians\": true, \"where\": \"z > 1\", \"patches\": "
+      "{\"surface\": {\"degree\": 2}}}, \"way\": {\"kind\": \"cameras\", \"cameras\": [{\"width\": 1}]}}");
   seeds_text(set, "suite", "json", SUITE_EXAMPLE);
   seeds_text(set, "frames", "frames",
              "conic frames 1\nkey 0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef\n"

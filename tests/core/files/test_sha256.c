@@ -13,6 +13,28 @@ static void check_text(const char *text, size_t n_piece, const char *expected) {
   CHECK(strcmp(found, expected) == 0);
 }
 
+/* A processor's own instructions, which take many bytes at a time, and plain C, which takes few. */
+static void check_long(void) {
+  static unsigned char bytes[100000];
+  uint32_t random = 1;
+  for (size_t i = 0; i < sizeof bytes; i++) {
+    random = random * 1664525u + 1013904223u;
+    bytes[i] = (unsigned char)(random >> 24);
+  }
+  for (size_t n = 4090; n < sizeof bytes; n += 7919) {
+    conic_sha256 whole, pieces;
+    char first[CONIC_SHA256_ROOM], second[CONIC_SHA256_ROOM];
+    conic_sha256_begin(&whole);
+    conic_sha256_begin(&pieces);
+    conic_sha256_add(&whole, bytes, n);
+    for (size_t at = 0; at < n; at += 1000)
+      conic_sha256_add(&pieces, bytes + at, n - at < 1000 ? n - at : 1000);
+    conic_sha256_end(&whole, first);
+    conic_sha256_end(&pieces, second);
+    CHECK(strcmp(first, second) == 0);
+  }
+}
+
 int main(void) {
   static const char two_blocks[] = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
   for (size_t n_piece = 1; n_piece < 70; n_piece += 3) {
@@ -23,5 +45,6 @@ int main(void) {
   for (size_t n_piece = 1; n_piece < 70; n_piece += 7) /* the padding fills a block of its own */
     check_text("aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa", n_piece,
                "ffe054fe7ae0cb6dc65c3af9b61d5209f439851db43d0ba5997337df154668eb");
+  check_long();
   return check_result();
 }

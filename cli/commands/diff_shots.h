@@ -1,0 +1,22 @@
+/* What two pictures say of how they were made, where both do. */
+#ifndef CONIC_DIFF_SHOTS_H
+#define CONIC_DIFF_SHOTS_H
+
+#include "cli/json_write.h"
+#include "cli/session.h"
+#include "conic/shot_file.h"
+
+typedef struct cli_diff_shots {
+  conic_shot_file *shots[2]; /* both null: at least one says nothing */
+} cli_diff_shots;
+
+/* Reads both; one that this version does not understand says nothing. Errors: INPUT, MEMORY. */
+conic_status cli_diff_shots_read(const cli_session *session, const char *const paths[2], cli_diff_shots *shots);
+void cli_diff_shots_release(const cli_session *session, cli_diff_shots *shots);
+
+/* The key "shot": the fields that differ. Errors: MEMORY. */
+conic_status cli_diff_shots_report(cli_json *json, const cli_session *session, const cli_diff_shots *shots);
+/* The same on standard output, a line each. */
+void cli_diff_shots_print(const cli_session *session, const cli_diff_shots *shots);
+
+#endif

@@ -1,0 +1,547 @@
+#include "cli/render/shot_again.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/render/shot_record.h"
+#include "conic/layers_draw.h"
+#include "core/files/disk.h"
+#include "core/files/file.h"
+#include "shots/shot_roles.h"
+
+struct cli_shot_again {
+  conic_context *context; /* of the shot; the session's is not open yet */
+  conic_shot_file *file;
+  const char *path; /* of what was named */
+  int argc;         /* what the user said, */
+  char **argv;
+  char **words; /* and what is read in its place */
+  int n_words, room;
+  const char **scene; /* where the inputs are */
+  size_t n_scene;
+  const char *texture, *sky, *motion;
+  char **paths; /* all of these, to be released */
+  size_t n_paths;
+  int holds_all; /* the outputs hold any plane */
+  int has_camera, is_checked;
+};
+
+/* --- what the user said --- */
+
+static int gives(const cli_shot_again *again, const char *name) {
+  size_t n = strlen(name);
+  for (int i = 1; i < again->argc && strcmp(again->argv[i], "--") != 0; i++) {
+    const char *argument = again->argv[i] + 2;
+    if (strncmp(again->argv[i], "--", 2) == 0 && strncmp(argument, name, n) == 0 &&
+        (argument[n] == '\0' || argument[n] == '='))
+      return 1;
+  }
+  return 0;
+}
+
+static int gives_one(const cli_shot_again *again, const char *const *names) {
+  for (; *names; names++)
+    if (gives(again, *names))
+      return 1;
+  return 0;
+}
+
+static const char *const framing_options[] = {"azimuth",    "elevation", "fov",    "zoom",
+                                              "projection", "eye",       "camera", NULL};
+
+/* --- words --- */
+
+static void add_argument(cli_shot_again *again, const char *word) {
+  if (again->n_words + 1 >= again->room) {
+    int room = 2 * again->room + 32;
+    char **words = realloc(again->words, (size_t)room * sizeof *words);
+    if (!words)
+      return;
+    again->words = words;
+    again->room = room;
+  }
+  char *copy = malloc(strlen(word) + 1);
+  if (copy)
+    again->words[again->n_words++] = strcpy(copy, word);
+  again->words[again->n_words] = NULL;
+}
+
+/* An option, unless the user gives it, or one that goes first. */
+static void say_option(cli_shot_again *again, const char *name, const char *value, const char *first) {
+  char word[64];
+  if (gives(again, name) || (first && gives(again, first)))
+    return;
+  snprintf(word, sizeof word, "--%s", name);
+  add_argument(again, word);
+  if (value)
+    add_argument(again, value);
+}
+
+static void say_number(cli_shot_again *again, const char *name, double value, const char *unit, const char *first) {
+  char text[48];
+  snprintf(text, sizeof text, "%.17g%s", value, unit);
+  say_option(again, name, text, first);
+}
+
+static int is_gaussian_file(const cli_shot_again *again) {
+  conic_source_options options;
+  conic_gaussian_options gaussians;
+  conic_source_options_init(&options);
+  conic_gaussian_options_init(&gaussians);
+  options.gaussians = &gaussians;
+  return (conic_source_abilities(again->scene, again->n_scene, &options) & CONIC_SOURCE_COMPOSITES) != 0;
+}
+
+static void say_drawing(cli_shot_again *again, int is_plain) {
+  const conic_shot *shot = &again->file->shot;
+  const conic_source_options *reading = &again->file->reading;
+  int composites = reading->gaussians != NULL, is_patch = reading->as == CONIC_AS_PATCHES;
+  if (is_patch)
+    say_option(again, "method", "patch", "quality");
+  else if (!composites && shot->render.method != CONIC_METHOD_AUTO)
+    say_option(again, "method", conic_method_name(shot->render.method), "quality");
+  if (shot->n_samples == 0)
+    say_number(again, "samples", shot->view.samples, "", gives(again, "accumulate") ? "accumulate" : "quality");
+  if (shot->render.passes == 1)
+    say_option(again, "passes", "1", NULL);
+  if (composites && (is_plain || shot->gaussians.profile != CONIC_PROFILE_EXACT))
+    say_option(again, "profile", conic_gaussian_profile_name(shot->gaussians.profile), NULL);
+  if (!composites && !is_plain && is_gaussian_file(again))
+    say_option(again, "profile", "surface", NULL);
+  if (shot->gaussians.ignores_center)
+    say_option(again, "ignore-center", NULL, "profile");
+  if (shot->gaussians.prefilter > 0.0)
+    say_number(again, "prefilter", shot->gaussians.prefilter, "", "profile");
+}
+
+static void say_reading(cli_shot_again *again, int is_plain) {
+  static const char *const as[] = {[CONIC_AS_POINTS] = "points",
+                                   [CONIC_AS_MESH] = "mesh",
+                                   [CONIC_AS_HYBRID] = "hybrid",
+                                   [CONIC_AS_PATCHES] = NULL,
+                                   [CONIC_AS_AUTO] = "auto"};
+  const conic_source_options *reading = &again->file->reading;
+  int standard = is_plain ? CONIC_AS_POINTS : CONIC_AS_AUTO;
+  if ((int)reading->as != standard && as[reading->as])
+    say_option(again, "as", as[reading->as], NULL);
+  if (reading->is_smooth)
+    say_option(again, "smooth", NULL, "crease");
+  else if (reading->crease_deg != (is_plain ? 0.0 : 30.0) && (reading->as != CONIC_AS_POINTS || !is_plain))
+    say_number(again, "crease", reading->crease_deg, "", "smooth");
+  if (reading->as == CONIC_AS_PATCHES && reading->patches && reading->patches->surface.h > 0.0)
+    say_number(again, "h", reading->patches->surface.h, reading->h_in_spacings ? "x" : "", "method");
+}
+
+/* What the shot says, in words, as far as options take values of their own for them. */
+static void say_shot(cli_shot_again *again) {
+  int is_plain = !again->file->reading.finds_dots;
+  if (is_plain)
+    say_option(again, "plain", NULL, NULL);
+  say_drawing(again, is_plain);
+  say_reading(again, is_plain);
+  if (again->file->map.is_wanted && !gives(again, "camera"))
+    say_option(again, "camera", "top", NULL);
+}
+
+/* --- inputs --- */
+
+static char *keep_path(cli_shot_again *again, const char *path, size_t n_folder, const char *name) {
+  char **paths = realloc(again->paths, (again->n_paths + 1) * sizeof *paths);
+  size_t room = n_folder + strlen(name) + 1;
+  char *kept = paths ? malloc(room) : NULL;
+  if (paths)
+    again->paths = paths;
+  if (kept) {
+    snprintf(kept, room, "%.*s%s", (int)n_folder, path, name);
+    again->paths[again->n_paths++] = kept;
+  }
+  return kept;
+}
+
+typedef struct looking_for {
+  const conic_shot_input *input;
+  char *found, *changed;        /* where it is, or what has its name */
+  char hash[CONIC_SHA256_ROOM]; /* of the latter */
+} looking_for;
+
+static conic_status look_at_place(cli_shot_again *again, char *path, looking_for *looking) {
+  conic_shot_input input = {.name = path};
+  conic_disk_entry entry;
+  if (!path)
+    return CONIC_ERROR_MEMORY;
+  if (looking->found || !conic_disk_look(path, &entry))
+    return CONIC_OK;
+  conic_status status = conic_shot_input_look(again->context, path, &input);
+  if (status == CONIC_OK && strcmp(input.sha256, looking->input->sha256) == 0)
+    looking->found = path;
+  else if (status == CONIC_OK && !looking->changed) {
+    looking->changed = path;
+    memcpy(looking->hash, input.sha256, sizeof looking->hash);
+  }
+  return status;
+}
+
+/* Among the inputs that were given, by its name; beside the shot; in the folder that one is in. */
+static conic_status look_for_input(cli_shot_again *again, const cli_render_job *first, looking_for *looking) {
+  const char *name = looking->input->name, *base = conic_file_name(name);
+  size_t n_folder = (size_t)(conic_file_name(again->path) - again->path);
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < first->n_inputs && status == CONIC_OK; i++)
+    if (strcmp(conic_file_name(first->inputs[i]), base) == 0)
+      status = look_at_place(again, keep_path(again, "", 0, first->inputs[i]), looking);
+  if (status == CONIC_OK && !conic_disk_is_absolute(name))
+    status = look_at_place(again, keep_path(again, again->path, n_folder, name), looking);
+  if (status == CONIC_OK)
+    status = look_at_place(again, keep_path(again, "", 0, name), looking);
+  if (status == CONIC_OK)
+    status = look_at_place(again, keep_path(again, again->path, n_folder, base), looking);
+  return status == CONIC_OK ? look_at_place(again, keep_path(again, "", 0, base), looking) : status;
+}
+
+static int tell_changed(const cli_shot_again *again, const char *name, const char *was, const char *is) {
+  return cli_error(CLI_INPUT, "%s: it has changed: %s was drawn from %.12s…, and this is %.12s…", name, again->path,
+                   was, is);
+}
+
+static int find_input(cli_shot_again *again, const cli_render_job *first, const conic_shot_input *input,
+                      const char **path) {
+  looking_for looking = {.input = input};
+  *path = input->name;
+  if (conic_layers_is_url(input->name))
+    return CLI_DONE;
+  if (!*input->sha256)
+    return cli_error(CLI_INPUT, "%s: %s was drawn from what cannot be read again", input->name, again->path);
+  conic_status status = look_for_input(again, first, &looking);
+  if (status != CONIC_OK)
+    return cli_exit_of(status);
+  *path = looking.found;
+  if (looking.found)
+    return CLI_DONE;
+  if (looking.changed)
+    return tell_changed(again, looking.changed, input->sha256, looking.hash);
+  return cli_error(CLI_INPUT,
+                   "%s: it is not there, and %s was drawn from it; it was looked for beside that, here, and among the "
+                   "inputs",
+                   input->name, again->path);
+}
+
+static int find_again_inputs(cli_shot_again *again, const cli_render_job *first) {
+  const conic_shot_file *file = again->file;
+  int answer = CLI_DONE;
+  again->scene = calloc(file->n_inputs + 1, sizeof *again->scene);
+  if (!again->scene)
+    return cli_error(CLI_RESOURCE, "render: out of memory");
+  for (size_t i = 0; i < file->n_inputs && answer == CLI_DONE; i++) {
+    const conic_shot_input *input = &file->inputs[i];
+    if (input->role == CONIC_SHOT_SCENE)
+      answer = find_input(again, first, input, &again->scene[again->n_scene++]);
+    else if (input->role == CONIC_SHOT_TEXTURE && !gives(again, "texture"))
+      answer = find_input(again, first, input, &again->texture);
+    else if (input->role == CONIC_SHOT_SKY && !gives(again, "sky"))
+      answer = find_input(again, first, input, &again->sky);
+    else if (input->role == CONIC_SHOT_MOTION && !gives(again, "motion"))
+      answer = find_input(again, first, input, &again->motion);
+  }
+  if (answer == CLI_DONE && again->n_scene == 0)
+    answer = cli_error(CLI_INPUT, "%s: it says of no input that it was drawn from", again->path);
+  return answer;
+}
+
+/* Inputs that were given say where its own are, and nothing else. */
+static int check_given(const cli_shot_again *again, const cli_render_job *first) {
+  if (first->view_name && !first->camera_path)
+    return cli_usage("render: --view is of a file of cameras, and a shot has one; give --camera, too");
+  for (int i = 0; i < first->n_inputs; i++) {
+    int is_named = strcmp(first->inputs[i], again->path) == 0;
+    for (size_t j = 0; j < again->file->n_inputs && !is_named; j++)
+      is_named = strcmp(conic_file_name(first->inputs[i]), conic_file_name(again->file->inputs[j].name)) == 0;
+    if (!is_named)
+      return cli_usage("%s: %s was not drawn from it; what is given beside a shot says where its inputs are",
+                       first->inputs[i], again->path);
+  }
+  return CLI_DONE;
+}
+
+/* --- reading --- */
+
+static void tell_of_shot(void *cookie, conic_log_level level, const char *message) {
+  (void)cookie;
+  if (level == CONIC_LOG_ERROR)
+    cli_error(CLI_INPUT, "%s", message);
+}
+
+static int read_named_shot(cli_shot_again *again) {
+  conic_context_options options;
+  conic_context_options_init(&options);
+  options.log = tell_of_shot;
+  options.threads = 1;
+  conic_status status = conic_context_create(&options, &again->context);
+  if (status == CONIC_OK)
+    status = conic_shot_file_read(again->context, again->path, &again->file);
+  return cli_exit_of(status);
+}
+
+static int is_input(const cli_render_job *first, const char *argument) {
+  for (int i = 0; i < first->n_inputs; i++)
+    if (first->inputs[i] == argument)
+      return 1;
+  return 0;
+}
+
+/* The command's name, what the shot says, what the user says besides, and the inputs. */
+static void make_words(cli_shot_again *again, const cli_render_job *first) {
+  add_argument(again, again->argv[0]);
+  say_shot(again);
+  for (int i = 1; i < again->argc; i++) {
+    const char *argument = again->argv[i];
+    if (strcmp(argument, "--again") == 0)
+      i++;
+    else if (strncmp(argument, "--again=", strlen("--again=")) != 0 && strcmp(argument, "--") != 0 &&
+             !is_input(first, argument))
+      add_argument(again, argument);
+  }
+  add_argument(again, "--");
+  for (size_t i = 0; i < again->n_scene; i++)
+    add_argument(again, again->scene[i]);
+}
+
+int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
+  cli_shot_again *again = calloc(1, sizeof *again);
+  cli_render_job first = *job;
+  int answer = again ? CLI_DONE : cli_error(CLI_RESOURCE, "render: out of memory");
+  if (answer == CLI_DONE) {
+    again->argc = argc;
+    again->argv = argv;
+    again->path = first.making.again_path;
+    for (int i = 0; i < first.n_inputs && !again->path; i++)
+      if (conic_shot_is_file(first.inputs[i]))
+        again->path = first.inputs[i];
+    answer = read_named_shot(again);
+  }
+  if (answer == CLI_DONE)
+    answer = check_given(again, &first);
+  if (answer == CLI_DONE)
+    answer = find_again_inputs(again, &first);
+  if (answer == CLI_DONE) {
+    again->has_camera = !again->file->map.is_wanted && !gives_one(again, framing_options);
+    again->holds_all = first.n_outputs == 0;
+    for (int i = 0; i < first.n_outputs; i++)
+      again->holds_all |=
+          conic_file_has_ending(first.outputs[i], "exr") || conic_file_has_ending(first.outputs[i], "pfm");
+    make_words(again, &first);
+    session->again = again;
+    answer = cli_render_parse(session, again->n_words, again->words, job);
+    session->again = NULL;
+  } else
+    memset(job, 0, sizeof *job);
+  free(first.inputs);
+  if (answer == CLI_DONE)
+    job->making.again = again;
+  else
+    cli_shot_again_release(session, again);
+  return answer;
+}
+
+void cli_shot_again_release(cli_session *session, cli_shot_again *again) {
+  (void)session;
+  if (!again)
+    return;
+  if (again->context)
+    conic_shot_file_destroy(again->context, again->file);
+  conic_context_destroy(again->context);
+  for (int i = 0; i < again->n_words; i++)
+    free(again->words[i]);
+  for (size_t i = 0; i < again->n_paths; i++)
+    free(again->paths[i]);
+  free(again->words);
+  free(again->paths);
+  free(again->scene);
+  free(again);
+}
+
+/* --- values --- */
+
+static void begin_accumulation(const conic_shot *shot, cli_accumulate_job *own) {
+  own->n_samples = shot->n_samples;
+  own->noise = shot->noise;
+  own->width = (cli_length){shot->aperture.diameter, 0};
+  own->n_blades = shot->aperture.n_blades;
+  own->focus = (cli_focus){.kind = (int)shot->focus_kind, .depth = shot->aperture.focus};
+  memcpy(own->focus.pixel, shot->focus_pixel, sizeof own->focus.pixel);
+  own->is_shutter_given = shot->is_shutter_open;
+  memcpy(own->shutter, shot->shutter, sizeof own->shutter);
+}
+
+static void begin_light(const cli_shot_again *again, cli_render_job *job) {
+  const conic_shot *shot = &again->file->shot;
+  job->is_sky_given = 1;
+  job->sky_path = again->sky;
+  job->n_directions = (int)shot->light.n_directions;
+  job->has_shadows = shot->light.has_shadows;
+  if (gives(again, "light")) {
+    job->shot.render.lighting.n_lights = 0;
+    return;
+  }
+  job->is_light_given = 1;
+  job->lamps.n_lamps = shot->light.n_lamps;
+  memcpy(job->lamps.lamps, shot->light.lamps, sizeof job->lamps.lamps);
+  memcpy(job->lamps.sun_radius_deg, shot->light.sun_radius_deg, sizeof job->lamps.sun_radius_deg);
+}
+
+/* What is drawn where nobody asks for planes. */
+enum { USUAL_PLANES = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z };
+
+/* The planes that the outputs can hold: what an EXR has in it does not keep a PNG from being made. */
+static unsigned planes_for(const cli_shot_again *again, unsigned planes) {
+  enum { LOOKED_AT = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO };
+  planes &= ~(unsigned)CONIC_MATTE_PLANES;
+  return again->holds_all || planes == USUAL_PLANES || !(planes & LOOKED_AT) ? planes : planes & LOOKED_AT;
+}
+
+static void begin_reading(const cli_shot_again *again, cli_render_job *job) {
+  const conic_source_options *reading = &again->file->reading;
+  job->opening.n_neighbours = reading->n_neighbours;
+  job->opening.columns = reading->columns;
+  job->opening.where = reading->where;
+  job->opening.texture_path = again->texture;
+  if (reading->patches)
+    job->patches.surface.degree = reading->patches->surface.degree;
+  if (!reading->coloring)
+    return;
+  job->coloring = *reading->coloring;
+  const double *up = reading->coloring->up;
+  if (up[0] != 0.0 || up[1] != 0.0 || up[2] != 0.0) {
+    job->is_up_given = 1;
+    memcpy(job->framing.up, up, sizeof job->framing.up);
+  }
+}
+
+static void begin_map(const conic_shot_map *map, cli_top_job *top) {
+  if (!map->is_wanted)
+    return;
+  top->gsd = map->pixel;
+  top->epsg = map->epsg;
+  memcpy(top->box.low, map->minimum, sizeof top->box.low);
+  memcpy(top->box.high, map->maximum, sizeof top->box.high);
+}
+
+static void begin_writing(const conic_shot_writing *writing, cli_render_job *job) {
+  job->tone = (int)writing->tone;
+  job->writing.is_half = writing->is_half;
+  job->writing.compression = writing->compression;
+  job->has_legend = writing->has_legend;
+  job->has_mattes = writing->has_mattes;
+  job->is_background_given = writing->is_bare;
+}
+
+void cli_shot_again_begin(cli_session *session, cli_render_job *job) {
+  const cli_shot_again *again = session->again;
+  if (!again)
+    return;
+  const conic_shot *shot = &again->file->shot;
+  job->shot.render = shot->render;
+  job->shot.render.epsilon = -1.0;
+  job->shot.render.splat_length = 0.0; /* the source says it again */
+  job->epsilon = (cli_length){shot->render.epsilon >= 0.0 ? shot->render.epsilon : -1.0, 0};
+  job->shot.view = shot->view;
+  job->shot.view.most_levels = 0;
+  job->budget = shot->view.budget;
+  job->is_transparent = shot->view.transparency != CONIC_TRANSPARENCY_NONE;
+  job->shot.has_backdrop = shot->has_backdrop;
+  memcpy(job->shot.backdrop_top, shot->backdrop_top, sizeof shot->backdrop_top);
+  memcpy(job->shot.backdrop_bottom, shot->backdrop_bottom, sizeof shot->backdrop_bottom);
+  job->shot.planes = planes_for(again, shot->planes);
+  job->is_aov_given = job->shot.planes != USUAL_PLANES;
+  job->is_shade_given = 1;
+  job->camera_path = again->has_camera ? again->path : NULL;
+  job->framing.width = shot->camera.width ? shot->camera.width : job->framing.width;
+  job->framing.height = shot->camera.height ? shot->camera.height : job->framing.height;
+  job->accumulating.motion_path = again->motion;
+  begin_accumulation(shot, &job->accumulating);
+  begin_light(again, job);
+  begin_reading(again, job);
+  begin_map(&again->file->map, &job->top);
+  begin_writing(&again->file->writing, job);
+}
+
+int cli_shot_again_take_camera(cli_render_job *job) {
+  const cli_shot_again *again = job->making.again;
+  if (!again || !again->has_camera)
+    return 0;
+  job->camera = again->file->shot.camera;
+  if (job->camera_size[0])
+    conic_camera_resize(&job->camera, job->camera_size[0], job->camera_size[1]);
+  return 1;
+}
+
+/* --- what no option says --- */
+
+static void fill_lighting(const cli_shot_again *again, conic_shot *shot) {
+  const conic_lighting *was = &again->file->shot.render.lighting;
+  conic_lighting *lighting = &shot->render.lighting;
+  lighting->is_given = was->is_given;
+  if (!gives(again, "light")) {
+    lighting->n_lights = was->n_lights;
+    memcpy(lighting->lights, was->lights, sizeof lighting->lights);
+    memcpy(shot->light.lamps, again->file->shot.light.lamps, sizeof shot->light.lamps);
+  }
+  if (!gives(again, "sky")) {
+    memcpy(lighting->sky, was->sky, sizeof lighting->sky);
+    memcpy(lighting->ground, was->ground, sizeof lighting->ground);
+  }
+  if (again->has_camera && !gives(again, "up"))
+    memcpy(lighting->up, was->up, sizeof lighting->up);
+}
+
+static const conic_shot_input *find_recorded(const conic_shot_input *inputs, size_t n, const conic_shot_input *part) {
+  for (size_t i = 0; i < n; i++)
+    if (inputs[i].role == part->role && strcmp(inputs[i].name, part->name) == 0)
+      return &inputs[i];
+  return NULL;
+}
+
+conic_status cli_shot_again_check(cli_session *session, cli_render_job *job) {
+  cli_shot_again *again = job->making.again;
+  conic_shot_file now;
+  if (!again || again->is_checked)
+    return CONIC_OK;
+  conic_status status = cli_shot_record(session, job, &now);
+  again->is_checked = 1;
+  for (size_t i = 0; i < again->file->n_inputs && status == CONIC_OK; i++) {
+    const conic_shot_input *was = &again->file->inputs[i];
+    const conic_shot_input *is = find_recorded(now.inputs, now.n_inputs, was);
+    if (was->role != CONIC_SHOT_PART || (is && strcmp(is->sha256, was->sha256) == 0))
+      continue;
+    if (is)
+      tell_changed(again, was->name, was->sha256, is->sha256);
+    else if (!gives(again, "texture") && !gives(again, "as") && !gives(again, "motion"))
+      cli_error(CLI_INPUT, "%s: it was not read, and %s was drawn from it", was->name, again->path);
+    else
+      continue;
+    status = CONIC_ERROR_INPUT;
+  }
+  return status;
+}
+
+void cli_shot_again_fill(cli_render_job *job) {
+  static const char *const moving[] = {"turntable", "stereo", "camera", NULL};
+  static const char *const coming[] = {"progressive", "deadline", "tolerate", NULL};
+  const cli_shot_again *again = job->making.again;
+  conic_shot *shot = &job->shot;
+  if (!again)
+    return;
+  const conic_shot *was = &again->file->shot;
+  if (again->has_camera && !gives_one(again, moving)) {
+    shot->way = was->way;
+    shot->eye = was->eye;
+    if (!gives(again, "near"))
+      shot->render.near_z = was->render.near_z;
+  }
+  if (!job->is_turntable)
+    shot->frame = was->frame;
+  if (!gives(again, "prefilter") && !(gives(again, "accumulate") && was->n_samples == 0)) /* whose samples are it */
+    shot->render.prefilter = was->render.prefilter;
+  if (!gives_one(again, coming))
+    shot->view.may_be_coarser = was->view.may_be_coarser;
+  fill_lighting(again, shot);
+}

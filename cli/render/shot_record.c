@@ -1,0 +1,274 @@
+#include "cli/render/shot_record.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "cli/render/frames.h"
+#include "cli/render/shot_again.h"
+#include "cli/scene/background_options.h"
+#include "conic/version.h"
+#include "core/files/file.h"
+#include "shots/shot_key.h"
+
+/* What lens and shutter do not have is not there. */
+static void plain_samples(conic_shot *shot) {
+  if (shot->n_samples == 0) {
+    shot->noise = 0.0;
+    shot->is_shutter_open = 0;
+    memset(&shot->aperture, 0, sizeof shot->aperture);
+  }
+  if (!(shot->aperture.diameter > 0.0)) {
+    memset(&shot->aperture, 0, sizeof shot->aperture);
+    shot->focus_kind = CONIC_FOCUS_MIDDLE;
+  }
+  if (!shot->is_shutter_open) {
+    memset(&shot->way, 0, sizeof shot->way);
+    memset(shot->shutter, 0, sizeof shot->shutter);
+  }
+  if (shot->way.kind != CONIC_WAY_CAMERAS)
+    shot->way.cameras = NULL, shot->way.n_cameras = 0;
+  if (shot->eye.shift == 0.0)
+    memset(&shot->eye, 0, sizeof shot->eye);
+}
+
+static void record_shot(const cli_render_job *job, conic_shot_file *file) {
+  conic_shot *shot = &file->shot, standard;
+  conic_shot_init(&standard);
+  *shot = job->shot;
+  shot->planes &= ~job->unwritten_planes;
+  plain_samples(shot);
+  if (shot->aperture.diameter > 0.0 && job->accumulating.focus_depth > 0.0) { /* it is found */
+    shot->focus_kind = CONIC_FOCUS_DEPTH;
+    shot->aperture.focus = job->accumulating.focus_depth;
+  }
+  if (shot->focus_kind != CONIC_FOCUS_DEPTH)
+    shot->aperture.focus = 0.0;
+  if (shot->focus_kind != CONIC_FOCUS_PIXEL)
+    memset(shot->focus_pixel, 0, sizeof shot->focus_pixel);
+  if (job->progressive_path)
+    shot->view.most_levels = 0; /* the last picture has all */
+  if (!job->accumulating.motion_path)
+    shot->frame = 0.0;
+  if (!shot->has_backdrop) {
+    memset(shot->backdrop_top, 0, sizeof shot->backdrop_top);
+    memset(shot->backdrop_bottom, 0, sizeof shot->backdrop_bottom);
+  }
+  if (!shot->render.has_background)
+    memset(shot->render.background, 0, sizeof shot->render.background);
+  if (!(job->abilities & CONIC_SOURCE_COMPOSITES))
+    shot->gaussians = standard.gaussians;
+  if (job->top.is_wanted)
+    shot->camera = standard.camera;
+}
+
+static void record_reading(const cli_render_job *job, conic_source_options *reading) {
+  *reading = job->opening;
+  reading->texture_path = NULL;
+  reading->access = NULL;
+  if (!job->is_patch) {
+    reading->patches = NULL;
+    reading->h_in_spacings = 0;
+  }
+  if (!(job->abilities & CONIC_SOURCE_COMPOSITES))
+    reading->gaussians = NULL;
+}
+
+static void record_map(const cli_render_job *job, conic_shot_map *map) {
+  const cli_top_job *top = &job->top;
+  if (!top->is_wanted)
+    return;
+  map->is_wanted = 1;
+  map->epsg = top->epsg;
+  map->pixel = top->gsd;
+  memcpy(map->minimum, top->box.low, sizeof map->minimum);
+  memcpy(map->maximum, top->box.high, sizeof map->maximum);
+}
+
+static void record_writing(const cli_render_job *job, conic_shot_writing *writing) {
+  int is_display = (job->abilities & CONIC_SOURCE_COMPOSITES) != 0;
+  writing->tone = is_display ? CONIC_TONE_SRGB : (conic_tone)job->tone;
+  writing->compression = job->writing.compression;
+  writing->is_half = job->writing.is_half;
+  writing->is_bare = !cli_backdrop_is_studio(job);
+  writing->has_legend = job->has_legend;
+  writing->has_mattes = job->has_mattes;
+}
+
+static conic_status find_inputs(cli_session *session, cli_render_job *job) {
+  const conic_shot_names names = {.scene = job->inputs,
+                                  .n_scene = (size_t)job->n_inputs,
+                                  .texture = job->opening.texture_path,
+                                  .sky = job->sky_path,
+                                  .motion = job->accumulating.motion_path};
+  if (job->making.has_inputs)
+    return CONIC_OK;
+  job->making.has_inputs = 1;
+  return conic_shot_inputs_find(session->context, &names, &job->making.inputs);
+}
+
+conic_status cli_shot_record(cli_session *session, cli_render_job *job, conic_shot_file *file) {
+  conic_shot_file_init(file);
+  record_shot(job, file);
+  record_reading(job, &file->reading);
+  record_map(job, &file->map);
+  record_writing(job, &file->writing);
+  conic_status status = find_inputs(session, job);
+  file->inputs = job->making.inputs.inputs;
+  file->n_inputs = job->making.inputs.n;
+  return status;
+}
+
+/* --- keys --- */
+
+static void add_path(conic_sha256 *sum, const char *path) {
+  while (path && path[0] == '.' && path[1] == '/')
+    path += 2;
+  conic_key_add_text(sum, path ? path : "");
+}
+
+/* What the frames become. */
+static void add_products(conic_sha256 *sum, const cli_render_job *job) {
+  const char *const beside[] = {job->deep_path,  job->overdraw_path, job->clusters_path,
+                                job->boxes_path, job->legend_path,   job->making.save_path};
+  for (int i = 0; i < job->n_outputs; i++)
+    add_path(sum, job->outputs[i]);
+  for (size_t i = 0; i < sizeof beside / sizeof *beside; i++)
+    add_path(sum, beside[i]);
+  add_path(sum, job->writing.format);
+  conic_key_add_number(sum, (uint64_t)job->is_overdraw_confetti);
+  conic_key_add_number(sum, (uint64_t)(job->boxes_path ? job->box_level : 0));
+  conic_key_add_number(sum, (uint64_t)job->making.is_left_out);
+}
+
+static void add_double(conic_sha256 *sum, double value) {
+  conic_sha256_add(sum, &value, sizeof value);
+}
+
+/* Which frames there are, beside the first; and what ends them early. */
+static conic_status add_frames(const cli_session *session, const cli_render_job *job, conic_sha256 *sum) {
+  conic_shot_file file;
+  conic_status status = CONIC_OK;
+  conic_key_add_number(sum, (uint64_t)job->n_frames);
+  conic_key_add_number(sum, (uint64_t)job->is_turntable);
+  for (size_t i = 0; job->is_every_view && i < job->cameras.count && status == CONIC_OK; i++) {
+    conic_shot_file_init(&file);
+    file.shot.camera = job->cameras.cameras[i];
+    conic_key_add_text(sum, job->cameras.names[i]);
+    status = conic_key_add_fields(session->context, sum, &file, "camera.");
+  }
+  add_double(sum, job->stereo.distance);
+  add_double(sum, job->accumulating.seconds);
+  add_double(sum, job->deadline);
+  return status;
+}
+
+conic_status cli_shot_kept_key(cli_session *session, cli_render_job *job, char key[CONIC_SHA256_ROOM]) {
+  conic_sha256 sum;
+  conic_shot_file file;
+  conic_status status = cli_shot_record(session, job, &file);
+  conic_sha256_begin(&sum);
+  conic_key_add_text(&sum, conic_version());
+  if (status == CONIC_OK)
+    status = conic_key_add_fields(session->context, &sum, &file, NULL);
+  if (status == CONIC_OK)
+    status = conic_key_add_fields(session->context, &sum, &file, "writing.");
+  if (status == CONIC_OK)
+    status = add_frames(session, job, &sum);
+  conic_key_add_inputs(&sum, &file);
+  add_products(&sum, job);
+  conic_sha256_end(&sum, key);
+  return status;
+}
+
+conic_status cli_shot_report(cli_session *session, cli_json *json, cli_render_job *job) {
+  conic_shot_file file;
+  char key[CONIC_SHOT_KEY_ROOM];
+  if (session->host)
+    return CONIC_OK;
+  conic_status status = cli_shot_record(session, job, &file);
+  if (status == CONIC_OK)
+    status = conic_shot_file_key(session->context, &file, key);
+  if (status == CONIC_OK)
+    cli_json_text(json, "shot_key", key);
+  return status;
+}
+
+/* Whether any file that is written can say how it was made. */
+static int is_carried(const cli_session *session, const cli_render_job *job) {
+  static const char *const endings[] = {"exr", "png", "tif", "tiff"};
+  int n = job->deep_path != NULL;
+  for (int i = 0; i < job->n_outputs; i++) {
+    const char *ending = conic_file_ending(job->outputs[i]);
+    if (!*ending)
+      ending = job->writing.format ? job->writing.format : "png";
+    for (size_t j = 0; j < sizeof endings / sizeof *endings; j++)
+      n += strcasecmp(ending, endings[j]) == 0;
+  }
+  return n > 0 && !job->making.is_left_out && !session->host;
+}
+
+static void release_texts(cli_session *session, cli_shot_job *making) {
+  conic_shot_text_release(session->context, making->text);
+  conic_shot_text_release(session->context, making->shown_text);
+  making->text = making->shown_text = NULL;
+}
+
+/* A file says what decides itself: so files that are the same say the same. */
+conic_status cli_shot_describe(cli_session *session, cli_render_job *job) {
+  conic_shot_file file;
+  release_texts(session, &job->making);
+  if (!is_carried(session, job))
+    return CONIC_OK;
+  conic_status status = cli_shot_record(session, job, &file);
+  const conic_shot_writing writing = file.writing;
+  file.writing.tone = CONIC_TONE_SRGB;
+  file.writing.is_bare = 0;
+  if (status == CONIC_OK)
+    status = conic_shot_file_print(session->context, &file, CONIC_SHOT_IN_PICTURE, &job->making.text);
+  file.writing = writing;
+  file.writing.compression = CONIC_COMPRESSION_ZIP;
+  file.writing.is_half = file.writing.has_mattes = 0;
+  if (status == CONIC_OK)
+    status = conic_shot_file_print(session->context, &file, CONIC_SHOT_IN_PICTURE, &job->making.shown_text);
+  return status;
+}
+
+/* OUT.shot.json becomes OUT.0001.shot.json. */
+static char *name_shot(const cli_render_job *job, int i_frame) {
+  static const char ending[] = ".shot.json";
+  const char *path = job->making.save_path;
+  size_t n = strlen(path), n_ending = sizeof ending - 1;
+  if (n <= n_ending || strcmp(path + n - n_ending, ending) != 0)
+    return cli_frame_name(job, path, i_frame);
+  char *stem = malloc(n + 1), *name, *whole = NULL;
+  if (!stem)
+    return NULL;
+  snprintf(stem, n + 1, "%.*s.json", (int)(n - n_ending), path);
+  name = cli_frame_name(job, stem, i_frame);
+  if (name && (whole = realloc(name, strlen(name) + n_ending + 1)))
+    strcpy(whole + strlen(whole) - strlen(".json"), ending);
+  else
+    free(name);
+  free(stem);
+  return whole;
+}
+
+conic_status cli_shot_save(cli_session *session, cli_render_job *job, int i_frame) {
+  conic_shot_file file;
+  if (!job->making.save_path)
+    return CONIC_OK;
+  char *path = name_shot(job, i_frame);
+  conic_status status = path ? cli_shot_record(session, job, &file) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = conic_shot_file_write(session->context, &file, path);
+  free(path);
+  return status;
+}
+
+void cli_shot_release(cli_session *session, cli_render_job *job) {
+  cli_shot_again_release(session, job->making.again);
+  job->making.again = NULL;
+  conic_shot_inputs_release(session->context, &job->making.inputs);
+  release_texts(session, &job->making);
+}

@@ -1,0 +1,69 @@
+#include "shots/shot_key.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "conic/version.h"
+#include "core/base/message.h"
+#include "core/base/options.h"
+#include "shots/shot_text.h"
+
+void conic_key_add_text(conic_sha256 *sum, const char *text) {
+  conic_sha256_add(sum, text, strlen(text) + 1);
+}
+
+/* As text, so that machines agree. */
+void conic_key_add_number(conic_sha256 *sum, uint64_t number) {
+  char digits[32];
+  snprintf(digits, sizeof digits, "%llu", (unsigned long long)number);
+  conic_key_add_text(sum, digits);
+}
+
+typedef struct key_adding {
+  conic_sha256 *sum;
+  conic_text text; /* of the field at hand */
+  const char *part;
+} key_adding;
+
+static void add_field(void *cookie, const conic_field_visit *visit) {
+  key_adding *a = cookie;
+  int is_wanted = a->part ? strncmp(visit->path, a->part, strlen(a->part)) == 0
+                          : strncmp(visit->path, "writing.", strlen("writing.")) != 0;
+  if (!is_wanted || conic_row_is_same(visit->row, visit->value, visit->standard))
+    return;
+  a->text.n = 0;
+  conic_text_value(&a->text, visit->row, visit->value);
+  conic_key_add_text(a->sum, visit->path);
+  if (a->text.status == CONIC_OK)
+    conic_key_add_text(a->sum, a->text.bytes);
+}
+
+conic_status conic_key_add_fields(conic_context *context, conic_sha256 *sum, const conic_shot_file *file,
+                                  const char *part) {
+  key_adding a = {.sum = sum, .text = {.context = context}, .part = part};
+  conic_fields_visit(file, add_field, &a);
+  conic_text_release(&a.text);
+  return a.text.status;
+}
+
+/* What they are called decides no bit; how many there are of each role does. */
+void conic_key_add_inputs(conic_sha256 *sum, const conic_shot_file *file) {
+  for (size_t i = 0; i < file->n_inputs; i++) {
+    const conic_shot_input *input = &file->inputs[i];
+    conic_key_add_number(sum, (uint64_t)input->role);
+    conic_key_add_number(sum, input->n_bytes);
+    conic_key_add_text(sum, *input->sha256 ? input->sha256 : input->name);
+  }
+}
+
+conic_status conic_shot_file_key(conic_context *context, const conic_shot_file *file, char key[CONIC_SHOT_KEY_ROOM]) {
+  conic_sha256 sum;
+  if (!file || file->size != sizeof *file)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the shot's file was not initialised");
+  conic_sha256_begin(&sum);
+  conic_key_add_text(&sum, conic_version());
+  conic_status status = conic_key_add_fields(context, &sum, file, NULL);
+  conic_key_add_inputs(&sum, file);
+  conic_sha256_end(&sum, key);
+  return status;
+}

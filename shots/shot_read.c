@@ -1,0 +1,476 @@
+/* Shots from text: by the table of fields, and strictly. */
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/disk.h"
+#include "core/files/file.h"
+#include "core/files/json_read.h"
+#include "core/pictures/picture_shot.h"
+#include "shots/shot_fields.h"
+#include "shots/shot_roles.h"
+
+enum { MOST_MEMBERS = 1 << 20, MOST_NUMBERS = 16 };
+
+const char *conic_shot_role_name(conic_shot_role role) {
+  static const char *const names[CONIC_N_SHOT_ROLES] = {"scene", "texture", "sky", "motion", "part"};
+  return (unsigned)role < CONIC_N_SHOT_ROLES ? names[role] : NULL;
+}
+
+/* A file that was read, and all the memory that it points to. */
+typedef struct owned_shot {
+  conic_shot_file file; /* the first */
+  void **blocks;
+  size_t n_blocks, room;
+} owned_shot;
+
+typedef struct shot_reader {
+  conic_context *context;
+  conic_json json;
+  owned_shot *owned;
+} shot_reader;
+
+static conic_status fail_field(shot_reader *r, const char *format, const char *a, const char *b) {
+  char what[256];
+  snprintf(what, sizeof what, format, a, b);
+  return conic_json_wrong(&r->json, what);
+}
+
+/* Memory that goes with the file, all zero. */
+static void *own_block(shot_reader *r, size_t count, size_t size) {
+  owned_shot *owned = r->owned;
+  conic_status status = conic_memory_reserve(r->context, &owned->blocks, owned->n_blocks, owned->n_blocks + 1,
+                                             &owned->room, sizeof *owned->blocks);
+  void *block = status == CONIC_OK ? conic_memory_allocate_zeroed(r->context, count, size) : NULL;
+  if (block)
+    owned->blocks[owned->n_blocks++] = block;
+  return block;
+}
+
+/* --- values --- */
+
+static int hex_value(char c) {
+  return c >= '0' && c <= '9'   ? c - '0'
+         : c >= 'a' && c <= 'f' ? c - 'a' + 10
+         : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                : -1;
+}
+
+/* A character by its number, in UTF-8. */
+static size_t put_character(char *to, unsigned code) {
+  if (code < 0x80) {
+    to[0] = (char)code;
+    return 1;
+  }
+  if (code < 0x800) {
+    to[0] = (char)(0xC0 | code >> 6);
+    to[1] = (char)(0x80 | (code & 63));
+    return 2;
+  }
+  to[0] = (char)(0xE0 | code >> 12);
+  to[1] = (char)(0x80 | (code >> 6 & 63));
+  to[2] = (char)(0x80 | (code & 63));
+  return 3;
+}
+
+/* What an escape, from behind its backslash on, stands for; *n_read: how long it is. */
+static size_t put_escape(char *to, const char *from, size_t n, size_t *n_read) {
+  static const char letters[] = "bfnrt", values[] = "\b\f\n\r\t";
+  const char *letter = n && from[0] ? strchr(letters, from[0]) : NULL;
+  unsigned code = 0;
+  *n_read = n ? 1 : 0;
+  if (n >= 5 && from[0] == 'u') {
+    for (int i = 1; i < 5; i++)
+      code = code << 4 | (unsigned)(hex_value(from[i]) & 15);
+    *n_read = 5;
+    return put_character(to, code ? code : '?');
+  }
+  *to = letter ? values[letter - letters] : n ? from[0] : '?';
+  return 1;
+}
+
+/* A text of any length, which goes with the file. */
+static conic_status read_owned_text(shot_reader *r, const char **words) {
+  const char *raw;
+  size_t n_raw, n = 0;
+  conic_status status = conic_json_raw_text(&r->json, &raw, &n_raw);
+  char *to = status == CONIC_OK ? own_block(r, n_raw + 4, 1) : NULL;
+  if (status != CONIC_OK)
+    return status;
+  if (!to)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0, n_read; i < n_raw; i += n_read) {
+    n_read = 1;
+    if (raw[i] == '\\') {
+      n += put_escape(to + n, raw + i + 1, n_raw - i - 1, &n_read);
+      n_read++;
+    } else
+      to[n++] = raw[i];
+  }
+  *words = to;
+  return CONIC_OK;
+}
+
+static conic_status read_truth(shot_reader *r, int *truth) {
+  return conic_json_truth(&r->json, truth);
+}
+
+static conic_status read_field_word(shot_reader *r, const conic_shot_row *row, char *at) {
+  char word[64];
+  conic_status status = conic_json_text(&r->json, word, sizeof word);
+  for (int i = 0; status == CONIC_OK && row->word(i); i++)
+    if (strcmp(row->word(i), word) == 0) {
+      memcpy(at, &i, sizeof i);
+      return CONIC_OK;
+    }
+  return status == CONIC_OK ? fail_field(r, "%s cannot be '%s'", row->name, word) : status;
+}
+
+static conic_status read_plane_words(shot_reader *r, const conic_shot_row *row, char *at) {
+  unsigned bits = 0;
+  conic_status status = conic_json_begin_array(&r->json);
+  while (status == CONIC_OK && conic_json_next_item(&r->json)) {
+    int i = 0;
+    status = read_field_word(r, row, (char *)&i);
+    bits |= 1u << i;
+  }
+  memcpy(at, &bits, sizeof bits);
+  return status == CONIC_OK ? r->json.status : status;
+}
+
+/* A number into the member's own type; NaN, which null is, leaves it as it is. */
+static conic_status put_field_number(shot_reader *r, const conic_shot_row *row, double value, char *at) {
+  float rounded = (float)value;
+  int is_whole = value >= -9007199254740992.0 && value <= 9007199254740992.0 && value == (double)(int64_t)value;
+  if (value != value)
+    return CONIC_OK;
+  if (value - value != 0.0 || (row->kind == CONIC_ROW_FLOAT && rounded - rounded != 0.0f))
+    return fail_field(r, "%s is too large%s", row->name, "");
+  if (row->kind == CONIC_ROW_FLOAT) {
+    memcpy(at, &rounded, sizeof rounded);
+  } else if (row->kind == CONIC_ROW_DOUBLE) {
+    memcpy(at, &value, sizeof value);
+  } else if (row->kind == CONIC_ROW_INT && is_whole && value >= -2147483648.0 && value <= 2147483647.0) {
+    int number = (int)value;
+    memcpy(at, &number, sizeof number);
+  } else if (row->kind == CONIC_ROW_UINT32 && is_whole && value >= 0.0 && value <= 4294967295.0) {
+    uint32_t number = (uint32_t)value;
+    memcpy(at, &number, sizeof number);
+  } else if (row->kind == CONIC_ROW_UINT64 && is_whole && value >= 0.0) {
+    uint64_t number = (uint64_t)value;
+    memcpy(at, &number, sizeof number);
+  } else
+    return fail_field(r, "%s is a whole number%s", row->name, "");
+  return CONIC_OK;
+}
+
+static conic_status read_field_numbers(shot_reader *r, const conic_shot_row *row, char *at) {
+  double values[MOST_NUMBERS];
+  size_t n = conic_row_count(row), n_read = 0, columns = row->columns ? (size_t)row->columns : n;
+  conic_status status = CONIC_OK;
+  if (n == 1) {
+    status = conic_json_number(&r->json, values);
+  } else if (columns == n) {
+    status = conic_json_numbers(&r->json, values, n, &n_read);
+  } else {
+    status = conic_json_begin_array(&r->json);
+    for (size_t i = 0, n_row; status == CONIC_OK && conic_json_next_item(&r->json); i += columns) {
+      if (i + columns > n)
+        return fail_field(r, "%s has too many rows%s", row->name, "");
+      status = conic_json_numbers(&r->json, values + i, columns, &n_row);
+      n_read += n_row == columns ? columns : n + 1;
+    }
+  }
+  if (status == CONIC_OK)
+    status = r->json.status;
+  if (status == CONIC_OK && n > 1 && n_read != n)
+    return fail_field(r, "%s has another number of values%s", row->name, "");
+  for (size_t i = 0; i < n && status == CONIC_OK; i++)
+    status = put_field_number(r, row, values[i], at + i * (row->bytes / n));
+  return status;
+}
+
+/* --- structs --- */
+
+static conic_status read_fields(shot_reader *r, const conic_shot_rows *rows, char *value);
+
+static conic_status read_pointer(shot_reader *r, const conic_shot_row *row, char *at) {
+  conic_standard standard;
+  char *to = own_block(r, 1, row->of->size);
+  if (!to)
+    return CONIC_ERROR_MEMORY;
+  conic_rows_standard(row->of, &standard);
+  memcpy(to, standard.bytes, row->of->size);
+  memcpy(at, &to, sizeof to);
+  return read_fields(r, row->of, to);
+}
+
+static conic_status read_list(shot_reader *r, const conic_shot_row *row, char *value) {
+  conic_standard standard;
+  const size_t size = row->of->size, most = row->is_apart ? MOST_MEMBERS : row->bytes / size;
+  char *members = NULL, *at = value + row->offset;
+  size_t n = 0, room = 0;
+  conic_rows_standard(row->of, &standard);
+  conic_status status = conic_json_begin_array(&r->json);
+  while (status == CONIC_OK && conic_json_next_item(&r->json)) {
+    if (n == most)
+      status = fail_field(r, "%s has too many members%s", row->name, "");
+    else
+      status = conic_memory_reserve(r->context, &members, n, n + 1, &room, size);
+    if (status == CONIC_OK) {
+      memcpy(members + n * size, standard.bytes, size);
+      status = read_fields(r, row->of, members + n++ * size);
+    }
+  }
+  if (status == CONIC_OK)
+    status = r->json.status;
+  char *to = status == CONIC_OK && row->is_apart ? own_block(r, n ? n : 1, size) : at;
+  if (status == CONIC_OK && !to)
+    status = CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK && n)
+    memcpy(to, members, n * size);
+  conic_memory_release(r->context, members);
+  if (status != CONIC_OK)
+    return status;
+  uint64_t long_length = n;
+  int length = (int)n;
+  if (row->is_apart)
+    memcpy(at, &to, sizeof to);
+  if (row->length_is_64)
+    memcpy(value + row->length, &long_length, sizeof long_length);
+  else
+    memcpy(value + row->length, &length, sizeof length);
+  return CONIC_OK;
+}
+
+/* Whether it is null is all that there is to know. */
+static conic_status read_presence(shot_reader *r, char *at) {
+  int is_there = 0;
+  conic_status status = read_truth(r, &is_there);
+  const void *to = is_there ? (const void *)r->owned : NULL;
+  memcpy(at, &to, sizeof to);
+  return status;
+}
+
+static conic_status read_field(shot_reader *r, const conic_shot_row *row, char *value) {
+  char *at = value + row->offset;
+  const char *words;
+  int truth;
+  conic_status status;
+  switch (row->kind) {
+  case CONIC_ROW_STRUCT:
+    return read_fields(r, row->of, at);
+  case CONIC_ROW_POINTER:
+    return read_pointer(r, row, at);
+  case CONIC_ROW_LIST:
+    return read_list(r, row, value);
+  case CONIC_ROW_WORD:
+    return read_field_word(r, row, at);
+  case CONIC_ROW_PLANES:
+    return read_plane_words(r, row, at);
+  case CONIC_ROW_HAS:
+    return read_presence(r, at);
+  case CONIC_ROW_TRUTH:
+    status = read_truth(r, &truth);
+    memcpy(at, &truth, status == CONIC_OK ? sizeof truth : 0);
+    return status;
+  case CONIC_ROW_TEXT:
+    status = read_owned_text(r, &words);
+    memcpy(at, &words, status == CONIC_OK ? sizeof words : 0);
+    return status;
+  case CONIC_ROW_INT:
+  case CONIC_ROW_UINT32:
+  case CONIC_ROW_UINT64:
+  case CONIC_ROW_FLOAT:
+  case CONIC_ROW_DOUBLE:
+  case CONIC_ROW_LENGTH:
+  case CONIC_ROW_RESERVED:
+  case CONIC_ROW_LEFT_OUT:
+    break;
+  }
+  return read_field_numbers(r, row, at);
+}
+
+static const conic_shot_row *find_shot_row(const conic_shot_rows *rows, const char *key) {
+  for (size_t i = 0; i < rows->n_rows; i++)
+    if (rows->rows[i].kind < CONIC_ROW_LENGTH && strcmp(rows->rows[i].name, key) == 0)
+      return &rows->rows[i];
+  return NULL;
+}
+
+static conic_status read_fields(shot_reader *r, const conic_shot_rows *rows, char *value) {
+  char key[CONIC_JSON_KEY_ROOM];
+  conic_status status = conic_json_begin_object(&r->json);
+  while (status == CONIC_OK && conic_json_next_member(&r->json, key)) {
+    const conic_shot_row *row = find_shot_row(rows, key);
+    status = row ? read_field(r, row, value) : fail_field(r, "there is no field '%s'%s", key, "");
+  }
+  return status == CONIC_OK ? r->json.status : status;
+}
+
+/* --- the file --- */
+
+static conic_status read_input_member(shot_reader *r, const char *key, conic_shot_input *input) {
+  char word[CONIC_JSON_KEY_ROOM];
+  double number = 0.0;
+  conic_status status;
+  if (strcmp(key, "name") == 0)
+    return read_owned_text(r, &input->name);
+  if (strcmp(key, "sampled") == 0)
+    return read_truth(r, &input->is_sampled);
+  if (strcmp(key, "sha256") == 0) {
+    status = conic_json_text(&r->json, input->sha256, sizeof input->sha256);
+    int is_hash = strspn(input->sha256, "0123456789abcdef") == 64 && !input->sha256[64];
+    return status == CONIC_OK && !is_hash ? fail_field(r, "%s has 64 digits%s", key, "") : status;
+  }
+  if (strcmp(key, "bytes") == 0) {
+    status = conic_json_number(&r->json, &number);
+    input->n_bytes = number >= 0.0 && number < 0x1p63 ? (uint64_t)number : 0;
+    return status;
+  }
+  if (strcmp(key, "as") != 0)
+    return fail_field(r, "there is no field '%s' of an input%s", key, "");
+  status = conic_json_text(&r->json, word, sizeof word);
+  for (int i = 0; i < CONIC_N_SHOT_ROLES && status == CONIC_OK; i++)
+    if (strcmp(word, conic_shot_role_name((conic_shot_role)i)) == 0) {
+      input->role = (conic_shot_role)i;
+      return CONIC_OK;
+    }
+  return status == CONIC_OK ? fail_field(r, "an input cannot be '%s'%s", word, "") : status;
+}
+
+static conic_status read_shot_input(shot_reader *r, conic_shot_input *input) {
+  char key[CONIC_JSON_KEY_ROOM];
+  memset(input, 0, sizeof *input);
+  conic_status status = conic_json_begin_object(&r->json);
+  while (status == CONIC_OK && conic_json_next_member(&r->json, key))
+    status = read_input_member(r, key, input);
+  if (status == CONIC_OK)
+    status = r->json.status;
+  return status == CONIC_OK && !input->name ? fail_field(r, "an input has no name%s%s", "", "") : status;
+}
+
+static conic_status read_inputs(shot_reader *r) {
+  conic_shot_input *inputs = NULL;
+  size_t n = 0, room = 0;
+  conic_status status = conic_json_begin_array(&r->json);
+  while (status == CONIC_OK && conic_json_next_item(&r->json)) {
+    status = n == MOST_MEMBERS ? fail_field(r, "there are too many inputs%s%s", "", "")
+                               : conic_memory_reserve(r->context, &inputs, n, n + 1, &room, sizeof *inputs);
+    if (status == CONIC_OK)
+      status = read_shot_input(r, &inputs[n++]);
+  }
+  if (status == CONIC_OK)
+    status = r->json.status;
+  conic_shot_input *kept = status == CONIC_OK && n ? own_block(r, n, sizeof *inputs) : NULL;
+  if (status == CONIC_OK && n && !kept)
+    status = CONIC_ERROR_MEMORY;
+  if (kept)
+    memcpy(kept, inputs, n * sizeof *inputs);
+  r->owned->file.inputs = kept;
+  r->owned->file.n_inputs = kept ? n : 0;
+  conic_memory_release(r->context, inputs);
+  return status;
+}
+
+static conic_status read_version(shot_reader *r, int *has_version) {
+  double version;
+  conic_status status = conic_json_number(&r->json, &version);
+  *has_version = 1;
+  if (status == CONIC_OK && version != (double)CONIC_SHOT_VERSION) {
+    char what[128];
+    snprintf(what, sizeof what, "it is a shot of version %g, and this conic reads version %d", version,
+             CONIC_SHOT_VERSION);
+    status = conic_json_wrong(&r->json, what);
+  }
+  return status;
+}
+
+/* Members of the shot stand beside those of the file. */
+static conic_status read_shot_member(shot_reader *r, const char *key, int *has_version) {
+  const conic_shot_row *shot = &conic_shot_file_rows.rows[1], *row;
+  char *file = (char *)&r->owned->file;
+  char word[CONIC_JSON_KEY_ROOM];
+  if (strcmp(key, "conic_shot") == 0)
+    return read_version(r, has_version);
+  if (!*has_version)
+    return fail_field(r, "a shot begins with its version, \"conic_shot\", and not with '%s'%s", key, "");
+  if (strcmp(key, "conic") == 0)
+    return conic_json_text(&r->json, word, sizeof word);
+  if (strcmp(key, "inputs") == 0)
+    return read_inputs(r);
+  if ((row = find_shot_row(shot->of, key)))
+    return read_field(r, row, file + shot->offset);
+  row = find_shot_row(&conic_shot_file_rows, key);
+  return row && row != shot ? read_field(r, row, file) : fail_field(r, "there is no field '%s'%s", key, "");
+}
+
+static conic_status read_shot(shot_reader *r) {
+  char key[CONIC_JSON_KEY_ROOM];
+  int has_version = 0;
+  conic_status status = conic_json_begin_object(&r->json);
+  while (status == CONIC_OK && conic_json_next_member(&r->json, key))
+    status = read_shot_member(r, key, &has_version);
+  if (status == CONIC_OK)
+    status = r->json.status;
+  if (status == CONIC_OK)
+    status = conic_json_end(&r->json);
+  if (status == CONIC_OK && !has_version)
+    status = fail_field(r, "it is no shot%s%s", "", "");
+  if (r->owned->file.reading.gaussians)
+    r->owned->file.reading.gaussians = &r->owned->file.shot.gaussians;
+  return status;
+}
+
+conic_status conic_shot_file_parse(conic_context *context, const char *name, const char *text, size_t n_bytes,
+                                   conic_shot_file **file) {
+  shot_reader r = {.context = context};
+  *file = NULL;
+  r.owned = conic_memory_allocate_zeroed(context, 1, sizeof *r.owned);
+  if (!r.owned)
+    return CONIC_ERROR_MEMORY;
+  conic_shot_file_init(&r.owned->file);
+  conic_status status = conic_json_take(context, name ? name : "shot", text, n_bytes, &r.json);
+  if (status == CONIC_OK) {
+    r.json.is_silent = !name;
+    status = read_shot(&r);
+    conic_json_close(&r.json);
+  }
+  if (status == CONIC_OK)
+    *file = &r.owned->file;
+  else
+    conic_shot_file_destroy(context, &r.owned->file);
+  return status;
+}
+
+void conic_shot_file_destroy(conic_context *context, conic_shot_file *file) {
+  owned_shot *owned = (owned_shot *)file;
+  if (!owned)
+    return;
+  for (size_t i = 0; i < owned->n_blocks; i++)
+    conic_memory_release(context, owned->blocks[i]);
+  conic_memory_release(context, owned->blocks);
+  conic_memory_release(context, owned);
+}
+
+int conic_shot_is_file(const char *path) {
+  char head[257] = "";
+  size_t n = strcmp(path, "-") != 0 ? conic_file_read_head(path, (unsigned char *)head, sizeof head - 1) : 0;
+  const char *key = n ? strstr(head, "\"conic_shot\"") : NULL;
+  return key && head[strspn(head, " \t\r\n")] == '{';
+}
+
+conic_status conic_shot_file_read(conic_context *context, const char *path, conic_shot_file **file) {
+  char *text = NULL;
+  size_t n_bytes = 0;
+  *file = NULL;
+  conic_status status = conic_picture_shot_text(context, path, &text, &n_bytes);
+  if (status == CONIC_OK && !text)
+    status = conic_fail(context, CONIC_ERROR_INPUT,
+                        "%s: does not say how it was made: it is neither a shot nor a picture that carries one", path);
+  if (status == CONIC_OK)
+    status = conic_shot_file_parse(context, path, text, n_bytes, file);
+  conic_memory_release(context, text);
+  return status;
+}
