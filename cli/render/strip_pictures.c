@@ -28,10 +28,8 @@ static uint64_t memory_for(const cli_render_job *job) {
 static int is_plain_exr(const cli_session *session, const cli_render_job *job) {
   const char *path = job->n_outputs == 1 ? job->outputs[0] : "";
   const char *ending = *conic_file_ending(path) ? conic_file_ending(path) : job->writing.format;
-  int has_more = job->deep_path || job->overdraw_path || job->clusters_path || job->boxes_path || job->legend_path ||
-                 job->has_legend || job->progressive_path || job->shot.has_backdrop;
-  return ending && strcasecmp(ending, "exr") == 0 && !has_more && !(session->host && session->host->lay_out) &&
-         !(job->shot.planes & ~(unsigned)CONIC_WINDOWS_PLANES);
+  return ending && strcasecmp(ending, "exr") == 0 && !(job->effects.asked & CLI_WRITES_MORE) &&
+         !(session->host && session->host->lay_out) && !(job->shot.planes & ~(unsigned)CONIC_WINDOWS_PLANES);
 }
 
 int cli_may_be_in_strips(const cli_session *session, const cli_render_job *job) {

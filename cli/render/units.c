@@ -62,8 +62,7 @@ void cli_units_settle(cli_render_job *job) {
 static int looks_at_all(const cli_render_job *job) {
   int has_spacings =
       job->epsilon.is_in_spacings || job->near_z.is_in_spacings || job->accumulating.width.is_in_spacings;
-  return has_spacings || job->is_transparent || job->has_mattes || job->deep_path || job->boxes_path ||
-         job->clusters_path || job->progressive_path || conic_shot_is_lit(&job->shot) || job->accumulating.n_samples;
+  return has_spacings || job->effects.asked & CLI_LOOKS_AROUND || job->boxes_path || job->clusters_path;
 }
 
 /* Of what the processes did together in the library, and of which all know whether it failed: tells it. */
