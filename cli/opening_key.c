@@ -2,86 +2,54 @@
 
 #include <string.h>
 
-static void add_double(conic_sha256 *sum, double number) {
-  conic_sha256_add(sum, &number, sizeof number);
-}
-
-static void add_count(conic_sha256 *sum, uint64_t count) {
-  conic_sha256_add(sum, &count, sizeof count);
-}
-
-/* With its length: no two lists of words are the same bytes. */
-static void add_text(conic_sha256 *sum, const char *text) {
-  add_count(sum, text ? strlen(text) + 1 : 0);
-  if (text)
-    conic_sha256_add(sum, text, strlen(text));
-}
+#include "shots/shot_key.h"
 
 /* Of what reads parts of a file, or a URL. A deadline is another for each picture, but whether there is one counts: it
  * decides whether the source is looked at all around. */
 static void add_access(conic_sha256 *sum, const conic_layers_access *access) {
-  add_count(sum, access->memory_bytes);
-  add_double(sum, access->connect_seconds);
-  add_double(sum, access->stall_seconds);
-  add_count(sum, (uint64_t)access->n_retries);
-  add_double(sum, access->pause_seconds);
-  add_count(sum, (uint64_t)access->n_connections);
-  add_count(sum, access->seconds > 0.0);
+  const double reals[] = {access->connect_seconds, access->stall_seconds, access->pause_seconds};
+  conic_key_add_number(sum, access->memory_bytes);
+  conic_key_add_number(sum, (uint64_t)access->n_retries);
+  conic_key_add_number(sum, (uint64_t)access->n_connections);
+  conic_key_add_number(sum, access->seconds > 0.0);
+  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++)
+    conic_key_add_real(sum, reals[i]);
 }
 
-static void add_patches(conic_sha256 *sum, const conic_patches_options *patches, int h_in_spacings) {
-  const conic_surface_options *surface = &patches->surface;
-  add_count(sum, (uint64_t)surface->type);
-  add_count(sum, (uint64_t)surface->plane);
-  add_count(sum, (uint64_t)surface->weight);
-  add_count(sum, (uint64_t)surface->degree);
-  add_double(sum, surface->h);
-  add_double(sum, surface->neglect);
-  add_count(sum, (uint64_t)surface->n_local);
-  add_double(sum, surface->cluster);
-  add_count(sum, surface->is_sharp);
-  add_double(sum, patches->step_px);
-  add_double(sum, patches->most_off);
-  add_count(sum, (uint64_t)h_in_spacings);
-}
-
-static void add_coloring(conic_sha256 *sum, const conic_coloring_options *coloring) {
-  add_text(sum, coloring->by);
-  add_text(sum, coloring->ramp);
-  add_count(sum, (uint64_t)coloring->has_range);
-  if (coloring->has_range) {
-    add_double(sum, coloring->minimum);
-    add_double(sum, coloring->maximum);
-  }
+/* With their number: no two lists of words are the same bytes. */
+static void add_paths(conic_sha256 *sum, const char *const *paths, size_t n_paths, const char *texture_path) {
+  conic_key_add_number(sum, n_paths);
+  for (size_t i = 0; i < n_paths; i++)
+    conic_key_add_text(sum, paths[i]);
+  conic_key_add_text(sum, texture_path ? texture_path : "");
 }
 
 void cli_opening_key(const char *const *paths, size_t n_paths, const conic_source_options *options, unsigned abilities,
                      char key[CONIC_SHA256_ROOM]) {
   const unsigned in_parts = CONIC_SOURCE_CHOOSES | CONIC_SOURCE_STREAMS;
   conic_sha256 sum;
+  conic_shot_file file;
+  conic_coloring_options coloring;
+  conic_shot_file_init(&file);
+  const float usual_cutoff = file.reading.cutoff;
+  file.reading = *options;
+  file.reading.cutoff = usual_cutoff;
+  file.reading.is_whole = !options->is_whole && abilities & in_parts && !(abilities & CONIC_SOURCE_CLUSTERS);
+  if (options->coloring) {
+    coloring = *options->coloring;
+    memset(coloring.up, 0, sizeof coloring.up);
+    file.reading.coloring = &coloring;
+  }
+  if (options->as != CONIC_AS_PATCHES) {
+    file.reading.patches = NULL;
+    file.reading.h_in_spacings = 0;
+  }
   conic_sha256_begin(&sum);
-  add_count(&sum, n_paths);
-  for (size_t i = 0; i < n_paths; i++)
-    add_text(&sum, paths[i]);
-  add_count(&sum, (uint64_t)options->as);
-  add_count(&sum, !options->is_whole && abilities & in_parts && !(abilities & CONIC_SOURCE_CLUSTERS));
-  add_count(&sum, (uint64_t)options->n_neighbours);
-  add_text(&sum, options->texture_path);
-  add_count(&sum, (uint64_t)options->is_smooth);
-  add_double(&sum, options->crease_deg);
-  add_count(&sum, (uint64_t)options->projects_degrees);
-  add_count(&sum, (uint64_t)options->finds_dots);
-  add_text(&sum, options->columns);
-  add_text(&sum, options->where);
-  add_count(&sum, (uint64_t)options->keeps_alpha);
-  add_count(&sum, options->gaussians != NULL);
-  add_count(&sum, options->coloring != NULL);
-  if (options->coloring)
-    add_coloring(&sum, options->coloring);
+  add_paths(&sum, paths, n_paths, options->texture_path);
+  conic_key_add_number(&sum, options->coloring != NULL);
+  conic_key_add_fields(&sum, &file, "reading.");
   if (options->access && abilities & (CONIC_SOURCE_READS_PARTS | CONIC_SOURCE_STREAMS))
     add_access(&sum, options->access);
-  if (options->patches && options->as == CONIC_AS_PATCHES)
-    add_patches(&sum, options->patches, options->h_in_spacings);
   conic_sha256_end(&sum, key);
 }
 

@@ -6,11 +6,12 @@
 #include "core/files/sha256.h"
 
 /* Adds what is other than the default of the fields whose paths begin as `part` (null: of all but `writing`), and what
- * the inputs hold. Errors: MEMORY. */
-conic_status conic_key_add_fields(conic_context *context, conic_sha256 *sum, const conic_shot_file *file,
-                                  const char *part);
+ * the inputs hold. */
+void conic_key_add_fields(conic_sha256 *sum, const conic_shot_file *file, const char *part);
 void conic_key_add_inputs(conic_sha256 *sum, const conic_shot_file *file);
 void conic_key_add_text(conic_sha256 *sum, const char *text);
 void conic_key_add_number(conic_sha256 *sum, uint64_t number);
+/* Its bits, as this machine has them: for keys that stay on it. */
+void conic_key_add_real(conic_sha256 *sum, double number);
 
 #endif

@@ -8,6 +8,10 @@
 #include "core/files/number.h"
 
 void conic_text_add(conic_text *text, const char *bytes, size_t n) {
+  if (text->sum) {
+    conic_sha256_add(text->sum, bytes, n);
+    return;
+  }
   if (!text->context && text->n + n + 1 > text->room)
     text->status = CONIC_ERROR_MEMORY;
   if (text->status == CONIC_OK && text->context)

@@ -3,10 +3,12 @@
 #define CONIC_SHOT_TEXT_H
 
 #include "core/base/message.h"
+#include "core/files/sha256.h"
 #include "shots/shot_fields.h"
 
 typedef struct conic_text {
   conic_context *context; /* null: there is no more room than `room`, at `bytes` */
+  conic_sha256 *sum;      /* what is added goes to this hash and stands nowhere; null: it stands */
   char *bytes;            /* zero at the end; null where there is nothing yet */
   size_t n, room;
   conic_status status; /* of all that was added: OK, MEMORY */

@@ -49,7 +49,7 @@ static conic_status hash_inputs(const cli_layer_job *job, char (*hashes)[CONIC_S
 }
 
 /* How inputs are read, as that of pictures is. */
-static conic_status add_reading(const cli_layer_job *job, conic_sha256 *sum) {
+static void add_reading(const cli_layer_job *job, conic_sha256 *sum) {
   conic_shot_file file;
   conic_shot_file_init(&file);
   file.reading.n_neighbours = job->estimate.n_neighbours;
@@ -58,11 +58,11 @@ static conic_status add_reading(const cli_layer_job *job, conic_sha256 *sum) {
   file.reading.columns = job->base.columns;
   file.reading.where = job->base.where;
   file.reading.coloring = job->coloring.options.by ? &job->coloring.options : NULL;
-  return conic_key_add_fields(job->base.session->context, sum, &file, "reading.");
+  conic_key_add_fields(sum, &file, "reading.");
 }
 
 /* What the options say of the file: neither threads nor memory change a byte of it. */
-static conic_status add_layer_options(const cli_layer_job *job, conic_sha256 *sum) {
+static void add_layer_options(const cli_layer_job *job, conic_sha256 *sum) {
   const int numbers[] = {job->is_merging, job->is_appending,           job->cloud_size,
                          job->payload,    job->options.keeps_all != 0, job->quantum.is_in_spacings};
   const double reals[] = {job->quantum.value, job->coloring.options.up[0], job->coloring.options.up[1],
@@ -76,7 +76,7 @@ static conic_status add_layer_options(const cli_layer_job *job, conic_sha256 *su
   conic_sha256_add(sum, reals, sizeof reals);
   conic_key_add_text(sum, output);
   conic_key_add_text(sum, job->keep ? job->keep : "");
-  return add_reading(job, sum);
+  add_reading(job, sum);
 }
 
 conic_status cli_layer_make_key(const cli_layer_job *job, char key[CONIC_SHA256_ROOM]) {
@@ -90,7 +90,7 @@ conic_status cli_layer_make_key(const cli_layer_job *job, char key[CONIC_SHA256_
     status = hash_inputs(job, hashes, all);
   if (status == CONIC_OK) {
     conic_sha256_begin(&sum);
-    status = add_layer_options(job, &sum);
+    add_layer_options(job, &sum);
     for (size_t i = 0; i < n; i++)
       conic_key_add_text(&sum, hashes[i]);
     conic_sha256_end(&sum, key);

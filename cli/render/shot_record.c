@@ -141,26 +141,20 @@ static void add_products(conic_sha256 *sum, const cli_render_job *job) {
   conic_key_add_number(sum, (uint64_t)job->making.is_left_out);
 }
 
-static void add_double(conic_sha256 *sum, double value) {
-  conic_sha256_add(sum, &value, sizeof value);
-}
-
 /* Which frames there are, beside the first; and what ends them early. */
-static conic_status add_frames(const cli_session *session, const cli_render_job *job, conic_sha256 *sum) {
+static void add_frames(const cli_render_job *job, conic_sha256 *sum) {
   conic_shot_file file;
-  conic_status status = CONIC_OK;
   conic_key_add_number(sum, (uint64_t)job->n_frames);
   conic_key_add_number(sum, (uint64_t)job->is_turntable);
-  for (size_t i = 0; job->is_every_view && i < job->cameras.count && status == CONIC_OK; i++) {
+  for (size_t i = 0; job->is_every_view && i < job->cameras.count; i++) {
     conic_shot_file_init(&file);
     file.shot.camera = job->cameras.cameras[i];
     conic_key_add_text(sum, job->cameras.names[i]);
-    status = conic_key_add_fields(session->context, sum, &file, "camera.");
+    conic_key_add_fields(sum, &file, "camera.");
   }
-  add_double(sum, job->stereo.distance);
-  add_double(sum, job->accumulating.seconds);
-  add_double(sum, job->deadline);
-  return status;
+  conic_key_add_real(sum, job->stereo.distance);
+  conic_key_add_real(sum, job->accumulating.seconds);
+  conic_key_add_real(sum, job->deadline);
 }
 
 conic_status cli_shot_kept_key(cli_session *session, cli_render_job *job, char key[CONIC_SHA256_ROOM]) {
@@ -169,12 +163,9 @@ conic_status cli_shot_kept_key(cli_session *session, cli_render_job *job, char k
   conic_status status = cli_shot_record(session, job, &file);
   conic_sha256_begin(&sum);
   conic_key_add_text(&sum, conic_version());
-  if (status == CONIC_OK)
-    status = conic_key_add_fields(session->context, &sum, &file, NULL);
-  if (status == CONIC_OK)
-    status = conic_key_add_fields(session->context, &sum, &file, "writing.");
-  if (status == CONIC_OK)
-    status = add_frames(session, job, &sum);
+  conic_key_add_fields(&sum, &file, NULL);
+  conic_key_add_fields(&sum, &file, "writing.");
+  add_frames(job, &sum);
   conic_key_add_inputs(&sum, &file);
   add_products(&sum, job);
   conic_sha256_end(&sum, key);

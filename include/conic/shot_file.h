@@ -70,7 +70,7 @@ CONIC_API void conic_shot_file_init_sized(conic_shot_file *file, size_t size);
 enum { CONIC_SHOT_KEY_ROOM = 65 };
 
 /* The key of a picture, as hex digits: a hash of the fields, but for `writing`, and of what the inputs hold. However a
- * picture was asked for, it has one key. Errors: ARGUMENT, MEMORY. */
+ * picture was asked for, it has one key. Errors: ARGUMENT. */
 CONIC_API conic_status conic_shot_file_key(conic_context *context, const conic_shot_file *file,
                                            char key[CONIC_SHOT_KEY_ROOM]);
 
