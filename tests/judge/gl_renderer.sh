@@ -28,7 +28,9 @@ draw() { # PROFILE OUT FAULT …
 }
 
 judge() { # EXIT_CODE PROFILE PICTURE
-  run "$1" judge scene.ply --camera camera.json --ignore-center --profile "$2" --picture "$3" --json -
+  local profile=$2
+  [[ $profile == inria-2023 || $profile == 2dgs-2024 ]] && profile+=:ignore-center
+  run "$1" judge scene.ply --camera camera.json --profile "$profile" --picture "$3" --json -
 }
 
 # The most likely fault.

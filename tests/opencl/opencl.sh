@@ -92,7 +92,7 @@ rm -r cache && mv other-cache cache
 [[ -z $(ls cache/conic/triangles-*.bin 2> /dev/null) ]] || fail "the triangles' program was built for splats"
 printf 'v %s 0 2\nv 0.9 %s 0\nv -1 1 0.3\nv 0.1 -1 0.2\nf 1 2 3\nf 1 2 4\nf 4 3 1\nf 2 3 4\n' 0.2 0.4 > tetrahedron.obj
 same "mesh" tetrahedron.obj --as mesh --size 120x90
-same "mesh, samples" tetrahedron.obj --as mesh --size 50x40 --samples 2 --passes 1 --cull back
+same "mesh, samples" tetrahedron.obj --as mesh --size 50x40 --samples 2 --cull back
 if [[ -f $data/cow.obj ]]; then
   run 0 hybrid "$data/cow.obj" -o cow.chy
   same "hybrid" cow.chy --size 200x150
