@@ -44,7 +44,8 @@ draw() {
   done
   "$plain" scene.ply camera.json --profile "$profile" "${planted[@]}" -o drawn.npy || fail "${planted[*]}: no picture"
   [[ $profile == inria-2023 || $profile == 2dgs-2024 ]] && profile+=:ignore-center
-  "$conic" judge scene.ply --camera camera.json --profile "$profile" --picture drawn.npy --json - > out 2> err < /dev/null
+  "$conic" judge scene.ply --camera camera.json --profile "$profile" --picture drawn.npy --json - \
+    > out 2> err < /dev/null
   code=$?
   [[ " $1 " == *" $code "* ]] || fail "$profile ${planted[*]}: exit code $code instead of $1: $(head -c 300 err)"
   named=$(python3 -c 'import json; print(*[d["name"] for d in json.load(open("out"))["diagnosis"]])' 2> /dev/null)
