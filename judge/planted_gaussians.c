@@ -193,8 +193,7 @@ static conic_status order_kept(planted_job *j) {
       memcpy(boxes[k], ordered[k]->footprint.box, sizeof boxes[k]);
     }
   }
-  conic_memory_release(j->context, unordered);
-  conic_memory_release(j->context, items);
+  conic_memory_release_these(j->context, unordered, items);
   return status;
 }
 
@@ -221,19 +220,13 @@ static conic_status composite_cells(planted_job *j) {
 static void release_planted(planted_job *j) {
   for (int i = 0; i < conic_context_threads(j->context); i++) {
     if (j->rooms) {
-      conic_memory_release(j->context, j->rooms[i].kept);
-      conic_memory_release(j->context, j->rooms[i].run);
+      conic_memory_release_these(j->context, j->rooms[i].kept, j->rooms[i].run);
     }
     if (j->scratch) {
-      conic_memory_release(j->context, j->scratch[i].listed);
-      conic_memory_release(j->context, j->scratch[i].hits);
+      conic_memory_release_these(j->context, j->scratch[i].listed, j->scratch[i].hits);
     }
   }
-  conic_memory_release(j->context, j->rooms);
-  conic_memory_release(j->context, j->scratch);
-  conic_memory_release(j->context, j->grid);
-  conic_memory_release(j->context, (void *)j->frame.kept);
-  conic_memory_release(j->context, (void *)j->frame.boxes);
+  conic_memory_release_these(j->context, j->rooms, j->scratch, j->grid, (void *)j->frame.kept, (void *)j->frame.boxes);
   conic_view_rays_release(j->context, &j->rays);
 }
 

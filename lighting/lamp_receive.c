@@ -108,7 +108,6 @@ conic_status conic_lamp_receive(conic_map_room *room, const conic_lamp_point *po
   conic_status status = work.side && work.of_items ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     status = receive_sides(&work, room, point, n_items);
-  conic_memory_release(room->context, work.of_items);
-  conic_memory_release(room->context, work.side);
+  conic_memory_release_these(room->context, work.of_items, work.side);
   return status;
 }

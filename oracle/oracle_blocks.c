@@ -133,13 +133,7 @@ static void list_places(const row *r, worker *w, const area *a) {
 }
 
 static void release_room(conic_context *context, worker *w) {
-  conic_memory_release(context, w->splats);
-  conic_memory_release(context, w->candidates);
-  conic_memory_release(context, w->exacts);
-  conic_memory_release(context, w->peaks);
-  conic_memory_release(context, w->fragments);
-  conic_memory_release(context, w->parts);
-  conic_memory_release(context, w->order);
+  conic_memory_release_these(context, w->splats, w->candidates, w->exacts, w->peaks, w->fragments, w->parts, w->order);
 }
 
 static int make_block_room(const oracle_job *j, worker *w, size_t n) {
@@ -487,7 +481,6 @@ conic_status conic_oracle_work(const oracle_job *job) {
     status = conic_progress(job->context, "verify", 1.0);
   }
   release_workers(job->context, n_threads, r.workers);
-  conic_memory_release(job->context, r.splats);
-  conic_memory_release(job->context, r.triangles);
+  conic_memory_release_these(job->context, r.splats, r.triangles);
   return status;
 }

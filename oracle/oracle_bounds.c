@@ -20,8 +20,7 @@ typedef struct bounding_search {
 } bounding_search;
 
 void conic_oracle_doubts_release(oracle_doubts *doubts) {
-  conic_memory_release(doubts->context, doubts->alternatives);
-  conic_memory_release(doubts->context, doubts->ids);
+  conic_memory_release_these(doubts->context, doubts->alternatives, doubts->ids);
 }
 
 conic_status conic_oracle_doubts_add(oracle_doubts *doubts, const conic_alternative *alternative) {

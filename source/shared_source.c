@@ -221,8 +221,7 @@ static conic_status open_part(shared_source *s, const char *const *paths, size_t
   if (status == CONIC_OK) /* a part without a place gives none; reading the whole reports what is wrong */
     *is_shared &= s->repairs.nan < look->n_splats;
   s->base.scale.estimate_seconds = conic_seconds_now() - start;
-  conic_memory_release(context, n_nowhere);
-  conic_memory_release(context, pieces);
+  conic_memory_release_these(context, n_nowhere, pieces);
   return status;
 }
 
@@ -333,8 +332,7 @@ static conic_status exchange_for(shared_source *s, const conic_dealing *dealing,
   status = conic_team_agree(dealing->team, status);
   if (status == CONIC_OK)
     status = conic_splats_exchange(context, &s->base.shares, &s->part, begin, list, &s->held, &s->ids);
-  conic_memory_release(context, list);
-  conic_memory_release(context, begin);
+  conic_memory_release_these(context, list, begin);
   return status;
 }
 

@@ -43,8 +43,7 @@ static conic_status make_lifted_room(conic_context *context, conic_top_set *set,
 }
 
 void conic_top_set_release(conic_context *context, conic_top_set *set) {
-  conic_memory_release(context, set->arrays);
-  conic_memory_release(context, set->splats.clips);
+  conic_memory_release_these(context, set->arrays, set->splats.clips);
   memset(set, 0, sizeof *set);
 }
 

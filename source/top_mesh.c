@@ -7,8 +7,7 @@
 
 void conic_top_mesh_release(conic_context *context, conic_top_mesh *mesh) {
   for (int i = 0; i < 3; i++) {
-    conic_memory_release(context, mesh->triangles.position[i]);
-    conic_memory_release(context, mesh->corners[i]);
+    conic_memory_release_these(context, mesh->triangles.position[i], mesh->corners[i]);
   }
   conic_memory_release(context, mesh->material);
   memset(mesh, 0, sizeof *mesh);

@@ -163,8 +163,6 @@ conic_status conic_upright_look(conic_context *context, const conic_splats_share
     take_triangle_samples(&s, drawing->triangles);
     *basis = s.count < LEAST_SAMPLES ? CONIC_UP_HABIT : look_at_samples(&s, drawing->triangles->count > 0);
   }
-  conic_memory_release(context, s.place);
-  conic_memory_release(context, s.area);
-  conic_memory_release(context, s.sorted);
+  conic_memory_release_these(context, s.place, s.area, s.sorted);
   return status;
 }

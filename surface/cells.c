@@ -22,8 +22,7 @@ conic_status conic_cells_begin(conic_context *context, double side, conic_cells 
 void conic_cells_end(conic_cells *cells) {
   if (!cells->context)
     return;
-  conic_memory_release(cells->context, cells->cells);
-  conic_memory_release(cells->context, cells->table);
+  conic_memory_release_these(cells->context, cells->cells, cells->table);
   memset(cells, 0, sizeof *cells);
 }
 

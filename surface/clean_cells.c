@@ -511,8 +511,7 @@ conic_status conic_surface_clean_cells(conic_context *context, const conic_clean
   if (status == CONIC_OK && report)
     *report = work.report;
   conic_splats_release(context, &work.subset);
-  conic_memory_release(context, work.page);
-  conic_memory_release(context, work.keys);
+  conic_memory_release_these(context, work.page, work.keys);
   conic_cells_results_end(&work.results);
   conic_store_end(&work.records);
   conic_cells_share_end(context, &work.share);

@@ -82,10 +82,6 @@ conic_status conic_clusters_create(conic_surface *surface) {
 
 void conic_clusters_release(conic_surface *surface) {
   conic_surface_clusters *clusters = &surface->clusters;
-  conic_memory_release(surface->context, clusters->centroid);
-  conic_memory_release(surface->context, clusters->mass);
-  conic_memory_release(surface->context, clusters->size);
-  conic_memory_release(surface->context, clusters->h);
-  conic_memory_release(surface->context, clusters->normal);
-  conic_memory_release(surface->context, clusters->color);
+  conic_memory_release_these(surface->context, clusters->centroid, clusters->mass, clusters->size, clusters->h,
+                             clusters->normal, clusters->color);
 }

@@ -27,9 +27,7 @@ conic_status conic_dart_board_begin(conic_context *context, double radius, size_
 }
 
 void conic_dart_board_end(conic_dart_board *board) {
-  conic_memory_release(board->context, board->places);
-  conic_memory_release(board->context, board->next);
-  conic_memory_release(board->context, board->heads);
+  conic_memory_release_these(board->context, board->places, board->next, board->heads);
   memset(board, 0, sizeof *board);
 }
 

@@ -209,9 +209,7 @@ conic_status conic_surface_densify(conic_surface *surface, const conic_densify_o
   if (status == CONIC_OK && report)
     report_densified(&work, left, report);
   conic_densify_triangles_release(context, &work.triangles);
-  conic_memory_release(context, work.is_moved);
-  conic_memory_release(context, work.darts.list);
-  conic_memory_release(context, work.landed.list);
+  conic_memory_release_these(context, work.is_moved, work.darts.list, work.landed.list);
   conic_workspaces_release(context, work.workspaces);
   if (status != CONIC_OK)
     conic_splats_release(context, dense);

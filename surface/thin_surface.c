@@ -187,9 +187,7 @@ static conic_status thin_stage(conic_context *context, const conic_surface_optio
     report->n_evaluations += work.workspaces[i].n_evaluations;
   report->n_evaluations += work.n_evaluations;
   report->error = work.greatest_error;
-  conic_memory_release(context, work.heap.slots);
-  conic_memory_release(context, work.heap.keys);
-  conic_memory_release(context, work.is_stale);
+  conic_memory_release_these(context, work.heap.slots, work.heap.keys, work.is_stale);
   conic_workspaces_release(context, work.workspaces);
   conic_surface_destroy(work.surface);
   return status;

@@ -285,9 +285,7 @@ conic_status conic_camera_gltf_read(conic_camera_list *list, const unsigned char
   status = read_gltf_json(&reader);
   if (status == CONIC_OK)
     status = add_gltf_cameras(&reader);
-  conic_memory_release(list->context, reader.lenses);
-  conic_memory_release(list->context, reader.nodes);
-  conic_memory_release(list->context, reader.children);
+  conic_memory_release_these(list->context, reader.lenses, reader.nodes, reader.children);
   conic_json_close(&reader.json);
   return status;
 }

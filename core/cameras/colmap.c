@@ -379,7 +379,6 @@ conic_status conic_camera_colmap_read(conic_camera_list *list, const conic_colma
     status = is_text ? read_text_images(&reader) : read_binary_images(&reader);
   if (status == CONIC_OK)
     status = place_images(&reader);
-  conic_memory_release(list->context, reader.cameras);
-  conic_memory_release(list->context, reader.images);
+  conic_memory_release_these(list->context, reader.cameras, reader.images);
   return status;
 }

@@ -293,11 +293,9 @@ static conic_status estimate_plain(conic_context *context, const conic_estimate_
       *repairs = counted;
   }
   for (int axis = 0; axis < 3; axis++) {
-    conic_memory_release(context, estimate.tangent_u[axis]);
-    conic_memory_release(context, estimate.tangent_v[axis]);
+    conic_memory_release_these(context, estimate.tangent_u[axis], estimate.tangent_v[axis]);
   }
-  conic_memory_release(context, estimate.dot);
-  conic_memory_release(context, estimate.states);
+  conic_memory_release_these(context, estimate.dot, estimate.states);
   return status;
 }
 

@@ -56,9 +56,7 @@ conic_status conic_neighbourhood_create(conic_context *context, const float *con
 
 void conic_neighbourhood_release(conic_context *context, conic_neighbourhood *neighbourhood) {
   conic_neighbours_release(context, &neighbourhood->tree);
-  conic_memory_release(context, neighbourhood->neighbours);
-  conic_memory_release(context, neighbourhood->flags);
-  conic_memory_release(context, neighbourhood->normals);
+  conic_memory_release_these(context, neighbourhood->neighbours, neighbourhood->flags, neighbourhood->normals);
   memset(neighbourhood, 0, sizeof *neighbourhood);
 }
 

@@ -240,13 +240,6 @@ conic_status conic_normals_orient(conic_context *context, conic_neighbourhood *n
   conic_status status = CONIC_ERROR_MEMORY;
   if (l.doubt && l.opposite && l.left_out && l.parent && l.flip && parts && starts && order)
     status = orient_with(context, &l, parts, starts, order);
-  conic_memory_release(context, order);
-  conic_memory_release(context, starts);
-  conic_memory_release(context, parts);
-  conic_memory_release(context, l.flip);
-  conic_memory_release(context, l.parent);
-  conic_memory_release(context, l.left_out);
-  conic_memory_release(context, l.opposite);
-  conic_memory_release(context, l.doubt);
+  conic_memory_release_these(context, order, starts, parts, l.flip, l.parent, l.left_out, l.opposite, l.doubt);
   return status;
 }

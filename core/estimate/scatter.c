@@ -171,8 +171,7 @@ conic_status conic_scatter_find(conic_context *context, conic_neighbourhood *nei
   conic_status status = CONIC_ERROR_MEMORY;
   if (scores[0] && scores[1])
     status = find_with(context, &work, scores, from, to);
-  conic_memory_release(context, scores[0]);
-  conic_memory_release(context, scores[1]);
+  conic_memory_release_these(context, scores[0], scores[1]);
   return status;
 }
 

@@ -319,7 +319,6 @@ conic_status conic_obj_read(conic_input *input, const conic_read_options *option
     status = check_indices(&reader);
   if (status == CONIC_OK)
     status = gather_normals(&reader);
-  conic_memory_release(input->context, reader.normals);
-  conic_memory_release(input->context, reader.corners);
+  conic_memory_release_these(input->context, reader.normals, reader.corners);
   return status;
 }

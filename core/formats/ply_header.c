@@ -283,9 +283,7 @@ conic_status conic_ply_header_read(conic_input *input, conic_ply_header *header)
 }
 
 void conic_ply_header_release(conic_context *context, conic_ply_header *header) {
-  conic_memory_release(context, header->elements);
-  conic_memory_release(context, header->properties);
-  conic_memory_release(context, header->textures.bytes);
+  conic_memory_release_these(context, header->elements, header->properties, header->textures.bytes);
   memset(header, 0, sizeof *header);
 }
 

@@ -21,18 +21,12 @@ conic_status conic_faces_create(conic_context *context, conic_faces **faces) {
 void conic_faces_destroy(conic_context *context, conic_faces *faces) {
   if (!faces)
     return;
-  conic_memory_release(context, faces->normal_corners);
-  conic_memory_release(context, faces->texture_corners);
-  conic_memory_release(context, faces->material);
-  conic_memory_release(context, faces->normals);
-  conic_memory_release(context, faces->coordinates);
-  conic_memory_release(context, faces->material_names.bytes);
-  conic_memory_release(context, faces->libraries.bytes);
-  conic_memory_release(context, faces->pictures.bytes);
+  conic_memory_release_these(context, faces->normal_corners, faces->texture_corners, faces->material, faces->normals,
+                             faces->coordinates, faces->material_names.bytes, faces->libraries.bytes,
+                             faces->pictures.bytes);
   for (size_t i = 0; i < faces->n_made; i++)
     conic_texture_destroy(faces->made[i].texture);
-  conic_memory_release(context, faces->made);
-  conic_memory_release(context, faces);
+  conic_memory_release_these(context, faces->made, faces);
 }
 
 conic_status conic_faces_add(conic_context *context, conic_faces *faces, const uint32_t normals[3],

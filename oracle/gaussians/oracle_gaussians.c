@@ -204,13 +204,9 @@ static conic_status allocate_job(job *j, int width, int height) {
 
 static void release_job(job *j) {
   for (int k = 0; j->workers && k < conic_context_threads(j->context); k++) {
-    conic_memory_release(j->context, j->workers[k].coverings);
-    conic_memory_release(j->context, j->workers[k].clouds);
-    conic_memory_release(j->context, j->workers[k].places);
+    conic_memory_release_these(j->context, j->workers[k].coverings, j->workers[k].clouds, j->workers[k].places);
   }
-  conic_memory_release(j->context, j->view.rays);
-  conic_memory_release(j->context, j->workers);
-  conic_memory_release(j->context, j->gaussians);
+  conic_memory_release_these(j->context, j->view.rays, j->workers, j->gaussians);
 }
 
 /* The eye is −RᵀT; a profile that is named after a program has it in floats, as those programs do. */

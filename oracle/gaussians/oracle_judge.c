@@ -241,9 +241,7 @@ static conic_status judge_all(oracle_entry *e, judge_job *j, conic_gaussian_verd
   for (int plane = 0; plane < CONIC_N_PLANES; plane++)
     verdict->planes[plane].is_compared = j->image->planes[plane] && judged_planes >> plane & 1;
   verdict->pass = verdict->pixels[CONIC_PIXEL_WRONG] == 0;
-  conic_memory_release(b->context, j->verdicts);
-  conic_memory_release(b->context, j->worst);
-  conic_memory_release(b->context, pixels);
+  conic_memory_release_these(b->context, j->verdicts, j->worst, pixels);
   return status;
 }
 
