@@ -1,5 +1,4 @@
 /* Finds the mistake that explains a picture: docs/reference/diagnosis.md. */
-#include <math.h>
 #include <string.h>
 
 #include "core/base/message.h"

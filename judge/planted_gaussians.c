@@ -219,12 +219,10 @@ static conic_status composite_cells(planted_job *j) {
 
 static void release_planted(planted_job *j) {
   for (int i = 0; i < conic_context_threads(j->context); i++) {
-    if (j->rooms) {
+    if (j->rooms)
       conic_memory_release_these(j->context, j->rooms[i].kept, j->rooms[i].run);
-    }
-    if (j->scratch) {
+    if (j->scratch)
       conic_memory_release_these(j->context, j->scratch[i].listed, j->scratch[i].hits);
-    }
   }
   conic_memory_release_these(j->context, j->rooms, j->scratch, j->grid, (void *)j->frame.kept, (void *)j->frame.boxes);
   conic_view_rays_release(j->context, &j->rays);

@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "gaussians/scene/activation.h"
-#include "gaussians/scene/half.h"
 
 static float planted_scale(conic_planted_reading reading, const conic_gaussians *from, int axis, size_t i) {
   float scale = from->scale[axis][i];

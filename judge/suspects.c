@@ -1,6 +1,5 @@
 /* The mistakes that are tried, each in all its likely readings. */
 #include <math.h>
-#include <string.h>
 
 #include "judge/planted.h"
 

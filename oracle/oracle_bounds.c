@@ -1,6 +1,5 @@
 #include "oracle/oracle_bounds.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/memory.h"

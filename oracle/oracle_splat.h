@@ -2,8 +2,6 @@
 #ifndef CONIC_ORACLE_SPLAT_H
 #define CONIC_ORACLE_SPLAT_H
 
-#include <stddef.h>
-
 #include "conic/oracle.h"
 #include "oracle/oracle_math.h"
 

@@ -431,9 +431,8 @@ conic_status conic_source_of_drawing(conic_context *context, conic_splats *splat
 
 static void close_drawing(conic_source *source) {
   drawing_source *d = (drawing_source *)source;
-  for (int axis = 0; axis < 3 && d->n_dots; axis++) {
+  for (int axis = 0; axis < 3 && d->n_dots; axis++)
     conic_memory_release_these(source->context, d->facing.tangent_u[axis], d->facing.tangent_v[axis]);
-  }
   if (d->has_moved)
     conic_moved_end(source->context, &d->moved, &d->moved_triangles);
   if (!d->is_lent)

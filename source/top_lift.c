@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/splats/clip.h"
 #include "core/splats/columns.h"
 
 enum { AXES_ARRAYS = 9, COLOR_ARRAYS = 3 };

@@ -6,9 +6,8 @@
 #include "core/splats/columns.h"
 
 void conic_top_mesh_release(conic_context *context, conic_top_mesh *mesh) {
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; i++)
     conic_memory_release_these(context, mesh->triangles.position[i], mesh->corners[i]);
-  }
   conic_memory_release(context, mesh->material);
   memset(mesh, 0, sizeof *mesh);
 }

@@ -88,9 +88,8 @@ static conic_status name_cells(conic_context *context, const conic_dealing *d, c
 }
 
 static void release_grid(conic_context *context, cell_grid *grid) {
-  for (int axis = 0; axis < 2; axis++) {
+  for (int axis = 0; axis < 2; axis++)
     conic_memory_release_these(context, grid->cell[axis], grid->first[axis]);
-  }
   conic_memory_release(context, grid->window);
 }
 

@@ -10,7 +10,6 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
-#include "core/base/threads.h"
 #include "core/base/vectors.h"
 #include "core/splats/builder.h"
 #include "core/splats/splats_gather.h"

@@ -1,6 +1,5 @@
 #include "surface/densify_triangles.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"

@@ -247,9 +247,8 @@ void conic_surface_destroy(conic_surface *surface) {
   conic_context *context = surface->context;
   conic_clusters_release(surface);
   conic_creases_release(surface);
-  for (int axis = 0; axis < 3; axis++) {
+  for (int axis = 0; axis < 3; axis++)
     conic_memory_release_these(context, surface->normal[axis], surface->color[axis]);
-  }
   conic_memory_release_these(context, surface->node_reach, surface->mass, surface->h);
   conic_neighbours_release(context, &surface->tree);
   conic_splats_release(context, &surface->points);

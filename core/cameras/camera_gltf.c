@@ -3,7 +3,6 @@
 
 #include "core/base/byte_order.h"
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/cameras/camera_list.h"
@@ -109,7 +108,7 @@ static conic_status read_camera_node(gltf_camera_reader *reader) {
   *node = start;
   node->line = json->line;
   conic_json_begin_object(json);
-  while (status == CONIC_OK && conic_json_next_member(json, key)) {
+  while (status == CONIC_OK && conic_json_next_member(json, key))
     if (strcmp(key, "camera") == 0)
       conic_json_number(json, &node->camera);
     else if (strcmp(key, "children") == 0)
@@ -126,7 +125,6 @@ static conic_status read_camera_node(gltf_camera_reader *reader) {
       read_node_numbers(json, node->matrix, 16);
     else
       conic_json_skip(json);
-  }
   return status == CONIC_OK ? json->status : status;
 }
 
@@ -140,14 +138,13 @@ static conic_status read_gltf_items(gltf_camera_reader *reader, conic_status (*r
 static conic_status read_gltf_json(gltf_camera_reader *reader) {
   char key[CONIC_JSON_KEY_ROOM];
   conic_status status = conic_json_begin_object(&reader->json);
-  while (status == CONIC_OK && conic_json_next_member(&reader->json, key)) {
+  while (status == CONIC_OK && conic_json_next_member(&reader->json, key))
     if (strcmp(key, "cameras") == 0)
       status = read_gltf_items(reader, read_gltf_lens);
     else if (strcmp(key, "nodes") == 0)
       status = read_gltf_items(reader, read_camera_node);
     else
       conic_json_skip(&reader->json);
-  }
   return status == CONIC_OK ? reader->json.status : status;
 }
 

@@ -136,14 +136,13 @@ static conic_status read_frame(transforms_reader *reader) {
   memset(frame, 0, sizeof *frame);
   frame->line = reader->json.line;
   conic_json_begin_object(&reader->json);
-  while (conic_json_next_member(&reader->json, key)) {
+  while (conic_json_next_member(&reader->json, key))
     if (strcmp(key, "file_path") == 0)
       read_frame_name(reader, frame);
     else if (strcmp(key, "transform_matrix") == 0 && ++has_matrix)
       read_frame_matrix(reader, frame);
     else if (!read_frame_number(reader, key, &frame->own))
       conic_json_skip(&reader->json);
-  }
   if (!has_matrix)
     conic_json_wrong(&reader->json, "a frame has a transform_matrix");
   return reader->json.status;

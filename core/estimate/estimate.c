@@ -292,9 +292,8 @@ static conic_status estimate_plain(conic_context *context, const conic_estimate_
     if (repairs)
       *repairs = counted;
   }
-  for (int axis = 0; axis < 3; axis++) {
+  for (int axis = 0; axis < 3; axis++)
     conic_memory_release_these(context, estimate.tangent_u[axis], estimate.tangent_v[axis]);
-  }
   conic_memory_release_these(context, estimate.dot, estimate.states);
   return status;
 }

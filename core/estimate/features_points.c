@@ -9,7 +9,6 @@
 #include "core/base/vectors.h"
 #include "core/estimate/features.h"
 #include "core/estimate/neighbourhood.h"
-#include "core/splats/clip.h"
 #include "core/splats/ellipse.h"
 
 /* A small plane is fitted to so many neighbours, which also give the spacing. */

@@ -4,7 +4,6 @@
 #define CONIC_FILE_FIELDS_H
 
 #include <stddef.h>
-#include <stdint.h>
 
 /* A member, by its place in memory. */
 typedef struct conic_file_field {

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/base/memory.h"
 #include "core/base/real.h"
 #include "core/files/number.h"
 #include "core/scans/sight.h"

@@ -51,9 +51,8 @@ conic_status conic_triangles_allocate(conic_context *context, size_t count, size
 }
 
 void conic_triangles_release(conic_context *context, conic_triangles *triangles) {
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; i++)
     conic_memory_release_these(context, triangles->position[i], triangles->color[i], triangles->normal[i]);
-  }
   conic_memory_release_these(context, triangles->texture_coordinate[0], triangles->texture_coordinate[1],
                              triangles->corners, triangles->normal_corners, triangles->texture_corners);
   for (size_t i = 0; triangles->materials && i < triangles->n_materials; i++)

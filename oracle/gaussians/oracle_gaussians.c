@@ -203,9 +203,8 @@ static conic_status allocate_job(job *j, int width, int height) {
 }
 
 static void release_job(job *j) {
-  for (int k = 0; j->workers && k < conic_context_threads(j->context); k++) {
+  for (int k = 0; j->workers && k < conic_context_threads(j->context); k++)
     conic_memory_release_these(j->context, j->workers[k].coverings, j->workers[k].clouds, j->workers[k].places);
-  }
   conic_memory_release_these(j->context, j->view.rays, j->workers, j->gaussians);
 }
 

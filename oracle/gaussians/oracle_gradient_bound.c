@@ -10,10 +10,8 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/threads.h"
 #include "oracle/gaussians/oracle_bounded.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
-#include "oracle/gaussians/oracle_uncertain.h"
 
 #define UNIT ORACLE_FLOAT_UNIT
 

@@ -5,7 +5,6 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/threads.h"
-#include "core/image/view_arguments.h"
 #include "oracle/gaussians/oracle_entry.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 #include "oracle/oracle_math.h"

@@ -4,7 +4,6 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
-#include "core/base/threads.h"
 #include "oracle/gaussians/oracle_entry.h"
 #include "oracle/oracle_evidence.h"
 
