@@ -87,10 +87,8 @@ static void box_of_piece(const oracle_triangle *t, float box[2][2]) {
 }
 
 static conic_status note_number(conic_context *context, uint32_t **list, size_t *n, size_t *room, size_t i) {
-  conic_status status = conic_memory_reserve(context, list, *n, *n + 1, room, sizeof **list);
-  if (status == CONIC_OK)
-    (*list)[(*n)++] = (uint32_t)i;
-  return status;
+  const uint32_t number = (uint32_t)i;
+  return conic_memory_append(context, list, n, room, &number, sizeof number);
 }
 
 static conic_status find_in_row(row *r) {

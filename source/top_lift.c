@@ -109,13 +109,9 @@ static conic_status take_clip(conic_context *context, const conic_splats *from, 
     ++*next;
   if (*next == from->n_clips || from->clips[*next].splat != i)
     return CONIC_OK;
-  conic_status status =
-      conic_memory_reserve(context, &to->clips, to->n_clips, to->n_clips + 1, &set->clips_room, sizeof *to->clips);
-  if (status != CONIC_OK)
-    return status;
-  to->clips[to->n_clips] = from->clips[*next];
-  to->clips[to->n_clips++].splat = (uint32_t)(to->count - 1);
-  return CONIC_OK;
+  conic_clip clip = from->clips[*next];
+  clip.splat = (uint32_t)(to->count - 1);
+  return conic_memory_append(context, &to->clips, &to->n_clips, &set->clips_room, &clip, sizeof clip);
 }
 
 static void begin_set(conic_context *context, const conic_splats *splats, conic_top_set *set) {

@@ -182,11 +182,9 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
     return conic_input_wrong(reader->input, "a face's corner is v, v/t, v//n or v/t/n");
   if (resolved[NORMAL] == CONIC_NO_CORNER)
     return CONIC_OK;
-  conic_status status = conic_memory_reserve(reader->input->context, &reader->corners, reader->n_corners,
-                                             reader->n_corners + 1, &reader->corner_capacity, sizeof *reader->corners);
-  if (status == CONIC_OK)
-    reader->corners[reader->n_corners++] = (obj_corner){resolved[VERTEX], resolved[NORMAL]};
-  return status;
+  const obj_corner corner = {resolved[VERTEX], resolved[NORMAL]};
+  return conic_memory_append(reader->input->context, &reader->corners, &reader->n_corners, &reader->corner_capacity,
+                             &corner, sizeof corner);
 }
 
 static conic_status add_obj_triangle(obj_reader *reader, const face_corner a, const face_corner b,
