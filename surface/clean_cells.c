@@ -12,8 +12,8 @@
 #include "core/base/team_runs.h"
 #include "core/splats/columns.h"
 #include "core/splats/splats_gather.h"
+#include "surface/cells.h"
 #include "surface/cells_results.h"
-#include "surface/cells_share.h"
 #include "surface/own_points.h"
 
 /* A cell's side in h: so large that the points around it are few beside its own. */

@@ -15,8 +15,7 @@
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/estimate/features.h"
-#include "core/estimate/normals.h"
-#include "core/estimate/scatter.h"
+#include "core/estimate/neighbourhood.h"
 #include "core/splats/clip.h"
 
 void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size) {

@@ -1,4 +1,3 @@
-#include "core/estimate/normals.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,7 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
-#include "core/estimate/covariance.h"
+#include "core/estimate/neighbourhood.h"
 
 static void guess_normal(conic_neighbourhood *neighbourhood, size_t slot) {
   conic_covariance covariance = conic_covariance_about(neighbourhood, slot);

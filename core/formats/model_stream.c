@@ -4,7 +4,7 @@
 #include "core/assimp/assimp_kinds.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/formats/las.h"
+#include "core/formats/readers.h"
 #include "core/formats/model_loan.h"
 #include "core/formats/model_part.h"
 #include "core/formats/model_read.h"

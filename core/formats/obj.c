@@ -1,4 +1,4 @@
-#include "core/formats/obj.h"
+#include "core/formats/readers.h"
 
 #include <string.h>
 

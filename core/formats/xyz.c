@@ -1,4 +1,4 @@
-#include "core/formats/xyz.h"
+#include "core/formats/readers.h"
 
 #include <math.h>
 #include <stdio.h>

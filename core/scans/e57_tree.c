@@ -1,4 +1,4 @@
-#include "core/scans/e57_tree.h"
+#include "core/scans/e57_file.h"
 
 #include <math.h>
 #include <string.h>

@@ -7,7 +7,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "oracle/gaussians/oracle_forks.h"
+#include "oracle/gaussians/oracle_uncertain.h"
 
 enum { PLACE_RUN = 1024, CELL_EDGE = 32 };
 

@@ -5,7 +5,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/threads.h"
-#include "oracle/gaussians/oracle_entry.h"
+#include "oracle/gaussians/oracle_cells.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 #include "oracle/oracle_math.h"
 

@@ -1,5 +1,5 @@
 /* Somebody's gradient held against the one in double precision, within what floats and decisions in doubt may do. */
-#include "oracle/gaussians/oracle_gradient_judge.h"
+#include "oracle/gaussians/oracle_gradient_job.h"
 
 #include <string.h>
 

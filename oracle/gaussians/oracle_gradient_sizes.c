@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "oracle/gaussians/oracle_bounded.h"
-#include "oracle/gaussians/oracle_gradient_judge.h"
+#include "oracle/gaussians/oracle_gradient_job.h"
 
 void conic_oracle_row_sizes(const oracle_gaussian_view *view, const oracle_gaussian *g, row_sizes *s) {
   s->focal[0] = view->camera->fx;

@@ -4,7 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
-#include "oracle/gaussians/oracle_entry.h"
+#include "oracle/gaussians/oracle_cells.h"
 #include "oracle/oracle_evidence.h"
 
 /* Where the picture's values may lie. */

@@ -5,8 +5,8 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/image/view_arguments.h"
-#include "oracle/gaussians/oracle_entry.h"
-#include "oracle/gaussians/oracle_forks.h"
+#include "oracle/gaussians/oracle_cells.h"
+#include "oracle/gaussians/oracle_uncertain.h"
 
 conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *gaussians, const conic_camera *camera,
                                 const conic_gaussian_options *options, const conic_float_model *model, int samples,
