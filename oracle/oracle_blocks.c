@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "oracle/oracle_weights.h"
 
@@ -350,22 +351,18 @@ static void do_area(row *r, worker *w, int i_thread, const area *a) {
   }
 }
 
-static int fewer(int a, int b) {
-  return a < b ? a : b;
-}
-
 static void do_block(void *data, size_t i_item, int i_thread) {
   row *r = data;
   const conic_reference *reference = r->job->reference;
   int left = (int)i_item * r->edge;
-  const area block = {left, r->top, fewer(r->edge, reference->width - left),
-                      fewer(r->edge, reference->height - r->top)};
+  const area block = {left, r->top, conic_least(r->edge, reference->width - left),
+                      conic_least(r->edge, reference->height - r->top)};
   do_area(r, r->workers[i_thread], i_thread, &block);
 }
 
 static conic_status do_row(row *r) {
   const conic_reference *reference = r->job->reference;
-  size_t end = (size_t)fewer(r->top + r->edge, reference->height) * (size_t)reference->width;
+  size_t end = (size_t)conic_least(r->top + r->edge, reference->height) * (size_t)reference->width;
   r->first_number = r->end_number;
   while (r->end_number < reference->n_pixels && picture_pixel(reference, r->end_number) < end)
     r->end_number++;

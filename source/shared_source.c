@@ -291,9 +291,7 @@ static void release_held(shared_source *s) {
 static conic_status choose_part(conic_source *source, const conic_camera *camera, const conic_render_options *render,
                                 const conic_source_view *view) {
   shared_source *s = (shared_source *)source;
-  (void)camera;
-  (void)render;
-  (void)view;
+  (void)camera, (void)render, (void)view;
   source->choice.drawing = (conic_drawing){&s->part, &no_triangles};
   return CONIC_OK;
 }

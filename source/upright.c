@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "core/base/memory.h"
+#include "core/base/real.h"
 #include "core/base/vectors.h"
 
 /* The most splats and triangles to look at; fewer than the least tell nothing. */
@@ -74,17 +75,12 @@ static void take_triangle_samples(samples *s, const conic_triangles *t) {
   }
 }
 
-static int compare_heights(const void *a, const void *b) {
-  const double *first = a, *second = b;
-  return (*first > *second) - (*first < *second);
-}
-
 /* The extent without the outermost hundredth on either side, which may be stray points. */
 static void find_extent(const samples *s, double low[3], double high[3]) {
   for (int axis = 0; axis < 3; axis++) {
     for (size_t i = 0; i < s->count; i++)
       s->sorted[i] = s->place[i][axis];
-    qsort(s->sorted, s->count, sizeof *s->sorted, compare_heights);
+    qsort(s->sorted, s->count, sizeof *s->sorted, conic_compare_doubles);
     low[axis] = s->sorted[s->count / 100];
     high[axis] = s->sorted[s->count - 1 - s->count / 100];
   }

@@ -7,23 +7,7 @@
 #include "core/files/json_read.h"
 
 /* Numbers given with a frame, or for all frames. */
-typedef enum frame_number {
-  W,
-  H,
-  FL_X,
-  FL_Y,
-  CX,
-  CY,
-  ANGLE_X,
-  ANGLE_Y,
-  K1,
-  K2,
-  K3,
-  K4,
-  P1,
-  P2,
-  N_FRAME_NUMBERS
-} frame_number;
+enum { W, H, FL_X, FL_Y, CX, CY, ANGLE_X, ANGLE_Y, K1, K2, K3, K4, P1, P2, N_FRAME_NUMBERS };
 
 static const char *const number_names[N_FRAME_NUMBERS] = {
     "w", "h", "fl_x", "fl_y", "cx", "cy", "camera_angle_x", "camera_angle_y", "k1", "k2", "k3", "k4", "p1", "p2"};

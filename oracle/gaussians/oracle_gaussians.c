@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
 #include "oracle/gaussians/oracle_gaussian.h"
@@ -38,11 +39,6 @@ static double oracle_erf(double x) {
   }
   double value = sum > 0.0 ? TWO_OVER_ROOT_OF_PI * conic_oracle_exp(-size * size) * sum : 0.0;
   return x < 0.0 ? -value : value;
-}
-
-static int compare_places_along(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
 }
 
 /* What is emitted at z and comes to the eye. */
@@ -84,7 +80,7 @@ static double oracle_integrate(const oracle_cloud *clouds, size_t n, double *pla
     for (int k = 0; k < ORACLE_PLACES; k++)
       places[n_places++] =
           clouds[i].z + (k - ORACLE_PLACES / 2) * (2.0 * REACH / (ORACLE_PLACES - 1)) * clouds[i].width;
-  qsort(places, n_places, sizeof *places, compare_places_along);
+  qsort(places, n_places, sizeof *places, conic_compare_doubles);
   for (int halving = 0; halving < MOST_HALVINGS; halving++) {
     int n_steps = 1 << halving;
     color[0] = color[1] = color[2] = 0.0;

@@ -138,11 +138,7 @@ static void note_doubts(void *data, size_t pixel, const oracle_meeting *meetings
 }
 
 static void pass_bound(void *data, size_t i, size_t pixel, const conic_gaussian_bound *bound, int i_thread) {
-  (void)data;
-  (void)i;
-  (void)pixel;
-  (void)bound;
-  (void)i_thread;
+  (void)data, (void)i, (void)pixel, (void)bound, (void)i_thread;
 }
 
 /* Of all pixels that have a weight. */

@@ -273,8 +273,7 @@ conic_status conic_gaussian_judge(conic_context *context, const conic_gaussians 
 }
 
 static void take_doubts(void *data, size_t i, size_t pixel, const conic_gaussian_bound *b, int i_thread) {
-  (void)i;
-  (void)i_thread;
+  (void)i, (void)i_thread;
   ((uint32_t *)data)[pixel] = b->doubts;
 }
 
@@ -296,8 +295,7 @@ conic_status conic_gaussian_find_doubts(conic_context *context, const conic_gaus
 }
 
 static void take_bound(void *data, size_t i, size_t pixel, const conic_gaussian_bound *b, int i_thread) {
-  (void)pixel;
-  (void)i_thread;
+  (void)pixel, (void)i_thread;
   ((conic_gaussian_bound *)data)[i] = *b;
 }
 
