@@ -46,7 +46,6 @@ typedef struct transforms_reader {
   frame_numbers shared; /* they may come after the frames */
   transforms_frame *frames;
   size_t n_frames, frame_room;
-  int has_frames;
 } transforms_reader;
 
 static void read_frame_model(transforms_reader *reader, frame_numbers *numbers) {
@@ -137,7 +136,6 @@ static conic_status read_transforms(transforms_reader *reader) {
   conic_status status = conic_json_begin_object(&reader->json);
   while (status == CONIC_OK && conic_json_next_member(&reader->json, key)) {
     if (strcmp(key, "frames") == 0) {
-      reader->has_frames = 1;
       status = conic_json_begin_array(&reader->json);
       while (status == CONIC_OK && conic_json_next_item(&reader->json))
         status = read_frame(reader);

@@ -303,8 +303,10 @@ static conic_status gather_normals(obj_reader *reader) {
   return CONIC_OK;
 }
 
-conic_status conic_obj_read(conic_input *input, const conic_read_options *options, conic_model *model) {
+conic_status conic_obj_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model) {
   obj_reader reader = {.input = input};
+  (void)delivery;
   input->continues_lines = 1;
   conic_status status = conic_builder_begin(input->context, model, 0, NULL, &reader.builder);
   if (status == CONIC_OK && options->keeps_faces) {

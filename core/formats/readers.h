@@ -21,8 +21,9 @@ conic_status conic_las_read(conic_input *input, const conic_read_options *option
 /* Reads the shape from the header of a LAS at its start. Errors: INPUT, CANCELLED. */
 conic_status conic_las_look(conic_input *input, conic_model_shape *shape);
 
-/* OBJ; it takes no delivery. */
-conic_status conic_obj_read(conic_input *input, const conic_read_options *options, conic_model *model);
+/* OBJ; a delivery gets nothing. */
+conic_status conic_obj_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model);
 
 /* PCD, the Point Cloud Library's format: ascii, binary and binary_compressed.
  *
