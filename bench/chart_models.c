@@ -51,7 +51,7 @@ static conic_status make_terrain(conic_context *context, size_t side, conic_tria
 
 static conic_status read_mesh(cli_session *session, const char *path, size_t side, conic_triangles *mesh) {
   conic_status status =
-      path ? conic_mesh_read(session->context, path, NULL, NULL, mesh) : make_terrain(session->context, side, mesh);
+      path ? conic_mesh_read(session->context, path, mesh) : make_terrain(session->context, side, mesh);
   if (status == CONIC_OK && !mesh->normal[0])
     status = conic_triangles_smooth(session->context, mesh);
   return status;

@@ -120,10 +120,7 @@ conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_
 void conic_diagnosis_samples_release(conic_diagnosis_samples *s) {
   if (!s->context)
     return;
-  conic_memory_release(s->context, s->places);
-  conic_memory_release(s->context, s->is_wrong);
-  conic_memory_release(s->context, s->low);
-  conic_memory_release(s->context, s->high);
+  conic_memory_release_these(s->context, s->places, s->is_wrong, s->low, s->high);
   memset(s, 0, sizeof *s);
 }
 

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "conic/gaussians.h"
 #include "core/base/memory.h"
 #include "core/base/radix.h"
 #include "core/base/real.h"
@@ -11,8 +12,118 @@
 #include "core/splats/kernel.h"
 #include "gaussians/draw/ray_meetings.h"
 #include "gaussians/draw/view_rays.h"
+#include "gaussians/scene/activation.h"
+#include "gaussians/scene/gaussian_set.h"
+#include "judge/planted.h"
 #include "judge/planted_composite.h"
-#include "judge/planted_set.h"
+
+/* --- sets --- */
+
+enum { CONIC_PLANTED_RUN = 256 };
+
+typedef struct planted_run {
+  float scale[3][CONIC_PLANTED_RUN], w[CONIC_PLANTED_RUN], opacity[CONIC_PLANTED_RUN];
+  float sh[CONIC_PLANTED_RUN * CONIC_MOST_HARMONICS];
+} planted_run;
+
+static float planted_scale(conic_planted_reading reading, const conic_gaussians *from, int axis, size_t i) {
+  float scale = from->scale[axis][i];
+  switch (reading) {
+  case CONIC_READING_RAW: /* only its square is visible */
+    return fabsf(conic_gaussians_log_scale(from, axis, i));
+  case CONIC_READING_TWICE:
+    return conic_scale_of_log(scale);
+  case CONIC_READING_LENGTH_SQUARED:
+    for (int k = 0; k < 4; k++)
+      scale =
+          k == 0 ? from->rotation[0][i] * from->rotation[0][i] : scale + from->rotation[k][i] * from->rotation[k][i];
+    return scale * from->scale[axis][i];
+  case CONIC_READING_OWN:
+  case CONIC_READING_RAW_LIMITED:
+  case CONIC_READING_CONJUGATE:
+    break;
+  }
+  return scale;
+}
+
+static float planted_opacity(conic_planted_reading reading, const conic_gaussians *from, size_t i) {
+  float raw;
+  switch (reading) {
+  case CONIC_READING_RAW:
+    return conic_gaussians_logit(from, i);
+  case CONIC_READING_RAW_LIMITED:
+    raw = conic_gaussians_logit(from, i);
+    return raw > 0.0f ? (raw < 1.0f ? raw : 1.0f) : 0.0f;
+  case CONIC_READING_TWICE:
+    return conic_opacity_of_logit(from->opacity[i]);
+  case CONIC_READING_OWN:
+  case CONIC_READING_LENGTH_SQUARED:
+  case CONIC_READING_CONJUGATE:
+    break;
+  }
+  return from->opacity[i];
+}
+
+/* Where coefficient k of channel c is read from; there are n above degree 0. */
+static size_t place_of_harmonic(conic_planted_reading reading, size_t n, size_t k, size_t c) {
+  size_t raw = reading == CONIC_READING_RAW ? 3 * k + c : n * c + k;
+  if (reading == CONIC_READING_RAW) /* of a file that has channel by channel */
+    return 3 * (raw % n) + raw / n;
+  return reading == CONIC_READING_TWICE ? raw : 3 * k + c;
+}
+
+static void plant_harmonics(const conic_planted *p, const conic_gaussians *from, size_t first, conic_gaussians *to,
+                            float *sh) {
+  const size_t n_from = conic_harmonics_of_degree(from->sh_degree), n_to = conic_harmonics_of_degree(to->sh_degree);
+  float room[CONIC_MOST_HARMONICS];
+  for (size_t i = 0; i < to->count; i++) {
+    const float *own = conic_gaussians_harmonics(from, first + i, room);
+    for (size_t c = 0; c < 3; c++) {
+      sh[i * n_to + c] = own[c];
+      for (size_t k = 0; 3 * k + 3 < n_to; k++)
+        sh[i * n_to + 3 * (k + 1) + c] = own[3 + place_of_harmonic(p->harmonics, n_from / 3 - 1, k, c)];
+    }
+  }
+  to->sh = sh;
+  to->sh_half = NULL;
+}
+
+/* Gaussians first … first + n - 1 as their own set, which refers to the scene and to `room`. */
+static conic_gaussians planted_read(const conic_planted *p, const conic_gaussians *from, size_t first, size_t n,
+                                    planted_run *room) {
+  static const int order[][4] = {[CONIC_READING_OWN] = {0, 1, 2, 3},
+                                 [CONIC_READING_RAW] = {3, 0, 1, 2},
+                                 [CONIC_READING_TWICE] = {1, 2, 3, 0},
+                                 [CONIC_READING_CONJUGATE] = {0, 1, 2, 3}};
+  const size_t n_harmonics = conic_harmonics_of_degree(from->sh_degree);
+  conic_gaussians to = *from;
+  to.count = n;
+  for (int k = 0; k < 3; k++) {
+    to.position[k] = from->position[k] + first;
+    to.scale[k] = from->scale[k] ? from->scale[k] + first : NULL;
+    for (size_t i = 0; p->scale && to.scale[k] && i < n; i++)
+      room->scale[k][i] = planted_scale(p->scale, from, k, first + i);
+    if (p->scale && to.scale[k])
+      to.scale[k] = room->scale[k];
+  }
+  for (int k = 0; k < 4; k++)
+    to.rotation[k] = from->rotation[order[p->rotation][k]] + first;
+  for (size_t i = 0; p->rotation == CONIC_READING_CONJUGATE && i < n; i++)
+    room->w[i] = -from->rotation[0][first + i];
+  if (p->rotation == CONIC_READING_CONJUGATE)
+    to.rotation[0] = room->w;
+  for (size_t i = 0; p->opacity && i < n; i++)
+    room->opacity[i] = planted_opacity(p->opacity, from, first + i);
+  to.opacity = p->opacity ? room->opacity : from->opacity + first;
+  to.sh = from->sh ? from->sh + first * n_harmonics : NULL;
+  to.sh_half = from->sh_half ? from->sh_half + first * n_harmonics : NULL;
+  to.sh_degree = p->most_degree < from->sh_degree ? p->most_degree : from->sh_degree;
+  if (p->harmonics || to.sh_degree < from->sh_degree)
+    plant_harmonics(p, from, first, &to, room->sh);
+  return to;
+}
+
+/* --- pictures --- */
 
 enum { GRID_SHIFT = 4, RUN_TASKS = 64 };
 
@@ -21,7 +132,7 @@ typedef struct kept_room {
   conic_kept_gaussian *kept;
   size_t n, room;
   int is_full; /* memory ran out */
-  conic_planted_run *run;
+  planted_run *run;
 } kept_room;
 
 typedef struct planted_job {
@@ -144,7 +255,7 @@ static void keep_run(void *data, size_t i_run, int i_thread) {
   kept_room *room = &j->rooms[i_thread];
   const size_t first = i_run * CONIC_PLANTED_RUN, left = j->set->count - first;
   const size_t n = left < CONIC_PLANTED_RUN ? left : CONIC_PLANTED_RUN;
-  const conic_gaussians run = conic_planted_read(j->planted, j->set, first, n, room->run);
+  const conic_gaussians run = planted_read(j->planted, j->set, first, n, room->run);
   for (size_t i = 0; i < n && !room->is_full; i++)
     keep_one(j, &run, i, first, room);
 }
@@ -193,8 +304,7 @@ static conic_status order_kept(planted_job *j) {
       memcpy(boxes[k], ordered[k]->footprint.box, sizeof boxes[k]);
     }
   }
-  conic_memory_release(j->context, unordered);
-  conic_memory_release(j->context, items);
+  conic_memory_release_these(j->context, unordered, items);
   return status;
 }
 
@@ -220,20 +330,12 @@ static conic_status composite_cells(planted_job *j) {
 
 static void release_planted(planted_job *j) {
   for (int i = 0; i < conic_context_threads(j->context); i++) {
-    if (j->rooms) {
-      conic_memory_release(j->context, j->rooms[i].kept);
-      conic_memory_release(j->context, j->rooms[i].run);
-    }
-    if (j->scratch) {
-      conic_memory_release(j->context, j->scratch[i].listed);
-      conic_memory_release(j->context, j->scratch[i].hits);
-    }
+    if (j->rooms)
+      conic_memory_release_these(j->context, j->rooms[i].kept, j->rooms[i].run);
+    if (j->scratch)
+      conic_memory_release_these(j->context, j->scratch[i].listed, j->scratch[i].hits);
   }
-  conic_memory_release(j->context, j->rooms);
-  conic_memory_release(j->context, j->scratch);
-  conic_memory_release(j->context, j->grid);
-  conic_memory_release(j->context, (void *)j->frame.kept);
-  conic_memory_release(j->context, (void *)j->frame.boxes);
+  conic_memory_release_these(j->context, j->rooms, j->scratch, j->grid, (void *)j->frame.kept, (void *)j->frame.boxes);
   conic_view_rays_release(j->context, &j->rays);
 }
 

@@ -1,6 +1,5 @@
 /* The mistakes that are tried, each in all its likely readings. */
 #include <math.h>
-#include <string.h>
 
 #include "judge/planted.h"
 
@@ -34,135 +33,86 @@ enum {
   OF_TRANSFER
 };
 
-/* A shift's `how` and value are half pixels in x and in y. */
-static const conic_suspect of_gaussians[] = {
-    {"half-pixel", OF_SHIFT, -1, -1.0},
-    {"half-pixel", OF_SHIFT, 1, 1.0},
-    {"half-pixel", OF_SHIFT, -1, 1.0},
-    {"half-pixel", OF_SHIFT, 1, -1.0},
-    {"half-pixel", OF_SHIFT, -1, 0.0},
-    {"half-pixel", OF_SHIFT, 1, 0.0},
-    {"half-pixel", OF_SHIFT, 0, -1.0},
-    {"half-pixel", OF_SHIFT, 0, 1.0},
-    {"dilation-0", OF_DILATION, 0, 0.0},
-    {"dilation-0.1", OF_DILATION, 0, 0.1},
-    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_ELLIPSE, 0.0},
-    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_BOX, 0.0},
-    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_WHOLE_BOX, 0.0},
-    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_SQUARE, 0.0},
-    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_WHOLE_SQUARE, 0.0},
-    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_CIRCLE, 0.0},
-    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_WHOLE_CIRCLE, 0.0},
-    {"extent-3-sigma", OF_EXTENT, CONIC_EXTENT_TILES, 0.0},
-    {"extent-exact", OF_EXTENT, CONIC_EXTENT_EXACT, 0.0},
-    {"alpha-max-0.999", OF_ALPHA_MOST, 0, 0.999},
-    {"alpha-max-0.99", OF_ALPHA_MOST, 0, 0.99},
-    {"falloff-renormalised", OF_FALLOFF, 0, 4.0},
-    {"falloff-renormalised", OF_FALLOFF, 0, 4.5},
-    {"falloff-renormalised", OF_FALLOFF, 0, 5.5412635}, /* ln 255 */
-    {"falloff-renormalised", OF_FALLOFF, 0, 2.0},
-    {"falloff-renormalised", OF_FALLOFF, 1, 0.0},
-    {"order-distance", OF_ORDER, 0, CONIC_ORDER_DISTANCE},
-    {"order-distance", OF_ORDER, 1, CONIC_ORDER_DISTANCE},
-    {"order-file", OF_ORDER, 0, CONIC_ORDER_FILE},
-    {"order-file", OF_ORDER, 1, CONIC_ORDER_FILE},
-    {"order-z", OF_ORDER, 0, CONIC_ORDER_Z},
-    {"order-reversed", OF_ORDER, 1, CONIC_ORDER_OWN},
-    {"near", OF_NEAR, 0, 0.0},
-    {"near", OF_NEAR, 0, 0.001},
-    {"near", OF_NEAR, 0, 0.01},
-    {"near", OF_NEAR, 0, 0.05},
-    {"near", OF_NEAR, 0, 0.1},
-    {"near", OF_NEAR, 0, 0.2},
-    {"near", OF_NEAR, 0, 0.25},
-    {"near", OF_NEAR, 0, 0.3},
-    {"near", OF_NEAR, 0, 0.4},
-    {"near", OF_NEAR, 0, 0.5},
-    {"near", OF_NEAR, 0, 0.75},
-    {"near", OF_NEAR, 0, 1.0},
-    {"near", OF_NEAR, 0, 1.5},
-    {"near", OF_NEAR, 0, 2.0},
-    {"near", OF_NEAR, 0, 2.5},
-    {"near", OF_NEAR, 0, 3.0},
-    {"near", OF_NEAR, 0, 4.0},
-    {"near", OF_NEAR, 0, 5.0},
-    {"near", OF_NEAR, 0, 10.0},
-    {"sh-degree-0", OF_DEGREE, 0, 0.0},
-    {"sh-degree-1", OF_DEGREE, 1, 0.0},
-    {"sh-degree-2", OF_DEGREE, 2, 0.0},
-    {"f-rest-interleaved", OF_HARMONICS, CONIC_READING_RAW, 0.0},
-    {"f-rest-interleaved", OF_HARMONICS, CONIC_READING_TWICE, 0.0},
-    {"quaternion-xyzw", OF_ROTATION, CONIC_READING_RAW, 0.0},
-    {"quaternion-xyzw", OF_ROTATION, CONIC_READING_TWICE, 0.0},
-    {"quaternion-conjugate", OF_ROTATION, CONIC_READING_CONJUGATE, 0.0},
-    {"quaternion-not-normalised", OF_RAW_ROTATION, 0, 2.0},
-    {"quaternion-not-normalised", OF_RAW_ROTATION, 0, 3.0},
-    {"quaternion-not-normalised", OF_RAW_ROTATION, CONIC_READING_LENGTH_SQUARED, 0.0},
-    {"scale-linear", OF_SCALE, CONIC_READING_RAW, 0.0},
-    {"scale-linear", OF_SCALE, CONIC_READING_TWICE, 0.0},
-    {"opacity-linear", OF_OPACITY, CONIC_READING_RAW, 0.0},
-    {"opacity-linear", OF_OPACITY, CONIC_READING_RAW_LIMITED, 0.0},
-    {"opacity-linear", OF_OPACITY, CONIC_READING_TWICE, 0.0},
-    {"srgb-decoded", OF_OWN_TRANSFER, CONIC_TRANSFER_DECODED, 0.0},
-    {"srgb-encoded", OF_OWN_TRANSFER, CONIC_TRANSFER_ENCODED, 0.0},
+/* A mistake in its n readings. A shift's `how` and value are half pixels in x and in y; falloffs end at 4, 4.5, ln 255
+ * and 2. */
+typedef struct suspected {
+  const char *name;
+  int kind, n;
+  int how[19];
+  double value[19];
+} suspected;
+
+static const suspected of_gaussians[] = {
+    {"half-pixel", OF_SHIFT, 8, {-1, 1, -1, 1, -1, 1, 0, 0}, {-1.0, 1.0, 1.0, -1.0, 0.0, 0.0, -1.0, 1.0}},
+    {"dilation-0", OF_DILATION, 1, {0}, {0.0}},
+    {"dilation-0.1", OF_DILATION, 1, {0}, {0.1}},
+    {"extent-3-sigma",
+     OF_EXTENT,
+     8,
+     {CONIC_EXTENT_ELLIPSE, CONIC_EXTENT_BOX, CONIC_EXTENT_WHOLE_BOX, CONIC_EXTENT_SQUARE, CONIC_EXTENT_WHOLE_SQUARE,
+      CONIC_EXTENT_CIRCLE, CONIC_EXTENT_WHOLE_CIRCLE, CONIC_EXTENT_TILES},
+     {0.0}},
+    {"extent-exact", OF_EXTENT, 1, {CONIC_EXTENT_EXACT}, {0.0}},
+    {"alpha-max-0.999", OF_ALPHA_MOST, 1, {0}, {0.999}},
+    {"alpha-max-0.99", OF_ALPHA_MOST, 1, {0}, {0.99}},
+    {"falloff-renormalised", OF_FALLOFF, 5, {0, 0, 0, 0, 1}, {4.0, 4.5, 5.5412635, 2.0, 0.0}},
+    {"order-distance", OF_ORDER, 2, {0, 1}, {CONIC_ORDER_DISTANCE, CONIC_ORDER_DISTANCE}},
+    {"order-file", OF_ORDER, 2, {0, 1}, {CONIC_ORDER_FILE, CONIC_ORDER_FILE}},
+    {"order-z", OF_ORDER, 1, {0}, {CONIC_ORDER_Z}},
+    {"order-reversed", OF_ORDER, 1, {1}, {CONIC_ORDER_OWN}},
+    {"near",
+     OF_NEAR,
+     19,
+     {0},
+     {0.0, 0.001, 0.01, 0.05, 0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 10.0}},
+    {"sh-degree-0", OF_DEGREE, 1, {0}, {0.0}},
+    {"sh-degree-1", OF_DEGREE, 1, {1}, {0.0}},
+    {"sh-degree-2", OF_DEGREE, 1, {2}, {0.0}},
+    {"f-rest-interleaved", OF_HARMONICS, 2, {CONIC_READING_RAW, CONIC_READING_TWICE}, {0.0}},
+    {"quaternion-xyzw", OF_ROTATION, 2, {CONIC_READING_RAW, CONIC_READING_TWICE}, {0.0}},
+    {"quaternion-conjugate", OF_ROTATION, 1, {CONIC_READING_CONJUGATE}, {0.0}},
+    {"quaternion-not-normalised", OF_RAW_ROTATION, 3, {0, 0, CONIC_READING_LENGTH_SQUARED}, {2.0, 3.0, 0.0}},
+    {"scale-linear", OF_SCALE, 2, {CONIC_READING_RAW, CONIC_READING_TWICE}, {0.0}},
+    {"opacity-linear", OF_OPACITY, 3, {CONIC_READING_RAW, CONIC_READING_RAW_LIMITED, CONIC_READING_TWICE}, {0.0}},
+    {"srgb-decoded", OF_OWN_TRANSFER, 1, {CONIC_TRANSFER_DECODED}, {0.0}},
+    {"srgb-encoded", OF_OWN_TRANSFER, 1, {CONIC_TRANSFER_ENCODED}, {0.0}},
 };
 
-static const conic_suspect of_surfels[] = {
-    {"affine", OF_METHOD, 0, CONIC_METHOD_AFFINE},
-    {"no-amplitude", OF_SLIP, CONIC_SLIP_AMPLITUDE, 0.0},
-    {"epsilon-in-z", OF_SLIP, CONIC_SLIP_EPSILON, 0.0},
-    {"radius-as-sigma", OF_AXES, 1, 0.0},
-    {"radius-as-sigma", OF_AXES, -1, 0.0},
-    {"no-normalisation", OF_ALPHA, CONIC_ALPHA_WEIGHTED, 0.0},
-    {"no-normalisation", OF_ALPHA, CONIC_ALPHA_WEIGHTED_LIMITED, 0.0},
-    {"back-faces", OF_FACING, 0, 0.0},
-    {"near", OF_NEAR, 0, 0.01},
-    {"near", OF_NEAR, 0, 0.1},
-    {"near", OF_NEAR, 0, 0.2},
-    {"near", OF_NEAR, 0, 0.5},
-    {"near", OF_NEAR, 0, 1.0},
-    {"near", OF_NEAR, 0, 2.0},
-    {"near", OF_NEAR, 1, 10.0},
-    {"near", OF_NEAR, 1, 100.0},
-    {"near", OF_NEAR, 1, 1e3},
-    {"near", OF_NEAR, 1, 2e3},
-    {"near", OF_NEAR, 1, 5e3},
-    {"near", OF_NEAR, 1, 1e4},
-    {"near", OF_NEAR, 1, 1.5e4},
+static const suspected of_surfels[] = {
+    {"affine", OF_METHOD, 1, {0}, {CONIC_METHOD_AFFINE}},
+    {"no-amplitude", OF_SLIP, 1, {CONIC_SLIP_AMPLITUDE}, {0.0}},
+    {"epsilon-in-z", OF_SLIP, 1, {CONIC_SLIP_EPSILON}, {0.0}},
+    {"radius-as-sigma", OF_AXES, 2, {1, -1}, {0.0}},
+    {"no-normalisation", OF_ALPHA, 2, {CONIC_ALPHA_WEIGHTED, CONIC_ALPHA_WEIGHTED_LIMITED}, {0.0}},
+    {"back-faces", OF_FACING, 1, {0}, {0.0}},
+    {"near",
+     OF_NEAR,
+     13,
+     {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1},
+     {0.01, 0.1, 0.2, 0.5, 1.0, 2.0, 10.0, 100.0, 1e3, 2e3, 5e3, 1e4, 1.5e4}},
 };
 
-static const conic_suspect of_all[] = {
-    {"half-pixel", OF_CENTER_SHIFT, -1, -1.0},
-    {"half-pixel", OF_CENTER_SHIFT, 1, 1.0},
-    {"half-pixel", OF_CENTER_SHIFT, -1, 1.0},
-    {"half-pixel", OF_CENTER_SHIFT, 1, -1.0},
-    {"half-pixel", OF_CENTER_SHIFT, -1, 0.0},
-    {"half-pixel", OF_CENTER_SHIFT, 1, 0.0},
-    {"half-pixel", OF_CENTER_SHIFT, 0, -1.0},
-    {"half-pixel", OF_CENTER_SHIFT, 0, 1.0},
-    {"mirrored-x", OF_MIRROR, 0, 0.0},
-    {"mirrored-x", OF_CAMERA_MIRROR, 0, 0.0},
-    {"mirrored-y", OF_MIRROR, 1, 0.0},
-    {"mirrored-y", OF_CAMERA_MIRROR, 1, 0.0},
-    {"centre-ignored", OF_CENTER, 3, 0.0},
-    {"centre-ignored", OF_CENTER, 1, 0.0},
-    {"centre-ignored", OF_CENTER, 2, 0.0},
-    {"field-of-view", OF_FOCAL, 0, 0.0},
-    {"field-of-view", OF_FOCAL, 1, 0.0},
-    {"field-of-view", OF_FOCAL, 2, 0.0},
-    {"field-of-view", OF_FOCAL, 3, 0.0},
-    {"srgb-decoded", OF_TRANSFER, CONIC_TRANSFER_DECODED, 0.0},
-    {"srgb-decoded", OF_TRANSFER, CONIC_TRANSFER_DECODED_BY_POWER, 0.0},
-    {"srgb-decoded", OF_TRANSFER, CONIC_TRANSFER_DECODED_TWICE, 0.0},
-    {"srgb-encoded", OF_TRANSFER, CONIC_TRANSFER_ENCODED, 0.0},
-    {"srgb-encoded", OF_TRANSFER, CONIC_TRANSFER_ENCODED_BY_POWER, 0.0},
-    {"srgb-encoded", OF_TRANSFER, CONIC_TRANSFER_ENCODED_TWICE, 0.0},
-    {"premultiplied", OF_ALPHA, CONIC_ALPHA_MULTIPLIED, 0.0},
-    {"premultiplied", OF_ALPHA, CONIC_ALPHA_DIVIDED, 0.0},
-    {"background-white", OF_BACKGROUND, 1, 1.0},
-    {"background-white", OF_BACKGROUND, 0, 1.0},
-    {"background-black", OF_BACKGROUND, 1, 0.0},
-    {"background-black", OF_BACKGROUND, 0, 0.0},
+static const suspected of_all[] = {
+    {"half-pixel", OF_CENTER_SHIFT, 8, {-1, 1, -1, 1, -1, 1, 0, 0}, {-1.0, 1.0, 1.0, -1.0, 0.0, 0.0, -1.0, 1.0}},
+    {"mirrored-x", OF_MIRROR, 1, {0}, {0.0}},
+    {"mirrored-x", OF_CAMERA_MIRROR, 1, {0}, {0.0}},
+    {"mirrored-y", OF_MIRROR, 1, {1}, {0.0}},
+    {"mirrored-y", OF_CAMERA_MIRROR, 1, {1}, {0.0}},
+    {"centre-ignored", OF_CENTER, 3, {3, 1, 2}, {0.0}},
+    {"field-of-view", OF_FOCAL, 4, {0, 1, 2, 3}, {0.0}},
+    {"srgb-decoded",
+     OF_TRANSFER,
+     3,
+     {CONIC_TRANSFER_DECODED, CONIC_TRANSFER_DECODED_BY_POWER, CONIC_TRANSFER_DECODED_TWICE},
+     {0.0}},
+    {"srgb-encoded",
+     OF_TRANSFER,
+     3,
+     {CONIC_TRANSFER_ENCODED, CONIC_TRANSFER_ENCODED_BY_POWER, CONIC_TRANSFER_ENCODED_TWICE},
+     {0.0}},
+    {"premultiplied", OF_ALPHA, 2, {CONIC_ALPHA_MULTIPLIED, CONIC_ALPHA_DIVIDED}, {0.0}},
+    {"background-white", OF_BACKGROUND, 2, {1, 0}, {1.0, 1.0}},
+    {"background-black", OF_BACKGROUND, 2, {1, 0}, {0.0}},
 };
 
 static void change_focal(conic_camera *camera, int how) {
@@ -402,11 +352,14 @@ static int is_mistake(const conic_planted *right, const conic_suspect *s) {
   }
 }
 
-static int add_suspects(const conic_planted *right, const conic_suspect *from, size_t n, conic_suspect *suspects) {
+static int add_suspects(const conic_planted *right, const suspected *from, size_t n, conic_suspect *suspects) {
   int n_added = 0;
   for (size_t i = 0; i < n; i++)
-    if (is_mistake(right, &from[i]))
-      suspects[n_added++] = from[i];
+    for (int k = 0; k < from[i].n; k++) {
+      const conic_suspect s = {from[i].name, from[i].kind, from[i].how[k], from[i].value[k]};
+      if (is_mistake(right, &s))
+        suspects[n_added++] = s;
+    }
   return n_added;
 }
 

@@ -325,8 +325,6 @@ conic_status conic_trials_run(conic_trials *t, conic_diagnosis *found, int room,
     if (r.whole > 0.0)
       status = explain_picture(&r, found, room, n_found);
   }
-  conic_memory_release(t->context, r.drawn);
-  conic_memory_release(t->context, r.finished);
-  conic_memory_release(t->context, ours);
+  conic_memory_release_these(t->context, r.drawn, r.finished, ours);
   return status == CONIC_OK ? conic_progress(t->context, "diagnose", 1.0) : status;
 }

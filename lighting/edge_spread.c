@@ -141,7 +141,5 @@ conic_status conic_edge_spread_init(conic_context *context, const conic_camera *
 void conic_edge_spread_release(conic_edge_spread *s) {
   if (!s->context)
     return;
-  conic_memory_release(s->context, s->kind);
-  conic_memory_release(s->context, s->filled);
-  conic_memory_release(s->context, s->own);
+  conic_memory_release_these(s->context, s->kind, s->filled, s->own);
 }

@@ -270,9 +270,7 @@ conic_status conic_image_light_shared(conic_context *context, const conic_caster
     status = conic_light_add_lamps(&l);
   if (status == CONIC_OK)
     divide_shadow(&l);
-  conic_memory_release(context, l.lamp_power);
-  conic_memory_release(context, l.hidden);
-  conic_memory_release(context, l.sums_block);
+  conic_memory_release_these(context, l.lamp_power, l.hidden, l.sums_block);
   conic_edge_spread_release(&l.spread);
   conic_memory_release(context, l.visible);
   conic_receivers_release(context, &l.receivers);

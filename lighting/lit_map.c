@@ -309,8 +309,7 @@ static conic_status walk_together(sky_walk *w) {
   for (size_t i = 0; i < sizeof all / sizeof *all && status == CONIC_OK; i++)
     if (all[i])
       bring_sum(&s, all[i]);
-  conic_memory_release(context, s.drawn);
-  conic_memory_release(context, s.theirs);
+  conic_memory_release_these(context, s.drawn, s.theirs);
   return status;
 }
 

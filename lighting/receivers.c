@@ -4,11 +4,9 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
 #include "core/image/camera_rays.h"
-#include "core/image/image_common.h"
 
 /* The receivers in one row of a picture. */
 typedef struct receiver_row {

@@ -136,10 +136,7 @@ conic_status conic_sky_read(conic_context *context, const char *path, const doub
 void conic_sky_destroy(conic_sky *sky) {
   if (!sky)
     return;
-  conic_memory_release(sky->context, sky->row_sums);
-  conic_memory_release(sky->context, sky->pixel_sums);
-  conic_memory_release(sky->context, sky->color);
-  conic_memory_release(sky->context, sky);
+  conic_memory_release_these(sky->context, sky->row_sums, sky->pixel_sums, sky->color, sky);
 }
 
 /* Finds the two ascending sums between which `u` lies; *u becomes its place between them, 0 to 1. */

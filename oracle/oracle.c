@@ -179,9 +179,6 @@ conic_status conic_oracle_render(conic_context *context, const conic_splats *spl
 void conic_reference_release(conic_context *context, conic_reference *reference) {
   for (int i = 0; i < CONIC_N_PLANES; i++)
     conic_memory_release(context, reference->planes[i]);
-  conic_memory_release(context, reference->unstable);
-  conic_memory_release(context, reference->pixels);
-  conic_memory_release(context, reference->alternatives);
-  conic_memory_release(context, reference->ids);
+  conic_memory_release_these(context, reference->unstable, reference->pixels, reference->alternatives, reference->ids);
   memset(reference, 0, sizeof *reference);
 }

@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "oracle/oracle_weights.h"
 
@@ -87,10 +88,8 @@ static void box_of_piece(const oracle_triangle *t, float box[2][2]) {
 }
 
 static conic_status note_number(conic_context *context, uint32_t **list, size_t *n, size_t *room, size_t i) {
-  conic_status status = conic_memory_reserve(context, list, *n, *n + 1, room, sizeof **list);
-  if (status == CONIC_OK)
-    (*list)[(*n)++] = (uint32_t)i;
-  return status;
+  const uint32_t number = (uint32_t)i;
+  return conic_memory_append(context, list, n, room, &number, sizeof number);
 }
 
 static conic_status find_in_row(row *r) {
@@ -133,13 +132,7 @@ static void list_places(const row *r, worker *w, const area *a) {
 }
 
 static void release_room(conic_context *context, worker *w) {
-  conic_memory_release(context, w->splats);
-  conic_memory_release(context, w->candidates);
-  conic_memory_release(context, w->exacts);
-  conic_memory_release(context, w->peaks);
-  conic_memory_release(context, w->fragments);
-  conic_memory_release(context, w->parts);
-  conic_memory_release(context, w->order);
+  conic_memory_release_these(context, w->splats, w->candidates, w->exacts, w->peaks, w->fragments, w->parts, w->order);
 }
 
 static int make_block_room(const oracle_job *j, worker *w, size_t n) {
@@ -358,22 +351,18 @@ static void do_area(row *r, worker *w, int i_thread, const area *a) {
   }
 }
 
-static int fewer(int a, int b) {
-  return a < b ? a : b;
-}
-
 static void do_block(void *data, size_t i_item, int i_thread) {
   row *r = data;
   const conic_reference *reference = r->job->reference;
   int left = (int)i_item * r->edge;
-  const area block = {left, r->top, fewer(r->edge, reference->width - left),
-                      fewer(r->edge, reference->height - r->top)};
+  const area block = {left, r->top, conic_least(r->edge, reference->width - left),
+                      conic_least(r->edge, reference->height - r->top)};
   do_area(r, r->workers[i_thread], i_thread, &block);
 }
 
 static conic_status do_row(row *r) {
   const conic_reference *reference = r->job->reference;
-  size_t end = (size_t)fewer(r->top + r->edge, reference->height) * (size_t)reference->width;
+  size_t end = (size_t)conic_least(r->top + r->edge, reference->height) * (size_t)reference->width;
   r->first_number = r->end_number;
   while (r->end_number < reference->n_pixels && picture_pixel(reference, r->end_number) < end)
     r->end_number++;
@@ -487,7 +476,6 @@ conic_status conic_oracle_work(const oracle_job *job) {
     status = conic_progress(job->context, "verify", 1.0);
   }
   release_workers(job->context, n_threads, r.workers);
-  conic_memory_release(job->context, r.splats);
-  conic_memory_release(job->context, r.triangles);
+  conic_memory_release_these(job->context, r.splats, r.triangles);
   return status;
 }

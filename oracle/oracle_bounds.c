@@ -1,6 +1,5 @@
 #include "oracle/oracle_bounds.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -20,16 +19,12 @@ typedef struct bounding_search {
 } bounding_search;
 
 void conic_oracle_doubts_release(oracle_doubts *doubts) {
-  conic_memory_release(doubts->context, doubts->alternatives);
-  conic_memory_release(doubts->context, doubts->ids);
+  conic_memory_release_these(doubts->context, doubts->alternatives, doubts->ids);
 }
 
 conic_status conic_oracle_doubts_add(oracle_doubts *doubts, const conic_alternative *alternative) {
-  conic_status status = conic_memory_reserve(doubts->context, &doubts->alternatives, doubts->n, doubts->n + 1,
-                                             &doubts->room, sizeof *doubts->alternatives);
-  if (status == CONIC_OK)
-    doubts->alternatives[doubts->n++] = *alternative;
-  return status;
+  return conic_memory_append(doubts->context, &doubts->alternatives, &doubts->n, &doubts->room, alternative,
+                             sizeof *alternative);
 }
 
 conic_status conic_oracle_doubts_admit(oracle_doubts *doubts, size_t first, uint32_t pixel, uint32_t id) {
@@ -40,11 +35,9 @@ conic_status conic_oracle_doubts_admit(oracle_doubts *doubts, size_t first, uint
     doubts->n_ids = first;
     id = CONIC_ANY_ID;
   }
-  conic_status status = conic_memory_reserve(doubts->context, &doubts->ids, doubts->n_ids, doubts->n_ids + 1,
-                                             &doubts->id_room, sizeof *doubts->ids);
-  if (status == CONIC_OK)
-    doubts->ids[doubts->n_ids++] = (conic_admissible_id){pixel, id};
-  return status;
+  const conic_admissible_id admitted = {pixel, id};
+  return conic_memory_append(doubts->context, &doubts->ids, &doubts->n_ids, &doubts->id_room, &admitted,
+                             sizeof admitted);
 }
 
 /* A value of a part's: its least, or its greatest. */

@@ -1,4 +1,4 @@
-#include "oracle/oracle_clip.h"
+#include "oracle/oracle_scene.h"
 
 /* Mates overlap by twice this. */
 static const double overlap_px = 0.00390625;

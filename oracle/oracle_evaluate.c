@@ -1,5 +1,4 @@
 /* A shape's value at a pixel, and what single precision may make of it. */
-#include "oracle/oracle_profile.h"
 #include "oracle/oracle_splat.h"
 
 static double clamp_to(const double range[2], double x) {

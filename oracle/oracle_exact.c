@@ -1,4 +1,4 @@
-#include "oracle/oracle_exact.h"
+#include "oracle/oracle_splat.h"
 
 #include <string.h>
 

@@ -3,8 +3,7 @@
 
 #include "core/base/message.h"
 #include "core/image/view_arguments.h"
-#include "oracle/oracle_exact.h"
-#include "oracle/oracle_profile.h"
+#include "oracle/oracle_splat.h"
 
 static oracle_formula formula_of(const oracle_view *view, const int is_so[ORACLE_N_QUESTIONS]) {
   static const oracle_formula formulas[CONIC_N_METHODS] = {[CONIC_METHOD_CONIC] = ORACLE_CONIC,

@@ -1,4 +1,4 @@
-#include "oracle/oracle_profile.h"
+#include "oracle/oracle_splat.h"
 
 #include "core/base/memory.h"
 

@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 #include "core/splats/clip.h"
-#include "oracle/oracle_profile.h"
+#include "oracle/oracle_splat.h"
 
 /* An axis is turned into camera space and sheared in single precision, so that each of its components may be off by a
  * rounding of the whole. */

@@ -2,8 +2,7 @@
 #ifndef CONIC_ORACLE_SPLAT_H
 #define CONIC_ORACLE_SPLAT_H
 
-#include <stddef.h>
-
+#include "conic/context.h"
 #include "conic/oracle.h"
 #include "oracle/oracle_math.h"
 
@@ -171,5 +170,36 @@ typedef struct oracle_extreme {
 } oracle_extreme;
 int conic_oracle_extremes(const oracle_view *view, const oracle_placed *s, const double e[2],
                           oracle_extreme extremes[2]);
+
+/* The exact weight: a splat's kernel, projected without approximation, convolved with the pixel's Gaussian. */
+
+/* From places of the screen to the splat's plane: U, V, 1/z = row 0·x + row 1·y + row 2. */
+typedef struct oracle_exact {
+  int has_plane; /* 0: seen exactly from its edge, it weighs nothing */
+  double from_screen[3][3];
+  double center_px[2]; /* where p projects to, if it does */
+  int is_center_in_front;
+} oracle_exact;
+
+void conic_oracle_exact(const oracle_view *view, const oracle_placed *s, oracle_exact *exact);
+
+/* The weight at a place, and the change that the last refinement of the integral made. */
+double conic_oracle_exact_weight(const oracle_view *view, const oracle_exact *exact, double x, double y,
+                                 double *change);
+
+/* The profile of a kernel under the prefilter: docs/reference/picture.md, Profile. */
+
+/* Gives the view the profile of its kernel, if that has one. Errors: MEMORY. */
+conic_status conic_oracle_profile_create(conic_context *context, oracle_view *view);
+void conic_oracle_profile_release(conic_context *context, oracle_view *view);
+
+/* The kernel's value at q, or its profile's where it has one: of a splat with the two shares of the filter, the lesser
+ * first, in the direction, or with a part of q across. `doubt`, unless null, is by how much that may be another where
+ * rounding decides how the profile is taken. */
+double conic_oracle_response(const oracle_view *view, const double share[2], double direction, double across, double q,
+                             double *doubt);
+
+/* The direction, from N and M of the page, and what is added for what is round. */
+double conic_oracle_direction(const oracle_view *view, const double share[2], double n, double m, double round);
 
 #endif

@@ -2,8 +2,8 @@
 #ifndef CONIC_ORACLE_WEIGHTS_H
 #define CONIC_ORACLE_WEIGHTS_H
 
-#include "oracle/oracle_exact.h"
 #include "oracle/oracle_pixel.h"
+#include "oracle/oracle_splat.h"
 
 /* Errors of weights by size: sixteen bins to the octave. */
 enum { ORACLE_N_BINS = 1024 };

@@ -32,8 +32,7 @@ typedef struct drawing_source {
 } drawing_source;
 
 static int takes_drawing(const char *path, const conic_source_options *options) {
-  (void)path;
-  (void)options;
+  (void)path, (void)options;
   return 1;
 }
 
@@ -117,7 +116,7 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
 static conic_status take_as_fits(drawing_source *d, const char *path, const conic_source_options *options,
                                  conic_model *model) {
   conic_context *context = d->base.context;
-  conic_model loose;
+  conic_model loose = {0};
   if (model->n_triangles && !conic_mesh_has_face(model)) {
     conic_log(context, CONIC_LOG_WARNING, "%s: no face has three finite corners at three places; the points are drawn",
               path);
@@ -125,7 +124,6 @@ static conic_status take_as_fits(drawing_source *d, const char *path, const coni
   }
   if (model->n_triangles == 0)
     return take_points(d, path, options, model);
-  memset(&loose, 0, sizeof loose);
   conic_status status = conic_mesh_gather_loose(context, model, &loose.points);
   if (status == CONIC_OK)
     status = take_triangles(d, path, options, model);
@@ -237,8 +235,7 @@ static conic_status copy_axes(drawing_source *d) {
 static conic_status choose_in_drawing(conic_source *source, const conic_camera *camera,
                                       const conic_render_options *render, const conic_source_view *view) {
   drawing_source *d = (drawing_source *)source;
-  (void)render;
-  (void)view;
+  (void)render, (void)view;
   const conic_splats *splats = source->is_moved ? &d->moved : &d->splats;
   const conic_triangles *triangles = source->is_moved ? &d->moved_triangles : &d->triangles;
   source->choice.drawing = (conic_drawing){d->n_dots ? &d->facing : splats, triangles};
@@ -431,10 +428,8 @@ conic_status conic_source_of_drawing(conic_context *context, conic_splats *splat
 
 static void close_drawing(conic_source *source) {
   drawing_source *d = (drawing_source *)source;
-  for (int axis = 0; axis < 3 && d->n_dots; axis++) {
-    conic_memory_release(source->context, d->facing.tangent_u[axis]);
-    conic_memory_release(source->context, d->facing.tangent_v[axis]);
-  }
+  for (int axis = 0; axis < 3 && d->n_dots; axis++)
+    conic_memory_release_these(source->context, d->facing.tangent_u[axis], d->facing.tangent_v[axis]);
   if (d->has_moved)
     conic_moved_end(source->context, &d->moved, &d->moved_triangles);
   if (!d->is_lent)

@@ -4,7 +4,6 @@
 
 #include "conic/gaussians.h"
 #include "core/base/message.h"
-#include "core/estimate/estimate.h"
 #include "core/splats/repairs_log.h"
 #include "source/mesh_input.h"
 #include "source/reach.h"

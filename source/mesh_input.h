@@ -2,14 +2,12 @@
 #ifndef CONIC_MESH_INPUT_H
 #define CONIC_MESH_INPUT_H
 
-#include "conic/coloring.h"
 #include "conic/model.h"
 #include "conic/triangles.h"
 
-/* Reads a mesh. `texture_path` may be null, and so may `coloring`, which names the scalar that its vertices get. On
- * success the caller releases *triangles. Errors: as conic_triangles_read's; INPUT where nothing could be drawn. */
-conic_status conic_mesh_read(conic_context *context, const char *path, const char *texture_path,
-                             const conic_coloring_options *coloring, conic_triangles *triangles);
+/* Reads a mesh. On success the caller releases *triangles. Errors: as conic_triangles_read's; INPUT where nothing could
+ * be drawn. */
+conic_status conic_mesh_read(conic_context *context, const char *path, conic_triangles *triangles);
 
 /* Whether any of a model's triangles has three finite corners at three places. */
 int conic_mesh_has_face(const conic_model *model);

@@ -35,8 +35,7 @@ static conic_status measure_octree(octree_source *o) {
 static conic_status open_octree(conic_source *source, const char *const *paths, size_t n_paths,
                                 const conic_source_options *options) {
   octree_source *o = (octree_source *)source;
-  (void)n_paths;
-  (void)options;
+  (void)n_paths, (void)options;
   conic_status status = conic_octree_read(source->context, paths[0], &o->octree);
   return status == CONIC_OK ? measure_octree(o) : status;
 }

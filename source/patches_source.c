@@ -2,7 +2,6 @@
 #include "conic/patches.h"
 
 #include "core/base/clock.h"
-#include "core/base/message.h"
 #include "source/source_kind.h"
 
 typedef struct patches_source {

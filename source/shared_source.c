@@ -221,8 +221,7 @@ static conic_status open_part(shared_source *s, const char *const *paths, size_t
   if (status == CONIC_OK) /* a part without a place gives none; reading the whole reports what is wrong */
     *is_shared &= s->repairs.nan < look->n_splats;
   s->base.scale.estimate_seconds = conic_seconds_now() - start;
-  conic_memory_release(context, n_nowhere);
-  conic_memory_release(context, pieces);
+  conic_memory_release_these(context, n_nowhere, pieces);
   return status;
 }
 
@@ -292,9 +291,7 @@ static void release_held(shared_source *s) {
 static conic_status choose_part(conic_source *source, const conic_camera *camera, const conic_render_options *render,
                                 const conic_source_view *view) {
   shared_source *s = (shared_source *)source;
-  (void)camera;
-  (void)render;
-  (void)view;
+  (void)camera, (void)render, (void)view;
   source->choice.drawing = (conic_drawing){&s->part, &no_triangles};
   return CONIC_OK;
 }
@@ -333,8 +330,7 @@ static conic_status exchange_for(shared_source *s, const conic_dealing *dealing,
   status = conic_team_agree(dealing->team, status);
   if (status == CONIC_OK)
     status = conic_splats_exchange(context, &s->base.shares, &s->part, begin, list, &s->held, &s->ids);
-  conic_memory_release(context, list);
-  conic_memory_release(context, begin);
+  conic_memory_release_these(context, list, begin);
   return status;
 }
 

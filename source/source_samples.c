@@ -91,8 +91,7 @@ static conic_status draw_around(conic_source *source, conic_renderer *renderer, 
 static conic_status sample_sides(conic_source *source, int begin, int end, conic_splats *samples) {
   conic_context *context = source->context;
   conic_renderer *renderer = NULL;
-  conic_image image;
-  memset(&image, 0, sizeof image);
+  conic_image image = {0};
   conic_status status = conic_splats_allocate(context, (size_t)N_VIEWS * SIDE * SIDE, CONIC_SPLATS_TANGENTS, samples);
   if (status != CONIC_OK)
     return status;

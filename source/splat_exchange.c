@@ -122,7 +122,6 @@ conic_status conic_splats_exchange(conic_context *context, const conic_splats_sh
     e.ids = NULL;
   }
   *ids = e.ids;
-  conic_memory_release(context, e.received);
-  conic_memory_release(context, e.parcel);
+  conic_memory_release_these(context, e.received, e.parcel);
   return status;
 }

@@ -45,9 +45,7 @@ static void choose_squares(const conic_splats *splats, double edge, conic_top_bi
 }
 
 void conic_top_bins_release(conic_context *context, conic_top_bins *bins) {
-  conic_memory_release(context, bins->starts);
-  conic_memory_release(context, bins->members);
-  conic_memory_release(context, bins->found);
+  conic_memory_release_these(context, bins->starts, bins->members, bins->found);
   memset(bins, 0, sizeof *bins);
 }
 

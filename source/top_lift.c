@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/splats/clip.h"
 #include "core/splats/columns.h"
 
 enum { AXES_ARRAYS = 9, COLOR_ARRAYS = 3 };
@@ -43,8 +42,7 @@ static conic_status make_lifted_room(conic_context *context, conic_top_set *set,
 }
 
 void conic_top_set_release(conic_context *context, conic_top_set *set) {
-  conic_memory_release(context, set->arrays);
-  conic_memory_release(context, set->splats.clips);
+  conic_memory_release_these(context, set->arrays, set->splats.clips);
   memset(set, 0, sizeof *set);
 }
 
@@ -111,13 +109,9 @@ static conic_status take_clip(conic_context *context, const conic_splats *from, 
     ++*next;
   if (*next == from->n_clips || from->clips[*next].splat != i)
     return CONIC_OK;
-  conic_status status =
-      conic_memory_reserve(context, &to->clips, to->n_clips, to->n_clips + 1, &set->clips_room, sizeof *to->clips);
-  if (status != CONIC_OK)
-    return status;
-  to->clips[to->n_clips] = from->clips[*next];
-  to->clips[to->n_clips++].splat = (uint32_t)(to->count - 1);
-  return CONIC_OK;
+  conic_clip clip = from->clips[*next];
+  clip.splat = (uint32_t)(to->count - 1);
+  return conic_memory_append(context, &to->clips, &to->n_clips, &set->clips_room, &clip, sizeof clip);
 }
 
 static void begin_set(conic_context *context, const conic_splats *splats, conic_top_set *set) {

@@ -3,14 +3,111 @@
 #include <math.h>
 #include <string.h>
 
+#include "conic/triangles.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/splats/columns.h"
 #include "raster/frame/statistics.h"
 #include "raster/view/part.h"
 #include "source/source_kind.h"
 #include "source/top_bins.h"
-#include "source/top_mesh.h"
+#include "source/top_lift.h"
+
+/* --- meshes --- */
+
+/* Zero before the first use; the memory is kept for more of the same triangles. */
+typedef struct top_mesh {
+  conic_triangles triangles; /* its positions and corners are its own, everything else belongs to the lifted
+                                triangles */
+  uint32_t (*corners[3])[3]; /* of positions, normals and texture coordinates */
+  uint32_t *material;
+} top_mesh;
+
+static void top_mesh_release(conic_context *context, top_mesh *mesh) {
+  for (int i = 0; i < 3; i++)
+    conic_memory_release_these(context, mesh->triangles.position[i], mesh->corners[i]);
+  conic_memory_release(context, mesh->material);
+  memset(mesh, 0, sizeof *mesh);
+}
+
+/* Makes room for all triangles, once. */
+static conic_status begin_mesh(conic_context *context, const conic_triangles *from, top_mesh *mesh) {
+  conic_triangles *to = &mesh->triangles;
+  uint32_t(*const wanted[3])[3] = {from->corners, from->normal_corners, from->texture_corners};
+  int is_whole = 1;
+  if (mesh->corners[0])
+    return CONIC_OK;
+  *to = *from;
+  memset(to->origin, 0, sizeof to->origin);
+  to->strides.position = 0;
+  to->cluster = NULL;
+  for (int i = 0; i < 3; i++) {
+    to->position[i] = conic_memory_allocate_zeroed(context, from->n_vertices, sizeof(float));
+    mesh->corners[i] = wanted[i] ? conic_memory_allocate(context, from->count, sizeof **wanted) : NULL;
+    is_whole &= to->position[i] && (mesh->corners[i] || !wanted[i]);
+  }
+  mesh->material = from->material ? conic_memory_allocate(context, from->count, sizeof *from->material) : NULL;
+  to->corners = mesh->corners[0];
+  to->normal_corners = mesh->corners[1];
+  to->texture_corners = mesh->corners[2];
+  to->material = mesh->material;
+  return is_whole && (mesh->material || !from->material) ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+static void place_vertex(const conic_top_place *place, const conic_triangles *from, size_t i, double p[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    p[axis] = from->origin[axis] + (double)conic_column_at(from->position[axis], from->strides.position, i) -
+              place->origin[axis];
+}
+
+/* Whether a triangle may show; triangles that are not finite do not. */
+static int reaches_in(const conic_top_place *place, const double corner[3][3]) {
+  const double low[3] = {place->low[0], place->low[1], place->heights[0] - place->origin[2]};
+  const double high[3] = {place->high[0], place->high[1], place->heights[1] - place->origin[2]};
+  for (int axis = 0; axis < 3; axis++) {
+    const double a = corner[0][axis], b = corner[1][axis], c = corner[2][axis];
+    if (!(a >= low[axis] || b >= low[axis] || c >= low[axis]) ||
+        !(a <= high[axis] || b <= high[axis] || c <= high[axis]) || !(a + b + c - (a + b + c) == 0.0))
+      return 0;
+  }
+  return 1;
+}
+
+static void lift_vertex(const conic_top_place *place, const double p[3], conic_triangles *to, size_t i) {
+  double share = (place->distance - p[2]) / place->distance;
+  to->position[0][i] = (float)(p[0] * share);
+  to->position[1][i] = (float)(p[1] * share);
+  to->position[2][i] = (float)p[2];
+}
+
+/* Fills the mesh with the triangles whose boxes reach into the place. Errors: MEMORY. */
+static conic_status top_mesh_lift(conic_context *context, const conic_top_place *place, const conic_triangles *from,
+                                  top_mesh *mesh) {
+  conic_triangles *to = &mesh->triangles;
+  conic_status status = begin_mesh(context, from, mesh);
+  to->count = 0;
+  for (size_t i = 0; i < from->count && status == CONIC_OK; i++) {
+    double corner[3][3];
+    for (int k = 0; k < 3; k++)
+      place_vertex(place, from, from->corners[i][k], corner[k]);
+    if (!reaches_in(place, (const double(*)[3])corner))
+      continue;
+    for (int k = 0; k < 3; k++)
+      lift_vertex(place, corner[k], to, from->corners[i][k]);
+    memcpy(to->corners[to->count], from->corners[i], sizeof *to->corners);
+    if (to->normal_corners)
+      memcpy(to->normal_corners[to->count], from->normal_corners[i], sizeof *to->corners);
+    if (to->texture_corners)
+      memcpy(to->texture_corners[to->count], from->texture_corners[i], sizeof *to->corners);
+    if (to->material)
+      to->material[to->count] = from->material[i];
+    to->count++;
+  }
+  return status;
+}
+
+/* --- views --- */
 
 enum { BLOCK = CONIC_TOP_BLOCK, LEAST_TILE = 8 };
 
@@ -25,7 +122,7 @@ struct conic_top_view {
   const conic_triangles *triangles; /* null: none */
   conic_top_bins bins;
   conic_top_set set;
-  conic_top_mesh mesh;
+  top_mesh mesh;
 };
 
 /* The current block. */
@@ -103,7 +200,7 @@ void conic_top_view_close(conic_top_view *top) {
     return;
   conic_top_bins_release(top->context, &top->bins);
   conic_top_set_release(top->context, &top->set);
-  conic_top_mesh_release(top->context, &top->mesh);
+  top_mesh_release(top->context, &top->mesh);
   conic_memory_release(top->context, top);
 }
 
@@ -155,7 +252,7 @@ static conic_status gather_top_block(top_block *b, int may_cut, int *is_cut_shor
     status = conic_top_bins_find(top->context, &top->bins, part.low, part.high, &n);
     if (status == CONIC_OK)
       status = conic_top_lift(top->context, place, splats, top->bins.found, n, &top->set);
-    return status == CONIC_OK && top->triangles ? conic_top_mesh_lift(top->context, place, top->triangles, &top->mesh)
+    return status == CONIC_OK && top->triangles ? top_mesh_lift(top->context, place, top->triangles, &top->mesh)
                                                 : status;
   }
   status = top->source->kind->gather(top->source, &part, may_cut, &splats, is_cut_short);

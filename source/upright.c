@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "core/base/memory.h"
+#include "core/base/real.h"
 #include "core/base/vectors.h"
 
 /* The most splats and triangles to look at; fewer than the least tell nothing. */
@@ -74,17 +75,12 @@ static void take_triangle_samples(samples *s, const conic_triangles *t) {
   }
 }
 
-static int compare_heights(const void *a, const void *b) {
-  const double *first = a, *second = b;
-  return (*first > *second) - (*first < *second);
-}
-
 /* The extent without the outermost hundredth on either side, which may be stray points. */
 static void find_extent(const samples *s, double low[3], double high[3]) {
   for (int axis = 0; axis < 3; axis++) {
     for (size_t i = 0; i < s->count; i++)
       s->sorted[i] = s->place[i][axis];
-    qsort(s->sorted, s->count, sizeof *s->sorted, compare_heights);
+    qsort(s->sorted, s->count, sizeof *s->sorted, conic_compare_doubles);
     low[axis] = s->sorted[s->count / 100];
     high[axis] = s->sorted[s->count - 1 - s->count / 100];
   }
@@ -163,8 +159,6 @@ conic_status conic_upright_look(conic_context *context, const conic_splats_share
     take_triangle_samples(&s, drawing->triangles);
     *basis = s.count < LEAST_SAMPLES ? CONIC_UP_HABIT : look_at_samples(&s, drawing->triangles->count > 0);
   }
-  conic_memory_release(context, s.place);
-  conic_memory_release(context, s.area);
-  conic_memory_release(context, s.sorted);
+  conic_memory_release_these(context, s.place, s.area, s.sorted);
   return status;
 }

@@ -88,10 +88,8 @@ static conic_status name_cells(conic_context *context, const conic_dealing *d, c
 }
 
 static void release_grid(conic_context *context, cell_grid *grid) {
-  for (int axis = 0; axis < 2; axis++) {
-    conic_memory_release(context, grid->cell[axis]);
-    conic_memory_release(context, grid->first[axis]);
-  }
+  for (int axis = 0; axis < 2; axis++)
+    conic_memory_release_these(context, grid->cell[axis], grid->first[axis]);
   conic_memory_release(context, grid->window);
 }
 
@@ -190,9 +188,7 @@ conic_status conic_windows_deal(conic_context *context, const conic_dealing *d, 
     give_windows(d, windows, loads, owners);
   }
   release_grid(context, &grid);
-  conic_memory_release(context, weights);
-  conic_memory_release(context, loads);
-  conic_memory_release(context, windows);
+  conic_memory_release_these(context, weights, loads, windows);
   return status;
 }
 
@@ -254,8 +250,7 @@ conic_status conic_windows_list_splats(conic_context *context, const conic_deali
   if (status == CONIC_OK)
     status = lister.last && lister.next ? list_in_grid(context, &lister, begin) : CONIC_ERROR_MEMORY;
   release_grid(context, &grid);
-  conic_memory_release(context, lister.last);
-  conic_memory_release(context, lister.next);
+  conic_memory_release_these(context, lister.last, lister.next);
   *list = lister.list;
   return status;
 }

@@ -166,10 +166,7 @@ conic_status conic_own_points_project(const conic_surface *surface, const conic_
 
 void conic_own_points_release(conic_context *context, conic_own_points *own) {
   conic_splats_release(context, &own->points);
-  conic_memory_release(context, own->moved2);
-  conic_memory_release(context, own->n_neighbours);
-  conic_memory_release(context, own->outcomes);
-  conic_memory_release(context, own->are_merged);
+  conic_memory_release_these(context, own->moved2, own->n_neighbours, own->outcomes, own->are_merged);
   memset(own, 0, sizeof *own);
 }
 

@@ -12,8 +12,8 @@
 #include "core/base/team_runs.h"
 #include "core/splats/columns.h"
 #include "core/splats/splats_gather.h"
+#include "surface/cells.h"
 #include "surface/cells_results.h"
-#include "surface/cells_share.h"
 #include "surface/own_points.h"
 
 /* A cell's side in h: so large that the points around it are few beside its own. */
@@ -511,8 +511,7 @@ conic_status conic_surface_clean_cells(conic_context *context, const conic_clean
   if (status == CONIC_OK && report)
     *report = work.report;
   conic_splats_release(context, &work.subset);
-  conic_memory_release(context, work.page);
-  conic_memory_release(context, work.keys);
+  conic_memory_release_these(context, work.page, work.keys);
   conic_cells_results_end(&work.results);
   conic_store_end(&work.records);
   conic_cells_share_end(context, &work.share);

@@ -123,6 +123,5 @@ conic_status conic_creases_find(conic_surface *surface) {
 }
 
 void conic_creases_release(conic_surface *surface) {
-  conic_memory_release(surface->context, surface->creases.side);
-  conic_memory_release(surface->context, surface->creases.spacing);
+  conic_memory_release_these(surface->context, surface->creases.side, surface->creases.spacing);
 }

@@ -27,9 +27,7 @@ conic_status conic_dart_board_begin(conic_context *context, double radius, size_
 }
 
 void conic_dart_board_end(conic_dart_board *board) {
-  conic_memory_release(board->context, board->places);
-  conic_memory_release(board->context, board->next);
-  conic_memory_release(board->context, board->heads);
+  conic_memory_release_these(board->context, board->places, board->next, board->heads);
   memset(board, 0, sizeof *board);
 }
 
@@ -187,10 +185,8 @@ static conic_status throw_at(conic_dart_board *board, const conic_dart_triangle 
   place_in(triangle, shares, dart.place);
   if (is_covered_here(board, dart.place, covers))
     return CONIC_OK;
-  if (darts->n >= darts->room && conic_memory_reserve(board->context, &darts->list, darts->n, darts->n + 1,
-                                                      &darts->room, sizeof *darts->list) != CONIC_OK)
+  if (conic_memory_append(board->context, &darts->list, &darts->n, &darts->room, &dart, sizeof dart) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
-  darts->list[darts->n++] = dart;
   add_cover(covers, dart.place);
   return conic_dart_board_add(board, dart.place);
 }

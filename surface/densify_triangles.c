@@ -1,6 +1,5 @@
 #include "surface/densify_triangles.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -185,9 +184,7 @@ conic_status conic_densify_triangles_find(const conic_surface *surface, const co
 }
 
 void conic_densify_triangles_release(conic_context *context, conic_densify_triangles *triangles) {
-  conic_memory_release(context, triangles->normals);
-  conic_memory_release(context, triangles->corners);
-  conic_memory_release(context, triangles->reaches);
+  conic_memory_release_these(context, triangles->normals, triangles->corners, triangles->reaches);
   memset(triangles, 0, sizeof *triangles);
 }
 

@@ -18,10 +18,8 @@ conic_status conic_workspaces_create(conic_context *context, conic_workspace **w
 
 void conic_workspaces_release(conic_context *context, conic_workspace *workspaces) {
   for (int i = 0; workspaces && i < conic_context_threads(context); i++) {
-    conic_memory_release(context, workspaces[i].shared.sources);
-    conic_memory_release(context, workspaces[i].single.sources);
-    conic_memory_release(context, workspaces[i].near.offset[0]);
-    conic_memory_release(context, workspaces[i].other_near.offset[0]);
+    conic_memory_release_these(context, workspaces[i].shared.sources, workspaces[i].single.sources,
+                               workspaces[i].near.offset[0], workspaces[i].other_near.offset[0]);
   }
   conic_memory_release(context, workspaces);
 }

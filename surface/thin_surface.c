@@ -187,9 +187,7 @@ static conic_status thin_stage(conic_context *context, const conic_surface_optio
     report->n_evaluations += work.workspaces[i].n_evaluations;
   report->n_evaluations += work.n_evaluations;
   report->error = work.greatest_error;
-  conic_memory_release(context, work.heap.slots);
-  conic_memory_release(context, work.heap.keys);
-  conic_memory_release(context, work.is_stale);
+  conic_memory_release_these(context, work.heap.slots, work.heap.keys, work.is_stale);
   conic_workspaces_release(context, work.workspaces);
   conic_surface_destroy(work.surface);
   return status;
@@ -250,9 +248,8 @@ static conic_status thin_within(conic_surface *surface, const conic_thin_options
   conic_status status = CONIC_OK;
   wanted.max_error = FIRST_SHARE * options->max_error;
   for (int i = 0; status == CONIC_OK && (i < MAX_TRIES || good == 0.0); i++) {
-    conic_surface_report counted;
+    conic_surface_report counted = {0};
     conic_splats tried;
-    memset(&counted, 0, sizeof counted);
     status = thin_once(surface, &wanted, &tried, &counted);
     if (status != CONIC_OK)
       break;
@@ -281,9 +278,8 @@ conic_status conic_surface_thin(conic_surface *surface, const conic_thin_options
                                 conic_surface_report *report) {
   conic_context *context = surface->context;
   conic_thin_options own, *options = &own;
-  conic_surface_report counted;
+  conic_surface_report counted = {0};
   memset(thinned, 0, sizeof *thinned);
-  memset(&counted, 0, sizeof counted);
   conic_thin_options_init(options);
   if (!conic_options_take(options, given) || !(options->max_error >= 0.0) ||
       (options->count == 0 && !(options->max_error > 0.0)))

@@ -59,7 +59,7 @@ typedef struct conic_assimp_request {
 
 /* The module's one symbol, conic_assimp_bridge. */
 typedef struct conic_assimp_bridge_functions {
-  const char *version; /* as in every module (core/base/module.h) */
+  const char *version; /* as in every module (core/base/machine.h) */
 
   /* Reads the file, writes the records, and ends the process, which should be its own. */
   void (*read)(conic_assimp_request *request);

@@ -1,4 +1,4 @@
-#include "core/assimp/assimp_material.h"
+#include "core/assimp/assimp_part.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -39,18 +39,12 @@ conic_status conic_assimp_parts_begin(conic_context *context, const char *name, 
 }
 
 void conic_assimp_parts_release(conic_assimp_part_builder *parts) {
-  conic_memory_release(parts->context, parts->slots);
-  conic_memory_release(parts->context, parts->normals);
+  conic_memory_release_these(parts->context, parts->slots, parts->normals);
 }
 
 static void release_part(conic_context *context, assimp_part *taken) {
-  conic_memory_release(context, taken->position);
-  conic_memory_release(context, taken->normal);
-  conic_memory_release(context, taken->coordinate);
-  conic_memory_release(context, taken->color);
-  conic_memory_release(context, taken->alpha);
-  conic_memory_release(context, taken->triangles);
-  conic_memory_release(context, taken->point);
+  conic_memory_release_these(context, taken->position, taken->normal, taken->coordinate, taken->color, taken->alpha,
+                             taken->triangles, taken->point);
 }
 
 /* Takes one of its arrays; null where there is none. */

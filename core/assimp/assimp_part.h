@@ -4,6 +4,7 @@
 #define CONIC_ASSIMP_PART_H
 
 #include "core/assimp/assimp_process.h"
+#include "core/files/input.h"
 #include "core/splats/builder.h"
 #include "core/splats/faces.h"
 
@@ -37,5 +38,12 @@ void conic_assimp_parts_release(conic_assimp_part_builder *parts);
 
 /* The linear value of one of the file's colours. */
 float conic_assimp_decode(const conic_assimp_part_builder *parts, float value);
+
+/* The materials of a model that Assimp reads. */
+
+/* Takes the data after a material's record as the next material of the model's faces. A picture that is missing or
+ * cannot be read is a warning. Errors: INPUT, MEMORY, CANCELLED. */
+conic_status conic_assimp_take_material(const conic_input *input, conic_assimp_process *process,
+                                        const conic_assimp_record *record, conic_assimp_part_builder *parts);
 
 #endif

@@ -5,12 +5,11 @@
 #include <string.h>
 
 #include "core/assimp/assimp_kinds.h"
-#include "core/assimp/assimp_material.h"
 #include "core/assimp/assimp_part.h"
 #include "core/assimp/assimp_process.h"
+#include "core/base/machine.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/base/module.h"
 #include "core/files/file.h"
 
 static const char module[] = "conic-assimp.so";

@@ -30,16 +30,15 @@ conic_status conic_lend(conic_context *context, const char *name, const void *wh
     is_known |= conic_loan_is_named(name, loan_kinds[i]);
   if (!is_known || !what)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: nothing can be lent under that name", name ? name : "null");
-  conic_status status = conic_memory_reserve(context, &context->loans, context->n_loans, context->n_loans + 1,
-                                             &context->loans_room, sizeof *context->loans);
-  if (status != CONIC_OK)
-    return status;
-  char *copy = conic_memory_allocate(context, strlen(name) + 1, 1);
-  if (!copy)
+  const conic_loan loan = {conic_memory_allocate(context, strlen(name) + 1, 1), what};
+  if (!loan.name)
     return CONIC_ERROR_MEMORY;
-  memcpy(copy, name, strlen(name) + 1);
-  context->loans[context->n_loans++] = (conic_loan){copy, what};
-  return CONIC_OK;
+  memcpy(loan.name, name, strlen(name) + 1);
+  conic_status status =
+      conic_memory_append(context, &context->loans, &context->n_loans, &context->loans_room, &loan, sizeof loan);
+  if (status != CONIC_OK)
+    conic_memory_release(context, loan.name);
+  return status;
 }
 
 void conic_take_back_loans(conic_context *context) {

@@ -27,7 +27,6 @@ void conic_memory_advise_large_pages(void *pointer, size_t bytes) {
   if (pointer && first < last)
     (void)madvise((char *)pointer + (first - begin), last - first, MADV_HUGEPAGE);
 #else
-  (void)pointer;
-  (void)bytes;
+  (void)pointer, (void)bytes;
 #endif
 }

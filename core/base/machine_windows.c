@@ -15,6 +15,5 @@ uint64_t conic_machine_memory(void) {
 
 /* They would need a user's right, and memory that is never paged out. */
 void conic_memory_advise_large_pages(void *pointer, size_t bytes) {
-  (void)pointer;
-  (void)bytes;
+  (void)pointer, (void)bytes;
 }

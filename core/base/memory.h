@@ -42,5 +42,8 @@ void conic_memory_release(conic_context *context, void *pointer);
 
 /* Releases n blocks; null ones are allowed. */
 void conic_memory_release_all(conic_context *context, void *const *pointers, size_t n);
+/* Releases the blocks that are written out one after the other. */
+#define conic_memory_release_these(context, ...)                                                                       \
+  conic_memory_release_all(context, (void *[]){__VA_ARGS__}, sizeof((void *[]){__VA_ARGS__}) / sizeof(void *))
 
 #endif

@@ -1,7 +1,7 @@
 /* Finds and loads modules. They lie in a known place beside the file that this code was linked into (the program,
  * libconic.so), so that an installation may be moved. Another program that is linked to libconic.a finds them by its
  * run path, as the dynamic linker finds a library. */
-#include "core/base/module.h"
+#include "core/base/machine.h"
 
 #include <dlfcn.h>
 #include <limits.h>

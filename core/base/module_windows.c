@@ -1,5 +1,5 @@
 /* Loading libraries when they are needed has not been tried on Windows. */
-#include "core/base/module.h"
+#include "core/base/machine.h"
 
 #include <stdio.h>
 

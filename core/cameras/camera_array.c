@@ -28,10 +28,9 @@ static void read_rotation_rows(conic_json *json, array_camera *camera) {
   int n_rows = 0;
   size_t n = 3;
   conic_json_begin_array(json);
-  while (conic_json_next_item(json)) {
+  while (conic_json_next_item(json))
     if (n_rows == 3 || conic_json_numbers(json, camera->world_from_camera[n_rows++], 3, &n) != CONIC_OK || n != 3)
       conic_json_wrong(json, "a rotation has 3 rows of 3 numbers");
-  }
   if (n_rows != 3)
     conic_json_wrong(json, "a rotation has 3 rows of 3 numbers");
   camera->has_rotation = 1;

@@ -3,7 +3,6 @@
 
 #include "core/base/byte_order.h"
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/cameras/camera_list.h"
@@ -60,31 +59,30 @@ static void read_lens_numbers(conic_json *json, gltf_lens *lens, int is_orthogra
 
 static conic_status read_gltf_lens(gltf_camera_reader *reader) {
   char key[CONIC_JSON_KEY_ROOM];
-  conic_status status = conic_memory_reserve(reader->list->context, &reader->lenses, reader->n_lenses,
-                                             reader->n_lenses + 1, &reader->lens_room, sizeof *reader->lenses);
-  if (status != CONIC_OK)
-    return status;
-  gltf_lens *lens = &reader->lenses[reader->n_lenses++];
-  memset(lens, 0, sizeof *lens);
+  gltf_lens lens = {0};
   conic_json_begin_object(&reader->json);
   while (conic_json_next_member(&reader->json, key)) {
     int is_orthographic = strcmp(key, "orthographic") == 0;
     if (is_orthographic || strcmp(key, "perspective") == 0)
-      read_lens_numbers(&reader->json, lens, is_orthographic);
+      read_lens_numbers(&reader->json, &lens, is_orthographic);
     else
       conic_json_skip(&reader->json);
   }
-  return reader->json.status;
+  return reader->json.status == CONIC_OK
+             ? conic_memory_append(reader->list->context, &reader->lenses, &reader->n_lenses, &reader->lens_room, &lens,
+                                   sizeof lens)
+             : reader->json.status;
 }
 
 static conic_status read_node_children(gltf_camera_reader *reader, gltf_camera_node *node) {
   node->first_child = reader->n_children;
   conic_status status = conic_json_begin_array(&reader->json);
   while (status == CONIC_OK && conic_json_next_item(&reader->json)) {
-    status = conic_memory_reserve(reader->list->context, &reader->children, reader->n_children, reader->n_children + 1,
-                                  &reader->child_room, sizeof *reader->children);
+    double child;
+    status = conic_json_number(&reader->json, &child);
     if (status == CONIC_OK)
-      status = conic_json_number(&reader->json, &reader->children[reader->n_children++]);
+      status = conic_memory_append(reader->list->context, &reader->children, &reader->n_children, &reader->child_room,
+                                   &child, sizeof child);
   }
   node->n_children = reader->n_children - node->first_child;
   return status;
@@ -97,37 +95,34 @@ static void read_node_numbers(conic_json *json, double *numbers, size_t n) {
 }
 
 static conic_status read_camera_node(gltf_camera_reader *reader) {
-  static const gltf_camera_node start = {
-      .camera = NO_NODE, .rotation = {0, 0, 0, 1}, .scale = {1, 1, 1}, .parent = NO_NODE};
   conic_json *json = &reader->json;
   char key[CONIC_JSON_KEY_ROOM];
-  conic_status status = conic_memory_reserve(reader->list->context, &reader->nodes, reader->n_nodes,
-                                             reader->n_nodes + 1, &reader->node_room, sizeof *reader->nodes);
-  if (status != CONIC_OK)
-    return status;
-  gltf_camera_node *node = &reader->nodes[reader->n_nodes++];
-  *node = start;
-  node->line = json->line;
+  conic_status status = CONIC_OK;
+  gltf_camera_node node = {
+      .camera = NO_NODE, .rotation = {0, 0, 0, 1}, .scale = {1, 1, 1}, .parent = NO_NODE, .line = json->line};
   conic_json_begin_object(json);
-  while (status == CONIC_OK && conic_json_next_member(json, key)) {
+  while (status == CONIC_OK && conic_json_next_member(json, key))
     if (strcmp(key, "camera") == 0)
-      conic_json_number(json, &node->camera);
+      conic_json_number(json, &node.camera);
     else if (strcmp(key, "children") == 0)
-      status = read_node_children(reader, node);
+      status = read_node_children(reader, &node);
     else if (strcmp(key, "name") == 0)
-      conic_json_text(json, node->name, sizeof node->name);
+      conic_json_text(json, node.name, sizeof node.name);
     else if (strcmp(key, "translation") == 0)
-      read_node_numbers(json, node->translation, 3);
+      read_node_numbers(json, node.translation, 3);
     else if (strcmp(key, "rotation") == 0)
-      read_node_numbers(json, node->rotation, 4);
+      read_node_numbers(json, node.rotation, 4);
     else if (strcmp(key, "scale") == 0)
-      read_node_numbers(json, node->scale, 3);
-    else if (strcmp(key, "matrix") == 0 && ++node->has_matrix)
-      read_node_numbers(json, node->matrix, 16);
+      read_node_numbers(json, node.scale, 3);
+    else if (strcmp(key, "matrix") == 0 && ++node.has_matrix)
+      read_node_numbers(json, node.matrix, 16);
     else
       conic_json_skip(json);
-  }
-  return status == CONIC_OK ? json->status : status;
+  if (status == CONIC_OK)
+    status = json->status;
+  return status == CONIC_OK ? conic_memory_append(reader->list->context, &reader->nodes, &reader->n_nodes,
+                                                  &reader->node_room, &node, sizeof node)
+                            : status;
 }
 
 static conic_status read_gltf_items(gltf_camera_reader *reader, conic_status (*read)(gltf_camera_reader *)) {
@@ -140,14 +135,13 @@ static conic_status read_gltf_items(gltf_camera_reader *reader, conic_status (*r
 static conic_status read_gltf_json(gltf_camera_reader *reader) {
   char key[CONIC_JSON_KEY_ROOM];
   conic_status status = conic_json_begin_object(&reader->json);
-  while (status == CONIC_OK && conic_json_next_member(&reader->json, key)) {
+  while (status == CONIC_OK && conic_json_next_member(&reader->json, key))
     if (strcmp(key, "cameras") == 0)
       status = read_gltf_items(reader, read_gltf_lens);
     else if (strcmp(key, "nodes") == 0)
       status = read_gltf_items(reader, read_camera_node);
     else
       conic_json_skip(&reader->json);
-  }
   return status == CONIC_OK ? reader->json.status : status;
 }
 
@@ -285,9 +279,7 @@ conic_status conic_camera_gltf_read(conic_camera_list *list, const unsigned char
   status = read_gltf_json(&reader);
   if (status == CONIC_OK)
     status = add_gltf_cameras(&reader);
-  conic_memory_release(list->context, reader.lenses);
-  conic_memory_release(list->context, reader.nodes);
-  conic_memory_release(list->context, reader.children);
+  conic_memory_release_these(list->context, reader.lenses, reader.nodes, reader.children);
   conic_json_close(&reader.json);
   return status;
 }

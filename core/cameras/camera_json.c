@@ -80,26 +80,18 @@ static conic_status read_matrix(conic_json *json, double cam_from_world[3][4]) {
   return check_matrix(json, rows);
 }
 
-static conic_status read_kind(conic_json *json, uint32_t *kind) {
+/* A word: one of conic_camera_kind_name or of conic_lens_name. */
+static conic_status read_word(conic_json *json, int is_lens, uint32_t *number) {
   char text[32];
   conic_status status = conic_json_text(json, text, sizeof text);
-  for (uint32_t i = 0; i < CONIC_N_CAMERA_KINDS && status == CONIC_OK; i++)
-    if (strcmp(text, conic_camera_kind_name((conic_camera_kind)i)) == 0) {
-      *kind = i;
+  for (uint32_t i = 0; i < (is_lens ? CONIC_N_LENSES : CONIC_N_CAMERA_KINDS) && status == CONIC_OK; i++)
+    if (strcmp(text, is_lens ? conic_lens_name((conic_lens)i) : conic_camera_kind_name((conic_camera_kind)i)) == 0) {
+      *number = i;
       return CONIC_OK;
     }
-  return conic_json_wrong(json, "a camera's kind is perspective, fisheye, orthographic, equirectangular or cube");
-}
-
-static conic_status read_own_lens(conic_json *json, uint32_t *lens) {
-  char text[32];
-  conic_status status = conic_json_text(json, text, sizeof text);
-  for (uint32_t i = 0; i < CONIC_N_LENSES && status == CONIC_OK; i++)
-    if (strcmp(text, conic_lens_name((conic_lens)i)) == 0) {
-      *lens = i;
-      return CONIC_OK;
-    }
-  return conic_json_wrong(json, "a camera's lens is none, radial, opencv, thin-prism or fov");
+  return conic_json_wrong(json, is_lens ? "a camera's lens is none, radial, opencv, thin-prism or fov"
+                                        : "a camera's kind is perspective, fisheye, orthographic, equirectangular or "
+                                          "cube");
 }
 
 static conic_status read_distortion(conic_json *json, double distortion[8]) {
@@ -125,9 +117,9 @@ static conic_status read_value(conic_json *json, camera_key key, conic_camera *c
   case MATRIX:
     return read_matrix(json, camera->cam_from_world);
   case KIND:
-    return read_kind(json, &camera->kind);
+    return read_word(json, 0, &camera->kind);
   case LENS:
-    return read_own_lens(json, &camera->lens);
+    return read_word(json, 1, &camera->lens);
   case DISTORTION:
     return read_distortion(json, camera->distortion);
   case N_KEYS:
@@ -159,8 +151,7 @@ static conic_status read_camera(conic_json *json, conic_camera *camera) {
 
 conic_status conic_camera_json_read(conic_camera_list *list, const unsigned char *bytes, size_t n_bytes) {
   conic_json json;
-  conic_camera found;
-  memset(&found, 0, sizeof found);
+  conic_camera found = {.width = 0};
   list->cameras->kind = CONIC_CAMERA_FILE_CONIC;
   conic_status status = conic_json_take(list->context, list->name, bytes, n_bytes, &json);
   if (status != CONIC_OK)

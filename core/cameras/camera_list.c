@@ -30,9 +30,7 @@ void conic_cameras_release(conic_context *context, conic_cameras *cameras) {
     return;
   for (size_t i = 0; i < cameras->count; i++)
     conic_memory_release(context, cameras->names[i]);
-  conic_memory_release(context, cameras->cameras);
-  conic_memory_release(context, cameras->path);
-  conic_memory_release(context, cameras->names);
+  conic_memory_release_these(context, cameras->cameras, cameras->path, cameras->names);
   memset(cameras, 0, sizeof *cameras);
 }
 

@@ -101,26 +101,25 @@ static const unsigned char *scan_text(key_scan *scan, size_t *length) {
   return start;
 }
 
-static int is_scanned_key(const unsigned char *text, size_t length, const char *key) {
-  return length == strlen(key) && memcmp(text, key, length) == 0;
-}
-
 /* A conic_camera_file, or NO_CAMERAS. */
 static int kind_of_json(const unsigned char *bytes, size_t n_bytes) {
+  static const struct {
+    const char *key;
+    int is_in_array, kind;
+  } telling[] = {{"world_to_camera", 0, CONIC_CAMERA_FILE_CONIC},
+                 {"frames", 0, CONIC_CAMERA_FILE_TRANSFORMS},
+                 {"asset", 0, CONIC_CAMERA_FILE_GLTF},
+                 {"rotation", 1, CONIC_CAMERA_FILE_LIST}};
   key_scan scan = {bytes, bytes + n_bytes, 0};
   int is_array = 0, has_opened = 0;
   while (scan.next < scan.end) {
     size_t length;
     if (*scan.next == '"') {
       const unsigned char *text = scan_text(&scan, &length);
-      if (!is_array && scan.depth == 1 && is_scanned_key(text, length, "world_to_camera"))
-        return CONIC_CAMERA_FILE_CONIC;
-      if (!is_array && scan.depth == 1 && is_scanned_key(text, length, "frames"))
-        return CONIC_CAMERA_FILE_TRANSFORMS;
-      if (!is_array && scan.depth == 1 && is_scanned_key(text, length, "asset"))
-        return CONIC_CAMERA_FILE_GLTF;
-      if (is_array && scan.depth == 2 && is_scanned_key(text, length, "rotation"))
-        return CONIC_CAMERA_FILE_LIST;
+      for (size_t i = 0; i < sizeof telling / sizeof *telling; i++)
+        if (is_array == telling[i].is_in_array && scan.depth == 1 + is_array && length == strlen(telling[i].key) &&
+            memcmp(text, telling[i].key, length) == 0)
+          return telling[i].kind;
       continue;
     }
     if (!has_opened && *scan.next == '[')

@@ -78,15 +78,12 @@ static int n_parameters(const colmap_model *model) {
 
 static conic_status add_colmap_camera(colmap_reader *reader, uint64_t id, const colmap_model *model,
                                       const double size[2], const double *numbers) {
-  conic_status status = conic_memory_reserve(reader->list->context, &reader->cameras, reader->n_cameras,
-                                             reader->n_cameras + 1, &reader->camera_room, sizeof *reader->cameras);
-  if (status != CONIC_OK)
-    return status;
-  conic_camera camera = {.width = conic_camera_pixels(size[0]), .height = conic_camera_pixels(size[1])};
+  conic_camera camera = {.width = conic_camera_pixels(size[0]),
+                         .height = conic_camera_pixels(size[1]),
+                         .kind = model->kind,
+                         .lens = model->lens};
   if (!camera.width || !camera.height)
     return colmap_wrong(reader, "a picture is 1 to 65535 pixels wide and high", "");
-  camera.kind = model->kind;
-  camera.lens = model->lens;
   if (model->kind == CONIC_CAMERA_EQUIRECTANGULAR) { /* it sees all around, whatever its numbers */
     camera.fx = camera.width / (2.0 * CONIC_PI);
     camera.fy = camera.height / CONIC_PI;
@@ -100,19 +97,16 @@ static conic_status add_colmap_camera(colmap_reader *reader, uint64_t id, const 
     camera.cy = center[1];
     memcpy(camera.distortion, center + 2, (size_t)model->n_lens * sizeof *center);
   }
-  reader->cameras[reader->n_cameras++] = (colmap_camera){id, camera};
-  return CONIC_OK;
+  const colmap_camera added = {id, camera};
+  return conic_memory_append(reader->list->context, &reader->cameras, &reader->n_cameras, &reader->camera_room, &added,
+                             sizeof added);
 }
 
-static conic_status add_colmap_image(colmap_reader *reader, const colmap_image *image) {
-  conic_status status = conic_memory_reserve(reader->list->context, &reader->images, reader->n_images,
-                                             reader->n_images + 1, &reader->image_room, sizeof *reader->images);
-  if (status != CONIC_OK)
-    return status;
-  reader->images[reader->n_images] = *image;
-  reader->images[reader->n_images].line = reader->line;
-  reader->images[reader->n_images++].byte = reader->at;
-  return CONIC_OK;
+static conic_status add_colmap_image(colmap_reader *reader, colmap_image *image) {
+  image->line = reader->line;
+  image->byte = reader->at;
+  return conic_memory_append(reader->list->context, &reader->images, &reader->n_images, &reader->image_room, image,
+                             sizeof *image);
 }
 
 static const colmap_model *find_model(colmap_reader *reader, uint64_t number, conic_status *status) {
@@ -379,7 +373,6 @@ conic_status conic_camera_colmap_read(conic_camera_list *list, const conic_colma
     status = is_text ? read_text_images(&reader) : read_binary_images(&reader);
   if (status == CONIC_OK)
     status = place_images(&reader);
-  conic_memory_release(list->context, reader.cameras);
-  conic_memory_release(list->context, reader.images);
+  conic_memory_release_these(list->context, reader.cameras, reader.images);
   return status;
 }

@@ -7,23 +7,7 @@
 #include "core/files/json_read.h"
 
 /* Numbers given with a frame, or for all frames. */
-typedef enum frame_number {
-  W,
-  H,
-  FL_X,
-  FL_Y,
-  CX,
-  CY,
-  ANGLE_X,
-  ANGLE_Y,
-  K1,
-  K2,
-  K3,
-  K4,
-  P1,
-  P2,
-  N_FRAME_NUMBERS
-} frame_number;
+enum { W, H, FL_X, FL_Y, CX, CY, ANGLE_X, ANGLE_Y, K1, K2, K3, K4, P1, P2, N_FRAME_NUMBERS };
 
 static const char *const number_names[N_FRAME_NUMBERS] = {
     "w", "h", "fl_x", "fl_y", "cx", "cy", "camera_angle_x", "camera_angle_y", "k1", "k2", "k3", "k4", "p1", "p2"};
@@ -62,7 +46,6 @@ typedef struct transforms_reader {
   frame_numbers shared; /* they may come after the frames */
   transforms_frame *frames;
   size_t n_frames, frame_room;
-  int has_frames;
 } transforms_reader;
 
 static void read_frame_model(transforms_reader *reader, frame_numbers *numbers) {
@@ -136,14 +119,13 @@ static conic_status read_frame(transforms_reader *reader) {
   memset(frame, 0, sizeof *frame);
   frame->line = reader->json.line;
   conic_json_begin_object(&reader->json);
-  while (conic_json_next_member(&reader->json, key)) {
+  while (conic_json_next_member(&reader->json, key))
     if (strcmp(key, "file_path") == 0)
       read_frame_name(reader, frame);
     else if (strcmp(key, "transform_matrix") == 0 && ++has_matrix)
       read_frame_matrix(reader, frame);
     else if (!read_frame_number(reader, key, &frame->own))
       conic_json_skip(&reader->json);
-  }
   if (!has_matrix)
     conic_json_wrong(&reader->json, "a frame has a transform_matrix");
   return reader->json.status;
@@ -154,7 +136,6 @@ static conic_status read_transforms(transforms_reader *reader) {
   conic_status status = conic_json_begin_object(&reader->json);
   while (status == CONIC_OK && conic_json_next_member(&reader->json, key)) {
     if (strcmp(key, "frames") == 0) {
-      reader->has_frames = 1;
       status = conic_json_begin_array(&reader->json);
       while (status == CONIC_OK && conic_json_next_item(&reader->json))
         status = read_frame(reader);

@@ -164,8 +164,7 @@ static conic_status need_colors(conic_context *context, const vertices *set) {
   for (int channel = 0; channel < 3; channel++) {
     color[channel] = conic_memory_allocate(context, set->count, sizeof(float));
     if (!color[channel]) {
-      conic_memory_release(context, color[0]);
-      conic_memory_release(context, color[1]);
+      conic_memory_release_these(context, color[0], color[1]);
       return CONIC_ERROR_MEMORY;
     }
   }

@@ -221,8 +221,7 @@ conic_status conic_legend_make(conic_context *context, const conic_coloring *col
 
 conic_status conic_legend_make_list(conic_context *context, const char *title, const char *const *names,
                                     const float (*colors)[3], int n, conic_image *image) {
-  legend l;
-  memset(&l, 0, sizeof l);
+  legend l = {0};
   l.title = title;
   for (int i = 0; i < n && i < MOST_ROWS; i++)
     memcpy(add_legend_row(&l, names[i])->color, colors[i], sizeof colors[i]);

@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "core/base/real.h"
+
 uint64_t conic_value_stride(uint64_t n, uint64_t most) {
   uint64_t stride = 1;
   while (n > most * stride)
@@ -25,17 +27,12 @@ void conic_value_sample_add(conic_value_sample *sample, double value) {
   sample->values[sample->n++] = value + 0.0; /* no negative zero */
 }
 
-static int compare_values(const void *a, const void *b) {
-  double first = *(const double *)a, second = *(const double *)b;
-  return (first > second) - (first < second);
-}
-
 void conic_value_sample_limits(conic_value_sample *sample, double *minimum, double *maximum) {
   *minimum = *maximum = 0.0;
   if (sample->n == 0)
     return;
   size_t last = sample->n - 1, low = last / 50;
-  qsort(sample->values, sample->n, sizeof *sample->values, compare_values);
+  qsort(sample->values, sample->n, sizeof *sample->values, conic_compare_doubles);
   *minimum = sample->values[low];
   *maximum = sample->values[last - low];
   if (*minimum == *maximum) {

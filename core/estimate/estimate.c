@@ -15,8 +15,7 @@
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/estimate/features.h"
-#include "core/estimate/normals.h"
-#include "core/estimate/scatter.h"
+#include "core/estimate/neighbourhood.h"
 #include "core/splats/clip.h"
 
 void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size) {
@@ -292,12 +291,9 @@ static conic_status estimate_plain(conic_context *context, const conic_estimate_
     if (repairs)
       *repairs = counted;
   }
-  for (int axis = 0; axis < 3; axis++) {
-    conic_memory_release(context, estimate.tangent_u[axis]);
-    conic_memory_release(context, estimate.tangent_v[axis]);
-  }
-  conic_memory_release(context, estimate.dot);
-  conic_memory_release(context, estimate.states);
+  for (int axis = 0; axis < 3; axis++)
+    conic_memory_release_these(context, estimate.tangent_u[axis], estimate.tangent_v[axis]);
+  conic_memory_release_these(context, estimate.dot, estimate.states);
   return status;
 }
 

@@ -2,8 +2,6 @@
 #ifndef CONIC_FEATURES_H
 #define CONIC_FEATURES_H
 
-#include <stdint.h>
-
 #include "conic/model.h"
 
 /* Finds creases among points that have axes: places where the planes of neighbours meet at more than the angle of that

@@ -9,7 +9,6 @@
 #include "core/base/vectors.h"
 #include "core/estimate/features.h"
 #include "core/estimate/neighbourhood.h"
-#include "core/splats/clip.h"
 #include "core/splats/ellipse.h"
 
 /* A small plane is fitted to so many neighbours, which also give the spacing. */
@@ -403,9 +402,7 @@ static conic_status run_passes(conic_context *context, feature_search *s, conic_
     status = conic_slots_for(context, n, clip_slots, s, 0.9, 1.0);
   if (status == CONIC_OK)
     status = hand_over_slots(context, s, splats);
-  conic_memory_release(context, s->small);
-  conic_memory_release(context, s->final);
-  conic_memory_release(context, s->clips);
+  conic_memory_release_these(context, s->small, s->final, s->clips);
   return status;
 }
 

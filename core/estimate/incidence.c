@@ -47,7 +47,6 @@ conic_status conic_incidence_create(conic_context *context, const conic_model *m
 }
 
 void conic_incidence_release(conic_context *context, conic_incidence *incidence) {
-  conic_memory_release(context, incidence->starts);
-  conic_memory_release(context, incidence->triangles);
+  conic_memory_release_these(context, incidence->starts, incidence->triangles);
   memset(incidence, 0, sizeof *incidence);
 }

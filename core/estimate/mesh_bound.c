@@ -289,9 +289,7 @@ conic_status conic_mesh_bound(conic_context *context, double cutoff, double cosi
     if (repairs)
       repairs->failed += n_dropped;
   }
-  conic_memory_release(context, in.is_off);
-  conic_memory_release(context, in.sources);
-  conic_memory_release(context, in.triangles);
+  conic_memory_release_these(context, in.is_off, in.sources, in.triangles);
   conic_incidence_release(context, &in.ring);
   return status;
 }

@@ -62,4 +62,44 @@ static inline void conic_neighbourhood_position(const conic_neighbourhood *neigh
     position[axis] = (double)neighbourhood->tree.position[axis][slot];
 }
 
+/* The spread of points about a slot: their covariance, summed about the slot itself, where the numbers are small. */
+
+typedef struct conic_covariance {
+  double origin[3]; /* the slot's position; it adds only to the sums' number */
+  double count, sum[3], products[6];
+} conic_covariance;
+
+conic_covariance conic_covariance_about(const conic_neighbourhood *neighbourhood, size_t slot);
+
+/* Adds n slots. */
+void conic_covariance_add(conic_covariance *covariance, const conic_neighbourhood *neighbourhood, const uint32_t *slots,
+                          size_t n);
+
+/* The matrix {xx, xy, xz, yy, yz, zz} about the mean, times the number of points. */
+void conic_covariance_matrix(const conic_covariance *covariance, double matrix[6]);
+
+/* Normals for points that have none: across the neighbours' plane, with one side for a whole surface. */
+
+/* Gives every GUESSED (and LISTED) slot its normal, up to the sign: the direction in which the slot and its neighbours
+ * spread least. Errors: CANCELLED. */
+conic_status conic_normals_guess(conic_context *context, conic_neighbourhood *neighbourhood, double from, double to);
+
+/* Turns GUESSED normals to where their points were seen from, where that is clear; these are then no longer GUESSED. */
+void conic_normals_turn_to_sights(conic_neighbourhood *neighbourhood, float *const sight[3]);
+
+/* Settles the signs of the GUESSED normals along the most reliable links between neighbours (a minimum spanning tree):
+ * like the given normals where a surface has some; else outwards, as seen from the middle of the connected part.
+ * Errors: MEMORY. */
+conic_status conic_normals_orient(conic_context *context, conic_neighbourhood *neighbourhood);
+
+/* Which points lie on no surface: foliage, wires, noise. */
+
+/* Marks LISTED slots without a surface around them as SCATTERED. Their normals must be known, up to the sign. Errors:
+ * MEMORY, CANCELLED. */
+conic_status conic_scatter_find(conic_context *context, conic_neighbourhood *neighbourhood, double from, double to);
+
+/* The reach of a dot at a slot, and its normal, which points outwards; zero where the neighbours do not tell. */
+double conic_scatter_reach(const conic_neighbourhood *neighbourhood, size_t slot);
+void conic_scatter_outside(const conic_neighbourhood *neighbourhood, size_t slot, double normal[3]);
+
 #endif

@@ -258,8 +258,6 @@ conic_status conic_neighbours_build(conic_context *context, const float *const p
 void conic_neighbours_release(conic_context *context, conic_neighbours *tree) {
   for (int axis = 0; axis < 3; axis++)
     conic_memory_release(context, tree->position[axis]);
-  conic_memory_release(context, tree->point_of_slot);
-  conic_memory_release(context, tree->slot_of_point);
-  conic_memory_release(context, tree->boxes);
+  conic_memory_release_these(context, tree->point_of_slot, tree->slot_of_point, tree->boxes);
   memset(tree, 0, sizeof *tree);
 }

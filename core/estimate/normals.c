@@ -1,4 +1,3 @@
-#include "core/estimate/normals.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,7 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
-#include "core/estimate/covariance.h"
+#include "core/estimate/neighbourhood.h"
 
 static void guess_normal(conic_neighbourhood *neighbourhood, size_t slot) {
   conic_covariance covariance = conic_covariance_about(neighbourhood, slot);
@@ -240,13 +239,6 @@ conic_status conic_normals_orient(conic_context *context, conic_neighbourhood *n
   conic_status status = CONIC_ERROR_MEMORY;
   if (l.doubt && l.opposite && l.left_out && l.parent && l.flip && parts && starts && order)
     status = orient_with(context, &l, parts, starts, order);
-  conic_memory_release(context, order);
-  conic_memory_release(context, starts);
-  conic_memory_release(context, parts);
-  conic_memory_release(context, l.flip);
-  conic_memory_release(context, l.parent);
-  conic_memory_release(context, l.left_out);
-  conic_memory_release(context, l.opposite);
-  conic_memory_release(context, l.doubt);
+  conic_memory_release_these(context, order, starts, parts, l.flip, l.parent, l.left_out, l.opposite, l.doubt);
   return status;
 }

@@ -6,7 +6,7 @@
 
 #include "core/base/vectors.h"
 #include "core/estimate/estimate.h"
-#include "core/estimate/scatter.h"
+#include "core/estimate/neighbourhood.h"
 #include "core/estimate/voronoi_cell.h"
 #include "core/splats/ellipse.h"
 

@@ -1,13 +1,12 @@
 /* A slot's score says how little its neighbourhood is like a surface. The mean of the scores around it decides, so that
  * a leaf follows the leaves around it, and a sharp corner its faces. docs/notes/estimation.md has the measurements. */
-#include "core/estimate/scatter.h"
 
 #include <math.h>
 
 #include "core/base/eigen.h"
 #include "core/base/memory.h"
 #include "core/base/vectors.h"
-#include "core/estimate/covariance.h"
+#include "core/estimate/neighbourhood.h"
 
 /* The scatter is the least eigenvalue of the covariance over the sum of the lesser two: 0 in a plane, 0.22 on a sharp
  * edge and in a cube's corner, about 0.4 where points fill a space or a stick, at most ½. It is taken of the
@@ -171,8 +170,7 @@ conic_status conic_scatter_find(conic_context *context, conic_neighbourhood *nei
   conic_status status = CONIC_ERROR_MEMORY;
   if (scores[0] && scores[1])
     status = find_with(context, &work, scores, from, to);
-  conic_memory_release(context, scores[0]);
-  conic_memory_release(context, scores[1]);
+  conic_memory_release_these(context, scores[0], scores[1]);
   return status;
 }
 

@@ -49,6 +49,13 @@ static void note_error(void) {
       errno = errors[i].number;
 }
 
+/* Whether a call has worked; errno says why not. */
+static int noted(BOOL has_worked) {
+  if (!has_worked)
+    note_error();
+  return has_worked != 0;
+}
+
 static int widen(const char *path, wchar_t wide[LONGEST_PATH]) {
   if (MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, wide, LONGEST_PATH) > 0)
     return 1;
@@ -74,10 +81,8 @@ static int describe_entry(HANDLE handle, conic_disk_entry *entry) {
   DWORD type = GetFileType(handle);
   if (type == FILE_TYPE_PIPE || type == FILE_TYPE_CHAR)
     return 1;
-  if (!GetFileInformationByHandle(handle, &found)) {
-    note_error();
+  if (!noted(GetFileInformationByHandle(handle, &found)))
     return 0;
-  }
   entry->is_folder = (found.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) != 0;
   entry->is_file = !entry->is_folder;
   entry->n_bytes = (uint64_t)found.nFileSizeHigh << 32 | found.nFileSizeLow;
@@ -271,42 +276,23 @@ void conic_disk_give_back(void *bytes, size_t n_bytes) {
 
 int conic_disk_rename(const char *from, const char *to) {
   wchar_t wide_from[LONGEST_PATH], wide_to[LONGEST_PATH];
-  if (!widen(from, wide_from) || !widen(to, wide_to))
-    return 0;
-  if (MoveFileExW(wide_from, wide_to, MOVEFILE_REPLACE_EXISTING))
-    return 1;
-  note_error();
-  return 0;
+  return widen(from, wide_from) && widen(to, wide_to) &&
+         noted(MoveFileExW(wide_from, wide_to, MOVEFILE_REPLACE_EXISTING));
 }
 
 int conic_disk_remove(const char *path) {
   wchar_t wide[LONGEST_PATH];
-  if (!widen(path, wide))
-    return 0;
-  if (DeleteFileW(wide))
-    return 1;
-  note_error();
-  return 0;
+  return widen(path, wide) && noted(DeleteFileW(wide));
 }
 
 int conic_disk_remove_folder(const char *path) {
   wchar_t wide[LONGEST_PATH];
-  if (!widen(path, wide))
-    return 0;
-  if (RemoveDirectoryW(wide))
-    return 1;
-  note_error();
-  return 0;
+  return widen(path, wide) && noted(RemoveDirectoryW(wide));
 }
 
 int conic_disk_make_folder(const char *path) {
   wchar_t wide[LONGEST_PATH];
-  if (!widen(path, wide))
-    return 0;
-  if (CreateDirectoryW(wide, NULL))
-    return 1;
-  note_error();
-  return 0;
+  return widen(path, wide) && noted(CreateDirectoryW(wide, NULL));
 }
 
 /* Follows the link to its end. */

@@ -33,10 +33,7 @@ static char *copy_text(conic_context *context, const char *text) {
 
 static void release_output(conic_output *output) {
   conic_context *context = output->context;
-  conic_memory_release(context, output->path);
-  conic_memory_release(context, output->target);
-  conic_memory_release(context, output->temporary_path);
-  conic_memory_release(context, output);
+  conic_memory_release_these(context, output->path, output->target, output->temporary_path, output);
 }
 
 const char *conic_file_name(const char *path) {

@@ -1,12 +1,62 @@
-/* The arrays behind the 256 bytes of core/files/file_header.h: each begins at a multiple of 64 bytes, with zeros
- * between. The header has the sum of their sums. */
+/* Files that are mapped and used where they are: a header of 256 bytes, then arrays, each from a multiple of 64 bytes
+ * on, with zeros between. The header has the sum of the arrays' sums. */
 #ifndef CONIC_FILE_BODY_H
 #define CONIC_FILE_BODY_H
 
+#include <stddef.h>
 #include <stdio.h>
 
-#include "core/files/file_header.h"
+#include "conic/context.h"
 #include "core/files/mapping.h"
+
+/* Structures in files: members in the order of a table, little-endian, one after the other. One table serves reading
+ * and writing, so that they cannot differ. */
+
+/* A member, by its place in memory. */
+typedef struct conic_file_field {
+  size_t offset, n_bytes, word_bytes; /* word_bytes: turned round together; an array has several words */
+} conic_file_field;
+
+#define CONIC_FILE_FIELD(type, member)                                                                                 \
+  { offsetof(type, member), sizeof(((type *)0)->member), __alignof__(((type *)0)->member) }
+
+/* The bytes that so many fields take in a file. */
+size_t conic_file_fields_bytes(const conic_file_field *fields, size_t n);
+
+void conic_file_fields_write(const conic_file_field *fields, size_t n, const void *from, unsigned char *bytes);
+void conic_file_fields_read(const conic_file_field *fields, size_t n, const unsigned char *bytes, void *to);
+
+/* The 256 bytes at the start: eight bytes that name the kind of file, numbers, zeros, and the sum of all that. */
+
+enum { CONIC_FILE_HEADER_BYTES = 256 };
+
+typedef struct conic_file_kind {
+  unsigned char magic[8];
+  const char *ending; /* with the dot */
+  uint32_t version;
+  const conic_file_field *fields; /* the first is the version, a uint32_t */
+  size_t n_fields;
+  const char *(*fault)(const void *numbers); /* what is wrong in a header whose sum is right; or null */
+} conic_file_kind;
+
+/* Whether a regular file that can be read begins as this kind does. */
+int conic_file_is_of_kind(const conic_file_kind *kind, const char *path);
+
+void conic_file_make_header(const conic_file_kind *kind, const void *numbers,
+                            unsigned char bytes[CONIC_FILE_HEADER_BYTES]);
+
+/* Opens a file of that kind and reads its numbers. The caller closes the file, on failure too. Errors: UNSUPPORTED,
+ * INPUT, MEMORY. */
+conic_status conic_file_open_kind(conic_context *context, const char *path, const conic_file_kind *kind,
+                                  conic_mapping *file, void *numbers);
+
+/* Reads the numbers from the first n_bytes of a file. Errors: UNSUPPORTED, INPUT. */
+conic_status conic_file_read_header(conic_context *context, const char *path, const conic_file_kind *kind,
+                                    const unsigned char *bytes, size_t n_bytes, void *numbers);
+
+/* Writes the numbers and the sum into a file's header and leaves the rest; without numbers, only the sum. For tests and
+ * fuzzing, which the sums would otherwise stop. */
+void conic_file_mend_header(const conic_file_kind *kind, const void *numbers, unsigned char *bytes);
 
 enum { CONIC_FILE_MOST_ARRAYS = 40 };
 

@@ -87,11 +87,7 @@ int conic_inflate_is_there(void) {
 
 size_t conic_inflate(conic_deflate_wrapping wrapping, const unsigned char *from, size_t n_from, unsigned char *to,
                      size_t n_bytes, int *is_whole) {
-  (void)wrapping;
-  (void)from;
-  (void)n_from;
-  (void)to;
-  (void)n_bytes;
+  (void)wrapping, (void)from, (void)n_from, (void)to, (void)n_bytes;
   if (is_whole)
     *is_whole = 0;
   return 0;
@@ -99,8 +95,7 @@ size_t conic_inflate(conic_deflate_wrapping wrapping, const unsigned char *from,
 
 conic_status conic_gzip(conic_context *context, const unsigned char *from, size_t n_from, unsigned char **to,
                         size_t *n_to) {
-  (void)from;
-  (void)n_from;
+  (void)from, (void)n_from;
   *to = NULL;
   *n_to = 0;
   return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "gzip needs zlib, which is not in this build");

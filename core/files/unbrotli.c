@@ -38,11 +38,7 @@ int conic_unbrotli_is_there(void) {
 
 int conic_unbrotli(conic_context *context, const unsigned char *from, size_t n_from, unsigned char *to,
                    size_t n_bytes) {
-  (void)context;
-  (void)from;
-  (void)n_from;
-  (void)to;
-  (void)n_bytes;
+  (void)context, (void)from, (void)n_from, (void)to, (void)n_bytes;
   return 0;
 }
 

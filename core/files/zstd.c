@@ -68,13 +68,11 @@ conic_status conic_zstd_create(conic_context *context, conic_zstd **zstd) {
 }
 
 void conic_zstd_destroy(conic_context *context, conic_zstd *zstd) {
-  (void)context;
-  (void)zstd;
+  (void)context, (void)zstd;
 }
 
 void conic_zstd_set_level(conic_zstd *zstd, int level) {
-  (void)zstd;
-  (void)level;
+  (void)zstd, (void)level;
 }
 
 size_t conic_zstd_bound(size_t n_bytes) {
@@ -86,19 +84,12 @@ size_t conic_zstd_pack_whole(conic_zstd *zstd, const unsigned char *from, size_t
 }
 
 size_t conic_zstd_pack(conic_zstd *zstd, const unsigned char *from, size_t n_bytes, unsigned char *to) {
-  (void)zstd;
-  (void)from;
-  (void)n_bytes;
-  (void)to;
+  (void)zstd, (void)from, (void)n_bytes, (void)to;
   return 0;
 }
 
 int conic_zstd_unpack(conic_zstd *zstd, const unsigned char *from, size_t n_packed, unsigned char *to, size_t n_bytes) {
-  (void)zstd;
-  (void)from;
-  (void)n_packed;
-  (void)to;
-  (void)n_bytes;
+  (void)zstd, (void)from, (void)n_packed, (void)to, (void)n_bytes;
   return 0;
 }
 

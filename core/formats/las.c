@@ -1,4 +1,4 @@
-#include "core/formats/las.h"
+#include "core/formats/readers.h"
 
 #include <math.h>
 #include <string.h>

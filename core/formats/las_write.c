@@ -336,8 +336,7 @@ conic_status conic_las_writer_append(conic_las_writer *w, const conic_splats *ba
 }
 
 static void release_las(conic_las_writer *w) {
-  conic_memory_release(w->context, w->records);
-  conic_memory_release(w->context, w);
+  conic_memory_release_these(w->context, w->records, w);
 }
 
 conic_status conic_las_writer_finish(conic_las_writer *w) {

@@ -10,14 +10,9 @@
 #include "core/files/file.h"
 #include "core/files/input.h"
 #include "core/formats/file_kinds.h"
-#include "core/formats/las.h"
 #include "core/formats/model_loan.h"
-#include "core/formats/obj.h"
-#include "core/formats/pcd.h"
 #include "core/formats/ply_read.h"
-#include "core/formats/xyz.h"
-#include "core/scans/e57.h"
-#include "core/scans/ptx.h"
+#include "core/formats/readers.h"
 #include "core/splats/faces.h"
 #include "core/splats/point_fields.h"
 
@@ -127,48 +122,19 @@ conic_status conic_model_find_kind(conic_input *input, const char *path, conic_m
   return status == CONIC_OK ? find_kind(input, path, kind) : status;
 }
 
+/* Of all kinds but Assimp's. */
+static conic_status (*const readers[])(conic_input *, const conic_read_options *, const conic_delivery *,
+                                       conic_model *) = {
+    [CONIC_MODEL_PLY] = conic_ply_read, [CONIC_MODEL_OBJ] = conic_obj_read, [CONIC_MODEL_XYZ] = conic_xyz_read,
+    [CONIC_MODEL_LAS] = conic_las_read, [CONIC_MODEL_PCD] = conic_pcd_read, [CONIC_MODEL_E57] = conic_e57_read,
+    [CONIC_MODEL_PTX] = conic_ptx_read};
+
 conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, const conic_read_options *options,
                                    const conic_delivery *delivery, conic_model *model) {
-  conic_status status = CONIC_OK;
-  switch (kind) {
-  case CONIC_MODEL_PLY:
-    status = conic_ply_read(input, options, delivery, model);
-    break;
-  case CONIC_MODEL_OBJ:
-    status = conic_obj_read(input, options, model);
-    break;
-  case CONIC_MODEL_XYZ:
-    status = conic_xyz_read(input, options, delivery, model);
-    break;
-  case CONIC_MODEL_LAS:
-    status = conic_las_read(input, options, delivery, model);
+  conic_status status = conic_assimp_reads(kind) ? conic_assimp_read(input, kind, options, model)
+                                                 : readers[kind](input, options, delivery, model);
+  if (kind == CONIC_MODEL_LAS || kind == CONIC_MODEL_E57 || kind == CONIC_MODEL_PTX)
     model->up[2] = 1.0;
-    break;
-  case CONIC_MODEL_PCD:
-    status = conic_pcd_read(input, options, delivery, model);
-    break;
-  case CONIC_MODEL_E57:
-    status = conic_e57_read(input, options, delivery, model);
-    model->up[2] = 1.0;
-    break;
-  case CONIC_MODEL_PTX:
-    status = conic_ptx_read(input, options, delivery, model);
-    model->up[2] = 1.0;
-    break;
-  case CONIC_MODEL_STL:
-  case CONIC_MODEL_OFF:
-  case CONIC_MODEL_3MF:
-  case CONIC_MODEL_GLTF:
-  case CONIC_MODEL_GLB:
-  case CONIC_MODEL_DAE:
-  case CONIC_MODEL_FBX:
-  case CONIC_MODEL_3DS:
-  case CONIC_MODEL_DXF:
-  case CONIC_MODEL_AMF:
-  case CONIC_MODEL_X3D:
-    status = conic_assimp_read(input, kind, options, model);
-    break;
-  }
   model->kind = kind;
   return status == CONIC_OK ? conic_fields_check(input->context, input->name, options, model) : status;
 }

@@ -4,11 +4,11 @@
 #include "core/assimp/assimp_kinds.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/formats/las.h"
 #include "core/formats/model_loan.h"
 #include "core/formats/model_part.h"
 #include "core/formats/model_read.h"
 #include "core/formats/ply_read.h"
+#include "core/formats/readers.h"
 #include "core/splats/raw_colors.h"
 
 /* State between the reader and the receiver, for colours whose scale only the whole file tells. */
@@ -91,9 +91,8 @@ conic_status conic_mesh_stream(conic_context *context, const char *path, conic_b
       .receive = receive, .cookie = cookie, .batch = CONIC_PART_STEP, .receive_faces = receive_faces};
   conic_read_options options;
   conic_input input;
-  conic_model model;
+  conic_model model = {0};
   conic_model_kind kind;
-  memset(&model, 0, sizeof model);
   conic_read_options_init(&options);
   conic_status status = conic_input_open(context, path, &input);
   if (status != CONIC_OK)
@@ -109,8 +108,7 @@ conic_status conic_mesh_stream(conic_context *context, const char *path, conic_b
 }
 
 static conic_status stream_lent(streaming *s, const char *name) {
-  conic_model model;
-  memset(&model, 0, sizeof model);
+  conic_model model = {0};
   conic_status status = conic_model_copy_lent(s->context, name, s->options, &model);
   if (status == CONIC_OK)
     status = s->receive(s->cookie, &model.points);

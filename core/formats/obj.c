@@ -1,4 +1,4 @@
-#include "core/formats/obj.h"
+#include "core/formats/readers.h"
 
 #include <string.h>
 
@@ -182,11 +182,9 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
     return conic_input_wrong(reader->input, "a face's corner is v, v/t, v//n or v/t/n");
   if (resolved[NORMAL] == CONIC_NO_CORNER)
     return CONIC_OK;
-  conic_status status = conic_memory_reserve(reader->input->context, &reader->corners, reader->n_corners,
-                                             reader->n_corners + 1, &reader->corner_capacity, sizeof *reader->corners);
-  if (status == CONIC_OK)
-    reader->corners[reader->n_corners++] = (obj_corner){resolved[VERTEX], resolved[NORMAL]};
-  return status;
+  const obj_corner corner = {resolved[VERTEX], resolved[NORMAL]};
+  return conic_memory_append(reader->input->context, &reader->corners, &reader->n_corners, &reader->corner_capacity,
+                             &corner, sizeof corner);
 }
 
 static conic_status add_obj_triangle(obj_reader *reader, const face_corner a, const face_corner b,
@@ -305,8 +303,10 @@ static conic_status gather_normals(obj_reader *reader) {
   return CONIC_OK;
 }
 
-conic_status conic_obj_read(conic_input *input, const conic_read_options *options, conic_model *model) {
+conic_status conic_obj_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model) {
   obj_reader reader = {.input = input};
+  (void)delivery;
   input->continues_lines = 1;
   conic_status status = conic_builder_begin(input->context, model, 0, NULL, &reader.builder);
   if (status == CONIC_OK && options->keeps_faces) {
@@ -319,7 +319,6 @@ conic_status conic_obj_read(conic_input *input, const conic_read_options *option
     status = check_indices(&reader);
   if (status == CONIC_OK)
     status = gather_normals(&reader);
-  conic_memory_release(input->context, reader.normals);
-  conic_memory_release(input->context, reader.corners);
+  conic_memory_release_these(input->context, reader.normals, reader.corners);
   return status;
 }

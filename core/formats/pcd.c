@@ -1,4 +1,4 @@
-#include "core/formats/pcd.h"
+#include "core/formats/readers.h"
 
 #include <math.h>
 #include <string.h>
@@ -280,8 +280,7 @@ static conic_status read_compressed(pcd_reader *reader) {
     status = wrong_bytes(reader, "the compressed data are damaged");
   if (status == CONIC_OK)
     status = append_unpacked(reader, bytes, (size_t)n_bytes / reader->header.row_bytes);
-  conic_memory_release(input->context, packed);
-  conic_memory_release(input->context, bytes);
+  conic_memory_release_these(input->context, packed, bytes);
   return status;
 }
 

@@ -202,11 +202,8 @@ static conic_status parse_element(conic_input *input, const header_line *line, c
   copy_word(element.name, sizeof element.name, line->words[1], strlen(line->words[1]));
   if (conic_ply_find_element(header, element.name))
     return wrong_header(input, line, "a second element", element.name);
-  conic_status status = conic_memory_reserve(input->context, &header->elements, header->n_elements,
-                                             header->n_elements + 1, &header->element_capacity, sizeof element);
-  if (status == CONIC_OK)
-    header->elements[header->n_elements++] = element;
-  return status;
+  return conic_memory_append(input->context, &header->elements, &header->n_elements, &header->element_capacity,
+                             &element, sizeof element);
 }
 
 static conic_status parse_type(conic_input *input, const header_line *line, int i_word, conic_ply_type *type) {
@@ -232,9 +229,6 @@ static conic_status parse_property(conic_input *input, const header_line *line, 
     status = wrong_header(input, line, "the length of a list cannot be of type", line->words[2]);
   if (status == CONIC_OK)
     status = parse_type(input, line, n_words - 2, &property.type);
-  if (status == CONIC_OK)
-    status = conic_memory_reserve(input->context, &header->properties, header->n_properties, header->n_properties + 1,
-                                  &header->property_capacity, sizeof property);
   if (status != CONIC_OK)
     return status;
   conic_ply_element *element = &header->elements[header->n_elements - 1];
@@ -243,8 +237,8 @@ static conic_status parse_property(conic_input *input, const header_line *line, 
   element->least_row_bytes += conic_ply_type_bytes(property.is_list ? property.count_type : property.type);
   element->has_lists |= property.is_list;
   element->n_properties++;
-  header->properties[header->n_properties++] = property;
-  return CONIC_OK;
+  return conic_memory_append(input->context, &header->properties, &header->n_properties, &header->property_capacity,
+                             &property, sizeof property);
 }
 
 static conic_status read_lines(conic_input *input, conic_ply_header *header) {
@@ -283,9 +277,7 @@ conic_status conic_ply_header_read(conic_input *input, conic_ply_header *header)
 }
 
 void conic_ply_header_release(conic_context *context, conic_ply_header *header) {
-  conic_memory_release(context, header->elements);
-  conic_memory_release(context, header->properties);
-  conic_memory_release(context, header->textures.bytes);
+  conic_memory_release_these(context, header->elements, header->properties, header->textures.bytes);
   memset(header, 0, sizeof *header);
 }
 

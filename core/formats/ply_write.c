@@ -103,9 +103,7 @@ void conic_splats_writer_abandon(conic_splats_writer *writer) {
   if (!writer)
     return;
   conic_output_abandon(writer->output);
-  conic_memory_release(writer->context, writer->rows);
-  conic_memory_release(writer->context, writer->path);
-  conic_memory_release(writer->context, writer);
+  conic_memory_release_these(writer->context, writer->rows, writer->path, writer);
 }
 
 /* Whether every colour is exactly that of an 8-bit sRGB code. */

@@ -1,5 +1,4 @@
 /* Display values: colours as a screen takes them, and as Gaussian profiles composite them. */
-#include <string.h>
 
 #include "core/base/memory.h"
 #include "core/image/compare.h"

@@ -296,7 +296,6 @@ conic_status conic_compare_flip(conic_context *context, const conic_image *a, co
     *mean = sum / (double)conic_image_pixels(a);
   }
   conic_status status = work.tile_sums ? CONIC_OK : CONIC_ERROR_MEMORY;
-  conic_memory_release(context, work.tile_sums);
-  conic_memory_release(context, work.buffers);
+  conic_memory_release_these(context, work.tile_sums, work.buffers);
   return status;
 }

@@ -91,7 +91,6 @@ conic_status conic_largest_hole(conic_context *context, const conic_image *a, co
     if (n_filled > *n_pixels)
       *n_pixels = n_filled;
   }
-  conic_memory_release(context, stack);
-  conic_memory_release(context, is_hole);
+  conic_memory_release_these(context, stack, is_hole);
   return CONIC_OK;
 }

@@ -5,7 +5,6 @@
 #include "core/base/message.h"
 #include "core/base/threads.h"
 #include "core/image/compare.h"
-#include "core/image/image_common.h"
 
 typedef struct shrinking {
   const conic_image *from;

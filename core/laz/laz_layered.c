@@ -118,9 +118,7 @@ conic_status conic_laz_layered_create(conic_context *context, conic_laz_layered 
 }
 
 static void release_extra(conic_context *context, conic_laz_layered *l) {
-  conic_memory_release(context, l->extra_streams);
-  conic_memory_release(context, l->extra_models);
-  conic_memory_release(context, l->extra_last);
+  conic_memory_release_these(context, l->extra_streams, l->extra_models, l->extra_last);
   l->extra_streams = NULL;
   l->extra_models = NULL;
   l->extra_last = NULL;
@@ -131,8 +129,7 @@ void conic_laz_layered_destroy(conic_context *context, conic_laz_layered *l) {
   if (!l)
     return;
   release_extra(context, l);
-  conic_memory_release(context, l->first);
-  conic_memory_release(context, l);
+  conic_memory_release_these(context, l->first, l);
 }
 
 /* --- where the layers are --- */

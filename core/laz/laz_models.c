@@ -21,15 +21,11 @@ void conic_laz_arena_release(conic_laz_arena *arena) {
 
 static int add_block(conic_laz_arena *arena) {
   unsigned char *block = conic_memory_allocate(arena->context, BLOCK_NUMBERS, sizeof(uint16_t));
-  arena->is_out |= !block || (arena->n_blocks == arena->room &&
-                              conic_memory_reserve(arena->context, &arena->blocks, arena->n_blocks, arena->n_blocks + 1,
-                                                   &arena->room, sizeof *arena->blocks) != CONIC_OK);
-  if (arena->is_out) {
+  arena->is_out |= !block || conic_memory_append(arena->context, &arena->blocks, &arena->n_blocks, &arena->room, &block,
+                                                 sizeof block) != CONIC_OK;
+  if (arena->is_out)
     conic_memory_release(arena->context, block);
-    return 0;
-  }
-  arena->blocks[arena->n_blocks++] = block;
-  return 1;
+  return !arena->is_out;
 }
 
 uint16_t *conic_laz_arena_take(conic_laz_arena *arena, size_t n) {

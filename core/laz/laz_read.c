@@ -372,11 +372,7 @@ static conic_status make_decoders(laz_reading *r) {
 static void release_reading(laz_reading *r) {
   for (int i = 0; r->decoders && i < r->n_threads; i++)
     conic_laz_decoder_destroy(r->decoders[i]);
-  conic_memory_release(r->context, r->decoders);
-  conic_memory_release(r->context, r->chunks);
-  conic_memory_release(r->context, r->packed);
-  conic_memory_release(r->context, r->records);
-  conic_memory_release(r->context, r->from.held);
+  conic_memory_release_these(r->context, r->decoders, r->chunks, r->packed, r->records, r->from.held);
 }
 
 static conic_status read_all_chunks(laz_reading *r) {

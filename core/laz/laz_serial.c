@@ -44,9 +44,7 @@ conic_status conic_laz_serial_create(conic_context *context, conic_laz_serial **
 void conic_laz_serial_destroy(conic_context *context, conic_laz_serial *serial) {
   if (!serial)
     return;
-  conic_memory_release(context, serial->extra);
-  conic_memory_release(context, serial->last);
-  conic_memory_release(context, serial);
+  conic_memory_release_these(context, serial->extra, serial->last, serial);
 }
 
 conic_status conic_laz_serial_begin(conic_laz_serial *serial, const conic_laz_format *format, conic_laz_arena *arena,

@@ -101,7 +101,5 @@ conic_status conic_deep_pack(conic_context *context, const conic_deep_line *line
 }
 
 void conic_deep_packed_release(conic_context *context, conic_deep_packed *packed) {
-  conic_memory_release(context, packed->ends);
-  conic_memory_release(context, packed->samples);
-  conic_memory_release(context, packed->scratch);
+  conic_memory_release_these(context, packed->ends, packed->samples, packed->scratch);
 }

@@ -274,8 +274,7 @@ static conic_status read_part(conic_context *context, exr_reader *reader) {
 
 conic_status conic_exr_read(conic_context *context, const char *path, conic_image *image) {
   exr_context_initializer_t settings;
-  exr_reader reader;
-  memset(&reader, 0, sizeof reader);
+  exr_reader reader = {0};
   FILE *file = conic_disk_open_stream(path, "rb");
   if (!file)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));

@@ -28,8 +28,7 @@ static void keep_message(exr_const_context_t file, exr_result_t code, const char
 static int64_t write_bytes(exr_const_context_t file, void *data, const void *bytes, uint64_t n_bytes, uint64_t offset,
                            exr_stream_error_func_ptr_t report) {
   conic_exr_stream *stream = data;
-  (void)file;
-  (void)report;
+  (void)file, (void)report;
   errno = 0;
   if (!stream->file)
     return (int64_t)n_bytes;
@@ -51,8 +50,7 @@ static int64_t read_bytes(exr_const_context_t file, void *data, void *bytes, uin
                           exr_stream_error_func_ptr_t report) {
   conic_exr_stream *stream = data;
   uint64_t n = 0;
-  (void)file;
-  (void)report;
+  (void)file, (void)report;
   while (n < n_bytes) {
     ptrdiff_t got = conic_disk_read_at(fileno(stream->file), (char *)bytes + n, (size_t)(n_bytes - n), offset + n);
     if (got < 0 && errno == EINTR)

@@ -17,14 +17,13 @@ enum { MOST_NUMBER = 1 << 24 };
 /* The samples of a pixel that the file takes: without alpha; whole numbers as floats, -1 where nothing is. */
 static void take_pixel(const void *plane, const conic_plane_description *description, size_t i_pixel, float *to) {
   size_t n = (size_t)description->n_channels, first = i_pixel * n;
-  for (size_t c = 0; c < n && c < 3; c++) {
+  for (size_t c = 0; c < n && c < 3; c++)
     if (!description->is_uint)
       to[c] = ((const float *)plane)[first + c];
     else if (((const uint32_t *)plane)[first + c] == CONIC_NO_ID)
       to[c] = -1.0f;
     else
       to[c] = (float)((const uint32_t *)plane)[first + c];
-  }
 }
 
 /* Writes the plane, the bottom row first. */

@@ -2,8 +2,6 @@
 #ifndef CONIC_IMAGE_SAMPLES_H
 #define CONIC_IMAGE_SAMPLES_H
 
-#include <stddef.h>
-
 #include "conic/image.h"
 
 typedef struct conic_samples_layout {

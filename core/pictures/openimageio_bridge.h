@@ -43,7 +43,7 @@ typedef enum conic_bridge_result {
 
 /* The module's one symbol, conic_openimageio_bridge. */
 typedef struct conic_bridge {
-  const char *version; /* as in every module (core/base/module.h) */
+  const char *version; /* as in every module (core/base/machine.h) */
 
   /* Finds the format of files with this ending. */
   conic_bridge_result (*find_writer)(const char *ending, conic_bridge_writer *writer,

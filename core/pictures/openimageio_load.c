@@ -1,6 +1,6 @@
 #include <stdio.h>
 
-#include "core/base/module.h"
+#include "core/base/machine.h"
 #include "core/pictures/openimageio_bridge.h"
 
 #if CONIC_HAVE_OPENIMAGEIO

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "core/base/color.h"
-#include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/files/file.h"

@@ -1,4 +1,4 @@
-#include "core/scans/e57.h"
+#include "core/formats/readers.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "core/base/message.h"
 #include "core/base/real.h"
 #include "core/base/trigonometry.h"
-#include "core/scans/e57_records.h"
+#include "core/scans/e57_file.h"
 #include "core/scans/sight.h"
 #include "core/splats/point_fields.h"
 #include "core/splats/raw_colors.h"

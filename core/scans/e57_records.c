@@ -1,4 +1,4 @@
-#include "core/scans/e57_records.h"
+#include "core/scans/e57_file.h"
 
 #include <string.h>
 

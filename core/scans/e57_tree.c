@@ -1,4 +1,4 @@
-#include "core/scans/e57_tree.h"
+#include "core/scans/e57_file.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,8 +14,7 @@ int conic_e57_column_find(const conic_e57_scan *scan, const char *name) {
 }
 
 void conic_e57_tree_release(conic_context *context, conic_e57_tree *tree) {
-  conic_memory_release(context, tree->scans);
-  conic_memory_release(context, tree->columns);
+  conic_memory_release_these(context, tree->scans, tree->columns);
   memset(tree, 0, sizeof *tree);
 }
 

@@ -1,9 +1,8 @@
-#include "core/scans/ptx.h"
+#include "core/formats/readers.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/base/memory.h"
 #include "core/base/real.h"
 #include "core/files/number.h"
 #include "core/scans/sight.h"

@@ -105,8 +105,7 @@ void conic_scene_destroy(conic_scene *scene) {
     return;
   conic_context *context = scene->context;
   conic_lattice_release(context, &scene->lattice);
-  conic_memory_release(context, scene->surface);
-  conic_memory_release(context, scene);
+  conic_memory_release_these(context, scene->surface, scene);
 }
 
 void *conic_scene_surface(conic_scene *scene, size_t bytes) {

@@ -91,22 +91,13 @@ conic_status conic_builder_add_field(conic_builder *builder, conic_splats_field 
 
 conic_status conic_builder_add_clip(conic_builder *builder, const conic_clip *clip) {
   conic_splats *points = &builder->model->points;
-  conic_status status = conic_memory_reserve(builder->context, &points->clips, points->n_clips, points->n_clips + 1,
-                                             &builder->clip_capacity, sizeof *points->clips);
-  if (status != CONIC_OK)
-    return status;
-  points->clips[points->n_clips++] = *clip;
-  return CONIC_OK;
+  return conic_memory_append(builder->context, &points->clips, &points->n_clips, &builder->clip_capacity, clip,
+                             sizeof *clip);
 }
 
 conic_status conic_builder_add_triangle(conic_builder *builder, uint32_t a, uint32_t b, uint32_t c) {
   conic_model *model = builder->model;
-  conic_status status =
-      conic_memory_reserve(builder->context, &model->triangles, model->n_triangles, model->n_triangles + 1,
-                           &builder->triangle_capacity, sizeof *model->triangles);
-  if (status != CONIC_OK)
-    return status;
   const uint32_t triangle[3] = {a, b, c};
-  memcpy(model->triangles[model->n_triangles++], triangle, sizeof triangle);
-  return CONIC_OK;
+  return conic_memory_append(builder->context, &model->triangles, &model->n_triangles, &builder->triangle_capacity,
+                             triangle, sizeof triangle);
 }

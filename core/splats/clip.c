@@ -15,12 +15,11 @@ void conic_clip_filter(conic_splats *splats, int (*is_dropped)(const void *cooki
 static int keep_lines(conic_clip *clip) {
   uint16_t n_lines = 0;
   int were_all = clip->n_lines >= 1 && clip->n_lines <= 2;
-  for (int i = 0; i < clip->n_lines && i < 2; i++) {
+  for (int i = 0; i < clip->n_lines && i < 2; i++)
     if (conic_clip_is_line(clip->lines[i]))
       memmove(clip->lines[n_lines++], clip->lines[i], sizeof clip->lines[i]);
     else
       were_all = 0;
-  }
   clip->n_lines = n_lines;
   return were_all;
 }

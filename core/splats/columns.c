@@ -191,6 +191,5 @@ conic_status conic_drawing_enter(conic_context *context, const char *who, const 
 }
 
 void conic_drawing_leave(conic_context *context, conic_entered_drawing *entered) {
-  conic_memory_release(context, entered->blocks[0]);
-  conic_memory_release(context, entered->blocks[1]);
+  conic_memory_release_these(context, entered->blocks[0], entered->blocks[1]);
 }

@@ -21,18 +21,12 @@ conic_status conic_faces_create(conic_context *context, conic_faces **faces) {
 void conic_faces_destroy(conic_context *context, conic_faces *faces) {
   if (!faces)
     return;
-  conic_memory_release(context, faces->normal_corners);
-  conic_memory_release(context, faces->texture_corners);
-  conic_memory_release(context, faces->material);
-  conic_memory_release(context, faces->normals);
-  conic_memory_release(context, faces->coordinates);
-  conic_memory_release(context, faces->material_names.bytes);
-  conic_memory_release(context, faces->libraries.bytes);
-  conic_memory_release(context, faces->pictures.bytes);
+  conic_memory_release_these(context, faces->normal_corners, faces->texture_corners, faces->material, faces->normals,
+                             faces->coordinates, faces->material_names.bytes, faces->libraries.bytes,
+                             faces->pictures.bytes);
   for (size_t i = 0; i < faces->n_made; i++)
     conic_texture_destroy(faces->made[i].texture);
-  conic_memory_release(context, faces->made);
-  conic_memory_release(context, faces);
+  conic_memory_release_these(context, faces->made, faces);
 }
 
 conic_status conic_faces_add(conic_context *context, conic_faces *faces, const uint32_t normals[3],
@@ -61,23 +55,14 @@ conic_status conic_faces_add(conic_context *context, conic_faces *faces, const u
 }
 
 conic_status conic_faces_add_normal(conic_context *context, conic_faces *faces, const double normal[3]) {
-  if (conic_memory_reserve(context, &faces->normals, faces->n_normals, faces->n_normals + 1, &faces->normal_room,
-                           sizeof *faces->normals) != CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  for (int axis = 0; axis < 3; axis++)
-    faces->normals[faces->n_normals][axis] = (float)normal[axis];
-  faces->n_normals++;
-  return CONIC_OK;
+  const float kept[3] = {(float)normal[0], (float)normal[1], (float)normal[2]};
+  return conic_memory_append(context, &faces->normals, &faces->n_normals, &faces->normal_room, kept, sizeof kept);
 }
 
 conic_status conic_faces_add_coordinate(conic_context *context, conic_faces *faces, const double coordinate[2]) {
-  if (conic_memory_reserve(context, &faces->coordinates, faces->n_coordinates, faces->n_coordinates + 1,
-                           &faces->coordinate_room, sizeof *faces->coordinates) != CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  faces->coordinates[faces->n_coordinates][0] = (float)coordinate[0];
-  faces->coordinates[faces->n_coordinates][1] = (float)coordinate[1];
-  faces->n_coordinates++;
-  return CONIC_OK;
+  const float kept[2] = {(float)coordinate[0], (float)coordinate[1]};
+  return conic_memory_append(context, &faces->coordinates, &faces->n_coordinates, &faces->coordinate_room, kept,
+                             sizeof kept);
 }
 
 void conic_faces_begin_vertices(conic_faces *faces) {
@@ -99,11 +84,7 @@ conic_status conic_faces_use_material(conic_context *context, conic_faces *faces
 }
 
 conic_status conic_faces_add_material(conic_context *context, conic_faces *faces, const conic_material *material) {
-  if (conic_memory_reserve(context, &faces->made, faces->n_made, faces->n_made + 1, &faces->made_room,
-                           sizeof *faces->made) != CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  faces->made[faces->n_made++] = *material;
-  return CONIC_OK;
+  return conic_memory_append(context, &faces->made, &faces->n_made, &faces->made_room, material, sizeof *material);
 }
 
 conic_status conic_texts_add(conic_context *context, conic_texts *texts, const char *text, size_t length) {

@@ -6,7 +6,80 @@
 #include "core/base/gaussian.h"
 #include "core/base/memory.h"
 #include "core/base/threads.h"
-#include "core/splats/smooth_fit.h"
+
+/* --- the smooth part as a polynomial of q and of q's part across, by least squares --- */
+
+/* It is fitted at so many q and directions. */
+enum { SMOOTH_PLACES = 9, SMOOTH_DIRECTIONS = 5, SMOOTH_NODES = SMOOTH_PLACES * SMOOTH_DIRECTIONS };
+
+enum { SMOOTH_TERMS = CONIC_PROFILE_SMOOTH_TERMS };
+
+/* The polynomials' values at the nodes, as orthogonal columns times a triangle. */
+typedef struct smooth_fit {
+  double column[SMOOTH_TERMS][SMOOTH_NODES];
+  double triangle[SMOOTH_TERMS][SMOOTH_TERMS];
+} smooth_fit;
+
+/* Of each coefficient, the powers of q and of its part across. */
+static const int powers[SMOOTH_TERMS][2] = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}, {6, 0}, {0, 1},
+                                            {1, 1}, {2, 1}, {3, 1}, {0, 2}, {1, 2}, {2, 2}, {0, 3}, {1, 3}};
+
+static double whole_power(double x, int power) {
+  double product = 1.0;
+  for (int i = 0; i < power; i++)
+    product *= x;
+  return product;
+}
+
+/* Over the support: 0 to 1. */
+static double smooth_place(int i_place) {
+  double v = (double)i_place / (double)(SMOOTH_PLACES - 1);
+  return v * v * (3.0 - 2.0 * v);
+}
+
+static double inner_product(const double *a, const double *b) {
+  double sum = 0.0;
+  for (int i = 0; i < SMOOTH_NODES; i++)
+    sum += a[i] * b[i];
+  return sum;
+}
+
+/* Gram and Schmidt's columns. */
+static void smooth_fit_begin(const double directions[SMOOTH_DIRECTIONS], smooth_fit *fit) {
+  for (int term = 0; term < SMOOTH_TERMS; term++) {
+    double *column = fit->column[term];
+    for (int i = 0; i < SMOOTH_NODES; i++) {
+      double q = smooth_place(i / SMOOTH_DIRECTIONS);
+      double across = q * directions[i % SMOOTH_DIRECTIONS];
+      column[i] = whole_power(q, powers[term][0]) * whole_power(across, powers[term][1]);
+    }
+    for (int before = 0; before < term; before++) {
+      double part = inner_product(fit->column[before], column);
+      fit->triangle[before][term] = part;
+      for (int i = 0; i < SMOOTH_NODES; i++)
+        column[i] -= part * fit->column[before][i];
+    }
+    double length = sqrt(inner_product(column, column));
+    fit->triangle[term][term] = length;
+    for (int i = 0; i < SMOOTH_NODES; i++)
+      column[i] /= length;
+  }
+}
+
+/* Finds the coefficients of the polynomial from its values, place by place. q ends at the support. */
+static void smooth_fit_solve(const smooth_fit *fit, const double values[SMOOTH_NODES], double support,
+                             float coefficients[SMOOTH_TERMS]) {
+  double solved[SMOOTH_TERMS];
+  for (int term = SMOOTH_TERMS - 1; term >= 0; term--) {
+    double rest = inner_product(fit->column[term], values);
+    for (int after = term + 1; after < SMOOTH_TERMS; after++)
+      rest -= fit->triangle[term][after] * solved[after];
+    solved[term] = rest / fit->triangle[term][term];
+    coefficients[term] = (float)(solved[term] / whole_power(support, powers[term][0] + powers[term][1]));
+  }
+}
+
+/* --- profiles --- */
 
 enum { LEVELS = CONIC_PROFILE_LEVELS, TERMS = CONIC_PROFILE_TERMS, RADII = CONIC_PROFILE_RADII };
 enum { SMOOTH = CONIC_PROFILE_SMOOTH_LEVELS };
@@ -254,21 +327,21 @@ static void fill_steep(profile_table *table, const normal_table *normal, int low
 /* Likewise of what is smooth. */
 static void fill_smooth(profile_table *table, const normal_table *normal, int low) {
   const double support = (double)conic_kernel_support(&table->kernel);
-  conic_smooth_fit fit;
+  smooth_fit fit;
   round_kernel blurred;
-  conic_smooth_fit_begin(directions, &fit);
+  smooth_fit_begin(directions, &fit);
   begin_kernel(&table->kernel, normal, smooth_share(low), &blurred);
   for (int high = low; high < SMOOTH; high++) {
     const double share[2] = {smooth_share(low), smooth_share(high)};
-    double peak = sqrt((1.0 - share[0]) * (1.0 - share[1])), values[CONIC_SMOOTH_NODES], turned[CONIC_SMOOTH_NODES];
-    for (int i = 0; i < CONIC_SMOOTH_NODES; i++) {
+    double peak = sqrt((1.0 - share[0]) * (1.0 - share[1])), values[SMOOTH_NODES], turned[SMOOTH_NODES];
+    for (int i = 0; i < SMOOTH_NODES; i++) {
       int place = i / TERMS, direction = i % TERMS;
-      values[i] = filter_kernel(&blurred, share, support * conic_smooth_place(place), directions[direction]) / peak;
+      values[i] = filter_kernel(&blurred, share, support * smooth_place(place), directions[direction]) / peak;
       turned[place * TERMS + TERMS - 1 - direction] = values[i];
     }
     float *smooth = table->values + CONIC_PROFILE_STEEP;
-    conic_smooth_fit_solve(&fit, values, support, smooth + (low * SMOOTH + high) * CONIC_PROFILE_SMOOTH_TERMS);
-    conic_smooth_fit_solve(&fit, turned, support, smooth + (high * SMOOTH + low) * CONIC_PROFILE_SMOOTH_TERMS);
+    smooth_fit_solve(&fit, values, support, smooth + (low * SMOOTH + high) * SMOOTH_TERMS);
+    smooth_fit_solve(&fit, turned, support, smooth + (high * SMOOTH + low) * SMOOTH_TERMS);
   }
 }
 

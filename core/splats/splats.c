@@ -5,7 +5,6 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/splats/clip.h"
 #include "core/splats/columns.h"
 #include "core/splats/point_values.h"
 #include "core/splats/splats_gather.h"

@@ -51,23 +51,14 @@ conic_status conic_triangles_allocate(conic_context *context, size_t count, size
 }
 
 void conic_triangles_release(conic_context *context, conic_triangles *triangles) {
-  for (int i = 0; i < 3; i++) {
-    conic_memory_release(context, triangles->position[i]);
-    conic_memory_release(context, triangles->color[i]);
-    conic_memory_release(context, triangles->normal[i]);
-  }
-  conic_memory_release(context, triangles->texture_coordinate[0]);
-  conic_memory_release(context, triangles->texture_coordinate[1]);
-  conic_memory_release(context, triangles->corners);
-  conic_memory_release(context, triangles->normal_corners);
-  conic_memory_release(context, triangles->texture_corners);
+  for (int i = 0; i < 3; i++)
+    conic_memory_release_these(context, triangles->position[i], triangles->color[i], triangles->normal[i]);
+  conic_memory_release_these(context, triangles->texture_coordinate[0], triangles->texture_coordinate[1],
+                             triangles->corners, triangles->normal_corners, triangles->texture_corners);
   for (size_t i = 0; triangles->materials && i < triangles->n_materials; i++)
     conic_texture_destroy(triangles->materials[i].texture);
-  conic_memory_release(context, triangles->materials);
-  conic_memory_release(context, triangles->material);
-  conic_memory_release(context, triangles->cluster);
-  conic_memory_release(context, triangles->scalar);
-  conic_memory_release(context, triangles->alpha);
+  conic_memory_release_these(context, triangles->materials, triangles->material, triangles->cluster, triangles->scalar,
+                             triangles->alpha);
   memset(triangles, 0, sizeof *triangles);
 }
 
@@ -182,8 +173,7 @@ conic_status conic_triangles_texture(conic_context *context, conic_triangles *tr
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; triangles->materials && i < triangles->n_materials; i++)
     conic_texture_destroy(triangles->materials[i].texture);
-  conic_memory_release(context, triangles->materials);
-  conic_memory_release(context, triangles->material);
+  conic_memory_release_these(context, triangles->materials, triangles->material);
   one->color[0] = one->color[1] = one->color[2] = 1.0f;
   one->texture = texture;
   triangles->materials = one;

@@ -7,7 +7,7 @@
 
 /* The module's one symbol, conic_curl_bridge: libcurl's functions, named without "curl_". */
 typedef struct conic_curl_bridge_functions {
-  const char *version; /* as of every module (core/base/module.h) */
+  const char *version; /* as of every module (core/base/machine.h) */
 
   CURLcode (*global_init)(long flags);
   void (*global_cleanup)(void);

@@ -18,8 +18,8 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "core/base/machine.h"
 #include "core/base/memory.h"
-#include "core/base/module.h"
 #include "lod/ranges/http_transfer.h"
 
 enum {

@@ -7,7 +7,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "oracle/gaussians/oracle_forks.h"
+#include "oracle/gaussians/oracle_uncertain.h"
 
 enum { PLACE_RUN = 1024, CELL_EDGE = 32 };
 
@@ -332,9 +332,7 @@ conic_status conic_oracle_meet_all(const oracle_bound_request *b, double x, doub
     if (status != CONIC_OK || !conic_oracle_uncertain_place(&b->doubting, i, &g) || !may_reach(&g, x, y) ||
         !conic_oracle_uncertain_color(&b->doubting, &g))
       continue;
-    status = conic_memory_reserve(b->context, gaussians, n_here, n_here + 1, &room, sizeof g);
-    if (status == CONIC_OK)
-      (*gaussians)[n_here++] = g;
+    status = conic_memory_append(b->context, gaussians, &n_here, &room, &g, sizeof g);
   }
   *meetings = status == CONIC_OK ? conic_memory_allocate(b->context, n_here, sizeof **meetings) : NULL;
   for (size_t i = 0; i < n_here && *meetings; i++)

@@ -13,7 +13,7 @@
  * here and two by each T before it, and any order rounds it at most n − 1 times. */
 #include <string.h>
 
-#include "oracle/gaussians/oracle_forks.h"
+#include "oracle/gaussians/oracle_uncertain.h"
 
 enum { MOST_FORKS = 8, FEW_FORKS = 2, N_SUMS = 8 };
 

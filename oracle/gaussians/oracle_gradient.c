@@ -4,12 +4,8 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/base/threads.h"
-#include "core/image/view_arguments.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
-#include "oracle/oracle_math.h"
 
 enum { SHOW_RUN = 1024, EDGE = 16 };
 
@@ -219,10 +215,8 @@ conic_status conic_oracle_differentiate(oracle_gradient_job *j) {
 void conic_oracle_gradient_end(oracle_gradient_job *j) {
   void *const all[] = {j->shown,  j->begin,  j->entries,  j->sums,    j->is_touched,
                        j->losses, j->totals, j->is_shown, j->cameras, j->doubts};
-  for (int k = 0; j->workers && k < conic_context_threads(j->context); k++) {
-    conic_memory_release(j->context, (void *)j->workers[k].shown);
-    conic_memory_release(j->context, j->workers[k].met);
-  }
+  for (int k = 0; j->workers && k < conic_context_threads(j->context); k++)
+    conic_memory_release_these(j->context, (void *)j->workers[k].shown, j->workers[k].met);
   conic_memory_release(j->context, j->workers);
   for (size_t k = 0; k < sizeof all / sizeof *all; k++)
     conic_memory_release(j->context, all[k]);

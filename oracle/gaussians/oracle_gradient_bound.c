@@ -10,10 +10,8 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/threads.h"
 #include "oracle/gaussians/oracle_bounded.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
-#include "oracle/gaussians/oracle_uncertain.h"
 
 #define UNIT ORACLE_FLOAT_UNIT
 
@@ -340,11 +338,8 @@ conic_status conic_oracle_judging_room(oracle_gradient_job *j) {
 void conic_oracle_judging_end(oracle_gradient_job *j) {
   oracle_gradient_judging *g = j->judging;
   for (int k = 0; g->of_threads && k < conic_context_threads(j->context); k++) {
-    conic_memory_release(j->context, g->of_threads[k].all);
-    conic_memory_release(j->context, g->of_threads[k].list);
-    conic_memory_release(j->context, g->of_threads[k].errors);
-    conic_memory_release(j->context, g->of_threads[k].base);
-    conic_memory_release(j->context, g->of_threads[k].other);
+    conic_memory_release_these(j->context, g->of_threads[k].all, g->of_threads[k].list, g->of_threads[k].errors,
+                               g->of_threads[k].base, g->of_threads[k].other);
   }
   void *const all[] = {g->offs, g->bounds, g->totals, g->is_open_pixel, g->of_threads};
   for (size_t k = 0; k < sizeof all / sizeof *all; k++)

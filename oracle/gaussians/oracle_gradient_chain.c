@@ -259,10 +259,9 @@ void conic_oracle_gradient_chain(const oracle_gaussian_view *view, const oracle_
                                  size_t i, const conic_float_model *model, const double *sums, oracle_parameters *to,
                                  oracle_camera_gradient *camera) {
   oracle_gaussian g;
-  space_gradient space;
+  space_gradient space = {0};
   double mean[3];
   memset(to, 0, sizeof *to);
-  memset(&space, 0, sizeof space);
   conic_oracle_gaussian_place(view, set, i, &g);
   for (int axis = 0; axis < 3; axis++)
     mean[axis] = set->origin[axis] + (double)set->position[axis][i];

@@ -15,9 +15,7 @@
 /* --- weights --- */
 
 void conic_gaussian_weights_release(conic_context *context, conic_gaussian_weights *weights) {
-  conic_memory_release(context, weights->rgb);
-  conic_memory_release(context, weights->alpha);
-  conic_memory_release(context, weights->z);
+  conic_memory_release_these(context, weights->rgb, weights->alpha, weights->z);
   memset(weights, 0, sizeof *weights);
 }
 

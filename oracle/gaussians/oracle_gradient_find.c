@@ -5,8 +5,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/threads.h"
-#include "core/image/view_arguments.h"
-#include "oracle/gaussians/oracle_entry.h"
+#include "oracle/gaussians/oracle_cells.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 #include "oracle/oracle_math.h"
 
@@ -139,11 +138,7 @@ static void note_doubts(void *data, size_t pixel, const oracle_meeting *meetings
 }
 
 static void pass_bound(void *data, size_t i, size_t pixel, const conic_gaussian_bound *bound, int i_thread) {
-  (void)data;
-  (void)i;
-  (void)pixel;
-  (void)bound;
-  (void)i_thread;
+  (void)data, (void)i, (void)pixel, (void)bound, (void)i_thread;
 }
 
 /* Of all pixels that have a weight. */

@@ -2,7 +2,7 @@
 #ifndef CONIC_ORACLE_GRADIENT_JOB_H
 #define CONIC_ORACLE_GRADIENT_JOB_H
 
-#include "oracle/gaussians/oracle_entry.h"
+#include "oracle/gaussians/oracle_cells.h"
 #include "oracle/gaussians/oracle_gradient.h"
 
 /* What a thread keeps from cell to cell. */
@@ -91,5 +91,18 @@ conic_status conic_oracle_gradient_room(conic_context *context, size_t n, int sh
 
 /* A pixel's weights; 0 where there are none. */
 int conic_oracle_pixel_weights(const conic_gaussian_weights *weights, size_t pixel, double of_pixel[N_WEIGHTS]);
+
+/* What judging a gradient needs of the chain. */
+
+/* Rows of J·V·R·S with all terms of one sign, and derivatives on the way. */
+typedef struct row_sizes {
+  double focal[2], slope[2], rows[2][3], by_rows[2][3], by_mean[3];
+} row_sizes;
+
+void conic_oracle_row_sizes(const oracle_gaussian_view *view, const oracle_gaussian *g, row_sizes *sizes);
+
+/* The chain of an ellipse with every term of one sign; `sums` are none below 0. */
+void conic_oracle_gradient_sizes(const oracle_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
+                                 const double *sums, oracle_parameters *to);
 
 #endif

@@ -1,5 +1,5 @@
 /* Somebody's gradient held against the one in double precision, within what floats and decisions in doubt may do. */
-#include "oracle/gaussians/oracle_gradient_judge.h"
+#include "oracle/gaussians/oracle_gradient_job.h"
 
 #include <string.h>
 
@@ -262,8 +262,7 @@ static void add_setup_in_float(const oracle_doubting *d, size_t i, const oracle_
   const conic_camera *camera = d->view->camera;
   const double unit = n_setup_units * ORACLE_FLOAT_UNIT, size = camera->width + camera->height;
   oracle_gaussian placed;
-  row_sizes s;
-  memset(&s, 0, sizeof s);
+  row_sizes s = {0};
   conic_oracle_gaussian_place(d->view, d->set, i, &placed);
   conic_oracle_row_sizes(d->view, &placed, &s);
   const double x = sqrt(oracle_dot(s.rows[0], s.rows[0]) + d->view->rules->dilation);

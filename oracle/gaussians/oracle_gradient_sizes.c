@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "oracle/gaussians/oracle_bounded.h"
-#include "oracle/gaussians/oracle_gradient_judge.h"
+#include "oracle/gaussians/oracle_gradient_job.h"
 
 void conic_oracle_row_sizes(const oracle_gaussian_view *view, const oracle_gaussian *g, row_sizes *s) {
   s->focal[0] = view->camera->fx;
@@ -106,10 +106,9 @@ static void size_color(const oracle_gaussian_view *view, const conic_gaussians *
 void conic_oracle_gradient_sizes(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i,
                                  const double *sums, oracle_parameters *to) {
   oracle_gaussian g;
-  row_sizes s;
+  row_sizes s = {0};
   double q[4], by_axes[3][3] = {{0.0}};
   memset(to, 0, sizeof *to);
-  memset(&s, 0, sizeof s);
   conic_oracle_gaussian_place(view, set, i, &g);
   const double length = conic_oracle_quaternion(view->rules, set, i, q);
   conic_oracle_row_sizes(view, &g, &s);

@@ -4,8 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
-#include "core/base/threads.h"
-#include "oracle/gaussians/oracle_entry.h"
+#include "oracle/gaussians/oracle_cells.h"
 #include "oracle/oracle_evidence.h"
 
 /* Where the picture's values may lie. */
@@ -241,9 +240,7 @@ static conic_status judge_all(oracle_entry *e, judge_job *j, conic_gaussian_verd
   for (int plane = 0; plane < CONIC_N_PLANES; plane++)
     verdict->planes[plane].is_compared = j->image->planes[plane] && judged_planes >> plane & 1;
   verdict->pass = verdict->pixels[CONIC_PIXEL_WRONG] == 0;
-  conic_memory_release(b->context, j->verdicts);
-  conic_memory_release(b->context, j->worst);
-  conic_memory_release(b->context, pixels);
+  conic_memory_release_these(b->context, j->verdicts, j->worst, pixels);
   return status;
 }
 
@@ -276,8 +273,7 @@ conic_status conic_gaussian_judge(conic_context *context, const conic_gaussians 
 }
 
 static void take_doubts(void *data, size_t i, size_t pixel, const conic_gaussian_bound *b, int i_thread) {
-  (void)i;
-  (void)i_thread;
+  (void)i, (void)i_thread;
   ((uint32_t *)data)[pixel] = b->doubts;
 }
 
@@ -299,8 +295,7 @@ conic_status conic_gaussian_find_doubts(conic_context *context, const conic_gaus
 }
 
 static void take_bound(void *data, size_t i, size_t pixel, const conic_gaussian_bound *b, int i_thread) {
-  (void)pixel;
-  (void)i_thread;
+  (void)pixel, (void)i_thread;
   ((conic_gaussian_bound *)data)[i] = *b;
 }
 

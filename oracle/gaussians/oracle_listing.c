@@ -5,8 +5,8 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/image/view_arguments.h"
-#include "oracle/gaussians/oracle_entry.h"
-#include "oracle/gaussians/oracle_forks.h"
+#include "oracle/gaussians/oracle_cells.h"
+#include "oracle/gaussians/oracle_uncertain.h"
 
 conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *gaussians, const conic_camera *camera,
                                 const conic_gaussian_options *options, const conic_float_model *model, int samples,
@@ -99,9 +99,7 @@ static conic_status bound_meetings(const oracle_bound_request *b, oracle_meeting
       meetings[from[i]].noted = those[i].noted;
   }
   conic_status status = those && from && steps ? CONIC_OK : CONIC_ERROR_MEMORY;
-  conic_memory_release(b->context, those);
-  conic_memory_release(b->context, from);
-  conic_memory_release(b->context, steps);
+  conic_memory_release_these(b->context, those, from, steps);
   return status;
 }
 
@@ -127,8 +125,7 @@ conic_status conic_gaussian_explain(conic_context *context, const conic_gaussian
     fill_entry(&e.bounding.doubting, &meetings[i], &run, &listing->entries[i]);
   listing->n = status == CONIC_OK ? n : 0;
   listing->has_ended = run.has_ended;
-  conic_memory_release(context, placed);
-  conic_memory_release(context, meetings);
+  conic_memory_release_these(context, placed, meetings);
   return status;
 }
 

@@ -351,13 +351,9 @@ void conic_patches_destroy(conic_patches *patches) {
     return;
   conic_context *context = patches->context;
   conic_surface_destroy(patches->surface);
-  conic_memory_release(context, patches->block);
-  conic_memory_release(context, patches->patches);
+  conic_memory_release_these(context, patches->block, patches->patches);
   conic_patches_release_frames(patches);
-  conic_memory_release(context, patches->counts);
-  conic_memory_release(context, patches->node_reach);
-  conic_memory_release(context, patches->node_radius);
-  conic_memory_release(context, patches);
+  conic_memory_release_these(context, patches->counts, patches->node_reach, patches->node_radius, patches);
 }
 
 void conic_patches_describe(const conic_patches *patches, conic_patches_report *report) {

@@ -176,8 +176,7 @@ static void release_samples(conic_context *context, conic_patches_frame *frame) 
 void conic_patches_release_frames(conic_patches *patches) {
   for (int i = 0; i < 2; i++) {
     release_samples(patches->context, &patches->frames[i]);
-    conic_memory_release(patches->context, patches->frames[i].plans);
-    conic_memory_release(patches->context, patches->frames[i].starts);
+    conic_memory_release_these(patches->context, patches->frames[i].plans, patches->frames[i].starts);
   }
 }
 
@@ -278,8 +277,7 @@ conic_status conic_patches_select(conic_patches *patches, const conic_camera *ca
     status = select_samples(&work, selection);
   else
     memset(work.frame->plans, CONIC_PLAN_CULLED, tree->n_slots);
-  conic_memory_release(context, work.chunk_starts);
-  conic_memory_release(context, work.chunk_kept);
+  conic_memory_release_these(context, work.chunk_starts, work.chunk_kept);
   return status;
 }
 

@@ -115,10 +115,7 @@ static conic_status fill_skin(const conic_skin_search *search, conic_skin *skin)
 
 static void release_search(conic_skin_search *search) {
   conic_context *context = search->context;
-  conic_memory_release(context, search->is_closed);
-  conic_memory_release(context, search->heads);
-  conic_memory_release(context, search->next);
-  conic_memory_release(context, search->triangles);
+  conic_memory_release_these(context, search->is_closed, search->heads, search->next, search->triangles);
   for (int axis = 0; axis < 3; axis++)
     conic_memory_release(context, search->normal[axis]);
   conic_neighbours_release(context, &search->tree);
@@ -149,10 +146,6 @@ conic_status conic_skin_find(conic_context *context, const conic_splats *splats,
 }
 
 void conic_skin_release(conic_context *context, conic_skin *skin) {
-  conic_memory_release(context, skin->corners);
-  conic_memory_release(context, skin->is_inner);
-  conic_memory_release(context, skin->normal);
-  conic_memory_release(context, skin->color);
-  conic_memory_release(context, skin->lift);
+  conic_memory_release_these(context, skin->corners, skin->is_inner, skin->normal, skin->color, skin->lift);
   memset(skin, 0, sizeof *skin);
 }

@@ -98,12 +98,11 @@ conic_status conic_skin_choose(conic_skin_search *search) {
     memset(search->heads, 0xFF, search->tree.n_slots * sizeof *search->heads);
     status = order_candidates(search, items);
   }
-  for (size_t i = 0; i < search->n_triangles && status == CONIC_OK; i++) {
+  for (size_t i = 0; i < search->n_triangles && status == CONIC_OK; i++)
     if (has_room(search, items[i].value))
       conic_skin_take(search, items[i].value);
     else
       search->triangles[items[i].value].n_votes = 0;
-  }
   conic_memory_release(context, items);
   return status;
 }

@@ -85,8 +85,7 @@ static conic_status take_round(skin_filling *f, size_t *n_taken) {
     }
   *n_taken = at - f->n_first;
   search->n_triangles = at;
-  conic_memory_release(search->context, sorted);
-  conic_memory_release(search->context, items);
+  conic_memory_release_these(search->context, sorted, items);
   return status;
 }
 

@@ -66,7 +66,6 @@ conic_status conic_skin_finish(conic_skin_search *search) {
   int is_there = p.parent && p.count && search->is_closed;
   if (is_there)
     finish_pieces(&p);
-  conic_memory_release(context, p.count);
-  conic_memory_release(context, p.parent);
+  conic_memory_release_these(context, p.count, p.parent);
   return is_there ? CONIC_OK : CONIC_ERROR_MEMORY;
 }

@@ -6,7 +6,7 @@
 #include "core/base/byte_order.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
-#include "core/files/file_fields.h"
+#include "core/files/file_body.h"
 #include "core/files/mapping.h"
 
 static const unsigned char magic[8] = {'C', 'O', 'N', 'I', 'C', 'L', 'P', '\n'};
