@@ -5,7 +5,6 @@
 
 #include "bench/bench_job.h"
 #include "cli/arguments.h"
-#include "cli/device_option.h"
 #include "core/base/nearest_word.h"
 #include "core/lanes/instruction_sets.h"
 

@@ -1,6 +1,5 @@
 /* conic chart: every method and kernel on every scene, every representation of a mesh, every profile of a Gaussian
  * scene, or any scene along its options: its error over its time. */
-#include "bench/chart.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -16,7 +15,6 @@
 #include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "core/files/disk.h"
-#include "core/files/file.h"
 
 /* --only: one of the two charts. */
 enum { ONLY_METHODS, ONLY_REPRESENTATIONS };

@@ -1,6 +1,5 @@
 /* The sums over a point's neighbours: of a few and of many, by every weight and degree. */
 #include "bench/loops/cross.h"
-#include "surface/loops/weight.h"
 #include "tests/support/bent_sheet.h"
 
 typedef struct surface_desk {

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"

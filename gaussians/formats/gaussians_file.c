@@ -11,7 +11,6 @@
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/inflate.h"
-#include "core/files/zip.h"
 #include "gaussians/formats/gaussian_formats.h"
 #include "gaussians/formats/gaussians_loan.h"
 

@@ -2,7 +2,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/threads.h"
 #include "raster/explain/deep_pixel.h"
 #include "raster/explain/pixel_contributions.h"
