@@ -58,15 +58,11 @@ static conic_status draw_charts(const chart_job *job) {
   return status;
 }
 
-static int is_told(const cli_session *session) {
-  return !session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0);
-}
-
 static int write_all(const chart_job *job) {
   conic_status status = write_tables(job);
   if (status == CONIC_OK)
     status = draw_charts(job);
-  if (status != CONIC_OK || !is_told(job->session))
+  if (status != CONIC_OK || !cli_json_leaves_text(job->session))
     return cli_exit_of(status);
   if (job->only != ONLY_REPRESENTATIONS)
     cli_method_chart_print(&job->methods);
@@ -76,9 +72,8 @@ static int write_all(const chart_job *job) {
 }
 
 static int write_statistics(const chart_job *job, double seconds) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(job->session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(job->session, &json);
   if (!json)
     return exit_code;
   const int n_named = job->gaussians.path ? 1 : job->scenes.n_paths;
@@ -91,7 +86,7 @@ static int write_statistics(const chart_job *job, double seconds) {
   cli_json_number(json, "seconds", seconds);
   cli_json_count(json, "threads", (uint64_t)conic_context_threads(job->session->context));
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 static int make_folder(const char *path) {
@@ -107,7 +102,7 @@ static int chart_gaussians(chart_job *job) {
     status = cli_gaussian_chart_write(job->session, job->folder, &job->gaussians);
   if (status != CONIC_OK)
     return cli_exit_of(status);
-  if (is_told(job->session))
+  if (cli_json_leaves_text(job->session))
     cli_gaussian_chart_print(&job->gaussians);
   return CLI_DONE;
 }
@@ -116,7 +111,7 @@ static int chart_scenes(chart_job *job) {
   int exit_code = cli_axis_chart_measure(job->session, &job->scenes);
   if (exit_code == CLI_DONE)
     exit_code = cli_exit_of(cli_axis_chart_write(job->session, job->folder, &job->scenes));
-  if (exit_code == CLI_DONE && is_told(job->session))
+  if (exit_code == CLI_DONE && cli_json_leaves_text(job->session))
     cli_axis_chart_print(&job->scenes);
   return exit_code;
 }

@@ -22,14 +22,13 @@ static void write_planes(cli_json *json, const conic_difference *difference) {
 }
 
 static int write_statistics(const cli_diff_job *job, const conic_difference *difference) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(job->session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(job->session, &json);
   if (!json)
     return exit_code;
   cli_diff_report(json, difference);
   write_planes(json, difference);
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 static void print_lone_planes(const cli_diff_job *job, const conic_image images[2], int which) {
@@ -82,7 +81,7 @@ static int diff_files(const cli_diff_job *job) {
   if (exit_code == CLI_DONE)
     exit_code = write_statistics(job, &difference);
   if (exit_code == CLI_DONE) {
-    if (!session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0))
+    if (cli_json_leaves_text(session))
       print_result(job, images, &difference);
     exit_code = cli_diff_is_past(&job->limits, &difference) ? CLI_DIFFERENT : CLI_DONE;
   }

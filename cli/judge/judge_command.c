@@ -10,12 +10,8 @@
 #include "cli/judge/suite_judge.h"
 #include "cli/outputs.h"
 
-static const unsigned gaussian_planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL |
-                                        1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_ID |
-                                        (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT));
-
 static unsigned judged_planes(const cli_judge_job *job) {
-  unsigned planes = cli_is_composited(&job->scene) ? gaussian_planes : CONIC_DRAWN_PLANES;
+  unsigned planes = cli_is_composited(&job->scene) ? CLI_COMPOSITED_PLANES : CONIC_DRAWN_PLANES;
   return job->scene.is_aov_given ? planes & job->scene.shot.planes : planes;
 }
 
@@ -120,7 +116,7 @@ static int tell_judged(cli_session *session, const cli_judge_job *job) {
   int exit_code = cli_judge_write_json(session, job);
   if (exit_code != CLI_DONE)
     return exit_code;
-  if (!session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0))
+  if (cli_json_leaves_text(session))
     cli_judge_print(job);
   return cli_judge_is_right(job) ? CLI_DONE : CLI_DIFFERENT;
 }

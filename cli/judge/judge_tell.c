@@ -150,10 +150,7 @@ static void write_part(cli_json *json, const cli_judge_part *p) {
   if (p->alpha > 0.0)
     cli_json_number(json, "alpha", p->alpha);
   cli_json_number(json, "depth", p->depth);
-  cli_json_array(json, "color");
-  for (int c = 0; c < 3; c++)
-    cli_json_number(json, NULL, p->color[c]);
-  cli_json_close(json);
+  cli_json_numbers(json, "color", p->color, 3);
   if (p->doubt)
     cli_json_text(json, "doubt", p->doubt);
   cli_json_close(json);
@@ -191,9 +188,8 @@ static void write_diagnosis(cli_json *json, const cli_judgement *found) {
 int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
   const cli_judgement *found = &job->found;
   double total = 0.0;
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(session, &json);
   if (!json)
     return exit_code;
   cli_json_text(json, "verdict", cli_judge_is_right(job) ? "right" : "wrong");
@@ -227,5 +223,5 @@ int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
     total += job->seconds[k];
   cli_json_number(json, "total", total);
   cli_json_close(json);
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }

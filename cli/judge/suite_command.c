@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/arguments.h"
+#include "cli/json_write.h"
 #include "cli/judge/suite_files.h"
 #include "cli/judge/suite_judge.h"
 #include "cli/judge/suite_profiles.h"
@@ -87,9 +88,7 @@ static int tell_suite_run(suite_run *run) {
     exit_code = cli_exit_of(cli_suite_write_junit(run));
   if (exit_code != CLI_DONE)
     return exit_code;
-  const cli_session *session = run->session;
-  if (!session->is_quiet && !(session->json_path && strcmp(session->json_path, "-") == 0) &&
-      !(run->junit_path && strcmp(run->junit_path, "-") == 0))
+  if (cli_json_leaves_text(run->session) && !(run->junit_path && strcmp(run->junit_path, "-") == 0))
     cli_suite_print(run);
   note_extra_pictures(run);
   return cli_suite_is_right(run) ? CLI_DONE : CLI_DIFFERENT;

@@ -141,9 +141,8 @@ static void report_case(cli_json *json, const suite_verdict *v) {
 }
 
 int cli_suite_write_json(const suite_run *run) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(run->session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(run->session, &json);
   if (!json)
     return exit_code;
   cli_json_text(json, "verdict", cli_suite_is_right(run) ? "right" : "wrong");
@@ -166,7 +165,7 @@ int cli_suite_write_json(const suite_run *run) {
     report_case(json, &run->verdicts[i]);
   cli_json_close(json);
   cli_json_count(json, "extra_pictures", run->n_extra);
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 /* --- JUnit --- */
