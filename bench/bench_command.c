@@ -81,7 +81,7 @@ static const cli_bench_machine *machine_of(const cli_bench_job *job, const cli_b
 }
 
 static void print(const cli_session *session, const cli_bench_job *job) {
-  if (session->is_quiet || (session->json_path && strcmp(session->json_path, "-") == 0))
+  if (!cli_json_leaves_text(session))
     return;
   if (job->is_curve)
     cli_bench_print_curve(job->lines, job->n_lines);
@@ -113,9 +113,8 @@ static void report_host(cli_json *json) {
 }
 
 static int report_bench(cli_session *session, const cli_bench_job *job) {
-  cli_json_file *file;
-  int exit_code = CLI_DONE;
-  cli_json *json = cli_json_open(session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(session, &json);
   if (!json)
     return exit_code;
   cli_json_text(json, "version", conic_version());
@@ -134,7 +133,7 @@ static int report_bench(cli_session *session, const cli_bench_job *job) {
   }
   cli_json_count(json, "wrong_pictures", (uint64_t)job->n_wrong);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 /* That the device is there is known before the minutes are spent, too. */

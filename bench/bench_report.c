@@ -96,10 +96,7 @@ static void report_times(cli_json *json, const cli_bench_line *line) {
   cli_json_number(json, "ms_first", line->first_ms);
   cli_json_number(json, "ms_choice", s->ms.lod);
   cli_json_number(json, "cpu_ms", line->cpu_ms);
-  cli_json_array(json, "ms_quartiles");
-  cli_json_number(json, NULL, line->quartile_ms[0]);
-  cli_json_number(json, NULL, line->quartile_ms[1]);
-  cli_json_close(json);
+  cli_json_numbers(json, "ms_quartiles", line->quartile_ms, 2);
   report_stages(json, "ns_per_splat", &s->ms, 1e6 / (double)s->splats_in);
   cli_json_number(json, "cycles", line->cycles);
   cli_json_number(json, "instructions", line->instructions);

@@ -210,7 +210,7 @@ static int measure_machines(bench_run *r) {
 }
 
 int cli_bench_run(cli_session *session, cli_bench_job *job) {
-  int prints = !session->is_quiet && !(session->json_path && strcmp(session->json_path, "-") == 0);
+  int prints = cli_json_leaves_text(session);
   bench_run *r = calloc(1, sizeof *r);
   if (!r)
     return cli_error(CLI_RESOURCE, "bench: out of memory");

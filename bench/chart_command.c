@@ -1,6 +1,5 @@
 /* conic chart: every method and kernel on every scene, every representation of a mesh, every profile of a Gaussian
  * scene, or any scene along its options: its error over its time. */
-#include "bench/chart.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -16,7 +15,6 @@
 #include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "core/files/disk.h"
-#include "core/files/file.h"
 
 /* --only: one of the two charts. */
 enum { ONLY_METHODS, ONLY_REPRESENTATIONS };
@@ -33,54 +31,9 @@ typedef struct chart_job {
   cli_method_chart methods;
 } chart_job;
 
-static conic_status measure_all(chart_job *job) {
-  conic_status status = CONIC_OK;
-  if (job->only != ONLY_METHODS)
-    status = cli_mesh_chart_measure(job->session, &job->mesh);
-  if (status == CONIC_OK && job->only != ONLY_REPRESENTATIONS)
-    status = cli_method_chart_measure(job->session, &job->methods);
-  return status;
-}
-
-static conic_status write_tables(const chart_job *job) {
-  conic_status status = CONIC_OK;
-  if (job->only != ONLY_METHODS)
-    status = cli_mesh_chart_write(job->session, job->folder, &job->mesh);
-  return status == CONIC_OK && job->only != ONLY_REPRESENTATIONS
-             ? cli_method_chart_write(job->session, job->folder, &job->methods)
-             : status;
-}
-
-static conic_status draw_charts(const chart_job *job) {
-  conic_status status = CONIC_OK;
-  if (job->only != ONLY_METHODS)
-    status = cli_mesh_chart_draw(job->session, job->folder, &job->mesh);
-  if (status == CONIC_OK && job->only != ONLY_REPRESENTATIONS)
-    status = cli_method_chart_draw(job->session, job->folder, &job->methods);
-  return status;
-}
-
-static int is_told(const cli_session *session) {
-  return !session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0);
-}
-
-static int write_all(const chart_job *job) {
-  conic_status status = write_tables(job);
-  if (status == CONIC_OK)
-    status = draw_charts(job);
-  if (status != CONIC_OK || !is_told(job->session))
-    return cli_exit_of(status);
-  if (job->only != ONLY_REPRESENTATIONS)
-    cli_method_chart_print(&job->methods);
-  if (job->only != ONLY_METHODS)
-    cli_mesh_chart_print(&job->mesh);
-  return CLI_DONE;
-}
-
 static int write_statistics(const chart_job *job, double seconds) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(job->session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(job->session, &json);
   if (!json)
     return exit_code;
   const int n_named = job->gaussians.path ? 1 : job->scenes.n_paths;
@@ -93,7 +46,7 @@ static int write_statistics(const chart_job *job, double seconds) {
   cli_json_number(json, "seconds", seconds);
   cli_json_count(json, "threads", (uint64_t)conic_context_threads(job->session->context));
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 static int make_folder(const char *path) {
@@ -109,7 +62,7 @@ static int chart_gaussians(chart_job *job) {
     status = cli_gaussian_chart_write(job->session, job->folder, &job->gaussians);
   if (status != CONIC_OK)
     return cli_exit_of(status);
-  if (is_told(job->session))
+  if (cli_json_leaves_text(job->session))
     cli_gaussian_chart_print(&job->gaussians);
   return CLI_DONE;
 }
@@ -118,14 +71,27 @@ static int chart_scenes(chart_job *job) {
   int exit_code = cli_axis_chart_measure(job->session, &job->scenes);
   if (exit_code == CLI_DONE)
     exit_code = cli_exit_of(cli_axis_chart_write(job->session, job->folder, &job->scenes));
-  if (exit_code == CLI_DONE && is_told(job->session))
+  if (exit_code == CLI_DONE && cli_json_leaves_text(job->session))
     cli_axis_chart_print(&job->scenes);
   return exit_code;
 }
 
 static int chart_methods(chart_job *job) {
-  conic_status status = measure_all(job);
-  return status == CONIC_OK ? write_all(job) : cli_exit_of(status);
+  const int has_models = job->only != ONLY_METHODS, has_methods = job->only != ONLY_REPRESENTATIONS;
+  conic_status status = has_models ? cli_mesh_chart_measure(job->session, &job->mesh) : CONIC_OK;
+  if (status == CONIC_OK && has_methods)
+    status = cli_method_chart_measure(job->session, &job->methods);
+  if (status == CONIC_OK && has_models)
+    status = cli_mesh_chart_write(job->session, job->folder, &job->mesh);
+  if (status == CONIC_OK && has_methods)
+    status = cli_method_chart_write(job->session, job->folder, &job->methods);
+  if (status != CONIC_OK || !cli_json_leaves_text(job->session))
+    return cli_exit_of(status);
+  if (has_methods)
+    cli_method_chart_print(&job->methods);
+  if (has_models)
+    cli_mesh_chart_print(&job->mesh);
+  return CLI_DONE;
 }
 
 static int chart(chart_job *job) {

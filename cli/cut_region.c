@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/real.h"
 #include "core/files/input.h"
 #include "core/files/number.h"

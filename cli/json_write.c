@@ -171,50 +171,50 @@ void cli_json_hash(cli_json *json, const char *key, uint64_t value) {
   cli_json_text(json, key, text);
 }
 
-struct cli_json_file {
-  conic_output *output; /* null: a host's run */
-  cli_json json;
-};
-
-cli_json *cli_json_open(cli_session *session, cli_json_file **file, int *exit_code) {
-  *file = NULL;
+int cli_json_open(cli_session *session, cli_json **json) {
+  *json = NULL;
   if (!session->json_path || !cli_session_speaks(session))
-    return NULL;
-  cli_json_file *made = malloc(sizeof *made);
-  if (!made) {
-    *exit_code = cli_error(CLI_RESOURCE, "%s: out of memory", session->json_path);
-    return NULL;
-  }
-  conic_status status = CONIC_OK;
-  memset(made, 0, sizeof *made);
-  if (!session->host)
-    status = conic_output_open(session->context, session->json_path, &made->output);
+    return CLI_DONE;
+  cli_json *made = calloc(1, sizeof *made);
+  if (!made)
+    return cli_error(CLI_RESOURCE, "%s: out of memory", session->json_path);
+  conic_output *output = NULL;
+  conic_status status = session->host ? CONIC_OK : conic_output_open(session->context, session->json_path, &output);
   if (status != CONIC_OK) {
     free(made);
-    *exit_code = cli_exit_of(status);
-    return NULL;
+    return cli_exit_of(status);
   }
-  if (session->host) {
+  if (session->host)
     cli_host_release(session->host);
-    made->json.host = session->host;
-  } else
-    cli_json_begin(&made->json, conic_output_stream(made->output));
-  *file = made;
-  return &made->json;
+  else
+    cli_json_begin(made, conic_output_stream(output));
+  made->host = session->host;
+  made->output = output;
+  *json = made;
+  return CLI_DONE;
 }
 
-int cli_json_finish(cli_json_file *file) {
-  if (!file)
-    return CLI_DONE;
+int cli_json_finish(cli_json *json) {
   conic_status status = CONIC_OK;
-  if (file->json.host)
-    status = file->json.host->facts_are_lost ? CONIC_ERROR_MEMORY : CONIC_OK;
+  if (json->host)
+    status = json->host->facts_are_lost ? CONIC_ERROR_MEMORY : CONIC_OK;
   else {
-    cli_json_end(&file->json); /* what it says of a file's stream, commit finds again */
-    status = conic_output_commit(file->output);
+    cli_json_end(json); /* what it says of a file's stream, commit finds again */
+    status = conic_output_commit(json->output);
   }
-  free(file);
+  free(json);
   return cli_exit_of(status);
+}
+
+int cli_json_leaves_text(const cli_session *session) {
+  return !session->is_quiet && !(session->json_path && strcmp(session->json_path, "-") == 0);
+}
+
+void cli_json_numbers(cli_json *json, const char *key, const double *values, int n) {
+  cli_json_array(json, key);
+  for (int i = 0; i < n; i++)
+    cli_json_number(json, NULL, values[i]);
+  cli_json_close(json);
 }
 
 void cli_json_skipped(cli_json *json, const conic_repairs *repairs) {

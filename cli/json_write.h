@@ -12,7 +12,8 @@ struct cli_host;
 
 typedef struct cli_json {
   FILE *to;
-  struct cli_host *host; /* null, or who gets records in the place of text (cli/host.h) */
+  struct cli_host *host;       /* null, or who gets records in the place of text (cli/host.h) */
+  struct conic_output *output; /* of a session's --json */
   int depth, has_items[32];
 } cli_json;
 
@@ -26,18 +27,20 @@ void cli_json_value(cli_json *json, const char *key, const char *value); /* whic
 void cli_json_number(cli_json *json, const char *key, double value);
 void cli_json_count(cli_json *json, const char *key, uint64_t value);
 void cli_json_bool(cli_json *json, const char *key, int value);
-void cli_json_hash(cli_json *json, const char *key, uint64_t value); /* 16 hex digits */
+void cli_json_hash(cli_json *json, const char *key, uint64_t value);                 /* 16 hex digits */
+void cli_json_numbers(cli_json *json, const char *key, const double *values, int n); /* as an array */
 
 /* The object "skipped": what was left out or put right, and why. */
 void cli_json_skipped(cli_json *json, const conic_repairs *repairs);
 
 struct cli_session;
 
-/* Opens the session's --json file ("-" is standard output) for cli_json; null where none was asked for or, after a
- * message, where it can't be written (*exit_code is then set). Ended by cli_json_finish, which returns the exit code.
- */
-typedef struct cli_json_file cli_json_file;
-cli_json *cli_json_open(struct cli_session *session, cli_json_file **file, int *exit_code);
-int cli_json_finish(cli_json_file *file);
+/* Opens the session's --json file ("-" is standard output). Returns CLI_DONE or, after a message, the exit code; *json
+ * is null then, and where none was asked for. Ended by cli_json_finish, which returns the exit code. */
+int cli_json_open(struct cli_session *session, cli_json **json);
+int cli_json_finish(cli_json *json);
+
+/* Whether standard output is for people: the session is not quiet, and --json does not go there. */
+int cli_json_leaves_text(const struct cli_session *session);
 
 #endif

@@ -1,7 +1,6 @@
 #include "cli/session_team.h"
 
 #include <pthread.h>
-#include <string.h>
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static const conic_executor *own_team; /* null: this process is alone */

@@ -82,14 +82,13 @@ static int count_stages(const cli_build *build) {
 }
 
 static int write_report(cli_build *build, const cli_build_steps *steps) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(build->session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(build->session, &json);
   if (!json)
     return exit_code;
   steps->report(json, build);
   cli_team_report_write(json, "points", &build->team);
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 /* Agrees on all processes' exit code. Only the first process reports anything afterwards. */

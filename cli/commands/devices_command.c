@@ -31,16 +31,15 @@ static void report_device(cli_json *json, const conic_opencl_device *d) {
 }
 
 static int report_devices(cli_session *session, const conic_opencl_device *devices, size_t n) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(session, &json);
   if (!json)
     return exit_code;
   cli_json_object(json, "devices");
   for (size_t i = 0; i < n; i++)
     report_device(json, &devices[i]);
   cli_json_close(json);
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 static int list(cli_session *session) {
@@ -52,7 +51,7 @@ static int list(cli_session *session) {
   conic_status status = conic_opencl_devices(session->context, &devices, &n);
   if (status != CONIC_OK)
     return cli_exit_of(status);
-  int prints = !session->is_quiet && !(session->json_path && session->json_path[0] == '-' && !session->json_path[1]);
+  int prints = cli_json_leaves_text(session);
   for (size_t i = 0; i < n && prints; i++)
     print_device(&devices[i]);
   if (n == 0 && prints)

@@ -23,9 +23,8 @@ static void write_planes(cli_json *json, const conic_difference *difference) {
 }
 
 static int write_statistics(const cli_diff_job *job, const conic_difference *difference, const cli_diff_shots *shots) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(job->session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(job->session, &json);
   if (!json)
     return exit_code;
   cli_diff_report(json, difference);
@@ -33,7 +32,7 @@ static int write_statistics(const cli_diff_job *job, const conic_difference *dif
   conic_status status = cli_diff_shots_report(json, job->session, shots);
   if (status != CONIC_OK)
     exit_code = cli_exit_of(status);
-  int finished = cli_json_finish(file);
+  int finished = cli_json_finish(json);
   return exit_code == CLI_DONE ? finished : exit_code;
 }
 
@@ -90,7 +89,7 @@ static int diff_files(const cli_diff_job *job) {
   if (exit_code == CLI_DONE)
     exit_code = write_statistics(job, &difference, &shots);
   if (exit_code == CLI_DONE) {
-    if (!session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0)) {
+    if (cli_json_leaves_text(session)) {
       print_result(job, images, &difference);
       cli_diff_shots_print(session, &shots);
     }

@@ -70,9 +70,8 @@ static void report_view(cli_json *json, const cli_diff_view *view) {
 }
 
 static int report_views(const cli_diff_job *job, const cli_diff_views *views) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(job->session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(job->session, &json);
   if (!json)
     return exit_code;
   cli_json_bool(json, "identical", is_identical(views));
@@ -88,7 +87,7 @@ static int report_views(const cli_diff_job *job, const cli_diff_views *views) {
   cli_json_close(json);
   report_lone(json, "only_in_a", views, 0);
   report_lone(json, "only_in_b", views, 1);
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 /* --- CSV --- */
@@ -201,12 +200,11 @@ static int measure_view(const cli_diff_job *job, cli_diff_view *view) {
 }
 
 static int tell_views(const cli_diff_job *job, const cli_diff_views *views) {
-  const char *csv = job->csv_path, *json = job->session->json_path;
-  int is_taken = (csv && strcmp(csv, "-") == 0) || (json && strcmp(json, "-") == 0);
+  const char *csv = job->csv_path;
   int exit_code = csv ? cli_exit_of(write_csv(job, views)) : CLI_DONE;
   if (exit_code == CLI_DONE)
     exit_code = report_views(job, views);
-  if (exit_code == CLI_DONE && !is_taken && !job->session->is_quiet)
+  if (exit_code == CLI_DONE && cli_json_leaves_text(job->session) && !(csv && strcmp(csv, "-") == 0))
     print_views(job, views);
   return exit_code;
 }

@@ -38,16 +38,9 @@ static int parse_pixel(const char *text, void *value) {
   return 1;
 }
 
-static void write_numbers(cli_json *json, const char *key, const double *values, int n) {
-  cli_json_array(json, key);
-  for (int i = 0; i < n; i++)
-    cli_json_number(json, NULL, values[i]);
-  cli_json_close(json);
-}
-
 static void write_vector(cli_json *json, const char *key, const float vector[3]) {
   double wide[3] = {(double)vector[0], (double)vector[1], (double)vector[2]};
-  write_numbers(json, key, wide, 3);
+  cli_json_numbers(json, key, wide, 3);
 }
 
 /* A splat's number in the drawing; and the point, node or cluster that it was chosen for. */
@@ -72,11 +65,11 @@ static void write_projection(cli_json *json, const explain_job *job, const conic
   if (p->fate > CONIC_FATE_RAY)
     return;
   const double box[4] = {p->x_begin, p->y_begin, p->x_end, p->y_end};
-  write_numbers(json, "box", box, 4);
+  cli_json_numbers(json, "box", box, 4);
   if (p->fate == CONIC_FATE_VARIANCE) {
-    write_numbers(json, "center", p->center_px, 2);
-    write_numbers(json, "variance", p->variance_px, 3);
-    write_numbers(json, "conic", p->conic, 3);
+    cli_json_numbers(json, "center", p->center_px, 2);
+    cli_json_numbers(json, "variance", p->variance_px, 3);
+    cli_json_numbers(json, "conic", p->conic, 3);
   }
   cli_json_number(json, "amplitude", p->amplitude);
   cli_json_number(json, "nearest_z", p->nearest_z);
@@ -163,27 +156,6 @@ static void write_triangles(cli_json *json, const explain_job *job, const conic_
   cli_json_close(json);
 }
 
-/* Writes the pixel as drawn. */
-static void write_planes(cli_json *json, const explain_job *job) {
-  size_t at = (size_t)job->pixel[1] * (size_t)job->image.width + (size_t)job->pixel[0];
-  cli_json_object(json, "planes");
-  for (int i = 0; i < CONIC_N_PLANES; i++) {
-    if (!job->image.planes[i])
-      continue;
-    const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
-    size_t n = (size_t)plane->n_channels;
-    double values[4];
-    for (size_t c = 0; c < n; c++)
-      values[c] = plane->is_uint ? (double)((const uint32_t *)job->image.planes[i])[n * at + c]
-                                 : (double)((const float *)job->image.planes[i])[n * at + c];
-    if (n == 1)
-      cli_json_number(json, plane->name, values[0]);
-    else
-      write_numbers(json, plane->name, values, (int)n);
-  }
-  cli_json_close(json);
-}
-
 static conic_status look_at_pixel(const explain_job *job, at_pixel *at) {
   const int x = job->pixel[0], y = job->pixel[1];
   float weight = 0.0f;
@@ -212,8 +184,8 @@ static conic_status write_pixel(cli_json *json, const explain_job *job) {
   conic_status status = look_at_pixel(job, &at);
   if (status != CONIC_OK)
     return status;
-  write_numbers(json, "pixel", pixel, 2);
-  write_planes(json, job);
+  cli_json_numbers(json, "pixel", pixel, 2);
+  cli_explain_planes(json, &job->image, job->pixel[0], job->pixel[1]);
   cli_json_number(json, "threshold", (double)at.threshold);
   cli_json_object(json, "counts");
   for (int i = 0; i < CONIC_N_CONTRIBUTION_VERDICTS; i++)
@@ -242,10 +214,9 @@ static conic_status write_splat(cli_json *json, const explain_job *job) {
 }
 
 static int write_report(cli_session *session, const explain_job *job) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
+  cli_json *json;
   conic_status status = CONIC_OK;
-  cli_json *json = cli_json_open(session, &file, &exit_code);
+  int exit_code = cli_json_open(session, &json);
   if (!json)
     return exit_code;
   cli_json_text(json, "method", cli_method_name(&job->scene));
@@ -257,7 +228,7 @@ static int write_report(cli_session *session, const explain_job *job) {
     status = write_splat(json, job);
   if (job->is_pixel_given && status == CONIC_OK)
     status = write_pixel(json, job);
-  exit_code = cli_json_finish(file);
+  exit_code = cli_json_finish(json);
   return status == CONIC_OK ? exit_code : cli_exit_of(status);
 }
 

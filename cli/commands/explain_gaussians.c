@@ -4,19 +4,16 @@
 #include "cli/render/sample_options.h"
 #include "conic/source.h"
 
+/* A number alone, or an array of several. */
 static void write_list(cli_json *json, const char *key, const double *values, int n) {
-  if (n == 1) {
+  if (n == 1)
     cli_json_number(json, key, values[0]);
-    return;
-  }
-  cli_json_array(json, key);
-  for (int i = 0; i < n; i++)
-    cli_json_number(json, NULL, values[i]);
-  cli_json_close(json);
+  else
+    cli_json_numbers(json, key, values, n);
 }
 
-/* Writes the pixel as drawn. */
-static void write_drawn(cli_json *json, const conic_image *image, size_t at) {
+void cli_explain_planes(cli_json *json, const conic_image *image, int x, int y) {
+  const size_t at = (size_t)y * (size_t)image->width + (size_t)x;
   cli_json_object(json, "planes");
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
@@ -102,25 +99,21 @@ static void write_listing(cli_json *json, const conic_gaussian_listing *listing)
 
 static int write_explanation(cli_session *session, const cli_render_job *scene, const conic_image *image, int x, int y,
                              const conic_gaussian_listing *listing) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
+  cli_json *json;
   const double pixel[2] = {x, y};
-  cli_json *json = cli_json_open(session, &file, &exit_code);
+  int exit_code = cli_json_open(session, &json);
   if (!json)
     return exit_code;
   cli_json_text(json, "profile", conic_gaussian_profile_name(scene->shot.gaussians.profile));
   cli_json_count(json, "width", (uint64_t)image->width);
   cli_json_count(json, "height", (uint64_t)image->height);
   write_list(json, "pixel", pixel, 2);
-  write_drawn(json, image, (size_t)y * (size_t)image->width + (size_t)x);
+  cli_explain_planes(json, image, x, y);
   write_listing(json, listing);
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 int cli_explain_composited(cli_session *session, cli_render_job *scene, int x, int y) {
-  const unsigned planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL |
-                          1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_ID |
-                          (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT));
   const conic_gaussian_options options = cli_gaussian_options(scene);
   conic_gaussian_listing listing = {.n = 0};
   conic_image image = {.width = 0};
@@ -129,7 +122,7 @@ int cli_explain_composited(cli_session *session, cli_render_job *scene, int x, i
   if (status == CONIC_OK && (x >= camera.width || y >= camera.height))
     return cli_usage("explain: the pixel %d,%d is not in a picture of %d x %d", x, y, camera.width, camera.height);
   if (status == CONIC_OK)
-    status = conic_image_allocate(session->context, camera.width, camera.height, planes, &image);
+    status = conic_image_allocate(session->context, camera.width, camera.height, CLI_COMPOSITED_PLANES, &image);
   if (status == CONIC_OK)
     status = conic_source_draw(scene->source, scene->renderer, &camera, &scene->shot.render, &scene->shot.view, &image,
                                &scene->statistics);

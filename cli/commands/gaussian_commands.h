@@ -2,8 +2,14 @@
 #ifndef CONIC_GAUSSIAN_COMMANDS_H
 #define CONIC_GAUSSIAN_COMMANDS_H
 
+#include "cli/json_write.h"
 #include "cli/scene/render_job.h"
 #include "conic/gaussian_judge.h"
+
+/* The planes of such scenes that can be judged and explained. */
+#define CLI_COMPOSITED_PLANES                                                                                          \
+  (1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_COUNT |                 \
+   1u << CONIC_PLANE_ID | (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT)))
 
 /* Whether the scene is composited; known once the arguments are parsed. */
 int cli_is_composited(const cli_render_job *scene);
@@ -16,5 +22,7 @@ int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_
 
 /* Explains a pixel. Returns the exit code. */
 int cli_explain_composited(cli_session *session, cli_render_job *scene, int x, int y);
+/* Writes the object "planes": a pixel as it is drawn, of either kind of scene. */
+void cli_explain_planes(cli_json *json, const conic_image *image, int x, int y);
 
 #endif

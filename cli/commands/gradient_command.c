@@ -64,9 +64,8 @@ static void write_greatest(cli_json *json, const conic_gaussian_gradient *g) {
 
 static int report_gradient(cli_session *session, const gradient_job *job) {
   const conic_gaussian_gradient *g = &job->gradient;
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(session, &json);
   if (!json)
     return exit_code;
   cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.shot.gaussians.profile));
@@ -89,13 +88,12 @@ static int report_gradient(cli_session *session, const gradient_job *job) {
   cli_json_number(json, "gradient", job->ms);
   cli_json_close(json);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 static void tell_gradient(const cli_session *session, const gradient_job *job) {
   const conic_gaussian_gradient *g = &job->gradient;
-  if (session->is_quiet || (session->json_path && strcmp(session->json_path, "-") == 0) ||
-      (job->output && strcmp(job->output, "-") == 0))
+  if (!cli_json_leaves_text(session) || (job->output && strcmp(job->output, "-") == 0))
     return;
   printf("L = %.9g; %zu of %zu Gaussians are shown", g->loss, g->n_shown, g->count);
   if (!job->leaves_doubts)

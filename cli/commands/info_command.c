@@ -180,9 +180,8 @@ static void report_image(cli_json *json, const info_job *job) {
 }
 
 static int report(cli_session *session, const info_job *job) {
-  cli_json_file *file;
-  int exit_code = CLI_DONE;
-  cli_json *json = cli_json_open(session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(session, &json);
   if (!json)
     return exit_code;
   cli_json_text(json, "kind", kind_of(job));
@@ -198,7 +197,7 @@ static int report(cli_session *session, const info_job *job) {
     report_image(json, job);
   if (job->is_check)
     cli_json_bool(json, "sound", job->facts ? cli_facts_are_sound(job->facts) : job->n_wrong_samples == 0);
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 static int run(cli_session *session, int argc, char **argv) {

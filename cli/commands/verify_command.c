@@ -5,8 +5,6 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
-#include "cli/commands/verify_fault.h"
-#include "cli/commands/verify_mean.h"
 #include "cli/commands/verify_reference.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
@@ -139,9 +137,8 @@ static void report_weights(cli_json *json, const conic_weight_error *error) {
 }
 
 static int write_statistics(cli_session *session, const verify_job *job) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(session, &json);
   if (!json)
     return exit_code;
   cli_json_text(json, "against", conic_oracle_question_name((conic_oracle_question)job->question));
@@ -158,7 +155,7 @@ static int write_statistics(cli_session *session, const verify_job *job) {
   cli_json_number(json, "oracle", job->oracle_ms);
   cli_json_close(json);
   cli_json_bool(json, "pass", job->verdict.pass);
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 static void print_unstable(const verify_job *job) {
@@ -236,7 +233,7 @@ static int finish(cli_session *session, const verify_job *job) {
   int exit_code = write_statistics(session, job);
   if (exit_code != CLI_DONE)
     return exit_code;
-  if (!session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0))
+  if (cli_json_leaves_text(session))
     print_result(job);
   return job->verdict.pass ? CLI_DONE : CLI_DIFFERENT;
 }
@@ -279,13 +276,10 @@ static int check_samples(const cli_session *session, verify_job *job) {
 
 /* Checks which planes can be judged. */
 static int check_judged_planes(verify_job *job) {
-  const unsigned composited = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL |
-                              1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_ID |
-                              (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT));
   int is_composited = cli_is_composited(&job->scene);
   if (is_composited && !job->scene.is_aov_given)
-    job->scene.shot.planes = composited;
-  if (is_composited && job->scene.shot.planes & ~composited)
+    job->scene.shot.planes = CLI_COMPOSITED_PLANES;
+  if (is_composited && job->scene.shot.planes & ~CLI_COMPOSITED_PLANES)
     return cli_usage("verify: of a Gaussian scene, it judges rgba, Z, N, count, id, T, medianZ, inverseZ and last");
   if (is_composited && job->question == CONIC_ORACLE_EXACT)
     return cli_usage("verify: a Gaussian scene is judged by its profile, and --against exact is of splats");

@@ -2,7 +2,6 @@
 #include <string.h>
 
 #include "cli/commands/gaussian_commands.h"
-#include "cli/commands/verify_fault.h"
 #include "cli/commands/verify_reference.h"
 #include "cli/render/sample_options.h"
 #include "conic/source.h"
@@ -114,16 +113,15 @@ static conic_status draw_composited(cli_session *session, cli_render_job *scene,
 }
 
 static int tell_judgement(cli_session *session, const gaussian_report *r) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(session, &json);
   if (json) {
     write_verdict(json, r);
-    exit_code = cli_json_finish(file);
+    exit_code = cli_json_finish(json);
   }
   if (exit_code != CLI_DONE)
     return exit_code;
-  if (!session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0))
+  if (cli_json_leaves_text(session))
     print_verdict(r);
   return r->verdict.pass ? CLI_DONE : CLI_DIFFERENT;
 }

@@ -1,5 +1,4 @@
 /* The contributions that weigh most in the worst pixels. */
-#include <string.h>
 
 #include "cli/commands/gaussian_commands.h"
 #include "cli/judge/judge_job.h"

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
@@ -22,13 +21,6 @@ typedef struct gradients_job {
 } gradients_job;
 
 static const char *const gradient_classes[CONIC_N_GAUSSIAN_CLASSES] = {"equal", "rounding", "explained", "wrong"};
-
-int cli_gradients_has_option(int argc, char **argv) {
-  for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
-    if (strcmp(argv[i], "--gradients") == 0 || strncmp(argv[i], "--gradients=", 12) == 0)
-      return 1;
-  return 0;
-}
 
 static int is_gradient_right(const gradients_job *job) {
   return job->verdict.gaussians[CONIC_PIXEL_WRONG] <= job->max_wrong;
@@ -53,9 +45,8 @@ static void write_gradient_worst(cli_json *json, const conic_gradient_verdict *v
 
 static int write_gradient_verdict(cli_session *session, const gradients_job *job) {
   const conic_gradient_verdict *v = &job->verdict;
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(session, &json);
   if (!json)
     return exit_code;
   cli_json_text(json, "verdict", is_gradient_right(job) ? "right" : "wrong");
@@ -81,7 +72,7 @@ static int write_gradient_verdict(cli_session *session, const gradients_job *job
   cli_json_object(json, "ms");
   cli_json_number(json, "judge", job->ms);
   cli_json_close(json);
-  return cli_json_finish(file);
+  return cli_json_finish(json);
 }
 
 static void print_gradient_verdict(const gradients_job *job) {
@@ -158,7 +149,7 @@ static int judge_gradient_files(cli_session *session, gradients_job *job) {
   if (exit_code == CLI_DONE)
     exit_code = write_gradient_verdict(session, job);
   if (exit_code == CLI_DONE) {
-    if (!session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0))
+    if (cli_json_leaves_text(session))
       print_gradient_verdict(job);
     exit_code = is_gradient_right(job) ? CLI_DONE : CLI_DIFFERENT;
   }

@@ -3,20 +3,13 @@
 #include <string.h>
 
 #include "cli/arguments.h"
+#include "cli/json_write.h"
 #include "cli/judge/suite_files.h"
 #include "cli/judge/suite_judge.h"
-#include "cli/judge/suite_profiles.h"
 #include "cli/judge/suite_scenes.h"
 #include "cli/outputs.h"
 #include "core/base/memory.h"
 #include "core/files/disk.h"
-
-int cli_suite_has_option(int argc, char **argv) {
-  for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
-    if (strcmp(argv[i], "--suite") == 0 || strncmp(argv[i], "--suite=", 8) == 0)
-      return 1;
-  return 0;
-}
 
 static int is_chosen_case(const suite_run *run, const suite_entry *entry) {
   for (int p = 0; p < SUITE_PROFILES; p++)
@@ -87,9 +80,7 @@ static int tell_suite_run(suite_run *run) {
     exit_code = cli_exit_of(cli_suite_write_junit(run));
   if (exit_code != CLI_DONE)
     return exit_code;
-  const cli_session *session = run->session;
-  if (!session->is_quiet && !(session->json_path && strcmp(session->json_path, "-") == 0) &&
-      !(run->junit_path && strcmp(run->junit_path, "-") == 0))
+  if (cli_json_leaves_text(run->session) && !(run->junit_path && strcmp(run->junit_path, "-") == 0))
     cli_suite_print(run);
   note_extra_pictures(run);
   return cli_suite_is_right(run) ? CLI_DONE : CLI_DIFFERENT;

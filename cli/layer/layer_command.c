@@ -3,7 +3,6 @@
 
 #include "cli/command.h"
 #include "cli/layer/layer_job.h"
-#include "conic/layers_draw.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "lod/layers/build/layers_team.h"

@@ -223,9 +223,8 @@ static void report_hashes(cli_json *json, const cli_render_job *job, const conic
 }
 
 int cli_render_report(cli_session *session, cli_render_job *job, const conic_image *image) {
-  cli_json_file *file;
-  int exit_code = CLI_DONE;
-  cli_json *json = cli_json_open(session, &file, &exit_code);
+  cli_json *json;
+  int exit_code = cli_json_open(session, &json);
   if (!json)
     return exit_code;
   conic_status status = report_counts(json, job);
@@ -237,6 +236,6 @@ int cli_render_report(cli_session *session, cli_render_job *job, const conic_ima
     cli_json_count(json, "frames_finished", (uint64_t)cli_kept_frames_count(job));
   cli_units_report(json, job);
   report_times(json, job);
-  exit_code = cli_json_finish(file);
+  exit_code = cli_json_finish(json);
   return status == CONIC_OK ? exit_code : cli_exit_of(status);
 }

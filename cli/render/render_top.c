@@ -5,7 +5,6 @@
 #include "cli/render/shot_record.h"
 #include "cli/scene/render_job.h"
 #include "cli/top/top_tiff.h"
-#include "cli/top/world_file.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"

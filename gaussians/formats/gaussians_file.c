@@ -11,9 +11,7 @@
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/inflate.h"
-#include "core/files/zip.h"
 #include "gaussians/formats/gaussian_formats.h"
-#include "gaussians/formats/gaussians_loan.h"
 
 typedef struct kind_facts {
   const char *name, *ending, *frame;

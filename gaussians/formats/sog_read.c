@@ -5,7 +5,6 @@
 
 #include "core/base/gaussian.h"
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/file.h"
 #include "core/files/json_read.h"
 #include "core/files/zip.h"

@@ -1,7 +1,6 @@
 /* .splat: 32 bytes a Gaussian, after no header: three floats of mean, three of scale, four bytes of colour and opacity,
  * four of rotation. */
 #include <math.h>
-#include <string.h>
 
 #include "gaussians/formats/gaussian_formats.h"
 

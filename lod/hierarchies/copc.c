@@ -3,7 +3,6 @@
 
 #include "core/base/byte_order.h"
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "lod/hierarchies/hierarchy.h"
 
 enum {

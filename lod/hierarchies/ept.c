@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/zstd.h"
 #include "lod/hierarchies/hierarchy.h"
 

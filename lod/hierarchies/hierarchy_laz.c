@@ -5,7 +5,6 @@
 
 #include "core/base/byte_order.h"
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/laz/laz.h"
 
 enum {

@@ -4,7 +4,6 @@
 
 #include "core/base/byte_order.h"
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/unbrotli.h"
 #include "lod/hierarchies/hierarchy.h"
 

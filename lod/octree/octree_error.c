@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/team_runs.h"
 #include "lod/octree/octree_loops.h"
 

@@ -7,7 +7,6 @@
 #include "core/base/threads.h"
 #include "core/splats/near.h"
 #include "raster/frame/raster_frame.h"
-#include "raster/view/method.h"
 #include "raster/view/slips.h"
 
 conic_status conic_renderer_create(conic_context *context, conic_renderer **renderer) {

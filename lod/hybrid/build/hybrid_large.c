@@ -8,7 +8,6 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "lod/hybrid/build/hybrid_build.h"
-#include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/model/hybrid_store.h"
 #include "lod/mesh/mesh_cells.h"
 

@@ -4,7 +4,6 @@
 #include "core/base/kept_memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
-#include "core/base/threads.h"
 #include "core/image/view_arguments.h"
 #include "lod/clusters/cluster_seen.h"
 #include "lod/hybrid/draw/hybrid_choose.h"

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/real.h"
 #include "lod/layers/build/layers_raws.h"
 

@@ -1,7 +1,6 @@
 /* Which samples of a layered cloud are drawn, and in which colours. */
 #include <string.h>
 
-#include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/nearest_word.h"
 #include "core/base/options.h"

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/real.h"
 
 /* A walk down the tree: what is yet to be looked at. Each level adds one node at most, of an octree seven. */

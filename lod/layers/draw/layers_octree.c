@@ -3,9 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/base/clock.h"
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/radix.h"
 #include "lod/hierarchies/node_shape.h"
 #include "lod/layers/format/layers_key.h"

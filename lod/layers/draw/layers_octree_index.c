@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 
 /* A place of the index that is being made. */
 typedef struct octree_place {

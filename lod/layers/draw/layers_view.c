@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "core/base/vectors.h"
-#include "lod/layers/format/layers_code.h"
 
 /* Bounds are computed in double and kept apart by this share, which is more than all that drawing, in floats, rounds.
  */

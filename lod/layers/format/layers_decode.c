@@ -6,7 +6,6 @@
 #include "core/base/color.h"
 #include "core/base/memory.h"
 #include "core/files/mapping.h"
-#include "core/splats/ellipse.h"
 #include "lod/layers/format/layers_code.h"
 #include "lod/layers/format/layers_key.h"
 
