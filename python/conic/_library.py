@@ -66,6 +66,16 @@ def _load() -> ctypes.CDLL:
         ("conic_patches_options_init_sized", None, [pointer, size]),
         ("conic_coloring_options_init_sized", None, [pointer, size]),
         ("conic_gaussian_options_init_sized", None, [pointer, size]),
+        ("conic_shot_file_init_sized", None, [pointer, size]),
+        ("conic_shot_file_print", ctypes.c_int, [pointer, pointer, ctypes.c_int, ctypes.POINTER(pointer)]),
+        ("conic_shot_text_release", None, [pointer, pointer]),
+        ("conic_shot_file_write", ctypes.c_int, [pointer, pointer, ctypes.c_char_p]),
+        ("conic_shot_file_key", ctypes.c_int, [pointer, pointer, ctypes.c_char_p]),
+        ("conic_shot_file_parse", ctypes.c_int, [pointer, ctypes.c_char_p, ctypes.c_char_p, size, pointer]),
+        ("conic_shot_file_read", ctypes.c_int, [pointer, ctypes.c_char_p, pointer]),
+        ("conic_shot_file_destroy", None, [pointer, pointer]),
+        ("conic_shot_field_at", ctypes.c_int, [size, pointer]),
+        ("cli_host_look", ctypes.c_int, [pointer, pointer]),
         ("cli_host_run", ctypes.c_int, [pointer, ctypes.c_int, pointer]),
         ("cli_host_draw", ctypes.c_int, [pointer, ctypes.c_int, pointer, pointer, pointer, ctypes.c_char_p,
                                          ctypes.c_char_p, ctypes.c_int, pointer, pointer]),
@@ -608,3 +618,10 @@ def draw(inputs: Sequence[str], shot: Any, reading: Any, image: Any, *, sky: Opt
                                              *paths, int(threads or 0), ctypes.byref(image), ctypes.byref(outcome)),
           _Ear([name for name, _ in loans]), progress, loans, kept, keeps_source, None, ())
     return outcome
+
+
+def look(file: Any) -> bytes:
+    """The text of a shot, with what its inputs hold."""
+    _, told = _host(lambda host: library.cli_host_look(host, ctypes.byref(file)), _Ear(), None, (), None, False, None,
+                    ())
+    return read_facts(told)["shot"].encode()
