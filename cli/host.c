@@ -8,7 +8,7 @@
 #include "cli/opening_key.h"
 #include "core/files/guard.h"
 #include "shots/shot_inputs.h"
-#include "shots/shot_plain.h"
+#include "shots/shot_key.h"
 #include "shots/way.h"
 
 int cli_host_run(cli_host *host, int argc, char **argv) {

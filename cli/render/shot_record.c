@@ -10,7 +10,6 @@
 #include "conic/version.h"
 #include "core/files/file.h"
 #include "shots/shot_key.h"
-#include "shots/shot_plain.h"
 
 void cli_shot_settle(const cli_render_job *job, conic_shot *shot) {
   *shot = job->shot;
