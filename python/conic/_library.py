@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import _thread
 import atexit
 import contextlib
 import ctypes
@@ -214,6 +215,32 @@ def context() -> Iterator[Tuple[int, Callable[[int], None]]]:
     ear.warn()
 
 
+@contextlib.contextmanager
+def delaying_interrupts() -> Iterator[None]:
+    """For what Python calls when nobody needs an object any more: whatever a signal's handler raises there is dropped.
+    Ctrl-C comes again when it is over."""
+    is_main = not sys.is_finalizing() and threading.current_thread() is threading.main_thread()
+    handler = signal.getsignal(signal.SIGINT) if is_main else None
+    if not callable(handler):
+        yield
+        return
+    came: List[int] = []
+    signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+        if came:
+            threading.Timer(0.01, _interrupt_main).start()
+
+
+def _interrupt_main() -> None:
+    if hasattr(signal, "pthread_kill"):  # which wakes it, too
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+    else:
+        _thread.interrupt_main()
+
+
 # --- what is kept from run to run ---
 
 
@@ -301,7 +328,8 @@ class Kept:
 
     def __del__(self) -> None:
         if getattr(self, "_pointer", None) is not None:
-            self._destroy()
+            with delaying_interrupts():
+                self._destroy()
 
 
 class _PerThread(threading.local):

@@ -130,6 +130,25 @@ except KeyboardInterrupt:
     print("interrupted", time.process_time() - at[0])
 """
 
+# Ctrl-C comes while what a scene has kept is given back.
+FORGETTING = """
+import conic, os, signal, time
+from conic._library import Kept
+destroy = Kept._destroy
+def interrupted(kept):
+    os.kill(os.getpid(), signal.SIGINT)
+    destroy(kept)
+scene = conic.open({path!r})
+conic.render(scene, size=(16, 16))
+Kept._destroy = interrupted
+try:
+    del scene
+    time.sleep(30)
+except KeyboardInterrupt:
+    Kept._destroy = destroy
+    print("interrupted")
+"""
+
 # Ctrl-C ends the main thread, and with it what others draw.
 OTHERS = """
 import conic, os, signal, threading, time
@@ -407,6 +426,10 @@ class Shots(unittest.TestCase):
                 self.assertIn("KeyboardInterrupt", done.stderr)
                 if "join" not in wait:  # whose end Python 3.11 takes for the thread's
                     self.assertEqual(done.stdout, "cancelled")
+
+    def test_an_interrupt_of_forgetting(self):
+        done = run(FORGETTING.format(path=self.scene.path), 25)
+        self.assertEqual((done.stdout, done.stderr), ("interrupted\n", ""))
 
     def test_example(self):
         example = os.path.join(os.path.dirname(__file__), "../../python/examples/final_picture.py")
