@@ -50,6 +50,7 @@ typedef struct cli_drawn {
   const conic_camera *camera;
   const conic_shot *shot;              /* what was drawn */
   const conic_source_options *opening; /* how its inputs were read */
+  const conic_shot_writing *writing;   /* how files are made of it */
   const char *sky_path;                /* where the shot's sky was read; null: it has none */
   const char *motion_path;             /* likewise its motion */
 } cli_drawn;
@@ -99,5 +100,10 @@ CONIC_API void cli_host_release(cli_host *host);
 CONIC_API int cli_host_draw(cli_host *host, int n_inputs, const char **inputs, const conic_source_options *opening,
                             const conic_shot *shot, const char *sky_path, const char *motion_path, int threads,
                             conic_image *image, conic_shot_outcome *outcome);
+
+/* Finds what the scene, the texture, the sky and the motion among a shot's inputs hold, and what they lead to: reads
+ * them as for drawing. The facts are then "shot": the shot with these inputs, as conic_shot_file_print writes it whole,
+ * where what decides no bit is as it is by default. Returns an exit code. */
+CONIC_API int cli_host_look(cli_host *host, const conic_shot_file *file);
 
 #endif

@@ -158,12 +158,19 @@ static conic_status render_in_strips(cli_session *session, cli_render_job *job, 
 
 static void hand_picture_over(const cli_session *session, const cli_render_job *job, int i_frame,
                               const conic_camera *camera, const conic_image *image) {
+  conic_shot shot;
+  conic_shot_writing writing = {0};
+  if (!session->host)
+    return;
+  cli_shot_settle(job, &shot);
+  cli_shot_writing(job, &writing);
   const cli_drawn drawn = {.i_frame = i_frame,
                            .view = job->cameras.count ? job->cameras.names[job->i_view] : "",
                            .image = image,
                            .camera = camera,
-                           .shot = &job->shot,
+                           .shot = &shot,
                            .opening = &job->opening,
+                           .writing = &writing,
                            .sky_path = job->sky ? job->sky_path : NULL,
                            .motion_path = job->accumulating.motion ? job->accumulating.motion_path : NULL};
   cli_host_take(session, &drawn);

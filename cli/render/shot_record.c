@@ -11,67 +11,17 @@
 #include "core/files/file.h"
 #include "shots/shot_key.h"
 
-/* What lens and shutter do not have is not there. */
-static void plain_samples(conic_shot *shot) {
-  if (shot->n_samples == 0) {
-    shot->noise = 0.0;
-    shot->is_shutter_open = 0;
-    memset(&shot->aperture, 0, sizeof shot->aperture);
-  }
-  if (!(shot->aperture.diameter > 0.0)) {
-    memset(&shot->aperture, 0, sizeof shot->aperture);
-    shot->focus_kind = CONIC_FOCUS_MIDDLE;
-  }
-  if (!shot->is_shutter_open) {
-    memset(&shot->way, 0, sizeof shot->way);
-    memset(shot->shutter, 0, sizeof shot->shutter);
-  }
-  if (shot->way.kind != CONIC_WAY_CAMERAS)
-    shot->way.cameras = NULL, shot->way.n_cameras = 0;
-  if (shot->eye.shift == 0.0)
-    memset(&shot->eye, 0, sizeof shot->eye);
-}
-
-static void record_shot(const cli_render_job *job, conic_shot_file *file) {
-  conic_shot *shot = &file->shot, standard;
-  conic_shot_init(&standard);
+void cli_shot_settle(const cli_render_job *job, conic_shot *shot) {
   *shot = job->shot;
   shot->planes &= ~job->unwritten_planes;
-  plain_samples(shot);
-  if (shot->aperture.diameter > 0.0 && job->accumulating.focus_depth > 0.0) { /* it is found */
+  if (shot->n_samples && shot->aperture.diameter > 0.0 && job->accumulating.focus_depth > 0.0) { /* it is found */
     shot->focus_kind = CONIC_FOCUS_DEPTH;
     shot->aperture.focus = job->accumulating.focus_depth;
   }
-  if (shot->focus_kind != CONIC_FOCUS_DEPTH)
-    shot->aperture.focus = 0.0;
-  if (shot->focus_kind != CONIC_FOCUS_PIXEL)
-    memset(shot->focus_pixel, 0, sizeof shot->focus_pixel);
   if (job->progressive_path)
     shot->view.most_levels = 0; /* the last picture has all */
   if (!job->accumulating.motion_path)
     shot->frame = 0.0;
-  if (!shot->has_backdrop) {
-    memset(shot->backdrop_top, 0, sizeof shot->backdrop_top);
-    memset(shot->backdrop_bottom, 0, sizeof shot->backdrop_bottom);
-  }
-  if (!shot->render.has_background)
-    memset(shot->render.background, 0, sizeof shot->render.background);
-  if (!(job->abilities & CONIC_SOURCE_COMPOSITES))
-    shot->gaussians = standard.gaussians;
-  if (job->top.is_wanted)
-    shot->camera = standard.camera;
-}
-
-static void record_reading(const cli_render_job *job, conic_source_options *reading) {
-  *reading = job->opening;
-  reading->texture_path = NULL;
-  reading->access = NULL;
-  if (!job->is_patch) {
-    reading->patches = NULL;
-    reading->h_in_spacings = 0;
-  }
-  if (!(job->abilities & CONIC_SOURCE_COMPOSITES))
-    reading->gaussians = NULL;
 }
 
 static void record_map(const cli_render_job *job, conic_shot_map *map) {
@@ -85,7 +35,7 @@ static void record_map(const cli_render_job *job, conic_shot_map *map) {
   memcpy(map->maximum, top->box.high, sizeof map->maximum);
 }
 
-static void record_writing(const cli_render_job *job, conic_shot_writing *writing) {
+void cli_shot_writing(const cli_render_job *job, conic_shot_writing *writing) {
   int is_display = (job->abilities & CONIC_SOURCE_COMPOSITES) != 0;
   writing->tone = is_display ? CONIC_TONE_SRGB : (conic_tone)job->tone;
   writing->compression = job->writing.compression;
@@ -109,10 +59,11 @@ static conic_status find_inputs(cli_session *session, cli_render_job *job) {
 
 conic_status cli_shot_record(cli_session *session, cli_render_job *job, conic_shot_file *file) {
   conic_shot_file_init(file);
-  record_shot(job, file);
-  record_reading(job, &file->reading);
+  cli_shot_settle(job, &file->shot);
+  file->reading = job->opening;
   record_map(job, &file->map);
-  record_writing(job, &file->writing);
+  cli_shot_writing(job, &file->writing);
+  conic_shot_file_plain(file, job->abilities);
   conic_status status = find_inputs(session, job);
   file->inputs = job->making.inputs.inputs;
   file->n_inputs = job->making.inputs.n;

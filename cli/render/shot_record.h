@@ -10,6 +10,10 @@
  * default. Of a frame whose shot is filled. The job keeps what it points to. Errors: MEMORY, CANCELLED. */
 conic_status cli_shot_record(cli_session *session, cli_render_job *job, conic_shot_file *file);
 
+/* The shot of a frame that is drawn, with the focus that was found; and how files are made of it. */
+void cli_shot_settle(const cli_render_job *job, conic_shot *shot);
+void cli_shot_writing(const cli_render_job *job, conic_shot_writing *writing);
+
 /* The key of work that is kept: of all frames, and of the files that they become. The shot is that of the first.
  * Errors: as cli_shot_record. */
 conic_status cli_shot_kept_key(cli_session *session, cli_render_job *job, char key[CONIC_SHA256_ROOM]);

@@ -188,6 +188,8 @@ class _Call:
 
 def _draw(scene: AnyScene, shot: Shot, progress: Any, threads: Optional[int]) -> Picture:
     """A shot, by conic_shot_draw."""
+    if shot.map.is_wanted:
+        raise ArgumentError("shot: it is a map, which only `conic render` draws")
     call = _Call("render")
     call.input(scene)
     made, reading, alive = structs_of(shot)
@@ -268,7 +270,7 @@ def render(scene: AnyScene, camera: Union[None, AnyCamera, Shot] = None, *, plan
     if asked is not None:
         call.add("aov", asked)
     wanted = None if asked is None or "all" in asked.split(",") else set(asked.split(","))
-    frames = Frames(lambda arrays, drawn: _taken(arrays, drawn, wanted))
+    frames = Frames(lambda arrays, drawn: _taken(arrays, drawn, wanted, call.inputs))
     if not in_memory and output is None:
         raise ArgumentError("in_memory: without it, output has to name a file")
     _, told = call.run(progress=progress, frames=frames if in_memory else None, keeps=True, threads=threads)
@@ -285,12 +287,13 @@ def _empty(told: bytes) -> Picture:
     return picture
 
 
-def _taken(arrays: Dict[str, numpy.ndarray], drawn: layouts.Drawn, wanted: Optional[Set[str]]) -> Picture:
+def _taken(arrays: Dict[str, numpy.ndarray], drawn: layouts.Drawn, wanted: Optional[Set[str]],
+           inputs: Sequence[str]) -> Picture:
     """A picture of what was drawn, without the planes that were drawn for others."""
     arrays = {name: array for name, array in arrays.items() if wanted is None or name in wanted}
     picture = Picture(arrays, drawn.image.contents,
                       Camera(drawn.camera.contents, drawn.view.decode(errors="replace")))
-    picture._sketch = Sketch(drawn, list(arrays))
+    picture._sketch = Sketch(drawn, list(arrays), inputs)
     return picture
 
 

@@ -38,6 +38,9 @@ def render(
     tone: Optional[Literal["srgb", "filmic", "aces", "agx"]] = None,
     deep: Optional[PathLike] = None,
     show: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
+    save_shot: Optional[PathLike] = None,
+    no_shot: Optional[bool] = None,
+    again: Optional[PathLike] = None,
     frames: Optional[Union[str, float, Sequence[float]]] = None,
     resumable: Optional[bool] = None,
     resume: Optional[PathLike] = None,
@@ -124,6 +127,10 @@ def render(
         .chy each patch in a colour of its own; boxes:OUT.png, of a .cot the nodes of a level with their boxes,
         boxes@3:OUT.png those of level 3 from the root; legend:OUT.png, what the colours mean, or legend, in the
         picture itself
+    save_shot: all that decides the picture, as text by which conic render draws it again
+    no_shot: leave out of .exr, .png and .tif what they say of how they were made
+    again: draw again what a picture says that it was drawn from, to the bit; other options change that. Inputs
+        are looked for beside it, here, and among those that are given
     turntable: N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says
     frames: only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from
         0 [all]

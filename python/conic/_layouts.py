@@ -492,6 +492,72 @@ class Reading(ctypes.Structure):
     ]
 
 
+# --- a shot's file ---
+
+
+class ShotInput(ctypes.Structure):
+    C_NAME = "conic_shot_input"
+    _fields_ = [
+        ("name", c_char_p),
+        ("role", c_int),
+        ("is_sampled", c_int),
+        ("n_bytes", c_uint64),
+        ("sha256", c_char * 72),
+        ("reserved", c_uint64 * 4),
+    ]
+
+
+class ShotMap(ctypes.Structure):
+    C_NAME = "conic_shot_map"
+    _fields_ = [
+        ("is_wanted", c_int),
+        ("epsg", c_int),
+        ("pixel", c_double),
+        ("minimum", c_double * 3),
+        ("maximum", c_double * 3),
+        ("reserved", c_uint64 * 4),
+    ]
+
+
+class ShotWriting(ctypes.Structure):
+    C_NAME = "conic_shot_writing"
+    _fields_ = [
+        ("tone", c_int),
+        ("compression", c_int),
+        ("is_half", c_int),
+        ("is_bare", c_int),
+        ("has_legend", c_int),
+        ("has_mattes", c_int),
+        ("reserved", c_uint64 * 4),
+    ]
+
+
+class ShotFile(ctypes.Structure):
+    C_NAME = "conic_shot_file"
+    _fields_ = [
+        ("size", c_size_t),
+        ("shot", Shot),
+        ("reading", Reading),
+        ("map", ShotMap),
+        ("writing", ShotWriting),
+        ("inputs", POINTER(ShotInput)),
+        ("n_inputs", c_size_t),
+    ]
+
+
+class ShotField(ctypes.Structure):
+    C_NAME = "conic_shot_field"
+    _fields_ = [
+        ("path", c_char * 96),
+        ("kind", c_int),
+        ("count", c_int),
+        ("unit", c_char_p),
+        ("meaning", c_char_p),
+        ("words", c_char_p * 32),
+        ("standard", c_char * 160),
+    ]
+
+
 # --- what comes of a picture ---
 
 
@@ -565,6 +631,7 @@ class Drawn(ctypes.Structure):
         ("camera", POINTER(Camera)),
         ("shot", POINTER(Shot)),
         ("opening", POINTER(Reading)),
+        ("writing", POINTER(ShotWriting)),
         ("sky_path", c_char_p),
         ("motion_path", c_char_p),
     ]
@@ -602,4 +669,5 @@ class Host(ctypes.Structure):
 STRUCTS = (Strides, Splats, TrianglesStrides, Triangles, Model, Gaussians, Camera, Cameras, CamerasOptions, Attribute,
            Image, ImageOptions, PlaneDescription, Feature, ContextOptions, Loan, Value, CameraWay, StereoEye, Kernel,
            Light, Lighting, RenderOptions, SourceView, GaussianOptions, Lamp, ShotLight, Aperture, Shot, Access,
-           Surface, Patches, Coloring, Reading, Milliseconds, Statistics, AccumulationFacts, Outcome, Drawn, Host)
+           Surface, Patches, Coloring, Reading, ShotInput, ShotMap, ShotWriting, ShotFile, ShotField, Milliseconds,
+           Statistics, AccumulationFacts, Outcome, Drawn, Host)

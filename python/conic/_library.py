@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import _thread
 import atexit
 import contextlib
 import ctypes
@@ -66,6 +67,16 @@ def _load() -> ctypes.CDLL:
         ("conic_patches_options_init_sized", None, [pointer, size]),
         ("conic_coloring_options_init_sized", None, [pointer, size]),
         ("conic_gaussian_options_init_sized", None, [pointer, size]),
+        ("conic_shot_file_init_sized", None, [pointer, size]),
+        ("conic_shot_file_print", ctypes.c_int, [pointer, pointer, ctypes.c_int, ctypes.POINTER(pointer)]),
+        ("conic_shot_text_release", None, [pointer, pointer]),
+        ("conic_shot_file_write", ctypes.c_int, [pointer, pointer, ctypes.c_char_p]),
+        ("conic_shot_file_key", ctypes.c_int, [pointer, pointer, ctypes.c_char_p]),
+        ("conic_shot_file_parse", ctypes.c_int, [pointer, ctypes.c_char_p, ctypes.c_char_p, size, pointer]),
+        ("conic_shot_file_read", ctypes.c_int, [pointer, ctypes.c_char_p, pointer]),
+        ("conic_shot_file_destroy", None, [pointer, pointer]),
+        ("conic_shot_field_at", ctypes.c_int, [size, pointer]),
+        ("cli_host_look", ctypes.c_int, [pointer, pointer]),
         ("cli_host_run", ctypes.c_int, [pointer, ctypes.c_int, pointer]),
         ("cli_host_draw", ctypes.c_int, [pointer, ctypes.c_int, pointer, pointer, pointer, ctypes.c_char_p,
                                          ctypes.c_char_p, ctypes.c_int, pointer, pointer]),
@@ -204,6 +215,32 @@ def context() -> Iterator[Tuple[int, Callable[[int], None]]]:
     ear.warn()
 
 
+@contextlib.contextmanager
+def delaying_interrupts() -> Iterator[None]:
+    """For what Python calls when nobody needs an object any more: whatever a signal's handler raises there is dropped.
+    Ctrl-C comes again when it is over."""
+    is_main = not sys.is_finalizing() and threading.current_thread() is threading.main_thread()
+    handler = signal.getsignal(signal.SIGINT) if is_main else None
+    if not callable(handler):
+        yield
+        return
+    came: List[int] = []
+    signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+        if came:
+            threading.Timer(0.01, _interrupt_main).start()
+
+
+def _interrupt_main() -> None:
+    if hasattr(signal, "pthread_kill"):  # which wakes it, too
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+    else:
+        _thread.interrupt_main()
+
+
 # --- what is kept from run to run ---
 
 
@@ -291,7 +328,8 @@ class Kept:
 
     def __del__(self) -> None:
         if getattr(self, "_pointer", None) is not None:
-            self._destroy()
+            with delaying_interrupts():
+                self._destroy()
 
 
 class _PerThread(threading.local):
@@ -608,3 +646,10 @@ def draw(inputs: Sequence[str], shot: Any, reading: Any, image: Any, *, sky: Opt
                                              *paths, int(threads or 0), ctypes.byref(image), ctypes.byref(outcome)),
           _Ear([name for name, _ in loans]), progress, loans, kept, keeps_source, None, ())
     return outcome
+
+
+def look(file: Any) -> bytes:
+    """The text of a shot, with what its inputs hold."""
+    _, told = _host(lambda host: library.cli_host_look(host, ctypes.byref(file)), _Ear(), None, (), None, False, None,
+                    ())
+    return read_facts(told)["shot"].encode()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import dataclasses
 import os
 import struct
 import zlib
@@ -157,14 +158,24 @@ class Picture(Dict[str, Any]):
         image = alone.image()
         return f"{library.conic_image_hash(ctypes.byref(image), PLANE_BY_NAME[plane].number):016x}"
 
-    def save(self, path: PathLike, *, tone: str = "srgb") -> None:
+    def save(self, path: PathLike, *, tone: str = "srgb", shot: bool = False) -> None:
         """Writes .exr (all planes), .png, .pfm …, as the ending says; without a background, as they are. `tone`, of
-        what has 8 or 16 bits: "srgb", "filmic", "aces" or "agx"."""
+        what has 8 or 16 bits: "srgb", "filmic", "aces" or "agx". With `shot`, an .exr, .png or .tif says how the
+        picture was drawn, as the program's do, and `conic render --again` draws it again; the inputs are read for
+        that."""
         image, options = self.image(), layouts.ImageOptions()
         library.conic_image_options_init_sized(ctypes.byref(options), ctypes.sizeof(options))
         if tone not in TONES:
             raise ArgumentError(f"tone: {tone} is none of {', '.join(TONES)}")
         options.tone = TONES.index(tone)
+        if shot:
+            if self.shot is None:
+                raise ArgumentError("shot: nobody knows how the picture was drawn")
+            is_exr = os.fsdecode(path).lower().endswith(".exr")
+            writing = dataclasses.replace(self.shot.writing, tone="srgb" if is_exr or self.is_display else tone,
+                                          compression="zip", is_half=False, is_bare=not is_exr, has_legend=False,
+                                          has_mattes=False)
+            image.shot = dataclasses.replace(self.shot, writing=writing).text()
         with context() as (made, check):
             check(library.conic_image_write_as(made, os.fsencode(path), ctypes.byref(image), ctypes.byref(options)))
 

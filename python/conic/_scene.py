@@ -12,7 +12,7 @@ import numpy
 from . import _layouts as layouts
 from ._arrays import add_origin, as_floats, as_numpy, columns_of, side_by_side, split_origin
 from ._camera import PathLike
-from ._library import Kept, context, library, read_facts, run
+from ._library import Kept, context, delaying_interrupts, library, read_facts, run
 from .errors import ArgumentError
 
 
@@ -304,7 +304,8 @@ class Scene:
     def __del__(self) -> None:
         folder = getattr(self, "_folder", None)
         if folder:
-            shutil.rmtree(folder, ignore_errors=True)
+            with delaying_interrupts():
+                shutil.rmtree(folder, ignore_errors=True)
 
     def __repr__(self) -> str:
         return f"<conic.Scene {', '.join(self.paths)}>"

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import ctypes
 import dataclasses
+import math
 import os
 from dataclasses import dataclass, field
 from typing import Any, Callable, ClassVar, Dict, List, Optional, Sequence, Tuple
 
 from . import _layouts as layouts
-from ._camera import Camera
-from ._library import PLANE_BY_NAME, PLANES, library, words_of
+from ._camera import Camera, PathLike
+from ._library import PLANE_BY_NAME, PLANES, TONES, context, library, look, words_of
 from .errors import ArgumentError
 
 Triple = Tuple[float, float, float]
@@ -376,6 +377,45 @@ class Reading(_Struct):
 
 
 @dataclass
+class Input(_Struct):
+    """A file that a picture is made of."""
+
+    _layout: ClassVar[Any] = layouts.ShotInput
+    _words: ClassVar[Dict[str, Sequence[str]]] = {"role": ("scene", "texture", "sky", "motion", "part")}
+    name: str
+    role: str = "scene"
+    is_sampled: bool = False
+    n_bytes: int = 0
+    sha256: str = ""  #: empty: not looked at yet, or of a URL
+
+
+@dataclass
+class Map(_Struct):
+    """A map: `camera="top"` of the program."""
+
+    _layout: ClassVar[Any] = layouts.ShotMap
+    is_wanted: bool = False
+    epsg: int = 0
+    pixel: float = 0.0
+    minimum: Triple = (-math.inf, -math.inf, -math.inf)
+    maximum: Triple = (math.inf, math.inf, math.inf)
+
+
+@dataclass
+class Writing(_Struct):
+    """How the program makes files of the picture."""
+
+    _layout: ClassVar[Any] = layouts.ShotWriting
+    _words: ClassVar[Dict[str, Sequence[str]]] = {"tone": TONES, "compression": words_of("conic_compression_name")}
+    tone: str = "srgb"
+    compression: str = "zip"
+    is_half: bool = False
+    is_bare: bool = False
+    has_legend: bool = False
+    has_mattes: bool = False
+
+
+@dataclass
 class Shot(_Struct):
     """A picture as one value: every number that decides a bit of it. :func:`conic.render` draws it, with the same bits
     each time; `Picture.shot` is the one that a picture was drawn by, with all numbers that were found for it.
@@ -384,7 +424,9 @@ class Shot(_Struct):
         brighter = dataclasses.replace(shot, render=dataclasses.replace(shot.render, exposure=1.0))
         conic.render(scene, brighter)
 
-    The members are conic_shot's: include/conic/shot.h says what they mean. `reading` says how the scene is read."""
+    `shot.save("x.shot.json")` and `Shot.open("x.shot.json")` are the files of `conic render --save-shot`; pictures that
+    carry a shot can be opened, too. The members are conic_shot's: include/conic/shot.h says what they mean. `reading`
+    says how the scene is read."""
 
     _layout: ClassVar[Any] = layouts.Shot
     _words: ClassVar[Dict[str, Sequence[str]]] = {"focus_kind": ("middle", "depth", "pixel")}
@@ -409,6 +451,9 @@ class Shot(_Struct):
     frame: float = 0.0
     motion: Optional[str] = field(default=None, metadata={"apart": True})  #: the file of the inputs' motion
     reading: Reading = field(default_factory=Reading, metadata={"apart": True})
+    map: Map = field(default_factory=Map, metadata={"apart": True})
+    writing: Writing = field(default_factory=Writing, metadata={"apart": True})
+    inputs: Tuple[Input, ...] = field(default=(), metadata={"apart": True})  #: those of the scene, by their names; more
 
     def _put(self, struct: Any, alive: List[Any]) -> None:
         if not isinstance(self.camera, Camera):
@@ -426,6 +471,107 @@ class Shot(_Struct):
         made.planes = tuple(plane.name for plane in PLANES if struct.planes >> plane.number & 1)
         return made
 
+    # --- files ---
+
+    def _named(self) -> Tuple[Tuple[str, str], ...]:
+        """The inputs that are named, and what each is."""
+        besides = (("texture", self.reading.texture_path), ("sky", self.light.sky), ("motion", self.motion))
+        return (*(("scene", known.name) for known in self.inputs if known.role == "scene"),
+                *((role, name) for role, name in besides if name))
+
+    def _file(self, alive: List[Any]) -> layouts.ShotFile:
+        """The struct of the file; its inputs that are known already have what they hold."""
+        file = layouts.ShotFile()
+        library.conic_shot_file_init_sized(ctypes.byref(file), ctypes.sizeof(file))
+        file.shot, file.reading = _made(self, alive), _made(self.reading, alive)
+        self.map._put(file.map, alive)
+        self.writing._put(file.writing, alive)
+        known = self.inputs if self._is_looked_at() else [Input(name, role) for role, name in self._named()]
+        inputs = (layouts.ShotInput * max(1, len(known)))()
+        for place, given in zip(inputs, known):
+            given._put(place, alive)
+        alive.append(inputs)
+        file.inputs, file.n_inputs = inputs, len(known)
+        return file
+
+    def _is_looked_at(self) -> bool:
+        named = [known for known in self.inputs if known.role != "part"]
+        return tuple((known.role, known.name) for known in named) == self._named() and all(
+            known.sha256 or "://" in known.name or known.name == "-" for known in named)
+
+    @classmethod
+    def _of_file(cls, file: layouts.ShotFile) -> "Shot":
+        made = cls._of(file.shot)
+        made.reading, made.map, made.writing = Reading._of(file.reading), Map._of(file.map), Writing._of(file.writing)
+        made.inputs = tuple(Input._of(file.inputs[i]) for i in range(file.n_inputs))
+        return made._with_besides()
+
+    def _with_besides(self) -> "Shot":
+        """With texture, sky and motion as the inputs name them."""
+        names = {known.role: known.name for known in self.inputs}
+        self.reading.texture_path, self.light.sky, self.motion = (
+            names.get(role) for role in ("texture", "sky", "motion"))
+        return self
+
+    @classmethod
+    def _parsed(cls, read: Callable[[int, Any], int]) -> "Shot":
+        file = ctypes.POINTER(layouts.ShotFile)()
+        with context() as (made, check):
+            check(read(made, ctypes.byref(file)))
+            try:
+                return cls._of_file(file.contents)
+            finally:
+                library.conic_shot_file_destroy(made, file)
+
+    @classmethod
+    def open(cls, path: PathLike) -> "Shot":
+        """The shot of a file, or of a picture that carries one: an EXR, a PNG or a TIFF. `inputs` says what it was
+        drawn from; the scene that is drawn is the one that :func:`conic.render` is given."""
+        made = cls._parsed(lambda context, file: library.conic_shot_file_read(context, os.fsencode(path), file))
+        for known in made.inputs:  # pictures name them without their folders
+            beside = os.path.join(os.path.dirname(os.fspath(path)), known.name)
+            if known.role != "part" and not os.path.exists(known.name) and os.path.exists(beside):
+                known.name = beside
+        return made._with_besides()
+
+    def complete(self) -> "Shot":
+        """The same with all inputs, also those that others lead to, and what they hold. Those that are not known yet
+        are read. What decides no bit is as it is by default."""
+        alive: List[Any] = []
+        if not self._named() or self._is_looked_at():
+            return self
+        text = look(self._file(alive))
+        return self._parsed(lambda made, file: library.conic_shot_file_parse(made, b"shot", text, len(text), file))
+
+    def save(self, path: PathLike) -> None:
+        """Writes what `conic render` draws again, as `--save-shot` does; reads the inputs for it, as `complete`. A shot
+        of arrays has none: it can be opened, and drawn of arrays."""
+        alive: List[Any] = []
+        file = self.complete()._file(alive)
+        with context() as (made, check):
+            check(library.conic_shot_file_write(made, ctypes.byref(file), os.fsencode(path)))
+
+    def key(self) -> str:
+        """The program's "shot_key": however a picture was asked for, it has one. Reads the inputs, as `complete`."""
+        alive: List[Any] = []
+        file, key = self.complete()._file(alive), ctypes.create_string_buffer(65)
+        with context() as (made, check):
+            check(library.conic_shot_file_key(made, ctypes.byref(file), key))
+        return key.value.decode()
+
+    def text(self) -> bytes:
+        """What pictures carry: inputs are without their folders."""
+        alive: List[Any] = []
+        file, text = self.complete()._file(alive), ctypes.c_void_p()
+        with context() as (made, check):
+            check(library.conic_shot_file_print(made, ctypes.byref(file), _IN_PICTURE, ctypes.byref(text)))
+            try:
+                return ctypes.string_at(text.value or 0)
+            finally:
+                library.conic_shot_text_release(made, text)
+
+
+_IN_PICTURE = 1
 
 _INIT = {layouts.Shot: "conic_shot_init_sized", layouts.Reading: "conic_source_options_init_sized",
          layouts.Access: "conic_layers_access_init_sized", layouts.Patches: "conic_patches_options_init_sized",
@@ -451,10 +597,12 @@ def structs_of(shot: Shot) -> Tuple[Any, Any, List[Any]]:
 class Sketch:
     """A shot as it was drawn, copied out of a run; a :class:`Shot` is made of it when somebody asks."""
 
-    def __init__(self, drawn: layouts.Drawn, planes: Sequence[str]) -> None:
+    def __init__(self, drawn: layouts.Drawn, planes: Sequence[str], inputs: Sequence[str]) -> None:
         self._shot = layouts.Shot.from_buffer_copy(drawn.shot.contents)
         self._reading = layouts.Reading.from_buffer_copy(drawn.opening.contents)
+        self._writing = layouts.ShotWriting.from_buffer_copy(drawn.writing.contents)
         self._planes = tuple(planes)
+        self._inputs = inputs
         self._sky = drawn.sky_path and os.fsdecode(drawn.sky_path)
         self._motion = drawn.motion_path and os.fsdecode(drawn.motion_path)
         way = self._shot.way
@@ -476,5 +624,6 @@ class Sketch:
     def shot(self) -> Shot:
         made = Shot._of(self._shot)
         made.planes, made.reading = self._planes, Reading._of(self._reading)
-        made.light.sky, made.motion = self._sky, self._motion
+        made.light.sky, made.motion, made.writing = self._sky, self._motion, Writing._of(self._writing)
+        made.inputs = tuple(Input(name) for name in self._inputs if not name.startswith("memory:"))
         return made

@@ -18,7 +18,9 @@ import numpy
 
 import conic
 from conic import _layouts as layouts
+from conic import _shot
 from conic._library import library
+from drawn_by_program import conic as program
 from drawn_by_program import hashes
 
 SIZE = (48, 40)
@@ -128,6 +130,25 @@ except KeyboardInterrupt:
     print("interrupted", time.process_time() - at[0])
 """
 
+# Ctrl-C comes while what a scene has kept is given back.
+FORGETTING = """
+import conic, os, signal, time
+from conic._library import Kept
+destroy = Kept._destroy
+def interrupted(kept):
+    os.kill(os.getpid(), signal.SIGINT)
+    destroy(kept)
+scene = conic.open({path!r})
+conic.render(scene, size=(16, 16))
+Kept._destroy = interrupted
+try:
+    del scene
+    time.sleep(30)
+except KeyboardInterrupt:
+    Kept._destroy = destroy
+    print("interrupted")
+"""
+
 # Ctrl-C ends the main thread, and with it what others draw.
 OTHERS = """
 import conic, os, signal, threading, time
@@ -207,6 +228,115 @@ class Shots(unittest.TestCase):
         picture = conic.render(self.scene, size=SIZE, sky=self.path("sky.exr"), ao=8)
         self.assertEqual(picture.shot.light.sky, self.path("sky.exr"))
         self.assert_drawn_again(self.scene, picture)
+
+    # Files of shots
+
+    def assert_is_the_program_s(self, name, shot, *arguments):
+        """The file, the key and the bits are those of the program with the same options."""
+        ours, its = self.path(f"{name}.ours.shot.json"), self.path(f"{name}.its.shot.json")
+        told = program("render", *arguments, "-o", self.path(f"{name}.exr"), "--save-shot", its)
+        if shot.light.n_directions or shot.light.has_shadows:  # arrays have the planes that light needs, files have not
+            self.assertEqual(shot.planes, ("rgba", "Z", "N", "albedo"))
+            shot = dataclasses.replace(shot, planes=("rgba", "Z"))
+        shot.save(ours)
+        with open(ours, encoding="utf-8") as one, open(its, encoding="utf-8") as other:
+            self.assertEqual(one.read(), other.read())
+        self.assertEqual(shot.key(), told["shot_key"])
+        for path in (its, self.path(f"{name}.exr")):
+            opened = conic.Shot.open(path)
+            self.assertEqual(opened.key(), told["shot_key"])
+            drawn = conic.render([known.name for known in opened.inputs if known.role == "scene"], opened)
+            self.assertEqual(drawn.statistics["hash"], {name: told["hash"][name] for name in drawn.planes})
+            if path == its:
+                opened.save(ours)
+                with open(ours, encoding="utf-8") as one, open(its, encoding="utf-8") as other:
+                    self.assertEqual(one.read(), other.read())
+                self.assertEqual(conic.Shot.open(ours), opened)
+                self.assertEqual(hashes(ours), told["hash"])
+
+    def test_files_are_the_program_s(self):
+        for i, (options, words) in enumerate(OPTIONS):
+            with self.subTest(options=options):
+                picture = conic.render(self.scene, size=SIZE, **options)
+                self.assert_is_the_program_s(f"o{i}", picture.shot, self.scene.path, *WORDS, *words)
+
+    def test_files_of_other_sources(self):
+        conic.render(self.scene, size=(32, 16), projection="panorama", output=self.path("dome.exr"))
+        with open(self.path("motion.json"), "w", encoding="utf-8") as file:
+            file.write('[{"input": 0, "frame": 1, "file": "moved.ply"}]')
+        conic.make("knot", self.path("moved.ply"), n=3000, jitter=0.3)
+        with open(self.path("lit.obj"), "w", encoding="utf-8") as file:
+            file.write("mtllib lit.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0.2\nusemtl a\nf 1 2 3\n")
+        with open(self.path("lit.mtl"), "w", encoding="utf-8") as file:
+            file.write("newmtl a\nKd 0.5 0.6 0.7\n")
+        for i, (path, options, words) in enumerate((
+                (self.gaussians.path, {}, ()),
+                (self.gaussians.path, {"profile": "gsplat-1.6"}, ("--profile", "gsplat-1.6")),
+                (self.path("lit.obj"), {}, ()),  # which leads to another file
+                (self.scene.path, {"sky": self.path("dome.exr"), "ao": 4}, ("--sky", self.path("dome.exr"), "--ao", 4)),
+                (self.scene.path, {"accumulate": 3, "motion": self.path("motion.json"), "shutter": "0:1"},
+                 ("--accumulate", 3, "--motion", self.path("motion.json"), "--shutter", "0:1")))):
+            with self.subTest(path=path, options=options):
+                scene = conic.open(path)
+                conic.render(scene, size=SIZE)  # of what is kept, nothing is read again
+                shot = conic.render(scene, size=SIZE, **options).shot
+                self.assert_is_the_program_s(f"s{i}", shot, path, *WORDS, *words)
+        self.assertIn("part", [known.role for known in conic.Shot.open(self.path("s2.exr")).inputs])
+
+    def test_pictures_carry_shots(self):
+        picture = conic.render(self.scene, size=SIZE, exposure=0.5)
+        program("render", self.scene.path, *WORDS, "--exposure", "0.5", "-o", self.path("its.exr"))
+        for ending in ("exr", "png", "tif"):
+            with self.subTest(ending=ending):
+                path = self.path(f"carries.{ending}")
+                picture.save(path, shot=True)
+                shot = conic.Shot.open(path)
+                self.assertEqual(conic.render(self.scene, shot).hash(), picture.hash())
+                self.assertEqual(shot.key(), picture.shot.key())
+                self.assertEqual(hashes("--again", path)["rgba"], picture.hash())
+                picture.save(path)
+                with self.assertRaisesRegex(conic.InputError, "how it was made"):
+                    conic.Shot.open(path)
+        self.assertEqual(conic.Shot.open(self.path("its.exr")).text(), picture.shot.text())
+        with self.assertRaisesRegex(conic.ArgumentError, "nobody knows"):
+            conic.Picture({"rgba": picture["rgba"]}).save(self.path("none.exr"), shot=True)
+
+    def test_files_of_arrays_and_of_maps(self):
+        splats = self.scene.splats()
+        shot = conic.render(splats, size=SIZE, azimuth=30).shot
+        shot.save(self.path("arrays.shot.json"))
+        again = conic.Shot.open(self.path("arrays.shot.json"))
+        self.assertEqual(again.inputs, ())
+        self.assertEqual(conic.render(splats, again).hash(), conic.render(splats, shot).hash())
+        program("render", self.scene.path, "--camera", "top", "--gsd", "0.1", "-o", self.path("map.tif"))
+        seen = conic.Shot.open(self.path("map.tif"))
+        self.assertTrue(seen.map.is_wanted)
+        with self.assertRaisesRegex(conic.ArgumentError, "it is a map"):
+            conic.render(self.scene, seen)
+        for path, message in ((self.scene.path, "how it was made"), (self.path("missing.exr"), "No such file")):
+            with self.assertRaisesRegex(conic.InputError, message):
+                conic.Shot.open(path)
+
+    def test_shots_have_every_field(self):
+        field, i = layouts.ShotField(), 0
+        whole = conic.Shot(conic.render(self.scene, size=SIZE).camera)
+        whole.reading.patches, whole.reading.coloring = _shot.Patches(), _shot.Coloring()
+        known = {"lights": _shot.Light, "lamps": _shot.Lamp}
+        while library.conic_shot_field_at(i, ctypes.byref(field)):
+            path, i = field.path.decode(), i + 1
+            if path.startswith(("camera.", "way.cameras[]")):  # a Camera has the struct itself
+                continue
+            value = whole
+            for part in path.split("."):
+                name = part.rstrip("[]")
+                members = {member.metadata.get("member", member.name): member.name
+                           for member in dataclasses.fields(value)}
+                self.assertIn(name, members, path)
+                value = known[name]() if part.endswith("[]") else getattr(value, members[name])
+            words = [word.decode() for word in field.words if word]
+            if field.kind == 4:
+                self.assertIn(value, words, path)
+        self.assertGreater(i, 100)
 
     def test_shots_are_values(self):
         picture = conic.render(self.scene, size=SIZE, light=["head", "lamp:3,3,3:9,9,9"])
@@ -296,6 +426,10 @@ class Shots(unittest.TestCase):
                 self.assertIn("KeyboardInterrupt", done.stderr)
                 if "join" not in wait:  # whose end Python 3.11 takes for the thread's
                     self.assertEqual(done.stdout, "cancelled")
+
+    def test_an_interrupt_of_forgetting(self):
+        done = run(FORGETTING.format(path=self.scene.path), 25)
+        self.assertEqual((done.stdout, done.stderr), ("interrupted\n", ""))
 
     def test_example(self):
         example = os.path.join(os.path.dirname(__file__), "../../python/examples/final_picture.py")
