@@ -1,4 +1,4 @@
-#include "lighting/edge_spread.h"
+#include "lighting/light_work.h"
 
 #include <math.h>
 #include <string.h>

@@ -8,7 +8,7 @@
 #include "core/base/real.h"
 #include "core/formats/las_fields.h"
 #include "core/formats/ply_source.h"
-#include "core/laz/laz_read.h"
+#include "core/laz/laz.h"
 #include "core/splats/builder.h"
 #include "core/splats/point_fields.h"
 #include "core/splats/raw_colors.h"

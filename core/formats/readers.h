@@ -41,9 +41,9 @@ int conic_pcd_is_likely(const char *bytes, size_t n);
  * understood.
  *
  * The lines before the first point (names of columns, the number of points) and the first 256 points tell the dialect
- * (core/formats/text_dialect.h) and the columns (core/formats/text_columns.h). The rest is read line by line. A colour
- * is sRGB-encoded; the largest value of the whole file tells whether it is a fraction of 1, a code of 8 bits or one of
- * 16 (core/splats/raw_colors.h). Positions are kept in double, from the first finite one as the origin. Errors, too:
+ * and the columns (core/formats/text_columns.h). The rest is read line by line. A colour is sRGB-encoded; the largest
+ * value of the whole file tells whether it is a fraction of 1, a code of 8 bits or one of 16
+ * (core/splats/raw_colors.h). Positions are kept in double, from the first finite one as the origin. Errors, too:
  * ARGUMENT (the options' columns). */
 conic_status conic_xyz_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
                             conic_model *model);

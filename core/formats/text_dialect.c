@@ -1,4 +1,4 @@
-#include "core/formats/text_dialect.h"
+#include "core/formats/text_columns.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "core/laz/laz_read.h"
+#include "core/laz/laz.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "core/scenes/scene_lattice.h"
+#include "core/scenes/scene_kind.h"
 
 #include <math.h>
 #include <string.h>

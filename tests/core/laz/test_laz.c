@@ -6,7 +6,7 @@
 
 #include "core/base/byte_order.h"
 #include "core/files/mapping.h"
-#include "core/laz/laz_read.h"
+#include "core/laz/laz.h"
 #include "core/laz/laz_table.h"
 #include "tests/support/files.h"
 #include "tests/support/laz_examples.h"
