@@ -7,8 +7,6 @@
 #include "cli/commands/build_steps.h"
 #include "cli/judge/suite_files.h"
 #include "cli/judge/suite_planes.h"
-#include "cli/judge/suite_profiles.h"
-#include "cli/judge/suite_readme.h"
 #include "cli/outputs.h"
 #include "conic/version.h"
 #include "core/base/memory.h"

@@ -155,16 +155,24 @@ static int check_judge(cli_session *session, cli_judge_job *job) {
   return exit_code == CLI_DONE ? cli_scene_inputs_stay(session, &job->scene, outputs, 2) : exit_code;
 }
 
+static int names_option(int argc, char **argv, const char *option) {
+  size_t n = strlen(option);
+  for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+    if (strncmp(argv[i], option, n) == 0 && (argv[i][n] == '\0' || argv[i][n] == '='))
+      return 1;
+  return 0;
+}
+
 static int run_judge(cli_session *session, int argc, char **argv) {
   static const char *const floats[] = {"own", "strict", "fast", NULL}, *const transfers[] = {"linear", "srgb", NULL},
                            *const roundings[] = {"either", "nearest", "down", NULL};
   cli_judge_job job = {.floats = CONIC_FLOATS_FAST, .argc = argc, .argv = argv};
   int rounding = CONIC_CODES_EITHER;
   suite_run suite = {.most_level = 0}; /* unused here: its options are for the help */
-  if (cli_suite_has_option(argc, argv))
+  if (names_option(argc, argv, "--suite"))
     return cli_suite_run(session, argc, argv);
   cli_gradient_files gradients = {NULL}; /* unused here, too */
-  if (cli_gradients_has_option(argc, argv))
+  if (names_option(argc, argv, "--gradients"))
     return cli_gradients_run(session, argc, argv);
   conic_picture_options_init(&job.reading);
   cli_scene_defaults(&job.scene);

@@ -22,13 +22,6 @@ typedef struct gradients_job {
 
 static const char *const gradient_classes[CONIC_N_GAUSSIAN_CLASSES] = {"equal", "rounding", "explained", "wrong"};
 
-int cli_gradients_has_option(int argc, char **argv) {
-  for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
-    if (strcmp(argv[i], "--gradients") == 0 || strncmp(argv[i], "--gradients=", 12) == 0)
-      return 1;
-  return 0;
-}
-
 static int is_gradient_right(const gradients_job *job) {
   return job->verdict.gaussians[CONIC_PIXEL_WRONG] <= job->max_wrong;
 }

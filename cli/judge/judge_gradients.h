@@ -18,7 +18,6 @@ typedef struct cli_gradient_files {
   }
 
 /* The command, where --gradients is among its arguments; returns the exit code. */
-int cli_gradients_has_option(int argc, char **argv);
 int cli_gradients_run(cli_session *session, int argc, char **argv);
 
 #endif

@@ -74,8 +74,6 @@ typedef struct cli_judge_job {
 
 /* Whether no more pixels are wrong than allowed. */
 int cli_judge_is_right(const cli_judge_job *job);
-/* "stage", for --time and --json. */
-const char *cli_judge_stage_name(int stage);
 
 /* Compare the picture with a Gaussian scene's profile, or with a method's reference of splats and triangles. The scene
  * is open and its camera known. */
@@ -88,9 +86,6 @@ conic_status cli_judge_explain(cli_session *session, cli_judge_job *job);
 /* Finds the fault that explains the wrong pixels best, into job->found.faults. Called if there are any. */
 conic_status cli_judge_diagnose(cli_session *session, cli_judge_job *job);
 
-/* Draws conic's own picture, into job->ours. */
-conic_status cli_judge_draw(cli_session *session, cli_judge_job *job);
-
 /* Draws the classes in false colours, with a legend; the caller releases *map. */
 conic_status cli_judge_map(cli_session *session, const cli_judge_job *job, conic_image *map);
 
@@ -101,8 +96,7 @@ conic_status cli_judge_report(cli_session *session, cli_judge_job *job);
 void cli_judge_print(const cli_judge_job *job);
 int cli_judge_write_json(cli_session *session, const cli_judge_job *job);
 
-/* The name of a fault's value, "R", "Z", "N.x" …; and what it is and may be, in one line. */
-const char *cli_judge_channel_name(const conic_oracle_fault *fault);
+/* What a fault's value is and may be, and what a contribution is, in one line each. */
 void cli_judge_describe(const cli_judge_job *job, const conic_oracle_fault *fault, char *text, size_t room);
 void cli_judge_describe_part(const cli_judge_part *part, char *text, size_t room);
 

@@ -11,18 +11,14 @@
 
 enum { PICTURE_PX = 460, CROP = 17, CROP_ZOOM = 12 };
 
-conic_status cli_judge_draw(cli_session *session, cli_judge_job *job) {
+/* Draws conic's own picture, into job->ours. */
+static conic_status draw_ours(cli_session *session, cli_judge_job *job) {
   const conic_camera *camera = &job->camera;
   conic_status status = conic_image_allocate(session->context, camera->width, camera->height, 1u, &job->ours);
   if (status == CONIC_OK)
     status = conic_source_draw(job->scene.source, job->scene.renderer, camera, &job->scene.shot.render,
                                &job->scene.shot.view, &job->ours, &job->scene.statistics);
   return status;
-}
-
-/* Whether the colours are display values already. */
-static int shows_display(const cli_judge_job *job) {
-  return cli_is_composited(&job->scene);
 }
 
 /* A value of the picture to be shown: the middle of the range that it stands for, over black. */
@@ -52,7 +48,7 @@ static conic_status show_theirs(cli_session *session, const cli_judge_job *job, 
       to[c] = c == 1 ? 0.0f : 1.0f;
     to[3] = 1.0f;
   }
-  theirs->is_display = (uint64_t)shows_display(job);
+  theirs->is_display = (uint64_t)cli_is_composited(&job->scene); /* then the colours are display values already */
   return CONIC_OK;
 }
 
@@ -266,7 +262,7 @@ static conic_status make_pictures(cli_session *session, cli_judge_job *job, repo
   conic_status status = cli_judge_map(session, job, &pictures->map);
   if (status != CONIC_OK || !job->picture.image.planes[CONIC_PLANE_RGBA])
     return status;
-  status = cli_judge_draw(session, job);
+  status = draw_ours(session, job);
   if (status == CONIC_OK) {
     cover_with_black(&job->ours);
     status = show_theirs(session, job, &pictures->theirs);

@@ -14,12 +14,9 @@ int cli_judge_is_right(const cli_judge_job *job) {
   return job->found.pixels[CONIC_PIXEL_WRONG] <= job->max_wrong;
 }
 
-const char *cli_judge_stage_name(int stage) {
-  static const char *const names[CLI_JUDGE_N_STAGES] = {"read", "open", "judge", "explain", "diagnose", "show"};
-  return names[stage];
-}
+static const char *const stage_names[CLI_JUDGE_N_STAGES] = {"read", "open", "judge", "explain", "diagnose", "show"};
 
-const char *cli_judge_channel_name(const conic_oracle_fault *fault) {
+static const char *channel_name(const conic_oracle_fault *fault) {
   return conic_plane_describe((conic_plane)fault->plane)->channels[fault->channel];
 }
 
@@ -41,9 +38,9 @@ void cli_judge_describe(const cli_judge_job *job, const conic_oracle_fault *faul
   if (job->picture.most_code && fault->plane == CONIC_PLANE_RGBA && fault->found == fault->found)
     bound = fault->found < fault->low ? " at most" : " at least";
   if (fault->high > fault->low)
-    snprintf(text, room, "%s is%s %s; it may be %s to %s", cli_judge_channel_name(fault), bound, found, low, high);
+    snprintf(text, room, "%s is%s %s; it may be %s to %s", channel_name(fault), bound, found, low, high);
   else
-    snprintf(text, room, "%s is%s %s; it may be %s", cli_judge_channel_name(fault), bound, found, low);
+    snprintf(text, room, "%s is%s %s; it may be %s", channel_name(fault), bound, found, low);
 }
 
 void cli_judge_describe_part(const cli_judge_part *p, char *text, size_t room) {
@@ -123,7 +120,7 @@ void cli_judge_print(const cli_judge_job *job) {
     puts("diagnosis no known mistake explains the wrong pixels");
   print_worst(job);
   for (int k = 0; k < CLI_JUDGE_N_STAGES && job->shows_times; k++)
-    printf("%-9s %.2f s\n", cli_judge_stage_name(k), job->seconds[k]);
+    printf("%-9s %.2f s\n", stage_names[k], job->seconds[k]);
 }
 
 static void write_picture(cli_json *json, const cli_judge_job *job) {
@@ -217,10 +214,10 @@ int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
   write_worst(json, found);
   write_diagnosis(json, found);
   cli_json_object(json, "seconds");
-  for (int k = 0; k < CLI_JUDGE_N_STAGES; k++)
-    cli_json_number(json, cli_judge_stage_name(k), job->seconds[k]);
-  for (int k = 0; k < CLI_JUDGE_N_STAGES; k++)
+  for (int k = 0; k < CLI_JUDGE_N_STAGES; k++) {
+    cli_json_number(json, stage_names[k], job->seconds[k]);
     total += job->seconds[k];
+  }
   cli_json_number(json, "total", total);
   cli_json_close(json);
   return cli_json_finish(json);

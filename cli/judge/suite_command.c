@@ -6,18 +6,10 @@
 #include "cli/json_write.h"
 #include "cli/judge/suite_files.h"
 #include "cli/judge/suite_judge.h"
-#include "cli/judge/suite_profiles.h"
 #include "cli/judge/suite_scenes.h"
 #include "cli/outputs.h"
 #include "core/base/memory.h"
 #include "core/files/disk.h"
-
-int cli_suite_has_option(int argc, char **argv) {
-  for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
-    if (strcmp(argv[i], "--suite") == 0 || strncmp(argv[i], "--suite=", 8) == 0)
-      return 1;
-  return 0;
-}
 
 static int is_chosen_case(const suite_run *run, const suite_entry *entry) {
   for (int p = 0; p < SUITE_PROFILES; p++)

@@ -6,6 +6,8 @@
 #include "conic/model.h"
 #include "core/files/sha256.h"
 
+extern const char cli_suite_readme[]; /* its README.md */
+
 enum { SUITE_PATH_ROOM = 96, SUITE_MOST_FILES = 1024 };
 
 typedef struct suite_file {

@@ -49,7 +49,6 @@ typedef struct suite_run {
   char extra[3][SUITE_NAME_ROOM];
 } suite_run;
 
-size_t cli_suite_count(const suite_run *run, int level, suite_outcome outcome); /* level 0: all */
 int cli_suite_is_right(const suite_run *run);
 
 /* The table, and the session's JSON; the second returns an exit code. */
@@ -68,7 +67,6 @@ conic_status cli_suite_write_junit(const suite_run *run);
   }
 
 /* The command, where --suite is among its arguments; returns the exit code. */
-int cli_suite_has_option(int argc, char **argv);
 int cli_suite_run(cli_session *session, int argc, char **argv);
 
 #endif

@@ -1,10 +1,13 @@
-#include "cli/judge/suite_profiles.h"
-
+/* The option --profile NAME[,NAME] of commands for suites. */
 #include <string.h>
 
 #include "cli/judge/suite_scenes.h"
 #include "cli/session.h"
 #include "core/base/nearest_word.h"
+
+const char *cli_suite_profile_name(int profile) {
+  return profile == SUITE_SURFACE ? "surface" : conic_gaussian_profile_name((conic_gaussian_profile)profile);
+}
 
 static unsigned find_suite_profile(const char *command, const char *name) {
   const char *nearest = NULL;

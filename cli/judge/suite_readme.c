@@ -1,4 +1,4 @@
-#include "cli/judge/suite_readme.h"
+#include "cli/judge/suite_files.h"
 
 const char cli_suite_readme[] =
     "# A conformance suite for renderers of Gaussian scenes\n"

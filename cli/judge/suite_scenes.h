@@ -11,6 +11,9 @@ enum { SUITE_LEVELS = 6 };
 enum { SUITE_SURFACE = CONIC_N_GAUSSIAN_PROFILES, SUITE_PROFILES };
 
 const char *cli_suite_profile_name(int profile);
+/* The profiles of an option's list NAME[,NAME], as bits; null: all. Returns 0 after a message where a name is unknown.
+ */
+unsigned cli_suite_find_profiles(const char *command, const char *list);
 
 /* The formats of a scene besides .ply, as bits. */
 enum { SUITE_SPZ = 1, SUITE_GLB = 2 };

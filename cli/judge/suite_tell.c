@@ -9,7 +9,8 @@
 
 enum { SUITE_PRINTED = 12 };
 
-size_t cli_suite_count(const suite_run *run, int level, suite_outcome outcome) {
+/* Of a level; 0: of all. */
+static size_t count_cases(const suite_run *run, int level, suite_outcome outcome) {
   size_t n = 0;
   for (size_t i = 0; i < run->n; i++)
     n += (level == 0 || run->verdicts[i].entry->level == level) && run->verdicts[i].outcome == outcome;
@@ -17,7 +18,7 @@ size_t cli_suite_count(const suite_run *run, int level, suite_outcome outcome) {
 }
 
 int cli_suite_is_right(const suite_run *run) {
-  return cli_suite_count(run, 0, SUITE_IS_RIGHT) == run->n;
+  return count_cases(run, 0, SUITE_IS_RIGHT) == run->n;
 }
 
 static int highest_level(const suite_run *run) {
@@ -30,7 +31,7 @@ static int highest_level(const suite_run *run) {
 static size_t count_of_level(const suite_run *run, int level) {
   size_t n = 0;
   for (int outcome = 0; outcome < SUITE_OUTCOMES; outcome++)
-    n += cli_suite_count(run, level, (suite_outcome)outcome);
+    n += count_cases(run, level, (suite_outcome)outcome);
   return n;
 }
 
@@ -60,9 +61,9 @@ static void print_levels(const suite_run *run) {
     const suite_verdict *worst = worst_of_level(run, level);
     if (count_of_level(run, level) == 0)
       continue;
-    printf("%5d %6zu %6zu %6zu %8zu  %s\n", level, count_of_level(run, level),
-           cli_suite_count(run, level, SUITE_IS_RIGHT), cli_suite_count(run, level, SUITE_IS_WRONG),
-           cli_suite_count(run, level, SUITE_IS_MISSING), worst ? worst->entry->name : "-");
+    printf("%5d %6zu %6zu %6zu %8zu  %s\n", level, count_of_level(run, level), count_cases(run, level, SUITE_IS_RIGHT),
+           count_cases(run, level, SUITE_IS_WRONG), count_cases(run, level, SUITE_IS_MISSING),
+           worst ? worst->entry->name : "-");
   }
 }
 
@@ -99,10 +100,10 @@ void cli_suite_print(const suite_run *run) {
   print_levels(run);
   print_cases(run, SUITE_IS_WRONG);
   print_cases(run, SUITE_IS_MISSING);
-  if (cli_suite_count(run, 0, SUITE_IS_MISSING) && !run->is_profile_given)
+  if (count_cases(run, 0, SUITE_IS_MISSING) && !run->is_profile_given)
     printf("to judge only the profiles that you draw: --profile NAME[,NAME]\n");
   print_advice(run);
-  printf("%s: %zu of %zu cases\n", cli_suite_is_right(run) ? "right" : "WRONG", cli_suite_count(run, 0, SUITE_IS_RIGHT),
+  printf("%s: %zu of %zu cases\n", cli_suite_is_right(run) ? "right" : "WRONG", count_cases(run, 0, SUITE_IS_RIGHT),
          run->n);
 }
 
@@ -111,7 +112,7 @@ void cli_suite_print(const suite_run *run) {
 static void report_outcomes(cli_json *json, const suite_run *run, int level) {
   cli_json_count(json, "cases", count_of_level(run, level));
   for (int outcome = 0; outcome < SUITE_OUTCOMES; outcome++)
-    cli_json_count(json, cli_suite_outcome_names[outcome], cli_suite_count(run, level, (suite_outcome)outcome));
+    cli_json_count(json, cli_suite_outcome_names[outcome], count_cases(run, level, (suite_outcome)outcome));
 }
 
 static void report_case(cli_json *json, const suite_verdict *v) {
@@ -196,7 +197,7 @@ static void put_xml_level(FILE *to, const suite_run *run, int level) {
   if (n == 0)
     return;
   fprintf(to, "  <testsuite name=\"level %d: %s\" tests=\"%zu\" failures=\"%zu\" errors=\"0\" skipped=\"0\">\n", level,
-          about_level(level), n, n - cli_suite_count(run, level, SUITE_IS_RIGHT));
+          about_level(level), n, n - count_cases(run, level, SUITE_IS_RIGHT));
   for (size_t i = 0; i < run->n; i++)
     if (run->verdicts[i].entry->level == level)
       put_xml_case(to, &run->verdicts[i]);
@@ -212,7 +213,7 @@ conic_status cli_suite_write_junit(const suite_run *run) {
   fprintf(to,
           "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
           "<testsuites name=\"conic-conformance\" tests=\"%zu\" failures=\"%zu\" errors=\"0\">\n",
-          run->n, run->n - cli_suite_count(run, 0, SUITE_IS_RIGHT));
+          run->n, run->n - count_cases(run, 0, SUITE_IS_RIGHT));
   for (int level = 1; level <= highest_level(run); level++)
     put_xml_level(to, run, level);
   fputs("</testsuites>\n", to);
