@@ -55,6 +55,13 @@ typedef struct cross_desk {
 
 typedef void cross_run(const cross_tables *tables, cross_desk *desk);
 
+/* What runs a slot by one call; `d` is the desk there. */
+#define CROSS_RUN(name, of_desk, call)                                                                                 \
+  static void name(const cross_tables *tables, cross_desk *desk) {                                                     \
+    of_desk *d = (of_desk *)(void *)desk;                                                                              \
+    call;                                                                                                              \
+  }
+
 /* A slot: its name and what comes before it in a line, what runs it, and what a time is divided by. */
 typedef struct cross_slot {
   const char *name, *variant;

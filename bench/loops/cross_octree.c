@@ -250,15 +250,8 @@ static choose_desk *open_choose(const conic_octree *octree, const conic_octree_v
   return d;
 }
 
-static void run_measure(const cross_tables *tables, cross_desk *desk) {
-  choose_desk *d = (choose_desk *)(void *)desk;
-  tables->octree.measure(d->octree, d->view, 0, d->octree->n_nodes, d->pixels);
-}
-
-static void run_put(const cross_tables *tables, cross_desk *desk) {
-  choose_desk *d = (choose_desk *)(void *)desk;
-  tables->octree.put(d->octree, d->sources, N_PUT, d->view->eye, &d->put, d->ids, 0);
-}
+CROSS_RUN(run_measure, choose_desk, tables->octree.measure(d->octree, d->view, 0, d->octree->n_nodes, d->pixels))
+CROSS_RUN(run_put, choose_desk, tables->octree.put(d->octree, d->sources, N_PUT, d->view->eye, &d->put, d->ids, 0))
 
 /* What is put are the nodes' own numbers. */
 static void check_put(const choose_desk *d) {

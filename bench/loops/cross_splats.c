@@ -25,17 +25,12 @@ static void run_project_for_nearest(const cross_tables *tables, cross_desk *desk
   d->view.needs_nearness = d->view.needs_slope = 1;
 }
 
-static void run_keys(const cross_tables *tables, cross_desk *desk) {
-  splat_desk *d = (splat_desk *)(void *)desk;
-  tables->raster.bins.keys(d->projected.boxes, d->chunk.n_drawn, 5, (d->view.width + 31) / 32, 0, d->tiles, d->keys,
-                           d->beyond);
-}
-
-static void run_keys_of_pixels(const cross_tables *tables, cross_desk *desk) {
-  splat_desk *d = (splat_desk *)(void *)desk;
-  tables->raster.bins.keys(d->projected.boxes, d->chunk.n_drawn, 5, (d->view.width + 31) / 32, 1, d->tiles, d->keys,
-                           d->beyond);
-}
+CROSS_RUN(run_keys, splat_desk,
+          tables->raster.bins.keys(d->projected.boxes, d->chunk.n_drawn, 5, (d->view.width + 31) / 32, 0, d->tiles,
+                                   d->keys, d->beyond))
+CROSS_RUN(run_keys_of_pixels, splat_desk,
+          tables->raster.bins.keys(d->projected.boxes, d->chunk.n_drawn, 5, (d->view.width + 31) / 32, 1, d->tiles,
+                                   d->keys, d->beyond))
 
 /* Into bins of 32 × 32 pixels. */
 static void count_tiles(const conic_bin_loops *plain, splat_desk *d) {
@@ -68,10 +63,7 @@ static void check_selected(splat_desk *d) {
   d->memory.arenas[SELECTED].compared = d->memory.arenas[SELECTED_WORDS].compared = d->n_answered * sizeof(uint32_t);
 }
 
-static void run_visibility(const cross_tables *tables, cross_desk *desk) {
-  splat_desk *d = (splat_desk *)(void *)desk;
-  tables->raster.passes.visibility(&d->band);
-}
+CROSS_RUN(run_visibility, splat_desk, tables->raster.passes.visibility(&d->band))
 
 /* What is kept of pixels that the splat does not cover may be anything. */
 static void check_kept(splat_desk *d) {
@@ -88,20 +80,9 @@ static void check_kept(splat_desk *d) {
   }
 }
 
-static void run_accumulate(const cross_tables *tables, cross_desk *desk) {
-  splat_desk *d = (splat_desk *)(void *)desk;
-  tables->raster.passes.accumulate(&d->band);
-}
-
-static void run_nearest(const cross_tables *tables, cross_desk *desk) {
-  splat_desk *d = (splat_desk *)(void *)desk;
-  tables->raster.passes.nearest(&d->band);
-}
-
-static void run_take_nearest(const cross_tables *tables, cross_desk *desk) {
-  splat_desk *d = (splat_desk *)(void *)desk;
-  tables->raster.passes.take_nearest(&d->band);
-}
+CROSS_RUN(run_accumulate, splat_desk, tables->raster.passes.accumulate(&d->band))
+CROSS_RUN(run_nearest, splat_desk, tables->raster.passes.nearest(&d->band))
+CROSS_RUN(run_take_nearest, splat_desk, tables->raster.passes.take_nearest(&d->band))
 
 /* Where the image has neither counts nor ids, a table may leave alone what only they need. */
 static void check_sums(splat_desk *d) {
@@ -124,10 +105,7 @@ static void check_nearest(splat_desk *d) {
   }
 }
 
-static void run_resolve(const cross_tables *tables, cross_desk *desk) {
-  splat_desk *d = (splat_desk *)(void *)desk;
-  tables->raster.resolve.resolve(&d->band, &d->finish, &d->rays, &d->image);
-}
+CROSS_RUN(run_resolve, splat_desk, tables->raster.resolve.resolve(&d->band, &d->finish, &d->rays, &d->image))
 
 /* Sums that blending seldom leaves: zeros of either sign, denormal, tiny and huge ones, in a third of the pixels. */
 static void spoil_sums(const cross_tables *tables, cross_desk *desk) {

@@ -36,25 +36,11 @@ static surface_desk *open_sums(size_t n, int weight, double neglect, int degree,
   return d;
 }
 
-static void run_moments(const cross_tables *tables, cross_desk *desk) {
-  surface_desk *d = (surface_desk *)(void *)desk;
-  tables->surface.moments(&d->near, &d->weighing, q, d->moments);
-}
-
-static void run_plane(const cross_tables *tables, cross_desk *desk) {
-  surface_desk *d = (surface_desk *)(void *)desk;
-  tables->surface.plane(&d->near, &d->weighing, bent_sheet_frame, 0.15, d->plane);
-}
-
-static void run_factor(const cross_tables *tables, cross_desk *desk) {
-  surface_desk *d = (surface_desk *)(void *)desk;
-  tables->surface.factor(&d->near, bent_sheet_frame, 0.15, 0.9, d->degree, d->upper, d->norms2, d->before2);
-}
-
-static void run_sphere(const cross_tables *tables, cross_desk *desk) {
-  surface_desk *d = (surface_desk *)(void *)desk;
-  tables->surface.sphere(&d->near, &d->weighing, q, d->sphere);
-}
+CROSS_RUN(run_moments, surface_desk, tables->surface.moments(&d->near, &d->weighing, q, d->moments))
+CROSS_RUN(run_plane, surface_desk, tables->surface.plane(&d->near, &d->weighing, bent_sheet_frame, 0.15, d->plane))
+CROSS_RUN(run_factor, surface_desk,
+          tables->surface.factor(&d->near, bent_sheet_frame, 0.15, 0.9, d->degree, d->upper, d->norms2, d->before2))
+CROSS_RUN(run_sphere, surface_desk, tables->surface.sphere(&d->near, &d->weighing, q, d->sphere))
 
 static void try_slots(cross *c, size_t n, int weight, double neglect, int degree, uint64_t seed) {
   surface_desk *desks[CONIC_N_ISAS];

@@ -49,15 +49,8 @@ static void run_vertices(const cross_tables *tables, cross_desk *desk) {
   tables->raster.triangles.vertices(d->frame, d->first_vertex, n - d->first_vertex, d->vertices);
 }
 
-static void run_draw(const cross_tables *tables, cross_desk *desk) {
-  triangle_desk *d = (triangle_desk *)(void *)desk;
-  tables->raster.triangles.draw(d->frame, d->i_tile, d->x, d->y, d->tile);
-}
-
-static void run_hide(const cross_tables *tables, cross_desk *desk) {
-  triangle_desk *d = (triangle_desk *)(void *)desk;
-  tables->raster.triangles.hide(&d->band, &d->rays);
-}
+CROSS_RUN(run_draw, triangle_desk, tables->raster.triangles.draw(d->frame, d->i_tile, d->x, d->y, d->tile))
+CROSS_RUN(run_hide, triangle_desk, tables->raster.triangles.hide(&d->band, &d->rays))
 
 static void run_add(const cross_tables *tables, cross_desk *desk) {
   triangle_desk *d = (triangle_desk *)(void *)desk;
