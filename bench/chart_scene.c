@@ -1,4 +1,4 @@
-#include "bench/chart_scene.h"
+#include "bench/chart.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,8 +5,6 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
-#include "cli/commands/verify_fault.h"
-#include "cli/commands/verify_mean.h"
 #include "cli/commands/verify_reference.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"

@@ -2,7 +2,6 @@
 #include <string.h>
 
 #include "cli/commands/gaussian_commands.h"
-#include "cli/commands/verify_fault.h"
 #include "cli/commands/verify_reference.h"
 #include "cli/render/sample_options.h"
 #include "conic/source.h"

@@ -1,4 +1,3 @@
-#include "cli/commands/verify_mean.h"
 
 #include <string.h>
 

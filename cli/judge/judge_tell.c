@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "cli/commands/gaussian_commands.h"
-#include "cli/commands/verify_fault.h"
+#include "cli/commands/verify_reference.h"
 #include "cli/judge/judge_job.h"
 
 /* Keys in JSON, in the order of conic_pixel_class. */

@@ -1,4 +1,3 @@
-#include "cli/points/points_folder.h"
 
 #include <stdio.h>
 #include <stdlib.h>

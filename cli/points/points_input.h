@@ -2,6 +2,9 @@
 #ifndef CONIC_POINTS_INPUT_H
 #define CONIC_POINTS_INPUT_H
 
+#include <stddef.h>
+
+#include "conic/context.h"
 #include "conic/gaussians.h"
 #include "conic/model.h"
 
@@ -18,5 +21,11 @@ conic_status cli_points_stream(conic_context *context, const char *path, const c
 /* As conic_gaussians_read_model. */
 conic_status cli_points_read(conic_context *context, const char *path, const conic_read_options *options,
                              conic_model *model);
+
+/* Appends the path to `names`, with a zero at its end; for a folder that is no hierarchy, appends each of its files of
+ * points, in the order of their names' bytes. The caller releases the names. Errors: INPUT (the folder has none),
+ * MEMORY. */
+conic_status cli_points_folder_list(conic_context *context, const char *path, char **names, size_t *n_bytes,
+                                    size_t *room);
 
 #endif

@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "cli/points/points_folder.h"
 #include "cli/points/points_input.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"

@@ -4,7 +4,6 @@
 
 #include "cli/scene/render_job.h"
 #include "cli/top/top_tiff.h"
-#include "cli/top/world_file.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"

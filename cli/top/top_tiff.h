@@ -3,6 +3,7 @@
 #define CONIC_TOP_TIFF_H
 
 #include "cli/top/top_store.h"
+#include "conic/context.h"
 #include "conic/image.h"
 #include "core/pictures/tiff_tiles.h"
 #include "source/top_view.h"
@@ -33,5 +34,9 @@ conic_status cli_top_tiff_put(cli_top_tiff *file, const conic_image *block, cons
 conic_status cli_top_tiff_advance(cli_top_tiff *file, size_t n_rows);
 /* Ends the file if `status` is OK, else drops it. Releases everything; returns `status`, or what went wrong. */
 conic_status cli_top_tiff_end(cli_top_tiff *file, conic_status status);
+
+/* Writes PATH's world file: .tfw beside .tif, .pgw beside .png, and so on: the ending's first and last letter, and w.
+ * `pixel` is a pixel's edge; the corner is x and y of the picture's upper left corner. Errors: MEMORY, IO. */
+conic_status cli_world_file_write(conic_context *context, const char *path, double pixel, const double corner[2]);
 
 #endif

@@ -1,4 +1,4 @@
-#include "cli/top/world_file.h"
+#include "cli/top/top_tiff.h"
 
 #include <stdio.h>
 #include <string.h>

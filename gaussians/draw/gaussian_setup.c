@@ -4,8 +4,8 @@
 
 #include "core/base/power.h"
 #include "core/base/vectors.h"
+#include "gaussians/draw/gaussian_footprint.h"
 #include "gaussians/draw/gaussian_outline.h"
-#include "gaussians/draw/harmonic_color.h"
 #include "gaussians/draw/view_rays.h"
 
 /* Whose squares add up to 1 but for this, a quaternion was made a unit one in floats. */

@@ -1,4 +1,4 @@
-#include "gaussians/draw/harmonic_color.h"
+#include "gaussians/draw/gaussian_footprint.h"
 
 #include "core/base/vectors.h"
 #include "gaussians/scene/half.h"

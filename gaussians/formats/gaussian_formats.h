@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 
+#include "conic/gaussians.h"
 #include "core/base/byte_order.h"
 #include "core/files/input.h"
 #include "core/files/mapping.h"
@@ -88,5 +89,10 @@ void conic_gaussians_unit_rotation(const conic_gaussians *gaussians, size_t i, d
  * largest, and those nearly as large, the one without which least is lost, so that what was rounded before stays as it
  * is. Gives q the sign that makes it positive. */
 int conic_find_left_out(double q[4], double (*rounded)(double value));
+
+/* Copies them; the options leave out what they would of a file. On failure *gaussians is empty. Errors: ARGUMENT,
+ * MEMORY. */
+conic_status conic_gaussians_copy_lent(conic_context *context, const char *name, const conic_gaussians *lent,
+                                       const conic_gaussians_read_options *options, conic_gaussians *gaussians);
 
 #endif

@@ -12,7 +12,6 @@
 #include "core/files/file.h"
 #include "core/files/inflate.h"
 #include "gaussians/formats/gaussian_formats.h"
-#include "gaussians/formats/gaussians_loan.h"
 
 typedef struct kind_facts {
   const char *name, *ending, *frame;

@@ -1,4 +1,4 @@
-#include "gaussians/formats/gaussians_loan.h"
+#include "gaussians/formats/gaussian_formats.h"
 
 #include <string.h>
 

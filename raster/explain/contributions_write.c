@@ -1,9 +1,10 @@
 /* Every pixel's visible splats and its visible triangle, line by line, into a deep image. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/threads.h"
-#include "raster/explain/deep_pixel.h"
+#include "core/pictures/image_exr_deep.h"
 #include "raster/explain/pixel_contributions.h"
 
 /* A line that a thread works out; what it holds serves line after line. */
@@ -116,12 +117,58 @@ static conic_status make_room_for_line(conic_context *context, line *l) {
              : conic_memory_reserve(context, &l->samples, 0, l->n_samples, &l->room, sizeof *l->samples);
 }
 
+static int compare_depths(const void *a, const void *b) {
+  const conic_deep_sample *first = a, *second = b;
+  if (first->depth != second->depth)
+    return first->depth < second->depth ? -1 : 1;
+  return (first->id > second->id) - (first->id < second->id);
+}
+
+/* Shading is of the pixel, not of its splats: what it makes of the mean colour it makes of each. Where the mean is
+ * black, nothing but a highlight is seen, which all have alike. */
+static void shade_samples(conic_deep_sample *samples, size_t n, const float shaded[3]) {
+  double sum = 0.0;
+  for (size_t i = 0; i < n; i++)
+    sum += (double)samples[i].weight;
+  for (int c = 0; c < 3; c++) {
+    double mean = 0.0;
+    for (size_t i = 0; i < n; i++)
+      mean += (double)samples[i].weight / sum * (double)samples[i].rgba[c];
+    for (size_t i = 0; i < n; i++)
+      samples[i].rgba[c] = mean > 0.0 ? (float)((double)samples[i].rgba[c] * ((double)shaded[c] / mean)) : shaded[c];
+  }
+}
+
+/* A sample lets through what those behind it are of the rest, so that each is seen with its share of the weights. */
+static void cover_from(conic_deep_sample *samples, size_t n) {
+  double behind = 0.0;
+  for (size_t i = n; i-- > 0;) {
+    conic_deep_sample *sample = &samples[i];
+    behind += (double)sample->weight;
+    double alpha = (double)sample->weight / behind;
+    for (int c = 0; c < 3; c++)
+      sample->rgba[c] = (float)((double)sample->rgba[c] * alpha);
+    sample->rgba[3] = (float)alpha;
+  }
+}
+
+/* The samples stand in the order of the sums, each with its own colour (rgba without A), depth, id and weight. They
+ * come out in the order of their depths, colours times alpha, so that laying them over each other gives the pixel:
+ * `shaded`, or where that is null the mean Σ w c / Σ w, with alpha 1. */
+static void finish_deep_pixel(conic_deep_sample *samples, size_t n, const float *shaded) {
+  if (n > 0 && shaded)
+    shade_samples(samples, n, shaded);
+  if (n > 1)
+    qsort(samples, n, sizeof *samples, compare_depths);
+  cover_from(samples, n);
+}
+
 /* The samples of the line's pixels, which are all there, as they go into the file. */
 static conic_status pack_line(const lines *all, line *l) {
   const conic_contributions *c = all->contributions;
   size_t width = (size_t)c->view.width, first = 0;
   for (size_t x = 0; x < width && l->n_samples > 0; first += l->counts[x++])
-    conic_deep_pixel(l->samples + first, l->counts[x], all->rgba ? all->rgba + 4 * ((size_t)l->y * width + x) : NULL);
+    finish_deep_pixel(l->samples + first, l->counts[x], all->rgba ? all->rgba + 4 * ((size_t)l->y * width + x) : NULL);
   const conic_deep_line whole = {l->counts, l->n_samples, l->samples};
   return conic_deep_pack(c->context, &whole, c->view.width, &l->packed);
 }

@@ -4,7 +4,6 @@
 
 #include "raster/loops/raster_loops.h"
 #include "raster/view/method.h"
-#include "raster/view/scene_scale.h"
 
 conic_status conic_whole_drawing_enter(conic_context *context, const char *who, const conic_drawing *drawing,
                                        conic_whole_drawing *whole) {
@@ -21,12 +20,21 @@ conic_status conic_whole_drawing_enter(conic_context *context, const char *who, 
   return CONIC_OK;
 }
 
+/* Finds near_z and splat_length from the splats, where they are not given, so that several frames find them once. */
+static conic_status scale_splats(conic_context *context, const conic_splats *splats, conic_render_options *options) {
+  if (!(options->near_z > 0.0))
+    options->near_z = conic_default_near(splats);
+  if (!(options->splat_length > 0.0) && options->epsilon < 0.0)
+    return conic_splats_length(context, splats, &options->splat_length);
+  return CONIC_OK;
+}
+
 conic_status conic_whole_drawing_scale(conic_context *context, const conic_whole_drawing *drawing,
                                        conic_render_options *options) {
   const conic_drawing both = {.splats = drawing->splats, .triangles = drawing->triangles};
   if (!(options->near_z > 0.0) && drawing->triangles)
     options->near_z = conic_drawing_near(&both);
-  return conic_scene_scale(context, drawing->splats, options);
+  return scale_splats(context, drawing->splats, options);
 }
 
 conic_status conic_whole_drawing_prepare(conic_context *context, const conic_whole_drawing *drawing,

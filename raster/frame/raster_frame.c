@@ -5,7 +5,6 @@
 #include "core/base/clock.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "raster/frame/windowed.h"
 #include "raster/project/clip_lines.h"
 #include "raster/tiles/lights.h"
 #include "raster/view/ticks.h"

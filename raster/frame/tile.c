@@ -1,7 +1,6 @@
 #include "raster/frame/tile.h"
 
 #include "core/lanes/stream.h"
-#include "raster/frame/tile_hidden.h"
 #include "raster/triangles/triangle_tile.h"
 #include "raster/view/ticks.h"
 

@@ -50,4 +50,8 @@ void conic_tile_place_scratch(conic_tile *tile, void *memory);
 void conic_tile_draw(conic_tile *tile, const conic_raster_loops *loops, const conic_finish *finish, conic_image *image,
                      conic_tile_report *report);
 
+/* Takes the entries that change no pixel of the tile out of its scratch and its n_references, where so many surfaces
+ * may lie behind each other that it is worth while. `band` is the tile's, before its first row. */
+void conic_tile_leave_hidden_out(conic_tile *tile, const conic_raster_loops *loops, const conic_band *band);
+
 #endif

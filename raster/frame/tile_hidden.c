@@ -1,4 +1,4 @@
-#include "raster/frame/tile_hidden.h"
+#include "raster/frame/tile.h"
 
 #include <math.h>
 

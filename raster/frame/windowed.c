@@ -1,4 +1,4 @@
-#include "raster/frame/windowed.h"
+#include "raster/frame/raster_frame.h"
 
 #include "raster/frame/drawing.h"
 #include "raster/project/clip_lines.h"

@@ -203,6 +203,19 @@ static void take_nearest(conic_band *band) {
   }
 }
 
+static void texture_at_places(const conic_texture *texture, const conic_texture_places *places, uint32_t pixels,
+                              float color[3][CONIC_BLOCK_PIXELS]) {
+  for (uint32_t left = pixels; left; left &= left - 1) {
+    int l = __builtin_ctz(left);
+    const float uv[2] = {places->uv[0][l], places->uv[1][l]}, along[2] = {places->along[0][l], places->along[1][l]};
+    const float across[2] = {places->across[0][l], places->across[1][l]};
+    float texel[3];
+    conic_texture_sample(texture, uv, along, across, texel);
+    for (int channel = 0; channel < 3; channel++)
+      color[channel][l] = texel[channel];
+  }
+}
+
 CONIC_DEFINE_LOOPS(conic_raster_loops)
 
 void conic_raster_loops_scalar(conic_raster_loops *loops) {
@@ -212,6 +225,6 @@ void conic_raster_loops_scalar(conic_raster_loops *loops) {
       .passes = {1, visibility, accumulate, nearest, take_nearest},
       .resolve = {.resolve = conic_band_resolve},
       .triangles = {conic_triangle_vertices, conic_triangles_draw, conic_triangles_hide, conic_triangles_add},
-      .texture = {.at_places = conic_texture_at_places},
+      .texture = {.at_places = texture_at_places},
   };
 }

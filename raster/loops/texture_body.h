@@ -1,7 +1,7 @@
 /* The slot `texture` in lanes. Included by raster_loops_body.h. */
 #include "core/image/texture_levels.h"
 #include "core/lanes/lanes_store.h"
-#include "raster/tiles/texture_places.h"
+#include "raster/tiles/tile_loops.h"
 
 /* The texels that the lanes name. */
 CONIC_INLINE void fetch_texels(const conic_texel *texels, index_lanes which, lanes color[3]) {

@@ -1,4 +1,3 @@
-#include "raster/project/clip_box.h"
 
 #include <math.h>
 

@@ -17,4 +17,9 @@ int conic_clip_disc(const conic_view *view, const conic_disc *disc, const double
 /* The two (cos θ, sin θ) of solutions where a cos θ + b sin θ + c = 0; 0 where there are none. */
 int conic_clip_solve(double a, double b, double c, double solutions[2][2]);
 
+/* The box, in pixels, of the part of the disc before near that `n_lines` lines keep, all of them, or one where `is_or`.
+ * Returns 0 where they keep nothing. */
+int conic_clip_box(const conic_view *view, const conic_disc *disc, const float lines[2][3], int n_lines, int is_or,
+                   double low_px[2], double high_px[2]);
+
 #endif

@@ -4,7 +4,7 @@
 
 #include "core/base/vectors.h"
 #include "core/splats/clip.h"
-#include "raster/project/clip_box.h"
+#include "raster/project/clip_disc.h"
 #include "raster/view/method.h"
 
 /* Mates are clipped at the same line from both sides: by this much both keep it, so that no rounding leaves a gap. */

@@ -98,7 +98,7 @@ typedef struct conic_chunk {
   size_t first_ray, n_rays; /* its rays likewise in rays */
   size_t n_laplaces;        /* of them */
   size_t n_culled, n_skipped, n_fallback;
-  size_t n_elsewhere; /* drawn in the picture, and not in the window (raster/frame/windowed.h) */
+  size_t n_elsewhere; /* drawn in the picture, and not in the window (raster/frame/windowed.c) */
 } conic_chunk;
 
 /* Projected splats, chunk by chunk, each in file order until raster/tiles/bins.h sorts it. The arrays have room for

@@ -2,9 +2,9 @@
 #ifndef CONIC_TILE_LOOPS_H
 #define CONIC_TILE_LOOPS_H
 
+#include "conic/texture.h"
 #include "raster/tiles/bins.h"
 #include "raster/tiles/finish.h"
-#include "raster/tiles/texture_places.h"
 
 /* select may write so many entries past those that it counts. */
 #define CONIC_SELECT_SLACK 16
@@ -40,6 +40,11 @@ typedef struct conic_pass_loops {
 typedef struct conic_resolve_loops {
   void (*resolve)(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, conic_image *image);
 } conic_resolve_loops;
+
+/* Where a block's pixels see a texture, as conic_texture_sample takes it, by their order. */
+typedef struct conic_texture_places {
+  float uv[2][CONIC_BLOCK_PIXELS], along[2][CONIC_BLOCK_PIXELS], across[2][CONIC_BLOCK_PIXELS];
+} conic_texture_places;
 
 /* The loops of textures: the texture's colours at those of a block's pixels; the
  * others' stay as they are. */

@@ -6,7 +6,6 @@
 #include "core/base/message.h"
 #include "core/base/threads.h"
 #include "raster/triangles/triangle_loops.h"
-#include "raster/triangles/triangle_sort.h"
 
 /* Vertices that a task projects, and triangles that one sets up, unless their tables would be too many. */
 enum { VERTICES_TOGETHER = 8192, TRIANGLES_TOGETHER = 8192 };

@@ -116,4 +116,19 @@ conic_screen_vertex conic_triangle_place(const conic_triangle_frame *frame, cons
 /* Whether the box of a triangle meets the tile: else there is nothing to draw in it, nor to look for. */
 int conic_triangle_frame_meets(const conic_triangle_frame *frame, size_t i_tile);
 
+/* The most pieces that a triangle is clipped into. */
+enum { CONIC_TRIANGLE_PIECES_MOST = CONIC_CLIPPED_CORNERS - 2 };
+
+/* What a thread sets a chunk up in. */
+typedef struct conic_triangle_sorter {
+  conic_triangle_record *records;
+  conic_triangle_piece *pieces;
+  uint32_t *next; /* [n_tiles]: where its next entry goes */
+  size_t n_records, n_pieces;
+} conic_triangle_sorter;
+
+/* Sets up the triangles begin … end - 1; the chunk gets their counts. */
+void conic_triangle_set_up(const conic_triangle_frame *frame, size_t begin, size_t end, conic_triangle_sorter *sorter,
+                           conic_triangle_chunk *chunk);
+
 #endif

@@ -1,6 +1,6 @@
 /* From vertices on the screen to records of what may cover a sample. */
 #include "core/base/real.h"
-#include "raster/triangles/triangle_sort.h"
+#include "raster/triangles/triangle_frame.h"
 
 typedef enum fate { DRAWN, CULLED, SKIPPED } fate;
 
