@@ -1,11 +1,13 @@
 /* conic convert: writes a Gaussian scene in another format, and says what was lost. */
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
-#include "cli/commands/convert_measure.h"
 #include "cli/outputs.h"
+#include "conic/source.h"
 #include "core/files/disk.h"
 
 typedef struct convert_job {
@@ -22,7 +24,9 @@ typedef struct convert_job {
   int is_checked, is_lossless;
   conic_gaussians_differences differences;
   char losses[400];
-  cli_convert_pictures pictures;
+  int n_views;     /* from which pictures before and after are compared; 0: none are drawn */
+  double psnr;     /* of R, G and B as display values from 0 to 1, over all views; infinite for equal pictures */
+  double greatest; /* the greatest difference of a value */
 } convert_job;
 
 enum { READ, WORK, WRITE, CHECK };
@@ -104,6 +108,71 @@ static conic_status read_again(convert_job *job) {
   return status;
 }
 
+enum { SIDE = 512 };
+
+typedef struct two_pictures {
+  conic_gaussian_planes planes[2];
+  double squares, greatest;
+} two_pictures;
+
+static double display_value(float value) {
+  return value < 0.0f ? 0.0 : value < 1.0f ? (double)value : 1.0;
+}
+
+static void add_differences(two_pictures *both) {
+  for (size_t i = 0; i < 3 * (size_t)SIDE * SIDE; i++) {
+    double apart = fabs(display_value(both->planes[0].rgb[i]) - display_value(both->planes[1].rgb[i]));
+    both->squares += apart * apart;
+    both->greatest = apart > both->greatest ? apart : both->greatest;
+  }
+}
+
+static conic_status draw_views(conic_context *context, conic_source *source, const conic_gaussians *const scenes[2],
+                               int n_views, two_pictures *both) {
+  conic_framing framing;
+  conic_status status = CONIC_OK;
+  conic_framing_init(&framing);
+  framing.width = framing.height = SIDE;
+  for (int view = 0; view < n_views && status == CONIC_OK; view++) {
+    conic_camera camera;
+    framing.azimuth_deg = 30.0 + 360.0 * view / n_views;
+    status = conic_source_frame(source, &framing, &camera);
+    for (int i = 0; i < 2 && status == CONIC_OK; i++)
+      status = conic_gaussians_render(context, scenes[i], &camera, NULL, &both->planes[i], NULL);
+    if (status == CONIC_OK)
+      add_differences(both);
+  }
+  return status;
+}
+
+/* Draws both scenes, which have the same order, with the profile `exact` from all sides of the output, and compares the
+ * pictures. */
+static conic_status measure_pictures(convert_job *job) {
+  conic_context *context = job->base.session->context;
+  const conic_gaussians *const scenes[2] = {&job->scene, &job->written};
+  const size_t n = 3 * (size_t)SIDE * SIDE;
+  conic_gaussian_options exact;
+  conic_source_options opening;
+  conic_source *source = NULL;
+  two_pictures both = {.planes = {{.width = SIDE, .height = SIDE}, {.width = SIDE, .height = SIDE}}};
+  conic_gaussian_options_init(&exact);
+  conic_source_options_init(&opening);
+  opening.gaussians = &exact;
+  both.planes[0].rgb = malloc(n * sizeof(float));
+  both.planes[1].rgb = malloc(n * sizeof(float));
+  conic_status status = both.planes[0].rgb && both.planes[1].rgb ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = conic_source_open(context, &job->base.output, 1, &opening, &source);
+  if (status == CONIC_OK)
+    status = draw_views(context, source, scenes, job->n_views, &both);
+  job->psnr = -10.0 * log10(both.squares / ((double)n * job->n_views));
+  job->greatest = both.greatest;
+  conic_source_close(source);
+  free(both.planes[0].rgb);
+  free(both.planes[1].rgb);
+  return status;
+}
+
 static int convert_scene(void *cookie) {
   convert_job *job = cookie;
   conic_context *context = job->base.session->context;
@@ -121,8 +190,8 @@ static int convert_scene(void *cookie) {
   start = cli_build_end_stage(&job->base.stages[WRITE], start);
   if (status == CONIC_OK && strcmp(job->base.output, "-") != 0)
     status = read_again(job);
-  if (job->is_checked && job->pictures.n_views > 0)
-    status = cli_convert_measure(context, job->base.output, &job->scene, &job->written, &job->pictures);
+  if (job->is_checked && job->n_views > 0)
+    status = measure_pictures(job);
   cli_build_end_stage(&job->base.stages[CHECK], start);
   return cli_exit_of(status);
 }
@@ -131,15 +200,14 @@ static void tell_losses(const void *cookie) {
   const convert_job *job = cookie;
   if (job->is_checked && !job->is_lossless)
     cli_note(job->base.session, "%s: not all of it is as it was: %s", job->base.output, job->losses);
-  const cli_convert_pictures *pictures = &job->pictures;
-  const char *sides = pictures->n_views == 1 ? "side" : "sides";
-  if (!job->is_checked || pictures->n_views == 0)
+  const char *sides = job->n_views == 1 ? "side" : "sides";
+  if (!job->is_checked || job->n_views == 0)
     return;
-  if (pictures->greatest > 0.0)
+  if (job->greatest > 0.0)
     cli_note(job->base.session, "%s: its pictures from %d %s have a PSNR of %.1f dB, and differ by up to %.3f",
-             job->base.output, pictures->n_views, sides, pictures->psnr, pictures->greatest);
+             job->base.output, job->n_views, sides, job->psnr, job->greatest);
   else
-    cli_note(job->base.session, "%s: its pictures from %d %s are the same", job->base.output, pictures->n_views, sides);
+    cli_note(job->base.session, "%s: its pictures from %d %s are the same", job->base.output, job->n_views, sides);
 }
 
 static uint64_t bytes_written(const char *path) {
@@ -171,11 +239,11 @@ static void report_conversion(cli_json *json, const void *cookie) {
     cli_json_number(json, "color", job->differences.color);
     cli_json_number(json, "harmonics", job->differences.harmonics);
     cli_json_close(json);
-    if (job->pictures.n_views > 0) {
+    if (job->n_views > 0) {
       cli_json_object(json, "pictures");
-      cli_json_count(json, "views", (uint64_t)job->pictures.n_views);
-      cli_json_number(json, "psnr", job->pictures.psnr);
-      cli_json_number(json, "greatest", job->pictures.greatest);
+      cli_json_count(json, "views", (uint64_t)job->n_views);
+      cli_json_number(json, "psnr", job->psnr);
+      cli_json_number(json, "greatest", job->greatest);
       cli_json_close(json);
     }
     cli_json_count(json, "bytes", bytes_written(job->base.output));
@@ -198,7 +266,7 @@ static int check_paths(convert_job *job, const char *const *inputs, int n_inputs
   job->base.input = inputs[0];
   if (!job->base.output)
     return cli_usage("convert: no output given (-o OUT)");
-  if (job->pictures.n_views > 0 && strcmp(job->base.output, "-") == 0)
+  if (job->n_views > 0 && strcmp(job->base.output, "-") == 0)
     return cli_usage("convert: --measure looks at the output, so it is to be a file");
   if (job->to)
     job->write.kind = (conic_gaussian_kind)(job->to - 1);
@@ -229,8 +297,7 @@ static int run_convert(cli_session *session, int argc, char **argv) {
       {"keep-order", CLI_FLAG, &job.keeps_order, NULL,
        "keep the order of the Gaussians; else neighbours are brought together, which packs better"},
       {"sh-bits", CLI_INT, &job.sh_bits, "N", "of .spz: bits of each number of the harmonics, 1 to 8 [8]", 1, 8},
-      {"measure", CLI_INT, &job.pictures.n_views, "N", "draw both scenes from N sides, and say how pictures differ", 1,
-       360},
+      {"measure", CLI_INT, &job.n_views, "N", "draw both scenes from N sides, and say how pictures differ", 1, 360},
       {"spz-version", CLI_INT, &job.write.spz_version, "V", "of .spz: 3 for readers of before 2026 [4]", 3, 4},
   };
   int exit_code = cli_parse(session, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);

@@ -3,7 +3,6 @@
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
-#include "cli/commands/mls_cells.h"
 #include "cli/commands/mls_sizes.h"
 #include "cli/device_option.h"
 #include "core/base/message.h"
@@ -34,7 +33,9 @@ typedef struct mls_job {
   conic_surface_report report;
   conic_repairs repairs;
   size_t n_in, n_out;
-  double unit; /* the median spacing, if a length is given in it */
+  double unit;                 /* the median spacing, if a length is given in it */
+  conic_splats_writer *writer; /* of cells */
+  double work_end;             /* when the last point was projected */
 } mls_job;
 
 enum { READ, ESTIMATE, WORK, WRITE };
@@ -120,17 +121,36 @@ static conic_status densify(mls_job *job) {
              : status;
 }
 
-static conic_status project_all_points(mls_job *job) {
-  return conic_surface_clean(job->surface, &job->result, &job->report);
-}
-
 /* Works cell by cell, if all points have one h: then not all of them are needed at once. */
 static int is_by_cells(const mls_job *job) {
   return job->action == MLS_PROJECT && job->h.value > 0.0 && job->options.cluster == 0.0 && !job->is_sharp;
 }
 
+static conic_status feed_points(void *cookie, conic_batch_receiver *receive, void *to) {
+  mls_job *job = cookie;
+  conic_read_options options;
+  conic_read_options_init(&options);
+  options.columns = job->base.columns;
+  return job->has_memory ? conic_model_stream(job->base.session->context, job->base.input, &options, receive, to)
+                         : receive(to, &job->model.points);
+}
+
+/* The last point is projected. Nothing is written if none is left. */
+static conic_status begin_cells(void *cookie, const conic_surface_report *report, unsigned fields) {
+  mls_job *job = cookie;
+  job->work_end = cli_seconds();
+  return report->n_out == 0 ? CONIC_OK
+                            : conic_splats_writer_open(job->base.session->context, job->base.output, report->n_out,
+                                                       fields, NULL, &job->writer);
+}
+
+static conic_status append_cleaned(void *cookie, const conic_splats *batch) {
+  return conic_splats_writer_append(((mls_job *)cookie)->writer, batch);
+}
+
 static conic_status clean_cells(mls_job *job) {
   conic_clean_options options;
+  const conic_points_sink sink = {begin_cells, append_cleaned, job};
   conic_clean_options_init(&options);
   options.surface = job->options;
   options.name = job->base.input;
@@ -138,25 +158,16 @@ static conic_status clean_cells(mls_job *job) {
   options.scratch = strcmp(job->base.output, "-") == 0 ? job->base.input : job->base.output;
   double start = cli_seconds();
   conic_status status =
-      cli_mls_clean(job->base.session, &options, job->has_memory ? NULL : &job->model.points, job->base.input,
-                    job->base.columns, job->base.output, &job->report, &job->base.stages[WORK].seconds);
-  job->base.stages[WRITE].seconds = cli_seconds() - start - job->base.stages[WORK].seconds;
+      conic_surface_clean_cells(job->base.session->context, &options, feed_points, job, &sink, &job->report);
+  if (status == CONIC_OK && job->writer)
+    status = conic_splats_writer_finish(job->writer);
+  else
+    conic_splats_writer_abandon(job->writer);
+  job->base.stages[WORK].seconds = job->work_end - start;
+  job->base.stages[WRITE].seconds = cli_seconds() - job->work_end;
   job->n_in = job->report.n_in;
   job->n_out = job->report.n_out;
   return status;
-}
-
-static conic_status act(mls_job *job) {
-  switch (job->action) {
-  case MLS_THIN:
-    return thin(job);
-  case MLS_DENSIFY:
-    return densify(job);
-  case MLS_PROJECT:
-  case N_MLS_ACTIONS: /* not an action */
-    break;
-  }
-  return project_all_points(job);
 }
 
 static conic_status work(mls_job *job) {
@@ -172,7 +183,9 @@ static conic_status work(mls_job *job) {
   conic_status status =
       conic_surface_create(job->base.session->context, &job->model.points, &job->options, &job->surface);
   if (status == CONIC_OK)
-    status = act(job);
+    status = job->action == MLS_THIN      ? thin(job)
+             : job->action == MLS_DENSIFY ? densify(job)
+                                          : conic_surface_clean(job->surface, &job->result, &job->report);
   if (status == CONIC_OK && job->is_sharp)
     status = cli_mls_size_sharp(job->base.session->context, &job->result);
   job->n_out = job->result.count;
