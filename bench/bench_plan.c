@@ -62,51 +62,33 @@ static int take_file(cli_bench_job *job, const char *path) {
   return CLI_DONE;
 }
 
-static void add_method(cli_bench_job *job, int i_method) {
-  for (int i = 0; i < job->n_methods; i++)
-    if (job->methods[i] == i_method)
-      return;
-  job->methods[job->n_methods++] = i_method;
-}
-
-static int take_method(cli_bench_job *job, const char *word) {
+/* Appends those of the methods and profiles `first` … end - 1 that the word names, each once. */
+static int take_named(const char *word, int first, int end, int *list, int *n, const char *what, const char *hint) {
   const char *nearest = NULL;
-  for (int i = 0; i < CLI_BENCH_N_METHODS; i++) {
-    if (strcmp(word, "all") == 0 || strcmp(word, cli_bench_methods[i].name) == 0)
-      add_method(job, i);
-    if (strcmp(word, cli_bench_methods[i].name) == 0)
-      return CLI_DONE;
-    nearest = conic_nearer_word(word, nearest, cli_bench_methods[i].name);
-  }
-  if (strcmp(word, "all") == 0)
-    return CLI_DONE;
-  return nearest
-             ? cli_usage("bench: unknown method %s; did you mean %s?", word, nearest)
-             : cli_usage("bench: unknown method %s; there are conic, ray, affine, point, disc, auto, nearest", word);
-}
-
-static void add_profile(cli_bench_job *job, int profile) {
-  for (int i = 0; i < job->n_profiles; i++)
-    if (job->profiles[i] == CLI_BENCH_N_METHODS + profile)
-      return;
-  job->profiles[job->n_profiles++] = CLI_BENCH_N_METHODS + profile;
-}
-
-static int take_profile(cli_bench_job *job, const char *word) {
-  const char *nearest = NULL;
-  int is_known = strcmp(word, "all") == 0;
-  for (int i = 0; i < CONIC_N_GAUSSIAN_PROFILES; i++) {
-    const char *name = conic_gaussian_profile_name((conic_gaussian_profile)i);
-    int is_it = strcmp(word, name) == 0;
-    if (is_it || strcmp(word, "all") == 0)
-      add_profile(job, i);
+  int is_known = 0;
+  for (int i = first; i < end; i++) {
+    int is_it = strcmp(word, "all") == 0 || strcmp(word, cli_bench_method_name(i)) == 0, k = 0;
+    while (k < *n && list[k] != i)
+      k++;
+    if (is_it && k == *n)
+      list[(*n)++] = i;
     is_known |= is_it;
-    nearest = conic_nearer_word(word, nearest, name);
+    nearest = conic_nearer_word(word, nearest, cli_bench_method_name(i));
   }
   if (is_known)
     return CLI_DONE;
-  return nearest ? cli_usage("bench: unknown profile %s; did you mean %s?", word, nearest)
-                 : cli_usage("bench: unknown profile %s; see conic help render", word);
+  return nearest ? cli_usage("bench: unknown %s %s; did you mean %s?", what, word, nearest)
+                 : cli_usage("bench: unknown %s %s; %s", what, word, hint);
+}
+
+static int take_method(cli_bench_job *job, const char *word) {
+  return take_named(word, 0, CLI_BENCH_N_METHODS, job->methods, &job->n_methods, "method",
+                    "there are conic, ray, affine, point, disc, auto, nearest");
+}
+
+static int take_profile(cli_bench_job *job, const char *word) {
+  return take_named(word, CLI_BENCH_N_METHODS, CLI_BENCH_N_METHODS + CONIC_N_GAUSSIAN_PROFILES, job->profiles,
+                    &job->n_profiles, "profile", "see conic help render");
 }
 
 static void add_isa(cli_bench_job *job, conic_isa isa) {

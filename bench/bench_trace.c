@@ -5,19 +5,19 @@
 #include "bench/bench.h"
 #include "core/base/clock.h"
 
-/* Room for one more. Returns 0 where there is no memory. */
-static int make_trace_room(cli_bench_trace *trace, void **array, size_t wanted, size_t *room, size_t size) {
+/* Makes room in an array, of which this is the address. Returns 0 where there is no memory. */
+static int make_trace_room(cli_bench_trace *trace, void *array, size_t wanted, size_t *room, size_t size) {
   if (trace->is_broken)
     return 0;
   if (wanted <= *room)
     return 1;
   size_t larger = wanted + wanted / 2 + 64;
-  void *moved = realloc(*array, larger * size);
+  void **place = array, *moved = realloc(*place, larger * size);
   if (!moved) {
     trace->is_broken = 1;
     return 0;
   }
-  *array = moved;
+  *place = moved;
   *room = larger;
   return 1;
 }
@@ -25,9 +25,7 @@ static int make_trace_room(cli_bench_trace *trace, void **array, size_t wanted, 
 /* What passed since the part before. */
 static void note_trace_part(cli_bench_trace *trace) {
   double now = conic_seconds_now();
-  void *seconds = trace->seconds;
-  if (make_trace_room(trace, &seconds, trace->n_seconds + 1, &trace->seconds_room, sizeof *trace->seconds)) {
-    trace->seconds = seconds;
+  if (make_trace_room(trace, &trace->seconds, trace->n_seconds + 1, &trace->seconds_room, sizeof *trace->seconds)) {
     trace->seconds[trace->n_seconds++] = now - trace->now;
   }
   trace->now = conic_seconds_now();
@@ -41,10 +39,9 @@ void cli_bench_trace_begin(cli_bench_trace *trace) {
 void cli_bench_trace_watch(void *cookie, const char *name, size_t n_tasks, size_t n_done) {
   cli_bench_trace *trace = cookie;
   note_trace_part(trace);
-  void *regions = trace->regions;
-  if (n_done || !make_trace_room(trace, &regions, trace->n_regions + 1, &trace->regions_room, sizeof *trace->regions))
+  if (n_done ||
+      !make_trace_room(trace, &trace->regions, trace->n_regions + 1, &trace->regions_room, sizeof *trace->regions))
     return;
-  trace->regions = regions;
   trace->regions[trace->n_regions++] = (cli_bench_region){name, n_tasks};
 }
 
@@ -57,10 +54,9 @@ static int has_last_regions(const cli_bench_trace *trace) {
 }
 
 static void take_regions(cli_bench_trace *trace) {
-  void *last = trace->last_regions;
-  if (!make_trace_room(trace, &last, trace->n_regions, &trace->last_regions_room, sizeof *trace->last_regions))
+  if (!make_trace_room(trace, &trace->last_regions, trace->n_regions, &trace->last_regions_room,
+                       sizeof *trace->last_regions))
     return;
-  trace->last_regions = last;
   if (trace->n_regions)
     memcpy(trace->last_regions, trace->regions, trace->n_regions * sizeof *trace->regions);
   trace->n_last_regions = trace->n_regions;
@@ -72,10 +68,9 @@ void cli_bench_trace_end(cli_bench_trace *trace) {
   note_trace_part(trace);
   if (!has_last_regions(trace))
     take_regions(trace);
-  void *kept = trace->kept;
-  if (!make_trace_room(trace, &kept, (trace->n_rows + 1) * trace->n_a_row, &trace->kept_room, sizeof *trace->kept))
+  if (!make_trace_room(trace, &trace->kept, (trace->n_rows + 1) * trace->n_a_row, &trace->kept_room,
+                       sizeof *trace->kept))
     return;
-  trace->kept = kept;
   memcpy(trace->kept + trace->n_rows++ * trace->n_a_row, trace->seconds, trace->n_a_row * sizeof *trace->kept);
 }
 

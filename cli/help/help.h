@@ -49,8 +49,11 @@ void cli_help_fish_begin(void);
 /* The page of the whole program, conic(1). */
 void cli_help_man_program(void);
 
-/* The i-th exit code and its meaning, the i-th variable of the environment and its; null past the last. */
-const char *cli_help_exit_code(int i, const char **meaning);
-const char *cli_help_variable(int i, const char **meaning);
+/* The exit codes and the variables of the environment with their meanings; the names end with a null. */
+typedef struct cli_help_row {
+  const char *name, *meaning;
+} cli_help_row;
+
+extern const cli_help_row cli_help_exit_codes[], cli_help_variables[];
 
 #endif

@@ -4,38 +4,22 @@
 #include "cli/help/help.h"
 #include "cli/json_write.h"
 
-static const struct {
-  const char *code, *meaning;
-} exit_codes[] = {
+const cli_help_row cli_help_exit_codes[] = {
     {"0", "done"},
     {"1", "compared and different"},
     {"2", "wrong usage"},
     {"3", "an input that cannot be used"},
     {"4", "a resource failed: memory, disk, what this build or machine lacks"},
     {"128+N", "stopped by signal N; 130 by Ctrl-C"},
+    {NULL, NULL},
 };
 
-static const struct {
-  const char *name, *meaning;
-} variables[] = {
+const cli_help_row cli_help_variables[] = {
     {"TERM", "a progress bar is shown on a terminal, unless this is dumb"},
     {"TMPDIR", "where what does not fit into memory goes that has no place beside an output; else /tmp"},
     {"XDG_CACHE_HOME", "programs that were built for an OpenCL device are kept in conic below this; else in ~/.cache"},
+    {NULL, NULL},
 };
-
-const char *cli_help_exit_code(int i, const char **meaning) {
-  if (i >= (int)(sizeof exit_codes / sizeof *exit_codes))
-    return NULL;
-  *meaning = exit_codes[i].meaning;
-  return exit_codes[i].code;
-}
-
-const char *cli_help_variable(int i, const char **meaning) {
-  if (i >= (int)(sizeof variables / sizeof *variables))
-    return NULL;
-  *meaning = variables[i].meaning;
-  return variables[i].name;
-}
 
 void cli_help_usage(FILE *to) {
   fputs("conic draws point-sampled surfaces as splats.\n\n"
@@ -49,11 +33,10 @@ void cli_help_usage(FILE *to) {
 }
 
 static void print_program(void) {
-  const char *meaning;
   cli_help_usage(stdout);
   puts("\nreads: " CLI_READABLE "\n\nexit codes:");
-  for (int i = 0; cli_help_exit_code(i, &meaning); i++)
-    printf("  %-2s %s\n", cli_help_exit_code(i, &meaning), meaning);
+  for (const cli_help_row *row = cli_help_exit_codes; row->name; row++)
+    printf("  %-2s %s\n", row->name, row->meaning);
   puts("\nThe guide begins with docs/guide/first-picture.md beside conic's source.");
 }
 

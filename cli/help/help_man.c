@@ -161,10 +161,9 @@ static void put_option(const cli_help_entry *entry) {
 }
 
 static void put_exit_codes(void) {
-  const char *meaning;
   puts(".SH EXIT STATUS");
-  for (int i = 0; cli_help_exit_code(i, &meaning); i++)
-    put_tag(cli_help_exit_code(i, &meaning), meaning);
+  for (const cli_help_row *row = cli_help_exit_codes; row->name; row++)
+    put_tag(row->name, row->meaning);
 }
 
 void cli_help_man(cli_session *session, const cli_option_table *table) {
@@ -201,7 +200,6 @@ void cli_help_man(cli_session *session, const cli_option_table *table) {
 }
 
 void cli_help_man_program(void) {
-  const char *meaning;
   put_title(NULL);
   put_paragraph("draws surfaces that are given as points, meshes or Gaussians", 0);
   put_usage("conic COMMAND [arguments]\nconic help [--format FORMAT] [COMMAND]\nconic --version");
@@ -228,8 +226,8 @@ void cli_help_man_program(void) {
                 0);
   put_exit_codes();
   puts(".SH ENVIRONMENT");
-  for (int i = 0; cli_help_variable(i, &meaning); i++)
-    put_tag(cli_help_variable(i, &meaning), meaning);
+  for (const cli_help_row *row = cli_help_variables; row->name; row++)
+    put_tag(row->name, row->meaning);
   puts(".SH EXAMPLES\n.EX\nconic make knot \\-o scan.ply\nconic render scan.ply \\-o scan.png\n.EE");
   fputs(".SH SEE ALSO\n", stdout);
   for (int i = 0; cli_command_at(i); i++)

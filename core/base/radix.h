@@ -23,4 +23,13 @@ static inline int conic_bits_below(size_t count) {
   return n;
 }
 
+/* Bit i of 21 goes to bit 3i: a part of a Morton code. */
+static inline uint64_t conic_spread_bits(uint64_t bits) {
+  bits = (bits | bits << 32) & UINT64_C(0x001f00000000ffff);
+  bits = (bits | bits << 16) & UINT64_C(0x001f0000ff0000ff);
+  bits = (bits | bits << 8) & UINT64_C(0x100f00f00f00f00f);
+  bits = (bits | bits << 4) & UINT64_C(0x10c30c30c30c30c3);
+  return (bits | bits << 2) & UINT64_C(0x1249249249249249);
+}
+
 #endif

@@ -8,15 +8,6 @@
 
 enum { AXIS_BITS = 16 };
 
-/* Two zeros between any two bits. */
-static uint64_t spread_bits(uint64_t bits) {
-  bits = (bits | bits << 32) & UINT64_C(0x1f00000000ffff);
-  bits = (bits | bits << 16) & UINT64_C(0x1f0000ff0000ff);
-  bits = (bits | bits << 8) & UINT64_C(0x100f00f00f00f00f);
-  bits = (bits | bits << 4) & UINT64_C(0x10c30c30c30c30c3);
-  return (bits | bits << 2) & UINT64_C(0x1249249249249249);
-}
-
 /* Places that are not finite come last. */
 static uint64_t find_key(const conic_gaussians *gaussians, size_t i, const double low[3], const double per_cell[3]) {
   uint64_t key = 0;
@@ -24,7 +15,7 @@ static uint64_t find_key(const conic_gaussians *gaussians, size_t i, const doubl
     double cell = (conic_gaussians_mean(gaussians, axis, i) - low[axis]) * per_cell[axis];
     if (!(cell >= 0.0 && cell < 65536.0))
       return ((uint64_t)1 << 3 * AXIS_BITS) - 1;
-    key |= spread_bits((uint64_t)cell) << axis;
+    key |= conic_spread_bits((uint64_t)cell) << axis;
   }
   return key;
 }

@@ -8,6 +8,7 @@
 
 #include "conic/context.h"
 #include "core/base/heap.h"
+#include "core/base/vectors.h"
 #include "lod/clusters/cluster_seen.h"
 #include "lod/clusters/cluster_simplify.h"
 #include "lod/mesh/quadric.h"
@@ -178,6 +179,16 @@ double conic_simplifier_fading(const conic_simplifier *s, uint32_t u, uint32_t v
 /* Notes what a point of a cluster has become, being nearest to a triangle. */
 void conic_simplifier_note_change(conic_simplifier *s, uint32_t cluster, const conic_simplifier_point *point,
                                   const conic_simplifier_triangle *triangle);
+
+/* Twice the area of a triangle as it is now; `cross` becomes the product of two sides. */
+static inline double conic_simplifier_twice_area(const conic_simplifier *s, size_t triangle, double cross[3]) {
+  const uint32_t *corners = s->triangles[triangle].corners;
+  double sides[2][3];
+  for (int k = 0; k < 2; k++)
+    conic_subtract(s->vertices[corners[k + 1]].at, s->vertices[corners[0]].at, sides[k]);
+  conic_cross(sides[0], sides[1], cross);
+  return conic_length(cross);
+}
 
 /* Whether a cluster has become so much simpler that this stage is a level of it. */
 static inline int conic_simplifier_is_worth_a_level(const conic_simplifier *s, uint32_t cluster) {

@@ -14,15 +14,6 @@ static size_t number_alive(const conic_simplifier *s, uint32_t *numbers) {
   return n;
 }
 
-static double twice_area(const conic_simplifier *s, size_t triangle, double cross[3]) {
-  const uint32_t *corners = s->triangles[triangle].corners;
-  double sides[2][3];
-  for (int k = 0; k < 2; k++)
-    conic_subtract(s->vertices[corners[k + 1]].at, s->vertices[corners[0]].at, sides[k]);
-  conic_cross(sides[0], sides[1], cross);
-  return conic_length(cross);
-}
-
 /* --- places --- */
 
 /* Which way a vertex may be moved: along the mean normal of its triangles; not at all on a border. */
@@ -32,7 +23,7 @@ static void find_ways_of_vertices(const conic_simplifier *s, double (*ways)[3]) 
     double cross[3];
     if (!s->triangles[i].is_alive)
       continue;
-    twice_area(s, i, cross);
+    conic_simplifier_twice_area(s, i, cross);
     for (int k = 0; k < 9; k++)
       ways[s->triangles[i].corners[k / 3]][k % 3] += cross[k % 3];
   }
@@ -124,7 +115,7 @@ static int meet_smoothly(const conic_simplifier *s, uint32_t a, uint32_t b) {
   if (first->corners[(a % 3 + 1) % 3] != second->corners[(b % 3 + 2) % 3] &&
       first->corners[(a % 3 + 2) % 3] != second->corners[(b % 3 + 1) % 3])
     return 0;
-  double length = twice_area(s, a / 3, normals[0]) * twice_area(s, b / 3, normals[1]);
+  double length = conic_simplifier_twice_area(s, a / 3, normals[0]) * conic_simplifier_twice_area(s, b / 3, normals[1]);
   return conic_dot(normals[0], normals[1]) >= crease * length &&
          (own == other || along_normals(s, own, other) >= crease);
 }
@@ -162,7 +153,7 @@ static void begin_normals(const conic_simplifier *s, conic_simplifier_normals *n
     double cross[3], area2;
     if (!s->triangles[i].is_alive)
       continue;
-    area2 = twice_area(s, i, cross);
+    area2 = conic_simplifier_twice_area(s, i, cross);
     for (int k = 0; k < 9; k++)
       n->normals[n->of_corner[i][k / 3]][k % 3] +=
           area2 * (double)s->mesh->triangles->normal[k % 3][s->originals[i][k / 3]];

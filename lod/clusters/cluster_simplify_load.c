@@ -95,30 +95,22 @@ static uint32_t use_vertex(conic_simplifier *s, uint32_t triangle, int corner, u
   return i;
 }
 
-static double twice_area_at_first(const conic_simplifier *s, uint32_t triangle) {
-  double sides[2][3], cross[3];
-  const uint32_t *corners = s->triangles[triangle].corners;
-  for (int k = 0; k < 2; k++)
-    conic_subtract(s->vertices[corners[k + 1]].at, s->vertices[corners[0]].at, sides[k]);
-  conic_cross(sides[0], sides[1], cross);
-  return conic_length(cross);
-}
-
 /* What its colours need to be known of a face. */
 static void note_face(conic_simplifier *s, uint32_t triangle) {
+  double cross[3];
   s->contrasts[triangle][0] = (float)conic_seen_contrast(s->mesh->triangles, s->triangles[triangle].face);
-  s->contrasts[triangle][1] = (float)twice_area_at_first(s, triangle);
+  s->contrasts[triangle][1] = (float)conic_simplifier_twice_area(s, triangle, cross);
 }
 
 /* A face is nearest to itself. */
 static void begin_hit(conic_simplifier *s, uint32_t triangle) {
   float *const *normals = s->mesh->triangles->normal;
-  double normal[3] = {0.0, 0.0, 0.0};
+  double normal[3] = {0.0, 0.0, 0.0}, cross[3];
   for (int k = 0; k < 9 && normals[0]; k++)
     normal[k % 3] += (double)normals[k % 3][s->originals[triangle][k / 3]];
   conic_normalize(normal);
   conic_simplifier_hit *hit = &s->hits[triangle];
-  *hit = (conic_simplifier_hit){.area2 = (float)twice_area_at_first(s, triangle), .triangle = triangle};
+  *hit = (conic_simplifier_hit){.area2 = (float)conic_simplifier_twice_area(s, triangle, cross), .triangle = triangle};
   for (int axis = 0; axis < 3; axis++)
     hit->normal[axis] = (float)normal[axis];
 }

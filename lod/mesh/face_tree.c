@@ -10,14 +10,6 @@
 
 enum { LEAF_FACES = 2, CODE_BITS = 10 };
 
-/* Two zeros between each of the 10 bits. */
-static uint64_t spread(uint64_t bits) {
-  bits = (bits | bits << 16) & UINT64_C(0x30000FF);
-  bits = (bits | bits << 8) & UINT64_C(0x300F00F);
-  bits = (bits | bits << 4) & UINT64_C(0x30C30C3);
-  return (bits | bits << 2) & UINT64_C(0x9249249);
-}
-
 /* --- faces --- */
 
 /* The places of a face's corners, the lowest first, whatever corner it begins with and however it is wound. */
@@ -95,7 +87,7 @@ static conic_status order_faces(conic_context *context, conic_face_tree *tree) {
     middle_of(mesh, items[i].value, middle);
     for (int axis = 0; axis < 3; axis++) {
       double side = high[axis] - low[axis], share = side > 0.0 ? (middle[axis] - low[axis]) / side : 0.0;
-      items[i].key |= spread((uint64_t)(share * 1023.0)) << axis;
+      items[i].key |= conic_spread_bits((uint64_t)(share * 1023.0)) << axis;
     }
   }
   conic_status status = conic_radix_sort(context, items, tree->n_faces, 3 * CODE_BITS);

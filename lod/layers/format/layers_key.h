@@ -2,16 +2,7 @@
 #ifndef CONIC_LAYERS_KEY_H
 #define CONIC_LAYERS_KEY_H
 
-#include <stdint.h>
-
-/* Bit i of 21 goes to bit 3i. */
-static inline uint64_t conic_layers_spread(uint64_t bits) {
-  bits = (bits | bits << 32) & UINT64_C(0x001f00000000ffff);
-  bits = (bits | bits << 16) & UINT64_C(0x001f0000ff0000ff);
-  bits = (bits | bits << 8) & UINT64_C(0x100f00f00f00f00f);
-  bits = (bits | bits << 4) & UINT64_C(0x10c30c30c30c30c3);
-  return (bits | bits << 2) & UINT64_C(0x1249249249249249);
-}
+#include "core/base/radix.h"
 
 /* And back; the bits between are passed over. */
 static inline uint32_t conic_layers_gather_bits(uint64_t bits) {
@@ -24,7 +15,7 @@ static inline uint32_t conic_layers_gather_bits(uint64_t bits) {
 }
 
 static inline uint64_t conic_layers_key(uint32_t x, uint32_t y, uint32_t z) {
-  return conic_layers_spread(x) << 2 | conic_layers_spread(y) << 1 | conic_layers_spread(z);
+  return conic_spread_bits(x) << 2 | conic_spread_bits(y) << 1 | conic_spread_bits(z);
 }
 
 /* The step of the grid on an axis: 0 for x. */
