@@ -56,8 +56,9 @@ void cli_chart_write_error(FILE *to, const cli_chart_error *error);
 /* A text as a cell of a table. */
 void cli_chart_write_quoted(FILE *to, const char *text);
 
-/* Opens FOLDER/NAME. Errors: those of conic_output_open. */
-conic_status cli_chart_open(const cli_session *session, const char *folder, const char *name, conic_output **output);
+/* Writes FOLDER/NAME by `write`. Errors: those of conic_output_open and conic_output_commit. */
+conic_status cli_chart_put(const cli_session *session, const char *folder, const char *name,
+                           void (*write)(FILE *to, const void *chart), const void *chart);
 
 static inline const cli_chart_error *cli_chart_error_of(const cli_chart_point *point, int against_truth) {
   return against_truth ? &point->truth : &point->oracle;

@@ -14,6 +14,13 @@ static void write_axis_point(FILE *to, const cli_axis_chart *chart, const cli_ax
   fprintf(to, ",%zu,%d\n", p->holes, p->is_front);
 }
 
+static void write_table(FILE *to, const void *cookie) {
+  const cli_axis_chart *chart = cookie;
+  fputs("scene,axis,value,width,height,splats,triangles,ms,lod_ms,max,rmse,psnr,flip,holes,front\n", to);
+  for (int i = 0; i < chart->n_points; i++)
+    write_axis_point(to, chart, &chart->points[i]);
+}
+
 /* The points of one scene and axis: how many follow `first`. */
 static int length_of_series(const cli_axis_chart *chart, int first) {
   int n = 1;
@@ -60,7 +67,8 @@ static void name_series(const cli_axis_chart *chart, const cli_axis_point *point
     snprintf(name, room, "%s", cli_chart_axis_name(point->i_axis));
 }
 
-static void draw_chart(FILE *to, const cli_axis_chart *chart) {
+static void draw_chart(FILE *to, const void *cookie) {
+  const cli_axis_chart *chart = cookie;
   const cli_plot_grid grid = {1, 1, 760, 520, count_series(chart) + 2};
   cli_plot_axis x = {"ms a frame, with the choice of what is drawn", 1, 0.0, 0.0}, y = {"RMSE", 1, 0.0, 0.0};
   cli_plot plot;
@@ -90,21 +98,8 @@ static void draw_chart(FILE *to, const cli_axis_chart *chart) {
 }
 
 conic_status cli_axis_chart_write(const cli_session *session, const char *folder, const cli_axis_chart *chart) {
-  conic_output *output;
-  conic_status status = cli_chart_open(session, folder, "scene.csv", &output);
-  if (status != CONIC_OK)
-    return status;
-  fputs("scene,axis,value,width,height,splats,triangles,ms,lod_ms,max,rmse,psnr,flip,holes,front\n",
-        conic_output_stream(output));
-  for (int i = 0; i < chart->n_points; i++)
-    write_axis_point(conic_output_stream(output), chart, &chart->points[i]);
-  status = conic_output_commit(output);
-  if (status == CONIC_OK)
-    status = cli_chart_open(session, folder, "scene.svg", &output);
-  if (status != CONIC_OK)
-    return status;
-  draw_chart(conic_output_stream(output), chart);
-  return conic_output_commit(output);
+  conic_status status = cli_chart_put(session, folder, "scene.csv", write_table, chart);
+  return status == CONIC_OK ? cli_chart_put(session, folder, "scene.svg", draw_chart, chart) : status;
 }
 
 void cli_axis_chart_print(const cli_axis_chart *chart) {

@@ -31,46 +31,6 @@ typedef struct chart_job {
   cli_method_chart methods;
 } chart_job;
 
-static conic_status measure_all(chart_job *job) {
-  conic_status status = CONIC_OK;
-  if (job->only != ONLY_METHODS)
-    status = cli_mesh_chart_measure(job->session, &job->mesh);
-  if (status == CONIC_OK && job->only != ONLY_REPRESENTATIONS)
-    status = cli_method_chart_measure(job->session, &job->methods);
-  return status;
-}
-
-static conic_status write_tables(const chart_job *job) {
-  conic_status status = CONIC_OK;
-  if (job->only != ONLY_METHODS)
-    status = cli_mesh_chart_write(job->session, job->folder, &job->mesh);
-  return status == CONIC_OK && job->only != ONLY_REPRESENTATIONS
-             ? cli_method_chart_write(job->session, job->folder, &job->methods)
-             : status;
-}
-
-static conic_status draw_charts(const chart_job *job) {
-  conic_status status = CONIC_OK;
-  if (job->only != ONLY_METHODS)
-    status = cli_mesh_chart_draw(job->session, job->folder, &job->mesh);
-  if (status == CONIC_OK && job->only != ONLY_REPRESENTATIONS)
-    status = cli_method_chart_draw(job->session, job->folder, &job->methods);
-  return status;
-}
-
-static int write_all(const chart_job *job) {
-  conic_status status = write_tables(job);
-  if (status == CONIC_OK)
-    status = draw_charts(job);
-  if (status != CONIC_OK || !cli_json_leaves_text(job->session))
-    return cli_exit_of(status);
-  if (job->only != ONLY_REPRESENTATIONS)
-    cli_method_chart_print(&job->methods);
-  if (job->only != ONLY_METHODS)
-    cli_mesh_chart_print(&job->mesh);
-  return CLI_DONE;
-}
-
 static int write_statistics(const chart_job *job, double seconds) {
   cli_json *json;
   int exit_code = cli_json_open(job->session, &json);
@@ -117,8 +77,21 @@ static int chart_scenes(chart_job *job) {
 }
 
 static int chart_methods(chart_job *job) {
-  conic_status status = measure_all(job);
-  return status == CONIC_OK ? write_all(job) : cli_exit_of(status);
+  const int has_models = job->only != ONLY_METHODS, has_methods = job->only != ONLY_REPRESENTATIONS;
+  conic_status status = has_models ? cli_mesh_chart_measure(job->session, &job->mesh) : CONIC_OK;
+  if (status == CONIC_OK && has_methods)
+    status = cli_method_chart_measure(job->session, &job->methods);
+  if (status == CONIC_OK && has_models)
+    status = cli_mesh_chart_write(job->session, job->folder, &job->mesh);
+  if (status == CONIC_OK && has_methods)
+    status = cli_method_chart_write(job->session, job->folder, &job->methods);
+  if (status != CONIC_OK || !cli_json_leaves_text(job->session))
+    return cli_exit_of(status);
+  if (has_methods)
+    cli_method_chart_print(&job->methods);
+  if (has_models)
+    cli_mesh_chart_print(&job->mesh);
+  return CLI_DONE;
 }
 
 static int chart(chart_job *job) {

@@ -33,10 +33,16 @@ void cli_chart_write_error(FILE *to, const cli_chart_error *error) {
     fputs(",,,,", to);
 }
 
-conic_status cli_chart_open(const cli_session *session, const char *folder, const char *name, conic_output **output) {
+conic_status cli_chart_put(const cli_session *session, const char *folder, const char *name,
+                           void (*write)(FILE *to, const void *chart), const void *chart) {
   char path[4096];
+  conic_output *output;
   snprintf(path, sizeof path, "%s/%s", folder, name);
-  return conic_output_open(session->context, path, output);
+  conic_status status = conic_output_open(session->context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  write(conic_output_stream(output), chart);
+  return conic_output_commit(output);
 }
 
 void cli_chart_write_quoted(FILE *to, const char *text) {

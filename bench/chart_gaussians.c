@@ -67,10 +67,8 @@ static conic_status open_chart(gaussian_chart_job *job) {
 static conic_status find_truths(gaussian_chart_job *job) {
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->chart->n_truths && status == CONIC_OK; i++) {
-    double start = cli_seconds();
     status =
         conic_gaussian_oracle_render(job->context, &job->gaussians, &job->sparse, NULL, questions[i], &job->truths[i]);
-    job->chart->truth_seconds[i] = cli_seconds() - start;
     job->chart->quadrature[i] = job->truths[i].quadrature;
   }
   return status;

@@ -33,8 +33,7 @@ typedef struct cli_gaussian_chart {
   int n_truths;                    /* flat Gaussians have no volume */
   int step, n_pixels;              /* every so many pixels across and down were compared */
   double quadrature[CLI_N_TRUTHS]; /* how far the truths are sure */
-  double truth_seconds[CLI_N_TRUTHS];
-  int n_points; /* those of discs are for flat Gaussians */
+  int n_points;                    /* those of discs are for flat Gaussians */
   cli_profile_point points[CONIC_N_GAUSSIAN_PROFILES];
 } cli_gaussian_chart;
 

@@ -4,7 +4,8 @@
 #include "bench/chart_gaussians.h"
 #include "bench/plot.h"
 
-static void write_profiles(FILE *to, const cli_gaussian_chart *chart) {
+static void write_profiles(FILE *to, const void *cookie) {
+  const cli_gaussian_chart *chart = cookie;
   fputs("profile,ms,ms_setup,ms_sort,ms_bin,ms_composite,drawn,entries,pairs", to);
   for (int i = 0; i < chart->n_truths; i++)
     fprintf(to, ",%s_max,%s_rmse,%s_psnr,%s_front", cli_truth_names[i], cli_truth_names[i], cli_truth_names[i],
@@ -23,7 +24,8 @@ static void write_profiles(FILE *to, const cli_gaussian_chart *chart) {
 }
 
 /* A panel a truth: the error of every profile over its time. */
-static void draw_profiles(FILE *to, const cli_gaussian_chart *chart) {
+static void draw_profiles(FILE *to, const void *cookie) {
+  const cli_gaussian_chart *chart = cookie;
   const cli_plot_grid grid = {chart->n_truths, chart->n_truths, 560, 440, CONIC_N_GAUSSIAN_PROFILES + 2};
   cli_plot plot;
   char title[96];
@@ -52,18 +54,8 @@ static void draw_profiles(FILE *to, const cli_gaussian_chart *chart) {
 }
 
 conic_status cli_gaussian_chart_write(cli_session *session, const char *folder, const cli_gaussian_chart *chart) {
-  conic_output *output;
-  conic_status status = cli_chart_open(session, folder, "profiles.csv", &output);
-  if (status != CONIC_OK)
-    return status;
-  write_profiles(conic_output_stream(output), chart);
-  status = conic_output_commit(output);
-  if (status == CONIC_OK)
-    status = cli_chart_open(session, folder, "profiles.svg", &output);
-  if (status != CONIC_OK)
-    return status;
-  draw_profiles(conic_output_stream(output), chart);
-  return conic_output_commit(output);
+  conic_status status = cli_chart_put(session, folder, "profiles.csv", write_profiles, chart);
+  return status == CONIC_OK ? cli_chart_put(session, folder, "profiles.svg", draw_profiles, chart) : status;
 }
 
 void cli_gaussian_chart_print(const cli_gaussian_chart *chart) {

@@ -36,8 +36,8 @@ typedef struct cli_mesh_chart {
 /* Measures into a chart with path and is_quick set. */
 conic_status cli_mesh_chart_measure(cli_session *session, cli_mesh_chart *chart);
 
-/* Writes FOLDER/representations.csv. */
-conic_status cli_mesh_chart_write(cli_session *session, const char *folder, const cli_mesh_chart *chart);
+/* FOLDER/representations.csv and representations.svg. */
+conic_status cli_mesh_chart_write(const cli_session *session, const char *folder, const cli_mesh_chart *chart);
 
 /* What is best for its time at each size, and where the others become cheaper than triangles. */
 void cli_mesh_chart_print(const cli_mesh_chart *chart);
@@ -46,7 +46,7 @@ void cli_mesh_chart_print(const cli_mesh_chart *chart);
  * Between two sizes both times are taken for powers of the size. */
 int cli_mesh_chart_crossings(const cli_mesh_chart *chart, int model, double at[CLI_MAX_MESH_SIZES]);
 
-/* FOLDER/representations.svg. */
-conic_status cli_mesh_chart_draw(const cli_session *session, const char *folder, const cli_mesh_chart *chart);
+/* Draws a cli_mesh_chart. */
+void cli_mesh_chart_draw(FILE *to, const void *chart);
 
 #endif

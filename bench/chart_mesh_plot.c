@@ -100,7 +100,8 @@ static void draw_map(cli_plot *plot, const cli_mesh_chart *chart) {
   }
 }
 
-static void write_mesh_picture(FILE *to, const cli_mesh_chart *chart) {
+void cli_mesh_chart_draw(FILE *to, const void *cookie) {
+  const cli_mesh_chart *chart = cookie;
   const cli_plot_grid grid = {3, 3, 420, 400, CLI_N_CHART_MODELS + 2};
   cli_plot_axis size, ms, error;
   cli_plot plot;
@@ -124,13 +125,4 @@ static void write_mesh_picture(FILE *to, const cli_mesh_chart *chart) {
     cli_plot_key(&plot, &style, cli_chart_model_name((cli_chart_model)model));
   }
   cli_plot_end(&plot);
-}
-
-conic_status cli_mesh_chart_draw(const cli_session *session, const char *folder, const cli_mesh_chart *chart) {
-  conic_output *output;
-  conic_status status = cli_chart_open(session, folder, "representations.svg", &output);
-  if (status != CONIC_OK)
-    return status;
-  write_mesh_picture(conic_output_stream(output), chart);
-  return conic_output_commit(output);
 }

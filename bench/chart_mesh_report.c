@@ -14,19 +14,20 @@ static void write_line(FILE *to, const cli_mesh_chart *chart, int model, int i_s
   fprintf(to, ",%zu,%d\n", p->holes, p->is_front);
 }
 
-conic_status cli_mesh_chart_write(cli_session *session, const char *folder, const cli_mesh_chart *chart) {
-  conic_output *output;
-  conic_status status = cli_chart_open(session, folder, "representations.csv", &output);
-  if (status != CONIC_OK)
-    return status;
-  FILE *to = conic_output_stream(output);
+static void write_table(FILE *to, const void *cookie) {
+  const cli_mesh_chart *chart = cookie;
   fputs("mesh,triangles,representation,pixels_per_triangle,width,height,zoom,primitives,ms,lod_ms,max,rmse,psnr,flip,"
         "holes,front\n",
         to);
   for (int model = 0; model < CLI_N_CHART_MODELS; model++)
     for (int i = 0; i < chart->n_sizes; i++)
       write_line(to, chart, model, i);
-  return conic_output_commit(output);
+}
+
+conic_status cli_mesh_chart_write(const cli_session *session, const char *folder, const cli_mesh_chart *chart) {
+  conic_status status = cli_chart_put(session, folder, "representations.csv", write_table, chart);
+  return status == CONIC_OK ? cli_chart_put(session, folder, "representations.svg", cli_mesh_chart_draw, chart)
+                            : status;
 }
 
 int cli_mesh_chart_crossings(const cli_mesh_chart *chart, int model, double at[CLI_MAX_MESH_SIZES]) {

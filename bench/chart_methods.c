@@ -261,12 +261,8 @@ conic_status cli_method_chart_measure(cli_session *session, cli_method_chart *ch
   return status;
 }
 
-conic_status cli_method_chart_write(const cli_session *session, const char *folder, const cli_method_chart *chart) {
-  conic_output *output;
-  conic_status status = cli_chart_open(session, folder, "chart.csv", &output);
-  if (status != CONIC_OK)
-    return status;
-  FILE *to = conic_output_stream(output);
+static void write_method_table(FILE *to, const void *cookie) {
+  const cli_method_chart *chart = cookie;
   fputs("scene,splats,width,height,method,kernel,cutoff,ms,msplats_per_s,fragments,oracle_max,oracle_rmse,oracle_psnr,"
         "oracle_flip,oracle_weight_max,oracle_front,scene_max,scene_rmse,scene_psnr,scene_flip,holes,largest_hole,"
         "scene_front\n",
@@ -285,7 +281,11 @@ conic_status cli_method_chart_write(const cli_session *session, const char *fold
     cli_chart_write_error(to, &p->truth);
     fprintf(to, ",%zu,%zu,%d\n", p->holes, p->largest_hole, p->is_front[1]);
   }
-  return conic_output_commit(output);
+}
+
+conic_status cli_method_chart_write(const cli_session *session, const char *folder, const cli_method_chart *chart) {
+  conic_status status = cli_chart_put(session, folder, "chart.csv", write_method_table, chart);
+  return status == CONIC_OK ? cli_method_chart_draw(session, folder, chart) : status;
 }
 
 void cli_method_chart_print(const cli_method_chart *chart) {

@@ -16,13 +16,13 @@ typedef struct cli_method_chart {
 /* Measures into a chart with is_quick set. */
 conic_status cli_method_chart_measure(cli_session *session, cli_method_chart *chart);
 
-/* FOLDER/chart.csv. */
+/* FOLDER/chart-oracle.svg and chart-scene.svg, a panel a scene, and chart.svg, which has the default kernel alone. */
+conic_status cli_method_chart_draw(const cli_session *session, const char *folder, const cli_method_chart *chart);
+
+/* FOLDER/chart.csv and the pictures. */
 conic_status cli_method_chart_write(const cli_session *session, const char *folder, const cli_method_chart *chart);
 
 /* What is best for its time on each scene, on standard output. */
 void cli_method_chart_print(const cli_method_chart *chart);
-
-/* FOLDER/chart-oracle.svg and chart-scene.svg, a panel a scene, and chart.svg, which has the default kernel alone. */
-conic_status cli_method_chart_draw(const cli_session *session, const char *folder, const cli_method_chart *chart);
 
 #endif

@@ -6,20 +6,19 @@
 #include "bench/chart_methods.h"
 #include "bench/plot.h"
 
-/* A picture: a file's name, its title, and whether its errors are against the surface. */
+/* A picture: its title, and whether its errors are against the surface. */
 typedef struct figure {
-  const char *name, *title, *error;
+  const char *title, *error;
   int against_truth, is_log; /* errors span decades */
 } figure;
 
 static const figure figures[] = {
-    {"chart-oracle.svg", "Error against the exact kernel over time: larger marks have larger cutoffs",
-     "RMSE against the exact kernel", 0, 1},
-    {"chart-scene.svg", "Error against the surface over time: larger marks have larger cutoffs",
-     "RMSE against the surface", 1, 0},
+    {"Error against the exact kernel over time: larger marks have larger cutoffs", "RMSE against the exact kernel", 0,
+     1},
+    {"Error against the surface over time: larger marks have larger cutoffs", "RMSE against the surface", 1, 0},
 };
 
-enum { N_FIGURES = sizeof figures / sizeof figures[0], N_KERNEL_TYPES = 4 };
+enum { N_KERNEL_TYPES = 4 };
 
 static const cli_plot_style front_style = {.color = "#999999", .is_line = 1, .is_dashed = 1};
 
@@ -88,12 +87,12 @@ static void draw_scene_panel(cli_plot *plot, const figure *f, const cli_chart_sc
   }
 }
 
-static void write_figure(FILE *to, const figure *f, const cli_chart_point *points, int n_points) {
+static void write_figure(FILE *to, const figure *f, const cli_method_chart *chart) {
   const cli_plot_grid grid = {2, CLI_N_CHART_SCENES, 460, 360, CONIC_N_METHODS + N_KERNEL_TYPES + 3};
   cli_plot plot;
   cli_plot_begin(&plot, to, f->title, &grid);
   for (int i = 0; i < CLI_N_CHART_SCENES; i++)
-    draw_scene_panel(&plot, f, &cli_chart_scenes[i], points, n_points);
+    draw_scene_panel(&plot, f, &cli_chart_scenes[i], chart->points, chart->n_points);
   cli_plot_key(&plot, NULL, "method");
   for (int i = 0; i < CONIC_N_METHODS; i++) {
     cli_plot_style style = cli_plot_style_of(i);
@@ -114,12 +113,14 @@ static int is_in_summary(const cli_chart_point *point) {
 }
 
 /* One panel of all scenes: a colour a method, a shape a scene. */
-static void write_summary(FILE *to, const cli_chart_point *points, int n_points) {
+static void write_summary(FILE *to, const void *cookie) {
+  const cli_method_chart *chart = cookie;
+  const cli_chart_point *points = chart->points;
   const cli_plot_grid grid = {1, 1, 520, 350, CONIC_N_METHODS + CLI_N_CHART_SCENES + 2};
   cli_plot_axis x = {"milliseconds a frame", 1, 0.0, 0.0}, y = {"error of the colour", 1, 0.0, 0.0};
   int has_method[CONIC_N_METHODS] = {0};
   cli_plot plot;
-  for (int i = 0; i < n_points; i++)
+  for (int i = 0; i < chart->n_points; i++)
     if (is_in_summary(&points[i])) {
       has_method[points[i].method] = 1;
       cli_plot_include(&x, points[i].ms);
@@ -127,7 +128,7 @@ static void write_summary(FILE *to, const cli_chart_point *points, int n_points)
     }
   cli_plot_begin(&plot, to, "Time of a frame and error of its colours", &grid);
   cli_plot_panel(&plot, "", &x, &y);
-  for (int i = 0; i < n_points; i++) {
+  for (int i = 0; i < chart->n_points; i++) {
     cli_plot_style style = cli_plot_style_of((int)points[i].method);
     style.shape = (cli_plot_shape)(points[i].scene - cli_chart_scenes);
     if (is_in_summary(&points[i]))
@@ -147,18 +148,17 @@ static void write_summary(FILE *to, const cli_chart_point *points, int n_points)
   cli_plot_end(&plot);
 }
 
+static void write_against_oracle(FILE *to, const void *chart) {
+  write_figure(to, &figures[0], chart);
+}
+
+static void write_against_surface(FILE *to, const void *chart) {
+  write_figure(to, &figures[1], chart);
+}
+
 conic_status cli_method_chart_draw(const cli_session *session, const char *folder, const cli_method_chart *chart) {
-  conic_output *output;
-  conic_status status = CONIC_OK;
-  for (int i = 0; i <= N_FIGURES && status == CONIC_OK; i++) {
-    status = cli_chart_open(session, folder, i < N_FIGURES ? figures[i].name : "chart.svg", &output);
-    if (status != CONIC_OK)
-      return status;
-    if (i < N_FIGURES)
-      write_figure(conic_output_stream(output), &figures[i], chart->points, chart->n_points);
-    else
-      write_summary(conic_output_stream(output), chart->points, chart->n_points);
-    status = conic_output_commit(output);
-  }
-  return status;
+  conic_status status = cli_chart_put(session, folder, "chart-oracle.svg", write_against_oracle, chart);
+  if (status == CONIC_OK)
+    status = cli_chart_put(session, folder, "chart-scene.svg", write_against_surface, chart);
+  return status == CONIC_OK ? cli_chart_put(session, folder, "chart.svg", write_summary, chart) : status;
 }
