@@ -7,8 +7,6 @@
 #include "core/base/options.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "judge/diagnosis_samples.h"
-#include "judge/planted_gaussians.h"
-#include "judge/trials.h"
 
 /* --- pictures of surfels --- */
 

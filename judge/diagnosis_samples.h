@@ -2,6 +2,7 @@
 #ifndef CONIC_DIAGNOSIS_SAMPLES_H
 #define CONIC_DIAGNOSIS_SAMPLES_H
 
+#include "conic/diagnosis.h"
 #include "conic/gaussian_judge.h"
 #include "judge/planted.h"
 
@@ -60,5 +61,33 @@ float conic_planted_transferred(conic_planted_transfer transfer, float value);
 
 /* Applies the mistakes in finishing a picture to the samples. */
 void conic_planted_finish(const conic_planted *planted, size_t n, conic_channels *values);
+
+/* Draws a Gaussian scene with a mistake, at samples only. */
+
+/* Composites at the samples, before a black background, with `samples` × `samples` samples a pixel; the camera is the
+ * fine picture's already. Without a mistake these are the values of conic_gaussians_render. Errors: MEMORY,
+ * CANCELLED. */
+conic_status conic_planted_gaussians_draw(conic_context *context, const conic_gaussians *gaussians,
+                                          const conic_planted *planted, int samples, const conic_diagnosis_samples *at,
+                                          conic_channels *values);
+
+/* Tries mistakes one by one and in pairs. */
+
+/* Draws a picture with a mistake at the samples, before black and unfinished. */
+typedef conic_status conic_planted_drawer(void *world, const conic_planted *planted,
+                                          const conic_diagnosis_samples *samples, conic_channels *values);
+
+typedef struct conic_trials {
+  conic_context *context;
+  const conic_diagnosis_samples *samples;
+  const conic_planted *right;
+  conic_planted_drawer *draw;
+  void *world;
+  int n_suspects;
+  conic_suspect suspects[CONIC_MOST_SUSPECTS];
+} conic_trials;
+
+/* Finds explanations as conic_gaussian_diagnose says. */
+conic_status conic_trials_run(conic_trials *trials, conic_diagnosis *found, int room, int *n_found);
 
 #endif

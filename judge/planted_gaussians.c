@@ -1,4 +1,4 @@
-#include "judge/planted_gaussians.h"
+#include "judge/diagnosis_samples.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,6 +4,7 @@
 #define CONIC_LIGHT_MAP_H
 
 #include "conic/lighting.h"
+#include "core/lanes/instruction_sets.h"
 #include "lighting/receivers.h"
 
 /* A map as receivers are compared with it. A receiver at p, from the receivers' origin, is at rotation·p in the map's
@@ -39,5 +40,13 @@ typedef void conic_receive_function(const conic_light_map *map, const conic_rece
  * world units; it grows where the map would be larger than `most`. *near_z is the near distance for drawing the map. */
 void conic_light_map_place(const conic_casters *casters, const conic_receivers *receivers, const double direction[3],
                            double texel, int most, conic_camera *camera, double *near_z, conic_light_map *map);
+
+/* The loop that takes most of the time of receiving light. */
+
+typedef struct conic_lighting_loops {
+  conic_receive_function *receive;
+} conic_lighting_loops;
+
+CONIC_DECLARE_LOOPS(conic_lighting_loops);
 
 #endif

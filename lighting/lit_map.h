@@ -2,8 +2,8 @@
 #ifndef CONIC_LIT_MAP_H
 #define CONIC_LIT_MAP_H
 
+#include "lighting/light_map.h"
 #include "lighting/light_sharing.h"
-#include "lighting/lighting_loops.h"
 
 /* The memory and options of drawing and receiving maps. */
 typedef struct conic_map_room {

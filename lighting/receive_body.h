@@ -1,7 +1,7 @@
 /* The receiving of lighting/light_map.h in plain C, which compilers put in lanes. */
 #include <math.h>
 
-#include "lighting/lighting_loops.h"
+#include "lighting/light_map.h"
 
 /* A receiver as the map sees it. */
 typedef struct received {

@@ -1,4 +1,3 @@
-#include "source/top_bins.h"
 
 #include <math.h>
 #include <string.h>

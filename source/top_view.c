@@ -11,7 +11,6 @@
 #include "raster/frame/statistics.h"
 #include "raster/view/part.h"
 #include "source/source_kind.h"
-#include "source/top_bins.h"
 #include "source/top_lift.h"
 
 /* --- meshes --- */

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "core/base/vectors.h"
-#include "surface/creases.h"
 #include "surface/least_spread.h"
 #include "surface/loops/weight.h"
+#include "surface/mls_surface.h"
 
 enum { MAX_NEAR = 512, N_BUCKETS = 256, MAX_PIECES = 4, LEAST_SAMPLES = 6, N_ROUNDS = 3, N_TERMS = 6 };
 

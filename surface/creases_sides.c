@@ -6,8 +6,8 @@
 #include "core/base/memory.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
-#include "surface/creases.h"
 #include "surface/least_spread.h"
+#include "surface/mls_surface.h"
 
 enum { CHUNK = 256, CHUNKS_A_REPORT = 16, N_WINDOW = 32 };
 

@@ -10,7 +10,6 @@
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"
-#include "surface/creases.h"
 #include "surface/loops/weight.h"
 
 /* --- cells of the tree as single samples (PSS §3.4.2) --- */

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "core/base/threads.h"
-#include "surface/creases.h"
+#include "surface/mls_surface.h"
 
 enum { CHUNK = 256, CHUNKS_A_REPORT = 64 };
 

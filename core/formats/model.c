@@ -10,8 +10,6 @@
 #include "core/files/file.h"
 #include "core/files/input.h"
 #include "core/formats/file_kinds.h"
-#include "core/formats/model_loan.h"
-#include "core/formats/ply_read.h"
 #include "core/formats/readers.h"
 #include "core/splats/faces.h"
 #include "core/splats/point_fields.h"

@@ -1,4 +1,4 @@
-#include "core/formats/model_loan.h"
+#include "core/formats/readers.h"
 
 #include <string.h>
 

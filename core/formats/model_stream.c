@@ -4,10 +4,8 @@
 #include "core/assimp/assimp_kinds.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/formats/model_loan.h"
 #include "core/formats/model_part.h"
 #include "core/formats/model_read.h"
-#include "core/formats/ply_read.h"
 #include "core/formats/readers.h"
 #include "core/splats/raw_colors.h"
 

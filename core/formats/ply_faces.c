@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "core/base/message.h"
-#include "core/formats/ply_read.h"
 #include "core/formats/ply_texture.h"
+#include "core/formats/readers.h"
 #include "core/splats/polygon.h"
 
 /* Turns a list of vertex indices, one at a time, into triangles. */

@@ -1,4 +1,4 @@
-#include "core/formats/ply_read.h"
+#include "core/formats/readers.h"
 
 #include <string.h>
 

@@ -6,6 +6,7 @@
 #include "conic/model.h"
 #include "core/files/input.h"
 #include "core/formats/model_part.h"
+#include "core/formats/ply_source.h"
 #include "core/splats/builder.h"
 
 /* LAS: versions 1.0 to 1.5, point formats 0 to 10, as they are or packed (LAZ: core/laz).
@@ -66,5 +67,26 @@ conic_status conic_ptx_read(conic_input *input, const conic_read_options *option
 
 /* Whether the bytes begin like a PTX: two lines of one number each, then four of three numbers and four of four. */
 int conic_ptx_is_likely(const char *bytes, size_t n);
+
+/* PLY; with a delivery, faces are passed over. */
+conic_status conic_ply_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model);
+
+/* Reads the shape from the header of a PLY at its start. Errors: INPUT, MEMORY, CANCELLED. */
+conic_status conic_ply_look(conic_input *input, const conic_read_options *options, conic_model_shape *shape);
+
+/* Reads a PLY's elements `face` and `tristrips`; the source is at the start of the element's rows. Errors: as above. */
+conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_header *header, uint64_t n_vertices,
+                                  conic_builder *builder);
+
+/* --- what is lent --- */
+
+/* Whether splats or triangles are lent under a name. */
+int conic_model_is_lent(const conic_context *context, const char *name);
+
+/* Copies a lent set, as conic_model_read would read a PLY of it. *model is empty before; on failure the caller releases
+ * it. Errors: ARGUMENT, INPUT (a face index, no such field), MEMORY. */
+conic_status conic_model_copy_lent(conic_context *context, const char *name, const conic_read_options *options,
+                                   conic_model *model);
 
 #endif
