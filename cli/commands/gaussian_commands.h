@@ -11,6 +11,11 @@
   (1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_COUNT |                 \
    1u << CONIC_PLANE_ID | (CONIC_GAUSSIAN_PLANES & ~(1u << CONIC_PLANE_DOUBT)))
 
+/* The words of --floats, by conic_float_kind; a null ends them. */
+extern const char *const cli_float_words[];
+/* What is said of pixels, by conic_pixel_class; then of those that are not judged. */
+extern const char *const cli_class_words[CONIC_N_PIXEL_CLASSES + 1];
+
 /* Whether the scene is composited; known once the arguments are parsed. */
 int cli_is_composited(const cli_render_job *scene);
 /* The profile and the background that the scene is drawn with. */

@@ -181,7 +181,6 @@ static int check_gradient(cli_session *session, const gradient_job *job) {
 }
 
 static int run_gradient(cli_session *session, int argc, char **argv) {
-  static const char *const floats[] = {"own", "strict", "fast", NULL};
   gradient_job job = {.floats = CONIC_FLOATS_STRICT};
   cli_scene_defaults(&job.scene);
   job.scene.may_composite = 1;
@@ -191,7 +190,8 @@ static int run_gradient(cli_session *session, int argc, char **argv) {
       {"o", CLI_TEXT, &job.output, "G.ply", "the derivative by each Gaussian's parameters, and its doubts"},
       {"raw", CLI_FLAG, &job.is_raw, NULL, "by what files store: the logarithms of scales and the opacity's logit"},
       {"floats", CLI_CHOICE, &job.floats, "WHOSE",
-       "whose roundings may put a decision in doubt: own, strict or fast (a GPU's) [strict]", .choices = floats},
+       "whose roundings may put a decision in doubt: own, strict or fast (a GPU's) [strict]",
+       .choices = cli_float_words},
       {"no-doubts", CLI_FLAG, &job.leaves_doubts, NULL, "do not look for decisions in doubt, which is faster"},
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);

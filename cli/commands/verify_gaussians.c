@@ -14,6 +14,9 @@ typedef struct gaussian_report {
   size_t n_pixels; /* of the picture */
 } gaussian_report;
 
+const char *const cli_float_words[] = {"own", "strict", "fast", NULL};
+const char *const cli_class_words[] = {"equal", "rounding", "explained", "wrong", "not judged"};
+
 int cli_is_composited(const cli_render_job *scene) {
   return (scene->abilities & CONIC_SOURCE_COMPOSITES) != 0;
 }

@@ -164,8 +164,8 @@ static int names_option(int argc, char **argv, const char *option) {
 }
 
 static int run_judge(cli_session *session, int argc, char **argv) {
-  static const char *const floats[] = {"own", "strict", "fast", NULL}, *const transfers[] = {"linear", "srgb", NULL},
-                           *const roundings[] = {"either", "nearest", "down", NULL};
+  static const char *const transfers[] = {"linear", "srgb", NULL}, *const roundings[] = {"either", "nearest", "down",
+                                                                                         NULL};
   cli_judge_job job = {.floats = CONIC_FLOATS_FAST, .argc = argc, .argv = argv};
   int rounding = CONIC_CODES_EITHER;
   suite_run suite = {.most_level = 0}; /* unused here: its options are for the help */
@@ -183,7 +183,7 @@ static int run_judge(cli_session *session, int argc, char **argv) {
       {"floats", CLI_CHOICE, &job.floats, "KIND",
        "of what drew it: own (conic's), strict (all in float, in any order), or fast (and a GPU's fast exponential) "
        "[fast]",
-       .choices = floats},
+       .choices = cli_float_words},
       {"max-wrong", CLI_COUNT, &job.max_wrong, "N", "so many pixels may be wrong [0]", 0, 4294836225.0},
       {"pixels", CLI_COUNT, &job.n_pixels, "N", "judge this many pixels, spread evenly; always the same ones [all]",
        .minimum = 1, .maximum = 4294836225.0},

@@ -20,8 +20,6 @@ typedef struct gradients_job {
   double ms;
 } gradients_job;
 
-static const char *const gradient_classes[CONIC_N_GAUSSIAN_CLASSES] = {"equal", "rounding", "explained", "wrong"};
-
 static int is_gradient_right(const gradients_job *job) {
   return job->verdict.gaussians[CONIC_PIXEL_WRONG] <= job->max_wrong;
 }
@@ -54,7 +52,7 @@ static int write_gradient_verdict(cli_session *session, const gradients_job *job
   cli_json_text(json, "parameters", job->files.is_raw ? "raw" : "activated");
   cli_json_object(json, "gaussians");
   for (int k = 0; k < CONIC_N_GAUSSIAN_CLASSES; k++)
-    cli_json_count(json, gradient_classes[k], v->gaussians[k]);
+    cli_json_count(json, cli_class_words[k], v->gaussians[k]);
   cli_json_close(json);
   cli_json_object(json, "kinds");
   for (int k = 0; k < CONIC_N_GRADIENT_KINDS; k++) {
@@ -83,7 +81,7 @@ static void print_gradient_verdict(const gradients_job *job) {
              v->greatest[k], v->wrong[k]);
   printf("Gaussians ");
   for (int k = 0; k < CONIC_N_GAUSSIAN_CLASSES; k++)
-    printf("%s%zu %s", k ? ", " : "", v->gaussians[k], gradient_classes[k]);
+    printf("%s%zu %s", k ? ", " : "", v->gaussians[k], cli_class_words[k]);
   putchar('\n');
   for (int k = 0; k < v->n_worst; k++)
     printf("worst     Gaussian %zu: %s[%d] is %.9g; it may be %.9g to %.9g\n", v->worst[k].gaussian,
@@ -177,13 +175,13 @@ static int check_gradient_judging(cli_session *session, const gradients_job *job
 }
 
 int cli_gradients_run(cli_session *session, int argc, char **argv) {
-  static const char *const floats[] = {"own", "strict", "fast", NULL};
   gradients_job job = {.floats = CONIC_FLOATS_FAST};
   cli_scene_defaults(&job.scene);
   job.scene.may_composite = 1;
   const cli_option own[] = {
       CLI_GRADIENT_OPTIONS(job.files),
-      {"floats", CLI_CHOICE, &job.floats, "KIND", "of what found it: own, strict or fast [fast]", .choices = floats},
+      {"floats", CLI_CHOICE, &job.floats, "KIND", "of what found it: own, strict or fast [fast]",
+       .choices = cli_float_words},
       {"max-wrong", CLI_COUNT, &job.max_wrong, "N", "so many Gaussians may be wrong [0]", 0, 4294836225.0},
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);

@@ -1,6 +1,7 @@
 /* The class of every pixel in false colours, with a legend below. */
 #include <string.h>
 
+#include "cli/commands/gaussian_commands.h"
 #include "cli/judge/judge_job.h"
 #include "core/coloring/legend.h"
 
@@ -43,13 +44,12 @@ static conic_status paint_classes(cli_session *session, const cli_judge_job *job
 }
 
 conic_status cli_judge_map(cli_session *session, const cli_judge_job *job, conic_image *map) {
-  static const char *const names[] = {"equal", "rounding", "explained", "wrong", "not judged"};
   conic_image classes, legend = {.width = 0};
   const int n_rows = CONIC_N_PIXEL_CLASSES + (job->found.judged < job->found.n_whole);
   memset(map, 0, sizeof *map);
   conic_status status = paint_classes(session, job, &classes);
   if (status == CONIC_OK)
-    status = conic_legend_make_list(session->context, "pixels", names, class_colors, n_rows, &legend);
+    status = conic_legend_make_list(session->context, "pixels", cli_class_words, class_colors, n_rows, &legend);
   if (status == CONIC_OK)
     status = stack_pictures(session, &classes, &legend, map);
   conic_image_release(session->context, &classes);

@@ -5,11 +5,6 @@
 #include "cli/commands/verify_reference.h"
 #include "cli/judge/judge_job.h"
 
-/* Keys in JSON, in the order of conic_pixel_class. */
-static const char *const class_keys[CONIC_N_PIXEL_CLASSES] = {"equal", "rounding", "explained", "wrong"};
-
-static const char *const float_words[CONIC_N_FLOAT_KINDS] = {"own", "strict", "fast"};
-
 int cli_judge_is_right(const cli_judge_job *job) {
   return job->found.pixels[CONIC_PIXEL_WRONG] <= job->max_wrong;
 }
@@ -99,7 +94,7 @@ void cli_judge_print(const cli_judge_job *job) {
     printf(" (the picture has %zu)", found->n_whole);
   printf("\nby %s %s, %s floats, %d x %d samples a pixel", is_composited ? "the profile" : "the method",
          is_composited ? conic_gaussian_profile_name(job->scene.shot.gaussians.profile) : cli_method_name(&job->scene),
-         float_words[job->floats], job->scene.shot.view.samples, job->scene.shot.view.samples);
+         cli_float_words[job->floats], job->scene.shot.view.samples, job->scene.shot.view.samples);
   printf("\n%zu equal, %zu within rounding, %zu explained, %zu wrong\n", found->pixels[CONIC_PIXEL_EQUAL],
          found->pixels[CONIC_PIXEL_ROUNDED], found->pixels[CONIC_PIXEL_EXPLAINED], found->pixels[CONIC_PIXEL_WRONG]);
   print_explained(found);
@@ -192,7 +187,7 @@ int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
   cli_json_text(json, "verdict", cli_judge_is_right(job) ? "right" : "wrong");
   cli_json_object(json, "pixels");
   for (int k = 0; k < CONIC_N_PIXEL_CLASSES; k++)
-    cli_json_count(json, class_keys[k], found->pixels[k]);
+    cli_json_count(json, cli_class_words[k], found->pixels[k]);
   cli_json_close(json);
   cli_json_count(json, "max_wrong", job->max_wrong);
   cli_json_count(json, "judged_pixels", found->judged);
@@ -208,7 +203,7 @@ int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
     cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.shot.gaussians.profile));
   else
     cli_json_text(json, "method", cli_method_name(&job->scene));
-  cli_json_text(json, "floats", float_words[job->floats]);
+  cli_json_text(json, "floats", cli_float_words[job->floats]);
   cli_json_count(json, "samples", (uint64_t)job->scene.shot.view.samples);
   write_picture(json, job);
   write_worst(json, found);

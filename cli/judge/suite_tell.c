@@ -1,6 +1,7 @@
 /* The result of a suite: a table for people, JSON for scripts, JUnit's XML for CI systems. */
 #include <string.h>
 
+#include "cli/commands/gaussian_commands.h"
 #include "cli/json_write.h"
 #include "cli/judge/suite_judge.h"
 #include "cli/judge/suite_planes.h"
@@ -116,7 +117,6 @@ static void report_outcomes(cli_json *json, const suite_run *run, int level) {
 }
 
 static void report_case(cli_json *json, const suite_verdict *v) {
-  static const char *const keys[CONIC_N_PIXEL_CLASSES] = {"equal", "rounding", "explained", "wrong"};
   cli_json_object(json, NULL);
   cli_json_text(json, "name", v->entry->name);
   cli_json_count(json, "level", (uint64_t)v->entry->level);
@@ -125,7 +125,7 @@ static void report_case(cli_json *json, const suite_verdict *v) {
   cli_json_text(json, "outcome", cli_suite_outcome_names[v->outcome]);
   cli_json_object(json, "pixels");
   for (int k = 0; k < CONIC_N_PIXEL_CLASSES; k++)
-    cli_json_count(json, keys[k], v->pixels[k]);
+    cli_json_count(json, cli_class_words[k], v->pixels[k]);
   cli_json_close(json);
   if (v->pixels[CONIC_PIXEL_WRONG]) {
     cli_json_object(json, "worst");

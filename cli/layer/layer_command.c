@@ -159,8 +159,9 @@ static int check_layer_arguments(cli_layer_job *job) {
   return answer == CLI_DONE ? cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc") : answer;
 }
 
+static const cli_build_steps layer_steps = {make_layers, tell_layers, report_layers, release_layers};
+
 static int run_layer(cli_session *session, int argc, char **argv) {
-  static const cli_build_steps steps = {make_layers, tell_layers, report_layers, release_layers};
   cli_layer_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}},
                        .cloud_size = 2048,
                        .memory_mib = 1024.0,
@@ -200,7 +201,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &job.n_inputs);
   job.inputs = positional;
-  return cli_build_run(&job, &steps, exit_code == CLI_DONE ? check_layer_arguments(&job) : exit_code);
+  return cli_build_run(&job, &layer_steps, exit_code == CLI_DONE ? check_layer_arguments(&job) : exit_code);
 }
 
 const cli_command cli_layer = {
@@ -230,7 +231,6 @@ static int check_merge_arguments(cli_layer_job *job) {
 }
 
 static int run_merge(cli_session *session, int argc, char **argv) {
-  static const cli_build_steps steps = {make_layers, tell_layers, report_layers, release_layers};
   cli_layer_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}},
                        .memory_mib = 1024.0,
                        .is_merging = 1};
@@ -245,7 +245,7 @@ static int run_merge(cli_session *session, int argc, char **argv) {
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &job.n_inputs);
   job.inputs = positional;
-  return cli_build_run(&job, &steps, exit_code == CLI_DONE ? check_merge_arguments(&job) : exit_code);
+  return cli_build_run(&job, &layer_steps, exit_code == CLI_DONE ? check_merge_arguments(&job) : exit_code);
 }
 
 const cli_command cli_merge = {
