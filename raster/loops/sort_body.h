@@ -5,7 +5,7 @@
 /* The entries of a record in all of its tiles, which are many. Kept out of the loop, which needs the registers. */
 static __attribute__((noinline)) void enter_all(const conic_bins *bins, const conic_box *box, uint32_t i_record,
                                                 uint32_t *next, conic_tile_entry *entries) {
-  conic_tile_range range = conic_tiles_of(bins, box);
+  conic_tile_range range = conic_tiles_of(bins->tile_bits, box);
   for (int y = range.y_begin; y < range.y_end; y++)
     for (int x = range.x_begin; x < range.x_end; x++)
       entries[next[y * bins->n_tiles_x + x]++] = (conic_tile_entry){i_record, conic_word_in(bins, box, x, y)};

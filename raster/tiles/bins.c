@@ -53,7 +53,7 @@ static __attribute__((noinline)) void count_beyond(const conic_bins *bins, const
       sorter->next_entry[tiles[k]]++;
     return;
   }
-  conic_tile_range range = conic_tiles_of(bins, &sorter->projected.boxes[i]);
+  conic_tile_range range = conic_tiles_of(bins->tile_bits, &sorter->projected.boxes[i]);
   for (int y = range.y_begin; y < range.y_end; y++)
     for (int x = range.x_begin; x < range.x_end; x++)
       sorter->next_entry[y * bins->n_tiles_x + x] += x != range.x_begin || y != range.y_begin;

@@ -4,13 +4,12 @@
 
 #include "raster/tiles/bins.h"
 
-/* The tiles that a box touches. */
+/* The tiles of 2^shift pixels that a box touches. */
 typedef struct conic_tile_range {
   int x_begin, x_end, y_begin, y_end;
 } conic_tile_range;
 
-static inline conic_tile_range conic_tiles_of(const conic_bins *bins, const conic_box *box) {
-  int shift = bins->tile_bits;
+static inline conic_tile_range conic_tiles_of(int shift, const conic_box *box) {
   conic_tile_range range = {box->x_begin >> shift, ((box->x_end - 1) >> shift) + 1, box->y_begin >> shift,
                             ((box->y_end - 1) >> shift) + 1};
   return range;

@@ -43,21 +43,11 @@ static int clip_by(const conic_view *view, int i_plane, const conic_clip_corner 
   return n_kept;
 }
 
-static void to_camera(const conic_triangle_frame *frame, uint32_t vertex, double p[3]) {
-  const conic_triangles *t = frame->triangles;
-  for (int row = 0; row < 3; row++) {
-    const double *m = frame->view->rotation[row];
-    p[row] = ((m[0] * (double)t->position[0][vertex] + m[1] * (double)t->position[1][vertex]) +
-              m[2] * (double)t->position[2][vertex]) +
-             frame->translation[row];
-  }
-}
-
 int conic_triangle_clip(const conic_triangle_frame *frame, size_t i, conic_clip_corner corners[CONIC_CLIPPED_CORNERS]) {
   conic_clip_corner other[CONIC_CLIPPED_CORNERS + 1];
   int n = 3;
   for (int k = 0; k < 3; k++) {
-    to_camera(frame, frame->triangles->corners[i][k], corners[k].p);
+    conic_triangle_to_camera(frame, frame->triangles->corners[i][k], corners[k].p);
     corners[k].at[0] = k == 1 ? 1.0 : 0.0;
     corners[k].at[1] = k == 2 ? 1.0 : 0.0;
   }

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "raster/tiles/bins_tiles.h"
 #include "raster/triangles/triangle_loops.h"
 
 /* Vertices that a task projects, and triangles that one sets up, unless their tables would be too many. */
@@ -79,18 +80,6 @@ static void vertices_task(void *data, size_t i_item, int i_thread) {
   p->loops->vertices(p->frame, begin, end < n ? end : n, p->frame->vertices);
 }
 
-/* The tiles that a box touches. */
-typedef struct tile_range {
-  int x_begin, x_end, y_begin, y_end;
-} tile_range;
-
-static tile_range tiles_of(const conic_triangle_frame *frame, const conic_box *box) {
-  int shift = frame->tile_bits;
-  tile_range range = {box->x_begin >> shift, ((box->x_end - 1) >> shift) + 1, box->y_begin >> shift,
-                      ((box->y_end - 1) >> shift) + 1};
-  return range;
-}
-
 /* Turns the counts in `next` into places. Returns how many entries there are; no more than fit into 32 bits have a
  * place.
  */
@@ -109,7 +98,7 @@ static size_t count_entries(const conic_triangle_frame *frame, const conic_trian
                             uint32_t *tile_begin) {
   memset(sorter->next, 0, frame->n_tiles * sizeof *sorter->next);
   for (size_t i = 0; i < sorter->n_records; i++) {
-    tile_range range = tiles_of(frame, &sorter->records[i].box);
+    conic_tile_range range = conic_tiles_of(frame->tile_bits, &sorter->records[i].box);
     for (int y = range.y_begin; y < range.y_end; y++)
       for (int x = range.x_begin; x < range.x_end; x++)
         sorter->next[y * frame->n_tiles_x + x]++;
@@ -119,7 +108,7 @@ static size_t count_entries(const conic_triangle_frame *frame, const conic_trian
 
 static void enter(const conic_triangle_frame *frame, const conic_triangle_sorter *sorter, uint32_t *entries) {
   for (size_t i = 0; i < sorter->n_records; i++) {
-    tile_range range = tiles_of(frame, &sorter->records[i].box);
+    conic_tile_range range = conic_tiles_of(frame->tile_bits, &sorter->records[i].box);
     for (int y = range.y_begin; y < range.y_end; y++)
       for (int x = range.x_begin; x < range.x_end; x++)
         entries[sorter->next[y * frame->n_tiles_x + x]++] = (uint32_t)i;

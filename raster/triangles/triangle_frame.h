@@ -110,7 +110,8 @@ enum { CONIC_CLIPPED_CORNERS = 8 };
 /* Clips triangle i of the frame against near and the guard band: 0, or 3 to 8 corners. */
 int conic_triangle_clip(const conic_triangle_frame *frame, size_t i, conic_clip_corner corners[CONIC_CLIPPED_CORNERS]);
 
-/* The place of a point of camera space on the screen. */
+/* The place of a vertex in camera space; and of a point there on the screen. */
+void conic_triangle_to_camera(const conic_triangle_frame *frame, uint32_t vertex, double p[3]);
 conic_screen_vertex conic_triangle_place(const conic_triangle_frame *frame, const double p[3]);
 
 /* Whether the box of a triangle meets the tile: else there is nothing to draw in it, nor to look for. */

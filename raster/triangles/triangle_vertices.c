@@ -36,17 +36,21 @@ conic_screen_vertex conic_triangle_place(const conic_triangle_frame *frame, cons
   return vertex;
 }
 
+void conic_triangle_to_camera(const conic_triangle_frame *frame, uint32_t vertex, double p[3]) {
+  const conic_triangles *t = frame->triangles;
+  for (int row = 0; row < 3; row++) {
+    const double *m = frame->view->rotation[row];
+    p[row] = ((m[0] * (double)t->position[0][vertex] + m[1] * (double)t->position[1][vertex]) +
+              m[2] * (double)t->position[2][vertex]) +
+             frame->translation[row];
+  }
+}
+
 void conic_triangle_vertices(const conic_triangle_frame *frame, size_t begin, size_t end,
                              conic_screen_vertex *vertices) {
-  const conic_triangles *t = frame->triangles;
   for (size_t i = begin; i < end; i++) {
     double p[3];
-    for (int row = 0; row < 3; row++) {
-      const double *m = frame->view->rotation[row];
-      p[row] =
-          ((m[0] * (double)t->position[0][i] + m[1] * (double)t->position[1][i]) + m[2] * (double)t->position[2][i]) +
-          frame->translation[row];
-    }
+    conic_triangle_to_camera(frame, (uint32_t)i, p);
     vertices[i] = conic_triangle_place(frame, p);
   }
 }

@@ -53,9 +53,21 @@ static conic_status list_place(const conic_layers *layers, uint32_t node, finest
   return CONIC_OK;
 }
 
+/* Finds how large the samples of an octree's places are. */
+static conic_status measure_cut(conic_layers *layers, const conic_layers_cut *cut) {
+  if (!layers->octree)
+    return CONIC_OK;
+  unsigned char *needed = conic_memory_allocate(layers->context, layers->header.n_clouds, 1);
+  if (!needed)
+    return CONIC_ERROR_MEMORY;
+  conic_layers_needed(layers, cut, CONIC_PLACE_SHOWN, needed);
+  conic_status status = conic_layers_octree_measure(layers, needed);
+  conic_memory_release(layers->context, needed);
+  return status;
+}
+
 /* The part's leaves, or what is fine enough above them, in the order of their keys. */
-static conic_status list_finest(const conic_layers *layers, const conic_layers_region *part, double share,
-                                finest *list) {
+static conic_status list_finest(conic_layers *layers, const conic_layers_region *part, double share, finest *list) {
   uint32_t open[CONIC_LAYERS_MOST_LEVELS + 7 * CONIC_HIERARCHY_LEVELS] = {0};
   int n_open = 1;
   conic_status status = CONIC_OK;
@@ -72,7 +84,7 @@ static conic_status list_finest(const conic_layers *layers, const conic_layers_r
     }
     status = list_place(layers, node, list);
   }
-  return status;
+  return status == CONIC_OK ? measure_cut(layers, &list->cut) : status;
 }
 
 static void release_finest(const conic_layers *layers, finest *list) {
@@ -86,19 +98,6 @@ static conic_status expand_all(conic_layers *layers) {
   return layers->octree ? conic_layers_octree_expand(layers, NULL, &all) : CONIC_OK;
 }
 
-/* Finds how large the samples of an octree's places are. */
-static conic_status measure_cut(conic_layers *layers, const conic_layers_cut *cut) {
-  if (!layers->octree)
-    return CONIC_OK;
-  unsigned char *needed = conic_memory_allocate(layers->context, layers->header.n_clouds, 1);
-  if (!needed)
-    return CONIC_ERROR_MEMORY;
-  conic_layers_needed(layers, cut, CONIC_PLACE_SHOWN, needed);
-  conic_status status = conic_layers_octree_measure(layers, needed);
-  conic_memory_release(layers->context, needed);
-  return status;
-}
-
 conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splats *splats) {
   conic_context *context = layers->context;
   finest list = {.room = 0};
@@ -109,8 +108,6 @@ conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splat
   conic_status status = expand_all(layers);
   if (status == CONIC_OK)
     status = list_finest(layers, &all, 0.0, &list);
-  if (status == CONIC_OK)
-    status = measure_cut(layers, &list.cut);
   conic_layers_gathering gathering = {
       .cut = &list.cut, .chosen = list.chosen, .n_chosen = list.cut.n, .cutoff = cutoff, .until_s = HUGE_VAL};
   if (status == CONIC_OK)
@@ -161,8 +158,6 @@ conic_status conic_layers_read_samples(conic_layers *layers, float cutoff, const
     return status;
   status = list_finest(layers, &part, 0.0, &list);
   if (status == CONIC_OK)
-    status = measure_cut(layers, &list.cut);
-  if (status == CONIC_OK)
     status = read_cut(layers, cutoff, &list.cut, list.chosen, receive, cookie);
   release_finest(layers, &list);
   return status;
@@ -178,8 +173,6 @@ conic_status conic_layers_gather_part(conic_layers *layers, float cutoff, const 
   *set = layers->set;
   if (status == CONIC_OK)
     status = layers->set ? list_finest(layers, part, share, &list) : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK)
-    status = measure_cut(layers, &list.cut);
   conic_layers_gathering gathering = {.cut = &list.cut,
                                       .chosen = list.chosen,
                                       .n_chosen = list.cut.n,
