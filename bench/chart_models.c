@@ -1,4 +1,4 @@
-#include "bench/chart_models.h"
+#include "bench/chart_mesh.h"
 
 #include <math.h>
 #include <string.h>

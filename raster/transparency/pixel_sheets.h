@@ -3,6 +3,7 @@
 #ifndef CONIC_PIXEL_SHEETS_H
 #define CONIC_PIXEL_SHEETS_H
 
+#include "conic/transparency.h"
 #include "raster/explain/pixel_contributions.h"
 #include "raster/tiles/finish.h"
 
@@ -65,5 +66,17 @@ void conic_pixel_sheets_begin(conic_pixel_sheets *sheets);
 
 /* Takes the nearest sheet away that is not wholly transparent. Returns whether there was one. */
 int conic_pixel_sheets_next(conic_pixel_sheets *sheets, conic_sheet *sheet);
+
+typedef struct conic_sheet_picture {
+  conic_sheet_scene scene;
+  const float *mark; /* of each pixel three numbers: it is drawn where the first is not 0 */
+  conic_transparency how;
+  double chance;
+  conic_image *image;          /* the other pixels stay */
+  int first_column, first_row; /* of the picture, where mask and image begin */
+} conic_sheet_picture;
+
+/* Reports progress as "transparency". Errors: MEMORY, CANCELLED. */
+conic_status conic_sheet_lines_draw(const conic_sheet_picture *picture);
 
 #endif

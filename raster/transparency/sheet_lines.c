@@ -1,4 +1,4 @@
-#include "raster/transparency/sheet_lines.h"
+#include "raster/transparency/pixel_sheets.h"
 
 #include <string.h>
 

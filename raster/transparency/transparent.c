@@ -13,7 +13,7 @@
 #include "raster/frame/samples.h"
 #include "raster/frame/statistics.h"
 #include "raster/tiles/lights.h"
-#include "raster/transparency/sheet_lines.h"
+#include "raster/transparency/pixel_sheets.h"
 #include "raster/transparency/transparent_windows.h"
 #include "raster/transparency/triangle_alpha.h"
 
