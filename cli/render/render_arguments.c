@@ -93,8 +93,8 @@ static int check_output(const cli_render_job *job, const char *path) {
 /* Everything that a frame writes; null: nothing. */
 enum { N_PATHS = CLI_MAX_OUTPUTS + 6 };
 static void list_frame_paths(const cli_render_job *job, const char *paths[N_PATHS]) {
-  const char *const beside[] = {job->deep_path, job->overdraw_path, job->clusters_path, job->legend_path,
-                                job->boxes_path, job->making.save_path};
+  const char *const beside[] = {job->deep_path,   job->overdraw_path, job->clusters_path,
+                                job->legend_path, job->boxes_path,    job->making.save_path};
   memset(paths, 0, N_PATHS * sizeof *paths);
   memcpy(paths, job->outputs, (size_t)job->n_outputs * sizeof *paths);
   memcpy(paths + CLI_MAX_OUTPUTS, beside, sizeof beside);
@@ -202,7 +202,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "leave out of .exr, .png and .tif what they say of how they were made",
        .acts = {.needs = CLI_FACT(EXR) | CLI_FACT(CODES), .is_warned = 1}},
       {"again", CLI_TEXT, &job->making.again_path, "PICTURE",
-       "draw again what a picture says that it was drawn from, to the bit; other options change that. Inputs are looked "
+       "draw again what a picture says that it was drawn from, to the bit; other options change that. Inputs are "
+       "looked "
        "for beside it, here, and among those that are given"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says",
        .parse = cli_parse_turntable, .group = "several pictures",
@@ -304,7 +305,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
   if (answer == CLI_AGAIN)
-    return cli_shot_again_parse(session, argc, argv, job);
+    return cli_shot_again_parse(session, argc, argv, cli_render_parse, job);
   if (compression >= 0)
     job->writing.compression = (conic_compression)compression;
   job->asked_planes = job->is_aov_given ? job->shot.planes : 0;

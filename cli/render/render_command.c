@@ -8,6 +8,7 @@
 #include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/kept_frames.h"
+#include "cli/render/shot_again.h"
 #include "cli/render/shot_record.h"
 #include "cli/render/strip_pictures.h"
 #include "cli/render/units.h"
@@ -348,6 +349,7 @@ static int run(cli_session *session, int argc, char **argv) {
     cli_scene_release(session, &job);
     cli_team_report_release(&job.team);
   }
+  cli_shot_again_release(session, job.making.again);
   cli_shot_release(session, &job);
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;

@@ -305,7 +305,7 @@ static void make_words(cli_shot_again *again, const cli_render_job *first) {
     add_argument(again, again->scene[i]);
 }
 
-int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
+int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render_parser *parse, cli_render_job *job) {
   cli_shot_again *again = calloc(1, sizeof *again);
   cli_render_job first = *job;
   int answer = again ? CLI_DONE : cli_error(CLI_RESOURCE, "render: out of memory");
@@ -330,7 +330,7 @@ int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render
           conic_file_has_ending(first.outputs[i], "exr") || conic_file_has_ending(first.outputs[i], "pfm");
     make_words(again, &first);
     session->again = again;
-    answer = cli_render_parse(session, again->n_words, again->words, job);
+    answer = parse(session, again->n_words, again->words, job);
     session->again = NULL;
   } else
     memset(job, 0, sizeof *job);

@@ -8,8 +8,11 @@
 
 typedef struct cli_shot_again cli_shot_again;
 
-/* Reads the shot that they name, finds its inputs, and reads the arguments anew. Returns as cli_render_parse. */
-int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render_job *job);
+/* Reads the arguments of render: cli_render_parse. */
+typedef int cli_render_parser(cli_session *session, int argc, char **argv, cli_render_job *job);
+
+/* Reads the shot that the arguments name, finds its inputs, and reads the arguments anew. Returns as `parse`. */
+int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render_parser *parse, cli_render_job *job);
 
 /* The options' values as the shot has them, before the arguments are read. */
 void cli_shot_again_begin(cli_session *session, cli_render_job *job);

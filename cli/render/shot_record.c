@@ -5,7 +5,6 @@
 #include <strings.h>
 
 #include "cli/render/frames.h"
-#include "cli/render/shot_again.h"
 #include "cli/scene/background_options.h"
 #include "conic/version.h"
 #include "core/files/file.h"
@@ -209,8 +208,6 @@ conic_status cli_shot_save(cli_session *session, cli_render_job *job, int i_fram
 }
 
 void cli_shot_release(cli_session *session, cli_render_job *job) {
-  cli_shot_again_release(session, job->making.again);
-  job->making.again = NULL;
   conic_shot_inputs_release(session->context, &job->making.inputs);
   release_texts(session, &job->making);
 }
