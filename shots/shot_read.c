@@ -139,12 +139,20 @@ static conic_status read_plane_words(shot_reader *r, const conic_shot_row *row, 
   return status == CONIC_OK ? r->json.status : status;
 }
 
-/* A number into the member's own type; NaN, which null is, leaves it as it is. */
+/* Null, which is read as NaN, says that there is no bound. */
+static conic_status take_null(shot_reader *r, const conic_shot_row *row, const char *at) {
+  double bound = 0.0;
+  if (row->kind == CONIC_ROW_DOUBLE)
+    memcpy(&bound, at, sizeof bound);
+  return bound - bound != 0.0 ? CONIC_OK : fail_field(r, "%s has to be a number%s", row->name, "");
+}
+
+/* A number into the member's own type. */
 static conic_status put_field_number(shot_reader *r, const conic_shot_row *row, double value, char *at) {
   float rounded = (float)value;
   int is_whole = value >= -9007199254740992.0 && value <= 9007199254740992.0 && value == (double)(int64_t)value;
   if (value != value)
-    return CONIC_OK;
+    return take_null(r, row, at);
   if (value - value != 0.0 || (row->kind == CONIC_ROW_FLOAT && rounded - rounded != 0.0f))
     return fail_field(r, "%s is too large%s", row->name, "");
   if (row->kind == CONIC_ROW_FLOAT) {

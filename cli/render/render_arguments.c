@@ -75,6 +75,7 @@ static int parse_show(const char *text, void *value) {
       return 0;
     job->box_level = (int)level;
   }
+  job->is_shown_twice |= *shows[i].path != NULL;
   *shows[i].path = colon + 1;
   if (i <= CONFETTI)
     job->is_overdraw_confetti = i == CONFETTI;
@@ -113,6 +114,8 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
   if (!session->host && job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path &&
       !job->boxes_path && !job->progressive_path && !job->making.save_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
+  if (job->is_shown_twice)
+    return cli_usage("render: --show writes each of overdraw, clusters, boxes and legend once; draw again for another");
   for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
     answer = check_output(job, job->outputs[i]);
   const char *const shown[] = {job->overdraw_path, job->clusters_path, job->boxes_path, job->legend_path};

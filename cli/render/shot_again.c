@@ -181,6 +181,17 @@ static conic_status look_at_place(cli_shot_again *again, char *path, looking_for
   return status;
 }
 
+/* Whether a shot may lead to where its input's name says. Who wrote a shot as a file means so; a picture may come from
+ * anybody, and leads to what lies below its folder. */
+static int may_lead_to(const cli_shot_again *again, const char *name) {
+  int is_below = !conic_disk_is_absolute(name);
+  for (const char *part = name; is_below && part; part = strchr(part, '/')) {
+    part += *part == '/';
+    is_below = strncmp(part, "..", 2) != 0 || (part[2] && part[2] != '/');
+  }
+  return is_below || conic_shot_is_file(again->path);
+}
+
 /* Among the inputs that were given, by its name; beside the shot; in the folder that one is in. */
 static conic_status look_for_input(cli_shot_again *again, const cli_render_job *first, looking_for *looking) {
   const char *name = looking->input->name, *base = conic_file_name(name);
@@ -189,9 +200,10 @@ static conic_status look_for_input(cli_shot_again *again, const cli_render_job *
   for (int i = 0; i < first->n_inputs && status == CONIC_OK; i++)
     if (strcmp(conic_file_name(first->inputs[i]), base) == 0)
       status = look_at_place(again, keep_path(again, "", 0, first->inputs[i]), looking);
-  if (status == CONIC_OK && !conic_disk_is_absolute(name))
+  int may_lead = may_lead_to(again, name);
+  if (status == CONIC_OK && may_lead && !conic_disk_is_absolute(name))
     status = look_at_place(again, keep_path(again, again->path, n_folder, name), looking);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && may_lead)
     status = look_at_place(again, keep_path(again, "", 0, name), looking);
   if (status == CONIC_OK)
     status = look_at_place(again, keep_path(again, again->path, n_folder, base), looking);
@@ -445,6 +457,8 @@ void cli_shot_again_begin(cli_session *session, cli_render_job *job) {
   job->epsilon = (cli_length){shot->render.epsilon >= 0.0 ? shot->render.epsilon : -1.0, 0};
   job->shot.view = shot->view;
   job->shot.view.most_levels = 0;
+  if (gives(again, "accumulate")) /* which places its samples itself */
+    job->shot.view.samples = 1;
   job->budget = shot->view.budget;
   job->is_transparent = shot->view.transparency != CONIC_TRANSPARENCY_NONE;
   job->shot.has_backdrop = shot->has_backdrop;

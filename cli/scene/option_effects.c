@@ -200,6 +200,7 @@ static void know_source(cli_render_job *job) {
     own->possible &= ~F(ALPHA);
   own->possible &= own->certain |
                    ~(when(!(can & CONIC_SOURCE_COMPOSITES), F(COMPOSITED)) |
+                     when(!(can & CONIC_SOURCE_COMPOSITES) && job->opening.gaussians, F(GAUSSIANS)) |
                      when(!(can & CONIC_SOURCE_CLUSTERS), F(HYBRID)) | when(!(can & CONIC_SOURCE_STREAMS), F(LEVELS)) |
                      when(can != CONIC_SOURCE_CHOOSES, F(NODES)) | when(!(can & CONIC_SOURCE_CHOOSES), F(CHOOSES)));
   if (job->top.is_wanted && !job->is_shade_given && scale->has_colors) /* it is then drawn as it is */

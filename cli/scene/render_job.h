@@ -46,6 +46,7 @@ typedef struct cli_render_job {
   const char *clusters_path;    /* --clusters; null: none */
   const char *boxes_path;       /* --boxes; null: none */
   int box_level;                /* --box-level; below 0: what suits */
+  int is_shown_twice;           /* --show has two outputs for one thing */
   const char *legend_path;      /* --legend-out; null: none */
   int has_legend;               /* --legend: in the picture */
   int has_mattes;               /* --cryptomatte */
