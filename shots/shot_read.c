@@ -309,9 +309,14 @@ static const conic_shot_row *find_shot_row(const conic_shot_rows *rows, const ch
 
 static conic_status read_fields(shot_reader *r, const conic_shot_rows *rows, char *value) {
   char key[CONIC_JSON_KEY_ROOM];
+  uint64_t is_read = 0; /* bits of rows */
   conic_status status = conic_json_begin_object(&r->json);
   while (status == CONIC_OK && conic_json_next_member(&r->json, key)) {
     const conic_shot_row *row = find_shot_row(rows, key);
+    uint64_t bit = row ? UINT64_C(1) << (row - rows->rows) : 0;
+    if (is_read & bit)
+      return fail_field(r, "the field '%s' stands twice%s", key, "");
+    is_read |= bit;
     status = row ? read_field(r, row, value) : fail_field(r, "there is no field '%s'%s", key, "");
   }
   return status == CONIC_OK ? r->json.status : status;

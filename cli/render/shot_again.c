@@ -46,8 +46,7 @@ static int gives_one(const cli_shot_again *again, const char *const *names) {
   return 0;
 }
 
-static const char *const framing_options[] = {"azimuth",    "elevation", "fov",    "zoom",
-                                              "projection", "eye",       "camera", NULL};
+static const char *const framing_options[] = {"azimuth", "elevation", "fov", "zoom", "projection", "eye", "up", NULL};
 
 /* --- words --- */
 
@@ -335,7 +334,11 @@ int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render
   if (answer == CLI_DONE)
     answer = find_again_inputs(again, &first);
   if (answer == CLI_DONE) {
-    again->has_camera = !again->file->map.is_wanted && !gives_one(again, framing_options);
+    int is_reframed = gives_one(again, framing_options);
+    again->has_camera = !again->file->map.is_wanted && !is_reframed && !gives(again, "camera");
+    if (is_reframed && !again->file->map.is_wanted && !gives(again, "camera"))
+      cli_note(session, "%s: the scene is framed anew; what is not said of the camera is as without a shot",
+               again->path);
     again->holds_all = first.n_outputs == 0;
     for (int i = 0; i < first.n_outputs; i++)
       again->holds_all |=
@@ -468,6 +471,8 @@ void cli_shot_again_begin(cli_session *session, cli_render_job *job) {
   job->is_aov_given = job->shot.planes != USUAL_PLANES;
   job->is_shade_given = 1;
   job->camera_path = again->has_camera ? again->path : NULL;
+  if (!again->has_camera)
+    job->projection = (int)shot->camera.kind;
   job->framing.width = shot->camera.width ? shot->camera.width : job->framing.width;
   job->framing.height = shot->camera.height ? shot->camera.height : job->framing.height;
   job->accumulating.motion_path = again->motion;
