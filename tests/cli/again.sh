@@ -181,8 +181,19 @@ printf 'v 2 2 2\n' >> m.obj
 run_as_typed 3 render --again m.exr -o x.exr
 grep -q 'error: m.obj: it has changed' err || fail "a changed input: $(cat err)"
 
+# Another camera is framed as without a shot, but for what maps it to the picture, and that is said
+run_as_typed 0 render k.ply --size 30x30 --projection orthographic -q -o flat.exr
+run_as_typed 0 render --again flat.exr --zoom 2 -o x.exr
+grep -q 'flat.exr: the scene is framed anew' err || fail "framing anew is not said: $(cat err)"
+run_as_typed 0 render k.ply --size 30x30 --projection orthographic --zoom 2 -q -o y.exr
+run_as_typed 0 diff x.exr y.exr
+run_as_typed 0 render --again flat.exr --up x -q -o x.exr
+run_as_typed 0 render k.ply --size 30x30 --projection orthographic --up x -q -o y.exr
+run_as_typed 0 diff x.exr y.exr
+
 # What is no shot
-for text in '{"conic_shot": 2}' '{"conic_shot": 1, "camra": {}}' '{"conic_shot": 1}' '{"conic_shot": 1, "inputs": [{"name": "-"}]}'; do
+for text in '{"conic_shot": 1, "inputs": [{"name": "k.ply"}], "view": {"samples": 1, "samples": 2}}' \
+  '{"conic_shot": 1, "inputs": [{"name": "k.ply"}], "camera": {"fx": null}}' '{"conic_shot": 2}' '{"conic_shot": 1, "camra": {}}' '{"conic_shot": 1}' '{"conic_shot": 1, "inputs": [{"name": "-"}]}'; do
   echo "$text" > bad.shot.json
   run_as_typed 3 render bad.shot.json -o x.exr
 done
