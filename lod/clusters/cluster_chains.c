@@ -167,16 +167,13 @@ conic_status conic_cluster_chains_find(conic_context *context, const conic_clust
   finding f = {.context = context, .mesh = mesh, .region = region, .chains = chains};
   memset(chains, 0, sizeof *chains);
   conic_status status = find(&f);
-  conic_memory_release(context, f.places);
-  conic_memory_release(context, f.edges);
+  conic_memory_release_these(context, f.places, f.edges);
   if (status != CONIC_OK)
     conic_cluster_chains_release(context, chains);
   return status;
 }
 
 void conic_cluster_chains_release(conic_context *context, conic_cluster_chains *chains) {
-  conic_memory_release(context, chains->chains);
-  conic_memory_release(context, chains->slots);
-  conic_memory_release(context, chains->of_vertex);
+  conic_memory_release_these(context, chains->chains, chains->slots, chains->of_vertex);
   memset(chains, 0, sizeof *chains);
 }

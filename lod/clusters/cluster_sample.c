@@ -24,8 +24,7 @@ void conic_sampler_destroy(conic_sampler *sampler) {
                          sampler->owner,         sampler->candidates, sampler->seeds,      sampler->sites};
   conic_memory_release_all(sampler->context, owned, sizeof owned / sizeof *owned);
   conic_place_table_release(sampler->context, &sampler->table);
-  conic_memory_release(sampler->context, sampler->supports);
-  conic_memory_release(sampler->context, sampler->of_sites);
+  conic_memory_release_these(sampler->context, sampler->supports, sampler->of_sites);
   for (int i = 0; i < 2; i++)
     conic_memory_release(sampler->context, sampler->points[i]);
   conic_memory_release(sampler->context, sampler);

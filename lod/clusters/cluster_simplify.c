@@ -30,9 +30,7 @@ void conic_simplifier_destroy(conic_simplifier *s) {
     return;
   for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory; i++)
     conic_memory_release(s->context, s->memory[i]);
-  conic_memory_release(s->context, s->borders);
-  conic_memory_release(s->context, s->number);
-  conic_memory_release(s->context, s);
+  conic_memory_release_these(s->context, s->borders, s->number, s);
 }
 
 /* --- drawing together --- */

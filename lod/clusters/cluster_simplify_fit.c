@@ -88,8 +88,7 @@ conic_status conic_simplifier_fit_places(conic_simplifier *s) {
     move_vertices(s, ways, fit.solution);
   }
   conic_corner_fit_release(&fit);
-  conic_memory_release(s->context, ways);
-  conic_memory_release(s->context, numbers);
+  conic_memory_release_these(s->context, ways, numbers);
   return status;
 }
 
@@ -218,6 +217,5 @@ conic_status conic_simplifier_fit_normals(const conic_simplifier *s, conic_simpl
 }
 
 void conic_simplifier_normals_release(const conic_simplifier *s, conic_simplifier_normals *n) {
-  conic_memory_release(s->context, n->of_corner);
-  conic_memory_release(s->context, n->normals);
+  conic_memory_release_these(s->context, n->of_corner, n->normals);
 }

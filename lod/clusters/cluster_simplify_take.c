@@ -220,9 +220,7 @@ conic_status conic_simplifier_take(conic_simplifier *s) {
 
 void conic_cluster_levels_release(conic_context *context, conic_cluster_levels *levels) {
   for (int i = 0; i < levels->n; i++) {
-    conic_memory_release(context, levels->levels[i].corners);
-    conic_memory_release(context, levels->levels[i].face);
-    conic_memory_release(context, levels->levels[i].borders);
+    conic_memory_release_these(context, levels->levels[i].corners, levels->levels[i].face, levels->levels[i].borders);
   }
   conic_memory_release(context, levels->moved);
   memset(levels, 0, sizeof *levels);

@@ -37,8 +37,7 @@ static conic_status make_room_for_places(conic_context *context, conic_place_tab
   }
   if (n_places > t->room) {
     size_t room = n_places + n_places / 2;
-    conic_memory_release(context, t->place);
-    conic_memory_release(context, t->at[0]);
+    conic_memory_release_these(context, t->place, t->at[0]);
     t->place = conic_memory_allocate(context, room, sizeof *t->place);
     t->at[0] = conic_memory_allocate(context, room, 4 * sizeof *t->at[0]);
     t->room = t->place && t->at[0] ? room : 0;
@@ -160,8 +159,6 @@ void conic_place_table_put(conic_place_table *table, uint32_t site, const double
 }
 
 void conic_place_table_release(conic_context *context, conic_place_table *table) {
-  conic_memory_release(context, table->starts);
-  conic_memory_release(context, table->place);
-  conic_memory_release(context, table->at[0]);
+  conic_memory_release_these(context, table->starts, table->place, table->at[0]);
   memset(table, 0, sizeof *table);
 }

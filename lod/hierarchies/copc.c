@@ -64,8 +64,7 @@ static conic_status open_copc(conic_hierarchy *h) {
     status = conic_hierarchy_find_laz(h, records, (size_t)points_at);
   if (status == CONIC_OK)
     status = conic_georeference_of_las(h->context, records, (size_t)points_at, &h->reference);
-  conic_memory_release(h->context, records);
-  conic_memory_release(h->context, head);
+  conic_memory_release_these(h->context, records, head);
   return status;
 }
 

@@ -80,8 +80,7 @@ void conic_hierarchy_close(conic_hierarchy *hierarchy) {
   if (hierarchy->pages != hierarchy->ranges)
     conic_ranges_close(hierarchy->pages);
   conic_ranges_close(hierarchy->ranges);
-  conic_memory_release(context, hierarchy->nodes);
-  conic_memory_release(context, hierarchy->own);
+  conic_memory_release_these(context, hierarchy->nodes, hierarchy->own);
   conic_georeference_release(context, &hierarchy->reference);
   conic_memory_release(context, hierarchy);
 }

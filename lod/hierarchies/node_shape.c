@@ -238,8 +238,6 @@ conic_status conic_node_shape_find(conic_context *context, const conic_node_shap
   }
   if (status == CONIC_OK)
     status = find_median(context, shape, median);
-  conic_memory_release(context, s.table.first);
-  conic_memory_release(context, s.table.cell_at);
-  conic_memory_release(context, s.is_done);
+  conic_memory_release_these(context, s.table.first, s.table.cell_at, s.is_done);
   return status;
 }

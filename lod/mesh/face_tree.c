@@ -141,8 +141,7 @@ conic_status conic_face_tree_build(conic_context *context, const conic_mesh *mes
 }
 
 void conic_face_tree_release(conic_context *context, conic_face_tree *tree) {
-  conic_memory_release(context, tree->faces);
-  conic_memory_release(context, tree->boxes);
+  conic_memory_release_these(context, tree->faces, tree->boxes);
   memset(tree, 0, sizeof *tree);
 }
 

@@ -94,9 +94,7 @@ conic_status conic_flat_mesh(conic_context *context, const conic_triangles *mesh
         memcpy(flat->material, mesh->material, mesh->count * sizeof *flat->material);
     }
   }
-  conic_memory_release(context, f.wedges);
-  conic_memory_release(context, f.table);
-  conic_memory_release(context, corners);
+  conic_memory_release_these(context, f.wedges, f.table, corners);
   if (status != CONIC_OK)
     conic_triangles_release(context, flat);
   return status;

@@ -190,8 +190,7 @@ static conic_status orient(conic_context *context, const conic_mesh *mesh, conic
   for (uint32_t i = 0; i < mesh->n_faces && status == CONIC_OK; i++)
     if (adjacency->side[i] && !o.is_seen[i])
       orient_piece(&o, i);
-  conic_memory_release(context, o.is_seen);
-  conic_memory_release(context, o.queue);
+  conic_memory_release_these(context, o.is_seen, o.queue);
   return status;
 }
 
@@ -222,9 +221,6 @@ conic_status conic_adjacency_find(conic_context *context, const conic_mesh *mesh
 }
 
 void conic_adjacency_release(conic_context *context, conic_adjacency *adjacency) {
-  conic_memory_release(context, adjacency->place);
-  conic_memory_release(context, adjacency->side);
-  conic_memory_release(context, adjacency->across);
-  conic_memory_release(context, adjacency->joints);
+  conic_memory_release_these(context, adjacency->place, adjacency->side, adjacency->across, adjacency->joints);
   memset(adjacency, 0, sizeof *adjacency);
 }

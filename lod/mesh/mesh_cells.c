@@ -58,8 +58,7 @@ void conic_mesh_cells_release(conic_mesh_cells *c) {
   if (!c)
     return;
   for (size_t i = 0; c->buckets && i < 2 * c->n_cells; i++) {
-    conic_memory_release(c->context, c->buckets[i].faces);
-    conic_memory_release(c->context, c->buckets[i].blocks);
+    conic_memory_release_these(c->context, c->buckets[i].faces, c->buckets[i].blocks);
   }
   if (c->map)
     conic_disk_unmap((void *)(uintptr_t)c->map, c->map_bytes);
@@ -268,8 +267,7 @@ static conic_status find_tree(conic_mesh_cells *c) {
   }
   if (status == CONIC_OK)
     status = grow_tree(c, at, n, (double)step, sorted, 0);
-  conic_memory_release(c->context, sorted);
-  conic_memory_release(c->context, at);
+  conic_memory_release_these(c->context, sorted, at);
   return status;
 }
 
@@ -507,7 +505,6 @@ conic_status conic_mesh_cells_take(conic_mesh_cells *c, size_t cell, conic_trian
     memcpy(mesh->corners, corners, n * sizeof *corners);
     copy_cell_vertices(c, listed, mesh);
   }
-  conic_memory_release(c->context, corners);
-  conic_memory_release(c->context, listed);
+  conic_memory_release_these(c->context, corners, listed);
   return status;
 }

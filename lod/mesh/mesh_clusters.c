@@ -304,8 +304,6 @@ conic_status conic_mesh_clusters_find(conic_context *context, const conic_mesh *
 }
 
 void conic_mesh_clusters_release(conic_context *context, conic_mesh_clusters *clusters) {
-  conic_memory_release(context, clusters->of_face);
-  conic_memory_release(context, clusters->is_gathered);
-  conic_memory_release(context, clusters->sums);
+  conic_memory_release_these(context, clusters->of_face, clusters->is_gathered, clusters->sums);
   memset(clusters, 0, sizeof *clusters);
 }

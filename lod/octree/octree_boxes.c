@@ -202,9 +202,7 @@ conic_status conic_octree_draw_boxes(const conic_octree *octree, const conic_cam
   p.part_of_point = conic_memory_allocate(context, octree->n_points, sizeof *p.part_of_point);
   p.depth = conic_memory_allocate(context, octree->n_nodes, 1);
   status = p.part_of_node && p.part_of_point && p.depth ? paint_picture(&p) : CONIC_ERROR_MEMORY;
-  conic_memory_release(context, p.part_of_node);
-  conic_memory_release(context, p.part_of_point);
-  conic_memory_release(context, p.depth);
+  conic_memory_release_these(context, p.part_of_node, p.part_of_point, p.depth);
   if (status != CONIC_OK)
     conic_image_release(context, map);
   return status;

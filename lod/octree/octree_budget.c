@@ -85,8 +85,7 @@ conic_status conic_octree_fit_budget(const conic_octree *octree, const conic_oct
       best = 0;
     *error_px = conic_float_of_bits(best);
   }
-  conic_memory_release(context, openings);
-  conic_memory_release(context, other);
+  conic_memory_release_these(context, openings, other);
   return status;
 }
 

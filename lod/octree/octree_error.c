@@ -462,8 +462,7 @@ static conic_status run_pass(error_pass *pass) {
   }
   for (size_t i = 0; i < pass->n_tasks && status == CONIC_OK; i++)
     status = pass->statuses[i];
-  conic_memory_release(context, pass->tasks);
-  conic_memory_release(context, pass->statuses);
+  conic_memory_release_these(context, pass->tasks, pass->statuses);
   return status;
 }
 

@@ -232,8 +232,7 @@ static conic_status find_spreads(const conic_octree *octree, conic_octree_info *
     find_quantiles(radii, n, info->radius);
     find_quantiles(cones, n, info->cone);
   }
-  conic_memory_release(octree->context, radii);
-  conic_memory_release(octree->context, cones);
+  conic_memory_release_these(octree->context, radii, cones);
   return status;
 }
 

@@ -42,10 +42,7 @@ void conic_selection_options_init_sized(conic_selection_options *options, size_t
 void conic_selection_release(conic_context *context, conic_selection *selection) {
   octree_scratch *kept = selection->scratch;
   if (kept) {
-    conic_memory_release(context, kept->arrays);
-    conic_memory_release(context, kept->clips.pointer);
-    conic_memory_release(context, kept->pieces);
-    conic_memory_release(context, kept->sources_memory.pointer);
+    conic_memory_release_these(context, kept->arrays, kept->clips.pointer, kept->pieces, kept->sources_memory.pointer);
   }
   conic_memory_release(context, kept);
   memset(selection, 0, sizeof *selection);

@@ -260,9 +260,6 @@ conic_status conic_octree_split(conic_context *context, conic_split *split) {
     join_tasks(&s);
   for (int axis = 0; axis < 3; axis++)
     conic_memory_release(context, s.scratch[axis]);
-  conic_memory_release(context, s.scratch_index);
-  conic_memory_release(context, s.octants);
-  conic_memory_release(context, s.children);
-  conic_memory_release(context, s.top);
+  conic_memory_release_these(context, s.scratch_index, s.octants, s.children, s.top);
   return status;
 }

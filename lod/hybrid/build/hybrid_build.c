@@ -35,9 +35,7 @@ typedef struct building {
 static void release_building(building *b) {
   for (size_t i = 0; b->ways && i < b->clusters.n_clusters; i++)
     conic_cluster_ways_release(b->context, &b->ways[i]);
-  conic_memory_release(b->context, b->ways);
-  conic_memory_release(b->context, b->faces);
-  conic_memory_release(b->context, b->starts);
+  conic_memory_release_these(b->context, b->ways, b->faces, b->starts);
   conic_mesh_clusters_release(b->context, &b->clusters);
   conic_adjacency_release(b->context, &b->adjacency);
   b->flat.materials = NULL; /* lent by the mesh */

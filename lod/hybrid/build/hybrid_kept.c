@@ -77,8 +77,6 @@ conic_status conic_hybrid_group_kept(conic_context *context, const conic_kept_sp
     sums = old_sums;
     status = group_all(context, &g);
   }
-  conic_memory_release(context, sums);
-  conic_memory_release(context, is_gathered);
-  conic_memory_release(context, g.order);
+  conic_memory_release_these(context, sums, is_gathered, g.order);
   return status;
 }

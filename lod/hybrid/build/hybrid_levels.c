@@ -298,8 +298,6 @@ conic_status conic_find_ways(conic_ways_job *job) {
     status = run_passes(&pass);
   }
   conic_face_tree_release(job->context, &job->tree);
-  conic_memory_release(job->context, pass.order);
-  conic_memory_release(job->context, pass.workers);
-  conic_memory_release(job->context, pass.statuses);
+  conic_memory_release_these(job->context, pass.order, pass.workers, pass.statuses);
   return status;
 }

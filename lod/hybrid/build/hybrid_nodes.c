@@ -373,8 +373,7 @@ static conic_status find_ways(conic_ways_job *job) {
     conic_memory_release(job->context, pass.workers[i].pieces);
     conic_sampler_destroy(pass.workers[i].sampler);
   }
-  conic_memory_release(job->context, pass.workers);
-  conic_memory_release(job->context, pass.statuses);
+  conic_memory_release_these(job->context, pass.workers, pass.statuses);
   return status;
 }
 
@@ -408,8 +407,7 @@ conic_status conic_find_nodes(conic_ways_job *job) {
     job->node_ways = conic_memory_allocate_zeroed(job->context, job->n_nodes, sizeof *job->node_ways);
     status = job->node_ways ? find_ways(job) : CONIC_ERROR_MEMORY;
   }
-  conic_memory_release(job->context, reach);
-  conic_memory_release(job->context, bounds);
+  conic_memory_release_these(job->context, reach, bounds);
   return status;
 }
 
@@ -418,8 +416,7 @@ void conic_nodes_release(conic_ways_job *job) {
     for (int k = 0; k < job->node_ways[i].n_surfels; k++)
       conic_surfels_release(job->context, &job->node_ways[i].surfels[k]);
   conic_cluster_levels_release(job->context, &job->whole);
-  conic_memory_release(job->context, job->node_ways);
-  conic_memory_release(job->context, job->nodes);
+  conic_memory_release_these(job->context, job->node_ways, job->nodes);
   job->node_ways = NULL;
   job->nodes = NULL;
 }

@@ -133,10 +133,7 @@ conic_status conic_find_simpler(conic_ways_job *ways) {
     for (size_t i = 0; i < n; i++)
       ways->ways[i].triangles = job.levels[i];
   }
-  conic_memory_release(context, job.starts);
-  conic_memory_release(context, job.of_cluster);
-  conic_memory_release(context, job.levels);
-  conic_memory_release(context, job.places);
+  conic_memory_release_these(context, job.starts, job.of_cluster, job.levels, job.places);
   return status;
 }
 

@@ -137,8 +137,7 @@ static conic_status write_hybrid(const conic_hybrid *hybrid, const uint32_t *ord
   }
   if (status == CONIC_OK)
     status = write_placed(hybrid, &placed, order, bytes, stream);
-  conic_memory_release(context, levels);
-  conic_memory_release(context, clusters);
+  conic_memory_release_these(context, levels, clusters);
   return status;
 }
 
@@ -154,8 +153,7 @@ conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path) {
     status = write_hybrid(hybrid, order, bytes, stream);
     status = ferror(stream) ? conic_output_commit(output) : conic_output_end(output, status);
   }
-  conic_memory_release(hybrid->context, order);
-  conic_memory_release(hybrid->context, bytes);
+  conic_memory_release_these(hybrid->context, order, bytes);
   return status;
 }
 

@@ -14,8 +14,7 @@ void conic_hybrid_destroy(conic_hybrid *hybrid) {
     conic_texture_destroy(hybrid->materials[i].texture);
   conic_hybrid_store_close(hybrid->store);
   conic_hybrid_pile_release(hybrid->context, hybrid->pile);
-  conic_memory_release(hybrid->context, hybrid->materials);
-  conic_memory_release(hybrid->context, hybrid->owned);
+  conic_memory_release_these(hybrid->context, hybrid->materials, hybrid->owned);
   conic_mapping_close(hybrid->context, &hybrid->mapping);
   conic_memory_release(hybrid->context, hybrid);
 }

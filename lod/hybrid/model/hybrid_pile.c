@@ -20,11 +20,7 @@ void conic_hybrid_pile_release(conic_context *context, conic_hybrid_pile *pile) 
   if (pile->map)
     conic_disk_unmap(pile->map, pile->map_bytes);
   conic_pile_end(&pile->file);
-  conic_memory_release(context, pile->levels);
-  conic_memory_release(context, pile->joined);
-  conic_memory_release(context, pile->clusters);
-  conic_memory_release(context, pile->nodes);
-  conic_memory_release(context, pile);
+  conic_memory_release_these(context, pile->levels, pile->joined, pile->clusters, pile->nodes, pile);
 }
 
 void conic_hybrid_pile_rest(const conic_hybrid_pile *pile) {

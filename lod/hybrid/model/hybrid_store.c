@@ -77,8 +77,7 @@ void conic_hybrid_store_close(conic_hybrid_store *store) {
     return;
   for (uint32_t chunk = store->oldest; chunk != CONIC_NO_CHUNK; chunk = store->slots[chunk].newer)
     conic_memory_release(store->context, store->slots[chunk].bytes);
-  conic_memory_release(store->context, store->slots);
-  conic_memory_release(store->context, store->name);
+  conic_memory_release_these(store->context, store->slots, store->name);
   conic_ranges_close(store->ranges);
   conic_memory_release(store->context, store);
 }

@@ -47,8 +47,7 @@ static conic_status create_split(conic_layers_buckets *all, size_t memory_bytes,
 }
 
 static void release_split(split *s) {
-  conic_memory_release(s->all->context, s->cells);
-  conic_memory_release(s->all->context, s->open);
+  conic_memory_release_these(s->all->context, s->cells, s->open);
 }
 
 static void clear_cells(split *s) {

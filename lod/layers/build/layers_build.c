@@ -168,8 +168,7 @@ void conic_layers_builder_abandon(conic_layers_builder *builder) {
   conic_layers_buckets_end(&builder->buckets);
   conic_layers_tree_end(&builder->tree);
   conic_layers_kept_end(&builder->kept);
-  conic_memory_release(builder->context, builder->path);
-  conic_memory_release(builder->context, builder);
+  conic_memory_release_these(builder->context, builder->path, builder);
 }
 
 uint64_t conic_layers_builder_finished(const conic_layers_builder *builder) {
@@ -372,8 +371,7 @@ static conic_status fill_buckets(conic_layers_builder *builder, const conic_laye
                                        eighths_of_memory(builder, 3) / 2, growth->most, &builder->buckets);
   if (status == CONIC_OK)
     status = conic_layers_buckets_add(&builder->buckets, own, n_own);
-  conic_memory_release(builder->context, own);
-  conic_memory_release(builder->context, keys);
+  conic_memory_release_these(builder->context, own, keys);
   return status;
 }
 

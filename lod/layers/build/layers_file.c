@@ -329,8 +329,7 @@ static conic_status write_all_bytes(conic_context *context, const char *path, co
   if (status == CONIC_OK)
     status = write_measured(&w, path);
   conic_layers_order_end(&w.order);
-  conic_memory_release(context, w.entries);
-  conic_memory_release(context, w.bytes);
+  conic_memory_release_these(context, w.entries, w.bytes);
   return status;
 }
 

@@ -361,15 +361,10 @@ static void release_growing(growing *g) {
     release_stack(context, &h->waiting);
     conic_layers_worker_destroy(h->worker);
     conic_layers_packed_release(&h->packed);
-    conic_memory_release(context, h->samples);
-    conic_memory_release(context, h->scratch);
-    conic_memory_release(context, h->outlines);
+    conic_memory_release_these(context, h->samples, h->scratch, h->outlines);
   }
   release_stack(context, &g->merged);
-  conic_memory_release(context, g->growers);
-  conic_memory_release(context, g->groups);
-  conic_memory_release(context, g->chunks);
-  conic_memory_release(context, g->part_ends);
+  conic_memory_release_these(context, g->growers, g->groups, g->chunks, g->part_ends);
   conic_layers_pool_end(&g->pool);
 }
 

@@ -259,8 +259,7 @@ static conic_status find_branches(conic_layers_kept *kept, char *path) {
     status = take_whole(kept, is_whole);
   if (status == CONIC_OK && (!team || team->index == 0))
     status = write_found(kept, is_whole, path);
-  conic_memory_release(kept->context, is_whole);
-  conic_memory_release(kept->context, all);
+  conic_memory_release_these(kept->context, is_whole, all);
   return conic_team_agree(team, status);
 }
 
@@ -322,9 +321,7 @@ void conic_layers_kept_end(conic_layers_kept *kept) {
   if (kept->stream)
     fclose(kept->stream);
   conic_finished_release(kept->context, &kept->found);
-  conic_memory_release(kept->context, kept->branches);
-  conic_memory_release(kept->context, kept->inputs);
-  conic_memory_release(kept->context, kept->folder);
+  conic_memory_release_these(kept->context, kept->branches, kept->inputs, kept->folder);
   memset(kept, 0, sizeof *kept);
 }
 

@@ -188,8 +188,7 @@ static conic_status collect_all(part_merge *m, const uint64_t *part_ends, conic_
     tree->entries = all;
     m->status = conic_team_agree(m->team, m->status);
   }
-  conic_memory_release(context, sizes);
-  conic_memory_release(context, some);
+  conic_memory_release_these(context, sizes, some);
   return m->status;
 }
 

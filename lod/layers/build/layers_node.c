@@ -47,10 +47,7 @@ void conic_layers_worker_destroy(conic_layers_worker *worker) {
   conic_context *context = worker->plan.context;
   conic_layers_coder_destroy(worker->coder);
   conic_thinner_destroy(context, worker->thinner);
-  conic_memory_release(context, worker->candidates);
-  conic_memory_release(context, worker->is_chosen);
-  conic_memory_release(context, worker->outlines);
-  conic_memory_release(context, worker);
+  conic_memory_release_these(context, worker->candidates, worker->is_chosen, worker->outlines, worker);
 }
 
 void conic_layers_add_outlines(conic_layers_worker *worker, const uint64_t *outlines) {
@@ -76,8 +73,7 @@ conic_status conic_layers_packed_flush(conic_layers_packed *packed) {
 }
 
 void conic_layers_packed_release(conic_layers_packed *packed) {
-  conic_memory_release(packed->context, packed->entries);
-  conic_memory_release(packed->context, packed->bytes);
+  conic_memory_release_these(packed->context, packed->entries, packed->bytes);
   *packed = (conic_layers_packed){.context = packed->context, .clouds = packed->clouds};
 }
 
@@ -346,8 +342,7 @@ void conic_layers_drop_samples(conic_layers_node *node) {
 void conic_layers_drop_keys(conic_layers_node *node) {
   if (node->keys)
     atomic_fetch_sub(&node->pool->n_held, keys_bytes(node) + facets_bytes(node));
-  conic_memory_release(node->pool->context, node->keys);
-  conic_memory_release(node->pool->context, node->facets);
+  conic_memory_release_these(node->pool->context, node->keys, node->facets);
   node->keys = NULL;
   node->facets = NULL;
 }

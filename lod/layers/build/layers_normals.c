@@ -218,8 +218,6 @@ conic_status conic_layers_find_normals(const conic_layers_plan *plan, unsigned c
       n_left = pass(&g, plan, samples, i == MOST_WIDENINGS - 1);
     }
   }
-  conic_memory_release(context, g.at);
-  conic_memory_release(context, g.first);
-  conic_memory_release(context, g.next);
+  conic_memory_release_these(context, g.at, g.first, g.next);
   return status;
 }

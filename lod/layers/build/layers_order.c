@@ -128,8 +128,7 @@ conic_status conic_layers_order_entries(conic_context *context, const char *path
     w->is_numbering = 1;
     status = walk_all(w);
   }
-  conic_memory_release(context, entries);
-  conic_memory_release(context, w);
+  conic_memory_release_these(context, entries, w);
   return status;
 }
 

@@ -31,10 +31,7 @@ typedef struct dividing {
 void conic_layers_parts_end(conic_layers_parts *parts) {
   if (!parts->context)
     return;
-  conic_memory_release(parts->context, parts->cells);
-  conic_memory_release(parts->context, parts->owners);
-  conic_memory_release(parts->context, parts->list);
-  conic_memory_release(parts->context, parts->own_keys);
+  conic_memory_release_these(parts->context, parts->cells, parts->owners, parts->list, parts->own_keys);
   memset(parts, 0, sizeof *parts);
 }
 
@@ -195,8 +192,7 @@ conic_status conic_layers_parts_find(const conic_team *team, const conic_layers_
   }
   if (status == CONIC_OK)
     status = list_own_keys(parts);
-  conic_memory_release(plan->context, s.counts);
-  conic_memory_release(plan->context, s.pieces);
+  conic_memory_release_these(plan->context, s.counts, s.pieces);
   return conic_team_agree(team, status);
 }
 
@@ -307,8 +303,7 @@ conic_status conic_layers_send_samples(const conic_layers_parts *parts, const co
     status = conic_layers_grid_run(grid, send_sample, &e);
   while (!e.is_over)
     status = swap_messages(&e, status, 1);
-  conic_memory_release(parts->context, e.messages);
-  conic_memory_release(parts->context, e.n_in);
+  conic_memory_release_these(parts->context, e.messages, e.n_in);
   return conic_team_agree(parts->team, status);
 }
 

@@ -112,9 +112,7 @@ static void hold_against(const stage *leaf, stage *above) {
 }
 
 static void release_stage(conic_context *context, stage *s) {
-  conic_memory_release(context, s->samples);
-  conic_memory_release(context, s->first);
-  conic_memory_release(context, s->next);
+  conic_memory_release_these(context, s->samples, s->first, s->next);
   memset(s, 0, sizeof *s);
 }
 

@@ -127,8 +127,7 @@ void conic_layers_decoder_destroy(conic_layers_decoder *decoder) {
   if (!decoder)
     return;
   conic_layers_coder_destroy(decoder->coder);
-  conic_memory_release(decoder->context, decoder->samples);
-  conic_memory_release(decoder->context, decoder);
+  conic_memory_release_these(decoder->context, decoder->samples, decoder);
 }
 
 /* The middle of its cell of the grid. */
