@@ -6,6 +6,126 @@
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
 
+/* --- values at corners, by least squares --- */
+
+/* What draws all values towards none, as a part of the mean of the system's diagonal; and how many steps are taken. */
+static const double hold = 1e-3;
+enum { MOST_STEPS = 16 };
+static const double enough = 1e-6; /* of what is left, squared */
+
+/* Up to three values at a time, that are fitted each by itself. */
+typedef struct corner_fit {
+  conic_context *context;
+  size_t n_triangles, n_unknowns;
+  int n_values;
+  uint32_t (*unknowns)[3]; /* of a triangle's corners; the caller fills them in. None: no such triangle */
+  double (*squares)[6];    /* of each triangle, the system's entries for its corners 00, 01, 02, 11, 12, 22 */
+  double *right[3], *solution;
+  double *work; /* four arrays */
+} corner_fit;
+
+/* The caller releases the fit, on failure too. */
+static conic_status corner_fit_init(conic_context *context, size_t n_triangles, size_t n_unknowns, int n_values,
+                                    corner_fit *fit) {
+  *fit = (corner_fit){.context = context, .n_triangles = n_triangles, .n_unknowns = n_unknowns, .n_values = n_values};
+  fit->unknowns = conic_memory_allocate(context, n_triangles, sizeof *fit->unknowns);
+  fit->squares = conic_memory_allocate_zeroed(context, n_triangles, sizeof *fit->squares);
+  fit->right[0] = conic_memory_allocate_zeroed(context, n_unknowns, (size_t)n_values * sizeof **fit->right);
+  fit->solution = conic_memory_allocate(context, n_unknowns, sizeof *fit->solution);
+  fit->work = conic_memory_allocate(context, n_unknowns, 4 * sizeof *fit->work);
+  if (!fit->unknowns || !fit->squares || !fit->right[0] || !fit->solution || !fit->work)
+    return CONIC_ERROR_MEMORY;
+  for (int i = 1; i < n_values; i++)
+    fit->right[i] = fit->right[i - 1] + n_unknowns;
+  return CONIC_OK;
+}
+
+static void corner_fit_release(corner_fit *fit) {
+  if (fit->context)
+    conic_memory_release_these(fit->context, fit->unknowns, fit->squares, fit->right[0], fit->solution, fit->work);
+}
+
+/* Asks that at a place the sum of the corners' values times `parts` be `values`. `weight` says how much it matters. */
+static void corner_fit_add(corner_fit *fit, size_t triangle, const double parts[3], const double *values,
+                           double weight) {
+  for (int i = 0, at = 0; i < 3; i++) {
+    for (int k = i; k < 3; k++, at++)
+      fit->squares[triangle][at] += weight * parts[i] * parts[k];
+    for (int value = 0; value < fit->n_values; value++)
+      fit->right[value][fit->unknowns[triangle][i]] += weight * parts[i] * values[value];
+  }
+}
+
+/* The system times x, and x held. */
+static void multiply(const corner_fit *fit, double held, const double *x, double *product) {
+  for (size_t i = 0; i < fit->n_unknowns; i++)
+    product[i] = held * x[i];
+  for (size_t i = 0; i < fit->n_triangles; i++) {
+    const uint32_t *u = fit->unknowns[i];
+    const double *s = fit->squares[i];
+    product[u[0]] += s[0] * x[u[0]] + s[1] * x[u[1]] + s[2] * x[u[2]];
+    product[u[1]] += s[1] * x[u[0]] + s[3] * x[u[1]] + s[4] * x[u[2]];
+    product[u[2]] += s[2] * x[u[0]] + s[4] * x[u[1]] + s[5] * x[u[2]];
+  }
+}
+
+/* Fills in what the diagonal is with what holds, which is returned. */
+static double find_diagonal(const corner_fit *fit, double *diagonal) {
+  double sum = 0.0;
+  memset(diagonal, 0, fit->n_unknowns * sizeof *diagonal);
+  for (size_t i = 0; i < fit->n_triangles; i++) {
+    const double *s = fit->squares[i];
+    diagonal[fit->unknowns[i][0]] += s[0];
+    diagonal[fit->unknowns[i][1]] += s[3];
+    diagonal[fit->unknowns[i][2]] += s[5];
+    sum += s[0] + s[3] + s[5];
+  }
+  double held = fit->n_unknowns ? hold * sum / (double)fit->n_unknowns : 0.0;
+  for (size_t i = 0; i < fit->n_unknowns; i++)
+    diagonal[i] += held;
+  return held;
+}
+
+static double scaled_square(const double *values, const double *diagonal, size_t n) {
+  double sum = 0.0;
+  for (size_t i = 0; i < n; i++)
+    sum += values[i] * values[i] / diagonal[i];
+  return sum;
+}
+
+/* By conjugate gradients, scaled by the diagonal. */
+/* Finds the best of one of the values: fit->solution, until the next is solved. It is small where nothing is known. */
+static void corner_fit_solve(corner_fit *fit, int value) {
+  size_t n = fit->n_unknowns;
+  double *x = fit->solution, *left = fit->work, *way = left + n, *product = way + n, *diagonal = product + n;
+  double held = find_diagonal(fit, diagonal);
+  memset(x, 0, n * sizeof *x);
+  if (!(held > 0.0))
+    return;
+  memcpy(left, fit->right[value], n * sizeof *left);
+  for (size_t i = 0; i < n; i++)
+    way[i] = left[i] / diagonal[i];
+  double first = scaled_square(left, diagonal, n), now = first;
+  for (int step = 0; step < MOST_STEPS && now > enough * first; step++) {
+    double along = 0.0;
+    multiply(fit, held, way, product);
+    for (size_t i = 0; i < n; i++)
+      along += way[i] * product[i];
+    if (!(along > 0.0))
+      return;
+    for (size_t i = 0; i < n; i++) {
+      x[i] += now / along * way[i];
+      left[i] -= now / along * product[i];
+    }
+    double next = scaled_square(left, diagonal, n);
+    for (size_t i = 0; i < n; i++)
+      way[i] = left[i] / diagonal[i] + next / now * way[i];
+    now = next;
+  }
+}
+
+/* --- the simplifier's triangles --- */
+
 /* Numbers what is alive; none else. Returns how many there are. */
 static size_t number_alive(const conic_simplifier *s, uint32_t *numbers) {
   size_t n = 0;
@@ -35,8 +155,7 @@ static void find_ways_of_vertices(const conic_simplifier *s, double (*ways)[3]) 
 }
 
 /* How far each face's middle is from the plane that is parallel to it where it is nearest. */
-static void add_heights(const conic_simplifier *s, const uint32_t *numbers, double (*const ways)[3],
-                        conic_corner_fit *fit) {
+static void add_heights(const conic_simplifier *s, const uint32_t *numbers, double (*const ways)[3], corner_fit *fit) {
   for (size_t i = 0; i < s->n_triangles; i++) {
     const conic_simplifier_hit *hit = &s->hits[i];
     double parts[3], height = (double)hit->height;
@@ -45,7 +164,7 @@ static void add_heights(const conic_simplifier *s, const uint32_t *numbers, doub
     for (int corner = 0; corner < 3; corner++)
       parts[corner] = (double)hit->bary[corner] *
                       conic_dot(ways[s->triangles[hit->triangle].corners[corner]], s->triangles[i].normal);
-    conic_corner_fit_add(fit, numbers[hit->triangle], parts, &height, (double)hit->area2);
+    corner_fit_add(fit, numbers[hit->triangle], parts, &height, (double)hit->area2);
   }
 }
 
@@ -70,24 +189,24 @@ static void move_vertices(const conic_simplifier *s, double (*const ways)[3], co
 
 /* Without colours they were put where the quadric is least, from where this would put outlines out too far. */
 conic_status conic_simplifier_fit_places(conic_simplifier *s) {
-  conic_corner_fit fit = {0};
+  corner_fit fit = {0};
   if (!s->contrasts)
     return CONIC_OK;
   uint32_t *numbers = conic_memory_allocate(s->context, s->n_triangles, sizeof *numbers);
   double(*ways)[3] = conic_memory_allocate(s->context, s->n_vertices, sizeof *ways);
   conic_status status = numbers && ways ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
-    status = conic_corner_fit_init(s->context, number_alive(s, numbers), s->n_vertices, 1, &fit);
+    status = corner_fit_init(s->context, number_alive(s, numbers), s->n_vertices, 1, &fit);
   if (status == CONIC_OK) {
     for (size_t i = 0; i < s->n_triangles; i++)
       if (numbers[i] != CONIC_NONE)
         memcpy(fit.unknowns[numbers[i]], s->triangles[i].corners, sizeof *fit.unknowns);
     find_ways_of_vertices(s, ways);
     add_heights(s, numbers, ways, &fit);
-    conic_corner_fit_solve(&fit, 0);
+    corner_fit_solve(&fit, 0);
     move_vertices(s, ways, fit.solution);
   }
-  conic_corner_fit_release(&fit);
+  corner_fit_release(&fit);
   conic_memory_release_these(s->context, ways, numbers);
   return status;
 }
@@ -163,7 +282,7 @@ static void begin_normals(const conic_simplifier *s, conic_simplifier_normals *n
 
 /* What the mean normal of each face differs from what is there. */
 static void add_turns_of_faces(const conic_simplifier *s, const uint32_t *numbers, const conic_simplifier_normals *n,
-                               conic_corner_fit *fit) {
+                               corner_fit *fit) {
   for (size_t i = 0; i < s->n_triangles; i++) {
     const conic_simplifier_hit *hit = &s->hits[i];
     if (hit->triangle == CONIC_NONE)
@@ -173,14 +292,14 @@ static void add_turns_of_faces(const conic_simplifier *s, const uint32_t *number
       parts[k / 3] = (double)hit->bary[k / 3];
       turn[k % 3] -= parts[k / 3] * n->normals[n->of_corner[hit->triangle][k / 3]][k % 3];
     }
-    conic_corner_fit_add(fit, numbers[hit->triangle], parts, turn, (double)hit->area2);
+    corner_fit_add(fit, numbers[hit->triangle], parts, turn, (double)hit->area2);
   }
 }
 
 static conic_status solve_normals(const conic_simplifier *s, const uint32_t *numbers, conic_simplifier_normals *n,
                                   size_t n_normals, size_t n_alive) {
-  conic_corner_fit fit;
-  conic_status status = conic_corner_fit_init(s->context, n_alive, n_normals, 3, &fit);
+  corner_fit fit;
+  conic_status status = corner_fit_init(s->context, n_alive, n_normals, 3, &fit);
   if (status == CONIC_OK) {
     for (size_t i = 0; i < s->n_triangles; i++)
       if (numbers[i] != CONIC_NONE)
@@ -188,14 +307,14 @@ static conic_status solve_normals(const conic_simplifier *s, const uint32_t *num
     begin_normals(s, n, n_normals);
     add_turns_of_faces(s, numbers, n, &fit);
     for (int axis = 0; axis < 3; axis++) {
-      conic_corner_fit_solve(&fit, axis);
+      corner_fit_solve(&fit, axis);
       for (size_t i = 0; i < n_normals; i++)
         n->normals[i][axis] += fit.solution[i];
     }
     for (size_t i = 0; i < n_normals; i++)
       conic_normalize(n->normals[i]);
   }
-  conic_corner_fit_release(&fit);
+  corner_fit_release(&fit);
   return status;
 }
 
