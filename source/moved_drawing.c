@@ -85,18 +85,13 @@ static void part_way(const double from[3], const double to[3], double part, doub
     at[axis] = from[axis] + (to[axis] - from[axis]) * part;
 }
 
-static void load_vector(float *const arrays[3], size_t i, double v[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    v[axis] = (double)arrays[axis][i];
-}
-
 static void store_vector(float *const arrays[3], size_t i, const double v[3]) {
   for (int axis = 0; axis < 3; axis++)
     arrays[axis][i] = (float)v[axis];
 }
 
 static void load_place(const double origin[3], float *const arrays[3], size_t i, double v[3]) {
-  load_vector(arrays, i, v);
+  conic_vector_at(arrays, i, v);
   for (int axis = 0; axis < 3; axis++)
     v[axis] += origin[axis];
 }
@@ -137,13 +132,13 @@ static void move_splats(void *data, size_t i_chunk, int i_thread) {
   for (size_t i = work->begin + i_chunk * CHUNK; i < last && i < work->end; i++) {
     double place[3], u[3], v[3], turned[3];
     load_place(from->origin, from->position, i - shift, place);
-    load_vector(from->tangent_u, i - shift, u);
-    load_vector(from->tangent_v, i - shift, v);
+    conic_vector_at(from->tangent_u, i - shift, u);
+    conic_vector_at(from->tangent_v, i - shift, v);
     if (next) {
       double place_next[3], u_next[3], v_next[3];
       load_place(next->origin, next->position, i - work->begin, place_next);
-      load_vector(next->tangent_u, i - work->begin, u_next);
-      load_vector(next->tangent_v, i - work->begin, v_next);
+      conic_vector_at(next->tangent_u, i - work->begin, u_next);
+      conic_vector_at(next->tangent_v, i - work->begin, v_next);
       meet_axes(u, v, u_next, v_next);
       part_way(place, place_next, work->pose->part, place);
       part_way(u, u_next, work->pose->part, u);
@@ -183,9 +178,9 @@ static void move_normals(void *data, size_t i_chunk, int i_thread) {
   (void)i_thread;
   for (size_t i = work->begin + i_chunk * CHUNK; i < last && i < work->end; i++) {
     double normal[3], normal_next[3], turned[3];
-    load_vector(from->normal, i - shift, normal);
+    conic_vector_at(from->normal, i - shift, normal);
     if (next) {
-      load_vector(next->normal, i - work->begin, normal_next);
+      conic_vector_at(next->normal, i - work->begin, normal_next);
       part_way(normal, normal_next, work->pose->part, normal);
     }
     for (int row = 0; row < 3; row++)

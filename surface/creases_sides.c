@@ -27,8 +27,7 @@ typedef struct sides_search {
 
 static size_t window_of(const conic_surface *surface, size_t slot, uint32_t slots[N_WINDOW], double place[3]) {
   double distances2[N_WINDOW];
-  for (int axis = 0; axis < 3; axis++)
-    place[axis] = (double)surface->tree.position[axis][slot];
+  conic_vector_at(surface->tree.position, slot, place);
   size_t n = conic_neighbours_nearest(&surface->tree, place, (uint32_t)slot, N_WINDOW, HUGE_VAL, slots, distances2);
   double area = n ? 3.14159265358979323846 * distances2[n - 1] / (double)n : 0.0;
   surface->creases.spacing[slot] = (float)sqrt(area);

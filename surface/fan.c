@@ -47,8 +47,7 @@ static void look_around(const conic_neighbours *tree, float *const normals[3], u
                         double limit, outlook *around) {
   uint32_t slots[N_NEIGHBOURS];
   double distances2[N_NEIGHBOURS], center[3], u[3], v[3];
-  for (int axis = 0; axis < 3; axis++)
-    center[axis] = (double)tree->position[axis][slot];
+  conic_vector_at(tree->position, slot, center);
   size_t n = conic_neighbours_nearest(tree, center, slot, N_NEIGHBOURS, limit * limit, slots, distances2);
   make_axes(normal, u, v);
   around->n = 0;

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/team_runs.h"
+#include "core/base/vectors.h"
 #include "surface/mls_surface.h"
 
 enum { MAX_DEPTH = 34 };
@@ -160,8 +161,7 @@ static inline void look_up(const conic_surface *surface, uint32_t source, double
     *mass = surface->clusters.mass[i];
     return;
   }
-  for (int axis = 0; axis < 3; axis++)
-    place[axis] = (double)surface->tree.position[axis][source];
+  conic_vector_at(surface->tree.position, source, place);
   *h = (double)surface->h[source];
   *mass = (double)surface->mass[source];
 }

@@ -4,6 +4,13 @@
 #define CONIC_VECTORS_H
 
 #include <math.h>
+#include <stddef.h>
+
+/* Vector i of those that three arrays hold. */
+static inline void conic_vector_at(float *const arrays[3], size_t i, double v[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    v[axis] = (double)arrays[axis][i];
+}
 
 static inline double conic_dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -20,11 +20,9 @@ void conic_moments_of_splat(const conic_splats *splats, size_t i, conic_moments 
   double u[3], v[3];
   memset(moments, 0, sizeof *moments);
   moments->count = 1.0;
-  for (int axis = 0; axis < 3; axis++) {
-    moments->mean[axis] = (double)splats->position[axis][i];
-    u[axis] = (double)splats->tangent_u[axis][i];
-    v[axis] = (double)splats->tangent_v[axis][i];
-  }
+  conic_vector_at(splats->position, i, moments->mean);
+  conic_vector_at(splats->tangent_u, i, u);
+  conic_vector_at(splats->tangent_v, i, v);
   conic_cross(u, v, moments->normal);
   add_outer(moments->scatter, u, u);
   add_outer(moments->scatter, v, v);

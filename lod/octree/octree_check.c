@@ -22,11 +22,6 @@ static void vector_of(const float values[3], double v[3]) {
     v[axis] = (double)values[axis];
 }
 
-static void vector_at(float *const arrays[3], size_t i, double v[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    v[axis] = (double)arrays[axis][i];
-}
-
 /* How far the ellipse c + x·a + y·b, x² + y² = 1, reaches from the origin: the least bound that Lagrange's function
  * gives, |c|² + m + Σ pᵢ²/(m - qᵢ) over the eigenvalues qᵢ of the axes' products, m above both; it is convex in m. */
 static double farthest(const double c[2], const double a[2], const double b[2]) {
@@ -59,10 +54,10 @@ static int check_leaf(const conic_octree *octree, size_t i, size_t k) {
   vector_of(node->position, center);
   vector_of(node->tangent_u, node_u);
   vector_of(node->tangent_v, node_v);
-  vector_at(octree->normal, i, n);
-  vector_at(leaves->position, k, at);
-  vector_at(leaves->tangent_u, k, u);
-  vector_at(leaves->tangent_v, k, v);
+  conic_vector_at(octree->normal, i, n);
+  conic_vector_at(leaves->position, k, at);
+  conic_vector_at(leaves->tangent_u, k, u);
+  conic_vector_at(leaves->tangent_v, k, v);
   conic_subtract(at, center, p);
   conic_cross(u, v, facing);
   /* In units of the node's axes, in which its outline is a circle of the cutoff. */
@@ -114,9 +109,9 @@ static size_t count_lost(const conic_octree *octree) {
   size_t n = 0;
   for (size_t i = 0; i < octree->n_leaves; i++) {
     double p[3], u[3], v[3], facing[3];
-    vector_at(octree->leaves.position, i, p);
-    vector_at(octree->leaves.tangent_u, i, u);
-    vector_at(octree->leaves.tangent_v, i, v);
+    conic_vector_at(octree->leaves.position, i, p);
+    conic_vector_at(octree->leaves.tangent_u, i, u);
+    conic_vector_at(octree->leaves.tangent_v, i, v);
     conic_cross(u, v, facing);
     n += !(conic_dot(p, p) * 0.0 == 0.0 && conic_dot(facing, facing) > 0.0);
   }

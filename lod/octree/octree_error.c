@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/team_runs.h"
+#include "core/base/vectors.h"
 #include "lod/octree/octree_loops.h"
 
 /* Subtrees with as many leaves are worked off at a time: their discs stay in the cache. */
@@ -91,7 +92,7 @@ static error_box box_of_group(const neighbourhood *around) {
 
 static void node_at(const conic_octree *octree, size_t i, conic_node *node) {
   double first[3];
-  conic_octree_place(octree, octree->first_leaf[i], first);
+  conic_vector_at(octree->leaves.position, octree->first_leaf[i], first);
   conic_code_decode(&octree->scale, first, octree->codes + i * CONIC_NODE_BYTES, node);
 }
 
@@ -140,7 +141,7 @@ static int is_leaf_in_box(const conic_octree *octree, size_t i, const error_box 
 static int is_near(const conic_octree *octree, size_t i, const error_box *b) {
   float center[3], radius, apart2 = 0.0f;
   double first[3];
-  conic_octree_place(octree, octree->first_leaf[i], first);
+  conic_vector_at(octree->leaves.position, octree->first_leaf[i], first);
   conic_code_sphere(&octree->scale, first, octree->codes + i * CONIC_NODE_BYTES, center, &radius);
   for (int axis = 0; axis < 3; axis++) {
     float below = b->low[axis] - center[axis], above = center[axis] - b->high[axis];

@@ -93,7 +93,7 @@ static void choose_frame(const fitter *f, const conic_moments *moments, size_t b
                          conic_node_frame *frame) {
   const conic_octree *octree = f->octree;
   double normal[3], u[3], v[3], n[3], first[3];
-  conic_octree_place(octree, begin, first);
+  conic_vector_at(octree->leaves.position, begin, first);
   find_moments_normal(moments, normal);
   conic_code_place(&octree->scale, moments->mean, first, code);
   conic_code_facing(normal, code);

@@ -1,12 +1,13 @@
 #include "lod/octree/octree_nodes.h"
-#include "core/base/options.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/options.h"
 #include "core/base/rank.h"
 #include "core/base/threads.h"
+#include "core/base/vectors.h"
 
 static const size_t chunk_nodes = 4096;
 
@@ -116,7 +117,7 @@ static void decode_chunk(void *data, size_t i_chunk, int i_thread) {
   for (size_t i = begin; i < end; i++) {
     conic_node node;
     double first[3];
-    conic_octree_place(octree, octree->first_leaf[i], first);
+    conic_vector_at(octree->leaves.position, octree->first_leaf[i], first);
     conic_code_decode(&octree->scale, first, octree->codes + i * CONIC_NODE_BYTES, &node);
     conic_drawn_node *drawn = &octree->drawn[i];
     memset(drawn, 0, sizeof *drawn);

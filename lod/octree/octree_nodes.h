@@ -108,12 +108,6 @@ static inline int conic_octree_n_direct(const conic_octree *octree, size_t i_nod
   return conic_code_n_direct(octree->codes + i_node * CONIC_NODE_BYTES);
 }
 
-/* The position of leaf i, as the codes take it. */
-static inline void conic_octree_place(const conic_octree *octree, size_t i_leaf, double place[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    place[axis] = (double)octree->leaves.position[axis][i_leaf];
-}
-
 /* --- structure --- */
 
 typedef struct conic_split {

@@ -24,10 +24,8 @@ static int is_kept(const conic_splats *splats, size_t splat, double u, double v)
 static int is_at_splat(const conic_patches *patches, size_t splat, const double to[3]) {
   const conic_splats *splats = &patches->splats;
   double u[3], v[3], normal[3], limit = (double)patches->options.cutoff;
-  for (int axis = 0; axis < 3; axis++) {
-    u[axis] = (double)splats->tangent_u[axis][splat];
-    v[axis] = (double)splats->tangent_v[axis][splat];
-  }
+  conic_vector_at(splats->tangent_u, splat, u);
+  conic_vector_at(splats->tangent_v, splat, v);
   double along = -conic_dot(to, u) / conic_dot(u, u), across = -conic_dot(to, v) / conic_dot(v, v);
   conic_cross(u, v, normal);
   return along * along + across * across <= limit * limit && conic_normalize(normal) &&

@@ -176,8 +176,7 @@ static void lay_patch(laying *work, size_t slot, conic_workspace *workspace) {
   const conic_surface *surface = patches->surface;
   conic_landing landing;
   double r[3], turn = 0.0, h = (double)surface->h[slot];
-  for (int axis = 0; axis < 3; axis++)
-    r[axis] = (double)surface->tree.position[axis][slot];
+  conic_vector_at(surface->tree.position, slot, r);
   const float side[3] = {surface->normal[0][slot], surface->normal[1][slot], surface->normal[2][slot]};
   workspace->side = side;
   conic_surface_project_one(surface, r, h, CONIC_NO_SLOT, 1, workspace, &landing);

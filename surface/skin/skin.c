@@ -10,10 +10,8 @@
 int conic_skin_ellipse(const conic_skin_search *search, uint32_t slot, double u[3], double v[3]) {
   const conic_splats *splats = search->splats;
   uint32_t splat = search->tree.point_of_slot[slot];
-  for (int axis = 0; axis < 3; axis++) {
-    u[axis] = (double)splats->tangent_u[axis][splat];
-    v[axis] = (double)splats->tangent_v[axis][splat];
-  }
+  conic_vector_at(splats->tangent_u, splat, u);
+  conic_vector_at(splats->tangent_v, splat, v);
   double uu = search->cutoff * conic_dot(u, u), vv = search->cutoff * conic_dot(v, v);
   int is_ellipse = uu > 0.0 && vv > 0.0 && uu < 1e300 && vv < 1e300;
   for (int axis = 0; axis < 3 && is_ellipse; axis++) {
@@ -23,23 +21,11 @@ int conic_skin_ellipse(const conic_skin_search *search, uint32_t slot, double u[
   return is_ellipse;
 }
 
-void conic_skin_place(const conic_skin_search *search, uint32_t slot, double place[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    place[axis] = (double)search->tree.position[axis][slot];
-}
-
-void conic_skin_normal(const conic_skin_search *search, uint32_t slot, double normal[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = (double)search->normal[axis][slot];
-}
-
 /* The unit normal of a splat that can be part of a surface; returns 0 for a dot, or a splat that spans no plane. */
 static int find_splat_plane(const conic_splats *splats, size_t splat, double normal[3]) {
   double u[3], v[3];
-  for (int axis = 0; axis < 3; axis++) {
-    u[axis] = (double)splats->tangent_u[axis][splat];
-    v[axis] = (double)splats->tangent_v[axis][splat];
-  }
+  conic_vector_at(splats->tangent_u, splat, u);
+  conic_vector_at(splats->tangent_v, splat, v);
   conic_cross(u, v, normal);
   return conic_normalize(normal) && !(splats->dot && splats->dot[splat] != 0.0f);
 }

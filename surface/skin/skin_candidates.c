@@ -27,7 +27,7 @@ static void find_skin_fans(void *data, size_t i_item, int i_thread) {
   (void)i_thread;
   for (size_t slot = i_item * SLOTS_A_TASK; slot < (i_item + 1) * SLOTS_A_TASK && slot < search->tree.n_slots; slot++) {
     double normal[3], u[3], v[3];
-    conic_skin_normal(search, (uint32_t)slot, normal);
+    conic_vector_at(search->normal, (uint32_t)slot, normal);
     pass->fans[slot].n = 0;
     if (!(conic_dot(normal, normal) > 0.0) || !conic_skin_ellipse(search, (uint32_t)slot, u, v))
       continue;
@@ -62,7 +62,7 @@ int conic_skin_is_covered(const conic_skin_search *search, double least_cosine, 
                           conic_skin_triangle *triangle) {
   double at[3][3], u[3], v[3], across[3], middle[3];
   for (int k = 0; k < 3; k++)
-    conic_skin_place(search, triangle->slots[k], at[k]);
+    conic_vector_at(search->tree.position, triangle->slots[k], at[k]);
   conic_subtract(at[1], at[0], u);
   conic_subtract(at[2], at[0], v);
   conic_cross(u, v, across);
@@ -72,7 +72,7 @@ int conic_skin_is_covered(const conic_skin_search *search, double least_cosine, 
   double length = conic_length(across);
   for (int k = 0; k < 3; k++) {
     double normal[3], way[3];
-    conic_skin_normal(search, triangle->slots[k], normal);
+    conic_vector_at(search->normal, triangle->slots[k], normal);
     conic_subtract(middle, at[k], way);
     if (!(conic_dot(normal, across) >= least_cosine * length) || !conic_skin_ellipse(search, triangle->slots[k], u, v))
       return 0;

@@ -22,12 +22,12 @@ static double turn_between(const double a[2], const double b[2]) {
 
 static void sector_of(const conic_skin_search *search, const conic_skin_triangle *triangle, int corner, sector *found) {
   double at[3], normal[3], u[3], v[3], end[3], way[3];
-  conic_skin_place(search, triangle->slots[corner], at);
-  conic_skin_normal(search, triangle->slots[corner], normal);
+  conic_vector_at(search->tree.position, triangle->slots[corner], at);
+  conic_vector_at(search->normal, triangle->slots[corner], normal);
   conic_tangent_basis(normal, u, v);
   for (int k = 0; k < 2; k++) {
     found->ends[k] = triangle->slots[(corner + 1 + k) % 3];
-    conic_skin_place(search, found->ends[k], end);
+    conic_vector_at(search->tree.position, found->ends[k], end);
     conic_subtract(end, at, way);
     found->ways[k][0] = conic_dot(way, u);
     found->ways[k][1] = conic_dot(way, v);

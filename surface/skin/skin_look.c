@@ -32,8 +32,8 @@ static int see_splat(const conic_skin_search *search, uint32_t slot, const doubl
   double at[3], way[3], u[3], v[3];
   if (!conic_skin_ellipse(search, slot, u, v))
     return 0;
-  conic_skin_place(search, slot, at);
-  conic_skin_normal(search, slot, seen->facing);
+  conic_vector_at(search->tree.position, slot, at);
+  conic_vector_at(search->normal, slot, seen->facing);
   conic_subtract(at, place, way);
   double x = conic_dot(way, u), y = conic_dot(way, v), along = conic_dot(seen->facing, normal);
   double uu = conic_dot(u, u), vv = conic_dot(v, v), steep2 = uu < vv ? uu : vv;
@@ -52,7 +52,7 @@ static double falling(double q, double end) {
 static int find_mean_normal(const conic_skin_search *search, const uint32_t *near, size_t n, const double place[3],
                             double normal[3]) {
   double own[3], sum[3] = {0.0, 0.0, 0.0};
-  conic_skin_normal(search, near[0], own);
+  conic_vector_at(search->normal, near[0], own);
   for (size_t i = 0; i < n; i++) {
     seen_splat seen;
     if (see_splat(search, near[i], place, own, &seen))
@@ -68,7 +68,7 @@ static void look_at_slot(const look_pass *pass, uint32_t slot) {
   const conic_skin_search *search = pass->search;
   uint32_t near[N_SEEN + 1] = {slot}, splat = search->tree.point_of_slot[slot];
   double distances2[N_SEEN], place[3], normal[3], color[3] = {0.0, 0.0, 0.0}, sums[2] = {0.0, 0.0}, lift = 0.0;
-  conic_skin_place(search, slot, place);
+  conic_vector_at(search->tree.position, slot, place);
   size_t n = 1 + conic_neighbours_nearest(&search->tree, place, slot, N_SEEN, HUGE_VAL, near + 1, distances2);
   if (!find_mean_normal(search, near, n, place, normal))
     return;

@@ -30,9 +30,6 @@ typedef struct conic_skin_search {
 /* The splat's ellipse: q = (δ·u)² + (δ·v)² is below 1 within its outline. Returns 0 for a splat without an ellipse. */
 int conic_skin_ellipse(const conic_skin_search *search, uint32_t slot, double u[3], double v[3]);
 
-void conic_skin_place(const conic_skin_search *search, uint32_t slot, double place[3]);
-void conic_skin_normal(const conic_skin_search *search, uint32_t slot, double normal[3]);
-
 #define CONIC_NO_TRIANGLE UINT32_MAX
 
 /* The slot at which the triangle of a corner begins (0) or ends (1), seen from the side of the corner's normal. */

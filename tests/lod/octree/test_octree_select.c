@@ -1,5 +1,6 @@
 /* What is chosen: everything once, in a stable order, with the error that was asked for; budgets against brute force;
  * and error 0 draws the very picture of the splats. */
+#include "core/base/vectors.h"
 #include "lod/octree/octree_view.h"
 #include "tests/support/octree_fixture.h"
 
@@ -47,7 +48,7 @@ static void check_cover(const conic_octree *octree, const fixture *f, const coni
     n_inner += selection->ids[k] >= octree->n_points;
     for (; next < begin; next++) {
       double p[3], pixel[2];
-      conic_octree_place(octree, next, p);
+      conic_vector_at(octree->leaves.position, next, p);
       if (project(&f->camera, p, 0.0, pixel) && pixel[0] > 0.0 && pixel[1] > 0.0 && pixel[0] < f->camera.width &&
           pixel[1] < f->camera.height)
         n_lost++;
