@@ -1,10 +1,97 @@
-/* The contents of a file of points or of a mesh, and what of it cannot be drawn. */
+/* The contents of a file of points, of a mesh or of Gaussians, and what of it cannot be drawn. */
 #include <stdio.h>
+#include <string.h>
 
+#include "conic/gaussians.h"
 #include "conic/model.h"
+#include "core/formats/model_read.h"
 #include "core/splats/clip.h"
 #include "source/reach.h"
 #include "source/source_kind.h"
+
+/* --- the values that points have by name --- */
+
+enum { MOST_TOLD = 64, BATCH = 1 << 16 };
+
+typedef struct value_range {
+  double minimum, maximum;
+  uint64_t n;
+} value_range;
+
+static conic_status widen_values(void *cookie, const conic_splats *batch) {
+  value_range *range = cookie;
+  for (size_t i = 0; batch->scalar && i < batch->count; i++) {
+    double value = (double)batch->scalar[i];
+    if (!(value - value == 0.0))
+      continue;
+    range->minimum = range->n == 0 || value < range->minimum ? value : range->minimum;
+    range->maximum = range->n == 0 || value > range->maximum ? value : range->maximum;
+    range->n++;
+  }
+  return CONIC_OK;
+}
+
+/* Reads the file once more for one field, without repeating its messages. */
+static conic_status find_range(conic_context *context, const char *path, const char *name, value_range *range) {
+  conic_read_options options;
+  conic_delivery delivery = {.receive = widen_values, .cookie = range, .batch = BATCH, .is_again = 1};
+  conic_model_kind kind = CONIC_MODEL_PLY;
+  conic_model model;
+  conic_input input;
+  memset(range, 0, sizeof *range);
+  conic_read_options_init(&options);
+  options.field = name;
+  options.field_is_optional = 1;
+  conic_status status = conic_input_open(context, path, &input);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_model_find_kind(&input, path, &kind);
+  if (status == CONIC_OK) {
+    status = conic_model_read_kind(&input, kind, &options, &delivery, &model);
+    conic_model_release(context, &model);
+  }
+  conic_input_close(&input);
+  return status;
+}
+
+static void tell_names(const conic_model *model, conic_facts *facts) {
+  char text[150] = "";
+  size_t length = 0;
+  for (size_t i = 0; i < model->n_fields && length < sizeof text; i++)
+    length += (size_t)snprintf(text + length, sizeof text - length, "%s%s", i ? ", " : "", model->fields[i].name);
+  CONIC_ADD_FACTS(facts, CONIC_LINE("values", "%s%s", text, length < sizeof text ? "" : " …"));
+}
+
+static conic_status tell_values(conic_context *context, const char *path, const conic_model *model, int is_checked,
+                                conic_facts *facts) {
+  int may_read_again = is_checked && strcmp(path, "-") != 0 && model->kind != CONIC_MODEL_OBJ;
+  conic_status status = CONIC_OK;
+  if (model->n_fields == 0)
+    return CONIC_OK;
+  if (!may_read_again)
+    tell_names(model, facts);
+  CONIC_ADD_FACTS(facts, CONIC_ARRAY("values"));
+  for (size_t i = 0; i < model->n_fields && i < MOST_TOLD && status == CONIC_OK; i++) {
+    const conic_model_field *field = &model->fields[i];
+    value_range range = {.n = 0};
+    if (may_read_again)
+      status = find_range(context, path, field->name, &range);
+    CONIC_ADD_FACTS(facts, CONIC_OBJECT(NULL), conic_fact_text(CONIC_FACT_TEXT, "name", "%s", field->name),
+                    conic_fact_text(CONIC_FACT_TEXT, "type", "%s", field->type));
+    if (range.n)
+      CONIC_ADD_FACTS(facts, CONIC_NUMBER("minimum", range.minimum), CONIC_NUMBER("maximum", range.maximum));
+    CONIC_ADD_FACTS(facts, CONIC_END);
+    if (may_read_again && !range.n)
+      CONIC_ADD_FACTS(facts, CONIC_LINE(i ? "" : "values", "%s: no number", field->name));
+    if (range.n)
+      CONIC_ADD_FACTS(facts,
+                      CONIC_LINE(i ? "" : "values", "%s: %.7g to %.7g", field->name, range.minimum, range.maximum));
+  }
+  CONIC_ADD_FACTS(facts, CONIC_END);
+  return status;
+}
+
+/* --- points and meshes --- */
 
 static int is_finite(float value) {
   return value - value == 0.0f;
@@ -82,7 +169,42 @@ conic_status conic_model_inspect(conic_context *context, const char *path, int i
     conic_facts_add_bounds(facts, low, high);
   if (is_checked)
     tell_defects(&model.points, facts);
-  status = conic_model_tell_fields(context, path, &model, is_checked, facts);
+  status = tell_values(context, path, &model, is_checked, facts);
   conic_model_release(context, &model);
   return status;
+}
+
+/* --- Gaussian scenes --- */
+
+static void tell_wrong_gaussians(const conic_gaussians *gaussians, conic_facts *facts) {
+  conic_gaussians_defects found;
+  conic_gaussians_find_defects(gaussians, &found);
+  CONIC_ADD_FACTS(facts, CONIC_OBJECT("defects"),
+                  CONIC_DEFECT("positions", found.positions, "means that are not finite"),
+                  CONIC_DEFECT("scales", found.scales, "scales that are negative or not finite"),
+                  CONIC_DEFECT("rotations", found.rotations, "rotations that are zero or not finite"),
+                  CONIC_DEFECT("opacities", found.opacities, "opacities that are not within 0 to 1"),
+                  CONIC_DEFECT("harmonics", found.harmonics, "harmonics that are not finite"), CONIC_END);
+}
+
+conic_status conic_gaussians_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts) {
+  conic_gaussians gaussians;
+  double low[3], high[3];
+  conic_status status = conic_gaussians_read(context, path, NULL, &gaussians);
+  if (status != CONIC_OK)
+    return status;
+  int is_2d = gaussians.scale[2] == NULL;
+  CONIC_ADD_FACTS(facts, conic_fact_text(CONIC_FACT_TEXT, "kind", "%s", conic_gaussian_kind_name(gaussians.kind)),
+                  CONIC_COUNT("gaussians", gaussians.count), CONIC_COUNT("sh_degree", gaussians.sh_degree),
+                  CONIC_TRUTH("2d", is_2d), CONIC_TRUTH("antialiased", gaussians.is_antialiased),
+                  conic_fact_text(CONIC_FACT_TEXT, "frame", "%s", gaussians.frame),
+                  CONIC_LINE("gaussians", "%zu, %s, harmonics of degree %d%s", gaussians.count, is_2d ? "2D" : "3D",
+                             gaussians.sh_degree, gaussians.is_antialiased ? ", trained antialiased" : ""),
+                  CONIC_LINE("frame", "%s", gaussians.frame));
+  if (conic_gaussians_bounds(&gaussians, low, high))
+    conic_facts_add_bounds(facts, low, high);
+  if (is_checked)
+    tell_wrong_gaussians(&gaussians, facts);
+  conic_gaussians_release(context, &gaussians);
+  return CONIC_OK;
 }

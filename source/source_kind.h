@@ -147,13 +147,8 @@ conic_status conic_coloring_refuse(conic_context *context, const char *path, con
 conic_status conic_source_color(conic_source *source, const conic_source_options *options, conic_splats *splats,
                                 conic_triangles *triangles);
 
-/* conic_source_inspect of a file that is read as a model; and the part of it about the values that the points have by
- * name. */
-conic_status conic_model_tell_fields(conic_context *context, const char *path, const conic_model *model, int is_checked,
-                                     conic_facts *facts);
+/* conic_source_inspect of a file that is read as a model, or as a Gaussian scene. */
 conic_status conic_model_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts);
-
-/* conic_source_inspect of a Gaussian scene. */
 conic_status conic_gaussians_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts);
 
 #endif

@@ -83,14 +83,6 @@ void conic_patches_release_frames(conic_patches *patches);
 /* Decides the plan of every slot, and the number of samples of DEEP ones. */
 void conic_patches_plan(conic_patches *patches, const conic_patches_view *view, uint8_t *plans);
 
-/* Unit vectors, 45° apart. */
-extern const double conic_eight_directions[8][2];
-
-/* Whether the polynomial of the workspace's fit stays within the options' most_off of the splats of the points that it
- * was fitted to: on a circle, on one half as large, and in the middle. */
-int conic_patch_stays_at_points(const conic_patches *patches, const conic_workspace *workspace, int degree, double h,
-                                double radius);
-
 /* The weight of a FADING slot's patch; its splat has the rest. */
 double conic_patches_share(const conic_patches *patches, const conic_patches_view *view, size_t slot);
 

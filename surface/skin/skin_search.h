@@ -54,12 +54,6 @@ conic_status conic_skin_candidates(conic_skin_search *search);
 /* Keeps candidates that fit each other, the best first. Errors: MEMORY. */
 conic_status conic_skin_choose(conic_skin_search *search);
 
-/* Adds triangles between two neighbours of a slot where the existing ones leave a gap. Errors: MEMORY. */
-conic_status conic_skin_fill(conic_skin_search *search);
-
-/* Drops small pieces, and marks closed slots. Errors: MEMORY. */
-conic_status conic_skin_finish(conic_skin_search *search);
-
 /* Finds the normals, colours and lifts of the splats that have slots. */
 void conic_skin_look(const conic_skin_search *search, conic_skin *skin);
 
