@@ -3,7 +3,7 @@
 
 #include "conic/hybrid.h"
 #include "core/base/clock.h"
-#include "source/hybrid_input.h"
+#include "source/mesh_input.h"
 #include "source/source_kind.h"
 
 typedef struct hybrid_source {

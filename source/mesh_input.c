@@ -2,11 +2,14 @@
 
 #include <string.h>
 
+#include "conic/gaussians.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/estimate/estimate.h"
 #include "core/formats/model_read.h"
+#include "core/splats/repairs_log.h"
 #include "core/splats/splats_gather.h"
+#include "source/reach.h"
 
 static int is_apart(float *const position[3], uint32_t a, uint32_t b) {
   for (int axis = 0; axis < 3; axis++)
@@ -86,4 +89,80 @@ conic_status conic_mesh_read(conic_context *context, const char *path, conic_tri
   if (status != CONIC_OK)
     conic_triangles_release(context, triangles);
   return status;
+}
+
+/* --- the input of hybrid models --- */
+
+static conic_status take_hybrid_mesh(conic_context *context, const char *path, const conic_hybrid_reading *reading,
+                                     conic_model *model, conic_hybrid_input *input) {
+  conic_status status = conic_triangles_take(context, model, &input->mesh);
+  if (status == CONIC_OK)
+    status = conic_mesh_check(context, path, &input->mesh);
+  if (status == CONIC_OK && reading->texture_path)
+    status = conic_mesh_lay_texture(context, reading->texture_path, &input->mesh);
+  return status == CONIC_OK ? conic_mesh_round(context, reading->is_smooth, reading->crease_deg, &input->mesh) : status;
+}
+
+static conic_status take_hybrid_points(conic_context *context, const char *path, const conic_hybrid_reading *reading,
+                                       conic_model *model, conic_hybrid_input *input) {
+  conic_estimate_options estimate;
+  conic_repairs repairs;
+  double low[3], high[3];
+  conic_estimate_options_init(&estimate);
+  estimate.cutoff = reading->cutoff;
+  estimate.finds_dots = 1;
+  if (reading->n_neighbours)
+    estimate.n_neighbours = reading->n_neighbours;
+  if (conic_splats_bounds(&model->points, low, high) == 0)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,
+                      model->points.count ? "no point is finite" : "it holds no points");
+  if (!conic_is_in_reach(low, high))
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,
+                      conic_why_out_of_reach(&model->points));
+  if (reading->texture_path)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: there are no faces for the texture to lie on", path);
+  conic_status status = conic_model_to_splats(context, &estimate, model, &repairs);
+  if (status != CONIC_OK)
+    return status;
+  conic_repairs_log(context, path, &repairs);
+  if (model->points.n_clips)
+    conic_log(context, CONIC_LOG_WARNING, "%s: the clip lines of %zu splats are left out", path, model->points.n_clips);
+  input->is_points = 1;
+  input->splats = model->points;
+  memcpy(input->up, model->up, sizeof input->up);
+  memset(&model->points, 0, sizeof model->points);
+  return CONIC_OK;
+}
+
+conic_status conic_hybrid_input_read(conic_context *context, const char *path, const conic_hybrid_reading *reading,
+                                     conic_hybrid_input *input) {
+  conic_read_options options;
+  conic_model model;
+  memset(input, 0, sizeof *input);
+  conic_read_options_init(&options);
+  options.cutoff = reading->cutoff;
+  options.keeps_faces = 1;
+  conic_coloring_read(reading->coloring, &options);
+  conic_status status = conic_gaussians_read_model(context, path, &options, &model);
+  if (status != CONIC_OK)
+    return status;
+  status = model.n_triangles ? take_hybrid_mesh(context, path, reading, &model, input)
+                             : take_hybrid_points(context, path, reading, &model, input);
+  conic_model_release(context, &model);
+  if (status != CONIC_OK)
+    conic_hybrid_input_release(context, input);
+  return status;
+}
+
+void conic_hybrid_input_release(conic_context *context, conic_hybrid_input *input) {
+  conic_triangles_release(context, &input->mesh);
+  conic_splats_release(context, &input->splats);
+  memset(input, 0, sizeof *input);
+}
+
+conic_status conic_hybrid_input_build(conic_context *context, conic_hybrid_input *input,
+                                      const conic_hybrid_options *options, conic_hybrid **hybrid,
+                                      conic_hybrid_report *report) {
+  return input->is_points ? conic_hybrid_build_points(context, &input->splats, options, hybrid, report)
+                          : conic_hybrid_build(context, &input->mesh, options, hybrid, report);
 }

@@ -3,7 +3,7 @@
 #include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
 #include "core/base/message.h"
-#include "source/hybrid_input.h"
+#include "source/mesh_input.h"
 #include "source/reach.h"
 
 static const char *const sampling_words[] = {"blue", "box", NULL};

@@ -2,9 +2,11 @@
 
 #include <string.h>
 
+#include "core/base/color.h"
 #include "core/base/memory.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"
+#include "lod/clusters/cluster_seen.h"
 
 /* A step of the lattices, in spacings: fine enough that what a site stands for is round. */
 static const double lattice_step = 0.9;
@@ -223,4 +225,151 @@ conic_status conic_cluster_find_sites(conic_sampler *s) {
   if (status == CONIC_OK)
     status = choose_sites(s);
   return status == CONIC_OK ? choose_in_folds(s) : status;
+}
+
+/* --- what one pass over a cluster need not do again --- */
+
+void conic_cluster_end_pass(conic_sampler *s) {
+  conic_sampling_pass now = {.n_sites = s->n_sites,
+                             .lattices_room = s->lattices_room,
+                             .owner_room = s->owner_room,
+                             .sites_room = s->sites_room,
+                             .lattices = s->lattices,
+                             .owner = s->owner,
+                             .sites = s->sites};
+  s->lattices_room = s->last.lattices_room;
+  s->owner_room = s->last.owner_room;
+  s->sites_room = s->last.sites_room;
+  s->lattices = s->last.lattices;
+  s->owner = s->last.owner;
+  s->sites = s->last.sites;
+  s->last = now;
+}
+
+static int is_as_fine(const conic_sampler *s, size_t k) {
+  return s->lattices[k].depth == s->last.lattices[k].depth;
+}
+
+/* Two sites are the same where the place that each was chosen at, which it owns, is the same. Those that stayed are
+ * settled for now; the last pass's tell which they are. */
+static void match_sites(conic_sampler *s) {
+  for (size_t i = 0; i < s->last.n_sites; i++)
+    s->last.sites[i].last = CONIC_NO_SITE;
+  for (uint32_t i = 0; i < s->n_sites; i++) {
+    conic_site *site = &s->sites[i];
+    uint32_t k = s->lattice_of[site->place];
+    if (!is_as_fine(s, k) || s->owner[site->place] != i)
+      continue;
+    uint32_t place = site->place - s->lattices[k].first + s->last.lattices[k].first, last = s->last.owner[place];
+    if (s->last.sites[last].place == place) {
+      site->last = last;
+      site->is_settled = 1;
+      s->last.sites[last].last = i;
+    }
+  }
+}
+
+/* Whether each place of a face belongs to the site that it belonged to. */
+static int is_as_it_was(const conic_sampler *s, size_t k) {
+  const uint32_t *owner = s->owner + s->lattices[k].first, *last = s->last.owner + s->last.lattices[k].first;
+  uint32_t n = conic_face_lattice_places(s->lattices[k].sides), i = 0;
+  if (!is_as_fine(s, k))
+    return 0;
+  while (i < n && s->sites[owner[i]].last == last[i])
+    i++;
+  return i == n;
+}
+
+/* Neither who owns something of a face now nor who did is settled. */
+static void unsettle(conic_sampler *s, size_t k) {
+  const conic_face_lattice *now = &s->lattices[k], *then = &s->last.lattices[k];
+  for (uint32_t i = 0; i < conic_face_lattice_places(now->sides); i++)
+    s->sites[s->owner[now->first + i]].is_settled = 0;
+  for (uint32_t i = 0; i < conic_face_lattice_places(then->sides); i++) {
+    uint32_t same = s->last.sites[s->last.owner[then->first + i]].last;
+    if (same != CONIC_NO_SITE)
+      s->sites[same].is_settled = 0;
+  }
+}
+
+void conic_cluster_settle_sites(conic_sampler *s) {
+  match_sites(s);
+  for (size_t k = 0; k < s->n_lattices; k++)
+    if (!is_as_it_was(s, k))
+      unsettle(s, k);
+  for (size_t i = 0; i < s->n_sites; i++) {
+    conic_site *site = &s->sites[i];
+    if (!site->is_settled)
+      continue;
+    uint32_t place = site->place;
+    *site = s->last.sites[site->last];
+    site->place = place;
+    site->is_settled = 1;
+  }
+}
+
+/* --- how much the colours differ in what each site stands for --- */
+
+void conic_site_begin_contrast(conic_site *site) {
+  for (int k = 0; k < 3; k++) {
+    site->lowest_seen[k] = HUGE_VAL;
+    site->highest_seen[k] = -HUGE_VAL;
+  }
+}
+
+void conic_site_note_color(conic_site *site, const double color[3]) {
+  double lab[3];
+  conic_oklab_of(color, lab);
+  for (int k = 0; k < 3; k++) {
+    site->lowest_seen[k] = lab[k] < site->lowest_seen[k] ? lab[k] : site->lowest_seen[k];
+    site->highest_seen[k] = lab[k] > site->highest_seen[k] ? lab[k] : site->highest_seen[k];
+  }
+}
+
+void conic_site_end_contrast(conic_site *site) {
+  double sides[3];
+  conic_subtract(site->highest_seen, site->lowest_seen, sides);
+  site->contrast = sides[0] >= 0.0 ? conic_length(sides) : 0.0;
+}
+
+conic_seen_change conic_site_change(const conic_site *site) {
+  double steps = 0.5 * CONIC_SEEN_STEPS * site->contrast;
+  return (conic_seen_change){steps, steps * site->ellipse.reach};
+}
+
+conic_seen_change conic_sites_change(const conic_sampler *s, conic_seen_change known) {
+  conic_seen_sums sums = {0.0, 0.0, 0.0};
+  for (size_t i = 0; i < s->n_sites; i++)
+    conic_seen_sums_add(&sums, conic_site_change(&s->sites[i]), s->sites[i].area);
+  return conic_seen_sums_change(&sums, known);
+}
+
+static void note_place(conic_sampler *s, const conic_face_lattice *l, int i, int j, double side) {
+  conic_site *site = &s->sites[s->owner[conic_face_lattice_place(l, i, j)]];
+  double bary[3], color[3], texel[3];
+  if (site->is_settled)
+    return;
+  conic_face_lattice_bary(l, i, j, bary);
+  conic_cluster_color(s->job->mesh, l->face, bary, color);
+  conic_cluster_texel(s->job->mesh, l->face, bary, side, texel);
+  for (int channel = 0; channel < 3; channel++)
+    color[channel] *= texel[channel];
+  conic_site_note_color(site, color);
+}
+
+void conic_cluster_find_contrasts(conic_sampler *s) {
+  if (!conic_has_seen_colors(s->job->mesh->triangles))
+    return;
+  for (size_t i = 0; i < s->n_sites; i++)
+    if (!s->sites[i].is_settled)
+      conic_site_begin_contrast(&s->sites[i]);
+  for (size_t k = 0; k < s->n_lattices; k++) {
+    const conic_face_lattice *l = &s->lattices[k];
+    for (int i = 0; i <= l->sides; i++)
+      for (int j = 0; j <= l->sides - i; j++)
+        if (conic_face_lattice_is_own(s->job->mesh, l, i, j))
+          note_place(s, l, i, j, 0.5 * conic_spacing_at(s, s->depth[k]));
+  }
+  for (size_t i = 0; i < s->n_sites; i++)
+    conic_site_end_contrast(&s->sites[i]);
 }

@@ -43,27 +43,6 @@ conic_status conic_layers_merge_parts(const conic_layers_parts *parts, conic_sta
 /* Adds up, in the first process, what all workers have counted. Collective; a null team is allowed. */
 void conic_layers_merge_counts(const conic_team *team, conic_layers_worker *worker, conic_layers_tree *tree);
 
-/* So many entries are looked at at a time. */
-enum { CONIC_LAYERS_SOME_ENTRIES = 256 };
-
-/* The entries of a grown tree in the order of the file: by level, then by key. They lie in a file, so that memory does
- * not grow with them. */
-typedef struct conic_layers_order {
-  conic_scratch file; /* conic_layers_entry each, as in the file, but for the offset, which is in the pile */
-  uint64_t n;
-  uint32_t n_levels;
-} conic_layers_order;
-
-/* `path`: beside which the file lies; it must outlive the order. Errors: INPUT (more than a file may have), MEMORY, IO.
- */
-conic_status conic_layers_order_entries(conic_context *context, const char *path, const conic_layers_tree *tree,
-                                        conic_layers_order *order);
-void conic_layers_order_end(conic_layers_order *order); /* zero is allowed */
-
-/* Reads entries from number `first` on, CONIC_LAYERS_SOME_ENTRIES or what there are; *n says how many. Errors: IO. */
-conic_status conic_layers_order_read(const conic_layers_order *order, uint64_t first, conic_layers_entry *entries,
-                                     size_t *n);
-
 /* Writes the file. `header` says what does not follow from the clouds; the rest is filled in. With a team it is
  * collective: the first process writes the index and fills the header in, and every process writes its own clouds. All
  * write to one file under its temporary name, so all have to see the same disk. Errors: MEMORY, IO, CANCELLED. */
