@@ -46,10 +46,7 @@ static void count_receivers(void *data, size_t y, int i_thread) {
       continue;
     row.count++;
     row.spacing += is_parallel ? 1.0 : (double)r->z[y * width + x];
-    for (int axis = 0; axis < 3; axis++) {
-      row.low[axis] = world[axis] < row.low[axis] ? world[axis] : row.low[axis];
-      row.high[axis] = world[axis] > row.high[axis] ? world[axis] : row.high[axis];
-    }
+    conic_widen_box(row.low, row.high, world);
   }
   r->rows[y] = row;
 }

@@ -32,6 +32,14 @@ static inline void conic_subtract(const double a[3], const double b[3], double d
     difference[axis] = a[axis] - b[axis];
 }
 
+/* Widens a box by a place; one of no place is from HUGE_VAL to -HUGE_VAL. */
+static inline void conic_widen_box(double low[3], double high[3], const double at[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    low[axis] = at[axis] < low[axis] ? at[axis] : low[axis];
+    high[axis] = at[axis] > high[axis] ? at[axis] : high[axis];
+  }
+}
+
 /* Makes v a unit vector. Returns 0, with v zero, where it has no direction. */
 static inline int conic_normalize(double v[3]) {
   double length = conic_length(v);

@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/real.h"
+#include "core/base/vectors.h"
 #include "lod/clusters/cluster_sites.h"
 
 conic_status conic_sampler_create(conic_context *context, conic_sampler **sampler) {
@@ -181,11 +182,7 @@ static int is_coarsest(const conic_sampler *s) {
   for (size_t i = 0; i < s->n_sites && is_plain; i++)
     is_plain = s->sites[i].error <= s->job->tolerance;
   for (size_t i = 0; i < s->n_places && is_plain; i++)
-    for (int axis = 0; axis < 3; axis++) {
-      double at = s->places[i][axis];
-      low[axis] = at < low[axis] ? at : low[axis];
-      high[axis] = at > high[axis] ? at : high[axis];
-    }
+    conic_widen_box(low, high, s->places[i]);
   for (int axis = 0; axis < 3; axis++)
     square += (high[axis] - low[axis]) * (high[axis] - low[axis]);
   return is_plain && square < 0.999 * s->job->spacing * s->job->spacing;

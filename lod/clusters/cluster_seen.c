@@ -87,10 +87,7 @@ double conic_seen_contrast(const conic_triangles *t, size_t face) {
       place.bary[1] = (double)i / (double)n;
       place.bary[2] = (double)j / (double)n;
       conic_seen_color(t, &place, steps);
-      for (int k = 0; k < 3; k++) {
-        low[k] = steps[k] < low[k] ? steps[k] : low[k];
-        high[k] = steps[k] > high[k] ? steps[k] : high[k];
-      }
+      conic_widen_box(low, high, steps);
     }
   conic_subtract(high, low, sides);
   return conic_length(sides);

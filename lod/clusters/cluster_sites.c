@@ -320,10 +320,7 @@ void conic_site_begin_contrast(conic_site *site) {
 void conic_site_note_color(conic_site *site, const double color[3]) {
   double lab[3];
   conic_oklab_of(color, lab);
-  for (int k = 0; k < 3; k++) {
-    site->lowest_seen[k] = lab[k] < site->lowest_seen[k] ? lab[k] : site->lowest_seen[k];
-    site->highest_seen[k] = lab[k] > site->highest_seen[k] ? lab[k] : site->highest_seen[k];
-  }
+  conic_widen_box(site->lowest_seen, site->highest_seen, lab);
 }
 
 void conic_site_end_contrast(conic_site *site) {

@@ -13,12 +13,11 @@ conic_unit_box conic_unit_box_of(const conic_mesh *mesh, const conic_adjacency *
   double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, longest = 0.0;
   conic_unit_box box = {{0.0, 0.0, 0.0}, 1.0};
   for (size_t i = 0; i < mesh->n_faces; i++)
-    for (int corner = 0; corner < 3 && adjacency->side[i]; corner++)
-      for (int axis = 0; axis < 3; axis++) {
-        double value = (double)mesh->position[axis][mesh->faces[i][corner]];
-        low[axis] = value < low[axis] ? value : low[axis];
-        high[axis] = value > high[axis] ? value : high[axis];
-      }
+    for (int corner = 0; corner < 3 && adjacency->side[i]; corner++) {
+      double at[3];
+      conic_mesh_corner(mesh, i, corner, at);
+      conic_widen_box(low, high, at);
+    }
   for (int axis = 0; axis < 3 && low[0] <= high[0]; axis++) {
     box.middle[axis] = 0.5 * (low[axis] + high[axis]);
     longest = high[axis] - low[axis] > longest ? high[axis] - low[axis] : longest;

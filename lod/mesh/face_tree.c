@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/radix.h"
 #include "core/base/random.h"
+#include "core/base/vectors.h"
 #include "lod/mesh/mesh.h"
 
 enum { LEAF_FACES = 2, CODE_BITS = 10 };
@@ -77,10 +78,7 @@ static conic_status order_faces(conic_context *context, conic_face_tree *tree) {
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < tree->n_faces; i++) {
     middle_of(mesh, tree->faces[i], middle);
-    for (int axis = 0; axis < 3; axis++) {
-      low[axis] = middle[axis] < low[axis] ? middle[axis] : low[axis];
-      high[axis] = middle[axis] > high[axis] ? middle[axis] : high[axis];
-    }
+    conic_widen_box(low, high, middle);
   }
   for (size_t i = 0; i < tree->n_faces; i++) {
     items[i] = (conic_radix_item){.key = 0, .value = tree->faces[i]};

@@ -27,9 +27,8 @@ static void bound_sphere(const conic_clustered_mesh *mesh, uint32_t cluster, con
       for (int corner = 0; corner < 3; corner++) {
         double at[3], distance2 = 0.0;
         conic_mesh_corner(&mesh->mesh, mesh->faces[i], corner, at);
+        conic_widen_box(low, high, at);
         for (int axis = 0; axis < 3; axis++) {
-          low[axis] = at[axis] < low[axis] ? at[axis] : low[axis];
-          high[axis] = at[axis] > high[axis] ? at[axis] : high[axis];
           double d = at[axis] - (double)bound->center[axis];
           distance2 += d * d;
         }

@@ -122,10 +122,7 @@ static void find_node_box(conic_layers_node *node) {
   for (size_t i = 0; i < node->n_drawn; i++) {
     double at[3];
     steps_of(node->keys[i], at);
-    for (int axis = 0; axis < 3; axis++) {
-      node->low[axis] = at[axis] < node->low[axis] ? at[axis] : node->low[axis];
-      node->high[axis] = at[axis] > node->high[axis] ? at[axis] : node->high[axis];
-    }
+    conic_widen_box(node->low, node->high, at);
   }
 }
 

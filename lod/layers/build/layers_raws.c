@@ -158,10 +158,7 @@ static int take_sample(conic_layers_raws *raws, const conic_splats *batch, size_
     facts->n_nan++;
     return 0;
   }
-  for (int axis = 0; axis < 3; axis++) {
-    facts->low[axis] = position[axis] < facts->low[axis] ? position[axis] : facts->low[axis];
-    facts->high[axis] = position[axis] > facts->high[axis] ? position[axis] : facts->high[axis];
-  }
+  conic_widen_box(facts->low, facts->high, position);
   int has_normal = batch->tangent_u[0] && take_axes(raws, batch, i, raw);
   if (!has_normal && batch->normal[0])
     has_normal = take_direction(batch->normal, i, raw);
