@@ -4,6 +4,7 @@
 #include "tests/fuzz/fuzz.h"
 
 #include "lod/hybrid/model/hybrid_layout.h"
+#include "tests/support/mend.h"
 
 /* What is read can be used, whatever it says of itself; of what is opened, chunks may be damaged. */
 static void use(fuzz_input *input, conic_hybrid *hybrid, int is_whole) {
@@ -77,7 +78,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
   uint8_t *mended = malloc(n_bytes);
   FUZZ_CHECK(mended);
   memcpy(mended, bytes, n_bytes);
-  conic_hybrid_mend(mended, n_bytes);
+  mend_hybrid(mended, n_bytes);
   read_and_use(mended, n_bytes);
   free(mended);
   return 0;

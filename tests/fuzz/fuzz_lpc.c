@@ -4,6 +4,7 @@
 #include "tests/fuzz/fuzz.h"
 
 #include "lod/layers/format/layers_format.h"
+#include "tests/support/mend.h"
 
 /* What is read can be looked at, whatever it says of itself. */
 static void read_and_use(const uint8_t *bytes, size_t n_bytes) {
@@ -23,7 +24,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
   uint8_t *mended = malloc(n_bytes);
   FUZZ_CHECK(mended);
   memcpy(mended, bytes, n_bytes);
-  conic_layers_mend(mended, n_bytes);
+  mend_layers(mended, n_bytes);
   read_and_use(mended, n_bytes);
   free(mended);
   return 0;

@@ -20,7 +20,7 @@ static const conic_file_field fields[] = {
 /* Chunks begin at whole units, fewer than 2³². */
 static const uint64_t most_data = (uint64_t)UINT32_MAX * CONIC_HYBRID_UNIT;
 
-const char *conic_chy_header_fault(const void *numbers) {
+static const char *fault_of_chy_header(const void *numbers) {
   const conic_chy_header *h = numbers;
   const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_surfels, h->n_levels,
                              h->n_clusters, h->n_nodes,     h->n_texels,  h->n_materials};
@@ -47,7 +47,7 @@ const conic_file_kind conic_chy_kind = {{'C', 'O', 'N', 'I', 'C', 'H', 'Y', '\n'
                                         CONIC_CHY_VERSION,
                                         fields,
                                         sizeof fields / sizeof *fields,
-                                        conic_chy_header_fault};
+                                        fault_of_chy_header};
 
 static conic_chy_header header_of(const conic_hybrid *hybrid) {
   conic_chy_header h = {.version = CONIC_CHY_VERSION,
@@ -266,33 +266,4 @@ conic_status conic_hybrid_read(conic_context *context, const char *path, conic_h
 
 int conic_hybrid_is_file(const char *path) {
   return conic_file_is_of_kind(&conic_chy_kind, path);
-}
-
-/* The sums of chunks, as far as it can be told where they are. */
-static void mend_chunks(const conic_chy_header *h, const conic_file_layout *l, unsigned char *bytes) {
-  conic_hybrid hybrid;
-  memset(&hybrid, 0, sizeof hybrid);
-  conic_file_turn_arrays(l, bytes);
-  conic_chy_attach(h, bytes, &hybrid);
-  if (!conic_hybrid_structure(&hybrid))
-    for (uint32_t i = 0; i < conic_hybrid_count_chunks(&hybrid); i++) {
-      conic_hybrid_place place = conic_hybrid_chunk_place(&hybrid, i);
-      if (place.n_bytes && place.at <= h->n_data && place.n_bytes <= h->n_data - place.at)
-        conic_hybrid_seal_chunk(bytes + l->n_bytes + place.at, (size_t)place.n_bytes);
-    }
-  conic_file_turn_arrays(l, bytes);
-}
-
-void conic_hybrid_mend(unsigned char *bytes, size_t n_bytes) {
-  conic_chy_header h;
-  conic_file_layout l = {0};
-  conic_file_fields_read(fields, conic_chy_kind.n_fields, bytes + sizeof conic_chy_kind.magic, &h);
-  if (!conic_chy_header_fault(&h))
-    l = conic_chy_lay_out(&h);
-  int is_whole = l.n_bytes > 0 && l.n_bytes + h.n_data == n_bytes;
-  if (is_whole) {
-    mend_chunks(&h, &l, bytes);
-    h.body_sum = conic_file_sum_bytes(NULL, &l, bytes);
-  }
-  conic_file_mend_header(&conic_chy_kind, is_whole ? &h : NULL, bytes);
 }

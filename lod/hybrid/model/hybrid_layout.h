@@ -48,9 +48,6 @@ void conic_chy_attach(const conic_chy_header *header, unsigned char *bytes, coni
 conic_status conic_chy_take_index(conic_hybrid *hybrid, const char *path, const conic_chy_header *h, uint64_t n_bytes,
                                   unsigned char *index);
 
-/* What is wrong with a header's numbers, or null. */
-const char *conic_chy_header_fault(const void *numbers);
-
 /* What .chy files are, for reading and writing their header. */
 extern const conic_file_kind conic_chy_kind;
 

@@ -94,9 +94,6 @@ struct conic_hybrid {
 /* The size of the file that holds it. */
 uint64_t conic_hybrid_file_bytes(const conic_hybrid *hybrid);
 
-/* Makes the sums in a file's bytes right, for tests and fuzzing. */
-void conic_hybrid_mend(unsigned char *bytes, size_t n_bytes);
-
 /* How far the levels of a cluster reach out of its sphere. */
 double conic_hybrid_reach(const conic_hybrid *hybrid, const conic_hybrid_cluster *cluster);
 

@@ -323,34 +323,6 @@ void conic_layers_write_entries(const conic_layers_entry *entries, size_t n, uns
     conic_file_fields_write(entry_fields, N_ENTRY_FIELDS, &entries[i], bytes + i * CONIC_LAYERS_ENTRY_BYTES);
 }
 
-void conic_layers_write_index(conic_layers_header *header, const conic_layers_entry *entries, unsigned char *bytes) {
-  size_t first = conic_layers_table_bytes(header);
-  conic_layers_write_table(header, bytes);
-  conic_layers_write_entries(entries, header->n_clouds, bytes + first);
-  header->index_sum = conic_checksum(bytes, (size_t)conic_layers_index_bytes(header));
-}
-
 double conic_layers_position_error(const conic_layers_header *header) {
   return header->quantum * 0.8660254037844387 + header->quantum * (double)(UINT64_C(1) << header->bits) * 0x1p-22;
-}
-
-void conic_layers_mend(unsigned char *bytes, size_t n_bytes) {
-  conic_layers_header header;
-  memset(&header, 0, sizeof header);
-  if (n_bytes < CONIC_LAYERS_HEADER_BYTES)
-    return;
-  conic_file_fields_read(header_fields, N_HEADER_FIELDS, bytes + sizeof magic, &header);
-  size_t index_bytes = (size_t)conic_layers_index_bytes(&header), offset_at = 8, sum_at = 16, size_at = 32;
-  size_t first = CONIC_LAYERS_HEADER_BYTES + (size_t)header.schema.n * CONIC_LAYERS_ATTRIBUTE_BYTES;
-  if (index_bytes > n_bytes - CONIC_LAYERS_HEADER_BYTES)
-    return;
-  for (uint32_t i = 0; i < header.n_clouds; i++) {
-    unsigned char *entry = bytes + first + (size_t)i * CONIC_LAYERS_ENTRY_BYTES;
-    uint64_t offset = conic_load_64(entry + offset_at), n = conic_load_32(entry + size_at);
-    if (offset <= n_bytes && n <= n_bytes - offset)
-      conic_store_64(entry + sum_at, conic_checksum(bytes + offset, (size_t)n));
-  }
-  header.index_sum = conic_checksum(bytes + CONIC_LAYERS_HEADER_BYTES, index_bytes);
-  conic_file_fields_write(header_fields, N_HEADER_FIELDS, &header, bytes + sizeof magic);
-  conic_store_64(bytes + AT_HEADER_SUM, conic_checksum(bytes, AT_HEADER_SUM));
 }

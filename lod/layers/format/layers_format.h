@@ -90,14 +90,9 @@ conic_status conic_layers_read_index(conic_context *context, const char *name, c
 size_t conic_layers_table_bytes(const conic_layers_header *header);
 void conic_layers_write_table(const conic_layers_header *header, unsigned char *bytes);
 
-/* The other way. Fills in the sums of index and header; the entries alone have none. */
+/* The other way. The header gets its own sum. */
 void conic_layers_write_entries(const conic_layers_entry *entries, size_t n, unsigned char *bytes);
-void conic_layers_write_index(conic_layers_header *header, const conic_layers_entry *entries, unsigned char *bytes);
 void conic_layers_write_header(const conic_layers_header *header, unsigned char bytes[CONIC_LAYERS_HEADER_BYTES]);
-
-/* Makes the sums in a file's bytes right, where all that its header tells of is there. Tests and fuzzing would
- * otherwise see no further than the sums. */
-void conic_layers_mend(unsigned char *bytes, size_t n_bytes);
 
 /* The outline with which a sample is drawn where the node is the finest. `outline` is its own. */
 static inline float conic_layers_outline(const conic_layers_entry *entry, float outline) {

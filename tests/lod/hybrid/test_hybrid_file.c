@@ -5,6 +5,7 @@
 #include "lod/hybrid/model/hybrid_layout.h"
 #include "tests/support/files.h"
 #include "tests/support/hybrid_fixture.h"
+#include "tests/support/mend.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/seeds.h"
 
@@ -283,7 +284,7 @@ static void test_mended(conic_context *context) {
       size_t at = i + 1 < set->n ? 8 + (size_t)(random_unit(&state) * (double)(from->n_bytes - 8))
                                  : place_to_change(&state, from->n_bytes, first, n);
       bytes[at] = (unsigned char)(random_unit(&state) * 256.0);
-      conic_hybrid_mend(bytes, from->n_bytes);
+      mend_hybrid(bytes, from->n_bytes);
       const char *path = files_write_bytes("mended.chy", bytes, from->n_bytes);
       conic_status status = conic_hybrid_read(context, path, &hybrid);
       CHECK(status == CONIC_OK || status == CONIC_ERROR_INPUT);

@@ -7,6 +7,7 @@
 #include "lod/hybrid/model/hybrid_layout.h"
 #include "tests/support/files.h"
 #include "tests/support/hybrid_fixture.h"
+#include "tests/support/mend.h"
 
 /* A sound file, and where its arrays lie. */
 typedef struct sound_file {
@@ -138,7 +139,7 @@ static void check_edit(conic_context *context, const sound_file *sound, size_t a
   CHECK(at + n <= sound->n_bytes && memcmp(bytes + at, value, n) != 0);
   memcpy(bytes + at, value, n);
   if (mends)
-    conic_hybrid_mend(bytes, sound->n_bytes);
+    mend_hybrid(bytes, sound->n_bytes);
   check_message(context, bytes, sound->n_bytes, wanted);
   free(bytes);
 }
@@ -415,7 +416,7 @@ static void check_defect(conic_context *context, const sound_file *sound, size_t
     exit(1);
   memcpy(bytes, sound->bytes, sound->n_bytes);
   conic_store_float(bytes + at, value);
-  conic_hybrid_mend(bytes, sound->n_bytes);
+  mend_hybrid(bytes, sound->n_bytes);
   const char *path = files_write_bytes("odd.chy", bytes, sound->n_bytes);
   CHECK_OK(conic_hybrid_read(context, path, &hybrid));
   CHECK_OK(conic_hybrid_check(hybrid, &defects));

@@ -2,6 +2,7 @@
  * again; bounds that lie are found by the check; memory that runs out is an error. */
 #include "core/base/byte_order.h"
 #include "tests/support/layers_fixture.h"
+#include "tests/support/mend.h"
 #include "tests/support/random_numbers.h"
 
 typedef struct bytes {
@@ -80,12 +81,12 @@ static void test_lies(conic_context *context, bytes file) {
     for (size_t k = 0; k < sizeof values; k++) {
       memcpy(spoiled, file.at, file.n);
       spoiled[i] = values[k];
-      conic_layers_mend(spoiled, file.n);
+      mend_layers(spoiled, file.n);
       try_bytes(context, spoiled, file.n);
     }
   memcpy(spoiled, file.at, file.n);
   conic_store_float(spoiled + 200, -3.0f); /* of what points up, y */
-  conic_layers_mend(spoiled, file.n);
+  mend_layers(spoiled, file.n);
   CHECK(try_bytes(context, spoiled, file.n) == REFUSED);
   free(spoiled);
 }
@@ -104,7 +105,7 @@ static void test_chance(conic_context *context, bytes file) {
           CONIC_LAYERS_HEADER_BYTES + (size_t)(random_unit(&state) * (double)(file.n - CONIC_LAYERS_HEADER_BYTES));
       spoiled[at] = (unsigned char)(256.0 * random_unit(&state));
     }
-    conic_layers_mend(spoiled, file.n);
+    mend_layers(spoiled, file.n);
     n_looked_at += try_bytes(context, spoiled, file.n) != REFUSED ? 1 : 0;
   }
   CHECK(n_looked_at > 300);
@@ -130,7 +131,9 @@ static void test_bounds(conic_context *context, bytes file) {
       entries[i].sphere *= which == 1 ? 0.5f : 1.0f;
       entries[i].cone = which == 2 ? 1.0f : held.cone;
       memcpy(spoiled, file.at, file.n);
-      conic_layers_write_index(&header, entries, spoiled + CONIC_LAYERS_HEADER_BYTES);
+      unsigned char *index = spoiled + CONIC_LAYERS_HEADER_BYTES;
+      conic_layers_write_entries(entries, header.n_clouds, index + conic_layers_table_bytes(&header));
+      header.index_sum = conic_checksum(index, (size_t)conic_layers_index_bytes(&header));
       conic_layers_write_header(&header, spoiled);
       CHECK(n_bytes < file.n);
       files_write_bytes("bounds.lpc", spoiled, file.n);
