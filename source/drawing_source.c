@@ -11,6 +11,7 @@
 #include "core/splats/degrees.h"
 #include "core/splats/near.h"
 #include "core/splats/repairs_log.h"
+#include "lod/mesh/mesh.h"
 #include "source/mesh_input.h"
 #include "source/moved_drawing.h"
 #include "source/source_kind.h"

@@ -9,31 +9,11 @@
 #include "core/formats/model_read.h"
 #include "core/splats/repairs_log.h"
 #include "core/splats/splats_gather.h"
+#include "lod/mesh/mesh.h"
 #include "source/reach.h"
 
-static int is_apart(float *const position[3], uint32_t a, uint32_t b) {
-  for (int axis = 0; axis < 3; axis++)
-    if (position[axis][a] != position[axis][b])
-      return 1;
-  return 0;
-}
-
-/* Whether any face has three finite corners at three places. */
-static int has_face(float *const position[3], const uint32_t (*corners)[3], size_t count) {
-  for (size_t i = 0; i < count; i++) {
-    const uint32_t *c = corners[i];
-    int is_finite = 1;
-    for (int corner = 0; corner < 3; corner++)
-      for (int axis = 0; axis < 3; axis++)
-        is_finite &= position[axis][c[corner]] - position[axis][c[corner]] == 0.0f;
-    if (is_finite && is_apart(position, c[0], c[1]) && is_apart(position, c[1], c[2]) && is_apart(position, c[2], c[0]))
-      return 1;
-  }
-  return 0;
-}
-
 int conic_mesh_has_face(const conic_model *model) {
-  return has_face(model->points.position, (const uint32_t(*)[3])model->triangles, model->n_triangles);
+  return conic_has_face(model->points.position, (const uint32_t(*)[3])model->triangles, model->n_triangles);
 }
 
 conic_status conic_mesh_gather_loose(conic_context *context, const conic_model *model, conic_splats *loose) {
@@ -56,15 +36,9 @@ conic_status conic_mesh_gather_loose(conic_context *context, const conic_model *
 }
 
 conic_status conic_mesh_check(conic_context *context, const char *path, const conic_triangles *triangles) {
-  if (has_face(triangles->position, (const uint32_t(*)[3])triangles->corners, triangles->count))
+  if (conic_has_face(triangles->position, (const uint32_t(*)[3])triangles->corners, triangles->count))
     return CONIC_OK;
   return conic_fail(context, CONIC_ERROR_INPUT, "%s: no face has three finite corners at three places", path);
-}
-
-conic_status conic_mesh_round(conic_context *context, int is_smooth, double crease_deg, conic_triangles *triangles) {
-  if (is_smooth)
-    return conic_triangles_smooth(context, triangles);
-  return crease_deg > 0.0 && !triangles->normal[0] ? conic_triangles_crease(context, triangles, crease_deg) : CONIC_OK;
 }
 
 conic_status conic_mesh_lay_texture(conic_context *context, const char *texture_path, conic_triangles *triangles) {

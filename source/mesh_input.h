@@ -21,11 +21,6 @@ conic_status conic_mesh_gather_loose(conic_context *context, const conic_model *
 /* Refuses a mesh without a face that has an area. Errors: INPUT. */
 conic_status conic_mesh_check(conic_context *context, const char *path, const conic_triangles *triangles);
 
-/* Gives a mesh normals: with `is_smooth`, each vertex gets the mean of its faces'. Else a mesh without normals gets
- * normals that are round over edges up to the angle (degrees; 0: none). Errors: as conic_triangles_smooth's and
- * conic_triangles_crease's. */
-conic_status conic_mesh_round(conic_context *context, int is_smooth, double crease_deg, conic_triangles *triangles);
-
 /* Lays a picture on the triangles. Errors: INPUT (they have no texture coordinates), UNSUPPORTED, MEMORY. */
 conic_status conic_mesh_lay_texture(conic_context *context, const char *texture_path, conic_triangles *triangles);
 

@@ -316,3 +316,31 @@ conic_status conic_flat_mesh(conic_context *context, const conic_triangles *mesh
     conic_triangles_release(context, flat);
   return status;
 }
+
+/* --- faces and normals --- */
+
+static int is_apart(float *const position[3], uint32_t a, uint32_t b) {
+  for (int axis = 0; axis < 3; axis++)
+    if (position[axis][a] != position[axis][b])
+      return 1;
+  return 0;
+}
+
+int conic_has_face(float *const position[3], const uint32_t (*corners)[3], size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    const uint32_t *c = corners[i];
+    int is_finite = 1;
+    for (int corner = 0; corner < 3; corner++)
+      for (int axis = 0; axis < 3; axis++)
+        is_finite &= position[axis][c[corner]] - position[axis][c[corner]] == 0.0f;
+    if (is_finite && is_apart(position, c[0], c[1]) && is_apart(position, c[1], c[2]) && is_apart(position, c[2], c[0]))
+      return 1;
+  }
+  return 0;
+}
+
+conic_status conic_mesh_round(conic_context *context, int is_smooth, double crease_deg, conic_triangles *triangles) {
+  if (is_smooth)
+    return conic_triangles_smooth(context, triangles);
+  return crease_deg > 0.0 && !triangles->normal[0] ? conic_triangles_crease(context, triangles, crease_deg) : CONIC_OK;
+}

@@ -78,4 +78,12 @@ static inline double conic_distance2_to_face(const conic_mesh *mesh, uint32_t fa
  * caller releases *flat. Errors: ARGUMENT (over 2³¹ corners), MEMORY. */
 conic_status conic_flat_mesh(conic_context *context, const conic_triangles *mesh, conic_triangles *flat);
 
+/* Whether any of so many faces has three finite corners at three places. */
+int conic_has_face(float *const position[3], const uint32_t (*corners)[3], size_t count);
+
+/* Gives a mesh normals: with `is_smooth`, each vertex gets the mean of its faces'. Else a mesh without normals gets
+ * normals that are round over edges up to the angle (degrees; 0: none). Errors: as conic_triangles_smooth's and
+ * conic_triangles_crease's. */
+conic_status conic_mesh_round(conic_context *context, int is_smooth, double crease_deg, conic_triangles *triangles);
+
 #endif

@@ -36,25 +36,6 @@ typedef struct large_building {
   conic_hybrid_report *report;
 } large_building;
 
-static int has_drawable_face(const conic_triangles *mesh, size_t n_own) {
-  for (size_t i = 0; i < n_own; i++) {
-    const uint32_t *c = mesh->corners[i];
-    int n_apart = 0, is_finite = 1;
-    for (int k = 0; k < 3; k++) {
-      int is_apart = 0;
-      for (int axis = 0; axis < 3; axis++) {
-        float a = mesh->position[axis][c[k]], b = mesh->position[axis][c[(k + 1) % 3]];
-        is_apart |= a != b;
-        is_finite &= a - a == 0.0f;
-      }
-      n_apart += is_apart;
-    }
-    if (is_finite && n_apart == 3)
-      return 1;
-  }
-  return 0;
-}
-
 /* What the model has of all of its parts. */
 static void note_part(large_building *b, const conic_hybrid *part, const conic_hybrid_report *own) {
   conic_hybrid *h = b->hybrid;
@@ -76,22 +57,14 @@ static void note_part(large_building *b, const conic_hybrid *part, const conic_h
   b->report->simplify_seconds += own->simplify_seconds;
 }
 
-static conic_status round_cell(const large_building *b, conic_triangles *mesh) {
-  if (b->streaming.is_smooth)
-    return conic_triangles_smooth(b->context, mesh);
-  return b->streaming.crease_deg > 0.0 && !mesh->normal[0]
-             ? conic_triangles_crease(b->context, mesh, b->streaming.crease_deg)
-             : CONIC_OK;
-}
-
 static conic_status build_cell(large_building *b, uint32_t cell) {
   conic_triangles mesh;
   conic_hybrid *part = NULL;
   conic_hybrid_report own;
   size_t n_own;
   conic_status status = conic_mesh_cells_take(b->cells, cell, &mesh, &n_own);
-  if (status == CONIC_OK && has_drawable_face(&mesh, n_own)) {
-    status = round_cell(b, &mesh);
+  if (status == CONIC_OK && conic_has_face(mesh.position, (const uint32_t(*)[3])mesh.corners, n_own)) {
+    status = conic_mesh_round(b->context, b->streaming.is_smooth, b->streaming.crease_deg, &mesh);
     if (status == CONIC_OK)
       status = conic_hybrid_build_part(b->context, &mesh, n_own, b->options, &part, &own);
     if (status == CONIC_OK) {
