@@ -1,7 +1,7 @@
 /* Makes the sums in a file's bytes right, where all that its header tells of is there: tests and fuzzing would
  * otherwise see no further than the sums. */
-#ifndef CONIC_TESTS_MEND_H
-#define CONIC_TESTS_MEND_H
+#ifndef CONIC_MEND_H
+#define CONIC_MEND_H
 
 #include <string.h>
 
