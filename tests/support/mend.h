@@ -31,14 +31,12 @@ static inline void mend_layers(unsigned char *bytes, size_t n_bytes) {
 }
 
 /* The sums of chunks, as far as it can be told where they are. */
-static inline void mend_chunks(const conic_chy_header *h, const conic_file_layout *l, unsigned char *bytes) {
-  conic_hybrid hybrid;
-  memset(&hybrid, 0, sizeof hybrid);
+static inline void mend_chunks(conic_hybrid *h, const conic_file_layout *l, unsigned char *bytes) {
   conic_file_turn_arrays(l, bytes);
-  conic_chy_attach(h, bytes, &hybrid);
-  if (!conic_hybrid_structure(&hybrid))
-    for (uint32_t i = 0; i < conic_hybrid_count_chunks(&hybrid); i++) {
-      conic_hybrid_place place = conic_hybrid_chunk_place(&hybrid, i);
+  conic_chy_attach(bytes, h);
+  if (!conic_hybrid_structure(h))
+    for (uint32_t i = 0; i < conic_hybrid_count_chunks(h); i++) {
+      conic_hybrid_place place = conic_hybrid_chunk_place(h, i);
       if (place.n_bytes && place.at <= h->n_data && place.n_bytes <= h->n_data - place.at)
         conic_hybrid_seal_chunk(bytes + l->n_bytes + place.at, (size_t)place.n_bytes);
     }
@@ -46,8 +44,9 @@ static inline void mend_chunks(const conic_chy_header *h, const conic_file_layou
 }
 
 static inline void mend_hybrid(unsigned char *bytes, size_t n_bytes) {
-  conic_chy_header h;
+  conic_hybrid h;
   conic_file_layout l = {0};
+  memset(&h, 0, sizeof h);
   conic_file_fields_read(conic_chy_kind.fields, conic_chy_kind.n_fields, bytes + sizeof conic_chy_kind.magic, &h);
   if (!conic_chy_kind.fault(&h))
     l = conic_chy_lay_out(&h);

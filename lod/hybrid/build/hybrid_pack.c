@@ -21,7 +21,6 @@ typedef struct packing {
   conic_cluster_level faces;            /* of the cluster's faces themselves */
   uint32_t (*first_slots)[2], *of_slot; /* of each chain: its first slot in both clusters; of each slot its chain */
   uint32_t *chain_starts, *chains_by;   /* by cluster */
-  conic_chy_header header;
   conic_file_layout layout;
   unsigned char *bytes;
   conic_hybrid *made; /* over these */
@@ -57,7 +56,7 @@ static size_t most_faces(const packing *p) {
 }
 
 static void count_levels(packing *p) {
-  conic_chy_header *h = &p->header;
+  conic_hybrid *h = p->made;
   h->n_levels = (uint64_t)p->job->whole.n;
   for (size_t i = 0; i < p->n_clusters; i++)
     h->n_levels += (uint64_t)(!conic_cluster_is_kept(p->mesh, (uint32_t)i) + p->job->ways[i].triangles.n +
@@ -71,7 +70,7 @@ static void count_levels(packing *p) {
   }
 }
 
-static void add_vertex_to_box(conic_chy_header *h, float *const position[3], size_t i) {
+static void add_vertex_to_box(conic_hybrid *h, float *const position[3], size_t i) {
   for (int axis = 0; axis < 3; axis++) {
     float at = position[axis][i];
     h->low[axis] = at < h->low[axis] ? at : h->low[axis];
@@ -79,7 +78,7 @@ static void add_vertex_to_box(conic_chy_header *h, float *const position[3], siz
   }
 }
 
-static void measure_box(const packing *p, conic_chy_header *h) {
+static void measure_box(const packing *p, conic_hybrid *h) {
   for (int axis = 0; axis < 3; axis++) {
     h->low[axis] = HUGE_VALF;
     h->high[axis] = -HUGE_VALF;
@@ -110,9 +109,8 @@ static size_t count_vertices(packing *p) {
 }
 
 static void begin_header(packing *p) {
-  conic_chy_header *h = &p->header;
+  conic_hybrid *h = p->made;
   memcpy(h->origin, p->flat->origin, sizeof h->origin);
-  h->version = CONIC_CHY_VERSION;
   h->cutoff = p->job->options->cutoff;
   h->n_vertices = count_vertices(p) - (p->mesh->kept ? 4 * p->mesh->kept->n : 0);
   h->n_clusters = p->n_clusters;
@@ -168,7 +166,7 @@ static void *array_at(packing *p, int i) {
 static conic_hybrid_level *next_level(packing *p, conic_hybrid_kind kind, size_t n) {
   conic_hybrid_level *level = (conic_hybrid_level *)array_at(p, CONIC_CHY_LEVELS) + p->level++;
   *level = (conic_hybrid_level){.kind = kind, .count = (uint32_t)n};
-  *(kind == CONIC_HYBRID_TRIANGLES ? &p->header.n_triangles : &p->header.n_surfels) += n;
+  *(kind == CONIC_HYBRID_TRIANGLES ? &p->made->n_triangles : &p->made->n_surfels) += n;
   return level;
 }
 
@@ -330,7 +328,7 @@ static void fill_triangles(packing *p, const conic_cluster_level *from) {
   uint32_t chunk = (uint32_t)p->level++;
   size_t n = list_vertices(p, (const uint32_t(*)[3])from->corners, from->n);
   unsigned char *to = put_vertices(p, begin_chunk(p, chunk), p->listed, n);
-  if (p->header.flags & CONIC_CHY_MATERIALS)
+  if (p->made->flags & CONIC_CHY_MATERIALS)
     for (size_t i = 0; i < from->n; i++, to += sizeof(uint32_t))
       memcpy(to, &p->flat->material[from->face[i]], sizeof(uint32_t));
   for (size_t i = 0; i < 3 * from->n; i++) {
@@ -443,7 +441,7 @@ static conic_status measure_surfels(packing *p) {
 /* The arrays, and from these where the chunks go. */
 static conic_status pack_arrays(packing *p) {
   begin_header(p);
-  p->layout = conic_chy_lay_out(&p->header);
+  p->layout = conic_chy_lay_out(p->made);
   p->made->owned = p->bytes = conic_memory_allocate_zeroed(p->job->context, p->layout.n_bytes, 1);
   if (!p->bytes)
     return CONIC_ERROR_MEMORY;
@@ -452,10 +450,10 @@ static conic_status pack_arrays(packing *p) {
   for (size_t i = 0; i < p->job->n_nodes; i++)
     put_node(p, i);
   put_materials(p);
-  if (p->header.n_triangles > UINT32_MAX / 4 || p->header.n_surfels > UINT32_MAX / 4 ||
-      p->header.n_texels > UINT32_MAX / 4)
+  if (p->made->n_triangles > UINT32_MAX / 4 || p->made->n_surfels > UINT32_MAX / 4 ||
+      p->made->n_texels > UINT32_MAX / 4)
     return conic_fail(p->job->context, CONIC_ERROR_ARGUMENT, "the model's triangles, surfels or textures are too many");
-  conic_chy_attach(&p->header, p->bytes, p->made);
+  conic_chy_attach(p->bytes, p->made);
   return conic_hybrid_place_chunks(p->made, array_at(p, CONIC_CHY_LEVELS), array_at(p, CONIC_CHY_CLUSTERS));
 }
 
@@ -468,8 +466,7 @@ static conic_status pack_chunks(packing *p) {
   memcpy(all, p->bytes, n_bytes);
   conic_memory_release(p->job->context, p->bytes);
   p->made->owned = p->bytes = all;
-  p->header.n_data = n_data;
-  conic_chy_attach(&p->header, p->bytes, p->made);
+  conic_chy_attach(p->bytes, p->made);
   p->made->data = p->bytes + n_bytes;
   fill_chunks(p);
   conic_status status = measure_surfels(p);

@@ -10,7 +10,7 @@
 #include "lod/hybrid/model/hybrid_layout.h"
 #include "lod/hybrid/model/hybrid_store.h"
 
-#define FIELD(member) CONIC_FILE_FIELD(conic_chy_header, member)
+#define FIELD(member) CONIC_FILE_FIELD(conic_hybrid, member)
 
 static const conic_file_field fields[] = {
     FIELD(version),    FIELD(flags),   FIELD(n_vertices),   FIELD(n_triangles), FIELD(n_surfels), FIELD(n_levels),
@@ -21,7 +21,7 @@ static const conic_file_field fields[] = {
 static const uint64_t most_data = (uint64_t)UINT32_MAX * CONIC_HYBRID_UNIT;
 
 static const char *fault_of_chy_header(const void *numbers) {
-  const conic_chy_header *h = numbers;
+  const conic_hybrid *h = numbers;
   const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_surfels, h->n_levels,
                              h->n_clusters, h->n_nodes,     h->n_texels,  h->n_materials};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
@@ -49,29 +49,8 @@ const conic_file_kind conic_chy_kind = {{'C', 'O', 'N', 'I', 'C', 'H', 'Y', '\n'
                                         sizeof fields / sizeof *fields,
                                         fault_of_chy_header};
 
-static conic_chy_header header_of(const conic_hybrid *hybrid) {
-  conic_chy_header h = {.version = CONIC_CHY_VERSION,
-                        .flags = hybrid->flags,
-                        .n_vertices = hybrid->n_vertices,
-                        .n_triangles = hybrid->n_triangles,
-                        .n_surfels = hybrid->n_surfels,
-                        .n_levels = hybrid->n_levels,
-                        .n_clusters = hybrid->n_clusters,
-                        .n_nodes = hybrid->n_nodes,
-                        .n_materials = hybrid->n_materials,
-                        .n_texels = hybrid->n_texels,
-                        .n_data = hybrid->n_data,
-                        .splat_length = hybrid->splat_length,
-                        .cutoff = hybrid->cutoff};
-  memcpy(h.origin, hybrid->origin, sizeof h.origin);
-  memcpy(h.low, hybrid->low, sizeof h.low);
-  memcpy(h.high, hybrid->high, sizeof h.high);
-  return h;
-}
-
 uint64_t conic_hybrid_file_bytes(const conic_hybrid *hybrid) {
-  conic_chy_header h = header_of(hybrid);
-  return conic_chy_lay_out(&h).n_bytes + hybrid->n_data;
+  return conic_chy_lay_out(hybrid).n_bytes + hybrid->n_data;
 }
 
 /* --- writing --- */
@@ -99,17 +78,16 @@ static conic_status write_chunk(const conic_hybrid *hybrid, uint32_t chunk, unsi
 }
 
 /* A failed write is seen when the file is committed. */
-static conic_status write_placed(const conic_hybrid *hybrid, const conic_hybrid *placed, const uint32_t *order,
+static conic_status write_placed(const conic_hybrid *hybrid, conic_hybrid *placed, const uint32_t *order,
                                  unsigned char *bytes, FILE *stream) {
-  conic_chy_header h = header_of(placed);
-  conic_file_layout l = conic_chy_lay_out(&h);
+  conic_file_layout l = conic_chy_lay_out(placed);
   const void *arrays[CONIC_FILE_MOST_ARRAYS] = {placed->nodes, placed->clusters, placed->levels, placed->material_list,
                                                 placed->texels};
   for (int i = 0; i < l.n; i++)
     arrays[i] = arrays[i] ? arrays[i] : placed->nodes; /* of nothing */
   size_t n = conic_hybrid_count_chunks(hybrid);
-  h.body_sum = conic_file_sum_arrays(hybrid->context, &l, arrays);
-  conic_status status = conic_file_put_arrays(hybrid->context, stream, &conic_chy_kind, &h, &l, arrays);
+  placed->body_sum = conic_file_sum_arrays(hybrid->context, &l, arrays);
+  conic_status status = conic_file_put_arrays(hybrid->context, stream, &conic_chy_kind, placed, &l, arrays);
   for (size_t i = 0; i < n && status == CONIC_OK; i++) {
     status = write_chunk(hybrid, order[i], bytes, stream);
     if (status == CONIC_OK && (i % 256 == 0 || i + 1 == n))
@@ -125,6 +103,7 @@ static conic_status write_hybrid(const conic_hybrid *hybrid, const uint32_t *ord
                                  FILE *stream) {
   conic_context *context = hybrid->context;
   conic_hybrid placed = *hybrid;
+  placed.version = CONIC_CHY_VERSION;
   conic_hybrid_level *levels = conic_memory_allocate(context, hybrid->n_levels, sizeof *levels);
   conic_hybrid_cluster *clusters = conic_memory_allocate(context, hybrid->n_clusters, sizeof *clusters);
   conic_status status = levels && clusters ? CONIC_OK : CONIC_ERROR_MEMORY;
@@ -159,20 +138,19 @@ conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path) {
 
 /* --- reading --- */
 
-conic_status conic_chy_take_index(conic_hybrid *hybrid, const char *path, const conic_chy_header *h, uint64_t n_bytes,
-                                  unsigned char *index) {
-  conic_file_layout l = conic_chy_lay_out(h);
+conic_status conic_chy_take_index(conic_hybrid *hybrid, const char *path, uint64_t n_bytes, unsigned char *index) {
+  conic_file_layout l = conic_chy_lay_out(hybrid);
   conic_mapping arrays = {.bytes = index, .n_bytes = l.n_bytes};
-  uint64_t wanted = l.n_bytes + h->n_data;
+  uint64_t wanted = l.n_bytes + hybrid->n_data;
   if (n_bytes != wanted)
     return conic_fail(hybrid->context, CONIC_ERROR_INPUT,
                       "%s: has %llu bytes where its header tells of %llu (at byte %llu)", path,
                       (unsigned long long)n_bytes, (unsigned long long)wanted,
                       (unsigned long long)(n_bytes < wanted ? n_bytes : wanted));
-  conic_status status = conic_file_take_arrays(hybrid->context, path, &arrays, &l, h->body_sum);
+  conic_status status = conic_file_take_arrays(hybrid->context, path, &arrays, &l, hybrid->body_sum);
   if (status != CONIC_OK)
     return status;
-  conic_chy_attach(h, index, hybrid);
+  conic_chy_attach(index, hybrid);
   const char *wrong = conic_hybrid_structure(hybrid);
   if (!wrong) {
     status = conic_hybrid_check_order(hybrid, &wrong);
@@ -238,14 +216,13 @@ static conic_status check_chunks(conic_hybrid *hybrid, const char *path, unsigne
 }
 
 static conic_status read_hybrid_file(conic_hybrid *hybrid, const char *path) {
-  conic_chy_header h;
   conic_mapping *file = &hybrid->mapping;
-  conic_status status = conic_file_open_kind(hybrid->context, path, &conic_chy_kind, file, &h);
+  conic_status status = conic_file_open_kind(hybrid->context, path, &conic_chy_kind, file, hybrid);
   if (status == CONIC_OK)
-    status = conic_chy_take_index(hybrid, path, &h, file->n_bytes, file->bytes);
+    status = conic_chy_take_index(hybrid, path, file->n_bytes, file->bytes);
   if (status != CONIC_OK)
     return status;
-  uint64_t data_at = file->n_bytes - h.n_data;
+  uint64_t data_at = file->n_bytes - hybrid->n_data;
   hybrid->data = file->bytes + data_at;
   return check_chunks(hybrid, path, file->bytes + data_at, data_at);
 }

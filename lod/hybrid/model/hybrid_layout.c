@@ -13,7 +13,7 @@ _Static_assert(sizeof(conic_hybrid_node) == 80, "nodes of 80 bytes");
 _Static_assert(sizeof(conic_chy_material) == 32, "materials of 32 bytes");
 _Static_assert((int)CONIC_CHY_N_ARRAYS <= (int)CONIC_FILE_MOST_ARRAYS, "a layout holds all arrays");
 
-conic_file_layout conic_chy_lay_out(const conic_chy_header *h) {
+conic_file_layout conic_chy_lay_out(const conic_hybrid *h) {
   conic_file_layout l = {.n_bytes = CONIC_FILE_HEADER_BYTES};
   size_t sizes[CONIC_CHY_N_ARRAYS] = {0};
   sizes[CONIC_CHY_NODES] = (size_t)h->n_nodes * sizeof(conic_hybrid_node);
@@ -31,23 +31,8 @@ static const void *array_in_layout(const conic_file_layout *l, const unsigned ch
   return l->arrays[i].n_bytes ? bytes + l->arrays[i].offset : NULL;
 }
 
-void conic_chy_attach(const conic_chy_header *h, unsigned char *bytes, conic_hybrid *hybrid) {
-  conic_file_layout l = conic_chy_lay_out(h);
-  hybrid->flags = h->flags;
-  hybrid->cutoff = h->cutoff;
-  memcpy(hybrid->origin, h->origin, sizeof hybrid->origin);
-  memcpy(hybrid->low, h->low, sizeof hybrid->low);
-  memcpy(hybrid->high, h->high, sizeof hybrid->high);
-  hybrid->splat_length = h->splat_length;
-  hybrid->n_vertices = (size_t)h->n_vertices;
-  hybrid->n_triangles = (size_t)h->n_triangles;
-  hybrid->n_surfels = (size_t)h->n_surfels;
-  hybrid->n_levels = (size_t)h->n_levels;
-  hybrid->n_clusters = (size_t)h->n_clusters;
-  hybrid->n_nodes = (size_t)h->n_nodes;
-  hybrid->n_materials = (size_t)h->n_materials;
-  hybrid->n_texels = (size_t)h->n_texels;
-  hybrid->n_data = h->n_data;
+void conic_chy_attach(unsigned char *bytes, conic_hybrid *hybrid) {
+  conic_file_layout l = conic_chy_lay_out(hybrid);
   hybrid->nodes = array_in_layout(&l, bytes, CONIC_CHY_NODES);
   hybrid->clusters = array_in_layout(&l, bytes, CONIC_CHY_CLUSTERS);
   hybrid->levels = array_in_layout(&l, bytes, CONIC_CHY_LEVELS);

@@ -7,19 +7,6 @@
 
 enum { CONIC_CHY_VERSION = 5 };
 
-/* Each member is little-endian in the file, one after the other, after the 8 bytes that say what it is. */
-typedef struct conic_chy_header {
-  uint32_t version, flags;
-  uint64_t n_vertices, n_triangles, n_surfels, n_levels, n_clusters, n_nodes, n_materials, n_texels;
-  uint64_t n_data; /* bytes of all chunks */
-  double origin[3];
-  float low[3], high[3];
-  double splat_length;
-  float cutoff;
-  uint32_t zero;
-  uint64_t body_sum; /* over the arrays' sums */
-} conic_chy_header;
-
 /* A material as the file has it: its texture's texels are codes[3 · first_texel …], row by row from the top; sRGB. */
 typedef struct conic_chy_material {
   float color[3];
@@ -39,14 +26,14 @@ enum {
 };
 
 /* The layout of the arrays; the chunks lie behind them. Counts are below 2³² each. */
-conic_file_layout conic_chy_lay_out(const conic_chy_header *header);
+conic_file_layout conic_chy_lay_out(const conic_hybrid *hybrid);
 
-/* Points the model's arrays into `bytes`, and takes the header's numbers. */
-void conic_chy_attach(const conic_chy_header *header, unsigned char *bytes, conic_hybrid *hybrid);
+/* Points the model's arrays into `bytes`. */
+void conic_chy_attach(unsigned char *bytes, conic_hybrid *hybrid);
 
-/* Takes header and arrays, in `index`, of a file of n_bytes, and checks all but the chunks. Errors: INPUT, MEMORY. */
-conic_status conic_chy_take_index(conic_hybrid *hybrid, const char *path, const conic_chy_header *h, uint64_t n_bytes,
-                                  unsigned char *index);
+/* Takes the arrays, behind the header in `index`, of a file of n_bytes, and checks all but the chunks. Errors: INPUT,
+ * MEMORY. */
+conic_status conic_chy_take_index(conic_hybrid *hybrid, const char *path, uint64_t n_bytes, unsigned char *index);
 
 /* What .chy files are, for reading and writing their header. */
 extern const conic_file_kind conic_chy_kind;

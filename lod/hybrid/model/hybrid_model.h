@@ -65,23 +65,27 @@ enum {
 
 struct conic_hybrid {
   conic_context *context;
-  uint32_t flags; /* of what there is by vertex and by triangle */
-  float cutoff;
+
+  /* The header's numbers, as they are in the file (hybrid_file.c). */
+  uint32_t version, flags; /* flags: of what there is by vertex and by triangle */
+  uint64_t n_vertices, n_triangles, n_surfels, n_levels, n_clusters, n_nodes, n_materials, n_texels;
+  uint64_t n_data; /* bytes of all chunks */
   double origin[3];
   float low[3], high[3]; /* of the vertices, from the origin */
   double splat_length;
-  size_t n_vertices, n_triangles, n_surfels, n_levels, n_clusters, n_nodes;
+  float cutoff;
+  uint32_t zero;
+  uint64_t body_sum; /* over the arrays' sums */
+
   const conic_hybrid_level *levels;
   const conic_hybrid_cluster *clusters;
   const conic_hybrid_node *nodes;
-  size_t n_materials, n_texels;
   const struct conic_chy_material *material_list;
   const unsigned char *texels;
   conic_material *materials; /* made of these; the textures are the hybrid's own */
 
   /* The chunks (lod/hybrid/model/hybrid_chunks.h): all of them; or null, and a store has those that were asked for. */
   const unsigned char *data;
-  uint64_t n_data;
   struct conic_hybrid_store *store;
   struct conic_hybrid_pile *pile; /* whose file they lie in, in any order; or null */
   uint64_t drawing_bytes;         /* what a picture's parts may take; 0: any number */

@@ -19,7 +19,6 @@ typedef struct chy_opening {
   conic_layers_access access;
   double until_s;
   conic_ranges *ranges;
-  conic_chy_header header;
 } chy_opening;
 
 int conic_hybrid_is_url(const char *name) {
@@ -72,13 +71,13 @@ static conic_status read_chy_index(chy_opening *o, unsigned char **bytes) {
     return conic_fail(h->context, CONIC_ERROR_INPUT, "%s: the file is empty", o->name);
   conic_status status = read_to(o, n_header, 0, bytes);
   if (status == CONIC_OK)
-    status = conic_file_read_header(h->context, o->name, &conic_chy_kind, *bytes, (size_t)n_header, &o->header);
+    status = conic_file_read_header(h->context, o->name, &conic_chy_kind, *bytes, (size_t)n_header, h);
   if (status != CONIC_OK)
     return status;
-  uint64_t n_bytes = conic_chy_lay_out(&o->header).n_bytes;
+  uint64_t n_bytes = conic_chy_lay_out(h).n_bytes;
   if (n_bytes <= size)
     status = read_to(o, n_bytes, n_header, bytes);
-  return status == CONIC_OK ? conic_chy_take_index(h, o->name, &o->header, size, *bytes) : status;
+  return status == CONIC_OK ? conic_chy_take_index(h, o->name, size, *bytes) : status;
 }
 
 /* What comes damaged from a server is asked for once again. */
@@ -106,8 +105,7 @@ static conic_status open_chy_index(chy_opening *o) {
 static uint64_t share_memory(chy_opening *o) {
   conic_hybrid *h = o->hybrid;
   const uint64_t own_bytes = (UINT64_C(14) << 20) + ((uint64_t)conic_context_threads(h->context) << 21);
-  uint64_t all = o->access.memory_bytes,
-           index = conic_chy_lay_out(&o->header).n_bytes + 32 * conic_hybrid_count_chunks(h);
+  uint64_t all = o->access.memory_bytes, index = conic_chy_lay_out(h).n_bytes + 32 * conic_hybrid_count_chunks(h);
   uint64_t rest = all > own_bytes + index + all / 4 ? all - own_bytes - index : all / 4;
   h->drawing_bytes = rest / 2;
   return rest / 5 * 2;
@@ -120,8 +118,7 @@ static conic_status open_chy(chy_opening *o) {
     conic_ranges_close(o->ranges);
     return status;
   }
-  return conic_hybrid_store_open(h, o->name, o->ranges, conic_chy_lay_out(&o->header).n_bytes, share_memory(o),
-                                 &h->store);
+  return conic_hybrid_store_open(h, o->name, o->ranges, conic_chy_lay_out(h).n_bytes, share_memory(o), &h->store);
 }
 
 conic_status conic_hybrid_open(conic_context *context, const char *name, const conic_layers_access *access,
