@@ -16,27 +16,15 @@ enum { FLAG_QUANTIZED = 1, FLAG_COLOR_CODES = 2, FLAG_COLORS = 4, FLAG_OPACITIES
 /* The records of clip lines are in the file as they are in memory. */
 _Static_assert(sizeof(conic_clip) == 32, "clip records of 32 bytes");
 
-/* The header as it is in memory; in the file each member is little-endian, one after the other. */
-typedef struct header {
-  uint32_t version, flags;
-  uint64_t n_points, n_leaves, n_nodes;
-  double origin[3];
-  float low[3], high[3];
-  float cutoff, color;
-  double length, splat_length, position_error;
-  uint64_t n_clips;
-  uint64_t body_sum; /* over the arrays' sums */
-} header;
+#define FIELD(member) CONIC_FILE_FIELD(conic_octree, member)
 
-#define FIELD(member) CONIC_FILE_FIELD(header, member)
-
-static const conic_file_field fields[] = {FIELD(version),        FIELD(flags),   FIELD(n_points), FIELD(n_leaves),
-                                          FIELD(n_nodes),        FIELD(origin),  FIELD(low),      FIELD(high),
-                                          FIELD(cutoff),         FIELD(color),   FIELD(length),   FIELD(splat_length),
-                                          FIELD(position_error), FIELD(n_clips), FIELD(body_sum)};
+static const conic_file_field fields[] = {
+    FIELD(version),       FIELD(flags),        FIELD(n_points),       FIELD(n_leaves), FIELD(n_nodes),
+    FIELD(leaves.origin), FIELD(low),          FIELD(high),           FIELD(cutoff),   FIELD(scale.color),
+    FIELD(scale.length),  FIELD(splat_length), FIELD(position_error), FIELD(n_clips),  FIELD(body_sum)};
 
 static const char *fault_of_header(const void *numbers) {
-  const header *h = numbers;
+  const conic_octree *h = numbers;
   if (h->flags & ~(uint32_t)ALL_FLAGS || ((h->flags & FLAG_COLOR_CODES) && !(h->flags & FLAG_COLORS)))
     return "unknown flags";
   if (h->n_points > UINT32_MAX / 2 || h->n_leaves < 1 || h->n_leaves > h->n_points || h->n_nodes >= h->n_leaves)
@@ -45,13 +33,13 @@ static const char *fault_of_header(const void *numbers) {
     return "more clip lines than points";
   if ((h->flags & FLAG_QUANTIZED) && h->n_points / (CONIC_OCTREE_MOST_LEFT_OUT + 1) > h->n_leaves)
     return "counts that do not go together";
-  if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->color >= 1.0f && h->color <= 1e18f))
+  if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->scale.color >= 1.0f && h->scale.color <= 1e18f))
     return "a cutoff or colour scale out of range";
-  if (!(h->length > 1e-60 && h->length < 1e60) || !(h->splat_length >= 0.0 && h->splat_length < 1e30) ||
+  if (!(h->scale.length > 1e-60 && h->scale.length < 1e60) || !(h->splat_length >= 0.0 && h->splat_length < 1e30) ||
       !(h->position_error >= 0.0 && h->position_error < 1e30))
     return "a length out of range";
   for (int axis = 0; axis < 3; axis++)
-    if (!conic_is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) ||
+    if (!conic_is_finite(h->leaves.origin[axis]) || !(h->low[axis] <= h->high[axis]) ||
         !conic_is_finite((double)h->low[axis]) || !conic_is_finite((double)h->high[axis]))
       return "a box that is none";
   return NULL;
@@ -68,7 +56,7 @@ static const conic_file_kind kind = {{'C', 'O', 'N', 'I', 'C', 'O', 'T', '\n'},
 enum { ARRAY_CODES = 0, ARRAY_INDEX = 1, ARRAY_LEAVES = 2 };
 
 /* Where everything is follows from the header alone; its counts are below 2³¹. */
-static conic_file_layout lay_out_file(const header *h) {
+static conic_file_layout lay_out_file(const conic_octree *h) {
   conic_file_layout l = {.n_bytes = CONIC_FILE_HEADER_BYTES};
   int is_quantized = (h->flags & FLAG_QUANTIZED) != 0, has_codes = (h->flags & FLAG_COLOR_CODES) != 0;
   conic_file_add_array(&l, (size_t)h->n_nodes * CONIC_NODE_BYTES, "1");
@@ -92,27 +80,19 @@ static conic_file_layout lay_out_file(const header *h) {
   return l;
 }
 
-static header describe_header(const conic_octree *octree) {
-  header h = {
-      .version = VERSION, .n_points = octree->n_points, .n_leaves = octree->n_leaves, .n_nodes = octree->n_nodes};
+/* Fills in what the file says of it beside its own numbers. */
+static void describe_octree(conic_octree *octree) {
   const conic_splats *leaves = &octree->leaves;
-  h.flags = (octree->is_quantized ? FLAG_QUANTIZED : 0u) | (octree->has_color_codes ? FLAG_COLOR_CODES : 0u) |
-            (leaves->color[0] ? FLAG_COLORS : 0u) | (leaves->opacity ? FLAG_OPACITIES : 0u);
-  memcpy(h.origin, leaves->origin, sizeof h.origin);
-  memcpy(h.low, octree->low, sizeof h.low);
-  memcpy(h.high, octree->high, sizeof h.high);
-  h.cutoff = (float)octree->scale.cutoff;
-  h.color = octree->scale.color;
-  h.length = octree->scale.length;
-  h.splat_length = octree->splat_length;
-  h.position_error = octree->position_error;
-  h.n_clips = octree->n_clips;
-  return h;
+  octree->version = VERSION;
+  octree->flags = (octree->is_quantized ? FLAG_QUANTIZED : 0u) | (octree->has_color_codes ? FLAG_COLOR_CODES : 0u) |
+                  (leaves->color[0] ? FLAG_COLORS : 0u) | (leaves->opacity ? FLAG_OPACITIES : 0u);
+  octree->cutoff = (float)octree->scale.cutoff;
 }
 
 uint64_t conic_octree_file_bytes(const conic_octree *octree) {
-  header h = describe_header(octree);
-  return lay_out_file(&h).n_bytes;
+  conic_octree described = *octree;
+  describe_octree(&described);
+  return lay_out_file(&described).n_bytes;
 }
 
 /* What is done with the colours a chunk of leaves at a time. */
@@ -202,13 +182,13 @@ static conic_status encode_colors(const conic_octree *octree, unsigned char *cod
 conic_status conic_octree_write(conic_octree *octree, const char *path) {
   const void *sources[CONIC_FILE_MOST_ARRAYS];
   unsigned char *color_codes[3] = {NULL, NULL, NULL};
-  header h = describe_header(octree);
+  describe_octree(octree);
   conic_status status = encode_colors(octree, color_codes);
   if (status == CONIC_OK) {
-    conic_file_layout l = lay_out_file(&h);
+    conic_file_layout l = lay_out_file(octree);
     list_sources(octree, color_codes, sources);
-    h.body_sum = conic_file_sum_arrays(octree->context, &l, sources);
-    status = conic_file_write_arrays(octree->context, path, &kind, &h, &l, sources);
+    octree->body_sum = conic_file_sum_arrays(octree->context, &l, sources);
+    status = conic_file_write_arrays(octree->context, path, &kind, octree, &l, sources);
   }
   for (int channel = 0; channel < 3; channel++)
     conic_memory_release(octree->context, color_codes[channel]);
@@ -216,8 +196,9 @@ conic_status conic_octree_write(conic_octree *octree, const char *path) {
 }
 
 void conic_octree_mend(unsigned char *bytes, size_t n_bytes) {
-  header h;
+  conic_octree h;
   conic_file_layout l = {0};
+  memset(&h, 0, sizeof h);
   conic_file_fields_read(fields, kind.n_fields, bytes + sizeof kind.magic, &h);
   if (h.n_points <= UINT32_MAX / 2 && h.n_leaves <= h.n_points && h.n_nodes <= h.n_leaves && h.n_clips <= h.n_points)
     l = lay_out_file(&h);
@@ -245,9 +226,9 @@ static conic_status decode_colors(conic_octree *octree, const conic_file_layout 
   return CONIC_OK;
 }
 
-static conic_status read_quantized(conic_octree *octree, const header *h, const conic_file_layout *l) {
-  unsigned optional = (h->flags & FLAG_COLORS ? (unsigned)CONIC_SPLATS_COLORS : 0u) |
-                      (h->flags & FLAG_OPACITIES ? (unsigned)CONIC_SPLATS_OPACITIES : 0u);
+static conic_status read_quantized(conic_octree *octree, const conic_file_layout *l) {
+  unsigned optional = (octree->flags & FLAG_COLORS ? (unsigned)CONIC_SPLATS_COLORS : 0u) |
+                      (octree->flags & FLAG_OPACITIES ? (unsigned)CONIC_SPLATS_OPACITIES : 0u);
   conic_status status =
       conic_splats_allocate(octree->context, octree->n_leaves, CONIC_SPLATS_TANGENTS | optional, &octree->owned);
   if (status != CONIC_OK)
@@ -259,22 +240,20 @@ static conic_status read_quantized(conic_octree *octree, const header *h, const 
   return CONIC_OK;
 }
 
-static conic_status read_leaves(conic_octree *octree, const header *h, const conic_file_layout *l) {
+static conic_status read_leaves(conic_octree *octree, const conic_file_layout *l) {
   conic_splats *leaves = &octree->leaves;
   int next = ARRAY_LEAVES + 9;
-  octree->n_clips = (size_t)h->n_clips;
-  if (h->n_clips) /* the last of all */
+  if (octree->n_clips) /* the last of all */
     octree->clips = array_in_file(octree, l, l->n - 1);
-  memcpy(leaves->origin, h->origin, sizeof leaves->origin);
   if (octree->is_quantized)
-    return read_quantized(octree, h, l);
+    return read_quantized(octree, l);
   leaves->count = octree->n_points;
   for (int axis = 0; axis < 3; axis++) {
     leaves->position[axis] = array_in_file(octree, l, ARRAY_LEAVES + axis);
     leaves->tangent_u[axis] = array_in_file(octree, l, ARRAY_LEAVES + 3 + axis);
     leaves->tangent_v[axis] = array_in_file(octree, l, ARRAY_LEAVES + 6 + axis);
   }
-  if (h->flags & FLAG_COLORS) {
+  if (octree->flags & FLAG_COLORS) {
     conic_status status = octree->has_color_codes ? decode_colors(octree, l) : CONIC_OK;
     for (int channel = 0; channel < 3 && !octree->has_color_codes; channel++)
       leaves->color[channel] = array_in_file(octree, l, next + channel);
@@ -282,7 +261,7 @@ static conic_status read_leaves(conic_octree *octree, const header *h, const con
       return status;
     next += 3;
   }
-  if (h->flags & FLAG_OPACITIES)
+  if (octree->flags & FLAG_OPACITIES)
     leaves->opacity = array_in_file(octree, l, next++);
   return CONIC_OK;
 }
@@ -331,27 +310,19 @@ static conic_status read_structure(conic_octree *octree, const char *path, const
 }
 
 static conic_status read_octree_file(conic_octree *octree, const char *path) {
-  header h = {.n_points = 0};
-  conic_status status = conic_file_open_kind(octree->context, path, &kind, &octree->mapping, &h);
+  conic_status status = conic_file_open_kind(octree->context, path, &kind, &octree->mapping, octree);
   if (status != CONIC_OK)
     return status;
-  conic_file_layout l = lay_out_file(&h);
-  status = conic_file_take_arrays(octree->context, path, &octree->mapping, &l, h.body_sum);
+  conic_file_layout l = lay_out_file(octree);
+  status = conic_file_take_arrays(octree->context, path, &octree->mapping, &l, octree->body_sum);
   if (status != CONIC_OK)
     return status;
-  octree->n_points = (size_t)h.n_points;
-  octree->n_leaves = (size_t)h.n_leaves;
-  octree->n_nodes = (size_t)h.n_nodes;
-  octree->is_quantized = (h.flags & FLAG_QUANTIZED) != 0;
-  octree->has_color_codes = (h.flags & FLAG_COLOR_CODES) != 0;
-  octree->splat_length = h.splat_length;
-  octree->position_error = h.position_error;
-  memcpy(octree->low, h.low, sizeof octree->low);
-  memcpy(octree->high, h.high, sizeof octree->high);
-  conic_code_scale_init(h.length, (double)h.cutoff, h.color, &octree->scale);
+  octree->is_quantized = (octree->flags & FLAG_QUANTIZED) != 0;
+  octree->has_color_codes = (octree->flags & FLAG_COLOR_CODES) != 0;
+  conic_code_scale_init(octree->scale.length, (double)octree->cutoff, octree->scale.color, &octree->scale);
   octree->codes = array_in_file(octree, &l, ARRAY_CODES);
   octree->index = array_in_file(octree, &l, ARRAY_INDEX);
-  status = read_leaves(octree, &h, &l);
+  status = read_leaves(octree, &l);
   return status == CONIC_OK ? read_structure(octree, path, &l) : status;
 }
 

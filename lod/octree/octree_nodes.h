@@ -36,10 +36,10 @@ enum { CONIC_OCTREE_GROUP = 16 };
 struct conic_octree {
   conic_context *context;
 
-  size_t n_points, n_leaves, n_nodes;
-  conic_splats leaves; /* n_points of them: those of the hierarchy, then those that cannot be drawn */
-  uint32_t *index;     /* of each in the input */
-  size_t n_clips;
+  uint32_t version, flags; /* of the file */
+  uint64_t n_points, n_leaves, n_nodes, n_clips;
+  conic_splats leaves;     /* n_points of them: those of the hierarchy, then those that cannot be drawn */
+  uint32_t *index;         /* of each in the input */
   conic_clip *clips;       /* of the input, by index in it; the leaves' own are null */
   uint32_t *clip_of_point; /* record of each point of the input, or CONIC_NO_CLIP; null where there are no clip lines */
   uint8_t *codes;          /* CONIC_NODE_BYTES a node */
@@ -58,6 +58,8 @@ struct conic_octree {
   int has_color_codes;   /* every leaf's colour is that of an 8-bit sRGB code */
   float low[3], high[3]; /* of the finite centres, from the origin */
   double splat_length, position_error;
+  float cutoff;                    /* the scale's, as the file has it */
+  uint64_t body_sum;               /* of the file, over the arrays' sums */
   const unsigned char *leaf_codes; /* a quantised octree's leaves as its file has them */
 
   /* Where all that lies: in memory of its own, or else in the file's; then these are null. */
