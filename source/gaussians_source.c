@@ -12,6 +12,7 @@
 #include "gaussians/draw/gaussian_parts.h"
 #include "gaussians/draw/gaussian_tile.h"
 #include "gaussians/scene/gaussian_set.h"
+#include "raster/frame/samples.h"
 #include "source/source_kind.h"
 
 typedef struct gaussians_source {
@@ -147,9 +148,8 @@ static conic_status allocate_planes(conic_context *context, const conic_image *i
 
 static void release_planes(conic_context *context, fine_picture *fine) {
   conic_gaussian_planes *p = &fine->planes;
-  void *const all[] = {p->rgb, p->transparency, p->z, p->median_z, p->inverse_z, p->normal, p->count, p->id, p->last};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    conic_memory_release(context, all[i]);
+  conic_memory_release_these(context, p->rgb, p->transparency, p->z, p->median_z, p->inverse_z, p->normal, p->count,
+                             p->id, p->last);
 }
 
 /* The sample nearest to the pixel's centre; of four the upper left. */
@@ -257,18 +257,11 @@ static void tell_drawing(const gaussians_source *g, uint64_t n_covered, conic_re
 static conic_status begin_gaussian_windows(conic_source_windows *w) {
   gaussians_source *g = (gaussians_source *)w->source;
   conic_context *context = w->source->context;
-  conic_camera fine = w->camera;
-  const int n = w->samples;
+  const conic_camera fine = conic_samples_camera(&w->camera, w->samples, 0, w->camera.height);
   conic_gaussian_picture *picture = NULL;
-  if ((long)fine.width * n > 65535 || (long)fine.height * n > 65535)
+  if ((long)w->camera.width * w->samples > 65535 || (long)w->camera.height * w->samples > 65535)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: so many samples make more than 65535 a side",
                       w->source->name);
-  fine.width *= n;
-  fine.height *= n;
-  fine.fx *= n;
-  fine.fy *= n;
-  fine.cx *= n;
-  fine.cy *= n;
   w->step = CONIC_GAUSSIAN_TILE;
   w->band_rows = w->camera.height;
   g->options.isa = w->render.isa;

@@ -8,6 +8,7 @@
 #include "core/base/rank.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
+#include "core/splats/near.h"
 
 static const size_t chunk_nodes = 4096;
 
@@ -237,31 +238,20 @@ static conic_status find_spreads(const conic_octree *octree, conic_octree_info *
   return status;
 }
 
-/* A set of the two corners has the same box as the whole. */
-typedef struct box_corners {
-  conic_splats corners;
-  float values[3][2];
-} box_corners;
-
-static void make_box(const conic_octree *octree, box_corners *b) {
-  memset(b, 0, sizeof *b);
-  b->corners.count = 2;
+static void find_octree_box(const conic_octree *octree, double low[3], double high[3]) {
   for (int axis = 0; axis < 3; axis++) {
-    b->values[axis][0] = octree->low[axis];
-    b->values[axis][1] = octree->high[axis];
-    b->corners.position[axis] = b->values[axis];
-    b->corners.origin[axis] = octree->leaves.origin[axis];
+    low[axis] = octree->leaves.origin[axis] + (double)octree->low[axis];
+    high[axis] = octree->leaves.origin[axis] + (double)octree->high[axis];
   }
 }
 
 double conic_octree_near(const conic_octree *octree) {
-  box_corners b;
-  make_box(octree, &b);
-  return conic_default_near(&b.corners);
+  double low[3], high[3];
+  find_octree_box(octree, low, high);
+  return conic_near_of_box(low, high);
 }
 
 conic_status conic_octree_describe(const conic_octree *octree, conic_octree_info *info) {
-  box_corners b;
   memset(info, 0, sizeof *info);
   info->n_points = octree->n_points;
   info->n_leaves = octree->n_leaves;
@@ -272,8 +262,7 @@ conic_status conic_octree_describe(const conic_octree *octree, conic_octree_info
   info->splat_length = octree->splat_length;
   info->position_error = octree->position_error;
   info->n_bytes = conic_octree_file_bytes(octree);
-  make_box(octree, &b);
-  conic_splats_bounds(&b.corners, info->minimum, info->maximum);
+  find_octree_box(octree, info->minimum, info->maximum);
   info->near_z = conic_octree_near(octree);
   return find_spreads(octree, info);
 }
