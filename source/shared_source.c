@@ -225,17 +225,6 @@ static conic_status open_part(shared_source *s, const char *const *paths, size_t
   return status;
 }
 
-/* Sends the first process's findings to all. */
-static void tell_look(const conic_team *team, files_look *look, uint64_t *n_points, size_t n_paths) {
-  size_t sizes[CONIC_MOST_IN_TEAM];
-  void *first = team->collect(team->data, look, team->index == 0 ? sizeof *look : 0, sizes);
-  memcpy(look, first, sizeof *look);
-  team->release(team->data, first);
-  first = team->collect(team->data, n_points, team->index == 0 ? n_paths * sizeof *n_points : 0, sizes);
-  memcpy(n_points, first, n_paths * sizeof *n_points);
-  team->release(team->data, first);
-}
-
 static conic_status try_to_share(conic_context *context, const conic_team *team, const char *const *paths,
                                  size_t n_paths, const conic_source_options *options, uint64_t *n_points,
                                  conic_source **source) {
@@ -248,7 +237,9 @@ static conic_status try_to_share(conic_context *context, const conic_team *team,
   status = conic_team_agree(team, status);
   if (status != CONIC_OK)
     return status;
-  tell_look(team, &look, n_points, n_paths);
+  /* The first process's findings go to all. */
+  conic_team_collect(team, &look, team->index == 0 ? sizeof look : 0, &look);
+  conic_team_collect(team, n_points, team->index == 0 ? n_paths * sizeof *n_points : 0, n_points);
   if (!look.can_share)
     return CONIC_OK;
   status = conic_team_agree(team, conic_source_create(context, &conic_source_kind_shared, paths[0], source));

@@ -117,15 +117,10 @@ conic_status conic_source_take_samples(conic_source *source, conic_splats *sampl
 
 /* Replaces this process's samples by those of all processes, in the order of the sides. */
 static void collect_samples(const conic_team *team, conic_splats *samples) {
-  size_t sizes[CONIC_MOST_IN_TEAM], n_bytes = 0;
+  size_t n_bytes = 0;
   for (int k = 0; k < 9; k++) {
     float *const *arrays = k < 3 ? samples->position : k < 6 ? samples->tangent_u : samples->tangent_v;
-    void *all = team->collect(team->data, arrays[k % 3], samples->count * sizeof(float), sizes);
-    n_bytes = 0;
-    for (int i = 0; i < team->count; i++)
-      n_bytes += sizes[i];
-    memcpy(arrays[k % 3], all, n_bytes);
-    team->release(team->data, all);
+    n_bytes = conic_team_collect(team, arrays[k % 3], samples->count * sizeof(float), arrays[k % 3]);
   }
   samples->count = n_bytes / sizeof(float);
 }

@@ -17,11 +17,14 @@ conic_status conic_team_agree(const conic_team *team, conic_status status) {
   return status;
 }
 
-void conic_team_collect(const conic_team *team, const void *bytes, size_t n_bytes, void *all) {
-  size_t sizes[CONIC_MOST_IN_TEAM];
+size_t conic_team_collect(const conic_team *team, const void *bytes, size_t n_bytes, void *all) {
+  size_t sizes[CONIC_MOST_IN_TEAM], n_together = 0;
   void *collected = team->collect(team->data, bytes, n_bytes, sizes);
-  memcpy(all, collected, (size_t)team->count * n_bytes);
+  for (int i = 0; i < team->count; i++)
+    n_together += sizes[i];
+  memcpy(all, collected, n_together);
   team->release(team->data, collected);
+  return n_together;
 }
 
 conic_moment conic_team_note(const conic_team *team, const char *name, conic_moment from, uint64_t number) {

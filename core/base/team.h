@@ -37,9 +37,9 @@ enum { CONIC_MOST_IN_TEAM = 1 << 12 };
  * its own status, and the others get CANCELLED, without a message. */
 conic_status conic_team_agree(const conic_team *team, conic_status status);
 
-/* Collective: gathers n_bytes of each process, the same number for all, side by side; `all` has room for count ×
- * n_bytes. */
-void conic_team_collect(const conic_team *team, const void *bytes, size_t n_bytes, void *all);
+/* Collective: gathers n_bytes of each process side by side, for which `all` has room; it may be `bytes`. Returns how
+ * many bytes they are together. */
+size_t conic_team_collect(const conic_team *team, const void *bytes, size_t n_bytes, void *all);
 
 /* The partner of this process in round `round` of `count`; it may be itself. Over all rounds every process meets every
  * other. */

@@ -30,18 +30,10 @@ void conic_shares_take_sums(const conic_splats_shares *shares, uint64_t *counts,
 }
 
 size_t conic_shares_gather(const conic_splats_shares *shares, const double *values, size_t n, double *all) {
-  const conic_team *team = shares->team;
-  size_t sizes[CONIC_MOST_IN_TEAM], n_bytes = 0;
-  if (!team) {
-    memmove(all, values, n * sizeof *values);
-    return n;
-  }
-  void *gathered = team->collect(team->data, values, n * sizeof *values, sizes);
-  for (int k = 0; k < team->count; k++)
-    n_bytes += sizes[k];
-  memcpy(all, gathered, n_bytes);
-  team->release(team->data, gathered);
-  return n_bytes / sizeof *all;
+  if (shares->team)
+    return conic_team_collect(shares->team, values, n * sizeof *values, all) / sizeof *all;
+  memmove(all, values, n * sizeof *values);
+  return n;
 }
 
 /* The least values are the greatest of the negated ones. A process without a finite centre takes no part. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/splats/near.h"
 #include "lod/hybrid/model/hybrid_layout.h"
 #include "lod/hybrid/model/hybrid_store.h"
 
@@ -20,7 +21,6 @@ void conic_hybrid_destroy(conic_hybrid *hybrid) {
 }
 
 conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info *info) {
-  double square = 0.0;
   memset(info, 0, sizeof *info);
   info->n_clusters = hybrid->n_clusters;
   info->n_all_triangles = hybrid->n_triangles;
@@ -45,10 +45,8 @@ conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info
   for (int axis = 0; axis < 3; axis++) {
     info->minimum[axis] = hybrid->origin[axis] + (double)hybrid->low[axis];
     info->maximum[axis] = hybrid->origin[axis] + (double)hybrid->high[axis];
-    double side = info->maximum[axis] - info->minimum[axis];
-    square += side * side;
   }
-  info->near_z = square > 0.0 ? 1e-4 * sqrt(square) : 1e-4;
+  info->near_z = conic_near_of_box(info->minimum, info->maximum);
   return CONIC_OK;
 }
 

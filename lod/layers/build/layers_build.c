@@ -12,6 +12,7 @@
 #include "core/base/vectors.h"
 #include "core/files/file.h"
 #include "core/splats/columns.h"
+#include "core/splats/near.h"
 #include "lod/layers/build/layers_grow.h"
 
 struct conic_layers_builder {
@@ -256,14 +257,6 @@ static conic_status continue_grid(conic_layers_builder *builder) {
   return CONIC_OK;
 }
 
-/* As conic_default_near, of the box. */
-static double near_of(const conic_layers_header *header) {
-  double diagonal2 = 0.0;
-  for (int axis = 0; axis < 3; axis++)
-    diagonal2 += (header->high[axis] - header->low[axis]) * (header->high[axis] - header->low[axis]);
-  return diagonal2 > 0.0 ? 1e-4 * sqrt(diagonal2) : 1e-4;
-}
-
 static conic_status make_plan(conic_layers_builder *builder) {
   conic_layers_header *header = &builder->header;
   const conic_layers_raws *raws = &builder->raws;
@@ -288,7 +281,7 @@ static conic_status make_plan(conic_layers_builder *builder) {
   double up[3] = {builder->options.up[0], builder->options.up[1], builder->options.up[2]};
   for (int axis = 0; axis < 3 && conic_normalize(up); axis++)
     header->up[axis] = (float)up[axis];
-  header->near_z = near_of(header);
+  header->near_z = conic_near_of_box(header->low, header->high);
   builder->plan = (conic_layers_plan){.context = builder->context,
                                       .bits = header->bits,
                                       .cloud_size = header->cloud_size,

@@ -118,13 +118,7 @@ conic_status conic_layers_raws_agree(conic_layers_raws *raws, const conic_splats
 
 /* Puts what every process has of an array side by side, in place of its own; *n says how many elements. */
 static void collect_array(const conic_team *team, void *array, size_t *n, size_t element_bytes) {
-  size_t sizes[CONIC_MOST_IN_TEAM], n_bytes = 0;
-  void *all = team->collect(team->data, array, *n * element_bytes, sizes);
-  for (int i = 0; i < team->count; i++)
-    n_bytes += sizes[i];
-  memcpy(array, all, n_bytes);
-  *n = n_bytes / element_bytes;
-  team->release(team->data, all);
+  *n = conic_team_collect(team, array, *n * element_bytes, array) / element_bytes;
 }
 
 typedef struct picking {

@@ -236,17 +236,14 @@ static unsigned char *message_for(const sending *e, int to) {
 static int tell_state(sending *e, conic_status *status, int is_last) {
   enum { HAS_MORE, HAS_NO_MORE, HAS_FAILED };
   const conic_team *team = e->parts->team;
-  size_t sizes[CONIC_MOST_IN_TEAM];
   int own = *status != CONIC_OK ? HAS_FAILED : is_last ? HAS_NO_MORE : HAS_MORE, has_failed = 0;
-  char *all = team->collect(team->data, &own, sizeof own, sizes);
+  int states[CONIC_MOST_IN_TEAM];
+  conic_team_collect(team, &own, sizeof own, states);
   e->is_over = 1;
   for (int i = 0; i < team->count; i++) {
-    int state;
-    memcpy(&state, all + (size_t)i * sizeof state, sizeof state);
-    has_failed |= state == HAS_FAILED;
-    e->is_over &= state != HAS_MORE;
+    has_failed |= states[i] == HAS_FAILED;
+    e->is_over &= states[i] != HAS_MORE;
   }
-  team->release(team->data, all);
   e->is_over |= has_failed;
   if (has_failed && *status == CONIC_OK)
     *status = CONIC_ERROR_CANCELLED;
