@@ -15,12 +15,6 @@
  * where the planes are. */
 enum { FACES_AT_ONCE = 1 << 16, FACES_A_BLOCK = 1 << 10, SAMPLES = 1 << 20, FILTER_BITS = 24, MOST_DEPTH = 48 };
 
-/* A plane across an axis. */
-typedef struct cell_plane {
-  float at;
-  int axis;
-} cell_plane;
-
 /* A place where a face of a cell has a corner that lies in another one. */
 typedef struct shared_place {
   uint32_t at[3]; /* the bits of its floats */
@@ -44,9 +38,8 @@ struct conic_mesh_cells {
   size_t stride; /* floats a vertex */
   const float *map;
   size_t map_bytes;
-  size_t n_nodes, nodes_room, planes_room, n_cells;
+  size_t n_nodes, nodes_room, n_cells;
   conic_cell_node *nodes;
-  cell_plane *planes; /* of the nodes */
   size_t most_faces;
   size_t n_shared, shared_room;
   shared_place *shared;
@@ -65,7 +58,7 @@ void conic_mesh_cells_release(conic_mesh_cells *c) {
   conic_scratch_close(&c->vertices);
   conic_scratch_close(&c->faces);
   conic_pile_end(&c->buckets_file);
-  void *const owned[] = {c->buckets, c->filter, c->shared, c->planes, c->nodes};
+  void *const owned[] = {c->buckets, c->filter, c->shared, c->nodes};
   conic_memory_release_all(c->context, owned, sizeof owned / sizeof *owned);
   conic_memory_release(c->context, c);
 }
@@ -153,7 +146,7 @@ static void find_center(const conic_mesh_cells *c, const uint32_t corners[3], fl
 static uint32_t cell_at(const conic_mesh_cells *c, const float at[3]) {
   uint32_t i = 0;
   while (c->nodes[i].above)
-    i = at[c->planes[i].axis] < c->planes[i].at ? i + 1 : c->nodes[i].above;
+    i = at[c->nodes[i].axis] < c->nodes[i].at ? i + 1 : c->nodes[i].above;
   return c->nodes[i].cell;
 }
 
@@ -190,7 +183,7 @@ static int compare_floats(const void *a, const void *b) {
 }
 
 /* The middle along the longest axis; 0 where all lie at one place. */
-static int find_cell_plane(float (*at)[3], size_t n, float *sorted, cell_plane *plane) {
+static int find_cell_plane(float (*at)[3], size_t n, float *sorted, conic_cell_node *plane) {
   float widest = 0.0f;
   for (int axis = 0; axis < 3; axis++) {
     float low = at[0][axis], high = at[0][axis];
@@ -219,22 +212,17 @@ static int find_cell_plane(float (*at)[3], size_t n, float *sorted, cell_plane *
 
 static conic_status grow_tree(conic_mesh_cells *c, float (*at)[3], size_t n, double faces_each, float *sorted,
                               int depth) {
-  conic_context *context = c->context;
-  conic_status status =
-      conic_memory_reserve(context, &c->nodes, c->n_nodes, c->n_nodes + 1, &c->nodes_room, sizeof *c->nodes);
-  if (status == CONIC_OK)
-    status = conic_memory_reserve(context, &c->planes, c->n_nodes, c->n_nodes + 1, &c->planes_room, sizeof *c->planes);
+  conic_cell_node plane = {.cell = 0};
+  size_t own = c->n_nodes, n_below = 0;
+  conic_status status = conic_memory_append(c->context, &c->nodes, &c->n_nodes, &c->nodes_room, &plane, sizeof plane);
   if (status != CONIC_OK)
     return status;
-  size_t own = c->n_nodes++, n_below = 0;
-  cell_plane plane = {0.0f, 0};
-  c->nodes[own] = (conic_cell_node){0, 0};
   if ((double)n * faces_each <= (double)c->most_faces || n < 2 || depth == MOST_DEPTH ||
       !find_cell_plane(at, n, sorted, &plane)) {
     c->nodes[own].cell = (uint32_t)c->n_cells++;
     return CONIC_OK;
   }
-  c->planes[own] = plane;
+  c->nodes[own] = plane;
   for (size_t i = 0; i < n; i++)
     if (at[i][plane.axis] < plane.at) {
       float swapped[3];
@@ -330,11 +318,10 @@ static conic_status see_shared(conic_mesh_cells *c, const uint32_t corners[3]) {
     const float *at = position_of(c, corners[k]);
     if (cell_at(c, at) == cell)
       continue;
-    if (conic_memory_reserve(c->context, &c->shared, c->n_shared, c->n_shared + 1, &c->shared_room,
-                             sizeof *c->shared) != CONIC_OK)
+    const shared_place place = shared_place_at(at, cell);
+    if (conic_memory_append(c->context, &c->shared, &c->n_shared, &c->shared_room, &place, sizeof place) != CONIC_OK)
       return CONIC_ERROR_MEMORY;
-    c->shared[c->n_shared] = shared_place_at(at, cell);
-    size_t hash = hash_place(&c->shared[c->n_shared++]);
+    size_t hash = hash_place(&place);
     c->filter[hash / 8] |= (uint8_t)(1u << hash % 8);
   }
   return CONIC_OK;
@@ -343,13 +330,11 @@ static conic_status see_shared(conic_mesh_cells *c, const uint32_t corners[3]) {
 /* --- buckets --- */
 
 static conic_status empty_bucket(conic_mesh_cells *c, face_bucket *b) {
-  conic_status status =
-      conic_memory_reserve(c->context, &b->blocks, b->n_blocks, b->n_blocks + 1, &b->blocks_room, sizeof *b->blocks);
-  if (status == CONIC_OK)
-    status = conic_pile_append(&c->buckets_file, b->faces, b->n * sizeof *b->faces, &b->blocks[b->n_blocks]);
-  b->n_blocks++;
+  uint64_t at;
+  conic_status status = conic_pile_append(&c->buckets_file, b->faces, b->n * sizeof *b->faces, &at);
   b->n = 0;
-  return status;
+  return status == CONIC_OK ? conic_memory_append(c->context, &b->blocks, &b->n_blocks, &b->blocks_room, &at, sizeof at)
+                            : status;
 }
 
 static conic_status put_face(conic_mesh_cells *c, size_t bucket, const uint32_t corners[3]) {

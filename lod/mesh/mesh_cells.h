@@ -12,6 +12,8 @@ typedef struct conic_mesh_cells conic_mesh_cells;
 typedef struct conic_cell_node {
   uint32_t above; /* 0: it is a cell */
   uint32_t cell;
+  float at; /* the plane's place on its axis */
+  int axis;
 } conic_cell_node;
 
 /* Reads a PLY and splits it into cells of about `most_faces`. The files lie beside `path`, which must outlive the

@@ -111,12 +111,9 @@ conic_status conic_hybrid_pile_add(conic_context *context, conic_hybrid_pile *p,
 /* --- nodes over parts --- */
 
 conic_status conic_hybrid_pile_begin_node(conic_context *context, conic_hybrid_pile *p, uint32_t *node) {
+  const conic_hybrid_node empty = {.begin = 0};
   *node = (uint32_t)p->n_nodes;
-  conic_status status =
-      conic_memory_reserve(context, &p->nodes, p->n_nodes, p->n_nodes + 1, &p->nodes_room, sizeof *p->nodes);
-  if (status == CONIC_OK)
-    memset(&p->nodes[p->n_nodes++], 0, sizeof *p->nodes);
-  return status;
+  return conic_memory_append(context, &p->nodes, &p->n_nodes, &p->nodes_room, &empty, sizeof empty);
 }
 
 static double area_below(const conic_hybrid_pile *p, const conic_hybrid_node *node) {

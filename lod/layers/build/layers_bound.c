@@ -256,24 +256,6 @@ static void raise_most(bounding *b, double value) {
     continue;
 }
 
-static void reach_out(void *data, size_t i_item, int i_thread) {
-  bounding *b = data;
-  const conic_layers_node *below = b->below[i_item];
-  uint64_t keys[SOME_KEYS];
-  double most = most_so_far(b);
-  (void)i_thread;
-  for (size_t first = 0, n; first < below->n_drawn; first += n) {
-    n = below->n_drawn - first < SOME_KEYS ? below->n_drawn - first : SOME_KEYS;
-    conic_status status = conic_layers_fetch_keys(below, first, n, keys);
-    if (status != CONIC_OK) {
-      atomic_store(&b->status, (int)status);
-      return;
-    }
-    most = conic_thinner_reach(b->thinner, keys, n, below->covering, most);
-  }
-  raise_most(b, most);
-}
-
 /* The outline with which a sample is drawn where the node is the finest, in steps. */
 static double outline_in(const conic_layers_node *node, double own) {
   return larger(own, node->is_leaf ? 0.0 : node->covering);
@@ -291,7 +273,8 @@ static conic_layers_disc disc_in(const conic_layers_node *node, uint64_t key, co
   return disc;
 }
 
-static void reach_discs(void *data, size_t i_item, int i_thread) {
+/* How far the samples of a node below are from those chosen; or, once there are discs, what they are drawn as. */
+static void reach_below(void *data, size_t i_item, int i_thread) {
   bounding *b = data;
   const conic_layers_node *below = b->below[i_item];
   const conic_layers_chosen chosen = {b->thinner, b->discs};
@@ -303,15 +286,16 @@ static void reach_discs(void *data, size_t i_item, int i_thread) {
   for (size_t first = 0, n; first < below->n_drawn; first += n) {
     n = below->n_drawn - first < SOME_KEYS ? below->n_drawn - first : SOME_KEYS;
     conic_status status = conic_layers_fetch_keys(below, first, n, keys);
-    if (status == CONIC_OK)
+    if (status == CONIC_OK && b->discs)
       status = conic_layers_fetch_facets(below, first, n, facets);
     if (status != CONIC_OK) {
       atomic_store(&b->status, (int)status);
       return;
     }
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n && b->discs; i++)
       discs[i] = disc_in(below, keys[i], &facets[i], b->quantum);
-    most = conic_layers_disc_error(&chosen, discs, n, below->error, most);
+    most = b->discs ? conic_layers_disc_error(&chosen, discs, n, below->error, most)
+                    : conic_thinner_reach(b->thinner, keys, n, below->covering, most);
   }
   raise_most(b, most);
 }
@@ -323,13 +307,13 @@ static void widen_cone(void *data, const conic_layers_node *below) {
 }
 
 /* The most that any node below comes to, and `least`. */
-static double find_most(conic_context *context, int is_alone, bounding *b, conic_task *task, double least) {
+static double find_most(conic_context *context, int is_alone, bounding *b, double least) {
   atomic_store(&b->most, 0);
   raise_most(b, least);
   if (is_alone)
-    conic_parallel_for(context, b->n_below, task, b);
+    conic_parallel_for(context, b->n_below, reach_below, b);
   for (size_t i = 0; i < b->n_below && !is_alone; i++)
-    task(b, i, 0);
+    reach_below(b, i, 0);
   return most_so_far(b);
 }
 
@@ -357,7 +341,7 @@ static conic_status find_node_error(conic_context *context, int is_alone, boundi
     size_t n = conic_thinner_numbers(b->thinner, numbers);
     for (size_t i = 0; i < n; i++)
       b->discs[i] = disc_in(node, node->keys[numbers[i]], &node->facets[numbers[i]], b->quantum);
-    node->error = find_most(context, is_alone, b, reach_discs, node->past);
+    node->error = find_most(context, is_alone, b, node->past);
     status = (conic_status)atomic_load(&b->status);
   }
   conic_memory_release_these(context, b->discs, numbers);
@@ -372,7 +356,7 @@ static conic_status find_outlines(conic_context *context, int is_alone, bounding
   if (status == CONIC_OK) {
     b->n_below = 0;
     visit_below(node, node->n_place, list_below, b);
-    node->covering = find_most(context, is_alone, b, reach_out, 0.0);
+    node->covering = find_most(context, is_alone, b, 0.0);
     find_past(b);
     status = (conic_status)atomic_load(&b->status);
     if (status == CONIC_OK)
