@@ -42,18 +42,9 @@ void conic_layers_raws_end(conic_layers_raws *raws) {
   raws->pending = NULL;
 }
 
-static int is_finite(const float v[3]) {
-  return v[0] - v[0] == 0.0f && v[1] - v[1] == 0.0f && v[2] - v[2] == 0.0f;
-}
-
-static void vector_at(float *const arrays[3], size_t i, float v[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    v[axis] = arrays[axis][i];
-}
-
-/* Whether the square of its length neither overflows nor vanishes. */
-static int is_direction(const float v[3]) {
-  double length2 = (double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2];
+/* Whether the square of its length neither overflows nor vanishes; not where it is not finite. */
+static int is_direction(const double v[3]) {
+  double length2 = conic_dot(v, v);
   return length2 > 1e-60 && length2 < 1e60;
 }
 
@@ -87,18 +78,18 @@ static float outline_of(const conic_layers_raws *raws, double longer, double sho
 
 /* The normal and the outline of a splat with axes; whether it has them. */
 static int take_axes(conic_layers_raws *raws, const conic_splats *batch, size_t i, conic_layers_raw *raw) {
-  float u[3], v[3];
-  vector_at(batch->tangent_u, i, u);
-  vector_at(batch->tangent_v, i, v);
-  if (!is_finite(u) || !is_finite(v) || !is_direction(u) || !is_direction(v))
+  double a[3], b[3], cross[3];
+  conic_vector_at(batch->tangent_u, i, a);
+  conic_vector_at(batch->tangent_v, i, b);
+  if (!is_direction(a) || !is_direction(b))
     return 0;
-  double a[3] = {(double)u[0], (double)u[1], (double)u[2]}, b[3] = {(double)v[0], (double)v[1], (double)v[2]}, cross[3];
   double length_a = conic_length(a), length_b = conic_length(b);
   conic_normalize(a);
   conic_normalize(b);
   conic_cross(a, b, cross);
   const float normal[3] = {(float)cross[0], (float)cross[1], (float)cross[2]};
-  if (!is_direction(normal))
+  const double rounded[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
+  if (!is_direction(rounded))
     return 0;
   conic_layers_code_normal(normal, raw->normal);
   float outline = outline_of(raws, length_a > length_b ? length_a : length_b, length_a > length_b ? length_b : length_a,
@@ -114,9 +105,10 @@ static int take_axes(conic_layers_raws *raws, const conic_splats *batch, size_t 
 
 /* The direction of a normal, or of a sight; 0 where it has none. */
 static int take_direction(float *const direction[3], size_t i, conic_layers_raw *raw) {
-  float normal[3];
-  vector_at(direction, i, normal);
-  if (!is_finite(normal) || !is_direction(normal))
+  const float normal[3] = {direction[0][i], direction[1][i], direction[2][i]};
+  double exact[3];
+  conic_vector_at(direction, i, exact);
+  if (!is_direction(exact))
     return 0;
   conic_layers_code_normal(normal, raw->normal);
   return 1;
@@ -151,10 +143,11 @@ static int take_sample(conic_layers_raws *raws, const conic_splats *batch, size_
   conic_layers_facts *facts = &raws->payload.facts;
   double position[3];
   memset(raw, 0, raws->raw_bytes);
-  vector_at(batch->position, i, raw->position);
-  for (int axis = 0; axis < 3; axis++)
+  for (int axis = 0; axis < 3; axis++) {
+    raw->position[axis] = batch->position[axis][i];
     position[axis] = batch->origin[axis] + (double)raw->position[axis];
-  if (!is_finite(raw->position) || !(fabs(position[0]) + fabs(position[1]) + fabs(position[2]) < 1e15)) {
+  }
+  if (!(fabs(position[0]) + fabs(position[1]) + fabs(position[2]) < 1e15)) {
     facts->n_nan++;
     return 0;
   }
