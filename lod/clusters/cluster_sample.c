@@ -20,9 +20,9 @@ conic_status conic_sampler_create(conic_context *context, conic_sampler **sample
 void conic_sampler_destroy(conic_sampler *sampler) {
   if (!sampler)
     return;
-  void *const owned[] = {sampler->last.lattices, sampler->last.owner, sampler->last.sites, sampler->lattices,
+  void *const owned[] = {sampler->last.lattices, sampler->last.owner, sampler->last.sites, sampler->now.lattices,
                          sampler->facing,        sampler->depth,      sampler->places,     sampler->lattice_of,
-                         sampler->owner,         sampler->candidates, sampler->seeds,      sampler->sites};
+                         sampler->now.owner,     sampler->candidates, sampler->seeds,      sampler->now.sites};
   conic_memory_release_all(sampler->context, owned, sizeof owned / sizeof *owned);
   conic_place_table_release(sampler->context, &sampler->table);
   conic_memory_release_these(sampler->context, sampler->supports, sampler->of_sites);
@@ -68,12 +68,12 @@ static conic_status emit(conic_sampler *s, conic_site *site, conic_surfels *surf
  * candidates, which have had their turn. */
 static conic_status order_by_bound(conic_sampler *s, double known, size_t *n) {
   conic_status status =
-      conic_memory_reserve(s->context, &s->candidates, 0, s->n_sites, &s->candidates_room, sizeof *s->candidates);
+      conic_memory_reserve(s->context, &s->candidates, 0, s->now.n_sites, &s->candidates_room, sizeof *s->candidates);
   *n = 0;
-  for (uint32_t i = 0; i < s->n_sites && status == CONIC_OK; i++) {
-    float bound = (float)s->sites[i].error_bound;
+  for (uint32_t i = 0; i < s->now.n_sites && status == CONIC_OK; i++) {
+    float bound = (float)s->now.sites[i].error_bound;
     uint32_t bits = conic_bits_of_float(bound); /* of positive numbers these are in the numbers' order */
-    if (s->sites[i].is_drawn && s->sites[i].error_bound > known)
+    if (s->now.sites[i].is_drawn && s->now.sites[i].error_bound > known)
       s->candidates[(*n)++] = (conic_radix_item){UINT32_MAX - bits, i};
   }
   return status == CONIC_OK ? conic_radix_sort(s->context, s->candidates, *n, 32) : status;
@@ -83,14 +83,14 @@ static conic_status order_by_bound(conic_sampler *s, double known, size_t *n) {
  * with the site that may have the largest, few are measured again. */
 static conic_status find_largest_error(conic_sampler *s, double *known) {
   size_t n;
-  for (size_t i = 0; i < s->n_sites; i++) {
-    const conic_site *site = &s->sites[i];
+  for (size_t i = 0; i < s->now.n_sites; i++) {
+    const conic_site *site = &s->now.sites[i];
     double least = site->error > s->job->tolerance ? site->error : site->least_error;
     *known = site->is_drawn && least > *known ? least : *known;
   }
   conic_status status = order_by_bound(s, *known, &n);
   for (size_t k = 0; k < n && status == CONIC_OK; k++) {
-    const conic_site *site = &s->sites[s->candidates[k].value];
+    const conic_site *site = &s->now.sites[s->candidates[k].value];
     double bound;
     if (site->error_bound > *known)
       *known = conic_site_error(s, site, *known, &bound);
@@ -101,18 +101,18 @@ static conic_status find_largest_error(conic_sampler *s, double *known) {
 static conic_status find_site_errors(conic_sampler *s, conic_surfels *surfels) {
   conic_status status = find_largest_error(s, &surfels->error);
   surfels->refined_error = surfels->error;
-  for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
-    if (s->sites[i].is_drawn)
-      surfels->error = conic_site_off_mesh(s, &s->sites[i], surfels->error);
+  for (size_t i = 0; i < s->now.n_sites && status == CONIC_OK; i++)
+    if (s->now.sites[i].is_drawn)
+      surfels->error = conic_site_off_mesh(s, &s->now.sites[i], surfels->error);
   return status;
 }
 
 /* Whether a surfel stands out from the mesh by more than is allowed; places count there, and colours do not. */
 static int is_out(const conic_sampler *s) {
   double known = s->job->most_out;
-  for (size_t i = 0; i < s->n_sites && known <= s->job->most_out; i++)
-    if (s->sites[i].is_drawn)
-      known = conic_site_off_mesh(s, &s->sites[i], known);
+  for (size_t i = 0; i < s->now.n_sites && known <= s->job->most_out; i++)
+    if (s->now.sites[i].is_drawn)
+      known = conic_site_off_mesh(s, &s->now.sites[i], known);
   return known > s->job->most_out;
 }
 
@@ -128,11 +128,11 @@ static double error_to_part(const conic_sampler *s) {
   double limit = s->job->tolerance;
   for (int k = 0; k < LIMITS; k++, limit *= limit_step) {
     size_t n_bad = 0;
-    for (size_t i = 0; i < s->n_sites; i++)
-      n_bad += s->sites[i].error > limit;
+    for (size_t i = 0; i < s->now.n_sites; i++)
+      n_bad += s->now.sites[i].error > limit;
     if (n_bad == 0)
       break;
-    if (s->n_sites + 3 * n_bad <= s->job->most)
+    if (s->now.n_sites + 3 * n_bad <= s->job->most)
       return limit;
   }
   return HUGE_VAL;
@@ -142,10 +142,10 @@ static double error_to_part(const conic_sampler *s) {
 static int refine_faces(conic_sampler *s, double limit) {
   int is_any = 0;
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_face_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->now.lattices[k];
     int is_bad = 0;
     for (uint32_t i = 0; i < conic_face_lattice_places(l->sides) && !is_bad; i++)
-      is_bad = s->sites[s->owner[l->first + i]].error > limit;
+      is_bad = s->now.sites[s->now.owner[l->first + i]].error > limit;
     if (is_bad && s->depth[k] < CONIC_MOST_DEPTH) {
       s->depth[k]++;
       is_any = 1;
@@ -178,9 +178,9 @@ static int is_coarsest(const conic_sampler *s) {
   double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, square = 0.0;
   int is_plain = s->finest == 0 && !has_texture(s->job->mesh->triangles);
   for (size_t k = 0; k < s->n_lattices && is_plain; k++)
-    is_plain = s->lattices[k].sides == 1;
-  for (size_t i = 0; i < s->n_sites && is_plain; i++)
-    is_plain = s->sites[i].error <= s->job->tolerance;
+    is_plain = s->now.lattices[k].sides == 1;
+  for (size_t i = 0; i < s->now.n_sites && is_plain; i++)
+    is_plain = s->now.sites[i].error <= s->job->tolerance;
   for (size_t i = 0; i < s->n_places && is_plain; i++)
     conic_widen_box(low, high, s->places[i]);
   for (int axis = 0; axis < 3; axis++)
@@ -203,8 +203,8 @@ conic_status conic_cluster_sample(conic_sampler *s, const conic_sampling_job *jo
     if (status != CONIC_OK || pass == MOST_PASSES || !refine_faces(s, error_to_part(s)))
       break;
   }
-  for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
-    status = emit(s, &s->sites[i], surfels);
+  for (size_t i = 0; i < s->now.n_sites && status == CONIC_OK; i++)
+    status = emit(s, &s->now.sites[i], surfels);
   if (status == CONIC_OK)
     surfels->change = conic_sites_change(s, surfels->change);
   surfels->is_coarsest = status == CONIC_OK && is_coarsest(s);

@@ -74,7 +74,7 @@ typedef conic_status small_task(conic_sampler *s, const small_triangle *t);
 /* Whether something of a face's belongs to a site that is not settled. */
 static int has_work(const conic_sampler *s, const conic_face_lattice *l) {
   uint32_t n = conic_face_lattice_places(l->sides), i = 0;
-  while (i < n && s->sites[s->owner[l->first + i]].is_settled)
+  while (i < n && s->now.sites[s->now.owner[l->first + i]].is_settled)
     i++;
   return i < n;
 }
@@ -82,7 +82,7 @@ static int has_work(const conic_sampler *s, const conic_face_lattice *l) {
 static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
   conic_status status = CONIC_OK;
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_face_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->now.lattices[k];
     if (!has_work(s, l))
       continue;
     for (int i = 0; i < l->sides; i++)
@@ -97,7 +97,7 @@ static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
             t.steps[corner][1] = j + corner_steps[between][corner][1];
             uint32_t place = conic_face_lattice_place(l, t.steps[corner][0], t.steps[corner][1]);
             t.at[corner] = s->places[place];
-            t.owners[corner] = s->owner[place];
+            t.owners[corner] = s->now.owner[place];
           }
           status = task(s, &t);
         }
@@ -127,7 +127,7 @@ static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
   conic_cross(sides[0], sides[1], cross);
   double share = conic_length(cross) / 6.0;
   for (int corner = 0; corner < 3; corner++) {
-    conic_site *site = &s->sites[t->owners[corner]];
+    conic_site *site = &s->now.sites[t->owners[corner]];
     if (site->is_settled)
       continue;
     if (varies || !is_known)
@@ -144,8 +144,8 @@ static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
 
 /* Where what a site stands for has no direction in the mean, its own face says. */
 void conic_cluster_settle_planes(conic_sampler *s) {
-  for (size_t i = 0; i < s->n_sites; i++) {
-    conic_site *site = &s->sites[i];
+  for (size_t i = 0; i < s->now.n_sites; i++) {
+    conic_site *site = &s->now.sites[i];
     if (site->is_settled)
       continue;
     double length = conic_length(site->normal);
@@ -166,7 +166,7 @@ static conic_status grow_supports(conic_sampler *s) {
 
 conic_status conic_cluster_note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,
                                         const double facing[3]) {
-  conic_site *site = &s->sites[i_site];
+  conic_site *site = &s->now.sites[i_site];
   if (site->is_settled)
     return CONIC_OK;
   conic_status status = s->n_supports < s->supports_room ? CONIC_OK : grow_supports(s);
@@ -192,7 +192,7 @@ conic_status conic_cluster_note_support(conic_sampler *s, uint32_t i_site, const
 /* Finds the point on the way from one place to another that is as near to the owner of the one as to the owner of the
  * other. */
 static void find_border(const conic_sampler *s, const small_triangle *t, int from, int to, double at[3]) {
-  const conic_site *a = &s->sites[t->owners[from]], *b = &s->sites[t->owners[to]];
+  const conic_site *a = &s->now.sites[t->owners[from]], *b = &s->now.sites[t->owners[to]];
   double more = 0.0, slope = 0.0, share;
   for (int axis = 0; axis < 3; axis++) {
     double to_a = a->foot[axis] - t->at[from][axis], to_b = b->foot[axis] - t->at[from][axis];
@@ -207,12 +207,12 @@ static void find_border(const conic_sampler *s, const small_triangle *t, int fro
 static conic_status cover_places(conic_sampler *s) {
   conic_status status = CONIC_OK;
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_face_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->now.lattices[k];
     size_t begin = l->first, end = begin + conic_face_lattice_places(l->sides);
     if (!has_work(s, l))
       continue;
     for (size_t i = begin; i < end && status == CONIC_OK; i++)
-      status = conic_cluster_note_support(s, s->owner[i], s->places[i], l->face, s->facing[k]);
+      status = conic_cluster_note_support(s, s->now.owner[i], s->places[i], l->face, s->facing[k]);
   }
   return status;
 }
@@ -245,8 +245,8 @@ static conic_status cover_small_triangle(conic_sampler *s, const small_triangle 
 /* Lists the supports of this pass site by site, what was noted last first. */
 static conic_status sort_supports(conic_sampler *s) {
   size_t begin = s->n_sorted, most = 0;
-  for (size_t i = 0; i < s->n_sites; i++) {
-    conic_site *site = &s->sites[i];
+  for (size_t i = 0; i < s->now.n_sites; i++) {
+    conic_site *site = &s->now.sites[i];
     if (site->is_settled)
       continue;
     most = site->n_supports > most ? site->n_supports : most;
@@ -261,7 +261,7 @@ static conic_status sort_supports(conic_sampler *s) {
     status = conic_memory_reserve(s->context, &s->points[i], 0, most, &s->points_room, sizeof *s->points[i]);
   }
   for (; s->n_sorted < s->n_supports && status == CONIC_OK; s->n_sorted++)
-    s->of_sites[--s->sites[s->supports[s->n_sorted].site].first_support] = (uint32_t)s->n_sorted;
+    s->of_sites[--s->now.sites[s->supports[s->n_sorted].site].first_support] = (uint32_t)s->n_sorted;
   return status;
 }
 
@@ -369,9 +369,9 @@ static void shape_site(conic_sampler *s, conic_site *site) {
 
 conic_status conic_cluster_shape_supported(conic_sampler *s) {
   conic_status status = sort_supports(s);
-  for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
-    if (!s->sites[i].is_settled)
-      shape_site(s, &s->sites[i]);
+  for (size_t i = 0; i < s->now.n_sites && status == CONIC_OK; i++)
+    if (!s->now.sites[i].is_settled)
+      shape_site(s, &s->now.sites[i]);
   return status;
 }
 

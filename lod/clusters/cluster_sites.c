@@ -32,7 +32,8 @@ static int sides_of_face(const conic_sampler *s, uint32_t face, int depth) {
 static conic_status lay_lattices(conic_sampler *s) {
   const conic_clustered_mesh *mesh = s->job->mesh;
   size_t begin = mesh->starts[s->job->cluster], n = mesh->starts[s->job->cluster + 1] - begin;
-  conic_status status = conic_memory_reserve(s->context, &s->lattices, 0, n, &s->lattices_room, sizeof *s->lattices);
+  conic_status status =
+      conic_memory_reserve(s->context, &s->now.lattices, 0, n, &s->now.lattices_room, sizeof *s->now.lattices);
   if (status == CONIC_OK)
     status = conic_memory_reserve(s->context, &s->facing, 0, n, &s->facing_room, sizeof *s->facing);
   if (status != CONIC_OK)
@@ -44,14 +45,14 @@ static conic_status lay_lattices(conic_sampler *s) {
   for (size_t i = 0; i < n; i++) {
     uint32_t face = mesh->faces[begin + i];
     int depth = s->depth[i];
-    s->lattices[i] = (conic_face_lattice){face, sides_of_face(s, face, depth), depth, (uint32_t)s->n_places};
+    s->now.lattices[i] = (conic_face_lattice){face, sides_of_face(s, face, depth), depth, (uint32_t)s->n_places};
     s->finest = depth > s->finest ? depth : s->finest;
     s->coarsest = depth < s->coarsest ? depth : s->coarsest;
-    s->n_places += conic_face_lattice_places(s->lattices[i].sides);
+    s->n_places += conic_face_lattice_places(s->now.lattices[i].sides);
     conic_cluster_face_normal(mesh, face, s->facing[i]);
   }
   size_t lattice_room = s->places_room;
-  status = conic_memory_reserve(s->context, &s->owner, 0, s->n_places, &s->owner_room, sizeof *s->owner);
+  status = conic_memory_reserve(s->context, &s->now.owner, 0, s->n_places, &s->now.owner_room, sizeof *s->now.owner);
   if (status == CONIC_OK)
     status = conic_memory_reserve(s->context, &s->lattice_of, 0, s->n_places, &lattice_room, sizeof *s->lattice_of);
   if (status == CONIC_OK)
@@ -61,7 +62,7 @@ static conic_status lay_lattices(conic_sampler *s) {
 
 /* As conic_cluster_place of each. */
 static void find_places_of(conic_sampler *s, uint32_t i_lattice) {
-  const conic_face_lattice *l = &s->lattices[i_lattice];
+  const conic_face_lattice *l = &s->now.lattices[i_lattice];
   double corners[3][3], shares[MOST_SIDES + 1];
   uint32_t place = l->first;
   for (int corner = 0; corner < 3; corner++)
@@ -112,7 +113,7 @@ int conic_face_lattice_is_own(const conic_clustered_mesh *mesh, const conic_face
 
 /* There is room for it. */
 static void add_candidate(conic_sampler *s, uint32_t i_lattice, int i, int j, int is_first) {
-  const conic_face_lattice *l = &s->lattices[i_lattice];
+  const conic_face_lattice *l = &s->now.lattices[i_lattice];
   uint64_t turn = conic_random_bits(l->face, (uint64_t)i << 16 | (uint64_t)j, 0) >> 43;
   int rank = (is_first ? 0 : CONIC_MOST_DEPTH + 1) + l->depth;
   s->candidates[s->n_candidates].key = (uint64_t)rank << 21 | turn;
@@ -133,7 +134,7 @@ static conic_status list_candidates(conic_sampler *s) {
   conic_status status = make_room_for_candidates(s);
   s->n_candidates = 0;
   for (size_t k = 0; k < s->n_lattices && status == CONIC_OK; k++) {
-    const conic_face_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->now.lattices[k];
     int rims = rims_of(s->job->mesh, l->face), others = sides_of_others(s->job->mesh, l->face);
     for (int i = 0; i <= l->sides; i++)
       for (int j = 0; j <= l->sides - i; j++) {
@@ -149,14 +150,14 @@ static conic_status list_candidates(conic_sampler *s) {
 
 /* Becomes the owner of what it is nearest to, of the places from number `first` on. */
 static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j, size_t first) {
-  const conic_face_lattice *l = &s->lattices[i_lattice];
+  const conic_face_lattice *l = &s->now.lattices[i_lattice];
   uint32_t place = conic_face_lattice_place(l, i, j);
   const double *at = s->places[place];
-  conic_status status =
-      conic_memory_reserve(s->context, &s->sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
+  conic_status status = conic_memory_reserve(s->context, &s->now.sites, s->now.n_sites, s->now.n_sites + 1,
+                                             &s->now.sites_room, sizeof *s->now.sites);
   if (status != CONIC_OK)
     return status;
-  conic_site *site = &s->sites[s->n_sites];
+  conic_site *site = &s->now.sites[s->now.n_sites];
   memset(site, 0, sizeof *site);
   memcpy(site->at, at, sizeof site->at);
   memcpy(site->foot, at, sizeof site->foot);
@@ -166,7 +167,7 @@ static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j,
   site->place = place;
   site->last = CONIC_NO_SITE;
   site->spacing = conic_spacing_at(s, s->depth[i_lattice]);
-  conic_place_table_put(&s->table, (uint32_t)s->n_sites++, at, s->facing[i_lattice], first);
+  conic_place_table_put(&s->table, (uint32_t)s->now.n_sites++, at, s->facing[i_lattice], first);
   return CONIC_OK;
 }
 
@@ -179,17 +180,17 @@ static conic_status fill_table(conic_sampler *s) {
                                .spacing = s->job->spacing,
                                .coarsest = s->coarsest,
                                .finest = s->finest};
-  return conic_place_table_fill(s->context, &s->table, &places, s->owner);
+  return conic_place_table_fill(s->context, &s->table, &places, s->now.owner);
 }
 
 /* A candidate that lies near no site becomes one. */
 static conic_status choose_sites(conic_sampler *s) {
   conic_status status = CONIC_OK;
-  s->n_sites = 0;
+  s->now.n_sites = 0;
   for (size_t k = 0; k < s->n_candidates && status == CONIC_OK; k++) {
     const uint32_t *seed = s->seeds[s->candidates[k].value];
     int i = (int)(seed[1] >> 16), j = (int)(seed[1] & 0xFFFF);
-    if (s->owner[conic_face_lattice_place(&s->lattices[seed[0]], i, j)] == CONIC_NO_SITE)
+    if (s->now.owner[conic_face_lattice_place(&s->now.lattices[seed[0]], i, j)] == CONIC_NO_SITE)
       status = add_site(s, seed[0], i, j, 0);
   }
   return status;
@@ -201,13 +202,13 @@ static conic_status choose_in_folds(conic_sampler *s) {
   conic_status status = CONIC_OK;
   size_t place = 0;
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_face_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->now.lattices[k];
     for (int i = 0; i <= l->sides; i++)
       for (int j = 0; j <= l->sides - i && status == CONIC_OK; j++, place++)
-        if (s->owner[place] == CONIC_NO_SITE) {
-          uint32_t own = (uint32_t)s->n_sites;
+        if (s->now.owner[place] == CONIC_NO_SITE) {
+          uint32_t own = (uint32_t)s->now.n_sites;
           status = add_site(s, (uint32_t)k, i, j, place);
-          s->owner[place] = own; /* also where its face has no area and faces nothing */
+          s->now.owner[place] = own; /* also where its face has no area and faces nothing */
         }
   }
   return status;
@@ -230,24 +231,13 @@ conic_status conic_cluster_find_sites(conic_sampler *s) {
 /* --- what one pass over a cluster need not do again --- */
 
 void conic_cluster_end_pass(conic_sampler *s) {
-  conic_sampling_pass now = {.n_sites = s->n_sites,
-                             .lattices_room = s->lattices_room,
-                             .owner_room = s->owner_room,
-                             .sites_room = s->sites_room,
-                             .lattices = s->lattices,
-                             .owner = s->owner,
-                             .sites = s->sites};
-  s->lattices_room = s->last.lattices_room;
-  s->owner_room = s->last.owner_room;
-  s->sites_room = s->last.sites_room;
-  s->lattices = s->last.lattices;
-  s->owner = s->last.owner;
-  s->sites = s->last.sites;
-  s->last = now;
+  conic_sampling_pass ended = s->now;
+  s->now = s->last;
+  s->last = ended;
 }
 
 static int is_as_fine(const conic_sampler *s, size_t k) {
-  return s->lattices[k].depth == s->last.lattices[k].depth;
+  return s->now.lattices[k].depth == s->last.lattices[k].depth;
 }
 
 /* Two sites are the same where the place that each was chosen at, which it owns, is the same. Those that stayed are
@@ -255,12 +245,12 @@ static int is_as_fine(const conic_sampler *s, size_t k) {
 static void match_sites(conic_sampler *s) {
   for (size_t i = 0; i < s->last.n_sites; i++)
     s->last.sites[i].last = CONIC_NO_SITE;
-  for (uint32_t i = 0; i < s->n_sites; i++) {
-    conic_site *site = &s->sites[i];
+  for (uint32_t i = 0; i < s->now.n_sites; i++) {
+    conic_site *site = &s->now.sites[i];
     uint32_t k = s->lattice_of[site->place];
-    if (!is_as_fine(s, k) || s->owner[site->place] != i)
+    if (!is_as_fine(s, k) || s->now.owner[site->place] != i)
       continue;
-    uint32_t place = site->place - s->lattices[k].first + s->last.lattices[k].first, last = s->last.owner[place];
+    uint32_t place = site->place - s->now.lattices[k].first + s->last.lattices[k].first, last = s->last.owner[place];
     if (s->last.sites[last].place == place) {
       site->last = last;
       site->is_settled = 1;
@@ -271,24 +261,24 @@ static void match_sites(conic_sampler *s) {
 
 /* Whether each place of a face belongs to the site that it belonged to. */
 static int is_as_it_was(const conic_sampler *s, size_t k) {
-  const uint32_t *owner = s->owner + s->lattices[k].first, *last = s->last.owner + s->last.lattices[k].first;
-  uint32_t n = conic_face_lattice_places(s->lattices[k].sides), i = 0;
+  const uint32_t *owner = s->now.owner + s->now.lattices[k].first, *last = s->last.owner + s->last.lattices[k].first;
+  uint32_t n = conic_face_lattice_places(s->now.lattices[k].sides), i = 0;
   if (!is_as_fine(s, k))
     return 0;
-  while (i < n && s->sites[owner[i]].last == last[i])
+  while (i < n && s->now.sites[owner[i]].last == last[i])
     i++;
   return i == n;
 }
 
 /* Neither who owns something of a face now nor who did is settled. */
 static void unsettle(conic_sampler *s, size_t k) {
-  const conic_face_lattice *now = &s->lattices[k], *then = &s->last.lattices[k];
+  const conic_face_lattice *now = &s->now.lattices[k], *then = &s->last.lattices[k];
   for (uint32_t i = 0; i < conic_face_lattice_places(now->sides); i++)
-    s->sites[s->owner[now->first + i]].is_settled = 0;
+    s->now.sites[s->now.owner[now->first + i]].is_settled = 0;
   for (uint32_t i = 0; i < conic_face_lattice_places(then->sides); i++) {
     uint32_t same = s->last.sites[s->last.owner[then->first + i]].last;
     if (same != CONIC_NO_SITE)
-      s->sites[same].is_settled = 0;
+      s->now.sites[same].is_settled = 0;
   }
 }
 
@@ -297,8 +287,8 @@ void conic_cluster_settle_sites(conic_sampler *s) {
   for (size_t k = 0; k < s->n_lattices; k++)
     if (!is_as_it_was(s, k))
       unsettle(s, k);
-  for (size_t i = 0; i < s->n_sites; i++) {
-    conic_site *site = &s->sites[i];
+  for (size_t i = 0; i < s->now.n_sites; i++) {
+    conic_site *site = &s->now.sites[i];
     if (!site->is_settled)
       continue;
     uint32_t place = site->place;
@@ -336,13 +326,13 @@ conic_seen_change conic_site_change(const conic_site *site) {
 
 conic_seen_change conic_sites_change(const conic_sampler *s, conic_seen_change known) {
   conic_seen_sums sums = {0.0, 0.0, 0.0};
-  for (size_t i = 0; i < s->n_sites; i++)
-    conic_seen_sums_add(&sums, conic_site_change(&s->sites[i]), s->sites[i].area);
+  for (size_t i = 0; i < s->now.n_sites; i++)
+    conic_seen_sums_add(&sums, conic_site_change(&s->now.sites[i]), s->now.sites[i].area);
   return conic_seen_sums_change(&sums, known);
 }
 
 static void note_place(conic_sampler *s, const conic_face_lattice *l, int i, int j, double side) {
-  conic_site *site = &s->sites[s->owner[conic_face_lattice_place(l, i, j)]];
+  conic_site *site = &s->now.sites[s->now.owner[conic_face_lattice_place(l, i, j)]];
   double bary[3], color[3], texel[3];
   if (site->is_settled)
     return;
@@ -357,16 +347,16 @@ static void note_place(conic_sampler *s, const conic_face_lattice *l, int i, int
 void conic_cluster_find_contrasts(conic_sampler *s) {
   if (!conic_has_seen_colors(s->job->mesh->triangles))
     return;
-  for (size_t i = 0; i < s->n_sites; i++)
-    if (!s->sites[i].is_settled)
-      conic_site_begin_contrast(&s->sites[i]);
+  for (size_t i = 0; i < s->now.n_sites; i++)
+    if (!s->now.sites[i].is_settled)
+      conic_site_begin_contrast(&s->now.sites[i]);
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_face_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->now.lattices[k];
     for (int i = 0; i <= l->sides; i++)
       for (int j = 0; j <= l->sides - i; j++)
         if (conic_face_lattice_is_own(s->job->mesh, l, i, j))
           note_place(s, l, i, j, 0.5 * conic_spacing_at(s, s->depth[k]));
   }
-  for (size_t i = 0; i < s->n_sites; i++)
-    conic_site_end_contrast(&s->sites[i]);
+  for (size_t i = 0; i < s->now.n_sites; i++)
+    conic_site_end_contrast(&s->now.sites[i]);
 }

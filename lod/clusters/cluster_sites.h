@@ -115,33 +115,29 @@ typedef struct conic_support {
   double at[2];                   /* in the plane */
 } conic_support;
 
-/* What the next pass may look up of the last. */
+/* What a pass makes, of which the next may look up the last. */
 typedef struct conic_sampling_pass {
   size_t n_sites, lattices_room, owner_room, sites_room;
   conic_face_lattice *lattices;
-  uint32_t *owner;
+  uint32_t *owner; /* of each place: a site */
   conic_site *sites;
 } conic_sampling_pass;
 
 struct conic_sampler {
   conic_context *context;
   const conic_sampling_job *job;
-  conic_sampling_pass last;
-  size_t n_lattices, lattices_room, facing_room;
-  conic_face_lattice *lattices;
+  conic_sampling_pass now, last;
+  size_t n_lattices, facing_room;
   double (*facing)[3]; /* of each lattice's face */
   uint8_t *depth;      /* of each face of the cluster: how often the spacing is halved there */
   size_t depth_room;
   int coarsest, finest; /* of those */
-  size_t n_places, places_room, owner_room;
+  size_t n_places, places_room;
   double (*places)[3];  /* where they are */
   uint32_t *lattice_of; /* of each place: its lattice */
-  uint32_t *owner;      /* of each place: a site */
   size_t n_candidates, candidates_room, seeds_room;
-  conic_radix_item *candidates; /* key: when its turn is; value: its number */
-  uint32_t (*seeds)[2];         /* of each candidate: lattice, and i << 16 | j */
-  size_t n_sites, sites_room;
-  conic_site *sites;
+  conic_radix_item *candidates;               /* key: when its turn is; value: its number */
+  uint32_t (*seeds)[2];                       /* of each candidate: lattice, and i << 16 | j */
   conic_place_table table;                    /* of the places */
   size_t n_supports, n_sorted, supports_room; /* of all passes; sorted, of those before */
   conic_support *supports;

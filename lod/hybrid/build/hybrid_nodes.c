@@ -107,8 +107,8 @@ static conic_status gather_pieces(const nodes_pass *pass, node_worker *w, const 
 static uint32_t nearest_alike(const conic_sampler *s, const surfel_piece *p, double most) {
   double least2 = most * most;
   uint32_t nearest = CONIC_NO_SITE;
-  for (uint32_t i = 0; i < s->n_sites; i++) {
-    const conic_site *site = &s->sites[i];
+  for (uint32_t i = 0; i < s->now.n_sites; i++) {
+    const conic_site *site = &s->now.sites[i];
     double x = p->at[0] - site->at[0], y = p->at[1] - site->at[1], z = p->at[2] - site->at[2];
     double distance2 = (x * x + y * y) + z * z;
     if (distance2 < least2 && conic_dot(p->normal, site->facing) >= CONIC_SITES_ALIKE) {
@@ -120,11 +120,11 @@ static uint32_t nearest_alike(const conic_sampler *s, const surfel_piece *p, dou
 }
 
 static conic_status add_site(conic_sampler *s, const surfel_piece *p, double spacing) {
-  conic_status status =
-      conic_memory_reserve(s->context, &s->sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
+  conic_status status = conic_memory_reserve(s->context, &s->now.sites, s->now.n_sites, s->now.n_sites + 1,
+                                             &s->now.sites_room, sizeof *s->now.sites);
   if (status != CONIC_OK)
     return status;
-  conic_site *site = &s->sites[s->n_sites++];
+  conic_site *site = &s->now.sites[s->now.n_sites++];
   memset(site, 0, sizeof *site);
   memcpy(site->at, p->at, sizeof site->at);
   memcpy(site->facing, p->normal, sizeof site->facing);
@@ -137,8 +137,8 @@ static conic_status add_site(conic_sampler *s, const surfel_piece *p, double spa
 /* Sites no nearer to each other than the spacing, but where they face apart. */
 static conic_status choose_sites(node_worker *w, double spacing) {
   conic_status status = CONIC_OK;
-  w->sampler->n_sites = 0;
-  for (size_t i = 0; i < w->n_pieces && status == CONIC_OK && w->sampler->n_sites <= MOST_SITES; i++)
+  w->sampler->now.n_sites = 0;
+  for (size_t i = 0; i < w->n_pieces && status == CONIC_OK && w->sampler->now.n_sites <= MOST_SITES; i++)
     if (nearest_alike(w->sampler, &w->pieces[i], spacing) == CONIC_NO_SITE)
       status = add_site(w->sampler, &w->pieces[i], spacing);
   return status;
@@ -177,7 +177,7 @@ static conic_status shape_sites(node_worker *w) {
   s->n_supports = s->n_sorted = 0;
   for (size_t i = 0; i < w->n_pieces; i++) {
     w->pieces[i].site = nearest_alike(s, &w->pieces[i], HUGE_VAL);
-    add_to_site(&s->sites[w->pieces[i].site], &w->pieces[i]);
+    add_to_site(&s->now.sites[w->pieces[i].site], &w->pieces[i]);
   }
   conic_cluster_settle_planes(s);
   for (size_t i = 0; i < w->n_pieces && status == CONIC_OK; i++)
@@ -228,10 +228,10 @@ static conic_status make_level(const nodes_pass *pass, node_worker *w, double sp
                                        .cutoff = (double)job->options->cutoff};
   w->sampler->job = &sampling;
   conic_status status = choose_sites(w, spacing);
-  if (status == CONIC_OK && w->sampler->n_sites <= MOST_SITES) {
+  if (status == CONIC_OK && w->sampler->now.n_sites <= MOST_SITES) {
     status = shape_sites(w);
-    for (size_t i = 0; i < w->sampler->n_sites && status == CONIC_OK; i++)
-      status = emit(w, &w->sampler->sites[i], surfels);
+    for (size_t i = 0; i < w->sampler->now.n_sites && status == CONIC_OK; i++)
+      status = emit(w, &w->sampler->now.sites[i], surfels);
     if (status == CONIC_OK)
       surfels->change = with_pieces(w, conic_sites_change(w->sampler, (conic_seen_change){0.0, 0.0}));
   }

@@ -71,17 +71,17 @@ static int is_same(const conic_site *a, const conic_site *b) {
 
 /* The sites of the last of several passes against those that are found for the same depths from nothing. */
 static void check_settled(conic_context *context, conic_sampler *s, size_t *n_kept) {
-  size_t n = s->n_sites, n_settled = 0;
+  size_t n = s->now.n_sites, n_settled = 0;
   conic_site *sites = conic_memory_allocate(context, n, sizeof *sites);
   CHECK(sites && s->finest > 0);
-  memcpy(sites, s->sites, n * sizeof *sites);
+  memcpy(sites, s->now.sites, n * sizeof *sites);
   s->n_supports = s->n_sorted = 0;
   CHECK_OK(conic_cluster_find_sites(s));
   CHECK_OK(conic_cluster_shape_sites(s));
-  CHECK(s->n_sites == n);
+  CHECK(s->now.n_sites == n);
   for (size_t i = 0; i < n; i++) {
-    CHECK(is_same(&sites[i], &s->sites[i]));
-    CHECK(!s->sites[i].is_settled);
+    CHECK(is_same(&sites[i], &s->now.sites[i]));
+    CHECK(!s->now.sites[i].is_settled);
     n_settled += sites[i].is_settled != 0;
   }
   *n_kept += n_settled;
@@ -91,11 +91,11 @@ static void check_settled(conic_context *context, conic_sampler *s, size_t *n_ke
 /* The less is known the more is measured; with nothing known, all of it. */
 static void check_errors(const conic_sampler *s) {
   size_t n_larger = 0;
-  for (size_t i = 0; i < s->n_sites; i++) {
-    double bound, error = conic_site_error(s, &s->sites[i], 0.0, &bound);
-    CHECK(error > 0.0 && bound <= error && error >= s->sites[i].height);
+  for (size_t i = 0; i < s->now.n_sites; i++) {
+    double bound, error = conic_site_error(s, &s->now.sites[i], 0.0, &bound);
+    CHECK(error > 0.0 && bound <= error && error >= s->now.sites[i].height);
     for (int k = 1; k <= 8; k++) {
-      double known = 0.1 * k * s->job->spacing, more = conic_site_error(s, &s->sites[i], known, &bound);
+      double known = 0.1 * k * s->job->spacing, more = conic_site_error(s, &s->now.sites[i], known, &bound);
       CHECK_NEAR(more, error > known ? error : known, 1e-12 * more);
       CHECK(bound >= error * (1.0 - 1e-12) && bound <= more);
       n_larger += error > known;
@@ -123,10 +123,10 @@ static void check_passes(conic_context *context, const one_cluster *p, double to
 }
 
 static int owns_some(const conic_sampler *s, uint32_t site, size_t lattice) {
-  const conic_face_lattice *l = &s->lattices[lattice];
+  const conic_face_lattice *l = &s->now.lattices[lattice];
   int is_any = 0;
   for (uint32_t i = 0; i < conic_face_lattice_places(l->sides); i++)
-    is_any |= s->owner[l->first + i] == site;
+    is_any |= s->now.owner[l->first + i] == site;
   return is_any;
 }
 
@@ -142,14 +142,14 @@ static void check_gains(conic_context *context, const one_cluster *p) {
   conic_cluster_end_pass(s);
   for (size_t k = 10; k < 30; k++) {
     CHECK_OK(conic_cluster_find_sites(s));
-    uint32_t place = s->lattices[k].first, loser = (uint32_t)(s->n_sites - k);
-    place += s->sites[s->owner[place]].place == place; /* one at which no site is */
-    uint32_t own = s->owner[place];
-    CHECK(s->last.owner[place] == own && s->sites[own].place != place && !owns_some(s, loser, k));
+    uint32_t place = s->now.lattices[k].first, loser = (uint32_t)(s->now.n_sites - k);
+    place += s->now.sites[s->now.owner[place]].place == place; /* one at which no site is */
+    uint32_t own = s->now.owner[place];
+    CHECK(s->last.owner[place] == own && s->now.sites[own].place != place && !owns_some(s, loser, k));
     s->last.owner[place] = loser;
     conic_cluster_settle_sites(s);
-    for (uint32_t i = 0; i < s->n_sites; i++)
-      CHECK(s->sites[i].is_settled == (i != loser && !owns_some(s, i, k)));
+    for (uint32_t i = 0; i < s->now.n_sites; i++)
+      CHECK(s->now.sites[i].is_settled == (i != loser && !owns_some(s, i, k)));
     s->last.owner[place] = own;
   }
   conic_surfels_release(context, &surfels);
