@@ -46,9 +46,7 @@ static void fit_window(const sides_search *search, size_t slot, window_plane *pl
       d[axis] = (double)tree->position[axis][slots[i]] - place[axis];
       sum[axis] += d[axis];
     }
-    for (int a = 0, k = 0; a < 3; a++)
-      for (int b = a; b < 3; b++, k++)
-        products[k] += d[a] * d[b];
+    conic_add_outer(products, d, d);
   }
   for (int a = 0, k = 0; a < 3; a++)
     for (int b = a; b < 3; b++, k++)

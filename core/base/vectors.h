@@ -23,6 +23,16 @@ static inline void conic_cross(const double a[3], const double b[3], double c[3]
   c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+/* Adds a·bᵀ, where b is a multiple of a: xx, xy, xz, yy, yz, zz. */
+static inline void conic_add_outer(double sums[6], const double a[3], const double b[3]) {
+  sums[0] += a[0] * b[0];
+  sums[1] += a[0] * b[1];
+  sums[2] += a[0] * b[2];
+  sums[3] += a[1] * b[1];
+  sums[4] += a[1] * b[2];
+  sums[5] += a[2] * b[2];
+}
+
 static inline double conic_length(const double v[3]) {
   return sqrt(conic_dot(v, v));
 }

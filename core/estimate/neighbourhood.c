@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/vectors.h"
 
 /* Slots in one call of a task, and calls between two reports of progress. */
 enum { CHUNK = 1024, CHUNKS_A_REPORT = 64 };
@@ -123,12 +124,7 @@ void conic_covariance_add(conic_covariance *covariance, const conic_neighbourhoo
       d[axis] -= covariance->origin[axis];
       sum[axis] += d[axis];
     }
-    products[0] += d[0] * d[0];
-    products[1] += d[0] * d[1];
-    products[2] += d[0] * d[2];
-    products[3] += d[1] * d[1];
-    products[4] += d[1] * d[2];
-    products[5] += d[2] * d[2];
+    conic_add_outer(products, d, d);
   }
   covariance->count += (double)n;
 }

@@ -7,6 +7,7 @@
 #include "core/base/eigen.h"
 #include "core/base/memory.h"
 #include "core/base/rank.h"
+#include "core/base/vectors.h"
 #include "lod/layers/format/layers_key.h"
 
 /* A plane goes through so many of the nearest. Cells are so large that one has about so many points; where they are too
@@ -147,13 +148,9 @@ static void set_normal(const conic_node_shape *shape, size_t i, const nearest_po
       mean[axis] += d[k][axis] / (double)n;
     }
   for (int k = 0; k < n; k++) {
-    double x = d[k][0] - mean[0], y = d[k][1] - mean[1], z = d[k][2] - mean[2];
-    spread[0] += x * x;
-    spread[1] += x * y;
-    spread[2] += x * z;
-    spread[3] += y * y;
-    spread[4] += y * z;
-    spread[5] += z * z;
+    double apart[3];
+    conic_subtract(d[k], mean, apart);
+    conic_add_outer(spread, apart, apart);
   }
   conic_eigen3(spread, values, vectors);
   int has_plane = values[1] > least_width * values[0] && values[2] < most_thickness * values[1];

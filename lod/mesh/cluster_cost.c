@@ -28,12 +28,8 @@ conic_unit_box conic_unit_box_of(const conic_mesh *mesh, const conic_adjacency *
 }
 
 static void add_outer(double sums[6], const double v[3], double weight) {
-  sums[0] += weight * v[0] * v[0];
-  sums[1] += weight * v[0] * v[1];
-  sums[2] += weight * v[0] * v[2];
-  sums[3] += weight * v[1] * v[1];
-  sums[4] += weight * v[1] * v[2];
-  sums[5] += weight * v[2] * v[2];
+  const double weighted[3] = {weight * v[0], weight * v[1], weight * v[2]};
+  conic_add_outer(sums, weighted, v);
 }
 
 conic_face_sums conic_face_sums_of(const conic_mesh *mesh, const conic_adjacency *adjacency, const conic_unit_box *box,

@@ -2,18 +2,16 @@
 #ifndef CONIC_QUADRIC_H
 #define CONIC_QUADRIC_H
 
+#include "core/base/vectors.h"
+
 typedef struct conic_quadric {
   double a[6], b[3], c; /* xx, xy, xz, yy, yz, zz */
 } conic_quadric;
 
 /* Adds `weight` times the squared distance from the plane n·v + d = 0. */
 static inline void conic_quadric_add_plane(conic_quadric *q, const double n[3], double d, double weight) {
-  q->a[0] += weight * n[0] * n[0];
-  q->a[1] += weight * n[0] * n[1];
-  q->a[2] += weight * n[0] * n[2];
-  q->a[3] += weight * n[1] * n[1];
-  q->a[4] += weight * n[1] * n[2];
-  q->a[5] += weight * n[2] * n[2];
+  const double weighted[3] = {weight * n[0], weight * n[1], weight * n[2]};
+  conic_add_outer(q->a, weighted, n);
   for (int axis = 0; axis < 3; axis++)
     q->b[axis] += weight * d * n[axis];
   q->c += weight * d * d;

@@ -11,16 +11,6 @@
 
 /* --- sums over splats: the generic homogeneous covariance of Confetti (§4.2), and averages --- */
 
-/* The symmetric product a·bᵀ, b being a multiple of a, into the six. */
-static void add_outer(double scatter[6], const double a[3], const double b[3]) {
-  scatter[0] += a[0] * b[0];
-  scatter[1] += a[0] * b[1];
-  scatter[2] += a[0] * b[2];
-  scatter[3] += a[1] * b[1];
-  scatter[4] += a[1] * b[2];
-  scatter[5] += a[2] * b[2];
-}
-
 void conic_moments_of_splat(const conic_splats *splats, size_t i, conic_moments *moments) {
   double u[3], v[3];
   memset(moments, 0, sizeof *moments);
@@ -29,8 +19,8 @@ void conic_moments_of_splat(const conic_splats *splats, size_t i, conic_moments 
   conic_vector_at(splats->tangent_u, i, u);
   conic_vector_at(splats->tangent_v, i, v);
   conic_cross(u, v, moments->normal);
-  add_outer(moments->scatter, u, u);
-  add_outer(moments->scatter, v, v);
+  conic_add_outer(moments->scatter, u, u);
+  conic_add_outer(moments->scatter, v, v);
   double opacity = splats->opacity ? (double)splats->opacity[i] : 1.0;
   moments->area = conic_length(moments->normal);
   moments->weight = opacity > 0.0 ? opacity * moments->area : 0.0;
@@ -54,7 +44,7 @@ void conic_moments_merge(conic_moments *sum, const conic_moments *more) {
   }
   for (int i = 0; i < 6; i++)
     sum->scatter[i] += more->scatter[i];
-  add_outer(sum->scatter, apart, pulled);
+  conic_add_outer(sum->scatter, apart, pulled);
   sum->count = count;
   sum->area += more->area;
   sum->weight += more->weight;

@@ -5,6 +5,7 @@
 #include "core/base/eigen.h"
 #include "core/base/memory.h"
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 #include "core/estimate/estimate.h"
 #include "core/estimate/voronoi_cell.h"
 #include "lod/layers/build/layers_node.h"
@@ -110,12 +111,7 @@ static int fit_plane(const sample_grid *g, const neighbours *found, float normal
     double d[3];
     for (int axis = 0; axis < 3; axis++)
       d[axis] = (double)g->at[found->sample[i]][axis] - mean[axis];
-    covariance[0] += d[0] * d[0];
-    covariance[1] += d[0] * d[1];
-    covariance[2] += d[0] * d[2];
-    covariance[3] += d[1] * d[1];
-    covariance[4] += d[1] * d[2];
-    covariance[5] += d[2] * d[2];
+    conic_add_outer(covariance, d, d);
   }
   conic_eigen3(covariance, values, vectors);
   if (!(values[1] > 0.0)) /* on a line, or all in one place */
