@@ -118,7 +118,8 @@ static conic_status take_as_fits(drawing_source *d, const char *path, const coni
                                  conic_model *model) {
   conic_context *context = d->base.context;
   conic_model loose = {0};
-  if (model->n_triangles && !conic_mesh_has_face(model)) {
+  if (model->n_triangles &&
+      !conic_has_face(model->points.position, (const uint32_t(*)[3])model->triangles, model->n_triangles)) {
     conic_log(context, CONIC_LOG_WARNING, "%s: no face has three finite corners at three places; the points are drawn",
               path);
     model->n_triangles = 0;

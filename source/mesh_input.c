@@ -12,10 +12,6 @@
 #include "lod/mesh/mesh.h"
 #include "source/reach.h"
 
-int conic_mesh_has_face(const conic_model *model) {
-  return conic_has_face(model->points.position, (const uint32_t(*)[3])model->triangles, model->n_triangles);
-}
-
 conic_status conic_mesh_gather_loose(conic_context *context, const conic_model *model, conic_splats *loose) {
   size_t n = model->points.count, n_loose = 0;
   memset(loose, 0, sizeof *loose);

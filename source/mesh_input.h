@@ -11,9 +11,6 @@
  * be drawn. */
 conic_status conic_mesh_read(conic_context *context, const char *path, conic_triangles *triangles);
 
-/* Whether any of a model's triangles has three finite corners at three places. */
-int conic_mesh_has_face(const conic_model *model);
-
 /* Copies the vertices without a triangle, unless they are leftovers. On success the caller releases *loose. Errors:
  * MEMORY. */
 conic_status conic_mesh_gather_loose(conic_context *context, const conic_model *model, conic_splats *loose);

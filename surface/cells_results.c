@@ -27,10 +27,6 @@ conic_status conic_cells_results_begin(conic_context *context, const conic_team 
                        : conic_store_begin(context, path, n_points, sizeof(conic_cell_result), &results->store);
 }
 
-void conic_cells_results_end(conic_cells_results *results) {
-  conic_store_end(&results->store);
-}
-
 conic_status conic_cells_results_keep(conic_cells_results *results, uint64_t first, size_t n,
                                       const conic_cell_result *run) {
   sent_result sent[CONIC_RESULTS_RUN];

@@ -51,10 +51,10 @@ enum { CONIC_RESULTS_RUN = 64 };
 /* The bytes of the results of n_points in the first process, or of at most n_own in another. */
 uint64_t conic_cells_results_bytes(const conic_team *team, uint64_t n_points, uint64_t n_own);
 
-/* Makes room for the results, in a file beside `path`, or for a null path in memory. Errors: MEMORY, IO. */
+/* Makes room for the results, in a file beside `path`, or for a null path in memory; the caller ends the store, on
+ * failure too. Errors: MEMORY, IO. */
 conic_status conic_cells_results_begin(conic_context *context, const conic_team *team, const char *path,
                                        uint64_t n_points, uint64_t n_own, conic_cells_results *results);
-void conic_cells_results_end(conic_cells_results *results);
 
 /* Keeps the results of n points from number `first` on. Errors: IO. */
 conic_status conic_cells_results_keep(conic_cells_results *results, uint64_t first, size_t n,

@@ -512,7 +512,7 @@ conic_status conic_surface_clean_cells(conic_context *context, const conic_clean
     *report = work.report;
   conic_splats_release(context, &work.subset);
   conic_memory_release_these(context, work.page, work.keys);
-  conic_cells_results_end(&work.results);
+  conic_store_end(&work.results.store);
   conic_store_end(&work.records);
   conic_cells_share_end(context, &work.share);
   conic_cells_end(&work.cells);

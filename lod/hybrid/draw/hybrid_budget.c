@@ -88,7 +88,7 @@ static uint64_t cut_tree(fitting *f) {
   const conic_hybrid_cutting cutting = {f->hybrid, f->counts, ask_node, f, f->below};
   for (size_t i = 0; i < f->n; i++)
     f->counts[f->clusters[i]] = (double)chosen(f, i)->count;
-  return (uint64_t)conic_hybrid_cut(&cutting, f->nodes); /* a whole number */
+  return (uint64_t)conic_hybrid_cut(&cutting, NULL, f->hybrid->n_nodes, f->nodes); /* a whole number */
 }
 
 static void note_next(const double *errors_px, size_t n, double error_px, double *next_px) {

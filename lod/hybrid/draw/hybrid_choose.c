@@ -77,7 +77,7 @@ static double cut_nodes(const hybrid_planning *p) {
     int may_join = c->kind == CONIC_HYBRID_SURFELS && c->alone_ns < HUGE_VAL;
     p->amounts[p->clusters[i]] = may_join ? c->alone_ns : NAN;
   }
-  return conic_hybrid_cut_seen(&cutting, p->seen, p->n_seen, p->nodes);
+  return conic_hybrid_cut(&cutting, p->seen, p->n_seen, p->nodes);
 }
 
 /* The links of one candidate, one for each neighbour: `last` has for each candidate the link that names it. */
@@ -387,7 +387,7 @@ static size_t seen_node(const uint32_t *seen, size_t k) {
   return seen ? seen[k] : k;
 }
 
-double conic_hybrid_cut_seen(const conic_hybrid_cutting *c, const uint32_t *seen, size_t n_seen, uint32_t *nodes) {
+double conic_hybrid_cut(const conic_hybrid_cutting *c, const uint32_t *seen, size_t n_seen, uint32_t *nodes) {
   const conic_hybrid *h = c->hybrid;
   double less = 0.0;
   for (size_t k = n_seen; k-- > 0;) /* from the leaves to the root */
@@ -401,10 +401,6 @@ double conic_hybrid_cut_seen(const conic_hybrid_cutting *c, const uint32_t *seen
       nodes[seen_node(seen, k)] = CONIC_HYBRID_NO_NODE;
   }
   return less;
-}
-
-double conic_hybrid_cut(const conic_hybrid_cutting *c, uint32_t *nodes) {
-  return conic_hybrid_cut_seen(c, NULL, c->hybrid->n_nodes, nodes);
 }
 
 void conic_hybrid_find_standing(const conic_hybrid *h, const uint32_t *nodes, uint32_t *standing) {

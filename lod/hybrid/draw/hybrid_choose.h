@@ -22,12 +22,10 @@ typedef struct conic_hybrid_cutting {
 } conic_hybrid_cutting;
 
 /* Lets nodes stand for their clusters wherever that takes less. nodes[i] becomes the level of node i, from its first,
- * or NO_NODE. Returns how much less all takes then. */
-double conic_hybrid_cut(const conic_hybrid_cutting *cutting, uint32_t *nodes);
-
-/* The same for some of the nodes, in growing order; all nodes above one are among them. The caller fills in nodes[i]
- * and below[i] of the others: NO_NODE, and 0 where it is out of sight, NaN where no node above may stand for it. */
-double conic_hybrid_cut_seen(const conic_hybrid_cutting *cutting, const uint32_t *seen, size_t n_seen, uint32_t *nodes);
+ * or NO_NODE. Returns how much less all takes then. Looked at are the nodes `seen`, in growing order, and all nodes
+ * above one are among them; null: all. The caller fills in nodes[i] and below[i] of the others: NO_NODE, and 0 where it
+ * is out of sight, NaN where no node above may stand for it. */
+double conic_hybrid_cut(const conic_hybrid_cutting *cutting, const uint32_t *seen, size_t n_seen, uint32_t *nodes);
 
 /* For each cluster of the model the node that stands for it, or NO_NODE. */
 void conic_hybrid_find_standing(const conic_hybrid *hybrid, const uint32_t *nodes, uint32_t *standing);
