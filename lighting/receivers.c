@@ -131,10 +131,8 @@ conic_status conic_receivers_of_image(conic_context *context, const conic_camera
 /* The splat's unit normal; returns 0 where it has none. */
 static int splat_normal(const conic_splats *s, size_t i, double normal[3]) {
   double u[3], v[3];
-  for (int axis = 0; axis < 3; axis++) {
-    u[axis] = (double)s->tangent_u[axis][i];
-    v[axis] = (double)s->tangent_v[axis][i];
-  }
+  conic_vector_at(s->tangent_u, i, u);
+  conic_vector_at(s->tangent_v, i, v);
   if (s->dot && s->dot[i] != 0.0f)
     return 0;
   conic_cross(u, v, normal);

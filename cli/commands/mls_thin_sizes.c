@@ -42,10 +42,8 @@ static int stands_as_dot(const conic_splats *splats, size_t i) {
 
 /* A splat's axes and unit normal; returns 0 where they span no ellipse. */
 static int axes_of(const conic_splats *splats, size_t i, double u[3], double v[3], double normal[3]) {
-  for (int axis = 0; axis < 3; axis++) {
-    u[axis] = (double)splats->tangent_u[axis][i];
-    v[axis] = (double)splats->tangent_v[axis][i];
-  }
+  conic_vector_at(splats->tangent_u, i, u);
+  conic_vector_at(splats->tangent_v, i, v);
   conic_cross(u, v, normal);
   return conic_normalize(normal);
 }

@@ -38,10 +38,8 @@ static void forget_axes(conic_context *context, conic_splats *splats) {
   splats->n_clips = 0; /* lines are in units of the old axes */
   for (size_t i = 0; i < splats->count; i++) {
     double u[3], v[3], normal[3];
-    for (int axis = 0; axis < 3; axis++) {
-      u[axis] = (double)splats->tangent_u[axis][i];
-      v[axis] = (double)splats->tangent_v[axis][i];
-    }
+    conic_vector_at(splats->tangent_u, i, u);
+    conic_vector_at(splats->tangent_v, i, v);
     conic_cross(u, v, normal);
     double length = conic_length(normal);
     for (int axis = 0; axis < 3; axis++)

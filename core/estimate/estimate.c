@@ -24,8 +24,7 @@ void conic_estimate_options_init_sized(conic_estimate_options *options, size_t s
 }
 
 int conic_unit_vector(float *const arrays[3], size_t i, double unit[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    unit[axis] = (double)arrays[axis][i];
+  conic_vector_at(arrays, i, unit);
   return conic_normalize(unit);
 }
 

@@ -329,10 +329,8 @@ static void set_normals(const conic_splats *splats, conic_neighbourhood *neighbo
   for (size_t slot = 0; slot < neighbourhood->tree.n_slots; slot++) {
     size_t i = neighbourhood->tree.point_of_slot[slot];
     double u[3], v[3], n[3];
-    for (int axis = 0; axis < 3; axis++) {
-      u[axis] = (double)splats->tangent_u[axis][i];
-      v[axis] = (double)splats->tangent_v[axis][i];
-    }
+    conic_vector_at(splats->tangent_u, i, u);
+    conic_vector_at(splats->tangent_v, i, v);
     conic_cross(u, v, n);
     conic_normalize(n);
     neighbourhood->flags[slot] |= CONIC_SLOT_WANTED;

@@ -39,8 +39,7 @@ typedef struct mesh_bounding {
 } mesh_bounding;
 
 static void read_place(const conic_splats *points, size_t i, double at[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    at[axis] = (double)points->position[axis][i];
+  conic_vector_at(points->position, i, at);
 }
 
 /* Reads the corners of a triangle from `vertex` on, and its normal; returns 0 for a triangle without area. */

@@ -238,10 +238,8 @@ static void put_vector(row_cursor *row, float *const vector[3], size_t i) {
  * are read. */
 static void put_circle(row_cursor *row, const conic_splats *batch, size_t i, float cutoff) {
   double u[3], v[3], normal[3];
-  for (int axis = 0; axis < 3; axis++) {
-    u[axis] = (double)batch->tangent_u[axis][i];
-    v[axis] = (double)batch->tangent_v[axis][i];
-  }
+  conic_vector_at(batch->tangent_u, i, u);
+  conic_vector_at(batch->tangent_v, i, v);
   conic_cross(u, v, normal);
   double length = conic_length(normal);
   for (int axis = 0; axis < 3; axis++)

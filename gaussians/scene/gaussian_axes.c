@@ -107,8 +107,7 @@ static void turn_block(void *data, size_t i_block, int i_thread) {
   (void)i_thread;
   for (size_t i = first; i < end; i++) {
     double mean[3];
-    for (int axis = 0; axis < 3; axis++)
-      mean[axis] = (double)gaussians->position[axis][i];
+    conic_vector_at(gaussians->position, i, mean);
     for (int axis = 0; axis < 3; axis++)
       gaussians->position[axis][i] = sum_terms(self->rotation[axis], mean, 3);
     for (int k = 0; self->is_flip && k < 4; k++)
