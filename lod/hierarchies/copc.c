@@ -49,7 +49,7 @@ static const char *take_copc_head(conic_hierarchy *h, const unsigned char *head)
 
 static conic_status open_copc(conic_hierarchy *h) {
   unsigned char *head, *records = NULL;
-  conic_status status = conic_hierarchy_read(h, 0, COPC_HEAD, &head);
+  conic_status status = conic_hierarchy_read(h, COPC_HEAD, &head);
   if (status != CONIC_OK)
     return status;
   const char *wrong = take_copc_head(h, head);
@@ -59,7 +59,7 @@ static conic_status open_copc(conic_hierarchy *h) {
   if (wrong)
     status = conic_hierarchy_wrong(h, wrong);
   if (status == CONIC_OK)
-    status = conic_hierarchy_read(h, 0, (size_t)points_at, &records);
+    status = conic_hierarchy_read(h, (size_t)points_at, &records);
   if (status == CONIC_OK)
     status = conic_hierarchy_find_laz(h, records, (size_t)points_at);
   if (status == CONIC_OK)

@@ -120,7 +120,8 @@ static conic_status read_reference(conic_hierarchy *h, conic_json *json) {
   return epsg > 0 && epsg < 65536 ? conic_georeference_of_epsg(h->context, epsg, &h->reference) : CONIC_OK;
 }
 
-static conic_status read_member(conic_hierarchy *h, conic_json *json, const char *key, ept_head *head) {
+static conic_status read_member(conic_hierarchy *h, conic_json *json, const char *key, void *data) {
+  ept_head *head = data;
   if (strcmp(key, "bounds") == 0) {
     head->has_bounds = 1;
     return conic_hierarchy_numbers(json, head->bounds, 6);
@@ -168,22 +169,12 @@ static const char *take_head(conic_hierarchy *h, const ept_head *head) {
 
 static conic_status open_ept(conic_hierarchy *h) {
   ept_head head;
-  conic_json json;
-  char key[CONIC_JSON_KEY_ROOM];
   memset(&head, 0, sizeof head);
   ept_own *own = h->own = conic_memory_allocate_zeroed(h->context, 1, sizeof *own);
   if (!own)
     return CONIC_ERROR_MEMORY;
   own->packing = EPT_UNKNOWN;
-  conic_status status = conic_hierarchy_read_json(h, &json);
-  if (status != CONIC_OK)
-    return status;
-  status = conic_json_begin_object(&json);
-  while (status == CONIC_OK && conic_json_next_member(&json, key))
-    status = read_member(h, &json, key, &head);
-  if (status == CONIC_OK)
-    status = conic_json_end(&json);
-  conic_json_close(&json);
+  conic_status status = conic_hierarchy_read_json(h, read_member, &head);
   if (status != CONIC_OK)
     return status;
   const char *wrong = own->packing == EPT_UNKNOWN ? "it does not say how points are packed" : take_head(h, &head);

@@ -90,15 +90,14 @@ conic_status conic_hierarchy_wrong(const conic_hierarchy *hierarchy, const char 
   return conic_fail(hierarchy->context, CONIC_ERROR_INPUT, "%s: %s", hierarchy->name, what);
 }
 
-conic_status conic_hierarchy_read(const conic_hierarchy *hierarchy, uint64_t offset, size_t n_bytes,
-                                  unsigned char **bytes) {
+conic_status conic_hierarchy_read(const conic_hierarchy *hierarchy, size_t n_bytes, unsigned char **bytes) {
   uint64_t size = conic_ranges_size(hierarchy->ranges);
   size_t n_read;
   *bytes = NULL;
-  if (n_bytes == 0 || offset > size || n_bytes > size - offset)
+  if (n_bytes == 0 || n_bytes > size)
     return conic_fail(hierarchy->context, CONIC_ERROR_INPUT, "%s: the file ends too early (at byte %llu)",
                       hierarchy->name, (unsigned long long)size);
-  const conic_range range = {.offset = offset, .n_bytes = n_bytes};
+  const conic_range range = {.n_bytes = n_bytes};
   return conic_ranges_read(hierarchy->ranges, hierarchy->name, &range, hierarchy->access.until_s, bytes, &n_read);
 }
 
@@ -171,15 +170,25 @@ int conic_hierarchy_is_named(const char *name, const char *file) {
   return n >= n_file && memcmp(name + n - n_file, file, n_file) == 0 && (n == n_file || name[n - n_file - 1] == '/');
 }
 
-conic_status conic_hierarchy_read_json(const conic_hierarchy *hierarchy, conic_json *json) {
+conic_status conic_hierarchy_read_json(conic_hierarchy *hierarchy, conic_hierarchy_member *read, void *data) {
   uint64_t size = conic_ranges_size(hierarchy->ranges);
   unsigned char *bytes;
+  conic_json json;
+  char key[CONIC_JSON_KEY_ROOM];
   if (size > MOST_BYTES)
     return conic_hierarchy_wrong(hierarchy, "the file is too large");
-  conic_status status = conic_hierarchy_read(hierarchy, 0, (size_t)size, &bytes);
+  conic_status status = conic_hierarchy_read(hierarchy, (size_t)size, &bytes);
   if (status == CONIC_OK)
-    status = conic_json_take(hierarchy->context, hierarchy->name, bytes, (size_t)size, json);
+    status = conic_json_take(hierarchy->context, hierarchy->name, bytes, (size_t)size, &json);
   conic_memory_release(hierarchy->context, bytes);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_json_begin_object(&json);
+  while (status == CONIC_OK && conic_json_next_member(&json, key))
+    status = read(hierarchy, &json, key, data);
+  if (status == CONIC_OK)
+    status = conic_json_end(&json);
+  conic_json_close(&json);
   return status;
 }
 

@@ -136,9 +136,8 @@ void conic_hierarchy_close(conic_hierarchy *hierarchy);
 
 /* Fails while a kind opens: "NAME: what is wrong". */
 conic_status conic_hierarchy_wrong(const conic_hierarchy *hierarchy, const char *what);
-/* Reads bytes of the opened file. Errors: as conic_ranges_read. */
-conic_status conic_hierarchy_read(const conic_hierarchy *hierarchy, uint64_t offset, size_t n_bytes,
-                                  unsigned char **bytes);
+/* Reads the first bytes of the opened file. Errors: as conic_ranges_read. */
+conic_status conic_hierarchy_read(const conic_hierarchy *hierarchy, size_t n_bytes, unsigned char **bytes);
 /* Adds a node, checked on its own. */
 const char *conic_hierarchy_add(conic_hierarchy *hierarchy, const conic_hierarchy_node *node);
 /* A node's key from its cell's number along each axis; 0 where its level has no such cell. */
@@ -158,8 +157,11 @@ extern const conic_hierarchy_kind conic_hierarchy_kind_copc, conic_hierarchy_kin
 /* Whether a name ends with this file; what a URL has from "?" on does not count. */
 int conic_hierarchy_is_named(const char *name, const char *file);
 
-/* Reads all of the opened file into *json, which the caller closes. Errors: as conic_ranges_read. */
-conic_status conic_hierarchy_read_json(const conic_hierarchy *hierarchy, conic_json *json);
+/* Reads a member of the object that the opened file is; what it does not know it skips. */
+typedef conic_status conic_hierarchy_member(conic_hierarchy *hierarchy, conic_json *json, const char *key, void *data);
+
+/* Reads the opened file, member by member. Errors: as conic_ranges_read; INPUT. */
+conic_status conic_hierarchy_read_json(conic_hierarchy *hierarchy, conic_hierarchy_member *read, void *data);
 
 /* Reads the array that comes next, of exactly n numbers. */
 conic_status conic_hierarchy_numbers(conic_json *json, double *values, size_t n);

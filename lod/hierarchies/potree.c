@@ -151,7 +151,8 @@ static conic_status read_projection(conic_hierarchy *h, conic_json *json) {
   return conic_georeference_of_epsg(h->context, epsg, &h->reference);
 }
 
-static conic_status read_potree_member(conic_hierarchy *h, conic_json *json, const char *key) {
+static conic_status read_potree_member(conic_hierarchy *h, conic_json *json, const char *key, void *data) {
+  (void)data;
   if (strcmp(key, "points") == 0)
     return conic_hierarchy_count(json, UINT64_C(1) << 53, &h->n_points);
   if (strcmp(key, "hierarchy") == 0)
@@ -169,21 +170,6 @@ static conic_status read_potree_member(conic_hierarchy *h, conic_json *json, con
   if (strcmp(key, "projection") == 0)
     return read_projection(h, json);
   return strcmp(key, "attributes") == 0 ? read_potree_attributes(h, json) : conic_json_skip(json);
-}
-
-static conic_status read_metadata(conic_hierarchy *h) {
-  conic_json json;
-  char key[CONIC_JSON_KEY_ROOM];
-  conic_status status = conic_hierarchy_read_json(h, &json);
-  if (status != CONIC_OK)
-    return status;
-  status = conic_json_begin_object(&json);
-  while (status == CONIC_OK && conic_json_next_member(&json, key))
-    status = read_potree_member(h, &json, key);
-  if (status == CONIC_OK)
-    status = conic_json_end(&json);
-  conic_json_close(&json);
-  return status;
 }
 
 static const char *what_of_metadata_is_wrong(const conic_hierarchy *h) {
@@ -222,7 +208,7 @@ static conic_status open_potree(conic_hierarchy *h) {
   potree_own *own = h->own = conic_memory_allocate_zeroed(h->context, 1, sizeof *own);
   if (!own)
     return CONIC_ERROR_MEMORY;
-  conic_status status = read_metadata(h);
+  conic_status status = conic_hierarchy_read_json(h, read_potree_member, NULL);
   const char *wrong = status == CONIC_OK ? what_of_metadata_is_wrong(h) : NULL;
   if (wrong)
     status = conic_hierarchy_wrong(h, wrong);
