@@ -1,0 +1,87 @@
+"""What the rows share: conic run on a model, its statistics, tests that print a number, decibels."""
+
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+
+
+class Absent(Exception):
+    """A model, a program or a package that is not there."""
+
+
+class Workbench:
+    """A folder of temporary files, and conic to fill it."""
+
+    def __init__(self, root):
+        self.root = root
+        self.data = root.parent / "shared" / "data"
+        self.program = os.environ.get("CONIC", str(root / "build" / "bin" / "conic"))
+        self.known = {}
+
+    def __enter__(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="papers-"))
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.folder)
+
+    def path(self, name):
+        return str(self.folder / name)
+
+    def model(self, name):
+        if not (self.data / name).exists():
+            raise Absent(f"{name} is not there")
+        return str(self.data / name)
+
+    def run(self, *words, may_differ=False):
+        """Runs conic and gives its statistics."""
+        report = self.path("run.json")
+        if not pathlib.Path(self.program).exists():
+            raise Absent(f"{self.program} is not built")
+        command = [self.program, *map(str, words), "--quiet", "--json", report]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode > (1 if may_differ else 0):
+            raise RuntimeError(f"{' '.join(command)}: {done.stderr}")
+        with open(report, encoding="utf-8") as file:
+            return json.load(file)
+
+    def render(self, file, *words, out="out.pfm"):
+        """As the library draws by default: one sample, framed by a sphere."""
+        return self.run("render", file, "-o", self.path(out), "--plain", *words)
+
+    def once(self, name, make):
+        """A file that several rows use, made the first time."""
+        if name not in self.known:
+            self.known[name] = make(self.path(name))
+        return self.path(name)
+
+    def octree(self, model):
+        return self.once(pathlib.Path(model).stem + ".cot",
+                         lambda out: self.run("octree", self.model(model), "-o", out, "--threads", 1))
+
+    def decibels(self, whole, near):
+        """PSNR over rgba between two pictures of the folder."""
+        rmse = self.run("diff", self.path(whole), self.path(near), may_differ=True)["planes"]["rgba"]["rmse"]
+        return -20 * math.log10(rmse) if rmse else math.inf
+
+    def test(self, name, *patterns):
+        """What a test program prints, by patterns; a test that fails is an error."""
+        program = self.root / "build" / "bin" / name
+        if not program.exists():
+            raise Absent(f"{name} is not built")
+        done = subprocess.run([program], capture_output=True, text=True, check=False, cwd=self.root)
+        if done.returncode:
+            raise RuntimeError(f"{name}: {done.stdout}{done.stderr}")
+        found = [re.findall(pattern, done.stdout + done.stderr) for pattern in patterns]
+        if not all(found):
+            raise Absent(f"{name} printed no number, as where its model is missing")
+        return found
+
+
+def thousands(number):
+    return f"{number:,.0f}"
