@@ -59,7 +59,12 @@ def _(bench):
     return "; ".join(texts)
 
 
+words("H10", "Fig. 4.7: EWA removes the aliasing of a checkerboard", FULL, "test_checkerboard",
+      "[picture](../pictures/papers/checkerboard.png): without and with the prefilter")
 words("H12", "Fig. 4.9: holes at the corners of patches", FULL, "scripts/hybrid-watertight", "None")
+words("H13", "Fig. 4.10: one sampling distance for the whole cow loses horns and ears", FULL,
+      "conic hybrid --sampling box --phase1 -2 --phase2 1e6", "[picture](../pictures/papers/head.png): one distance, and "
+      "each patch's own")
 words("H14", "Figs. 4.4, 4.11, 4.16–4.20: pictures of the models", FULL, "scripts/hybrid-pictures",
       "[head](../pictures/hybrid/head.png), [models](../pictures/hybrid/models.png)")
 
@@ -77,7 +82,7 @@ def _(bench):
     return "; ".join(texts)
 
 
-@add("H16", "Table 4.4, Fig. 4.13: the mesh itself is 4.5–15 times as fast as the hybrid", FULL, "the same",
+@add("H16", "Table 4.4, Fig. 4.13: the mesh itself is 4.5–15 times as fast as the hybrid", FULL, "conic render x.chy --repeat 3",
      quick=True)
 def _(bench):
     texts = []

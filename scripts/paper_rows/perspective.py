@@ -30,6 +30,10 @@ words("P4", "§4.4: centres are off, without artefacts", FULL, "conic render --m
       "Each splat's error is bounded; `auto` takes `ray` where it would be seen ([accuracy](accuracy.md))")
 
 
+words("P5", "Fig. 2: contours of a splat in a bad case: exact, theirs and Heckbert's", FULL, "scripts/isocontours.py",
+      "[picture](../pictures/papers/isocontours.svg): grey what is true; `conic` has the outline, but not what is in it")
+
+
 @add("P7", "Fig. 7: an affine approximation tears surfaces, theirs does not", FULL, "test_closed_plane",
      "[picture](../pictures/papers/affine.png): a floor seen along it, affine above, exact below")
 def _(bench):
@@ -43,6 +47,8 @@ def _(bench):
 
 words("P8", "§5, Fig. 4: clip lines from neighbours' planes, none to two a splat", FULL, "conic prepare --features 40",
       "[Measured](../notes/features.md)")
+words("P9", "Fig. 5: a cube without and with clip lines", FULL, "conic make cube -n 400",
+      "[picture](../pictures/papers/cube.png)")
 words("P11", "§5: features found by themselves", FULL, "conic prepare --features 40; conic mls project --sharp",
       "[Measured](../notes/surfaces-measured.md)")
 words("P12", "§6: three passes, a table of the Gaussian, F_g 1–2; ill-conditioned splats are left out", FULL,
