@@ -49,6 +49,8 @@ words("P8", "§5, Fig. 4: clip lines from neighbours' planes, none to two a spla
       "[Measured](../notes/features.md)")
 words("P9", "Fig. 5: a cube without and with clip lines", FULL, "conic make cube -n 400",
       "[picture](../pictures/papers/cube.png)")
+words("P10", "§5, Fig. 8: a CSG object of 6,433 splats", FULL, "conic csg A B --difference; test_solids",
+      "[picture](../pictures/papers/csg.png): lines lie at the seam, within what flat discs are off round surfaces")
 words("P11", "§5: features found by themselves", FULL, "conic prepare --features 40; conic mls project --sharp",
       "[Measured](../notes/surfaces-measured.md)")
 words("P12", "§6: three passes, a table of the Gaussian, F_g 1–2; ill-conditioned splats are left out", FULL,
