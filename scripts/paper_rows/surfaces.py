@@ -64,7 +64,7 @@ def _(bench):
 words("S13", "§5.1: what contributes least goes first", FULL, "conic mls thin",
       "9.4e-4 off where a random choice is 3.2e-3 off")
 words("S14", "Figs. 6–7: coloured by contribution; 37 K → 20 K points", FULL, "conic mls thin --keep contribution",
-      "[picture](../pictures/papers/contribution.png): all of nefertiti, and the 10,000 points that are left")
+      "[picture](../pictures/papers/contribution.png): all of nefertiti, and the 10,000 that are left; grey ones cannot be measured")
 words("S15", "§5.2, Fig. 8: densifying at the vertices of a Voronoi diagram, 800 → 20,000", OTHER, "conic mls densify",
       "By the largest empty circles that darts find: 12,228 points leave no gap, 4.2e-3 off; "
       "[picture](../pictures/surfaces/densify.png)")
