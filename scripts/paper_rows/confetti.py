@@ -1,7 +1,7 @@
 """Confetti: Object-Space Point Blending and Splatting (Pajarola, Sainz, Guidotti)."""
 
 from .page import FULL, OTHER, PARTLY, Rows
-from .tools import Absent
+from .tools import import_numpy, read_positions
 
 TITLE = "Confetti"
 INTRODUCTION = """
@@ -80,7 +80,7 @@ def _(bench):
 
 def count_region_nodes(points):
     """Inner nodes of an octree that halves its cube until each leaf has one point."""
-    import numpy
+    numpy = import_numpy()
     low = points.min(axis=0)
     edge = (points.max(axis=0) - low).max() * (1 + 1e-9)
     cells = numpy.floor((points - low) / edge * 2.0**20).astype(numpy.int64)
@@ -92,30 +92,12 @@ def count_region_nodes(points):
     return count, len(cells)
 
 
-def read_points(bench, model):
-    try:
-        import numpy
-    except ImportError as error:
-        raise Absent("numpy is not there") from error
-    file = bench.model(model)
-    if model.endswith(".obj"):
-        with open(file, encoding="utf-8") as source:
-            return numpy.array([line.split()[1:4] for line in source if line.startswith("v ")], dtype="f8")
-    bench.run("prepare", file, "-o", bench.path("points.ply"), "--plain")
-    with open(bench.path("points.ply"), "rb") as source:
-        header = [line.decode().split() for line in iter(source.readline, b"end_header\n")]
-        columns = [(parts[2], {"float": "<f4", "double": "<f8", "uchar": "u1"}[parts[1]]) for parts in header
-                   if parts[0] == "property"]
-        table = numpy.fromfile(source, dtype=columns)
-    return numpy.stack([table[axis].astype("f8") for axis in "xyz"], axis=1)
-
-
 @add("C16", "§7: far fewer nodes than a region octree", FULL, "scripts/papers C16",
      "Both without levels of a single child", quick=True)
 def _(bench):
     texts = []
     for model in MODELS:
-        regions, n_points = count_region_nodes(read_points(bench, model))
+        regions, n_points = count_region_nodes(read_positions(bench, bench.model(model)))
         nodes = bench.run("octree", bench.model(model), "-o", bench.path("nodes.cot"))["inner_nodes"]
         texts.append(f"{model.split('.')[0]} {nodes / n_points:.3f} a point, a region octree {regions / n_points:.3f}")
     return "; ".join(texts)

@@ -1,7 +1,7 @@
 """Hybrid Rendering of Points and Polygons, with quadrics (the thesis behind hybrid models)."""
 
-from .page import ABSENT, FULL, OTHER, PARTLY, Rows
-from .tools import thousands
+from .page import ABSENT, FULL, PARTLY, Rows
+from .tools import read_floats, thousands
 
 TITLE = "Hybrid Quadric Points"
 INTRODUCTION = """
@@ -101,18 +101,8 @@ def _(bench):
 def count_contributing(bench, file, *options):
     """Mean of the plane `count`, of pixels that show anything."""
     bench.render(file, "--size", "512x512", "--only", "surfels", "--aov", "count", *options, out="count.pfm")
-    return mean_where_seen(bench.path("count.pfm"))
-
-
-def mean_where_seen(file):
-    import array
-    with open(file, "rb") as source:
-        kind, size, scale = source.readline(), source.readline(), float(source.readline())
-        values = array.array("f", source.read())
-    if scale > 0:
-        values.byteswap()
-    seen = [value for value in values if value > 0]
-    return sum(seen) / len(seen)
+    counts = read_floats(bench.path("count.pfm"))
+    return float(counts[counts > 0].mean())
 
 
 @add("H17", "Figs. 4.14–4.15, Table 4.3: 10.9–40.1 surfels contribute to a pixel: cow 11.2, bunny 15.8", FULL,

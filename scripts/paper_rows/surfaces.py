@@ -1,7 +1,7 @@
 """Computing and Rendering Point Set Surfaces (Alexa, Behr, Cohen-Or, Fleishman, Levin, Silva)."""
 
-from .page import ABSENT, FULL, OTHER, PARTLY, Rows
-from .tools import thousands
+from .page import FULL, OTHER, PARTLY, Rows
+from .tools import Absent, import_numpy, read_floats, read_positions
 
 TITLE = "Point Set Surfaces"
 INTRODUCTION = """
@@ -61,6 +61,57 @@ def _(bench):
     return "gyroid: " + ", ".join(f"degree {degree}: {order}" for degree, order in lines)
 
 
+def distance_off_torus(bench, n_points, degree):
+    """How far patches' depths lie from the torus, in the root of the mean square, where it faces the viewer."""
+    numpy = import_numpy()
+    torus = bench.once(f"torus{n_points}.ply", lambda out: bench.run("make", "torus", "-n", n_points, "-o", out))
+    camera = bench.render(torus, "--aov", "Z", "--projection", "orthographic", "--elevation", 90, "--size", "2000x2000",
+                          "--method", f"patch:{degree}", out="depth.pfm")["camera"]
+    depth = read_floats(bench.path("depth.pfm")).reshape(2000, 2000)[::-1].astype("f8")
+    pose = numpy.array(camera["world_to_camera"])
+    rows, columns = numpy.mgrid[0:2000, 0:2000] + 0.5
+    seen = numpy.stack([(columns - camera["cx"]) / camera["fx"], (rows - camera["cy"]) / camera["fy"], depth])
+    places = numpy.tensordot(pose[:3, :3].T, seen - pose[:3, 3][:, None, None], 1)
+    around = numpy.hypot(places[0], places[2]) - 1
+    off = numpy.hypot(around, places[1]) - 0.4
+    return float(numpy.sqrt((off[(depth > 0) & (abs(around) < 0.25)] ** 2).mean()))
+
+
+@add("S11", "Eqs. 8–9: the union of patches has the order of the surface", FULL, "conic render --method patch:D",
+     "Below 2e-4 the depths' prefilter is what is left")
+def _(bench):
+    texts = []
+    for degree in (1, 2, 3):
+        coarse, fine = (distance_off_torus(bench, n, degree) for n in (500, 2000))
+        texts.append(f"degree {degree}: {coarse:.1e} → {fine:.1e}, ÷ {coarse / fine:.1f}")
+    return "torus, h halved: " + "; ".join(texts)
+
+
+def variation(positions):
+    """How unevenly points lie: the deviation of the distances to their nearest neighbours over the mean."""
+    numpy = import_numpy()
+    try:
+        from scipy.spatial import cKDTree
+    except ImportError as error:
+        raise Absent("scipy is not there") from error
+    distances = cKDTree(positions).query(positions, 2)[0][:, 1]
+    distances = distances[distances > 0]
+    return float(numpy.std(distances) / numpy.mean(distances))
+
+
+@add("S12", "Fig. 5: thinned and densified points lie evenly", FULL, "conic mls thin; conic mls densify --spacing 0.5x",
+     "Thinning keeps points where the surface bends, so it does not make them even; densifying does")
+def _(bench):
+    texts = []
+    for model in ("nefertiti.obj", "cow.obj"):
+        bench.run("mls", "thin", bench.model(model), "-o", bench.path("thin.ply"))
+        bench.run("mls", "densify", bench.model(model), "-o", bench.path("dense.ply"), "--spacing", "0.5x")
+        found = [variation(read_positions(bench, file)) for file in (bench.model(model), bench.path("thin.ply"),
+                                                                     bench.path("dense.ply"))]
+        texts.append(f"{model.split('.')[0]} {found[0]:.2f}, thinned {found[1]:.2f}, densified {found[2]:.2f}")
+    return "deviation of nearest distances over their mean: " + "; ".join(texts)
+
+
 words("S13", "§5.1: what contributes least goes first", FULL, "conic mls thin",
       "9.4e-4 off where a random choice is 3.2e-3 off")
 words("S14", "Figs. 6–7: coloured by contribution; 37 K → 20 K points", FULL, "conic mls thin --keep contribution",
@@ -68,10 +119,35 @@ words("S14", "Figs. 6–7: coloured by contribution; 37 K → 20 K points", FULL
 words("S15", "§5.2, Fig. 8: densifying at the vertices of a Voronoi diagram, 800 → 20,000", OTHER, "conic mls densify",
       "By the largest empty circles that darts find: 12,228 points leave no gap, 4.2e-3 off; "
       "[picture](../pictures/surfaces/densify.png)")
+words("S16", "§6.1: a hierarchy of spheres, whose nodes below a pixel are one point", PARTLY, "conic octree",
+      "Points' patches have no levels above them; an octree of the same points has, of splats")
 words("S17", "§6.2, Figs. 9–10: a patch's extent and spacing, evaluated by forward differences", FULL,
       "conic render --method patch", "Weights of the grid are even to 6 % rms; errors of the differences stay within 2 px "
       "steps")
 words("S18", "§6.3: grids of several resolutions, made when wanted", FULL, "conic render --method patch", "3 to 64 rows")
+words("S19", "Fig. 11: the bunny as points, splats, a mesh and patches", FULL, "scripts/surface-pictures",
+      "[splats](../pictures/surfaces/bunny.png), [patches](../pictures/surfaces/patch.png)")
+
+
+@add("S20", "Fig. 12: an environment mirrored in 1,000 vertices, as a mesh and as patches", PARTLY, "test_patches",
+     "No reflections; what would spoil them, the normals, is measured")
+def _(bench):
+    found = bench.test("test_patches", r"normals off by ([\d.]+) deg rms.*as splats;\n +([\d.]+), ")[0][0]
+    return f"torus: normals off by {found[0]}° rms as splats, {found[1]}° as patches"
+
+
+@add("S21", "§6.4: 1–900 K points, over 5 frames a second", FULL, "conic render --method patch --repeat 3")
+def _(bench):
+    texts = []
+    for count in ("36k", "900k"):
+        knot = bench.once(f"knot{count}.ply", lambda out: bench.run("make", "knot", "-n", count, "-o", out))
+        ms = bench.render(knot, "--method", "patch", "--size", "512x512", "--repeat", 3)["ms"]["frame"]
+        texts.append(f"{count}: {1000 / ms:.0f} a second")
+    return ", ".join(texts)
+
+
+words("S22", "Future: local h, sharp features, a hierarchy from smooth to detailed, topology", PARTLY,
+      "conic mls -k K; conic mls --sharp", "The first two")
 DEPARTURES = [
     "The plane is projected until the point is a fixed point: the printed search does not give one.",
     "Densifying fills the largest empty circles that darts find, not the vertices of a Voronoi diagram.",

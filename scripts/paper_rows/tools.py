@@ -83,5 +83,37 @@ class Workbench:
         return found
 
 
+def import_numpy():
+    try:
+        import numpy
+    except ImportError as error:
+        raise Absent("numpy is not there") from error
+    return numpy
+
+
+def read_floats(file):
+    """The numbers of a PFM, the lowest row first."""
+    numpy = import_numpy()
+    with open(file, "rb") as source:
+        _, _, scale = source.readline(), source.readline(), float(source.readline())
+        return numpy.frombuffer(source.read(), "<f4" if scale < 0 else ">f4")
+
+
+def read_positions(bench, file):
+    """The places of an OBJ's vertices, or of any other points."""
+    numpy = import_numpy()
+    if file.endswith(".obj"):
+        with open(file, encoding="utf-8") as source:
+            return numpy.array([line.split()[1:4] for line in source if line.startswith("v ")], dtype="f8")
+    bench.run("prepare", file, "-o", bench.path("points.ply"), "--plain")
+    with open(bench.path("points.ply"), "rb") as source:
+        header = [line.decode().split() for line in iter(source.readline, b"end_header\n")]
+        n_points = next(int(parts[2]) for parts in header if parts[:2] == ["element", "vertex"])
+        columns = [(parts[2], {"float": "<f4", "double": "<f8", "uchar": "u1"}[parts[1]]) for parts in header
+                   if parts[0] == "property"]
+        table = numpy.fromfile(source, dtype=columns, count=n_points)
+    return numpy.stack([table[axis].astype("f8") for axis in "xyz"], axis=1)
+
+
 def thousands(number):
     return f"{number:,.0f}"
