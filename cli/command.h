@@ -35,7 +35,7 @@ typedef struct cli_command {
   int is_shared; /* a team works on it together (cli/session_team.h); else its first process does alone */
 } cli_command;
 
-extern const cli_command cli_make, cli_prepare, cli_octree, cli_layer, cli_merge, cli_cut, cli_mls, cli_hybrid,
+extern const cli_command cli_make, cli_prepare, cli_octree, cli_layer, cli_merge, cli_cut, cli_mls, cli_csg, cli_hybrid,
     cli_render, cli_diff, cli_info, cli_verify, cli_judge, cli_explain, cli_gradient, cli_conformance, cli_chart,
     cli_bench, cli_devices, cli_convert;
 

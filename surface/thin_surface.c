@@ -110,14 +110,38 @@ static int allocate_thinning(thinning *work) {
   return work->heap.slots && work->heap.keys && work->is_stale;
 }
 
+static conic_status measure_all(thinning *work) {
+  conic_team_loop loop = conic_team_loop_of("measure", 0.0, 1.0, work->surface->tree.n_slots, BATCH, BATCHES_A_REPORT,
+                                            measure_chunk, work);
+  loop.columns[0] = (conic_team_column){work->heap.keys, sizeof *work->heap.keys};
+  return conic_team_runs(work->surface->context, &loop);
+}
+
+conic_status conic_surface_contributions(conic_surface *surface, float *contributions) {
+  conic_context *context = surface->context;
+  const conic_neighbours *tree = &surface->tree;
+  thinning work = {.surface = surface};
+  work.heap.keys = conic_memory_allocate(context, tree->n_slots, sizeof *work.heap.keys);
+  conic_status status = work.heap.keys ? conic_workspaces_create(context, &work.workspaces) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = measure_all(&work);
+  if (status == CONIC_OK)
+    status = conic_workspaces_check(context, work.workspaces);
+  for (size_t i = 0; i < tree->n_points && status == CONIC_OK; i++) {
+    double found = tree->slot_of_point[i] == CONIC_NO_SLOT ? HUGE_VAL : work.heap.keys[tree->slot_of_point[i]];
+    contributions[i] = found < HUGE_VAL ? (float)found : NAN;
+  }
+  conic_memory_release(context, work.heap.keys);
+  conic_workspaces_release(context, work.workspaces);
+  return status;
+}
+
 /* Removes slots until `n_wanted` are left or the next one's contribution exceeds the limit; *n_left says how many are
  * left. */
 static conic_status remove_slots(thinning *work, size_t n_wanted, double max_error, size_t *n_left) {
   conic_context *context = work->surface->context;
   size_t n = work->surface->tree.n_slots;
-  conic_team_loop loop = conic_team_loop_of("measure", 0.0, 1.0, n, BATCH, BATCHES_A_REPORT, measure_chunk, work);
-  loop.columns[0] = (conic_team_column){work->heap.keys, sizeof *work->heap.keys};
-  conic_status status = conic_team_runs(context, &loop);
+  conic_status status = measure_all(work);
   if (status == CONIC_OK)
     status = conic_workspaces_count(context, work->workspaces, &work->n_evaluations);
   if (status != CONIC_OK)

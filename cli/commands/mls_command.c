@@ -5,7 +5,9 @@
 #include "cli/commands/build_steps.h"
 #include "cli/commands/mls_sizes.h"
 #include "cli/device_option.h"
+#include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/splats/point_values.h"
 #include "core/splats/repairs_log.h"
 
 typedef enum mls_action { MLS_PROJECT, MLS_THIN, MLS_DENSIFY, N_MLS_ACTIONS } mls_action;
@@ -14,6 +16,7 @@ static const char *const action_names[N_MLS_ACTIONS + 1] = {"project", "thin", "
 static const char *const type_names[] = {"mls", "apss", NULL};
 static const char *const plane_names[] = {"full", "fast", NULL};
 static const char *const weight_names[] = {"gauss", "compact", "flat", NULL};
+static const char *const keep_names[] = {"contribution", NULL};
 static const char *const isa_names[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
 
 typedef struct mls_job {
@@ -25,7 +28,7 @@ typedef struct mls_job {
   unsigned long long count;
   int has_count;
   unsigned long long memory_mib;
-  int has_memory, is_sharp;
+  int has_memory, is_sharp, keep, keeps;
 
   conic_model model;
   conic_surface *surface;
@@ -107,6 +110,22 @@ static conic_status thin(mls_job *job) {
              : status;
 }
 
+/* --keep: what each point matters to the surface of those that are written. */
+static conic_status keep_contributions(mls_job *job) {
+  conic_context *context = job->base.session->context;
+  conic_splats *splats = &job->result;
+  conic_surface *surface = NULL;
+  float *values = conic_memory_allocate(context, splats->count, sizeof *values);
+  conic_status status = values ? conic_surface_create(context, splats, &job->options, &surface) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = conic_surface_contributions(surface, values);
+  if (status == CONIC_OK)
+    status = conic_splats_keep_value(context, splats, keep_names[0], values);
+  conic_surface_destroy(surface);
+  conic_memory_release(context, values);
+  return status;
+}
+
 static conic_status densify(mls_job *job) {
   conic_densify_options options;
   conic_densify_options_init(&options);
@@ -186,6 +205,8 @@ static conic_status work(mls_job *job) {
     status = job->action == MLS_THIN      ? thin(job)
              : job->action == MLS_DENSIFY ? densify(job)
                                           : conic_surface_clean(job->surface, &job->result, &job->report);
+  if (status == CONIC_OK && job->keeps)
+    status = keep_contributions(job);
   if (status == CONIC_OK && job->is_sharp)
     status = cli_mls_size_sharp(job->base.session->context, &job->result);
   job->n_out = job->result.count;
@@ -346,10 +367,12 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
     return exit_code;
   if (job->action == MLS_DENSIFY && !(job->spacing.value > 0.0))
     job->spacing = (cli_length){.value = 0.5, .is_in_spacings = 1};
-  if ((job->action == MLS_PROJECT && job->has_count) || (job->action != MLS_THIN && job->max_error.value > 0.0) ||
+  if ((job->action == MLS_PROJECT && job->has_count) ||
+      (job->action != MLS_THIN && (job->max_error.value > 0.0 || job->keeps)) ||
       (job->action != MLS_DENSIFY && (job->spacing.value > 0.0 || job->hole.value > 0.0)))
-    return cli_usage("mls %s: --count is of thin and densify, --max-error of thin, --spacing and --hole of densify",
-                     name);
+    return cli_usage(
+        "mls %s: --count is of thin and densify, --max-error and --keep of thin, --spacing and --hole of densify",
+        name);
   if (job->has_memory && (!is_by_cells(job) || job->h.is_in_spacings || strcmp(positional[1], "-") == 0))
     return cli_usage("mls %s: --memory is of project, from a file, with --h in world units and without --cluster and "
                      "--sharp",
@@ -394,6 +417,9 @@ static int run_mls(cli_session *session, int argc, char **argv) {
        4294967294.0, .is_given = &job.has_count},
       {"max-error", CLI_PARSED, &job.max_error, "E", "thin: keep the surface within E of what it was",
        .parse = cli_parse_length},
+      {"keep", CLI_CHOICE, &job.keep, "WHAT",
+       "thin: contribution, how far each point that is left lies from the surface of the others, as a value",
+       .choices = keep_names, .is_given = &job.keeps},
       {"spacing", CLI_PARSED, &job.spacing, "S", "densify: no circle of a greater radius stays empty [0.5x]",
        .parse = cli_parse_length},
       {"hole", CLI_PARSED, &job.hole, "R",

@@ -54,24 +54,6 @@ static conic_status occlude(conic_context *context, int n_directions, float cuto
   return status;
 }
 
-/* Keeps ao as the only named value of the points. */
-static conic_status keep_ao(conic_context *context, const float *ao, conic_splats *splats) {
-  conic_point_values *values = conic_memory_allocate_zeroed(context, 1, sizeof *values);
-  if (!values)
-    return CONIC_ERROR_MEMORY;
-  conic_point_values_destroy(context, splats->values);
-  splats->values = values;
-  values->n = values->n_columns = 1;
-  values->scalar = -1;
-  strcpy(values->field[0].name, "ao");
-  values->field[0].type = "float";
-  conic_status status = conic_point_values_reserve(context, values, splats->count);
-  for (size_t i = 0; i < splats->count && status == CONIC_OK; i++)
-    values->value[0][i] = (double)ao[i];
-  values->count = status == CONIC_OK ? splats->count : 0;
-  return status;
-}
-
 /* A set without colours is white. */
 static conic_status darken_colors(conic_context *context, const float *ao, conic_splats *splats) {
   for (int c = 0; c < 3; c++) {
@@ -94,7 +76,7 @@ conic_status cli_bake_splats(conic_context *context, cli_bake bake, int n_direct
     return CONIC_ERROR_MEMORY;
   conic_status status = occlude(context, n_directions, cutoff, splats, ao);
   if (status == CONIC_OK)
-    status = keep_ao(context, ao, splats);
+    status = conic_splats_keep_value(context, splats, "ao", ao);
   if (status == CONIC_OK && bake == CLI_BAKE_COLOR)
     status = darken_colors(context, ao, splats);
   conic_memory_release(context, ao);

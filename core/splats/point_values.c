@@ -1,5 +1,7 @@
 #include "core/splats/point_values.h"
 
+#include <string.h>
+
 #include "core/base/memory.h"
 #include "core/splats/columns.h"
 
@@ -68,4 +70,22 @@ void conic_point_values_settle(conic_splats *points) {
   if (values->filter)
     leave_points_out(points, values);
   values->count = points->count;
+}
+
+conic_status conic_splats_keep_value(conic_context *context, conic_splats *splats, const char *name,
+                                     const float *values) {
+  conic_point_values *kept = conic_memory_allocate_zeroed(context, 1, sizeof *kept);
+  if (!kept)
+    return CONIC_ERROR_MEMORY;
+  conic_point_values_destroy(context, splats->values);
+  splats->values = kept;
+  kept->n = kept->n_columns = 1;
+  kept->scalar = -1;
+  strcpy(kept->field[0].name, name);
+  kept->field[0].type = "float";
+  conic_status status = conic_point_values_reserve(context, kept, splats->count);
+  for (size_t i = 0; i < splats->count && status == CONIC_OK; i++)
+    kept->value[0][i] = (double)values[i];
+  kept->count = status == CONIC_OK ? splats->count : 0;
+  return status;
 }

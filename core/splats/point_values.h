@@ -27,6 +27,10 @@ typedef struct conic_point_values conic_point_values;
 conic_status conic_point_values_reserve(conic_context *context, conic_point_values *values, size_t room);
 void conic_point_values_destroy(conic_context *context, conic_point_values *values);
 
+/* Makes these the only values of the set that have a name, as many as there are splats. Errors: MEMORY. */
+conic_status conic_splats_keep_value(conic_context *context, conic_splats *splats, const char *name,
+                                     const float *values);
+
 /* From the columns of all points of the set: scalars; and what the filter does not pass is left out of the set, clip
  * lines with it. */
 void conic_point_values_settle(conic_splats *points);

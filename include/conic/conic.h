@@ -24,6 +24,7 @@
 #include "conic/coloring.h"
 #include "conic/context.h"
 #include "conic/contributions.h"
+#include "conic/csg.h"
 #include "conic/diagnosis.h"
 #include "conic/export.h"
 #include "conic/gather.h"

@@ -181,6 +181,10 @@ CONIC_API void conic_thin_options_init_sized(conic_thin_options *options, size_t
 CONIC_API conic_status conic_surface_thin(conic_surface *surface, const conic_thin_options *options,
                                           conic_splats *thinned, conic_surface_report *report);
 
+/* How much each point of the set matters: its distance from the surface of the others (PSS §5.1), one for each point;
+ * NaN for those that cannot be measured. Coincident points have one value. Errors: MEMORY, CANCELLED. */
+CONIC_API conic_status conic_surface_contributions(conic_surface *surface, float *contributions);
+
 typedef struct conic_densify_options {
   size_t size;                    /* sizeof(conic_densify_options), set by the init function */
   double spacing;                 /* no circle of a greater radius stays empty */

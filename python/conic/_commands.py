@@ -432,6 +432,15 @@ def mls(what: str, scene: AnyScene, output: Optional[PathLike] = None, *, progre
     return _build(call, output, "ply", options, progress, threads)
 
 
+def csg(scene: AnyScene, other: AnyScene, output: Optional[PathLike] = None, *, progress: Any = None,
+        threads: Optional[int] = None, **options: Options) -> Scene:
+    """Joins two solids (`union=True`), intersects them (`intersection`), or takes one from the other (`difference`)."""
+    call = _Call("csg")
+    call.input(scene)
+    call.input(other)
+    return _build(call, output, "ply", options, progress, threads)
+
+
 def hybrid(mesh: AnyScene, output: Optional[PathLike] = None, *, progress: Any = None,
            threads: Optional[int] = None, **options: Options) -> Scene:
     """Builds a hybrid model (.chy) of a mesh or of points: triangles where it is flat, surfels where it is detailed."""

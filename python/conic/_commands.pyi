@@ -1084,6 +1084,35 @@ def mls(
     """
 
 
+def csg(
+    scene: AnyScene,
+    other: AnyScene,
+    output: Optional[PathLike] = None,
+    *,
+    progress: Any = None,
+    threads: Optional[int] = None,
+    union: Optional[bool] = None,
+    intersection: Optional[bool] = None,
+    difference: Optional[bool] = None,
+    k: Optional[int] = None,
+    cutoff: Optional[float] = None,
+    columns: Optional[Union[str, float, Sequence[float]]] = None,
+) -> Scene:
+    """Joins two solids (`union=True`), intersects them (`intersection`), or takes one from the other (`difference`).
+
+    Options:
+
+    output: the file to write
+    union: what is in either
+    intersection: what is in both
+    difference: what is in A and not in B
+    k: neighbours that a raw point's size is estimated from, 6 to 64 [20]
+    cutoff: the --cutoff of the pictures to come [1.5]
+    columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    threads: how many threads compute; the results never depend on it [0: all]
+    """
+
+
 def hybrid(
     mesh: AnyScene,
     output: Optional[PathLike] = None,

@@ -56,6 +56,7 @@ declare -A wanted=(
   [mls-project]="$builder type plane weight h outcomes.done outcomes.too_few moved.rms moved.max merged"
   [mls-thin]="$builder error hausdorff to_thinned.max from_thinned.max"
   [mls-densify]="$builder flat"
+  [csg]="operation points_in points_out of_first of_second clipped unclipped seconds.work"
   [render]="$render methods.conic"
   [render-octree]="$render methods.conic primitives.inner_nodes primitives.leaves error_px error_px_asked?"
   [render-team]="$render team.shares team.processes"
@@ -124,6 +125,7 @@ write mls-project mls_project mls project knot.ply -o clean.ply
 write mls-spheres mls_project mls project thin.ply -o clean.ply --type apss
 write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 10k
 write mls-densify mls_densify mls densify thinner.ply -o dense.ply --spacing 0.7x
+write csg csg csg knot.ply clean.ply -o solid.ply --union
 write render render render knot.ply -o knot.exr --aov all --size 512x512
 write render-accumulated render render knot.ply -o accumulated.exr --accumulate 4 --aperture 0.1 --size 64x64
 write render-kept render render knot.ply --turntable 2 -o turn.exr --resumable --resume turn.exr --size 32x32

@@ -62,6 +62,11 @@ head -c 300 raw.ply | grep -aq 'property float nx' || fail "no normals"
 "$conic" mls project - -o - < torus.ply > piped.ply || fail "from and to a pipe"
 cmp -s piped.ply all.ply || fail "a pipe changes the file"
 
+# What each point matters, as a value; to all of them where none is taken away.
+run 0 mls thin all.ply -o values.ply --count 1M --keep contribution
+run 0 render values.ply -o values.pfm --color-by contribution --size 64x64
+run 2 mls project all.ply -o x.ply --keep contribution
+
 # Thin: to a count, within an error that was measured.
 run 0 mls thin all.ply -o thin.ply --count 4k --json thin.json
 [[ $(value points_out thin.json) == 4000 ]] || fail "mls thin --count"

@@ -45,7 +45,8 @@ class Commands(unittest.TestCase):
         kinds = [self.splats, conic.open(self.path("points.xyz")), conic.open(self.path("square.obj")), self.gaussians,
                  conic.octree(self.splats, self.path("torus.cot")), conic.hybrid(self.path("square.obj"),
                                                                                   self.path("square.chy")),
-                 conic.convert(self.gaussians, self.path("gaussians.splat"))]
+                 conic.convert(self.gaussians, self.path("gaussians.splat")),
+                 conic.csg(self.splats, conic.make("sphere", n=500, far=(1, 0, 0)), self.path("solid.ply"), difference=True)]
         if conic.features()["zstd"]:
             kinds.append(conic.layers(self.splats, self.path("torus.lpc")))
             kinds.append(conic.convert(self.gaussians, self.path("gaussians.spz")))

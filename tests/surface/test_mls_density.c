@@ -133,6 +133,29 @@ static double widest_gap(conic_context *context, const conic_splats *splats) {
   return sqrt(widest);
 }
 
+/* The first point that goes is the one that contributes least, and by so much it is missed. */
+static void check_contributions(conic_context *context) {
+  conic_splats samples = shape_sample(context, SHAPE_TORUS, 3000, 0.2, 5), thinned;
+  conic_thin_options options;
+  conic_surface_report report;
+  float values[3000];
+  conic_surface *surface = shape_surface(context, &samples, NULL);
+  size_t least = 0;
+  CHECK_OK(conic_surface_contributions(surface, values));
+  for (size_t i = 1; i < samples.count; i++)
+    least = values[i] < values[least] ? i : least;
+  conic_thin_options_init(&options);
+  options.count = samples.count - 1;
+  CHECK_OK(conic_surface_thin(surface, &options, &thinned, &report));
+  CHECK(thinned.count == samples.count - 1);
+  CHECK_NEAR(report.error, (double)values[least], 1e-7 * report.error);
+  for (size_t i = 0; i < thinned.count; i++)
+    CHECK(thinned.position[0][i] == samples.position[0][i + (i >= least)]);
+  conic_splats_release(context, &thinned);
+  conic_surface_destroy(surface);
+  conic_splats_release(context, &samples);
+}
+
 static void check_densify(conic_context *context) {
   conic_splats samples = shape_sample(context, SHAPE_TORUS, 800, 0.0, 6), dense, again;
   conic_surface_options options;
@@ -256,6 +279,7 @@ int main(void) {
   check_thin_count(context);
   check_thin_error(context);
   check_thin_little(context);
+  check_contributions(context);
   check_densify(context);
   check_borders(context);
   check_mesh(context);
