@@ -1051,6 +1051,7 @@ def mls(
     sharp: Optional[bool] = None,
     count: Optional[Union[int, str]] = None,
     max_error: Optional[Union[str, float, Sequence[float]]] = None,
+    keep: Optional[Literal["contribution"]] = None,
     spacing: Optional[Union[str, float, Sequence[float]]] = None,
     hole: Optional[Union[str, float, Sequence[float]]] = None,
     memory: Optional[Union[int, str]] = None,
@@ -1075,6 +1076,7 @@ def mls(
     sharp: keep creases sharp, and clip the splats that are written at them
     count: thin: points to keep [a tenth]; densify: points to stop at
     max_error: thin: keep the surface within E of what it was
+    keep: thin: contribution, how far each point that is left lies from the surface of the others, as a value
     spacing: densify: no circle of a greater radius stays empty [0.5x]
     hole: densify: circles of a greater radius are holes and stay; faces are none [1.25 h]
     memory: project: work cell by cell in so much memory, the rest beside the output
