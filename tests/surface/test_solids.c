@@ -184,10 +184,12 @@ int main(void) {
   const shape ball = {CONIC_SCENE_SPHERE, {0, 0, 0}}, other_ball = {CONIC_SCENE_SPHERE, {0.8, 0.3, 0.5}};
   const shape cube = {CONIC_SCENE_CUBE, {0, 0, 0}}, other_cube = {CONIC_SCENE_CUBE, {0.63, 0.57, 0.6}};
   const shape biting_ball = {CONIC_SCENE_SPHERE, {0.9, 0.7, 0.8}}, far_cube = {CONIC_SCENE_CUBE, {1e6, 5e6, 0.25}};
+  const shape ball_at_corners = {CONIC_SCENE_SPHERE, {0.5, 0.5, 0.5}};
   const shape far_ball = {CONIC_SCENE_SPHERE, {1e6 + 0.9, 5e6 + 0.7, 1.05}};
   try_pair(context, &ball, &other_ball, 0.011);
   try_pair(context, &cube, &other_cube, 1e-5);
   try_pair(context, &cube, &biting_ball, 0.011);
+  try_pair(context, &cube, &ball_at_corners, 0.012);
   try_pair(context, &far_cube, &far_ball, 0.011);
   test_normals(context);
   conic_context_destroy(context);
