@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/host.h"
+#include "cli/option_check.h"
 #include "core/base/nearest_word.h"
 #include "core/files/disk.h"
 #include "core/formats/text_columns.h"
@@ -446,5 +447,6 @@ int cli_parse_noting(cli_session *session, const cli_option *options, int n_opti
   }
   for (size_t i = 0; session->host && i < session->host->n_values && exit_code == CLI_DONE; i++)
     exit_code = take_value(session, &set, &session->host->values[i]);
-  return exit_code;
+  return exit_code == CLI_DONE ? cli_effects_check_with(session, options, n_options, values, positional, *n_positional)
+                               : exit_code;
 }

@@ -20,9 +20,13 @@ typedef enum cli_option_type {
 /* What an option has an effect on, as bits CLI_FACT(NAME) (cli/option_facts.h). Zeros: on everything. */
 typedef struct cli_effect {
   unsigned long long on, needs; /* of each, what is drawn and what is asked for, any one has to hold, */
-  unsigned long long apart;     /* and none of these */
-  int is_work;                  /* it decides time, memory or what is said, and no bit of what is made */
-  int is_warned;                /* where it has no effect that is a warning; else wrong usage */
+  unsigned long long apart;     /* and none of these, */
+  const char *why;              /* which this gives the reason for; may be null */
+  /* What else has to be said, any one of these, with bars between: "name", another option; "name=word", which has that
+   * value; "name=.end", a value that ends so; "@word", an argument; "@", any argument. Null: nothing. */
+  const char *with;
+  int is_work;   /* it decides time, memory or what is said, and no bit of what is made */
+  int is_warned; /* where it has no effect that is a warning; else wrong usage */
 } cli_effect;
 
 typedef struct cli_option {
@@ -73,7 +77,10 @@ int cli_parse_noting(cli_session *session, const cli_option *options, int n_opti
   {                                                                                                                    \
     "max-texture", CLI_INT, &(session)->max_texture_mib, "MiB",                                                        \
         "what textures may take in memory together; one more is refused before it is decoded [4096]", 1, 1 << 20,      \
-        .acts.is_work = 1                                                                                              \
+        .acts = {                                                                                                      \
+          .on = CLI_FACT(TEXTURED),                                                                                    \
+          .is_work = 1                                                                                                 \
+        }                                                                                                              \
   }
 
 /* A length: in world units, or with an x behind it ("0.5x") in median sample spacings of the scene. */

@@ -8,7 +8,8 @@ enum cli_fact {
   CLI_FACT_GAUSSIANS,  /* the file is a Gaussian scene, however it is drawn */
   CLI_FACT_SPLATS,
   CLI_FACT_TRIANGLES,
-  CLI_FACT_FACES,  /* the file has some, whatever is made of them */
+  CLI_FACT_FACES, /* the file has some, whatever is made of them */
+  CLI_FACT_TEXTURED,
   CLI_FACT_EDGES,  /* triangles whose file has no normals */
   CLI_FACT_RAW,    /* points whose sizes are estimated */
   CLI_FACT_TEXT,   /* a file of text */
@@ -26,7 +27,7 @@ enum cli_fact {
   CLI_FACT_LENS,
   CLI_FACT_WAY,     /* of the camera or the scene, while the shutter is open */
   CLI_FACT_FRAMED,  /* by the options, and not by a camera of a file */
-  CLI_FACT_FIELD,   /* likewise, by a projection that has a field of view */
+  CLI_FACT_FIELD,   /* of view, which the projection has */
   CLI_FACT_CAMERAS, /* of a file */
   CLI_FACT_UPRIGHT, /* it matters what points up */
   CLI_FACT_TURNTABLE,
@@ -44,21 +45,20 @@ enum cli_fact {
   CLI_FACT_UNSETTLED,  /* --quality decides something */
   CLI_FACT_OWN_CENTER, /* the profile takes the picture's middle for the principal point */
   CLI_FACT_EXR,
+  CLI_FACT_TIFF,
+  CLI_FACT_TELLING,  /* files that say how they were made */
   CLI_FACT_CODES,    /* files of 8 or 16 bits */
   CLI_FACT_NAMELESS, /* files whose names do not say what they are */
   CLI_FACT_OPENCL,
 
   /* The rest is only looked at for what cannot be together. */
-  CLI_FACT_ASKING,      /* the command asks about a picture, and makes none */
-  CLI_FACT_TAKES_APART, /* into splats */
-  CLI_FACT_UNSTREAMED,
-  CLI_FACT_EXACT, /* Gaussians by --profile exact */
+  CLI_FACT_ASKING, /* the command asks about a picture, and makes none */
+  CLI_FACT_EXACT,  /* Gaussians by --profile exact */
   CLI_FACT_PREFILTERED,
   CLI_FACT_PROJECTED, /* --projection, but for perspective; of these */
   CLI_FACT_CUBE,
   CLI_FACT_CURVED, /* and fisheyes and panoramas */
   CLI_FACT_AS_MESH,
-  CLI_FACT_COLORED_WHOLE, /* colours look at all that there is */
   CLI_FACT_DEEP,
   CLI_FACT_MATTES,
   CLI_FACT_TRANSPARENT,
@@ -76,6 +76,8 @@ enum cli_fact {
 };
 
 #define CLI_FACT(name) (1ull << CLI_FACT_##name)
+/* Those of what is drawn. */
+#define CLI_SOURCE_FACTS (CLI_FACT(ACCUMULATED) - 1)
 /* What is drawn and not composited. */
 #define CLI_SURFACES (CLI_FACT(SPLATS) | CLI_FACT(TRIANGLES))
 /* What looks at more of a scene than the pixels of one picture; and what is written beside its planes, or into them. */

@@ -356,7 +356,6 @@ static int check(cli_session *session, explain_job *job) {
 static int run(cli_session *session, int argc, char **argv) {
   explain_job job = {.splat = 0};
   cli_scene_defaults(&job.scene);
-  job.scene.may_composite = 1;
   const cli_option own[] = {
       {"pixel", CLI_PARSED, job.pixel, "X,Y", "every splat in reach of this pixel, from 0,0 at the upper left",
        .parse = parse_pixel, .is_given = &job.is_pixel_given},

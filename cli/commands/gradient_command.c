@@ -183,7 +183,6 @@ static int check_gradient(cli_session *session, const gradient_job *job) {
 static int run_gradient(cli_session *session, int argc, char **argv) {
   gradient_job job = {.floats = CONIC_FLOATS_STRICT};
   cli_scene_defaults(&job.scene);
-  job.scene.may_composite = 1;
   const cli_option own[] = {
       {"weights", CLI_TEXT, &job.weights_path, "FILE",
        "W of L = sum W C: a picture with R, G, B and, where they count, A and Z, or an .npy (height, width, 3 to 5)"},

@@ -293,7 +293,6 @@ static int run(cli_session *session, int argc, char **argv) {
   verify_job job = {.question = CONIC_ORACLE_METHOD};
   cli_scene_defaults(&job.scene);
   job.scene.shot.planes = CONIC_DRAWN_PLANES;
-  job.scene.may_composite = 1;
   const cli_option own[] = {
       {"against", CLI_CHOICE, &job.question, "WHAT",
        "method: its own formula in double precision; exact: the kernel itself, projected and filtered [method]",

@@ -1,7 +1,7 @@
 /* The table of options as JSON, for programs that are to know them all. */
 #include "cli/help/help.h"
 #include "cli/json_write.h"
-#include "cli/scene/option_effects.h"
+#include "cli/option_check.h"
 
 static void write_name(cli_json *json, const char *key, const cli_option *option) {
   char name[64];

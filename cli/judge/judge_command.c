@@ -176,7 +176,6 @@ static int run_judge(cli_session *session, int argc, char **argv) {
     return cli_gradients_run(session, argc, argv);
   conic_picture_options_init(&job.reading);
   cli_scene_defaults(&job.scene);
-  job.scene.may_composite = 1;
   const cli_option own[] = {
       {"picture", CLI_TEXT, &job.picture_path, "FILE",
        "what is judged: EXR, PFM or NPY (with planes beside it, P.Z.npy …), NPZ, or PNG"},

@@ -177,7 +177,6 @@ static int check_gradient_judging(cli_session *session, const gradients_job *job
 int cli_gradients_run(cli_session *session, int argc, char **argv) {
   gradients_job job = {.floats = CONIC_FLOATS_FAST};
   cli_scene_defaults(&job.scene);
-  job.scene.may_composite = 1;
   const cli_option own[] = {
       CLI_GRADIENT_OPTIONS(job.files),
       {"floats", CLI_CHOICE, &job.floats, "KIND", "of what found it: own, strict or fast [fast]",

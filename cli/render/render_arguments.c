@@ -159,7 +159,7 @@ static void want_planes(cli_render_job *job) {
 
 int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
   cli_scene_defaults(job);
-  job->may_stream = job->is_for_looking = 1;
+  job->is_for_looking = 1;
   job->box_level = -1;
   conic_image_options_init(&job->writing);
   cli_shot_again_begin(session, job);
@@ -203,7 +203,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "all that decides the picture, as text by which conic render draws it again"},
       {"no-shot", CLI_FLAG, &job->making.is_left_out, NULL,
        "leave out of .exr, .png and .tif what they say of how they were made",
-       .acts = {.needs = CLI_FACT(EXR) | CLI_FACT(CODES), .is_warned = 1}},
+       .acts = {.needs = CLI_FACT(TELLING), .is_warned = 1}},
       {"again", CLI_TEXT, &job->making.again_path, "PICTURE",
        "draw again what a picture says that it was drawn from, to the bit; other options change that. Inputs are "
        "looked "
@@ -256,7 +256,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        .parse = cli_cut_parse_box, .acts = {.needs = CLI_FACT(MAP)}},
       {"epsg", CLI_INT, &job->top.epsg, "CODE",
        "of --camera top: the coordinate system that is noted in a .tif, by its EPSG code [the file's]", 1, 65535,
-       .acts = {.needs = CLI_FACT(MAP)}},
+       .acts = {.on = CLI_FACT(MAP), .needs = CLI_FACT(TIFF)}},
       {"progressive", CLI_TEXT, &job->progressive_path, "DIR",
        "of a cloud in levels, also a picture after each level that has been read: DIR/0001.exr …",
        .group = "clouds in levels (.lpc, COPC, EPT, Potree 2)",

@@ -66,9 +66,10 @@ static int parse_looks(const char *text, cli_render_job *job, conic_light *light
 int cli_parse_light(const char *text, void *value) {
   static const char lamp[] = "lamp:";
   cli_render_job *job = value;
+  job->n_light_words++;
   job->is_light_given = 1;
   if (strcmp(text, "none") == 0)
-    return 1;
+    return job->is_unlit = 1;
   if (strcmp(text, "studio") == 0)
     return add_studio(job);
   if (strncmp(text, lamp, sizeof lamp - 1) == 0)

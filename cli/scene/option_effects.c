@@ -7,72 +7,16 @@
 #include "cli/color_options.h"
 #include "cli/host_keeps.h"
 #include "cli/scene/scene_options.h"
+#include "core/base/context_struct.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "source/source_kind.h"
 
 typedef unsigned long long facts;
 
-/* What each fact is called in the help, and in messages behind "it acts on" and "it needs". Facts that are only looked
- * at for what cannot be together have no words. */
-static const struct {
-  const char *name, *words;
-} fact_words[CLI_N_FACTS] = {
-    [CLI_FACT_COMPOSITED] = {"composited", "Gaussian scenes that are composited"},
-    [CLI_FACT_GAUSSIANS] = {"gaussians", "Gaussian scenes (.splat, .spz, .sog, or a .ply with the columns scale_0, "
-                                         "rot_0, opacity and f_dc_0)"},
-    [CLI_FACT_SPLATS] = {"splats", "splats"},
-    [CLI_FACT_TRIANGLES] = {"triangles", "triangles"},
-    [CLI_FACT_FACES] = {"faces", "files that have faces"},
-    [CLI_FACT_EDGES] = {"edges", "triangles whose file has no normals"},
-    [CLI_FACT_RAW] = {"raw", "points whose sizes are not in their file"},
-    [CLI_FACT_TEXT] = {"text", "files of text"},
-    [CLI_FACT_ALPHA] = {"alpha", "splats and materials that let light through"},
-    [CLI_FACT_VALUED] = {"values", "colours that are made of values, as by --color-by"},
-    [CLI_FACT_HYBRID] = {"hybrids", "hybrids (a .chy, or a mesh with --as hybrid)"},
-    [CLI_FACT_LEVELS] = {"levels", "a single cloud in levels (.lpc, which conic layer makes, COPC, EPT, Potree 2)"},
-    [CLI_FACT_NODES] = {"nodes", "a single .cot (conic octree makes one) with its own colours"},
-    [CLI_FACT_CHOOSES] = {"hierarchies", "a single .cot, .lpc or .chy (conic octree, conic layer and conic hybrid make "
-                                         "them), and meshes with --as hybrid"},
-    [CLI_FACT_URL] = {"urls", "URLs"},
-    [CLI_FACT_ACCUMULATED] = {"accumulated", "--accumulate N"},
-    [CLI_FACT_SAMPLE] = {"sample", "--sample I"},
-    [CLI_FACT_LENS] = {"lens", "a lens, by --aperture D"},
-    [CLI_FACT_WAY] = {"way", "a way of the camera, --turntable or --camera with several, or --motion"},
-    [CLI_FACT_FRAMED] = {"framed", "a camera that frames the scene, and --camera does it itself"},
-    [CLI_FACT_FIELD] = {"field", "a camera that frames the scene and has a field of view, and --camera does it itself"},
-    [CLI_FACT_CAMERAS] = {"cameras", "a file of cameras, by --camera FILE"},
-    [CLI_FACT_UPRIGHT] = {"upright", "lights, heights or a framed camera that stand upright"},
-    [CLI_FACT_TURNTABLE] = {"turntable", "--turntable N"},
-    [CLI_FACT_EVERY_VIEW] = {"views", "--view all"},
-    [CLI_FACT_MAP] = {"map", "--camera top"},
-    [CLI_FACT_STEREO] = {"stereo", "two eyes, by --stereo E"},
-    [CLI_FACT_ERROR] = {"error", "--error"},
-    [CLI_FACT_BUDGET] = {"budget", "--budget"},
-    [CLI_FACT_PATCH] = {"patch", "--method patch"},
-    [CLI_FACT_KERNEL] = {"kernel", "a --method by which splats fade"},
-    [CLI_FACT_FILTERED] = {"filtered", "a --method by which splats are filtered"},
-    [CLI_FACT_BLENDED] = {"blended", "--passes 3"},
-    [CLI_FACT_SHAPED] = {"shaped", "another --shade than none, or --aov N"},
-    [CLI_FACT_LIT] = {"lit", "another --shade than none"},
-    [CLI_FACT_UNSETTLED] = {"unsettled", "that --method and --samples do not say it all"},
-    [CLI_FACT_OWN_CENTER] = {"center", "--profile inria-2023 or 2dgs-2024"},
-    [CLI_FACT_EXR] = {"exr", "an .exr"},
-    [CLI_FACT_CODES] = {"codes", "a file of 8 or 16 bits, such as .png"},
-    [CLI_FACT_NAMELESS] = {"nameless", "standard output or a name without an ending"},
-    [CLI_FACT_OPENCL] = {"opencl", "--device opencl"},
-    [CLI_FACT_EXACT] = {"exact", "Gaussian scenes by --profile exact (the others have a filter of their own)"},
-};
-
-const char *cli_fact_name(int fact) {
-  return fact_words[fact].name;
-}
-
 /* --- what cannot be together --- */
 
 #define F(name) CLI_FACT(name)
-_Static_assert(CLI_N_FACTS <= 64, "facts are bits of an unsigned long long");
-#define SOURCE_FACTS (F(ACCUMULATED) - 1)
 
 static const struct {
   facts all, any, unless; /* it is refused where all of the first hold, any of the second, and none of the third */
@@ -90,12 +34,8 @@ static const struct {
      "--prefilter is of perspective and orthographic pictures of Gaussian scenes"},
     {F(COMPOSITED), F(DEEP) | F(MATTES) | F(EXPOSED), 0,
      "--deep, mattes and --exposure auto are of splats; give --profile surface, too"},
-    {F(COMPOSITED) | F(TAKES_APART), 0, 0, "it takes splats apart; give --profile surface, or none"},
-    {F(LEVELS) | F(UNSTREAMED), CLI_CHOSEN, 0,
+    {F(LEVELS) | F(ASKING), CLI_CHOSEN, 0,
      "of an .lpc it takes all; --error and --budget choose of one in conic render"},
-    {F(COLORED_WHOLE), CLI_CHOSEN, 0,
-     "--color-by looks at all that there is: not with --error or --budget; conic octree and conic layer take it, too, "
-     "and keep the colours"},
     {F(EVERY_VIEW) | F(ASKING), 0, 0, "it takes one view; conic render draws all"},
     {F(EVERY_VIEW), F(TURNTABLE) | F(PROGRESSIVE), 0,
      "--view all draws every view once: not with --turntable or --progressive"},
@@ -150,7 +90,7 @@ static int is_gaussian(const cli_session *session, const cli_render_job *job) {
 static void guess_source(const cli_session *session, cli_render_job *job) {
   cli_effects_job *own = &job->effects;
   const unsigned can = job->abilities;
-  const facts read = CLI_SURFACES | F(FACES) | F(EDGES) | F(RAW) | F(TEXT) | F(ALPHA) | F(VALUED);
+  const facts read = CLI_SURFACES | F(FACES) | F(TEXTURED) | F(EDGES) | F(RAW) | F(TEXT) | F(ALPHA) | F(VALUED);
   int is_hybrid = (can & CONIC_SOURCE_CLUSTERS) != 0, is_mesh = job->opening.as == CONIC_AS_HYBRID;
   own->certain = when(can & CONIC_SOURCE_COMPOSITES, F(COMPOSITED)) | when(is_hybrid, F(HYBRID)) |
                  when(can & CONIC_SOURCE_STREAMS, F(LEVELS)) | when(can == CONIC_SOURCE_CHOOSES, F(NODES)) |
@@ -163,16 +103,17 @@ static void guess_source(const cli_session *session, cli_render_job *job) {
   if (own->certain & F(COMPOSITED))
     return;
   if (is_hybrid)
-    own->possible |=
-        CLI_SURFACES | when(is_mesh && !conic_source_kind_of_file(job->inputs[0]), F(FACES) | F(EDGES) | F(VALUED));
+    own->possible |= CLI_SURFACES | F(TEXTURED) |
+                     when(is_mesh && !conic_source_kind_of_file(job->inputs[0]), F(FACES) | F(EDGES) | F(VALUED));
   else if (own->certain & F(LEVELS))
     own->possible |= F(SPLATS) | F(ALPHA) | F(VALUED);
   else if (own->certain & F(NODES))
     own->possible |= F(SPLATS) | F(ALPHA);
   else
-    own->possible |= read & ~when(job->opening.as == CONIC_AS_POINTS || job->is_patch, F(TRIANGLES) | F(EDGES));
+    own->possible |=
+        read & ~when(job->opening.as == CONIC_AS_POINTS || job->is_patch, F(TRIANGLES) | F(EDGES) | F(TEXTURED));
   if (job->n_inputs == 1 && !conic_disk_can_read(job->inputs[0]) && !(own->certain & F(URL)))
-    own->possible = SOURCE_FACTS; /* opening it is to say more */
+    own->possible = CLI_SOURCE_FACTS; /* opening it is to say more */
 }
 
 /* Whether the points of an octree let light through. */
@@ -208,7 +149,8 @@ static void know_source(cli_render_job *job) {
   int is_chosen = job->shot.view.only_kind >= 0 || own->asked & CLI_CHOSEN; /* of a hybrid, which may be either kind */
   if (!(own->certain & F(HYBRID) && is_chosen))
     own->possible &= ~(when(!scale->n_splats, F(SPLATS)) | when(!scale->n_triangles, F(TRIANGLES)));
-  own->possible &= ~when(!coloring || !coloring->field[0], F(VALUED));
+  own->possible &= ~(when(!coloring || !coloring->field[0], F(VALUED)) |
+                     when(!job->source->context->texture_bytes && !cli_color_is_asked(&job->coloring), F(TEXTURED)));
 }
 
 static int is_ended(const cli_render_job *job, const char *path, const char *const *endings) {
@@ -221,14 +163,17 @@ static int is_ended(const cli_render_job *job, const char *path, const char *con
 
 static facts ask_of_outputs(const cli_render_job *job) {
   static const char *const exr[] = {"exr", NULL}, *const floats[] = {"exr", "pfm", "hdr", NULL};
+  static const char *const tiff[] = {"tif", "tiff", NULL}, *const telling[] = {"exr", "png", "tif", "tiff", NULL};
   const char *const beside[] = {job->overdraw_path, job->clusters_path, job->boxes_path, job->legend_path};
-  facts found = when(job->deep_path || job->progressive_path, F(EXR));
+  facts found = when(job->deep_path || job->progressive_path, F(EXR) | F(TELLING));
   for (int i = 0; i < job->n_outputs + 4; i++) {
     const char *path = i < job->n_outputs ? job->outputs[i] : beside[i - job->n_outputs];
     if (!path)
       continue;
     found |= when(is_ended(job, path, exr), F(EXR)) | when(!*conic_file_ending(path), F(NAMELESS)) |
-             when(i < job->n_outputs && !is_ended(job, path, floats), F(CODES)) | when(!strcmp(path, "-"), F(STREAM));
+             when(i < job->n_outputs && !is_ended(job, path, floats), F(CODES)) | when(!strcmp(path, "-"), F(STREAM)) |
+             when(i < job->n_outputs && is_ended(job, path, tiff), F(TIFF)) |
+             when(is_ended(job, path, telling), F(TELLING));
   }
   return found;
 }
@@ -236,9 +181,7 @@ static facts ask_of_outputs(const cli_render_job *job) {
 static facts ask_of_camera(const cli_render_job *job) {
   const cli_accumulate_job *sums = &job->accumulating;
   int is_map = job->top.is_wanted, is_framed = !job->camera_path && !is_map, kind = job->projection;
-  int sees_all_around = kind == CONIC_CAMERA_EQUIRECTANGULAR || kind == CONIC_CAMERA_CUBE;
-  return when(is_framed, F(FRAMED)) |
-         when(is_framed && !sees_all_around && kind != CONIC_CAMERA_ORTHOGRAPHIC, F(FIELD)) |
+  return when(is_framed, F(FRAMED)) | when(kind == CONIC_CAMERA_PERSPECTIVE || kind == CONIC_CAMERA_FISHEYE, F(FIELD)) |
          when(job->camera_path != NULL, F(CAMERAS)) | when(is_map, F(MAP)) | when(job->is_turntable, F(TURNTABLE)) |
          when(job->is_every_view, F(EVERY_VIEW)) | when(job->stereo.distance > 0.0, F(STEREO)) |
          when(sums->n_samples > 0, F(ACCUMULATED)) | when(sums->is_sample_given, F(SAMPLE)) |
@@ -272,10 +215,8 @@ static facts ask_of_drawing(const cli_render_job *job, const cli_scene_words *wo
          when(chooses_samples(job, words) || is_rough, F(UNSETTLED)) |
          when(profile == CONIC_PROFILE_INRIA_2023 || profile == CONIC_PROFILE_2DGS_2024, F(OWN_CENTER)) |
          when(strcmp(job->device.name, "cpu") != 0, F(OPENCL)) | when(!job->is_for_looking, F(ASKING)) |
-         when(!job->is_for_looking && !job->may_composite, F(TAKES_APART)) | when(!job->may_stream, F(UNSTREAMED)) |
          when(job->shot.gaussians.prefilter > 0.0, F(PREFILTERED)) |
          when(words->is_as_given && (words->as == CONIC_AS_MESH || words->as == CONIC_AS_HYBRID), F(AS_MESH)) |
-         when(words->is_colored_whole && words->as != CONIC_AS_HYBRID, F(COLORED_WHOLE)) |
          when(job->deep_path != NULL, F(DEEP)) | when(job->has_mattes, F(MATTES)) |
          when(job->is_transparent, F(TRANSPARENT)) | when(job->shot.view.samples > 1, F(SAMPLED)) |
          when(job->progressive_path != NULL, F(PROGRESSIVE)) | when(job->deadline > 0.0, F(DEADLINE)) |
@@ -287,17 +228,6 @@ static facts ask_of_drawing(const cli_render_job *job, const cli_scene_words *wo
 }
 
 /* --- what was given --- */
-
-static void note_given(cli_effects_job *own, const char *dashes, const char *name, const cli_effect *acts) {
-  if (own->n_given < CLI_MOST_GIVEN)
-    own->given[own->n_given++] = (cli_given){dashes, name, *acts};
-}
-
-void cli_effects_note(cli_effects_job *own, const cli_option *table, int n, const char *const *values) {
-  for (int i = 0; i < n; i++)
-    if (values[i] && !table[i].now)
-      note_given(own, cli_dashes(&table[i]), table[i].name, &table[i].acts);
-}
 
 /* --timeout, where it is known to be of what can be read in parts. */
 static int is_waited_for(const cli_render_job *job) {
@@ -329,6 +259,14 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
       {(planes & (1u << CONIC_PLANE_SAMPLES | 1u << CONIC_PLANE_VARIANCE)) != 0,
        "aov with the planes samples and variance",
        {.needs = F(ACCUMULATED)}},
+      {words->is_quality_given && words->quality == CLI_QUALITY_DRAFT,
+       "quality draft",
+       {.apart = F(MAP), .why = "a map has one sample a pixel as it is"}},
+      {job->is_plain && job->top.is_wanted, "plain", {.on = F(FACES) | F(RAW) | F(LIT)}},
+      {words->is_colored_whole && words->as != CONIC_AS_HYBRID,
+       "color-by",
+       {.apart = CLI_CHOSEN,
+        .why = "it looks at all that there is; conic octree and conic layer take it, too, and keep the colours"}},
       {job->is_color_error_given, "error PX:STEPS", {.on = F(HYBRID), .needs = F(ERROR)}},
       {job->shot.gaussians.ignores_center != 0,
        "profile NAME:ignore-center",
@@ -345,23 +283,13 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
   };
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
     if (parts[i].is_given)
-      note_given(&job->effects, "--", parts[i].name, &parts[i].acts);
+      cli_effects_add(&job->effects, "--", parts[i].name, &parts[i].acts);
 }
 
 /* --- the check --- */
 
-/* The facts of a set in words, joined by "or". */
-static void join_facts(facts set, char *text, size_t room) {
-  size_t used = 0;
-  text[0] = '\0';
-  for (int i = 0; i < CLI_N_FACTS && used < room; i++)
-    if (set >> i & 1 && fact_words[i].words)
-      used += (size_t)snprintf(text + used, room - used, "%s%s", used ? ", or " : "", fact_words[i].words);
-}
-
 /* What to do where a source is none of which an option is. */
-static const char *find_remedy(const cli_render_job *job, facts on) {
-  const cli_effects_job *own = &job->effects;
+static const char *find_remedy(const cli_effects_job *own, facts on) {
   if (own->certain & F(COMPOSITED) && on & (F(SPLATS) | F(RAW) | F(ALPHA)))
     return "; --profile surface draws the scene as splats";
   if (own->certain & F(GAUSSIANS) && on & F(COMPOSITED))
@@ -369,48 +297,6 @@ static const char *find_remedy(const cli_render_job *job, facts on) {
   if (own->possible & F(FACES) && on & F(TRIANGLES))
     return "; give --as mesh, too";
   return "";
-}
-
-/* Of one option. */
-static int check_one_given(const cli_session *session, const cli_render_job *job, const cli_given *option) {
-  const cli_effects_job *own = &job->effects;
-  const cli_effect *acts = &option->acts;
-  const facts known = own->possible | own->asked;
-  int is_lacking = acts->needs && !(acts->needs & known), is_foreign = acts->on && !(acts->on & known);
-  char words[1024];
-  if (acts->apart & (own->certain | own->asked)) {
-    join_facts(acts->apart & (own->certain | own->asked), words, sizeof words);
-    return cli_usage("%s: %s%s does not go with %s", session->command, option->dashes, option->name, words);
-  }
-  if (!is_lacking && !is_foreign)
-    return CLI_DONE;
-  const facts lacked = is_foreign ? acts->on : acts->needs;
-  int is_source = (lacked & SOURCE_FACTS) != 0;
-  join_facts(lacked, words, sizeof words);
-  if (is_source)
-    snprintf(words + strlen(words), sizeof words - strlen(words), ", not on %s%s", job->inputs[0],
-             find_remedy(job, lacked));
-  const char *verb = is_source ? "acts on" : "needs";
-  if (!acts->is_warned)
-    return cli_usage("%s: %s%s has no effect: it %s %s", session->command, option->dashes, option->name, verb, words);
-  cli_warn(session, "%s: %s%s has no effect: it %s %s", session->command, option->dashes, option->name, verb, words);
-  return CLI_DONE;
-}
-
-/* Each option once: what is wrong or warned of is not said again when more is known. */
-static int check_given(const cli_session *session, cli_render_job *job) {
-  cli_effects_job *own = &job->effects;
-  int answer = CLI_DONE, n = 0;
-  for (int i = 0; i < own->n_given && answer == CLI_DONE; i++) {
-    const cli_effect *acts = &own->given[i].acts;
-    int is_said = (acts->on && !(acts->on & (own->possible | own->asked))) ||
-                  (acts->needs && !(acts->needs & (own->possible | own->asked)));
-    answer = check_one_given(session, job, &own->given[i]);
-    if (!is_said)
-      own->given[n++] = own->given[i];
-  }
-  own->n_given = n;
-  return answer;
 }
 
 int cli_effects_check(const cli_session *session, const cli_scene_words *words, cli_render_job *job) {
@@ -423,10 +309,22 @@ int cli_effects_check(const cli_session *session, const cli_scene_words *words, 
   for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
     if ((held & pairs[i].all) == pairs[i].all && (!pairs[i].any || held & pairs[i].any) && !(held & pairs[i].unless))
       return cli_usage("%s: %s", session->command, pairs[i].why);
-  return check_given(session, job);
+  return cli_effects_check_given(session, &job->effects, job->inputs[0], find_remedy);
+}
+
+/* That the octree has the level whose boxes are asked for. */
+static int check_boxes(const cli_session *session, const cli_render_job *job) {
+  const conic_octree *octree = job->boxes_path ? conic_source_octree(job->source) : NULL;
+  conic_octree_info info;
+  if (!octree || conic_octree_describe(octree, &info) != CONIC_OK || job->box_level < (int)info.n_levels)
+    return CLI_DONE;
+  return cli_usage("%s: --show boxes@%d: the last level of %s is %d", session->command, job->box_level, job->inputs[0],
+                   (int)info.n_levels - 1);
 }
 
 int cli_effects_check_open(const cli_session *session, cli_render_job *job) {
   know_source(job);
-  return check_given(session, job);
+  if (check_boxes(session, job) != CLI_DONE)
+    return CLI_USAGE;
+  return cli_effects_check_given(session, &job->effects, job->inputs[0], find_remedy);
 }

@@ -66,6 +66,7 @@ typedef struct cli_render_job {
   int is_shade_given;
   int is_plain; /* --plain: nothing is chosen by what looks best */
   int is_background_given;
+  int is_unlit, n_light_words;                 /* --light none, and how many times --light is given */
   int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/scene/light_options.h) */
   cli_lamp_job lamps;                          /* of these, the lamps, and how large the others are */
   const char *sky_path;                        /* --sky with a picture; null: none */
@@ -105,8 +106,6 @@ typedef struct cli_render_job {
   conic_layers_access access;
   conic_coloring_options coloring; /* the opening's, if it has one; `by` null: not given */
   int is_for_looking;              /* the command makes pictures, several samples a pixel unless said otherwise */
-  int may_composite;               /* or asks about such pictures: Gaussian scenes stay what they are */
-  int may_stream;                  /* the command draws without having to know what */
   unsigned abilities;              /* what the source can do, bits of conic_source_ability; known before it is open */
   conic_source *source;
 

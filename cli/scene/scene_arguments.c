@@ -152,9 +152,10 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]", -90, 90,
        .is_given = &job->is_elevation_given, .is_usual = 1, .acts = {.needs = CLI_FACT(FRAMED)}},
       {"fov", CLI_NUMBER, &view->fov_deg, "DEG", "field of view across the shorter side [40]", 0.001, 179.9,
-       .acts = {.needs = CLI_FACT(FIELD), .is_warned = 1}},
+       .acts = {.on = CLI_FACT(FRAMED), .needs = CLI_FACT(FIELD), .is_warned = 1}},
       {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length: 2 shows the middle, twice as large [1]",
-       1e-6, 1e6, .is_usual = 1, .acts = {.needs = CLI_FACT(FRAMED)}},
+       1e-6, 1e6, .is_usual = 1,
+       .acts = {.needs = CLI_FACT(FRAMED), .apart = CLI_FACT(CUBE), .why = "its sides show all that is around"}},
       {"projection", CLI_CHOICE, &job->projection, "HOW",
        "perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one below the other) "
        "[perspective]",
@@ -311,8 +312,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
     job->shot.gaussians.profile = (conic_gaussian_profile)raw.profile;
   job->shot.gaussians.prefilter = raw.is_prefilter_given ? raw.prefilter : 0.0;
   job->shot.gaussians.ignores_center = (uint32_t)ignores_center;
-  if (raw.profile < CONIC_N_GAUSSIAN_PROFILES &&
-      (raw.is_profile_given || ((job->is_for_looking || job->may_composite) && !job->is_plain)))
+  if (raw.profile < CONIC_N_GAUSSIAN_PROFILES && (raw.is_profile_given || !job->is_plain))
     job->opening.gaussians = &job->shot.gaussians;
   o->shading = (conic_shading)shading;
   o->kernel.cutoff = (float)raw.cutoff;

@@ -54,6 +54,8 @@ static int check_each_value(const cli_session *session, const cli_scene_words *w
   if (job->sky_path && !job->n_directions && !(job->is_aov_given && job->shot.planes & 1u << CONIC_PLANE_AO))
     return cli_usage("%s: the light of %s comes from so many directions as --ao says; give it, too", command,
                      job->sky_path);
+  if (job->is_unlit && job->n_light_words > 1)
+    return cli_usage("%s: --light none does not go with another --light", command);
   if (words->passes != 1 && words->passes != 3)
     return cli_usage("%s: --passes takes 3 or 1", command);
   if (job->shot.render.tile & (job->shot.render.tile - 1))
@@ -78,7 +80,7 @@ int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_rend
   if (job->abilities & CONIC_SOURCE_CLUSTERS) /* of which any part may be drawn, unless --memory says less */
     job->access.memory_bytes = 0;
   job->opening.is_whole =
-      !cli_lod_is_wanted(job) && !job->boxes_path && !(job->may_stream && job->abilities & CONIC_SOURCE_STREAMS);
+      !cli_lod_is_wanted(job) && !job->boxes_path && !(job->is_for_looking && job->abilities & CONIC_SOURCE_STREAMS);
   answer = cli_effects_check(session, words, job);
   if (answer == CLI_DONE && job->abilities & CONIC_SOURCE_CLUSTERS && job->n_inputs != 1)
     answer = cli_usage("%s: a hybrid is drawn by itself, and made of one file", session->command);
