@@ -26,14 +26,19 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
       {"simulate-threads", CLI_TEXT, &job->simulated_text, "LIST",
        "also by a schedule of the tasks that one thread took, what so many would need"},
       {"size", CLI_SIZE, job->size, "WxH", "pixels [1024x1024]", 1, 65535},
-      {"camera", CLI_TEXT, &job->look.camera_path, "FILE", "camera of the files, as of conic render [framed]"},
-      {"view", CLI_TEXT, &job->look.view, "VIEW", "of --camera: an index from 0, or a name [the only one]"},
-      {"cull", CLI_CHOICE, &job->look.culls_back, "WHAT", "of the files: none, or back [none]", .choices = cull_words},
+      {"camera", CLI_TEXT, &job->look.camera_path, "FILE", "camera of the files, as of conic render [framed]",
+       .acts.with = "@"},
+      {"view", CLI_TEXT, &job->look.view, "VIEW", "of --camera: an index from 0, or a name [the only one]",
+       .acts.with = "camera"},
+      {"cull", CLI_CHOICE, &job->look.culls_back, "WHAT", "of the files: none, or back [none]", .choices = cull_words,
+       .acts.with = "@"},
       {"device", CLI_TEXT, &job->device.name, "NAME",
        "each scene and method on opencl[:P.D][:gather|:lanes] too [cpu]"},
-      {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL, "also a device that does not round correctly"},
+      {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL, "also a device that does not round correctly",
+       .acts.with = "device"},
       {"error", CLI_TEXT, &job->errors_text, "LIST",
-       "of files that choose what they draw, in pixels; 0: all there is [0 for .chy; the others are read whole]"},
+       "of files that choose what they draw, in pixels; 0: all there is [0 for .chy; the others are read whole]",
+       .acts.with = "@"},
       {"turntable", CLI_INT, &job->n_turns, "N", "N warm frames, all around the scene, and their mean", 1,
        CLI_BENCH_MOST_FRAMES},
       {"repeat", CLI_INT, &job->repeat, "N", "warm frames a line [3 to 21, about a second]", 1, CLI_BENCH_MOST_FRAMES},
@@ -53,10 +58,8 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
       cli_parse(session, options, (int)(sizeof options / sizeof *options), argc, argv, job->files, &job->n_files);
   if (exit_code == CLI_DONE)
     exit_code = cli_device_check(session, &job->device);
-  if (exit_code == CLI_DONE && job->look.camera_path && !job->n_files)
-    exit_code = cli_usage("bench: --camera is for files; what is made has a camera of its own");
-  if (exit_code == CLI_DONE && job->look.view && (!job->look.camera_path || cli_views_are_all(job->look.view)))
-    exit_code = cli_usage("bench: --view is one of a file of cameras; give --camera, too");
+  if (exit_code == CLI_DONE && job->look.view && cli_views_are_all(job->look.view))
+    exit_code = cli_usage("bench: --view is one of a file of cameras");
   if (exit_code == CLI_DONE && job->is_curve && (job->scenes_text || job->n_files || job->is_floor))
     exit_code = cli_usage("bench: --curve has scenes of its own");
   if (exit_code == CLI_DONE && job->publish_path && (session->json_path || job->is_curve))

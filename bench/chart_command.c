@@ -144,25 +144,28 @@ static int run_chart(cli_session *session, int argc, char **argv) {
       {"mesh", CLI_TEXT, &job->mesh.path, "MESH", "whose representations are charted [a generated terrain]"},
       {"over", CLI_TEXT, &job->scenes.over, "AXES",
        "of a SCENE: method, kernel, prefilter, samples, passes, error, budget, as, isa, device; with commas between, "
-       "each perhaps with =VALUE:VALUE... [what fits]"},
+       "each perhaps with =VALUE:VALUE... [what fits]",
+       .acts.with = "@"},
       {"beside", CLI_PARSED, &job->scenes.beside, "NAME=MS:PICTURE",
        "another program's picture of the first SCENE, and the milliseconds that it took; may be given again",
-       .parse = cli_chart_parse_beside, .may_repeat = 1},
-      {"shade", CLI_CHOICE, &shading, "MODEL", "of a SCENE: none, lambert, phong [phong]", .choices = shading_words},
+       .parse = cli_chart_parse_beside, .may_repeat = 1, .acts.with = "@"},
+      {"shade", CLI_CHOICE, &shading, "MODEL", "of a SCENE: none, lambert, phong [phong]", .choices = shading_words,
+       .acts.with = "@"},
       {"truth", CLI_INT, &job->scenes.truth_samples, "N",
-       "samples along a pixel's edge in the picture that a SCENE's are compared with [8]", 1, CONIC_MAX_SAMPLES},
-      {"camera", CLI_TEXT, &job->gaussians.camera_path, "FILE", "of a SCENE [framed as by conic render]"},
-      {"view", CLI_TEXT, &job->gaussians.view, "VIEW", "which of its cameras: a name or an index"},
-      {"size", CLI_SIZE, job->gaussians.size, "WxH", "of a SCENE's pictures [640x640]", 1, 65535},
+       "samples along a pixel's edge in the picture that a SCENE's are compared with [8]", 1, CONIC_MAX_SAMPLES,
+       .acts.with = "@"},
+      {"camera", CLI_TEXT, &job->gaussians.camera_path, "FILE", "of a SCENE [framed as by conic render]",
+       .acts.with = "@"},
+      {"view", CLI_TEXT, &job->gaussians.view, "VIEW", "which of its cameras: a name or an index",
+       .acts.with = "camera"},
+      {"size", CLI_SIZE, job->gaussians.size, "WxH", "of a SCENE's pictures [640x640]", 1, 65535, .acts.with = "@"},
       {"pixels", CLI_INT, &job->gaussians.most_pixels, "N",
-       "of a Gaussian SCENE: where to find the truth, which is slow, at most [1000]", 1, 1 << 24},
+       "of a Gaussian SCENE: where to find the truth, which is slow, at most [1000]", 1, 1 << 24, .acts.with = "@"},
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
   if (exit_code == CLI_DONE && n_positional && (job->only >= 0 || job->mesh.path))
     exit_code = cli_usage("chart: of a scene there is one chart, without --only and --mesh");
-  else if (exit_code == CLI_DONE && !n_positional && (job->scenes.over || job->scenes.beside.n))
-    exit_code = cli_usage("chart: --over and --beside are for scenes; name one");
   else if (exit_code == CLI_DONE && !job->folder)
     exit_code = cli_usage("chart: no folder; give one with -o DIR");
   else if (exit_code == CLI_DONE)

@@ -23,7 +23,8 @@ typedef struct cli_effect {
   unsigned long long apart;     /* and none of these, */
   const char *why;              /* which this gives the reason for; may be null */
   /* What else has to be said, any one of these, with bars between: "name", another option; "name=word", which has that
-   * value; "name=.end", a value that ends so; "@word", an argument; "@", any argument. Null: nothing. */
+   * value; "name=.end", a value that ends so; "@word", an argument; "@", any argument; or "!…" alone, which has to be
+   * missing. Null: nothing. */
   const char *with;
   int is_work;   /* it decides time, memory or what is said, and no bit of what is made */
   int is_warned; /* where it has no effect that is a warning; else wrong usage */

@@ -24,6 +24,7 @@ static const struct {
     [CLI_FACT_TEXT] = {"text", "files of text"},
     [CLI_FACT_ALPHA] = {"alpha", "splats and materials that let light through"},
     [CLI_FACT_VALUED] = {"values", "colours that are made of values, as by --color-by"},
+    [CLI_FACT_MEASURED] = {"measured", "points that have such values"},
     [CLI_FACT_HYBRID] = {"hybrids", "hybrids (a .chy, or a mesh with --as hybrid)"},
     [CLI_FACT_LEVELS] = {"levels", "a single cloud in levels (.lpc, which conic layer makes, COPC, EPT, Potree 2)"},
     [CLI_FACT_NODES] = {"nodes", "a single .cot (conic octree makes one) with its own colours"},
@@ -168,16 +169,20 @@ static const char *value_of(const given_words *given, int i) {
   return choice >= 0 ? option->choices[choice] : NULL;
 }
 
+static int holds_argument(const given_words *given, const char *word, size_t length, char *words, size_t room) {
+  snprintf(words, room, length ? "%.*s" : "an input%.*s", (int)length, word);
+  for (int i = 0; i < given->n_positional; i++)
+    if (!length || (strlen(given->positional[i]) == length && strncmp(given->positional[i], word, length) == 0))
+      return 1;
+  return 0;
+}
+
 /* One of the alternatives that cli_effect.with lists, in so many letters; and what it is called. */
 static int holds(const given_words *given, const char *rule, size_t length, char *words, size_t room) {
-  if (*rule == '@') {
-    snprintf(words, room, length > 1 ? "conic mls %.*s" : "an input%.*s", (int)length - 1, rule + 1);
-    for (int i = 0; i < given->n_positional; i++)
-      if (length == 1 ||
-          (strlen(given->positional[i]) == length - 1 && strncmp(given->positional[i], rule + 1, length - 1) == 0))
-        return 1;
-    return 0;
-  }
+  if (*rule == '!')
+    return !holds(given, rule + 1, length - 1, words, room);
+  if (*rule == '@')
+    return holds_argument(given, rule + 1, length - 1, words, room);
   const char *equals = memchr(rule, '=', length);
   const size_t n_name = equals ? (size_t)(equals - rule) : length, n_word = equals ? length - n_name - 1 : 0;
   const int i = find_row(given, rule, n_name);
@@ -218,7 +223,7 @@ int cli_effects_check_with(const cli_session *session, const cli_option *table, 
     char names[512], words[768];
     if (!values[i] || !acts->with || holds_any(&given, acts->with, names, sizeof names))
       continue;
-    snprintf(words, sizeof words, "has no effect: it needs %s", names);
+    snprintf(words, sizeof words, "has no effect%s %s", *acts->with == '!' ? " with" : ": it needs", names);
     answer = refuse(session, acts->is_warned, cli_dashes(&table[i]), table[i].name, words);
   }
   return answer;

@@ -27,12 +27,16 @@ static void use_up(cli_coloring *coloring, const double up[3]) {
     memcpy(coloring->options.up, up, sizeof coloring->options.up);
 }
 
-conic_status cli_coloring_apply(cli_session *session, cli_coloring *coloring, const double up[3], conic_splats *splats,
+conic_status cli_coloring_apply(cli_build *build, cli_coloring *coloring, const double up[3], conic_splats *splats,
                                 conic_triangles *triangles) {
   if (!coloring->options.by)
     return CONIC_OK;
   use_up(coloring, up);
-  return conic_drawing_color(session->context, &coloring->options, splats, triangles, &coloring->done);
+  conic_status status =
+      conic_drawing_color(build->session->context, &coloring->options, splats, triangles, &coloring->done);
+  return status == CONIC_OK && !coloring->done.field[0]
+             ? cli_build_know(build, build->effects.possible & ~CLI_FACT(VALUED))
+             : status;
 }
 
 typedef struct range_search {

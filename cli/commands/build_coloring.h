@@ -3,6 +3,7 @@
 #define CONIC_BUILD_COLORING_H
 
 #include "cli/color_options.h"
+#include "cli/commands/build_steps.h"
 #include "cli/points/points_share.h"
 #include "cli/scene/scene_options.h"
 #include "conic/coloring.h"
@@ -13,11 +14,15 @@ typedef struct cli_coloring {
   conic_coloring done;
 } cli_coloring;
 
-#define CLI_BUILD_COLOR_OPTIONS(coloring)                                                                              \
+/* Where what points up decides colours alone. */
+#define CLI_UP_OF_COLORS "color-by=height|color-by=normal"
+
+/* `up_with` says what --up acts with, as cli_effect has it. */
+#define CLI_BUILD_COLOR_OPTIONS(coloring, up_with)                                                                     \
   CLI_COLOR_OPTIONS(&(coloring)->options), {                                                                           \
     "up", CLI_PARSED, (coloring)->options.up, "DIR",                                                                   \
         "what points up, for --color-by height and in a .lpc: x, y, z, -x … or X,Y,Z [y; z for surveys]",              \
-        .parse = cli_parse_up, .is_given = &(coloring)->is_up_given                                                    \
+        .parse = cli_parse_up, .is_given = &(coloring)->is_up_given, .acts.with = up_with                              \
   }
 
 void cli_coloring_init(cli_coloring *coloring);
@@ -30,7 +35,7 @@ void cli_coloring_read(const cli_coloring *coloring, conic_read_options *reading
 
 /* Colours splats or triangles, either of which may be null; `up` is what their file says, or zero. Errors: as
  * conic_drawing_color. */
-conic_status cli_coloring_apply(cli_session *session, cli_coloring *coloring, const double up[3], conic_splats *splats,
+conic_status cli_coloring_apply(cli_build *build, cli_coloring *coloring, const double up[3], conic_splats *splats,
                                 conic_triangles *triangles);
 
 /* For inputs that are coloured batch by batch: reads them once to find the range; several processes read them twice.

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/outputs.h"
+#include "cli/points/points_input.h"
 #include "core/base/message.h"
 #include "core/base/team_runs.h"
 #include "source/reach.h"
@@ -44,11 +45,37 @@ int cli_build_take_paths(cli_build *build, const char *input, const char *ending
   return CLI_DONE;
 }
 
+int cli_build_arguments(cli_build *build, const cli_option *options, int n_options, int argc, char **argv,
+                        const char **positional, int *n_positional) {
+  const char *values[n_options];
+  int exit_code = cli_parse_noting(build->session, options, n_options, argc, argv, positional, n_positional, values);
+  if (exit_code == CLI_DONE)
+    cli_effects_note(&build->effects, options, n_options, values);
+  return exit_code;
+}
+
+conic_status cli_build_know(cli_build *build, unsigned long long possible) {
+  build->effects.possible = possible;
+  int answer = cli_effects_check_given(build->session, &build->effects, build->input, NULL);
+  return answer == CLI_DONE ? CONIC_OK : CONIC_ERROR_ARGUMENT;
+}
+
+unsigned long long cli_build_facts(const conic_model *model) {
+  const int is_raw = !model->points.tangent_u[0] && !model->n_triangles;
+  return CLI_FACT(SPLATS) | CLI_FACT(VALUED) | (is_raw ? CLI_FACT(RAW) : 0) |
+         (model->n_triangles ? CLI_FACT(FACES) : 0) | (model->kind == CONIC_MODEL_XYZ ? CLI_FACT(TEXT) : 0);
+}
+
+unsigned long long cli_build_facts_of_file(const cli_build *build, const char *path) {
+  const int may_be_text = !build->columns || cli_points_may_be_text(build->session->context, path);
+  return CLI_SOURCE_FACTS & ~(may_be_text ? 0 : CLI_FACT(TEXT));
+}
+
 int cli_build_parse(cli_build *build, const cli_option *options, int n_options, int argc, char **argv,
                     const char *ending) {
   const char *positional[argc], *command = build->session->command;
   int n_positional;
-  int exit_code = cli_parse(build->session, options, n_options, argc, argv, positional, &n_positional);
+  int exit_code = cli_build_arguments(build, options, n_options, argc, argv, positional, &n_positional);
   if (exit_code != CLI_DONE)
     return exit_code;
   if (n_positional != 1)

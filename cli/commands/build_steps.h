@@ -4,6 +4,7 @@
 
 #include "cli/arguments.h"
 #include "cli/json_write.h"
+#include "cli/option_check.h"
 #include "cli/team_report.h"
 #include "cli/tell.h"
 
@@ -11,10 +12,11 @@
 typedef struct cli_build {
   cli_session *session;
   const char *input, *output;
-  const char *columns; /* of a text input; or null */
-  const char *where;   /* which points of it are read; null: all */
-  int is_in_place;     /* the output replaces the input */
-  cli_stage stages[6]; /* in the order of the report; the names end their number */
+  const char *columns;     /* of a text input; or null */
+  const char *where;       /* which points of it are read; null: all */
+  int is_in_place;         /* the output replaces the input */
+  cli_effects_job effects; /* of the options that were given */
+  cli_stage stages[6];     /* in the order of the report; the names end their number */
   double total_seconds;
   int is_shared; /* several processes make it; the report on them is: */
   cli_team_report team;
@@ -32,6 +34,16 @@ typedef struct cli_build_steps {
  * that the output has that ending, and is not the input unless it replaces that. Returns as cli_parse. */
 int cli_build_parse(cli_build *build, const cli_option *options, int n_options, int argc, char **argv,
                     const char *ending);
+
+/* cli_parse, which notes the options for cli_build_know. */
+int cli_build_arguments(cli_build *build, const cli_option *options, int n_options, int argc, char **argv,
+                        const char **positional, int *n_positional);
+
+/* Refuses, or warns of, options that act on none of the facts of what is read. Errors: ARGUMENT. */
+conic_status cli_build_know(cli_build *build, unsigned long long possible);
+/* The facts of a model that was read; and those that a file may have whose points are read in parts. */
+unsigned long long cli_build_facts(const conic_model *model);
+unsigned long long cli_build_facts_of_file(const cli_build *build, const char *path);
 
 /* The option of commands whose output can replace the input. */
 #define CLI_IN_PLACE(build)                                                                                            \

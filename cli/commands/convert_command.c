@@ -295,10 +295,13 @@ static int run_convert(cli_session *session, int argc, char **argv) {
        "where x, y, z shall point, as rdf: right, down, forward; or keep [the format's habit]"},
       {"from-frame", CLI_TEXT, &job.from_frame, "XYZ", "where they point in the input [the format's habit]"},
       {"keep-order", CLI_FLAG, &job.keeps_order, NULL,
-       "keep the order of the Gaussians; else neighbours are brought together, which packs better"},
-      {"sh-bits", CLI_INT, &job.sh_bits, "N", "of .spz: bits of each number of the harmonics, 1 to 8 [8]", 1, 8},
+       "keep the order of the Gaussians; else neighbours are brought together, which packs better",
+       .acts.with = "to=compressed-ply|to=sog|o=.compressed.ply|o=.sog"},
+      {"sh-bits", CLI_INT, &job.sh_bits, "N", "of .spz: bits of each number of the harmonics, 1 to 8 [8]", 1, 8,
+       .acts.with = "to=spz|o=.spz"},
       {"measure", CLI_INT, &job.n_views, "N", "draw both scenes from N sides, and say how pictures differ", 1, 360},
-      {"spz-version", CLI_INT, &job.write.spz_version, "V", "of .spz: 3 for readers of before 2026 [4]", 3, 4},
+      {"spz-version", CLI_INT, &job.write.spz_version, "V", "of .spz: 3 for readers of before 2026 [4]", 3, 4,
+       .acts.with = "to=spz|o=.spz"},
   };
   int exit_code = cli_parse(session, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);
   if (exit_code == CLI_DONE)

@@ -176,7 +176,8 @@ static conic_status cut_to_las(cut_job *job) {
 static int make_cut(void *cookie) {
   cut_job *job = cookie;
   conic_status status = CONIC_OK;
-  if (job->polygons)
+  status = cli_build_know(&job->base, cli_build_facts_of_file(&job->base, job->base.input));
+  if (status == CONIC_OK && job->polygons)
     status = cli_cut_read_polygons(job->base.session->context, job->polygons, &job->region);
   memcpy(job->part.low, job->region.low, sizeof job->part.low);
   memcpy(job->part.high, job->region.high, sizeof job->part.high);
@@ -242,11 +243,13 @@ static int run_cut(cli_session *session, int argc, char **argv) {
       {"error", CLI_NUMBER, &job.part.error, "E",
        "of clouds in levels: no finer than this, in the unit of the points [0: all points]", 0, 1e15},
       {"memory", CLI_NUMBER, &job.memory_mib, "MIB", "what reading, and building a .lpc, may take in memory [512]", 16,
-       1e9},
-      {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
+       1e9, .acts.is_work = 1},
+      {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5,
+       .acts.with = "o=.lpc"},
       CLI_COLUMNS(&job.base.columns),
   };
-  int exit_code = cli_parse(session, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);
+  int exit_code =
+      cli_build_arguments(&job.base, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);
   if (exit_code == CLI_DONE)
     exit_code = check_cut(&job, positional, n_positional);
   return cli_build_run(&job, &steps, exit_code);

@@ -140,7 +140,7 @@ static int run_diff(cli_session *session, int argc, char **argv) {
        "write a picture of where they differ; of folders H.NAME.png for each view"},
       {"heatmap-of", CLI_CHOICE, &job.is_flip_map, "WHAT",
        "what it paints: samples, their largest difference; flip, what is seen of it [samples]",
-       .choices = heatmap_words},
+       .choices = heatmap_words, .acts.with = "heatmap"},
       {"max-abs", CLI_NUMBER, &limits->max_abs, "X", "let no sample differ by more [identical]", 0.0, INFINITY,
        .is_given = &limits->has_max_abs},
       {"min-psnr", CLI_NUMBER, &limits->min_psnr, "DB",

@@ -2,6 +2,7 @@
 #include "cli/command.h"
 #include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
+#include "core/base/context_struct.h"
 #include "core/base/message.h"
 #include "source/mesh_input.h"
 #include "source/reach.h"
@@ -33,9 +34,12 @@ static conic_status build_whole(hybrid_job *job) {
   double start = cli_seconds();
   conic_status status = conic_hybrid_input_read(context, job->base.input, &reading, &input);
   if (status == CONIC_OK)
-    status = cli_coloring_apply(job->base.session, &job->coloring,
-                                input.is_points ? input.up : (const double[3]){0.0, 1.0, 0.0},
-                                input.is_points ? &input.splats : NULL, input.is_points ? NULL : &input.mesh);
+    status = cli_build_know(&job->base, CLI_SURFACES | CLI_FACT(VALUED) | (input.is_points ? 0 : CLI_FACT(FACES)) |
+                                            (context->texture_bytes ? CLI_FACT(TEXTURED) : 0));
+  if (status == CONIC_OK)
+    status =
+        cli_coloring_apply(&job->base, &job->coloring, input.is_points ? input.up : (const double[3]){0.0, 1.0, 0.0},
+                           input.is_points ? &input.splats : NULL, input.is_points ? NULL : &input.mesh);
   cli_build_end_stage(&job->base.stages[READ], start);
   if (status == CONIC_OK)
     return conic_hybrid_input_build(context, &input, &job->options, &job->hybrid, &job->report);
@@ -45,12 +49,14 @@ static conic_status build_whole(hybrid_job *job) {
 
 static conic_status build_within(hybrid_job *job) {
   conic_hybrid_streaming streaming;
+  conic_status status = cli_build_know(&job->base, CLI_SOURCE_FACTS & ~CLI_FACT(TEXTURED));
   conic_hybrid_streaming_init(&streaming);
   streaming.memory_bytes = (uint64_t)job->memory_mib << 20;
   streaming.is_smooth = job->is_smooth;
   streaming.crease_deg = job->crease_deg;
-  return conic_hybrid_build_file(job->base.session->context, job->base.input, job->base.output, &job->options,
-                                 &streaming, &job->hybrid, &job->report);
+  return status == CONIC_OK ? conic_hybrid_build_file(job->base.session->context, job->base.input, job->base.output,
+                                                      &job->options, &streaming, &job->hybrid, &job->report)
+                            : status;
 }
 
 static int make_hybrid(void *cookie) {
@@ -175,10 +181,10 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
       {"texture", CLI_TEXT, &job.texture, "FILE", "the picture on the mesh's surface [as its materials say]"},
       CLI_TEXTURE_BOUND(session),
       {"smooth", CLI_FLAG, &job.is_smooth, NULL,
-       "triangles look smooth everywhere: each vertex gets the mean normal of its faces"},
+       "triangles look smooth everywhere: each vertex gets the mean normal of its faces", .acts.on = CLI_FACT(FACES)},
       {"crease", CLI_NUMBER, &job.crease_deg, "DEG",
        "triangles without normals look smooth over edges up to this angle, in degrees; 0: every face is flat [30]", 0,
-       90, .is_given = &job.is_crease_given},
+       90, .is_given = &job.is_crease_given, .acts.on = CLI_FACT(FACES)},
       {"cutoff", CLI_NUMBER, &cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
       {"memory", CLI_INT, &job.memory_mib, "MiB",
        "of a PLY that is larger than memory, what building may take; in cells, so that the file is another one "
@@ -186,7 +192,7 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
        1, 1 << 20},
       {"single", CLI_FLAG, &job.options.has_single_levels, NULL,
        "without the simpler levels that --error chooses from"},
-      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
+      CLI_BUILD_COLOR_OPTIONS(&job.coloring, CLI_UP_OF_COLORS),
   };
   int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "chy");
   job.options.cutoff = (float)cutoff;

@@ -84,6 +84,10 @@ static conic_status read_file(cli_session *session, info_job *job) {
   job->is_cameras |= conic_cameras_is_file(session->context, job->path);
   if (job->is_cameras)
     return read_cameras(session, job);
+  if (job->size[0]) {
+    cli_usage("info: --size has no effect: it acts on cameras, not on %s", job->path);
+    return CONIC_ERROR_ARGUMENT;
+  }
   if (!is_exr(job->path))
     return conic_source_inspect(session->context, job->path, job->is_check, &job->facts);
   conic_status status = conic_image_read(session->context, job->path, &job->image);
@@ -117,7 +121,8 @@ static double bytes_per_point(const info_job *job) {
   return 0.0;
 }
 
-static void print_cameras(const conic_cameras *cameras) {
+static void print_cameras(const info_job *job) {
+  const conic_cameras *cameras = &job->cameras;
   printf("format     %s\nviews      %zu\n", conic_camera_file_name((conic_camera_file)cameras->kind), cameras->count);
   for (size_t i = 0; i < cameras->count; i++) {
     const conic_camera *c = &cameras->cameras[i];
@@ -127,6 +132,8 @@ static void print_cameras(const conic_cameras *cameras) {
       printf("  %s, lens %s", conic_camera_kind_name((conic_camera_kind)c->kind), conic_lens_name((conic_lens)c->lens));
     putchar('\n');
   }
+  if (job->is_check)
+    puts("sound      yes");
 }
 
 static void report_cameras(cli_json *json, const conic_cameras *cameras) {
@@ -161,7 +168,7 @@ static int print_text(const info_job *job) {
   if (job->facts)
     cli_facts_print(job->facts);
   else if (job->is_cameras)
-    print_cameras(&job->cameras);
+    print_cameras(job);
   else
     print_image(job);
   if (fflush(stdout) != 0 || ferror(stdout))

@@ -17,12 +17,15 @@ typedef struct make_job {
   conic_scene_options scene;
   conic_write_options write;
   unsigned long long count, seed;
-  int is_ascii, is_gaussians, sh_degree, has_sh_degree;
+  int is_ascii, is_gaussians, sh_degree;
 } make_job;
 
 enum { READ, WORK, WRITE };
 
 static const char gaussians_name[] = "gaussians";
+
+/* What samples of surfaces alone have. */
+#define NOT_GAUSSIANS "!@gaussians"
 
 /* "plane, sphere, …", for messages. */
 static void list_names(char *names, size_t room) {
@@ -61,14 +64,10 @@ static int find_scene(const char *name, conic_scene_type *type) {
 
 static int check_gaussians(const make_job *job) {
   conic_gaussian_kind kind;
-  const conic_scene_options *scene = &job->scene;
   if (!job->base.output)
     return cli_usage("make: where to? It needs -o OUT.ply, or another format of Gaussians");
   if (!conic_gaussians_find_kind(job->base.output, &kind))
     return cli_usage("%s: no format of Gaussians has this ending", job->base.output);
-  if (job->is_ascii || scene->jitter != 0.0 || scene->noise != 0.0 || scene->offset[0] != 0.0 ||
-      scene->offset[1] != 0.0 || scene->offset[2] != 0.0)
-    return cli_usage("make: --ascii, --jitter, --noise and --far are not for Gaussians");
   return cli_check_outputs(job->base.session, &job->base.output, 1);
 }
 
@@ -83,8 +82,6 @@ static int check_arguments(const char *const *scenes, int n_scenes, make_job *jo
   job->is_gaussians = strcmp(scenes[0], gaussians_name) == 0;
   if (job->is_gaussians)
     return check_gaussians(job);
-  if (job->has_sh_degree)
-    return cli_usage("make: --degree is for Gaussians");
   int exit_code = find_scene(scenes[0], &job->scene.type);
   if (exit_code == CLI_DONE && !job->base.output)
     exit_code = cli_usage("make: where to? It needs -o OUT.ply");
@@ -101,15 +98,18 @@ static int parse_scene(int argc, char **argv, make_job *job) {
       {"o", CLI_TEXT, &job->base.output, "OUT.ply", "the file to write; - is standard output"},
       {"n", CLI_COUNT, &job->count, "COUNT", "how many splats: 100000, 10k, 2M, 1e6 [100k]", 1, 4294967294.0},
       {"seed", CLI_COUNT, &job->seed, "S",
-       "the number that the jitter, the noise and the terrain's shape are drawn from [0]"},
-      {"jitter", CLI_NUMBER, &scene->jitter, "J", "move each splat in its plane by up to J spacings [0]", 0, 1e6},
+       "the number that the jitter, the noise and the terrain's shape are drawn from [0]",
+       .acts.with = "jitter|noise|@terrain|@gaussians"},
+      {"jitter", CLI_NUMBER, &scene->jitter, "J", "move each splat in its plane by up to J spacings [0]", 0, 1e6,
+       .acts.with = NOT_GAUSSIANS},
       {"noise", CLI_NUMBER, &scene->noise, "N",
-       "move each along its normal by chance, by N spacings in the mean square [0]", 0, 1e6},
+       "move each along its normal by chance, by N spacings in the mean square [0]", 0, 1e6,
+       .acts.with = NOT_GAUSSIANS},
       {"far", CLI_VECTOR, scene->offset, "X,Y,Z",
-       "move the scene away from the origin; positions then are doubles [0,0,0]"},
+       "move the scene away from the origin; positions then are doubles [0,0,0]", .acts.with = NOT_GAUSSIANS},
       {"degree", CLI_INT, &job->sh_degree, "D", "of gaussians: the degree of their spherical harmonics, 0 to 4 [3]", 0,
-       CONIC_MAX_SH_DEGREE, .is_given = &job->has_sh_degree},
-      {"ascii", CLI_FLAG, &job->is_ascii, NULL, "write text instead of binary"},
+       CONIC_MAX_SH_DEGREE, .acts.with = "@gaussians"},
+      {"ascii", CLI_FLAG, &job->is_ascii, NULL, "write text instead of binary", .acts.with = NOT_GAUSSIANS},
   };
   const char *scenes[64];
   int n_scenes;

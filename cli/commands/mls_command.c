@@ -334,7 +334,9 @@ static void report_points(cli_json *json, const void *cookie) {
 static int make_points(void *cookie) {
   mls_job *job = cookie;
   cli_build_share(&job->base);
-  conic_status status = job->has_memory ? CONIC_OK : read_points(job);
+  conic_status status = cli_build_know(&job->base, cli_build_facts_of_file(&job->base, job->base.input));
+  if (status == CONIC_OK && !job->has_memory)
+    status = read_points(job);
   if (status == CONIC_OK)
     status = work(job);
   status = cli_build_part(&job->base, status);
@@ -367,12 +369,6 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
     return exit_code;
   if (job->action == MLS_DENSIFY && !(job->spacing.value > 0.0))
     job->spacing = (cli_length){.value = 0.5, .is_in_spacings = 1};
-  if ((job->action == MLS_PROJECT && job->has_count) ||
-      (job->action != MLS_THIN && (job->max_error.value > 0.0 || job->keeps)) ||
-      (job->action != MLS_DENSIFY && (job->spacing.value > 0.0 || job->hole.value > 0.0)))
-    return cli_usage(
-        "mls %s: --count is of thin and densify, --max-error and --keep of thin, --spacing and --hole of densify",
-        name);
   if (job->has_memory && (!is_by_cells(job) || job->h.is_in_spacings || strcmp(positional[1], "-") == 0))
     return cli_usage("mls %s: --memory is of project, from a file, with --h in world units and without --cluster and "
                      "--sharp",
@@ -398,40 +394,44 @@ static int run_mls(cli_session *session, int argc, char **argv) {
       {"plane", CLI_CHOICE, &job.plane, "P",
        "of --type mls, where the plane lies: full, where it makes this a projection; fast, through the point itself "
        "[full]",
-       .choices = plane_names},
+       .choices = plane_names, .acts.with = "type=mls"},
       {"degree", CLI_INT, &job.options.degree, "D", "of --type mls, the degree of the polynomials, 1 to 4 [3]", 1,
-       CONIC_SURFACE_MAX_DEGREE},
+       CONIC_SURFACE_MAX_DEGREE, .acts.with = "type=mls"},
       {"weight", CLI_CHOICE, &job.weight, "W",
        "how a sample's weight falls with its distance: gauss, compact or flat [gauss]", .choices = weight_names},
       {"h", CLI_PARSED, &job.h, "H",
        "what is smaller is smoothed away: a length, also in spacings (2x) [of each point its own, by -k]",
        .parse = cli_parse_length, .dashes = "--"},
       {"k", CLI_INT, &job.options.n_local, "K",
-       "where each point has an h of its own: neighbours beyond the K-th weigh nothing, 6 to 64 [32]", 6, 64},
+       "where each point has an h of its own: neighbours beyond the K-th weigh nothing, 6 to 64 [32]", 6, 64,
+       .acts.with = "!h"},
       {"neglect", CLI_NUMBER, &job.options.neglect, "C",
        "samples farther away than C times h weigh nothing, 1 to 6 [2]", 1, 6},
       {"cluster", CLI_NUMBER, &job.options.cluster, "T",
-       "project: cells smaller than T times their distance count as one sample, 0 to 1 [0]", 0, 1},
+       "project: cells smaller than T times their distance count as one sample, 0 to 1 [0]", 0, 1,
+       .acts.with = "@project"},
       {"sharp", CLI_FLAG, &job.is_sharp, NULL, "keep creases sharp, and clip the splats that are written at them"},
       {"count", CLI_COUNT, &job.count, "N", "thin: points to keep [a tenth]; densify: points to stop at", 1,
-       4294967294.0, .is_given = &job.has_count},
+       4294967294.0, .is_given = &job.has_count, .acts.with = "@thin|@densify"},
       {"max-error", CLI_PARSED, &job.max_error, "E", "thin: keep the surface within E of what it was",
-       .parse = cli_parse_length},
+       .parse = cli_parse_length, .acts.with = "@thin"},
       {"keep", CLI_CHOICE, &job.keep, "WHAT",
        "thin: contribution, how far each point that is left lies from the surface of the others, as a value",
-       .choices = keep_names, .is_given = &job.keeps},
+       .choices = keep_names, .is_given = &job.keeps, .acts.with = "@thin"},
       {"spacing", CLI_PARSED, &job.spacing, "S", "densify: no circle of a greater radius stays empty [0.5x]",
-       .parse = cli_parse_length},
+       .parse = cli_parse_length, .acts.with = "@densify"},
       {"hole", CLI_PARSED, &job.hole, "R",
-       "densify: circles of a greater radius are holes and stay; faces are none [1.25 h]", .parse = cli_parse_length},
+       "densify: circles of a greater radius are holes and stay; faces are none [1.25 h]", .parse = cli_parse_length,
+       .acts.with = "@densify"},
       {"memory", CLI_COUNT, &job.memory_mib, "MIB",
-       "project: work cell by cell in so much memory, the rest beside the output", 1, 1e9, .is_given = &job.has_memory},
+       "project: work cell by cell in so much memory, the rest beside the output", 1, 1e9, .is_given = &job.has_memory,
+       .acts = {.with = "@project", .is_work = 1}},
       {"isa", CLI_CHOICE, &job.isa, "ISA", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
-       .choices = isa_names},
+       .choices = isa_names, .acts.is_work = 1},
       CLI_COLUMNS(&job.base.columns),
   };
   int exit_code =
-      cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
+      cli_build_arguments(&job.base, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);
   session->isa = (conic_isa)job.isa;
   return cli_build_run(&job, &steps, exit_code == CLI_DONE ? check_job(&job, positional, n_positional) : exit_code);
 }

@@ -38,6 +38,10 @@ static conic_status build_from_model(octree_job *job) {
   start = cli_build_end_stage(&stages[READ], start);
   if (status != CONIC_OK)
     return status;
+  if (cli_build_know(&job->base, cli_build_facts(&model)) != CONIC_OK) {
+    conic_model_release(context, &model);
+    return CONIC_ERROR_ARGUMENT;
+  }
   cli_build_hint_faces(&job->base, &model);
   job->n_in = model.points.count;
   const char *why = conic_why_out_of_reach(&model.points);
@@ -48,7 +52,7 @@ static conic_status build_from_model(octree_job *job) {
   }
   status = conic_model_to_splats(context, &job->estimate, &model, &job->repairs);
   if (status == CONIC_OK)
-    status = cli_coloring_apply(job->base.session, &job->coloring, model.up, &model.points, NULL);
+    status = cli_coloring_apply(&job->base, &job->coloring, model.up, &model.points, NULL);
   start = cli_build_end_stage(&stages[ESTIMATE], start);
   if (status == CONIC_OK)
     status = conic_octree_build(context, &model.points, &job->options, &job->octree);
@@ -112,10 +116,11 @@ static int run_octree(cli_session *session, int argc, char **argv) {
       {"quantize", CLI_FLAG, &job.options.quantize, NULL, "round the splats: about half the size; the error is stated"},
       {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
-       "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
+       "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64,
+       .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
       CLI_COLUMNS(&job.base.columns),
       CLI_WHERE(&job.base.where),
-      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
+      CLI_BUILD_COLOR_OPTIONS(&job.coloring, CLI_UP_OF_COLORS),
   };
   int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot");
   job.options.cutoff = job.estimate.cutoff = (float)job.cutoff;

@@ -84,6 +84,8 @@ static conic_status read_model(prepare_job *job) {
   options.where = job->base.where;
   conic_status status = cli_points_read(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
+  if (status == CONIC_OK)
+    status = cli_build_know(&job->base, cli_build_facts(&job->model));
   cli_build_hint_faces(&job->base, &job->model);
   if (status == CONIC_OK)
     status = cli_build_check_reach(&job->base, &job->model.points);
@@ -96,7 +98,7 @@ static conic_status find_axes(prepare_job *job) {
   if (status == CONIC_OK)
     status = conic_model_to_splats(job->base.session->context, &job->estimate, &job->model, &job->repairs);
   if (status == CONIC_OK)
-    status = cli_coloring_apply(job->base.session, &job->coloring, job->model.up, &job->model.points, NULL);
+    status = cli_coloring_apply(&job->base, &job->coloring, job->model.up, &job->model.points, NULL);
   if (status != CONIC_OK)
     return status;
   if (job->repairs.nan + job->repairs.failed >= job->model.points.count) {
@@ -173,26 +175,28 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
       CLI_IN_PLACE(job.base),
       {"k", CLI_INT, &job.estimate.n_neighbours, "K", "how many neighbours a point's ellipse comes from, 6 to 64 [20]",
-       6, 64},
+       6, 64, .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
       {"ellipse", CLI_PARSED, &job.estimate.ellipse, "RULE",
        "what a point's ellipse goes around: its voronoi cell, or bounding all K neighbours, as Confetti has it "
        "[voronoi]",
-       .parse = parse_ellipse},
+       .parse = parse_ellipse, .acts.on = CLI_FACT(RAW)},
       {"features", CLI_NUMBER, &job.estimate.feature_angle_deg, "ANGLE",
        "creases sharper than ANGLE degrees become sharp, by clip lines [none]", 0, 90},
       {"count", CLI_COUNT, &job.count, "N", "keep N of the points, chosen at random, and fit the sizes to them", 1,
        4294967294.0, .is_given = &job.has_count},
       {"seed", CLI_COUNT, &job.seed, "S",
-       "which points --count chooses; those of a smaller count are among those of a larger one [0]"},
+       "which points --count chooses; those of a smaller count are among those of a larger one [0]",
+       .acts.with = "count"},
       CLI_COLUMNS(&job.base.columns),
       CLI_WHERE(&job.base.where),
       {"plain", CLI_FLAG, &job.is_plain, NULL,
-       "every point becomes an ellipse; else those that lie on no surface become round dots"},
+       "every point becomes an ellipse; else those that lie on no surface become round dots", .acts.on = CLI_FACT(RAW)},
       {"bake", CLI_PARSED, &job.bake, "WHAT",
        "ao: how much light from all around reaches each point, as the value ao; color: colours are darkened by it, too",
        .parse = cli_bake_parse},
-      {"directions", CLI_INT, &job.n_directions, "N", "of --bake: from so many directions [256]", 1, 65536},
-      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
+      {"directions", CLI_INT, &job.n_directions, "N", "of --bake: from so many directions [256]", 1, 65536,
+       .acts.with = "bake"},
+      CLI_BUILD_COLOR_OPTIONS(&job.coloring, CLI_UP_OF_COLORS),
   };
   int parsed = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply");
   return cli_build_run(&job, &steps, parsed == CLI_DONE ? cli_coloring_check(session, &job.coloring) : parsed);

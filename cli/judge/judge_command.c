@@ -163,6 +163,9 @@ static int names_option(int argc, char **argv, const char *option) {
   return 0;
 }
 
+/* Pictures of codes. */
+#define CODED "picture=.png|picture=.npy|picture=.npz"
+
 static int run_judge(cli_session *session, int argc, char **argv) {
   static const char *const transfers[] = {"linear", "srgb", NULL}, *const roundings[] = {"either", "nearest", "down",
                                                                                          NULL};
@@ -190,25 +193,22 @@ static int run_judge(cli_session *session, int argc, char **argv) {
       {"report", CLI_TEXT, &job.report_path, "FILE.html", "a page with all that was found, pictures and all"},
       {"transfer", CLI_CHOICE, &job.transfer, "HOW",
        "codes of 8 or 16 bits: linear (code / 255) or srgb (decoded) [linear of Gaussian scenes, else srgb]",
-       .choices = transfers, .is_given = &job.is_transfer_given},
+       .choices = transfers, .is_given = &job.is_transfer_given, .acts.with = CODED},
       {"codes", CLI_CHOICE, &rounding, "HOW", "codes were rounded to the nearest, down, or either [either]",
-       .choices = roundings},
+       .choices = roundings, .acts.with = CODED},
       {"clipped", CLI_FLAG, &job.reading.is_clipped, NULL,
-       "colours of 0 and 1 stand for what is beyond, in floats, too"},
+       "colours of 0 and 1 stand for what is beyond, in floats, too", .acts.with = "!picture=.png"},
       {"straight", CLI_FLAG, &job.reading.is_straight, NULL,
-       "colours are not multiplied by alpha; of a PNG they never are"},
+       "colours are not multiplied by alpha; of a PNG they never are", .acts.with = "!picture=.png"},
       {"no-diagnosis", CLI_FLAG, &job.skips_diagnosis, NULL,
-       "don't look for the mistake that explains wrong pixels, which may take longer than judging them"},
-      {"time", CLI_FLAG, &job.shows_times, NULL, "print what each stage took"},
+       "don't look for the mistake that explains wrong pixels, which may take longer than judging them",
+       .acts.is_work = 1},
+      {"time", CLI_FLAG, &job.shows_times, NULL, "print what each stage took", .acts.is_work = 1},
       CLI_SUITE_OPTIONS(suite),
       CLI_GRADIENT_OPTIONS(gradients),
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   job.reading.rounding = (conic_code_rounding)rounding;
-  if (exit_code == CLI_DONE && (suite.judging.pictures || suite.junit_path || suite.most_level))
-    exit_code = cli_usage("judge: --pictures, --level and --junit are of suites; give --suite FOLDER, too");
-  if (exit_code == CLI_DONE && (gradients.weights || gradients.is_raw))
-    exit_code = cli_usage("judge: --weights and --raw are of derivatives; give --gradients FILE, too");
   if (exit_code == CLI_DONE)
     exit_code = check_judge(session, &job);
   if (exit_code == CLI_DONE)

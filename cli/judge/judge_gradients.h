@@ -13,8 +13,14 @@ typedef struct cli_gradient_files {
 #define CLI_GRADIENT_OPTIONS(files)                                                                                    \
   {"gradients", CLI_TEXT, &(files).gradients, "FILE",                                                                  \
    "judge a derivative, in the place of a picture: .ply as conic gradient's, or .npz"},                                \
-      {"weights", CLI_TEXT, &(files).weights, "FILE", "of --gradients: W of L = sum W C, as conic gradient has it"}, { \
-    "raw", CLI_FLAG, &(files).is_raw, NULL, "of --gradients: they are by ln s and logit o"                             \
+      {"weights",                                                                                                      \
+       CLI_TEXT,                                                                                                       \
+       &(files).weights,                                                                                               \
+       "FILE",                                                                                                         \
+       "of --gradients: W of L = sum W C, as conic gradient has it",                                                   \
+       .acts.with = "gradients"},                                                                                      \
+  {                                                                                                                    \
+    "raw", CLI_FLAG, &(files).is_raw, NULL, "of --gradients: they are by ln s and logit o", .acts.with = "gradients"   \
   }
 
 /* The command, where --gradients is among its arguments; returns the exit code. */

@@ -60,10 +60,17 @@ conic_status cli_suite_write_junit(const suite_run *run);
 /* The options that only suites have, into a suite_run. */
 #define CLI_SUITE_OPTIONS(run)                                                                                         \
   {"suite", CLI_TEXT, &(run).judging.suite, "FOLDER", "judge what conic conformance wrote, in the place of a scene"},  \
-      {"pictures", CLI_TEXT, &(run).judging.pictures, "FOLDER",                                                        \
-       "of a suite: where CASE.exr, .pfm, .npy, .npz or .png are, planes beside them"},                                \
-      {"level", CLI_INT, &(run).most_level, "N", "of a suite: only cases up to this level [all]", 1, 99}, {            \
-    "junit", CLI_TEXT, &(run).junit_path, "FILE", "of a suite: the cases as JUnit's XML, as CI systems take it"        \
+      {"pictures",                                                                                                     \
+       CLI_TEXT,                                                                                                       \
+       &(run).judging.pictures,                                                                                        \
+       "FOLDER",                                                                                                       \
+       "of a suite: where CASE.exr, .pfm, .npy, .npz or .png are, planes beside them",                                 \
+       .acts.with = "suite"},                                                                                          \
+      {"level", CLI_INT, &(run).most_level,   "N", "of a suite: only cases up to this level [all]",                    \
+       1,       99,      .acts.with = "suite"},                                                                        \
+  {                                                                                                                    \
+    "junit", CLI_TEXT, &(run).junit_path, "FILE", "of a suite: the cases as JUnit's XML, as CI systems take it",       \
+        .acts.with = "suite"                                                                                           \
   }
 
 /* The command, where --suite is among its arguments; returns the exit code. */

@@ -76,12 +76,24 @@ static conic_status list_layer_inputs(cli_layer_job *job) {
   return cli_points_share_list(session, all, n + job->n_inputs, job->n_continued, &job->share);
 }
 
+/* What any of the inputs may be. */
+static conic_status know_layer_inputs(cli_layer_job *job) {
+  unsigned long long possible = 0;
+  for (int i = job->n_continued; i < job->share.n_inputs; i++)
+    possible |= cli_build_facts_of_file(&job->base, job->share.inputs[i]);
+  job->base.input = job->share.inputs[job->n_continued];
+  return job->is_merging ? CONIC_OK : cli_build_know(&job->base, possible);
+}
+
 /* Settles everything before samples come, the same in every process. */
 static conic_status plan_layers(cli_layer_job *job, conic_read_options *options) {
   conic_moment start = conic_moment_now();
   conic_status status = list_layer_inputs(job);
   if (status == CONIC_OK)
     status = conic_team_agree(job->share.team, cli_layer_continue(job, job->share.inputs, job->n_continued));
+  if (status != CONIC_OK)
+    return status;
+  status = know_layer_inputs(job);
   if (status != CONIC_OK)
     return status;
   settle_up(job);
@@ -111,6 +123,9 @@ static int make_layers(void *cookie) {
   if (status == CONIC_OK) {
     job->n_finished = conic_layers_builder_finished(job->builder);
     status = cli_layer_read_share(job, &options);
+    if (status == CONIC_OK && !job->share.team) /* else others may have read them */
+      status = cli_build_know(&job->base, job->base.effects.possible & ~((job->was_raw ? 0 : CLI_FACT(RAW)) |
+                                                                         (job->has_values ? 0 : CLI_FACT(MEASURED))));
     if (status == CONIC_OK)
       status = conic_layers_builder_finish(job->builder, &job->statistics);
     else
@@ -177,29 +192,32 @@ static int run_layer(cli_session *session, int argc, char **argv) {
       {"cloud-size", CLI_INT, &job.cloud_size, "M", "about how many samples a cloud has, 64 to 32768 [2048]", 64,
        32768},
       {"memory", CLI_NUMBER, &job.memory_mib, "MIB",
-       "what building may take in memory; what does not fit goes to files beside the output [1024]", 16, 1e9},
+       "what building may take in memory; what does not fit goes to files beside the output [1024]", 16, 1e9,
+       .acts.is_work = 1},
       {"quantum", CLI_PARSED, &job.quantum, "Q",
        "the steps that positions are rounded to: a length, also in spacings (2x) [0.5x; x/4096 with --payload "
        "full]",
        .parse = cli_parse_length, .is_given = &job.is_quantum_given},
       {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
-       "neighbours that raw points' normals are estimated from, 6 to 64 [20]", 6, 64},
+       "neighbours that raw points' normals are estimated from, 6 to 64 [20]", 6, 64,
+       .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
       {"payload", CLI_CHOICE, &job.payload, "WHAT",
        "what of a splat is kept: plain, its place, size, direction and colour; or full, also ellipses, opacities, dots "
        "and clip lines, and all of it finely [plain]",
        .choices = payload_words},
       {"keep", CLI_TEXT, &job.keep, "NAMES",
-       "which values of the points are kept, for --color-by and --where: intensity,gps_time or all [none]"},
+       "which values of the points are kept, for --color-by and --where: intensity,gps_time or all [none]",
+       .acts = {.on = CLI_FACT(MEASURED), .is_warned = 1}},
       {"append", CLI_FLAG, &job.is_appending, NULL,
        "add to the OUT.lpc that there is; its samples stay where they are"},
       CLI_LAYER_KEEPING(job),
       CLI_WHERE(&job.base.where),
       CLI_COLUMNS(&job.base.columns),
-      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
+      CLI_BUILD_COLOR_OPTIONS(&job.coloring, NULL),
   };
   int exit_code =
-      cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &job.n_inputs);
+      cli_build_arguments(&job.base, options, sizeof options / sizeof *options, argc, argv, positional, &job.n_inputs);
   job.inputs = positional;
   return cli_build_run(&job, &layer_steps, exit_code == CLI_DONE ? check_layer_arguments(&job) : exit_code);
 }
@@ -231,15 +249,15 @@ static int check_merge_arguments(cli_layer_job *job) {
 }
 
 static int run_merge(cli_session *session, int argc, char **argv) {
-  cli_layer_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}},
-                       .memory_mib = 1024.0,
-                       .is_merging = 1};
+  cli_layer_job job = {
+      .base = {session, .stages = {{"read"}, {"work"}, {"write"}}}, .memory_mib = 1024.0, .is_merging = 1};
   const char *positional[argc];
   conic_layers_options_init(&job.options);
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.lpc", "the file to write"},
       {"memory", CLI_NUMBER, &job.memory_mib, "MIB",
-       "what building may take in memory; what does not fit goes to files beside the output [1024]", 16, 1e9},
+       "what building may take in memory; what does not fit goes to files beside the output [1024]", 16, 1e9,
+       .acts.is_work = 1},
       CLI_LAYER_KEEPING(job),
   };
   int exit_code =

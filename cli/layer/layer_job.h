@@ -31,6 +31,7 @@ typedef struct cli_layer_job {
   conic_layers_builder *builder;
   conic_layers_statistics statistics;
   int may_read_again, has_begun, is_raw, is_counting;
+  int was_raw, has_values;                 /* of all inputs' points, any */
   int has_points, has_colors;              /* of all inputs so far */
   uint64_t n_points, n_pieces, n_finished; /* n_finished: samples that were finished before this run */
   double busy_seconds;
@@ -53,8 +54,12 @@ conic_status cli_layer_make_key(const cli_layer_job *job, char key[CONIC_SHA256_
 conic_status cli_layer_estimate(cli_layer_job *job, conic_model *model, conic_repairs *repairs);
 /* The options --resumable and --resume, for the commands' tables. */
 #define CLI_LAYER_KEEPING(job)                                                                                         \
-  {"resumable", CLI_FLAG, &(job).is_resumable, NULL,                                                                   \
-   "note in OUT.branches what is finished, so that --resume can go on after any end"},                                 \
+  {"resumable",                                                                                                        \
+   CLI_FLAG,                                                                                                           \
+   &(job).is_resumable,                                                                                                \
+   NULL,                                                                                                               \
+   "note in OUT.branches what is finished, so that --resume can go on after any end",                                  \
+   .acts.is_work = 1},                                                                                                 \
   {                                                                                                                    \
     "resume", CLI_TEXT, &(job).resume_path, "OUT",                                                                     \
         "go on with what OUT.branches says is finished, to the same bytes; with --resumable, too, where there is "     \

@@ -73,6 +73,8 @@ static conic_status take_layer_batch(void *cookie, const conic_splats *batch) {
   cli_layer_job *job = cookie;
   int is_raw = !batch->tangent_u[0] && !batch->normal[0];
   job->n_points += batch->count;
+  job->was_raw |= is_raw;
+  job->has_values |= batch->values && batch->values->n > 0;
   if (job->is_counting)
     return CONIC_OK;
   if (is_raw && !job->has_begun && job->may_read_again) {

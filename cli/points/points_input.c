@@ -5,11 +5,24 @@
 #include "conic/layers_draw.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
+#include "core/formats/model_read.h"
 
 /* A COPC on disk is also a LAZ, which gives more values. */
 int cli_points_are_hierarchy(const char *path) {
   int may_be_copc = conic_file_is_there(path) && !conic_file_has_ending(path, "json");
   return conic_layers_is_url(path) || (!may_be_copc && conic_layers_is_hierarchy(path));
+}
+
+int cli_points_may_be_text(conic_context *context, const char *path) {
+  conic_model_kind kind = CONIC_MODEL_XYZ;
+  conic_input input;
+  if (cli_points_are_hierarchy(path) || conic_layers_is_file(path))
+    return 0;
+  if (!conic_file_is_there(path) || conic_input_open(context, path, &input) != CONIC_OK)
+    return 1;
+  conic_status status = conic_model_find_kind(&input, path, &kind);
+  conic_input_close(&input);
+  return status != CONIC_OK || kind == CONIC_MODEL_XYZ;
 }
 
 int cli_points_are_surveys(const char *const *paths, int n_paths) {

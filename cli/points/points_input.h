@@ -11,6 +11,9 @@
 /* Whether it is read as another kind's hierarchy, which gives only places and colours. */
 int cli_points_are_hierarchy(const char *path);
 
+/* Whether a file is text, or cannot be looked at now. */
+int cli_points_may_be_text(conic_context *context, const char *path);
+
 /* Whether all are surveys, whose z points up. */
 int cli_points_are_surveys(const char *const *paths, int n_paths);
 

@@ -62,9 +62,16 @@
    .is_given = &(job)->accumulating.is_sample_given,                                                                   \
    .group = "samples of final pictures"},                                                                              \
       CLI_LENS_OPTIONS(&(job)->accumulating),                                                                          \
-      {"turntable", CLI_PARSED, (job), "N", "the picture is one of N around the scene", .parse = cli_parse_turntable}, \
+      {"turntable",                                                                                                    \
+       CLI_PARSED,                                                                                                     \
+       (job),                                                                                                          \
+       "N",                                                                                                            \
+       "the picture is one of N around the scene",                                                                     \
+       .parse = cli_parse_turntable,                                                                                   \
+       .acts.with = "frames|shutter"},                                                                                 \
   {                                                                                                                    \
-    "frames", CLI_PARSED, &(job)->frames, "A", "of --turntable, which, from 1 [1]", .parse = cli_parse_frames          \
+    "frames", CLI_PARSED, &(job)->frames, "A", "of --turntable, which, from 1 [1]", .parse = cli_parse_frames,         \
+                                                                                    .acts.with = "turntable"           \
   }
 
 /* What these mean together with the others, for a command that looks at one picture. */

@@ -23,7 +23,7 @@ static const struct {
   const char *why;
 } pairs[] = {
     {CLI_CHOSEN, 0, 0, "--error and --budget are two ways to choose; give one of both"},
-    {F(PATCH), F(AS_MESH) | F(HYBRID), 0, "--method patch draws points; not with --as mesh, nor hybrids"},
+    {F(PATCH) | F(HYBRID), 0, 0, "--method patch draws points, and no hybrids"},
     {F(PATCH), CLI_CHOSEN, 0, "--method patch draws samples of its own: not with --error or --budget"},
     {F(PATCH) | F(DEEP), 0, 0, "--method patch draws samples of its own: not with --deep"},
     {F(PROJECTED) | F(COMPOSITED), 0, F(EXACT) | F(CUBE),
@@ -215,14 +215,12 @@ static facts ask_of_drawing(const cli_render_job *job, const cli_scene_words *wo
          when(chooses_samples(job, words) || is_rough, F(UNSETTLED)) |
          when(profile == CONIC_PROFILE_INRIA_2023 || profile == CONIC_PROFILE_2DGS_2024, F(OWN_CENTER)) |
          when(strcmp(job->device.name, "cpu") != 0, F(OPENCL)) | when(!job->is_for_looking, F(ASKING)) |
-         when(job->shot.gaussians.prefilter > 0.0, F(PREFILTERED)) |
-         when(words->is_as_given && (words->as == CONIC_AS_MESH || words->as == CONIC_AS_HYBRID), F(AS_MESH)) |
-         when(job->deep_path != NULL, F(DEEP)) | when(job->has_mattes, F(MATTES)) |
-         when(job->is_transparent, F(TRANSPARENT)) | when(job->shot.view.samples > 1, F(SAMPLED)) |
-         when(job->progressive_path != NULL, F(PROGRESSIVE)) | when(job->deadline > 0.0, F(DEADLINE)) |
-         when(job->repeat > 1, F(REPEATED)) | when(job->is_exposure_automatic, F(EXPOSED)) |
-         when(job->shot.has_backdrop, F(BACKDROP)) | when(job->lamps.n_lamps || cli_lamps_are_soft(job), F(LAMPS)) |
-         when(is_masked, F(MASKED)) |
+         when(job->shot.gaussians.prefilter > 0.0, F(PREFILTERED)) | when(job->deep_path != NULL, F(DEEP)) |
+         when(job->has_mattes, F(MATTES)) | when(job->is_transparent, F(TRANSPARENT)) |
+         when(job->shot.view.samples > 1, F(SAMPLED)) | when(job->progressive_path != NULL, F(PROGRESSIVE)) |
+         when(job->deadline > 0.0, F(DEADLINE)) | when(job->repeat > 1, F(REPEATED)) |
+         when(job->is_exposure_automatic, F(EXPOSED)) | when(job->shot.has_backdrop, F(BACKDROP)) |
+         when(job->lamps.n_lamps || cli_lamps_are_soft(job), F(LAMPS)) | when(is_masked, F(MASKED)) |
          when(job->overdraw_path || job->clusters_path || job->boxes_path || job->legend_path || job->has_legend,
               F(SHOWN));
 }
@@ -272,7 +270,9 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
        "profile NAME:ignore-center",
        {.on = F(COMPOSITED), .needs = F(OWN_CENTER)}},
       {words->is_as_given && !is_model, "as", {.on = F(FACES), .is_warned = 1}},
-      {words->is_as_given && is_model, "as mesh or hybrid", {.on = F(FACES)}},
+      {words->is_as_given && is_model,
+       "as mesh or hybrid",
+       {.on = F(FACES), .apart = F(PATCH), .why = "it draws points"}},
       {words->is_quality_given && !chooses_samples(job, words), "quality", {.on = F(SPLATS), .is_warned = 1}},
       {is_waited_for(job), "timeout", {.on = F(URL), .is_warned = 1}},
       {words->is_patch_given, "method patch:D:H", {.needs = F(PATCH)}},
