@@ -15,10 +15,18 @@ static const char *const overdraw_words[] = {"log", "confetti", NULL};
 static const char *const show_words[] = {"overdraw:", "overdraw-confetti:", "clusters:", "boxes:", "legend", NULL};
 static const char *const occlusion_words[] = {"auto", "on", "off", NULL};
 
+/* OUT, or KIND:OUT of what has no ending. */
 static int parse_output(const char *text, void *value) {
   cli_render_job *job = value;
+  const size_t n_kind = strspn(text, "abcdefghijklmnopqrstuvwxyz");
   if (!*text || job->n_outputs == CLI_MAX_OUTPUTS)
     return 0;
+  if (n_kind > 1 && n_kind < sizeof job->kind && text[n_kind] == ':' && text[n_kind + 1] &&
+      !*conic_file_ending(text + n_kind + 1)) {
+    snprintf(job->kind, sizeof job->kind, "%.*s", (int)n_kind, text);
+    job->writing.format = job->kind;
+    text += n_kind + 1;
+  }
   job->outputs[job->n_outputs++] = text;
   return 1;
 }
@@ -126,7 +134,8 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
   if (job->deep_path && !conic_file_has_ending(job->deep_path, "exr"))
     return cli_usage("%s: a deep image is an .exr", job->deep_path);
   if ((is_colors_given && !job->overdraw_path) || (job->box_level >= 0 && !job->boxes_path))
-    return cli_usage("render: --overdraw-colors and --box-level are of --show overdraw-confetti:OUT and boxes@N:OUT");
+    return cli_usage(
+        "render: colours of overdraw and a level of boxes are of --show overdraw-confetti:OUT and boxes@N:OUT");
   if (answer == CLI_DONE && job->top.is_wanted)
     answer = cli_top_check(session, job);
   if (answer == CLI_DONE)
@@ -174,12 +183,11 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   int memory_mib = USUAL_MIB, occlusion = CONIC_OCCLUSION_AUTO, is_colors_given = 0;
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT",
-       "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; may be repeated",
+       "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; exr:- and pfm:NAME say of what "
+       "kind "
+       "that is, or a name without an ending [png]; may be repeated",
        .parse = parse_output, .may_repeat = 1, .group = "output",
        .intro = "Where pictures go, and how they are written.", .is_usual = 1},
-      {"format", CLI_TEXT, &job->writing.format, "NAME",
-       "the kind of what goes to standard output or to a name without an ending: png, exr, pfm … [png]",
-       .acts = {.needs = CLI_FACT(NAMELESS), .is_warned = 1}},
       {"exr", CLI_PARSED, &job->writing, "HOW",
        "numbers of an .exr: float, or half for rgba, N and albedo; and how it is compressed: zip, none, rle, zips, "
        "piz, "
@@ -247,16 +255,10 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "write the picture as it is every S seconds, too [only at the end]", 1e-3, 1e9,
        .acts = {.needs = CLI_FACT(ACCUMULATED), .is_work = 1}},
       CLI_LENS_OPTIONS(&job->accumulating),
-      {"gsd", CLI_NUMBER, &job->top.gsd, "G",
-       "of --camera top: a pixel's edge on the ground, in the unit of the points [their typical distance]", 1e-12, 1e12,
-       .group = "maps (--camera top)", .intro = "Orthophotos and heights, where they lie on the earth.",
-       .acts = {.needs = CLI_FACT(MAP)}},
       {"box", CLI_PARSED, &job->top.box, "X0,Y0,Z0,X1,Y1,Z1",
        "of --camera top: the part of the ground that is drawn; X0,Y0,X1,Y1 for all heights [all]",
-       .parse = cli_cut_parse_box, .acts = {.needs = CLI_FACT(MAP)}},
-      {"epsg", CLI_INT, &job->top.epsg, "CODE",
-       "of --camera top: the coordinate system that is noted in a .tif, by its EPSG code [the file's]", 1, 65535,
-       .acts = {.on = CLI_FACT(MAP), .needs = CLI_FACT(TIFF)}},
+       .parse = cli_cut_parse_box, .group = "maps (--camera top)",
+       .intro = "Orthophotos and heights, where they lie on the earth.", .acts = {.needs = CLI_FACT(MAP)}},
       {"progressive", CLI_TEXT, &job->progressive_path, "DIR",
        "of a cloud in levels, also a picture after each level that has been read: DIR/0001.exr …",
        .group = "clouds in levels (.lpc, COPC, EPT, Potree 2)",
@@ -292,6 +294,9 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"repeat", CLI_INT, &job->repeat, "N", "draw N times and report the median of the times [1]", 1, 100000,
        .group = "measuring", .intro = "How fast it is.", .acts = {.apart = CLI_FACT(MAP), .is_work = 1}},
       /* Old spellings. */
+      {"format", CLI_TEXT, &job->writing.format, "NAME", "a kind of file", .now = "-o NAME:OUT"},
+      {"gsd", CLI_NUMBER, &job->top.gsd, "G", "of a map", 1e-12, 1e12, .now = "--camera top:G"},
+      {"epsg", CLI_INT, &job->top.epsg, "CODE", "of a map", 1, 65535, .now = "--camera top:GSD:CODE"},
       {"compression", CLI_CHOICE, &compression, "NAME", "of an .exr", .choices = compression_words,
        .now = "--exr zip, or with a type, --exr half,zip", .acts = {.needs = CLI_FACT(EXR), .is_warned = 1}},
       {"overdraw", CLI_TEXT, &job->overdraw_path, "OUT", "a file", .now = "--show overdraw:OUT"},

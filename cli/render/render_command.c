@@ -80,9 +80,8 @@ static void warn_of_error(cli_session *session, cli_render_job *job) {
     conic_log(session->context, CONIC_LOG_WARNING, "%s: %scannot keep --error %g: the picture is up to %.3g pixels off",
               job->inputs[0], kind, wanted, reached);
   else if (is_faded)
-    conic_log(session->context, CONIC_LOG_WARNING,
-              "%s: %scannot keep --color-error %g: colours are up to %.3g steps off", job->inputs[0], kind,
-              job->shot.view.color_error, choice->color_error);
+    conic_log(session->context, CONIC_LOG_WARNING, "%s: %scannot keep --error %g:%g: colours are up to %.3g steps off",
+              job->inputs[0], kind, wanted, job->shot.view.color_error, choice->color_error);
   else if (is_free && job->shot.view.only_kind == CONIC_HYBRID_SURFELS)
     conic_log(session->context, CONIC_LOG_WARNING,
               "%s: --only surfels stand out from the mesh: the picture is up to %.3g pixels off", job->inputs[0],
@@ -132,8 +131,8 @@ static conic_status check_gathered(const cli_render_job *job, int is_gathered) {
   if (!is_gathered ||
       !(job->progressive_path || job->deadline > 0.0 || job->deep_path || job->boxes_path || job->has_mattes))
     return CONIC_OK;
-  cli_usage("render: --progressive, --deadline, --deep, --boxes and --cryptomatte want a perspective camera without a "
-            "lens that distorts");
+  cli_usage("render: --progressive, --deadline, --deep, --show boxes and --aov cryptomatte want a perspective camera "
+            "without a lens that distorts");
   return CONIC_ERROR_ARGUMENT;
 }
 

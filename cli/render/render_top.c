@@ -78,7 +78,7 @@ static conic_status plan_picture(cli_session *session, cli_render_job *job) {
   if (top->gsd == 0.0)
     status = conic_source_spacing(job->source, &top->gsd);
   if (status == CONIC_OK && !(top->gsd > 0.0))
-    status = conic_fail(session->context, CONIC_ERROR_INPUT, "%s: its points have no spacing; --gsd says how fine",
+    status = conic_fail(session->context, CONIC_ERROR_INPUT, "%s: its points have no spacing; --camera top:GSD says how fine",
                         job->inputs[0]);
   for (int axis = 0; axis < 2 && status == CONIC_OK; axis++) {
     int is_boxed = isfinite(top->box.low[axis]);
@@ -91,7 +91,7 @@ static conic_status plan_picture(cli_session *session, cli_render_job *job) {
     size[axis] = fmax(size[axis], 1.0);
     if (!(size[axis] <= MOST_EDGE) || !(fabs(first[axis]) < 0x1p50))
       return conic_fail(session->context, CONIC_ERROR_ARGUMENT,
-                        "%s: at --gsd %g the picture has %.0f pixels %s; %d are drawn: --box says which part",
+                        "%s: at --camera top:%g the picture has %.0f pixels %s; %d are drawn: --box says which part",
                         job->inputs[0], top->gsd, size[axis], axis == 0 ? "in a row" : "in a column", MOST_EDGE);
   }
   if (status != CONIC_OK)

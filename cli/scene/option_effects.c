@@ -265,6 +265,8 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
        "color-by",
        {.apart = CLI_CHOSEN,
         .why = "it looks at all that there is; conic octree and conic layer take it, too, and keep the colours"}},
+      {job->top.gsd > 0.0, "camera top:GSD", {.needs = F(MAP)}},
+      {job->top.epsg != 0, "camera top:GSD:EPSG", {.on = F(MAP), .needs = F(TIFF)}},
       {job->is_color_error_given, "error PX:STEPS", {.on = F(HYBRID), .needs = F(ERROR)}},
       {job->shot.gaussians.ignores_center != 0,
        "profile NAME:ignore-center",
@@ -284,6 +286,8 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
     if (parts[i].is_given)
       cli_effects_add(&job->effects, "--", parts[i].name, &parts[i].acts);
+  if (job->writing.format)
+    cli_effects_add(&job->effects, "-", "o KIND:OUT", &(cli_effect){.needs = F(NAMELESS), .is_warned = 1});
 }
 
 /* --- the check --- */

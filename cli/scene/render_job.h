@@ -40,6 +40,7 @@ typedef struct cli_render_job {
   int n_inputs;
   const char *outputs[CLI_MAX_OUTPUTS];
   int n_outputs;
+  char kind[8];                 /* of outputs without an ending, where one says it */
   const char *deep_path;        /* --deep; null: none */
   const char *overdraw_path;    /* --overdraw; null: none */
   int is_overdraw_confetti;     /* --overdraw-colors */

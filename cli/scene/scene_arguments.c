@@ -140,7 +140,13 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        65535, .is_given = &raw.is_size_given, .group = "camera",
        .intro = "From where the scene is looked at: framed by these, or by a file of cameras.", .is_usual = 1,
        .acts = {.apart = CLI_FACT(MAP)}},
-      {"camera", CLI_TEXT, &job->camera_path, "FILE", CLI_CAMERA_HELP, .is_usual = 1},
+      {"camera", CLI_TEXT, &job->camera_path, "FILE",
+       "cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json, .npz of "
+       "viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above, with the unit of the points that "
+       "a "
+       "pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code that a .tif notes, "
+       "top:0.1:25832, or else the file's",
+       .is_usual = 1},
       {"view", CLI_TEXT, &job->view_name, "VIEW",
        "which of the cameras of --camera: a number from 0, the name of an image with or without its folder and ending, "
        "or all [the only one]",

@@ -28,7 +28,27 @@ static int check_colors(const cli_session *session, cli_scene_words *words, cli_
 }
 
 int cli_scene_is_top(const cli_render_job *job) {
-  return job->camera_path && strcmp(job->camera_path, "top") == 0;
+  return job->camera_path && strncmp(job->camera_path, "top", 3) == 0 &&
+         (!job->camera_path[3] || job->camera_path[3] == ':');
+}
+
+/* ":GSD", ":GSD:EPSG" or "::EPSG" behind it. */
+static int parse_top(const char *text, cli_top_job *top) {
+  char digits[40];
+  unsigned long long epsg;
+  if (!*text)
+    return 1;
+  const size_t length = strcspn(++text, ":");
+  snprintf(digits, sizeof digits, "%.*s", (int)length, text);
+  if (length &&
+      (length >= sizeof digits || !cli_parse_number(digits, &top->gsd) || top->gsd < 1e-12 || top->gsd > 1e12))
+    return 0;
+  if (!text[length])
+    return length > 0;
+  if (!cli_parse_count(text + length + 1, &epsg) || epsg < 1 || epsg > 65535)
+    return 0;
+  top->epsg = (int)epsg;
+  return 1;
 }
 
 /* Of a map, north is up, and up is z. */
@@ -36,6 +56,9 @@ static int settle_top(const cli_session *session, cli_render_job *job) {
   const double *up = job->framing.up;
   if (!cli_scene_is_top(job))
     return CLI_DONE;
+  if (!parse_top(job->camera_path + 3, &job->top))
+    return cli_usage("%s: --camera: \"%s\" is not understood; of a map it takes top, top:GSD or top:GSD:EPSG",
+                     session->command, job->camera_path);
   if (job->is_up_given && (up[0] != 0.0 || up[1] != 0.0 || !(up[2] > 0.0)))
     return cli_usage("%s: of --camera top, z points up", session->command);
   job->top.is_wanted = job->is_up_given = 1;

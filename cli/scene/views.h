@@ -12,11 +12,6 @@ typedef struct cli_views_wish {
   int width, height;       /* both 0: the file's */
 } cli_views_wish;
 
-#define CLI_CAMERA_HELP                                                                                                \
-  "cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json, .npz of "        \
-  "viewmats "                                                                                                          \
-  "and Ks, glTF, or conic's JSON; top: a map, seen from straight above"
-
 /* Whether every view is meant. */
 int cli_views_are_all(const char *view);
 

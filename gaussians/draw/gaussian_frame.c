@@ -262,8 +262,9 @@ static conic_status check_center(conic_context *context, const conic_gaussian_op
     return CONIC_OK;
   return conic_fail(context, CONIC_ERROR_ARGUMENT,
                     "gaussians: %s ignores the camera's centre, which is %g, %g pixels off the picture's; "
-                    "--ignore-center draws it all the same",
-                    conic_gaussian_profile_name(options->profile), across, down);
+                    "--profile %s:ignore-center draws it all the same",
+                    conic_gaussian_profile_name(options->profile), across, down,
+                    conic_gaussian_profile_name(options->profile));
 }
 
 static void look_through(const conic_camera *camera, conic_gaussian_view *view) {

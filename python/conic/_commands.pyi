@@ -33,7 +33,6 @@ def render(
     elevation: Optional[float] = None,
     turntable: Optional[Union[str, float, Sequence[float]]] = None,
     in_memory: bool = True,
-    format: Optional[PathLike] = None,
     exr: Optional[Union[str, float, Sequence[float]]] = None,
     tone: Optional[Literal["srgb", "filmic", "aces", "agx"]] = None,
     deep: Optional[PathLike] = None,
@@ -53,9 +52,7 @@ def render(
     focus: Optional[Union[str, float, Sequence[float]]] = None,
     shutter: Optional[Union[str, float, Sequence[float]]] = None,
     motion: Optional[PathLike] = None,
-    gsd: Optional[float] = None,
     box: Optional[Union[str, float, Sequence[float]]] = None,
-    epsg: Optional[int] = None,
     progressive: Optional[PathLike] = None,
     deadline: Optional[float] = None,
     tolerate: Optional[bool] = None,
@@ -115,8 +112,8 @@ def render(
 
     Options:
 
-    output: where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; may be repeated
-    format: the kind of what goes to standard output or to a name without an ending: png, exr, pfm … [png]
+    output: where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; exr:- and pfm:NAME say
+        of what kind that is, or a name without an ending [png]; may be repeated
     exr: numbers of an .exr: float, or half for rgba, N and albedo; and how it is compressed: zip, none, rle,
         zips, piz, or pxr24, which loses bits of floats, as in half,piz [float,zip]
     tone: how files of 8 and 16 bits show what is brighter than white: srgb (as white), filmic (Hable's curve),
@@ -155,9 +152,7 @@ def render(
         --motion: 0:0.5 blurs half the way to the next; up to 100000 either way [closed]
     motion: where the inputs are at which frame, as matrices, or what shape they have, as files (JSON) [they
         stand still]
-    gsd: of --camera top: a pixel's edge on the ground, in the unit of the points [their typical distance]
     box: of --camera top: the part of the ground that is drawn; X0,Y0,X1,Y1 for all heights [all]
-    epsg: of --camera top: the coordinate system that is noted in a .tif, by its EPSG code [the file's]
     progressive: of a cloud in levels, also a picture after each level that has been read: DIR/0001.exr …
     deadline: of a cloud in levels, no more is read after so many seconds; what is missing is drawn coarser
     tolerate: of a cloud in levels, what is damaged or does not come is drawn coarser, with a warning
@@ -175,7 +170,9 @@ def render(
     size: the picture's width and height in pixels; cameras of a file are scaled to it [1024x1024, or the
         file's]
     camera: cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json,
-        .npz of viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above
+        .npz of viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above, with the unit of
+        the points that a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code
+        that a .tif notes, top:0.1:25832, or else the file's
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
         ending, or all [the only one]
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
@@ -344,7 +341,9 @@ def verify(
     size: the picture's width and height in pixels; cameras of a file are scaled to it [1024x1024, or the
         file's]
     camera: cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json,
-        .npz of viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above
+        .npz of viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above, with the unit of
+        the points that a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code
+        that a .tif notes, top:0.1:25832, or else the file's
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
         ending, or all [the only one]
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
@@ -528,7 +527,9 @@ def judge(
     size: the picture's width and height in pixels; cameras of a file are scaled to it [1024x1024, or the
         file's]
     camera: cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json,
-        .npz of viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above
+        .npz of viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above, with the unit of
+        the points that a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code
+        that a .tif notes, top:0.1:25832, or else the file's
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
         ending, or all [the only one]
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
@@ -692,7 +693,9 @@ def explain(
     size: the picture's width and height in pixels; cameras of a file are scaled to it [1024x1024, or the
         file's]
     camera: cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json,
-        .npz of viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above
+        .npz of viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above, with the unit of
+        the points that a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code
+        that a .tif notes, top:0.1:25832, or else the file's
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
         ending, or all [the only one]
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
@@ -1271,7 +1274,9 @@ def gradient(
     size: the picture's width and height in pixels; cameras of a file are scaled to it [1024x1024, or the
         file's]
     camera: cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json,
-        .npz of viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above
+        .npz of viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above, with the unit of
+        the points that a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code
+        that a .tif notes, top:0.1:25832, or else the file's
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
         ending, or all [the only one]
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]

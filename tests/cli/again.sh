@@ -128,7 +128,7 @@ for ending in png tif; do
   is_drawn_again $ending a.$ending a.shot.json
 done
 for planes in rgba Z; do
-  run_as_typed 0 render k.ply --camera top --gsd 0.1 --aov $planes -q -o map.tif --save-shot map.shot.json
+  run_as_typed 0 render k.ply --camera top:0.1 --aov $planes -q -o map.tif --save-shot map.shot.json
   is_drawn_again "a map of $planes" map.tif map.shot.json
 done
 run_as_typed 0 render k.ply "${small[@]}" -q -o a.exr

@@ -78,8 +78,8 @@ def check_places():
                chance.uniform(-40, 90)) for i in range(150) for k in range(8)]
     with open("points.csv", "w", encoding="ascii") as file:
         file.write("x,y,z\n" + "".join(f"{x:.4f},{y:.4f},{z:.3f}\n" for x, y, z in points))
-    conic("render", "points.csv", "--camera", "top", "--gsd", "0.5", "--method", "point", "--aov", "rgba,Z",
-          "--epsg", "26910", "-o", "p.tif")
+    conic("render", "points.csv", "--camera", "top:0.5:26910", "--method", "point", "--aov", "rgba,Z",
+          "-o", "p.tif")
     tags, rows = read_tiff("p.tif")
     height_tags, heights = read_tiff("p.Z.tif")
     pixel, corner = corner_of(tags, "p.tfw")
@@ -117,7 +117,7 @@ def check_seams():
     pictures = []
     for shift in (0, 32):
         write_slope("shifted.csv", shift)
-        conic("render", "shifted.csv", "--camera", "top", "--gsd", "0.25", "--shade", "phong", "-o", "shifted.tif")
+        conic("render", "shifted.csv", "--camera", "top:0.25", "--shade", "phong", "-o", "shifted.tif")
         pictures.append(read_tiff("shifted.tif")[1])
     off = [max(abs(a - b) for a, b in zip(*pixels)) for rows in zip(*pictures) for pixels in zip(*rows)]
     expect(len(off) > 80000 and max(off) <= 2, f"seams show: {max(off)} codes")
@@ -129,7 +129,7 @@ def check_windows(has_zstd):
     conic("layer", "slope.csv", "-o", "slope.lpc") if has_zstd else None
     box = ["--box", "500020,4000010,500063.5,4000044"]
     for name in ["slope.csv", "slope.lpc"][:1 + has_zstd]:
-        draw = ["render", name, "--camera", "top", "--gsd", "0.25", "--aov", "rgba,Z"]
+        draw = ["render", name, "--camera", "top:0.25", "--aov", "rgba,Z"]
         small = ["--memory", "1", "--threads", "3"] if name.endswith("lpc") else ["--tile", "16", "--threads", "3"]
         conic(*draw, "-o", "whole.tif")
         conic(*draw, *box, *small, "-o", "part.tif", "-o", "part.png", "--json", "part.json")
@@ -159,7 +159,7 @@ def check_mesh():
         for i in range(128):
             first = i // 16 * 17 + i % 16
             file.write(f"4 {first} {first + 1} {first + 18} {first + 17}\n")
-    draw = ["render", "mesh.ply", "--camera", "top", "--gsd", "0.25", "--samples", "1", "--aov", "Z"]
+    draw = ["render", "mesh.ply", "--camera", "top:0.25", "--samples", "1", "--aov", "Z"]
     conic(*draw, "-o", "whole.tif")
     conic(*draw, "--box", "600010.5,103,600060,130", "-o", "part.tif")
     whole, part = read_tiff("whole.tif"), read_tiff("part.tif")
@@ -196,7 +196,7 @@ def check_references():
         points = b"".join(struct.pack("<3i8x", 100 * (i % 3), 100 * (i // 3), 0) for i in range(9))
         with open("one.las", "wb") as file:
             file.write(bytes(head) + body + points)
-        conic("render", "one.las", "--camera", "top", "--gsd", "0.1", "-o", "one.tif")
+        conic("render", "one.las", "--camera", "top:0.1", "-o", "one.tif")
         tags, rows = read_tiff("one.tif")
         expect(tags[34735] == wanted, f"{name}: keys {tags[34735]}")
         expect(tags.get(34736) == ((2.5,) if name == "keys" else None), f"{name}: numbers {tags.get(34736)}")

@@ -9,12 +9,12 @@ printf '0 0 0\n1 0 0\n0 1 0\n1 1 1\n' > sheet.xyz
 run 2 render sheet.xyz --gsd 1 -o never.png
 for options in '--up y' '--size 9x9' '--azimuth 9' '--turntable 2' '--aov N' '--legend' '--error 2' '--exposure auto' '--budget 9'; do
   # shellcheck disable=SC2086 # words
-  run 2 render sheet.xyz --camera top --gsd 1 $options -o never.png
+  run 2 render sheet.xyz --camera top:1 $options -o never.png
 done
-run 2 render sheet.xyz --camera top --gsd 1 -o -
-run 2 render sheet.xyz --camera top --gsd 1 --aov rgba,Z -o never.png
-run 2 render sheet.xyz --camera top --gsd 0 -o never.png
-run 2 render sheet.xyz --camera top --gsd 1e-9 -o never.tif
+run 2 render sheet.xyz --camera top:1 -o -
+run 2 render sheet.xyz --camera top:1 --aov rgba,Z -o never.png
+run 2 render sheet.xyz --camera top:0 -o never.png
+run 2 render sheet.xyz --camera top:1e-9 -o never.tif
 grep -q 'has 1000000001 pixels in a row; .* --box' err || fail "a picture that is too large: $(cat err)"
 run 2 explain sheet.xyz --camera top --pixel 0,0
 [[ ! -e never.png && ! -e never.tif ]] || fail "a file was written in spite of an error"

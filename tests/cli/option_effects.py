@@ -20,7 +20,6 @@ SIZE = ["--size", "48x48"]
 # A value of each option that is none by default, in all that it can be asked for; with what else it takes to see it.
 CASES = {
     "-o": [["-o", "more.pfm"]],
-    "--format": [["--format", "jpg"]],
     "--exr": [["--exr", "half"], ["--exr", "none"]],
     "--tone": [["--tone", "agx"]],
     "--deep": [["--deep", "d.exr", "--samples", "1"]],
@@ -40,9 +39,7 @@ CASES = {
     "--focus": [["--focus", "1"]],
     "--shutter": [["--shutter", "0:0.5"]],
     "--motion": [["--motion", "motion.json"]],
-    "--gsd": [["--gsd", "0.1"]],
     "--box": [["--box", "0,0,1,1"]],
-    "--epsg": [["--epsg", "32632"]],
     "--progressive": [["--progressive", "levels"]],
     "--deadline": [["--deadline", "1000"]],
     "--tolerate": [["--tolerate"]],
@@ -54,7 +51,7 @@ CASES = {
     "--transparency": [["--transparency"]],
     "--repeat": [["--repeat", "2", "--samples", "2"]],
     "--size": [["--size", "32x40"]],
-    "--camera": [["--camera", "camera.json"]],
+    "--camera": [["--camera", "camera.json"], ["--camera", "top:0.1:32632"]],
     "--view": [["--view", "0"], ["--view", "all"]],
     "--azimuth": [["--azimuth", "77"]],
     "--elevation": [["--elevation", "60"]],
@@ -150,11 +147,11 @@ STAGES = {
     "cube": (["--projection", "cube", "--size", "16x96"], ["splats"]),
     "turntable": (["--turntable", "2"], ["splats"]),
     "standing": (["--eye", "0,0.3,3"], ["splats"]),
-    "map": (["--camera", "top", "--gsd", "0.05", "-o", "p.tif"], ["splats", "levels"]),
+    "map": (["--camera", "top:0.05", "-o", "p.tif"], ["splats", "levels"]),
     "coloured": (["--color-by", "height"], ["splats", "mesh"]),
     "error": (["--error", "4"], ["octree", "levels"]),
     "budget": (["--budget", "80"], ["octree"]),
-    "map as png": (["--camera", "top", "--gsd", "0.05", "-o", "p.png"], ["splats"]),
+    "map as png": (["--camera", "top:0.05", "-o", "p.png"], ["splats"]),
     "jpg": (["-o", "p.jpg"], ["splats"]),
     "own light": (["--light", "1,0,0"], ["splats"]),
     "surfels": (["--only", "surfels"], ["hybrid"]),
@@ -259,7 +256,7 @@ def outcome(source, arguments):
     if "-o" not in words:
         words = ["-o", "p.pfm"] + words
     words = [str(folder / w) if w.endswith((".json", "texture.png")) and w != "statistics.json" else w for w in words]
-    if "--size" not in words and "top" not in words:
+    if "--size" not in words and not any(w.startswith("top") for w in words):
         words += SIZE
     # What a picture says of how it was made would be another whatever it shows; the option is tried the other way round.
     words = [w for w in words if w != "--no-shot"] if "--no-shot" in words else words + ["--no-shot"]

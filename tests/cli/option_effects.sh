@@ -45,6 +45,7 @@ old --overdraw o.pfm --overdraw-colors confetti -- --show overdraw-confetti:o.pf
 old -o p.pfm --color-by height --legend --legend-out l.pfm --color-range 0,0.2 -- \
   -o p.pfm --color-by height --show legend --show legend:l.pfm --ramp 0,0.2
 old -o p.exr --compression none -- -o p.exr --exr none
+old -o bare --format jpg -- -o jpg:bare
 old -o p.exr --cryptomatte -- -o p.exr --aov cryptomatte
 old -o p.pfm --stereo 0.1 --convergence 2 -- -o p.pfm --stereo 0.1:2
 old -o p.pfm --accumulate 3 --aperture 0.2 --blades 5 -- -o p.pfm --accumulate 3 --aperture 0.2:5

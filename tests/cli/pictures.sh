@@ -17,11 +17,11 @@ for format in pfm png exr tif; do
     tif) in_build OpenImageIO || continue ;;
   esac
   run 0 render knot.ply $picture -o a.$format
-  run 0 render knot.ply $picture -o - --format $format
+  run 0 render knot.ply $picture -o $format:-
   cmp -s out a.$format || fail "standard output as $format is not the file"
-  "$conic" render knot.ply $picture -o - --format $format | cat > piped
+  "$conic" render knot.ply $picture -o $format:- | cat > piped
   cmp -s piped a.$format || fail "a pipe as $format is not the file"
-  run 0 render knot.ply $picture -o bare --format $format
+  run 0 render knot.ply $picture -o $format:bare
   cmp -s bare a.$format || fail "a name without an ending, as $format, is not the file"
 done
 if in_build 'libpng|OpenImageIO'; then
@@ -49,7 +49,7 @@ for plane in Z N id; do
 done
 [[ ! -e alone.Z.pfm ]] || fail "a set of one plane"
 [[ $(head -c 2 s.N.pfm)$(head -c 2 s.id.pfm) == PFPf ]] || fail "not N in colour and id in grey"
-run 2 render knot.ply $picture --aov rgba,Z -o - --format pfm
+run 2 render knot.ply $picture --aov rgba,Z -o pfm:-
 run 2 render knot.ply $picture --aov cluster -o s.pfm
 rm -f s.*
 run 0 render knot.ply $picture -o s.pfm # without being asked, no set

@@ -108,7 +108,7 @@ run 2 render knot.ply --projection cube --size 16x90 -o a.exr
 run 2 render knot.ply --projection panorama --deep a.exr
 run 2 render knot.ply --projection panorama --stereo 0.1 -o a.exr
 run 2 render knot.ply --convergence 2 -o a.exr
-run 2 render knot.ply --stereo 0.1 --format pfm -o -
+run 2 render knot.ply --stereo 0.1 -o pfm:-
 run 2 verify knot.ply --projection fisheye --size 40x40
 run 2 render knot.ply --projection panorama --accumulate 2 --aperture 0.1 --blades 5 -o a.exr
 

@@ -100,7 +100,7 @@ printf 'PF\n2 1\n-1\n' > below.pfm
 printf '\0\0\200\277%.0s' 1 2 3 4 5 6 >> below.pfm
 "$conic" render knot.ply --size 32x32 --light none --sky below.pfm --ao 4 -o lit.exr 2> said.txt && fail "no light lights"
 grep -q 'below.pfm: no light: no colour is above 0' said.txt || fail "a dark sky is not named: $(cat said.txt)"
-run 2 render knot.ply --camera top --gsd 0.1 --shadow -o top.exr
+run 2 render knot.ply --camera top:0.1 --shadow -o top.exr
 run 2 render knot.ply --ao 0 -o lit.exr
 
 # Baked into points: as a value by name, which colours can be made of, and as their colours.

@@ -308,7 +308,7 @@ class Shots(unittest.TestCase):
         again = conic.Shot.open(self.path("arrays.shot.json"))
         self.assertEqual(again.inputs, ())
         self.assertEqual(conic.render(splats, again).hash(), conic.render(splats, shot).hash())
-        program("render", self.scene.path, "--camera", "top", "--gsd", "0.1", "-o", self.path("map.tif"))
+        program("render", self.scene.path, "--camera", "top:0.1", "-o", self.path("map.tif"))
         seen = conic.Shot.open(self.path("map.tif"))
         self.assertTrue(seen.map.is_wanted)
         with self.assertRaisesRegex(conic.ArgumentError, "it is a map"):
