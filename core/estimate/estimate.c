@@ -367,16 +367,20 @@ static inline uint64_t two_unsound_points(float *const columns[3], size_t i) {
          two_not_finite(two_floats(columns[2], i));
 }
 
+static inline uint64_t two_unsound(const conic_splats *s, float *const colors[3], size_t i) {
+  return two_unsound_axes(s->tangent_u, i) | two_unsound_axes(s->tangent_v, i) | two_unsound_points(s->position, i) |
+         two_unsound_points(colors, i);
+}
+
 static void look_for_unsound(void *data, size_t begin, size_t end) {
   sound_search *search = data;
   const conic_splats *s = search->splats;
   float *const *colors = s->color[0] ? s->color : s->position;
   uint64_t found = 0;
-  for (size_t at = begin; at < end; at += 2) {
-    size_t i = at + 1 < end ? at : end - 2; /* with an odd number, the last but one is checked twice */
-    found |= two_unsound_axes(s->tangent_u, i) | two_unsound_axes(s->tangent_v, i) |
-             two_unsound_points(s->position, i) | two_unsound_points(colors, i);
-  }
+  for (size_t i = begin; i + 1 < end; i += 2)
+    found |= two_unsound(s, colors, i);
+  if ((end - begin) % 2)
+    found |= two_unsound(s, colors, end - 2); /* of an odd number, the last but one is checked twice */
   if (found & UINT64_C(0x8000000080000000))
     atomic_store(&search->is_unsound, 1);
 }
