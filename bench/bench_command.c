@@ -41,7 +41,8 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
        .acts.with = "@"},
       {"turntable", CLI_INT, &job->n_turns, "N", "N warm frames, all around the scene, and their mean", 1,
        CLI_BENCH_MOST_FRAMES},
-      {"repeat", CLI_INT, &job->repeat, "N", "warm frames a line [3 to 21, about a second]", 1, CLI_BENCH_MOST_FRAMES},
+      {"repeat", CLI_INT, &job->repeat, "N", "warm frames a line [3 to 21, about a second]", 1, CLI_BENCH_MOST_FRAMES,
+       .acts.with = "!turntable"},
       {"quick", CLI_FLAG, &job->is_quick, NULL, "fewer scenes, fewer frames"},
       {"compare", CLI_TEXT, &job->old_path, "OLD.json", "ratios to an earlier run's --json"},
       {"publish", CLI_TEXT, &job->publish_path, "FILE.json",
@@ -66,8 +67,6 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
     exit_code = cli_usage("bench: --publish writes what --json would, of lines of its own");
   else if (exit_code == CLI_DONE && job->publish_path)
     session->json_path = job->publish_path;
-  if (exit_code == CLI_DONE && job->n_turns && job->repeat)
-    exit_code = cli_usage("bench: --turntable and --repeat both say how many frames");
   if (exit_code == CLI_DONE && job->simulated_text && (job->n_turns || job->is_kernels))
     exit_code = cli_usage("bench: --simulate-threads is of frames that are alike, not of --turntable or --kernels");
   if (exit_code == CLI_DONE && job->is_kernels &&
@@ -115,11 +114,8 @@ static void report_host(cli_json *json) {
   cli_json_close(json);
 }
 
-static int report_bench(cli_session *session, const cli_bench_job *job) {
-  cli_json *json;
-  int exit_code = cli_json_open(session, &json);
-  if (!json)
-    return exit_code;
+static void report_bench(cli_json *json, const void *cookie) {
+  const cli_bench_job *job = cookie;
   cli_json_text(json, "version", conic_version());
   report_host(json);
   if (job->n_machines)
@@ -136,7 +132,6 @@ static int report_bench(cli_session *session, const cli_bench_job *job) {
   }
   cli_json_count(json, "wrong_pictures", (uint64_t)job->n_wrong);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
-  return cli_json_finish(json);
 }
 
 /* That the device is there is known before the minutes are spent, too. */
@@ -162,7 +157,7 @@ static int measure_plan(cli_session *session, cli_bench_job *job) {
   if (exit_code != CLI_DONE)
     return exit_code;
   print(session, job);
-  exit_code = report_bench(session, job);
+  exit_code = cli_json_write(session, report_bench, job);
   return exit_code == CLI_DONE && job->n_wrong ? CLI_DIFFERENT : exit_code;
 }
 

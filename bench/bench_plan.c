@@ -8,8 +8,8 @@
 #include "core/base/nearest_word.h"
 #include "core/lanes/instruction_sets.h"
 
-static const char default_scenes[] = "sphere-100k,sphere-1M,sphere-4M,gyroid-1M,mixed,subpixel,needles,huge,"
-                                     "gaussians-1M";
+static const char default_scenes[] =
+    "sphere-100k,sphere-1M,sphere-4M,gyroid-1M,mixed,subpixel,needles,huge,gaussians-1M";
 static const char published_scenes[] = "sphere-1M,sphere-4M,gyroid-1M,mixed,gaussians-1M";
 static const char published_methods[] = "conic,auto,nearest";
 static const char quick_scenes[] = "sphere-100k,sphere-1M,mixed";

@@ -206,6 +206,15 @@ int cli_json_finish(cli_json *json) {
   return cli_exit_of(status);
 }
 
+int cli_json_write(cli_session *session, void (*members)(cli_json *json, const void *job), const void *job) {
+  cli_json *json;
+  int exit_code = cli_json_open(session, &json);
+  if (!json)
+    return exit_code;
+  members(json, job);
+  return cli_json_finish(json);
+}
+
 int cli_json_leaves_text(const cli_session *session) {
   return !session->is_quiet && !(session->json_path && strcmp(session->json_path, "-") == 0);
 }

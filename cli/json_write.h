@@ -40,6 +40,9 @@ struct cli_session;
 int cli_json_open(struct cli_session *session, cli_json **json);
 int cli_json_finish(cli_json *json);
 
+/* The same of members that a function writes. */
+int cli_json_write(struct cli_session *session, void (*members)(cli_json *json, const void *job), const void *job);
+
 /* Whether standard output is for people: the session is not quiet, and --json does not go there. */
 int cli_json_leaves_text(const struct cli_session *session);
 

@@ -62,12 +62,9 @@ static void write_greatest(cli_json *json, const conic_gaussian_gradient *g) {
   cli_json_close(json);
 }
 
-static int report_gradient(cli_session *session, const gradient_job *job) {
+static void report_gradient(cli_json *json, const void *cookie) {
+  const gradient_job *job = cookie;
   const conic_gaussian_gradient *g = &job->gradient;
-  cli_json *json;
-  int exit_code = cli_json_open(session, &json);
-  if (!json)
-    return exit_code;
   cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.shot.gaussians.profile));
   cli_json_text(json, "parameters", g->is_raw ? "raw" : "activated");
   cli_json_count(json, "width", (uint64_t)job->weights.width);
@@ -88,7 +85,6 @@ static int report_gradient(cli_session *session, const gradient_job *job) {
   cli_json_number(json, "gradient", job->ms);
   cli_json_close(json);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
-  return cli_json_finish(json);
 }
 
 static void tell_gradient(const cli_session *session, const gradient_job *job) {
@@ -147,7 +143,7 @@ static int produce_gradient(cli_session *session, gradient_job *job) {
     status = differentiate(session, job);
   exit_code = cli_exit_of(status);
   if (exit_code == CLI_DONE)
-    exit_code = report_gradient(session, job);
+    exit_code = cli_json_write(session, report_gradient, job);
   if (exit_code == CLI_DONE)
     tell_gradient(session, job);
   conic_gaussian_gradient_release(session->context, &job->gradient);

@@ -186,11 +186,8 @@ static void report_image(cli_json *json, const info_job *job) {
   cli_json_close(json);
 }
 
-static int report(cli_session *session, const info_job *job) {
-  cli_json *json;
-  int exit_code = cli_json_open(session, &json);
-  if (!json)
-    return exit_code;
+static void report(cli_json *json, const void *cookie) {
+  const info_job *job = cookie;
   cli_json_text(json, "kind", kind_of(job));
   if (job->has_bytes)
     cli_json_count(json, "bytes", job->bytes);
@@ -204,7 +201,6 @@ static int report(cli_session *session, const info_job *job) {
     report_image(json, job);
   if (job->is_check)
     cli_json_bool(json, "sound", job->facts ? cli_facts_are_sound(job->facts) : job->n_wrong_samples == 0);
-  return cli_json_finish(json);
 }
 
 static int run(cli_session *session, int argc, char **argv) {
@@ -220,7 +216,7 @@ static int run(cli_session *session, int argc, char **argv) {
     if (exit_code == CLI_DONE && is_text_wanted)
       exit_code = print_text(&job);
     if (exit_code == CLI_DONE)
-      exit_code = report(session, &job);
+      exit_code = cli_json_write(session, report, &job);
     conic_facts_destroy(job.facts);
     conic_cameras_release(session->context, &job.cameras);
     conic_image_release(session->context, &job.image);

@@ -136,11 +136,8 @@ static void report_weights(cli_json *json, const conic_weight_error *error) {
   cli_json_close(json);
 }
 
-static int write_statistics(cli_session *session, const verify_job *job) {
-  cli_json *json;
-  int exit_code = cli_json_open(session, &json);
-  if (!json)
-    return exit_code;
+static void write_statistics(cli_json *json, const void *cookie) {
+  const verify_job *job = cookie;
   cli_json_text(json, "against", conic_oracle_question_name((conic_oracle_question)job->question));
   cli_json_text(json, "method", cli_method_name(&job->scene));
   if (job->scene.shot.view.samples > 1)
@@ -155,7 +152,6 @@ static int write_statistics(cli_session *session, const verify_job *job) {
   cli_json_number(json, "oracle", job->oracle_ms);
   cli_json_close(json);
   cli_json_bool(json, "pass", job->verdict.pass);
-  return cli_json_finish(json);
 }
 
 static void print_unstable(const verify_job *job) {
@@ -230,7 +226,7 @@ static void print_result(const verify_job *job) {
 }
 
 static int finish(cli_session *session, const verify_job *job) {
-  int exit_code = write_statistics(session, job);
+  int exit_code = cli_json_write(session, write_statistics, job);
   if (exit_code != CLI_DONE)
     return exit_code;
   if (cli_json_leaves_text(session))
@@ -324,8 +320,7 @@ const cli_command cli_verify = {
     .name = "verify",
     .summary = "measures pictures against a slow, exact reference",
     .usage = "conic verify IN… [--against method|exact] [--image FILE] [--pixels N] [--sample I | --accumulate N] "
-             "[camera and render "
-             "options]",
+             "[camera and render options]",
     .run = run,
     .description = "Draws a scene, or takes a picture of it, and computes the same pixels in double precision, slowly "
                    "and by other code. It ends with 1 where they differ by more than rounding explains.",

@@ -39,7 +39,8 @@ static void write_by_doubt(cli_json *json, const char *key, const size_t *counts
   cli_json_close(json);
 }
 
-static void write_verdict(cli_json *json, const gaussian_report *r) {
+static void write_verdict(cli_json *json, const void *cookie) {
+  const gaussian_report *r = cookie;
   const conic_gaussian_verdict *v = &r->verdict;
   cli_json_text(json, "against", "profile");
   cli_json_text(json, "profile", profile_of(r->scene));
@@ -116,12 +117,7 @@ static conic_status draw_composited(cli_session *session, cli_render_job *scene,
 }
 
 static int tell_judgement(cli_session *session, const gaussian_report *r) {
-  cli_json *json;
-  int exit_code = cli_json_open(session, &json);
-  if (json) {
-    write_verdict(json, r);
-    exit_code = cli_json_finish(json);
-  }
+  int exit_code = cli_json_write(session, write_verdict, r);
   if (exit_code != CLI_DONE)
     return exit_code;
   if (cli_json_leaves_text(session))

@@ -221,8 +221,7 @@ void cli_help_man_program(void) {
   }
   puts(".TP\n.B conic help");
   put_paragraph("prints the options of a command; with --all, of render more than most pictures need. --format says in "
-                "which form: text, man, bash, zsh or fish (completion), or "
-                "json.",
+                "which form: text, man, bash, zsh or fish (completion), or json.",
                 0);
   put_exit_codes();
   puts(".SH ENVIRONMENT");

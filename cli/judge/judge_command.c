@@ -113,7 +113,7 @@ static conic_status show_maps(cli_session *session, cli_judge_job *job) {
 }
 
 static int tell_judged(cli_session *session, const cli_judge_job *job) {
-  int exit_code = cli_judge_write_json(session, job);
+  int exit_code = cli_json_write(session, cli_judge_members, job);
   if (exit_code != CLI_DONE)
     return exit_code;
   if (cli_json_leaves_text(session))

@@ -41,12 +41,9 @@ static void write_gradient_worst(cli_json *json, const conic_gradient_verdict *v
   cli_json_close(json);
 }
 
-static int write_gradient_verdict(cli_session *session, const gradients_job *job) {
+static void write_gradient_verdict(cli_json *json, const void *cookie) {
+  const gradients_job *job = cookie;
   const conic_gradient_verdict *v = &job->verdict;
-  cli_json *json;
-  int exit_code = cli_json_open(session, &json);
-  if (!json)
-    return exit_code;
   cli_json_text(json, "verdict", is_gradient_right(job) ? "right" : "wrong");
   cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.shot.gaussians.profile));
   cli_json_text(json, "parameters", job->files.is_raw ? "raw" : "activated");
@@ -70,7 +67,6 @@ static int write_gradient_verdict(cli_session *session, const gradients_job *job
   cli_json_object(json, "ms");
   cli_json_number(json, "judge", job->ms);
   cli_json_close(json);
-  return cli_json_finish(json);
 }
 
 static void print_gradient_verdict(const gradients_job *job) {
@@ -145,7 +141,7 @@ static int judge_gradient_files(cli_session *session, gradients_job *job) {
     status = judge_gradient(session, job);
   exit_code = cli_exit_of(status);
   if (exit_code == CLI_DONE)
-    exit_code = write_gradient_verdict(session, job);
+    exit_code = cli_json_write(session, write_gradient_verdict, job);
   if (exit_code == CLI_DONE) {
     if (cli_json_leaves_text(session))
       print_gradient_verdict(job);

@@ -92,9 +92,9 @@ conic_status cli_judge_map(cli_session *session, const cli_judge_job *job, conic
 /* Writes the report's page. */
 conic_status cli_judge_report(cli_session *session, cli_judge_job *job);
 
-/* The verdict for people, and as the session's JSON. The second returns an exit code. */
+/* The verdict for people, and what --json says, of a cli_judge_job. */
 void cli_judge_print(const cli_judge_job *job);
-int cli_judge_write_json(cli_session *session, const cli_judge_job *job);
+void cli_judge_members(cli_json *json, const void *job);
 
 /* What a fault's value is and may be, and what a contribution is, in one line each. */
 void cli_judge_describe(const cli_judge_job *job, const conic_oracle_fault *fault, char *text, size_t room);

@@ -177,13 +177,10 @@ static void write_diagnosis(cli_json *json, const cli_judgement *found) {
   cli_json_close(json);
 }
 
-int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
+void cli_judge_members(cli_json *json, const void *cookie) {
+  const cli_judge_job *job = cookie;
   const cli_judgement *found = &job->found;
   double total = 0.0;
-  cli_json *json;
-  int exit_code = cli_json_open(session, &json);
-  if (!json)
-    return exit_code;
   cli_json_text(json, "verdict", cli_judge_is_right(job) ? "right" : "wrong");
   cli_json_object(json, "pixels");
   for (int k = 0; k < CONIC_N_PIXEL_CLASSES; k++)
@@ -215,5 +212,4 @@ int cli_judge_write_json(cli_session *session, const cli_judge_job *job) {
   }
   cli_json_number(json, "total", total);
   cli_json_close(json);
-  return cli_json_finish(json);
 }

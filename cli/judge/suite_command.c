@@ -75,7 +75,7 @@ static conic_status judge_cases(suite_run *run) {
 }
 
 static int tell_suite_run(suite_run *run) {
-  int exit_code = cli_suite_write_json(run);
+  int exit_code = cli_json_write(run->session, cli_suite_members, run);
   if (exit_code == CLI_DONE && run->junit_path)
     exit_code = cli_exit_of(cli_suite_write_junit(run));
   if (exit_code != CLI_DONE)

@@ -2,6 +2,7 @@
 #ifndef CONIC_SUITE_JUDGE_H
 #define CONIC_SUITE_JUDGE_H
 
+#include "cli/json_write.h"
 #include "cli/judge/suite_manifest.h"
 #include "cli/session.h"
 #include "conic/gaussian_judge.h"
@@ -51,9 +52,9 @@ typedef struct suite_run {
 
 int cli_suite_is_right(const suite_run *run);
 
-/* The table, and the session's JSON; the second returns an exit code. */
+/* The table, and what --json says, of a suite_run. */
 void cli_suite_print(const suite_run *run);
-int cli_suite_write_json(const suite_run *run);
+void cli_suite_members(cli_json *json, const void *run);
 /* JUnit's XML, as CI systems take it. Errors: as conic_output_open and _end. */
 conic_status cli_suite_write_junit(const suite_run *run);
 

@@ -1,5 +1,6 @@
 #include "cli/judge/suite_manifest.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -55,91 +56,87 @@ static conic_status read_plain(conic_json *json, char *text, size_t room, int ma
              : conic_json_wrong(json, "a name has other signs than letters, digits, points, hyphens and underscores");
 }
 
-static conic_status read_manifest_whole(conic_json *json, double most, double *value) {
-  conic_status status = conic_json_number(json, value);
-  if (status == CONIC_OK && !(*value >= 1.0 && *value <= most && *value == (double)(uint64_t)*value))
-    return conic_json_wrong(json, "a number is not whole, or too large");
-  return status;
-}
-
-static void read_manifest_count(conic_json *json, double most, int *count) {
-  double value;
-  if (read_manifest_whole(json, most, &value) == CONIC_OK)
-    *count = (int)value;
-}
+/* A member of an object: a word, a path or a number, or an object with a path. */
+typedef enum member_kind { WORD, PATH, NUMBER, COUNT, INNER_PATH } member_kind;
+typedef struct manifest_member {
+  const char *key;
+  member_kind kind;
+  size_t at, room;   /* in the entry */
+  double most;       /* of a number */
+  const char *inner; /* the key of an inner path */
+} manifest_member;
 
 static int is_key(const char *key, const char *name) {
   return strcmp(key, name) == 0;
 }
 
-/* Reads the member `wanted` of the next object, as a path. */
-static void read_member_path(conic_json *json, const char *wanted, char *path, size_t room) {
-  char key[CONIC_JSON_KEY_ROOM];
-  conic_json_begin_object(json);
-  while (conic_json_next_member(json, key))
-    if (is_key(key, wanted))
-      read_plain(json, path, room, 1);
-    else
-      conic_json_skip(json);
+static void read_object(conic_json *json, const manifest_member *members, int n, void *entry);
+
+static void read_member(conic_json *json, const manifest_member *member, void *entry) {
+  char *to = (char *)entry + member->at;
+  double value;
+  if (member->kind == WORD || member->kind == PATH) {
+    read_plain(json, to, member->room, member->kind == PATH);
+    return;
+  }
+  if (member->kind == INNER_PATH) {
+    const manifest_member inner = {member->inner, PATH, member->at, member->room};
+    read_object(json, &inner, 1, entry);
+    return;
+  }
+  if (conic_json_number(json, &value) != CONIC_OK)
+    return;
+  if (!(value >= 1.0 && value <= member->most && value == (double)(uint64_t)value))
+    conic_json_wrong(json, "a number is not whole, or too large");
+  else if (member->kind == COUNT)
+    *(uint64_t *)(void *)to = (uint64_t)value;
+  else
+    *(int *)(void *)to = (int)value;
 }
 
-static void read_scene_entry(manifest_reader *r, manifest_scene *scene) {
+static void read_object(conic_json *json, const manifest_member *members, int n, void *entry) {
   char key[CONIC_JSON_KEY_ROOM];
-  conic_json *json = &r->json;
   conic_json_begin_object(json);
-  while (conic_json_next_member(json, key))
-    if (is_key(key, "name"))
-      read_plain(json, scene->name, sizeof scene->name, 0);
-    else if (is_key(key, "files"))
-      read_member_path(json, "ply", scene->ply, sizeof scene->ply);
-    else if (is_key(key, "camera"))
-      read_member_path(json, "conic", scene->camera, sizeof scene->camera);
-    else if (is_key(key, "width"))
-      read_manifest_count(json, 65535.0, &scene->width);
-    else if (is_key(key, "height"))
-      read_manifest_count(json, 65535.0, &scene->height);
+  while (conic_json_next_member(json, key)) {
+    int i = 0;
+    while (i < n && !is_key(key, members[i].key))
+      i++;
+    if (i < n)
+      read_member(json, &members[i], entry);
     else
       conic_json_skip(json);
+  }
+}
+
+#define AT(type, member) offsetof(type, member), sizeof((type *)NULL)->member
+
+static void read_scene_entry(conic_json *json, manifest_scene *scene) {
+  static const manifest_member members[] = {{"name", WORD, AT(manifest_scene, name)},
+                                            {"files", INNER_PATH, AT(manifest_scene, ply), .inner = "ply"},
+                                            {"camera", INNER_PATH, AT(manifest_scene, camera), .inner = "conic"},
+                                            {"width", NUMBER, AT(manifest_scene, width), 65535.0},
+                                            {"height", NUMBER, AT(manifest_scene, height), 65535.0}};
+  read_object(json, members, 5, scene);
   if (!scene->name[0] || !scene->ply[0] || !scene->camera[0] || !scene->width || !scene->height)
     conic_json_wrong(json, "a scene lacks its name, its files.ply, its camera.conic, its width or its height");
 }
 
-static void read_case_entry(manifest_reader *r, suite_entry *one) {
-  char key[CONIC_JSON_KEY_ROOM];
-  conic_json *json = &r->json;
-  conic_json_begin_object(json);
-  while (conic_json_next_member(json, key))
-    if (is_key(key, "name"))
-      read_plain(json, one->name, sizeof one->name, 0);
-    else if (is_key(key, "scene"))
-      read_plain(json, one->scene, sizeof one->scene, 0);
-    else if (is_key(key, "profile"))
-      read_plain(json, one->profile, sizeof one->profile, 0);
-    else if (is_key(key, "npy"))
-      read_plain(json, one->npy, sizeof one->npy, 1);
-    else if (is_key(key, "level"))
-      read_manifest_count(json, SUITE_MOST_LEVELS, &one->level);
-    else
-      conic_json_skip(json);
+static void read_case_entry(conic_json *json, suite_entry *one) {
+  static const manifest_member members[] = {{"name", WORD, AT(suite_entry, name)},
+                                            {"scene", WORD, AT(suite_entry, scene)},
+                                            {"profile", WORD, AT(suite_entry, profile)},
+                                            {"npy", PATH, AT(suite_entry, npy)},
+                                            {"level", NUMBER, AT(suite_entry, level), SUITE_MOST_LEVELS}};
+  read_object(json, members, 5, one);
   if (!one->name[0] || !one->scene[0] || !one->profile[0] || !one->npy[0] || !one->level)
     conic_json_wrong(json, "a case lacks its name, its scene, its profile, its npy or its level");
 }
 
-static void read_file_entry(manifest_reader *r, manifest_file *file) {
-  char key[CONIC_JSON_KEY_ROOM];
-  conic_json *json = &r->json;
-  double value = 0.0;
-  conic_json_begin_object(json);
-  while (conic_json_next_member(json, key))
-    if (is_key(key, "path"))
-      read_plain(json, file->path, sizeof file->path, 1);
-    else if (is_key(key, "sha256"))
-      read_plain(json, file->sha256, sizeof file->sha256, 0);
-    else if (is_key(key, "bytes")) {
-      if (read_manifest_whole(json, 0x1p40, &value) == CONIC_OK)
-        file->bytes = (uint64_t)value;
-    } else
-      conic_json_skip(json);
+static void read_file_entry(conic_json *json, manifest_file *file) {
+  static const manifest_member members[] = {{"path", PATH, AT(manifest_file, path)},
+                                            {"sha256", WORD, AT(manifest_file, sha256)},
+                                            {"bytes", COUNT, AT(manifest_file, bytes), 0x1p40}};
+  read_object(json, members, 3, file);
   if (!file->path[0] || !file->bytes || strlen(file->sha256) != CONIC_SHA256_ROOM - 1)
     conic_json_wrong(json, "a file lacks its path, its bytes or its sha256");
 }
@@ -162,30 +159,21 @@ static void read_entries(manifest_reader *r, const char *key) {
     if (is_key(key, "scenes")) {
       manifest_scene *scene = add_entry(r, &r->scenes, &r->n_scenes, &r->scene_room, sizeof *scene);
       if (scene)
-        read_scene_entry(r, scene);
+        read_scene_entry(json, scene);
     } else if (is_key(key, "cases")) {
       suite_entry *one = add_entry(r, &manifest->cases, &manifest->n_cases, &r->case_room, sizeof *one);
       if (one)
-        read_case_entry(r, one);
+        read_case_entry(json, one);
     } else {
       manifest_file *file = add_entry(r, &r->files, &r->n_files, &r->file_room, sizeof *file);
       if (file)
-        read_file_entry(r, file);
+        read_file_entry(json, file);
     }
   }
 }
 
-static void read_floats(manifest_reader *r) {
-  char key[CONIC_JSON_KEY_ROOM];
-  conic_json_begin_object(&r->json);
-  while (conic_json_next_member(&r->json, key))
-    if (is_key(key, "name"))
-      read_plain(&r->json, r->manifest->floats, sizeof r->manifest->floats, 0);
-    else
-      conic_json_skip(&r->json);
-}
-
 static void read_members(manifest_reader *r) {
+  static const manifest_member floats = {"name", WORD, AT(suite_manifest, floats)};
   char key[CONIC_JSON_KEY_ROOM], format[SUITE_WORD_ROOM];
   conic_json *json = &r->json;
   double version = 0.0;
@@ -198,7 +186,7 @@ static void read_members(manifest_reader *r) {
       if (conic_json_number(json, &version) == CONIC_OK && version != 1.0)
         conic_json_wrong(json, "the suite is of a version that this conic does not know");
     } else if (is_key(key, "floats"))
-      read_floats(r);
+      read_object(json, &floats, 1, r->manifest);
     else if (is_key(key, "scenes") || is_key(key, "cases") || is_key(key, "files"))
       read_entries(r, key);
     else

@@ -141,11 +141,8 @@ static void report_case(cli_json *json, const suite_verdict *v) {
   cli_json_close(json);
 }
 
-int cli_suite_write_json(const suite_run *run) {
-  cli_json *json;
-  int exit_code = cli_json_open(run->session, &json);
-  if (!json)
-    return exit_code;
+void cli_suite_members(cli_json *json, const void *cookie) {
+  const suite_run *run = cookie;
   cli_json_text(json, "verdict", cli_suite_is_right(run) ? "right" : "wrong");
   cli_json_text(json, "suite", run->judging.suite);
   cli_json_text(json, "floats", run->manifest.floats);
@@ -166,7 +163,6 @@ int cli_suite_write_json(const suite_run *run) {
     report_case(json, &run->verdicts[i]);
   cli_json_close(json);
   cli_json_count(json, "extra_pictures", run->n_extra);
-  return cli_json_finish(json);
 }
 
 /* --- JUnit --- */

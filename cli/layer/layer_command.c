@@ -195,8 +195,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
        "what building may take in memory; what does not fit goes to files beside the output [1024]", 16, 1e9,
        .acts.is_work = 1},
       {"quantum", CLI_PARSED, &job.quantum, "Q",
-       "the steps that positions are rounded to: a length, also in spacings (2x) [0.5x; x/4096 with --payload "
-       "full]",
+       "the steps that positions are rounded to: a length, also in spacings (2x) [0.5x; x/4096 with --payload full]",
        .parse = cli_parse_length, .is_given = &job.is_quantum_given},
       {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
@@ -229,9 +228,8 @@ const cli_command cli_layer = {
              "[--append]",
     .run = run_layer,
     .description =
-        "Writes the samples in small clouds, coarse ones first. conic render reads only those that a picture "
-        "shows, from a file or from a web server. A folder stands for its files of points, in the order of their "
-        "names.",
+        "Writes the samples in small clouds, coarse ones first. conic render reads only those that a picture shows, "
+        "from a file or from a web server. A folder stands for its files of points, in the order of their names.",
     .examples = {{"join scans that do not fit into memory", "conic layer scans/*.ply -o all.lpc --memory 4096"},
                  {"keep all that a survey says of its points", "conic layer survey.las -o survey.lpc --keep all"},
                  {"build a survey of thousands of tiles", "conic layer tiles -o survey.lpc"}},

@@ -143,8 +143,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"camera", CLI_TEXT, &job->camera_path, "FILE",
        "cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json, .npz of "
        "viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above, with the unit of the points that "
-       "a "
-       "pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code that a .tif notes, "
+       "a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code that a .tif notes, "
        "top:0.1:25832, or else the file's",
        .is_usual = 1},
       {"view", CLI_TEXT, &job->view_name, "VIEW",
@@ -182,8 +181,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       CLI_TEXTURE_BOUND(session),
       {"crease", CLI_PARSED, &raw, "DEG",
        "triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is flat; "
-       "all: "
-       "any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]",
+       "all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]",
        .parse = parse_crease, .acts = {.on = CLI_FACT(EDGES), .needs = CLI_FACT(SHAPED)}},
       CLI_COLOR_OPTIONS(&job->coloring),
       CLI_WHERE(&job->opening.where),
@@ -269,8 +267,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place in the "
        "world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow, what light "
        "arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name "
-       "in "
-       "Nuke or Blender [rgba,Z]",
+       "in Nuke or Blender [rgba,Z]",
        .parse = cli_parse_planes, .group = "planes", .intro = "What is known of each pixel beside its colour.",
        .is_usual = 1},
       {"k", CLI_INT, &job->opening.n_neighbours, "K",
