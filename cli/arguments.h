@@ -19,9 +19,9 @@ typedef enum cli_option_type {
 
 /* What an option has an effect on, as bits CLI_FACT(NAME) (cli/option_facts.h). Zeros: on everything. */
 typedef struct cli_effect {
-  unsigned long long on, needs; /* of each, what is drawn and what is asked for, any one has to hold, */
-  unsigned long long apart;     /* and none of these, */
-  const char *why;              /* which this gives the reason for; may be null */
+  cli_facts on, needs; /* of each, what is drawn and what is asked for, any one has to hold, */
+  cli_facts apart;     /* and none of these, */
+  const char *why;     /* which this gives the reason for; may be null */
   /* What else has to be said, any one of these, with bars between: "name", another option; "name=word", which has that
    * value; "name=.end", a value that ends so; "@word", an argument; "@", any argument; or "!…" alone, which has to be
    * missing. Null: nothing. */

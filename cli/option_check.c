@@ -4,7 +4,6 @@
 #include <string.h>
 #include <strings.h>
 
-typedef unsigned long long facts;
 _Static_assert(CLI_N_FACTS <= 64, "facts are bits of an unsigned long long");
 
 /* What each fact is called in the help, and in messages behind "it acts on" and "it needs". Facts that are only looked
@@ -81,7 +80,7 @@ void cli_effects_note(cli_effects_job *own, const cli_option *table, int n, cons
 }
 
 /* The facts of a set in words, joined by "or". */
-static void join_facts(facts set, char *text, size_t room) {
+static void join_facts(cli_facts set, char *text, size_t room) {
   size_t used = 0;
   text[0] = '\0';
   for (int i = 0; i < CLI_N_FACTS && used < room; i++)
@@ -97,15 +96,15 @@ static int refuse(const cli_session *session, int is_warned, const char *dashes,
 }
 
 /* Whether what is known keeps an option from having an effect. */
-static facts find_lacking(const cli_effects_job *own, const cli_effect *acts) {
-  const facts known = own->possible | own->asked;
+static cli_facts find_lacking(const cli_effects_job *own, const cli_effect *acts) {
+  const cli_facts known = own->possible | own->asked;
   return acts->on && !(acts->on & known) ? acts->on : acts->needs && !(acts->needs & known) ? acts->needs : 0;
 }
 
 /* What does not go together is said before what has no effect for it. */
 static int check_apart(const cli_session *session, const cli_effects_job *own, const cli_given *option) {
   const cli_effect *acts = &option->acts;
-  const facts against = acts->apart & (own->certain | own->asked);
+  const cli_facts against = acts->apart & (own->certain | own->asked);
   char names[1024];
   if (!against)
     return CLI_DONE;
@@ -115,8 +114,8 @@ static int check_apart(const cli_session *session, const cli_effects_job *own, c
 }
 
 static int check_effect(const cli_session *session, const cli_effects_job *own, const cli_given *option,
-                        const char *input, const char *(*remedy)(const cli_effects_job *own, facts lacked)) {
-  const facts lacked = find_lacking(own, &option->acts);
+                        const char *input, const char *(*remedy)(const cli_effects_job *own, cli_facts lacked)) {
+  const cli_facts lacked = find_lacking(own, &option->acts);
   char names[1024], words[2048];
   if (!lacked)
     return CLI_DONE;
@@ -130,7 +129,7 @@ static int check_effect(const cli_session *session, const cli_effects_job *own, 
 }
 
 int cli_effects_check_given(const cli_session *session, cli_effects_job *own, const char *input,
-                            const char *(*remedy)(const cli_effects_job *own, facts lacked)) {
+                            const char *(*remedy)(const cli_effects_job *own, cli_facts lacked)) {
   int answer = CLI_DONE, n = 0;
   for (int i = 0; i < own->n_given && answer == CLI_DONE; i++)
     answer = check_apart(session, own, &own->given[i]);
@@ -147,6 +146,7 @@ int cli_effects_check_given(const cli_session *session, cli_effects_job *own, co
 
 /* What was given, beside the table. */
 typedef struct given_words {
+  const char *command;
   const cli_option *table;
   int n;
   const char *const *values, *const *positional;
@@ -170,7 +170,10 @@ static const char *value_of(const given_words *given, int i) {
 }
 
 static int holds_argument(const given_words *given, const char *word, size_t length, char *words, size_t room) {
-  snprintf(words, room, length ? "%.*s" : "an input%.*s", (int)length, word);
+  if (length)
+    snprintf(words, room, "conic %s %.*s", given->command, (int)length, word);
+  else
+    snprintf(words, room, "an input");
   for (int i = 0; i < given->n_positional; i++)
     if (!length || (strlen(given->positional[i]) == length && strncmp(given->positional[i], word, length) == 0))
       return 1;
@@ -216,7 +219,7 @@ static int holds_any(const given_words *given, const char *rules, char *words, s
 
 int cli_effects_check_with(const cli_session *session, const cli_option *table, int n, const char *const *values,
                            const char *const *positional, int n_positional) {
-  const given_words given = {table, n, values, positional, n_positional};
+  const given_words given = {session->command, table, n, values, positional, n_positional};
   int answer = CLI_DONE;
   for (int i = 0; i < n && answer == CLI_DONE; i++) {
     const cli_effect *acts = &table[i].acts;

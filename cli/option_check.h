@@ -14,8 +14,8 @@ typedef struct cli_given {
 typedef struct cli_effects_job {
   cli_given given[CLI_MOST_GIVEN];
   int n_given;
-  unsigned long long asked;             /* facts of what is asked for */
-  unsigned long long certain, possible; /* facts of what is read: those that hold, and those that may */
+  cli_facts asked;             /* facts of what is asked for */
+  cli_facts certain, possible; /* facts of what is read: those that hold, and those that may */
 } cli_effects_job;
 
 /* Notes one, or those of a table that cli_parse_noting has found. */
@@ -25,7 +25,7 @@ void cli_effects_note(cli_effects_job *own, const cli_option *table, int n, cons
 /* Wrong usage, or a warning, of each that has no effect by the facts that are known; each is said once, though more may
  * be known later. `remedy` says what to do where what is read, `input`, has none of these facts; it may be null. */
 int cli_effects_check_given(const cli_session *session, cli_effects_job *own, const char *input,
-                            const char *(*remedy)(const cli_effects_job *own, unsigned long long facts));
+                            const char *(*remedy)(const cli_effects_job *own, cli_facts lacked));
 
 /* The same of `with`, as soon as the arguments are read. */
 int cli_effects_check_with(const cli_session *session, const cli_option *table, int n, const char *const *values,

@@ -75,6 +75,7 @@ enum cli_fact {
   CLI_N_FACTS
 };
 
+typedef unsigned long long cli_facts; /* a set of them */
 #define CLI_FACT(name) (1ull << CLI_FACT_##name)
 /* Those of what is drawn. */
 #define CLI_SOURCE_FACTS (CLI_FACT(ACCUMULATED) - 1)

@@ -54,19 +54,19 @@ int cli_build_arguments(cli_build *build, const cli_option *options, int n_optio
   return exit_code;
 }
 
-conic_status cli_build_know(cli_build *build, unsigned long long possible) {
+conic_status cli_build_know(cli_build *build, cli_facts possible) {
   build->effects.possible = possible;
   int answer = cli_effects_check_given(build->session, &build->effects, build->input, NULL);
   return answer == CLI_DONE ? CONIC_OK : CONIC_ERROR_ARGUMENT;
 }
 
-unsigned long long cli_build_facts(const conic_model *model) {
+cli_facts cli_build_facts(const conic_model *model) {
   const int is_raw = !model->points.tangent_u[0] && !model->n_triangles;
   return CLI_FACT(SPLATS) | CLI_FACT(VALUED) | (is_raw ? CLI_FACT(RAW) : 0) |
          (model->n_triangles ? CLI_FACT(FACES) : 0) | (model->kind == CONIC_MODEL_XYZ ? CLI_FACT(TEXT) : 0);
 }
 
-unsigned long long cli_build_facts_of_file(const cli_build *build, const char *path) {
+cli_facts cli_build_facts_of_file(const cli_build *build, const char *path) {
   const int may_be_text = !build->columns || cli_points_may_be_text(build->session->context, path);
   return CLI_SOURCE_FACTS & ~(may_be_text ? 0 : CLI_FACT(TEXT));
 }

@@ -40,10 +40,10 @@ int cli_build_arguments(cli_build *build, const cli_option *options, int n_optio
                         const char **positional, int *n_positional);
 
 /* Refuses, or warns of, options that act on none of the facts of what is read. Errors: ARGUMENT. */
-conic_status cli_build_know(cli_build *build, unsigned long long possible);
+conic_status cli_build_know(cli_build *build, cli_facts possible);
 /* The facts of a model that was read; and those that a file may have whose points are read in parts. */
-unsigned long long cli_build_facts(const conic_model *model);
-unsigned long long cli_build_facts_of_file(const cli_build *build, const char *path);
+cli_facts cli_build_facts(const conic_model *model);
+cli_facts cli_build_facts_of_file(const cli_build *build, const char *path);
 
 /* The option of commands whose output can replace the input. */
 #define CLI_IN_PLACE(build)                                                                                            \

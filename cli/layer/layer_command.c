@@ -78,7 +78,7 @@ static conic_status list_layer_inputs(cli_layer_job *job) {
 
 /* What any of the inputs may be. */
 static conic_status know_layer_inputs(cli_layer_job *job) {
-  unsigned long long possible = 0;
+  cli_facts possible = 0;
   for (int i = job->n_continued; i < job->share.n_inputs; i++)
     possible |= cli_build_facts_of_file(&job->base, job->share.inputs[i]);
   job->base.input = job->share.inputs[job->n_continued];

@@ -12,14 +12,12 @@
 #include "core/files/file.h"
 #include "source/source_kind.h"
 
-typedef unsigned long long facts;
-
 /* --- what cannot be together --- */
 
 #define F(name) CLI_FACT(name)
 
 static const struct {
-  facts all, any, unless; /* it is refused where all of the first hold, any of the second, and none of the third */
+  cli_facts all, any, unless; /* it is refused where all of the first hold, any of the second, and none of the third */
   const char *why;
 } pairs[] = {
     {CLI_CHOSEN, 0, 0, "--error and --budget are two ways to choose; give one of both"},
@@ -75,7 +73,7 @@ static const struct {
 
 /* --- facts --- */
 
-static facts when(int holds, facts fact) {
+static cli_facts when(int holds, cli_facts fact) {
   return holds ? fact : 0;
 }
 
@@ -90,7 +88,7 @@ static int is_gaussian(const cli_session *session, const cli_render_job *job) {
 static void guess_source(const cli_session *session, cli_render_job *job) {
   cli_effects_job *own = &job->effects;
   const unsigned can = job->abilities;
-  const facts read = CLI_SURFACES | F(FACES) | F(TEXTURED) | F(EDGES) | F(RAW) | F(TEXT) | F(ALPHA) | F(VALUED);
+  const cli_facts read = CLI_SURFACES | F(FACES) | F(TEXTURED) | F(EDGES) | F(RAW) | F(TEXT) | F(ALPHA) | F(VALUED);
   int is_hybrid = (can & CONIC_SOURCE_CLUSTERS) != 0, is_mesh = job->opening.as == CONIC_AS_HYBRID;
   own->certain = when(can & CONIC_SOURCE_COMPOSITES, F(COMPOSITED)) | when(is_hybrid, F(HYBRID)) |
                  when(can & CONIC_SOURCE_STREAMS, F(LEVELS)) | when(can == CONIC_SOURCE_CHOOSES, F(NODES)) |
@@ -134,7 +132,7 @@ static void know_source(cli_render_job *job) {
   const conic_source_scale *scale = conic_source_measure(job->source);
   const conic_coloring *coloring = conic_source_coloring(job->source);
   const unsigned can = scale->abilities;
-  const facts traits[] = {F(FACES), F(EDGES), F(RAW), F(TEXT), F(ALPHA)}; /* as conic_source_trait has its bits */
+  const cli_facts traits[] = {F(FACES), F(EDGES), F(RAW), F(TEXT), F(ALPHA)}; /* as conic_source_trait has its bits */
   for (int i = 0; i < 5; i++)
     own->possible &= ~when(job->source->no_traits >> i & 1, traits[i]);
   if (job->is_transparent && own->possible & F(NODES) && !has_faint_points(job))
@@ -161,11 +159,11 @@ static int is_ended(const cli_render_job *job, const char *path, const char *con
   return 0;
 }
 
-static facts ask_of_outputs(const cli_render_job *job) {
+static cli_facts ask_of_outputs(const cli_render_job *job) {
   static const char *const exr[] = {"exr", NULL}, *const floats[] = {"exr", "pfm", "hdr", NULL};
   static const char *const tiff[] = {"tif", "tiff", NULL}, *const telling[] = {"exr", "png", "tif", "tiff", NULL};
   const char *const beside[] = {job->overdraw_path, job->clusters_path, job->boxes_path, job->legend_path};
-  facts found = when(job->deep_path || job->progressive_path, F(EXR) | F(TELLING));
+  cli_facts found = when(job->deep_path || job->progressive_path, F(EXR) | F(TELLING));
   for (int i = 0; i < job->n_outputs + 4; i++) {
     const char *path = i < job->n_outputs ? job->outputs[i] : beside[i - job->n_outputs];
     if (!path)
@@ -178,7 +176,7 @@ static facts ask_of_outputs(const cli_render_job *job) {
   return found;
 }
 
-static facts ask_of_camera(const cli_render_job *job) {
+static cli_facts ask_of_camera(const cli_render_job *job) {
   const cli_accumulate_job *sums = &job->accumulating;
   int is_map = job->top.is_wanted, is_framed = !job->camera_path && !is_map, kind = job->projection;
   return when(is_framed, F(FRAMED)) | when(kind == CONIC_CAMERA_PERSPECTIVE || kind == CONIC_CAMERA_FISHEYE, F(FIELD)) |
@@ -196,7 +194,7 @@ static int chooses_samples(const cli_render_job *job, const cli_scene_words *wor
   return !words->is_samples_given && !job->accumulating.n_samples && !job->accumulating.is_sample_given;
 }
 
-static facts ask_of_drawing(const cli_render_job *job, const cli_scene_words *words) {
+static cli_facts ask_of_drawing(const cli_render_job *job, const cli_scene_words *words) {
   const conic_render_options *render = &job->shot.render;
   const conic_gaussian_profile profile = job->shot.gaussians.profile;
   const int method = (int)render->method, is_composited = (job->abilities & CONIC_SOURCE_COMPOSITES) != 0;
@@ -293,7 +291,7 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
 /* --- the check --- */
 
 /* What to do where a source is none of which an option is. */
-static const char *find_remedy(const cli_effects_job *own, facts on) {
+static const char *find_remedy(const cli_effects_job *own, cli_facts on) {
   if (own->certain & F(COMPOSITED) && on & (F(SPLATS) | F(RAW) | F(ALPHA)))
     return "; --profile surface draws the scene as splats";
   if (own->certain & F(GAUSSIANS) && on & F(COMPOSITED))
@@ -309,7 +307,7 @@ int cli_effects_check(const cli_session *session, const cli_scene_words *words, 
   own->asked = ask_of_outputs(job) | ask_of_camera(job) | ask_of_drawing(job, words) |
                when(job->accumulating.resume_path != NULL, F(STREAM));
   note_parts(job, words);
-  const facts held = own->certain | own->asked;
+  const cli_facts held = own->certain | own->asked;
   for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
     if ((held & pairs[i].all) == pairs[i].all && (!pairs[i].any || held & pairs[i].any) && !(held & pairs[i].unless))
       return cli_usage("%s: %s", session->command, pairs[i].why);

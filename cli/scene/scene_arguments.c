@@ -92,6 +92,8 @@ static int parse_all(cli_session *session, const cli_option *own, int n_own, con
   int answer = CLI_RESOURCE;
   if (table && job->inputs) {
     memcpy(table, own, (size_t)n_own * sizeof *table);
+    for (int i = 0; i < n_own; i++) /* what is a command's own is what it is for */
+      table[i].is_usual |= !job->is_for_looking;
     memcpy(table + n_own, scene, (size_t)n_scene * sizeof *table);
     answer = cli_parse_noting(session, table, n_own + n_scene, argc, argv, job->inputs, &job->n_inputs, values);
     if (answer == CLI_DONE)
