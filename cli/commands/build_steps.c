@@ -156,7 +156,7 @@ double cli_build_end_stage(cli_stage *stage, double start) {
   return now;
 }
 
-void cli_build_report_seconds(cli_json *json, const cli_build *build, const char *rate_key, double rate) {
+void cli_build_report_cost(cli_json *json, const cli_build *build, const char *rate_key, double rate) {
   cli_json_object(json, "seconds");
   for (int i = 0; i < count_stages(build); i++) {
     const cli_stage *stage = &build->stages[i];
@@ -166,4 +166,5 @@ void cli_build_report_seconds(cli_json *json, const cli_build *build, const char
   cli_json_number(json, "total", build->total_seconds);
   cli_json_close(json);
   cli_json_number(json, rate_key, rate);
+  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
 }

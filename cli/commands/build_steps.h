@@ -75,7 +75,7 @@ int cli_build_run(void *job, const cli_build_steps *steps, int parsed);
 /* Sets a stage's seconds to those since `start`, and returns the time. */
 double cli_build_end_stage(cli_stage *stage, double start);
 
-/* Writes the object "seconds", and the rate of the work under `rate_key`. */
-void cli_build_report_seconds(cli_json *json, const cli_build *build, const char *rate_key, double rate);
+/* Writes the object "seconds", the rate of the work under `rate_key`, and the memory. */
+void cli_build_report_cost(cli_json *json, const cli_build *build, const char *rate_key, double rate);
 
 #endif

@@ -248,9 +248,8 @@ static void report_conversion(cli_json *json, const void *cookie) {
     }
     cli_json_count(json, "bytes", bytes_written(job->base.output));
   }
-  cli_build_report_seconds(json, &job->base, "gaussians_per_s",
-                           (double)scene->count / (job->base.stages[READ].seconds + job->base.stages[WRITE].seconds));
-  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  cli_build_report_cost(json, &job->base, "gaussians_per_s",
+                        (double)scene->count / (job->base.stages[READ].seconds + job->base.stages[WRITE].seconds));
 }
 
 static void release_scenes(void *cookie) {

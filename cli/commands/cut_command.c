@@ -198,8 +198,7 @@ static void report_cut(cli_json *json, const void *cookie) {
   const conic_repairs none = {0};
   cli_json_count(json, "points_in", job->n_in);
   cli_json_count(json, "points_out", job->n_out);
-  cli_build_report_seconds(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[READ].seconds);
-  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  cli_build_report_cost(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[READ].seconds);
   cli_json_skipped(json, &none);
 }
 

@@ -117,9 +117,8 @@ static void report_hybrid(cli_json *json, const void *cookie) {
   const hybrid_job *job = cookie;
   write_counts(json, job);
   cli_color_report(json, &job->coloring.done);
-  cli_build_report_seconds(json, &job->base, "triangles_per_s",
-                           (double)job->report.n_faces / job->base.stages[WORK].seconds);
-  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  cli_build_report_cost(json, &job->base, "triangles_per_s",
+                        (double)job->report.n_faces / job->base.stages[WORK].seconds);
   write_oddities(json, &job->report);
 }
 

@@ -203,9 +203,8 @@ static void report_scene(cli_json *json, const void *cookie) {
   cli_json_text(json, "scene", job->is_gaussians ? gaussians_name : conic_scene_name(job->scene.type));
   cli_json_count(json, "points_in", job->scene.count);
   cli_json_count(json, "points_out", job->scene.count);
-  cli_build_report_seconds(json, &job->base, "points_per_s", (double)job->scene.count / job->base.stages[WORK].seconds);
+  cli_build_report_cost(json, &job->base, "points_per_s", (double)job->scene.count / job->base.stages[WORK].seconds);
   cli_json_count(json, "threads", (uint64_t)conic_context_threads(job->base.session->context));
-  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
   cli_json_skipped(json, &none);
 }
 

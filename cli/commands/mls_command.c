@@ -322,8 +322,7 @@ static void report_points(cli_json *json, const void *cookie) {
     cli_json_number(json, "hausdorff", report->there.max > report->back.max ? report->there.max : report->back.max);
   }
   cli_json_count(json, "evaluations", report->n_evaluations);
-  cli_build_report_seconds(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[WORK].seconds);
-  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  cli_build_report_cost(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[WORK].seconds);
   conic_repairs repairs = job->repairs;
   repairs.nan = report->outcomes[CONIC_SURFACE_NOT_FINITE];
   repairs.failed = report->outcomes[CONIC_SURFACE_TOO_FEW] + report->outcomes[CONIC_SURFACE_NO_MINIMUM] +

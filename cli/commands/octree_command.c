@@ -85,8 +85,7 @@ static void report_octree(cli_json *json, const void *cookie) {
   cli_json_count(json, "bytes", job->info.n_bytes);
   cli_json_number(json, "bytes_per_point", (double)job->info.n_bytes / (double)job->n_in);
   cli_color_report(json, &job->coloring.done);
-  cli_build_report_seconds(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[WORK].seconds);
-  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  cli_build_report_cost(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[WORK].seconds);
   cli_json_skipped(json, &job->repairs);
 }
 

@@ -85,7 +85,9 @@ static conic_status read_model(prepare_job *job) {
   conic_status status = cli_points_read(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
   if (status == CONIC_OK)
-    status = cli_build_know(&job->base, cli_build_facts(&job->model));
+    status =
+        cli_build_know(&job->base, cli_build_facts(&job->model) |
+                                       (job->has_count && job->count < job->n_in ? CLI_FACT(RAW) : 0)); /* sized anew */
   cli_build_hint_faces(&job->base, &job->model);
   if (status == CONIC_OK)
     status = cli_build_check_reach(&job->base, &job->model.points);
@@ -125,8 +127,7 @@ static void report_prepared(cli_json *json, const void *cookie) {
     cli_json_count(json, "baked_directions", (uint64_t)job->n_directions);
   cli_json_count(json, "dots", conic_splats_count_dots(&job->model.points));
   cli_color_report(json, &job->coloring.done);
-  cli_build_report_seconds(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[WORK].seconds);
-  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  cli_build_report_cost(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[WORK].seconds);
   cli_json_skipped(json, &job->repairs);
 }
 

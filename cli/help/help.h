@@ -32,6 +32,10 @@ void cli_help_limits(const cli_help_entry *entry, char *words, size_t room);
 /* Whether an option's text leaves out some of the words that it takes. */
 int cli_help_hides_words(const cli_help_entry *entry);
 
+/* Words with blanks between them, for completion: a list's, an option's choices. */
+void cli_help_put_list(const cli_words *list);
+void cli_help_put_choices(const cli_option *option);
+
 /* How cli_parse answers --help, in each format but text. The command is the session's. */
 void cli_help_man(cli_session *session, const cli_option_table *table);
 void cli_help_json(cli_session *session, const cli_option_table *table); /* into the cli_json that is session->help */

@@ -24,8 +24,7 @@ static void print_value_case(const cli_help_entry *entry) {
   printf("        %s%s) kind=%s", cli_dashes(option), option->name, is_number ? "none" : kinds[entry->kind]);
   if (entry->kind == CLI_VALUE_WORDS) {
     fputs(" words='", stdout);
-    for (int i = 0; option->choices[i]; i++)
-      printf("%s%s", i ? " " : "", option->choices[i]);
+    cli_help_put_choices(option);
     putchar('\'');
   }
   puts(" ;;");
@@ -34,7 +33,6 @@ static void print_value_case(const cli_help_entry *entry) {
 void cli_help_bash(cli_session *session, const cli_option_table *table) {
   const cli_words *list = cli_find_command(session->command)->words;
   cli_help_entry entry;
-  const char *about;
   printf("    %s)\n      options='", session->command);
   for (int i = 0, n = 0; cli_help_next(table, &i, &entry); n++) {
     printf("%s%s%s", n ? " " : "", cli_dashes(entry.option), entry.option->name);
@@ -44,8 +42,7 @@ void cli_help_bash(cli_session *session, const cli_option_table *table) {
   puts("'");
   if (list) {
     fputs("      words='", stdout);
-    for (int i = 0; list->at(i, &about); i++)
-      printf("%s%s", i ? " " : "", list->at(i, &about));
+    cli_help_put_list(list);
     puts("'");
   }
   puts("      case $previous in");
@@ -57,17 +54,21 @@ void cli_help_bash(cli_session *session, const cli_option_table *table) {
   printf("        *) kind=%s ;;\n      esac\n      ;;\n", list && !list->option ? "either" : "argument");
 }
 
-void cli_help_bash_end(void) {
-  fputs("    help) kind=words words='", stdout);
+static void put_commands(void) {
+  fputs("kind=words words='", stdout);
   for (int i = 0; cli_command_at(i); i++)
     printf("%s ", cli_command_at(i)->name);
+}
+
+void cli_help_bash_end(void) {
+  fputs("    help) ", stdout);
+  put_commands();
   puts("--format' ;;\n"
        "    *) kind=none ;;\n"
        "  esac\n"
        "  if ((COMP_CWORD == 1)); then");
-  fputs("    kind=words words='", stdout);
-  for (int i = 0; cli_command_at(i); i++)
-    printf("%s ", cli_command_at(i)->name);
+  fputs("    ", stdout);
+  put_commands();
   puts("help --help --version'\n"
        "  elif [[ $current == -* && $kind == @(argument|either) ]]; then\n"
        "    kind=words words=$options\n"

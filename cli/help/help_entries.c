@@ -98,3 +98,14 @@ int cli_help_hides_words(const cli_help_entry *entry) {
       return 1;
   return 0;
 }
+
+void cli_help_put_list(const cli_words *list) {
+  const char *about, *word;
+  for (int i = 0; (word = list->at(i, &about)); i++)
+    printf("%s%s", i ? " " : "", word);
+}
+
+void cli_help_put_choices(const cli_option *option) {
+  for (int i = 0; option->choices[i]; i++)
+    printf("%s%s", i ? " " : "", option->choices[i]);
+}

@@ -40,17 +40,16 @@ void cli_help_zsh_begin(void) {
 
 static void put_zsh_value(const cli_help_entry *entry, const cli_words *list) {
   const cli_option *option = entry->option;
-  const char *about;
   putchar(':');
   put_zsh(option->argument ? option->argument : " ");
   putchar(':');
   if (list && list->option && strcmp(option->name, list->option) == 0) {
-    for (int i = 0; list->at(i, &about); i++)
-      printf("%s%s", i ? " " : "(", list->at(i, &about));
+    putchar('(');
+    cli_help_put_list(list);
     putchar(')');
   } else if (entry->kind == CLI_VALUE_WORDS) {
-    for (int i = 0; option->choices[i]; i++)
-      printf("%s%s", i ? " " : "(", option->choices[i]);
+    putchar('(');
+    cli_help_put_choices(option);
     putchar(')');
   } else if (entry->kind == CLI_VALUE_FOLDER)
     fputs("_files -/", stdout);
@@ -76,7 +75,6 @@ static void put_zsh_option(const cli_option *name, const cli_help_entry *entry, 
 void cli_help_zsh(cli_session *session, const cli_option_table *table) {
   const cli_words *list = cli_find_command(session->command)->words;
   cli_help_entry entry;
-  const char *about;
   printf("  %s)\n    _arguments \\\n", session->command);
   for (int i = 0; cli_help_next(table, &i, &entry);) {
     put_zsh_option(entry.option, &entry, list);
@@ -85,8 +83,7 @@ void cli_help_zsh(cli_session *session, const cli_option_table *table) {
   }
   if (list && !list->option) {
     printf("      '1:%s:(", list->title);
-    for (int i = 0; list->at(i, &about); i++)
-      printf("%s%s", i ? " " : "", list->at(i, &about));
+    cli_help_put_list(list);
     puts(")' \\");
   }
   puts("      '*:file:_files'\n    ;;");
@@ -116,12 +113,6 @@ void cli_help_fish_begin(void) {
        "complete -c conic -n __conic_has_no_command -f -l version -d 'the version, and what is in this build'");
 }
 
-static void put_fish_words(const cli_words *list) {
-  const char *about;
-  for (int i = 0; list->at(i, &about); i++)
-    printf("%s%s", i ? " " : "", list->at(i, &about));
-}
-
 static void put_fish_option(const char *command, const cli_help_entry *entry, const cli_words *list) {
   const cli_option *option = entry->option;
   printf("complete -c conic -n '__conic_is %s' -%c %s", command, cli_dashes(option)[1] ? 'l' : 's', option->name);
@@ -129,12 +120,11 @@ static void put_fish_option(const char *command, const cli_help_entry *entry, co
     printf(" -%c %s", cli_dashes(entry->alias)[1] ? 'l' : 's', entry->alias->name);
   if (list && list->option && strcmp(option->name, list->option) == 0) {
     fputs(" -x -a '", stdout);
-    put_fish_words(list);
+    cli_help_put_list(list);
     putchar('\'');
   } else if (entry->kind == CLI_VALUE_WORDS) {
     fputs(" -x -a '", stdout);
-    for (int i = 0; option->choices[i]; i++)
-      printf("%s%s", i ? " " : "", option->choices[i]);
+    cli_help_put_choices(option);
     putchar('\'');
   } else if (entry->kind == CLI_VALUE_FOLDER)
     fputs(" -x -a '(__fish_complete_directories)'", stdout);
@@ -155,7 +145,7 @@ void cli_help_fish(cli_session *session, const cli_option_table *table) {
   puts("'");
   if (command->words && !command->words->option) {
     printf("complete -c conic -n '__conic_is %s' -a '", command->name);
-    put_fish_words(command->words);
+    cli_help_put_list(command->words);
     puts("'");
   }
   for (int i = 0; cli_help_next(table, &i, &entry);)

@@ -381,8 +381,7 @@ static void report_suite(cli_json *json, const void *cookie) {
   cli_json_count(json, "files", (uint64_t)job->files->n + 1);
   cli_json_count(json, "bytes", count_bytes(job));
   describe_levels(json, job);
-  cli_build_report_seconds(json, &job->base, "cases_per_s", (double)job->n_cases / job->base.total_seconds);
-  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  cli_build_report_cost(json, &job->base, "cases_per_s", (double)job->n_cases / job->base.total_seconds);
 }
 
 static void release_suite(void *cookie) {

@@ -29,8 +29,7 @@ static void report_layers(cli_json *json, const void *cookie) {
   cli_json_number(json, "spacing", s->spacing);
   cli_json_number(json, "quantum", s->quantum);
   cli_color_report(json, &job->coloring.done);
-  cli_build_report_seconds(json, &job->base, "points_per_s", (double)s->n_in / job->base.total_seconds);
-  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  cli_build_report_cost(json, &job->base, "points_per_s", (double)s->n_in / job->base.total_seconds);
   cli_json_skipped(json, &repairs);
   cli_team_report_write(json, "points", &job->team);
 }

@@ -42,15 +42,15 @@ typedef struct cli_render_job {
   int n_outputs;
   char kind[8];                 /* of outputs without an ending, where one says it */
   const char *deep_path;        /* --deep; null: none */
-  const char *overdraw_path;    /* --overdraw; null: none */
-  int is_overdraw_confetti;     /* --overdraw-colors */
-  const char *clusters_path;    /* --clusters; null: none */
-  const char *boxes_path;       /* --boxes; null: none */
-  int box_level;                /* --box-level; below 0: what suits */
+  const char *overdraw_path;    /* --show overdraw; null: none */
+  int is_overdraw_confetti;     /* and overdraw-confetti */
+  const char *clusters_path;    /* --show clusters; null: none */
+  const char *boxes_path;       /* --show boxes; null: none */
+  int box_level;                /* boxes@N; below 0: what suits */
   int is_shown_twice;           /* --show has two outputs for one thing */
-  const char *legend_path;      /* --legend-out; null: none */
-  int has_legend;               /* --legend: in the picture */
-  int has_mattes;               /* --cryptomatte */
+  const char *legend_path;      /* --show legend:OUT; null: none */
+  int has_legend;               /* --show legend: in the picture */
+  int has_mattes;               /* --aov cryptomatte */
   const char *progressive_path; /* --progressive; null: none */
   const char *camera_path;      /* null: framed */
   const char *view_name;        /* --view; null: the file's only one */

@@ -115,11 +115,11 @@ refused 2 'did you mean affine?' --methods afine
 refused 2 'unknown instruction set' --isa mmx
 refused 2 'threads' --threads many
 refused 2 'no error in pixels' sphere.cot --error -1
-refused 2 'how many frames' --turntable 3 --repeat 3
+refused 2 'no effect with --turntable' --turntable 3 --repeat 3
 refused 2 'of Gaussians' --scenes gaussians-100 --turntable 3
 refused 2 'scenes of its own' --curve --scenes sphere-2k
 refused 2 'nothing else' --kernels --machine
-refused 2 'for files' --camera camera.json
+refused 2 'needs an input' --camera camera.json
 refused 3 'absent.ply' absent.ply
 refused 3 'absent.json' --scenes sphere-2k --compare absent.json
 echo '{"splats_in": 3}' > other.json

@@ -75,7 +75,7 @@ def same_everywhere(server, folder, root, first, number):
         expect(told and told["hash"] == good["hash"], f"{url} {options}: another picture {lines}")
     maps = set()
     for options in ([path], [url, "--memory", "1"]):
-        code, lines, _ = run_conic(["render", *options, "--camera", "top::32610", "-o", "map.tif",
+        code, lines, _ = run_conic(["render", *options, "--camera", "top::32610", "-o", "map.pfm", "-o", "map.tif",
                                     "--json", "map.json"], folder)
         expect(code == 0, f"{options}: no map {lines}")
         with open(os.path.join(folder, "map.json"), encoding="utf-8") as file:

@@ -149,7 +149,7 @@ grep -q '"nan": 1,' runs/render-odd.json || fail "render does not count what it 
 grep -q '"duplicate": 1,' runs/render-odd.json || fail "render does not count what lies where others are"
 write render-odd-patches render_patches render odd.xyz -o odd.exr --size 64x64 --method patch
 grep -q '"nan": 1,' runs/render-odd-patches.json || fail "render does not count what it lays no patches about"
-write render-top render render knot.ply --camera top:0.1:26910 -o top.tif
+write render-top render render knot.ply --camera top:0.1:26910 --shade phong -o top.tif
 write render-lit render render knot.ply -o lit.exr --aov rgba,ao,shadow --ao 4 --shadow --size 64x64 \
   --light 1,2,3:1:2deg --light lamp:1,2,3:4:0.1 --light lamp:0,3,0:5:0.4x0.2:0,-1,0
 write render-sky render render knot.ply -o sky.exr --sky knot.exr --ao 2 --size 32x32
