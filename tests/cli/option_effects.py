@@ -151,7 +151,6 @@ STAGES = {
     "coloured": (["--color-by", "height"], ["splats", "mesh"]),
     "error": (["--error", "4"], ["octree", "levels"]),
     "budget": (["--budget", "80"], ["octree"]),
-    "jpg": (["-o", "p.jpg"], ["splats"]),
     "own light": (["--light", "1,0,0"], ["splats"]),
     "surfels": (["--only", "surfels"], ["hybrid"]),
     "surface": (["--profile", "surface"], ["gaussians"]),

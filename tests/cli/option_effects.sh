@@ -23,9 +23,9 @@ old() {
   rm -rf a b && mkdir a b
   cd a || exit 1
   run_as_typed 0 render "../$scene" --size 40x40 "${former[@]}"
-  grep -v '^conic: render: --.* is now --' err | grep -v '^conic: up' && fail "${former[*]}: says more than the new words"
+  grep -v '^conic: render: --.* is now -' err | grep -v '^conic: up' && fail "${former[*]}: says more than the new words"
   for word in $old; do
-    [[ $(grep -c "^conic: render: $word is now --" err) == 1 ]] || fail "$word is not told about: $(cat err)"
+    [[ $(grep -c "^conic: render: $word is now -" err) == 1 ]] || fail "$word is not told about: $(cat err)"
   done
   run_as_typed 0 render "../$scene" --size 40x40 -q "${former[@]}"
   [[ ! -s err ]] || fail "-q ${former[*]}: $(cat err)"
@@ -45,7 +45,7 @@ old --overdraw o.pfm --overdraw-colors confetti -- --show overdraw-confetti:o.pf
 old -o p.pfm --color-by height --legend --legend-out l.pfm --color-range 0,0.2 -- \
   -o p.pfm --color-by height --show legend --show legend:l.pfm --ramp 0,0.2
 old -o p.exr --compression none -- -o p.exr --exr none
-old -o bare --format jpg -- -o jpg:bare
+old -o bare --format exr -- -o exr:bare
 old -o p.exr --cryptomatte -- -o p.exr --aov cryptomatte
 old -o p.pfm --stereo 0.1 --convergence 2 -- -o p.pfm --stereo 0.1:2
 old -o p.pfm --accumulate 3 --aperture 0.2 --blades 5 -- -o p.pfm --accumulate 3 --aperture 0.2:5
@@ -77,6 +77,10 @@ for command in "judge --picture theirs.exr" verify "explain --pixel 3,3"; do
 done
 run 2 gradient pairs/splats.ply --weights theirs.exr -o g.ply --profile gsplat-1.6
 run 0 judge pairs/splats.ply --size 20x20 --picture theirs.exr
+
+# Files of which none says how it was made.
+"$conic" render pairs/splats.ply --size 20x20 -o x.jpg --no-shot 2> err # with whatever this build writes
+grep -q 'warning: render: --no-shot has no effect' err || fail "--no-shot of a .jpg: $(cat err)"
 
 # What is asked for and cannot be written is no success.
 run_as_typed 2 render pairs/splats.ply -o x.png --show legend:legend.png
