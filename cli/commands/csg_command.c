@@ -37,7 +37,9 @@ static conic_status read_solids(csg_job *job) {
     if (status == CONIC_OK)
       status = cli_build_check_reach(&job->base, &job->models[i].points);
   }
-  return status;
+  return status == CONIC_OK
+             ? cli_build_know(&job->base, cli_build_facts(&job->models[0]) | cli_build_facts(&job->models[1]))
+             : status;
 }
 
 static int make_solid(void *cookie) {
@@ -79,8 +81,7 @@ static void report_solid(cli_json *json, const void *cookie) {
   cli_json_count(json, "of_second", report->n_kept[1]);
   cli_json_count(json, "clipped", report->n_clipped);
   cli_json_count(json, "unclipped", report->n_unclipped);
-  cli_build_report_seconds(json, &job->base, "points_per_s", (double)n_in / job->base.stages[WORK].seconds);
-  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  cli_build_report_cost(json, &job->base, "points_per_s", (double)n_in / job->base.stages[WORK].seconds);
 }
 
 static void tell_solid(const void *cookie) {
@@ -135,12 +136,13 @@ static int run_csg(cli_session *session, int argc, char **argv) {
       {"intersection", CLI_FLAG, &job.is_wanted[CONIC_CSG_INTERSECTION], NULL, "what is in both"},
       {"difference", CLI_FLAG, &job.is_wanted[CONIC_CSG_DIFFERENCE], NULL, "what is in A and not in B"},
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
-       "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
+       "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64,
+       .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
       {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
       CLI_COLUMNS(&job.base.columns),
   };
   int exit_code =
-      cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
+      cli_build_arguments(&job.base, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);
   return cli_build_run(&job, &steps, exit_code == CLI_DONE ? check_job(&job, positional, n_positional) : exit_code);
 }
 

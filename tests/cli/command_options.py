@@ -33,7 +33,7 @@ CASES = {
             "--error": "1", "--memory": "32", "--cutoff": "2", "--columns": "y,x,z"},
     "mls": {"-o": "more.ply", "--in-place": None, "--type": "apss", "--plane": "fast", "--degree": "1", "--weight": "flat",
             "--h": "2x", "-k": "12", "--neglect": "1.5", "--cluster": "0.7", "--sharp": None, "--count": "90",
-            "--max-error": "0.02", "--spacing": "1x", "--hole": "1x", "--memory": "32", "--isa": "scalar",
+            "--max-error": "0.02", "--keep": "contribution", "--spacing": "1x", "--hole": "1x", "--memory": "32", "--isa": "scalar",
             "--columns": "y,x,z"},
     "hybrid": {"-o": "more.chy", "--phase1": "1", "--phase2": "-2", "--largest": "0.001", "--density": "4",
                "--most-error": "0", "--sampling": "box", "--texture": "texture.png", "--max-texture": "3", "--smooth": None,
@@ -62,6 +62,8 @@ CASES = {
               "--device": "opencl", "--allow-inexact": None, "--error": "4", "--turntable": "2", "--repeat": "3",
               "--quick": None, "--compare": "none.json", "--publish": "p.json", "--curve": None, "--machine": None,
               "--kernels": None, "--floor": None},
+    "csg": {"-o": "more.ply", "--union": None, "--intersection": None, "--difference": None, "-k": "6", "--cutoff": "2",
+            "--columns": "y,x,z"},
     "devices": {},
     "convert": {"-o": "more.spz", "--to": "splat", "--sh-degree": "0", "--frame": "luf", "--from-frame": "luf",
                 "--keep-order": None, "--sh-bits": "3", "--measure": "1", "--spz-version": "3"},
@@ -78,7 +80,7 @@ STAGES = [
     "cut splats.ply -o out.ply", "cut raw.xyz -o out.lpc", "cut a.lpc -o out.ply",
     "mls project raw.xyz -o out.ply", "mls project splats.ply -o out.ply --h 0.4", "mls thin raw.xyz -o out.ply --h 3x",
     "mls project raw.xyz -o out.ply --h 0.9", "mls densify small.xyz -o out.ply", "mls project raw.xyz -o out.ply --type apss",
-    "hybrid fine.obj -o out.chy", "hybrid raw.xyz -o out.chy",
+    "csg ball.ply egg.ply --union -o out.ply", "hybrid fine.obj -o out.chy", "hybrid raw.xyz -o out.chy",
     "diff picture.exr other.exr", "diff picture.exr picture.exr", "diff pictures others",
     "info splats.ply", "info picture.exr", "info camera.json", "info g.spz", "info mesh.obj",
     "verify splats.ply --size 16x16", "verify g.spz --size 16x16", "verify splats.ply --size 16x16 --accumulate 2",
@@ -168,6 +170,8 @@ def make_inputs():
     for name, n in (("mesh.obj", 6), ("fine.obj", 30)):
         write_grid(name, n)
     need("layer", "raw.xyz", "-o", "a.lpc", "--cloud-size", "64")
+    need("make", "sphere", "-n", "300", "-o", "ball.ply")
+    need("make", "torus", "-n", "300", "-o", "egg.ply")
     need("make", "gaussians", "-n", "40", "-o", "g.ply")
     need("convert", "g.ply", "-o", "g.spz")
     pathlib.Path("polygon.txt").write_text("0 0\n1 0\n1 1\n0 1\n")
