@@ -165,10 +165,7 @@ static conic_status cut_to_las(cut_job *job) {
     return status;
   double start;
   status = read_part(job, &start);
-  if (status == CONIC_OK)
-    status = conic_las_writer_finish(job->las);
-  else
-    conic_las_writer_abandon(job->las);
+  status = conic_las_writer_end(job->las, status);
   cli_build_end_stage(&job->base.stages[WRITE], start);
   return status;
 }

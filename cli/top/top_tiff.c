@@ -67,10 +67,7 @@ conic_status cli_top_tiff_advance(cli_top_tiff *file, size_t n_rows) {
 }
 
 conic_status cli_top_tiff_end(cli_top_tiff *file, conic_status status) {
-  if (status == CONIC_OK)
-    status = conic_tiff_finish(file->tiff);
-  else
-    conic_tiff_abandon(file->tiff);
+  status = conic_tiff_end(file->tiff, status);
   conic_memory_release(file->context, file->pixels);
   cli_top_store_close(&file->store);
   memset(file, 0, sizeof *file);

@@ -132,10 +132,8 @@ conic_status conic_las_writer_open(conic_context *context, const char *path, con
     fclose(file);
   if (status == CONIC_OK)
     status = conic_output_open(context, path, &w->output);
-  if (status != CONIC_OK) {
-    conic_las_writer_abandon(w);
-    return status;
-  }
+  if (status != CONIC_OK)
+    return conic_las_writer_end(w, status);
   w->file = conic_output_stream(w->output);
   *writer = w;
   return CONIC_OK;
@@ -335,23 +333,14 @@ conic_status conic_las_writer_append(conic_las_writer *w, const conic_splats *ba
   return status;
 }
 
-static void release_las(conic_las_writer *w) {
-  conic_memory_release_these(w->context, w->records, w);
-}
-
-conic_status conic_las_writer_finish(conic_las_writer *w) {
-  if (!w->has_begun)
-    begin_las(w, NULL);
-  if (fseeko(w->file, 0, SEEK_SET) == 0)
-    put_las_header(w);
-  conic_status status = conic_output_commit(w->output);
-  release_las(w);
-  return status;
-}
-
-void conic_las_writer_abandon(conic_las_writer *w) {
+conic_status conic_las_writer_end(conic_las_writer *w, conic_status status) {
   if (!w)
-    return;
-  conic_output_abandon(w->output);
-  release_las(w);
+    return status;
+  if (status == CONIC_OK && !w->has_begun)
+    begin_las(w, NULL);
+  if (status == CONIC_OK && fseeko(w->file, 0, SEEK_SET) == 0)
+    put_las_header(w);
+  status = conic_output_end(w->output, status);
+  conic_memory_release_these(w->context, w->records, w);
+  return status;
 }

@@ -79,11 +79,10 @@ conic_status conic_deep_open(conic_context *context, const char *path, int width
   conic_status status = conic_output_open(context, path, &opened->output);
   if (status == CONIC_OK)
     status = begin_parts(opened, width, height, most_samples, header);
-  if (status == CONIC_OK)
-    *writer = opened;
-  else
-    conic_deep_abandon(opened);
-  return status;
+  if (status != CONIC_OK)
+    return conic_deep_end(opened, status);
+  *writer = opened;
+  return CONIC_OK;
 }
 
 conic_status conic_deep_append(conic_deep_writer *writer, const conic_deep_packed *packed) {
@@ -93,26 +92,15 @@ conic_status conic_deep_append(conic_deep_writer *writer, const conic_deep_packe
   return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&writer->stream, result, "write", CONIC_ERROR_ARGUMENT);
 }
 
-static void release_writer(conic_deep_writer *writer) {
-  conic_memory_release(writer->context, writer);
-}
-
-conic_status conic_deep_finish(conic_deep_writer *writer) {
-  exr_result_t result = exr_finish(&writer->file);
-  conic_status status =
-      result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&writer->stream, result, "write", CONIC_ERROR_ARGUMENT);
-  status = conic_output_end(writer->output, status);
-  release_writer(writer);
-  return status;
-}
-
-void conic_deep_abandon(conic_deep_writer *writer) {
+conic_status conic_deep_end(conic_deep_writer *writer, conic_status status) {
   if (!writer)
-    return;
-  if (writer->file)
-    exr_finish(&writer->file);
-  conic_output_abandon(writer->output);
-  release_writer(writer);
+    return status;
+  exr_result_t result = writer->file ? exr_finish(&writer->file) : EXR_ERR_SUCCESS;
+  if (status == CONIC_OK && result != EXR_ERR_SUCCESS)
+    status = conic_exr_fail(&writer->stream, result, "write", CONIC_ERROR_ARGUMENT);
+  status = conic_output_end(writer->output, status);
+  conic_memory_release(writer->context, writer);
+  return status;
 }
 
 #else
@@ -129,13 +117,9 @@ conic_status conic_deep_append(conic_deep_writer *writer, const conic_deep_packe
   return CONIC_ERROR_UNSUPPORTED;
 }
 
-conic_status conic_deep_finish(conic_deep_writer *writer) {
+conic_status conic_deep_end(conic_deep_writer *writer, conic_status status) {
   (void)writer;
-  return CONIC_ERROR_UNSUPPORTED;
-}
-
-void conic_deep_abandon(conic_deep_writer *writer) {
-  (void)writer;
+  return status;
 }
 
 #endif

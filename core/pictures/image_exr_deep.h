@@ -28,7 +28,7 @@ typedef struct conic_deep_writer conic_deep_writer;
 
 /* Begins a deep scanline EXR with channels R, G, B, A, Z, id and weight, compressed (ZIPS) where the build has zlib. No
  * pixel has more than `most_samples`. `header` gives the attributes and may be null; the caller owns `path`, which must
- * outlive the writer. On success the caller owns *writer, and ends it with finish or abandon. Errors: ARGUMENT (an
+ * outlive the writer. On success the caller owns *writer, and ends it with conic_deep_end. Errors: ARGUMENT (an
  * attribute that the format refuses), UNSUPPORTED (a build without OpenEXR), MEMORY, IO. */
 conic_status conic_deep_open(conic_context *context, const char *path, int width, int height, uint32_t most_samples,
                              const conic_image *header, conic_deep_writer **writer);
@@ -37,9 +37,8 @@ conic_status conic_deep_pack(conic_context *context, const conic_deep_line *line
 void conic_deep_packed_release(conic_context *context, conic_deep_packed *packed);
 /* Appends the next line from the top. Errors: IO. */
 conic_status conic_deep_append(conic_deep_writer *writer, const conic_deep_packed *packed);
-/* Completes the file and releases the writer, on failure too. Errors: IO. */
-conic_status conic_deep_finish(conic_deep_writer *writer);
-/* Drops the file and releases the writer; null is allowed. */
-void conic_deep_abandon(conic_deep_writer *writer);
+/* Completes the file, or drops it if the status is not OK. Releases the writer, which may be null, and returns the
+ * status. Errors: IO. */
+conic_status conic_deep_end(conic_deep_writer *writer, conic_status status);
 
 #endif

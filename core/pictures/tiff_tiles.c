@@ -94,10 +94,8 @@ conic_status conic_tiff_open(conic_context *context, const char *path, const con
   conic_status status = make_tables(t);
   if (status == CONIC_OK)
     status = conic_output_open(context, path, &t->output);
-  if (status != CONIC_OK) {
-    conic_tiff_abandon(t);
-    return status;
-  }
+  if (status != CONIC_OK)
+    return conic_tiff_end(t, status);
   t->file = conic_output_stream(t->output);
   put_tiff_head(t);
   *tiff = t;
@@ -290,24 +288,12 @@ static void put_tags(conic_tiff *tiff) {
     put_tiff_number(tiff, at, tiff->is_big ? 8 : 4);
 }
 
-static void release_tiff(conic_tiff *tiff) {
-  conic_context *context = tiff->context;
-  conic_memory_release(context, tiff->offsets);
-  conic_memory_release(context, tiff->n_bytes);
-  conic_memory_release(context, tiff->packed);
-  conic_memory_release(context, tiff);
-}
-
-conic_status conic_tiff_finish(conic_tiff *tiff) {
-  put_tags(tiff);
-  conic_status status = conic_output_commit(tiff->output);
-  release_tiff(tiff);
-  return status;
-}
-
-void conic_tiff_abandon(conic_tiff *tiff) {
+conic_status conic_tiff_end(conic_tiff *tiff, conic_status status) {
   if (!tiff)
-    return;
-  conic_output_abandon(tiff->output);
-  release_tiff(tiff);
+    return status;
+  if (status == CONIC_OK)
+    put_tags(tiff);
+  status = conic_output_end(tiff->output, status);
+  conic_memory_release_these(tiff->context, tiff->offsets, tiff->n_bytes, tiff->packed, tiff);
+  return status;
 }

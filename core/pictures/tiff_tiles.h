@@ -24,16 +24,15 @@ typedef struct conic_tiff conic_tiff;
 /* Bytes of a pixel. */
 size_t conic_tiff_pixel_bytes(const conic_tiff_layout *layout);
 
-/* Starts a file that appears under its name when it is whole. On success the caller owns *tiff and ends it with finish
- * or abandon. Errors: ARGUMENT (standard output, or no such size), MEMORY, IO. */
+/* Starts a file that appears under its name when it is whole. On success the caller owns *tiff and ends it with
+ * conic_tiff_end. Errors: ARGUMENT (standard output, or no such size), MEMORY, IO. */
 conic_status conic_tiff_open(conic_context *context, const char *path, const conic_tiff_layout *layout,
                              conic_tiff **tiff);
 /* Appends the next tile; tiles come in rows from the top, each row from the left. A tile is CONIC_TIFF_TILE rows of as
  * many pixels; pixels outside of the picture may be anything. `pixels` are undefined afterwards. Errors: MEMORY, IO. */
 conic_status conic_tiff_append(conic_tiff *tiff, void *pixels);
-/* Completes the file after the last tile. Releases the writer, on failure too. Errors: IO. */
-conic_status conic_tiff_finish(conic_tiff *tiff);
-/* Drops all of it; null is allowed. */
-void conic_tiff_abandon(conic_tiff *tiff);
+/* Completes the file after the last tile, or drops it if the status is not OK. Releases the writer, which may be null,
+ * and returns the status. Errors: IO. */
+conic_status conic_tiff_end(conic_tiff *tiff, conic_status status);
 
 #endif

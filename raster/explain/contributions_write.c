@@ -257,10 +257,7 @@ conic_status conic_contributions_write(conic_contributions *c, const char *path,
     status = conic_deep_open(c->context, path, c->view.width, c->view.height, most, header, &writer);
   if (status == CONIC_OK)
     status = do_lines(&all, n_lines, writer, &most);
-  if (status == CONIC_OK)
-    status = conic_deep_finish(writer);
-  else
-    conic_deep_abandon(writer);
+  status = conic_deep_end(writer, status);
   for (size_t i = 0; i < n_lines && all.lines; i++)
     release_line(c->context, &all.lines[i]);
   conic_memory_release(c->context, all.lines);
