@@ -33,7 +33,7 @@ typedef struct point_hints {
 
 /* The first layer's state of a channel: returns, x and y. */
 typedef struct xy_state {
-  int is_used, has_new_time;
+  int has_new_time;
   uint32_t x, y;
   unsigned n, r;
   conic_laz_median x_step[12], y_step[12];
@@ -41,36 +41,30 @@ typedef struct xy_state {
   conic_laz_model changed[8], channel, n_returns[16], i_return[16], i_return_same;
 } xy_state;
 
-typedef struct z_state {
-  int is_used;
-  int32_t last[8];
-  conic_laz_integer off;
-} z_state;
-
 /* Classes, flags and user data: a byte, predicted from the one before. */
 typedef struct byte_state {
-  int is_used;
   unsigned last;
   conic_laz_model models[64];
 } byte_state;
 
-/* Intensities, angles and sources: 16 bits, predicted from those before. */
+/* Heights, intensities, angles and sources: 32 or 16 bits, predicted from those before. */
 typedef struct number_state {
-  int is_used;
   uint32_t last[8];
   conic_laz_integer off;
 } number_state;
-
-typedef struct time_state {
-  int is_used;
-  conic_laz_times times;
-} time_state;
 
 /* For colours and later items: the channel whose last item the next one is compared with. */
 typedef struct item_turn {
   unsigned current;
   unsigned char is_used[CHANNELS];
 } item_turn;
+
+/* A byte that follows the item of the format. */
+typedef struct extra_byte {
+  conic_laz_stream stream;
+  conic_laz_model models[CHANNELS];
+  unsigned char last[CHANNELS];
+} extra_byte;
 
 struct conic_laz_layered {
   conic_context *context;
@@ -82,72 +76,43 @@ struct conic_laz_layered {
   int is_there[N_LAYERS];
   unsigned channel;
   point_hints hints[RUN];
-  unsigned char *first, *last; /* records: the chunk's first, and the previous one */
-  /* extra bytes */
+  unsigned char first[65536], last[POINT_BYTES]; /* records: the chunk's first, and the previous one */
   size_t extra_room;
-  conic_laz_stream *extra_streams;
-  conic_laz_model (*extra_models)[CHANNELS];
-  unsigned char (*extra_last)[CHANNELS];
+  extra_byte *extra;
+  unsigned char is_used[N_LAYERS]; /* channels that have begun, as bits */
   /* one for each channel */
   xy_state xy[CHANNELS];
-  z_state z[CHANNELS];
   byte_state class[CHANNELS], flags[CHANNELS], user[CHANNELS];
-  number_state intensity[CHANNELS], angle[CHANNELS], source[CHANNELS];
-  time_state time[CHANNELS];
+  number_state z[CHANNELS], intensity[CHANNELS], angle[CHANNELS], source[CHANNELS];
+  conic_laz_times times[CHANNELS];
   conic_laz_colors colors[CHANNELS];
   conic_laz_nirs nirs[CHANNELS];
   conic_laz_waves waves[CHANNELS];
-  unsigned char last_color[CHANNELS][6], last_nir[CHANNELS][2], last_wave[CHANNELS][CONIC_LAZ_WAVE_BYTES];
-  item_turn color_turn, nir_turn, wave_turn, extra_turn;
+  unsigned char last_items[N_LAYERS - COLOR][CHANNELS][CONIC_LAZ_WAVE_BYTES];
+  item_turn turns[N_LAYERS - COLOR], extra_turn;
 };
 
 conic_status conic_laz_layered_create(conic_context *context, conic_laz_layered **layered) {
-  conic_laz_layered *l = conic_memory_allocate_zeroed(context, 1, sizeof *l);
-  *layered = l;
-  if (!l)
+  *layered = conic_memory_allocate_zeroed(context, 1, sizeof **layered);
+  if (!*layered)
     return CONIC_ERROR_MEMORY;
-  l->context = context;
-  l->first = conic_memory_allocate(context, 2 * 65536, 1);
-  if (l->first) {
-    l->last = l->first + 65536;
-    return CONIC_OK;
-  }
-  conic_memory_release(context, l);
-  *layered = NULL;
-  return CONIC_ERROR_MEMORY;
-}
-
-static void release_extra(conic_context *context, conic_laz_layered *l) {
-  conic_memory_release_these(context, l->extra_streams, l->extra_models, l->extra_last);
-  l->extra_streams = NULL;
-  l->extra_models = NULL;
-  l->extra_last = NULL;
-  l->extra_room = 0;
+  (*layered)->context = context;
+  return CONIC_OK;
 }
 
 void conic_laz_layered_destroy(conic_context *context, conic_laz_layered *l) {
-  if (!l)
-    return;
-  release_extra(context, l);
-  conic_memory_release_these(context, l->first, l);
+  if (l)
+    conic_memory_release_these(context, l->extra, l);
 }
 
 /* --- where the layers are --- */
 
 static conic_status make_room_for_extra(conic_laz_layered *l) {
   size_t n = l->format->n_extra;
-  if (n > l->extra_room) {
-    release_extra(l->context, l);
-    l->extra_streams = conic_memory_allocate(l->context, n, sizeof *l->extra_streams);
-    l->extra_models = conic_memory_allocate(l->context, n, sizeof *l->extra_models);
-    l->extra_last = conic_memory_allocate(l->context, n, sizeof *l->extra_last);
-    if (!l->extra_streams || !l->extra_models || !l->extra_last)
-      return CONIC_ERROR_MEMORY;
-    l->extra_room = n;
-  }
-  if (n)
-    memset(l->extra_models, 0, n * sizeof *l->extra_models);
-  return CONIC_OK;
+  conic_status status = conic_memory_reserve(l->context, &l->extra, 0, n, &l->extra_room, sizeof *l->extra);
+  if (status == CONIC_OK && n)
+    memset(l->extra, 0, n * sizeof *l->extra);
+  return status;
 }
 
 static int format_has(const conic_laz_format *format, int layer) {
@@ -195,7 +160,7 @@ static conic_status find_layers(conic_laz_layered *l, unsigned wanted, const uns
   }
   for (size_t i = 0; i < format->n_extra; i++, size += 4) {
     int is_there;
-    begin_layer(l, &l->extra_streams[i], (wanted & CONIC_LAZ_EXTRA) != 0, &at, conic_load_32(size), &is_there);
+    begin_layer(l, &l->extra[i].stream, (wanted & CONIC_LAZ_EXTRA) != 0, &at, conic_load_32(size), &is_there);
   }
   l->end = at;
   return CONIC_OK;
@@ -203,10 +168,11 @@ static conic_status find_layers(conic_laz_layered *l, unsigned wanted, const uns
 
 /* --- beginning --- */
 
-static void mark_unused(conic_laz_layered *l) {
-  for (int c = 0; c < CHANNELS; c++)
-    l->xy[c].is_used = l->z[c].is_used = l->class[c].is_used = l->flags[c].is_used = l->user[c].is_used =
-        l->intensity[c].is_used = l->angle[c].is_used = l->source[c].is_used = l->time[c].is_used = 0;
+/* Whether this is the first point of a channel; from now on it is not. */
+static int begins_channel(conic_laz_layered *l, int layer, unsigned channel) {
+  int is_used = l->is_used[layer] >> channel & 1;
+  l->is_used[layer] |= (unsigned char)(1u << channel);
+  return !is_used;
 }
 
 static void begin_turn(item_turn *turn, unsigned channel) {
@@ -215,30 +181,32 @@ static void begin_turn(item_turn *turn, unsigned channel) {
   turn->is_used[channel] = 1;
 }
 
+/* Colours, near infrared and waveforms: their bytes, and where they are in a record. */
+static const size_t item_bytes[N_LAYERS - COLOR] = {6, 2, CONIC_LAZ_WAVE_BYTES};
+
+static size_t item_place(const conic_laz_format *format, int layer) {
+  return layer == COLOR ? POINT_BYTES
+         : layer == NIR ? POINT_BYTES + 6
+                        : format->point_bytes - format->n_extra - CONIC_LAZ_WAVE_BYTES;
+}
+
 static void begin_items(conic_laz_layered *l) {
   const conic_laz_format *format = l->format;
-  const unsigned char *item = l->first + POINT_BYTES;
   memset(l->colors, 0, sizeof l->colors);
   memset(l->nirs, 0, sizeof l->nirs);
   memset(l->waves, 0, sizeof l->waves);
-  if (format_has(format, COLOR))
-    memcpy(l->last_color[l->channel], item, 6);
-  if (format_has(format, NIR))
-    memcpy(l->last_nir[l->channel], item + 6, 2);
-  if (format_has(format, WAVE))
-    memcpy(l->last_wave[l->channel], l->first + format->point_bytes - format->n_extra - CONIC_LAZ_WAVE_BYTES,
-           CONIC_LAZ_WAVE_BYTES);
+  for (int layer = COLOR; layer < N_LAYERS; layer++) {
+    if (format_has(format, layer))
+      memcpy(l->last_items[layer - COLOR][l->channel], l->first + item_place(format, layer), item_bytes[layer - COLOR]);
+    begin_turn(&l->turns[layer - COLOR], l->channel);
+  }
   for (size_t i = 0; i < format->n_extra; i++)
-    l->extra_last[i][l->channel] = l->first[format->point_bytes - format->n_extra + i];
-  begin_turn(&l->color_turn, l->channel);
-  begin_turn(&l->nir_turn, l->channel);
-  begin_turn(&l->wave_turn, l->channel);
+    l->extra[i].last[l->channel] = l->first[format->point_bytes - format->n_extra + i];
   begin_turn(&l->extra_turn, l->channel);
 }
 
 static void begin_xy(xy_state *s, uint32_t x, uint32_t y, unsigned returns) {
   memset(s, 0, sizeof *s);
-  s->is_used = 1;
   s->x = x;
   s->y = y;
   s->r = returns & 15;
@@ -260,7 +228,7 @@ static xy_state *turn_channel(conic_laz_layered *l, unsigned changed, point_hint
   unsigned item_channel = l->format->point_version == 4 ? l->channel : 0;
   if (changed & 64) {
     unsigned channel = (l->channel + conic_laz_symbol(&l->streams[XY], &s->channel, 3) + 1) & 3;
-    if (!l->xy[channel].is_used)
+    if (begins_channel(l, XY, channel))
       begin_xy(&l->xy[channel], s->x, s->y, s->n << 4 | s->r);
     l->channel = item_channel = channel;
   }
@@ -313,29 +281,30 @@ static void read_xy(conic_laz_layered *l, point_hints *hints, unsigned char *rec
 
 /* --- other layers of a point: `before` is the record of the point before --- */
 
-static z_state *z_state_of(z_state *states, unsigned channel, const unsigned char *before) {
-  z_state *s = &states[channel];
-  if (!s->is_used) {
+static number_state *number_state_of(conic_laz_layered *l, int layer, number_state *states, unsigned channel,
+                                     uint32_t before) {
+  number_state *s = &states[channel];
+  if (begins_channel(l, layer, channel)) {
     memset(s, 0, sizeof *s);
-    s->is_used = 1;
     for (int i = 0; i < 8; i++)
-      s->last[i] = (int32_t)conic_load_32(before + 8);
+      s->last[i] = before;
   }
   return s;
 }
 
 static void read_z(conic_laz_layered *l, const point_hints *hints, const unsigned char *before, unsigned char *record) {
-  z_state *s = z_state_of(l->z, hints->channel, before);
+  number_state *s = number_state_of(l, Z, l->z, hints->channel, conic_load_32(before + 8));
   unsigned level = conic_laz_level(record[14] >> 4, record[14] & 15);
-  s->last[level] = conic_laz_integer_32(&l->streams[Z], &s->off, s->last[level], hints->z_context);
-  conic_store_32(record + 8, (uint32_t)s->last[level]);
+  int32_t last = (int32_t)s->last[level];
+  s->last[level] = (uint32_t)conic_laz_integer_32(&l->streams[Z], &s->off, last, hints->z_context);
+  conic_store_32(record + 8, s->last[level]);
 }
 
-static byte_state *byte_state_of(byte_state *states, unsigned channel, unsigned before) {
+static byte_state *byte_state_of(conic_laz_layered *l, int layer, byte_state *states, unsigned channel,
+                                 unsigned before) {
   byte_state *s = &states[channel];
-  if (!s->is_used) {
+  if (begins_channel(l, layer, channel)) {
     memset(s, 0, sizeof *s);
-    s->is_used = 1;
     s->last = before;
   }
   return s;
@@ -347,7 +316,7 @@ static unsigned ends_of_record(const unsigned char *record) {
 
 static void read_class(conic_laz_layered *l, const point_hints *hints, const unsigned char *before,
                        unsigned char *record) {
-  byte_state *s = byte_state_of(l->class, hints->channel, before[16]);
+  byte_state *s = byte_state_of(l, CLASS, l->class, hints->channel, before[16]);
   unsigned model = (s->last & 31) << 1 | (unsigned)(ends_of_record(record) == 3);
   s->last = conic_laz_symbol(&l->streams[CLASS], &s->models[model], 256);
   record[16] = (unsigned char)s->last;
@@ -360,32 +329,21 @@ static unsigned flags_of(unsigned byte) {
 
 static void read_flags(conic_laz_layered *l, const point_hints *hints, const unsigned char *before,
                        unsigned char *record) {
-  byte_state *s = byte_state_of(l->flags, hints->channel, flags_of(before[15]));
+  byte_state *s = byte_state_of(l, FLAGS, l->flags, hints->channel, flags_of(before[15]));
   s->last = conic_laz_symbol(&l->streams[FLAGS], &s->models[s->last], 64);
   record[15] |= (unsigned char)((s->last & 15) | (s->last >> 4) << 6);
 }
 
 static void read_user(conic_laz_layered *l, const point_hints *hints, const unsigned char *before,
                       unsigned char *record) {
-  byte_state *s = byte_state_of(l->user, hints->channel, before[17]);
+  byte_state *s = byte_state_of(l, USER, l->user, hints->channel, before[17]);
   s->last = conic_laz_symbol(&l->streams[USER], &s->models[s->last >> 2], 256);
   record[17] = (unsigned char)s->last;
 }
 
-static number_state *number_state_of(number_state *states, unsigned channel, const unsigned char *before) {
-  number_state *s = &states[channel];
-  if (!s->is_used) {
-    memset(s, 0, sizeof *s);
-    s->is_used = 1;
-    for (int i = 0; i < 8; i++)
-      s->last[i] = conic_load_16(before);
-  }
-  return s;
-}
-
 static void read_intensity(conic_laz_layered *l, const point_hints *hints, const unsigned char *before,
                            unsigned char *record) {
-  number_state *s = number_state_of(l->intensity, hints->channel, before + 12);
+  number_state *s = number_state_of(l, INTENSITY, l->intensity, hints->channel, conic_load_16(before + 12));
   unsigned ends = ends_of_record(record), kind = (ends & 1) << 1 | ends >> 1, which = kind << 1 | hints->has_new_time;
   s->last[which] = conic_laz_integer_16(&l->streams[INTENSITY], &s->off, s->last[which], kind);
   conic_store_bits(record + 12, 2, s->last[which]);
@@ -393,7 +351,7 @@ static void read_intensity(conic_laz_layered *l, const point_hints *hints, const
 
 static void read_angle(conic_laz_layered *l, const point_hints *hints, const unsigned char *before,
                        unsigned char *record) {
-  number_state *s = number_state_of(l->angle, hints->channel, before + 18);
+  number_state *s = number_state_of(l, ANGLE, l->angle, hints->channel, conic_load_16(before + 18));
   if (hints->has_new_angle)
     s->last[0] = conic_laz_integer_16(&l->streams[ANGLE], &s->off, s->last[0], hints->has_new_time);
   conic_store_bits(record + 18, 2, s->last[0]);
@@ -401,40 +359,41 @@ static void read_angle(conic_laz_layered *l, const point_hints *hints, const uns
 
 static void read_source(conic_laz_layered *l, const point_hints *hints, const unsigned char *before,
                         unsigned char *record) {
-  number_state *s = number_state_of(l->source, hints->channel, before + 20);
+  number_state *s = number_state_of(l, SOURCE, l->source, hints->channel, conic_load_16(before + 20));
   if (hints->has_new_source)
     s->last[0] = conic_laz_integer_16(&l->streams[SOURCE], &s->off, s->last[0], 0);
   conic_store_bits(record + 20, 2, s->last[0]);
 }
 
-static time_state *time_state_of(time_state *states, unsigned channel, const unsigned char *before) {
-  time_state *s = &states[channel];
-  if (!s->is_used) {
-    memset(s, 0, sizeof *s);
-    s->is_used = 1;
-    conic_laz_times_begin(&s->times, conic_load_64(before + 22));
+static conic_laz_times *times_of(conic_laz_layered *l, unsigned channel, const unsigned char *before) {
+  conic_laz_times *times = &l->times[channel];
+  if (begins_channel(l, TIME, channel)) {
+    memset(times, 0, sizeof *times);
+    conic_laz_times_begin(times, conic_load_64(before + 22));
   }
-  return s;
+  return times;
 }
 
 static void read_time_layer(conic_laz_layered *l, const point_hints *hints, const unsigned char *before,
                             unsigned char *record) {
-  time_state *s = time_state_of(l->time, hints->channel, before);
-  uint64_t time = hints->has_new_time ? conic_laz_time(&l->streams[TIME], &s->times, 0) : s->times.time[s->times.last];
+  conic_laz_times *times = times_of(l, hints->channel, before);
+  uint64_t time = hints->has_new_time ? conic_laz_time(&l->streams[TIME], times, 0) : times->time[times->last];
   conic_store_64(record + 22, time);
 }
 
 /* The first point starts its channel, whenever that channel's next point comes. */
 static void begin_channel(conic_laz_layered *l) {
   const unsigned char *first = l->first;
-  z_state_of(l->z, l->channel, first);
-  byte_state_of(l->class, l->channel, first[16]);
-  byte_state_of(l->flags, l->channel, flags_of(first[15]));
-  byte_state_of(l->user, l->channel, first[17]);
-  number_state_of(l->intensity, l->channel, first + 12);
-  number_state_of(l->angle, l->channel, first + 18);
-  number_state_of(l->source, l->channel, first + 20);
-  time_state_of(l->time, l->channel, first);
+  begins_channel(l, XY, l->channel);
+  begin_xy(&l->xy[l->channel], conic_load_32(first), conic_load_32(first + 4), first[14]);
+  number_state_of(l, Z, l->z, l->channel, conic_load_32(first + 8));
+  byte_state_of(l, CLASS, l->class, l->channel, first[16]);
+  byte_state_of(l, FLAGS, l->flags, l->channel, flags_of(first[15]));
+  byte_state_of(l, USER, l->user, l->channel, first[17]);
+  number_state_of(l, INTENSITY, l->intensity, l->channel, conic_load_16(first + 12));
+  number_state_of(l, ANGLE, l->angle, l->channel, conic_load_16(first + 18));
+  number_state_of(l, SOURCE, l->source, l->channel, conic_load_16(first + 20));
+  times_of(l, l->channel, first);
 }
 
 typedef void layer_reader(conic_laz_layered *l, const point_hints *hints, const unsigned char *before,
@@ -459,48 +418,49 @@ static unsigned take_turn(item_turn *turn, unsigned channel, unsigned version, u
   return version == 4 ? channel : before;
 }
 
+/* The item of the point before, which the next one takes the place of. */
+static inline unsigned char *turn_item(conic_laz_layered *l, int layer, unsigned channel, unsigned version) {
+  unsigned char(*last)[CONIC_LAZ_WAVE_BYTES] = l->last_items[layer - COLOR];
+  unsigned from, which = take_turn(&l->turns[layer - COLOR], channel, version, &from);
+  if (from != channel)
+    memcpy(last[channel], last[from], item_bytes[layer - COLOR]);
+  return last[which];
+}
+
 static void read_color_layer(conic_laz_layered *l, const point_hints *hints, const unsigned char *before,
                              unsigned char *record) {
-  unsigned from, which = take_turn(&l->color_turn, hints->item_channel, l->format->color_version, &from);
+  unsigned char *last = turn_item(l, COLOR, hints->item_channel, l->format->color_version);
   (void)before;
-  if (from != hints->item_channel)
-    memcpy(l->last_color[hints->item_channel], l->last_color[from], 6);
-  conic_laz_color(&l->streams[COLOR], &l->colors[hints->item_channel], l->last_color[which], l->last_color[which]);
-  memcpy(record + POINT_BYTES, l->last_color[which], 6);
+  conic_laz_color(&l->streams[COLOR], &l->colors[hints->item_channel], last, last);
+  memcpy(record + item_place(l->format, COLOR), last, 6);
 }
 
 static void read_nir_layer(conic_laz_layered *l, const point_hints *hints, const unsigned char *before,
                            unsigned char *record) {
-  unsigned from, which = take_turn(&l->nir_turn, hints->item_channel, l->format->color_version, &from);
+  unsigned char *last = turn_item(l, NIR, hints->item_channel, l->format->color_version);
   (void)before;
-  if (from != hints->item_channel)
-    memcpy(l->last_nir[hints->item_channel], l->last_nir[from], 2);
-  conic_laz_nir(&l->streams[NIR], &l->nirs[hints->item_channel], l->last_nir[which], l->last_nir[which]);
-  memcpy(record + POINT_BYTES + 6, l->last_nir[which], 2);
+  conic_laz_nir(&l->streams[NIR], &l->nirs[hints->item_channel], last, last);
+  memcpy(record + item_place(l->format, NIR), last, 2);
 }
 
 static void read_wave_layer(conic_laz_layered *l, const point_hints *hints, const unsigned char *before,
                             unsigned char *record) {
-  const conic_laz_format *format = l->format;
-  unsigned from, which = take_turn(&l->wave_turn, hints->item_channel, format->wave_version, &from);
+  unsigned char *last = turn_item(l, WAVE, hints->item_channel, l->format->wave_version);
   (void)before;
-  if (from != hints->item_channel)
-    memcpy(l->last_wave[hints->item_channel], l->last_wave[from], CONIC_LAZ_WAVE_BYTES);
-  conic_laz_wave(&l->streams[WAVE], &l->waves[hints->item_channel], l->last_wave[which], l->last_wave[which]);
-  memcpy(record + format->point_bytes - format->n_extra - CONIC_LAZ_WAVE_BYTES, l->last_wave[which],
-         CONIC_LAZ_WAVE_BYTES);
+  conic_laz_wave(&l->streams[WAVE], &l->waves[hints->item_channel], last, last);
+  memcpy(record + item_place(l->format, WAVE), last, CONIC_LAZ_WAVE_BYTES);
 }
 
 /* Reads one extra byte of n points. The turns of channels are the same for all extra bytes. */
 static void read_extra_layer(conic_laz_layered *l, size_t i_extra, item_turn turn, size_t n, unsigned char *byte) {
   const conic_laz_format *format = l->format;
-  conic_laz_stream *stream = &l->extra_streams[i_extra];
-  unsigned char *last = l->extra_last[i_extra];
+  extra_byte *extra = &l->extra[i_extra];
+  unsigned char *last = extra->last;
   for (size_t i = 0; i < n; i++, byte += format->point_bytes) {
     unsigned channel = l->hints[i].item_channel, from, which = take_turn(&turn, channel, format->extra_version, &from);
     if (from != channel)
       last[channel] = last[from];
-    last[which] = (unsigned char)(last[which] + conic_laz_symbol(stream, &l->extra_models[i_extra][channel], 256));
+    last[which] = (unsigned char)(last[which] + conic_laz_symbol(&extra->stream, &extra->models[channel], 256));
     *byte = last[which];
   }
 }
@@ -521,9 +481,9 @@ static void read_extra_layers(conic_laz_layered *l, size_t n, unsigned char *rec
   for (size_t i = 0; i < n; i++)
     take_turn(&l->extra_turn, l->hints[i].item_channel, format->extra_version, &from);
   for (size_t i = 0; i < format->n_extra; i++)
-    if (l->extra_streams[i].length) {
+    if (l->extra[i].stream.length) {
       read_extra_layer(l, i, before, n, records + format->point_bytes - format->n_extra + i);
-      l->is_spoiled |= l->extra_streams[i].is_spoiled;
+      l->is_spoiled |= l->extra[i].stream.is_spoiled;
     }
 }
 
@@ -577,8 +537,7 @@ conic_status conic_laz_layered_begin(conic_laz_layered *l, const conic_laz_forma
     status = find_layers(l, wanted, bytes, n_bytes);
   if (status != CONIC_OK)
     return status;
-  mark_unused(l);
-  begin_xy(&l->xy[l->channel], conic_load_32(first), conic_load_32(first + 4), first[14]);
+  memset(l->is_used, 0, sizeof l->is_used);
   begin_channel(l);
   begin_items(l);
   return CONIC_OK;

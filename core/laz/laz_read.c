@@ -23,7 +23,6 @@ enum {
 typedef struct packed_bytes {
   conic_input *input;
   unsigned char *held; /* of a pipe: all bytes from `start` on */
-  size_t room;
   uint64_t start, end; /* offsets in the file: where the points begin, and where the file ends */
 } packed_bytes;
 
@@ -49,23 +48,10 @@ typedef struct laz_reading {
 /* --- bytes --- */
 
 static conic_status hold_pipe(packed_bytes *from) {
-  conic_input *input = from->input;
-  size_t n_held = 0;
-  for (;;) {
-    conic_status status = conic_input_fill(input, CONIC_INPUT_WINDOW);
-    size_t n = conic_input_available(input);
-    if (status == CONIC_OK && n > from->room - n_held)
-      status = conic_memory_reserve(input->context, &from->held, n_held, n_held + n, &from->room, 1);
-    if (status != CONIC_OK)
-      return status;
-    if (n == 0)
-      break;
-    memcpy(from->held + n_held, conic_input_bytes(input), n);
-    n_held += n;
-    input->next += n;
-  }
+  size_t n_held;
+  conic_status status = conic_input_take_rest(from->input, SIZE_MAX, &from->held, &n_held);
   from->end = from->start + n_held;
-  return CONIC_OK;
+  return status;
 }
 
 static uint64_t bytes_after(const packed_bytes *from, uint64_t offset) {

@@ -5,14 +5,14 @@
 #include "core/laz/laz_fields.h"
 #include "core/laz/laz_points.h"
 
-enum { POINT_BYTES = 20, MOST_EXTRA = 65536, CORE_BYTES = 63 };
+enum { POINT_BYTES = 20 };
 
 /* State after the previous point, and the models of the next one's changes. */
 struct conic_laz_serial {
   conic_context *context;
   const conic_laz_format *format;
   conic_laz_stream stream;
-  unsigned char *last; /* the previous record, with room before the extra bytes */
+  unsigned char last[65536]; /* the previous record */
   conic_laz_model *extra;
   size_t extra_room;
   int has_times, has_colors, has_waves;
@@ -33,18 +33,12 @@ conic_status conic_laz_serial_create(conic_context *context, conic_laz_serial **
   if (!*serial)
     return CONIC_ERROR_MEMORY;
   (*serial)->context = context;
-  (*serial)->last = conic_memory_allocate(context, MOST_EXTRA, 1);
-  if ((*serial)->last)
-    return CONIC_OK;
-  conic_memory_release(context, *serial);
-  *serial = NULL;
-  return CONIC_ERROR_MEMORY;
+  return CONIC_OK;
 }
 
 void conic_laz_serial_destroy(conic_context *context, conic_laz_serial *serial) {
-  if (!serial)
-    return;
-  conic_memory_release_these(context, serial->extra, serial->last, serial);
+  if (serial)
+    conic_memory_release_these(context, serial->extra, serial);
 }
 
 conic_status conic_laz_serial_begin(conic_laz_serial *serial, const conic_laz_format *format, conic_laz_arena *arena,
