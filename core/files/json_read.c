@@ -10,46 +10,35 @@
 
 static const size_t largest_file = 16u << 20;
 
-static conic_status read_all(conic_json *json, conic_input *input) {
-  size_t n = 0, capacity = 0;
-  for (;;) {
-    conic_status status = conic_input_fill(input, 1);
-    size_t available = conic_input_available(input);
-    if (status != CONIC_OK)
-      return status;
-    if (n + available > largest_file)
-      return conic_fail(json->context, CONIC_ERROR_INPUT, "%s: too long for such a file (at byte %zu)", json->name, n);
-    if (n + available >= capacity) {
-      capacity = 2 * (n + available) + 4096;
-      status = conic_memory_grow(json->context, &json->text, n, capacity, 1);
-      if (status != CONIC_OK)
-        return status;
-    }
-    if (available == 0)
-      break;
-    memcpy(json->text + n, conic_input_bytes(input), available);
-    n += available;
-    input->next += available;
-  }
+static void begin_json(conic_context *context, const char *name, conic_json *json) {
+  memset(json, 0, sizeof *json);
+  json->context = context;
+  json->name = name;
+  json->line = 1;
+}
+
+/* From the start of its text, of n bytes. */
+static conic_status begin_reading(conic_json *json, size_t n) {
   if (n == 0)
     return conic_fail(json->context, CONIC_ERROR_INPUT, "%s: the file is empty (line 1)", json->name);
-  json->next = json->text;
-  json->end = json->text + n;
+  json->next = (const char *)json->text;
+  json->end = json->next + n;
   return CONIC_OK;
 }
 
 conic_status conic_json_open(conic_context *context, const char *path, conic_json *json) {
   conic_input input;
-  memset(json, 0, sizeof *json);
-  json->context = context;
-  json->line = 1;
+  size_t n = 0;
+  begin_json(context, path, json);
   conic_status status = conic_input_open(context, path, &input);
   if (status != CONIC_OK)
     return status;
   json->name = input.name;
   status = conic_input_skip_mark(&input);
   if (status == CONIC_OK)
-    status = read_all(json, &input);
+    status = conic_input_take_rest(&input, largest_file, &json->text, &n);
+  if (status == CONIC_OK)
+    status = begin_reading(json, n);
   conic_input_close(&input);
   if (status != CONIC_OK)
     conic_json_close(json);
@@ -58,19 +47,16 @@ conic_status conic_json_open(conic_context *context, const char *path, conic_jso
 
 conic_status conic_json_take(conic_context *context, const char *name, const void *bytes, size_t n_bytes,
                              conic_json *json) {
-  memset(json, 0, sizeof *json);
-  json->context = context;
-  json->name = name;
-  json->line = 1;
-  if (n_bytes == 0)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file is empty (line 1)", name);
+  begin_json(context, name, json);
   json->text = conic_memory_allocate(context, n_bytes, 1);
   if (!json->text)
     return CONIC_ERROR_MEMORY;
-  memcpy(json->text, bytes, n_bytes);
-  json->next = json->text;
-  json->end = json->text + n_bytes;
-  return CONIC_OK;
+  if (n_bytes > 0)
+    memcpy(json->text, bytes, n_bytes);
+  conic_status status = begin_reading(json, n_bytes);
+  if (status != CONIC_OK)
+    conic_json_close(json);
+  return status;
 }
 
 void conic_json_close(conic_json *json) {

@@ -13,7 +13,7 @@ enum { CONIC_JSON_DEPTH = 64, CONIC_JSON_KEY_ROOM = 64 };
 typedef struct conic_json {
   conic_context *context;
   const char *name; /* of the file, for messages */
-  char *text;
+  unsigned char *text;
   const char *next, *end;
   uint64_t line;
   int depth;

@@ -3,66 +3,35 @@
 #include <errno.h>
 #include <stdint.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "core/base/byte_order.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/disk.h"
-#include "core/files/guard.h"
+#include "core/files/input.h"
 
-/* Reads a file that cannot be mapped to its end. */
-static conic_status read_all(conic_context *context, const char *name, int descriptor, conic_mapping *mapping) {
-  size_t room = 0;
-  for (;;) {
-    if (mapping->n_bytes == room) {
-      room = 2 * room + 65536;
-      conic_status status = conic_memory_grow(context, &mapping->bytes, mapping->n_bytes, room, 1);
-      if (status != CONIC_OK)
-        return status;
-    }
-    ptrdiff_t n = conic_disk_read(descriptor, mapping->bytes + mapping->n_bytes, room - mapping->n_bytes);
-    if (n == 0)
-      return CONIC_OK;
-    if (n < 0 && errno == EINTR && conic_progress(context, "read", 0.0) != CONIC_OK)
-      return CONIC_ERROR_CANCELLED;
-    if (n < 0 && errno != EINTR)
-      return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s (at byte %zu)", name, strerror(errno),
-                        mapping->n_bytes);
-    mapping->n_bytes += n > 0 ? (size_t)n : 0;
-  }
-}
-
-static conic_status map(conic_context *context, const char *name, int descriptor, conic_mapping *mapping) {
-  conic_disk_entry found;
-  if (!conic_disk_look_at(descriptor, &found))
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", name, strerror(errno));
-  if (found.is_folder)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: it is a directory", name);
-  conic_status status = conic_guard_note(context, name, &found);
-  if (status != CONIC_OK)
-    return status;
-  if (!found.is_file || found.n_bytes == 0)
-    return read_all(context, name, descriptor, mapping);
-  void *bytes = found.n_bytes <= SIZE_MAX ? conic_disk_map(descriptor, (size_t)found.n_bytes) : NULL;
+/* A regular file is mapped; what is none, or is empty, is read to its end. */
+static conic_status map_or_read(conic_input *input, conic_mapping *mapping) {
+  const uint64_t n_bytes = input->start_bytes + input->size_bytes;
+  if (!input->has_size || n_bytes == 0)
+    return conic_input_take_rest(input, SIZE_MAX, &mapping->bytes, &mapping->n_bytes);
+  void *bytes = n_bytes <= SIZE_MAX ? conic_disk_map(input->descriptor, (size_t)n_bytes) : NULL;
   if (!bytes)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot map: %s", name, strerror(errno));
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot map: %s", input->name, strerror(errno));
   mapping->bytes = bytes;
-  mapping->n_bytes = (size_t)found.n_bytes;
+  mapping->n_bytes = (size_t)n_bytes;
   mapping->is_mapped = 1;
   return CONIC_OK;
 }
 
 conic_status conic_mapping_open(conic_context *context, const char *path, conic_mapping *mapping) {
-  int is_standard = strcmp(path, "-") == 0;
-  const char *name = is_standard ? "standard input" : path;
+  conic_input input;
   memset(mapping, 0, sizeof *mapping);
-  int descriptor = is_standard ? STDIN_FILENO : conic_disk_open(path);
-  if (descriptor < 0)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
-  conic_status status = map(context, name, descriptor, mapping);
-  if (!is_standard)
-    close(descriptor);
+  conic_status status = conic_input_open(context, path, &input);
+  if (status != CONIC_OK)
+    return status;
+  status = map_or_read(&input, mapping);
+  conic_input_close(&input);
   if (status != CONIC_OK)
     conic_mapping_close(context, mapping);
   return status;
