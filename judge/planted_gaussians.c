@@ -146,8 +146,7 @@ typedef struct planted_job {
   conic_view_rays rays;
   uint32_t *grid; /* how many blocks of 16 × 16 above and to the left have samples */
   size_t grid_width, grid_height;
-  kept_room *rooms; /* one for each thread */
-  conic_kept_gaussian *all;
+  kept_room *rooms;                 /* one for each thread */
   conic_composite_scratch *scratch; /* one for each thread */
 } planted_job;
 

@@ -44,34 +44,12 @@ static conic_status append_block(vertex_reader *reader, size_t n) {
   return status == CONIC_OK ? conic_builder_deliver(reader->builder, 0) : status;
 }
 
-/* Reads the next rows, up to before `end`, straight from the window into the block. */
-static conic_status read_ply_block(vertex_reader *reader, uint64_t end, size_t *n_rows) {
-  conic_ply_source *source = reader->source;
-  conic_input *input = source->input;
-  size_t row_bytes = source->element->least_row_bytes;
-  uint64_t left = end - source->i_row;
-  conic_status status = conic_input_fill(input, row_bytes);
-  size_t n = conic_input_available(input) / row_bytes;
-  if (status != CONIC_OK)
-    return status;
-  if (n == 0)
-    return conic_ply_truncated(source);
-  n = n < CONIC_PLY_BLOCK ? n : CONIC_PLY_BLOCK;
-  n = n < left ? n : (size_t)left;
-  for (int column = 0; column < CONIC_PLY_N_COLUMNS; column++) {
-    int i_property = reader->layout.property[column];
-    if (i_property >= 0)
-      conic_ply_convert(conic_input_bytes(input) + reader->properties[i_property].row_offset, row_bytes, n,
-                        reader->layout.type[column], source->format, reader->block[column]);
-  }
-  *n_rows = n;
-  return CONIC_OK;
-}
-
-static void pass_ply_block(const vertex_reader *reader, size_t n) {
-  conic_ply_source *source = reader->source;
-  source->input->next += n * source->element->least_row_bytes;
-  source->i_row += n;
+/* Reads the next rows, up to before `end`, into the block. */
+static conic_status read_ply_block(vertex_reader *reader, uint64_t end, size_t *n) {
+  uint64_t left = end - reader->source->i_row;
+  *n = left < CONIC_PLY_BLOCK ? (size_t)left : CONIC_PLY_BLOCK;
+  return conic_ply_read_rows(reader->source, reader->properties, reader->layout.property, CONIC_PLY_N_COLUMNS,
+                             CONIC_PLY_BLOCK, n, (double *)reader->block);
 }
 
 /* Skips rows that are not wanted; their first finite position is still the origin. */
@@ -87,7 +65,6 @@ static conic_status pass_rows(vertex_reader *reader, uint64_t end) {
     if (status != CONIC_OK)
       return status;
     conic_ply_layout_convert(&reader->layout, (const double(*)[CONIC_PLY_BLOCK])reader->block, n, 0, points);
-    pass_ply_block(reader, n);
   }
   uint64_t n_bytes = (end - source->i_row) * source->element->least_row_bytes, skipped;
   status = conic_input_skip(source->input, n_bytes, &skipped);
@@ -111,7 +88,6 @@ static conic_status read_blocks(vertex_reader *reader) {
     status = read_ply_block(reader, range.end, &n);
     if (status == CONIC_OK)
       status = append_block(reader, n);
-    pass_ply_block(reader, n);
   }
   return status;
 }
@@ -192,11 +168,6 @@ static conic_status read_rows(vertex_reader *reader) {
   return status;
 }
 
-/* Whether the number of a row tells its place. */
-static int is_plain(conic_ply_format format, const conic_ply_element *element) {
-  return format != CONIC_PLY_TEXT && !element->has_lists && element->least_row_bytes <= CONIC_INPUT_WINDOW;
-}
-
 static conic_status read_vertices(vertex_reader *reader) {
   const conic_ply_source *source = reader->source;
   const conic_ply_element *element = source->element;
@@ -207,7 +178,7 @@ static conic_status read_vertices(vertex_reader *reader) {
     status = conic_builder_reserve_points_exactly(reader->builder, (size_t)element->count);
   if (status != CONIC_OK)
     return status;
-  return is_plain(source->format, element) ? read_blocks(reader) : read_rows(reader);
+  return conic_ply_is_plain(source->format, element) ? read_blocks(reader) : read_rows(reader);
 }
 
 /* Elements are in the header's order; unknown ones are skipped. */
@@ -297,7 +268,7 @@ conic_status conic_ply_look(conic_input *input, const conic_read_options *option
   if (status != CONIC_OK)
     return status;
   const conic_ply_element *vertices = conic_ply_find_element(&header, "vertex");
-  if (vertices && vertices->count <= CONIC_MAX_POINTS && is_plain(header.format, vertices)) {
+  if (vertices && vertices->count <= CONIC_MAX_POINTS && conic_ply_is_plain(header.format, vertices)) {
     status = conic_ply_layout_find(input, &header, vertices, options, 0, &layout);
     *shape = (conic_model_shape){.can_part = status == CONIC_OK,
                                  .is_raw = !(layout.fields & (CONIC_SPLATS_TANGENTS | CONIC_SPLATS_NORMALS)),

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/byte_order.h"
+#include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/number.h"
 
@@ -155,10 +156,16 @@ conic_status conic_ply_skip_values(conic_ply_source *source, conic_ply_type type
   return CONIC_OK;
 }
 
-static conic_status skip_row(conic_ply_source *source, const conic_ply_property *properties) {
+/* Each property's value goes to row i_row of its column; `columns` null, or a column null: it is passed over. */
+static conic_status read_row(conic_ply_source *source, const conic_ply_property *properties, double *const *columns,
+                             size_t i_row) {
   conic_status status = conic_ply_begin_row(source);
   for (size_t i = 0; status == CONIC_OK && i < source->element->n_properties; i++) {
     uint64_t count = 1;
+    if (columns && columns[i]) {
+      status = conic_ply_read_value(source, properties[i].type, &columns[i][i_row]);
+      continue;
+    }
     if (properties[i].is_list)
       status = conic_ply_read_list_length(source, &properties[i], &count);
     if (status == CONIC_OK)
@@ -173,7 +180,7 @@ conic_status conic_ply_skip_element(conic_ply_source *source, const conic_ply_he
   if (element->n_properties == 0)
     return CONIC_OK;
   for (uint64_t i = 0; status == CONIC_OK && i < element->count; i++)
-    status = skip_row(source, header->properties + element->first_property);
+    status = read_row(source, header->properties + element->first_property, NULL, 0);
   return status;
 }
 
@@ -237,4 +244,47 @@ void conic_ply_convert(const unsigned char *bytes, size_t stride, size_t n, coni
     convert_doubles(bytes, stride, n, is_big, values);
   else
     convert_integers(bytes, stride, n, type, is_big, values);
+}
+
+int conic_ply_is_plain(conic_ply_format format, const conic_ply_element *element) {
+  return format != CONIC_PLY_TEXT && !element->has_lists && element->least_row_bytes <= CONIC_INPUT_WINDOW;
+}
+
+/* Column by column, straight from the window. */
+static conic_status read_plain_rows(conic_ply_source *source, const conic_ply_property *properties, const int *columns,
+                                    int n_columns, size_t stride, size_t *n, double *values) {
+  conic_input *input = source->input;
+  size_t row_bytes = source->element->least_row_bytes;
+  conic_status status = conic_input_fill(input, row_bytes);
+  size_t n_there = conic_input_available(input) / row_bytes;
+  if (status != CONIC_OK)
+    return status;
+  if (n_there == 0)
+    return conic_ply_truncated(source);
+  *n = n_there < *n ? n_there : *n;
+  for (int k = 0; k < n_columns; k++)
+    if (columns[k] >= 0)
+      conic_ply_convert(conic_input_bytes(input) + properties[columns[k]].row_offset, row_bytes, *n,
+                        properties[columns[k]].type, source->format, values + (size_t)k * stride);
+  input->next += *n * row_bytes;
+  source->i_row += *n;
+  return CONIC_OK;
+}
+
+conic_status conic_ply_read_rows(conic_ply_source *source, const conic_ply_property *properties, const int *columns,
+                                 int n_columns, size_t stride, size_t *n, double *values) {
+  const conic_ply_element *element = source->element;
+  *n = *n < stride ? *n : stride;
+  if (conic_ply_is_plain(source->format, element))
+    return read_plain_rows(source, properties, columns, n_columns, stride, n, values);
+  double **of_properties =
+      conic_memory_allocate_zeroed(source->input->context, element->n_properties, sizeof *of_properties);
+  conic_status status = of_properties ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (int k = 0; status == CONIC_OK && k < n_columns; k++)
+    if (columns[k] >= 0)
+      of_properties[columns[k]] = values + (size_t)k * stride;
+  for (size_t i = 0; status == CONIC_OK && i < *n; i++)
+    status = read_row(source, properties, of_properties, i);
+  conic_memory_release(source->input->context, of_properties);
+  return status;
 }

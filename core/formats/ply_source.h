@@ -30,6 +30,15 @@ conic_status conic_ply_skip_values(conic_ply_source *source, conic_ply_type type
 /* Passes over a whole element. Errors: INPUT, CANCELLED. */
 conic_status conic_ply_skip_element(conic_ply_source *source, const conic_ply_header *header);
 
+/* Whether the number of a row tells its place: rows are binary, and of one size. */
+int conic_ply_is_plain(conic_ply_format format, const conic_ply_element *element);
+
+/* Reads the next *n rows of the element, whose properties these are, or as many as are there at once: *n becomes their
+ * number. Column k is of the property columns[k], which is no list and stands in one column alone; below 0: it stays as
+ * it is. Its values, at most `stride`, begin at values[k × stride]. Errors: INPUT, MEMORY, CANCELLED. */
+conic_status conic_ply_read_rows(conic_ply_source *source, const conic_ply_property *properties, const int *columns,
+                                 int n_columns, size_t stride, size_t *n, double *values);
+
 /* Values of one type, `stride` bytes apart, as doubles. */
 void conic_ply_convert(const unsigned char *bytes, size_t stride, size_t n, conic_ply_type type,
                        conic_ply_format format, double *values);

@@ -50,41 +50,9 @@ static void find_packed_columns(const compressed_reader *reader, const char *con
     columns[i] = conic_ply_find_property(reader->header, reader->source.element, names[i]);
 }
 
-/* The next *n rows' values of `columns`, or of as many rows as the window holds; 0 where there is no such column. */
-static conic_status read_packed_rows(compressed_reader *reader, const int *columns, int n_columns, size_t *n,
-                                     packed_block block) {
-  conic_ply_source *source = &reader->source;
-  const conic_ply_property *properties = reader->header->properties + source->element->first_property;
-  conic_input *input = source->input;
-  size_t row_bytes = source->element->least_row_bytes;
-  conic_status status = CONIC_OK;
-  *n = *n < BLOCK ? *n : BLOCK;
-  memset(block, 0, (size_t)n_columns * sizeof *block);
-  if (source->format == CONIC_PLY_TEXT || row_bytes > CONIC_INPUT_WINDOW) {
-    *n = 1;
-    status = conic_ply_begin_row(source);
-    for (size_t k = 0; status == CONIC_OK && k < source->element->n_properties; k++) {
-      double value = 0.0;
-      status = conic_ply_read_value(source, properties[k].type, &value);
-      for (int i = 0; i < n_columns; i++)
-        if (columns[i] == (int)k)
-          block[i][0] = value;
-    }
-    return status == CONIC_OK ? conic_ply_end_row(source) : status;
-  }
-  status = conic_input_fill(input, row_bytes);
-  if (status != CONIC_OK)
-    return status;
-  if (conic_input_available(input) < row_bytes)
-    return conic_ply_truncated(source);
-  *n = conic_input_available(input) / row_bytes < *n ? conic_input_available(input) / row_bytes : *n;
-  for (int i = 0; i < n_columns; i++)
-    if (columns[i] >= 0)
-      conic_ply_convert(conic_input_bytes(input) + properties[columns[i]].row_offset, row_bytes, *n,
-                        properties[columns[i]].type, source->format, block[i]);
-  input->next += *n * row_bytes;
-  source->i_row += *n;
-  return CONIC_OK;
+static conic_status read_packed_rows(compressed_reader *reader, const int *columns, int n_columns, size_t *n) {
+  const conic_ply_property *properties = reader->header->properties + reader->source.element->first_property;
+  return conic_ply_read_rows(&reader->source, properties, columns, n_columns, BLOCK, n, (double *)reader->block);
 }
 
 static conic_status read_boxes(compressed_reader *reader) {
@@ -93,8 +61,8 @@ static conic_status read_boxes(compressed_reader *reader) {
   find_packed_columns(reader, bound_names, N_BOUNDS, columns);
   for (size_t done = 0, n; status == CONIC_OK && done < reader->n_chunks; done += n) {
     n = reader->n_chunks - done;
-    status = read_packed_rows(reader, columns, N_BOUNDS, &n, reader->block);
-    for (size_t i = 0; i < n; i++)
+    status = read_packed_rows(reader, columns, N_BOUNDS, &n);
+    for (size_t i = 0; status == CONIC_OK && i < n; i++)
       for (int k = 0; k < N_BOUNDS; k++)
         reader->chunks[done + i][k] = columns[k] >= 0 ? (float)reader->block[k][i] : k < 15 ? 0.0f : 1.0f;
   }
@@ -147,7 +115,7 @@ static conic_status read_packed(compressed_reader *reader) {
   find_packed_columns(reader, packed_names, 4, columns);
   for (size_t done = 0, n; status == CONIC_OK && done < reader->gaussians->count; done += n) {
     n = reader->gaussians->count - done;
-    status = read_packed_rows(reader, columns, 4, &n, reader->block);
+    status = read_packed_rows(reader, columns, 4, &n);
     for (size_t i = 0; status == CONIC_OK && i < n; i++) {
       uint32_t packed[4];
       for (int k = 0; k < 4; k++)
@@ -172,7 +140,7 @@ static conic_status read_harmonics(compressed_reader *reader, size_t n_of_file) 
   }
   for (size_t done = 0, n; status == CONIC_OK && done < gaussians->count; done += n) {
     n = gaussians->count - done;
-    status = read_packed_rows(reader, columns, (int)n_of_file, &n, reader->block);
+    status = read_packed_rows(reader, columns, (int)n_of_file, &n);
     for (size_t i = 0; status == CONIC_OK && i < n; i++)
       for (size_t k = 0; k < 3 * n_kept; k++) {
         double code = reader->block[k % 3 * (n_of_file / 3) + k / 3][i];

@@ -300,9 +300,6 @@ void conic_gltf_release(conic_gltf_reader *reader) {
   }
   if (reader->json.context)
     conic_json_close(&reader->json);
-  conic_memory_release(context, reader->views);
-  conic_memory_release(context, reader->accessors);
-  conic_memory_release(context, reader->primitives);
-  conic_memory_release(context, reader->nodes);
-  conic_memory_release(context, reader->children);
+  conic_memory_release_these(context, reader->views, reader->accessors, reader->primitives, reader->nodes,
+                             reader->children);
 }

@@ -14,7 +14,7 @@
 typedef struct gltf_numbers {
   const unsigned char *bytes;
   size_t stride, count;
-  int n_components, type, is_normalized;
+  int type, is_normalized;
 } gltf_numbers;
 
 enum { INT8 = 5120, UINT8 = 5121, INT16 = 5122, UINT16 = 5123, FLOAT = 5126 };
@@ -45,11 +45,7 @@ static conic_status find_numbers(const conic_gltf_reader *reader, double i_acces
         end <= (double)buffer->n_bytes) ||
       stride < item)
     return conic_gltf_wrong(reader, "an accessor of Gaussians reaches past the end of its buffer");
-  *numbers = (gltf_numbers){buffer->bytes ? buffer->bytes + (size_t)start : NULL,
-                            stride,
-                            (size_t)count,
-                            accessor->n_components,
-                            type,
+  *numbers = (gltf_numbers){buffer->bytes ? buffer->bytes + (size_t)start : NULL, stride, (size_t)count, type,
                             accessor->is_normalized};
   return CONIC_OK;
 }

@@ -15,7 +15,6 @@ enum { BLOCK = 128, MOST_TARGETS = 24 + CONIC_MOST_HARMONICS };
 
 /* A property of the file, and where its values go. */
 typedef struct ply_target {
-  int i_property;
   float **column;  /* or */
   int i_harmonic;  /* a number of each Gaussian's harmonics; -1: a column */
   int origin_axis; /* of a position that has an origin; -1: none */
@@ -27,6 +26,7 @@ typedef struct gaussian_reader {
   const conic_ply_property *properties;
   conic_gaussians *gaussians;
   ply_target targets[MOST_TARGETS];
+  int columns[MOST_TARGETS]; /* the targets' properties */
   int n_targets;
   float *filter; /* column of Mip-Splatting's filter_3D; null: none */
   size_t room;
@@ -54,8 +54,10 @@ int conic_ply_has_gaussians(const conic_ply_header *header) {
 
 static void add_target(gaussian_reader *reader, const char *name, float **column, int i_harmonic) {
   int i = find_single(reader->header, reader->source->element, name);
-  if (i >= 0)
-    reader->targets[reader->n_targets++] = (ply_target){i, column, i_harmonic, -1};
+  if (i < 0)
+    return;
+  reader->columns[reader->n_targets] = i;
+  reader->targets[reader->n_targets++] = (ply_target){column, i_harmonic, -1};
 }
 
 /* The degree that the columns f_rest_0 … are of; -1 after a message. */
@@ -93,7 +95,7 @@ static void find_harmonics(gaussian_reader *reader, int file_degree) {
 static int has_wide_positions(const gaussian_reader *reader) {
   int is_wide = 0;
   for (int axis = 0; axis < 3; axis++) {
-    conic_ply_type type = reader->properties[reader->targets[axis].i_property].type;
+    conic_ply_type type = reader->properties[reader->columns[axis]].type;
     is_wide |= type == CONIC_PLY_DOUBLE || type == CONIC_PLY_INT32 || type == CONIC_PLY_UINT32;
   }
   return is_wide;
@@ -184,71 +186,18 @@ static conic_status make_gaussian_room(gaussian_reader *reader, size_t used) {
   return status;
 }
 
-/* Binary rows without lists: property by property, straight from the window. */
-static conic_status read_block(gaussian_reader *reader, size_t *n) {
-  conic_ply_source *source = reader->source;
-  conic_input *input = source->input;
-  size_t row_bytes = source->element->least_row_bytes;
-  conic_status status = conic_input_fill(input, row_bytes);
-  size_t n_there = conic_input_available(input) / row_bytes;
-  if (status != CONIC_OK)
-    return status;
-  if (n_there == 0)
-    return conic_ply_truncated(source);
-  *n = n_there < *n ? n_there : *n;
-  for (int t = 0; t < reader->n_targets; t++) {
-    const ply_target *target = &reader->targets[t];
-    const conic_ply_property *property = &reader->properties[target->i_property];
-    conic_ply_convert(conic_input_bytes(input) + property->row_offset, row_bytes, *n, property->type, source->format,
-                      reader->block[t]);
-  }
-  input->next += *n * row_bytes;
-  return CONIC_OK;
-}
-
-static conic_status read_row(gaussian_reader *reader, const int *target_of_property, size_t i) {
-  conic_ply_source *source = reader->source;
-  conic_status status = conic_ply_begin_row(source);
-  for (size_t k = 0; status == CONIC_OK && k < source->element->n_properties; k++) {
-    const conic_ply_property *property = &reader->properties[k];
-    uint64_t n = 1;
-    if (target_of_property[k] >= 0) {
-      status = conic_ply_read_value(source, property->type, &reader->block[target_of_property[k]][i]);
-      continue;
-    }
-    if (property->is_list)
-      status = conic_ply_read_list_length(source, property, &n);
-    if (status == CONIC_OK)
-      status = conic_ply_skip_values(source, property->type, n);
-  }
-  return status == CONIC_OK ? conic_ply_end_row(source) : status;
-}
-
 static conic_status read_gaussian_rows(gaussian_reader *reader) {
-  conic_ply_source *source = reader->source;
-  const conic_ply_element *element = source->element;
-  int is_plain =
-      source->format != CONIC_PLY_TEXT && !element->has_lists && element->least_row_bytes <= CONIC_INPUT_WINDOW;
-  int *target_of_property = conic_memory_allocate(source->input->context, element->n_properties, sizeof(int));
-  conic_status status = target_of_property ? CONIC_OK : CONIC_ERROR_MEMORY;
-  for (size_t k = 0; target_of_property && k < element->n_properties; k++)
-    target_of_property[k] = -1;
-  for (int t = 0; target_of_property && t < reader->n_targets; t++)
-    target_of_property[reader->targets[t].i_property] = t;
-  for (size_t done = 0; status == CONIC_OK && done < element->count;) {
-    size_t left = (size_t)element->count - done, n = left < BLOCK ? left : BLOCK;
+  const size_t count = (size_t)reader->source->element->count;
+  conic_status status = CONIC_OK;
+  for (size_t done = 0, n; status == CONIC_OK && done < count; done += n) {
+    n = count - done;
     status = make_gaussian_room(reader, done);
-    if (status == CONIC_OK && is_plain) {
-      status = read_block(reader, &n);
-      source->i_row += n;
-    } else
-      for (size_t i = 0; status == CONIC_OK && i < n; i++)
-        status = read_row(reader, target_of_property, i);
+    if (status == CONIC_OK)
+      status = conic_ply_read_rows(reader->source, reader->properties, reader->columns, reader->n_targets, BLOCK, &n,
+                                   (double *)reader->block);
     if (status == CONIC_OK)
       store_block(reader, done, n);
-    done += n;
   }
-  conic_memory_release(source->input->context, target_of_property);
   return status;
 }
 

@@ -1,6 +1,7 @@
 /* Gaussian scenes by whatever format: which a file is, and its reader and writer. */
 #include <errno.h>
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "core/base/loan_find.h"
@@ -282,24 +283,6 @@ static conic_status read_scene_bytes(const conic_gaussian_bytes *file, conic_gau
   return status;
 }
 
-/* What else comes through a pipe that has begun. */
-static conic_status read_rest(conic_input *input, conic_mapping *rest) {
-  size_t room = 0;
-  conic_status status = CONIC_OK;
-  while (status == CONIC_OK && conic_input_available(input)) {
-    size_t n = conic_input_available(input);
-    if (rest->n_bytes + n > room)
-      status = conic_memory_reserve(input->context, &rest->bytes, rest->n_bytes, rest->n_bytes + n, &room, 1);
-    if (status != CONIC_OK)
-      break;
-    memcpy(rest->bytes + rest->n_bytes, conic_input_bytes(input), n);
-    rest->n_bytes += n;
-    input->next += n;
-    status = conic_input_fill(input, CONIC_INPUT_WINDOW / 2);
-  }
-  return status;
-}
-
 static conic_status read_input(conic_input *input, const char *path, const conic_gaussians_read_options *options,
                                conic_gaussians *gaussians) {
   conic_gaussian_bytes file = {input->context, input->name, path, NULL, 0, options};
@@ -308,7 +291,8 @@ static conic_status read_input(conic_input *input, const char *path, const conic
   if (status == CONIC_OK && begins_as_ply(conic_input_bytes(input), conic_input_available(input)))
     return read_ply_scene(input, options, gaussians);
   if (status == CONIC_OK)
-    status = path && input->has_size ? conic_mapping_open(input->context, path, &mapping) : read_rest(input, &mapping);
+    status = path && input->has_size ? conic_mapping_open(input->context, path, &mapping)
+                                     : conic_input_take_rest(input, SIZE_MAX, &mapping.bytes, &mapping.n_bytes);
   file.bytes = mapping.bytes;
   file.n_bytes = mapping.n_bytes;
   if (status == CONIC_OK)

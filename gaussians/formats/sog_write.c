@@ -240,9 +240,6 @@ conic_status conic_sog_write(const conic_gaussian_writer *writer) {
   self->n_numbers = conic_harmonics_of_degree(writer->sh_degree) - 3;
   self->pixels = conic_memory_allocate_zeroed(writer->context, self->size[0] * self->size[1], 4);
   conic_status status = self->pixels ? write_sog(self) : CONIC_ERROR_MEMORY;
-  conic_memory_release(writer->context, self->pixels);
-  conic_memory_release(writer->context, self->labels);
-  conic_memory_release(writer->context, self->centroids);
-  conic_memory_release(writer->context, self);
+  conic_memory_release_these(writer->context, self->pixels, self->labels, self->centroids, self);
   return status;
 }

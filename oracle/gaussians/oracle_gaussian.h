@@ -20,7 +20,6 @@ typedef struct oracle_gaussian_rules {
   double dilation;           /* px² */
   double compensation_least; /* of det/det′; negative: no compensation */
   int is_inria;              /* tiles of 16 px as its coverage, quaternions as they are, the centre of the picture */
-  int is_clamped;            /* the Jacobian's x/z and y/z */
   double cutoff;             /* of q, the greatest; 0: none */
   int is_by_distance;        /* the order of the means */
   double disc_cutoff, disc_extent, disc_near;

@@ -18,10 +18,10 @@ static const double reach_margin_px = 1.0;
 
 /* What set-up has of a Gaussian in camera space. */
 typedef struct bounded_frame {
-  double unit;                                       /* roundoff of a step */
-  bounded mean[3], world[3][3], axis[3], axes[3][3]; /* world: the directions as columns; axes: with their scales */
-  bounded direction[3][3];                           /* in camera space */
-  double largest[3][3];                              /* of axes, with all terms of one sign */
+  double unit;                              /* roundoff of a step */
+  bounded mean[3], world[3][3], axes[3][3]; /* world: the directions as columns; axes: with their scales */
+  bounded direction[3][3];                  /* in camera space */
+  double largest[3][3];                     /* of axes, with all terms of one sign */
   double scale[3];
   int is_flat;
 } bounded_frame;
