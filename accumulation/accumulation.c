@@ -57,8 +57,7 @@ conic_status conic_accumulation_create(conic_context *context, int width, int he
 void conic_accumulation_destroy(conic_accumulation *sums) {
   if (!sums)
     return;
-  conic_memory_release(sums->context, sums->sums);
-  conic_memory_release(sums->context, sums);
+  conic_memory_release_these(sums->context, sums->sums, sums);
 }
 
 void conic_accumulation_inspect(const conic_accumulation *sums, conic_accumulation_facts *facts) {

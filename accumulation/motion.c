@@ -73,8 +73,7 @@ void conic_motion_destroy(conic_motion *motion) {
     return;
   for (size_t i = 0; motion->shapes && i < motion->keys.count; i++)
     conic_source_close(motion->shapes[i]);
-  conic_memory_release(motion->context, motion->shapes);
-  conic_memory_release(motion->context, motion->poses);
+  conic_memory_release_these(motion->context, motion->shapes, motion->poses);
   conic_motion_keys_release(motion->context, &motion->keys);
   conic_memory_release(motion->context, motion);
 }

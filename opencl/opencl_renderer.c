@@ -146,8 +146,7 @@ void conic_opencl_close(conic_opencl *opencl) {
   if (opencl->gaussians)
     clReleaseProgram(opencl->gaussians);
   conic_queue_close(&opencl->queue);
-  conic_memory_release(opencl->context, opencl->cache_folder);
-  conic_memory_release(opencl->context, opencl);
+  conic_memory_release_these(opencl->context, opencl->cache_folder, opencl);
 }
 
 conic_status conic_opencl_renderer_create(conic_context *context, const conic_opencl_options *given,

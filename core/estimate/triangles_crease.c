@@ -257,9 +257,7 @@ conic_status conic_triangles_crease(conic_context *context, conic_triangles *tri
     c.normal_corners = corners;
     triangles->n_normals = n_normals;
   }
-  void *const all[] = {c.place, c.starts, c.corners, c.normal_at, c.normal_corners};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    conic_memory_release(context, all[i]);
+  conic_memory_release_these(context, c.place, c.starts, c.corners, c.normal_at, c.normal_corners);
   for (int axis = 0; axis < 3; axis++) {
     conic_memory_release(context, status == CONIC_OK ? triangles->normal[axis] : c.normal[axis]);
     if (status == CONIC_OK)

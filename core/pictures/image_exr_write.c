@@ -347,8 +347,7 @@ conic_status conic_exr_bands_end(conic_exr_bands *bands, conic_status status) {
     fclose(bands->spool);
   if (bands->output)
     status = conic_output_end(bands->output, status);
-  conic_memory_release(bands->context, bands->chunks);
-  conic_memory_release(bands->context, bands);
+  conic_memory_release_these(bands->context, bands->chunks, bands);
   return status;
 }
 

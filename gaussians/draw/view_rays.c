@@ -110,9 +110,7 @@ conic_status conic_view_rays_make(conic_context *context, const conic_camera *ca
 }
 
 void conic_view_rays_release(conic_context *context, conic_view_rays *rays) {
-  conic_memory_release(context, rays->tiles);
-  conic_memory_release(context, rays->cones);
-  conic_memory_release(context, rays->blocks);
+  conic_memory_release_these(context, rays->tiles, rays->cones, rays->blocks);
   memset(rays, 0, sizeof *rays);
 }
 

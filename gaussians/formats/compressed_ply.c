@@ -236,8 +236,7 @@ conic_status conic_compressed_ply_read(conic_input *input, const conic_ply_heade
   reader->header = header;
   reader->gaussians = gaussians;
   conic_status status = read_packed_scene(reader, options);
-  conic_memory_release(input->context, reader->chunks);
-  conic_memory_release(input->context, reader);
+  conic_memory_release_these(input->context, reader->chunks, reader);
   return status;
 }
 

@@ -148,7 +148,6 @@ conic_status conic_palette_make(conic_context *context, const conic_gaussians *g
   conic_status status =
       self.order && self.groups ? make_palette(context, &self, labels, centroids) : CONIC_ERROR_MEMORY;
   *n_centroids = self.n_groups;
-  conic_memory_release(context, self.order);
-  conic_memory_release(context, self.groups);
+  conic_memory_release_these(context, self.order, self.groups);
   return status;
 }

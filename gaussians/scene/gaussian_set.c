@@ -71,8 +71,7 @@ void conic_gaussians_release(conic_context *context, conic_gaussians *gaussians)
   int n = list_all_columns(gaussians, CONIC_GAUSSIANS_SOURCE, columns);
   for (int i = 0; i < n; i++)
     conic_memory_release(context, *columns[i]);
-  conic_memory_release(context, gaussians->sh);
-  conic_memory_release(context, gaussians->sh_half);
+  conic_memory_release_these(context, gaussians->sh, gaussians->sh_half);
   memset(gaussians, 0, sizeof *gaussians);
 }
 

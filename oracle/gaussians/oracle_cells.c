@@ -161,9 +161,7 @@ static int compare_meetings(const void *a, const void *b) {
 }
 
 static void release_worker(conic_context *context, cell_worker *w) {
-  void *const all[] = {w->gaussians, (void *)w->order, w->meetings, w->steps, w->has_color};
-  for (int k = 0; k < 5; k++)
-    conic_memory_release(context, all[k]);
+  conic_memory_release_these(context, w->gaussians, (void *)w->order, w->meetings, w->steps, w->has_color);
 }
 
 static conic_status make_room_in_worker(const oracle_bound_request *b, cell_worker *w, size_t n) {
@@ -292,11 +290,9 @@ static void bound_cell(void *data, size_t cell, int i_thread) {
 
 static void release_cells(cell_job *j) {
   conic_context *context = j->b->context;
-  void *const all[] = {j->begin, j->pixel_begin, j->entries, j->pixels, j->boxes, j->workers};
   for (int k = 0; j->workers && k < conic_context_threads(context); k++)
     release_worker(context, &j->workers[k]);
-  for (int k = 0; k < 6; k++)
-    conic_memory_release(context, all[k]);
+  conic_memory_release_these(context, j->begin, j->pixel_begin, j->entries, j->pixels, j->boxes, j->workers);
 }
 
 static int edge_for(const oracle_bound_request *b) {

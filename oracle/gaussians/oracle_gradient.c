@@ -213,11 +213,9 @@ conic_status conic_oracle_differentiate(oracle_gradient_job *j) {
 }
 
 void conic_oracle_gradient_end(oracle_gradient_job *j) {
-  void *const all[] = {j->shown,  j->begin,  j->entries,  j->sums,    j->is_touched,
-                       j->losses, j->totals, j->is_shown, j->cameras, j->doubts};
   for (int k = 0; j->workers && k < conic_context_threads(j->context); k++)
     conic_memory_release_these(j->context, (void *)j->workers[k].shown, j->workers[k].met);
   conic_memory_release(j->context, j->workers);
-  for (size_t k = 0; k < sizeof all / sizeof *all; k++)
-    conic_memory_release(j->context, all[k]);
+  conic_memory_release_these(j->context, j->shown, j->begin, j->entries, j->sums, j->is_touched, j->losses, j->totals,
+                             j->is_shown, j->cameras, j->doubts);
 }

@@ -341,7 +341,5 @@ void conic_oracle_judging_end(oracle_gradient_job *j) {
     conic_memory_release_these(j->context, g->of_threads[k].all, g->of_threads[k].list, g->of_threads[k].errors,
                                g->of_threads[k].base, g->of_threads[k].other);
   }
-  void *const all[] = {g->offs, g->bounds, g->totals, g->is_open_pixel, g->of_threads};
-  for (size_t k = 0; k < sizeof all / sizeof *all; k++)
-    conic_memory_release(j->context, all[k]);
+  conic_memory_release_these(j->context, g->offs, g->bounds, g->totals, g->is_open_pixel, g->of_threads);
 }
