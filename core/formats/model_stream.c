@@ -49,14 +49,14 @@ static conic_status pass(streaming *s, conic_input *input, conic_batch_receiver 
                              .is_again = receive == decode_batch,
                              .range = s->part,
                              .n_wanted = &s->n_wanted};
-  conic_model model;
+  conic_model model = {0};
   conic_status status = conic_model_read_kind(input, s->kind, s->options, &delivery, &model);
   conic_model_release(s->context, &model);
   return status;
 }
 
 static conic_status read_whole_stream(streaming *s, conic_input *input) {
-  conic_model model;
+  conic_model model = {0};
   conic_status status = conic_model_read_kind(input, s->kind, s->options, NULL, &model);
   if (status == CONIC_OK)
     status = s->receive(s->cookie, &model.points);

@@ -137,8 +137,18 @@ static void test_failures(conic_context *context) {
                      "cannot read", NULL);
 }
 
+/* A header that is refused leaves no model behind. */
+static void test_refused(conic_context *context) {
+  gathering g = {.context = context};
+  const char *path =
+      files_write("refused.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty foo x\nend_header\n0\n");
+  CHECK(conic_model_stream(context, path, NULL, gather, &g) == CONIC_ERROR_INPUT && g.n_batches == 0);
+  remove(path);
+}
+
 int main(void) {
   conic_context *context = files_context();
+  test_refused(context);
   test_ply(context, CONIC_PLY_BINARY, 0.0, MANY);
   test_ply(context, CONIC_PLY_BINARY, 1e6, 3000);
   test_ply(context, CONIC_PLY_ASCII, 1e6, 70000);
