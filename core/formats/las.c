@@ -6,6 +6,7 @@
 #include "core/base/byte_order.h"
 #include "core/base/message.h"
 #include "core/base/real.h"
+#include "core/files/las_layout.h"
 #include "core/formats/las_fields.h"
 #include "core/formats/ply_source.h"
 #include "core/laz/laz.h"
@@ -13,24 +14,7 @@
 #include "core/splats/point_fields.h"
 #include "core/splats/raw_colors.h"
 
-/* Where the fields are in the public header. */
-enum {
-  AT_MAJOR = 24,
-  AT_MINOR = 25,
-  AT_HEADER_BYTES = 94,
-  AT_POINTS = 96,
-  AT_N_RECORDS = 100,
-  AT_FORMAT = 104,
-  AT_POINT_BYTES = 105,
-  AT_N_POINTS_32 = 107,
-  AT_SCALE = 131,
-  AT_OFFSET = 155,
-  AT_WAVEFORMS = 227,    /* since 1.3: where waveforms begin */
-  AT_LATE_RECORDS = 235, /* since 1.4: where the records after the points begin */
-  AT_N_POINTS_64 = 247,
-};
-
-enum { LEAST_HEADER_BYTES = 227, HEADER_BYTES_1_4 = 375, RECORD_HEADER_BYTES = 54, BLOCK = 256 };
+enum { BLOCK = 256 };
 
 /* The fewest bytes of a point, and where its colour is in them; 0: no colour. Formats 4, 5, 9 and 10 have their
  * waveforms last. */
@@ -43,7 +27,7 @@ enum { N_FORMATS = sizeof formats / sizeof *formats };
 typedef struct las_reader {
   conic_input *input;
   int is_again; /* the file is read once more; its faults are logged already */
-  unsigned char header[HEADER_BYTES_1_4];
+  unsigned char header[CONIC_LAS_HEADER_1_4];
   unsigned format;
   int is_packed; /* LAZ */
   size_t point_bytes;
@@ -74,44 +58,45 @@ static void warn(const las_reader *reader, const char *what) {
 
 /* Copies the bytes of the public header. Fields of its version that a writer left out count as 0. */
 static conic_status read_las_header(las_reader *reader) {
-  conic_status status = conic_input_fill(reader->input, HEADER_BYTES_1_4);
+  conic_status status = conic_input_fill(reader->input, CONIC_LAS_HEADER_1_4);
   size_t available = conic_input_available(reader->input);
   if (status != CONIC_OK)
     return status;
   memset(reader->header, 0, sizeof reader->header);
-  memcpy(reader->header, conic_input_bytes(reader->input), available < HEADER_BYTES_1_4 ? available : HEADER_BYTES_1_4);
-  if (available < LEAST_HEADER_BYTES)
+  memcpy(reader->header, conic_input_bytes(reader->input),
+         available < CONIC_LAS_HEADER_1_4 ? available : CONIC_LAS_HEADER_1_4);
+  if (available < CONIC_LAS_LEAST_HEADER)
     return wrong_las(reader, "the file ends within the header", available);
-  unsigned major = reader->header[AT_MAJOR], minor = reader->header[AT_MINOR];
+  unsigned major = reader->header[CONIC_LAS_MAJOR], minor = reader->header[CONIC_LAS_MINOR];
   if (major != 1 || minor > 5)
     return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
                       "%s: version %u.%u of LAS; 1.0 to 1.5 are read (at byte %d)", reader->input->name, major, minor,
-                      AT_MAJOR);
-  uint64_t n_bytes = unsigned_at(reader, AT_HEADER_BYTES, 2);
-  if (n_bytes < LEAST_HEADER_BYTES)
-    return wrong_las(reader, "the header is shorter than any version's", AT_HEADER_BYTES);
-  if (n_bytes < HEADER_BYTES_1_4)
-    memset(reader->header + n_bytes, 0, HEADER_BYTES_1_4 - (size_t)n_bytes);
+                      CONIC_LAS_MAJOR);
+  uint64_t n_bytes = unsigned_at(reader, CONIC_LAS_HEADER_BYTES, 2);
+  if (n_bytes < CONIC_LAS_LEAST_HEADER)
+    return wrong_las(reader, "the header is shorter than any version's", CONIC_LAS_HEADER_BYTES);
+  if (n_bytes < CONIC_LAS_HEADER_1_4)
+    memset(reader->header + n_bytes, 0, CONIC_LAS_HEADER_1_4 - (size_t)n_bytes);
   return CONIC_OK;
 }
 
 static conic_status check_format(las_reader *reader) {
-  unsigned format = reader->header[AT_FORMAT] & 0x3fu;
-  reader->is_packed = (reader->header[AT_FORMAT] & 0xC0u) != 0;
+  unsigned format = reader->header[CONIC_LAS_FORMAT] & 0x3fu;
+  reader->is_packed = (reader->header[CONIC_LAS_FORMAT] & 0xC0u) != 0;
   reader->format = format;
-  reader->point_bytes = (size_t)unsigned_at(reader, AT_POINT_BYTES, 2);
+  reader->point_bytes = (size_t)unsigned_at(reader, CONIC_LAS_POINT_BYTES, 2);
   if (format >= N_FORMATS)
     return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: point format %u; 0 to 10 are read (at byte %d)",
-                      reader->input->name, format, AT_FORMAT);
+                      reader->input->name, format, CONIC_LAS_FORMAT);
   if (reader->point_bytes < (size_t)formats[format].n_bytes)
-    return wrong_las(reader, "a point is shorter than its format", AT_POINT_BYTES);
+    return wrong_las(reader, "a point is shorter than its format", CONIC_LAS_POINT_BYTES);
   reader->color = formats[format].color;
   return CONIC_OK;
 }
 
 static conic_status read_scale(las_reader *reader) {
   for (int axis = 0; axis < 3; axis++) {
-    int at_scale = AT_SCALE + 8 * axis, at_offset = AT_OFFSET + 8 * axis;
+    int at_scale = CONIC_LAS_SCALE + 8 * axis, at_offset = CONIC_LAS_OFFSET + 8 * axis;
     reader->scale[axis] = conic_load_double(reader->header + at_scale);
     reader->offset[axis] = conic_load_double(reader->header + at_offset);
     if (!(reader->scale[axis] - reader->scale[axis] == 0.0) || reader->scale[axis] == 0.0)
@@ -130,8 +115,8 @@ static conic_status read_scale(las_reader *reader) {
 static void count_points(las_reader *reader, uint64_t remaining) {
   uint64_t declared = reader->n_points, n_bytes = remaining - reader->points_offset;
   uint64_t present = n_bytes / reader->point_bytes;
-  int is_all_points = n_bytes % reader->point_bytes == 0 && !unsigned_at(reader, AT_WAVEFORMS, 8) &&
-                      !unsigned_at(reader, AT_LATE_RECORDS, 8);
+  int is_all_points = n_bytes % reader->point_bytes == 0 && !unsigned_at(reader, CONIC_LAS_WAVEFORMS, 8) &&
+                      !unsigned_at(reader, CONIC_LAS_LATE_RECORDS, 8);
   if (declared > present || is_all_points)
     reader->n_points = present;
   if (reader->n_points != declared && !reader->is_again)
@@ -144,17 +129,18 @@ static void count_points(las_reader *reader, uint64_t remaining) {
 /* Checks every size in the header against the others and the file. Since 1.4 the number of points has 64 bits; where a
  * writer left it 0, the older field counts. */
 static conic_status check_sizes(las_reader *reader) {
-  uint64_t header_bytes = unsigned_at(reader, AT_HEADER_BYTES, 2), n_records = unsigned_at(reader, AT_N_RECORDS, 4);
+  uint64_t header_bytes = unsigned_at(reader, CONIC_LAS_HEADER_BYTES, 2),
+           n_records = unsigned_at(reader, CONIC_LAS_N_RECORDS, 4);
   uint64_t remaining = conic_input_remaining_bytes(reader->input);
-  int has_64 = reader->header[AT_MINOR] >= 4 && unsigned_at(reader, AT_N_POINTS_64, 8) > 0;
-  int count_at = has_64 ? AT_N_POINTS_64 : AT_N_POINTS_32;
-  reader->points_offset = unsigned_at(reader, AT_POINTS, 4);
+  int has_64 = reader->header[CONIC_LAS_MINOR] >= 4 && unsigned_at(reader, CONIC_LAS_N_POINTS, 8) > 0;
+  int count_at = has_64 ? CONIC_LAS_N_POINTS : CONIC_LAS_N_POINTS_32;
+  reader->points_offset = unsigned_at(reader, CONIC_LAS_POINTS, 4);
   reader->n_points = unsigned_at(reader, count_at, has_64 ? 8 : 4);
   if (reader->points_offset < header_bytes)
-    return wrong_las(reader, "the points begin within the header", AT_POINTS);
+    return wrong_las(reader, "the points begin within the header", CONIC_LAS_POINTS);
   if (reader->points_offset > remaining)
-    return wrong_las(reader, "the points begin past the end of the file", AT_POINTS);
-  if (n_records > (reader->points_offset - header_bytes) / RECORD_HEADER_BYTES)
+    return wrong_las(reader, "the points begin past the end of the file", CONIC_LAS_POINTS);
+  if (n_records > (reader->points_offset - header_bytes) / CONIC_LAS_RECORD_HEAD)
     warn(reader, "more variable-length records are declared than fit before the points; they are passed over");
   if (reader->input->has_size && !reader->is_packed)
     count_points(reader, remaining);
@@ -177,10 +163,10 @@ static conic_status skip_to(las_reader *reader, uint64_t offset) {
 /* Skips the header and its records, which name fields. */
 static conic_status skip_to_points(las_reader *reader, const conic_read_options *options) {
   unsigned format = reader->format;
-  uint64_t n_records = unsigned_at(reader, AT_N_RECORDS, 4);
+  uint64_t n_records = unsigned_at(reader, CONIC_LAS_N_RECORDS, 4);
   conic_las_fields *fields = &reader->fields;
   conic_las_fields_of_format(format, fields);
-  conic_status status = skip_to(reader, unsigned_at(reader, AT_HEADER_BYTES, 2));
+  conic_status status = skip_to(reader, unsigned_at(reader, CONIC_LAS_HEADER_BYTES, 2));
   if (status == CONIC_OK)
     status = conic_las_fields_read(reader->input, n_records, reader->points_offset, (size_t)formats[format].n_bytes,
                                    reader->point_bytes, fields);
@@ -295,7 +281,7 @@ static conic_status read_packed_las(las_reader *reader) {
   conic_laz_format packing;
   unsigned wanted = CONIC_LAZ_Z | CONIC_LAZ_COLORS;
   if (fields->n_packing == 0)
-    return wrong_las(reader, "the points are compressed, and no record says how", AT_FORMAT);
+    return wrong_las(reader, "the points are compressed, and no record says how", CONIC_LAS_FORMAT);
   for (size_t k = 0; k < conic_builder_columns(&reader->builder); k++) {
     int field = conic_builder_column_field(&reader->builder, k);
     wanted |= field >= 0 ? conic_las_field_layer(reader->format, &fields->list[field]) : 0;

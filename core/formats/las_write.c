@@ -10,33 +10,12 @@
 #include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
-#include "core/files/las_user.h"
+#include "core/files/las_layout.h"
 #include "core/formats/las_fields.h"
 #include "core/splats/point_fields.h"
 #include "core/splats/point_values.h"
 
-/* Where the header has its fields, and the lengths of its parts. */
-enum {
-  AT_ENCODING = 6,
-  AT_VERSION = 24,
-  AT_SYSTEM = 26,
-  AT_SOFTWARE = 58,
-  AT_OWN_BYTES = 94,
-  AT_FIRST_POINT = 96,
-  AT_RECORDS = 100,
-  AT_POINT_FORMAT = 104,
-  AT_RECORD_BYTES = 105,
-  AT_STEPS = 131,
-  AT_ORIGIN = 155,
-  AT_BOUNDS = 179,
-  AT_COUNT = 247,
-  AT_BY_RETURN = 255,
-  HEADER = 375,
-  RECORD = 54,
-  EXTRA = 192,
-  MOST_RECORDS = 1 << 20
-};
-
+enum { EXTRA = 192, MOST_RECORDS = 1 << 20 };
 enum { GPS_IS_ADJUSTED = 1, IS_WELL_KNOWN_TEXT = 16 }; /* of the encoding */
 enum { KEYS = 34735, TEXT = 34737, WELL_KNOWN_TEXT = 2112, EXTRA_BYTES = 4, RETURNS = 15 };
 enum { AT_RETURN = 14, AT_COLOR = 30, POINT_BYTES = 30, COLOR_BYTES = 6 };
@@ -53,7 +32,7 @@ struct conic_las_writer {
   const char *path;
   conic_output *output;
   FILE *file;
-  unsigned char header[HEADER];
+  unsigned char header[CONIC_LAS_HEADER_1_4];
   unsigned char *records; /* the source's, about the coordinate system */
   size_t n_record_bytes;
   uint32_t n_records;
@@ -73,23 +52,22 @@ static void put_letters(unsigned char *to, const char *letters) {
 
 /* Keeps the records about the coordinate system from a head of n bytes. */
 static conic_status keep_records(conic_las_writer *w, const unsigned char *head, size_t n) {
-  size_t at = conic_load_16(head + AT_OWN_BYTES);
+  size_t at = conic_load_16(head + CONIC_LAS_HEADER_BYTES);
   w->records = conic_memory_allocate(w->context, n, 1);
   if (!w->records)
     return CONIC_ERROR_MEMORY;
-  for (uint32_t i = conic_load_32(head + AT_RECORDS); i > 0 && at + RECORD <= n; i--) {
+  for (uint32_t i = conic_load_32(head + CONIC_LAS_N_RECORDS); i > 0 && at + CONIC_LAS_RECORD_HEAD <= n; i--) {
     const unsigned char *record = head + at;
-    size_t n_bytes = RECORD + (size_t)conic_load_16(record + 20);
+    size_t n_bytes = CONIC_LAS_RECORD_HEAD + (size_t)conic_load_16(record + 20);
     unsigned number = conic_load_16(record + 18);
     if (n_bytes > n - at)
       break;
-    if (conic_las_is_of_user(record, "LASF_Projection") &&
-        ((number >= KEYS && number <= TEXT) || number == WELL_KNOWN_TEXT)) {
+    if (conic_las_is_of_world(record) && ((number >= KEYS && number <= TEXT) || number == WELL_KNOWN_TEXT)) {
       memcpy(w->records + w->n_record_bytes, record, n_bytes);
       w->n_record_bytes += n_bytes;
       w->n_records++;
       if (number == WELL_KNOWN_TEXT)
-        w->header[AT_ENCODING] |= IS_WELL_KNOWN_TEXT;
+        w->header[CONIC_LAS_ENCODING] |= IS_WELL_KNOWN_TEXT;
     }
     at += n_bytes;
   }
@@ -97,15 +75,15 @@ static conic_status keep_records(conic_las_writer *w, const unsigned char *head,
 }
 
 static conic_status take_source_head(conic_las_writer *w, FILE *file) {
-  unsigned char start[HEADER] = {0};
-  size_t n = fread(start, 1, sizeof start, file), n_head = conic_load_32(start + AT_FIRST_POINT);
+  unsigned char start[CONIC_LAS_HEADER_1_4] = {0};
+  size_t n = fread(start, 1, sizeof start, file), n_head = conic_load_32(start + CONIC_LAS_POINTS);
   if (n < 227 || memcmp(start, "LASF", 4) != 0 || n_head < 227 || n_head > MOST_RECORDS)
     return CONIC_OK;
   w->has_source = 1;
-  w->header[AT_ENCODING] = start[AT_ENCODING] & GPS_IS_ADJUSTED;
+  w->header[CONIC_LAS_ENCODING] = start[CONIC_LAS_ENCODING] & GPS_IS_ADJUSTED;
   for (int axis = 0; axis < 3; axis++) {
-    w->scale[axis] = fabs(conic_load_double(start + AT_STEPS + 8 * (size_t)axis));
-    w->offset[axis] = conic_load_double(start + AT_ORIGIN + 8 * (size_t)axis);
+    w->scale[axis] = fabs(conic_load_double(start + CONIC_LAS_SCALE + 8 * (size_t)axis));
+    w->offset[axis] = conic_load_double(start + CONIC_LAS_OFFSET + 8 * (size_t)axis);
     w->has_source &= w->scale[axis] > 0.0 && w->scale[axis] + fabs(w->offset[axis]) < 1e300;
   }
   unsigned char *head = fseeko(file, 0, SEEK_SET) == 0 ? conic_memory_allocate(w->context, n_head, 1) : NULL;
@@ -179,7 +157,7 @@ static void put_extra_record(conic_las_writer *w) {
   static const unsigned char numbers[] = {2, 1, 4, 3, 6,
                                           5, 9, 10}; /* numbers of the types, in the order of
                                                         conic_ply_type */
-  unsigned char record[RECORD] = {0}, extra[EXTRA];
+  unsigned char record[CONIC_LAS_RECORD_HEAD] = {0}, extra[EXTRA];
   put_letters(record + 2, "LASF_Spec");
   conic_store_bits(record + 18, 2, EXTRA_BYTES);
   conic_store_bits(record + 20, 2, EXTRA * w->n_extra);
@@ -209,27 +187,27 @@ static void settle_steps(conic_las_writer *w, const conic_splats *first) {
 
 static void put_las_header(conic_las_writer *w) {
   unsigned char *h = w->header;
-  size_t n_extra_bytes = w->n_extra ? RECORD + EXTRA * w->n_extra : 0;
+  size_t n_extra_bytes = w->n_extra ? CONIC_LAS_RECORD_HEAD + EXTRA * w->n_extra : 0;
   put_letters(h, "LASF");
-  h[AT_VERSION] = 1;
-  h[AT_VERSION + 1] = 4;
-  put_letters(h + AT_SYSTEM, "EXTRACTION");
-  put_letters(h + AT_SOFTWARE, "conic");
-  conic_store_bits(h + AT_OWN_BYTES, 2, HEADER);
-  conic_store_32(h + AT_FIRST_POINT, (uint32_t)(HEADER + w->n_record_bytes + n_extra_bytes));
-  conic_store_32(h + AT_RECORDS, w->n_records + (w->n_extra > 0));
-  h[AT_POINT_FORMAT] = w->has_colors ? 7 : 6;
-  conic_store_bits(h + AT_RECORD_BYTES, 2, w->point_bytes);
+  h[CONIC_LAS_MAJOR] = 1;
+  h[CONIC_LAS_MAJOR + 1] = 4;
+  put_letters(h + CONIC_LAS_SYSTEM, "EXTRACTION");
+  put_letters(h + CONIC_LAS_SOFTWARE, "conic");
+  conic_store_bits(h + CONIC_LAS_HEADER_BYTES, 2, CONIC_LAS_HEADER_1_4);
+  conic_store_32(h + CONIC_LAS_POINTS, (uint32_t)(CONIC_LAS_HEADER_1_4 + w->n_record_bytes + n_extra_bytes));
+  conic_store_32(h + CONIC_LAS_N_RECORDS, w->n_records + (w->n_extra > 0));
+  h[CONIC_LAS_FORMAT] = w->has_colors ? 7 : 6;
+  conic_store_bits(h + CONIC_LAS_POINT_BYTES, 2, w->point_bytes);
   for (int axis = 0; axis < 3; axis++) {
-    conic_store_double(h + AT_STEPS + 8 * (size_t)axis, w->scale[axis]);
-    conic_store_double(h + AT_ORIGIN + 8 * (size_t)axis, w->offset[axis]);
-    conic_store_double(h + AT_BOUNDS + 16 * (size_t)axis, w->count ? w->high[axis] : 0.0);
-    conic_store_double(h + AT_BOUNDS + 16 * (size_t)axis + 8, w->count ? w->low[axis] : 0.0);
+    conic_store_double(h + CONIC_LAS_SCALE + 8 * (size_t)axis, w->scale[axis]);
+    conic_store_double(h + CONIC_LAS_OFFSET + 8 * (size_t)axis, w->offset[axis]);
+    conic_store_double(h + CONIC_LAS_BOUNDS + 16 * (size_t)axis, w->count ? w->high[axis] : 0.0);
+    conic_store_double(h + CONIC_LAS_BOUNDS + 16 * (size_t)axis + 8, w->count ? w->low[axis] : 0.0);
   }
-  conic_store_64(h + AT_COUNT, w->count);
+  conic_store_64(h + CONIC_LAS_N_POINTS, w->count);
   for (int i = 0; i < RETURNS; i++)
-    conic_store_64(h + AT_BY_RETURN + 8 * (size_t)i, w->by_return[i]);
-  fwrite(h, 1, HEADER, w->file);
+    conic_store_64(h + CONIC_LAS_BY_RETURN + 8 * (size_t)i, w->by_return[i]);
+  fwrite(h, 1, CONIC_LAS_HEADER_1_4, w->file);
 }
 
 static void begin_las(conic_las_writer *w, const conic_splats *first) {

@@ -6,23 +6,15 @@
 #include "core/base/memory.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
-#include "core/files/las_user.h"
+#include "core/files/las_layout.h"
 
 /* GeoKeys: the kind of system (1: projected, 2: geographic), the kind of pixel (1: an area), and the systems' codes. */
 enum { KEY_MODEL = 1024, KEY_RASTER = 1025, KEY_GEOGRAPHIC = 2048, KEY_PROJECTED = 3072, USER_DEFINED = 32767 };
 
 enum { KEY_NUMBERS = 4 }; /* of the directory's head, and of a key */
 
-/* Fields of a LAS header that are needed here, and the size of the head of its records. */
-enum {
-  AT_HEAD_BYTES = 94,
-  AT_POINTS_BEGIN = 96,
-  AT_HEAD_RECORDS = 100,
-  AT_MINOR_VERSION = 25,
-  AT_LATE = 235,
-  AT_N_LATE = 243
-};
-enum { LEAST_HEAD = 227, HEAD_1_4 = 375, RECORD_HEAD = 54, LATE_HEAD = 60 };
+/* Of the head of a record after the points. */
+enum { LATE_HEAD = 60 };
 enum { RECORD_KEYS = 34735, RECORD_NUMBERS = 34736, RECORD_TEXT = 34737, RECORD_WKT = 2112 };
 
 enum { MOST_HEAD = 1 << 24, MOST_TEXT = 1 << 16 };
@@ -152,7 +144,7 @@ typedef struct las_records {
 
 static void note_record(const unsigned char *head, const unsigned char *bytes, size_t n_bytes, las_records *found) {
   las_record *to = NULL;
-  if (!conic_las_is_of_user(head, "LASF_Projection"))
+  if (!conic_las_is_of_world(head))
     return;
   switch (conic_load_16(head + 18)) {
   case RECORD_KEYS:
@@ -176,13 +168,13 @@ static void note_record(const unsigned char *head, const unsigned char *bytes, s
 
 static las_records list_world_records(const unsigned char *head, size_t n_bytes) {
   las_records found = {.keys = {0}};
-  size_t at = conic_load_16(head + AT_HEAD_BYTES);
-  for (uint32_t i = conic_load_32(head + AT_HEAD_RECORDS); i > 0; i--) {
-    size_t n = at < n_bytes && n_bytes - at >= RECORD_HEAD ? conic_load_16(head + at + 20) : SIZE_MAX;
-    if (n > n_bytes || at + RECORD_HEAD + n > n_bytes)
+  size_t at = conic_load_16(head + CONIC_LAS_HEADER_BYTES);
+  for (uint32_t i = conic_load_32(head + CONIC_LAS_N_RECORDS); i > 0; i--) {
+    size_t n = at < n_bytes && n_bytes - at >= CONIC_LAS_RECORD_HEAD ? conic_load_16(head + at + 20) : SIZE_MAX;
+    if (n > n_bytes || at + CONIC_LAS_RECORD_HEAD + n > n_bytes)
       break;
-    note_record(head + at, head + at + RECORD_HEAD, n, &found);
-    at += RECORD_HEAD + n;
+    note_record(head + at, head + at + CONIC_LAS_RECORD_HEAD, n, &found);
+    at += CONIC_LAS_RECORD_HEAD + n;
   }
   return found;
 }
@@ -254,7 +246,7 @@ static conic_status take_las(conic_context *context, const las_records *found, c
 conic_status conic_georeference_of_las(conic_context *context, const unsigned char *head, size_t n_bytes,
                                        conic_georeference *reference) {
   memset(reference, 0, sizeof *reference);
-  if (n_bytes < LEAST_HEAD || memcmp(head, "LASF", 4) != 0)
+  if (n_bytes < CONIC_LAS_LEAST_HEADER || memcmp(head, "LASF", 4) != 0)
     return CONIC_OK;
   const las_records found = list_world_records(head, n_bytes);
   return take_las(context, &found, reference);
@@ -263,9 +255,9 @@ conic_status conic_georeference_of_las(conic_context *context, const unsigned ch
 /* Reads the well-known text after the points; text that cannot be read counts as none. */
 static conic_status read_late_text(conic_context *context, FILE *file, const unsigned char *head,
                                    conic_georeference *reference) {
-  uint64_t at = conic_load_64(head + AT_LATE);
+  uint64_t at = conic_load_64(head + CONIC_LAS_LATE_RECORDS);
   unsigned char record[LATE_HEAD];
-  for (uint32_t i = conic_load_32(head + AT_N_LATE); i > 0 && at < INT64_MAX / 2; i--) {
+  for (uint32_t i = conic_load_32(head + CONIC_LAS_N_LATE_RECORDS); i > 0 && at < INT64_MAX / 2; i--) {
     las_records found = {.keys = {0}};
     if (fseeko(file, (off_t)at, SEEK_SET) != 0 || fread(record, sizeof record, 1, file) != 1)
       return CONIC_OK;
@@ -287,9 +279,9 @@ static conic_status read_late_text(conic_context *context, FILE *file, const uns
 }
 
 static conic_status read_las(conic_context *context, FILE *file, conic_georeference *reference) {
-  unsigned char start[HEAD_1_4] = {0};
-  size_t n = fread(start, 1, sizeof start, file), n_head = conic_load_32(start + AT_POINTS_BEGIN);
-  if (n < LEAST_HEAD || memcmp(start, "LASF", 4) != 0)
+  unsigned char start[CONIC_LAS_HEADER_1_4] = {0};
+  size_t n = fread(start, 1, sizeof start, file), n_head = conic_load_32(start + CONIC_LAS_POINTS);
+  if (n < CONIC_LAS_LEAST_HEADER || memcmp(start, "LASF", 4) != 0)
     return CONIC_OK;
   n_head = n_head < MOST_HEAD ? n_head : MOST_HEAD;
   unsigned char *head = fseeko(file, 0, SEEK_SET) == 0 ? conic_memory_allocate(context, n_head, 1) : NULL;
@@ -297,7 +289,7 @@ static conic_status read_las(conic_context *context, FILE *file, conic_georefere
     return CONIC_ERROR_MEMORY;
   conic_status status = conic_georeference_of_las(context, head, fread(head, 1, n_head, file), reference);
   conic_memory_release(context, head);
-  if (status == CONIC_OK && !reference->keys && n == HEAD_1_4 && start[AT_MINOR_VERSION] >= 4)
+  if (status == CONIC_OK && !reference->keys && n == CONIC_LAS_HEADER_1_4 && start[CONIC_LAS_MINOR] >= 4)
     status = read_late_text(context, file, start, reference);
   return status;
 }
