@@ -54,72 +54,59 @@ static void find_normal_rows(placement *place) {
       place->normal_rows[i][j] = -place->normal_rows[i][j];
 }
 
-static void send_positions(conic_assimp_writer *w, const struct aiMesh *mesh, const placement *place) {
+/* What is sent of the vertices of a mesh. */
+typedef struct vertices {
+  const conic_assimp_writer *w;
+  const struct aiMesh *mesh;
+  const placement *place;
+  const struct aiVector3D *coordinates;
+} vertices;
+
+/* Writes so much of vertex i to the record's place. */
+typedef void vertex_writer(const vertices *v, unsigned i, void *to);
+
+static void send_vertices(conic_assimp_writer *w, const vertices *v, vertex_writer *write, size_t size) {
   double block[BLOCK][3];
-  for (unsigned done = 0, m; done < mesh->mNumVertices; done += m) {
-    m = mesh->mNumVertices - done < BLOCK ? mesh->mNumVertices - done : BLOCK;
-    for (unsigned i = 0; i < m; i++) {
-      const struct aiVector3D *v = &mesh->mVertices[done + i];
-      for (int row = 0; row < 3; row++) {
-        const double *r = place->rows[row];
-        block[i][row] = r[0] * (double)v->x + r[1] * (double)v->y + r[2] * (double)v->z + r[3];
-      }
-    }
-    conic_assimp_send_bytes(w, block, m * sizeof block[0]);
-  }
-}
-
-static void send_normals(conic_assimp_writer *w, const struct aiMesh *mesh, const placement *place) {
-  float block[BLOCK][3];
-  for (unsigned done = 0, m; done < mesh->mNumVertices; done += m) {
-    m = mesh->mNumVertices - done < BLOCK ? mesh->mNumVertices - done : BLOCK;
-    for (unsigned i = 0; i < m; i++) {
-      const struct aiVector3D *n = &mesh->mNormals[done + i];
-      for (int row = 0; row < 3; row++) {
-        const double *r = place->normal_rows[row];
-        block[i][row] = (float)(r[0] * (double)n->x + r[1] * (double)n->y + r[2] * (double)n->z);
-      }
-    }
-    conic_assimp_send_bytes(w, block, m * sizeof block[0]);
-  }
-}
-
-static void send_coordinates(conic_assimp_writer *w, const struct aiMesh *mesh, const struct aiVector3D *coordinates) {
-  float block[BLOCK][2];
-  for (unsigned done = 0, m; done < mesh->mNumVertices; done += m) {
-    m = mesh->mNumVertices - done < BLOCK ? mesh->mNumVertices - done : BLOCK;
-    for (unsigned i = 0; i < m; i++) {
-      block[i][0] = (float)coordinates[done + i].x;
-      block[i][1] = (float)coordinates[done + i].y;
-    }
-    conic_assimp_send_bytes(w, block, m * sizeof block[0]);
-  }
-}
-
-static void send_colors(conic_assimp_writer *w, const struct aiMesh *mesh) {
-  float block[BLOCK][3];
-  int may_be_unset = strcmp(w->request->ending, "amf") == 0; /* transparent black means no colour in these files */
-  for (unsigned done = 0, m; done < mesh->mNumVertices; done += m) {
-    m = mesh->mNumVertices - done < BLOCK ? mesh->mNumVertices - done : BLOCK;
-    for (unsigned i = 0; i < m; i++) {
-      const struct aiColor4D *color = &mesh->mColors[0][done + i];
-      int is_unset = may_be_unset && color->a <= 0;
-      block[i][0] = is_unset ? 1.0f : (float)color->r;
-      block[i][1] = is_unset ? 1.0f : (float)color->g;
-      block[i][2] = is_unset ? 1.0f : (float)color->b;
-    }
-    conic_assimp_send_bytes(w, block, m * sizeof block[0]);
-  }
-}
-
-static void send_alphas(conic_assimp_writer *w, const struct aiMesh *mesh) {
-  float block[BLOCK];
-  for (unsigned done = 0, m; done < mesh->mNumVertices; done += m) {
-    m = mesh->mNumVertices - done < BLOCK ? mesh->mNumVertices - done : BLOCK;
+  for (unsigned done = 0, m; done < v->mesh->mNumVertices; done += m) {
+    m = v->mesh->mNumVertices - done < BLOCK ? v->mesh->mNumVertices - done : BLOCK;
     for (unsigned i = 0; i < m; i++)
-      block[i] = (float)mesh->mColors[0][done + i].a;
-    conic_assimp_send_bytes(w, block, m * sizeof block[0]);
+      write(v, done + i, (char *)block + i * size);
+    conic_assimp_send_bytes(w, block, m * size);
   }
+}
+
+static void write_position(const vertices *v, unsigned i, void *to) {
+  const struct aiVector3D *p = &v->mesh->mVertices[i];
+  for (int row = 0; row < 3; row++) {
+    const double *r = v->place->rows[row];
+    ((double *)to)[row] = r[0] * (double)p->x + r[1] * (double)p->y + r[2] * (double)p->z + r[3];
+  }
+}
+
+static void write_normal(const vertices *v, unsigned i, void *to) {
+  const struct aiVector3D *n = &v->mesh->mNormals[i];
+  for (int row = 0; row < 3; row++) {
+    const double *r = v->place->normal_rows[row];
+    ((float *)to)[row] = (float)(r[0] * (double)n->x + r[1] * (double)n->y + r[2] * (double)n->z);
+  }
+}
+
+static void write_coordinate(const vertices *v, unsigned i, void *to) {
+  ((float *)to)[0] = (float)v->coordinates[i].x;
+  ((float *)to)[1] = (float)v->coordinates[i].y;
+}
+
+/* Transparent black means no colour in .amf files. */
+static void write_color(const vertices *v, unsigned i, void *to) {
+  const struct aiColor4D *color = &v->mesh->mColors[0][i];
+  int is_unset = color->a <= 0 && strcmp(v->w->request->ending, "amf") == 0;
+  ((float *)to)[0] = is_unset ? 1.0f : (float)color->r;
+  ((float *)to)[1] = is_unset ? 1.0f : (float)color->g;
+  ((float *)to)[2] = is_unset ? 1.0f : (float)color->b;
+}
+
+static void write_alpha(const vertices *v, unsigned i, void *to) {
+  *(float *)to = (float)v->mesh->mColors[0][i].a;
 }
 
 static void send_triangles(conic_assimp_writer *w, const struct aiMesh *mesh, int is_mirrored) {
@@ -166,15 +153,16 @@ static void send_mesh(conic_assimp_writer *w, const struct aiMesh *mesh, const p
   record.fields = (has_normals ? CONIC_ASSIMP_NORMALS : 0u) | (coordinates ? CONIC_ASSIMP_COORDINATES : 0u) |
                   (mesh->mColors[0] ? CONIC_ASSIMP_COLORS : 0u) | (has_alphas ? CONIC_ASSIMP_ALPHAS : 0u);
   conic_assimp_send_bytes(w, &record, sizeof record);
-  send_positions(w, mesh, place);
+  const vertices v = {w, mesh, place, coordinates};
+  send_vertices(w, &v, write_position, 3 * sizeof(double));
   if (has_normals)
-    send_normals(w, mesh, place);
+    send_vertices(w, &v, write_normal, 3 * sizeof(float));
   if (coordinates)
-    send_coordinates(w, mesh, coordinates);
+    send_vertices(w, &v, write_coordinate, 2 * sizeof(float));
   if (mesh->mColors[0])
-    send_colors(w, mesh);
+    send_vertices(w, &v, write_color, 3 * sizeof(float));
   if (has_alphas)
-    send_alphas(w, mesh);
+    send_vertices(w, &v, write_alpha, sizeof(float));
   send_triangles(w, mesh, place->is_mirrored);
 }
 

@@ -10,11 +10,10 @@
 #include "core/files/disk.h"
 #include "core/files/input.h"
 
-/* A regular file is mapped; what is none, or is empty, is read to its end. */
-static conic_status map_or_read(conic_input *input, conic_mapping *mapping) {
+conic_status conic_mapping_take(conic_input *input, uint64_t most, conic_mapping *mapping) {
   const uint64_t n_bytes = input->start_bytes + input->size_bytes;
   if (!input->has_size || n_bytes == 0)
-    return conic_input_take_rest(input, SIZE_MAX, &mapping->bytes, &mapping->n_bytes);
+    return conic_input_take_rest(input, most, &mapping->bytes, &mapping->n_bytes);
   void *bytes = n_bytes <= SIZE_MAX ? conic_disk_map(input->descriptor, (size_t)n_bytes) : NULL;
   if (!bytes)
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot map: %s", input->name, strerror(errno));
@@ -30,7 +29,7 @@ conic_status conic_mapping_open(conic_context *context, const char *path, conic_
   conic_status status = conic_input_open(context, path, &input);
   if (status != CONIC_OK)
     return status;
-  status = map_or_read(&input, mapping);
+  status = conic_mapping_take(&input, SIZE_MAX, mapping);
   conic_input_close(&input);
   if (status != CONIC_OK)
     conic_mapping_close(context, mapping);

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "conic/context.h"
+#include "core/files/input.h"
 
 typedef struct conic_mapping {
   unsigned char *bytes;
@@ -15,6 +15,11 @@ typedef struct conic_mapping {
 
 /* "-" is standard input. The caller closes it. Errors: INPUT, MEMORY. */
 conic_status conic_mapping_open(conic_context *context, const char *path, conic_mapping *mapping);
+
+/* The file that an input has begun: a regular one is mapped; what is none, or is empty, is read on to its end, `most`
+ * bytes of it. The caller closes *mapping, which begins empty, on failure too. Errors: INPUT, MEMORY, CANCELLED. */
+conic_status conic_mapping_take(conic_input *input, uint64_t most, conic_mapping *mapping);
+
 void conic_mapping_close(conic_context *context, conic_mapping *mapping);
 
 /* 64 bits that change with any word of the bytes, computed at the speed of memory. */

@@ -112,7 +112,7 @@ static conic_status check_size(const e57_reader *reader) {
   unsigned bits = 0;
   for (int i = 0; i < reader->n_slots; i++)
     bits += reader->columns[i] >= 0 ? reader->scan->columns[reader->columns[i]].bits : 0;
-  if (reader->scan->n_records > 0 && (bits == 0 || reader->scan->n_records / 8 > reader->file->n_bytes / bits))
+  if (reader->scan->n_records > 0 && (bits == 0 || reader->scan->n_records / 8 > reader->file->mapping.n_bytes / bits))
     return conic_e57_wrong(reader->file, "a scan has more points than its file has bytes for",
                            reader->scan->records_offset);
   return CONIC_OK;

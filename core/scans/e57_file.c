@@ -31,7 +31,8 @@ static uint32_t page_sum(const unsigned char *bytes, uint64_t n) {
 
 /* A page's sum has the other byte order than the rest of the file. */
 static conic_status check_page(conic_e57_file *file, uint64_t page) {
-  const unsigned char *bytes = file->bytes + page * file->page_bytes, *sum = bytes + file->page_bytes - SUM_BYTES;
+  const unsigned char *bytes = file->mapping.bytes + page * file->page_bytes,
+                      *sum = bytes + file->page_bytes - SUM_BYTES;
   uint32_t stated = (uint32_t)sum[0] << 24 | (uint32_t)sum[1] << 16 | (uint32_t)sum[2] << 8 | sum[3];
   if (page == file->sound_page)
     return CONIC_OK;
@@ -44,7 +45,7 @@ static conic_status check_page(conic_e57_file *file, uint64_t page) {
 /* How many bytes of the page's content follow an offset; 0 where that is in a sum or past the end. */
 static uint64_t content_after(const conic_e57_file *file, uint64_t offset) {
   uint64_t in_page = offset % file->page_bytes, end = file->page_bytes - SUM_BYTES;
-  return offset < file->n_bytes && in_page < end ? end - in_page : 0;
+  return offset < file->mapping.n_bytes && in_page < end ? end - in_page : 0;
 }
 
 static void advance(const conic_e57_file *file, uint64_t *offset, uint64_t n) {
@@ -62,7 +63,7 @@ conic_status conic_e57_file_take(conic_e57_file *file, uint64_t *offset, void *t
     if (status != CONIC_OK)
       return status;
     step = step < n ? step : n;
-    memcpy(to, file->bytes + *offset, (size_t)step);
+    memcpy(to, file->mapping.bytes + *offset, (size_t)step);
     advance(file, offset, step);
     to = (unsigned char *)to + step;
     n -= (size_t)step;
@@ -82,25 +83,10 @@ conic_status conic_e57_file_skip(conic_e57_file *file, uint64_t *offset, uint64_
   return CONIC_OK;
 }
 
-/* What comes through a pipe is copied. */
-static conic_status take_e57_bytes(conic_input *input, conic_e57_file *file) {
-  size_t n = 0;
-  if (input->has_size) {
-    conic_status status = conic_mapping_open(file->context, input->descriptor == 0 ? "-" : input->name, &file->mapping);
-    file->bytes = file->mapping.bytes;
-    file->n_bytes = file->mapping.n_bytes;
-    return status;
-  }
-  conic_status status = conic_input_take_rest(input, most_piped_bytes, &file->copy, &n);
-  file->bytes = file->copy;
-  file->n_bytes = n;
-  return status;
-}
-
 static conic_status read_e57_header(conic_e57_file *file) {
-  const unsigned char *header = file->bytes;
-  if (file->n_bytes < HEADER_BYTES)
-    return conic_e57_wrong(file, "the file ends within the header", file->n_bytes);
+  const unsigned char *header = file->mapping.bytes;
+  if (file->mapping.n_bytes < HEADER_BYTES)
+    return conic_e57_wrong(file, "the file ends within the header", file->mapping.n_bytes);
   if (conic_load_bits(header + 8, 4) != 1)
     return conic_fail(file->context, CONIC_ERROR_INPUT, "%s: version %u of E57; version 1 is read (at byte 8)",
                       file->name, (unsigned)conic_load_bits(header + 8, 4));
@@ -109,9 +95,9 @@ static conic_status read_e57_header(conic_e57_file *file) {
   file->page_bytes = conic_load_bits(header + 40, 8);
   if (file->page_bytes < LEAST_PAGE || file->page_bytes > MOST_PAGE)
     return conic_e57_wrong(file, "the size of a page is none", 40);
-  if (conic_load_bits(header + 16, 8) != file->n_bytes || file->n_bytes % file->page_bytes != 0)
+  if (conic_load_bits(header + 16, 8) != file->mapping.n_bytes || file->mapping.n_bytes % file->page_bytes != 0)
     return conic_e57_wrong(file, "the file is not as long as its header says: a part of it is missing", 16);
-  if (file->xml_offset >= file->n_bytes || file->xml_bytes > file->n_bytes - file->xml_offset)
+  if (file->xml_offset >= file->mapping.n_bytes || file->xml_bytes > file->mapping.n_bytes - file->xml_offset)
     return conic_e57_wrong(file, "the XML begins or ends past the end of the file", 24);
   return CONIC_OK;
 }
@@ -121,7 +107,7 @@ conic_status conic_e57_file_open(conic_input *input, conic_e57_file *file) {
   file->context = input->context;
   file->name = input->name;
   file->sound_page = UINT64_MAX;
-  conic_status status = take_e57_bytes(input, file);
+  conic_status status = conic_mapping_take(input, most_piped_bytes, &file->mapping);
   if (status == CONIC_OK)
     status = read_e57_header(file);
   if (status != CONIC_OK)
@@ -131,8 +117,6 @@ conic_status conic_e57_file_open(conic_input *input, conic_e57_file *file) {
 
 void conic_e57_file_close(conic_e57_file *file) {
   conic_mapping_close(file->context, &file->mapping);
-  conic_memory_release(file->context, file->copy);
-  file->copy = NULL;
 }
 
 void conic_e57_mend(unsigned char *bytes, size_t n_bytes) {

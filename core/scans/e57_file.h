@@ -12,9 +12,6 @@ typedef struct conic_e57_file {
   conic_context *context;
   const char *name; /* for messages */
   conic_mapping mapping;
-  unsigned char *copy; /* of a file from a pipe; else null */
-  const unsigned char *bytes;
-  uint64_t n_bytes;
   uint64_t page_bytes, xml_offset, xml_bytes; /* where the XML begins in the file, and how long it is */
   uint64_t sound_page;                        /* the last page whose sum was right; UINT64_MAX: none was checked */
 } conic_e57_file;

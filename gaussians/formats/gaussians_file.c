@@ -291,7 +291,7 @@ static conic_status read_input(conic_input *input, const char *path, const conic
   if (status == CONIC_OK && begins_as_ply(conic_input_bytes(input), conic_input_available(input)))
     return read_ply_scene(input, options, gaussians);
   if (status == CONIC_OK)
-    status = path && input->has_size ? conic_mapping_open(input->context, path, &mapping)
+    status = path && input->has_size ? conic_mapping_take(input, SIZE_MAX, &mapping)
                                      : conic_input_take_rest(input, SIZE_MAX, &mapping.bytes, &mapping.n_bytes);
   file.bytes = mapping.bytes;
   file.n_bytes = mapping.n_bytes;
