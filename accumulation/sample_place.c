@@ -7,6 +7,7 @@
 #include "conic/accumulate.h"
 #include "core/base/message.h"
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 #include "core/image/view_arguments.h"
 
 double conic_sample_time(uint64_t index) {
@@ -109,15 +110,6 @@ static void quaternion_of(const double m[3][4], double q[4]) {
     q[0] = scale * differences[largest - 1];
 }
 
-static void rows_of_quaternion(const double q[4], double m[3][4]) {
-  double w = q[0], x = q[1], y = q[2], z = q[3];
-  const double rows[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
-                             {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
-                             {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)}};
-  for (int row = 0; row < 3; row++)
-    memcpy(m[row], rows[row], sizeof rows[row]);
-}
-
 static void eye_of_camera(const conic_camera *camera, double eye[3]) {
   for (int axis = 0; axis < 3; axis++) {
     eye[axis] = 0.0;
@@ -132,7 +124,7 @@ static double on_the_way(double from, double to, double part) {
 
 conic_status conic_camera_between(conic_context *context, const conic_camera *from, const conic_camera *to, double part,
                                   conic_camera *camera) {
-  double first[4], second[4], q[4], eyes[2][3], eye[3], cosine = 0.0, square = 0.0;
+  double first[4], second[4], q[4], eyes[2][3], eye[3], rows[3][3], cosine = 0.0, square = 0.0;
   if (!from || !to || !camera || from->width != to->width || from->height != to->height || from->kind != to->kind ||
       from->lens != to->lens || !(fabs(part) < 1e6))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "camera: there is no way between cameras of different kinds");
@@ -155,12 +147,12 @@ conic_status conic_camera_between(conic_context *context, const conic_camera *fr
     *camera = part == 0.0 ? *from : *to;
     return CONIC_OK;
   }
-  rows_of_quaternion(q, between.cam_from_world);
+  conic_rotation_of(q, rows);
   for (int axis = 0; axis < 3; axis++)
     eye[axis] = on_the_way(eyes[0][axis], eyes[1][axis], part);
   for (int row = 0; row < 3; row++) {
-    const double *m = between.cam_from_world[row];
-    between.cam_from_world[row][3] = -(m[0] * eye[0] + m[1] * eye[1] + m[2] * eye[2]);
+    memcpy(between.cam_from_world[row], rows[row], sizeof rows[row]);
+    between.cam_from_world[row][3] = -conic_dot(rows[row], eye);
   }
   between.fx = on_the_way(from->fx, to->fx, part);
   between.fy = on_the_way(from->fy, to->fy, part);

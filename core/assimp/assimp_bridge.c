@@ -55,17 +55,17 @@ static void find_normal_rows(placement *place) {
 }
 
 /* What is sent of the vertices of a mesh. */
-typedef struct vertices {
+typedef struct sent_vertices {
   const conic_assimp_writer *w;
   const struct aiMesh *mesh;
   const placement *place;
   const struct aiVector3D *coordinates;
-} vertices;
+} sent_vertices;
 
 /* Writes so much of vertex i to the record's place. */
-typedef void vertex_writer(const vertices *v, unsigned i, void *to);
+typedef void vertex_writer(const sent_vertices *v, unsigned i, void *to);
 
-static void send_vertices(conic_assimp_writer *w, const vertices *v, vertex_writer *write, size_t size) {
+static void send_vertices(conic_assimp_writer *w, const sent_vertices *v, vertex_writer *write, size_t size) {
   double block[BLOCK][3];
   for (unsigned done = 0, m; done < v->mesh->mNumVertices; done += m) {
     m = v->mesh->mNumVertices - done < BLOCK ? v->mesh->mNumVertices - done : BLOCK;
@@ -75,7 +75,7 @@ static void send_vertices(conic_assimp_writer *w, const vertices *v, vertex_writ
   }
 }
 
-static void write_position(const vertices *v, unsigned i, void *to) {
+static void write_position(const sent_vertices *v, unsigned i, void *to) {
   const struct aiVector3D *p = &v->mesh->mVertices[i];
   for (int row = 0; row < 3; row++) {
     const double *r = v->place->rows[row];
@@ -83,7 +83,7 @@ static void write_position(const vertices *v, unsigned i, void *to) {
   }
 }
 
-static void write_normal(const vertices *v, unsigned i, void *to) {
+static void write_normal(const sent_vertices *v, unsigned i, void *to) {
   const struct aiVector3D *n = &v->mesh->mNormals[i];
   for (int row = 0; row < 3; row++) {
     const double *r = v->place->normal_rows[row];
@@ -91,13 +91,13 @@ static void write_normal(const vertices *v, unsigned i, void *to) {
   }
 }
 
-static void write_coordinate(const vertices *v, unsigned i, void *to) {
+static void write_coordinate(const sent_vertices *v, unsigned i, void *to) {
   ((float *)to)[0] = (float)v->coordinates[i].x;
   ((float *)to)[1] = (float)v->coordinates[i].y;
 }
 
 /* Transparent black means no colour in .amf files. */
-static void write_color(const vertices *v, unsigned i, void *to) {
+static void write_color(const sent_vertices *v, unsigned i, void *to) {
   const struct aiColor4D *color = &v->mesh->mColors[0][i];
   int is_unset = color->a <= 0 && strcmp(v->w->request->ending, "amf") == 0;
   ((float *)to)[0] = is_unset ? 1.0f : (float)color->r;
@@ -105,7 +105,7 @@ static void write_color(const vertices *v, unsigned i, void *to) {
   ((float *)to)[2] = is_unset ? 1.0f : (float)color->b;
 }
 
-static void write_alpha(const vertices *v, unsigned i, void *to) {
+static void write_alpha(const sent_vertices *v, unsigned i, void *to) {
   *(float *)to = (float)v->mesh->mColors[0][i].a;
 }
 
@@ -153,7 +153,7 @@ static void send_mesh(conic_assimp_writer *w, const struct aiMesh *mesh, const p
   record.fields = (has_normals ? CONIC_ASSIMP_NORMALS : 0u) | (coordinates ? CONIC_ASSIMP_COORDINATES : 0u) |
                   (mesh->mColors[0] ? CONIC_ASSIMP_COLORS : 0u) | (has_alphas ? CONIC_ASSIMP_ALPHAS : 0u);
   conic_assimp_send_bytes(w, &record, sizeof record);
-  const vertices v = {w, mesh, place, coordinates};
+  const sent_vertices v = {w, mesh, place, coordinates};
   send_vertices(w, &v, write_position, 3 * sizeof(double));
   if (has_normals)
     send_vertices(w, &v, write_normal, 3 * sizeof(float));

@@ -4,6 +4,7 @@
 
 #include "core/base/color.h"
 #include "core/base/real.h"
+#include "core/base/vectors.h"
 
 /* ln 2 in two parts; the first has zeros in its last bits, so that k·ln2_high is exact. */
 static const double ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
@@ -33,18 +34,9 @@ double conic_gaussian_color(double harmonic) {
   return encoded > 0.0 ? conic_srgb_decode(encoded) : 0.0;
 }
 
-/* Column i of the rotation matrix of a unit quaternion. */
-static void rotated_axis(const double q[4], int i, double axis[3]) {
-  int j = (i + 1) % 3, k = (i + 2) % 3;
-  double w = q[0], vi = q[1 + i], vj = q[1 + j], vk = q[1 + k];
-  axis[i] = 1.0 - 2.0 * (vj * vj + vk * vk);
-  axis[j] = 2.0 * (vi * vj + w * vk);
-  axis[k] = 2.0 * (vi * vk - w * vj);
-}
-
 void conic_gaussian_axes(const double log_scales[3], int n_scales, const double rotation[4], double tangent_u[3],
                          double tangent_v[3]) {
-  double q[4], length2 = 0.0;
+  double q[4], rows[3][3], length2 = 0.0;
   int i_normal = 2;
   for (int i = 0; i < 4; i++)
     length2 += rotation[i] * rotation[i];
@@ -56,12 +48,11 @@ void conic_gaussian_axes(const double log_scales[3], int n_scales, const double 
       if (log_scales[i] < log_scales[i_normal])
         i_normal = i;
   int i_u = (i_normal + 1) % 3, i_v = (i_normal + 2) % 3; /* t_u × t_v is the normal */
-  rotated_axis(q, i_u, tangent_u);
-  rotated_axis(q, i_v, tangent_v);
+  conic_rotation_of(q, rows);
   double size_u = scale > 0.0 ? conic_gaussian_exp(log_scales[i_u]) : 0.0;
   double size_v = scale > 0.0 ? conic_gaussian_exp(log_scales[i_v]) : 0.0;
   for (int axis = 0; axis < 3; axis++) {
-    tangent_u[axis] *= size_u;
-    tangent_v[axis] *= size_v;
+    tangent_u[axis] = rows[axis][i_u] * size_u;
+    tangent_v[axis] = rows[axis][i_v] * size_v;
   }
 }

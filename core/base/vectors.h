@@ -59,4 +59,18 @@ static inline int conic_normalize(double v[3]) {
   return is_good;
 }
 
+/* The rotation of a unit quaternion w, x, y, z. */
+static inline void conic_rotation_of(const double quaternion[4], double rows[3][3]) {
+  double w = quaternion[0], x = quaternion[1], y = quaternion[2], z = quaternion[3];
+  rows[0][0] = 1.0 - 2.0 * (y * y + z * z);
+  rows[0][1] = 2.0 * (x * y - w * z);
+  rows[0][2] = 2.0 * (x * z + w * y);
+  rows[1][0] = 2.0 * (x * y + w * z);
+  rows[1][1] = 1.0 - 2.0 * (x * x + z * z);
+  rows[1][2] = 2.0 * (y * z - w * x);
+  rows[2][0] = 2.0 * (x * z - w * y);
+  rows[2][1] = 2.0 * (y * z + w * x);
+  rows[2][2] = 1.0 - 2.0 * (x * x + y * y);
+}
+
 #endif

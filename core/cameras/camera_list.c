@@ -107,11 +107,9 @@ int conic_camera_rotation(const double quaternion[4], double rows[3][3]) {
                        quaternion[3] * quaternion[3]);
   if (!(length > 0.0 && length < 1e150))
     return 0;
-  double w = quaternion[0] / length, x = quaternion[1] / length, y = quaternion[2] / length, z = quaternion[3] / length;
-  const double made[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
-                             {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
-                             {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)}};
-  memcpy(rows, made, sizeof made);
+  const double unit[4] = {quaternion[0] / length, quaternion[1] / length, quaternion[2] / length,
+                          quaternion[3] / length};
+  conic_rotation_of(unit, rows);
   return 1;
 }
 

@@ -7,6 +7,7 @@
 #include "core/base/message.h"
 #include "core/base/real.h"
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 #include "core/scans/e57_file.h"
 #include "core/scans/sight.h"
 #include "core/splats/point_fields.h"
@@ -55,16 +56,6 @@ static int has_station(const conic_e57_scan *scan) {
          (conic_e57_column_find(scan, "rowIndex") >= 0 && conic_e57_column_find(scan, "columnIndex") >= 0);
 }
 
-static void find_scan_rotation(e57_reader *reader) {
-  const double *q = reader->scan->rotation, w = q[0], x = q[1], y = q[2], z = q[3];
-  const double rotation[3][3] = {
-      {1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
-      {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
-      {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)},
-  };
-  memcpy(reader->rotation, rotation, sizeof rotation);
-}
-
 /* Takes the limits that the scan states, else those of the column's type. */
 static void find_color_scale(e57_reader *reader) {
   const conic_e57_column *red = &reader->scan->columns[reader->columns[COLOR]];
@@ -101,7 +92,7 @@ static conic_status choose_columns(e57_reader *reader) {
     reader->columns[slot] = field >= 0 ? conic_e57_column_find(scan, name_of_field(reader, field)) : -1;
   }
   reader->has_sights = has_station(scan);
-  find_scan_rotation(reader);
+  conic_rotation_of(reader->scan->rotation, reader->rotation);
   if (reader->columns[COLOR] >= 0)
     find_color_scale(reader);
   return CONIC_OK;

@@ -37,10 +37,9 @@ static void place_axes(const conic_gaussian_view *view, const double q[4], doubl
   const int as_is = view->rules->takes_rotation_as_is;
   int is_as_it_is = as_is > 1 || (as_is && squares - 1.0 < unit_slack && 1.0 - squares < unit_slack);
   double one_over = is_as_it_is ? 1.0 : 1.0 / sqrt(squares);
-  double w = q[0] * one_over, x = q[1] * one_over, y = q[2] * one_over, z = q[3] * one_over;
-  const double rows[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
-                             {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
-                             {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)}};
+  const double unit[4] = {q[0] * one_over, q[1] * one_over, q[2] * one_over, q[3] * one_over};
+  double rows[3][3];
+  conic_rotation_of(unit, rows);
   memcpy(p->world, rows, sizeof rows);
   for (int axis = 0; axis < 3; axis++)
     for (int row = 0; row < 3; row++) {

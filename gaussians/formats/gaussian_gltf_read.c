@@ -157,19 +157,12 @@ typedef struct gltf_place {
 
 static const gltf_place no_place = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1.0, {0, 0, 0}};
 
-static void rotation_of(const double q[4], double r[3][3]) {
-  double x = q[0], y = q[1], z = q[2], w = q[3];
-  const double matrix[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-                               {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-                               {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
-  memcpy(r, matrix, sizeof matrix);
-}
-
 /* A node's own place; 0 where it stretches or mirrors. */
 static int find_place(const conic_gltf_node *node, gltf_place *place) {
+  const double *turn = node->rotation, quaternion[4] = {turn[3], turn[0], turn[1], turn[2]};
   *place = no_place;
   if (!node->has_matrix) {
-    rotation_of(node->rotation, place->turn);
+    conic_rotation_of(quaternion, place->turn);
     place->scale = node->scale[0];
     memcpy(place->shift, node->translation, sizeof place->shift);
     return node->scale[0] > 0.0 && node->scale[0] == node->scale[1] && node->scale[0] == node->scale[2];
