@@ -23,11 +23,14 @@ void conic_http_let_go(conic_http_ranges *http, conic_http_body *held) {
   conic_memory_release(http->base.context, held);
 }
 
-/* Keeps what arrives; room grows with it, and not with what a server claims. */
-static int keep_received(conic_http_ranges *http, conic_http_body *to, const char *data, size_t n, size_t most) {
+/* Keeps what arrives; room grows with it, and not with what a server claims. Of several parts, which are answered one
+ * by one, nothing may move: they are few bytes together. */
+static int keep_received(conic_http_transfer *t, const char *data, size_t n) {
+  conic_http_ranges *http = t->owner;
+  conic_http_body *to = t->body;
   if (n > to->room - to->n) {
     size_t room = 2 * to->room + n + CONIC_HTTP_PROBE_BYTES;
-    room = room < most ? room : most;
+    room = room < t->n_expected && t->n_parts < 2 ? room : t->n_expected;
     if (conic_memory_grow(http->base.context, &to->bytes, to->n, room, 1) != CONIC_OK)
       return 0;
     to->room = room;
@@ -36,6 +39,14 @@ static int keep_received(conic_http_ranges *http, conic_http_body *to, const cha
   to->n += n;
   http->base.n_received += n;
   return 1;
+}
+
+/* How long the server took to answer at all, at best. */
+static void note_arrival(conic_http_transfer *t) {
+  double now = conic_seconds_now();
+  if (t->body->n == 0 && !(t->owner->latency_s < now - t->came_s))
+    t->owner->latency_s = now - t->came_s;
+  t->came_s = now;
 }
 
 static int refuse_answer(conic_http_transfer *t, conic_http_fault why, const char *reason) {
@@ -134,7 +145,8 @@ static size_t on_body(char *data, size_t one, size_t n, void *cookie) {
                       : "the server sends more than was asked for");
     return 0;
   }
-  if (!keep_received(t->owner, t->body, data, n, t->n_expected)) {
+  note_arrival(t);
+  if (!keep_received(t, data, n)) {
     refuse_answer(t, CONIC_HTTP_BOUND, "out of memory");
     return 0;
   }
@@ -193,8 +205,8 @@ conic_status conic_http_transfer_begin(conic_http_transfer *t) {
     return CONIC_ERROR_MEMORY;
   }
   t->is_busy = 1;
-  t->window_s = conic_seconds_now();
-  t->window_n = 0;
+  t->came_s = t->window_s = conic_seconds_now();
+  t->window_n = t->n_answered = 0;
   return CONIC_OK;
 }
 

@@ -42,8 +42,9 @@ typedef struct conic_http_transfer {
   size_t n_expected;
   conic_http_body *body;
   conic_queued_range *parts;
-  size_t n_parts, parts_room;
+  size_t n_parts, parts_room, n_answered;
   conic_http_response response;
+  double came_s;          /* when it began, or when bytes came last */
   double window_s;        /* when it was last checked whether it stalls */
   size_t window_n;        /* bytes that it had then */
   conic_http_fault fault; /* of its failure, if `reason`, which describes it, is not empty */
@@ -65,6 +66,10 @@ typedef struct conic_http_ranges {
   CURLM *multi;
   int is_global; /* curl_global_init was called */
   conic_http_transfer transfers[CONIC_HTTP_CONNECTIONS];
+  double latency_s, bytes_a_second; /* of the link, as measured; the least latency */
+  double measured_s;                /* since then the bytes beyond measured_n come; 0: none are on their way */
+  uint64_t measured_n;
+  double beside_bytes;   /* what a file beside the first has, on average of late */
   conic_http_body *head; /* the file's beginning, or all of it */
   char tag[CONIC_HTTP_TAG];
   conic_http_ready *ready;

@@ -25,7 +25,9 @@ typedef struct http_server {
   atomic_int n_requests, n_connections, n_busy, is_stopping;
   atomic_char is_mended[HTTP_MENDED]; /* a place that was wrong once */
   atomic_int n_good;                  /* so many answers are good before it misbehaves */
-  atomic_llong link_free_us;          /* of a link: when it has sent what it was given so far */
+  long long link_bytes_a_second;      /* of a link: 12.5 MB unless set, */
+  int link_ms;                        /* and how long it takes to answer: 20 ms */
+  atomic_llong link_free_us;          /* when it has sent what it was given so far */
 } http_server;
 
 typedef struct http_connection {
@@ -155,17 +157,17 @@ static inline long long http_now_us(void) {
   return (long long)now.tv_sec * 1000000 + now.tv_nsec / 1000;
 }
 
-/* Over a link that all connections share: 20 ms and 100 Mbit/s. */
+/* Over a link that all connections share. */
 static inline int http_answer_by_link(http_server *server, int socket, const http_request *r) {
-  enum { PIECE = 12500 }; /* a millisecond's */
-  size_t n = r->last - r->first + 1;
-  http_pause(20);
+  long long rate = server->link_bytes_a_second;
+  size_t most = rate > 2000000 ? (size_t)rate / 1000 : 2000, n = r->last - r->first + 1;
+  http_pause(server->link_ms);
   int is_open = http_head(server, socket, r, n, 0, "a");
-  for (size_t at = 0; at < n && is_open; at += PIECE) {
-    size_t piece = n - at < PIECE ? n - at : PIECE;
+  for (size_t at = 0; at < n && is_open; at += most) {
+    size_t piece = n - at < most ? n - at : most;
     long long free_us = atomic_load(&server->link_free_us), now_us = http_now_us(), sent_us;
     do
-      sent_us = (free_us > now_us ? free_us : now_us) + (long long)piece * 8 / 100;
+      sent_us = (free_us > now_us ? free_us : now_us) + (long long)piece * 1000000 / rate;
     while (!atomic_compare_exchange_weak(&server->link_free_us, &free_us, sent_us));
     while (http_now_us() < sent_us)
       http_pause(1);
@@ -307,6 +309,8 @@ static inline void http_server_start(http_server *server, const unsigned char *b
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   server->bytes = bytes;
   server->n_bytes = n_bytes;
+  server->link_bytes_a_second = 12500000;
+  server->link_ms = 20;
   atomic_store(&server->n_good, n_good);
   server->listener = socket(AF_INET, SOCK_STREAM, 0);
   if (server->listener < 0 || bind(server->listener, (struct sockaddr *)&address, sizeof address) != 0 ||

@@ -8,6 +8,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/base/real.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
 #include "lod/layers/draw/layers_gather.h"
@@ -69,6 +70,25 @@ static conic_status choose_first(conic_layers_picture *d) {
   return choose_clouds(d, NULL);
 }
 
+/* Ranks the clouds that are needed for a picture that the time may run out for: first what makes the largest errors on
+ * the screen smaller. Where these differ by less than a factor of 2, clouds keep the order of the file, in which
+ * neighbours are asked for together. */
+static conic_status rank_clouds(const conic_layers_picture *d, uint64_t **ranks) {
+  enum { ALL_BUT_EXPONENT = 52 };
+  const conic_layers *layers = d->layers;
+  *ranks = conic_memory_allocate_zeroed(layers->context, layers->header.n_clouds, sizeof **ranks);
+  for (uint32_t i = 1; i < layers->header.n_clouds && *ranks; i++) {
+    uint32_t above = layers->entries[i].parent;
+    conic_layers_sight sight;
+    if (!d->needed[i])
+      continue;
+    conic_layers_look(&d->view, &layers->entries[above], &sight);
+    uint64_t rank = UINT64_MAX - (conic_bits_of_double(sight.error_px) >> ALL_BUT_EXPONENT);
+    (*ranks)[i] = rank > (*ranks)[above] ? rank : (*ranks)[above];
+  }
+  return *ranks ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
 /* Reads what the cut needs, as far as there is time and room, and makes it coarser where something is missing. */
 static conic_status make_do(conic_layers_picture *d, double until_s) {
   conic_layers *layers = d->layers;
@@ -82,7 +102,12 @@ static conic_status make_do(conic_layers_picture *d, double until_s) {
   d->holding = (conic_layers_loading){
       .clouds = d->held, .until_s = until_s, .may_miss = 1, .tolerates_damage = d->options.tolerates_damage};
   d->holding.n = conic_layers_store_fit(layers, d->held, n, conic_layers_cache_bytes(layers));
-  conic_status status = conic_layers_store_load(layers, &d->holding);
+  uint64_t *ranks = NULL;
+  conic_status status = layers->is_remote && until_s < HUGE_VAL ? rank_clouds(d, &ranks) : CONIC_OK;
+  d->holding.ranks = ranks;
+  if (status == CONIC_OK)
+    status = conic_layers_store_load(layers, &d->holding);
+  conic_memory_release(layers->context, ranks);
   if (status != CONIC_OK) {
     d->holding.n = 0;
     return status;

@@ -33,6 +33,7 @@ void conic_layers_store_close(conic_layers *layers);
 typedef struct conic_layers_loading {
   const uint32_t *clouds; /* ascending */
   size_t n;
+  const uint64_t *ranks; /* a cloud of the file: the least is wanted first; null: in the file's order */
   double until_s;       /* by conic_seconds_now; infinite: as long as it takes */
   int may_miss;         /* what does not come is left out, */
   int tolerates_damage; /* and so is what is wrong, after a warning */
