@@ -29,7 +29,7 @@ static int keep_received(conic_http_transfer *t, const char *data, size_t n) {
   conic_http_ranges *http = t->owner;
   conic_http_body *to = t->body;
   if (n > to->room - to->n) {
-    size_t room = 2 * to->room + n + CONIC_HTTP_PROBE_BYTES;
+    size_t room = 2 * to->room + n + CONIC_RANGES_HEAD_BYTES;
     room = room < t->n_expected && t->n_parts < 2 ? room : t->n_expected;
     if (conic_memory_grow(http->base.context, &to->bytes, to->n, room, 1) != CONIC_OK)
       return 0;
@@ -47,6 +47,7 @@ static void note_arrival(conic_http_transfer *t) {
   if (t->body->n == 0 && !(t->owner->latency_s < now - t->came_s))
     t->owner->latency_s = now - t->came_s;
   t->came_s = now;
+  t->came_n = t->owner->base.n_received + 1;
 }
 
 static int refuse_answer(conic_http_transfer *t, conic_http_fault why, const char *reason) {
@@ -110,7 +111,7 @@ static int accept_response(conic_http_transfer *t) {
     return refuse_answer(t, CONIC_HTTP_WRONG, "the server does not say which range it sends");
   if (t->is_probe) {
     http->base.size = r->size;
-    t->n_expected = r->size < CONIC_HTTP_PROBE_BYTES ? (size_t)r->size : CONIC_HTTP_PROBE_BYTES;
+    t->n_expected = r->size < CONIC_RANGES_HEAD_BYTES ? (size_t)r->size : CONIC_RANGES_HEAD_BYTES;
     memcpy(http->tag, r->tag, sizeof http->tag);
   }
   if (r->size != http->base.size || (r->tag[0] && http->tag[0] && strcmp(r->tag, http->tag) != 0))
@@ -207,6 +208,7 @@ conic_status conic_http_transfer_begin(conic_http_transfer *t) {
   t->is_busy = 1;
   t->came_s = t->window_s = conic_seconds_now();
   t->window_n = t->n_answered = 0;
+  t->came_n = http->base.n_received;
   return CONIC_OK;
 }
 

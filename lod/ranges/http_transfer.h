@@ -12,8 +12,7 @@
 #include "lod/ranges/ranges_backend.h"
 
 enum {
-  CONIC_HTTP_PROBE_BYTES = 1 << 16, /* the first request's: it says how large the file is, and holds its beginning */
-  CONIC_HTTP_CONNECTIONS = 16       /* at most */
+  CONIC_HTTP_CONNECTIONS = 16 /* at most */
 };
 
 /* Bytes that arrived; the answers in them share them. */
@@ -44,7 +43,8 @@ typedef struct conic_http_transfer {
   conic_queued_range *parts;
   size_t n_parts, parts_room, n_answered;
   conic_http_response response;
-  double came_s;          /* when it began, or when bytes came last */
+  double came_s;          /* when it began, or when bytes came last, */
+  uint64_t came_n;        /* and what all requests together had brought by then */
   double window_s;        /* when it was last checked whether it stalls */
   size_t window_n;        /* bytes that it had then */
   conic_http_fault fault; /* of its failure, if `reason`, which describes it, is not empty */
@@ -70,7 +70,8 @@ typedef struct conic_http_ranges {
   double measured_s;                /* since then the bytes beyond measured_n come; 0: none are on their way */
   uint64_t measured_n;
   double beside_bytes;   /* what a file beside the first has, on average of late */
-  conic_http_body *head; /* the file's beginning, or all of it */
+  conic_http_body *head; /* the file's beginning, or all of it, */
+  int is_cut;            /* or what there was in time of a server that sends no ranges */
   char tag[CONIC_HTTP_TAG];
   conic_http_ready *ready;
   size_t first_ready, n_ready, ready_room; /* those from first_ready on wait */

@@ -37,6 +37,9 @@ static const double request_s = 0.25, ahead_s = 0.1;
 /* Within so long the link's speed is measured; who sends nothing for so long is not waited for. */
 static const double measuring_s = 0.05, silence_s = 1.0;
 
+/* A request is left behind that brings nothing while others bring what the link does in so long. */
+static const double behind_s = 2.0;
+
 static conic_http_ready *add_ready(conic_http_ranges *http) {
   if (http->first_ready == http->n_ready)
     http->first_ready = http->n_ready = 0;
@@ -116,6 +119,16 @@ static void finish_transfer(conic_http_transfer *t, CURLcode code) {
     put_off(http, t, &t->parts[i]);
   if (is_good && t->is_beside)
     http->beside_bytes = 0.5 * (http->beside_bytes + (double)t->body->n);
+  t->n_parts = 0;
+  conic_http_transfer_end(t);
+}
+
+/* The server has not begun to answer, and others' answers come: it was not its turn. */
+static void wait_again(conic_http_transfer *t) {
+  conic_http_ranges *http = t->owner;
+  for (size_t i = 0; i < t->n_parts; i++)
+    if (conic_range_queue_push(http->base.context, &http->base.queue, &t->parts[i]) != CONIC_OK)
+      give_up(http, &t->parts[i].range, CONIC_HTTP_BOUND, "out of memory");
   t->n_parts = 0;
   conic_http_transfer_end(t);
 }
@@ -202,35 +215,46 @@ static void keep_neighbours(conic_http_ranges *http, conic_http_transfer *t, uin
       give_up(http, &parts[i].range, CONIC_HTTP_BOUND, "out of memory");
 }
 
-/* Takes the next range, and of those that the link brings soon after it what lies next to it: 1, or 0 where none is to
- * be had now. */
-static int gather_parts(conic_http_ranges *http, conic_http_transfer *t) {
+/* Whether a range is answered without a request. */
+static int is_answered_at_once(conic_http_ranges *http, const conic_queued_range *item) {
+  int is_here = !item->range.file[0] && end_of(item) <= http->head->n;
+  if (is_here && !answer_from(http, http->head, 0, &item->range))
+    http->base.n_pending--;
+  if (!is_here && http->is_cut && !item->range.file[0])
+    give_up(http, &item->range, CONIC_HTTP_SILENCE, "the server sends no ranges, and the time is up");
+  return is_here || (http->is_cut && !item->range.file[0]);
+}
+
+/* Takes ranges that wait: what the link brings within the time of a request, or one that has to be asked for alone. */
+static void take_waiting(conic_http_ranges *http, conic_http_transfer *t, double most) {
   conic_range_queue *queue = &http->base.queue;
   conic_queued_range item;
-  double most = request_s * http->bytes_a_second, n_bytes = 0.0;
-  uint64_t last = 0;
+  double n_bytes = 0.0;
+  int is_alone = 0;
   t->n_parts = 0;
-  while (n_bytes <= most && n_bytes < BATCH_BYTES && conic_range_queue_pop(queue, conic_seconds_now(), &item)) {
-    if (!item.range.file[0] && end_of(&item) <= http->head->n) {
-      if (!answer_from(http, http->head, 0, &item.range))
-        http->base.n_pending--;
+  while (!is_alone && n_bytes <= most && conic_range_queue_pop(queue, conic_seconds_now(), &item)) {
+    if (is_answered_at_once(http, &item))
       continue;
-    }
-    int is_alone = item.range.file[0] || item.not_before_s > 0.0, is_room = !is_alone || t->n_parts == 0;
-    if (is_room && conic_memory_reserve(http->base.context, &t->parts, t->n_parts, t->n_parts + 1, &t->parts_room,
-                                        sizeof *t->parts) == CONIC_OK)
-      t->parts[t->n_parts++] = item;
-    else if (is_room || conic_range_queue_push(http->base.context, queue, &item) != CONIC_OK)
+    is_alone = item.range.file[0] || item.not_before_s > 0.0;
+    conic_status status = is_alone && t->n_parts > 0 ? conic_range_queue_push(http->base.context, queue, &item)
+                                                     : conic_memory_append(http->base.context, &t->parts, &t->n_parts,
+                                                                           &t->parts_room, &item, sizeof item);
+    if (status != CONIC_OK)
       give_up(http, &item.range, CONIC_HTTP_BOUND, "out of memory");
-    if (is_alone)
-      break;
     n_bytes += (double)item.range.n_bytes;
   }
+}
+
+/* Takes the next range, and what lies next to it of those that come soon: 1, or 0 where none is to be had now. */
+static int gather_parts(conic_http_ranges *http, conic_http_transfer *t) {
+  double most = request_s * http->bytes_a_second;
+  uint64_t last = 0;
+  take_waiting(http, t, most < BATCH_BYTES ? most : BATCH_BYTES);
   if (t->n_parts == 0)
     return 0;
-  if (t->parts[0].range.file[0] && name_part(http, t))
-    return 1;
   if (t->parts[0].range.file[0]) {
+    if (name_part(http, t))
+      return 1;
     give_up(http, &t->parts[0].range, CONIC_HTTP_BOUND, "out of memory");
     return 0;
   }
@@ -272,7 +296,10 @@ static void take_finished(conic_http_ranges *http) {
   }
   for (int i = 0; i < http->options.n_connections; i++) {
     conic_http_transfer *t = &http->transfers[i];
-    if (t->is_busy && conic_http_transfer_is_stalled(t))
+    int is_behind = t->is_busy && (double)(http->base.n_received - t->came_n) > behind_s * http->bytes_a_second;
+    if (is_behind && t->body->n == 0)
+      wait_again(t);
+    else if (is_behind || (t->is_busy && conic_http_transfer_is_stalled(t)))
       finish_transfer(t, CURLE_OPERATION_TIMEDOUT);
     else if (t->is_busy && t->n_parts > 1)
       answer_parts(t);
@@ -309,7 +336,7 @@ static int next(conic_ranges *ranges, double wait_seconds, conic_range_answer *a
   for (;;) {
     if (http->is_dead)
       give_up_all(http);
-    else if (wait_seconds >= 0.0)
+    else if (wait_seconds >= 0.0 || http->is_cut)
       send_requests(http);
     take_finished(http);
     if (take_ready(http, answer)) {
@@ -403,7 +430,7 @@ static conic_status probe(conic_http_ranges *http, conic_http_transfer *t, int *
   conic_status status;
   t->is_probe = 1;
   t->offset = 0;
-  t->n_expected = CONIC_HTTP_PROBE_BYTES;
+  t->n_expected = CONIC_RANGES_HEAD_BYTES;
   *is_good = 0;
   if (conic_http_transfer_begin(t) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
@@ -417,15 +444,17 @@ static conic_status probe(conic_http_ranges *http, conic_http_transfer *t, int *
       status = CONIC_OK;
       break;
     }
-    status = go_on_opening(http, 100);
-    if (status != CONIC_OK || conic_http_transfer_is_stalled(t))
+    http->is_cut = t->is_whole && t->response.has_length && conic_seconds_now() >= http->options.until_s;
+    *is_good = http->is_cut;
+    status = http->is_cut ? CONIC_OK : go_on_opening(http, 100);
+    if (http->is_cut || status != CONIC_OK || conic_http_transfer_is_stalled(t))
       break;
   }
   if (*is_good) {
     double elapsed = t->came_s - (t->window_s + http->latency_s);
     http->bytes_a_second = (double)t->body->n / (elapsed > 1e-3 ? elapsed : 1e-3);
     if (t->is_whole)
-      http->base.size = t->body->n;
+      http->base.size = http->is_cut ? t->response.length : t->body->n;
     http->head = t->body;
     http->head->n_holders++;
   }
@@ -499,7 +528,7 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
   http->base.backend = &backend;
   http->options = *options;
   http->latency_s = HUGE_VAL;
-  http->beside_bytes = CONIC_HTTP_PROBE_BYTES;
+  http->beside_bytes = CONIC_RANGES_HEAD_BYTES;
   if (http->options.n_connections < 1 || http->options.n_connections > CONIC_HTTP_CONNECTIONS)
     http->options.n_connections = http->options.n_connections < 1 ? 1 : CONIC_HTTP_CONNECTIONS;
   conic_status status = start(http, url);

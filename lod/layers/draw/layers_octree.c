@@ -399,8 +399,23 @@ static conic_status measure_first(conic_layers *layers) {
   conic_status status = conic_ranges_read(layers->ranges, layers->name, &range, layers->until_s, &bytes, &n_bytes);
   if (status == CONIC_OK)
     status = unpack_first(layers, entry, bytes, n_bytes);
-  conic_memory_release(layers->context, bytes);
-  return status;
+  if (status != CONIC_OK || !layers->is_remote) {
+    conic_memory_release(layers->context, bytes);
+    return status;
+  }
+  layers->octree->first_bytes = bytes;
+  layers->octree->n_first_bytes = n_bytes;
+  layers->octree->first_node = layers->octree->node_of[entry];
+  return CONIC_OK;
+}
+
+unsigned char *conic_layers_octree_take_first(conic_layers *layers, uint32_t entry, size_t *n_bytes) {
+  conic_layers_octree *o = layers->octree;
+  unsigned char *bytes = o->node_of[entry] == o->first_node ? o->first_bytes : NULL;
+  if (bytes)
+    o->first_bytes = NULL;
+  *n_bytes = o->n_first_bytes;
+  return bytes;
 }
 
 conic_status conic_layers_octree_open(conic_layers *layers, const conic_hierarchy_kind *kind) {
@@ -436,6 +451,7 @@ void conic_layers_octree_close(conic_layers *layers) {
     conic_memory_release(layers->context, o->guides[i]);
   conic_memory_release(layers->context, o->guides);
   conic_memory_release(layers->context, o->is_lost);
+  conic_memory_release(layers->context, o->first_bytes);
   conic_memory_release(layers->context, o->colors.table);
   conic_memory_release(layers->context, o);
   layers->octree = NULL;

@@ -174,17 +174,6 @@ static conic_status take_failure(conic_layers *layers, const arrival *one, conic
   return CONIC_OK;
 }
 
-/* A .lpc's index was checked; another hierarchy may point anywhere. */
-static conic_status ask_for_cloud(conic_layers *layers, uint32_t cloud, conic_layers_loading *loading) {
-  conic_range range = range_of_cloud(layers, cloud);
-  range.priority = loading->ranks ? loading->ranks[cloud] : cloud;
-  if (conic_ranges_holds(layers->ranges, &range))
-    return conic_ranges_request(layers->ranges, &range);
-  const arrival lost = {
-      .answer = {.id = cloud, .status = CONIC_ERROR_INPUT, .reason = "its bytes lie outside the file"}};
-  return take_failure(layers, &lost, loading);
-}
-
 /* Fetches what has come by now, or within the wait; where that is below 0, nothing more is asked for. */
 static void collect_clouds(conic_layers *layers, double wait_s, arrivals *a) {
   for (a->n = 0; a->n < DECODED_TOGETHER; a->n++) {
@@ -238,6 +227,25 @@ static conic_status take_arrivals(conic_layers *layers, arrivals *a, conic_layer
       conic_ranges_release(layers->ranges, &one->answer);
   }
   return status;
+}
+
+/* A .lpc's index was checked; another hierarchy may point anywhere. */
+static conic_status ask_for_cloud(conic_layers *layers, uint32_t cloud, conic_layers_loading *loading) {
+  conic_range range = range_of_cloud(layers, cloud);
+  range.priority = loading->ranks ? loading->ranks[cloud] : cloud;
+  unsigned char *bytes = layers->octree ? conic_layers_octree_take_first(layers, cloud, &range.n_bytes) : NULL;
+  if (bytes) {
+    arrivals a = {.layers = layers, .n = 1};
+    a.all[0].answer = (conic_range_answer){.id = cloud, .bytes = bytes, .n_bytes = range.n_bytes};
+    conic_status status = take_arrivals(layers, &a, loading);
+    conic_memory_release(layers->context, bytes);
+    return status;
+  }
+  if (conic_ranges_holds(layers->ranges, &range))
+    return conic_ranges_request(layers->ranges, &range);
+  const arrival lost = {
+      .answer = {.id = cloud, .status = CONIC_ERROR_INPUT, .reason = "its bytes lie outside the file"}};
+  return take_failure(layers, &lost, loading);
 }
 
 /* Waits for what was asked for. What has come when the time is up is taken. */

@@ -34,11 +34,11 @@ typedef struct conic_layers_loading {
   const uint32_t *clouds; /* ascending */
   size_t n;
   const uint64_t *ranks; /* a cloud of the file: the least is wanted first; null: in the file's order */
-  double until_s;       /* by conic_seconds_now; infinite: as long as it takes */
-  int may_miss;         /* what does not come is left out, */
-  int tolerates_damage; /* and so is what is wrong, after a warning */
-  uint64_t n_missing;   /* set: so many were left out */
-  uint64_t n_damaged;   /* set: so many of these were wrong */
+  double until_s;        /* by conic_seconds_now; infinite: as long as it takes */
+  int may_miss;          /* what does not come is left out, */
+  int tolerates_damage;  /* and so is what is wrong, after a warning */
+  uint64_t n_missing;    /* set: so many were left out */
+  uint64_t n_damaged;    /* set: so many of these were wrong */
 } conic_layers_loading;
 
 /* Brings clouds into memory, where they stay until conic_layers_store_unpin. On failure none is held. Errors: INPUT
