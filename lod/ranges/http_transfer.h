@@ -12,7 +12,8 @@
 #include "lod/ranges/ranges_backend.h"
 
 enum {
-  CONIC_HTTP_CONNECTIONS = 16 /* at most */
+  CONIC_HTTP_PROBE_BYTES = 1 << 16, /* the first request's: it says how large the file is, and holds its beginning */
+  CONIC_HTTP_CONNECTIONS = 16       /* at most */
 };
 
 /* Bytes that arrived; the answers in them share them. */
@@ -39,6 +40,7 @@ typedef struct conic_http_transfer {
   char *own_url;          /* that file's */
   uint64_t offset;
   size_t n_expected;
+  size_t n_here; /* of these, so many that came with the first request, and are not asked for */
   conic_http_body *body;
   conic_queued_range *parts;
   size_t n_parts, parts_room, n_answered;

@@ -26,9 +26,6 @@ typedef struct conic_ranges_options {
 /* 10 s, 15 s, 4 retries from 0.2 s on, 4 connections, 512 MiB, no end. */
 void conic_ranges_options_init(conic_ranges_options *options);
 
-/* Opening a URL brings so much of the file's beginning along. */
-enum { CONIC_RANGES_HEAD_BYTES = 1 << 16 };
-
 /* Whether a name is a URL. */
 int conic_ranges_is_url(const char *name);
 

@@ -297,7 +297,7 @@ static void take_finished(conic_http_ranges *http) {
   for (int i = 0; i < http->options.n_connections; i++) {
     conic_http_transfer *t = &http->transfers[i];
     int is_behind = t->is_busy && (double)(http->base.n_received - t->came_n) > behind_s * http->bytes_a_second;
-    if (is_behind && t->body->n == 0)
+    if (is_behind && t->body->n == t->n_here)
       wait_again(t);
     else if (is_behind || (t->is_busy && conic_http_transfer_is_stalled(t)))
       finish_transfer(t, CURLE_OPERATION_TIMEDOUT);
@@ -430,7 +430,7 @@ static conic_status probe(conic_http_ranges *http, conic_http_transfer *t, int *
   conic_status status;
   t->is_probe = 1;
   t->offset = 0;
-  t->n_expected = CONIC_RANGES_HEAD_BYTES;
+  t->n_expected = CONIC_HTTP_PROBE_BYTES;
   *is_good = 0;
   if (conic_http_transfer_begin(t) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
@@ -528,7 +528,7 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
   http->base.backend = &backend;
   http->options = *options;
   http->latency_s = HUGE_VAL;
-  http->beside_bytes = CONIC_RANGES_HEAD_BYTES;
+  http->beside_bytes = CONIC_HTTP_PROBE_BYTES;
   if (http->options.n_connections < 1 || http->options.n_connections > CONIC_HTTP_CONNECTIONS)
     http->options.n_connections = http->options.n_connections < 1 ? 1 : CONIC_HTTP_CONNECTIONS;
   conic_status status = start(http, url);

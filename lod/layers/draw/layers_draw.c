@@ -71,11 +71,10 @@ static conic_status choose_first(conic_layers_picture *d) {
   return choose_clouds(d, NULL);
 }
 
-/* Ranks the clouds that are needed for a picture that the time may run out for: first what makes the largest errors on
- * the screen smaller. Where these differ by less than a factor of 2, clouds keep the order of the file, in which
- * neighbours are asked for together. */
+/* Ranks the clouds that are needed where time may run out: first what makes the largest errors on the screen smaller.
+ * Errors that differ by less than a factor of 2 count as one, so that neighbours in the file are asked for together;
+ * but a place is only finer once all of its children are there. */
 static conic_status rank_clouds(const conic_layers_picture *d, uint64_t **ranks) {
-  enum { ALL_BUT_EXPONENT = 52 };
   const conic_layers *layers = d->layers;
   *ranks = conic_memory_allocate_zeroed(layers->context, layers->header.n_clouds, sizeof **ranks);
   for (uint32_t i = 1; i < layers->header.n_clouds && *ranks; i++) {
@@ -84,7 +83,7 @@ static conic_status rank_clouds(const conic_layers_picture *d, uint64_t **ranks)
     if (!d->needed[i])
       continue;
     conic_layers_look(&d->view, &layers->entries[above], &sight);
-    uint64_t rank = UINT64_MAX - (conic_bits_of_double(sight.error_px) >> ALL_BUT_EXPONENT);
+    uint64_t exponent = conic_bits_of_double(sight.error_px) >> 52, rank = (2047 - exponent) << 32 | above;
     (*ranks)[i] = rank > (*ranks)[above] ? rank : (*ranks)[above];
   }
   return *ranks ? CONIC_OK : CONIC_ERROR_MEMORY;

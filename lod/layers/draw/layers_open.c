@@ -58,9 +58,7 @@ static conic_status read_bytes(conic_layers *layers, uint64_t offset, uint64_t n
   conic_status status = CONIC_OK;
   *bytes = NULL;
   while (done < n_bytes && status == CONIC_OK) {
-    size_t most = offset + done < CONIC_RANGES_HEAD_BYTES ? (size_t)(CONIC_RANGES_HEAD_BYTES - offset - done)
-                                                          : PIECE_BYTES,
-           piece = n_bytes - done < most ? (size_t)(n_bytes - done) : most;
+    size_t piece = n_bytes - done < PIECE_BYTES ? (size_t)(n_bytes - done) : PIECE_BYTES;
     if (room - done < piece) {
       room = 2 * room + piece < n_bytes ? 2 * room + piece : (size_t)n_bytes;
       status = conic_memory_grow(layers->context, bytes, done, room, 1);

@@ -188,6 +188,15 @@ static void collect_clouds(conic_layers *layers, double wait_s, arrivals *a) {
   }
 }
 
+conic_status conic_layers_store_allocate(const conic_layers *layers, uint32_t cloud, conic_layers_cloud **made) {
+  *made = conic_memory_allocate(layers->context, bytes_of(layers, cloud), 1);
+  if (!*made)
+    return CONIC_ERROR_MEMORY;
+  conic_layers_cloud_place(&layers->header, &layers->entries[cloud], &layers->choice, (char *)*made + HEAD_BYTES,
+                           *made);
+  return CONIC_OK;
+}
+
 static conic_status allocate_blocks(conic_layers *layers, arrivals *a) {
   size_t n_new = 0;
   for (size_t i = 0; i < a->n; i++) {
@@ -201,11 +210,9 @@ static conic_status allocate_blocks(conic_layers *layers, arrivals *a) {
     }
     n_new += n_bytes;
     make_room_for_bytes(layers, n_new);
-    one->cloud = conic_memory_allocate(layers->context, n_bytes, 1);
-    if (!one->cloud)
-      return CONIC_ERROR_MEMORY;
-    conic_layers_cloud_place(&layers->header, &layers->entries[one->answer.id], &layers->choice,
-                             (char *)one->cloud + HEAD_BYTES, one->cloud);
+    conic_status status = conic_layers_store_allocate(layers, one->answer.id, &one->cloud);
+    if (status != CONIC_OK)
+      return status;
   }
   return CONIC_OK;
 }
@@ -233,13 +240,11 @@ static conic_status take_arrivals(conic_layers *layers, arrivals *a, conic_layer
 static conic_status ask_for_cloud(conic_layers *layers, uint32_t cloud, conic_layers_loading *loading) {
   conic_range range = range_of_cloud(layers, cloud);
   range.priority = loading->ranks ? loading->ranks[cloud] : cloud;
-  unsigned char *bytes = layers->octree ? conic_layers_octree_take_first(layers, cloud, &range.n_bytes) : NULL;
-  if (bytes) {
-    arrivals a = {.layers = layers, .n = 1};
-    a.all[0].answer = (conic_range_answer){.id = cloud, .bytes = bytes, .n_bytes = range.n_bytes};
-    conic_status status = take_arrivals(layers, &a, loading);
-    conic_memory_release(layers->context, bytes);
-    return status;
+  arrival here = {.answer = {.id = cloud},
+                  .cloud = layers->octree ? conic_layers_octree_take_first(layers, cloud) : NULL};
+  if (here.cloud) {
+    make_room_for_bytes(layers, bytes_of(layers, cloud));
+    return keep_cloud(layers, &here);
   }
   if (conic_ranges_holds(layers->ranges, &range))
     return conic_ranges_request(layers->ranges, &range);

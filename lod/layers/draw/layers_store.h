@@ -46,6 +46,9 @@ typedef struct conic_layers_loading {
 conic_status conic_layers_store_load(conic_layers *layers, conic_layers_loading *loading);
 void conic_layers_store_unpin(conic_layers *layers, const conic_layers_loading *loading);
 
+/* Takes memory for a cloud that is yet to be unpacked. Errors: MEMORY. */
+conic_status conic_layers_store_allocate(const conic_layers *layers, uint32_t cloud, conic_layers_cloud **made);
+
 /* Gives clouds other numbers: number i becomes becomes[i]. The store takes over `slots`, which are zeroed. No cloud may
  * be pinned. */
 void conic_layers_store_renumber(conic_layers *layers, const uint32_t *becomes, conic_layers_slot *slots);
