@@ -34,6 +34,9 @@ enum {
  * wanted first then comes first: more requests at a time would only share a slow link. */
 static const double request_s = 0.25, ahead_s = 0.1;
 
+/* A gap takes no longer. */
+static const double gap_s = 0.003;
+
 /* Within so long the link's speed is measured; who sends nothing for so long is not waited for. */
 static const double measuring_s = 0.05, silence_s = 1.0;
 
@@ -194,6 +197,7 @@ static int may_join(const conic_queued_range *first, const conic_queued_range *l
 
 /* Leaves the wanted part and those about it, in the order of their places. The others wait again. */
 static void keep_neighbours(conic_http_ranges *http, conic_http_transfer *t, uint64_t most) {
+  uint64_t gap = gap_s * http->bytes_a_second < GAP_BYTES ? (uint64_t)(gap_s * http->bytes_a_second) : GAP_BYTES;
   const conic_range wanted = t->parts[0].range;
   conic_queued_range *parts = t->parts;
   size_t n = t->n_parts, begin = 0;
@@ -201,10 +205,10 @@ static void keep_neighbours(conic_http_ranges *http, conic_http_transfer *t, uin
   while (parts[begin].range.id != wanted.id || parts[begin].range.offset != wanted.offset)
     begin++;
   size_t end = begin + 1;
-  while (begin > 0 && end_of(&parts[begin - 1]) + GAP_BYTES >= parts[begin].range.offset &&
+  while (begin > 0 && end_of(&parts[begin - 1]) + gap >= parts[begin].range.offset &&
          may_join(&parts[begin - 1], &parts[end - 1], most))
     begin--;
-  while (end < n && end_of(&parts[end - 1]) + GAP_BYTES >= parts[end].range.offset &&
+  while (end < n && end_of(&parts[end - 1]) + gap >= parts[end].range.offset &&
          may_join(&parts[begin], &parts[end], most))
     end++;
   t->n_parts = 0;

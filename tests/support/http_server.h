@@ -109,11 +109,12 @@ static inline int http_answer_well(const http_server *server, int socket, const 
   return http_head(server, socket, r, n, 0, "a") && http_send(socket, server->bytes + r->first, n);
 }
 
-static inline int http_answer_whole(const http_server *server, int socket, int has_length) {
+/* The whole file, or the first of so many parts of it. */
+static inline int http_answer_whole(const http_server *server, int socket, int has_length, size_t parts) {
   char head[128];
   snprintf(head, sizeof head, "HTTP/1.1 200 OK\r\nContent-Length: %zu\r\n\r\n", server->n_bytes);
   http_say(socket, has_length ? head : "HTTP/1.1 200 OK\r\nConnection: close\r\n\r\n");
-  return http_send(socket, server->bytes, server->n_bytes) && has_length;
+  return http_send(socket, server->bytes, server->n_bytes / parts) && has_length;
 }
 
 /* Repeats a text until nobody listens. */
@@ -227,7 +228,7 @@ static inline int http_misbehave(http_server *server, int socket, const http_req
                        50);
   if (strcmp(mode, "garbage") == 0)
     return http_repeat(server, socket, "\x01\xff garbage\n", 0);
-  if (strcmp(mode, "stalled") == 0)
+  if (strcmp(mode, "stalled") == 0 || strcmp(mode, "laggard") == 0)
     return http_head(server, socket, r, n, 0, "a") && http_send(socket, server->bytes + r->first, n / 2) &&
            http_hang(server, socket);
   if (strcmp(mode, "silent") == 0)
@@ -242,7 +243,7 @@ static inline int http_misbehave(http_server *server, int socket, const http_req
     return i_request % 2 ? http_say(socket, "HTTP/1.1 503 Busy\r\nContent-Length: 0\r\n\r\n")
                          : http_answer_well(server, socket, r);
   if (strcmp(mode, "forgets") == 0) /* that it knows ranges */
-    return http_answer_whole(server, socket, 1);
+    return http_answer_whole(server, socket, 1, 1);
   if (strcmp(mode, "dead") == 0) {
     shutdown(server->listener, SHUT_RDWR); /* whoever comes now finds nobody */
     return 0;
@@ -262,9 +263,11 @@ static inline void *http_serve(void *cookie) {
       break;
     int i_request = atomic_fetch_add(&server->n_requests, 1);
     if (strcmp(r.mode, "whole") == 0 || strcmp(r.mode, "unlengthy") == 0)
-      is_open = http_answer_whole(server, connection.socket, r.mode[0] == 'w');
-    else if (strcmp(r.mode, "link") == 0)
+      is_open = http_answer_whole(server, connection.socket, r.mode[0] == 'w', 1);
+    else if (strcmp(r.mode, "link") == 0 || (strcmp(r.mode, "laggard") == 0 && i_request != 2))
       is_open = http_answer_by_link(server, connection.socket, &r);
+    else if (strcmp(r.mode, "half") == 0)
+      is_open = http_answer_whole(server, connection.socket, 1, 2) && http_hang(server, connection.socket);
     else if (strcmp(r.mode, "endless") == 0)
       is_open = http_say(connection.socket, "HTTP/1.1 200 OK\r\nConnection: close\r\n\r\n") &&
                 http_repeat(server, connection.socket, "for ever and ever and ever and ever and ever and ever", 0);

@@ -72,7 +72,7 @@ static conic_status choose_first(conic_layers_picture *d) {
 }
 
 /* Ranks the clouds that are needed where time may run out: first what makes the largest errors on the screen smaller.
- * Errors that differ by less than a factor of 2 count as one, so that neighbours in the file are asked for together;
+ * Errors that differ by less than a third count as one, so that neighbours in the file are asked for together;
  * but a place is only finer once all of its children are there. */
 static conic_status rank_clouds(const conic_layers_picture *d, uint64_t **ranks) {
   const conic_layers *layers = d->layers;
@@ -83,7 +83,7 @@ static conic_status rank_clouds(const conic_layers_picture *d, uint64_t **ranks)
     if (!d->needed[i])
       continue;
     conic_layers_look(&d->view, &layers->entries[above], &sight);
-    uint64_t exponent = conic_bits_of_double(sight.error_px) >> 52, rank = (2047 - exponent) << 32 | above;
+    uint64_t exponent = conic_bits_of_double(sight.error_px) >> 51, rank = (4094 - exponent) << 32 | above;
     (*ranks)[i] = rank > (*ranks)[above] ? rank : (*ranks)[above];
   }
   return *ranks ? CONIC_OK : CONIC_ERROR_MEMORY;
