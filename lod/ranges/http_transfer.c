@@ -23,19 +23,30 @@ void conic_http_let_go(conic_http_ranges *http, conic_http_body *held) {
   conic_memory_release(http->base.context, held);
 }
 
-/* Keeps what arrives; room grows with it, and not with what a server claims. */
-static int keep_received(conic_http_ranges *http, conic_http_body *to, const char *data, size_t n, size_t most) {
+/* Keeps bytes; room grows with it, and not with what a server claims. Of several parts, which are answered one
+ * by one, nothing may move: they are few bytes together. */
+static int keep_bytes(conic_http_transfer *t, const void *data, size_t n) {
+  conic_http_body *to = t->body;
   if (n > to->room - to->n) {
     size_t room = 2 * to->room + n + CONIC_HTTP_PROBE_BYTES;
-    room = room < most ? room : most;
-    if (conic_memory_grow(http->base.context, &to->bytes, to->n, room, 1) != CONIC_OK)
+    room = room < t->n_expected && t->n_parts < 2 ? room : t->n_expected;
+    if (conic_memory_grow(t->owner->base.context, &to->bytes, to->n, room, 1) != CONIC_OK)
       return 0;
     to->room = room;
   }
   memcpy(to->bytes + to->n, data, n);
   to->n += n;
-  http->base.n_received += n;
   return 1;
+}
+
+/* How long the server took to answer at all, at best. */
+static void note_arrival(conic_http_transfer *t, size_t n) {
+  double now = conic_seconds_now();
+  if (t->body->n == t->n_here && !(t->owner->latency_s < now - t->came_s))
+    t->owner->latency_s = now - t->came_s;
+  t->came_s = now;
+  t->owner->base.n_received += n;
+  t->came_n = t->owner->base.n_received;
 }
 
 static int refuse_answer(conic_http_transfer *t, conic_http_fault why, const char *reason) {
@@ -104,12 +115,12 @@ static int accept_response(conic_http_transfer *t) {
   }
   if (r->size != http->base.size || (r->tag[0] && http->tag[0] && strcmp(r->tag, http->tag) != 0))
     return refuse_answer(t, CONIC_HTTP_LASTING, "the file on the server has changed");
-  if (r->first != t->offset || r->last != t->offset + t->n_expected - 1)
+  if (r->first != t->offset + t->n_here || r->last != t->offset + t->n_expected - 1)
     return refuse_answer(t, CONIC_HTTP_WRONG, "the server sends another range than was asked for");
-  if (r->has_length && r->length != t->n_expected)
+  if (r->has_length && r->length != t->n_expected - t->n_here)
     return refuse_answer(t, CONIC_HTTP_WRONG,
-                         r->length > t->n_expected ? "the server sends more than was asked for"
-                                                   : "the server sends less than was asked for");
+                         r->length > t->n_expected - t->n_here ? "the server sends more than was asked for"
+                                                               : "the server sends less than was asked for");
   return 1;
 }
 
@@ -125,7 +136,7 @@ static size_t on_header(char *line, size_t one, size_t n, void *cookie) {
 static size_t on_body(char *data, size_t one, size_t n, void *cookie) {
   conic_http_transfer *t = cookie;
   n *= one;
-  if (t->body->n == 0 && !accept_response(t))
+  if (t->body->n == t->n_here && !accept_response(t))
     return 0;
   if (n > t->n_expected - t->body->n) {
     refuse_answer(t, t->is_whole && !t->is_beside ? CONIC_HTTP_BOUND : CONIC_HTTP_WRONG,
@@ -134,7 +145,8 @@ static size_t on_body(char *data, size_t one, size_t n, void *cookie) {
                       : "the server sends more than was asked for");
     return 0;
   }
-  if (!keep_received(t->owner, t->body, data, n, t->n_expected)) {
+  note_arrival(t, n);
+  if (!keep_bytes(t, data, n)) {
     refuse_answer(t, CONIC_HTTP_BOUND, "out of memory");
     return 0;
   }
@@ -183,9 +195,11 @@ conic_status conic_http_transfer_begin(conic_http_transfer *t) {
   memset(&t->response, 0, sizeof t->response);
   t->reason[0] = t->words[0] = '\0';
   t->is_whole = 0;
-  snprintf(range, sizeof range, "%llu-%llu", (unsigned long long)t->offset,
+  t->n_here = t->is_beside || t->is_probe || t->offset > http->head->n ? 0 : http->head->n - (size_t)t->offset;
+  snprintf(range, sizeof range, "%llu-%llu", (unsigned long long)t->offset + t->n_here,
            (unsigned long long)(t->offset + t->n_expected - 1));
-  if (http->curl->easy_setopt(t->easy, CURLOPT_RANGE, t->is_beside ? NULL : range) != CURLE_OK ||
+  if (!keep_bytes(t, t->n_here ? http->head->bytes + t->offset : NULL, t->n_here) ||
+      http->curl->easy_setopt(t->easy, CURLOPT_RANGE, t->is_beside ? NULL : range) != CURLE_OK ||
       http->curl->easy_setopt(t->easy, CURLOPT_URL, t->is_beside ? t->own_url : http->url) != CURLE_OK ||
       http->curl->multi_add_handle(http->multi, t->easy) != CURLM_OK) {
     conic_http_let_go(http, t->body);
@@ -193,8 +207,10 @@ conic_status conic_http_transfer_begin(conic_http_transfer *t) {
     return CONIC_ERROR_MEMORY;
   }
   t->is_busy = 1;
-  t->window_s = conic_seconds_now();
-  t->window_n = 0;
+  t->came_s = t->window_s = conic_seconds_now();
+  t->window_n = t->n_here;
+  t->n_answered = 0;
+  t->came_n = http->base.n_received;
   return CONIC_OK;
 }
 
@@ -226,7 +242,8 @@ static int refuse_code(conic_http_transfer *t, CURLcode code) {
   int redirects = t->response.status >= 300 && t->response.status < 400;
   if (t->reason[0])
     return 0;
-  if (t->body->n == 0 && t->response.n_bytes > 0 && code == CURLE_OUT_OF_MEMORY) /* of a line's room, not of memory */
+  if (t->body->n == t->n_here && t->response.n_bytes > 0 &&
+      code == CURLE_OUT_OF_MEMORY) /* of a line's room, not of memory */
     return refuse_answer(t, CONIC_HTTP_WRONG, "the server's headers do not end");
   if (code == CURLE_UNSUPPORTED_PROTOCOL && !redirects)
     return refuse_answer(t, CONIC_HTTP_WRONG,
@@ -247,7 +264,7 @@ static int refuse_code(conic_http_transfer *t, CURLcode code) {
 int conic_http_transfer_is_complete(conic_http_transfer *t, CURLcode code) {
   if (code != CURLE_OK)
     return refuse_code(t, code);
-  if (t->body->n == 0 && !accept_response(t)) /* it had no body, so nobody has looked at it yet */
+  if (t->body->n == t->n_here && !accept_response(t)) /* it had no body, so nobody has looked at it yet */
     return 0;
   if (t->is_whole ? t->response.has_length && t->body->n != t->n_expected : t->body->n != t->n_expected)
     return refuse_answer(t, CONIC_HTTP_SILENCE, "the server ends before all was sent");

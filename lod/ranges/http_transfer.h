@@ -40,10 +40,13 @@ typedef struct conic_http_transfer {
   char *own_url;          /* that file's */
   uint64_t offset;
   size_t n_expected;
+  size_t n_here; /* of these, so many that came with the first request, and are not asked for */
   conic_http_body *body;
   conic_queued_range *parts;
-  size_t n_parts, parts_room;
+  size_t n_parts, parts_room, n_answered;
   conic_http_response response;
+  double came_s;          /* when it began, or when bytes came last, */
+  uint64_t came_n;        /* and what all requests together had brought by then */
   double window_s;        /* when it was last checked whether it stalls */
   size_t window_n;        /* bytes that it had then */
   conic_http_fault fault; /* of its failure, if `reason`, which describes it, is not empty */
@@ -65,7 +68,12 @@ typedef struct conic_http_ranges {
   CURLM *multi;
   int is_global; /* curl_global_init was called */
   conic_http_transfer transfers[CONIC_HTTP_CONNECTIONS];
-  conic_http_body *head; /* the file's beginning, or all of it */
+  double latency_s, bytes_a_second; /* of the link, as measured; the least latency */
+  double measured_s;                /* since then the bytes beyond measured_n come; 0: none are on their way */
+  uint64_t measured_n;
+  double beside_bytes;   /* what a file beside the first has, on average of late */
+  conic_http_body *head; /* the file's beginning, or all of it, */
+  int is_cut;            /* or what there was in time of a server that sends no ranges */
   char tag[CONIC_HTTP_TAG];
   conic_http_ready *ready;
   size_t first_ready, n_ready, ready_room; /* those from first_ready on wait */

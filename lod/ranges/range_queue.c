@@ -55,30 +55,21 @@ conic_status conic_range_queue_push(conic_context *context, conic_range_queue *q
 }
 
 /* Few ranges wait for their time, and only after failures: then all are looked through. */
-int conic_range_queue_pop(conic_range_queue *queue, double now_s, conic_queued_range *item, double *wait_s) {
-  *wait_s = -1.0;
+int conic_range_queue_pop(conic_range_queue *queue, double now_s, conic_queued_range *item) {
   if (queue->n == 0)
     return 0;
   size_t best = 0;
   if (queue->items[0].not_before_s > now_s) {
-    double earliest = queue->items[0].not_before_s;
     best = queue->n;
-    for (size_t i = 0; i < queue->n; i++) {
-      earliest = queue->items[i].not_before_s < earliest ? queue->items[i].not_before_s : earliest;
+    for (size_t i = 0; i < queue->n; i++)
       if (queue->items[i].not_before_s <= now_s &&
           (best == queue->n || is_sooner(&queue->items[i], &queue->items[best])))
         best = i;
-    }
-    *wait_s = earliest - now_s;
     if (best == queue->n)
       return 0;
   }
   take_item(queue, best, item);
   return 1;
-}
-
-const conic_queued_range *conic_range_queue_first(const conic_range_queue *queue) {
-  return queue->n ? &queue->items[0] : NULL;
 }
 
 void conic_range_queue_release(conic_context *context, conic_range_queue *queue) {

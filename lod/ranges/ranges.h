@@ -29,7 +29,8 @@ void conic_ranges_options_init(conic_ranges_options *options);
 /* Whether a name is a URL. */
 int conic_ranges_is_url(const char *name);
 
-/* Opens a path, or an http:// or https:// URL, and finds out its size. "-" is standard input. On success the caller
+/* Opens a path, or an http:// or https:// URL, and finds out its size. "-" is standard input. Of a server that sends
+ * whole files only, what has come when opening is to end is kept, and ranges beyond are given up. On success the caller
  * owns *ranges. Errors: INPUT (it is not there, or not to be had, or the server answers wrongly), IO (the network or
  * the server fails, or not in time), UNSUPPORTED (a URL, and this build has no libcurl), MEMORY, CANCELLED. */
 conic_status conic_ranges_open(conic_context *context, const char *name, const conic_ranges_options *options,
@@ -69,7 +70,8 @@ typedef struct conic_range_answer {
   void *held;         /* private */
 } conic_range_answer;
 
-/* Takes the next answer, in any order, and returns 1. 0: none came within so many seconds, or nothing is asked for. */
+/* Takes the next answer, in any order, and returns 1. 0: none came within so many seconds, or nothing is asked for.
+ * With seconds below 0 no request is sent any more: what has come is taken. */
 int conic_ranges_next(conic_ranges *ranges, double wait_seconds, conic_range_answer *answer);
 
 /* Gives an answer's bytes back, before the ranges are closed. */

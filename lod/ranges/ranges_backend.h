@@ -21,12 +21,8 @@ typedef struct conic_range_queue {
 /* Errors: MEMORY. */
 conic_status conic_range_queue_push(conic_context *context, conic_range_queue *queue, const conic_queued_range *item);
 
-/* Takes the first whose time has come, and returns 1. Returns 0 where there is none; *wait_s is then how long until
- * there is one, or below 0 where the queue is empty. */
-int conic_range_queue_pop(conic_range_queue *queue, double now_s, conic_queued_range *item, double *wait_s);
-
-/* The first, or null. */
-const conic_queued_range *conic_range_queue_first(const conic_range_queue *queue);
+/* Takes the first whose time has come, and returns 1; or 0 where there is none. */
+int conic_range_queue_pop(conic_range_queue *queue, double now_s, conic_queued_range *item);
 
 void conic_range_queue_release(conic_context *context, conic_range_queue *queue);
 

@@ -50,9 +50,8 @@ static const char *map_beside(file_ranges *file, const conic_range *range, conic
 static int next(conic_ranges *ranges, double wait_seconds, conic_range_answer *answer) {
   file_ranges *file = (file_ranges *)ranges;
   conic_queued_range item;
-  double wait_s;
   (void)wait_seconds;
-  if (!conic_range_queue_pop(&ranges->queue, 0.0, &item, &wait_s))
+  if (!conic_range_queue_pop(&ranges->queue, 0.0, &item))
     return 0;
   answer->id = item.range.id;
   if (item.range.file[0]) {

@@ -14,7 +14,9 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
 
 #else
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/clock.h"
@@ -24,8 +26,22 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
 
 enum {
   JOINED_BYTES = 1 << 19, /* ranges are joined to requests of up to so many, */
-  GAP_BYTES = 1 << 12     /* across gaps of up to so many, which are dropped */
+  GAP_BYTES = 1 << 12,    /* across gaps of up to so many, which are dropped; */
+  BATCH_BYTES = 1 << 22   /* and looked for among so many */
 };
+
+/* A request is for what the link brings in so long, and is sent so long before it has nothing more to bring. What is
+ * wanted first then comes first: more requests at a time would only share a slow link. */
+static const double request_s = 0.25, ahead_s = 0.1;
+
+/* A gap takes no longer. */
+static const double gap_s = 0.003;
+
+/* Within so long the link's speed is measured; who sends nothing for so long is not waited for. */
+static const double measuring_s = 0.05, silence_s = 1.0;
+
+/* A request is left behind that brings nothing while others bring what the link does in so long. */
+static const double behind_s = 2.0;
 
 static conic_http_ready *add_ready(conic_http_ranges *http) {
   if (http->first_ready == http->n_ready)
@@ -83,15 +99,39 @@ static void put_off(conic_http_ranges *http, const conic_http_transfer *t, conic
     give_up(http, &part->range, t->fault, t->reason);
 }
 
+/* Answers parts whose bytes are all there. */
+static void answer_parts(conic_http_transfer *t) {
+  conic_http_ranges *http = t->owner;
+  for (; t->n_answered < t->n_parts; t->n_answered++) {
+    const conic_range *range = &t->parts[t->n_answered].range;
+    if (!t->is_beside && range->offset + range->n_bytes > t->offset + t->body->n)
+      return;
+    if (!answer_from(http, t->body, t->offset, range))
+      http->base.n_pending--;
+  }
+}
+
+/* Those that had come of a request that fails are kept, and what else it was for has lost no try by that. */
 static void finish_transfer(conic_http_transfer *t, CURLcode code) {
   conic_http_ranges *http = t->owner;
   int is_good = conic_http_transfer_is_complete(t, code);
-  http->n_failures = is_good ? 0 : http->n_failures + 1;
+  if (is_good)
+    answer_parts(t);
+  http->n_failures = is_good || t->n_answered > 0 ? 0 : http->n_failures + 1;
+  for (size_t i = t->n_answered; i < t->n_parts; i++)
+    put_off(http, t, &t->parts[i]);
+  if (is_good && t->is_beside)
+    http->beside_bytes = 0.5 * (http->beside_bytes + (double)t->body->n);
+  t->n_parts = 0;
+  conic_http_transfer_end(t);
+}
+
+/* The server has not begun to answer, and others' answers come: it was not its turn. */
+static void wait_again(conic_http_transfer *t) {
+  conic_http_ranges *http = t->owner;
   for (size_t i = 0; i < t->n_parts; i++)
-    if (!is_good)
-      put_off(http, t, &t->parts[i]);
-    else if (!answer_from(http, t->body, t->offset, &t->parts[i].range))
-      http->base.n_pending--;
+    if (conic_range_queue_push(http->base.context, &http->base.queue, &t->parts[i]) != CONIC_OK)
+      give_up(http, &t->parts[i].range, CONIC_HTTP_BOUND, "out of memory");
   t->n_parts = 0;
   conic_http_transfer_end(t);
 }
@@ -106,52 +146,138 @@ static int name_part(conic_http_ranges *http, conic_http_transfer *t) {
   return conic_ranges_name_beside(http->base.context, http->url, range->file, &t->own_url) == CONIC_OK;
 }
 
-/* Takes the next range and those behind it that lie next to it: 1, or 0 where none is to be had now. */
-static int gather_parts(conic_http_ranges *http, conic_http_transfer *t, double *wait_s) {
-  conic_queued_range item;
-  t->n_parts = 0;
-  uint64_t last = 0;
-  while (conic_range_queue_pop(&http->base.queue, conic_seconds_now(), &item, wait_s)) {
-    uint64_t range_end = item.range.offset + item.range.n_bytes;
-    if (!item.range.file[0] && range_end <= http->head->n) {
-      if (!answer_from(http, http->head, 0, &item.range))
-        http->base.n_pending--;
-      continue;
-    }
-    if (conic_memory_reserve(http->base.context, &t->parts, t->n_parts, t->n_parts + 1, &t->parts_room,
-                             sizeof *t->parts) != CONIC_OK) {
-      give_up(http, &item.range, CONIC_HTTP_BOUND, "out of memory");
-      break;
-    }
-    if (t->n_parts == 0)
-      t->offset = item.range.offset;
-    t->parts[t->n_parts++] = item;
-    if (item.range.file[0]) {
-      if (name_part(http, t))
-        return 1;
-      give_up(http, &item.range, CONIC_HTTP_BOUND, "out of memory");
-      t->n_parts = 0;
-      break;
-    }
-    t->is_beside = 0;
-    last = range_end > last ? range_end : last;
-    const conic_queued_range *next = conic_range_queue_first(&http->base.queue);
-    if (!next || next->range.file[0] || next->not_before_s > 0.0 || next->range.offset < t->offset ||
-        next->range.offset > last + GAP_BYTES || next->range.offset + next->range.n_bytes - t->offset > JOINED_BYTES)
-      break;
-  }
-  t->n_expected = (size_t)(last - t->offset);
-  return t->n_parts > 0;
+static int is_busy(const conic_http_ranges *http) {
+  int n = 0;
+  for (int i = 0; i < http->options.n_connections; i++)
+    n += http->transfers[i].is_busy;
+  return n > 0;
 }
 
-/* Fills free connections with requests. *wait_s is how long until one that waits may be sent, below 0 if none does. */
-static void send_requests(conic_http_ranges *http, double *wait_s) {
-  *wait_s = -1.0;
+/* Measures how fast bytes come while some are on their way. */
+static void measure_link(conic_http_ranges *http) {
+  double now = conic_seconds_now(), elapsed = now - http->measured_s;
+  uint64_t n = http->base.n_received - http->measured_n;
+  int is_going_on = is_busy(http) && http->measured_s > 0.0;
+  if (is_going_on && (elapsed < measuring_s || n == 0))
+    return;
+  if (is_going_on) {
+    double now_a_second = (double)n / elapsed, before = http->bytes_a_second;
+    http->bytes_a_second = now_a_second > before ? now_a_second : 0.9 * before + 0.1 * now_a_second;
+  }
+  http->measured_s = is_busy(http) ? now : 0.0;
+  http->measured_n = http->base.n_received;
+}
+
+/* Whether what is on its way keeps the link busy for a while. */
+static int is_link_full(const conic_http_ranges *http) {
+  double now = conic_seconds_now(), n = 0.0;
+  for (int i = 0; i < http->options.n_connections; i++) {
+    const conic_http_transfer *t = &http->transfers[i];
+    if (t->is_busy && now - t->came_s < silence_s)
+      n += t->is_beside && !t->response.has_length ? http->beside_bytes : (double)(t->n_expected - t->body->n);
+  }
+  return n > (ahead_s + 2.0 * http->latency_s) * http->bytes_a_second;
+}
+
+static int compare_offsets(const void *a, const void *b) {
+  uint64_t first = ((const conic_queued_range *)a)->range.offset,
+           second = ((const conic_queued_range *)b)->range.offset;
+  return (first > second) - (first < second);
+}
+
+static uint64_t end_of(const conic_queued_range *part) {
+  return part->range.offset + part->range.n_bytes;
+}
+
+/* Whether two parts, the first of which begins sooner, go into one request. */
+static int may_join(const conic_queued_range *first, const conic_queued_range *last, uint64_t most) {
+  uint64_t end = end_of(first) > end_of(last) ? end_of(first) : end_of(last);
+  return end <= first->range.offset + most;
+}
+
+/* Leaves the wanted part and those about it, in the order of their places. The others wait again. */
+static void keep_neighbours(conic_http_ranges *http, conic_http_transfer *t, uint64_t most) {
+  uint64_t gap = gap_s * http->bytes_a_second < GAP_BYTES ? (uint64_t)(gap_s * http->bytes_a_second) : GAP_BYTES;
+  const conic_range wanted = t->parts[0].range;
+  conic_queued_range *parts = t->parts;
+  size_t n = t->n_parts, begin = 0;
+  qsort(parts, n, sizeof *parts, compare_offsets);
+  while (parts[begin].range.id != wanted.id || parts[begin].range.offset != wanted.offset)
+    begin++;
+  size_t end = begin + 1;
+  while (begin > 0 && end_of(&parts[begin - 1]) + gap >= parts[begin].range.offset &&
+         may_join(&parts[begin - 1], &parts[end - 1], most))
+    begin--;
+  while (end < n && end_of(&parts[end - 1]) + gap >= parts[end].range.offset &&
+         may_join(&parts[begin], &parts[end], most))
+    end++;
+  t->n_parts = 0;
+  for (size_t i = 0; i < n; i++)
+    if (i >= begin && i < end)
+      parts[t->n_parts++] = parts[i];
+    else if (conic_range_queue_push(http->base.context, &http->base.queue, &parts[i]) != CONIC_OK)
+      give_up(http, &parts[i].range, CONIC_HTTP_BOUND, "out of memory");
+}
+
+/* Whether a range is answered without a request. */
+static int is_answered_at_once(conic_http_ranges *http, const conic_queued_range *item) {
+  int is_here = !item->range.file[0] && end_of(item) <= http->head->n;
+  if (is_here && !answer_from(http, http->head, 0, &item->range))
+    http->base.n_pending--;
+  if (!is_here && http->is_cut && !item->range.file[0])
+    give_up(http, &item->range, CONIC_HTTP_SILENCE, "the server sends no ranges, and the time is up");
+  return is_here || (http->is_cut && !item->range.file[0]);
+}
+
+/* Takes ranges that wait: what the link brings within the time of a request, or one that has to be asked for alone. */
+static void take_waiting(conic_http_ranges *http, conic_http_transfer *t, double most) {
+  conic_range_queue *queue = &http->base.queue;
+  conic_queued_range item;
+  double n_bytes = 0.0;
+  int is_alone = 0;
+  t->n_parts = 0;
+  while (!is_alone && n_bytes <= most && conic_range_queue_pop(queue, conic_seconds_now(), &item)) {
+    if (is_answered_at_once(http, &item))
+      continue;
+    is_alone = item.range.file[0] || item.not_before_s > 0.0;
+    conic_status status = is_alone && t->n_parts > 0 ? conic_range_queue_push(http->base.context, queue, &item)
+                                                     : conic_memory_append(http->base.context, &t->parts, &t->n_parts,
+                                                                           &t->parts_room, &item, sizeof item);
+    if (status != CONIC_OK)
+      give_up(http, &item.range, CONIC_HTTP_BOUND, "out of memory");
+    n_bytes += (double)item.range.n_bytes;
+  }
+}
+
+/* Takes the next range, and what lies next to it of those that come soon: 1, or 0 where none is to be had now. */
+static int gather_parts(conic_http_ranges *http, conic_http_transfer *t) {
+  double most = request_s * http->bytes_a_second;
+  uint64_t last = 0;
+  take_waiting(http, t, most < BATCH_BYTES ? most : BATCH_BYTES);
+  if (t->n_parts == 0)
+    return 0;
+  if (t->parts[0].range.file[0]) {
+    if (name_part(http, t))
+      return 1;
+    give_up(http, &t->parts[0].range, CONIC_HTTP_BOUND, "out of memory");
+    return 0;
+  }
+  keep_neighbours(http, t, most < JOINED_BYTES ? (uint64_t)most : JOINED_BYTES);
+  t->is_beside = 0;
+  t->offset = t->parts[0].range.offset;
+  for (size_t i = 0; i < t->n_parts; i++)
+    last = end_of(&t->parts[i]) > last ? end_of(&t->parts[i]) : last;
+  t->n_expected = (size_t)(last - t->offset);
+  return 1;
+}
+
+/* Sends requests over free connections, as many as keep the link busy. */
+static void send_requests(conic_http_ranges *http) {
   for (int i = 0; i < http->options.n_connections; i++) {
     conic_http_transfer *t = &http->transfers[i];
     if (t->is_busy)
       continue;
-    if (!gather_parts(http, t, wait_s))
+    if (is_link_full(http) || !gather_parts(http, t))
       return;
     if (conic_http_transfer_begin(t) != CONIC_OK) {
       for (size_t k = 0; k < t->n_parts; k++)
@@ -172,9 +298,17 @@ static void take_finished(conic_http_ranges *http) {
         http->curl->easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, &cookie) == CURLE_OK)
       finish_transfer((conic_http_transfer *)(void *)cookie, code);
   }
-  for (int i = 0; i < http->options.n_connections; i++)
-    if (http->transfers[i].is_busy && conic_http_transfer_is_stalled(&http->transfers[i]))
-      finish_transfer(&http->transfers[i], CURLE_OPERATION_TIMEDOUT);
+  for (int i = 0; i < http->options.n_connections; i++) {
+    conic_http_transfer *t = &http->transfers[i];
+    int is_behind = t->is_busy && (double)(http->base.n_received - t->came_n) > behind_s * http->bytes_a_second;
+    if (is_behind && t->body->n == t->n_here)
+      wait_again(t);
+    else if (is_behind || (t->is_busy && conic_http_transfer_is_stalled(t)))
+      finish_transfer(t, CURLE_OPERATION_TIMEDOUT);
+    else if (t->is_busy && t->n_parts > 1)
+      answer_parts(t);
+  }
+  measure_link(http);
 }
 
 /* The server is given up: so is all that waits. */
@@ -197,21 +331,17 @@ static int take_ready(conic_http_ranges *http, conic_range_answer *answer) {
 }
 
 static int is_idle(const conic_http_ranges *http) {
-  for (int i = 0; i < http->options.n_connections; i++)
-    if (http->transfers[i].is_busy)
-      return 0;
-  return http->base.queue.n == 0;
+  return http->base.queue.n == 0 && !is_busy(http);
 }
 
 static int next(conic_ranges *ranges, double wait_seconds, conic_range_answer *answer) {
   conic_http_ranges *http = (conic_http_ranges *)ranges;
   double until = conic_seconds_now() + wait_seconds;
   for (;;) {
-    double wait_s;
     if (http->is_dead)
       give_up_all(http);
-    else
-      send_requests(http, &wait_s);
+    else if (wait_seconds >= 0.0 || http->is_cut)
+      send_requests(http);
     take_finished(http);
     if (take_ready(http, answer)) {
       http->is_dead &= ranges->n_pending > 1;
@@ -260,9 +390,8 @@ static void close_url(conic_ranges *ranges) {
 
 static void *pump_transfers(void *data) {
   conic_http_ranges *http = data;
-  double wait_s;
   while (!atomic_load(&http->is_to_halt) && !http->is_dead && !is_idle(http)) {
-    send_requests(http, &wait_s);
+    send_requests(http);
     take_finished(http);
     if (!is_idle(http))
       http->curl->multi_poll(http->multi, NULL, 0, 20, NULL);
@@ -319,13 +448,17 @@ static conic_status probe(conic_http_ranges *http, conic_http_transfer *t, int *
       status = CONIC_OK;
       break;
     }
-    status = go_on_opening(http, 100);
-    if (status != CONIC_OK || conic_http_transfer_is_stalled(t))
+    http->is_cut = t->is_whole && t->response.has_length && conic_seconds_now() >= http->options.until_s;
+    *is_good = http->is_cut;
+    status = http->is_cut ? CONIC_OK : go_on_opening(http, 100);
+    if (http->is_cut || status != CONIC_OK || conic_http_transfer_is_stalled(t))
       break;
   }
   if (*is_good) {
+    double elapsed = t->came_s - (t->window_s + http->latency_s);
+    http->bytes_a_second = (double)t->body->n / (elapsed > 1e-3 ? elapsed : 1e-3);
     if (t->is_whole)
-      http->base.size = t->body->n;
+      http->base.size = http->is_cut ? t->response.length : t->body->n;
     http->head = t->body;
     http->head->n_holders++;
   }
@@ -398,6 +531,8 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
   http->base.context = context;
   http->base.backend = &backend;
   http->options = *options;
+  http->latency_s = HUGE_VAL;
+  http->beside_bytes = CONIC_HTTP_PROBE_BYTES;
   if (http->options.n_connections < 1 || http->options.n_connections > CONIC_HTTP_CONNECTIONS)
     http->options.n_connections = http->options.n_connections < 1 ? 1 : CONIC_HTTP_CONNECTIONS;
   conic_status status = start(http, url);

@@ -25,7 +25,9 @@ typedef struct http_server {
   atomic_int n_requests, n_connections, n_busy, is_stopping;
   atomic_char is_mended[HTTP_MENDED]; /* a place that was wrong once */
   atomic_int n_good;                  /* so many answers are good before it misbehaves */
-  atomic_llong link_free_us;          /* of a link: when it has sent what it was given so far */
+  long long link_bytes_a_second;      /* of a link: 12.5 MB unless set, */
+  int link_ms;                        /* and how long it takes to answer: 20 ms */
+  atomic_llong link_free_us;          /* when it has sent what it was given so far */
 } http_server;
 
 typedef struct http_connection {
@@ -107,11 +109,12 @@ static inline int http_answer_well(const http_server *server, int socket, const 
   return http_head(server, socket, r, n, 0, "a") && http_send(socket, server->bytes + r->first, n);
 }
 
-static inline int http_answer_whole(const http_server *server, int socket, int has_length) {
+/* The whole file, or the first of so many parts of it. */
+static inline int http_answer_whole(const http_server *server, int socket, int has_length, size_t parts) {
   char head[128];
   snprintf(head, sizeof head, "HTTP/1.1 200 OK\r\nContent-Length: %zu\r\n\r\n", server->n_bytes);
   http_say(socket, has_length ? head : "HTTP/1.1 200 OK\r\nConnection: close\r\n\r\n");
-  return http_send(socket, server->bytes, server->n_bytes) && has_length;
+  return http_send(socket, server->bytes, server->n_bytes / parts) && has_length;
 }
 
 /* Repeats a text until nobody listens. */
@@ -155,17 +158,17 @@ static inline long long http_now_us(void) {
   return (long long)now.tv_sec * 1000000 + now.tv_nsec / 1000;
 }
 
-/* Over a link that all connections share: 20 ms and 100 Mbit/s. */
+/* Over a link that all connections share. */
 static inline int http_answer_by_link(http_server *server, int socket, const http_request *r) {
-  enum { PIECE = 12500 }; /* a millisecond's */
-  size_t n = r->last - r->first + 1;
-  http_pause(20);
+  long long rate = server->link_bytes_a_second;
+  size_t most = rate > 2000000 ? (size_t)rate / 1000 : 2000, n = r->last - r->first + 1;
+  http_pause(server->link_ms);
   int is_open = http_head(server, socket, r, n, 0, "a");
-  for (size_t at = 0; at < n && is_open; at += PIECE) {
-    size_t piece = n - at < PIECE ? n - at : PIECE;
+  for (size_t at = 0; at < n && is_open; at += most) {
+    size_t piece = n - at < most ? n - at : most;
     long long free_us = atomic_load(&server->link_free_us), now_us = http_now_us(), sent_us;
     do
-      sent_us = (free_us > now_us ? free_us : now_us) + (long long)piece * 8 / 100;
+      sent_us = (free_us > now_us ? free_us : now_us) + (long long)piece * 1000000 / rate;
     while (!atomic_compare_exchange_weak(&server->link_free_us, &free_us, sent_us));
     while (http_now_us() < sent_us)
       http_pause(1);
@@ -225,7 +228,7 @@ static inline int http_misbehave(http_server *server, int socket, const http_req
                        50);
   if (strcmp(mode, "garbage") == 0)
     return http_repeat(server, socket, "\x01\xff garbage\n", 0);
-  if (strcmp(mode, "stalled") == 0)
+  if (strcmp(mode, "stalled") == 0 || strcmp(mode, "laggard") == 0)
     return http_head(server, socket, r, n, 0, "a") && http_send(socket, server->bytes + r->first, n / 2) &&
            http_hang(server, socket);
   if (strcmp(mode, "silent") == 0)
@@ -240,7 +243,7 @@ static inline int http_misbehave(http_server *server, int socket, const http_req
     return i_request % 2 ? http_say(socket, "HTTP/1.1 503 Busy\r\nContent-Length: 0\r\n\r\n")
                          : http_answer_well(server, socket, r);
   if (strcmp(mode, "forgets") == 0) /* that it knows ranges */
-    return http_answer_whole(server, socket, 1);
+    return http_answer_whole(server, socket, 1, 1);
   if (strcmp(mode, "dead") == 0) {
     shutdown(server->listener, SHUT_RDWR); /* whoever comes now finds nobody */
     return 0;
@@ -260,9 +263,11 @@ static inline void *http_serve(void *cookie) {
       break;
     int i_request = atomic_fetch_add(&server->n_requests, 1);
     if (strcmp(r.mode, "whole") == 0 || strcmp(r.mode, "unlengthy") == 0)
-      is_open = http_answer_whole(server, connection.socket, r.mode[0] == 'w');
-    else if (strcmp(r.mode, "link") == 0)
+      is_open = http_answer_whole(server, connection.socket, r.mode[0] == 'w', 1);
+    else if (strcmp(r.mode, "link") == 0 || (strcmp(r.mode, "laggard") == 0 && i_request != 2))
       is_open = http_answer_by_link(server, connection.socket, &r);
+    else if (strcmp(r.mode, "half") == 0)
+      is_open = http_answer_whole(server, connection.socket, 1, 2) && http_hang(server, connection.socket);
     else if (strcmp(r.mode, "endless") == 0)
       is_open = http_say(connection.socket, "HTTP/1.1 200 OK\r\nConnection: close\r\n\r\n") &&
                 http_repeat(server, connection.socket, "for ever and ever and ever and ever and ever and ever", 0);
@@ -307,6 +312,8 @@ static inline void http_server_start(http_server *server, const unsigned char *b
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   server->bytes = bytes;
   server->n_bytes = n_bytes;
+  server->link_bytes_a_second = 12500000;
+  server->link_ms = 20;
   atomic_store(&server->n_good, n_good);
   server->listener = socket(AF_INET, SOCK_STREAM, 0);
   if (server->listener < 0 || bind(server->listener, (struct sockaddr *)&address, sizeof address) != 0 ||

@@ -8,6 +8,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/base/real.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
 #include "lod/layers/draw/layers_gather.h"
@@ -35,6 +36,7 @@ struct conic_layers_picture {
   uint64_t pages_damaged;    /* of an octree's hierarchy */
   conic_layers_drawn drawn;
   uint64_t n_root; /* as in a cut */
+  double until_s;  /* nothing is read later; infinite: it takes as long as it takes */
 };
 
 void conic_layers_draw_options_init_sized(conic_layers_draw_options *options, size_t size) {
@@ -69,8 +71,26 @@ static conic_status choose_first(conic_layers_picture *d) {
   return choose_clouds(d, NULL);
 }
 
+/* Ranks the clouds that are needed where time may run out: first what makes the largest errors on the screen smaller.
+ * Errors that differ by less than a third count as one, so that neighbours in the file are asked for together;
+ * but a place is only finer once all of its children are there. */
+static conic_status rank_clouds(const conic_layers_picture *d, uint64_t **ranks) {
+  const conic_layers *layers = d->layers;
+  *ranks = conic_memory_allocate_zeroed(layers->context, layers->header.n_clouds, sizeof **ranks);
+  for (uint32_t i = 1; i < layers->header.n_clouds && *ranks; i++) {
+    uint32_t above = layers->entries[i].parent;
+    conic_layers_sight sight;
+    if (!d->needed[i])
+      continue;
+    conic_layers_look(&d->view, &layers->entries[above], &sight);
+    uint64_t exponent = conic_bits_of_double(sight.error_px) >> 51, rank = (4094 - exponent) << 32 | above;
+    (*ranks)[i] = rank > (*ranks)[above] ? rank : (*ranks)[above];
+  }
+  return *ranks ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
 /* Reads what the cut needs, as far as there is time and room, and makes it coarser where something is missing. */
-static conic_status make_do(conic_layers_picture *d, double until_s) {
+static conic_status make_do(conic_layers_picture *d) {
   conic_layers *layers = d->layers;
   size_t n = 0;
   conic_layers_needed(layers, &d->cut, CONIC_PLACE_SHOWN, d->needed);
@@ -80,9 +100,14 @@ static conic_status make_do(conic_layers_picture *d, double until_s) {
   if (n == 0)
     return CONIC_OK;
   d->holding = (conic_layers_loading){
-      .clouds = d->held, .until_s = until_s, .may_miss = 1, .tolerates_damage = d->options.tolerates_damage};
+      .clouds = d->held, .until_s = d->until_s, .may_miss = 1, .tolerates_damage = d->options.tolerates_damage};
   d->holding.n = conic_layers_store_fit(layers, d->held, n, conic_layers_cache_bytes(layers));
-  conic_status status = conic_layers_store_load(layers, &d->holding);
+  uint64_t *ranks = NULL;
+  conic_status status = layers->is_remote && d->until_s < HUGE_VAL ? rank_clouds(d, &ranks) : CONIC_OK;
+  d->holding.ranks = ranks;
+  if (status == CONIC_OK)
+    status = conic_layers_store_load(layers, &d->holding);
+  conic_memory_release(layers->context, ranks);
   if (status != CONIC_OK) {
     d->holding.n = 0;
     return status;
@@ -159,28 +184,42 @@ static void move_camera_on(const conic_camera *before, const conic_camera *now, 
     }
 }
 
-/* Asks for what the next picture will want, if the camera goes on as it came. What fails here is seen there. */
+/* What the next picture will show, as far as one knows: one level more of a picture that comes level by level, or what
+ * the camera sees if it goes on as it came. 0: nobody knows. */
+static int guess_next(const conic_layers_picture *d, conic_layers_view *view, conic_layers_wish *wish) {
+  const conic_layers *layers = d->layers;
+  conic_camera camera;
+  *wish = (conic_layers_wish){.error_px = d->drawn.error_px, .most_levels = d->options.most_levels};
+  *view = d->view;
+  if (d->options.may_be_coarser)
+    return wish->most_levels++ > 0 && conic_seconds_now() < d->until_s;
+  if (layers->last_camera.width != d->camera.width || memcmp(&layers->last_camera, &d->camera, sizeof d->camera) == 0)
+    return 0;
+  move_camera_on(&layers->last_camera, &d->camera, &camera);
+  conic_layers_view_init(&layers->header, &camera, &d->render, d->render.near_z, view);
+  return 1;
+}
+
+/* Asks for what the next picture will want. What fails here is seen there. */
 static void look_ahead(void *data) {
   conic_layers_picture *d = data;
   conic_layers *layers = d->layers;
-  conic_layers_wish wish = {.error_px = d->drawn.error_px, .most_levels = d->options.most_levels};
+  conic_layers_wish wish;
   conic_layers_view view;
   conic_layers_cut cut = {0};
-  conic_camera camera;
   size_t n = 0;
-  if (!layers->is_remote || layers->last_camera.width != d->camera.width ||
-      memcmp(&layers->last_camera, &d->camera, sizeof d->camera) == 0)
+  if (!layers->is_remote || !guess_next(d, &view, &wish))
     return;
-  move_camera_on(&layers->last_camera, &d->camera, &camera);
-  conic_layers_view_init(&layers->header, &camera, &d->render, d->render.near_z, &view);
-  if (conic_layers_find_cut(layers, &view, &wish, &cut) == CONIC_OK) {
+  uint32_t *clouds = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *clouds);
+  if (clouds && conic_layers_find_cut(layers, &view, &wish, &cut) == CONIC_OK) {
     conic_layers_needed(layers, &cut, CONIC_PLACE_SHOWN, d->needed);
     for (uint32_t i = 0; i < layers->header.n_clouds; i++)
       if (d->needed[i] && layers->entries[i].n_samples > 0)
-        d->held[n++] = i;
+        clouds[n++] = i;
     if (n > 0)
-      (void)conic_layers_store_ask_ahead(layers, d->held, n);
+      (void)conic_layers_store_ask_ahead(layers, clouds, n);
   }
+  conic_memory_release(layers->context, clouds);
   conic_layers_cut_release(layers->context, &cut);
 }
 
@@ -194,7 +233,7 @@ static conic_status measure_needed(conic_layers_picture *d) {
 static conic_status choose_for_picture(conic_layers_picture *d) {
   conic_status status = choose_first(d);
   if (status == CONIC_OK && d->options.may_be_coarser)
-    status = make_do(d, d->options.seconds > 0.0 ? conic_seconds_now() + d->options.seconds : HUGE_VAL);
+    status = make_do(d);
   if (status != CONIC_OK)
     return status;
   tell_of_missing(d);
@@ -231,16 +270,15 @@ static conic_status look_at_picture(conic_layers_picture *d) {
   return CONIC_OK;
 }
 
-/* What of a hierarchy the picture needs. */
+/* What of a hierarchy the picture needs. Its pages take half of the time at most. */
 static conic_status expand_layers(conic_layers_picture *d) {
   const conic_layers_draw_options *o = &d->options;
-  conic_layers_expansion expansion = {
-      .error_px = o->error_px,
-      .budget = o->budget,
-      .most_levels = o->most_levels,
-      .until_s = o->may_be_coarser && o->seconds > 0.0 ? conic_seconds_now() + o->seconds : HUGE_VAL,
-      .may_miss = o->may_be_coarser,
-      .tolerates_damage = o->may_be_coarser && o->tolerates_damage};
+  conic_layers_expansion expansion = {.error_px = o->error_px,
+                                      .budget = o->budget,
+                                      .most_levels = o->most_levels,
+                                      .until_s = d->until_s - (d->until_s < HUGE_VAL ? 0.5 * o->seconds : 0.0),
+                                      .may_miss = o->may_be_coarser,
+                                      .tolerates_damage = o->may_be_coarser && o->tolerates_damage};
   if (!d->layers->octree)
     return CONIC_OK;
   conic_status status = conic_layers_octree_expand(d->layers, &d->view, &expansion);
@@ -303,6 +341,7 @@ conic_status conic_layers_picture_begin(conic_layers *layers, conic_renderer *re
   d->camera = *camera;
   d->render = render;
   d->options = options;
+  d->until_s = options.may_be_coarser && options.seconds > 0.0 ? conic_seconds_now() + options.seconds : HUGE_VAL;
   d->set = layers->set;
   layers->picture_bytes = image_bytes + sizeof(float) * (uint64_t)camera->width * (uint64_t)camera->height;
   status = begin_choosing(d);
@@ -372,7 +411,7 @@ conic_status conic_layers_picture_draw(conic_layers_picture *d, const conic_wind
                                      .is_counted = is_whole ? NULL : d->is_counted,
                                      .image = image,
                                      .set = d->set,
-                                     .is_gathered = d->options.may_be_coarser || !is_whole ? NULL : look_ahead,
+                                     .is_gathered = is_whole ? look_ahead : NULL,
                                      .data = d,
                                      .n_turned = &tally->n_turned};
   status = conic_layers_draw_bands(&bands, statistics, &n_bands);

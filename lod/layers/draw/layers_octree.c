@@ -352,20 +352,17 @@ static void measure_scale(conic_layers *layers, uint32_t entry, float outline) {
 }
 
 static conic_status measure_first_points(conic_layers *layers, uint32_t entry, const conic_hierarchy_points *points) {
-  const conic_layers_entry *e = &layers->entries[entry];
-  conic_layers_cloud cloud;
+  conic_layers_octree *o = layers->octree;
   conic_status status = points->color[0] ? scale_colors(layers, points) : CONIC_OK;
-  void *block = conic_memory_allocate(layers->context, conic_layers_cloud_bytes(&layers->header, e, NULL), 1);
-  if (status != CONIC_OK || !block) {
-    conic_memory_release(layers->context, block);
-    return CONIC_ERROR_MEMORY;
-  }
-  conic_layers_cloud_place(&layers->header, e, NULL, block, &cloud);
-  const char *wrong = take_node_points(layers, entry, points, &cloud);
+  if (status == CONIC_OK)
+    status = conic_layers_store_allocate(layers, entry, &o->first_cloud);
+  if (status != CONIC_OK)
+    return status;
+  o->first_node = o->node_of[entry];
+  const char *wrong = take_node_points(layers, entry, points, o->first_cloud);
   if (!wrong)
-    measure_scale(layers, entry, cloud.median_outline);
-  conic_memory_release(layers->context, block);
-  return wrong ? conic_hierarchy_wrong(layers->octree->hierarchy, wrong) : CONIC_OK;
+    measure_scale(layers, entry, o->first_cloud->median_outline);
+  return wrong ? conic_hierarchy_wrong(o->hierarchy, wrong) : CONIC_OK;
 }
 
 static conic_status unpack_first(conic_layers *layers, uint32_t entry, const unsigned char *bytes, size_t n_bytes) {
@@ -403,6 +400,13 @@ static conic_status measure_first(conic_layers *layers) {
   return status;
 }
 
+conic_layers_cloud *conic_layers_octree_take_first(conic_layers *layers, uint32_t entry) {
+  conic_layers_octree *o = layers->octree;
+  conic_layers_cloud *first = o->node_of[entry] == o->first_node ? o->first_cloud : NULL;
+  o->first_cloud = first ? NULL : o->first_cloud;
+  return first;
+}
+
 conic_status conic_layers_octree_open(conic_layers *layers, const conic_hierarchy_kind *kind) {
   conic_ranges_options options;
   conic_layers_octree *o = layers->octree = conic_memory_allocate_zeroed(layers->context, 1, sizeof *o);
@@ -436,6 +440,7 @@ void conic_layers_octree_close(conic_layers *layers) {
     conic_memory_release(layers->context, o->guides[i]);
   conic_memory_release(layers->context, o->guides);
   conic_memory_release(layers->context, o->is_lost);
+  conic_memory_release(layers->context, o->first_cloud);
   conic_memory_release(layers->context, o->colors.table);
   conic_memory_release(layers->context, o);
   layers->octree = NULL;

@@ -28,7 +28,9 @@ typedef struct conic_layers_octree {
   conic_layers_guide **guides; /* a node: null where it is not known, or tells nothing */
   uint8_t *is_lost;            /* a node: its page could not be read for this picture; 2: nor was it once before */
   size_t nodes_room[3];
-  float root_spacing; /* as measured: the lower median */
+  float root_spacing;              /* as measured: the lower median */
+  conic_layers_cloud *first_cloud; /* of the first node that has points, as opening measured it; until it is drawn */
+  uint32_t first_node;
   conic_raw_scale colors;
 } conic_layers_octree;
 
@@ -73,6 +75,9 @@ float conic_layers_octree_outline(const conic_layers *layers, uint32_t entry);
 /* Unpacks an entry's samples; null, or what is wrong. Any thread. */
 const char *conic_layers_octree_decode(const conic_layers *layers, uint32_t entry, const unsigned char *bytes,
                                        size_t n_bytes, conic_layers_cloud *cloud);
+
+/* Hands over an entry's cloud, in a block as the store has them, where it is kept since opening; else null. */
+conic_layers_cloud *conic_layers_octree_take_first(conic_layers *layers, uint32_t entry);
 
 /* Where an entry's bytes are. */
 void conic_layers_octree_locate(const conic_layers *layers, uint32_t entry, conic_range *range);

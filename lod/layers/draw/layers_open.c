@@ -42,29 +42,14 @@ int conic_layers_is_url(const char *name) {
 
 /* Bytes from `offset` on, into `to`; a whole piece at most. */
 static conic_status read_piece(conic_layers *layers, uint64_t offset, unsigned char *to, size_t n_bytes) {
-  conic_range range = {.offset = offset, .n_bytes = n_bytes};
-  conic_range_answer answer;
-  conic_status status = conic_ranges_request(layers->ranges, &range);
-  while (status == CONIC_OK) {
-    if (conic_ranges_next(layers->ranges, 0.1, &answer))
-      break;
-    if (conic_ranges_pending(layers->ranges) == 0)
-      return CONIC_ERROR_MEMORY;
-    if (layers->is_remote)
-      status = conic_progress(layers->context, "fetch", 0.0);
-    if (status == CONIC_OK && conic_seconds_now() > layers->until_s)
-      status = conic_fail(layers->context, CONIC_ERROR_IO, "%s: not even the index came in time", layers->name);
-  }
-  if (status != CONIC_OK) {
-    conic_ranges_cancel(layers->ranges);
-    return status;
-  }
-  if (answer.status != CONIC_OK)
-    return conic_fail(layers->context, answer.status, "%s: cannot read: %s (at byte %llu)", layers->name, answer.reason,
-                      (unsigned long long)offset);
-  memcpy(to, answer.bytes, n_bytes);
-  conic_ranges_release(layers->ranges, &answer);
-  return CONIC_OK;
+  const conic_range range = {.offset = offset, .n_bytes = n_bytes};
+  unsigned char *bytes;
+  size_t n_read;
+  conic_status status = conic_ranges_read(layers->ranges, layers->name, &range, layers->until_s, &bytes, &n_read);
+  if (status == CONIC_OK)
+    memcpy(to, bytes, n_bytes);
+  conic_memory_release(layers->context, bytes);
+  return status;
 }
 
 /* Bytes from `offset` on, which the caller releases. */

@@ -174,28 +174,27 @@ static conic_status take_failure(conic_layers *layers, const arrival *one, conic
   return CONIC_OK;
 }
 
-/* A .lpc's index was checked; another hierarchy may point anywhere. */
-static conic_status ask_for_cloud(conic_layers *layers, uint32_t cloud, conic_layers_loading *loading) {
-  const conic_range range = range_of_cloud(layers, cloud);
-  if (conic_ranges_holds(layers->ranges, &range))
-    return conic_ranges_request(layers->ranges, &range);
-  const arrival lost = {
-      .answer = {.id = cloud, .status = CONIC_ERROR_INPUT, .reason = "its bytes lie outside the file"}};
-  return take_failure(layers, &lost, loading);
-}
-
-/* Fetches what has come by now, or within the wait. */
+/* Fetches what has come by now, or within the wait; where that is below 0, nothing more is asked for. */
 static void collect_clouds(conic_layers *layers, double wait_s, arrivals *a) {
   for (a->n = 0; a->n < DECODED_TOGETHER; a->n++) {
     arrival *one = &a->all[a->n];
     memset(one, 0, sizeof *one);
-    if (!conic_ranges_next(layers->ranges, a->n == 0 ? wait_s : 0.0, &one->answer))
+    if (!conic_ranges_next(layers->ranges, a->n == 0 || wait_s < 0.0 ? wait_s : 0.0, &one->answer))
       return;
     if (one->answer.status != CONIC_OK) { /* its reason holds until the next call */
       a->n++;
       return;
     }
   }
+}
+
+conic_status conic_layers_store_allocate(const conic_layers *layers, uint32_t cloud, conic_layers_cloud **made) {
+  *made = conic_memory_allocate(layers->context, bytes_of(layers, cloud), 1);
+  if (!*made)
+    return CONIC_ERROR_MEMORY;
+  conic_layers_cloud_place(&layers->header, &layers->entries[cloud], &layers->choice, (char *)*made + HEAD_BYTES,
+                           *made);
+  return CONIC_OK;
 }
 
 static conic_status allocate_blocks(conic_layers *layers, arrivals *a) {
@@ -211,17 +210,17 @@ static conic_status allocate_blocks(conic_layers *layers, arrivals *a) {
     }
     n_new += n_bytes;
     make_room_for_bytes(layers, n_new);
-    one->cloud = conic_memory_allocate(layers->context, n_bytes, 1);
-    if (!one->cloud)
-      return CONIC_ERROR_MEMORY;
-    conic_layers_cloud_place(&layers->header, &layers->entries[one->answer.id], &layers->choice,
-                             (char *)one->cloud + HEAD_BYTES, one->cloud);
+    conic_status status = conic_layers_store_allocate(layers, one->answer.id, &one->cloud);
+    if (status != CONIC_OK)
+      return status;
   }
   return CONIC_OK;
 }
 
 static conic_status take_arrivals(conic_layers *layers, arrivals *a, conic_layers_loading *loading) {
   conic_status status = allocate_blocks(layers, a);
+  if (a->n > 0 && !a->all[a->n - 1].answer.reason) /* which holds until the next call */
+    conic_ranges_go_on(layers->ranges);
   if (status == CONIC_OK)
     conic_parallel_for(layers->context, a->n, decode_task, a);
   for (size_t i = 0; i < a->n; i++) {
@@ -237,12 +236,29 @@ static conic_status take_arrivals(conic_layers *layers, arrivals *a, conic_layer
   return status;
 }
 
-/* Waits for what was asked for. */
+/* A .lpc's index was checked; another hierarchy may point anywhere. */
+static conic_status ask_for_cloud(conic_layers *layers, uint32_t cloud, conic_layers_loading *loading) {
+  conic_range range = range_of_cloud(layers, cloud);
+  range.priority = loading->ranks ? loading->ranks[cloud] : cloud;
+  arrival here = {.answer = {.id = cloud},
+                  .cloud = layers->octree ? conic_layers_octree_take_first(layers, cloud) : NULL};
+  if (here.cloud) {
+    make_room_for_bytes(layers, bytes_of(layers, cloud));
+    return keep_cloud(layers, &here);
+  }
+  if (conic_ranges_holds(layers->ranges, &range))
+    return conic_ranges_request(layers->ranges, &range);
+  const arrival lost = {
+      .answer = {.id = cloud, .status = CONIC_ERROR_INPUT, .reason = "its bytes lie outside the file"}};
+  return take_failure(layers, &lost, loading);
+}
+
+/* Waits for what was asked for. What has come when the time is up is taken. */
 static conic_status take_all(conic_layers *layers, size_t n_asked, conic_layers_loading *loading) {
   arrivals a = {.layers = layers};
-  while (conic_ranges_pending(layers->ranges) > 0) {
+  for (a.n = 1; conic_ranges_pending(layers->ranges) > 0;) {
     double left = loading->until_s - conic_seconds_now();
-    if (!(left > 0.0))
+    if (!(left > 0.0) && (a.n == 0 || !layers->is_remote))
       break;
     collect_clouds(layers, left < 0.1 ? left : 0.1, &a);
     conic_status status = take_arrivals(layers, &a, loading);

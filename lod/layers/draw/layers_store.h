@@ -33,17 +33,21 @@ void conic_layers_store_close(conic_layers *layers);
 typedef struct conic_layers_loading {
   const uint32_t *clouds; /* ascending */
   size_t n;
-  double until_s;       /* by conic_seconds_now; infinite: as long as it takes */
-  int may_miss;         /* what does not come is left out, */
-  int tolerates_damage; /* and so is what is wrong, after a warning */
-  uint64_t n_missing;   /* set: so many were left out */
-  uint64_t n_damaged;   /* set: so many of these were wrong */
+  const uint64_t *ranks; /* a cloud of the file: the least is wanted first; null: in the file's order */
+  double until_s;        /* by conic_seconds_now; infinite: as long as it takes */
+  int may_miss;          /* what does not come is left out, */
+  int tolerates_damage;  /* and so is what is wrong, after a warning */
+  uint64_t n_missing;    /* set: so many were left out */
+  uint64_t n_damaged;    /* set: so many of these were wrong */
 } conic_layers_loading;
 
 /* Brings clouds into memory, where they stay until conic_layers_store_unpin. On failure none is held. Errors: INPUT
  * (damaged), IO, MEMORY, CANCELLED. */
 conic_status conic_layers_store_load(conic_layers *layers, conic_layers_loading *loading);
 void conic_layers_store_unpin(conic_layers *layers, const conic_layers_loading *loading);
+
+/* Takes memory for a cloud that is yet to be unpacked. Errors: MEMORY. */
+conic_status conic_layers_store_allocate(const conic_layers *layers, uint32_t cloud, conic_layers_cloud **made);
 
 /* Gives clouds other numbers: number i becomes becomes[i]. The store takes over `slots`, which are zeroed. No cloud may
  * be pinned. */

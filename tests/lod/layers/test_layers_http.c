@@ -1,5 +1,6 @@
 /* Layered point clouds from web servers: from a good one the same picture as from the file; from hostile ones an error
  * or, where that is allowed, a coarser picture; never a wrong one, and never a hang. */
+#include "lod/layers/draw/layers_scene.h"
 #include "tests/support/files.h"
 #include "tests/support/http_server.h"
 #include "tests/support/image_fixture.h"
@@ -147,6 +148,46 @@ static void check_deadline(void) {
   http_server_stop(&server);
 }
 
+/* Of what came, nothing lacks what lies above it, but for what was still on its way; nor was more received than that.
+ */
+static void check_coarse_first(const layers_frame *frame, uint64_t n_received) {
+  const conic_layers *layers = frame->layers;
+  uint64_t n_used = 0;
+  int n_orphans = 0;
+  for (uint32_t i = 0; i < layers->header.n_clouds; i++) {
+    n_used += layers->store.slots[i].cloud ? layers->entries[i].n_bytes : 0;
+    n_orphans += layers->store.slots[i].cloud && !conic_layers_has_cloud(layers, layers->entries[i].parent);
+  }
+  fprintf(stderr, "%llu of %llu bytes are used, %d clouds in vain; at most %.1f pixels coarser\n",
+          (unsigned long long)n_used, (unsigned long long)n_received, n_orphans, frame->drawn.missing_error_px);
+  CHECK(n_orphans < 16 && n_used + 40000 > n_received);
+}
+
+/* A link of 1 Mbit/s: each time gives what could be had by then, and the whole is the file's picture. */
+static void check_slow(void) {
+  http_server server;
+  conic_layers_access access = quick();
+  access.stall_seconds = 15.0;
+  http_server_start(&server, bytes, n_bytes, 0);
+  server.link_bytes_a_second = 125000;
+  layers_frame frame = open_mode(&server, "link", &access);
+  uint64_t n_opening = conic_ranges_received(frame.layers->ranges);
+  double coarser_px = HUGE_VAL;
+  frame.draw.may_be_coarser = 1;
+  frame.draw.seconds = 0.7;
+  for (int i = 0; i < 2; i++) {
+    CHECK(layers_draw(&frame) == CONIC_OK);
+    check_coarse_first(&frame, conic_ranges_received(frame.layers->ranges) - n_opening);
+    CHECK(frame.drawn.missing_error_px < coarser_px);
+    check_coarser(&frame, "slow");
+    coarser_px = 0.8 * frame.drawn.missing_error_px;
+  }
+  frame.draw.seconds = 0.0;
+  expect_same(&frame, "slow");
+  layers_close(&frame);
+  http_server_stop(&server);
+}
+
 /* An index that is wrong behind the first answer. */
 static void check_index(void) {
   http_server server;
@@ -181,6 +222,7 @@ int main(void) {
   check_bad_start();
   check_turning();
   check_deadline();
+  check_slow();
   check_index();
   layers_close(&local);
   free(bytes);

@@ -170,6 +170,60 @@ static void check_whole(conic_context *context) {
   }
 }
 
+/* Of a whole file, what has come in time is used, and no more is waited for. */
+static void check_half(conic_context *context) {
+  http_server server;
+  conic_ranges_options options = quick();
+  http_server_start(&server, bytes, N_BYTES, 0);
+  options.stall_seconds = 1000.0;
+  options.until_s = conic_seconds_now() + 0.5;
+  conic_ranges *ranges = open_mode(context, &server, "half", &options, CONIC_OK);
+  CHECK(ranges && conic_ranges_size(ranges) == N_BYTES);
+  outcome o = take_all(ranges, 10);
+  CHECK(o.n_good > N_RANGES / 4 && o.n_given_up > N_RANGES / 4 && o.n_wrong == 0 && strstr(o.reason, "time is up"));
+  conic_ranges_close(ranges);
+  http_server_stop(&server);
+}
+
+/* One answer that stalls holds up nothing: what it lacks is asked for again. */
+static void check_laggard(conic_context *context) {
+  http_server server;
+  conic_ranges_options options = quick();
+  http_server_start(&server, bytes, N_BYTES, 0);
+  server.link_bytes_a_second = 600000;
+  options.stall_seconds = 1000.0;
+  conic_ranges *ranges = open_mode(context, &server, "laggard", &options, CONIC_OK);
+  CHECK(take_all(ranges, 12).n_good == N_RANGES);
+  conic_ranges_close(ranges);
+  http_server_stop(&server);
+}
+
+/* Over a slow link, what is wanted first comes first, and is there as soon as its own bytes are. */
+static void check_slow(conic_context *context) {
+  enum { N = 20, N_EACH = 5000 };
+  http_server server;
+  conic_ranges_options options = quick();
+  conic_range_answer answer;
+  http_server_start(&server, bytes, N_BYTES, 0);
+  server.link_bytes_a_second = 125000;
+  conic_ranges *ranges = open_mode(context, &server, "link", &options, CONIC_OK);
+  double start = conic_seconds_now(), first_s = 0.0;
+  for (uint32_t i = 0; i < N; i++) { /* the first wanted lies last */
+    conic_range range = {.offset = N_BYTES - 2 * (i + 1) * N_EACH, .n_bytes = N_EACH, .priority = i, .id = i};
+    CHECK_OK(conic_ranges_request(ranges, &range));
+  }
+  for (uint32_t n = 0; conic_ranges_pending(ranges) > 0;) {
+    if (!conic_ranges_next(ranges, 1.0, &answer))
+      continue;
+    CHECK(answer.status == CONIC_OK && answer.id < n + 8 && n < answer.id + 8);
+    first_s = n++ ? first_s : conic_seconds_now() - start;
+    conic_ranges_release(ranges, &answer);
+  }
+  CHECK(first_s < 0.5 * (conic_seconds_now() - start));
+  conic_ranges_close(ranges);
+  http_server_stop(&server);
+}
+
 /* Servers that never answer well: an error, and the right one. */
 static void check_hopeless(conic_context *context) {
   const struct {
@@ -270,6 +324,9 @@ int main(void) {
   if (has_feature("CURL")) {
     check_good_server(context);
     check_whole(context);
+    check_half(context);
+    check_laggard(context);
+    check_slow(context);
     check_hopeless(context);
     check_turning(context);
     check_hurried(context);
