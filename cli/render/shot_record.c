@@ -44,12 +44,16 @@ void cli_shot_writing(const cli_render_job *job, conic_shot_writing *writing) {
   writing->has_mattes = job->has_mattes;
 }
 
+static conic_shot_names names_of(const cli_render_job *job) {
+  return (conic_shot_names){.scene = job->inputs,
+                            .n_scene = (size_t)job->n_inputs,
+                            .texture = job->opening.texture_path,
+                            .sky = job->sky_path,
+                            .motion = job->accumulating.motion_path};
+}
+
 static conic_status find_inputs(cli_session *session, cli_render_job *job) {
-  const conic_shot_names names = {.scene = job->inputs,
-                                  .n_scene = (size_t)job->n_inputs,
-                                  .texture = job->opening.texture_path,
-                                  .sky = job->sky_path,
-                                  .motion = job->accumulating.motion_path};
+  const conic_shot_names names = names_of(job);
   if (job->making.has_inputs)
     return CONIC_OK;
   job->making.has_inputs = 1;
@@ -147,6 +151,14 @@ static int is_carried(const cli_session *session, const cli_render_job *job) {
       n += strcasecmp(ending, endings[j]) == 0;
   }
   return n > 0 && !job->making.is_left_out && !session->host;
+}
+
+conic_status cli_shot_begin_inputs(cli_session *session, cli_render_job *job) {
+  const conic_shot_names names = names_of(job);
+  int is_wanted = is_carried(session, job) || (session->json_path && !session->host) || job->making.save_path;
+  return is_wanted && cli_session_speaks(session)
+             ? conic_shot_inputs_begin(session->context, &names, &job->making.inputs)
+             : CONIC_OK;
 }
 
 static void release_texts(cli_session *session, cli_shot_job *making) {
