@@ -5,6 +5,7 @@
 #define CONIC_SHOT_FIELDS_H
 
 #include "conic/shot_file.h"
+#include "core/image/view_arguments.h"
 
 typedef enum conic_shot_row_kind {
   CONIC_ROW_INT,
@@ -38,8 +39,10 @@ typedef struct conic_shot_row {
   size_t length;    /* of a list: the offset of its length, */
   int length_is_64; /* which is a uint64_t, else an int */
   int is_apart;
-  int columns; /* a matrix has so many; 0: it is none */
-  int is_said; /* it stands in every file */
+  int columns;        /* a matrix has so many; 0: it is none */
+  int is_said;        /* it stands in every file */
+  double least, most; /* of numbers: a file that says others is none; both 0: it may be any */
+  int is_no_key;      /* it is to be known where the picture is drawn again, and decides no bit */
 } conic_shot_row;
 
 struct conic_shot_rows {
@@ -48,6 +51,8 @@ struct conic_shot_rows {
   const conic_shot_row *rows;
   size_t n_rows;
   void (*set_standard)(void *value); /* null: all zero */
+  /* Whether a value cannot be, whose numbers are in their ranges each; then says why. Null: it never is. */
+  int (*is_wrong)(const void *value, char wrong[CONIC_CAMERA_FAULT_ROOM]);
 };
 
 /* Of a conic_shot_file: the members of its shot, then `reading`, `map` and `writing`. */

@@ -32,7 +32,7 @@ static void add_field(void *cookie, const conic_field_visit *visit) {
   key_adding *a = cookie;
   int is_wanted = a->part ? strncmp(visit->path, a->part, strlen(a->part)) == 0
                           : strncmp(visit->path, "writing.", strlen("writing.")) != 0;
-  if (!is_wanted || conic_row_is_same(visit->row, visit->value, visit->standard))
+  if (!is_wanted || visit->row->is_no_key || conic_row_is_same(visit->row, visit->value, visit->standard))
     return;
   conic_key_add_text(a->text.sum, visit->path);
   conic_text_value(&a->text, visit->row, visit->value);

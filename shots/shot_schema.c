@@ -113,6 +113,8 @@ static void add_type(conic_text *text, const conic_shot_row *row) {
                      left == n ? n / columns == 1 ? n : n / columns : columns,
                      left == n ? n / columns == 1 ? n : n / columns : columns);
   conic_text_say(text, types[kind_of_field(row)]);
+  if (row->least != 0.0 || row->most != 0.0)
+    conic_text_print(text, ", \"minimum\": %.10g, \"maximum\": %.10g", row->least, row->most);
   for (int left = n; left > 1; left = left == n && columns < n ? columns : 1)
     conic_text_say(text, "}");
 }
