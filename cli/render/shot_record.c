@@ -17,8 +17,8 @@ void cli_shot_settle(const cli_render_job *job, conic_shot *shot) {
     shot->focus_kind = CONIC_FOCUS_DEPTH;
     shot->aperture.focus = job->accumulating.focus_depth;
   }
-  if (job->progressive_path)
-    shot->view.most_levels = 0; /* the last picture has all */
+  if (job->top.is_wanted) /* what is drawn beside it is in no file */
+    shot->planes = job->is_aov_given ? job->asked_planes : 1u << CONIC_PLANE_RGBA;
   if (!job->accumulating.motion_path)
     shot->frame = 0.0;
 }
@@ -142,7 +142,7 @@ conic_status cli_shot_report(cli_session *session, cli_json *json, cli_render_jo
 /* Whether any file that is written can say how it was made. */
 static int is_carried(const cli_session *session, const cli_render_job *job) {
   static const char *const endings[] = {"exr", "png", "tif", "tiff"};
-  int n = job->deep_path != NULL;
+  int n = job->deep_path || job->progressive_path;
   for (int i = 0; i < job->n_outputs; i++) {
     const char *ending = conic_file_ending(job->outputs[i]);
     if (!*ending)
