@@ -55,9 +55,9 @@ static const char *plane_word(int i) {
 #define IN(from, to) .least = (from), .most = (to)
 #define ISA_ROW                                                                                                        \
   { CONIC_ROW_LEFT_OUT, AT(isa), .meaning = "all instruction sets draw the same bits" }
-#define TABLE(table, standard, wrong)                                                                                  \
+#define TABLE(table, standard, fault)                                                                                  \
   static const conic_shot_rows table##_rows = {                                                                        \
-      #table, sizeof(S), table##_list, sizeof table##_list / sizeof *table##_list, standard, wrong};
+      #table, sizeof(S), table##_list, sizeof table##_list / sizeof *table##_list, standard, fault};
 
 #define S conic_camera
 static const conic_shot_row camera_list[] = {
@@ -73,7 +73,7 @@ static const conic_shot_row camera_list[] = {
     {CONIC_ROW_WORD, AT(lens), NULL, "how the lens distorts", lens_word},
     {CONIC_ROW_DOUBLE, AT(distortion), NULL, "the lens's numbers", IN(-1e12, 1e12)},
     RESERVED(reserved)};
-TABLE(camera, NULL, conic_camera_value_is_wrong)
+TABLE(camera, NULL, conic_fault_of_camera)
 #undef S
 
 #define S conic_camera_way
@@ -88,7 +88,7 @@ static const conic_shot_row way_list[] = {
     {CONIC_ROW_LENGTH, AT(n_cameras)},
     {CONIC_ROW_DOUBLE, AT(place), "frames", "which of the cameras is the shot's own, from 0", IN(0, 1e9)},
     RESERVED(reserved)};
-TABLE(way, NULL, conic_way_is_wrong)
+TABLE(way, NULL, conic_fault_of_way)
 #undef S
 
 #define S conic_stereo_eye
@@ -119,7 +119,7 @@ static const conic_shot_row light_list[] = {
     {CONIC_ROW_WORD, AT(frame), NULL, "what the light moves with", light_frame_word},
     {CONIC_ROW_FLOAT, AT(color), "linear", "red, green, blue", IN(0, 1e6)},
     {CONIC_ROW_DOUBLE, AT(direction), NULL, "towards the light", IN(-1e30, 1e30)}};
-TABLE(light, NULL, conic_light_is_wrong)
+TABLE(light, NULL, conic_fault_of_light)
 #undef S
 
 #define S conic_lighting
@@ -131,7 +131,7 @@ static const conic_shot_row lighting_list[] = {
     {CONIC_ROW_FLOAT, AT(ground), "linear", "light from below", IN(0, 1e6)},
     {CONIC_ROW_DOUBLE, AT(up), NULL, "which way is above", IN(-1e30, 1e30)},
     RESERVED(reserved)};
-TABLE(lighting, NULL, conic_lighting_is_wrong)
+TABLE(lighting, NULL, conic_fault_of_lighting)
 #undef S
 
 static void set_render(void *value) {
@@ -162,7 +162,7 @@ static const conic_shot_row render_list[] = {
     {CONIC_ROW_STRUCT, AT(lighting), NULL, "light without a place", .of = &lighting_rows},
     {CONIC_ROW_LEFT_OUT, AT(splats_version), .meaning = "by which a device knows what it has; it changes no bit"},
     {CONIC_ROW_LEFT_OUT, AT(skip_hidden), .meaning = "the same picture, sooner"}};
-TABLE(render, set_render, conic_render_is_wrong)
+TABLE(render, set_render, conic_fault_of_render)
 #undef S
 
 static void set_view(void *value) {
@@ -227,7 +227,7 @@ static const conic_shot_row shot_light_list[] = {
     {CONIC_ROW_FLOAT, AT(sun_radius_deg), "degrees", "how large each light without a place is", IN(0, 90)},
     {CONIC_ROW_LEFT_OUT, AT(sky), .meaning = "the input whose role is sky"},
     RESERVED(reserved)};
-TABLE(shot_light, NULL, conic_shot_light_is_wrong)
+TABLE(shot_light, NULL, conic_fault_of_shot_light)
 #undef S
 
 #define S conic_aperture
@@ -237,7 +237,7 @@ static const conic_shot_row aperture_list[] = {
     {CONIC_ROW_INT, AT(n_blades), NULL, "corners of the lens; 0: it is round", IN(0, CONIC_MAX_BLADES)},
     RESERVED(reserved_int),
     RESERVED(reserved)};
-TABLE(aperture, NULL, conic_aperture_is_wrong)
+TABLE(aperture, NULL, conic_fault_of_aperture)
 #undef S
 
 static void set_surface_standard(void *value) {
@@ -337,7 +337,7 @@ static void set_map(void *value) {
   }
 }
 
-TABLE(map, set_map, conic_map_is_wrong)
+TABLE(map, set_map, conic_fault_of_map)
 #undef S
 
 #define S conic_shot_writing
@@ -382,7 +382,7 @@ static const conic_shot_row shot_list[] = {
     {CONIC_ROW_DOUBLE, AT(frame), "frames", "the moment, for what moves", IN(-1e9, 1e9)},
     {CONIC_ROW_LEFT_OUT, AT(motion), .meaning = "the input whose role is motion"},
     RESERVED(reserved)};
-TABLE(shot, set_shot, conic_shot_is_wrong)
+TABLE(shot, set_shot, conic_fault_of_shot)
 #undef S
 
 static void set_file(void *value) {

@@ -5,7 +5,6 @@
 #define CONIC_SHOT_FIELDS_H
 
 #include "conic/shot_file.h"
-#include "core/image/view_arguments.h"
 
 typedef enum conic_shot_row_kind {
   CONIC_ROW_INT,
@@ -50,9 +49,8 @@ struct conic_shot_rows {
   size_t size;
   const conic_shot_row *rows;
   size_t n_rows;
-  void (*set_standard)(void *value); /* null: all zero */
-  /* Whether a value cannot be, whose numbers are in their ranges each; then says why. Null: it never is. */
-  int (*is_wrong)(const void *value, char wrong[CONIC_CAMERA_FAULT_ROOM]);
+  void (*set_standard)(void *value);       /* null: all zero */
+  const char *(*fault)(const void *value); /* of shots/shot_faults.h; null: nothing can be wrong with it */
 };
 
 /* Of a conic_shot_file: the members of its shot, then `reading`, `map` and `writing`. */

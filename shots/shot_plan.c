@@ -49,7 +49,7 @@ static conic_lit lit_how(const conic_shot *shot, int is_gathered) {
 
 /* What is wrong with it; null: nothing. */
 static const char *find_fault(const conic_shot *shot, unsigned abilities) {
-  const char *fault = conic_shot_fault(shot);
+  const char *fault = conic_fault_of_shot(shot);
   if (fault)
     return fault;
   if (conic_shot_is_lit(shot) && abilities & CONIC_SOURCE_COMPOSITES)

@@ -9,8 +9,7 @@
 #include "core/files/file.h"
 #include "core/files/json_read.h"
 #include "core/pictures/picture_shot.h"
-#include "shots/shot_fields.h"
-#include "shots/shot_roles.h"
+#include "shots/shot_text.h"
 
 enum { MOST_MEMBERS = 1 << 20, MOST_NUMBERS = 16, MOST_INPUTS = 1 << 16, MOST_REPEATS = 256 };
 
@@ -326,11 +325,11 @@ static uint64_t bit_of(const conic_shot_rows *rows, const conic_shot_row *row) {
 
 /* What has to be said was, and what was said can be. */
 static conic_status check_fields(shot_reader *r, const conic_shot_rows *rows, const void *value, uint64_t is_read) {
-  char wrong[CONIC_CAMERA_FAULT_ROOM];
   for (size_t i = 0; i < rows->n_rows; i++)
     if (rows->rows[i].is_said && !(is_read & bit_of(rows, &rows->rows[i])))
       return fail_field(r, "'%s' is missing%s", rows->rows[i].name, "");
-  return rows->is_wrong && rows->is_wrong(value, wrong) ? conic_json_wrong(&r->json, wrong) : CONIC_OK;
+  const char *fault = rows->fault ? rows->fault(value) : NULL;
+  return fault ? conic_json_wrong(&r->json, fault) : CONIC_OK;
 }
 
 static conic_status read_fields(shot_reader *r, const conic_shot_rows *rows, char *value) {

@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "shots/shot_roles.h"
 #include "shots/shot_text.h"
 
 /* --- one by one --- */

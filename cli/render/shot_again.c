@@ -9,7 +9,6 @@
 #include "conic/layers_draw.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
-#include "shots/shot_roles.h"
 
 struct cli_shot_again {
   conic_context *context; /* of the shot; the session's is not open yet */

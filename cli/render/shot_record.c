@@ -2,12 +2,10 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "cli/render/frames.h"
 #include "cli/scene/background_options.h"
 #include "conic/version.h"
-#include "core/files/file.h"
 #include "shots/shot_key.h"
 
 void cli_shot_settle(const cli_render_job *job, conic_shot *shot) {
@@ -141,15 +139,10 @@ conic_status cli_shot_report(cli_session *session, cli_json *json, cli_render_jo
 
 /* Whether any file that is written can say how it was made. */
 static int is_carried(const cli_session *session, const cli_render_job *job) {
-  static const char *const endings[] = {"exr", "png", "tif", "tiff"};
+  static const char *const endings[] = {"exr", "png", "tif", "tiff", NULL};
   int n = job->deep_path || job->progressive_path;
-  for (int i = 0; i < job->n_outputs; i++) {
-    const char *ending = conic_file_ending(job->outputs[i]);
-    if (!*ending)
-      ending = job->writing.format ? job->writing.format : "png";
-    for (size_t j = 0; j < sizeof endings / sizeof *endings; j++)
-      n += strcasecmp(ending, endings[j]) == 0;
-  }
+  for (int i = 0; i < job->n_outputs; i++)
+    n += cli_output_is_one_of(job, job->outputs[i], endings);
   return n > 0 && !job->making.is_left_out && !session->host;
 }
 
