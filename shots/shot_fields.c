@@ -436,31 +436,14 @@ void conic_shot_file_init_sized(conic_shot_file *file, size_t size) {
 }
 
 size_t conic_row_count(const conic_shot_row *row) {
-  switch (row->kind) {
-  case CONIC_ROW_INT:
-  case CONIC_ROW_TRUTH:
-    return row->bytes / sizeof(int);
-  case CONIC_ROW_UINT32:
-    return row->bytes / sizeof(uint32_t);
-  case CONIC_ROW_UINT64:
-    return row->bytes / sizeof(uint64_t);
-  case CONIC_ROW_FLOAT:
-    return row->bytes / sizeof(float);
-  case CONIC_ROW_DOUBLE:
-    return row->bytes / sizeof(double);
-  case CONIC_ROW_WORD:
-  case CONIC_ROW_PLANES:
-  case CONIC_ROW_TEXT:
-  case CONIC_ROW_HAS:
-  case CONIC_ROW_STRUCT:
-  case CONIC_ROW_POINTER:
-  case CONIC_ROW_LIST:
-  case CONIC_ROW_LENGTH:
-  case CONIC_ROW_RESERVED:
-  case CONIC_ROW_LEFT_OUT:
-    break;
-  }
-  return 1;
+  static const size_t bytes_each[] = {[CONIC_ROW_INT] = sizeof(int),
+                                      [CONIC_ROW_TRUTH] = sizeof(int),
+                                      [CONIC_ROW_UINT32] = sizeof(uint32_t),
+                                      [CONIC_ROW_UINT64] = sizeof(uint64_t),
+                                      [CONIC_ROW_FLOAT] = sizeof(float),
+                                      [CONIC_ROW_DOUBLE] = sizeof(double),
+                                      [CONIC_ROW_LEFT_OUT] = 0};
+  return bytes_each[row->kind] ? row->bytes / bytes_each[row->kind] : 1;
 }
 
 size_t conic_row_length(const conic_shot_row *row, const void *value) {

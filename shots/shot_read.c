@@ -265,43 +265,31 @@ static conic_status read_presence(shot_reader *r, char *at) {
   return status;
 }
 
+static conic_status read_truth(shot_reader *r, char *at) {
+  int truth = 0;
+  conic_status status = conic_json_truth(&r->json, &truth);
+  memcpy(at, &truth, sizeof truth);
+  return status;
+}
+
+static conic_status read_text(shot_reader *r, char *at) {
+  const char *words = NULL;
+  conic_status status = read_owned_text(r, &words);
+  memcpy(at, &words, sizeof words);
+  return status;
+}
+
 static conic_status read_field(shot_reader *r, const conic_shot_row *row, char *value) {
   char *at = value + row->offset;
-  const char *words;
-  int truth;
-  conic_status status;
-  switch (row->kind) {
-  case CONIC_ROW_STRUCT:
-    return read_fields(r, row->of, at);
-  case CONIC_ROW_POINTER:
-    return read_pointer(r, row, at);
-  case CONIC_ROW_LIST:
-    return read_list(r, row, value);
-  case CONIC_ROW_WORD:
-    return read_field_word(r, row, at);
-  case CONIC_ROW_PLANES:
-    return read_plane_words(r, row, at);
-  case CONIC_ROW_HAS:
-    return read_presence(r, at);
-  case CONIC_ROW_TRUTH:
-    status = conic_json_truth(&r->json, &truth);
-    memcpy(at, &truth, status == CONIC_OK ? sizeof truth : 0);
-    return status;
-  case CONIC_ROW_TEXT:
-    status = read_owned_text(r, &words);
-    memcpy(at, &words, status == CONIC_OK ? sizeof words : 0);
-    return status;
-  case CONIC_ROW_INT:
-  case CONIC_ROW_UINT32:
-  case CONIC_ROW_UINT64:
-  case CONIC_ROW_FLOAT:
-  case CONIC_ROW_DOUBLE:
-  case CONIC_ROW_LENGTH:
-  case CONIC_ROW_RESERVED:
-  case CONIC_ROW_LEFT_OUT:
-    break;
-  }
-  return read_field_numbers(r, row, at);
+  return row->kind == CONIC_ROW_STRUCT    ? read_fields(r, row->of, at)
+         : row->kind == CONIC_ROW_POINTER ? read_pointer(r, row, at)
+         : row->kind == CONIC_ROW_LIST    ? read_list(r, row, value)
+         : row->kind == CONIC_ROW_WORD    ? read_field_word(r, row, at)
+         : row->kind == CONIC_ROW_PLANES  ? read_plane_words(r, row, at)
+         : row->kind == CONIC_ROW_HAS     ? read_presence(r, at)
+         : row->kind == CONIC_ROW_TRUTH   ? read_truth(r, at)
+         : row->kind == CONIC_ROW_TEXT    ? read_text(r, at)
+                                          : read_field_numbers(r, row, at);
 }
 
 static const conic_shot_row *find_shot_row(const conic_shot_rows *rows, const char *key) {

@@ -13,32 +13,13 @@ typedef struct field_finding {
 } field_finding;
 
 static conic_shot_field_kind kind_of_field(const conic_shot_row *row) {
-  switch (row->kind) {
-  case CONIC_ROW_TRUTH:
-  case CONIC_ROW_HAS:
-    return CONIC_SHOT_FIELD_TRUTH;
-  case CONIC_ROW_FLOAT:
-    return CONIC_SHOT_FIELD_FLOAT;
-  case CONIC_ROW_DOUBLE:
-    return CONIC_SHOT_FIELD_DOUBLE;
-  case CONIC_ROW_WORD:
-    return CONIC_SHOT_FIELD_WORD;
-  case CONIC_ROW_PLANES:
-    return CONIC_SHOT_FIELD_WORDS;
-  case CONIC_ROW_TEXT:
-    return CONIC_SHOT_FIELD_TEXT;
-  case CONIC_ROW_INT:
-  case CONIC_ROW_UINT32:
-  case CONIC_ROW_UINT64:
-  case CONIC_ROW_STRUCT:
-  case CONIC_ROW_POINTER:
-  case CONIC_ROW_LIST:
-  case CONIC_ROW_LENGTH:
-  case CONIC_ROW_RESERVED:
-  case CONIC_ROW_LEFT_OUT:
-    break;
-  }
-  return CONIC_SHOT_FIELD_INTEGER;
+  static const conic_shot_field_kind kinds[] = {
+      [CONIC_ROW_INT] = CONIC_SHOT_FIELD_INTEGER,    [CONIC_ROW_UINT32] = CONIC_SHOT_FIELD_INTEGER,
+      [CONIC_ROW_UINT64] = CONIC_SHOT_FIELD_INTEGER, [CONIC_ROW_FLOAT] = CONIC_SHOT_FIELD_FLOAT,
+      [CONIC_ROW_DOUBLE] = CONIC_SHOT_FIELD_DOUBLE,  [CONIC_ROW_TRUTH] = CONIC_SHOT_FIELD_TRUTH,
+      [CONIC_ROW_HAS] = CONIC_SHOT_FIELD_TRUTH,      [CONIC_ROW_WORD] = CONIC_SHOT_FIELD_WORD,
+      [CONIC_ROW_PLANES] = CONIC_SHOT_FIELD_WORDS,   [CONIC_ROW_TEXT] = CONIC_SHOT_FIELD_TEXT};
+  return kinds[row->kind];
 }
 
 static void take_field(field_finding *f, const char *path, const conic_shot_row *row, const void *standard) {
