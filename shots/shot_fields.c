@@ -6,6 +6,7 @@
 #include "conic/coloring.h"
 #include "conic/patches.h"
 #include "core/base/options.h"
+#include "shots/shot_faults.h"
 
 /* --- words --- */
 
@@ -51,71 +52,74 @@ static const char *plane_word(int i) {
   { CONIC_ROW_LEFT_OUT, AT(size), .meaning = "the length of the struct, by which versions are told apart" }
 #define RESERVED(member)                                                                                               \
   { CONIC_ROW_RESERVED, AT(member) }
+#define IN(from, to) .least = (from), .most = (to)
 #define ISA_ROW                                                                                                        \
   { CONIC_ROW_LEFT_OUT, AT(isa), .meaning = "all instruction sets draw the same bits" }
-#define TABLE(table, standard)                                                                                         \
-  static const conic_shot_rows table##_rows = {#table, sizeof(S), table##_list,                                        \
-                                               sizeof table##_list / sizeof *table##_list, standard};
+#define TABLE(table, standard, fault)                                                                                  \
+  static const conic_shot_rows table##_rows = {                                                                        \
+      #table, sizeof(S), table##_list, sizeof table##_list / sizeof *table##_list, standard, fault};
 
 #define S conic_camera
 static const conic_shot_row camera_list[] = {
-    {CONIC_ROW_INT, AT(width), "px", "the picture's width", .is_said = 1},
-    {CONIC_ROW_INT, AT(height), "px", "the picture's height", .is_said = 1},
-    {CONIC_ROW_DOUBLE, AT(fx), "px", "the focal length to the right", .is_said = 1},
-    {CONIC_ROW_DOUBLE, AT(fy), "px", "the focal length downwards", .is_said = 1},
-    {CONIC_ROW_DOUBLE, AT(cx), "px", "the principal point, from the left edge", .is_said = 1},
-    {CONIC_ROW_DOUBLE, AT(cy), "px", "the principal point, from the upper edge", .is_said = 1},
+    {CONIC_ROW_INT, AT(width), "px", "the picture's width", .is_said = 1, IN(1, 65535)},
+    {CONIC_ROW_INT, AT(height), "px", "the picture's height", .is_said = 1, IN(1, 65535)},
+    {CONIC_ROW_DOUBLE, AT(fx), "px", "the focal length to the right", .is_said = 1, IN(1e-12, 1e12)},
+    {CONIC_ROW_DOUBLE, AT(fy), "px", "the focal length downwards", .is_said = 1, IN(1e-12, 1e12)},
+    {CONIC_ROW_DOUBLE, AT(cx), "px", "the principal point, from the left edge", .is_said = 1, IN(-1e12, 1e12)},
+    {CONIC_ROW_DOUBLE, AT(cy), "px", "the principal point, from the upper edge", .is_said = 1, IN(-1e12, 1e12)},
     {CONIC_ROW_DOUBLE, AT(cam_from_world), NULL, "rows of the rotation and the translation; z goes forward, y down",
-     .columns = 4, .is_said = 1},
+     .columns = 4, .is_said = 1, IN(-1e30, 1e30)},
     {CONIC_ROW_WORD, AT(kind), NULL, "how directions become places in the picture", camera_kind_word},
     {CONIC_ROW_WORD, AT(lens), NULL, "how the lens distorts", lens_word},
-    {CONIC_ROW_DOUBLE, AT(distortion), NULL, "the lens's numbers"},
+    {CONIC_ROW_DOUBLE, AT(distortion), NULL, "the lens's numbers", IN(-1e12, 1e12)},
     RESERVED(reserved)};
-TABLE(camera, NULL)
+TABLE(camera, NULL, conic_fault_of_camera)
 #undef S
 
 #define S conic_camera_way
 static const conic_shot_row way_list[] = {
     {CONIC_ROW_WORD, AT(kind), NULL, "how the camera goes on while the shutter is open", way_word},
     RESERVED(reserved_int),
-    {CONIC_ROW_DOUBLE, AT(frames_a_turn), "frames", "of an orbit: how long a turn takes"},
-    {CONIC_ROW_DOUBLE, AT(center), "world", "of an orbit: what it turns about"},
-    {CONIC_ROW_DOUBLE, AT(up), NULL, "of an orbit: the axis"},
+    {CONIC_ROW_DOUBLE, AT(frames_a_turn), "frames", "of an orbit: how long a turn takes", IN(0, 1e9)},
+    {CONIC_ROW_DOUBLE, AT(center), "world", "of an orbit: what it turns about", IN(-1e30, 1e30)},
+    {CONIC_ROW_DOUBLE, AT(up), NULL, "of an orbit: the axis", IN(-1e30, 1e30)},
     {CONIC_ROW_LIST, AT(cameras), NULL, "one a frame", .of = &camera_rows, .is_apart = 1, .length_is_64 = 1,
      .length = offsetof(S, n_cameras)},
     {CONIC_ROW_LENGTH, AT(n_cameras)},
-    {CONIC_ROW_DOUBLE, AT(place), "frames", "which of the cameras is the shot's own, from 0"},
+    {CONIC_ROW_DOUBLE, AT(place), "frames", "which of the cameras is the shot's own, from 0", IN(0, 1e9)},
     RESERVED(reserved)};
-TABLE(way, NULL)
+TABLE(way, NULL, conic_fault_of_way)
 #undef S
 
 #define S conic_stereo_eye
 static const conic_shot_row eye_list[] = {
-    {CONIC_ROW_DOUBLE, AT(shift), "world", "how far to the right the eye is from the middle of two; the camera has it"},
-    {CONIC_ROW_DOUBLE, AT(convergence), "world", "the depth at which both eyes agree; 0: they are parallel"},
-    {CONIC_ROW_DOUBLE, AT(center), "world", "whose depth it is, where it is found"},
+    {CONIC_ROW_DOUBLE, AT(shift), "world", "how far to the right the eye is from the middle of two; the camera has it",
+     IN(-1e29, 1e29)},
+    {CONIC_ROW_DOUBLE, AT(convergence), "world", "the depth at which both eyes agree; 0: they are parallel",
+     IN(0, 1e29)},
+    {CONIC_ROW_DOUBLE, AT(center), "world", "whose depth it is, where it is found", IN(-1e30, 1e30)},
     {CONIC_ROW_TRUTH, AT(finds_convergence), NULL, "it is found"},
     RESERVED(reserved_int),
     RESERVED(reserved)};
-TABLE(eye, NULL)
+TABLE(eye, NULL, NULL)
 #undef S
 
 #define S conic_kernel
 static const conic_shot_row kernel_list[] = {
     {CONIC_ROW_WORD, AT(type), NULL, "how a splat fades from its centre to its edge", kernel_word},
-    {CONIC_ROW_FLOAT, AT(cutoff), "sigma", "where a splat ends"},
-    {CONIC_ROW_FLOAT, AT(a), NULL, "confetti's a"},
-    {CONIC_ROW_FLOAT, AT(b), NULL, "confetti's b"},
-    {CONIC_ROW_INT, AT(n), NULL, "confetti's n"}};
-TABLE(kernel, NULL)
+    {CONIC_ROW_FLOAT, AT(cutoff), "sigma", "where a splat ends", IN(0.25, 5)},
+    {CONIC_ROW_FLOAT, AT(a), NULL, "confetti's a", IN(1e-6, 1e6)},
+    {CONIC_ROW_FLOAT, AT(b), NULL, "confetti's b", IN(1e-6, 1e6)},
+    {CONIC_ROW_INT, AT(n), NULL, "confetti's n", IN(1, 16)}};
+TABLE(kernel, NULL, NULL)
 #undef S
 
 #define S conic_light
 static const conic_shot_row light_list[] = {
     {CONIC_ROW_WORD, AT(frame), NULL, "what the light moves with", light_frame_word},
-    {CONIC_ROW_FLOAT, AT(color), "linear", "red, green, blue"},
-    {CONIC_ROW_DOUBLE, AT(direction), NULL, "towards the light"}};
-TABLE(light, NULL)
+    {CONIC_ROW_FLOAT, AT(color), "linear", "red, green, blue", IN(0, 1e6)},
+    {CONIC_ROW_DOUBLE, AT(direction), NULL, "towards the light", IN(-1e30, 1e30)}};
+TABLE(light, NULL, conic_fault_of_light)
 #undef S
 
 #define S conic_lighting
@@ -123,11 +127,11 @@ static const conic_shot_row lighting_list[] = {
     {CONIC_ROW_TRUTH, AT(is_given), NULL, "these lights count, and not the one of the options"},
     {CONIC_ROW_LENGTH, AT(n_lights)},
     {CONIC_ROW_LIST, AT(lights), NULL, "lights without a place", .of = &light_rows, .length = offsetof(S, n_lights)},
-    {CONIC_ROW_FLOAT, AT(sky), "linear", "light from above: red, green, blue"},
-    {CONIC_ROW_FLOAT, AT(ground), "linear", "light from below"},
-    {CONIC_ROW_DOUBLE, AT(up), NULL, "which way is above"},
+    {CONIC_ROW_FLOAT, AT(sky), "linear", "light from above: red, green, blue", IN(0, 1e6)},
+    {CONIC_ROW_FLOAT, AT(ground), "linear", "light from below", IN(0, 1e6)},
+    {CONIC_ROW_DOUBLE, AT(up), NULL, "which way is above", IN(-1e30, 1e30)},
     RESERVED(reserved)};
-TABLE(lighting, NULL)
+TABLE(lighting, NULL, conic_fault_of_lighting)
 #undef S
 
 static void set_render(void *value) {
@@ -139,24 +143,26 @@ static const conic_shot_row render_list[] = {
     SIZE_ROW,
     {CONIC_ROW_WORD, AT(method), NULL, "how a splat becomes pixels", method_word},
     {CONIC_ROW_STRUCT, AT(kernel), NULL, "how a splat fades", .of = &kernel_rows},
-    {CONIC_ROW_FLOAT, AT(prefilter), "px2", "the variance of the blur that keeps small splats from flickering"},
-    {CONIC_ROW_DOUBLE, AT(epsilon), "world", "splats so near to each other blend; below 0: by their sizes"},
-    {CONIC_ROW_INT, AT(passes), NULL, "3: the splats of a surface blend; 1: the nearest wins"},
+    {CONIC_ROW_FLOAT, AT(prefilter), "px2", "the variance of the blur that keeps small splats from flickering",
+     IN(0, 10000)},
+    {CONIC_ROW_DOUBLE, AT(epsilon), "world", "splats so near to each other blend; below 0: by their sizes",
+     IN(-1e30, 1e29)},
+    {CONIC_ROW_INT, AT(passes), NULL, "3: the splats of a surface blend; 1: the nearest wins", IN(1, 3)},
     {CONIC_ROW_TRUTH, AT(cull_back), NULL, "what faces away is left out"},
-    {CONIC_ROW_DOUBLE, AT(near_z), "world", "nothing nearer to the camera is drawn; 0: by the scene"},
-    {CONIC_ROW_DOUBLE, AT(splat_length), "world", "the usual length of a splat; 0: by the scene"},
+    {CONIC_ROW_DOUBLE, AT(near_z), "world", "nothing nearer to the camera is drawn; 0: by the scene", IN(0, 1e30)},
+    {CONIC_ROW_DOUBLE, AT(splat_length), "world", "the usual length of a splat; 0: by the scene", IN(0, 1e30)},
     {CONIC_ROW_WORD, AT(shading), NULL, "how surfaces answer light", shading_word},
     {CONIC_ROW_TRUTH, AT(has_light), NULL, "one light, which `light` points to"},
-    {CONIC_ROW_DOUBLE, AT(light), NULL, "towards that light"},
+    {CONIC_ROW_DOUBLE, AT(light), NULL, "towards that light", IN(-1e30, 1e30)},
     {CONIC_ROW_TRUTH, AT(has_background), NULL, "`background` is behind the picture"},
-    {CONIC_ROW_FLOAT, AT(background), "linear", "red, green, blue"},
-    {CONIC_ROW_DOUBLE, AT(exposure), "stops", "each doubles the brightness"},
+    {CONIC_ROW_FLOAT, AT(background), "linear", "red, green, blue", IN(-1e18, 1e18)},
+    {CONIC_ROW_DOUBLE, AT(exposure), "stops", "each doubles the brightness", IN(-100, 100)},
     {CONIC_ROW_LEFT_OUT, AT(tile), .meaning = "all tiles draw the same bits"},
     ISA_ROW,
     {CONIC_ROW_STRUCT, AT(lighting), NULL, "light without a place", .of = &lighting_rows},
     {CONIC_ROW_LEFT_OUT, AT(splats_version), .meaning = "by which a device knows what it has; it changes no bit"},
     {CONIC_ROW_LEFT_OUT, AT(skip_hidden), .meaning = "the same picture, sooner"}};
-TABLE(render, set_render)
+TABLE(render, set_render, conic_fault_of_render)
 #undef S
 
 static void set_view(void *value) {
@@ -166,19 +172,21 @@ static void set_view(void *value) {
 #define S conic_source_view
 static const conic_shot_row view_list[] = {
     SIZE_ROW,
-    {CONIC_ROW_DOUBLE, AT(error_px), "px", "how far off the picture of a hierarchy may be; 0: all is drawn"},
-    {CONIC_ROW_UINT64, AT(budget), NULL, "or the best of so many splats and triangles"},
-    {CONIC_ROW_INT, AT(only_kind), NULL, "of a hybrid: 0 triangles alone, 1 surfels alone, -1 as it was built"},
-    {CONIC_ROW_INT, AT(samples), NULL, "N x N a pixel"},
-    {CONIC_ROW_INT, AT(most_levels), NULL, "of a hierarchy, so many levels; 0: all"},
+    {CONIC_ROW_DOUBLE, AT(error_px), "px", "how far off the picture of a hierarchy may be; 0: all is drawn",
+     IN(0, 1e9)},
+    {CONIC_ROW_UINT64, AT(budget), NULL, "or the best of so many splats and triangles", IN(0, 4294967294.0)},
+    {CONIC_ROW_INT, AT(only_kind), NULL, "of a hybrid: 0 triangles alone, 1 surfels alone, -1 as it was built",
+     IN(-1, 1)},
+    {CONIC_ROW_INT, AT(samples), NULL, "N x N a pixel", IN(1, CONIC_MAX_SAMPLES)},
+    {CONIC_ROW_INT, AT(most_levels), NULL, "of a hierarchy, so many levels; 0: all", IN(0, 1000)},
     {CONIC_ROW_LEFT_OUT, AT(occlusion), .meaning = "what is hidden may be left unread; it changes no bit"},
-    {CONIC_ROW_TRUTH, AT(may_be_coarser), NULL, "what does not come is drawn coarser"},
+    {CONIC_ROW_LEFT_OUT, AT(may_be_coarser), .meaning = "what did not come nobody can say again"},
     {CONIC_ROW_LEFT_OUT, AT(seconds), .meaning = "what came by then nobody can say again"},
-    {CONIC_ROW_TRUTH, AT(tolerates_damage), NULL, "so is what is damaged"},
-    {CONIC_ROW_DOUBLE, AT(color_error), "steps", "of a hybrid: how far off its colours may be"},
+    {CONIC_ROW_TRUTH, AT(tolerates_damage), NULL, "what is damaged is drawn coarser", .is_no_key = 1},
+    {CONIC_ROW_DOUBLE, AT(color_error), "steps", "of a hybrid: how far off its colours may be", IN(1e-9, 1e9)},
     {CONIC_ROW_WORD, AT(transparency), NULL, "how light comes through", transparency_word},
-    {CONIC_ROW_DOUBLE, AT(chance), NULL, "of transparency by chance: which"}};
-TABLE(view, set_view)
+    {CONIC_ROW_DOUBLE, AT(chance), NULL, "of transparency by chance: which", IN(0, 1)}};
+TABLE(view, set_view, NULL)
 #undef S
 
 static void set_gaussians(void *value) {
@@ -189,45 +197,47 @@ static void set_gaussians(void *value) {
 static const conic_shot_row gaussians_list[] = {
     SIZE_ROW,
     {CONIC_ROW_WORD, AT(profile), NULL, "whose way of compositing", profile_word},
-    {CONIC_ROW_FLOAT, AT(background), "display", "what is behind: red, green, blue"},
+    {CONIC_ROW_FLOAT, AT(background), "display", "what is behind: red, green, blue", IN(-1e18, 1e18)},
     ISA_ROW,
-    {CONIC_ROW_UINT32, AT(ignores_center), NULL, "1: the picture's middle is taken for the principal point"},
+    {CONIC_ROW_UINT32, AT(ignores_center), NULL, "1: the picture's middle is taken for the principal point", IN(0, 1)},
     {CONIC_ROW_LEFT_OUT, AT(device), .meaning = "all devices draw the same bits"},
-    {CONIC_ROW_DOUBLE, AT(prefilter), "px2", "of exact: the variance of the filter on the screen"}};
-TABLE(gaussians, set_gaussians)
+    {CONIC_ROW_DOUBLE, AT(prefilter), "px2", "of exact: the variance of the filter on the screen", IN(0, 10000)}};
+TABLE(gaussians, set_gaussians, NULL)
 #undef S
 
 #define S conic_lamp
 static const conic_shot_row lamp_list[] = {
     {CONIC_ROW_WORD, AT(kind), NULL, "what gives the light", lamp_word},
-    {CONIC_ROW_FLOAT, AT(color), "linear", "of what faces it at distance 1"},
-    {CONIC_ROW_DOUBLE, AT(position), "world", "its middle"},
-    {CONIC_ROW_DOUBLE, AT(radius), "world", "of a sphere"},
-    {CONIC_ROW_DOUBLE, AT(axes), "world", "of what is flat: from the middle to two edges", .columns = 3},
+    {CONIC_ROW_FLOAT, AT(color), "linear", "of what faces it at distance 1", IN(0, 1e12)},
+    {CONIC_ROW_DOUBLE, AT(position), "world", "its middle", IN(-1e19, 1e19)},
+    {CONIC_ROW_DOUBLE, AT(radius), "world", "of a sphere", IN(0, 1e19)},
+    {CONIC_ROW_DOUBLE, AT(axes), "world", "of what is flat: from the middle to two edges", .columns = 3,
+     IN(-1e19, 1e19)},
     RESERVED(reserved)};
-TABLE(lamp, NULL)
+TABLE(lamp, NULL, NULL)
 #undef S
 
 #define S conic_shot_light
 static const conic_shot_row shot_light_list[] = {
-    {CONIC_ROW_UINT64, AT(n_directions), NULL, "from which light of all around may be hidden; 0: it is not"},
+    {CONIC_ROW_UINT64, AT(n_directions), NULL, "from which light of all around may be hidden; 0: it is not",
+     IN(0, 1e6)},
     {CONIC_ROW_TRUTH, AT(has_shadows), NULL, "lights with a direction cast shadows"},
     {CONIC_ROW_LENGTH, AT(n_lamps)},
     {CONIC_ROW_LIST, AT(lamps), NULL, "lights with a place", .of = &lamp_rows, .length = offsetof(S, n_lamps)},
-    {CONIC_ROW_FLOAT, AT(sun_radius_deg), "degrees", "how large each light without a place is"},
+    {CONIC_ROW_FLOAT, AT(sun_radius_deg), "degrees", "how large each light without a place is", IN(0, 90)},
     {CONIC_ROW_LEFT_OUT, AT(sky), .meaning = "the input whose role is sky"},
     RESERVED(reserved)};
-TABLE(shot_light, NULL)
+TABLE(shot_light, NULL, conic_fault_of_shot_light)
 #undef S
 
 #define S conic_aperture
 static const conic_shot_row aperture_list[] = {
-    {CONIC_ROW_DOUBLE, AT(diameter), "world", "of the lens; 0: a pinhole"},
-    {CONIC_ROW_DOUBLE, AT(focus), "world", "the depth at which all is sharp"},
-    {CONIC_ROW_INT, AT(n_blades), NULL, "corners of the lens; 0: it is round"},
+    {CONIC_ROW_DOUBLE, AT(diameter), "world", "of the lens; 0: a pinhole", IN(0, 1e29)},
+    {CONIC_ROW_DOUBLE, AT(focus), "world", "the depth at which all is sharp", IN(0, 1e29)},
+    {CONIC_ROW_INT, AT(n_blades), NULL, "corners of the lens; 0: it is round", IN(0, CONIC_MAX_BLADES)},
     RESERVED(reserved_int),
     RESERVED(reserved)};
-TABLE(aperture, NULL)
+TABLE(aperture, NULL, conic_fault_of_aperture)
 #undef S
 
 static void set_surface_standard(void *value) {
@@ -240,15 +250,15 @@ static const conic_shot_row surface_list[] = {
     {CONIC_ROW_WORD, AT(type), NULL, "polynomials or spheres", surface_word},
     {CONIC_ROW_WORD, AT(plane), NULL, "which plane polynomials stand over", surface_plane_word},
     {CONIC_ROW_WORD, AT(weight), NULL, "how weights fall", surface_weight_word},
-    {CONIC_ROW_INT, AT(degree), NULL, "of the polynomials"},
-    {CONIC_ROW_DOUBLE, AT(h), "world", "what is smaller is smoothed away; 0: as the points lie"},
-    {CONIC_ROW_DOUBLE, AT(neglect), "h", "from which distance on points weigh nothing"},
-    {CONIC_ROW_INT, AT(n_local), NULL, "which neighbour says how the points lie"},
-    {CONIC_ROW_DOUBLE, AT(cluster), NULL, "how small, for their distance, cells are that count as one"},
+    {CONIC_ROW_INT, AT(degree), NULL, "of the polynomials", IN(1, CONIC_SURFACE_MAX_DEGREE)},
+    {CONIC_ROW_DOUBLE, AT(h), "world", "what is smaller is smoothed away; 0: as the points lie", IN(0, 1e29)},
+    {CONIC_ROW_DOUBLE, AT(neglect), "h", "from which distance on points weigh nothing", IN(1, 6)},
+    {CONIC_ROW_INT, AT(n_local), NULL, "which neighbour says how the points lie", IN(6, 64)},
+    {CONIC_ROW_DOUBLE, AT(cluster), NULL, "how small, for their distance, cells are that count as one", IN(0, 1)},
     ISA_ROW,
-    {CONIC_ROW_UINT64, AT(is_sharp), NULL, "1: creases stay sharp"},
+    {CONIC_ROW_UINT64, AT(is_sharp), NULL, "1: creases stay sharp", IN(0, 1)},
     RESERVED(reserved)};
-TABLE(surface, set_surface_standard)
+TABLE(surface, set_surface_standard, NULL)
 #undef S
 
 static void set_patches(void *value) {
@@ -260,9 +270,10 @@ static const conic_shot_row patches_list[] = {
     SIZE_ROW,
     {CONIC_ROW_STRUCT, AT(surface), NULL, "the polynomials", .of = &surface_rows},
     {CONIC_ROW_LEFT_OUT, AT(cutoff), .meaning = "a source puts that of its reading in its place"},
-    {CONIC_ROW_DOUBLE, AT(step_px), "px", "how far apart samples of a patch are"},
-    {CONIC_ROW_DOUBLE, AT(most_off), "world", "how far from the points a patch may reach; 0: as far as it is sound"}};
-TABLE(patches, set_patches)
+    {CONIC_ROW_DOUBLE, AT(step_px), "px", "how far apart samples of a patch are", IN(1e-3, 1e6)},
+    {CONIC_ROW_DOUBLE, AT(most_off), "world", "how far from the points a patch may reach; 0: as far as it is sound",
+     IN(0, 1e30)}};
+TABLE(patches, set_patches, NULL)
 #undef S
 
 static void set_coloring(void *value) {
@@ -275,10 +286,10 @@ static const conic_shot_row coloring_list[] = {
     {CONIC_ROW_TEXT, AT(by), NULL, "what colours are made of"},
     {CONIC_ROW_TEXT, AT(ramp), NULL, "by which ramp; none: the one that suits"},
     {CONIC_ROW_TRUTH, AT(has_range), NULL, "`minimum` and `maximum` are the ramp's ends"},
-    {CONIC_ROW_DOUBLE, AT(minimum), NULL, "what the ramp begins with"},
-    {CONIC_ROW_DOUBLE, AT(maximum), NULL, "and ends with"},
-    {CONIC_ROW_DOUBLE, AT(up), NULL, "of heights: which way is up; 0: the scene's"}};
-TABLE(coloring, set_coloring)
+    {CONIC_ROW_DOUBLE, AT(minimum), NULL, "what the ramp begins with", IN(-1e300, 1e300)},
+    {CONIC_ROW_DOUBLE, AT(maximum), NULL, "and ends with", IN(-1e300, 1e300)},
+    {CONIC_ROW_DOUBLE, AT(up), NULL, "of heights: which way is up; 0: the scene's", IN(-1e30, 1e30)}};
+TABLE(coloring, set_coloring, NULL)
 #undef S
 
 static void set_reading(void *value) {
@@ -290,8 +301,8 @@ static const conic_shot_row reading_list[] = {
     SIZE_ROW,
     {CONIC_ROW_WORD, AT(as), NULL, "what a file becomes that does not say by itself", as_word},
     {CONIC_ROW_TRUTH, AT(is_whole), NULL, "of a hierarchy every splat is read"},
-    {CONIC_ROW_FLOAT, AT(cutoff), "sigma", "where the splats end that are made"},
-    {CONIC_ROW_INT, AT(n_neighbours), NULL, "of which a raw point's size is made"},
+    {CONIC_ROW_FLOAT, AT(cutoff), "sigma", "where the splats end that are made", IN(0.25, 5)},
+    {CONIC_ROW_INT, AT(n_neighbours), NULL, "of which a raw point's size is made", IN(6, 64)},
     {CONIC_ROW_LEFT_OUT, AT(texture_path), .meaning = "the input whose role is texture"},
     {CONIC_ROW_TRUTH, AT(is_smooth), NULL, "meshes are round everywhere"},
     {CONIC_ROW_LEFT_OUT, AT(access), .meaning = "memory and patience change no bit"},
@@ -301,20 +312,20 @@ static const conic_shot_row reading_list[] = {
     {CONIC_ROW_TRUTH, AT(finds_dots), NULL, "points without a surface become dots"},
     {CONIC_ROW_POINTER, AT(coloring), NULL, "what colours are made of", .of = &coloring_rows},
     {CONIC_ROW_TEXT, AT(columns), NULL, "what the columns of text are"},
-    {CONIC_ROW_DOUBLE, AT(crease_deg), "degrees", "edges up to that are round"},
+    {CONIC_ROW_DOUBLE, AT(crease_deg), "degrees", "edges up to that are round", IN(0, 180)},
     {CONIC_ROW_HAS, AT(gaussians), NULL, "Gaussian scenes are composited, and are no splats like others"},
     {CONIC_ROW_TEXT, AT(where), NULL, "which points are wanted"},
     {CONIC_ROW_TRUTH, AT(keeps_alpha), NULL, "vertices keep their alpha"}};
-TABLE(reading, set_reading)
+TABLE(reading, set_reading, NULL)
 #undef S
 
 #define S conic_shot_map
 static const conic_shot_row map_list[] = {
     {CONIC_ROW_TRUTH, AT(is_wanted), NULL, "it is a map, whose camera follows from the scene"},
-    {CONIC_ROW_INT, AT(epsg), NULL, "its coordinate system; 0: the file's"},
-    {CONIC_ROW_DOUBLE, AT(pixel), "world", "a pixel's edge; 0: the spacing of the points"},
-    {CONIC_ROW_DOUBLE, AT(minimum), "world", "what is seen, from; null: no bound"},
-    {CONIC_ROW_DOUBLE, AT(maximum), "world", "what is seen, to"},
+    {CONIC_ROW_INT, AT(epsg), NULL, "its coordinate system; 0: the file's", IN(0, 65535)},
+    {CONIC_ROW_DOUBLE, AT(pixel), "world", "a pixel's edge; 0: the spacing of the points", IN(0, 1e12)},
+    {CONIC_ROW_DOUBLE, AT(minimum), "world", "what is seen, from; null: no bound", IN(-1e300, 1e300)},
+    {CONIC_ROW_DOUBLE, AT(maximum), "world", "what is seen, to", IN(-1e300, 1e300)},
     RESERVED(reserved)};
 
 static void set_map(void *value) {
@@ -326,7 +337,7 @@ static void set_map(void *value) {
   }
 }
 
-TABLE(map, set_map)
+TABLE(map, set_map, conic_fault_of_map)
 #undef S
 
 #define S conic_shot_writing
@@ -338,7 +349,7 @@ static const conic_shot_row writing_list[] = {
     {CONIC_ROW_TRUTH, AT(has_legend), NULL, "the picture says what its colours mean"},
     {CONIC_ROW_TRUTH, AT(has_mattes), NULL, "an EXR has mattes"},
     RESERVED(reserved)};
-TABLE(writing, NULL)
+TABLE(writing, NULL, NULL)
 #undef S
 
 static void set_shot(void *value) {
@@ -358,19 +369,20 @@ static const conic_shot_row shot_list[] = {
     {CONIC_ROW_STRUCT, AT(gaussians), NULL, "how Gaussian scenes are composited", .of = &gaussians_rows},
     {CONIC_ROW_STRUCT, AT(light), NULL, "light that may be hidden", .of = &shot_light_rows},
     {CONIC_ROW_TRUTH, AT(has_backdrop), NULL, "a gradient is behind the picture"},
-    {CONIC_ROW_FLOAT, AT(backdrop_top), "linear", "its colour above: red, green, blue"},
-    {CONIC_ROW_FLOAT, AT(backdrop_bottom), "linear", "and below"},
-    {CONIC_ROW_UINT64, AT(n_samples), NULL, "the picture is the mean of so many; 0: it is drawn at once"},
-    {CONIC_ROW_DOUBLE, AT(noise), NULL, "fewer are enough when it is so near to its end"},
+    {CONIC_ROW_FLOAT, AT(backdrop_top), "linear", "its colour above: red, green, blue", IN(-1e18, 1e18)},
+    {CONIC_ROW_FLOAT, AT(backdrop_bottom), "linear", "and below", IN(-1e18, 1e18)},
+    {CONIC_ROW_UINT64, AT(n_samples), NULL, "the picture is the mean of so many; 0: it is drawn at once",
+     IN(0, CONIC_MAX_ACCUMULATED)},
+    {CONIC_ROW_DOUBLE, AT(noise), NULL, "fewer are enough when it is so near to its end", IN(0, 1e9)},
     {CONIC_ROW_STRUCT, AT(aperture), NULL, "the lens", .of = &aperture_rows},
     {CONIC_ROW_WORD, AT(focus_kind), NULL, "how it is known where all is sharp", focus_word},
     {CONIC_ROW_TRUTH, AT(is_shutter_open), NULL, "samples are of different moments"},
-    {CONIC_ROW_DOUBLE, AT(focus_pixel), "px", "what is there is sharp"},
-    {CONIC_ROW_DOUBLE, AT(shutter), "frames", "from when to when it is open"},
-    {CONIC_ROW_DOUBLE, AT(frame), "frames", "the moment, for what moves"},
+    {CONIC_ROW_DOUBLE, AT(focus_pixel), "px", "what is there is sharp", IN(0, 65535)},
+    {CONIC_ROW_DOUBLE, AT(shutter), "frames", "from when to when it is open", IN(-1e5, 1e5)},
+    {CONIC_ROW_DOUBLE, AT(frame), "frames", "the moment, for what moves", IN(-1e9, 1e9)},
     {CONIC_ROW_LEFT_OUT, AT(motion), .meaning = "the input whose role is motion"},
     RESERVED(reserved)};
-TABLE(shot, set_shot)
+TABLE(shot, set_shot, conic_fault_of_shot)
 #undef S
 
 static void set_file(void *value) {
@@ -388,8 +400,8 @@ static const conic_shot_row file_list[] = {
     {CONIC_ROW_LEFT_OUT, AT(n_inputs), .meaning = "how many these are"}};
 #undef S
 
-const conic_shot_rows conic_shot_file_rows = {"file", sizeof(conic_shot_file), file_list,
-                                              sizeof file_list / sizeof *file_list, set_file};
+const conic_shot_rows conic_shot_file_rows = {
+    "file", sizeof(conic_shot_file), file_list, sizeof file_list / sizeof *file_list, set_file, NULL};
 
 const conic_shot_rows *const conic_all_shot_rows[] = {&conic_shot_file_rows,
                                                       &shot_rows,
@@ -424,31 +436,14 @@ void conic_shot_file_init_sized(conic_shot_file *file, size_t size) {
 }
 
 size_t conic_row_count(const conic_shot_row *row) {
-  switch (row->kind) {
-  case CONIC_ROW_INT:
-  case CONIC_ROW_TRUTH:
-    return row->bytes / sizeof(int);
-  case CONIC_ROW_UINT32:
-    return row->bytes / sizeof(uint32_t);
-  case CONIC_ROW_UINT64:
-    return row->bytes / sizeof(uint64_t);
-  case CONIC_ROW_FLOAT:
-    return row->bytes / sizeof(float);
-  case CONIC_ROW_DOUBLE:
-    return row->bytes / sizeof(double);
-  case CONIC_ROW_WORD:
-  case CONIC_ROW_PLANES:
-  case CONIC_ROW_TEXT:
-  case CONIC_ROW_HAS:
-  case CONIC_ROW_STRUCT:
-  case CONIC_ROW_POINTER:
-  case CONIC_ROW_LIST:
-  case CONIC_ROW_LENGTH:
-  case CONIC_ROW_RESERVED:
-  case CONIC_ROW_LEFT_OUT:
-    break;
-  }
-  return 1;
+  static const size_t bytes_each[] = {[CONIC_ROW_INT] = sizeof(int),
+                                      [CONIC_ROW_TRUTH] = sizeof(int),
+                                      [CONIC_ROW_UINT32] = sizeof(uint32_t),
+                                      [CONIC_ROW_UINT64] = sizeof(uint64_t),
+                                      [CONIC_ROW_FLOAT] = sizeof(float),
+                                      [CONIC_ROW_DOUBLE] = sizeof(double),
+                                      [CONIC_ROW_LEFT_OUT] = 0};
+  return bytes_each[row->kind] ? row->bytes / bytes_each[row->kind] : 1;
 }
 
 size_t conic_row_length(const conic_shot_row *row, const void *value) {

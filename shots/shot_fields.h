@@ -38,8 +38,10 @@ typedef struct conic_shot_row {
   size_t length;    /* of a list: the offset of its length, */
   int length_is_64; /* which is a uint64_t, else an int */
   int is_apart;
-  int columns; /* a matrix has so many; 0: it is none */
-  int is_said; /* it stands in every file */
+  int columns;        /* a matrix has so many; 0: it is none */
+  int is_said;        /* it stands in every file */
+  double least, most; /* of numbers: a file that says others is none; both 0: it may be any */
+  int is_no_key;      /* it is to be known where the picture is drawn again, and decides no bit */
 } conic_shot_row;
 
 struct conic_shot_rows {
@@ -47,7 +49,8 @@ struct conic_shot_rows {
   size_t size;
   const conic_shot_row *rows;
   size_t n_rows;
-  void (*set_standard)(void *value); /* null: all zero */
+  void (*set_standard)(void *value);       /* null: all zero */
+  const char *(*fault)(const void *value); /* of shots/shot_faults.h; null: nothing can be wrong with it */
 };
 
 /* Of a conic_shot_file: the members of its shot, then `reading`, `map` and `writing`. */

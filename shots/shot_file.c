@@ -8,7 +8,6 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/files/file.h"
-#include "shots/shot_roles.h"
 #include "shots/shot_text.h"
 
 typedef struct shot_writer {

@@ -1,5 +1,7 @@
 #include "shots/shot_inputs.h"
 
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,30 +21,57 @@ static const uint64_t most_whole_bytes = (uint64_t)MOST_PIECES * PIECE_BYTES;
 
 /* --- what a file holds --- */
 
+/* Somebody who looks at files: the thread that has the context, or one beside it, which has none. */
+typedef struct looker {
+  conic_context *context;
+  atomic_int *is_ended; /* set, where the thread beside is to end */
+} looker;
+
+static conic_status go_on_looking(const looker *l, double part) {
+  if (l->context)
+    return conic_progress(l->context, "look", part);
+  return atomic_load(l->is_ended) ? CONIC_ERROR_CANCELLED : CONIC_OK;
+}
+
+/* Adds what a file has from a place on: so little at a time that it stays near the processor. */
+static void hash_piece(conic_sha256 *sum, int descriptor, uint64_t at) {
+  unsigned char bytes[1 << 16];
+  ptrdiff_t n_read = 1;
+  for (size_t n = 0; n < PIECE_BYTES && n_read > 0; n += (size_t)n_read) {
+    n_read = conic_disk_read_at(descriptor, bytes, sizeof bytes, at + n);
+    conic_sha256_add(sum, bytes, n_read > 0 ? (size_t)n_read : 0);
+  }
+}
+
 /* Adds a whole file, or pieces of one that is large. */
-static conic_status hash_file_into(conic_context *context, conic_sha256 *sum, const char *path, int is_sampled) {
+static conic_status hash_file_into(const looker *l, conic_sha256 *sum, const char *path, int is_sampled) {
   conic_disk_entry entry;
   conic_status status = CONIC_OK;
   int descriptor = conic_file_is_there(path) ? conic_disk_open(path) : -1;
   if (descriptor < 0 || !conic_disk_look_at(descriptor, &entry))
     return CONIC_OK;
-  char *piece = conic_memory_allocate(context, PIECE_BYTES, 1);
   uint64_t n_whole = (entry.n_bytes + PIECE_BYTES - 1) / PIECE_BYTES, n = is_sampled ? MOST_PIECES : n_whole;
   uint64_t step = is_sampled ? (entry.n_bytes - PIECE_BYTES) / (MOST_PIECES - 1) : PIECE_BYTES;
-  if (!piece)
-    status = CONIC_ERROR_MEMORY;
   if (is_sampled) {
     conic_key_add_number(sum, entry.n_bytes);
     conic_key_add_number(sum, (uint64_t)entry.modified_seconds);
   }
   for (uint64_t i = 0; i < n && status == CONIC_OK; i++) {
-    uint64_t at = is_sampled && i == MOST_PIECES - 1 ? entry.n_bytes - PIECE_BYTES : i * step;
-    ptrdiff_t n_read = conic_disk_read_at(descriptor, piece, PIECE_BYTES, at);
-    conic_sha256_add(sum, piece, n_read > 0 ? (size_t)n_read : 0);
-    status = conic_progress(context, "look", (double)i / (double)n);
+    hash_piece(sum, descriptor, is_sampled && i == MOST_PIECES - 1 ? entry.n_bytes - PIECE_BYTES : i * step);
+    status = go_on_looking(l, (double)i / (double)n);
   }
-  conic_memory_release(context, piece);
   close(descriptor);
+  return status;
+}
+
+static conic_status look_at_file(const looker *l, const char *path, const conic_disk_entry *entry,
+                                 conic_shot_input *input) {
+  conic_sha256 sum;
+  input->n_bytes = entry->n_bytes;
+  input->is_sampled = entry->n_bytes > most_whole_bytes;
+  conic_sha256_begin(&sum);
+  conic_status status = hash_file_into(l, &sum, path, input->is_sampled);
+  conic_sha256_end(&sum, input->sha256);
   return status;
 }
 
@@ -105,6 +134,7 @@ static int compare_folder_files(const void *a, const void *b) {
 /* Of a large one every file's name, length and time, and what 64 of them hold at their beginning. */
 static conic_status look_at_folder(conic_context *context, const char *folder, conic_shot_input *input) {
   folder_list list = {.context = context};
+  const looker own = {.context = context};
   conic_sha256 sum;
   conic_status status = list_folder_files(&list, folder, 0);
   size_t n_folder = strlen(folder);
@@ -120,7 +150,7 @@ static conic_status look_at_folder(conic_context *context, const char *folder, c
     if (input->is_sampled)
       conic_key_add_number(&sum, (uint64_t)file->modified_seconds);
     if (!input->is_sampled || i % (list.n / MOST_PIECES + 1) == 0)
-      status = hash_file_into(context, &sum, file->path, file->n_bytes > most_whole_bytes);
+      status = hash_file_into(&own, &sum, file->path, file->n_bytes > most_whole_bytes);
   }
   conic_sha256_end(&sum, input->sha256);
   for (size_t i = 0; i < list.n; i++)
@@ -145,25 +175,62 @@ static int find_hierarchy_folder(const char *path, char folder[PATH_ROOM]) {
   return 1;
 }
 
+/* Whether there is a file or folder to look at. */
+static int is_on_disk(const char *path, conic_disk_entry *entry) {
+  return strcmp(path, "-") != 0 && !conic_layers_is_url(path) && conic_disk_look(path, entry);
+}
+
 conic_status conic_shot_input_look(conic_context *context, const char *path, conic_shot_input *input) {
+  const looker own = {.context = context};
   conic_disk_entry entry;
-  conic_sha256 sum;
   char folder[PATH_ROOM];
-  if (strcmp(path, "-") == 0 || conic_layers_is_url(path) || !conic_disk_look(path, &entry))
+  if (!is_on_disk(path, &entry))
     return CONIC_OK;
-  if (find_hierarchy_folder(path, folder))
-    return look_at_folder(context, folder, input);
-  input->n_bytes = entry.n_bytes;
-  input->is_sampled = entry.n_bytes > most_whole_bytes;
-  conic_sha256_begin(&sum);
-  conic_status status = hash_file_into(context, &sum, path, input->is_sampled);
-  conic_sha256_end(&sum, input->sha256);
-  return status;
+  return find_hierarchy_folder(path, folder) ? look_at_folder(context, folder, input)
+                                             : look_at_file(&own, path, &entry, input);
+}
+
+/* --- beside who reads and draws --- */
+
+struct conic_shot_looking {
+  pthread_t thread;
+  atomic_int is_ended;
+  conic_shot_input *inputs; /* nobody else touches these */
+  size_t n, n_done;
+};
+
+static void *look_beside(void *data) {
+  struct conic_shot_looking *looking = data;
+  const looker beside = {.is_ended = &looking->is_ended};
+  char folder[PATH_ROOM];
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < looking->n && status == CONIC_OK; i++) {
+    conic_shot_input *input = &looking->inputs[i];
+    conic_disk_entry entry;
+    if (!is_on_disk(input->name, &entry) || find_hierarchy_folder(input->name, folder))
+      break; /* what it is takes memory of the context to say */
+    status = look_at_file(&beside, input->name, &entry, input);
+    looking->n_done += status == CONIC_OK;
+  }
+  return NULL;
+}
+
+/* Returns how many inputs have been looked at. */
+static size_t end_looking(conic_context *context, conic_shot_inputs *inputs, int is_ended) {
+  struct conic_shot_looking *looking = inputs->looking;
+  if (!looking)
+    return 0;
+  atomic_store(&looking->is_ended, is_ended);
+  pthread_join(looking->thread, NULL);
+  size_t n_done = looking->n_done;
+  conic_memory_release(context, looking);
+  inputs->looking = NULL;
+  return n_done;
 }
 
 /* --- the list --- */
 
-static conic_status add_input(conic_context *context, conic_shot_inputs *inputs, const char *path, const char *name,
+static conic_status add_input(conic_context *context, conic_shot_inputs *inputs, const char *name,
                               conic_shot_role role) {
   size_t n = strlen(name) + 1;
   conic_status status =
@@ -172,11 +239,35 @@ static conic_status add_input(conic_context *context, conic_shot_inputs *inputs,
   if (!copy)
     return CONIC_ERROR_MEMORY;
   memcpy(copy, name, n);
-  conic_shot_input *input = &inputs->inputs[inputs->n++];
-  memset(input, 0, sizeof *input);
-  input->name = copy;
-  input->role = role;
-  return conic_shot_input_look(context, path, input);
+  inputs->inputs[inputs->n++] = (conic_shot_input){.name = copy, .role = role};
+  return CONIC_OK;
+}
+
+static conic_status add_named(conic_context *context, const conic_shot_names *names, conic_shot_inputs *inputs) {
+  const char *const others[] = {names->texture, names->sky, names->motion};
+  const conic_shot_role roles[] = {CONIC_SHOT_TEXTURE, CONIC_SHOT_SKY, CONIC_SHOT_MOTION};
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < names->n_scene && status == CONIC_OK; i++)
+    status = add_input(context, inputs, names->scene[i], CONIC_SHOT_SCENE);
+  for (size_t i = 0; i < sizeof others / sizeof *others && status == CONIC_OK; i++)
+    if (others[i])
+      status = add_input(context, inputs, others[i], roles[i]);
+  return status;
+}
+
+conic_status conic_shot_inputs_begin(conic_context *context, const conic_shot_names *names, conic_shot_inputs *inputs) {
+  conic_status status = add_named(context, names, inputs);
+  struct conic_shot_looking *looking =
+      status == CONIC_OK ? conic_memory_allocate_zeroed(context, 1, sizeof *looking) : NULL;
+  if (!looking)
+    return CONIC_ERROR_MEMORY;
+  looking->inputs = inputs->inputs;
+  looking->n = inputs->n;
+  if (conic_context_threads(context) > 1 && pthread_create(&looking->thread, NULL, look_beside, looking) == 0)
+    inputs->looking = looking;
+  else
+    conic_memory_release(context, looking);
+  return CONIC_OK;
 }
 
 static int are_one_file(const char *a, const char *b) {
@@ -218,6 +309,12 @@ static const char *name_of_part(const conic_shot_names *names, const char *path)
   return strncmp(first, path, n) == 0 && !conic_disk_is_absolute(path + n) ? path + n : conic_file_name(path);
 }
 
+static conic_status add_part(conic_context *context, const conic_shot_names *names, const char *path,
+                             conic_shot_inputs *inputs) {
+  conic_status status = add_input(context, inputs, name_of_part(names, path), CONIC_SHOT_PART);
+  return status == CONIC_OK ? conic_shot_input_look(context, path, &inputs->inputs[inputs->n - 1]) : status;
+}
+
 static int compare_parts(const void *a, const void *b) {
   const conic_shot_input *first = a, *second = b;
   int order = strcmp(first->name, second->name);
@@ -225,19 +322,15 @@ static int compare_parts(const void *a, const void *b) {
 }
 
 conic_status conic_shot_inputs_find(conic_context *context, const conic_shot_names *names, conic_shot_inputs *inputs) {
-  const char *const others[] = {names->texture, names->sky, names->motion};
-  const conic_shot_role roles[] = {CONIC_SHOT_TEXTURE, CONIC_SHOT_SKY, CONIC_SHOT_MOTION};
-  conic_status status = CONIC_OK;
   conic_guarded read;
-  for (size_t i = 0; i < names->n_scene && status == CONIC_OK; i++)
-    status = add_input(context, inputs, names->scene[i], names->scene[i], CONIC_SHOT_SCENE);
-  for (size_t i = 0; i < sizeof others / sizeof *others && status == CONIC_OK; i++)
-    if (others[i])
-      status = add_input(context, inputs, others[i], others[i], roles[i]);
-  size_t first_part = inputs->n;
+  size_t n_known = end_looking(context, inputs, 0);
+  conic_status status = inputs->n ? CONIC_OK : add_named(context, names, inputs);
+  for (size_t i = n_known; i < inputs->n && status == CONIC_OK; i++)
+    status = conic_shot_input_look(context, inputs->inputs[i].name, &inputs->inputs[i]);
+  const size_t first_part = inputs->n;
   for (size_t at = 0; status == CONIC_OK && conic_guard_next(context, &at, &read);) {
     if (!is_named(names, read.path))
-      status = add_input(context, inputs, read.path, name_of_part(names, read.path), CONIC_SHOT_PART);
+      status = add_part(context, names, read.path, inputs);
     for (size_t i = 0; conic_layers_is_url(read.path) && i < first_part; i++)
       if (strcmp(inputs->inputs[i].name, read.path) == 0)
         inputs->inputs[i].n_bytes = read.n_bytes;
@@ -248,6 +341,7 @@ conic_status conic_shot_inputs_find(conic_context *context, const conic_shot_nam
 }
 
 void conic_shot_inputs_release(conic_context *context, conic_shot_inputs *inputs) {
+  end_looking(context, inputs, 1);
   for (size_t i = 0; i < inputs->n; i++)
     conic_memory_release(context, (void *)inputs->inputs[i].name);
   conic_memory_release(context, inputs->inputs);

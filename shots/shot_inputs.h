@@ -15,10 +15,17 @@ typedef struct conic_shot_names {
 typedef struct conic_shot_inputs {
   conic_shot_input *inputs;
   size_t n, room;
+  struct conic_shot_looking *looking; /* at them, beside the calling thread; null: nobody is */
 } conic_shot_inputs;
 
-/* Lists the named files, and as parts whatever else the context has read since conic_guard_go_on. A file that cannot be
- * read has no hash: whoever needs it has said so. Errors: MEMORY, CANCELLED; the caller releases in any case. */
+/* Lists the named files, and begins to look at them on a thread of its own, so that it takes no time of whoever reads
+ * and draws them; unless the context has one thread. Nobody else touches the inputs until they are found or released.
+ * Errors: MEMORY. */
+conic_status conic_shot_inputs_begin(conic_context *context, const conic_shot_names *names, conic_shot_inputs *inputs);
+
+/* Lists the named files, unless that was begun, and as parts whatever else the context has read since
+ * conic_guard_go_on. A file that cannot be read has no hash: whoever needs it has said so. Errors: MEMORY, CANCELLED;
+ * the caller releases in any case. */
 conic_status conic_shot_inputs_find(conic_context *context, const conic_shot_names *names, conic_shot_inputs *inputs);
 void conic_shot_inputs_release(conic_context *context, conic_shot_inputs *inputs);
 

@@ -32,7 +32,7 @@ static void add_field(void *cookie, const conic_field_visit *visit) {
   key_adding *a = cookie;
   int is_wanted = a->part ? strncmp(visit->path, a->part, strlen(a->part)) == 0
                           : strncmp(visit->path, "writing.", strlen("writing.")) != 0;
-  if (!is_wanted || conic_row_is_same(visit->row, visit->value, visit->standard))
+  if (!is_wanted || visit->row->is_no_key || conic_row_is_same(visit->row, visit->value, visit->standard))
     return;
   conic_key_add_text(a->text.sum, visit->path);
   conic_text_value(&a->text, visit->row, visit->value);
@@ -89,10 +89,57 @@ static void plain_samples(conic_shot *shot) {
     memset(&shot->eye, 0, sizeof shot->eye);
 }
 
+/* A light at the eye has no direction, nor, where nothing is a mean, a light a size, but a lamp only what its kind has.
+ */
+static void plain_lights(conic_shot *shot) {
+  conic_lighting *lighting = &shot->render.lighting;
+  for (int i = 0; i < lighting->n_lights; i++)
+    if (lighting->lights[i].frame == CONIC_LIGHT_HEAD)
+      memset(lighting->lights[i].direction, 0, sizeof lighting->lights[i].direction);
+  for (int i = 0; i < CONIC_MAX_LIGHTS; i++)
+    if (shot->n_samples == 0 || i >= lighting->n_lights || lighting->lights[i].frame == CONIC_LIGHT_HEAD)
+      shot->light.sun_radius_deg[i] = 0.0f;
+  for (int i = 0; i < shot->light.n_lamps; i++) {
+    conic_lamp *lamp = &shot->light.lamps[i];
+    if (lamp->kind == CONIC_LAMP_SPHERE)
+      memset(lamp->axes, 0, sizeof lamp->axes);
+    else
+      lamp->radius = 0.0;
+  }
+  if (memcmp(lighting->sky, lighting->ground, sizeof lighting->sky) == 0 && !(shot->light.n_directions > 0))
+    memset(lighting->up, 0, sizeof lighting->up);
+  if (lighting->is_given || !shot->render.has_light) {
+    shot->render.has_light = 0;
+    memset(shot->render.light, 0, sizeof shot->render.light);
+  }
+}
+
+/* Numbers of what there is not: of confetti, of a lens that does not distort, of how colours may differ and chance. */
+static void plain_drawing(conic_shot *shot, const conic_shot *standard, unsigned abilities) {
+  conic_kernel *kernel = &shot->render.kernel;
+  if (kernel->type != CONIC_KERNEL_CONFETTI) {
+    kernel->a = standard->render.kernel.a;
+    kernel->b = standard->render.kernel.b;
+    kernel->n = standard->render.kernel.n;
+  }
+  if (shot->camera.lens == CONIC_LENS_NONE)
+    memset(shot->camera.distortion, 0, sizeof shot->camera.distortion);
+  if (!(abilities & CONIC_SOURCE_CLUSTERS) || !(shot->view.error_px > 0.0))
+    shot->view.color_error = standard->view.color_error;
+  if (!(abilities & CONIC_SOURCE_CLUSTERS))
+    shot->view.only_kind = standard->view.only_kind;
+  if (shot->view.transparency != CONIC_TRANSPARENCY_CHANCE)
+    shot->view.chance = standard->view.chance;
+  if (shot->gaussians.profile != CONIC_PROFILE_EXACT)
+    shot->gaussians.prefilter = standard->gaussians.prefilter;
+}
+
 static void plain_shot(conic_shot *shot, unsigned abilities) {
   conic_shot standard;
   conic_shot_init(&standard);
   plain_samples(shot);
+  plain_lights(shot);
+  plain_drawing(shot, &standard, abilities);
   if (shot->focus_kind != CONIC_FOCUS_DEPTH)
     shot->aperture.focus = 0.0;
   if (shot->focus_kind != CONIC_FOCUS_PIXEL)

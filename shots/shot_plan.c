@@ -1,6 +1,7 @@
 #include "shots/shot_plan.h"
 
 #include "core/base/message.h"
+#include "shots/shot_faults.h"
 #include "source/source_kind.h"
 
 enum { RGBA = 1u << CONIC_PLANE_RGBA, Z = 1u << CONIC_PLANE_Z, NORMAL = 1u << CONIC_PLANE_NORMAL };
@@ -48,17 +49,9 @@ static conic_lit lit_how(const conic_shot *shot, int is_gathered) {
 
 /* What is wrong with it; null: nothing. */
 static const char *find_fault(const conic_shot *shot, unsigned abilities) {
-  const unsigned of_means = 1u << CONIC_PLANE_SAMPLES | 1u << CONIC_PLANE_VARIANCE;
-  if (shot->light.n_lamps < 0 || shot->light.n_lamps > CONIC_MAX_LAMPS)
-    return "more lamps than there may be";
-  if (shot->n_samples > CONIC_MAX_ACCUMULATED)
-    return "more samples than there may be";
-  if (shot->n_samples > 0 && shot->view.samples > 1)
-    return "means of samples draw one sample a pixel at a time: view.samples is 1";
-  if (!shot->n_samples && shot->planes & of_means)
-    return "the planes samples and variance are of means: n_samples is above 0";
-  if (!shot->n_samples && (shot->aperture.diameter > 0.0 || shot->is_shutter_open || shot->motion))
-    return "a lens, a shutter and motion are of means: n_samples is above 0";
+  const char *fault = conic_fault_of_shot(shot);
+  if (fault)
+    return fault;
   if (conic_shot_is_lit(shot) && abilities & CONIC_SOURCE_COMPOSITES)
     return "light is hidden from surfaces, not from Gaussians that are composited";
   if (shot->planes & CONIC_GAUSSIAN_PLANES && !(abilities & CONIC_SOURCE_COMPOSITES))

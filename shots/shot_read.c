@@ -1,5 +1,6 @@
 /* Shots from text: by the table of fields, and strictly. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -8,10 +9,9 @@
 #include "core/files/file.h"
 #include "core/files/json_read.h"
 #include "core/pictures/picture_shot.h"
-#include "shots/shot_fields.h"
-#include "shots/shot_roles.h"
+#include "shots/shot_text.h"
 
-enum { MOST_MEMBERS = 1 << 20, MOST_NUMBERS = 16 };
+enum { MOST_MEMBERS = 1 << 20, MOST_NUMBERS = 16, MOST_INPUTS = 1 << 16, MOST_REPEATS = 256 };
 
 const char *conic_shot_role_name(conic_shot_role role) {
   static const char *const names[CONIC_N_SHOT_ROLES] = {"scene", "texture", "sky", "motion", "part"};
@@ -112,10 +112,6 @@ static conic_status read_owned_text(shot_reader *r, const char **words) {
   return CONIC_OK;
 }
 
-static conic_status read_truth(shot_reader *r, int *truth) {
-  return conic_json_truth(&r->json, truth);
-}
-
 static conic_status read_field_word(shot_reader *r, const conic_shot_row *row, char *at) {
   char word[64];
   conic_status status = conic_json_text(&r->json, word, sizeof word);
@@ -147,6 +143,12 @@ static conic_status take_null(shot_reader *r, const conic_shot_row *row, const c
   return bound - bound != 0.0 ? CONIC_OK : fail_field(r, "%s has to be a number%s", row->name, "");
 }
 
+static conic_status fail_range(shot_reader *r, const conic_shot_row *row, double value) {
+  char range[96];
+  snprintf(range, sizeof range, "%.10g to %.10g, and not %.10g", row->least, row->most, value);
+  return fail_field(r, "%s is %s", row->name, range);
+}
+
 /* A number into the member's own type. */
 static conic_status put_field_number(shot_reader *r, const conic_shot_row *row, double value, char *at) {
   float rounded = (float)value;
@@ -155,6 +157,8 @@ static conic_status put_field_number(shot_reader *r, const conic_shot_row *row, 
     return take_null(r, row, at);
   if (value - value != 0.0 || (row->kind == CONIC_ROW_FLOAT && rounded - rounded != 0.0f))
     return fail_field(r, "%s is too large%s", row->name, "");
+  if ((row->least != 0.0 || row->most != 0.0) && !(value >= row->least && value <= row->most))
+    return fail_range(r, row, value);
   if (row->kind == CONIC_ROW_FLOAT) {
     memcpy(at, &rounded, sizeof rounded);
   } else if (row->kind == CONIC_ROW_DOUBLE) {
@@ -255,49 +259,37 @@ static conic_status read_list(shot_reader *r, const conic_shot_row *row, char *v
 /* Whether it is null is all that there is to know. */
 static conic_status read_presence(shot_reader *r, char *at) {
   int is_there = 0;
-  conic_status status = read_truth(r, &is_there);
+  conic_status status = conic_json_truth(&r->json, &is_there);
   const void *to = is_there ? (const void *)r->owned : NULL;
   memcpy(at, &to, sizeof to);
   return status;
 }
 
+static conic_status read_truth(shot_reader *r, char *at) {
+  int truth = 0;
+  conic_status status = conic_json_truth(&r->json, &truth);
+  memcpy(at, &truth, sizeof truth);
+  return status;
+}
+
+static conic_status read_text(shot_reader *r, char *at) {
+  const char *words = NULL;
+  conic_status status = read_owned_text(r, &words);
+  memcpy(at, &words, sizeof words);
+  return status;
+}
+
 static conic_status read_field(shot_reader *r, const conic_shot_row *row, char *value) {
   char *at = value + row->offset;
-  const char *words;
-  int truth;
-  conic_status status;
-  switch (row->kind) {
-  case CONIC_ROW_STRUCT:
-    return read_fields(r, row->of, at);
-  case CONIC_ROW_POINTER:
-    return read_pointer(r, row, at);
-  case CONIC_ROW_LIST:
-    return read_list(r, row, value);
-  case CONIC_ROW_WORD:
-    return read_field_word(r, row, at);
-  case CONIC_ROW_PLANES:
-    return read_plane_words(r, row, at);
-  case CONIC_ROW_HAS:
-    return read_presence(r, at);
-  case CONIC_ROW_TRUTH:
-    status = read_truth(r, &truth);
-    memcpy(at, &truth, status == CONIC_OK ? sizeof truth : 0);
-    return status;
-  case CONIC_ROW_TEXT:
-    status = read_owned_text(r, &words);
-    memcpy(at, &words, status == CONIC_OK ? sizeof words : 0);
-    return status;
-  case CONIC_ROW_INT:
-  case CONIC_ROW_UINT32:
-  case CONIC_ROW_UINT64:
-  case CONIC_ROW_FLOAT:
-  case CONIC_ROW_DOUBLE:
-  case CONIC_ROW_LENGTH:
-  case CONIC_ROW_RESERVED:
-  case CONIC_ROW_LEFT_OUT:
-    break;
-  }
-  return read_field_numbers(r, row, at);
+  return row->kind == CONIC_ROW_STRUCT    ? read_fields(r, row->of, at)
+         : row->kind == CONIC_ROW_POINTER ? read_pointer(r, row, at)
+         : row->kind == CONIC_ROW_LIST    ? read_list(r, row, value)
+         : row->kind == CONIC_ROW_WORD    ? read_field_word(r, row, at)
+         : row->kind == CONIC_ROW_PLANES  ? read_plane_words(r, row, at)
+         : row->kind == CONIC_ROW_HAS     ? read_presence(r, at)
+         : row->kind == CONIC_ROW_TRUTH   ? read_truth(r, at)
+         : row->kind == CONIC_ROW_TEXT    ? read_text(r, at)
+                                          : read_field_numbers(r, row, at);
 }
 
 static const conic_shot_row *find_shot_row(const conic_shot_rows *rows, const char *key) {
@@ -307,44 +299,47 @@ static const conic_shot_row *find_shot_row(const conic_shot_rows *rows, const ch
   return NULL;
 }
 
+/* Each field of a struct stands once. */
+static conic_status note_field(shot_reader *r, const char *key, uint64_t bit, uint64_t *is_read) {
+  if (*is_read & bit)
+    return fail_field(r, "the field '%s' stands twice%s", key, "");
+  *is_read |= bit;
+  return CONIC_OK;
+}
+
+static uint64_t bit_of(const conic_shot_rows *rows, const conic_shot_row *row) {
+  return UINT64_C(1) << (row - rows->rows);
+}
+
+/* What has to be said was, and what was said can be. */
+static conic_status check_fields(shot_reader *r, const conic_shot_rows *rows, const void *value, uint64_t is_read) {
+  for (size_t i = 0; i < rows->n_rows; i++)
+    if (rows->rows[i].is_said && !(is_read & bit_of(rows, &rows->rows[i])))
+      return fail_field(r, "'%s' is missing%s", rows->rows[i].name, "");
+  const char *fault = rows->fault ? rows->fault(value) : NULL;
+  return fault ? conic_json_wrong(&r->json, fault) : CONIC_OK;
+}
+
 static conic_status read_fields(shot_reader *r, const conic_shot_rows *rows, char *value) {
   char key[CONIC_JSON_KEY_ROOM];
   uint64_t is_read = 0; /* bits of rows */
   conic_status status = conic_json_begin_object(&r->json);
   while (status == CONIC_OK && conic_json_next_member(&r->json, key)) {
     const conic_shot_row *row = find_shot_row(rows, key);
-    uint64_t bit = row ? UINT64_C(1) << (row - rows->rows) : 0;
-    if (is_read & bit)
-      return fail_field(r, "the field '%s' stands twice%s", key, "");
-    is_read |= bit;
-    status = row ? read_field(r, row, value) : fail_field(r, "there is no field '%s'%s", key, "");
+    status = row ? note_field(r, key, bit_of(rows, row), &is_read) : fail_field(r, "there is no field '%s'%s", key, "");
+    if (status == CONIC_OK)
+      status = read_field(r, row, value);
   }
-  return status == CONIC_OK ? r->json.status : status;
+  if (status == CONIC_OK)
+    status = r->json.status;
+  return status == CONIC_OK ? check_fields(r, rows, value, is_read) : status;
 }
 
 /* --- the file --- */
 
-static conic_status read_input_member(shot_reader *r, const char *key, conic_shot_input *input) {
+static conic_status read_role(shot_reader *r, conic_shot_input *input) {
   char word[CONIC_JSON_KEY_ROOM];
-  double number = 0.0;
-  conic_status status;
-  if (strcmp(key, "name") == 0)
-    return read_owned_text(r, &input->name);
-  if (strcmp(key, "sampled") == 0)
-    return read_truth(r, &input->is_sampled);
-  if (strcmp(key, "sha256") == 0) {
-    status = conic_json_text(&r->json, input->sha256, sizeof input->sha256);
-    int is_hash = strspn(input->sha256, "0123456789abcdef") == 64 && !input->sha256[64];
-    return status == CONIC_OK && !is_hash ? fail_field(r, "%s has 64 digits%s", key, "") : status;
-  }
-  if (strcmp(key, "bytes") == 0) {
-    status = conic_json_number(&r->json, &number);
-    input->n_bytes = number >= 0.0 && number < 0x1p63 ? (uint64_t)number : 0;
-    return status;
-  }
-  if (strcmp(key, "as") != 0)
-    return fail_field(r, "there is no field '%s' of an input%s", key, "");
-  status = conic_json_text(&r->json, word, sizeof word);
+  conic_status status = conic_json_text(&r->json, word, sizeof word);
   for (int i = 0; i < CONIC_N_SHOT_ROLES && status == CONIC_OK; i++)
     if (strcmp(word, conic_shot_role_name((conic_shot_role)i)) == 0) {
       input->role = (conic_shot_role)i;
@@ -353,15 +348,59 @@ static conic_status read_input_member(shot_reader *r, const char *key, conic_sho
   return status == CONIC_OK ? fail_field(r, "an input cannot be '%s'%s", word, "") : status;
 }
 
+static conic_status read_hash(shot_reader *r, conic_shot_input *input) {
+  conic_status status = conic_json_text(&r->json, input->sha256, sizeof input->sha256);
+  int is_hash = strspn(input->sha256, "0123456789abcdef") == 64 && !input->sha256[64];
+  return status == CONIC_OK && !is_hash ? fail_field(r, "sha256 has 64 digits%s%s", "", "") : status;
+}
+
+static conic_status read_length(shot_reader *r, conic_shot_input *input) {
+  static const conic_shot_row row = {CONIC_ROW_UINT64, "bytes", .bytes = sizeof(uint64_t), .most = 0x1p53};
+  return read_field_numbers(r, &row, (char *)&input->n_bytes);
+}
+
 static conic_status read_shot_input(shot_reader *r, conic_shot_input *input) {
+  static const char *const keys[] = {"name", "as", "bytes", "sha256", "sampled"};
+  enum { NAME, ROLE, LENGTH, HASH, SAMPLED, N_KEYS };
   char key[CONIC_JSON_KEY_ROOM];
+  uint64_t is_read = 0;
   memset(input, 0, sizeof *input);
   conic_status status = conic_json_begin_object(&r->json);
-  while (status == CONIC_OK && conic_json_next_member(&r->json, key))
-    status = read_input_member(r, key, input);
+  while (status == CONIC_OK && conic_json_next_member(&r->json, key)) {
+    int i = 0;
+    while (i < N_KEYS && strcmp(key, keys[i]) != 0)
+      i++;
+    status = i < N_KEYS ? note_field(r, key, UINT64_C(1) << i, &is_read)
+                        : fail_field(r, "there is no field '%s' of an input%s", key, "");
+    if (status == CONIC_OK)
+      status = i == NAME     ? read_owned_text(r, &input->name)
+               : i == ROLE   ? read_role(r, input)
+               : i == LENGTH ? read_length(r, input)
+               : i == HASH   ? read_hash(r, input)
+                             : conic_json_truth(&r->json, &input->is_sampled);
+  }
   if (status == CONIC_OK)
     status = r->json.status;
   return status == CONIC_OK && !input->name ? fail_field(r, "an input has no name%s%s", "", "") : status;
+}
+
+static int compare_names(const void *a, const void *b) {
+  return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Nobody draws one file so many times, and who did would wait for days. */
+static conic_status check_repeats(shot_reader *r, const conic_shot_input *inputs, size_t n) {
+  const char **names = conic_memory_allocate(r->context, n, sizeof *names);
+  conic_status status = names ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; names && i < n; i++)
+    names[i] = inputs[i].name;
+  if (names)
+    qsort(names, n, sizeof *names, compare_names);
+  for (size_t i = MOST_REPEATS; i < n && status == CONIC_OK; i++)
+    if (strcmp(names[i], names[i - MOST_REPEATS]) == 0)
+      status = fail_field(r, "the input '%.100s' stands too many times%s", names[i], "");
+  conic_memory_release(r->context, names);
+  return status;
 }
 
 static conic_status read_inputs(shot_reader *r) {
@@ -369,13 +408,15 @@ static conic_status read_inputs(shot_reader *r) {
   size_t n = 0, room = 0;
   conic_status status = conic_json_begin_array(&r->json);
   while (status == CONIC_OK && conic_json_next_item(&r->json)) {
-    status = n == MOST_MEMBERS ? fail_field(r, "there are too many inputs%s%s", "", "")
-                               : conic_memory_reserve(r->context, &inputs, n, n + 1, &room, sizeof *inputs);
+    status = n == MOST_INPUTS ? fail_field(r, "there are too many inputs%s%s", "", "")
+                              : conic_memory_reserve(r->context, &inputs, n, n + 1, &room, sizeof *inputs);
     if (status == CONIC_OK)
       status = read_shot_input(r, &inputs[n++]);
   }
   if (status == CONIC_OK)
     status = r->json.status;
+  if (status == CONIC_OK)
+    status = check_repeats(r, inputs, n);
   conic_shot_input *kept = status == CONIC_OK && n ? own_block(r, n, sizeof *inputs) : NULL;
   if (status == CONIC_OK && n && !kept)
     status = CONIC_ERROR_MEMORY;
@@ -387,49 +428,62 @@ static conic_status read_inputs(shot_reader *r) {
   return status;
 }
 
-static conic_status read_version(shot_reader *r, int *has_version) {
+static conic_status read_version(shot_reader *r) {
   double version;
+  char what[128];
   conic_status status = conic_json_number(&r->json, &version);
-  *has_version = 1;
-  if (status == CONIC_OK && version != (double)CONIC_SHOT_VERSION) {
-    char what[128];
-    snprintf(what, sizeof what, "it is a shot of version %g, and this conic reads version %d", version,
-             CONIC_SHOT_VERSION);
-    status = conic_json_wrong(&r->json, what);
-  }
-  return status;
+  if (status != CONIC_OK || version == (double)CONIC_SHOT_VERSION)
+    return status;
+  snprintf(what, sizeof what, "it is a shot of version %g, and this conic reads version %d", version,
+           CONIC_SHOT_VERSION);
+  return conic_json_wrong(&r->json, what);
 }
 
-/* Members of the shot stand beside those of the file. */
-static conic_status read_shot_member(shot_reader *r, const char *key, int *has_version) {
-  const conic_shot_row *shot = &conic_shot_file_rows.rows[1], *row;
-  char *file = (char *)&r->owned->file;
+/* What stands beside the members of the struct. */
+enum { VERSION, WRITER, INPUTS, N_BESIDE };
+static const char *const beside[N_BESIDE] = {[VERSION] = "conic_shot", [WRITER] = "conic", [INPUTS] = "inputs"};
+
+static conic_status read_beside(shot_reader *r, int i) {
   char word[CONIC_JSON_KEY_ROOM];
-  if (strcmp(key, "conic_shot") == 0)
-    return read_version(r, has_version);
-  if (!*has_version)
+  return i == VERSION ? read_version(r) : i == WRITER ? conic_json_text(&r->json, word, sizeof word) : read_inputs(r);
+}
+
+/* Members of the shot stand beside those of the file; what was read of the file's, of the shot's, and else. */
+static conic_status read_shot_member(shot_reader *r, const char *key, uint64_t is_read[3]) {
+  const conic_shot_rows *file_rows = &conic_shot_file_rows;
+  const conic_shot_row *shot = &file_rows->rows[1];
+  const conic_shot_row *of_shot = find_shot_row(shot->of, key), *of_file = find_shot_row(file_rows, key);
+  char *file = (char *)&r->owned->file;
+  int i = 0;
+  while (i < N_BESIDE && strcmp(key, beside[i]) != 0)
+    i++;
+  if (i != VERSION && !is_read[2])
     return fail_field(r, "a shot begins with its version, \"conic_shot\", and not with '%s'%s", key, "");
-  if (strcmp(key, "conic") == 0)
-    return conic_json_text(&r->json, word, sizeof word);
-  if (strcmp(key, "inputs") == 0)
-    return read_inputs(r);
-  if ((row = find_shot_row(shot->of, key)))
-    return read_field(r, row, file + shot->offset);
-  row = find_shot_row(&conic_shot_file_rows, key);
-  return row && row != shot ? read_field(r, row, file) : fail_field(r, "there is no field '%s'%s", key, "");
+  if (i == N_BESIDE && !of_shot && (!of_file || of_file == shot))
+    return fail_field(r, "there is no field '%s'%s", key, "");
+  conic_status status = i < N_BESIDE ? note_field(r, key, UINT64_C(1) << i, &is_read[2])
+                        : of_shot    ? note_field(r, key, bit_of(shot->of, of_shot), &is_read[1])
+                                     : note_field(r, key, bit_of(file_rows, of_file), &is_read[0]);
+  if (status != CONIC_OK)
+    return status;
+  return i < N_BESIDE ? read_beside(r, i)
+         : of_shot    ? read_field(r, of_shot, file + shot->offset)
+                      : read_field(r, of_file, file);
 }
 
 static conic_status read_shot(shot_reader *r) {
   char key[CONIC_JSON_KEY_ROOM];
-  int has_version = 0;
+  uint64_t is_read[3] = {0, 0, 0};
   conic_status status = conic_json_begin_object(&r->json);
   while (status == CONIC_OK && conic_json_next_member(&r->json, key))
-    status = read_shot_member(r, key, &has_version);
+    status = read_shot_member(r, key, is_read);
   if (status == CONIC_OK)
     status = r->json.status;
   if (status == CONIC_OK)
+    status = check_fields(r, conic_shot_file_rows.rows[1].of, &r->owned->file.shot, is_read[1]);
+  if (status == CONIC_OK)
     status = conic_json_end(&r->json);
-  if (status == CONIC_OK && !has_version)
+  if (status == CONIC_OK && !is_read[2])
     status = fail_field(r, "it is no shot%s%s", "", "");
   if (r->owned->file.reading.gaussians)
     r->owned->file.reading.gaussians = &r->owned->file.shot.gaussians;

@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "shots/shot_roles.h"
 #include "shots/shot_text.h"
 
 /* --- one by one --- */
@@ -14,32 +13,13 @@ typedef struct field_finding {
 } field_finding;
 
 static conic_shot_field_kind kind_of_field(const conic_shot_row *row) {
-  switch (row->kind) {
-  case CONIC_ROW_TRUTH:
-  case CONIC_ROW_HAS:
-    return CONIC_SHOT_FIELD_TRUTH;
-  case CONIC_ROW_FLOAT:
-    return CONIC_SHOT_FIELD_FLOAT;
-  case CONIC_ROW_DOUBLE:
-    return CONIC_SHOT_FIELD_DOUBLE;
-  case CONIC_ROW_WORD:
-    return CONIC_SHOT_FIELD_WORD;
-  case CONIC_ROW_PLANES:
-    return CONIC_SHOT_FIELD_WORDS;
-  case CONIC_ROW_TEXT:
-    return CONIC_SHOT_FIELD_TEXT;
-  case CONIC_ROW_INT:
-  case CONIC_ROW_UINT32:
-  case CONIC_ROW_UINT64:
-  case CONIC_ROW_STRUCT:
-  case CONIC_ROW_POINTER:
-  case CONIC_ROW_LIST:
-  case CONIC_ROW_LENGTH:
-  case CONIC_ROW_RESERVED:
-  case CONIC_ROW_LEFT_OUT:
-    break;
-  }
-  return CONIC_SHOT_FIELD_INTEGER;
+  static const conic_shot_field_kind kinds[] = {
+      [CONIC_ROW_INT] = CONIC_SHOT_FIELD_INTEGER,    [CONIC_ROW_UINT32] = CONIC_SHOT_FIELD_INTEGER,
+      [CONIC_ROW_UINT64] = CONIC_SHOT_FIELD_INTEGER, [CONIC_ROW_FLOAT] = CONIC_SHOT_FIELD_FLOAT,
+      [CONIC_ROW_DOUBLE] = CONIC_SHOT_FIELD_DOUBLE,  [CONIC_ROW_TRUTH] = CONIC_SHOT_FIELD_TRUTH,
+      [CONIC_ROW_HAS] = CONIC_SHOT_FIELD_TRUTH,      [CONIC_ROW_WORD] = CONIC_SHOT_FIELD_WORD,
+      [CONIC_ROW_PLANES] = CONIC_SHOT_FIELD_WORDS,   [CONIC_ROW_TEXT] = CONIC_SHOT_FIELD_TEXT};
+  return kinds[row->kind];
 }
 
 static void take_field(field_finding *f, const char *path, const conic_shot_row *row, const void *standard) {
@@ -113,6 +93,8 @@ static void add_type(conic_text *text, const conic_shot_row *row) {
                      left == n ? n / columns == 1 ? n : n / columns : columns,
                      left == n ? n / columns == 1 ? n : n / columns : columns);
   conic_text_say(text, types[kind_of_field(row)]);
+  if (row->least != 0.0 || row->most != 0.0)
+    conic_text_print(text, ", \"minimum\": %.10g, \"maximum\": %.10g", row->least, row->most);
   for (int left = n; left > 1; left = left == n && columns < n ? columns : 1)
     conic_text_say(text, "}");
 }

@@ -111,35 +111,18 @@ static const char *text_at(const conic_shot_row *row, const void *value) {
 static void add_one(conic_text *text, const conic_shot_row *row, const char *at) {
   uint64_t number;
   uint32_t small;
-  switch (row->kind) {
-  case CONIC_ROW_INT:
+  if (row->kind == CONIC_ROW_INT) {
     conic_text_print(text, "%d", int_at(at));
-    break;
-  case CONIC_ROW_TRUTH:
+  } else if (row->kind == CONIC_ROW_TRUTH) {
     conic_text_say(text, int_at(at) ? "true" : "false");
-    break;
-  case CONIC_ROW_UINT32:
+  } else if (row->kind == CONIC_ROW_UINT32) {
     memcpy(&small, at, sizeof small);
     conic_text_print(text, "%lu", (unsigned long)small);
-    break;
-  case CONIC_ROW_UINT64:
+  } else if (row->kind == CONIC_ROW_UINT64) {
     memcpy(&number, at, sizeof number);
     conic_text_print(text, "%llu", (unsigned long long)number);
-    break;
-  case CONIC_ROW_FLOAT:
-  case CONIC_ROW_DOUBLE:
-  case CONIC_ROW_WORD:
-  case CONIC_ROW_PLANES:
-  case CONIC_ROW_TEXT:
-  case CONIC_ROW_HAS:
-  case CONIC_ROW_STRUCT:
-  case CONIC_ROW_POINTER:
-  case CONIC_ROW_LIST:
-  case CONIC_ROW_LENGTH:
-  case CONIC_ROW_RESERVED:
-  case CONIC_ROW_LEFT_OUT:
+  } else
     add_real(text, row, at);
-  }
 }
 
 void conic_text_value(conic_text *text, const conic_shot_row *row, const void *value) {

@@ -1,10 +1,16 @@
-/* Text that grows, and the fields of a shot as text: what is written reads back to the bit. */
+/* Text that grows, and a shot as text: what is written reads back to the bit. */
 #ifndef CONIC_SHOT_TEXT_H
 #define CONIC_SHOT_TEXT_H
 
 #include "core/base/message.h"
 #include "core/files/sha256.h"
 #include "shots/shot_fields.h"
+
+/* Of a shot's text: it grows with every field that older versions do not know. */
+enum { CONIC_SHOT_VERSION = 1 };
+
+/* "scene", "texture" …; null for a number that is none. */
+const char *conic_shot_role_name(conic_shot_role role);
 
 typedef struct conic_text {
   conic_context *context; /* null: there is no more room than `room`, at `bytes` */

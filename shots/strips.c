@@ -4,8 +4,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/base/threads.h"
 #include "core/base/options.h"
+#include "core/base/threads.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
@@ -47,10 +47,6 @@ typedef struct banded {
 
 static int is_writing(const banded *b) {
   return b->executor->index == 0;
-}
-
-static conic_status agree_strips(const banded *b, conic_status status) {
-  return b->executor->agree(b->executor->data, status);
 }
 
 /* Other threads write what others hand over, so that only who is alone may look what came of it. */
@@ -245,7 +241,7 @@ static conic_status deal_strips(banded *b) {
   conic_window *list = conic_memory_allocate(b->context, b->n_drawn, sizeof *list);
   for (size_t i = 0; list && i < b->n_drawn; i++)
     list[i] = (conic_window){0, b->camera->width, b->strips[b->drawn[i]].y_begin, b->strips[b->drawn[i]].y_end};
-  conic_status status = agree_strips(b, list ? CONIC_OK : CONIC_ERROR_MEMORY);
+  conic_status status = conic_work_agree(b->work, list ? CONIC_OK : CONIC_ERROR_MEMORY);
   if (status == CONIC_OK && b->n_drawn > 0)
     status = conic_shot_windows_deal(b->work, &b->windows, list, b->n_drawn, 1, &b->owners);
   conic_memory_release(b->context, list);
@@ -260,7 +256,7 @@ static conic_status spread_strips(banded *b) {
   conic_status status = CONIC_OK;
   if ((size_t)n > b->n)
     status = conic_memory_grow(b->context, &b->strips, b->n, (size_t)n, sizeof *b->strips);
-  status = agree_strips(b, status);
+  status = conic_work_agree(b->work, status);
   if (status != CONIC_OK)
     return status;
   b->n = (size_t)n;
@@ -366,7 +362,7 @@ static conic_status end_banded(banded *b, conic_status status) {
   status = conic_strips_writer_end(&b->writer, status == CONIC_OK ? b->writer.status : status);
   if (status == CONIC_OK && b->list_path)
     conic_disk_remove(b->list_path);
-  return agree_strips(b, status);
+  return conic_work_agree(b->work, status);
 }
 
 static void release_banded(banded *b) {
@@ -392,16 +388,16 @@ conic_status conic_strips_draw(conic_shot_work *work, const conic_camera *camera
   conic_moment start = conic_moment_now();
   conic_status status = begin_banded(&b);
   conic_work_trace(work, "open", "picture", (uint64_t)work->shot->frame, start, 0);
-  status = agree_strips(&b, status);
+  status = conic_work_agree(work, status);
   if (status == CONIC_OK && wish->key)
     status = spread_strips(&b);
   if (status == CONIC_OK)
-    status = agree_strips(&b, list_drawn(&b));
+    status = conic_work_agree(work, list_drawn(&b));
   b.writer.strips = b.strips;
   if (status == CONIC_OK)
     status = deal_strips(&b);
   if (status == CONIC_OK)
-    status = agree_strips(&b, draw_strips(&b));
+    status = conic_work_agree(work, draw_strips(&b));
   status = end_banded(&b, status);
   if (status == CONIC_OK)
     status = conic_windows_sum(work, &b.windows, &b.counts);

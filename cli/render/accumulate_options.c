@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/scene/render_job.h"
+#include "cli/render/frame_files.h"
 
 int cli_parse_focus(const char *text, void *value) {
   cli_focus *focus = value;
@@ -57,24 +57,14 @@ int cli_accumulate_check(const cli_session *session, cli_render_job *job) {
   return CLI_DONE;
 }
 
-static void add_number(conic_image *image, const char *name, double value) {
-  if (image->n_attributes == CONIC_MAX_ATTRIBUTES)
-    return;
-  conic_attribute *attribute = &image->attributes[image->n_attributes++];
-  memset(attribute, 0, sizeof *attribute);
-  snprintf(attribute->name, sizeof attribute->name, "%s", name);
-  attribute->type = CONIC_ATTRIBUTE_DOUBLE;
-  attribute->values[0] = value;
-}
-
 void cli_accumulate_describe(const cli_render_job *job, conic_image *image) {
   const cli_accumulate_job *own = &job->accumulating;
   if (!own->n_samples)
     return;
-  add_number(image, "conicAccumulated", (double)own->facts.end_sample);
+  cli_name_attribute(image, "conicAccumulated", NULL, (double)own->facts.end_sample);
   if (job->shot.aperture.diameter > 0.0) {
-    add_number(image, "conicAperture", job->shot.aperture.diameter);
-    add_number(image, "conicFocus", own->focus_depth);
+    cli_name_attribute(image, "conicAperture", NULL, job->shot.aperture.diameter);
+    cli_name_attribute(image, "conicFocus", NULL, own->focus_depth);
   }
 }
 

@@ -17,7 +17,9 @@
 
 /* --- the picture --- */
 
-static void name_attribute(conic_image *image, const char *name, const char *text, double value) {
+void cli_name_attribute(conic_image *image, const char *name, const char *text, double value) {
+  if (image->n_attributes == CONIC_MAX_ATTRIBUTES)
+    return;
   conic_attribute *attribute = &image->attributes[image->n_attributes++];
   memset(attribute, 0, sizeof *attribute);
   snprintf(attribute->name, sizeof attribute->name, "%s", name);
@@ -31,21 +33,21 @@ static void name_attribute(conic_image *image, const char *name, const char *tex
 void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, conic_image *image) {
   const conic_render_statistics *s = &job->statistics;
   image->n_attributes = 0;
-  name_attribute(image, "conicVersion", conic_version(), 0);
-  name_attribute(image, "conicMethod", cli_method_name(job), 0);
-  name_attribute(image, "conicEpsilonMode", s->epsilon_is_fixed ? "fixed" : "auto", 0);
-  name_attribute(image, "conicEpsilon", NULL, s->epsilon);
-  name_attribute(image, "conicNear", NULL, s->near_z);
-  name_attribute(image, "conicCutoff", NULL, (double)job->shot.render.kernel.cutoff);
-  name_attribute(image, "conicPrefilter", NULL,
-                 job->abilities & CONIC_SOURCE_COMPOSITES ? job->shot.gaussians.prefilter
-                                                          : (double)job->shot.render.prefilter);
-  name_attribute(image, "conicExposure", NULL, job->shot.render.exposure);
-  name_attribute(image, "conicSamples", NULL, (double)job->shot.view.samples);
-  name_attribute(image, "conicFx", NULL, camera->fx);
-  name_attribute(image, "conicFy", NULL, camera->fy);
-  name_attribute(image, "conicCx", NULL, camera->cx);
-  name_attribute(image, "conicCy", NULL, camera->cy);
+  cli_name_attribute(image, "conicVersion", conic_version(), 0);
+  cli_name_attribute(image, "conicMethod", cli_method_name(job), 0);
+  cli_name_attribute(image, "conicEpsilonMode", s->epsilon_is_fixed ? "fixed" : "auto", 0);
+  cli_name_attribute(image, "conicEpsilon", NULL, s->epsilon);
+  cli_name_attribute(image, "conicNear", NULL, s->near_z);
+  cli_name_attribute(image, "conicCutoff", NULL, (double)job->shot.render.kernel.cutoff);
+  cli_name_attribute(image, "conicPrefilter", NULL,
+                     job->abilities & CONIC_SOURCE_COMPOSITES ? job->shot.gaussians.prefilter
+                                                              : (double)job->shot.render.prefilter);
+  cli_name_attribute(image, "conicExposure", NULL, job->shot.render.exposure);
+  cli_name_attribute(image, "conicSamples", NULL, (double)job->shot.view.samples);
+  cli_name_attribute(image, "conicFx", NULL, camera->fx);
+  cli_name_attribute(image, "conicFy", NULL, camera->fy);
+  cli_name_attribute(image, "conicCx", NULL, camera->cx);
+  cli_name_attribute(image, "conicCy", NULL, camera->cy);
   conic_attribute *matrix = &image->attributes[image->n_attributes++];
   memset(matrix, 0, sizeof *matrix);
   snprintf(matrix->name, sizeof matrix->name, "conicWorldToCamera");
@@ -134,31 +136,7 @@ static conic_status show_legend(cli_session *session, cli_render_job *job, conic
 
 /* --- pictures beside it --- */
 
-/* A picture beside the frame's, which it releases, where `status` says that it was made, from `start` on. */
-static conic_status write_beside(cli_session *session, cli_render_job *job, const char *name, int i_frame, double start,
-                                 conic_status status, conic_image *map) {
-  char *path = status == CONIC_OK ? cli_frame_name(job, name, i_frame) : NULL;
-  if (status == CONIC_OK) {
-    status = path ? conic_image_write_as(session->context, path, map, &job->writing) : CONIC_ERROR_MEMORY;
-    conic_image_release(session->context, map);
-  }
-  free(path);
-  job->write_ms += 1e3 * (cli_seconds() - start);
-  return status;
-}
-
-/* --overdraw: the count plane in false colours. */
-static conic_status write_overdraw(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
-  conic_image map;
-  double start = cli_seconds();
-  if (!job->overdraw_path)
-    return CONIC_OK;
-  conic_status status = job->is_overdraw_confetti ? conic_image_overdraw_confetti(session->context, image, &map)
-                                                  : conic_image_overdraw(session->context, image, &map);
-  return write_beside(session, job, job->overdraw_path, i_frame, start, status, &map);
-}
-
-/* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in the picture. */
+/* The clusters of a hybrid in colours of their own, as they are shaded in the picture. */
 static conic_status make_cluster_map(conic_context *context, const conic_image *image, conic_image *map) {
   const uint32_t *cluster = image->planes[CONIC_PLANE_CLUSTER];
   const float *from = image->planes[CONIC_PLANE_RGBA];
@@ -178,42 +156,49 @@ static conic_status make_cluster_map(conic_context *context, const conic_image *
   return CONIC_OK;
 }
 
-static conic_status write_clusters(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
-  conic_image map;
-  double start = cli_seconds();
-  if (!job->clusters_path)
-    return CONIC_OK;
-  return write_beside(session, job, job->clusters_path, i_frame, start, make_cluster_map(session->context, image, &map),
-                      &map);
+/* What --show makes of the picture: the counts in false colours, clusters, the nodes of an octree; and what is behind
+ * its pixels, --deep. */
+typedef enum beside { OVERDRAW, CLUSTERS, BOXES, DEEP, N_BESIDE } beside;
+
+static conic_status make_beside(cli_session *session, const cli_render_job *job, beside what,
+                                const conic_camera *camera, const conic_image *image, conic_image *map) {
+  conic_context *context = session->context;
+  if (what == CLUSTERS)
+    return make_cluster_map(context, image, map);
+  if (what == BOXES)
+    return conic_octree_draw_boxes(conic_source_octree(job->source), camera, job->box_level, image, map);
+  return job->is_overdraw_confetti ? conic_image_overdraw_confetti(context, image, map)
+                                   : conic_image_overdraw(context, image, map);
 }
 
-/* --boxes: the nodes of an octree. */
-static conic_status write_boxes(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                                const conic_image *image, int i_frame) {
-  const conic_octree *octree = job->boxes_path ? conic_source_octree(job->source) : NULL;
-  conic_image map;
-  double start = cli_seconds();
-  if (!octree)
-    return CONIC_OK;
-  conic_status status = conic_octree_draw_boxes(octree, camera, job->box_level, image, &map);
-  return write_beside(session, job, job->boxes_path, i_frame, start, status, &map);
-}
-
-/* --deep: what is behind the picture's pixels. */
-static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                               const conic_image *image, int i_frame) {
+static conic_status write_deep(cli_session *session, const cli_render_job *job, const char *path,
+                               const conic_camera *camera, const conic_image *image) {
   const conic_drawing *drawing = &conic_source_chosen(job->source)->drawing;
   conic_contributions *contributions;
-  double start = cli_seconds();
-  if (!job->deep_path)
-    return CONIC_OK;
-  char *path = cli_frame_name(job, job->deep_path, i_frame);
   conic_status status =
-      path ? conic_contributions_create_drawing(session->context, drawing, camera, &job->shot.render, &contributions)
-           : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK) {
-    status = conic_contributions_write(contributions, path, image);
-    conic_contributions_destroy(contributions);
+      conic_contributions_create_drawing(session->context, drawing, camera, &job->shot.render, &contributions);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_contributions_write(contributions, path, image);
+  conic_contributions_destroy(contributions);
+  return status;
+}
+
+static conic_status write_beside(cli_session *session, cli_render_job *job, beside what, const conic_camera *camera,
+                                 const conic_image *image, int i_frame) {
+  const char *const names[N_BESIDE] = {job->overdraw_path, job->clusters_path,
+                                       conic_source_octree(job->source) ? job->boxes_path : NULL, job->deep_path};
+  double start = cli_seconds();
+  conic_image map;
+  if (!names[what])
+    return CONIC_OK;
+  char *path = cli_frame_name(job, names[what], i_frame);
+  conic_status status = path ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (path && what == DEEP) {
+    status = write_deep(session, job, path, camera, image);
+  } else if (path && (status = make_beside(session, job, what, camera, image, &map)) == CONIC_OK) {
+    status = conic_image_write_as(session->context, path, &map, &job->writing);
+    conic_image_release(session->context, &map);
   }
   free(path);
   job->write_ms += 1e3 * (cli_seconds() - start);
@@ -377,11 +362,7 @@ conic_status cli_frame_files_write(cli_session *session, cli_render_job *job, co
     status = show_legend(session, job, image);
   if (status == CONIC_OK)
     status = cli_frame_write(session, job, image, i_frame);
-  if (status == CONIC_OK)
-    status = write_overdraw(session, job, image, i_frame);
-  if (status == CONIC_OK)
-    status = write_clusters(session, job, image, i_frame);
-  if (status == CONIC_OK)
-    status = write_boxes(session, job, camera, image, i_frame);
-  return status == CONIC_OK ? write_deep(session, job, camera, image, i_frame) : status;
+  for (beside what = 0; what < N_BESIDE && status == CONIC_OK; what++)
+    status = write_beside(session, job, what, camera, image, i_frame);
+  return status;
 }

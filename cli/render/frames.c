@@ -91,23 +91,24 @@ static int check_pattern(const char *path) {
   return CLI_DONE;
 }
 
+static void free_names(char **names, int n) {
+  for (int i = 0; names && i < n; i++)
+    free(names[i]);
+  free(names);
+}
+
 /* What frame `i_frame` writes. */
 static int check_files(const cli_session *session, const cli_render_job *job, const char *const *paths, int n_paths,
                        int i_frame) {
   char **names = calloc((size_t)n_paths, sizeof *names);
-  if (!names)
-    return cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
-  int answer = CLI_DONE;
-  for (int i = 0; i < n_paths && answer == CLI_DONE; i++)
-    if (paths[i] && !(names[i] = cli_frame_name(job, paths[i], i_frame)))
-      answer = cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
-  if (answer == CLI_DONE)
-    answer = cli_check_outputs(session, (const char *const *)names, n_paths);
+  int is_there = names != NULL;
+  for (int i = 0; i < n_paths && is_there; i++)
+    is_there = !paths[i] || (names[i] = cli_frame_name(job, paths[i], i_frame));
+  int answer = is_there ? cli_check_outputs(session, (const char *const *)names, n_paths)
+                        : cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
   if (answer == CLI_DONE)
     answer = cli_scene_inputs_stay(session, job, (const char *const *)names, n_paths);
-  for (int i = 0; i < n_paths; i++)
-    free(names[i]);
-  free(names);
+  free_names(names, n_paths);
   return answer;
 }
 
@@ -119,19 +120,17 @@ static int compare_frame_names(const void *a, const void *b) {
 static int check_view_names(const cli_session *session, const cli_render_job *job, const char *path) {
   int n = cli_frames_count(job), answer = CLI_DONE;
   char **names = calloc((size_t)n, sizeof *names);
-  if (!names)
-    return cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
-  for (int i = 0; i < n && answer == CLI_DONE; i++)
-    if (!(names[i] = cli_frame_name(job, path, job->frames.first - 1 + i * job->frames.step)))
-      answer = cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
-  if (answer == CLI_DONE)
+  int is_there = names != NULL;
+  for (int i = 0; i < n && is_there; i++)
+    is_there = (names[i] = cli_frame_name(job, path, job->frames.first - 1 + i * job->frames.step)) != NULL;
+  if (is_there)
     qsort(names, (size_t)n, sizeof *names, compare_frame_names);
+  else
+    answer = cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
   for (int i = 1; i < n && answer == CLI_DONE; i++)
     if (strcmp(names[i - 1], names[i]) == 0)
       answer = cli_usage("%s: two views would be written to %s; number them, as by %%04d", session->command, names[i]);
-  for (int i = 0; i < n; i++)
-    free(names[i]);
-  free(names);
+  free_names(names, n);
   return answer;
 }
 

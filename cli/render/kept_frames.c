@@ -15,12 +15,7 @@
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/finished.h"
-
-/* Text that grows. */
-typedef struct growing_text {
-  char *bytes;
-  size_t n, room;
-} growing_text;
+#include "shots/shot_text.h"
 
 struct cli_kept_frames {
   conic_context *context;
@@ -28,11 +23,10 @@ struct cli_kept_frames {
   FILE *stream;                /* of it, in the first process */
   conic_finished found;        /* when it began */
   conic_finished_part *frames; /* of it, by number; without words: it is not finished */
-  growing_text names;          /* of the files of the frame that is drawn, each with a zero behind it */
-  growing_text lines;          /* of the frame that is finished */
+  conic_text names;            /* of the files of the frame that is drawn, each with a zero behind it */
+  conic_text lines;            /* of the frame that is finished */
   int n_finished;              /* in the first process: frames that were there */
   int error;                   /* and what became of writing: an errno, or 0 */
-  conic_status status;         /* of noting names */
 };
 
 /* --- the options --- */
@@ -73,16 +67,7 @@ int cli_kept_frames_check(const cli_session *session, const cli_render_job *job)
   return CLI_DONE;
 }
 
-/* --- text --- */
-
-static conic_status add_bytes(conic_context *context, growing_text *text, const char *bytes, size_t n) {
-  conic_status status = conic_memory_reserve(context, &text->bytes, text->n, text->n + n, &text->room, 1);
-  if (status == CONIC_OK) {
-    memcpy(text->bytes + text->n, bytes, n);
-    text->n += n;
-  }
-  return status;
-}
+/* --- what was written --- */
 
 /* Notes the name of a file that was written, once. Sums are no part of a frame. */
 static void note_name(void *cookie, const char *path) {
@@ -91,8 +76,8 @@ static void note_name(void *cookie, const char *path) {
   for (const char *name = kept->names.bytes; kept->names.n && name < end; name += strlen(name) + 1)
     if (strcmp(name, path) == 0)
       return;
-  if (!conic_file_has_ending(path, "sums") && kept->status == CONIC_OK)
-    kept->status = add_bytes(kept->context, &kept->names, path, strlen(path) + 1);
+  if (!conic_file_has_ending(path, "sums"))
+    conic_text_add(&kept->names, path, strlen(path) + 1);
 }
 
 static conic_status add_file_line(cli_kept_frames *kept, const char *name) {
@@ -100,10 +85,10 @@ static conic_status add_file_line(cli_kept_frames *kept, const char *name) {
   uint64_t n_bytes;
   if (conic_file_hash(name, &n_bytes, hash) != CONIC_OK)
     return conic_fail(kept->context, CONIC_ERROR_IO, "%s: cannot read what was written: %s", name, strerror(errno));
-  conic_status status = add_bytes(kept->context, &kept->lines, head, conic_finished_file_head(hash, n_bytes, head));
-  if (status == CONIC_OK)
-    status = add_bytes(kept->context, &kept->lines, name, strlen(name));
-  return status == CONIC_OK ? add_bytes(kept->context, &kept->lines, "\n", 1) : status;
+  conic_text_add(&kept->lines, head, conic_finished_file_head(hash, n_bytes, head));
+  conic_text_say(&kept->lines, name);
+  conic_text_say(&kept->lines, "\n");
+  return kept->lines.status;
 }
 
 /* --- the file --- */
@@ -211,7 +196,7 @@ conic_status cli_kept_frames_begin(cli_session *session, cli_render_job *job) {
   if (!job->kept || !(job->kept->path = name_list(job)))
     status = CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
-    job->kept->context = session->context;
+    job->kept->context = job->kept->names.context = job->kept->lines.context = session->context;
     status = cli_session_speaks(session) ? open_list(session, job) : CONIC_OK;
     conic_outputs_watch(session->context, note_name, job->kept);
   }
@@ -229,8 +214,8 @@ void cli_kept_frames_release(cli_session *session, cli_render_job *job) {
     fclose(kept->stream);
   conic_finished_release(session->context, &kept->found);
   conic_memory_release(session->context, kept->frames);
-  conic_memory_release(session->context, kept->names.bytes);
-  conic_memory_release(session->context, kept->lines.bytes);
+  conic_text_release(&kept->names);
+  conic_text_release(&kept->lines);
   free(kept->path);
   free(kept);
   job->kept = NULL;
@@ -259,7 +244,7 @@ void cli_kept_frames_take(void *cookie, int from, const void *bytes, size_t n_by
     kept->error = errno ? errno : EIO;
 }
 
-static void hand_lines(const cli_render_job *job, const growing_text *lines) {
+static void hand_lines(const cli_render_job *job, const conic_text *lines) {
   if (job->units == CONIC_UNITS_FRAMES)
     job->executor->hand(job->executor->data, lines->bytes, lines->n);
   else
@@ -274,7 +259,7 @@ static conic_status tell_error(const cli_kept_frames *kept) {
 
 conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int i_frame, int *is_finished) {
   cli_kept_frames *kept = job->kept;
-  const growing_text nothing = {0};
+  const conic_text nothing = {0};
   *is_finished = 0;
   if (!kept)
     return CONIC_OK;
@@ -293,17 +278,15 @@ conic_status cli_kept_frames_look(cli_session *session, cli_render_job *job, int
 
 conic_status cli_kept_frames_add(cli_session *session, cli_render_job *job, int i_frame) {
   cli_kept_frames *kept = job->kept;
-  char last[32];
   if (!kept || !cli_units_make_picture(session, job))
     return CONIC_OK;
-  conic_status status = kept->status;
+  conic_status status = kept->names.status;
   kept->lines.n = 0;
   for (size_t at = 0; at < kept->names.n && status == CONIC_OK; at += strlen(kept->names.bytes + at) + 1)
     status = add_file_line(kept, kept->names.bytes + at);
   kept->names.n = 0;
-  int n = snprintf(last, sizeof last, "frame %d\n", i_frame);
-  if (status == CONIC_OK)
-    status = add_bytes(kept->context, &kept->lines, last, (size_t)n);
+  conic_text_print(&kept->lines, "frame %d\n", i_frame);
+  status = status == CONIC_OK ? kept->lines.status : status;
   if (status == CONIC_OK) {
     hand_lines(job, &kept->lines);
     cli_sums_forget(job, i_frame);

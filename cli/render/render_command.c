@@ -336,6 +336,8 @@ static int run(cli_session *session, int argc, char **argv) {
     conic_moment begun = conic_moment_now();
     job.begun_seconds = begun.clock_s;
     if (status == CONIC_OK && !cli_units_are_others(session, &job))
+      status = cli_shot_begin_inputs(session, &job);
+    if (status == CONIC_OK && !cli_units_are_others(session, &job))
       status = cli_scene_open(session, &job);
     if (status == CONIC_OK)
       cli_units_settle(&job);

@@ -2,6 +2,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "cli/render/shot_record.h"
 #include "cli/render/units.h"
 #include "core/files/disk.h"
 #include "shots/stage.h"
@@ -29,13 +30,14 @@ conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_s
   return status == CONIC_OK ? conic_shot_work_draw(&drawing, image, outcome) : status;
 }
 
-static conic_status write_progress(cli_session *session, const cli_render_job *job, int i_picture,
-                                   const conic_image *image) {
+static conic_status write_progress(cli_session *session, cli_render_job *job, int i_picture, conic_image *image) {
   char path[4096];
+  conic_status status = cli_shot_describe(session, job);
   int length = snprintf(path, sizeof path, "%s/%04d.exr", job->progressive_path, i_picture);
   if (length < 0 || (size_t)length >= sizeof path)
     return CONIC_ERROR_IO;
-  return conic_image_write_as(session->context, path, image, &job->writing);
+  image->shot = job->making.text;
+  return status == CONIC_OK ? conic_image_write_as(session->context, path, image, &job->writing) : status;
 }
 
 static conic_status make_folder(const char *path) {
@@ -58,5 +60,6 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, conic_
     if (conic_source_chosen(job->source)->n_levels < level || (job->deadline > 0.0 && cli_seconds_left(job) <= 1e-3))
       break;
   }
+  job->shot.view.most_levels = 0; /* the last picture has all */
   return status;
 }

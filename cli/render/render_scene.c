@@ -29,6 +29,7 @@ static conic_status read_views(cli_session *session, cli_render_job *job) {
 
 conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
   const char *texture_path = job->opening.texture_path;
+  int is_taken;
   if (cli_isa_check(session, job->shot.render.isa) != CLI_DONE)
     return CONIC_ERROR_UNSUPPORTED;
   errno = 0;
@@ -39,7 +40,9 @@ conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
   conic_status status = cli_kept_renderer(session, &job->device, &job->renderer)
                             ? CONIC_OK
                             : cli_device_open(session, &job->device, &job->renderer);
-  if (status == CONIC_OK && job->camera_path && !cli_shot_again_take_camera(job))
+  if (status == CONIC_OK)
+    status = cli_shot_again_take_camera(job, &is_taken);
+  if (status == CONIC_OK && job->camera_path && !is_taken)
     status = read_views(session, job);
   return status;
 }

@@ -1,23 +1,23 @@
 #include "cli/render/shot_again.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/render/shot_record.h"
+#include "cli/scene/scene_options.h"
 #include "conic/layers_draw.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
-#include "shots/shot_roles.h"
 
 struct cli_shot_again {
   conic_context *context; /* of the shot; the session's is not open yet */
   conic_shot_file *file;
   const char *path; /* of what was named */
-  int argc;         /* what the user said, */
+  int argc;         /* what the user said */
   char **argv;
-  char **words; /* and what is read in its place */
-  int n_words, room;
-  const char **scene; /* where the inputs are */
+  cli_scene_words words; /* and what the shot says of options that mean something together */
+  const char **scene;    /* where the inputs are */
   size_t n_scene;
   const char *texture, *sky, *motion;
   char **paths; /* all of these, to be released */
@@ -48,100 +48,6 @@ static int gives_one(const cli_shot_again *again, const char *const *names) {
 
 static const char *const framing_options[] = {"azimuth", "elevation", "fov", "zoom", "projection", "eye", "up", NULL};
 
-/* --- words --- */
-
-static void add_argument(cli_shot_again *again, const char *word) {
-  if (again->n_words + 1 >= again->room) {
-    int room = 2 * again->room + 32;
-    char **words = realloc(again->words, (size_t)room * sizeof *words);
-    if (!words)
-      return;
-    again->words = words;
-    again->room = room;
-  }
-  char *copy = malloc(strlen(word) + 1);
-  if (copy)
-    again->words[again->n_words++] = strcpy(copy, word);
-  again->words[again->n_words] = NULL;
-}
-
-/* An option, unless the user gives it, or one that goes first. */
-static void say_option(cli_shot_again *again, const char *name, const char *value, const char *first) {
-  char word[64];
-  if (gives(again, name) || (first && gives(again, first)))
-    return;
-  snprintf(word, sizeof word, "--%s", name);
-  add_argument(again, word);
-  if (value)
-    add_argument(again, value);
-}
-
-static void say_number(cli_shot_again *again, const char *name, double value, const char *unit, const char *first) {
-  char text[48];
-  snprintf(text, sizeof text, "%.17g%s", value, unit);
-  say_option(again, name, text, first);
-}
-
-static int is_gaussian_file(const cli_shot_again *again) {
-  conic_source_options options;
-  conic_gaussian_options gaussians;
-  conic_source_options_init(&options);
-  conic_gaussian_options_init(&gaussians);
-  options.gaussians = &gaussians;
-  return (conic_source_abilities(again->scene, again->n_scene, &options) & CONIC_SOURCE_COMPOSITES) != 0;
-}
-
-static void say_drawing(cli_shot_again *again, int is_plain) {
-  const conic_shot *shot = &again->file->shot;
-  const conic_source_options *reading = &again->file->reading;
-  int composites = reading->gaussians != NULL, is_patch = reading->as == CONIC_AS_PATCHES;
-  if (is_patch)
-    say_option(again, "method", "patch", "quality");
-  else if (!composites && shot->render.method != CONIC_METHOD_AUTO)
-    say_option(again, "method", conic_method_name(shot->render.method), "quality");
-  if (shot->n_samples == 0)
-    say_number(again, "samples", shot->view.samples, "", gives(again, "accumulate") ? "accumulate" : "quality");
-  if (shot->render.passes == 1)
-    say_option(again, "passes", "1", NULL);
-  if (composites && (is_plain || shot->gaussians.profile != CONIC_PROFILE_EXACT))
-    say_option(again, "profile", conic_gaussian_profile_name(shot->gaussians.profile), NULL);
-  if (!composites && !is_plain && is_gaussian_file(again))
-    say_option(again, "profile", "surface", NULL);
-  if (shot->gaussians.ignores_center)
-    say_option(again, "ignore-center", NULL, "profile");
-  if (shot->gaussians.prefilter > 0.0)
-    say_number(again, "prefilter", shot->gaussians.prefilter, "", "profile");
-}
-
-static void say_reading(cli_shot_again *again, int is_plain) {
-  static const char *const as[] = {[CONIC_AS_POINTS] = "points",
-                                   [CONIC_AS_MESH] = "mesh",
-                                   [CONIC_AS_HYBRID] = "hybrid",
-                                   [CONIC_AS_PATCHES] = NULL,
-                                   [CONIC_AS_AUTO] = "auto"};
-  const conic_source_options *reading = &again->file->reading;
-  int standard = is_plain ? CONIC_AS_POINTS : CONIC_AS_AUTO;
-  if ((int)reading->as != standard && as[reading->as])
-    say_option(again, "as", as[reading->as], NULL);
-  if (reading->is_smooth)
-    say_option(again, "smooth", NULL, "crease");
-  else if (reading->crease_deg != (is_plain ? 0.0 : 30.0) && (reading->as != CONIC_AS_POINTS || !is_plain))
-    say_number(again, "crease", reading->crease_deg, "", "smooth");
-  if (reading->as == CONIC_AS_PATCHES && reading->patches && reading->patches->surface.h > 0.0)
-    say_number(again, "h", reading->patches->surface.h, reading->h_in_spacings ? "x" : "", "method");
-}
-
-/* What the shot says, in words, as far as options take values of their own for them. */
-static void say_shot(cli_shot_again *again) {
-  int is_plain = !again->file->reading.finds_dots;
-  if (is_plain)
-    say_option(again, "plain", NULL, NULL);
-  say_drawing(again, is_plain);
-  say_reading(again, is_plain);
-  if (again->file->map.is_wanted && !gives(again, "camera"))
-    say_option(again, "camera", "top", NULL);
-}
-
 /* --- inputs --- */
 
 static char *keep_path(cli_shot_again *again, const char *path, size_t n_folder, const char *name) {
@@ -159,9 +65,15 @@ static char *keep_path(cli_shot_again *again, const char *path, size_t n_folder,
 
 typedef struct looking_for {
   const conic_shot_input *input;
-  char *found, *changed;        /* where it is, or what has its name */
-  char hash[CONIC_SHA256_ROOM]; /* of the latter */
+  char *found, *changed;    /* where it is, or what has its name */
+  conic_shot_input instead; /* the latter */
 } looking_for;
+
+/* Of a URL there is but the length, and of what it holds else nobody knows. */
+static int is_same_input(const conic_shot_input *is, const conic_shot_input *was) {
+  return strcmp(is->sha256, was->sha256) == 0 && is->is_sampled == was->is_sampled &&
+         (!was->n_bytes || is->n_bytes == was->n_bytes);
+}
 
 static conic_status look_at_place(cli_shot_again *again, char *path, looking_for *looking) {
   conic_shot_input input = {.name = path};
@@ -171,11 +83,11 @@ static conic_status look_at_place(cli_shot_again *again, char *path, looking_for
   if (looking->found || !conic_disk_look(path, &entry))
     return CONIC_OK;
   conic_status status = conic_shot_input_look(again->context, path, &input);
-  if (status == CONIC_OK && strcmp(input.sha256, looking->input->sha256) == 0)
+  if (status == CONIC_OK && is_same_input(&input, looking->input))
     looking->found = path;
   else if (status == CONIC_OK && !looking->changed) {
     looking->changed = path;
-    memcpy(looking->hash, input.sha256, sizeof looking->hash);
+    looking->instead = input;
   }
   return status;
 }
@@ -209,9 +121,13 @@ static conic_status look_for_input(cli_shot_again *again, const cli_render_job *
   return status == CONIC_OK ? look_at_place(again, keep_path(again, "", 0, base), looking) : status;
 }
 
-static int tell_changed(const cli_shot_again *again, const char *name, const char *was, const char *is) {
-  return cli_error(CLI_INPUT, "%s: it has changed: %s was drawn from %.12s…, and this is %.12s…", name, again->path,
-                   was, is);
+static int tell_changed(const cli_shot_again *again, const char *name, const conic_shot_input *was,
+                        const conic_shot_input *is) {
+  if (strcmp(was->sha256, is->sha256) != 0)
+    return cli_error(CLI_INPUT, "%s: it has changed: %s was drawn from %.12s…, and this is %.12s…", name, again->path,
+                     was->sha256, is->sha256);
+  return cli_error(CLI_INPUT, "%s: it has changed: %s was drawn from %llu bytes, and this has %llu", name, again->path,
+                   (unsigned long long)was->n_bytes, (unsigned long long)is->n_bytes);
 }
 
 static int find_input(cli_shot_again *again, const cli_render_job *first, const conic_shot_input *input,
@@ -229,7 +145,7 @@ static int find_input(cli_shot_again *again, const cli_render_job *first, const 
   if (looking.found)
     return CLI_DONE;
   if (looking.changed)
-    return tell_changed(again, looking.changed, input->sha256, looking.hash);
+    return tell_changed(again, looking.changed, input, &looking.instead);
   return cli_error(CLI_INPUT,
                    "%s: it is not there, and %s was drawn from it; it was looked for beside that, here, and among the "
                    "inputs",
@@ -292,30 +208,6 @@ static int read_named_shot(cli_shot_again *again) {
   return cli_exit_of(status);
 }
 
-static int is_input(const cli_render_job *first, const char *argument) {
-  for (int i = 0; i < first->n_inputs; i++)
-    if (first->inputs[i] == argument)
-      return 1;
-  return 0;
-}
-
-/* The command's name, what the shot says, what the user says besides, and the inputs. */
-static void make_words(cli_shot_again *again, const cli_render_job *first) {
-  add_argument(again, again->argv[0]);
-  say_shot(again);
-  for (int i = 1; i < again->argc; i++) {
-    const char *argument = again->argv[i];
-    if (strcmp(argument, "--again") == 0)
-      i++;
-    else if (strncmp(argument, "--again=", strlen("--again=")) != 0 && strcmp(argument, "--") != 0 &&
-             !is_input(first, argument))
-      add_argument(again, argument);
-  }
-  add_argument(again, "--");
-  for (size_t i = 0; i < again->n_scene; i++)
-    add_argument(again, again->scene[i]);
-}
-
 int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render_parser *parse, cli_render_job *job) {
   cli_shot_again *again = calloc(1, sizeof *again);
   cli_render_job first = *job;
@@ -335,7 +227,8 @@ int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render
     answer = find_again_inputs(again, &first);
   if (answer == CLI_DONE) {
     int is_reframed = gives_one(again, framing_options);
-    again->has_camera = !again->file->map.is_wanted && !is_reframed && !gives(again, "camera");
+    again->has_camera =
+        again->file->shot.camera.width && !again->file->map.is_wanted && !is_reframed && !gives(again, "camera");
     if (is_reframed && !again->file->map.is_wanted && !gives(again, "camera"))
       cli_note(session, "%s: the scene is framed anew; what is not said of the camera is as without a shot",
                again->path);
@@ -343,9 +236,8 @@ int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render
     for (int i = 0; i < first.n_outputs; i++)
       again->holds_all |=
           conic_file_has_ending(first.outputs[i], "exr") || conic_file_has_ending(first.outputs[i], "pfm");
-    make_words(again, &first);
     session->again = again;
-    answer = parse(session, again->n_words, again->words, job);
+    answer = parse(session, argc, argv, job);
     session->again = NULL;
   } else
     memset(job, 0, sizeof *job);
@@ -364,11 +256,8 @@ void cli_shot_again_release(cli_session *session, cli_shot_again *again) {
   if (again->context)
     conic_shot_file_destroy(again->context, again->file);
   conic_context_destroy(again->context);
-  for (int i = 0; i < again->n_words; i++)
-    free(again->words[i]);
   for (size_t i = 0; i < again->n_paths; i++)
     free(again->paths[i]);
-  free(again->words);
   free(again->paths);
   free(again->scene);
   free(again);
@@ -419,8 +308,6 @@ static void begin_reading(const cli_shot_again *again, cli_render_job *job) {
   job->opening.columns = reading->columns;
   job->opening.where = reading->where;
   job->opening.texture_path = again->texture;
-  if (reading->patches)
-    job->patches.surface.degree = reading->patches->surface.degree;
   if (!reading->coloring)
     return;
   job->coloring = *reading->coloring;
@@ -429,6 +316,37 @@ static void begin_reading(const cli_shot_again *again, cli_render_job *job) {
     job->is_up_given = 1;
     memcpy(job->framing.up, up, sizeof job->framing.up);
   }
+}
+
+/* What the shot says of options that mean something together, where the user says nothing of it. */
+static const cli_scene_words *choose_words(cli_shot_again *again) {
+  const conic_shot *shot = &again->file->shot;
+  const conic_source_options *reading = &again->file->reading;
+  int composites = reading->gaussians != NULL, is_plain = !reading->finds_dots;
+  int is_patch = reading->as == CONIC_AS_PATCHES;
+  cli_scene_words *words = &again->words;
+  *words = (cli_scene_words){.quality = CLI_QUALITY_GOOD,
+                             .passes = shot->render.passes,
+                             .method = is_patch ? CONIC_N_METHODS : (int)shot->render.method,
+                             .degree = reading->patches ? reading->patches->surface.degree : 3,
+                             .cutoff = (double)shot->render.kernel.cutoff,
+                             .prefilter = (double)shot->render.prefilter,
+                             .usual_as = is_patch ? CONIC_AS_AUTO : (int)reading->as,
+                             .usual_crease_deg = reading->crease_deg};
+  words->is_method_given = (is_patch || !composites) && !gives(again, "quality");
+  words->is_samples_given = !gives(again, "quality") && !gives(again, "accumulate") && shot->n_samples == 0;
+  words->is_smooth = reading->is_smooth && !gives(again, "crease");
+  if (is_patch && reading->patches && !gives(again, "method"))
+    words->h = (cli_length){reading->patches->surface.h, reading->h_in_spacings};
+  if (gives(again, "profile"))
+    return words;
+  words->profile = composites ? (int)shot->gaussians.profile : CONIC_N_GAUSSIAN_PROFILES;
+  words->is_profile_given = composites && (is_plain || shot->gaussians.profile != CONIC_PROFILE_EXACT);
+  words->ignores_center = shot->gaussians.ignores_center != 0;
+  words->is_prefilter_given = shot->gaussians.prefilter > 0.0;
+  if (words->is_prefilter_given)
+    words->prefilter = shot->gaussians.prefilter;
+  return words;
 }
 
 static void begin_map(const conic_shot_map *map, cli_top_job *top) {
@@ -450,32 +368,34 @@ static void begin_writing(const conic_shot_writing *writing, cli_render_job *job
 }
 
 void cli_shot_again_begin(cli_session *session, cli_render_job *job) {
-  const cli_shot_again *again = session->again;
+  cli_shot_again *again = session->again;
   if (!again)
     return;
   const conic_shot *shot = &again->file->shot;
-  job->shot.render = shot->render;
+  const int is_map = again->file->map.is_wanted;
+  job->shot = *shot;
   job->shot.render.epsilon = -1.0;
   job->shot.render.splat_length = 0.0; /* the source says it again */
   job->epsilon = (cli_length){shot->render.epsilon >= 0.0 ? shot->render.epsilon : -1.0, 0};
-  job->shot.view = shot->view;
-  job->shot.view.most_levels = 0;
   if (gives(again, "accumulate")) /* which places its samples itself */
     job->shot.view.samples = 1;
   job->budget = shot->view.budget;
   job->is_transparent = shot->view.transparency != CONIC_TRANSPARENCY_NONE;
-  job->shot.has_backdrop = shot->has_backdrop;
-  memcpy(job->shot.backdrop_top, shot->backdrop_top, sizeof shot->backdrop_top);
-  memcpy(job->shot.backdrop_bottom, shot->backdrop_bottom, sizeof shot->backdrop_bottom);
+  job->is_plain = !again->file->reading.finds_dots;
   job->shot.planes = planes_for(again, shot->planes);
-  job->is_aov_given = job->shot.planes != USUAL_PLANES;
+  job->is_aov_given = job->shot.planes != (is_map ? 1u << CONIC_PLANE_RGBA : USUAL_PLANES);
+  if (!job->is_aov_given)
+    job->shot.planes = USUAL_PLANES;
   job->is_shade_given = 1;
-  job->camera_path = again->has_camera ? again->path : NULL;
+  job->camera_path = is_map ? "top" : again->has_camera ? again->path : NULL;
   if (!again->has_camera)
     job->projection = (int)shot->camera.kind;
   job->framing.width = shot->camera.width ? shot->camera.width : job->framing.width;
   job->framing.height = shot->camera.height ? shot->camera.height : job->framing.height;
   job->accumulating.motion_path = again->motion;
+  job->making.scene = again->scene;
+  job->making.n_scene = (int)again->n_scene;
+  job->making.words = choose_words(again);
   begin_accumulation(shot, &job->accumulating);
   begin_light(again, job);
   begin_reading(again, job);
@@ -483,14 +403,35 @@ void cli_shot_again_begin(cli_session *session, cli_render_job *job) {
   begin_writing(&again->file->writing, job);
 }
 
-int cli_shot_again_take_camera(cli_render_job *job) {
-  const cli_shot_again *again = job->making.again;
-  if (!again || !again->has_camera)
-    return 0;
-  job->camera = again->file->shot.camera;
-  if (job->camera_size[0])
-    conic_camera_resize(&job->camera, job->camera_size[0], job->camera_size[1]);
+/* What a camera sees stays as large, for the picture's shorter side; of another shape more or less is seen at the
+ * longer one. Directions all around have one shape. */
+static int resize_camera(const cli_shot_again *again, int width, int height, conic_camera *camera) {
+  const double was[2] = {camera->width, camera->height}, is[2] = {width, height};
+  const double scale = fmin(width, height) / fmin(camera->width, camera->height);
+  if (fabs(is[0] * was[1] - is[1] * was[0]) <= fmax(was[0], was[1])) { /* but for a pixel's part the same shape */
+    conic_camera_resize(camera, width, height);
+    return 1;
+  }
+  if (camera->kind == CONIC_CAMERA_EQUIRECTANGULAR || camera->kind == CONIC_CAMERA_CUBE)
+    return cli_usage("render: --size %dx%d would stretch %s, which looks all around, by %d x %d", width, height,
+                     again->path, camera->width, camera->height) == CLI_DONE;
+  camera->width = width;
+  camera->height = height;
+  camera->cx = 0.5 * is[0] + scale * (camera->cx - 0.5 * was[0]);
+  camera->cy = 0.5 * is[1] + scale * (camera->cy - 0.5 * was[1]);
+  camera->fx *= scale;
+  camera->fy *= scale;
   return 1;
+}
+
+conic_status cli_shot_again_take_camera(cli_render_job *job, int *is_taken) {
+  const cli_shot_again *again = job->making.again;
+  const int *size = job->camera_size;
+  *is_taken = again && again->has_camera;
+  if (!*is_taken)
+    return CONIC_OK;
+  job->camera = again->file->shot.camera;
+  return !size[0] || resize_camera(again, size[0], size[1], &job->camera) ? CONIC_OK : CONIC_ERROR_ARGUMENT;
 }
 
 /* --- what no option says --- */
@@ -508,7 +449,8 @@ static void fill_lighting(const cli_shot_again *again, conic_shot *shot) {
     memcpy(lighting->sky, was->sky, sizeof lighting->sky);
     memcpy(lighting->ground, was->ground, sizeof lighting->ground);
   }
-  if (again->has_camera && !gives(again, "up"))
+  int has_up = was->up[0] != 0.0 || was->up[1] != 0.0 || was->up[2] != 0.0;
+  if (again->has_camera && has_up && !gives(again, "up"))
     memcpy(lighting->up, was->up, sizeof lighting->up);
 }
 
@@ -529,10 +471,11 @@ conic_status cli_shot_again_check(cli_session *session, cli_render_job *job) {
   for (size_t i = 0; i < again->file->n_inputs && status == CONIC_OK; i++) {
     const conic_shot_input *was = &again->file->inputs[i];
     const conic_shot_input *is = find_recorded(now.inputs, now.n_inputs, was);
-    if (was->role != CONIC_SHOT_PART || (is && strcmp(is->sha256, was->sha256) == 0))
+    int is_led_to = was->role == CONIC_SHOT_PART, is_url = conic_layers_is_url(was->name); /* the others were found */
+    if ((!is_led_to && !is_url) || (is && is_same_input(is, was)))
       continue;
     if (is)
-      tell_changed(again, was->name, was->sha256, is->sha256);
+      tell_changed(again, was->name, was, is);
     else if (!gives(again, "texture") && !gives(again, "as") && !gives(again, "motion"))
       cli_error(CLI_INPUT, "%s: it was not read, and %s was drawn from it", was->name, again->path);
     else
@@ -544,7 +487,6 @@ conic_status cli_shot_again_check(cli_session *session, cli_render_job *job) {
 
 void cli_shot_again_fill(cli_render_job *job) {
   static const char *const moving[] = {"turntable", "stereo", "camera", NULL};
-  static const char *const coming[] = {"progressive", "deadline", "tolerate", NULL};
   const cli_shot_again *again = job->making.again;
   conic_shot *shot = &job->shot;
   if (!again)
@@ -560,7 +502,5 @@ void cli_shot_again_fill(cli_render_job *job) {
     shot->frame = was->frame;
   if (!gives(again, "prefilter") && !(gives(again, "accumulate") && was->n_samples == 0)) /* whose samples are it */
     shot->render.prefilter = was->render.prefilter;
-  if (!gives_one(again, coming))
-    shot->view.may_be_coarser = was->view.may_be_coarser;
   fill_lighting(again, shot);
 }

@@ -17,8 +17,9 @@ int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render
 /* The options' values as the shot has them, before the arguments are read. */
 void cli_shot_again_begin(cli_session *session, cli_render_job *job);
 
-/* Whether the shot's camera counts, of this size; then it becomes the job's. */
-int cli_shot_again_take_camera(cli_render_job *job);
+/* Whether the shot's camera counts; then it becomes the job's, of the size that is asked for. Errors: ARGUMENT (it has
+ * another shape). */
+conic_status cli_shot_again_take_camera(cli_render_job *job, int *is_taken);
 
 /* Puts into a frame's shot, whose camera is there, what no option has said. */
 void cli_shot_again_fill(cli_render_job *job);

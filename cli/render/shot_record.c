@@ -2,12 +2,10 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "cli/render/frames.h"
 #include "cli/scene/background_options.h"
 #include "conic/version.h"
-#include "core/files/file.h"
 #include "shots/shot_key.h"
 
 void cli_shot_settle(const cli_render_job *job, conic_shot *shot) {
@@ -17,8 +15,8 @@ void cli_shot_settle(const cli_render_job *job, conic_shot *shot) {
     shot->focus_kind = CONIC_FOCUS_DEPTH;
     shot->aperture.focus = job->accumulating.focus_depth;
   }
-  if (job->progressive_path)
-    shot->view.most_levels = 0; /* the last picture has all */
+  if (job->top.is_wanted) /* what is drawn beside it is in no file */
+    shot->planes = job->is_aov_given ? job->asked_planes : 1u << CONIC_PLANE_RGBA;
   if (!job->accumulating.motion_path)
     shot->frame = 0.0;
 }
@@ -44,12 +42,16 @@ void cli_shot_writing(const cli_render_job *job, conic_shot_writing *writing) {
   writing->has_mattes = job->has_mattes;
 }
 
+static conic_shot_names names_of(const cli_render_job *job) {
+  return (conic_shot_names){.scene = job->inputs,
+                            .n_scene = (size_t)job->n_inputs,
+                            .texture = job->opening.texture_path,
+                            .sky = job->sky_path,
+                            .motion = job->accumulating.motion_path};
+}
+
 static conic_status find_inputs(cli_session *session, cli_render_job *job) {
-  const conic_shot_names names = {.scene = job->inputs,
-                                  .n_scene = (size_t)job->n_inputs,
-                                  .texture = job->opening.texture_path,
-                                  .sky = job->sky_path,
-                                  .motion = job->accumulating.motion_path};
+  const conic_shot_names names = names_of(job);
   if (job->making.has_inputs)
     return CONIC_OK;
   job->making.has_inputs = 1;
@@ -137,16 +139,19 @@ conic_status cli_shot_report(cli_session *session, cli_json *json, cli_render_jo
 
 /* Whether any file that is written can say how it was made. */
 static int is_carried(const cli_session *session, const cli_render_job *job) {
-  static const char *const endings[] = {"exr", "png", "tif", "tiff"};
-  int n = job->deep_path != NULL;
-  for (int i = 0; i < job->n_outputs; i++) {
-    const char *ending = conic_file_ending(job->outputs[i]);
-    if (!*ending)
-      ending = job->writing.format ? job->writing.format : "png";
-    for (size_t j = 0; j < sizeof endings / sizeof *endings; j++)
-      n += strcasecmp(ending, endings[j]) == 0;
-  }
+  static const char *const endings[] = {"exr", "png", "tif", "tiff", NULL};
+  int n = job->deep_path || job->progressive_path;
+  for (int i = 0; i < job->n_outputs; i++)
+    n += cli_output_is_one_of(job, job->outputs[i], endings);
   return n > 0 && !job->making.is_left_out && !session->host;
+}
+
+conic_status cli_shot_begin_inputs(cli_session *session, cli_render_job *job) {
+  const conic_shot_names names = names_of(job);
+  int is_wanted = is_carried(session, job) || (session->json_path && !session->host) || job->making.save_path;
+  return is_wanted && cli_session_speaks(session)
+             ? conic_shot_inputs_begin(session->context, &names, &job->making.inputs)
+             : CONIC_OK;
 }
 
 static void release_texts(cli_session *session, cli_shot_job *making) {

@@ -6,6 +6,9 @@
 #include "conic/shot_file.h"
 #include "core/files/sha256.h"
 
+/* Before the scene is opened: begins to look at what it is made of, where anything is to say so. Errors: MEMORY. */
+conic_status cli_shot_begin_inputs(cli_session *session, cli_render_job *job);
+
 /* What the job's shot is, with what it was read by and what was read for it; what decides no bit of it is as it is by
  * default. Of a frame whose shot is filled. The job keeps what it points to. Errors: MEMORY, CANCELLED. */
 conic_status cli_shot_record(cli_session *session, cli_render_job *job, conic_shot_file *file);

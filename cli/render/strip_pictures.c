@@ -1,7 +1,6 @@
 #include "cli/render/strip_pictures.h"
 
 #include <stdlib.h>
-#include <strings.h>
 
 #include "cli/host.h"
 #include "cli/render/frame_files.h"
@@ -9,7 +8,6 @@
 #include "cli/render/units.h"
 #include "core/base/machine.h"
 #include "core/base/message.h"
-#include "core/files/file.h"
 #include "core/image/image_common.h"
 #include "shots/strips.h"
 #include "shots/windows.h"
@@ -26,10 +24,10 @@ static uint64_t memory_for(const cli_render_job *job) {
 
 /* Whether the file holds what is drawn, and nothing else is made of the picture. */
 static int is_plain_exr(const cli_session *session, const cli_render_job *job) {
-  const char *path = job->n_outputs == 1 ? job->outputs[0] : "";
-  const char *ending = *conic_file_ending(path) ? conic_file_ending(path) : job->writing.format;
-  return ending && strcasecmp(ending, "exr") == 0 && !(job->effects.asked & CLI_WRITES_MORE) &&
-         !(session->host && session->host->lay_out) && !(job->shot.planes & ~(unsigned)CONIC_WINDOWS_PLANES);
+  static const char *const exr[] = {"exr", NULL};
+  return job->n_outputs == 1 && cli_output_is_one_of(job, job->outputs[0], exr) &&
+         !(job->effects.asked & CLI_WRITES_MORE) && !(session->host && session->host->lay_out) &&
+         !(job->shot.planes & ~(unsigned)CONIC_WINDOWS_PLANES);
 }
 
 int cli_may_be_in_strips(const cli_session *session, const cli_render_job *job) {

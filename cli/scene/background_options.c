@@ -1,10 +1,8 @@
 #include "cli/scene/background_options.h"
 
 #include <string.h>
-#include <strings.h>
 
 #include "cli/scene/light_options.h"
-#include "core/files/file.h"
 #include "shots/backdrop.h"
 
 /* Chosen by eye: darker than what is lit, so that plaster stands out, and lighter than the shades of scans. Gaussian
@@ -33,21 +31,13 @@ int cli_backdrop_is_studio(const cli_render_job *job) {
   return !job->is_plain && !job->is_background_given;
 }
 
-/* Not what others compose: EXR, TIFF, PFM and the like. */
-static int is_to_look_at(const cli_render_job *job, const char *path) {
-  static const char *const endings[] = {"png", "jpg", "jpeg", "webp", "gif", "bmp", "ppm"};
-  const char *own = conic_file_ending(path), *ending = *own ? own : job->writing.format ? job->writing.format : "png";
-  for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-    if (strcasecmp(ending, endings[i]) == 0)
-      return 1;
-  return 0;
-}
-
 conic_status cli_backdrop_write(cli_session *session, const cli_render_job *job, const char *path,
                                 const conic_image *image) {
+  /* Not what others compose: EXR, TIFF, PFM and the like. */
+  static const char *const to_look_at[] = {"png", "jpg", "jpeg", "webp", "gif", "bmp", "ppm", NULL};
   const float *rgba = image->planes[CONIC_PLANE_RGBA];
   conic_image alone, shown = *image;
-  if (!cli_backdrop_is_studio(job) || !is_to_look_at(job, path) || !rgba)
+  if (!cli_backdrop_is_studio(job) || !cli_output_is_one_of(job, path, to_look_at) || !rgba)
     return cli_planes_write(session, job, path, image);
   conic_status status =
       conic_image_allocate(session->context, image->width, image->height, 1u << CONIC_PLANE_RGBA, &alone);

@@ -164,6 +164,11 @@ void cli_deadline_open(cli_render_job *job);
 double cli_seconds_left(const cli_render_job *job); /* of the deadline; above 0 */
 conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_shot_outcome *outcome);
 
+/* What kind of file an output is: its name's ending, or, without one, that of --format; and whether it is one of those,
+ * null after the last. */
+const char *cli_output_ending(const cli_render_job *job, const char *path);
+int cli_output_is_one_of(const cli_render_job *job, const char *path, const char *const *endings);
+
 /* Wrong usage where a plane that was asked for goes into no file. */
 int cli_planes_check(const cli_session *session, const cli_render_job *job);
 /* Whether the outputs can be written, as far as their names tell. */

@@ -83,6 +83,18 @@ static int parse_crease(const char *text, void *value) {
   return cli_parse_number(text, &words->crease_deg) && words->crease_deg >= 0.0 && words->crease_deg <= 90.0;
 }
 
+/* What was named says where the shot's own inputs are. */
+static int take_shot_inputs(const cli_session *session, cli_render_job *job) {
+  const size_t n_bytes = (size_t)job->making.n_scene * sizeof *job->inputs;
+  free(job->inputs);
+  job->inputs = malloc(n_bytes);
+  if (!job->inputs)
+    return cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
+  memcpy(job->inputs, job->making.scene, n_bytes);
+  job->n_inputs = job->making.n_scene;
+  return CLI_DONE;
+}
+
 /* The command's own options, then those of the scene. */
 static int parse_all(cli_session *session, const cli_option *own, int n_own, const cli_option *scene, int n_scene,
                      int argc, char **argv, cli_render_job *job) {
@@ -100,6 +112,8 @@ static int parse_all(cli_session *session, const cli_option *own, int n_own, con
       cli_effects_note(&job->effects, table, n_own + n_scene, values);
     if (answer == CLI_DONE && cli_shot_is_again(session, job))
       answer = CLI_AGAIN;
+    if (answer == CLI_DONE && job->making.scene)
+      answer = take_shot_inputs(session, job);
   } else
     cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
   free(table);
@@ -115,11 +129,11 @@ static int is_picture(const cli_scene_words *raw, const cli_render_job *job) {
 }
 
 /* What the quality stands for, where it is not said otherwise. */
-static void choose_quality(const cli_scene_words *raw, cli_render_job *job, int *method) {
+static void choose_quality(cli_scene_words *raw, cli_render_job *job) {
   static const int samples[] = {1, 2, 4};
   int is_wanted = raw->is_quality_given || !job->is_plain;
   if (is_wanted && !raw->is_method_given)
-    *method = raw->quality == CLI_QUALITY_DRAFT ? CONIC_METHOD_CONIC : CONIC_METHOD_AUTO;
+    raw->method = raw->quality == CLI_QUALITY_DRAFT ? CONIC_METHOD_CONIC : CONIC_METHOD_AUTO;
   if (is_wanted && !raw->is_samples_given && !job->accumulating.n_samples && !job->accumulating.is_sample_given &&
       (raw->is_quality_given || is_picture(raw, job)))
     job->shot.view.samples = samples[raw->quality];
@@ -129,12 +143,17 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
                     cli_render_job *job) {
   cli_scene_words raw = {.quality = CLI_QUALITY_GOOD,
                          .passes = 3,
+                         .method = (int)job->shot.render.method,
+                         .usual_as = -1,
+                         .usual_crease_deg = -1.0,
                          .degree = job->patches.surface.degree,
                          .cutoff = (double)job->shot.render.kernel.cutoff,
                          .prefilter = (double)job->shot.render.prefilter};
   conic_render_options *o = &job->shot.render;
   conic_framing *view = &job->framing;
-  int method = (int)o->method, shading = (int)o->shading, ignores_center = 0;
+  int shading = (int)o->shading;
+  if (job->making.words)
+    raw = *job->making.words;
   const library_words words = find_words();
   const cli_option table[] = {
       {"size", CLI_SIZE, raw.size, "WxH",
@@ -199,7 +218,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"only", CLI_CHOICE, &job->shot.view.only_kind, "KIND",
        "of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]", .choices = only_words,
        .acts = {.on = CLI_FACT(HYBRID)}},
-      {"method", CLI_CHOICE, &method, "NAME",
+      {"method", CLI_CHOICE, &raw.method, "NAME",
        "how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where that is "
        "exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by polynomials of "
        "degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]",
@@ -212,7 +231,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "2dgs-2024 with :ignore-center "
        "behind them take the picture's middle for the camera's principal point, as these do [exact]",
        .choices = words.profiles, .is_given = &raw.is_profile_given, .is_usual = 1, .parse_tail = parse_ignore_center,
-       .tail = &ignores_center, .acts = {.on = CLI_FACT(GAUSSIANS)}},
+       .tail = &raw.ignores_center, .acts = {.on = CLI_FACT(GAUSSIANS)}},
       {"quality", CLI_CHOICE, &raw.quality, "HOW",
        "draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and --samples go "
        "first [good]",
@@ -296,7 +315,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"smooth", CLI_FLAG, &raw.is_smooth, NULL, "like --crease all", .now = "--crease all"},
       {"color-error", CLI_NUMBER, &job->shot.view.color_error, "STEPS", "of a .chy", 0.01, 1000,
        .is_given = &job->is_color_error_given, .now = "--error PX:STEPS"},
-      {"ignore-center", CLI_FLAG, &ignores_center, NULL, "of a profile", .now = "--profile NAME:ignore-center"},
+      {"ignore-center", CLI_FLAG, &raw.ignores_center, NULL, "of a profile", .now = "--profile NAME:ignore-center"},
       {"degree", CLI_INT, &raw.degree, "D", "1 to 4", 1, CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given,
        .now = "--method patch:D"},
       {"h", CLI_PARSED, &raw.h, "H", "a length", .parse = cli_parse_length, .is_given = &raw.is_patch_given,
@@ -306,17 +325,17 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   int answer = parse_all(session, own, n_own, table, (int)(sizeof table / sizeof table[0]), argc, argv, job);
   if (answer != CLI_DONE)
     return answer;
-  choose_quality(&raw, job, &method);
+  choose_quality(&raw, job);
   if (cli_scene_is_top(job) && !raw.is_samples_given && !raw.is_quality_given)
     job->shot.view.samples = 1; /* that is drawn in bounded memory, and pixels are filtered anyway */
   job->is_samples_given = raw.is_samples_given || raw.is_quality_given;
-  job->is_patch = method == CONIC_N_METHODS;
+  job->is_patch = raw.method == CONIC_N_METHODS;
   if (!job->is_patch)
-    o->method = (conic_method)method;
+    o->method = (conic_method)raw.method;
   if (raw.profile < CONIC_N_GAUSSIAN_PROFILES) /* else "surface", which is none */
     job->shot.gaussians.profile = (conic_gaussian_profile)raw.profile;
   job->shot.gaussians.prefilter = raw.is_prefilter_given ? raw.prefilter : 0.0;
-  job->shot.gaussians.ignores_center = (uint32_t)ignores_center;
+  job->shot.gaussians.ignores_center = (uint32_t)raw.ignores_center;
   if (raw.profile < CONIC_N_GAUSSIAN_PROFILES && (raw.is_profile_given || !job->is_plain))
     job->opening.gaussians = &job->shot.gaussians;
   o->shading = (conic_shading)shading;
@@ -327,9 +346,13 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   o->isa = session->isa = (conic_isa)raw.isa;
   job->shot.view.budget = job->budget;
   job->opening.cutoff = o->kernel.cutoff;
-  raw.as = raw.is_as_given ? (int)as_values[raw.as] : job->is_plain ? CONIC_AS_POINTS : CONIC_AS_AUTO;
+  if (raw.usual_as < 0)
+    raw.usual_as = job->is_plain ? CONIC_AS_POINTS : CONIC_AS_AUTO;
+  if (raw.usual_crease_deg < 0.0)
+    raw.usual_crease_deg = job->is_plain ? 0.0 : 30.0;
+  raw.as = raw.is_as_given ? (int)as_values[raw.as] : raw.usual_as;
   job->opening.is_smooth = raw.is_smooth;
-  job->opening.crease_deg = raw.is_crease_given ? raw.crease_deg : job->is_plain || raw.is_smooth ? 0.0 : 30.0;
+  job->opening.crease_deg = raw.is_crease_given ? raw.crease_deg : raw.is_smooth ? 0.0 : raw.usual_crease_deg;
   job->opening.projects_degrees = !job->is_plain && !cli_scene_is_top(job);
   job->opening.finds_dots = !job->is_plain;
   job->opening.h_in_spacings = raw.h.is_in_spacings;

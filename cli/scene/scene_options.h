@@ -15,10 +15,11 @@ typedef struct cli_scene_words {
   int is_quality_given, is_method_given, is_samples_given, is_profile_given, is_prefilter_given;
   int isa;
   double cutoff, prefilter;
+  int method, ignores_center;
   int passes, is_patch_given;
-  int as, is_as_given; /* a conic_representation */
+  int as, is_as_given, usual_as; /* a conic_representation, and what holds where none is given */
   int is_smooth, is_crease_given, is_colored_whole;
-  double crease_deg;
+  double crease_deg, usual_crease_deg;
   int degree; /* of patches, and */
   cli_length h;
 } cli_scene_words;

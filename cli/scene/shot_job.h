@@ -14,6 +14,10 @@ typedef struct cli_shot_job {
   char *shown_text;             /* the same for those that show it: with their curve, and what is behind */
   const char *again_path;       /* --again; null: none */
   struct cli_shot_again *again; /* what is drawn again (cli/render/shot_again.h); null: nothing */
+  /* Of what is drawn again, while the arguments are read: its inputs, and what it says of options (scene_options.h). */
+  const char *const *scene;
+  int n_scene;
+  const struct cli_scene_words *words;
 } cli_shot_job;
 
 struct cli_render_job;

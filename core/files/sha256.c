@@ -53,7 +53,7 @@ static void mix_block(uint32_t state[8], const unsigned char block[64]) {
     state[i] += s[i];
 }
 
-/* So many are worth a look at the processor. */
+/* So many are worth the processor's own instructions. */
 enum { MANY_BYTES = 4096 };
 
 void conic_sha256_begin(conic_sha256 *sum) {
@@ -66,21 +66,18 @@ void conic_sha256_begin(conic_sha256 *sum) {
 
 void conic_sha256_add(conic_sha256 *sum, const void *bytes, size_t n) {
   const unsigned char *from = bytes;
-  if (n >= MANY_BYTES && sum->n_bytes % 64 == 0 && conic_sha256_has_x86()) {
-    size_t n_blocks = n / 64;
-    conic_sha256_mix_x86(sum->state, round_constants, from, n_blocks);
-    sum->n_bytes += 64 * n_blocks;
-    from += 64 * n_blocks;
-    n -= 64 * n_blocks;
-  }
-  while (n > 0) {
-    size_t at = sum->n_bytes % 64, here = n < 64 - at ? n : 64 - at;
-    memcpy(sum->block + at, from, here);
-    from += here;
-    n -= here;
+  for (size_t here; n > 0; from += here, n -= here) {
+    size_t at = sum->n_bytes % 64;
+    here = n < 64 - at ? n : 64 - at;
+    if (at == 0 && n >= MANY_BYTES && conic_sha256_has_instructions()) {
+      here = n / 64 * 64;
+      conic_sha256_mix_blocks(sum->state, round_constants, from, here / 64);
+    } else {
+      memcpy(sum->block + at, from, here);
+      if (at + here == 64)
+        mix_block(sum->state, sum->block);
+    }
     sum->n_bytes += here;
-    if (at + here == 64)
-      mix_block(sum->state, sum->block);
   }
 }
 

@@ -18,9 +18,9 @@ void conic_sha256_add(conic_sha256 *sum, const void *bytes, size_t n);
 /* As 64 hex digits. */
 void conic_sha256_end(conic_sha256 *sum, char text[CONIC_SHA256_ROOM]);
 
-/* By the instructions that x86 processors have for it: whether this one has them, and blocks of 64 bytes mixed into the
+/* Whether the processor has instructions for it (core/files/sha256_machine.c); and blocks of 64 bytes mixed into the
  * state by these. */
-int conic_sha256_has_x86(void);
-void conic_sha256_mix_x86(uint32_t state[8], const uint32_t constants[64], const unsigned char *blocks, size_t n);
+int conic_sha256_has_instructions(void);
+void conic_sha256_mix_blocks(uint32_t state[8], const uint32_t constants[64], const unsigned char *blocks, size_t n);
 
 #endif

@@ -44,8 +44,10 @@ void conic_image_describe_camera(conic_image *image, const conic_camera *camera)
   if (!camera->kind && !camera->lens) { /* attributes cannot describe other kinds and lenses */
     add_matrix(image, "worldToNDC", (const double(*)[4])to_ndc);
     append(image, "screenWindowCenter", CONIC_ATTRIBUTE_FLOAT_PAIR, center, 2);
-    append(image, "screenWindowWidth", CONIC_ATTRIBUTE_FLOAT, &window_width, 1);
+    if (window_width < 1e38)
+      append(image, "screenWindowWidth", CONIC_ATTRIBUTE_FLOAT, &window_width, 1);
   }
-  append(image, "pixelAspectRatio", CONIC_ATTRIBUTE_FLOAT, &aspect, 1);
+  if (aspect >= 1e-6 && aspect <= 1e6) /* others no file may have */
+    append(image, "pixelAspectRatio", CONIC_ATTRIBUTE_FLOAT, &aspect, 1);
   append(image, "chromaticities", CONIC_ATTRIBUTE_CHROMATICITIES, rec_709, 8);
 }

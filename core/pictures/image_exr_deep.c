@@ -38,9 +38,7 @@ static exr_result_t add_channels(exr_context_t file) {
 static exr_result_t write_header(exr_context_t file, int width, int height, uint32_t most_samples,
                                  const conic_image *header) {
   int part;
-  exr_result_t result = EXR_ERR_SUCCESS;
-  if (header)
-    result = conic_exr_prepare_attributes(file, header);
+  exr_result_t result = conic_exr_prepare_attributes(file, header);
   if (result == EXR_ERR_SUCCESS)
     result = exr_add_part(file, "deep", EXR_STORAGE_DEEP_SCANLINE, &part);
   if (result == EXR_ERR_SUCCESS)
@@ -53,9 +51,7 @@ static exr_result_t write_header(exr_context_t file, int width, int height, uint
     result = add_channels(file);
   if (result == EXR_ERR_SUCCESS && header)
     result = conic_exr_add_attributes(file, header);
-  if (result == EXR_ERR_SUCCESS)
-    result = exr_write_header(file);
-  return result;
+  return conic_exr_end_header(file, result);
 }
 
 static conic_status begin_parts(conic_deep_writer *writer, int width, int height, uint32_t most_samples,

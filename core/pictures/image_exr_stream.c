@@ -10,8 +10,14 @@
 #include "core/image/image_common.h"
 #include "core/pictures/picture_shot.h"
 
+/* The file whose header this thread writes. The library is locked while it reports what is wrong with one, and would
+ * wait for itself for ever if it were asked then whose file it is. */
+static _Thread_local conic_exr_stream *described;
+
 static conic_exr_stream *stream_of(exr_const_context_t file) {
-  void *data = NULL;
+  void *data = described;
+  if (data)
+    return data;
   if (!file || exr_get_user_data(file, &data) != EXR_ERR_SUCCESS)
     return NULL;
   return data;
@@ -147,7 +153,15 @@ static int has_long_name(const conic_image *image) {
 }
 
 exr_result_t conic_exr_prepare_attributes(exr_context_t file, const conic_image *image) {
-  return has_long_name(image) ? exr_set_longname_support(file, 1) : EXR_ERR_SUCCESS;
+  described = stream_of(file);
+  return image && has_long_name(image) ? exr_set_longname_support(file, 1) : EXR_ERR_SUCCESS;
+}
+
+exr_result_t conic_exr_end_header(exr_context_t file, exr_result_t result) {
+  if (result == EXR_ERR_SUCCESS)
+    result = exr_write_header(file);
+  described = NULL;
+  return result;
 }
 
 exr_result_t conic_exr_add_attributes(exr_context_t file, const conic_image *image) {

@@ -35,10 +35,12 @@ void conic_exr_stream_init(conic_exr_stream *stream, conic_context *context, con
  * `doing` ("write"); else `otherwise`. */
 conic_status conic_exr_fail(conic_exr_stream *stream, exr_result_t result, const char *doing, conic_status otherwise);
 
-/* For the header of a file that is being written: the first, before the part is added, prepares it for the names of the
- * image's attributes; the second adds them after the required attributes are set. */
+/* For the header of a file that is being written, on one thread: the first, before the part is added, prepares it for
+ * the names of the image's attributes, where there is an image; the second adds them after the required attributes are
+ * set; the third writes it, where `result` is success, and is called in any case. */
 exr_result_t conic_exr_prepare_attributes(exr_context_t file, const conic_image *image);
 exr_result_t conic_exr_add_attributes(exr_context_t file, const conic_image *image);
+exr_result_t conic_exr_end_header(exr_context_t file, exr_result_t result);
 
 #endif
 #endif

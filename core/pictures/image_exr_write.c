@@ -119,9 +119,7 @@ static exr_result_t write_header(const conic_exr_bands *bands, const conic_image
     result = describe_mattes(file, header);
   if (result == EXR_ERR_SUCCESS)
     result = describe_display(bands, header);
-  if (result == EXR_ERR_SUCCESS)
-    result = exr_write_header(file);
-  return result;
+  return conic_exr_end_header(file, result);
 }
 
 static void point_channels(const conic_exr_bands *bands, exr_encode_pipeline_t *pipeline) {

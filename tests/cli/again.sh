@@ -191,6 +191,81 @@ run_as_typed 0 render --again flat.exr --up x -q -o x.exr
 run_as_typed 0 render k.ply --size 30x30 --projection orthographic --up x -q -o y.exr
 run_as_typed 0 diff x.exr y.exr
 
+# Another shape shows more or less at the sides, and stretches nothing
+run_as_typed 0 render --again a.exr --size 60x16 -q -o x.exr --save-shot wide.shot.json
+[[ $(grep -o '"f[xy]": [0-9.]*' wide.shot.json | sort -u -k 2 | wc -l) -eq 1 ]] ||
+  fail "another shape stretches: $(grep '"f[xy]"' wide.shot.json)"
+grep -q '"cx": 30,$' wide.shot.json || fail "another shape moves the middle: $(grep '"cx"' wide.shot.json)"
+run_as_typed 2 render --again sky.exr --size 20x20 -q -o x.exr
+
+# Without a camera the scene is framed; a length that is another is a change
+sed '/"camera": {/,/},/d' a.shot.json > bare.shot.json
+run_as_typed 0 render bare.shot.json --size 40x32 -q -o x.exr
+sed 's/"bytes": [0-9]*/"bytes": 7/' a.shot.json > other.shot.json
+run_as_typed 3 render other.shot.json -o x.exr
+grep -q 'k.ply: it has changed: other.shot.json was drawn from 7 bytes' err || fail "another length: $(cat err)"
+
+# A map's planes are those that were asked for
+run_as_typed 0 render k.ply --camera top --gsd 0.1 --aov rgba,Z -q -o map.tif
+run_as_typed 0 render --again map.tif -q -o again.tif
+cmp map.tif again.tif || fail "the colours of a map with heights are others"
+cmp map.Z.tif again.Z.tif || fail "the heights of a map are not drawn again"
+
+# Only what decides a bit is in the key: no time, no light's direction at the eye
+key_of() {
+  run_as_typed 0 render "$@" -q -o x.exr --json key.json
+  grep -o '"shot_key": "[0-9a-f]*"' key.json
+}
+if has zstd; then
+  usual=$(key_of k.lpc "${small[@]}")
+  for option in '--deadline 1000' --tolerate '--timeout 20' '--occlusion off' '--memory 300' '--tile 16' '--isa scalar' \
+    '--threads 1' '--device cpu'; do
+    read -ra words <<< "$option"
+    [[ $(key_of k.lpc "${small[@]}" "${words[@]}") == "$usual" ]] || fail "$option makes another key"
+  done
+  "$conic" make knot -n 20000 -q -o l.ply
+  "$conic" layer l.ply -q -o l.lpc
+  run_as_typed 0 render l.lpc "${small[@]}" --progressive levels -q -o x.exr
+  for picture in levels/0*.exr; do
+    run_as_typed 0 render --again "$picture" l.lpc -q -o again.exr
+    "$conic" diff "$picture" again.exr > out || fail "--again of $picture: $(cat out)"
+  done
+  run_as_typed 1 diff levels/0001.exr x.exr
+fi
+run_as_typed 0 render k.ply "${small[@]}" --light head --light 1,2,3 -q -o x.exr --save-shot head.shot.json
+sed 's/"frame": "head",*/&\n"direction": [1, 2, 3],/; s/\("frame": "head"\)$/\1,/' head.shot.json > stray.shot.json
+grep -q 'direction": \[1, 2, 3\],' stray.shot.json || fail "no stray direction: $(cat stray.shot.json)"
+[[ $(key_of head.shot.json) == $(key_of stray.shot.json) ]] || fail "a direction at the eye makes another key"
+
+# Numbers that nothing draws: the file is named, and the field
+bad() { # FROM TO MESSAGE
+  sed -z "s/$1/$2/" head.shot.json > bad.shot.json
+  cmp -s head.shot.json bad.shot.json && fail "no $1 in the shot"
+  run_as_typed 3 render bad.shot.json -o x.exr
+  grep -q "bad.shot.json: $3" err || fail "$1: $(cat err)"
+}
+bad '"fx": [0-9.]*' '"fx": 0' 'fx is 1e-12 to 1e+12, and not 0 (line'
+bad '"width": 40' '"width": 70000' 'width is 1 to 65535'
+bad '"near_z": [0-9.e-]*' '"near_z": -1' 'near_z is 0 to'
+bad '"splat_length": [0-9.]*' '"splat_length": -1' 'splat_length is 0 to'
+bad '"cx": [0-9.]*' '"cx": 1e300' 'cx is -1e+12'
+bad '"samples": 2' '"samples": 0' 'samples is 1 to 16'
+bad '"samples": 2' '"samples": 2, "only_kind": 7' 'only_kind is -1 to 1'
+bad '"samples": 2' '"samples": 2, "error_px": -1' 'error_px is 0 to'
+bad '"crease_deg": 30' '"crease_deg": 30, "n_neighbours": 0' 'n_neighbours is 6 to 64'
+bad '"crease_deg": 30' '"crease_deg": 30, "cutoff": 99' 'cutoff is 0.25 to 5'
+bad '"cam_from_world": \[\[' '"cam_from_world": [[1' "the camera's cam_from_world is no rotation"
+bad '"conic_shot": 1' '"conic_shot": 1, "n_samples": 3' 'means of samples draw one sample'
+bad '"bytes": [0-9]*' '"bytes": 1e30' 'bytes is 0 to'
+
+# What takes no longer than it should: pixels that are wide or high, and one input again and again
+sed 's/"fx": [0-9.]*/"fx": 4e9/' a.shot.json > far.shot.json
+run_as_typed 0 render far.shot.json --size 40x32 -q -o x.exr
+for ((i = 0; i < 1000; i++)); do printf '{"name": "k.ply"}, '; done > many
+printf '{"conic_shot": 1, "inputs": [%s{"name": "k.ply"}]}' "$(cat many)" > bad.shot.json
+run_as_typed 3 render bad.shot.json -o x.exr
+grep -q "bad.shot.json: the input 'k.ply' stands too many times" err || fail "one input again and again: $(cat err)"
+
 # What is no shot
 for text in '{"conic_shot": 1, "inputs": [{"name": "k.ply"}], "view": {"samples": 1, "samples": 2}}' \
   '{"conic_shot": 1, "inputs": [{"name": "k.ply"}], "camera": {"fx": null}}' '{"conic_shot": 2}' '{"conic_shot": 1, "camra": {}}' '{"conic_shot": 1}' '{"conic_shot": 1, "inputs": [{"name": "-"}]}'; do

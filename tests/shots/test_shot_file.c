@@ -88,11 +88,12 @@ static void fill_word(const conic_shot_row *row, char *at) {
 }
 
 static void fill_number(const conic_shot_row *row, char *at) {
-  double real = (draw_real() - 0.5) * pow(10.0, 20.0 * draw_real() - 8.0);
+  double real = row->least + (row->most - row->least) * draw_real();
   float rounded = (float)real;
-  int whole = (int)(1e6 * (draw_real() - 0.5));
-  uint32_t small = (uint32_t)(4e9 * draw_real());
-  uint64_t large = (uint64_t)(9e15 * draw_real());
+  double step = floor(row->least + (row->most - row->least + 1.0) * draw_real());
+  int whole = (int)step;
+  uint32_t small = (uint32_t)step;
+  uint64_t large = (uint64_t)step;
   if (row->kind == CONIC_ROW_DOUBLE)
     memcpy(at, &real, sizeof real);
   else if (row->kind == CONIC_ROW_FLOAT)
@@ -162,8 +163,25 @@ static void fill_row(const conic_shot_row *row, char *value) {
 }
 
 static void fill_rows(const conic_shot_rows *rows, char *value) {
+  static const double turned[3][4] = {{0.36, 0.48, -0.8, 0.5}, {-0.8, 0.6, 0.0, -0.25}, {0.48, 0.64, 0.6, 7.0}};
   for (size_t i = 0; i < rows->n_rows; i++)
     fill_row(&rows->rows[i], value);
+  if (strcmp(rows->name, "camera") == 0) {
+    conic_camera *camera = (conic_camera *)value;
+    memcpy(camera->cam_from_world, turned, sizeof turned);
+    camera->kind %= CONIC_CAMERA_CUBE; /* which has another shape */
+  }
+  if (strcmp(rows->name, "render") == 0)
+    ((conic_render_options *)value)->passes = draw_real() < 0.5 ? 1 : 3;
+  if (strcmp(rows->name, "aperture") == 0)
+    ((conic_aperture *)value)->n_blades += 3 - 3 * (((conic_aperture *)value)->n_blades > 61);
+  if (strcmp(rows->name, "map") == 0)
+    for (int axis = 0; axis < 3; axis++)
+      ((conic_shot_map *)value)->maximum[axis] = fabs(((conic_shot_map *)value)->minimum[axis]);
+  if (strcmp(rows->name, "shot") == 0) {
+    ((conic_shot *)value)->n_samples++;
+    ((conic_shot *)value)->view.samples = 1;
+  }
 }
 
 static void count_difference(void *cookie, const char *field, const char *a, const char *b) {
@@ -234,7 +252,7 @@ static void change_field(void *cookie, const conic_field_visit *visit) {
     fill_row(visit->row, value);
   c->told[0] = '\0';
   CHECK_OK(conic_shot_file_key(c->context, c->file, key));
-  CHECK((strcmp(key, c->key) == 0) == (strncmp(visit->path, "writing.", 8) == 0));
+  CHECK((strcmp(key, c->key) == 0) == (visit->row->is_no_key || strncmp(visit->path, "writing.", 8) == 0));
   CHECK_OK(conic_shot_file_compare(c->context, &standard, c->file, keep_field_name, c));
   CHECK(strcmp(c->told, visit->path) == 0);
   memcpy(value + visit->row->offset, kept, visit->row->bytes);
@@ -248,6 +266,72 @@ static void check_changes(conic_context *context) {
   CHECK_OK(conic_shot_file_key(context, &file, c.key));
   conic_fields_visit(&file, change_field, &c);
   CHECK(c.n_fields > 90);
+}
+
+/* --- ranges --- */
+
+/* A number out of the range of a field, or as often as the field has numbers. */
+static void print_number_of(const conic_shot_row *row, double number, char *text, size_t room) {
+  size_t n = conic_row_count(row), columns = row->columns ? (size_t)row->columns : n, used = 0;
+  for (size_t i = 0; i < n; i++)
+    used += (size_t)snprintf(text + used, room - used, "%s%s%.17g%s",
+                             i       ? ", "
+                             : n > 1 ? "["
+                                     : "",
+                             columns < n && i % columns == 0 ? "[" : "", number,
+                             columns < n && i % columns == columns - 1 ? "]" : "");
+  snprintf(text + used, room - used, "%s", n > 1 ? "]" : "");
+}
+
+static void check_beyond(conic_context *context, const conic_shot_row *row, const char *before, const char *after,
+                         double number) {
+  char text[1024], value[512];
+  conic_shot_file *file;
+  print_number_of(row, number, value, sizeof value);
+  snprintf(text, sizeof text, "%s\"%s\": %s%s", before, row->name, value, after);
+  files_message[0] = '\0';
+  CHECK(conic_shot_file_parse(context, "s.json", text, strlen(text), &file) == CONIC_ERROR_INPUT);
+  if (!strstr(files_message, row->name)) {
+    fprintf(stderr, "%s: %s\n", text, files_message);
+    check_failures++;
+  }
+}
+
+/* Every number of every struct has a range, and what is beyond is told of by the field's name. */
+static void check_ranges(conic_context *context, const conic_shot_rows *rows, const char *before, const char *after) {
+  for (size_t i = 0; i < rows->n_rows; i++) {
+    const conic_shot_row *row = &rows->rows[i];
+    char open[512], close[64];
+    const int is_shot = rows == &conic_shot_file_rows && i == 1, is_list = row->kind == CONIC_ROW_LIST;
+    if (row->of) {
+      snprintf(open, sizeof open, "%s\"%s\": %s{", before, row->name, is_list ? "[" : "");
+      snprintf(close, sizeof close, "}%s%s", is_list ? "]" : "", after);
+      check_ranges(context, row->of, is_shot ? before : open, is_shot ? after : close);
+    }
+    if (row->kind > CONIC_ROW_DOUBLE)
+      continue;
+    CHECK(row->least < row->most);
+    check_beyond(context, row, before, after, row->least - 1e-6 * fmax(1e6, fabs(row->least)));
+    check_beyond(context, row, before, after, row->most + 1e-6 * fmax(1e6, fabs(row->most)));
+  }
+}
+
+/* What holds unless it is said is in the range. */
+static void check_standard(void *cookie, const conic_field_visit *visit) {
+  const conic_shot_row *row = visit->row;
+  (void)cookie;
+  for (size_t i = 0; i < conic_row_count(row) && row->kind <= CONIC_ROW_DOUBLE && !row->is_said; i++) {
+    const char *at = (const char *)visit->standard + row->offset + i * (row->bytes / conic_row_count(row));
+    double real = row->kind == CONIC_ROW_INT      ? (double)*(const int *)at
+                  : row->kind == CONIC_ROW_UINT32 ? (double)*(const uint32_t *)at
+                  : row->kind == CONIC_ROW_UINT64 ? (double)*(const uint64_t *)at
+                  : row->kind == CONIC_ROW_FLOAT  ? (double)*(const float *)at
+                                                  : *(const double *)at;
+    if (real - real == 0.0 && !(real >= row->least && real <= row->most)) {
+      fprintf(stderr, "%s: %g is not within %g and %g\n", visit->path, real, row->least, row->most);
+      check_failures++;
+    }
+  }
 }
 
 /* --- fields, one by one --- */
@@ -305,7 +389,7 @@ static void check_refused(conic_context *context) {
       {"{\"conic_shot\": 1, \"shot\": {}}", "there is no field 'shot'"},
       {"{\"conic_shot\": 1, \"planes\": [\"rgb\"]}", "planes cannot be 'rgb'"},
       {"{\"conic_shot\": 1, \"view\": {\"samples\": 1.5}}", "samples is a whole number"},
-      {"{\"conic_shot\": 1, \"view\": {\"budget\": -1}}", "budget is a whole number"},
+      {"{\"conic_shot\": 1, \"view\": {\"budget\": -1}}", "budget is 0 to 4294967294, and not -1"},
       {"{\"conic_shot\": 1, \"noise\": 1e999}", "noise is too large"},
       {"{\"conic_shot\": 1, \"render\": {\"prefilter\": 1e39}}", "prefilter is too large"},
       {"{\"conic_shot\": 1, \"render\": {\"background\": [1, 2]}}", "background has another number of values"},
@@ -314,8 +398,34 @@ static void check_refused(conic_context *context) {
       {"{\"conic_shot\": 1, \"inputs\": [{}]}", "an input has no name"},
       {"{\"conic_shot\": 1, \"inputs\": [{\"name\": \"a\", \"as\": \"b\"}]}", "an input cannot be 'b'"},
       {"{\"conic_shot\": 1, \"inputs\": [{\"name\": \"a\", \"colour\": 1}]}", "there is no field 'colour' of an input"},
-      {"{\"conic_shot\": 1, \"render\": {\"lighting\": {\"lights\": [{},{},{},{},{},{},{},{},{}]}}}",
+      {"{\"conic_shot\": 1, \"render\": {\"lighting\": {\"lights\": [{\"frame\": \"head\"},{\"frame\": \"head\"},"
+       "{\"frame\": \"head\"},{\"frame\": \"head\"},{\"frame\": \"head\"},{\"frame\": \"head\"},"
+       "{\"frame\": \"head\"},{\"frame\": \"head\"},{\"frame\": \"head\"}]}}}",
        "too many members"},
+      {"{\"conic_shot\": 1, \"noise\": 1, \"noise\": 2}", "the field 'noise' stands twice"},
+      {"{\"conic_shot\": 1, \"map\": {}, \"map\": {}}", "the field 'map' stands twice"},
+      {"{\"conic_shot\": 1, \"conic_shot\": 1}", "the field 'conic_shot' stands twice"},
+      {"{\"conic_shot\": 1, \"conic\": \"a\", \"conic\": \"b\"}", "the field 'conic' stands twice"},
+      {"{\"conic_shot\": 1, \"inputs\": [{\"name\": \"a\"}], \"inputs\": [{\"name\": \"b\"}]}",
+       "the field 'inputs' stands twice"},
+      {"{\"conic_shot\": 1, \"inputs\": [{\"name\": \"a\", \"name\": \"b\"}]}", "the field 'name' stands twice"},
+      {"{\"conic_shot\": 1, \"inputs\": [{\"name\": \"a\", \"bytes\": 1e30}]}", "bytes is 0 to 9.007199255e+15"},
+      {"{\"conic_shot\": 1, \"inputs\": [{\"name\": \"a\", \"bytes\": -1}]}", "bytes is 0 to 9.007199255e+15"},
+      {"{\"conic_shot\": 1, \"camera\": {\"width\": 4}}", "'height' is missing"},
+      {"{\"conic_shot\": 1, \"camera\": {\"width\": 4, \"height\": 4, \"fx\": 1, \"fy\": 1, \"cx\": 0, \"cy\": 0, "
+       "\"cam_from_world\": [[1, 0, 0, 0], [0, 2, 0, 0], [0, 0, 1, 0]]}}",
+       "its rows are not orthonormal"},
+      {"{\"conic_shot\": 1, \"way\": {\"kind\": \"orbit\"}}", "an orbit has an axis"},
+      {"{\"conic_shot\": 1, \"way\": {\"kind\": \"cameras\"}}", "the camera's way has no cameras"},
+      {"{\"conic_shot\": 1, \"render\": {\"lighting\": {\"lights\": [{\"frame\": \"camera\"}]}}}",
+       "the light has no direction"},
+      {"{\"conic_shot\": 1, \"render\": {\"lighting\": {\"sky\": [1, 1, 1]}}}", "the sky has no direction up"},
+      {"{\"conic_shot\": 1, \"render\": {\"passes\": 2}}", "passes is 1 or 3"},
+      {"{\"conic_shot\": 1, \"light\": {\"lamps\": [{\"kind\": \"disc\"}]}}", "a lamp's axes span nothing"},
+      {"{\"conic_shot\": 1, \"aperture\": {\"n_blades\": 2}}", "a lens has 3 blades at least"},
+      {"{\"conic_shot\": 1, \"aperture\": {\"diameter\": 2}}", "n_samples is above 0"},
+      {"{\"conic_shot\": 1, \"n_samples\": 4, \"view\": {\"samples\": 2}}", "view.samples is 1"},
+      {"{\"conic_shot\": 1, \"map\": {\"minimum\": [1, 0, 0], \"maximum\": [0, 0, 0]}}", "the map's box is empty"},
       {"{\"conic_shot\": 1} x", ""},
       {"{\"conic_shot\": 1, \"inputs\": [{\"name\": \"a\", \"sha256\": \"12\"}]}", "sha256 has 64 digits"},
       {"{}", "it is no shot"},
@@ -333,6 +443,19 @@ static void check_refused(conic_context *context) {
     CHECK(conic_shot_file_parse(context, NULL, wrong[i].text, strlen(wrong[i].text), &file) == CONIC_ERROR_INPUT);
     CHECK(!files_message[0]);
   }
+}
+
+/* A file that stands again and again, whatever stands between. */
+static void check_repeated(conic_context *context, size_t n, conic_status expected) {
+  char *text = malloc(64 + 40 * n);
+  conic_shot_file *file;
+  size_t used = (size_t)sprintf(text, "{\"conic_shot\": 1, \"inputs\": [");
+  for (size_t i = 0; i < n; i++)
+    used += (size_t)sprintf(text + used, "%s{\"name\": \"%c\"}", i ? "," : "", i % 2 ? 'a' : 'b');
+  used += (size_t)sprintf(text + used, "]}");
+  CHECK(conic_shot_file_parse(context, "s.json", text, used, &file) == expected);
+  conic_shot_file_destroy(context, file);
+  free(text);
 }
 
 /* --- inputs --- */
@@ -375,7 +498,14 @@ int main(int argc, char **argv) {
   check_changes(context);
   check_fields();
   check_schema(context, argc > 1 ? argv[1] : ".");
+  conic_shot_file standard;
+  conic_shot_file_init(&standard);
+  check_ranges(context, &conic_shot_file_rows, "{\"conic_shot\": 1, ", "}");
+  conic_fields_visit(&standard, check_standard, NULL);
   check_refused(context);
+  check_repeated(context, 512, CONIC_OK);
+  check_repeated(context, 514, CONIC_ERROR_INPUT);
+  check_repeated(context, 200000, CONIC_ERROR_INPUT);
   check_inputs(context);
   files_end(context);
   return check_result();

@@ -22,8 +22,11 @@ static void check_long(void) {
     bytes[i] = (unsigned char)(random >> 24);
   }
   for (size_t n = 4090; n < sizeof bytes; n += 7919) {
-    conic_sha256 whole, pieces;
-    char first[CONIC_SHA256_ROOM], second[CONIC_SHA256_ROOM];
+    conic_sha256 whole, pieces, begun;
+    char first[CONIC_SHA256_ROOM], second[CONIC_SHA256_ROOM], third[CONIC_SHA256_ROOM];
+    conic_sha256_begin(&begun);
+    conic_sha256_add(&begun, bytes, n % 64 + 1);
+    conic_sha256_add(&begun, bytes + n % 64 + 1, n - n % 64 - 1);
     conic_sha256_begin(&whole);
     conic_sha256_begin(&pieces);
     conic_sha256_add(&whole, bytes, n);
@@ -31,7 +34,8 @@ static void check_long(void) {
       conic_sha256_add(&pieces, bytes + at, n - at < 1000 ? n - at : 1000);
     conic_sha256_end(&whole, first);
     conic_sha256_end(&pieces, second);
-    CHECK(strcmp(first, second) == 0);
+    conic_sha256_end(&begun, third);
+    CHECK(strcmp(first, second) == 0 && strcmp(first, third) == 0);
   }
 }
 

@@ -69,6 +69,21 @@ static void test_file(conic_context *context, const conic_camera *camera) {
   conic_image_release(context, &image);
 }
 
+/* Pixels may be flatter than a file can say: then it says nothing. What a file cannot have is an error, and no wait. */
+static void test_flat_pixels(conic_context *context) {
+  conic_camera flat = a_camera();
+  conic_image image = random_image(context, 4, 3, 1u), back;
+  flat.fx = 4e9;
+  conic_image_describe_camera(&image, &flat);
+  CHECK_OK(conic_image_write(context, in_folder("flat.exr"), &image));
+  CHECK_OK(conic_image_read(context, in_folder("flat.exr"), &back));
+  conic_image_release(context, &back);
+  image.n_attributes = 1;
+  image.attributes[0] = (conic_attribute){.name = "pixelAspectRatio", .type = CONIC_ATTRIBUTE_FLOAT, .values = {1e9}};
+  CHECK(conic_image_write(context, in_folder("none.exr"), &image) != CONIC_OK);
+  conic_image_release(context, &image);
+}
+
 /* Places are where the camera sees the pixel's middle, or the sample next to it, at that depth. */
 static void test_positions(conic_context *context, const conic_camera *camera, int samples) {
   conic_image image;
@@ -112,6 +127,7 @@ int main(void) {
   if (has_feature("OpenEXR")) {
     open_test_folder();
     test_file(context, &camera);
+    test_flat_pixels(context);
     close_test_folder();
   }
   conic_context_destroy(context);
