@@ -75,16 +75,16 @@ static double hills(double x, double z) {
 static void occlusion_is_that_of_rays(conic_context *context, const char *source_folder) {
   static const char *const files[] = {"fandisk.obj", "bunny.obj"};
   conic_triangles mesh = light_cube_on_plane(context);
-  judge_mesh(context, "cube", &mesh, 256, 8);
+  judge_mesh(context, "cube", &mesh, 256, 13);
   mesh = light_mesh(context, 2 * 120 * 120);
   light_field(&mesh, 120, 1.0, hills);
-  judge_mesh(context, "terrain", &mesh, 192, 12);
+  judge_mesh(context, "terrain", &mesh, 192, 17);
   for (int i = 0; i < 2; i++) {
     const char *path = check_data(source_folder, files[i]);
     if (!path)
       continue;
     CHECK_OK(conic_triangles_read(context, path, &mesh));
-    judge_mesh(context, files[i], &mesh, 192, 12);
+    judge_mesh(context, files[i], &mesh, 192, 17);
   }
 }
 

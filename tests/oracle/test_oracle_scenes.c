@@ -60,7 +60,7 @@ static void fill_random(fixture *f, size_t count, double low_z, double high_z, d
 }
 
 static void test_hard_scenes(fixture *f) {
-  fixture_camera(f, 200, 150, 180.0);
+  fixture_camera(f, 128, 96, 115.0);
   fill_random(f, 3000, 1.0, 4.0, 0.002, 0.05, 1.0);
   check_agreement(f, "round", 0.005);
   fill_random(f, 3000, 1.0, 4.0, 0.01, 0.1, 1e-4);
@@ -69,7 +69,7 @@ static void test_hard_scenes(fixture *f) {
   check_agreement(f, "tiny", 0.005);
   fill_random(f, 60, 0.5, 4.0, 1.0, 30.0, 1.0);
   check_agreement(f, "huge", 0.02);
-  fixture_camera(f, 100, 75, 90.0); /* hundreds of splats a pixel */
+  fixture_camera(f, 72, 54, 65.0); /* hundreds of splats a pixel */
   fill_random(f, 600, -0.3, 0.6, 0.02, 0.5, 1.0);
   check_agreement(f, "near", 0.02);
 }
@@ -111,7 +111,7 @@ static void test_hostile(fixture *f) {
 
 /* The options that change what a pixel holds. */
 static void test_options(fixture *f) {
-  fixture_camera(f, 160, 120, 110.0);
+  fixture_camera(f, 112, 84, 77.0);
   f->camera.cam_from_world[2][3] = 2.6;
   f->options.near_z = 0.0;
   fixture_scene(f, CONIC_SCENE_KNOT, 4000);
@@ -139,10 +139,10 @@ static void test_options(fixture *f) {
   f->options.kernel.type = CONIC_KERNEL_CONFETTI;
   f->options.kernel.b = 2.5f;
   const conic_camera camera = f->camera;
-  fixture_camera(f, 80, 60, 55.0); /* its discs overlap four times as much */
+  fixture_camera(f, 64, 48, 44.0); /* its discs overlap four times as much */
   memcpy(f->camera.cam_from_world, camera.cam_from_world, sizeof camera.cam_from_world);
   check_agreement(f, "confetti, lit from behind", 0.02);
-  fixture_camera(f, 160, 120, 110.0);
+  fixture_camera(f, 112, 84, 77.0);
   memcpy(f->camera.cam_from_world, camera.cam_from_world, sizeof camera.cam_from_world);
   f->options = plain;
   f->options.lighting = (conic_lighting){
@@ -161,7 +161,7 @@ static void test_options(fixture *f) {
 /* Discs almost across the line of sight: over them depth changes by no more than it is rounded, which once made the ray
  * formula drop pixels at random. */
 static void test_frontal_wall(fixture *f) {
-  fixture_camera(f, 160, 120, 110.0);
+  fixture_camera(f, 112, 84, 77.0);
   f->camera.cam_from_world[2][3] = 1.3;
   fixture_scene(f, CONIC_SCENE_PLANE, 4000);
   for (int i = 0; i < 6; i++) {
