@@ -285,7 +285,9 @@ def main():
             for option in options:
                 if option["name"] in before or (kinds and option["name"] in works):
                     continue
-                for case in CASES.get(option["name"], []):
+                cases = CASES.get(option["name"], [])
+                # At a stage, what an option's words share; each of them is tried of every source where nothing is before.
+                for case in cases if kinds is None else cases[:1]:
                     n_pairs += 1
                     words = before + case
                     got = outcome(sources[kind], words)
