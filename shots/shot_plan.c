@@ -1,6 +1,7 @@
 #include "shots/shot_plan.h"
 
 #include "core/base/message.h"
+#include "shots/focus.h"
 #include "shots/shot_faults.h"
 #include "source/source_kind.h"
 
@@ -10,15 +11,10 @@ int conic_shot_is_lit(const conic_shot *shot) {
   return shot->light.n_directions > 0 || shot->light.has_shadows || shot->light.n_lamps > 0;
 }
 
-/* Whether the depth of the picture says where it is sharp. */
-static int is_focus_seen(const conic_shot *shot) {
-  return shot->n_samples > 0 && shot->aperture.diameter > 0.0 && shot->focus_kind != CONIC_FOCUS_DEPTH;
-}
-
 unsigned conic_shot_needs(const conic_shot *shot, unsigned planes) {
   if (conic_shot_is_lit(shot))
     planes |= Z | NORMAL | (planes & RGBA ? 1u << CONIC_PLANE_ALBEDO : 0);
-  if (planes & 1u << CONIC_PLANE_POSITION || is_focus_seen(shot))
+  if (planes & 1u << CONIC_PLANE_POSITION || (shot->n_samples > 0 && conic_focus_is_seen(shot)))
     planes |= Z;
   if (planes & 1u << CONIC_PLANE_CLUSTER)
     planes |= 1u << CONIC_PLANE_ID;

@@ -488,6 +488,36 @@ static void check_inputs(conic_context *context) {
   CHECK(!small.n_bytes && !small.sha256[0]);
 }
 
+/* A thread beside finds the same as this one, and ends where nobody asks for it. */
+static void check_beside(conic_context *context) {
+  static char bytes[3 << 20];
+  const char *scene[2];
+  memset(bytes, 7, sizeof bytes);
+  for (int i = 0; i < 2; i++) {
+    FILE *file = fopen(scene[i] = strdup(files_path(i ? "second" : "first")), "wb");
+    CHECK(file && fwrite(bytes, 1, sizeof bytes - (size_t)i, file) == sizeof bytes - (size_t)i && fclose(file) == 0);
+  }
+  const conic_shot_names names = {.scene = scene, .n_scene = 2, .texture = "-", .motion = scene[1]};
+  conic_shot_inputs alone = {0}, beside = {0}, left = {0};
+  CHECK_OK(conic_shot_inputs_find(context, &names, &alone));
+  CHECK_OK(conic_shot_inputs_begin(context, &names, &beside));
+  CHECK_OK(conic_shot_inputs_find(context, &names, &beside));
+  CHECK(alone.n == 4 && beside.n == 4 && !beside.looking);
+  for (size_t i = 0; i < alone.n && i < beside.n; i++)
+    CHECK(strcmp(alone.inputs[i].name, beside.inputs[i].name) == 0 && alone.inputs[i].role == beside.inputs[i].role &&
+          alone.inputs[i].n_bytes == beside.inputs[i].n_bytes &&
+          strcmp(alone.inputs[i].sha256, beside.inputs[i].sha256) == 0);
+  CHECK(strlen(alone.inputs[0].sha256) == 64 && strlen(alone.inputs[3].sha256) == 64 && !alone.inputs[2].sha256[0]);
+  CHECK_OK(conic_shot_inputs_begin(context, &names, &left));
+  conic_shot_inputs_release(context, &left);
+  conic_shot_inputs_release(context, &alone);
+  conic_shot_inputs_release(context, &beside);
+  for (int i = 0; i < 2; i++) {
+    unlink(scene[i]);
+    free((void *)scene[i]);
+  }
+}
+
 int main(int argc, char **argv) {
   conic_context *context = files_context();
   for (size_t i = 0; conic_all_shot_rows[i]; i++)
@@ -507,6 +537,7 @@ int main(int argc, char **argv) {
   check_repeated(context, 514, CONIC_ERROR_INPUT);
   check_repeated(context, 200000, CONIC_ERROR_INPUT);
   check_inputs(context);
+  check_beside(context);
   files_end(context);
   return check_result();
 }
