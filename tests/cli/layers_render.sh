@@ -110,7 +110,6 @@ http {
   server {
     listen 127.0.0.1:$port;
     root $PWD;
-    location /slow/ { alias $PWD/; limit_rate 40k; }
     location /whole/ { alias $PWD/; max_ranges 0; }
     location /moved/ { return 302 /knot.lpc; }
   }
@@ -177,8 +176,16 @@ done
 run 0 render $site/knot.lpc -o url.pfm $picture --deadline 100 --json url.json
 same_picture all.json url.json "a deadline that is far"
 
-# A slow line and a deadline: coarser, and said so.
-run 0 render $site/slow/knot.lpc -o late.pfm $picture --deadline 2.5 --json late.json
+# A slow line, which all requests share, and a deadline: coarser, and said so.
+python3 "$1/tests/cli/slow_server.py" "$PWD" 100000 > slow.port &
+slow_pid=$!
+trap 'stop_nginx $nginx_pid; kill $slow_pid 2> /dev/null; rm -rf "$work"' EXIT
+for _ in {1..100}; do
+  [[ -s slow.port ]] && break
+  sleep 0.05
+done
+slow=http://127.0.0.1:$(cat slow.port)
+run 0 render $slow/knot.lpc -o late.pfm $picture --deadline 2.5 --json late.json
 [[ $(value places_coarser late.json) -gt 0 && $(value clouds_missing late.json) -gt 0 ]] || fail "the deadline did nothing"
 [[ $(value splats_in late.json) -lt $(value splats_in all.json) ]] || fail "late, and all the same"
 
@@ -187,10 +194,10 @@ run 3 render $site/knot.ply -o x.pfm
 grep -q "^conic: error: $site/knot.ply: " err || fail "a message without its file: $(cat err)"
 
 # A server that dies midway.
-"$conic" render --plain $site/slow/knot.lpc -o x.pfm $picture --timeout 1 2> err &
+"$conic" render --plain $slow/knot.lpc -o x.pfm $picture --timeout 1 2> err &
 render_pid=$!
 sleep 1.5
-stop_nginx $nginx_pid
+stop_nginx $slow_pid
 wait $render_pid
 [[ $? -eq 4 && $(grep -c '^conic: error: ' err) -eq 1 ]] || fail "a server that dies: $(cat err)"
 [[ ! -e x.pfm && -z $(find . -name '.x*') ]] || fail "a failed run left its output"
