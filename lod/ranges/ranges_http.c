@@ -140,7 +140,6 @@ static void wait_again(conic_http_transfer *t) {
 static int name_part(conic_http_ranges *http, conic_http_transfer *t) {
   const conic_range *range = &t->parts[0].range;
   conic_memory_release(http->base.context, t->own_url);
-  t->is_beside = 1;
   t->offset = 0;
   t->n_expected = range->n_bytes;
   return conic_ranges_name_beside(http->base.context, http->url, range->file, &t->own_url) == CONIC_OK;
@@ -189,12 +188,6 @@ static uint64_t end_of(const conic_queued_range *part) {
   return part->range.offset + part->range.n_bytes;
 }
 
-/* Whether two parts, the first of which begins sooner, go into one request. */
-static int may_join(const conic_queued_range *first, const conic_queued_range *last, uint64_t most) {
-  uint64_t end = end_of(first) > end_of(last) ? end_of(first) : end_of(last);
-  return end <= first->range.offset + most;
-}
-
 /* Leaves the wanted part and those about it, in the order of their places. The others wait again. */
 static void keep_neighbours(conic_http_ranges *http, conic_http_transfer *t, uint64_t most) {
   uint64_t gap = gap_s * http->bytes_a_second < GAP_BYTES ? (uint64_t)(gap_s * http->bytes_a_second) : GAP_BYTES;
@@ -205,12 +198,15 @@ static void keep_neighbours(conic_http_ranges *http, conic_http_transfer *t, uin
   while (parts[begin].range.id != wanted.id || parts[begin].range.offset != wanted.offset)
     begin++;
   size_t end = begin + 1;
+  uint64_t last = end_of(&parts[begin]);
   while (begin > 0 && end_of(&parts[begin - 1]) + gap >= parts[begin].range.offset &&
-         may_join(&parts[begin - 1], &parts[end - 1], most))
+         end_of(&parts[begin - 1]) <= last && last <= parts[begin - 1].range.offset + most)
     begin--;
-  while (end < n && end_of(&parts[end - 1]) + gap >= parts[end].range.offset &&
-         may_join(&parts[begin], &parts[end], most))
-    end++;
+  for (; end < n && parts[end].range.offset <= last + gap && end_of(&parts[end]) <= parts[begin].range.offset + most;
+       end++)
+    last = end_of(&parts[end]) > last ? end_of(&parts[end]) : last;
+  t->offset = parts[begin].range.offset;
+  t->n_expected = (size_t)(last - t->offset);
   t->n_parts = 0;
   for (size_t i = 0; i < n; i++)
     if (i >= begin && i < end)
@@ -252,23 +248,14 @@ static void take_waiting(conic_http_ranges *http, conic_http_transfer *t, double
 /* Takes the next range, and what lies next to it of those that come soon: 1, or 0 where none is to be had now. */
 static int gather_parts(conic_http_ranges *http, conic_http_transfer *t) {
   double most = request_s * http->bytes_a_second;
-  uint64_t last = 0;
   take_waiting(http, t, most < BATCH_BYTES ? most : BATCH_BYTES);
-  if (t->n_parts == 0)
-    return 0;
-  if (t->parts[0].range.file[0]) {
-    if (name_part(http, t))
-      return 1;
-    give_up(http, &t->parts[0].range, CONIC_HTTP_BOUND, "out of memory");
-    return 0;
-  }
-  keep_neighbours(http, t, most < JOINED_BYTES ? (uint64_t)most : JOINED_BYTES);
-  t->is_beside = 0;
-  t->offset = t->parts[0].range.offset;
-  for (size_t i = 0; i < t->n_parts; i++)
-    last = end_of(&t->parts[i]) > last ? end_of(&t->parts[i]) : last;
-  t->n_expected = (size_t)(last - t->offset);
-  return 1;
+  t->is_beside = t->n_parts > 0 && t->parts[0].range.file[0];
+  if (t->n_parts > 0 && !t->is_beside)
+    keep_neighbours(http, t, most < JOINED_BYTES ? (uint64_t)most : JOINED_BYTES);
+  if (!t->is_beside || name_part(http, t))
+    return t->n_parts > 0;
+  give_up(http, &t->parts[0].range, CONIC_HTTP_BOUND, "out of memory");
+  return 0;
 }
 
 /* Sends requests over free connections, as many as keep the link busy. */

@@ -10,9 +10,6 @@
 #include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_octree.h"
 
-/* The index is asked for in pieces, so that memory grows with what comes and not with what is claimed. */
-enum { PIECE_BYTES = 1 << 22 };
-
 void conic_layers_access_init_sized(conic_layers_access *access, size_t size) {
   conic_ranges_options ranges;
   conic_ranges_options_init(&ranges);
@@ -40,33 +37,20 @@ int conic_layers_is_url(const char *name) {
   return conic_ranges_is_url(name);
 }
 
-/* Bytes from `offset` on, into `to`; a whole piece at most. */
-static conic_status read_piece(conic_layers *layers, uint64_t offset, unsigned char *to, size_t n_bytes) {
-  const conic_range range = {.offset = offset, .n_bytes = n_bytes};
-  unsigned char *bytes;
+/* Bytes from `offset` on, which the caller releases. Memory grows with what comes and not with what is claimed. */
+static conic_status read_bytes(conic_layers *layers, uint64_t offset, uint64_t n_bytes, unsigned char **bytes) {
+  const conic_range range = {.offset = offset, .n_bytes = (size_t)n_bytes};
   size_t n_read;
-  conic_status status = conic_ranges_read(layers->ranges, layers->name, &range, layers->until_s, &bytes, &n_read);
+  return conic_ranges_read(layers->ranges, layers->name, &range, layers->until_s, bytes, &n_read);
+}
+
+/* The same of few bytes, into `to`. */
+static conic_status read_head(conic_layers *layers, unsigned char *to, size_t n_bytes) {
+  unsigned char *bytes;
+  conic_status status = read_bytes(layers, 0, n_bytes, &bytes);
   if (status == CONIC_OK)
     memcpy(to, bytes, n_bytes);
   conic_memory_release(layers->context, bytes);
-  return status;
-}
-
-/* Bytes from `offset` on, which the caller releases. */
-static conic_status read_bytes(conic_layers *layers, uint64_t offset, uint64_t n_bytes, unsigned char **bytes) {
-  size_t done = 0, room = 0;
-  conic_status status = CONIC_OK;
-  *bytes = NULL;
-  while (done < n_bytes && status == CONIC_OK) {
-    size_t piece = n_bytes - done < PIECE_BYTES ? (size_t)(n_bytes - done) : PIECE_BYTES;
-    if (room - done < piece) {
-      room = 2 * room + piece < n_bytes ? 2 * room + piece : (size_t)n_bytes;
-      status = conic_memory_grow(layers->context, bytes, done, room, 1);
-    }
-    if (status == CONIC_OK)
-      status = read_piece(layers, offset + done, *bytes + done, piece);
-    done += piece;
-  }
   return status;
 }
 
@@ -104,7 +88,7 @@ static conic_status read_start(conic_layers *layers, layers_start *start) {
   start->n_header = size < sizeof start->header ? (size_t)size : sizeof start->header;
   if (size == 0)
     return conic_fail(layers->context, CONIC_ERROR_INPUT, "%s: the file is empty", layers->name);
-  status = read_piece(layers, 0, start->header, start->n_header);
+  status = read_head(layers, start->header, start->n_header);
   start->is_whole = start->n_header == sizeof start->header && conic_layers_header_is_whole(start->header);
   if (status != CONIC_OK || !start->is_whole)
     return status;
@@ -172,7 +156,7 @@ static conic_status open_kind(conic_layers *layers) {
   uint64_t size = conic_ranges_size(layers->ranges);
   size_t n = size < sizeof head ? (size_t)size : sizeof head;
   if (n > 0)
-    status = read_piece(layers, 0, head, n);
+    status = read_head(layers, head, n);
   if (status != CONIC_OK)
     return status;
   const conic_hierarchy_kind *kind = conic_hierarchy_kind_of(layers->name, head, n);

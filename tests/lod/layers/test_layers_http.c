@@ -152,15 +152,17 @@ static void check_deadline(void) {
  */
 static void check_coarse_first(const layers_frame *frame, uint64_t n_received) {
   const conic_layers *layers = frame->layers;
-  uint64_t n_used = 0;
-  int n_orphans = 0;
+  enum { A_REQUEST = 125000 / 4 };
+  uint64_t n_used = 0, n_vain = 0;
   for (uint32_t i = 0; i < layers->header.n_clouds; i++) {
     n_used += layers->store.slots[i].cloud ? layers->entries[i].n_bytes : 0;
-    n_orphans += layers->store.slots[i].cloud && !conic_layers_has_cloud(layers, layers->entries[i].parent);
+    if (layers->store.slots[i].cloud && !conic_layers_has_cloud(layers, layers->entries[i].parent))
+      n_vain += layers->entries[i].n_bytes;
   }
-  fprintf(stderr, "%llu of %llu bytes are used, %d clouds in vain; at most %.1f pixels coarser\n",
-          (unsigned long long)n_used, (unsigned long long)n_received, n_orphans, frame->drawn.missing_error_px);
-  CHECK(n_orphans < 16 && n_used + 40000 > n_received);
+  fprintf(stderr, "%llu of %llu bytes are used, %llu in vain; at most %.1f pixels coarser\n",
+          (unsigned long long)n_used, (unsigned long long)n_received, (unsigned long long)n_vain,
+          frame->drawn.missing_error_px);
+  CHECK(n_vain < A_REQUEST && n_used + 2 * A_REQUEST > n_received);
 }
 
 /* A link of 1 Mbit/s: each time gives what could be had by then, and the whole is the file's picture. */
