@@ -202,8 +202,7 @@ static conic_status dress(drawing_source *d, const conic_source_options *options
   conic_context *context = d->base.context;
   conic_status status = CONIC_OK;
   if (options->as == CONIC_AS_MESH && d->triangles.count == 0)
-    conic_log(context, CONIC_LOG_INFO, "%s: there are no faces to draw as a mesh; the points are drawn",
-              d->base.name);
+    conic_log(context, CONIC_LOG_INFO, "%s: there are no faces to draw as a mesh; the points are drawn", d->base.name);
   if (d->triangles.count == 0 && options->texture_path)
     conic_log(context, CONIC_LOG_INFO, "%s: there are no faces for the texture to lie on", d->base.name);
   if (d->triangles.count == 0)

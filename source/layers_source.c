@@ -326,6 +326,11 @@ static conic_status take_layers_splats(conic_source *source, conic_splats *splat
   return status;
 }
 
+static conic_status draw_layers_boxes(conic_source *source, const conic_camera *camera, int level,
+                                      const conic_image *image, conic_image *map) {
+  return conic_layers_draw_boxes(((layers_source *)source)->layers, camera, level, image, map);
+}
+
 const conic_source_kind conic_source_kind_layers = {
     .size = sizeof(layers_source),
     .abilities = CONIC_SOURCE_CHOOSES | CONIC_SOURCE_STREAMS | CONIC_SOURCE_READS_PARTS,
@@ -335,6 +340,7 @@ const conic_source_kind conic_source_kind_layers = {
     .close = close_layers,
     .draw = draw_layers,
     .windowing = &windowing_of_layers,
+    .draw_boxes = draw_layers_boxes,
     .tell_rest = tell_layers_rest,
     .is_file = is_layers_file,
     .name = "lpc",

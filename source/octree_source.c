@@ -54,6 +54,11 @@ const conic_octree *conic_source_octree(const conic_source *source) {
   return source->kind == &conic_source_kind_octree ? ((const octree_source *)source)->octree : NULL;
 }
 
+static conic_status draw_octree_boxes(conic_source *source, const conic_camera *camera, int level,
+                                      const conic_image *image, conic_image *map) {
+  return conic_octree_draw_boxes(((octree_source *)source)->octree, camera, level, image, map);
+}
+
 static void close_octree(conic_source *source) {
   octree_source *o = (octree_source *)source;
   conic_selection_release(source->context, &o->selection);
@@ -204,6 +209,7 @@ const conic_source_kind conic_source_kind_octree = {
     .find_spacing = find_octree_spacing,
     .choose = choose_from_octree,
     .windowing = &conic_source_windowing_choice,
+    .draw_boxes = draw_octree_boxes,
     .name_image = name_octree_image,
     .name_splat = name_octree_splat,
     .tell_primitives = tell_octree_primitives,

@@ -132,6 +132,14 @@ void conic_source_close(conic_source *source) {
 
 /* --- measuring --- */
 
+conic_status conic_source_draw_boxes(conic_source *source, const conic_camera *camera, int level,
+                                     const conic_image *image, conic_image *map) {
+  memset(map, 0, sizeof *map);
+  return source->kind->draw_boxes
+             ? source->kind->draw_boxes(source, camera, level, image, map)
+             : conic_fail(source->context, CONIC_ERROR_ARGUMENT, "boxes: the source has no levels");
+}
+
 const conic_source_scale *conic_source_measure(const conic_source *source) {
   return &source->scale;
 }

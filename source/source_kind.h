@@ -50,6 +50,8 @@ typedef struct conic_source_kind {
                        const conic_render_options *render, const conic_source_view *view, conic_image *image,
                        conic_render_statistics *statistics);
   const conic_source_windowing *windowing; /* null: not drawn in windows */
+  conic_status (*draw_boxes)(conic_source *source, const conic_camera *camera, int level, const conic_image *image,
+                             conic_image *map);
   void (*name_image)(const conic_source *source, conic_image *image);
   const char *(*name_splat)(const conic_source *source, uint32_t splat, uint32_t *number);
   /* Which input has an id; null: the first one. */

@@ -166,7 +166,7 @@ static conic_status make_beside(cli_session *session, const cli_render_job *job,
   if (what == CLUSTERS)
     return make_cluster_map(context, image, map);
   if (what == BOXES)
-    return conic_octree_draw_boxes(conic_source_octree(job->source), camera, job->box_level, image, map);
+    return conic_source_draw_boxes(job->source, camera, job->box_level, image, map);
   return job->is_overdraw_confetti ? conic_image_overdraw_confetti(context, image, map)
                                    : conic_image_overdraw(context, image, map);
 }
@@ -186,8 +186,7 @@ static conic_status write_deep(cli_session *session, const cli_render_job *job, 
 
 static conic_status write_beside(cli_session *session, cli_render_job *job, beside what, const conic_camera *camera,
                                  const conic_image *image, int i_frame) {
-  const char *const names[N_BESIDE] = {job->overdraw_path, job->clusters_path,
-                                       conic_source_octree(job->source) ? job->boxes_path : NULL, job->deep_path};
+  const char *const names[N_BESIDE] = {job->overdraw_path, job->clusters_path, job->boxes_path, job->deep_path};
   double start = cli_seconds();
   conic_image map;
   if (!names[what])

@@ -204,7 +204,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"show", CLI_PARSED, job, "WHAT:OUT",
        "a picture of what was drawn: overdraw:OUT.png, how many splats each pixel blends (blue 1, red 4, yellow 16, "
        "white 64), or overdraw-confetti:OUT.png (blue 1, green 8, red 16); clusters:OUT.png, of a .chy each patch in a "
-       "colour of its own; boxes:OUT.png, of a .cot the nodes of a level with their boxes, boxes@3:OUT.png those of "
+       "colour of its own; boxes:OUT.png, of a .cot or .lpc the nodes of a level with their boxes, boxes@3:OUT.png "
+       "those of "
        "level 3 from the root; legend:OUT.png, what the colours mean, or legend, in the picture itself",
        .parse = parse_show, .may_repeat = 1, .choices = show_words},
       {"save-shot", CLI_TEXT, &job->making.save_path, "OUT.shot.json",

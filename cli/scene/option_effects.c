@@ -244,7 +244,7 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
   } parts[] = {
       {job->overdraw_path != NULL, "show overdraw", {.apart = F(MAP)}},
       {job->clusters_path != NULL, "show clusters", {.on = F(HYBRID), .apart = F(MAP)}},
-      {job->boxes_path != NULL, "show boxes", {.on = F(NODES), .apart = F(MAP)}},
+      {job->boxes_path != NULL, "show boxes", {.on = F(NODES) | F(LEVELS), .apart = F(MAP)}},
       {job->legend_path != NULL, "show legend:OUT", {.on = F(VALUED), .apart = F(MAP)}},
       {job->has_legend, "show legend", {.apart = F(MAP)}}, /* which a warning says, where there is none */
       {job->has_mattes, "aov cryptomatte", {.on = CLI_SURFACES, .apart = F(MAP)}},
@@ -314,14 +314,17 @@ int cli_effects_check(const cli_session *session, const cli_scene_words *words, 
   return cli_effects_check_given(session, &job->effects, job->inputs[0], find_remedy);
 }
 
-/* That the octree has the level whose boxes are asked for. */
+/* That there is the level whose boxes are asked for. */
 static int check_boxes(const cli_session *session, const cli_render_job *job) {
-  const conic_octree *octree = job->boxes_path ? conic_source_octree(job->source) : NULL;
+  const conic_octree *octree = conic_source_octree(job->source);
   conic_octree_info info;
-  if (!octree || conic_octree_describe(octree, &info) != CONIC_OK || job->box_level < (int)info.n_levels)
+  int n_levels = octree && conic_octree_describe(octree, &info) == CONIC_OK
+                     ? (int)info.n_levels
+                     : conic_source_measure(job->source)->n_levels;
+  if (!job->boxes_path || job->box_level < n_levels)
     return CLI_DONE;
   return cli_usage("%s: --show boxes@%d: the last level of %s is %d", session->command, job->box_level, job->inputs[0],
-                   (int)info.n_levels - 1);
+                   n_levels - 1);
 }
 
 int cli_effects_check_open(const cli_session *session, cli_render_job *job) {

@@ -180,6 +180,12 @@ CONIC_API int conic_layers_value(const conic_layers *layers, size_t i, conic_mod
  * and it keeps as much of each, and has their `up`. */
 CONIC_API void conic_layers_continue(const conic_layers *layers, conic_layers_options *options);
 
+/* A picture of how the samples are divided: `image` with the boxes of the places of a level, in a colour each, fainter
+ * behind what is drawn. The root's level is 0; below 0 stands for the one with the most places, but 64 at most.
+ * `image` was drawn with this camera, and has rgba and Z. On success the caller owns *map. Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_layers_draw_boxes(conic_layers *layers, const conic_camera *camera, int level,
+                                               const conic_image *image, conic_image *map);
+
 #ifdef __cplusplus
 }
 #endif

@@ -96,6 +96,11 @@ CONIC_API conic_status conic_source_of_drawing(conic_context *context, conic_spl
 /* The octree that a source draws from; null where there is none. */
 CONIC_API const conic_octree *conic_source_octree(const conic_source *source);
 
+/* A picture of how a source of levels divides its points, by conic_octree_draw_boxes or conic_layers_draw_boxes.
+ * Errors: as these; ARGUMENT for other sources. */
+CONIC_API conic_status conic_source_draw_boxes(conic_source *source, const conic_camera *camera, int level,
+                                               const conic_image *image, conic_image *map);
+
 /* The Gaussians that a source composites; null where there are none. */
 CONIC_API const conic_gaussians *conic_source_gaussians(const conic_source *source);
 

@@ -121,9 +121,9 @@ def render(
     deep: every splat and triangle of every pixel, as a deep image: colour, depth, id, weight
     show: a picture of what was drawn: overdraw:OUT.png, how many splats each pixel blends (blue 1, red 4,
         yellow 16, white 64), or overdraw-confetti:OUT.png (blue 1, green 8, red 16); clusters:OUT.png, of a
-        .chy each patch in a colour of its own; boxes:OUT.png, of a .cot the nodes of a level with their boxes,
-        boxes@3:OUT.png those of level 3 from the root; legend:OUT.png, what the colours mean, or legend, in the
-        picture itself
+        .chy each patch in a colour of its own; boxes:OUT.png, of a .cot or .lpc the nodes of a level with their
+        boxes, boxes@3:OUT.png those of level 3 from the root; legend:OUT.png, what the colours mean, or legend,
+        in the picture itself
     save_shot: all that decides the picture, as text by which conic render draws it again
     no_shot: leave out of .exr, .png and .tif what they say of how they were made
     again: draw again what a picture says that it was drawn from, to the bit; other options change that. Inputs

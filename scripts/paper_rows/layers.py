@@ -2,7 +2,7 @@
 
 import pathlib
 
-from .page import ABSENT, FULL, OTHER, PARTLY, Rows
+from .page import FULL, OTHER, PARTLY, Rows
 from .tools import Absent, import_numpy, read_positions, thousands
 
 TITLE = "Layered Point Clouds"
@@ -47,8 +47,9 @@ def _(bench):
     return "gyroid of 2 M, 4 px: " + "; ".join(texts)
 
 
-words("L5", "Figs. 1, 4: levels that add up, and the boxes of the subdivision", ABSENT,
-      "conic render x.lpc --progressive DIR", "Levels can be written one by one; there is no picture of boxes")
+words("L5", "Figs. 1, 4: levels that add up, and the boxes of the subdivision", FULL,
+      "conic render x.lpc --progressive DIR; conic render x.lpc --show boxes:OUT.png",
+      "[picture](../pictures/papers/places.png)")
 words("L6", "§4, Fig. 2: an index, a repository by level and Morton code, a cache, reading beside drawing", FULL,
       "conic layer", "[The format](format-lpc.md)")
 
