@@ -1,13 +1,16 @@
 #include "cli/scene/lamp_job.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/scene/light_options.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
-#include "lighting/light_axes.h"
 #include "shots/shot_plan.h"
+
+/* The square of the sine of an angle that is as good as none. */
+static const double LEAST_ACROSS = 1e-12;
 
 /* R, or WxH. */
 static int parse_lamp_size(const char *text, double size[2], int *is_flat) {
@@ -36,7 +39,7 @@ static int split_words(char *text, int most, char *parts[]) {
 }
 
 int cli_parse_lamp(const char *text, cli_render_job *job) {
-  enum { PLACE, COLOR, SIZE, AHEAD, N_PARTS };
+  enum { PLACE, COLOR, SIZE, AHEAD, UPWARD, N_PARTS };
   cli_lamp_job *own = &job->lamps;
   char copy[256], *parts[N_PARTS];
   int i = own->n_lamps, is_rectangle = 0;
@@ -60,7 +63,13 @@ int cli_parse_lamp(const char *text, cli_render_job *job) {
   lamp->kind = is_rectangle ? CONIC_LAMP_RECTANGLE : CONIC_LAMP_DISC;
   own->half[i][0] = 0.5 * size[0];
   own->half[i][1] = 0.5 * size[1];
-  return size[0] > 0.0 && cli_parse_vector(parts[AHEAD], own->ahead[i]) && conic_normalize(own->ahead[i]);
+  double across[3];
+  if (!(size[0] > 0.0) || !cli_parse_vector(parts[AHEAD], own->ahead[i]) || !conic_normalize(own->ahead[i]))
+    return 0;
+  if (n <= UPWARD)
+    return 1;
+  return is_rectangle && cli_parse_vector(parts[UPWARD], own->upward[i]) && conic_normalize(own->upward[i]) &&
+         (conic_cross(own->ahead[i], own->upward[i], across), conic_dot(across, across) >= LEAST_ACROSS);
 }
 
 int cli_parse_sun_radius(const char *text, float *radius_deg) {
@@ -95,11 +104,21 @@ void cli_lamps_turn(cli_render_job *job) {
   cli_lamp_job *own = &job->lamps;
   for (int i = 0; i < own->n_lamps; i++) {
     const double *ahead = own->ahead[i];
-    double right[3], down[3], rows[3][3];
-    conic_cross(ahead, job->shot.render.lighting.up, right);
-    if (conic_dot(right, right) < 1e-12 || !conic_normalize(right)) {
-      conic_light_axes(ahead, rows);
-      memcpy(right, rows[0], sizeof right);
+    double up[3], right[3], down[3];
+    if (!(own->half[i][0] > 0.0)) /* of a ball, or of a picture that is drawn again */
+      continue;
+    memcpy(up, own->upward[i], sizeof up);
+    if (!conic_normalize(up)) {
+      memcpy(up, job->shot.render.lighting.up, sizeof up);
+      (void)conic_normalize(up);
+    }
+    conic_cross(ahead, up, right);
+    if (conic_dot(right, right) < LEAST_ACROSS || !conic_normalize(right)) { /* straight up or down */
+      const double x[3] = {1.0, 0.0, 0.0}, y[3] = {0.0, 1.0, 0.0};
+      const double *along = fabs(ahead[0]) < 0.9 ? x : y;
+      for (int axis = 0; axis < 3; axis++)
+        right[axis] = along[axis] - conic_dot(along, ahead) * ahead[axis];
+      (void)conic_normalize(right);
     }
     conic_cross(ahead, right, down);
     for (int axis = 0; axis < 3; axis++) {
