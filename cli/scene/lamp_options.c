@@ -17,9 +17,10 @@ static int parse_lamp_size(const char *text, double size[2], int *is_flat) {
   double radius;
   *is_flat = strchr(text, 'x') != NULL;
   if (*is_flat)
-    return cli_parse_pair(text, 'x', size) && size[0] > 0.0 && size[1] > 0.0 && size[0] < 1e18 && size[1] < 1e18;
+    return cli_parse_pair(text, 'x', size) &&
+           ((size[0] > 0.0 && size[1] > 0.0 && size[0] < 1e18 && size[1] < 1e18) || cli_because("W and H are above 0"));
   if (!cli_parse_number(text, &radius) || !(radius >= 0.0 && radius < 1e18))
-    return 0;
+    return cli_because("a radius is 0 or above");
   size[0] = size[1] = 2.0 * radius;
   return 1;
 }
@@ -44,13 +45,15 @@ int cli_parse_lamp(const char *text, cli_render_job *job) {
   char copy[256], *parts[N_PARTS];
   int i = own->n_lamps, is_rectangle = 0;
   if (i == CONIC_MAX_LAMPS || strlen(text) >= sizeof copy)
-    return 0;
+    return cli_because(i == CONIC_MAX_LAMPS ? "there are 8 lamps already" : "it is too long");
   strcpy(copy, text);
   int n = split_words(copy, N_PARTS, parts);
   conic_lamp *lamp = &own->lamps[own->n_lamps++];
   double size[2] = {0.0, 0.0};
   *lamp = (conic_lamp){.color = {1.0f, 1.0f, 1.0f}};
-  if (n == 0 || !cli_parse_vector(parts[PLACE], lamp->position))
+  if (n == 0)
+    return cli_because("it has too many parts");
+  if (!cli_parse_vector(parts[PLACE], lamp->position))
     return 0;
   if (n > COLOR && !cli_parse_color_to(parts[COLOR], strlen(parts[COLOR]), 1e12, lamp->color))
     return 0;
@@ -58,18 +61,24 @@ int cli_parse_lamp(const char *text, cli_render_job *job) {
     return 0;
   if (n <= AHEAD) {
     lamp->radius = 0.5 * size[0];
-    return !is_rectangle;
+    return !is_rectangle || cli_because("a rectangle needs a direction behind WxH");
   }
   lamp->kind = is_rectangle ? CONIC_LAMP_RECTANGLE : CONIC_LAMP_DISC;
   own->half[i][0] = 0.5 * size[0];
   own->half[i][1] = 0.5 * size[1];
   double across[3];
-  if (!(size[0] > 0.0) || !cli_parse_vector(parts[AHEAD], own->ahead[i]) || !conic_normalize(own->ahead[i]))
+  if (!(size[0] > 0.0))
+    return cli_because("a disc's radius is above 0");
+  if (!cli_parse_direction(parts[AHEAD], own->ahead[i]) || !conic_normalize(own->ahead[i]))
     return 0;
   if (n <= UPWARD)
     return 1;
-  return is_rectangle && cli_parse_vector(parts[UPWARD], own->upward[i]) && conic_normalize(own->upward[i]) &&
-         (conic_cross(own->ahead[i], own->upward[i], across), conic_dot(across, across) >= LEAST_ACROSS);
+  if (!is_rectangle)
+    return cli_because("of a lamp with W x H alone, H goes somewhere");
+  if (!cli_parse_direction(parts[UPWARD], own->upward[i]) || !conic_normalize(own->upward[i]))
+    return 0;
+  conic_cross(own->ahead[i], own->upward[i], across);
+  return conic_dot(across, across) >= LEAST_ACROSS || cli_because("H goes along where to the lamp shines");
 }
 
 int cli_parse_sun_radius(const char *text, float *radius_deg) {
@@ -78,10 +87,10 @@ int cli_parse_sun_radius(const char *text, float *radius_deg) {
   char copy[32];
   double value;
   if (length <= own || length - own >= sizeof copy || strcmp(text + length - own, unit) != 0)
-    return 0;
+    return cli_because("a sun's radius ends with deg");
   snprintf(copy, sizeof copy, "%.*s", (int)(length - own), text);
   if (!cli_parse_number(copy, &value) || !(value >= 0.0 && value <= 90.0))
-    return 0;
+    return cli_because("a sun's radius is 0 to 90 degrees");
   *radius_deg = (float)value;
   return 1;
 }

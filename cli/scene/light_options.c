@@ -49,8 +49,7 @@ static int parse_place(const char *text, size_t length, conic_light *light) {
     light->frame = CONIC_LIGHT_CAMERA;
     direction += sizeof camera - 1;
   }
-  const double *d = light->direction;
-  return cli_parse_vector(direction, light->direction) && (d[0] != 0.0 || d[1] != 0.0 || d[2] != 0.0);
+  return cli_parse_direction(direction, light->direction);
 }
 
 /* The colour, and of what has a direction the radius of its disc. */
@@ -76,7 +75,9 @@ int cli_parse_light(const char *text, void *value) {
     return cli_parse_lamp(text + sizeof lamp - 1, job);
   conic_light *light = next_light(job);
   const char *colon = strchr(strncmp(text, "camera:", 7) == 0 ? text + 7 : text, ':');
-  if (!light || !parse_place(text, colon ? (size_t)(colon - text) : strlen(text), light))
+  if (!light)
+    return cli_because("there are 8 lights with a direction already");
+  if (!parse_place(text, colon ? (size_t)(colon - text) : strlen(text), light))
     return 0;
   return parse_looks(colon ? colon + 1 : "1", job, light);
 }
