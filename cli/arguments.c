@@ -83,12 +83,20 @@ int cli_parse_count(const char *text, unsigned long long *value) {
   return 1;
 }
 
-/* So many numbers, with a separator between them. */
+/* What is wrong with the value that is being read. */
+static _Thread_local const char *wrong;
+
+int cli_because(const char *reason) {
+  wrong = reason;
+  return 0;
+}
+
+/* 2 or 3 numbers, with a separator between them. */
 static int parse_row(const char *text, int n, char separator, double *numbers) {
   for (int i = 0; i < n; i++) {
     const char *end;
     if (!parse_decimal(text, &end, &numbers[i]) || *end != (i < n - 1 ? separator : '\0'))
-      return 0;
+      return cli_because(n == 2 ? "2 numbers are wanted" : "3 numbers are wanted");
     text = end + 1;
   }
   return 1;
@@ -100,6 +108,11 @@ int cli_parse_pair(const char *text, char separator, double pair[2]) {
 
 int cli_parse_vector(const char *text, double vector[3]) {
   return parse_row(text, 3, ',', vector);
+}
+
+int cli_parse_direction(const char *text, double vector[3]) {
+  return cli_parse_vector(text, vector) &&
+         (vector[0] != 0.0 || vector[1] != 0.0 || vector[2] != 0.0 || cli_because("0,0,0 is no direction"));
 }
 
 int cli_parse_length(const char *text, void *length) {
@@ -121,9 +134,9 @@ static int parse_size(const char *text, int size[2]) {
   char width[16];
   const char *cross = strchr(text, 'x');
   if (!cross || cross - text >= (int)sizeof width)
-    return 0;
+    return cli_because("2 whole numbers are wanted");
   snprintf(width, sizeof width, "%.*s", (int)(cross - text), text);
-  return parse_int(width, &size[0]) && parse_int(cross + 1, &size[1]);
+  return (parse_int(width, &size[0]) && parse_int(cross + 1, &size[1])) || cli_because("2 whole numbers are wanted");
 }
 
 static int parse_choice(const char *text, const char *const *choices, int *value) {
@@ -151,8 +164,8 @@ static int refuse_text(const cli_session *session, const cli_option *option, con
   for (int i = 0; option->type == CLI_CHOICE && option->choices[i] && used < sizeof words; i++)
     used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", i ? ", " : "", option->choices[i]);
   if (!used)
-    return cli_usage("%s: %s%s: \"%s\" is not understood; it takes %s: %s", session->command, cli_dashes(option),
-                     option->name, text, option->argument, option->help);
+    return cli_usage("%s: %s%s: \"%s\" is not understood%s%s; it takes %s: %s", session->command, cli_dashes(option),
+                     option->name, text, wrong ? ": " : "", wrong ? wrong : "", option->argument, option->help);
   return cli_usage("%s: %s%s: \"%s\" is not understood; it takes %s", session->command, cli_dashes(option),
                    option->name, text, words);
 }
@@ -168,6 +181,7 @@ static int store_value(const cli_session *session, const cli_option *option, con
   int is_understood = 1, is_in_range = 1;
   const char *whole = text, *colon = option->parse_tail ? strchr(text, ':') : NULL;
   char head[64];
+  wrong = NULL;
   if (colon) {
     snprintf(head, sizeof head, "%.*s", (int)(colon - text), text);
     if (colon - text >= (int)sizeof head || !option->parse_tail(colon + 1, option->tail))

@@ -16,7 +16,7 @@ int cli_parse_color_range(const char *text, void *value) {
   coloring->minimum = range[0];
   coloring->maximum = range[1];
   double extent = range[1] - range[0];
-  return extent > 0.0 && extent - extent == 0.0;
+  return (extent > 0.0 && extent - extent == 0.0) || cli_because("the second end is above the first");
 }
 
 int cli_parse_ramp(const char *text, void *value) {

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/arguments.h"
 #include "core/base/memory.h"
 #include "core/base/real.h"
 #include "core/files/input.h"
@@ -52,12 +53,12 @@ int cli_cut_parse_box(const char *text, void *cookie) {
   double values[6];
   size_t n = list_numbers(text, strlen(text), ',', values, 6);
   if (n != 4 && n != 6)
-    return 0;
+    return cli_because("4 or 6 numbers are wanted");
   for (size_t axis = 0; axis < n / 2; axis++) {
     region->low[axis] = values[axis];
     region->high[axis] = values[n / 2 + axis];
     if (!(region->low[axis] <= region->high[axis]))
-      return 0;
+      return cli_because("the second corner is above the first");
   }
   return 1;
 }

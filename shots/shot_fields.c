@@ -271,8 +271,7 @@ static const conic_shot_row patches_list[] = {
     {CONIC_ROW_STRUCT, AT(surface), NULL, "the polynomials", .of = &surface_rows},
     {CONIC_ROW_LEFT_OUT, AT(cutoff), .meaning = "a source puts that of its reading in its place"},
     {CONIC_ROW_DOUBLE, AT(step_px), "px", "how far apart samples of a patch are", IN(1e-3, 1e6)},
-    {CONIC_ROW_DOUBLE, AT(most_off), "world", "how far from the points a patch may reach; 0: as far as it is sound",
-     IN(0, 1e30)}};
+    {CONIC_ROW_LEFT_OUT, AT(mesh), .meaning = "a source has it of the inputs"}};
 TABLE(patches, set_patches, NULL)
 #undef S
 

@@ -4,6 +4,9 @@
 #include "core/base/clock.h"
 #include "source/source_kind.h"
 
+/* ε of a mesh's patches, in their distances from the vertices next to their own; and the most, in points' ε. */
+static const double MESH_EPSILON = 16.0, MOST_EPSILON = 0.0625;
+
 typedef struct patches_source {
   conic_source base;
   conic_source *points;
@@ -16,8 +19,19 @@ static int takes_patches(const char *path, const conic_source_options *options) 
   return options->as == CONIC_AS_PATCHES;
 }
 
+/* Patches through a mesh's vertices are as near to each other as they are to these, wherever the vertices lie. */
+static void set_mesh_epsilon(patches_source *p) {
+  conic_patches_report report;
+  conic_patches_describe(p->patches, &report);
+  double near = MESH_EPSILON * report.mesh_off, most = MOST_EPSILON * p->base.scale.epsilon;
+  near = near < most ? near : most;
+  near = near > p->points->tolerance ? near : p->points->tolerance;
+  if (report.mesh_off >= 0.0 && near < p->base.scale.epsilon)
+    p->base.scale.epsilon = near;
+}
+
 /* ε depends on the points, not on their samples. */
-static conic_status lay_patches(patches_source *p, const conic_source_options *options) {
+static conic_status lay_patches(patches_source *p, const conic_triangles *mesh, const conic_source_options *options) {
   const conic_splats *splats = conic_source_chosen(p->points)->drawing.splats;
   conic_patches_options laying;
   double spacing = 1.0;
@@ -30,9 +44,13 @@ static conic_status lay_patches(patches_source *p, const conic_source_options *o
   if (options->h_in_spacings && laying.surface.h > 0.0)
     status = conic_source_spacing(p->points, &spacing);
   laying.surface.h *= spacing;
-  laying.most_off = p->points->tolerance;
+  laying.mesh = mesh;
   p->base.scale.epsilon = (double)options->cutoff * p->base.scale.splat_length;
-  return status == CONIC_OK ? conic_patches_create(p->base.context, splats, &laying, &p->patches) : status;
+  if (status == CONIC_OK)
+    status = conic_patches_create(p->base.context, splats, &laying, &p->patches);
+  if (status == CONIC_OK)
+    set_mesh_epsilon(p);
+  return status;
 }
 
 static conic_status open_patches(conic_source *source, const char *const *paths, size_t n_paths,
@@ -52,8 +70,19 @@ static conic_status open_patches(conic_source *source, const char *const *paths,
   source->coloring = p->points->coloring;
   source->traits = p->points->traits;
   source->no_traits = p->points->no_traits;
+  conic_source *mesh = NULL;
+  if (p->points->tolerance > 0.0) { /* faces say how the surface goes on from vertex to vertex */
+    whole.as = CONIC_AS_AUTO;
+    whole.coloring = NULL;
+    whole.texture_path = NULL;
+    status = conic_source_open(source->context, paths, n_paths, &whole, &mesh);
+  }
   double start = conic_seconds_now();
-  status = lay_patches(p, options);
+  if (status == CONIC_OK)
+    status = lay_patches(p, mesh ? conic_source_chosen(mesh)->drawing.triangles : NULL, options);
+  source->traits |= mesh ? mesh->traits & CONIC_TRAIT_EDGES : 0;
+  source->no_traits &= ~source->traits;
+  conic_source_close(mesh);
   source->scale.estimate_seconds += conic_seconds_now() - start;
   return status;
 }

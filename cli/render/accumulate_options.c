@@ -13,7 +13,7 @@ int cli_parse_focus(const char *text, void *value) {
   }
   if (cli_parse_number(text, &focus->depth)) {
     focus->kind = CONIC_FOCUS_DEPTH;
-    return focus->depth > 0.0 && focus->depth < 1e30;
+    return (focus->depth > 0.0 && focus->depth < 1e30) || cli_because("a depth is above 0");
   }
   focus->kind = CONIC_FOCUS_PIXEL;
   return cli_parse_pair(text, ',', focus->pixel) && focus->pixel[0] >= 0.0 && focus->pixel[1] >= 0.0;
@@ -28,8 +28,10 @@ int cli_parse_blades(const char *text, void *value) {
 
 int cli_parse_shutter(const char *text, void *value) {
   double *shutter = value;
-  return cli_parse_pair(text, ':', shutter) && shutter[0] <= shutter[1] && fabs(shutter[0]) <= 1e5 &&
-         fabs(shutter[1]) <= 1e5;
+  if (!cli_parse_pair(text, ':', shutter))
+    return 0;
+  return (shutter[0] <= shutter[1] && fabs(shutter[0]) <= 1e5 && fabs(shutter[1]) <= 1e5) ||
+         cli_because("A is not after B");
 }
 
 /* What a sample is drawn with, unless it is said otherwise: the samples are the filter. */

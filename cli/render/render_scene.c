@@ -70,9 +70,10 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job) {
   return status;
 }
 
-/* Whether what a source looks like all around decides the camera. */
+/* Whether what a source looks like all around decides the camera, or, where it is all in memory, how light falls. */
 static int is_seen_around(const cli_render_job *job) {
-  return !job->is_plain && (!job->camera_path || job->is_turntable);
+  int is_lit = !job->abilities && job->shot.render.shading != CONIC_SHADE_NONE;
+  return !job->is_plain && (!job->camera_path || job->is_turntable || is_lit);
 }
 
 /* Finds out which way is up, and says so where that was a guess. */
@@ -163,7 +164,6 @@ static conic_status find_camera(cli_render_job *job, int i_frame) {
   if (job->is_every_view) {
     job->i_view = (size_t)i_frame;
     *camera = job->camera = job->cameras.cameras[i_frame];
-    cli_lights_turn(job);
     return CONIC_OK;
   }
   if (job->camera_path) {

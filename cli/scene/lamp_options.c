@@ -1,22 +1,26 @@
 #include "cli/scene/lamp_job.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/scene/light_options.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
-#include "lighting/light_axes.h"
 #include "shots/shot_plan.h"
+
+/* The square of the sine of an angle that is as good as none. */
+static const double LEAST_ACROSS = 1e-12;
 
 /* R, or WxH. */
 static int parse_lamp_size(const char *text, double size[2], int *is_flat) {
   double radius;
   *is_flat = strchr(text, 'x') != NULL;
   if (*is_flat)
-    return cli_parse_pair(text, 'x', size) && size[0] > 0.0 && size[1] > 0.0 && size[0] < 1e18 && size[1] < 1e18;
+    return cli_parse_pair(text, 'x', size) &&
+           ((size[0] > 0.0 && size[1] > 0.0 && size[0] < 1e18 && size[1] < 1e18) || cli_because("W and H are above 0"));
   if (!cli_parse_number(text, &radius) || !(radius >= 0.0 && radius < 1e18))
-    return 0;
+    return cli_because("a radius is 0 or above");
   size[0] = size[1] = 2.0 * radius;
   return 1;
 }
@@ -36,18 +40,20 @@ static int split_words(char *text, int most, char *parts[]) {
 }
 
 int cli_parse_lamp(const char *text, cli_render_job *job) {
-  enum { PLACE, COLOR, SIZE, AHEAD, N_PARTS };
+  enum { PLACE, COLOR, SIZE, AHEAD, UPWARD, N_PARTS };
   cli_lamp_job *own = &job->lamps;
   char copy[256], *parts[N_PARTS];
   int i = own->n_lamps, is_rectangle = 0;
   if (i == CONIC_MAX_LAMPS || strlen(text) >= sizeof copy)
-    return 0;
+    return cli_because(i == CONIC_MAX_LAMPS ? "there are 8 lamps already" : "it is too long");
   strcpy(copy, text);
   int n = split_words(copy, N_PARTS, parts);
   conic_lamp *lamp = &own->lamps[own->n_lamps++];
   double size[2] = {0.0, 0.0};
   *lamp = (conic_lamp){.color = {1.0f, 1.0f, 1.0f}};
-  if (n == 0 || !cli_parse_vector(parts[PLACE], lamp->position))
+  if (n == 0)
+    return cli_because("it has too many parts");
+  if (!cli_parse_vector(parts[PLACE], lamp->position))
     return 0;
   if (n > COLOR && !cli_parse_color_to(parts[COLOR], strlen(parts[COLOR]), 1e12, lamp->color))
     return 0;
@@ -55,12 +61,24 @@ int cli_parse_lamp(const char *text, cli_render_job *job) {
     return 0;
   if (n <= AHEAD) {
     lamp->radius = 0.5 * size[0];
-    return !is_rectangle;
+    return !is_rectangle || cli_because("a rectangle needs a direction behind WxH");
   }
   lamp->kind = is_rectangle ? CONIC_LAMP_RECTANGLE : CONIC_LAMP_DISC;
   own->half[i][0] = 0.5 * size[0];
   own->half[i][1] = 0.5 * size[1];
-  return size[0] > 0.0 && cli_parse_vector(parts[AHEAD], own->ahead[i]) && conic_normalize(own->ahead[i]);
+  double across[3];
+  if (!(size[0] > 0.0))
+    return cli_because("a disc's radius is above 0");
+  if (!cli_parse_direction(parts[AHEAD], own->ahead[i]) || !conic_normalize(own->ahead[i]))
+    return 0;
+  if (n <= UPWARD)
+    return 1;
+  if (!is_rectangle)
+    return cli_because("of a lamp with W x H alone, H goes somewhere");
+  if (!cli_parse_direction(parts[UPWARD], own->upward[i]) || !conic_normalize(own->upward[i]))
+    return 0;
+  conic_cross(own->ahead[i], own->upward[i], across);
+  return conic_dot(across, across) >= LEAST_ACROSS || cli_because("H goes along where to the lamp shines");
 }
 
 int cli_parse_sun_radius(const char *text, float *radius_deg) {
@@ -69,10 +87,10 @@ int cli_parse_sun_radius(const char *text, float *radius_deg) {
   char copy[32];
   double value;
   if (length <= own || length - own >= sizeof copy || strcmp(text + length - own, unit) != 0)
-    return 0;
+    return cli_because("a sun's radius ends with deg");
   snprintf(copy, sizeof copy, "%.*s", (int)(length - own), text);
   if (!cli_parse_number(copy, &value) || !(value >= 0.0 && value <= 90.0))
-    return 0;
+    return cli_because("a sun's radius is 0 to 90 degrees");
   *radius_deg = (float)value;
   return 1;
 }
@@ -95,11 +113,21 @@ void cli_lamps_turn(cli_render_job *job) {
   cli_lamp_job *own = &job->lamps;
   for (int i = 0; i < own->n_lamps; i++) {
     const double *ahead = own->ahead[i];
-    double right[3], down[3], rows[3][3];
-    conic_cross(ahead, job->shot.render.lighting.up, right);
-    if (conic_dot(right, right) < 1e-12 || !conic_normalize(right)) {
-      conic_light_axes(ahead, rows);
-      memcpy(right, rows[0], sizeof right);
+    double up[3], right[3], down[3];
+    if (!(own->half[i][0] > 0.0)) /* of a ball, or of a picture that is drawn again */
+      continue;
+    memcpy(up, own->upward[i], sizeof up);
+    if (!conic_normalize(up)) {
+      memcpy(up, job->shot.render.lighting.up, sizeof up);
+      (void)conic_normalize(up);
+    }
+    conic_cross(ahead, up, right);
+    if (conic_dot(right, right) < LEAST_ACROSS || !conic_normalize(right)) { /* straight up or down */
+      const double x[3] = {1.0, 0.0, 0.0}, y[3] = {0.0, 1.0, 0.0};
+      const double *along = fabs(ahead[0]) < 0.9 ? x : y;
+      for (int axis = 0; axis < 3; axis++)
+        right[axis] = along[axis] - conic_dot(along, ahead) * ahead[axis];
+      (void)conic_normalize(right);
     }
     conic_cross(ahead, right, down);
     for (int axis = 0; axis < 3; axis++) {

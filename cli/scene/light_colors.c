@@ -12,10 +12,10 @@ int cli_parse_color_to(const char *text, size_t length, double most, float color
   snprintf(copy, sizeof copy, "%.*s", (int)length, text);
   snprintf(grey, sizeof grey, "%s,%s,%s", copy, copy, copy);
   if (!cli_parse_vector(strchr(copy, ',') ? copy : grey, rgb))
-    return 0;
+    return cli_because("a colour is 1 or 3 numbers");
   for (int i = 0; i < 3; i++) {
     if (!(rgb[i] >= 0.0 && rgb[i] <= most))
-      return 0;
+      return cli_because(most > 1e6 ? "a colour is within 0 and 1e12" : "a colour is within 0 and 1e6");
     color[i] = (float)rgb[i];
   }
   return 1;

@@ -49,8 +49,7 @@ static int parse_place(const char *text, size_t length, conic_light *light) {
     light->frame = CONIC_LIGHT_CAMERA;
     direction += sizeof camera - 1;
   }
-  const double *d = light->direction;
-  return cli_parse_vector(direction, light->direction) && (d[0] != 0.0 || d[1] != 0.0 || d[2] != 0.0);
+  return cli_parse_direction(direction, light->direction);
 }
 
 /* The colour, and of what has a direction the radius of its disc. */
@@ -76,7 +75,9 @@ int cli_parse_light(const char *text, void *value) {
     return cli_parse_lamp(text + sizeof lamp - 1, job);
   conic_light *light = next_light(job);
   const char *colon = strchr(strncmp(text, "camera:", 7) == 0 ? text + 7 : text, ':');
-  if (!light || !parse_place(text, colon ? (size_t)(colon - text) : strlen(text), light))
+  if (!light)
+    return cli_because("there are 8 lights with a direction already");
+  if (!parse_place(text, colon ? (size_t)(colon - text) : strlen(text), light))
     return 0;
   return parse_looks(colon ? colon + 1 : "1", job, light);
 }
@@ -96,18 +97,6 @@ int cli_parse_sky(const char *text, void *value) {
   return cli_parse_color(text, length, lighting->sky) && cli_parse_color(ground, strlen(ground), lighting->ground);
 }
 
-/* The scene's; of a camera from a file, whose scene may lie anyhow, the picture's. */
-static void find_up(const cli_render_job *job, double up[3]) {
-  const double *scene = job->is_up_given ? job->framing.up : conic_source_measure(job->source)->up;
-  for (int i = 0; i < 3; i++)
-    up[i] = job->camera_path && !job->is_up_given ? -job->camera.cam_from_world[1][i] : scene[i];
-}
-
-void cli_lights_turn(cli_render_job *job) {
-  find_up(job, job->shot.render.lighting.up);
-  cli_lamps_turn(job);
-}
-
 void cli_lights_settle(cli_render_job *job) {
   conic_lighting *lighting = &job->shot.render.lighting;
   if (!job->is_light_given)
@@ -123,7 +112,9 @@ void cli_lights_settle(cli_render_job *job) {
     lighting->ground[i] = job->is_studio ? studio_ground[i] : plain_sky;
   }
   lighting->is_given = 1;
-  cli_lights_turn(job);
+  /* Whatever looks at it, as the light stands in the scene. */
+  memcpy(lighting->up, job->is_up_given ? job->framing.up : conic_source_measure(job->source)->up, sizeof lighting->up);
+  cli_lamps_turn(job);
 }
 
 void cli_lights_report(cli_json *json, const cli_render_job *job) {

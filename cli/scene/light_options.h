@@ -21,9 +21,6 @@ int cli_parse_sky(const char *text, void *value);
 
 /* What the options about light mean together, once the scene is open and it is known what points up. */
 void cli_lights_settle(cli_render_job *job);
-/* What points up, again, for another view of the camera's file. */
-void cli_lights_turn(cli_render_job *job);
-
 /* The key "lights" of the statistics, and "sky". */
 void cli_lights_report(cli_json *json, const cli_render_job *job);
 

@@ -108,8 +108,8 @@ static void guess_source(const cli_session *session, cli_render_job *job) {
   else if (own->certain & F(NODES))
     own->possible |= F(SPLATS) | F(ALPHA);
   else
-    own->possible |=
-        read & ~when(job->opening.as == CONIC_AS_POINTS || job->is_patch, F(TRIANGLES) | F(EDGES) | F(TEXTURED));
+    own->possible |= read & ~(when(job->opening.as == CONIC_AS_POINTS, F(TRIANGLES) | F(EDGES) | F(TEXTURED)) |
+                              when(job->is_patch, F(TRIANGLES) | F(TEXTURED))); /* a mesh's patches have its creases */
   if (job->n_inputs == 1 && !conic_disk_can_read(job->inputs[0]) && !(own->certain & F(URL)))
     own->possible = CLI_SOURCE_FACTS; /* opening it is to say more */
 }

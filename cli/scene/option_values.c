@@ -13,9 +13,12 @@ int cli_parse_kernel(const char *text, void *value) {
       kernel->type = (conic_kernel_type)i;
       return 1;
     }
-  if (strncmp(text, "confetti:", 9) != 0 || !cli_parse_vector(text + 9, abn) || !(abn[0] > 0.0) || !(abn[1] > 0.0) ||
-      !(abn[2] >= 1.0 && abn[2] <= 16.0) || abn[2] != (double)(int)abn[2])
+  if (strncmp(text, "confetti:", 9) != 0 || !cli_parse_vector(text + 9, abn))
     return 0;
+  if (!(abn[0] > 0.0) || !(abn[1] > 0.0))
+    return cli_because("A and B are above 0");
+  if (!(abn[2] >= 1.0 && abn[2] <= 16.0) || abn[2] != (double)(int)abn[2])
+    return cli_because("N is a whole number, 1 to 16");
   kernel->type = CONIC_KERNEL_CONFETTI;
   kernel->a = (float)abn[0];
   kernel->b = (float)abn[1];
@@ -34,7 +37,7 @@ int cli_parse_epsilon(const char *text, void *value) {
 
 int cli_parse_near(const char *text, void *value) {
   const cli_length *near_z = value;
-  return cli_parse_length(text, value) && near_z->value > 0.0;
+  return cli_parse_length(text, value) && (near_z->value > 0.0 || cli_because("it is above 0"));
 }
 
 /* x, -y, … or X,Y,Z. */
@@ -48,7 +51,7 @@ int cli_parse_up(const char *text, void *value) {
     up[*letter - 'x'] = sign;
     return 1;
   }
-  return cli_parse_vector(text, up) && (up[0] != 0.0 || up[1] != 0.0 || up[2] != 0.0);
+  return cli_parse_direction(text, up);
 }
 
 const char *const cli_projection_words[] = {"perspective", "fisheye", "orthographic", "panorama", "cube", NULL};

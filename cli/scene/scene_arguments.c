@@ -271,7 +271,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "then "
        "with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z, a place, with :R,G,B of "
        "which a surface at distance 1 is lit, then :RADIUS of a ball, then :X,Y,Z where to it shines, for a disc or, "
-       "with :WxH, a rectangle; studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]",
+       "with :WxH, a rectangle, and :X,Y,Z where to its H goes [up in the scene]; studio, several that suit most "
+       "scenes; none. Up to 8 of a direction, 8 lamps [studio]",
        .parse = cli_parse_light, .may_repeat = 1, .is_usual = 1, .acts = {.on = CLI_SURFACES, .needs = CLI_FACT(LIT)}},
       {"sky", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "light from all around; of two colours, the first falls on what faces up, the second on what faces down [the "

@@ -26,8 +26,10 @@ typedef struct conic_patches_options {
   size_t size;                   /* sizeof(conic_patches_options), set by the init function */
   conic_surface_options surface; /* of type MLS */
   float cutoff;                  /* F_g of the kernel that will draw; 0.25 to 5 */
-  double step_px;  /* samples of a patch facing the camera are no farther apart on the screen; 0.25 to 16 */
-  double most_off; /* above 0: no patch reaches farther than this from every splat of the nearby points */
+  double step_px; /* samples of a patch facing the camera are no farther apart on the screen; 0.25 to 16 */
+  const struct conic_triangles *mesh; /* where not null, patches go through its vertices, which splats were made of, and
+                                         have its normals there; none crosses a crease or a border. Needed until the
+                                         patches are laid */
 } conic_patches_options;
 
 /* The surface's defaults, cutoff 1.5, steps of 2 px, patches that reach as far as they are sound. */
@@ -43,7 +45,9 @@ typedef struct conic_patches_report {
   size_t n_patches;                            /* points with a patch: DONE, with a polynomial that is sound all over
                                                   its disc */
   size_t n_bytes;                              /* of the patches and their hierarchy */
-  uint64_t reserved[8];
+  double mesh_off; /* of a mesh: how far patches are off the vertices next to their own, as the root of the mean square;
+                      below 0: most of the points are none of a mesh */
+  uint64_t reserved[7];
 } conic_patches_report;
 
 /* Lays a patch about every point of `splats` (with tangent axes) that can have one. The set must outlive the patches,

@@ -228,8 +228,8 @@ def render(
         camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
         and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
         a place, with :R,G,B of which a surface at distance 1 is lit, then :RADIUS of a ball, then :X,Y,Z where
-        to it shines, for a disc or, with :WxH, a rectangle; studio, several that suit most scenes; none. Up to
-        8 of a direction, 8 lamps [studio]
+        to it shines, for a disc or, with :WxH, a rectangle, and :X,Y,Z where to its H goes [up in the scene];
+        studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]
     sky: light from all around; of two colours, the first falls on what faces up, the second on what faces down
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
     background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
@@ -399,8 +399,8 @@ def verify(
         camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
         and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
         a place, with :R,G,B of which a surface at distance 1 is lit, then :RADIUS of a ball, then :X,Y,Z where
-        to it shines, for a disc or, with :WxH, a rectangle; studio, several that suit most scenes; none. Up to
-        8 of a direction, 8 lamps [studio]
+        to it shines, for a disc or, with :WxH, a rectangle, and :X,Y,Z where to its H goes [up in the scene];
+        studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]
     sky: light from all around; of two colours, the first falls on what faces up, the second on what faces down
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
     background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
@@ -585,8 +585,8 @@ def judge(
         camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
         and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
         a place, with :R,G,B of which a surface at distance 1 is lit, then :RADIUS of a ball, then :X,Y,Z where
-        to it shines, for a disc or, with :WxH, a rectangle; studio, several that suit most scenes; none. Up to
-        8 of a direction, 8 lamps [studio]
+        to it shines, for a disc or, with :WxH, a rectangle, and :X,Y,Z where to its H goes [up in the scene];
+        studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]
     sky: light from all around; of two colours, the first falls on what faces up, the second on what faces down
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
     background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
@@ -751,8 +751,8 @@ def explain(
         camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
         and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
         a place, with :R,G,B of which a surface at distance 1 is lit, then :RADIUS of a ball, then :X,Y,Z where
-        to it shines, for a disc or, with :WxH, a rectangle; studio, several that suit most scenes; none. Up to
-        8 of a direction, 8 lamps [studio]
+        to it shines, for a disc or, with :WxH, a rectangle, and :X,Y,Z where to its H goes [up in the scene];
+        studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]
     sky: light from all around; of two colours, the first falls on what faces up, the second on what faces down
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
     background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
@@ -1332,8 +1332,8 @@ def gradient(
         camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
         and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
         a place, with :R,G,B of which a surface at distance 1 is lit, then :RADIUS of a ball, then :X,Y,Z where
-        to it shines, for a disc or, with :WxH, a rectangle; studio, several that suit most scenes; none. Up to
-        8 of a direction, 8 lamps [studio]
+        to it shines, for a disc or, with :WxH, a rectangle, and :X,Y,Z where to its H goes [up in the scene];
+        studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]
     sky: light from all around; of two colours, the first falls on what faces up, the second on what faces down
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
     background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in

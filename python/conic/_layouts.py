@@ -451,7 +451,7 @@ class Patches(ctypes.Structure):
         ("surface", Surface),
         ("cutoff", c_float),
         ("step_px", c_double),
-        ("most_off", c_double),
+        ("mesh", c_void_p),
     ]
 
 

@@ -303,7 +303,6 @@ class Patches(_Struct):
     surface: Surface = field(default_factory=Surface)
     cutoff: float = 1.5
     step_px: float = 2.0
-    most_off: float = 0.0
 
 
 @dataclass

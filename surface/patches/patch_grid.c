@@ -1,5 +1,6 @@
 /* A patch on a grid, by forward differences (PSS §6.2). */
 #include <math.h>
+#include <string.h>
 
 #include "surface/loops/weight.h"
 #include "surface/patches/patch.h"
@@ -33,12 +34,49 @@ static void clip_part(const conic_grid_part *part, int64_t row, int64_t *first, 
   *end = *end > *first ? *end : *first;
 }
 
-size_t conic_grid_count(const conic_grid_part *part) {
+/* What a fence keeps of a sample, whose axes are `sigma` in units of the disc: returns 0 for nothing, and lays the
+ * lines that meet it, the nearest two, into the record. */
+static int fence_sample(const conic_patch_fence *fence, double s, double t, double outline, double sigma,
+                        conic_clip *clip) {
+  double nearest[2] = {2.0, 2.0}; /* in outlines, which the prefilter widens */
+  int n_missed = 0;
+  clip->n_lines = 0;
+  clip->operation = fence->is_either ? CONIC_CLIP_OR : CONIC_CLIP_AND;
+  for (int i = 0; i < fence->n_lines; i++) {
+    const float *line = fence->lines[i];
+    double on = (double)line[3] * s + (double)line[4] * t, bend = (double)line[5] * on;
+    double along = (double)line[0] - 2.0 * bend * (double)line[3];
+    double across = (double)line[1] - 2.0 * bend * (double)line[4];
+    double value = (double)line[0] * s + (double)line[1] * t + (double)line[2] - bend * on;
+    double away = value / (outline * sqrt(along * along + across * across));
+    n_missed += away < 0.0;
+    if (!(away < nearest[1]))
+      continue;
+    int at = away < nearest[0] ? 0 : 1;
+    memmove(clip->lines[1], clip->lines[0], at == 0 ? sizeof clip->lines[0] : 0);
+    nearest[1] = at == 0 ? nearest[0] : away;
+    nearest[at] = away;
+    clip->lines[at][0] = (float)(sigma * along);
+    clip->lines[at][1] = (float)(sigma * across);
+    clip->lines[at][2] = (float)value;
+    clip->n_lines = clip->n_lines < 2 ? (uint16_t)(clip->n_lines + 1) : 2;
+  }
+  clip->n_lines = fence->is_either && clip->n_lines < 2 ? 0 : clip->n_lines;
+  return n_missed < (fence->is_either ? fence->n_lines : 1);
+}
+
+size_t conic_grid_count(const conic_grid_part *part, const conic_patch_fence *fence) {
+  double step = 2.0 / (double)part->n;
   size_t count = 0;
+  conic_clip clip;
   for (int64_t row = part->row; row < part->row + part->n_rows; row++) {
     int64_t first, end;
     clip_part(part, row, &first, &end);
-    count += (size_t)(end - first);
+    double t = (double)(2 * row + 1 - part->n) / (double)part->n;
+    for (int64_t i = first; i < end && fence; i++)
+      count += (size_t)fence_sample(fence, (double)(2 * i + 1 - part->n) / (double)part->n, t,
+                                    CONIC_SAMPLE_OUTLINE * step, step, &clip);
+    count += fence ? 0 : (size_t)(end - first);
   }
   return count;
 }
@@ -131,13 +169,18 @@ size_t conic_grid_sample(const conic_patch *patch, int degree, double cutoff, co
     collapse(patch, degree, t, height, along, across);
     polynomial_walk walks[3] = {walk_from(height, from, step), walk_from(along, from, step),
                                 walk_from(across, from, step)};
+    size_t n_kept = 0, n_clipped = 0;
+    conic_clip clip;
     for (size_t i = 0; i < n; i++) {
-      s[i] = (double)(2 * (first + (int64_t)i) + 1 - part->n) / (double)part->n;
+      s[n_kept] = (double)(2 * (first + (int64_t)i) + 1 - part->n) / (double)part->n;
       for (int k = 0; k < 3; k++)
-        g[k][i] = walk_on(&walks[k]);
+        g[k][n_kept] = walk_on(&walks[k]);
+      n_kept += !patch->fence || fence_sample(patch->fence, s[n_kept], t, CONIC_SAMPLE_OUTLINE * step, sigma, &clip);
+      if (patch->fence && n_kept > n_clipped)
+        to->clips[at + n_clipped++] = clip;
     }
-    place_row(patch, sigma, peak, t, s, (const double(*)[LONGEST_ROW])g, n, at, to);
-    at += n;
+    place_row(patch, sigma, peak, t, s, (const double(*)[LONGEST_ROW])g, n_kept, at, to);
+    at += n_kept;
   }
   return at;
 }

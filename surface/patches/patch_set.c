@@ -9,82 +9,12 @@
 #include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
-#include "core/splats/clip.h"
 #include "core/splats/columns.h"
-
-/* --- staying at the points: a polynomial does not know where the surface ends, but splats may --- */
 
 /* Unit vectors, 45° apart. */
 static const double eight_directions[8][2] = {
     {1, 0},  {0.70710678118654752, 0.70710678118654752},   {0, 1},  {-0.70710678118654752, 0.70710678118654752},
     {-1, 0}, {-0.70710678118654752, -0.70710678118654752}, {0, -1}, {0.70710678118654752, -0.70710678118654752}};
-
-static int is_kept(const conic_splats *splats, size_t splat, double u, double v) {
-  size_t i = conic_clip_find(splats, splat);
-  int n_keeping = 0;
-  if (i == splats->n_clips || splats->clips[i].splat != splat)
-    return 1;
-  const conic_clip *clip = &splats->clips[i];
-  for (int k = 0; k < clip->n_lines; k++)
-    n_keeping += (double)clip->lines[k][0] * u + (double)clip->lines[k][1] * v + (double)clip->lines[k][2] >= 0.0;
-  return clip->operation == CONIC_CLIP_OR ? n_keeping > 0 : n_keeping == clip->n_lines;
-}
-
-/* Whether a splat with its centre at `to` from the place is within most_off of the place. */
-static int is_at_splat(const conic_patches *patches, size_t splat, const double to[3]) {
-  const conic_splats *splats = &patches->splats;
-  double u[3], v[3], normal[3], limit = (double)patches->options.cutoff;
-  conic_vector_at(splats->tangent_u, splat, u);
-  conic_vector_at(splats->tangent_v, splat, v);
-  double along = -conic_dot(to, u) / conic_dot(u, u), across = -conic_dot(to, v) / conic_dot(v, v);
-  conic_cross(u, v, normal);
-  return along * along + across * across <= limit * limit && conic_normalize(normal) &&
-         fabs(conic_dot(to, normal)) <= patches->options.most_off && is_kept(splats, splat, along, across);
-}
-
-static double height_at(const conic_fit *fit, int degree, double x, double y) {
-  double sum = 0.0, first = 1.0;
-  for (int i = 0; i <= degree; i++, first *= x) {
-    double power = first;
-    for (int j = 0; i + j <= degree; j++, power *= y)
-      sum += fit->coefficients[(i + j) * (i + j + 1) / 2 + j] * power;
-  }
-  return sum;
-}
-
-/* Whether the polynomial at (x, y), in units of h, is at a splat of the nearby points. */
-static int is_at_points(const conic_patches *patches, const conic_workspace *workspace, int degree, double h, double x,
-                        double y) {
-  const conic_near *near = &workspace->near;
-  const conic_fit *fit = &workspace->fit;
-  double place[3], height = height_at(fit, degree, x, y);
-  for (int axis = 0; axis < 3; axis++)
-    place[axis] =
-        fit->foot[axis] + h * (x * fit->frame[0][axis] + y * fit->frame[1][axis] + height * fit->frame[2][axis]);
-  for (size_t i = 0; i < near->n; i++) {
-    double to[3];
-    if (near->sources[i] & CONIC_CLUSTER_BIT)
-      continue;
-    for (int axis = 0; axis < 3; axis++)
-      to[axis] = near->offset[axis][i] - place[axis];
-    if (is_at_splat(patches, patches->surface->tree.point_of_slot[near->sources[i]], to))
-      return 1;
-  }
-  return 0;
-}
-
-/* Whether the polynomial of the workspace's fit stays within the options' most_off of the splats of the points that it
- * was fitted to: on a circle, on one half as large, and in the middle. */
-static int stays_at_points(const conic_patches *patches, const conic_workspace *workspace, int degree, double h,
-                           double radius) {
-  for (int i = 0; i < 17; i++) {
-    double share = i < 8 ? 1.0 : i < 16 ? 0.5 : 0.0;
-    if (!is_at_points(patches, workspace, degree, h, share * radius / h * eight_directions[i % 8][0],
-                      share * radius / h * eight_directions[i % 8][1]))
-      return 0;
-  }
-  return 1;
-}
 
 enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
 
@@ -121,6 +51,9 @@ typedef struct laying {
   conic_patches *patches;
   conic_workspace *workspaces;
   uint8_t *outcomes; /* by slot */
+  conic_patch_mesh mesh;
+  size_t *first_sides; /* with a mesh, by slot */
+  uint8_t *is_laid;    /* with a mesh, by slot: its sides have patches */
 } laying;
 
 /* Fig. 10: the circle about q that holds the samples in a ball about it, seen along the normal. */
@@ -172,56 +105,68 @@ static double slope_at(const conic_fit *fit, int degree, double x, double y) {
   return sqrt(along * along + across * across);
 }
 
+double conic_fit_steepest(const conic_fit *fit, int degree, double radius_x, double radius_y) {
+  double steepest = 0.0;
+  for (int i = 0; i < 8; i++) {
+    double slope = slope_at(fit, degree, radius_x * eight_directions[i][0], radius_y * eight_directions[i][1]);
+    steepest = slope <= steepest ? steepest : slope;
+  }
+  return steepest;
+}
+
 /* Whether the polynomial can be trusted on a circle: as much as in its middle, and not too steep. */
 static int is_sound(const conic_fit *fit, int degree, double radius) {
   for (int i = 0; i < 8; i++) {
     double x = radius * eight_directions[i][0], y = radius * eight_directions[i][1];
-    if (!(conic_fit_gain(fit, degree, x, y) <= MOST_GAIN && slope_at(fit, degree, x, y) <= MOST_SLOPE))
+    if (!(conic_fit_gain(fit, degree, x, y) <= MOST_GAIN))
       return 0;
   }
-  return 1;
+  return conic_fit_steepest(fit, degree, radius, radius) <= MOST_SLOPE;
 }
 
 /* The greatest radius on which the polynomial is sound, in steps from `radius` down to `least`; 0: none. */
-static double sound_radius(const conic_patches *patches, const conic_workspace *workspace, int degree, double h,
-                           double radius, double least) {
+static double sound_radius(const conic_fit *fit, int degree, double h, double radius, double least) {
   for (; radius >= least; radius *= SHRINKAGE)
-    if (is_sound(&workspace->fit, degree, radius / h) &&
-        (!(patches->options.most_off > 0.0) || stays_at_points(patches, workspace, degree, h, radius)))
+    if (is_sound(fit, degree, radius / h))
       return radius;
   return 0.0;
 }
 
-/* Makes the patch of a fit about r; `sign` -1 turns it over, by mirroring it along its first axis. */
-static void set_patch(conic_patch *patch, const conic_fit *fit, int degree, const double r[3], double h, double radius,
-                      double sign) {
-  double scale = h, slopes = 0.0, bends = 0.0, twists = 0.0, heights = 0.0, foot2 = 0.0;
+/* Makes the patch of a fit about r, with the radii along the fit's axes; `sign` -1 turns it over, by mirroring it along
+ * its first axis. */
+static void set_patch(conic_patch *patch, const conic_fit *fit, int degree, const double r[3], double h,
+                      const double radii[2], double sign) {
+  double slopes = 0.0, bends = 0.0, twists = 0.0, heights = 0.0, foot2 = 0.0;
+  double radius = radii[0] > radii[1] ? radii[0] : radii[1], least = radii[0] < radii[1] ? radii[0] : radii[1];
   for (int axis = 0; axis < 3; axis++) {
     patch->center[axis] = (float)(r[axis] + fit->foot[axis]);
-    patch->along[axis] = (float)(sign * radius * fit->frame[0][axis]);
-    patch->across[axis] = (float)(radius * fit->frame[1][axis]);
+    patch->along[axis] = (float)(sign * radii[0] * fit->frame[0][axis]);
+    patch->across[axis] = (float)(radii[1] * fit->frame[1][axis]);
     patch->normal[axis] = (float)(sign * fit->frame[2][axis]);
     foot2 += fit->foot[axis] * fit->foot[axis];
   }
-  for (int power = 0, k = 0; power <= degree; power++, scale *= radius / h)
+  for (int power = 0, k = 0; power <= degree; power++)
     for (int j = 0; j <= power; j++, k++) {
-      double turn = sign < 0.0 && (power - j) % 2 == 0 ? -1.0 : 1.0, c = turn * fit->coefficients[k] * scale;
+      double turn = sign < 0.0 && (power - j) % 2 == 0 ? -1.0 : 1.0, scale = h;
+      for (int i = 0; i < power; i++)
+        scale *= radii[i < j ? 1 : 0] / h;
+      double c = turn * fit->coefficients[k] * scale;
       patch->coefficients[k] = (float)c;
       slopes += (double)power * fabs(c);
       bends += 0.5 * (double)(power * (power - 1)) * fabs(c);
       twists += 0.5 * (double)(power * (power - 1) * (power - 2)) * fabs(c);
       heights += fabs(c);
     }
-  patch->slope = (float)(slopes / radius);
+  patch->slope = (float)(slopes / least);
   patch->bend = (float)bends;
-  patch->twist = (float)(twists / radius);
-  double outline = CONIC_SAMPLE_OUTLINE * 2.0 / CONIC_LEAST_GRID * sqrt(1.0 + (slopes / radius) * (slopes / radius));
+  patch->twist = (float)(twists / least);
+  double outline = CONIC_SAMPLE_OUTLINE * 2.0 / CONIC_LEAST_GRID * sqrt(1.0 + (slopes / least) * (slopes / least));
   patch->reach = (float)(1.001 * (sqrt(foot2) + radius * (1.0 + outline) + heights));
   patch->radius = (float)radius;
 }
 
 /* Makes the patch of a point without a sound polynomial: the part of its plane that its splat covers. There is none
- * where the splat has no axes or is a dot. Beside a mesh's faces, too, the splat stays. */
+ * where the splat has no axes or is a dot. */
 static void set_flat_patch(const conic_patches *patches, size_t slot, const double r[3]) {
   const conic_splats *splats = &patches->splats;
   size_t point = patches->surface->tree.point_of_slot[slot];
@@ -233,8 +178,7 @@ static void set_flat_patch(const conic_patches *patches, size_t slot, const doub
     v[axis] = share * (double)splats->tangent_v[axis][point];
   }
   conic_cross(u, v, normal);
-  if (!(outline > 0.0) || !conic_normalize(normal) || patches->options.most_off > 0.0 ||
-      (splats->dot && splats->dot[point] != 0.0f))
+  if (!(outline > 0.0) || !conic_normalize(normal) || (splats->dot && splats->dot[point] != 0.0f))
     return;
   *patch = (conic_patch){.radius = (float)outline};
   for (int axis = 0; axis < 3; axis++) {
@@ -246,13 +190,49 @@ static void set_flat_patch(const conic_patches *patches, size_t slot, const doub
   patch->reach = (float)(1.001 * outline * (1.0 + CONIC_SAMPLE_OUTLINE * 2.0 / CONIC_LEAST_GRID));
 }
 
+/* Lays the patches of a mesh's vertex, one a side, and their bounds as the slot's. Returns 0 where any side has none.
+ */
+static int lay_sides(const laying *work, size_t slot, const double r[3], conic_fit *fit) {
+  conic_patches *patches = work->patches;
+  conic_patch *bounds = &patches->patches[slot];
+  int n_sides = work->mesh.n_sides ? work->mesh.n_sides[slot] : 0, degree = patches->options.surface.degree;
+  size_t end = n_sides ? work->mesh.starts[slot] : 0;
+  for (int i = 0; i < n_sides; i++) {
+    size_t begin = end, side = work->first_sides[slot] + (size_t)i;
+    conic_patch *patch = &patches->sides[side];
+    double radii[2];
+    end = conic_patch_mesh_side_end(&work->mesh, begin, work->mesh.starts[slot + 1]);
+    if (!conic_patch_mesh_fit(&work->mesh, slot, begin, end, degree, fit, radii, &patches->fences[side])) {
+      *bounds = (conic_patch){.radius = 0.0f};
+      return 0;
+    }
+    set_patch(patch, fit, degree, r, radii[0], radii, 1.0);
+    patch->fence = patches->fences[side].n_lines ? &patches->fences[side] : NULL;
+    if (i == 0)
+      *bounds = *patch;
+    bounds->slope = i == 0 ? bounds->slope : INFINITY; /* some side may face the eye */
+    bounds->radius = fmaxf(bounds->radius, patch->radius);
+    bounds->bend = fmaxf(bounds->bend, patch->bend);
+    bounds->twist = fmaxf(bounds->twist, patch->twist);
+    bounds->reach = fmaxf(bounds->reach, patch->reach);
+  }
+  if (n_sides)
+    work->is_laid[slot] = 1;
+  return n_sides > 0;
+}
+
 static void lay_patch(laying *work, size_t slot, conic_workspace *workspace) {
   conic_patches *patches = work->patches;
   const conic_surface *surface = patches->surface;
   conic_landing landing;
-  double r[3], turn = 0.0, h = (double)surface->h[slot];
+  double r[3], radii[2], turn = 0.0, h = (double)surface->h[slot];
   conic_vector_at(surface->tree.position, slot, r);
   const float side[3] = {surface->normal[0][slot], surface->normal[1][slot], surface->normal[2][slot]};
+  if (work->mesh.starts && work->mesh.starts[slot] < work->mesh.starts[slot + 1]) {
+    int is_laid = lay_sides(work, slot, r, &workspace->fit);
+    work->outcomes[slot] = is_laid ? CONIC_SURFACE_DONE : CONIC_SURFACE_ILL_CONDITIONED;
+    return;
+  }
   workspace->side = side;
   conic_surface_project_one(surface, r, h, CONIC_NO_SLOT, 1, workspace, &landing);
   work->outcomes[slot] = (uint8_t)landing.outcome;
@@ -267,10 +247,11 @@ static void lay_patch(laying *work, size_t slot, conic_workspace *workspace) {
   radius = radius > least ? radius : least;
   for (int degree = surface->options.degree; degree > 1; degree--) { /* degree 1 would be the flat patch */
     conic_fit_solve(fit, degree);
-    double sound = sound_radius(patches, workspace, degree, h, radius, least);
+    double sound = sound_radius(fit, degree, h, radius, least);
     if (!(sound > 0.0))
       continue;
-    set_patch(&patches->patches[slot], fit, degree, r, h, sound, turn < 0.0 ? -1.0 : 1.0);
+    radii[0] = radii[1] = sound;
+    set_patch(&patches->patches[slot], fit, degree, r, h, radii, turn < 0.0 ? -1.0 : 1.0);
     return;
   }
 }
@@ -299,13 +280,13 @@ static conic_status lay_all(laying *work) {
   return status;
 }
 
-/* Clip lines stand for creases, which polynomials do not have. */
+/* Clip lines stand for creases, which polynomials of points do not have. */
 static void take_clipped_away(conic_patches *patches) {
   const conic_splats *splats = &patches->splats;
   for (size_t i = 0; i < splats->n_clips; i++)
     if (splats->clips[i].splat < splats->count) {
       uint32_t slot = patches->surface->tree.slot_of_point[splats->clips[i].splat];
-      if (slot != CONIC_NO_SLOT)
+      if (slot != CONIC_NO_SLOT && !(patches->side_of_point && patches->side_of_point[splats->clips[i].splat]))
         patches->patches[slot].radius = 0.0f;
     }
 }
@@ -350,7 +331,8 @@ static void report_patches(conic_patches *patches, const uint8_t *outcomes) {
   for (size_t i = 0; i < tree->n_points; i++) {
     uint32_t slot = tree->slot_of_point[i];
     report->outcomes[slot == CONIC_NO_SLOT ? CONIC_SURFACE_NOT_FINITE : outcomes[slot]]++;
-    report->n_patches += slot != CONIC_NO_SLOT && patches->patches[slot].radius > 0.0f;
+    report->n_patches +=
+        slot != CONIC_NO_SLOT && patches->patches[slot].radius > 0.0f && conic_patches_shown(patches, i, slot);
   }
 
   report->n_bytes =
@@ -372,24 +354,80 @@ static conic_status allocate_patches(conic_patches *patches) {
   return is_whole ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
+/* Makes room for the sides of a mesh's vertices. A vertex with more sides than points, which were made of its
+ * triangles, gets none. */
+static conic_status prepare_sides(laying *work) {
+  conic_patches *patches = work->patches;
+  conic_context *context = patches->context;
+  const conic_neighbours *tree = &patches->surface->tree;
+  conic_patch_mesh *mesh = &work->mesh;
+  size_t n_sides = 0;
+  conic_status status =
+      conic_patch_mesh_create(context, patches->options.mesh, tree, patches->splats.origin, &work->mesh);
+  if (status != CONIC_OK || !mesh->n_sides)
+    return status;
+  work->first_sides = conic_memory_allocate_zeroed(context, tree->n_slots, sizeof *work->first_sides);
+  work->is_laid = conic_memory_allocate_zeroed(context, tree->n_slots, 1);
+  patches->side_of_point = conic_memory_allocate_zeroed(context, tree->n_points, sizeof *patches->side_of_point);
+  if (!work->first_sides || !work->is_laid || !patches->side_of_point)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < tree->n_points; i++)
+    if (tree->slot_of_point[i] != CONIC_NO_SLOT)
+      work->first_sides[tree->slot_of_point[i]]++;
+  for (size_t slot = 0; slot < tree->n_slots; slot++) {
+    mesh->n_sides[slot] = work->first_sides[slot] < mesh->n_sides[slot] ? 0 : mesh->n_sides[slot];
+    work->first_sides[slot] = n_sides;
+    n_sides += mesh->n_sides[slot];
+  }
+  patches->sides = conic_memory_allocate(context, n_sides, sizeof *patches->sides);
+  patches->fences = conic_memory_allocate(context, n_sides, sizeof *patches->fences);
+  return patches->sides && patches->fences && n_sides < CONIC_NO_SIDE ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+/* The first points at a vertex show a side each, the others nothing. */
+static void hand_out_sides(laying *work) {
+  const conic_neighbours *tree = &work->patches->surface->tree;
+  size_t n_of_mesh = 0, n_sides = 0;
+  double sum2 = 0.0;
+  for (size_t i = 0; work->is_laid && i < tree->n_points; i++) {
+    uint32_t slot = tree->slot_of_point[i];
+    if (slot == CONIC_NO_SLOT || !work->is_laid[slot])
+      continue;
+    work->patches->side_of_point[i] =
+        work->mesh.n_sides[slot] ? (uint32_t)(1 + work->first_sides[slot]++) : CONIC_NO_SIDE;
+    n_of_mesh++;
+    if (work->mesh.n_sides[slot]) {
+      double off = (double)work->patches->fences[work->first_sides[slot] - 1].off;
+      work->mesh.n_sides[slot]--;
+      n_sides++;
+      sum2 += off * off;
+    }
+  }
+  work->patches->report.mesh_off = 2 * n_of_mesh > tree->n_points ? sqrt(sum2 / (double)n_sides) : -1.0;
+}
+
 static conic_status lay(conic_patches *patches) {
   conic_context *context = patches->context;
-  laying work = {patches, NULL, NULL};
+  laying work = {.patches = patches};
   conic_status status = conic_surface_create(context, &patches->splats, &patches->options.surface, &patches->surface);
   if (status == CONIC_OK)
     status = allocate_patches(patches);
   if (status != CONIC_OK)
     return status;
   work.outcomes = conic_memory_allocate(context, patches->surface->tree.n_slots, sizeof *work.outcomes);
-  status = work.outcomes ? lay_all(&work) : CONIC_ERROR_MEMORY;
+  status = work.outcomes ? prepare_sides(&work) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = lay_all(&work);
   if (status == CONIC_OK) {
+    hand_out_sides(&work);
     take_clipped_away(patches);
     reach_splats(patches);
     for (size_t i = 2 * patches->surface->tree.n_leaves - 1; i-- > 0;)
       bound_node(patches, i);
     report_patches(patches, work.outcomes);
   }
-  conic_memory_release(context, work.outcomes);
+  conic_patch_mesh_release(context, &work.mesh);
+  conic_memory_release_these(context, work.outcomes, work.first_sides, work.is_laid);
   return status;
 }
 
@@ -401,6 +439,8 @@ conic_status conic_patches_create(conic_context *context, const conic_splats *sp
   if (given && !conic_options_take(options, given))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: the options were not initialised");
   conic_status status = conic_splats_check(context, "patches", splats);
+  if (status == CONIC_OK && options->mesh)
+    status = conic_triangles_check_own(context, "patches", options->mesh);
   if (status == CONIC_OK)
     status = check_patch_options(context, splats, options);
   if (status != CONIC_OK)
@@ -413,6 +453,7 @@ conic_status conic_patches_create(conic_context *context, const conic_splats *sp
   status = conic_splats_enter(context, "patches", splats, &made->splats, &made->block);
   if (status == CONIC_OK)
     status = lay(made);
+  made->options.mesh = NULL; /* the caller's */
   if (status == CONIC_OK)
     *patches = made;
   else
@@ -425,7 +466,8 @@ void conic_patches_destroy(conic_patches *patches) {
     return;
   conic_context *context = patches->context;
   conic_surface_destroy(patches->surface);
-  conic_memory_release_these(context, patches->block, patches->patches);
+  conic_memory_release_these(context, patches->block, patches->patches, patches->sides, patches->fences,
+                             patches->side_of_point);
   conic_patches_release_frames(patches);
   conic_memory_release_these(context, patches->counts, patches->node_reach, patches->node_radius, patches);
 }

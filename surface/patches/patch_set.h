@@ -9,6 +9,7 @@
 #include "conic/render.h"
 #include "core/image/viewpoint.h"
 #include "surface/patches/patch.h"
+#include "surface/patches/patch_mesh.h"
 
 /* A camera for choosing patches: which spheres are in sight, and lengths on the screen. */
 
@@ -61,21 +62,33 @@ typedef struct conic_patches_frame {
   uint32_t *starts; /* by slot: its first sample, if it is drawn */
 } conic_patches_frame;
 
+#define CONIC_NO_SIDE UINT32_MAX
+
 struct conic_patches {
   conic_context *context;
   conic_patches_options options;
-  conic_splats splats;    /* the caller's */
-  float *block;           /* side-by-side copies of the strided arrays */
-  conic_surface *surface; /* its tree is the hierarchy */
-  conic_patch *patches;   /* by slot */
-  float *node_reach;      /* by node of the tree: the greatest reach of its points, as patches and as splats */
-  float *node_radius;     /* by node: the greatest radius of its patches */
+  conic_splats splats;       /* the caller's */
+  float *block;              /* side-by-side copies of the strided arrays */
+  conic_surface *surface;    /* its tree is the hierarchy */
+  conic_patch *patches;      /* by slot; of a mesh's vertex, the bounds of its sides' patches */
+  conic_patch *sides;        /* the patches of a mesh's vertices, of each side one, … */
+  conic_patch_fence *fences; /* … and its fence */
+  uint32_t *side_of_point;   /* null: there is no mesh; 0: the point shows its slot's patch; else 1 + its side's number,
+                                or CONIC_NO_SIDE: nothing, as all sides are the first points' there */
+  float *node_reach;         /* by node of the tree: the greatest reach of its points, as patches and as splats */
+  float *node_radius;        /* by node: the greatest radius of its patches */
   conic_patches_report report;
 
   uint32_t *counts;              /* by slot: samples, where its plan is DEEP */
   conic_patches_frame frames[2]; /* of this picture, and of the last one, whose grids are taken over */
   int i_frame;
 };
+
+/* The patch that a point shows where its slot's plan says so; null: none. */
+static inline const conic_patch *conic_patches_shown(const conic_patches *patches, size_t point, uint32_t slot) {
+  uint32_t side = patches->side_of_point ? patches->side_of_point[point] : 0;
+  return side == 0 ? &patches->patches[slot] : side == CONIC_NO_SIDE ? NULL : &patches->sides[side - 1];
+}
 
 /* Releases the memory of pictures. */
 void conic_patches_release_frames(conic_patches *patches);

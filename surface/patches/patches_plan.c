@@ -113,7 +113,9 @@ static void plan_all(patches_planning *work, size_t i_node, int is_splat) {
   for (size_t slot = first; slot < last; slot++) {
     uint8_t plan = is_splat ? CONIC_PLAN_SPLAT : plan_slot(work, slot);
     work->plans[slot] = plan;
-    if (plan == CONIC_PLAN_DEEP)
+    int is_slots_own =
+        conic_patches_shown(work->patches, tree->point_of_slot[slot], (uint32_t)slot) == &work->patches->patches[slot];
+    if (plan == CONIC_PLAN_DEEP && is_slots_own)
       work->patches->counts[slot] = deep_count(work, slot);
   }
 }
@@ -195,9 +197,10 @@ static void emit_cell(descent *d, const conic_grid_part *part) {
       to.tangent_v[axis] += d->n;
     }
     to.weight += d->n;
+    to.clips = to.clips ? to.clips + d->n : NULL;
     conic_grid_sample(d->patch, d->degree, d->cutoff, part, &to);
   }
-  d->n += conic_grid_count(part);
+  d->n += conic_grid_count(part, d->patch->fence);
 }
 
 /* Samples, or divides further, the cell in `row` and `column` of the 2^depth × 2^depth cells of the patch. */

@@ -7,6 +7,7 @@
 #include "core/base/message.h"
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
+#include "core/splats/clip.h"
 #include "surface/patches/patch_set.h"
 
 enum { CHUNK = 256 };
@@ -22,14 +23,23 @@ typedef struct patches_selecting {
   size_t *chunk_kept;   /* by chunk: samples taken over */
 } patches_selecting;
 
-static size_t count_of(const patches_selecting *work, uint32_t slot) {
-  uint8_t plan = work->frame->plans[slot];
+/* How many samples a point is drawn with. */
+static size_t count_of(const patches_selecting *work, size_t point, uint32_t slot) {
+  uint8_t plan = slot == CONIC_NO_SLOT ? CONIC_PLAN_SPLAT : work->frame->plans[slot];
   if (plan <= CONIC_PLAN_SPLAT)
     return plan;
+  size_t n_fading = plan & CONIC_PLAN_FADING ? 1 : 0;
+  const conic_patch *patch = conic_patches_shown(work->patches, point, slot);
+  if (!patch)
+    return n_fading;
   if (plan == CONIC_PLAN_DEEP)
-    return work->patches->counts[slot];
-  int is_fading = (plan & CONIC_PLAN_FADING) != 0;
-  return work->grid_counts[(plan & ~CONIC_PLAN_FADING) - CONIC_PLAN_GRID] + (is_fading ? 1 : 0);
+    return patch == &work->patches->patches[slot]
+               ? work->patches->counts[slot]
+               : conic_patch_sample_deep(&work->view, patch, work->patches->options.surface.degree,
+                                         (double)work->patches->options.cutoff, NULL);
+  int i_grid = (plan & ~CONIC_PLAN_FADING) - CONIC_PLAN_GRID;
+  conic_grid_part part = conic_grid_whole(conic_grid_sizes[i_grid]);
+  return n_fading + (patch->fence ? conic_grid_count(&part, patch->fence) : work->grid_counts[i_grid]);
 }
 
 static void count_chunk(void *data, size_t i_item, int i_thread) {
@@ -38,7 +48,7 @@ static void count_chunk(void *data, size_t i_item, int i_thread) {
   size_t end = (i_item + 1) * CHUNK < tree->n_points ? (i_item + 1) * CHUNK : tree->n_points, n = 0;
   (void)i_thread;
   for (size_t i = i_item * CHUNK; i < end; i++)
-    n += tree->slot_of_point[i] == CONIC_NO_SLOT ? 1 : count_of(work, tree->slot_of_point[i]);
+    n += count_of(work, i, tree->slot_of_point[i]);
   work->chunk_starts[i_item + 1] = n;
 }
 
@@ -47,6 +57,7 @@ static void copy_axes(float *const from[3], size_t first, float *const to[3], si
     memcpy(to[axis] + at, from[axis] + first, n * sizeof(float));
 }
 
+/* Samples of a patch have no clip lines where they are copied: one with a fence is sampled anew. */
 static void copy_samples(const conic_splats *from, size_t first, const conic_splats *to, size_t at, size_t n) {
   copy_axes(from->position, first, to->position, at, n);
   copy_axes(from->tangent_u, first, to->tangent_u, at, n);
@@ -59,14 +70,22 @@ static void copy_samples(const conic_splats *from, size_t first, const conic_spl
     to->opacity[at] = 1.0f;
 }
 
-static void make_grid(const patches_selecting *work, uint32_t slot, size_t at) {
+/* Puts a point's own splat, with its clip lines. */
+static void copy_splat(const conic_splats *from, size_t point, const conic_splats *to, size_t at) {
+  copy_samples(from, point, to, at, 1);
+  size_t i = conic_clip_find(from, point);
+  if (i < from->n_clips && from->clips[i].splat == point)
+    to->clips[at] = from->clips[i];
+}
+
+static void make_grid(const patches_selecting *work, size_t point, uint32_t slot, size_t at) {
   const conic_patches *patches = work->patches;
   const conic_splats *splats = &work->frame->splats;
-  const conic_patch *patch = &patches->patches[slot];
+  const conic_patch *patch = conic_patches_shown(patches, point, slot);
   uint8_t plan = work->frame->plans[slot];
   int degree = patches->options.surface.degree;
   double cutoff = (double)patches->options.cutoff;
-  conic_grid_samples to = {.weight = splats->opacity + at};
+  conic_grid_samples to = {.weight = splats->opacity + at, .clips = splats->clips ? splats->clips + at : NULL};
   for (int axis = 0; axis < 3; axis++) {
     to.position[axis] = splats->position[axis] + at;
     to.tangent_u[axis] = splats->tangent_u[axis] + at;
@@ -84,7 +103,7 @@ static void make_grid(const patches_selecting *work, uint32_t slot, size_t at) {
 static void put_grid(const patches_selecting *work, size_t point, uint32_t slot, size_t at, size_t n) {
   const conic_splats *from = &work->patches->splats;
   const conic_splats *to = &work->frame->splats;
-  make_grid(work, slot, at);
+  make_grid(work, point, slot, at);
   for (int axis = 0; axis < 3 && from->color[0]; axis++)
     for (size_t i = at; i < at + n; i++)
       to->color[axis][i] = from->color[axis][point];
@@ -92,14 +111,15 @@ static void put_grid(const patches_selecting *work, size_t point, uint32_t slot,
     to->opacity[i] *= from->opacity[point];
 }
 
-/* Puts a fading patch and its splat, which is the last of the n. */
+/* Puts a fading patch, if the point shows one, and its splat, which is the last of the n. */
 static void put_fading(const patches_selecting *work, size_t point, uint32_t slot, size_t at, size_t n) {
   const conic_splats *to = &work->frame->splats;
   double share = conic_patches_share(work->patches, &work->view, slot);
-  put_grid(work, point, slot, at, n - 1);
+  if (n > 1)
+    put_grid(work, point, slot, at, n - 1);
   for (size_t i = at; i < at + n - 1; i++)
     to->opacity[i] *= (float)share;
-  copy_samples(&work->patches->splats, point, to, at + n - 1, 1);
+  copy_splat(&work->patches->splats, point, to, at + n - 1);
   to->opacity[at + n - 1] *= (float)(1.0 - share);
 }
 
@@ -107,17 +127,20 @@ static void put_fading(const patches_selecting *work, size_t point, uint32_t slo
 static int is_kept(const patches_selecting *work, size_t point, uint32_t slot) {
   uint8_t plan = work->frame->plans[slot];
   return plan >= CONIC_PLAN_GRID && plan < CONIC_PLAN_FADING && work->last->plans[slot] == plan &&
+         !conic_patches_shown(work->patches, point, slot)->fence &&
          work->patches->surface->tree.point_of_slot[slot] == point;
 }
 
 /* Puts the samples of a point. Those that are not finite are included, so that the renderer counts them. */
 static size_t put_point(const patches_selecting *work, size_t point, size_t at, size_t *n_kept) {
   uint32_t slot = work->patches->surface->tree.slot_of_point[point];
-  size_t n = slot == CONIC_NO_SLOT ? 1 : count_of(work, slot);
+  size_t n = count_of(work, point, slot);
   if (n == 0)
     return 0;
+  for (size_t i = at; i < at + n && work->frame->splats.clips; i++)
+    work->frame->splats.clips[i].n_lines = 0;
   if (slot == CONIC_NO_SLOT || work->frame->plans[slot] == CONIC_PLAN_SPLAT)
-    copy_samples(&work->patches->splats, point, &work->frame->splats, at, 1);
+    copy_splat(&work->patches->splats, point, &work->frame->splats, at);
   else if (work->frame->plans[slot] & CONIC_PLAN_FADING)
     put_fading(work, point, slot, at, n);
   else if (is_kept(work, point, slot)) {
@@ -142,28 +165,15 @@ static void fill_chunk(void *data, size_t i_item, int i_thread) {
   work->chunk_kept[i_item] = n_kept;
 }
 
-/* Puts the clip lines of the points drawn as splats. */
-static void put_clips(const patches_selecting *work, size_t n) {
-  const conic_splats *from = &work->patches->splats;
-  conic_splats *to = &work->frame->splats;
-  const uint32_t *points = work->frame->points;
-  size_t at = 0;
-  to->n_clips = 0;
-  for (size_t i = 0; i < from->n_clips; i++) {
-    size_t end = n;
-    while (at < end) { /* the first sample of this point or a later one */
-      size_t middle = at + (end - at) / 2;
-      if (points[middle] < from->clips[i].splat)
-        at = middle + 1;
-      else
-        end = middle;
+/* Brings the records with clip lines together. */
+static void gather_clips(conic_splats *splats) {
+  splats->n_clips = 0;
+  for (size_t i = 0; i < splats->count && splats->clips; i++)
+    if (splats->clips[i].n_lines) {
+      conic_clip *clip = &splats->clips[splats->n_clips++];
+      *clip = splats->clips[i];
+      clip->splat = (uint32_t)i;
     }
-    if (at < n && points[at] == from->clips[i].splat) {
-      conic_clip *clip = &to->clips[to->n_clips++];
-      *clip = from->clips[i];
-      clip->splat = (uint32_t)at;
-    }
-  }
 }
 
 static void release_samples(conic_context *context, conic_patches_frame *frame) {
@@ -184,6 +194,7 @@ static conic_status reserve_samples(const patches_selecting *work, size_t n) {
   conic_context *context = work->patches->context;
   conic_patches_frame *frame = work->frame;
   unsigned fields = conic_splats_fields(&work->patches->splats) & (CONIC_SPLATS_COLORS | CONIC_SPLATS_CLIPS);
+  fields |= work->patches->sides ? CONIC_SPLATS_CLIPS : 0;
   if (n <= frame->room && frame->points) /* the arrays exist even with nothing in sight */
     return CONIC_OK;
   release_samples(context, frame);
@@ -204,7 +215,7 @@ static conic_status count_samples(patches_selecting *work) {
   conic_context *context = work->patches->context;
   for (int i = 0; i < CONIC_N_GRIDS; i++) {
     conic_grid_part part = conic_grid_whole(conic_grid_sizes[i]);
-    work->grid_counts[i] = conic_grid_count(&part);
+    work->grid_counts[i] = conic_grid_count(&part, NULL);
   }
   conic_parallel_for(context, work->n_chunks, count_chunk, work);
   work->chunk_starts[0] = 0;
@@ -226,7 +237,7 @@ static void describe_samples(const patches_selecting *work, conic_patch_selectio
     int what = slot == CONIC_NO_SLOT ? CONIC_PLAN_SPLAT : work->frame->plans[slot];
     selection->n_culled += what == CONIC_PLAN_CULLED;
     selection->n_splats += what == CONIC_PLAN_SPLAT;
-    selection->n_patches += what >= CONIC_PLAN_DEEP;
+    selection->n_patches += what >= CONIC_PLAN_DEEP && conic_patches_shown(work->patches, i, slot);
   }
   selection->n_samples = selection->splats.count - selection->n_splats;
   for (size_t i = 0; i < work->n_chunks; i++)
@@ -244,7 +255,7 @@ static conic_status select_samples(patches_selecting *work, conic_patch_selectio
   conic_parallel_for(patches->context, work->n_chunks, fill_chunk, work);
   work->frame->splats.count = work->chunk_starts[work->n_chunks];
   memcpy(work->frame->splats.origin, patches->splats.origin, sizeof work->frame->splats.origin);
-  put_clips(work, work->frame->splats.count);
+  gather_clips(&work->frame->splats);
   describe_samples(work, selection);
   return CONIC_OK;
 }

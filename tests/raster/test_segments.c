@@ -1,5 +1,5 @@
 /* Discs that reach near and stand edge-on, by a second evaluator written from docs/reference/picture.md alone (Segment,
- * Visible, Planes), in double: every pixel of a picture full of them is what the page says. */
+ * Visible, Planes, Numbers): every pixel of pictures full of them is what the page says, ties included. */
 #include "tests/support/fixture.h"
 
 enum { SIZE = 128, N_DISCS = 150, N_ANGLES = 1024 };
@@ -122,15 +122,26 @@ static int place_segment(const conic_camera *c, const disc *d, segment *s) {
 /* A segment at a pixel. */
 typedef struct fragment {
   size_t i;
-  double q, iz, iz_plane;
+  float q, iz, iz_plane;
 } fragment;
 
+static float clamp(float value, double low, double high) {
+  float least = (float)low, most = (float)high;
+  return value > least ? value < most ? value : most : least;
+}
+
+/* In floats, with the order that the page gives: whatever is a tie for the renderer is one here. */
 static fragment look(const segment *s, size_t i, int x, int y) {
-  double dx = x + 0.5 - s->x_t[0], dy = y + 0.5 - s->x_t[1];
-  double along = s->e[0] * dx + s->e[1] * dy, across = s->e[0] * dy - s->e[1] * dx;
-  double q = along * along / (s->sigma2 + prefilter) + across * across / prefilter;
-  double iz = s->iz_t + s->slope * s->sigma2 / (s->sigma2 + prefilter) * along;
-  return (fragment){i, q, fmin(fmax(iz, s->iz_far), s->iz_near), s->iz_t + s->slope * along};
+  double r_yy = s->sigma2 * s->e[1] * s->e[1], r_xy = s->sigma2 * s->e[0] * s->e[1], v_yy = r_yy + prefilter;
+  double determinant = prefilter * (s->sigma2 + prefilter), shrunk = s->slope * s->sigma2 / (s->sigma2 + prefilter);
+  float s1 = (float)sqrt(v_yy / determinant), s2 = (float)(-r_xy / sqrt(v_yy * determinant));
+  float s3 = (float)(1.0 / sqrt(v_yy)), iz_t = (float)s->iz_t;
+  float dx = ((float)x - (float)floor(s->x_t[0])) + (float)(floor(s->x_t[0]) + 0.5 - s->x_t[0]);
+  float dy = ((float)y - (float)floor(s->x_t[1])) + (float)(floor(s->x_t[1]) + 0.5 - s->x_t[1]);
+  float first = s1 * dx + s2 * dy, second = s3 * dy;
+  float iz = iz_t + (float)(shrunk * s->e[1]) * dy + (float)(shrunk * s->e[0]) * dx;
+  float iz_plane = iz_t + (float)(s->slope * s->e[1]) * dy + (float)(s->slope * s->e[0]) * dx;
+  return (fragment){i, first * first + second * second, clamp(iz, s->iz_far, s->iz_near), iz_plane};
 }
 
 typedef struct pixel {
@@ -144,9 +155,9 @@ static void note_place(const fixture *f, const segment *s, const fragment *at, p
     p->normal[axis] += s->normal[axis];
   }
   if (p->count++ == 0) /* all weigh the same: the lowest index is the heaviest */
-    p->iz_z = fmin(fmax(at->iz_plane, s->iz_far), s->iz_near);
-  if (at->iz > p->nearest) {
-    p->nearest = at->iz;
+    p->iz_z = (double)clamp(at->iz_plane, s->iz_far, s->iz_near);
+  if ((double)at->iz > p->nearest) {
+    p->nearest = (double)at->iz;
     p->id = (uint32_t)at->i;
   }
 }
@@ -159,15 +170,16 @@ static pixel evaluate(const fixture *f, const segment *segments, size_t n, int x
   size_t n_covering = 0;
   for (size_t i = 0; i < n; i++) {
     fragment at = look(&segments[i], i, x, y);
-    if (!(at.q < cutoff * cutoff))
+    if (!(at.q < (float)(cutoff * cutoff)))
       continue;
-    double lesser = fmax(fmin(at.iz, at.iz_plane), 0.0), hides = lesser / (1.0 + epsilon * lesser / ray);
+    double lesser = fmax(fmin((double)at.iz, (double)at.iz_plane), 0.0),
+           hides = lesser / (1.0 + epsilon * lesser / ray);
     p.hides = fmax(p.hides, hides);
     covering[n_covering++] = at;
   }
   for (size_t k = 0; k < n_covering; k++) {
     const fragment *at = &covering[k];
-    if (fmax(at->iz, at->iz_plane) >= p.hides)
+    if (fmax((double)at->iz, (double)at->iz_plane) >= p.hides)
       note_place(f, &segments[at->i], at, &p);
   }
   return p;
@@ -196,8 +208,7 @@ static void fill_segment(fixture *f, size_t i, uint64_t *state) {
   fixture_set(f, i, p, tu, tv, (float)fixture_random(state), (float)fixture_random(state), (float)(i % 2));
 }
 
-static size_t fill(fixture *f, segment *segments) {
-  uint64_t state = 11;
+static size_t fill(fixture *f, segment *segments, uint64_t state) {
   size_t n = 0;
   fixture_splats(f, N_DISCS);
   while (n < N_DISCS) {
@@ -230,25 +241,32 @@ static void check_pixel(const fixture *f, const pixel *p, int x, int y) {
   }
 }
 
-int main(void) {
+static void test_picture(fixture *f, uint64_t seed) {
   static segment segments[N_DISCS];
-  fixture f = fixture_open(2);
-  size_t n_covered = 0, n_blended = 0;
-  fixture_camera(&f, SIZE, SIZE, 100.0);
-  f.options.near_z = near_z;
-  f.options.epsilon = epsilon;
-  size_t n = fill(&f, segments);
-  fixture_render(&f);
-  CHECK(f.statistics.splats_drawn + f.statistics.splats_culled == n && f.statistics.splats_skipped == 0);
+  size_t n_covered = 0, n_blended = 0, n = fill(f, segments, seed);
+  fixture_render(f);
+  CHECK(f->statistics.splats_drawn + f->statistics.splats_culled == n && f->statistics.splats_skipped == 0);
   for (int y = 0; y < SIZE; y++)
     for (int x = 0; x < SIZE; x++) {
-      pixel p = evaluate(&f, segments, n, x, y);
+      pixel p = evaluate(f, segments, n, x, y);
       n_covered += p.count > 0;
       n_blended += p.count > 1;
-      check_pixel(&f, &p, x, y);
+      check_pixel(f, &p, x, y);
     }
   printf("%zu pixels covered, %zu of them by several\n", n_covered, n_blended);
   CHECK(n_covered > 8000 && n_blended > 1000 && n_covered < SIZE * SIZE);
+}
+
+/* In all but the first, ties decide: in double, inverse depths at near differ by 1e-13 in 14, and a rim that long
+ * segments have passes a pixel's centre by 1e-5 of q in the others. */
+int main(void) {
+  static const uint64_t seeds[] = {11, 14, 136, 269, 824};
+  fixture f = fixture_open(2);
+  fixture_camera(&f, SIZE, SIZE, 100.0);
+  f.options.near_z = near_z;
+  f.options.epsilon = epsilon;
+  for (size_t i = 0; i < sizeof seeds / sizeof seeds[0]; i++)
+    test_picture(&f, seeds[i]);
   fixture_close(&f);
   return check_result();
 }
