@@ -33,10 +33,12 @@ again() { # NAME ARGUMENTS …: of one picture
   is_drawn_again "$name" a.exr a.shot.json
 }
 
-# Every reference picture
+# Every reference picture; a sanitizer sees its code at work on the pictures below
 data=$1/../shared/data
 n_references=0
-for command in "$1"/refimages/*/cmd; do
+references=("$1"/refimages/*/cmd)
+! grep -q '^CONIC_SANITIZE:STRING=.' "$3/CMakeCache.txt" || references=("$1"/refimages/confetti-18/cmd)
+for command in "${references[@]}"; do
   name=$(basename "$(dirname "$command")")
   mkdir "$name"
   (
@@ -65,7 +67,7 @@ for command in "$1"/refimages/*/cmd; do
   [[ $answer -ne 0 ]] || n_references=$((n_references + 1))
   rm -rf "$name"
 done
-[[ $n_references -ge 18 ]] || fail "only $n_references reference pictures were drawn again"
+[[ $n_references -ge 18 || $n_references -eq ${#references[@]} ]] || fail "only $n_references reference pictures were drawn again"
 
 # Kinds of scenes, cameras and light
 "$conic" make knot -n 3000 -q -o k.ply

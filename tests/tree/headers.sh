@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Every header compiles alone, and all of them together; the public ones as C11 and as C++17; what libconic exports is what the headers declare;
-# every global name has the project's prefix.
+# every global name has the project's prefix. A header that some file of the build includes first has compiled alone there.
 set -euo pipefail
 
 source_folder=$1
@@ -31,12 +31,21 @@ compiles_cpp() { # FILE; true where there is no compiler for it
     "$cpp_compiler" -std=c++17 -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude "$1"
 }
 
-for header in $(find include core raster oracle lod surface gaussians judge lighting accumulation gathering source opencl bench cli mpi -name '*.h' | sort); do
+# The first that each file of the libraries and programs includes: those do not compile where theirs does not.
+declare -A is_first
+while read -r header; do
+  is_first[$header]=1
+done < <(find core raster oracle lod surface gaussians judge lighting accumulation gathering source shots bench cli -name '*.c' \
+  ! -path 'bench/peers/*' ! -name '*_windows.c' ! -name '*_bridge.c' -exec grep -hm 1 '^#include' {} + | sed -n 's/#include "\(.*\)"/\1/p')
+[[ ${#is_first[@]} -gt 100 ]] || fail "what files include first was not found"
+
+for header in $(find include core raster oracle lod surface gaussians judge lighting accumulation gathering source shots opencl bench cli mpi -name '*.h' | sort); do
   [[ -e $header && $header != *_body.h ]] || continue # a body is included by what sets its types
   [[ $header != opencl/shared.h ]] || continue          # stands before what OpenCL C compiles
   [[ $header != opencl/c_library/* ]] || continue       # stands for the C library where there is none
   [[ $header != opencl/*.h || -e $build_folder/opencl ]] || continue # a build without OpenCL
   printf '#include "%s"\n' "${header#include/}" | tee "$work/alone.c" >> "$work/together.c"
+  [[ ! -v is_first[${header#include/}] ]] || continue
   compiles_c "$work/alone.c" || fail "$header does not compile alone as C11"
 done
 compiles_c "$work/together.c" || fail "the headers do not compile together as C11"

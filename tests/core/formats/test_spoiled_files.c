@@ -184,9 +184,9 @@ static int check(conic_context *context, const seed *from, const unsigned char *
 /* So many places of a file are spoiled, and cut at: of small files each; fewer under a sanitizer, which takes ten times
  * as long. Of large files it spoils others, so that both together try more. Fuzzing tries more still. */
 #ifdef __SANITIZE_ADDRESS__
-enum { N_PLACES = 70, N_CUTS = 150, IS_SANITIZED = 1 };
+enum { N_PLACES = 30, N_CUTS = 60, IS_SANITIZED = 1 };
 #else
-enum { N_PLACES = 130, N_CUTS = 1000, IS_SANITIZED = 0 };
+enum { N_PLACES = 90, N_CUTS = 500, IS_SANITIZED = 0 };
 #endif
 
 static void test_cut(conic_context *context, const seed *from) {
