@@ -118,13 +118,14 @@ SAME = {
     ("gaussians", "--quality draft"): "one sample is what a profile draws anyway",
     ("splats", "--shade none"): "what maps of what has colours have anyway",
     ("levels", "--shade none"): "what maps of what has colours have anyway",
+    ("splats", "--plain"): "nothing of a map is chosen by its looks",
+    ("levels", "--plain"): "nothing of a map is chosen by its looks",
     ("levels", "--method affine"): "seen from straight above, the methods are one",
     ("levels", "--cull back"): "nothing is seen from behind",
     ("mesh", "--cull back"): "nothing is seen from behind",
     ("splats", "--method patch"): "no patch is larger than a pixel",
     ("octree", "--method patch"): "no patch is larger than a pixel",
     ("splats", "--background 1,0,0"): "all of it is covered",
-    ("splats", "--background 1,0,0:0,1,0"): "all of it is covered",
     ("levels", "--background 1,0,0"): "all of it is covered",
 }
 # At each stage: what comes before the option, and of which sources.

@@ -24,5 +24,5 @@ fi
 # A sanitizer wants to be there first; Python itself never gives back what it had, and what is freed shall not be kept.
 sanitizer=$(ldd "$library" | sed -n 's/.*=> \(.*lib\(asan\|tsan\)\.so[^ ]*\).*/\1/p')
 with_conic() {
-  env ${sanitizer:+LD_PRELOAD="$sanitizer"} ASAN_OPTIONS=detect_leaks=0:quarantine_size_mb=1 "$@"
+  env ${sanitizer:+LD_PRELOAD="$sanitizer"} ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0:quarantine_size_mb=1 "$@"
 }
