@@ -287,8 +287,9 @@ static void print_worst(const found *worst, conic_method method) {
 
 int main(int argc, char **argv) {
   static const conic_method methods[] = {CONIC_METHOD_AUTO, CONIC_METHOD_RAY};
-  long n = argc > 1 ? strtol(argv[1], NULL, 10) : 500;
+  long n = argc > 1 ? strtol(argv[1], NULL, 10) : 0; /* the suite names a folder */
   uint64_t state = argc > 2 ? (uint64_t)strtol(argv[2], NULL, 10) : 1;
+  n = n > 0 ? n : 500;
   find_rule(N_ALONG, along_places, along_weights);
   find_rule(N_LEVELS, level_places, level_weights);
   fixture f = fixture_open(1);
