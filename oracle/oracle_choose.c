@@ -16,6 +16,19 @@ oracle_floats conic_oracle_floats(conic_float_kind kind) {
                          .is_setup_in_float = 1};
 }
 
+/* Of a kernel that is no Gaussian, by the steepest of its 1024 rings; what is flat up to its rim is right with its
+ * outline. */
+static double steepness_of(const conic_kernel *kernel) {
+  const oracle_kernel_facts facts = conic_oracle_kernel_facts(kernel);
+  const double step = oracle_min(facts.end, 4.0 * (double)kernel->cutoff) / 1024.0;
+  double most = 0.0;
+  if (facts.is_gaussian || facts.is_flat)
+    return facts.is_flat ? 0.0 : ORACLE_AUTO_STEEPNESS;
+  for (double r = 0.0, end = 1024.0 * step; r < end; r += step)
+    most = oracle_max(most, conic_oracle_kernel(kernel, r * r) - conic_oracle_kernel(kernel, (r + step) * (r + step)));
+  return ORACLE_AUTO_BY_SLOPE * most / step;
+}
+
 oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_options *options, double near_z,
                               conic_float_kind floats) {
   oracle_view view = {*camera, near_z, options->kernel};
@@ -24,6 +37,7 @@ oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_opt
   double limit = oracle_min(view.cutoff, conic_oracle_kernel_facts(&options->kernel).end);
   view.support = limit * limit;
   view.prefilter = (double)options->prefilter;
+  view.steepness = steepness_of(&options->kernel);
   view.reach_px = view.cutoff * sqrt(view.prefilter);
   view.method = (int)options->method;
   view.thin_px = 0.5;
@@ -47,7 +61,7 @@ static double conic_error(const oracle_view *view, const oracle_placed *s, const
   const conic_camera *c = &view->camera;
   double offset[2] = {c->fx * s->p[0] / s->p[2] + c->cx - shape->center[0],
                       c->fy * s->p[1] / s->p[2] + c->cy - shape->center[1]};
-  return ORACLE_AUTO_STEEPNESS * shape->amplitude * sqrt(oracle_max(oracle_form(shape->inverse, offset), 0.0));
+  return view->steepness * shape->amplitude * sqrt(oracle_max(oracle_form(shape->inverse, offset), 0.0));
 }
 
 /* By how much of itself, as it is at p, the plane's inverse depth changes over the filter's standard deviation. */

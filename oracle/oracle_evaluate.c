@@ -40,12 +40,11 @@ static double ellipse_response(const oracle_view *view, const oracle_shape *shap
   return conic_oracle_response(view, share, conic_oracle_direction(view, share, n, m, here), across, q, doubt);
 }
 
-/* The same of a ray at the splat parameter u, by what the filter is at the place that its pixels are counted from. */
-static double ray_response(const oracle_view *view, const oracle_shape *shape, const double u[2], double q,
-                           double *doubt) {
-  ray_parameters at = find_parameters(view, shape, shape->center[0], shape->center[1]);
-  oracle_symmetric filter = {at.spread.xx - 1.0, at.spread.xy, at.spread.yy - 1.0};
-  double greater = at.iz > 0.0 ? oracle_greater_eigenvalue(filter) : 0.0;
+/* The same of a ray at the splat parameter u, by what the filter is at a place. */
+static double filtered_response(const oracle_view *view, const ray_parameters *at, const double u[2], double q,
+                                double *doubt) {
+  oracle_symmetric filter = {at->spread.xx - 1.0, at->spread.xy, at->spread.yy - 1.0};
+  double greater = at->iz > 0.0 ? oracle_greater_eigenvalue(filter) : 0.0;
   double lesser = greater > 0.0 ? oracle_max(oracle_determinant(filter), 0.0) / greater : 0.0;
   const double share[2] = {lesser / (1.0 + lesser), greater / (1.0 + greater)};
   double squared = u[0] * u[0] + u[1] * u[1], form = oracle_form(filter, u);
@@ -54,6 +53,17 @@ static double ray_response(const oracle_view *view, const oracle_shape *shape, c
   double apart = (greater - lesser + greater / 4096.0) * (1.0 + greater);
   double across = apart > 0.0 ? (form - lesser * squared) / apart : 0.0;
   return conic_oracle_response(view, share, direction, across, q, doubt);
+}
+
+/* By the filter where the pixel looks; if inverse depth changes little, where the splat's pixels are counted from. */
+static double ray_response(const oracle_view *view, const oracle_shape *shape, const ray_parameters *at,
+                           const double u[2], double q, double *doubt) {
+  const double ratio = shape->range[1] / (1.125 * shape->range[0]);
+  ray_parameters center = find_parameters(view, shape, shape->center[0], shape->center[1]);
+  double value = filtered_response(view, ratio > 1.0 ? at : &center, u, q, doubt);
+  if (doubt && fabs(ratio - 1.0) < 1e-5)
+    *doubt += fabs(value - filtered_response(view, ratio > 1.0 ? &center : at, u, q, NULL));
+  return value;
 }
 
 static double gradient_length(const oracle_shape *shape) {
@@ -73,7 +83,7 @@ static void evaluate_ray(const oracle_view *view, const oracle_shape *shape, dou
   values[ORACLE_MARGIN_RIGHT] = shape->box[1][0] - x;
   values[ORACLE_MARGIN_TOP] = y - shape->box[0][1];
   values[ORACLE_MARGIN_BOTTOM] = shape->box[1][1] - y;
-  values[ORACLE_WEIGHT] = ray_response(view, shape, at.u, q, NULL) / sqrt(oracle_determinant(at.spread));
+  values[ORACLE_WEIGHT] = ray_response(view, shape, &at, at.u, q, NULL) / sqrt(oracle_determinant(at.spread));
   values[ORACLE_IZ] = clamp_to(shape->range, at.iz);
   values[ORACLE_IZ_PLANE] = at.iz;
 }
@@ -131,7 +141,7 @@ static void evaluate_laplace(const oracle_view *view, const oracle_shape *shape,
   values[ORACLE_MARGIN_RIGHT] = shape->box[1][0] - x;
   values[ORACLE_MARGIN_TOP] = y - shape->box[0][1];
   values[ORACLE_MARGIN_BOTTOM] = shape->box[1][1] - y;
-  values[ORACLE_WEIGHT] = ray_response(view, shape, u, q, NULL) / sqrt(determinant);
+  values[ORACLE_WEIGHT] = ray_response(view, shape, &at, u, q, NULL) / sqrt(determinant);
   values[ORACLE_IZ] = clamp_to(shape->range, at.iz);
   values[ORACLE_IZ_PLANE] = here.iz;
 }
@@ -238,9 +248,9 @@ static double response_at(const oracle_view *view, const oracle_shape *shape, do
     return ellipse_response(view, shape, offset, q, doubt);
   ray_parameters at =
       shape->formula == ORACLE_LAPLACE ? find_pulled(view, shape, x, y, pull) : find_parameters(view, shape, x, y);
-  for (int i = 0; i < 2; i++)
-    at.u[i] += at.jacobian[i][0] * pull[0] + at.jacobian[i][1] * pull[1];
-  return ray_response(view, shape, at.u, q, doubt);
+  const double u[2] = {at.u[0] + at.jacobian[0][0] * pull[0] + at.jacobian[0][1] * pull[1],
+                       at.u[1] + at.jacobian[1][0] * pull[0] + at.jacobian[1][1] * pull[1]};
+  return ray_response(view, shape, &at, u, q, doubt);
 }
 
 void conic_oracle_rounding(const oracle_view *view, const oracle_shape *shape, double x, double y,

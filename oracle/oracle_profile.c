@@ -2,7 +2,7 @@
 
 #include "core/base/memory.h"
 
-enum { LEVELS = 15, RADII = 16, NODES = 5, PARTS = 40, KNOWN = 256, NORMALS = 225 };
+enum { LEVELS = 18, RADII = 16, NODES = 5, PARTS = 40, KNOWN = 256, NORMALS = 225 };
 enum { STEPS = 16, PLACES = 9, TERMS = 16 };
 
 static const double node_directions[NODES] = {0.0, 0.15, 0.5, 0.85, 1.0};
@@ -27,12 +27,12 @@ static int is_flat(const oracle_view *view) {
 }
 
 static double level_share(int level) {
-  double s = ((double)(1 << level) - 1.0) / 16384.0;
+  double s = ((double)(1 << level) - 1.0) / 131072.0;
   return 4.0 * s / (1.0 + 3.0 * s);
 }
 
 static double bend_of(const oracle_view *view, const double share[2]) {
-  return is_flat(view) ? sqrt((share[0] + 0.007) / (share[1] + 0.007)) : 1.0;
+  return is_flat(view) ? sqrt((share[0] + 0.002) / (share[1] + 0.002)) : 1.0;
 }
 
 /* By the series of the distribution's odd part. */
@@ -285,7 +285,7 @@ static double steep_response(const oracle_view *view, const double share[2], dou
   double place = (RADII - 1) * sqrt(is_flat(view) ? 1.0 - part : part);
   int i_radius = (int)oracle_min(place, RADII - 2.0), level[2];
   for (int i = 0; i < 2; i++) {
-    double s = 1.0 + 16384.0 * share[i] / (4.0 - 3.0 * share[i]);
+    double s = 1.0 + 131072.0 * share[i] / (4.0 - 3.0 * share[i]);
     for (level[i] = 0; level[i] < LEVELS - 2 && s >= (double)(2 << level[i]); level[i]++)
       ;
     level_part[i] = s / (double)(1 << level[i]) - 1.0;

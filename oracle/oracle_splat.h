@@ -32,6 +32,7 @@ typedef struct oracle_view {
   double support;   /* a pixel is covered where q is below this */
   double prefilter; /* h */
   double reach_px;  /* F_g·√h: by how much the prefilter widens an outline */
+  double steepness; /* the factor of the bound by which `auto` takes ray */
   double thin_px;   /* below this smaller standard deviation a splat is not drawn by ray */
   int method;
   int cull_back;
@@ -42,6 +43,7 @@ typedef struct oracle_view {
 /* The error of a weight from which on `auto` draws by ray, and the bound's factor: docs/reference/picture.md, Auto. */
 #define ORACLE_AUTO_ERROR 4e-3
 #define ORACLE_AUTO_STEEPNESS 0.68
+#define ORACLE_AUTO_BY_SLOPE 1.12
 /* And the relative change of inverse depth over the filter's standard deviation from which on it draws by laplace. */
 #define ORACLE_AUTO_CHANGE 1e-2
 

@@ -84,7 +84,7 @@ static void smooth_fit_solve(const smooth_fit *fit, const double values[SMOOTH_N
 enum { LEVELS = CONIC_PROFILE_LEVELS, TERMS = CONIC_PROFILE_TERMS, RADII = CONIC_PROFILE_RADII };
 enum { SMOOTH = CONIC_PROFILE_SMOOTH_LEVELS };
 /* Lesser shares of levels from here on are smooth. */
-enum { STEEP = 10 };
+enum { STEEP = 13 };
 /* Parts of a line that is blurred, an even number; and of the radius at which a blurred kernel is known. */
 enum { PARTS = 40, N_KNOWN = 256 };
 /* The normal distribution is known at so many places, up to 7. */
@@ -285,8 +285,18 @@ static double end_of_kernel(const conic_kernel *kernel) {
   return end < 4.0 * cutoff ? end : 4.0 * cutoff;
 }
 
+enum { N_RINGS = 1024 };
+
+double conic_profile_slope(const conic_kernel *kernel) {
+  double step = end_of_kernel(kernel) / (double)N_RINGS, most = 0.0;
+  for (int i = 0; i < N_RINGS; i++) {
+    double fall = plain_kernel(kernel, step * (double)i) - plain_kernel(kernel, step * (double)(i + 1));
+    most = fall > most ? fall : most;
+  }
+  return most / step;
+}
+
 static conic_profile reading(const conic_kernel *kernel, const float *table) {
-  enum { N_RINGS = 1024 };
   float by_q = 1.0f / conic_kernel_support(kernel);
   double end = end_of_kernel(kernel), integral = 0.0;
   for (int i = 0; i < N_RINGS; i++) {

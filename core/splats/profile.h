@@ -16,9 +16,9 @@
 #define CONIC_FAR
 #endif
 
-/* Levels of the share t, s = (2ⁱ - 1)/16384 with t = 4s/(1 + 3s); for each two of them the coefficients of a polynomial
- * in the direction, each at so many radii. */
-enum { CONIC_PROFILE_LEVELS = 15, CONIC_PROFILE_TERMS = 5, CONIC_PROFILE_RADII = 16 };
+/* Levels of the share t, s = (2ⁱ - 1)/131072 with t = 4s/(1 + 3s); for each two of them the coefficients of a
+ * polynomial in the direction, each at so many radii. */
+enum { CONIC_PROFILE_LEVELS = 18, CONIC_PROFILE_TERMS = 5, CONIC_PROFILE_RADII = 16 };
 enum { CONIC_PROFILE_SLICE = CONIC_PROFILE_TERMS * CONIC_PROFILE_RADII };
 enum { CONIC_PROFILE_STEEP = CONIC_PROFILE_LEVELS * CONIC_PROFILE_LEVELS * CONIC_PROFILE_SLICE };
 
@@ -30,10 +30,10 @@ enum {
       CONIC_PROFILE_STEEP + CONIC_PROFILE_SMOOTH_LEVELS * CONIC_PROFILE_SMOOTH_LEVELS * CONIC_PROFILE_SMOOTH_TERMS
 };
 
-#define CONIC_PROFILE_PLACES 16384.0f
+#define CONIC_PROFILE_PLACES 131072.0f
 #define CONIC_PROFILE_ROUND 0x1p-12f     /* keeps roundings from choosing the direction of a nearly round splat */
 #define CONIC_PROFILE_LAST 0x1.dffffep3f /* the last place between the radii */
-#define CONIC_PROFILE_BEND 0.007f        /* added to the shares of a bent direction */
+#define CONIC_PROFILE_BEND 0.002f        /* added to the shares of a bent direction */
 
 /* How a kernel's table is read, and the table; null for a kernel that has none. */
 typedef struct conic_profile {
@@ -45,6 +45,9 @@ typedef struct conic_profile {
 
 /* Finds or makes the kernel's table, which lasts as long as the context. Not from inside a task. Errors: MEMORY. */
 conic_status conic_profile_make(conic_context *context, const conic_kernel *kernel, conic_profile *profile);
+
+/* The most that the kernel falls by over a part of its radius, over that part. */
+double conic_profile_slope(const conic_kernel *kernel);
 
 /* One splat's part in it. */
 typedef struct conic_aim {
@@ -62,7 +65,7 @@ static inline void conic_profile_level(float share, int *level, float *part) {
   share = share > 0.0f ? share : 0.0f;
   float place = share / (4.0f - 3.0f * share) * CONIC_PROFILE_PLACES + 1.0f;
   uint32_t bits;
-  place = place < 0x1.fffffep13f ? place : 0x1.fffffep13f;
+  place = place < 0x1.fffffep16f ? place : 0x1.fffffep16f;
   memcpy(&bits, &place, sizeof bits);
   *level = (int)(bits >> 23) - 127;
   bits = (bits & 0x7fffffu) | 0x3f800000u;

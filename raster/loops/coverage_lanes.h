@@ -58,6 +58,8 @@ CONIC_INLINE splat_rows begin_rows(const conic_footprint *footprint, lanes y) {
 /* The splat's part of the profile, where there is one. */
 CONIC_INLINE void begin_profile(const conic_view *view, const conic_footprint *footprint, const conic_ray *rays,
                                 uint32_t i_ray, splat_rows *rows) {
+  if (footprint->s3 == 0.0f && conic_is_deep(footprint))
+    return;
   rows->slice.aim =
       footprint->s3 == 0.0f ? conic_ray_aim(view, footprint, &rays[i_ray]) : conic_variance_aim(view, footprint);
   cut_slice(&view->profile, &rows->slice);
@@ -76,6 +78,25 @@ CONIC_INLINE void ellipse_fragments(const conic_view *view, const splat_rows *ro
     f->scale = smooth_lanes(rows->smooth, f->q, major, rows->minor);
   else if (kind == SPLAT_PROFILED && lanes_any(f->covered))
     f->scale = profile_lanes(&view->profile, &rows->slice, f->q, major, rows->minor);
+}
+
+/* conic_ray_profile, lane by lane: from the slice, or where every pixel has shares of its own as plain C does it. */
+CONIC_INLINE lanes ray_profiles(const conic_view *view, const conic_footprint *footprint, const profile_slice *slice,
+                                const fragments *f, lanes xx, lanes xy, lanes yy, lanes area, lanes u, lanes v) {
+  if (!conic_is_deep(footprint))
+    return profile_lanes(&view->profile, slice, f->q, u, v);
+  float from[7][CONIC_LANES], values[CONIC_LANES] = {0.0f};
+  const lanes stored[7] = {xx, xy, yy, area * area, f->q, u, v};
+  unsigned covered = lanes_bits(f->covered);
+  for (int i = 0; i < 7; i++)
+    lanes_store(from[i], stored[i]);
+  for (int lane = 0; lane < CONIC_LANES; lane++) {
+    if (!(covered >> lane & 1))
+      continue;
+    conic_aim aim = conic_aim_of(&view->profile, from[0][lane], from[1][lane], from[2][lane], from[3][lane], 1);
+    values[lane] = conic_profile_at(&view->profile, &aim, from[4][lane], from[5][lane], from[6][lane]);
+  }
+  return lanes_load(values);
 }
 
 /* The plane's inverse depth, and where that and the box let a ray cover pixels. */
@@ -100,8 +121,8 @@ CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *f
   lanes u_x = (ray->u_dx - u * footprint->iz_dx) * r, u_y = (ray->u_dy - u * footprint->iz_dy) * r;
   lanes v_x = (ray->v_dx - v * footprint->iz_dx) * r, v_y = (ray->v_dy - v * footprint->iz_dy) * r;
   float h = view->prefilter;
-  lanes s_uu = 1.0f + h * (u_x * u_x + u_y * u_y);
-  lanes s_vv = 1.0f + h * (v_x * v_x + v_y * v_y);
+  lanes xx = h * (u_x * u_x + u_y * u_y), yy = h * (v_x * v_x + v_y * v_y);
+  lanes s_uu = 1.0f + xx, s_vv = 1.0f + yy;
   lanes s_uv = h * (u_x * v_x + u_y * v_y);
   lanes area = u_x * v_y - u_y * v_x;
   lanes determinant = (s_uu + s_vv - 1.0f) + (h * area) * (h * area);
@@ -112,7 +133,7 @@ CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *f
   f->plane_iz = iz;
   f->scale = lanes_sqrt(s_uu * inverse);
   if (slice && lanes_any(f->covered))
-    f->scale *= profile_lanes(&view->profile, slice, f->q, u, v);
+    f->scale *= ray_profiles(view, footprint, slice, f, xx, s_uv, yy, h * area, u, v);
 }
 
 /* conic_laplace_fragment of coverage.h, lane by lane. */
@@ -125,7 +146,8 @@ CONIC_INLINE void laplace_fragments(const conic_view *view, const conic_footprin
   f->plane_iz = at.plane_iz;
   f->scale = at.scale;
   if (slice && lanes_any(f->covered))
-    f->scale *= profile_lanes(&view->profile, slice, at.q, at.u, at.v);
+    f->scale *= ray_profiles(view, footprint, slice, f, at.spread.xx, at.spread.uv, at.spread.yy,
+                             view->prefilter * at.spread.area, at.u, at.v);
 }
 
 CONIC_INLINE lanes ray_lengths(lanes ray_x, lanes ray_y) {

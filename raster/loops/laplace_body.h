@@ -26,6 +26,7 @@ CONIC_INLINE spots select_spots(lanes_mask mask, const spots *yes, const spots *
 
 typedef struct spreads {
   lanes u_x, u_y, v_x, v_y, area;
+  lanes xx, yy;
   lanes uu, uv, vv, determinant;
 } spreads;
 
@@ -36,8 +37,10 @@ CONIC_INLINE spreads spreads_at(const conic_footprint *footprint, const conic_ra
   s.v_x = (ray->v_dx - at->v * footprint->iz_dx) * at->r;
   s.v_y = (ray->v_dy - at->v * footprint->iz_dy) * at->r;
   s.area = s.u_x * s.v_y - s.u_y * s.v_x;
-  s.uu = 1.0f + h * (s.u_x * s.u_x + s.u_y * s.u_y);
-  s.vv = 1.0f + h * (s.v_x * s.v_x + s.v_y * s.v_y);
+  s.xx = h * (s.u_x * s.u_x + s.u_y * s.u_y);
+  s.yy = h * (s.v_x * s.v_x + s.v_y * s.v_y);
+  s.uu = 1.0f + s.xx;
+  s.vv = 1.0f + s.yy;
   s.uv = h * (s.u_x * s.v_x + s.u_y * s.v_y);
   s.determinant = (s.uu + s.vv - 1.0f) + (h * s.area) * (h * s.area);
   return s;
@@ -56,6 +59,7 @@ CONIC_INLINE lanes curved_determinants(const conic_footprint *footprint, const s
 typedef struct laplaces {
   lanes_mask covered;
   lanes q, scale, iz, plane_iz, u, v;
+  spreads spread;
 } laplaces;
 
 CONIC_INLINE laplaces laplaces_at(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
@@ -82,6 +86,7 @@ CONIC_INLINE laplaces laplaces_at(const conic_view *view, const conic_footprint 
   result.scale = 1.0f / lanes_sqrt(curved_determinants(footprint, &at, &s, h));
   result.u = u;
   result.v = v;
+  result.spread = s;
   result.iz = at.iz;
   result.plane_iz = here.iz;
   return result;

@@ -32,10 +32,11 @@ static inline int conic_spot_is_within(const conic_spot *spot, float limit) {
   return spot->iz > 0.0f && spot->u * spot->u + spot->v * spot->v <= limit;
 }
 
-/* The change of u and v by a pixel, and what the filter makes of it: S = I + h·JJᵀ and its determinant. No term of
- * these sums is negative. */
+/* The change of u and v by a pixel, and what the filter makes of it: h·JJᵀ, S = I + h·JJᵀ and its determinant. No term
+ * of these sums is negative. */
 typedef struct conic_spread {
   float u_x, u_y, v_x, v_y, area;
+  float xx, yy;
   float uu, uv, vv, determinant;
 } conic_spread;
 
@@ -47,8 +48,10 @@ static inline conic_spread conic_spread_at(const conic_footprint *footprint, con
   s.v_x = (ray->v_dx - at->v * footprint->iz_dx) * at->r;
   s.v_y = (ray->v_dy - at->v * footprint->iz_dy) * at->r;
   s.area = s.u_x * s.v_y - s.u_y * s.v_x;
-  s.uu = 1.0f + h * (s.u_x * s.u_x + s.u_y * s.u_y);
-  s.vv = 1.0f + h * (s.v_x * s.v_x + s.v_y * s.v_y);
+  s.xx = h * (s.u_x * s.u_x + s.u_y * s.u_y);
+  s.yy = h * (s.v_x * s.v_x + s.v_y * s.v_y);
+  s.uu = 1.0f + s.xx;
+  s.vv = 1.0f + s.yy;
   s.uv = h * (s.u_x * s.v_x + s.u_y * s.v_y);
   s.determinant = (s.uu + s.vv - 1.0f) + (h * s.area) * (h * s.area);
   return s;
@@ -71,6 +74,7 @@ static inline float conic_curved_determinant(const conic_footprint *footprint, c
 typedef struct conic_laplace {
   float q, scale, u, v;
   float iz, plane_iz; /* iz where the pixel mostly looks, not clamped; the plane's at the pixel */
+  conic_spread spread;
 } conic_laplace;
 
 /* 1 where the pixel is covered. */
@@ -100,6 +104,7 @@ static inline int conic_laplace_at(const conic_view *view, const conic_footprint
   result->scale = 1.0f / sqrtf(conic_curved_determinant(footprint, &at, &s, h));
   result->u = u;
   result->v = v;
+  result->spread = s;
   result->iz = at.iz;
   result->plane_iz = here.iz;
   return 1;

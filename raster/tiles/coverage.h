@@ -93,6 +93,21 @@ static inline conic_aim conic_ray_aim(const conic_view *view, const conic_footpr
                       h * (v_x * v_x + v_y * v_y), area * area, 1);
 }
 
+/* Whether perspective changes the filter's shares within the disc by so much that every pixel has its own. */
+#define CONIC_DEEP 1.125f
+
+static inline int conic_is_deep(const conic_footprint *footprint) {
+  return footprint->iz_near > CONIC_DEEP * footprint->iz_far;
+}
+
+/* The profile of a ray's pixel at (u, v), where h·JJᵀ is so. */
+static inline float conic_ray_profile(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
+                                      float xx, float xy, float yy, float area, float q, float u, float v) {
+  conic_aim aim = conic_is_deep(footprint) ? conic_aim_of(&view->profile, xx, xy, yy, area * area, 1)
+                                           : conic_ray_aim(view, footprint, ray);
+  return conic_profile_at(&view->profile, &aim, q, u, v);
+}
+
 /* The exact ray–splat parameter with the pixel's filter mapped into the splat (docs/reference/picture.md): 1 where the
  * pixel is covered. */
 static inline int conic_ray_fragment(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
@@ -108,8 +123,8 @@ static inline int conic_ray_fragment(const conic_view *view, const conic_footpri
   float u_x = (ray->u_dx - u * footprint->iz_dx) * r, u_y = (ray->u_dy - u * footprint->iz_dy) * r;
   float v_x = (ray->v_dx - v * footprint->iz_dx) * r, v_y = (ray->v_dy - v * footprint->iz_dy) * r;
   float h = view->prefilter;
-  float s_uu = 1.0f + h * (u_x * u_x + u_y * u_y);
-  float s_vv = 1.0f + h * (v_x * v_x + v_y * v_y);
+  float xx = h * (u_x * u_x + u_y * u_y), yy = h * (v_x * v_x + v_y * v_y);
+  float s_uu = 1.0f + xx, s_vv = 1.0f + yy;
   float s_uv = h * (u_x * v_x + u_y * v_y);
   /* |I + h·JJᵀ| = 1 + h·tr(JJᵀ) + h²·|J|²: sums of what is not negative. */
   float area = u_x * v_y - u_y * v_x;
@@ -123,10 +138,8 @@ static inline int conic_ray_fragment(const conic_view *view, const conic_footpri
   fragment->iz = conic_clamp_iz(footprint, iz);
   fragment->plane_iz = iz;
   fragment->scale = sqrtf(s_uu * inverse);
-  if (view->profile.table) {
-    conic_aim aim = conic_ray_aim(view, footprint, ray);
-    fragment->scale *= conic_profile_at(&view->profile, &aim, q, u, v);
-  }
+  if (view->profile.table)
+    fragment->scale *= conic_ray_profile(view, footprint, ray, xx, s_uv, yy, h * area, q, u, v);
   return 1;
 }
 
@@ -147,10 +160,9 @@ static inline int conic_laplace_fragment(const conic_view *view, const conic_foo
   fragment->iz = conic_clamp_iz(footprint, at.iz);
   fragment->plane_iz = at.plane_iz;
   fragment->scale = at.scale;
-  if (view->profile.table) {
-    conic_aim aim = conic_ray_aim(view, footprint, ray);
-    fragment->scale *= conic_profile_at(&view->profile, &aim, at.q, at.u, at.v);
-  }
+  if (view->profile.table)
+    fragment->scale *= conic_ray_profile(view, footprint, ray, at.spread.xx, at.spread.uv, at.spread.yy,
+                                         view->prefilter * at.spread.area, at.q, at.u, at.v);
   return 1;
 }
 

@@ -25,9 +25,11 @@ static inline int conic_method_has_exact_outline(conic_method method) {
 }
 
 /* `auto` hands over from conic to ray at the first error of a weight, for a kernel of peak 1. conic's error is at most
- * the second times A·√q, where its centre is √q standard deviations off (docs/reference/picture.md, Auto). */
+ * the second times A·√q, where its centre is √q standard deviations off (docs/reference/picture.md, Auto); of a kernel
+ * that is no Gaussian the third times its slope takes the second's place. */
 #define CONIC_AUTO_ERROR 4e-3f
 #define CONIC_AUTO_STEEPNESS 0.68f
+#define CONIC_AUTO_BY_SLOPE 1.12f
 /* `ray` is good as long as inverse depth changes by no larger a share of itself over the filter's standard deviation.
  */
 #define CONIC_AUTO_CHANGE 1e-2f

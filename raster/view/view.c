@@ -65,6 +65,14 @@ static void place_eye(conic_view *view) {
   view->nearest_sure = is_usual ? (float)fmax(1e-3 * reach, 1e-15) : HUGE_VALF;
 }
 
+/* Whatever ends at its rim and is flat before it is right where its outline is. */
+static float auto_limit(const conic_kernel *kernel) {
+  const unsigned traits = conic_kernel_traits(kernel);
+  float steepness =
+      traits & CONIC_IS_GAUSSIAN ? CONIC_AUTO_STEEPNESS : CONIC_AUTO_BY_SLOPE * (float)conic_profile_slope(kernel);
+  return traits & CONIC_IS_FLAT ? HUGE_VALF : (CONIC_AUTO_ERROR / steepness) * (CONIC_AUTO_ERROR / steepness);
+}
+
 conic_status conic_view_init(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                              const conic_render_options *options, double near_z, double splat_length,
                              conic_view *view) {
@@ -98,7 +106,7 @@ conic_status conic_view_init(conic_context *context, const conic_splats *splats,
   view->cull_back = options->cull_back;
   place_eye(view);
   view->thin = thin_variance(options);
-  view->auto_limit = (CONIC_AUTO_ERROR / CONIC_AUTO_STEEPNESS) * (CONIC_AUTO_ERROR / CONIC_AUTO_STEEPNESS);
+  view->auto_limit = auto_limit(&view->kernel);
   if (options->epsilon >= 0.0) {
     view->epsilon_scale = HUGE_VALF;
     view->epsilon_cap = (float)options->epsilon;
