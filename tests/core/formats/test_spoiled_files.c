@@ -231,6 +231,22 @@ static void test_random(conic_context *context, const seed *from) {
   }
 }
 
+/* Of a zip archive, every file that has another sum than its entry in the index says is refused. */
+static void test_zip_sums(conic_context *context, const seed *from) {
+  if (!strstr(from->name, ".sog"))
+    return;
+  int n_entries = 0;
+  for (size_t at = 0; at + 46 <= from->n_bytes; at++) {
+    if (memcmp(from->bytes + at, "PK\1\2", 4) != 0)
+      continue;
+    from->bytes[at + 16] ^= 0x55;
+    CHECK(!check(context, from, from->bytes, from->n_bytes));
+    from->bytes[at + 16] ^= 0x55;
+    n_entries++;
+  }
+  CHECK(n_entries > 1);
+}
+
 static void test_no_file(conic_context *context, const seed *from) {
   n_messages = 0;
   CHECK(read_target(context, from->target, files_path("absent")) == CONIC_ERROR_INPUT && n_messages == 1);
@@ -269,6 +285,7 @@ int main(void) {
     test_cut(counted, &set->seeds[i]);
     test_replaced(counted, &set->seeds[i]);
     test_random(counted, &set->seeds[i]);
+    test_zip_sums(counted, &set->seeds[i]);
   }
   test_foreign(context, counted, "tif", 1);
   test_foreign(context, counted, "jpg", 0);
