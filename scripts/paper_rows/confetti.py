@@ -1,7 +1,9 @@
 """Confetti: Object-Space Point Blending and Splatting (Pajarola, Sainz, Guidotti)."""
 
-from .page import FULL, OTHER, PARTLY, Rows
-from .tools import import_numpy, read_positions
+import math
+
+from .page import ABSENT, FULL, OTHER, PARTLY, Rows
+from .tools import import_numpy, read_floats, read_positions
 
 TITLE = "Confetti"
 INTRODUCTION = """
@@ -48,6 +50,36 @@ def _(bench):
     knot = bench.once("knot.ply", lambda out: bench.run("make", "knot", "-n", 6000, "-o", out))
     report = bench.run("verify", knot, "--size", "128x128")
     return f"colours within {report['planes']['rgba']['max_abs']:.1e} of the slow reference, {report['wrong_pixels']} wrong"
+
+
+def width_and_slope(a, n):
+    """Where ψ(a,n) with b = 1.5 is a half, and its greatest fall over a unit of r."""
+    steps = 3000
+    parts = [(i / steps) ** n for i in range(steps + 1)]
+    values = [math.exp(-a * part / (1 - part)) if part < 1 else 0.0 for part in parts]
+    slope = max(values[i] - values[i + 1] for i in range(steps)) * steps / 1.5
+    return 1.5 * (math.log(2) / (a + math.log(2))) ** (1 / n), slope
+
+
+@add("C6", "Eqs. 9–10, Fig. 8: of ψ, a sets the width and n the slope", FULL, "scripts/kernels --plot psi.svg",
+     "With r/b for r − b ([errata](../notes/errata.md)); [plot](../pictures/papers/psi.svg)", quick=True)
+def _(_):
+    texts = []
+    for a, n in ((1, 2), (6, 3), (5, 4), (4, 5), (3, 6)):
+        width, slope = width_and_slope(a, n)
+        texts.append(f"ψ({a},{n}) {width:.2f}, {slope:.2f}")
+    return "half at r, greatest slope: " + "; ".join(texts)
+
+
+words("C7", "Fig. 9: a Gaussian of σ 0.5 shows facets, one of 0.8 blurs, ψ(4,5) lies between", FULL, "scripts/paper-pictures",
+      "[The lion](../pictures/papers/confetti-9.png) with levels of 0.1 px: σ 0.5 is a cutoff of 3, σ 0.8 of 1.875")
+words("C8", "Fig. 15: 512² points of a checkerboard, τ 0.02 %: ψ(1,2) blurs more than ψ(6,3), which still smooths some", FULL,
+      "scripts/paper-pictures", "[Levels of 0.1 px, no prefilter](../pictures/papers/confetti-15.png)")
+words("C9", "Fig. 16: ψ(4,5) is smooth with detail, ψ(6,3) faceted, τ 0", FULL, "scripts/paper-pictures",
+      "[The lion](../pictures/papers/confetti-16.png)")
+words("C10", "§8: (3,6) to (5,4) are the best compromise", PARTLY, "scripts/kernels",
+      "No kernel is nearest everywhere. On six models these are within 0.1 dB of each other but for one; ψ(2,2) is nearest in "
+      "the mean, by 0.04 to 0.15 dB ([measured](../notes/kernels.md))")
 
 
 words("C11", "§6.2, Fig. 11: frustum and normal-cone culling", FULL, "conic render x.cot --cull back")
@@ -142,12 +174,32 @@ def _(bench):
     return f"lion {100 * report['splats_in'] / 341989:.1f} %, {bench.decibels('whole.pfm', 'near.pfm'):.1f} dB"
 
 
+def blended(bench, file, *options):
+    bench.render(file, "--size", "1280x1024", "--aov", "count", *options, out="count.pfm")
+    counts = read_floats(bench.path("count.pfm"))
+    return f"{counts[counts > 0].mean():.1f}"
+
+
+@add("C21", "Fig. 18, 1280×1024, τ 0.02 %: few splats overlap, mostly 1 is blended", PARTLY,
+     "conic render lion.cot --aov count --error PX --prefilter H",
+     "Outlines that leave no hole lie five deep, and the prefilter widens each by 1.5 px, which counts where points are as near "
+     "as that: [why](../notes/kernels.md#what-a-pixel-blends)", quick=True)
+def _(bench):
+    bench.octree("lion.ply")
+    file = bench.path("lion.cot")
+    texts = [f"{error} px {blended(bench, file, '--error', error)} (no prefilter "
+             f"{blended(bench, file, '--error', error, '--prefilter', 0)})" for error in (0, 0.2, 1, 4)]
+    return "blended a pixel: lion at " + "; ".join(texts)
+
+
 words("C22", "§8: no popping and no aliasing in motion", FULL, "test_octree_pictures",
       "Moving in at τ 1 px, frames differ 0.99–1.00 times as much as those of all splats")
 words("C23", "Future: transparency", FULL, "conic render --transparency", "[Exact, by sorted layers](transparency.md)")
 words("C24", "Future: visibility and blending in a single pass", PARTLY, "conic bench",
       "Set-up is one pass for both; a tile is then visited for visibility and once more for blending, while it is in the "
       "cache")
+words("C25", "Future: parameters of the kernel by themselves", ABSENT, "conic render --kernel",
+      "None are better everywhere: dense models want another kernel than a checkerboard does ([measured](../notes/kernels.md))")
 DEPARTURES = [
     "Covariances are about each node's mean, not the world's origin.",
     "A node's error is how far its ellipse stands from its leaves, not its size; tilt has a weight of its own.",
