@@ -23,7 +23,7 @@ static int read_normal(const conic_triangles *t, uint32_t triangle, int k, doubl
   return conic_normalize(normal);
 }
 
-int conic_patch_mesh_corner(const conic_patch_mesh *mesh, uint32_t number, conic_mesh_corner *c) {
+int conic_patch_mesh_corner(const conic_patch_mesh *mesh, uint32_t number, conic_patch_corner *c) {
   const conic_triangles *t = mesh->triangles;
   uint32_t triangle = number / 3;
   for (int i = 0; i < 3; i++) {
@@ -49,7 +49,7 @@ static int group_corners(const conic_patch_mesh *mesh, size_t slot) {
   uint32_t *corners = mesh->corners + mesh->starts[slot], sorted[MOST_CORNERS];
   size_t n = mesh->starts[slot + 1] - mesh->starts[slot], n_sorted = 0;
   int n_sides = 0, is_taken[MOST_CORNERS] = {0};
-  conic_mesh_corner first, c;
+  conic_patch_corner first, c;
   for (size_t i = 0; i < n; i++) {
     if (is_taken[i])
       continue;
@@ -67,7 +67,7 @@ static int group_corners(const conic_patch_mesh *mesh, size_t slot) {
 }
 
 size_t conic_patch_mesh_side_end(const conic_patch_mesh *mesh, size_t begin, size_t end) {
-  conic_mesh_corner first, c;
+  conic_patch_corner first, c;
   size_t at = begin + 1;
   conic_patch_mesh_corner(mesh, mesh->corners[begin], &first);
   while (at < end && conic_patch_mesh_corner(mesh, mesh->corners[at], &c) &&
@@ -78,7 +78,7 @@ size_t conic_patch_mesh_side_end(const conic_patch_mesh *mesh, size_t begin, siz
 
 int conic_patch_mesh_bound_side(const conic_patch_mesh *mesh, size_t begin, size_t end, uint32_t rays[2],
                                 int others[2]) {
-  conic_mesh_corner c, d;
+  conic_patch_corner c, d;
   int n_rays = 0;
   for (size_t i = begin; i < end; i++) {
     if (!conic_patch_mesh_corner(mesh, mesh->corners[i], &c) || !(conic_dot(c.normals[0], c.across) >= STEEP))

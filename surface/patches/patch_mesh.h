@@ -24,14 +24,14 @@ conic_status conic_patch_mesh_create(conic_context *context, const conic_triangl
 void conic_patch_mesh_release(conic_context *context, conic_patch_mesh *mesh);
 
 /* A triangle from one of its corners: the places and normals of the others, from and beside the corner's own. */
-typedef struct conic_mesh_corner {
+typedef struct conic_patch_corner {
   uint32_t slots[3];
   double offsets[3][3], normals[3][3];
   double across[3]; /* the triangle's unit normal, on the corner's normal's side */
-} conic_mesh_corner;
+} conic_patch_corner;
 
 /* Reads a corner. Returns 0 for a triangle without area, or without a normal. */
-int conic_patch_mesh_corner(const conic_patch_mesh *mesh, uint32_t number, conic_mesh_corner *corner);
+int conic_patch_mesh_corner(const conic_patch_mesh *mesh, uint32_t number, conic_patch_corner *corner);
 
 /* Where the side ends, in `corners`, that begins at `begin`; no farther than `end`. */
 size_t conic_patch_mesh_side_end(const conic_patch_mesh *mesh, size_t begin, size_t end);

@@ -41,7 +41,7 @@ static void see(const vertex_fit *fit, const double d[3], double seen[3]) {
 }
 
 /* What the vertex has of a triangle: up to the middles of two edges and of the triangle. */
-static void see_share(const vertex_fit *fit, size_t i, conic_mesh_corner *c, double seen[2][3], double share[3][2]) {
+static void see_share(const vertex_fit *fit, size_t i, conic_patch_corner *c, double seen[2][3], double share[3][2]) {
   conic_patch_mesh_corner(fit->mesh, fit->mesh->corners[i], c);
   see(fit, c->offsets[1], seen[0]);
   see(fit, c->offsets[2], seen[1]);
@@ -56,7 +56,7 @@ static void see_share(const vertex_fit *fit, size_t i, conic_mesh_corner *c, dou
 static int lay_ellipse(vertex_fit *fit) {
   double covariance[3] = {0.0, 0.0, 0.0}, seen[2][3], share[3][2];
   float axes[2][3];
-  conic_mesh_corner c;
+  conic_patch_corner c;
   for (size_t i = fit->begin; i < fit->end; i++) {
     see_share(fit, i, &c, seen, share);
     for (int k = 0; k < 3; k++)
@@ -96,7 +96,7 @@ static void add_line(const vertex_fit *fit, conic_patch_fence *fence, const doub
 static void find_direction(const vertex_fit *fit, size_t vertex, uint32_t slot, const double edge[3], double along[2]) {
   const conic_patch_mesh *mesh = fit->mesh;
   double length2 = edge[0] * edge[0] + edge[1] * edge[1], seen[3];
-  conic_mesh_corner c;
+  conic_patch_corner c;
   along[0] = edge[0] / sqrt(length2);
   along[1] = edge[1] / sqrt(length2);
   for (size_t i = mesh->starts[vertex]; i < mesh->starts[vertex + 1]; i++) {
@@ -120,7 +120,7 @@ static void find_direction(const vertex_fit *fit, size_t vertex, uint32_t slot, 
 /* Lays a curve through the vertex and the other end of a crease's or a border's edge. */
 static void lay_ray(const vertex_fit *fit, size_t vertex, uint32_t corner, int k, conic_patch_fence *fence,
                     double along[2]) {
-  conic_mesh_corner c;
+  conic_patch_corner c;
   double edge[3], inside[3];
   conic_patch_mesh_corner(fit->mesh, corner, &c);
   see(fit, c.offsets[k], edge);
@@ -137,7 +137,7 @@ static void lay_ray(const vertex_fit *fit, size_t vertex, uint32_t corner, int k
 static int lay_outer_edges(const vertex_fit *fit, conic_patch_fence *fence) {
   static const double straight[2] = {0.0, 0.0};
   double seen[2][3], share[3][2];
-  conic_mesh_corner c;
+  conic_patch_corner c;
   int n_rays = fence->n_lines;
   for (size_t i = fit->begin; i < fit->end; i++) {
     see_share(fit, i, &c, seen, share);
@@ -234,7 +234,7 @@ static void solve(const vertex_fit *fit, int n, double *coefficients) {
 int conic_patch_mesh_fit(const conic_patch_mesh *mesh, size_t vertex, size_t begin, size_t end, int degree,
                          conic_fit *to, double radii[2], conic_patch_fence *fence) {
   vertex_fit fit = {.mesh = mesh, .begin = begin, .end = end};
-  conic_mesh_corner c;
+  conic_patch_corner c;
   conic_patch_mesh_corner(mesh, mesh->corners[begin], &c);
   memcpy(fit.frame[2], c.normals[0], sizeof fit.frame[2]);
   conic_tangent_basis(fit.frame[2], fit.frame[0], fit.frame[1]);

@@ -99,8 +99,12 @@ ranks 2 0 "${octree[@]}" -o together.exr --json together.json
 same_hashes alone.json together.json "an octree in windows on two ranks"
 grep -q '"shares": "windows"' together.json || fail "an octree is not drawn in windows"
 
-# A trace says what each rank did, and what more of them would do.
-ranks 2 0 "${octree[@]}" -o traced.exr --trace trace.json
+# A trace says what each rank did, and what more of them would do. On a busy machine a rank that begins late may find
+# nothing left to do.
+for _ in {1..5}; do
+  ranks 2 0 "${octree[@]}" -o traced.exr --trace trace.json
+  ! grep -q '"cat": "unit".*"pid": 1.*"sent_bytes": [1-9]' trace.json || break
+done
 model 4 trace.json --ranks 1,2,64
 [[ $(grep -c '"cat": "open"' trace.json) -eq 4 ]] || fail "a trace lacks what a rank opened, or set up"
 grep -q '"cat": "unit".*"pid": 1.*"sent_bytes": [1-9]' trace.json || fail "a trace lacks the units of rank 1"
