@@ -1,5 +1,4 @@
 /* The text of shots, and pictures that carry one. What is read is written, and read again, as the same. */
-#include "conic/shot_file.h"
 #include "tests/fuzz/fuzz.h"
 
 static void count_difference(void *cookie, const char *field, const char *a, const char *b) {

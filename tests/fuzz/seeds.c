@@ -171,11 +171,13 @@ int main(int argc, char **argv) {
       "{\"conic_shot\": 1, \"conic\": \"0.6.0\", \"inputs\": [{\"name\": \"a \\\"b\\\".ply\", \"bytes\": 12, "
       "\"sha256\": \"82907b05ff270d1cb93fab619df708504259a9aa9214808f6563f59d1076fe3c\"}, {\"name\": \"m.mtl\", "
       "\"as\": \"part\", \"sampled\": true}],\n"
-      "\"camera\": {\"width\": 6, \"height\": 4, \"fx\": 8.25, \"cam_from_world\": [[1, 0, 0, 0.1], [0, 1, 0, 0], "
-      "[0, 0, 1, -3e-5]], \"kind\": \"fisheye\"}, \"planes\": [\"rgba\", \"id\"],\n"
+      "\"camera\": {\"width\": 6, \"height\": 4, \"fx\": 8.25, \"fy\": 8, \"cx\": 3, \"cy\": 2, \"cam_from_world\": "
+      "[[1, 0, 0, 0.1], [0, 1, 0, 0], [0, 0, 1, -3e-5]], \"kind\": \"fisheye\"}, \"planes\": [\"rgba\", \"id\"],\n"
       "\"render\": {\"method\": \"ray\", \"lighting\": {\"is_given\": true, \"lights\": [{\"frame\": \"head\", "
-      "\"color\": [1, 0.5, null]}]}}, \"reading\": {\"gaussians\": true, \"where\": \"z > 1\", \"patches\": "
-      "{\"surface\": {\"degree\": 2}}}, \"way\": {\"kind\": \"cameras\", \"cameras\": [{\"width\": 1}]}}");
+      "\"color\": [1, 0.5, 0]}]}}, \"reading\": {\"gaussians\": true, \"where\": \"z > 1\", \"patches\": "
+      "{\"surface\": {\"degree\": 2}}}, \"map\": {\"minimum\": [null, 0, null]}, \"way\": {\"kind\": \"cameras\", "
+      "\"cameras\": [{\"width\": 1, \"height\": 1, \"fx\": 1, \"fy\": 1, \"cx\": 0, \"cy\": 0, \"cam_from_world\": "
+      "[[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0]]}]}}");
   seeds_text(set, "suite", "json", SUITE_EXAMPLE);
   seeds_text(set, "frames", "frames",
              "conic frames 1\nkey 0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef\n"
