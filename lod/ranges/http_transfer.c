@@ -198,7 +198,7 @@ conic_status conic_http_transfer_begin(conic_http_transfer *t) {
   t->n_here = t->is_beside || t->is_probe || t->offset > http->head->n ? 0 : http->head->n - (size_t)t->offset;
   snprintf(range, sizeof range, "%llu-%llu", (unsigned long long)t->offset + t->n_here,
            (unsigned long long)(t->offset + t->n_expected - 1));
-  if (!keep_bytes(t, t->n_here ? http->head->bytes + t->offset : NULL, t->n_here) ||
+  if ((t->n_here > 0 && !keep_bytes(t, http->head->bytes + t->offset, t->n_here)) ||
       http->curl->easy_setopt(t->easy, CURLOPT_RANGE, t->is_beside ? NULL : range) != CURLE_OK ||
       http->curl->easy_setopt(t->easy, CURLOPT_URL, t->is_beside ? t->own_url : http->url) != CURLE_OK ||
       http->curl->multi_add_handle(http->multi, t->easy) != CURLM_OK) {
