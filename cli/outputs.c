@@ -1,6 +1,7 @@
 #include "cli/outputs.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -102,4 +103,16 @@ int cli_check_ending(const char *path, const char *ending) {
     if (strcasecmp(own, known[i]) == 0)
       return cli_usage("%s: what is written is no .%s; give the name the ending .%s", path, known[i], ending);
   return CLI_DONE;
+}
+
+void cli_name_attribute(conic_image *image, const char *name, const char *text, double value) {
+  if (image->n_attributes == CONIC_MAX_ATTRIBUTES)
+    return;
+  conic_attribute *attribute = &image->attributes[image->n_attributes++];
+  memset(attribute, 0, sizeof *attribute);
+  snprintf(attribute->name, sizeof attribute->name, "%s", name);
+  attribute->type = text ? CONIC_ATTRIBUTE_TEXT : CONIC_ATTRIBUTE_DOUBLE;
+  if (text)
+    snprintf(attribute->text, sizeof attribute->text, "%s", text);
+  attribute->values[0] = value;
 }

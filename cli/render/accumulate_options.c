@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/render/frame_files.h"
+#include "cli/outputs.h"
+#include "cli/scene/render_job.h"
 
 int cli_parse_focus(const char *text, void *value) {
   cli_focus *focus = value;

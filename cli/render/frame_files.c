@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/outputs.h"
 #include "cli/render/frames.h"
 #include "cli/scene/background_options.h"
 #include "cli/session_team.h"
@@ -16,18 +17,6 @@
 #include "raster/frame/samples.h"
 
 /* --- the picture --- */
-
-void cli_name_attribute(conic_image *image, const char *name, const char *text, double value) {
-  if (image->n_attributes == CONIC_MAX_ATTRIBUTES)
-    return;
-  conic_attribute *attribute = &image->attributes[image->n_attributes++];
-  memset(attribute, 0, sizeof *attribute);
-  snprintf(attribute->name, sizeof attribute->name, "%s", name);
-  attribute->type = text ? CONIC_ATTRIBUTE_TEXT : CONIC_ATTRIBUTE_DOUBLE;
-  if (text)
-    snprintf(attribute->text, sizeof attribute->text, "%s", text);
-  attribute->values[0] = value;
-}
 
 /* What the picture says of itself in its header. */
 void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, conic_image *image) {

@@ -5,8 +5,6 @@
 
 #include "cli/scene/render_job.h"
 
-/* Adds to a picture's header, where there is room, a text or, where that is null, a number. */
-void cli_name_attribute(conic_image *image, const char *name, const char *text, double value);
 /* Says in a picture's header what it is. */
 void cli_frame_describe(const cli_render_job *job, const conic_camera *camera, conic_image *image);
 /* Writes a picture to all outputs. */

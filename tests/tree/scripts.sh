@@ -23,6 +23,7 @@ check() {
   [[ $? -eq 0 && -s ../out && ! -s ../err && -z $(ls -A) ]]
 }
 for script in "$source_folder"/scripts/*; do
+  [[ -f $script ]] || continue # a folder of parts
   check "$script" --help || {
     echo "FAILED: ${script##*/} --help: $(head -c 300 ../out ../err)"
     failures=$((failures + 1))

@@ -117,7 +117,11 @@ conic_status conic_layers_choose(conic_layers *layers, const conic_coloring_opti
   memset(choice, 0, sizeof *choice);
   choice->colored_by = -1;
   conic_status status = coloring ? choose_layer_colors(layers, coloring) : CONIC_OK;
-  if (status == CONIC_OK && where)
+  if (status == CONIC_OK && where && layers->octree)
+    status =
+        conic_fail(layers->context, CONIC_ERROR_INPUT,
+                   "%s: its samples cannot be chosen by --where: only places and colours are read of it", layers->name);
+  else if (status == CONIC_OK && where)
     status = choose_layer_samples(layers, where);
   if (status != CONIC_OK) { /* what is half chosen is nothing */
     conic_filter_destroy(layers->context, choice->filter);

@@ -98,22 +98,12 @@ static int key_points(const conic_hierarchy *h, const conic_hierarchy_node *node
   return 1;
 }
 
-/* Only places are read of these files, so that only they decide. */
-static int is_filtered_out(const conic_layers_choice *choice, const conic_hierarchy_points *points, size_t i) {
-  double values[CONIC_FILTER_MOST_NAMES];
-  for (size_t k = 0; k < conic_filter_names(choice->filter); k++)
-    values[k] = points->position[CONIC_LAYERS_BY_X - choice->filtered_by[k]][i];
-  return !conic_filter_passes(choice->filter, values);
-}
-
 static void sort_into_cloud(const conic_layers *layers, const conic_hierarchy_node *node,
                             const conic_hierarchy_points *points, const conic_radix_item *items,
                             conic_layers_cloud *cloud) {
   for (size_t i = 0; i < points->n; i++) {
     size_t from = items[i].value;
     cloud->keys[i] = node->key + items[i].key;
-    if (cloud->is_left_out)
-      cloud->is_left_out[i] = (unsigned char)is_filtered_out(&layers->choice, points, from);
     for (int axis = 0; axis < 3; axis++) {
       cloud->position[axis][i] = (float)(points->position[axis][from] - layers->header.origin[axis]);
       if (cloud->color[0])
