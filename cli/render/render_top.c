@@ -78,8 +78,8 @@ static conic_status plan_picture(cli_session *session, cli_render_job *job) {
   if (top->gsd == 0.0)
     status = conic_source_spacing(job->source, &top->gsd);
   if (status == CONIC_OK && !(top->gsd > 0.0))
-    status = conic_fail(session->context, CONIC_ERROR_INPUT, "%s: its points have no spacing; --camera top:GSD says how fine",
-                        job->inputs[0]);
+    status = conic_fail(session->context, CONIC_ERROR_INPUT,
+                        "%s: its points have no spacing; --camera top:GSD says how fine", job->inputs[0]);
   for (int axis = 0; axis < 2 && status == CONIC_OK; axis++) {
     int is_boxed = isfinite(top->box.low[axis]);
     double low = is_boxed ? top->box.low[axis] : scale->minimum[axis];
