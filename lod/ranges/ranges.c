@@ -136,7 +136,7 @@ conic_status conic_ranges_read(conic_ranges *ranges, const char *name, const con
     return conic_fail(ranges->context, answer.status, "%s: cannot read%s%s: %s (at byte %llu)", name,
                       range->file[0] ? " " : "", range->file, answer.reason, (unsigned long long)range->offset);
   *bytes = conic_memory_allocate(ranges->context, answer.n_bytes, 1);
-  if (*bytes)
+  if (*bytes && answer.n_bytes > 0)
     memcpy(*bytes, answer.bytes, answer.n_bytes);
   *n_bytes = answer.n_bytes;
   conic_ranges_release(ranges, &answer);
