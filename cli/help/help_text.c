@@ -53,6 +53,9 @@ static void print_list(const cli_words *list) {
     printf("  %-10s %s\n", list->at(i, &about), about);
 }
 
+/* So many options are read as one page: of more only the usual ones are shown, unless all are asked for. */
+enum { MOST_WHOLE = 40 };
+
 void cli_help_text(cli_session *session, const cli_option_table *table) {
   const cli_command *command = cli_find_command(session->command);
   cli_help_entry entry;
@@ -60,7 +63,7 @@ void cli_help_text(cli_session *session, const cli_option_table *table) {
   int n = 0, n_usual = 0;
   for (int i = 0; cli_help_next(table, &i, &entry); n++)
     n_usual += entry.option->is_usual && i <= table->n_own;
-  int is_short = n_usual && !session->is_help_whole;
+  int is_short = n > MOST_WHOLE && n_usual && !session->is_help_whole;
   if (command)
     printf("%s\n\nusage: %s\n\n", command->summary, command->usage);
   if (command && command->description) {

@@ -1,6 +1,6 @@
 #include "core/splats/point_values.h"
 
-#include <string.h>
+#include <stdio.h>
 
 #include "core/base/memory.h"
 #include "core/splats/columns.h"
@@ -81,7 +81,7 @@ conic_status conic_splats_keep_value(conic_context *context, conic_splats *splat
   splats->values = kept;
   kept->n = kept->n_columns = 1;
   kept->scalar = -1;
-  strcpy(kept->field[0].name, name);
+  snprintf(kept->field[0].name, sizeof kept->field[0].name, "%s", name);
   kept->field[0].type = "float";
   conic_status status = conic_point_values_reserve(context, kept, splats->count);
   for (size_t i = 0; i < splats->count && status == CONIC_OK; i++)

@@ -17,6 +17,9 @@ commands=$("$python" -c 'import json; print(*[c["name"] for c in json.load(open(
 for command in $commands; do
   run 0 help --all "$command"
   cp out "help/$command"
+  run 0 help "$command" # of few options all are shown, and of many those that the command line wants
+  [[ $(grep -c '^  -' "help/$command") -gt 40 ]] || cmp -s out "help/$command" || fail "help $command leaves options out"
+  ! grep -q '^usage: .* -o ' out || grep -q '^  -o ' out || fail "help $command leaves -o out"
   run 0 help --format man "$command"
   cp out "man1/conic-$command.1"
 done
