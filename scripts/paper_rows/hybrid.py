@@ -88,13 +88,9 @@ def _(bench):
     texts = []
     for model in MODELS:
         file, _ = build_like(bench, model)
-        pairs = []
-        for _ in range(5):
-            hybrid = bench.render(file, "--size", "512x512", "--threads", 1, "--repeat", 3)["ms"]["frame"]
-            mesh = bench.render(bench.model(model), "--as", "mesh", "--size", "512x512", "--threads", 1, "--repeat",
-                                3)["ms"]["frame"]
-            pairs.append(hybrid / mesh)
-        texts.append(f"{model.split('.')[0]} {sorted(pairs)[2]:.1f} ×")
+        hybrid, mesh = bench.frames_in_turns(5, (file, "--size", "512x512"),
+                                             (bench.model(model), "--as", "mesh", "--size", "512x512"))
+        texts.append(f"{model.split('.')[0]} {hybrid / mesh:.1f} ×")
     return ", ".join(texts)
 
 

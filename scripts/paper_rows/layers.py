@@ -34,16 +34,12 @@ def layer_gyroid(bench, count, size=2048):
 @add("L4", "§3: M of 512 to 8192 is best", FULL, "conic layer --cloud-size M",
      "The default of 2,048 packs better: 38.8 bits a sample, at 1,024 40.5")
 def _(bench):
-    texts = []
-    files = [(size, layer_gyroid(bench, "2M", size)) for size in (64, 512, 1024, 2048, 4096, 8192)]
-    times = {size: [] for size, _ in files}
-    for _ in range(5):
-        for size, file in files:
-            report = bench.render(file, "--size", "512x512", "--error", 4, "--threads", 1, "--repeat", 3)
-            times[size].append(report["ms"]["frame"])
-            splats = report["splats_in"]
-            if len(times[size]) == 5:
-                texts.append(f"{size}: {sorted(times[size])[2]:.0f} ms, {splats / 1e3:.0f} K splats")
+    sizes = (64, 512, 1024, 2048, 4096, 8192)
+    frame = ("--size", "512x512", "--error", 4)
+    files = [layer_gyroid(bench, "2M", size) for size in sizes]
+    times = bench.frames_in_turns(5, *((file, *frame) for file in files))
+    texts = [f"{size}: {ms:.0f} ms, {bench.render(file, *frame)['splats_in'] / 1e3:.0f} K splats"
+             for size, ms, file in zip(sizes, times, files)]
     return "gyroid of 2 M, 4 px: " + "; ".join(texts)
 
 

@@ -57,15 +57,6 @@ words("P12", "§6: three passes, a table of the Gaussian, F_g 1–2; ill-conditi
       "conic render --passes 3 --cutoff F", "These are drawn: leaving them out opens holes ([accuracy](accuracy.md))")
 
 
-def in_turns(bench, file, words_of_each, rounds=7):
-    """Medians of the frame's ms, of commands run in turns."""
-    times = [[] for _ in words_of_each]
-    for _ in range(rounds):
-        for found, some in zip(times, words_of_each):
-            found.append(bench.render(file, "--threads", 1, "--repeat", 3, *some)["ms"]["frame"])
-    return [sorted(found)[rounds // 2] for found in times]
-
-
 @add("P13", "Table 1: one pass is 3.6–3.7 times as fast as three: 11.2 / 3.1 and 10.4 / 2.8 M splats/s at 512² and "
      "1280 × 1024, of 400 and 650 thousand splats", PARTLY, "conic render --passes 1",
      "On a processor the frame is not bound by passes: set-up is done once for all three")
@@ -74,26 +65,21 @@ def _(bench):
     for count in (400000, 650000):
         splats = bench.once(f"sphere{count}.ply", lambda out: bench.run("make", "sphere", "-n", count, "-o", out))
         for size in ("512x512", "1280x1024"):
-            three, one = in_turns(bench, splats, (("--size", size), ("--size", size, "--passes", 1)))
+            three, one = bench.frames_in_turns(7, (splats, "--size", size), (splats, "--size", size, "--passes", 1))
             texts.append(f"{count // 1000} k, {size}: {count / one / 1e3:.1f} / {count / three / 1e3:.1f} M/s, {three / one:.2f} ×")
     return "; ".join(texts)
 
 
-@add("P14", "§6: clipping hardly costs anything", PARTLY, "conic make cube -n N",
-     "A clipped splat tests its lines at each pixel; splats without lines take a loop without the test")
+@add("P14", "§6: clipping hardly costs anything", FULL, "conic make cube -n N",
+     "The frame with clip lines over the frame without; only splats that have lines test them")
 def _(bench):
     texts = []
     for count in (220, 3000):
         cube = bench.once(f"cube{count}.ply", lambda out: bench.run("make", "cube", "-n", count, "-o", out))
         bare = bench.once(f"bare{count}.ply", lambda out: leave_out_clip_lines(cube, out))
-        rounds = [(draw_ms(bench, cube), draw_ms(bench, bare)) for _ in range(9)]
-        ratio = sorted(clipped / whole for clipped, whole in rounds)[4]
-        texts.append(f"cube of {thousands(count)} splats: {ratio:.2f} ×")
+        clipped, whole = bench.frames_in_turns(21, (cube,), (bare,))
+        texts.append(f"cube of {thousands(count)} splats: {clipped / whole:.2f} ×")
     return "; ".join(texts)
-
-
-def draw_ms(bench, file):
-    return bench.render(file, "--threads", 1, "--repeat", 15)["ms"]["frame"]
 
 
 def leave_out_clip_lines(file, out):

@@ -64,6 +64,14 @@ class Workbench:
         return self.once(pathlib.Path(model).stem + ".cot",
                          lambda out: self.run("octree", self.model(model), "-o", out, "--threads", 1))
 
+    def frames_in_turns(self, rounds, *commands):
+        """The median ms of a frame of each command, a file and its options, that are drawn in turns by one thread."""
+        times = [[] for _ in commands]
+        for _ in range(rounds):
+            for found, (file, *words) in zip(times, commands):
+                found.append(self.render(file, "--threads", 1, "--repeat", 3, *words)["ms"]["frame"])
+        return [sorted(found)[rounds // 2] for found in times]
+
     def decibels(self, whole, near):
         """PSNR over rgba between two pictures of the folder."""
         rmse = self.run("diff", self.path(whole), self.path(near), may_differ=True)["planes"]["rgba"]["rmse"]
