@@ -50,66 +50,14 @@ static void *own_block(shot_reader *r, size_t count, size_t size) {
 
 /* --- values --- */
 
-static int hex_value(char c) {
-  return c >= '0' && c <= '9'   ? c - '0'
-         : c >= 'a' && c <= 'f' ? c - 'a' + 10
-         : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                : -1;
-}
-
-/* A character by its number, in UTF-8. */
-static size_t put_character(char *to, unsigned code) {
-  if (code < 0x80) {
-    to[0] = (char)code;
-    return 1;
-  }
-  if (code < 0x800) {
-    to[0] = (char)(0xC0 | code >> 6);
-    to[1] = (char)(0x80 | (code & 63));
-    return 2;
-  }
-  to[0] = (char)(0xE0 | code >> 12);
-  to[1] = (char)(0x80 | (code >> 6 & 63));
-  to[2] = (char)(0x80 | (code & 63));
-  return 3;
-}
-
-/* What an escape, from behind its backslash on, stands for; *n_read: how long it is. */
-static size_t put_escape(char *to, const char *from, size_t n, size_t *n_read) {
-  static const char letters[] = "bfnrt", values[] = "\b\f\n\r\t";
-  const char *letter = n && from[0] ? strchr(letters, from[0]) : NULL;
-  unsigned code = 0;
-  *n_read = n ? 1 : 0;
-  if (n >= 5 && from[0] == 'u') {
-    for (int i = 1; i < 5; i++)
-      code = code << 4 | (unsigned)(hex_value(from[i]) & 15);
-    *n_read = 5;
-    return put_character(to, code ? code : '?');
-  }
-  *to = letter ? values[letter - letters] : n ? from[0] : '?';
-  return 1;
-}
-
 /* A text of any length, which goes with the file. */
 static conic_status read_owned_text(shot_reader *r, const char **words) {
-  const char *raw;
-  size_t n_raw, n = 0;
-  conic_status status = conic_json_raw_text(&r->json, &raw, &n_raw);
-  char *to = status == CONIC_OK ? own_block(r, n_raw + 4, 1) : NULL;
-  if (status != CONIC_OK)
-    return status;
+  size_t room = conic_json_text_room(&r->json);
+  char *to = own_block(r, room, 1);
   if (!to)
     return CONIC_ERROR_MEMORY;
-  for (size_t i = 0, n_read; i < n_raw; i += n_read) {
-    n_read = 1;
-    if (raw[i] == '\\') {
-      n += put_escape(to + n, raw + i + 1, n_raw - i - 1, &n_read);
-      n_read++;
-    } else
-      to[n++] = raw[i];
-  }
   *words = to;
-  return CONIC_OK;
+  return conic_json_text(&r->json, to, room);
 }
 
 static conic_status read_field_word(shot_reader *r, const conic_shot_row *row, char *at) {

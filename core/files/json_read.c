@@ -133,40 +133,78 @@ static int hex_digit(char c) {
   return c >= '0' && c <= '9' ? c - '0' : (c | 0x20) >= 'a' && (c | 0x20) <= 'f' ? (c | 0x20) - 'a' + 10 : -1;
 }
 
-/* One character of a string, escaped or not, as one byte. Escaped characters beyond ASCII, which no key needs, become
- * '?'. Returns -1 after a message. */
-static int read_character(conic_json *json) {
+/* The four digits of an escape; -1 where they are not there. */
+static int read_code(conic_json *json) {
+  int code = 0, n = 0;
+  for (; n < 4 && json->next < json->end && hex_digit(*json->next) >= 0; n++)
+    code = code * 16 + hex_digit(*json->next++);
+  return n == 4 ? code : -1;
+}
+
+/* A character by its number, in UTF-8. Returns how many bytes it has. */
+static int put_utf8(char to[4], int code) {
+  static const int first[5] = {0, 0, 0xC0, 0xE0, 0xF0};
+  int n = code < 0x80 ? 1 : code < 0x800 ? 2 : code < 0x10000 ? 3 : 4;
+  for (int i = n - 1; i > 0; i--, code >>= 6)
+    to[i] = (char)(0x80 | (code & 63));
+  to[0] = (char)(first[n] | code);
+  return n;
+}
+
+/* The rest of an escape \\u, whose second half may come behind it. What stands for no character becomes '?'. */
+static int read_escaped(conic_json *json, char to[4]) {
+  int code = read_code(json);
+  if (code < 0) {
+    conic_json_wrong(json, "a string has a wrong escape");
+    return 0;
+  }
+  const char *behind = json->next;
+  if (code >= 0xD800 && code < 0xDC00 && json->end - behind >= 2 && behind[0] == '\\' && behind[1] == 'u') {
+    json->next += 2;
+    int low = read_code(json);
+    if (low >= 0xDC00 && low < 0xE000)
+      return put_utf8(to, 0x10000 + ((code - 0xD800) << 10) + (low - 0xDC00));
+    json->next = behind;
+  }
+  return put_utf8(to, code == 0 || (code >= 0xD800 && code < 0xE000) ? '?' : code);
+}
+
+/* One character of a string, escaped or not. Returns how many bytes it has; 0 after a message. */
+static int read_character(conic_json *json, char to[4]) {
   static const char escapes[] = "\"\\/bfnrt", meanings[] = "\"\\/\b\f\n\r\t";
   unsigned char c = (unsigned char)*json->next++;
   if (c < 0x20) {
     conic_json_wrong(json, "a string has a control character or is not ended");
-    return -1;
+    return 0;
   }
+  to[0] = (char)c;
   if (c != '\\')
-    return c;
+    return 1;
   c = (unsigned char)(json->next < json->end ? *json->next++ : 0);
   const char *escape = c ? strchr(escapes, c) : NULL;
-  if (escape)
-    return meanings[escape - escapes];
-  int code = 0, n = 0;
-  for (; c == 'u' && n < 4 && json->next < json->end && hex_digit(*json->next) >= 0; n++)
-    code = code * 16 + hex_digit(*json->next++);
-  if (n == 4)
-    return code < 0x80 ? code : '?';
-  conic_json_wrong(json, "a string has a wrong escape");
-  return -1;
+  if (c == 'u')
+    return read_escaped(json, to);
+  if (!escape) {
+    conic_json_wrong(json, "a string has a wrong escape");
+    return 0;
+  }
+  to[0] = meanings[escape - escapes];
+  return 1;
 }
 
-/* Reads a string into `text`, cut to its room. */
+/* Reads a string into `text`, cut to its room, but not within a character. */
 static conic_status read_string(conic_json *json, char *text, size_t room) {
   size_t n = 0;
+  int is_full = 0;
   json->next++;
   while (json->next < json->end && *json->next != '"') {
-    int c = read_character(json);
-    if (c < 0)
+    char bytes[4];
+    int n_bytes = read_character(json, bytes);
+    if (n_bytes == 0)
       return json->status;
-    if (n + 1 < room)
-      text[n++] = (char)c;
+    is_full |= n + (size_t)n_bytes >= room;
+    for (int i = 0; i < n_bytes && !is_full; i++)
+      text[n++] = bytes[i];
   }
   text[n] = 0;
   if (json->next == json->end)
@@ -245,6 +283,17 @@ conic_status conic_json_text(conic_json *json, char *text, size_t room) {
   if (json->status != CONIC_OK)
     return json->status;
   return peek(json) == '"' ? read_string(json, text, room) : conic_json_wrong(json, "a string is expected");
+}
+
+size_t conic_json_text_room(conic_json *json) {
+  size_t n = 1;
+  if (peek(json) == '"')
+    for (const char *c = json->next + 1; c < json->end && *c != '"'; c++, n++)
+      if (*c == '\\' && c + 1 < json->end) {
+        c++;
+        n++;
+      }
+  return n;
 }
 
 conic_status conic_json_raw_text(conic_json *json, const char **text, size_t *length) {

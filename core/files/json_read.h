@@ -44,8 +44,11 @@ int conic_json_next_item(conic_json *json);
 /* The next value, which must be a number. */
 conic_status conic_json_number(conic_json *json, double *value);
 
-/* The next value, which must be a string; it is cut to the room. Escaped characters beyond ASCII become '?'. */
+/* The next value, which must be a string, in UTF-8; it is cut to the room. */
 conic_status conic_json_text(conic_json *json, char *text, size_t room);
+
+/* The room that holds all of the next value, if it is a string. */
+size_t conic_json_text_room(conic_json *json);
 
 /* A string that may be long, without a copy: its bytes as in the file, with escapes. */
 conic_status conic_json_raw_text(conic_json *json, const char **text, size_t *length);
