@@ -31,6 +31,7 @@ typedef struct cli_chart_error {
   int is_measured;
   double max, rmse; /* linear */
   double psnr, flip;
+  double delta_e; /* the mean distance of colours in CIELAB (1976) */
 } cli_chart_error;
 
 /* One method with one kernel on one scene. */

@@ -4,363 +4,253 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/bench.h"
-#include "cli/arguments.h"
-#include "core/base/message.h"
+#include "bench/chart_job.h"
+#include "cli/commands/gaussian_commands.h"
+#include "cli/opening_key.h"
+#include "cli/render/fill_shot.h"
+#include "cli/render/sample_options.h"
 #include "core/image/image_common.h"
 
-enum { N_REPRESENTATIONS = 3 };
+enum { MOST_FRAMES = 15 };
 
-/* What an axis needs of a scene. */
-typedef enum axis_need { OF_SPLATS, OF_ALL, OF_CHOICES, OF_FACES, ONLY_ASKED } axis_need;
-
-/* How one frame is drawn. */
-typedef struct axis_setting {
-  conic_render_options render;
-  conic_source_view view;
-  conic_representation as;
-  const char *device; /* null: the processor */
-} axis_setting;
-
-typedef struct chart_axis {
-  const char *name, *values; /* by default; null: halves of all */
-  axis_need need;
-  int (*set)(const char *value, axis_setting *setting); /* 0: not understood */
-} chart_axis;
-
-static int set_method(const char *value, axis_setting *setting) {
-  for (int i = 0; i < CONIC_N_METHODS; i++)
-    if (strcmp(value, conic_method_name((conic_method)i)) == 0) {
-      setting->render.method = (conic_method)i;
-      return 1;
-    }
-  return 0;
-}
-
-static int set_kernel(const char *value, axis_setting *setting) {
-  const float cutoff = setting->render.kernel.cutoff;
-  for (int i = 0; conic_kernel_type_name((conic_kernel_type)i); i++)
-    if (strcmp(value, conic_kernel_type_name((conic_kernel_type)i)) == 0) {
-      setting->render.kernel = (conic_kernel){(conic_kernel_type)i, cutoff, 4.0f, cutoff, 5}; /* Confetti ends there */
-      return 1;
-    }
-  return 0;
-}
-
-static int set_prefilter(const char *value, axis_setting *setting) {
-  double number;
-  int is_one = cli_parse_number(value, &number) && number >= 0.0 && number <= 100.0;
-  setting->render.prefilter = is_one ? (float)number : 0.0f;
-  return is_one;
-}
-
-static int set_samples(const char *value, axis_setting *setting) {
-  unsigned long long n;
-  int is_one = cli_parse_count(value, &n) && n >= 1 && n <= CONIC_MAX_SAMPLES;
-  setting->view.samples = is_one ? (int)n : 1;
-  return is_one;
-}
-
-static int set_passes(const char *value, axis_setting *setting) {
-  setting->render.passes = value[0] == '1' ? 1 : 3;
-  return strcmp(value, "1") == 0 || strcmp(value, "3") == 0;
-}
-
-static int set_error(const char *value, axis_setting *setting) {
-  return cli_parse_number(value, &setting->view.error_px) && setting->view.error_px >= 0.0;
-}
-
-static int set_budget(const char *value, axis_setting *setting) {
-  unsigned long long n;
-  int is_one = cli_parse_count(value, &n) && n >= 1;
-  setting->view.budget = is_one ? n : 0;
-  return is_one;
-}
-
-static const char *const representations[N_REPRESENTATIONS] = {"points", "mesh", "hybrid"};
-
-static int set_representation(const char *value, axis_setting *setting) {
-  for (int i = 0; i < N_REPRESENTATIONS; i++)
-    if (strcmp(value, representations[i]) == 0) {
-      setting->as = (conic_representation)i;
-      return 1;
-    }
-  return 0;
-}
-
-static int set_isa(const char *value, axis_setting *setting) {
-  for (int i = 0; i < CONIC_N_ISAS; i++)
-    if (strcmp(value, conic_isa_name((conic_isa)i)) == 0) {
-      setting->render.isa = (conic_isa)i;
-      return 1;
-    }
-  return 0;
-}
-
-static int set_device(const char *value, axis_setting *setting) {
-  setting->device = strcmp(value, "cpu") == 0 ? NULL : value;
-  return 1;
-}
-
-static const chart_axis axes[CLI_N_CHART_AXES] = {
-    {"method", "conic:ray:affine:point:disc:auto", OF_SPLATS, set_method},
-    {"kernel", "gauss:hat:box:confetti", OF_SPLATS, set_kernel},
-    {"prefilter", "0:0.25:0.5:1:2", OF_SPLATS, set_prefilter},
-    {"samples", "1:2:3:4", OF_ALL, set_samples},
-    {"passes", "1:3", ONLY_ASKED, set_passes},
-    {"error", "0.5:1:2:4:8:16", OF_CHOICES, set_error},
-    {"budget", NULL, OF_CHOICES, set_budget},
-    {"as", "mesh:points:hybrid", OF_FACES, set_representation},
-    {"isa", "auto:scalar", ONLY_ASKED, set_isa},
-    {"device", "cpu:opencl", ONLY_ASKED, set_device},
-};
-
-const char *cli_chart_axis_name(int i_axis) {
-  return i_axis >= 0 && i_axis < CLI_N_CHART_AXES ? axes[i_axis].name : "beside";
-}
-
-int cli_chart_parse_beside(const char *text, void *beside) {
-  cli_charts_beside *all = beside;
-  cli_chart_beside *next = &all->pictures[all->n];
-  char number[32];
-  size_t name = strcspn(text, "="), digits = text[name] ? strcspn(text + name + 1, ":") : 0;
-  const char *path = text + name + 1 + digits;
-  if (all->n == CLI_MOST_BESIDE || name == 0 || name >= sizeof next->name || digits == 0 || digits >= sizeof number ||
-      path[0] != ':' || !path[1])
-    return 0;
-  snprintf(next->name, sizeof next->name, "%.*s", (int)name, text);
-  snprintf(number, sizeof number, "%.*s", (int)digits, text + name + 1);
-  next->path = path + 1;
-  all->n += cli_parse_number(number, &next->ms) && next->ms > 0.0;
-  return next->ms > 0.0;
-}
-
-/* An axis that was asked for. */
-typedef struct asked_axis {
-  int i_axis;
-  char values[160]; /* empty: the default ones */
-} asked_axis;
+/* A way, ready to be drawn. Its source may be another way's. */
+typedef struct axis_way {
+  cli_render_job scene;
+  int is_source_lent;
+  double seconds[MOST_FRAMES];
+  int n_frames;
+} axis_way;
 
 typedef struct axis_job {
   cli_session *session;
   cli_axis_chart *chart;
-  asked_axis asked[CLI_N_CHART_AXES];
-  int n_asked;
-  conic_source *sources[CLI_MOST_CHART_SCENES][N_REPRESENTATIONS + 1]; /* the last: as each file fits */
-  conic_camera camera;
-  conic_image truth, image;
+  cli_chart_way *ways;
+  int n_ways;
+  axis_way truth, *points; /* the first scene in full detail; of each way */
+  conic_image truth_image, image;
   size_t n_covered; /* pixels of the truth */
-  axis_setting plain;
-  axis_setting *settings; /* of the points */
-  conic_renderer *renderer;
 } axis_job;
 
-static int find_named_axis(const char *name, size_t length) {
-  for (int i = 0; i < CLI_N_CHART_AXES; i++)
-    if (strlen(axes[i].name) == length && strncmp(axes[i].name, name, length) == 0)
-      return i;
-  return -1;
-}
+/* --- opening --- */
 
-static int understand_axes(axis_job *job) {
-  for (const char *at = job->chart->over; at && *at; at += *at == ',') {
-    size_t length = strcspn(at, ","), name = strcspn(at, "=,");
-    int i_axis = find_named_axis(at, name);
-    asked_axis *asked = &job->asked[job->n_asked];
-    if (i_axis < 0)
-      return cli_usage("chart: --over %.*s: there is no such axis; see conic help chart", (int)name, at);
-    if (job->n_asked == CLI_N_CHART_AXES)
-      return cli_usage("chart: --over %s: too many axes", job->chart->over);
-    size_t n = length > name ? length - name - 1 : 0;
-    if (n >= sizeof asked->values)
-      return cli_usage("chart: --over %s: too many values", axes[i_axis].name);
-    asked->i_axis = i_axis;
-    memcpy(asked->values, at + name + (n > 0), n);
-    asked->values[n] = 0;
-    job->n_asked++;
-    at += length;
+/* What was opened alike, or null. */
+static conic_source *find_opened(axis_job *job, const axis_way *way) {
+  char key[CONIC_SHA256_ROOM], other[CONIC_SHA256_ROOM];
+  const cli_render_job *scene = &way->scene;
+  cli_opening_key(scene->inputs, (size_t)scene->n_inputs, &scene->opening, scene->abilities, key);
+  for (int i = -1; i < (job->points ? job->n_ways : 0); i++) {
+    const cli_render_job *from = i < 0 ? &job->truth.scene : &job->points[i].scene;
+    if (!from->source)
+      continue;
+    const cli_opened opened = cli_opened_with(&from->opening);
+    cli_opening_key(from->inputs, (size_t)from->n_inputs, &from->opening, from->abilities, other);
+    if (strcmp(key, other) == 0 && cli_is_opened_alike(from->source, &opened, &scene->opening))
+      return from->source;
   }
-  return CLI_DONE;
+  return NULL;
 }
 
-/* --- sources --- */
-
-static conic_status open_chart_scene(axis_job *job, int i_scene, conic_representation as, conic_source **source) {
-  int column = as == CONIC_AS_AUTO ? N_REPRESENTATIONS : (int)as;
-  conic_source **kept = &job->sources[i_scene][column];
-  conic_source_options options;
-  conic_source_options_init(&options);
-  options.as = as;
-  options.is_smooth = as == CONIC_AS_MESH || as == CONIC_AS_HYBRID;
-  conic_status status =
-      *kept ? CONIC_OK : conic_source_open(job->session->context, &job->chart->paths[i_scene], 1, &options, kept);
-  *source = *kept;
-  return status;
+/* Reads a way's words, opens its scene, and fills in its shot. What was said of the scene once is not said again. */
+static int open_way(axis_job *job, int i_scene, const cli_chart_way *words, axis_way *way) {
+  const cli_chart_asked *asked = &job->chart->asked;
+  const char *argv[asked->argc + CLI_MOST_WORDS];
+  cli_render_job *scene = &way->scene;
+  int n = cli_chart_words(asked, i_scene, words, argv);
+  int exit_code = cli_chart_parse(job->session, n, (char **)argv, scene, NULL);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_sample_check(job->session, scene);
+  if (exit_code != CLI_DONE)
+    return exit_code < 0 ? CLI_USAGE : exit_code;
+  scene->source = find_opened(job, way);
+  way->is_source_lent = scene->source != NULL;
+  conic_status status = cli_scene_begin(job->session, scene);
+  const int was_quiet = job->session->is_quiet;
+  job->session->is_quiet |= way->is_source_lent;
+  if (status == CONIC_OK)
+    status = cli_scene_open(job->session, scene);
+  if (status == CONIC_OK)
+    status = cli_shot_fill(job->session, scene, cli_sample_frame(scene));
+  if (status == CONIC_OK)
+    status = cli_choose_exposure(scene);
+  job->session->is_quiet = was_quiet;
+  if (way != &job->truth) /* one camera for all */
+    scene->shot.camera = job->truth.scene.shot.camera;
+  scene->shot.render.skip_hidden = 1; /* as conic render does */
+  return cli_exit_of(status);
 }
 
-static void close_chart_scenes(axis_job *job) {
-  for (int i = 0; i < CLI_MOST_CHART_SCENES; i++)
-    for (int k = 0; k <= N_REPRESENTATIONS; k++)
-      conic_source_close(job->sources[i][k]);
+static void close_way(cli_session *session, axis_way *way) {
+  if (way->is_source_lent)
+    way->scene.source = NULL;
+  cli_scene_release(session, &way->scene);
+  free(way->scene.inputs);
 }
 
-static conic_status find_chart_camera(axis_job *job, conic_source *source) {
-  conic_framing framing;
-  double near_z;
-  if (job->chart->camera_path) {
-    conic_status status = cli_bench_camera_read(job->session, job->chart->camera_path, job->chart->view, &job->camera);
-    if (status == CONIC_OK)
-      cli_bench_camera_resize(&job->camera, job->chart->size[0], job->chart->size[1]);
-    return status;
+static void close_all(axis_job *job) {
+  for (int pass = 0; pass < 2; pass++) /* those that borrow first */
+    for (int i = 0; i < job->n_ways && job->points; i++)
+      if (job->points[i].is_source_lent == !pass)
+        close_way(job->session, &job->points[i]);
+  close_way(job->session, &job->truth);
+  free(job->points);
+  free(job->ways);
+}
+
+/* --- planning --- */
+
+static cli_chart_facts facts_of(const cli_render_job *scene) {
+  const conic_source_scale *scale = conic_source_measure(scene->source);
+  const int chooses = (scale->abilities & CONIC_SOURCE_CHOOSES) != 0;
+  return (cli_chart_facts){.chooses = chooses,
+                           .has_splats = scale->n_splats > 0 || scale->abilities & CONIC_SOURCE_STREAMS,
+                           .has_faces = scale->n_triangles > 0 && !chooses,
+                           .is_composited = cli_is_composited(scene),
+                           .n_primitives = scale->n_splats + scale->n_triangles};
+}
+
+/* The first scene is open, for the truth; others are opened for a look. */
+static int list_ways(axis_job *job) {
+  int exit_code = CLI_DONE;
+  for (int i = 0; i < job->chart->asked.n_scenes && exit_code == CLI_DONE; i++) {
+    axis_way *look = i ? calloc(1, sizeof *look) : &job->truth;
+    if (!look)
+      return cli_error(CLI_RESOURCE, "chart: out of memory");
+    if (i)
+      exit_code = open_way(job, i, NULL, look);
+    if (exit_code == CLI_DONE) {
+      const cli_chart_facts facts = facts_of(&look->scene);
+      exit_code = cli_chart_list_ways(&job->chart->asked, i, &facts, &job->ways, &job->n_ways);
+    }
+    if (i) {
+      close_way(job->session, look);
+      free(look);
+    }
   }
-  conic_status status = conic_source_stand(source);
-  conic_framing_init(&framing);
-  framing.width = job->chart->size[0];
-  framing.height = job->chart->size[1];
-  memcpy(framing.up, conic_source_measure(source)->up, sizeof framing.up);
-  return status == CONIC_OK
-             ? conic_source_fit(source, &framing, job->plain.render.kernel.cutoff, 1, &job->camera, &near_z)
-             : status;
+  return exit_code;
 }
 
-/* --- points --- */
-
-static int axis_fits(const chart_axis *axis, const conic_source_scale *scale) {
-  int chooses = (scale->abilities & CONIC_SOURCE_CHOOSES) != 0;
-  int streams = (scale->abilities & CONIC_SOURCE_STREAMS) != 0;
-  return axis->need == OF_ALL || (axis->need == OF_SPLATS && (scale->n_splats > 0 || streams)) ||
-         (axis->need == OF_CHOICES && chooses) || (axis->need == OF_FACES && scale->n_triangles > 0 && !chooses);
-}
-
-static int append_axis_point(axis_job *job, int i_scene, int i_axis, const char *value) {
+static int open_ways(axis_job *job) {
   cli_axis_chart *chart = job->chart;
-  size_t n = (size_t)chart->n_points + 1;
-  cli_axis_point *points = realloc(chart->points, n * sizeof *points);
-  chart->points = points ? points : chart->points;
-  axis_setting *settings = realloc(job->settings, n * sizeof *settings);
-  job->settings = settings ? settings : job->settings;
-  if (!points || !settings)
+  const cli_charts_beside *beside = &chart->asked.beside;
+  int exit_code = CLI_DONE, n = job->n_ways;
+  chart->points = calloc((size_t)(n + beside->n) + 1, sizeof *chart->points);
+  job->points = calloc((size_t)n + 1, sizeof *job->points);
+  if (!chart->points || !job->points)
     return cli_error(CLI_RESOURCE, "chart: out of memory");
-  cli_axis_point *point = &points[chart->n_points];
-  *point = (cli_axis_point){.i_scene = i_scene, .i_axis = i_axis, .ms = HUGE_VAL};
-  snprintf(point->value, sizeof point->value, "%s", value);
-  settings[chart->n_points] = job->plain;
-  if (i_axis < CLI_N_CHART_AXES &&
-      (strlen(value) >= sizeof point->value || !axes[i_axis].set(point->value, &settings[chart->n_points])))
-    return cli_usage("chart: --over %s: %s is no value of it", axes[i_axis].name, value);
-  chart->n_points++;
-  return CLI_DONE;
-}
-
-/* A half, a quarter … of what there is. */
-static int append_halves(axis_job *job, int i_scene, int i_axis, const conic_source_scale *scale) {
-  uint64_t n = scale->n_splats + scale->n_triangles;
-  int exit_code = CLI_DONE;
-  for (int i = 1; i <= 5 && n >> i && exit_code == CLI_DONE; i++) {
-    char value[24];
-    snprintf(value, sizeof value, "%llu", (unsigned long long)(n >> i));
-    exit_code = append_axis_point(job, i_scene, i_axis, value);
+  chart->n_points = n + beside->n;
+  for (int i = 0; i < n && exit_code == CLI_DONE; i++) {
+    chart->points[i].way = job->ways[i];
+    exit_code = open_way(job, job->ways[i].i_scene, &job->ways[i], &job->points[i]);
   }
-  return exit_code;
-}
-
-static int append_values(axis_job *job, int i_scene, int i_axis, const char *values) {
-  int exit_code = CLI_DONE;
-  for (const char *at = values; *at && exit_code == CLI_DONE; at += *at == ':') {
-    char value[64];
-    size_t length = strcspn(at, ":");
-    snprintf(value, sizeof value, "%.*s", (int)length, at);
-    exit_code = append_axis_point(job, i_scene, i_axis, value);
-    at += length;
+  for (int i = 0; i < beside->n; i++) {
+    cli_chart_way *way = &chart->points[n + i].way;
+    snprintf(way->axis, sizeof way->axis, "beside");
+    snprintf(way->value, sizeof way->value, "%s", beside->pictures[i].name);
   }
-  return exit_code;
-}
-
-static int append_axis(axis_job *job, int i_scene, const asked_axis *asked, const conic_source_scale *scale) {
-  const char *values = asked->values[0] ? asked->values : axes[asked->i_axis].values;
-  return values ? append_values(job, i_scene, asked->i_axis, values)
-                : append_halves(job, i_scene, asked->i_axis, scale);
-}
-
-/* Of one scene all axes that fit, unless some were asked for; of several what chooses by its error, and else samples.
- */
-static int plan_chart_scene(axis_job *job, int i_scene, const conic_source_scale *scale) {
-  int exit_code = CLI_DONE, chooses = (scale->abilities & CONIC_SOURCE_CHOOSES) != 0;
-  const char *alone = job->chart->n_paths > 1 ? chooses ? "error" : "samples" : NULL;
-  for (int i = 0; i < job->n_asked && exit_code == CLI_DONE; i++)
-    exit_code = append_axis(job, i_scene, &job->asked[i], scale);
-  for (int i = 0; i < CLI_N_CHART_AXES && !job->n_asked && exit_code == CLI_DONE; i++) {
-    const asked_axis asked = {.i_axis = i};
-    if (alone ? strcmp(alone, axes[i].name) == 0 : axis_fits(&axes[i], scale))
-      exit_code = append_axis(job, i_scene, &asked, scale);
-  }
-  return exit_code;
-}
-
-static int plan_axes(axis_job *job) {
-  int exit_code = CLI_DONE;
-  for (int i = 0; i < job->chart->n_paths && exit_code == CLI_DONE; i++) {
-    conic_source *source;
-    exit_code = cli_exit_of(open_chart_scene(job, i, CONIC_AS_AUTO, &source));
-    if (exit_code == CLI_DONE && i == 0)
-      exit_code = cli_exit_of(find_chart_camera(job, source));
-    if (exit_code == CLI_DONE)
-      exit_code = plan_chart_scene(job, i, conic_source_measure(source));
-  }
-  for (int i = 0; i < job->chart->beside.n && exit_code == CLI_DONE; i++)
-    exit_code = append_axis_point(job, 0, CLI_N_CHART_AXES, job->chart->beside.pictures[i].name);
   return exit_code;
 }
 
 /* --- measuring --- */
 
-static conic_status draw_setting(axis_job *job, int i_scene, const axis_setting *setting, conic_renderer *renderer,
-                                 conic_image *image, conic_render_statistics *statistics) {
-  conic_source *source;
-  conic_render_options render = setting->render;
-  conic_status status = open_chart_scene(job, i_scene, setting->as, &source);
-  if (status != CONIC_OK)
-    return status;
-  conic_source_settle(source, &render);
-  return conic_source_draw(source, renderer, &job->camera, &render, &setting->view, image, statistics);
+static conic_status draw_way(axis_way *way, conic_image *image, conic_shot_outcome *outcome) {
+  cli_render_job *scene = &way->scene;
+  conic_status status =
+      scene->opening.gaussians ? conic_source_composite_by(scene->source, scene->opening.gaussians) : CONIC_OK;
+  return status == CONIC_OK ? conic_shot_draw(scene->source, scene->renderer, &scene->shot, image, outcome) : status;
 }
 
-static conic_status draw_the_truth(axis_job *job) {
-  conic_render_statistics statistics;
-  axis_setting setting = job->plain;
-  setting.view.samples = job->chart->truth_samples;
-  conic_status status = draw_setting(job, 0, &setting, job->renderer, &job->truth, &statistics);
-  const float *rgba = job->truth.planes[CONIC_PLANE_RGBA];
-  for (size_t i = 0; i < conic_image_pixels(&job->truth) && status == CONIC_OK; i++)
+static int draw_the_truth(axis_job *job) {
+  conic_context *context = job->session->context;
+  const conic_camera *camera = &job->truth.scene.shot.camera;
+  cli_axis_chart *chart = job->chart;
+  chart->size[0] = camera->width;
+  chart->size[1] = camera->height;
+  conic_status status =
+      conic_image_allocate(context, camera->width, camera->height, 1u << CONIC_PLANE_RGBA, &job->truth_image);
+  if (status == CONIC_OK)
+    status = conic_image_allocate(context, camera->width, camera->height, 1u << CONIC_PLANE_RGBA, &job->image);
+  if (status == CONIC_OK)
+    status = draw_way(&job->truth, &job->truth_image, NULL);
+  const float *rgba = job->truth_image.planes[CONIC_PLANE_RGBA];
+  for (size_t i = 0; status == CONIC_OK && i < conic_image_pixels(&job->truth_image); i++)
     job->n_covered += rgba[4 * i + 3] > 0.0f;
-  return status;
+  if (status == CONIC_OK && job->n_covered == 0)
+    return cli_error(CLI_INPUT, "%s: nothing of it is in the picture", chart->asked.scenes[0]);
+  return cli_exit_of(status);
 }
 
-static conic_status compare_axis_point(axis_job *job, cli_axis_point *point) {
-  const float *seen = job->truth.planes[CONIC_PLANE_RGBA], *drawn = job->image.planes[CONIC_PLANE_RGBA];
-  for (size_t i = 0; i < conic_image_pixels(&job->truth); i++)
+static conic_status compare_point(axis_job *job, cli_axis_point *point) {
+  const float *seen = job->truth_image.planes[CONIC_PLANE_RGBA], *drawn = job->image.planes[CONIC_PLANE_RGBA];
+  for (size_t i = 0; i < conic_image_pixels(&job->truth_image); i++)
     point->holes += seen[4 * i + 3] > 0.999f && drawn[4 * i + 3] == 0.0f;
-  return cli_chart_measure(job->session->context, &job->truth, &job->image, job->n_covered, &point->error);
+  point->hash = conic_image_hash(&job->image, CONIC_PLANE_RGBA);
+  return cli_chart_measure(job->session->context, &job->truth_image, &job->image, job->n_covered, &point->error);
+}
+
+/* Of columns of floats, those that there are, n values each. */
+static uint64_t bytes_of_columns(size_t n, const float *const *columns, int n_columns) {
+  uint64_t bytes = 0;
+  for (int i = 0; i < n_columns; i++)
+    bytes += columns[i] ? n * sizeof(float) : 0;
+  return bytes;
+}
+
+static uint64_t bytes_of(const conic_drawing *drawing) {
+  uint64_t bytes = 0;
+  const conic_splats *s = drawing->splats;
+  const conic_triangles *t = drawing->triangles;
+  if (s) {
+    const float *const columns[] = {s->position[0],  s->position[1],  s->position[2],  s->tangent_u[0], s->tangent_u[1],
+                                    s->tangent_u[2], s->tangent_v[0], s->tangent_v[1], s->tangent_v[2], s->color[0],
+                                    s->color[1],     s->color[2],     s->opacity};
+    bytes += bytes_of_columns(s->count, columns, (int)(sizeof columns / sizeof columns[0]));
+  }
+  if (t) {
+    const float *const columns[] = {t->position[0], t->position[1], t->position[2], t->color[0],
+                                    t->color[1],    t->color[2],    t->alpha};
+    bytes += bytes_of_columns(t->n_vertices, columns, (int)(sizeof columns / sizeof columns[0]));
+    bytes += bytes_of_columns(t->normal_corners ? t->n_normals : t->n_vertices, (const float *const *)t->normal, 3);
+    bytes += (t->normal_corners ? 2 : 1) * t->count * sizeof *t->corners;
+  }
+  return bytes;
 }
 
 /* A frame that brings memory and caches, then timed ones, of which the fastest counts. */
-static conic_status measure_axis_point(axis_job *job, int i, int repeat) {
+static conic_status time_point(axis_job *job, int i, int repeat) {
   cli_axis_point *point = &job->chart->points[i];
-  const axis_setting *setting = &job->settings[i];
-  cli_device device = {.name = setting->device};
-  conic_renderer *other = NULL;
-  conic_status status = setting->device ? cli_device_open(job->session, &device, &other) : CONIC_OK;
+  axis_way *way = &job->points[i];
+  conic_shot_outcome outcome;
+  conic_status status = CONIC_OK;
   for (int k = 0; k <= repeat && status == CONIC_OK; k++) {
     double start = cli_seconds();
-    status = draw_setting(job, point->i_scene, setting, other ? other : job->renderer, &job->image, &point->statistics);
-    double ms = 1e3 * (cli_seconds() - start);
-    if (k && ms < point->ms)
-      point->ms = ms;
+    status = draw_way(way, &job->image, &outcome);
+    if (k && way->n_frames < MOST_FRAMES)
+      way->seconds[way->n_frames++] = cli_seconds() - start;
   }
-  if (status == CONIC_OK && !point->error.is_measured)
-    status = compare_axis_point(job, point);
-  conic_renderer_destroy(other);
-  return status;
+  if (status != CONIC_OK || point->error.is_measured)
+    return status;
+  const conic_source_choice *choice = conic_source_chosen(way->scene.source);
+  point->lod_ms = outcome.statistics.ms.lod;
+  point->splats = outcome.statistics.splats_in;
+  point->triangles = outcome.statistics.triangles_in;
+  point->bytes = bytes_of(&choice->drawing);
+  point->stated_px = choice->error_px;
+  return compare_point(job, point);
+}
+
+static int by_length(const void *a, const void *b) {
+  const double first = *(const double *)a, second = *(const double *)b;
+  return (first > second) - (first < second);
+}
+
+static void settle_times(const axis_job *job) {
+  for (int i = 0; i < job->n_ways; i++) {
+    axis_way *way = &job->points[i];
+    cli_axis_point *point = &job->chart->points[i];
+    qsort(way->seconds, (size_t)way->n_frames, sizeof way->seconds[0], by_length);
+    point->ms = 1e3 * way->seconds[0];
+    point->spread = way->seconds[way->n_frames / 4] / way->seconds[0] - 1.0;
+  }
 }
 
 /* Pictures of others are read, not drawn. */
@@ -377,75 +267,103 @@ static conic_status measure_beside(axis_job *job, cli_axis_point *point, const c
     status = conic_fail(context, CONIC_ERROR_INPUT, "%s: is no colour picture of %d x %d pixels", beside->path,
                         drawn.width, drawn.height);
   else
-    status = compare_axis_point(job, point);
+    status = compare_point(job, point);
   conic_image_release(context, &job->image);
   job->image = drawn;
   return status;
 }
 
-static conic_status measure_all_beside(axis_job *job) {
-  const cli_charts_beside *beside = &job->chart->beside;
+/* In rounds, so that what else the machine does hits all alike. */
+static conic_status measure_points(axis_job *job) {
+  int n_rounds = job->chart->asked.is_quick ? 1 : 3, repeat = job->chart->asked.is_quick ? 1 : 4;
+  const cli_charts_beside *beside = &job->chart->asked.beside;
   conic_status status = CONIC_OK;
+  for (int round = 0; round < n_rounds; round++)
+    for (int i = 0; i < job->n_ways && status == CONIC_OK; i++)
+      status = time_point(job, i, repeat);
+  if (status == CONIC_OK)
+    settle_times(job);
   for (int i = 0; i < beside->n && status == CONIC_OK; i++)
-    status = measure_beside(job, &job->chart->points[job->chart->n_points - beside->n + i], &beside->pictures[i]);
+    status = measure_beside(job, &job->chart->points[job->n_ways + i], &beside->pictures[i]);
   return status;
 }
 
-/* In rounds, so that what else the machine does hits all alike. */
-static conic_status measure_axis_points(axis_job *job) {
-  int n_rounds = job->chart->is_quick ? 1 : 3, repeat = job->chart->is_quick ? 1 : 4;
-  conic_status status = CONIC_OK;
-  for (int round = 0; round < n_rounds; round++)
-    for (int i = 0; i < job->chart->n_points - job->chart->beside.n && status == CONIC_OK; i++)
-      status = measure_axis_point(job, i, repeat);
-  return status == CONIC_OK ? measure_all_beside(job) : status;
+/* --- what is best --- */
+
+double cli_axis_cost(const cli_axis_point *point, cli_chart_cost cost) {
+  return cost == CLI_COST_TIME         ? point->ms
+         : cost == CLI_COST_PRIMITIVES ? (double)(point->splats + point->triangles)
+                                       : (double)point->bytes;
 }
 
-static conic_status allocate_pictures(axis_job *job) {
-  conic_context *context = job->session->context;
-  const int width = job->camera.width, height = job->camera.height;
-  conic_status status = conic_image_allocate(context, width, height, 1u << CONIC_PLANE_RGBA, &job->truth);
-  if (status == CONIC_OK)
-    status = conic_image_allocate(context, width, height, 1u << CONIC_PLANE_RGBA, &job->image);
-  return status == CONIC_OK ? conic_renderer_create(context, &job->renderer) : status;
+/* Whether two points are the same picture of the same things: their times then differ by chance, unless the axis is one
+ * that changes no picture. */
+static int is_repeated(const cli_axis_point *p, const cli_axis_point *earlier) {
+  static const char *const of_work[] = {"passes", "isa", "device", "tile", "beside"};
+  for (size_t i = 0; i < sizeof of_work / sizeof of_work[0]; i++)
+    if (strcmp(p->way.axis, of_work[i]) == 0)
+      return 0;
+  return p->hash == earlier->hash && p->splats == earlier->splats && p->triangles == earlier->triangles;
+}
+
+/* Whether q is nearer than p and no dearer, or as near and cheaper. Times that noise may have made are none. */
+static int beats(const cli_axis_point *q, const cli_axis_point *p, cli_chart_cost cost) {
+  double noise = cost == CLI_COST_TIME ? fmax(0.02, fmax(p->spread, q->spread)) : 0.0;
+  double own = cli_axis_cost(p, cost), other = cli_axis_cost(q, cost);
+  if (q->error.rmse < p->error.rmse)
+    return other <= own * (1.0 + noise);
+  return q->error.rmse == p->error.rmse && other * (1.0 + noise) < own;
 }
 
 static void mark_best(cli_axis_chart *chart) {
-  for (int i = 0; i < chart->n_points; i++) {
-    cli_axis_point *p = &chart->points[i];
-    p->is_front = p->error.is_measured;
-    for (int k = 0; k < chart->n_points && p->is_front; k++) {
-      const cli_axis_point *q = &chart->points[k];
-      p->is_front = q == p || q->ms > p->ms || q->error.rmse > p->error.rmse ||
-                    (q->ms == p->ms && q->error.rmse == p->error.rmse);
+  for (int cost = 0; cost < CLI_N_CHART_COSTS; cost++)
+    for (int i = 0; i < chart->n_points; i++) {
+      cli_axis_point *p = &chart->points[i];
+      int is_best = p->error.is_measured && cli_axis_cost(p, (cli_chart_cost)cost) > 0.0;
+      for (int k = 0; k < chart->n_points && is_best; k++) {
+        const cli_axis_point *q = &chart->points[k];
+        int is_rival = k != i && q->error.is_measured && cli_axis_cost(q, (cli_chart_cost)cost) > 0.0;
+        is_best = !is_rival || !((k < i && is_repeated(p, q)) || beats(q, p, (cli_chart_cost)cost));
+      }
+      p->is_best[cost] = is_best;
     }
+}
+
+const cli_axis_point *cli_axis_in_time(const cli_axis_chart *chart) {
+  const cli_axis_point *nearest = NULL;
+  for (int i = 0; i < chart->n_points; i++) {
+    const cli_axis_point *p = &chart->points[i];
+    if (p->way.n_factors && p->error.is_measured && p->ms <= 1e3 * chart->most_seconds &&
+        (!nearest || p->error.rmse < nearest->error.rmse))
+      nearest = p;
   }
+  return nearest;
+}
+
+int cli_axis_count_of(const cli_axis_chart *chart, const char *axis) {
+  int n = 0;
+  for (int i = 0; i < chart->n_points; i++)
+    n += strcmp(chart->points[i].way.axis, axis) == 0;
+  return n;
 }
 
 int cli_axis_chart_measure(cli_session *session, cli_axis_chart *chart) {
-  axis_job job = {.session = session, .chart = chart, .plain = {.as = CONIC_AS_AUTO}};
-  conic_render_options_init(&job.plain.render);
-  job.plain.render.shading = chart->shading;
-  conic_source_view_init(&job.plain.view);
-  if (chart->n_paths > CLI_MOST_CHART_SCENES)
+  axis_job job = {.session = session, .chart = chart};
+  if (chart->asked.n_scenes > CLI_MOST_CHART_SCENES)
     return cli_usage("chart: more than %d scenes", (int)CLI_MOST_CHART_SCENES);
-  int exit_code = understand_axes(&job);
+  int exit_code = open_way(&job, 0, NULL, &job.truth);
+  job.truth.scene.shot.view.samples = chart->truth_samples;
   if (exit_code == CLI_DONE)
-    exit_code = plan_axes(&job);
-  if (exit_code == CLI_DONE) {
-    conic_status status = allocate_pictures(&job);
-    if (status == CONIC_OK)
-      status = draw_the_truth(&job);
-    if (status == CONIC_OK && job.n_covered == 0)
-      exit_code = cli_error(CLI_INPUT, "%s: nothing of it is in the picture", chart->paths[0]);
-    else
-      exit_code = cli_exit_of(status == CONIC_OK ? measure_axis_points(&job) : status);
-  }
+    exit_code = list_ways(&job);
+  if (exit_code == CLI_DONE)
+    exit_code = open_ways(&job);
+  if (exit_code == CLI_DONE)
+    exit_code = draw_the_truth(&job);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_exit_of(measure_points(&job));
   mark_best(chart);
-  conic_renderer_destroy(job.renderer);
-  conic_image_release(session->context, &job.truth);
+  conic_image_release(session->context, &job.truth_image);
   conic_image_release(session->context, &job.image);
-  close_chart_scenes(&job);
-  free(job.settings);
+  close_all(&job);
   return exit_code;
 }

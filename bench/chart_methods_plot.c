@@ -1,7 +1,5 @@
 /* The pictures of the chart of methods: an error over the time of a frame, a panel a scene. */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "bench/chart_methods.h"
 #include "bench/plot.h"
@@ -29,31 +27,16 @@ static cli_plot_style point_style(const cli_chart_point *point) {
   return style;
 }
 
-static int by_time(const void *a, const void *b) {
-  const cli_chart_point *first = *(const cli_chart_point *const *)a, *second = *(const cli_chart_point *const *)b;
-  return (first->ms > second->ms) - (first->ms < second->ms);
-}
-
-/* The front of a scene, a corner for each step down. */
 static void draw_best(cli_plot *plot, const figure *f, const cli_chart_scene *scene, const cli_chart_point *points,
                       int n_points) {
-  const cli_chart_point *front[n_points > 0 ? n_points : 1];
-  double x[2 * n_points + 1], y[2 * n_points + 1];
-  size_t n = 0;
-  int n_corners = 0;
+  double best[n_points + 1][2];
+  int n = 0;
   for (int i = 0; i < n_points; i++)
-    if (points[i].scene == scene && points[i].is_front[f->against_truth])
-      front[n++] = &points[i];
-  qsort(front, n, sizeof front[0], by_time); /* NOLINT(bugprone-sizeof-expression): pointers are sorted */
-  for (size_t i = 0; i < n; i++) {
-    if (i) {
-      x[n_corners] = front[i]->ms;
-      y[n_corners++] = cli_chart_error_of(front[i - 1], f->against_truth)->rmse;
+    if (points[i].scene == scene && points[i].is_front[f->against_truth]) {
+      best[n][0] = points[i].ms;
+      best[n++][1] = cli_chart_error_of(&points[i], f->against_truth)->rmse;
     }
-    x[n_corners] = front[i]->ms;
-    y[n_corners++] = cli_chart_error_of(front[i], f->against_truth)->rmse;
-  }
-  cli_plot_line(plot, &front_style, n_corners, x, y);
+  cli_plot_front(plot, &front_style, n, best);
 }
 
 static void draw_chart_point(cli_plot *plot, const cli_plot_style *style, const cli_chart_point *point, double error,

@@ -1,6 +1,8 @@
 #include "bench/plot.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 enum { MARGIN_LEFT = 68, MARGIN_RIGHT = 14, MARGIN_TOP = 30, MARGIN_BOTTOM = 48, TITLE = 26, LEGEND = 200 };
 enum { MOST_TICKS = 8, KEY_HEIGHT = 20 };
@@ -157,6 +159,7 @@ void cli_plot_panel(cli_plot *plot, const char *title, const cli_plot_axis *x, c
   const cli_plot_grid *grid = &plot->grid;
   int column = plot->i_panel % grid->n_columns, row = plot->i_panel / grid->n_columns;
   plot->i_panel++;
+  plot->n_words = 0;
   plot->x = with_room(x);
   plot->y = with_room(y);
   plot->left = column * grid->panel_width + MARGIN_LEFT;
@@ -217,6 +220,26 @@ void cli_plot_line(cli_plot *plot, const cli_plot_style *style, int n, const dou
     end_stroke(plot->to, style);
 }
 
+static int by_place(const void *a, const void *b) {
+  const double *first = a, *second = b;
+  return (first[0] > second[0]) - (first[0] < second[0]);
+}
+
+void cli_plot_front(cli_plot *plot, const cli_plot_style *style, int n, double (*points)[2]) {
+  double x[2 * n + 1], y[2 * n + 1];
+  int n_corners = 0;
+  qsort(points, (size_t)n, sizeof *points, by_place);
+  for (int i = 0; i < n; i++) {
+    if (i) {
+      x[n_corners] = points[i][0];
+      y[n_corners++] = points[i - 1][1];
+    }
+    x[n_corners] = points[i][0];
+    y[n_corners++] = points[i][1];
+  }
+  cli_plot_line(plot, style, n_corners, x, y);
+}
+
 static double limited_to(const cli_plot_axis *axis, double value) {
   return fmin(fmax(value, axis->low), axis->high);
 }
@@ -228,12 +251,35 @@ void cli_plot_box(cli_plot *plot, const cli_plot_style *style, const double x[2]
           fmin(left, right), fmin(top, bottom), fabs(right - left), fabs(bottom - top), style->color);
 }
 
+static int is_free(const cli_plot *plot, const double box[4]) {
+  if (box[0] < plot->left || box[2] > plot->right || box[1] < plot->top || box[3] > plot->bottom)
+    return 0;
+  for (int i = 0; i < plot->n_words; i++) {
+    const double *other = plot->words[i];
+    if (box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3])
+      return 0;
+  }
+  return 1;
+}
+
 void cli_plot_words(cli_plot *plot, const char *color, double x, double y, const char *words) {
-  char more[64];
+  static const double places[][2] = {{7, -3}, {7, 11}, {-1, -3}, {-1, 11}, {0, -9}, {0, 17}, {9, 4}, {-3, 4}};
+  enum { N_PLACES = sizeof places / sizeof places[0] };
+  const double width = 5.6 * (double)strlen(words), height = 10.0; /* of letters of 10 px */
   if (!is_on_axis(&plot->x, x) || !is_on_axis(&plot->y, y))
     return;
-  snprintf(more, sizeof more, "font-size=\"10\" fill=\"%.16s\"", color);
-  put_label(plot->to, plot_across(plot, x) + 6.0, plot_down(plot, y) - 5.0, more, words);
+  for (int i = 0; i < N_PLACES && plot->n_words < CLI_PLOT_MOST_WORDS; i++) {
+    double left = plot_across(plot, x) + places[i][0], base = plot_down(plot, y) + places[i][1];
+    left -= places[i][0] < 0.0 ? 6.0 + width : places[i][0] == 0.0 ? 0.5 * width : 0.0;
+    const double box[4] = {left, base - height, left + width, base};
+    if (!is_free(plot, box))
+      continue;
+    char more[64];
+    memcpy(plot->words[plot->n_words++], box, sizeof box);
+    snprintf(more, sizeof more, "font-size=\"10\" fill=\"%.16s\"", color);
+    put_label(plot->to, left, base, more, words);
+    return;
+  }
 }
 
 void cli_plot_key(cli_plot *plot, const cli_plot_style *style, const char *name) {

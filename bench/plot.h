@@ -34,6 +34,8 @@ typedef struct cli_plot_grid {
   int n_columns, n_panels, panel_width, panel_height, n_keys;
 } cli_plot_grid;
 
+enum { CLI_PLOT_MOST_WORDS = 256 };
+
 /* A picture while it is written. The stream is the caller's. */
 typedef struct cli_plot {
   FILE *to;
@@ -41,6 +43,8 @@ typedef struct cli_plot {
   int i_panel, n_keys, legend_top;
   cli_plot_axis x, y; /* of the panel that is drawn now */
   double left, right, top, bottom;
+  double words[CLI_PLOT_MOST_WORDS][4]; /* of this panel, where there are some: left, top, right, bottom */
+  int n_words;
 } cli_plot;
 
 /* A style for the i-th of many series: eight colours, then the next shape. */
@@ -59,10 +63,13 @@ void cli_plot_mark(cli_plot *plot, const cli_plot_style *style, double x, double
 /* A line through points that lie inside the axes. */
 void cli_plot_line(cli_plot *plot, const cli_plot_style *style, int n, const double *x, const double *y);
 
+/* A line through points in any order, from the left to the right, with a corner for each step down. Sorts them. */
+void cli_plot_front(cli_plot *plot, const cli_plot_style *style, int n, double (*points)[2]);
+
 /* A filled box, cut at the axes. */
 void cli_plot_box(cli_plot *plot, const cli_plot_style *style, const double x[2], const double y[2]);
 
-/* Small words to the right of a place and above it. */
+/* Small words beside a place, where they cover no others; none where there is no room. */
 void cli_plot_words(cli_plot *plot, const char *color, double x, double y, const char *words);
 
 /* The next line of the legend; a null style makes a gap before it, for a group's name. */

@@ -125,7 +125,7 @@ static int check_effect(const cli_session *session, const cli_effects_job *own, 
              remedy ? remedy(own, lacked) : "");
   else
     snprintf(words, sizeof words, "has no effect: it needs %s", names);
-  return refuse(session, option->acts.is_warned, option->dashes, option->name, words);
+  return refuse(session, option->acts.is_warned && !own->is_strict, option->dashes, option->name, words);
 }
 
 int cli_effects_check_given(const cli_session *session, cli_effects_job *own, const char *input,

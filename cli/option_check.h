@@ -14,6 +14,7 @@ typedef struct cli_given {
 typedef struct cli_effects_job {
   cli_given given[CLI_MOST_GIVEN];
   int n_given;
+  int is_strict;               /* what would be a warning is wrong usage, too */
   cli_facts asked;             /* facts of what is asked for */
   cli_facts certain, possible; /* facts of what is read: those that hold, and those that may */
 } cli_effects_job;

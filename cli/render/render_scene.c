@@ -97,7 +97,8 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   cli_deadline_open(job);
   cli_opening_key(job->inputs, (size_t)job->n_inputs, &job->opening, job->abilities, key);
   conic_guard_go_on(session->context); /* cameras were read; what comes now is of the scene */
-  job->source = cli_kept_source(session, key, &job->opening);
+  if (!job->source)
+    job->source = cli_kept_source(session, key, &job->opening);
   conic_status status = job->source ? CONIC_OK : cli_units_open_source(session, job);
   if (status == CONIC_OK)
     cli_keep_source(session, key, &job->opening, job->source);

@@ -37,7 +37,7 @@ typedef struct cli_render_job {
   /* What else was asked for. */
   cli_effects_job effects;
   const char **inputs;
-  int n_inputs;
+  int n_inputs, may_lack_inputs; /* no input is no wrong usage: the command then does something else */
   const char *outputs[CLI_MAX_OUTPUTS];
   int n_outputs;
   char kind[8];                 /* of outputs without an ending, where one says it */
@@ -148,7 +148,7 @@ const char *cli_method_name(const cli_render_job *job);
 /* Makes the renderer and reads the camera's file: what is missing of these is said before the inputs are read, which
  * may take minutes. Released by cli_scene_release, also after a failure. */
 conic_status cli_scene_begin(cli_session *session, cli_render_job *job);
-/* Opens the source, and fills in the options what it knows. */
+/* Opens the source, unless the caller has lent an open one, and fills in the options what it knows. */
 conic_status cli_scene_open(cli_session *session, cli_render_job *job);
 void cli_scene_release(cli_session *session, cli_render_job *job);
 /* --view all: sees to it that the views that are asked for can be drawn and written, once they are known. */

@@ -35,6 +35,7 @@ static library_words find_words(void) {
 
 void cli_scene_defaults(cli_render_job *job) {
   memset(job, 0, sizeof *job);
+  job->shot.size = sizeof job->shot;
   conic_framing_init(&job->framing);
   conic_render_options_init(&job->shot.render);
   conic_source_options_init(&job->opening);

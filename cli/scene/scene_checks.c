@@ -71,7 +71,7 @@ static int settle_top(const cli_session *session, cli_render_job *job) {
 static int check_each_value(const cli_session *session, const cli_scene_words *words, const cli_render_job *job) {
   const char *command = session->command;
   if (job->n_inputs == 0)
-    return cli_usage("%s: no input; see conic help %s", command, command);
+    return job->may_lack_inputs ? CLI_DONE : cli_usage("%s: no input; see conic help %s", command, command);
   if (words->is_smooth && words->is_crease_given)
     return cli_usage("%s: --crease all rounds all edges, and a number those up to an angle; give one of both", command);
   if (job->sky_path && !job->n_directions && !(job->is_aov_given && job->shot.planes & 1u << CONIC_PLANE_AO))
@@ -90,6 +90,8 @@ static int check_each_value(const cli_session *session, const cli_scene_words *w
 
 int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_render_job *job) {
   int answer = check_each_value(session, words, job);
+  if (job->n_inputs == 0)
+    return answer;
   if (answer == CLI_DONE)
     answer = settle_top(session, job);
   if (answer == CLI_DONE)

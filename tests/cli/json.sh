@@ -205,7 +205,7 @@ write explain-octree explain explain knot.cot --size 64x48 --error 1 --splat 9 -
 write explain-leaf explain explain knot.cot --size 2048x2048 --error 0.5 --splat 9
 write explain-hybrid explain explain tent.chy --size 64x48 --pixel 30,25 --only triangles
 write explain-mixed explain explain tent.chy --size 64x48 --pixel 14,24 --splat 9
-write chart chart chart -o chart --quick --only representations
+write chart chart chart knot.cot -o chart --quick --over samples=1:2 --time 9
 write bench-old bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5
 cp runs/bench-old.json old.json
 write bench bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5 --floor --compare old.json
