@@ -1,11 +1,7 @@
 #include "cli/cut_region.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "cli/arguments.h"
-#include "core/base/memory.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "core/files/input.h"
 #include "core/files/number.h"
 #include "core/splats/clip.h"

@@ -1,12 +1,11 @@
 #include "cli/host_keeps.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/opening_key.h"
+#include "core/base/base.h"
 #include "core/base/context_struct.h"
 #include "core/base/machine.h"
-#include "core/base/threads.h"
 
 enum { MOST_SOURCES = 4, MOST_FACTS = 16 };
 

@@ -1,10 +1,9 @@
 #include "cli/outputs.h"
 
 #include <errno.h>
-#include <stdio.h>
-#include <string.h>
 #include <strings.h>
 
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 

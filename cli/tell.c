@@ -1,8 +1,6 @@
 #include "cli/tell.h"
 
-#include <string.h>
-
-#include "core/base/message.h"
+#include "core/base/base.h"
 
 /* A line that is put together piece by piece; what is too long is cut. */
 typedef struct text_line {

@@ -1,10 +1,6 @@
 #include "conic/gather.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"

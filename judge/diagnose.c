@@ -1,10 +1,7 @@
 /* Finds the mistake that explains a picture: docs/reference/diagnosis.md. */
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "judge/diagnosis_samples.h"
 

@@ -1,10 +1,7 @@
 #include "judge/diagnosis_samples.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
 #include "core/base/power.h"
 
 static const struct {

@@ -1,13 +1,8 @@
 #include "judge/diagnosis_samples.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "conic/gaussians.h"
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/radix.h"
-#include "core/base/real.h"
-#include "core/base/threads.h"
 #include "core/base/vectors.h"
 #include "core/splats/kernel.h"
 #include "gaussians/draw/ray_meetings.h"

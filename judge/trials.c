@@ -1,10 +1,5 @@
+#include "core/base/base.h"
 #include "judge/diagnosis_samples.h"
-
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
 
 /* A mistake that explains less than half of the difference says nothing. */
 static const double least_share = 0.5;

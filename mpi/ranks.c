@@ -4,11 +4,10 @@
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
+#include "core/base/base.h"
 #include "core/base/clock.h"
 #include "mpi/outbox.h"
 

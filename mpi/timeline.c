@@ -1,11 +1,10 @@
 #include "mpi/timeline.h"
 
 #include <pthread.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/session.h"
+#include "core/base/base.h"
 #include "mpi/ranks.h"
 
 /* The events of this rank, as lines of JSON that end in a comma. */

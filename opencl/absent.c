@@ -1,9 +1,7 @@
 /* What stands in where conic is built without OpenCL. */
-#include <string.h>
 
 #include "conic/opencl.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 
 static conic_status refuse(conic_context *context) {
   return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "opencl: this build has no OpenCL; it draws on the CPU only");

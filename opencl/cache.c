@@ -1,13 +1,10 @@
 #include "opencl/cache.h"
 
 #include <errno.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/image/image_common.h"
 
 /* What a file begins with. */

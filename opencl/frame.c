@@ -1,9 +1,6 @@
 #include "opencl/frame.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/image/image_common.h"
 #include "raster/project/clip_lines.h"
 #include "raster/project/projected.h"

@@ -1,8 +1,6 @@
 /* Gaussians, whose lists the host has made, composited on the device: some tiles at a time. */
-#include <stddef.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "opencl/frame.h"
 #include "opencl/gaussian_layout.h"
 

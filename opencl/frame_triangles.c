@@ -2,9 +2,8 @@
  */
 
 #include "conic/triangles.h"
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/image/texture_levels.h"
 #include "opencl/frame.h"
 #include "raster/loops/raster_loops.h"

@@ -1,9 +1,7 @@
 /* Set-up on the host, by plain C, for devices without double precision: the records then go to the device as it would
  * have made them. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "opencl/frame.h"
 #include "raster/project/clip_lines.h"
 #include "raster/project/projected.h"

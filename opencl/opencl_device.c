@@ -1,10 +1,6 @@
 #include "opencl/opencl_device.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "opencl/device_name.h"
 
 enum { MOST_PLATFORMS = 16, MOST_DEVICES = 64 };

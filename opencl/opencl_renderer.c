@@ -1,10 +1,6 @@
 #include "opencl/opencl_renderer.h"
-#include "core/base/options.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "opencl/device_name.h"
 #include "opencl/frame.h"
 #include "opencl/program.h"

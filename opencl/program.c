@@ -1,10 +1,6 @@
 #include "opencl/program.h"
 
-#include <stdio.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/image/image_common.h"
 #include "opencl/cache.h"
 

@@ -1,8 +1,6 @@
 #include "opencl/queue.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 
 conic_status conic_queue_open(conic_context *context, cl_platform_id platform, cl_device_id id, conic_queue *queue) {
   const cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)platform, 0};

@@ -1,11 +1,7 @@
 /* The oracle: pixel by pixel, in double precision. What is asked, and room for the answer. */
 #include "conic/oracle.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "core/image/view_arguments.h"
 #include "core/splats/columns.h"
 #include "oracle/oracle_blocks.h"

@@ -2,12 +2,8 @@
 
 #include <stdatomic.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "oracle/oracle_weights.h"
 
 /* A block's edge in samples, and the splats that are set up at a time unless one pixel has more: what a thread needs

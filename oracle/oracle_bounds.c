@@ -1,8 +1,6 @@
 #include "oracle/oracle_bounds.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 
 /* More surfaces than this that may be the foremost are taken as one. */
 enum { MOST_SURFACES = 12 };

@@ -1,9 +1,6 @@
 /* An image held against the oracle's reference. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "oracle/oracle_evidence.h"
 #include "oracle/oracle_pixel.h"
 

@@ -1,7 +1,6 @@
 #include "oracle/oracle_math.h"
 
-#include <stdint.h>
-#include <string.h>
+#include "core/base/base.h"
 
 /* eˣ = 2ᵏ·eʳ with |r| ≤ ½ ln 2, and eʳ by its series. */
 double conic_oracle_exp(double x) {

@@ -1,8 +1,6 @@
 /* The reference of a picture that is the mean of several: what each of them may be, averaged. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "oracle/oracle_pixel.h"
 
 /* The planes whose means are means, and where their channels stand in an alternative. */

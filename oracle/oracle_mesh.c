@@ -1,7 +1,6 @@
 /* Triangles on the oracle's screen: placed, clipped and snapped. */
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "oracle/oracle_triangle.h"
 
 /* The guard band, in pixels. */

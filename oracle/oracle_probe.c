@@ -1,7 +1,6 @@
 /* One splat alone: what its formula and the exact kernel give at chosen places. */
-#include <string.h>
 
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/image/view_arguments.h"
 #include "oracle/oracle_splat.h"
 

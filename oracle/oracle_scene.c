@@ -1,9 +1,6 @@
 #include "oracle/oracle_scene.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/splats/clip.h"
 #include "oracle/oracle_splat.h"
 

@@ -1,9 +1,6 @@
 #include "shots/focus.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/rank.h"
 #include "shots/way.h"
 #include "source/source_kind.h"

@@ -1,10 +1,7 @@
 /* A camera that sees all of a source. */
-#include <math.h>
-#include <string.h>
 
 #include "conic/shot.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "source/source_kind.h"

@@ -1,11 +1,8 @@
 #include "conic/shot.h"
 
-#include <string.h>
-
 #include "conic/gaussian_judge.h"
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "shots/backdrop.h"
 #include "shots/stage.h"
 #include "shots/way.h"

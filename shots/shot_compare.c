@@ -1,7 +1,6 @@
 /* What two shots differ in. */
-#include <stdio.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "shots/shot_text.h"
 
 /* Keeps a path and a value, each with a zero behind it. */

@@ -1,11 +1,8 @@
 #include "shots/shot_fields.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "conic/coloring.h"
 #include "conic/patches.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "shots/shot_faults.h"
 
 /* --- words --- */

@@ -1,12 +1,7 @@
 #include "conic/shot_file.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "conic/version.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "shots/shot_text.h"
 

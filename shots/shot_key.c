@@ -1,11 +1,7 @@
 #include "shots/shot_key.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "conic/version.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "shots/shot_text.h"
 
 void conic_key_add_text(conic_sha256 *sum, const char *text) {

@@ -1,10 +1,7 @@
 /* Shots from text: by the table of fields, and strictly. */
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/json_read.h"

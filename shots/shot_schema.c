@@ -1,7 +1,6 @@
 /* What the fields are, for others: one by one, and as a JSON schema. */
-#include <stdio.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "shots/shot_text.h"
 
 /* --- one by one --- */

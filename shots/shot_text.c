@@ -1,10 +1,8 @@
 #include "shots/shot_text.h"
 
 #include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/files/number.h"
 
 void conic_text_add(conic_text *text, const char *bytes, size_t n) {

@@ -1,11 +1,6 @@
 #include "shots/strips.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"

@@ -1,9 +1,6 @@
 #include "shots/windows.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/image/image_common.h"
 #include "raster/frame/statistics.h"
 #include "source/source_parts.h"

@@ -1,9 +1,6 @@
 #include "source/carried.h"
 
-#include <string.h>
-
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"

@@ -1,7 +1,6 @@
 /* Windows of sources that choose before they draw: splats and triangles. */
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "raster/frame/samples.h"
 #include "raster/transparency/transparent_windows.h"
 #include "source/source_kind.h"

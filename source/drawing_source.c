@@ -1,11 +1,9 @@
 /* Splats and triangles in memory: from any number of files, or from a caller's arrays. */
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/clock.h"
 #include "core/base/context_struct.h"
 #include "core/base/loan_find.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/estimate/estimate.h"
 #include "core/splats/columns.h"
 #include "core/splats/degrees.h"

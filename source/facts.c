@@ -1,9 +1,8 @@
 #include "source/facts.h"
 
 #include <stdarg.h>
-#include <stdio.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 
 void conic_facts_destroy(conic_facts *facts) {
   if (facts)

@@ -1,12 +1,8 @@
 /* Gaussian scenes: they draw themselves, composited by alpha. */
-#include <string.h>
 
 #include "conic/opencl.h"
+#include "core/base/base.h"
 #include "core/base/loan_find.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
-#include "core/base/threads.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
 #include "gaussians/draw/gaussian_parts.h"

@@ -1,10 +1,7 @@
 #include "source/mesh_input.h"
 
-#include <string.h>
-
 #include "conic/gaussians.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/estimate/estimate.h"
 #include "core/formats/model_read.h"
 #include "core/splats/repairs_log.h"

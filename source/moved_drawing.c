@@ -1,10 +1,6 @@
 #include "source/moved_drawing.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 
 enum { CHUNK = 4096 };

@@ -1,9 +1,7 @@
 /* Octrees: from a .cot, the nodes that the error or the budget asks for; without either, its leaves. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "conic/octree.h"
+#include "core/base/base.h"
 #include "core/base/context_struct.h"
 #include "core/base/trigonometry.h"
 #include "source/source_kind.h"

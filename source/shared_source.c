@@ -1,12 +1,8 @@
 #include "source/shared_source.h"
 
-#include <string.h>
-
 #include "conic/gaussians.h"
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/estimate/estimate.h"
 #include "core/formats/model_part.h"
 #include "core/image/image_common.h"

@@ -2,13 +2,9 @@
  * functions. */
 #include "conic/source.h"
 
-#include <string.h>
-
 #include "conic/gaussians.h"
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/base/vectors.h"
 #include "source/carried.h"
 #include "source/reach.h"

@@ -1,8 +1,6 @@
 /* Colours of a source, made from what its points hold. */
-#include <string.h>
 
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "source/source_kind.h"
 #include "source/upright.h"
 

@@ -2,9 +2,7 @@
  * Coarse parts are enough for them, so little is read. */
 #include "source/source_samples.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/clock.h"
 #include "core/base/vectors.h"
 

@@ -1,8 +1,6 @@
 #include "source/splat_exchange.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/splats/columns.h"
 
 /* Splats sent at a time. */

@@ -1,8 +1,4 @@
-
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/splats/columns.h"
 #include "source/top_lift.h"
 

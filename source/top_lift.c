@@ -1,9 +1,6 @@
 #include "source/top_lift.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/splats/columns.h"
 
 enum { AXES_ARRAYS = 9, COLOR_ARRAYS = 3 };

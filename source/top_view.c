@@ -1,12 +1,7 @@
 #include "source/top_view.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "conic/triangles.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "core/splats/columns.h"
 #include "raster/frame/statistics.h"
 #include "raster/view/part.h"

@@ -3,11 +3,9 @@
  * sixty files whose up is known: with them no file is laid on its back. */
 #include "source/upright.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-#include "core/base/memory.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 
 /* The most splats and triangles to look at; fewer than the least tell nothing. */

@@ -1,9 +1,8 @@
 #include "source/window_deal.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 
 /* Rough costs, in one unit: setting up and sorting a splat, a sample that it may cover, and finishing a pixel's
  * sample. */

@@ -1,10 +1,8 @@
 #include "surface/cells.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 
 enum { FIRST_ROOM = 256 };
 

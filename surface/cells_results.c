@@ -1,8 +1,6 @@
 #include "surface/cells_results.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 
 /* Results sent at a time. */
 enum { SENT_RESULTS = 1 << 16 };

@@ -1,8 +1,6 @@
 /* Projects a surface's own points, leaf by leaf of the tree: a leaf's points share their candidates. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "core/splats/splats_gather.h"
 #include "surface/own_points.h"

@@ -1,9 +1,8 @@
 /* Projection where pieces of a surface meet. Each piece is fitted by its own samples alone. Its point counts up to
  * where another piece cuts it off; beyond, the point is on the edge between them, or on the corner of three. The
  * nearest of these points is the result. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "surface/least_spread.h"
 #include "surface/loops/weight.h"

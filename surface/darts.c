@@ -1,9 +1,6 @@
 #include "surface/darts.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 
 enum { N_COVERS = 32 };

@@ -4,12 +4,8 @@
  * Triangles say where there is surface: the set's own, or those that each point makes with its neighbours (Delaunay's).
  * In passes with ever smaller radii, a dart is thrown at every place of the triangles without a point nearby, and the
  * darts are projected. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "core/splats/builder.h"

@@ -1,8 +1,6 @@
 #include "surface/densify_triangles.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "surface/fan.h"

@@ -1,8 +1,6 @@
 /* How far one surface is from another, measured at its points. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "surface/own_points.h"
 

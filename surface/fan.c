@@ -1,8 +1,6 @@
 #include "surface/fan.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/voronoi_cell.h"
 

@@ -1,11 +1,6 @@
 #include "surface/mls_surface.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "core/base/rank.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"

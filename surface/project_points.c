@@ -1,7 +1,4 @@
-#include <math.h>
-#include <string.h>
-
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "surface/mls_surface.h"
 
 enum { CHUNK = 256, CHUNKS_A_REPORT = 64 };

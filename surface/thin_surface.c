@@ -3,13 +3,9 @@
  * Removing a point changes its neighbours' contributions. The neighbours are marked, and measured anew when they come
  * to the front of the queue, so that none is removed on an old measure. A point's distance from the surface of the
  * others mostly grows when these become fewer, so hardly any comes to the front too late. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/heap.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/base/team_runs.h"
 #include "core/splats/splats_gather.h"
 #include "surface/mls_surface.h"

@@ -1,8 +1,6 @@
 #include "cli/commands/build_coloring.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/coloring/coloring_stream.h"
 
 void cli_coloring_init(cli_coloring *coloring) {

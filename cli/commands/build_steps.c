@@ -1,10 +1,8 @@
 #include "cli/commands/build_steps.h"
 
-#include <string.h>
-
 #include "cli/outputs.h"
 #include "cli/points/points_input.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "source/reach.h"
 

@@ -1,13 +1,11 @@
 /* conic convert: writes a Gaussian scene in another format, and says what was lost. */
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/outputs.h"
 #include "conic/source.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 
 typedef struct convert_job {

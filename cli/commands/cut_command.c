@@ -1,11 +1,10 @@
 /* conic cut: makes a cloud from a part of a cloud in a file or on a web server. */
-#include <string.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/cut_region.h"
 #include "conic/layers_draw.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/formats/las_write.h"
 

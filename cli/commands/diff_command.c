@@ -1,12 +1,11 @@
 /* conic diff: how two images, or two folders of them, differ, in numbers and as a picture. */
-#include <math.h>
-#include <string.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/commands/diff_job.h"
 #include "cli/commands/diff_shots.h"
 #include "cli/outputs.h"
+#include "core/base/base.h"
 
 static void write_planes(cli_json *json, const conic_difference *difference) {
   cli_json_object(json, "planes");

@@ -1,8 +1,7 @@
 /* Measures two files for conic diff, and reports the result. */
-#include <math.h>
 
 #include "cli/commands/diff_job.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/image/compare.h"
 

@@ -1,6 +1,5 @@
 /* conic explain: tells why a pixel is as it is, and where a splat is on the screen. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
@@ -8,7 +7,7 @@
 #include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/render/sample_options.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 
 typedef struct explain_job {

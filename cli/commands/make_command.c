@@ -1,11 +1,10 @@
 /* conic make: samples an analytic scene into splats, batch by batch, so that memory does not grow with their number; or
  * makes a scene of Gaussians, all at once. */
-#include <string.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/outputs.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/nearest_word.h"
 #include "gaussians/scene/made_gaussians.h"
 

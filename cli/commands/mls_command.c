@@ -1,12 +1,10 @@
 /* conic mls: point-set surfaces. Makes cleaner, fewer or more points from points. */
-#include <string.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/commands/mls_sizes.h"
 #include "cli/device_option.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/splats/point_values.h"
 #include "core/splats/repairs_log.h"
 

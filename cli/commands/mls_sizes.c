@@ -1,10 +1,6 @@
 #include "cli/commands/mls_sizes.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/features.h"
 #include "core/estimate/neighbours.h"

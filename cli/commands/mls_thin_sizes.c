@@ -1,11 +1,8 @@
 /* Ellipses of points chosen from more. Each covers, in its plane, the outlines of all points that it stands for, so
  * that the chosen points cover what all points did, and end where those do. */
-#include <math.h>
-#include <string.h>
 
 #include "cli/commands/mls_sizes.h"
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/estimate.h"
 #include "core/estimate/neighbours.h"

@@ -1,8 +1,6 @@
 #include "cli/commands/prepare_bake.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/splats/point_values.h"
 
 int cli_bake_parse(const char *text, void *value) {

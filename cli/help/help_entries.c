@@ -1,8 +1,7 @@
 /* The rows of a command's table as the pages show them. */
-#include <math.h>
-#include <string.h>
 
 #include "cli/help/help.h"
+#include "core/base/base.h"
 
 /* What an option's value is, by what the help calls it. */
 static cli_value_kind kind_of_value(const cli_option *option) {

@@ -1,7 +1,6 @@
 /* conic conformance: writes a suite with which any renderer of Gaussian scenes can be judged (docs/reference/
  * conformance.md). */
 #include <errno.h>
-#include <string.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
@@ -9,8 +8,7 @@
 #include "cli/judge/suite_planes.h"
 #include "cli/outputs.h"
 #include "conic/version.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 

@@ -1,6 +1,5 @@
 /* conic judge --suite: judges the pictures of a whole suite. */
 #include <errno.h>
-#include <string.h>
 
 #include "cli/arguments.h"
 #include "cli/json_write.h"
@@ -8,7 +7,7 @@
 #include "cli/judge/suite_judge.h"
 #include "cli/judge/suite_scenes.h"
 #include "cli/outputs.h"
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 
 static int is_chosen_case(const suite_run *run, const suite_entry *entry) {

@@ -1,11 +1,8 @@
 #include "cli/judge/suite_files.h"
 
 #include <errno.h>
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/zip.h"

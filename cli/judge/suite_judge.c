@@ -2,14 +2,9 @@
  * conic, and anybody can compute it from the same files. */
 #include "cli/judge/suite_judge.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "cli/judge/suite_files.h"
 #include "cli/judge/suite_planes.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/files/mapping.h"
 

@@ -1,9 +1,6 @@
 #include "cli/judge/suite_manifest.h"
 
-#include <stddef.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 
 enum { SUITE_MOST_LEVELS = 99, SUITE_MOST_ENTRIES = 4096 };
 

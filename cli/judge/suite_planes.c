@@ -1,12 +1,7 @@
 #include "cli/judge/suite_planes.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
 #include "core/files/file.h"
 #include "core/files/numpy_array.h"
 

@@ -1,12 +1,9 @@
 /* The suite's scenes, and the table of them. */
 #include "cli/judge/suite_scenes.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/base/random.h"
-#include "core/base/real.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "gaussians/scene/made_gaussians.h"
 

@@ -1,10 +1,8 @@
 /* conic layer: makes a layered point cloud from any number of samples. */
-#include <string.h>
 
 #include "cli/command.h"
 #include "cli/layer/layer_job.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "lod/layers/build/layers_team.h"
 
 static const char *const payload_words[] = {"plain", "full", NULL};

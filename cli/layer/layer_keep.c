@@ -1,8 +1,6 @@
-#include <string.h>
-
 #include "cli/layer/layer_job.h"
 #include "conic/version.h"
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/estimate/estimate.h"
 #include "lod/layers/build/layers_team.h"
 #include "shots/shot_inputs.h"

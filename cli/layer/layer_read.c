@@ -1,10 +1,7 @@
-#include <string.h>
-
 #include "cli/layer/layer_job.h"
 #include "cli/points/points_input.h"
 #include "conic/layers_draw.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/splats/repairs_log.h"
 #include "lod/layers/build/layers_team.h"

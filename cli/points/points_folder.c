@@ -1,11 +1,7 @@
-
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/points/points_input.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 

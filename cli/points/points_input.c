@@ -1,9 +1,7 @@
 #include "cli/points/points_input.h"
 
-#include <string.h>
-
 #include "conic/layers_draw.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/formats/model_read.h"
 

@@ -1,10 +1,7 @@
 #include "cli/points/points_share.h"
 
-#include <string.h>
-
 #include "cli/points/points_input.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 
 /* A cut nearer to an end of an input than this part of a share is moved to that end. */

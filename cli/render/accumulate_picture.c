@@ -1,14 +1,13 @@
 #include "cli/scene/accumulate_job.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/shot_record.h"
 #include "cli/render/units.h"
 #include "cli/stopper.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "shots/stage.h"
 

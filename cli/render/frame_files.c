@@ -1,15 +1,12 @@
 #include "cli/render/frame_files.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/outputs.h"
 #include "cli/render/frames.h"
 #include "cli/scene/background_options.h"
 #include "cli/session_team.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/coloring/color_ramp.h"
 #include "core/coloring/legend.h"
 #include "core/files/disk.h"

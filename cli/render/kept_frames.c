@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/render/fill_shot.h"
 #include "cli/render/frame_files.h"
@@ -10,8 +9,7 @@
 #include "cli/render/shot_record.h"
 #include "cli/render/strip_pictures.h"
 #include "cli/render/units.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/finished.h"

@@ -1,6 +1,5 @@
 /* conic render: splats, raw points or meshes in, pictures out. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/command.h"
 #include "cli/host_keeps.h"
@@ -14,7 +13,7 @@
 #include "cli/render/units.h"
 #include "cli/scene/stereo.h"
 #include "cli/session_team.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "shots/shot_plan.h"
 
 static int compare_frames(const void *a, const void *b) {

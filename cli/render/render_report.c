@@ -1,5 +1,4 @@
 #include "cli/scene/background_options.h"
-#include <string.h>
 
 #include "cli/color_options.h"
 #include "cli/render/frames.h"
@@ -10,7 +9,7 @@
 #include "cli/scene/views.h"
 #include "cli/source_facts.h"
 #include "cli/tell.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 
 enum { N_STAGES = 8, N_FRAME_STAGES = 6 };
 

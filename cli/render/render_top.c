@@ -1,11 +1,9 @@
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/render/shot_record.h"
 #include "cli/scene/render_job.h"
 #include "cli/top/top_tiff.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 

@@ -1,11 +1,7 @@
 #include "cli/scene/lamp_job.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "cli/scene/light_options.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "shots/shot_plan.h"
 

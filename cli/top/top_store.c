@@ -1,8 +1,6 @@
 #include "cli/top/top_store.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 
 conic_status cli_top_store_open(conic_context *context, const char *path, size_t width, size_t pixel_bytes,
                                 size_t n_rows, uint64_t most_bytes, cli_top_store *store) {

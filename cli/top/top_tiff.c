@@ -1,9 +1,6 @@
 #include "cli/top/top_tiff.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/pictures/image_samples.h"
 
 enum { BLOCK = CONIC_TOP_BLOCK, TILE = CONIC_TIFF_TILE };

@@ -1,9 +1,6 @@
 #include "cli/top/top_tiff.h"
 
-#include <stdio.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/files/number.h"
 

@@ -1,13 +1,10 @@
 #include "core/assimp/assimp_part.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "conic/triangles.h"
+#include "core/base/base.h"
 #include "core/base/context_struct.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/file.h"
 #include "core/files/scratch.h"
 #include "core/image/image_common.h"

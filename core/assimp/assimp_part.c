@@ -1,10 +1,7 @@
 #include "core/assimp/assimp_part.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/vectors.h"
 
 /* A part's arrays as they come, and which point each vertex became. */

@@ -1,14 +1,12 @@
 #include "core/assimp/assimp_process.h"
+#include "core/base/base.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include "core/base/message.h"
 
 enum { POLL_MILLISECONDS = 50 };
 

@@ -1,15 +1,11 @@
 #include "core/assimp/assimp_read.h"
 #include "core/files/guard.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "core/assimp/assimp_kinds.h"
 #include "core/assimp/assimp_part.h"
 #include "core/assimp/assimp_process.h"
+#include "core/base/base.h"
 #include "core/base/machine.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/file.h"
 
 static const char module[] = "conic-assimp.so";

@@ -1,16 +1,11 @@
 #include "core/base/context_struct.h"
 
 #include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/loan_find.h"
 #include "core/base/machine.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 
 static void *default_allocate(void *cookie, size_t bytes) {
   (void)cookie;

@@ -1,9 +1,7 @@
 #include "core/base/gaussian.h"
 
-#include <math.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/real.h"
 #include "core/base/vectors.h"
 
 /* ln 2 in two parts; the first has zeros in its last bits, so that k·ln2_high is exact. */

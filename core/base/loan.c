@@ -1,10 +1,7 @@
 #include "core/base/loan_find.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/context_struct.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 
 static const char *const loan_kinds[] = {"splats", "triangles", "gaussians", "image", "camera"};
 

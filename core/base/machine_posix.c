@@ -1,10 +1,9 @@
 #include <limits.h>
-#include <stdint.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "core/base/base.h"
 #include "core/base/machine.h"
-#include "core/base/memory.h"
 
 int conic_machine_threads(void) {
   long n = sysconf(_SC_NPROCESSORS_ONLN);

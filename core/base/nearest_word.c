@@ -1,9 +1,6 @@
 #include "core/base/nearest_word.h"
 
-#include <stddef.h>
-#include <string.h>
-
-#include "core/base/real.h"
+#include "core/base/base.h"
 
 enum { MAX_LETTERS = 40 };
 

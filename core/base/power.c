@@ -1,9 +1,6 @@
 #include "core/base/power.h"
 
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/gaussian.h"
 
 /* v = m·2^e, m in [½, 1), exact. */

@@ -1,8 +1,6 @@
 #include "core/base/radix.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 
 /* For few items, going through all possible digits would take longer than going through the items. */
 enum { DIGIT_BITS = 11, DIGIT_BITS_OF_FEW = 8, FEW = 2048 };

@@ -1,8 +1,6 @@
 #include "core/base/rank.h"
 
-#include <string.h>
-
-#include "core/base/real.h"
+#include "core/base/base.h"
 
 /* Digits are found from the highest down; at each, only numbers that share the higher digits count. */
 enum { RANK_DIGIT_BITS = 11, N_RANK_DIGITS = 1 << RANK_DIGIT_BITS };

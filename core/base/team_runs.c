@@ -1,10 +1,8 @@
 #include "core/base/team_runs.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/clock.h"
 #include "core/base/context_struct.h"
-#include "core/base/memory.h"
 
 /* Each process gets so many blocks of items, spread over the whole loop, because neighbouring items take about the same
  * time. So many bytes of their values are exchanged at a time. */

@@ -2,11 +2,9 @@
 
 #include <pthread.h>
 #include <stdatomic.h>
-#include <stdint.h>
 
+#include "core/base/base.h"
 #include "core/base/context_struct.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 
 enum { LINE_BYTES = 64 };
 

@@ -1,8 +1,7 @@
 /* The cameras of a glTF: those at its nodes. */
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/cameras/camera_list.h"

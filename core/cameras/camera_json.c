@@ -1,8 +1,6 @@
 /* conic's own JSON of one camera. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/cameras/camera_list.h"
 #include "core/files/json_read.h"
 #include "core/image/view_arguments.h"

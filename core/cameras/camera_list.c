@@ -1,12 +1,7 @@
 #include "core/cameras/camera_list.h"
 
-#include <stdio.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/base/vectors.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"

@@ -1,11 +1,8 @@
 /* Finds the kind of a camera file, and the file in a folder. */
-#include <stdio.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/loan_find.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/cameras/camera_list.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"

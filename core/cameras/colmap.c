@@ -1,10 +1,8 @@
 /* COLMAP's sparse models: cameras and images, as text and binary. */
 #include <stdlib.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/trigonometry.h"
 #include "core/cameras/camera_list.h"
 #include "core/files/number.h"

@@ -1,13 +1,7 @@
 #include "conic/coloring.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/base/vectors.h"
 #include "core/coloring/color_ramp.h"
 #include "core/coloring/coloring_stream.h"

@@ -1,9 +1,6 @@
 #include "core/coloring/legend.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/coloring/color_ramp.h"
 #include "core/coloring/glyphs.h"

@@ -1,17 +1,12 @@
 /* From a model to splats. Points with good axes keep them, vertices get theirs from their faces, and the rest from the
  * neighbours. Everything is computed beside the model, which changes only when nothing can fail any more. */
 #include "core/estimate/estimate.h"
-#include "core/base/options.h"
 #include "core/splats/columns.h"
 #include "core/splats/degrees.h"
 
-#include <math.h>
 #include <stdatomic.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/estimate/features.h"

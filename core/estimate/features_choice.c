@@ -1,7 +1,6 @@
 /* Which clip lines a splat gets, where several creases are near. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/estimate/features.h"
 
 enum { MAX_CANDIDATES = 16 };

@@ -1,11 +1,9 @@
 /* Creases among points. A normal from all neighbours is blunt near a crease, where they lie on both sides. So a small
  * plane is fitted at each place, and a point near a crease takes over the flattest plane of a neighbour in which it
  * lies, too. Where the planes of neighbours then meet sharply, both sides are clipped. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/eigen.h"
-#include "core/base/memory.h"
 #include "core/base/vectors.h"
 #include "core/estimate/features.h"
 #include "core/estimate/neighbourhood.h"

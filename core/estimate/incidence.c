@@ -1,9 +1,6 @@
 #include "core/estimate/incidence.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 
 static conic_status check_triangles(conic_context *context, const conic_model *model, size_t most) {
   if (model->n_triangles > most)

@@ -1,9 +1,8 @@
 /* Keeps a mesh's splats at the mesh. An ellipse in a vertex's tangent plane leaves the surface where that bends or
  * ends. Where this could be seen, the vertex becomes one splat for each of its triangles, in the triangle's plane and
  * clipped at the two edges that meet there. */
-#include <math.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/triangle_distance.h"
 #include "core/base/vectors.h"
 #include "core/estimate/estimate.h"

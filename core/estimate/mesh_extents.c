@@ -1,10 +1,8 @@
 /* Ellipses of a mesh's vertices. A vertex's share of a triangle has four corners: the vertex, the middles of its two
  * edges and the triangle's middle. An ellipse around these corners for all triangles of a vertex covers its share of
  * the surface; all ellipses together cover the whole surface. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/estimate.h"
 #include "core/estimate/incidence.h"

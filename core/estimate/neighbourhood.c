@@ -1,9 +1,6 @@
 #include "core/estimate/neighbourhood.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 
 /* Slots in one call of a task, and calls between two reports of progress. */

@@ -1,10 +1,7 @@
 /* Builds the kd-tree: coincident points are joined, then ranges are halved across their longest side. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/random.h"
-#include "core/base/threads.h"
 #include "core/estimate/neighbours.h"
 
 enum { SHARED_LEVELS = 6 };

@@ -1,10 +1,5 @@
-
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/eigen.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/vectors.h"
 #include "core/estimate/neighbourhood.h"
 

@@ -1,9 +1,8 @@
 /* Ellipses of points without faces, around the part of the tangent plane that is nearer to the point than to its
  * neighbours. Such cells leave no gap, however unevenly a scanner sampled; they are cut off at a radius, so that they
  * close no hole. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/estimate.h"
 #include "core/estimate/neighbourhood.h"

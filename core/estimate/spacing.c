@@ -1,9 +1,7 @@
-#include <math.h>
 #include <stdlib.h>
 
 #include "conic/splats.h"
-#include "core/base/memory.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "core/estimate/neighbours.h"
 #include "core/splats/columns.h"
 

@@ -1,9 +1,7 @@
 /* Normals of corners: round over edges flatter than an angle, sharp over others. */
-#include <string.h>
 
 #include "conic/triangles.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/estimate/neighbourhood.h"

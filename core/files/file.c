@@ -2,13 +2,11 @@
 
 #include <errno.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "core/base/base.h"
 #include "core/base/context_struct.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/files/guard.h"
 #include "core/files/scratch.h"

@@ -1,11 +1,7 @@
 #include "core/files/file_body.h"
 
-#include <stdio.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
 #include "core/files/file.h"
 
 /* The byte order is changed in pieces of whole records. */

@@ -1,10 +1,8 @@
 #include "core/files/finished.h"
 
 #include <errno.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 
 enum { N_DIGITS = CONIC_SHA256_ROOM - 1, MOST_BYTES = 1 << 30 };

@@ -1,10 +1,7 @@
 #include "core/files/guard.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/context_struct.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 
 static int is_file(const conic_file_identity *known, const conic_disk_entry *found) {
   return known->is_there && known->device == found->device && known->number == found->number;

@@ -1,7 +1,6 @@
 #include "core/files/inflate.h"
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 
 #if CONIC_HAVE_ZLIB
 

@@ -1,10 +1,6 @@
 #include "core/files/json_read.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "core/files/input.h"
 #include "core/files/number.h"
 

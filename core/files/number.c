@@ -1,10 +1,6 @@
 #include "core/files/number.h"
 
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
-#include "core/base/real.h"
+#include "core/base/base.h"
 
 /* The powers of ten that a double holds exactly. */
 static const double exact_powers[23] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,

@@ -1,9 +1,7 @@
 #include "core/files/numpy_array.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/message.h"
 
 typedef struct npy_text {
   const char *text;

@@ -1,11 +1,9 @@
 #include "core/files/scratch.h"
 
 #include <errno.h>
-#include <string.h>
 #include <unistd.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 

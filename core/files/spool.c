@@ -1,8 +1,6 @@
 #include "core/files/spool.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 
 void conic_spool_begin(conic_context *context, const char *path, size_t memory_bytes, conic_spool *spool) {
   memset(spool, 0, sizeof *spool);

@@ -1,10 +1,7 @@
 #include "core/files/zip.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/inflate.h"
 
 /* Bytes of the records, without names and what follows them. */

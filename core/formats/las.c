@@ -1,11 +1,7 @@
 #include "core/formats/readers.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
 #include "core/files/las_layout.h"
 #include "core/formats/las_fields.h"
 #include "core/formats/ply_source.h"

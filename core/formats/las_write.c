@@ -1,13 +1,8 @@
 #include "core/formats/las_write.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/las_layout.h"

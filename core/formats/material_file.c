@@ -1,11 +1,7 @@
 #include "core/formats/material_file.h"
 
-#include <stdio.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/file.h"
 #include "core/files/input.h"
 #include "core/files/number.h"

@@ -1,12 +1,8 @@
 #include "core/formats/model_read.h"
 
-#include <string.h>
-
 #include "core/assimp/assimp_kinds.h"
 #include "core/assimp/assimp_read.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/files/input.h"
 #include "core/formats/file_kinds.h"

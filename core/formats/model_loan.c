@@ -1,11 +1,8 @@
 #include "core/formats/readers.h"
 
-#include <string.h>
-
 #include "conic/triangles.h"
+#include "core/base/base.h"
 #include "core/base/loan_find.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/splats/columns.h"
 #include "core/splats/faces.h"
 

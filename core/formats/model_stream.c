@@ -1,9 +1,7 @@
-#include <string.h>
 #include <unistd.h>
 
 #include "core/assimp/assimp_kinds.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/formats/model_part.h"
 #include "core/formats/model_read.h"
 #include "core/formats/readers.h"

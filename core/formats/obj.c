@@ -1,10 +1,7 @@
 #include "core/formats/readers.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/vectors.h"
 #include "core/files/number.h"
 #include "core/splats/builder.h"

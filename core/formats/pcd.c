@@ -1,11 +1,7 @@
 #include "core/formats/readers.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/lzf.h"
 #include "core/files/number.h"
 #include "core/formats/pcd_header.h"

@@ -1,10 +1,8 @@
 #include "core/formats/ply_columns.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/base/gaussian.h"
-#include "core/base/message.h"
 #include "core/base/vectors.h"
 #include "core/splats/ellipse.h"
 #include "core/splats/point_fields.h"

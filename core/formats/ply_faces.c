@@ -1,7 +1,4 @@
-#include <stdio.h>
-#include <string.h>
-
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/formats/ply_texture.h"
 #include "core/formats/readers.h"
 #include "core/splats/polygon.h"

@@ -1,11 +1,7 @@
 #include "core/formats/ply_header.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 
 typedef struct type_description {
   const char *names[2];

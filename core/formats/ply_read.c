@@ -1,9 +1,6 @@
 #include "core/formats/readers.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/formats/ply_columns.h"
 #include "core/formats/ply_texture.h"
 

@@ -1,10 +1,7 @@
 #include "core/formats/ply_source.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/number.h"
 
 conic_status conic_ply_wrong(const conic_ply_source *source, const char *what) {

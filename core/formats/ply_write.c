@@ -1,14 +1,10 @@
 #include <errno.h>
-#include <math.h>
-#include <string.h>
 
 #include "conic/model.h"
 #include "conic/version.h"
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/base/vectors.h"
 #include "core/files/file.h"
 #include "core/files/number.h"

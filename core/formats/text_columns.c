@@ -1,7 +1,6 @@
 #include "core/formats/text_columns.h"
 
-#include <stdio.h>
-#include <string.h>
+#include "core/base/base.h"
 
 /* Names of a meaning, letters and digits only; earlier ones win. */
 static const char *const names_of[CONIC_TEXT_N_MEANINGS][16] = {

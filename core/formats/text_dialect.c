@@ -1,8 +1,6 @@
 #include "core/formats/text_columns.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/files/number.h"
 
 enum { INK, BLANK, PARTING, MOST_VALUES = 256 };

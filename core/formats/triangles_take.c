@@ -1,9 +1,7 @@
 /* From a model to triangles. */
-#include <string.h>
 
 #include "conic/triangles.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/formats/material_file.h"
 #include "core/formats/model_read.h"

@@ -1,10 +1,6 @@
 #include "core/formats/readers.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/input.h"
 #include "core/formats/file_kinds.h"
 #include "core/formats/text_columns.h"

@@ -1,10 +1,6 @@
 #include "core/image/framing.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 

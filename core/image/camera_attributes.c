@@ -1,8 +1,7 @@
 /* A camera as the attributes of an EXR. */
-#include <stdio.h>
-#include <string.h>
 
 #include "conic/image.h"
+#include "core/base/base.h"
 
 static void append(conic_image *image, const char *name, conic_attribute_type type, const double *values, size_t n) {
   if (image->n_attributes == CONIC_MAX_ATTRIBUTES)

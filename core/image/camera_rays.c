@@ -1,8 +1,6 @@
 #include "core/image/camera_rays.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/trigonometry.h"
 
 enum { TOP = 5, BOTTOM = 4, FOLD = TOP + BOTTOM - 1 };

@@ -1,10 +1,6 @@
 #include "core/image/compare.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/power.h"
 #include "core/image/image_common.h"
 

@@ -2,13 +2,10 @@
  * difference that is visible when one flips between two pictures on a screen at arm's length. docs/reference/diff.md
  * describes it. All filters are sums of products of two one-dimensional ones. A tile's rows are filtered across one by
  * one, and down over the last rows. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/gaussian.h"
-#include "core/base/memory.h"
 #include "core/base/power.h"
-#include "core/base/threads.h"
 #include "core/base/trigonometry.h"
 #include "core/image/compare.h"
 #include "core/image/image_common.h"

@@ -1,12 +1,10 @@
 #include "conic/image.h"
 
 #include <limits.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/context_struct.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/image/image_common.h"
 #include "core/image/texture_levels.h"

@@ -1,7 +1,6 @@
 /* The world position of what a pixel shows, from its depth and the camera. */
 #include "conic/image.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/image/camera_rays.h"
 
 typedef struct positions {

@@ -1,9 +1,6 @@
 /* Reduces pictures by means over boxes, whose edges may cut pixels: first across, then down. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/image/compare.h"
 
 typedef struct shrinking {

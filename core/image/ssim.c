@@ -1,9 +1,7 @@
 /* Structural similarity (Wang, Bovik, Sheikh, Simoncelli 2004) and squared differences of the colour as a screen shows
  * it, channel by channel, in memory for a few rows. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/image/compare.h"
 #include "core/image/image_common.h"
 

@@ -1,10 +1,7 @@
 #include "core/image/texture_levels.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/context_struct.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/image/image_common.h"
 
 /* The shares of an old row or column of `n` texels in texel i of a new one of `m`: how much each old texel overlaps the

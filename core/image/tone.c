@@ -1,10 +1,9 @@
 /* Tone curves: map light without bound to colours that a screen can show. Only + − × ÷ √ are used, so that the bits are
  * the same everywhere. */
 #include <float.h>
-#include <stdint.h>
-#include <string.h>
 
 #include "conic/image.h"
+#include "core/base/base.h"
 #include "core/base/color.h"
 
 const char *conic_tone_name(conic_tone tone) {

@@ -1,10 +1,6 @@
 #include "core/image/view_arguments.h"
 
-#include <math.h>
-#include <stdio.h>
-
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 
 /* How far the rotation's rows may be from orthonormal: files are written with few digits. */
 static const double rotation_tolerance = 1e-3;

@@ -1,9 +1,7 @@
 #include "core/lanes/instruction_sets.h"
 
-#include <stddef.h>
-
+#include "core/base/base.h"
 #include "core/base/context_struct.h"
-#include "core/base/message.h"
 
 const char *conic_isa_name(conic_isa isa) {
   static const char *const names[CONIC_N_ISAS] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon"};

@@ -1,8 +1,6 @@
 #include "core/laz/laz_models.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 
 enum { BLOCK_NUMBERS = 1 << 15, MOST_TOTAL = 1 << 15, MOST_BITS = 1 << 13 };
 

@@ -1,10 +1,6 @@
 #include "core/laz/laz.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/laz/laz_stream.h"
 #include "core/laz/laz_table.h"
 

@@ -1,7 +1,6 @@
 /* Points one after the other: point formats 0 to 5. */
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/laz/laz_fields.h"
 #include "core/laz/laz_points.h"
 

@@ -1,10 +1,7 @@
 #include "core/pictures/cryptomatte.h"
 
-#include <stdio.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
 
 enum { N_LAYERS = 3, DEPTH = 2 * N_LAYERS };
 

@@ -1,9 +1,7 @@
 #include "core/pictures/georeference.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/las_layout.h"

@@ -1,12 +1,9 @@
 #include "core/pictures/image_exr_deep.h"
 
-#include "core/base/message.h"
+#include "core/base/base.h"
 
 #if CONIC_HAVE_OPENEXR
 
-#include <string.h>
-
-#include "core/base/memory.h"
 #include "core/files/file.h"
 #include "core/pictures/image_exr_stream.h"
 

@@ -1,11 +1,8 @@
 /* Packs a line of a deep EXR as the file holds it: its channels one after the other, compressed as by ZIPS. The library
  * can write such lines but cannot make them. */
-#include <stddef.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/pictures/image_exr_deep.h"
 
 #if CONIC_HAVE_ZLIB

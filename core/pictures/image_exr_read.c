@@ -1,6 +1,6 @@
 #include "core/pictures/image_exr.h"
 
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/pictures/image_foreign.h"
 
@@ -8,10 +8,7 @@
 
 #include <errno.h>
 #include <stdatomic.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/threads.h"
 #include "core/image/image_common.h"
 #include "core/pictures/image_channels.h"
 #include "core/pictures/image_exr_stream.h"

@@ -1,15 +1,12 @@
 #include "core/pictures/image_exr.h"
 
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/pictures/image_exr_bands.h"
 
 #if CONIC_HAVE_OPENEXR
 
 #include <errno.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/threads.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"

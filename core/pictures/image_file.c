@@ -1,13 +1,10 @@
 /* Chooses an image's format: for writing by the ending of its name, for reading by the file's first bytes. */
 #include <errno.h>
-#include <stdio.h>
-#include <string.h>
 #include <strings.h>
 
 #include "conic/image.h"
+#include "core/base/base.h"
 #include "core/base/loan_find.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"

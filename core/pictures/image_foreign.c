@@ -1,10 +1,6 @@
 #include "core/pictures/image_foreign.h"
 
-#include <stdio.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 #include "core/pictures/image_channels.h"
@@ -84,8 +80,8 @@ conic_status conic_foreign_write(conic_context *context, const char *path, const
   conic_samples_layout layout = choose_layout(&writer);
   layout.is_display = image->is_display != 0;
   layout.tone = tone;
-  const conic_bridge_picture picture = {image->width, image->height, layout.n_channels, layout.sample_bytes,
-                                        layout.is_straight, .description = image->shot};
+  const conic_bridge_picture picture = {image->width,        image->height,      layout.n_channels,
+                                        layout.sample_bytes, layout.is_straight, .description = image->shot};
   void *samples = conic_memory_allocate(context, conic_image_pixels(image),
                                         (size_t)layout.n_channels * (size_t)layout.sample_bytes);
   if (!samples)

@@ -1,10 +1,6 @@
 #include "core/pictures/image_numpy.h"
 
-#include <stdio.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/mapping.h"
 #include "core/files/numpy_array.h"
 #include "core/files/zip.h"

@@ -1,12 +1,9 @@
 #include "core/pictures/image_pfm.h"
 
 #include <errno.h>
-#include <stdio.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"

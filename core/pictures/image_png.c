@@ -1,7 +1,7 @@
 #include "core/pictures/image_png.h"
 
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/pictures/image_foreign.h"
 
@@ -9,9 +9,7 @@
 
 #include <errno.h>
 #include <png.h>
-#include <string.h>
 
-#include "core/base/memory.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 #include "core/pictures/image_samples.h"

@@ -1,9 +1,7 @@
 #include "core/pictures/image_samples.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/threads.h"
 
 /* conic_srgb_code by one look-up and about one step: `first` holds the code at the lower end of each of N_STEPS equal
  * steps of linear light. The number of steps is a power of two, so that the step is found exactly. */

@@ -1,13 +1,8 @@
 /* Reads a picture to be judged, and the ranges that its values stand for. */
 #include "conic/picture.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 #include "core/pictures/image_numpy.h"

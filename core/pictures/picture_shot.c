@@ -1,11 +1,8 @@
 #include "core/pictures/picture_shot.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/loan_find.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/inflate.h"
 #include "core/files/mapping.h"
 

@@ -1,11 +1,7 @@
 #include "core/pictures/tiff_tiles.h"
 
-#include <stdio.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/file.h"
 
 #if CONIC_HAVE_ZLIB

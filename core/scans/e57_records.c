@@ -1,10 +1,7 @@
 #include "core/scans/e57_file.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/real.h"
 
 enum { SECTION_BYTES = 32, PACKET_BYTES = 4, INDEX_PACKET = 0, DATA_PACKET = 1, IGNORED_PACKET = 2 };
 

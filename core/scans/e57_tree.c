@@ -1,10 +1,5 @@
+#include "core/base/base.h"
 #include "core/scans/e57_file.h"
-
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
 
 int conic_e57_column_find(const conic_e57_scan *scan, const char *name) {
   for (size_t i = 0; i < scan->n_columns; i++)
@@ -23,7 +18,6 @@ void conic_e57_tree_release(conic_context *context, conic_e57_tree *tree) {
 #include <libxml/parser.h>
 #include <libxml/tree.h>
 
-#include "core/base/real.h"
 #include "core/files/number.h"
 
 /* The XML does not hold the points: a longer one is no description of scans. */

@@ -1,9 +1,6 @@
 #include "core/formats/readers.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "core/files/number.h"
 #include "core/scans/sight.h"
 #include "core/splats/point_fields.h"

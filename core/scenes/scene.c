@@ -1,16 +1,9 @@
 #include "core/scenes/scene_kind.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "conic/image.h"
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/base/random.h"
-#include "core/base/real.h"
-#include "core/base/threads.h"
 #include "core/base/trigonometry.h"
 #include "core/splats/columns.h"
 #include "core/splats/ellipse.h"

@@ -1,10 +1,5 @@
+#include "core/base/base.h"
 #include "core/scenes/scene_kind.h"
-
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/threads.h"
 
 /* found · n_wanted / n_found, rounded, computed as found minus its share of the surplus. The surplus is small where the
  * numbers are large, so the product stays below 2⁶⁴. */

@@ -1,9 +1,7 @@
 #include "core/scenes/scene_terrain.h"
 
-#include <math.h>
-
+#include "core/base/base.h"
 #include "core/base/random.h"
-#include "core/base/threads.h"
 #include "core/scenes/noise.h"
 #include "core/scenes/scene_kind.h"
 

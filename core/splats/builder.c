@@ -1,9 +1,6 @@
 #include "core/splats/builder.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/splats/splats_gather.h"
 
 /* From here on a point is far out. */

@@ -1,10 +1,6 @@
 #include "core/splats/columns.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 
 enum { TRIANGLES_COLUMNS = 12 };
 

@@ -1,9 +1,7 @@
 /* Dots: splats that face whoever looks. */
-#include <math.h>
 
 #include "conic/splats.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"
 #include "core/splats/ellipse.h"

@@ -1,10 +1,7 @@
 #include "core/splats/faces.h"
 
-#include <string.h>
-
 #include "conic/triangles.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 
 conic_status conic_faces_create(conic_context *context, conic_faces **faces) {
   *faces = conic_memory_allocate_zeroed(context, 1, sizeof **faces);

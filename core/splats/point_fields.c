@@ -1,11 +1,8 @@
 #include "core/splats/point_fields.h"
 
 #include <limits.h>
-#include <stdio.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/nearest_word.h"
 
 enum { NAME_ROOM = sizeof(((conic_model_field *)0)->name) };

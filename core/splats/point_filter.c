@@ -1,10 +1,6 @@
 #include "core/splats/point_filter.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/number.h"
 
 /* So many comparisons, and so deep. */

@@ -2,10 +2,9 @@
  * then along the other axis by what the greater has more. */
 #include "core/splats/profile.h"
 
+#include "core/base/base.h"
 #include "core/base/context_struct.h"
 #include "core/base/gaussian.h"
-#include "core/base/memory.h"
-#include "core/base/threads.h"
 
 /* --- the smooth part as a polynomial of q and of q's part across, by least squares --- */
 

@@ -1,8 +1,6 @@
 #include "core/splats/repairs_log.h"
 
-#include <stdio.h>
-
-#include "core/base/message.h"
+#include "core/base/base.h"
 
 void conic_repairs_log(conic_context *context, const char *path, const conic_repairs *repairs) {
   const struct {

@@ -1,7 +1,6 @@
 #include "core/splats/shares.h"
 
-#include <math.h>
-#include <string.h>
+#include "core/base/base.h"
 
 void conic_shares_take_greatest(const conic_splats_shares *shares, double *values, size_t n) {
   const conic_team *team = shares->team;

@@ -1,12 +1,6 @@
-#include <math.h>
-#include <string.h>
-
 #include "conic/splats.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/rank.h"
-#include "core/base/real.h"
-#include "core/base/threads.h"
 #include "core/splats/columns.h"
 #include "core/splats/shares.h"
 

@@ -1,10 +1,6 @@
 #include "conic/splats.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/splats/columns.h"
 #include "core/splats/point_values.h"
 #include "core/splats/splats_gather.h"

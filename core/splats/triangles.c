@@ -1,9 +1,6 @@
 #include "conic/triangles.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"
 #include "core/splats/near.h"

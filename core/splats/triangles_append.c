@@ -1,9 +1,7 @@
 /* Two sets of triangles made one. */
-#include <math.h>
-#include <string.h>
 
 #include "conic/triangles.h"
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/splats/columns.h"
 
 /* An attribute of the corners: so many arrays of n values, and which of them each corner has. */

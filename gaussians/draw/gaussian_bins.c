@@ -2,10 +2,7 @@
  * entries there. The order within a tile is so that of the footprints, whatever the threads. */
 #include "gaussians/draw/gaussian_bins.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 
 typedef struct bin_job {
   const conic_gaussian_footprint *footprints;

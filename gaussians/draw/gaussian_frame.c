@@ -1,14 +1,8 @@
 /* A picture of Gaussians: set up, put in order, binned, composited. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/base/radix.h"
-#include "core/base/real.h"
-#include "core/base/threads.h"
 #include "core/image/view_arguments.h"
 #include "gaussians/draw/gaussian_device.h"
 #include "gaussians/draw/gaussian_parts.h"

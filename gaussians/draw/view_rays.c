@@ -1,10 +1,6 @@
 #include "gaussians/draw/view_rays.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/image/camera_rays.h"
 

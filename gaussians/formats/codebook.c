@@ -1,10 +1,7 @@
 #include "gaussians/formats/codebook.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/power.h"
-#include "core/base/real.h"
 
 enum { BINS = 65536, ROUNDS = 12 };
 

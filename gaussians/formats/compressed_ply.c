@@ -1,11 +1,7 @@
 /* PlayCanvas's compressed PLY: a box of each 256 Gaussians, within which numbers of 8 to 11 bits place them. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "conic/version.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/formats/ply_source.h"
 #include "gaussians/formats/gaussian_formats.h"
 #include "gaussians/scene/activation.h"

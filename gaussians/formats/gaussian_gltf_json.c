@@ -1,8 +1,6 @@
 /* What a glTF says of its Gaussians, and the buffers that they are in. */
-#include <stdio.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "gaussians/formats/gaussian_gltf.h"
 

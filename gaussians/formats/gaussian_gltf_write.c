@@ -1,14 +1,9 @@
 /* Gaussians as glTF by KHR_gaussian_splatting (release candidate of 2026): one primitive of points, an array an
  * attribute; a .gltf carries them as base64. */
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "conic/version.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "core/files/number.h"
 #include "gaussians/formats/gaussian_formats.h"
 

@@ -1,12 +1,7 @@
 /* Gaussians in PLY, as 3DGS, 2DGS and Mip-Splatting write them: a row a Gaussian, before activation. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "conic/version.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "core/formats/ply_source.h"
 #include "gaussians/formats/gaussian_formats.h"
 #include "gaussians/scene/activation.h"

@@ -1,14 +1,8 @@
 /* Gaussian scenes by whatever format: which a file is, and its reader and writer. */
 #include <errno.h>
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/loan_find.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
-#include "core/base/real.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/inflate.h"

@@ -1,8 +1,6 @@
 #include "gaussians/formats/gaussian_formats.h"
 
-#include <string.h>
-
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "gaussians/scene/half.h"
 

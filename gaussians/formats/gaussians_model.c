@@ -1,8 +1,7 @@
 /* Gaussian scenes as models of splats, for what draws, measures or keeps surfaces. */
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/gaussian.h"
-#include "core/base/message.h"
 #include "gaussians/formats/gaussian_formats.h"
 
 /* The formulas, and their order, are those of a .ply's columns, so that a converted scene gives the same bits. */

@@ -1,7 +1,4 @@
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "gaussians/formats/codebook.h"
 
 /* The vectors order[first] … Their squared distances from their mean add up to `squares`. */

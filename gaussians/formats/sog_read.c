@@ -1,10 +1,7 @@
 /* .sog, version 2: meta.json, and pictures whose pixels are the Gaussians, row by row; in a folder or a ZIP archive. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/gaussian.h"
-#include "core/base/memory.h"
 #include "core/files/file.h"
 #include "core/files/json_read.h"
 #include "core/files/zip.h"

@@ -1,13 +1,8 @@
 /* .sog, version 2, as a ZIP archive: see sog_read.c. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "conic/version.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/power.h"
-#include "core/base/real.h"
 #include "core/files/number.h"
 #include "core/files/zip.h"
 #include "gaussians/formats/codebook.h"

@@ -1,9 +1,4 @@
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "core/files/inflate.h"
 #include "core/files/zstd.h"
 #include "gaussians/formats/spz_layout.h"

@@ -1,9 +1,6 @@
 #include "gaussians/formats/webp_plane.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 
 #if CONIC_HAVE_WEBP
 

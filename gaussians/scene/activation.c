@@ -1,10 +1,7 @@
 #include "gaussians/scene/activation.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/power.h"
-#include "core/base/real.h"
-#include "core/base/threads.h"
 
 enum { BLOCK = 4096 };
 

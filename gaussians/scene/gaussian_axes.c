@@ -1,9 +1,6 @@
 /* Frames, and scenes turned from one to another. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "gaussians/scene/harmonics.h"

@@ -1,10 +1,6 @@
 #include "gaussians/scene/gaussian_set.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "gaussians/scene/activation.h"
 
 int conic_degree_of_coefficients(size_t n) {

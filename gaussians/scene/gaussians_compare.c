@@ -1,9 +1,6 @@
 /* How far two scenes are apart, Gaussian by Gaussian. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/message.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "gaussians/scene/gaussian_set.h"
 
 /* 0 where both have the same bits. */

@@ -1,8 +1,6 @@
 #include "gaussians/scene/harmonics.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/trigonometry.h"
 
 void conic_harmonics_evaluate(const double direction[3], int degree, double *y) {

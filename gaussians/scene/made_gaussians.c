@@ -1,10 +1,7 @@
 #include "gaussians/scene/made_gaussians.h"
 
-#include <math.h>
-
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/random.h"
-#include "core/base/threads.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "gaussians/scene/gaussian_set.h"

@@ -1,9 +1,7 @@
 /* Gaussians along Morton's curve. */
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/radix.h"
-#include "core/base/threads.h"
 #include "gaussians/scene/gaussian_set.h"
 
 enum { AXIS_BITS = 16 };

@@ -1,9 +1,8 @@
 /* Surfels from three faces of the cluster's box (HQP §3.3.2, Algorithm 3.4). What a line of the grid meets is found by
  * looking at each face along the axis and at the lines that pass it, which gives the same as asking every line for
  * every face. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/splats/ellipse.h"
 #include "lod/clusters/cluster_sample.h"
 

@@ -1,8 +1,6 @@
 #include "lod/clusters/cluster_seen.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/base/vectors.h"
 

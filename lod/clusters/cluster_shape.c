@@ -1,8 +1,6 @@
 /* A plane for what each site stands for, and an ellipse that covers it. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_sites.h"
 

@@ -1,7 +1,6 @@
 /* What simplifying does to colours. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
 

@@ -1,7 +1,6 @@
 /* The region as simplifying has it. */
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
 

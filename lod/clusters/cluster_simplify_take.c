@@ -1,9 +1,7 @@
 /* Levels of what simplifying has left: each cluster's triangles and their borders. */
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 /* --- borders --- */

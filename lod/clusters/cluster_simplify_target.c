@@ -1,7 +1,6 @@
 /* What a vertex is best drawn onto, of its neighbours that it may be drawn onto. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
 

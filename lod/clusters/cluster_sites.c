@@ -1,9 +1,7 @@
 #include "lod/clusters/cluster_sites.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_seen.h"

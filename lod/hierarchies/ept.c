@@ -1,9 +1,7 @@
 /* EPT (Entwine point tiles): ept.json, a file of JSON a page of the hierarchy, and a file a node. */
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/files/zstd.h"
 #include "lod/hierarchies/hierarchy.h"
 

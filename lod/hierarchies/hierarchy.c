@@ -1,12 +1,7 @@
 #include "lod/hierarchies/hierarchy.h"
 
-#include <stdio.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "lod/layers/format/layers_key.h"

@@ -1,10 +1,8 @@
 /* LAZ within hierarchies: a chunk, or a whole file, of points. */
 #include "lod/hierarchies/hierarchy.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
 #include "core/laz/laz.h"
 
 enum {

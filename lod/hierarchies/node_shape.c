@@ -1,11 +1,9 @@
 #include "lod/hierarchies/node_shape.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/eigen.h"
-#include "core/base/memory.h"
 #include "core/base/rank.h"
 #include "core/base/vectors.h"
 #include "lod/layers/format/layers_key.h"

@@ -1,9 +1,6 @@
 #include "lod/mesh/face_tree.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"

@@ -1,13 +1,9 @@
 /* Which faces of a mesh lie side by side, and meshes with one index a corner. */
 #include "lod/mesh/mesh.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/base/random.h"
-#include "core/base/real.h"
 #include "core/base/vectors.h"
 
 static const uint32_t none = UINT32_MAX;

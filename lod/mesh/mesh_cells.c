@@ -1,12 +1,9 @@
 #include "lod/mesh/mesh_cells.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/radix.h"
-#include "core/base/real.h"
 #include "core/files/disk.h"
 #include "core/files/pile.h"
 #include "core/formats/model_read.h"

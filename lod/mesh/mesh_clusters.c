@@ -5,13 +5,8 @@
  * becomes rounder. So the joints that are left at the end are asked again, until none is below the limit. */
 #include "lod/mesh/mesh_clusters.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/heap.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
 
 static const uint32_t none = UINT32_MAX;
 

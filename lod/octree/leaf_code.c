@@ -3,11 +3,8 @@
  * neighbours in space, so the boxes are small. */
 #include "lod/octree/octree_code.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/threads.h"
 #include "core/splats/ellipse.h"
 
 /* Where in a leaf's bytes: */

@@ -1,8 +1,6 @@
 /* How an octree parts its points, as a picture (after Confetti's Fig. 17). */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/coloring/color_ramp.h"
 #include "core/image/box_lines.h"
 #include "core/image/image_common.h"

@@ -1,9 +1,6 @@
 /* The least error that so many splats can give. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "core/image/viewpoint.h"
 #include "lod/octree/octree_loops.h"
 #include "lod/octree/octree_view.h"

@@ -1,10 +1,4 @@
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/splats/columns.h"
 #include "lod/octree/octree_code.h"
 #include "lod/octree/octree_fit.h"

@@ -1,9 +1,6 @@
 /* Whether an octree keeps what its numbers promise. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/octree/octree_nodes.h"
 

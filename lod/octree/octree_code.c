@@ -1,12 +1,8 @@
 #include "lod/octree/octree_code.h"
 
-#include <math.h>
-#include <stddef.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/color.h"
-#include "core/base/real.h"
 #include "core/splats/ellipse.h"
 
 /* Where in the 19 bytes: */

@@ -1,10 +1,8 @@
 /* The errors of inner nodes: how far their discs reach past the surface that is there. What covers a disc is sought
  * among the leaves, its own and those around, or, for large nodes, among small nodes and their errors. So nodes are
  * taken in classes by their size. What a class looks at belongs to the classes below. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "lod/octree/octree_loops.h"

@@ -1,10 +1,6 @@
 /* .cot files: docs/reference/format-cot.md. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/files/file_body.h"
 #include "lod/octree/octree_code.h"
 #include "lod/octree/octree_nodes.h"

@@ -1,10 +1,7 @@
 #include "lod/octree/octree_fit.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/eigen.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "lod/octree/octree_loops.h"

@@ -1,12 +1,7 @@
 #include "lod/octree/octree_nodes.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "core/base/rank.h"
-#include "core/base/threads.h"
 #include "core/base/vectors.h"
 #include "core/splats/near.h"
 

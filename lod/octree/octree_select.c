@@ -1,9 +1,5 @@
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/kept_memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
-#include "core/base/threads.h"
 #include "core/image/view_arguments.h"
 #include "lod/octree/octree_loops.h"
 

@@ -1,12 +1,7 @@
 /* The structure of a point-octree: space split at the mean of each node's points (Confetti §3.2). */
 #include "lod/octree/octree_nodes.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "lod/octree/octree_code.h"
 
 /* Larger nodes are split one after the other, the subtrees below them side by side. */

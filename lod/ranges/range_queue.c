@@ -1,9 +1,6 @@
 /* Ranges that wait, the first by priority first. */
+#include "core/base/base.h"
 #include "lod/ranges/ranges_backend.h"
-
-#include <string.h>
-
-#include "core/base/memory.h"
 
 /* By priority, then by place in the file, so that neighbours follow each other. */
 static int is_sooner(const conic_queued_range *a, const conic_queued_range *b) {

@@ -1,11 +1,7 @@
 #include "lod/ranges/ranges.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/guard.h"
 #include "lod/ranges/ranges_backend.h"
 

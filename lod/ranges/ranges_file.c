@@ -1,7 +1,6 @@
 /* Ranges of a file in this machine: a memory map, whose pages are given back as they were read. */
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/mapping.h"
 #include "lod/ranges/ranges_backend.h"

@@ -1,7 +1,6 @@
 /* Ranges of a file on a web server, by libcurl's multi interface: many requests at once. */
+#include "core/base/base.h"
 #include "lod/ranges/ranges_backend.h"
-
-#include "core/base/message.h"
 
 #ifndef CONIC_HAVE_CURL
 
@@ -14,12 +13,8 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
 
 #else
 
-#include <math.h>
-#include <string.h>
-
 #include "core/base/clock.h"
 #include "core/base/machine.h"
-#include "core/base/memory.h"
 #include "lod/ranges/http_requests.h"
 
 static int take_ready(conic_http_ranges *http, conic_range_answer *answer) {

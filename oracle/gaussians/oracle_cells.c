@@ -2,11 +2,8 @@
 #include "oracle/gaussians/oracle_cells.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "oracle/gaussians/oracle_uncertain.h"
 
 enum { PLACE_RUN = 1024, CELL_EDGE = 32 };

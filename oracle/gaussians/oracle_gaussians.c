@@ -1,13 +1,7 @@
 /* A picture of Gaussians by the oracle: every pixel by itself, over all of them. */
-#include <stddef.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
-#include "core/base/real.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/image/view_arguments.h"
 #include "oracle/gaussians/oracle_gaussian.h"
 #include "oracle/oracle_math.h"

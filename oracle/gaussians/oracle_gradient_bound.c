@@ -7,9 +7,8 @@
  *
  * Decisions in doubt: each is followed the other way by itself, and what that changes is added up. */
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "oracle/gaussians/oracle_bounded.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 

@@ -1,12 +1,9 @@
 /* Weights from pictures and NumPy arrays, and gradients into .ply. */
-#include <string.h>
 
 #include "conic/image.h"
 #include "conic/version.h"
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
 #include "core/files/file.h"
 #include "core/files/mapping.h"
 #include "core/files/numpy_array.h"

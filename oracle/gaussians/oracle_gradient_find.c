@@ -1,10 +1,6 @@
 /* The derivative as it is asked for and handed out. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "oracle/gaussians/oracle_cells.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 #include "oracle/oracle_math.h"

@@ -1,11 +1,7 @@
 /* Somebody's gradient held against the one in double precision, within what floats and decisions in doubt may do. */
 #include "oracle/gaussians/oracle_gradient_job.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "oracle/gaussians/oracle_bounded.h"
 #include "oracle/gaussians/oracle_uncertain.h"
 

@@ -1,8 +1,6 @@
 /* Gradients of other programs: .ply with the properties of scenes, and .npz. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/files/mapping.h"
 #include "core/files/numpy_array.h"

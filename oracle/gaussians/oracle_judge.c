@@ -1,9 +1,6 @@
 /* A picture of a Gaussian scene held against what floats may make of it. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "oracle/gaussians/oracle_cells.h"
 #include "oracle/oracle_evidence.h"
 

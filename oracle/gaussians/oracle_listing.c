@@ -1,9 +1,6 @@
 /* Why a pixel is as it is: the Gaussians that have it in their reach, in their order. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "core/image/view_arguments.h"
 #include "oracle/gaussians/oracle_cells.h"
 #include "oracle/gaussians/oracle_uncertain.h"

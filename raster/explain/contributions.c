@@ -1,11 +1,7 @@
 #include "core/image/view_arguments.h"
 #include "raster/explain/pixel_contributions.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 
 /* Splats that a thread projects at a time. */

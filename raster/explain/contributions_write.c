@@ -1,9 +1,7 @@
 /* Every pixel's visible splats and its visible triangle, line by line, into a deep image. */
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/pictures/image_exr_deep.h"
 #include "raster/explain/pixel_contributions.h"
 

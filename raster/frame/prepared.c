@@ -1,9 +1,7 @@
 #include "raster/view/part.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
 #include "core/image/view_arguments.h"
 #include "raster/frame/raster_frame.h"
 

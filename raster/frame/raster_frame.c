@@ -1,10 +1,7 @@
 #include "raster/frame/raster_frame.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
 #include "raster/project/clip_lines.h"
 #include "raster/tiles/lights.h"
 #include "raster/view/ticks.h"

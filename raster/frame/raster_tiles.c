@@ -1,9 +1,7 @@
 /* The tiles of a frame that is set up. */
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
 #include "raster/frame/raster_frame.h"
 #include "raster/view/ticks.h"
 

@@ -1,10 +1,7 @@
 #include "conic/render.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
 #include "core/splats/near.h"
 #include "raster/frame/raster_frame.h"
 #include "raster/view/slips.h"

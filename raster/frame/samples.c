@@ -1,16 +1,11 @@
 /* Supersampling: the picture drawn N times as wide and as high, and every N × N of its pixels made one. */
-#include <math.h>
-#include <string.h>
 
+#include "raster/frame/samples.h"
 #include "conic/render.h"
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
-#include "core/base/threads.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
-#include "raster/frame/samples.h"
 #include "raster/frame/statistics.h"
 
 /* The fine picture is drawn in bands of about so many of its pixels, so that memory is bounded: 20 bytes a pixel for

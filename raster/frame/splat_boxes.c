@@ -1,9 +1,6 @@
 #include "raster/frame/splat_boxes.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/image/view_arguments.h"
 #include "raster/frame/drawing.h"
 #include "raster/loops/raster_loops.h"

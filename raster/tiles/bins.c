@@ -1,8 +1,6 @@
 #include "raster/tiles/bins.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "raster/project/clip_lines.h"
 #include "raster/tiles/bins_tiles.h"
 #include "raster/tiles/tile_loops.h"

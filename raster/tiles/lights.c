@@ -1,11 +1,7 @@
 #include "raster/tiles/lights.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 
 /* 0 where it has none. */
 static int take_direction(const double from[3], float unit[3]) {

@@ -1,9 +1,5 @@
+#include "core/base/base.h"
 #include "raster/transparency/pixel_sheets.h"
-
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/threads.h"
 
 /* What stops all but this much of the light shows nothing behind it. */
 #define LEAST_LIGHT 0x1p-26

@@ -2,11 +2,8 @@
  * through, and these again, surface by surface. */
 #include "conic/transparency.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
 #include "raster/frame/drawing.h"

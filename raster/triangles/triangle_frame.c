@@ -1,10 +1,6 @@
 #include "raster/triangles/triangle_frame.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "raster/tiles/bins_tiles.h"
 #include "raster/triangles/triangle_loops.h"
 

@@ -2,12 +2,9 @@
  * sides says where the eye has to be. */
 #include "raster/view/drawing_frame.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/image/framing.h"
 #include "core/splats/columns.h"

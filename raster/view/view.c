@@ -1,9 +1,6 @@
 #include "raster/view/view.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "raster/view/method.h"
 
 static int kernel_makes_sense(const conic_kernel *kernel) {

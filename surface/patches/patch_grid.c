@@ -1,7 +1,6 @@
 /* A patch on a grid, by forward differences (PSS §6.2). */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "surface/loops/weight.h"
 #include "surface/patches/patch.h"
 

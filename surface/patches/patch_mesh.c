@@ -1,10 +1,9 @@
 /* The corners of a mesh by their places, and by the sides of its creases there. */
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "surface/patches/patch_mesh.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/neighbourhood.h"
-#include "surface/patches/patch_mesh.h"
 
 /* A vertex of more corners gets no patch: each would have to look at all others. */
 enum { MOST_CORNERS = 64 };

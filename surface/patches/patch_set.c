@@ -1,13 +1,7 @@
 /* Lays patches: a polynomial about every point, with the radius up to which it can be trusted. */
 #include "surface/patches/patch_set.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"
 

@@ -1,9 +1,6 @@
 #include "surface/skin/skin.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/base/vectors.h"
 #include "surface/skin/skin_search.h"

@@ -1,9 +1,6 @@
 /* The triangles that each splat makes with its neighbours in its own plane (Delaunay's there). */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "surface/fan.h"
 #include "surface/skin/skin_search.h"

@@ -1,7 +1,6 @@
 /* Chooses, among the candidate triangles, those that fit each other. */
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/base/vectors.h"
 #include "core/splats/ellipse.h"

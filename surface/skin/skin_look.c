@@ -1,7 +1,6 @@
 /* What the picture shows at a splat: all splats over it blend, and the picture shows their mean. */
-#include <math.h>
 
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "surface/skin/skin_search.h"
 

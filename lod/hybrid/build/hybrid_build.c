@@ -1,12 +1,9 @@
 /* From a mesh to a hybrid model: one index a corner, neighbours, clusters, and ways to draw each. */
-#include <string.h>
 
-#include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
-#include "core/splats/columns.h"
 #include "lod/hybrid/build/hybrid_build.h"
+#include "core/base/base.h"
+#include "core/base/clock.h"
+#include "core/splats/columns.h"
 #include "lod/hybrid/model/hybrid_model.h"
 #include "lod/mesh/mesh.h"
 

@@ -1,13 +1,9 @@
 /* All ways to draw one cluster. */
 #include "lod/hybrid/build/hybrid_build.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
 #include "core/base/radix.h"
-#include "core/base/threads.h"
 #include "core/base/vectors.h"
 
 void conic_cluster_ways_release(conic_context *context, conic_cluster_ways *ways) {

@@ -1,12 +1,8 @@
 /* The hierarchy over the clusters, and ways to draw many of them as one. */
 #include "lod/hybrid/build/hybrid_build.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/random.h"
-#include "core/base/threads.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_sites.h"

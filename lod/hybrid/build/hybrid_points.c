@@ -1,10 +1,6 @@
 /* From splats to a hybrid model: triangles where they lie as a surface does, and all others as what they are. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"
 #include "lod/hybrid/build/hybrid_build.h"

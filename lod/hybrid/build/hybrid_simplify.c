@@ -1,10 +1,7 @@
 /* Simpler triangles for all clusters, in regions. Each region goes on to its next stage on one thread; then all threads
  * measure the clusters of all regions. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "lod/hybrid/build/hybrid_build.h"
 #include "lod/hybrid/model/hybrid_model.h"
 

@@ -1,12 +1,7 @@
 /* The least error that so many primitives can give. */
 #include "lod/hybrid/draw/hybrid_choose.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "lod/hybrid/draw/hybrid_offers.h"
 #include "lod/hybrid/draw/hybrid_selecting.h"
 

@@ -1,9 +1,6 @@
 #include "lod/hybrid/draw/hybrid_choose.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 
 /* Rounds in which each cluster is thought over; and how much less a picture of both kinds must promise to be preferred

@@ -1,9 +1,8 @@
 #include "lod/hybrid/draw/hybrid_offers.h"
 
 #include <float.h>
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/splats/ellipse.h"

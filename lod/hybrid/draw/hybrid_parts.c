@@ -1,8 +1,6 @@
 /* What the chosen levels of a hybrid model are drawn of, copied into one set of splats and one of triangles. */
-#include <string.h>
 
-#include "core/base/message.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "lod/hybrid/draw/hybrid_offers.h"
 #include "lod/hybrid/draw/hybrid_selecting.h"
 

@@ -1,9 +1,7 @@
 /* What of a hybrid model is drawn in one picture. */
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/kept_memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/image/view_arguments.h"
 #include "lod/clusters/cluster_seen.h"
 #include "lod/hybrid/draw/hybrid_choose.h"

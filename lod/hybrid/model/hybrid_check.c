@@ -1,9 +1,6 @@
 /* Whether a hybrid model keeps what its numbers promise. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/message.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 

@@ -1,10 +1,6 @@
 /* .chy files: docs/reference/format-chy.md. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/model/hybrid_layout.h"

@@ -1,9 +1,7 @@
 #include "lod/hybrid/model/hybrid_layout.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
 #include "core/image/texture_levels.h"
 
 /* The records are in the file as they are in memory, but for the order of the bytes within their members. */

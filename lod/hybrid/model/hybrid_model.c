@@ -1,9 +1,6 @@
 #include "lod/hybrid/model/hybrid_model.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/splats/near.h"
 #include "lod/hybrid/model/hybrid_layout.h"
 #include "lod/hybrid/model/hybrid_store.h"

@@ -1,11 +1,7 @@
 /* Opening a hybrid model from wherever it lies: header and arrays. Pictures read the chunks that they show. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/model/hybrid_layout.h"
 #include "lod/hybrid/model/hybrid_store.h"

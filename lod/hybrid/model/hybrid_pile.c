@@ -1,11 +1,7 @@
 /* Models that are put together of others. Their chunks lie in a file without a name until they are written. */
 #include "lod/hybrid/model/hybrid_store.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/files/disk.h"
 #include "lod/hybrid/model/hybrid_chunks.h"

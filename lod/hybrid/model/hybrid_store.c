@@ -1,9 +1,6 @@
 #include "lod/hybrid/model/hybrid_store.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 
 #define CONIC_NO_CHUNK UINT32_MAX

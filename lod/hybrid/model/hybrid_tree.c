@@ -1,11 +1,8 @@
 /* The hierarchy over the clusters. */
+#include "core/base/base.h"
 #include "lod/hybrid/model/hybrid_model.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-#include "core/base/memory.h"
 
 /* Halves like these need no more levels of nodes than they must. */
 size_t conic_hybrid_half(size_t n) {

@@ -1,11 +1,7 @@
 /* The bounds of a node: what its samples cover, where they lie, and which way they face. */
-#include <math.h>
 #include <stdatomic.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/real.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/layers/build/layers_node.h"
 #include "lod/layers/format/layers_axes.h"

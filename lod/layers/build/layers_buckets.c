@@ -1,8 +1,5 @@
+#include "core/base/base.h"
 #include "lod/layers/build/layers_parts.h"
-
-#include <string.h>
-
-#include "core/base/memory.h"
 
 /* So many bits of the keys split the samples at a time, fewer where there is little memory for open blocks. */
 enum { MOST_SPLIT_BITS = 12, LEAST_SPLIT_BITS = 4, LEAST_BLOCK = 32, MOST_BLOCK = 1024 };

@@ -1,10 +1,8 @@
 /* What several processes have to know of each other's samples before they build one cloud: what the first sample of
  * all has, their box, how many there are, and a few of them. It is what one process would know that had taken in all.
  */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "lod/layers/build/layers_raws.h"
 
 /* What the first batch of all has. */

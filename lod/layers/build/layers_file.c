@@ -1,11 +1,9 @@
 /* From a grown tree to a file. */
 #include <errno.h>
-#include <string.h>
 #include <unistd.h>
 
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/mapping.h"

@@ -1,12 +1,9 @@
 #include "lod/layers/build/layers_grow.h"
 
 #include <stdatomic.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
 #include "lod/layers/format/layers_axes.h"
 
 /* A group holds no more samples than this, so that progress is seen, and no more than the fraction of all of them that

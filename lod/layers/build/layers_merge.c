@@ -1,7 +1,6 @@
 /* From the parts that several processes have grown to one tree. */
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "lod/layers/build/layers_grow.h"
 
 /* Entries that are sent at a time. */

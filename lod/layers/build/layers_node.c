@@ -1,9 +1,6 @@
 #include "lod/layers/build/layers_node.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/files/mapping.h"
 
 /* Clouds are written so many bytes at a time. */

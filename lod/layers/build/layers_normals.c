@@ -1,9 +1,7 @@
 /* Normals for samples that came without. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/eigen.h"
-#include "core/base/memory.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/estimate/estimate.h"

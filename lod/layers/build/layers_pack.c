@@ -1,9 +1,6 @@
 /* Nodes and branches as bytes. */
-#include <math.h>
-#include <stddef.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "lod/layers/build/layers_node.h"
 
 static size_t padded_facets_bytes(const conic_layers_node *node) {

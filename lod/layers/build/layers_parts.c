@@ -1,9 +1,8 @@
 #include "lod/layers/build/layers_parts.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/base.h"
 
 /* There are about so many pieces for each process, and so many cells in a piece. The more pieces, the more even are the
  * parts, and the more of them are merged one after the other. */

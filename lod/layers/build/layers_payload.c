@@ -1,9 +1,6 @@
 /* What of a sample goes into the cloud beside place, normal, colour and size. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "lod/layers/build/layers_raws.h"
 #include "lod/layers/format/layers_code.h"
 

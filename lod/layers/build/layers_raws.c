@@ -1,11 +1,6 @@
 #include "lod/layers/build/layers_raws.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/layers/format/layers_key.h"
 

@@ -1,9 +1,6 @@
 #include "lod/layers/build/layers_thin.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/random.h"
 #include "lod/layers/format/layers_key.h"
 

@@ -1,11 +1,7 @@
 /* A picture, or a window of it, drawn in bands, or in parts of bands, each with no more splats than memory holds. */
 #include "lod/layers/draw/layers_spill.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/image/image_common.h"
 #include "raster/frame/samples.h"
 #include "raster/frame/statistics.h"

@@ -1,9 +1,7 @@
 /* Which samples of a layered cloud are drawn, and in which colours. */
-#include <string.h>
 
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/base/nearest_word.h"
-#include "core/base/options.h"
 #include "core/coloring/coloring_stream.h"
 #include "lod/layers/draw/layers_scene.h"
 

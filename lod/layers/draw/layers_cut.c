@@ -1,10 +1,6 @@
 #include "lod/layers/draw/layers_cut.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 
 /* A walk down the tree: what is yet to be looked at. Each level adds one node at most, of an octree seven. */
 enum { MOST_OPEN = 7 * CONIC_HIERARCHY_LEVELS + 2 };

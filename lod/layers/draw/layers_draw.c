@@ -1,14 +1,9 @@
 #include "conic/layers_draw.h"
 
 #include <limits.h>
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
-#include "core/base/real.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
 #include "lod/layers/draw/layers_gather.h"

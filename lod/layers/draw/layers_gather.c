@@ -1,10 +1,6 @@
 #include "lod/layers/draw/layers_gather.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 #include "core/splats/point_values.h"
 #include "lod/layers/draw/layers_octree.h"
 

@@ -1,9 +1,6 @@
 #include "lod/layers/draw/layers_horizon.h"
 
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 
 enum { CELL_BITS = 3, MOST_CELLS = 4 };
 

@@ -1,9 +1,6 @@
 #include "lod/layers/draw/layers_octree.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
+#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "lod/hierarchies/node_shape.h"
 #include "lod/layers/format/layers_key.h"

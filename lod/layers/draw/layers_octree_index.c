@@ -1,11 +1,8 @@
 /* From a hierarchy's nodes to the entries that drawing knows, and reading its pages. */
+#include "core/base/base.h"
 #include "lod/layers/draw/layers_octree.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-#include "core/base/memory.h"
 
 /* A place of the index that is being made. */
 typedef struct octree_place {

@@ -1,10 +1,7 @@
 /* Reading the pages of a hierarchy that a picture comes to. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "lod/layers/draw/layers_octree.h"
 
 typedef struct page_reading {

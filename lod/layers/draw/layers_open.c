@@ -1,11 +1,7 @@
 /* Opening layered point clouds: header and index, from wherever they lie. */
-#include <math.h>
-#include <string.h>
 
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
 #include "core/files/mapping.h"
 #include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_octree.h"

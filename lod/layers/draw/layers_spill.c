@@ -1,11 +1,8 @@
 #include "lod/layers/draw/layers_spill.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/threads.h"
+#include "core/base/base.h"
 
 #define NO_BLOCK UINT64_MAX
 

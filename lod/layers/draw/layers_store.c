@@ -1,11 +1,7 @@
 #include "lod/layers/draw/layers_store.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
 #include "lod/layers/draw/layers_octree.h"
 
 /* So many answers are decoded together. */

@@ -2,9 +2,7 @@
 
 #include "raster/view/method.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/vectors.h"
 
 /* Bounds are computed in double and kept apart by this share, which is more than all that drawing, in floats, rounds.

@@ -1,10 +1,6 @@
 /* All of a layered point cloud as splats, for what needs every one of them: at once, or place by place. */
-#include <math.h>
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 #include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_octree.h"
 

@@ -1,12 +1,9 @@
 /* Whether a file's clouds are whole, and every sample of every node within the bounds that the index states. On the way
  * down from the root, each node keeps what is drawn in its place. All samples of a leaf's place are held against every
  * node above it. So memory does not grow with the file. */
-#include <math.h>
-#include <string.h>
 
 #include "conic/layers.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "lod/layers/format/layers_decode.h"
 #include "lod/layers/format/layers_format.h"
 

@@ -1,9 +1,7 @@
 #include "lod/layers/format/layers_code.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
 #include "lod/layers/format/layers_key.h"
 
 /* The first two streams are the keys'. */

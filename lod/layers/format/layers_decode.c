@@ -1,10 +1,8 @@
 #include "lod/layers/format/layers_decode.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
 #include "core/files/mapping.h"
 #include "lod/layers/format/layers_code.h"
 #include "lod/layers/format/layers_key.h"

@@ -1,10 +1,8 @@
 #include "lod/layers/format/layers_format.h"
 
-#include <string.h>
-
 #include "conic/layers.h"
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/message.h"
 #include "core/files/file.h"
 #include "core/files/file_body.h"
 #include "core/files/mapping.h"

@@ -1,11 +1,8 @@
 /* A whole .lpc file in memory: for looking at it, not for drawing. */
 #include "lod/layers/format/layers_format.h"
 
-#include <string.h>
-
 #include "conic/layers.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 
 static conic_status read_tables(conic_layers_file *file) {
   conic_status status =

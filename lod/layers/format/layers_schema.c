@@ -1,8 +1,6 @@
 #include "lod/layers/format/layers_schema.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/splats/point_fields.h"
 

@@ -1,10 +1,8 @@
 /* Splits each attribute of a cloud's records into streams of bytes that are alike, and joins them again. */
 #include "lod/layers/format/layers_code.h"
 
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/real.h"
 #include "lod/layers/format/layers_axes.h"
 
 /* How many of a float's 23 bits of fraction are dropped, the last ones: so many of the axes' lengths, and those of
